@@ -198,6 +198,12 @@ def reason(act, ours, theirs, field):
     return None
 
 
+def has_error(messages):
+    """Texts and displays (kinds 2, 3, 12, 13) are left out: what is reported beside errors differs."""
+    kinds = [m[0] if isinstance(m, list) else m for m in messages]
+    return any(kind in (1, 11) for kind in kinds)
+
+
 def differences(ours, theirs):
     """(act, field, ours, theirs) that no row of INTENDED covers; what lasts is told once in a session."""
     found, told, seed = [], set(), None
@@ -211,7 +217,7 @@ def differences(ours, theirs):
         pairs = {f: (a['shown'].get(f), b['shown'].get(f)) for f in a['shown'].keys() | b['shown'].keys()}
         if not timed:
             pairs['ret'] = (a['ret'], b['ret'])
-            pairs['messages'] = (bool(a['messages']), bool(b['messages']))
+            pairs['error messages'] = (has_error(a['messages']), has_error(b['messages']))
         for field, (x, y) in sorted(pairs.items()):
             if x == y or (timed and field == 'position'):
                 continue

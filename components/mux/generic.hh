@@ -52,7 +52,7 @@ struct Config {
 template <class From>
 void copy_value(From value, hal_type_t to, hal_data_u *output) noexcept {
     switch (to) {
-    case HAL_BIT: output->b = conv::convert<bool>(value, true).value; break;
+    case HAL_BIT: output->b = conv::convert<bool>(value, false).value; break;
     case HAL_FLOAT: output->f = conv::convert<double>(value, true).value; break;
     case HAL_S32: output->s = conv::convert<std::int32_t>(value, true).value; break;
     case HAL_U32: output->u = conv::convert<std::uint32_t>(value, true).value; break;

@@ -31,8 +31,8 @@ def speeds(trace):
     with open(trace, encoding='utf-8') as file:
         rows = [(float(row['axis.x']), float(row['axis.y'])) for row in csv.DictReader(file)]
     steps = [(b[0] - a[0], b[1] - a[1]) for a, b in zip(rows, rows[1:])]
-    fastest = max(math.hypot(*step) for step in steps) / PERIOD_S
-    hardest = max(max(abs(b[i] - a[i]) for i in (0, 1)) for a, b in zip(steps, steps[1:])) / PERIOD_S ** 2
+    fastest = max((math.hypot(*step) for step in steps), default=0) / PERIOD_S
+    hardest = max((max(abs(b[i] - a[i]) for i in (0, 1)) for a, b in zip(steps, steps[1:])), default=0) / PERIOD_S ** 2
     return fastest, hardest, sum(1 for step in steps if step != (0, 0))
 
 

@@ -217,7 +217,7 @@ TEST_P(ThreadModes, ThePullOutOfG76BeginsWhereItIsProgrammed_C15) {
         SCOPED_TRACE(mode);
         // E2: a taper of 0.8 at the end.
         run(fmt::format("G21 G90 G18 G40 G49 G94 G8 {}\nM3 S{}\nG0 X12 Z5\n"
-                        "G76 P1.5 Z-20 I-1 J0.9 K0.9 R1 Q0 H0 L2 E0.8\nM5\nM2\n",
+                        "G76 P1.5 Z-20 I-1 J0.5 K0.9 R1 Q0 H0 L2 E0.8\nM5\nM2\n",
                         mode, rpm));
         const auto passes = passes_at(10.1, 5);
         ASSERT_EQ(passes.size(), 1U);

@@ -80,6 +80,8 @@ describe.each([
       // Task would take it, and the screen is more careful: these, and no others.
       expect([
         'resume proposed', // a way is confirmed in its dialog, where it is shown
+        // Task accepts resume where nothing is paused and does nothing; the screen offers it only where it does something.
+        'resume manual', 'resume auto', 'resume running', 'resume mdi', 'resume line',
         'resume away', 'line line held', 'program file estop', 'program file off', 'release away',
       ]).toContain(`${row} ${name}`);
     }

@@ -255,10 +255,20 @@ TEST_F(SpindlesPart, StatusTellsWhatEachDoes) {
     EXPECT_TRUE(spindles[1].isBrakeOn);
 }
 
+TEST_F(SpindlesPart, StatusShowsTheCommandWithinTheLimitsAndBeforeTheOverride) {
+    set(Parameter::SPINDLE_MAX_FORWARD, 1000);
+    take(spindles, SpindleOn{0, 2000}, true);
+    take(spindles, SetScale{Scale::SPINDLE, 0, 0.5});
+    rpm();
+    Outputs out;
+    fill(spindles, in, true, out);
+    EXPECT_EQ(out.status.spindle[0].speed_cmd_rpm, 1000);
+}
+
 TEST_F(SpindlesPart, PinsAndStatusShowEachOfWhatTheyAreMadeOf) {
     Spindle &s = spindles[1];
     s.isOn = true;
-    s.speed_rpm = 120;
+    s.commanded_rpm = 120;
     s.scale = 0.5;
     s.out_rpm = 60;
     s.orient_angle = 33;
