@@ -169,6 +169,8 @@ def random_act(r):
 
 
 def open_program(name):
+    COMMAND.abort()
+    COMMAND.wait_complete(3)
     mode(linuxcnc.MODE_AUTO)
     COMMAND.program_open(str(HERE / f's_{name}.ngc'))
     COMMAND.wait_complete(3)
@@ -331,7 +333,7 @@ def after_stop():
     COMMAND.abort()
     COMMAND.wait_complete(3)
     mode(linuxcnc.MODE_MDI)
-    for line in ('G90 G21 G94 G49 F1000', 'G54 G92.1 G64', 'G10 L2 P1 X0', 'G53 G0 X0'):
+    for line in ('G90 G21 G94 G49', 'F1000 S0', 'G54 G92.1 G64', 'G10 L2 P1 X0', 'G53 G0 X0'):
         COMMAND.mdi(line)
         COMMAND.wait_complete(5)
 
