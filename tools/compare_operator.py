@@ -61,7 +61,8 @@ INTENDED = [
     ('M62, M63, M67 without a move behind them', {'analog', 'digital'}, lambda act, a, b: True),
     ('G96 while a spindle runs that the operator started', {'spindles'}, lambda act, a, b: 960 in a['gcodes'] and 960 in b['gcodes']),
     ('`stat.program_units` of a program that is paused or stopped', {'units'}, lambda act, a, b: act[0] in ('stop', 'pause')),
-    ('state of the last command after a program that failed', {'rcs', 'ret'}, lambda act, a, b: act == ['run', 'bad']),
+    ('state of the last command after a program that failed', {'rcs', 'ret'},
+     lambda act, a, b: act[0] == 'run' and a['error_code'] == b['error_code'] == 5),
     ('F after M2 and M30 in MDI', {'F'}, lambda act, a, b: act in (['mdi', 'M2'], ['mdi', 'M30'])),
 ]
 
