@@ -201,6 +201,12 @@ def reason(act, ours, theirs, field):
     return None
 
 
+def as_newer(shown):
+    """Codes that 2.9 shows as 0 or 922 and LinuxCNC's newer version as -1."""
+    shown['mcodes'][8] = shown['mcodes'][8] or -1
+    shown['gcodes'][15] = -1 if shown['gcodes'][15] == 922 else shown['gcodes'][15]
+
+
 def has_error(messages):
     """Texts and displays (kinds 2, 3, 12, 13) are left out: what is reported beside errors differs."""
     kinds = [m[0] if isinstance(m, list) else m for m in messages]
@@ -214,6 +220,7 @@ def differences(ours, theirs):
         if (a['seed'], a['n']) != (b['seed'], b['n']):
             found.append((a['act'], 'order of the rows', a['n'], b['n']))
             break
+        as_newer(b['shown'])
         if a['seed'] != seed:
             seed, told = a['seed'], set()
         timed = a['act'][0] in ('stop', 'pause')

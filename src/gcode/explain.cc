@@ -296,12 +296,9 @@ class Explainer {
 
     std::string modes() const {
         std::string out = "in force:";
-        constexpr int NO_G92 = 922;
         for (std::size_t i = 1; i < codes_.g.size(); ++i) {
             const CodeText *text = find_code_text('g', codes_.g[i]);
-            out += text != nullptr && codes_.g[i] >= 0 && i != 2 && codes_.g[i] != NO_G92
-                       ? " " + code_name(codes_.g[i])
-                       : "";
+            out += text != nullptr && codes_.g[i] >= 0 && i != 2 ? " " + code_name(codes_.g[i]) : "";
         }
         return out + fmt::format(", F{:g} {}, S{:g}\n", codes_.settings[1], feed_unit(), codes_.settings[2]);
     }

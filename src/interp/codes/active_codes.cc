@@ -32,7 +32,7 @@ ActiveCodes active_codes(const State &state, const Parameters &parameters, const
              spindle.isConstantSurface ? 960 : 970,
              state.isCentreAbsolute ? 901 : 911,
              state.isDiameter ? 70 : 80,
-             parameters.get(P_G92_APPLIED) != 0.0 ? 923 : 922};
+             parameters.get(P_G92_APPLIED) != 0.0 ? 923 : -1};
     const bool isSpeedOverride = spindle.isOverridden;
     out.m = {sequence,
              block.stop,
@@ -43,7 +43,7 @@ ActiveCodes active_codes(const State &state, const Parameters &parameters, const
              state.isFeedOverride ? (isSpeedOverride ? 48 : 50) : (isSpeedOverride ? 51 : 49),
              state.isAdaptive ? 52 : -1,
              state.isFeedHold ? 53 : -1,
-             0};
+             -1};
     out.settings = {static_cast<double>(sequence), state.feed, spindle.speed, state.tolerance,
                     state.naivecam};
     return out;

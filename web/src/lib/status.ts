@@ -238,12 +238,10 @@ export function workPosition(position: readonly number[], offsets: Offsets): num
 /** Places in the lists of codes that are no modes: the line number, and codes of the last block alone. */
 const NO_MODE_G = [0, 2];
 const NO_MODE_M = [0, 1, 3, 9];
-/** No G92 offset is active. */
-const G92_2 = 922;
 
 /** Active modal codes as they are written, "G54". */
 export function modalWords(codes: Codes): string[] {
-  const g = codes.g.filter((code, i) => !NO_MODE_G.includes(i) && code >= 0 && code !== G92_2);
+  const g = codes.g.filter((code, i) => !NO_MODE_G.includes(i) && code >= 0);
   const m = codes.m.filter((code, i) => !NO_MODE_M.includes(i) && code >= 0);
   return [...g.map((code) => `G${code % 10 === 0 ? code / 10 : (code / 10).toFixed(1)}`), ...m.map((code) => `M${code}`)];
 }
