@@ -282,6 +282,7 @@ bool Task::begin_run() {
     }
     run_.change(RunEvent::BEGUN);
     synch_interpreter();
+    reader_.note_codes();
     Start{*this}.prepare_journal();
     Start{*this}.begin_journal(1);
     if (const auto tap = mdi_queue_.take_tap()) {

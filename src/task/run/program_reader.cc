@@ -66,6 +66,7 @@ interp::Step ProgramReader::step() {
         const int line = rs274_->line();
         keep_place({file, line, line, rs274_->call_level(), rs274_->line_text(file, line), false});
     }
+    note_codes();
     note_read();
     return result;
 }
@@ -76,6 +77,7 @@ interp::Step ProgramReader::execute(std::string_view line) {
     if (result == interp::Step::FILE_END) {
         keep_place({{}, 0, 0, 0, line});
     }
+    note_codes();
     note_read();
     return result;
 }
@@ -91,7 +93,6 @@ void ProgramReader::keep_place(const interp::BlockRef &block) {
 /// A move that cutter compensation holds back is executed with the step that lets it go: what this step has
 /// changed counts from there on.
 void ProgramReader::note_read() {
-    note_codes();
     if (rs274_ == nullptr || search_ != nullptr) {
         return;
     }
