@@ -128,7 +128,6 @@ class Parameters {
         isRecorded_ = isRecorded;
         changes_.clear();
     }
-    bool hasChanges() const { return !changes_.empty(); }
     /// The changes since the last call are added to `changes`, in their order.
     void take_changes(std::vector<ParameterChange> &changes);
     /// Makes a change that another set of parameters has made. Not to be rolled back.

@@ -57,6 +57,8 @@ class ProgramReader {
     void mark_all_executed() { mark_executed(canon_.reads()); }
     /// Once a cycle: what the sequencer has come to is executed; where nothing waits, all is.
     void follow(const Sequencer &sequencer);
+    /// Steps that are read and not executed, those that ask the machine for nothing included.
+    std::size_t count_ahead() const { return frames_ahead_.size(); }
     std::uint64_t executed() const { return executed_; }
     /// Modal codes as of there.
     interp::ActiveCodes executed_codes() const;

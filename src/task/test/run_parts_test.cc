@@ -157,6 +157,16 @@ TEST_F(ReaderTest, BlocksThatAskForNothingKeepTheirPlaceInTheOrder_D2) {
     EXPECT_EQ(reader.interpreter().parameter(31), 1);
 }
 
+TEST_F(ReaderTest, EveryStepAheadCountsSoThatReadingHasABound_D2) {
+    reader.begin_history();
+    for (int i = 0; i < 10; ++i) {
+        EXPECT_EQ(reader.execute("(nothing to do)"), interp::Step::FILE_END);
+    }
+    EXPECT_EQ(reader.count_ahead(), 10U);
+    reader.mark_all_executed();
+    EXPECT_EQ(reader.count_ahead(), 0U);
+}
+
 TEST_F(ReaderTest, AProbeThatHasNotTrippedHasNoLine_I1) {
     EXPECT_EQ(reader.probe_line(), "");
 }
