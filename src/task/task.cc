@@ -308,7 +308,7 @@ void Task::run_interpreter() {
     const auto mayRead = [this] {
         return run_.isRunning() && run_.phase() != RunPhase::FINISHING && run_.hold() != Hold::STOPPED &&
                reader_.queue().size() < settings_.read_ahead_items &&
-               reader_.count_ahead() < settings_.read_ahead_items;
+               reader_.count_ahead() < settings_.read_ahead_steps;
     };
     for (int i = 0; i < settings_.blocks_per_cycle && mayRead(); ++i) {
         if (run_.phase() == RunPhase::SYNCHING) {

@@ -69,6 +69,10 @@ struct Settings {
     /// Blocks that the interpreter may read in one cycle, and queued items above which it waits.
     int blocks_per_cycle = 200;
     std::size_t read_ahead_items = 2000;
+    /// Steps of the interpreter that may be read before the machine reaches them, those that ask for nothing
+    /// included. Far above what motion holds: the limit is for memory and must not shorten the path that
+    /// motion plans over.
+    std::size_t read_ahead_steps = 50'000;
 };
 
 /// What task is built from; all must outlive it.
