@@ -6,8 +6,8 @@ usage: compare_operator.py [--prefix DIR] [--user NAME] [--machine NAME] [--firs
                            [--cache DIR] [--acts JSON] [--show]
 
 Simulated machines (MACHINES) are started by both, each in namespaces of its own, with operator_session.py as their display. It
-sends commands by Python, halui and linuxcncrsh, and writes the status after each act. Fields that differ must be in INTENDED,
-whose texts are rows of docs/compatibility.md; anything else is a failure. Seeds are spread over the machines; --each: sessions
+sends commands by Python, halui and linuxcncrsh, and writes the status after each act. Fields that differ must be in
+operator_differences.INTENDED, whose texts are rows of docs/compatibility.md; anything else is a failure. Seeds are spread over the machines; --each: sessions
 in one start of a machine; --cache keeps LinuxCNC's side. Needs root and the user NAME (default cnc).
 """
 import argparse
@@ -21,6 +21,8 @@ import subprocess
 import sys
 import tempfile
 
+import operator_differences
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / 'docs/compatibility.md'
 # name: (letters of the joints, lines of [KINS], of [EMCIO], of [TRAJ], spindles)
@@ -32,39 +34,6 @@ MACHINES = {
     'random': ('XYZ', 'KINEMATICS = trivkins coordinates=XYZ', 'RANDOM_TOOLCHANGER = 1\n', '', 1),
     'two_spindles': ('XYZ', 'KINEMATICS = trivkins coordinates=XYZ', '', 'SPINDLES = 2\n', 2),
 }
-
-
-
-def is_spindle_code_alone(a, b):
-    return a['mcodes'][:1] + a['mcodes'][2:] == b['mcodes'][:1] + b['mcodes'][2:]
-
-
-# (row of the page, fields, when(act, ours, theirs)): why they may differ.
-INTENDED = [
-    ('spindle that was stopped and is given a speed', {'spindles'},
-     lambda act, a, b: all(x['on'] == y['on'] and (x == y or not x['on']) for x, y in zip(a['spindles'], b['spindles']))),
-    ('modal codes of M48 to M51', {'mcodes'}, lambda act, a, b: a['mcodes'][:5] == b['mcodes'][:5] and a['mcodes'][6:] == b['mcodes'][6:]),
-    ('`stat.mcodes[2]` while a program runs', {'mcodes'},
-     lambda act, a, b: act[0] in ('stop', 'pause') and is_spindle_code_alone(a, b)),
-    ('a stop inside of a subroutine', {'F', 'gcodes', 'mcodes', 'motion_line', 'P', 'S', 'units'},
-     lambda act, a, b: act[0] == 'stop' and act[1] == 'insub'),
-    ('modes of a program that is stopped by off or an emergency stop, or that fails', {'F', 'S', 'P', 'gcodes', 'mcodes', 'motion_line'},
-     lambda act, a, b: (act[0] == 'stop' and act[2] in ('off', 'estop')) or act == ['run', 'bad']),
-    ('`stat.mcodes[2]` while a program runs', {'mcodes'}, lambda act, a, b: b['interp'] != 1 and is_spindle_code_alone(a, b)),
-    ('parameters, G10 and G92 of blocks that were read ahead when a program is stopped',
-     {'g5x_offset', 'g92', 'tool_offset', 'read_line'}, lambda act, a, b: act[0] in ('stop', 'pause')),
-    ('`stat.queue`, `read_line` of a program that is paused', {'queue', 'read_line'}, lambda act, a, b: act[0] in ('pause', 'stop')),
-    ('`stat.motion_line` in MDI and after it', {'motion_line'}, lambda act, a, b: a['mode'] != 2 or act[0] == 'after'),
-    ('`stat.interpreter_errcode`', {'error_code'}, lambda act, a, b: True),
-    ('pause while nothing runs', {'interp', 'rcs', 'ret', 'paused', 'task_paused', 'exec'},
-     lambda act, a, b: a['interp'] == 1 and not a['paused'] and (act[0] in ('pause_now', 'resume') or b['task_paused'])),
-    ('M62, M63, M67 without a move behind them', {'analog', 'digital'}, lambda act, a, b: True),
-    ('G96 while a spindle runs that the operator started', {'spindles'}, lambda act, a, b: 960 in a['gcodes'] and 960 in b['gcodes']),
-    ('`stat.program_units` of a program that is paused or stopped', {'units'}, lambda act, a, b: act[0] in ('stop', 'pause')),
-    ('state of the last command after a program that failed', {'rcs', 'ret'},
-     lambda act, a, b: act[0] == 'run' and a['error_code'] == b['error_code'] == 5),
-    ('F after M2 and M30 in MDI', {'F'}, lambda act, a, b: act in (['mdi', 'M2'], ['mdi', 'M30'])),
-]
 
 
 def ini_of(name):
@@ -194,49 +163,6 @@ def run_both(name, first, count, options):
         return rows['ours'], rows['theirs']
 
 
-def reason(act, ours, theirs, field):
-    for text, fields, when in INTENDED:
-        if field in fields and when(act, ours, theirs):
-            return text
-    return None
-
-
-def as_newer(shown):
-    """Codes that 2.9 shows as 0 or 922 and LinuxCNC's newer version as -1."""
-    shown['mcodes'][8] = shown['mcodes'][8] or -1
-    shown['gcodes'][15] = -1 if shown['gcodes'][15] == 922 else shown['gcodes'][15]
-
-
-def has_error(messages):
-    """Texts and displays (kinds 2, 3, 12, 13) are left out: what is reported beside errors differs."""
-    kinds = [m[0] if isinstance(m, list) else m for m in messages]
-    return any(kind in (1, 11) for kind in kinds)
-
-
-def differences(ours, theirs):
-    """(act, field, ours, theirs) that no row of INTENDED covers; what lasts is told once in a session."""
-    found, told, seed = [], set(), None
-    for a, b in zip(ours, theirs):
-        if (a['seed'], a['n']) != (b['seed'], b['n']):
-            found.append((a['act'], 'order of the rows', a['n'], b['n']))
-            break
-        as_newer(b['shown'])
-        if a['seed'] != seed:
-            seed, told = a['seed'], set()
-        timed = a['act'][0] in ('stop', 'pause')
-        pairs = {f: (a['shown'].get(f), b['shown'].get(f)) for f in a['shown'].keys() | b['shown'].keys()}
-        if not timed and not a['act'][0].startswith(('halui', 'rsh')):
-            pairs['ret'] = (a['ret'], b['ret'])
-            pairs['error messages'] = (has_error(a['messages']), has_error(b['messages']))
-        for field, (x, y) in sorted(pairs.items()):
-            if x == y or (timed and field == 'position'):
-                continue
-            if reason(a['act'], a['shown'], b['shown'], field) is None and (field, json.dumps([x, y])) not in told:
-                told.add((field, json.dumps([x, y])))
-                found.append((f"{a['seed']}.{a['n']} {' '.join(map(str, a['act']))}", field, x, y))
-    return found
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('--prefix', default=str(ROOT / 'build/release'))
@@ -251,7 +177,7 @@ def main():
     parser.add_argument('--show', action='store_true', help='print each difference, not the first of its field alone')
     options = parser.parse_args()
     page = PAGE.read_text(encoding='utf-8')
-    missing = [text for text, _, _ in INTENDED if text not in page]
+    missing = [text for text, _, _ in operator_differences.INTENDED if text not in page]
     if missing:
         sys.exit('not in docs/compatibility.md: ' + '; '.join(missing))
     names = [options.machine] if options.machine else list(MACHINES)
@@ -266,7 +192,7 @@ def main():
                 failed += 1
                 continue
             sessions += part[2]
-            for act, field, ours, theirs in differences(*result):
+            for act, field, ours, theirs in operator_differences.unexplained(*result):
                 fields[field] += 1
                 if options.show or fields[field] <= 3:
                     print(f'{part[0]} {act}: {field} ours {ours} LinuxCNC {theirs}', flush=True)

@@ -9,7 +9,7 @@ namespace {
 
 using detail::State;
 
-constexpr std::uint32_t FORM = 1;
+constexpr std::uint32_t FORM = 2;
 static_assert(sizeof(State) == 1176, "a new field belongs into the lists below, and FORM counts on");
 
 template <class Io, class Pose>
@@ -73,6 +73,7 @@ void fields(Io &io, AnyState &state) {
     io(state.isRetractToR);
     io.choice(state.feed_mode, FeedMode::UNITS_PER_REVOLUTION);
     io(state.feed);
+    io.choice(state.feed_units, LengthUnits::MM);
     io.choice(state.control, geom::PathMode::BLEND);
     io(state.tolerance);
     io(state.naivecam);

@@ -137,14 +137,22 @@ Outcome Task::Handler::operator()(const StepProgram &) {
         return fail("spindle, coolant or tool are not as when the program was held", {},
                     "resume restores them");
     }
-    const bool isPlannerBusy = task.motion_.status().isPaused && task.motion_.status().queue_depth > 0;
+    if (!isFirst && (task.run_.hold() == Hold::STEPPING || task.motion_.status().isStepping)) {
+        return Progress::DONE;  // the step under way ends first
+    }
+    // A program that runs pauses at the end of the move under way, at once where nothing moves.
+    const bool isGoing = !isFirst && task.run_.hold() == Hold::GOING;
+    const bool isMoving = task.motion_.status().queue_depth > 0;
+    const bool isPlannerBusy = (isGoing || task.motion_.status().isPaused) && isMoving;
     const auto taken = task.run_.take(isPlannerBusy && !isFirst ? RunEvent::STEP_MOVE : RunEvent::STEP);
     if (!taken.has_value()) {
         return std::unexpected(taken.error());
     }
+    if (isGoing) {
+        task.motion_.send(motion::Pause{});
+    }
     if (task.run_.isHeld()) {
-        task.motion_.send(motion::StepOnce{});
-        return Progress::DONE;
+        return isPlannerBusy ? send(motion::StepOnce{}) : Outcome(Progress::DONE);
     }
     task.motion_.send(motion::Resume{});
     task.sequencer_.start_step();

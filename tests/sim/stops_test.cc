@@ -69,6 +69,22 @@ TEST_F(StopsTest, AfterAnAbortModesOffsetsAndParametersAreThoseOfTheExecutedBloc
     EXPECT_DOUBLE_EQ(x(), 2.0);
 }
 
+TEST_F(StopsTest, AProgramThatWasStoppedHasNoLineNorHasAnotherMode_D1) {
+    switch_on();
+    run_until_moving(AHEAD);
+    EXPECT_EQ(machine_->task().status().task.motion_line, 2);
+    post(task::AbortAll{});
+    cycles(5);
+    EXPECT_FALSE(motion().isInPosition) << "it brakes";
+    EXPECT_EQ(machine_->task().status().task.motion_line, 0);
+    settle();
+    start("G21 G90 F3000\nG1 X1\nM2\n");
+    EXPECT_EQ(finish(), task::Progress::DONE);
+    EXPECT_EQ(machine_->task().status().task.motion_line, 2);
+    ask(task::SetMode{task::Mode::MANUAL});
+    EXPECT_EQ(machine_->task().status().task.motion_line, 0);
+}
+
 TEST_F(StopsTest, SoTheyAreAfterEveryOtherKindOfStop_D1) {
     const std::vector<msgs::Command> stops{task::SetState{task::State::OFF},
                                            task::SetState{task::State::ESTOP},
@@ -179,6 +195,44 @@ TEST_F(StepsTest, OneStepIsOneBlockToTheEndOfTheProgram_D3) {
     EXPECT_FALSE(isRunning()) << "M2 ends the program";
     EXPECT_FALSE(status().isPaused);
     EXPECT_EQ(mdi("G0 X0"), task::Progress::DONE) << messages();
+}
+
+TEST_F(StepsTest, AStepWhileAProgramRunsPausesItAtTheEndOfTheMove_D3) {
+    switch_on();
+    run_until_moving("G21 G90 G61\nG1 X6 F600\nG1 X8\nG1 X10\nG1 X0\nM2\n");
+    ask(task::StepProgram{});
+    EXPECT_FALSE(motion().isInPosition) << "the move under way is done to its end";
+    settle();
+    EXPECT_TRUE(status().isPaused);
+    EXPECT_DOUBLE_EQ(x(), 6);
+    step();
+    settle();
+    EXPECT_DOUBLE_EQ(x(), 8);
+    ask(task::StepProgram{});
+    cycles(3);
+    ask(task::StepProgram{});  // while a step is under way
+    settle();
+    EXPECT_TRUE(status().isPaused);
+    EXPECT_DOUBLE_EQ(x(), 10);
+    EXPECT_EQ(messages(), "");
+    for (int i = 0; i < 2; ++i) {
+        step();
+        settle();
+    }
+    EXPECT_FALSE(isRunning());
+}
+
+TEST_F(StepsTest, AStepInADwellPausesIt_D3) {
+    switch_on();
+    start("G21 G90\nG4 P0.5\nG0 X1\nG0 X2\nM2\n");
+    cycles(200);
+    ask(task::StepProgram{});
+    cycles(1000);
+    EXPECT_TRUE(status().isPaused);
+    EXPECT_DOUBLE_EQ(x(), 0);
+    ask(task::ResumeProgram{});
+    EXPECT_EQ(finish(), task::Progress::DONE);
+    EXPECT_DOUBLE_EQ(x(), 2);
 }
 
 }  // namespace

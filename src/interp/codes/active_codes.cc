@@ -44,7 +44,7 @@ ActiveCodes active_codes(const State &state, const Parameters &parameters, const
              state.isAdaptive ? 52 : -1,
              state.isFeedHold ? 53 : -1,
              -1};
-    out.settings = {static_cast<double>(sequence), state.feed, spindle.speed, state.tolerance,
+    out.settings = {static_cast<double>(sequence), state.feed_in_units(), spindle.speed, state.tolerance,
                     state.naivecam};
     return out;
 }

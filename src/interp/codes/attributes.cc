@@ -80,7 +80,10 @@ constexpr Row MODES[] = {
     {"feed_override", [](const Sources &e) -> ScriptValue { return e.state.isFeedOverride; },
      [](const Sources &e, double v) { e.state.isFeedOverride = v != 0; }},
     {"feed_rate", [](const Sources &e) -> ScriptValue { return e.state.feed; },
-     [](const Sources &e, double v) { e.state.feed = v; }},
+     [](const Sources &e, double v) {
+         e.state.feed = v;
+         e.state.feed_units = e.state.units;
+     }},
     {"flood", [](const Sources &e) -> ScriptValue { return e.state.isFlood; },
      [](const Sources &e, double v) { e.state.isFlood = v != 0; }},
     {"ijk_distance_mode",

@@ -74,7 +74,8 @@ struct State {
     bool isDiameter = false;        ///< G7
     bool isRetractToR = true;       ///< G99
     FeedMode feed_mode = FeedMode::UNITS_PER_MINUTE;
-    double feed = 0;  ///< [program units/min, 1/min, program units/rev]
+    double feed = 0;                           ///< as F gave it [feed_units/min, 1/min, feed_units/rev]
+    LengthUnits feed_units = LengthUnits::MM;  ///< those that were active when F was given
     geom::PathMode control = geom::PathMode::BLEND;
     double tolerance = 0, naivecam = 0;  ///< G64 P and Q [program units]
     int active_spindle = 0;
@@ -86,6 +87,15 @@ struct State {
     CycleWords cycle;
     SplineModes spline;
     Pose probed;  ///< [program units]
+
+    /// F in the units that are active: the speed of a move stays when G20 or G21 changes them.
+    double feed_in_units() const {
+        constexpr double MM_PER_INCH = 25.4;
+        if (feed_units == units || feed_mode == FeedMode::INVERSE_TIME) {
+            return feed;
+        }
+        return units == LengthUnits::MM ? feed * MM_PER_INCH : feed / MM_PER_INCH;
+    }
 
     bool operator==(const State &) const = default;
 };

@@ -59,6 +59,20 @@ TEST(Interpreter, ModesSavedByABlockThatFailsAreNotKept_I1) {
     }
 }
 
+TEST(Interpreter, AFeedKeepsItsSpeedWhenTheUnitsChange_I1) {
+    test::Machine machine;
+    ASSERT_TRUE(machine.interpreter->begin());
+    ASSERT_EQ(machine.interpreter->execute("G21 F508"), Step::FILE_END) << machine.error();
+    ASSERT_EQ(machine.interpreter->execute("G20"), Step::FILE_END) << machine.error();
+    EXPECT_DOUBLE_EQ(machine.interpreter->active_codes().settings[1], 20.0) << "shown in inches";
+    ASSERT_EQ(machine.interpreter->execute("M70"), Step::FILE_END) << machine.error();
+    ASSERT_EQ(machine.interpreter->execute("F3 G21"), Step::FILE_END) << machine.error();
+    ASSERT_EQ(machine.interpreter->execute("M72"), Step::FILE_END) << machine.error();
+    EXPECT_DOUBLE_EQ(machine.interpreter->active_codes().settings[1], 20.0);
+    ASSERT_EQ(machine.interpreter->execute("G1 X1"), Step::FILE_END) << machine.error();
+    EXPECT_DOUBLE_EQ(machine.record.lines.back().settings.feed, 508.0 / 60.0) << "mm/s, as before M70";
+}
+
 TEST(Interpreter, ABlockThatFailsLeavesModesSavedBefore_I1) {
     for (const char *code : {"M70", "M71", "M73"}) {
         test::Machine machine;

@@ -20,7 +20,7 @@ constexpr Cell NEEDS_AUTO = "running a program needs auto mode",
                NEEDS_MANUAL = "this needs manual mode",
                HELD_AXES = "release the axes of the held program first";
 constexpr Cell NO_PAUSE = "nothing runs that could be paused", NO_RESUME = "nothing is paused",
-               NO_STEP = "single step needs a paused program", NO_TURN = "no program runs";
+               NO_STEP = "single step needs a program", NO_TURN = "no program runs";
 constexpr Cell NO_WAY = "no way is proposed", CONFIRM = "the way that is proposed waits for its confirmation",
                IS_AWAY = "the tool is away from the program: resume it first";
 constexpr Cell NOT_HELD = "the axes are released only from a program that is held",
@@ -44,7 +44,7 @@ constexpr std::array<Row, CLASSES> TABLE{{
     /* RUN */
     {ESTOP, OFF, NEEDS_AUTO, TAKEN, RUNS, RUNS, RUNS, RUNS, NEEDS_AUTO, NEEDS_AUTO, NEEDS_AUTO},
     /* STEP */
-    {ESTOP, OFF, NEEDS_AUTO, TAKEN, NO_STEP, TAKEN, CONFIRM, IS_AWAY, NEEDS_AUTO, NO_STEP, TAKEN},
+    {ESTOP, OFF, NEEDS_AUTO, TAKEN, TAKEN, TAKEN, CONFIRM, IS_AWAY, NEEDS_AUTO, NO_STEP, TAKEN},
     /* PAUSE */
     {NO_PAUSE, NO_PAUSE, TAKEN, TAKEN, TAKEN, TAKEN, TAKEN, TAKEN, TAKEN, TAKEN, TAKEN},
     /* RESUME */

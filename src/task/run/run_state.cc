@@ -64,7 +64,6 @@ constexpr Table<RunPhase> PHASES{{
 constexpr auto GOING = hold(Hold::GOING), STEPPING = hold(Hold::STEPPING), HELD = hold(Hold::HELD),
                STOPPED = hold(Hold::STOPPED), PROPOSED = hold(Hold::PROPOSED), AWAY = hold(Hold::AWAY);
 constexpr auto NOT_HELD = no_hold("nothing is paused");
-constexpr auto NOT_PAUSED = no_hold("single step needs a paused program");
 constexpr auto NOT_STEPPING = no_hold("no step is under way");
 constexpr auto NO_WAY = no_hold("no way is proposed");
 constexpr auto NOT_RELEASABLE = no_hold("the axes are released only from a program that is held");
@@ -85,8 +84,8 @@ constexpr Table<Hold> HOLDS{{
     /* CLEANED */ {GOING, STEPPING, HELD, STOPPED, PROPOSED, AWAY},
     /* PAUSE */ {HELD, HELD, HELD, STOPPED, PROPOSED, AWAY},
     /* RESUME */ {NOT_HELD, NOT_HELD, GOING, GOING, GOING, RETURN_FIRST},
-    /* STEP */ {NOT_PAUSED, NOT_PAUSED, STEPPING, STEPPING, CONFIRM_FIRST, RETURN_FIRST},
-    /* STEP_MOVE */ {NOT_PAUSED, NOT_PAUSED, HELD, HELD, CONFIRM_FIRST, RETURN_FIRST},
+    /* STEP */ {HELD, STEPPING, STEPPING, STEPPING, CONFIRM_FIRST, RETURN_FIRST},
+    /* STEP_MOVE */ {HELD, STEPPING, HELD, HELD, CONFIRM_FIRST, RETURN_FIRST},
     /* STEP_DONE */ {NOT_STEPPING, HELD, NOT_STEPPING, NOT_STEPPING, NOT_STEPPING, NOT_STEPPING},
     /* PROGRAM_STOP */ {STOPPED, STOPPED, STOPPED, STOPPED, PROPOSED, AWAY},
     /* RELEASE */ {NOT_RELEASABLE, NOT_RELEASABLE, AWAY, AWAY, AWAY, AWAY},

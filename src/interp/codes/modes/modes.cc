@@ -21,6 +21,7 @@ bool set_feed(const Code &, const BlockValues &values, State &state, CanonQueue 
         return fault.set("Negative f word used", values.column_of('f'));
     }
     state.feed = feed;
+    state.feed_units = state.units;
     if (state.feed_mode != FeedMode::INVERSE_TIME) {  // there each move has a rate of its own
         canon.take(SetFeedRate{feed});
     }

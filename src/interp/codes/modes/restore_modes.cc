@@ -99,8 +99,9 @@ bool Restoring::restore_spindles(const State &saved) {
     }
     state.active_spindle = saved.active_spindle;
     state.feed = saved.feed;
+    state.feed_units = saved.feed_units;
     if (state.feed_mode != FeedMode::INVERSE_TIME) {  // there each move has a rate of its own
-        canon.take(SetFeedRate{state.feed});
+        canon.take(SetFeedRate{state.feed_in_units()});
     }
     for (int i = 0; i < machine.count_spindles(); ++i) {
         const SpindleState &want = saved.spindles[static_cast<std::size_t>(i)];
