@@ -9,6 +9,9 @@ import json
 MODES = {'F', 'S', 'P', 'units', *(f'gcodes[{i}]' for i in range(1, 17)), *(f'mcodes[{i}]' for i in range(1, 10))}
 MANUAL, AUTO, MDI = 1, 2, 3
 IDLE = 1
+DONE, RUNNING, ERROR = 1, 2, 3
+SPINDLES = {'spindles[0]', 'spindles[1]'}
+SETTINGS = ('feed', 'rapid', 'spindle_override', 'block_delete', 'optional_stop', 'flood', 'mist', 'table', 'max_velocity')
 
 
 def is_stop(act):
@@ -17,28 +20,42 @@ def is_stop(act):
 
 # (row of the page, fields, when(act, ours, theirs)): why they may differ.
 INTENDED = [
-    ('spindle that was stopped and is given a speed', {'spindles[0]', 'spindles[1]'},
+    ('spindle that was stopped and is given a speed', SPINDLES,
      lambda act, a, b: all(x['on'] == y['on'] and (x == y or not x['on']) for x, y in zip(a['spindles'], b['spindles']))),
     ('modal codes of M48 to M51', {'mcodes[6]'}, lambda act, a, b: True),
     ('`stat.mcodes[2]` while a program runs', {'mcodes[2]'}, lambda act, a, b: is_stop(act) or b['interp'] != IDLE),
+    ('the block that is executed is M0', {'mcodes[1]'}, lambda act, a, b: a['paused'] and a['mcodes'][0] in (0, 1)),
+    ('G43 is active, also with an offset of 0', {'gcodes[9]'}, lambda act, a, b: a['gcodes'][8] == 430 and not any(a['tool_offset'])),
     ('a stop inside of a subroutine', MODES | {'motion_line'}, lambda act, a, b: act[:2] == ['stop', 'insub']),
     ('modes of a program that is stopped by off or an emergency stop, or that fails', MODES | {'motion_line'},
      lambda act, a, b: (act[0] == 'stop' and act[2] in ('off', 'estop')) or act == ['run', 'bad']),
+    ('a refused or failed block', MODES, lambda act, a, b: act[0] == 'mdi' and a['rcs'] == b['rcs'] == ERROR),
     ('parameters, G10 and G92 of blocks that were read ahead when a program is stopped',
      {'read_line', *(f'{name}[{i}]' for name in ('g5x_offset', 'g92', 'tool_offset') for i in range(4))}, lambda act, a, b: is_stop(act)),
     ('`stat.queue`, `read_line` of a program that is paused', {'queue', 'read_line'}, lambda act, a, b: is_stop(act)),
     ('`stat.motion_line` in MDI and after it', {'motion_line'}, lambda act, a, b: a['mode'] != AUTO or act[0] == 'after'),
     ('`stat.interpreter_errcode`', {'error_code'}, lambda act, a, b: a['error_code'] == 0),
-    ('pause while nothing runs', {'interp', 'rcs', 'ret', 'paused', 'task_paused', 'exec'},
+    ('interpreter_errcode after a move outside of the limits', {'error_code'}, lambda act, a, b: act == ['mdi', 'G1 X1000']),
+    ('pause while nothing runs', MODES | {'interp', 'rcs', 'ret', 'paused', 'task_paused', 'exec', 'mode', 'error messages', 'error_code'},
      lambda act, a, b: a['interp'] == IDLE and not a['paused'] and (act[0] in ('pause_now', 'resume') or b['task_paused'])),
     ('M62, M63, M67 without a move behind them', {'analog', 'digital[0]', 'digital[1]'},
-     lambda act, a, b: act[0] == 'mdi' and act[1].split()[0] in ('M62', 'M63', 'M67')),
-    ('G96 while a spindle runs that the operator started', {'spindles[0]', 'spindles[1]'},
-     lambda act, a, b: 960 in a['gcodes'] and 960 in b['gcodes']),
+     lambda act, a, b: act[0] == 'mdi' and act[1].split()[0] in ('M62', 'M63', 'M67') or act[:2] in (['run', 'out'], ['step', 'out'])),
+    ('G96 while a spindle runs that the operator started', SPINDLES, lambda act, a, b: 960 in a['gcodes'] and 960 in b['gcodes']),
     ('`stat.program_units` of a program that is paused or stopped', {'units'}, lambda act, a, b: is_stop(act)),
     ('state of the last command after a program that failed', {'rcs', 'ret'},
      lambda act, a, b: act[0] == 'run' and a['error_code'] == b['error_code'] == 5),
     ('F after M2 and M30 in MDI', {'F'}, lambda act, a, b: act in (['mdi', 'M2'], ['mdi', 'M30'])),
+    ('abort while nothing runs', MODES | {'g5x', 'g92[0]'}, lambda act, a, b: act == ['abort'] and a['interp'] == b['interp'] == IDLE),
+    ('F after G93 in MDI', {'F'}, lambda act, a, b: act == ['mdi', 'G93'] and a['F'] == 0),
+    ('G96 after the next line of MDI', {'gcodes[13]'}, lambda act, a, b: act[0] == 'mdi' and (a['gcodes'][12], b['gcodes'][12]) == (960, 970)),
+    ('spindle and coolant codes after the machine went off', {'mcodes[2]', 'mcodes[4]', 'mcodes[5]'},
+     lambda act, a, b: act[0] == 'state' and [a['mcodes'][i] for i in (1, 3, 4)] == [5, 9, -1]),
+    ('spindle override after a program that begins with M49 in force', SPINDLES,
+     lambda act, a, b: act[0] == 'run' and all({**x, 'override_on': y['override_on']} == y for x, y in zip(a['spindles'], b['spindles']))),
+    ('`stat.exec_state` while the end of a program or a tool change waits for moves', {'exec'}, lambda act, a, b: {a['exec'], b['exec']} == {3, 7}),
+    ('S in MDI while a spindle runs that the operator started', SPINDLES, lambda act, a, b: act == ['mdi', 'S600'] and a['spindles'][0]['on']),
+    ('`wait_complete()` of a setting while a program runs or is paused', {'ret'},
+     lambda act, a, b: a['interp'] != IDLE and act[0] in SETTINGS and b['rcs'] == RUNNING),
 ]
 
 

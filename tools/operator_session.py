@@ -96,6 +96,10 @@ def settle(limit=6.0):
     return shown
 
 
+def kinds_of(found):
+    return [m[0] if isinstance(m, (list, tuple)) else m for m in found]
+
+
 def messages():
     kinds = []
     while True:
@@ -169,8 +173,10 @@ def random_act(r):
 
 
 def open_program(name):
-    COMMAND.abort()
-    COMMAND.wait_complete(3)
+    poll()
+    if STAT.interp_state != linuxcnc.INTERP_IDLE:
+        COMMAND.abort()
+        COMMAND.wait_complete(3)
     mode(linuxcnc.MODE_AUTO)
     COMMAND.program_open(str(HERE / f's_{name}.ngc'))
     COMMAND.wait_complete(3)
@@ -325,15 +331,24 @@ def reset():
     messages()
 
 
+# Acts after which the systems may differ on purpose (operator_differences.INTENDED) or by time, in what later acts build on.
+UNSURE = ('stop', 'pause', 'abort', 'pause_now', 'resume', 'state')
+
+
+def is_unsure(row, was_idle):
+    has_failed = any(kind in (linuxcnc.NML_ERROR, linuxcnc.OPERATOR_ERROR) for kind in kinds_of(row['messages']))
+    return row['act'][0] in UNSURE or has_failed or (row['act'][0] == 'mode' and not was_idle)
+
+
 def after_stop():
-    """The machine is brought to a place that both know: where a stop ends is a matter of time."""
+    """The machine is brought to a place and to modes that both know."""
     poll()
     if STAT.task_state != linuxcnc.STATE_ON:
         switch_on()
     COMMAND.abort()
     COMMAND.wait_complete(3)
     mode(linuxcnc.MODE_MDI)
-    for line in ('G90 G21 G94 G49', 'F1000 S0', 'G54 G92.1 G64', 'G10 L2 P1 X0', 'G53 G0 X0'):
+    for line in ('G90 G21 G94 G17 G49 G97 G80 G99 M5 M9', 'F1000 S0', 'G54 G92.1 G64', 'G10 L2 P1 X0', 'G53 G0 X0'):
         COMMAND.mdi(line)
         COMMAND.wait_complete(5)
 
@@ -361,6 +376,8 @@ def main():
             acts = given or [random_act(r) for _ in range(7)]
             rows = [(['start'], lambda: 0)] + [(act, None) for act in acts]
             for number, (act, work) in enumerate(rows):
+                poll()
+                was_idle = STAT.interp_state == linuxcnc.INTERP_IDLE
                 try:
                     ended = work() if work else do(act)
                 except (linuxcnc.error, ValueError, TypeError, OSError) as error:
@@ -368,7 +385,7 @@ def main():
                 row = dict(seed=seed, n=number, act=act, ret=ended, shown=settle(), messages=messages())
                 out.write(json.dumps(row) + '\n')
                 out.flush()
-                if act[0] in ('stop', 'pause'):
+                if is_unsure(row, was_idle):
                     after_stop()
                     row = dict(seed=seed, n=number + 0.5, act=['after', *act], ret=0, shown=settle(), messages=messages())
                     out.write(json.dumps(row) + '\n')
