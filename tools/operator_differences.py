@@ -9,13 +9,20 @@ import json
 MODES = {'F', 'S', 'P', 'units', *(f'gcodes[{i}]' for i in range(1, 17)), *(f'mcodes[{i}]' for i in range(1, 10))}
 MANUAL, AUTO, MDI = 1, 2, 3
 IDLE = 1
+FAILED = 5
 DONE, RUNNING, ERROR = 1, 2, 3
 SPINDLES = {'spindles[0]', 'spindles[1]'}
-SETTINGS = ('feed', 'rapid', 'spindle_override', 'block_delete', 'optional_stop', 'flood', 'mist', 'table', 'max_velocity')
+SETTINGS = ('feed', 'rapid', 'spindle_override', 'block_delete', 'optional_stop', 'flood', 'mist', 'table', 'max_velocity',
+            'pause_now', 'jog')
 
 
 def is_stop(act):
     return act[0] in ('stop', 'pause')
+
+
+def has_failed(act, a, b):
+    """A program that failed on both."""
+    return act[0] in ('run', 'step', 'stop', 'pause') and a['error_code'] == b['error_code'] == FAILED
 
 
 # (row of the page, fields, when(act, ours, theirs)): why they may differ.
@@ -28,12 +35,15 @@ INTENDED = [
     ('G43 is active, also with an offset of 0', {'gcodes[9]'}, lambda act, a, b: a['gcodes'][8] == 430 and not any(a['tool_offset'])),
     ('a stop inside of a subroutine', MODES | {'motion_line'}, lambda act, a, b: act[:2] == ['stop', 'insub']),
     ('modes of a program that is stopped by off or an emergency stop, or that fails', MODES | {'motion_line'},
-     lambda act, a, b: (act[0] == 'stop' and act[2] in ('off', 'estop')) or act == ['run', 'bad']),
+     lambda act, a, b: act[0] == 'state' or (act[0] == 'stop' and act[2] in ('off', 'estop')) or has_failed(act, a, b)),
+    ('spindle and coolant after a program that failed', SPINDLES | {'flood', 'mist'}, has_failed),
     ('a refused or failed block', MODES, lambda act, a, b: act[0] == 'mdi' and a['rcs'] == b['rcs'] == ERROR),
     ('parameters, G10 and G92 of blocks that were read ahead when a program is stopped',
      {'read_line', *(f'{name}[{i}]' for name in ('g5x_offset', 'g92', 'tool_offset') for i in range(4))}, lambda act, a, b: is_stop(act)),
-    ('`stat.queue`, `read_line` of a program that is paused', {'queue', 'read_line'}, lambda act, a, b: is_stop(act)),
+    ('`stat.queue`, `read_line` of a program that is paused', {'queue', 'read_line'}, lambda act, a, b: is_stop(act) or a['interp'] != IDLE),
     ('`stat.motion_line` in MDI and after it', {'motion_line'}, lambda act, a, b: a['mode'] != AUTO or act[0] == 'after'),
+    ('`stat.motion_line` of a move of length 0', {'motion_line'}, lambda act, a, b: b['motion_line'] == 0 and act[0] == 'run'),
+    ('F in the block of G20 or G21, under G95', {'F'}, lambda act, a, b: 950 in a['gcodes'] and a['gcodes'][4] == 210),
     ('`stat.interpreter_errcode`', {'error_code'}, lambda act, a, b: a['error_code'] == 0),
     ('interpreter_errcode after a move outside of the limits', {'error_code'}, lambda act, a, b: act == ['mdi', 'G1 X1000']),
     ('pause while nothing runs', MODES | {'interp', 'rcs', 'ret', 'paused', 'task_paused', 'exec', 'mode', 'error messages', 'error_code'},
@@ -43,15 +53,18 @@ INTENDED = [
     ('G96 while a spindle runs that the operator started', SPINDLES, lambda act, a, b: 960 in a['gcodes'] and 960 in b['gcodes']),
     ('`stat.program_units` of a program that is paused or stopped', {'units'}, lambda act, a, b: is_stop(act)),
     ('state of the last command after a program that failed', {'rcs', 'ret'},
-     lambda act, a, b: act[0] == 'run' and a['error_code'] == b['error_code'] == 5),
+     has_failed),
     ('F after M2 and M30 in MDI', {'F'}, lambda act, a, b: act in (['mdi', 'M2'], ['mdi', 'M30'])),
-    ('abort while nothing runs', MODES | {'g5x', 'g92[0]'}, lambda act, a, b: act == ['abort'] and a['interp'] == b['interp'] == IDLE),
+    ('abort while nothing runs', MODES | {'g5x', 'g92[0]'}, lambda act, a, b: act[0] in ('abort', 'after') and a['interp'] == b['interp'] == IDLE),
+    ('`mode(MODE_AUTO)` while a program of AUTO is paused', MODES | {'interp', 'exec', 'paused', 'task_paused', 'rcs', 'ret', 'read_line', 'motion_line', 'queue'},
+     lambda act, a, b: act == ['mode', AUTO] and a['paused'] and b['interp'] == IDLE),
+    ('a mode that is refused while a program is paused', {'rcs', 'ret'}, lambda act, a, b: act[0] == 'mode' and a['paused'] and a['rcs'] == ERROR),
     ('F after G93 in MDI', {'F'}, lambda act, a, b: act == ['mdi', 'G93'] and a['F'] == 0),
-    ('G96 after the next line of MDI', {'gcodes[13]'}, lambda act, a, b: act[0] == 'mdi' and (a['gcodes'][12], b['gcodes'][12]) == (960, 970)),
+    ('G96 after the next line of MDI', {'gcodes[13]'}, lambda act, a, b: (a['gcodes'][12], b['gcodes'][12]) == (960, 970)),
     ('spindle and coolant codes after the machine went off', {'mcodes[2]', 'mcodes[4]', 'mcodes[5]'},
      lambda act, a, b: act[0] == 'state' and [a['mcodes'][i] for i in (1, 3, 4)] == [5, 9, -1]),
     ('spindle override after a program that begins with M49 in force', SPINDLES,
-     lambda act, a, b: act[0] == 'run' and all({**x, 'override_on': y['override_on']} == y for x, y in zip(a['spindles'], b['spindles']))),
+     lambda act, a, b: all({**x, 'override_on': y['override_on']} == y for x, y in zip(a['spindles'], b['spindles']))),
     ('`stat.exec_state` while the end of a program or a tool change waits for moves', {'exec'}, lambda act, a, b: {a['exec'], b['exec']} == {3, 7}),
     ('S in MDI while a spindle runs that the operator started', SPINDLES, lambda act, a, b: act == ['mdi', 'S600'] and a['spindles'][0]['on']),
     ('`wait_complete()` of a setting while a program runs or is paused', {'ret'},

@@ -71,6 +71,7 @@ Outcome Task::Handler::operator()(const SetMode &command) {
     const motion::Mode by_hand = motion.isAllHomed ? motion::Mode::TELEOP : motion::Mode::FREE;
     const bool isWantedAgain = command.mode == Mode::MANUAL && motion.mode != by_hand &&
                                motion.isInPosition && !task.homing_.isUnderWay();
+    task.status_.task.motion_line = 0;
     if (command.mode == task.mode_.mode() && !isWantedAgain) {
         return Progress::DONE;
     }

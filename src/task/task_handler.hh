@@ -187,7 +187,6 @@ struct Task::Handler {
     /// Done when motion has agreed, to joints where `mayMoveJoints` and it cannot move axes.
     void change_mode(Mode mode, motion::Mode motion_mode, bool mayMoveJoints = false) {
         const motion::CommandId order = task.motion_.send(motion::SetMode{motion_mode});
-        task.status_.task.motion_line = 0;
         task.mode_.begin(mode, motion_mode, id, order, task.now_ns_, mayMoveJoints);
     }
     Outcome start_run(RunKind kind, const std::string &line = {}) {
