@@ -77,6 +77,7 @@ void BlockHistory::return_to_executed() {
     }
     executor_.saved_modes.drop_calls(0);
     executor_.abort_block();
+    executor_.state.comp = {};  // the next move goes where it says, not beside it
     begin();
 }
 

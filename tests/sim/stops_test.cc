@@ -140,6 +140,19 @@ TEST_F(StopsTest, BlocksThatWereExecutedCountEvenIfTheyMoveNothing_D1) {
     EXPECT_NEAR(x(), at + 5, 1e-9) << "G91 and #31 = 5";
 }
 
+TEST_F(StopsTest, CutterCompensationEndsWithTheStop_D1) {
+    switch_on();
+    run_until_moving("G21 G90 G17\nG41.1 D2\nG1 X2 F600\nG1 X20\nG1 Y10\nG91\nG40 G1 X0 Y0\nM2\n");
+    EXPECT_EQ(machine_->task().status().codes.g[4], 411);
+    EXPECT_NEAR(motion().carte_pos_cmd.y(), 1, 1e-9) << "beside the line by the radius";
+    post(task::AbortAll{});
+    settle();
+    EXPECT_EQ(machine_->task().status().codes.g[4], 400);
+    EXPECT_EQ(mdi("G0 X1 Y0"), task::Progress::DONE) << messages();
+    EXPECT_DOUBLE_EQ(x(), 1.0) << "G90 is active, and no move is held back";
+    EXPECT_DOUBLE_EQ(motion().carte_pos_cmd.y(), 0.0);
+}
+
 TEST_F(StopsTest, InASubroutineNamesAndArgumentsOfTheCallersReturn_D1) {
     switch_on();
     start(
