@@ -139,6 +139,8 @@ bool fits(const World &world, const Bench &bench, bool isHomed, std::string &why
     };
     why.clear();
     const double rpm = d.direction * d.turning_rpm;
+    constexpr double MM_PER_INCH = 25.4;
+    const double feed = m.isInch ? m.feed_mm_min / MM_PER_INCH : m.feed_mm_min;
     if (differs(offsets.g5x_index != m.system, fmt::format("G5x {}, not {}", offsets.g5x_index, m.system)) ||
         differs(!isSame(place_of(offsets.g5x), system),
                 fmt::format("G5x offset {}, not {}", str(place_of(offsets.g5x)), str(system))) ||
@@ -146,8 +148,8 @@ bool fits(const World &world, const Bench &bench, bool isHomed, std::string &why
                 fmt::format("G92 offset {}, not {}", str(place_of(offsets.g92)), str(m.g92))) ||
         differs(!task_campaign::isSame(offsets.tool[2], m.tool_z),
                 fmt::format("tool offset {:.4f}, not {:.4f}", offsets.tool[2], m.tool_z)) ||
-        differs(!task_campaign::isSame(codes.settings[1], m.feed),
-                fmt::format("F {}, not {}", codes.settings[1], m.feed)) ||
+        differs(!task_campaign::isSame(codes.settings[1], feed),
+                fmt::format("F {}, not {}", codes.settings[1], feed)) ||
         differs(!task_campaign::isSame(codes.settings[2], m.speed_rpm),
                 fmt::format("S {}, not {}", codes.settings[2], m.speed_rpm)) ||
         differs(!hasCode(codes, m.isInch ? 200 : 210), "units") ||

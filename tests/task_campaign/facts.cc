@@ -289,7 +289,7 @@ bool apply(const Line &line, World &world, bool isBlockDelete) {
     }
     switch (line.kind) {
     case Kind::RAPID: return move(line, world);
-    case Kind::FEED: m.feed = line.number; return move(line, world);
+    case Kind::FEED: m.feed_mm_min = line.number * unit(m); return move(line, world);
     case Kind::ABSOLUTE: m.isAbsolute = true; return true;
     case Kind::INCREMENTAL: m.isAbsolute = false; return true;
     case Kind::INCH: m.isInch = true; return true;
@@ -303,7 +303,7 @@ bool apply(const Line &line, World &world, bool isBlockDelete) {
 void end_program(World &world) {
     world.modes.system = 1;
     world.modes.isAbsolute = true;
-    world.modes.feed = 0;
+    world.modes.feed_mm_min = 0;
     world.doings.direction = 0;
     world.doings.turning_rpm = 0;
     world.doings.isMist = world.doings.isFlood = false;

@@ -33,9 +33,9 @@ struct Modes {
     bool isG92On = false;
     double tool_z = 0;  ///< G43
     Place g28{}, g30{};
-    double kept = 0;       ///< #3101, which the parameter file has
-    double feed = 0;       ///< F
-    double speed_rpm = 0;  ///< S
+    double kept = 0;         ///< #3101, which the parameter file has
+    double feed_mm_min = 0;  ///< F
+    double speed_rpm = 0;    ///< S
     bool operator==(const Modes &) const = default;
 };
 
