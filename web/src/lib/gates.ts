@@ -131,7 +131,9 @@ export const canStep = gate(atPower, isNotHoming, isHomed, (status) => {
   if (now === 'idle') {
     return status.task.program === '' ? { key: 'gate.program' } : null;
   }
-  return now === 'held' || (now === 'line' && status.task.is_paused) ? null : closed(BUSY[now]);
+  // In a program that runs a step pauses at the end of the move under way.
+  const canBe = now === 'running' || now === 'held' || (now === 'line' && status.task.is_paused);
+  return canBe ? null : closed(BUSY[now]);
 });
 export const canRelease = gate(atPower, (status) => {
   const now = situation(status);
