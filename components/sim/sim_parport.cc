@@ -5,7 +5,7 @@
 // `pin-NN-out-fake` is `pin-NN-out`, inverted while the parameter `pin-NN-out-invert` is true. N.reset,
 // `reset-time` and `pin-NN-out-reset` have no effect. All pins of inputs and outputs are there, whatever the
 // direction of the port. All bit but reset-time.
-#include "hal/sdk/component.hh"
+#include "hal/sdk/canonical.hh"
 
 namespace mw::components {
 using namespace sdk;
@@ -16,24 +16,22 @@ constexpr int OUTPUTS = sizeof OUTPUT_NUMBERS / sizeof OUTPUT_NUMBERS[0];
 constexpr int INPUTS = sizeof INPUT_NUMBERS / sizeof INPUT_NUMBERS[0];
 
 struct SimParport {
-    In<bool> out[OUTPUTS];
+    DigitalOut out[OUTPUTS];
     Out<bool> out_fake[OUTPUTS];
-    ParamRw<bool> out_invert[OUTPUTS], out_reset[OUTPUTS];
-    Out<bool> in[INPUTS], in_not[INPUTS];
+    ParamRw<bool> out_reset[OUTPUTS];
+    DigitalIn in[INPUTS];
     In<bool> in_fake[INPUTS];
     In<double> reset_time;
 
     void declare(Declare &d) noexcept {
         for (int i = 0; i < OUTPUTS; ++i) {
-            d.pin_at(out[i], "pin-%02d-out", OUTPUT_NUMBERS[i]);
+            out[i].declare(d, numbered("pin-%02d-", OUTPUT_NUMBERS[i]).text, {.invert = "out-invert"});
             d.pin_at(out_fake[i], "pin-%02d-out-fake", OUTPUT_NUMBERS[i]);
-            d.param_at(out_invert[i], "pin-%02d-out-invert", OUTPUT_NUMBERS[i]);
             d.param_at(out_reset[i], "pin-%02d-out-reset", OUTPUT_NUMBERS[i]);
         }
         for (int i = 0; i < INPUTS; ++i) {
-            d.pin_at(in[i], "pin-%02d-in", INPUT_NUMBERS[i]);
+            in[i].declare(d, numbered("pin-%02d-", INPUT_NUMBERS[i]).text);
             d.pin_at(in_fake[i], "pin-%02d-in-fake", INPUT_NUMBERS[i]);
-            d.pin_at(in_not[i], "pin-%02d-in-not", INPUT_NUMBERS[i]);
         }
         d.pin(reset_time, "reset-time");
         d.function<&SimParport::read>(this, "read");
@@ -43,14 +41,12 @@ struct SimParport {
 
     void read() noexcept {
         for (int i = 0; i < INPUTS; ++i) {
-            const bool isHigh = in_fake[i];
-            in[i] = isHigh;
-            in_not[i] = !isHigh;
+            in[i].read(in_fake[i]);
         }
     }
     void write() noexcept {
         for (int i = 0; i < OUTPUTS; ++i) {
-            out_fake[i] = out[i] != out_invert[i];
+            out_fake[i] = out[i].write();
         }
     }
     void reset() noexcept {}
