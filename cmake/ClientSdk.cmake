@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 # What programs outside of this tree build with: one static library of clients and NML channels, its headers, and files for
 # pkg-config and CMake. Installed with the rest, or alone by `cmake --install BUILD --component client_sdk`.
-set(sdk_libraries base language diag rtapi config msgs mailbox client nml_config nml_message nml_buffer nml_net nml_bridge)
+set(sdk_libraries base language diag rtapi config msgs mailbox client nml_config nml_message nml_buffer nml_net nml_bridge nml_remote)
 foreach(library ${sdk_libraries})
   get_target_property(type mw_${library} TYPE)
   if(type STREQUAL "STATIC_LIBRARY")

@@ -28,7 +28,7 @@ INNER = {'motion': ['api', 'core', 'rt'],
          'hal': ['api', 'sdk', 'core', 'host'],
          'hal_lang': ['lang', 'tcl'],
          'hal_tools': ['stream', 'view', 'programs'],
-         'nml': ['config', 'message', 'buffer', 'net', 'bridge']}
+         'nml': ['config', 'message', 'buffer', 'net', 'bridge', 'remote']}
 # Folders beside src: what of src, and of each other, they may include. What is not here is left alone.
 BESIDE = {'components': {'hal', 'hal_tools', 'kins', 'traj', 'motion', 'rtapi', 'base', 'geom', 'components', 'sim'},
           'sim': {'hal', 'base', 'geom', 'sim'},

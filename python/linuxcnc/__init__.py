@@ -13,7 +13,7 @@
     ini.find("DISPLAY", "DISPLAY")                        # text, or None
     ini.getreal("TRAJ", "MAX_LINEAR_VELOCITY", fallback=100)
 
-The machine is that of $MILLWRIGHT_INSTANCE, which the launcher sets. Keys that occur several times are lists: findall
+The machine is that of $MILLWRIGHT_INSTANCE, which the launcher sets, or one on another computer: see nmlfile. Keys that occur several times are lists: findall
 gives them all, num counts from 1. Sections of one name are one.
 """
 import collections as _collections
@@ -30,8 +30,11 @@ tool = _collections.namedtuple("tool", "id xoffset yoffset zoffset aoffset boffs
 from ._core import *  # noqa: E402,F401,F403  the extension raises the class above
 from ._core import command, error_channel, ini, positionlogger, stat  # noqa: E402,F401
 
-#: Names a file that is there. Nothing is read from it: the machine is found by the name of its instance.
+#: An NML file. Where its process xemc is REMOTE, the machine is the one behind that NML server. The default, and a
+#: file whose process xemc is LOCAL, is the machine of $MILLWRIGHT_INSTANCE on this computer.
 nmlfile = _os.environ.get("NMLFILE", __file__)
+if nmlfile == _os.environ.get("INI_FILE_NAME"):
+    nmlfile = __file__  # the launcher's value for a machine without an NML file
 PREFIX = "/usr"
 SHARE = "/usr/share"
 version = _os.environ.get("LINUXCNCVERSION", "2.9")

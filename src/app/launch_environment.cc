@@ -93,9 +93,13 @@ void set_launch_environment(const machine::LoadedConfig &loaded, const StartSett
     if (platform.empty() || platform == "glx") {
         set("PYOPENGL_PLATFORM", "x11");
     }
-    // Clients look only whether there is such a file.
+    // Programs test that the file exists; find_machine() and Python's package ignore the name of the INI
+    // file.
     const std::string channels = first_value(loaded, "EMC", "NML_FILE");
-    offer("NMLFILE", channels.empty() ? settings.ini : (fs::path(folder) / channels).string());
+    const std::string path = (fs::path(folder) / channels).string();
+    std::error_code ignored;
+    const bool exists = !channels.empty() && fs::exists(path, ignored);
+    offer("NMLFILE", exists ? path : settings.ini);
 }
 
 }  // namespace mw::app

@@ -97,7 +97,14 @@ Result<Serial> Client::post(const msgs::Command &command) {
     posted->size = static_cast<std::uint32_t>(bytes.size());
     std::memcpy(posted->bytes.data(), bytes.data(), bytes.size());
     slot().posted.push(*posted);
+    announce();
     return posted->serial;
+}
+
+void Client::announce() const {
+    if (viewer_.link() != nullptr) {
+        viewer_.link()->command_posted();
+    }
 }
 
 Serial Client::post_stop(int place) {
@@ -108,6 +115,7 @@ Serial Client::post_stop(int place) {
     // Release: task, which sees the number, sees the stop in its place.
     slot().newest_stop.store(serial, std::memory_order_release);
     posted_stops_.push_back({serial, place});
+    announce();
     if (before != 0) {
         replaced_stops_.emplace_back(before, serial);
     }

@@ -30,6 +30,8 @@ class Client {
     static Result<Client> connect(const std::string &instance, Role role = Role::OPERATOR);
     /// Of a machine in this process, which must outlive it.
     static Result<Client> join(mailbox::Segment &segment, Role role = Role::OPERATOR);
+    /// Of the machine that the viewer sees, on this computer or another one.
+    static Result<Client> join(Viewer viewer, Role role = Role::OPERATOR);
     ~Client();
     Client(Client &&other) noexcept;
     Client &operator=(Client &&other) noexcept;
@@ -59,6 +61,7 @@ class Client {
     using Message = Viewer::Message;
     mailbox::Identity identity() const { return viewer_.identity(); }
     bool isMachineAlive() const { return viewer_.isMachineAlive(); }
+    Result<> check_machine() const { return viewer_.check_machine(); }
     Result<> read_status() { return viewer_.read_status(); }
     const msgs::MachineStatus &status() const { return viewer_.status(); }
     PartMask fresh_parts() const { return viewer_.fresh_parts(); }
@@ -70,9 +73,9 @@ class Client {
 
   private:
     Client(Viewer viewer, int slot, mailbox::ClientId id);
-    static Result<Client> join(Viewer viewer, Role role);
     mailbox::Slot &slot() const { return viewer_.segment().slots[static_cast<std::size_t>(slot_)]; }
     void leave() noexcept;
+    void announce() const;
     Serial post_stop(int place);
     bool isStopWaiting(Serial serial);
     bool isTaken(Serial serial);

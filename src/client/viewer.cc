@@ -34,6 +34,18 @@ Viewer::Viewer(mailbox::Segment &segment)
     heard_ = segment.bell.load(std::memory_order_acquire);
 }
 
+Viewer::Viewer(std::shared_ptr<MachineLink> link) : Viewer(link->segment()) {
+    link_ = std::move(link);
+}
+
+Result<> Viewer::check_machine() const {
+    if (link_ != nullptr) {
+        return link_->check();
+    }
+    const bool is_alive = !memory_.has_value() || memory_->isOwnerAlive();
+    return is_alive ? Result<>{} : fail("the machine is no longer running");
+}
+
 Result<Viewer> Viewer::attach(const std::string &instance) {
     auto memory = mailbox::Memory::attach(instance);
     if (!memory.has_value()) {
@@ -58,10 +70,7 @@ Result<> Viewer::sleep(std::uint32_t heard, std::int64_t end_ns) const {
         return fail("the time to wait is over");
     }
     const bool isRung = mailbox::Memory::wait(*segment_, heard, std::min(left_ns, LONGEST_SLEEP_NS));
-    if (!isRung && !isMachineAlive()) {
-        return fail("the machine is no longer running");
-    }
-    return {};
+    return isRung ? Result<>{} : check_machine();
 }
 
 Result<> Viewer::wait_status(double timeout_s) {
@@ -108,6 +117,9 @@ Result<std::optional<msgs::ToolTable>> Viewer::read_tools() {
 }
 
 std::optional<Viewer::Message> Viewer::next_message(Reading reading) {
+    if (link_ != nullptr) {
+        link_->request_messages();
+    }
     const std::uint64_t newest = segment_->newest_message.load(std::memory_order_acquire);
     if (next_message_ > newest) {
         return std::nullopt;

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "base/patient_read.hh"
+#include "client/machine_link.hh"
 #include "mailbox/memory.hh"
 #include "mailbox/segment.hh"
 
@@ -21,12 +22,18 @@ class Viewer {
     static Result<Viewer> attach(const std::string &instance);
     /// At a machine in this process, which must outlive it.
     explicit Viewer(mailbox::Segment &segment);
+    /// At a machine on another computer.
+    explicit Viewer(std::shared_ptr<MachineLink> link);
 
     mailbox::Segment &segment() const { return *segment_; }
     /// What the machine is; empty until it is ready for clients.
     mailbox::Identity identity() const;
     /// Its task's process lives. Always true in that process.
-    bool isMachineAlive() const { return !memory_.has_value() || memory_->isOwnerAlive(); }
+    bool isMachineAlive() const { return check_machine().has_value(); }
+    /// An error when that process has ended, or when the connection to it is lost.
+    Result<> check_machine() const;
+    /// Null for a machine on this computer.
+    MachineLink *link() const { return link_.get(); }
 
     /// Its process; this one for a machine in this process.
     int machine_pid() const;
@@ -66,6 +73,7 @@ class Viewer {
     Result<> sleep(std::uint32_t heard, std::int64_t end_ns) const;
 
     std::optional<mailbox::Memory> memory_;  ///< of another process
+    std::shared_ptr<MachineLink> link_;      ///< to another computer
     mailbox::Segment *segment_;
     std::uint64_t next_message_ = 1;
     std::uint64_t tools_version_ = 0;

@@ -22,7 +22,10 @@ class Desk {
         bool isPanel = false;
     };
 
-    explicit Desk(Segment &segment) : segment_(segment) {}
+    /// Where commands about the right to operate end.
+    enum class Rights : std::uint8_t { HERE, DELIVERED };
+
+    explicit Desk(Segment &segment, Rights rights = Rights::HERE) : segment_(segment), rights_(rights) {}
 
     /// Once a cycle. The new commands of all clients in the order of their numbers. What may not be carried
     /// out (bytes that are no command, values out of range, another's right to operate) is refused here;
@@ -73,6 +76,7 @@ class Desk {
     bool isConnected(ClientId client) const;
 
     Segment &segment_;
+    Rights rights_;
     RightToOperate right_;
     std::map<Serial, Place> going_;  ///< commands under way
     /// Which command each outcome belongs to, and whether it is under way.

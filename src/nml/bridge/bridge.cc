@@ -61,6 +61,14 @@ Result<std::unique_ptr<Bridge>> Bridge::open(const Connections &connections, cli
     }
     std::unique_ptr<Bridge> bridge(
         new Bridge(std::move(*commands), std::move(*status), std::move(*errors), client));
+    if (connections.config.find_buffer(TOOL_CHANNEL) != nullptr &&
+        connections.config.find_process(connections.process, TOOL_CHANNEL) != nullptr) {
+        auto tools = Channel::open(connections, TOOL_CHANNEL);
+        if (!tools.has_value()) {
+            return std::unexpected(tools.error());
+        }
+        bridge->tools_.emplace(std::move(*tools));
+    }
     const auto dropped = bridge->drop_old_commands();
     return dropped.has_value() ? Result<std::unique_ptr<Bridge>>(std::move(bridge))
                                : std::unexpected(dropped.error());
@@ -90,13 +98,19 @@ Result<> Bridge::drop_old_commands() {
 
 Result<> Bridge::step() {
     const auto taken = take_commands();
-    follow_last();
+    follow();
     while (const auto message = client_.next_message()) {
         keep_message(message->kind, message->number, message->text);
     }
     const auto told = tell_messages();
+    const auto tools = publish_tools();
     const auto published = publish();
-    return !taken.has_value() ? taken : !told.has_value() ? told : published;
+    for (const auto *part : {&taken, &told, &tools}) {
+        if (!part->has_value()) {
+            return *part;
+        }
+    }
+    return published;
 }
 
 Result<> Bridge::take_commands() {
@@ -170,30 +184,82 @@ bool Bridge::post(const Held &held) {
     if (!serial.has_value()) {
         return false;
     }
-    last_ = {held.head, *serial};
-    isHeadNew_ = true;
+    waiting_.push_back({held.head, *serial});
     return true;
 }
 
 void Bridge::refuse(StatusHead head, const std::string &reason) {
     head.state = CommandState::ERROR;
     head.reason.assign(reason);
-    last_ = {head, 0};
-    isHeadNew_ = true;
+    waiting_.push_back({head, 0});
     keep_message(msgs::MessageKind::OPERATOR_ERROR, 0, reason);
 }
 
-void Bridge::follow_last() {
-    if (last_.posted == 0) {
-        return;
+void Bridge::note_taken() {
+    while (!waiting_.empty() && waiting_.front().posted <= client_.status().last_command) {
+        note(waiting_.front().head, waiting_.front().posted);
+        waiting_.pop_front();
     }
-    const client::Outcome outcome = client_.outcome(last_.posted);
-    if (outcome.progress != msgs::Progress::STARTED) {
-        last_.posted = 0;
-        last_.head.state = state_of(outcome.progress);
-        last_.head.reason.assign(outcome.reason);
+}
+
+void Bridge::note(const StatusHead &head, client::Serial posted) {
+    auto &recent = head_.recent;
+    const auto is_replaced_before = [](const CommandOutcome &a, const CommandOutcome &b) {
+        const bool is_a_ended = a.state != CommandState::EXECUTING;
+        const bool is_b_ended = b.state != CommandState::EXECUTING;
+        return is_a_ended != is_b_ended ? is_a_ended : a.serial_number < b.serial_number;
+    };
+    auto *const place = std::min_element(recent.begin(), recent.end(), is_replaced_before);
+    *place = {head.echo_serial_number, head.state, head.reason};
+    posted_[static_cast<std::size_t>(place - recent.begin())] = posted;
+    head_.command_type = head.command_type;
+    head_.echo_serial_number = head.echo_serial_number;
+    head_.state = head.state;
+    head_.reason = head.reason;
+    isHeadNew_ = true;
+}
+
+void Bridge::follow() {
+    for (std::size_t i = 0; i < posted_.size(); ++i) {
+        if (posted_[i] == 0) {
+            continue;
+        }
+        const client::Outcome outcome = client_.outcome(posted_[i]);
+        if (outcome.progress == msgs::Progress::STARTED) {
+            continue;
+        }
+        posted_[i] = 0;
+        CommandOutcome &ended = head_.recent[i];
+        ended.state = state_of(outcome.progress);
+        ended.reason.assign(outcome.reason);
+        if (ended.serial_number == head_.echo_serial_number) {
+            head_.state = ended.state;
+            head_.reason = ended.reason;
+        }
         isHeadNew_ = true;
     }
+}
+
+Result<> Bridge::publish_tools() {
+    if (!tools_.has_value()) {
+        return {};
+    }
+    auto newer = client_.read_tools();
+    if (!newer.has_value()) {
+        return std::unexpected(newer.error());
+    }
+    if (newer->has_value()) {
+        table_ = {{}, std::move(**newer)};
+    }
+    if (!table_.has_value()) {
+        return {};
+    }
+    const auto written = tools_->write(view(*table_));
+    if (!written.has_value()) {
+        return std::unexpected(written.error());
+    }
+    table_.reset();
+    return {};
 }
 
 Result<> Bridge::publish() {
@@ -201,10 +267,11 @@ Result<> Bridge::publish() {
     if (!read.has_value()) {
         return read;
     }
+    note_taken();
     if (client_.status().cycle == published_cycle_ && !isHeadNew_) {
         return {};
     }
-    status_->head = last_.head;
+    status_->head = head_;
     status_->body = client_.status();
     const auto written = statuses_.write(view(*status_));
     if (!written.has_value()) {

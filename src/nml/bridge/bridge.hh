@@ -27,11 +27,8 @@ class Bridge {
     Result<> step();
 
   private:
-    /// The command that was taken last.
-    struct Last {
-        StatusHead head;
-        client::Serial posted = 0;  ///< 0: it has ended here
-    };
+    /// Commands in the `recent` list of the status whose end the mailbox has not reported: 0 elsewhere.
+    using Posted = std::array<client::Serial, RECENT_COMMANDS>;
     /// A command that the mailbox had no room for.
     struct Held {
         msgs::Command command;
@@ -46,18 +43,32 @@ class Bridge {
     /// False: it waits for room.
     bool post(const Held &held);
     void refuse(StatusHead head, const std::string &reason);
-    void follow_last();
+    /// Moves commands out of `waiting_`: a status never reports a command that its body does not include.
+    void note_taken();
+    /// Makes the command the last one, and one of the recent ones: the oldest that has ended makes room.
+    void note(const StatusHead &head, client::Serial posted);
+    void follow();
     Result<> publish();
+    Result<> publish_tools();
     Result<> tell_messages();
     void keep_message(msgs::MessageKind kind, std::uint64_t number, const std::string &text);
 
     Channel commands_, statuses_, errors_;
     client::Client &client_;
-    Last last_;
+    std::optional<Channel> tools_;  ///< where the configuration has it
+    /// A command that task has not taken, or has taken in a later cycle than that of the last status.
+    struct Waiting {
+        StatusHead head;
+        client::Serial posted = 0;  ///< 0: refused here
+    };
+    std::deque<Waiting> waiting_;
+    StatusHead head_;
+    Posted posted_{};
     bool isHeadNew_ = true;
     std::uint64_t published_cycle_ = 0;
     std::optional<Held> held_;
     std::unique_ptr<StatusMessage<msgs::MachineStatus>> status_;
+    std::optional<StatusMessage<msgs::ToolTable>> table_;  ///< not written yet
     struct Line {
         msgs::MessageKind kind;
         std::uint64_t number;
@@ -71,5 +82,7 @@ class Bridge {
 inline constexpr const char *COMMAND_CHANNEL = "emcCommand";
 inline constexpr const char *STATUS_CHANNEL = "emcStatus";
 inline constexpr const char *ERROR_CHANNEL = "emcError";
+/// The tool table, for remote clients. Optional.
+inline constexpr const char *TOOL_CHANNEL = "emcTools";
 
 }  // namespace mw::nml

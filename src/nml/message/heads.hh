@@ -2,6 +2,8 @@
 // The base classes of NML messages (F5): what stands before the fields of every command and of every status.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "msgs/describe.hh"
@@ -23,11 +25,21 @@ struct CommandHead {
     std::uint64_t serial_number = 0;
 };
 
+/// How one command of the channel ended, or that it is being executed.
+struct CommandOutcome {
+    std::uint64_t serial_number = 0;  ///< 0: none
+    CommandState state = CommandState::UNKNOWN;
+    msgs::FixedText<255> reason;  ///< of ERROR
+};
+/// Commands whose outcome a status reports: several clients write to one channel.
+inline constexpr std::size_t RECENT_COMMANDS = 16;
+
 struct StatusHead {
     int command_type = 0;
     std::uint64_t echo_serial_number = 0;
     CommandState state = CommandState::UNKNOWN;
     msgs::FixedText<255> reason;  ///< of ERROR
+    std::array<CommandOutcome, RECENT_COMMANDS> recent{};
 };
 
 /// A message of a type known when the program is compiled.
@@ -64,11 +76,18 @@ inline constexpr auto DECLARED<nml::CommandHead> =
     declare("CommandHead", 0, "", "of every command",
             field<&nml::CommandHead::serial_number>("serial_number", "by which its status is recognised"));
 template <>
+inline constexpr auto DECLARED<nml::CommandOutcome> =
+    declare("CommandOutcome", 0, "", "state of one command",
+            field<&nml::CommandOutcome::serial_number>("serial_number", "of the command, 0: none"),
+            field<&nml::CommandOutcome::state>("state", "of the command"),
+            field<&nml::CommandOutcome::reason>("reason", "why it was refused or has failed"));
+template <>
 inline constexpr auto DECLARED<nml::StatusHead> =
     declare("StatusHead", 0, "", "of every status",
             field<&nml::StatusHead::command_type>("command_type", "number of the last command, 0: none"),
             field<&nml::StatusHead::echo_serial_number>("echo_serial_number", "of that command"),
             field<&nml::StatusHead::state>("state", "how that command stands"),
-            field<&nml::StatusHead::reason>("reason", "why it was refused or has failed"));
+            field<&nml::StatusHead::reason>("reason", "why it was refused or has failed"),
+            field<&nml::StatusHead::recent>("recent", "the last commands, in no order"));
 
 }  // namespace mw::msgs

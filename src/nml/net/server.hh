@@ -15,7 +15,8 @@
 
 namespace mw::nml {
 
-inline constexpr std::size_t MAX_SESSIONS = 32;
+/// Connections: a client has one for each buffer.
+inline constexpr std::size_t MAX_SESSIONS = 128;
 
 /// Every buffer of the configuration for which the process's line says server=1, at the ports of its B line,
 /// at the address of its host there: "localhost" is heard by this computer alone. The buffers are opened by

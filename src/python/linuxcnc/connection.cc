@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "python/linuxcnc/connection.hh"
 
+#include "nml/remote/find_machine.hh"
 #include "python/linuxcnc/module.hh"
+
+namespace py = pybind11;
 
 namespace mw::python {
 
 client::Viewer &View::viewer() {
     if (!viewer_.has_value()) {
-        auto joined = client::Viewer::attach(machine_instance());
-        if (!joined.has_value()) {
-            throw_error(joined.error().str());
-        }
-        viewer_.emplace(std::move(*joined));
+        viewer_.emplace(connect_viewer());
     }
     return *viewer_;
 }
@@ -29,14 +28,32 @@ void View::check_alive() {
         return;
     }
     seen_ = now;
-    if (!viewer_->isMachineAlive()) {
+    if (const auto machine = viewer_->check_machine(); !machine.has_value()) {
         viewer_.reset();  // the next call finds a machine that was started meanwhile
-        throw_error("the machine is no longer running");
+        throw_error(machine.error().str());
     }
 }
 
+std::string nml_file() {
+    const py::module_ module = py::module_::import("linuxcnc");
+    const std::string file = py::str(module.attr("nmlfile"));
+    return file == std::string(py::str(module.attr("__file__"))) ? "" : file;
+}
+
+client::Viewer connect_viewer() {
+    const std::string file = nml_file();
+    auto viewer = [&file] {
+        const py::gil_scoped_release release;
+        return nml::find_machine(machine_instance(), file);
+    }();
+    if (!viewer.has_value()) {
+        throw_error(viewer.error().str());
+    }
+    return std::move(*viewer);
+}
+
 client::Client connect_client() {
-    auto client = client::Client::connect(machine_instance());
+    auto client = client::Client::join(connect_viewer());
     if (!client.has_value()) {
         throw_error(client.error().str());
     }

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <optional>
+#include <string>
 
 #include "client/client.hh"
 #include "client/viewer.hh"
@@ -25,6 +26,13 @@ class View {
     std::uint64_t cycle_ = 0;  ///< when it was looked at last
     std::chrono::steady_clock::time_point seen_{};
 };
+
+/// The machine that `linuxcnc.nmlfile` names, on this computer or another one. Releases the GIL. Throws
+/// linuxcnc.error.
+client::Viewer connect_viewer();
+
+/// `linuxcnc.nmlfile`, empty where no program and no environment has set it.
+std::string nml_file();
 
 /// A machine that is ready for clients. Throws linuxcnc.error.
 client::Client connect_client();

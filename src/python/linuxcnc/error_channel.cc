@@ -15,13 +15,16 @@ class ErrorChannel {
     ErrorChannel() {
         // What comes after it was made is not missed; without a machine yet, from the first poll() on.
         try {
-            static_cast<void>(view_.viewer());
+            if (client::MachineLink *const link = view_.viewer().link(); link != nullptr) {
+                link->request_messages();
+            }
         } catch (py::error_already_set &) {
         }
     }
     py::object poll() {
         const auto message = view_.viewer().next_message();
         if (!message.has_value()) {
+            view_.check_alive();
             return py::none();
         }
         return py::make_tuple(static_cast<int>(message->kind), client::shown_message(*message));

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <thread>
 
+#include "nml/remote/find_machine.hh"
 #include "python/linuxcnc/connection.hh"
 #include "python/linuxcnc/gl.hh"
 #include "python/linuxcnc/logged_path.hh"
@@ -64,16 +65,16 @@ class PositionLogger {
     /// gil_scoped_release is.
     void start(double interval_s) {
         isWanted_.store(true);
-        const std::string instance = machine_instance();
+        const std::string instance = machine_instance(), file = nml_file();
         PyThreadState *const python = PyEval_SaveThread();
-        sample_until_stop(instance, interval_s);
+        sample_until_stop(instance, file, interval_s);
         PyEval_RestoreThread(python);
     }
-    void sample_until_stop(const std::string &instance, double interval_s) {
-        auto viewer = client::Viewer::attach(instance);
+    void sample_until_stop(const std::string &instance, const std::string &file, double interval_s) {
+        auto viewer = nml::find_machine(instance, file);
         while (isWanted_.load()) {
             if (!viewer.has_value()) {
-                viewer = client::Viewer::attach(instance);
+                viewer = nml::find_machine(instance, file);
             } else if (viewer->read_status().has_value()) {
                 sample(viewer->status());
             }

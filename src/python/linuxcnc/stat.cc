@@ -55,9 +55,22 @@ class Stat {
         }
     }
     const Status &status() { return isPolled_ && view_.isJoined() ? view_.viewer().status() : nothing(); }
-    const std::string &ini() const { return ini_; }
-    const msgs::ToolTable &table() const { return table_; }
+    const std::string &ini() {
+        if (isPolled_ && view_.isJoined() && view_.viewer().link() != nullptr) {
+            throw_error("ini_filename: the machine is on another computer, and so is its INI file");
+        }
+        return ini_;
+    }
+    const msgs::ToolTable &table() {
+        if (isPolled_ && view_.isJoined() && view_.viewer().link() != nullptr) {
+            if (const auto tools = view_.viewer().link()->check_tools(); !tools.has_value()) {
+                throw_error(tools.error().str());
+            }
+        }
+        return table_;
+    }
     py::object tool_table() {
+        static_cast<void>(table());
         if (shown_table_.is_none()) {
             shown_table_ = tool_tuples(table_);
         }
@@ -248,10 +261,10 @@ void define_stat(py::module_ &module) {
     py::class_<Stat> stat(module, "stat", "stat(): the status of the machine as of the last poll().");
     stat.def(py::init<>())
         .def("poll", &Stat::poll, "Takes the status as it is now. linuxcnc.error when there is no machine.")
-        .def_property_readonly("ini_filename", [](const Stat &self) { return self.ini(); })
+        .def_property_readonly("ini_filename", [](Stat &self) { return self.ini(); })
         .def_property_readonly("tool_table", &Stat::tool_table)
         .def(
-            "toolinfo", [](const Stat &self, int toolno) { return tool_dict(self.table(), toolno); },
+            "toolinfo", [](Stat &self, int toolno) { return tool_dict(self.table(), toolno); },
             py::arg("tool"), "A dict of the tool of that number. ValueError when there is none.");
     for (const std::span<const Attribute> table :
          {std::span<const Attribute>(OF_TASK), std::span<const Attribute>(OF_MOTION),

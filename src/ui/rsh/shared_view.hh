@@ -24,6 +24,7 @@ class SharedView {
     Result<> read();
     const msgs::MachineStatus &status() const { return viewer_.status(); }
     bool isMachineAlive() const { return viewer_.isMachineAlive(); }
+    Result<> check_machine() const { return viewer_.check_machine(); }
 
     /// For a connection that begins: what no connection has read yet.
     ReadUpTo unread() const { return read_up_to_; }

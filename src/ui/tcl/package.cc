@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "hal/core/hal.hh"
+#include "nml/remote/find_machine.hh"
 #include "ui/tcl/commands.hh"
 
 #define MW_EXPORT __attribute__((visibility("default")))
@@ -78,32 +79,78 @@ int call(ClientData data, Tcl_Interp *tcl, int count, Tcl_Obj *const objects[]) 
                               : answer(tcl, fmt::format("{}: {}", row.name, result.error().str()), TCL_ERROR);
 }
 
-/// The INI file that the words name, else the machine's.
-Result<config::IniFile> find_ini(const Words &words, const client::Viewer &viewer) {
-    std::string path = viewer.identity().ini.str();
+/// The INI file that the words name; empty: none.
+std::string named_ini(const Words &words) {
+    std::string path;
     for (std::size_t i = 0; i + 1 < words.size(); ++i) {
         path = words[i] == "-ini" || words[i] == "--ini" ? words[i + 1] : path;
     }
+    return path;
+}
+
+Result<config::IniFile> load_ini(const std::string &path) {
     diag::Sink quiet([](const diag::Diagnostic &) {});  // the machine has told what is wrong with it
     std::error_code ignored;
     return config::IniFile::load(std::filesystem::absolute(path, ignored).string(), quiet);
+}
+
+/// [EMC]NML_FILE, relative to the folder of the INI file; without one that of the environment.
+std::string nml_file(const config::IniFile &ini) {
+    const config::IniEntry *const entry = ini.find("EMC", "NML_FILE");
+    return entry == nullptr || entry->value.empty()
+               ? nml::nml_file_of_environment()
+               : (std::filesystem::path(ini.path()).parent_path() / entry->value).string();
+}
+
+struct Found {
+    client::Viewer viewer;
+    config::IniFile ini;
+    std::string channels;  ///< NML file
+};
+
+/// The machine and an INI file: the named one, else that of the machine on this computer.
+Result<Found> find(const std::string &instance, const std::string &named) {
+    std::string channels = nml::nml_file_of_environment();
+    Result<config::IniFile> ini = fail("no INI file");
+    if (!named.empty()) {
+        ini = load_ini(named);
+        if (!ini.has_value()) {
+            return std::unexpected(ini.error());
+        }
+        channels = nml_file(*ini);
+    }
+    auto viewer = nml::find_machine(instance, channels);
+    if (!viewer.has_value()) {
+        return fail("no emc connection: " + viewer.error().str());
+    }
+    if (named.empty()) {
+        if (viewer->link() != nullptr) {
+            return fail("emc_init: the machine is on another computer, and so is its INI file", {},
+                        "emc_init -ini FILE");
+        }
+        ini = load_ini(viewer->identity().ini.str());
+        if (!ini.has_value()) {
+            return std::unexpected(ini.error());
+        }
+    }
+    return Found{std::move(*viewer), std::move(*ini), std::move(channels)};
 }
 
 /// emc_init [-ini FILE] [-quick]
 int init(ClientData data, Tcl_Interp *tcl, int count, Tcl_Obj *const objects[]) {
     auto &package = *static_cast<Package *>(data);
     const std::string instance = hal::default_instance();
-    auto viewer = client::Viewer::attach(instance);
-    if (!viewer.has_value()) {
-        return answer(tcl, "no emc connection: " + viewer.error().str(), TCL_ERROR);
+    auto found = find(instance, named_ini(words_of(count, objects)));
+    if (!found.has_value()) {
+        return answer(tcl, found.error().str(), TCL_ERROR);
     }
-    auto ini = find_ini(words_of(count, objects), *viewer);
-    if (!ini.has_value()) {
-        return answer(tcl, ini.error().str(), TCL_ERROR);
-    }
-    Tcl_SetVar2(tcl, "EMC_INIFILE", nullptr, ini->path().c_str(), TCL_GLOBAL_ONLY);
-    package.shell = std::make_unique<Shell>(
-        std::move(*viewer), [instance] { return client::Client::connect(instance); }, std::move(*ini));
+    Tcl_SetVar2(tcl, "EMC_INIFILE", nullptr, found->ini.path().c_str(), TCL_GLOBAL_ONLY);
+    const auto join = [instance, channels = found->channels]() -> Result<client::Client> {
+        auto viewer = nml::find_machine(instance, channels);
+        return viewer.has_value() ? client::Client::join(std::move(*viewer))
+                                  : std::unexpected(viewer.error());
+    };
+    package.shell = std::make_unique<Shell>(std::move(found->viewer), join, std::move(found->ini));
     return answer(tcl, "", TCL_OK);
 }
 

@@ -40,8 +40,9 @@ void Shell::set_ini(config::IniFile ini) {
 
 Result<> Shell::update() {
     const auto read = view_.read();
-    if (!read.has_value() || !view_.isMachineAlive()) {
-        return fail("the machine is gone");
+    const auto machine = view_.check_machine();
+    if (!machine.has_value() || !read.has_value()) {
+        return machine.has_value() ? read : machine;
     }
     if (own.kept != nullptr) {
         *own.kept = view_.status();
@@ -119,8 +120,10 @@ Result<bool> Shell::isOver(const rsh::Waiting &waiting, bool untilDone) {
 Result<std::string> Shell::finish(rsh::Waiting waiting) {
     const double end_s = own.timeout_s > 0 ? now_s() + own.timeout_s : 0;
     while (true) {
-        if (!view_.read().has_value() || !view_.isMachineAlive()) {
-            return std::string("the machine is gone");
+        const auto read = view_.read();
+        const auto machine = view_.check_machine();
+        if (!machine.has_value() || !read.has_value()) {
+            return machine.has_value() ? read.error().str() : machine.error().str();
         }
         const auto over = isOver(waiting, own.isWaitingForDone);
         if (!over.has_value()) {

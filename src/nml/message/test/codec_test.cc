@@ -147,10 +147,16 @@ TEST(NmlCodec, AsciiAndDisplayCanBeReadByPeople_F6) {
     StatusMessage<msgs::IoStatus> io{{122, 9, CommandState::DONE, {}}, {}};
     std::string bytes;
     ASSERT_TRUE(Codec(vocabulary, Encoding::DISPLAY).encode(view(io), bytes).has_value());
-    EXPECT_EQ(bytes,
-              "EMC_IO_STAT_TYPE 1699\ncommand_type=122\necho_serial_number=9\nstate=DONE\nreason=\"\"\n"
-              "aux.estop_requested=1\naux.chain_closed=0\ncoolant.mist=0\ncoolant.flood=0\nlube.on=0\nlube."
-              "level_ok=1\n");
+    std::string recent;
+    for (std::size_t i = 0; i < RECENT_COMMANDS; ++i) {
+        const std::string name = "recent[" + std::to_string(i) + "].";
+        recent += name + "serial_number=0\n" + name + "state=UNKNOWN\n" + name + "reason=\"\"\n";
+    }
+    EXPECT_EQ(
+        bytes,
+        "EMC_IO_STAT_TYPE 1699\ncommand_type=122\necho_serial_number=9\nstate=DONE\nreason=\"\"\n" + recent +
+            "aux.estop_requested=1\naux.chain_closed=0\ncoolant.mist=0\ncoolant.flood=0\nlube.on=0\nlube."
+            "level_ok=1\n");
     CommandMessage<msgs::Mdi> mdi{{3}, {"G0 (\"a\\b\")\n"}};
     bytes.clear();
     ASSERT_TRUE(Codec(vocabulary, Encoding::ASCII).encode(view(mdi), bytes).has_value());
