@@ -10,6 +10,7 @@
 #ifndef INIFILE_H
 #define INIFILE_H
 
+#include <limits.h> /* PATH_MAX, for buffers of iniFindString */
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>

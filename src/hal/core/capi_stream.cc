@@ -2,6 +2,7 @@
 // hal_stream_*: records through a ring in a shared block, one writer and one reader.
 #include <time.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstring>
 
@@ -18,12 +19,13 @@ constexpr unsigned MOST_RECORDS = 1U << 20U;
 
 }  // namespace
 
-/// Followed by depth records: the number of the sample, then a value per field. Positions run from 0 to depth
-/// - 1, with a slot kept free, so that equal ones mean empty.
+/// Followed by `slots` records: the number of the sample, then a value per field. Positions run from 0 to
+/// slots - 1. One slot stays free, so that equal positions mean empty.
 struct hal_stream_fifo {
     std::uint32_t magic;
     std::int32_t creator;
-    std::uint32_t slots;  // depth + 1
+    std::uint32_t depth;  // as requested
+    std::uint32_t slots;  // the depth, at least 2
     std::uint32_t fields;
     std::uint8_t types[HAL_STREAM_MAX_PINS];
     // Writer's: `in` released after the record is filled, acquired by the reader before it reads it.
@@ -104,7 +106,8 @@ int hal_stream_create(hal_stream_t *stream, int comp, int key, unsigned depth, c
         return complain(
             Error{fmt::format("stream: a depth of {} is outside of 1 to {}", depth, MOST_RECORDS)});
     }
-    const unsigned slots = depth + 1;
+    // As in LinuxCNC a stream of depth N holds N - 1 records, but one of depth 1 holds a record.
+    const unsigned slots = std::max(depth, 2U);
     hal_stream_fifo *fifo = open_fifo(stream, comp, key, fifo_size(slots, static_cast<unsigned>(fields)));
     if (fifo == nullptr) {
         return stream->shmem_id;
@@ -114,6 +117,7 @@ int hal_stream_create(hal_stream_t *stream, int comp, int key, unsigned depth, c
         return complain(EEXIST, fmt::format("there is a stream with key {} already", key));
     }
     fifo->creator = comp;
+    fifo->depth = depth;
     fifo->slots = slots;
     fifo->fields = static_cast<std::uint32_t>(fields);
     std::memcpy(fifo->types, types, sizeof types);
@@ -208,7 +212,7 @@ unsigned hal_stream_depth(hal_stream_t *stream) {
 }
 
 unsigned hal_stream_maxdepth(hal_stream_t *stream) {
-    return stream->fifo->slots - 1;
+    return stream->fifo->depth;
 }
 
 bool hal_stream_readable(hal_stream_t *stream) {
@@ -216,7 +220,7 @@ bool hal_stream_readable(hal_stream_t *stream) {
 }
 
 bool hal_stream_writable(hal_stream_t *stream) {
-    return hal_stream_depth(stream) < hal_stream_maxdepth(stream);
+    return hal_stream_depth(stream) + 1 < stream->fifo->slots;
 }
 
 int hal_stream_num_underruns(hal_stream_t *stream) {

@@ -202,7 +202,7 @@ class StreamTest(unittest.TestCase):
         self.comp.exit()
 
     def test_records_pass_in_order_until_full(self):
-        stream = hal.stream(self.comp, hal.sampler_base + 5, 2, "bfsulk")
+        stream = hal.stream(self.comp, hal.sampler_base + 5, 3, "bfsulk")
         self.assertFalse(stream.readable)
         self.assertIsNone(stream.read())
         rows = [(True, 2.5, -3, 4, -5, 6), (False, -1.0, 0, 1, 2, 3)]
@@ -214,7 +214,17 @@ class StreamTest(unittest.TestCase):
         reader = hal.stream(self.comp, hal.sampler_base + 5, "bfsulk")
         self.assertEqual([reader.read(), reader.read()], rows)
         self.assertEqual((stream.num_overruns, stream.num_underruns, reader.sampleno), (1, 1, 2))
-        self.assertEqual((stream.maxdepth, stream.element_types), (2, b"bfsulk"))
+        self.assertEqual((stream.maxdepth, stream.element_types), (3, b"bfsulk"))
+
+    def test_a_stream_holds_one_record_less_than_its_depth(self):
+        for depth, held in ((1, 1), (2, 1), (3, 2), (10, 9)):
+            with self.subTest(depth=depth):
+                stream = hal.stream(self.comp, hal.sampler_base + 7 + depth, depth, "s")
+                count = 0
+                while stream.writable:
+                    stream.write((count,))
+                    count += 1
+                self.assertEqual((count, stream.depth, stream.maxdepth), (held, held, depth))
 
     def test_wrong_types_are_refused(self):
         with self.assertRaises(OSError):

@@ -60,7 +60,7 @@ TEST(RealtimeCode, StreamsTimeAndFormattingWorkWithoutTheHeap) {
     const UseInstance use(&hal);
     const int comp = *hal.new_component("talker", CompType::REALTIME);
     Talker talker;
-    ASSERT_EQ(hal_stream_create(&talker.stream, comp, 77, 10, "fk"), 0);
+    ASSERT_EQ(hal_stream_create(&talker.stream, comp, 77, 11, "fk"), 0);
     ASSERT_TRUE(hal.new_funct("talk", &Talker::run, &talker, comp));
     ASSERT_TRUE(hal.new_thread("t", 1'000'000));
     ASSERT_TRUE(hal.add_function("talk", "t"));

@@ -17,3 +17,8 @@ int text_of_name(char *name, char *text, size_t n) {
 const char *find_in_name(const char *name) {
     return iniFind(name, "TEXT", "A");
 }
+
+/* The header declares PATH_MAX, so that a buffer for a path needs no further header. */
+int path_of_stream(FILE *stream, char (*path)[PATH_MAX]) {
+    return iniFindString(stream, "PATH", "A", *path, sizeof *path);
+}
