@@ -43,7 +43,7 @@ INTENDED = [
     ('`stat.queue`, `read_line` of a program that is paused', {'queue', 'read_line'}, lambda act, a, b: is_stop(act) or a['interp'] != IDLE),
     ('`stat.motion_line` in MDI and after it', {'motion_line'}, lambda act, a, b: a['mode'] != AUTO or act[0] == 'after'),
     ('`stat.motion_line` of a move of length 0', {'motion_line'}, lambda act, a, b: b['motion_line'] == 0 and act[0] == 'run'),
-    ('F in the block of G20 or G21, under G95', {'F'}, lambda act, a, b: 950 in a['gcodes'] and act[0] != 'mdi'),
+    ('F under G95 where the units change', {'F'}, lambda act, a, b: 950 in a['gcodes'] and (act[0] != 'mdi' or act[1] in ('G20', 'G21'))),
     ('F under G93', {'F'}, lambda act, a, b: 930 in a['gcodes']),
     ('`stat.interpreter_errcode`', {'error_code'}, lambda act, a, b: a['error_code'] == 0),
     ('interpreter_errcode after a move outside of the limits', {'error_code'}, lambda act, a, b: act == ['mdi', 'G1 X1000']),

@@ -348,7 +348,7 @@ def after_stop():
     COMMAND.abort()
     COMMAND.wait_complete(3)
     mode(linuxcnc.MODE_MDI)
-    for line in ('G90 G21 G94 G17 G49 G97 G80 G99 M5 M9', 'F1000 S0', 'G54 G92.1 G64', 'G10 L2 P1 X0', 'G53 G0 X0'):
+    for line in ('G90 G21 G94 G17 G49 G97 G80 G99 G8 M5 M9', 'F1000 S0', 'G54 G92.1 G64', 'G10 L2 P1 X0', 'G53 G0 X0'):
         COMMAND.mdi(line)
         COMMAND.wait_complete(5)
 
