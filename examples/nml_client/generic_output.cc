@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Sends EMC_IO_GENERIC (1605), a message of its own, over an NML channel, or receives one and prints it.
+// Sends the message EMC_IO_GENERIC over an NML channel, or receives it and prints it.
 // usage: generic_output CONFIG send INDEX VALUE | generic_output CONFIG receive
 #include <cstdio>
 #include <cstdlib>
@@ -7,23 +7,9 @@
 #include <string>
 
 #include "diag/sink.hh"
-#include "msgs/check.hh"
+#include "emc_io_generic.hh"
 #include "nml/bridge/channel.hh"
 #include "nml/config/config_file.hh"
-
-namespace mw::msgs {
-
-struct EmcIoGeneric {
-    int index = 0;
-    double value = 0;
-};
-template <>
-inline constexpr auto DECLARED<EmcIoGeneric> =
-    declare("EmcIoGeneric", 1605, "EMC_IO_GENERIC_TYPE", "sets a generic output",
-            field<&EmcIoGeneric::index>("index", "number of the output", unit::NONE, range(0, 15)),
-            field<&EmcIoGeneric::value>("value", "of the output"));
-
-}  // namespace mw::msgs
 
 namespace {
 

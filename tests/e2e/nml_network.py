@@ -147,7 +147,7 @@ def inside(millwright, halcmd, root, command_client):
     with tempfile.TemporaryDirectory(prefix='mw_net_') as folder:
         bench = NetworkBench(millwright, halcmd, root, pathlib.Path(folder))
         try:
-            machine = bench.begin('is up', 'start', str(bench.ini), '--no-display')
+            machine = bench.start_machine()
             refused_ways(bench, elsewhere)
             for number, encoding in enumerate(('xdr', 'ascii', 'disp')):
                 channels = by_library(bench, elsewhere, command_client, encoding, 310 + number)

@@ -104,6 +104,10 @@ class Bench(Mill):
         expect(what in path.read_text(), f'{words[0]} says "{what}"', path.read_text())
         return process
 
+    def start_machine(self):
+        """The process, when the machine is started."""
+        return self.begin('is up', 'start', str(self.ini), '--no-display')
+
     def end_all(self):
         for process in reversed(self.started):
             if process.poll() is None:
@@ -158,7 +162,7 @@ def main():
     with tempfile.TemporaryDirectory(prefix='mw_nml_') as folder:
         bench = Bench(millwright, halcmd, root, pathlib.Path(folder))
         try:
-            machine = bench.begin('is up', 'start', str(bench.ini), '--no-display')
+            machine = bench.start_machine()
             channels = bench.begin('are up', 'nml', str(bench.folder / 'm.nml'))
             client = Client(bench.port)
             operate(client)

@@ -215,7 +215,7 @@ def main():
         words = sys.argv[1:] + [''] * (6 - len(sys.argv))
         bench = Computers(*words, pathlib.Path(folder))
         try:
-            bench.begin('is up', 'start', str(bench.ini), '--no-display')
+            bench.start_machine()
             path = bench.channels('client.nml', bench.port)
             server = bench.begin('are up', 'nml', str(bench.folder / 'machine.nml'))
             operate(bench)

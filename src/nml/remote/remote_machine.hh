@@ -21,9 +21,9 @@
 
 namespace mw::nml {
 
-/// One thread of its own sends commands in their order, reads status, messages and tool table, and publishes
-/// them. Nothing is repeated after an error: the connection is lost then, commands that have not ended fail,
-/// and check() says why.
+/// A thread sends the commands in their order, reads status, messages and tool table, and publishes them.
+/// An error ends the connection: commands that have not ended fail, nothing is sent again, and check()
+/// returns the reason.
 class RemoteMachine final : public client::MachineLink {
   public:
     /// Waits for the first status, at most as long as the time limits of the network. The serial numbers of

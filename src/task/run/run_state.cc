@@ -69,7 +69,7 @@ constexpr auto NO_WAY = no_hold("no way is proposed");
 constexpr auto NOT_RELEASABLE = no_hold("the axes are released only from a program that is held");
 constexpr auto RETURN_FIRST = no_hold("the tool is away from the program: resume it first");
 constexpr auto CONFIRM_FIRST = no_hold("the way that is proposed waits for its confirmation");
-constexpr auto NOT_STANDING = no_hold("the program does not stand at a place to go on from");
+constexpr auto NOT_STANDING = no_hold("the program is not stopped where it can continue");
 
 /// Columns: GOING, STEPPING, HELD, STOPPED, PROPOSED, AWAY.
 constexpr Table<Hold> HOLDS{{

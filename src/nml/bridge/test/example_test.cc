@@ -7,30 +7,14 @@
 
 #include "base/atomic_file.hh"
 #include "diag/sink.hh"
-#include "msgs/check.hh"
+#include "emc_io_generic.hh"
 #include "nml/bridge/channel.hh"
 #include "nml/config/config_file.hh"
-
-// clang-format off
-// begin of the declaration
-namespace mw::msgs {
-
-struct EmcIoGeneric {
-    int index = 0;
-    double value = 0;
-};
-template <>
-inline constexpr auto DECLARED<EmcIoGeneric> =
-    declare("EmcIoGeneric", 1605, "EMC_IO_GENERIC_TYPE", "sets a generic output",
-            field<&EmcIoGeneric::index>("index", "number of the output", unit::NONE, range(0, 15)),
-            field<&EmcIoGeneric::value>("value", "of the output"));
-
-}  // namespace mw::msgs
-// end of the declaration
 
 namespace mw::nml {
 namespace {
 
+// clang-format off
 // begin of the sender
 Result<WriteNumber> send_generic(Channel &channel, int index, double value) {
     CommandMessage<msgs::EmcIoGeneric> command{{}, {index, value}};
@@ -110,7 +94,8 @@ TEST(NmlExample, EveryMessageIsWrittenInEachEncodingToo_F7) {
 }
 
 TEST(NmlExample, ThePageShowsWhatIsCompiledHere_F7) {
-    const std::string source = read_file(MW_SOURCE_DIR "/src/nml/bridge/test/example_test.cc").value();
+    const std::string source = read_file(MW_SOURCE_DIR "/examples/nml_client/emc_io_generic.hh").value() +
+                               read_file(MW_SOURCE_DIR "/src/nml/bridge/test/example_test.cc").value();
     const std::string page = read_file(MW_SOURCE_DIR "/docs/nml.md").value();
     for (const std::string part : {"declaration", "sender", "receiver", "configuration", "connection"}) {
         const std::string begin = "// begin of the " + part + "\n", end = "// end of the " + part + "\n";

@@ -123,9 +123,14 @@ TEST_P(NmlTransportTest, ALargeStatusComesWhole_F6) {
     ASSERT_TRUE(status.has_value());
     const auto machine = std::make_unique<StatusMessage<msgs::MachineStatus>>();
     machine->body.task.motion_line = 77;
+    for (CommandOutcome &one : machine->head.recent) {
+        one = {~0ULL, CommandState::ERROR, {}};
+        one.reason.assign(std::string(255, 'x'));
+    }
+    machine->head.reason = machine->head.recent[0].reason;
     std::string bytes;
     ASSERT_TRUE(Codec(vocabulary_, Encoding::XDR).encode(view(*machine), bytes).has_value());
-    EXPECT_LT(bytes.size(), 20480U) << "it fits into the buffer of the usual configuration";
+    EXPECT_LT(bytes.size(), 20480U) << "with the longest reasons it fits into the usual buffer";
     ASSERT_TRUE(sts_->write(bytes, AT_ONCE).has_value());
     Received message;
     ASSERT_TRUE((*status)->read(message, {5.0}).value());
