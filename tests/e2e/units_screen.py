@@ -72,6 +72,21 @@ def steady(read, seconds=3.0):
     raise RuntimeError(f'not steady: {last}')
 
 
+def machine_time():
+    """Seconds of the servo thread, which a busy computer does not stretch."""
+    return get('clock.out')
+
+
+def at_once(read, clock=machine_time):
+    """(time, value) of one instant: read again where the time went on by more than 4 ms in between."""
+    for _ in range(1000):
+        before = clock()
+        value = read()
+        if clock() - before < 0.004:
+            return before, value
+    raise RuntimeError('this program is never given 4 ms together')
+
+
 def mode(wanted):
     C.mode(wanted)
     C.wait_complete(5)
@@ -303,9 +318,9 @@ def path():
     mdi('G1 X8', 0)
     wait(lambda: get('joint.0.vel-cmd') != 0)
     v = steady(lambda: get('joint.0.vel-cmd'))
-    x0, t0 = get('joint.0.pos-cmd'), time.time()
+    t0, x0 = at_once(lambda: get('joint.0.pos-cmd'))
     time.sleep(1.0)
-    x1, t1 = get('joint.0.pos-cmd'), time.time()
+    t1, x1 = at_once(lambda: get('joint.0.pos-cmd'))
     found('joint.0.vel-cmd', 'speed', (x1 - x0) / (t1 - t0) / v)
     for pin in ('motion.current-vel', 'motion.requested-vel', 'motion.feed-upm', 'motion.feed-inches-per-minute',
                 'motion.feed-inches-per-second', 'motion.feed-mm-per-minute', 'motion.feed-mm-per-second'):
@@ -410,10 +425,15 @@ def jogs():
 def times():
     mdi('G4 P2', 0)
     wait(lambda: S.delay_left > 0)
-    first, start = S.delay_left, time.time()
+
+    def left():
+        S.poll()
+        return S.delay_left
+
+    start, first = at_once(left, time.monotonic)
     time.sleep(0.7)
-    S.poll()
-    found('stat.delay_left', 'time', (time.time() - start) / (first - S.delay_left))
+    end, last = at_once(left, time.monotonic)
+    found('stat.delay_left', 'time', (end - start) / (first - last))
     start = time.time()
     C.wait_complete(0.4)
     found('command.wait_complete', 'time', min(time.time() - start, 3) / 0.4)
@@ -485,10 +505,10 @@ def wheels():
         put(f'{of}.jog-counts', 400)
         times, acceleration, end = {}, 0.0, time.time() + 2
         while time.time() < end and 1.2 not in times:
-            velocity = get('joint.0.vel-cmd')
+            instant, velocity = at_once(lambda: get('joint.0.vel-cmd'))
             for speed in (0.2, 1.2):
                 if speed not in times and velocity >= speed:
-                    times[speed] = (time.time(), velocity)
+                    times[speed] = (instant, velocity)
             acceleration = max(acceleration, get('joint.0.acc-cmd'))
         (t0, v0), (t1, v1) = times[0.2], times[1.2]
         found(f'{of}.jog-accel-fraction', 'ratio', (v1 - v0) / (t1 - t0) / (40 * 0.25))
