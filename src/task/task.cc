@@ -115,6 +115,7 @@ void Task::synch_interpreter() {
 void Task::step(std::int64_t now_ns) {
     now_ns_ = now_ns;
     take_motion_news();
+    sequencer_.sent().follow(motion_.status());
     sequencer_.on_tool_event(io_.step(parts_.io_port.read()));
     Start{*this}.watch_hold();  // a tool that has come is known before a command goes on with it
     update_state();
@@ -371,7 +372,7 @@ void Task::finish_run(Progress progress, const std::string &reason) {
              "cutter compensation holds this move back until the next one or G40 says where it ends");
     }
     parameter_file_.keep();  // a touch-off must outlive a crash that follows
-    sequencer_.end_step();
+    sequencer_.set_stepping(false);
     recovery_.end();
     tell(run_.end(progress, reason));
 }

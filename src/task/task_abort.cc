@@ -39,7 +39,7 @@ void Task::abort_work(AbortReason reason) {
     desk_.refuse(mdi_queue_.drop(), OVERTAKEN);
     motion_.abort();
     mode_.note_stop(now_ns_);
-    status_.task.motion_line = 0;
+    sequencer_.sent().clear_line();
     if (!isFollowing || run_.phase() != RunPhase::CLEANING) {
         reader_.follow(sequencer_);
         sequencer_.abort(static_cast<int>(reason));

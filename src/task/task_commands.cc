@@ -71,7 +71,7 @@ Outcome Task::Handler::operator()(const SetMode &command) {
     const motion::Mode by_hand = motion.isAllHomed ? motion::Mode::TELEOP : motion::Mode::FREE;
     const bool isWantedAgain = command.mode == Mode::MANUAL && motion.mode != by_hand &&
                                motion.isInPosition && !task.homing_.isUnderWay();
-    task.status_.task.motion_line = 0;
+    task.sequencer_.sent().clear_line();
     if (command.mode == task.mode_.mode() && !isWantedAgain) {
         return Progress::DONE;
     }
@@ -87,7 +87,7 @@ Outcome Task::Handler::operator()(const OpenProgram &command) {
     }
     task.reader_.interpreter().close();
     task.status_.task.program.assign(command.path);
-    task.status_.task.motion_line = 0;
+    task.sequencer_.sent().clear_line();
     return Progress::DONE;
 }
 
@@ -156,7 +156,7 @@ Outcome Task::Handler::operator()(const StepProgram &) {
         return isPlannerBusy ? send(motion::StepOnce{}) : Outcome(Progress::DONE);
     }
     task.motion_.send(motion::Resume{});
-    task.sequencer_.start_step();
+    task.sequencer_.set_stepping(true);
     return isFirst ? Progress::STARTED : Progress::DONE;
 }
 
@@ -191,7 +191,7 @@ Outcome Task::Handler::operator()(const ResumeProgram &) {
     if (!taken.has_value()) {
         return std::unexpected(taken.error());
     }
-    task.sequencer_.end_step();
+    task.sequencer_.set_stepping(false);
     return send(motion::Resume{});
 }
 

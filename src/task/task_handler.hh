@@ -196,7 +196,7 @@ struct Task::Handler {
             task.reader_.canon().reset();
             task.sequencer_.forget_place();
             task.reader_.begin_codes();
-            task.status_.task.motion_line = 0;
+            task.sequencer_.sent().clear_line();
         }
         return started;
     }

@@ -101,10 +101,7 @@ void Task::update_status() {
     const motion::Status &motion = motion_.status();
     const bool isMoving = motion.active_path_id != 0;
     const motion::SourceTag under_way = sequencer_.place().source;
-    // The line of the last move stays while a program waits, and after it. One that was stopped has none.
-    if (run_.isRunning() && motion.queue_depth > 0) {
-        task.motion_line = isMoving ? motion.source.line : under_way.line;
-    }
+    task.motion_line = sequencer_.sent().line();
     const bool isExecuted = !isMoving || motion.source.block == under_way.block;
     status_.codes = shown(codes_in_force(reader_, run_, isMoving ? motion.source : under_way, isExecuted));
     approach_.show(status_.approach, status_.offsets, shown(reader_.interpreter().active_codes()));

@@ -45,6 +45,11 @@ bool isMove(const interp::MachineCall &call) {
     return std::holds_alternative<interp::LineMove>(call) || std::holds_alternative<interp::ArcMove>(call);
 }
 
+bool isOutput(const interp::MachineCall &call) {
+    return std::holds_alternative<interp::SetDigitalOutput>(call) ||
+           std::holds_alternative<interp::SetAnalogOutput>(call);
+}
+
 const geom::Pose *end_of(const interp::MachineCall &call) {
     const auto *line = std::get_if<interp::LineMove>(&call);
     const auto *arc = std::get_if<interp::ArcMove>(&call);
@@ -60,9 +65,23 @@ void SentMoves::note(motion::CommandId id, const Item &item, const geom::Pose &p
     end_ = end != nullptr ? *end : start;
 }
 
-void SentMoves::forget(motion::CommandId id) {
-    while (!sent_.empty() && sent_.front().id <= id) {
+void SentMoves::follow(const motion::Status &status) {
+    const auto show = [this](const Item &item) {
+        if (!isOutput(item.call)) {
+            line_ = item.source.line;
+        }
+    };
+    while (!sent_.empty() && sent_.front().id <= status.last_path_id) {
+        show(sent_.front().item);  // it may be shorter than a cycle of task and never be seen under way
         sent_.pop_front();
+    }
+    if (status.queue_depth == 0 || sent_.empty()) {
+        return;
+    }
+    if (status.active_path_id != 0) {
+        line_ = status.source.line;  // in reverse it is one that was done before
+    } else {
+        show(sent_.front().item);
     }
 }
 

@@ -18,8 +18,11 @@ class SentMoves {
   public:
     /// `item` went on as path command `id`; `position` is where the machine stands if none is under way.
     void note(motion::CommandId id, const Item &item, const geom::Pose &position);
-    /// Those up to `id` are done.
-    void forget(motion::CommandId id);
+    /// Forgets what motion has done.
+    void follow(const motion::Status &status);
+    /// Source line of the move under way, or of the last that was under way; 0 for none since clear_line().
+    int line() const { return line_; }
+    void clear_line() { line_ = 0; }
     void clear() { sent_.clear(); }
     /// The first that is not done when those up to `id` are; null for none.
     const Item *oldest_after(motion::CommandId id) const;
@@ -39,6 +42,7 @@ class SentMoves {
 
     std::deque<Sent> sent_;
     geom::Pose end_;  ///< of the last move that was noted
+    int line_ = 0;
 };
 
 /// The rest of an arc that began at `start`, of which `to_go` is left [machine units], from `place` on:

@@ -98,7 +98,6 @@ Sequencer::Sequencer(ItemQueue &queue, MotionLink &motion, io::Controller &io, T
 
 void Sequencer::step(std::int64_t now_ns) {
     isHeld_ = false;
-    sent_.forget(motion_.status().last_path_id);
     blocked_ = ExecState::DONE;
     for (int i = 0; i < ITEMS_PER_CYCLE && !isHeld_; ++i) {
         if (hasFailed_ || !isWaitOver(now_ns) || isStepDone_) {
@@ -163,8 +162,8 @@ ItemPlace Sequencer::place() const {
     return isBack ? ItemPlace{queue_.front().source, queue_.front().read} : last_begun_;
 }
 
-void Sequencer::start_step() {
-    isStepping_ = true;
+void Sequencer::set_stepping(bool isSingle) {
+    isStepping_ = isSingle;
     isStepDone_ = false;
     step_read_ = 0;
 }

@@ -75,9 +75,9 @@ class Sequencer {
     void abort(int reason);
     /// Nothing queued, nothing waited for, motion complete, no handshake.
     bool isIdle() const;
-    /// Carries out one block: isStepDone() is true once the next one could begin and the axes are stopped.
-    void start_step();
-    void end_step() { isStepping_ = isStepDone_ = false; }
+    /// Carries out one block and no more: isStepDone() is true once the next one could begin and the axes are
+    /// stopped. Without `isSingle` it carries out all of them.
+    void set_stepping(bool isSingle);
     bool isStepDone() const { return isStepDone_; }
 
     void on_tool_event(io::ToolEvent event);
@@ -98,6 +98,8 @@ class Sequencer {
     ItemPlace place() const;
     /// Another program begins.
     void forget_place() { last_begun_ = {}; }
+    /// Task lets it follow motion once a cycle, before anything that may end a program.
+    SentMoves &sent() { return sent_; }
     /// Starts or stops a spindle at once (operator's command).
     void command_spindle(int spindle, double signed_rpm, bool isWaiting) {
         spindles_.command(spindle, signed_rpm, isWaiting, motion_);

@@ -83,8 +83,8 @@ TEST_F(SentMovesTest, WhatIsDoneStaysDoneAndTheRestComesBackInItsOrder_D2) {
         sent.note(static_cast<motion::CommandId>(i), line(i), {});
     }
     sent.note(5, {{}, interp::SetDigitalOutput{1, true, true}}, {});
-    sent.forget(1);
     status.last_path_id = 1;
+    sent.follow(status);
     status.active_path_id = 3;
     geom::Pose place{};
     place[geom::AXIS_X] = 2.5;
@@ -100,6 +100,31 @@ TEST_F(SentMovesTest, WhatIsDoneStaysDoneAndTheRestComesBackInItsOrder_D2) {
     EXPECT_EQ(sent.why_not(status, place), "") << "at the end of it";
     status.isReverse = true;
     EXPECT_NE(sent.why_not(status, place), "");
+}
+
+TEST_F(SentMovesTest, TheLineIsOfTheMoveUnderWayAndThenOfTheLastOne_D1) {
+    for (int i = 1; i <= 3; ++i) {
+        Item item = line(i);
+        item.source.line = 10 * i;
+        sent.note(static_cast<motion::CommandId>(i), item, {});
+    }
+    sent.note(4, {{.line = 40}, interp::SetDigitalOutput{1, true, true}}, {});
+    EXPECT_EQ(sent.line(), 0);
+    status.queue_depth = 4;
+    sent.follow(status);
+    EXPECT_EQ(sent.line(), 10) << "it waits, for a spindle";
+    status.active_path_id = 2;
+    status.last_path_id = 1;
+    status.source.line = 20;
+    sent.follow(status);
+    EXPECT_EQ(sent.line(), 20);
+    status = {};
+    status.last_path_id = 4;
+    sent.follow(status);
+    EXPECT_EQ(sent.line(), 30) << "its move was done between two looks";
+    sent.clear_line();
+    sent.follow(status);
+    EXPECT_EQ(sent.line(), 0);
 }
 
 TEST_F(SentMovesTest, ThreadsAndProbesAreNotBegunInTheirMiddle_C5) {

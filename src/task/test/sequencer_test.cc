@@ -156,14 +156,14 @@ TEST_F(SequencerTest, NothingBehindAStopBeginsInItsCycle_D1) {
 TEST_F(SequencerTest, AStepEndsAtTheNextBlockWithMotionAtRest_D1) {
     add_line(1, 7);
     add_line(2, 8);
-    sequencer.start_step();
+    sequencer.set_stepping(true);
     cycle(false);
     EXPECT_FALSE(sequencer.isStepDone());
     cycles(3);
     EXPECT_TRUE(sequencer.isStepDone());
     EXPECT_EQ(moves, 1);
     EXPECT_EQ(queue.size(), 1U);
-    sequencer.start_step();
+    sequencer.set_stepping(true);
     cycles(4);
     EXPECT_EQ(moves, 2);
 }
