@@ -17,6 +17,7 @@
 #include <fmt/format.h>
 
 #include "base/find_program.hh"
+#include "base/output_relay.hh"
 #include "base/own_place.hh"
 #include "base/text.hh"
 #include "hal/core/instead.hh"
@@ -35,6 +36,7 @@ constexpr const char *OWN_SCREEN = "millwright";
     for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
         ::signal(number, SIG_DFL);
     }
+    OutputRelay::restore_in_child();
     if (::getppid() == parent && ::chdir(folder) == 0) {
         ::execv(argv[0], argv);
     }

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/duration.hh"
+#include "base/output_relay.hh"
 #include "base/own_place.hh"
 #include "base/stop_signals.hh"
 #include "base/text.hh"
@@ -26,6 +27,15 @@ MachineStart::MachineStart(StartSettings settings, machine::LoadedConfig &loaded
     : settings_(std::move(settings)), loaded_(loaded), sink_(sink), instance_(hal::default_instance()) {}
 
 int MachineStart::run() {
+    if (const std::string why = OutputRelay::begin(); !why.empty()) {
+        sink_.warning("a terminal that is stopped can hold up the machine: " + why);
+    }
+    const int status = run_machine();
+    OutputRelay::end();
+    return status;
+}
+
+int MachineStart::run_machine() {
     auto status = prepare();
     if (status.has_value()) {
         status = make();
@@ -203,6 +213,10 @@ void MachineStart::run_shutdown_file() {
 }
 
 void MachineStart::tell_messages() {
+    if (const std::string loss = OutputRelay::take_loss(); !loss.empty() && !isLossTold_) {
+        isLossTold_ = true;
+        machine_->task().post(msgs::MessageKind::OPERATOR_TEXT, loss);
+    }
     using Reading = client::Viewer::Reading;
     while (const auto message = machine_->client().next_message(Reading::LOOKS_ON)) {
         // What (print,...) says is the program's output, which scripts read.

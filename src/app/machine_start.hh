@@ -30,6 +30,7 @@ class MachineStart {
     int run();
 
   private:
+    int run_machine();
     Result<> prepare();
     Result<> make();
     void make_parameter_file();
@@ -52,6 +53,7 @@ class MachineStart {
     std::optional<SidePrograms> side_programs_;
     std::optional<int> display_status_;
     std::uint64_t programs_ended_ = 0;
+    bool isLossTold_ = false;  ///< that the output of this program is lost: once
 };
 
 }  // namespace mw::app

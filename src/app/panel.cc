@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "base/output_relay.hh"
 #include "base/stop_signals.hh"
 #include "base/text.hh"
 #include "client/shown_message.hh"
@@ -36,7 +37,7 @@ geom::Pose program_position(const msgs::MachineStatus &status) {
 Panel::Panel(MachineAccess &machine, const machine::MachineConfig &config, diag::Sink &sink,
              Attendance attendance)
     : machine_(machine), config_(config), sink_(sink), attendance_(attendance),
-      hasLine_(::isatty(STDERR_FILENO) != 0) {
+      hasLine_(OutputRelay::isTerminal(STDERR_FILENO)) {
     if (attendance_ == Attendance::TERMINAL) {
         keyboard_.emplace();
     }

@@ -7,11 +7,12 @@
 
 #include <fmt/format.h>
 
+#include "base/output_relay.hh"
 #include "language/language.hh"
 
 namespace mw::app {
 
-ProgressLine::ProgressLine() : isTerminal_(::isatty(STDERR_FILENO) == 1) {}
+ProgressLine::ProgressLine() : isTerminal_(OutputRelay::isTerminal(STDERR_FILENO)) {}
 
 void ProgressLine::show(const gcode::PreviewProgress &now) {
     constexpr std::chrono::milliseconds EVERY{500};

@@ -14,6 +14,7 @@
 #include "app/start_check.hh"
 #include "app/summary.hh"
 #include "app/time_report.hh"
+#include "base/output_relay.hh"
 #include "base/stop_signals.hh"
 #include "base/whole_path.hh"
 #include "hal/core/hal.hh"
@@ -266,7 +267,17 @@ int command_run(const std::vector<std::string> &arguments) {
     catch_stop_signals();
     diag::Sink sink([](const diag::Diagnostic &d) { fmt::print(stderr, "{}\n", language::shown(d.str())); });
     auto loaded = machine::LoadedConfig::load(words->ini, sink);
-    return loaded == nullptr ? 1 : Run(*words, *loaded, sink).run();
+    if (loaded == nullptr) {
+        return 1;
+    }
+    // Virtual time waits for its reader; a machine does not.
+    const std::string why = words->isRealtime ? OutputRelay::begin() : "";
+    if (!why.empty()) {
+        sink.warning("a terminal that is stopped can hold up the machine: " + why);
+    }
+    const int status = Run(*words, *loaded, sink).run();
+    OutputRelay::end();
+    return status;
 }
 
 }  // namespace mw::app

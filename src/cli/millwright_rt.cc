@@ -3,6 +3,7 @@
 // hand.
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -46,6 +47,7 @@ struct Arguments {
 }  // namespace
 
 int main(int argc, char **argv) {
+    std::signal(SIGPIPE, SIG_IGN);  // a starter or terminal that is gone is no reason to end
     mw::tell_when_memory_ends();
     const std::vector<std::string> words(argv + 1, argv + argc);
     Arguments arguments;

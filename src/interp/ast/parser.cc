@@ -61,6 +61,7 @@ Block Parser::parse_line(std::string_view line, std::uint32_t line_number_) {
     out.first_comment = static_cast<std::uint32_t>(arena_.comments.size());
     letters_seen_ = 0;
     depth_ = 0;
+    operators_ = 0;
     Lexer in(line);
     const bool isTooLong = line.size() > MAX_LINE_LENGTH;
     if (isTooLong) {

@@ -55,6 +55,7 @@ class Parser {
     std::string error_;
     std::uint32_t error_column_ = 0;
     int depth_ = 0;
+    int operators_ = 0;               ///< of this line, with an operand on each side
     std::uint32_t letters_seen_ = 0;  ///< bit per letter but G and M, of the line
 };
 

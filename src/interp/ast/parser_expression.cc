@@ -10,6 +10,8 @@ namespace mw::interp::detail {
 namespace {
 
 constexpr int MAX_DEPTH = 128;  // of brackets, signs and # in one another
+/// 1+1+1... nests as deep as it has operators: what walks through an expression needs stack for each.
+constexpr int MAX_OPERATORS = 1000;
 
 struct FunctionName {
     std::string_view text;
@@ -173,6 +175,11 @@ bool Parser::binary(Lexer &in, int lowest_level, NodeId &out) {
         if (!binary_operator(in, op, level) || level != lowest_level) {
             in.set_position(start);
             return true;
+        }
+        if (++operators_ > MAX_OPERATORS) {
+            return fail(
+                fmt::format("A line has at most {} operators: divide it into several lines", MAX_OPERATORS),
+                column);
         }
         NodeId right = NO_ID;
         if (!binary(in, lowest_level + 1, right)) {

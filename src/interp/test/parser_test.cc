@@ -181,6 +181,17 @@ TEST(Parser, NestingIsBounded_I1) {
     EXPECT_EQ(parser.parse_line("#1=[[1]]", 2).error, NO_ID) << "depth is counted anew for each line";
 }
 
+TEST(Parser, ALineHasAMostOfOperators_I1) {
+    constexpr int MOST = 1000;
+    EXPECT_TRUE(Line("#1=[1" + repeated("+1", MOST) + "]").isRead());
+    EXPECT_TRUE(Line("#1=[1" + repeated("+1", MOST / 2) + "] x[1" + repeated("*1", MOST / 2) + "]").isRead());
+    const Line longer("#1=[1" + repeated("+1", MOST + 1) + "]");
+    ASSERT_FALSE(longer.isRead());
+    EXPECT_EQ(longer.error().message, "A line has at most 1000 operators: divide it into several lines");
+    EXPECT_EQ(longer.error().column, 2U * MOST + 6);
+    EXPECT_FALSE(Line("#1=[1" + repeated("+1", 5'000'000) + "]").isRead());
+}
+
 TEST(Parser, ErrorsNameTheirColumn_I1) {
     const struct {
         const char *line;
