@@ -33,6 +33,23 @@ std::unexpected<Error> system_failure(const std::string &doing, const std::strin
     return fail("cannot " + doing + " '" + path + "': " + std::strerror(errno), {path, 0, 0});
 }
 
+std::unexpected<Error> not_regular(const std::string &path, mode_t mode) {
+    const char *const kind = S_ISDIR(mode)    ? "a folder"
+                             : S_ISFIFO(mode) ? "a pipe"
+                             : S_ISSOCK(mode) ? "a socket"
+                                              : "a device";
+    return fail("'" + path + "' is " + kind + ", not a file", {path, 0, 0});
+}
+
+/// An error where `path` is there and no regular file.
+Result<> check_regular(const std::string &path) {
+    struct stat status{};
+    if (::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode)) {
+        return not_regular(path, status.st_mode);
+    }
+    return {};
+}
+
 bool write_all(int fd, std::string_view content) {
     while (!content.empty()) {
         const ssize_t n = ::write(fd, content.data(), content.size());
@@ -67,6 +84,9 @@ std::string resolve(const std::string &path) {
 
 Result<> write_file_atomically(const std::string &path, std::string_view content) {
     const std::string target = resolve(path);
+    if (auto regular = check_regular(target); !regular.has_value()) {
+        return regular;
+    }
     std::string temporary = target + ".XXXXXX";
     const FileHandle file(::mkstemp(temporary.data()));
     if (file.get() < 0) {
@@ -108,14 +128,39 @@ Result<> write_file_with_backup(const std::string &path, std::string_view conten
     return written.has_value() ? kept : written;
 }
 
-Result<std::string> read_file(const std::string &path) {
-    const FileHandle file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-    if (file.get() < 0) {
-        return system_failure("open", path);
+Result<int> open_regular_file(const std::string &path, int flags) {
+    constexpr mode_t MODE = 0666;
+    // The look before is for devices, on which open() itself does something; the flags are for what is
+    // exchanged in between. Files do not care for them.
+    const Result<> before = check_regular(path);
+    if (!before.has_value()) {
+        return std::unexpected(before.error());
     }
+    const int fd = ::open(path.c_str(), flags | O_NONBLOCK | O_NOCTTY | O_CLOEXEC, MODE);
+    struct stat status{};
+    if (fd < 0) {
+        return system_failure((flags & O_ACCMODE) == O_RDONLY ? "open" : "write", path);
+    }
+    if (::fstat(fd, &status) != 0 || !S_ISREG(status.st_mode)) {
+        ::close(fd);
+        return not_regular(path, status.st_mode);
+    }
+    return fd;
+}
+
+Result<std::string> read_file(const std::string &path, std::size_t most_bytes) {
+    const auto opened = open_regular_file(path);
+    if (!opened.has_value()) {
+        return std::unexpected(opened.error());
+    }
+    const FileHandle file(*opened);
     std::string content;
     struct stat status{};
     if (::fstat(file.get(), &status) == 0 && status.st_size > 0) {
+        if (static_cast<std::uint64_t>(status.st_size) > most_bytes) {
+            return fail(path + " is too large: it has more than " + std::to_string(most_bytes >> 20U) +
+                        " MB");
+        }
         content.reserve(static_cast<std::size_t>(status.st_size) + 1);
     }
     while (true) {
@@ -136,6 +181,10 @@ Result<std::string> read_file(const std::string &path) {
         }
         if (n == 0) {
             return content;
+        }
+        if (content.size() > most_bytes) {  // it grows while it is read
+            return fail(path + " is too large: it has more than " + std::to_string(most_bytes >> 20U) +
+                        " MB");
         }
     }
 }

@@ -2,6 +2,7 @@
 // Files that are either the old ones or the new ones, whatever happens in between.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -22,7 +23,13 @@ Result<> write_file_with_backup(const std::string &path, std::string_view conten
 /// The name of the backup of a file.
 std::string backup_of(const std::string &path);
 
-/// The whole file as text; the error names the file and the system's reason.
-Result<std::string> read_file(const std::string &path);
+/// A regular file for reading, or for `flags` of open(2); the caller closes the descriptor. A pipe, a device
+/// or a folder is an error at once: whoever reads or writes those may wait for ever.
+Result<int> open_regular_file(const std::string &path, int flags = 0);
+
+/// The whole regular file as text; the error names the file and the system's reason. A file of more than
+/// `most_bytes` is an error.
+inline constexpr std::size_t MOST_FILE_BYTES = std::size_t{512} << 20;
+Result<std::string> read_file(const std::string &path, std::size_t most_bytes = MOST_FILE_BYTES);
 
 }  // namespace mw

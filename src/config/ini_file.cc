@@ -31,16 +31,8 @@ std::string folder_of(const std::string &path) {
 
 /// A pipe or a device may never end, so only files are read.
 Result<std::string> read_settings(const std::string &path) {
-    constexpr std::uintmax_t LONGEST = 64U << 20U;
-    std::error_code error;
-    const auto kind = std::filesystem::status(path, error).type();
-    if (kind != std::filesystem::file_type::not_found && kind != std::filesystem::file_type::regular) {
-        return fail("'" + path + "' is no file");
-    }
-    if (kind == std::filesystem::file_type::regular && std::filesystem::file_size(path, error) > LONGEST) {
-        return fail("'" + path + "' is too long for settings (more than 64 MB)");
-    }
-    return read_file(path);
+    constexpr std::size_t LONGEST = 64U << 20U;
+    return read_file(path, LONGEST);
 }
 
 /// Why a file cannot be read, as scripts know it from inivalue.

@@ -90,6 +90,14 @@ class Machine:
         self.command.auto(self.linuxcnc.AUTO_RUN, 1)
         assert self.until(lambda: self.stat.current_vel > 0, 30), (self.messages, self.stat.interp_state)
 
+    def run(self, text):
+        """Runs a program to its end, or to the error that ends it; False where it does not come to it in 10 s."""
+        self.messages.clear()
+        assert self.open(self.write('run.ngc', text)) == self.linuxcnc.RCS_DONE, self.messages
+        self.command.auto(self.linuxcnc.AUTO_RUN, 1)
+        self.command.wait_complete(10)
+        return self.until(lambda: self.stat.interp_state == self.linuxcnc.INTERP_IDLE, 10)
+
     def cuts_on(self, seconds):
         """Whether it moves and stays on for so long."""
         end = time.monotonic() + seconds

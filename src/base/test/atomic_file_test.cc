@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -36,6 +38,33 @@ TEST_F(AtomicFile, KeepsPermissionsAndLeavesNothingBehind) {
     ASSERT_TRUE(write_file_atomically(path("a"), "two").has_value());
     EXPECT_EQ(fs::status(path("a")).permissions(), fs::perms::owner_read | fs::perms::owner_write);
     EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1);
+}
+
+TEST_F(AtomicFile, APipeADeviceAndAFolderAreErrorsAtOnce) {
+    ASSERT_EQ(::mkfifo(path("pipe").c_str(), 0600), 0);
+    const std::pair<std::string, std::string> places[] = {
+        {path("pipe"), "a pipe"}, {"/dev/zero", "a device"}, {folder_.string(), "a folder"}};
+    for (const auto &[place, kind] : places) {
+        const auto text = read_file(place);
+        ASSERT_FALSE(text.has_value()) << place;
+        EXPECT_EQ(text.error().message, "'" + place + "' is " + kind + ", not a file");
+        const auto written = write_file_atomically(place, "x");
+        ASSERT_FALSE(written.has_value()) << place;
+        EXPECT_EQ(written.error().message, text.error().message);
+        EXPECT_FALSE(open_regular_file(place, O_WRONLY | O_CREAT | O_TRUNC).has_value()) << place;
+    }
+    fs::create_symlink(path("pipe"), path("link"));
+    EXPECT_FALSE(read_file(path("link")).has_value());
+}
+
+TEST_F(AtomicFile, AFileThatIsTooLargeIsNotRead) {
+    ASSERT_TRUE(write_file_atomically(path("a"), "12345").has_value());
+    EXPECT_TRUE(read_file(path("a"), 5).has_value());
+    EXPECT_FALSE(read_file(path("a"), 4).has_value());
+    fs::resize_file(path("a"), std::uintmax_t{1} << 40);
+    const auto text = read_file(path("a"));
+    ASSERT_FALSE(text.has_value());
+    EXPECT_EQ(text.error().message, path("a") + " is too large: it has more than 512 MB");
 }
 
 TEST_F(AtomicFile, AFailureNamesTheFile) {

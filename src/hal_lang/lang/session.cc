@@ -8,10 +8,11 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
+#include <iterator>
 
 #include <fmt/format.h>
 
+#include "base/atomic_file.hh"
 #include "base/own_place.hh"
 #include "base/text.hh"
 #include "hal_lang/lang/commands.hh"
@@ -19,6 +20,15 @@
 namespace mw::hal::lang {
 
 namespace {
+
+/// Pipes included: `halcmd -f <(program)`.
+Result<std::string> read_anything(const std::string &path) {
+    std::ifstream file(path, std::ios::binary);
+    if (!file) {
+        return fail(fmt::format("cannot open '{}'", path), {path, 0, 0});
+    }
+    return std::string(std::istreambuf_iterator<char>(file), {});
+}
 
 /// HAL files that run each other in a circle end here.
 constexpr std::size_t MAX_DEPTH = 32;
@@ -206,13 +216,11 @@ Result<> Session::run_file(const std::string &name, const std::vector<std::strin
         if (!arguments.empty()) {
             return fail(fmt::format("HAL file '{}' takes no arguments, '{}' is given", name, arguments[0]));
         }
-        std::ifstream file(*path, std::ios::binary);
-        if (!file) {
-            return fail(fmt::format("cannot read HAL file '{}'", *path));
+        auto text = options_.arePipesRead ? read_anything(*path) : read_file(*path);
+        if (!text) {
+            return std::unexpected(text.error());
         }
-        std::ostringstream text;
-        text << file.rdbuf();
-        return std::pair{*path, text.str()};
+        return std::pair{*path, std::move(*text)};
     };
     const auto file = read();
     if (!file) {

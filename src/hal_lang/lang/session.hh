@@ -79,6 +79,7 @@ struct SessionOptions {
     const volatile std::sig_atomic_t *stop = nullptr;  ///< not zero: no further command is run
     std::vector<std::string> library;  ///< folders of the prefix LIB:, and looked through last
     bool hasFiles = true;              ///< false: commands that read or write files are refused
+    bool arePipesRead = false;         ///< HAL files may be pipes: for a person who can interrupt the wait
     Pass pass = Pass::ALL;
     LoadCollector *loads = nullptr;  ///< with Pass::LOADS
 };

@@ -2,10 +2,11 @@
 #include "hal_lang/lang/two_pass.hh"
 
 #include <algorithm>
-#include <fstream>
+#include <sstream>
 
 #include <fmt/format.h>
 
+#include "base/atomic_file.hh"
 #include "base/text.hh"
 #include "hal_lang/lang/commands.hh"
 
@@ -44,7 +45,7 @@ bool isExclusion(const std::string &line) {
 }
 
 bool isExcluded(const std::string &path) {
-    std::ifstream file(path);
+    std::istringstream file(read_file(path).value_or(""));
     std::string line;
     while (std::getline(file, line)) {
         if (isExclusion(line)) {

@@ -19,7 +19,7 @@ namespace {
 void apply(CommandLine &line, const options::Letter &option) {
     lang::SessionOptions &session = line.session;
     switch (option.letter) {
-    case 'f': line.readsInput = true; break;
+    case 'f': line.readsInput = session.arePipesRead = true; break;
     case 'k': session.keepsGoing = true; break;
     case 'q': session.verbosity = lang::Verbosity::ERRORS; break;
     case 'Q': session.verbosity = lang::Verbosity::SILENT; break;

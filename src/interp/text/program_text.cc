@@ -183,15 +183,15 @@ ProgramText::ProgramText(ProgramText &&) noexcept = default;
 ProgramText &ProgramText::operator=(ProgramText &&) noexcept = default;
 
 Result<ProgramText> ProgramText::open(const std::string &path) {
-    const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    const Result<int> fd = open_regular_file(path);
+    if (!fd.has_value()) {
+        return std::unexpected(fd.error());
+    }
     struct stat status{};
-    if (fd >= 0 && ::fstat(fd, &status) == 0 && S_ISREG(status.st_mode) &&
-        static_cast<std::uint64_t>(status.st_size) >= WINDOWED_FROM_BYTES) {
-        return ProgramText(std::make_unique<Reader>(path, fd, status));
+    if (::fstat(*fd, &status) == 0 && static_cast<std::uint64_t>(status.st_size) >= WINDOWED_FROM_BYTES) {
+        return ProgramText(std::make_unique<Reader>(path, *fd, status));
     }
-    if (fd >= 0) {
-        ::close(fd);
-    }
+    ::close(*fd);
     Result<std::string> text = read_file(path);
     if (!text) {
         return std::unexpected(text.error());
@@ -203,7 +203,7 @@ Result<> ProgramText::hold() {
     if (isHeld()) {
         return {};
     }
-    Result<std::string> text = read_file(reader_->path());
+    Result<std::string> text = read_file(reader_->path(), reader_->size());
     if (!text) {
         return std::unexpected(text.error());
     }

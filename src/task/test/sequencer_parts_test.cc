@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The parts of the sequencer, each alone.
+#include <sys/resource.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -292,10 +294,19 @@ TEST(ProgramLog, EachLineIsInTheFileAtOnceAndAppendingKeepsWhatIsThere_I1) {
 }
 
 TEST(ProgramLog, AFullDiskIsToldOnce_I1) {
+    const Folder folder;
     ProgramLog log;
-    ASSERT_TRUE(log.open("/dev/full", false).has_value());
+    ASSERT_TRUE(log.open(folder / "log", false).has_value());
+    // A limit of the process is the same to it as the end of the disk.
+    rlimit before{};
+    ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+    const rlimit none{0, before.rlim_max};
+    const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+    ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &none), 0);
     EXPECT_FALSE(log.write("x").has_value());
     EXPECT_TRUE(log.write("y").has_value());
+    ::setrlimit(RLIMIT_FSIZE, &before);
+    std::signal(SIGXFSZ, handler);
 }
 
 TEST(UserProgram, TellsHowItEnded_I1) {
