@@ -17,7 +17,6 @@
 #include "base/own_place.hh"
 #include "base/stop_signals.hh"
 #include "base/text.hh"
-#include "base/whole_path.hh"
 #include "setup/files.hh"
 
 namespace mw::app {
@@ -153,8 +152,9 @@ std::string answers_text(const setup::Answers &given) {
 
 Result<NewMachine> make_machine(const std::string &folder, const setup::Plan &plan,
                                 const setup::Answers &given) {
-    const fs::path to = whole_path(folder);
     std::error_code error;
+    fs::path to = fs::absolute(folder, error).lexically_normal();
+    to = to.has_filename() ? to : to.parent_path();  // "my_mill/"
     const bool isThere = fs::exists(fs::symlink_status(to, error));
     if (isThere && !(fs::is_directory(to, error) && fs::is_empty(to, error))) {
         return fail("'" + to.string() + "' is there already, and is not touched", {},

@@ -99,7 +99,7 @@ Result<> make_and_try(const SetupWords &words, const setup::Answers &answers, co
     if (!trial->isGood) {
         return fail("the machine does not run its first program; its files are as they were written");
     }
-    fmt::print("It runs in virtual time. At the screen: linuxcnc {}\n", machine->ini);
+    fmt::print("It runs in virtual time. At the screen: linuxcnc {}\n", shell_word(machine->ini));
     return {};
 }
 

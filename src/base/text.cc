@@ -215,6 +215,19 @@ std::size_t write_fixed4(std::span<char, FIXED4_SIZE> out, double value) {
     return static_cast<std::size_t>(buffer + MOST - at);
 }
 
+std::string shell_word(std::string_view text) {
+    constexpr std::string_view PLAIN =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./+@:,";
+    if (!text.empty() && text.find_first_not_of(PLAIN) == std::string_view::npos) {
+        return std::string(text);
+    }
+    std::string out = "'";
+    for (const char c : text) {
+        out += c == '\'' ? "'\\''" : std::string(1, c);
+    }
+    return out + "'";
+}
+
 std::string printable(std::string_view text) {
     constexpr unsigned char DELETE = 0x7f, C1_LEAD = 0xc2, C1_FIRST = 0x80, C1_LAST = 0x9f;
     std::string out(text);

@@ -38,6 +38,9 @@ std::size_t write_fixed4(std::span<char, FIXED4_SIZE> out, double value);
 /// `text` for a terminal: control characters but tabs and newlines become question marks, one for each byte.
 std::string printable(std::string_view text);
 
+/// `text` as one word of a shell: in single quotes where it has more than letters, digits and _ - . / + @ : ,
+std::string shell_word(std::string_view text);
+
 /// `text` without the UTF-8 byte order mark that some editors write at the start of a file.
 std::string_view without_byte_order_mark(std::string_view text);
 

@@ -49,6 +49,7 @@ void read_scripts(config::IniReader &ini, Settings &out) {
         scripts.top_level = ini.file().resolve_path(ini.text(top_level));
         scripts.place = entry->place;
     }
+    scripts.areLinesRun = !scripts.top_level.empty();
     for (const config::IniEntry *entry : ini.list(ini_key("PYTHON", "PATH_PREPEND"))) {
         scripts.path_prepend.push_back(ini.file().resolve_path(entry->value));
     }

@@ -30,6 +30,9 @@ struct ScriptSettings {
     std::vector<std::string> path_append;   ///< and after them
     bool isReloading = false;               ///< run the top-level script again when its file has changed
     int log_level = 0;
+    /// A line that begins with ;py, is run. False: it is an error, as whoever may send a line of G-code would
+    /// have all rights of the machine's user.
+    bool areLinesRun = true;
     SourcePlace place;  ///< of the section, for errors
 };
 /// Makes a script host; by default the shared object for Python is opened.

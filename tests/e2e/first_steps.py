@@ -119,6 +119,11 @@ def check_refusals(bench):
     done = bench.run('setup', bench.folder / 'none', 'drives=stepper', 'x.microsteps=64', 'y.step_pin=2')
     bench.expect(done.returncode == 1 and 'x.speed: motor X would need' in done.stderr and 'y.step_pin: pin 2 is used' in done.stderr
                  and not (bench.folder / 'none').exists(), 'each fault is told, and nothing is written', done.stderr)
+    for word, place in (('bare', 'bare'), ('closed/', 'closed'), ('my first mill', 'my first mill'), ('./a/b/c', 'a/b/c')):
+        done = bench.run('setup', word, '--no-check')
+        bench.expect(done.returncode == 0 and (bench.folder / place / 'machine.ini').is_file(), f'setup {word}', done.stderr)
+    done = bench.run('setup', 'her mill')
+    bench.expect(done.returncode == 0 and f"linuxcnc '{bench.folder.resolve()}/her mill/machine.ini'" in done.stdout, 'a path with spaces is quoted', done.stdout)
     bench.expect(bench.run('setup').returncode == 2 and bench.run('setup', 'x', 'nonsense').returncode == 2, 'wrong usage')
     left = [path.name for path in bench.folder.iterdir() if path.name.startswith('.')]
     bench.expect(not left, f'nothing is left behind: {left}')

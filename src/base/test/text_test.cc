@@ -55,6 +55,13 @@ TEST(Text, NumbersAsInCMayBeHexadecimalOrOctal) {
     }
 }
 
+TEST(Text, AWordOfAShellIsQuotedWhereItMustBe) {
+    EXPECT_EQ(shell_word("/home/me/mill_2.ini"), "/home/me/mill_2.ini");
+    EXPECT_EQ(shell_word(""), "''");
+    EXPECT_EQ(shell_word("my mill"), "'my mill'");
+    EXPECT_EQ(shell_word("it's $HOME"), "'it'\\''s $HOME'");
+}
+
 TEST(Text, TheLocaleDoesNotMatter_A8) {
     std::setlocale(LC_ALL, "de_DE.UTF-8");
     EXPECT_EQ(parse_double("1.5"), 1.5);

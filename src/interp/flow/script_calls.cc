@@ -228,6 +228,10 @@ bool ScriptCalls::run_text_line(const FlowParts &parts, InterpreterView &view) {
     Levels &levels = parts.levels;
     const std::string text = executor.script_text();
     const int line = levels.here().line;
+    if (!parts.settings.scripts.areLinesRun) {
+        return executor.fault.set("lines that begin with ;py, are not run on this machine", 1,
+                                  "[PYTHON]TOPLEVEL of the INI file allows them: it names a Python file");
+    }
     const Result<> made =
         parts.scripts.need("a line that begins with ;py,", {levels.file(), line, 1}, parts.settings, view);
     if (!made) {

@@ -3,6 +3,7 @@
 // language is missing.
 #include <gtest/gtest.h>
 
+#include "interp/ini_settings.hh"
 #include "interp/scripts/script_host.hh"
 #include "recorder.hh"
 
@@ -170,6 +171,28 @@ TEST(Remap, MissingPythonIsOneClearErrorAndOnlyWhereItIsNeeded_I1) {
     EXPECT_NE(plain.error().find("a line that begins with ;py, needs Python"), std::string::npos)
         << plain.error();
     EXPECT_EQ(plain.interpreter->error().what.place.line, 2);
+}
+
+TEST(ScriptLines, AMachineWithoutPythonInItsIniFileDoesNotRunThem_I1) {
+    for (const bool isConfigured : {false, true}) {
+        diag::Sink sink;
+        const std::string text = isConfigured ? "[PYTHON]\nTOPLEVEL = top.py\n" : "[PYTHON]\nLOG_LEVEL = 0\n";
+        const auto ini = config::IniFile::parse(text, "m.ini", sink);
+        config::IniReader reader(ini, sink);
+        EXPECT_EQ(settings_from_ini(reader).scripts.areLinesRun, isConfigured);
+    }
+    Settings settings;
+    settings.scripts.areLinesRun = false;
+    bool isMade = false;
+    settings.make_script_host = [&isMade]() -> Result<std::unique_ptr<ScriptHost>> {
+        isMade = true;
+        return fail("no host");
+    };
+    Machine machine(settings);
+    EXPECT_EQ(machine.run("G0 X1\n;py,print(1)\n"), Step::FAILED);
+    EXPECT_NE(machine.error().find("are not run on this machine"), std::string::npos) << machine.error();
+    EXPECT_EQ(machine.interpreter->error().what.place.line, 2);
+    EXPECT_FALSE(isMade);
 }
 
 }  // namespace
