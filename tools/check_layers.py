@@ -30,7 +30,7 @@ INNER = {'motion': ['api', 'core', 'rt'],
          'hal_tools': ['stream', 'view', 'programs'],
          'nml': ['config', 'message', 'buffer', 'net', 'bridge', 'remote']}
 # Folders beside src: what of src, and of each other, they may include. What is not here is left alone.
-BESIDE = {'components': {'hal', 'hal_tools', 'kins', 'traj', 'motion', 'rtapi', 'base', 'geom', 'components', 'sim'},
+BESIDE = {'components': {'hal', 'hal_tools', 'kins', 'traj', 'motion', 'io', 'rtapi', 'base', 'geom', 'components', 'sim'},
           'sim': {'hal', 'base', 'geom', 'sim'},
           'testing': {'base', 'geom', 'hal', 'kins', 'traj', 'motion', 'testing'}}
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"')

@@ -9,6 +9,7 @@
 #include "hal/api/hal.h"
 #include "hal/api/millwright_ext.h"
 #include "hal/api/rtapi_app.h"
+#include "io/tool_offset_pins.hh"
 #include "motion/core/controller.hh"
 #include "motion/core/path_planner.hh"
 #include "motion/rt/module_homing.hh"
@@ -52,7 +53,8 @@ struct Memory {
     alignas(motion::PathPlanner) unsigned char planner[sizeof(motion::PathPlanner)];
 };
 
-/// Everything of this load but the pins and the channels, which live in shared memory.
+/// Everything of this load but the pins, the channels and the block of the tool offset, which live in shared
+/// memory.
 struct Module {
     motion::ModuleKinematics kinematics;
     motion::ModuleHoming homing;
@@ -64,10 +66,12 @@ struct Module {
     motion::Outputs out;
     motion::MotionPins *pins = nullptr;
     motion::Channels *channels = nullptr;
+    io::ToolOffsetPins *tool_offset_pins = nullptr;
+    io::ToolOffsetBlock *tool_offset = nullptr;
     motion::Controller *controller = nullptr;
     motion::PathPlanner *planner = nullptr;
     Memory *memory = nullptr;
-    int component = -1, planner_id = -1, shmem_id = -1;
+    int component = -1, planner_id = -1, shmem_id = -1, tool_offset_id = -1;
     rtapi_u32 is_safe = 0;  ///< the task process is gone, motion has stopped and the amplifiers are off
 };
 
@@ -83,6 +87,7 @@ Module module;
     module.pins->read(module.in);
     module.controller->step(module.in, module.out);
     module.pins->write(module.out);
+    module.tool_offset_pins->step(*module.tool_offset);
     const bool isSafe = module.out.status.isTaskLost && !module.out.status.isEnabled;
     std::atomic_ref(module.is_safe).store(isSafe ? 1 : 0, std::memory_order_release);
 }
@@ -229,6 +234,27 @@ int make_pins() {
     return module.pins->declare(module.component, counts);
 }
 
+/// Of the I/O controller: only the thread and the component are those of motion.
+int make_tool_offset_pins() {
+    const int key = io::ToolOffsetBlock::SHMEM_KEY;
+    module.tool_offset_id = rtapi_shmem_new(key, module.component, sizeof(io::ToolOffsetBlock));
+    void *block = nullptr;
+    if (module.tool_offset_id < 0 || rtapi_shmem_getptr(module.tool_offset_id, &block) != 0) {
+        rtapi_print_msg(RTAPI_MSG_ERR, "motmod: no shared memory for the tool offset (%d bytes)\n",
+                        static_cast<int>(sizeof(io::ToolOffsetBlock)));
+        return module.tool_offset_id < 0 ? module.tool_offset_id : FAILED;
+    }
+    void *pins = hal_malloc(static_cast<long>(sizeof(io::ToolOffsetPins)));
+    if (pins == nullptr) {
+        return -12;  // ENOMEM
+    }
+    module.tool_offset = new (block) io::ToolOffsetBlock;
+    module.tool_offset->layout_bytes = sizeof(io::ToolOffsetBlock);
+    module.tool_offset->magic = io::ToolOffsetBlock::MAGIC;
+    module.tool_offset_pins = new (pins) io::ToolOffsetPins;
+    return module.tool_offset_pins->declare(module.component);
+}
+
 /// Unless a module that was loaded before has made it, with that period.
 int make_thread(const char *name, long period_ns, int uses_fp) {
     const long long there = mw_ext_thread_period(name);
@@ -302,6 +328,10 @@ void take_down() {
         module.channels->magic = 0;
         rtapi_shmem_delete(module.shmem_id, module.component);
     }
+    if (module.tool_offset != nullptr) {
+        module.tool_offset->magic = 0;
+        rtapi_shmem_delete(module.tool_offset_id, module.component);
+    }
     hal_exit(module.component);
     mw_ext_memory_delete(module.memory, sizeof(Memory));
 }
@@ -321,6 +351,7 @@ int rtapi_app_main(void) {
     status = status == 0 ? find_planner() : status;
     status = status == 0 ? make_channels() : status;
     status = status == 0 ? make_pins() : status;
+    status = status == 0 ? make_tool_offset_pins() : status;
     status = status == 0 ? make_controller() : status;
     status = status == 0 ? make_functions() : status;
     status = status == 0 ? start_planner() : status;

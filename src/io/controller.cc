@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "io/controller.hh"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace mw::io {
@@ -8,6 +10,7 @@ namespace mw::io {
 ToolEvent Controller::step(const Inputs &inputs) {
     step_chain(inputs);
     hasOil_ = inputs.lube_level;
+    isToolOffsetShown_ = inputs.isToolOffsetShown;
     step_fault(inputs);
     step_abort(inputs);
     outputs.state = action_ == ToolAction::IDLE ? 0 : 1;
@@ -151,6 +154,14 @@ msgs::WaitFor Controller::waiting_for() const {
 void Controller::set_tool_in_spindle(int number, int from_pocket) {
     outputs.tool_number = number;
     outputs.tool_from_pocket = from_pocket;
+}
+
+void Controller::set_tool_offset(const geom::Pose &offset) {
+    const bool isFinite = std::ranges::all_of(offset.c, [](double length) { return std::isfinite(length); });
+    if (isFinite && offset.c != outputs.tool_offset.c) {
+        outputs.tool_offset = offset;
+        isToolOffsetShown_ = false;
+    }
 }
 
 }  // namespace mw::io

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "base/result.hh"
+#include "geom/pose.hh"
 #include "msgs/names.hh"
 
 namespace mw::io {
@@ -21,6 +22,7 @@ struct Inputs {
     bool toolchanger_clear_fault = false;
     bool emc_abort_ack = false;
     bool start_change_ack = false;
+    bool isToolOffsetShown = true;  ///< the pins have the tool offset of the last outputs
 };
 
 struct Outputs {
@@ -34,6 +36,7 @@ struct Outputs {
     int tool_prep_number = 0, tool_prep_pocket = 0, tool_prep_index = 0;
     int tool_number = 0, tool_from_pocket = 0;
     int state = 0;
+    geom::Pose tool_offset;  ///< [machine units], active
 };
 
 /// How the changer wants to be spoken to ([EMCIO]EMCIO: io, or iov2 and its option).
@@ -94,6 +97,9 @@ class Controller {
     void set_lube(bool isOn) { outputs.lube = isOn; }
     bool hasOil() const { return hasOil_; }
     void set_tool_in_spindle(int number, int from_pocket);
+    /// Ignores values that are not finite: motion rejects the command that comes with them.
+    void set_tool_offset(const geom::Pose &offset);
+    bool isToolOffsetShown() const { return isToolOffsetShown_; }
 
   private:
     void step_chain(const Inputs &inputs);
@@ -112,6 +118,7 @@ class Controller {
     bool hasOil_ = true;
     bool isGivenUp_ = false;  ///< a change was given up before its answer
     int fault_reason_ = 0;
+    bool isToolOffsetShown_ = true;
 };
 
 }  // namespace mw::io

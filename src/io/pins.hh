@@ -6,6 +6,7 @@
 #include "base/result.hh"
 #include "hal/core/user_pin_set.hh"
 #include "io/pin_tables.hh"
+#include "io/tool_offset_block.hh"
 
 namespace mw::io {
 
@@ -17,6 +18,10 @@ class Pins {
     /// Ends the component; its pins vanish.
     void destroy();
 
+    /// Finds what shows the tool offset in the realtime process: once the HAL files have loaded motmod. A
+    /// program that stands in for it (motion-logger) has no such pins.
+    Result<> join_tool_offset();
+
     Inputs read();
     void write(const Outputs &outputs);
 
@@ -24,6 +29,8 @@ class Pins {
     hal::Hal *hal_ = nullptr;
     int comp_id_ = 0;
     hal::UserPinSet<pins::IOCONTROL> pins_;
+    ToolOffsetBlock *block_ = nullptr;  ///< null: nobody shows the tool offset
+    NumberedOffset sent_;
 };
 
 }  // namespace mw::io

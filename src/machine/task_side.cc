@@ -153,7 +153,7 @@ Result<> TaskSide::join_motion() {
     if (channels_->layout_bytes != sizeof(motion::Channels)) {
         return fail("the motion controller that is loaded belongs to another version of Millwright");
     }
-    return {};
+    return io_pins_.join_tool_offset();
 }
 
 Result<> TaskSide::link_estop_chain() {

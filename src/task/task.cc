@@ -37,6 +37,7 @@ SequencerEvents Task::make_events() {
     events.offsets = [this](const interp::UseOffsets &item) { show(item, status_.offsets); };
     events.tool_offset = [this](const interp::UseToolOffset &item) {
         status_.offsets.tool = item.offset;
+        io_.set_tool_offset(item.offset);
         return motion_.send(motion::SetToolOffset{item.offset});
     };
     events.planner_mode = [this](const interp::UsePlanner &item) -> std::optional<motion::CommandId> {
@@ -130,6 +131,9 @@ void Task::step(std::int64_t now_ns) {
     Start{*this}.watch_hold();
     // What waits in the queue without a run are settings for displays; they do not move anything.
     planner_mode_.step(!run_.isRunning() && motion_.isPathComplete());
+    if (run_.phase() == RunPhase::IDLE && motion_.status().isInPosition) {
+        io_.set_tool_offset(reader_.canon().tool_offset().value_or(io_.outputs.tool_offset));
+    }
     parts_.io_port.write(io_.outputs);
     update_status();
 }

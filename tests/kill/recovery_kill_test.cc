@@ -4,6 +4,7 @@
 #include <deque>
 #include <iostream>
 
+#include "hal/core/hal.hh"
 #include "kill/started_machine.hh"
 
 namespace mw::kill {
@@ -97,6 +98,52 @@ TEST_F(KillRecovery, TheProgramGoesOnAtTheRightLineAndNothingHasToBeCleaned_D3) 
     EXPECT_LE(stopped, count_kills() / 4) << "hardly anything was cut";
     std::cout << count_kills() << " kills, " << stopped << " of them before it cut, " << resumed
               << " went on from the one before; at most " << latest << " lines before that under the tool\n";
+}
+
+/// The kinematics may read the pin while the machine brakes.
+TEST_F(KillRecovery, TheToolOffsetStaysOnItsPinUntilTheRealtimeProcessEndsAndComesBackWithTheProgram_G6) {
+    constexpr double TOOL_2_LENGTH = 35, NO_PIN = -1;
+    const auto offset_now = [](const hal::Hal &hal) {
+        const auto value = hal.get("motion.tooloffset.z");
+        return value.has_value() ? value->as_number() : NO_PIN;
+    };
+    ASSERT_NO_FATAL_FAILURE(start());
+    ASSERT_NO_FATAL_FAILURE(switch_on());
+    ASSERT_NO_FATAL_FAILURE(ask(msgs::OpenProgram{folder / "p.ngc"}));
+    auto hal = hal::Hal::attach(instance);
+    ASSERT_TRUE(hal.has_value()) << hal.error().str();
+    EXPECT_EQ(offset_now(**hal), 0);
+    run = client->post(msgs::RunProgram{}).value_or(0);
+    static_cast<void>(cut_and_kill(6, std::chrono::milliseconds(300)));
+    int seen = 0;
+    for (double z = 0; z != NO_PIN && !(*hal)->host_end().has_value(); ++seen) {
+        z = offset_now(**hal);
+        ASSERT_TRUE(z == TOOL_2_LENGTH || z == NO_PIN) << z << ", look " << seen;
+    }
+    EXPECT_GT(seen, 10) << "the realtime process outlives task until the machine is stopped";
+    hal->reset();
+    client.reset();
+
+    ASSERT_NO_FATAL_FAILURE(start());
+    hal = hal::Hal::attach(instance);
+    ASSERT_TRUE(hal.has_value()) << hal.error().str();
+    static_cast<void>(client->read_status());
+    EXPECT_EQ(client->status().offsets.tool.z(), 0);
+    EXPECT_EQ(offset_now(**hal), 0);
+    ASSERT_NO_FATAL_FAILURE(switch_on());
+    run = client->post(msgs::RecoverProgram{}).value_or(0);
+    const auto isProposed = [&] {
+        static_cast<void>(client->read_status());
+        return client->status().approach.number != 0 ||
+               client->outcome(run).progress != msgs::Progress::STARTED;
+    };
+    ASSERT_TRUE(client->wait_until(isProposed, 30).has_value()) << client->outcome(run).reason;
+    ASSERT_NO_FATAL_FAILURE(ask(msgs::ConfirmApproach{client->status().approach.number}));
+    const int offered = client->status().recovery.line;
+    ASSERT_TRUE(client->wait_until([&] { return line_now() > std::max(offered, 6); }, 60).has_value());
+    EXPECT_EQ(offset_now(**hal), TOOL_2_LENGTH);
+    EXPECT_EQ(client->status().offsets.tool.z(), TOOL_2_LENGTH);
+    kill_machine();
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "hal/core/host.hh"
+#include "io/tool_offset_pin_tables.hh"
 #include "motion/rt/pin_tables.hh"
 #include "rtapi/virtual_scheduler.hh"
 #include "testing/pin_page.hh"
@@ -18,7 +19,10 @@ using testing::PinText;
 using testing::replaced;
 
 std::vector<PinText> rows() {
-    return testing::pin_texts([](auto &&show) { pins::for_each(show); });
+    return testing::pin_texts([](auto &&show) {
+        pins::for_each(show);
+        sdk::for_each_pin(io::pins::TOOL_OFFSET, show);
+    });
 }
 
 /// Each pin of a machine with so many of everything, by name.

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "io/controller.hh"
@@ -162,6 +164,27 @@ TEST(IoController, AnAnswerAfterTheAbortIsTold_E1) {
     in.tool_changed = true;
     EXPECT_EQ(io.step(in), ToolEvent::CHANGED_LATE);
     EXPECT_EQ(io.step(in), ToolEvent::NONE) << "once";
+}
+
+TEST(IoController, ANewToolOffsetIsAwaitedUntilItsPinsShowIt_G6) {
+    Controller io;
+    Inputs in;
+    io.step(in);
+    EXPECT_TRUE(io.isToolOffsetShown());
+    const geom::Pose offset{{0, 0, 5}};
+    io.set_tool_offset(offset);
+    EXPECT_EQ(io.outputs.tool_offset.c, offset.c);
+    EXPECT_FALSE(io.isToolOffsetShown());
+    in.isToolOffsetShown = false;
+    io.step(in);
+    EXPECT_FALSE(io.isToolOffsetShown());
+    in.isToolOffsetShown = true;
+    io.step(in);
+    EXPECT_TRUE(io.isToolOffsetShown());
+    io.set_tool_offset(offset);
+    EXPECT_TRUE(io.isToolOffsetShown()) << "nothing new";
+    io.set_tool_offset({{0, 0, std::nan("")}});
+    EXPECT_EQ(io.outputs.tool_offset.c, offset.c) << "no number";
 }
 
 TEST(IoController, LeavingEstopAsksTheChainOnce_D1) {

@@ -147,7 +147,8 @@ struct SetAnalogOutput {
     double value = 0;
 };
 struct ClearProbeFlag {};
-/// The tool offset in force, for the pins motion.tooloffset.L; moves nothing.
+/// The tool is measured differently from here: the path before it cannot be run in reverse. Moves nothing;
+/// the pins motion.tooloffset.L belong to the I/O controller.
 struct SetToolOffset {
     geom::Pose offset;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Immediate commands: each is answered, done or refused with a reason.
 #include <algorithm>
+#include <cmath>
 
 #include "base/overloaded.hh"
 #include "motion/core/controller.hh"
@@ -47,6 +48,11 @@ void forget_way(Retracing &retracing, const CommandBody &body) noexcept {
     if (isChange && !retracing.retrace.isAway()) {
         retracing.retrace.clear();
     }
+}
+
+Verdict check(const SetToolOffset &command) noexcept {
+    const bool isFinite = std::ranges::all_of(command.offset.c, [](double x) { return std::isfinite(x); });
+    return {isFinite ? Reason::NONE : Reason::NOT_A_NUMBER};
 }
 
 }  // namespace
@@ -153,7 +159,7 @@ Verdict Controller::take(const Inputs &in, const CommandBody &body) noexcept {
         },
         [&](const OneOf<SpindleOff, SpindleBrake> auto &c) { return motion::take(spindles_, c); },
         [&](const OneOf<SetDigitalOutput, SetAnalogOutput> auto &c) { return motion::take(outputs_, c); },
-        [&](const SetToolOffset &c) { return motion::take(outputs_, c); },
+        [](const SetToolOffset &c) { return check(c); },  // forget_way() does what it asks for
         [&](const ClearProbeFlag &c) { return motion::take(probe_, c); },
     };
     return std::visit(handlers, body);

@@ -114,7 +114,6 @@ struct Outputs {
     std::array<JointOutputs, MAX_JOINTS> joint{};
     std::array<AxisOutputs, MAX_AXES> axis{};
     std::array<SpindleOutputs, MAX_SPINDLES> spindle{};
-    geom::Pose tool_offset;
     Heading heading;
     bool isJogging = false;
     bool isCoordError = false, isOnSoftLimit = false;

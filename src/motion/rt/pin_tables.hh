@@ -106,9 +106,6 @@ inline constexpr auto ANALOG = pin_table("motion",
 inline constexpr auto MISC_ERROR = pin_table("motion",
     in<bool>("misc-error-##", "", "TRUE: the machine stops within its limits and goes off", [](ChannelIn &c, bool v) { c.in.misc_errors |= v ? std::uint64_t{1} << c.number : 0U; }));
 
-inline constexpr auto TOOL_OFFSET = pin_table("motion",
-    out<double>("tooloffset.@", "unit", "tool offset in force", [](const double &offset) { return offset; }));
-
 inline constexpr auto JOINT = pin_table("joint.#",
     in<double>("motor-pos-fb", "unit", "measured position of the motor", [](JointInputs &i, double v) { i.motor_pos_fb = v; }),
     in<bool>("pos-lim-sw-in", "", "upper limit switch", [](JointInputs &i, bool v) { i.isPosLimitClosed = v; }),
@@ -224,7 +221,6 @@ void for_each(Show &&show) {
     sdk::for_each_pin(DIGITAL, show);
     sdk::for_each_pin(ANALOG, show);
     sdk::for_each_pin(MISC_ERROR, show);
-    sdk::for_each_pin(TOOL_OFFSET, show);
     sdk::for_each_pin(JOINT, show);
     sdk::for_each_pin(SELDOM_JOINT, show);
     sdk::for_each_pin(HOMING, show);

@@ -51,7 +51,6 @@ int MotionPins::declare(int comp_id, const PinCounts &wanted) noexcept {
     links_ = mw_ext_links();
     int status = motion_.declare(comp_id);
     status = status == 0 && counts_.isSwitchable ? switchable_.declare(comp_id) : status;
-    status = status == 0 ? declare_each(tool_offset_, comp_id, MAX_AXES) : status;
     status = status == 0 ? declare_each(digital_, comp_id, counts_.digital) : status;
     status = status == 0 ? declare_each(analog_, comp_id, counts_.analog) : status;
     status = status == 0 ? declare_each(misc_error_, comp_id, counts_.misc_errors) : status;
@@ -162,10 +161,6 @@ void MotionPins::write(const Outputs &out) noexcept {
         if (isOther || areAllDue) [[unlikely]] {
             seldom_axis_[i].write(axis);
         }
-    }
-#pragma GCC unroll 9
-    for (int i = 0; i < MAX_AXES; ++i) {
-        tool_offset_[i].write(out.tool_offset.c[at(i)]);
     }
     for (int n = 0; n < counts_.spindles; ++n) {
         spindle_[n].write(SpindleView{s.spindle[at(n)], out.spindle[at(n)]});

@@ -58,7 +58,6 @@ class MotionPins {
     sdk::PinSet<pins::DIGITAL> digital_[MAX_DIGITAL_IO];
     sdk::PinSet<pins::ANALOG> analog_[MAX_ANALOG_IO];
     sdk::PinSet<pins::MISC_ERROR> misc_error_[MAX_DIGITAL_IO];
-    sdk::PinSet<pins::TOOL_OFFSET> tool_offset_[MAX_AXES];
     sdk::PinSet<pins::JOINT> joint_[MAX_JOINTS];
     sdk::PinSet<pins::SELDOM_JOINT> seldom_joint_[MAX_JOINTS];
     sdk::PinSet<pins::HOMING> homing_[MAX_JOINTS];

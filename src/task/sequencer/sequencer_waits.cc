@@ -22,7 +22,7 @@ bool Sequencer::isWaitOver(std::int64_t now_ns) {
         break;
     }
     case Wait::ORIENT: isOver = isOrientWaitOver(now_ns); break;
-    case Wait::SETTING: isOver = motion_.isAnswered(awaited_setting_); break;
+    case Wait::SETTING: isOver = motion_.isAnswered(awaited_setting_) && io_.isToolOffsetShown(); break;
     case Wait::USER_CODE: {
         const std::optional<Result<>> result = events_.user_code_result();
         isOver = result.has_value();

@@ -68,6 +68,7 @@ class SequencerTest : public testing::Test {
         e.fail = [this](const std::string &text) { failures.push_back(text); };
         e.offsets = [](const interp::UseOffsets &) {};
         e.tool_offset = [this](const interp::UseToolOffset &item) {
+            io.set_tool_offset(item.offset);
             return link.send(motion::SetToolOffset{item.offset});
         };
         e.planner_mode = [](const interp::UsePlanner &) -> std::optional<motion::CommandId> { return 0; };
@@ -110,6 +111,30 @@ TEST_F(SequencerTest, MovesGoOnAtOnceAndASpindleWaitsUntilTheyAreDone_D2) {
     cycle();
     EXPECT_TRUE(sequencer.isIdle());
     EXPECT_TRUE(failures.empty());
+}
+
+/// Kinematics may read the pins: no move begins with those of the block before it.
+TEST_F(SequencerTest, AMoveBehindAToolOffsetWaitsUntilThePinsShowIt_D2_G6) {
+    add_line(1);
+    add(interp::UseToolOffset{{{0, 0, 5}}});
+    add_line(2);
+    cycle();
+    cycle(false);
+    EXPECT_EQ(io.outputs.tool_offset.z(), 0) << "the move before it is not done";
+    cycles(2);
+    EXPECT_EQ(io.outputs.tool_offset.z(), 5);
+    io::Inputs inputs;
+    inputs.isToolOffsetShown = false;
+    for (int i = 0; i < 5; ++i) {
+        io.step(inputs);
+        cycle();
+        EXPECT_EQ(sequencer.waiting_for().what, WaitFor::SETTING);
+    }
+    EXPECT_EQ(moves, 1);
+    inputs.isToolOffsetShown = true;
+    io.step(inputs);
+    cycles(2);
+    EXPECT_EQ(moves, 2);
 }
 
 TEST_F(SequencerTest, ADwellLastsItsTimeAndIsToldAsWhatIsWaitedFor_D2) {

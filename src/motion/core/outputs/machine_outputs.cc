@@ -42,16 +42,6 @@ Verdict take(MachineOutputs &outputs, const SetAnalogOutput &command) noexcept {
     return {};
 }
 
-Verdict take(MachineOutputs &outputs, const SetToolOffset &command) noexcept {
-    for (const double x : command.offset.c) {
-        if (!std::isfinite(x)) {
-            return {Reason::NOT_A_NUMBER};
-        }
-    }
-    outputs.tool_offset = command.offset;
-    return {};
-}
-
 void fire(MachineOutputs &outputs, const traj::PathEvent &event, bool isStopping) noexcept {
     if (event.isAnalog) {
         double &output = outputs.analog[static_cast<std::size_t>(event.index)];
@@ -63,7 +53,6 @@ void fire(MachineOutputs &outputs, const traj::PathEvent &event, bool isStopping
 }
 
 void fill(const MachineOutputs &outputs, const Inputs &in, Outputs &out) noexcept {
-    out.tool_offset = outputs.tool_offset;
     Status &status = out.status;
     status.digital_in = in.digital_in;
     status.digital_out = outputs.digital;

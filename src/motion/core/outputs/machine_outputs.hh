@@ -18,12 +18,10 @@ struct MachineOutputs {
     int num_digital = 0, num_analog = 0;
     std::uint64_t digital = 0;  ///< bit per output
     std::array<double, MAX_ANALOG_IO> analog{};
-    geom::Pose tool_offset;  ///< in force
 };
 
 Verdict take(MachineOutputs &outputs, const SetDigitalOutput &command) noexcept;
 Verdict take(MachineOutputs &outputs, const SetAnalogOutput &command) noexcept;
-Verdict take(MachineOutputs &outputs, const SetToolOffset &command) noexcept;
 /// A change whose place on the path has been passed; the path planner has checked its index. While a stop
 /// brakes along the path nothing is switched on and no value grows: only what ends something is done.
 void fire(MachineOutputs &outputs, const traj::PathEvent &event, bool isStopping) noexcept;

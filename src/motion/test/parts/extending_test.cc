@@ -65,14 +65,12 @@ TEST(ExtendingMotion, AVisitorThatForgetsTheNewCommandDoesNotCompile_A1) {
     { return Verdict{}; };
     MachineOutputs outputs;
     outputs.num_digital = 1;
-    const Overloaded old{others, [&](const OneOf<SetDigitalOutput, SetAnalogOutput, SetToolOffset> auto &c) {
-                             return take(outputs, c);
-                         }};
-    const Overloaded extended{
-        others,
-        [&](const OneOf<SetDigitalOutput, SetAnalogOutput, SetToolOffset, FlipDigitalOutput> auto &c) {
-            return take(outputs, c);
-        }};
+    const Overloaded old{
+        others, [&](const OneOf<SetDigitalOutput, SetAnalogOutput> auto &c) { return take(outputs, c); }};
+    const Overloaded extended{others,
+                              [&](const OneOf<SetDigitalOutput, SetAnalogOutput, FlipDigitalOutput> auto &c) {
+                                  return take(outputs, c);
+                              }};
     static_assert(std::is_invocable_v<decltype(old), const SetDigitalOutput &>);
     static_assert(!std::is_invocable_v<decltype(old), const FlipDigitalOutput &>);
     EXPECT_EQ(std::visit(extended, Body{FlipDigitalOutput{0}}).reason, Reason::NONE);

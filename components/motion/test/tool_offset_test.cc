@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The pins motion.tooloffset.*: the I/O controller writes them, in the servo thread of the loaded motmod.
+#include <atomic>
+
+#include <gtest/gtest.h>
+
+#include "hal/core/host.hh"
+#include "io/pins.hh"
+#include "motion/api/channels.hh"
+#include "rtapi/virtual_scheduler.hh"
+
+namespace mw::motion {
+namespace {
+
+class ToolOffsetPins : public ::testing::Test {
+  protected:
+    ToolOffsetPins() {
+        hal::HalOptions options;
+        options.scheduler = &clock;
+        host = std::move(*hal::LocalHost::create(options, {MW_MODULE_FOLDER}));
+        EXPECT_TRUE(io.create(hal()).has_value());
+    }
+    ~ToolOffsetPins() override { io.destroy(); }
+    hal::Hal &hal() { return host->hal(); }
+    void load() {
+        ASSERT_TRUE(host->load_realtime("trivkins", {}).has_value());
+        ASSERT_TRUE(host->load_realtime("motmod", {"num_joints=3"}).has_value());
+        ASSERT_TRUE(hal().add_function("motion-command-handler", "servo-thread"));
+        ASSERT_TRUE(hal().add_function("motion-controller", "servo-thread"));
+        ASSERT_TRUE(hal().start_threads());
+        ASSERT_TRUE(io.join_tool_offset().has_value());
+        channels = static_cast<Channels *>(*hal().shared_block(Channels::SHMEM_KEY, sizeof(Channels)));
+    }
+    void write(const geom::Pose &pose) {
+        io::Outputs outputs;
+        outputs.tool_offset = pose;
+        io.write(outputs);
+    }
+    void run_cycle() { clock.run_until(clock.now_ns() + 1000000); }
+    geom::Pose shown() {
+        geom::Pose pose;
+        for (int i = 0; i < MAX_AXES; ++i) {
+            pose[i] = hal().get(std::string("motion.tooloffset.") + geom::AXIS_LETTERS_LOWER[i])->as_number();
+        }
+        return pose;
+    }
+
+    const geom::Pose offset{{1, -2, 3, 4, 5, 6, 7, 8, 9.5}};
+    rtapi::VirtualScheduler clock;
+    std::unique_ptr<hal::LocalHost> host;
+    io::Pins io;
+    Channels *channels = nullptr;
+};
+
+TEST_F(ToolOffsetPins, AreMadeWithMotmodAndAreZero_G6) {
+    EXPECT_FALSE(hal().hasPin("motion.tooloffset.z"));
+    ASSERT_NO_FATAL_FAILURE(load());
+    EXPECT_EQ(hal().pins("motion.tooloffset.*").size(), std::size_t{MAX_AXES});
+    EXPECT_EQ(hal().pin("motion.tooloffset.z")->dir, hal::Dir::OUT);
+    EXPECT_EQ(shown().c, geom::Pose{}.c);
+}
+
+TEST_F(ToolOffsetPins, ShowWhatTheIoControllerWritesAndNotWhatMotionIsSent_G6) {
+    ASSERT_NO_FATAL_FAILURE(load());
+    write(offset);
+    EXPECT_FALSE(io.read().isToolOffsetShown);
+    EXPECT_EQ(shown().c, geom::Pose{}.c) << "they change between two cycles of the servo thread";
+    run_cycle();
+    EXPECT_TRUE(io.read().isToolOffsetShown);
+    EXPECT_EQ(shown().c, offset.c);
+    channels->immediate.push({1, 1, SetToolOffset{{{0, 0, 77}}}});
+    run_cycle();
+    ASSERT_FALSE(channels->servo_answers.isEmpty());
+    EXPECT_EQ(shown().c, offset.c);
+}
+
+TEST_F(ToolOffsetPins, KeepTheirValuesWhenTheTaskProcessIsDead_G6) {
+    ASSERT_NO_FATAL_FAILURE(load());
+    write(offset);
+    run_cycle();
+    channels->isTaskDead = 1;
+    io.destroy();  // its pins vanish with the process
+    ASSERT_FALSE(hal().hasPin("iocontrol.0.tool-number"));
+    for (int i = 0; i < 1000; ++i) {
+        run_cycle();
+        ASSERT_EQ(shown().c, offset.c);
+    }
+}
+
+TEST_F(ToolOffsetPins, KeepTheirValuesWhenTheTaskProcessDiesWithinAWrite_G6) {
+    ASSERT_NO_FATAL_FAILURE(load());
+    write(offset);
+    run_cycle();
+    auto &block = *static_cast<io::ToolOffsetBlock *>(
+        *hal().shared_block(io::ToolOffsetBlock::SHMEM_KEY, sizeof(io::ToolOffsetBlock)));
+    write({{100, 200, 300}});
+    // The sequence number comes first; an odd one means that a write is under way.
+    std::atomic_ref(*reinterpret_cast<std::uint32_t *>(&block.latest)).fetch_sub(1);
+    for (int i = 0; i < 3; ++i) {
+        run_cycle();
+        EXPECT_EQ(shown().c, offset.c);
+        EXPECT_FALSE(io.read().isToolOffsetShown);
+    }
+}
+
+/// A signal that has a reader keeps its value when a writer joins.
+TEST_F(ToolOffsetPins, AreSeenInTheCycleAfterTheyWereLinked_G6) {
+    ASSERT_NO_FATAL_FAILURE(load());
+    write(offset);
+    run_cycle();
+    ASSERT_TRUE(hal().net("length", {"motion.adaptive-feed"}).has_value());
+    ASSERT_TRUE(hal().net("length", {"motion.tooloffset.z"}).has_value());
+    run_cycle();
+    EXPECT_EQ(hal().get("motion.adaptive-feed")->as_number(), 3);
+}
+
+TEST_F(ToolOffsetPins, NobodyWaitsForThemWhereMotmodIsNotLoaded_G6) {
+    ASSERT_TRUE(io.join_tool_offset().has_value());
+    write(offset);
+    EXPECT_TRUE(io.read().isToolOffsetShown) << "motion-logger stands in for motmod";
+}
+
+}  // namespace
+}  // namespace mw::motion
