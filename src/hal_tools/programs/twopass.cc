@@ -19,7 +19,7 @@ Runs the files of [HAL]HALFILE in two passes: loadrt lines for one module are me
 )";
 
 int fail_with(const Error &error) {
-    std::fprintf(stderr, "halcmd_twopass: %s\n", error.str().c_str());
+    language::tell("halcmd_twopass", error);
     return 1;
 }
 
