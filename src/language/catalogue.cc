@@ -77,8 +77,10 @@ std::size_t count_words(const std::vector<std::string> &pieces) {
     return words;
 }
 
-bool hasWord(std::string_view text) {
-    return std::count_if(text.begin(), text.end(), [](unsigned char c) { return std::isalpha(c) != 0; }) > 2;
+/// A value of one word is a name or a number: a signal may be called "error".
+bool hasSeveralWords(std::string_view text) {
+    return text.find(' ') != std::string_view::npos &&
+           std::count_if(text.begin(), text.end(), [](unsigned char c) { return std::isalpha(c) != 0; }) > 2;
 }
 
 }  // namespace
@@ -161,8 +163,9 @@ std::string Catalogue::filled(const Pattern &pattern, const std::vector<std::str
         }
         const std::size_t which = isNext ? next++ : static_cast<std::size_t>(text[at + 1] - '0');
         const std::string_view value = which < values.size() ? values[which] : std::string_view{};
-        out += depth < MAX_DEPTH && hasWord(value) ? composed(value, depth).value_or(std::string(value))
-                                                   : std::string(value);
+        out += depth < MAX_DEPTH && hasSeveralWords(value)
+                   ? composed(value, depth).value_or(std::string(value))
+                   : std::string(value);
         at += isNext ? 1 : 2;
     }
     return out;

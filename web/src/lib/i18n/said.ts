@@ -11,7 +11,8 @@ interface Pattern {
 
 const MAX_DEPTH = 5; // of a text within a text
 const countWords = (pieces: string[]): number => pieces.reduce((sum, piece) => sum + (piece.match(/[A-Za-z]{2,}/g) ?? []).length, 0);
-const hasWord = (text: string): boolean => (text.match(/[A-Za-z]/g) ?? []).length > 2;
+// A value of one word is a name or a number: a signal may be called "error".
+const hasSeveralWords = (text: string): boolean => text.includes(' ') && (text.match(/[A-Za-z]/g) ?? []).length > 2;
 
 /** What stands between the pieces in `text`; null where they do not stand in it, in this order, from end to end. */
 function valuesBetween(pieces: string[], text: string): string[] | null {
@@ -88,7 +89,7 @@ export class Texts {
     let next = 0;
     return pattern.translation.replace(/\{(\d?)\}/g, (_place, which: string) => {
       const value = values[which === '' ? next++ : Number(which)] ?? '';
-      return depth < MAX_DEPTH && hasWord(value) ? (this.composed(value, depth) ?? value) : value;
+      return depth < MAX_DEPTH && hasSeveralWords(value) ? (this.composed(value, depth) ?? value) : value;
     });
   }
 
