@@ -109,10 +109,9 @@ std::vector<std::pair<std::string, std::string>> texts_of(const std::string &lan
     for (std::string line; std::getline(file, line);) {
         const std::size_t from = line.find('"');
         std::string text = from == std::string::npos ? "" : line.substr(from + 1, line.size() - from - 2);
-        for (const auto &[code, character] : {std::pair{"\\n", "\n"}, {"\\\"", "\""}}) {
-            for (std::size_t at; (at = text.find(code)) != std::string::npos;) {
-                text.replace(at, 2, character);
-            }
+        for (std::size_t at = text.find('\\'); at != std::string::npos; at = text.find('\\', at + 1)) {
+            text.erase(at, 1);
+            text[at] = text[at] == 'n' ? '\n' : text[at];
         }
         if (line.starts_with("msgid ")) {
             texts.emplace_back(text, "");
