@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The catalogues that are built, read as gettext would and asked for texts as the machine makes them.
+#include <chrono>
 #include <cstdint>
 #include <fstream>
 #include <iterator>
@@ -140,6 +141,17 @@ TEST(Catalogue, EachTextIsFoundAgainWithWhateverIsPutIntoIt) {
         }
         EXPECT_LT(others, 8) << language;
     }
+}
+
+TEST(Catalogue, AMessageOfManyUnknownPartsIsShownAtOnce) {
+    const Catalogue one = of("de");
+    std::string text;
+    for (int i = 0; i < 400; ++i) {
+        text += "word" + std::to_string(i) + (i % 3 == 0 ? ": " : i % 3 == 1 ? " (what) " : "; ");
+    }
+    const auto begin = std::chrono::steady_clock::now();
+    EXPECT_EQ(one.shown(text), text);
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10));
 }
 
 TEST(Catalogue, WithoutALanguageATextStaysAsItIs) {
