@@ -10,19 +10,28 @@ usage: texts.py --list              the texts, one a line, as keys of the catalo
 A text is a string literal with more than one word in a folder of FOLDERS. What is put in at run time is {} in a key,
 whether the source has fmt's {:.3f} or "a" + name + "b". Nothing in the sources marks a text: what is none stands below.
 """
+import ast
 import json
 import pathlib
 import re
 import sys
 
-FOLDERS = ('app', 'client', 'config', 'doctor', 'homing', 'interp', 'io', 'journal', 'kins', 'machine', 'mailbox', 'motion', 'options', 'task', 'tool')
+FOLDERS = ('app', 'cli', 'client', 'comp', 'config', 'doctor', 'gcode/commands.cc', 'hal/core', 'hal/host', 'hal_lang/lang', 'hal_tools', 'homing', 'interp', 'io', 'journal', 'kins', 'machine',
+           'mailbox', 'modbus', 'motion', 'options', 'rtapi', 'task', 'tool')
 # Programs that print for other programs: of their texts people read the help.
-HELP_OF = tuple(f'hal_tools/programs/{name}.cc' for name in ('halcmd', 'halrun', 'haltcl', 'realtime', 'twopass')) + ('comp/program.cc', 'cli/millwright.cc')
-HELP = re.compile(r'usage: |halcompile: makes ')
+HELP_OF = ('app/var_command.cc', 'config/inivalue.cc')
+HELP = re.compile(r'usage: ')
+# Standard output of HAL commands is for programs (docs/languages.md): what these calls of a session take, and tables, files and figures.
+FOR_PROGRAMS = {'hal_lang/lang': ('info', 'data', 'note')}
+TABLES = re.compile(r'HAL_LOCK_|^active/recycled|^HAL (memory|locking) status|^HAL components that died|^  current lock|^  used/total|^\{\}(Component Pins|Exported Functions|Loaded HAL Components|Realtime Threads|ID   |Owner |Type |     Period)'
+                    r'|Aliases$|^Original Name$|^(\{\})?# (param|pin|real|unconn)|^#loadrt |^alias (pin|param) |^twopass:|^pass0:|^Sourcing |^found \{\}$|^loadusr \{\}$|^  \{\} \(process|^  \{\} (->|\[)|^digraph |^signal \{\}$|^HAL capture, '
+                    r'|^(jitter|last|max|min|period|sdev) ns$|^outside of the bins|intervals by deviation|^\{\}: period|^deviation from the period|^no realtime: |^realtime priority and locked|^is (not )?running$|^the realtime process of instance .%s'
+                    r'|^(comp|pin)\||^\[(\w+\|){2}|^SIGNAL bit|^(latency-|millwright-rt |millwright hal \w+ ).*\[options\]$|^millwright hal ?$|^millwright-rt: \{\}$|^loadusr -W|^\.comp, |^import ast|^( (?!and |of )[\w.-]+)+ $|^fnct_01|^. (of component|crashed)|^Complete names|%s|^NML channels are up|^millwright (nml|format|explain) (FILE|\[)|^millwright nml: ')
 # Manual pages, reference pages and `explain` are made from these; and what programs print for other programs.
 NOT_SHOWN = re.compile(r'/(test|bench|logger|canon)/|keys\.hh$|pin_tables\.hh$|motion/api/parameters\.hh$|states_page\.cc$'
                        r'|codes/code_texts\.cc$|app/summary\.cc$|app/time_report\.cc$|app/recorder\.cc$|app/plot\.cc$'
-                       r'|config/ini(value|var|_strict|_escape|_script)\.cc$|app/var_command\.cc$|command_classes\.hh$|/kins/\w+\.hh$|app/nml_command\.cc$|machine/ini_keys\.cc$')
+                       r'|config/ini(value|var|_strict|_escape|_script)\.cc$|app/var_command\.cc$|command_classes\.hh$|/kins/\w+\.hh$|machine/ini_keys\.cc$'
+                       r'|/capi_\w+\.cc$|comp/emit_(c|main|man)\.cc$|rtapi/log\.cc$|message_reference\.cc$|view/watch_model\.cc$')
 # Clients look for these words (docs/compatibility.md), canon comments are rs274's output, and the compiler reads the others.
 NEVER = re.compile(r'on limit switch error|^interpreter: |^each command is of one class$|^A machine is up already|^Machine configuration file is'
                    r'|^; life of tools|^# What was answered|^there is no module $|^(exec|port) \{\}$|^millwright \w+ [^a-z]*(\.ini|\.ngc|options|help)|^\{\} \[options\]|^(un)?loadrt |^echo |^-- -ini|^10? (in|mm), |^--connectpw and')
@@ -115,18 +124,24 @@ def is_text(key):
 def texts(root):
     found = {}
     for folder in FOLDERS:
-        for path in sorted((root / 'src' / folder).rglob('*')):
+        place = root / 'src' / folder
+        for path in sorted(place.rglob('*')) if place.is_dir() else [place]:
             name = str(path.relative_to(root))
             if path.suffix not in ('.cc', '.hh') or NOT_SHOWN.search(name):
                 continue
             seq, done = list(tokens(path.read_text())), set()
+            calls = []
             for at, token in enumerate(seq):
-                if token[0] != '"' or at in done:
+                if token[0] in ('(', '{', '['):
+                    calls.append(seq[at - 1][0] if at > 0 and token[0] == '(' else '')
+                elif token[0] in (')', '}', ']') and calls:
+                    calls.pop()
+                if token[0] != '"' or at in done or any(call in FOR_PROGRAMS.get(folder, ()) for call in calls):
                     continue
                 text, parts = whole_text(seq, at)
                 done |= parts
                 key = key_of(text)
-                if is_text(key) and not NEVER.search(key):
+                if is_text(key) and not NEVER.search(key) and not TABLES.search(key):
                     found.setdefault(key, name)
     for name in HELP_OF:
         seq = list(tokens((root / 'src' / name).read_text()))
@@ -136,6 +151,35 @@ def texts(root):
     found.setdefault('usage:', 'src/options/command_line.cc')
     found.update({word: 'src/diag/sink.cc' for word in ('error', 'warning', 'note')})
     found.setdefault('called from {}', 'src/diag/sink.cc')
+    for kind in ('component', 'pin', 'parameter', 'signal', 'function', 'thread', 'alias'):
+        for what in (f"there is no {kind} '{{}}'", f"there is a {kind} '{{}}' already", f"{kind} name '{{}}' has {{}} characters, 1 to {{}} are allowed"):
+            found[what] = 'src/hal/core/hal.cc'
+    # Of one word, or of words that programs read elsewhere.
+    for what in ("program '{}' {}", "pin '{}'", 'TRUE, FALSE, 1 or 0', '0 to 5', 'Commands:', 'a {} takes {}'):
+        found[what] = 'src/hal_lang/lang/commands.cc'
+    # Put together without memory of the heap, since a signal handler does it.
+    for what in ("function '{}' of component '{}' crashed in thread '{}'", "module '{}' crashed while it was loaded", "module '{}' crashed while it was unloaded", 'the planner of a module crashed'):
+        found[what] = 'src/hal/core/crash_report.cc'
+    for text, name in python_texts(root).items():
+        found.setdefault(text, name)
+    return found
+
+
+def python_texts(root):
+    """What help of programs in Python has: arguments help and description, USAGE, OPTIONS and ARGPARSE, and docstrings that are shown."""
+    found = {}
+    for path in sorted([*(root / 'python/programs').iterdir(), *(root / 'python/millwright').glob('*.py')]):
+        tree = ast.parse(path.read_text())
+        nodes = [node.value for node in tree.body if isinstance(node, ast.Assign) and getattr(node.targets[0], 'id', '') in ('USAGE', 'OPTIONS', 'ARGPARSE')]
+        for call in ast.walk(tree):
+            if isinstance(call, ast.Call) and path.name != 'language.py':
+                nodes += [given.value for given in call.keywords if given.arg in ('help', 'description')]
+                nodes += call.args if getattr(call.func, 'id', '') == 'shown' else []
+        for node in nodes:
+            for part in ast.walk(node):
+                text = ast.get_docstring(tree, clean=False) if getattr(part, 'id', '') == '__doc__' else getattr(part, 'value', None)
+                if isinstance(text, str) and (is_text(text) or path.name == 'language.py'):
+                    found.setdefault(text.strip(), str(path.relative_to(root)))
     return found
 
 

@@ -18,6 +18,7 @@ import subprocess
 import sys
 import threading
 
+from .language import Parser
 from .mdro_page import PAGE
 
 NAME = 'mdro'
@@ -173,7 +174,8 @@ def size_of(text):
 
 def settings(words, doc):
     """Options, with those of an INI file where one is named."""
-    parser = argparse.ArgumentParser(prog=NAME, usage=doc.split('usage: ')[1].split('\n')[0], description=doc.split('\n')[0])
+    parser = Parser(prog=NAME, usage=doc.split('usage: ')[1].split('\n')[0],
+                    description='A digital read-out for machines that are moved by hand: where the scales are, in a browser of this computer.')
     parser.add_argument('-v', action='count', default=0, dest='verbose', help='say what is done; twice: all requests')
     parser.add_argument('-p', type=size_of, default=None, dest='point_size', metavar='POINT_SIZE', help='size of the text (20)')
     parser.add_argument('-m', action='store_true', dest='mm', help='the scales count mm, not inches')

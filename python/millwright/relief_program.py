@@ -11,6 +11,8 @@ import pathlib
 import sys
 import tempfile
 
+from .language import Parser
+
 NAME = 'image-to-gcode'
 MM_PER_INCH = 25.4
 MOST_PIXELS = 64_000_000
@@ -96,7 +98,7 @@ def write_whole(path, text):
 
 
 def parse(words):
-    parser = argparse.ArgumentParser(prog=NAME, description='A picture whose brightness is height becomes a program that mills it.')
+    parser = Parser(prog=NAME, description='A picture whose brightness is height becomes a program that mills it.')
     parser.add_argument('image', metavar='IMAGE', help='PNG, GIF, JPEG or another that Pillow reads')
     for option, kind, _, _, words_of_help in OPTIONS:
         if kind is bool:

@@ -18,6 +18,8 @@ import subprocess
 import sys
 import time
 
+from .language import Parser
+
 PROGRAMS = {'test.hal': ('halrun', '-f'), 'test.sh': ('bash', '-x'), 'test': ()}
 MOST_OVERRUNS = 10
 
@@ -108,7 +110,7 @@ def show_end(count, failed):
 
 def main(arguments, programs):
     """`programs`: the folder of halrun and the others that tests call; they are found there first."""
-    parser = argparse.ArgumentParser(prog='runtests', description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = Parser(prog='runtests', description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('folders', nargs='*', default=['.'], help='looked through for tests; default: where you are')
     parser.add_argument('-n', action='store_true', help='only tell which would be run')
     parser.add_argument('-s', action='store_true', help='stop at the first that fails')

@@ -10,6 +10,8 @@ import shutil
 import sys
 import tempfile
 
+from .language import shown
+
 LETTERS = 'XYZABCUVW'
 VERSION = '1.1'
 TRAJ_NAMES = {
@@ -297,10 +299,10 @@ def main(words):
     options = [word for word in words if word in ('-d', '-f')]
     rest = [word for word in words if word not in ('-d', '-f')]
     if rest in (['-h'], ['--help']):
-        print(USAGE, end='')
+        print(shown(USAGE), end='')
         return 0
     if len(rest) != 1 or rest[0].startswith('-'):
-        print(USAGE, end='', file=sys.stderr)
+        print(shown(USAGE), end='', file=sys.stderr)
         return 2
     ini = pathlib.Path(rest[0]).absolute()
     try:

@@ -10,6 +10,7 @@
 #include "app/configurations.hh"
 #include "base/own_place.hh"
 #include "hal_lang/lang/session.hh"
+#include "language/language.hh"
 
 namespace mw::app {
 namespace {
@@ -43,8 +44,10 @@ constexpr std::array VARIABLES{
 int command_var(const std::vector<std::string> &words) {
     if (words.size() != 1 || words[0] == "-h" || words[0] == "--help") {
         const bool isAsked = words.size() == 1;
-        fmt::print(isAsked ? stdout : stderr, "usage: linuxcnc_var NAME | all\n\nPrints where things of this "
-                                              "installation are. Names:\n");
+        fmt::print(
+            isAsked ? stdout : stderr, "{}",
+            language::shown("usage: linuxcnc_var NAME | all\n\nPrints where things of this installation "
+                            "are. Names:\n"));
         for (const Variable &variable : VARIABLES) {
             fmt::print(isAsked ? stdout : stderr, "  {}\n", variable.name);
         }

@@ -4,8 +4,11 @@
 #include <cstdio>
 #include <string>
 
+#include <fmt/format.h>
+
 #include "base/own_place.hh"
 #include "base/stop_signals.hh"
+#include "language/language.hh"
 #include "modbus/drives/kinds.hh"
 #include "options/command_line.hh"
 
@@ -55,19 +58,19 @@ int main(int argc, char **argv) {
         return 0;
     }
     if (const Result<> parsed = options.parse(words); !parsed) {
-        std::fprintf(stderr, "gs2_vfd: %s\n", parsed.error().str().c_str());
+        mw::language::tell("gs2_vfd", parsed.error());
         return 2;
     }
     if (isVerbose) {
-        std::fprintf(stderr, "%s: %s, %d baud, parity %c, %d data bits, %d stop bits, drive %d\n",
-                     name.c_str(), line.device.c_str(), line.baud, line.parity, line.bits, line.stop,
-                     line.slave);
+        mw::language::tell(fmt::format("{}: {}, {} baud, parity {}, {} data bits, {} stop bits, drive {}",
+                                       name, line.device, line.baud, line.parity, line.bits, line.stop,
+                                       line.slave));
     }
     mw::catch_stop_signals();
     const auto drive = mw::modbus::drives::make_gs2(settings);
     const Result<> done = mw::modbus::drives::run(*drive, name, line, mw::stop_signal);
     if (!done) {
-        std::fprintf(stderr, "gs2_vfd: %s\n", done.error().str().c_str());
+        mw::language::tell("gs2_vfd", done.error());
     }
     return done ? 0 : 1;
 }

@@ -5,11 +5,29 @@
 #include <vector>
 
 #include "config/ini_programs.hh"
+#include "language/language.hh"
+
+namespace {
+
+constexpr const char *USAGE = R"(usage: inivar -var NAME [-sec SECTION] [-num N] [-tildeexpand] [-ini FILE]
+
+Prints a value of an INI file.
+
+  -var NAME     the variable
+  -sec SECTION  its section (default: any)
+  -num N        its N-th value, from 1 (default: 1)
+  -tildeexpand  replace a leading ~ by the home folder
+  -ini FILE     the INI file (default: emc.ini)
+
+exit status: 0 printed, 1 not found or wrong usage, 255 the file cannot be read
+)";
+
+}  // namespace
 
 int main(int argc, char **argv) {
     const std::vector<std::string> words(argv + 1, argv + argc);
     if (!words.empty() && (words[0] == "-h" || words[0] == "--help")) {
-        std::fputs(mw::config::run_inivar({}).err.c_str(), stdout);  // without words it says how it is used
+        std::fputs(mw::language::shown(USAGE).c_str(), stdout);
         return 0;
     }
     const mw::config::ProgramOutput result = mw::config::run_inivar(words);

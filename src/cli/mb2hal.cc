@@ -7,6 +7,7 @@
 #include "base/stop_signals.hh"
 #include "config/ini_file.hh"
 #include "diag/sink.hh"
+#include "language/language.hh"
 #include "modbus/component.hh"
 
 namespace {
@@ -26,14 +27,13 @@ int main(int argc, char **argv) {
     const std::string word = argc == 2 ? argv[1] : "";
     const bool isHelp = word == "-h" || word == "--help";
     if (isHelp || !word.starts_with(CONFIG) || word.size() == CONFIG.size()) {
-        std::fputs(USAGE, isHelp ? stdout : stderr);
+        std::fputs(mw::language::shown(USAGE).c_str(), isHelp ? stdout : stderr);
         return isHelp ? 0 : 2;
     }
-    mw::diag::Sink sink(
-        [](const mw::diag::Diagnostic &found) { std::fprintf(stderr, "%s\n", found.str().c_str()); });
+    mw::diag::Sink sink([](const mw::diag::Diagnostic &found) { mw::language::tell(found.str()); });
     const auto file = mw::config::IniFile::load(word.substr(CONFIG.size()), sink);
     if (!file.has_value()) {
-        std::fprintf(stderr, "mb2hal: %s\n", file.error().str().c_str());
+        mw::language::tell("mb2hal", file.error());
         return 1;
     }
     const mw::modbus::Setup setup = mw::modbus::read_setup(*file, sink);
@@ -43,7 +43,7 @@ int main(int argc, char **argv) {
     mw::catch_stop_signals();
     const auto done = mw::modbus::run(setup, mw::stop_signal);
     if (!done.has_value()) {
-        std::fprintf(stderr, "mb2hal: %s\n", done.error().str().c_str());
+        mw::language::tell("mb2hal", done.error());
     }
     return done.has_value() ? 0 : 1;
 }

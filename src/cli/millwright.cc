@@ -98,7 +98,7 @@ int main(int argc, char **argv) {
         return mw::hal::view::command_hal(rest, mw::stop_signal);
     }
     const std::string instead = mw::hal::instead_of(words[0]);
-    std::fprintf(stderr, "millwright: unknown command '%s'; %s\n", words[0].c_str(),
-                 instead.empty() ? "see millwright --help" : instead.c_str());
+    mw::language::tell("millwright", mw::Error{"unknown command '" + words[0] + "'; " +
+                                               (instead.empty() ? "see millwright --help" : instead)});
     return 2;
 }

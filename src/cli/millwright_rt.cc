@@ -11,6 +11,7 @@
 #include "base/own_place.hh"
 #include "hal/core/hal.hh"
 #include "hal/host/host_server.hh"
+#include "language/language.hh"
 #include "options/command_line.hh"
 
 namespace {
@@ -58,7 +59,7 @@ int main(int argc, char **argv) {
     }
     const auto parsed = line.parse(words);
     if (!parsed) {
-        std::fprintf(stderr, "millwright-rt: %s\n", parsed.error().str().c_str());
+        mw::language::tell("millwright-rt", parsed.error());
         return 2;
     }
     if (arguments.cpu >= 0) {
@@ -68,7 +69,7 @@ int main(int argc, char **argv) {
     if (!server) {
         const std::string text = server.error().str();
         if (arguments.ready_fd < 0) {
-            std::fprintf(stderr, "millwright-rt: %s\n", text.c_str());
+            mw::language::tell("millwright-rt: " + text);
         }
         tell(arguments.ready_fd, text);
         return 1;

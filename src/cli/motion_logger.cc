@@ -11,11 +11,15 @@
 
 #include "base/stop_signals.hh"
 #include "hal/host/host_client.hh"
+#include "language/language.hh"
 #include "motion/logger/stand_in.hh"
 
 namespace {
 
 constexpr const char *NAME = "motion-logger";
+constexpr const char *USAGE =
+    "usage: motion-logger [FILE]\n"
+    "  stands in for motmod and writes what task asks of it; loadusr -W starts it\n";
 constexpr long PERIOD_NS = 1000000;
 
 struct CloseFile {
@@ -47,7 +51,7 @@ class Log {
     void say(const std::string &line) {
         if (!path_.empty() && file_ == nullptr) {
             if (const auto made = make(); !made.has_value()) {
-                fmt::print(stderr, "{}: {}\n", NAME, made.error().str());
+                mw::language::tell(NAME, made.error());
             }
         }
         std::FILE *const out = file_ != nullptr ? file_.get() : stdout;
@@ -124,15 +128,13 @@ int main(int argc, char **argv) {
     const std::string first = argc > 1 ? argv[1] : "";
     if (argc > 2 || first.starts_with("-")) {
         const bool isAsked = first == "--help" || first == "-h";
-        fmt::print(isAsked ? stdout : stderr,
-                   "usage: motion-logger [FILE]\n"
-                   "  stands in for motmod and writes what task asks of it; loadusr -W starts it\n");
+        std::fputs(mw::language::shown(USAGE).c_str(), isAsked ? stdout : stderr);
         return isAsked ? 0 : 2;
     }
     mw::catch_stop_signals();
     const auto ended = run(first);
     if (!ended.has_value()) {
-        fmt::print(stderr, "{}: {}\n", NAME, ended.error().str());
+        mw::language::tell(NAME, ended.error());
     }
     return ended.has_value() ? 0 : 1;
 }

@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "base/own_place.hh"
+#include "language/language.hh"
 
 namespace {
 
@@ -26,7 +27,10 @@ constexpr char USAGE[] = "Usage: rs274 [-t tool.tbl] [-v parameters.var] [-i mac
                          "    -p interp.so: another interpreter, a plug-in\n";
 
 int usage(const char *message, int status) {
-    std::fprintf(status == 0 ? stdout : stderr, "%s%s%s", message, *message != '\0' ? "\n" : "", USAGE);
+    if (*message != '\0') {
+        mw::language::tell(message);
+    }
+    std::fputs(mw::language::shown(USAGE).c_str(), status == 0 ? stdout : stderr);
     return status;
 }
 

@@ -13,6 +13,7 @@
 #include "base/stop_signals.hh"
 #include "base/text.hh"
 #include "hal/core/hal.hh"
+#include "language/language.hh"
 #include "options/letters.hh"
 
 namespace mw::cli {
@@ -31,7 +32,7 @@ inline int run_attached(const char *program,
         result = std::unexpected(instance.error());
     }
     if (!result) {
-        std::fprintf(stderr, "%s: %s\n", program, result.error().str().c_str());
+        language::tell(program, result.error());
     }
     return result ? 0 : 1;
 }
@@ -47,17 +48,18 @@ inline StreamWords read_stream_words(const char *program, const std::vector<std:
                                      const std::function<void(char letter, long number)> &take) {
     auto read = options::read_letters(words, known, options::EndOfLetters::ALL_WORDS);
     if (!read) {
-        std::fprintf(stderr, "%s: %s\n%s", program, read.error().str().c_str(), usage);
+        language::tell(program, read.error());
+        std::fputs(language::shown(usage).c_str(), stderr);
         return {};
     }
     for (const options::Letter &option : read->options) {
         if (option.letter == 'h') {
-            std::fputs(usage, stdout);
+            std::fputs(language::shown(usage).c_str(), stdout);
             return {std::nullopt, 0};
         }
         const auto number = option.value.empty() ? std::int64_t{0} : parse_int(option.value).value_or(-1);
         if (number < 0) {
-            std::fprintf(stderr, "%s: '%s' is not a number of at least 0\n", program, option.value.c_str());
+            language::tell(program, Error{"'" + option.value + "' is not a number of at least 0", {}, {}});
             return {};
         }
         take(option.letter, static_cast<long>(number));

@@ -5,11 +5,14 @@
 #include <cstdlib>
 #include <string>
 
+#include <fmt/format.h>
+
 #include "base/own_place.hh"
 #include "base/stop_signals.hh"
 #include "base/text.hh"
 #include "config/ini_file.hh"
 #include "diag/sink.hh"
+#include "language/language.hh"
 #include "modbus/drives/kinds.hh"
 #include "options/command_line.hh"
 
@@ -114,17 +117,15 @@ int main(int argc, char **argv) {
         return 0;
     }
     if (const auto parsed = options.parse(words); !parsed) {
-        std::fprintf(stderr, "vfdb_vfd: %s\n", parsed.error().str().c_str());
+        mw::language::tell("vfdb_vfd", parsed.error());
         return 2;
     }
-    mw::diag::Sink sink(
-        [](const mw::diag::Diagnostic &found) { std::fprintf(stderr, "%s\n", found.str().c_str()); });
+    mw::diag::Sink sink([](const mw::diag::Diagnostic &found) { mw::language::tell(found.str()); });
     const auto file = mw::config::IniFile::load(ini, sink);
     if (!file.has_value() || !file->hasSection(section)) {
-        std::fprintf(stderr, "vfdb_vfd: %s\n",
-                     file.has_value()
-                         ? (ini + " has no section [" + section + "], where the drive's settings are").c_str()
-                         : file.error().str().c_str());
+        mw::language::tell("vfdb_vfd", file.has_value() ? mw::Error{ini + " has no section [" + section +
+                                                                    "], where the drive's settings are"}
+                                                        : file.error());
         return 1;
     }
     read_section(Section(*file, section, sink), line, settings);
@@ -132,15 +133,15 @@ int main(int argc, char **argv) {
         return 1;
     }
     if (isDebugged || isReported) {
-        std::fprintf(stderr, "%s: %s, %d baud, parity %c, %d data bits, %d stop bits, drive %d\n",
-                     name.c_str(), line.device.c_str(), line.baud, line.parity, line.bits, line.stop,
-                     line.slave);
+        mw::language::tell(fmt::format("{}: {}, {} baud, parity {}, {} data bits, {} stop bits, drive {}",
+                                       name, line.device, line.baud, line.parity, line.bits, line.stop,
+                                       line.slave));
     }
     mw::catch_stop_signals();
     const auto drive = mw::modbus::drives::make_vfdb(settings);
     const auto done = mw::modbus::drives::run(*drive, name, line, mw::stop_signal);
     if (!done) {
-        std::fprintf(stderr, "vfdb_vfd: %s\n", done.error().str().c_str());
+        mw::language::tell("vfdb_vfd", done.error());
     }
     return done ? 0 : 1;
 }

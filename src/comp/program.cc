@@ -67,7 +67,7 @@ class Job {
   private:
     static bool report(const Result<> &done) {
         if (!done) {
-            std::fputs(fmt::format("halcompile: {}\n", done.error().str()).c_str(), stderr);
+            language::tell("halcompile", done.error());
         }
         return done.has_value();
     }
@@ -76,7 +76,7 @@ class Job {
     Result<> put(const std::string &from, const std::string &to, unsigned mode) const {
         auto done = install_file(from, to, mode);
         if (done && (options_.mode == Mode::INSTALL || options_.mode == Mode::INSTALL_DOC)) {
-            std::fputs(fmt::format("halcompile: installed {}\n", to).c_str(), stderr);
+            language::tell(fmt::format("halcompile: installed {}", to));
         }
         return done;
     }
@@ -86,7 +86,7 @@ class Job {
     }
 
     bool run_component() {
-        diag::Sink sink([](const diag::Diagnostic &one) { std::fputs((one.str() + "\n").c_str(), stderr); });
+        diag::Sink sink([](const diag::Diagnostic &one) { language::tell(one.str()); });
         const auto text = read_file(file_);
         if (!text) {
             return report(std::unexpected(text.error()));
@@ -216,9 +216,8 @@ class Job {
             for (const std::string &call : *slow) {
                 list += (list.empty() ? "" : ", ") + call;
             }
-            std::fputs(fmt::format("{}: note: it calls {}, which realtime functions must not\n", file_, list)
-                           .c_str(),
-                       stderr);
+            language::tell(
+                fmt::format("{}: note: it calls {}, which realtime functions must not", file_, list));
         }
         const bool isInstalled = options_.mode == Mode::INSTALL;
         const std::string to = !isInstalled ? beside(product)
@@ -267,7 +266,7 @@ class Job {
 int run(const std::string &program, const std::vector<std::string> &arguments) {
     const auto options = parse_options(arguments);
     if (!options) {
-        std::fputs(fmt::format("halcompile: {}\n", options.error().str()).c_str(), stderr);
+        language::tell("halcompile", options.error());
         return 1;
     }
     const Places places = Places::of_program(program);
@@ -284,7 +283,7 @@ int run(const std::string &program, const std::vector<std::string> &arguments) {
         return 1;
     }
     if (!options->output.empty() && options->files.size() > 1) {
-        std::fputs("halcompile: -o is for one file\n", stderr);
+        language::tell("halcompile: -o is for one file");
         return 1;
     }
     bool isGood = true;

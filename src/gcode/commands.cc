@@ -8,6 +8,7 @@
 #include "base/atomic_file.hh"
 #include "gcode/explain.hh"
 #include "gcode/format.hh"
+#include "language/language.hh"
 #include "options/command_line.hh"
 
 namespace mw::gcode {
@@ -51,7 +52,7 @@ struct ExplainWords {
 };
 
 int wrong_usage(const char *command, const std::string &what) {
-    std::fprintf(stderr, "millwright %s: %s\n", command, what.c_str());
+    language::tell(std::string("millwright ") + command + ": " + what);
     return 2;
 }
 

@@ -10,7 +10,6 @@ namespace mw::language {
 namespace {
 
 constexpr std::string_view HOLE = "{}";
-constexpr int MAX_DEPTH = 5;  ///< of a text within a text
 
 /// A number of a .mo file; nothing beyond its end.
 std::optional<std::size_t> number_at(std::string_view mo, std::size_t at) {
@@ -77,8 +76,10 @@ std::size_t count_words(const std::vector<std::string> &pieces) {
     return words;
 }
 
-bool hasWord(std::string_view text) {
-    return std::count_if(text.begin(), text.end(), [](unsigned char c) { return std::isalpha(c) != 0; }) > 2;
+/// A value of one word is a name or a number: a signal may be called "error".
+bool hasSeveralWords(std::string_view text) {
+    return text.find(' ') != std::string_view::npos &&
+           std::count_if(text.begin(), text.end(), [](unsigned char c) { return std::isalpha(c) != 0; }) > 2;
 }
 
 }  // namespace
@@ -118,10 +119,14 @@ void Catalogue::add(std::string_view key, std::string_view translation) {
 }
 
 std::optional<std::string> Catalogue::find(std::string_view english) const {
-    return find(english, 0);
+    int left = MAX_LOOKUPS;
+    return find(english, Depth{0, &left});
 }
 
-std::optional<std::string> Catalogue::find(std::string_view english, int depth) const {
+std::optional<std::string> Catalogue::find(std::string_view english, Depth depth) const {
+    if (--*depth.left < 0) {
+        return std::nullopt;
+    }
     if (const auto found = whole_.find(std::string(english)); found != whole_.end()) {
         return found->second;
     }
@@ -137,18 +142,18 @@ std::optional<std::string> Catalogue::find(std::string_view english, int depth) 
 /// What would be a sentence behind "joint" is another text, which has no translation. What begins a text is
 /// no place, kind or sentence with its colon: these are parts of their own.
 bool Catalogue::isFitting(const Pattern &pattern, const std::vector<std::string_view> &values,
-                          int depth) const {
+                          Depth depth) const {
     if (pattern.pieces.front().empty() && values.front().find(": ") != std::string_view::npos) {
         return false;
     }
     return !pattern.isName || std::ranges::all_of(values, [&](std::string_view value) {
         return value.find(' ') == std::string_view::npos ||
-               (depth < MAX_DEPTH && composed(value, depth + 1).has_value());
+               (!depth.isDeepest() && composed(value, depth + 1).has_value());
     });
 }
 
 std::string Catalogue::filled(const Pattern &pattern, const std::vector<std::string_view> &values,
-                              int depth) const {
+                              Depth depth) const {
     std::string out;
     std::size_t next = 0;
     const std::string &text = pattern.translation;
@@ -161,15 +166,16 @@ std::string Catalogue::filled(const Pattern &pattern, const std::vector<std::str
         }
         const std::size_t which = isNext ? next++ : static_cast<std::size_t>(text[at + 1] - '0');
         const std::string_view value = which < values.size() ? values[which] : std::string_view{};
-        out += depth < MAX_DEPTH && hasWord(value) ? composed(value, depth).value_or(std::string(value))
-                                                   : std::string(value);
+        out += !depth.isDeepest() && hasSeveralWords(value)
+                   ? composed(value, depth).value_or(std::string(value))
+                   : std::string(value);
         at += isNext ? 1 : 2;
     }
     return out;
 }
 
 /// "MESSAGE (HINT)".
-std::optional<std::string> Catalogue::with_hint(std::string_view english, int depth) const {
+std::optional<std::string> Catalogue::with_hint(std::string_view english, Depth depth) const {
     if (!english.ends_with(')')) {
         return std::nullopt;
     }
@@ -186,9 +192,12 @@ std::optional<std::string> Catalogue::with_hint(std::string_view english, int de
 
 /// A name with an ending that was put behind it (" needs a value"): the key of the ending begins with a blank
 /// or a colon.
-std::optional<std::string> Catalogue::with_ending(std::string_view english, int depth) const {
+std::optional<std::string> Catalogue::with_ending(std::string_view english, Depth depth) const {
     for (std::size_t at = english.find_first_of(" :", 1); at != std::string_view::npos;
          at = english.find_first_of(" :", at + 1)) {
+        if (--*depth.left < 0) {
+            return std::nullopt;
+        }
         const std::string_view ending = english.substr(at);
         if (const auto found = whole_.find(std::string(ending)); found != whole_.end()) {
             return std::string(english.substr(0, at)) + found->second;
@@ -206,7 +215,7 @@ std::optional<std::string> Catalogue::with_ending(std::string_view english, int 
 }
 
 /// "PLACE: MESSAGE", "MESSAGE: MESSAGE", "MESSAGE; MESSAGE".
-std::optional<std::string> Catalogue::in_parts(std::string_view english, int depth) const {
+std::optional<std::string> Catalogue::in_parts(std::string_view english, Depth depth) const {
     for (const std::string_view between : {": ", "; "}) {
         for (std::size_t at = english.find(between); at != std::string_view::npos;
              at = english.find(between, at + 1)) {
@@ -221,8 +230,8 @@ std::optional<std::string> Catalogue::in_parts(std::string_view english, int dep
     return std::nullopt;
 }
 
-std::optional<std::string> Catalogue::composed(std::string_view english, int depth) const {
-    if (auto found = find(english, depth); found.has_value() || depth >= MAX_DEPTH) {
+std::optional<std::string> Catalogue::composed(std::string_view english, Depth depth) const {
+    if (auto found = find(english, depth); found.has_value() || depth.isDeepest()) {
         return found;
     }
     auto found = with_hint(english, depth);
@@ -249,7 +258,8 @@ std::string Catalogue::shown(std::string_view english) const {
             core.starts_with("  called from ") ? find(core.substr(CALLER.size())) : std::nullopt;
         out += caller.has_value() ? std::string(CALLER) + *caller : std::string(core);
     } else {
-        out += composed(core, 0).value_or(std::string(core));
+        int left = MAX_LOOKUPS;
+        out += composed(core, Depth{0, &left}).value_or(std::string(core));
     }
     return out + std::string(english.substr(first + length));
 }

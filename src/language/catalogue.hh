@@ -37,14 +37,25 @@ class Catalogue {
         bool isName = false;  ///< one word of its own, as "joint {}": what is put in is a name, too
         std::string translation;
     };
+    /// How deep a text is in another one, and how many texts may still be looked up for one message: a
+    /// message of unknown words with many colons has too many parts.
+    struct Depth {
+        int level = 0;
+        int *left = nullptr;
+        Depth operator+(int more) const { return {level + more, left}; }
+        bool isDeepest() const { return level >= MAX_DEPTH || *left <= 0; }
+    };
+    static constexpr int MAX_DEPTH = 5;
+    static constexpr int MAX_LOOKUPS = 2000;
     void add(std::string_view key, std::string_view translation);
-    std::optional<std::string> find(std::string_view english, int depth) const;
-    bool isFitting(const Pattern &pattern, const std::vector<std::string_view> &values, int depth) const;
-    std::optional<std::string> composed(std::string_view english, int depth) const;
-    std::optional<std::string> with_hint(std::string_view english, int depth) const;
-    std::optional<std::string> with_ending(std::string_view english, int depth) const;
-    std::optional<std::string> in_parts(std::string_view english, int depth) const;
-    std::string filled(const Pattern &pattern, const std::vector<std::string_view> &values, int depth) const;
+    std::optional<std::string> find(std::string_view english, Depth depth) const;
+    bool isFitting(const Pattern &pattern, const std::vector<std::string_view> &values, Depth depth) const;
+    std::optional<std::string> composed(std::string_view english, Depth depth) const;
+    std::optional<std::string> with_hint(std::string_view english, Depth depth) const;
+    std::optional<std::string> with_ending(std::string_view english, Depth depth) const;
+    std::optional<std::string> in_parts(std::string_view english, Depth depth) const;
+    std::string filled(const Pattern &pattern, const std::vector<std::string_view> &values,
+                       Depth depth) const;
 
     std::unordered_map<std::string, std::string> whole_;
     std::vector<Pattern> patterns_;  ///< those with more letters come first

@@ -111,4 +111,13 @@ std::string shown(std::string_view english) {
     return catalogue().shown(english);
 }
 
+void tell(std::string_view english) {
+    const std::string line = shown(english) + '\n';
+    std::fwrite(line.data(), 1, line.size(), stderr);
+}
+
+void tell(std::string_view program, const Error &error) {
+    tell(std::string(program) + ": " + error.str());
+}
+
 }  // namespace mw::language

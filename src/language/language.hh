@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/result.hh"
 #include "language/catalogue.hh"
 
 namespace mw::language {
@@ -23,5 +24,12 @@ const Catalogue &catalogue();
 /// `english` in the language of this process's environment: call it where a text is shown to a person, never
 /// where a program reads it. Any thread, not realtime.
 std::string shown(std::string_view english);
+
+/// Prints `english` as a line on standard error, in the language of this process's environment. Standard
+/// error is for people; what programs read goes to standard output in English.
+void tell(std::string_view english);
+
+/// The same for "PROGRAM: ERROR".
+void tell(std::string_view program, const Error &error);
 
 }  // namespace mw::language

@@ -14,7 +14,10 @@
 #include <string>
 #include <thread>
 
+#include <fmt/format.h>
+
 #include "hal/api/hal.h"
+#include "language/language.hh"
 
 namespace mw::modbus {
 namespace {
@@ -242,11 +245,10 @@ class LinkWork {
         if (one.debug >= 1 && work.isFailing == isDone) {
             const std::string device =
                 link_.isTcp ? link_.address + ':' + std::to_string(link_.port) : link_.device;
-            std::fprintf(stderr, "%s: transaction %s, slave %d at %s: %s\n", component_.c_str(),
-                         one.name.c_str(), one.slave, device.c_str(),
-                         isDone ? "answers again" : modbus_strerror(errno));
+            language::tell(fmt::format("{}: transaction {}, slave {} at {}: {}", component_, one.name,
+                                       one.slave, device, isDone ? "answers again" : modbus_strerror(errno)));
         } else if (one.debug >= 2 && isDone) {
-            std::fprintf(stderr, "%s: transaction %s: done\n", component_.c_str(), one.name.c_str());
+            language::tell(fmt::format("{}: transaction {}: done", component_, one.name));
         }
         work.isFailing = !isDone;
     }

@@ -20,7 +20,7 @@ constexpr std::size_t HEADER_SIZE = 128;
 constexpr const char *SHM_FOLDER = "/dev/shm/";
 
 std::string why(const std::string &name) {
-    return "shared memory " + (name.empty() ? std::string("(private)") : name) + ": ";
+    return name.empty() ? std::string("private shared memory: ") : "shared memory " + name + ": ";
 }
 
 }  // namespace

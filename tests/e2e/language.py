@@ -87,7 +87,7 @@ def check_machine_read(programs, root, folder):
     ini = root / 'configs/sim/mill_mm.ini'
     for words in ([programs / 'rs274', '-g', program], [programs / 'inivar', '-ini', ini, '-sec', 'TRAJ', '-var', 'COORDINATES'],
                   [programs / 'inivar', '-ini', ini, '-sec', 'TRAJ', '-var', 'NONE'], [programs / 'linuxcnc_var', 'all'],
-                  [programs / 'halrun', '-U'], [programs / 'millwright', 'explain', '--json', 'G1']):
+                  [programs / 'halrun', '-U'], [programs / 'millwright', 'explain', 'G1 X1 F100']):
         english = output(words, PLAIN, folder)
         for env in (GERMAN, SPANISH):
             expect(output(words, env, folder) == english, f'{words[0].name} says the same in every language', english)

@@ -13,6 +13,8 @@
 #include <cstdlib>
 #include <cstring>
 
+#include <fmt/format.h>
+
 #include "base/own_place.hh"
 #include "hal/host/message.hh"
 #include "rtapi/process.hh"
@@ -216,7 +218,7 @@ Result<std::vector<std::string>> HostClient::ask(const std::vector<std::string> 
         errno = EPIPE;
         const auto end = impl_->hal == nullptr ? std::nullopt : death();
         return std::unexpected(end.value_or(
-            Error{"the realtime process of instance '" + impl_->instance + "' is gone", {}, {}}));
+            Error{fmt::format("the realtime process of instance '{}' is gone", impl_->instance), {}, {}}));
     }
     if (answer->empty() || (*answer)[0] != "ok") {
         errno = EINVAL;
@@ -285,8 +287,8 @@ std::optional<Error> HostClient::death() const {
     if (!hasEnded && !how) {
         return std::nullopt;
     }
-    return Error{"the realtime process " + std::to_string(impl_->pid) + " of instance '" + impl_->instance +
-                     "' has ended: " + how.value_or("it was killed, or ended without a word"),
+    return Error{fmt::format("the realtime process {} of instance '{}' has ended: {}", impl_->pid,
+                             impl_->instance, how.value_or("it was killed, or ended without a word")),
                  {},
                  {}};
 }

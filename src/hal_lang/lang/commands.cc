@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "base/text.hh"
+#include "language/language.hh"
 
 namespace mw::hal::lang {
 
@@ -123,6 +124,27 @@ Error unknown_command(const Word &word) {
     return error;
 }
 
+namespace {
+
+/// Whole sentences: a translation has other endings for one and for several.
+std::string word_count_text(const CommandSpec &spec, int given) {
+    const bool isOne = spec.min_words == 1;
+    if (spec.max_words == ANY && isOne) {
+        return fmt::format("{} needs at least 1 argument, {} given", spec.name, given);
+    }
+    if (spec.max_words == ANY) {
+        return fmt::format("{} needs at least {} arguments, {} given", spec.name, spec.min_words, given);
+    }
+    if (spec.max_words != spec.min_words) {
+        return fmt::format("{} needs {} to {} arguments, {} given", spec.name, spec.min_words, spec.max_words,
+                           given);
+    }
+    return isOne ? fmt::format("{} needs 1 argument, {} given", spec.name, given)
+                 : fmt::format("{} needs {} arguments, {} given", spec.name, spec.min_words, given);
+}
+
+}  // namespace
+
 Result<> check_words(const Call &call) {
     const int given = static_cast<int>(call.words.size());
     const CommandSpec &spec = call.spec;
@@ -133,28 +155,20 @@ Result<> check_words(const Call &call) {
     }
     const SourcePlace &place =
         isTooMany ? call.place_of(static_cast<std::size_t>(spec.max_words)) : call.place;
-    std::string wanted = fmt::format("{}", spec.min_words);
-    if (spec.max_words == ANY) {
-        wanted = fmt::format("at least {}", spec.min_words);
-    } else if (spec.max_words != spec.min_words) {
-        wanted = fmt::format("{} to {}", spec.min_words, spec.max_words);
-    }
-    const bool isOne = wanted == "1" || wanted == "at least 1";
-    return fail(fmt::format("{} needs {} argument{}, {} given", spec.name, wanted, isOne ? "" : "s", given),
-                place, fmt::format("{} {}", spec.name, spec.synopsis));
+    return fail(word_count_text(spec, given), place, fmt::format("{} {}", spec.name, spec.synopsis));
 }
 
 std::string help_text(const CommandSpec &spec) {
-    return fmt::format("{} {}\n{}\n", spec.name, spec.synopsis, spec.help);
+    return fmt::format("{} {}\n{}\n", spec.name, spec.synopsis, language::shown(spec.help));
 }
 
 std::string help_overview() {
     std::string text;
     for (const CommandSpec &spec : COMMANDS) {
-        const std::string_view first = spec.help.substr(0, spec.help.find('\n'));
-        text += fmt::format("  {:<10}  {}\n", spec.name, first);
+        const std::string help = language::shown(spec.help);
+        text += fmt::format("  {:<10}  {}\n", spec.name, help.substr(0, help.find('\n')));
     }
-    return text + "'help COMMAND' tells more.\n";
+    return text + language::shown("'help COMMAND' tells more.\n");
 }
 
 Result<> at(Result<> result, const SourcePlace &place, const std::string &hint) {

@@ -44,8 +44,9 @@ const CommandSpec *find_command(std::string_view name);
 Error unknown_command(const Word &word);
 /// Checks the number of words.
 Result<> check_words(const Call &call);
+/// For a person, in the language of the environment.
 std::string help_text(const CommandSpec &spec);
-/// All commands, a line each.
+/// The same of all commands, a line each.
 std::string help_overview();
 
 /// `result` with its place and a hint filled in where it has none.

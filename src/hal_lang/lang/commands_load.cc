@@ -197,7 +197,7 @@ Result<> run_unloadusr(Session &session, const Call &call) {
     }
     if (component->type != CompType::USER) {
         return fail(fmt::format("component '{}' is no program", call.text(0)), call.place_of(0),
-                    "unloadrt unloads realtime modules");
+                    "use unloadrt for a realtime module");
     }
     return at(session.programs().stop(call.text(0)), call.place_of(0));
 }

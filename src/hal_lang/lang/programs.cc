@@ -16,6 +16,7 @@
 #include <fmt/format.h>
 
 #include "hal/core/instead.hh"
+#include "language/language.hh"
 
 extern char **environ;
 
@@ -83,8 +84,8 @@ Result<> SystemProgramHost::wait_until_ready(const ProgramRequest &request, int 
             return {};
         }
         if (waited_ns == PATIENCE_NS) {
-            std::fprintf(stderr, "still waiting for component '%s' of program '%s'\n",
-                         request.component.c_str(), request.argv[0].c_str());
+            language::tell(fmt::format("still waiting for component '{}' of program '{}'", request.component,
+                                       request.argv[0]));
         }
         int status = 0;
         if (waitpid(pid, &status, WNOHANG) == pid) {
@@ -173,13 +174,14 @@ void SystemProgramHost::await_end(long longest_ns) {
 void SystemProgramHost::kill_programs() {
     for (const CompInfo &component : hal_.components()) {
         if (isProgram(component) && kill(component.pid, SIGKILL) == 0) {
-            std::fprintf(stderr, "component '%s' (process %d) has not ended at SIGTERM: killed\n",
-                         component.name.c_str(), component.pid);
+            language::tell(fmt::format("component '{}' (process {}) has not ended at SIGTERM: killed",
+                                       component.name, component.pid));
         }
     }
     for (const int pid : children_) {
         if (!isComponent(pid) && kill(pid, SIGKILL) == 0) {
-            std::fprintf(stderr, "a program of loadusr (process %d) has not ended at SIGTERM: killed\n", pid);
+            language::tell(
+                fmt::format("a program of loadusr (process {}) has not ended at SIGTERM: killed", pid));
         }
     }
 }

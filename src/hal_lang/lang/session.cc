@@ -16,6 +16,7 @@
 #include "base/own_place.hh"
 #include "base/text.hh"
 #include "hal_lang/lang/commands.hh"
+#include "language/language.hh"
 
 namespace mw::hal::lang {
 
@@ -99,11 +100,11 @@ void StandardOutput::note(std::string_view text) {
 void StandardOutput::warning(const Error &warning) {
     Error shown = warning;
     shown.message = "warning: " + shown.message;
-    print(stderr, shown.str(), true);
+    print(stderr, language::shown(shown.str()), true);
 }
 
 void StandardOutput::error(const Error &error) {
-    print(stderr, error.str(), true);
+    print(stderr, language::shown(error.str()), true);
 }
 
 Session::Session(Host &host, ProgramHost &programs, Output &output, SessionOptions options)
@@ -159,9 +160,11 @@ Result<std::string> Session::find_file(const std::string &name) const {
         }
     }
     const bool isInLibrary = name.starts_with(LIBRARY_PREFIX);
-    const std::string where = isInLibrary ? "in " : "in the working folder, ";
-    const std::string looked =
-        fmt::format("looked {}{}", where, tried.empty() ? "no library folder" : joined(tried, ", "));
+    const std::string folders = joined(tried, ", ");
+    const std::string looked = tried.empty() && isInLibrary ? "there is no library folder"
+                               : tried.empty()              ? "looked in the working folder"
+                               : isInLibrary                ? fmt::format("looked in {}", folders)
+                                             : fmt::format("looked in the working folder, {}", folders);
     tried.push_back(isInLibrary ? "" : ".");
     const std::string near = nearest_name(plain, hal_files_in(tried));
     const std::string prefix = isInLibrary ? std::string(LIBRARY_PREFIX) : "";

@@ -32,7 +32,8 @@ class Output {
     virtual void error(const Error &error) = 0;
 };
 
-/// Answers and results to standard output, the rest to standard error.
+/// Answers and results to standard output, the rest to standard error. Programs read the former, which is
+/// English; warnings and errors are in the language of the environment.
 class StandardOutput final : public Output {
   public:
     void data(std::string_view text) override;

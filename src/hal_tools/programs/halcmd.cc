@@ -33,13 +33,13 @@ Without a command, reads commands from standard input.
 )";
 
 int fail_with(const Error &error) {
-    std::fprintf(stderr, "halcmd: %s\n", error.str().c_str());
+    language::tell("halcmd", error);
     return 1;
 }
 
 int show_help(const CommandLine &line) {
     if (line.words.empty()) {
-        fmt::print("{}\ncommands:\n{}", language::shown(USAGE), lang::help_overview());
+        fmt::print("{}\n{}\n{}", language::shown(USAGE), language::shown("Commands:"), lang::help_overview());
         return 0;
     }
     const lang::CommandSpec *spec = lang::find_command(line.words[0]);

@@ -28,7 +28,7 @@ from standard input: HAL commands, or Tcl with -T.
 volatile std::sig_atomic_t stop_requested = 0;
 
 int fail_with(const Error &error) {
-    std::fprintf(stderr, "halrun: %s\n", error.str().c_str());
+    language::tell("halrun", error);
     return 1;
 }
 
@@ -99,7 +99,7 @@ Result<> tear_down(lang::ProgramHost &programs, HostClient &host) {
 
 int end_running(const char *program) {
     const auto fail_with = [program](const Error &error) {
-        std::fprintf(stderr, "%s: %s\n", program, error.str().c_str());
+        language::tell(program, error);
         return 1;
     };
     const std::string instance = default_instance();

@@ -16,7 +16,7 @@ Runs a Tcl script with the HAL commands in the running realtime process, or read
 )";
 
 int fail_with(const Error &error) {
-    std::fprintf(stderr, "haltcl: %s\n", error.str().c_str());
+    language::tell("haltcl", error);
     return 1;
 }
 

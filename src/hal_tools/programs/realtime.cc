@@ -27,7 +27,7 @@ int start() {
     }
     const auto host = HostClient::start(instance, MessagesTo::FILE);
     if (!host) {
-        std::fprintf(stderr, "realtime: %s\n", host.error().str().c_str());
+        language::tell("realtime", host.error());
     }
     return host ? 0 : 1;
 }
@@ -48,7 +48,7 @@ int verify() {
     const Result<> ended = host ? (*host)->shut_down() : Result<>{};
     done = done ? ended : done;
     if (!done) {
-        std::fprintf(stderr, "realtime: %s\n", done.error().str().c_str());
+        language::tell("realtime", done.error());
         return 1;
     }
     std::printf("%s%s\n",

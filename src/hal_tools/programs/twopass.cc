@@ -19,24 +19,33 @@ Runs the files of [HAL]HALFILE in two passes: loadrt lines for one module are me
 )";
 
 int fail_with(const Error &error) {
-    std::fprintf(stderr, "halcmd_twopass: %s\n", error.str().c_str());
+    language::tell("halcmd_twopass", error);
     return 1;
+}
+
+/// The value of [HAL]TWOPASS.
+Result<std::string> two_pass_keywords(const config::IniFile &ini) {
+    const config::IniEntry *entry = ini.find("HAL", "TWOPASS");
+    if (entry == nullptr || entry->value.empty()) {
+        return fail("an INI file can only be used here when it has [HAL]TWOPASS",
+                    ini.place_of_section("HAL"));
+    }
+    return entry->value;
 }
 
 }  // namespace
 
 Result<> run_two_pass_ini(lang::Session &session, const config::IniFile &ini) {
-    const config::IniEntry *keywords = ini.find("HAL", "TWOPASS");
-    if (keywords == nullptr || keywords->value.empty()) {
-        return fail("an INI file can only be used here when it has [HAL]TWOPASS",
-                    ini.place_of_section("HAL"));
+    const Result<std::string> keywords = two_pass_keywords(ini);
+    if (!keywords) {
+        return std::unexpected(keywords.error());
     }
     std::vector<lang::HalFileEntry> files;
     for (const config::IniEntry *entry : ini.find_all("HAL", "HALFILE")) {
         files.push_back({entry->value, entry->place});
     }
     session.options().folders.insert(session.options().folders.begin(), ini.folder());
-    Result<> result = lang::run_two_pass(session, files, keywords->value, lang::TwoPassReport::FILES);
+    Result<> result = lang::run_two_pass(session, files, *keywords, lang::TwoPassReport::FILES);
     for (const config::IniEntry *entry : ini.find_all("HAL", "HALCMD")) {
         result = result ? session.run_text(entry->value, entry->place.str()) : result;
     }
@@ -58,6 +67,9 @@ int halcmd_twopass(const std::vector<std::string> &arguments) {
         return fail_with(loaded.error());
     }
     line->session.ini = ini.lookup();
+    if (const auto keywords = two_pass_keywords(*ini.file()); !keywords) {
+        return fail_with(keywords.error());
+    }
     const auto host = join_or_start();
     if (!host) {
         return fail_with(host.error());

@@ -15,6 +15,7 @@
 
 #include "hal_tools/stream/keys.hh"
 #include "hal_tools/stream/record_text.hh"
+#include "language/language.hh"
 
 namespace mw::hal::stream_tools {
 
@@ -140,7 +141,7 @@ Result<> run_streamer(const StreamerOptions &options, volatile std::sig_atomic_t
             in.eof() ? fail("the line has no end") : parse_record(attachment.types, line);
         if (!record) {
             record.error().place = {options.file.empty() ? "stdin" : options.file, number, 0};
-            std::fprintf(stderr, "halstreamer: %s; line skipped\n", record.error().str().c_str());
+            language::tell(fmt::format("halstreamer: {}; line skipped", record.error().str()));
             continue;
         }
         // Looked at first: a failed write would count as an overrun.

@@ -17,6 +17,7 @@
 #include "hal_tools/view/latency.hh"
 #include "hal_tools/view/netlist.hh"
 #include "hal_tools/view/terminal.hh"
+#include "language/language.hh"
 #include "options/command_line.hh"
 
 namespace mw::hal::view {
@@ -38,7 +39,7 @@ using options::CommandLine, options::Words;
 
 int report(const Result<> &result, const char *program = "millwright hal") {
     if (!result) {
-        std::fprintf(stderr, "%s: %s\n", program, result.error().str().c_str());
+        language::tell(program, result.error());
         return 1;
     }
     return 0;
@@ -239,8 +240,8 @@ Result<> capture(const CaptureCommand &command, volatile std::sig_atomic_t &stop
         return std::unexpected(record.error());
     }
     for (const std::string &name : record->moved) {
-        std::fprintf(stderr, "warning: '%s' was linked or unlinked meanwhile; its values may be old\n",
-                     name.c_str());
+        language::tell(
+            fmt::format("warning: '{}' was linked or unlinked meanwhile; its values may be old", name));
     }
     if (command.outputs.empty()) {
         std::fputs(to_csv(*record).c_str(), stdout);
@@ -369,12 +370,12 @@ int command_hal(const Words &words, volatile std::sig_atomic_t &stop) {
         return carry_out<LatencyCommand>(rest, [&](LatencyCommand &one) { return latency(one, stop); });
     }
     if (options::wantsHelp(words) || command == "help") {
-        std::fputs(USAGE, stdout);
+        std::fputs(language::shown(USAGE).c_str(), stdout);
         return 0;
     }
     if (!command.empty() && (command[0] == '-' || command.find('.') == std::string::npos)) {
-        std::fprintf(stderr, "millwright hal: unknown command '%s'; see millwright hal --help\n",
-                     command.c_str());
+        language::tell(
+            fmt::format("millwright hal: unknown command '{}'; see millwright hal --help", command));
         return 2;
     }
     return report(live(words, stop));
@@ -460,10 +461,9 @@ int latency_histogram(const Words &words, volatile std::sig_atomic_t &stop) {
     LatencyOptions &options = command.options;
     if (done) {
         if (command.isIgnored || command.without_effect > 0) {
-            std::fputs("latency-histogram: --bbins, --sbins, --logscale, --show, --verbose and --nox have no "
-                       "effect: "
-                       "all bins are counted and shown\n",
-                       stderr);
+            language::tell(
+                "latency-histogram: --bbins, --sbins, --logscale, --show, --verbose and --nox have no "
+                "effect: all bins are counted and shown");
         }
         options.threads = threads_of(command.hasNoBase ? 0 : command.base_ns, command.servo_ns);
         options.threads.back().bin_ns = command.servo_bin_ns;

@@ -14,6 +14,7 @@
 #include "base/duration.hh"
 #include "base/text.hh"
 #include "hal/host/host_client.hh"
+#include "language/language.hh"
 #include "picture/chart.hh"
 
 namespace mw::hal::view {
@@ -245,7 +246,7 @@ Result<> run_latency(const LatencyOptions &options, volatile std::sig_atomic_t &
     if (done) {
         const std::string missing = (*host)->hal().realtime_missing();
         if (!missing.empty()) {
-            std::fprintf(stderr, "no realtime priority: %s\n", missing.c_str());
+            language::tell("no realtime priority: " + missing);
         }
         done = start_latency(**host, options.threads);
     }

@@ -7,6 +7,7 @@
 
 #include "base/text.hh"
 #include "hal_tools/view/commands.hh"
+#include "language/language.hh"
 
 namespace mw::hal::view {
 
@@ -57,14 +58,14 @@ int halmeter(const std::vector<std::string> &words, volatile std::sig_atomic_t &
     bool isWrong = false;
     const std::vector<std::string> wanted = meter_words(words, ::isatty(STDOUT_FILENO) != 0, isWrong);
     if (isWrong) {
-        std::fputs(METER_USAGE, wantsHelp(words) ? stdout : stderr);
+        std::fputs(language::shown(METER_USAGE).c_str(), wantsHelp(words) ? stdout : stderr);
         return wantsHelp(words) ? 0 : 2;
     }
     return command_hal(wanted, stop);
 }
 
 int halscope(const std::vector<std::string> &words) {
-    std::fputs(SCOPE_TEXT, wantsHelp(words) ? stdout : stderr);
+    std::fputs(language::shown(SCOPE_TEXT).c_str(), wantsHelp(words) ? stdout : stderr);
     return wantsHelp(words) ? 0 : 1;
 }
 

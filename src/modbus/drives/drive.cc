@@ -10,6 +10,8 @@
 #include <thread>
 #include <utility>
 
+#include "language/language.hh"
+
 namespace mw::modbus::drives {
 namespace {
 
@@ -60,16 +62,15 @@ bool Registers::note(bool isDone) {
     const int reason = errno;
     if (isDone) {
         if (bad_ > 0) {
-            std::fprintf(stderr, "%s: the drive at %s answers again\n", component_.c_str(),
-                         line_.device.c_str());
+            language::tell(component_ + ": the drive at " + line_.device + " answers again");
         }
         bad_ = 0;
         ++good_;
         return true;
     }
     if (bad_ == 0) {
-        std::fprintf(stderr, "%s: the drive at %s, slave %d: %s\n", component_.c_str(), line_.device.c_str(),
-                     line_.slave, modbus_strerror(reason));
+        language::tell(component_ + ": the drive at " + line_.device + ", slave " +
+                       std::to_string(line_.slave) + ": " + modbus_strerror(reason));
     }
     ++errors_;
     ++bad_;

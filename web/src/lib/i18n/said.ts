@@ -10,8 +10,10 @@ interface Pattern {
 }
 
 const MAX_DEPTH = 5; // of a text within a text
+const MAX_LOOKUPS = 2000; // for one message: one of unknown words with many colons has too many parts
 const countWords = (pieces: string[]): number => pieces.reduce((sum, piece) => sum + (piece.match(/[A-Za-z]{2,}/g) ?? []).length, 0);
-const hasWord = (text: string): boolean => (text.match(/[A-Za-z]/g) ?? []).length > 2;
+// A value of one word is a name or a number: a signal may be called "error".
+const hasSeveralWords = (text: string): boolean => text.includes(' ') && (text.match(/[A-Za-z]/g) ?? []).length > 2;
 
 /** What stands between the pieces in `text`; null where they do not stand in it, in this order, from end to end. */
 function valuesBetween(pieces: string[], text: string): string[] | null {
@@ -37,6 +39,7 @@ function valuesBetween(pieces: string[], text: string): string[] | null {
 export class Texts {
   private readonly whole = new Map<string, string>();
   private readonly patterns: Pattern[] = [];
+  private left = MAX_LOOKUPS;
 
   constructor(entries: Record<string, string>) {
     for (const [key, translation] of Object.entries(entries)) {
@@ -52,6 +55,7 @@ export class Texts {
 
   /** A message as it is shown; what is not known of it stays English. */
   shown(english: string): string {
+    this.left = MAX_LOOKUPS;
     return this.find(english, 0) ?? (english.includes('\n') ? english.split('\n').map((line) => this.line(line)).join('\n') : this.line(english));
   }
 
@@ -60,10 +64,15 @@ export class Texts {
       const caller = text.startsWith('  called from ') ? this.find(text.slice(2), 0) : null;
       return caller === null ? text : `  ${caller}`; // lines of a program stay as they are
     }
+    this.left = MAX_LOOKUPS;
     return this.composed(text, 0) ?? text;
   }
 
   private find(text: string, depth: number): string | null {
+    this.left -= 1;
+    if (this.left < 0) {
+      return null;
+    }
     const whole = this.whole.get(text);
     if (whole !== undefined) {
       return whole;
@@ -88,13 +97,16 @@ export class Texts {
     let next = 0;
     return pattern.translation.replace(/\{(\d?)\}/g, (_place, which: string) => {
       const value = values[which === '' ? next++ : Number(which)] ?? '';
-      return depth < MAX_DEPTH && hasWord(value) ? (this.composed(value, depth) ?? value) : value;
+      return depth < MAX_DEPTH && hasSeveralWords(value) ? (this.composed(value, depth) ?? value) : value;
     });
   }
 
   private composed(text: string, depth: number): string | null {
     const found = this.find(text, depth);
-    return found !== null || depth >= MAX_DEPTH ? found : (this.withHint(text, depth) ?? this.inParts(text, depth) ?? this.withEnding(text, depth));
+    if (found !== null || depth >= MAX_DEPTH || this.left <= 0) {
+      return found;
+    }
+    return this.withHint(text, depth) ?? this.inParts(text, depth) ?? this.withEnding(text, depth);
   }
 
   /** "MESSAGE (HINT)". */
@@ -128,6 +140,10 @@ export class Texts {
     for (let at = 1; at < text.length; ++at) {
       if (text[at] !== ' ' && text[at] !== ':') {
         continue;
+      }
+      this.left -= 1;
+      if (this.left < 0) {
+        return null;
       }
       const ending = text.slice(at), whole = this.whole.get(ending);
       if (whole !== undefined) {
