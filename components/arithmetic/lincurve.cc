@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// lincurve: `out` follows `in` along straight lines between points, up to 16 an instance (`personality=`, 2
+// lincurve: `out` follows `in` along straight lines between points, 2 to 16 an instance (`personality=`, 2
 // by default).
 //
 // The points are parameters x-val-NN and y-val-NN, x increasing. Left of the first and right of the last
 // point out stays at theirs. `out-io` is the same value as an I/O pin. All float.
+#include <algorithm>
+
 #include "hal/sdk/component.hh"
 
 MW_PERSONALITY("points of each instance");
@@ -12,6 +14,7 @@ namespace mw::components {
 using namespace sdk;
 
 struct Lincurve {
+    static constexpr int MIN_POINTS = 2;
     static constexpr int MAX_POINTS = 16;
     int points = 0;
     In<double> in;
@@ -20,7 +23,7 @@ struct Lincurve {
     ParamRw<double> x[MAX_POINTS], y[MAX_POINTS];
 
     void declare(Declare &d) noexcept {
-        points = d.personality_number(personality[d.index()], 2, MAX_POINTS, "points");
+        declare_points(d);
         d.pin(in, "in");
         d.pin(out, "out");
         d.pin(out_io, "out-io");
@@ -38,6 +41,17 @@ struct Lincurve {
     }
 
   private:
+    /// Files for LinuxCNC may have any number: it clamps them without a message.
+    void declare_points(Declare &d) noexcept {
+        const int wanted = personality[d.index()];
+        points = std::clamp(wanted, MIN_POINTS, MAX_POINTS);
+        if (wanted != 0 && wanted != points) {
+            rtapi_print_msg(RTAPI_MSG_WARN,
+                            "%s: personality=%d, but the number of points is %d to %d. It is set to %d.\n",
+                            d.prefix(), wanted, MIN_POINTS, MAX_POINTS, points);
+        }
+    }
+
     double at(double wanted) const noexcept {
         if (!(wanted > x[0])) {
             return y[0];

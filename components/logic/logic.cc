@@ -25,11 +25,9 @@ struct Logic {
     void declare(Declare &d) noexcept {
         const int wanted = personality[d.index()];
         inputs = wanted & 0xff;
-        if (inputs < 1 || inputs > MAX_INPUTS || (wanted & 0x1f00) == 0) {
-            rtapi_print_msg(
-                RTAPI_MSG_ERR,
-                "logic: personality 0x%x of instance %d needs 1 to %d inputs and at least one output",
-                static_cast<unsigned>(wanted), d.index(), MAX_INPUTS);
+        if (inputs < 1 || inputs > MAX_INPUTS) {
+            rtapi_print_msg(RTAPI_MSG_ERR, "logic: personality 0x%x of instance %d needs 1 to %d inputs",
+                            static_cast<unsigned>(wanted), d.index(), MAX_INPUTS);
             d.keep(-EINVAL);
             return;
         }

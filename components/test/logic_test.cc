@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "components/test/bench.hh"
@@ -54,12 +55,30 @@ TEST(Logic, PersonalityChoosesInputsAndOutputs_B6) {
     }
 }
 
-TEST(Logic, RefusesAPersonalityWithoutOutputs) {
-    Bench bench("");
-    bench.run("loadrt logic personality=0x3");
-    EXPECT_NE(bench.output.errors.find("personality 0x3 of instance 0"), std::string::npos)
-        << bench.output.errors;
-    EXPECT_TRUE(bench.hal().pins("logic*").empty());
+TEST(Logic, LoadsInputsWithoutOutputs) {
+    Bench bench("loadrt logic personality=0x3\naddf logic.0 t");
+    EXPECT_EQ(bench.hal().pins("logic.0.in-*").size(), 3U);
+    EXPECT_FALSE(bench.hal().pin("logic.0.and").has_value());
+}
+
+/// `and` of no inputs would be TRUE.
+TEST(Logic, RejectsAPersonalityWithoutInputs) {
+    for (const char *personality : {"0", "0x100", "0x111", "0x1ff", "-1"}) {
+        Bench bench("");
+        bench.run(fmt::format("loadrt logic personality={}", personality));
+        EXPECT_NE(bench.output.errors.find("of instance 0 needs 1 to 16 inputs"), std::string::npos)
+            << bench.output.errors;
+        EXPECT_TRUE(bench.hal().pins("logic*").empty()) << personality;
+    }
+}
+
+TEST(Lincurve, LoadsWithAnyNumberOfPoints) {
+    for (const auto &[personality, points] :
+         {std::pair{0, 2}, {1, 2}, {-1, 2}, {3, 3}, {16, 16}, {100, 16}}) {
+        Bench bench(fmt::format("loadrt lincurve personality={}\naddf lincurve.0 t", personality));
+        EXPECT_EQ(bench.hal().params("lincurve.0.?-val-*").size(), 2U * static_cast<unsigned>(points))
+            << personality;
+    }
 }
 
 TEST(Flipflop, LoadsOnRisingClockAndResetWins_B6) {

@@ -225,13 +225,24 @@ class Parser {
         return {};
     }
 
+    /// A condition or a start value. No 'if' can be in it.
+    Result<std::string> expression(std::string_view stops) {
+        constexpr std::string_view IF = "if";
+        auto text = scanner_.take_expression(stops, IF);
+        if (text && scanner_.isWord(IF)) {
+            return fail(
+                "';' is expected before 'if'", scanner_.place(),
+                "the condition comes before the start value, once: pin in bit NAME if CONDITION = VALUE");
+        }
+        return text;
+    }
+
     /// "if CONDITION", "= VALUE" and the text, each if it is there.
     Result<> item_tail(Item &item) {
-        if (scanner_.isNext("if") &&
-            (scanner_.peek(2) == ' ' || scanner_.peek(2) == '(' || scanner_.peek(2) == '\t')) {
+        if (scanner_.isWord("if")) {
             scanner_.accept("if");
             scanner_.skip_blank();
-            auto condition = scanner_.take_expression("=\";");
+            auto condition = expression("=\";");
             if (!condition) {
                 return std::unexpected(condition.error());
             }
@@ -259,7 +270,7 @@ class Parser {
             return std::string();
         }
         scanner_.skip_blank();
-        auto value = scanner_.take_expression("\";");
+        auto value = expression("\";");
         if (value && value->empty()) {
             return fail("a value is expected after '='", scanner_.place());
         }

@@ -175,7 +175,13 @@ bool Scanner::skip_quoted() {
     return isClosed;
 }
 
-Result<std::string> Scanner::take_expression(std::string_view stops) {
+bool Scanner::isWord(std::string_view word) const {
+    const auto continues_name = [](char c) { return isNameStart(c) || isDigit(c); };
+    const bool isStart = position_ == 0 || !continues_name(text_[position_ - 1]);
+    return isStart && !word.empty() && isNext(word) && !continues_name(peek(word.size()));
+}
+
+Result<std::string> Scanner::take_expression(std::string_view stops, std::string_view stop_word) {
     const SourcePlace start = place();
     const std::size_t from = position_;
     std::string open;
@@ -190,7 +196,7 @@ Result<std::string> Scanner::take_expression(std::string_view stops) {
             advance(2);
             continue;
         }
-        if (open.empty() && (stops.find(c) != std::string_view::npos ||
+        if (open.empty() && (stops.find(c) != std::string_view::npos || isWord(stop_word) ||
                              (isAtString() && stops.find('"') != std::string_view::npos))) {
             return std::string(trim(text_.substr(from, position_ - from)));
         }

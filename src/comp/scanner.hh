@@ -37,10 +37,11 @@ class Scanner {
     bool isAtString() const;
     /// A "double quoted", """triple quoted""" or r"raw" string with its escapes resolved.
     Result<std::string> take_string();
-    /// C text up to one of `stops` outside of brackets, quotes and comments, trimmed. A stop '=' is not a
-    /// part of
-    /// ==, <=, >= or !=; a stop '"' ends before a string.
-    Result<std::string> take_expression(std::string_view stops);
+    /// C text up to one of `stops` or the word `stop_word`, both outside of brackets, quotes and comments,
+    /// trimmed. A stop '=' is not a part of ==, <=, >= or !=; a stop '"' ends before a string.
+    Result<std::string> take_expression(std::string_view stops, std::string_view stop_word = {});
+    /// True when the C identifier that comes next is `word`.
+    bool isWord(std::string_view word) const;
     /// The text between braces that comes next, without them.
     Result<std::string> take_braced();
     /// The rest of the text up to `stop`, taken as it is; nothing when the line ends before.

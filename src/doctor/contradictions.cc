@@ -54,6 +54,7 @@ constexpr std::array JOINT_ORDERS = {
     Order{"MAX_ACCELERATION", "STEPGEN_MAXACCEL", NO_FOLLOWING, diag::Severity::WARNING, true},
 };
 constexpr std::array SPINDLE_ORDERS = {
+    Order{"MIN_VELOCITY", "MAX_VELOCITY", "no speed of the spindle is possible"},
     Order{"MIN_FORWARD_VELOCITY", "MAX_FORWARD_VELOCITY", "no speed of M3 is possible"},
     Order{"MIN_REVERSE_VELOCITY", "MAX_REVERSE_VELOCITY", "no speed of M4 is possible"},
 };

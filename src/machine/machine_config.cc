@@ -16,6 +16,7 @@
 #include "machine/ini_keys.hh"
 #include "machine/io_config.hh"
 #include "machine/offset_axes.hh"
+#include "machine/spindle_config.hh"
 #include "motion/api/parameters.hh"
 #include "motion/api/screw_file.hh"
 
@@ -381,6 +382,7 @@ void read_trajectory(IniReader &ini, MachineConfig &machine) {
         const std::string section = "SPINDLE_" + std::to_string(spindle);
         ini.declare_in(section, "SPINDLE_*", all_ini_keys());
         read_parameters(ini, section, "SPINDLE_*", spindle, machine);
+        read_spindle_limits(ini, spindle, machine);
     }
     machine.task.sequencer.smooth_planner = static_cast<int>(ini.integer(ini_key("TRAJ", "SMOOTH_PLANNER")));
 }

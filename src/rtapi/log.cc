@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "rtapi/log.hh"
 
-#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstring>
@@ -18,17 +17,36 @@ namespace {
 struct Record {
     std::atomic<std::uint64_t> turn{0};
     LogLevel level = LogLevel::NONE;
+    bool is_continued = false;  ///< the next text of level ALL belongs to the same line
     std::array<char, Log::TEXT_SIZE> text{};
 };
 
-void to_stderr(void * /*context*/, LogLevel /*level*/, const char *text) {
-    std::fprintf(stderr, "%s\n", text);
+void to_standard_files(void * /*context*/, LogLevel level, const char *text) {
+    std::FILE *const file = level == LogLevel::ALL ? stdout : stderr;
+    std::fprintf(file, "%s\n", text);
+    std::fflush(file);
 }
 
-void trim_newline(char *text, std::size_t length) noexcept {
+/// True if there was one.
+bool trim_newline(char *text, std::size_t length) noexcept {
+    const std::size_t whole = length;
     while (length > 0 && text[length - 1] == '\n') {
         text[--length] = '\0';
     }
+    return length < whole;
+}
+
+void fill(Record &record, LogLevel level, const char *format, std::va_list args) noexcept {
+    record.level = level;
+    const int length = format_text(record.text.data(), Log::TEXT_SIZE, format, args);
+    const std::size_t size = length < 0 ? 0 : static_cast<std::size_t>(length);
+    if (size >= Log::TEXT_SIZE) {
+        constexpr char MORE[] = "...";
+        std::memcpy(record.text.data() + Log::TEXT_SIZE - sizeof MORE, MORE, sizeof MORE);
+        record.is_continued = false;
+        return;
+    }
+    record.is_continued = !trim_newline(record.text.data(), size) && level == LogLevel::ALL;
 }
 
 }  // namespace
@@ -45,13 +63,17 @@ struct Log::Impl {
     std::uint64_t lost_told = 0;  // under `printing`
     std::atomic<bool> isStopping{false};
     std::thread drainer;
+    std::array<char, 4 * TEXT_SIZE> line{};  // begin of a line that is continued, under `printing`
+    std::size_t line_size = 0;               // under `printing`
 
     void drain_locked();
+    void print_locked(const Record &record);
+    void end_line_locked();
 };
 
 Log::Log(Mode mode, Sink sink, void *context) : impl_(std::make_unique<Impl>()) {
     impl_->mode = mode;
-    impl_->sink = sink != nullptr ? sink : &to_stderr;
+    impl_->sink = sink != nullptr ? sink : &to_standard_files;
     impl_->context = context;
     for (std::size_t i = 0; i < RECORDS; ++i) {
         impl_->records[i].turn.store(i, std::memory_order_relaxed);
@@ -72,6 +94,7 @@ Log::~Log() {
         impl_->drainer.join();
     }
     drain();
+    impl_->end_line_locked();
 }
 
 void Log::print(LogLevel level, const char *format, ...) noexcept {
@@ -108,13 +131,35 @@ void Log::vprint_always(LogLevel level, const char *format, std::va_list args) n
             ticket = impl_->head.load(std::memory_order_relaxed);
         }
     }
-    record->level = level;
-    const int length = format_text(record->text.data(), TEXT_SIZE, format, args);
-    trim_newline(record->text.data(), std::min(static_cast<std::size_t>(length), TEXT_SIZE - 1));
+    fill(*record, level, format, args);
     // Release: pairs with the drainer's acquire; who sees the turn sees the text.
     record->turn.store(ticket + 1, std::memory_order_release);
     if (impl_->mode == Mode::SYNCHRONOUS) {
         drain();
+    }
+}
+
+void Log::Impl::end_line_locked() {
+    if (line_size > 0) {
+        line[line_size] = '\0';
+        line_size = 0;
+        sink(context, LogLevel::ALL, line.data());
+    }
+}
+
+void Log::Impl::print_locked(const Record &record) {
+    if (record.level != LogLevel::ALL || (line_size == 0 && !record.is_continued)) {
+        sink(context, record.level, record.text.data());
+        return;
+    }
+    const std::size_t size = std::strlen(record.text.data());
+    if (line_size + size >= line.size()) {
+        end_line_locked();
+    }
+    std::memcpy(line.data() + line_size, record.text.data(), size);
+    line_size += size;
+    if (!record.is_continued) {
+        end_line_locked();
     }
 }
 
@@ -124,7 +169,7 @@ void Log::Impl::drain_locked() {
         if (record.turn.load(std::memory_order_acquire) != tail + 1) {
             break;
         }
-        sink(context, record.level, record.text.data());
+        print_locked(record);
         record.turn.store(tail + RECORDS, std::memory_order_release);
         ++tail;
     }
@@ -153,7 +198,7 @@ void Log::swap_sink(Sink &sink, void *&context) {
     std::swap(impl_->sink, sink);
     std::swap(impl_->context, context);
     if (impl_->sink == nullptr) {
-        impl_->sink = &to_stderr;
+        impl_->sink = &to_standard_files;
     }
 }
 

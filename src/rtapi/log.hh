@@ -16,22 +16,25 @@ enum class LogLevel : std::uint8_t { NONE = 0, ERR, WARN, INFO, DBG, ALL };
 
 class Log {
   public:
-    static constexpr std::size_t TEXT_SIZE = 244;
+    static constexpr std::size_t TEXT_SIZE = 1004;
     static constexpr std::size_t RECORDS = 1024;
 
-    /// Where a record goes at last; `text` ends with a zero, without a newline at its end.
+    /// Where a line goes at last; `text` ends with a zero, without a newline at its end.
     using Sink = void (*)(void *context, LogLevel level, const char *text);
 
     /// SYNCHRONOUS prints within the call (virtual clock, tools); DRAINED by a thread of its own (realtime).
     enum class Mode : std::uint8_t { SYNCHRONOUS, DRAINED };
 
-    /// A null sink is standard error.
+    /// A null sink is standard output for texts of level ALL (those of rtapi_print), standard error for the
+    /// others.
     explicit Log(Mode mode = Mode::SYNCHRONOUS, Sink sink = nullptr, void *context = nullptr);
     ~Log();
     Log(const Log &) = delete;
     Log &operator=(const Log &) = delete;
 
-    /// Appends a message if `level` is within the current one; realtime-safe when DRAINED. [any thread]
+    /// Appends a message if `level` is within the current one; realtime-safe when DRAINED. A message is a
+    /// line; of level ALL, a text without a newline is continued by the next one. A longer text than
+    /// TEXT_SIZE ends in "...". [any thread]
     void print(LogLevel level, const char *format, ...) noexcept __attribute__((format(printf, 3, 4)));
     void vprint(LogLevel level, const char *format, std::va_list args) noexcept;
     /// Appends whatever the level is.

@@ -204,6 +204,8 @@ def wrong_servers(bench):
         expect("no message of Millwright's NML" in done.stdout, 'another program at the port is an error', done.stdout, done.stderr)
     done = bench.python(FIRST, str(bench.folder / 'absent.nml'))
     expect('absent.nml' in done.stdout, 'a file that is not there is an error', done.stdout, done.stderr)
+    done = bench.python(BEGIN + 'print(refused(lambda: c.mode(1)), refused(e.poll), sep="|")', str(bench.folder / 'absent.nml'))
+    expect(['absent.nml' in part for part in done.stdout.split('|')] == [True, True], 'for commands and messages, too', done.stdout, done.stderr)
     path = pathlib.Path(bench.channels('mixed.nml', bench.port))
     path.write_text(path.read_text().replace('xemc emcCommand REMOTE', 'xemc emcCommand LOCAL'))
     done = bench.python(FIRST, str(path))

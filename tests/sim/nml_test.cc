@@ -2,6 +2,7 @@
 // A whole machine in virtual time, operated through NML channels.
 #include <unistd.h>
 
+#include <chrono>
 #include <functional>
 #include <map>
 #include <memory>
@@ -100,10 +101,12 @@ class NmlMachine {
         EXPECT_TRUE(number.has_value()) << (number.has_value() ? "" : number.error().str());
         return number.value_or(0);
     }
+    /// The bridge has not run for so long.
+    void pause(std::chrono::nanoseconds time) { now_ += time; }
     void cycle() {
-        const auto before = bridge_->step();
+        const auto before = bridge_->step(now_);
         machine_->cycle();
-        const auto after = bridge_->step();
+        const auto after = bridge_->step(now_);
         EXPECT_TRUE(before.has_value() && after.has_value());
     }
     /// What the status channel says now.
@@ -151,6 +154,7 @@ class NmlMachine {
     std::vector<std::unique_ptr<Buffer>> masters_;
     std::unique_ptr<Server> server_;
     std::unique_ptr<Bridge> bridge_;
+    Bridge::Clock::time_point now_{};
     std::unique_ptr<Channel> commands_, statuses_, errors_;
 };
 
@@ -260,6 +264,26 @@ TEST(NmlMachine, CommandsThatWereSentBeforeTheChannelsWereUpAreDroppedAndToldNot
     EXPECT_EQ(machine.error_line(),
               "2 commands are dropped: they were sent before the machine's channels were up");
     expect_done(machine.done(SetState{State::ON}));
+}
+
+TEST(NmlMachine, CommandsThatWaitedWhileTheirServerDidNotRunAreRejectedButForStops_F9) {
+    using namespace msgs;
+    NmlMachine machine;
+    expect_done(machine.done(SetState{State::ESTOP_RESET}));
+    machine.pause(std::chrono::seconds(1));
+    expect_done(machine.done(SetState{State::ON}));
+    const WriteNumber mode = machine.send(SetMode{Mode::MDI});
+    const WriteNumber stop = machine.send(SetState{State::ESTOP});
+    machine.pause(Bridge::STALL_LIMIT + std::chrono::milliseconds(1));
+    EXPECT_EQ(machine.end_of(stop).state, CommandState::DONE);
+    const auto status = machine.status();
+    EXPECT_EQ(status.body.task.state, State::ESTOP);
+    EXPECT_EQ(status.body.task.mode, Mode::MANUAL);
+    for (const CommandOutcome &one : status.head.recent) {
+        EXPECT_TRUE(one.serial_number != mode || one.state == CommandState::ERROR);
+    }
+    EXPECT_EQ(machine.error_line(), "the NML server did not run while the command waited: send it again");
+    expect_done(machine.done(SetState{State::ESTOP_RESET}));
 }
 
 /// Cycles that a command gets; a longer one is then under way on both machines alike.

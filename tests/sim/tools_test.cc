@@ -219,7 +219,7 @@ class ToolJudge : public ::testing::Test {
             EXPECT_NE(ended, msgs::Progress::DONE) << number;
             ++tried_.refused;
         } else if (isSwapped_) {
-            paper_.from = number == 0 && !paper_.isRandom ? 0 : paper_.tools[number].pocket;
+            paper_.from = number == 0 ? 0 : paper_.tools[number].pocket;
             paper_.load(number);
             ++tried_.changes;
         } else if (ended == msgs::Progress::DONE) {
@@ -237,9 +237,8 @@ class ToolJudge : public ::testing::Test {
             ++tried_.refused;
             return;
         }
-        const bool isNone = number == 0 && !paper_.isRandom;
         paper_.load(number);
-        paper_.from = isNone ? 0 : paper_.from;
+        paper_.from = number == 0 ? 0 : paper_.from;
         ++tried_.named;
     }
     void set_entry() {

@@ -138,6 +138,19 @@ TEST(HalcompileParser, GoesOnAfterErrors_B2) {
     EXPECT_EQ(errors_of("component x;\npin in bit a if (personality & 1;" + TAIL).size(), 1U);
 }
 
+TEST(HalcompileParser, RejectsConditionsInTheWrongOrder_B2) {
+    const Texts at_if{"2:18 ';' is expected before 'if'"};
+    EXPECT_EQ(errors_of("component x;\npin in bit a = 1 if personality & 1;" + TAIL), at_if);
+    EXPECT_EQ(errors_of("component x;\nparam rw s32 a=1 if (personality);" + TAIL), at_if);
+    EXPECT_EQ(errors_of("component x;\npin in bit a if 1\nif personality;" + TAIL),
+              (Texts{"3:1 ';' is expected before 'if'"}));
+    EXPECT_EQ(errors_of("component x;\nmodparam int a=1 if 2;" + TAIL), at_if);
+    EXPECT_EQ(errors_of("component x;\npin out float a if personality = 2 \"b\" if c;" + TAIL).size(), 1U);
+    EXPECT_TRUE(
+        errors_of("component x;\npin in s32 a if(personality) = iff;\npin in bit b if\npersonality;" + TAIL)
+            .empty());
+}
+
 TEST(HalcompileChecker, FindsWhatCannotWork_B2) {
     EXPECT_EQ(errors_of("component y;" + TAIL), (Texts{"1:1 component 'y' stands in a file named x"}));
     EXPECT_EQ(errors_of("component x;\npin in bit a;\npin out bit a;" + TAIL),

@@ -144,7 +144,7 @@ int hal_stream_attach(hal_stream_t *stream, int comp, int key, const char *types
     }
     int status = 0;
     if (fifo->magic != STREAM_MAGIC) {
-        status = complain(ENOENT, fmt::format("there is no stream with key {}", key));
+        status = complain(EINVAL, fmt::format("there is no stream with key {}", key));
     } else if (typestring != nullptr) {
         std::uint8_t types[HAL_STREAM_MAX_PINS] = {};
         const int fields = parse_types(typestring, types);

@@ -66,9 +66,13 @@ std::string server_program() {
     ::setsid();
     const int null = ::open("/dev/null", O_RDWR);
     ::dup2(null, STDIN_FILENO);
-    ::dup2(null, STDOUT_FILENO);
     if (messages >= 0) {
         ::dup2(messages, STDERR_FILENO);
+    }
+    // rtapi_print writes to the standard output of the starter. A server that outlives it must not keep a
+    // pipe of it open.
+    if (messages >= 0 || starter < 0) {
+        ::dup2(STDERR_FILENO, STDOUT_FILENO);
     }
     ::fcntl(ready, F_SETFD, 0);
     if (starter >= 0) {

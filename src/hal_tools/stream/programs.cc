@@ -50,7 +50,8 @@ class Attachment {
         }
         const int status = hal_stream_attach(&stream, comp_id_, key + channel, nullptr);
         if (status < 0) {
-            return fail(fmt::format("no stream for channel {}: {}", channel, std::strerror(-status)), {},
+            const std::string why = status == -EINVAL ? "" : fmt::format(": {}", std::strerror(-status));
+            return fail(fmt::format("no stream for channel {}{}", channel, why), {},
                         "load the realtime component first");
         }
         isAttached_ = true;

@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -210,6 +211,35 @@ TEST(MachineConfig, KeysOfEachMultimessageAreKnown_A3) {
     Config unknown(std::string(GOOD) + "[DISPLAY]\nMULTIMESSAGE_ID = VFD\nMULTIMESSAGE_VDF_TEXT = x\n");
     unknown.reader.report_unknown(true);
     EXPECT_TRUE(unknown.sink.hasErrors());
+}
+
+/// Minimum and maximum of M3, then of M4.
+using SpindleRange = std::array<double, 4>;
+SpindleRange range_of(const std::string &spindle) {
+    const Config c(std::string(GOOD) + "[SPINDLE_0]\n" + spindle);
+    EXPECT_FALSE(c.sink.hasErrors());
+    return {c.parameter(motion::Parameter::SPINDLE_MIN_FORWARD, 0),
+            c.parameter(motion::Parameter::SPINDLE_MAX_FORWARD, 0),
+            c.parameter(motion::Parameter::SPINDLE_MIN_REVERSE, 0),
+            c.parameter(motion::Parameter::SPINDLE_MAX_REVERSE, 0)};
+}
+
+TEST(MachineConfig, LimitsOfASpindleHoldInReverseUnlessItHasItsOwn_A3) {
+    constexpr double NONE = -1;
+    EXPECT_EQ(range_of("INCREMENT = 5\n"), (SpindleRange{NONE, NONE, NONE, NONE}));
+    EXPECT_EQ(range_of("MIN_VELOCITY = 100\nMAX_VELOCITY = 1000\n"), (SpindleRange{100, 1000, 100, 1000}));
+    EXPECT_EQ(range_of("MIN_FORWARD_VELOCITY = 100\nMAX_FORWARD_VELOCITY = 1000\n"),
+              (SpindleRange{100, 1000, 100, 1000}));
+    EXPECT_EQ(range_of("MAX_VELOCITY = 1000\nMAX_REVERSE_VELOCITY = 0\n"),
+              (SpindleRange{NONE, 1000, NONE, 0}));
+    EXPECT_EQ(range_of("MAX_REVERSE_VELOCITY = 500\nMIN_VELOCITY = 100\nMIN_REVERSE_VELOCITY = 80\n"),
+              (SpindleRange{100, NONE, 80, 500}));
+    EXPECT_EQ(range_of("MAX_FORWARD_VELOCITY = 900\nMAX_VELOCITY = 1000\nMIN_FORWARD_VELOCITY = 90\n"
+                       "MIN_VELOCITY = 100\n"),
+              (SpindleRange{100, 900, 100, 900}))
+        << "the narrower one";
+    EXPECT_TRUE(Config(std::string(GOOD) + "[SPINDLE_0]\nMAX_FORWARD_VELOCITY = 900\nMAX_VELOCITY = 1000\n")
+                    .says("MAX_VELOCITY and MAX_FORWARD_VELOCITY limit the same direction"));
 }
 
 TEST(MachineConfig, AnOverrideLimitThatLooksLikeAPercentageIsReported_A3) {

@@ -112,13 +112,13 @@ inline constexpr double NO_JERK_LIMIT = 1e9;
     X(AXIS_OFFSET_RATIO, AXIS, "AXIS_*", "OFFSET_AV_RATIO", NONE, 0, 0.9, 0,                                 \
       "part of velocity and acceleration that external offsets have; 0: there are none")                     \
     X(SPINDLE_MAX_FORWARD, SPINDLE, "SPINDLE_*", "MAX_FORWARD_VELOCITY", RPM, 0, UNBOUNDED, UNBOUNDED,       \
-      "highest speed of M3")                                                                                 \
+      "maximum speed of M3")                                                                                 \
     X(SPINDLE_MIN_FORWARD, SPINDLE, "SPINDLE_*", "MIN_FORWARD_VELOCITY", RPM, 0, UNBOUNDED, 0,               \
-      "lowest speed of M3")                                                                                  \
+      "minimum speed of M3")                                                                                 \
     X(SPINDLE_MAX_REVERSE, SPINDLE, "SPINDLE_*", "MAX_REVERSE_VELOCITY", RPM, 0, UNBOUNDED, UNBOUNDED,       \
-      "highest speed of M4")                                                                                 \
+      "maximum speed of M4; 0: it does not turn in reverse; that of M3 where it is not set")                 \
     X(SPINDLE_MIN_REVERSE, SPINDLE, "SPINDLE_*", "MIN_REVERSE_VELOCITY", RPM, 0, UNBOUNDED, 0,               \
-      "lowest speed of M4")                                                                                  \
+      "minimum speed of M4; that of M3 where it is not set")                                                 \
     X(SPINDLE_RAMP, SPINDLE, "SPINDLE_*", "RAMP", NONE, 0, UNBOUNDED, 0,                                     \
       "change of speed [rev/min each second] with which the spindle turns back: rigid tapping tells it so "  \
       "much ahead; 0: learned from what the spindle does")

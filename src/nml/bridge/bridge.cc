@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "mailbox/stops.hh"
 #include "msgs/catalogue.hh"
 #include "msgs/check.hh"
 
@@ -96,7 +97,9 @@ Result<> Bridge::drop_old_commands() {
     }
 }
 
-Result<> Bridge::step() {
+Result<> Bridge::step(Clock::time_point now) {
+    is_late_ = is_late_ || (last_step_.has_value() && now - *last_step_ > STALL_LIMIT);
+    last_step_ = now;
     const auto taken = take_commands();
     follow();
     while (const auto message = client_.next_message()) {
@@ -122,6 +125,7 @@ Result<> Bridge::take_commands() {
             }
             held_ = std::move(*next);
         }
+        is_late_ = is_late_ && held_.has_value();
         if (!held_.has_value() || !post(*held_)) {
             return {};
         }
@@ -178,6 +182,10 @@ bool Bridge::post(const Held &held) {
     const auto allowed = msgs::check(held.command);
     if (!allowed.has_value()) {
         refuse(held.head, allowed.error().str());
+        return true;
+    }
+    if (is_late_ && !mailbox::isStop(held.command)) {
+        refuse(held.head, "the NML server did not run while the command waited: send it again");
         return true;
     }
     const auto serial = client_.post(held.command);

@@ -3,6 +3,7 @@
 // client like any other.
 #pragma once
 
+#include <chrono>
 #include <deque>
 #include <memory>
 #include <optional>
@@ -16,15 +17,20 @@ namespace mw::nml {
 /// One thread.
 class Bridge {
   public:
+    using Clock = std::chrono::steady_clock;
+    /// Less than the time without a status after which a remote client gives up.
+    static constexpr std::chrono::milliseconds STALL_LIMIT{2500};
+
     /// `client` must outlive it. The buffers are there. Commands that wait already are dropped, and that is
     /// told: whoever sent them did not mean the machine of now.
     static Result<std::unique_ptr<Bridge>> open(const Connections &connections, client::Client &client);
 
     /// Hands on what has come since the last step: commands in their order, then the status when it is newer,
     /// then messages for the operator. What is no message, or has values out of range, ends here with its
-    /// reason on emcError and in the status. An error: a channel cannot be used now; the next step tries
-    /// again.
-    Result<> step();
+    /// reason on emcError and in the status. After a pause of more than STALL_LIMIT since the last step, the
+    /// commands that wait are rejected, but for stops: remote clients have reported a failure by then. An
+    /// error: a channel cannot be used now; the next step tries again.
+    Result<> step(Clock::time_point now = Clock::now());
 
   private:
     /// Commands in the `recent` list of the status whose end the mailbox has not reported: 0 elsewhere.
@@ -65,6 +71,8 @@ class Bridge {
     StatusHead head_;
     Posted posted_{};
     bool isHeadNew_ = true;
+    std::optional<Clock::time_point> last_step_;
+    bool is_late_ = false;  ///< commands that waited through a pause may be in the channel
     std::uint64_t published_cycle_ = 0;
     std::optional<Held> held_;
     std::unique_ptr<StatusMessage<msgs::MachineStatus>> status_;

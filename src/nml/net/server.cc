@@ -174,7 +174,9 @@ void Server::serve(Worker &worker) {
             static_cast<void>(worker.socket.send_packet(answer, Deadline(MESSAGE_TIME)));
             break;
         }
-        if (!*received ||
+        // A client that has closed its connection has reported a failure. Its command must not move the
+        // machine later.
+        if (!*received || worker.socket.isHungUp() ||
             !worker.socket.send_packet(session.answer(request, isOver), Deadline(MESSAGE_TIME)).has_value()) {
             break;
         }

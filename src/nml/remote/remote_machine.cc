@@ -105,17 +105,20 @@ Result<> RemoteMachine::open() {
 }
 
 Result<> RemoteMachine::wait_first_status() {
+    // The first one may be the last one of a machine that has ended: it stays in the buffer.
+    constexpr int LIVING = 2;
     const std::int64_t end_ns = now_ns() + STATUS_LIMIT_NS;
-    while (true) {
+    for (int count = 0; true;) {
         const auto found = read_status();
         if (!found.has_value()) {
             return std::unexpected(found.error());
         }
-        if (*found) {
+        count += *found ? 1 : 0;
+        if (count == LIVING) {
             return read_tools();
         }
         if (now_ns() > end_ns) {
-            return fail("it has no status of a machine", {}, "Is the machine running on that computer?");
+            return fail("its machine sends no status", {}, "Is the machine running on that computer?");
         }
         std::this_thread::sleep_for(PERIOD);
     }

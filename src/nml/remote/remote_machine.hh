@@ -26,8 +26,8 @@ namespace mw::nml {
 /// returns the reason.
 class RemoteMachine final : public client::MachineLink {
   public:
-    /// Waits for the first status, at most as long as the time limits of the network. The serial numbers of
-    /// its clients begin after `serial`. An error: which host, what is wrong.
+    /// Waits until the machine sends status, at most as long as the time limits of the network. The serial
+    /// numbers of its clients begin after `serial`. An error: which host, what is wrong.
     static Result<std::shared_ptr<RemoteMachine>> connect(Config config, const std::string &process,
                                                           mailbox::Serial serial);
     ~RemoteMachine() override;

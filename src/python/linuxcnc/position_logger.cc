@@ -73,7 +73,8 @@ class PositionLogger {
     void sample_until_stop(const std::string &instance, const std::string &file, double interval_s) {
         auto viewer = nml::find_machine(instance, file);
         while (isWanted_.load()) {
-            if (!viewer.has_value()) {
+            // A machine that was started again, or a connection that was lost, is found again.
+            if (!viewer.has_value() || !viewer->isMachineAlive()) {
                 viewer = nml::find_machine(instance, file);
             } else if (viewer->read_status().has_value()) {
                 sample(viewer->status());

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
 """import hal, pyhal against a realtime process (requirement B5). usage: hal_test.py HALRUN"""
+import errno
 import os
 import signal
 import subprocess
@@ -225,6 +226,21 @@ class StreamTest(unittest.TestCase):
                     stream.write((count,))
                     count += 1
                 self.assertEqual((count, stream.depth, stream.maxdepth), (held, held, depth))
+
+    def test_a_stream_that_does_not_exist_is_an_invalid_argument(self):
+        for types in ((), ("bf",)):
+            with self.assertRaises(OSError) as error:
+                hal.stream(self.comp, hal.sampler_base + 60, *types)
+            self.assertEqual(error.exception.errno, errno.EINVAL)
+
+    def test_rows_are_tuples_or_lists(self):
+        stream = hal.stream(self.comp, hal.sampler_base + 61, 5, "bs")
+        for row in ((1, 2), [1, 2]):
+            stream.write(row)
+            self.assertEqual(stream.read(), (True, 2))
+        for row in (None, 5, iter((1, 2))):
+            with self.assertRaises(TypeError):
+                stream.write(row)
 
     def test_wrong_types_are_refused(self):
         with self.assertRaises(OSError):

@@ -279,10 +279,44 @@ TEST(Log, LevelsAndLongLines) {
     log.print(LogLevel::INFO, "not at this level");
     log.set_level(LogLevel::INFO);
     log.print(LogLevel::INFO, "line\n");
-    log.print(LogLevel::ERR, "%s", std::string(1000, 'x').c_str());
-    ASSERT_EQ(lines.size(), 2U);
+    const std::string longest(Log::TEXT_SIZE - 1, 'x');
+    log.print(LogLevel::ERR, "%s", longest.c_str());
+    log.print(LogLevel::ERR, "%sy", longest.c_str());
+    ASSERT_EQ(lines.size(), 3U);
     EXPECT_EQ(lines[0], "line");
-    EXPECT_EQ(lines[1].size(), Log::TEXT_SIZE - 1);
+    EXPECT_EQ(lines[1], longest);
+    EXPECT_EQ(lines[2], longest.substr(3) + "...") << "a text that is cut shows it";
+}
+
+TEST(Log, TextsOfLevelAllAreJoinedToLines) {
+    std::vector<std::string> lines;
+    {
+        Log log(
+            Log::Mode::SYNCHRONOUS,
+            [](void *to, LogLevel, const char *text) {
+                static_cast<std::vector<std::string> *>(to)->emplace_back(text);
+            },
+            &lines);
+        log.set_level(LogLevel::ALL);
+        for (const char *text : {"one", " line", "\n", "another\n"}) {
+            log.print(LogLevel::ALL, "%s", text);
+        }
+        log.print(LogLevel::ERR, "a message is a line");
+        log.print(LogLevel::ALL, "half");
+        log.print(LogLevel::ERR, "between");
+        log.print(LogLevel::ALL, " and half\n");
+        for (int i = 0; i < 5; ++i) {
+            log.print(LogLevel::ALL, "%s", std::string(Log::TEXT_SIZE - 2, 'x').c_str());
+        }
+    }
+    const std::vector<std::string> first(lines.begin(), lines.begin() + 5);
+    EXPECT_EQ(first, (std::vector<std::string>{"one line", "another", "a message is a line", "between",
+                                               "half and half"}));
+    std::size_t rest = 0;
+    for (std::size_t i = first.size(); i < lines.size(); ++i) {
+        rest += lines[i].size();
+    }
+    EXPECT_EQ(rest, 5 * (Log::TEXT_SIZE - 2)) << "a line without an end is printed in pieces, and at the end";
 }
 
 }  // namespace

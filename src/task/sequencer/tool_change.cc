@@ -54,10 +54,9 @@ Result<> ToolChange::set_number(const interp::ChangeToolNumber &call, ToolStore 
     if (index < 0) {
         return not_there(call.toolno);
     }
-    // Nobody has taken it out of a pocket; which one the last tool came from stays, until there is none.
-    const bool isNone = call.toolno == 0 && !tools.isRandom();
+    // No changer took the tool out of a pocket, so the pocket of the last tool stays, as in LinuxCNC.
     Result<> loaded = tools.load_spindle(index);
-    io.set_tool_in_spindle(call.toolno, isNone ? 0 : io.outputs.tool_from_pocket);
+    io.set_tool_in_spindle(call.toolno, call.toolno == 0 ? 0 : io.outputs.tool_from_pocket);
     return loaded;
 }
 
@@ -79,7 +78,8 @@ Result<> ToolChange::on_event(io::ToolEvent event, ToolStore &tools, io::Control
     const int toolno = *std::exchange(changing_, std::nullopt);
     selected_.reset();
     const int index = index_of(toolno, tools);
-    const int pocket = index < 0 ? 0 : tool_at(tools, index).pocketno;
+    const bool isTool = index >= 0 && toolno > 0;  // T0 is an empty spindle, also in a random changer
+    const int pocket = isTool ? tool_at(tools, index).pocketno : 0;
     Result<> loaded = index < 0 ? not_there(toolno) : tools.load_spindle(index);
     io.set_tool_in_spindle(toolno, pocket);
     io.clear_prepared();

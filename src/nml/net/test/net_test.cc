@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Buffers through their server, on loopback.
+#include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <signal.h>
 #include <sys/prctl.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -223,6 +226,26 @@ TEST_F(NmlNetTest, RubbishAndHalfMessagesEndTheirConnectionAndHarmNobodyElse_F6)
     }
     ASSERT_TRUE((*command)->clear({5.0}).has_value());
     EXPECT_TRUE((*command)->write(mdi(vocabulary_, "G0 X9"), {5.0}).has_value());
+}
+
+TEST_F(NmlNetTest, ARequestOfAClientThatHasGivenUpIsNotCarriedOut_F9) {
+    start();
+    {
+        const auto socket = connect_to("127.0.0.1", server_->tcp_port(), Transport::TCP, Deadline({5.0}));
+        ASSERT_TRUE(socket.has_value()) << socket.error().str();
+        const int on = 1;  // the bytes leave together with the end of the connection
+        ASSERT_EQ(::setsockopt(socket->fd(), IPPROTO_TCP, TCP_CORK, &on, sizeof on), 0);
+        const std::string request =
+            to_wire({Operation::WRITE, Status::REQUEST, 1, 1, 0, 0, mdi(vocabulary_, "G0 X1")});
+        ASSERT_TRUE(socket->send(request, Deadline({5.0})).has_value());
+    }
+    Received message;
+    EXPECT_FALSE(cmd_->wait(message, {0.5}).value()) << "the machine must not move later";
+    const auto command = client("cmd");
+    ASSERT_TRUE(command.has_value());
+    EXPECT_TRUE((*command)->write(mdi(vocabulary_, "G0 X2"), {5.0}).has_value());
+    EXPECT_TRUE(cmd_->wait(message, {5.0}).value());
+    EXPECT_EQ(message.bytes, mdi(vocabulary_, "G0 X2"));
 }
 
 TEST_F(NmlNetTest, AClientThatIsKilledHarmsNobodyElse_F6) {
