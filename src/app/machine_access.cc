@@ -12,6 +12,8 @@ namespace mw::app {
 namespace {
 
 constexpr std::int64_t STOP_TIMEOUT_NS = 30000000000;
+/// A tap or thread is not held before its end.
+constexpr std::int64_t HOLD_TIMEOUT_NS = 1000000000;
 /// A client that stands still for longer loses the right to operate alone.
 constexpr double LEASE_S = 5.0;
 constexpr std::int64_t RENEW_EVERY_NS = 1000000000;
@@ -132,13 +134,22 @@ Result<> RunningMachine::health() const {
 }
 
 void stop_motion(MachineAccess &machine) {
-    static_cast<void>(machine.client().post(msgs::AbortAll{}));
-    const std::int64_t deadline_ns = machine.now_ns() + STOP_TIMEOUT_NS;
-    machine.cycle();
-    machine.cycle();
-    while (isMoving(machine.client()) && machine.now_ns() < deadline_ns && machine.health()) {
+    const auto wait_for_rest = [&machine](std::int64_t most_ns) {
+        const std::int64_t deadline_ns = machine.now_ns() + most_ns;
         machine.cycle();
+        machine.cycle();
+        while (isMoving(machine.client()) && machine.now_ns() < deadline_ns && machine.health()) {
+            machine.cycle();
+        }
+    };
+    // An abort switches the spindle off at once: the tool would still move through the part.
+    const bool isRunning = machine.client().read_status().has_value() &&
+                           machine.client().status().task.interp_state != msgs::InterpState::IDLE;
+    if (isRunning && machine.client().post(msgs::PauseProgram{}).has_value()) {
+        wait_for_rest(HOLD_TIMEOUT_NS);
     }
+    static_cast<void>(machine.client().post(msgs::AbortAll{}));
+    wait_for_rest(STOP_TIMEOUT_NS);
 }
 
 void switch_off(MachineAccess &machine) {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Probing on a whole machine in virtual time: results, errors, the file of (probeopen) (I1, C7).
+#include <sys/resource.h>
+
 #include <algorithm>
+#include <csignal>
 
 #include "sim/virtual_machine.hh"
 
@@ -13,6 +16,9 @@ class ProbeTest : public VirtualMachineTest {
     /// Runs the program; the probe touches a wall at X = `wall` from below.
     task::Progress probe(const std::string &text, double wall) {
         start(text);
+        return follow(wall);
+    }
+    task::Progress follow(double wall) {
         for (int i = 0; i < 200000; ++i) {
             cycles(1);
             set_pin("motion.probe-input", x() >= wall ? "TRUE" : "FALSE");
@@ -76,10 +82,20 @@ TEST_F(ProbeTest, AFileThatCannotBeWrittenIsToldBeforeTheProbe_I1) {
 }
 
 TEST_F(ProbeTest, AFullDiskStopsTheProgram_I1) {
-    EXPECT_EQ(probe("G21 G90\n(probeopen /dev/full)\nG38.3 X20 F600\nG0 X0\nG38.3 X20 F600\nG0 X-5\nM2\n", 3),
-              task::Progress::FAILED);
+    // A limit of the process is the same to it as the end of the disk.
+    rlimit before{};
+    ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+    const rlimit none{0, before.rlim_max};
+    const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+    const std::string points = in_folder("points.txt");
+    start("G21 G90\n(probeopen " + points + ")\nG38.3 X20 F600\nG0 X0\nG38.3 X20 F600\nG0 X-5\nM2\n");
+    ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &none), 0);
+    const auto progress = follow(3);
+    ::setrlimit(RLIMIT_FSIZE, &before);
+    std::signal(SIGXFSZ, handler);
+    EXPECT_EQ(progress, task::Progress::FAILED);
     const std::string all = messages();
-    EXPECT_NE(all.find("cannot write /dev/full"), std::string::npos) << all;
+    EXPECT_NE(all.find("cannot write " + points), std::string::npos) << all;
 }
 
 TEST_F(ProbeTest, ResultsAreInProgramUnitsAndToolOffsetsCount_I1) {
