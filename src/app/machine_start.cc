@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "app/machine_start.hh"
 
+#include <unistd.h>
+
 #include <cstdio>
 #include <filesystem>
 
@@ -81,6 +83,7 @@ Result<> MachineStart::make() {
     access_.emplace(*machine_);
     tell_messages();
     make_parameter_file();
+    check_places();
     fmt::print("{} is up: instance '{}', {}\n", loaded_.machine.name, instance_, settings_.ini);
     std::fflush(stdout);
     const auto delay_ns = to_ns(loaded_.machine.applications_delay_s);
@@ -108,6 +111,23 @@ void MachineStart::make_parameter_file() {
     }
     if (const auto saved = machine_->task().save_parameters(); !saved.has_value()) {
         sink_.warning(saved.error().str());
+    }
+}
+
+/// What changes while it runs is to be kept: whoever starts it hears now where it cannot be, and not at the
+/// end.
+void MachineStart::check_places() {
+    const machine::MachineConfig &machine = loaded_.machine;
+    for (const std::string &file :
+         {machine.task.parameter_file, machine.tool_table_file, machine.journal_file}) {
+        const std::string folder = std::filesystem::path(file).parent_path().string();
+        if (file.empty() || ::access(folder.empty() ? "." : folder.c_str(), W_OK) == 0) {
+            continue;
+        }
+        const std::string text =
+            fmt::format("changes of {} are not saved: its folder cannot be written", file);
+        sink_.warning(text);
+        machine_->task().post(msgs::MessageKind::OPERATOR_ERROR, text);
     }
 }
 

@@ -34,6 +34,7 @@ class MachineStart {
     Result<> prepare();
     Result<> make();
     void make_parameter_file();
+    void check_places();
     Result<> keep_up();
     Result<> cycle();
     void save_at_end_of_program();
