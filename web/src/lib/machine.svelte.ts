@@ -25,6 +25,8 @@ const STALE_MS = 1000;
 const RETOLD_MS = 2000;
 
 interface Known {
+  /** The program whose changes in the editor of this page are not saved. */
+  unsaved: string | null;
   isConnected: boolean;
   hasConnected: boolean;
   isMachineUp: boolean;
@@ -42,6 +44,7 @@ interface Known {
 }
 
 export const machine = $state<Known>({
+  unsaved: null,
   isConnected: false,
   hasConnected: false,
   isMachineUp: false,

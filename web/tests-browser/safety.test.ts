@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What on the screen could hurt a person or a part: edited programs, keys, gestures, and controls that move (row J2).
+import { readFileSync } from 'node:fs';
+import type { Page } from 'playwright-core';
+import { afterAll, afterEach, beforeAll, describe, expect, it } from 'vitest';
+import { bringUp, byHand, Rig, showFailure, sleep, until, untilText } from './rig';
+
+const PART = 'G21 G90 F600\nG0 X0 Y0\nG1 X3\nG1 Y3\nM2\n';
+const rig = new Rig(byHand);
+let page: Page;
+
+async function tab(id: string): Promise<void> {
+  await page.getByTestId(`tab-${id}`).click();
+}
+async function open(name: string): Promise<void> {
+  await tab('programs');
+  await page.getByTestId(`open-${name}`).click();
+}
+/** The machine does not move within a time in which it would. */
+async function staysStopped(): Promise<void> {
+  const before = [rig.position(0), rig.position(1)];
+  await sleep(400);
+  expect([rig.position(0), rig.position(1)]).toEqual(before);
+  await untilText(page, 'run-state', 'Idle');
+}
+
+beforeAll(async () => {
+  rig.write('part.ngc', PART);
+  rig.write('other.ngc', 'G21\nM2\n');
+  await rig.startServer();
+  await rig.startMachine();
+  page = await rig.page();
+  await bringUp(page);
+});
+
+afterEach(async (context) => showFailure(context, page));
+
+afterAll(async () => {
+  await rig.end();
+});
+
+describe('changes in the editor that are not saved', () => {
+  it('survive another view', async () => {
+    await open('part.ngc');
+    await page.getByTestId('path-done').waitFor();
+    await tab('text');
+    await untilText(page, 'text-room', /G1 X3/);
+    await page.locator('.cm-content').click();
+    await page.keyboard.press('Control+End');
+    await page.keyboard.type('(changed)');
+    await page.getByTestId('text-changed').waitFor();
+    await tab('offsets');
+    await tab('text');
+    await untilText(page, 'text-room', /\(changed\)/);
+    await page.getByTestId('text-changed').waitFor();
+  });
+
+  it('are not run as the file of before', async () => {
+    await page.getByTestId('run').click({ force: true });
+    await untilText(page, 'why', /unsaved changes/);
+    await page.getByTestId('step').click({ force: true });
+    await untilText(page, 'why', /Step.*unsaved changes/s);
+    await staysStopped();
+  });
+
+  it('ask before another program is opened, and before the page is left', async () => {
+    await open('other.ngc');
+    await untilText(page, 'unsaved-dialog', /part\.ngc/);
+    await page.getByTestId('unsaved-dialog').getByText('Close').click();
+    await tab('text');
+    await untilText(page, 'text-room', /\(changed\)/);
+    const asked = new Promise<string>((done) => page.once('dialog', (dialog) => {
+      done(dialog.type());
+      void dialog.dismiss();
+    }));
+    await page.close({ runBeforeUnload: true });
+    expect(await asked).toBe('beforeunload');
+    await open('other.ngc');
+    await page.getByTestId('unsaved-save').click();
+    await until(() => readFileSync(`${rig.programs}/part.ngc`, 'utf8') === `${PART}(changed)`, 'the file');
+    await untilText(page, 'program', 'other.ngc');
+  });
+
+  it('are marked where another client runs the file, and no line of them as running', async () => {
+    rig.write('part.ngc', PART.replace('F600', 'F60'));
+    await open('part.ngc');
+    await tab('text');
+    await untilText(page, 'text-room', /F60\b/);
+    await page.locator('.cm-content').click();
+    await page.keyboard.type('(new)');
+    await page.getByTestId('text-changed').waitFor();
+    const other = await rig.page();
+    await other.getByTestId('run').click();
+    await untilText(page, 'text-runs-saved', /saved program/);
+    await untilText(page, 'line', /Line 3/);
+    expect(await page.locator('.cm-running').count()).toBe(0);
+    await page.getByTestId('stop').click();
+    await untilText(page, 'run-state', 'Idle');
+    await other.context().close();
+    await page.getByTestId('text-discard').click();
+    expect(await page.getByTestId('text-room').innerText()).not.toContain('(new)');
+    await page.getByTestId('text-changed').waitFor({ state: 'detached' });
+  });
+});
+
+describe('a key', () => {
+  it.each(['r', 't'])('%s starts nothing without a confirmation', async (key) => {
+    await tab('path');
+    await page.getByTestId('dro').click();
+    await page.keyboard.press(key);
+    await page.getByTestId('key-start').waitFor();
+    await staysStopped();
+    await page.keyboard.press('Escape');
+    await page.getByTestId('key-start').waitFor({ state: 'detached' });
+    await staysStopped();
+  });
+
+  it('r starts the program when it is confirmed', async () => {
+    await page.keyboard.press('r');
+    await untilText(page, 'key-start', /part\.ngc/);
+    await page.keyboard.press('Enter');
+    await untilText(page, 'run-state', 'Running');
+    await page.keyboard.press('Escape');
+    await untilText(page, 'run-state', 'Idle');
+  });
+});
+
+describe('the note of a tool change', () => {
+  it('names no key that means something else on this screen', async () => {
+    await page.getByTestId('mdi-line').fill('T1 M6');
+    await page.getByTestId('mdi-send').click();
+    await page.getByTestId('tool-change-done').click();
+    await untilText(page, 'tool', 'T1');
+    await tab('messages');
+    await untilText(page, 'messages', /put tool 1 in/);
+    expect(await page.getByTestId('messages').innerText()).not.toMatch(/\bkey\b/);
+  });
+});
