@@ -136,3 +136,30 @@ describe('the note of a tool change', () => {
     expect(await page.getByTestId('messages').innerText()).not.toMatch(/\bkey\b/);
   });
 });
+
+describe('Clear of an offset', () => {
+  it.each([['offset-clear-X', 'G10 L20 P1 X5', /G54 X.*-?\d+\.\d{3}/], ['clear-rotation', 'G10 L2 P1 R12.5', /12\.500°/], ['clear-g92', 'G92 Y1', /Y 0\.000|Y -?\d/]] as const)('%s asks first', async (button, line, shown) => {
+    await page.getByTestId('mdi-line').fill(line);
+    await page.getByTestId('mdi-send').click();
+    await untilText(page, 'run-state', 'Idle');
+    await tab('offsets');
+    const before = await page.getByTestId('offsets').locator('table').first().innerText();
+    await page.getByTestId(button).click();
+    await untilText(page, 'clear-dialog', shown);
+    await page.getByTestId('clear-dialog').getByText('Close').click();
+    await sleep(300);
+    expect(await page.getByTestId('offsets').locator('table').first().innerText()).toBe(before);
+    await page.getByTestId(button).click();
+    await page.getByTestId('clear-confirm').click();
+    await page.getByTestId('clear-dialog').waitFor({ state: 'detached' });
+  });
+
+  it('acts when it is confirmed', async () => {
+    await page.getByTestId('mdi-line').fill('G10 L2 P1 X5');
+    await page.getByTestId('mdi-send').click();
+    await untilText(page, 'g5x-X', '5.000');
+    await page.getByTestId('offset-clear-X').click();
+    await page.getByTestId('clear-confirm').click();
+    await untilText(page, 'g5x-X', '0.000');
+  });
+});

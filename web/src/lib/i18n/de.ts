@@ -310,6 +310,8 @@ export const de: Catalogue = {
   'spindle.faster': 'Schneller',
   'spindle.slower': 'Langsamer',
   'offsets.clear': 'Löschen',
+  'offsets.clear_title': '{what} löschen',
+  'offsets.clear_sure': '{what} wird auf null gesetzt. Der Wert ist {value}; der Bildschirm behält ihn nicht.',
   'offsets.rotation': 'Drehung',
   'offsets.clear_rotation': 'Drehung löschen',
   'offsets.clear_g92': 'G92 löschen',

@@ -310,6 +310,8 @@ export const en = {
   'spindle.faster': 'Faster',
   'spindle.slower': 'Slower',
   'offsets.clear': 'Clear',
+  'offsets.clear_title': 'Clear {what}',
+  'offsets.clear_sure': '{what} is set to zero. Its value is {value}; the screen does not keep it.',
   'offsets.rotation': 'Rotation',
   'offsets.clear_rotation': 'Clear rotation',
   'offsets.clear_g92': 'Clear G92',

@@ -310,6 +310,8 @@ export const es: Catalogue = {
   'spindle.faster': 'Más rápido',
   'spindle.slower': 'Más lento',
   'offsets.clear': 'Borrar',
+  'offsets.clear_title': 'Borrar {what}',
+  'offsets.clear_sure': '{what} se pone a cero. Su valor es {value}; la pantalla no lo guarda.',
   'offsets.rotation': 'Rotación',
   'offsets.clear_rotation': 'Borrar rotación',
   'offsets.clear_g92': 'Borrar G92',
