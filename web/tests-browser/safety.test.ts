@@ -155,11 +155,81 @@ describe('Clear of an offset', () => {
   });
 
   it('acts when it is confirmed', async () => {
+    await tab('offsets');
     await page.getByTestId('mdi-line').fill('G10 L2 P1 X5');
     await page.getByTestId('mdi-send').click();
     await untilText(page, 'g5x-X', '5.000');
     await page.getByTestId('offset-clear-X').click();
     await page.getByTestId('clear-confirm').click();
     await untilText(page, 'g5x-X', '0.000');
+  });
+});
+
+describe('messages', () => {
+  it('keep their time after a reload', async () => {
+    await page.getByTestId('mdi-line').fill('G1 Q9');
+    await page.getByTestId('mdi-send').click();
+    await tab('messages');
+    const row = page.getByTestId('messages').locator('li', { hasText: /Q/ }).first();
+    const shown = async (): Promise<number> => Date.parse((await row.locator('time').getAttribute('datetime')) ?? '');
+    await row.waitFor();
+    const before = await shown();
+    await sleep(2500);
+    await page.reload();
+    await tab('messages');
+    await row.waitFor();
+    expect(Math.abs((await shown()) - before)).toBeLessThan(1000);
+  });
+});
+
+describe('an override on a phone', () => {
+  let phone: Page;
+  async function gesture(from: { x: number; y: number }, by: { x: number; y: number }, steps = 10): Promise<void> {
+    const session = await phone.context().newCDPSession(phone);
+    const send = (type: 'touchStart' | 'touchMove' | 'touchEnd', points: { x: number; y: number }[]): Promise<unknown> => session.send('Input.dispatchTouchEvent', { type, touchPoints: points });
+    await send('touchStart', [from]);
+    for (let i = 1; i <= steps; ++i) {
+      await send('touchMove', [{ x: from.x + (by.x * i) / steps, y: from.y + (by.y * i) / steps }]);
+    }
+    await send('touchEnd', []);
+    await session.detach();
+  }
+  async function middle(id: string): Promise<{ x: number; y: number; width: number }> {
+    await phone.getByTestId(id).scrollIntoViewIfNeeded();
+    const box = await phone.getByTestId(id).boundingBox();
+    const found = { x: (box?.x ?? 0) + (box?.width ?? 0) / 2, y: (box?.y ?? 0) + (box?.height ?? 0) / 2, width: box?.width ?? 0 };
+    expect(await phone.evaluate(([x, y]) => document.elementFromPoint(x ?? 0, y ?? 0)?.closest('.slider') !== null, [found.x, found.y]), `${id} can be touched`).toBe(true);
+    return found;
+  }
+
+  it('is not changed by a swipe that scrolls, nor by a tap on its track', async () => {
+    phone = await rig.page({ viewport: { width: 390, height: 844 }, hasTouch: true });
+    await phone.getByTestId('tab-process').click();
+    await untilText(phone, 'feed-override-value', '100 %');
+    await sleep(300);
+    while ((await phone.getByTestId('notice').count()) > 0) {
+      await phone.getByTestId('notice').first().getByRole('button').click();
+    }
+    const track = await middle('feed-override');
+    for (const x of [track.x - 0.4 * track.width, track.x + 0.4 * track.width]) {
+      await gesture({ x, y: track.y }, { x: 15, y: -200 });
+      await phone.touchscreen.tap(x, (await middle('feed-override')).y);
+    }
+    await gesture(await middle('feed-override-knob'), { x: 20, y: -200 });
+    await sleep(400);
+    await untilText(phone, 'feed-override-value', '100 %');
+    await untilText(page, 'feed-override-value', '100 %');
+  });
+
+  it('changes 20 percent at most by a flick of its knob, and by steps of its buttons', async () => {
+    await gesture(await middle('feed-override-knob'), { x: -120, y: 0 }, 5);
+    await untilText(phone, 'feed-override-value', '80 %');
+    await phone.getByTestId('feed-override-more').click();
+    await untilText(phone, 'feed-override-value', '85 %');
+    await phone.getByTestId('feed-override-less').click();
+    await untilText(phone, 'feed-override-value', '80 %');
+    await phone.getByTestId('feed-override-reset').click();
+    await untilText(phone, 'feed-override-value', '100 %');
+    await phone.context().close();
   });
 });
