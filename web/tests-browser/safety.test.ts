@@ -233,3 +233,42 @@ describe('an override on a phone', () => {
     await phone.context().close();
   });
 });
+
+describe('the layout at 1280 by 800 and 1920 by 1080', () => {
+  it.each([[1280, 800], [1920, 1080]])('keeps the jog pad under the finger at %i by %i', async (width, height) => {
+    await page.setViewportSize({ width, height });
+    rig.write('wait.ngc', 'G21\nG4 P60\nM2\n');
+    await open('wait.ngc');
+    const ids = ['jog-Y-', 'jog-X+', 'jog-Z-', 'increment-continuous', 'jog-speed-knob', 'mdi-send'];
+    const places = async (): Promise<unknown[]> => Promise.all(ids.map((id) => page.getByTestId(id).boundingBox()));
+    await page.getByTestId('run').waitFor();
+    const before = await places();
+    await page.getByTestId('run').click();
+    await untilText(page, 'jog-gate', /program runs/);
+    expect(await places()).toEqual(before);
+    await page.getByTestId('hold').click();
+    await untilText(page, 'jog-gate', /held/);
+    expect(await places()).toEqual(before);
+    await page.getByTestId('stop').click();
+    await untilText(page, 'run-state', 'Idle');
+    expect(await places()).toEqual(before);
+  });
+
+  it.each([[1280, 800], [1920, 1080], [800, 480], [390, 844]])('shows long positions and their buttons in full at %i by %i', async (width, height) => {
+    await page.setViewportSize({ width: 1280, height: 800 });
+    for (const value of ['-249.5', '-1249.5', '-12249.5']) {
+      await page.setViewportSize({ width: 1280, height: 800 });
+      await page.getByTestId('mdi-line').fill(`G10 L20 P1 X${value}`);
+      await page.getByTestId('mdi-send').click();
+      await page.setViewportSize({ width, height });
+      await untilText(page, 'work-X', `${value}00`);
+      const wrong = await page.getByTestId('dro').evaluate((card) => {
+        const inner = card.getBoundingClientRect().right - 7;
+        const out = [...card.querySelectorAll('.axis > *')].filter((one) => one.getBoundingClientRect().right > inner || one.scrollWidth > one.clientWidth + 1);
+        const column = card.parentElement as HTMLElement;
+        return [...out.map((one) => one.outerHTML.slice(0, 80)), ...(column.scrollWidth > column.clientWidth ? ['a scroll bar'] : [])];
+      });
+      expect(wrong, value).toEqual([]);
+    }
+  });
+});
