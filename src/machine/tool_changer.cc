@@ -14,7 +14,7 @@ std::string text_of(ToolHand hand, std::int32_t number) {
     }
     return (number > 0 ? "tool change: put tool " + std::to_string(number) + " in"
                        : std::string("tool change: take the tool out")) +
-           "; confirm with key t or the pin hal_manualtoolchange.change_button";
+           "; confirm on a screen or with the pin hal_manualtoolchange.change_button";
 }
 
 }  // namespace

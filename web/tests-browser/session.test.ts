@@ -134,6 +134,7 @@ describe('offsets', () => {
     await untilText(page, 'all-G57-X', '12.500');
     await untilText(page, 'g5x-X', '0.000');
     await page.getByTestId('offset-clear-Y').click();
+    await page.getByTestId('clear-confirm').click();
     await untilText(page, 'g5x-Y', '0.000');
     await page.getByTestId('system-G54').click();
     await until(async () => (await page.getByTestId('system-G54').getAttribute('aria-pressed')) === 'true', 'G54');

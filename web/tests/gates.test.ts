@@ -37,7 +37,7 @@ function view(one: Situation): gates.View {
     overrides: { feed_enabled: true },
     spindles: [{ override_enabled: true }],
   } as unknown as MachineStatus;
-  return { isConnected: true, isMachineUp: true, role: 'operate', client: 5, status, facts: FACTS };
+  return { isConnected: true, isMachineUp: true, role: 'operate', client: 5, status, facts: FACTS, unsaved: null };
 }
 
 /** Rows and columns of the table "Commands in situations". */
@@ -112,5 +112,25 @@ describe('what every command needs', () => {
     expect(gates.canRun({ ...open, status })?.key).toBe('gate.homed');
     expect(gates.canJog({ ...open, status })).toBeNull();
     expect(gates.canRun({ ...open, status, facts: { ...FACTS, is_homing_forced: false } })).toBeNull();
+  });
+});
+
+describe('changes in the editor that are not saved', () => {
+  const facts = { ...FACTS, program_prefix: '/programs' } as MachineFacts;
+  const withText = (name: string, unsaved: string | null): gates.View => {
+    const one = view(SITUATIONS[name] as Situation);
+    (one.status as MachineStatus).task.program = '/programs/p.ngc';
+    return { ...one, facts, unsaved };
+  };
+  it('are not run: the file has another text', () => {
+    for (const start of [gates.canRun, gates.canStep]) {
+      expect(start(withText('manual', null))).toBeNull();
+      expect(start(withText('manual', 'p.ngc'))?.key).toBe('gate.unsaved');
+      expect(start(withText('manual', 'other.ngc'))).toBeNull();
+    }
+  });
+  it('do not hold a program that already runs', () => {
+    expect(gates.canStep(withText('held', 'p.ngc'))).toBeNull();
+    expect(gates.canResume(withText('held', 'p.ngc'))).toBeNull();
   });
 });

@@ -36,7 +36,7 @@ function makeRig() {
     opened: (hello) => told.push(`opened ${hello.client}`),
     closed: () => told.push('closed'),
     status: (delta, isWhole) => told.push(`status ${JSON.stringify(delta)} ${isWhole}`),
-    message: (message) => told.push(`message ${message.text}`),
+    message: (message, ageMs) => told.push(`message ${message.text}${ageMs > 0 ? ` of ${ageMs} ms ago` : ''}`),
     machine: (isUp, client, reason) => told.push(`machine ${isUp} ${client} ${reason}`),
     roundTrip: (ms) => told.push(`round trip ${ms}`),
   };
@@ -140,5 +140,12 @@ describe('Link', () => {
     pass(250);
     old.tell({ machine: 'up', client: 9 });
     expect(told).toEqual(['closed']);
+  });
+  it('tells how old the messages of before are', () => {
+    const { sockets, told } = makeRig();
+    sockets[0]?.begin();
+    sockets[0]?.tell({ message: { number: 1, kind: 'OPERATOR_ERROR', text: 'old' }, age_ms: 90000 });
+    sockets[0]?.tell({ message: { number: 2, kind: 'OPERATOR_ERROR', text: 'new' } });
+    expect(told).toEqual(['message old of 90000 ms ago', 'message new']);
   });
 });

@@ -16,12 +16,11 @@ std::string random_name() {
     return fmt::format("{:08x}{:08x}", random(), random());
 }
 
-/// For screens that come later.
-void keep(std::deque<std::string> &kept, const std::string &text) {
-    kept.push_back(text);
-    if (kept.size() > Screens::MOST_KEPT) {
-        kept.pop_front();
-    }
+/// The text of a message or note with its age, so that a screen shows when it came, by the clock of that
+/// screen.
+std::string aged(const std::string &text, std::int64_t age_ns) {
+    constexpr std::int64_t NS_PER_MS = 1000000;
+    return text.substr(0, text.size() - 1) + ",\"age_ms\":" + std::to_string(age_ns / NS_PER_MS) + '}';
 }
 
 }  // namespace
@@ -76,8 +75,8 @@ void Screens::opened(SessionId session, const Rights &rights, std::int64_t now_n
     if (const msgs::MachineStatus *now = status()) {
         browser.tell_status(*now);
     }
-    for (const std::string &message : kept_) {
-        browser.tell(message);
+    for (const Kept &message : kept_) {
+        browser.tell(aged(message.text, now_ns - message.at_ns));
     }
 }
 
@@ -103,6 +102,7 @@ void Screens::closed(SessionId session) {
 }
 
 void Screens::tick(std::int64_t now_ns) {
+    now_ns_ = now_ns;
     if (now_ns >= next_look_ns_) {
         next_look_ns_ = now_ns + LOOK_NS;
         look_for_machine();
@@ -198,7 +198,14 @@ void Screens::tell_note(const std::string &note) {
     for (const auto &[session, browser] : browsers_) {
         browser->tell(text);
     }
-    keep(kept_, text);
+    keep(text);
+}
+
+void Screens::keep(const std::string &text) {
+    kept_.push_back({text, now_ns_});
+    if (kept_.size() > MOST_KEPT) {
+        kept_.pop_front();
+    }
 }
 
 void Screens::tell_values(const std::map<std::string, std::string> &values) {
@@ -215,7 +222,7 @@ void Screens::pass_messages() {
         log(message_kind(*message) + ": " + std::string(message->text));
         const std::string text = message_text(*message);
         tell_all(text);
-        keep(kept_, text);
+        keep(text);
     }
 }
 

@@ -75,7 +75,17 @@ class Screens {
     bool hasStatus_ = false;
     std::optional<msgs::ToolTable> tools_;  ///< as read last
     std::map<SessionId, std::unique_ptr<Browser>> browsers_;
-    std::deque<std::string> kept_;  ///< messages
+    /// A message or note, and when it came.
+    struct Kept {
+        std::string text;
+        std::int64_t at_ns = 0;
+    };
+
+    /// Keeps it for screens that connect later.
+    void keep(const std::string &text);
+
+    std::deque<Kept> kept_;
+    std::int64_t now_ns_ = 0;       ///< of the last tick
     std::string questions_ = "[]";  ///< of HAL, JSON
     std::function<void(std::string)> log_;
     Counts counts_;

@@ -20,6 +20,8 @@ export interface View {
   client: number;
   status: MachineStatus | null;
   facts: MachineFacts | null;
+  /** The program whose changes in the editor are not saved. */
+  unsaved: string | null;
 }
 
 type Situation = 'estop' | 'off' | 'idle' | 'running' | 'held' | 'proposed' | 'away' | 'line';
@@ -118,15 +120,22 @@ export const canJog = gate(atPower, isNotHoming, (status) => {
 });
 export const canHome = gate(atPower, isIdle, isNotHoming);
 export const canOpen = gate(isIdle);
-export const canRun = gate(atPower, isIdle, isNotHoming, isHomed, (status) =>
+/** Task would run the file, and the editor shows another text. */
+function isSaved(view: View): Gate {
+  const { status, facts, unsaved } = view;
+  const isOpen = unsaved !== null && status?.task.program === `${facts?.program_prefix}/${unsaved}`;
+  return isOpen ? { key: 'gate.unsaved' } : null;
+}
+const canRunFile = gate(atPower, isIdle, isNotHoming, isHomed, (status) =>
   status.task.program === '' ? { key: 'gate.program' } : null,
 );
+export const canRun = (view: View): Gate => canRunFile(view) ?? isSaved(view);
 export const canResume = gate(atPower, (status) => {
   const now = situation(status);
   const isHeld = now === 'held' || now === 'away' || (now === 'line' && status.task.is_paused);
   return isHeld ? null : now === 'proposed' ? { key: 'gate.proposed' } : { key: 'gate.not_held' };
 });
-export const canStep = gate(atPower, isNotHoming, isHomed, (status) => {
+const canStepFile = gate(atPower, isNotHoming, isHomed, (status) => {
   const now = situation(status);
   if (now === 'idle') {
     return status.task.program === '' ? { key: 'gate.program' } : null;
@@ -135,6 +144,9 @@ export const canStep = gate(atPower, isNotHoming, isHomed, (status) => {
   const canBe = now === 'running' || now === 'held' || (now === 'line' && status.task.is_paused);
   return canBe ? null : closed(BUSY[now]);
 });
+/** A step of a program that already runs is one of the text that was saved. */
+export const canStep = (view: View): Gate =>
+  canStepFile(view) ?? (view.status !== null && situation(view.status) === 'idle' ? isSaved(view) : null);
 export const canRelease = gate(atPower, (status) => {
   const now = situation(status);
   return now === 'held' || now === 'proposed' ? null : { key: 'gate.not_held' };

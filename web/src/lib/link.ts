@@ -47,12 +47,13 @@ export interface LinkEvents {
   opened(hello: Hello): void;
   closed(): void;
   status(delta: Record<string, unknown>, isWhole: boolean): void;
-  message(message: Message): void;
+  /** `ageMs`: it came so long before this connection was told of it. */
+  message(message: Message, ageMs: number): void;
   machine(isUp: boolean, client: number, reason: string): void;
   roundTrip(ms: number): void;
   values(values: Record<string, HalValue>): void;
   questions(questions: Question[]): void;
-  note(text: string): void;
+  note(text: string, ageMs: number): void;
 }
 
 /** The parts of WebSocket that are used. */
@@ -190,7 +191,7 @@ export class Link {
     } else if ('outcome' in told) {
       this.takeOutcome(told['outcome'] as { id: number; progress: Progress; reason?: string });
     } else if ('message' in told) {
-      this.events.message(told['message'] as Message);
+      this.events.message(told['message'] as Message, Number(told['age_ms'] ?? 0));
     } else if ('pong' in told) {
       this.events.roundTrip(this.options.now() - (told['pong'] as number));
     } else if ('hello' in told) {
@@ -200,7 +201,7 @@ export class Link {
     } else if ('questions' in told) {
       this.events.questions(told['questions'] as Question[]);
     } else if ('note' in told) {
-      this.events.note(String(told['note']));
+      this.events.note(String(told['note']), Number(told['age_ms'] ?? 0));
     } else if ('machine' in told) {
       this.events.machine(told['machine'] === 'up', Number(told['client'] ?? 0), String(told['reason'] ?? ''));
     }

@@ -21,10 +21,10 @@ const MOST_NOTICES = 300;
 const SAME_MS = 2000;
 const WAIT_FOR_MESSAGE_MS = 300;
 const STALE_MS = 1000;
-/** A server tells what it keeps right behind its hello. */
-const RETOLD_MS = 2000;
 
 interface Known {
+  /** The program whose changes in the editor of this page are not saved. */
+  unsaved: string | null;
   isConnected: boolean;
   hasConnected: boolean;
   isMachineUp: boolean;
@@ -42,6 +42,7 @@ interface Known {
 }
 
 export const machine = $state<Known>({
+  unsaved: null,
   isConnected: false,
   hasConnected: false,
   isMachineUp: false,
@@ -60,7 +61,6 @@ export const machine = $state<Known>({
 export const notices = $state<{ list: Notice[] }>({ list: [] });
 
 let lastNotice = 0;
-let openedAt = 0;
 let statusAt = 0;
 let lastMessage = 0;
 const onLost: (() => void)[] = [];
@@ -74,13 +74,14 @@ export function view(): View {
   return machine;
 }
 
-function tell(kind: Notice['kind'], text: string): void {
-  const now = new Date();
-  const isKnown = notices.list.some((one) => one.text === text && now.getTime() - one.at.getTime() < SAME_MS);
+/** What came `ageMs` ago. A server tells a screen that connects what came before. */
+export function tell(kind: Notice['kind'], text: string, ageMs = 0): void {
+  const at = new Date(Date.now() - ageMs);
+  const isKnown = notices.list.some((one) => one.text === text && Math.abs(at.getTime() - one.at.getTime()) < SAME_MS);
   if (isKnown || text === '') {
     return;
   }
-  notices.list.unshift({ id: ++lastNotice, kind, text, at: now, isRead: false });
+  notices.list.unshift({ id: ++lastNotice, kind, text, at, isRead: false });
   if (notices.list.length > MOST_NOTICES) {
     notices.list.length = MOST_NOTICES;
   }
@@ -115,7 +116,6 @@ const link = new Link(
   {
     opened(hello) {
       machine.isConnected = true;
-      openedAt = performance.now();
       machine.hasConnected = true;
       machine.client = hello.client;
       machine.role = hello.role;
@@ -150,10 +150,10 @@ const link = new Link(
         record(now.time_ns * 1e-9, now.trajectory.current_velocity, now.joints.slice(0, now.trajectory.num_joints).map((one) => one.ferror));
       }
     },
-    message(message) {
+    message(message, ageMs) {
       if (message.number > lastMessage) {
         lastMessage = message.number;
-        tell(message.kind, message.text);
+        tell(message.kind, message.text, ageMs);
       }
     },
     machine(isUp, client, reason) {
@@ -169,11 +169,8 @@ const link = new Link(
     questions(asked) {
       questions.list = asked;
     },
-    note(text) {
-      if (performance.now() - openedAt < RETOLD_MS && notices.list.some((one) => one.kind === 'OPERATOR_TEXT' && one.text === text)) {
-        return; // told again to a screen that has joined again
-      }
-      tell('OPERATOR_TEXT', text);
+    note(text, ageMs) {
+      tell('OPERATOR_TEXT', text, ageMs);
     },
     values(values) {
       Object.assign(halValues, values);

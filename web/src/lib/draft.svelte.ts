@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Changes of the editor that are not saved. They belong to the page, so that another view of it does not lose them.
+import { openProgram } from './actions';
+import { uploadProgram } from './files';
+import { machine } from './machine.svelte';
+import { openName, reloadPath } from './program.svelte';
+
+export interface Draft {
+  /** The program in the folder of programs. */
+  name: string;
+  text: string;
+}
+
+export const draft = $state<{ now: Draft | null }>({ now: null });
+
+/** The editor has `text` for the program, whose file has `saved`. */
+export function keepDraft(name: string, text: string, saved: string): void {
+  if (text !== saved) {
+    draft.now = { name, text };
+  } else if (draft.now?.name === name) {
+    draft.now = null;
+  }
+  machine.unsaved = draft.now?.name ?? null;
+}
+
+export function discardDraft(): void {
+  draft.now = null;
+  machine.unsaved = null;
+}
+
+/** The unsaved text of this program, null where there is none. */
+export function draftOf(name: string): string | null {
+  return draft.now?.name === name ? draft.now.text : null;
+}
+
+/** Writes the draft to its file; an error of the server is thrown. Task runs what it has opened: the draft of the open program is
+ * saved when task has opened the new text. */
+export async function saveDraft(): Promise<void> {
+  const written = draft.now;
+  if (written === null) {
+    return;
+  }
+  await uploadProgram(written.name, new Blob([written.text]), () => undefined);
+  if (written.name === openName()) {
+    const outcome = await openProgram(`${machine.facts?.program_prefix}/${written.name}`);
+    if (outcome.progress !== 'DONE') {
+      return;
+    }
+  }
+  forgetWritten(written);
+  reloadPath();
+}
+
+/** What was typed while the text was written is a draft of its own. */
+function forgetWritten(written: Draft): void {
+  if (draft.now?.name === written.name && draft.now.text === written.text) {
+    discardDraft();
+  }
+}
+
+/** Closing or reloading the page with unsaved changes asks first. */
+export function askBeforeLeaving(target: Window): () => void {
+  const ask = (event: BeforeUnloadEvent): void => {
+    if (draft.now !== null) {
+      event.preventDefault();
+    }
+  };
+  target.addEventListener('beforeunload', ask);
+  return () => target.removeEventListener('beforeunload', ask);
+}

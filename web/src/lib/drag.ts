@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// A drag of a knob along its track. A swipe that scrolls the page is no drag, and a flick changes little.
+
+/** Less than this is a touch. [px] */
+const SLOP_PX = 8;
+/** A drag that lasts so long is deliberate. */
+export const DELIBERATE_MS = 500;
+
+export interface Scale {
+  min: number;
+  max: number;
+  step: number;
+  /** What a drag changes before it is deliberate, up or down. */
+  free: number;
+  /** Of the track, as far as the knob travels. [px] */
+  width: number;
+}
+
+export function onScale(value: number, scale: { min: number; max: number; step: number }): number {
+  const stepped = scale.min + Math.round((value - scale.min) / scale.step) * scale.step;
+  return Math.min(Math.max(stepped, scale.min), scale.max);
+}
+
+export class Drag {
+  private begunMs: number | null = null;
+  private isScroll = false;
+  private readonly x: number;
+  private readonly y: number;
+
+  constructor(
+    at: { x: number; y: number },
+    private readonly value: number,
+    private readonly scale: Scale,
+  ) {
+    this.x = at.x;
+    this.y = at.y;
+  }
+
+  /** The value that the pointer is at; null where this is no drag. */
+  move(at: { x: number; y: number }, nowMs: number): number | null {
+    const [dx, dy] = [at.x - this.x, at.y - this.y];
+    if (this.begunMs === null) {
+      this.isScroll ||= Math.abs(dy) >= SLOP_PX && Math.abs(dx) <= 2 * Math.abs(dy);
+      if (this.isScroll || Math.abs(dx) < SLOP_PX) {
+        return null;
+      }
+      this.begunMs = nowMs;
+    }
+    const { min, max, free, width } = this.scale;
+    const change = ((dx - Math.sign(dx) * Math.min(Math.abs(dx), SLOP_PX)) / Math.max(width, 1)) * (max - min);
+    const isDeliberate = nowMs - this.begunMs >= DELIBERATE_MS;
+    const allowed = isDeliberate ? change : Math.min(Math.max(change, -free), free);
+    return onScale(this.value + allowed, this.scale);
+  }
+}
