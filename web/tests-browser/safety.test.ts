@@ -138,11 +138,15 @@ describe('the note of a tool change', () => {
 });
 
 describe('Clear of an offset', () => {
-  it.each([['offset-clear-X', 'G10 L20 P1 X5', /G54 X.*-?\d+\.\d{3}/], ['clear-rotation', 'G10 L2 P1 R12.5', /12\.500°/], ['clear-g92', 'G92 Y1', /Y 0\.000|Y -?\d/]] as const)('%s asks first', async (button, line, shown) => {
+  it.each([
+    ['offset-clear-X', 'G10 L20 P1 X5', /X\t(?!0\.000)/, /G54 X.*-?\d+\.\d{3}/],
+    ['clear-rotation', 'G10 L2 P1 R12.5', /12\.500/, /12\.500°/],
+    ['clear-g92', 'G92 Y1', /Y\t-?\d+\.\d+\t(?!0\.000)/, /Y 0\.000|Y -?\d/],
+  ] as const)('%s asks first', async (button, line, there, shown) => {
+    await tab('offsets');
     await page.getByTestId('mdi-line').fill(line);
     await page.getByTestId('mdi-send').click();
-    await untilText(page, 'run-state', 'Idle');
-    await tab('offsets');
+    await until(async () => there.test(await page.getByTestId('offsets').innerText()), `the offset of ${line}`);
     const before = await page.getByTestId('offsets').locator('table').first().innerText();
     await page.getByTestId(button).click();
     await untilText(page, 'clear-dialog', shown);
