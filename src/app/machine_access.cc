@@ -29,6 +29,15 @@ bool isMoving(client::Client &client) {
            !client.status().trajectory.isInPosition;
 }
 
+void wait_for_rest(MachineAccess &machine, std::int64_t most_ns) {
+    const std::int64_t deadline_ns = machine.now_ns() + most_ns;
+    machine.cycle();
+    machine.cycle();
+    while (isMoving(machine.client()) && machine.now_ns() < deadline_ns && machine.health()) {
+        machine.cycle();
+    }
+}
+
 }  // namespace
 
 Result<std::unique_ptr<RunningMachine>> RunningMachine::find(const std::string &instance,
@@ -134,25 +143,17 @@ Result<> RunningMachine::health() const {
 }
 
 void stop_motion(MachineAccess &machine) {
-    const auto wait_for_rest = [&machine](std::int64_t most_ns) {
-        const std::int64_t deadline_ns = machine.now_ns() + most_ns;
-        machine.cycle();
-        machine.cycle();
-        while (isMoving(machine.client()) && machine.now_ns() < deadline_ns && machine.health()) {
-            machine.cycle();
-        }
-    };
+    static_cast<void>(machine.client().post(msgs::AbortAll{}));
+    wait_for_rest(machine, STOP_TIMEOUT_NS);
+}
+
+void switch_off(MachineAccess &machine) {
     // An abort switches the spindle off at once: the tool would still move through the part.
     const bool isRunning = machine.client().read_status().has_value() &&
                            machine.client().status().task.interp_state != msgs::InterpState::IDLE;
     if (isRunning && machine.client().post(msgs::PauseProgram{}).has_value()) {
-        wait_for_rest(HOLD_TIMEOUT_NS);
+        wait_for_rest(machine, HOLD_TIMEOUT_NS);
     }
-    static_cast<void>(machine.client().post(msgs::AbortAll{}));
-    wait_for_rest(STOP_TIMEOUT_NS);
-}
-
-void switch_off(MachineAccess &machine) {
     stop_motion(machine);
     static_cast<void>(machine.client().post(msgs::SetState{msgs::State::ESTOP}));
     for (int i = 0; i < 3; ++i) {

@@ -73,7 +73,8 @@ class RunningMachine final : public MachineAccess {
 
 /// Aborts whatever runs and waits until the machine stands.
 void stop_motion(MachineAccess &machine);
-/// As stop_motion(), then opens the e-stop chain: spindles, coolant and amplifiers are off.
+/// Holds the program so that the axes stop with the spindle on, then as stop_motion(), then opens the e-stop
+/// chain: spindles, coolant and amplifiers are off.
 void switch_off(MachineAccess &machine);
 
 }  // namespace mw::app

@@ -114,8 +114,7 @@ void MachineStart::make_parameter_file() {
     }
 }
 
-/// What changes while it runs is to be kept: whoever starts it hears now where it cannot be, and not at the
-/// end.
+/// Reports files that cannot be saved: at the start, before there is anything to lose.
 void MachineStart::check_places() {
     const machine::MachineConfig &machine = loaded_.machine;
     for (const std::string &file :

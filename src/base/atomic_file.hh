@@ -24,7 +24,7 @@ Result<> write_file_with_backup(const std::string &path, std::string_view conten
 std::string backup_of(const std::string &path);
 
 /// A regular file for reading, or for `flags` of open(2); the caller closes the descriptor. A pipe, a device
-/// or a folder is an error at once: whoever reads or writes those may wait for ever.
+/// or a folder is an error at once: reading or writing those may never end.
 Result<int> open_regular_file(const std::string &path, int flags = 0);
 
 /// The whole regular file as text; the error names the file and the system's reason. A file of more than
