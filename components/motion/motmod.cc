@@ -317,7 +317,10 @@ int start_planner() {
 int watch_task() {
     static_assert(sizeof(module.channels->isTaskDead) == sizeof(rtapi_u32));
     auto *is_gone = reinterpret_cast<rtapi_u32 *>(&module.channels->isTaskDead);
-    return mw_ext_watch_controller(is_gone, &module.is_safe, module.component);
+    const int status = mw_ext_watch_controller(is_gone, &module.is_safe, module.component);
+    static_assert(sizeof(module.channels->host_looks) == sizeof(rtapi_u32));
+    auto *looks = reinterpret_cast<rtapi_u32 *>(&module.channels->host_looks);
+    return status == 0 ? mw_ext_count_looks(looks, module.component) : status;
 }
 
 void take_down() {

@@ -151,24 +151,7 @@ Result<> MachineStart::keep_up() {
 Result<> MachineStart::cycle() {
     access_->cycle();
     tell_messages();
-    if (auto health = access_->health(); !health.has_value()) {
-        return health;
-    }
-    save_at_end_of_program();
-    return {};
-}
-
-/// Offsets that a program has set outlive whatever comes later, and are seen by the look ahead of the
-/// next one.
-void MachineStart::save_at_end_of_program() {
-    const std::uint64_t ended = machine_->task().status().task.programs_ended;
-    if (ended == programs_ended_) {
-        return;
-    }
-    programs_ended_ = ended;
-    if (const auto saved = machine_->task().save_parameters(); !saved.has_value()) {
-        sink_.error(saved.error());
-    }
+    return access_->health();
 }
 
 /// On every way out: what turns or moves first, the programs last.

@@ -37,7 +37,6 @@ class MachineStart {
     void check_places();
     Result<> keep_up();
     Result<> cycle();
-    void save_at_end_of_program();
     Result<> take_down();
     void end_programs();
     void run_shutdown_file();
@@ -53,7 +52,6 @@ class MachineStart {
     std::optional<DisplayProgram> display_;
     std::optional<SidePrograms> side_programs_;
     std::optional<int> display_status_;
-    std::uint64_t programs_ended_ = 0;
     bool isLossTold_ = false;  ///< that the output of this program is lost: once
 };
 

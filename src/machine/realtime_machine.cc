@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The machine as two processes: task here, motion and HAL threads in millwright-rt.
 #include <time.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdlib>
 #include <optional>
 
+#include "base/output_relay.hh"
 #include "base/stop_signals.hh"
 #include "hal/host/host_client.hh"
 #include "hal_lang/lang/programs.hh"
+#include "machine/cycle_thread.hh"
+#include "machine/lateness.hh"
 #include "machine/machine.hh"
 #include "machine/task_side.hh"
 
@@ -17,6 +22,8 @@ namespace {
 
 constexpr std::int64_t NS_PER_S = 1000000000;
 constexpr int CONFIGURE_CYCLES = 3000;
+/// At the end of the machine a call of the interpreter is waited for.
+constexpr std::int64_t END_OF_CALL_NS = NS_PER_S / 5;
 
 std::int64_t monotonic_ns() {
     timespec now{};
@@ -39,14 +46,12 @@ class RealtimeMachine final : public Machine {
   public:
     explicit RealtimeMachine(const MachineParts &parts) : parts_(parts), next_ns_(monotonic_ns()) {}
     ~RealtimeMachine() override {
-        side_.reset();
-        if (host_ != nullptr) {
-            // Programs of loadusr live on the HAL of this machine: they end with it.
-            if (programs_) {
-                static_cast<void>(programs_->stop_all());
-            }
-            static_cast<void>(host_->shut_down());
+        if (cycles_.has_value() && !cycles_->end_call(END_OF_CALL_NS)) {
+            end_beside_call();
         }
+        cycles_.reset();
+        side_.reset();
+        shut_down();
     }
 
     Result<> start(const MachineOptions &options) {
@@ -68,6 +73,11 @@ class RealtimeMachine final : public Machine {
         }
         side_ = std::make_unique<TaskSide>(parts_, *host_, std::move(*mailbox), &*programs_);
         const auto started = side_->start(options);
+        if (started.has_value()) {
+            cycles_.emplace(side_->task().long_call(),
+                            CycleThread::Works{[this](std::int64_t now) { side_->step(now); },
+                                               [this](std::int64_t now) { side_->step_apart(now); }});
+        }
         return started.has_value() ? side_->finish_start(*this, CONFIGURE_CYCLES) : started;
     }
 
@@ -77,11 +87,21 @@ class RealtimeMachine final : public Machine {
         if (next_ns_ < now) {
             next_ns_ = now;  // late: the missed cycles are skipped
         }
+        cycles_->give_back();
         const timespec until{next_ns_ / NS_PER_S, next_ns_ % NS_PER_S};
         while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {
         }
-        side_->step(monotonic_ns());
+        cycles_->run(monotonic_ns());
+        if (!isWatched_) {
+            isWatched_ = true;
+            lateness_.watch(::gettid());
+            lateness_.watch(cycles_->thread_id());
+        }
+        if (const auto why = lateness_.step(monotonic_ns())) {
+            side_->task().post(msgs::MessageKind::OPERATOR_ERROR, *why);
+        }
     }
+    bool isTaskBusy() const override { return cycles_->isApart(); }
     std::int64_t now_ns() const override { return monotonic_ns(); }
     bool isVirtual() const override { return false; }
     Result<> health() const override {
@@ -110,10 +130,32 @@ class RealtimeMachine final : public Machine {
     hal::Hal &hal() override { return host_->hal(); }
 
   private:
+    void shut_down() {
+        if (host_ != nullptr) {
+            // Programs of loadusr live on the HAL of this machine: they end with it.
+            if (programs_) {
+                static_cast<void>(programs_->stop_all());
+            }
+            static_cast<void>(host_->shut_down());
+        }
+    }
+    /// A script or a disk that does not come back still uses task, which therefore cannot be destroyed.
+    [[noreturn]] void end_beside_call() {
+        parts_.sink.error(
+            "the interpreter is still busy (a slow disk, or Python): the machine ends without it");
+        side_->remove_mailbox();
+        shut_down();
+        OutputRelay::end();
+        std::_Exit(1);
+    }
+
     MachineParts parts_;
     std::unique_ptr<hal::HostClient> host_;
     std::optional<hal::lang::SystemProgramHost> programs_;
     std::unique_ptr<TaskSide> side_;
+    std::optional<CycleThread> cycles_;
+    Lateness lateness_;
+    bool isWatched_ = false;
     std::int64_t next_ns_;
 };
 

@@ -202,6 +202,15 @@ Result<> TaskSide::finish_start(Machine &machine, int most_cycles) {
 void TaskSide::step(std::int64_t now_ns) {
     ini_pins_.step(*task_);
     task_->step(now_ns);
+    step_hands(now_ns);
+}
+
+void TaskSide::step_apart(std::int64_t now_ns) {
+    task_->step_apart(now_ns);
+    step_hands(now_ns);
+}
+
+void TaskSide::step_hands(std::int64_t now_ns) {
     tool_change_.step(now_ns);
     if (parts_.config.hasHalui) {
         halui_.step();

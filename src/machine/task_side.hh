@@ -38,13 +38,19 @@ class TaskSide final : private task::IoPort {
     Result<> finish_start(Machine &machine, int most_cycles);
     /// One task cycle.
     void step(std::int64_t now_ns);
+    /// The same while step() is in a long call (task::LongCall).
+    void step_apart(std::int64_t now_ns);
 
     client::Client &client() { return *client_; }
     mailbox::Segment &mailbox() { return mailbox_.segment(); }
+    /// No client finds the machine any more.
+    void remove_mailbox() { mailbox_.remove(); }
     task::Task &task() { return *task_; }
     motion::Channels &channels() { return *channels_; }
 
   private:
+    /// Of those who operate by pins.
+    void step_hands(std::int64_t now_ns);
     io::Inputs read() override { return io_pins_.read(); }
     void write(const io::Outputs &outputs) override { io_pins_.write(outputs); }
     bool isPersonAsked() const override { return tool_change_.isAsking(); }

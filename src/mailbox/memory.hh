@@ -20,6 +20,9 @@ class Memory {
     /// By a client.
     static Result<Memory> attach(const std::string &instance);
 
+    /// For an owner that ends without being destroyed: no client finds it any more.
+    void remove() noexcept { shared_.remove(); }
+
     Segment &segment() { return *segment_; }
     /// The process that made it lives. Always true in one process.
     bool isOwnerAlive() const;

@@ -51,6 +51,25 @@ void redirect_streams() {
     sys.attr("stderr") = py::cast(new Stream(true), py::return_value_policy::take_ownership);
 }
 
+/// What ends the process without a word: a script must not end the machine. Its own children may.
+void keep_machine_up() {
+    py::exec(R"(
+import os as _os
+
+def _guarded(name):
+    own, end = _os.getpid(), getattr(_os, name)
+    def guarded(*arguments):
+        if _os.getpid() == own:
+            raise RuntimeError(f'os.{name} would end the machine')
+        end(*arguments)
+    setattr(_os, name, guarded)
+
+for _name in ('_exit', 'abort'):
+    _guarded(_name)
+)",
+             py::dict(py::arg("__builtins__") = py::module_::import("builtins")));
+}
+
 std::string own_folder() {
     Dl_info info{};
     if (::dladdr(reinterpret_cast<const void *>(&start_python), &info) == 0 || info.dli_fname == nullptr) {
@@ -150,6 +169,7 @@ void start_python() {
     isStarted = true;
     initialize();
     redirect_streams();
+    keep_machine_up();
     PyEval_SaveThread();  // from now on every call takes the GIL itself
 }
 

@@ -54,12 +54,15 @@ SharedMemory &SharedMemory::operator=(SharedMemory &&other) noexcept {
     return *this;
 }
 
-void SharedMemory::close() noexcept {
-    // The creator alone removes the name, and only from the process that created it (a forked child keeps
-    // out).
+/// Only from the process that created it: a forked child keeps out.
+void SharedMemory::remove() noexcept {
     if (!name_.empty() && base_ != nullptr && header()->owner == this_process()) {
         ::shm_unlink(name_.c_str());
     }
+}
+
+void SharedMemory::close() noexcept {
+    remove();
     if (base_ != nullptr) {
         ::munmap(base_, mapped_);
         base_ = nullptr;

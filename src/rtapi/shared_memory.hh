@@ -45,6 +45,8 @@ class SharedMemory {
     /// Makes at least `size` bytes exist. The caller holds a lock against others who grow.
     Result<> grow(std::size_t size);
     bool contains(const void *pointer) const noexcept;
+    /// By the process that created it: nobody finds it any more. Its content stays until it is destroyed.
+    void remove() noexcept;
     /// The process that created it.
     ProcessId owner() const noexcept;
 

@@ -6,6 +6,8 @@
 #include "interp/scripts/user_codes.hh"
 #include "motion/api/texts.hh"
 #include "task/run/shown_offsets.hh"
+#include "task/task_apart.hh"
+#include "task/task_show.hh"
 #include "task/task_start.hh"
 
 namespace mw::task {
@@ -70,16 +72,16 @@ void Task::configure(const std::vector<motion::SetParameter> &parameters, const 
     planner_mode_.configure(parameters);
     for (const motion::SetParameter &parameter : parameters) {
         shown_settings_.note(parameter);
-        last_setting_ = motion_.send(parameter);
+        first_settings_.last = motion_.send(parameter);
     }
     motion_.send(motion::SetNumJoints{settings_.num_joints});
-    last_setting_ = motion_.send(motion::SetWatchdog{true, settings_.watchdog_s});
+    first_settings_.last = motion_.send(motion::SetWatchdog{true, settings_.watchdog_s});
 }
 
 Result<bool> Task::isConfigured() const {
-    const bool isAnswered = motion_.isAnswered(last_setting_) && motion_.areTablesAnswered();
-    if (isAnswered && !refused_setting_.empty()) {
-        return fail("a setting was refused: " + refused_setting_);
+    const bool isAnswered = motion_.isAnswered(first_settings_.last) && motion_.areTablesAnswered();
+    if (isAnswered && !first_settings_.refused.empty()) {
+        return fail("a setting was refused: " + first_settings_.refused);
     }
     return isAnswered;
 }
@@ -105,6 +107,13 @@ Result<> Task::start() {
     return begun;
 }
 
+Result<> Task::save_parameters() {
+    if (apart_.isOn) {
+        return fail("the numbered parameters are not saved: the interpreter is still busy");
+    }
+    return parameter_file_.save();
+}
+
 void Task::synch_interpreter() {
     interp::MachineSnapshot machine = snapshot_of(motion_.status(), io_.outputs, sequencer_);
     machine.position = reader_.canon().exact(machine.position);
@@ -115,6 +124,7 @@ void Task::synch_interpreter() {
 
 void Task::step(std::int64_t now_ns) {
     now_ns_ = now_ns;
+    static_cast<void>(Meanwhile{*this}.end());
     take_motion_news();
     sequencer_.sent().follow(motion_.status());
     sequencer_.on_tool_event(io_.step(parts_.io_port.read()));
@@ -135,7 +145,7 @@ void Task::step(std::int64_t now_ns) {
         io_.set_tool_offset(reader_.canon().tool_offset().value_or(io_.outputs.tool_offset));
     }
     parts_.io_port.write(io_.outputs);
-    update_status();
+    Show{*this}.all();
 }
 
 void Task::step_run() {
@@ -179,9 +189,17 @@ SourcePlace Task::place_of(const motion::SourceTag &source) const {
 
 void Task::take_motion_news() {
     const MotionLink::News news = motion_.update();
+    if (motion_.watch().step(motion_.status().cycle, now_ns_)) {
+        post(MessageKind::OPERATOR_ERROR,
+             "motion (millwright-rt) has given no sign for 0.25 s: stops are not carried out. Use the "
+             "emergency stop switch of the machine");
+    }
     const auto fail_or_post = [this](bool isOfRun, const std::string &text, const motion::SourceTag &source,
                                      AbortReason reason) {
-        if (isOfRun && run_.isRunning()) {
+        if (isOfRun && run_.isRunning() && apart_.isOn) {
+            post(MessageKind::OPERATOR_ERROR, text);
+            Meanwhile{*this}.stop_work(text, reason);
+        } else if (isOfRun && run_.isRunning()) {
             fail_program({diag::Severity::ERROR, {text, place_of(source), {}}, {}, {}}, reason);
         } else {
             post(MessageKind::OPERATOR_ERROR, text);
@@ -194,8 +212,9 @@ void Task::take_motion_news() {
                      AbortReason::MOTION_FAULT);
     }
     for (const auto &[answer, source, isTable] : news.refused) {
-        if (refused_setting_.empty() && !answer.isPath && (isTable || answer.id <= last_setting_)) {
-            refused_setting_ = motion::reason_text(answer);
+        if (first_settings_.refused.empty() && !answer.isPath &&
+            (isTable || answer.id <= first_settings_.last)) {
+            first_settings_.refused = motion::reason_text(answer);
         }
         if (answer.reason == motion::Reason::MOVING && mode_.waits_for_rest(answer.id, now_ns_)) {
             continue;
@@ -231,14 +250,18 @@ void Task::update_state() {
     case MachineState::Event::CHAIN_OPENED:
         io_.enter_estop();
         motion_.send(motion::Disable{});
-        stop_run("the e-stop chain opened");
-        abort_work(AbortReason::ESTOP_CHAIN);
+        Meanwhile{*this}.stop_work("the e-stop chain opened", AbortReason::ESTOP_CHAIN);
         post(MessageKind::OPERATOR_ERROR, "emergency stop: pin iocontrol.0.emc-enable-in is FALSE");
         break;
-    case MachineState::Event::ESTOP_RESET: begin_clean_up(AbortReason::STATE_ESTOP_RESET); break;
+    case MachineState::Event::ESTOP_RESET:
+        if (apart_.isOn) {
+            apart_.later.emplace_back([this] { begin_clean_up(AbortReason::STATE_ESTOP_RESET); });
+        } else {
+            begin_clean_up(AbortReason::STATE_ESTOP_RESET);
+        }
+        break;
     case MachineState::Event::WENT_OFF:
-        stop_run("the machine went off");
-        abort_work(AbortReason::STATE_NOT_ON);
+        Meanwhile{*this}.stop_work("the machine went off", AbortReason::STATE_NOT_ON);
         break;
     }
 }
@@ -296,7 +319,10 @@ bool Task::begin_run() {
         reader_.canon().take(*tap);
         run_.change(RunEvent::READ);
     } else if (run_.kind() == RunKind::MDI) {
-        on_step_result(reader_.execute(run_.line()));
+        const interp::Step result = reader_.execute(run_.line());
+        if (!Meanwhile{*this}.end()) {
+            on_step_result(result);
+        }
     }
     return true;
 }
@@ -331,6 +357,9 @@ void Task::run_interpreter() {
             }
         }
         const interp::Step result = reader_.step();
+        if (Meanwhile{*this}.end()) {
+            return;
+        }
         Start{*this}.note_doubt();
         on_step_result(result);
     }

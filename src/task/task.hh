@@ -3,8 +3,10 @@
 // (D1-D3).
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "io/controller.hh"
 #include "mailbox/desk.hh"
@@ -75,6 +77,21 @@ struct Settings {
     std::size_t read_ahead_steps = 50'000;
 };
 
+/// Those that motion gets before the machine is up.
+struct FirstSettings {
+    motion::CommandId last = 0;
+    std::string refused;  ///< the first that was; empty: none
+};
+
+/// While another thread has task (LongCall).
+struct Apart {
+    bool isOn = false;
+    bool isStopped = false;
+    bool isTold = false;        ///< to the operator
+    std::int64_t since_ns = 0;  ///< its first cycle
+    std::vector<std::function<void()>> later;
+};
+
 /// What task is built from; all must outlive it.
 struct Parts {
     motion::Channels &channels;
@@ -110,10 +127,15 @@ class Task {
     /// Loads parameters and announces the start state to the interpreter. Errors name file, line and column.
     Result<> start();
     /// Writes the parameter file and waits for it: at the end of the machine, or for one who is to read it.
-    Result<> save_parameters() { return parameter_file_.save(); }
+    Result<> save_parameters();
 
     /// One task cycle at clock time `now_ns`.
     void step(std::int64_t now_ns);
+    /// A cycle of a thread that has taken task over while step() is in a long call: stops, holds, overrides
+    /// and the status. What needs the interpreter is done when the call has ended; other commands wait.
+    void step_apart(std::int64_t now_ns);
+    /// For the thread that calls step_apart().
+    LongCall &long_call() { return reader_.call().call; }
 
     /// A line for the operator, whoever has the right to operate.
     void post(MessageKind kind, const std::string &text) { desk_.post(kind, text); }
@@ -134,6 +156,12 @@ class Task {
     /// Starts elsewhere than at the first line: task_search.cc.
     struct Start;
     friend struct Start;
+    /// What is done beside a long call: task_apart.cc.
+    struct Meanwhile;
+    friend struct Meanwhile;
+    /// The status: task_status.cc.
+    struct Show;
+    friend struct Show;
 
     SequencerEvents make_events();
     SourcePlace place_of(const motion::SourceTag &source) const;
@@ -160,8 +188,6 @@ class Task {
 
     void finish_run(Progress progress, const std::string &reason);
     void tell(const std::optional<Ending> &ending);
-    void step_tools();
-    void update_status();
     /// Takes the machine's position and state as the program's.
     void synch_interpreter();
     Result<> check_can_run() const;
@@ -197,8 +223,8 @@ class Task {
     mailbox::Serial reload_command_ = 0;  ///< LoadToolTable that has not ended; 0: none
     Status status_;
     std::int64_t now_ns_ = 0;
-    motion::CommandId last_setting_ = 0;
-    std::string refused_setting_;
+    Apart apart_;
+    FirstSettings first_settings_;
 };
 
 }  // namespace mw::task

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The end of work that cannot go on, and what is done after it.
+#include "task/task_apart.hh"
 #include "task/task_start.hh"
 
 namespace mw::task {
@@ -72,6 +73,9 @@ void Task::begin_clean_up(AbortReason reason) {
     reader_.canon().reset();
     synch_interpreter();
     const auto read = on_abort_.read(reader_, reason);
+    if (Meanwhile{*this}.end()) {
+        return;
+    }
     if (!read.has_value()) {
         post(MessageKind::OPERATOR_ERROR, on_abort_.told(read.error().message));
     }

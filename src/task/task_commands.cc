@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // States, modes and programs: one handler for each of the operator's commands, done, started, or refused with
 // the reason (C5).
+#include "task/task_apart.hh"
 #include "task/task_handler.hh"
 
 namespace mw::task {
@@ -28,7 +29,9 @@ void Task::carry_out(mailbox::Serial serial, const Command &command) {
     } else if (*outcome != Progress::STARTED) {
         desk_.tell(serial, *outcome, {});
     }
-    Start{*this}.watch_hold();
+    if (!apart_.isOn) {
+        Start{*this}.watch_hold();
+    }
 }
 
 Outcome Task::Handler::operator()(const SetState &command) {
@@ -44,8 +47,7 @@ Outcome Task::Handler::operator()(const SetState &command) {
     case State::ESTOP:
         task.io_.enter_estop();
         task.motion_.send(motion::Disable{});
-        task.stop_run("emergency stop");
-        task.abort_work(AbortReason::STATE_ESTOP);
+        Meanwhile{task}.stop_work("emergency stop", AbortReason::STATE_ESTOP);
         break;
     case State::ESTOP_RESET:
         if (*asked.outcome == Progress::STARTED) {
@@ -53,8 +55,7 @@ Outcome Task::Handler::operator()(const SetState &command) {
         }
         break;
     case State::OFF:
-        task.stop_run("the machine was switched off");
-        task.abort_work(AbortReason::STATE_OFF);
+        Meanwhile{task}.stop_work("the machine was switched off", AbortReason::STATE_OFF);
         task.motion_.send(motion::Disable{});
         break;
     case State::ON:
@@ -62,7 +63,8 @@ Outcome Task::Handler::operator()(const SetState &command) {
         task.on_abort_.note_work();
         break;
     }
-    return asked.outcome;
+    const bool isOff = command.state == State::ESTOP || command.state == State::OFF;
+    return isOff ? Meanwhile{task}.settle(id) : asked.outcome;
 }
 
 Outcome Task::Handler::operator()(const SetMode &command) {
@@ -81,7 +83,8 @@ Outcome Task::Handler::operator()(const SetMode &command) {
 }
 
 Outcome Task::Handler::operator()(const OpenProgram &command) {
-    const auto opened = task.reader_.interpreter().open(command.path);
+    const auto opened = task.reader_.open(command.path);
+    static_cast<void>(Meanwhile{task}.end());
     if (!opened.has_value()) {
         return std::unexpected(opened.error());
     }
@@ -109,7 +112,10 @@ Outcome Task::Handler::operator()(const RunProgram &command) {
     if (!allowed.has_value()) {
         return std::unexpected(allowed.error());
     }
-    const auto opened = task.reader_.interpreter().open(task.status_.task.program.str());
+    const auto opened = task.reader_.open(task.status_.task.program.str());
+    if (Meanwhile{task}.end()) {
+        return fail(OVERTAKEN);
+    }
     if (!opened.has_value()) {
         return std::unexpected(opened.error());
     }
@@ -122,6 +128,9 @@ Outcome Task::Handler::operator()(const RunProgram &command) {
 
 Outcome Task::Handler::operator()(const RecoverProgram &) {
     const auto opened = Start{task}.open_recovery();
+    if (Meanwhile{task}.end()) {
+        return fail(OVERTAKEN);
+    }
     return opened.has_value() ? start_run(RunKind::RECOVERY) : std::unexpected(opened.error());
 }
 
@@ -219,14 +228,14 @@ Outcome Task::Handler::operator()(const ResetInterpreter &) {
 Outcome Task::Handler::operator()(const SynchInterpreter &) {
     task.synch_interpreter();
     const auto saved = task.save_parameters();
+    static_cast<void>(Meanwhile{task}.end());
     return saved.has_value() ? Outcome(Progress::DONE) : std::unexpected(saved.error());
 }
 
 Outcome Task::Handler::abort_all() {
     task.desk_.refuse(task.inbox_.drop_before(id), OVERTAKEN);
-    task.stop_run("aborted", false);
-    task.abort_work(AbortReason::ABORT);
-    return Progress::DONE;
+    Meanwhile{task}.stop_work("aborted", AbortReason::ABORT, false);
+    return Meanwhile{task}.settle(id);
 }
 
 Outcome Task::Handler::operator()(const Mdi &command) {

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "task/task_apart.hh"
 #include "task/task_start.hh"
 
 namespace mw::task {
@@ -87,7 +88,7 @@ Result<> Task::Start::open_recovery() {
         return opened;
     }
     const std::string &program = (*task.recovery_.offer())->start.program;
-    opened = task.reader_.interpreter().open(program);
+    opened = task.reader_.open(program);
     if (opened.has_value()) {
         task.status_.task.program.assign(program);
     }
@@ -138,7 +139,10 @@ Result<Progress> Task::Start::calculate_again() {
     }
     task.reader_.queue().clear();
     task.reader_.return_to_executed();
-    const Result<> opened = task.reader_.interpreter().open(program);
+    const Result<> opened = task.reader_.open(program);
+    if (Meanwhile{task}.end()) {
+        return fail(OVERTAKEN);
+    }
     if (!opened.has_value()) {
         task.recovery_.refuse(opened.error().str());
         return refused(opened.error());
@@ -155,11 +159,14 @@ Result<Progress> Task::Start::calculate_again() {
 
 /// It is the program that ran: once more, with the tools as they are now.
 void Task::Start::begin_with_tools_now() {
-    const FoundModes found = task.reader_.search().found();
+    const FoundModes found = task.reader_.search()->found();
     auto record = with_tools_now(task.reader_.recorded(), found, task.parts_.tools);
     task.reader_.cancel_search();
     task.run_.go_on_anew();
-    const Result<> opened = task.reader_.interpreter().open((*task.recovery_.offer())->start.program);
+    const Result<> opened = task.reader_.open((*task.recovery_.offer())->start.program);
+    if (Meanwhile{task}.end()) {
+        return;
+    }
     if (!opened.has_value()) {
         record = std::unexpected(opened.error());
     }
@@ -168,7 +175,7 @@ void Task::Start::begin_with_tools_now() {
 
 /// An offset that the program has not taken from the table stays what it was.
 bool Task::Start::isOldOffsetKept() const {
-    const FoundModes found = task.reader_.search().found();
+    const FoundModes found = task.reader_.search()->found();
     const int index = found.tool > 0 ? task.parts_.tools.index_of_tool(found.tool) : -1;
     const geom::Pose before = task.status_.offsets.tool;
     const bool isSame = found.tool_offset.has_value() && found.tool_offset->offset == before;
@@ -184,7 +191,7 @@ void Task::Start::propose_recovery() {
     ApproachPlan plan;
     plan.to = ApproachTo::PLACE_LOST;
     plan.line = (*task.recovery_.offer())->progress->line;
-    plan.modes = task.reader_.search().found();
+    plan.modes = task.reader_.search()->found();
     plan.tool_now = task.io_.outputs.tool_number;
     task.run_.change(RunEvent::PROPOSE);
     propose(std::move(plan));

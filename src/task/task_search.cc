@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "task/task_apart.hh"
 #include "task/task_start.hh"
 
 namespace mw::task {
@@ -19,10 +20,14 @@ void Task::Start::begin() {
 }
 
 void Task::Start::step() {
-    if (!task.reader_.isSearching() || task.approach_.isOpen()) {
+    if (task.reader_.search() == nullptr || task.approach_.isOpen()) {
         return;
     }
-    switch (task.reader_.step_search(task.settings_.blocks_per_cycle)) {
+    const BlockSearch::Outcome outcome = task.reader_.step_search(task.settings_.blocks_per_cycle);
+    if (Meanwhile{task}.end()) {
+        return;
+    }
+    switch (outcome) {
     case BlockSearch::Outcome::GOING: break;
     case BlockSearch::Outcome::FOUND:
         task.run_.kind() == RunKind::AGAIN ? begin_with_tools_now()
@@ -31,9 +36,9 @@ void Task::Start::step() {
         break;
     case BlockSearch::Outcome::REFUSED:
         if (task.run_.isRecovery()) {
-            task.recovery_.refuse(task.reader_.search().refusal());
+            task.recovery_.refuse(task.reader_.search()->refusal());
         }
-        give_up(task.reader_.search().refusal());
+        give_up(task.reader_.search()->refusal());
         break;
     }
 }
@@ -51,7 +56,7 @@ void Task::Start::give_up(std::string reason) {
 
 void Task::Start::drop() {
     task.approach_.forget();
-    if (task.reader_.isSearching()) {
+    if (task.reader_.search() != nullptr) {
         task.reader_.cancel_search();
     }
 }
@@ -99,7 +104,7 @@ void Task::Start::propose_line() {
     ApproachPlan plan;
     plan.to = ApproachTo::LINE;
     plan.line = task.run_.from_line();
-    plan.modes = task.reader_.search().found();
+    plan.modes = task.reader_.search()->found();
     plan.tool_now = task.io_.outputs.tool_number;
     complete(plan);
     if (!plan.isNeeded()) {
@@ -131,12 +136,12 @@ void Task::Start::restore_switches(const StartRecord &record) {
 /// The calls of the approach come first, then what the program says from the line on.
 void Task::Start::go_on(const ApproachPlan &plan) {
     auto last = interp::Step::OK;
-    if (task.reader_.isSearching()) {
+    if (task.reader_.search() != nullptr) {
         const bool isRecovery = task.run_.isRecovery();
-        last = isRecovery ? task.reader_.search().last_step() : last;
+        last = isRecovery ? task.reader_.search()->last_step() : last;
         if (isRecovery) {
             restore_switches(task.reader_.recorded());
-            task.recovery_.begin_again(task.reader_.recorded(), task.reader_.search().sum().value(),
+            task.recovery_.begin_again(task.reader_.recorded(), task.reader_.search()->sum().value(),
                                        sum_of_tools(task.parts_.tools));
         }
         task.reader_.accept_search();

@@ -5,6 +5,7 @@
 
 #include "task/link/motion_status.hh"
 #include "task/run/shown_offsets.hh"
+#include "task/task_show.hh"
 #include "task/task_start.hh"
 
 namespace mw::task {
@@ -49,87 +50,111 @@ CodesStatus shown(const interp::ActiveCodes &codes) {
 
 }  // namespace
 
-void Task::step_tools() {
-    parts_.tools.step();
-    while (const auto warning = parts_.tools.take_warning()) {
-        post(MessageKind::OPERATOR_ERROR, *warning);
+void Task::Show::tools() {
+    task.parts_.tools.step();
+    while (const auto warning = task.parts_.tools.take_warning()) {
+        task.post(MessageKind::OPERATOR_ERROR, *warning);
     }
-    const auto read = reload_command_ != 0 ? parts_.tools.reload_result() : std::nullopt;
+    const auto read = task.reload_command_ != 0 ? task.parts_.tools.reload_result() : std::nullopt;
     if (read.has_value()) {
         const std::string reason = read->has_value() ? std::string() : read->error().str();
-        desk_.tell(std::exchange(reload_command_, 0), reason.empty() ? Progress::DONE : Progress::FAILED,
-                   reason);
+        task.desk_.tell(std::exchange(task.reload_command_, 0),
+                        reason.empty() ? Progress::DONE : Progress::FAILED, reason);
         if (!reason.empty()) {
-            post(MessageKind::OPERATOR_ERROR, reason);
+            task.post(MessageKind::OPERATOR_ERROR, reason);
         }
     }
-    parts_.tools.note_cut(status_.tool.in_spindle, cut_since(status_, now_ns_));
-    const auto table = tools_.step(parts_.tools);
-    if (table.has_value() && !desk_.publish_tools(*table)) {
-        post(MessageKind::OPERATOR_ERROR, "the tool table is too large to be shown to clients");
+    task.parts_.tools.note_cut(task.status_.tool.in_spindle, cut_since(task.status_, task.now_ns_));
+    const auto table = task.tools_.step(task.parts_.tools);
+    if (table.has_value() && !task.desk_.publish_tools(*table)) {
+        task.post(MessageKind::OPERATOR_ERROR, "the tool table is too large to be shown to clients");
     }
 }
 
-void Task::update_status() {
-    TaskStatus &task = status_.task;
-    task.state = state_.state();
-    task.mode = mode_.mode();
-    task.isOptionalStop = world_.isOptionalStopOn();
-    task.isBlockDelete = world_.isBlockDeleteOn();
-    task.blocks = reader_.canon().blocks();
-    task.isPaused = run_.isHeld();
-    task.isStoppedByProgram = run_.hold() == Hold::STOPPED;
-    task.interp_state = run_.shown();
-    task.exec_state = run_.isRunning() ? sequencer_.exec_state() : ExecState::DONE;
-    task.isAway = run_.hold() == Hold::AWAY;
-    task.queued_mdi = mdi_queue_.size();
-    if (run_.isRunning()) {
-        task.read_line = reader_.interpreter().line();
-        task.call_level = reader_.interpreter().call_level();
-    }
-    task.waiting =
-        homing_.isUnderWay() ? Waiting{WaitFor::HOMING, homing_.joint()} : sequencer_.waiting_for();
-    task.delay_left_s = sequencer_.dwell_left_s(now_ns_);
-    task.isInputTimedOut = sequencer_.input().isTimedOut;
+void Task::Show::states() {
+    TaskStatus &shown_task = task.status_.task;
+    shown_task.state = task.state_.state();
+    shown_task.mode = task.mode_.mode();
+    shown_task.isOptionalStop = task.world_.isOptionalStopOn();
+    shown_task.isBlockDelete = task.world_.isBlockDeleteOn();
+    shown_task.isPaused = task.run_.isHeld();
+    shown_task.isStoppedByProgram = task.run_.hold() == Hold::STOPPED;
+    shown_task.interp_state = task.run_.shown();
+    shown_task.isAway = task.run_.hold() == Hold::AWAY;
+    shown_task.queued_mdi = task.mdi_queue_.size();
     constexpr int INTERPRETER_ERROR = 5;  // as clients know it
-    task.error_code = run_.error() != nullptr ? INTERPRETER_ERROR : 0;
-    task.block.assign(reader_.canon().block_text());
-    status_.settings = shown_settings_.shown();
-    if (!run_.isRunning()) {
-        show_announced(reader_.canon(), status_.offsets);
+    shown_task.error_code = task.run_.error() != nullptr ? INTERPRETER_ERROR : 0;
+    task.status_.settings = task.shown_settings_.shown();
+    task.status_.io.coolant.isMistOn = task.io_.outputs.coolant_mist;
+    task.status_.io.coolant.isFloodOn = task.io_.outputs.coolant_flood;
+    task.status_.tool.isPersonAsked = task.parts_.io_port.isPersonAsked();
+    task.status_.io.aux = {task.io_.isEstopRequested(), task.io_.isChainClosed()};
+    task.status_.tool.isFaulted = task.io_.outputs.toolchanger_faulted;
+    if (task.status_.io.lube.hasOil && !task.io_.hasOil()) {
+        task.post(MessageKind::OPERATOR_ERROR,
+                  "the lubrication wants oil: pin iocontrol.0.lube_level is FALSE");
     }
-    const motion::Status &motion = motion_.status();
+    task.status_.io.lube = {task.io_.outputs.lube, task.io_.hasOil()};
+}
+
+void Task::Show::sequencer() {
+    TaskStatus &shown_task = task.status_.task;
+    shown_task.exec_state = task.run_.isRunning() ? task.sequencer_.exec_state() : ExecState::DONE;
+    shown_task.waiting = task.homing_.isUnderWay() ? Waiting{WaitFor::HOMING, task.homing_.joint()}
+                                                   : task.sequencer_.waiting_for();
+    shown_task.delay_left_s = task.sequencer_.dwell_left_s(task.now_ns_);
+    shown_task.isInputTimedOut = task.sequencer_.input().isTimedOut;
+    shown_task.motion_line = task.sequencer_.sent().line();
+}
+
+void Task::Show::program() {
+    TaskStatus &shown_task = task.status_.task;
+    shown_task.blocks = task.reader_.canon().blocks();
+    if (task.run_.isRunning()) {
+        shown_task.read_line = task.reader_.interpreter().line();
+        shown_task.call_level = task.reader_.interpreter().call_level();
+    }
+    shown_task.block.assign(task.reader_.canon().block_text());
+    if (!task.run_.isRunning()) {
+        show_announced(task.reader_.canon(), task.status_.offsets);
+    }
+    const motion::Status &motion = task.motion_.status();
     const bool isMoving = motion.active_path_id != 0;
-    const motion::SourceTag under_way = sequencer_.place().source;
-    task.motion_line = sequencer_.sent().line();
+    const motion::SourceTag under_way = task.sequencer_.place().source;
     const bool isExecuted = !isMoving || motion.source.block == under_way.block;
-    status_.codes = shown(codes_in_force(reader_, run_, isMoving ? motion.source : under_way, isExecuted));
-    approach_.show(status_.approach, status_.offsets, shown(reader_.interpreter().active_codes()));
-    step_tools();
+    task.status_.codes =
+        shown(codes_in_force(task.reader_, task.run_, isMoving ? motion.source : under_way, isExecuted));
+    task.approach_.show(task.status_.approach, task.status_.offsets,
+                        shown(task.reader_.interpreter().active_codes()));
+}
+
+void Task::Show::publish() {
+    ++task.status_.cycle;
+    task.status_.time_ns = task.now_ns_;
+    const PartMask told = tell_motion(task.motion_.status(), task.motion_.fresh_parts(),
+                                      task.settings_.axis_mask, task.status_);
+    task.desk_.publish(task.status_, told);
+}
+
+void Task::Show::all() {
+    states();
+    sequencer();
+    program();
+    tools();
     // A tool that is being looked for is not ready yet; no tool (T0) is ready at once.
-    const int selected = sequencer_.selected_tool_index();
-    const bool isNone = selected == 0 && !parts_.tools.isRandom();
-    const bool isReady = isNone || io_.action() != io::ToolAction::PREPARING;
-    status_.tool = {io_.outputs.tool_number, io_.outputs.tool_from_pocket,
-                    isReady ? selected : status_.tool.prepared_index, tools_.version()};
-    const tool::CutLife life = parts_.tools.life(io_.outputs.tool_number);
-    status_.tool.cut_time_s = life.time_s;
-    status_.tool.cut_length = life.length;
-    status_.io.coolant.isMistOn = io_.outputs.coolant_mist;
-    status_.io.coolant.isFloodOn = io_.outputs.coolant_flood;
-    status_.tool.isPersonAsked = parts_.io_port.isPersonAsked();
-    status_.io.aux = {io_.isEstopRequested(), io_.isChainClosed()};
-    status_.tool.isFaulted = io_.outputs.toolchanger_faulted;
-    if (status_.io.lube.hasOil && !io_.hasOil()) {
-        post(MessageKind::OPERATOR_ERROR, "the lubrication wants oil: pin iocontrol.0.lube_level is FALSE");
-    }
-    status_.io.lube = {io_.outputs.lube, io_.hasOil()};
-    Start{*this}.show_journal();
-    ++status_.cycle;
-    status_.time_ns = now_ns_;
-    const PartMask told = tell_motion(motion_.status(), motion_.fresh_parts(), settings_.axis_mask, status_);
-    desk_.publish(status_, told);
-    Start{*this}.note_place();
+    const int selected = task.sequencer_.selected_tool_index();
+    const bool isNone = selected == 0 && !task.parts_.tools.isRandom();
+    const bool isReady = isNone || task.io_.action() != io::ToolAction::PREPARING;
+    task.status_.tool.in_spindle = task.io_.outputs.tool_number;
+    task.status_.tool.from_pocket = task.io_.outputs.tool_from_pocket;
+    task.status_.tool.prepared_index = isReady ? selected : task.status_.tool.prepared_index;
+    task.status_.tool.table_version = task.tools_.version();
+    const tool::CutLife life = task.parts_.tools.life(task.io_.outputs.tool_number);
+    task.status_.tool.cut_time_s = life.time_s;
+    task.status_.tool.cut_length = life.length;
+    Start{task}.show_journal();
+    publish();
+    Start{task}.note_place();
 }
 
 }  // namespace mw::task

@@ -33,6 +33,10 @@ extern int mw_ext_pin_safe_value(const char *pin_name, const void *value);
  * Nothing happens under the virtual clock. */
 extern int mw_ext_watch_controller(rtapi_u32 *is_gone, const rtapi_u32 *is_safe, int comp_id);
 
+/* For the same module: *looks counts up every 50 ms, by a thread of ordinary priority. Where it stands still
+ * the computer has no time for such threads, those of the controlling process among them. Atomic. */
+extern int mw_ext_count_looks(rtapi_u32 *looks, int comp_id);
+
 /* The period of a HAL thread [ns], 0 when there is none of that name. */
 extern long long mw_ext_thread_period(const char *name);
 

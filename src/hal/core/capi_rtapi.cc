@@ -313,6 +313,18 @@ int mw_ext_watch_controller(rtapi_u32 *is_gone, const rtapi_u32 *is_safe, int co
     });
 }
 
+int mw_ext_count_looks(rtapi_u32 *looks, int comp_id) {
+    return with_hal([&](Hal &hal) {
+        for (detail::ControllerWatch &watch : hal.impl().controller_watches) {
+            if (watch.comp_id == comp_id) {
+                watch.looks = looks;
+                return 0;
+            }
+        }
+        return complain(EINVAL, "the component does not watch the controlling process");
+    });
+}
+
 long long mw_ext_thread_period(const char *name) {
     const Hal *hal = current();
     if (hal == nullptr || name == nullptr) {

@@ -63,6 +63,16 @@ void Hal::Impl::spare_process(std::int32_t pid) {
     segment.header().spared_pid = pid;
 }
 
+void Hal::Impl::rest_process(std::int32_t pid) {
+    Guard guard(*this);
+    segment.each<PinRecord>(Kind::PIN, [&](PinRecord &pin) {
+        const auto *comp = segment.at<CompRecord>(pin.comp);
+        if (comp->process.pid == pid && pin.type == Type::BIT && pin.dir != Dir::IN) {
+            write(value_of(pin), Value{pin.type, pin.hasSafeValue ? pin.safe_value : 0});
+        }
+    });
+}
+
 Result<> Hal::expect_end(int comp_id) {
     Guard guard(*impl_);
     CompRecord *comp = impl_->find_comp(comp_id);

@@ -23,6 +23,7 @@
 #include "hal/core/crash_report.hh"
 #include "hal/core/detail/impl.hh"
 #include "hal/core/host.hh"
+#include "hal/host/controller_look.hh"
 #include "hal/host/message.hh"
 #include "hal/host/processes.hh"
 
@@ -63,6 +64,7 @@ struct HostServer::Impl {
     std::string path;
     int lock = -1, listener = -1, signals = -1;
     int controller = -1;  ///< its pidfd
+    ControllerLook controller_look;
     int controller_socket = -1;
     bool isEnding = false;
     std::int64_t gone_ns = 0;    ///< when the controlling process died; 0 while it lives
@@ -288,8 +290,7 @@ void HostServer::Impl::on_controller_gone() {
     controller = -1;
     controller_socket = -1;
     gone_ns = gone_ns == 0 ? host->now_ns() : gone_ns;
-    auto &hal = host->hal();
-    for (const auto &watch : hal.impl().controller_watches) {
+    for (const auto &watch : host->hal().impl().controller_watches) {
         __atomic_store_n(watch.is_gone, 1U, __ATOMIC_RELEASE);
     }
 }
@@ -357,8 +358,7 @@ void HostServer::Impl::dismiss_programs() const {
 
 /// True when every module that watches says that the machine stands and is off.
 bool HostServer::Impl::isSafeToEnd() {
-    const auto &watches = host->hal().impl().controller_watches;
-    const bool isSafe = std::all_of(watches.begin(), watches.end(), [](const auto &watch) {
+    const bool isSafe = std::ranges::all_of(host->hal().impl().controller_watches, [](const auto &watch) {
         return __atomic_load_n(watch.is_safe, __ATOMIC_ACQUIRE) != 0;
     });
     return isSafe || !host->hal().isRunning() || host->now_ns() > gone_ns + LONGEST_BRAKING_NS;
@@ -474,6 +474,7 @@ bool HostServer::Impl::isControllerGone() {
 void HostServer::run() {
     Impl &here = *impl_;
     while (!here.isEnding) {
+        here.controller_look.step(here.host->hal().impl(), here.gone_ns == 0 ? pid_of(here.controller) : 0);
         std::vector<pollfd> fds = here.watched();
         const bool isBraking = here.gone_ns != 0;
         const int ready = ::poll(fds.data(), fds.size(), isBraking ? ENDING_MS : LOOK_MS);

@@ -46,6 +46,9 @@ struct Channels {
 
     /// Counts the loops of the task process; standing still for the watchdog's time means that it hangs.
     std::atomic<std::uint64_t> task_loops{0};
+    /// Counts the looks of the realtime host's ordinary thread: while it stands still, too, the computer is
+    /// too busy for either.
+    std::atomic<std::uint32_t> host_looks{0};
     /// Set by the realtime host when the kernel says that the task process is gone (pidfd, closed socket).
     std::atomic<std::uint32_t> isTaskDead{0};
 

@@ -169,7 +169,8 @@ enum class FaultKind : std::uint16_t {
     HARD_LIMIT,
     SOFT_LIMIT,
     ENABLE_LOST,
-    TASK_LOST,
+    TASK_LOST,     ///< index: 1 it has ended, 0 it does not loop; value: for how long [s]
+    MOTION_STOOD,  ///< the servo thread did not run; index: 1 axes moved, 0 none; value: for how long [s]
     HOMING_FAILED,
     PROBE_NOT_TRIPPED,  ///< at its end; detail: 1 where contact was to be lost
     PROBE_TRIPPED_IN_MOVE,

@@ -266,6 +266,22 @@ std::string spindle_fault(const Fault &fault) {
     }
 }
 
+std::string who_stood(const Fault &fault) {
+    if (fault.kind == FaultKind::TASK_LOST) {
+        return fault.index == 1
+                   ? "the task process has ended: the machine was stopped"
+                   : fmt::format("the task process (millwright start) did not run for {:.2f} s: the machine "
+                                 "was stopped. It hung, was stopped, or the computer was too busy",
+                                 fault.value);
+    }
+    return fmt::format(
+        "motion (millwright-rt) did not run for {:.2f} s{}. It was stopped, or the computer was too busy",
+        fault.value,
+        fault.index == 1 ? ", while axes moved: the machine was switched off; positions may be lost, home "
+                           "the joints without encoders"
+                         : "");
+}
+
 std::string what_failed(const Fault &fault) {
     const int i = fault.index;
     switch (fault.kind) {
@@ -293,7 +309,8 @@ std::string what_failed(const Fault &fault) {
     case FaultKind::HARD_LIMIT: return fmt::format("joint {} on limit switch error", i);
     case FaultKind::SOFT_LIMIT: return fmt::format("{} exceeded its soft limit", axis_name(i));
     case FaultKind::ENABLE_LOST: return "motion stopped by enable input";
-    case FaultKind::TASK_LOST: return "the task process is gone or hangs: the machine was stopped";
+    case FaultKind::TASK_LOST:
+    case FaultKind::MOTION_STOOD: return who_stood(fault);
     case FaultKind::HOMING_FAILED:
         return fmt::format("homing{} failed: {}", i >= 0 ? fmt::format(" of joint {}", i) : "",
                            homing::failure_text(static_cast<homing::Failure>(fault.detail)));

@@ -112,10 +112,17 @@ void Controller::step(const Inputs &in, Outputs &out) noexcept {
     }
     const PerJoint measured = read_feedback(joints_, in);
     read_feedback(place_, kinematics_, measured.data(), limits_.homed.areAll);
-    const bool isDead = channels_->isTaskDead.load(std::memory_order_acquire) != 0;
-    const std::uint64_t loops = channels_->task_loops.load(std::memory_order_relaxed);
-    if (motion::step(watchdog_, loops, isDead, config_.period_s)) [[unlikely]] {
-        stop_category_1(FaultKind::TASK_LOST, -1, watchdog_.standing_s);
+    const TaskSigns signs{channels_->task_loops.load(std::memory_order_relaxed),
+                          channels_->host_looks.load(std::memory_order_relaxed),
+                          channels_->isTaskDead.load(std::memory_order_acquire) != 0};
+    if (motion::step(watchdog_, signs, config_.period_s)) [[unlikely]] {
+        stop_category_1(FaultKind::TASK_LOST, signs.isDead ? 1 : 0,
+                        watchdog_.standing_s + watchdog_.starved_s);
+    }
+    // Drives and step generators have held their last command meanwhile: to continue from there is a jump.
+    if (const double missed_s = gap_s(watchdog_, in.time_ns); missed_s > 0 && power_.isEnabled) [[unlikely]] {
+        isAnythingMoving() ? stop_category_0(FaultKind::MOTION_STOOD, 1, missed_s)
+                           : raise(FaultKind::MOTION_STOOD, 0, missed_s);
     }
     check_faults(in, measure(spindles_, in));
     motion::step(holds_, {in.adaptive_feed, in.isFeedHeld, in.isFeedInhibited,

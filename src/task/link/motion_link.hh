@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "motion/api/channels.hh"
+#include "task/link/motion_watch.hh"
 
 namespace mw::task {
 
@@ -54,6 +55,9 @@ class MotionLink {
 
     /// Stops all motion along the path and makes everything handed over before it stale.
     void abort();
+    MotionWatch &watch() { return watch_; }
+    /// The newest order of send() that motion has not answered; 0: none.
+    motion::CommandId open_order() const { return pending_.empty() ? 0 : pending_.back(); }
     motion::Epoch epoch() const { return epoch_; }
 
     /// An immediate command has been answered (done or refused), and status() is of a time after it. In
@@ -71,6 +75,7 @@ class MotionLink {
     motion::SourceTag take_source(motion::CommandId id);
 
     motion::Channels &channels_;
+    MotionWatch watch_;
     motion::PublishedStatus::Copy copy_;
     PartMask fresh_ = 0;
     std::vector<motion::Command> backlog_;

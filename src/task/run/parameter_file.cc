@@ -18,9 +18,11 @@ void ParameterFile::keep() {
 
 Result<> ParameterFile::save() {
     if (!isWriterAsked()) {
+        const LongCall::During call(reader_.call().call);
         return reader_.save_parameters();
     }
     kept_ = reader_.parameter_text();
+    const LongCall::During call(reader_.call().call);
     return writer_->write_file(path_, kept_, journal::Old::BACKED_UP);
 }
 

@@ -15,21 +15,21 @@ class ParameterFile {
   public:
     /// `path` empty: parameters live in memory only. Without a writer, or where a plug-in keeps its own,
     /// keep() does nothing.
-    ParameterFile(std::string path, const ProgramReader &reader, journal::Writer *writer)
+    ParameterFile(std::string path, ProgramReader &reader, journal::Writer *writer)
         : path_(std::move(path)), reader_(reader), writer_(writer) {}
 
     /// The file has been read: what is in force is what it has.
     void note_loaded() { kept_ = reader_.parameter_text(); }
     /// Has them written soon when they have changed; never waits.
     void keep();
-    /// Waits until they are written.
+    /// Waits until they are written: a long call.
     Result<> save();
 
   private:
     bool isWriterAsked() const { return writer_ != nullptr && !path_.empty() && reader_.isGCode(); }
 
     std::string path_;
-    const ProgramReader &reader_;
+    ProgramReader &reader_;
     journal::Writer *writer_;
     std::string kept_;
 };

@@ -2,6 +2,7 @@
 #include "task/run/program_reader.hh"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 
 #include <fmt/format.h>
@@ -9,6 +10,36 @@
 #include "interp/plugin.hh"
 
 namespace mw::task {
+namespace {
+
+/// A long call into the interpreter.
+class Call {
+  public:
+    enum class Reads : std::uint8_t { NOTHING, A_STEP };
+
+    Call(ProgramReader &reader, Reads reads) : reader_(reader) {
+        reader_.call().reads_before = reader_.canon().reads();
+        if (reads == Reads::A_STEP) {
+            reader_.canon().begin_read();
+        }
+        reader_.canon().divert(&reader_.call().fresh);
+        reader_.call().call.begin();
+    }
+    ~Call() {
+        reader_.call().call.end();
+        reader_.canon().divert(nullptr);
+        ItemQueue &fresh = reader_.call().fresh;
+        std::move(fresh.begin(), fresh.end(), std::back_inserter(reader_.queue()));
+        fresh.clear();
+    }
+    Call(const Call &) = delete;
+    Call &operator=(const Call &) = delete;
+
+  private:
+    ProgramReader &reader_;
+};
+
+}  // namespace
 
 ProgramReader::ProgramReader(const Sources &sources, Setup setup)
     : sources_(sources), setup_(std::move(setup)), canon_(queue_, setup_.tool_change_place),
@@ -55,12 +86,24 @@ void ProgramReader::synch(const geom::Pose &position) {
     frame_.set_position(position);
     interp_->synch();
     note_read();
-    mark_all_executed();
+    mark_executed(canon_.reads());
+}
+
+Result<> ProgramReader::open(const std::string &path) {
+    const Call call(*this, Call::Reads::NOTHING);
+    return interp_->open(path);
+}
+
+BlockSearch::Outcome ProgramReader::step_search(int lines) {
+    const Call call(*this, Call::Reads::NOTHING);
+    return search_->step(lines);
 }
 
 interp::Step ProgramReader::step() {
-    canon_.begin_read();
-    const interp::Step result = interp_->step();
+    const interp::Step result = [this] {
+        const Call call(*this, Call::Reads::A_STEP);
+        return interp_->step();
+    }();
     if (rs274_ != nullptr && result == interp::Step::OK) {
         const std::string &file = rs274_->file();
         const int line = rs274_->line();
@@ -72,8 +115,10 @@ interp::Step ProgramReader::step() {
 }
 
 interp::Step ProgramReader::execute(std::string_view line) {
-    canon_.begin_read();
-    const interp::Step result = interp_->execute(line);
+    const interp::Step result = [&] {
+        const Call call(*this, Call::Reads::A_STEP);
+        return interp_->execute(line);
+    }();
     if (result == interp::Step::FILE_END) {
         keep_place({{}, 0, 0, 0, line});
     }
@@ -122,7 +167,11 @@ void ProgramReader::mark_executed(std::uint64_t read) {
 }
 
 void ProgramReader::follow(const Sequencer &sequencer) {
-    sequencer.isIdle() ? mark_all_executed() : mark_executed(sequencer.place().read);
+    if (call_.fixed_executed.has_value()) {
+        mark_executed(*call_.fixed_executed);
+    } else {
+        sequencer.isIdle() ? mark_executed(canon_.reads()) : mark_executed(sequencer.place().read);
+    }
 }
 
 interp::ActiveCodes ProgramReader::executed_codes() const {
@@ -130,6 +179,7 @@ interp::ActiveCodes ProgramReader::executed_codes() const {
 }
 
 void ProgramReader::return_to_executed() {
+    call_.fixed_executed.reset();
     if (rs274_ == nullptr) {
         interp_->abort();
         return;
@@ -144,8 +194,8 @@ Result<> ProgramReader::begin_search(int line) {
         return fail("only programs in G-code (RS-274/NGC) can begin at a line", {},
                     "[TASK]INTERPRETER names another language");
     }
-    kept_ = rs274_->keep();
-    kept_frame_ = frame_;
+    kept_.modes = rs274_->keep();
+    kept_.frame = frame_;
     rs274_->read_ahead().stop();
     const SearchMachine::Real real{sources_.world, sources_.tools, sources_.parameters,
                                    setup_.tool_change_place, setup_.isToolChangeWithSpindleOn};
@@ -162,8 +212,8 @@ Result<> ProgramReader::begin_recovery(StartRecord record, const LostPlace &plac
     if (!modes.has_value()) {
         return std::unexpected(modes.error());
     }
-    kept_ = rs274_->keep();
-    kept_frame_ = frame_;
+    kept_.modes = rs274_->keep();
+    kept_.frame = frame_;
     rs274_->read_ahead().stop();
     rs274_->restore(**modes);
     if (!frame_.unpack(record.frame)) {
@@ -223,7 +273,7 @@ void ProgramReader::accept_search() {
     }
     search_.reset();
     recorded_.reset();
-    kept_.reset();
+    kept_.modes.reset();
     rs274_->know_tools(on_their_way);
     begin_history();
 }
@@ -233,9 +283,9 @@ void ProgramReader::cancel_search() {
     recorded_.reset();
     queue_.clear();
     interp_->abort();
-    rs274_->restore(*kept_);
-    frame_ = *kept_frame_;
-    kept_.reset();
+    rs274_->restore(*kept_.modes);
+    frame_ = *kept_.frame;
+    kept_.modes.reset();
     begin_history();
 }
 

@@ -14,13 +14,20 @@
 #include "task/run/block_search.hh"
 #include "task/run/codes_trail.hh"
 #include "task/run/machine_switch.hh"
+#include "task/run/reader_call.hh"
 #include "task/run/start_record.hh"
 #include "task/run/task_canon.hh"
 #include "task/sequencer/sequencer.hh"
 
 namespace mw::task {
 
-/// One thread; never blocks.
+struct KeptState {
+    std::shared_ptr<const interp::Interpreter::Kept> modes;
+    std::optional<interp::MachineFrame> frame;
+};
+
+/// One thread. step(), execute(), open() and step_search() take as long as files and scripts do: meanwhile
+/// another thread may have task (LongCall), which uses call() alone.
 class ProgramReader {
   public:
     struct Setup {
@@ -47,6 +54,8 @@ class ProgramReader {
     bool isGCode() const { return rs274_ != nullptr; }
     /// The world shows the machine as it is now; the position is the program's from here.
     void synch(const geom::Pose &position);
+    /// Reads the program from its first line on. An error says what is wrong with the file.
+    Result<> open(const std::string &path);
     // One step of the interpreter: the next line of the program, or a line of MDI.
     interp::Step step();
     interp::Step execute(std::string_view line);
@@ -54,9 +63,10 @@ class ProgramReader {
     void begin_history();
     /// The machine has reached what step `read` of the interpreter asked for (Item::read).
     void mark_executed(std::uint64_t read);
-    void mark_all_executed() { mark_executed(canon_.reads()); }
     /// Once a cycle: what the sequencer has come to is executed; where nothing waits, all is.
     void follow(const Sequencer &sequencer);
+    /// The one under way, for the thread that has task meanwhile.
+    ReaderCall &call() { return call_; }
     /// Steps that are read and not executed, those that ask the machine for nothing included.
     std::size_t count_ahead() const { return frames_ahead_.size(); }
     std::uint64_t executed() const { return executed_; }
@@ -86,9 +96,9 @@ class ProgramReader {
     std::string take_doubt();
     /// Of the main program: that was read last, or that has called.
     int main_line() const;
-    BlockSearch::Outcome step_search(int lines) { return search_->step(lines); }
-    bool isSearching() const { return search_ != nullptr; }
-    const BlockSearch &search() const { return *search_; }
+    BlockSearch::Outcome step_search(int lines);
+    /// nullptr: there is none.
+    const BlockSearch *search() const { return search_.get(); }
     /// What a recovery calculates with.
     const StartRecord &recorded() const { return recorded_->record(); }
     /// The program goes on from the place that was found.
@@ -126,13 +136,13 @@ class ProgramReader {
     interp::Interpreter *rs274_ = nullptr;   ///< the same; null: a plug-in
     std::optional<RecordedWorld> recorded_;  ///< what a recovery calculates with
     std::unique_ptr<BlockSearch> search_;
-    std::uint64_t script_calls_ = 0;                         ///< that are known
-    std::shared_ptr<const interp::Interpreter::Kept> kept_;  ///< as before the search
-    std::optional<interp::MachineFrame> kept_frame_;
+    std::uint64_t script_calls_ = 0;  ///< that are known
+    KeptState kept_;                  ///< as before the search
     // What an abort returns to; the interpreter has the rest of it.
     interp::MachineFrame executed_frame_;
     std::deque<FrameAfter> frames_ahead_;
     std::uint64_t executed_ = 0;
+    ReaderCall call_;
 };
 
 }  // namespace mw::task

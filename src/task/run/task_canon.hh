@@ -62,19 +62,23 @@ class TaskCanon final : public interp::MachineCanon {
     /// Where the machine is when nothing is queued.
     void set_position(const geom::Pose &position) { last_end_ = position; }
 
+    /// Calls go there, and not to the queue; null: to the queue again.
+    void divert(ItemQueue *queue) { diverted_ = queue; }
+
     void begin_block(const interp::BlockRef &block) override;
     void take(const interp::MachineCall &call) override;
 
   private:
     void put(const interp::MachineCall &call);
     void add(const interp::MachineCall &call) {
-        queue_.push_back({tag_, call, read_});
+        (diverted_ != nullptr ? *diverted_ : queue_).push_back({tag_, call, read_});
         isAsking_ = true;
     }
     void enter_line(const interp::BlockRef &block);
     void change_tool();
 
     ItemQueue &queue_;
+    ItemQueue *diverted_ = nullptr;
     ToolChangePlace place_;
     geom::Pose last_end_{};
     motion::SourceTag tag_{};

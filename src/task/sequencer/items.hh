@@ -18,4 +18,10 @@ struct Item {
 
 using ItemQueue = std::deque<Item>;
 
+/// Where an item comes from.
+struct ItemPlace {
+    motion::SourceTag source;
+    std::uint64_t read = 0;  ///< Item::read
+};
+
 }  // namespace mw::task

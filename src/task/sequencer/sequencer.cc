@@ -89,6 +89,16 @@ Need need_of(const interp::MachineCall &call) {
         call);
 }
 
+/// It reads or changes the tool data.
+bool isOfTools(const interp::MachineCall &call) {
+    return std::visit(
+        []<class C>(const C &) {
+            return OneOf<C, interp::SelectTool, interp::ChangeTool, interp::ChangeToolNumber,
+                         interp::SetToolTableEntry, interp::ReloadTools>;
+        },
+        call);
+}
+
 }  // namespace
 
 Sequencer::Sequencer(ItemQueue &queue, MotionLink &motion, io::Controller &io, ToolStore &tools,
@@ -96,7 +106,7 @@ Sequencer::Sequencer(ItemQueue &queue, MotionLink &motion, io::Controller &io, T
     : queue_(queue), motion_(motion), io_(io), tools_(tools), events_(std::move(events)),
       settings_(std::move(settings)), tool_change_(settings_.changer_error_text) {}
 
-void Sequencer::step(std::int64_t now_ns) {
+void Sequencer::step(std::int64_t now_ns, Reach reach) {
     isHeld_ = false;
     blocked_ = ExecState::DONE;
     for (int i = 0; i < ITEMS_PER_CYCLE && !isHeld_; ++i) {
@@ -109,6 +119,9 @@ void Sequencer::step(std::int64_t now_ns) {
             return;
         }
         const Item &item = queue_.front();
+        if (reach == Reach::NO_TOOLS && isOfTools(item.call)) {
+            return;
+        }
         if (isStepBoundary(item)) {
             blocked_ = ExecState::WAITING_FOR_MOTION;
             return;

@@ -40,12 +40,6 @@ struct SequencerEvents {
     std::function<std::optional<Result<>>()> user_code_result;
 };
 
-/// Where an item comes from.
-struct ItemPlace {
-    motion::SourceTag source;
-    std::uint64_t read = 0;  ///< Item::read
-};
-
 /// Is told of each move when it is handed to the planner.
 using MoveListener = std::function<void(motion::CommandId id, const motion::PathBody &move)>;
 
@@ -69,8 +63,12 @@ class Sequencer {
     Sequencer(ItemQueue &queue, MotionLink &motion, io::Controller &io, ToolStore &tools,
               SequencerEvents events, SequencerSettings settings);
 
+    enum class Reach : std::uint8_t {
+        ALL,
+        NO_TOOLS,  ///< up to the next item that uses the tool data: others read them now
+    };
     /// Issues what may be issued now. `now_ns` is the clock of the scheduler.
-    void step(std::int64_t now_ns);
+    void step(std::int64_t now_ns, Reach reach = Reach::ALL);
     /// Drops everything that waits, also handshakes; the changer is told why.
     void abort(int reason);
     /// Nothing queued, nothing waited for, motion complete, no handshake.

@@ -53,9 +53,13 @@ void Inbox::add(std::vector<mailbox::Desk::Delivery> deliveries) {
 }
 
 std::optional<mailbox::Desk::Delivery> Inbox::next(bool isChanging) {
-    const auto found = std::find_if(waiting_.begin(), waiting_.end(), [&](const auto &delivery) {
-        return !isChanging || isUrgent(delivery.command);
-    });
+    return next_of([&](const msgs::Command &command) { return !isChanging || isUrgent(command); });
+}
+
+std::optional<mailbox::Desk::Delivery>
+Inbox::next_of(const std::function<bool(const msgs::Command &)> &isWanted) {
+    const auto found = std::find_if(waiting_.begin(), waiting_.end(),
+                                    [&](const auto &delivery) { return isWanted(delivery.command); });
     if (found == waiting_.end()) {
         return std::nullopt;
     }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <deque>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -16,6 +17,9 @@ class Inbox {
   public:
     void add(std::vector<mailbox::Desk::Delivery> deliveries);
     std::optional<mailbox::Desk::Delivery> next(bool isChanging);
+    /// The first for which `isWanted`.
+    std::optional<mailbox::Desk::Delivery>
+    next_of(const std::function<bool(const msgs::Command &)> &isWanted);
     /// Takes out what was asked for before the stop `stop` and still waits: it would begin after it. Lines
     /// for the operator stay. The numbers of what was taken out.
     std::vector<mailbox::Serial> drop_before(mailbox::Serial stop);

@@ -18,8 +18,9 @@ enum class RefusalIsFor : std::uint8_t { EVERYBODY, ITS_CLIENT };
 /// Any number of them, in the order in which they were given. One thread.
 class MotionOrders {
   public:
-    void begin(mailbox::Serial command, motion::CommandId order, RefusalIsFor reader, std::int64_t now_ns) {
-        waiting_.push_back({command, order, reader, now_ns + CHANGE_TIMEOUT_NS});
+    void begin(mailbox::Serial command, motion::CommandId order, RefusalIsFor reader, std::int64_t now_ns,
+               std::int64_t timeout_ns = CHANGE_TIMEOUT_NS) {
+        waiting_.push_back({command, order, reader, now_ns + timeout_ns});
     }
     /// Motion has refused `order`; nothing when it is none of these.
     struct Refused {
@@ -40,17 +41,17 @@ class MotionOrders {
     /// `isAnswered` tells it of an order.
     template <class Predicate>
     std::optional<Ending> next(const Predicate &isAnswered, std::int64_t now_ns) {
-        if (waiting_.empty()) {
-            return std::nullopt;
+        for (auto at = waiting_.begin(); at != waiting_.end(); ++at) {
+            const bool isDone = isAnswered(at->order);
+            if (isDone || now_ns > at->deadline_ns) {
+                const Ending done{at->command, Progress::DONE, {}};
+                const Ending late{at->command, Progress::FAILED,
+                                  "the motion controller does not answer: does millwright-rt run?"};
+                waiting_.erase(at);
+                return isDone ? done : late;
+            }
         }
-        const Waiting oldest = waiting_.front();
-        const bool isDone = isAnswered(oldest.order);
-        if (!isDone && now_ns <= oldest.deadline_ns) {
-            return std::nullopt;
-        }
-        waiting_.pop_front();
-        return isDone ? Ending{oldest.command, Progress::DONE, {}}
-                      : Ending{oldest.command, Progress::FAILED, "the motion controller does not answer"};
+        return std::nullopt;
     }
 
   private:

@@ -123,7 +123,7 @@ TEST_F(ReaderTest, BeginsWhereTheMachineStands_D2) {
 TEST_F(ReaderTest, AnAbortReturnsToTheExecutedBlockAndAnnouncesItsOffsets_D2) {
     reader.begin_history();
     EXPECT_EQ(reader.execute("G21 G10 L2 P1 X5"), interp::Step::FILE_END);
-    reader.mark_all_executed();
+    reader.mark_executed(reader.canon().reads());
     EXPECT_EQ(reader.execute("G10 L2 P1 X7"), interp::Step::FILE_END);
     EXPECT_EQ(reader.execute("G20 G91 F3 S100"), interp::Step::FILE_END);
     EXPECT_EQ(reader.execute("#31=7"), interp::Step::FILE_END);
@@ -163,7 +163,7 @@ TEST_F(ReaderTest, EveryStepAheadCountsSoThatReadingHasABound_D2) {
         EXPECT_EQ(reader.execute("(nothing to do)"), interp::Step::FILE_END);
     }
     EXPECT_EQ(reader.count_ahead(), 10U);
-    reader.mark_all_executed();
+    reader.mark_executed(reader.canon().reads());
     EXPECT_EQ(reader.count_ahead(), 0U);
 }
 

@@ -181,14 +181,14 @@ void judge(const std::string &path, Count &count) {
         ASSERT_NE(outcome, BlockSearch::Outcome::GOING);
         ASSERT_TRUE(shop.reader.queue().empty()) << "nothing is asked of the machine";
         if (outcome == BlockSearch::Outcome::REFUSED) {
-            EXPECT_NE(shop.reader.search().refusal(), "");
-            ++count.refusals[kind_of(shop.reader.search().refusal())];
+            EXPECT_NE(shop.reader.search()->refusal(), "");
+            ++count.refusals[kind_of(shop.reader.search()->refusal())];
             shop.reader.cancel_search();
             continue;
         }
         ++count.accepted;
         ASSERT_TRUE(first_at.contains(line));
-        const FoundModes found = shop.reader.search().found();
+        const FoundModes found = shop.reader.search()->found();
         shop.reader.accept_search();
         // The approach brings the machine there, while the interpreter reads ahead.
         shop.ahead = found.settings;
@@ -257,8 +257,8 @@ class SearchTest : public testing::Test {
         while (outcome == BlockSearch::Outcome::GOING) {
             outcome = shop.reader.step_search(10);
         }
-        found = shop.reader.search().found();
-        const std::string why = shop.reader.search().refusal();
+        found = shop.reader.search()->found();
+        const std::string why = shop.reader.search()->refusal();
         shop.reader.cancel_search();
         return why;
     }

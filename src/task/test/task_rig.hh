@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -20,9 +21,16 @@ namespace mw::task {
 
 namespace fs = std::filesystem;
 
-class NoParameters final : public interp::ParameterSource {
+/// None, but pins that a test makes.
+class TestParameters final : public interp::ParameterSource {
+  public:
+    std::function<double()> on_hal_value;
+
+  private:
     std::optional<double> ini_value(std::string_view, std::string_view) const override { return {}; }
-    std::optional<double> hal_value(std::string_view) const override { return {}; }
+    std::optional<double> hal_value(std::string_view) const override {
+        return on_hal_value ? std::optional(on_hal_value()) : std::nullopt;
+    }
 };
 
 class LoopedIo final : public IoPort {
@@ -123,7 +131,7 @@ class TaskTest : public testing::Test {
     fs::path folder;
     LoopedIo io;
     test::OneTool tools;
-    NoParameters parameters;
+    TestParameters parameters;
     mailbox::Memory mailbox = mailbox::Memory::in_process();
     Task task;
     client::Client client = *client::Client::join(mailbox.segment());

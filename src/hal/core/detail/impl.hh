@@ -36,6 +36,7 @@ struct ControllerWatch {
     std::uint32_t *is_gone;
     const std::uint32_t *is_safe;
     int comp_id;
+    std::uint32_t *looks = nullptr;  ///< null: it does not want to know
 };
 
 /// What runs one HAL thread in the host.
@@ -92,6 +93,8 @@ struct Hal::Impl {
     /// Nobody ends the components of this process before spare_process(0), whoever reaps: the machine that it
     /// controlled brakes through their outputs.
     void spare_process(std::int32_t pid);
+    /// Its process is stopped or hangs: its bit outputs take their safe values until it writes them again.
+    void rest_process(std::int32_t pid);
     void point_slot(const detail::PinRecord &pin, detail::Offset value) noexcept;
     detail::Offset value_of(const detail::PinRecord &pin) const noexcept;
     template <class Change>

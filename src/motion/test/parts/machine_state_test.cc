@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The small parts: power and mode, watchdog, outputs.
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -40,22 +41,51 @@ TEST(WatchdogPart, ATaskThatStandsStillIsFoundOnceItsTimeIsOver) {
     EXPECT_EQ(take(watchdog, SetWatchdog{true, 0}).reason, Reason::OUT_OF_RANGE);
     ASSERT_EQ(take(watchdog, SetWatchdog{true, 0.01}).reason, Reason::NONE);
     for (std::uint64_t n = 1; n <= 100; ++n) {
-        ASSERT_FALSE(step(watchdog, n, false, 1e-3)) << "it counts";
+        ASSERT_FALSE(step(watchdog, {n, 0, false}, 1e-3)) << "it counts";
     }
     int found = 0;
     for (int n = 0; n < 100; ++n) {
-        found += step(watchdog, 100, false, 1e-3) ? 1 : 0;
+        found += step(watchdog, {100, 0, false}, 1e-3) ? 1 : 0;
     }
     EXPECT_EQ(found, 1);
     EXPECT_TRUE(watchdog.isLost);
-    EXPECT_FALSE(step(watchdog, 101, false, 1e-3));
+    EXPECT_FALSE(step(watchdog, {101, 0, false}, 1e-3));
     EXPECT_FALSE(watchdog.isLost);
 }
 
 TEST(WatchdogPart, TheKernelsWordCountsWithoutAnyTime) {
     Watchdog watchdog;
-    EXPECT_TRUE(step(watchdog, 1, true, 1e-3));
+    EXPECT_TRUE(step(watchdog, {1, 0, true}, 1e-3));
     EXPECT_TRUE(watchdog.isLost);
+}
+
+/// The watchdog's time of 0.5 s, with a host that looks every 50 ms until `looked_s`.
+double found_after_s(double looked_s) {
+    Watchdog watchdog;
+    constexpr int LOOK = 50;
+    for (int n = 1; n <= 10000; ++n) {
+        const double now_s = n * 1e-3;
+        const auto looks = static_cast<std::uint64_t>(std::min(now_s, looked_s) * 1000) / LOOK + 1;
+        watchdog.isOn = true;
+        if (step(watchdog, {1, looks, false}, 1e-3)) {
+            return now_s;
+        }
+    }
+    return 0;
+}
+
+TEST(WatchdogPart, TimeInWhichNoOrdinaryThreadRunsCountsAQuarter) {
+    EXPECT_NEAR(found_after_s(10), 0.5, 0.01);
+    EXPECT_NEAR(found_after_s(0), 0.1 + 4 * 0.4, 0.06);
+    EXPECT_NEAR(found_after_s(0.2), 0.3 + 4 * 0.2, 0.06);
+}
+
+TEST(WatchdogPart, AGapOfTheServoThreadIsFoundOnce) {
+    Watchdog watchdog;
+    EXPECT_EQ(gap_s(watchdog, 5000000000), 0) << "the first cycle";
+    EXPECT_EQ(gap_s(watchdog, 5001000000), 0);
+    EXPECT_NEAR(gap_s(watchdog, 5501000000), 0.5, 1e-9);
+    EXPECT_EQ(gap_s(watchdog, 5502000000), 0);
 }
 
 TEST(OutputsPart, OutputsAreSetAtOnceAndByThePath) {

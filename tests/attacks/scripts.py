@@ -1,0 +1,92 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Python in G-code that sleeps, never ends, or wants to end the process: stops are carried out meanwhile, the machine stays up, and
+SIGTERM ends it.
+
+usage: scripts.py BIN_FOLDER ROOT [NAME]
+"""
+import pathlib
+import subprocess
+import sys
+import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / 'e2e'))
+from mill_by_hand import Findings  # noqa: E402  pylint: disable=wrong-import-position
+from rig import ABORT_S, END_S, Machine  # noqa: E402  pylint: disable=wrong-import-position
+
+LONG = 6.0
+
+
+def with_python(text):
+    return text + '\n[PYTHON]\nTOPLEVEL = toplevel.py\n'
+
+
+def cut_then(machine, python):
+    """Cuts a line of 20 s, with `python` behind it."""
+    machine.cut(f'G21 G90 G64 F300\nM3 S500\nG1 X100\n;py,{python}\nG1 X0\nM2\n')
+
+
+def sleep(machine, found):
+    cut_then(machine, f'import time; time.sleep({LONG})')
+    busy = machine.until(lambda: any('the interpreter has been busy' in text for text in machine.messages), 10)
+    found.expect(busy and machine.stat.current_vel > 0 and machine.cuts_on(0.5), 'it cuts on while a script sleeps', machine.messages)
+    took = machine.abort_s()
+    found.expect(took < ABORT_S, f'an abort while a script sleeps is answered in {took * 1000:.0f} ms')
+    found.expect(machine.until(lambda: machine.stat.current_vel == 0, 1), 'the axes stop')
+    found.expect(machine.until(lambda: machine.stat.interp_state == machine.linuxcnc.INTERP_IDLE, LONG + 2), 'the interpreter comes back')
+    found.expect(machine.stat.task_state == machine.linuxcnc.STATE_ON, 'the machine stays on', machine.messages)
+    found.expect(machine.run('G21 G90\nG0 X1\nM2\n') and abs(machine.stat.actual_position[0] - 1) < 0.01, 'the next program runs', machine.messages)
+    took = machine.end_s()
+    found.expect(took < END_S, f'SIGTERM ends it in {took:.1f} s')
+
+
+def estop(machine, found):
+    cut_then(machine, f'import time; time.sleep({LONG})')
+    machine.until(lambda: False, 0.5)
+    begin = time.monotonic()
+    machine.command.state(machine.linuxcnc.STATE_ESTOP)
+    machine.command.wait_complete()
+    took = time.monotonic() - begin
+    found.expect(took < ABORT_S, f'an emergency stop while a script sleeps is answered in {took * 1000:.0f} ms')
+    found.expect(machine.until(lambda: not machine.stat.enabled and not machine.stat.spindle[0]['enabled'], 1), 'the drives and the spindle are off')
+
+
+def end(machine, found):
+    cut_then(machine, 'while True: pass')
+    found.expect(machine.until(lambda: any('the interpreter has been busy' in text for text in machine.messages), 10), 'the operator is told', machine.messages)
+    took = machine.end_s()
+    found.expect(took < END_S, f'SIGTERM ends a machine with an endless script in {took:.1f} s', machine.text())
+
+
+def leave(machine, found):
+    for call in ('_exit(0)', 'abort()'):
+        found.expect(machine.run(f';py,import os; os.{call}\nM2\n'), f'os.{call} ends the program')
+        found.expect(machine.process.poll() is None and any('would end the machine' in text for text in machine.messages), f'os.{call} is an error', machine.messages)
+    found.expect(machine.run(';py,import os; os.fork() or os._exit(0)\nM2\n') and not machine.messages, 'a child of a script ends', machine.messages)
+    took = machine.end_s()
+    found.expect(took < END_S, f'SIGTERM ends it in {took:.1f} s')
+
+
+ATTACKS = {'sleep': sleep, 'estop': estop, 'end': end, 'leave': leave}
+
+
+def attack(programs, root, name):
+    found = Findings()
+    machine = Machine(programs, root, f'scripts-{name}', with_python)
+    try:
+        (machine.ini.parent / 'toplevel.py').write_text('')
+        machine.start()
+        ATTACKS[name](machine, found)
+    finally:
+        machine.clean()
+    return found.status()
+
+
+def main():
+    if len(sys.argv) > 3:
+        return attack(*sys.argv[1:4])
+    return max(subprocess.run([sys.executable, __file__, *sys.argv[1:3], name], check=False).returncode for name in ATTACKS)
+
+
+if __name__ == '__main__':
+    sys.exit(main())

@@ -1,0 +1,87 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A process of a machine that cuts is stopped by SIGSTOP and continued: what moves, turns and flows stops, stops are not reported as
+done where they are not, and the operator reads which process it was.
+
+usage: stopped.py BIN_FOLDER ROOT [NAME]
+"""
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / 'e2e'))
+from mill_by_hand import Findings  # noqa: E402  pylint: disable=wrong-import-position
+from rig import Machine  # noqa: E402  pylint: disable=wrong-import-position
+
+
+def realtime_process(machine):
+    instance = machine.env['MILLWRIGHT_INSTANCE']
+    for folder in pathlib.Path('/proc').glob('[0-9]*'):
+        try:
+            words = (folder / 'cmdline').read_bytes().split(b'\0')
+        except OSError:
+            continue
+        if words[0].endswith(b'millwright-rt') and instance.encode() in b' '.join(words):
+            return int(folder.name)
+    raise AssertionError('no millwright-rt of this instance')
+
+
+def realtime(machine, found):
+    machine.cut()
+    process = realtime_process(machine)
+    os.kill(process, signal.SIGSTOP)
+    try:
+        told = machine.until(lambda: any('has given no sign' in text for text in machine.messages), 1)
+        found.expect(told, 'task reports that motion does not run', machine.messages)
+        begin = time.monotonic()
+        machine.command.abort()
+        answer = machine.command.wait_complete(2)
+        took = time.monotonic() - begin
+        found.expect(answer == machine.linuxcnc.RCS_ERROR and took < 0.2, f'an abort that nobody carries out: answer {answer} after {took:.2f} s')
+    finally:
+        os.kill(process, signal.SIGCONT)
+    found.expect(machine.until(lambda: any('did not run for' in text and ', while axes moved' in text for text in machine.messages), 2), 'motion reports its gap', machine.messages)
+    found.expect(machine.until(lambda: not machine.stat.enabled, 1), 'the drives are off')
+
+
+def task(machine, found):
+    import hal  # pylint: disable=import-outside-toplevel
+    machine.cut()
+    found.expect(hal.get_value('iocontrol.0.coolant-flood'), 'coolant runs')
+    machine.process.send_signal(signal.SIGSTOP)
+    try:
+        time.sleep(1.2)
+        found.expect(not hal.get_value('motion.motion-enabled') and not hal.get_value('spindle.0.on'), 'motion and spindle are off')
+        found.expect(not hal.get_value('iocontrol.0.coolant-flood'), 'coolant is off')
+    finally:
+        machine.process.send_signal(signal.SIGCONT)
+    found.expect(machine.until(lambda: any('the task process (millwright start) did not run' in text for text in machine.messages), 2), 'motion reports it', machine.messages)
+    found.expect(machine.until(lambda: any('task (millwright start) did not run for 1.' in text and 'it was stopped' in text for text in machine.messages), 1), 'task reports why', machine.messages)
+    found.expect(machine.stat.task_state != machine.linuxcnc.STATE_ON and not hal.get_value('iocontrol.0.coolant-flood'), 'the machine stays off')
+
+
+ATTACKS = {'realtime': realtime, 'task': task}
+
+
+def attack(programs, root, name):
+    found = Findings()
+    machine = Machine(programs, root, f'stopped-{name}')
+    try:
+        machine.start()
+        ATTACKS[name](machine, found)
+    finally:
+        machine.clean()
+    return found.status()
+
+
+def main():
+    if len(sys.argv) > 3:
+        return attack(*sys.argv[1:4])
+    return max(subprocess.run([sys.executable, __file__, *sys.argv[1:3], name], check=False).returncode for name in ATTACKS)
+
+
+if __name__ == '__main__':
+    sys.exit(main())
