@@ -70,6 +70,22 @@ export function whenLost(act: () => void): void {
   onLost.push(act);
 }
 
+const onStatus: (() => void)[] = [];
+
+/** When `isTrue` of a status that comes from now on, or after `ms` when it never is. */
+export async function untilStatus(isTrue: (status: MachineStatus) => boolean, ms = 2000): Promise<void> {
+  const deadline = performance.now() + ms;
+  do {
+    await new Promise<void>((done) => {
+      const timer = setTimeout(done, ms);
+      onStatus.push(() => {
+        clearTimeout(timer);
+        done();
+      });
+    });
+  } while (performance.now() < deadline && !(machine.status !== null && isTrue(machine.status)));
+}
+
 export function view(): View {
   return machine;
 }
@@ -145,6 +161,7 @@ const link = new Link(
       } else {
         mergeDelta(machine.status as unknown as Record<string, unknown>, delta);
       }
+      onStatus.splice(0).forEach((act) => act());
       const now = machine.status;
       if (now !== null) {
         record(now.time_ns * 1e-9, now.trajectory.current_velocity, now.joints.slice(0, now.trajectory.num_joints).map((one) => one.ferror));
