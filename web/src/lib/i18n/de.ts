@@ -230,13 +230,8 @@ export const de: Catalogue = {
 
   'messages.title': 'Meldungen',
   'messages.none': 'Keine Meldungen',
-  'messages.clear': 'Weglegen',
-  'messages.errors': '{count} neue',
   'messages.all': 'Alle Meldungen zeigen',
-  'messages.more': '{count} weitere',
-  'messages.dismiss': 'Bestätigen',
   'messages.dismiss_all': 'Alle bestätigen',
-  'messages.now': 'Jetzt',
   'message.OPERATOR_ERROR': 'Fehler',
   'message.OPERATOR_TEXT': 'Hinweis',
   'message.OPERATOR_DISPLAY': 'Programm',

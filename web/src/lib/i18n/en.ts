@@ -230,13 +230,8 @@ export const en = {
 
   'messages.title': 'Messages',
   'messages.none': 'No messages',
-  'messages.clear': 'Put away',
-  'messages.errors': '{count} new',
   'messages.all': 'Show all messages',
-  'messages.more': '{count} more',
-  'messages.dismiss': 'Dismiss',
   'messages.dismiss_all': 'Dismiss all',
-  'messages.now': 'Now',
   'message.OPERATOR_ERROR': 'Error',
   'message.OPERATOR_TEXT': 'Note',
   'message.OPERATOR_DISPLAY': 'Program',

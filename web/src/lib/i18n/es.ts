@@ -230,13 +230,8 @@ export const es: Catalogue = {
 
   'messages.title': 'Mensajes',
   'messages.none': 'No hay mensajes',
-  'messages.clear': 'Guardar',
-  'messages.errors': '{count} nuevos',
   'messages.all': 'Mostrar todos los mensajes',
-  'messages.more': '{count} más',
-  'messages.dismiss': 'Descartar',
   'messages.dismiss_all': 'Descartar todos',
-  'messages.now': 'Ahora',
   'message.OPERATOR_ERROR': 'Error',
   'message.OPERATOR_TEXT': 'Nota',
   'message.OPERATOR_DISPLAY': 'Programa',
