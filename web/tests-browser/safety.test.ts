@@ -186,6 +186,63 @@ describe('messages', () => {
   });
 });
 
+describe('three messages', () => {
+  const other = async (width: number, height: number): Promise<Page> => rig.page({ viewport: { width, height } });
+  async function raise(screen: Page, count: number): Promise<void> {
+    for (let i = 0; i < count; ++i) {
+      await page.getByTestId('mdi-line').fill(`G1 Q${i + 1}`);
+      await page.getByTestId('mdi-send').click();
+      await untilText(page, 'run-state', 'Idle');
+    }
+    await screen.getByTestId('notice').first().waitFor();
+  }
+
+  it.each([[800, 480, 'jog'], [390, 844, 'jog'], [390, 844, 'process'], [390, 844, 'programs'], [1280, 800, 'programs']])('cover no control and move none at %i by %i in %s', async (width, height, id) => {
+    const screen = await other(width, height);
+    await screen.getByTestId('strip-dismiss').click();
+    await screen.getByTestId(`tab-${id}`).click();
+    await sleep(300);
+    const places = (): Promise<string[]> => screen.evaluate(() => [...document.querySelectorAll<HTMLElement>('.app button, .app input, .app select')].filter((one) => one.closest('[data-testid="strip"]') === null).map((one) => {
+      const { x, y, width: wide, height: high } = one.getBoundingClientRect();
+      return `${one.dataset['testid'] ?? one.textContent} ${[x, y, wide, high].map(Math.round).join(' ')}`;
+    }));
+    const before = await places();
+    await raise(screen, 3);
+    expect(await places()).toEqual(before);
+    const covered = await screen.evaluate(() => {
+      const strip = document.querySelector('[data-testid="strip"]')?.getBoundingClientRect();
+      const notice = document.querySelector('[data-testid="notice"]')?.getBoundingClientRect();
+      const found = [...document.querySelectorAll<HTMLElement>('main button, main input, footer button')].filter((one) => {
+        const clip = one.closest('.content, .left, .right, footer')?.getBoundingClientRect();
+        const box = one.getBoundingClientRect();
+        const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+        const isInView = clip !== undefined && box.width > 1 && y > clip.top && y < clip.bottom && x > clip.left && x < clip.right;
+        return isInView && document.elementFromPoint(x, y)?.closest('[data-testid="strip"], .notice') != null;
+      });
+      return { covered: found.map((one) => one.outerHTML.slice(0, 80)), isInside: strip !== undefined && notice !== undefined && notice.top >= strip.top && notice.bottom <= strip.bottom };
+    });
+    expect(covered).toEqual({ covered: [], isInside: true });
+    await screen.context().close();
+  });
+
+  it('are listed on demand, and dismissed by one touch also for the page that is loaded again', async () => {
+    const screen = await other(800, 480);
+    await screen.getByTestId('strip-all').click();
+    await untilText(screen, 'strip-list', /Q/);
+    expect(await screen.getByTestId('strip-list').locator('li').count()).toBeGreaterThan(2);
+    await screen.getByTestId('strip-list-dismiss').click();
+    await screen.getByTestId('notice').waitFor({ state: 'detached' });
+    await screen.reload();
+    await untilText(screen, 'state', 'On');
+    await sleep(500);
+    expect(await screen.getByTestId('notice').count()).toBe(0);
+    await raise(screen, 1);
+    await screen.getByTestId('tab-messages').click();
+    await untilText(screen, 'messages', /Q/);
+    await screen.context().close();
+  });
+});
+
 describe('an override on a phone', () => {
   let phone: Page;
   async function gesture(from: { x: number; y: number }, by: { x: number; y: number }, steps = 10): Promise<void> {
@@ -211,9 +268,6 @@ describe('an override on a phone', () => {
     await phone.getByTestId('tab-process').click();
     await untilText(phone, 'feed-override-value', '100 %');
     await sleep(300);
-    while ((await phone.getByTestId('notice').count()) > 0) {
-      await phone.getByTestId('notice').first().getByRole('button').click();
-    }
     const track = await middle('feed-override');
     for (const x of [track.x - 0.4 * track.width, track.x + 0.4 * track.width]) {
       await gesture({ x, y: track.y }, { x: 15, y: -200 });
