@@ -188,13 +188,13 @@ describe('messages', () => {
 
 describe('three messages', () => {
   const other = async (width: number, height: number): Promise<Page> => rig.page({ viewport: { width, height } });
+  let raised = 0;
   async function raise(screen: Page, count: number): Promise<void> {
     for (let i = 0; i < count; ++i) {
-      await page.getByTestId('mdi-line').fill(`G1 Q${i + 1}`);
+      await page.getByTestId('mdi-line').fill(`(MSG, message ${++raised})`);
       await page.getByTestId('mdi-send').click();
-      await untilText(page, 'run-state', 'Idle');
+      await untilText(screen, 'notice', new RegExp(`message ${raised}`));
     }
-    await screen.getByTestId('notice').first().waitFor();
   }
 
   it.each([[800, 480, 'jog'], [390, 844, 'jog'], [390, 844, 'process'], [390, 844, 'programs'], [1280, 800, 'programs']])('cover no control and move none at %i by %i in %s', async (width, height, id) => {
@@ -227,9 +227,11 @@ describe('three messages', () => {
 
   it('are listed on demand, and dismissed by one touch also for the page that is loaded again', async () => {
     const screen = await other(800, 480);
+    await raise(screen, 3);
     await screen.getByTestId('strip-all').click();
-    await untilText(screen, 'strip-list', /Q/);
-    expect(await screen.getByTestId('strip-list').locator('li').count()).toBeGreaterThan(2);
+    for (const number of [raised - 2, raised - 1, raised]) {
+      await untilText(screen, 'strip-list', new RegExp(`message ${number}`));
+    }
     await screen.getByTestId('strip-list-dismiss').click();
     await screen.getByTestId('notice').waitFor({ state: 'detached' });
     await screen.reload();
@@ -237,8 +239,9 @@ describe('three messages', () => {
     await sleep(500);
     expect(await screen.getByTestId('notice').count()).toBe(0);
     await raise(screen, 1);
+    expect(await screen.getByTestId('strip-all').innerText()).toBe('…');
     await screen.getByTestId('tab-messages').click();
-    await untilText(screen, 'messages', /Q/);
+    await untilText(screen, 'messages', new RegExp(`message ${raised - 1}`));
     await screen.context().close();
   });
 });
