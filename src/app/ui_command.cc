@@ -184,8 +184,7 @@ void print_address(const std::string &machine, int port, const std::string &fold
                              "Web interface of {} for programs: http://127.0.0.1:{}/api/\n", machine, port)));
         return;
     }
-    fmt::print("{}",
-               language::shown(fmt::format("screen of {}: http://127.0.0.1:{}/\n", machine, port)));
+    fmt::print("{}", language::shown(fmt::format("screen of {}: http://127.0.0.1:{}/\n", machine, port)));
 }
 
 int serve(const UiWords &words, const machine::LoadedConfig &loaded, diag::Sink &sink) {

@@ -199,9 +199,11 @@ describe('three messages', () => {
 
   it.each([[800, 480, 'jog'], [390, 844, 'jog'], [390, 844, 'process'], [390, 844, 'programs'], [1280, 800, 'programs']])('cover no control and move none at %i by %i in %s', async (width, height, id) => {
     const screen = await other(width, height);
-    await screen.getByTestId('strip-dismiss').click();
     await screen.getByTestId(`tab-${id}`).click();
     await sleep(300);
+    if ((await screen.getByTestId('strip-dismiss').count()) > 0) {
+      await screen.getByTestId('strip-dismiss').click();
+    }
     const places = (): Promise<string[]> => screen.evaluate(() => [...document.querySelectorAll<HTMLElement>('.app button, .app input, .app select')].filter((one) => one.closest('[data-testid="strip"]') === null).map((one) => {
       const { x, y, width: wide, height: high } = one.getBoundingClientRect();
       return `${one.dataset['testid'] ?? one.textContent} ${[x, y, wide, high].map(Math.round).join(' ')}`;
@@ -209,19 +211,20 @@ describe('three messages', () => {
     const before = await places();
     await raise(screen, 3);
     expect(await places()).toEqual(before);
-    const covered = await screen.evaluate(() => {
-      const strip = document.querySelector('[data-testid="strip"]')?.getBoundingClientRect();
-      const notice = document.querySelector('[data-testid="notice"]')?.getBoundingClientRect();
-      const found = [...document.querySelectorAll<HTMLElement>('main button, main input, footer button')].filter((one) => {
-        const clip = one.closest('.content, .left, .right, footer')?.getBoundingClientRect();
-        const box = one.getBoundingClientRect();
-        const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
-        const isInView = clip !== undefined && box.width > 1 && y > clip.top && y < clip.bottom && x > clip.left && x < clip.right;
-        return isInView && document.elementFromPoint(x, y)?.closest('[data-testid="strip"], .notice') != null;
+    const found = await screen.evaluate(() => {
+      const boxOf = (one: Element): DOMRect => one.getBoundingClientRect();
+      const strip = document.querySelector('[data-testid="strip"]');
+      if (strip === null) {
+        return ['no strip'];
+      }
+      const [own, notice] = [boxOf(strip), boxOf(document.querySelector('[data-testid="notice"]') ?? strip)];
+      const others = [...document.querySelectorAll('header, footer, .tabs, .content, .left, .right')].filter((one) => {
+        const box = boxOf(one);
+        return box.height > 0 && box.bottom > own.top + 1 && box.top < own.bottom - 1 && box.right > own.left && box.left < own.right;
       });
-      return { covered: found.map((one) => one.outerHTML.slice(0, 80)), isInside: strip !== undefined && notice !== undefined && notice.top >= strip.top && notice.bottom <= strip.bottom };
+      return [...others.map((one) => `covers ${one.className || one.tagName}`), ...(notice.top < own.top || notice.bottom > own.bottom ? ['the message leaves the strip'] : [])];
     });
-    expect(covered).toEqual({ covered: [], isInside: true });
+    expect(found).toEqual([]);
     await screen.context().close();
   });
 
