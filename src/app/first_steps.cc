@@ -188,19 +188,21 @@ Result<std::string> select_in_browser(int port, bool isOpening) {
     if (!setup.has_value()) {
         return std::unexpected(setup.error());
     }
+    if (const auto found = check_screen(setup->screen_folder); !found.has_value()) {
+        return std::unexpected(found.error());
+    }
     auto server = ui::web::Server::listen({.port = port});
     if (!server.has_value()) {
         return std::unexpected(server.error());
     }
     const std::string address = fmt::format("http://127.0.0.1:{}/#key={}", (*server)->port(), setup->key);
-    const std::string folder = setup->screen_folder;
     fmt::print("choose a machine, or make one: {}\n", address);
     std::fflush(stdout);
     ui::web::Worker disk([&server](std::function<void()> act) { (*server)->post(std::move(act)); });
     ui::web::FirstSteps page(disk, std::move(*setup));
     Browser browser;
     if (isOpening) {
-        browser.open(address, folder);
+        browser.open(address);
     }
     std::int64_t end_ns = 0;
     while (stop_signal == 0 && (end_ns == 0 || now_ns() < end_ns)) {

@@ -26,12 +26,16 @@ std::string screen_folder(const std::string &given) {
     return given;
 }
 
-void Browser::open(const std::string &address, const std::string &folder) {
+Result<> check_screen(const std::string &folder) {
     std::error_code error;
-    if (!std::filesystem::is_regular_file(folder + "/index.html", error)) {
-        fmt::print(stderr, "no browser is opened: no screen is installed in {}\n", folder);
-        return;
+    if (std::filesystem::is_regular_file(folder + "/index.html", error)) {
+        return {};
     }
+    return fail("The screen is not installed: " + folder + "/index.html is missing", {},
+                "in the source folder, script/bootstrap --screen and script/screen build it");
+}
+
+void Browser::open(const std::string &address) {
     if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) {
         return;
     }

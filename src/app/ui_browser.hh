@@ -6,6 +6,8 @@
 
 #include <string>
 
+#include "base/result.hh"
+
 namespace mw::app {
 
 /// Where a screen is served that has no other port.
@@ -13,11 +15,13 @@ inline constexpr int SCREEN_PORT = 8850;
 
 /// Installed, and in the build folder; `given` where it is not empty.
 std::string screen_folder(const std::string &given);
+/// An error where the folder has no screen: an address of it would show an error in the browser.
+Result<> check_screen(const std::string &folder);
 
 class Browser {
   public:
-    /// Where there is a desktop and a screen to show; what opens it goes its own way.
-    void open(const std::string &address, const std::string &folder);
+    /// Where there is a desktop; what opens it goes its own way.
+    void open(const std::string &address);
     /// Now and then: whether what opens it has ended.
     void look();
 

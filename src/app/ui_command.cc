@@ -134,8 +134,8 @@ ui::web::ApiSetup setup_of(const UiWords &words, const machine::LoadedConfig &lo
 /// Until a signal comes.
 void run(ui::web::Server &server, const UiWords &words, const machine::LoadedConfig &loaded,
          ui::web::ApiSetup setup, diag::Sink &sink) {
-    const std::string address = fmt::format("http://127.0.0.1:{}/", server.port()),
-                      folder = setup.screen_folder;
+    const std::string address = fmt::format("http://127.0.0.1:{}/", server.port());
+    const bool hasScreen = check_screen(setup.screen_folder).has_value();
     SidePrograms programs(words.isDisplay ? tab_programs(setup.facts.tabs) : std::vector<std::string>{},
                           setup.facts.ini, 0);
     PathReaders readers(loaded, path_look(setup.facts));
@@ -161,8 +161,8 @@ void run(ui::web::Server &server, const UiWords &words, const machine::LoadedCon
     ui::web::Worker disk(post), hal_looks(post);
     ui::web::Api api(server, {disk, hal_looks}, std::move(setup), now_ns);
     Browser browser;
-    if (words.isOpening && std::getenv(BROWSER_WAITS) == nullptr) {
-        browser.open(address, folder);
+    if (words.isOpening && hasScreen && std::getenv(BROWSER_WAITS) == nullptr) {
+        browser.open(address);
     }
     ui::web::go_first();
     while (stop_signal == 0) {
@@ -174,6 +174,17 @@ void run(ui::web::Server &server, const UiWords &words, const machine::LoadedCon
     programs.ask_to_end();
     disk.end();
     hal_looks.end();
+}
+
+/// Without a screen the server is of use for programs alone.
+void print_address(const std::string &machine, int port, const std::string &folder, diag::Sink &sink) {
+    if (const auto found = check_screen(folder); !found.has_value()) {
+        sink.error(found.error());
+        fmt::print("{}", language::shown(fmt::format(
+                             "Web interface of {} for programs: http://127.0.0.1:{}/api/\n", machine, port)));
+        return;
+    }
+    fmt::print("{}", language::shown(fmt::format("screen of {}: http://127.0.0.1:{}/\n", machine, port)));
 }
 
 int serve(const UiWords &words, const machine::LoadedConfig &loaded, diag::Sink &sink) {
@@ -202,8 +213,7 @@ int serve(const UiWords &words, const machine::LoadedConfig &loaded, diag::Sink 
         sink.error(server.error());
         return 1;
     }
-    fmt::print("{}", language::shown(fmt::format("screen of {}: http://127.0.0.1:{}/\n", loaded.machine.name,
-                                                 (*server)->port())));
+    print_address(loaded.machine.name, (*server)->port(), setup.screen_folder, sink);
     if (door->has_value()) {
         fmt::print("{}", language::shown(door_text(**door, (*server)->remote_port(), secrets)));
     }

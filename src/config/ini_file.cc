@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -130,9 +131,7 @@ class IniParser {
         }
         section_ = name;
         isInBadSection_ = false;
-        if (!file_.hasSection(section_)) {
-            file_.heads_.push_back({section_, place});
-        }
+        file_.add_section(section_, place);
     }
 
     void strict_section(const std::string &name, bool hasMore, const SourcePlace &place) {
@@ -142,9 +141,8 @@ class IniParser {
         section_ = name;
         if (file_.hasSection(name)) {
             sink_.warning("Section '" + name + "' already exists. Merging...", place);
-        } else {
-            file_.heads_.push_back({name, place});
         }
+        file_.add_section(name, place);
     }
 
     void strict_entry(std::string_view body, const SourcePlace &place) {
@@ -163,7 +161,7 @@ class IniParser {
             stop(value.error().message, place);
             return;
         }
-        file_.entries_.push_back({section_, key, *value, place});
+        file_.add_entry({section_, key, *value, place});
     }
 
     void entry(const std::string &line, std::string_view body, SourcePlace place) {
@@ -201,7 +199,7 @@ class IniParser {
         const std::string_view value = trim(body.substr(equals + 1));
         place.column =
             static_cast<int>((value.empty() ? body.data() + equals + 1 : value.data()) - line.data()) + 1;
-        file_.entries_.push_back({section_, std::string(key), std::string(value), place});
+        file_.add_entry({section_, std::string(key), std::string(value), place});
     }
 
     void include(std::string_view name, const SourcePlace &place, int depth) {
@@ -285,55 +283,63 @@ std::string IniFile::resolve_path(std::string_view name) const {
     return folder() + '/' + expanded;
 }
 
+void IniFile::add_section(const std::string &name, const SourcePlace &place) {
+    if (sections_.try_emplace(name, Section{place}).second) {
+        section_names_.push_back(name);
+    }
+}
+
+void IniFile::add_entry(IniEntry entry) {
+    Section &section = sections_.find(entry.section)->second;
+    std::vector<std::size_t> &all = section.by_key[entry.key];
+    if (all.empty()) {
+        section.keys.push_back(entry.key);
+    }
+    all.push_back(entries_.size());
+    entries_.push_back(std::move(entry));
+}
+
+const std::vector<std::size_t> *IniFile::indices(std::string_view section, std::string_view key) const {
+    const auto found = sections_.find(section);
+    if (found == sections_.end()) {
+        return nullptr;
+    }
+    const auto entries = found->second.by_key.find(key);
+    return entries == found->second.by_key.end() ? nullptr : &entries->second;
+}
+
 bool IniFile::hasSection(std::string_view section) const {
-    return std::any_of(heads_.begin(), heads_.end(), [&](const SectionHead &h) { return h.name == section; });
+    return sections_.contains(section);
 }
 
 const IniEntry *IniFile::find(std::string_view section, std::string_view key, int number) const {
-    for (const IniEntry &entry : entries_) {
-        if (entry.section == section && entry.key == key && --number == 0) {
-            return &entry;
-        }
-    }
-    return nullptr;
+    const std::vector<std::size_t> *const all = indices(section, key);
+    const bool isThere = all != nullptr && number >= 1 && static_cast<std::size_t>(number) <= all->size();
+    return isThere ? &entries_[(*all)[static_cast<std::size_t>(number - 1)]] : nullptr;
 }
 
 std::vector<const IniEntry *> IniFile::find_all(std::string_view section, std::string_view key) const {
     std::vector<const IniEntry *> found;
-    for (const IniEntry &entry : entries_) {
-        if (entry.section == section && entry.key == key) {
-            found.push_back(&entry);
+    if (const std::vector<std::size_t> *const all = indices(section, key)) {
+        for (const std::size_t index : *all) {
+            found.push_back(&entries_[index]);
         }
     }
     return found;
 }
 
 std::vector<std::string> IniFile::sections() const {
-    std::vector<std::string> names;
-    for (const SectionHead &head : heads_) {
-        names.push_back(head.name);
-    }
-    return names;
+    return section_names_;
 }
 
 std::vector<std::string> IniFile::keys(std::string_view section) const {
-    std::vector<std::string> names;
-    for (const IniEntry &entry : entries_) {
-        const bool isNew = std::find(names.begin(), names.end(), entry.key) == names.end();
-        if (entry.section == section && isNew) {
-            names.push_back(entry.key);
-        }
-    }
-    return names;
+    const auto found = sections_.find(section);
+    return found == sections_.end() ? std::vector<std::string>() : found->second.keys;
 }
 
 SourcePlace IniFile::place_of_section(std::string_view section) const {
-    for (const SectionHead &head : heads_) {
-        if (head.name == section) {
-            return head.place;
-        }
-    }
-    return {path_, 0, 0};
+    const auto found = sections_.find(section);
+    return found == sections_.end() ? SourcePlace{path_, 0, 0} : found->second.place;
 }
 
 }  // namespace mw::config

@@ -3,6 +3,9 @@
 // facts).
 #pragma once
 
+#include <cstddef>
+#include <functional>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -57,14 +60,23 @@ class IniFile {
     SourcePlace place_of_section(std::string_view section) const;
 
   private:
-    struct SectionHead {
-        std::string name;
+    struct Section {
         SourcePlace place;
+        std::vector<std::string> keys{};  ///< each once, in the order of the file
+        /// Indices in entries_ of each key.
+        std::map<std::string, std::vector<std::size_t>, std::less<>> by_key{};
     };
     friend class IniParser;
 
+    /// The first header counts for place_of_section().
+    void add_section(const std::string &name, const SourcePlace &place);
+    /// Of a section that has been added.
+    void add_entry(IniEntry entry);
+    const std::vector<std::size_t> *indices(std::string_view section, std::string_view key) const;
+
     std::string path_;
-    std::vector<SectionHead> heads_;
+    std::vector<std::string> section_names_;  ///< in the order of the file
+    std::map<std::string, Section, std::less<>> sections_;
     std::optional<IniEntry> early_key_;
     std::vector<IniEntry> entries_;
 };

@@ -48,12 +48,16 @@ bool hasCommentAfter(std::string_view value) {
 
 }  // namespace
 
-diag::Diagnostic IniReader::with_comment_hint(diag::Diagnostic one) const {
-    const SourcePlace &place = one.what.place;
-    const bool isInComment = std::ranges::any_of(file_.entries(), [&place](const IniEntry &entry) {
-        return entry.place.line == place.line && entry.place.file == place.file &&
-               hasCommentAfter(entry.value);
-    });
+diag::Diagnostic IniReader::with_comment_hint(diag::Diagnostic one) {
+    if (!commented_.has_value()) {
+        commented_.emplace();
+        for (const IniEntry &entry : file_.entries()) {
+            if (hasCommentAfter(entry.value)) {
+                commented_->emplace(entry.place.file, entry.place.line);
+            }
+        }
+    }
+    const bool isInComment = commented_->contains({one.what.place.file, one.what.place.line});
     if (isInComment) {
         one.what.hint += one.what.hint.empty() ? "" : "; ";
         one.what.hint +=

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "config/ini_file.hh"
@@ -72,7 +73,7 @@ class IniReader {
     std::optional<double> number(const IniEntry &entry, const IniKey &key);
     std::optional<std::int64_t> whole(const IniEntry &entry, const IniKey &key);
 
-    diag::Diagnostic with_comment_hint(diag::Diagnostic one) const;
+    diag::Diagnostic with_comment_hint(diag::Diagnostic one);
 
     const IniFile &file_;
     diag::Sink *target_;
@@ -84,6 +85,8 @@ class IniReader {
     std::set<std::string> warned_twice_;
     std::set<std::string> reported_;  ///< [SECTION]KEY that is unknown; never suggested for another one
     std::set<std::string> missing_sections_;
+    /// File and line of values with a comment in them; empty until it is needed.
+    std::optional<std::set<std::pair<std::string, int>>> commented_;
 };
 
 }  // namespace mw::config

@@ -2,6 +2,7 @@
 #include "tool/table.hh"
 
 #include <algorithm>
+#include <unordered_map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -13,6 +14,9 @@ namespace mw::tool {
 namespace {
 
 constexpr int NOBODY = -1;
+
+/// The first index of each number.
+using FirstIndices = std::unordered_map<int, std::size_t>;
 
 /// The lines of a text without their ends.
 std::vector<std::string> lines_of(std::string_view text) {
@@ -123,23 +127,23 @@ void Table::take_text(std::string_view text, Reading &reading) {
     }
 }
 
-/// A tool that stands twice; two in one pocket of a random changer.
+/// A tool that is in the table twice; two in one pocket of a random changer.
 void Table::refuse_twice(Reading &reading) const {
+    FirstIndices of_tool, of_pocket;
     for (std::size_t i = 0; i < reading.tools.size(); ++i) {
         const ToolEntry &tool = reading.tools[i].entry;
-        const auto same =
-            std::find_if(reading.tools.begin(), reading.tools.begin() + static_cast<std::ptrdiff_t>(i),
-                         [this, &tool](const ReadTool &earlier) {
-                             return earlier.entry.toolno == tool.toolno ||
-                                    (isRandom() && earlier.entry.pocketno == tool.pocketno);
-                         });
-        if (same == reading.tools.begin() + static_cast<std::ptrdiff_t>(i)) {
+        std::size_t first = of_tool.try_emplace(tool.toolno, i).first->second;
+        if (isRandom()) {
+            first = std::min(first, of_pocket.try_emplace(tool.pocketno, i).first->second);
+        }
+        if (first == i) {
             continue;
         }
-        const bool isTool = same->entry.toolno == tool.toolno;
+        const ToolEntry &same = reading.tools[first].entry;
+        const bool isTool = same.toolno == tool.toolno;
         reading.skipped.warning(isTool ? fmt::format("tool {} is in the table twice", tool.toolno)
-                                       : fmt::format("tools {} and {} are in one pocket, P{}",
-                                                     same->entry.toolno, tool.toolno, tool.pocketno),
+                                       : fmt::format("tools {} and {} are in one pocket, P{}", same.toolno,
+                                                     tool.toolno, tool.pocketno),
                                 reading.place_of(reading.tools[i]));
     }
 }
@@ -177,9 +181,9 @@ Table Table::parse_leniently(std::string_view text, const std::string &path, dia
 
 /// Warns of what looks wrong, and marks what must not be used.
 void Table::check(Reading &reading) const {
-    for (std::size_t i = 0; i < reading.tools.size(); ++i) {
-        const ToolEntry &tool = reading.tools[i].entry;
-        const SourcePlace place = reading.place_of(reading.tools[i]);
+    for (const ReadTool &read : reading.tools) {
+        const ToolEntry &tool = read.entry;
+        const SourcePlace place = reading.place_of(read);
         if (tool.toolno == 0 && !isRandom()) {
             reading.doubts.warning("T0 stands for an empty spindle: a program cannot load this tool", place);
         }
@@ -193,36 +197,56 @@ void Table::check(Reading &reading) const {
                                                tool.toolno, tool.diameter),
                                    place);
         }
-        check_pocket(reading, i);
+    }
+    check_pockets(reading);
+    check_numbers(reading);
+}
+
+/// A tool in several lines.
+void Table::check_numbers(Reading &reading) {
+    FirstIndices of_tool;
+    for (std::size_t i = 0; i < reading.tools.size(); ++i) {
+        of_tool.try_emplace(reading.tools[i].entry.toolno, i);
     }
     for (std::size_t later = reading.tools.size(); later-- > 0;) {
         ReadTool &tool = reading.tools[later];
         const int number = tool.entry.toolno;
-        const auto earlier =
-            std::ranges::find(reading.tools, number, [](const ReadTool &t) { return t.entry.toolno; });
-        if (earlier - reading.tools.begin() >= static_cast<std::ptrdiff_t>(later)) {
+        const std::size_t first = of_tool.at(number);
+        if (first == later) {
             continue;
         }
-        const bool isSame = isSameTool(earlier->entry, tool.entry);
+        ReadTool &earlier = reading.tools[first];
+        const bool isSame = isSameTool(earlier.entry, tool.entry);
         reading.doubts.warning(
-            fmt::format("tool {} stands in lines {} and {}{}", number, reading.line_of(*earlier),
+            fmt::format("tool {} stands in lines {} and {}{}", number, reading.line_of(earlier),
                         reading.line_of(tool),
                         isSame ? ": the first one counts"
                                : " with different figures: it cannot be used until one of them goes"),
             reading.place_of(tool));
         tool.isUsable = false;
-        earlier->isUsable = earlier->isUsable && isSame;
+        earlier.isUsable = earlier.isUsable && isSame;
     }
 }
 
-void Table::check_pocket(Reading &reading, std::size_t later) const {
-    ReadTool &tool = reading.tools[later];
-    for (std::size_t i = 0; i < later; ++i) {
-        ReadTool &earlier = reading.tools[i];
-        if (earlier.entry.pocketno != tool.entry.pocketno || earlier.entry.toolno == tool.entry.toolno ||
-            (tool.entry.pocketno == 0 && !isRandom())) {
+/// Different tools in one pocket: each is compared with the first other tool there.
+void Table::check_pockets(Reading &reading) const {
+    struct Pocket {
+        std::size_t first;                  ///< index of its first tool
+        std::optional<std::size_t> second;  ///< of the first with another number
+    };
+    std::unordered_map<int, Pocket> pockets;
+    for (std::size_t later = 0; later < reading.tools.size(); ++later) {
+        ReadTool &tool = reading.tools[later];
+        if (tool.entry.pocketno == 0 && !isRandom()) {
             continue;
         }
+        Pocket &pocket = pockets.try_emplace(tool.entry.pocketno, Pocket{later, {}}).first->second;
+        const bool isOther = reading.tools[pocket.first].entry.toolno != tool.entry.toolno;
+        if (!isOther && !pocket.second.has_value()) {
+            continue;
+        }
+        ReadTool &earlier = reading.tools[isOther ? pocket.first : *pocket.second];
+        pocket.second = pocket.second.value_or(later);
         reading.doubts.warning(fmt::format("tools {} (line {}) and {} are in one pocket, P{}{}",
                                            earlier.entry.toolno, reading.line_of(earlier), tool.entry.toolno,
                                            tool.entry.pocketno,
@@ -231,7 +255,6 @@ void Table::check_pocket(Reading &reading, std::size_t later) const {
         if (isRandom()) {
             earlier.isUsable = tool.isUsable = false;
         }
-        return;
     }
 }
 

@@ -87,7 +87,8 @@ class Table {
     void take_tool(const Result<ToolEntry> &made, Reading &reading);
     void refuse_twice(Reading &reading) const;
     void check(Reading &reading) const;
-    void check_pocket(Reading &reading, std::size_t later) const;
+    static void check_numbers(Reading &reading);
+    void check_pockets(Reading &reading) const;
     void place(const Reading &reading);
     void clear_spindle();
     /// Who is in a pocket, -1: nobody.

@@ -4,7 +4,7 @@ import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import type { Page } from 'playwright-core';
 import { afterAll, afterEach, beforeAll, expect, it } from 'vitest';
-import { bringUp, errorsOf, Rig, showFailure, text, until, untilText } from './rig';
+import { bringUp, errorsOf, Rig, showFailure, sleep, text, until, untilText } from './rig';
 
 const TOUCH_MM = 12 - 4 / 2;
 const rig = new Rig((ini) => ini.replace('HALFILE = spindle_sim.hal\n', 'HALFILE = spindle_sim.hal\nHALFILE = probe.hal\n'));
@@ -13,7 +13,8 @@ let page: Page;
 beforeAll(async () => {
   writeFileSync(
     join(rig.ini, '../probe.hal'),
-    `loadrt wcomp names=wall\naddf wall servo-thread\nsetp wall.min ${TOUCH_MM}\nsetp wall.max 1000\nnet place joint.0.pos-fb => wall.in\nnet touch wall.out => motion.probe-input\n`,
+    `loadrt wcomp names=wall\nloadrt or2 names=touched\naddf wall servo-thread\naddf touched servo-thread\nsetp wall.min ${TOUCH_MM}\nsetp wall.max 1000
+net place joint.0.pos-fb => wall.in\nnet wall wall.out => touched.in0\nnet touch touched.out => motion.probe-input\n`,
   );
   await rig.startServer();
   await rig.startMachine();
@@ -24,11 +25,67 @@ afterAll(async () => {
   await rig.end();
 });
 
-it('is gated until all is homed', async () => {
+/** A person touches the tip of the probe. */
+async function touchByHand(): Promise<void> {
+  await untilText(page, 'probe-contact', 'open');
+  rig.setPin('touched.in1', '1');
+  await untilText(page, 'probe-contact', 'contact');
+  await untilText(page, 'probe-seen', 'contact seen');
+  rig.setPin('touched.in1', '0');
+  await untilText(page, 'probe-contact', 'open');
+}
+const isGated = async (id = 'find-X+'): Promise<boolean> => (await page.getByTestId(id).getAttribute('aria-disabled')) === 'true';
+
+it('is gated until all is homed and the contact was seen', async () => {
   await page.getByTestId('tab-probing').click();
-  expect(await page.getByTestId('find-X+').getAttribute('aria-disabled')).toBe('true');
+  expect(await isGated()).toBe(true);
   await bringUp(page);
-  expect(await page.getByTestId('find-X+').getAttribute('aria-disabled')).toBe('false');
+  await untilText(page, 'probe-hint', /touch its tip by hand/);
+  const before = rig.position(0);
+  await page.getByTestId('find-X+').click({ force: true });
+  await untilText(page, 'why', /touch its tip by hand/);
+  await sleep(400);
+  expect(rig.position(0)).toBe(before);
+  await touchByHand();
+  expect(await isGated()).toBe(false);
+});
+
+it('asks for the probe again after a change of tool and when the spindle has turned', async () => {
+  await page.getByTestId('mdi-line').fill('T3 M6');
+  await page.getByTestId('mdi-send').click();
+  await untilText(page, 'probe-in-spindle', /T3 drill/);
+  await untilText(page, 'probe-seen', 'contact not seen yet');
+  expect(await isGated()).toBe(true);
+  await touchByHand();
+  expect(await isGated()).toBe(false);
+  await page.getByTestId('spindle-set-0').fill('500');
+  await page.getByTestId('spindle-forward-0').click();
+  await untilText(page, 'probe-hint', /spindle is turning/);
+  await page.getByTestId('spindle-stop-0').click();
+  await untilText(page, 'probe-seen', 'contact not seen yet');
+  await touchByHand();
+});
+
+it('takes the contact of the setter for a tool length alone', async () => {
+  await page.getByTestId('mdi-line').fill('T1 M6');
+  await page.getByTestId('mdi-send').click();
+  await untilText(page, 'probe-in-spindle', /T1/);
+  await page.getByTestId('probe-tool').click();
+  await untilText(page, 'probe-hint', /Press the setter/);
+  await touchByHand();
+  expect(await isGated('find')).toBe(false);
+  await page.getByTestId('probe-edge').click();
+  await untilText(page, 'probe-hint', /touch its tip by hand/);
+  expect(await isGated()).toBe(true);
+  await touchByHand();
+});
+
+it('asks with which tool length a zero of Z is set', async () => {
+  await page.getByTestId('probe-system').selectOption('G54');
+  await page.getByTestId('find-Z-').click();
+  await untilText(page, 'length-choice', /T1 is in the spindle. No tool length is active.*wrong for Z/s);
+  await page.getByTestId('probe-length').getByText('Close').click();
+  await page.getByTestId('probe-system').selectOption({ index: 0 });
 });
 
 it('finds a face, tells where it is, and sets the zero there', async () => {

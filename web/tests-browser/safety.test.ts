@@ -186,6 +186,69 @@ describe('messages', () => {
   });
 });
 
+describe('three messages', () => {
+  const other = async (width: number, height: number): Promise<Page> => rig.page({ viewport: { width, height } });
+  let raised = 0;
+  async function raise(screen: Page, count: number): Promise<void> {
+    for (let i = 0; i < count; ++i) {
+      await page.getByTestId('mdi-line').fill(`(MSG, message ${++raised})`);
+      await page.getByTestId('mdi-send').click();
+      await untilText(screen, 'notice', new RegExp(`message ${raised}`));
+    }
+  }
+
+  it.each([[800, 480, 'jog'], [390, 844, 'jog'], [390, 844, 'process'], [390, 844, 'programs'], [1280, 800, 'programs']])('cover no control and move none at %i by %i in %s', async (width, height, id) => {
+    const screen = await other(width, height);
+    await screen.getByTestId(`tab-${id}`).click();
+    await sleep(300);
+    if ((await screen.getByTestId('strip-dismiss').count()) > 0) {
+      await screen.getByTestId('strip-dismiss').click();
+    }
+    const places = (): Promise<string[]> => screen.evaluate(() => [...document.querySelectorAll<HTMLElement>('.app button, .app input, .app select')].filter((one) => one.closest('[data-testid="strip"]') === null).map((one) => {
+      const { x, y, width: wide, height: high } = one.getBoundingClientRect();
+      return `${one.dataset['testid'] ?? one.textContent} ${[x, y, wide, high].map(Math.round).join(' ')}`;
+    }));
+    const before = await places();
+    await raise(screen, 3);
+    expect(await places()).toEqual(before);
+    const found = await screen.evaluate(() => {
+      const boxOf = (one: Element): DOMRect => one.getBoundingClientRect();
+      const strip = document.querySelector('[data-testid="strip"]');
+      if (strip === null) {
+        return ['no strip'];
+      }
+      const [own, notice] = [boxOf(strip), boxOf(document.querySelector('[data-testid="notice"]') ?? strip)];
+      const others = [...document.querySelectorAll('header, footer, .tabs, .content, .left, .right')].filter((one) => {
+        const box = boxOf(one);
+        return box.height > 0 && box.bottom > own.top + 1 && box.top < own.bottom - 1 && box.right > own.left && box.left < own.right;
+      });
+      return [...others.map((one) => `covers ${one.className || one.tagName}`), ...(notice.top < own.top || notice.bottom > own.bottom ? ['the message leaves the strip'] : [])];
+    });
+    expect(found).toEqual([]);
+    await screen.context().close();
+  });
+
+  it('are listed on demand, and dismissed by one touch also for the page that is loaded again', async () => {
+    const screen = await other(800, 480);
+    await raise(screen, 3);
+    await screen.getByTestId('strip-all').click();
+    for (const number of [raised - 2, raised - 1, raised]) {
+      await untilText(screen, 'strip-list', new RegExp(`message ${number}`));
+    }
+    await screen.getByTestId('strip-list-dismiss').click();
+    await screen.getByTestId('notice').waitFor({ state: 'detached' });
+    await screen.reload();
+    await untilText(screen, 'state', 'On');
+    await sleep(500);
+    expect(await screen.getByTestId('notice').count()).toBe(0);
+    await raise(screen, 1);
+    expect(await screen.getByTestId('strip-all').innerText()).toBe('…');
+    await screen.getByTestId('tab-messages').click();
+    await untilText(screen, 'messages', new RegExp(`message ${raised - 1}`));
+    await screen.context().close();
+  });
+});
+
 describe('an override on a phone', () => {
   let phone: Page;
   async function gesture(from: { x: number; y: number }, by: { x: number; y: number }, steps = 10): Promise<void> {
@@ -211,9 +274,6 @@ describe('an override on a phone', () => {
     await phone.getByTestId('tab-process').click();
     await untilText(phone, 'feed-override-value', '100 %');
     await sleep(300);
-    while ((await phone.getByTestId('notice').count()) > 0) {
-      await phone.getByTestId('notice').first().getByRole('button').click();
-    }
     const track = await middle('feed-override');
     for (const x of [track.x - 0.4 * track.width, track.x + 0.4 * track.width]) {
       await gesture({ x, y: track.y }, { x: 15, y: -200 });

@@ -105,9 +105,7 @@ describe('tools', () => {
     await page.getByTestId('tool-save').click();
     await until(async () => (await page.getByText(/pocket 77 is taken by tool 77/).count()) > 0, 'the refusal');
     await page.getByTestId('tool-dialog').getByRole('button', { name: 'Close' }).click();
-    while ((await page.getByTestId('notice').count()) > 0) {
-      await page.getByTestId('notice').getByRole('button').first().click();
-    }
+    await page.getByTestId('strip-dismiss').click();
     await page.getByTestId('edit-77').click();
     await page.getByTestId('tool-remove').click();
     await page.getByTestId('tool-remove').click();

@@ -197,5 +197,30 @@ TEST(Ini, BooleansInAllSpellings) {
     EXPECT_EQ(ini.sink.count_errors(), 1);
 }
 
+/// Comparing each section or key with each other takes longer than the timeout of the test.
+TEST(Ini, TwoHundredThousandSectionsAndKeysAreFoundWithoutComparingAll) {
+    constexpr int MANY = 200000;
+    std::string text;
+    for (int i = 0; i < MANY; ++i) {
+        text += "[S_" + std::to_string(i) + "]\nK = " + std::to_string(i) + " ; c\n";
+    }
+    text += "[LONG]\n";
+    for (int i = 0; i < MANY; ++i) {
+        text += "K_" + std::to_string(i) + " = x ; c\n";
+    }
+    Read ini(text);
+    for (int i = 0; i < MANY; ++i) {
+        const IniEntry *const entry = ini.file.find("S_" + std::to_string(i), "K");
+        ASSERT_NE(entry, nullptr);
+        ASSERT_EQ(entry->place.line, 2 * i + 2);
+        ASSERT_EQ(ini.file.find_all("LONG", "K_" + std::to_string(i)).size(), 1U);
+        ASSERT_EQ(ini.file.place_of_section("S_" + std::to_string(i)).line, 2 * i + 1);
+        ini.reader.sink().warning("each", entry->place);
+    }
+    EXPECT_EQ(ini.file.sections().size(), static_cast<std::size_t>(MANY + 1));
+    EXPECT_EQ(ini.file.keys("LONG").size(), static_cast<std::size_t>(MANY));
+    EXPECT_NE(ini.sink.all().back().what.hint.find("at the start of a line"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace mw::config

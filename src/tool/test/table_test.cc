@@ -226,5 +226,31 @@ TEST(ToolTable, TheSpindleIsEntryZero_G2) {
     EXPECT_EQ(table->index_of_pocket(1), 1);
 }
 
+/// Comparing each tool with each other takes longer than the timeout of the test.
+TEST(ToolTable, ThreeHundredThousandToolsAreReadWithoutComparingAll_I1) {
+    constexpr int MANY = 300000;
+    std::string different, in_one_pocket;
+    for (int i = 1; i <= MANY; ++i) {
+        const std::string tool = "T" + std::to_string(i);
+        different += tool + " P" + std::to_string(i) + " Z1\n";
+        in_one_pocket += tool + " P7 Z1\n";
+    }
+    const auto strict = Table::parse(different, "tool.tbl");
+    ASSERT_TRUE(strict);
+    EXPECT_EQ(strict->count(), MANY + 1);
+    diag::Sink none, same;
+    EXPECT_EQ(Table::parse_leniently(different, "tool.tbl", none).count(), MANY + 1);
+    EXPECT_TRUE(none.all().empty());
+    EXPECT_EQ(Table::parse_leniently(in_one_pocket, "tool.tbl", same).count(), MANY + 1);
+    EXPECT_EQ(same.all().size(), static_cast<std::size_t>(MANY - 1));
+}
+
+TEST(ToolTable, AToolIsComparedWithTheFirstOtherOneOfItsPocket_I1) {
+    const std::string told = warnings_of("T1 P5\nT1 P5\nT2 P5\nT1 P5\nT2 P5\n");
+    EXPECT_NE(told.find("tools 1 (line 1) and 2 are in one pocket, P5"), std::string::npos) << told;
+    EXPECT_NE(told.find("tools 2 (line 3) and 1 are in one pocket, P5"), std::string::npos) << told;
+    EXPECT_EQ(told.find("tools 1 (line 2) and"), std::string::npos) << told;
+}
+
 }  // namespace
 }  // namespace mw::tool

@@ -17,7 +17,8 @@
 namespace mw::ui::web {
 namespace {
 
-constexpr std::string_view API = "/api/", FILES = "/api/files/", HAL = "/api/hal/", SCOPE = "/api/scope";
+constexpr std::string_view API = "/api/", FILES = "/api/files/", HAL = "/api/hal/", SCOPE = "/api/scope",
+                           INPUTS = "/api/inputs";
 
 Response not_allowed(Role needed) {
     return error_response(403, fmt::format("this needs a token of the role {}", role_name(needed)));
@@ -154,6 +155,8 @@ void Api::answer_hal(const Request &request, Reply reply) {
     if (path == "/api/hal" && method == "GET") {
         const auto glob = request.query.find("glob");
         later([this, text = glob == request.query.end() ? "*" : glob->second] { return hal_.list(text); });
+    } else if (path == INPUTS && method == "GET") {
+        later([this] { return hal_.inputs(); });
     } else if (path.starts_with(HAL) && path.size() > HAL.size() && method == "PUT") {
         later([this, name = path.substr(HAL.size()), body = request.body] { return hal_.set(name, body); });
     } else if (path == "/api/questions" && method == "POST") {
@@ -177,7 +180,7 @@ void Api::answer(const Request &request, Reply reply) {
         return;
     }
     const bool isOfHal = path == "/api/hal" || path.starts_with(HAL) || path.starts_with(SCOPE);
-    if (isOfHal || path == "/api/questions") {
+    if (isOfHal || path == "/api/questions" || path == INPUTS) {
         answer_hal(request, std::move(reply));
         return;
     }

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "ui/web/hal_desk.hh"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <thread>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include "ui/web/documents.hh"
 
@@ -194,6 +198,31 @@ Response HalDesk::list(const std::string &glob) {
         json["params"].push_back(param_document(param));
     }
     return document(json);
+}
+
+Response HalDesk::inputs() {
+    hal::Host *const joined = host();
+    if (joined == nullptr) {
+        return error_response(503, reason_);
+    }
+    const hal::Hal &hal = joined->hal();
+    std::set<std::string> written;
+    for (const hal::SignalInfo &signal : hal.signals("*")) {
+        if (signal.writers > 0) {
+            written.insert(signal.name);
+        }
+    }
+    const auto hasSource = [&](const std::string &name) {
+        const auto pins = hal.pins(name);
+        return std::ranges::any_of(pins,
+                                   [&](const hal::PinInfo &pin) { return written.contains(pin.signal); });
+    };
+    Json spindles = Json::array();
+    for (int i = 0; hal.hasPin(fmt::format("spindle.{}.speed-in", i)); ++i) {
+        spindles.push_back({{"speed_in", hasSource(fmt::format("spindle.{}.speed-in", i))},
+                            {"at_speed", hasSource(fmt::format("spindle.{}.at-speed", i))}});
+    }
+    return document({{"probe", hasSource("motion.probe-input")}, {"spindles", std::move(spindles)}});
 }
 
 Response HalDesk::set(const std::string &name, std::string_view body) {

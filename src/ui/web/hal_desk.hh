@@ -35,6 +35,9 @@ class HalDesk {
 
     /// {"pins": [...], "signals": [...], "params": [...]} of the names that match.
     Response list(const std::string &glob);
+    /// {"probe": true, "spindles": [{"speed_in": true, "at_speed": false}]}: which inputs of motion have a
+    /// source, that is a signal that a pin writes. Without one such an input only has its preset.
+    Response inputs();
     /// Of a parameter, a pin without signal or a signal without writer; {"value": "..."}.
     Response set(const std::string &name, std::string_view body);
     struct News {

@@ -3,10 +3,11 @@
 import { Jogger } from './jog';
 import type { Command, Outcome } from './link';
 import { canOpen } from './gates';
-import { machine, send, sendQuietly, tellLocally, view, whenLost } from './machine.svelte';
+import { machine, send, sendQuietly, tellLocally, untilStatus, view, whenLost } from './machine.svelte';
 import { t } from './i18n/index.svelte';
-import type { Tool } from './tools.svelte';
-import { axisIndex, isAngularAxis, isProgramInches, type Mode } from './status';
+import { mustApplyLength, toolLength } from './tool_length';
+import { tools, type Tool } from './tools.svelte';
+import { axisIndex, isAngularAxis, isProgramInches, type MachineStatus, type Mode } from './status';
 
 function isDone(outcome: Outcome): boolean {
   return outcome.progress === 'DONE';
@@ -166,9 +167,43 @@ export function touchOff(letter: string, value: number): Promise<Outcome> {
 
 // Tools
 
-/** As T and M6 in a line of MDI: what the INI file has for a change is done, too. */
-export function changeTool(toolno: number): Promise<Outcome> {
-  return mdi(`T${toolno} M6`);
+function copyOf(status: MachineStatus): MachineStatus {
+  return JSON.parse(JSON.stringify(status)) as MachineStatus;
+}
+
+/** A status that was made after the outcome of a command: the first that comes may have been on its way before it. */
+async function laterStatus(): Promise<MachineStatus | null> {
+  await untilStatus(() => true);
+  await untilStatus(() => true);
+  return machine.status === null ? null : copyOf(machine.status);
+}
+
+/** As T and M6 in a line of MDI: what the INI file has for a change is done, too. Where a tool length is active, that of the new tool is
+ * applied by G43; under G49 none is, and what a remap of M6 has applied stays. */
+export async function changeTool(toolno: number): Promise<Outcome> {
+  const before = machine.status === null ? null : copyOf(machine.status);
+  const outcome = await mdi(`T${toolno} M6`);
+  if (!isDone(outcome) || before === null) {
+    return outcome;
+  }
+  const after = await laterStatus();
+  const isLoaded = after !== null && after.tool.in_spindle === toolno;
+  return isLoaded && mustApplyLength(before, after, tools.list) ? mdi('G43') : outcome;
+}
+
+/** The length of the tool in the spindle becomes active: G43, or G49 for an empty spindle. Done when it is. */
+export async function applyLength(): Promise<Outcome> {
+  const outcome = await mdi(machine.status?.tool.in_spindle === 0 ? 'G49' : 'G43');
+  if (!isDone(outcome)) {
+    return outcome;
+  }
+  const now = await laterStatus();
+  if (now !== null && toolLength(now, tools.list).wrongAxes.length === 0) {
+    return outcome;
+  }
+  const reason = t('length.not_applied');
+  tellLocally(reason);
+  return { progress: 'FAILED', reason };
 }
 
 /** The tip of the tool in the spindle stands at `value` (machine units) of the work coordinates. */

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The machine as this page knows it: one socket, one status, the messages, and what they mean together.
+import { Dismissed } from './dismissed';
 import type { View } from './gates';
 import { record } from './history.svelte';
 import { checkLogin } from './login.svelte';
@@ -13,6 +14,8 @@ export interface Notice {
   kind: Message['kind'] | 'LOCAL';
   text: string;
   at: Date;
+  /** By which task counts its messages; 0: none. */
+  number: number;
   isRead: boolean;
 }
 
@@ -70,18 +73,55 @@ export function whenLost(act: () => void): void {
   onLost.push(act);
 }
 
+const onStatus: (() => void)[] = [];
+
+/** When `isTrue` of a status that comes from now on, or after `ms` when it never is. */
+export async function untilStatus(isTrue: (status: MachineStatus) => boolean, ms = 2000): Promise<void> {
+  const deadline = performance.now() + ms;
+  do {
+    await new Promise<void>((done) => {
+      const timer = setTimeout(done, ms);
+      onStatus.push(() => {
+        clearTimeout(timer);
+        done();
+      });
+    });
+  } while (performance.now() < deadline && !(machine.status !== null && isTrue(machine.status)));
+}
+
 export function view(): View {
   return machine;
 }
 
+function storage(): Storage | null {
+  try {
+    return localStorage;
+  } catch {
+    return null; // a browser that keeps nothing
+  }
+}
+
+const dismissed = new Dismissed(storage());
+
+/** All messages that are shown now are read, also after this page is loaded again. */
+export function dismissAll(): void {
+  const fresh = notices.list.filter((one) => !one.isRead);
+  fresh.forEach((one) => (one.isRead = true));
+  dismissed.add(
+    machine.session,
+    fresh.filter((one) => one.kind !== 'LOCAL').map((one) => ({ ...one, at: one.at.getTime() })),
+  );
+}
+
 /** What came `ageMs` ago. A server tells a screen that connects what came before. */
-export function tell(kind: Notice['kind'], text: string, ageMs = 0): void {
+export function tell(kind: Notice['kind'], text: string, ageMs = 0, number = 0): void {
   const at = new Date(Date.now() - ageMs);
   const isKnown = notices.list.some((one) => one.text === text && Math.abs(at.getTime() - one.at.getTime()) < SAME_MS);
   if (isKnown || text === '') {
     return;
   }
-  notices.list.unshift({ id: ++lastNotice, kind, text, at, isRead: false });
+  const isRead = kind !== 'LOCAL' && dismissed.has(machine.session, { kind, text, at: at.getTime(), number });
+  notices.list.unshift({ id: ++lastNotice, kind, text, at, number, isRead });
   if (notices.list.length > MOST_NOTICES) {
     notices.list.length = MOST_NOTICES;
   }
@@ -145,6 +185,7 @@ const link = new Link(
       } else {
         mergeDelta(machine.status as unknown as Record<string, unknown>, delta);
       }
+      onStatus.splice(0).forEach((act) => act());
       const now = machine.status;
       if (now !== null) {
         record(now.time_ns * 1e-9, now.trajectory.current_velocity, now.joints.slice(0, now.trajectory.num_joints).map((one) => one.ferror));
@@ -153,7 +194,7 @@ const link = new Link(
     message(message, ageMs) {
       if (message.number > lastMessage) {
         lastMessage = message.number;
-        tell(message.kind, message.text, ageMs);
+        tell(message.kind, message.text, ageMs, message.number);
       }
     },
     machine(isUp, client, reason) {

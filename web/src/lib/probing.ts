@@ -55,6 +55,14 @@ export function callOf(probe: Probe): string {
   }
 }
 
+/** Axes along which the cycle sets a zero. The length of a tool is measured without one (G49). */
+export function axesOf(kind: ProbeKind, side: Side): string[] {
+  if (kind === 'tool') {
+    return [];
+  }
+  return kind === 'edge' ? (['x', 'y', 'z'] as const).filter((axis) => side[axis] !== 0).map((axis) => axis.toUpperCase()) : ['X', 'Y'];
+}
+
 /** Buttons around the probe: each says where the face or corner lies. Y up, as in the view from above. */
 export const EDGE_SIDES: (Side & { at: string; sign: string })[] = [
   { x: 0, y: 1, z: 0, at: '1 / 2', sign: 'Y+' },

@@ -218,6 +218,7 @@ TEST_F(ApiTest, EachRequestNeedsTheRoleOfTheTable_J3) {
         {"GET", "/api/mdi_history", "", Role::VIEW},
         {"GET", "/api/icon", "", Role::VIEW},
         {"GET", "/api/hal?glob=*", "", Role::VIEW},
+        {"GET", "/api/inputs", "", Role::VIEW},
         {"GET", "/api/scope", "", Role::VIEW},
         {"GET", "/api/scope/record", "", Role::VIEW},
         {"GET", "/metrics", "", Role::VIEW},

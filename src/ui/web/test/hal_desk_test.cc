@@ -2,6 +2,8 @@
 // HAL as screens see it, of a machine under the virtual clock (B7, J3).
 #include <nlohmann/json.hpp>
 
+#include <fmt/format.h>
+
 #include "components/test/bench.hh"
 #include "ui/web/hal_desk.hh"
 
@@ -61,6 +63,30 @@ TEST_F(HalDeskTest, ListsWhatThereIs_B7) {
     isUp = false;
     HalDesk other([this] { return connect(); });
     EXPECT_EQ(other.list("*").status, 503);
+}
+
+TEST_F(HalDeskTest, TellsWhichInputsOfMotionHaveASource) {
+    hal::Hal &hal = bench.hal();
+    const auto motion = hal.new_component("motion");
+    ASSERT_TRUE(motion.has_value());
+    const auto add = [&](const char *name, hal::Type type) {
+        ASSERT_TRUE(hal.new_pin(name, type, hal::Dir::IN, *motion).has_value()) << name;
+    };
+    add("motion.probe-input", hal::Type::BIT);
+    for (const char *spindle : {"0", "1"}) {
+        add(fmt::format("spindle.{}.speed-in", spindle).c_str(), hal::Type::FLOAT);
+        add(fmt::format("spindle.{}.at-speed", spindle).c_str(), hal::Type::BIT);
+    }
+    bench.run("net nobody-writes motion.probe-input\nnet wave spindle.1.speed-in\n");
+    EXPECT_EQ(body(desk.inputs()), Json::parse(R"({"probe": false, "spindles": [
+        {"speed_in": false, "at_speed": false}, {"speed_in": true, "at_speed": false}]})"));
+    bench.run("net nobody-writes siggen.0.clock\nnet nobody-writes spindle.0.at-speed\n");
+    const Json now = body(desk.inputs());
+    EXPECT_EQ(now["probe"], true);
+    EXPECT_EQ(now["spindles"][0]["at_speed"], true);
+    isUp = false;
+    HalDesk other([this] { return connect(); });
+    EXPECT_EQ(other.inputs().status, 503);
 }
 
 TEST_F(HalDeskTest, SetsWhatHalcmdSetsAndRefusesWhatItRefuses_B7) {

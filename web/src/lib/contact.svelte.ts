@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The check of probe and setter of this screen.
+import { ContactCheck, contactFacts, type Sensor } from './contact';
+import type { Gate } from './gates';
+import { inputs } from './inputs.svelte';
+import { machine } from './machine.svelte';
+
+const check = new ContactCheck();
+
+export const contact = $state<{ asked: Sensor | null; seen: Record<Sensor, boolean> }>({ asked: null, seen: { probe: false, setter: false } });
+
+/** To be called in an effect, in every view: what makes a contact void must not be missed. */
+export function followContact(): void {
+  const { status } = machine;
+  check.update(machine.isMachineUp && status !== null ? contactFacts(status) : null, contact.asked);
+  Object.assign(contact.seen, check.seen);
+}
+
+/** What a cycle with `sensor` needs beside what every line of MDI needs. */
+export function canProbe(sensor: Sensor): Gate {
+  const { status } = machine;
+  if (inputs.known?.probe !== true) {
+    return { key: inputs.known === null ? 'gate.probe_unknown' : 'gate.probe_missing' };
+  }
+  if (status === null || status.spindles.some((one) => one.is_on)) {
+    return { key: 'gate.probe_spindle' };
+  }
+  if (status.probe.on) {
+    return { key: 'gate.probe_contact' };
+  }
+  return contact.seen[sensor] ? null : { key: sensor === 'probe' ? 'gate.probe_unseen' : 'gate.setter_unseen' };
+}

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Which inputs of motion have a source in HAL (GET /api/inputs): of those without one the status shows a preset, not a measurement.
+import { machine } from './machine.svelte';
+
+export interface Inputs {
+  probe: boolean;
+  spindles: { speed_in: boolean; at_speed: boolean }[];
+}
+
+/** null: not known, as no machine is up or its HAL cannot be read. */
+export const inputs = $state<{ known: Inputs | null }>({ known: null });
+
+const READ_AGAIN_MS = 5000;
+
+export async function readInputs(): Promise<void> {
+  try {
+    const answer = await fetch('/api/inputs');
+    inputs.known = answer.ok ? ((await answer.json()) as Inputs) : null;
+  } catch {
+    inputs.known = null; // no connection: the screen shows that
+  }
+}
+
+/** To be called in an effect: reads them while a machine is up, again and again as HAL may be linked later. */
+export function followInputs(): (() => void) | undefined {
+  if (!machine.isMachineUp) {
+    inputs.known = null;
+    return undefined;
+  }
+  void readInputs();
+  const timer = setInterval(() => void readInputs(), READ_AGAIN_MS);
+  return () => clearInterval(timer);
+}
