@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "app/ui_filter.hh"
 #include "base/duration.hh"
 #include "base/output_relay.hh"
 #include "base/own_place.hh"
@@ -74,6 +75,7 @@ Result<> MachineStart::prepare() {
 
 Result<> MachineStart::make() {
     settings_.options.isLasting = true;
+    loaded_.machine.task.confinement.program_folders.push_back(filtered_folder(instance_));
     auto made = machine::make_realtime_machine({loaded_.ini, loaded_.reader, loaded_.machine, sink_},
                                                settings_.options);
     if (!made.has_value()) {

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "app/commands.hh"
+#include "app/remote_client.hh"
 #include "base/stop_signals.hh"
 #include "hal/core/hal.hh"
 #include "language/language.hh"
@@ -92,7 +93,7 @@ Result<> run_channels(const NmlWords &words, const nml::Config &config, diag::Si
     const std::string instance = hal::default_instance();
     const nml::Vocabulary vocabulary = nml::Vocabulary::standard();
     nml::LocalPlaces local;
-    auto client = client::Client::connect(instance);
+    auto client = connect_to_operate(instance);
     if (!client.has_value()) {
         return std::unexpected(client.error());
     }
@@ -116,6 +117,7 @@ Result<> run_channels(const NmlWords &words, const nml::Config &config, diag::Si
         }
         // Without a newer status within the time, commands are looked for all the same.
         static_cast<void>(client->wait_status(TICK_S));
+        (*bridge)->add((*server)->take_left_jogs());
         const auto stepped = (*bridge)->step();
         const std::string trouble = stepped.has_value() ? "" : stepped.error().str();
         if (!trouble.empty() && trouble != last_trouble) {

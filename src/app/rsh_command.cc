@@ -11,8 +11,8 @@ class RshService final : public TextService {
   public:
     explicit RshService(const TextMachine &machine) : machine_(machine) {}
     std::unique_ptr<ui::rsh::Conversation> begin() override {
-        return std::make_unique<ui::rsh::Session>(
-            machine_.settings, machine_.view, [this] { return client::Client::connect(machine_.instance); });
+        return std::make_unique<ui::rsh::Session>(machine_.settings, machine_.view,
+                                                  [this] { return connect_to_operate(machine_.instance); });
     }
 
   private:

@@ -13,7 +13,7 @@ class ScheduleService final : public TextService {
   public:
     explicit ScheduleService(const TextMachine &machine)
         : machine_(machine),
-          scheduler_([this] { return client::Client::connect(machine_.instance); }, folder_of(machine)) {}
+          scheduler_([this] { return connect_to_operate(machine_.instance); }, folder_of(machine)) {}
     std::unique_ptr<ui::rsh::Conversation> begin() override {
         return std::make_unique<ui::schedule::Session>(
             ui::schedule::Shared{machine_.settings, machine_.view, scheduler_});

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/remote_client.hh"
 #include "client/client.hh"
 #include "options/command_line.hh"
 #include "ui/rsh/conversation.hh"

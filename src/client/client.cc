@@ -63,6 +63,8 @@ Result<Client> Client::join(Viewer viewer, Role role) {
             continue;
         }
         slot.role.store(static_cast<std::uint8_t>(role), std::memory_order_relaxed);
+        slot.authority.store(static_cast<std::uint8_t>(mailbox::Authority::CONFIGURE),
+                             std::memory_order_relaxed);
         slot.client.store(id, std::memory_order_release);
         return Client(std::move(viewer), i, id);
     }
@@ -73,6 +75,14 @@ Result<Client> Client::join(Viewer viewer, Role role) {
 Result<Client> Client::connect(const std::string &instance, Role role) {
     auto viewer = Viewer::attach(instance);
     return viewer.has_value() ? join(std::move(*viewer), role) : std::unexpected(viewer.error());
+}
+
+void Client::limit_authority(mailbox::Authority most) {
+    const auto value = static_cast<std::uint8_t>(most);
+    if (value < slot().authority.load(std::memory_order_relaxed)) {
+        // The command that is posted next releases it.
+        slot().authority.store(value, std::memory_order_relaxed);
+    }
 }
 
 Result<Serial> Client::post(const msgs::Command &command) {

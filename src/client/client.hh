@@ -36,6 +36,10 @@ class Client {
     Client(Client &&other) noexcept;
     Client &operator=(Client &&other) noexcept;
 
+    /// Takes authority away from the commands from here on; nothing gives it back. For programs that pass on
+    /// commands of others.
+    void limit_authority(mailbox::Authority most);
+
     /// Number of this client, as the right to operate names it.
     mailbox::ClientId id() const { return id_; }
 

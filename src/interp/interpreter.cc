@@ -245,8 +245,8 @@ std::uint64_t Interpreter::count_script_calls() const {
     return impl_->flow.scripts().count_calls();
 }
 
-void Interpreter::forbid_scripts(bool isForbidden) {
-    impl_->flow.scripts().forbid(isForbidden);
+ProgramLimits &Interpreter::limits() {
+    return impl_->flow.scripts().limits();
 }
 
 double Interpreter::parameter(int number) const {

@@ -104,6 +104,15 @@ struct FilePlace {
     std::uint64_t bytes = 0, bytes_in_all = 0;
 };
 
+/// What a program may not do.
+struct ProgramLimits {
+    /// Scripts that a step would run fail instead: what they do is not known.
+    bool areScriptsForbidden = false;
+    /// The program has only the authority to operate: a line that begins with ;py, is an error, and names of
+    /// subroutines find no file outside the folders of subroutines.
+    bool isConfined = false;
+};
+
 /// The line that the next step runs.
 struct NextLine {
     int line = 0;
@@ -206,8 +215,8 @@ class Interpreter final : public ProgramInterpreter {
     /// For machines that read ahead of what they execute.
     ReadAhead &read_ahead();
 
-    /// Scripts that a step would run fail instead: what they do is not known.
-    void forbid_scripts(bool isForbidden);
+    /// What programs and lines of MDI may do from here on.
+    ProgramLimits &limits();
 
   private:
     struct Impl;

@@ -6,13 +6,16 @@
 #include <string>
 
 #include "config/ini_reader.hh"
+#include "machine/confinement_config.hh"
 #include "machine/machine_config.hh"
 
 namespace mw::machine {
 
 struct LoadedConfig {
     LoadedConfig(config::IniFile file, diag::Sink &sink)
-        : ini(std::move(file)), reader(ini, sink), machine(read_machine_config(reader)) {}
+        : ini(std::move(file)), reader(ini, sink), machine(read_machine_config(reader)) {
+        machine.task.confinement = read_confinement(ini, machine.task.parameter_file);
+    }
     /// Null when the file cannot be read or has errors; they are in the sink.
     static std::unique_ptr<LoadedConfig> load(const std::string &path, diag::Sink &sink);
 

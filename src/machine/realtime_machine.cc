@@ -57,6 +57,11 @@ class RealtimeMachine final : public Machine {
     Result<> start(const MachineOptions &options) {
         const std::string instance = options.instance.empty() ? hal::default_instance() : options.instance;
         wait_for_end_of(instance);
+        // First of all: another machine of this name refuses the start before any driver is loaded.
+        auto mailbox = mailbox::Memory::create(instance);
+        if (!mailbox.has_value()) {
+            return std::unexpected(mailbox.error());
+        }
         auto host = hal::HostClient::start(instance, hal::MessagesTo::STDERR, hal::Lifetime::STARTER);
         if (!host.has_value()) {
             return std::unexpected(host.error());
@@ -66,10 +71,6 @@ class RealtimeMachine final : public Machine {
         const auto controlled = host_->control();
         if (!controlled.has_value()) {
             return controlled;
-        }
-        auto mailbox = mailbox::Memory::create(instance);
-        if (!mailbox.has_value()) {
-            return std::unexpected(mailbox.error());
         }
         side_ = std::make_unique<TaskSide>(parts_, *host_, std::move(*mailbox), &*programs_);
         const auto started = side_->start(options);

@@ -19,6 +19,12 @@ using msgs::Progress;
 /// clients.
 constexpr std::uint64_t OWNER_CHECK_CYCLES = 4;
 
+/// A byte that is no authority counts as the least.
+Authority authority_of(const Slot &slot) {
+    constexpr auto ALL = static_cast<std::uint8_t>(Authority::CONFIGURE);
+    return slot.authority.load(std::memory_order_relaxed) == ALL ? Authority::CONFIGURE : Authority::OPERATE;
+}
+
 bool isOf(const Slot &slot, Role role) {
     return slot.role.load(std::memory_order_relaxed) == static_cast<std::uint8_t>(role);
 }
@@ -129,7 +135,7 @@ void Desk::stop_unattended(int index, std::vector<Delivery> &out) {
     post(msgs::MessageKind::OPERATOR_ERROR,
          "client " + std::to_string(client) + ", which watched over what it had begun, is gone: aborted");
     const Serial serial = segment_.serials.fetch_add(1, std::memory_order_relaxed) + 1;
-    out.push_back({serial, client, msgs::AbortAll{}, true});
+    out.push_back({serial, client, msgs::AbortAll{}, true, Authority::OPERATE, 0});
 }
 
 void Desk::check_owner(int index, std::vector<Delivery> &out) {
@@ -166,6 +172,7 @@ void Desk::check_owner(int index, std::vector<Delivery> &out) {
     slot.client.store(0, std::memory_order_relaxed);
     slot.taken.store(0, std::memory_order_relaxed);
     slot.isLeaving.store(0, std::memory_order_relaxed);
+    slot.authority.store(0, std::memory_order_relaxed);
     // Release: the next owner finds the place clean.
     slot.owner.store(0, std::memory_order_release);
 }
@@ -191,11 +198,13 @@ void Desk::accept(int index, Serial serial, Result<msgs::Command> command, std::
     const Serial taken = std::max(serial, slot.taken.load(std::memory_order_relaxed));
     const bool isPanel = isOf(slot, Role::PANEL);
     const ClientId client = slot.client.load(std::memory_order_relaxed);
+    const Authority authority = authority_of(slot);
+    const std::uint64_t owner = slot.owner.load(std::memory_order_relaxed);
     if (isNew && place < 0 && command.has_value() && isStop(*command)) {
         // A stop is never dropped: it is carried out though nothing tells its outcome.
         note(serial, Progress::STARTED);
         slot.taken.store(taken, std::memory_order_release);
-        out.push_back({serial, client, std::move(*command), isPanel});
+        out.push_back({serial, client, std::move(*command), isPanel, authority, owner});
         return;
     }
     if (!isNew || place < 0) {
@@ -221,7 +230,7 @@ void Desk::accept(int index, Serial serial, Result<msgs::Command> command, std::
         tell(serial, Progress::REFUSED, command.error().str());
         return;
     }
-    out.push_back({serial, client, std::move(*command), isPanel});
+    out.push_back({serial, client, std::move(*command), isPanel, authority, owner});
 }
 
 bool Desk::isConnected(ClientId client) const {

@@ -20,6 +20,8 @@ class Desk {
         ClientId client = 0;
         msgs::Command command;
         bool isPanel = false;
+        Authority authority = Authority::OPERATE;
+        std::uint64_t owner = 0;  ///< owner_word() of the client's process
     };
 
     /// Where commands about the right to operate end.

@@ -15,7 +15,7 @@
 namespace mw::mailbox {
 namespace {
 
-constexpr std::uint32_t ABI_VERSION = 1;
+constexpr std::uint32_t ABI_VERSION = 2;
 constexpr std::int64_t NS_PER_S = 1000000000;
 constexpr int START_BITS = 42;  // a process number has at most 22
 constexpr std::uint64_t START_MASK = (std::uint64_t{1} << START_BITS) - 1;
@@ -25,7 +25,7 @@ rtapi::SharedLayout layout() {
 }
 
 std::string name_of(const std::string &instance) {
-    return "millwright-mailbox-" + instance;
+    return "millwright-" + std::to_string(::getuid()) + "-mailbox-" + instance;
 }
 
 }  // namespace
@@ -48,11 +48,16 @@ void Memory::Unmap::operator()(Segment *segment) const noexcept {
 }
 
 Result<Memory> Memory::create(const std::string &instance) {
+    auto lock = rtapi::InstanceLock::take(instance);
+    if (!lock.has_value()) {
+        return std::unexpected(lock.error());
+    }
     auto shared = rtapi::SharedMemory::create(name_of(instance), sizeof(Segment), sizeof(Segment), layout());
     if (!shared.has_value()) {
         return std::unexpected(shared.error());
     }
     Memory memory;
+    memory.lock_ = std::move(*lock);
     memory.shared_ = std::move(*shared);
     // Zeroed pages are an empty segment: a client may attach at once.
     memory.segment_ = std::launder(static_cast<Segment *>(memory.shared_.data()));
@@ -108,9 +113,16 @@ std::uint64_t owner_word() {
            (me.start_time & START_MASK);
 }
 
+int pid_of(std::uint64_t owner) {
+    return static_cast<std::int32_t>(owner >> START_BITS);
+}
+
+rtapi::Activity activity_of(std::uint64_t owner) {
+    return rtapi::activity_of({pid_of(owner), owner & START_MASK});
+}
+
 bool isAlive(std::uint64_t owner) {
-    rtapi::ProcessId process{static_cast<std::int32_t>(owner >> START_BITS), owner & START_MASK};
-    return rtapi::isAlive(process);
+    return activity_of(owner) != rtapi::Activity::ENDED;
 }
 
 }  // namespace mw::mailbox

@@ -6,6 +6,8 @@
 #include <string>
 
 #include "mailbox/segment.hh"
+#include "rtapi/activity.hh"
+#include "rtapi/instance_lock.hh"
 #include "rtapi/shared_memory.hh"
 
 namespace mw::mailbox {
@@ -15,7 +17,8 @@ class Memory {
   public:
     /// For task and clients in one process, as under the virtual clock.
     static Memory in_process();
-    /// By task: an error when a living task has one of this name; one of a dead task is replaced.
+    /// By task: an error when a living task has one of this name, of whatever user; one of a dead task is
+    /// replaced, and that of another user's does not matter: each user has names of his own.
     static Result<Memory> create(const std::string &instance);
     /// By a client.
     static Result<Memory> attach(const std::string &instance);
@@ -39,6 +42,7 @@ class Memory {
     };
     Memory() = default;
     std::unique_ptr<Segment, Unmap> own_;
+    rtapi::InstanceLock lock_;
     rtapi::SharedMemory shared_;
     Segment *segment_ = nullptr;
 };
@@ -46,5 +50,7 @@ class Memory {
 /// This process as one word.
 std::uint64_t owner_word();
 bool isAlive(std::uint64_t owner);
+rtapi::Activity activity_of(std::uint64_t owner);
+int pid_of(std::uint64_t owner);
 
 }  // namespace mw::mailbox

@@ -60,6 +60,13 @@ enum class Role : std::uint8_t {
     ATTENDED,  ///< as OPERATOR; what it has begun is aborted when it leaves or dies: it watches over its work
 };
 
+/// What the commands of a client may reach on this computer besides the machine (docs/security.md). The
+/// lesser of two is their std::min; a place that nobody has filled in has the least.
+enum class Authority : std::uint8_t {
+    OPERATE,    ///< programs of the program folder, logs in it, no lines of Python
+    CONFIGURE,  ///< all files of the machine's user, and Python
+};
+
 /// What the machine is, said when it is ready for clients.
 struct Identity {
     msgs::FixedText<1023> ini;  ///< path of the INI file
@@ -73,6 +80,7 @@ struct Slot {
     std::atomic<std::uint32_t> client{0};    ///< its id, written after the owner
     std::atomic<std::uint8_t> role{0};       ///< Role
     std::atomic<std::uint8_t> isLeaving{0};  ///< the client is done; task frees the slot
+    std::atomic<std::uint8_t> authority{0};  ///< Authority, written before the first command
     std::atomic<Serial> taken{0};            ///< [task] the last command taken from it
     SpscRing<Posted, MAX_POSTED> posted;     ///< client -> task
     /// Stops for which `posted` has no room: the number of the newest one of each kind, 0: none. The client

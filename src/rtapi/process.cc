@@ -9,16 +9,23 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "rtapi/activity.hh"
+
 namespace mw::rtapi {
 namespace {
 
-/// Start time of a process, 0 when it is gone. Source: man 5 proc, /proc/PID/stat, fields 3 and 22.
-std::uint64_t start_time_of(std::int32_t pid) {
+struct Seen {
+    char state = 'X';
+    std::uint64_t start_time = 0;  ///< 0 when it is gone
+};
+
+/// Source: man 5 proc, /proc/PID/stat, fields 3 and 22.
+Seen look_at(std::int32_t pid) {
     char path[64];
     std::snprintf(path, sizeof path, "/proc/%d/stat", pid);
     std::FILE *file = std::fopen(path, "re");
     if (file == nullptr) {
-        return 0;
+        return {};
     }
     char text[1024];
     const std::size_t length = std::fread(text, 1, sizeof text - 1, file);
@@ -27,25 +34,34 @@ std::uint64_t start_time_of(std::int32_t pid) {
     // The name in parentheses may hold anything, so count from the last one.
     const char *at = std::strrchr(text, ')');
     if (at == nullptr || at[1] == '\0' || at[2] == 'Z' || at[2] == 'X') {
-        return 0;
+        return {};
     }
+    const char state = at[2];
     ++at;
     constexpr int FIELDS_TO_SKIP = 19;  // 3..21; `at` is at the blank before each
     for (int i = 0; i < FIELDS_TO_SKIP && at != nullptr; ++i) {
         at = std::strchr(at + 1, ' ');
     }
-    return at == nullptr ? 0 : std::strtoull(at + 1, nullptr, 10);
+    return at == nullptr ? Seen{} : Seen{state, std::strtoull(at + 1, nullptr, 10)};
 }
 
 }  // namespace
 
 ProcessId this_process() {
     const auto pid = static_cast<std::int32_t>(::getpid());
-    return {pid, start_time_of(pid)};
+    return {pid, look_at(pid).start_time};
+}
+
+Activity activity_of(const ProcessId &process) {
+    const Seen seen = process.pid > 0 && process.start_time != 0 ? look_at(process.pid) : Seen{};
+    if (seen.start_time == 0 || seen.start_time != process.start_time) {
+        return Activity::ENDED;
+    }
+    return seen.state == 'T' || seen.state == 't' ? Activity::STOPPED : Activity::RUNNING;
 }
 
 bool isAlive(const ProcessId &process) {
-    return process.pid > 0 && process.start_time != 0 && start_time_of(process.pid) == process.start_time;
+    return activity_of(process) != Activity::ENDED;
 }
 
 Result<std::string> runtime_folder() {

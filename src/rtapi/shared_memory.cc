@@ -23,6 +23,32 @@ std::string why(const std::string &name) {
     return name.empty() ? std::string("private shared memory: ") : "shared memory " + name + ": ";
 }
 
+/// Names the file and its process, or its user, and what to do. `owner_of`: from the file's header.
+template <class OwnerOf>
+std::unexpected<Error> in_use(const std::string &name, const OwnerOf &owner_of) {
+    const std::string path = SHM_FOLDER + name;
+    struct stat status{};
+    const bool isKnown = ::stat(path.c_str(), &status) == 0;
+    if (isKnown && status.st_uid != ::getuid()) {
+        return fail(why(name) + path + " belongs to user " + std::to_string(status.st_uid), {},
+                    "remove the file as that user, or set MILLWRIGHT_INSTANCE to another name");
+    }
+    std::string holder = "a process that is alive";
+    const int fd = ::shm_open(('/' + name).c_str(), O_RDONLY | O_CLOEXEC, 0);
+    void *base = fd >= 0 && status.st_size >= static_cast<off_t>(HEADER_SIZE)
+                     ? ::mmap(nullptr, HEADER_SIZE, PROT_READ, MAP_SHARED, fd, 0)
+                     : MAP_FAILED;
+    if (base != MAP_FAILED) {
+        holder = "process " + std::to_string(owner_of(base));
+        ::munmap(base, HEADER_SIZE);
+    }
+    if (fd >= 0) {
+        ::close(fd);
+    }
+    return fail(why(name) + path + " is in use by " + holder, {},
+                "end that process, or set MILLWRIGHT_INSTANCE to another name");
+}
+
 }  // namespace
 
 struct SharedMemory::Header {
@@ -115,10 +141,9 @@ Result<SharedMemory> SharedMemory::create(const std::string &name, std::size_t s
         return fail(why(name) + "cannot look through " + SHM_FOLDER);
     }
     const int fd = ::shm_open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+    const auto pid_of = [](const void *base) { return static_cast<const Header *>(base)->owner.pid; };
     if (fd < 0) {
-        const int error = errno;
-        return fail(why(name) +
-                    (error == EEXIST ? "in use by a process that is alive" : std::strerror(error)));
+        return errno == EEXIST ? in_use(name, pid_of) : fail(why(name) + std::strerror(errno));
     }
     auto memory = initialise(fd, path, size, reserve, layout);
     if (!memory) {

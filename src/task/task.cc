@@ -14,7 +14,8 @@ namespace mw::task {
 
 Task::Task(const Parts &parts, Settings settings)
     : settings_(std::move(settings)), parts_(parts), desk_(parts.mailbox), motion_(parts.channels),
-      io_(settings_.changer_protocol), mdi_queue_(settings_.mdi_queued_commands),
+      io_(settings_.changer_protocol), senders_(settings_.confinement),
+      mdi_queue_(settings_.mdi_queued_commands),
       world_({settings_.machine_units, settings_.axis_mask, settings_.num_spindles}),
       reader_({world_, parts.tools, parts.parameters},
               {settings_.machine_units, settings_.tool_change_place, settings_.parameter_file,
@@ -51,6 +52,7 @@ SequencerEvents Task::make_events() {
         }
         return planner_mode_.set(item.isSmooth ? smooth : 0);
     };
+    events.confinement = [this] { return senders_.confinement(); };
     events.start_user_code = [this](const interp::UserCode &item) -> Result<> {
         const std::string path = interp::find_user_program(settings_.interpreter, item.code);
         return path.empty() ? fail("M" + std::to_string(item.code) + ": its program is gone")
@@ -72,16 +74,16 @@ void Task::configure(const std::vector<motion::SetParameter> &parameters, const 
     planner_mode_.configure(parameters);
     for (const motion::SetParameter &parameter : parameters) {
         shown_settings_.note(parameter);
-        first_settings_.last = motion_.send(parameter);
+        sent_settings_.last = motion_.send(parameter);
     }
     motion_.send(motion::SetNumJoints{settings_.num_joints});
-    first_settings_.last = motion_.send(motion::SetWatchdog{true, settings_.watchdog_s});
+    sent_settings_.last = motion_.send(motion::SetWatchdog{true, settings_.watchdog_s});
 }
 
 Result<bool> Task::isConfigured() const {
-    const bool isAnswered = motion_.isAnswered(first_settings_.last) && motion_.areTablesAnswered();
-    if (isAnswered && !first_settings_.refused.empty()) {
-        return fail("a setting was refused: " + first_settings_.refused);
+    const bool isAnswered = motion_.isAnswered(sent_settings_.last) && motion_.areTablesAnswered();
+    if (isAnswered && !sent_settings_.refused.empty()) {
+        return fail("a setting was refused: " + sent_settings_.refused);
     }
     return isAnswered;
 }
@@ -158,7 +160,7 @@ void Task::step_run() {
     }
     reader_.follow(sequencer_);
     // The step that carries out the last block ends the program: nothing is left to pause in front of.
-    if (run_.phase() == RunPhase::FINISHING && sequencer_.isIdle() && !run_.isHeld()) {
+    if (run_.phase() == RunPhase::FINISHING && sequencer_.isIdle() && !run_.isHeld() && !run_.hasFailed()) {
         finish_run(Progress::DONE, {});
     } else if (run_.hold() == Hold::STEPPING && sequencer_.isStepDone()) {
         run_.change(RunEvent::STEP_DONE);
@@ -168,7 +170,8 @@ void Task::step_run() {
         if (!line.has_value()) {
             break;
         }
-        carry_out(line->command, line->tap ? Command(*line->tap) : Command(Mdi{line->text}));
+        carry_out({line->command, 0, line->tap ? Command(*line->tap) : Command(Mdi{line->text}), false,
+                   line->authority, 0});
     }
 }
 
@@ -212,9 +215,9 @@ void Task::take_motion_news() {
                      AbortReason::MOTION_FAULT);
     }
     for (const auto &[answer, source, isTable] : news.refused) {
-        if (first_settings_.refused.empty() && !answer.isPath &&
-            (isTable || answer.id <= first_settings_.last)) {
-            first_settings_.refused = motion::reason_text(answer);
+        if (sent_settings_.refused.empty() && !answer.isPath &&
+            (isTable || answer.id <= sent_settings_.last)) {
+            sent_settings_.refused = motion::reason_text(answer);
         }
         if (answer.reason == motion::Reason::MOVING && mode_.waits_for_rest(answer.id, now_ns_)) {
             continue;
@@ -328,6 +331,9 @@ bool Task::begin_run() {
 }
 
 void Task::run_interpreter() {
+    if (interp::Interpreter *const gcode = reader_.gcode(); gcode != nullptr) {
+        gcode->limits().isConfined = senders_.isRunConfined();
+    }
     if (run_.phase() == RunPhase::STARTING && !begin_run()) {
         return;
     }

@@ -22,6 +22,7 @@
 #include "task/run/program_reader.hh"
 #include "task/run/program_run.hh"
 #include "task/run/recovery.hh"
+#include "task/run/senders.hh"
 #include "task/sequencer/planner_mode.hh"
 #include "task/sequencer/sequencer.hh"
 #include "task/sequencer/user_program.hh"
@@ -61,6 +62,7 @@ struct Settings {
     interp::Settings interpreter;
     std::string interpreter_plugin;  ///< [TASK]INTERPRETER: a shared object; empty: RS-274/NGC
     SequencerSettings sequencer;
+    Confinement confinement;  ///< of clients that have only the authority to operate
     io::Protocol changer_protocol;
     ToolChangePlace tool_change_place;
     int mdi_queued_commands = 10;  ///< lines of MDI that may wait behind the one that runs
@@ -75,12 +77,6 @@ struct Settings {
     /// included. Far above what motion holds: the limit is for memory and must not shorten the path that
     /// motion plans over.
     std::size_t read_ahead_steps = 50'000;
-};
-
-/// Those that motion gets before the machine is up.
-struct FirstSettings {
-    motion::CommandId last = 0;
-    std::string refused;  ///< the first that was; empty: none
 };
 
 /// While another thread has task (LongCall).
@@ -100,6 +96,12 @@ struct Parts {
     interp::ParameterSource &parameters;
     mailbox::Segment &mailbox;  ///< the only way in for commands, out for outcomes, messages and status
     journal::Writer *journal = nullptr;  ///< null: programs are not journalled
+};
+
+/// What Task::configure() has sent.
+struct SentSettings {
+    motion::CommandId last = 0;
+    std::string refused;  ///< why the first one was
 };
 
 /// Owns the parts of task, hands each what it needs in its step and passes on what it tells. One thread;
@@ -171,7 +173,8 @@ class Task {
     void step_homing();
     void check_run_mode();
     void carry_out_commands();
-    void carry_out(mailbox::Serial serial, const Command &command);
+    void end_left_jogs();
+    void carry_out(const mailbox::Desk::Delivery &delivery);
     void step_run();
     void run_interpreter();
     bool begin_run();
@@ -199,6 +202,7 @@ class Task {
     io::Controller io_;
 
     Inbox inbox_;
+    Senders senders_;
     MachineState state_;
     OperatingMode mode_;
     OutOfModeWatch out_of_mode_;
@@ -224,7 +228,7 @@ class Task {
     Status status_;
     std::int64_t now_ns_ = 0;
     Apart apart_;
-    FirstSettings first_settings_;
+    SentSettings sent_settings_;
 };
 
 }  // namespace mw::task

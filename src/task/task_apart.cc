@@ -75,8 +75,9 @@ void Task::step_apart(std::int64_t now_ns) {
     update_state();
     inbox_.add(desk_.take(now_ns_));
     while (const auto delivery = inbox_.next_of(isTakenApart)) {
-        carry_out(delivery->serial, delivery->command);
+        carry_out(*delivery);
     }
+    end_left_jogs();
     end_requests();
     sequencer_.sent().follow(motion_.status());
     const bool isGoing = run_.isRunning() && run_.hold() == Hold::GOING && !apart_.isStopped;

@@ -10,11 +10,25 @@ using Outcome = Result<Progress>;
 void Task::carry_out_commands() {
     inbox_.add(desk_.take(now_ns_));
     while (const auto delivery = inbox_.next(mode_.isChanging() || state_.isChanging())) {
-        carry_out(delivery->serial, delivery->command);
+        carry_out(*delivery);
+    }
+    end_left_jogs();
+}
+
+/// Of clients that have ended or are suspended.
+void Task::end_left_jogs() {
+    for (const JogGuard::Left &left : senders_.left_jogs(motion_.status())) {
+        if (!left.text.empty()) {
+            post(MessageKind::OPERATOR_ERROR, left.text);
+        }
+        std::visit(Handler{*this, 0}, left.stop);
     }
 }
 
-void Task::carry_out(mailbox::Serial serial, const Command &command) {
+void Task::carry_out(const mailbox::Desk::Delivery &delivery) {
+    const mailbox::Serial serial = delivery.serial;
+    const Command &command = delivery.command;
+    const Senders::Sending sending(senders_, delivery);
     const auto admitted =
         admit(class_of(command, mode_.mode()), situation_of(state_.state(), mode_.mode(), run_.state()));
     const auto outcome = admitted.has_value() ? std::visit(Handler{*this, serial}, command)
@@ -28,6 +42,9 @@ void Task::carry_out(mailbox::Serial serial, const Command &command) {
         }
     } else if (*outcome != Progress::STARTED) {
         desk_.tell(serial, *outcome, {});
+    }
+    if (outcome.has_value()) {
+        senders_.note_taken(delivery);
     }
     if (!apart_.isOn) {
         Start{*this}.watch_hold();
@@ -83,6 +100,9 @@ Outcome Task::Handler::operator()(const SetMode &command) {
 }
 
 Outcome Task::Handler::operator()(const OpenProgram &command) {
+    if (const auto allowed = task.senders_.check_file(command.path); !allowed.has_value()) {
+        return std::unexpected(allowed.error());
+    }
     const auto opened = task.reader_.open(command.path);
     static_cast<void>(Meanwhile{task}.end());
     if (!opened.has_value()) {
@@ -90,6 +110,7 @@ Outcome Task::Handler::operator()(const OpenProgram &command) {
     }
     task.reader_.interpreter().close();
     task.status_.task.program.assign(command.path);
+    task.senders_.note_opened();
     task.sequencer_.sent().clear_line();
     return Progress::DONE;
 }
@@ -119,7 +140,7 @@ Outcome Task::Handler::operator()(const RunProgram &command) {
     if (!opened.has_value()) {
         return std::unexpected(opened.error());
     }
-    const auto started = start_run(RunKind::PROGRAM);
+    const auto started = start_run(RunKind::PROGRAM, task.senders_.of_program());
     if (started.has_value()) {
         task.run_.set_from_line(command.from_line);
     }
@@ -131,7 +152,8 @@ Outcome Task::Handler::operator()(const RecoverProgram &) {
     if (Meanwhile{task}.end()) {
         return fail(OVERTAKEN);
     }
-    return opened.has_value() ? start_run(RunKind::RECOVERY) : std::unexpected(opened.error());
+    return opened.has_value() ? start_run(RunKind::RECOVERY, task.senders_.sender())
+                              : std::unexpected(opened.error());
 }
 
 Outcome Task::Handler::operator()(const StepProgram &) {
@@ -240,13 +262,13 @@ Outcome Task::Handler::abort_all() {
 
 Outcome Task::Handler::operator()(const Mdi &command) {
     if (task.run_.isRunning()) {
-        return task.mdi_queue_.add({id, command.line, {}});
+        return task.mdi_queue_.add({id, command.line, {}, task.senders_.sender()});
     }
     const auto allowed = task.check_can_run();
     if (!allowed.has_value()) {
         return std::unexpected(allowed.error());
     }
-    return start_run(RunKind::MDI, command.line);
+    return start_run(RunKind::MDI, task.senders_.sender(), command.line);
 }
 
 /// Holds for the taps that clients send, until it is set anew or the work is aborted.
@@ -272,7 +294,7 @@ Outcome Task::Handler::operator()(const RigidTapMove &command) {
         return fail("a tap keeps to the angle of a spindle", {}, "SetSpindleSync says with which pitch");
     }
     if (task.run_.isRunning()) {
-        return task.mdi_queue_.add({id, {}, command});
+        return task.mdi_queue_.add({id, {}, command, task.senders_.sender()});
     }
     const auto allowed = task.check_can_run();
     if (!allowed.has_value()) {
@@ -282,7 +304,7 @@ Outcome Task::Handler::operator()(const RigidTapMove &command) {
     if (task.motion_.status().spindle[n].speed_cmd_rpm == 0) {
         return fail("Spindle not turning in g33.1");
     }
-    auto started = start_run(RunKind::MDI);
+    auto started = start_run(RunKind::MDI, task.senders_.sender());
     if (started.has_value()) {
         interp::TapMove tap;
         tap.end = command.end;

@@ -189,9 +189,10 @@ struct Task::Handler {
         const motion::CommandId order = task.motion_.send(motion::SetMode{motion_mode});
         task.mode_.begin(mode, motion_mode, id, order, task.now_ns_, mayMoveJoints);
     }
-    Outcome start_run(RunKind kind, const std::string &line = {}) {
+    Outcome start_run(RunKind kind, mailbox::Authority rights, const std::string &line = {}) {
         Outcome started = task.run_.start(kind, id, line);
         if (started.has_value()) {
+            task.senders_.begin_run(rights);
             task.on_abort_.note_work();
             task.reader_.canon().reset();
             task.sequencer_.forget_place();

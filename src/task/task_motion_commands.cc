@@ -62,6 +62,9 @@ Outcome Task::Handler::operator()(const JogStop &command) {
 
 /// Done when the file is read and on its way to motion.
 Outcome Task::Handler::operator()(const LoadCompensation &command) {
+    if (const auto allowed = task.senders_.check_file(command.path); !allowed.has_value()) {
+        return std::unexpected(allowed.error());
+    }
     if (command.joint >= task.settings_.num_joints) {
         return fail(fmt::format("there is no joint {}", command.joint));
     }

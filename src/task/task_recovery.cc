@@ -15,6 +15,7 @@ void Task::Start::prepare_journal() {
         return;
     }
     StartRecord record;
+    record.isConfined = task.senders_.isRunConfined();
     record.machine = task.world_.snapshot();
     record.isBlockDelete = task.world_.isBlockDeleteOn();
     record.isOptionalStop = task.world_.isOptionalStopOn();
@@ -88,9 +89,11 @@ Result<> Task::Start::open_recovery() {
         return opened;
     }
     const std::string &program = (*task.recovery_.offer())->start.program;
-    opened = task.reader_.open(program);
+    opened = task.senders_.check_file(program);
+    opened = opened.has_value() ? task.reader_.open(program) : opened;
     if (opened.has_value()) {
         task.status_.task.program.assign(program);
+        task.senders_.note_opened();
     }
     return opened;
 }
@@ -105,6 +108,9 @@ void Task::Start::begin_recovery() {
         return;
     }
     auto record = StartRecord::unpack((*offer)->start.state);
+    if (record.has_value() && record->isConfined) {
+        task.senders_.limit_run();
+    }
     begin_block_search(record.has_value() ? Result<StartRecord>(std::move(*record))
                                           : fail("its state was written by another version"),
                        (*offer)->progress->calls);

@@ -33,7 +33,7 @@ interp::ActiveCodes codes_in_force(const ProgramReader &reader, const ProgramRun
     const bool isReadAhead = run.isRunning() && run.phase() != RunPhase::SEARCHING &&
                              run.phase() != RunPhase::STARTING && !trail.isEmpty();
     const int line = run.isProgram() ? source.line : 0;
-    if (isReadAhead && isExecuted && reader.isGCode()) {
+    if (isReadAhead && isExecuted && reader.gcode() != nullptr) {
         return numbered(reader.executed_codes(), line);
     }
     if (isReadAhead) {

@@ -22,7 +22,9 @@ struct FlowParts {
     const Settings &settings;
 
     JumpValues jump_values() const { return {executor.evaluator(), names, executor.fault}; }
-    SubSearch search() const { return {levels, files, names, settings.subroutine_path, executor.fault}; }
+    SubSearch search() const {
+        return {levels, files, names, settings.subroutine_path, executor.fault, scripts.limits().isConfined};
+    }
     /// Keeps what the block did and hands on its calls.
     void commit() const {
         executor.commit();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "interp/flow/program_files.hh"
 
+#include <algorithm>
 #include <filesystem>
 
 namespace mw::interp::detail {
@@ -13,6 +14,8 @@ Program *ProgramFiles::keep(std::unique_ptr<Program> program) {
 
 Program *ProgramFiles::find_subroutine(std::string_view name, std::span<const std::string> folders,
                                        Names &names) {
+    // A name that begins with a slash is below the folder, too.
+    name.remove_prefix(std::min(name.find_first_not_of('/'), name.size()));
     const std::string file = std::string(name) + ".ngc";
     for (const std::string &folder : folders) {
         const std::filesystem::path path = std::filesystem::path(folder) / file;

@@ -228,6 +228,10 @@ bool ScriptCalls::run_text_line(const FlowParts &parts, InterpreterView &view) {
     Levels &levels = parts.levels;
     const std::string text = executor.script_text();
     const int line = levels.here().line;
+    if (parts.scripts.limits().isConfined) {
+        return executor.fault.set("Lines that begin with ;py, are not run for a client of role operate.", 1,
+                                  "Run the program at the machine, or as a client of role configure.");
+    }
     if (!parts.settings.scripts.areLinesRun) {
         return executor.fault.set("lines that begin with ;py, are not run on this machine", 1,
                                   "[PYTHON]TOPLEVEL of the INI file allows them: it names a Python file");

@@ -21,7 +21,7 @@ ScriptOutcome forbidden() {
 
 Result<> Scripts::need(const std::string &what, const SourcePlace &place, const Settings &settings,
                        InterpreterView &view) {
-    if (isForbidden_) {
+    if (limits_.areScriptsForbidden) {
         return fail(FORBIDDEN, place);
     }
     if (host_ != nullptr) {
@@ -100,7 +100,7 @@ Result<> Scripts::begin() {
 
 ScriptOutcome Scripts::call(ScriptModule module, const std::string &name, const ScriptArguments &arguments,
                             std::unique_ptr<SuspendedScript> &rest) {
-    if (isForbidden_) {
+    if (limits_.areScriptsForbidden) {
         return forbidden();
     }
     error_text.clear();
@@ -120,7 +120,7 @@ ScriptOutcome Scripts::resume(SuspendedScript &script) {
 }
 
 ScriptOutcome Scripts::run_text(std::string_view text) {
-    if (isForbidden_) {
+    if (limits_.areScriptsForbidden) {
         return forbidden();
     }
     ++depth_;
@@ -135,7 +135,7 @@ bool Scripts::hasName(std::string_view name) const {
 }
 
 std::optional<double> Scripts::value_of(std::string_view name) {
-    if (isForbidden_) {
+    if (limits_.areScriptsForbidden) {
         fault_.set(FORBIDDEN);
         return std::nullopt;
     }

@@ -27,8 +27,8 @@ class Scripts final : public ScriptNames {
     Result<> need(const std::string &what, const SourcePlace &place, const Settings &settings,
                   InterpreterView &view);
     Result<> begin();
-    /// From here on every script fails before it begins.
-    void forbid(bool isForbidden) { isForbidden_ = isForbidden; }
+    ProgramLimits &limits() { return limits_; }
+    const ProgramLimits &limits() const { return limits_; }
     void close() { host_.reset(); }
 
     bool isOpen() const { return host_ != nullptr; }
@@ -64,7 +64,7 @@ class Scripts final : public ScriptNames {
     int depth_ = 0;
     std::uint64_t calls_ = 0;
     bool isReadingName_ = false;
-    bool isForbidden_ = false;
+    ProgramLimits limits_;
 };
 
 }  // namespace mw::interp::detail

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "interp/flow/sub_search.hh"
 
+#include <algorithm>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -8,7 +9,16 @@
 namespace mw::interp::detail {
 namespace {
 
+/// The name leads out of the folder that it is looked up in.
+bool leadsOut(std::string_view name) {
+    const std::filesystem::path path(name);
+    return std::find(path.begin(), path.end(), "..") != path.end();
+}
+
 Program *load_file(NameId label, const SubSearch &search) {
+    if (search.isConfined && leadsOut(search.names.text(label))) {
+        return nullptr;
+    }
     std::vector<std::string> folders = search.folders;
     const Levels &levels = search.levels;
     if (!levels.isMdi() || levels.isInCall()) {

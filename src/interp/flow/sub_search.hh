@@ -23,6 +23,7 @@ struct SubSearch {
     Names &names;
     const std::vector<std::string> &folders;  ///< for files of their own, after that of the main program
     Fault &fault;
+    bool isConfined = false;  ///< names with '..' find no file
 };
 
 /// `O<label> sub`. False after setting the fault; `column` of the call.

@@ -2,6 +2,8 @@
 #include "nml/bridge/bridge.hh"
 
 #include <algorithm>
+#include <iterator>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -101,6 +103,7 @@ Result<> Bridge::step(Clock::time_point now) {
     is_late_ = is_late_ || (last_step_.has_value() && now - *last_step_ > STALL_LIMIT);
     last_step_ = now;
     const auto taken = take_commands();
+    post_own();
     follow();
     while (const auto message = client_.next_message()) {
         keep_message(message->kind, message->number, message->text);
@@ -116,7 +119,21 @@ Result<> Bridge::step(Clock::time_point now) {
     return published;
 }
 
+void Bridge::add(std::vector<msgs::Command> commands) {
+    std::move(commands.begin(), commands.end(), std::back_inserter(own_));
+}
+
+/// A stop always has a place in the mailbox.
+void Bridge::post_own() {
+    if (isEmptied_) {
+        for (const msgs::Command &command : std::exchange(own_, {})) {
+            static_cast<void>(client_.post(command));
+        }
+    }
+}
+
 Result<> Bridge::take_commands() {
+    isEmptied_ = false;
     for (int i = 0; i < COMMANDS_PER_STEP; ++i) {
         if (!held_.has_value()) {
             auto next = next_command();
@@ -126,6 +143,7 @@ Result<> Bridge::take_commands() {
             held_ = std::move(*next);
         }
         is_late_ = is_late_ && held_.has_value();
+        isEmptied_ = !held_.has_value();
         if (!held_.has_value() || !post(*held_)) {
             return {};
         }

@@ -32,6 +32,9 @@ class Bridge {
     /// error: a channel cannot be used now; the next step tries again.
     Result<> step(Clock::time_point now = Clock::now());
 
+    /// Commands of the server itself, carried out after all that came in before.
+    void add(std::vector<msgs::Command> commands);
+
   private:
     /// Commands in the `recent` list of the status whose end the mailbox has not reported: 0 elsewhere.
     using Posted = std::array<client::Serial, RECENT_COMMANDS>;
@@ -44,6 +47,7 @@ class Bridge {
     Bridge(Channel commands, Channel status, Channel errors, client::Client &client);
     Result<> drop_old_commands();
     Result<> take_commands();
+    void post_own();
     Result<std::optional<Held>> next_command();
     Result<Held> decode(const Received &received) const;
     /// False: it waits for room.
@@ -75,6 +79,8 @@ class Bridge {
     bool is_late_ = false;  ///< commands that waited through a pause may be in the channel
     std::uint64_t published_cycle_ = 0;
     std::optional<Held> held_;
+    std::vector<msgs::Command> own_;
+    bool isEmptied_ = false;  ///< the channel, in this step
     std::unique_ptr<StatusMessage<msgs::MachineStatus>> status_;
     std::optional<StatusMessage<msgs::ToolTable>> table_;  ///< not written yet
     struct Line {

@@ -143,7 +143,7 @@ Result<std::shared_ptr<Place>> LocalPlaces::open(const BufferSettings &buffer, b
 Result<std::shared_ptr<Place>> open_shared_place(const BufferSettings &buffer, const std::string &instance,
                                                  bool isMaster) {
     const StoreShape shape = StoreShape::of(buffer);
-    const std::string name = fmt::format("millwright-nml-{}-{}", instance, buffer.key);
+    const std::string name = fmt::format("millwright-{}-nml-{}-{}", ::getuid(), instance, buffer.key);
     const rtapi::SharedLayout layout{ABI_VERSION, shape.hash()};
     auto memory = isMaster ? rtapi::SharedMemory::create(name, shape.bytes(), shape.bytes(), layout)
                            : rtapi::SharedMemory::attach(name, layout);

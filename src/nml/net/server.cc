@@ -42,7 +42,7 @@ struct DatagramClient {
 Result<std::unique_ptr<Server>> Server::start(const Config &config, const std::string &process,
                                               const std::string &instance, const Vocabulary &vocabulary,
                                               LocalPlaces &local) {
-    Service service{{}, vocabulary, instance, local, 0};
+    Service service{{}, vocabulary, instance, local, 0, nullptr};
     std::set<std::tuple<std::string, int, Transport>> places;
     for (const BufferSettings &buffer : config.buffers) {
         const ProcessSettings *line = config.find_process(process, buffer.name);

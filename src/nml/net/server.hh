@@ -33,9 +33,12 @@ class Server {
     /// Where it listens; of a port 0 in the configuration the one that it got. 0: it does not.
     int tcp_port() const;
     int udp_port() const;
+    /// Stops of jogs whose connection has ended since the last call. What the connection has written before
+    /// is in its buffer by then.
+    std::vector<msgs::Command> take_left_jogs() { return jogs_.take(); }
 
   private:
-    explicit Server(Service service) : service_(std::move(service)) {}
+    explicit Server(Service service) : service_(std::move(service)) { service_.jogs = &jogs_; }
 
     struct Worker {
         explicit Worker(Socket taken) : socket(std::move(taken)) {}
@@ -57,6 +60,7 @@ class Server {
     void serve(Worker &worker);
     void serve_datagrams(Listener &listener);
 
+    JogOwners jogs_;
     Service service_;
     std::atomic<bool> isEnding_{false};
     std::list<Listener> listeners_;

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "msgs/catalogue.hh"
+
 namespace mw::nml {
 namespace {
 
@@ -29,6 +31,26 @@ Encoding encoding_of(const BufferSettings &buffer) {
     const bool isForOthers = buffer.isNeutral || buffer.tcp_port.has_value() ||
                              buffer.stcp_port.has_value() || buffer.udp_port.has_value();
     return buffer.encoding.value_or(isForOthers ? Encoding::XDR : Encoding::RAW);
+}
+
+Session::~Session() {
+    if (service_.jogs != nullptr) {
+        service_.jogs->leave(this);
+    }
+}
+
+void Session::note_jog(std::string_view bytes, Encoding encoding) {
+    const Codec codec(service_.vocabulary, encoding);
+    const auto kind = codec.kind_of(bytes);
+    if (!kind.has_value() || service_.jogs == nullptr) {
+        return;
+    }
+    auto command = msgs::make_command((*kind)->declaration->number);
+    CommandHead head;
+    if (command.has_value() &&
+        codec.decode(bytes, {msgs::object(head), msgs::object(*command)}).has_value()) {
+        service_.jogs->note(this, *command);
+    }
 }
 
 Packet Session::answer(const Packet &request, const std::function<bool()> &isOver) {
@@ -97,10 +119,12 @@ Result<Packet> Session::log_in(const Packet &request, Open &open) {
 
 Result<Packet> Session::write(const Packet &request, Open &open) {
     // Nobody else gets what is no message.
-    const auto message = Codec(service_.vocabulary, encoding_of(open.served->buffer)).decode(request.bytes);
+    const Encoding encoding = encoding_of(open.served->buffer);
+    const auto message = Codec(service_.vocabulary, encoding).decode(request.bytes);
     if (!message.has_value()) {
         return std::unexpected(message.error());
     }
+    note_jog(request.bytes, encoding);
     const auto number = open.buffer->write(request.bytes, timeout_of(request));
     return number.has_value() ? Result<Packet>(answer_to(request, Status::DONE, {}, *number))
                               : std::unexpected(number.error());

@@ -10,6 +10,7 @@
 
 #include "nml/buffer/open.hh"
 #include "nml/message/codec.hh"
+#include "nml/net/jog_owners.hh"
 #include "nml/net/passwords.hh"
 #include "nml/net/protocol.hh"
 
@@ -31,12 +32,16 @@ struct Service {
     std::string instance;
     LocalPlaces &local;
     std::size_t longest = 0;  ///< message
+    JogOwners *jogs = nullptr;
 };
 
 /// One thread.
 class Session {
   public:
     explicit Session(const Service &service) : service_(service) {}
+    ~Session();
+    Session(const Session &) = delete;
+    Session &operator=(const Session &) = delete;
 
     /// The answer to a request. A wait ends early when `isOver` says so.
     Packet answer(const Packet &request, const std::function<bool()> &isOver);
@@ -53,6 +58,7 @@ class Session {
     Result<Packet> carry_out(const Packet &request, const std::function<bool()> &isOver);
     Result<Packet> log_in(const Packet &request, Open &open);
     Result<Packet> write(const Packet &request, Open &open);
+    void note_jog(std::string_view bytes, Encoding encoding);
     Result<Packet> read(const Packet &request, Open &open, const std::function<bool()> &isOver);
 
     const Service &service_;

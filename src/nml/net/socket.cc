@@ -70,7 +70,12 @@ Result<Socket> make_socket(const addrinfo &address) {
         return bad("socket");
     }
     const int on = 1;
-    if (address.ai_socktype == SOCK_STREAM) {  // small messages at once; a peer without power is noticed
+    // Small messages at once; a peer without power or cable is noticed, as jogs end with their connection.
+    constexpr int PROBE_S = 1, PROBES = 3;
+    if (address.ai_socktype == SOCK_STREAM) {
+        ::setsockopt(made.fd(), IPPROTO_TCP, TCP_KEEPIDLE, &PROBE_S, sizeof PROBE_S);
+        ::setsockopt(made.fd(), IPPROTO_TCP, TCP_KEEPINTVL, &PROBE_S, sizeof PROBE_S);
+        ::setsockopt(made.fd(), IPPROTO_TCP, TCP_KEEPCNT, &PROBES, sizeof PROBES);
         ::setsockopt(made.fd(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
         ::setsockopt(made.fd(), SOL_SOCKET, SO_KEEPALIVE, &on, sizeof on);
     }

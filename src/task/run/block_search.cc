@@ -11,7 +11,7 @@ BlockSearch::BlockSearch(interp::Interpreter &interpreter, MachineSwitch &machin
                          const SearchMachine::Real &real, int line)
     : interpreter_(interpreter), switch_(machine), machine_(real), line_(line) {
     switch_.set_search(&machine_);
-    interpreter_.forbid_scripts(true);
+    interpreter_.limits().areScriptsForbidden = true;
 }
 
 BlockSearch::BlockSearch(interp::Interpreter &interpreter, MachineSwitch &machine,
@@ -19,12 +19,12 @@ BlockSearch::BlockSearch(interp::Interpreter &interpreter, MachineSwitch &machin
     : interpreter_(interpreter), switch_(machine), machine_(real), calls_(block.calls) {
     machine_.set_up(block.set_up);
     switch_.set_search(&machine_, block.number);
-    interpreter_.forbid_scripts(true);
+    interpreter_.limits().areScriptsForbidden = true;
 }
 
 BlockSearch::~BlockSearch() {
     switch_.set_search(nullptr);
-    interpreter_.forbid_scripts(false);
+    interpreter_.limits().areScriptsForbidden = false;
 }
 
 BlockSearch::Outcome BlockSearch::step(int lines) {

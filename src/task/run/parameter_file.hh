@@ -26,7 +26,7 @@ class ParameterFile {
     Result<> save();
 
   private:
-    bool isWriterAsked() const { return writer_ != nullptr && !path_.empty() && reader_.isGCode(); }
+    bool isWriterAsked() const { return writer_ != nullptr && !path_.empty() && reader_.gcode() != nullptr; }
 
     std::string path_;
     ProgramReader &reader_;

@@ -51,7 +51,8 @@ class ProgramReader {
     Result<> save_parameters() const;
     /// What the parameter file is to have; empty where a plug-in reads programs.
     std::string parameter_text() const;
-    bool isGCode() const { return rs274_ != nullptr; }
+    /// Null where a plug-in reads programs.
+    interp::Interpreter *gcode() const { return rs274_; }
     /// The world shows the machine as it is now; the position is the program's from here.
     void synch(const geom::Pose &position);
     /// Reads the program from its first line on. An error says what is wrong with the file.

@@ -53,6 +53,8 @@ class ProgramRun {
     void note_failure(const std::string &text);
     std::optional<std::string> take_failure();
     void forget_failure() { failure_.reset(); }
+    /// Such a failure is noted and not taken: the run is not done.
+    bool hasFailed() const { return failure_.has_value(); }
 
     void set_error(diag::Diagnostic error) { error_ = std::move(error); }
     /// Why the last run failed; nullptr when it did not.

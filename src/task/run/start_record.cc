@@ -14,7 +14,7 @@ namespace mw::task {
 namespace {
 
 /// Of what follows; another one is not read.
-constexpr std::uint32_t FORM = 1;
+constexpr std::uint32_t FORM = 2;
 
 template <class Io, class Pose>
 void pose(Io &io, Pose &values) {
@@ -90,6 +90,7 @@ void fields(Io &io, Record &record) {
     snapshot(io, record.machine);
     io(record.isBlockDelete);
     io(record.isOptionalStop);
+    io(record.isConfined);
     list(io, record.tools, [&](auto &one) { tool(io, one); });
     io(record.offsets.g5x_index);
     pose(io, record.offsets.g5x);

@@ -20,6 +20,7 @@ struct StartRecord {
     std::string frame;        ///< MachineFrame::pack()
     interp::MachineSnapshot machine;
     bool isBlockDelete = true, isOptionalStop = true;
+    bool isConfined = false;  ///< the run had only the authority to operate
     std::vector<interp::ToolEntry> tools;
     interp::UseOffsets offsets;
     interp::UseToolOffset tool_offset;

@@ -11,11 +11,13 @@
 
 namespace mw::task {
 
-Result<> ProgramLog::open(const std::string &path, bool isAppending) {
+Result<> ProgramLog::open(const std::string &path, bool isAppending, const Confinement *confinement) {
     path_ = path;
     file_.reset();
     const Result<int> opened =
-        open_regular_file(path, O_WRONLY | O_CREAT | (isAppending ? O_APPEND : O_TRUNC));
+        confinement != nullptr
+            ? open_log(*confinement, path, isAppending)
+            : open_regular_file(path, O_WRONLY | O_CREAT | (isAppending ? O_APPEND : O_TRUNC));
     if (!opened.has_value()) {
         return std::unexpected(opened.error());
     }

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "base/result.hh"
+#include "task/sequencer/confinement.hh"
 
 namespace mw::task {
 
@@ -14,7 +15,8 @@ namespace mw::task {
 class ProgramLog {
   public:
     /// Closes what is open; the same file may be opened again.
-    Result<> open(const std::string &path, bool isAppending);
+    /// `confinement`: of a run that has only the authority to operate; null otherwise.
+    Result<> open(const std::string &path, bool isAppending, const Confinement *confinement = nullptr);
     /// Nothing happens when none is open; after an error none is.
     Result<> write(const std::string &line);
     void close() { file_.reset(); }

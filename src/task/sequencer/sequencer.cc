@@ -99,6 +99,10 @@ bool isOfTools(const interp::MachineCall &call) {
         call);
 }
 
+const Confinement *confinement_of(const SequencerEvents &events) {
+    return events.confinement ? events.confinement() : nullptr;
+}
+
 }  // namespace
 
 Sequencer::Sequencer(ItemQueue &queue, MotionLink &motion, io::Controller &io, ToolStore &tools,
@@ -230,11 +234,14 @@ bool Sequencer::execute(const Item &item, std::int64_t now_ns) {
         },
         [&](const interp::CanonError &call) { events_.message(MessageKind::OPERATOR_ERROR, call.text); },
         [&](const interp::PrintLine &call) { events_.print(call.text); },
-        [&](const interp::OpenLog &call) { check(log_.open(call.path, call.isAppending)); },
+        [&](const interp::OpenLog &call) {
+            check(log_.open(call.path, call.isAppending, confinement_of(events_)));
+        },
         [&](const interp::LogLine &call) { check(log_.write(call.text)); },
         [&](const interp::CloseLog &) { log_.close(); },
         [&](const interp::LogProbes &call) {
-            call.path.empty() ? probe_log_.close() : check(probe_log_.open(call.path, false));
+            call.path.empty() ? probe_log_.close()
+                              : check(probe_log_.open(call.path, false, confinement_of(events_)));
         },
         [&](const interp::UseOffsets &offsets) {
             spindles_.use(offsets, motion_);

@@ -34,6 +34,8 @@ struct SequencerEvents {
     /// Changes the planner at rest; the command whose answer is to be awaited, 0: nothing to wait for;
     /// nothing when it cannot be, and task aborts.
     std::function<std::optional<motion::CommandId>(const interp::UsePlanner &)> planner_mode;
+    /// Which files the run may write; null, or no function: any.
+    std::function<const Confinement *()> confinement;
     /// Starts a user M code; false when it cannot be started.
     std::function<Result<>(const interp::UserCode &)> start_user_code;
     /// Nothing while the program of a user M code runs, then how it ended.

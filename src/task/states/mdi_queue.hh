@@ -22,6 +22,7 @@ class MdiQueue {
         mailbox::Serial command = 0;
         std::string text;
         std::optional<RigidTapMove> tap;  ///< instead of a text
+        mailbox::Authority authority = mailbox::Authority::OPERATE;
     };
     explicit MdiQueue(int most) : most_(most) {}
 

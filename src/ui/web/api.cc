@@ -234,7 +234,27 @@ void Api::answer_files(const Request &request, const std::string &name, Reply re
     }
 }
 
+namespace {
+
+/// What filters read as data. A filter may run any other file: [FILTER] py = python3.
+constexpr std::array<std::string_view, 12> DATA_EXTENSIONS{".png",  ".gif", ".jpg", ".jpeg", ".bmp", ".tif",
+                                                           ".tiff", ".pgm", ".svg", ".dxf",  ".stl", ".gbr"};
+
+bool isData(const std::string &name) {
+    const std::string lower = to_lower(name);
+    return std::ranges::any_of(DATA_EXTENSIONS, [&](std::string_view one) { return lower.ends_with(one); });
+}
+
+}  // namespace
+
 void Api::write_file(const Request &request, const std::string &name, Reply reply) {
+    if (request.role < Role::CONFIGURE && made_of(name).has_value() && !isData(name)) {
+        const std::size_t dot = name.rfind('.');
+        reply(error_response(403, "Files of type " + printable(name.substr(dot)) +
+                                      " are run as programs of this computer: a client of role configure can "
+                                      "add them"));
+        return;
+    }
     const bool isPiece = request.query.contains("offset") || request.query.contains("size");
     const auto offset = isPiece ? number(request, "offset") : 0;
     const auto size = isPiece ? number(request, "size") : request.body.size();

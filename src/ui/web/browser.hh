@@ -44,7 +44,12 @@ class Browser {
     Browser &operator=(const Browser &) = delete;
 
     /// The machine is up.
-    void join(client::Client client) { client_.emplace(std::move(client)); }
+    void join(client::Client client) {
+        client_.emplace(std::move(client));
+        if (role_ < Role::CONFIGURE) {
+            client_->limit_authority(mailbox::Authority::OPERATE);
+        }
+    }
     /// It is gone: what was under way has failed.
     void leave();
     bool isJoined() const { return client_.has_value(); }

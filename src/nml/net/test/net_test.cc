@@ -120,6 +120,40 @@ TEST_P(NmlTransportTest, AClientWritesReadsPeeksWaitsAndClearsAsALocalOne_F6_F9)
     EXPECT_FALSE(cmd_->peek(message, AT_ONCE).value());
 }
 
+/// What the server has to stop, once it is something; empty after a second without.
+std::vector<msgs::Command> left_by(Server &server) {
+    for (int i = 0; i < 1000; ++i) {
+        auto left = server.take_left_jogs();
+        if (!left.empty()) {
+            return left;
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    return {};
+}
+
+TEST_F(NmlNetTest, AJogEndsWithTheConnectionThatHasSentIt) {
+    start(Transport::TCP);
+    const auto jog = [this](Buffer &buffer, int index) {
+        CommandMessage<msgs::JogContinuous> message{{}, {true, index, 1.0}};
+        std::string bytes;
+        EXPECT_TRUE(Codec(vocabulary_, Encoding::XDR).encode(view(message), bytes).has_value());
+        EXPECT_TRUE(buffer.write(bytes, {1.0}).has_value());
+    };
+    auto one = client("cmd"), other = client("cmd");
+    ASSERT_TRUE(one.has_value() && other.has_value());
+    jog(**one, 0);
+    jog(**one, 1);
+    jog(**other, 1);
+    EXPECT_TRUE(server_->take_left_jogs().empty()) << "both live";
+    one->reset();
+    const auto left = left_by(*server_);
+    ASSERT_EQ(left.size(), 1U) << "joint 1 belongs to the other";
+    EXPECT_EQ(std::get<msgs::JogStop>(left[0]).index, 0);
+    other->reset();
+    EXPECT_EQ(left_by(*server_).size(), 1U);
+}
+
 TEST_P(NmlTransportTest, ALargeStatusComesWhole_F6) {
     start(GetParam());
     const auto status = client("sts");

@@ -46,7 +46,7 @@ class ApiTest : public testing::Test {
             overrides = at;
             return std::make_shared<PieceQueue>();
         };
-        setup.facts.filters = {{".png"}, "/made"};
+        setup.facts.filters = {{".png", ".py"}, "/made"};
         setup.run_filter = [this](const std::string &path,
                                   const std::string &made) -> Result<std::shared_ptr<PieceQueue>> {
             filtered = {path, made};
@@ -134,7 +134,7 @@ TEST_F(ApiTest, TheMachineIsWhatTheIniSays_J3) {
     EXPECT_EQ(machine["axes"], "XYZ");
     EXPECT_EQ(machine["increments"], Json::parse(R"([{"text":"0.1 in","value":2.54,"angular":false}])"));
     EXPECT_EQ(machine["program_extensions"], Json::parse(R"([".ngc",".png"])"));
-    EXPECT_EQ(machine["filter_extensions"], Json::parse(R"([".png"])"));
+    EXPECT_EQ(machine["filter_extensions"], Json::parse(R"([".png", ".py"])"));
 }
 
 TEST_F(ApiTest, ProgramsComeInPiecesAndGo_J3) {
@@ -151,6 +151,17 @@ TEST_F(ApiTest, ProgramsComeInPiecesAndGo_J3) {
     EXPECT_EQ(ask("GET", "/api/files/..%2fx.ngc").status, 400);
     EXPECT_EQ(ask("POST", "/api/files/whole.ngc").status, 400);
     EXPECT_EQ(ask("DELETE", "/api/files").status, 400);
+}
+
+TEST_F(ApiTest, OnlyConfigureAddsFilesThatAFilterRuns) {
+    role = Role::OPERATE;
+    EXPECT_EQ(ask("PUT", "/api/files/evil.py", "import os").status, 403);
+    EXPECT_EQ(ask("PUT", "/api/files/evil.PY?offset=0&size=9", "import os").status, 403);
+    EXPECT_FALSE(fs::exists(folder / "evil.py"));
+    EXPECT_NE(ask("PUT", "/api/files/part.ngc", "M2").status, 403);
+    EXPECT_NE(ask("PUT", "/api/files/photo.png", "x").status, 403);
+    role = Role::CONFIGURE;
+    EXPECT_NE(ask("PUT", "/api/files/good.py", "print('M2')").status, 403);
 }
 
 TEST_F(ApiTest, AFilterRunsForItsExtensionAndItsProgramIsRead_J1) {
