@@ -212,6 +212,11 @@ void Api::answer(const Request &request, Reply reply) {
     }
 }
 
+void Api::read(std::shared_ptr<BodySource> source, std::function<void(std::string)> take) {
+    threads_.disk.run([source = std::move(source)] { return Response{.body = source->read()}; },
+                      [take = std::move(take)](Response read) { take(std::move(read.body)); });
+}
+
 void Api::answer_files(const Request &request, const std::string &name, Reply reply) {
     if (name.empty()) {
         if (request.method != "GET") {

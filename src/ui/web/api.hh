@@ -55,6 +55,7 @@ class Api final : public Application {
     void tick();
 
     void answer(const Request &request, Reply reply) override;
+    void read(std::shared_ptr<BodySource> source, std::function<void(std::string)> take) override;
     void opened(SessionId session, Role role, Protection protection) override {
         screens_.opened(session, {role, protection}, clock_());
     }

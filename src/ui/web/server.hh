@@ -20,6 +20,9 @@ struct ServerLimits {
     std::size_t text_bytes = 64 * 1024;    ///< from a socket
     /// To a socket, waiting to be sent.
     std::size_t waiting_bytes = 4UL * 1024 * 1024;
+    /// Of bodies that are in memory while they are sent, all clients together. A body below small_bytes is
+    /// sent in any case.
+    std::size_t answer_bytes = 64UL * 1024 * 1024, small_bytes = 256UL * 1024;
     int connections = 64;  ///< open ones; sockets count
     int sessions = 16;     ///< sockets
     /// Of these, those that only this computer may take.
@@ -30,7 +33,10 @@ struct ServerLimits {
     double greetings_per_s = 100, greetings_at_once = 100;
     std::chrono::milliseconds greeting_time{
         10000};  ///< for a greeting of TLS, from its first byte to its last
-    std::chrono::milliseconds request_time{30000};  ///< for a request to come, and for its answer to be taken
+    /// For a request to come, and for its answer, or a piece of it, to be taken.
+    std::chrono::milliseconds request_time{30000};
+    /// Between two checks whether the client of an answer that takes long has hung up.
+    std::chrono::milliseconds check_time{100};
 };
 
 /// A way in from other computers, beside that of this one.

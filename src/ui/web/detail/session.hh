@@ -63,6 +63,7 @@ class Server::Impl {
     std::deque<detail::Door> doors;  ///< outlive the loop, which ends connections
     Application *application = nullptr;
     SessionId last_session = 0;
+    std::size_t answer_bytes = 0;  ///< of bodies that are being sent
     detail::net::io_context loop{1};
     std::deque<detail::Listener> listeners;  ///< of the doors in their order
     std::map<SessionId, std::shared_ptr<detail::Session>> sessions;
@@ -138,10 +139,18 @@ class Session : public std::enable_shared_from_this<Session> {
             self->read();
         });
     }
+    /// A browser that does not take a text in time is disconnected.
     void write() {
+        untaken_.expires_after(server_.limits.request_time);
+        untaken_.async_wait([self = weak_from_this()](error_code ended) {
+            if (const auto session = self.lock(); session != nullptr && !ended) {
+                session->end();
+            }
+        });
         socket_.text(true);
         socket_.async_write(net::buffer(waiting_.front()),
                             [self = shared_from_this()](error_code error, std::size_t) {
+                                self->untaken_.cancel();
                                 if (error || self->isOver_) {
                                     self->end();
                                     return;
@@ -161,6 +170,7 @@ class Session : public std::enable_shared_from_this<Session> {
     websocket::stream<Link> socket_;
     HttpRequest request_;
     beast::flat_buffer buffer_;
+    net::steady_timer untaken_{server_.loop};
     std::deque<std::string> waiting_;  ///< the first one is being sent
     std::size_t bytes_ = 0;
     bool isOpen_ = false, isOver_ = false;
