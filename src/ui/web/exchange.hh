@@ -16,7 +16,8 @@
 namespace mw::ui::web {
 
 /// What whoever asks may do; each role may do what those before it may.
-enum class Role : std::uint8_t { NOBODY, VIEW, OPERATE, CONFIGURE };
+/// STATUS: sees the status and messages of the machine, and may stop it.
+enum class Role : std::uint8_t { NOBODY, STATUS, VIEW, OPERATE, CONFIGURE };
 
 /// How the way is protected by which somebody came.
 enum class Protection : std::uint8_t {
@@ -31,12 +32,19 @@ struct Rights {
     Protection protection = Protection::LOCAL;
 };
 
+/// By whom a request was sent.
+struct Requester {
+    std::string address;  ///< of its computer
+    Role role = Role::NOBODY;
+};
+
 struct Request {
     std::string method;  ///< "GET"
     std::string path;    ///< decoded, without the query
     std::map<std::string, std::string> query;
     std::string body;
     Role role = Role::NOBODY;
+    std::string address{};  ///< of the computer that sent it
 };
 
 /// A path with its query as it stands in a request; nothing when it is not one (no leading '/', a broken

@@ -17,6 +17,7 @@
 #include <fmt/format.h>
 
 #include "base/text.hh"
+#include "ui/web/descriptors.hh"
 #include "ui/web/documents.hh"
 
 namespace mw::ui::web {
@@ -86,6 +87,10 @@ Response file_response(const std::string &path, std::string type, const std::str
     if (fd < 0) {
         return error_response(404, missing);
     }
+    if (isReserved(fd)) {
+        ::close(fd);
+        return error_response(503, "too many files are open: ask again later");
+    }
     struct stat facts{};
     const bool isFile = ::fstat(fd, &facts) == 0 && S_ISREG(facts.st_mode);
     auto source = std::make_shared<FileBody>(fd, isFile ? static_cast<std::uint64_t>(facts.st_size) : 0);
@@ -144,6 +149,12 @@ int open_upload(const std::string &folder, std::string &path) {
         const int fd = ::mkostemp(path.data(), O_CLOEXEC);
         if (fd < 0) {
             return fd;
+        }
+        if (isReserved(fd)) {
+            ::unlink(path.c_str());
+            ::close(fd);
+            errno = EMFILE;
+            return -1;
         }
         struct stat facts{};
         // Another server that starts may have removed it before it was locked.

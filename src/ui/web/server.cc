@@ -2,6 +2,8 @@
 // The only file that includes Boost.Beast, by headers of `detail`: a heavy header.
 #include "ui/web/server.hh"
 
+#include <unistd.h>
+
 #include <utility>
 
 #include "ui/web/detail/connection.hh"
@@ -30,7 +32,13 @@ Server::Impl::Impl(const ServerOptions &options) : limits(options.limits), page_
 }
 
 Result<> Server::Impl::open(const ServerOptions &options) {
-    doors.push_back({.access = Access(Protection::LOCAL, Role::CONFIGURE),
+    auto cookies = Tokens::random();
+    if (!cookies.has_value()) {
+        return std::unexpected(cookies.error());
+    }
+    find_socket = options.find_socket;
+    report = options.report;
+    doors.push_back({.access = Access::of_this_computer(options.local_tokens, std::move(*cookies)),
                      .requests = RateLimit(limits.requests_per_s, limits.requests_at_once),
                      .most_connections = limits.connections,
                      .most_sessions = limits.sessions});
@@ -123,10 +131,40 @@ void Server::Impl::accept(Listener &listener) {
         if (connections < limits.connections && door.connections < door.most_connections) {
             keep_to_ourselves(socket.native_handle());
             send_promptly(socket);
-            std::make_shared<Connection>(*this, door, std::move(socket))->begin();
+            const bool isLocal = door.access.protection() == Protection::LOCAL;
+            const bool isForeign = isLocal && !isOfServerUser(socket);
+            if (!isForeign || door.foreign_connections < limits.foreign_connections) {
+                std::make_shared<Connection>(*this, door, std::move(socket), isLocal, isForeign)->begin();
+            }
         }
         accept(listener);
     });
+}
+
+bool Server::Impl::isOfServerUser(const tcp::socket &socket) {
+    error_code error, other;
+    const auto peer = socket.remote_endpoint(error), own = socket.local_endpoint(other);
+    if (error || other || !peer.address().is_v4() || !own.address().is_v4()) {
+        return false;
+    }
+    const Endpoint client{peer.address().to_v4().to_uint(), peer.port()},
+        server{own.address().to_v4().to_uint(), own.port()};
+    const auto found = find_socket(client, server);
+    if (!found.has_value()) {
+        if (report) {
+            std::exchange(report, {})(found.error().message);
+        }
+        return false;
+    }
+    return owner_of(*found, client, server, ::geteuid()) == PeerOwner::SERVER_USER;
+}
+
+void Server::Impl::close_status_sessions() {
+    for (const auto &[id, session] : sessions) {
+        if (session->role() == Role::STATUS) {
+            session->end();
+        }
+    }
 }
 
 void Server::Impl::forget(SessionId id) {

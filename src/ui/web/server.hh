@@ -10,6 +10,7 @@
 #include "base/result.hh"
 #include "ui/web/access.hh"
 #include "ui/web/exchange.hh"
+#include "ui/web/peer_owner.hh"
 #include "ui/web/secrets.hh"
 
 namespace mw::ui::web {
@@ -27,6 +28,8 @@ struct ServerLimits {
     int sessions = 16;     ///< sockets
     /// Of these, those that only this computer may take.
     int kept_connections = 16, kept_sessions = 4;
+    /// Of these, those that other users of this computer may take.
+    int foreign_connections = 8, foreign_sessions = 2;
     /// Requests of all browsers of one way in together. Texts from sockets are the application's to limit.
     double requests_per_s = 500, requests_at_once = 1000;
     /// Connections from other computers that begin. A greeting of TLS takes the thread of all screens 1 ms.
@@ -54,6 +57,13 @@ struct ServerOptions {
     ServerLimits limits{};
     std::optional<RemoteDoor> remote{};
     std::vector<std::string> frames{};  ///< addresses that pages may show in frames
+    /// For other users of this computer than that of the server, and root.
+    Tokens local_tokens{};
+    /// By whom a connection on this computer was opened, at its ends.
+    std::function<Result<SocketFacts>(const Endpoint &client, const Endpoint &server)> find_socket{
+        web::find_socket};
+    /// Takes the reason, once, why that cannot be found out.
+    std::function<void(const std::string &)> report{};
 };
 
 class Server final : public Sockets {

@@ -39,10 +39,11 @@ inline constexpr std::chrono::milliseconds DRAIN_TIME{2000};
 /// One connection, one request after the other.
 class Connection : public std::enable_shared_from_this<Connection> {
   public:
-    Connection(Server::Impl &server, Door &door, tcp::socket socket)
-        : server_(server), door_(door),
+    Connection(Server::Impl &server, Door &door, tcp::socket socket, bool isLocal, bool isForeign)
+        : server_(server), door_(door), isOfServerUser_(isLocal && !isForeign), isForeign_(isForeign),
           wire_(std::make_unique<Wire>(std::move(socket), door.tls.has_value() ? &*door.tls : nullptr)) {
         ++door_.connections;
+        door_.foreign_connections += isForeign_ ? 1 : 0;
     }
     ~Connection() {
         if (pieces_ != nullptr) {
@@ -50,6 +51,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
         }
         release_body();
         --door_.connections;
+        door_.foreign_connections -= isForeign_ ? 1 : 0;
     }
     Connection(const Connection &) = delete;
     Connection &operator=(const Connection &) = delete;
@@ -111,11 +113,17 @@ class Connection : public std::enable_shared_from_this<Connection> {
             return;
         }
         asked->role = door_.access.role_of(
-            {view(request[http::field::authorization]), view(request[http::field::cookie])}, door_.port);
+            {view(request[http::field::authorization]), view(request[http::field::cookie]), isOfServerUser_},
+            door_.port);
         asked->method = view(request.method_string());
+        asked->address = wire_->peer_address();
         if (asked->path == "/api/login") {
             asked->body = std::move(parser_->get().body());
-            reply(door_.access.login(*asked, door_.port, monotonic_ns()));
+            Response answer = door_.access.login(*asked, door_.port, monotonic_ns());
+            if (asked->method == "POST" && !answer.cookie.empty()) {
+                server_.close_status_sessions();
+            }
+            reply(std::move(answer));
             return;
         }
         // The screen itself is no secret: it asks for the token.
@@ -140,12 +148,14 @@ class Connection : public std::enable_shared_from_this<Connection> {
             return;
         }
         const bool isFull = static_cast<int>(server_.sessions.size()) >= server_.limits.sessions;
-        if (isFull || door_.sessions >= door_.most_sessions) {
+        const bool isForeignFull = isForeign_ && door_.foreign_sessions >= server_.limits.foreign_sessions;
+        if (isFull || isForeignFull || door_.sessions >= door_.most_sessions) {
             reply(error_response(503, "as many screens as can be are open: close one"));
             return;
         }
         const SessionId id = ++server_.last_session;
-        auto session = std::make_shared<Session>(server_, door_, id, asked.role, std::move(wire_));
+        auto session =
+            std::make_shared<Session>(server_, door_, id, asked.role, isForeign_, std::move(wire_));
         server_.sessions[id] = session;
         session->accept(parser_->release());
     }
@@ -323,6 +333,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
     Server::Impl &server_;
     Door &door_;
+    const bool isOfServerUser_,
+        isForeign_;  ///< of this computer: the user of the server or root; another one
     std::unique_ptr<Wire> wire_;
     const std::string own_address_ = wire_->own_address();
     beast::flat_buffer buffer_;

@@ -73,6 +73,12 @@ class Wire {
         pollfd look{stream_.socket().native_handle(), POLLRDHUP, 0};
         return ::poll(&look, 1, 0) > 0 && (look.revents & (POLLRDHUP | POLLHUP | POLLERR | POLLNVAL)) != 0;
     }
+    /// Of the computer at its other end.
+    std::string peer_address() {
+        error_code error;
+        const auto place = stream_.socket().remote_endpoint(error);
+        return error ? std::string() : place.address().to_string();
+    }
     template <class Handler>
     void async_greet(Handler handler) {
         if (tls_.has_value()) {

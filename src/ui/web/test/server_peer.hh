@@ -122,8 +122,9 @@ class Peer {
 
 class ServerTest : public testing::Test {
   protected:
-    void listen(const ServerLimits &limits = {}) {
-        auto made = Server::listen({.port = 0, .limits = limits});
+    void listen(const ServerLimits &limits = {}) { listen(ServerOptions{.port = 0, .limits = limits}); }
+    void listen(const ServerOptions &options) {
+        auto made = Server::listen(options);
         ASSERT_TRUE(made.has_value()) << made.error().str();
         server = std::move(*made);
         echo.server = server.get();

@@ -51,6 +51,82 @@ TEST_F(ServerTest, PagesOfOthersReachNothing_J3) {
     EXPECT_TRUE(echo.open.empty());
 }
 
+/// The kernel's answer for another user.
+Result<SocketFacts> of_another_user(const Endpoint &client, const Endpoint &server) {
+    auto found = find_socket(client, server);
+    if (found.has_value()) {
+        found->uid = ::geteuid() + 1;
+    }
+    return found;
+}
+
+TEST_F(ServerTest, AnotherUserOfThisComputerHasStatusOnly) {
+    listen(ServerOptions{.port = 0,
+                         .local_tokens = Tokens({{Role::OPERATE, std::string(64, 'o')}}),
+                         .find_socket = of_another_user});
+    EXPECT_EQ(status_of(get("/api/x")), "HTTP/1.1 200 OK");
+    EXPECT_EQ(status_of(get("/api/x", "Authorization: Bearer " + std::string(64, 'o') + "\r\n")),
+              "HTTP/1.1 200 OK");
+    ASSERT_EQ(echo.asked.size(), 2U);
+    EXPECT_EQ(echo.asked[0].role, Role::STATUS);
+    EXPECT_EQ(echo.asked[1].role, Role::OPERATE);
+    Peer screen(server->port()), browser(server->port());
+    ask(screen, upgrade(), "\r\n\r\n");
+    ASSERT_TRUE(areOpened(1));
+    EXPECT_EQ(echo.rights[0].role, Role::STATUS);
+    const std::string body = R"({"token":")" + std::string(64, 'o') + R"("})";
+    const std::string answer = ask(browser,
+                                   "POST /api/login HTTP/1.1\r\n" + host() +
+                                       "Content-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body,
+                                   "\r\n\r\n");
+    const std::size_t cookie = answer.find("millwright_token_");
+    ASSERT_NE(cookie, std::string::npos) << answer;
+    EXPECT_TRUE(run_until([&] { return !echo.ended.empty(); })) << "it connects again, with the cookie";
+    Peer again(server->port());
+    ask(again,
+        upgrade("/api/socket",
+                "Cookie: " + answer.substr(cookie, answer.find(';', cookie) - cookie) + "\r\n"),
+        "\r\n\r\n");
+    ASSERT_TRUE(areOpened(2));
+    EXPECT_EQ(echo.rights[1].role, Role::OPERATE);
+}
+
+TEST_F(ServerTest, NobodyHasMoreThanStatusWhereTheKernelDoesNotTellTheUser) {
+    std::vector<std::string> reported;
+    listen(ServerOptions{.port = 0,
+                         .find_socket = [](const Endpoint &, const Endpoint &) -> Result<SocketFacts> {
+                             return fail("no netlink");
+                         },
+                         .report = [&](const std::string &why) { reported.push_back(why); }});
+    EXPECT_EQ(status_of(get("/api/x")), "HTTP/1.1 200 OK");
+    EXPECT_EQ(status_of(get("/api/x")), "HTTP/1.1 200 OK");
+    ASSERT_EQ(echo.asked.size(), 2U);
+    EXPECT_EQ(echo.asked[1].role, Role::STATUS);
+    EXPECT_EQ(reported, std::vector<std::string>{"no netlink"});
+}
+
+TEST_F(ServerTest, OtherUsersLeaveConnectionsToTheUserOfTheServer) {
+    bool isForeign = true;
+    listen(ServerOptions{.port = 0,
+                         .limits = {.connections = 4, .foreign_connections = 2},
+                         .find_socket = [&](const Endpoint &from, const Endpoint &to) {
+                             return isForeign ? of_another_user(from, to) : find_socket(from, to);
+                         }});
+    std::vector<std::unique_ptr<Peer>> peers;
+    for (int i = 0; i < 5; ++i) {
+        peers.push_back(std::make_unique<Peer>(server->port()));
+    }
+    EXPECT_TRUE(run_until([&] {
+        return std::ranges::count_if(peers, [](const auto &peer) {
+                   peer->read();
+                   return peer->isClosed;
+               }) == 3;
+    }));
+    isForeign = false;
+    EXPECT_EQ(status_of(get("/api/x")), "HTTP/1.1 200 OK");
+    EXPECT_EQ(echo.asked.back().role, Role::CONFIGURE);
+}
+
 TEST_F(ServerTest, RejectsHeadersOfAccessThatAreSetTwice) {
     listen();
     const std::string bad = "HTTP/1.1 400 Bad Request";
