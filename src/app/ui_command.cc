@@ -29,6 +29,7 @@
 #include "language/language.hh"
 #include "options/command_line.hh"
 #include "ui/web/api.hh"
+#include "ui/web/descriptors.hh"
 #include "ui/web/server.hh"
 
 namespace mw::app {
@@ -83,8 +84,9 @@ struct UiWords {
 };
 
 /// A client of the machine that is up, if it is the one of this INI file.
-Result<client::Client> connect(const std::string &instance, const std::string &ini) {
-    auto client = client::Client::connect(instance, client::Role::OPERATOR);
+Result<client::Client> connect(const std::string &instance, const std::string &ini,
+                               client::Places places = client::Places::ORDINARY) {
+    auto client = client::Client::connect(instance, client::Role::OPERATOR, places);
     if (!client.has_value()) {
         return client;
     }
@@ -114,6 +116,9 @@ ui::web::ApiSetup setup_of(const UiWords &words, const machine::LoadedConfig &lo
     setup.facts.instance = instance;
     setup.facts.filters.folder = filtered_folder(instance);
     setup.screens.connect = [instance, ini] { return connect(instance, ini); };
+    setup.screens.connect_for_all = [instance, ini] {
+        return connect(instance, ini, client::Places::RESERVED);
+    };
     setup.screens.version = MW_VERSION;
     setup.screens.status_period_ns = to_ns(status_period_s(loaded.ini, sink));
     setup.screen_folder = screen_folder(words.screen);
@@ -139,13 +144,16 @@ void run(ui::web::Server &server, const UiWords &words, const machine::LoadedCon
     SidePrograms programs(words.isDisplay ? tab_programs(setup.facts.tabs) : std::vector<std::string>{},
                           setup.facts.ini, 0);
     PathReaders readers(loaded, path_look(setup.facts));
-    setup.read_path = [&readers](const std::string &path) { return readers.read(path); };
-    setup.read_times = [&readers](const std::string &path, const ui::web::TimeOverrides &overrides) {
-        return readers.read_times(path, overrides);
+    setup.read_path = [&readers](const std::string &path, const ui::web::Requester &by) {
+        return readers.read(path, by);
+    };
+    setup.read_times = [&readers](const std::string &path, const ui::web::TimeOverrides &overrides,
+                                  const ui::web::Requester &by) {
+        return readers.read_times(path, overrides, by);
     };
     setup.run_filter = [&readers, filters = filters_of(loaded.ini),
                         folder = std::filesystem::path(setup.facts.ini).parent_path().string()](
-                           const std::string &path, const std::string &made) {
+                           const std::string &path, const std::string &made, const ui::web::Requester &by) {
         const std::string lower = to_lower(path);
         const auto filter =
             std::ranges::find_if(filters, [&](const auto &one) { return lower.ends_with(one.first); });
@@ -153,9 +161,11 @@ void run(ui::web::Server &server, const UiWords &words, const machine::LoadedCon
             return Result<std::shared_ptr<ui::web::PieceQueue>>(
                 fail("[FILTER] names no program for " + path));
         }
-        return readers.run([command = filter->second, folder, path, made](ui::web::PieceQueue &pieces) {
-            run_filter({command, folder, path, made}, pieces);
-        });
+        return readers.run(
+            [command = filter->second, folder, path, made](ui::web::PieceQueue &pieces) {
+                run_filter({command, folder, path, made}, pieces);
+            },
+            by);
     };
     const auto post = [&server](std::function<void()> act) { server.post(std::move(act)); };
     ui::web::Worker disk(post), hal_looks(post);
@@ -171,6 +181,7 @@ void run(ui::web::Server &server, const UiWords &words, const machine::LoadedCon
         programs.step(now_ns(), sink);
         browser.look();
     }
+    readers.cancel();
     programs.ask_to_end();
     disk.end();
     hal_looks.end();
@@ -207,12 +218,18 @@ int serve(const UiWords &words, const machine::LoadedConfig &loaded, diag::Sink 
             frames.push_back(tab.content);
         }
     }
-    auto server = ui::web::Server::listen(
-        {.port = words.port, .limits = {}, .remote = *door, .frames = std::move(frames)});
+    auto server =
+        ui::web::Server::listen({.port = words.port,
+                                 .limits = {},
+                                 .remote = *door,
+                                 .frames = std::move(frames),
+                                 .local_tokens = local_tokens(secrets, sink),
+                                 .report = [&sink](const std::string &why) { report_unknown(why, sink); }});
     if (!server.has_value()) {
         sink.error(server.error());
         return 1;
     }
+    setup.screens.status_note = status_note((*server)->port(), secrets);
     print_address(loaded.machine.name, (*server)->port(), setup.screen_folder, sink);
     if (door->has_value()) {
         fmt::print("{}", language::shown(door_text(**door, (*server)->remote_port(), secrets)));
@@ -235,6 +252,7 @@ int command_ui(const std::vector<std::string> &arguments) {
         return 2;
     }
     catch_stop_signals();
+    ui::web::raise_descriptor_limit();
     diag::Sink sink([](const diag::Diagnostic &d) { fmt::print(stderr, "{}\n", language::shown(d.str())); });
     const auto loaded = machine::LoadedConfig::load(words.ini, sink);
     return loaded == nullptr ? 1 : serve(words, *loaded, sink);

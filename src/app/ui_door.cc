@@ -145,6 +145,37 @@ Result<std::optional<ui::web::RemoteDoor>> remote_door(const DoorWords &words, c
                                std::move(*certificate)};
 }
 
+ui::web::Tokens local_tokens(const std::string &folder, diag::Sink &sink) {
+    if (folder.empty()) {
+        return {};
+    }
+    auto tokens = ui::web::Tokens::read_or_make(folder + "/tokens");
+    if (!tokens.has_value()) {
+        sink.warning(fmt::format("Other users of this computer cannot sign in to the screen: {}",
+                                 tokens.error().str()));
+    }
+    return tokens.value_or(ui::web::Tokens());
+}
+
+void report_unknown(const std::string &why, diag::Sink &sink) {
+    sink.warning(
+        fmt::format("The user of a connection on this computer cannot be found out: {}. Screens without "
+                    "a token see status only.",
+                    why));
+}
+
+std::string status_note(int port, const std::string &folder) {
+    if (folder.empty()) {
+        return "Another user of this computer started the server. This screen sees status and can stop the "
+               "machine. "
+               "To do more, run the browser as that user.";
+    }
+    return fmt::format(
+        "Another user of this computer started the server. This screen sees status and can stop the "
+        "machine. To do more, open http://127.0.0.1:{}/#token=TOKEN with a token of {}/tokens.",
+        port, folder);
+}
+
 std::string door_text(const ui::web::RemoteDoor &door, int port, const std::string &folder) {
     std::string host = door.address;
     if (isEverywhere(host)) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "diag/sink.hh"
 #include "ui/web/server.hh"
 
 namespace mw::app {
@@ -22,6 +23,15 @@ Result<std::string> secrets_folder();
 /// Nothing where no word asks for one. Tokens and certificate are read from `folder`, and made there where
 /// they are missing.
 Result<std::optional<ui::web::RemoteDoor>> remote_door(const DoorWords &words, const std::string &folder);
+
+/// For other users of this computer, from `folder`; none, with a warning, where they cannot be read or made.
+ui::web::Tokens local_tokens(const std::string &folder, diag::Sink &sink);
+
+/// Why connections of this computer have the role STATUS, though they may be of the server's user.
+void report_unknown(const std::string &why, diag::Sink &sink);
+
+/// What a screen of the role STATUS shows: how to get more.
+std::string status_note(int port, const std::string &folder);
 
 /// What to open on another computer, one line for each role: printed for whoever started the server.
 std::string door_text(const ui::web::RemoteDoor &door, int port, const std::string &folder);

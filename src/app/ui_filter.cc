@@ -188,7 +188,7 @@ bool isTooLarge(int output) {
 
 /// Into the open file `output`.
 Result<> fill(const FilterRun &run, int output, ui::web::PieceQueue &pieces) {
-    constexpr auto PATIENCE = std::chrono::seconds(2);
+    constexpr auto PATIENCE = std::chrono::seconds(1);
     Child child;
     if (const Result<> started = child.start(run, output); !started.has_value()) {
         return fail(

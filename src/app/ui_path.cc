@@ -1,14 +1,21 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "app/ui_path.hh"
 
+#include <fcntl.h>
+#include <time.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <filesystem>
+
+#include <fmt/format.h>
 
 #include "machine/ini_parameters.hh"
 #include "machine/program_check.hh"
 #include "machine/time_estimate.hh"
 #include "machine/tool_data.hh"
 #include "machine/unscripted.hh"
+#include "ui/web/descriptors.hh"
 #include "ui/web/elsewhere.hh"
 #include "ui/web/path_chunks.hh"
 #include "ui/web/time_chunks.hh"
@@ -17,28 +24,81 @@ namespace mw::app {
 namespace {
 
 constexpr double MM_PER_INCH = 25.4;
+constexpr std::size_t EVENTS_PER_CHECK = 64;
+
+/// A program with its subroutines or a filter can open files without touching the reserve.
+bool hasDescriptors() {
+    constexpr int MOST_OF_A_PROGRAM = 16;
+    const int fd = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+    const bool isFree = fd >= 0 && !ui::web::isReserved(fd + MOST_OF_A_PROGRAM);
+    if (fd >= 0) {
+        ::close(fd);
+    }
+    return isFree;
+}
 
 }  // namespace
 
 using ui::web::step_back;
 
 PathReaders::~PathReaders() {
+    cancel();
     for (Reader &reader : readers_) {
-        reader.pieces->cancel();
         reader.thread.join();
     }
 }
 
-Result<std::shared_ptr<ui::web::PieceQueue>> PathReaders::read(const std::string &path) {
-    return begin([this, path](Reader &reader) { read_all(reader, path); });
+void PathReaders::cancel() {
+    for (Reader &reader : readers_) {
+        reader.pieces->cancel();
+    }
 }
 
-Result<std::shared_ptr<ui::web::PieceQueue>>
-PathReaders::read_times(const std::string &path, const ui::web::TimeOverrides &overrides) {
-    return begin([this, path, overrides](Reader &reader) { time_all(reader, path, overrides); });
+Result<std::shared_ptr<ui::web::PieceQueue>> PathReaders::read(const std::string &path,
+                                                               const ui::web::Requester &by) {
+    return begin([this, path](Reader &reader) { read_all(reader, path); }, by);
 }
 
-Result<std::shared_ptr<ui::web::PieceQueue>> PathReaders::begin(std::function<void(Reader &)> job) {
+Result<std::shared_ptr<ui::web::PieceQueue>> PathReaders::read_times(const std::string &path,
+                                                                     const ui::web::TimeOverrides &overrides,
+                                                                     const ui::web::Requester &by) {
+    return begin([this, path, overrides](Reader &reader) { time_all(reader, path, overrides); }, by);
+}
+
+bool PathReaders::isToEnd(Reader &reader) const {
+    timespec cpu{};
+    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &cpu);
+    const double cpu_s = static_cast<double>(cpu.tv_sec) + 1e-9 * static_cast<double>(cpu.tv_nsec);
+    const std::chrono::duration<double> time = std::chrono::steady_clock::now() - reader.since;
+    reader.isLate = reader.isLate || cpu_s > limits_.cpu_s || time.count() > limits_.time_s;
+    return reader.isLate || reader.pieces->isCancelled();
+}
+
+std::string PathReaders::late_text(const std::string &path) const {
+    return fmt::format("{}: reading takes longer than {} s ({} s of processor time) and was ended. Check the "
+                       "program for wrong coordinates and feeds.",
+                       path, limits_.time_s, limits_.cpu_s);
+}
+
+Result<> PathReaders::check_count(const ui::web::Requester &by) const {
+    const bool isViewer = by.role <= ui::web::Role::VIEW;
+    std::size_t of_client = 0, of_viewers = 0;
+    for (const Reader &reader : readers_) {
+        const bool isOfViewer = reader.by.role <= ui::web::Role::VIEW;
+        of_viewers += isOfViewer ? 1 : 0;
+        of_client += isOfViewer == isViewer && reader.by.address == by.address ? 1 : 0;
+    }
+    if (!hasDescriptors() || readers_.size() >= MOST || (isViewer && of_viewers >= MOST_OF_VIEWERS)) {
+        return fail("as many programs as can be are being read: ask again later");
+    }
+    const std::size_t most = isViewer ? MOST_OF_VIEWER : MOST_OF_CLIENT;
+    return of_client < most
+               ? Result<>{}
+               : fail(fmt::format("{} programs are being read for this computer: ask again later", most));
+}
+
+Result<std::shared_ptr<ui::web::PieceQueue>> PathReaders::begin(std::function<void(Reader &)> job,
+                                                                const ui::web::Requester &by) {
     readers_.remove_if([](Reader &reader) {
         const bool isOver = reader.isOver.load(std::memory_order_acquire);
         if (isOver) {
@@ -46,10 +106,11 @@ Result<std::shared_ptr<ui::web::PieceQueue>> PathReaders::begin(std::function<vo
         }
         return isOver;
     });
-    if (readers_.size() >= MOST) {
-        return fail("as many programs as can be are being read: ask again later");
+    if (const auto checked = check_count(by); !checked.has_value()) {
+        return std::unexpected(checked.error());
     }
     Reader &reader = readers_.emplace_back();
+    reader.by = by;
     reader.pieces = std::make_shared<ui::web::PieceQueue>();
     reader.thread = std::thread([&reader, job = std::move(job)] {
         step_back();
@@ -61,8 +122,7 @@ Result<std::shared_ptr<ui::web::PieceQueue>> PathReaders::begin(std::function<vo
     return reader.pieces;
 }
 
-std::uint32_t PathReaders::interpret(const Reader &reader, const std::string &path,
-                                     const Hearer &hearer) const {
+std::uint32_t PathReaders::interpret(Reader &reader, const std::string &path, const Hearer &hearer) const {
     std::error_code missing;  // which the reading itself tells, with its place
     if (std::filesystem::exists(path, missing) && !std::filesystem::is_regular_file(path, missing)) {
         hearer.error(path + " is no file");  // a pipe would never end
@@ -86,7 +146,7 @@ std::uint32_t PathReaders::interpret(const Reader &reader, const std::string &pa
     gcode::Preview preview(
         std::move(stand), **tools, values, options,
         {[&](std::span<const gcode::PreviewEvent> events) { hearer.events(events, *source); },
-         [&reader](const gcode::PreviewProgress &) { return !reader.pieces->isCancelled(); }});
+         [this, &reader](const gcode::PreviewProgress &) { return !isToEnd(reader); }});
     source = &preview;
     diag::Sink errors([&](const diag::Diagnostic &one) {
         if (one.severity == diag::Severity::ERROR) {
@@ -104,9 +164,14 @@ void PathReaders::read_all(Reader &reader, const std::string &path) const {
     const std::uint32_t line =
         interpret(reader, path,
                   {[&](std::span<const gcode::PreviewEvent> events, const gcode::Preview &) {
-                       static_cast<void>(chunks.take(events));
+                       if (!isToEnd(reader)) {
+                           static_cast<void>(chunks.take(events));
+                       }
                    },
                    [&](const std::string &error) { chunks.error(error); }});
+    if (reader.isLate) {
+        chunks.error(late_text(path));
+    }
     chunks.end(line);
 }
 
@@ -124,12 +189,14 @@ void PathReaders::time_all(Reader &reader, const std::string &path,
                                                    static_cast<std::uint32_t>(std::max(move.line, 0)),
                                                    move.seconds, move.top_velocity);
                                    });
+    estimate.end_when([this, &reader] { return isToEnd(reader); });
     estimate.start(machine::home_position(loaded_.machine));
     bool isSound = true;
     interpret(reader, path,
               {[&](std::span<const gcode::PreviewEvent> events, const gcode::Preview &preview) {
-                   for (const gcode::PreviewEvent &event : events) {
-                       if (reader.pieces->isCancelled()) {
+                   for (std::size_t i = 0; i < events.size(); ++i) {
+                       const gcode::PreviewEvent &event = events[i];
+                       if (reader.pieces->isCancelled() || (i % EVENTS_PER_CHECK == 0 && isToEnd(reader))) {
                            return;
                        }
                        static_cast<void>(counted.take({&event, 1}));
@@ -142,10 +209,17 @@ void PathReaders::time_all(Reader &reader, const std::string &path,
                    isSound = false;
                    chunks.error(error);
                }});
-    if (reader.pieces->isCancelled() || !isSound) {
+    if (reader.isLate) {
+        chunks.error(late_text(path));
+    }
+    if (isToEnd(reader) || !isSound) {
         return;  // of a program with errors nobody knows how it goes on
     }
     const machine::TimeFigures &figures = estimate.finish(SLOWEST);
+    if (isToEnd(reader)) {
+        chunks.error(late_text(path));
+        return;
+    }
     ui::web::TimeSum sum{figures.total_s, figures.cutting_s,  figures.rapid_s,
                          figures.dwell_s, figures.isComplete, {}};
     for (const machine::SlowPlace &place : figures.slowest) {

@@ -46,16 +46,17 @@ void Client::leave() noexcept {
     }
 }
 
-Result<Client> Client::join(mailbox::Segment &segment, Role role) {
-    return join(Viewer(segment), role);
+Result<Client> Client::join(mailbox::Segment &segment, Role role, Places places) {
+    return join(Viewer(segment), role, places);
 }
 
-Result<Client> Client::join(Viewer viewer, Role role) {
+Result<Client> Client::join(Viewer viewer, Role role, Places places) {
     mailbox::Segment &segment = viewer.segment();
     const std::uint64_t me = mailbox::owner_word();
     // Before the place: task looks at no more places than numbers were given out.
     const mailbox::ClientId id = segment.client_ids.fetch_add(1, std::memory_order_acq_rel) + 1;
-    for (int i = 0; i < mailbox::MAX_CLIENTS; ++i) {
+    const int first = places == Places::RESERVED ? 0 : mailbox::RESERVED_CLIENTS;
+    for (int i = first; i < mailbox::MAX_CLIENTS; ++i) {
         mailbox::Slot &slot = segment.slots[static_cast<std::size_t>(i)];
         std::uint64_t expected = 0;
         // Acquire: pairs with task's release when it freed the place.
@@ -68,13 +69,13 @@ Result<Client> Client::join(Viewer viewer, Role role) {
         slot.client.store(id, std::memory_order_release);
         return Client(std::move(viewer), i, id);
     }
-    return fail(
-        fmt::format("the machine has {} clients, which is as many as it can have", mailbox::MAX_CLIENTS));
+    return fail(fmt::format("the machine has {} clients, which is as many as it can have",
+                            mailbox::MAX_CLIENTS - first));
 }
 
-Result<Client> Client::connect(const std::string &instance, Role role) {
+Result<Client> Client::connect(const std::string &instance, Role role, Places places) {
     auto viewer = Viewer::attach(instance);
-    return viewer.has_value() ? join(std::move(*viewer), role) : std::unexpected(viewer.error());
+    return viewer.has_value() ? join(std::move(*viewer), role, places) : std::unexpected(viewer.error());
 }
 
 void Client::limit_authority(mailbox::Authority most) {

@@ -11,9 +11,11 @@
 #include <vector>
 
 #include "client/viewer.hh"
+#include "mailbox/places.hh"
 
 namespace mw::client {
 
+using mailbox::Places;
 using mailbox::Role;
 using mailbox::Serial;
 
@@ -27,11 +29,13 @@ struct Outcome {
 class Client {
   public:
     /// Of a machine in another process, by the name of its instance.
-    static Result<Client> connect(const std::string &instance, Role role = Role::OPERATOR);
+    static Result<Client> connect(const std::string &instance, Role role = Role::OPERATOR,
+                                  Places places = Places::ORDINARY);
     /// Of a machine in this process, which must outlive it.
-    static Result<Client> join(mailbox::Segment &segment, Role role = Role::OPERATOR);
+    static Result<Client> join(mailbox::Segment &segment, Role role = Role::OPERATOR,
+                               Places places = Places::ORDINARY);
     /// Of the machine that the viewer sees, on this computer or another one.
-    static Result<Client> join(Viewer viewer, Role role = Role::OPERATOR);
+    static Result<Client> join(Viewer viewer, Role role = Role::OPERATOR, Places places = Places::ORDINARY);
     ~Client();
     Client(Client &&other) noexcept;
     Client &operator=(Client &&other) noexcept;

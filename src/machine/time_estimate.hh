@@ -2,9 +2,11 @@
 // Cycle time of a program before it runs: per tool and in all, and where the time is lost.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "gcode/preview.hh"
@@ -50,6 +52,8 @@ class TimeEstimate {
     using Watch = std::function<void(const TimedMove &)>;
     explicit TimeEstimate(const MachineConfig &machine, const Overrides &overrides = {}, Watch watch = {});
 
+    /// See traj::Estimator::end_when. The estimate is not complete then.
+    void end_when(std::function<bool()> isToEnd) { estimator_->end_when(std::move(isToEnd)); }
     void start(const geom::Pose &position);
     /// `section` as Preview::section names it.
     void set_place(const std::string &file, int line, const std::string &section);

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "mailbox/memory.hh"
+#include "mailbox/places.hh"
 #include "msgs/binary.hh"
 #include "msgs/catalogue.hh"
 
@@ -50,8 +51,10 @@ std::vector<Desk::Delivery> Desk::take(std::int64_t now_ns) {
              "the right to operate alone has run out: all clients operate again");
     }
     std::vector<Delivery> taken;
-    // A client gets its number, then the first free place: no more places are in use than numbers given out.
-    const auto used = std::min<ClientId>(MAX_CLIENTS, segment_.client_ids.load(std::memory_order_acquire));
+    // A client gets its number, then the first free place behind the reserved ones: no more of these are in
+    // use than numbers given out.
+    const auto used = std::min<ClientId>(MAX_CLIENTS, segment_.client_ids.load(std::memory_order_acquire) +
+                                                          RESERVED_CLIENTS);
     for (int i = 0; i < static_cast<int>(used); ++i) {
         // Acquire: pairs with the client's taking of the slot.
         if (segment_.slots[static_cast<std::size_t>(i)].owner.load(std::memory_order_acquire) != 0) {

@@ -74,7 +74,7 @@ void Estimator::begin(const Pose &pose) {
 }
 
 void Estimator::add(const Primitive &primitive, const MoveRequest &request) {
-    if (!(primitive.length > 1e-12)) {
+    if (isEnded_ || !(primitive.length > 1e-12)) {
         return;
     }
     const Primitive driven = skip_to_end(primitive, request);
@@ -157,6 +157,11 @@ void Estimator::finish() {
 }
 
 bool Estimator::step() {
+    isEnded_ = isEnded_ || (cycle_ % CHECK_CYCLES == 0 && isToEnd_ && isToEnd_());
+    if (isEnded_) {
+        isComplete_ = false;
+        return false;
+    }
     if (cycle_ % PLANNER_CYCLES == 0) {
         planner_->update(executor_->snapshot());
     }

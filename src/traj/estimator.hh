@@ -6,6 +6,7 @@
 #include <array>
 #include <functional>
 #include <memory>
+#include <utility>
 
 #include "traj/exec/executor.hh"
 #include "traj/planner.hh"
@@ -37,6 +38,9 @@ class Estimator {
     /// The path begins or goes on at `pose` after whatever is not motion.
     void begin(const Pose &pose);
     const Pose &end() const { return planner_->end(); }
+    /// Checked while it drives, at least every CHECK_CYCLES cycles: from the first true on nothing is driven.
+    void end_when(std::function<bool()> isToEnd) { isToEnd_ = std::move(isToEnd); }
+    static constexpr std::uint64_t CHECK_CYCLES = 1024;
     /// Appends a move; drives what there is no room for. Moves of length 0 are left out. The work for one
     /// move is bounded: of a longer one than DRIVEN_S seconds only the end is driven, from standstill, and
     /// its speed gives the time of the rest.
@@ -68,6 +72,8 @@ class Estimator {
     std::unique_ptr<PathStore> store_;
     std::unique_ptr<Executor> executor_;
     std::unique_ptr<Planner> planner_;
+    std::function<bool()> isToEnd_;
+    bool isEnded_ = false;  ///< by that
     std::uint64_t cycle_ = 0;
     Sequence move_ = 0;  ///< the one whose time is counted
     std::uint64_t move_cycles_ = 0;

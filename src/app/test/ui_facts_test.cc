@@ -397,11 +397,38 @@ TEST_F(UiMachine, ReadersEndWhenNobodyReads_J3) {
     const std::string path = (folder_ / "long.ngc").string();
     std::ofstream(path) << "G21 F1000\no1 repeat [10000000]\nG1 X1\nG1 X0\no1 endrepeat\nM2\n";
     PathReaders readers(*loaded, {});
-    for (std::size_t i = 0; i < PathReaders::MOST; ++i) {
-        EXPECT_TRUE(readers.read(path).has_value());
+    const auto read = [&](const std::string &address, ui::web::Role role) {
+        return readers.read(path, {address, role}).has_value();
+    };
+    for (const std::string viewer : {"10.0.0.1", "10.0.0.2"}) {
+        for (std::size_t i = 0; i < PathReaders::MOST_OF_VIEWER; ++i) {
+            EXPECT_TRUE(read(viewer, ui::web::Role::VIEW));
+        }
+        EXPECT_FALSE(read(viewer, ui::web::Role::VIEW)) << "one client takes no more";
     }
-    EXPECT_FALSE(readers.read(path).has_value());
+    EXPECT_FALSE(read("10.0.0.3", ui::web::Role::VIEW)) << "viewers leave places for operators";
+    for (std::size_t i = 0; i < PathReaders::MOST_OF_CLIENT; ++i) {
+        EXPECT_TRUE(read("10.0.0.1", ui::web::Role::OPERATE));
+    }
+    EXPECT_FALSE(read("10.0.0.4", ui::web::Role::OPERATE)) << "as many as can be in all";
 }  // they are ended here
+
+TEST_F(UiMachine, ALongMoveEndsWhenNobodyReadsOrALimitIsExceeded) {
+    const auto loaded = load("mill_mm");
+    const std::string path = (folder_ / "slow.ngc").string();
+    std::ofstream(path) << "G21 G91 F0.001\no1 repeat [100000]\nG1 X0.001 Y0.0005\nG1 X-0.001 Y-0.0005\no1 "
+                           "endrepeat\nG90 G1 X1000000000000000\nM2\n";
+    {
+        PathReaders readers(*loaded, {}, {.cpu_s = 0.02});
+        const auto pieces = readers.read_times(path, {.feed = 0.001});
+        ASSERT_TRUE(pieces.has_value());
+        const Times times(all_of(**pieces));
+        EXPECT_EQ(times.sum, "");
+        EXPECT_NE(times.error.find("slow.ngc: reading takes longer"), std::string::npos) << times.error;
+    }
+    PathReaders readers(*loaded, {});
+    ASSERT_TRUE(readers.read_times(path, {.feed = 0.001}).has_value());
+}  // it is ended here
 
 }  // namespace
 }  // namespace mw::app

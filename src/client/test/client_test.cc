@@ -246,7 +246,7 @@ TEST_F(ClientTest, WhatIsOutOfRangeOrTooMuchIsRefusedWhereItIsPosted) {
 
 TEST_F(ClientTest, BytesThatAreNoCommandAreRefusedAndHurtNobody) {
     Client a = made(), b = made();
-    mailbox::Slot &slot = memory.segment().slots[0];
+    mailbox::Slot &slot = memory.segment().slots[mailbox::RESERVED_CLIENTS];
     mailbox::Posted bad;
     bad.serial = memory.segment().serials.fetch_add(1) + 1;
     bad.size = 0xffffffff;
@@ -300,10 +300,18 @@ TEST_F(ClientTest, AClientThatLeavesGivesItsPlaceAndRightBack) {
     ASSERT_TRUE(b.post(msgs::RunProgram{}).has_value());
     EXPECT_EQ(cycle().size(), 1U);
     std::vector<Client> many;
-    for (int i = 1; i < mailbox::MAX_CLIENTS; ++i) {
+    for (int i = 1; i < mailbox::MAX_CLIENTS - mailbox::RESERVED_CLIENTS; ++i) {
         many.push_back(made());
     }
     EXPECT_FALSE(Client::join(memory.segment()).has_value());
+    for (int i = 0; i < mailbox::RESERVED_CLIENTS; ++i) {  // which servers of screens find all the same
+        auto one = Client::join(memory.segment(), Role::OPERATOR, Places::RESERVED);
+        ASSERT_TRUE(one.has_value());
+        ASSERT_TRUE(one->post(msgs::AbortAll{}).has_value());
+        EXPECT_EQ(cycle().size(), 1U);
+        many.push_back(std::move(*one));
+    }
+    EXPECT_FALSE(Client::join(memory.segment(), Role::OPERATOR, Places::RESERVED).has_value());
 }
 
 TEST_F(ClientTest, ANewReaderGetsWhatNobodyHasReadAndThenAll) {

@@ -21,20 +21,18 @@ constexpr std::array<std::pair<Role, std::string_view>, 3> NAMES{
 constexpr std::size_t SHORTEST_SECRET = 32;
 
 Result<Tokens> make(const std::string &path) {
-    std::vector<Tokens::Token> all;
+    auto made = Tokens::random();
+    if (!made.has_value()) {
+        return made;
+    }
     std::string text =
         "# Who shows one of these to the screen's server may do what its role allows. A line taken away is\n"
         "# good for nothing once the server has been started again.\n";
-    for (const auto &[role, name] : NAMES) {
-        auto secret = random_secret();
-        if (!secret.has_value()) {
-            return std::unexpected(secret.error());
-        }
-        text += fmt::format("{} {}\n", name, *secret);
-        all.push_back({role, std::move(*secret)});
+    for (const Tokens::Token &one : made->all()) {
+        text += fmt::format("{} {}\n", role_name(one.role), one.secret);
     }
     const auto written = write_secret_file(path, text);
-    return written.has_value() ? Result<Tokens>(Tokens(std::move(all))) : std::unexpected(written.error());
+    return written.has_value() ? made : std::unexpected(written.error());
 }
 
 /// The value of a cookie, empty where there is none of this name.
@@ -66,6 +64,7 @@ std::string_view protection_name(Protection protection) {
 }
 
 std::string_view role_name(Role role) {
+    role = role == Role::STATUS ? Role::VIEW : role;
     const auto found = std::ranges::find(NAMES, role, &std::pair<Role, std::string_view>::first);
     return found == NAMES.end() ? "" : found->second;
 }
@@ -101,6 +100,23 @@ Result<Tokens> Tokens::read_or_make(const std::string &path) {
     return Tokens(std::move(all));
 }
 
+Result<Tokens> Tokens::random() {
+    std::vector<Token> all;
+    for (const auto &[role, name] : NAMES) {
+        auto secret = random_secret();
+        if (!secret.has_value()) {
+            return std::unexpected(secret.error());
+        }
+        all.push_back({role, std::move(*secret)});
+    }
+    return Tokens(std::move(all));
+}
+
+std::string_view Tokens::secret_of(Role role) const {
+    const auto found = std::ranges::find(all_, role, &Token::role);
+    return found == all_.end() ? std::string_view{} : std::string_view(found->secret);
+}
+
 Role Tokens::role_of(std::string_view secret) const {
     Role role = Role::NOBODY;
     for (const Token &one : all_) {
@@ -109,23 +125,38 @@ Role Tokens::role_of(std::string_view secret) const {
     return role;
 }
 
+Access Access::of_this_computer(Tokens tokens, Tokens cookies) {
+    Access made(std::move(tokens));
+    made.protection_ = Protection::LOCAL;
+    made.cookies_ = std::move(cookies);
+    return made;
+}
+
 Role Access::role_of(const Credentials &shown, int port) const {
     if (everybody_ != Role::NOBODY) {
         return everybody_;
     }
+    const bool isLocal = protection_ == Protection::LOCAL;
+    return isLocal && shown.isOfServerUser ? Role::CONFIGURE
+           : isLocal                       ? std::max(Role::STATUS, role_of_token(shown, port))
+                                           : role_of_token(shown, port);
+}
+
+Role Access::role_of_token(const Credentials &shown, int port) const {
     constexpr std::string_view BEARER = "Bearer ";
     if (shown.authorization.starts_with(BEARER)) {
         return tokens_.role_of(shown.authorization.substr(BEARER.size()));
     }
     const std::string_view kept = cookie_value(shown.cookie, cookie_name(port));
-    return kept.empty() ? Role::NOBODY : tokens_.role_of(kept);
+    return kept.empty() ? Role::NOBODY : cookies_.role_of(kept);
 }
 
 Response Access::login(const Request &request, int port, std::int64_t now_ns) {
     const auto answer = [this](Role role) {
         Response response;
-        response.body = fmt::format(R"({{"role":"{}","protection":"{}"}})", role_name(role),
-                                    protection_name(protection_));
+        const std::string_view name = role == Role::STATUS ? "" : role_name(role);  // a token would help
+        response.body =
+            fmt::format(R"({{"role":"{}","protection":"{}"}})", name, protection_name(protection_));
         return response;
     };
     if (request.method == "GET") {
@@ -134,10 +165,11 @@ Response Access::login(const Request &request, int port, std::int64_t now_ns) {
     if (everybody_ != Role::NOBODY) {
         return error_response(404, "nobody needs a token here");
     }
-    constexpr const char *RULES = "; Path=/; Secure; HttpOnly; SameSite=Strict";
+    const std::string rules = fmt::format("; Path=/{}; HttpOnly; SameSite=Strict",
+                                          protection_ == Protection::LOCAL ? "" : "; Secure");
     if (request.method == "DELETE") {
         Response response = answer(Role::NOBODY);
-        response.cookie = cookie_name(port) + "=" + RULES + "; Max-Age=0";
+        response.cookie = cookie_name(port) + "=" + rules + "; Max-Age=0";
         return response;
     }
     const auto secret = request.method == "POST" ? token_of_login(request.body) : std::nullopt;
@@ -151,7 +183,8 @@ Response Access::login(const Request &request, int port, std::int64_t now_ns) {
     }
     constexpr long KEPT_S = 30L * 24 * 3600;
     Response response = answer(role);
-    response.cookie = fmt::format("{}={}{}; Max-Age={}", cookie_name(port), *secret, RULES, KEPT_S);
+    const std::string_view kept = protection_ == Protection::LOCAL ? cookies_.secret_of(role) : *secret;
+    response.cookie = fmt::format("{}={}{}; Max-Age={}", cookie_name(port), kept, rules, KEPT_S);
     return response;
 }
 

@@ -16,7 +16,7 @@ namespace mw::ui::web {
 
 /// "local", "tls", "none".
 std::string_view protection_name(Protection protection);
-/// "view", "operate", "configure"; "" for NOBODY.
+/// "view", "operate", "configure"; "" for NOBODY, "view" for STATUS, which screens need not tell apart.
 std::string_view role_name(Role role);
 std::optional<Role> role_of_name(std::string_view name);
 
@@ -34,9 +34,13 @@ class Tokens {
     /// Reads lines of "ROLE SECRET"; makes the file with one secret for each role where it is missing. An
     /// error when another user could read it.
     static Result<Tokens> read_or_make(const std::string &path);
+    /// A new secret for each role.
+    static Result<Tokens> random();
 
     /// Takes as long for each wrong one.
     Role role_of(std::string_view secret) const;
+    /// A secret that opens `role`; empty where there is none.
+    std::string_view secret_of(Role role) const;
     const std::vector<Token> &all() const { return all_; }
 
   private:
@@ -47,6 +51,8 @@ class Tokens {
 struct Credentials {
     std::string_view authorization;  ///< header: "Bearer SECRET"
     std::string_view cookie;         ///< header
+    /// The connection was opened on this computer by the user of the server, or root.
+    bool isOfServerUser = false;
 };
 
 /// Of one way in.
@@ -55,7 +61,12 @@ class Access {
     /// Everybody has this role.
     Access(Protection protection, Role everybody) : protection_(protection), everybody_(everybody) {}
     /// With TLS: who shows a token has its role.
-    explicit Access(Tokens tokens) : protection_(Protection::TLS), tokens_(std::move(tokens)) {}
+    explicit Access(Tokens tokens)
+        : protection_(Protection::TLS), tokens_(std::move(tokens)), cookies_(tokens_) {}
+    /// Of this computer: CONFIGURE for the user of the server and root, the role of a token for another user
+    /// that shows one, STATUS for all others. Browsers get one of `cookies`, which end with the server: any
+    /// user of this computer may listen on its port later, and a browser would send them there.
+    static Access of_this_computer(Tokens tokens, Tokens cookies);
 
     Protection protection() const { return protection_; }
     /// NOBODY where no token, or a wrong one, is shown. `port`: of the server; keeps the cookies of servers
@@ -66,9 +77,11 @@ class Access {
     Response login(const Request &request, int port, std::int64_t now_ns);
 
   private:
+    Role role_of_token(const Credentials &shown, int port) const;
+
     Protection protection_;
     Role everybody_ = Role::NOBODY;
-    Tokens tokens_;
+    Tokens tokens_, cookies_;
     RateLimit wrong_{0.2, 10};
 };
 

@@ -20,6 +20,9 @@ namespace {
 constexpr std::string_view API = "/api/", FILES = "/api/files/", HAL = "/api/hal/", SCOPE = "/api/scope",
                            INPUTS = "/api/inputs";
 
+/// What a screen needs to show the status of the machine.
+constexpr std::array<std::string_view, 4> OF_STATUS{"/api/icon", "/api/machine", "/api/schema", "/api/tools"};
+
 Response not_allowed(Role needed) {
     return error_response(403, fmt::format("this needs a token of the role {}", role_name(needed)));
 }
@@ -78,7 +81,7 @@ void Api::write_log(const std::string &line) {
 
 Role Api::needed_role(const Request &request) const {
     if (request.method == "GET") {
-        return Role::VIEW;
+        return std::ranges::find(OF_STATUS, request.path) != OF_STATUS.end() ? Role::STATUS : Role::VIEW;
     }
     const bool isHal = request.path.starts_with(HAL);
     if (!isHal && !request.path.starts_with(SCOPE)) {
@@ -215,6 +218,11 @@ void Api::answer(const Request &request, Reply reply) {
     }
 }
 
+void Api::read(std::shared_ptr<BodySource> source, std::function<void(std::string)> take) {
+    threads_.disk.run([source = std::move(source)] { return Response{.body = source->read()}; },
+                      [take = std::move(take)](Response read) { take(std::move(read.body)); });
+}
+
 void Api::answer_files(const Request &request, const std::string &name, Reply reply) {
     if (name.empty()) {
         if (request.method != "GET") {
@@ -294,7 +302,8 @@ Response Api::answer_path(const Request &request) {
         return error_response(400, "the path of which program? /api/path?file=NAME");
     }
     const auto path = program_of(name->second);
-    return path.has_value() ? stream(setup_.read_path(*path)) : error_response(400, path.error().str());
+    return path.has_value() ? stream(setup_.read_path(*path, {request.address, request.role}))
+                            : error_response(400, path.error().str());
 }
 
 Response Api::answer_times(const Request &request) {
@@ -307,8 +316,10 @@ Response Api::answer_times(const Request &request) {
             400, "/api/times?file=NAME&feed=1&rapid=1&max_velocity=0: overrides of at least 0.001");
     }
     const auto path = program_of(name->second);
-    return path.has_value() ? stream(setup_.read_times(*path, {*feed, *rapid, *most}))
-                            : error_response(400, path.error().str());
+    if (!path.has_value()) {
+        return error_response(400, path.error().str());
+    }
+    return stream(setup_.read_times(*path, {*feed, *rapid, *most}, {request.address, request.role}));
 }
 
 std::optional<std::string> Api::made_of(const std::string &name) const {
@@ -336,7 +347,7 @@ Response Api::answer_filter(const Request &request) {
     if (!made.has_value()) {
         return error_response(400, "[FILTER] names no program for '" + printable(name->second) + "'");
     }
-    Response response = stream(setup_.run_filter(*path, *made));
+    Response response = stream(setup_.run_filter(*path, *made, {request.address, request.role}));
     response.type = response.pieces != nullptr ? "application/x-ndjson" : response.type;
     return response;
 }

@@ -23,12 +23,14 @@ struct ApiSetup {
     std::string screen_folder;
     /// Begins to read a program in a thread of its own; an error when too many are read. The path is one of
     /// facts.program_prefix.
-    std::function<Result<std::shared_ptr<PieceQueue>>(const std::string &path)> read_path;
+    std::function<Result<std::shared_ptr<PieceQueue>>(const std::string &path, const Requester &)> read_path;
     /// The same for its times, at the overrides of the second.
-    std::function<Result<std::shared_ptr<PieceQueue>>(const std::string &path, const TimeOverrides &)>
+    std::function<Result<std::shared_ptr<PieceQueue>>(const std::string &path, const TimeOverrides &,
+                                                      const Requester &)>
         read_times{};
     /// The same for a filter that makes `made` from `path`.
-    std::function<Result<std::shared_ptr<PieceQueue>>(const std::string &path, const std::string &made)>
+    std::function<Result<std::shared_ptr<PieceQueue>>(const std::string &path, const std::string &made,
+                                                      const Requester &)>
         run_filter{};
     HalDesk::Connect connect_hal;
     std::vector<DialogFacts> dialogs{};
@@ -55,6 +57,7 @@ class Api final : public Application {
     void tick();
 
     void answer(const Request &request, Reply reply) override;
+    void read(std::shared_ptr<BodySource> source, std::function<void(std::string)> take) override;
     void opened(SessionId session, Role role, Protection protection) override {
         screens_.opened(session, {role, protection}, clock_());
     }

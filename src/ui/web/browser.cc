@@ -25,11 +25,15 @@ bool isEndless(const msgs::Command &command) {
 
 }  // namespace
 
+const char *const Browser::ONLY_STOPS =
+    "the machine has as many clients as it can have: this screen can only stop it until one leaves";
+
 void Browser::leave() {
     for (const Followed &one : std::exchange(followed_, {})) {
         send_(outcome_text(one.id, {msgs::Progress::FAILED, "the machine is gone"}));
     }
     client_.reset();
+    shared_ = nullptr;
     jogs_.clear();
     hasWhole_ = false;
 }
@@ -53,6 +57,10 @@ void Browser::receive(std::string_view text, std::int64_t now_ns) {
     std::visit(Overloaded{[this](const Ping &ping) { send_(pong_text(ping)); },
                           [this, now_ns](const Ask &ask) { carry_out(ask, now_ns); },
                           [this](const Watch &watch) {
+                              if (role_ < Role::VIEW && !watch.names.empty()) {
+                                  send_(error_response(403, "this needs a token of the role view").body);
+                                  return;
+                              }
                               watched_ = watch.names;
                               told_values_.clear();
                           }},
@@ -72,8 +80,9 @@ void Browser::carry_out(const Ask &ask, std::int64_t now_ns) {
     msgs::Command command = *ask.command;
     const bool isStop = mailbox::isStop(command);
     ++(isStop ? counts_.stops : counts_.commands);
-    if (!client_.has_value()) {
-        refuse(ask.id, "no machine is up");
+    client::Client *const shared = client_.has_value() ? nullptr : shared_;
+    if (!client_.has_value() && (shared == nullptr || !isStop)) {
+        refuse(ask.id, shared == nullptr ? "no machine is up" : ONLY_STOPS);
         return;
     }
     if (!isStop && role_ < Role::OPERATE) {
@@ -99,7 +108,7 @@ void Browser::carry_out(const Ask &ask, std::int64_t now_ns) {
         refuse(ask.id, "it came later than its lease is long: the way from the screen is slow");
         return;
     }
-    const auto posted = client_->post(command);
+    const auto posted = shared != nullptr ? shared->post(command) : client_->post(command);
     if (!posted.has_value()) {
         refuse(ask.id, posted.error().str());
         return;
@@ -110,7 +119,7 @@ void Browser::carry_out(const Ask &ask, std::int64_t now_ns) {
                                     "it was handed over; too many others are under way to follow it"}));
         return;
     }
-    followed_.push_back({ask.id, *posted, now_ns});
+    followed_.push_back({ask.id, shared, *posted, now_ns});
 }
 
 bool Browser::shorten_lease(msgs::Command &command, const Ask &ask, std::int64_t now_ns) {
@@ -138,11 +147,12 @@ void Browser::note_jog(const msgs::Command &command) {
 }
 
 void Browser::follow(std::int64_t now_ns) {
-    if (!client_.has_value()) {
+    if (!client_.has_value() && shared_ == nullptr) {
         return;
     }
     std::erase_if(followed_, [this, now_ns](Followed &one) {
-        const client::Outcome outcome = client_->outcome(one.serial);
+        const client::Outcome outcome =
+            one.client != nullptr ? one.client->outcome(one.serial) : client_->outcome(one.serial);
         const bool isOver = outcome.progress != msgs::Progress::STARTED;
         const bool isToBeTold = isOver || (!one.isTold && now_ns - one.since_ns >= SOON_NS);
         if (isToBeTold) {

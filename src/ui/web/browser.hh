@@ -34,6 +34,7 @@ class Browser {
     static constexpr std::size_t MOST_FOLLOWED = 60;
     /// A command that has not ended by then is told as STARTED.
     static constexpr std::int64_t SOON_NS = 50000000;
+    static const char *const ONLY_STOPS;  ///< why a screen without a place is refused other commands
     /// A browser that says nothing for so long is gone.
     static constexpr std::int64_t SILENCE_NS = 5000000000;
 
@@ -50,6 +51,12 @@ class Browser {
             client_->limit_authority(mailbox::Authority::OPERATE);
         }
     }
+    /// The machine is up: `shared` takes stops while this screen has no place of its own. It outlives
+    /// leave().
+    void attach(client::Client &shared) { shared_ = &shared; }
+    bool isAttached() const { return shared_ != nullptr; }
+    /// The next status is a whole one.
+    void forget_status() { hasWhole_ = false; }
     /// It is gone: what was under way has failed.
     void leave();
     bool isJoined() const { return client_.has_value(); }
@@ -80,6 +87,7 @@ class Browser {
   private:
     struct Followed {
         std::uint64_t id = 0;
+        client::Client *client = nullptr;  ///< through which it went; null: the screen's own
         client::Serial serial = 0;
         std::int64_t since_ns = 0;
         bool isTold = false;  ///< as STARTED
@@ -94,6 +102,7 @@ class Browser {
     Send send_;
     Counts &counts_;
     Role role_;
+    client::Client *shared_ = nullptr;
     std::optional<client::Client> client_;
     StatusDelta delta_;
     bool hasWhole_ = false;

@@ -2,6 +2,7 @@
 #include "ui/web/files.hh"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -10,11 +11,13 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <memory>
+#include <utility>
 
 #include <fmt/format.h>
 
-#include "base/atomic_file.hh"
 #include "base/text.hh"
+#include "ui/web/descriptors.hh"
 #include "ui/web/documents.hh"
 
 namespace mw::ui::web {
@@ -50,6 +53,122 @@ bool write_all(int fd, std::string_view bytes) {
     return true;
 }
 
+/// An open file; holds its descriptor.
+class FileBody final : public BodySource {
+  public:
+    FileBody(int fd, std::uint64_t size) : fd_(fd), size_(size) {}
+    ~FileBody() override { ::close(fd_); }
+    FileBody(const FileBody &) = delete;
+    FileBody &operator=(const FileBody &) = delete;
+
+    std::uint64_t size() const override { return size_; }
+    std::string read() override {
+        std::string piece(std::min<std::uint64_t>(PIECE, size_ - at_), '\0');
+        ssize_t got = 0;
+        do {
+            got = ::pread(fd_, piece.data(), piece.size(), static_cast<off_t>(at_));
+        } while (got < 0 && errno == EINTR);
+        piece.resize(got > 0 ? static_cast<std::size_t>(got) : 0);
+        at_ += piece.size();
+        return piece;
+    }
+
+  private:
+    int fd_;
+    std::uint64_t size_, at_ = 0;
+};
+
+constexpr std::uint64_t MOST_READ = 256ULL * 1024 * 1024;
+
+/// A regular file, in memory where it is small. 404 where there is none, which `missing` says.
+Response file_response(const std::string &path, std::string type, const std::string &missing) {
+    const int fd =
+        ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);  // never waits for a pipe
+    if (fd < 0) {
+        return error_response(404, missing);
+    }
+    if (isReserved(fd)) {
+        ::close(fd);
+        return error_response(503, "too many files are open: ask again later");
+    }
+    struct stat facts{};
+    const bool isFile = ::fstat(fd, &facts) == 0 && S_ISREG(facts.st_mode);
+    auto source = std::make_shared<FileBody>(fd, isFile ? static_cast<std::uint64_t>(facts.st_size) : 0);
+    if (!isFile) {
+        return error_response(404, missing);
+    }
+    if (source->size() > MOST_READ) {
+        return error_response(413, "the file is too large to be shown");
+    }
+    Response response;
+    response.type = std::move(type);
+    if (source->size() > BodySource::PIECE) {
+        response.source = std::move(source);
+    } else {
+        response.body = source->read();
+    }
+    return response;
+}
+
+constexpr std::string_view UPLOAD = ".upload-millwright-", LETTERS = "XXXXXX";
+
+/// The file of an upload that no server writes any more: its writer holds a lock, which ends with it.
+void remove_if_dead(const std::string &path) {
+    const int fd = ::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY);
+    if (fd < 0) {
+        return;
+    }
+    struct stat facts{};
+    const bool isOurs = ::fstat(fd, &facts) == 0 && S_ISREG(facts.st_mode) && facts.st_uid == ::geteuid() &&
+                        facts.st_nlink == 1;
+    if (isOurs && ::flock(fd, LOCK_EX | LOCK_NB) == 0) {
+        ::unlink(path.c_str());
+    }
+    ::close(fd);
+}
+
+void remove_dead_uploads(const std::string &folder) {
+    std::error_code error;
+    fs::directory_iterator entry(folder, error);
+    for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
+        const std::string name = entry->path().filename().string();
+        const bool isUpload = name.starts_with(UPLOAD) && name.size() == UPLOAD.size() + LETTERS.size() &&
+                              name.find('.', 1) == std::string::npos;
+        if (isUpload) {
+            remove_if_dead(entry->path().string());
+        }
+    }
+}
+
+/// A new file with a lock; -1 and errno where there is none. A file system without locks gives a file without
+/// one, which no other server removes.
+int open_upload(const std::string &folder, std::string &path) {
+    constexpr int TRIES = 3;
+    for (int i = 0; i < TRIES; ++i) {
+        path = folder + '/' + std::string(UPLOAD) + std::string(LETTERS);
+        const int fd = ::mkostemp(path.data(), O_CLOEXEC);
+        if (fd < 0) {
+            return fd;
+        }
+        if (isReserved(fd)) {
+            ::unlink(path.c_str());
+            ::close(fd);
+            errno = EMFILE;
+            return -1;
+        }
+        struct stat facts{};
+        // Another server that starts may have removed it before it was locked.
+        const bool isTaken = ::flock(fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+        if (!isTaken && ::fstat(fd, &facts) == 0 && facts.st_nlink == 1) {
+            return fd;
+        }
+        ::unlink(path.c_str());
+        ::close(fd);
+    }
+    errno = EBUSY;
+    return -1;
+}
+
 Response done() {
     Response response;
     response.body = "{}";
@@ -78,7 +197,9 @@ std::string type_of(const std::string &path) {
 }  // namespace
 
 ProgramFiles::ProgramFiles(std::string folder, std::vector<std::string> extensions)
-    : folder_(std::move(folder)), extensions_(std::move(extensions)) {}
+    : folder_(std::move(folder)), extensions_(std::move(extensions)) {
+    remove_dead_uploads(folder_);
+}
 
 ProgramFiles::~ProgramFiles() {
     while (!uploads_.empty()) {
@@ -133,23 +254,7 @@ Response ProgramFiles::read(const std::string &name, const std::optional<std::st
         return error_response(400, path.error().str());
     }
     path = made.value_or(*path);
-    std::error_code error;
-    const std::uintmax_t size = fs::is_regular_file(*path, error) ? fs::file_size(*path, error) : 0;
-    if (error || !fs::is_regular_file(*path, error)) {
-        return error_response(404, "there is no program '" + name + "'");
-    }
-    constexpr std::uintmax_t MOST_READ = 256ULL * 1024 * 1024;
-    if (size > MOST_READ) {
-        return error_response(413, "'" + name + "' is too large to be shown");
-    }
-    auto text = read_file(*path);
-    if (!text.has_value()) {
-        return error_response(404, text.error().str());
-    }
-    Response response;
-    response.type = "text/plain; charset=utf-8";
-    response.body = std::move(*text);
-    return response;
+    return file_response(*path, "text/plain; charset=utf-8", "there is no program '" + name + "'");
 }
 
 void ProgramFiles::drop(const std::string &name) {
@@ -166,8 +271,8 @@ Response ProgramFiles::begin(const std::string &name, std::uint64_t size) {
     if (uploads_.size() >= MOST_UPLOADS) {  // one that nobody goes on with
         drop(std::ranges::min_element(uploads_, {}, [](const auto &one) { return one.second.begun; })->first);
     }
-    std::string temporary = folder_ + "/.upload-XXXXXX";
-    const int fd = ::mkostemp(temporary.data(), O_CLOEXEC);
+    std::string temporary;
+    const int fd = open_upload(folder_, temporary);
     if (fd < 0) {
         return error_response(403, "cannot write into '" + folder_ + "': " + reason());
     }
@@ -267,13 +372,7 @@ Response screen_file(const std::string &folder, const std::string &path) {
                                                      "; 'millwright ui --screen FOLDER' names another place"
                                                : "there is no page '" + printable(path) + "'");
     }
-    auto content = read_file(place);
-    if (!content.has_value()) {
-        return error_response(404, content.error().str());
-    }
-    Response response;
-    response.type = type_of(place);
-    response.body = std::move(*content);
+    Response response = file_response(place, type_of(place), "there is no page '" + printable(path) + "'");
     response.isKept = path.starts_with(ASSETS);  // their names carry a number made from their content
     return response;
 }

@@ -21,7 +21,8 @@ class ProgramFiles {
     static constexpr std::uint64_t MOST_BYTES = 2ULL * 1024 * 1024 * 1024;
     static constexpr std::size_t MOST_UPLOADS = 8;
 
-    /// Files that end in none of `extensions` (in lower case, with the dot) are not there.
+    /// Files that end in none of `extensions` (in lower case, with the dot) are not there. Removes the files
+    /// of uploads whose server has died.
     ProgramFiles(std::string folder, std::vector<std::string> extensions);
     /// Removes what has not come whole.
     ~ProgramFiles();

@@ -48,12 +48,10 @@ Result<msgs::ToolTable> Screens::tools() {
 
 bool Screens::join(Browser &browser) {
     auto client = setup_.connect();
-    if (!client.has_value()) {
-        reason_ = client.error().str();
-        return false;
+    if (client.has_value()) {
+        browser.join(std::move(*client));
     }
-    browser.join(std::move(*client));
-    return true;
+    return client.has_value();
 }
 
 void Screens::opened(SessionId session, const Rights &rights, std::int64_t now_ns) {
@@ -62,15 +60,24 @@ void Screens::opened(SessionId session, const Rights &rights, std::int64_t now_n
         now_ns);
     Browser &browser = *made;
     browsers_[session] = std::move(made);
-    const bool isJoined = isMachineUp() && join(browser);
+    if (isMachineUp()) {
+        browser.attach(*watch_);
+        join(browser);
+    }
     browser.tell(hello_text({setup_.version, role_name(rights.role), protection_name(rights.protection),
                              browser.number(), session_}));
     if (questions_ != "[]") {
         browser.tell(questions_text(questions_));
     }
-    if (!isJoined) {
+    if (rights.role == Role::STATUS && !setup_.status_note.empty()) {
+        browser.tell(note_text(setup_.status_note));
+    }
+    if (!browser.isAttached()) {
         browser.tell(machine_gone_text(reason_));
         return;
+    }
+    if (!browser.isJoined()) {
+        browser.tell(note_text(Browser::ONLY_STOPS));
     }
     if (const msgs::MachineStatus *now = status()) {
         browser.tell_status(*now);
@@ -130,7 +137,7 @@ void Screens::look_for_machine() {
         lose_machine("the machine is no longer running");
     }
     if (!watch_.has_value()) {
-        auto client = setup_.connect();
+        auto client = setup_.connect_for_all ? setup_.connect_for_all() : setup_.connect();
         if (!client.has_value()) {
             reason_ = client.error().str();
             return;
@@ -140,8 +147,13 @@ void Screens::look_for_machine() {
         hasStatus_ = false;
     }
     for (const auto &[session, browser] : browsers_) {
-        if (!browser->isJoined() && join(*browser)) {
+        const bool isNew = !browser->isAttached();
+        if (isNew) {
+            browser->attach(*watch_);
+        }
+        if ((!browser->isJoined() && join(*browser)) || isNew) {
             browser->tell(machine_up_text(browser->number()));
+            browser->forget_status();
         }
     }
 }
@@ -155,21 +167,21 @@ void Screens::log(const std::string &line) const {
 void Screens::lose_machine(const std::string &reason) {
     reason_ = reason;
     log(reason);
-    watch_.reset();
-    hasStatus_ = false;
-    tools_.reset();
-    kept_.clear();  // another machine counts its messages anew
     for (const auto &[session, browser] : browsers_) {
-        if (browser->isJoined()) {
+        if (browser->isAttached()) {
             browser->leave();
             browser->tell(machine_gone_text(reason));
         }
     }
+    watch_.reset();
+    hasStatus_ = false;
+    tools_.reset();
+    kept_.clear();  // another machine counts its messages anew
 }
 
 void Screens::tell_all(const std::string &text) {
     for (const auto &[session, browser] : browsers_) {
-        if (browser->isJoined()) {
+        if (browser->isAttached()) {
             browser->tell(text);
         }
     }
@@ -235,7 +247,7 @@ void Screens::tell_statuses() {
     for (const auto &[session, browser] : browsers_) {
         browser->note_read(fresh);
         // What a slow one cannot take now goes with its next one.
-        if (browser->isJoined() && sockets_.isIdle(session)) {
+        if (browser->isAttached() && sockets_.isIdle(session)) {
             browser->tell_status(watch_->status());
         }
     }

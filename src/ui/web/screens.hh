@@ -17,7 +17,12 @@ namespace mw::ui::web {
 struct ScreensSetup {
     /// A client of the machine; an error says why there is none. Called for each screen and once for all.
     std::function<Result<client::Client>()> connect;
+    /// The same for the one for all, through which a screen without a place of its own stops the machine;
+    /// empty: as `connect`.
+    std::function<Result<client::Client>()> connect_for_all{};
     std::string version;
+    /// What a screen of the role STATUS shows about that.
+    std::string status_note{};
     std::int64_t status_period_ns = 50000000;
 };
 

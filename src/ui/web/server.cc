@@ -2,31 +2,18 @@
 // The only file that includes Boost.Beast, by headers of `detail`: a heavy header.
 #include "ui/web/server.hh"
 
-#include <algorithm>
-#include <boost/asio/write.hpp>
-#include <boost/beast/http.hpp>
-#include <optional>
+#include <unistd.h>
+
 #include <utility>
 
-#include "ui/web/detail/session.hh"
+#include "ui/web/detail/connection.hh"
 #include "ui/web/detail/tls.hh"
-#include "ui/web/documents.hh"
 
 namespace mw::ui::web {
 namespace {
 
 using namespace detail;
 
-std::string_view view(beast::string_view text) {
-    return {text.data(), text.size()};
-}
-
-std::int64_t monotonic_ns() {
-    return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
-}
-
-/// For what is still on its way when a connection ends.
-constexpr std::chrono::milliseconds DRAIN_TIME{2000};
 constexpr std::chrono::milliseconds ACCEPT_PAUSE{50};
 
 /// Everything that a page needs is served from here, and no other page may hold it in a frame.
@@ -35,227 +22,6 @@ constexpr const char *PAGE_RULES = "default-src 'self'; style-src 'self' 'unsafe
                                    "frame-ancestors 'none'";
 
 }  // namespace
-
-/// One connection, one request after the other.
-class Connection : public std::enable_shared_from_this<Connection> {
-  public:
-    Connection(Server::Impl &server, Door &door, tcp::socket socket)
-        : server_(server), door_(door),
-          wire_(std::make_unique<Wire>(std::move(socket), door.tls.has_value() ? &*door.tls : nullptr)) {
-        ++door_.connections;
-    }
-    ~Connection() {
-        if (pieces_ != nullptr) {
-            pieces_->cancel();
-        }
-        --door_.connections;
-    }
-    Connection(const Connection &) = delete;
-    Connection &operator=(const Connection &) = delete;
-
-    void begin() {
-        expire_after(std::min(server_.limits.greeting_time, server_.limits.request_time));
-        wire_->async_greet([self = shared_from_this()](error_code error) {
-            if (!error) {
-                self->read();
-            }
-        });
-    }
-
-  private:
-    void expire_after(std::chrono::milliseconds time) { wire_->stream().expires_after(time); }
-    void read() {
-        parser_.emplace();
-        parser_->header_limit(server_.limits.header_bytes);
-        parser_->body_limit(server_.limits.body_bytes);
-        expire_after(server_.limits.request_time);
-        http::async_read(*wire_, buffer_, *parser_,
-                         [self = shared_from_this()](error_code error, std::size_t) { self->take(error); });
-    }
-    void take(error_code error) {
-        isLast_ = true;
-        if (error == http::error::body_limit || error == http::error::header_limit) {
-            reply(error_response(413, "the request is too large: send files in pieces of at most 1 MiB"));
-            return;
-        }
-        const bool isHttp = error.category() == make_error_code(http::error::bad_method).category();
-        if (error) {
-            if (isHttp && error != http::error::end_of_stream && error != http::error::partial_message) {
-                reply(error_response(400, "this is no HTTP request: " + error.message()));
-            }
-            return;  // or nobody is there
-        }
-        const HttpRequest &request = parser_->get();
-        // An answer to HEAD has no body by its rule, ours has: nothing may follow it.
-        isLast_ = !request.keep_alive() || request.method() == http::verb::head;
-        auto asked = parse_target(view(request.target()));
-        if (!asked.has_value()) {
-            reply(error_response(400, "the path of the request is none"));
-            return;
-        }
-        const auto allowed =
-            door_.gate->check({view(request[http::field::host]), view(request[http::field::origin]),
-                               view(request["Sec-Fetch-Site"])},
-                              asked->path, own_address_);
-        if (!allowed.has_value()) {
-            reply(error_response(403, allowed.error().str()));
-            return;
-        }
-        if (!door_.requests.take(monotonic_ns())) {
-            reply(error_response(429, "too many requests: ask again later"));
-            return;
-        }
-        asked->role = door_.access.role_of(
-            {view(request[http::field::authorization]), view(request[http::field::cookie])}, door_.port);
-        asked->method = view(request.method_string());
-        if (asked->path == "/api/login") {
-            asked->body = std::move(parser_->get().body());
-            reply(door_.access.login(*asked, door_.port, monotonic_ns()));
-            return;
-        }
-        // The screen itself is no secret: it asks for the token.
-        const bool isForAll = !asked->path.starts_with("/api/") && asked->path != "/metrics";
-        if (asked->role == Role::NOBODY && !isForAll) {
-            reply(error_response(401, "show a token: 'Authorization: Bearer TOKEN', or POST /api/login"));
-            return;
-        }
-        if (websocket::is_upgrade(request)) {
-            open_socket(*asked);
-            return;
-        }
-        asked->body = std::move(parser_->get().body());
-        wire_->stream().expires_never();
-        server_.application->answer(
-            *asked, [self = shared_from_this()](Response response) { self->reply(std::move(response)); });
-    }
-
-    void open_socket(const Request &asked) {
-        if (asked.path != "/api/socket") {
-            reply(error_response(404, "there is no socket '" + asked.path + "', only /api/socket"));
-            return;
-        }
-        const bool isFull = static_cast<int>(server_.sessions.size()) >= server_.limits.sessions;
-        if (isFull || door_.sessions >= door_.most_sessions) {
-            reply(error_response(503, "as many screens as can be are open: close one"));
-            return;
-        }
-        const SessionId id = ++server_.last_session;
-        auto session = std::make_shared<Session>(server_, door_, id, asked.role, std::move(wire_));
-        server_.sessions[id] = session;
-        session->accept(parser_->release());
-    }
-
-    template <class Message>
-    void set_head(Message &message, const Response &response) const {
-        message.version(11);
-        message.result(static_cast<unsigned>(response.status));
-        message.set(http::field::content_type, response.type);
-        message.set(http::field::cache_control,
-                    response.isKept ? "public, max-age=31536000, immutable" : "no-cache");
-        message.set("X-Content-Type-Options", "nosniff");
-        message.set("Content-Security-Policy", server_.page_rules);
-        message.set("Referrer-Policy", "no-referrer");
-        if (!response.cookie.empty()) {
-            message.set(http::field::set_cookie, response.cookie);
-        }
-        message.keep_alive(!isLast_);
-    }
-
-    void reply(Response response) {
-        expire_after(server_.limits.request_time);
-        if (response.pieces != nullptr) {
-            reply_in_pieces(response);
-            return;
-        }
-        auto message = std::make_shared<http::response<http::string_body>>();
-        set_head(*message, response);
-        message->body() = std::move(response.body);
-        message->prepare_payload();
-        http::async_write(
-            *wire_, *message,
-            [self = shared_from_this(), message](error_code error, std::size_t) { self->end_reply(error); });
-    }
-
-    void reply_in_pieces(const Response &response) {
-        pieces_ = response.pieces;
-        struct Head {
-            http::response<http::empty_body> message;
-            std::optional<http::response_serializer<http::empty_body>> serializer;
-        };
-        auto head = std::make_shared<Head>();
-        set_head(head->message, response);
-        head->message.chunked(true);
-        head->serializer.emplace(head->message);
-        http::async_write_header(*wire_, *head->serializer,
-                                 [self = shared_from_this(), head](error_code error, std::size_t) {
-                                     error ? self->end_reply(error) : self->next_piece();
-                                 });
-    }
-
-    void next_piece() {
-        const auto wake = [self = shared_from_this()] {
-            net::post(self->server_.loop, [self] { self->next_piece(); });
-        };
-        switch (pieces_->take(piece_, wake)) {
-        case PieceQueue::State::LATER: wire_->stream().expires_never(); return;
-        case PieceQueue::State::PIECE:
-            expire_after(server_.limits.request_time);
-            net::async_write(*wire_, http::make_chunk(net::const_buffer(piece_.data(), piece_.size())),
-                             [self = shared_from_this()](error_code error, std::size_t) {
-                                 error ? self->end_reply(error) : self->next_piece();
-                             });
-            return;
-        case PieceQueue::State::END:
-            expire_after(server_.limits.request_time);
-            net::async_write(
-                *wire_, http::make_chunk_last(),
-                [self = shared_from_this()](error_code error, std::size_t) { self->end_reply(error); });
-            return;
-        }
-    }
-
-    void end_reply(error_code error) {
-        if (pieces_ != nullptr) {
-            pieces_->cancel();
-            pieces_ = nullptr;
-        }
-        if (error) {
-            return;
-        }
-        if (!isLast_) {
-            read();
-            return;
-        }
-        error_code ignored;
-        wire_->stream().socket().shutdown(tcp::socket::shutdown_send, ignored);
-        expire_after(std::min(server_.limits.request_time, DRAIN_TIME));
-        drain();
-    }
-
-    /// Reads off what is still on its way: closed before, the browser would not see the answer.
-    void drain() {
-        constexpr std::size_t MOST = 16UL * 1024 * 1024;
-        buffer_.clear();
-        wire_->async_read_some(buffer_.prepare(65536),
-                               [self = shared_from_this()](error_code error, std::size_t size) {
-                                   self->drained_ += size;
-                                   if (!error && self->drained_ < MOST) {
-                                       self->drain();
-                                   }
-                               });
-    }
-
-    Server::Impl &server_;
-    Door &door_;
-    std::unique_ptr<Wire> wire_;
-    const std::string own_address_ = wire_->own_address();
-    beast::flat_buffer buffer_;
-    std::optional<http::request_parser<http::string_body>> parser_;
-    std::shared_ptr<PieceQueue> pieces_;
-    std::string piece_;
-    std::size_t drained_ = 0;
-    bool isLast_ = false;
-};
 
 Server::Impl::Impl(const ServerOptions &options) : limits(options.limits), page_rules(PAGE_RULES) {
     page_rules += "; frame-src 'self'";
@@ -266,7 +32,13 @@ Server::Impl::Impl(const ServerOptions &options) : limits(options.limits), page_
 }
 
 Result<> Server::Impl::open(const ServerOptions &options) {
-    doors.push_back({.access = Access(Protection::LOCAL, Role::CONFIGURE),
+    auto cookies = Tokens::random();
+    if (!cookies.has_value()) {
+        return std::unexpected(cookies.error());
+    }
+    find_socket = options.find_socket;
+    report = options.report;
+    doors.push_back({.access = Access::of_this_computer(options.local_tokens, std::move(*cookies)),
                      .requests = RateLimit(limits.requests_per_s, limits.requests_at_once),
                      .most_connections = limits.connections,
                      .most_sessions = limits.sessions});
@@ -359,10 +131,40 @@ void Server::Impl::accept(Listener &listener) {
         if (connections < limits.connections && door.connections < door.most_connections) {
             keep_to_ourselves(socket.native_handle());
             send_promptly(socket);
-            std::make_shared<Connection>(*this, door, std::move(socket))->begin();
+            const bool isLocal = door.access.protection() == Protection::LOCAL;
+            const bool isForeign = isLocal && !isOfServerUser(socket);
+            if (!isForeign || door.foreign_connections < limits.foreign_connections) {
+                std::make_shared<Connection>(*this, door, std::move(socket), isLocal, isForeign)->begin();
+            }
         }
         accept(listener);
     });
+}
+
+bool Server::Impl::isOfServerUser(const tcp::socket &socket) {
+    error_code error, other;
+    const auto peer = socket.remote_endpoint(error), own = socket.local_endpoint(other);
+    if (error || other || !peer.address().is_v4() || !own.address().is_v4()) {
+        return false;
+    }
+    const Endpoint client{peer.address().to_v4().to_uint(), peer.port()},
+        server{own.address().to_v4().to_uint(), own.port()};
+    const auto found = find_socket(client, server);
+    if (!found.has_value()) {
+        if (report) {
+            std::exchange(report, {})(found.error().message);
+        }
+        return false;
+    }
+    return owner_of(*found, client, server, ::geteuid()) == PeerOwner::SERVER_USER;
+}
+
+void Server::Impl::close_status_sessions() {
+    for (const auto &[id, session] : sessions) {
+        if (session->role() == Role::STATUS) {
+            session->end();
+        }
+    }
 }
 
 void Server::Impl::forget(SessionId id) {

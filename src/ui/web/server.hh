@@ -10,6 +10,7 @@
 #include "base/result.hh"
 #include "ui/web/access.hh"
 #include "ui/web/exchange.hh"
+#include "ui/web/peer_owner.hh"
 #include "ui/web/secrets.hh"
 
 namespace mw::ui::web {
@@ -20,17 +21,25 @@ struct ServerLimits {
     std::size_t text_bytes = 64 * 1024;    ///< from a socket
     /// To a socket, waiting to be sent.
     std::size_t waiting_bytes = 4UL * 1024 * 1024;
+    /// Of bodies that are in memory while they are sent, all clients together. A body below small_bytes is
+    /// sent in any case.
+    std::size_t answer_bytes = 64UL * 1024 * 1024, small_bytes = 256UL * 1024;
     int connections = 64;  ///< open ones; sockets count
     int sessions = 16;     ///< sockets
     /// Of these, those that only this computer may take.
     int kept_connections = 16, kept_sessions = 4;
+    /// Of these, those that other users of this computer may take.
+    int foreign_connections = 8, foreign_sessions = 2;
     /// Requests of all browsers of one way in together. Texts from sockets are the application's to limit.
     double requests_per_s = 500, requests_at_once = 1000;
     /// Connections from other computers that begin. A greeting of TLS takes the thread of all screens 1 ms.
     double greetings_per_s = 100, greetings_at_once = 100;
     std::chrono::milliseconds greeting_time{
         10000};  ///< for a greeting of TLS, from its first byte to its last
-    std::chrono::milliseconds request_time{30000};  ///< for a request to come, and for its answer to be taken
+    /// For a request to come, and for its answer, or a piece of it, to be taken.
+    std::chrono::milliseconds request_time{30000};
+    /// Between two checks whether the client of an answer that takes long has hung up.
+    std::chrono::milliseconds check_time{100};
 };
 
 /// A way in from other computers, beside that of this one.
@@ -48,6 +57,13 @@ struct ServerOptions {
     ServerLimits limits{};
     std::optional<RemoteDoor> remote{};
     std::vector<std::string> frames{};  ///< addresses that pages may show in frames
+    /// For other users of this computer than that of the server, and root.
+    Tokens local_tokens{};
+    /// By whom a connection on this computer was opened, at its ends.
+    std::function<Result<SocketFacts>(const Endpoint &client, const Endpoint &server)> find_socket{
+        web::find_socket};
+    /// Takes the reason, once, why that cannot be found out.
+    std::function<void(const std::string &)> report{};
 };
 
 class Server final : public Sockets {

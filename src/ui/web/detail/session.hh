@@ -31,6 +31,8 @@ struct Door {
     std::optional<RateLimit> greetings{};  ///< none: of this computer, as many as come
     int most_connections = 0, most_sessions = 0;
     int connections = 0, sessions = 0;
+    /// Of these, of other users of this computer.
+    int foreign_connections = 0, foreign_sessions = 0;
     int port = 0;
     std::optional<Gate> gate{};
     std::optional<net::ssl::context> tls{};
@@ -55,14 +57,21 @@ class Server::Impl {
     Result<> listen(detail::Door &door, const detail::net::ip::address &address, int port);
     void accept(detail::Listener &listener);
     void accept_later(detail::Listener &listener);
+    /// False where the kernel does not tell.
+    bool isOfServerUser(const detail::tcp::socket &socket);
+    /// Their browsers connect again, with the cookie that they have got meanwhile.
+    void close_status_sessions();
     /// The socket is gone, for whatever reason.
     void forget(SessionId id);
 
     const ServerLimits limits;
     std::string page_rules;
+    std::function<Result<SocketFacts>(const Endpoint &, const Endpoint &)> find_socket;
+    std::function<void(const std::string &)> report;
     std::deque<detail::Door> doors;  ///< outlive the loop, which ends connections
     Application *application = nullptr;
     SessionId last_session = 0;
+    std::size_t answer_bytes = 0;  ///< of bodies that are being sent
     detail::net::io_context loop{1};
     std::deque<detail::Listener> listeners;  ///< of the doors in their order
     std::map<SessionId, std::shared_ptr<detail::Session>> sessions;
@@ -73,15 +82,22 @@ namespace detail {
 /// An open WebSocket.
 class Session : public std::enable_shared_from_this<Session> {
   public:
-    Session(Server::Impl &server, Door &door, SessionId id, Role role, std::unique_ptr<Wire> wire)
-        : server_(server), door_(door), id_(id), role_(role), socket_(Link(std::move(wire))) {
+    Session(Server::Impl &server, Door &door, SessionId id, Role role, bool isForeign,
+            std::unique_ptr<Wire> wire)
+        : server_(server), door_(door), id_(id), role_(role), isForeign_(isForeign),
+          socket_(Link(std::move(wire))) {
         ++door_.connections;
         ++door_.sessions;
+        door_.foreign_connections += isForeign_ ? 1 : 0;
+        door_.foreign_sessions += isForeign_ ? 1 : 0;
     }
     ~Session() {
         --door_.connections;
         --door_.sessions;
+        door_.foreign_connections -= isForeign_ ? 1 : 0;
+        door_.foreign_sessions -= isForeign_ ? 1 : 0;
     }
+    Role role() const { return role_; }
     Session(const Session &) = delete;
     Session &operator=(const Session &) = delete;
 
@@ -138,10 +154,18 @@ class Session : public std::enable_shared_from_this<Session> {
             self->read();
         });
     }
+    /// A browser that does not take a text in time is disconnected.
     void write() {
+        untaken_.expires_after(server_.limits.request_time);
+        untaken_.async_wait([self = weak_from_this()](error_code ended) {
+            if (const auto session = self.lock(); session != nullptr && !ended) {
+                session->end();
+            }
+        });
         socket_.text(true);
         socket_.async_write(net::buffer(waiting_.front()),
                             [self = shared_from_this()](error_code error, std::size_t) {
+                                self->untaken_.cancel();
                                 if (error || self->isOver_) {
                                     self->end();
                                     return;
@@ -158,9 +182,11 @@ class Session : public std::enable_shared_from_this<Session> {
     Door &door_;
     SessionId id_;
     Role role_;
+    bool isForeign_;  ///< of another user of this computer
     websocket::stream<Link> socket_;
     HttpRequest request_;
     beast::flat_buffer buffer_;
+    net::steady_timer untaken_{server_.loop};
     std::deque<std::string> waiting_;  ///< the first one is being sent
     std::size_t bytes_ = 0;
     bool isOpen_ = false, isOver_ = false;

@@ -5,6 +5,7 @@
 
 #include <fcntl.h>
 #include <netinet/tcp.h>
+#include <poll.h>
 #include <sys/socket.h>
 
 #include <boost/asio/io_context.hpp>
@@ -66,6 +67,17 @@ class Wire {
         error_code error;
         const auto place = stream_.socket().local_endpoint(error);
         return error ? std::string() : bracketed(place.address());
+    }
+    /// The peer has closed its side, or the connection is broken. Reads nothing.
+    bool hasHungUp() {
+        pollfd look{stream_.socket().native_handle(), POLLRDHUP, 0};
+        return ::poll(&look, 1, 0) > 0 && (look.revents & (POLLRDHUP | POLLHUP | POLLERR | POLLNVAL)) != 0;
+    }
+    /// Of the computer at its other end.
+    std::string peer_address() {
+        error_code error;
+        const auto place = stream_.socket().remote_endpoint(error);
+        return error ? std::string() : place.address().to_string();
     }
     template <class Handler>
     void async_greet(Handler handler) {

@@ -125,6 +125,29 @@ TEST_F(AccessTest, LoginGivesACookieThatNoScriptReads_J3) {
     }
 }
 
+TEST_F(AccessTest, OnThisComputerTheUserOfTheServerNeedsNoTokenAndOthersDo) {
+    const Tokens file({{Role::OPERATE, std::string(64, 'o')}}),
+        cookies({{Role::OPERATE, std::string(64, 'c')}});
+    Access access = Access::of_this_computer(file, cookies);
+    const std::string bearer = "Bearer " + std::string(64, 'o');
+    EXPECT_EQ(access.protection(), Protection::LOCAL);
+    EXPECT_EQ(access.role_of({"", "", true}, PORT), Role::CONFIGURE);
+    EXPECT_EQ(access.role_of({"", "", false}, PORT), Role::STATUS);
+    EXPECT_EQ(access.role_of({"Bearer wrong", "", false}, PORT), Role::STATUS);
+    EXPECT_EQ(access.role_of({bearer, "", false}, PORT), Role::OPERATE);
+    Request asked;
+    asked.method = "GET";
+    asked.role = Role::STATUS;
+    EXPECT_EQ(access.login(asked, PORT, 0).body, R"({"role":"","protection":"local"})");
+    const Response in = access.login(post(R"({"token":")" + std::string(64, 'o') + R"("})"), PORT, 0);
+    EXPECT_TRUE(in.cookie.starts_with("millwright_token_8851=" + std::string(64, 'c') + ";")) << in.cookie;
+    EXPECT_EQ(in.cookie.find("Secure"), std::string::npos) << "the address is http";
+    EXPECT_EQ(access.role_of({"", in.cookie.substr(0, in.cookie.find(';')), false}, PORT), Role::OPERATE);
+    EXPECT_EQ(access.role_of({"", "millwright_token_8851=" + std::string(64, 'o'), false}, PORT),
+              Role::STATUS)
+        << "a token is no cookie";
+}
+
 TEST_F(AccessTest, WrongTokensAreCountedAndTheRightOneStillOpens_J3) {
     const auto made = Tokens::read_or_make(tokens);
     ASSERT_TRUE(made.has_value());

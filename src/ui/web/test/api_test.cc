@@ -41,18 +41,19 @@ class ApiTest : public testing::Test {
                              R"({"parts": [{"kind": "switch", "label": "Door", "name": "door"}]})"}};
         setup.screen_folder = (folder / "web").string();
         setup.screens.connect = [this] { return client::Client::join(task.memory.segment()); };
-        setup.read_times = [this](const std::string &,
-                                  const TimeOverrides &at) -> Result<std::shared_ptr<PieceQueue>> {
+        setup.read_times = [this](const std::string &, const TimeOverrides &at,
+                                  const Requester &) -> Result<std::shared_ptr<PieceQueue>> {
             overrides = at;
             return std::make_shared<PieceQueue>();
         };
         setup.facts.filters = {{".png", ".py"}, "/made"};
-        setup.run_filter = [this](const std::string &path,
-                                  const std::string &made) -> Result<std::shared_ptr<PieceQueue>> {
+        setup.run_filter = [this](const std::string &path, const std::string &made,
+                                  const Requester &) -> Result<std::shared_ptr<PieceQueue>> {
             filtered = {path, made};
             return std::make_shared<PieceQueue>();
         };
-        setup.read_path = [this](const std::string &path) -> Result<std::shared_ptr<PieceQueue>> {
+        setup.read_path = [this](const std::string &path,
+                                 const Requester &) -> Result<std::shared_ptr<PieceQueue>> {
             read.push_back(path);
             return read.size() < 2 ? Result<std::shared_ptr<PieceQueue>>(std::make_shared<PieceQueue>())
                                    : fail("too many");
@@ -215,11 +216,11 @@ TEST_F(ApiTest, EachRequestNeedsTheRoleOfTheTable_J3) {
         const char *method, *target, *body;
         Role least;
     };
-    constexpr Role ALL[] = {Role::VIEW, Role::OPERATE, Role::CONFIGURE};
+    constexpr Role ALL[] = {Role::STATUS, Role::VIEW, Role::OPERATE, Role::CONFIGURE};
     const Row rows[] = {
-        {"GET", "/api/machine", "", Role::VIEW},
-        {"GET", "/api/schema", "", Role::VIEW},
-        {"GET", "/api/tools", "", Role::VIEW},
+        {"GET", "/api/machine", "", Role::STATUS},
+        {"GET", "/api/schema", "", Role::STATUS},
+        {"GET", "/api/tools", "", Role::STATUS},
         {"GET", "/api/files", "", Role::VIEW},
         {"GET", "/api/files/a.ngc", "", Role::VIEW},
         {"GET", "/api/path?file=a.ngc", "", Role::VIEW},
@@ -227,12 +228,12 @@ TEST_F(ApiTest, EachRequestNeedsTheRoleOfTheTable_J3) {
         {"GET", "/api/offsets", "", Role::VIEW},
         {"GET", "/api/preferences", "", Role::VIEW},
         {"GET", "/api/mdi_history", "", Role::VIEW},
-        {"GET", "/api/icon", "", Role::VIEW},
+        {"GET", "/api/icon", "", Role::STATUS},
         {"GET", "/api/hal?glob=*", "", Role::VIEW},
         {"GET", "/api/inputs", "", Role::VIEW},
         {"GET", "/api/scope", "", Role::VIEW},
         {"GET", "/api/scope/record", "", Role::VIEW},
-        {"GET", "/metrics", "", Role::VIEW},
+        {"GET", "/metrics", "", Role::STATUS},
         {"PUT", "/api/files/a.ngc", "G0 X1", Role::OPERATE},
         {"DELETE", "/api/files/a.ngc", "", Role::OPERATE},
         {"PUT", "/api/preferences", "{}", Role::OPERATE},
@@ -261,10 +262,10 @@ TEST_F(ApiTest, EachCommandIsAStopOrNeedsAnOperator_J3) {
     const std::set<std::string> stops{"EstopOn",     "AbortAll",     "AbortMachine", "AbortTraj",
                                       "AbortMotion", "AbortJoint",   "AbortTool",    "AbortIo",
                                       "JogStop",     "PauseProgram", "PauseTraj",    "DisableTraj"};
-    constexpr Role ALL[] = {Role::VIEW, Role::OPERATE, Role::CONFIGURE};
+    constexpr Role ALL[] = {Role::STATUS, Role::VIEW, Role::OPERATE, Role::CONFIGURE};
     task.cycle();
     api->tick();
-    for (SessionId i = 0; i < 3; ++i) {
+    for (SessionId i = 0; i < std::size(ALL); ++i) {
         api->opened(i, ALL[i], Protection::TLS);
     }
     for (const msgs::Declaration *declaration : msgs::command_declarations()) {
@@ -273,7 +274,7 @@ TEST_F(ApiTest, EachCommandIsAStopOrNeedsAnOperator_J3) {
         if (std::holds_alternative<msgs::SetState>(*command)) {
             continue;  // below
         }
-        for (SessionId session = 0; session < 3; ++session) {
+        for (SessionId session = 0; session < std::size(ALL); ++session) {
             const Role asking = ALL[session];
             sockets.take(session);
             Json text{{"id", 1}, {"command", Json::parse(msgs::to_json(msgs::object(*command)))}};
@@ -289,7 +290,7 @@ TEST_F(ApiTest, EachCommandIsAStopOrNeedsAnOperator_J3) {
                 isOfRole |= told.dump().find("may look, and stop, but not operate") != std::string::npos;
             }
             const bool isStop = stops.contains(std::string(declaration->name));
-            EXPECT_EQ(isOfRole, asking == Role::VIEW && !isStop)
+            EXPECT_EQ(isOfRole, asking <= Role::VIEW && !isStop)
                 << declaration->name << " as " << role_name(asking);
         }
     }

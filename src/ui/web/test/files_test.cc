@@ -95,6 +95,52 @@ TEST_F(ProgramFilesTest, WhatIsNotWholeLeavesNothing_J3) {
     EXPECT_EQ(count_entries(), 0U);
 }
 
+TEST_F(ProgramFilesTest, RemovesUploadsOfADeadServerAndNothingElse) {
+    EXPECT_EQ(files_->write("p.ngc", 0, 9, "abc").status, 200);
+    std::string upload;
+    for (const auto &entry : fs::directory_iterator(folder_)) {
+        upload = entry.path().filename().string();
+    }
+    ASSERT_TRUE(upload.starts_with(".upload-"));
+    const auto with_last = [&upload](std::size_t n) {  // another name of the same form
+        std::string letters = "abcd";
+        std::erase(letters, upload.back());
+        return upload.substr(0, upload.size() - 1) + letters[n];
+    };
+    const std::string dead = with_last(0);
+    put(dead, "abc");
+    put(upload + "x", "another file");
+    put(".upload-notes", "another file");
+    fs::create_hard_link(folder_ / ".upload-notes", folder_ / with_last(1));
+    fs::create_symlink(folder_ / ".upload-notes", folder_ / with_last(2));
+    const std::size_t before = count_entries();
+    const ProgramFiles next(folder_.string(), {".ngc"});
+    EXPECT_FALSE(fs::exists(folder_ / dead));
+    EXPECT_EQ(count_entries(), before - 1) << "links and other names stay";
+    EXPECT_EQ(files_->write("p.ngc", 3, 9, "defghi").status, 200) << "the server that lives continues";
+    EXPECT_EQ(files_->read("p.ngc").body, "abcdefghi");
+}
+
+TEST_F(ProgramFilesTest, ALargeProgramIsReadInPieces) {
+    std::string text(3 * BodySource::PIECE + 17, ' ');
+    for (std::size_t i = 0; i < text.size(); i += 80) {
+        text[i] = static_cast<char>('a' + i % 26);
+    }
+    put("large.ngc", text);
+    const Response answer = files_->read("large.ngc");
+    EXPECT_TRUE(answer.body.empty());
+    ASSERT_NE(answer.source, nullptr);
+    EXPECT_EQ(answer.source->size(), text.size());
+    std::string read;
+    for (std::string piece = answer.source->read(); !piece.empty(); piece = answer.source->read()) {
+        EXPECT_LE(piece.size(), BodySource::PIECE);
+        read += piece;
+    }
+    EXPECT_EQ(read, text);
+    EXPECT_EQ(::mkfifo((folder_ / "pipe.ngc").c_str(), 0600), 0);
+    EXPECT_EQ(files_->read("pipe.ngc").status, 404);
+}
+
 TEST_F(ProgramFilesTest, NothingBesideTheProgramsIsReached_J3) {
     std::ofstream(base_ / "secret.ngc") << "secret";
     for (const char *name : {"../secret.ngc", "..", ".", "", "/etc/passwd", ".x.ngc", "a/b.ngc", "x.sh",

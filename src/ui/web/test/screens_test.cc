@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The protocol of /api/socket, with a task and a server that do as the test says (J3).
+#include <deque>
+
 #include <gtest/gtest.h>
 
 #include "ui/web/screens.hh"
@@ -21,7 +23,13 @@ class ScreensTest : public testing::Test {
         setup.connect = [this]() -> Result<client::Client> {
             return isUp ? client::Client::join(task.memory.segment()) : fail("no machine here");
         };
+        setup.connect_for_all = [this]() -> Result<client::Client> {
+            return isUp ? client::Client::join(task.memory.segment(), client::Role::OPERATOR,
+                                               client::Places::RESERVED)
+                        : fail("no machine here");
+        };
         setup.version = "0.1";
+        setup.status_note = "status only";
         screens.emplace(sockets, setup);
     }
     /// Time goes on, in steps of a tick; task cycles between them.
@@ -180,6 +188,52 @@ TEST_F(ScreensTest, WhatAConnectionJogsStopsWithIt_J3_C8) {
     EXPECT_EQ(stop->index, 0);
     screens.reset();
     EXPECT_EQ(task.cycle().size(), 1U);
+}
+
+TEST_F(ScreensTest, AScreenOfAnotherUserSeesStatusAndStopsTheMachine) {
+    go(300);
+    screens->opened(7, {Role::STATUS, Protection::LOCAL}, now_ns);
+    const auto first = sockets.take(7);
+    ASSERT_EQ(first.size(), 3U);
+    EXPECT_EQ(first[0]["hello"]["role"], "view");
+    EXPECT_EQ(first[1]["note"], "status only");
+    EXPECT_EQ(first[2]["full"], true);
+    screens->received(7, R"({"watch": ["joint.0.pos-cmd"]})", now_ns);
+    EXPECT_TRUE(screens->watched().empty()) << "values of HAL are not for it";
+    command(7, 1, "EstopOff");
+    command(7, 2, "AbortAll");
+    EXPECT_EQ(go(20).size(), 1U) << "the stop alone";
+}
+
+TEST_F(ScreensTest, AScreenWithoutAPlaceStopsTheMachine) {
+    std::deque<client::Client> others;  // also before the server is there
+    for (auto one = client::Client::join(task.memory.segment()); one.has_value();
+         one = client::Client::join(task.memory.segment())) {
+        others.push_back(std::move(*one));
+    }
+    go(300);
+    screens->opened(7, {Role::VIEW, Protection::LOCAL}, now_ns);
+    const auto first = sockets.take(7);
+    ASSERT_EQ(first.size(), 3U);
+    EXPECT_EQ(first[0]["hello"]["client"], 0);
+    EXPECT_NE(first[1]["note"].get<std::string>().find("only stop"), std::string::npos);
+    EXPECT_EQ(first[2]["full"], true) << "it sees the machine";
+    command(7, 1, "EstopOn");
+    command(7, 2, "AbortAll");
+    command(7, 3, "EstopOff");
+    EXPECT_EQ(go(20).size(), 2U);
+    const auto outcomes = of_kind(7, "outcome");
+    ASSERT_EQ(outcomes.size(), 3U);
+    EXPECT_EQ(outcomes[0]["outcome"]["progress"], "REFUSED");
+    EXPECT_NE(outcomes[0]["outcome"]["reason"].get<std::string>().find("only stop"), std::string::npos);
+    EXPECT_EQ(outcomes[1]["outcome"]["progress"], "DONE");
+    EXPECT_EQ(outcomes[2]["outcome"]["progress"], "DONE");
+    others.pop_back();
+    go(600);
+    const auto up = of_kind(7, "machine");
+    ASSERT_EQ(up.size(), 1U) << "it has a place now";
+    EXPECT_GT(up[0]["client"], 0);
+    isUp = false;
 }
 
 TEST_F(ScreensTest, AJogThatNothingWouldEndIsRefused_J3_C8) {

@@ -1,162 +1,16 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The server as a browser meets it, over a socket of the loopback: requests, limits, frames (J3).
 #include <fcntl.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
-#include <functional>
 #include <random>
 #include <thread>
 
 #include <gtest/gtest.h>
 
-#include "ui/web/server.hh"
+#include "ui/web/test/server_peer.hh"
 
-namespace mw::ui::web {
+namespace mw::ui::web::test {
 namespace {
-
-using std::chrono::milliseconds;
-
-/// Answers with what it was asked; a socket gets its own texts back.
-class Echo final : public Application {
-  public:
-    void answer(const Request &request, Reply reply) override {
-        asked.push_back(request);
-        if (pieces != nullptr) {
-            reply({.pieces = pieces});
-        } else if (isLater) {
-            later = std::move(reply);
-        } else {
-            reply({.type = "text/plain", .body = request.method + ' ' + request.path + '|' + request.body});
-        }
-    }
-    void opened(SessionId session, Role role, Protection protection) override {
-        open.push_back(session);
-        rights.push_back({role, protection});
-    }
-    void received(SessionId session, std::string_view text) override {
-        texts.emplace_back(text);
-        server->send(session, std::string(text));
-    }
-    void closed(SessionId session) override { ended.push_back(session); }
-
-    Server *server = nullptr;
-    std::vector<Request> asked;
-    std::vector<SessionId> open, ended;
-    std::vector<std::string> texts;
-    std::vector<Rights> rights;
-    std::shared_ptr<PieceQueue> pieces;
-    bool isLater = false;
-    Reply later;
-};
-
-/// One connection of a browser, byte by byte.
-class Peer {
-  public:
-    explicit Peer(int port, std::uint32_t address = INADDR_LOOPBACK)
-        : fd_(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)) {
-        sockaddr_in place{};
-        place.sin_family = AF_INET;
-        place.sin_port = htons(static_cast<std::uint16_t>(port));
-        place.sin_addr.s_addr = htonl(address);
-        static_cast<void>(::connect(fd_, reinterpret_cast<sockaddr *>(&place), sizeof place));
-    }
-    ~Peer() { ::close(fd_); }
-    Peer(const Peer &) = delete;
-    Peer &operator=(const Peer &) = delete;
-
-    /// As much as goes; false: the other side is gone.
-    bool write(std::string &bytes) const {
-        const ssize_t sent = ::send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
-        bytes.erase(0, sent > 0 ? static_cast<std::size_t>(sent) : 0);
-        return sent >= 0 || errno == EAGAIN || errno == ENOTCONN || errno == EINPROGRESS;
-    }
-    /// Takes what is there.
-    void read() {
-        char bytes[65536];
-        ssize_t got = 0;
-        while ((got = ::recv(fd_, bytes, sizeof bytes, 0)) > 0) {
-            received.append(bytes, static_cast<std::size_t>(got));
-        }
-        isClosed = isClosed || got == 0 || (errno != EAGAIN && errno != ENOTCONN);
-    }
-
-    std::string received;
-    bool isClosed = false;
-
-  private:
-    int fd_;
-};
-
-class ServerTest : public testing::Test {
-  protected:
-    void listen(const ServerLimits &limits = {}) {
-        auto made = Server::listen({.port = 0, .limits = limits});
-        ASSERT_TRUE(made.has_value()) << made.error().str();
-        server = std::move(*made);
-        echo.server = server.get();
-    }
-    bool run_until(const std::function<bool()> &isDone) {
-        for (int i = 0; i < 5000 && !isDone(); ++i) {
-            server->run_for(echo, milliseconds(1));
-        }
-        return isDone();
-    }
-    /// The server knows of sockets a little after their peers have its answer.
-    bool areOpened(std::size_t count) {
-        return run_until([&] { return echo.open.size() == count; });
-    }
-    std::string host() const { return "Host: 127.0.0.1:" + std::to_string(server->port()) + "\r\n"; }
-    void write(Peer &peer, std::string bytes) {
-        run_until([&] { return !peer.write(bytes) || bytes.empty(); });
-    }
-    /// All of the answer that comes until `end` is in it or the connection closes.
-    std::string ask(Peer &peer, const std::string &bytes, const std::string &end) {
-        peer.received.clear();
-        write(peer, bytes);
-        run_until([&] {
-            peer.read();
-            return peer.isClosed || (!end.empty() && peer.received.find(end) != std::string::npos);
-        });
-        return peer.received;
-    }
-    /// The first line of the answer, on a connection of its own.
-    std::string status_of(const std::string &bytes) {
-        Peer peer(server->port());
-        const std::string answer = ask(peer, bytes, "\r\n\r\n");
-        return answer.substr(0, answer.find('\r'));
-    }
-    std::string get(const std::string &path, const std::string &more = "") const {
-        return "GET " + path + " HTTP/1.1\r\n" + host() + more + "Connection: close\r\n\r\n";
-    }
-    std::string upgrade(const std::string &path = "/api/socket", const std::string &more = "") const {
-        return "GET " + path + " HTTP/1.1\r\n" + host() + more +
-               "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
-               "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n";
-    }
-    /// A masked frame of a browser.
-    static std::string frame(const std::string &text, unsigned char opcode = 0x81) {
-        std::string bytes(1, static_cast<char>(opcode));
-        if (text.size() < 126) {
-            bytes += static_cast<char>(0x80 | text.size());
-        } else {
-            bytes += static_cast<char>(0x80 | 127);
-            for (int shift = 56; shift >= 0; shift -= 8) {
-                bytes += static_cast<char>(text.size() >> shift & 0xff);
-            }
-        }
-        const std::string mask = "\x11\x22\x33\x44";
-        bytes += mask;
-        for (std::size_t i = 0; i < text.size(); ++i) {
-            bytes += static_cast<char>(text[i] ^ mask[i % 4]);
-        }
-        return bytes;
-    }
-
-    std::unique_ptr<Server> server;
-    Echo echo;  ///< may hold a reply, which ends before the server
-};
 
 TEST_F(ServerTest, OneConnectionCarriesManyRequests_J3) {
     listen();
@@ -194,6 +48,97 @@ TEST_F(ServerTest, PagesOfOthersReachNothing_J3) {
     }
     EXPECT_EQ(status_of(get("/api/path", "Sec-Fetch-Site: cross-site\r\n")), "HTTP/1.1 403 Forbidden");
     EXPECT_EQ(echo.asked.size(), asked);
+    EXPECT_TRUE(echo.open.empty());
+}
+
+/// The kernel's answer for another user.
+Result<SocketFacts> of_another_user(const Endpoint &client, const Endpoint &server) {
+    auto found = find_socket(client, server);
+    if (found.has_value()) {
+        found->uid = ::geteuid() + 1;
+    }
+    return found;
+}
+
+TEST_F(ServerTest, AnotherUserOfThisComputerHasStatusOnly) {
+    listen(ServerOptions{.port = 0,
+                         .local_tokens = Tokens({{Role::OPERATE, std::string(64, 'o')}}),
+                         .find_socket = of_another_user});
+    EXPECT_EQ(status_of(get("/api/x")), "HTTP/1.1 200 OK");
+    EXPECT_EQ(status_of(get("/api/x", "Authorization: Bearer " + std::string(64, 'o') + "\r\n")),
+              "HTTP/1.1 200 OK");
+    ASSERT_EQ(echo.asked.size(), 2U);
+    EXPECT_EQ(echo.asked[0].role, Role::STATUS);
+    EXPECT_EQ(echo.asked[1].role, Role::OPERATE);
+    Peer screen(server->port()), browser(server->port());
+    ask(screen, upgrade(), "\r\n\r\n");
+    ASSERT_TRUE(areOpened(1));
+    EXPECT_EQ(echo.rights[0].role, Role::STATUS);
+    const std::string body = R"({"token":")" + std::string(64, 'o') + R"("})";
+    const std::string answer = ask(browser,
+                                   "POST /api/login HTTP/1.1\r\n" + host() +
+                                       "Content-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body,
+                                   "\r\n\r\n");
+    const std::size_t cookie = answer.find("millwright_token_");
+    ASSERT_NE(cookie, std::string::npos) << answer;
+    EXPECT_TRUE(run_until([&] { return !echo.ended.empty(); })) << "it connects again, with the cookie";
+    Peer again(server->port());
+    ask(again,
+        upgrade("/api/socket",
+                "Cookie: " + answer.substr(cookie, answer.find(';', cookie) - cookie) + "\r\n"),
+        "\r\n\r\n");
+    ASSERT_TRUE(areOpened(2));
+    EXPECT_EQ(echo.rights[1].role, Role::OPERATE);
+}
+
+TEST_F(ServerTest, NobodyHasMoreThanStatusWhereTheKernelDoesNotTellTheUser) {
+    std::vector<std::string> reported;
+    listen(ServerOptions{.port = 0,
+                         .find_socket = [](const Endpoint &, const Endpoint &) -> Result<SocketFacts> {
+                             return fail("no netlink");
+                         },
+                         .report = [&](const std::string &why) { reported.push_back(why); }});
+    EXPECT_EQ(status_of(get("/api/x")), "HTTP/1.1 200 OK");
+    EXPECT_EQ(status_of(get("/api/x")), "HTTP/1.1 200 OK");
+    ASSERT_EQ(echo.asked.size(), 2U);
+    EXPECT_EQ(echo.asked[1].role, Role::STATUS);
+    EXPECT_EQ(reported, std::vector<std::string>{"no netlink"});
+}
+
+TEST_F(ServerTest, OtherUsersLeaveConnectionsToTheUserOfTheServer) {
+    bool isForeign = true;
+    listen(ServerOptions{.port = 0,
+                         .limits = {.connections = 4, .foreign_connections = 2},
+                         .find_socket = [&](const Endpoint &from, const Endpoint &to) {
+                             return isForeign ? of_another_user(from, to) : find_socket(from, to);
+                         }});
+    std::vector<std::unique_ptr<Peer>> peers;
+    for (int i = 0; i < 5; ++i) {
+        peers.push_back(std::make_unique<Peer>(server->port()));
+    }
+    EXPECT_TRUE(run_until([&] {
+        return std::ranges::count_if(peers, [](const auto &peer) {
+                   peer->read();
+                   return peer->isClosed;
+               }) == 3;
+    }));
+    isForeign = false;
+    EXPECT_EQ(status_of(get("/api/x")), "HTTP/1.1 200 OK");
+    EXPECT_EQ(echo.asked.back().role, Role::CONFIGURE);
+}
+
+TEST_F(ServerTest, RejectsHeadersOfAccessThatAreSetTwice) {
+    listen();
+    const std::string bad = "HTTP/1.1 400 Bad Request";
+    for (const std::string more : {"evil.example", "", "127.0.0.1:1"}) {
+        EXPECT_EQ(status_of(get("/x", "Host: " + more + "\r\n")), bad) << more;
+    }
+    EXPECT_EQ(status_of(get("/x", host())), bad);
+    EXPECT_EQ(status_of(upgrade("/api/socket", host())), bad);
+    for (const std::string name : {"Origin", "Sec-Fetch-Site", "Authorization", "Cookie"}) {
+        EXPECT_EQ(status_of(get("/x", name + ": \r\n" + name + ": a\r\n")), bad) << name;
+    }
+    EXPECT_TRUE(echo.asked.empty());
     EXPECT_TRUE(echo.open.empty());
 }
 
@@ -487,4 +432,4 @@ TEST_F(ServerTest, APortThatIsTakenIsToldWithWhatToDo_J3) {
 }
 
 }  // namespace
-}  // namespace mw::ui::web
+}  // namespace mw::ui::web::test
