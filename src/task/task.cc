@@ -179,7 +179,7 @@ void Task::step_run() {
 void Task::check_run_mode() {
     const bool isOut =
         run_.isRunning() && run_.hold() != Hold::AWAY && motion_.status().mode != motion::Mode::COORD;
-    if (out_of_mode_.step(isOut, now_ns_)) {
+    if (mode_.run_watch().step(isOut, now_ns_)) {
         fail_program({diag::Severity::ERROR, {"motion is not in coordinated mode: set the mode again"}},
                      AbortReason::EXECUTION_ERROR);
     }

@@ -173,7 +173,6 @@ class Task {
     void step_homing();
     void check_run_mode();
     void carry_out_commands();
-    void end_left_jogs();
     void carry_out(const mailbox::Desk::Delivery &delivery);
     void step_run();
     void run_interpreter();
@@ -205,7 +204,6 @@ class Task {
     Senders senders_;
     MachineState state_;
     OperatingMode mode_;
-    OutOfModeWatch out_of_mode_;
     HomingRequest homing_;
     MotionOrders orders_;
     MdiQueue mdi_queue_;

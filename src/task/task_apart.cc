@@ -77,7 +77,7 @@ void Task::step_apart(std::int64_t now_ns) {
     while (const auto delivery = inbox_.next_of(isTakenApart)) {
         carry_out(*delivery);
     }
-    end_left_jogs();
+    Meanwhile{*this}.end_left_jogs();
     end_requests();
     sequencer_.sent().follow(motion_.status());
     const bool isGoing = run_.isRunning() && run_.hold() == Hold::GOING && !apart_.isStopped;
@@ -110,6 +110,15 @@ bool Task::Meanwhile::end() {
     }
     task.reader_.call().fixed_executed.reset();
     return apart.isStopped;
+}
+
+void Task::Meanwhile::end_left_jogs() {
+    for (const JogGuard::Left &left : task.senders_.left_jogs(task.motion_.status())) {
+        if (!left.text.empty()) {
+            task.post(MessageKind::OPERATOR_ERROR, left.text);
+        }
+        std::visit(Handler{task, 0}, left.stop);
+    }
 }
 
 Result<Progress> Task::Meanwhile::settle(mailbox::Serial command) {

@@ -20,6 +20,8 @@ struct Task::Meanwhile {
     /// The run ends, and what moves or turns stops. Beside a call the latter at once; the run ends, and modes
     /// return to those of the executed block, after it.
     void stop_work(const std::string &why, AbortReason reason, bool isCutShort = true);
+    /// Those of clients that have ended or are suspended.
+    void end_left_jogs();
     /// A stop has been handed to motion, and is done: told once motion has taken it, where it does not run
     /// now.
     Result<Progress> settle(mailbox::Serial command);

@@ -12,17 +12,7 @@ void Task::carry_out_commands() {
     while (const auto delivery = inbox_.next(mode_.isChanging() || state_.isChanging())) {
         carry_out(*delivery);
     }
-    end_left_jogs();
-}
-
-/// Of clients that have ended or are suspended.
-void Task::end_left_jogs() {
-    for (const JogGuard::Left &left : senders_.left_jogs(motion_.status())) {
-        if (!left.text.empty()) {
-            post(MessageKind::OPERATOR_ERROR, left.text);
-        }
-        std::visit(Handler{*this, 0}, left.stop);
-    }
+    Meanwhile{*this}.end_left_jogs();
 }
 
 void Task::carry_out(const mailbox::Desk::Delivery &delivery) {

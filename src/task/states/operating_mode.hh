@@ -7,6 +7,16 @@
 
 namespace mw::task {
 
+/// A run goes on in coordinated mode only. One thread.
+class OutOfModeWatch {
+  public:
+    /// Once a cycle; true: motion has been out of that mode for too long.
+    bool step(bool isOut, std::int64_t now_ns);
+
+  private:
+    std::optional<std::int64_t> since_ns_;
+};
+
 /// A change is done when motion has made it. One thread.
 class OperatingMode {
   public:
@@ -50,22 +60,16 @@ class OperatingMode {
         request_.set_order(order);
     }
 
+    /// Of runs: they need coordinated mode.
+    OutOfModeWatch &run_watch() { return run_watch_; }
+
   private:
+    OutOfModeWatch run_watch_;
     Mode mode_ = Mode::MANUAL, wanted_ = Mode::MANUAL;
     motion::Mode wanted_motion_mode_ = motion::Mode::FREE;
     std::optional<std::int64_t> stop_ns_;
     bool isWaitingForRest_ = false, mayMoveJoints_ = false;
     Request request_;
-};
-
-/// A run goes on in coordinated mode only. One thread.
-class OutOfModeWatch {
-  public:
-    /// Once a cycle; true: motion has been out of that mode for too long.
-    bool step(bool isOut, std::int64_t now_ns);
-
-  private:
-    std::optional<std::int64_t> since_ns_;
 };
 
 }  // namespace mw::task
