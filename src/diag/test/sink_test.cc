@@ -36,6 +36,14 @@ TEST(Sink, NoCharacterIsCutInHalfAndNoControlCharacterGetsOut) {
     EXPECT_EQ(d.str(), "a.ngc:3:1: error: m?[2J\n  G0 (?]0;x?)\n  ^");
 }
 
+TEST(Sink, AMessageThatQuotesMegabytesIsCut) {
+    const std::string megabytes(5'000'000, '[');
+    const Diagnostic diagnostic{
+        Severity::ERROR, {"malformed section header '" + megabytes + "'", {"a.ini", 1, 1}, {}}, {}, {}};
+    EXPECT_LT(diagnostic.str().size(), 400U);
+    EXPECT_EQ(diagnostic.str().substr(0, 41), "a.ini:1:1: error: malformed section heade");
+}
+
 TEST(Sink, RepeatedCallersTakeOneLine) {
     std::vector<SourcePlace> callers(400, SourcePlace{"a.ngc", 2, 0});
     callers.push_back({"a.ngc", 9, 0});

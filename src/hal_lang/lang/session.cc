@@ -266,6 +266,14 @@ Result<> Session::run_line(const LogicalLine &line, const std::string &file) {
     if (options_.isEchoing) {
         output_->note(fmt::format("({})<echo>: {}", line.first_line, trim(line.text.text())));
     }
+    if (constexpr std::size_t LONGEST = 65536; line.text.size() > LONGEST) {
+        const auto refused = fail(
+            fmt::format("a command with the lines that continue it has {} characters, at most {} are allowed",
+                        line.text.size(), LONGEST),
+            {file, line.first_line, 1});
+        report(refused.error());
+        return refused;
+    }
     const Result<PlacedText> text = substitute(line.text, file, Variables{nullptr, options_.ini});
     if (!text) {
         report(text.error());

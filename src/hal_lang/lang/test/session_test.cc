@@ -50,6 +50,15 @@ TEST_F(SessionTest, ErrorsNamePlaceExpectationAndNearestName_B4) {
     EXPECT_EQ(run("setp board.in0 2").find("test.hal:1:16: "), 0U);
 }
 
+TEST_F(SessionTest, ACommandOfMegabytesIsAnErrorWithItsLine_B4) {
+    std::string text = "newsig a bit\n";
+    for (int i = 0; i < 100'000; ++i) {
+        text += "setp \\\n";
+    }
+    EXPECT_EQ(run(text).find("test.hal:2:1: a command with the lines that continue it has 500000 characters"),
+              0U);
+}
+
 TEST_F(SessionTest, NetTakesArrowsAndPinsKeepTheirValueWhenUnlinked_B4) {
     EXPECT_EQ(run("setp board.in0 1\nnet a <= board.out => board.in0\nunlinkp board.in0\ngetp board.in0\n"
                   "unlinkp board.out\nsetp board.in1 1\nnet b board.in1\ngets b"),
