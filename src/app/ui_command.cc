@@ -20,6 +20,7 @@
 #include "app/ui_path.hh"
 #include "app/ui_tabs.hh"
 #include "base/duration.hh"
+#include "base/memory_killer.hh"
 #include "base/own_place.hh"
 #include "base/stop_signals.hh"
 #include "base/text.hh"
@@ -253,6 +254,7 @@ int command_ui(const std::vector<std::string> &arguments) {
     }
     catch_stop_signals();
     ui::web::raise_descriptor_limit();
+    static_cast<void>(set_oom_score(500));  // the server of screens before the machine
     diag::Sink sink([](const diag::Diagnostic &d) { fmt::print(stderr, "{}\n", language::shown(d.str())); });
     const auto loaded = machine::LoadedConfig::load(words.ini, sink);
     return loaded == nullptr ? 1 : serve(words, *loaded, sink);

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/memory_killer.hh"
 #include "base/own_place.hh"
 #include "hal/core/hal.hh"
 #include "hal/host/host_server.hh"
@@ -50,6 +51,7 @@ struct Arguments {
 int main(int argc, char **argv) {
     std::signal(SIGPIPE, SIG_IGN);  // a starter or terminal that is gone is no reason to end
     mw::tell_when_memory_ends();
+    static_cast<void>(mw::set_oom_score(-900));  // other programs first; only root may
     const std::vector<std::string> words(argv + 1, argv + argc);
     Arguments arguments;
     const mw::options::CommandLine line = arguments.line();
