@@ -135,3 +135,21 @@ class Machine:
             self.process.send_signal(signal.SIGKILL)
             self.process.wait()
         shutil.rmtree(self.folder, ignore_errors=True)
+
+
+def run_attacks(script, attacks, prepare=lambda machine: None, edit=lambda text: text):
+    """The main program of a file of attacks, each on a machine and in a process of its own: linuxcnc is imported once in a process.
+    `attacks`: functions of a machine and its findings, by their names. Ends with the exit status."""
+    from mill_by_hand import Findings  # pylint: disable=import-outside-toplevel
+    if len(sys.argv) <= 3:
+        sys.exit(max(subprocess.run([sys.executable, script, *sys.argv[1:3], name], check=False).returncode for name in attacks))
+    found = Findings()
+    name = sys.argv[3]
+    machine = Machine(sys.argv[1], sys.argv[2], f'{pathlib.Path(script).stem}-{name}', edit)
+    try:
+        prepare(machine)
+        machine.start()
+        attacks[name](machine, found)
+    finally:
+        machine.clean()
+    sys.exit(found.status())

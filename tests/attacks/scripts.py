@@ -6,13 +6,11 @@ SIGTERM ends it.
 usage: scripts.py BIN_FOLDER ROOT [NAME]
 """
 import pathlib
-import subprocess
 import sys
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / 'e2e'))
-from mill_by_hand import Findings  # noqa: E402  pylint: disable=wrong-import-position
-from rig import ABORT_S, END_S, Machine  # noqa: E402  pylint: disable=wrong-import-position
+from rig import ABORT_S, END_S, run_attacks  # noqa: E402  pylint: disable=wrong-import-position
 
 LONG = 6.0
 
@@ -67,26 +65,6 @@ def leave(machine, found):
     found.expect(took < END_S, f'SIGTERM ends it in {took:.1f} s')
 
 
-ATTACKS = {'sleep': sleep, 'estop': estop, 'end': end, 'leave': leave}
-
-
-def attack(programs, root, name):
-    found = Findings()
-    machine = Machine(programs, root, f'scripts-{name}', with_python)
-    try:
-        (machine.ini.parent / 'toplevel.py').write_text('')
-        machine.start()
-        ATTACKS[name](machine, found)
-    finally:
-        machine.clean()
-    return found.status()
-
-
-def main():
-    if len(sys.argv) > 3:
-        return attack(*sys.argv[1:4])
-    return max(subprocess.run([sys.executable, __file__, *sys.argv[1:3], name], check=False).returncode for name in ATTACKS)
-
-
 if __name__ == '__main__':
-    sys.exit(main())
+    run_attacks(__file__, {'sleep': sleep, 'estop': estop, 'end': end, 'leave': leave},
+                lambda machine: (machine.ini.parent / 'toplevel.py').write_text(''), with_python)

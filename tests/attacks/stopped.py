@@ -8,13 +8,11 @@ usage: stopped.py BIN_FOLDER ROOT [NAME]
 import os
 import pathlib
 import signal
-import subprocess
 import sys
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / 'e2e'))
-from mill_by_hand import Findings  # noqa: E402  pylint: disable=wrong-import-position
-from rig import Machine  # noqa: E402  pylint: disable=wrong-import-position
+from rig import run_attacks  # noqa: E402  pylint: disable=wrong-import-position
 
 
 def realtime_process(machine):
@@ -63,25 +61,5 @@ def task(machine, found):
     found.expect(machine.stat.task_state != machine.linuxcnc.STATE_ON and not hal.get_value('iocontrol.0.coolant-flood'), 'the machine stays off')
 
 
-ATTACKS = {'realtime': realtime, 'task': task}
-
-
-def attack(programs, root, name):
-    found = Findings()
-    machine = Machine(programs, root, f'stopped-{name}')
-    try:
-        machine.start()
-        ATTACKS[name](machine, found)
-    finally:
-        machine.clean()
-    return found.status()
-
-
-def main():
-    if len(sys.argv) > 3:
-        return attack(*sys.argv[1:4])
-    return max(subprocess.run([sys.executable, __file__, *sys.argv[1:3], name], check=False).returncode for name in ATTACKS)
-
-
 if __name__ == '__main__':
-    sys.exit(main())
+    run_attacks(__file__, {'realtime': realtime, 'task': task})
