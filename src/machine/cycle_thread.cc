@@ -58,7 +58,10 @@ void CycleThread::run(std::int64_t now_ns) {
 bool CycleThread::end_call(std::int64_t most_ns) {
     give_back();
     std::unique_lock lock(mutex_);
-    return ended_.wait_for(lock, std::chrono::nanoseconds(most_ns), [this] { return !isRunning_; });
+    const bool hasEnded =
+        ended_.wait_for(lock, std::chrono::nanoseconds(most_ns), [this] { return !isRunning_; });
+    isTaken_ = !hasEnded && call_.take();
+    return hasEnded;
 }
 
 void CycleThread::work() {

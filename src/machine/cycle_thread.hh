@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The thread that runs the cycles of task, so that the one that keeps the machine up never waits for a file
+// The thread that runs the cycles of task, so that the main thread never waits for a file
 // or a script: docs/task/long_calls.md.
 #pragma once
 
@@ -28,12 +28,13 @@ class CycleThread {
     CycleThread(const CycleThread &) = delete;
     CycleThread &operator=(const CycleThread &) = delete;
 
-    /// From here on a call that has ended goes on.
+    /// A call that has ended meanwhile may return to task.
     void give_back();
     /// Begins a cycle unless the last one still runs, and waits for its end; a long call is waited for
     /// PATIENCE_NS, and no longer as long as it takes. Then `apart` has run.
     void run(std::int64_t now_ns);
-    /// Waits for the end of the cycle that still runs; false when it takes longer.
+    /// Waits for the end of the cycle that still runs; false when it takes longer. Then the call does not
+    /// return to task any more.
     bool end_call(std::int64_t most_ns);
     /// The last cycle has not ended.
     bool isApart() const { return isTaken_; }

@@ -61,8 +61,6 @@ class Machine {
     virtual void cycle() = 0;
     virtual std::int64_t now_ns() const = 0;
     virtual bool isVirtual() const = 0;
-    /// Task waits for a file or a script, and carries out stops alone (task::LongCall).
-    virtual bool isTaskBusy() const { return false; }
     virtual RealtimeFigures realtime_figures() const = 0;
     /// An error once the machine cannot go on: its realtime process has ended. Ask in every cycle.
     virtual Result<> health() const { return {}; }

@@ -102,7 +102,6 @@ class RealtimeMachine final : public Machine {
             side_->task().post(msgs::MessageKind::OPERATOR_ERROR, *why);
         }
     }
-    bool isTaskBusy() const override { return cycles_->isApart(); }
     std::int64_t now_ns() const override { return monotonic_ns(); }
     bool isVirtual() const override { return false; }
     Result<> health() const override {

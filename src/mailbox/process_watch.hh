@@ -11,7 +11,7 @@
 
 namespace mw::mailbox {
 
-/// Looks into /proc in a thread of its own, which begins with the first process: what it reads may block. Its
+/// Reads /proc in a separate thread, which begins with the first process: what it reads may block. Its
 /// caller, one thread, never waits.
 class ProcessWatch {
   public:
