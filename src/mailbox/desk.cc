@@ -17,7 +17,7 @@ namespace {
 using msgs::Progress;
 
 /// In one of so many cycles one place is looked at for a dead owner, each in its turn; and those of attended
-/// clients.
+/// clients. When no place is free, one place in each cycle.
 constexpr std::uint64_t OWNER_CHECK_CYCLES = 4;
 
 /// A byte that is no authority counts as the least.
@@ -55,12 +55,15 @@ std::vector<Desk::Delivery> Desk::take(std::int64_t now_ns) {
     // use than numbers given out.
     const auto used = std::min<ClientId>(MAX_CLIENTS, segment_.client_ids.load(std::memory_order_acquire) +
                                                           RESERVED_CLIENTS);
+    int owned = 0;
     for (int i = 0; i < static_cast<int>(used); ++i) {
         // Acquire: pairs with the client's taking of the slot.
         if (segment_.slots[static_cast<std::size_t>(i)].owner.load(std::memory_order_acquire) != 0) {
             take_slot(i, taken);
+            owned += i >= RESERVED_CLIENTS ? 1 : 0;
         }
     }
+    isFull_ = owned == MAX_CLIENTS - RESERVED_CLIENTS;
     std::sort(taken.begin(), taken.end(),
               [](const Delivery &a, const Delivery &b) { return a.serial < b.serial; });
     std::vector<Delivery> allowed;
@@ -98,11 +101,11 @@ void Desk::take_slot(int index, std::vector<Delivery> &out) {
         accept(index, posted_.serial, msgs::decode_command({posted_.bytes.data(), size}), out);
     }
     accept_stops_before(std::numeric_limits<Serial>::max());
-    const bool isAttended = isOf(slot, Role::ATTENDED);
-    const bool isTurn =
-        cycles_ % OWNER_CHECK_CYCLES == 0 &&
-        (isAttended || (cycles_ / OWNER_CHECK_CYCLES) % MAX_CLIENTS == static_cast<std::uint64_t>(index));
-    if (isLeaving || isTurn) {
+    const std::uint64_t check_cycles = isFull_ ? 1 : OWNER_CHECK_CYCLES;
+    const bool isTurn = cycles_ % check_cycles == 0 &&
+                        (cycles_ / check_cycles) % MAX_CLIENTS == static_cast<std::uint64_t>(index);
+    const bool isWatched = cycles_ % OWNER_CHECK_CYCLES == 0 && isOf(slot, Role::ATTENDED);
+    if (isLeaving || isTurn || isWatched) {
         check_owner(index, out);
     }
 }

@@ -85,6 +85,7 @@ class Desk {
     std::array<std::array<Serial, MAX_OUTCOMES>, MAX_CLIENTS> serials_{};
     std::array<Serial, MAX_CLIENTS> newest_stops_{};  ///< as each client told, all looked at
     Posted posted_;                                   ///< the one being taken
+    bool isFull_ = false;  ///< in the last cycle each place for ordinary clients had an owner
     Serial last_command_ = 0;
     msgs::Progress last_progress_ = msgs::Progress::DONE;
     std::uint64_t cycles_ = 0;

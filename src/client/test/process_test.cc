@@ -79,6 +79,52 @@ TEST(MailboxProcess, TwoMachinesRunSideBySideAndOneNameOnlyOnce) {
     EXPECT_EQ(desk_a.take(1).size(), 1U);
 }
 
+/// A number that a child process writes and its parent reads.
+class SharedCount {
+  public:
+    SharedCount()
+        : memory_(::mmap(nullptr, sizeof(std::atomic<int>), PROT_READ | PROT_WRITE,
+                         MAP_SHARED | MAP_ANONYMOUS, -1, 0)),
+          count_(memory_ != MAP_FAILED ? new(memory_) std::atomic<int>{0} : nullptr) {}
+    ~SharedCount() { ::munmap(memory_, sizeof(std::atomic<int>)); }
+    SharedCount(const SharedCount &) = delete;
+    SharedCount &operator=(const SharedCount &) = delete;
+
+    bool isThere() const { return count_ != nullptr; }
+    void add() { ++*count_; }
+    int value() const { return *count_; }
+
+  private:
+    void *memory_;
+    std::atomic<int> *count_;
+};
+
+/// Those that were killed may have all places until task has looked at them.
+Result<Client> connect_in_time(const std::string &name) {
+    auto client = Client::connect(name);
+    for (int i = 0; i < 20000 && !client.has_value(); ++i) {
+        ::usleep(1000);
+        client = Client::connect(name);
+    }
+    return client;
+}
+
+[[noreturn]] void command_until_killed(const std::string &name, SharedCount &connected) {
+    auto client = connect_in_time(name);
+    if (client.has_value()) {
+        connected.add();
+    }
+    for (int i = 0; client.has_value(); ++i) {
+        static_cast<void>(client->post(msgs::ClaimOperation{3600}));
+        static_cast<void>(client->post(msgs::Mdi{std::string(1000, 'x')}));
+        static_cast<void>(client->next_message());
+        if (i % 3 == 0) {
+            static_cast<void>(client->wait_status(0.01));
+        }
+    }
+    ::_exit(1);
+}
+
 /// Both halves: nobody else is hurt, and the work goes on: places and the right to operate come back.
 TEST(MailboxProcess, ClientsKilledAtAnyInstantHurtNobody) {
     const std::string name = instance("kill");
@@ -87,35 +133,26 @@ TEST(MailboxProcess, ClientsKilledAtAnyInstantHurtNobody) {
     std::atomic<bool> isOver{false};
     std::thread task([&] { serve(*memory, isOver); });
     std::mt19937 random(1);
-    void *shared =
-        ::mmap(nullptr, sizeof(std::atomic<int>), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-    ASSERT_NE(shared, MAP_FAILED);
-    auto *placed = new (shared) std::atomic<int>{0};
-    // A busy computer gives some of them no time for a place.
-    for (int round = 0; round < 60 || (*placed < 21 && round < 1000); ++round) {
+    SharedCount connected;
+    ASSERT_TRUE(connected.isThere());
+    for (int round = 0; round < 80; ++round) {
+        const int before = connected.value();
         const pid_t child = ::fork();
         if (child == 0) {
-            auto client = Client::connect(name);
-            *placed += client.has_value() ? 1 : 0;
-            for (int i = 0; client.has_value(); ++i) {
-                static_cast<void>(client->post(msgs::ClaimOperation{3600}));
-                static_cast<void>(client->post(msgs::Mdi{std::string(1000, 'x')}));
-                static_cast<void>(client->next_message());
-                if (i % 3 == 0) {
-                    static_cast<void>(client->wait_status(0.01));
-                }
-            }
-            ::_exit(1);
+            command_until_killed(name, connected);
         }
         ASSERT_GT(child, 0);
+        // Every second one is killed while it starts or connects, the others while they have a place.
+        for (int i = 0; round % 2 == 0 && i < 20000 && connected.value() == before; ++i) {
+            ::usleep(1000);
+        }
         ::usleep(static_cast<useconds_t>(random() % 6000));
         ::kill(child, SIGKILL);
         ::waitpid(child, nullptr, 0);
     }
-    auto survivor = Client::connect(name);
+    EXPECT_GE(connected.value(), 40) << "more than there are places";
+    auto survivor = connect_in_time(name);
     ASSERT_TRUE(survivor.has_value()) << survivor.error().str();
-    EXPECT_GT(survivor->id(), 20U) << "many of those that were killed had a place";
-    ::munmap(shared, sizeof(std::atomic<int>));
     Outcome outcome{Progress::REFUSED, ""};
     for (int i = 0; i < 200 && outcome.progress != Progress::DONE; ++i) {  // until the last dead one is seen
         const auto serial = survivor->post(msgs::RunProgram{});
@@ -130,6 +167,34 @@ TEST(MailboxProcess, ClientsKilledAtAnyInstantHurtNobody) {
     EXPECT_EQ(status.task.read_line, status.task.motion_line) << "one cycle's";
     isOver = true;
     task.join();
+}
+
+/// Within a cycle for each place, and one to see that all are taken.
+TEST(MailboxProcess, TheLastPlaceOfADeadClientIsFreeAtOnceWhenNoOtherIs) {
+    const std::string name = instance("full");
+    auto memory = mailbox::Memory::create(name);
+    ASSERT_TRUE(memory.has_value());
+    mailbox::Desk desk(memory->segment());
+    std::vector<Client> living;
+    for (int i = 1; i < mailbox::MAX_CLIENTS - mailbox::RESERVED_CLIENTS; ++i) {
+        auto one = Client::connect(name);
+        ASSERT_TRUE(one.has_value());
+        living.push_back(std::move(*one));
+    }
+    const pid_t child = ::fork();
+    if (child == 0) {
+        auto last = Client::connect(name);
+        ::_exit(last.has_value() ? 0 : 1);
+    }
+    int status = -1;
+    ASSERT_EQ(::waitpid(child, &status, 0), child);
+    ASSERT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+    EXPECT_FALSE(Client::connect(name).has_value());
+    std::int64_t now_ns = 0;
+    for (int i = 0; i <= mailbox::MAX_CLIENTS; ++i) {
+        desk.take(now_ns += 1000000);
+    }
+    EXPECT_TRUE(Client::connect(name).has_value());
 }
 
 /// Both halves: a killed one's program is stopped within some cycles, a living one's never.
