@@ -141,12 +141,6 @@ client::Serial Halui::ask(const msgs::Command &command) {
     return *posted;
 }
 
-void Halui::ask_all(const std::vector<msgs::Command> &commands) {
-    for (const msgs::Command &command : commands) {
-        ask(command);
-    }
-}
-
 void Halui::note_outcomes() {
     std::erase_if(pending_, [this](client::Serial serial) {
         const msgs::Progress progress = client_->outcome(serial).progress;
@@ -213,7 +207,14 @@ void Halui::step_jogs(std::int64_t now_ns) {
     const auto jog = [this, now_ns](auto &one, const JogSettings &settings, const JogPins::Target &target) {
         JogInputs in;
         one.pins.read(in);
-        ask_all(one.jog.step(in, settings, target, now_ns));
+        if (one.order != 0 && client_->outcome(one.order).progress == msgs::Progress::REFUSED) {
+            one.jog.note_refusal();
+            one.order = 0;
+        }
+        for (const msgs::Command &command : one.jog.step(in, settings, target, now_ns)) {
+            const client::Serial serial = ask(command);
+            one.order = std::holds_alternative<msgs::JogContinuous>(command) ? serial : one.order;
+        }
     };
     JogSettings settings;
     joint_jog_settings_.read(settings);

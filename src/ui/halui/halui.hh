@@ -48,7 +48,6 @@ class Halui {
     void make_pins(Result<> &status);
 
     client::Serial ask(const msgs::Command &command);
-    void ask_all(const std::vector<msgs::Command> &commands);
     void note_outcomes();
     void step_buttons();
     void step_jogs(std::int64_t now_ns);

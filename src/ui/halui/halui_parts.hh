@@ -25,6 +25,7 @@ template <const auto &TABLE>
 struct Jogged {
     hal::UserPinSet<TABLE> pins;
     JogPins jog;
+    client::Serial order = 0;  ///< the last jog that was asked for
     Edge select;
 };
 template <const auto &TABLE>

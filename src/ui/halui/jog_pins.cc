@@ -37,7 +37,7 @@ std::vector<msgs::Command> JogPins::step(const JogInputs &now, const JogSettings
     if (target.index != target_.index && part_ != 0) {
         asked.emplace_back(msgs::JogStop{target_.isJoint, target_.index});
         part_ = 0;
-        isWaiting_ = true;
+        isWaiting_ = isRefused_;
     }
     target_ = target;
     isWaiting_ = isWaiting_ && part != 0;
@@ -66,6 +66,7 @@ void JogPins::step_held(double part, double speed, std::int64_t now_ns, std::vec
         return;
     }
     part_ = part;
+    isRefused_ = isRefused_ && !isNew;
     renewed_ns_ = now_ns;
     asked.emplace_back(msgs::JogContinuous{target_.isJoint, target_.index, part * speed, LEASE_MS, !isNew});
 }

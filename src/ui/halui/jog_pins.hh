@@ -19,9 +19,13 @@ class JogPins {
         bool isJoint = true;
         int index = 0;
     };
-    /// Once a cycle; what is to be asked for. Another target ends the jog of the one before.
+    /// Once a cycle; what is to be asked for. Another target ends the jog of the one before, and begins its
+    /// own while the pins are held, unless something else has ended the jog before.
     std::vector<msgs::Command> step(const JogInputs &now, const JogSettings &settings, const Target &target,
                                     std::int64_t now_ns);
+
+    /// Task has refused the jog or its renewal.
+    void note_refusal() { isRefused_ = true; }
 
   private:
     /// Part of the jog speed, with its sign, that the pins ask for; 0: none.
@@ -32,6 +36,7 @@ class JogPins {
     Target target_;
     double part_ = 0;         ///< of the jog that was asked for
     bool isWaiting_ = false;  ///< until all pins are let go
+    bool isRefused_ = false;  ///< the jog that was asked for
     bool isKnown_ = false;
     std::int64_t renewed_ns_ = 0;
     Edge plus_, minus_;

@@ -49,8 +49,13 @@ bool set_tool_data(int l, const BlockValues &values, const Machine &machine, Too
     if (!values.has('p')) {
         return fault.set(fmt::format("G10 L{} needs P, the number of the tool", l));
     }
-    if (!whole_word(values, 'p', toolno, fault) ||
-        !find_tool(tools, toolno, values.column_of('p'), index, fault)) {
+    if (!whole_word(values, 'p', toolno, fault)) {
+        return false;
+    }
+    if (toolno < 1) {  // T0 of a random changer marks an empty pocket
+        return fault.set(fmt::format("P value out of range with G10 L{}", l), values.column_of('p'));
+    }
+    if (!find_tool(tools, toolno, values.column_of('p'), index, fault)) {
         return false;
     }
     const bool hasData =

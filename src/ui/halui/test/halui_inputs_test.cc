@@ -156,15 +156,35 @@ TEST_F(HaluiInputs, AStickJogsBeyondItsDeadbandWithItsPartOfTheSpeed_J4) {
     }
 }
 
-TEST_F(HaluiInputs, AnotherSelectionEndsTheJogAndBeginsNone_J4) {
+TEST_F(HaluiInputs, AHeldJogGoesToTheJointThatIsSelected_J4) {
     using namespace msgs;
     cycle();
     set_value("joint.jog-speed", "300");
     set("joint.selected.plus", true);
     cycle();
     set("joint.1.select", true);
+    EXPECT_EQ(cycle(), asked(JogStop{true, 0}) + ", " + asked(JogContinuous{true, 1, 5, 500, false}));
+    EXPECT_EQ(cycle(), "");
+    set("joint.selected.plus", false);
+    EXPECT_EQ(cycle(), asked(JogStop{true, 1}));
+}
+
+TEST_F(HaluiInputs, AJogThatSomethingElseHasEndedBeginsWithNoSelection_J4) {
+    using namespace msgs;
+    cycle();
+    set_value("joint.jog-speed", "300");
+    set("joint.selected.plus", true);
+    cycle();
+    progress = Progress::REFUSED;  // as after an abort
+    now_ns += 100000000;
+    cycle();
+    halui.step();
+    EXPECT_EQ(cycle(), asked(JogContinuous{true, 0, 5, 500, true}));
+    cycle();
+    progress = Progress::DONE;
+    set("joint.1.select", true);
     EXPECT_EQ(cycle(), asked(JogStop{true, 0}));
-    EXPECT_EQ(cycle(), "") << "nobody has pressed plus for joint 1";
+    EXPECT_EQ(cycle(), "") << "plus was pressed for joint 0 alone";
     set("joint.selected.plus", false);
     EXPECT_EQ(cycle(), "");
     set("joint.selected.plus", true);
