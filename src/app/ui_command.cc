@@ -24,6 +24,7 @@
 #include "base/own_place.hh"
 #include "base/stop_signals.hh"
 #include "base/text.hh"
+#include "base/thread_priority.hh"
 #include "base/whole_path.hh"
 #include "hal/core/hal.hh"
 #include "hal/host/host_client.hh"
@@ -175,7 +176,7 @@ void run(ui::web::Server &server, const UiWords &words, const machine::LoadedCon
     if (words.isOpening && hasScreen && std::getenv(BROWSER_WAITS) == nullptr) {
         browser.open(address);
     }
-    ui::web::go_first();
+    raise_priority();
     while (stop_signal == 0) {
         server.run_for(api, api.count_screens() > 0 ? TICK : IDLE_TICK);
         api.tick();

@@ -10,13 +10,13 @@
 
 #include <fmt/format.h>
 
+#include "base/thread_priority.hh"
 #include "machine/ini_parameters.hh"
 #include "machine/program_check.hh"
 #include "machine/time_estimate.hh"
 #include "machine/tool_data.hh"
 #include "machine/unscripted.hh"
 #include "ui/web/descriptors.hh"
-#include "ui/web/elsewhere.hh"
 #include "ui/web/path_chunks.hh"
 #include "ui/web/time_chunks.hh"
 
@@ -38,8 +38,6 @@ bool hasDescriptors() {
 }
 
 }  // namespace
-
-using ui::web::step_back;
 
 PathReaders::~PathReaders() {
     cancel();
@@ -113,7 +111,7 @@ Result<std::shared_ptr<ui::web::PieceQueue>> PathReaders::begin(std::function<vo
     reader.by = by;
     reader.pieces = std::make_shared<ui::web::PieceQueue>();
     reader.thread = std::thread([&reader, job = std::move(job)] {
-        step_back();
+        lower_priority();
         job(reader);
         reader.pieces->end();
         // Release: whoever sees it may join without waiting.

@@ -5,6 +5,8 @@
 
 #include <chrono>
 
+#include "base/thread_priority.hh"
+
 namespace mw::machine {
 namespace {
 
@@ -29,6 +31,7 @@ CycleThread::~CycleThread() {
 void CycleThread::give_back() {
     if (isTaken_) {
         isTaken_ = false;
+        raise_priority(thread_id_);  // it returns to task
         call_.give_back();
     }
 }
@@ -48,6 +51,7 @@ void CycleThread::run(std::int64_t now_ns) {
         if (call_.take()) {
             isTaken_ = isLate_ = true;
             lock.unlock();
+            reset_priority(thread_id_);
             works_.apart(now_ns);
             return;
         }

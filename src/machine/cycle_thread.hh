@@ -30,6 +30,7 @@ class CycleThread {
 
     /// A call that has ended meanwhile may return to task.
     void give_back();
+    /// A thread in a long call has the priority of other programs: a script may calculate for long.
     /// Begins a cycle unless the last one still runs, and waits for its end; a long call is waited for
     /// PATIENCE_NS, and no longer as long as it takes. Then `apart` has run.
     void run(std::int64_t now_ns);

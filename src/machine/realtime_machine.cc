@@ -10,6 +10,7 @@
 
 #include "base/output_relay.hh"
 #include "base/stop_signals.hh"
+#include "base/thread_priority.hh"
 #include "hal/host/host_client.hh"
 #include "hal_lang/lang/programs.hh"
 #include "machine/cycle_thread.hh"
@@ -95,6 +96,8 @@ class RealtimeMachine final : public Machine {
         cycles_->run(monotonic_ns());
         if (!isWatched_) {
             isWatched_ = true;
+            raise_priority();
+            raise_priority(cycles_->thread_id());
             lateness_.watch(::gettid());
             lateness_.watch(cycles_->thread_id());
         }

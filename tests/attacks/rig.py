@@ -137,6 +137,15 @@ class Machine:
         shutil.rmtree(self.folder, ignore_errors=True)
 
 
+def with_python(text):
+    """The text of an INI file whose programs may run Python."""
+    return text + '\n[PYTHON]\nTOPLEVEL = toplevel.py\n'
+
+
+def prepare_python(machine):
+    (machine.ini.parent / 'toplevel.py').write_text('')
+
+
 def run_attacks(script, attacks, prepare=lambda machine: None, edit=lambda text: text):
     """The main program of a file of attacks, each on a machine and in a process of its own: linuxcnc is imported once in a process.
     `attacks`: functions of a machine and its findings, by their names. Ends with the exit status."""

@@ -10,13 +10,9 @@ import sys
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / 'e2e'))
-from rig import ABORT_S, END_S, run_attacks  # noqa: E402  pylint: disable=wrong-import-position
+from rig import ABORT_S, END_S, prepare_python, run_attacks, with_python  # noqa: E402  pylint: disable=wrong-import-position
 
 LONG = 6.0
-
-
-def with_python(text):
-    return text + '\n[PYTHON]\nTOPLEVEL = toplevel.py\n'
 
 
 def cut_then(machine, python):
@@ -67,4 +63,4 @@ def leave(machine, found):
 
 if __name__ == '__main__':
     run_attacks(__file__, {'sleep': sleep, 'estop': estop, 'end': end, 'leave': leave},
-                lambda machine: (machine.ini.parent / 'toplevel.py').write_text(''), with_python)
+                prepare_python, with_python)

@@ -1,28 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "ui/web/elsewhere.hh"
 
-#include <sched.h>
-#include <sys/resource.h>
-#include <unistd.h>
-
 namespace mw::ui::web {
-
-void go_first() noexcept {
-    constexpr int NICE = -10;
-    sched_param lowest{};
-    lowest.sched_priority = 1;
-    if (::sched_setscheduler(0, SCHED_RR | SCHED_RESET_ON_FORK, &lowest) != 0) {
-        const sched_param ordinary{};
-        static_cast<void>(::sched_setscheduler(0, SCHED_OTHER | SCHED_RESET_ON_FORK, &ordinary));
-        static_cast<void>(::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), NICE));
-    }
-}
-
-void step_back() noexcept {
-    constexpr int NICE = 10;
-    const auto self = static_cast<id_t>(::gettid());
-    static_cast<void>(::setpriority(PRIO_PROCESS, self, NICE));  // downwards it is always allowed
-}
 
 Worker::Worker(std::function<void(std::function<void()>)> post)
     : post_(std::move(post)), thread_([this] { work(); }) {}

@@ -13,12 +13,6 @@
 
 namespace mw::ui::web {
 
-/// The calling thread goes before others of this computer, where it may: by SCHED_RR of the lowest priority,
-/// far below the servo thread, else by a nice value. Threads and processes that it starts are as others.
-void go_first() noexcept;
-/// The calling thread lets the server's, through which leases of jogs are renewed, go first.
-void step_back() noexcept;
-
 /// Does what may block the server's thread in another one.
 class Elsewhere {
   public:

@@ -1,0 +1,76 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A computer that is busy with other programs: the threads of task run before them, programs that task starts and long scripts do not.
+
+usage: busy.py BIN_FOLDER ROOT [NAME]
+"""
+import os
+import pathlib
+import subprocess
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / 'e2e'))
+from rig import prepare_python, run_attacks, with_python  # noqa: E402  pylint: disable=wrong-import-position
+
+BUSY = 10  # programs
+LONG = 'import time; end = time.monotonic() + 3\nwhile time.monotonic() < end: pass'
+
+
+def may_raise():
+    """Whether this user may run threads before those of others."""
+    before = os.sched_getscheduler(0)
+    try:
+        os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(1))
+        os.sched_setscheduler(0, before, os.sched_param(0))
+    except PermissionError:
+        return False
+    return True
+
+
+def policies(process):
+    """Policy of each thread of a process, without the flag of what it starts."""
+    return [os.sched_getscheduler(int(thread.name)) & ~os.SCHED_RESET_ON_FORK for thread in pathlib.Path(f'/proc/{process}/task').iterdir()]
+
+
+def threads(machine, found):
+    first = machine.process.pid
+    expected = 2 if may_raise() else 0
+    found.expect(machine.until(lambda: policies(first).count(os.SCHED_RR) == expected, 5), f'{expected} threads of task run before others', policies(first))
+    started = [int(folder.name) for folder in pathlib.Path('/proc').glob('[0-9]*') if is_started_by(machine, folder)]
+    found.expect(len(started) > 0, 'task has started programs')
+    for process in started:
+        found.expect(os.SCHED_RR not in policies(process), f'process {process} has no priority of task', policies(process))
+
+
+def is_started_by(machine, folder):
+    try:
+        return int(folder.name) not in (machine.process.pid, os.getpid()) and machine.env['MILLWRIGHT_INSTANCE'].encode() in (folder / 'environ').read_bytes()
+    except OSError:
+        return False
+
+
+def script(machine, found):
+    """A script that calculates for long has the priority of other programs, and task has its own again after it."""
+    expected = 2 if may_raise() else 0
+    first = machine.process.pid
+    (machine.folder / 'long.py').write_text(LONG)
+    machine.cut(f'G21 G90 G64 F300\nM3 S500\nG1 X100\n;py,exec(open("{machine.folder}/long.py").read())\nG1 X0\nM2\n')
+    found.expect(machine.until(lambda: policies(first).count(os.SCHED_RR) == min(expected, 1), 5), 'the script is ordinary', policies(first))
+    found.expect(machine.until(lambda: policies(first).count(os.SCHED_RR) == expected, 8), 'task runs before others again', policies(first))
+    found.expect(machine.cuts_on(0.5), 'it cuts', machine.messages)
+
+
+def load(machine, found):
+    busy = [subprocess.Popen(['sh', '-c', 'while :; do :; done']) for _ in range(BUSY)]
+    try:
+        machine.cut()
+        found.expect(machine.cuts_on(4), f'it cuts on beside {BUSY} busy programs', machine.messages)
+        found.expect(not any('did not run' in text for text in machine.messages), 'nothing was late', machine.messages)
+    finally:
+        for one in busy:
+            one.kill()
+            one.wait()
+
+
+if __name__ == '__main__':
+    run_attacks(__file__, {'threads': threads, 'script': script, 'load': load}, prepare_python, with_python)
