@@ -43,6 +43,9 @@ class Seqlock {
         sequence_.store(seq + 2, std::memory_order_release);
     }
 
+    /// Changes with each write: what was read at the same number is still the newest. [any thread]
+    std::uint32_t version() const noexcept { return sequence_.load(std::memory_order_acquire); }
+
     /// Tries once; false when a write was under way. [any thread]
     bool try_read(T &value) const noexcept {
         const std::uint32_t before = sequence_.load(std::memory_order_acquire);

@@ -15,14 +15,15 @@ int ToolOffsetPins::declare(int comp_id) noexcept {
 }
 
 void ToolOffsetPins::step(ToolOffsetBlock &block) noexcept {
-    NumberedOffset latest;
-    const bool isNew = block.latest.try_read(latest) && latest.number != current_.number;
+    const std::uint32_t version = block.latest.version();
     const std::uint32_t links = __atomic_load_n(links_, __ATOMIC_ACQUIRE);
-    if (!isNew && links == last_links_) [[likely]] {
+    if (version == last_version_ && links == last_links_) [[likely]] {
         return;
     }
-    if (isNew) {
+    NumberedOffset latest;
+    if (block.latest.try_read(latest)) {
         current_ = latest;
+        last_version_ = version;
     }
     last_links_ = links;
     for (int i = 0; i < MAX_AXES; ++i) {

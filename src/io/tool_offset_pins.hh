@@ -25,6 +25,7 @@ class ToolOffsetPins {
     NumberedOffset current_;
     const std::uint32_t *links_ = nullptr;  ///< of HAL: counts the links of pins
     std::uint32_t last_links_ = 0;
+    std::uint32_t last_version_ = 0;  ///< of the block
     sdk::PinSet<pins::TOOL_OFFSET> pins_[MAX_AXES];
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The host's look at the controlling process, by a thread of ordinary priority.
+// The host's look at the controlling process, by a thread of the same priority.
 #pragma once
 
 #include <cstdint>
@@ -16,6 +16,10 @@ class ControllerLook {
     void step(Hal::Impl &hal, std::int32_t pid);
 
   private:
+    /// A computer that gives the controlling process no time gives this thread none either.
+    void take_priority_of(std::int32_t pid);
+
+    int policy_ = 0;  ///< of the process; SCHED_OTHER
     bool isHung_ = false;
 };
 

@@ -65,6 +65,18 @@ int g_code_of(MotionType type, bool isArc, bool isLeft) noexcept {
     return G0;
 }
 
+/// An arc about Z: at right angles to the way lies the centre.
+void follow_flat_arc(const traj::Primitive &arc, bool isLeft, const geom::Pose &place,
+                     Heading &out) noexcept {
+    const double x = arc.base[0] - place[0], y = arc.base[1] - place[1];
+    out.isArc = true;
+    out.radius = std::sqrt(x * x + y * y);
+    out.centre = {arc.base[0], arc.base[1], place[2]};
+    if (point(x, y, out.to_centre_deg)) {
+        out.direction_deg = turned(out.to_centre_deg + (isLeft ? -QUARTER_TURN_DEG : QUARTER_TURN_DEG));
+    }
+}
+
 void follow_arc(const traj::Primitive &arc, const Vector &axis, const geom::Pose &place,
                 Heading &out) noexcept {
     Vector out_of_centre{};
@@ -95,8 +107,12 @@ Heading heading_of(const traj::Primitive &move, MotionType type, const geom::Pos
     out.to_centre_deg = before.to_centre_deg;
     const bool isArc = move.isArc && move.space == geom::AXIS_X;
     const Vector axis = isArc ? axis_of(move) : Vector{};
-    out.g_code = g_code_of(type, isArc, isCounterClockwise(axis));
-    if (isArc) {
+    const bool isFlat = axis[0] == 0 && axis[1] == 0;
+    const bool isLeft = isFlat ? axis[2] > 0 : isCounterClockwise(axis);
+    out.g_code = g_code_of(type, isArc, isLeft);
+    if (isArc && isFlat) {
+        follow_flat_arc(move, isLeft, place, out);
+    } else if (isArc) {
         follow_arc(move, axis, place, out);
     } else if (point(move.end[0] - move.start[0], move.end[1] - move.start[1], out.direction_deg)) {
         out.to_centre_deg = turned(out.direction_deg + QUARTER_TURN_DEG);

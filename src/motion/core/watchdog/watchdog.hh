@@ -13,14 +13,14 @@ namespace mw::motion {
 /// What there is to see of the task process.
 struct TaskSigns {
     std::uint64_t loops = 0;  ///< of task
-    /// Of the host of the realtime process, every 50 ms: a thread of ordinary priority, as task is. 0: it
-    /// does not look.
+    /// Of the host of the realtime process, every 50 ms: a thread of the priority of task. 0: it does not
+    /// look.
     std::uint64_t looks = 0;
     bool isDead = false;
 };
 
-/// Task that does not loop hangs, is stopped, or gets no processor. In the last case other ordinary threads
-/// do not get one either: that time counts a quarter.
+/// Task that does not loop hangs, is stopped, or gets no processor. In the last case other threads of its
+/// priority do not get one either: that time counts a quarter.
 struct Watchdog {
     bool isOn = false, isLost = false;
     double timeout_s = 0.5;
