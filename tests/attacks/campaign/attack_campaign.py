@@ -58,7 +58,8 @@ class Campaign:
             words = ['unshare', '-m', 'sh', '-c', DISK, 'sh', place, *words]
         try:
             with tempfile.TemporaryFile('w+') as errors:
-                done = subprocess.run(words, env=env, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=errors, text=True, check=False, timeout=SESSION_S)
+                done = subprocess.run(words, env=env, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=errors, text=True, check=False, timeout=SESSION_S,
+                                      start_new_session=True)  # a shell that ends meanwhile sends SIGHUP to stopped processes
                 errors.seek(0)
                 complaint, output = errors.read(), done.stdout
         except subprocess.TimeoutExpired as late:
