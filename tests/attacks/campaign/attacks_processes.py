@@ -103,7 +103,7 @@ def python_commands(scene, rng):
     code = ('import linuxcnc, random, sys, time\nrng = random.Random(int(sys.argv[1]))\nc = linuxcnc.command()\nend = time.monotonic() + float(sys.argv[2])\n'
             'odd = "#1=[" + "1+" * 100 + "1]"\n'
             'acts = [lambda: c.mdi("G0 X5"), lambda: c.mdi(odd), lambda: c.mdi("(LOGOPEN,/dev/ptmx)"), lambda: c.jog(linuxcnc.JOG_CONTINUOUS, 1, 0, 5.0),\n'
-            '        lambda: c.jog(linuxcnc.JOG_INCREMENT, 1, 1, 5.0, 1.0), lambda: c.home(-1), lambda: c.unhome(0), lambda: c.program_open("/dev/zero"),\n'
+            '        lambda: c.jog(linuxcnc.JOG_INCREMENT, 1, 1, 5.0, 1.0), lambda: c.home(-1), lambda: c.program_open("/dev/zero"),\n'
             '        lambda: c.load_tool_table(), lambda: c.debug(0), lambda: c.display_msg("x" * 200), lambda: c.auto(linuxcnc.AUTO_RUN, 5),\n'
             '        lambda: c.mdi(";py,import os; os._exit(0)")]\n'
             'while time.monotonic() < end:\n    try:\n        rng.choice(acts)()\n    except linuxcnc.error:\n        pass\n    time.sleep(rng.choice((0, 0.01)))\n')

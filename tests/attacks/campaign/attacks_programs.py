@@ -39,9 +39,9 @@ def rubbish(_scene, rng):
     return rng.choice(('G1 X\n', 'G999\n', 'o5 endif\n', 'G1 X1 X2\n', '\x01\x02\x03 Q\n', 'M4711\n', 'o<nothing> call\n', '#<_x>=#<_none>\n', 'G' * 300 + '\n'))
 
 
-@attack('program.messages')
+@attack('program.messages', causes=r'part x')
 def messages(_scene, rng):
-    """Faster than any client reads them."""
+    """Faster than any client reads them; the axes may wait until the last one."""
     return f'o9 repeat [{rng.choice((100, 2000))}]\n(MSG, part {"x" * rng.choice((1, 200))})\n(DEBUG, #5420)\no9 endrepeat\n'
 
 

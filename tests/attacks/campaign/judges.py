@@ -20,6 +20,11 @@ class Event:
     end: float
     causes: str | None
 
+    @property
+    def latest(self):
+        """When it may stop the machine at the latest, but for STOP_S: a stopped process at its begin."""
+        return self.begin if self.name.startswith('signal.stop_') else self.end
+
 
 @dataclasses.dataclass
 class Record:
@@ -106,7 +111,7 @@ def stops(record):
     rest = early[0][0]
     failures = []
     begun = [event for event in record.events if event.begin <= rest and event.causes]
-    since = min((max(0.0, rest - event.end) for event in begun), default=None)
+    since = min((max(0.0, rest - event.latest) for event in begun), default=None)
     if since is None or since > STOP_S:
         names = ', '.join(f'{event.name} {event.begin - record.begin:.2f} to {event.end - record.begin:.2f} s' for event in record.events)
         failures.append(f'stop: the axes rest at {rest - record.begin:.2f} s, {"without" if since is None else f"{since:.2f} s after"} an attack that may stop them ({names})')
@@ -161,7 +166,8 @@ def aborts(record):
 
 
 def same_messages(record):
-    """Every error that one screen shows the other one shows, too; those of the last 0.3 s may be on their way."""
+    """Every error that one screen shows the other one shows, too; those of the last 0.3 s may be on their way, those before the begin
+    belong to the run before."""
     if record.isEnding:
         return []
     last = max([when for when, _ in record.python + record.web], default=0) - 0.3
@@ -170,7 +176,7 @@ def same_messages(record):
         return []
     failures = []
     for where, seen, other in (('web screen', web, record.python), ('Python', python, record.web)):
-        lacking = [text for when, text in other if text not in seen and when < last]
+        lacking = [text for when, text in other if text not in seen and record.begin <= when < last]
         if lacking:
             failures.append(f'message: the {where} lacks {lacking[0][:150]!r}')
     return failures
