@@ -5,6 +5,7 @@ import json
 import os
 import pathlib
 import signal
+import subprocess
 import time
 
 TABLE = {}
@@ -78,7 +79,7 @@ def carry_out(one, scene, rng):
     scene.begin, scene.end = time.monotonic(), 0.0
     try:
         one.run(scene, rng)
-    except OSError as error:
+    except (OSError, ValueError, KeyError, subprocess.SubprocessError) as error:
         note = f'{type(error).__name__}: {error}'
     return [scene.begin, scene.end or time.monotonic(), note]
 
