@@ -22,6 +22,7 @@ import state_files
 from attack_types import TABLE, Child, carry_out
 from attacked_machine import MEMORY, AttackedMachine, temporary_names
 
+AFTER_ATTACKS_S = 0.2  # for messages about the last one
 EXPECTED = re.compile(r'^(configs/.*\.(ini|hal|tbl|var|bak|journal|tcl|ngc|py|md|png|xml|ui|txt)|configs/.*/[A-Z]*|config/.*|nc/(cut|pipe|loop|large|slow|slip)\.ngc|'
                       r'(out|web|rsh|nml)\.txt|m\.nml|[^/]*\.history)$')
 
@@ -124,6 +125,8 @@ class Session:
             abort = self.machine.stopper.ask(plan.abort[0])
             time.sleep(0.4)
         collect(list(running))
+        latest = max((event.end for event in events if event.end < float('inf')), default=begin)
+        time.sleep(max(0.0, latest + AFTER_ATTACKS_S - time.monotonic()))
         return events, abort, notes
 
     def run(self, seed):
