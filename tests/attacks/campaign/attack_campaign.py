@@ -38,6 +38,7 @@ class Campaign:
         self.lock = threading.Lock()
         self.counts, self.attacks = collections.Counter(), collections.Counter()
         self.isDiskPossible = os.geteuid() == 0 and subprocess.run(['unshare', '-m', 'true'], check=False, capture_output=True).returncode == 0
+        self.slowest_abort_ms = 0
         self.blocks = queue.Queue()
 
     def tell(self, text):
@@ -101,6 +102,7 @@ class Campaign:
             answers, at_end = self.session([seed])
             failures = (answers[0]['failures'] if answers else []) + at_end
         self.counts['runs'] += 1
+        self.slowest_abort_ms = max(self.slowest_abort_ms, answer.get('abort_ms', 0))
         for name, _, _ in plans.make(seed).attacks:
             self.attacks[name] += 1
         if failures:
@@ -124,6 +126,7 @@ class Campaign:
         for worker in workers:
             worker.join()
         self.tell(', '.join(f'{name}: {count}' for name, count in self.counts.items()) + f'; {time.monotonic() - self.begin:.0f} s')
+        self.tell(f'slowest answer to an abort: {self.slowest_abort_ms} ms')
         self.tell('attacks: ' + ', '.join(f'{name} {count}' for name, count in sorted(self.attacks.items())))
         return 1 if self.counts['failed'] else 0
 

@@ -101,11 +101,16 @@ def texts(messages):
     return '; '.join(dict.fromkeys(text[:120] for _, text in messages[-6:])) or 'none at all'
 
 
+def early_stops(record):
+    """[(begin, end)] of the standstills before the abort."""
+    return [(begin, end) for begin, end in standstills(record) if begin + STILL_S < limit_of(record)]
+
+
 def stops(record):
     """The machine cuts on, or stops within STOP_S with a message that names the cause on each screen."""
     if record.isEnding:
         return ends(record)
-    early = [(begin, end) for begin, end in standstills(record) if begin + STILL_S < limit_of(record)]
+    early = early_stops(record)
     if not early:
         return []
     rest = early[0][0]

@@ -147,6 +147,9 @@ class Session:
             return answer
         events, abort, notes = self.attack(plan, scene, begin)
         answer['notes'] = notes
+        if abort is not None:
+            answer['abort_ms'] = round((abort['answered'] - abort['sent']) * 1000)
+            notes.append(f'abort in {answer["abort_ms"]} ms')
         isEnding = any(event.name.startswith('end.') for event in events)
         gone, end_s = self.wait_end(events, scene) if isEnding else ({}, None)
         observed = machine.observer.ask('take')
@@ -155,6 +158,10 @@ class Session:
         if self.isSelfTest:
             self.found.update(self_test.of_record(record))
         answer['failures'] += judges.of_run(record)
+        if end_s is not None:
+            notes.append(f'end in {end_s:.2f} s')
+        if judges.early_stops(record):
+            notes.append('stopped by an attack')
         if isEnding:
             self.isEnded = True
         else:
