@@ -74,6 +74,15 @@ def killed(machine, found):
     found.expect(machine.text().count('has ended: it was killed') == 1, 'and reports it once', machine.text()[-600:])
 
 
+def fast(machine, found):
+    """Axes that brake for longer than an answer to an abort may take."""
+    machine.cut('G21 G90\no1 repeat [20]\nG0 X240\nG0 X0\no1 endrepeat\nM2\n')
+    found.expect(machine.until(lambda: machine.stat.current_vel > 190, 5), 'it moves fast', machine.stat.current_vel)
+    took = machine.abort_s()
+    found.expect(took < ABORT_S, f'an abort of a fast move is answered in {took:.3f} s')
+    found.expect(machine.until(lambda: machine.stat.current_vel == 0, 1), 'the axes stop')
+
+
 def task(machine, found):
     import hal  # pylint: disable=import-outside-toplevel
     machine.cut()
@@ -92,4 +101,4 @@ def task(machine, found):
 
 
 if __name__ == '__main__':
-    run_attacks(__file__, {'realtime': realtime, 'killed': killed, 'task': task})
+    run_attacks(__file__, {'realtime': realtime, 'killed': killed, 'fast': fast, 'task': task})

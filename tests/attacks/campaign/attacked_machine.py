@@ -78,7 +78,7 @@ class Terminal:
                 time.sleep(0.01)
             elif select.select([self.master], [], [], 0.05)[0]:
                 try:
-                    self.text = (self.text + os.read(self.master, 65536))[-20_000:]
+                    self.text = (self.text + os.read(self.master, 65536))[-500_000:]
                 except OSError:
                     return
 

@@ -18,8 +18,8 @@ STOPPED_MOTION = r'motion \(millwright-rt\) (did not run|has given no sign)|has 
 
 
 def stop_for(scene, process, seconds):
-    os.kill(process, signal.SIGSTOP)
     scene.begins()
+    os.kill(process, signal.SIGSTOP)
     try:
         time.sleep(seconds)
     finally:

@@ -40,6 +40,7 @@ class Record:
     isEnding: bool = False       # an attack ends the machine
     gone: dict = dataclasses.field(default_factory=dict)    # what clients learn about the end: 'python', 'web', 'terminal'
     end_s: float | None = None   # how long the end took, where an attack ended it
+    isWebUp: bool = True         # its server was not killed: another one shows what comes after its start
 
 
 def distance(point, a, b):
@@ -124,7 +125,8 @@ def stops(record):
     named = [when for when, text in record.python if any(re.search(cause, text) for cause in causes)]
     if named and rest - min(named) > STOP_S:
         failures.append(f'stop: the axes rest {rest - min(named):.2f} s after the message')
-    return failures + unexplained(record, record.python, 'for Python') + unexplained(record, record.web, 'on the web screen')
+    return failures + unexplained(record, record.python, 'for Python') + (
+        unexplained(record, record.web, 'on the web screen') if record.isWebUp else [])
 
 
 def ends(record):
@@ -139,7 +141,8 @@ def ends(record):
     for where in ('python', 'web'):
         if not record.gone.get(where):
             failures.append(f'message: clients ({where}) do not learn that the machine is gone')
-    if event.causes and not re.search(event.causes, record.gone.get('terminal', '')):
+    isTerminalOpen = not any(one.name == 'terminal.closed' for one in record.events)
+    if isTerminalOpen and event.causes and not re.search(event.causes, record.gone.get('terminal', '')):
         failures.append(f'message: the terminal does not name {event.name}: {record.gone.get("terminal", "")[-200:]!r}')
     return failures
 
@@ -162,7 +165,7 @@ def aborts(record):
         late = lateness_between(record, abort['sent'], abort['answered'])
         coincides = '; the computer was late' if took - late <= ABORT_S else ''
         failures.append(f'abort: answered by {abort["kind"]} in {took * 1000:.0f} ms, an ordinary process waited {late * 1000:.0f} ms meanwhile{coincides}')
-    if abort['result'] == 'error' and not (record.python and record.web):
+    if abort['result'] == 'error' and not (record.python and (record.web or not record.isWebUp)):
         failures.append('abort: answered with an error, without a message')
     moving = [b[0] for a, b in zip(record.samples, record.samples[1:]) if math.dist(a[1:4], b[1:4]) >= SAME_MM]
     if moving and moving[-1] - abort['answered'] > STOP_S:
@@ -173,7 +176,7 @@ def aborts(record):
 def same_messages(record):
     """Every error that one screen shows the other one shows, too; those of the last 0.3 s may be on their way, those before the begin
     belong to the run before."""
-    if record.isEnding:
+    if record.isEnding or not record.isWebUp:
         return []
     last = max([when for when, _ in record.python + record.web], default=0) - 0.3
     python, web = {text for _, text in record.python}, {text for _, text in record.web}

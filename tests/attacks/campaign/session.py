@@ -154,7 +154,7 @@ class Session:
         gone, end_s = self.wait_end(events, scene) if isEnding else ({}, None)
         observed = machine.observer.ask('take')
         record = judges.Record(path, begin, observed['samples'], events, observed['python'], observed['web'], abort,
-                               [] if isEnding else machine.stopper.ask('lateness'), isEnding, gone, end_s)
+                               [] if isEnding else machine.stopper.ask('lateness'), isEnding, gone, end_s, machine.servers['web'].poll() is None)
         if self.isSelfTest:
             self.found.update(self_test.of_record(record))
         answer['failures'] += judges.of_run(record)
@@ -177,7 +177,7 @@ class Session:
         time.sleep(0.2)
         observed = machine.observer.ask('take')
         text = machine.terminal.text.decode(errors='replace')
-        return {'python': observed['python_gone'], 'web': any(state == 'gone' for _, state in observed['web_gone']) or machine.servers['web'].poll() is not None, 'terminal': text[-3000:]}, end_s
+        return {'python': observed['python_gone'], 'web': any(state == 'gone' for _, state in observed['web_gone']) or machine.servers['web'].poll() is not None, 'terminal': text}, end_s
 
     def after(self, plan, answer, events):
         """Servers and files after a run; the machine is on and idle again."""
@@ -199,6 +199,8 @@ class Session:
             if server not in killed:
                 failures.append(f'process: the server {server} has ended with status {process.returncode}')
             machine.begin_server(server)
+            if server == 'web':
+                time.sleep(0.6)  # until the observer is connected again
 
     def check_files(self, failures):
         for path, content in self.machine.files.items():
