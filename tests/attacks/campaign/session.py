@@ -56,7 +56,7 @@ class Session:
         self.first_tools = self.tools.read_text()
         self.offsets, self.diameters = [0.0], [state_files.diameter(self.first_tools)]
         self.isWhole, self.isEnded, self.hasCut = True, False, True
-        self.isTerminalOpen = True
+        self.wasFolderAway = False
 
     def can(self, one):
         has = {'mount': bool(self.machine.device), 'cgroup': self.machine.hasGroup}
@@ -94,6 +94,7 @@ class Session:
 
     def attack(self, plan, scene, begin):
         """Carries out the attacks and the abort: the record of the run without what was observed."""
+        self.wasFolderAway = self.wasFolderAway or any(name == 'files.removed_folder' for name, _, _ in plan.attacks)
         scene.deadline = begin + plans.ATTACKS_END_S
         running = []
         events = [judges.Event(name, begin, float('inf'), TABLE[name].causes) for name, _, _ in plan.attacks if TABLE[name].isProgram]
@@ -103,7 +104,6 @@ class Session:
                 continue
             kind = Here if one.isHere else Child
             running.append(kind(one, dataclasses.replace(scene), random.Random(seed), begin + at))
-            self.isTerminalOpen = self.isTerminalOpen and not one.isLast
             self.isWhole = self.isWhole and not (one.isLast or one.isEnd)
         notes = []
 
@@ -283,6 +283,8 @@ class Session:
         left += sorted(set(temporary_names(machine.instance)) - self.before)
         left += [str(path.relative_to(machine.folder)) for path in machine.folder.rglob('*')
                  if not path.is_dir() and not EXPECTED.match(str(path.relative_to(machine.folder)))]
+        if self.wasFolderAway:  # a file that was written meanwhile cannot be removed under its name
+            left = [name for name in left if not re.search(r'\.(var|tbl|bak|journal)\.\w{6}$', name)]
         left += [str(path) for path in machine.temporary.iterdir()]
         if machine.hasGroup and (MEMORY / machine.cgroup / 'cgroup.procs').read_text().split():
             left.append('processes of the cgroup')
