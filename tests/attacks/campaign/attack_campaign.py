@@ -70,7 +70,8 @@ class Campaign:
         answers = [json.loads(line) for line in output.splitlines()]
         if not answers or 'end' not in answers[-1]:
             seed = seeds[min(len(answers), len(seeds) - 1)]
-            return [*answers, {'seed': seed, 'what': self.words(seed), 'failures': [], 'notes': []}], [f'session: {complaint[-600:]}']
+            complaint = complaint if len(complaint) < 2000 else complaint[:1000] + ' ... ' + complaint[-1000:]
+            return [*answers, {'seed': seed, 'what': self.words(seed), 'failures': [], 'notes': []}], [f'session: {complaint}']
         self.found = answers[-1]['found']
         return answers[:-1], answers[-1]['end']
 
