@@ -47,4 +47,5 @@ def messages(_scene, rng):
 
 @attack('program.comments')
 def comments(_scene, rng):
-    return ('(' + 'c' * 200 + ')\n') * rng.choice((1000, 20_000)) if rng.random() < 0.5 else ';' + 'x' * rng.choice((100, 240)) + '\n'
+    """No more than are read within a moment: the axes wait for what follows."""
+    return ('(' + 'c' * 200 + ')\n') * rng.choice((100, 1000)) if rng.random() < 0.5 else ';' + 'x' * rng.choice((100, 240)) + '\n'

@@ -27,7 +27,8 @@ class Plan:
 
     def program(self, lines):
         """`lines`: those of the attacks in the program, behind the first edge."""
-        text = f'G21 G90 G17 {self.blend} F{self.feed}\nG10 L2 P6 X{self.offset}\nG10 L1 P5 R{self.offset}\nM3 S500\nM8\n'
+        # The dwell: the spindle is at speed before the axes move.
+        text = f'G21 G90 G17 {self.blend} F{self.feed}\nG10 L2 P6 X{self.offset}\nG10 L1 P5 R{self.offset}\nM3 S500\nM8\nG4 P0.3\n'
         moves = ['G1 X%.3f Y%.3f Z%.3f\n' % corner for corner in self.corners]
         return f'{text}G0{moves[0][2:]}{moves[1]}{WAIT if lines else ""}{lines}o1 repeat [300]\n{"".join(moves[2:] + moves[:2])}o1 endrepeat\nM2\n'
 

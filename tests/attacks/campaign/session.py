@@ -154,7 +154,7 @@ class Session:
         gone, end_s = self.wait_end(events, scene) if isEnding else ({}, None)
         observed = machine.observer.ask('take')
         record = judges.Record(path, begin, observed['samples'], events, observed['python'], observed['web'], abort,
-                               [] if isEnding else machine.stopper.ask('lateness'), isEnding, gone, end_s, machine.servers['web'].poll() is None)
+                               machine.stopper.ask('lateness'), isEnding, gone, end_s, machine.servers['web'].poll() is None)
         if self.isSelfTest:
             self.found.update(self_test.of_record(record))
         answer['failures'] += judges.of_run(record)
