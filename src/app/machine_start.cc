@@ -45,8 +45,14 @@ int MachineStart::run_machine() {
     }
     if (status.has_value()) {
         status = keep_up();
-        const auto ended = take_down();
-        status = status.has_value() ? ended : status;
+        if (!status.has_value()) {
+            // Before the end of programs, which may take seconds.
+            machine_->task().post(msgs::MessageKind::OPERATOR_ERROR, status.error().str());
+            sink_.failure(status.error());
+            static_cast<void>(take_down());
+            return 1;
+        }
+        status = take_down();
     }
     if (!status.has_value()) {
         sink_.failure(status.error());

@@ -23,6 +23,11 @@ void catch_stop_signals() {
     for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
         ::sigaction(number, &action, nullptr);
     }
+    // Programs that are started later have the default again, which a signal that is ignored would not be.
+    struct sigaction survive{};
+    survive.sa_handler = [](int) {};
+    survive.sa_flags = SA_RESTART;
+    ::sigaction(SIGPIPE, &survive, nullptr);
 }
 
 std::string stop_signal_name() {

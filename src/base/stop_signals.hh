@@ -12,6 +12,7 @@ inline volatile std::sig_atomic_t stop_signal = 0;
 
 /// From now on they set stop_signal. Without SA_RESTART, so that waiting for input ends too. A second SIGINT
 /// ends the process at once; the others may come twice when a terminal closes or a service is stopped.
+/// SIGPIPE ends nothing any more: a pipe or connection without a reader is an error of the write.
 void catch_stop_signals();
 
 /// "SIGTERM"; empty when none came.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "rtapi/process.hh"
 
+#include <signal.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -16,8 +17,11 @@ namespace {
 
 struct Seen {
     char state = 'X';
-    std::uint64_t start_time = 0;  ///< 0 when it is gone
+    std::uint64_t start_time = 0;  ///< 0 when it is gone, or cannot be read
 };
+
+/// The state of a process that exists and whose state cannot be read.
+constexpr char UNKNOWN = '?';
 
 /// Source: man 5 proc, /proc/PID/stat, fields 3 and 22.
 Seen look_at(std::int32_t pid) {
@@ -25,7 +29,9 @@ Seen look_at(std::int32_t pid) {
     std::snprintf(path, sizeof path, "/proc/%d/stat", pid);
     std::FILE *file = std::fopen(path, "re");
     if (file == nullptr) {
-        return {};
+        // Without a free descriptor or memory nothing is known of it: only the kernel's own answer counts.
+        const bool isGone = errno == ENOENT || errno == ESRCH || (::kill(pid, 0) != 0 && errno == ESRCH);
+        return isGone ? Seen{} : Seen{UNKNOWN, 0};
     }
     char text[1024];
     const std::size_t length = std::fread(text, 1, sizeof text - 1, file);
@@ -54,6 +60,9 @@ ProcessId this_process() {
 
 Activity activity_of(const ProcessId &process) {
     const Seen seen = process.pid > 0 && process.start_time != 0 ? look_at(process.pid) : Seen{};
+    if (seen.state == UNKNOWN) {
+        return Activity::RUNNING;
+    }
     if (seen.start_time == 0 || seen.start_time != process.start_time) {
         return Activity::ENDED;
     }

@@ -298,6 +298,9 @@ void Task::end_requests() {
     step_homing();
     const auto isAnswered = [this](motion::CommandId order) { return motion_.isAnswered(order); };
     while (const auto ended = orders_.next(isAnswered, now_ns_)) {
+        if (ended->progress == Progress::FAILED) {
+            post(MessageKind::OPERATOR_ERROR, ended->reason);  // clients of Python see no reason
+        }
         tell(ended);
     }
 }

@@ -122,7 +122,8 @@ void Task::Meanwhile::end_left_jogs() {
 }
 
 Result<Progress> Task::Meanwhile::settle(mailbox::Serial command) {
-    constexpr std::int64_t ANSWERED_WITHIN_NS = 80000000;
+    // Clients read it within 100 ms, the period of a server between them included.
+    constexpr std::int64_t ANSWERED_WITHIN_NS = 60000000;
     const motion::CommandId order = task.motion_.open_order();
     if (!task.motion_.watch().isSilent() || order == 0) {
         return Progress::DONE;

@@ -205,9 +205,11 @@ bool SystemProgramHost::isProgramLeft() const {
     return !children_.empty();
 }
 
-/// Children that have ended would look alive until somebody asks for their status.
+/// Processes that have ended look alive to kill() until their parent asks for their status, which the parents
+/// of some components never do.
 void SystemProgramHost::reap() {
     std::erase_if(children_, [](int pid) { return waitpid(pid, nullptr, WNOHANG) != 0; });
+    hal_.reap_dead_components();
 }
 
 Result<> SystemProgramHost::wait_for_end(const std::string &component) {
@@ -217,10 +219,6 @@ Result<> SystemProgramHost::wait_for_end(const std::string &component) {
             return {};
         }
         reap();
-        if (kill(info->pid, 0) != 0 && errno == ESRCH) {
-            hal_.reap_dead_components();
-            return {};
-        }
         if (isStopped()) {
             return fail(fmt::format("stopped while waiting for the end of '{}'", component));
         }

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <thread>
 
+#include "mailbox/stops.hh"
 #include "python/linuxcnc/connection.hh"
 #include "python/linuxcnc/module.hh"
 #include "python/linuxcnc/stat_words.hh"
@@ -19,6 +20,8 @@ namespace {
 constexpr double TAKEN_WITHIN_S = 5.0;
 constexpr double USUAL_TIMEOUT_S = 5.0;
 constexpr double SHOWN_WITHIN_S = 0.5;
+/// A stop is answered within 0.1 s; axes may brake for longer, or not move because motion does not run.
+constexpr double STOP_SHOWN_WITHIN_S = 0.03;
 constexpr double HOMING_PATIENCE_S = 0.5;
 /// A sleeper sees so often whether Python has a signal for it (Ctrl-C).
 constexpr double LONGEST_SLEEP_S = 0.2;
@@ -62,6 +65,7 @@ void Command::refuse(const std::string &reason) {
 void Command::send(const msgs::Command &command) {
     client::Client &to = client();
     isHoming_ = std::holds_alternative<msgs::HomeJoint>(command);
+    isStop_ = mailbox::isStop(command);
     isRefused_ = false;
     away([&] {
         const auto posted = to.post(command);
@@ -101,7 +105,7 @@ void Command::show_end() {
         const msgs::MachineStatus &status = client_->status();
         return isRead && (status.last_command != serial_ || rcs_state(status) != RcsState::EXEC);
     };
-    static_cast<void>(client_->wait_until(isShown, SHOWN_WITHIN_S));
+    static_cast<void>(client_->wait_until(isShown, isStop_ ? STOP_SHOWN_WITHIN_S : SHOWN_WITHIN_S));
 }
 
 int Command::wait_complete(std::optional<double> timeout_s) {

@@ -40,6 +40,7 @@ class Command {
     client::Serial serial_ = 0;
     bool isRefused_ = false;  ///< before it came to task
     bool isHoming_ = false;
+    bool isStop_ = false;
 };
 
 }  // namespace mw::python

@@ -1,0 +1,197 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What must hold in every run, whatever the attacks are. Each judge takes the record of a run and returns sentences: what is wrong."""
+import dataclasses
+import math
+import re
+
+ABORT_S = 0.1       # an abort is answered within so long
+STOP_S = 0.6        # a machine that stops does it within so long
+END_S = 2.0         # SIGTERM ends every process within so long
+OFF_PATH_MM = 0.02  # above the tolerance of G64 in the programs, 0.01
+STILL_S = 0.25      # no movement for so long is a stop
+SAME_MM = 1e-6
+
+
+@dataclasses.dataclass
+class Event:
+    """An attack as it was carried out; `causes`: what a message says when it stops the machine, None: it must not."""
+    name: str
+    begin: float
+    end: float
+    causes: str | None
+
+    @property
+    def latest(self):
+        """When it may stop the machine at the latest, but for STOP_S: a stopped process at its begin."""
+        return self.begin if self.name.startswith('signal.stop_') else self.end
+
+
+@dataclasses.dataclass
+class Record:
+    """A run. Times are those of the monotonic clock."""
+    corners: list                # of the programmed path, closed
+    begin: float                 # the axes move
+    samples: list                # (time, x, y, z, enabled)
+    events: list
+    python: list                 # (time, text)
+    web: list
+    abort: dict | None           # of stopper.py
+    lateness: list               # (time, seconds)
+    isEnding: bool = False       # an attack ends the machine
+    gone: dict = dataclasses.field(default_factory=dict)    # what clients learn about the end: 'python', 'web', 'terminal'
+    end_s: float | None = None   # how long the end took, where an attack ended it
+    isWebUp: bool = True         # its server was not killed: another one shows what comes after its start
+
+
+def distance(point, a, b):
+    """From a segment."""
+    along = [q - p for p, q in zip(a, b)]
+    length = sum(c * c for c in along)
+    share = 0.0 if length == 0 else max(0.0, min(1.0, sum((x - p) * c for x, p, c in zip(point, a, along)) / length))
+    return math.dist(point, [p + share * c for p, c in zip(a, along)])
+
+
+def off_path(record):
+    """No sampled point off the programmed path."""
+    segments = list(zip(record.corners, record.corners[1:]))
+    last = segments[0]
+    for when, x, y, z, _ in record.samples:
+        point = (x, y, z)
+        if distance(point, *last) <= OFF_PATH_MM:
+            continue
+        nearest = min(segments, key=lambda segment: distance(point, *segment))
+        off = distance(point, *nearest)
+        if off > OFF_PATH_MM:
+            return [f'path: {off:.3f} mm off the programmed path at X{x:.3f} Y{y:.3f} Z{z:.3f}, {when - record.begin:.2f} s after the begin']
+        last = nearest
+    return []
+
+
+def standstills(record):
+    """[(begin, end)] of at least STILL_S after the axes have moved; a gap of the samples counts as standstill."""
+    found, still = [], None
+    previous = None
+    for sample in record.samples:
+        if sample[0] < record.begin:
+            continue
+        if previous is not None and (sample[0] - previous[0] > STILL_S or math.dist(sample[1:4], previous[1:4]) < SAME_MM):
+            still = still if still is not None else previous[0]
+        else:
+            if still is not None and previous[0] - still >= STILL_S:
+                found.append((still, previous[0]))
+            still = None
+        previous = sample
+    if still is not None and previous[0] - still >= STILL_S:
+        found.append((still, previous[0]))
+    return found
+
+
+def limit_of(record):
+    """Until when the machine had no order to stop."""
+    return record.abort['sent'] if record.abort else float('inf')
+
+
+def unexplained(record, messages, where):
+    causes = [event.causes for event in record.events if event.causes]
+    if any(re.search(cause, text) for cause in causes for _, text in messages):
+        return []
+    return [f'message: the machine stopped; no message names the cause ({" or ".join(causes) or "no attack may stop it"}) {where}: {texts(messages)}']
+
+
+def texts(messages):
+    return '; '.join(dict.fromkeys(text[:120] for _, text in messages[-6:])) or 'none at all'
+
+
+def early_stops(record):
+    """[(begin, end)] of the standstills before the abort."""
+    return [(begin, end) for begin, end in standstills(record) if begin + STILL_S < limit_of(record)]
+
+
+def stops(record):
+    """The machine cuts on, or stops within STOP_S with a message that names the cause on each screen."""
+    if record.isEnding:
+        return ends(record)
+    early = early_stops(record)
+    if not early:
+        return []
+    rest = early[0][0]
+    failures = []
+    begun = [event for event in record.events if event.begin <= rest and event.causes]
+    since = min((max(0.0, rest - event.latest) for event in begun), default=None)
+    if since is None or since > STOP_S:
+        names = ', '.join(f'{event.name} {event.begin - record.begin:.2f} to {event.end - record.begin:.2f} s' for event in record.events)
+        failures.append(f'stop: the axes rest at {rest - record.begin:.2f} s, {"without" if since is None else f"{since:.2f} s after"} an attack that may stop them ({names})')
+    causes = [event.causes for event in record.events if event.causes]
+    named = [when for when, text in record.python if any(re.search(cause, text) for cause in causes)]
+    if named and rest - min(named) > STOP_S:
+        failures.append(f'stop: the axes rest {rest - min(named):.2f} s after the message')
+    return failures + unexplained(record, record.python, 'for Python') + (
+        unexplained(record, record.web, 'on the web screen') if record.isWebUp else [])
+
+
+def ends(record):
+    """An attack has ended the machine: the axes rest in time, and clients learn of it."""
+    event = next(event for event in record.events if event.name.startswith('end.'))
+    failures = []
+    moving = [b[0] for a, b in zip(record.samples, record.samples[1:]) if math.dist(a[1:4], b[1:4]) >= SAME_MM]
+    if moving and moving[-1] - event.begin > STOP_S:
+        failures.append(f'stop: the axes move {moving[-1] - event.begin:.2f} s after {event.name}')
+    if record.end_s is None or record.end_s > END_S:
+        late = lateness_between(record, event.begin, event.begin + (record.end_s or 0))
+        coincides = '; the computer was late' if record.end_s is not None and record.end_s - late <= END_S else ''
+        failures.append(f'end: {event.name} ends the processes {"never" if record.end_s is None else f"in {record.end_s:.2f} s"}, '
+                        f'an ordinary process waited {late:.2f} s meanwhile{coincides}')
+    for where in ('python', 'web'):
+        if not record.gone.get(where):
+            failures.append(f'message: clients ({where}) do not learn that the machine is gone')
+    isTerminalOpen = not any(one.name.startswith('terminal.') for one in record.events)
+    if isTerminalOpen and event.causes and not re.search(event.causes, record.gone.get('terminal', '')):
+        failures.append(f'message: the terminal does not name {event.name}: {record.gone.get("terminal", "")[-200:]!r}')
+    return failures
+
+
+def lateness_between(record, begin, end):
+    """The sum of the times that an ordinary process waited for a processor."""
+    return sum(min(late, when - begin) for when, late in record.lateness if when > begin and when - late < end)
+
+
+def aborts(record):
+    """An abort is answered in time, and the axes stop."""
+    abort = record.abort
+    if abort is None:
+        return []
+    took = abort['answered'] - abort['sent']
+    if abort['result'] not in ('done', 'error'):
+        return [f'abort: no answer to the abort by {abort["kind"]}: {abort["result"]} after {abort["answered"] - abort["begin"]:.2f} s']
+    failures = []
+    if took > ABORT_S:
+        late = lateness_between(record, abort['sent'], abort['answered'])
+        coincides = '; the computer was late' if took - late <= ABORT_S else ''
+        failures.append(f'abort: answered by {abort["kind"]} in {took * 1000:.0f} ms, an ordinary process waited {late * 1000:.0f} ms meanwhile{coincides}')
+    if abort['result'] == 'error' and not (record.python and (record.web or not record.isWebUp)):
+        failures.append('abort: answered with an error, without a message')
+    moving = [b[0] for a, b in zip(record.samples, record.samples[1:]) if math.dist(a[1:4], b[1:4]) >= SAME_MM]
+    if moving and moving[-1] - abort['answered'] > STOP_S:
+        failures.append(f'abort: the axes move {moving[-1] - abort["answered"]:.2f} s after the answer')
+    return failures
+
+
+def same_messages(record):
+    """Every error that one screen shows the other one shows, too; those of the last 0.3 s may be on their way, those before the begin
+    belong to the run before."""
+    if record.isEnding or not record.isWebUp:
+        return []
+    last = max([when for when, _ in record.python + record.web], default=0) - 0.3
+    python, web = {text for _, text in record.python}, {text for _, text in record.web}
+    if any('were lost' in text for text in python | web):
+        return []
+    failures = []
+    for where, seen, other in (('web screen', web, record.python), ('Python', python, record.web)):
+        lacking = [text for when, text in other if text not in seen and record.begin <= when < last]
+        if lacking:
+            failures.append(f'message: the {where} lacks {lacking[0][:150]!r}')
+    return failures
+
+
+def of_run(record):
+    return off_path(record) + stops(record) + aborts(record) + same_messages(record)

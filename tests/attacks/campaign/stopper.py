@@ -1,0 +1,119 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Sends aborts from fresh clients, and measures how late the computer lets an ordinary process run meanwhile.
+
+usage: stopper.py WEB_PORT RSH_PORT NML_PORT; requests as lines of the standard input, a line of JSON for each answer:
+python, web, rsh or nml (an abort by a new client of that type), lateness (all since the last request), quit.
+"""
+import json
+import pathlib
+import re
+import socket
+import sys
+import threading
+import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / 'e2e'))
+import linuxcnc  # noqa: E402  pylint: disable=wrong-import-position
+from nml_session import Client as Nml  # noqa: E402  pylint: disable=wrong-import-position
+from web_screen import Screen  # noqa: E402  pylint: disable=wrong-import-position
+
+STEP_S = 0.002
+LATE_S = 0.01
+ANSWER_S = 5
+
+
+class Lateness(threading.Thread):
+    """[(time of waking, by how much it was late)]."""
+
+    def __init__(self):
+        super().__init__(daemon=True)
+        self.found = []
+
+    def run(self):
+        while True:
+            begin = time.monotonic()
+            time.sleep(STEP_S)
+            end = time.monotonic()
+            if end - begin - STEP_S > LATE_S:
+                self.found.append((end, end - begin - STEP_S))
+
+    def take(self):
+        found, self.found = self.found, []
+        return found
+
+
+def by_python(_ports):
+    command = linuxcnc.command()
+    sent = time.monotonic()
+    command.abort()
+    answer = command.wait_complete(ANSWER_S)
+    return sent, {linuxcnc.RCS_DONE: 'done', linuxcnc.RCS_ERROR: 'error'}.get(answer, 'none')
+
+
+def by_web(ports):
+    screen = Screen(ports[0])
+    if not screen.until(lambda: screen.hello, ANSWER_S):
+        return time.monotonic(), 'no greeting of the server'
+    sent = time.monotonic()
+    answer = screen.do('AbortAll')
+    screen.cut()
+    return sent, {'DONE': 'done', 'FAILED': 'error', 'REFUSED': 'error'}.get(answer, 'none')
+
+
+def by_rsh(ports):
+    with socket.create_connection(('127.0.0.1', ports[1]), ANSWER_S) as connection:
+        file = connection.makefile('rw', newline='\r\n')
+        file.write('hello EMC stopper 1.0\r\nset enable EMCTOO\r\nset echo off\r\nset verbose on\r\nset set_wait done\r\n')
+        file.flush()
+        while 'SET_WAIT' not in (line := file.readline().upper()):
+            if not line:
+                return time.monotonic(), 'closed'
+        sent = time.monotonic()
+        file.write('set abort\r\n')
+        file.flush()
+        answer = file.readline()
+        return sent, 'done' if re.search('ACK', answer) else 'error' if 'NAK' in answer else answer or 'closed'
+
+
+def by_nml(ports):
+    client = Nml(ports[2])
+    sent = time.monotonic()
+    serial = client.send('EMC_TASK_ABORT_TYPE', 503)
+    state = 'none'
+    while state == 'none' and time.monotonic() - sent < ANSWER_S:
+        status = client.status()
+        echo = int(status['echo_serial_number'])
+        if echo > serial:  # another client's command has followed
+            state = 'done'
+        elif echo == serial:
+            state = {'DONE': 'done', 'ERROR': 'error'}.get(status['state'], 'none')
+    client.socket.close()
+    return sent, state
+
+
+CLIENTS = {'python': by_python, 'web': by_web, 'rsh': by_rsh, 'nml': by_nml}
+
+
+def main():
+    ports = [int(word) for word in sys.argv[1:4]]
+    lateness = Lateness()
+    lateness.start()
+    print(json.dumps('ready'), flush=True)
+    for line in sys.stdin:
+        request = line.strip()
+        if request == 'quit':
+            return
+        if request == 'lateness':
+            print(json.dumps(lateness.take()), flush=True)
+            continue
+        begin = time.monotonic()
+        try:
+            sent, result = CLIENTS[request](ports)
+        except Exception as error:  # pylint: disable=broad-exception-caught  # whatever fails is the judge's business
+            sent, result = begin, f'{type(error).__name__}: {error}'
+        print(json.dumps({'kind': request, 'begin': begin, 'sent': sent, 'answered': time.monotonic(), 'result': result}), flush=True)
+
+
+if __name__ == '__main__':
+    main()
