@@ -331,7 +331,7 @@ bool Task::begin_run() {
         run_.change(RunEvent::READ);
     } else if (run_.kind() == RunKind::MDI) {
         const interp::Step result = reader_.execute(run_.line());
-        if (!Meanwhile{*this}.end()) {
+        if (!Meanwhile{*this}.end_step(result)) {
             on_step_result(result);
         }
     }
@@ -371,7 +371,7 @@ void Task::run_interpreter() {
             }
         }
         const interp::Step result = reader_.step();
-        if (Meanwhile{*this}.end()) {
+        if (Meanwhile{*this}.end_step(result)) {
             return;
         }
         Start{*this}.note_doubt();

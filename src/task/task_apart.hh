@@ -17,6 +17,9 @@ struct Task::Meanwhile {
     /// After each long call: does what another thread has left for its end. True when that was a stop: what
     /// the call was made for is over.
     bool end();
+    /// The same after a step of the interpreter; where a stop has made it fail, the operator reads where it
+    /// was.
+    bool end_step(interp::Step result);
     /// What `call` returns, which may wait for a disk: stops are carried out beside it.
     template <class Call>
     auto beside(const Call &call) {

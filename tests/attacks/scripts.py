@@ -19,6 +19,11 @@ def with_python(text):
     return text + '\n[PYTHON]\nTOPLEVEL = toplevel.py\n'
 
 
+def prepare(machine):
+    (machine.ini.parent / 'toplevel.py').write_text('import oword\n')
+    (machine.ini.parent / 'oword.py').write_text('def forever(self):\n    while True:\n        pass\n')
+
+
 def cut_then(machine, python):
     """Cuts a line of 20 s, with `python` behind it."""
     machine.cut(f'G21 G90 G64 F300\nM3 S500\nG1 X100\n;py,{python}\nG1 X0\nM2\n')
@@ -56,6 +61,30 @@ def end(machine, found):
     found.expect(took < END_S, f'SIGTERM ends a machine with an endless script in {took:.1f} s', machine.text())
 
 
+def endless(machine, found):
+    machine.command.mode(machine.linuxcnc.MODE_MDI)
+    machine.command.wait_complete()
+    for line, place in ((';py,while True: pass', ';py,:1'), ('o<forever> call', 'oword.py:')):
+        machine.messages.clear()
+        machine.command.mdi(line)
+        machine.until(lambda: False, 0.3)
+        took = machine.abort_s()
+        found.expect(took < ABORT_S, f'an abort of {line} is answered in {took * 1000:.0f} ms')
+        named = machine.until(lambda: any('ended the script' in text and place in text for text in machine.messages), 2)
+        found.expect(named, f'{line} ends with a message that names {place}', machine.messages)
+        machine.command.mdi('G0 X1' if 'py' in line else 'G0 X2')
+        found.expect(machine.command.wait_complete(10) == machine.linuxcnc.RCS_DONE, f'the machine takes the next line after {line}', machine.messages)
+    machine.messages.clear()
+    machine.command.mdi(';py,import time; time.sleep(3)')
+    machine.until(lambda: False, 0.3)
+    machine.command.abort()
+    told = machine.until(lambda: any('outside of Python' in text and ';py,:1' in text for text in machine.messages), 2.5)
+    found.expect(told, 'a message says where it waits', machine.messages)
+    machine.until(lambda: False, 2)
+    machine.command.mdi('G0 X1')
+    found.expect(machine.command.wait_complete(10) == machine.linuxcnc.RCS_DONE, 'the machine takes the next line after time.sleep', machine.messages)
+
+
 def leave(machine, found):
     for call in ('_exit(0)', 'abort()'):
         found.expect(machine.run(f';py,import os; os.{call}\nM2\n'), f'os.{call} ends the program')
@@ -66,5 +95,5 @@ def leave(machine, found):
 
 
 if __name__ == '__main__':
-    run_attacks(__file__, {'sleep': sleep, 'estop': estop, 'end': end, 'leave': leave},
-                lambda machine: (machine.ini.parent / 'toplevel.py').write_text(''), with_python)
+    run_attacks(__file__, {'sleep': sleep, 'estop': estop, 'end': end, 'endless': endless, 'leave': leave},
+                prepare, with_python)
