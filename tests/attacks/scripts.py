@@ -16,7 +16,7 @@ LONG = 6.0
 
 
 def with_python(text):
-    return text + '\n[PYTHON]\nTOPLEVEL = toplevel.py\n'
+    return text + '\n[PYTHON]\nTOPLEVEL = toplevel.py\nPATH_PREPEND = .\n'
 
 
 def prepare(machine):
