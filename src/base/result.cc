@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "base/result.hh"
 
+#include "base/short_text.hh"
+
 namespace mw {
 
 std::string SourcePlace::str() const {
@@ -19,9 +21,9 @@ std::string Error::str() const {
     if (!out.empty()) {
         out += ": ";
     }
-    out += message;
+    out += short_text(message);
     if (!hint.empty()) {
-        out += " (" + hint + ')';
+        out += " (" + short_text(hint) + ')';
     }
     return out;
 }

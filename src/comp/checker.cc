@@ -50,6 +50,8 @@ constexpr std::array<std::string_view, 8> RESERVED{"comp_id",        "fperiod", 
 /// Taken only in components whose code sees them.
 constexpr std::array<std::string_view, 2> OF_SETUP{"prefix", "extra_arg"};
 
+constexpr std::size_t LONGEST_NAME = 127;  // of HAL
+
 template <class List>
 bool has(const List &list, std::string_view name) {
     return std::find(list.begin(), list.end(), name) != list.end();
@@ -126,6 +128,10 @@ class Checker {
     }
 
     void claim(const std::string &name, const SourcePlace &place, const char *what) {
+        if (name.size() > LONGEST_NAME) {
+            sink_.error(fmt::format("a name has more than {} characters", LONGEST_NAME), place);
+            return;
+        }
         const auto [at, isNew] = names_.emplace(name, place);
         if (!isNew) {
             sink_.error(fmt::format("the name '{}' is taken already", name), place,
@@ -237,6 +243,12 @@ class Checker {
             return;
         }
         const CodeFacts facts = look_at_code(component_.code);
+        if (facts.deep.has_value()) {
+            sink_.error(
+                fmt::format("the code has more than {} '{}' in one another", MOST_NESTED, facts.deep->name),
+                {component_.file, component_.code_line + facts.deep->line, facts.deep->column});
+            return;
+        }
         const bool isBody = !facts.hasFunctionWord && component_.functions.size() == 1;
         if (isBody || component_.isUserspace()) {
             return;

@@ -50,6 +50,23 @@ std::string bracketed_name(std::string_view code, std::size_t at) {
     return at < code.size() && code[at] == ')' ? name : std::string();
 }
 
+/// Follows the nesting of C code, character by character.
+class Nesting {
+  public:
+    /// True when `c` exceeds the limit.
+    bool exceeds(char c) {
+        depth_ += isOneOf(c, "([{") ? 1 : isOneOf(c, ")]}") && depth_ > 0 ? -1 : 0;
+        const bool isBlank = isOneOf(c, " \t\n\r");
+        signs_ = isOneOf(c, "!~-+*&") ? signs_ + 1 : isBlank ? signs_ : 0;
+        return depth_ > MOST_NESTED || signs_ > MOST_NESTED;
+    }
+
+  private:
+    static bool isOneOf(char c, std::string_view which) { return which.find(c) != std::string_view::npos; }
+
+    int depth_ = 0, signs_ = 0;
+};
+
 }  // namespace
 
 CodeFacts look_at_code(std::string_view code) {
@@ -57,6 +74,7 @@ CodeFacts look_at_code(std::string_view code) {
     int line = 0;
     std::size_t line_start = 0;
     bool isDirective = false;
+    Nesting nesting;
     for (std::size_t at = 0; at < code.size();) {
         if (const std::size_t end = skip_inert(code, at); end != at) {
             for (; at < end; ++at) {
@@ -66,6 +84,10 @@ CodeFacts look_at_code(std::string_view code) {
                 }
             }
             continue;
+        }
+        if (nesting.exceeds(code[at]) && !facts.deep.has_value()) {
+            facts.deep =
+                CodeFacts::Use{std::string(1, code[at]), line, static_cast<int>(at - line_start) + 1};
         }
         if (code[at] == '\n') {
             isDirective = isDirective && at > 0 && code[at - 1] == '\\';

@@ -9,6 +9,7 @@
 #include "base/text.hh"
 #include "comp/c_declaration.hh"
 #include "comp/scanner.hh"
+#include "diag/message_limit.hh"
 
 namespace mw::halcompile {
 namespace {
@@ -55,6 +56,10 @@ class Parser {
             }
             if (auto done = declaration(); !done) {
                 sink_.error(done.error());
+                if (sink_.all().size() >= diag::MOST_OF_A_FILE) {
+                    sink_.error("too many wrong declarations: the rest is not read", scanner_.place());
+                    return std::move(component_);
+                }
                 scanner_.skip_declaration(&Parser::isStart);
             }
         }

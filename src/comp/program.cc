@@ -181,7 +181,11 @@ class Job {
                 words->insert(words->end(), more->begin(), more->end());
             }
         }
-        return make(std::move(order), component.name);
+        auto made = make(std::move(order), component.name);
+        if (!made && made.error().place.file.empty()) {  // the compiler has died without a line
+            made.error().place = {component.file, component.code_line, 0};
+        }
+        return made;
     }
 
     Result<> run_source() {

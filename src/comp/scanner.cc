@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include "base/text.hh"
+#include "comp/code.hh"
 
 namespace mw::halcompile {
 namespace {
@@ -205,6 +206,9 @@ Result<std::string> Scanner::take_expression(std::string_view stops, std::string
         }
         if (c == '(' || c == '[' || c == '{') {
             open += c == '(' ? ')' : c == '[' ? ']' : '}';
+            if (open.size() > MOST_NESTED) {
+                return fail(fmt::format("more than {} brackets are in one another", MOST_NESTED), place());
+            }
         } else if (!open.empty() && c == open.back()) {
             open.pop_back();
         } else if (c == ')' || c == ']' || c == '}') {

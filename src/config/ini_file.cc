@@ -16,11 +16,13 @@
 #include "base/text.hh"
 #include "config/ini_escape.hh"
 #include "config/ini_strict.hh"
+#include "diag/message_limit.hh"
 
 namespace mw::config {
 namespace {
 
 constexpr int MAX_INCLUDE_DEPTH = 16;
+constexpr std::size_t LONGEST_LINE = 65536;  // with the lines that continue it [bytes]
 
 std::string folder_of(const std::string &path) {
     const auto slash = path.rfind('/');
@@ -59,7 +61,7 @@ std::string expand_home(std::string_view name) {
 class IniParser {
   public:
     IniParser(IniFile &file, diag::Sink &sink, IniSyntax syntax)
-        : file_(file), sink_(sink), isStrict_(syntax == IniSyntax::STRICT) {}
+        : file_(file), sink_(sink), isStrict_(syntax == IniSyntax::STRICT), told_(sink.all().size()) {}
 
     void text(std::string_view text, const std::string &path, int depth) {
         int line = 0;
@@ -103,10 +105,24 @@ class IniParser {
             include(trim(body.substr(8)), place, depth);
         } else if (body.empty() || body[0] == '#' || body[0] == ';') {
             return;
+        } else if (line.size() > LONGEST_LINE) {
+            too_long(place);
         } else if (body[0] == '[') {
             section(body, place);
         } else {
             entry(line, body, place);
+        }
+        if (!isStopped_ && sink_.all().size() - told_ >= diag::MOST_OF_A_FILE) {
+            stop("too many wrong lines: the rest is not read", place);
+        }
+    }
+
+    void too_long(const SourcePlace &place) {
+        const std::string message = fmt::format("a line has more than {} characters", LONGEST_LINE);
+        if (isStrict_) {
+            stop(message, place);
+        } else {
+            sink_.error(message, place);
         }
     }
 
@@ -247,6 +263,7 @@ class IniParser {
     IniFile &file_;
     diag::Sink &sink_;
     bool isStrict_;
+    std::size_t told_;  ///< messages before this file
     bool isStopped_ = false;
     std::vector<std::string> open_{};  ///< the file being read, after those that include it
     std::string section_;

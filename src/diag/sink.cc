@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/short_text.hh"
 #include "base/text.hh"
 
 namespace mw::diag {
@@ -71,31 +72,14 @@ std::string callers_text(const std::vector<SourcePlace> &callers) {
 
 }  // namespace
 
-namespace {
-
-/// A message that quotes a file may quote megabytes of it.
-std::string short_message(const std::string &message) {
-    constexpr std::size_t LONGEST = 1000, SHOWN = 300;
-    if (message.size() <= LONGEST) {
-        return message;
-    }
-    std::size_t end = SHOWN;
-    while (end > 0 && (static_cast<unsigned char>(message[end]) & 0xc0U) == 0x80U) {
-        --end;  // no character is cut in half
-    }
-    return message.substr(0, end) + "...";
-}
-
-}  // namespace
-
 std::string Diagnostic::str() const {
     std::string out = what.place.str();
     if (!out.empty()) {
         out += ": ";
     }
-    out += std::string(name_of(severity)) + ": " + short_message(what.message);
+    out += std::string(name_of(severity)) + ": " + short_text(what.message);
     if (!what.hint.empty()) {
-        out += " (" + what.hint + ')';
+        out += " (" + short_text(what.hint) + ')';
     }
     const std::string rest = context();
     return printable(rest.empty() ? out : out + '\n' + rest);

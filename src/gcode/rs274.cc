@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "base/limits.hh"
+#include "base/short_text.hh"
 #include "base/text.hh"
 #include "interp/canon/print_canon.hh"
 #include "interp/ini_keys.hh"
@@ -170,8 +171,9 @@ void Run::report_failure() {
     }
     // Where scripts read them these two lines are as they are.
     const bool isTerminal = ::isatty(STDERR_FILENO) == 1;
+    const std::string block = short_text(error.line_text);
     fmt::print(stderr, "{}\n{}\n", isTerminal ? printable(error.what.message) : error.what.message,
-               isTerminal ? printable(error.line_text) : error.line_text);
+               isTerminal ? printable(block) : block);
 }
 
 /// The whole file. At its end without M2, M30 or % an error cannot be passed over.

@@ -78,6 +78,7 @@ Result<> TaskSide::start(const MachineOptions &options) {
     }
     task::Settings settings = parts_.config.task;
     settings.isUserProgramWaitedFor = options.isClockVirtual;
+    settings.sequencer.log_works = options.isClockVirtual ? task::LogWorks::ON_CALL : task::LogWorks::ALONE;
     task_ = std::make_unique<task::Task>(
         task::Parts{*channels_, *this, *tools_, parameters_, mailbox_.segment(), journal},
         std::move(settings));

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "msgs/json_parse.hh"
 #include "msgs/value.hh"
 
 namespace mw::msgs {
@@ -66,12 +67,6 @@ std::string text_of(const Json &json) {
     constexpr int COMPACT = -1;
     constexpr bool IS_ASCII = false;
     return json.dump(COMPACT, ' ', IS_ASCII, Json::error_handler_t::replace);
-}
-
-/// Nothing when it is not JSON.
-Json parse(std::string_view text) {
-    constexpr bool HAS_EXCEPTIONS = false;
-    return Json::parse(text.begin(), text.end(), nullptr, HAS_EXCEPTIONS);
 }
 
 class Reading {
@@ -228,7 +223,7 @@ std::string to_json(const Field &field, const void *at) {
 }
 
 Result<std::string> json_name(std::string_view text) {
-    const Json json = parse(text);
+    const Json json = parse_json(text);
     if (!json.is_object()) {
         return fail("this is no JSON object");
     }
@@ -248,7 +243,7 @@ Result<> from_json(std::string_view text, const Object &message) {
         return fail(
             fmt::format("message '{}' came where '{}' was expected", *name, message.declaration->name));
     }
-    return Reading(*message.declaration).parts(parse(text), message, true);
+    return Reading(*message.declaration).parts(parse_json(text), message, true);
 }
 
 }  // namespace mw::msgs

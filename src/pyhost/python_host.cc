@@ -53,13 +53,21 @@ int PythonHost::entries = 0;
 class PythonHost::Entry {
   public:
     explicit Entry(const PythonHost &host) : scope_(*host.view_) {
-        if (entries++ == 0 && isForeignPython()) {
+        const bool isOutermost = entries++ == 0;
+        if (isOutermost && host.interrupter_ != nullptr) {
+            interrupter_ = host.interrupter_.get();
+            interrupter_->enter();
+        }
+        if (isOutermost && isForeignPython()) {
             path_ = py::module_::import("sys").attr("path");
             main_ = loaded_modules()["__main__"];
         }
         host.activate();
     }
     ~Entry() {
+        if (interrupter_ != nullptr) {
+            interrupter_->leave();
+        }
         if (--entries == 0 && path_) {
             py::module_::import("sys").attr("path") = path_;
             loaded_modules()["__main__"] = main_;
@@ -71,7 +79,8 @@ class PythonHost::Entry {
   private:
     py::gil_scoped_acquire gil_;
     CurrentScope scope_;
-    py::object path_, main_;  ///< of the process, when Python is its own
+    Interrupter *interrupter_ = nullptr;  ///< of the outermost entry
+    py::object path_, main_;              ///< of the process, when Python is its own
 };
 
 /// A generator at its yield.
@@ -119,7 +128,14 @@ PythonHost::PythonHost() {
     path_ = py::list();
 }
 
+void PythonHost::follow(interp::ScriptStop &stop) {
+    if (!isForeignPython()) {
+        interrupter_ = std::make_unique<Interrupter>(stop);
+    }
+}
+
 PythonHost::~PythonHost() {
+    interrupter_.reset();
     if (view_ != nullptr) {
         const Entry entry(*this);
         if (const Result<> ended = call_hook("__delete__"); !ended) {

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "interp/scripts/script_host.hh"
+#include "pyhost/interrupter.hh"
 #include "pyhost/modules.hh"
 
 namespace mw::pyhost {
@@ -20,6 +21,7 @@ class PythonHost final : public interp::ScriptHost {
     PythonHost(const PythonHost &) = delete;
     PythonHost &operator=(const PythonHost &) = delete;
 
+    void follow(interp::ScriptStop &stop) override;
     Result<> load(const interp::ScriptSettings &settings, interp::InterpreterView &view) override;
     Result<> begin() override;
     bool hasFunction(interp::ScriptModule module, std::string_view name) const override;
@@ -52,6 +54,7 @@ class PythonHost final : public interp::ScriptHost {
     static int entries;               ///< calls into Python, one inside the other
     static int hosts;
 
+    std::unique_ptr<Interrupter> interrupter_;  ///< null: nobody ends scripts
     interp::ScriptSettings settings_;
     interp::InterpreterView *view_ = nullptr;
     std::shared_ptr<ViewHandle> handle_;

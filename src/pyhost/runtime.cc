@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "base/own_place.hh"
+#include "pyhost/interrupter.hh"
 
 namespace mw::pyhost {
 namespace {
@@ -86,6 +87,9 @@ std::string one_line(std::string text) {
 }
 
 std::string type_and_text(const py::error_already_set &error) {
+    if (error.matches(script_ended())) {
+        return "An abort has ended the script";
+    }
     const std::string type = py::str(error.type().attr("__name__"));
     const std::string text = error.value() ? std::string(py::str(error.value())) : std::string();
     if (type == "InterpreterException") {

@@ -129,6 +129,13 @@ void Task::step(std::int64_t now_ns) {
     static_cast<void>(Meanwhile{*this}.end());
     take_motion_news();
     sequencer_.sent().follow(motion_.status());
+    if (const auto failure = sequencer_.logs().take_failure()) {
+        run_.isRunning() ? run_.note_failure(failure->str())
+                         : post(MessageKind::OPERATOR_ERROR, failure->str());
+    }
+    if (const auto delay = sequencer_.logs().take_delay()) {
+        post(MessageKind::OPERATOR_ERROR, *delay);
+    }
     sequencer_.on_tool_event(io_.step(parts_.io_port.read()));
     Start{*this}.watch_hold();  // a tool that has come is known before a command goes on with it
     update_state();
@@ -160,7 +167,8 @@ void Task::step_run() {
     }
     reader_.follow(sequencer_);
     // The step that carries out the last block ends the program: nothing is left to pause in front of.
-    if (run_.phase() == RunPhase::FINISHING && sequencer_.isIdle() && !run_.isHeld() && !run_.hasFailed()) {
+    const bool isAllDone = sequencer_.isIdle() && sequencer_.logs().isSettled();
+    if (run_.phase() == RunPhase::FINISHING && isAllDone && !run_.isHeld() && !run_.hasFailed()) {
         finish_run(Progress::DONE, {});
     } else if (run_.hold() == Hold::STEPPING && sequencer_.isStepDone()) {
         run_.change(RunEvent::STEP_DONE);
@@ -326,7 +334,7 @@ bool Task::begin_run() {
         run_.change(RunEvent::READ);
     } else if (run_.kind() == RunKind::MDI) {
         const interp::Step result = reader_.execute(run_.line());
-        if (!Meanwhile{*this}.end()) {
+        if (!Meanwhile{*this}.end_step(result)) {
             on_step_result(result);
         }
     }
@@ -362,11 +370,11 @@ void Task::run_interpreter() {
             }
             const std::string probe = sequencer_.take_probe() ? reader_.probe_line() : "";
             if (!probe.empty()) {
-                sequencer_.log_probe(probe);
+                sequencer_.logs().write_probe(probe);
             }
         }
         const interp::Step result = reader_.step();
-        if (Meanwhile{*this}.end()) {
+        if (Meanwhile{*this}.end_step(result)) {
             return;
         }
         Start{*this}.note_doubt();

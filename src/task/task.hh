@@ -83,7 +83,9 @@ struct Settings {
 struct Apart {
     bool isOn = false;
     bool isStopped = false;
-    bool isTold = false;        ///< to the operator
+    bool isTold = false;      ///< to the operator
+    bool isWaitTold = false;  ///< that it does not end after a stop
+    std::int64_t stopped_ns = 0;
     std::int64_t since_ns = 0;  ///< its first cycle
     std::vector<std::function<void()>> later;
 };

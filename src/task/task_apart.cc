@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "interp/scripts/script_stop.hh"
 #include "mailbox/stops.hh"
 #include "task/task_handler.hh"
 #include "task/task_show.hh"
@@ -43,6 +44,16 @@ void Task::Meanwhile::begin() {
                               "Stops work; other commands wait until it has finished",
                               place));
     }
+    if (apart.isStopped && !apart.isWaitTold && task.now_ns_ - apart.stopped_ns >= TOLD_AFTER_NS) {
+        apart.isWaitTold = true;
+        const std::string place = interp::script_stop().place();
+        task.post(MessageKind::OPERATOR_ERROR,
+                  fmt::format(
+                      "the work is stopped, but the interpreter still waits{}: for a disk, or for a function "
+                      "outside of Python such as time.sleep(). Other commands wait until it returns; if it "
+                      "does not, end the machine",
+                      place.empty() ? "" : " at " + place));
+    }
 }
 
 void Task::Meanwhile::stop_work(const std::string &why, AbortReason reason, bool isCutShort) {
@@ -58,6 +69,8 @@ void Task::Meanwhile::stop_work(const std::string &why, AbortReason reason, bool
     task.io_.set_flood(false);
     task.io_.set_mist(false);
     task.apart_.isStopped = true;
+    task.apart_.stopped_ns = task.now_ns_;
+    interp::script_stop().request();
     task.apart_.later.emplace_back([&here = task, why, reason, isCutShort] {
         here.stop_run(why, isCutShort);
         here.abort_work(reason);
@@ -110,6 +123,16 @@ bool Task::Meanwhile::end() {
     }
     task.reader_.call().fixed_executed.reset();
     return apart.isStopped;
+}
+
+bool Task::Meanwhile::end_step(interp::Step result) {
+    const bool hasFailed = task.apart_.isStopped && result == interp::Step::FAILED;
+    const std::string failure = hasFailed ? task.reader_.interpreter().error().what.str() : std::string();
+    const bool isStopped = end();
+    if (hasFailed) {
+        task.post(MessageKind::OPERATOR_ERROR, failure);
+    }
+    return isStopped;
 }
 
 void Task::Meanwhile::end_left_jogs() {

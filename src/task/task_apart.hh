@@ -17,6 +17,19 @@ struct Task::Meanwhile {
     /// After each long call: does what another thread has left for its end. True when that was a stop: what
     /// the call was made for is over.
     bool end();
+    /// The same after a step of the interpreter; where a stop has made it fail, the operator reads where it
+    /// was.
+    bool end_step(interp::Step result);
+    /// What `call` returns, which may wait for a disk: stops are carried out beside it.
+    template <class Call>
+    auto beside(const Call &call) {
+        auto result = [&] {
+            const LongCall::During during(task.long_call());
+            return call();
+        }();
+        static_cast<void>(end());
+        return result;
+    }
     /// The run ends, and what moves or turns stops. Beside a call the latter at once; the run ends, and modes
     /// return to those of the executed block, after it.
     void stop_work(const std::string &why, AbortReason reason, bool isCutShort = true);

@@ -90,7 +90,8 @@ Outcome Task::Handler::operator()(const SetMode &command) {
 }
 
 Outcome Task::Handler::operator()(const OpenProgram &command) {
-    if (const auto allowed = task.senders_.check_file(command.path); !allowed.has_value()) {
+    const auto allowed = Meanwhile{task}.beside([&] { return task.senders_.check_file(command.path); });
+    if (!allowed.has_value()) {
         return std::unexpected(allowed.error());
     }
     const auto opened = task.reader_.open(command.path);

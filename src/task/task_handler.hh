@@ -9,6 +9,7 @@
 #include "task/link/device_orders.hh"
 #include "task/link/joint_settings.hh"
 #include "task/link/motion_words.hh"
+#include "task/task_apart.hh"
 #include "task/task_start.hh"
 
 namespace mw::task {
@@ -116,7 +117,7 @@ struct Task::Handler {
     template <OneOf<SetToolEntry, AddTool, RemoveTool> C>
     Outcome operator()(const C &command) {
         const ToolUse use{task.status_.tool.prepared_index, task.run_.hold() == Hold::AWAY};
-        return done(edit_tools(command, use, task.parts_.tools));
+        return done(Meanwhile{task}.beside([&] { return edit_tools(command, use, task.parts_.tools); }));
     }
 
     Outcome operator()(const Null &) { return Progress::DONE; }

@@ -62,14 +62,16 @@ Outcome Task::Handler::operator()(const JogStop &command) {
 
 /// Done when the file is read and on its way to motion.
 Outcome Task::Handler::operator()(const LoadCompensation &command) {
-    if (const auto allowed = task.senders_.check_file(command.path); !allowed.has_value()) {
+    const auto allowed = Meanwhile{task}.beside([&] { return task.senders_.check_file(command.path); });
+    if (!allowed.has_value()) {
         return std::unexpected(allowed.error());
     }
     if (command.joint >= task.settings_.num_joints) {
         return fail(fmt::format("there is no joint {}", command.joint));
     }
     const auto type = static_cast<motion::ScrewFileType>(command.kind);
-    const auto points = motion::read_screw_file(command.path, command.joint, type);
+    const auto points =
+        Meanwhile{task}.beside([&] { return motion::read_screw_file(command.path, command.joint, type); });
     if (!points.has_value()) {
         return std::unexpected(points.error());
     }
@@ -90,7 +92,7 @@ Outcome Task::Handler::operator()(const LoadToolTable &) {
     if (task.reload_command_ != 0) {
         return fail("the tool table is being read already");
     }
-    const auto begun = task.parts_.tools.reload();
+    const auto begun = Meanwhile{task}.beside([&] { return task.parts_.tools.reload(); });
     if (!begun.has_value()) {
         return std::unexpected(begun.error());
     }

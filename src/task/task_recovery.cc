@@ -89,7 +89,7 @@ Result<> Task::Start::open_recovery() {
         return opened;
     }
     const std::string &program = (*task.recovery_.offer())->start.program;
-    opened = task.senders_.check_file(program);
+    opened = Meanwhile{task}.beside([&] { return task.senders_.check_file(program); });
     opened = opened.has_value() ? task.reader_.open(program) : opened;
     if (opened.has_value()) {
         task.status_.task.program.assign(program);

@@ -2,6 +2,7 @@
 #include "tool/table.hh"
 
 #include <algorithm>
+#include <span>
 #include <unordered_map>
 #include <utility>
 
@@ -9,6 +10,7 @@
 
 #include "base/atomic_file.hh"
 #include "base/text.hh"
+#include "diag/message_limit.hh"
 
 namespace mw::tool {
 namespace {
@@ -43,6 +45,10 @@ ToolEntry empty_pocket(int pocketno) {
     none.toolno = NOBODY;
     none.pocketno = pocketno;
     return none;
+}
+
+std::span<const diag::Diagnostic> first_of(const diag::Sink &sink) {
+    return std::span(sink.all()).first(std::min(sink.all().size(), diag::MOST_OF_A_FILE));
 }
 
 }  // namespace
@@ -168,12 +174,17 @@ Table Table::parse_leniently(std::string_view text, const std::string &path, dia
     Table table(changer);
     Reading reading{path};
     table.take_text(text, reading);
-    for (const diag::Diagnostic &one : reading.skipped.all()) {
+    for (const diag::Diagnostic &one : first_of(reading.skipped)) {
         sink.warning(one.what.message + ": the line is skipped", one.what.place, one.what.hint);
     }
     table.check(reading);
-    for (const diag::Diagnostic &one : reading.doubts.all()) {
+    for (const diag::Diagnostic &one : first_of(reading.doubts)) {
         sink.report(one);
+    }
+    const std::size_t all = reading.skipped.all().size() + reading.doubts.all().size();
+    const std::size_t told = first_of(reading.skipped).size() + first_of(reading.doubts).size();
+    if (all > told) {
+        sink.warning(fmt::format("{} more lines are skipped or doubtful", all - told), {path, 0, 0});
     }
     table.place(reading);
     return table;

@@ -139,7 +139,7 @@ class Machine:
 
 def with_python(text):
     """The text of an INI file whose programs may run Python."""
-    return text + '\n[PYTHON]\nTOPLEVEL = toplevel.py\n'
+    return text + '\n[PYTHON]\nTOPLEVEL = toplevel.py\nPATH_PREPEND = .\n'
 
 
 def prepare_python(machine):

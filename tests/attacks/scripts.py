@@ -10,9 +10,14 @@ import sys
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / 'e2e'))
-from rig import ABORT_S, END_S, prepare_python, run_attacks, with_python  # noqa: E402  pylint: disable=wrong-import-position
+from rig import ABORT_S, END_S, run_attacks, with_python  # noqa: E402  pylint: disable=wrong-import-position
 
 LONG = 6.0
+
+
+def prepare(machine):
+    (machine.ini.parent / 'toplevel.py').write_text('import oword\n')
+    (machine.ini.parent / 'oword.py').write_text('def forever(self):\n    while True:\n        pass\n')
 
 
 def cut_then(machine, python):
@@ -52,6 +57,30 @@ def end(machine, found):
     found.expect(took < END_S, f'SIGTERM ends a machine with an endless script in {took:.1f} s', machine.text())
 
 
+def endless(machine, found):
+    machine.command.mode(machine.linuxcnc.MODE_MDI)
+    machine.command.wait_complete()
+    for line, place in ((';py,while True: pass', ';py,:1'), ('o<forever> call', 'oword.py:')):
+        machine.messages.clear()
+        machine.command.mdi(line)
+        machine.until(lambda: False, 0.3)
+        took = machine.abort_s()
+        found.expect(took < ABORT_S, f'an abort of {line} is answered in {took * 1000:.0f} ms')
+        named = machine.until(lambda: any('ended the script' in text and place in text for text in machine.messages), 2)
+        found.expect(named, f'{line} ends with a message that names {place}', machine.messages)
+        machine.command.mdi('G0 X1' if 'py' in line else 'G0 X2')
+        found.expect(machine.command.wait_complete(10) == machine.linuxcnc.RCS_DONE, f'the machine takes the next line after {line}', machine.messages)
+    machine.messages.clear()
+    machine.command.mdi(';py,import time; time.sleep(3)')
+    machine.until(lambda: False, 0.3)
+    machine.command.abort()
+    told = machine.until(lambda: any('outside of Python' in text and ';py,:1' in text for text in machine.messages), 2.5)
+    found.expect(told, 'a message says where it waits', machine.messages)
+    machine.until(lambda: False, 2)
+    machine.command.mdi('G0 X1')
+    found.expect(machine.command.wait_complete(10) == machine.linuxcnc.RCS_DONE, 'the machine takes the next line after time.sleep', machine.messages)
+
+
 def leave(machine, found):
     for call in ('_exit(0)', 'abort()'):
         found.expect(machine.run(f';py,import os; os.{call}\nM2\n'), f'os.{call} ends the program')
@@ -62,5 +91,5 @@ def leave(machine, found):
 
 
 if __name__ == '__main__':
-    run_attacks(__file__, {'sleep': sleep, 'estop': estop, 'end': end, 'leave': leave},
-                prepare_python, with_python)
+    run_attacks(__file__, {'sleep': sleep, 'estop': estop, 'end': end, 'endless': endless, 'leave': leave},
+                prepare, with_python)

@@ -39,6 +39,7 @@ function makeRig() {
     message: (message, ageMs) => told.push(`message ${message.text}${ageMs > 0 ? ` of ${ageMs} ms ago` : ''}`),
     machine: (isUp, client, reason) => told.push(`machine ${isUp} ${client} ${reason}`),
     roundTrip: (ms) => told.push(`round trip ${ms}`),
+    silent: (seconds) => told.push(`silent ${seconds}`),
   };
   const link = new Link(events, {
     makeSocket: () => {
@@ -91,6 +92,15 @@ describe('Link', () => {
     expect(hasStarted).toBe(true);
     expect(await second).toEqual({ progress: 'REFUSED', reason: 'no' });
     expect(await first).toEqual({ progress: 'DONE', reason: '' });
+  });
+
+  it('tells that task is silent and that it is back', () => {
+    const { sockets, told } = makeRig();
+    const socket = sockets[0] as FakeSocket;
+    socket.begin();
+    socket.tell({ silent: 0.6 });
+    socket.tell({ silent: 0 });
+    expect(told.slice(-2)).toEqual(['silent 0.6', 'silent 0']);
   });
 
   it('sends nothing later that could not be sent at once', async () => {

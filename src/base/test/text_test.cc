@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "base/own_place.hh"
+#include "base/short_text.hh"
 #include "base/text.hh"
 
 namespace mw {
@@ -173,6 +174,13 @@ TEST(Memory, ItsEndIsToldAndNoCrash) {
             ::operator delete(::operator new(size));
         },
         testing::ExitedWithCode(1), "no memory left");
+}
+
+TEST(Text, AMessageQuotesTheStartOfALongTextOnly) {
+    EXPECT_EQ(short_text(std::string(1000, 'x')), std::string(1000, 'x'));
+    EXPECT_EQ(short_text(std::string(1001, 'x')), std::string(300, 'x') + "...");
+    EXPECT_EQ(short_text(std::string(299, 'x') + "\xc3\xa4" + std::string(1000, 'y')),
+              std::string(299, 'x') + "...");
 }
 
 }  // namespace

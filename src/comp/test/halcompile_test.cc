@@ -204,6 +204,17 @@ TEST(HalcompileCode, SeesFunctionsOnlyInCode) {
     EXPECT_FALSE(look_at_code("/* FUNCTION(_) */").hasFunctionWord);
 }
 
+TEST(HalcompileCode, FindsWhereTheNestingIsDeeperThanCompilersTake) {
+    const std::string sound =
+        std::string(200, '(') + std::string(200, ')') + "/*" + std::string(300, '{') + "*/";
+    EXPECT_FALSE(look_at_code(sound + "- - !x").deep.has_value());
+    const auto deep = look_at_code("FUNCTION(_)\n" + std::string(300, '{')).deep;
+    ASSERT_TRUE(deep.has_value());
+    EXPECT_EQ(deep->line, 1);
+    EXPECT_EQ(deep->column, 257);
+    EXPECT_TRUE(look_at_code(std::string(300, '-')).deep.has_value());
+}
+
 TEST(HalcompileEmit, WrapsABodyAndKeepsItsLines_B2) {
     const std::string c =
         emit_c(parse_good("component x;\npin in float in;\nfunction _;\nlicense \"GPL\";\n;;\nbody;\n"));

@@ -222,5 +222,19 @@ TEST(Ini, TwoHundredThousandSectionsAndKeysAreFoundWithoutComparingAll) {
     EXPECT_NE(ini.sink.all().back().what.hint.find("at the start of a line"), std::string::npos);
 }
 
+TEST(Ini, ALineHasALimitAndSoHasTheNumberOfWrongLines) {
+    const Read longest("[A]\nB = " + std::string(65532, 'x') + "\nC = 1\n");
+    EXPECT_FALSE(longest.sink.hasErrors());
+    const Read longer("[A]\nB = \\\n" + std::string(65536, 'x') + "\nC = 1\n# " + std::string(70000, 'x'));
+    ASSERT_EQ(longer.sink.all().size(), 1U);
+    EXPECT_EQ(longer.sink.all().front().what.place.line, 2);
+    EXPECT_NE(longer.file.find("A", "C"), nullptr);
+    std::string wrong;
+    for (int i = 0; i < 1000; ++i) {
+        wrong += "[A\n";
+    }
+    EXPECT_EQ(Read(wrong).sink.all().size(), 101U);
+}
+
 }  // namespace
 }  // namespace mw::config

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "base/text.hh"
+#include "hal_lang/tcl/source_limits.hh"
 
 namespace mw::hal::tcl {
 
@@ -58,6 +59,7 @@ Interpreter::Interpreter(lang::Session &session) : session_(session), interprete
         session_.warn({}, fmt::format("Tcl: {}", Tcl_GetStringResult(interpreter_)));
     }
     add_commands(interpreter_, session_);
+    add_source_limits(interpreter_);
     Tcl_CreateObjCommand(interpreter_, "exit", run_exit, &session_, nullptr);
     if (session_.options().ini != nullptr) {
         add_ini(interpreter_, *session_.options().ini);
@@ -97,6 +99,9 @@ Error Interpreter::error_here(const std::string &path) const {
 }
 
 Result<> Interpreter::run_file(const std::string &path, const std::vector<std::string> &arguments) {
+    if (const auto checked = check_nesting_of_file(path); !checked) {
+        return checked;
+    }
     set_arguments(path, arguments);
     const int status = Tcl_EvalFile(interpreter_, path.c_str());
     const bool hasFailed = status != TCL_OK && status != TCL_RETURN;
@@ -131,9 +136,10 @@ Result<> Interpreter::run_standard_input() {
         if (Tcl_CommandComplete(text.c_str()) == 0) {
             continue;
         }
-        const int status = Tcl_EvalEx(interpreter_, text.c_str(), -1, TCL_EVAL_GLOBAL);
+        const auto checked = check_nesting(text, "");
+        const int status = checked ? Tcl_EvalEx(interpreter_, text.c_str(), -1, TCL_EVAL_GLOBAL) : TCL_ERROR;
         text.clear();
-        const std::string result = Tcl_GetStringResult(interpreter_);
+        const std::string result = checked ? Tcl_GetStringResult(interpreter_) : checked.error().str();
         (void)Tcl_Eval(interpreter_, "flush stdout");
         if (session_.hasEnded()) {
             break;

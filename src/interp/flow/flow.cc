@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "base/short_text.hh"
 #include "interp/flow/script_view.hh"
 
 namespace mw::interp::detail {
@@ -351,7 +352,7 @@ Step Flow::fail_block() {
     Place &here = levels_.here();
     const int line = fault.line > 0 ? fault.line : here.line;
     error_ = {};
-    error_.what.message = fault.message;
+    error_.what.message = short_text(fault.message);
     error_.what.hint = fault.hint;
     error_.what.place = {levels_.file(), line, static_cast<int>(fault.column)};
     if (!fault.block_text.empty()) {

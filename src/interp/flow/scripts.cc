@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "interp/scripts/script_stop.hh"
+
 namespace mw::interp::detail {
 namespace {
 
@@ -35,6 +37,7 @@ Result<> Scripts::need(const std::string &what, const SourcePlace &place, const 
         error.place = place;
         return std::unexpected(std::move(error));
     }
+    (*made)->follow(script_stop());
     ++depth_;
     Result<> loaded = (*made)->load(settings.scripts, view);
     --depth_;

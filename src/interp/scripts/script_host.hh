@@ -136,9 +136,13 @@ struct ScriptArguments {
 /// Where a script's function stands.
 enum class ScriptModule { REMAP, OWORD };
 
+class ScriptStop;
+
 class ScriptHost {
   public:
     virtual ~ScriptHost() = default;
+    /// Scripts end when `stop`, which outlives the host, is requested.
+    virtual void follow(ScriptStop &stop) { static_cast<void>(stop); }
     /// Runs the top-level script. `view` must outlive the host.
     virtual Result<> load(const ScriptSettings &settings, InterpreterView &view) = 0;
     /// The interpreter is ready: calls the top-level script's __init__, if there is one.
@@ -161,7 +165,7 @@ std::string script_library();
 
 /// The symbol in that shared object, and the version that both sides must have.
 inline constexpr char SCRIPT_HOST_SYMBOL[] = "millwright_script_host";
-inline constexpr int SCRIPT_HOST_VERSION = 2;
+inline constexpr int SCRIPT_HOST_VERSION = 3;
 /// Writes a new host to *host; 0 when `version` is not the one that was compiled in.
 using ScriptHostFactory = int (*)(int version, ScriptHost **host);
 

@@ -9,6 +9,7 @@
 
 #include "base/own_place.hh"
 #include "interp/scripts/script_host.hh"
+#include "interp/scripts/script_stop.hh"
 
 namespace mw::interp {
 namespace {
@@ -25,6 +26,11 @@ std::string own_file_folder() {
 }
 
 }  // namespace
+
+ScriptStop &script_stop() {
+    static ScriptStop stop;
+    return stop;
+}
 
 std::string script_library() {
     const std::string program = program_folder();

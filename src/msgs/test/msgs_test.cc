@@ -10,6 +10,7 @@
 
 #include "base/atomic_file.hh"
 #include "msgs/catalogue.hh"
+#include "msgs/json.hh"
 #include "msgs/reference.hh"
 #include "msgs/status.hh"
 
@@ -119,6 +120,21 @@ TEST(Messages, EveryCommandIsAllowedWithItsOwnDefaultsUnlessItNeedsAText) {
 TEST(Messages, TheReferencePageIsUpToDate) {
     EXPECT_EQ(read_file(MW_SOURCE_DIR "/docs/messages.md").value(), reference_page())
         << "build/release/bin/message_reference > docs/messages.md";
+}
+
+TEST(Messages, TenMegabytesOfNestedJsonAreNoMessage) {
+    constexpr std::size_t SIZE = 10'000'000;
+    const std::string open(SIZE, '[');
+    std::string objects;
+    while (objects.size() < SIZE) {
+        objects += R"({"a":)";
+    }
+    const std::string start = R"({"message":"JogStop","index":)";
+    const std::string closed = std::string(SIZE / 2, '[') + std::string(SIZE / 2, ']');
+    for (const std::string &text : {open, objects, start + open, start + objects, start + closed + "}",
+                                    start + '"' + std::string(SIZE, 'x')}) {
+        EXPECT_EQ(json_name(text).error().message, "this is no JSON object") << text.substr(0, 40);
+    }
 }
 
 TEST(Messages, WhatIsWaitedForIsToldInWords) {

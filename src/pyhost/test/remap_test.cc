@@ -3,10 +3,13 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <thread>
 
+#include "interp/scripts/script_stop.hh"
 #include "scripted.hh"
 
 namespace mw::pyhost::test {
@@ -231,6 +234,43 @@ TEST(PythonRemap, ErrorsCarryThePlaceInTheScript_I1) {
     ASSERT_EQ(it.run("M405\n"), Step::FAILED);
     EXPECT_EQ(it.interpreter->error().line_text, "o<rm405> endsub");
     EXPECT_EQ(it.run("G0 X2\n"), Step::PROGRAM_END);
+}
+
+/// As an abort of the machine does, from another thread.
+TEST(PythonRemap, AScriptWithoutAnEndIsEndedWithItsPlace_C5) {
+    Scripted it;
+    it.remap("M400 modalgroup=5 py=endless");
+    it.remap("M401 modalgroup=5 py=obstinate");
+    it.handlers("def endless(self, **words):\n"
+                "    while True:\n"
+                "        pass\n"
+                "def obstinate(self, **words):\n"
+                "    ended = 0\n"
+                "    while ended < 3:\n"
+                "        try:\n"
+                "            while True: pass\n"
+                "        except:\n"
+                "            ended += 1\n"
+                "    while True: pass\n");
+    interp::ScriptStop &stop = interp::script_stop();
+    const auto run_and_stop = [&](const char *program) {
+        stop.begin();
+        std::thread other([&stop] {
+            std::this_thread::sleep_for(std::chrono::milliseconds(100));
+            stop.request();
+        });
+        EXPECT_EQ(it.run(program), Step::FAILED);
+        other.join();
+        stop.begin();
+    };
+    run_and_stop("M400\n");
+    EXPECT_NE(it.error().find("An abort has ended the script"), std::string::npos) << it.error();
+    EXPECT_NE(it.error().find("remap.py:"), std::string::npos) << it.error();
+    run_and_stop(";py,while True: pass\n");
+    EXPECT_NE(it.error().find("An abort has ended the script (;py,:1"), std::string::npos) << it.error();
+    run_and_stop("M401\n");
+    EXPECT_NE(it.error().find("An abort has ended the script"), std::string::npos) << it.error();
+    EXPECT_EQ(it.run(";py,x = sum(range(100000))\nG0 X1\nM2\n"), Step::PROGRAM_END) << it.error();
 }
 
 TEST(PythonRemap, FailedExecuteCanBeHandled_I1) {

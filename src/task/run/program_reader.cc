@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "interp/plugin.hh"
+#include "interp/scripts/script_stop.hh"
 
 namespace mw::task {
 namespace {
@@ -23,10 +24,12 @@ class Call {
             reader_.canon().begin_read();
         }
         reader_.canon().divert(&reader_.call().fresh);
+        interp::script_stop().begin();
         reader_.call().call.begin();
     }
     ~Call() {
         reader_.call().call.end();
+        interp::script_stop().begin();
         reader_.canon().divert(nullptr);
         ItemQueue &fresh = reader_.call().fresh;
         std::move(fresh.begin(), fresh.end(), std::back_inserter(reader_.queue()));

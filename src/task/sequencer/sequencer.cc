@@ -108,7 +108,8 @@ const Confinement *confinement_of(const SequencerEvents &events) {
 Sequencer::Sequencer(ItemQueue &queue, MotionLink &motion, io::Controller &io, ToolStore &tools,
                      SequencerEvents events, SequencerSettings settings)
     : queue_(queue), motion_(motion), io_(io), tools_(tools), events_(std::move(events)),
-      settings_(std::move(settings)), tool_change_(settings_.changer_error_text) {}
+      settings_(std::move(settings)), tool_change_(settings_.changer_error_text),
+      logs_(settings_.log_works, settings_.log_disk) {}
 
 void Sequencer::step(std::int64_t now_ns, Reach reach) {
     isHeld_ = false;
@@ -225,8 +226,7 @@ bool Sequencer::execute(const Item &item, std::int64_t now_ns) {
         [&](const OneOf<interp::UserCode, interp::ChangeTool> auto &call) { perform(call); },
         [&](const interp::ProgramStop &stop) { isHeld_ = events_.stop(stop, item.source.line); },
         [&](const OneOf<interp::ProgramEnd, interp::Finish> auto &) {
-            log_.close();
-            probe_log_.close();
+            logs_.close();
             events_.end();
         },
         [&](const interp::OperatorMessage &call) {
@@ -234,14 +234,15 @@ bool Sequencer::execute(const Item &item, std::int64_t now_ns) {
         },
         [&](const interp::CanonError &call) { events_.message(MessageKind::OPERATOR_ERROR, call.text); },
         [&](const interp::PrintLine &call) { events_.print(call.text); },
-        [&](const interp::OpenLog &call) {
-            check(log_.open(call.path, call.isAppending, confinement_of(events_)));
-        },
-        [&](const interp::LogLine &call) { check(log_.write(call.text)); },
-        [&](const interp::CloseLog &) { log_.close(); },
-        [&](const interp::LogProbes &call) {
-            call.path.empty() ? probe_log_.close()
-                              : check(probe_log_.open(call.path, false, confinement_of(events_)));
+        [&](const interp::LogLine &call) { check(logs_.write(call)); },
+        [&](const interp::CloseLog &) { logs_.close_lines(); },
+        [&](const OneOf<interp::OpenLog, interp::LogProbes> auto &call) {
+            if (call.path.empty()) {  // (probeclose)
+                logs_.close_probes();
+                return;
+            }
+            logs_.open(call, confinement_of(events_));
+            wait_ = Wait::LOG;
         },
         [&](const interp::UseOffsets &offsets) {
             spindles_.use(offsets, motion_);
@@ -387,8 +388,7 @@ void Sequencer::abort(int reason) {
     sent_.clear();
     last_begun_ = {};
     blocked_ = ExecState::DONE;
-    log_.close();
-    probe_log_.close();
+    logs_.close();
     queue_.clear();
     wait_ = Wait::NONE;
     tool_change_.abort(io_);

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -13,7 +14,7 @@
 #include "task/link/motion_link.hh"
 #include "task/link/tool_store.hh"
 #include "task/sequencer/items.hh"
-#include "task/sequencer/program_log.hh"
+#include "task/sequencer/program_logs.hh"
 #include "task/sequencer/program_spindles.hh"
 #include "task/sequencer/sent_moves.hh"
 #include "task/sequencer/tool_change.hh"
@@ -46,9 +47,11 @@ struct SequencerEvents {
 using MoveListener = std::function<void(motion::CommandId id, const motion::PathBody &move)>;
 
 struct SequencerSettings {
-    std::string changer_error_text;          ///< [TASK]IO_ERROR
+    std::string changer_error_text{};        ///< [TASK]IO_ERROR
     bool isToolChangeWithSpindleOn = false;  ///< [EMCIO]TOOL_CHANGE_WITH_SPINDLE_ON
     int smooth_planner = 1;  ///< [TRAJ]SMOOTH_PLANNER: what G64 R above 0 means; 0: it is refused
+    LogWorks log_works = LogWorks::ON_CALL;
+    std::shared_ptr<LogDisk> log_disk = std::make_shared<LogDisk>();
 };
 
 /// The spindle that M19 is to bring to its angle.
@@ -112,15 +115,14 @@ class Sequencer {
     void stop_spindles() { spindles_.stop_all(motion_); }
     /// Whether a probe was made since the last call.
     bool take_probe() { return std::exchange(isProbeMade_, false); }
-    /// A line for the file of (probeopen); without one nothing happens.
-    void log_probe(const std::string &line) { check(probe_log_.write(line)); }
+    ProgramLogs &logs() { return logs_; }
     const ToolChange &tool_change() const { return tool_change_; }
     /// Of the tool that is ready, in the table; -1: none.
     int selected_tool_index() const { return tool_change_.selected_index(tools_); }
     void set_move_listener(MoveListener listener) { move_listener_ = std::move(listener); }
 
   private:
-    enum class Wait : std::uint8_t { NONE, DWELL, INPUT, TOOL, TOOL_DATA, ORIENT, USER_CODE, SETTING };
+    enum class Wait : std::uint8_t { NONE, DWELL, INPUT, TOOL, TOOL_DATA, ORIENT, USER_CODE, SETTING, LOG };
     bool isWaitOver(std::int64_t now_ns);
     bool isInputWaitOver(std::int64_t now_ns);
     bool isOrientWaitOver(std::int64_t now_ns);
@@ -170,7 +172,7 @@ class Sequencer {
     bool hasFailed_ = false;       ///< nothing more is begun until abort()
     std::uint64_t step_read_ = 0;  ///< what the single step carries out; 0: nothing yet
     ItemPlace last_begun_;         ///< of the last item that was begun
-    ProgramLog log_, probe_log_;   ///< of (log,...), of (probeopen ...)
+    ProgramLogs logs_;
     bool isProbeMade_ = false;
 };
 

@@ -21,6 +21,12 @@ bool Sequencer::isWaitOver(std::int64_t now_ns) {
         check(result.value_or(Result<>{}));
         break;
     }
+    case Wait::LOG: {
+        const std::optional<Result<>> result = logs_.opened();
+        isOver = result.has_value();
+        check(result.value_or(Result<>{}));
+        break;
+    }
     case Wait::ORIENT: isOver = isOrientWaitOver(now_ns); break;
     case Wait::SETTING: isOver = motion_.isAnswered(awaited_setting_) && io_.isToolOffsetShown(); break;
     case Wait::USER_CODE: {
@@ -94,7 +100,8 @@ ExecState Sequencer::exec_state() const {
     case Wait::DWELL:
     case Wait::INPUT: return ExecState::WAITING_FOR_DELAY;
     case Wait::TOOL:
-    case Wait::TOOL_DATA: return ExecState::WAITING_FOR_IO;
+    case Wait::TOOL_DATA:
+    case Wait::LOG: return ExecState::WAITING_FOR_IO;
     case Wait::ORIENT: return ExecState::WAITING_FOR_SPINDLE_ORIENTED;
     case Wait::SETTING: return ExecState::WAITING_FOR_MOTION;
     case Wait::USER_CODE: return ExecState::WAITING_FOR_SYSTEM_CMD;
@@ -113,7 +120,8 @@ Waiting Sequencer::waiting_for() const {
     case Wait::SETTING: return {WaitFor::SETTING, -1};
     case Wait::USER_CODE: return {WaitFor::USER_CODE, -1};
     case Wait::NONE:
-    case Wait::TOOL: break;
+    case Wait::TOOL:
+    case Wait::LOG: break;
     }
     return {io_.waiting_for(), -1};
 }

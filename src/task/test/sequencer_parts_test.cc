@@ -1,56 +1,26 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The parts of the sequencer, each alone.
-#include <sys/resource.h>
 #include <unistd.h>
 
-#include <csignal>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <numbers>
-#include <sstream>
 
 #include <gtest/gtest.h>
 
 #include "task/link/shown_tools.hh"
 #include "task/sequencer/planner_mode.hh"
-#include "task/sequencer/program_log.hh"
 #include "task/sequencer/program_spindles.hh"
 #include "task/sequencer/tool_change.hh"
 #include "task/sequencer/user_program.hh"
+#include "task/test/folder.hh"
 #include "task/test/tools.hh"
 
 namespace mw::task {
 namespace {
 
-namespace fs = std::filesystem;
-
-/// A folder of this test, gone with it.
-class Folder {
-  public:
-    Folder() : path_(fs::temp_directory_path() / ("mw_parts_" + std::to_string(::getpid()))) {
-        fs::create_directory(path_);
-    }
-    ~Folder() { fs::remove_all(path_); }
-    Folder(const Folder &) = delete;
-    Folder &operator=(const Folder &) = delete;
-    std::string operator/(const std::string &name) const { return (path_ / name).string(); }
-    std::string program(const std::string &name, const std::string &script) const {
-        const fs::path path = path_ / name;
-        std::ofstream(path) << "#!/bin/sh\n" << script;
-        fs::permissions(path, fs::perms::owner_all);
-        return path.string();
-    }
-
-  private:
-    fs::path path_;
-};
-
-std::string text_of(const std::string &path) {
-    std::ostringstream text;
-    text << std::ifstream(path).rdbuf();
-    return text.str();
-}
+using test::Folder;
+using test::text_of;
 
 class ProgramSpindlesTest : public testing::Test {
   protected:
@@ -272,41 +242,6 @@ TEST_F(ToolChangeTest, M61NamesTheToolWithoutAChange_G4) {
     EXPECT_EQ(io.action(), io::ToolAction::IDLE);
     ASSERT_TRUE(change.set_number({0}, tools, io).has_value());
     EXPECT_EQ(tools.in_spindle, 0);
-}
-
-TEST(ProgramLog, EachLineIsInTheFileAtOnceAndAppendingKeepsWhatIsThere_I1) {
-    const Folder folder;
-    ProgramLog log;
-    EXPECT_TRUE(log.write("nowhere").has_value()) << "none is open";
-    ASSERT_TRUE(log.open(folder / "log", false).has_value());
-    ASSERT_TRUE(log.write("one").has_value());
-    EXPECT_EQ(text_of(folder / "log"), "one\n");
-    log.close();
-    ASSERT_TRUE(log.write("lost").has_value());
-    ASSERT_TRUE(log.open(folder / "log", true).has_value());
-    ASSERT_TRUE(log.write("two").has_value());
-    EXPECT_EQ(text_of(folder / "log"), "one\ntwo\n");
-    ASSERT_TRUE(log.open(folder / "log", false).has_value());
-    EXPECT_EQ(text_of(folder / "log"), "");
-    const auto bad = log.open(folder / "no/such/folder", false);
-    ASSERT_FALSE(bad.has_value());
-    EXPECT_NE(bad.error().message.find("cannot write"), std::string::npos);
-}
-
-TEST(ProgramLog, AFullDiskIsToldOnce_I1) {
-    const Folder folder;
-    ProgramLog log;
-    ASSERT_TRUE(log.open(folder / "log", false).has_value());
-    // A limit of the process is the same to it as the end of the disk.
-    rlimit before{};
-    ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
-    const rlimit none{0, before.rlim_max};
-    const auto handler = std::signal(SIGXFSZ, SIG_IGN);
-    ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &none), 0);
-    EXPECT_FALSE(log.write("x").has_value());
-    EXPECT_TRUE(log.write("y").has_value());
-    ::setrlimit(RLIMIT_FSIZE, &before);
-    std::signal(SIGXFSZ, handler);
 }
 
 TEST(UserProgram, TellsHowItEnded_I1) {

@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The sequencer alone: a queue before it, motion's channels and the I/O controller behind it.
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
 #include <memory>
 
 #include <gtest/gtest.h>
 
+#include "base/atomic_file.hh"
 #include "task/sequencer/sequencer.hh"
+#include "task/test/hung_disk.hh"
 #include "task/test/tools.hh"
 
 namespace mw::task {
@@ -86,7 +92,8 @@ class SequencerTest : public testing::Test {
     ItemQueue queue;
     io::Controller io;
     test::OneTool tools;
-    Sequencer sequencer{queue, link, io, tools, events(), {}};
+    std::shared_ptr<test::HungDisk> disk = std::make_shared<test::HungDisk>();
+    Sequencer sequencer{queue, link, io, tools, events(), {.log_works = LogWorks::ALONE, .log_disk = disk}};
     std::vector<motion::CommandBody> told;
     std::vector<std::string> texts, failures;
     std::optional<Result<>> user_code;
@@ -249,6 +256,33 @@ TEST_F(SequencerTest, TheEndOfAProgramIsToldWhenAllBeforeItIsDone_D2) {
     cycles(4);
     EXPECT_EQ(ends, 1);
     EXPECT_TRUE(sequencer.isIdle());
+}
+
+TEST_F(SequencerTest, AHungDiskOfALogHoldsUpNoCycle_C5) {
+    const std::string path = testing::TempDir() + "mw_hung_log_" + std::to_string(::getpid());
+    add(interp::OpenLog{path, false});
+    add(interp::LogLine{"one"});
+    add_line(1);
+    const auto begin = std::chrono::steady_clock::now();
+    cycles(20);
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(500));
+    EXPECT_EQ(sequencer.exec_state(), ExecState::WAITING_FOR_IO);
+    EXPECT_EQ(moves, 0) << "whether the file can be written is known before the next block";
+    sequencer.abort(0);
+    EXPECT_TRUE(sequencer.isIdle());
+    add_line(2);
+    cycles(3);
+    EXPECT_EQ(moves, 1) << "the machine takes the next run";
+    add(interp::OpenLog{path, false});
+    add(interp::LogLine{"two"});
+    add(interp::CloseLog{});
+    disk->release();
+    while (!queue.empty() || !sequencer.logs().isSettled()) {
+        cycle();
+    }
+    EXPECT_EQ(read_file(path).value(), "two\n");
+    EXPECT_TRUE(failures.empty());
+    std::filesystem::remove(path);
 }
 
 }  // namespace

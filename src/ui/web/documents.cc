@@ -8,6 +8,7 @@
 
 #include "mailbox/stops.hh"
 #include "msgs/catalogue.hh"
+#include "msgs/json_parse.hh"
 #include "msgs/value.hh"
 
 namespace mw::ui::web {
@@ -15,8 +16,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Of the largest command, with room.
-constexpr int MOST_LEVELS = 16;
 /// Numbers beyond are not exact in a browser.
 constexpr std::uint64_t MOST_ID = std::uint64_t{1} << 53;
 
@@ -30,18 +29,6 @@ std::string one(const char *key, Json value) {
     Json json = Json::object();
     json[key] = std::move(value);
     return text_of(json);
-}
-
-/// Nothing when it is not JSON, or nested so deeply that it is no command.
-Json parse(std::string_view text) {
-    constexpr bool HAS_EXCEPTIONS = false;
-    bool isDeep = false;
-    const auto look = [&isDeep](int depth, Json::parse_event_t, Json &) {
-        isDeep = isDeep || depth > MOST_LEVELS;
-        return !isDeep;
-    };
-    Json json = Json::parse(text.begin(), text.end(), look, HAS_EXCEPTIONS);
-    return isDeep ? Json(Json::value_t::discarded) : json;
 }
 
 const char *kind_name(msgs::Kind kind) {
@@ -146,8 +133,10 @@ Json tab_document(const Tab &tab) {
     case Tab::Kind::FRAME:
         return {{"name", tab.name}, {"location", tab.location}, {"kind", "frame"}, {"address", tab.content}};
     case Tab::Kind::PANEL:
-        return {
-            {"name", tab.name}, {"location", tab.location}, {"kind", "panel"}, {"panel", parse(tab.content)}};
+        return {{"name", tab.name},
+                {"location", tab.location},
+                {"kind", "panel"},
+                {"panel", msgs::parse_json(tab.content)}};
     case Tab::Kind::PROGRAM: break;
     }
     return {{"name", tab.name}, {"location", tab.location}, {"kind", "program"}, {"command", tab.content}};
@@ -156,7 +145,7 @@ Json tab_document(const Tab &tab) {
 }  // namespace
 
 Result<> check_panel(std::string_view text) {
-    const Json json = parse(text);
+    const Json json = msgs::parse_json(text);
     const auto rows = json.is_object() ? json.find("parts") : json.end();
     if (!json.is_object() || rows == json.end() || !rows->is_array()) {
         return fail(R"(a panel is {"parts": [...]} in JSON)");
@@ -181,7 +170,7 @@ Result<> check_panel(std::string_view text) {
 std::vector<std::string> settable_names(std::string_view panel) {
     std::vector<std::string> names;
     if (check_panel(panel).has_value()) {
-        const Json json = parse(panel);  // outlives its rows
+        const Json json = msgs::parse_json(panel);  // outlives its rows
         for (const Json &row : json["parts"]) {
             const auto kind = std::ranges::find(PARTS, row["kind"].get<std::string>(),
                                                 &std::pair<std::string_view, bool>::first);
@@ -264,7 +253,7 @@ std::string lines_document(std::span<const std::string> lines) {
 }
 
 std::optional<std::vector<std::string>> read_lines(std::string_view text, std::size_t most) {
-    const Json json = parse(text);
+    const Json json = msgs::parse_json(text);
     const auto lines = json.is_object() ? json.find("lines") : json.end();
     if (!json.is_object() || lines == json.end() || !lines->is_array() || lines->size() > most) {
         return std::nullopt;
@@ -277,7 +266,7 @@ std::optional<std::vector<std::string>> read_lines(std::string_view text, std::s
 }
 
 bool isObject(std::string_view json) {
-    return parse(json).is_object();
+    return msgs::parse_json(json).is_object();
 }
 
 std::string offsets_document(std::span<const std::array<double, 10>> systems) {
@@ -327,7 +316,7 @@ std::string files_document(std::span<const FileFacts> files) {
 }
 
 Result<std::variant<Ping, Ask, Watch>> read_text(std::string_view text) {
-    const Json json = parse(text);
+    const Json json = msgs::parse_json(text);
     if (!json.is_object()) {
         return fail("this is no JSON object of at most 16 levels");
     }
@@ -356,7 +345,7 @@ Result<std::variant<Ping, Ask, Watch>> read_text(std::string_view text) {
 }
 
 std::optional<std::string> token_of_login(std::string_view text) {
-    const Json json = parse(text);
+    const Json json = msgs::parse_json(text);
     const auto token = json.is_object() ? json.find("token") : json.end();
     const bool isToken = json.is_object() && token != json.end() && token->is_string();
     return isToken ? std::optional(token->get<std::string>()) : std::nullopt;

@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "msgs/json_parse.hh"
 #include "ui/web/documents.hh"
 
 namespace mw::ui::web {
@@ -53,10 +54,6 @@ Response document(const Json &json) {
     Response response;
     response.body = text_of(json);
     return response;
-}
-
-Json parse(std::string_view text) {
-    return Json::parse(text.begin(), text.end(), nullptr, false);
 }
 
 Json pin_document(const hal::PinInfo &pin) {
@@ -230,7 +227,7 @@ Response HalDesk::set(const std::string &name, std::string_view body) {
     if (joined == nullptr) {
         return error_response(503, reason_);
     }
-    const Json json = parse(body);
+    const Json json = msgs::parse_json(body);
     const auto value = json.is_object() ? member<std::string>(json, "value", "") : std::nullopt;
     if (!value.has_value() || value->empty()) {
         return error_response(400, R"(a value is set by {"value": "..."})");
@@ -315,7 +312,7 @@ HalDesk::News HalDesk::look(const std::vector<std::string> &names) {
 }
 
 Response HalDesk::answer(std::string_view body) {
-    const Json json = parse(body);
+    const Json json = msgs::parse_json(body);
     const bool isObject = json.is_object() && json.contains("yes") && json["yes"].is_boolean();
     const auto id = isObject ? member<std::string>(json, "id", "") : std::nullopt;
     const auto number = isObject ? member<std::uint32_t>(json, "number", 0) : std::nullopt;
@@ -335,7 +332,7 @@ Response HalDesk::begin(std::string_view body) {
     if (joined == nullptr) {
         return error_response(503, reason_);
     }
-    const Json json = parse(body);
+    const Json json = msgs::parse_json(body);
     const auto request = request_of(json);
     if (!request.has_value()) {
         return error_response(400, request.error().str());

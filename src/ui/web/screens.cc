@@ -3,6 +3,7 @@
 
 #include <random>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -238,11 +239,32 @@ void Screens::pass_messages() {
     }
 }
 
+/// The server lives and task does not: stopped, or hung.
+void Screens::tell_silence() {
+    constexpr std::int64_t LONGEST_NS = 500000000, AGAIN_NS = 500000000;
+    const std::uint64_t cycle = watch_->status().cycle;
+    if (cycle != last_cycle_) {
+        last_cycle_ = cycle;
+        last_advance_ns_ = now_ns_;
+        if (std::exchange(silence_told_ns_, 0) != 0) {
+            tell_all(R"({"silent":0})");
+        }
+    } else if (now_ns_ - last_advance_ns_ > LONGEST_NS && now_ns_ - silence_told_ns_ >= AGAIN_NS) {
+        silence_told_ns_ = now_ns_;
+        tell_all(
+            fmt::format(R"({{"silent":{:.1f}}})", static_cast<double>(now_ns_ - last_advance_ns_) / 1e9));
+    }
+}
+
 void Screens::tell_statuses() {
-    if (!watch_->read_status().has_value()) {
+    const bool isRead = watch_->read_status().has_value();
+    hasStatus_ = hasStatus_ || isRead;
+    if (hasStatus_) {
+        tell_silence();
+    }
+    if (!isRead) {
         return;  // it has not begun, or has died, which the next look finds
     }
-    hasStatus_ = true;
     const PartMask fresh = watch_->fresh_parts();
     for (const auto &[session, browser] : browsers_) {
         browser->note_read(fresh);

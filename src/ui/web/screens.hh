@@ -69,6 +69,7 @@ class Screens {
     bool join(Browser &browser);
     void pass_messages();
     void tell_statuses();
+    void tell_silence();
     void tell_all(const std::string &text);
     void log(const std::string &line) const;
 
@@ -78,6 +79,9 @@ class Screens {
     std::optional<client::Client> watch_;      ///< reads status and messages for all
     std::string reason_ = "no machine is up";  ///< why there is none
     bool hasStatus_ = false;
+    std::uint64_t last_cycle_ = 0;          ///< of task, as read last
+    std::int64_t last_advance_ns_ = 0;      ///< when that was new
+    std::int64_t silence_told_ns_ = 0;      ///< 0: task is not silent
     std::optional<msgs::ToolTable> tools_;  ///< as read last
     std::map<SessionId, std::unique_ptr<Browser>> browsers_;
     /// A message or note, and when it came.

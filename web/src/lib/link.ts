@@ -51,6 +51,8 @@ export interface LinkEvents {
   message(message: Message, ageMs: number): void;
   machine(isUp: boolean, client: number, reason: string): void;
   roundTrip(ms: number): void;
+  /** Task has not reported for so long; 0: it does again. */
+  silent(seconds: number): void;
   values(values: Record<string, HalValue>): void;
   questions(questions: Question[]): void;
   note(text: string, ageMs: number): void;
@@ -200,6 +202,8 @@ export class Link {
       this.events.values(told['hal'] as Record<string, HalValue>);
     } else if ('questions' in told) {
       this.events.questions(told['questions'] as Question[]);
+    } else if ('silent' in told) {
+      this.events.silent(Number(told['silent']));
     } else if ('note' in told) {
       this.events.note(String(told['note']), Number(told['age_ms'] ?? 0));
     } else if ('machine' in told) {

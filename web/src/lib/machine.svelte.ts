@@ -42,6 +42,8 @@ interface Known {
   roundTripMs: number | null;
   /** How old the status is, once it is too old to be shown as if it were current. [s] */
   staleSeconds: number | null;
+  /** Task has not reported to the server for so long. */
+  silentSeconds: number | null;
 }
 
 export const machine = $state<Known>({
@@ -59,6 +61,7 @@ export const machine = $state<Known>({
   facts: null,
   roundTripMs: null,
   staleSeconds: null,
+  silentSeconds: null,
 });
 
 export const notices = $state<{ list: Notice[] }>({ list: [] });
@@ -173,13 +176,14 @@ const link = new Link(
     closed() {
       machine.isConnected = false;
       machine.isMachineUp = false;
+      machine.silentSeconds = null;
       machine.roundTripMs = null;
       lose();
       void checkLogin();
     },
     status(delta, isWhole) {
       statusAt = performance.now();
-      machine.staleSeconds = null;
+      machine.staleSeconds = machine.silentSeconds = null;
       if (isWhole || machine.status === null) {
         machine.status = delta as unknown as MachineStatus;
       } else {
@@ -215,6 +219,9 @@ const link = new Link(
     },
     values(values) {
       Object.assign(halValues, values);
+    },
+    silent(seconds) {
+      machine.silentSeconds = seconds > 0 ? seconds : null;
     },
     roundTrip(ms) {
       machine.roundTripMs = ms;

@@ -42,6 +42,7 @@ class FakeTask {
     /// One cycle; each command is DONE unless it is kept.
     std::vector<mailbox::Desk::Delivery> cycle() {
         now_ns += 1000000;
+        ++status->cycle;
         auto taken = desk.take(now_ns);
         for (const auto &delivery : taken) {
             if (!isKeeping) {

@@ -89,6 +89,35 @@ TEST_F(ScreensTest, AScreenIsGreetedThenToldTheWholeThenChanges_J3) {
     EXPECT_FALSE(later[0].contains("full"));
 }
 
+TEST_F(ScreensTest, EachScreenIsToldThatTaskIsSilentAndThatItIsBack_C5) {
+    go(300);
+    open(1);
+    open(2);
+    go(2000);
+    EXPECT_TRUE(of_kind(1, "silent").empty());
+    const auto wait = [this](std::int64_t ms) {  // without a cycle of task
+        for (const std::int64_t end = now_ns + ms * MS; now_ns < end;) {
+            now_ns += 10 * MS;
+            screens->tick(now_ns);
+        }
+    };
+    of_kind(2, "silent");
+    wait(450);
+    EXPECT_TRUE(of_kind(1, "silent").empty());
+    wait(200);
+    for (const SessionId session : {1, 2}) {
+        const auto told = of_kind(session, "silent");
+        ASSERT_EQ(told.size(), 1U);
+        EXPECT_GE(told[0]["silent"], 0.5);
+    }
+    wait(1000);
+    EXPECT_GE(of_kind(1, "silent").size(), 1U);
+    go(100);
+    const auto back = of_kind(1, "silent");
+    ASSERT_EQ(back.size(), 1U);
+    EXPECT_EQ(back[0]["silent"], 0);
+}
+
 TEST_F(ScreensTest, ASlowScreenGetsFewerAndTheNewest_J3) {
     go(300);
     open(1);

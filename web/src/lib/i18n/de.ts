@@ -6,6 +6,7 @@ export const de: Catalogue = {
   'app.connecting': 'Verbindung zur Maschine wird aufgebaut',
   'app.connection_lost': 'Keine Verbindung. Nichts auf diesem Schirm ist aktuell, und keine Taste hier erreicht die Maschine: den Not-Halt an der Maschine benutzen.',
   'app.machine_gone': 'Keine Maschine läuft: {reason}',
+  'app.silent': 'Task (millwright start) antwortet seit {seconds} s nicht: Die Werte sind alt, Befehle und Stopps wirken nicht. Not-Halt der Maschine benutzen.',
   'app.stale': 'Die gezeigten Werte sind {seconds} s alt',
 
   'app.unprotected': 'Dieser Bildschirm ist ungeschützt: Wer diese Adresse erreicht, darf {role}.',

@@ -6,6 +6,7 @@ export const en = {
   'app.connecting': 'Connecting to the machine',
   'app.connection_lost': 'No connection. Nothing on this screen is current, and no button here reaches the machine: use the emergency stop at the machine.',
   'app.machine_gone': 'No machine is up: {reason}',
+  'app.silent': 'Task (millwright start) has not answered for {seconds} s: the values are old, commands and stops have no effect. Use the emergency stop of the machine.',
   'app.stale': 'The figures shown are {seconds} s old',
 
   'app.unprotected': 'This screen is served without protection: whoever reaches this address may {role}.',

@@ -6,6 +6,7 @@ export const es: Catalogue = {
   'app.connecting': 'Conectando con la máquina',
   'app.connection_lost': 'Sin conexión. Nada en esta pantalla es actual y ningún botón de aquí llega a la máquina: use la parada de emergencia de la máquina.',
   'app.machine_gone': 'No hay ninguna máquina en marcha: {reason}',
+  'app.silent': 'Task (millwright start) no responde desde hace {seconds} s: los valores son antiguos, las órdenes y paradas no tienen efecto. Use la parada de emergencia de la máquina.',
   'app.stale': 'Los valores mostrados tienen {seconds} s',
 
   'app.unprotected': 'Esta pantalla está sin protección: quien llegue a esta dirección puede {role}.',
