@@ -29,11 +29,18 @@ bool isMoving(client::Client &client) {
            !client.status().trajectory.isInPosition;
 }
 
+/// The axes rest within their path: only a resume moves them.
+bool isHeldAtRest(client::Client &client) {
+    return client.read_status().has_value() && client.status().trajectory.isPaused &&
+           client.status().trajectory.current_velocity == 0.0;
+}
+
 void wait_for_rest(MachineAccess &machine, std::int64_t most_ns) {
     const std::int64_t deadline_ns = machine.now_ns() + most_ns;
     machine.cycle();
     machine.cycle();
-    while (isMoving(machine.client()) && machine.now_ns() < deadline_ns && machine.health()) {
+    while (isMoving(machine.client()) && !isHeldAtRest(machine.client()) && machine.now_ns() < deadline_ns &&
+           machine.health()) {
         machine.cycle();
     }
 }

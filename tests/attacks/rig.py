@@ -134,6 +134,8 @@ class Machine:
         if self.process is not None and self.process.poll() is None:
             self.process.send_signal(signal.SIGKILL)
             self.process.wait()
+        for path in pathlib.Path('/dev/shm').glob(f"*{self.env['MILLWRIGHT_INSTANCE']}*"):
+            path.unlink(missing_ok=True)  # of a machine that was killed
         shutil.rmtree(self.folder, ignore_errors=True)
 
 

@@ -221,6 +221,8 @@ class AttackedMachine(Machine):
                     break
                 except OSError:
                     time.sleep(0.02)
+        for path in pathlib.Path('/dev/shm').glob(f'*{self.instance}*'):
+            path.unlink(missing_ok=True)
         self.terminal.close()
 
 
