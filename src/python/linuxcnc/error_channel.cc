@@ -10,6 +10,16 @@ namespace py = pybind11;
 namespace mw::python {
 namespace {
 
+/// Messages quote files of any encoding, and long ones are cut: what is no UTF-8 is replaced by U+FFFD.
+py::str text_of(const std::string &bytes) {
+    PyObject *const made =
+        PyUnicode_DecodeUTF8(bytes.data(), static_cast<Py_ssize_t>(bytes.size()), "replace");
+    if (made == nullptr) {
+        throw py::error_already_set();
+    }
+    return py::reinterpret_steal<py::str>(made);
+}
+
 class ErrorChannel {
   public:
     ErrorChannel() {
@@ -27,7 +37,7 @@ class ErrorChannel {
             view_.check_alive();
             return py::none();
         }
-        return py::make_tuple(static_cast<int>(message->kind), client::shown_message(*message));
+        return py::make_tuple(static_cast<int>(message->kind), text_of(client::shown_message(*message)));
     }
 
   private:
