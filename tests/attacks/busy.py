@@ -64,6 +64,9 @@ def script(machine, found):
 
 
 def load(machine, found):
+    if not may_raise():
+        print('this user may not raise priorities: nothing to judge')
+        return
     busy = [subprocess.Popen(['sh', '-c', 'while :; do :; done']) for _ in range(BUSY)]
     try:
         machine.cut()
