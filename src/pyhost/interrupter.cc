@@ -8,7 +8,7 @@
 namespace mw::pyhost {
 namespace {
 
-/// A script may catch the exception and go on: it is raised again after so long.
+/// A script can catch the exception and continue: it is raised again after this time.
 constexpr std::chrono::milliseconds AGAIN{100};
 
 /// "file:line" of the innermost frame.

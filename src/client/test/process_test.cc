@@ -99,7 +99,7 @@ class SharedCount {
     std::atomic<int> *count_;
 };
 
-/// Those that were killed may have all places until task has looked at them.
+/// Clients that were killed can have all places until task finds that they are dead.
 Result<Client> connect_in_time(const std::string &name) {
     auto client = Client::connect(name);
     for (int i = 0; i < 20000 && !client.has_value(); ++i) {

@@ -11,8 +11,8 @@
 
 namespace mw::interp {
 
-/// One in a process. The thread that runs the interpreter calls begin(), another one request() while a call
-/// of the interpreter is under way; the script host follows it in a thread of its own. Neither waits.
+/// One in a process. The thread that runs the interpreter calls begin(). Another thread calls request()
+/// during a call of the interpreter. The script host waits for requests in a separate thread.
 class ScriptStop {
   public:
     /// A call of the interpreter begins or has ended: what was requested before it does not count any more.

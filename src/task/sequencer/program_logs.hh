@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "interp/canon/canon_calls.hh"
 #include "task/sequencer/program_log.hh"

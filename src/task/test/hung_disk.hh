@@ -8,7 +8,7 @@
 
 namespace mw::task::test {
 
-/// A disk that hangs until it is told to work.
+/// A disk that hangs until the test lets it work.
 class HungDisk final : public LogDisk {
   public:
     Result<int> open(const std::string &path, bool isAppending, const Confinement *confinement) override {

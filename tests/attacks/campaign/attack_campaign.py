@@ -28,7 +28,7 @@ SEEDS_OF_A_MACHINE = 20
 SESSION_S = 180
 DISK_MB = 64
 LATE = 'the computer was late'
-# In a mount namespace of its own: a small disk in a file, for full and slow disks; nothing of it stays when the session has ended.
+# A separate mount namespace with a small disk in a file, for full and slow disks. It is gone when the session ends.
 DISK = 'mount -o loop "$1/disk.img" "$1/m" && rm "$1/disk.img" && export MW_ATTACK_DEVICE=$(mountpoint -d "$1/m"); export TMPDIR="$1/m"; shift; exec "$@"'
 
 

@@ -85,7 +85,7 @@ def carry_out(one, scene, rng):
 
 
 class Child:
-    """An attack in a process of its own, from an instant on."""
+    """An attack that begins at an instant, in a separate process."""
 
     def __init__(self, one, scene, rng, at):
         self.one = one

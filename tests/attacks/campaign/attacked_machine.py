@@ -61,7 +61,7 @@ def processes_of(instance, part):
 
 
 class Terminal:
-    """The terminal of `millwright start`, and who reads it."""
+    """The terminal of `millwright start` and the thread that reads it."""
 
     def __init__(self):
         self.master, self.slave = pty.openpty()
@@ -204,7 +204,7 @@ class AttackedMachine(Machine):
         return None
 
     def kill_all(self):
-        """At the end of a campaign that failed: nothing of it stays."""
+        """At the end of a campaign that failed: ends all processes and removes their shared memory."""
         for part in ('machine', 'observer'):
             for number in processes_of(self.instance, part):
                 try:

@@ -40,7 +40,7 @@ class Record:
     isEnding: bool = False       # an attack ends the machine
     gone: dict = dataclasses.field(default_factory=dict)    # what clients learn about the end: 'python', 'web', 'terminal'
     end_s: float | None = None   # how long the end took, where an attack ended it
-    isWebUp: bool = True         # its server was not killed: another one shows what comes after its start
+    isWebUp: bool = True         # False: the server was killed; a new one shows later messages only
 
 
 def distance(point, a, b):

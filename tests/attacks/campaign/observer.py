@@ -23,7 +23,7 @@ CYCLE_S = 0.001
 
 
 def sample(writer):
-    """In a process of its own, as a HAL component may end with HAL: a line for each reading of the sampler, [time, records]."""
+    """In a separate process, because a HAL component can end with HAL. Prints one line for each reading of the sampler: [time, records]."""
     import hal  # pylint: disable=import-outside-toplevel
     component = hal.component(f'observer{os.getpid()}')
     stream = hal.stream(component, hal.sampler_base, 'fffb')
