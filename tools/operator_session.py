@@ -39,7 +39,7 @@ PROGRAMS = {
     'bad': ('G21 G90\nG1 X1 F3000\nG1 X2 Q\nG1 X0\nM2\n', ()),
     'out': ('G21 G90\nM62 P0\nG1 X1 F3000\nM63 P0\nM68 E0 Q2.5\nG1 X0\nM67 E0 Q0\nM2\n', ()),
     'tool': ('G21 G90\nT2 M6 G43\nG1 X1 F3000\nT1 M6\nG49\nG1 X0\nM2\n', ()),
-    'end30': ('G20 G91 F50 S100\nG1 X0.1\nM30\n', ()),
+    'end30': ('G20 G91 F600 S100\nG1 X0.1\nM30\n', ()),
     'percent': ('%\nG21 G90\nG1 X1 F3000\n%\n', ()),
 }
 MDI = ['G0 X0', 'G1 X2 F3000', 'G91 G1 X0.5 F1800', 'G90', 'G55', 'G54', 'G10 L2 P1 X0.5', 'G10 L20 P1 X0', 'G10 L2 P1 X0 Z0 R0',
