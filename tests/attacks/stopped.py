@@ -80,7 +80,8 @@ def fast(machine, found):
     found.expect(machine.until(lambda: machine.stat.current_vel > 190, 5), 'it moves fast', machine.stat.current_vel)
     took = machine.abort_s()
     found.expect(took < ABORT_S, f'an abort of a fast move is answered in {took:.3f} s')
-    found.expect(machine.until(lambda: machine.stat.current_vel == 0, 1), 'the axes stop')
+    machine.stat.poll()
+    found.expect(machine.stat.current_vel == 0, 'wait_complete() has waited until the axes rest', machine.stat.current_vel)
 
 
 def task(machine, found):
