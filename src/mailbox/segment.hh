@@ -106,7 +106,7 @@ struct Segment {
 
     std::array<Seqlock<NumberedMessage>, MAX_MESSAGES> messages;  ///< [task] number n at n modulo their count
     std::atomic<std::uint64_t> newest_message{0};
-    std::atomic<std::uint64_t> read_message{0};  ///< the newest that any client has read
+    std::atomic<std::uint64_t> read_message{0};    ///< the newest that any client has read
     std::atomic<std::uint64_t> logged_message{0};  ///< the newest that is written to [DISPLAY]LOG_FILE
     /// [task] A random number of this start of the machine, not 0. With its number a message is unique.
     std::atomic<std::uint64_t> run{0};
