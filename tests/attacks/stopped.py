@@ -66,6 +66,9 @@ def killed(machine, found):
         os.kill(realtime_process(machine), signal.SIGKILL)
         told = machine.until(lambda: any('has ended: it was killed' in text for text in machine.messages), 1)
         found.expect(told, 'clients read at once that the realtime process was killed', machine.messages)
+        end = time.monotonic() + 0.5
+        while 'has ended: it was killed' not in machine.text() and time.monotonic() < end:
+            time.sleep(0.01)
         found.expect('has ended: it was killed' in machine.text(), 'the terminal shows it at once', machine.text()[-300:])
     finally:
         program.kill()
