@@ -115,8 +115,9 @@ def stops(record):
     if not early:
         return []
     rest = early[0][0]
+    seen = min((sample[0] for sample in record.samples if sample[0] > rest), default=rest)  # they came to rest in between
     failures = []
-    begun = [event for event in record.events if event.begin <= rest and event.causes]
+    begun = [event for event in record.events if event.begin <= seen and event.causes]
     since = min((max(0.0, rest - event.latest) for event in begun), default=None)
     if since is None or since > STOP_S:
         names = ', '.join(f'{event.name} {event.begin - record.begin:.2f} to {event.end - record.begin:.2f} s' for event in record.events)
