@@ -101,6 +101,8 @@ def replaced_state(scene, rng):
         scene.begins()
         scene.wait(rng.uniform(0.1, 1.5))
     finally:
+        while not path.parent.is_dir():  # files.removed_folder has moved it for a while
+            time.sleep(0.01)
         if path.is_dir():
             path.rmdir()
         if path.is_symlink() or (path.exists() and not path.is_file()):
