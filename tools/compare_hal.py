@@ -145,9 +145,16 @@ class Comparison:
         if isinstance(theirs, str) or isinstance(ours, str):
             self.unexplained.append('did not run; LinuxCNC: ' + shown(theirs) + '; ours: ' + shown(ours))
             return
+        self.theirs, self.ours = theirs, ours
         for at, (kind, instance, pin) in enumerate(hal_file.samples):
             self.values += ROWS
             self.compare_pin(kind, instance, pin, theirs[at], ours[at])
+
+    def differs_along(self, instance, pin, rows):
+        """Whether `pin` of this instance differs within 2 periods of each of these rows."""
+        at = next((at for at, (_, other, name) in enumerate(self.hal_file.samples) if (other, name) == (instance, pin)), None)
+        return at is not None and all(any(a != b for a, b in list(zip(self.theirs[at], self.ours[at]))[max(0, row - 2):row + 3])
+                                      for row in rows)
 
     def compare_pin(self, kind, instance, pin, theirs, ours):
         wrong = [row for row in range(ROWS) if not is_same(kind, theirs[row], ours[row])]
@@ -161,6 +168,11 @@ class Comparison:
         late = next((d for d in covering if d.shift and is_shifted(theirs, ours, wrong, d.shift)), None)
         if late:
             self.explained.append(late)
+            return
+        near = next((d for d in covering if d.by and all(abs(int(theirs[row]) - int(ours[row])) <= d.by for row in wrong)
+                     or d.along and self.differs_along(instance, d.along, wrong)), None)
+        if near:
+            self.explained.append(near)
             return
         early = max(covering, key=lambda d: d.first, default=None)
         if early and wrong[-1] < early.first:

@@ -13,6 +13,7 @@ in one start of a machine; --cache keeps LinuxCNC's side. Needs root and the use
 import argparse
 import collections
 import concurrent.futures
+import hashlib
 import json
 import os
 import pathlib
@@ -133,7 +134,8 @@ def rows_of(folder):
 
 def run_both(name, first, count, options):
     """Rows of both systems, or a text that tells why there are none."""
-    key = pathlib.Path(options.cache) / f'{name}_{first}_{count}.jsonl' if options.cache and not options.acts else None
+    session = hashlib.sha256((ROOT / 'tools/operator_session.py').read_bytes()).hexdigest()[:8]
+    key = pathlib.Path(options.cache) / f'{name}_{first}_{count}_{session}.jsonl' if options.cache and not options.acts else None
     with tempfile.TemporaryDirectory(dir='/var/tmp', prefix='operator') as temporary:
         base = pathlib.Path(temporary)
         os.chmod(base, 0o755)

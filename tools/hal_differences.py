@@ -18,6 +18,8 @@ class Difference:
     load: str = ''  # regular expression over the load, where the difference depends on it
     shift: int = 0  # values may come so many periods earlier or later
     first: int = 0  # in so many periods the pins may differ even then
+    by: int = 0     # values may differ by so much
+    along: str = ''  # differs only within 2 periods of one in which this pin of the same instance differs
     avoid: dict = dataclasses.field(default_factory=dict, hash=False, compare=False)
 
     def covers(self, pin):
@@ -66,6 +68,8 @@ DIFFERENCES = [
     D('stepgen', 'position-fb', 'stepgen: position control'),
     D('stepgen', 'step|dir|up|down|phase-.|counts|rawcounts', 'stepgen: position control', shift=2,
       load='.*ctrl_type=v'),
+    D('stepgen', 'counts|rawcounts', 'stepgen: dirsetup', by=1, load='.*ctrl_type=v'),
+    D('stepgen', 'step|dir|up|down|phase-.', 'stepgen: dirsetup', along='counts', load='.*ctrl_type=v'),
     D('stepgen', '.*', 'stepgen: position control', load='.*ctrl_type=p'),
     D('spindle', '.*', 'spindle: ramps'),
 ]

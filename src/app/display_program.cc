@@ -17,6 +17,7 @@
 #include <fmt/format.h>
 
 #include "base/find_program.hh"
+#include "base/memory_killer.hh"
 #include "base/output_relay.hh"
 #include "base/own_place.hh"
 #include "base/text.hh"
@@ -103,6 +104,7 @@ Result<DisplayProgram> DisplayProgram::start(const std::vector<std::string> &wor
         become_display(argv.data(), folder.c_str(), parent, failed[1]);
     }
     int error = child < 0 ? errno : 0;
+    static_cast<void>(raise_oom_score(PROGRAM_OOM_STEP, child));
     ::close(failed[1]);
     while (child > 0 && ::read(failed[0], &error, sizeof error) < 0 && errno == EINTR) {
     }

@@ -255,7 +255,7 @@ int command_ui(const std::vector<std::string> &arguments) {
     }
     catch_stop_signals();
     ui::web::raise_descriptor_limit();
-    static_cast<void>(set_oom_score(500));  // the server of screens before the machine
+    static_cast<void>(raise_oom_score(SCREENS_OOM_STEP));
     diag::Sink sink([](const diag::Diagnostic &d) { fmt::print(stderr, "{}\n", language::shown(d.str())); });
     const auto loaded = machine::LoadedConfig::load(words.ini, sink);
     return loaded == nullptr ? 1 : serve(words, *loaded, sink);

@@ -22,6 +22,7 @@
 
 #include <fmt/format.h>
 
+#include "base/temporary_file.hh"
 #include "base/text.hh"
 #include "ui/web/documents.hh"
 #include "ui/web/files.hh"
@@ -263,21 +264,16 @@ void run_filter(const FilterRun &run, ui::web::PieceQueue &pieces) {
         refuse(fmt::format("cannot keep '{}' to oneself: {}", folder.string(), error.message()));
         return;
     }
-    std::string temporary = folder.string() + "/.made-XXXXXX";
-    const int output = ::mkostemp(temporary.data(), O_CLOEXEC);
-    if (output < 0) {
+    auto output = TemporaryFile::create(run.output);
+    if (!output.has_value()) {
         refuse(fmt::format("cannot write into '{}': {}", folder.string(), last_error()));
         return;
     }
-    Result<> made = fill(run, output, pieces);
-    const bool isKept =
-        made.has_value() && ::fsync(output) == 0 && ::rename(temporary.c_str(), run.output.c_str()) == 0;
-    if (made.has_value() && !isKept) {
+    Result<> made = fill(run, output->fd(), pieces);
+    if (made.has_value() && !output->replace_target()) {
         made = fail(fmt::format("cannot write '{}': {}", run.output, last_error()));
     }
-    ::close(output);
     if (!made.has_value()) {
-        ::unlink(temporary.c_str());
         refuse(made.error().message);
         return;
     }

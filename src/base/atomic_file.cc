@@ -10,6 +10,8 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "base/temporary_file.hh"
+
 namespace mw {
 namespace {
 
@@ -64,14 +66,6 @@ bool write_all(int fd, std::string_view content) {
     return true;
 }
 
-std::string folder_of(const std::string &path) {
-    const auto slash = path.rfind('/');
-    if (slash == std::string::npos) {
-        return ".";
-    }
-    return slash == 0 ? "/" : path.substr(0, slash);
-}
-
 /// A symbolic link stays one: the file that it points to is replaced.
 std::string resolve(const std::string &path) {
     char *real = ::realpath(path.c_str(), nullptr);
@@ -87,23 +81,17 @@ Result<> write_file_atomically(const std::string &path, std::string_view content
     if (auto regular = check_regular(target); !regular.has_value()) {
         return regular;
     }
-    std::string temporary = target + ".XXXXXX";
-    const FileHandle file(::mkstemp(temporary.data()));
-    if (file.get() < 0) {
-        return system_failure("write", path);
-    }
     struct stat old{};
     const bool isReplacing = ::stat(target.c_str(), &old) == 0;
     const mode_t mode = isReplacing ? (old.st_mode & 07777) : 0644;
-    const bool isWritten =
-        ::fchmod(file.get(), mode) == 0 && write_all(file.get(), content) && ::fsync(file.get()) == 0;
-    if (!isWritten || ::rename(temporary.c_str(), target.c_str()) != 0) {
-        auto failure = system_failure("write", path);
-        ::unlink(temporary.c_str());
-        return failure;
+    auto file = TemporaryFile::create(target);
+    if (!file.has_value()) {
+        return system_failure("write", path);
     }
-    const FileHandle folder(::open(folder_of(target).c_str(), O_RDONLY | O_DIRECTORY));
-    if (folder.get() < 0 || ::fsync(folder.get()) != 0) {
+    if (::fchmod(file->fd(), mode) != 0 || !write_all(file->fd(), content) || !file->replace_target()) {
+        return system_failure("write", path);
+    }
+    if (!file->sync_folder()) {
         return system_failure("sync the folder of", path);
     }
     return {};

@@ -12,7 +12,8 @@ namespace mw {
 
 /// Replaces `path` by `content`: writes a temporary file beside it, syncs it, renames it over, syncs the
 /// folder. Permissions of an existing file are kept. On any error the old file is untouched and the temporary
-/// is removed.
+/// is removed. That of a process that was killed is removed by the next write of the same file
+/// (base/temporary_file.hh).
 Result<> write_file_atomically(const std::string &path, std::string_view content);
 
 /// As write_file_atomically(); what `path` had is in `path` + ".bak" before. The same content again leaves a

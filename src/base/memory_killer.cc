@@ -2,14 +2,40 @@
 #include "base/memory_killer.hh"
 
 #include <fcntl.h>
+#include <linux/capability.h>
+#include <sys/prctl.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
+#include <charconv>
 #include <string>
 
 namespace mw {
+namespace {
 
-bool set_oom_score(int score) {
-    const int file = ::open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC);
+constexpr int HIGHEST = 1000;
+/// Sessions begin with multiples of this.
+constexpr int STEP = 50;
+
+std::string file_of(pid_t process) {
+    return "/proc/" + (process == 0 ? "self" : std::to_string(process)) + "/oom_score_adj";
+}
+
+bool read_score(pid_t process, int &score) {
+    const int file = ::open(file_of(process).c_str(), O_RDONLY | O_CLOEXEC);
+    if (file < 0) {
+        return false;
+    }
+    std::array<char, 16> text{};
+    const ssize_t size = ::read(file, text.data(), text.size());
+    ::close(file);
+    return size > 0 && std::from_chars(text.data(), text.data() + size, score).ec == std::errc{};
+}
+
+bool write_score(pid_t process, int score) {
+    const int file = ::open(file_of(process).c_str(), O_WRONLY | O_CLOEXEC);
     if (file < 0) {
         return false;
     }
@@ -17,6 +43,47 @@ bool set_oom_score(int score) {
     const bool isWritten = ::write(file, text.data(), text.size()) == static_cast<ssize_t>(text.size());
     ::close(file);
     return isWritten;
+}
+
+/// CAP_SYS_RESOURCE also lifts limits of memory and disks; the values above need it, nothing else does.
+void give_up_resource_right() {
+    __user_cap_header_struct header{_LINUX_CAPABILITY_VERSION_3, 0};
+    std::array<__user_cap_data_struct, _LINUX_CAPABILITY_U32S_3> sets{};
+    if (::syscall(SYS_capget, &header, sets.data()) == 0) {
+        sets[0].effective &= ~(1U << CAP_SYS_RESOURCE);
+        sets[0].permitted &= ~(1U << CAP_SYS_RESOURCE);
+        sets[0].inheritable &= ~(1U << CAP_SYS_RESOURCE);
+        static_cast<void>(::syscall(SYS_capset, &header, sets.data()));
+    }
+}
+
+}  // namespace
+
+bool raise_oom_score(int step, pid_t process) {
+    int score = 0;
+    return read_score(process, score) && write_score(process, std::min(score + step, HIGHEST));
+}
+
+int lower_oom_score(int wanted) {
+    int score = 0;
+    if (!read_score(0, score)) {
+        return score;
+    }
+    // The files in /proc of a process with file capabilities are root's while it is not dumpable.
+    const int wasDumpable = ::prctl(PR_GET_DUMPABLE);
+    static_cast<void>(::prctl(PR_SET_DUMPABLE, 1));
+    for (int next = wanted; next < score; next += STEP) {
+        if (write_score(0, next)) {
+            score = next;
+        }
+    }
+    if (wasDumpable != 1) {
+        static_cast<void>(::prctl(PR_SET_DUMPABLE, 0));
+    }
+    if (::geteuid() != 0) {
+        give_up_resource_right();
+    }
+    return score;
 }
 
 }  // namespace mw

@@ -51,7 +51,7 @@ struct Arguments {
 int main(int argc, char **argv) {
     std::signal(SIGPIPE, SIG_IGN);  // a starter or terminal that is gone is no reason to end
     mw::tell_when_memory_ends();
-    static_cast<void>(mw::set_oom_score(-900));  // other programs first; only root may
+    static_cast<void>(mw::lower_oom_score(-900));  // `millwright doctor` reports where the right is missing
     const std::vector<std::string> words(argv + 1, argv + argc);
     Arguments arguments;
     const mw::options::CommandLine line = arguments.line();

@@ -78,6 +78,9 @@ class Client {
     std::optional<Message> next_message(Viewer::Reading reading = Viewer::Reading::COUNTS) {
         return viewer_.next_message(reading);
     }
+    void rewind_messages(std::uint64_t most) { viewer_.rewind_messages(most); }
+    std::uint64_t run() const { return viewer_.run(); }
+    bool claim_log(std::uint64_t number) const { return viewer_.claim_log(number); }
 
   private:
     Client(Viewer viewer, int slot, mailbox::ClientId id);

@@ -24,13 +24,30 @@ std::int64_t monotonic_ns() {
     return now.tv_sec * NS_PER_S + now.tv_nsec;
 }
 
+/// Raises `count` to `number`; false when it is as high already.
+bool raise(std::atomic<std::uint64_t> &count, std::uint64_t number) {
+    std::uint64_t now = count.load(std::memory_order_relaxed);
+    while (now < number) {
+        if (count.compare_exchange_weak(now, number, std::memory_order_relaxed)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/// The oldest of the last `most` messages.
+std::uint64_t oldest_of_last(std::uint64_t newest, std::uint64_t most) {
+    const std::uint64_t count = std::min<std::uint64_t>(most, mailbox::MAX_MESSAGES);
+    return newest > count ? newest - count + 1 : 1;
+}
+
 }  // namespace
 
 Viewer::Viewer(mailbox::Segment &segment)
     : segment_(&segment), status_(std::make_unique<msgs::PublishedStatus::Copy>()) {
     const std::uint64_t newest = segment.newest_message.load(std::memory_order_acquire);
-    const std::uint64_t oldest = newest > mailbox::MAX_MESSAGES ? newest - mailbox::MAX_MESSAGES + 1 : 1;
-    next_message_ = std::max(oldest, segment.read_message.load(std::memory_order_relaxed) + 1);
+    next_message_ = std::max(oldest_of_last(newest, mailbox::MAX_MESSAGES),
+                             segment.read_message.load(std::memory_order_relaxed) + 1);
     heard_ = segment.bell.load(std::memory_order_acquire);
 }
 
@@ -133,15 +150,22 @@ std::optional<Viewer::Message> Viewer::next_message(Reading reading) {
         const std::uint64_t first = std::max(oldest, next_message_ + 1);
         const std::uint64_t lost = first - next_message_;
         next_message_ = first;
-        return Message{first - 1, msgs::MessageKind::OPERATOR_TEXT,
+        return Message{first - 1, monotonic_ns(), msgs::MessageKind::OPERATOR_TEXT,
                        fmt::format("{} messages were lost: they came faster than this client read", lost)};
     }
-    std::uint64_t told = segment_->read_message.load(std::memory_order_relaxed);
-    while (reading == Reading::COUNTS && told < next_message_ &&
-           !segment_->read_message.compare_exchange_weak(told, next_message_, std::memory_order_relaxed)) {
+    if (reading == Reading::COUNTS) {
+        raise(segment_->read_message, next_message_);
     }
     ++next_message_;
-    return Message{read->number, read->kind, read->text.str()};
+    return Message{read->number, read->at_ns, read->kind, read->text.str()};
+}
+
+void Viewer::rewind_messages(std::uint64_t most) {
+    next_message_ = oldest_of_last(segment_->newest_message.load(std::memory_order_acquire), most);
+}
+
+bool Viewer::claim_log(std::uint64_t number) const {
+    return raise(segment_->logged_message, number);
 }
 
 }  // namespace mw::client

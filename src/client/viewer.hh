@@ -51,6 +51,7 @@ class Viewer {
 
     struct Message {
         std::uint64_t number = 0;
+        std::int64_t at_ns = 0;  ///< CLOCK_MONOTONIC when it appeared
         msgs::MessageKind kind = msgs::MessageKind::OPERATOR_ERROR;
         std::string text;
     };
@@ -59,6 +60,13 @@ class Viewer {
     /// The next message; nothing when there is none. Messages that were overwritten before they were read
     /// come as one that says how many.
     std::optional<Message> next_message(Reading reading = Reading::COUNTS);
+    /// next_message() continues with the oldest of the last `most` messages, whether others have read them
+    /// or not; of at most mailbox::MAX_MESSAGES.
+    void rewind_messages(std::uint64_t most);
+    /// A random number of this start of the machine: with its number a message is unique.
+    std::uint64_t run() const { return segment_->run.load(std::memory_order_acquire); }
+    /// Whether the message is not yet in [DISPLAY]LOG_FILE; from here on it counts as written there.
+    bool claim_log(std::uint64_t number) const;
 
     /// Sleeps at the bell until `isOver()`, which is asked after each cycle of task; an error when the time
     /// is over or the machine is gone.

@@ -96,16 +96,22 @@ bool isAllowed(int resource, rlim_t wanted) {
 }
 
 void examine_rights(const std::string &program, diag::Sink &sink) {
-    constexpr std::uint32_t IPC_LOCK = 1U << 14U, SYS_NICE = 1U << 23U;
+    constexpr std::uint32_t IPC_LOCK = 1U << 14U, SYS_NICE = 1U << 23U, SYS_RESOURCE = 1U << 24U;
     constexpr rlim_t PRIORITY = 85, MEMORY = rlim_t{512} << 20U;
-    const std::uint32_t has = ::geteuid() == 0 ? IPC_LOCK | SYS_NICE : capabilities_of(program);
-    const std::string remedy = "sudo setcap cap_sys_nice,cap_ipc_lock+ep " + program +
-                               "; or rtprio and memlock in /etc/security/limits.d";
+    const std::uint32_t has =
+        ::geteuid() == 0 ? IPC_LOCK | SYS_NICE | SYS_RESOURCE : capabilities_of(program);
+    const std::string setcap = "sudo setcap cap_sys_nice,cap_ipc_lock,cap_sys_resource+ep " + program;
+    const std::string remedy = setcap + "; or rtprio and memlock in /etc/security/limits.d";
     if ((has & SYS_NICE) == 0 && !isAllowed(RLIMIT_RTPRIO, PRIORITY)) {
         sink.warning("millwright-rt may not raise its priority: the machine is not realtime", {}, remedy);
     }
     if ((has & IPC_LOCK) == 0 && !isAllowed(RLIMIT_MEMLOCK, MEMORY)) {
         sink.warning("millwright-rt may not lock its memory: the machine is not realtime", {}, remedy);
+    }
+    if ((has & SYS_RESOURCE) == 0) {
+        sink.warning(
+            "the kernel may end millwright-rt when memory is gone: it may not lower its oom_score_adj", {},
+            setcap);
     }
     if (::access("/dev/shm", W_OK) != 0) {
         sink.error("this user cannot make shared memory: /dev/shm is not writable");

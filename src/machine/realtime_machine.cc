@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <optional>
 
+#include "base/memory_killer.hh"
 #include "base/output_relay.hh"
 #include "base/stop_signals.hh"
 #include "base/thread_priority.hh"
@@ -63,6 +64,7 @@ class RealtimeMachine final : public Machine {
         if (!mailbox.has_value()) {
             return std::unexpected(mailbox.error());
         }
+        static_cast<void>(raise_oom_score(TASK_OOM_STEP));
         auto host = hal::HostClient::start(instance, hal::MessagesTo::STDERR, hal::Lifetime::STARTER);
         if (!host.has_value()) {
             return std::unexpected(host.error());

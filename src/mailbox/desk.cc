@@ -2,9 +2,12 @@
 #include "mailbox/desk.hh"
 
 #include <algorithm>
+#include <chrono>
 #include <cstring>
 #include <limits>
 #include <memory>
+#include <random>
+#include <utility>
 
 #include "mailbox/memory.hh"
 #include "mailbox/places.hh"
@@ -41,7 +44,21 @@ void assign(Text &text, std::string_view from) {
     }
 }
 
+std::int64_t monotonic_ns() {
+    return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
+}
+
+std::uint64_t random_run() {
+    std::random_device random;
+    return std::uint64_t{random()} << 32U | random() | 1U;
+}
+
 }  // namespace
+
+Desk::Desk(Segment &segment, Rights rights, std::function<std::int64_t()> clock)
+    : segment_(segment), rights_(rights), clock_(clock ? std::move(clock) : monotonic_ns) {
+    segment_.run.store(random_run(), std::memory_order_release);
+}
 
 std::vector<Desk::Delivery> Desk::take(std::int64_t now_ns) {
     now_ns_ = now_ns;
@@ -297,6 +314,7 @@ void Desk::tell(Serial serial, Progress progress, const std::string &reason) {
 void Desk::post(msgs::MessageKind kind, std::string_view text) {
     auto message = std::make_unique<NumberedMessage>();
     message->number = newest_message() + 1;
+    message->at_ns = clock_();
     message->kind = kind;
     assign(message->text, text);
     segment_.messages[message->number % MAX_MESSAGES].write(*message);

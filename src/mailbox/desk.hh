@@ -2,6 +2,7 @@
 // Task's side of the mailbox: takes commands, tells outcomes, messages and status.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -27,7 +28,8 @@ class Desk {
     /// Where commands about the right to operate end.
     enum class Rights : std::uint8_t { HERE, DELIVERED };
 
-    explicit Desk(Segment &segment, Rights rights = Rights::HERE) : segment_(segment), rights_(rights) {}
+    /// `clock` gives the time of messages [ns]; without one it is CLOCK_MONOTONIC, which all processes share.
+    explicit Desk(Segment &segment, Rights rights = Rights::HERE, std::function<std::int64_t()> clock = {});
 
     /// Once a cycle. The new commands of all clients in the order of their numbers. What may not be carried
     /// out (bytes that are no command, values out of range, another's right to operate) is refused here;
@@ -79,6 +81,7 @@ class Desk {
 
     Segment &segment_;
     Rights rights_;
+    std::function<std::int64_t()> clock_;
     RightToOperate right_;
     std::map<Serial, Place> going_;  ///< commands under way
     /// Which command each outcome belongs to, and whether it is under way.

@@ -15,7 +15,7 @@
 namespace mw::mailbox {
 namespace {
 
-constexpr std::uint32_t ABI_VERSION = 2;
+constexpr std::uint32_t ABI_VERSION = 3;
 constexpr std::int64_t NS_PER_S = 1000000000;
 constexpr int START_BITS = 42;  // a process number has at most 22
 constexpr std::uint64_t START_MASK = (std::uint64_t{1} << START_BITS) - 1;

@@ -43,6 +43,7 @@ struct Outcome {
 
 struct NumberedMessage {
     std::uint64_t number = 0;  ///< from 1
+    std::int64_t at_ns = 0;    ///< CLOCK_MONOTONIC when it appeared
     msgs::MessageKind kind = msgs::MessageKind::OPERATOR_ERROR;
     msgs::FixedText<1023> text;
 };
@@ -105,7 +106,10 @@ struct Segment {
 
     std::array<Seqlock<NumberedMessage>, MAX_MESSAGES> messages;  ///< [task] number n at n modulo their count
     std::atomic<std::uint64_t> newest_message{0};
-    std::atomic<std::uint64_t> read_message{0};  ///< the newest that any client has read
+    std::atomic<std::uint64_t> read_message{0};    ///< the newest that any client has read
+    std::atomic<std::uint64_t> logged_message{0};  ///< the newest that is written to [DISPLAY]LOG_FILE
+    /// [task] A random number of this start of the machine, not 0. With its number a message is unique.
+    std::atomic<std::uint64_t> run{0};
 
     std::atomic<std::uint32_t> bell{0};  ///< a futex: changes once a cycle
     std::atomic<std::uint32_t> waiting{

@@ -308,8 +308,9 @@ void Task::step_homing() {
 void Task::end_requests() {
     tell(state_.end_request(now_ns_));
     const motion::Status &motion = motion_.status();
+    mode_.watch_rest(!motion.isInPosition && !motion_.watch().isSilent(), now_ns_);
     if (mode_.isWaitingForRest() && motion.isInPosition) {
-        mode_.ask_again(motion_.send(motion::SetMode{mode_.wanted_motion_mode()}));
+        mode_.ask_again(motion_.send(motion::SetMode{mode_.wanted_motion_mode()}), now_ns_);
     }
     tell(mode_.step(motion_.isAnswered(mode_.order()), motion.mode, now_ns_));
     if (!run_.isRunning()) {

@@ -38,6 +38,7 @@ Outcome Task::Handler::operator()(const JogContinuous &command) {
         return fail(fmt::format("a jog cannot have a lease of {} ms: it is 0 (none) or from {} to {} ms",
                                 command.lease_ms, SHORTEST_JOG_LEASE_MS, LONGEST_JOG_LEASE_MS));
     }
+    task.mode_.note_jog();
     return order(
         motion::JogContinuous{
             {command.isJoint, command.index}, command.velocity, command.lease_ms / 1e3, command.isRenewal},
@@ -45,11 +46,13 @@ Outcome Task::Handler::operator()(const JogContinuous &command) {
 }
 
 Outcome Task::Handler::operator()(const JogIncrement &command) {
+    task.mode_.note_jog();
     return order(motion::JogIncremental{
         {command.isJoint, command.index}, std::fabs(command.velocity), command.distance});
 }
 
 Outcome Task::Handler::operator()(const JogAbsolute &command) {
+    task.mode_.note_jog();
     return order(
         motion::JogAbsolute{{command.isJoint, command.index}, std::fabs(command.velocity), command.position});
 }

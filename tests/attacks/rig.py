@@ -112,11 +112,11 @@ class Machine:
         return moved
 
     def abort_s(self, seconds=5):
-        """How long the answer to an abort takes."""
+        """How long it takes until the status shows that an abort is carried out. Then waits until the axes rest."""
         begin = time.monotonic()
         self.command.abort()
-        answer = self.command.wait_complete(seconds)
-        return time.monotonic() - begin if answer == self.linuxcnc.RCS_DONE else float('inf')
+        took = time.monotonic() - begin
+        return took if self.command.wait_complete(seconds) == self.linuxcnc.RCS_DONE else float('inf')
 
     def end_s(self):
         """How long SIGTERM takes to end it; what does not end in time is killed."""

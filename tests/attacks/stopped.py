@@ -66,6 +66,9 @@ def killed(machine, found):
         os.kill(realtime_process(machine), signal.SIGKILL)
         told = machine.until(lambda: any('has ended: it was killed' in text for text in machine.messages), 1)
         found.expect(told, 'clients read at once that the realtime process was killed', machine.messages)
+        end = time.monotonic() + 0.5
+        while 'has ended: it was killed' not in machine.text() and time.monotonic() < end:
+            time.sleep(0.01)
         found.expect('has ended: it was killed' in machine.text(), 'the terminal shows it at once', machine.text()[-300:])
     finally:
         program.kill()
@@ -80,7 +83,8 @@ def fast(machine, found):
     found.expect(machine.until(lambda: machine.stat.current_vel > 190, 5), 'it moves fast', machine.stat.current_vel)
     took = machine.abort_s()
     found.expect(took < ABORT_S, f'an abort of a fast move is answered in {took:.3f} s')
-    found.expect(machine.until(lambda: machine.stat.current_vel == 0, 1), 'the axes stop')
+    machine.stat.poll()
+    found.expect(machine.stat.current_vel == 0, 'wait_complete() has waited until the axes rest', machine.stat.current_vel)
 
 
 def task(machine, found):

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <fcntl.h>
+#include <signal.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <chrono>
 #include <filesystem>
 
 #include <gtest/gtest.h>
@@ -23,8 +27,83 @@ class AtomicFile : public testing::Test {
     void TearDown() override { fs::remove_all(folder_); }
     std::string path(const char *name) const { return (folder_ / name).string(); }
 
+    static std::ptrdiff_t count(const fs::path &folder) {
+        return std::distance(fs::directory_iterator(folder), fs::directory_iterator());
+    }
+    /// A process that gets `signal` while it writes the file: where it has a temporary file beside those that
+    /// were there.
+    pid_t interrupted_writer(int signal, bool isEndless) {
+        const std::string target = path("a");
+        for (int i = 0; i < 200; ++i) {
+            const auto before = count(folder_);
+            const pid_t writer = ::fork();
+            if (writer == 0) {
+                const std::string content(std::size_t{32} << 20, 'x');
+                bool isGood = true;
+                do {
+                    isGood = write_file_atomically(target, content).has_value();
+                } while (isEndless);
+                ::_exit(isGood ? 0 : 1);
+            }
+            const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(5);
+            while (count(folder_) == before && std::chrono::steady_clock::now() < end) {
+            }
+            ::kill(writer, signal);
+            int status = 0;
+            ::waitpid(writer, &status, WUNTRACED);
+            if (count(folder_) > before) {
+                return writer;
+            }
+            ::kill(writer, SIGKILL);
+            ::waitpid(writer, &status, 0);
+        }
+        return 0;
+    }
+
     fs::path folder_;
 };
+
+TEST_F(AtomicFile, WhatAKilledWriterLeftIsRemovedByTheNextWrite) {
+    ASSERT_TRUE(write_file_atomically(path("a"), "old").has_value());
+    for (const char *own : {"a.backup", "a.abc123", ".a.new", ".a.millwright-notes", "b"}) {
+        ASSERT_TRUE(write_file_atomically(path(own), "of the user").has_value());
+    }
+    const auto whole = count(folder_);
+    ASSERT_NE(interrupted_writer(SIGKILL, true), 0);
+    ASSERT_GT(count(folder_), whole);
+    ASSERT_TRUE(write_file_atomically(path("a"), "new").has_value());
+    EXPECT_EQ(count(folder_), whole) << "files of the user stay, those of the killed writer do not";
+    EXPECT_EQ(read_file(path("a")).value(), "new");
+}
+
+TEST_F(AtomicFile, TheFileOfALivingWriterStays) {
+    ASSERT_TRUE(write_file_atomically(path("a"), "old").has_value());
+    const pid_t writer = interrupted_writer(SIGSTOP, false);
+    ASSERT_NE(writer, 0);
+    ASSERT_TRUE(write_file_atomically(path("a"), "new").has_value());
+    EXPECT_EQ(count(folder_), 2);
+    ::kill(writer, SIGCONT);
+    int status = -1;
+    ::waitpid(writer, &status, 0);
+    EXPECT_EQ(status, 0) << "it comes to its end";
+    EXPECT_EQ(count(folder_), 1);
+    EXPECT_EQ(fs::file_size(path("a")), std::size_t{32} << 20);
+}
+
+TEST_F(AtomicFile, AFolderThatIsRenamedMeanwhileHasNothingLeftInIt) {
+    ASSERT_TRUE(write_file_atomically(path("a"), "old").has_value());
+    const pid_t writer = interrupted_writer(SIGSTOP, false);
+    ASSERT_NE(writer, 0);
+    const fs::path moved = folder_.string() + "_moved";
+    fs::rename(folder_, moved);
+    ::kill(writer, SIGCONT);
+    int status = -1;
+    ::waitpid(writer, &status, 0);
+    EXPECT_EQ(status, 0);
+    EXPECT_EQ(count(moved), 1);
+    EXPECT_EQ(fs::file_size(moved / "a"), std::size_t{32} << 20);
+    fs::remove_all(moved);
+}
 
 TEST_F(AtomicFile, WritesWhatIsReadBack) {
     ASSERT_TRUE(write_file_atomically(path("a"), "one").has_value());

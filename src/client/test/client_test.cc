@@ -331,6 +331,38 @@ TEST_F(ClientTest, ANewReaderGetsWhatNobodyHasReadAndThenAll) {
     }
 }
 
+TEST_F(ClientTest, AReaderMayReadTheLastMessagesAgain) {
+    Client a = made(), b = made();
+    for (int i = 1; i <= 2 * mailbox::MAX_MESSAGES; ++i) {
+        desk.post(msgs::MessageKind::OPERATOR_TEXT, std::to_string(i));
+        static_cast<void>(a.next_message());
+    }
+    for (const std::uint64_t most : {std::uint64_t{3}, std::uint64_t{mailbox::MAX_MESSAGES}, UINT64_MAX}) {
+        const std::uint64_t count = std::min<std::uint64_t>(most, mailbox::MAX_MESSAGES);
+        b.rewind_messages(most);
+        std::int64_t at_ns = 0;
+        for (std::uint64_t n = 1; n <= count; ++n) {
+            const auto message = b.next_message();
+            ASSERT_TRUE(message.has_value());
+            EXPECT_EQ(message->number, 2 * mailbox::MAX_MESSAGES - count + n);
+            EXPECT_EQ(message->text, std::to_string(message->number));
+            EXPECT_GT(message->at_ns, 0);
+            EXPECT_GE(message->at_ns, at_ns);
+            at_ns = message->at_ns;
+        }
+        EXPECT_FALSE(b.next_message().has_value());
+    }
+    EXPECT_FALSE(made().next_message().has_value()) << "another reader gets what nobody has read";
+}
+
+TEST_F(ClientTest, EachStartOfTheMachineHasItsOwnNumber) {
+    Client a = made();
+    EXPECT_NE(a.run(), 0U);
+    auto other = mailbox::Memory::in_process();
+    const mailbox::Desk other_desk(other.segment());
+    EXPECT_NE(client::Viewer(other.segment()).run(), a.run());
+}
+
 TEST_F(ClientTest, LostMessagesAreCounted) {
     Client a = made();
     const int many = 3 * mailbox::MAX_MESSAGES;

@@ -20,7 +20,7 @@ namespace {
 constexpr double TAKEN_WITHIN_S = 5.0;
 constexpr double USUAL_TIMEOUT_S = 5.0;
 constexpr double SHOWN_WITHIN_S = 0.5;
-/// A stop is answered within 0.1 s; axes may brake for longer, or not move because motion does not run.
+/// Of stops other than aborts: a paused program stays under way, and other axes may jog on.
 constexpr double STOP_SHOWN_WITHIN_S = 0.03;
 constexpr double HOMING_PATIENCE_S = 0.5;
 /// A sleeper sees so often whether Python has a signal for it (Ctrl-C).
@@ -66,6 +66,7 @@ void Command::send(const msgs::Command &command) {
     client::Client &to = client();
     isHoming_ = std::holds_alternative<msgs::HomeJoint>(command);
     isStop_ = mailbox::isStop(command);
+    isAbort_ = std::holds_alternative<msgs::AbortAll>(command);
     isRefused_ = false;
     away([&] {
         const auto posted = to.post(command);
@@ -91,7 +92,7 @@ void Command::send_and_look(const msgs::Command &command) {
         away([&] {
             const auto ended = client_->wait(serial_, MOMENT_S);
             if (ended.has_value() && ended->progress != msgs::Progress::STARTED) {
-                show_end();
+                show_end(isStop_ ? STOP_SHOWN_WITHIN_S : SHOWN_WITHIN_S);
             }
         });
     }
@@ -99,13 +100,13 @@ void Command::send_and_look(const msgs::Command &command) {
 
 /// An outcome is told before the status of its cycle, and the queue of motion shows its end a cycle later:
 /// who polls next is to see that nothing is under way.
-void Command::show_end() {
+bool Command::show_end(double seconds) {
     const auto isShown = [this] {
         const bool isRead = client_->read_status().has_value();
         const msgs::MachineStatus &status = client_->status();
         return isRead && (status.last_command != serial_ || rcs_state(status) != RcsState::EXEC);
     };
-    static_cast<void>(client_->wait_until(isShown, isStop_ ? STOP_SHOWN_WITHIN_S : SHOWN_WITHIN_S));
+    return client_->wait_until(isShown, seconds).has_value();
 }
 
 int Command::wait_complete(std::optional<double> timeout_s) {
@@ -118,18 +119,24 @@ int Command::wait_complete(std::optional<double> timeout_s) {
     const bool isShort = isHoming_ && !timeout_s.has_value();
     double left_s = isShort ? HOMING_PATIENCE_S : std::max(0.0, timeout_s.value_or(USUAL_TIMEOUT_S));
     client::Outcome outcome;
+    bool isAtRest = !isAbort_;
     while (true) {
         const double slice_s = std::min(left_s, LONGEST_SLEEP_S);
         away([&] {
             if (const auto ended = client_->wait(serial_, slice_s); ended.has_value()) {
                 outcome = *ended;
             }
-            if (outcome.progress != msgs::Progress::STARTED) {
-                show_end();
+            if (outcome.progress == msgs::Progress::STARTED) {
+                return;
+            }
+            if (!isAtRest) {  // axes brake
+                isAtRest = outcome.progress != msgs::Progress::DONE || show_end(slice_s);
+            } else {
+                show_end(isStop_ ? STOP_SHOWN_WITHIN_S : SHOWN_WITHIN_S);
             }
         });
         left_s -= slice_s;
-        if (outcome.progress != msgs::Progress::STARTED) {
+        if (outcome.progress != msgs::Progress::STARTED && isAtRest) {
             const bool isDone = outcome.progress == msgs::Progress::DONE;
             return static_cast<int>(isDone ? RcsState::DONE : RcsState::ERROR);
         }

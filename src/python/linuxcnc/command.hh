@@ -29,7 +29,7 @@ class Command {
 
   private:
     client::Client &client();
-    void show_end();
+    bool show_end(double seconds);  ///< false: the time is over
     void refuse(const std::string &reason);
     /// `act` on the client without the GIL.
     template <class Act>
@@ -41,6 +41,7 @@ class Command {
     bool isRefused_ = false;  ///< before it came to task
     bool isHoming_ = false;
     bool isStop_ = false;
+    bool isAbort_ = false;
 };
 
 }  // namespace mw::python

@@ -15,6 +15,8 @@
 
 #include <fmt/format.h>
 
+#include "base/memory_killer.hh"
+
 extern char **environ;
 
 namespace mw::task {
@@ -47,6 +49,7 @@ Result<int> spawn(const std::string &path, double p, double q) {
     if (error != 0) {
         return fail(fmt::format("cannot start user M code {}: {}", path, std::strerror(error)));
     }
+    static_cast<void>(raise_oom_score(PROGRAM_OOM_STEP, pid));
     return pid;
 }
 

@@ -13,17 +13,27 @@ void OperatingMode::begin(Mode mode, motion::Mode motion_mode, mailbox::Serial c
     mayMoveJoints_ = mayMoveJoints;
 }
 
+bool OperatingMode::isBraking(std::int64_t now_ns) const {
+    return braked_ns_.has_value() && now_ns - *braked_ns_ <= CHANGE_TIMEOUT_NS;
+}
+
+void OperatingMode::watch_rest(bool isMoving, std::int64_t now_ns) {
+    if (isMoving && isBraking(now_ns)) {
+        braked_ns_ = now_ns;
+    }
+}
+
 bool OperatingMode::waits_for_rest(motion::CommandId order, std::int64_t now_ns) {
-    const bool isBraking = stop_ns_.has_value() && now_ns - *stop_ns_ <= CHANGE_TIMEOUT_NS;
-    if (!isChanging() || order != request_.order() || !isBraking) {
+    if (!isChanging() || order != request_.order() || !isBraking(now_ns)) {
         return false;
     }
     isWaitingForRest_ = true;
     return true;
 }
 
-void OperatingMode::ask_again(motion::CommandId order) {
+void OperatingMode::ask_again(motion::CommandId order, std::int64_t now_ns) {
     request_.set_order(order);
+    request_.set_deadline(now_ns + CHANGE_TIMEOUT_NS);
     isWaitingForRest_ = false;
 }
 
@@ -31,6 +41,9 @@ std::optional<Ending> OperatingMode::step(bool isAnswered, motion::Mode motion_m
     if (isChanging() && !isWaitingForRest_ && isAnswered && motion_mode == wanted_motion_mode_) {
         mode_ = wanted_;
         return request_.end(Progress::DONE);
+    }
+    if (isWaitingForRest() && isBraking(now_ns)) {
+        return std::nullopt;
     }
     if (request_.isLate(now_ns)) {
         return request_.end(Progress::FAILED, "the motion controller has not changed its mode");

@@ -40,13 +40,17 @@ class OperatingMode {
     Mode mode() const { return mode_; }
 
     /// A stop was asked for, of a run or a jog.
-    void note_stop(std::int64_t now_ns) { stop_ns_ = now_ns; }
+    void note_stop(std::int64_t now_ns) { braked_ns_ = now_ns; }
+    /// A jog was asked for: what moves from now on is more than braking.
+    void note_jog() { braked_ns_.reset(); }
+    /// Once a cycle. Braking lasts as long as `isMoving` after a stop: a heavy axis brakes for seconds.
+    void watch_rest(bool isMoving, std::int64_t now_ns);
     /// Motion has refused `order` because the machine moves. True: it brakes after a stop, and the change
     /// waits until it stands.
     bool waits_for_rest(motion::CommandId order, std::int64_t now_ns);
     bool isWaitingForRest() const { return isChanging() && isWaitingForRest_; }
     /// It stands: `order` asks for the mode again.
-    void ask_again(motion::CommandId order);
+    void ask_again(motion::CommandId order, std::int64_t now_ns);
     motion::Mode wanted_motion_mode() const { return wanted_motion_mode_; }
 
     /// Motion has refused `order`, axes, where joints will do.
@@ -64,10 +68,12 @@ class OperatingMode {
     OutOfModeWatch &run_watch() { return run_watch_; }
 
   private:
+    bool isBraking(std::int64_t now_ns) const;
+
     OutOfModeWatch run_watch_;
     Mode mode_ = Mode::MANUAL, wanted_ = Mode::MANUAL;
     motion::Mode wanted_motion_mode_ = motion::Mode::FREE;
-    std::optional<std::int64_t> stop_ns_;
+    std::optional<std::int64_t> braked_ns_;  ///< of the last cycle in which it braked after a stop
     bool isWaitingForRest_ = false, mayMoveJoints_ = false;
     Request request_;
 };

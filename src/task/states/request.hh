@@ -31,6 +31,7 @@ class Request {
         deadline_ns_ = deadline_ns;
         order_ = 0;
     }
+    void set_deadline(std::int64_t deadline_ns) { deadline_ns_ = deadline_ns; }
     /// What motion was asked to do for it.
     void set_order(motion::CommandId order) { order_ = order; }
     motion::CommandId order() const { return order_; }

@@ -76,7 +76,7 @@ TEST_F(TaskTest, AChangeOfModeAfterAStopWaitsUntilTheMachineStands_C5_D3) {
         motion.status.isInPosition = false;
         post(stop);
         const auto change = post(SetMode{Mode::MDI});
-        cycles(5);
+        cycles(9000);  // a heavy axis
         EXPECT_EQ(progress(change), Progress::STARTED);
         EXPECT_EQ(task.status().task.mode, Mode::MANUAL);
         motion.status.isInPosition = true;
@@ -85,6 +85,15 @@ TEST_F(TaskTest, AChangeOfModeAfterAStopWaitsUntilTheMachineStands_C5_D3) {
         EXPECT_EQ(task.status().task.mode, Mode::MDI);
         ASSERT_EQ(ask(SetMode{Mode::MANUAL}), Progress::DONE);
     }
+}
+
+TEST_F(TaskTest, AChangeOfModeDoesNotWaitForAJogThatBeganAfterAStop_C5_D3) {
+    post(AbortAll{});
+    const auto jog = post(JogContinuous{true, 0, 5});
+    cycles(3);
+    ASSERT_EQ(progress(jog), Progress::DONE) << reason(jog);
+    motion.status.isInPosition = false;
+    EXPECT_EQ(ask(SetMode{Mode::AUTO}), Progress::REFUSED);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "base/duration.hh"
 #include "base/text.hh"
 #include "msgs/json.hh"
 #include "ui/web/access.hh"
@@ -52,7 +53,7 @@ Api::Api(Sockets &sockets, const Threads &threads, ApiSetup setup, Clock clock)
       keepsakes_(setup_.facts), log_(setup_.facts.files.log),
       hal_(setup_.connect_hal, setup_.dialogs, setup_.begin_hal), hasHalBegun_(setup_.begin_hal == nullptr) {
     if (!setup_.facts.files.log.empty()) {
-        screens_.keep_log([this](const std::string &line) { write_log(line); });
+        screens_.keep_log([this](const std::string &line, std::int64_t age_ns) { write_log(line, age_ns); });
     }
     for (const Tab &tab : setup_.facts.tabs) {
         if (tab.kind == Tab::Kind::PANEL) {
@@ -63,10 +64,10 @@ Api::Api(Sockets &sockets, const Threads &threads, ApiSetup setup, Clock clock)
 }
 
 /// The first line that cannot be written is told, and is the last that was tried.
-void Api::write_log(const std::string &line) {
+void Api::write_log(const std::string &line, std::int64_t age_ns) {
     const auto failed = std::make_shared<std::string>();
     threads_.disk.run(
-        [this, failed, line, when = std::time(nullptr)] {
+        [this, failed, line, when = std::time(nullptr) - age_ns / NS_PER_SECOND] {
             const auto added = log_.add(when, line);
             *failed = added.has_value() ? "" : added.error().message;
             return Response{};

@@ -71,7 +71,7 @@ class Api final : public Application {
   private:
     void answer_files(const Request &request, const std::string &name, Reply reply);
     void write_file(const Request &request, const std::string &name, Reply reply);
-    void write_log(const std::string &line);
+    void write_log(const std::string &line, std::int64_t age_ns);
     bool isKeepsake(const Request &request, Reply &reply);
     Role needed_role(const Request &request) const;
     void answer_hal(const Request &request, Reply reply);

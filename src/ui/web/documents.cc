@@ -6,6 +6,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include <fmt/format.h>
+
 #include "mailbox/stops.hh"
 #include "msgs/catalogue.hh"
 #include "msgs/json_parse.hh"
@@ -379,8 +381,9 @@ std::string message_kind(const client::Client::Message &message) {
     return found != msgs::NAMES<msgs::MessageKind>.end() ? std::string(found->name) : "TEXT";
 }
 
-std::string message_text(const client::Client::Message &message) {
+std::string message_text(const client::Client::Message &message, std::uint64_t run) {
     return one("message", Json{{"number", message.number},
+                               {"run", fmt::format("{:016x}", run)},
                                {"kind", "OPERATOR_" + message_kind(message)},
                                {"text", message.text}});
 }

@@ -82,7 +82,8 @@ std::string pong_text(const Ping &ping);
 std::string outcome_text(std::uint64_t id, const client::Outcome &outcome);
 /// "ERROR", "TEXT", "DISPLAY".
 std::string message_kind(const client::Client::Message &message);
-std::string message_text(const client::Client::Message &message);
+/// `run`: of the machine (client::Viewer::run).
+std::string message_text(const client::Client::Message &message, std::uint64_t run);
 std::string machine_up_text(std::uint32_t client);
 std::string machine_gone_text(std::string_view reason);
 /// {"questions": [...]}, which are JSON already.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "ui/web/screens.hh"
 
+#include <algorithm>
 #include <random>
 #include <set>
 #include <utility>
@@ -144,6 +145,7 @@ void Screens::look_for_machine() {
             return;
         }
         watch_.emplace(std::move(*client));
+        watch_->rewind_messages(MOST_KEPT);  // also those that appeared before this server was started
         log("the machine is up");
         hasStatus_ = false;
     }
@@ -159,9 +161,9 @@ void Screens::look_for_machine() {
     }
 }
 
-void Screens::log(const std::string &line) const {
+void Screens::log(const std::string &line, std::int64_t age_ns) const {
     if (log_) {
-        log_(line);
+        log_(line, age_ns);
     }
 }
 
@@ -211,11 +213,11 @@ void Screens::tell_note(const std::string &note) {
     for (const auto &[session, browser] : browsers_) {
         browser->tell(text);
     }
-    keep(text);
+    keep(text, now_ns_);
 }
 
-void Screens::keep(const std::string &text) {
-    kept_.push_back({text, now_ns_});
+void Screens::keep(const std::string &text, std::int64_t at_ns) {
+    kept_.push_back({text, at_ns});
     if (kept_.size() > MOST_KEPT) {
         kept_.pop_front();
     }
@@ -232,10 +234,13 @@ void Screens::tell_values(const std::map<std::string, std::string> &values) {
 void Screens::pass_messages() {
     while (const auto message = watch_->next_message()) {
         ++counts_.messages;
-        log(message_kind(*message) + ": " + std::string(message->text));
-        const std::string text = message_text(*message);
-        tell_all(text);
-        keep(text);
+        const std::int64_t age_ns = std::max<std::int64_t>(0, now_ns_ - message->at_ns);
+        if (log_ && watch_->claim_log(message->number)) {
+            log(message_kind(*message) + ": " + std::string(message->text), age_ns);
+        }
+        const std::string text = message_text(*message, watch_->run());
+        tell_all(aged(text, age_ns));
+        keep(text, now_ns_ - age_ns);
     }
 }
 

@@ -42,8 +42,10 @@ class Screens {
     /// Every few milliseconds.
     void tick(std::int64_t now_ns);
 
-    /// Whoever writes down what operators are told: "ERROR: joint 0 following error", "the machine is up".
-    void keep_log(std::function<void(std::string line)> log) { log_ = std::move(log); }
+    /// Writes a line of the log: "ERROR: joint 0 following error", "the machine is up". `age_ns`: since it
+    /// appeared.
+    using Log = std::function<void(std::string line, std::int64_t age_ns)>;
+    void keep_log(Log log) { log_ = std::move(log); }
 
     bool isLogKept() const { return log_ != nullptr; }
 
@@ -71,7 +73,7 @@ class Screens {
     void tell_statuses();
     void tell_silence();
     void tell_all(const std::string &text);
-    void log(const std::string &line) const;
+    void log(const std::string &line, std::int64_t age_ns = 0) const;
 
     Sockets &sockets_;
     ScreensSetup setup_;
@@ -91,12 +93,12 @@ class Screens {
     };
 
     /// Keeps it for screens that connect later.
-    void keep(const std::string &text);
+    void keep(const std::string &text, std::int64_t at_ns);
 
     std::deque<Kept> kept_;
     std::int64_t now_ns_ = 0;       ///< of the last tick
     std::string questions_ = "[]";  ///< of HAL, JSON
-    std::function<void(std::string)> log_;
+    Log log_;
     Counts counts_;
     std::int64_t next_look_ns_ = 0, next_status_ns_ = 0;
 };

@@ -7,6 +7,8 @@ import re
 ABORT_S = 0.1       # an abort is answered within so long
 STOP_S = 0.6        # a machine that stops does it within so long
 END_S = 2.0         # SIGTERM ends every process within so long
+SUSPENDED_SERVERS = ('signal.stop_web', 'signal.stop_rsh', 'signal.stop_nml')
+SUSPENDED_END_S = 0.5  # a suspended server ends within so long after it continues
 OFF_PATH_MM = 0.02  # above the tolerance of G64 in the programs, 0.01
 STILL_S = 0.25      # no movement for so long is a stop
 SAME_MM = 1e-6
@@ -115,8 +117,9 @@ def stops(record):
     if not early:
         return []
     rest = early[0][0]
+    seen = min((sample[0] for sample in record.samples if sample[0] > rest), default=rest)  # they came to rest in between
     failures = []
-    begun = [event for event in record.events if event.begin <= rest and event.causes]
+    begun = [event for event in record.events if event.begin <= seen and event.causes]
     since = min((max(0.0, rest - event.latest) for event in begun), default=None)
     if since is None or since > STOP_S:
         names = ', '.join(f'{event.name} {event.begin - record.begin:.2f} to {event.end - record.begin:.2f} s' for event in record.events)
@@ -136,7 +139,9 @@ def ends(record):
     moving = [b[0] for a, b in zip(record.samples, record.samples[1:]) if math.dist(a[1:4], b[1:4]) >= SAME_MM]
     if moving and moving[-1] - event.begin > STOP_S:
         failures.append(f'stop: the axes move {moving[-1] - event.begin:.2f} s after {event.name}')
-    if record.end_s is None or record.end_s > END_S:
+    # A server that is suspended cannot end before it continues.
+    continues_s = max((one.end - event.begin for one in record.events if one.name in SUSPENDED_SERVERS), default=0.0)
+    if record.end_s is None or record.end_s > max(END_S, continues_s + SUSPENDED_END_S):
         late = lateness_between(record, event.begin, event.begin + (record.end_s or 0))
         coincides = '; the computer was late' if record.end_s is not None and record.end_s - late <= END_S else ''
         failures.append(f'end: {event.name} ends the processes {"never" if record.end_s is None else f"in {record.end_s:.2f} s"}, '

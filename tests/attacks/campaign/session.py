@@ -78,7 +78,7 @@ class Session:
         machine.command.program_open(str(machine.nc / 'cut.ngc'))
         opened = machine.command.wait_complete(5)
         if opened == linuxcnc.RCS_DONE:
-            self.offsets, self.diameters = self.offsets[-2:] + [plan.offset], self.diameters[-2:] + [2 * plan.offset]
+            self.offsets, self.diameters = self.offsets + [plan.offset], self.diameters + [2 * plan.offset]
             machine.command.auto(linuxcnc.AUTO_RUN, 1)
             end = time.monotonic() + 3
             while time.monotonic() < end:
@@ -211,6 +211,10 @@ class Session:
         failures += state_files.of_tools(self.tools, self.first_tools, self.diameters)
         if any(text.startswith('file:') for text in failures):
             self.isWhole = False
+            return
+        if self.parameters.exists():
+            self.offsets = state_files.since(self.offsets, state_files.offset_of(self.parameters))
+        self.diameters = state_files.since(self.diameters, state_files.diameter(self.tools.read_text()))
 
     def recover(self, failures):
         """As an operator: abort, switch on."""

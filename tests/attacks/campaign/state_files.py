@@ -38,6 +38,18 @@ def of_tools(path, first, known):
     return []
 
 
+def since(known, seen):
+    """The values that a file may have at the next look: the one that it has now, and all that were set after it. A run may not have been
+    able to write its value; what is written is never older than what was there."""
+    last = max((at for at, value in enumerate(known) if abs(value - seen) < 1e-5), default=0)
+    return known[last:]
+
+
+def offset_of(path):
+    """G59 X of a parameter file that is whole."""
+    return float(dict(line.split('\t') for line in path.read_text().splitlines())[G59_X])
+
+
 def diameter(text):
     found = re.search(r'^T5 .*?D\+?([0-9.]+)', text, re.MULTILINE)
     return float(found.group(1)) if found else float('nan')

@@ -46,19 +46,21 @@ class Lateness(threading.Thread):
 def by_python(_ports):
     command = linuxcnc.command()
     sent = time.monotonic()
-    command.abort()
-    answer = command.wait_complete(ANSWER_S)
-    return sent, {linuxcnc.RCS_DONE: 'done', linuxcnc.RCS_ERROR: 'error'}.get(answer, 'none')
+    command.abort()  # returns when the status shows that task has carried it out
+    answered = time.monotonic()
+    answer = command.wait_complete(ANSWER_S)  # until the axes rest
+    return sent, {linuxcnc.RCS_DONE: 'done', linuxcnc.RCS_ERROR: 'error'}.get(answer, 'none'), answered
 
 
 def by_web(ports):
     screen = Screen(ports[0])
     if not screen.until(lambda: screen.hello, ANSWER_S):
-        return time.monotonic(), 'no greeting of the server'
+        return time.monotonic(), 'no greeting of the server', time.monotonic()
     sent = time.monotonic()
     answer = screen.do('AbortAll')
+    answered = time.monotonic()
     screen.cut()
-    return sent, {'DONE': 'done', 'FAILED': 'error', 'REFUSED': 'error'}.get(answer, 'none')
+    return sent, {'DONE': 'done', 'FAILED': 'error', 'REFUSED': 'error'}.get(answer, 'none'), answered
 
 
 def by_rsh(ports):
@@ -68,12 +70,12 @@ def by_rsh(ports):
         file.flush()
         while 'SET_WAIT' not in (line := file.readline().upper()):
             if not line:
-                return time.monotonic(), 'closed'
+                return time.monotonic(), 'closed', time.monotonic()
         sent = time.monotonic()
         file.write('set abort\r\n')
         file.flush()
         answer = file.readline()
-        return sent, 'done' if re.search('ACK', answer) else 'error' if 'NAK' in answer else answer or 'closed'
+        return sent, 'done' if re.search('ACK', answer) else 'error' if 'NAK' in answer else answer or 'closed', time.monotonic()
 
 
 def by_nml(ports):
@@ -89,7 +91,7 @@ def by_nml(ports):
         elif echo == serial:
             state = {'DONE': 'done', 'ERROR': 'error'}.get(status['state'], 'none')
     client.socket.close()
-    return sent, state
+    return sent, state, time.monotonic()
 
 
 CLIENTS = {'python': by_python, 'web': by_web, 'rsh': by_rsh, 'nml': by_nml}
@@ -109,10 +111,10 @@ def main():
             continue
         begin = time.monotonic()
         try:
-            sent, result = CLIENTS[request](ports)
+            sent, result, answered = CLIENTS[request](ports)
         except Exception as error:  # pylint: disable=broad-exception-caught  # whatever fails is the judge's business
-            sent, result = begin, f'{type(error).__name__}: {error}'
-        print(json.dumps({'kind': request, 'begin': begin, 'sent': sent, 'answered': time.monotonic(), 'result': result}), flush=True)
+            sent, result, answered = begin, f'{type(error).__name__}: {error}', time.monotonic()
+        print(json.dumps({'kind': request, 'begin': begin, 'sent': sent, 'answered': answered, 'result': result}), flush=True)
 
 
 if __name__ == '__main__':

@@ -8,35 +8,33 @@ export interface Dismissable {
   at: number;
   /** By which task counts its messages; 0: of a note, which has none. */
   number: number;
+  /** Of the start of the machine that counts them; of a note, of the server. */
+  run: string;
 }
-
-type Kept = Dismissable & { session: string };
 
 const KEY = 'millwright.dismissed';
 const MOST_KEPT = 200;
-/** The time of a message is its age when it was sent: a page that loads slowly reads it late. A machine that is started again counts from 1. */
-const NUMBERED_MS = 10_000;
+/** The time of a note is its age when it was sent: a page that loads slowly reads it late. */
 const NOTE_MS = 2000;
 
 export class Dismissed {
-  private kept: Kept[];
+  private kept: Dismissable[];
 
   constructor(private readonly storage: Pick<Storage, 'getItem' | 'setItem'> | null) {
     this.kept = this.read();
   }
 
-  private read(): Kept[] {
+  private read(): Dismissable[] {
     try {
       const kept = JSON.parse(this.storage?.getItem(KEY) ?? '[]') as unknown;
-      return Array.isArray(kept) ? (kept as Kept[]) : [];
+      return Array.isArray(kept) ? (kept as Dismissable[]) : [];
     } catch {
       return []; // no storage, or not ours
     }
   }
 
-  /** `session`: of the server. */
-  add(session: string, messages: readonly Dismissable[]): void {
-    const added = messages.map(({ kind, text, at, number }) => ({ session, kind, text, at, number }));
+  add(messages: readonly Dismissable[]): void {
+    const added = messages.map(({ kind, text, at, number, run }) => ({ kind, text, at, number, run }));
     this.kept = [...this.kept, ...added].slice(-MOST_KEPT);
     try {
       this.storage?.setItem(KEY, JSON.stringify(this.kept));
@@ -45,8 +43,9 @@ export class Dismissed {
     }
   }
 
-  has(session: string, one: Dismissable): boolean {
-    const tolerance = one.number > 0 ? NUMBERED_MS : NOTE_MS;
-    return this.kept.some((kept) => kept.session === session && kept.number === one.number && kept.kind === one.kind && kept.text === one.text && Math.abs(kept.at - one.at) < tolerance);
+  has(one: Dismissable): boolean {
+    return this.kept.some(
+      (kept) => kept.run === one.run && kept.number === one.number && (one.number > 0 || (kept.kind === one.kind && kept.text === one.text && Math.abs(kept.at - one.at) < NOTE_MS)),
+    );
   }
 }

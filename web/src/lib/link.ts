@@ -15,6 +15,8 @@ export interface Command {
 
 export interface Message {
   number: number;
+  /** Of the start of the machine that counts them. */
+  run: string;
   kind: 'OPERATOR_ERROR' | 'OPERATOR_TEXT' | 'OPERATOR_DISPLAY';
   text: string;
 }

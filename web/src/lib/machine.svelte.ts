@@ -16,6 +16,8 @@ export interface Notice {
   at: Date;
   /** By which task counts its messages; 0: none. */
   number: number;
+  /** Of the start of the machine that counts them; of a note, of the server. */
+  run: string;
   isRead: boolean;
 }
 
@@ -69,6 +71,7 @@ export const notices = $state<{ list: Notice[] }>({ list: [] });
 let lastNotice = 0;
 let statusAt = 0;
 let lastMessage = 0;
+let lastRun = '';
 const onLost: (() => void)[] = [];
 
 /** `act` is called when the connection or the machine goes. */
@@ -111,20 +114,19 @@ export function dismissAll(): void {
   const fresh = notices.list.filter((one) => !one.isRead);
   fresh.forEach((one) => (one.isRead = true));
   dismissed.add(
-    machine.session,
     fresh.filter((one) => one.kind !== 'LOCAL').map((one) => ({ ...one, at: one.at.getTime() })),
   );
 }
 
 /** What came `ageMs` ago. A server tells a screen that connects what came before. */
-export function tell(kind: Notice['kind'], text: string, ageMs = 0, number = 0): void {
+export function tell(kind: Notice['kind'], text: string, ageMs = 0, number = 0, run = machine.session): void {
   const at = new Date(Date.now() - ageMs);
   const isKnown = notices.list.some((one) => one.text === text && Math.abs(at.getTime() - one.at.getTime()) < SAME_MS);
   if (isKnown || text === '') {
     return;
   }
-  const isRead = kind !== 'LOCAL' && dismissed.has(machine.session, { kind, text, at: at.getTime(), number });
-  notices.list.unshift({ id: ++lastNotice, kind, text, at, number, isRead });
+  const isRead = kind !== 'LOCAL' && dismissed.has({ kind, text, at: at.getTime(), number, run });
+  notices.list.unshift({ id: ++lastNotice, kind, text, at, number, run, isRead });
   if (notices.list.length > MOST_NOTICES) {
     notices.list.length = MOST_NOTICES;
   }
@@ -164,10 +166,7 @@ const link = new Link(
       machine.role = hello.role;
       machine.protection = hello.protection;
       machine.version = hello.version;
-      if (machine.session !== hello.session) {
-        machine.session = hello.session;
-        lastMessage = 0;
-      }
+      machine.session = hello.session;
       machine.isMachineUp = hello.client !== 0;
       questions.list = [];
       link.look(watched);
@@ -196,9 +195,10 @@ const link = new Link(
       }
     },
     message(message, ageMs) {
-      if (message.number > lastMessage) {
+      if (message.run !== lastRun || message.number > lastMessage) {
+        lastRun = message.run;
         lastMessage = message.number;
-        tell(message.kind, message.text, ageMs, message.number);
+        tell(message.kind, message.text, ageMs, message.number, message.run);
       }
     },
     machine(isUp, client, reason) {
@@ -207,7 +207,6 @@ const link = new Link(
       machine.goneReason = reason;
       if (!isUp) {
         machine.status = null;
-        lastMessage = 0;
         lose();
       }
     },

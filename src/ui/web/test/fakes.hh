@@ -54,7 +54,8 @@ class FakeTask {
     }
 
     mailbox::Memory memory = mailbox::Memory::in_process();
-    mailbox::Desk desk{memory.segment()};
+    std::int64_t message_ns = 0;  ///< when the next message appears
+    mailbox::Desk desk{memory.segment(), mailbox::Desk::Rights::HERE, [this] { return message_ns; }};
     std::unique_ptr<msgs::MachineStatus> status = std::make_unique<msgs::MachineStatus>();
     std::int64_t now_ns = 0;
     bool isKeeping = false;

@@ -19,7 +19,6 @@ constexpr std::int64_t MS = 1000000;
 class ScreensTest : public testing::Test {
   protected:
     ScreensTest() {
-        ScreensSetup setup;
         setup.connect = [this]() -> Result<client::Client> {
             return isUp ? client::Client::join(task.memory.segment()) : fail("no machine here");
         };
@@ -32,11 +31,18 @@ class ScreensTest : public testing::Test {
         setup.status_note = "status only";
         screens.emplace(sockets, setup);
     }
+    /// The server is killed and started again.
+    void start_again() {
+        screens.emplace(sockets, setup);
+        now_ns += 1000 * MS;
+        task.message_ns = now_ns;
+    }
     /// Time goes on, in steps of a tick; task cycles between them.
     std::vector<mailbox::Desk::Delivery> go(std::int64_t ms) {
         std::vector<mailbox::Desk::Delivery> taken;
         for (const std::int64_t end = now_ns + ms * MS; now_ns < end;) {
             now_ns += 10 * MS;
+            task.message_ns = now_ns;
             for (auto &one : task.cycle()) {
                 taken.push_back(std::move(one));
             }
@@ -65,6 +71,7 @@ class ScreensTest : public testing::Test {
 
     FakeTask task;
     FakeSockets sockets;
+    ScreensSetup setup;
     std::optional<Screens> screens;
     std::int64_t now_ns = 1;
     bool isUp = true;
@@ -309,8 +316,9 @@ TEST_F(ScreensTest, MessagesGoToAllAndToWhoComesLater_J3) {
     go(50);
     const auto told = of_kind(1, "message");
     ASSERT_EQ(told.size(), 1U);
-    EXPECT_EQ(told[0]["message"],
-              Json::parse(R"({"number":1,"kind":"OPERATOR_ERROR","text":"tool \"4\" is missing"})"));
+    auto expected = Json::parse(R"({"number":1,"kind":"OPERATOR_ERROR","text":"tool \"4\" is missing"})");
+    expected["run"] = told[0]["message"]["run"];
+    EXPECT_EQ(told[0]["message"], expected);
     screens->opened(2, {Role::OPERATE, Protection::LOCAL}, now_ns);
     const auto later = of_kind(2, "message");
     ASSERT_EQ(later.size(), 1U);
@@ -334,9 +342,73 @@ TEST_F(ScreensTest, AScreenThatConnectsLaterIsToldHowOldMessagesAre_J3) {
     EXPECT_EQ(found, 2);
 }
 
+TEST_F(ScreensTest, AServerThatIsStartedAgainShowsTheLastMessagesWithTheirTime_J3) {
+    client::Viewer other(task.memory.segment());  // a client of Python
+    const auto read_all = [&other] {
+        while (other.next_message().has_value()) {
+        }
+    };
+    go(300);
+    open(1);
+    task.desk.post(msgs::MessageKind::OPERATOR_ERROR, "before");
+    read_all();
+    go(1000);
+    const auto first = of_kind(1, "message");
+    ASSERT_EQ(first.size(), 1U);
+    start_again();
+    task.desk.post(msgs::MessageKind::OPERATOR_ERROR, "meanwhile");
+    read_all();
+    now_ns += 500 * MS;
+    screens->opened(2, {Role::OPERATE, Protection::LOCAL}, now_ns);
+    go(300);
+    const auto told = of_kind(2, "message");
+    ASSERT_EQ(told.size(), 2U);
+    EXPECT_EQ(told[0]["message"], first[0]["message"]) << "a screen knows it as the same message";
+    EXPECT_EQ(told[1]["message"]["text"], "meanwhile");
+    EXPECT_NEAR(told[0]["age_ms"].get<double>(), 2500, 300);
+    EXPECT_NEAR(told[1]["age_ms"].get<double>(), 500, 300);
+    EXPECT_FALSE(client::Viewer(task.memory.segment()).next_message().has_value())
+        << "other clients get nothing that was read before";
+}
+
+TEST_F(ScreensTest, AServerThatIsStartedLateShowsTheLastHundredMessages_J3) {
+    client::Viewer other(task.memory.segment());
+    for (int i = 1; i <= 150; ++i) {
+        task.desk.post(msgs::MessageKind::OPERATOR_TEXT, std::to_string(i));
+        static_cast<void>(other.next_message());
+    }
+    go(300);
+    screens->opened(1, {Role::OPERATE, Protection::LOCAL}, now_ns);
+    const auto told = of_kind(1, "message");
+    ASSERT_EQ(told.size(), 100U);
+    EXPECT_EQ(told.front()["message"]["text"], "51");
+    EXPECT_EQ(told.back()["message"]["text"], "150");
+}
+
+TEST_F(ScreensTest, EachMessageIsLoggedOnceAlsoByAServerThatIsStartedAgain_J1) {
+    std::vector<std::string> lines;
+    const auto keep_log = [&] {
+        screens->keep_log([&](const std::string &line, std::int64_t age_ns) {
+            if (line.starts_with("ERROR")) {
+                lines.push_back(line + " " + std::to_string((age_ns + 500 * MS) / (1000 * MS)) + " s");
+            }
+        });
+    };
+    keep_log();
+    task.desk.post(msgs::MessageKind::OPERATOR_ERROR, "before");
+    go(100);
+    start_again();
+    keep_log();
+    task.desk.post(msgs::MessageKind::OPERATOR_ERROR, "meanwhile");
+    static_cast<void>(client::Viewer(task.memory.segment()).next_message());
+    now_ns += 5000 * MS;
+    go(100);
+    EXPECT_EQ(lines, (std::vector<std::string>{"ERROR: before 0 s", "ERROR: meanwhile 5 s"}));
+}
+
 TEST_F(ScreensTest, WhatOperatorsAreToldIsWrittenDown_J1) {
     std::vector<std::string> lines;
-    screens->keep_log([&](const std::string &line) { lines.push_back(line); });
+    screens->keep_log([&](const std::string &line, std::int64_t) { lines.push_back(line); });
     go(300);  // without an open screen
     task.desk.post(msgs::MessageKind::OPERATOR_ERROR, "tool 4 is missing");
     task.desk.post(msgs::MessageKind::OPERATOR_TEXT, "done");
