@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Keeps what must outlive a power cut: the journal of the program that runs, and small files that change
-// while it does. Whoever asks never waits for the disk.
+// while it does. The disk is used by a separate thread.
 #pragma once
 
-#include <condition_variable>
-#include <deque>
-#include <map>
+#include <cstdint>
+#include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
@@ -28,19 +26,18 @@ enum class Works : std::uint8_t {
     ON_CALL,  ///< in work(): for virtual clocks
 };
 
-/// What is asked is done in its order, each part synced before the next; a progress or a file that waits is
-/// overtaken by the next one. Asked by one thread.
+/// Jobs are done in the order of the calls, each part synced before the next; a progress or a file that waits
+/// is replaced by the next one. Called by one thread, which never waits for the disk unless a call says so.
 class Writer {
   public:
     /// `path`: of the journal; empty: runs are not journalled.
     Writer(std::unique_ptr<Disk> disk, std::string path, Works works);
     Writer(const Writer &) = delete;
     Writer &operator=(const Writer &) = delete;
-    /// Does all that is asked first.
-    ~Writer();
+    ~Writer() { finish(); }
 
-    bool isOn() const { return !path_.empty(); }
-    const Found &found() const { return found_; }
+    bool isOn() const;
+    const Found &found() const;
 
     /// From here on the journal is of this run; with `progress` of one that is gone on with. The program's
     /// mark is made where it is not known.
@@ -51,61 +48,40 @@ class Writer {
     void end();
     /// Nobody wants to go on with it: there is no journal any more.
     void forget();
+
+    /// A text that cannot be written is kept, and written again with the next text of the file, before the
+    /// file is read, and in finish().
     void keep_file(const std::string &path, std::string text, Old old = Old::DROPPED);
-    /// Waits for the disk: the file has this text when it returns, and nothing that was asked before comes
-    /// over it.
+    /// Waits for the disk, at most 1 s, and not for one that take_delay() has found late: the file has this
+    /// text when it returns without an error, and no earlier text replaces it. A disk that answers later
+    /// still writes it.
     Result<> write_file(const std::string &path, const std::string &text, Old old = Old::DROPPED);
+    /// Reads a file after what was asked for it before is written; an error when that cannot be written.
+    /// `then` is called in the thread of the disk.
+    using Then = std::function<void(Result<std::string>)>;
+    void read_file(const std::string &path, Then then);
+    /// The file has its last text, or writing it has failed, or take_delay() has found the disk late.
+    bool isSettled(const std::string &path) const;
 
     /// What the operator is to know, once.
     std::optional<std::string> take_trouble();
+    /// Which file the disk has not answered for in 1 s, once. Called in each cycle at clock time `now_ns`.
+    std::optional<std::string> take_delay(std::int64_t now_ns);
     /// With Works::ON_CALL: does what was asked; false when there was nothing.
     bool work();
+    /// Nothing is asked afterwards. Waits for all that was asked, at most 0.5 s where a thread does it;
+    /// files that are not written are then named on standard error.
+    void finish();
 
   private:
-    enum class Kind : std::uint8_t { BEGIN, PROGRESS, DOUBT, END, FORGET, FILE };
-    struct Job {
-        Kind kind = Kind::END;
-        Run run;  ///< of BEGIN; the field in question of PROGRESS and DOUBT
-        std::string path, text;
-        std::uint64_t number = 0;  ///< counts what is asked
-        Old old = Old::DROPPED;    ///< of FILE
-    };
-    using Jobs = std::deque<Job>;
+    struct Job;
+    struct Core;
 
-    void find();
-    void ask(Job job);
-    void run_thread();
-    void do_jobs(Jobs &jobs);
-    Result<> do_job(Job &job);
-    Result<> do_file(const Job &job);
-    Result<> put_file(const std::string &path, const std::string &text, Old old);
-    Result<> begin_file(Job &job);
-    Result<> write_records();
-    Result<> rewrite();
-    void tell(const Result<> &result);
-
-    std::unique_ptr<Disk> disk_;  ///< from the start on under disk_mutex_
-    std::string path_;
-    Found found_;
-
-    std::mutex mutex_;
-    std::condition_variable asked_;
-    Jobs jobs_;                           ///< under the mutex
-    std::optional<std::string> trouble_;  ///< under the mutex
-    bool isEnding_ = false;               ///< under the mutex
-    std::uint64_t last_job_ = 0;          ///< under the mutex
-
-    std::mutex disk_mutex_;                         ///< never taken within mutex_; the disk is used under it
-    std::map<std::string, std::uint64_t> written_;  ///< files by write_file(): which job; under that mutex
-
-    // Of whoever works.
-    std::optional<Run> run_;    ///< as the file says it
-    std::uint64_t key_ = 0;     ///< of its records
-    std::string records_;       ///< to be appended
-    std::uint64_t bytes_ = 0;   ///< of the file
-    bool isFileSound_ = false;  ///< records may be appended to it
-    bool isTroubleTold_ = false;
+    std::shared_ptr<Core> core_;  ///< also of the thread, which outlives this while its disk does not answer
     std::thread thread_;
+    bool isFinished_ = false;
+    std::uint64_t watched_job_ = 0;  ///< of take_delay()
+    std::int64_t watched_since_ns_ = 0;
 };
 
 }  // namespace mw::journal

@@ -149,6 +149,7 @@ class RealtimeMachine final : public Machine {
         parts_.sink.error(
             "the interpreter is still busy (a slow disk, or Python): the machine ends without it");
         side_->remove_mailbox();
+        side_->finish_files();
         shut_down();
         OutputRelay::end();
         std::_Exit(1);

@@ -111,11 +111,12 @@ namespace {
 Result<std::unique_ptr<task::ToolStore>> open_kept(const MachineConfig &machine, diag::Sink &sink,
                                                    const ToolOptions &options) {
     const auto changer = machine.isRandomToolchanger ? tool::Changer::RANDOM : tool::Changer::FIXED;
+    journal::Writer *const keeper = options.isWaitedFor ? nullptr : options.keeper;
     if (!machine.tool_database.empty()) {
-        return ToolDatabase::start({machine.tool_database, machine.ini_folder, changer, options.isWaitedFor},
-                                   sink);
+        return ToolDatabase::start(
+            {machine.tool_database, machine.ini_folder, changer, options.isWaitedFor, keeper}, sink);
     }
-    return ToolFile::load(machine.tool_table_file, sink, changer);
+    return ToolFile::load(machine.tool_table_file, sink, changer, keeper);
 }
 
 }  // namespace

@@ -66,8 +66,9 @@ class ToolData : public task::ToolStore {
 
 /// How the tools of a machine are opened.
 struct ToolOptions {
-    journal::Writer *keeper = nullptr;  ///< keeps the life of tools, of a machine that really cuts
-    bool isWaitedFor = false;  ///< a database program is waited for within a cycle: for virtual clocks
+    journal::Writer *keeper = nullptr;  ///< writes files, of a machine that really cuts; outlives the tools
+    /// A database program and the disk of the tool table are waited for within a cycle: for virtual clocks.
+    bool isWaitedFor = false;
 };
 
 /// The owner of the machine's tools. `sink` is warned of lines that cannot be used.

@@ -174,23 +174,28 @@ std::string ToolDatabase::spindle_path() const {
 
 /// A random changer whose database knows of no tool in the spindle: what we have kept counts.
 void ToolDatabase::find_spindle_tool(tool::Table &read) {
-    const auto kept = isRandom() && read.entry(0).toolno < 0 ? read_file(spindle_path())
-                                                             : Result<std::string>(std::string());
-    if (!kept.has_value() || kept->empty()) {
+    if (!spindle_text_.has_value()) {  // at the start
+        spindle_text_ = isRandom() ? read_file(spindle_path()).value_or("") : "";
+    }
+    if (!isRandom() || read.entry(0).toolno >= 0 || spindle_text_->empty()) {
         return;
     }
-    const auto table = tool::Table::parse(*kept, spindle_path(), tool::Changer::RANDOM);
+    const auto table = tool::Table::parse(*spindle_text_, spindle_path(), tool::Changer::RANDOM);
     const int toolno = table.has_value() ? table->entry(0).toolno : -1;
     read.load_spindle(std::max(0, toolno < 0 ? 0 : read.index_of_tool(toolno)));
 }
 
-Result<> ToolDatabase::keep_spindle() const {
+Result<> ToolDatabase::keep_spindle() {
     if (!isRandom()) {
         return {};
     }
     interp::ToolEntry in_spindle = entry(0);
-    return write_file_atomically(
-        spindle_path(), in_spindle.toolno < 0 ? std::string() : tool::format_entry(in_spindle) + '\n');
+    spindle_text_ = in_spindle.toolno < 0 ? std::string() : tool::format_entry(in_spindle) + '\n';
+    if (setup_.keeper == nullptr) {
+        return write_file_atomically(spindle_path(), *spindle_text_);
+    }
+    setup_.keeper->keep_file(spindle_path(), *spindle_text_);
+    return {};
 }
 
 Result<> ToolDatabase::load_spindle(int index) {

@@ -29,7 +29,9 @@ class ToolDatabase final : public ToolData {
         std::string folder;   ///< where it runs, and where db_spindle.tbl is
         tool::Changer changer = tool::Changer::FIXED;
         bool isWaitedFor = false;  ///< each answer is waited for where it is asked: for virtual clocks
-        double patience_s = 10;    ///< for its first line, and for each answer
+        /// Writes db_spindle.tbl, and outlives this; null: it is written within the call.
+        journal::Writer *keeper = nullptr;
+        double patience_s = 10;  ///< for its first line, and for each answer
     };
     static Result<std::unique_ptr<task::ToolStore>> start(const Setup &setup, diag::Sink &sink);
 
@@ -38,6 +40,9 @@ class ToolDatabase final : public ToolData {
     /// The protocol has no words for it.
     Result<> add(const interp::ToolEntry &entry) override;
     Result<> remove(int index) override;
+    bool isSettled() const override {
+        return setup_.keeper == nullptr || setup_.keeper->isSettled(spindle_path());
+    }
     Result<> reload() override;
     std::optional<Result<>> reload_result() override;
     void step() override;
@@ -58,7 +63,7 @@ class ToolDatabase final : public ToolData {
     /// Until everything asked for is answered or given up.
     void wait();
     std::string spindle_path() const;
-    Result<> keep_spindle() const;
+    Result<> keep_spindle();
     void find_spindle_tool(tool::Table &read);
 
     Setup setup_;
@@ -66,6 +71,7 @@ class ToolDatabase final : public ToolData {
     std::deque<Awaited> awaited_;
     std::string tools_text_;
     std::optional<Result<>> read_{Result<>{}};  ///< how the last reading has ended
+    std::optional<std::string> spindle_text_;   ///< of db_spindle.tbl; nothing before it is read
     std::deque<std::string> warnings_;
     std::string trouble_;  ///< why nothing more is asked
 };

@@ -85,7 +85,7 @@ std::string waiting_text(const Waiting &waiting) {
     case WaitFor::TOOL_CHANGED: return "pin iocontrol.0.tool-changed to become TRUE";
     case WaitFor::TOOL_START_CHANGE: return "pin iocontrol.0.start-change-ack";
     case WaitFor::TOOL_ABORT_TAKEN: return "pin iocontrol.0.emc-abort-ack";
-    case WaitFor::TOOL_DATA: return "the tool database";
+    case WaitFor::TOOL_DATA: return "the tool data";
     case WaitFor::TOOL_CHANGED_OFF: return "pin iocontrol.0.tool-changed to become FALSE";
     case WaitFor::SPINDLE_ORIENTED: return fmt::format("pin spindle.{}.is-oriented", waiting.index);
     case WaitFor::SETTING: return "the motion controller to take a setting";

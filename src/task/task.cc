@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "interp/scripts/user_codes.hh"
 #include "motion/api/texts.hh"
 #include "task/run/shown_offsets.hh"
@@ -24,7 +26,8 @@ Task::Task(const Parts &parts, Settings settings)
       parameter_file_(settings_.parameter_file, reader_, parts.journal), recovery_(parts.journal),
       on_abort_(settings_.interpreter_plugin.empty() ? settings_.interpreter.on_abort_command
                                                      : std::string()),
-      user_program_(settings_.isUserProgramWaitedFor),
+      user_program_(settings_.isUserProgramWaitedFor ? UserProgram::Waits::IN_CALL
+                                                     : UserProgram::Waits::NEVER),
       sequencer_(reader_.queue(), motion_, io_, parts.tools, make_events(), settings_.sequencer),
       planner_mode_({[this](const motion::SetParameter &p) { return motion_.send(p); },
                      [this](MessageKind kind, const std::string &text) { post(kind, text); }}),
@@ -53,10 +56,15 @@ SequencerEvents Task::make_events() {
         return planner_mode_.set(item.isSmooth ? smooth : 0);
     };
     events.confinement = [this] { return senders_.confinement(); };
-    events.start_user_code = [this](const interp::UserCode &item) -> Result<> {
-        const std::string path = interp::find_user_program(settings_.interpreter, item.code);
-        return path.empty() ? fail("M" + std::to_string(item.code) + ": its program is gone")
-                            : user_program_.start(path, item.p, item.q);
+    events.start_user_code = [this](const interp::UserCode &item) {
+        const std::string name = fmt::format("M{}", item.code);
+        const auto find = [folders = settings_.interpreter.user_m_path,
+                           code = item.code]() -> Result<std::string> {
+            const std::string path = interp::find_user_program(folders, code);
+            return path.empty() ? Result<std::string>(fail(fmt::format("M{}: its program is gone", code)))
+                                : path;
+        };
+        user_program_.start(name, find, item.p, item.q);
     };
     events.user_code_result = [this]() -> std::optional<Result<>> {
         if (user_program_.isRunning()) {
@@ -133,8 +141,11 @@ void Task::step(std::int64_t now_ns) {
         run_.isRunning() ? run_.note_failure(failure->str())
                          : post(MessageKind::OPERATOR_ERROR, failure->str());
     }
-    if (const auto delay = sequencer_.logs().take_delay()) {
-        post(MessageKind::OPERATOR_ERROR, *delay);
+    for (const auto &delay :
+         {sequencer_.logs().take_delay(), user_program_.take_delay(now_ns), recovery_.take_delay(now_ns)}) {
+        if (delay.has_value()) {
+            post(MessageKind::OPERATOR_ERROR, *delay);
+        }
     }
     sequencer_.on_tool_event(io_.step(parts_.io_port.read()));
     Start{*this}.watch_hold();  // a tool that has come is known before a command goes on with it
@@ -167,10 +178,11 @@ void Task::step_run() {
     }
     reader_.follow(sequencer_);
     // The step that carries out the last block ends the program: nothing is left to pause in front of.
-    const bool isAllDone = sequencer_.isIdle() && sequencer_.logs().isSettled();
-    if (run_.phase() == RunPhase::FINISHING && isAllDone && !run_.isHeld() && !run_.hasFailed()) {
+    const bool isCarriedOut = run_.phase() == RunPhase::FINISHING && sequencer_.isIdle();
+    const bool isWritten = sequencer_.logs().isSettled() && parts_.tools.isSettled();
+    if (isCarriedOut && isWritten && !run_.isHeld() && !run_.hasFailed()) {
         finish_run(Progress::DONE, {});
-    } else if (run_.hold() == Hold::STEPPING && sequencer_.isStepDone()) {
+    } else if (run_.hold() == Hold::STEPPING && sequencer_.isStepDone() && (isWritten || !isCarriedOut)) {
         run_.change(RunEvent::STEP_DONE);
     }
     while (!run_.isRunning()) {  // lines of MDI follow at once: nothing comes between them

@@ -95,7 +95,7 @@ Outcome Task::Handler::operator()(const LoadToolTable &) {
     if (task.reload_command_ != 0) {
         return fail("the tool table is being read already");
     }
-    const auto begun = Meanwhile{task}.beside([&] { return task.parts_.tools.reload(); });
+    const auto begun = task.parts_.tools.reload();
     if (!begun.has_value()) {
         return std::unexpected(begun.error());
     }

@@ -9,8 +9,8 @@
 
 namespace mw::interp {
 
-std::string find_user_program(const Settings &settings, int code) {
-    for (const std::string &folder : settings.user_m_path) {
+std::string find_user_program(const std::vector<std::string> &folders, int code) {
+    for (const std::string &folder : folders) {
         const std::filesystem::path path = std::filesystem::path(folder) / fmt::format("M{}", code);
         std::error_code ignored;
         if (std::filesystem::is_regular_file(path, ignored) && ::access(path.c_str(), X_OK) == 0) {

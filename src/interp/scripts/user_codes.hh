@@ -3,13 +3,12 @@
 #pragma once
 
 #include <string>
-
-#include "interp/interpreter.hh"
+#include <vector>
 
 namespace mw::interp {
 
-/// The executable file M100 to M199 in the first folder of [DISPLAY]PROGRAM_PREFIX and [RS274NGC]USER_M_PATH
-/// that has one; empty when none has.
-std::string find_user_program(const Settings &settings, int code);
+/// The executable file M100 to M199 in the first of `folders` that has one; empty when none has. Waits for
+/// the disk. `folders`: Settings::user_m_path.
+std::string find_user_program(const std::vector<std::string> &folders, int code);
 
 }  // namespace mw::interp

@@ -4,9 +4,11 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <thread>
 
 #include <gtest/gtest.h>
 
+#include "journal/test/hung_disk.hh"
 #include "journal/test/torn_disk.hh"
 #include "journal/writer.hh"
 
@@ -181,6 +183,35 @@ TEST_F(JournalWriter, WhateverThePowerCutTakesNeitherFileNorBackupIsLostOrHalf_D
         }
     }
     EXPECT_GT(with_backup, 1000);
+}
+
+TEST(JournalWriterThread, ADiskThatDoesNotAnswerHoldsUpNobodyForLong_C5) {
+    namespace fs = std::filesystem;
+    const fs::path folder = fs::temp_directory_path() / ("mw_journal_hung_" + std::to_string(::getpid()));
+    fs::create_directory(folder);
+    const std::string path = folder / "p.var";
+    const auto calls = std::make_shared<test::HungCalls>();
+    {
+        Writer writer(std::make_unique<test::HungDisk>(calls), "", Works::ALONE);
+        EXPECT_TRUE(writer.isSettled(path)) << "nothing was asked";
+        writer.keep_file(path, "one");
+        calls->isCalled.wait();
+        EXPECT_FALSE(writer.isSettled(path));
+        EXPECT_EQ(writer.take_delay(1), std::nullopt);
+        EXPECT_EQ(writer.take_delay(1000000000), std::nullopt);
+        EXPECT_EQ(writer.take_delay(1000000001), "the disk of " + path + " has not answered for 1 s");
+        EXPECT_EQ(writer.take_delay(5000000000), std::nullopt) << "it is reported once";
+        EXPECT_TRUE(writer.isSettled(path));
+        EXPECT_EQ(writer.write_file(path, "two").error().message,
+                  "the disk of " + path + " has not answered for 1 s");
+        testing::internal::CaptureStderr();
+    }
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), path + " is not written: its disk does not answer\n");
+    calls->isReleased.count_down();
+    while (content(path) != "two") {  // else this test times out
+        std::this_thread::yield();
+    }
+    fs::remove_all(folder);
 }
 
 TEST(JournalWriterThread, WritesToARealDiskBesideWhoAsks_D3) {

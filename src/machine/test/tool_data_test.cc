@@ -4,10 +4,13 @@
 
 #include <filesystem>
 #include <fstream>
+#include <memory>
+#include <thread>
 
 #include <gtest/gtest.h>
 
 #include "base/atomic_file.hh"
+#include "journal/test/hung_disk.hh"
 #include "machine/tool_data.hh"
 #include "machine/tool_database.hh"
 
@@ -224,6 +227,132 @@ TEST_F(ToolDataTest, AChangeThatCannotBeKeptHasNotHappened_G4) {
     EXPECT_EQ(text("tool.tbl"), "T2 P2\n");
 }
 
+/// Tools whose changes a thread writes, on a disk that does not answer before release().
+class HungToolDiskTest : public ToolDataTest {
+  protected:
+    task::ToolStore &open_hung(const std::string &lines, bool isRandom = false) {
+        write("tool.tbl", lines);
+        config_.tool_table_file = path("tool.tbl");
+        config_.isRandomToolchanger = isRandom;
+        tools_ = *open_tools(config_, sink_, {writer_.get(), false});
+        return *tools_;
+    }
+    void release_and_finish() {
+        if (!calls_->isReleased.try_wait()) {
+            calls_->isReleased.count_down();
+        }
+        writer_->finish();
+    }
+    /// Cycles until the reading of the table has ended.
+    Result<> end_reading() {
+        std::optional<Result<>> result;
+        while (!(result = tools_->reload_result()).has_value()) {  // else the test times out
+            tools_->step();
+        }
+        return *result;
+    }
+
+    std::shared_ptr<journal::test::HungCalls> calls_ = std::make_shared<journal::test::HungCalls>();
+    std::unique_ptr<journal::Writer> writer_ = std::make_unique<journal::Writer>(
+        std::make_unique<journal::test::HungDisk>(calls_), "", journal::Works::ALONE);
+};
+
+TEST_F(HungToolDiskTest, AChangeIsInForceAtOnceAndWrittenWhenTheDiskAnswers_C5) {
+    task::ToolStore &tools = open_hung("T0 P0\nT5 P3 Z5\n", true);
+    ASSERT_TRUE(tools.load_spindle(3).has_value());
+    calls_->isCalled.wait();
+    interp::ToolEntry entry = tools.entry(0);
+    for (int i = 1; i <= 3; ++i) {
+        entry.offset[geom::AXIS_Z] = i;
+        ASSERT_TRUE(tools.set_entry(0, entry).has_value());
+    }
+    EXPECT_EQ(tools.entry(0).offset[geom::AXIS_Z], 3);
+    EXPECT_FALSE(tools.isSettled());
+    EXPECT_EQ(text("tool.tbl"), "T0 P0\nT5 P3 Z5\n");
+    EXPECT_EQ(writer_->take_delay(0), std::nullopt);
+    EXPECT_EQ(writer_->take_delay(1000000000),
+              "the disk of " + path("tool.tbl") + " has not answered for 1 s");
+    EXPECT_EQ(writer_->take_delay(9000000000), std::nullopt) << "it is reported once";
+    EXPECT_TRUE(tools.isSettled()) << "a program does not wait for it any longer";
+    release_and_finish();
+    EXPECT_EQ(text("tool.tbl"), "T0 P3\nT5 P0 Z3\n");
+    EXPECT_TRUE(tools.isSettled());
+}
+
+TEST_F(HungToolDiskTest, TheTableIsReadAfterItsLastChangeIsWritten_C5) {
+    task::ToolStore &tools = open_hung("T1 P1 Z1\n");
+    interp::ToolEntry entry = tools.entry(1);
+    entry.offset[geom::AXIS_Z] = 2;
+    ASSERT_TRUE(tools.set_entry(1, entry).has_value());
+    ASSERT_TRUE(tools.reload().has_value());
+    tools.step();
+    EXPECT_FALSE(tools.reload_result().has_value());
+    entry.offset[geom::AXIS_Z] = 3;
+    ASSERT_TRUE(tools.set_entry(1, entry).has_value()) << "a change while the table is read";
+    calls_->isReleased.count_down();
+    EXPECT_TRUE(end_reading().has_value());
+    EXPECT_EQ(tools.entry(1).offset[geom::AXIS_Z], 3) << "is not lost";
+    release_and_finish();
+    EXPECT_EQ(text("tool.tbl"), "T1 P1 Z3\n");
+}
+
+TEST_F(HungToolDiskTest, AReadingThatIsDroppedChangesNothing_C5) {
+    task::ToolStore &tools = open_hung("T1 P1 Z1\n");
+    write("tool.tbl", "T1 P1 Z9\n");
+    ASSERT_TRUE(tools.reload().has_value());
+    tools.drop_reload();
+    ASSERT_TRUE(tools.reload_result().has_value());
+    EXPECT_FALSE(tools.reload_result()->has_value());
+    release_and_finish();
+    tools.step();
+    EXPECT_EQ(tools.entry(1).offset[geom::AXIS_Z], 1);
+}
+
+TEST_F(HungToolDiskTest, AnOperatorsChangeThatIsNotWrittenIn1sHasNotHappened_G4) {
+    task::ToolStore &tools = open_hung("T1 P1\nT2 P2\n");
+    EXPECT_NE(tools.remove(1).error().message.find("has not answered for 1 s"), std::string::npos);
+    EXPECT_EQ(tools.index_of_tool(1), 1);
+    release_and_finish();
+    EXPECT_EQ(text("tool.tbl"), "T1 P1\nT2 P2\n") << "nor when the disk answers later";
+}
+
+TEST_F(ToolDataTest, AFailedWriteIsReportedAndWrittenAgain_C5) {
+    const std::filesystem::path away = path("away");
+    std::filesystem::create_directory(path("m"));
+    write("m/tool.tbl", "T1 P1 Z1\n");
+    config_.tool_table_file = path("m/tool.tbl");
+    for (const bool isChangedAgain : {true, false}) {
+        journal::Writer writer(journal::system_disk(), "", journal::Works::ALONE);
+        tools_ = *open_tools(config_, sink_, {&writer, false});
+        std::filesystem::rename(path("m"), away);  // nothing can be written there
+        interp::ToolEntry entry = tools_->entry(1);
+        entry.offset[geom::AXIS_Z] = 2;
+        EXPECT_TRUE(tools_->set_entry(1, entry).has_value()) << "the program continues";
+        while (!tools_->isSettled()) {  // else this test times out
+            std::this_thread::yield();
+        }
+        const std::string trouble = writer.take_trouble().value_or("");
+        EXPECT_NE(trouble.find(config_.tool_table_file), std::string::npos) << trouble;
+        EXPECT_NE(trouble.find("written again with the next change"), std::string::npos) << trouble;
+        EXPECT_EQ(tools_->entry(1).offset[geom::AXIS_Z], 2);
+        ASSERT_TRUE(tools_->reload().has_value());
+        while (!tools_->reload_result().has_value()) {
+            tools_->step();
+        }
+        EXPECT_FALSE(tools_->reload_result()->has_value()) << "reading would lose the change";
+        EXPECT_EQ(tools_->entry(1).offset[geom::AXIS_Z], 2);
+        std::filesystem::rename(away, path("m"));
+        if (isChangedAgain) {
+            entry.offset[geom::AXIS_X] = 7;
+            ASSERT_TRUE(tools_->set_entry(1, entry).has_value());
+        }
+        writer.finish();
+        EXPECT_EQ(text("m/tool.tbl"), "T1 P1 X7 Z2\n");
+        tools_.reset();
+        write("m/tool.tbl", "T1 P1 X7 Z1\n");
+    }
+}
+
 TEST_F(ToolDataTest, ADatabaseAddsAndRemovesByItself_G1) {
     task::ToolStore &tools = open_database(GOOD);
     EXPECT_NE(tools.add(tool_of(3, 3)).error().message.find("tool database"), std::string::npos);
@@ -296,7 +425,7 @@ TEST_F(ToolDataTest, ADatabaseThatCannotWorkStopsTheStartByName_G1) {
     const auto error_of = [this](const std::string &script) {
         write("db", "#!/bin/sh\n" + script);
         std::filesystem::permissions(path("db"), std::filesystem::perms::owner_all);
-        ToolDatabase::Setup setup{"./db", folder_.string(), tool::Changer::FIXED, true, 0.3};
+        ToolDatabase::Setup setup{"./db", folder_.string(), tool::Changer::FIXED, true, nullptr, 0.3};
         const auto made = ToolDatabase::start(setup, sink_);
         return made.has_value() ? std::string() : made.error().message;
     };

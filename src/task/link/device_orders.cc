@@ -55,9 +55,10 @@ Result<> edit_tools(const msgs::SetToolEntry &order, const ToolUse &, ToolStore 
     entry.frontangle = order.frontangle_deg;
     entry.backangle = order.backangle_deg;
     entry.orientation = order.orientation;
-    const Result<> kept = tools.set_entry(index, entry);
+    const Result<> set = tools.set_entry(index, entry);
     const bool hasCopy = !tools.isRandom() && tools.entry(0).toolno == order.toolno;
-    return kept.has_value() && hasCopy ? tools.set_entry(0, entry) : kept;
+    const Result<> copied = set.has_value() && hasCopy ? tools.set_entry(0, entry) : set;
+    return copied.has_value() ? tools.save() : copied;
 }
 
 Result<> edit_tools(const msgs::AddTool &order, const ToolUse &, ToolStore &tools) {

@@ -154,6 +154,10 @@ std::optional<std::string> Recovery::take_trouble() {
     return writer_ != nullptr ? writer_->take_trouble() : std::nullopt;
 }
 
+std::optional<std::string> Recovery::take_delay(std::int64_t now_ns) {
+    return writer_ != nullptr ? writer_->take_delay(now_ns) : std::nullopt;
+}
+
 Result<const journal::Run *> Recovery::offer() const {
     if (!offer_.has_value()) {
         return fail("no program was cut short");

@@ -52,6 +52,8 @@ class Recovery {
     void cut_short();
     /// What trouble there is with the journal, once.
     std::optional<std::string> take_trouble();
+    /// Of the disk of the journal and of the files beside it, as Writer::take_delay().
+    std::optional<std::string> take_delay(std::int64_t now_ns);
 
     /// Nothing when there is none, or it is refused.
     Result<const journal::Run *> offer() const;

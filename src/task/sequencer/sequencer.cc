@@ -193,6 +193,11 @@ bool Sequencer::isReady(const Item &item) {
         return need == Need::NOTHING || isIoIdle;
     }
     motion_.flush();
+    const bool isToolTableDue =
+        std::holds_alternative<interp::UserCode>(item.call);  // its program may read it
+    if (isToolTableDue && !tools_.isSettled()) {
+        return false;
+    }
     const bool isMotionDone =
         motion_.isPathComplete() && (need != Need::OUTPUTS || motion_.areOutputsSettled());
     return isMotionDone && (need != Need::MOTION_AND_IO || isIoIdle);
@@ -339,9 +344,8 @@ bool Sequencer::begin(const interp::UsePlanner &planner) {
 }
 
 void Sequencer::perform(const interp::UserCode &code) {
-    const auto started = events_.start_user_code(code);
-    check(started);
-    wait_ = started.has_value() ? Wait::USER_CODE : wait_;
+    events_.start_user_code(code);
+    wait_ = Wait::USER_CODE;
 }
 
 void Sequencer::perform(const interp::ChangeTool &) {
@@ -390,6 +394,9 @@ void Sequencer::abort(int reason) {
     blocked_ = ExecState::DONE;
     logs_.close();
     queue_.clear();
+    if (wait_ == Wait::TOOL_DATA) {
+        tools_.drop_reload();
+    }
     wait_ = Wait::NONE;
     tool_change_.abort(io_);
     spindles_.end_wait();

@@ -37,9 +37,9 @@ struct SequencerEvents {
     std::function<std::optional<motion::CommandId>(const interp::UsePlanner &)> planner_mode;
     /// Which files the run may write; null, or no function: any.
     std::function<const Confinement *()> confinement;
-    /// Starts a user M code; false when it cannot be started.
-    std::function<Result<>(const interp::UserCode &)> start_user_code;
-    /// Nothing while the program of a user M code runs, then how it ended.
+    /// Starts the program of a user M code.
+    std::function<void(const interp::UserCode &)> start_user_code;
+    /// Nothing while the program of a user M code is started and runs, then how that ended.
     std::function<std::optional<Result<>>()> user_code_result;
 };
 

@@ -2,32 +2,57 @@
 // The program of a user M code, M100 to M199, running beside task.
 #pragma once
 
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "base/result.hh"
 
 namespace mw::task {
 
-/// One program at a time, in a process group of its own. One thread; nothing blocks unless said.
+/// One program at a time, in a separate process group. One thread; nothing blocks unless a comment says so.
 class UserProgram {
   public:
-    /// `isBlocking`: isRunning() waits for the program's end, for clocks that can stand still meanwhile.
-    explicit UserProgram(bool isBlocking) : isBlocking_(isBlocking) {}
+    enum class Waits : std::uint8_t {
+        NEVER,  ///< a separate thread finds and starts the program, as its disk may not answer
+        /// start() waits for the disk and isRunning() for the end of the program: for clocks that can stop
+        /// meanwhile.
+        IN_CALL,
+    };
+    explicit UserProgram(Waits waits) : waits_(waits) {}
     ~UserProgram() { stop(); }
     UserProgram(const UserProgram &) = delete;
     UserProgram &operator=(const UserProgram &) = delete;
 
-    /// Runs `path` with the words P and Q as its two arguments, -1 for one that was not given.
-    Result<> start(const std::string &path, double p, double q);
+    /// The path of a program. May block, and is not called by task's thread with Waits::NEVER.
+    using Find = std::function<Result<std::string>()>;
+    /// Runs the program that `find` returns with the words P and Q as its two arguments, -1 for one that was
+    /// not set. What fails is a result of the program. `name`: for messages.
+    void start(const std::string &name, Find find, double p, double q);
     bool isRunning();
     /// How the last program ended, once: an error when it did not end with status 0.
     Result<> take_result();
-    /// Ends it, and what it has started, at once.
+    /// Ends it, and what it has started, at once. A program that is not started yet does not start, or is
+    /// ended by the thread that starts it.
     void stop();
+    /// That the program has not been started in 1 s, once. Called in each cycle at clock time `now_ns`.
+    std::optional<std::string> take_delay(std::int64_t now_ns);
 
   private:
-    bool isBlocking_;
-    int pid_ = 0;  ///< 0: none
+    struct Start;
+    void take_start();
+    void reap();
+
+    Waits waits_;
+    std::string name_;
+    std::shared_ptr<Start> start_;  ///< under way; also of its thread
+    std::optional<std::int64_t> start_since_ns_;
+    bool isDelayTold_ = false;
+    int pid_ = 0;             ///< 0: none
+    std::vector<int> ended_;  ///< processes that were killed and that the kernel has not ended yet
     std::string path_;
     Result<> result_;
 };

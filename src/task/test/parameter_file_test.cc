@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // What is set by a line of MDI is on the disk soon after it.
+#include "journal/test/hung_disk.hh"
 #include "journal/test/torn_disk.hh"
 #include "task/test/task_rig.hh"
 
@@ -118,6 +119,52 @@ TEST_F(ParameterFileTest, WhatAProgramHasSetIsWrittenAtItsEnd) {
     ASSERT_EQ(ask(RunProgram{}), Progress::DONE) << reason(request);
     EXPECT_TRUE(writer.work());
     EXPECT_EQ(value_after_power_cut(5221), 9.0);
+}
+
+struct OnAHungDisk {
+    std::shared_ptr<journal::test::HungCalls> calls = std::make_shared<journal::test::HungCalls>();
+    journal::Writer writer{std::make_unique<journal::test::HungDisk>(calls), "", journal::Works::ALONE};
+    ~OnAHungDisk() { calls->isReleased.count_down(); }
+};
+
+class HungDiskTest : private OnAHungDisk, public TaskTest {
+  protected:
+    HungDiskTest() : TaskTest(settings(), &writer) {}
+    static Settings settings() {
+        Settings settings;
+        settings.parameter_file = (made_folder() / "p.var").string();
+        return settings;
+    }
+    using OnAHungDisk::calls;
+};
+
+TEST_F(HungDiskTest, TheOperatorReadsWhichFileAfter1sAndStopsWork_C5) {
+    ASSERT_EQ(ask(SetMode{Mode::MDI}), Progress::DONE);
+    ASSERT_EQ(ask(Mdi{"G10 L2 P1 X1"}), Progress::DONE) << reason(request);
+    calls->isCalled.wait();
+    messages();
+    cycles(900);
+    EXPECT_EQ(messages(), "");
+    cycles(150);
+    EXPECT_EQ(messages(), "the disk of " + (folder / "p.var").string() + " has not answered for 1 s\n");
+    cycles(3000);
+    EXPECT_EQ(messages(), "") << "it is reported once";
+    EXPECT_EQ(ask(AbortAll{}, 5), Progress::DONE);
+    EXPECT_EQ(ask(Mdi{"G10 L2 P1 X2"}, 50), Progress::DONE) << reason(request);
+}
+
+TEST_F(TaskTest, ProgramsAndLinesOfMdiEndWhenTheToolTableIsWritten_C5) {
+    ASSERT_EQ(ask(SetMode{Mode::MDI}), Progress::DONE);
+    tools.isWritten = false;
+    EXPECT_EQ(ask(Mdi{"G10 L1 P5 Z1"}, 100), Progress::STARTED)
+        << "a client that reads the file then sees it";
+    tools.isWritten = true;
+    cycles(2);
+    EXPECT_EQ(progress(request), Progress::DONE) << reason(request);
+    open("G21\nG10 L1 P5 Z2\nM2\n");
+    tools.isWritten = false;
+    EXPECT_EQ(ask(RunProgram{}, 100), Progress::STARTED);
+    EXPECT_EQ(ask(AbortAll{}, 5), Progress::DONE);
 }
 
 }  // namespace

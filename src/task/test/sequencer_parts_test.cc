@@ -3,8 +3,11 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <latch>
 #include <memory>
 #include <numbers>
+#include <thread>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -244,31 +247,102 @@ TEST_F(ToolChangeTest, M61NamesTheToolWithoutAChange_G4) {
     EXPECT_EQ(tools.in_spindle, 0);
 }
 
+UserProgram::Find path_of(const std::string &path) {
+    return [path] { return Result<std::string>(path); };
+}
+
 TEST(UserProgram, TellsHowItEnded_I1) {
     const Folder folder;
-    UserProgram program(true);
-    ASSERT_TRUE(program.start(folder.program("good", "echo \"$1 $2\" > \"${0%/*}/said\"\n"), 2.5, -1));
+    UserProgram program(UserProgram::Waits::IN_CALL);
+    program.start("M101", path_of(folder.program("good", "echo \"$1 $2\" > \"${0%/*}/said\"\n")), 2.5, -1);
     EXPECT_FALSE(program.isRunning());
     EXPECT_TRUE(program.take_result().has_value());
     EXPECT_EQ(text_of(folder / "said"), "2.500000 -1.000000\n");
-    ASSERT_TRUE(program.start(folder.program("bad", "exit 3\n"), -1, -1));
+    program.start("M101", path_of(folder.program("bad", "exit 3\n")), -1, -1);
     EXPECT_FALSE(program.isRunning());
     EXPECT_NE(program.take_result().error().message.find("ended with status 3"), std::string::npos);
     EXPECT_TRUE(program.take_result().has_value()) << "once";
-    ASSERT_TRUE(program.start(folder.program("shot", "kill -9 $$\n"), -1, -1));
+    program.start("M101", path_of(folder.program("shot", "kill -9 $$\n")), -1, -1);
     EXPECT_FALSE(program.isRunning());
     EXPECT_NE(program.take_result().error().message.find("ended by signal 9"), std::string::npos);
+    program.start("M101", path_of(folder / "none"), 1, 2);
+    EXPECT_FALSE(program.isRunning());
+    EXPECT_NE(program.take_result().error().message.find("cannot start user M code"), std::string::npos);
+    program.start("M101", [] { return Result<std::string>(fail("its program is gone")); }, 1, 2);
+    EXPECT_FALSE(program.isRunning());
+    EXPECT_EQ(program.take_result().error().message, "its program is gone");
 }
 
 TEST(UserProgram, IsEndedWithAllThatItStarted_I1) {
     const Folder folder;
-    const std::string path = folder.program("long", "sleep 1000 & sleep 1000\n");
-    UserProgram program(false);
-    ASSERT_TRUE(program.start(path, 1, 2).has_value());
-    EXPECT_TRUE(program.isRunning());
+    const std::string path = folder.program("long", "sleep 1000 & echo $! > \"${0%/*}/child\"; sleep 1000\n");
+    UserProgram program(UserProgram::Waits::NEVER);
+    program.start("M101", path_of(path), 1, 2);
+    while (text_of(folder / "child").find('\n') == std::string::npos) {  // else this test times out
+        ASSERT_TRUE(program.isRunning());
+    }
     program.stop();
     EXPECT_FALSE(program.isRunning());
-    EXPECT_FALSE(program.start(folder / "none", 1, 2).has_value());
+    const std::string process = "/proc/" + std::to_string(std::stoi(text_of(folder / "child"))) + "/cmdline";
+    while (text_of(process).find("sleep") != std::string::npos) {
+        std::this_thread::yield();
+    }
+}
+
+/// A look-up that waits until the test ends that.
+struct HungLookUp {
+    std::latch isCalled{1}, isReleased{1};
+};
+
+UserProgram::Find find_hung(const std::shared_ptr<HungLookUp> &hung, const std::string &path) {
+    return [hung, path] {
+        hung->isCalled.count_down();
+        hung->isReleased.wait();
+        return Result<std::string>(path);
+    };
+}
+
+TEST(UserProgram, ADiskThatDoesNotAnswerHoldsUpNobody_C5) {
+    const Folder folder;
+    const auto hung = std::make_shared<HungLookUp>();
+    UserProgram program(UserProgram::Waits::NEVER);
+    program.start("M101", find_hung(hung, folder.program("code", "echo run > \"${0%/*}/said\"\n")), 1, 2);
+    hung->isCalled.wait();
+    EXPECT_TRUE(program.isRunning());
+    EXPECT_EQ(program.take_delay(5), std::nullopt);
+    EXPECT_EQ(program.take_delay(999999999), std::nullopt);
+    EXPECT_EQ(program.take_delay(1000000005), "the disk of M101 has not answered for 1 s");
+    EXPECT_EQ(program.take_delay(3000000000), std::nullopt) << "it is reported once";
+    hung->isReleased.count_down();
+    while (program.isRunning()) {
+        std::this_thread::yield();
+    }
+    EXPECT_TRUE(program.take_result().has_value());
+    EXPECT_EQ(text_of(folder / "said"), "run\n");
+}
+
+TEST(UserProgram, AStopBeforeTheDiskAnswersIsFollowedByNoStart_C5) {
+    const Folder folder;
+    auto hung = std::make_shared<HungLookUp>();
+    {
+        UserProgram program(UserProgram::Waits::NEVER);
+        program.start("M101", find_hung(hung, folder.program("code", "echo run > \"${0%/*}/said\"\n")), 1, 2);
+        hung->isCalled.wait();
+        program.stop();
+        EXPECT_FALSE(program.isRunning());
+        EXPECT_TRUE(program.take_result().has_value());
+        program.start("M102", path_of(folder.program("next", "exit 0\n")), 1, 2);
+        while (program.isRunning()) {
+            std::this_thread::yield();
+        }
+        EXPECT_TRUE(program.take_result().has_value()) << "the next one runs meanwhile";
+    }
+    hung->isReleased.count_down();
+    const std::weak_ptr<HungLookUp> thread = std::exchange(hung, nullptr);
+    while (!thread.expired()) {  // else this test times out
+        std::this_thread::yield();
+    }
+    EXPECT_FALSE(std::filesystem::exists(folder / "said"));
 }
 
 class PlannerModeTest : public testing::Test {

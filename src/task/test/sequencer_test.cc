@@ -78,9 +78,9 @@ class SequencerTest : public testing::Test {
             return link.send(motion::SetToolOffset{item.offset});
         };
         e.planner_mode = [](const interp::UsePlanner &) -> std::optional<motion::CommandId> { return 0; };
-        e.start_user_code = [this](const interp::UserCode &) -> Result<> {
+        e.start_user_code = [this](const interp::UserCode &) {
+            ++user_codes;
             user_code = std::nullopt;
-            return {};
         };
         e.user_code_result = [this] { return user_code; };
         return e;
@@ -97,7 +97,7 @@ class SequencerTest : public testing::Test {
     std::vector<motion::CommandBody> told;
     std::vector<std::string> texts, failures;
     std::optional<Result<>> user_code;
-    int moves = 0, ends = 0, stop_line = 0;
+    int moves = 0, ends = 0, stop_line = 0, user_codes = 0;
     bool isStopping = true;
     std::int64_t now_ns = 0;
 };
@@ -245,6 +245,30 @@ TEST_F(SequencerTest, AUserCodeIsWaitedForAndItsFailureTold_I1) {
     ASSERT_EQ(failures.size(), 1U);
     EXPECT_EQ(failures[0], "ended with status 3");
     EXPECT_EQ(moves, 0);
+}
+
+TEST_F(SequencerTest, AUserCodeBeginsWhenTheToolTableIsWritten_I1) {
+    tools.isWritten = false;
+    add(interp::UserCode{101, 1, 2});
+    cycles(5);
+    EXPECT_EQ(user_codes, 0) << "its program may read the file";
+    tools.isWritten = true;
+    cycle();
+    EXPECT_EQ(user_codes, 1);
+}
+
+TEST_F(SequencerTest, AnAbortDropsAReadingOfTheToolTable_C5) {
+    tools.isRead = false;
+    add(interp::ReloadTools{});
+    add_line(1);
+    cycles(5);
+    EXPECT_EQ(sequencer.waiting_for().what, WaitFor::TOOL_DATA);
+    EXPECT_EQ(moves, 0);
+    sequencer.abort(0);
+    EXPECT_EQ(tools.reloads_dropped, 1) << "what is read later must not change the tools of another run";
+    EXPECT_TRUE(sequencer.isIdle());
+    sequencer.abort(0);
+    EXPECT_EQ(tools.reloads_dropped, 1) << "a reading that clients have requested";
 }
 
 TEST_F(SequencerTest, TheEndOfAProgramIsToldWhenAllBeforeItIsDone_D2) {

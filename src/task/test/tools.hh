@@ -23,9 +23,16 @@ class OneTool final : public ToolStore {
         return {};
     }
     Result<> set_entry(int, const interp::ToolEntry &) override { return {}; }
+    bool isSettled() const override { return isWritten; }
     Result<> reload() override { return {}; }
+    std::optional<Result<>> reload_result() override {
+        return isRead ? std::optional(Result<>{}) : std::nullopt;
+    }
+    void drop_reload() override { ++reloads_dropped; }
     std::uint64_t version() const override { return version_now; }
 
+    bool isWritten = true, isRead = true;  ///< the disk answers
+    int reloads_dropped = 0;
     int in_spindle = 0;
     std::uint64_t version_now = 1;
 };

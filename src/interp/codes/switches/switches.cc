@@ -120,7 +120,8 @@ bool wait_for_input(const Code &, const BlockValues &values, Parameters &, Await
 
 bool run_user_code(const Code &code, const BlockValues &values, const Machine &machine, State &,
                    CanonQueue &canon, Fault &fault) {
-    if (machine.settings.isUserCodeAssumed || !find_user_program(machine.settings, code.number).empty()) {
+    if (machine.settings.isUserCodeAssumed ||
+        !find_user_program(machine.settings.user_m_path, code.number).empty()) {
         constexpr double NOT_GIVEN = -1.0;
         canon.take(UserCode{code.number, values.at('p', NOT_GIVEN), values.at('q', NOT_GIVEN)});
         return true;
