@@ -75,7 +75,9 @@ def table_read(machine, found):
         machine.open(machine.write('read.ngc', 'G21 G90 G61 F1200\nG1 X5\nG10 L0\nG1 X0\nM2\n'))
         machine.command.auto(machine.linuxcnc.AUTO_RUN, 1)
         stays_on_and_stops(machine, found, 'mill_mm.tbl')
-    found.expect(machine.run('G10 L0\nM2\n') and not machine.messages, 'the table is read when the disk answers', *machine.messages)
+    is_read = machine.run('G10 L0\nM2\n')
+    others = [text for text in machine.messages if not text.startswith('journal: the disk was slow')]
+    found.expect(is_read and not others, 'the table is read when the disk answers', *others)
 
 
 def user_code(machine, found):

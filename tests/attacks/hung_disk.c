@@ -37,6 +37,8 @@ static void wait_for(const char *path) {
     }
 }
 
+#pragma GCC visibility push(default)  // the project hides symbols
+
 #define NEXT(name) ((__typeof__(&name))dlsym(RTLD_NEXT, #name))
 
 static mode_t mode_of(int flags, va_list words) {
@@ -64,6 +66,11 @@ int openat(int folder, const char *path, int flags, ...) {
 int rename(const char *from, const char *to) {
     wait_for(to);
     return NEXT(rename)(from, to);
+}
+
+int renameat(int old_folder, const char *from, int new_folder, const char *to) {
+    wait_for(to);
+    return NEXT(renameat)(old_folder, from, new_folder, to);
 }
 
 int stat(const char *restrict path, struct stat *restrict status) {
