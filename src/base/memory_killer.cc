@@ -16,8 +16,6 @@ namespace mw {
 namespace {
 
 constexpr int HIGHEST = 1000;
-/// Sessions begin with multiples of this.
-constexpr int STEP = 50;
 
 std::string file_of(pid_t process) {
     return "/proc/" + (process == 0 ? "self" : std::to_string(process)) + "/oom_score_adj";
@@ -72,10 +70,10 @@ int lower_oom_score(int wanted) {
     // The files in /proc of a process with file capabilities are root's while it is not dumpable.
     const int wasDumpable = ::prctl(PR_GET_DUMPABLE);
     static_cast<void>(::prctl(PR_SET_DUMPABLE, 1));
-    for (int next = wanted; next < score; next += STEP) {
-        if (write_score(0, next)) {
-            score = next;
-        }
+    // The kernel permits all values from the lowest permitted one on: bisection finds it.
+    for (int refused = wanted - 1; score - refused > 1;) {
+        const int next = (score + refused) / 2;
+        (write_score(0, next) ? score : refused) = next;
     }
     if (wasDumpable != 1) {
         static_cast<void>(::prctl(PR_SET_DUMPABLE, 0));

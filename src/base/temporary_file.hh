@@ -8,9 +8,9 @@
 
 namespace mw {
 
-/// Beside the file that it replaces, with a hidden name of its own and a lock (flock) while its process
-/// lives. Works in the folder that it was made in, also when that is renamed. Is removed when it is destroyed
-/// before it is renamed. Errors are in errno.
+/// Has a hidden name in the folder of the target, and a lock (flock) until its process ends. Uses the same
+/// folder also after that is renamed. The destructor removes a file that has not replaced the target. Errors
+/// are in errno.
 class TemporaryFile {
   public:
     /// Removes what killed processes have left for the same target first: files with such a name that nobody

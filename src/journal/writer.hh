@@ -26,8 +26,9 @@ enum class Works : std::uint8_t {
     ON_CALL,  ///< in work(): for virtual clocks
 };
 
-/// Jobs are done in the order of the calls, each part synced before the next; a progress or a file that waits
-/// is replaced by the next one. Called by one thread, which never waits for the disk unless a call says so.
+/// Does jobs in the order of the calls, and syncs each part before the next. A new progress replaces one that
+/// waits; a new text of a file replaces its text that waits. One thread calls the methods. It waits for the
+/// disk only in those whose comment mentions it.
 class Writer {
   public:
     /// `path`: of the journal; empty: runs are not journalled.

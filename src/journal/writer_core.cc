@@ -12,7 +12,7 @@
 namespace mw::journal {
 namespace {
 
-/// Above what it began with; then it is written anew.
+/// Records that a journal gets before it is replaced by a short one.
 constexpr std::uint64_t MOST_RECORD_BYTES = 1U << 20U;
 /// A disk that takes longer lets the journal fall behind the tool.
 constexpr double SLOW_S = 0.8;
@@ -48,7 +48,7 @@ void Writer::Core::find() {
     auto run = bytes.has_value() ? read_run(*bytes) : std::unexpected(bytes.error());
     if (!run.has_value()) {
         troubles.push_back(path_ + ": " + run.error().message +
-                           ": a program that was cut short cannot be gone on with");
+                           ": a program that was cut short cannot be continued");
     } else if (!run->hasEnded && run->progress.has_value()) {
         found.refusal = why_not(*disk_, run->start);
         found.run = std::move(*run);
@@ -131,7 +131,8 @@ void Writer::Core::run_thread() {
         work();
         const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
         if (took_s > SLOW_S && isJournalled()) {
-            tell(fail("the disk was slow: after a power cut the program would go on at an earlier place"));
+            tell(
+                fail("the disk was slow: after a power cut the program would continue from an earlier line"));
         }
     }
     write_failed();
@@ -157,7 +158,7 @@ void Writer::Core::set_busy(std::uint64_t number, const std::string &path) {
     isLate = false;
 }
 
-/// An error is told, and what comes after it is done all the same.
+/// Reports errors; the next job is done also after an error.
 void Writer::Core::do_jobs(Jobs &jobs) {
     for (Job &job : jobs) {
         set_busy(job.number, job.path.empty() ? path_ : job.path);

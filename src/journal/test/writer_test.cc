@@ -82,7 +82,7 @@ TEST_F(JournalWriter, AFileThatIsNoJournalIsTold_C5) {
     ASSERT_TRUE(trouble.has_value());
     EXPECT_EQ(*trouble,
               "/m/sim.var.journal: this is no journal, or one of another version: a program that was "
-              "cut short cannot be gone on with");
+              "cut short cannot be continued");
 }
 
 TEST_F(JournalWriter, AFileThatIsWaitedForIsNewerThanWhatWasAskedBefore_D3) {

@@ -13,7 +13,8 @@
 
 namespace mw::task {
 
-/// One program at a time, in a separate process group. One thread; nothing blocks unless a comment says so.
+/// Runs one program at a time, in a separate process group. One thread calls the methods. They block only
+/// where their comments say it.
 class UserProgram {
   public:
     enum class Waits : std::uint8_t {

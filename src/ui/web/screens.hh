@@ -42,8 +42,8 @@ class Screens {
     /// Every few milliseconds.
     void tick(std::int64_t now_ns);
 
-    /// Writes a line of the log: "ERROR: joint 0 following error", "the machine is up". `age_ns`: since it
-    /// appeared.
+    /// Writes a line to the log, for example "ERROR: joint 0 following error" or "the machine is up".
+    /// `age_ns`: time since the message appeared.
     using Log = std::function<void(std::string line, std::int64_t age_ns)>;
     void keep_log(Log log) { log_ = std::move(log); }
 
