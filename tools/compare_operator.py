@@ -116,8 +116,7 @@ def start(prefix, folder, name, first, count, acts, user, display='operator_sess
     os.chmod(folder, 0o755)
     path = '/usr/local/bin:/usr/bin:/bin'
     env = {'PATH': path if prefix is None else f'{prefix}/bin:{path}', 'HOME': str(folder / 'home'), 'USER': user, 'LANG': 'C.UTF-8',
-           'OPERATOR_SEEDS': f'{first}:{count}', 'OPERATOR_OUT': str(folder / 'out'), 'OPERATOR_MACHINE': name, 'OPERATOR_ACTS': acts,
-           'OPERATOR_TEXTS': os.environ.get('OPERATOR_TEXTS', '')}
+           'OPERATOR_SEEDS': f'{first}:{count}', 'OPERATOR_OUT': str(folder / 'out'), 'OPERATOR_MACHINE': name, 'OPERATOR_ACTS': acts}
     if prefix is not None:
         env['PYTHONPATH'] = f'{prefix}/lib/python'
     inner = ('export PATH=$PATH:/usr/sbin:/sbin; ip link set lo up; mount -t tmpfs -o mode=1777 none /dev/shm; mount -t tmpfs -o mode=1777 none /run/lock 2>/dev/null; '

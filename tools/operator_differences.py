@@ -12,7 +12,7 @@ IDLE = 1
 FAILED = 5
 RUNNING, ERROR = 2, 3
 SPINDLES = {'spindles[0]', 'spindles[1]'}
-SETTINGS = ('feed', 'rapid', 'spindle_override', 'block_delete', 'optional_stop', 'pause_now')
+SETTINGS = ('feed', 'rapid', 'spindle_override', 'block_delete', 'optional_stop', 'pause_now', 'flood', 'mist')
 
 
 def is_stop(act):
@@ -30,6 +30,9 @@ INTENDED = [
      lambda act, a, b: all(x['on'] == y['on'] and (x == y or not x['on']) for x, y in zip(a['spindles'], b['spindles']))),
     ('modal codes of M48 to M51', {'mcodes[6]'}, lambda act, a, b: True),
     ('`stat.mcodes[2]` while a program runs', {'mcodes[2]'}, lambda act, a, b: is_stop(act) or b['interp'] != IDLE),
+    ('`stat.mcodes[2]` after S0', {'mcodes[2]'}, lambda act, a, b: act[0] == 'mdi' and (a['mcodes'][1], b['mcodes'][1]) in ((3, 5), (4, 5))),
+    ('`stat.pocket_prepped` after M61 of the prepared tool', {'prepared'},
+     lambda act, a, b: act[0] == 'mdi' and act[1].startswith('M61') and a['prepared'] == 0 and b['prepared'] > 0),
     ('the block that is executed is M0', {'mcodes[1]'}, lambda act, a, b: a['paused'] and a['mcodes'][0] in (0, 1)),
     ('G43 is active, also with an offset of 0', {'gcodes[9]'}, lambda act, a, b: a['gcodes'][8] == 430 and not any(a['tool_offset'])),
     ('a stop inside of a subroutine', MODES | {'motion_line'}, lambda act, a, b: act[:2] == ['stop', 'insub']),
@@ -41,7 +44,7 @@ INTENDED = [
      {'read_line', *(f'{name}[{i}]' for name in ('g5x_offset', 'g92', 'tool_offset') for i in range(4))}, lambda act, a, b: is_stop(act)),
     ('`stat.queue`, `read_line` of a program that is paused', {'queue', 'read_line'}, lambda act, a, b: is_stop(act) or a['interp'] != IDLE),
     ('`stat.motion_line` in MDI and after it', {'motion_line'}, lambda act, a, b: a['mode'] != AUTO or act[0] == 'after'),
-    ('`stat.motion_line` of a move of length 0', {'motion_line'}, lambda act, a, b: b['motion_line'] == 0 and act[0] == 'run'),
+    ('`stat.motion_line` of a move of length 0', {'motion_line'}, lambda act, a, b: act[0] == 'run' and (b['motion_line'] == 0 or (act[1], a['motion_line'], b['motion_line']) == ('loop', 6, 3))),
     ('F under G95 where the units change', {'F'}, lambda act, a, b: 950 in a['gcodes'] and (act[0] != 'mdi' or act[1] in ('G20', 'G21'))),
     ('F under G93', {'F'}, lambda act, a, b: 930 in a['gcodes']),
     ('`stat.interpreter_errcode`', {'error_code'}, lambda act, a, b: a['error_code'] == 0),
@@ -77,10 +80,9 @@ def as_newer(shown):
     shown['gcodes'][15] = -1 if shown['gcodes'][15] == 922 else shown['gcodes'][15]
 
 
-def has_error(messages):
-    """Texts and displays (kinds 2, 3, 12, 13) are left out: what is reported beside errors differs."""
-    kinds = [m[0] if isinstance(m, list) else m for m in messages]
-    return any(kind in (1, 11) for kind in kinds)
+def errors_of(messages):
+    """Texts of the errors. Texts and displays (kinds 2, 3, 12, 13) are left out: what is reported beside errors differs."""
+    return [text for kind, text in messages if kind in (1, 11)]
 
 
 def fields_of(shown):
@@ -110,12 +112,13 @@ def unexplained(ours, theirs):
         if is_stop(act):
             x.pop('position'), y.pop('position')
         elif not act[0].startswith(('halui', 'rsh')):
-            x.update({'ret': a['ret'], 'error messages': has_error(a['messages'])})
-            y.update({'ret': b['ret'], 'error messages': has_error(b['messages'])})
+            x.update({'ret': a['ret'], 'error messages': bool(errors_of(a['messages']))})
+            y.update({'ret': b['ret'], 'error messages': bool(errors_of(b['messages']))})
         now = {field: json.dumps([x.get(field), y.get(field)]) for field in x.keys() | y.keys() if x.get(field) != y.get(field)}
         for field in sorted(now):
             if known.get(field) != now[field] and reason(act, a['shown'], b['shown'], field) is None:
-                found.append((f"{a['seed']}.{a['n']} {' '.join(map(str, act))}", field, x.get(field), y.get(field)))
+                shown = (errors_of(a['messages']), errors_of(b['messages'])) if field == 'error messages' else (x.get(field), y.get(field))
+                found.append((f"{a['seed']}.{a['n']} {' '.join(map(str, act))}", field, *shown))
         known = now
     if len(ours) != len(theirs):
         found.append(('the end', 'rows', len(ours), len(theirs)))

@@ -96,17 +96,14 @@ def settle(limit=6.0):
     return shown
 
 
-def kinds_of(found):
-    return [m[0] if isinstance(m, (list, tuple)) else m for m in found]
-
-
 def messages():
-    kinds = []
+    """Pairs of kind and text that have come since the last call."""
+    found = []
     while True:
         message = ERRORS.poll()
         if not message:
-            return kinds
-        kinds.append(message if os.environ.get('OPERATOR_TEXTS') else message[0])
+            return found
+        found.append(message)
 
 
 def mode(wanted):
@@ -336,7 +333,7 @@ UNSURE = ('stop', 'pause', 'abort', 'pause_now', 'resume', 'state')
 
 
 def is_unsure(row, was_idle):
-    has_failed = any(kind in (linuxcnc.NML_ERROR, linuxcnc.OPERATOR_ERROR) for kind in kinds_of(row['messages']))
+    has_failed = any(kind in (linuxcnc.NML_ERROR, linuxcnc.OPERATOR_ERROR) for kind, _ in row['messages'])
     return row['act'][0] in UNSURE or has_failed or (row['act'][0] == 'mode' and not was_idle)
 
 

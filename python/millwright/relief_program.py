@@ -9,9 +9,9 @@ import math
 import os
 import pathlib
 import sys
-import tempfile
 
 from .language import Parser
+from .whole_file import write_whole
 
 NAME = 'image-to-gcode'
 MM_PER_INCH = 25.4
@@ -81,20 +81,6 @@ def remember(path, settings):
     """Whole or not at all."""
     path.parent.mkdir(parents=True, exist_ok=True)
     write_whole(path, json.dumps({key_of(option): getattr(settings, key_of(option)) for option, *_ in OPTIONS}, indent=1) + '\n')
-
-
-def write_whole(path, text):
-    fd, name = tempfile.mkstemp(dir=path.parent, prefix=path.name)
-    try:
-        with os.fdopen(fd, 'w') as file:
-            file.write(text)
-            file.flush()
-            os.fsync(file.fileno())
-        os.chmod(name, 0o644)
-        os.replace(name, path)
-    except BaseException:
-        os.unlink(name)
-        raise
 
 
 def parse(words):

@@ -8,9 +8,9 @@ import pathlib
 import re
 import shutil
 import sys
-import tempfile
 
 from .language import shown
+from .whole_file import write_whole
 
 LETTERS = 'XYZABCUVW'
 VERSION = '1.1'
@@ -238,21 +238,6 @@ def hal_files(ini, values, advice):
     return files
 
 
-def write(path, text):
-    """All of it or nothing; who may read it stays."""
-    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=path.name)
-    try:
-        with os.fdopen(handle, 'w', encoding='utf-8', errors='surrogateescape') as file:
-            file.write(text)
-            file.flush()
-            os.fsync(file.fileno())
-        shutil.copymode(path, temporary)
-        os.replace(temporary, path)
-    except OSError:
-        pathlib.Path(temporary).unlink(missing_ok=True)
-        raise
-
-
 def read(path):
     return path.read_text(encoding='utf-8', errors='surrogateescape')
 
@@ -289,7 +274,7 @@ def update(ini, isKept):
                 raise Refused(f'{path} is not in the folder of the INI file')
         print(f'as they were: {keep}')
     for path, text in changed.items():
-        write(path, text)
+        write_whole(path, text, 'surrogateescape')
         print(f'changed: {path}')
     for text in [*advice, *machine.advice]:
         print(f'look at it: {text}')

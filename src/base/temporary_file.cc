@@ -36,16 +36,22 @@ std::string prefix_of(const std::string &target) {
     return "." + target.substr(0, MOST_OF_TARGET) + std::string(MARK);
 }
 
+/// No prefix: of any target.
 bool isTemporary(std::string_view name, std::string_view prefix) {
-    return name.starts_with(prefix) && name.size() == prefix.size() + NUM_LETTERS &&
-           name.find_first_not_of(LETTERS, prefix.size()) == std::string_view::npos;
+    if (name.size() <= MARK.size() + NUM_LETTERS) {
+        return false;
+    }
+    const std::string_view before = name.substr(0, name.size() - NUM_LETTERS);
+    return (prefix.empty() ? name[0] == '.' && before.ends_with(MARK) : before == prefix) &&
+           name.find_first_not_of(LETTERS, before.size()) == std::string_view::npos;
 }
 
-/// The name in the folder is that of the open file.
+/// The name in the folder is the only one of the open file.
 bool isSame(int folder, const char *name, int fd) {
     struct stat named{}, opened{};
     return ::fstatat(folder, name, &named, AT_SYMLINK_NOFOLLOW) == 0 && ::fstat(fd, &opened) == 0 &&
-           S_ISREG(named.st_mode) && named.st_ino == opened.st_ino && named.st_dev == opened.st_dev;
+           S_ISREG(named.st_mode) && named.st_nlink == 1 && named.st_ino == opened.st_ino &&
+           named.st_dev == opened.st_dev;
 }
 
 void remove_if_dead(int folder, const char *name) {
@@ -161,6 +167,14 @@ bool TemporaryFile::replace_target() {
 
 bool TemporaryFile::sync_folder() const {
     return ::fsync(folder_) == 0;
+}
+
+void remove_dead_temporary_files(const std::string &folder) {
+    const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (fd >= 0) {
+        remove_dead(fd, {});
+        ::close(fd);
+    }
 }
 
 }  // namespace mw

@@ -33,4 +33,7 @@ class TemporaryFile {
     std::string target_, name_;  ///< in the folder; no name: it is renamed
 };
 
+/// Removes the temporary files of killed processes in the folder, those of any target. Links stay.
+void remove_dead_temporary_files(const std::string &folder);
+
 }  // namespace mw

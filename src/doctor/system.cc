@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "doctor/system.hh"
 
+#include <linux/capability.h>
 #include <sys/resource.h>
+#include <sys/syscall.h>
 #include <sys/utsname.h>
 #include <sys/xattr.h>
 #include <unistd.h>
@@ -89,6 +91,13 @@ std::uint32_t capabilities_of(const std::string &path) {
     return permitted;
 }
 
+/// Root of a container may lack some.
+std::uint32_t own_capabilities() {
+    __user_cap_header_struct header{_LINUX_CAPABILITY_VERSION_3, 0};
+    std::array<__user_cap_data_struct, _LINUX_CAPABILITY_U32S_3> sets{};
+    return ::syscall(SYS_capget, &header, sets.data()) == 0 ? sets[0].effective : 0;
+}
+
 bool isAllowed(int resource, rlim_t wanted) {
     rlimit limit{};
     return ::getrlimit(static_cast<__rlimit_resource>(resource), &limit) == 0 &&
@@ -96,10 +105,10 @@ bool isAllowed(int resource, rlim_t wanted) {
 }
 
 void examine_rights(const std::string &program, diag::Sink &sink) {
-    constexpr std::uint32_t IPC_LOCK = 1U << 14U, SYS_NICE = 1U << 23U, SYS_RESOURCE = 1U << 24U;
+    constexpr std::uint32_t IPC_LOCK = 1U << CAP_IPC_LOCK, SYS_NICE = 1U << CAP_SYS_NICE,
+                            SYS_RESOURCE = 1U << CAP_SYS_RESOURCE;
     constexpr rlim_t PRIORITY = 85, MEMORY = rlim_t{512} << 20U;
-    const std::uint32_t has =
-        ::geteuid() == 0 ? IPC_LOCK | SYS_NICE | SYS_RESOURCE : capabilities_of(program);
+    const std::uint32_t has = ::geteuid() == 0 ? own_capabilities() : capabilities_of(program);
     const std::string setcap = "sudo setcap cap_sys_nice,cap_ipc_lock,cap_sys_resource+ep " + program;
     const std::string remedy = setcap + "; or rtprio and memlock in /etc/security/limits.d";
     if ((has & SYS_NICE) == 0 && !isAllowed(RLIMIT_RTPRIO, PRIORITY)) {

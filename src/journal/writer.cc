@@ -5,14 +5,11 @@
 #include <cstdio>
 #include <utility>
 
-#include <fmt/format.h>
-
 #include "journal/writer_core.hh"
 
 namespace mw::journal {
 namespace {
 
-constexpr std::int64_t LATE_NS = 1000000000;
 constexpr std::chrono::seconds LONGEST_WAIT{1};
 constexpr std::chrono::milliseconds LONGEST_END{500};
 
@@ -31,7 +28,7 @@ bool Writer::isOn() const {
 }
 
 const Found &Writer::found() const {
-    return core_->found;
+    return core_->found();
 }
 
 void Writer::begin(Start start, std::optional<Progress> progress, std::optional<Doubt> doubt) {
@@ -101,26 +98,11 @@ bool Writer::isSettled(const std::string &path) const {
 }
 
 std::optional<std::string> Writer::take_trouble() {
-    const std::lock_guard lock(core_->mutex);
-    if (core_->troubles.empty()) {
-        return std::nullopt;
-    }
-    std::string first = std::move(core_->troubles.front());
-    core_->troubles.pop_front();
-    return first;
+    return core_->take_trouble();
 }
 
 std::optional<std::string> Writer::take_delay(std::int64_t now_ns) {
-    const std::lock_guard lock(core_->mutex);
-    if (core_->busy_job != watched_job_) {
-        watched_job_ = core_->busy_job;
-        watched_since_ns_ = now_ns;
-    }
-    if (watched_job_ == 0 || core_->isLate || now_ns - watched_since_ns_ < LATE_NS) {
-        return std::nullopt;
-    }
-    core_->isLate = true;
-    return fmt::format("the disk of {} has not answered for 1 s", core_->busy_path);
+    return core_->take_delay(now_ns);
 }
 
 bool Writer::work() {

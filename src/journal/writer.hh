@@ -76,13 +76,11 @@ class Writer {
 
   private:
     struct Job;
-    struct Core;
+    class Core;
 
     std::shared_ptr<Core> core_;  ///< also of the thread, which outlives this while its disk does not answer
     std::thread thread_;
     bool isFinished_ = false;
-    std::uint64_t watched_job_ = 0;  ///< of take_delay()
-    std::int64_t watched_since_ns_ = 0;
 };
 
 }  // namespace mw::journal

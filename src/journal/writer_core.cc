@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <type_traits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -17,6 +18,11 @@ constexpr std::uint64_t MOST_RECORD_BYTES = 1U << 20U;
 /// A disk that takes longer lets the journal fall behind the tool.
 constexpr double SLOW_S = 0.8;
 constexpr std::int64_t NS_PER_S = 1000000000;
+constexpr std::int64_t LATE_NS = NS_PER_S;
+
+constexpr auto isProgress = [](const auto &job) {
+    return job.kind == std::remove_cvref_t<decltype(job)>::Kind::PROGRESS;
+};
 
 std::string whole(const Run &run) {
     const std::uint64_t key = key_of(run.start);
@@ -47,17 +53,17 @@ void Writer::Core::find() {
     const auto bytes = disk_->read(path_);
     auto run = bytes.has_value() ? read_run(*bytes) : std::unexpected(bytes.error());
     if (!run.has_value()) {
-        troubles.push_back(path_ + ": " + run.error().message +
-                           ": a program that was cut short cannot be continued");
+        troubles_.push_back(path_ + ": " + run.error().message +
+                            ": a program that was cut short cannot be continued");
     } else if (!run->hasEnded && run->progress.has_value()) {
-        found.refusal = why_not(*disk_, run->start);
-        found.run = std::move(*run);
+        found_.refusal = why_not(*disk_, run->start);
+        found_.run = std::move(*run);
     }
 }
 
 void Writer::Core::ask(Job job) {
     {
-        const std::lock_guard lock(mutex);
+        const std::lock_guard lock(mutex_);
         job.number = ++last_job_;
         if (job.kind == Job::Kind::BEGIN ||
             job.kind == Job::Kind::FORGET) {  // what was before does not matter
@@ -83,15 +89,15 @@ void Writer::Core::ask(Job job) {
 }
 
 bool Writer::Core::isSettled(const std::string &path) const {
-    const std::lock_guard lock(mutex);
+    const std::lock_guard lock(mutex_);
     const auto file = files_.find(path);
-    return isLate || file == files_.end() || file->second.done == file->second.asked;
+    return isLate_ || file == files_.end() || file->second.done == file->second.asked;
 }
 
 Result<> Writer::Core::wait_for(const std::string &path, std::chrono::milliseconds longest) {
-    std::unique_lock lock(mutex);
+    std::unique_lock lock(mutex_);
     const FileState &file = files_[path];
-    done_.wait_for(lock, longest, [&] { return file.done == file.asked || isLate; });
+    done_.wait_for(lock, longest, [&] { return file.done == file.asked || isLate_; });
     if (file.done != file.asked) {
         return fail(fmt::format("the disk of {} has not answered for 1 s", path));
     }
@@ -99,14 +105,14 @@ Result<> Writer::Core::wait_for(const std::string &path, std::chrono::millisecon
 }
 
 bool Writer::Core::end_thread(std::chrono::milliseconds longest) {
-    std::unique_lock lock(mutex);
+    std::unique_lock lock(mutex_);
     isEnding_ = true;
     asked_.notify_one();
     return done_.wait_for(lock, longest, [this] { return isOver_; });
 }
 
 std::vector<std::string> Writer::Core::unwritten() const {
-    const std::lock_guard lock(mutex);
+    const std::lock_guard lock(mutex_);
     std::vector<std::string> reasons;
     for (const auto &[path, file] : files_) {
         if (file.done != file.asked) {
@@ -121,7 +127,7 @@ std::vector<std::string> Writer::Core::unwritten() const {
 void Writer::Core::run_thread() {
     while (true) {
         {
-            std::unique_lock lock(mutex);
+            std::unique_lock lock(mutex_);
             asked_.wait(lock, [this] { return isEnding_ || !jobs_.empty(); });
             if (jobs_.empty()) {
                 break;
@@ -130,13 +136,13 @@ void Writer::Core::run_thread() {
         const auto began = std::chrono::steady_clock::now();
         work();
         const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-        if (took_s > SLOW_S && isJournalled()) {
+        if (took_s > SLOW_S && isBehind()) {
             tell(
                 fail("the disk was slow: after a power cut the program would continue from an earlier line"));
         }
     }
     write_failed();
-    const std::lock_guard lock(mutex);
+    const std::lock_guard lock(mutex_);
     isOver_ = true;
     done_.notify_all();
 }
@@ -144,18 +150,48 @@ void Writer::Core::run_thread() {
 bool Writer::Core::work() {
     Jobs jobs;
     {
-        const std::lock_guard lock(mutex);
+        const std::lock_guard lock(mutex_);
         jobs.swap(jobs_);
     }
+    hadProgress_ = std::ranges::any_of(jobs, isProgress);
     do_jobs(jobs);
     return !jobs.empty();
 }
 
+/// The last jobs have kept progress of the program from its file.
+bool Writer::Core::isBehind() const {
+    const std::lock_guard lock(mutex_);
+    return isJournalled() && (hadProgress_ || std::ranges::any_of(jobs_, isProgress));
+}
+
+std::optional<std::string> Writer::Core::take_trouble() {
+    const std::lock_guard lock(mutex_);
+    if (troubles_.empty()) {
+        return std::nullopt;
+    }
+    std::string first = std::move(troubles_.front());
+    troubles_.pop_front();
+    return first;
+}
+
+std::optional<std::string> Writer::Core::take_delay(std::int64_t now_ns) {
+    const std::lock_guard lock(mutex_);
+    if (busy_job_ != watched_job_) {
+        watched_job_ = busy_job_;
+        watched_since_ns_ = now_ns;
+    }
+    if (watched_job_ == 0 || isLate_ || now_ns - watched_since_ns_ < LATE_NS) {
+        return std::nullopt;
+    }
+    isLate_ = true;
+    return fmt::format("the disk of {} has not answered for 1 s", busy_path_);
+}
+
 void Writer::Core::set_busy(std::uint64_t number, const std::string &path) {
-    const std::lock_guard lock(mutex);
-    busy_job = number;
-    busy_path = path;
-    isLate = false;
+    const std::lock_guard lock(mutex_);
+    busy_job_ = number;
+    busy_path_ = path;
+    isLate_ = false;
 }
 
 /// Reports errors; the next job is done also after an error.
@@ -215,12 +251,12 @@ Result<> Writer::Core::put_file(const Job &job) {
 void Writer::Core::do_file(Job &job) {
     const Result<> written = put_file(job);
     const std::string path = job.path;
-    const std::lock_guard lock(mutex);
+    const std::lock_guard lock(mutex_);
     FileState &file = files_[path];
     file.done = job.number;
     file.failure = written.has_value() ? std::nullopt : std::optional(written.error());
     if (file.failure.has_value() && !job.isWaitedFor && !file.isToldOf) {
-        troubles.push_back(
+        troubles_.push_back(
             fmt::format("{}. Its content is kept in memory, and written again with the next change and at "
                         "the end of the machine",
                         file.failure->message));
@@ -242,7 +278,7 @@ void Writer::Core::do_read(const Job &job) {
             return;
         }
         failed_.erase(failed);
-        const std::lock_guard lock(mutex);
+        const std::lock_guard lock(mutex_);
         files_[job.path].failure.reset();
         files_[job.path].isToldOf = false;
     }
@@ -300,9 +336,9 @@ Result<> Writer::Core::write_records() {
 }
 
 void Writer::Core::tell(const Result<> &result) {
-    const std::lock_guard lock(mutex);
+    const std::lock_guard lock(mutex_);
     if (!result.has_value() && !isTroubleTold_) {
-        troubles.push_back("journal: " + result.error().message);
+        troubles_.push_back("journal: " + result.error().message);
     }
     isTroubleTold_ = !result.has_value();
 }

@@ -24,15 +24,16 @@ struct Writer::Job {
     std::uint64_t number = 0;  ///< counts what is asked
 };
 
-/// The public members are under the mutex, which is never locked while the disk is used. One thread calls
-/// work(), or the one that asks.
-struct Writer::Core {
+/// Its mutex is never locked while the disk is used. One thread calls work(), or the one that asks.
+class Writer::Core {
+  public:
     Core(std::unique_ptr<Disk> disk_of_files, std::string journal_path)
         : disk_(std::move(disk_of_files)), path_(std::move(journal_path)) {}
 
     bool isJournalled() const { return !path_.empty(); }
     /// Before the thread begins.
     void find();
+    const Found &found() const { return found_; }
     void ask(Job job);
     void run_thread();
     /// False when there was nothing to do.
@@ -46,23 +47,17 @@ struct Writer::Core {
     bool end_thread(std::chrono::milliseconds longest);
     /// Each file whose last text is not on the disk, and why.
     std::vector<std::string> unwritten() const;
+    std::optional<std::string> take_trouble();
+    std::optional<std::string> take_delay(std::int64_t now_ns);
 
+  private:
+    using Jobs = std::deque<Job>;
     /// A file that is written.
     struct FileState {
         std::uint64_t asked = 0, done = 0;  ///< numbers of jobs
         std::optional<Error> failure{};     ///< of the last one that is done
         bool isToldOf = false;              ///< the failure
     };
-
-    Found found;
-    mutable std::mutex mutex;
-    std::deque<std::string> troubles;
-    std::uint64_t busy_job = 0;  ///< that uses the disk; 0: none
-    std::string busy_path;
-    bool isLate = false;  ///< that job
-
-  private:
-    using Jobs = std::deque<Job>;
 
     void do_jobs(Jobs &jobs);
     Result<> do_job(Job &job);
@@ -74,8 +69,17 @@ struct Writer::Core {
     Result<> rewrite();
     void tell(const Result<> &result);
     void set_busy(std::uint64_t number, const std::string &path);
+    bool isBehind() const;
 
+    Found found_;
+    mutable std::mutex mutex_;  ///< of the members up to last_job_
     std::condition_variable asked_, done_;
+    std::deque<std::string> troubles_;
+    std::uint64_t busy_job_ = 0;  ///< that uses the disk; 0: none
+    std::string busy_path_;
+    bool isLate_ = false;            ///< that job
+    std::uint64_t watched_job_ = 0;  ///< of take_delay()
+    std::int64_t watched_since_ns_ = 0;
     Jobs jobs_;
     std::map<std::string, FileState> files_;
     bool isEnding_ = false, isOver_ = false;
@@ -90,6 +94,7 @@ struct Writer::Core {
     std::string records_;                ///< to be appended
     std::uint64_t bytes_ = 0;            ///< of the file
     bool isFileSound_ = false;           ///< records may be appended to it
+    bool hadProgress_ = false;           ///< among the last jobs
     bool isTroubleTold_ = false;
 };
 

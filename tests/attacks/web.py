@@ -132,11 +132,11 @@ def uploads(machine, programs):
     """Row 17."""
     screen = Screen(machine)
     status, _ = screen.ask('/api/files/part.ngc?offset=0&size=100', method='PUT', body='G0 X1\n')
-    expect(status == 200 and [path for path in programs.iterdir() if path.name.startswith('.upload-')], f'an upload begins: {status}')
+    expect(status == 200 and list(programs.glob('.part.ngc.*')), f'an upload begins: {status}')
     screen.kill()
     screen = Screen(machine)
     screen.ask('/api/machine')
-    left = [path.name for path in programs.iterdir() if path.name.startswith('.upload-')]
+    left = [path.name for path in programs.glob('.part.ngc.*')]
     expect(not left, f'nothing is left of an upload after the next start: {left}')
     return screen
 

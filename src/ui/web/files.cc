@@ -2,7 +2,6 @@
 #include "ui/web/files.hh"
 
 #include <fcntl.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -16,6 +15,7 @@
 
 #include <fmt/format.h>
 
+#include "base/temporary_file.hh"
 #include "base/text.hh"
 #include "ui/web/descriptors.hh"
 #include "ui/web/documents.hh"
@@ -110,65 +110,6 @@ Response file_response(const std::string &path, std::string type, const std::str
     return response;
 }
 
-constexpr std::string_view UPLOAD = ".upload-millwright-", LETTERS = "XXXXXX";
-
-/// The file of an upload that no server writes any more: its writer holds a lock, which ends with it.
-void remove_if_dead(const std::string &path) {
-    const int fd = ::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY);
-    if (fd < 0) {
-        return;
-    }
-    struct stat facts{};
-    const bool isOurs = ::fstat(fd, &facts) == 0 && S_ISREG(facts.st_mode) && facts.st_uid == ::geteuid() &&
-                        facts.st_nlink == 1;
-    if (isOurs && ::flock(fd, LOCK_EX | LOCK_NB) == 0) {
-        ::unlink(path.c_str());
-    }
-    ::close(fd);
-}
-
-void remove_dead_uploads(const std::string &folder) {
-    std::error_code error;
-    fs::directory_iterator entry(folder, error);
-    for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
-        const std::string name = entry->path().filename().string();
-        const bool isUpload = name.starts_with(UPLOAD) && name.size() == UPLOAD.size() + LETTERS.size() &&
-                              name.find('.', 1) == std::string::npos;
-        if (isUpload) {
-            remove_if_dead(entry->path().string());
-        }
-    }
-}
-
-/// A new file with a lock; -1 and errno where there is none. A file system without locks gives a file without
-/// one, which no other server removes.
-int open_upload(const std::string &folder, std::string &path) {
-    constexpr int TRIES = 3;
-    for (int i = 0; i < TRIES; ++i) {
-        path = folder + '/' + std::string(UPLOAD) + std::string(LETTERS);
-        const int fd = ::mkostemp(path.data(), O_CLOEXEC);
-        if (fd < 0) {
-            return fd;
-        }
-        if (isReserved(fd)) {
-            ::unlink(path.c_str());
-            ::close(fd);
-            errno = EMFILE;
-            return -1;
-        }
-        struct stat facts{};
-        // Another server that starts may have removed it before it was locked.
-        const bool isTaken = ::flock(fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
-        if (!isTaken && ::fstat(fd, &facts) == 0 && facts.st_nlink == 1) {
-            return fd;
-        }
-        ::unlink(path.c_str());
-        ::close(fd);
-    }
-    errno = EBUSY;
-    return -1;
-}
-
 Response done() {
     Response response;
     response.body = "{}";
@@ -198,13 +139,7 @@ std::string type_of(const std::string &path) {
 
 ProgramFiles::ProgramFiles(std::string folder, std::vector<std::string> extensions)
     : folder_(std::move(folder)), extensions_(std::move(extensions)) {
-    remove_dead_uploads(folder_);
-}
-
-ProgramFiles::~ProgramFiles() {
-    while (!uploads_.empty()) {
-        drop(uploads_.begin()->first);
-    }
+    remove_dead_temporary_files(folder_);
 }
 
 Result<std::string> ProgramFiles::path_of(const std::string &name) const {
@@ -257,26 +192,21 @@ Response ProgramFiles::read(const std::string &name, const std::optional<std::st
     return file_response(*path, "text/plain; charset=utf-8", "there is no program '" + name + "'");
 }
 
-void ProgramFiles::drop(const std::string &name) {
-    const auto found = uploads_.find(name);
-    if (found != uploads_.end()) {
-        ::close(found->second.fd);
-        ::unlink(found->second.temporary.c_str());
-        uploads_.erase(found);
+Response ProgramFiles::begin(const std::string &name, const std::string &path, std::uint64_t size) {
+    uploads_.erase(name);
+    if (uploads_.size() >= MOST_UPLOADS) {  // one that nobody continues
+        uploads_.erase(
+            std::ranges::min_element(uploads_, {}, [](const auto &one) { return one.second.begun; }));
     }
-}
-
-Response ProgramFiles::begin(const std::string &name, std::uint64_t size) {
-    drop(name);
-    if (uploads_.size() >= MOST_UPLOADS) {  // one that nobody goes on with
-        drop(std::ranges::min_element(uploads_, {}, [](const auto &one) { return one.second.begun; })->first);
+    auto file = TemporaryFile::create(path);
+    if (file.has_value() && isReserved(file->fd())) {
+        file.reset();
+        errno = EMFILE;
     }
-    std::string temporary;
-    const int fd = open_upload(folder_, temporary);
-    if (fd < 0) {
+    if (!file.has_value()) {
         return error_response(403, "cannot write into '" + folder_ + "': " + reason());
     }
-    uploads_[name] = {temporary, 0, size, fd, ++begun_};
+    uploads_.emplace(name, Upload{std::move(*file), 0, size, ++begun_});
     return done();
 }
 
@@ -293,7 +223,7 @@ Response ProgramFiles::write(const std::string &name, std::uint64_t offset, std:
                                           piece.size(), offset, size, MOST_BYTES));
     }
     if (offset == 0) {
-        const Response begun = begin(name, size);
+        const Response begun = begin(name, *path, size);
         if (begun.status != done().status) {
             return begun;
         }
@@ -302,12 +232,11 @@ Response ProgramFiles::write(const std::string &name, std::uint64_t offset, std:
     if (found == uploads_.end() || found->second.at != offset || found->second.size != size) {
         const std::uint64_t at = found == uploads_.end() ? 0 : found->second.at;
         return error_response(
-            409,
-            fmt::format("the upload of '{}' stands at byte {}, not {}: begin anew at 0", name, at, offset));
+            409, fmt::format("the upload of '{}' is at byte {}, not {}: begin again at 0", name, at, offset));
     }
-    if (!write_all(found->second.fd, piece)) {
+    if (!write_all(found->second.file.fd(), piece)) {
         const std::string why = reason();
-        drop(name);
+        uploads_.erase(found);
         return error_response(403, "cannot write '" + name + "': " + why);
     }
     found->second.at += piece.size();
@@ -315,26 +244,18 @@ Response ProgramFiles::write(const std::string &name, std::uint64_t offset, std:
 }
 
 Response ProgramFiles::finish(const std::string &name, const std::string &path) {
-    const Upload &upload = uploads_[name];
+    TemporaryFile file = std::move(uploads_.extract(name).mapped().file);
     struct stat old{};
-    const bool isProgram = ::stat(path.c_str(), &old) != 0 || S_ISREG(old.st_mode);
+    if (::stat(path.c_str(), &old) == 0 && !S_ISREG(old.st_mode)) {
+        return error_response(403, "cannot write '" + name + "': a folder or device has this name");
+    }
     // Never one that the system would run.
-    const bool isWritten = isProgram && ::fchmod(upload.fd, 0644) == 0 && ::fsync(upload.fd) == 0 &&
-                           ::rename(upload.temporary.c_str(), path.c_str()) == 0;
-    if (!isWritten) {
-        const std::string why = isProgram ? reason() : "a folder or device has this name";
-        drop(name);
-        return error_response(403, "cannot write '" + name + "': " + why);
+    if (::fchmod(file.fd(), 0644) != 0 || !file.replace_target()) {
+        return error_response(403, "cannot write '" + name + "': " + reason());
     }
-    const int folder = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    const bool isKept = folder >= 0 && ::fsync(folder) == 0;
-    const std::string why = isKept ? "" : reason();
-    if (folder >= 0) {
-        ::close(folder);
-    }
-    ::close(upload.fd);
-    uploads_.erase(name);
-    return isKept ? done() : error_response(403, "'" + name + "' may be lost in a power failure: " + why);
+    return file.sync_folder()
+               ? done()
+               : error_response(403, "'" + name + "' may be lost in a power failure: " + reason());
 }
 
 Response ProgramFiles::remove(const std::string &name) {

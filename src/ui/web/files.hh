@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/result.hh"
+#include "base/temporary_file.hh"
 #include "ui/web/exchange.hh"
 
 namespace mw::ui::web {
@@ -24,16 +25,16 @@ class ProgramFiles {
     /// Files that end in none of `extensions` (in lower case, with the dot) are not there. Removes the files
     /// of uploads whose server has died.
     ProgramFiles(std::string folder, std::vector<std::string> extensions);
-    /// Removes what has not come whole.
-    ~ProgramFiles();
+    /// Removes the uploads that are not complete.
+    ~ProgramFiles() = default;
     ProgramFiles(const ProgramFiles &) = delete;
     ProgramFiles &operator=(const ProgramFiles &) = delete;
 
     Response list() const;
     /// `made`: path of the program that a filter has made of it, which is read instead.
     Response read(const std::string &name, const std::optional<std::string> &made = {}) const;
-    /// A piece of a file of `size` bytes at its place. Pieces come in their order; the first one begins anew.
-    /// With the last one the file gets its name, as a whole or not at all.
+    /// A piece of a file of `size` bytes at its place. Pieces come in their order; the first one begins
+    /// again. With the last one the file gets its name, as a whole or not at all.
     Response write(const std::string &name, std::uint64_t offset, std::uint64_t size, std::string_view piece);
     Response remove(const std::string &name);
 
@@ -42,14 +43,12 @@ class ProgramFiles {
 
   private:
     struct Upload {
-        std::string temporary;
-        std::uint64_t at = 0, size = 0;
-        int fd = -1;
-        std::uint64_t begun = 0;  ///< which upload it is
+        TemporaryFile file;
+        std::uint64_t at, size;
+        std::uint64_t begun;  ///< which upload it is
     };
-    Response begin(const std::string &name, std::uint64_t size);
+    Response begin(const std::string &name, const std::string &path, std::uint64_t size);
     Response finish(const std::string &name, const std::string &path);
-    void drop(const std::string &name);
 
     std::string folder_;
     std::vector<std::string> extensions_;

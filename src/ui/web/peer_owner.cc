@@ -23,35 +23,16 @@ struct Query {
     inet_diag_req_v2 asked{};
 };
 
-/// Closes itself.
-class Netlink {
-  public:
-    Netlink() : fd_(::socket(AF_NETLINK, SOCK_DGRAM | SOCK_CLOEXEC, NETLINK_SOCK_DIAG)) {
-        constexpr timeval LONGEST{0, 100000};  // the kernel answers within the call of send()
-        ::setsockopt(fd_, SOL_SOCKET, SO_RCVTIMEO, &LONGEST, sizeof LONGEST);
-    }
-    ~Netlink() {
-        if (fd_ >= 0) {
-            ::close(fd_);
-        }
-    }
-    Netlink(const Netlink &) = delete;
-    Netlink &operator=(const Netlink &) = delete;
-    int fd() const { return fd_; }
-
-  private:
-    int fd_;
-};
-
 std::unexpected<Error> failed(const char *what, int error) {
     return fail(std::string(what) + ": " + std::strerror(error));
 }
 
-Query query_of(const Endpoint &client, const Endpoint &server) {
+Query query_of(const Endpoint &client, const Endpoint &server, std::uint32_t number) {
     Query query;
     query.head.nlmsg_len = sizeof query;
     query.head.nlmsg_type = SOCK_DIAG_BY_FAMILY;
     query.head.nlmsg_flags = NLM_F_REQUEST;
+    query.head.nlmsg_seq = number;
     query.asked.sdiag_family = AF_INET;
     query.asked.sdiag_protocol = IPPROTO_TCP;
     query.asked.idiag_states = ~0U;
@@ -69,45 +50,80 @@ std::uint32_t address_of(const std::uint8_t family, const std::uint32_t (&words)
     return ntohl(family == AF_INET ? words[0] : words[3]);
 }
 
-}  // namespace
-
-Result<SocketFacts> find_socket(const Endpoint &client, const Endpoint &server) {
-    const Netlink netlink;
-    if (netlink.fd() < 0) {
-        return failed("no socket of NETLINK_SOCK_DIAG", errno);
-    }
-    const Query query = query_of(client, server);
-    sockaddr_nl kernel{};
-    kernel.nl_family = AF_NETLINK;
-    if (::sendto(netlink.fd(), &query, sizeof query, 0, reinterpret_cast<const sockaddr *>(&kernel),
-                 sizeof kernel) != static_cast<ssize_t>(sizeof query)) {
-        return failed("the kernel does not take a request of NETLINK_SOCK_DIAG", errno);
-    }
-    alignas(nlmsghdr) std::array<char, 4096> bytes{};
-    sockaddr_nl sender{};
-    socklen_t size = sizeof sender;
-    const ssize_t got =
-        ::recvfrom(netlink.fd(), bytes.data(), bytes.size(), 0, reinterpret_cast<sockaddr *>(&sender), &size);
-    if (got < 0) {
-        return failed("the kernel does not answer NETLINK_SOCK_DIAG", errno);
-    }
-    const auto *const head = reinterpret_cast<const nlmsghdr *>(bytes.data());
-    if (sender.nl_pid != 0 || !NLMSG_OK(head, static_cast<std::size_t>(got))) {
-        return fail("the answer of NETLINK_SOCK_DIAG is none of the kernel");
-    }
-    if (head->nlmsg_type == NLMSG_ERROR && head->nlmsg_len >= NLMSG_LENGTH(sizeof(nlmsgerr))) {
+Result<SocketFacts> facts_of(const nlmsghdr &head) {
+    if (head.nlmsg_type == NLMSG_ERROR && head.nlmsg_len >= NLMSG_LENGTH(sizeof(nlmsgerr))) {
         return failed("the kernel does not find the socket of the client",
-                      -static_cast<const nlmsgerr *>(NLMSG_DATA(head))->error);
+                      -static_cast<const nlmsgerr *>(NLMSG_DATA(&head))->error);
     }
-    if (head->nlmsg_type != SOCK_DIAG_BY_FAMILY || head->nlmsg_len < NLMSG_LENGTH(sizeof(inet_diag_msg))) {
+    if (head.nlmsg_type != SOCK_DIAG_BY_FAMILY || head.nlmsg_len < NLMSG_LENGTH(sizeof(inet_diag_msg))) {
         return fail("the answer of NETLINK_SOCK_DIAG is none of a socket");
     }
-    const auto *const found = static_cast<const inet_diag_msg *>(NLMSG_DATA(head));
+    const auto *const found = static_cast<const inet_diag_msg *>(NLMSG_DATA(&head));
     return SocketFacts{{address_of(found->idiag_family, found->id.idiag_src), ntohs(found->id.idiag_sport)},
                        {address_of(found->idiag_family, found->id.idiag_dst), ntohs(found->id.idiag_dport)},
                        found->idiag_state,
                        found->idiag_inode,
                        found->idiag_uid};
+}
+
+}  // namespace
+
+/// Closes itself.
+class SocketFinder::Netlink {
+  public:
+    Netlink()
+        : fd_(::socket(AF_NETLINK, SOCK_DGRAM | SOCK_CLOEXEC, NETLINK_SOCK_DIAG)),
+          error_(fd_ < 0 ? errno : 0) {
+        constexpr timeval LONGEST{0, 100000};  // the kernel answers within the call of send()
+        ::setsockopt(fd_, SOL_SOCKET, SO_RCVTIMEO, &LONGEST, sizeof LONGEST);
+    }
+    ~Netlink() {
+        if (fd_ >= 0) {
+            ::close(fd_);
+        }
+    }
+    Netlink(const Netlink &) = delete;
+    Netlink &operator=(const Netlink &) = delete;
+    int fd() const { return fd_; }
+    int error() const { return error_; }
+
+  private:
+    int fd_, error_;
+};
+
+SocketFinder::SocketFinder() : netlink_(std::make_shared<const Netlink>()) {}
+
+Result<SocketFacts> SocketFinder::operator()(const Endpoint &client, const Endpoint &server) {
+    const int fd = netlink_->fd();
+    if (fd < 0) {
+        return failed("no socket of NETLINK_SOCK_DIAG", netlink_->error());
+    }
+    const Query query = query_of(client, server, ++requests_);
+    sockaddr_nl kernel{};
+    kernel.nl_family = AF_NETLINK;
+    if (::sendto(fd, &query, sizeof query, 0, reinterpret_cast<const sockaddr *>(&kernel), sizeof kernel) !=
+        static_cast<ssize_t>(sizeof query)) {
+        return failed("the kernel does not take a request of NETLINK_SOCK_DIAG", errno);
+    }
+    alignas(nlmsghdr) std::array<char, 4096> bytes{};
+    const auto *const head = reinterpret_cast<const nlmsghdr *>(bytes.data());
+    constexpr int MOST_LATE_ANSWERS = 8;  // to requests before
+    for (int i = 0; i <= MOST_LATE_ANSWERS; ++i) {
+        sockaddr_nl sender{};
+        socklen_t size = sizeof sender;
+        const ssize_t got =
+            ::recvfrom(fd, bytes.data(), bytes.size(), 0, reinterpret_cast<sockaddr *>(&sender), &size);
+        if (got < 0) {
+            return failed("the kernel does not answer NETLINK_SOCK_DIAG", errno);
+        }
+        if (sender.nl_pid != 0 || !NLMSG_OK(head, static_cast<std::size_t>(got))) {
+            return fail("the answer of NETLINK_SOCK_DIAG is none of the kernel");
+        }
+        if (head->nlmsg_seq == requests_) {
+            return facts_of(*head);
+        }
+    }
+    return fail("the kernel does not answer NETLINK_SOCK_DIAG");
 }
 
 PeerOwner owner_of(const SocketFacts &socket, const Endpoint &client, const Endpoint &server,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 
 #include "base/result.hh"
 
@@ -28,9 +29,20 @@ enum class PeerOwner : std::uint8_t {
     OTHER
 };
 
-/// The socket at `client` of a connection to `server`, by NETLINK_SOCK_DIAG. An error says why the kernel
-/// does not tell, or that there is no such socket in this network namespace.
-Result<SocketFacts> find_socket(const Endpoint &client, const Endpoint &server);
+/// Asks the kernel through NETLINK_SOCK_DIAG. Opens its descriptor once: also a process without a free
+/// descriptor can ask. One thread.
+class SocketFinder {
+  public:
+    SocketFinder();
+    /// The socket at `client` of a connection to `server`. An error says why the kernel does not tell, or
+    /// that there is no such socket in this network namespace.
+    Result<SocketFacts> operator()(const Endpoint &client, const Endpoint &server);
+
+  private:
+    class Netlink;
+    std::shared_ptr<const Netlink> netlink_;
+    std::uint32_t requests_ = 0;
+};
 
 /// SERVER_USER only for an established socket with these ends, which a process has open, of `server_uid` or
 /// root. The kernel reports user 0 for sockets that nobody has open, and OVERFLOW_UID for users that this

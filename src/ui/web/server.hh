@@ -61,7 +61,7 @@ struct ServerOptions {
     Tokens local_tokens{};
     /// By whom a connection on this computer was opened, at its ends.
     std::function<Result<SocketFacts>(const Endpoint &client, const Endpoint &server)> find_socket{
-        web::find_socket};
+        SocketFinder()};
     /// Takes the reason, once, why that cannot be found out.
     std::function<void(const std::string &)> report{};
 };

@@ -26,7 +26,7 @@ FILE_FAULTS = {
 END_FAULTS = {
     'dead_server': 'process: the server rsh',
     'late_end': 'end: SIGTERM',
-    'left_file': 'left: nc/.upload-',
+    'left_file': 'left: nc/.part.ngc.millwright-',
     'left_temporary': 'left: tmp/',
     'left_memory': 'left: /dev/shm/',
     'left_process': 'left: process sleep',
@@ -94,7 +94,7 @@ def spoil_files(fault, machine, parameters):
 def spoil_end(machine):
     """Before SIGTERM."""
     machine.servers['nml'].send_signal(signal.SIGSTOP)
-    (machine.nc / '.upload-millwright-abc').write_text('G0')
+    (machine.nc / '.part.ngc.millwright-0123456789').write_text('G0')
     (machine.temporary / 'abc').write_text('')
     pathlib.Path(f'/dev/shm/millwright-{machine.instance}').write_text('')
     subprocess.Popen(['sleep', '20'], env=machine.env)

@@ -57,10 +57,13 @@ def by_web(ports):
     if not screen.until(lambda: screen.hello, ANSWER_S):
         return time.monotonic(), 'no greeting of the server', time.monotonic()
     sent = time.monotonic()
-    answer = screen.do('AbortAll')
+    number = screen.ask('AbortAll')
+    answer = screen.outcome(number)
     answered = time.monotonic()
+    is_open = screen.is_open
     screen.cut()
-    return sent, {'DONE': 'done', 'FAILED': 'error', 'REFUSED': 'error'}.get(answer, 'none'), answered
+    unanswered = f'{screen.outcomes.get(number)}, open {is_open}, hello {screen.hello}, machine {screen.machine}, {len(screen.messages)} messages'
+    return sent, {'DONE': 'done', 'FAILED': 'error', 'REFUSED': 'error'}.get(answer, unanswered), answered
 
 
 def by_rsh(ports):

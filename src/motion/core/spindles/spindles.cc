@@ -242,10 +242,10 @@ void fill(const Spindles &spindles, const Inputs &in, bool isEnabled, Outputs &o
         const SpindleInputs &pins = in.spindle[at(n)];
         SpindleOutputs &o = out.spindle[at(n)];
         o.speed_rpm = s.out_rpm;
-        o.isOn = s.isOn && isEnabled;
-        const double wanted_rpm = s.commanded_rpm;
-        o.isForward = o.isOn && wanted_rpm > 0;
-        o.isReverse = o.isOn && wanted_rpm < 0;
+        // A drive that has these pins only stops at S0, inhibit and an override of 0.
+        o.isForward = isEnabled && s.out_rpm > 0;
+        o.isReverse = isEnabled && s.out_rpm < 0;
+        o.isOn = o.isForward || o.isReverse;
         o.isBrakeOn = s.isBrakeOn;
         o.isOrienting = s.isOrienting;
         o.isLocked = s.isLocked;
@@ -253,12 +253,12 @@ void fill(const Spindles &spindles, const Inputs &in, bool isEnabled, Outputs &o
         o.orient_mode = s.orient_mode;
         o.isIndexEnabled = pins.isIndexEnabled;
         SpindleStatus &st = out.status.spindle[at(n)];
-        st.speed_cmd_rpm = wanted_rpm;
+        st.speed_cmd_rpm = s.commanded_rpm;
         st.scale = s.scale;
         st.speed_in_rps = pins.speed_in_rps;
         st.revs = pins.revs;
-        st.direction = !s.isOn ? 0 : wanted_rpm > 0 ? 1 : wanted_rpm < 0 ? -1 : 0;
-        st.isOn = s.isOn;
+        st.direction = !s.isOn ? 0 : s.commanded_rpm < 0 ? -1 : 1;  // at S0 1, as LinuxCNC
+        st.isOn = s.isOn && s.commanded_rpm != 0;
         st.isAtSpeed = pins.isAtSpeed;
         st.isBrakeOn = s.isBrakeOn;
         st.isOverrideEnabled = s.isOverrideEnabled;

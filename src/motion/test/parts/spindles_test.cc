@@ -255,6 +255,37 @@ TEST_F(SpindlesPart, StatusTellsWhatEachDoes) {
     EXPECT_TRUE(spindles[1].isBrakeOn);
 }
 
+/// A drive that has on, forward and reverse alone must not turn while the output is 0. Measured with
+/// LinuxCNC.
+TEST_F(SpindlesPart, PinsOfOnAndDirectionAreFalseWhileTheOutputIsZero) {
+    const auto expect_pins = [this](bool isForward, bool isReverse) {
+        rpm();
+        Outputs out;
+        fill(spindles, in, true, out);
+        EXPECT_EQ(out.spindle[0].isOn, isForward || isReverse);
+        EXPECT_EQ(out.spindle[0].isForward, isForward);
+        EXPECT_EQ(out.spindle[0].isReverse, isReverse);
+        EXPECT_FALSE(out.spindle[0].isBrakeOn);
+        return out.status.spindle[0];
+    };
+    for (const double speed : {300.0, -300.0}) {
+        take(spindles, SpindleOn{0, speed}, true);
+        expect_pins(speed > 0, speed < 0);
+        in.spindle[0].isInhibited = true;
+        EXPECT_TRUE(expect_pins(false, false).isOn) << "the command stays";
+        in.spindle[0].isInhibited = false;
+        expect_pins(speed > 0, speed < 0);
+        take(spindles, SetScale{Scale::SPINDLE, 0, 0});
+        EXPECT_TRUE(expect_pins(false, false).isOn);
+        take(spindles, SetScale{Scale::SPINDLE, 0, 1});
+        expect_pins(speed > 0, speed < 0);
+        take(spindles, SpindleOn{0, 0}, true);  // S0
+        const SpindleStatus status = expect_pins(false, false);
+        EXPECT_FALSE(status.isOn);
+        EXPECT_EQ(status.direction, 1);
+    }
+}
+
 TEST_F(SpindlesPart, StatusShowsTheCommandWithinTheLimitsAndBeforeTheOverride) {
     set(Parameter::SPINDLE_MAX_FORWARD, 1000);
     take(spindles, SpindleOn{0, 2000}, true);

@@ -101,7 +101,7 @@ TEST_F(ProgramFilesTest, RemovesUploadsOfADeadServerAndNothingElse) {
     for (const auto &entry : fs::directory_iterator(folder_)) {
         upload = entry.path().filename().string();
     }
-    ASSERT_TRUE(upload.starts_with(".upload-"));
+    ASSERT_TRUE(upload.starts_with(".p.ngc.millwright-"));
     const auto with_last = [&upload](std::size_t n) {  // another name of the same form
         std::string letters = "abcd";
         std::erase(letters, upload.back());
@@ -110,9 +110,9 @@ TEST_F(ProgramFilesTest, RemovesUploadsOfADeadServerAndNothingElse) {
     const std::string dead = with_last(0);
     put(dead, "abc");
     put(upload + "x", "another file");
-    put(".upload-notes", "another file");
-    fs::create_hard_link(folder_ / ".upload-notes", folder_ / with_last(1));
-    fs::create_symlink(folder_ / ".upload-notes", folder_ / with_last(2));
+    put(".notes", "another file");
+    fs::create_hard_link(folder_ / ".notes", folder_ / with_last(1));
+    fs::create_symlink(folder_ / ".notes", folder_ / with_last(2));
     const std::size_t before = count_entries();
     const ProgramFiles next(folder_.string(), {".ngc"});
     EXPECT_FALSE(fs::exists(folder_ / dead));

@@ -2,6 +2,7 @@
 // Which user has opened a connection on this computer (issue 37).
 #include <arpa/inet.h>
 #include <netinet/tcp.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -89,6 +90,7 @@ class PeerOwnerOfASocket : public testing::Test {
         return ::connect(fd, reinterpret_cast<sockaddr *>(&place), sizeof place) == 0 ? fd : -1;
     }
     int listener = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    SocketFinder find_socket;
 };
 
 TEST_F(PeerOwnerOfASocket, IsFoundByTheKernelWhileItIsOpen) {
@@ -106,6 +108,22 @@ TEST_F(PeerOwnerOfASocket, IsFoundByTheKernelWhileItIsOpen) {
     found = find_socket(own, server);
     EXPECT_TRUE(!found.has_value() || owner_of(*found, own, server, ::geteuid()) == PeerOwner::OTHER);
     EXPECT_FALSE(find_socket({HERE, 1}, {HERE, 2}).has_value());
+    ::close(accepted);
+}
+
+TEST_F(PeerOwnerOfASocket, IsFoundWithoutAFreeDescriptor) {
+    const int client = connect();
+    const int accepted = ::accept(listener, nullptr, nullptr);
+    const Endpoint own = end_of(accepted, false), server = end_of(accepted, true);
+    rlimit old{};
+    ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &old), 0);
+    const rlimit none{3, old.rlim_max};
+    ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &none), 0);
+    const auto found = find_socket(own, server);
+    EXPECT_EQ(::setrlimit(RLIMIT_NOFILE, &old), 0);
+    ASSERT_TRUE(found.has_value()) << found.error().str();
+    EXPECT_EQ(owner_of(*found, own, server, ::geteuid()), PeerOwner::SERVER_USER);
+    ::close(client);
     ::close(accepted);
 }
 

@@ -53,7 +53,7 @@ TEST_F(ServerTest, PagesOfOthersReachNothing_J3) {
 
 /// The kernel's answer for another user.
 Result<SocketFacts> of_another_user(const Endpoint &client, const Endpoint &server) {
-    auto found = find_socket(client, server);
+    auto found = SocketFinder()(client, server);
     if (found.has_value()) {
         found->uid = ::geteuid() + 1;
     }
@@ -110,7 +110,7 @@ TEST_F(ServerTest, OtherUsersLeaveConnectionsToTheUserOfTheServer) {
     listen(ServerOptions{.port = 0,
                          .limits = {.connections = 4, .foreign_connections = 2},
                          .find_socket = [&](const Endpoint &from, const Endpoint &to) {
-                             return isForeign ? of_another_user(from, to) : find_socket(from, to);
+                             return isForeign ? of_another_user(from, to) : SocketFinder()(from, to);
                          }});
     std::vector<std::unique_ptr<Peer>> peers;
     for (int i = 0; i < 5; ++i) {
