@@ -13,7 +13,14 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / 'e2e'))
 from rig import prepare_python, run_attacks, with_python  # noqa: E402  pylint: disable=wrong-import-position
 
 BUSY = 10  # programs
+TRIES = 3
+STOLEN_S = 0.1
 LONG = 'import os\nwhile not os.path.exists({!r}): pass'
+
+
+def stolen_s():
+    """Time that the host of a virtual computer has given to others: then also the first of all threads is late."""
+    return int(pathlib.Path('/proc/stat').read_text().split(maxsplit=9)[8]) / os.sysconf('SC_CLK_TCK')
 
 
 def may_raise():
@@ -63,15 +70,30 @@ def script(machine, found):
     found.expect(machine.cuts_on(0.5), 'it cuts', machine.messages)
 
 
+def switch_on(machine):
+    machine.abort_s()
+    for state in (machine.linuxcnc.STATE_ESTOP_RESET, machine.linuxcnc.STATE_ON):
+        machine.command.state(state)
+        machine.command.wait_complete(5)
+
+
 def load(machine, found):
     if not may_raise():
         print('this user may not raise priorities: nothing to judge')
         return
     busy = [subprocess.Popen(['sh', '-c', 'while :; do :; done']) for _ in range(BUSY)]
     try:
-        machine.cut()
-        found.expect(machine.cuts_on(4), f'it cuts on beside {BUSY} busy programs', machine.messages)
-        found.expect(not any('did not run' in text for text in machine.messages), 'nothing was late', machine.messages)
+        for _ in range(TRIES):
+            machine.messages.clear()
+            before = stolen_s()
+            machine.cut()
+            cuts = machine.cuts_on(4)
+            late = [text for text in machine.messages if 'did not run' in text]
+            if (cuts and not late) or stolen_s() - before < STOLEN_S:
+                break
+            switch_on(machine)
+        found.expect(cuts, f'it cuts on beside {BUSY} busy programs', machine.messages)
+        found.expect(not late, f'nothing was late; the host took {stolen_s() - before:.2f} s of the processors', machine.messages)
     finally:
         for one in busy:
             one.kill()

@@ -45,7 +45,7 @@ class Campaign:
         with self.lock:
             print(text, flush=True)
             if self.options.log:
-                with open(self.options.log, 'a', encoding='utf-8') as log:
+                with open(self.options.log, 'a', encoding='utf-8', errors='surrogateescape') as log:  # messages may be no UTF-8
                     log.write(text + '\n')
 
     def session(self, seeds, *more):

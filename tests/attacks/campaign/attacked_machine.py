@@ -5,6 +5,7 @@ import os
 import pathlib
 import pty
 import re
+import secrets
 import select
 import signal
 import socket
@@ -41,10 +42,26 @@ def edit(text):
     return re.sub(r'^PROGRAM_PREFIX *=.*$', 'PROGRAM_PREFIX = ../../nc', text, flags=re.MULTILINE)
 
 
+# Below the range from which the kernel takes ports of clients: connecting to one of that range before its server listens may
+# connect the client with itself, and the server then finds its port in use.
+PORTS = range(20000, 32000)
+PORT_LOCKS = []  # until this process ends
+
+
 def free_port():
-    with socket.socket() as free:
-        free.bind(('127.0.0.1', 0))
-        return free.getsockname()[1]
+    """A port that no other process has, and that no other session of the campaign takes."""
+    while True:
+        port = secrets.choice(PORTS)
+        lock = socket.socket(socket.AF_UNIX)
+        try:
+            lock.bind(f'\0millwright-attack-port-{port}')
+            with socket.socket() as free:
+                free.bind(('127.0.0.1', port))
+        except OSError:
+            lock.close()
+            continue
+        PORT_LOCKS.append(lock)
+        return port
 
 
 def processes_of(instance, part):
@@ -158,6 +175,9 @@ class AttackedMachine(Machine):
         self.files = {path: path.read_bytes() for path in (self.ini, self.ini.parent / 'sampler.hal', self.nc / 'slow.ngc', self.nc / 'slip.ngc',
                                                            self.nc / 'large.ngc')}
 
+    def output_of(self, server):
+        return (self.folder / f'{server}.txt').read_text(errors='replace')
+
     def begin_server(self, server):
         words = {'web': [self.programs / 'millwright', 'ui', self.ini, '--port', self.ports['web']],
                  'rsh': [self.programs / 'linuxcncrsh', '--port', self.ports['rsh'], '--ipv4'],
@@ -172,7 +192,7 @@ class AttackedMachine(Machine):
                 return
             except OSError:
                 time.sleep(0.02)
-        raise RuntimeError(f'{server} is not ready: ' + (self.folder / f'{server}.txt').read_text())
+        raise RuntimeError(f'{server} is not ready: ' + self.output_of(server))
 
     def scene(self):
         numbers = processes_of(self.instance, 'machine')

@@ -133,14 +133,19 @@ def program_changed(scene, rng):
 def many(scene, rng):
     """A program folder with thousands of files, links in circles and names that are no text."""
     made = []
+    count = rng.choice((100, 1500))
     try:
-        for i in range(rng.choice((100, 1500))):
-            made.append(os.fsencode(scene.nc) + b'/%d_' % i + rng.choice((b'a.ngc', b'\xff\xfe.ngc', b'b' * 200 + b'.ngc')))
+        folder = os.open(scene.nc, os.O_DIRECTORY)  # another attack may move it
+    except FileNotFoundError:
+        return
+    try:
+        for i in range(count):
+            made.append(b'%d_' % i + rng.choice((b'a.ngc', b'\xff\xfe.ngc', b'b' * 200 + b'.ngc')))
             with contextlib.suppress(OSError):
                 if rng.random() < 0.2:
-                    os.symlink(made[-1], made[-1])
+                    os.symlink(made[-1], made[-1], dir_fd=folder)
                 else:
-                    os.close(os.open(made[-1], os.O_CREAT | os.O_WRONLY))
+                    os.close(os.open(made[-1], os.O_CREAT | os.O_WRONLY, dir_fd=folder))
             if time.monotonic() > scene.deadline:
                 break
         scene.wait(0.5)
@@ -148,4 +153,5 @@ def many(scene, rng):
         random.shuffle(made)
         for path in made:
             with contextlib.suppress(OSError):
-                os.unlink(path)
+                os.unlink(path, dir_fd=folder)
+        os.close(folder)

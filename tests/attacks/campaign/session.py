@@ -197,7 +197,7 @@ class Session:
             if process.poll() is None:
                 continue
             if server not in killed:
-                failures.append(f'process: the server {server} has ended with status {process.returncode}')
+                failures.append(f'process: the server {server} has ended with status {process.returncode}: {machine.output_of(server)[-300:]}')
             machine.begin_server(server)
             if server == 'web':
                 time.sleep(0.6)  # until the observer is connected again
