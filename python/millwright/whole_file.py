@@ -11,6 +11,7 @@ import secrets
 MARK = '.millwright-'
 LETTERS = '0123456789abcdefghijklmnopqrstuv'
 NUM_LETTERS = 10
+TRIES = 10
 MOST_OF_TARGET = 200  # bytes; the name of the target may be as long as the file system allows
 
 
@@ -19,12 +20,12 @@ def prefix_of(path):
 
 
 def is_same(path, fd):
-    """The name is the only one of the open file."""
+    """The name is that of the open file."""
     try:
         named, opened = os.lstat(path), os.fstat(fd)
     except FileNotFoundError:
         return False
-    return named.st_nlink == 1 and os.path.samestat(named, opened)
+    return os.path.samestat(named, opened)
 
 
 def remove_dead(path):
@@ -40,7 +41,7 @@ def remove_dead(path):
             continue
         try:
             fcntl.flock(fd, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            if is_same(temporary, fd):
+            if is_same(temporary, fd) and os.fstat(fd).st_nlink <= 1:
                 os.unlink(temporary)
         except OSError:
             pass  # a process writes it, or the file system has no locks
@@ -50,7 +51,7 @@ def remove_dead(path):
 
 def create(path):
     """Name and descriptor of a new locked file."""
-    while True:
+    for _ in range(TRIES):
         temporary = path.parent / (prefix_of(path) + ''.join(secrets.choice(LETTERS) for _ in range(NUM_LETTERS)))
         fd = os.open(temporary, os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW, 0o600)
         try:
@@ -63,6 +64,7 @@ def create(path):
         if is_same(temporary, fd):
             return temporary, fd
         os.close(fd)
+    raise OSError(errno.EBUSY, 'other processes remove its temporary files', str(path))
 
 
 def write_whole(path, text, errors='strict'):

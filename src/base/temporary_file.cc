@@ -46,12 +46,16 @@ bool isTemporary(std::string_view name, std::string_view prefix) {
            name.find_first_not_of(LETTERS, before.size()) == std::string_view::npos;
 }
 
-/// The name in the folder is the only one of the open file.
+/// The name in the folder is that of the open file.
 bool isSame(int folder, const char *name, int fd) {
     struct stat named{}, opened{};
     return ::fstatat(folder, name, &named, AT_SYMLINK_NOFOLLOW) == 0 && ::fstat(fd, &opened) == 0 &&
-           S_ISREG(named.st_mode) && named.st_nlink == 1 && named.st_ino == opened.st_ino &&
-           named.st_dev == opened.st_dev;
+           S_ISREG(named.st_mode) && named.st_ino == opened.st_ino && named.st_dev == opened.st_dev;
+}
+
+bool hasOtherNames(int fd) {
+    struct stat facts{};
+    return ::fstat(fd, &facts) != 0 || facts.st_nlink > 1;
 }
 
 void remove_if_dead(int folder, const char *name) {
@@ -59,7 +63,7 @@ void remove_if_dead(int folder, const char *name) {
     if (fd < 0) {
         return;
     }
-    if (::flock(fd, LOCK_EX | LOCK_NB) == 0 && isSame(folder, name, fd)) {
+    if (::flock(fd, LOCK_EX | LOCK_NB) == 0 && isSame(folder, name, fd) && !hasOtherNames(fd)) {
         ::unlinkat(folder, name, 0);
     }
     ::close(fd);

@@ -13,7 +13,7 @@ FOLDER = str(pathlib.Path(sys.argv.pop()).resolve())
 sys.path.insert(0, FOLDER)
 from millwright import whole_file  # noqa: E402  pylint: disable=wrong-import-position
 
-# Makes the temporary file, says so, and waits.
+# Creates the temporary file, prints "made" and waits.
 HALF = """import pathlib, sys, time
 sys.path.insert(0, sys.argv[1])
 from millwright import whole_file

@@ -42,8 +42,7 @@ class Screens {
     /// Every few milliseconds.
     void tick(std::int64_t now_ns);
 
-    /// Writes a line to the log, for example "ERROR: joint 0 following error" or "the machine is up".
-    /// `age_ns`: time since the message appeared.
+    /// Adds a line to the log, for example "ERROR: joint 0 following error". `age_ns`: age of the message.
     using Log = std::function<void(std::string line, std::int64_t age_ns)>;
     void keep_log(Log log) { log_ = std::move(log); }
 

@@ -125,10 +125,10 @@ def stops(record):
         names = ', '.join(f'{event.name} {event.begin - record.begin:.2f} to {event.end - record.begin:.2f} s' for event in record.events)
         failures.append(f'stop: the axes rest at {rest - record.begin:.2f} s, {"without" if since is None else f"{since:.2f} s after"} an attack that may stop them ({names})')
     causes = [event.causes for event in record.events if event.causes]
-    # Messages of other attacks may be like those of the one that stops the axes: the last one before the rest counts.
-    named = [when for when, text in record.python if when <= rest and any(re.search(cause, text) for cause in causes)]
-    if named and rest - max(named) > STOP_S:
-        failures.append(f'stop: the axes rest {rest - max(named):.2f} s after the message')
+    # From the first message of each attack: one of them stops the axes, those of others may have come before.
+    late = [rest - min(named) for cause in causes if (named := [when for when, text in record.python if re.search(cause, text)])]
+    if late and min(late) > STOP_S:
+        failures.append(f'stop: the axes rest {min(late):.2f} s after the message')
     return failures + unexplained(record, record.python, 'for Python') + (
         unexplained(record, record.web, 'on the web screen') if record.isWebUp else [])
 
