@@ -30,12 +30,20 @@ class AtomicFile : public testing::Test {
     static std::ptrdiff_t count(const fs::path &folder) {
         return std::distance(fs::directory_iterator(folder), fs::directory_iterator());
     }
-    /// A process that gets `signal` while it writes the file: where it has a temporary file beside those that
-    /// were there.
+    /// True while the folder holds a temporary file with content. Its writer has locked it: an empty one may
+    /// not be locked yet, and another writer may remove it then.
+    bool hasTemporaryFileWithContent() const {
+        return std::ranges::any_of(fs::directory_iterator(folder_), [](const fs::directory_entry &entry) {
+            std::error_code gone;  // the writer may have renamed it
+            const auto size = entry.file_size(gone);
+            return entry.path().filename().string().starts_with(".a.millwright-") && !gone && size > 0 &&
+                   entry.path().filename() != ".a.millwright-notes";
+        });
+    }
+    /// A process that gets `signal` while it writes content to its temporary file.
     pid_t interrupted_writer(int signal, bool isEndless) {
         const std::string target = path("a");
         for (int i = 0; i < 200; ++i) {
-            const auto before = count(folder_);
             const pid_t writer = ::fork();
             if (writer == 0) {
                 const std::string content(std::size_t{32} << 20, 'x');
@@ -46,12 +54,12 @@ class AtomicFile : public testing::Test {
                 ::_exit(isGood ? 0 : 1);
             }
             const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(5);
-            while (count(folder_) == before && std::chrono::steady_clock::now() < end) {
+            while (!hasTemporaryFileWithContent() && std::chrono::steady_clock::now() < end) {
             }
             ::kill(writer, signal);
             int status = 0;
             ::waitpid(writer, &status, WUNTRACED);
-            if (count(folder_) > before) {
+            if (hasTemporaryFileWithContent()) {
                 return writer;
             }
             ::kill(writer, SIGKILL);

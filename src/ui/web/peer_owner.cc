@@ -7,7 +7,6 @@
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <sys/socket.h>
-#include <sys/time.h>
 #include <unistd.h>
 
 #include <array>
@@ -73,10 +72,7 @@ class SocketFinder::Netlink {
   public:
     Netlink()
         : fd_(::socket(AF_NETLINK, SOCK_DGRAM | SOCK_CLOEXEC, NETLINK_SOCK_DIAG)),
-          error_(fd_ < 0 ? errno : 0) {
-        constexpr timeval LONGEST{0, 100000};  // the kernel answers within the call of send()
-        ::setsockopt(fd_, SOL_SOCKET, SO_RCVTIMEO, &LONGEST, sizeof LONGEST);
-    }
+          error_(fd_ < 0 ? errno : 0) {}
     ~Netlink() {
         if (fd_ >= 0) {
             ::close(fd_);
@@ -107,23 +103,19 @@ Result<SocketFacts> SocketFinder::operator()(const Endpoint &client, const Endpo
     }
     alignas(nlmsghdr) std::array<char, 4096> bytes{};
     const auto *const head = reinterpret_cast<const nlmsghdr *>(bytes.data());
-    constexpr int MOST_LATE_ANSWERS = 8;  // to requests before
-    for (int i = 0; i <= MOST_LATE_ANSWERS; ++i) {
-        sockaddr_nl sender{};
-        socklen_t size = sizeof sender;
-        const ssize_t got =
-            ::recvfrom(fd, bytes.data(), bytes.size(), 0, reinterpret_cast<sockaddr *>(&sender), &size);
-        if (got < 0) {
-            return failed("the kernel does not answer NETLINK_SOCK_DIAG", errno);
-        }
-        if (sender.nl_pid != 0 || !NLMSG_OK(head, static_cast<std::size_t>(got))) {
-            return fail("the answer of NETLINK_SOCK_DIAG is none of the kernel");
-        }
-        if (head->nlmsg_seq == requests_) {
-            return facts_of(*head);
-        }
+    sockaddr_nl sender{};
+    socklen_t size = sizeof sender;
+    // The kernel answers within the call of sendto(), so there is nothing to wait for.
+    const ssize_t got = ::recvfrom(fd, bytes.data(), bytes.size(), MSG_DONTWAIT,
+                                   reinterpret_cast<sockaddr *>(&sender), &size);
+    if (got < 0) {
+        return failed("the kernel does not answer NETLINK_SOCK_DIAG", errno);
     }
-    return fail("the kernel does not answer NETLINK_SOCK_DIAG");
+    if (sender.nl_pid != 0 || !NLMSG_OK(head, static_cast<std::size_t>(got)) ||
+        head->nlmsg_seq != requests_) {
+        return fail("the answer of NETLINK_SOCK_DIAG is none of the kernel");
+    }
+    return facts_of(*head);
 }
 
 PeerOwner owner_of(const SocketFacts &socket, const Endpoint &client, const Endpoint &server,
