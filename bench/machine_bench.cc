@@ -6,9 +6,9 @@
 
 #include <benchmark/benchmark.h>
 
-#include "app/operator.hh"
-#include "machine/loaded_config.hh"
-#include "machine/machine.hh"
+#include "machine/assembly/machine.hh"
+#include "machine/config/loaded_config.hh"
+#include "programs/run/run_session.hh"
 
 namespace {
 
@@ -17,7 +17,7 @@ void run_program(benchmark::State &state, const char *ini, const char *program) 
     double virtual_s = 0;
     for (auto _ : state) {
         state.PauseTiming();
-        mw::diag::Sink sink;
+        mw::diagnostics::Sink sink;
         const auto loaded = mw::machine::LoadedConfig::load(std::string(MW_SOURCE_DIR "/") + ini, sink);
         if (loaded == nullptr) {
             state.SkipWithError("the configuration has errors");
@@ -30,11 +30,11 @@ void run_program(benchmark::State &state, const char *ini, const char *program) 
             state.SkipWithError(machine.error().message.c_str());
             return;
         }
-        mw::app::OwnMachine own(**machine);
-        mw::app::Operator person(own, loaded->machine, sink, {});
+        mw::programs::OwnMachine own(**machine);
+        mw::programs::RunSession person(own, loaded->machine, sink, {});
         auto status = person.switch_on();
         status = status.has_value() ? person.home_all() : status;
-        status = status.has_value() ? person.open_program(std::string(MW_SOURCE_DIR "/") + program) : status;
+        status = status.has_value() ? person.open_program(program) : status;
         const std::int64_t start_ns = (*machine)->now_ns();
         state.ResumeTiming();
         status = status.has_value() ? person.run_program(1, [] {}) : status;
@@ -53,17 +53,17 @@ void run_program(benchmark::State &state, const char *ini, const char *program) 
 }
 
 void BM_Pocket(benchmark::State &state) {
-    run_program(state, "configs/sim/mill_mm.ini", "nc_files/pocket.ngc");
+    run_program(state, "configs/sim/mill_mm.ini", MW_SOURCE_DIR "/nc_files/pocket.ngc");
 }
 BENCHMARK(BM_Pocket)->Unit(benchmark::kMillisecond)->UseRealTime()->Iterations(5);
 
 void BM_Surface(benchmark::State &state) {
-    run_program(state, "configs/sim/mill_mm.ini", "nc_files/surface.ngc");
+    run_program(state, "configs/sim/mill_mm.ini", MW_SURFACE_PROGRAM);
 }
 BENCHMARK(BM_Surface)->Unit(benchmark::kMillisecond)->UseRealTime()->Iterations(2);
 
 void BM_Drilling(benchmark::State &state) {
-    run_program(state, "configs/sim/mill_mm.ini", "nc_files/drilling.ngc");
+    run_program(state, "configs/sim/mill_mm.ini", MW_SOURCE_DIR "/nc_files/drilling.ngc");
 }
 BENCHMARK(BM_Drilling)->Unit(benchmark::kMillisecond)->UseRealTime()->Iterations(5);
 

@@ -4,13 +4,13 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "app/operator.hh"
-#include "machine/loaded_config.hh"
-#include "machine/machine.hh"
+#include "machine/assembly/machine.hh"
+#include "machine/config/loaded_config.hh"
+#include "programs/run/run_session.hh"
 
 namespace {
 
-mw::Result<> run(const char *ini, const char *program, mw::diag::Sink &sink) {
+mw::Result<> run(const char *ini, const char *program, mw::diagnostics::Sink &sink) {
     const auto loaded = mw::machine::LoadedConfig::load(ini, sink);
     if (loaded == nullptr) {
         return mw::fail("the configuration has errors");
@@ -21,8 +21,8 @@ mw::Result<> run(const char *ini, const char *program, mw::diag::Sink &sink) {
     if (!machine.has_value()) {
         return std::unexpected(machine.error());
     }
-    mw::app::OwnMachine own(**machine);
-    mw::app::Operator person(own, loaded->machine, sink, {});
+    mw::programs::OwnMachine own(**machine);
+    mw::programs::RunSession person(own, loaded->machine, sink, {});
     auto status = person.switch_on();
     status = status.has_value() ? person.home_all() : status;
     status = status.has_value() ? person.open_program(program) : status;
@@ -39,7 +39,7 @@ int main(int argc, char **argv) {
         return 2;
     }
     ::setenv("MILLWRIGHT_MODULE_PATH", MW_LIB_DIR, 0);
-    mw::diag::Sink sink;
+    mw::diagnostics::Sink sink;
     const auto status = run(argv[1], argv[2], sink);
     if (!status.has_value()) {
         std::fprintf(stderr, "servo_run: %s\n", status.error().message.c_str());

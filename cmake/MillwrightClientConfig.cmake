@@ -4,7 +4,7 @@ include(CMakeFindDependencyMacro)
 find_dependency(fmt)
 find_dependency(Threads)
 get_filename_component(millwright_libdir ${CMAKE_CURRENT_LIST_DIR}/../.. ABSOLUTE)
-find_path(MILLWRIGHT_CLIENT_INCLUDE client/client.hh
+find_path(MILLWRIGHT_CLIENT_INCLUDE messages/client/client.hh
   PATHS ${millwright_libdir}/../include/millwright-client ${millwright_libdir}/../../include/millwright-client NO_DEFAULT_PATH REQUIRED)
 if(NOT TARGET Millwright::client)
   add_library(Millwright::client STATIC IMPORTED)

@@ -7,19 +7,19 @@ set(MW_REALTIME_FLAGS $<$<COMPILE_LANGUAGE:CXX>:-fno-exceptions> $<$<COMPILE_LAN
 set_property(GLOBAL PROPERTY MW_REALTIME_TARGETS "")
 
 # mw_library(NAME SOURCES a.cc ... [DEPENDS mw_base ...] [PRIVATE_DEPENDS ...])
-# A static library mw_NAME; includes are rooted at src/. Without SOURCES it is header-only.
+# A static library mw_NAME; includes are rooted at src/ and at the top of the tree. Without SOURCES it is header-only.
 function(mw_library name)
   cmake_parse_arguments(A "REALTIME" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
   if(A_SOURCES)
     add_library(mw_${name} STATIC ${A_SOURCES})
-    target_include_directories(mw_${name} PUBLIC ${CMAKE_SOURCE_DIR}/src)
+    target_include_directories(mw_${name} PUBLIC ${CMAKE_SOURCE_DIR}/src ${CMAKE_SOURCE_DIR})
     target_link_libraries(mw_${name} PUBLIC ${A_DEPENDS} PRIVATE ${A_PRIVATE_DEPENDS})
     if(NOT A_REALTIME)
       mw_use_precompiled(mw_${name} library)
     endif()
   else()
     add_library(mw_${name} INTERFACE)
-    target_include_directories(mw_${name} INTERFACE ${CMAKE_SOURCE_DIR}/src)
+    target_include_directories(mw_${name} INTERFACE ${CMAKE_SOURCE_DIR}/src ${CMAKE_SOURCE_DIR})
     target_link_libraries(mw_${name} INTERFACE ${A_DEPENDS})
   endif()
 endfunction()
@@ -81,14 +81,15 @@ function(mw_unite target)
   endif()
 endfunction()
 
-# mw_test(NAME SOURCES ... DEPENDS ... [LABELS ...] [TIMEOUT s] [COMPONENTS and2 ...] [APART]
-# [OPTIMISED]): a GoogleTest program, one CTest test per case. COMPONENTS are built first. The sources of one that is
+# mw_test(NAME SOURCES ... DEPENDS ... [LABELS ...] [TIMEOUT s] [COMPONENTS and2 ...] [ROWS C10 ...] [APART]
+# [OPTIMISED]): a GoogleTest program, one CTest test per case. COMPONENTS are built first. ROWS are the rows of docs/requirements.md
+# that it tests: labels row-C10 (ctest -L row-C10). The sources of one that is
 # APART give different things one name; one that is OPTIMISED computes much itself.
 function(mw_test name)
   if(NOT MW_TESTS)
     return()
   endif()
-  cmake_parse_arguments(A "APART;OPTIMISED" "TIMEOUT" "SOURCES;DEPENDS;LABELS;COMPONENTS" ${ARGN})
+  cmake_parse_arguments(A "APART;OPTIMISED" "TIMEOUT" "SOURCES;DEPENDS;LABELS;COMPONENTS;ROWS" ${ARGN})
   add_executable(${name} ${A_SOURCES})
   target_link_libraries(${name} PRIVATE ${A_DEPENDS} GTest::gtest GTest::gtest_main)
   if(NOT A_OPTIMISED)
@@ -112,6 +113,8 @@ function(mw_test name)
   if(NOT A_LABELS)
     set(A_LABELS unit)
   endif()
+  list(TRANSFORM A_ROWS PREPEND row-)
+  list(APPEND A_LABELS ${A_ROWS})
   # Kill tests look at the clock of a realtime process: nothing else may run beside them.
   set(serial FALSE)
   if("kill" IN_LIST A_LABELS)

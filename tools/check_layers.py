@@ -5,109 +5,124 @@ import pathlib
 import re
 import sys
 
-LAYER = {
-    'base': 0, 'geom': 0, 'diag': 0, 'options': 0, 'language': 0,
-    'rtapi': 1, 'config': 1, 'msgs': 1, 'picture': 1, 'comp': 1, 'setup': 1,
-    'hal': 2, 'mailbox': 2,
-    'kins': 3, 'traj': 3, 'homing': 3, 'interp': 3, 'tool': 3, 'journal': 3, 'client': 3, 'hal_lang': 3,
-    'motion': 4, 'pyhost': 4, 'hal_tools': 4, 'gcode': 4, 'nml': 4, 'modbus': 4,
-    'task': 5, 'io': 5,
-    'machine': 6, 'ui': 6, 'python': 6, 'doctor': 6,
-    'app': 7,
-    'cli': 8,
+# Each room, and the rooms or folders of a room that it may use.
+MAY_USE = {
+    'base': (),
+    'runtime': ('base',),
+    'kinematics': ('base',),
+    'trajectory': ('base',),
+    'gcode': ('base',),
+    'messages': ('base', 'runtime'),
+    'hal': ('base', 'runtime'),
+    'motion': ('base', 'hal', 'kinematics', 'trajectory'),
+    'machine': ('base', 'runtime', 'hal', 'kinematics', 'trajectory', 'gcode', 'messages', 'motion'),
+    'clients': ('base', 'runtime', 'hal', 'gcode', 'messages', 'machine/setup'),
+    'drivers': ('base', 'hal'),
+    'programs': ('base', 'runtime', 'hal', 'kinematics', 'trajectory', 'gcode', 'messages', 'motion', 'machine', 'clients', 'drivers'),
+    'components': ('base', 'hal', 'kinematics', 'trajectory', 'motion', 'machine/io'),
+    'tests/support': ('base', 'hal', 'kinematics', 'trajectory', 'motion'),
 }
-# Equal layers that may be used, user -> used.
-ALLOWED_EQUAL = {('geom', 'base'), ('diag', 'base'), ('options', 'base'), ('language', 'base'), ('options', 'language'), ('interp', 'tool'), ('task', 'io'), ('machine', 'ui'), ('doctor', 'machine')}
-# Domain libraries know neither HAL nor NML.
-FORBIDDEN = {(user, used) for user in ('kins', 'traj', 'homing', 'interp', 'tool', 'journal') for used in ('hal', 'hal_lang', 'nml')}
-# Inside a folder: sub-folders in the order in which they may use each other.
-INNER = {'motion': ['api', 'core', 'rt'],
-         'traj': ['geometry', 'exec', 'timing', 'trial'],
-         'interp': ['text', 'ast', 'canon', 'eval', 'scripts', 'codes', 'flow'],
-         'task': ['link', 'sequencer', 'states', 'run'],
-         'hal': ['api', 'sdk', 'core', 'host'],
-         'hal_lang': ['lang', 'tcl'],
-         'hal_tools': ['stream', 'view', 'programs'],
-         'nml': ['config', 'message', 'buffer', 'net', 'bridge', 'remote']}
-# Folders beside src: what of src, and of each other, they may include. What is not here is left alone.
-BESIDE = {'components': {'hal', 'hal_tools', 'kins', 'traj', 'motion', 'io', 'rtapi', 'base', 'geom', 'components', 'sim'},
-          'sim': {'hal', 'base', 'geom', 'sim'},
-          'testing': {'base', 'geom', 'hal', 'kins', 'traj', 'motion', 'testing'}}
+# The folders of a room in the order in which they may use each other. '' is what lies beside them.
+ORDER = {
+    'base': ('', 'diagnostics', 'geometry', 'language', 'options', 'ini', 'charts'),
+    'messages': ('declarations', 'mailbox', 'client'),
+    'hal': ('include', 'sdk', 'core', 'host', 'ini', 'halcompile', 'script', 'tcl', 'tools'),
+    'hal/tools': ('stream', 'view', 'programs'),
+    'trajectory': ('path', 'follow', 'timing', 'trial'),
+    'gcode': ('syntax', 'tools', 'canon', 'interpreter', 'python_host', 'analysis'),
+    'gcode/interpreter': ('expressions', 'scripts', 'codes', 'flow'),
+    'motion': ('homing', 'interface', 'planner', 'servo', 'hal'),
+    'machine': ('setup', 'io', 'journal', 'task', 'config', 'analysis', 'tools', 'halui', 'assembly'),
+    'machine/task': ('link', 'sequencer', 'states', 'run'),
+    'clients': ('nml', 'rsh', 'schedule', 'tcl', 'screen', 'python'),
+    'clients/nml': ('config', 'message', 'buffer', 'net', 'bridge', 'remote'),
+    'programs': ('setup', 'run', 'remote', 'start', 'screen', 'doctor', 'mains'),
+}
+# What a folder may not use although its room may.
+NEVER = {
+    'motion/homing': ('hal', 'kinematics', 'trajectory'),
+    'motion/interface': ('hal',),
+    'motion/planner': ('hal',),
+    'motion/servo': ('hal',),
+    'machine/journal': ('hal', 'messages', 'motion', 'gcode'),
+    'machine/setup': ('hal', 'messages', 'motion', 'gcode'),
+}
+IN_SRC = tuple(room for room in MAY_USE if room not in ('drivers', 'programs', 'components', 'tests/support'))
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"')
+
+
+def is_in(path, folder):
+    return path == folder or path.startswith(folder + '/')
+
+
+def room_of(path):
+    return next((room for room in MAY_USE if is_in(path, room)), None)
+
+
+def rank(path, room):
+    """The place of a file in the order of its room's folders; None: the order says nothing of it."""
+    rest = path[len(room) + 1:].split('/')
+    folder = rest[0] if len(rest) > 1 else ''
+    order = ORDER[room]
+    return order.index(folder) if folder in order else None
+
+
+def problem_of_order(source, target):
+    for room in ORDER:
+        if is_in(source, room) and is_in(target, room):
+            user, used = rank(source, room), rank(target, room)
+            if user is not None and used is not None and used > user:
+                return f'{room}/{ORDER[room][user]} may not use {room}/{ORDER[room][used]}'
+    return None
 
 
 def are_parts_mixed(source, target):
     """Parts of the motion controller are folders of their own and know no other."""
-    are_parts = len(source) > 3 and len(target) > 3 and source[:2] == target[:2] == ('motion', 'core')
-    return are_parts and source[2] != target[2]
+    parts = [path.split('/') for path in (source, target)]
+    are_parts = all(len(part) > 3 and part[:2] == ['motion', 'servo'] for part in parts)
+    return are_parts and parts[0][2] != parts[1][2]
 
 
-def problem(path, source, target):
-    user, used = source[0], target[0]
-    if used not in LAYER or user not in LAYER:
+def problem(source, target):
+    """Why the file source may not include target (paths without src/); None: it may."""
+    user, used = room_of(source), room_of(target)
+    if user is None or used is None:
         return None
     if user == used:
-        order = INNER.get(user, [])
-        inner_user = source[1] if len(source) > 2 else None
-        inner_used = target[1] if len(target) > 2 else None
-        if inner_user in order and inner_used in order and order.index(inner_used) > order.index(inner_user):
-            return f'{user}/{inner_user} may not use {used}/{inner_used}'
-        if are_parts_mixed(source, target):
-            return f'the part {source[2]} may not know the part {target[2]}'
-        return None
-    if (user, used) in FORBIDDEN:
-        return f'{user} may not know {used}'
-    if LAYER[used] > LAYER[user]:
-        return f'{user} (layer {LAYER[user]}) may not use {used} (layer {LAYER[used]})'
-    if LAYER[used] == LAYER[user] and (user, used) not in ALLOWED_EQUAL:
-        return f'{user} and {used} are on the same layer'
+        return 'parts of the controller may not know each other' if are_parts_mixed(source, target) else problem_of_order(source, target)
+    if not any(is_in(target, allowed) for allowed in MAY_USE[user]):
+        return f'{user} may not use {used}'
+    for folder, rooms in NEVER.items():
+        if is_in(source, folder) and used in rooms:
+            return f'{folder} may not use {used}'
     return None
 
 
-def problem_beside(folder, target):
-    if len(target) > 1 and target[0] not in BESIDE[folder] and (target[0] in LAYER or target[0] in BESIDE):
-        return f'{folder} may not use {target[0]}'
-    return None
-
-
-def sources(root, folder):
-    """Sources and headers of a folder, without those of tests."""
-    for path in sorted((root / folder).rglob('*')):
-        if path.suffix in ('.cc', '.hh', '.h', '.c') and 'test' not in path.relative_to(root).parts[:-1]:
+def sources(folder):
+    """Sources and headers of a folder, without those of tests and benchmarks."""
+    for path in sorted(folder.rglob('*')):
+        if path.suffix in ('.cc', '.hh', '.h', '.c') and not {'test', 'bench'} & set(path.parts):
             yield path
 
 
 def main():
     top = pathlib.Path(sys.argv[1])
-    root = top / 'src'
-    failures = 0
+    failures = [f'src/{path.name} is no room' for path in sorted((top / 'src').iterdir()) if path.is_dir() and path.name not in IN_SRC]
     checked = 0
-    for folder in sorted(path.name for path in root.iterdir() if path.is_dir()):
-        if folder not in LAYER:
-            print(f'src/{folder} has no layer')
-            failures += 1
-    for folder in BESIDE:
-        for path in sources(top, folder):
+    for room in MAY_USE:
+        for path in sources(top / 'src' / room if room in IN_SRC else top / room):
             checked += 1
+            name = path.relative_to(top / 'src' if room in IN_SRC else top).as_posix()
             for number, line in enumerate(path.read_text().splitlines(), 1):
                 match = INCLUDE.match(line)
-                why = match and problem_beside(folder, tuple(match.group(1).split('/')))
+                if not match:
+                    continue
+                target = match.group(1)
+                is_rooted = not target.startswith(('.', '/', 'src/'))
+                why = problem(name, target) if is_rooted else 'includes are rooted at src/ or at the top'
                 if why:
-                    print(f'{path}:{number}: {match.group(1)}: {why}')
-                    failures += 1
-    for path in sources(root, '.'):
-        checked += 1
-        source = path.relative_to(root).parts
-        for number, line in enumerate(path.read_text().splitlines(), 1):
-            match = INCLUDE.match(line)
-            if not match:
-                continue
-            name = match.group(1)
-            why = 'includes are rooted at src/' if name.startswith(('.', '/')) else problem(path, source, tuple(name.split('/')))
-            if why:
-                print(f'{path}:{number}: {name}: {why}')
-                failures += 1
-    print(f'{checked} files checked, {failures} wrong includes')
+                    failures.append(f'{path}:{number}: {target}: {why}')
+    print('\n'.join(failures + [f'{checked} files checked, {len(failures)} wrong includes']))
     return 1 if failures or checked == 0 else 0
 
 

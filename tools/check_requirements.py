@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Keeps the column "tests" of docs/requirements.md: which tests name each row.
+"""Keeps the column "tests" of docs/requirements.md: which test programs cover each row.
 
 usage: check_requirements.py ROOT [--write]
-A test names a row at the end of its name (TEST(Homing, ..._C10)) or, in CMake, as a label (row-C10). The exit status is 1
-where a test names a row that is not there, where the column is not up to date (--write puts it right), and where a row has
+A test names its rows in CMake: mw_test(NAME ... ROWS C10 ...) or, where it is no GoogleTest program, a label (row-C10). The exit
+status is 1 where a test names a row that is not there, where the column is not up to date (--write puts it right), and where a row has
 neither a test nor a word why under "state".
 """
 import collections
@@ -13,20 +13,20 @@ import re
 import subprocess
 import sys
 
-NAMED = re.compile(r'\bTEST(?:_F|_P)?\((\w+),\s*\w+?((?:_[A-Z]\d{1,2})+)\)')
+NAMED = re.compile(r'\bmw_(?:machine_)?test\((\w+)\s[^()]*?\bROWS((?:\s+[A-K]\d{1,2})+)')
 LABELLED = re.compile(r'set_tests_properties\((\S+)[^)]*?LABELS\s+"?([^")]*row-[^")]*)')
 ROW = re.compile(r'^\| ([A-K]\d{1,2}) \| (.*?) \| (.*?) \| (.*?) \|$')
 
 
 def tests_by_row(root):
-    names = subprocess.run(['git', '-C', str(root), 'ls-files', '*_test.cc', '*CMakeLists.txt'], capture_output=True, text=True,
+    names = subprocess.run(['git', '-C', str(root), 'ls-files', '*CMakeLists.txt'], capture_output=True, text=True,
                            check=True).stdout.split()
     rows = collections.defaultdict(collections.Counter)
     for name in names:
         text = (root / name).read_text()
-        for suite, tags in NAMED.findall(text):
-            for tag in tags.strip('_').split('_'):
-                rows[tag][suite] += 1
+        for program, tags in NAMED.findall(text):
+            for tag in tags.split():
+                rows[tag][program] += 1
         for test, labels in LABELLED.findall(text):
             for tag in re.findall(r'row-([A-K]\d{1,2})', labels):
                 rows[tag][test] += 1

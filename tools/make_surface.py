@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Writes nc_files/surface.ngc: a wavy 3D surface cut in a raster of short lines. usage: make_surface.py > surface.ngc"""
+"""Writes a program: a wavy 3D surface cut in a raster of short lines. usage: make_surface.py > surface.ngc"""
 import math
 
 ROWS, COLUMNS, STEP_X, STEP_Y = 120, 440, 0.2, 0.5

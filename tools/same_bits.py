@@ -10,6 +10,7 @@ BEFORE, AFTER: build folders. Machines, programs and generators are those of thi
 """
 import argparse
 import concurrent.futures
+import contextlib
 import hashlib
 import os
 import pathlib
@@ -25,6 +26,7 @@ import cam_programs  # noqa: E402
 import cam_runs  # noqa: E402
 import estimates  # noqa: E402
 import interp_programs  # noqa: E402
+import make_surface  # noqa: E402
 
 MACHINES = [('mill_mm', p) for p in ('pocket', 'contour', 'drilling', 'subroutines', 'engraving', 'surface')] + [
     ('mill_inch', 'inch_plate'), ('gantry_xyyz', 'contour'), ('mill_xyza', 'four_axis'), ('mill_xyzac', 'five_axis'),
@@ -46,10 +48,13 @@ def trace(build, machine, program, is_smooth):
         folder = pathlib.Path(temporary)
         shutil.copytree(ROOT / 'configs', folder / 'configs', ignore=shutil.ignore_patterns('*.var'))
         shutil.copytree(ROOT / 'nc_files', folder / 'nc_files')
+        if program == 'surface':
+            with (folder / 'nc_files' / 'surface.ngc').open('w') as out, contextlib.redirect_stdout(out):
+                make_surface.main()
         ini = folder / 'configs' / 'sim' / f'{machine}.ini'
         if is_smooth:
             ini.write_text(estimates.with_jerk(ini.read_text()))
-        done = subprocess.run([build / 'bin' / 'millwright', 'run', ini, ROOT / 'nc_files' / f'{program}.ngc', '--trace',
+        done = subprocess.run([build / 'bin' / 'millwright', 'run', ini, folder / 'nc_files' / f'{program}.ngc', '--trace',
                                folder / 'trace.csv'], capture_output=True, check=False)
         rows = (folder / 'trace.csv').read_bytes() if (folder / 'trace.csv').exists() else b''
         return digest(str(done.returncode).encode(), rows), len(rows.splitlines())

@@ -16,22 +16,24 @@ import pathlib
 import re
 import sys
 
-FOLDERS = ('app', 'cli', 'client', 'comp', 'config', 'doctor', 'gcode/commands.cc', 'hal/core', 'hal/host', 'hal_lang/lang', 'hal_tools', 'homing', 'interp', 'io', 'journal', 'kins', 'machine',
-           'mailbox', 'modbus', 'motion', 'options', 'rtapi', 'task', 'tool')
+FOLDERS = ('src/base/ini', 'src/base/options', 'src/runtime', 'src/messages/client', 'src/messages/mailbox', 'src/hal/core', 'src/hal/host',
+           'src/hal/halcompile', 'src/hal/script', 'src/hal/tools', 'src/kinematics', 'src/gcode/syntax', 'src/gcode/interpreter', 'src/gcode/tools',
+           'src/gcode/analysis/commands.cc', 'src/motion', 'src/machine/io', 'src/machine/journal', 'src/machine/task', 'src/machine/config',
+           'src/machine/analysis', 'src/machine/tools', 'src/machine/assembly', 'programs', 'drivers/modbus')
 # Programs that print for other programs: of their texts people read the help.
-HELP_OF = ('app/var_command.cc', 'config/inivalue.cc')
+HELP_OF = ('programs/setup/var_command.cc', 'src/base/ini/inivalue.cc')
 HELP = re.compile(r'usage: ')
 # Standard output of HAL commands is for programs (docs/languages.md): what these calls of a session take, and tables, files and figures.
-FOR_PROGRAMS = {'hal_lang/lang': ('info', 'data', 'note')}
+FOR_PROGRAMS = {'src/hal/script': ('info', 'data', 'note')}
 TABLES = re.compile(r'HAL_LOCK_|^active/recycled|^HAL (memory|locking) status|^HAL components that died|^  current lock|^  used/total|^\{\}(Component Pins|Exported Functions|Loaded HAL Components|Realtime Threads|ID   |Owner |Type |     Period)'
                     r'|Aliases$|^Original Name$|^(\{\})?# (param|pin|real|unconn)|^#loadrt |^alias (pin|param) |^twopass:|^pass0:|^Sourcing |^found \{\}$|^loadusr \{\}$|^  \{\} \(process|^  \{\} (->|\[)|^digraph |^signal \{\}$|^HAL capture, '
                     r'|^(jitter|last|max|min|period|sdev) ns$|^outside of the bins|intervals by deviation|^\{\}: period|^deviation from the period|^no realtime: |^realtime priority and locked|^is (not )?running$|^the realtime process of instance .%s'
                     r'|^(comp|pin)\||^\[(\w+\|){2}|^SIGNAL bit|^(latency-|millwright-rt |millwright hal \w+ ).*\[options\]$|^millwright hal ?$|^millwright-rt: \{\}$|^loadusr -W|^\.comp, |^import ast|^( (?!and |of )[\w.-]+)+ $|^fnct_01|^. (of component|crashed)|^Complete names|%s|^NML channels are up|^millwright (nml|format|explain) (FILE|\[)|^millwright nml: ')
 # Manual pages, reference pages and `explain` are made from these; and what programs print for other programs.
-NOT_SHOWN = re.compile(r'/(test|bench|logger|canon)/|keys\.hh$|pin_tables\.hh$|motion/api/parameters\.hh$|states_page\.cc$'
-                       r'|codes/code_texts\.cc$|app/summary\.cc$|app/time_report\.cc$|app/recorder\.cc$|app/plot\.cc$'
-                       r'|config/ini(value|var|_strict|_escape|_script)\.cc$|app/var_command\.cc$|command_classes\.hh$|/kins/\w+\.hh$|machine/ini_keys\.cc$'
-                       r'|/capi_\w+\.cc$|comp/emit_(c|main|man)\.cc$|rtapi/log\.cc$|message_reference\.cc$|view/watch_model\.cc$')
+NOT_SHOWN = re.compile(r'/(test|bench|logger|canon)/|keys\.hh$|pin_tables\.hh$|motion/interface/parameters\.hh$|states_page\.cc$'
+                       r'|codes/code_texts\.cc$|programs/run/summary\.cc$|programs/run/time_report\.cc$|programs/run/recorder\.cc$|programs/run/plot\.cc$'
+                       r'|base/ini/ini(value|var|_strict|_escape|_script)\.cc$|programs/setup/var_command\.cc$|command_classes\.hh$|/kinematics/\w+\.hh$|machine/config/ini_keys\.cc$'
+                       r'|/capi_\w+\.cc$|halcompile/emit_(c|main|man)\.cc$|runtime/log\.cc$|reference_pages\.cc$|view/watch_model\.cc$')
 # Clients look for these words (docs/compatibility.md), canon comments are rs274's output, and the compiler reads the others.
 NEVER = re.compile(r'on limit switch error|^interpreter: |^each command is of one class$|^A machine is up already|^Machine configuration file is'
                    r'|^; life of tools|^# What was answered|^there is no module $|^(exec|port) \{\}$|^millwright \w+ [^a-z]*(\.ini|\.ngc|options|help)|^\{\} \[options\]|^(un)?loadrt |^echo |^-- -ini|^10? (in|mm), |^--connectpw and')
@@ -124,7 +126,7 @@ def is_text(key):
 def texts(root):
     found = {}
     for folder in FOLDERS:
-        place = root / 'src' / folder
+        place = root / folder
         for path in sorted(place.rglob('*')) if place.is_dir() else [place]:
             name = str(path.relative_to(root))
             if path.suffix not in ('.cc', '.hh') or NOT_SHOWN.search(name):
@@ -144,19 +146,19 @@ def texts(root):
                 if is_text(key) and not NEVER.search(key) and not TABLES.search(key):
                     found.setdefault(key, name)
     for name in HELP_OF:
-        seq = list(tokens((root / 'src' / name).read_text()))
+        seq = list(tokens((root / name).read_text()))
         for at, (kind, text) in enumerate(seq):
             if kind == '"' and HELP.match(text):
-                found.setdefault(key_of(whole_text(seq, at)[0]), 'src/' + name)
-    found.setdefault('usage:', 'src/options/command_line.cc')
-    found.update({word: 'src/diag/sink.cc' for word in ('error', 'warning', 'note')})
-    found.setdefault('called from {}', 'src/diag/sink.cc')
+                found.setdefault(key_of(whole_text(seq, at)[0]), name)
+    found.setdefault('usage:', 'src/base/options/command_line.cc')
+    found.update({word: 'src/base/diagnostics/sink.cc' for word in ('error', 'warning', 'note')})
+    found.setdefault('called from {}', 'src/base/diagnostics/sink.cc')
     for kind in ('component', 'pin', 'parameter', 'signal', 'function', 'thread', 'alias'):
         for what in (f"there is no {kind} '{{}}'", f"there is a {kind} '{{}}' already", f"{kind} name '{{}}' has {{}} characters, 1 to {{}} are allowed"):
             found[what] = 'src/hal/core/hal.cc'
     # Of one word, or of words that programs read elsewhere.
     for what in ("program '{}' {}", "pin '{}'", 'TRUE, FALSE, 1 or 0', '0 to 5', 'Commands:', 'a {} takes {}'):
-        found[what] = 'src/hal_lang/lang/commands.cc'
+        found[what] = 'src/hal/script/commands.cc'
     # Put together without memory of the heap, since a signal handler does it.
     for what in ("function '{}' of component '{}' crashed in thread '{}'", "module '{}' crashed while it was loaded", "module '{}' crashed while it was unloaded", 'the planner of a module crashed'):
         found[what] = 'src/hal/core/crash_report.cc'

@@ -37,7 +37,7 @@ struct Cell {
 bool range_of(const Cell &c, const Program &program, double b, double &low, double &high) {
     low = -1e300;
     high = 1e300;
-    for (int i = 0; i < geom::AXIS_COUNT; ++i) {
+    for (int i = 0; i < geometry::AXIS_COUNT; ++i) {
         const double limit = program.max_acceleration[i];
         const double turning = c.q2[i] * b;
         if (std::abs(c.q1[i]) < 1e-9) {
@@ -60,14 +60,14 @@ double time_of(const std::vector<Pose> &p, const Path &path, const Program &prog
     std::vector<double> gap(n, 0.0);
     std::vector<double> most(n, 0.0);
     for (std::size_t i = 0; i + 1 < n; ++i) {
-        gap[i] = std::max(1e-9, geom::norm(p[i + 1] - p[i]));
+        gap[i] = std::max(1e-9, geometry::norm(p[i + 1] - p[i]));
     }
     for (std::size_t i = 1; i + 1 < n; ++i) {
         const Pose in = (p[i] - p[i - 1]) * (1.0 / gap[i - 1]);
         const Pose out = (p[i + 1] - p[i]) * (1.0 / gap[i]);
         cells[i] = {(in + out) * 0.5, (out - in) * (2.0 / (gap[i] + gap[i - 1]))};
         double v = path.feed[i] > 0 ? path.feed[i] : 1e300;
-        for (int k = 0; k < geom::AXIS_COUNT; ++k) {
+        for (int k = 0; k < geometry::AXIS_COUNT; ++k) {
             v = std::abs(cells[i].q1[k]) > 0 ? std::min(v, program.max_velocity[k] / std::abs(cells[i].q1[k]))
                                              : v;
         }

@@ -166,7 +166,7 @@ class Pass : protected Laying {
             const double room = tube_[i] - outside[isAngular ? 1 : 0];
             std::array<double, MOST_AXES> row{};
             for (std::size_t k = 0; k < axes_; ++k) {
-                if (geom::isAngular(axis_[k]) != isAngular) {
+                if (geometry::isAngular(axis_[k]) != isAngular) {
                     continue;
                 }
                 Slope slope{i, 1, {}, {1}, k};
@@ -337,7 +337,7 @@ Trajectory time_optimal(const std::vector<Stretch> &stretches, const Program &pr
 
 Trajectory best_known_trajectory(const Program &program) {
     const Path path = cut_path(program);
-    const bool isBlend = program.moves[0].control == geom::PathMode::BLEND;
+    const bool isBlend = program.moves[0].control == geometry::PathMode::BLEND;
     Trajectory best;
     for (const double width : {15.0, 60.0, 200.0}) {
         const Trajectory t = time_optimal(smooth_stretches(path, program.tolerance, width), program, isBlend);

@@ -24,8 +24,8 @@ class Writer {
     Writer(const char *name, double tolerance) {
         program_.name = name;
         program_.tolerance = tolerance;
-        for (int i = 0; i < geom::AXIS_COUNT; ++i) {
-            const bool isRotary = geom::isAngular(i);
+        for (int i = 0; i < geometry::AXIS_COUNT; ++i) {
+            const bool isRotary = geometry::isAngular(i);
             program_.max_velocity[i] = isRotary ? ROTARY_SPEED : 200;
             program_.max_acceleration[i] = isRotary ? ROTARY_ACCELERATION : 1000;
             program_.max_jerk[i] = isRotary ? ROTARY_JERK : 50000;
@@ -68,7 +68,7 @@ class Writer {
         push(m);
     }
     double feed = FEED;
-    geom::PathMode control = geom::PathMode::BLEND;
+    geometry::PathMode control = geometry::PathMode::BLEND;
     const Pose &at() const { return at_; }
     Program done() { return std::move(program_); }
 
@@ -226,8 +226,8 @@ Program five_axes() {
     Writer w("XYZAB", 0.02);
     const auto pose_at = [](double t) {
         Pose p = xyz(rounded(25 * std::cos(t)), rounded(18 * std::sin(t)), rounded(4 * std::sin(3 * t)));
-        p[geom::AXIS_A] = rounded(20 * std::sin(2 * t));
-        p[geom::AXIS_B] = rounded(25 * std::cos(t + 0.5));
+        p[geometry::AXIS_A] = rounded(20 * std::sin(2 * t));
+        p[geometry::AXIS_B] = rounded(25 * std::cos(t + 0.5));
         return p;
     };
     w.start(pose_at(0));
@@ -272,7 +272,7 @@ Program rapids() {
     return w.done();
 }
 
-Program exact(const char *name, geom::PathMode control) {
+Program exact(const char *name, geometry::PathMode control) {
     Writer w(name, 0.02);
     w.control = control;
     for (int i = 0; i < 8; ++i) {
@@ -303,8 +303,8 @@ std::vector<Program> all_kinds() {
     all.push_back(five_axes());
     all.push_back(lathe_profile());
     all.push_back(rapids());
-    all.push_back(exact("G61", geom::PathMode::EXACT_PATH));
-    all.push_back(exact("G61.1", geom::PathMode::EXACT_STOP));
+    all.push_back(exact("G61", geometry::PathMode::EXACT_PATH));
+    all.push_back(exact("G61.1", geometry::PathMode::EXACT_STOP));
     return all;
 }
 
@@ -313,7 +313,7 @@ Program dense_nine_axes(int blocks) {
     w.feed = 20000.0 / 60.0;
     const auto pose_at = [](double t) {
         Pose p;
-        for (int i = 0; i < geom::AXIS_COUNT; ++i) {
+        for (int i = 0; i < geometry::AXIS_COUNT; ++i) {
             const double size = i == 0 ? 400.0 : 12.0;
             p[i] = size * std::sin(t * (i == 0 ? 0.01 : 0.13 + 0.011 * i) + i) - size * std::sin(i);
         }
@@ -345,8 +345,8 @@ std::vector<Pose> sample_path(const Program &program, double step) {
     std::vector<Pose> points{program.start};
     Pose from = program.start;
     for (const Move &m : program.moves) {
-        const double around = m.isArc ? std::abs(m.angle_rad) * geom::norm_xyz(from - m.centre) : 0.0;
-        const double length = std::max(around, geom::norm(m.end - from));
+        const double around = m.isArc ? std::abs(m.angle_rad) * geometry::norm_xyz(from - m.centre) : 0.0;
+        const double length = std::max(around, geometry::norm(m.end - from));
         const int n = std::max(1, static_cast<int>(std::ceil(length / step)));
         for (int i = 1; i < n; ++i) {
             points.push_back(position_on(from, m, static_cast<double>(i) / n));

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Programs that trajectory planners are measured with: twelve kinds of machining, as plain moves. Uses
-// nothing of src/traj, so that bounds and other planners can be measured on the same ground. See README.md.
+// nothing of src/trajectory, so that bounds and other planners can be measured on the same ground. See
+// README.md.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "geom/move_settings.hh"
-#include "geom/pose.hh"
+#include "base/geometry/move_settings.hh"
+#include "base/geometry/pose.hh"
 
 namespace mw::bench {
 
-using geom::Pose;
+using geometry::Pose;
 
 /// One programmed move: a line, or an arc about `centre` in the plane of `normal` (helical by what remains).
 struct Move {
@@ -20,7 +21,7 @@ struct Move {
     Pose centre, normal;
     double angle_rad = 0;  ///< signed about `normal`
     double feed = 0;       ///< along X Y Z, or A B C when these alone move [mm/s, deg/s]; 0: rapid
-    geom::PathMode control = geom::PathMode::BLEND;
+    geometry::PathMode control = geometry::PathMode::BLEND;
 };
 
 struct Program {

@@ -35,7 +35,7 @@ struct Nodes {
 class Laying {
   public:
     Laying(const Track &track, const Program &program) : track_(track), program_(program) {
-        for (int k = 0; k < geom::AXIS_COUNT; ++k) {
+        for (int k = 0; k < geometry::AXIS_COUNT; ++k) {
             const double from = track.at(0).pose[k];
             bool isMoving = false;
             for (double s = 0; s <= track.length() && !isMoving; s += track.length() / 5000) {
@@ -113,7 +113,7 @@ class Laying {
     void pull_in(std::size_t i) {
         const auto outside = off(n_, i);
         for (std::size_t k = 0; k < axes_; ++k) {
-            const double x = outside[geom::isAngular(axis_[k]) ? 1 : 0];
+            const double x = outside[geometry::isAngular(axis_[k]) ? 1 : 0];
             if (x > square(MOST)) {
                 n_.q[i][k] = programmed_[i][k] + (n_.q[i][k] - programmed_[i][k]) * MOST / std::sqrt(x);
             }
@@ -198,7 +198,7 @@ class Laying {
     std::array<double, 2> off(const Nodes &n, std::size_t i) const {
         std::array<double, 2> sum{};
         for (std::size_t k = 0; k < axes_; ++k) {
-            sum[geom::isAngular(axis_[k]) ? 1 : 0] += square(n.q[i][k] - programmed_[i][k]);
+            sum[geometry::isAngular(axis_[k]) ? 1 : 0] += square(n.q[i][k] - programmed_[i][k]);
         }
         const double p2 = square(TUBE * program_.tolerance);
         return {sum[0] / p2, sum[1] / p2};

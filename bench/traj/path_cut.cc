@@ -17,8 +17,8 @@ Path cut_path(const Program &program) {
     double length = 0;
     Pose from = program.start;
     for (const Move &m : program.moves) {
-        const double around = m.isArc ? std::abs(m.angle_rad) * geom::norm_xyz(from - m.centre) : 0.0;
-        length += std::max(around, geom::norm(m.end - from));
+        const double around = m.isArc ? std::abs(m.angle_rad) * geometry::norm_xyz(from - m.centre) : 0.0;
+        length += std::max(around, geometry::norm(m.end - from));
         from = m.end;
     }
     const double step = std::clamp(length / POINTS, FINEST, COARSEST);
@@ -30,27 +30,27 @@ Path cut_path(const Program &program) {
     from = program.start;
     Pose last_tangent;
     for (const Move &m : program.moves) {
-        const double around = m.isArc ? std::abs(m.angle_rad) * geom::norm_xyz(from - m.centre) : 0.0;
+        const double around = m.isArc ? std::abs(m.angle_rad) * geometry::norm_xyz(from - m.centre) : 0.0;
         const int n =
-            std::max(2, static_cast<int>(std::ceil(std::max(around, geom::norm(m.end - from)) / step)));
+            std::max(2, static_cast<int>(std::ceil(std::max(around, geometry::norm(m.end - from)) / step)));
         const Pose out = position_on(from, m, 1e-6) - from;
-        const Pose tangent = out * (1.0 / geom::norm(out));
-        const double turn = geom::dot(tangent, last_tangent);
-        const bool isExactCorner = m.control == geom::PathMode::EXACT_PATH && turn < 0.9998;
-        if (isExactCorner || m.control == geom::PathMode::EXACT_STOP || turn < REVERSAL) {
+        const Pose tangent = out * (1.0 / geometry::norm(out));
+        const double turn = geometry::dot(tangent, last_tangent);
+        const bool isExactCorner = m.control == geometry::PathMode::EXACT_PATH && turn < 0.9998;
+        if (isExactCorner || m.control == geometry::PathMode::EXACT_STOP || turn < REVERSAL) {
             path.isStop.back() = true;
         }
-        const double moved = geom::norm(m.end - from);
-        const double xyz = geom::norm_xyz(m.end - from);
+        const double moved = geometry::norm(m.end - from);
+        const double xyz = geometry::norm_xyz(m.end - from);
         const double ratio = m.isArc || !(xyz > 0) ? 1.0 : moved / xyz;
         for (int i = 1; i <= n; ++i) {
             path.points.push_back(position_on(from, m, static_cast<double>(i) / n));
             path.feed.push_back(m.feed * ratio);
             path.isStop.push_back(false);
-            path.isFixed.push_back(m.control != geom::PathMode::BLEND);
+            path.isFixed.push_back(m.control != geometry::PathMode::BLEND);
         }
         const Pose in = m.end - position_on(from, m, 1.0 - 1e-6);
-        last_tangent = in * (1.0 / geom::norm(in));
+        last_tangent = in * (1.0 / geometry::norm(in));
         from = m.end;
     }
     path.isStop.back() = true;
@@ -59,7 +59,7 @@ Path cut_path(const Program &program) {
 
 double distance(const Pose &a, const Pose &b) {
     const Pose d = a - b;
-    return std::max(geom::norm_linear(d), geom::norm_abc(d));
+    return std::max(geometry::norm_linear(d), geometry::norm_abc(d));
 }
 
 }  // namespace mw::bench

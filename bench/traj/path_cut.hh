@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The programmed path as finely cut points, for bounds. Uses nothing of src/traj.
+// The programmed path as finely cut points, for bounds. Uses nothing of src/trajectory.
 #pragma once
 
 #include "traj/kinds.hh"

@@ -99,7 +99,7 @@ Stretch evenly(const std::vector<Pose> &points, const std::vector<Pose> &program
                const std::vector<double> &feed, double step) {
     std::vector<double> along{0};
     for (std::size_t i = 1; i < points.size(); ++i) {
-        along.push_back(along.back() + geom::norm(points[i] - points[i - 1]));
+        along.push_back(along.back() + geometry::norm(points[i] - points[i - 1]));
     }
     const double length = along.back();
     const auto n = static_cast<std::size_t>(std::max(4.0, std::ceil(length / step)));
@@ -132,7 +132,7 @@ std::vector<Stretch> smooth_stretches(const Path &path, double tolerance, double
         points.push_back(p[i]);
         programmed.push_back(path.points[i]);
         feed.push_back(path.feed[i]);
-        gap = i > 0 ? std::max(gap, geom::norm(path.points[i] - path.points[i - 1])) : gap;
+        gap = i > 0 ? std::max(gap, geometry::norm(path.points[i] - path.points[i - 1])) : gap;
         if (i > 0 && path.isStop[i]) {
             out.push_back(evenly(points, programmed, feed, gap));
             out.back().isExact = path.isFixed[i - 1];

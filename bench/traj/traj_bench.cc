@@ -5,14 +5,14 @@
 #include <memory>
 #include <string>
 
-#include "options/command_line.hh"
-#include "testing/deviation.hh"
-#include "testing/limit_checker.hh"
+#include "base/options/command_line.hh"
+#include "tests/support/deviation.hh"
+#include "tests/support/limit_checker.hh"
 #include "traj/bound.hh"
-#include "traj/exec/executor.hh"
 #include "traj/jerk_bound.hh"
 #include "traj/kinds.hh"
-#include "traj/planner.hh"
+#include "trajectory/follow/executor.hh"
+#include "trajectory/planner.hh"
 
 namespace mw::bench {
 namespace {
@@ -42,17 +42,17 @@ struct Options {
     }
 };
 
-traj::Primitive primitive_of(const Pose &from, const Move &m) {
+trajectory::Primitive primitive_of(const Pose &from, const Move &m) {
     if (!m.isArc) {
-        return traj::make_line(from, m.end);
+        return trajectory::make_line(from, m.end);
     }
-    traj::Primitive p;
-    traj::make_arc(from, m.end, {m.centre, m.normal, m.angle_rad, false}, p);
+    trajectory::Primitive p;
+    trajectory::make_arc(from, m.end, {m.centre, m.normal, m.angle_rad, false}, p);
     return p;
 }
 
-traj::MoveRequest request_of(const Program &program, const Move &m) {
-    traj::MoveRequest r;
+trajectory::MoveRequest request_of(const Program &program, const Move &m) {
+    trajectory::MoveRequest r;
     r.tag.requested_velocity = m.feed;
     r.isRapid = m.feed == 0;
     r.tolerance = program.tolerance;
@@ -60,13 +60,13 @@ traj::MoveRequest request_of(const Program &program, const Move &m) {
     return r;
 }
 
-traj::Limits limits_of(const Program &program, bool isJerkLimited) {
-    traj::Limits l;
-    l.velocity.fill(traj::UNLIMITED);
-    l.acceleration.fill(traj::UNLIMITED);
-    l.jerk.fill(traj::UNLIMITED);
+trajectory::Limits limits_of(const Program &program, bool isJerkLimited) {
+    trajectory::Limits l;
+    l.velocity.fill(trajectory::UNLIMITED);
+    l.acceleration.fill(trajectory::UNLIMITED);
+    l.jerk.fill(trajectory::UNLIMITED);
     l.isJerkLimited = isJerkLimited;
-    for (int i = 0; i < geom::AXIS_COUNT; ++i) {
+    for (int i = 0; i < geometry::AXIS_COUNT; ++i) {
         l.velocity[static_cast<std::size_t>(i)] = program.max_velocity[i];
         l.acceleration[static_cast<std::size_t>(i)] = program.max_acceleration[i];
         l.jerk[static_cast<std::size_t>(i)] = program.max_jerk[i];
@@ -83,9 +83,10 @@ struct Run {
 /// The whole program is offered at once, as far as the planner has room.
 Run drive(const Program &program, bool isJerkLimited, bool isMerging) {
     Run run;
-    auto store = std::make_unique<traj::PathStore>();
-    traj::Executor executor(*store, T);
-    auto planner = std::make_unique<traj::Planner>(*store, traj::PlannerSettings{T, 3, 0.1, isMerging});
+    auto store = std::make_unique<trajectory::PathStore>();
+    trajectory::Executor executor(*store, T);
+    auto planner =
+        std::make_unique<trajectory::Planner>(*store, trajectory::PlannerSettings{T, 3, 0.1, isMerging});
     planner->set_limits(limits_of(program, isJerkLimited));
     executor.set_position(program.start);
     std::uint64_t cycle = 0;
@@ -138,7 +139,7 @@ void write_trace(const Options &options, const Program &program, const Run &run)
     }
     std::fprintf(file, "# period_s=%g tolerance=%g\n", T, program.tolerance);
     for (const Pose &p : run.samples) {
-        for (int i = 0; i < geom::AXIS_COUNT; ++i) {
+        for (int i = 0; i < geometry::AXIS_COUNT; ++i) {
             std::fprintf(file, "%s%.17g", i == 0 ? "" : ",", p[i]);
         }
         std::fputc('\n', file);
@@ -148,7 +149,7 @@ void write_trace(const Options &options, const Program &program, const Run &run)
 
 std::vector<testing::AxisLimit> axis_limits(const Program &program, bool isJerkLimited) {
     std::vector<testing::AxisLimit> limits;
-    for (int i = 0; i < geom::AXIS_COUNT; ++i) {
+    for (int i = 0; i < geometry::AXIS_COUNT; ++i) {
         limits.push_back({program.max_velocity[i], program.max_acceleration[i],
                           isJerkLimited ? program.max_jerk[i] : 1e300});
     }
@@ -185,7 +186,7 @@ bool measure(const Options &options, const Program &program) {
         checker.sample(p.c.data());
     }
     const bool isAtEnd = run.samples.back() == program.moves.back().end;
-    const bool isBlend = program.moves[0].control == geom::PathMode::BLEND;
+    const bool isBlend = program.moves[0].control == geometry::PathMode::BLEND;
     const double step = isBlend ? program.tolerance / 16 : 1e-3;
     const double deviation = options.isFast
                                  ? 0.0

@@ -20,9 +20,9 @@ std::string file_stem(const Program &program) {
 
 /// Words of the coordinates that differ.
 void write_words(std::FILE *file, const Pose &from, const Pose &to) {
-    for (int i = 0; i < geom::AXIS_COUNT; ++i) {
+    for (int i = 0; i < geometry::AXIS_COUNT; ++i) {
         if (from[i] != to[i]) {
-            std::fprintf(file, " %c%.7f", geom::AXIS_LETTERS[i], to[i]);
+            std::fprintf(file, " %c%.7f", geometry::AXIS_LETTERS[i], to[i]);
         }
     }
 }
@@ -56,16 +56,16 @@ bool write_gcode(const Program &program, const std::string &path) {
     }
     std::fprintf(file, "(%s)\nG21 G17 G90 G94 G54 G40 G49 G80\nG61.1\nG0", program.name.c_str());
     Pose elsewhere = program.start;
-    for (int i = 0; i < geom::AXIS_COUNT; ++i) {
+    for (int i = 0; i < geometry::AXIS_COUNT; ++i) {
         elsewhere[i] += i == 0 || program.start[i] != 0 ? 1 : 0;
     }
     write_words(file, elsewhere, program.start);
     std::fputs("\nG4 P0.5\n", file);
-    const geom::PathMode control = program.moves[0].control;
-    if (control == geom::PathMode::BLEND) {
+    const geometry::PathMode control = program.moves[0].control;
+    if (control == geometry::PathMode::BLEND) {
         std::fprintf(file, "G64 P%.7f\n", program.tolerance);
     } else {
-        std::fputs(control == geom::PathMode::EXACT_PATH ? "G61\n" : "G61.1\n", file);
+        std::fputs(control == geometry::PathMode::EXACT_PATH ? "G61\n" : "G61.1\n", file);
     }
     Pose from = program.start;
     double feed = 0;
@@ -83,7 +83,7 @@ bool write_gcode(const Program &program, const std::string &path) {
 
 void write_pose(std::FILE *file, const char *name, const Pose &p) {
     std::fprintf(file, "\"%s\": [", name);
-    for (int i = 0; i < geom::AXIS_COUNT; ++i) {
+    for (int i = 0; i < geometry::AXIS_COUNT; ++i) {
         std::fprintf(file, "%s%.17g", i == 0 ? "" : ", ", p[i]);
     }
     std::fputc(']', file);
@@ -95,7 +95,7 @@ bool write_geometry(const Program &program, const std::string &path) {
         std::perror(path.c_str());
         return false;
     }
-    const bool isExact = program.moves[0].control != geom::PathMode::BLEND;
+    const bool isExact = program.moves[0].control != geometry::PathMode::BLEND;
     std::fprintf(file, "{\"name\": \"%s\", \"tolerance\": %.17g,\n ", program.name.c_str(),
                  isExact ? 0.0 : program.tolerance);
     write_pose(file, "max_velocity", program.max_velocity);

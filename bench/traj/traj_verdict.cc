@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The tests' own judgement of a trace (testing/limit_checker.hh, testing/deviation.hh), to compare with that
-// of tools/trajcheck.py: traj_verdict KIND TRACE.csv [--jerk]. Prints the worst velocity, acceleration and
-// jerk over their limits, the deviation and ok or beyond.
+// The tests' own judgement of a trace (tests/support/limit_checker.hh, tests/support/deviation.hh), to
+// compare with that of tools/trajcheck.py: traj_verdict KIND TRACE.csv [--jerk]. Prints the worst velocity,
+// acceleration and jerk over their limits, the deviation and ok or beyond.
 #include <cstdio>
 #include <vector>
 
-#include "options/command_line.hh"
-#include "testing/deviation.hh"
-#include "testing/limit_checker.hh"
+#include "base/options/command_line.hh"
+#include "tests/support/deviation.hh"
+#include "tests/support/limit_checker.hh"
 #include "traj/kinds.hh"
 
 namespace mw::bench {
@@ -28,7 +28,7 @@ bool read_trace(const char *path, Trace &trace) {
     bool isOk = std::fscanf(file, "# period_s=%lf tolerance=%lf", &trace.period_s, &tolerance) == 2;
     Pose p;
     while (isOk && std::fscanf(file, "%lf", &p[0]) == 1) {
-        for (int i = 1; i < geom::AXIS_COUNT && isOk; ++i) {
+        for (int i = 1; i < geometry::AXIS_COUNT && isOk; ++i) {
             isOk = std::fscanf(file, ",%lf", &p[i]) == 1;
         }
         trace.rows.push_back(p);
@@ -42,7 +42,7 @@ bool read_trace(const char *path, Trace &trace) {
 
 bool judge(const Program &program, const Trace &trace, bool isJerkLimited) {
     std::vector<testing::AxisLimit> limits;
-    for (int i = 0; i < geom::AXIS_COUNT; ++i) {
+    for (int i = 0; i < geometry::AXIS_COUNT; ++i) {
         limits.push_back({program.max_velocity[i], program.max_acceleration[i],
                           isJerkLimited ? program.max_jerk[i] : 1e300});
     }
@@ -50,7 +50,7 @@ bool judge(const Program &program, const Trace &trace, bool isJerkLimited) {
     for (const Pose &p : trace.rows) {
         checker.sample(p.c.data());
     }
-    const bool isBlend = program.moves[0].control == geom::PathMode::BLEND;
+    const bool isBlend = program.moves[0].control == geometry::PathMode::BLEND;
     const double tolerance = isBlend ? program.tolerance : 1e-6;
     const double step = isBlend ? program.tolerance / 8 : 2e-3;
     const double deviation =

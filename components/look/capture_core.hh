@@ -2,7 +2,7 @@
 // What the module capture does in a cycle, without HAL.
 #pragma once
 
-#include "hal_tools/view/capture_block.hh"
+#include "hal/tools/view/capture_block.hh"
 
 namespace mw::components {
 

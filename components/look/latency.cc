@@ -5,7 +5,7 @@
 // latency.N. Pins: last, min, max (s32, out: intervals between two calls [ns]), jitter (s32, out: largest
 // deviation from the period [ns]), reset (bit, in: begin anew while true).
 #include "hal/sdk/component.hh"
-#include "hal_tools/view/latency_block.hh"
+#include "hal/tools/view/latency_block.hh"
 
 static int count = 2;
 RTAPI_MP_INT(count, "number of threads to look at");

@@ -5,12 +5,12 @@
 
 #include <cmath>
 
-#include "traj/exec/free_planner.hh"
+#include "trajectory/follow/axis_motion.hh"
 
 namespace mw::components {
 
 struct Follower {
-    traj::FreePlanner planner;
+    trajectory::AxisMotion planner;
 
     double position() const noexcept { return planner.position; }
     double velocity() const noexcept { return planner.velocity; }

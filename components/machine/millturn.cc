@@ -5,7 +5,7 @@
 // in force; `millturn.0.fpin` (s32) counts runs of the function millturn.0.fdemo.
 #include <atomic>
 
-#include "hal/api/kinematics.h"
+#include "hal/include/kinematics.h"
 #include "hal/sdk/component.hh"
 
 namespace mw::components {

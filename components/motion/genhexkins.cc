@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Kinematics of hexapods (kins/hexapod.hh), switchable to identity. Beside those of the model, pins (out):
-// genhexkins.last-iterations and max-iterations of the forward side, fwd-kins-fail when it found nothing,
-// correction.N of the struts; (in) genhexkins.x to c: where the forward side looks first when the last pose
-// leads nowhere; skgui.x to c: where the platform is, whatever type is in force, for screens that draw it.
+// Kinematics of hexapods (kinematics/hexapod.hh), switchable to identity. Beside those of the model, pins
+// (out): genhexkins.last-iterations and max-iterations of the forward side, fwd-kins-fail when it found
+// nothing, correction.N of the struts; (in) genhexkins.x to c: where the forward side looks first when the
+// last pose leads nowhere; skgui.x to c: where the platform is, whatever type is in force, for screens that
+// draw it.
 #include "components/motion/iterations.hh"
 #include "components/motion/switchable.hh"
-#include "kins/hexapod.hh"
+#include "kinematics/hexapod.hh"
 
 namespace {
 
-using mw::kins::Hexapod;
-using mw::kins::Pose;
-using mw::kins::Status;
+using mw::kinematics::Hexapod;
+using mw::kinematics::Pose;
+using mw::kinematics::Status;
 
 struct HexapodPins {
     hal_float_t *guess[6];

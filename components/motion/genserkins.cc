@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Kinematics of any arm of six turning joints (kins/serial.hh), switchable to identity. Pin (out)
+// Kinematics of any arm of six turning joints (kinematics/serial.hh), switchable to identity. Pin (out)
 // genserkins.last-iterations: of the inverse side.
 #include "components/motion/switchable.hh"
-#include "kins/serial.hh"
+#include "kinematics/serial.hh"
 
 namespace {
 
@@ -12,15 +12,15 @@ struct SerialPins {
 
 /// The model as its pins have it, and how hard it was.
 struct LiveSerial {
-    mw::components::PinnedModel<mw::kins::Serial> pinned;
+    mw::components::PinnedModel<mw::kinematics::Serial> pinned;
     SerialPins *pins = nullptr;
 
-    mw::kins::Status forward(const double *joints, mw::kins::Pose &pose) const noexcept {
+    mw::kinematics::Status forward(const double *joints, mw::kinematics::Pose &pose) const noexcept {
         return pinned.forward(joints, pose);
     }
-    mw::kins::Status inverse(const mw::kins::Pose &pose, double *joints) const noexcept {
+    mw::kinematics::Status inverse(const mw::kinematics::Pose &pose, double *joints) const noexcept {
         int iterations = 0;
-        const mw::kins::Status status = pinned.model().inverse(pose, joints, iterations);
+        const mw::kinematics::Status status = pinned.model().inverse(pose, joints, iterations);
         *pins->last_iterations = static_cast<rtapi_u32>(iterations);
         return status;
     }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Stands for motmod's built-in homing (src/homing), which existing start files load as a module of its own;
-// and says whether the module that is to take its place is one.
+// Stands for motmod's built-in homing (src/motion/homing), which existing start files load as a module of its
+// own; and says whether the module that is to take its place is one.
 #include <string.h>
 
-#include "hal/api/hal.h"
-#include "hal/api/millwright_ext.h"
-#include "hal/api/rtapi_app.h"
-#include "motion/api/homing_functions.hh"
+#include "hal/include/hal.h"
+#include "hal/include/millwright_ext.h"
+#include "hal/include/rtapi_app.h"
+#include "motion/interface/homing_functions.hh"
 
 static char *replaced_by = nullptr;
 RTAPI_MP_STRING(replaced_by, "the homing module that is loaded: refused where it lacks a function");

@@ -21,9 +21,9 @@ class IteratingModel {
         return status < 0 ? status : pinned_.declare(comp_id, prefix);
     }
     Model model() const noexcept { return pinned_.model(); }
-    kins::Status forward(const double *joints, kins::Pose &pose) const noexcept {
+    kinematics::Status forward(const double *joints, kinematics::Pose &pose) const noexcept {
         int iterations = 0;
-        const kins::Status status = pinned_.model().forward(joints, pose, iterations);
+        const kinematics::Status status = pinned_.model().forward(joints, pose, iterations);
         const auto count = static_cast<rtapi_u32>(iterations);
         *pins_->last = count;
         if (isAnswered(status) && count > *pins_->most) {
@@ -31,10 +31,10 @@ class IteratingModel {
         }
         return status;
     }
-    kins::Status inverse(const kins::Pose &pose, double *joints) const noexcept {
+    kinematics::Status inverse(const kinematics::Pose &pose, double *joints) const noexcept {
         return pinned_.inverse(pose, joints);
     }
-    int side(const kins::Pose &pose) const noexcept { return pinned_.side(pose); }
+    int side(const kinematics::Pose &pose) const noexcept { return pinned_.side(pose); }
 
   private:
     struct Pins {

@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The functions of kinematics.h over one of our models (kins/kinematics.hh), or over anything that has
+// The functions of kinematics.h over one of our models (kinematics/kinematics.hh), or over anything that has
 // forward and inverse as a model has.
 #pragma once
 
 #include <algorithm>
 
-#include "hal/api/hal.h"
-#include "hal/api/kinematics.h"
-#include "hal/api/rtapi_app.h"
-#include "kins/kinematics.hh"
+#include "hal/include/hal.h"
+#include "hal/include/kinematics.h"
+#include "hal/include/rtapi_app.h"
+#include "kinematics/kinematics.hh"
 
 namespace mw::components {
 
-inline geom::Pose pose_of(const EmcPose &world) noexcept {
+inline geometry::Pose pose_of(const EmcPose &world) noexcept {
     return {{world.tran.x, world.tran.y, world.tran.z, world.a, world.b, world.c, world.u, world.v, world.w}};
 }
 
 /// `world` holds a guess and what no joint drives. -1 when the model has no answer.
 template <class Model>
 int model_forward(const Model &model, const double *joint, EmcPose *world) noexcept {
-    geom::Pose pose = pose_of(*world);
+    geometry::Pose pose = pose_of(*world);
     if (!isAnswered(model.forward(joint, pose))) {
         return -1;
     }
@@ -28,7 +28,7 @@ int model_forward(const Model &model, const double *joint, EmcPose *world) noexc
 }
 
 template <class Model>
-kins::Status model_inverse(const Model &model, const EmcPose *world, double *joint) noexcept {
+kinematics::Status model_inverse(const Model &model, const EmcPose *world, double *joint) noexcept {
     return model.inverse(pose_of(*world), joint);
 }
 
@@ -39,7 +39,7 @@ inline int no_pins(int) noexcept {
 
 /// 0 of what has no sides.
 template <class Model>
-int model_side(const Model &model, const geom::Pose &pose) noexcept {
+int model_side(const Model &model, const geometry::Pose &pose) noexcept {
     if constexpr (requires { model.side(pose); }) {
         return model.side(pose);
     } else {
@@ -52,9 +52,9 @@ template <class Model>
 unsigned model_linear(const Model &model, double *slope, unsigned *axes) noexcept {
     *axes = 0;
     if constexpr (requires { model.linear(); }) {
-        const kins::LinearJoints linear = model.linear();
+        const kinematics::LinearJoints linear = model.linear();
         for (std::size_t j = 0; j < linear.slope.size(); ++j) {
-            std::copy_n(linear.slope[j].c.begin(), geom::AXIS_COUNT, slope + j * geom::AXIS_COUNT);
+            std::copy_n(linear.slope[j].c.begin(), geometry::AXIS_COUNT, slope + j * geometry::AXIS_COUNT);
         }
         *axes = linear.axes;
         return linear.joints;
@@ -67,7 +67,7 @@ unsigned model_linear(const Model &model, double *slope, unsigned *axes) noexcep
 
 /// Defines kinematicsForward, kinematicsInverse and kinematicsHome over `model`, an object of the module;
 /// mw_kinematics_inverse, which tells a singular pose from another (0 as it should be, 1 out of reach, 2
-/// singular); mw_kinematics_side and mw_kinematics_linear (kins/kinematics.hh).
+/// singular); mw_kinematics_side and mw_kinematics_linear (kinematics/kinematics.hh).
 #define MW_KINEMATICS_FUNCTIONS(model)                                                                       \
     extern "C" int kinematicsForward(const double *joint, struct EmcPose *world,                             \
                                      const KINEMATICS_FORWARD_FLAGS *, KINEMATICS_INVERSE_FLAGS *) {         \

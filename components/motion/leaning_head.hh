@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Modules of a rotary table under a head whose axis leans (kins/nutating_head.hh): type 0 is identity, type 1
-// programs the tip of the tool on the work, type 2 a tilted plane across the tool.
+// Modules of a rotary table under a head whose axis leans (kinematics/nutating_head.hh): type 0 is identity,
+// type 1 programs the tip of the tool on the work, type 2 a tilted plane across the tool.
 #pragma once
 
 #include "components/motion/switchable.hh"
-#include "kins/nutating_head.hh"
+#include "kinematics/nutating_head.hh"
 
 namespace mw::components {
 
@@ -35,13 +35,13 @@ class LeaningHead {
 
         Head model() const noexcept {
             Head head = pinned.model();
-            head.set_frame(kins::HeadFrame::TOOL);
+            head.set_frame(kinematics::HeadFrame::TOOL);
             return head;
         }
-        kins::Status forward(const double *joints, kins::Pose &pose) const noexcept {
+        kinematics::Status forward(const double *joints, kinematics::Pose &pose) const noexcept {
             return model().forward(joints, pose);
         }
-        kins::Status inverse(const kins::Pose &pose, double *joints) const noexcept {
+        kinematics::Status inverse(const kinematics::Pose &pose, double *joints) const noexcept {
             return model().inverse(pose, joints);
         }
     };

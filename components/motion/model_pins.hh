@@ -6,7 +6,7 @@
 #include <new>
 
 #include "components/motion/kinematics_module.hh"
-#include "kins/parameters.hh"
+#include "kinematics/parameters.hh"
 
 namespace mw::components {
 
@@ -38,14 +38,14 @@ class PinnedModel {
     }
     /// What is no pin of a model: its letters.
     Model &base() noexcept { return base_; }
-    kins::Status forward(const double *joints, kins::Pose &pose) const noexcept {
+    kinematics::Status forward(const double *joints, kinematics::Pose &pose) const noexcept {
         return model().forward(joints, pose);
     }
-    kins::Status inverse(const kins::Pose &pose, double *joints) const noexcept {
+    kinematics::Status inverse(const kinematics::Pose &pose, double *joints) const noexcept {
         return model().inverse(pose, joints);
     }
-    int side(const kins::Pose &pose) const noexcept { return model().side(pose); }
-    kins::LinearJoints linear() const noexcept { return model().linear(); }
+    int side(const kinematics::Pose &pose) const noexcept { return model().side(pose); }
+    kinematics::LinearJoints linear() const noexcept { return model().linear(); }
 
   private:
     struct Cell {
@@ -56,52 +56,61 @@ class PinnedModel {
         std::array<Cell, Model::COUNT> of;
     };
 
-    static int declare_one(const kins::Parameter &row, Cell &cell, int comp_id, const char *prefix) noexcept {
+    static int declare_one(const kinematics::Parameter &row, Cell &cell, int comp_id,
+                           const char *prefix) noexcept {
         char name[HAL_NAME_LEN + 1];
         if (rtapi_snprintf(name, sizeof name, "%s.%s", prefix, row.name) > HAL_NAME_LEN) {
             return -EINVAL;
         }
         int status = 0;
         switch (row.kind) {
-        case kins::PinKind::FLOAT: status = hal_pin_new(name, HAL_FLOAT, HAL_IN, &cell.slot, comp_id); break;
-        case kins::PinKind::FLOAT_IO:
+        case kinematics::PinKind::FLOAT:
+            status = hal_pin_new(name, HAL_FLOAT, HAL_IN, &cell.slot, comp_id);
+            break;
+        case kinematics::PinKind::FLOAT_IO:
             status = hal_pin_new(name, HAL_FLOAT, HAL_IO, &cell.slot, comp_id);
             break;
-        case kins::PinKind::FLOAT_PARAM:
+        case kinematics::PinKind::FLOAT_PARAM:
             cell.slot = &cell.param;
             status = hal_param_new(name, HAL_FLOAT, HAL_RW, &cell.param, comp_id);
             break;
-        case kins::PinKind::S32: status = hal_pin_new(name, HAL_S32, HAL_IN, &cell.slot, comp_id); break;
-        case kins::PinKind::U32: status = hal_pin_new(name, HAL_U32, HAL_IN, &cell.slot, comp_id); break;
-        case kins::PinKind::U32_IO: status = hal_pin_new(name, HAL_U32, HAL_IO, &cell.slot, comp_id); break;
+        case kinematics::PinKind::S32:
+            status = hal_pin_new(name, HAL_S32, HAL_IN, &cell.slot, comp_id);
+            break;
+        case kinematics::PinKind::U32:
+            status = hal_pin_new(name, HAL_U32, HAL_IN, &cell.slot, comp_id);
+            break;
+        case kinematics::PinKind::U32_IO:
+            status = hal_pin_new(name, HAL_U32, HAL_IO, &cell.slot, comp_id);
+            break;
         }
         if (status >= 0) {
             start(row, cell.slot);
         }
         return status;
     }
-    static void start(const kins::Parameter &row, void *slot) noexcept {
+    static void start(const kinematics::Parameter &row, void *slot) noexcept {
         switch (row.kind) {
-        case kins::PinKind::FLOAT:
-        case kins::PinKind::FLOAT_IO:
-        case kins::PinKind::FLOAT_PARAM: *static_cast<volatile double *>(slot) = row.start; break;
-        case kins::PinKind::S32:
+        case kinematics::PinKind::FLOAT:
+        case kinematics::PinKind::FLOAT_IO:
+        case kinematics::PinKind::FLOAT_PARAM: *static_cast<volatile double *>(slot) = row.start; break;
+        case kinematics::PinKind::S32:
             *static_cast<volatile rtapi_s32 *>(slot) = static_cast<rtapi_s32>(row.start);
             break;
-        case kins::PinKind::U32:
-        case kins::PinKind::U32_IO:
+        case kinematics::PinKind::U32:
+        case kinematics::PinKind::U32_IO:
             *static_cast<volatile rtapi_u32 *>(slot) = static_cast<rtapi_u32>(row.start);
             break;
         }
     }
-    static double value_of(kins::PinKind kind, const void *slot) noexcept {
+    static double value_of(kinematics::PinKind kind, const void *slot) noexcept {
         switch (kind) {
-        case kins::PinKind::FLOAT:
-        case kins::PinKind::FLOAT_IO:
-        case kins::PinKind::FLOAT_PARAM: break;
-        case kins::PinKind::S32: return *static_cast<const volatile rtapi_s32 *>(slot);
-        case kins::PinKind::U32:
-        case kins::PinKind::U32_IO: return *static_cast<const volatile rtapi_u32 *>(slot);
+        case kinematics::PinKind::FLOAT:
+        case kinematics::PinKind::FLOAT_IO:
+        case kinematics::PinKind::FLOAT_PARAM: break;
+        case kinematics::PinKind::S32: return *static_cast<const volatile rtapi_s32 *>(slot);
+        case kinematics::PinKind::U32:
+        case kinematics::PinKind::U32_IO: return *static_cast<const volatile rtapi_u32 *>(slot);
         }
         return *static_cast<const volatile double *>(slot);
     }

@@ -6,16 +6,16 @@
 #include <cstdint>
 #include <new>
 
-#include "hal/api/hal.h"
-#include "hal/api/millwright_ext.h"
-#include "hal/api/rtapi_app.h"
-#include "io/tool_offset_pins.hh"
-#include "motion/core/controller.hh"
-#include "motion/core/path_planner.hh"
-#include "motion/rt/module_homing.hh"
-#include "motion/rt/module_kinematics.hh"
-#include "motion/rt/module_planner.hh"
-#include "motion/rt/pins.hh"
+#include "hal/include/hal.h"
+#include "hal/include/millwright_ext.h"
+#include "hal/include/rtapi_app.h"
+#include "machine/io/tool_offset_pins.hh"
+#include "motion/hal/module_homing.hh"
+#include "motion/hal/module_kinematics.hh"
+#include "motion/hal/module_planner.hh"
+#include "motion/hal/pins.hh"
+#include "motion/planner/path_planner.hh"
+#include "motion/servo/controller.hh"
 
 using namespace mw;
 
@@ -129,7 +129,7 @@ int find_kinematics() {
             missing);
         return -2;  // ENOENT
     }
-    const kins::IdentityMap *map = module.kinematics.identity();
+    const kinematics::IdentityMap *map = module.kinematics.identity();
     if (num_extrajoints > 0 && map != nullptr && map->num_joints != num_joints - num_extrajoints) {
         rtapi_print_msg(
             RTAPI_MSG_ERR,

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Kinematics of pentapods (kins/pentapod.hh). Pins (out): pentakins.last-iterations of the forward side, and
-// max-iterations, the most of a solution so far.
+// Kinematics of pentapods (kinematics/pentapod.hh). Pins (out): pentakins.last-iterations of the forward
+// side, and max-iterations, the most of a solution so far.
 #include "components/motion/iterations.hh"
-#include "kins/pentapod.hh"
+#include "kinematics/pentapod.hh"
 
 namespace {
 
-mw::components::IteratingModel<mw::kins::Pentapod> live;
+mw::components::IteratingModel<mw::kinematics::Pentapod> live;
 
 int declare_pins(int comp_id) {
     return live.declare(comp_id, "pentakins");

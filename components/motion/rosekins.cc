@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Kinematics of rose engines (kins/rose.hh). Pins (out): rosekins.revolutions, whole turns of the work;
+// Kinematics of rose engines (kinematics/rose.hh). Pins (out): rosekins.revolutions, whole turns of the work;
 // theta_degrees, its angle within one, -180 to 180; bigtheta_degrees, with the turns.
 #include <cerrno>
 #include <cmath>
 
 #include "components/motion/kinematics_module.hh"
-#include "kins/rose.hh"
+#include "kinematics/rose.hh"
 
 namespace {
 
@@ -15,12 +15,12 @@ struct RosePins {
 
 /// The model, and where the work is on the pins.
 struct LiveRose {
-    mw::kins::Rose model;
+    mw::kinematics::Rose model;
     RosePins *pins = nullptr;
 
     /// Of the servo thread only; the planner asks the other way.
-    mw::kins::Status forward(const double *joints, mw::kins::Pose &pose) const noexcept {
-        const mw::kins::Status status = model.forward(joints, pose);
+    mw::kinematics::Status forward(const double *joints, mw::kinematics::Pose &pose) const noexcept {
+        const mw::kinematics::Status status = model.forward(joints, pose);
         if (isAnswered(status)) {
             const double turns = std::round(joints[2] / 360.0);
             *pins->revolutions = turns;
@@ -29,7 +29,7 @@ struct LiveRose {
         }
         return status;
     }
-    mw::kins::Status inverse(const mw::kins::Pose &pose, double *joints) const noexcept {
+    mw::kinematics::Status inverse(const mw::kinematics::Pose &pose, double *joints) const noexcept {
         return model.inverse(pose, joints);
     }
 };

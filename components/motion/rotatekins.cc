@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Kinematics of machines whose X and Y turn with C (kins/rotate.hh).
+// Kinematics of machines whose X and Y turn with C (kinematics/rotate.hh).
 #include "components/motion/kinematics_module.hh"
-#include "kins/rotate.hh"
+#include "kinematics/rotate.hh"
 
-static const mw::kins::Rotate model;
+static const mw::kinematics::Rotate model;
 
 MW_KINEMATICS(model);
 MW_KINEMATICS_PURE;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Kinematics of SCARA arms (kins/scara.hh), switchable to identity.
+// Kinematics of SCARA arms (kinematics/scara.hh), switchable to identity.
 #include "components/motion/switchable.hh"
-#include "kins/scara.hh"
+#include "kinematics/scara.hh"
 
-static mw::components::PinnedModel<mw::kins::Scara> pinned;
+static mw::components::PinnedModel<mw::kinematics::Scara> pinned;
 
 static int declare_model(int comp_id, const char *) {
     return pinned.declare(comp_id, "scarakins");

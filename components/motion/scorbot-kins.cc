@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Kinematics of the Scorbot ER-III (kins/scorbot.hh).
+// Kinematics of the Scorbot ER-III (kinematics/scorbot.hh).
 #include "components/motion/kinematics_module.hh"
-#include "kins/scorbot.hh"
+#include "kinematics/scorbot.hh"
 
-static const mw::kins::Scorbot model;
+static const mw::kinematics::Scorbot model;
 
 MW_KINEMATICS(model);
 MW_KINEMATICS_PURE;

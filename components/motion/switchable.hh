@@ -9,7 +9,7 @@
 
 #include "components/motion/model_pins.hh"
 #include "components/motion/user_type.hh"
-#include "kins/trivial.hh"
+#include "kinematics/trivial.hh"
 
 namespace mw::components {
 
@@ -18,13 +18,13 @@ template <class Live>
 class PartOf final : public TypePart {
   public:
     explicit PartOf(const Live &live) noexcept : live_(live) {}
-    kins::Status forward(const double *joints, kins::Pose &pose) const noexcept override {
+    kinematics::Status forward(const double *joints, kinematics::Pose &pose) const noexcept override {
         return live_.forward(joints, pose);
     }
-    kins::Status inverse(const kins::Pose &pose, double *joints) const noexcept override {
+    kinematics::Status inverse(const kinematics::Pose &pose, double *joints) const noexcept override {
         return live_.inverse(pose, joints);
     }
-    int side(const kins::Pose &pose) const noexcept override { return model_side(live_, pose); }
+    int side(const kinematics::Pose &pose) const noexcept override { return model_side(live_, pose); }
     void watch(const double *joints) const noexcept override {
         if constexpr (requires { live_.watch(joints); }) {
             live_.watch(joints);
@@ -88,7 +88,7 @@ class Switchable {
         }
         return 0;
     }
-    kins::Status forward(const double *joints, kins::Pose &pose) const noexcept {
+    kinematics::Status forward(const double *joints, kinematics::Pose &pose) const noexcept {
         for (int i = 0; i < count(); ++i) {
             const TypePart *part = types_[static_cast<std::size_t>(i)];
             if (part != &now()) {
@@ -97,10 +97,10 @@ class Switchable {
         }
         return now().forward(joints, pose);
     }
-    kins::Status inverse(const kins::Pose &pose, double *joints) const noexcept {
+    kinematics::Status inverse(const kinematics::Pose &pose, double *joints) const noexcept {
         return now().inverse(pose, joints);
     }
-    int side(const kins::Pose &pose) const noexcept { return now().side(pose); }
+    int side(const kinematics::Pose &pose) const noexcept { return now().side(pose); }
     /// True when any thread may ask at any time.
     bool isPure() const noexcept { return user_.isPure(); }
 
@@ -120,8 +120,8 @@ class Switchable {
         return *types_[static_cast<std::size_t>(type_.load(std::memory_order_acquire))];
     }
 
-    kins::Trivial letters_;
-    PartOf<kins::Trivial> identity_{letters_};
+    kinematics::Trivial letters_;
+    PartOf<kinematics::Trivial> identity_{letters_};
     UserType user_{letters_};
     std::array<const TypePart *, MAX_TYPES> types_;
     std::atomic<int> type_{0};

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Kinematics of five-axis machines with a tilting rotary table (kins/rotary_table.hh): joints 0 to 4 = X Y Z
-// A C. tilt_y=, tilt_z=: where the axis A passes the axis C, from the origin [machine units].
+// Kinematics of five-axis machines with a tilting rotary table (kinematics/rotary_table.hh): joints 0 to 4 =
+// X Y Z A C. tilt_y=, tilt_z=: where the axis A passes the axis C, from the origin [machine units].
 #include <errno.h>
 #include <stdlib.h>
 
 #include "components/motion/kinematics_module.hh"
-#include "kins/rotary_table.hh"
+#include "kinematics/rotary_table.hh"
 
 static char *tilt_y;
 RTAPI_MP_STRING(tilt_y, "Y of the tilting axis [machine units]");
 static char *tilt_z;
 RTAPI_MP_STRING(tilt_z, "Z of the tilting axis [machine units]");
 
-static mw::kins::RotaryTable model;
+static mw::kinematics::RotaryTable model;
 
 MW_KINEMATICS(model);
 

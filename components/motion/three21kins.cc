@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Kinematics of industrial arms with a spherical wrist (kins/ortho_parallel.hh), switchable to identity.
+// Kinematics of industrial arms with a spherical wrist (kinematics/ortho_parallel.hh), switchable to
+// identity.
 #include "components/motion/switchable.hh"
-#include "kins/ortho_parallel.hh"
+#include "kinematics/ortho_parallel.hh"
 
-static mw::components::PinnedModel<mw::kins::OrthoParallel> pinned;
+static mw::components::PinnedModel<mw::kinematics::OrthoParallel> pinned;
 
 static int declare_model(int comp_id, const char *) {
     return pinned.declare(comp_id, "three21kins");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Kinematics of a point held at three distances (kins/tripod.hh). Pins tripodkins.Bx, Cx, Cy.
+// Kinematics of a point held at three distances (kinematics/tripod.hh). Pins tripodkins.Bx, Cx, Cy.
 #include "components/motion/model_pins.hh"
-#include "kins/tripod.hh"
+#include "kinematics/tripod.hh"
 
-MW_MODEL_MODULE(mw::kins::Tripod, "tripodkins");
+MW_MODEL_MODULE(mw::kinematics::Tripod, "tripodkins");

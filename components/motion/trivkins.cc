@@ -3,14 +3,14 @@
 // kinstype=1 identity (default), both: joints and axes differ for operators (gantries), f: forward only, i:
 // inverse only.
 #include "components/motion/kinematics_module.hh"
-#include "kins/trivial.hh"
+#include "kinematics/trivial.hh"
 
 static char *coordinates;
 RTAPI_MP_STRING(coordinates, "axis letters in the order of the joints");
 static char *kinstype;
 RTAPI_MP_STRING(kinstype, "1 identity, b both, f forward only, i inverse only");
 
-static mw::kins::Trivial model;
+static mw::kinematics::Trivial model;
 static KINEMATICS_TYPE type = KINEMATICS_IDENTITY;
 static int component = -1;
 

@@ -4,17 +4,17 @@
 #pragma once
 
 #include "components/motion/kinematics_module.hh"
-#include "hal/api/millwright_ext.h"
-#include "kins/trivial.hh"
+#include "hal/include/millwright_ext.h"
+#include "kinematics/trivial.hh"
 
 namespace mw::components {
 
 /// One of the types of a module.
 class TypePart {
   public:
-    virtual kins::Status forward(const double *joints, kins::Pose &pose) const noexcept = 0;
-    virtual kins::Status inverse(const kins::Pose &pose, double *joints) const noexcept = 0;
-    virtual int side(const kins::Pose &pose) const noexcept = 0;
+    virtual kinematics::Status forward(const double *joints, kinematics::Pose &pose) const noexcept = 0;
+    virtual kinematics::Status inverse(const kinematics::Pose &pose, double *joints) const noexcept = 0;
+    virtual int side(const kinematics::Pose &pose) const noexcept = 0;
     /// Where the joints are while another type is in force. [servo]
     virtual void watch(const double *) const noexcept {}
 
@@ -24,7 +24,7 @@ class TypePart {
 
 class UserType final : public TypePart {
   public:
-    explicit UserType(const kins::Trivial &letters) noexcept : letters_(letters) {}
+    explicit UserType(const kinematics::Trivial &letters) noexcept : letters_(letters) {}
     UserType(const UserType &) = delete;
     UserType &operator=(const UserType &) = delete;
 
@@ -65,27 +65,27 @@ class UserType final : public TypePart {
     bool isThere() const noexcept { return forward_ != nullptr; }
     bool isPure() const noexcept { return !isThere() || isPure_; }
 
-    kins::Status forward(const double *joints, kins::Pose &pose) const noexcept override {
+    kinematics::Status forward(const double *joints, kinematics::Pose &pose) const noexcept override {
         if (forward_ == nullptr) {
             return letters_.forward(joints, pose);
         }
         EmcPose world = {{pose[0], pose[1], pose[2]}, pose[3], pose[4], pose[5], pose[6], pose[7], pose[8]};
         if (forward_(joints, &world, &forward_flags_, &inverse_flags_) != 0) {
-            return kins::Status::UNREACHABLE;
+            return kinematics::Status::UNREACHABLE;
         }
         pose = pose_of(world);
-        return kins::Status::OK;
+        return kinematics::Status::OK;
     }
-    kins::Status inverse(const kins::Pose &pose, double *joints) const noexcept override {
+    kinematics::Status inverse(const kinematics::Pose &pose, double *joints) const noexcept override {
         if (inverse_ == nullptr) {
             return letters_.inverse(pose, joints);
         }
         const EmcPose world = {
             {pose[0], pose[1], pose[2]}, pose[3], pose[4], pose[5], pose[6], pose[7], pose[8]};
         const bool isFound = inverse_(&world, joints, &inverse_flags_, &forward_flags_) == 0;
-        return isFound ? kins::Status::OK : kins::Status::UNREACHABLE;
+        return isFound ? kinematics::Status::OK : kinematics::Status::UNREACHABLE;
     }
-    int side(const kins::Pose &) const noexcept override { return 0; }
+    int side(const kinematics::Pose &) const noexcept override { return 0; }
 
   private:
     template <class Function>
@@ -93,7 +93,7 @@ class UserType final : public TypePart {
         return reinterpret_cast<Function>(mw_ext_find_symbol(name));
     }
 
-    const kins::Trivial &letters_;
+    const kinematics::Trivial &letters_;
     decltype(&userkKinematicsSetup) setup_ = nullptr;
     decltype(&userkKinematicsForward) forward_ = nullptr;
     decltype(&userkKinematicsInverse) inverse_ = nullptr;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Kinematics of a rotary table C on a tilting one B (kins/tilting_table.hh), switchable to identity.
+// Kinematics of a rotary table C on a tilting one B (kinematics/tilting_table.hh), switchable to identity.
 #include "components/motion/switchable.hh"
-#include "kins/tilting_table.hh"
+#include "kinematics/tilting_table.hh"
 
-static mw::components::PinnedModel<mw::kins::XyzbcTable> pinned;
+static mw::components::PinnedModel<mw::kinematics::XyzbcTable> pinned;
 
 static int declare_model(int comp_id, const char *letters) {
     if (!pinned.base().set_letters(letters)) {

@@ -4,7 +4,7 @@
 
 namespace {
 
-mw::components::LeaningHead<mw::kins::NutatingHeadOverB> head;
+mw::components::LeaningHead<mw::kinematics::NutatingHeadOverB> head;
 mw::components::Switchable &switchable = head.switchable();
 
 int declare_model(int comp_id, const char *letters) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // plant_amp: the power side of a drive.
+#include "components/plants/amplifier.hh"
 #include "hal/sdk/component.hh"
-#include "sim/amplifier.hh"
 
 namespace mw::components {
 using namespace sdk;
@@ -10,7 +10,7 @@ struct PlantAmp {
     In<bool> enable, trip;
     In<double> rise_s;
     Out<bool> powered, fault;
-    sim::Amplifier amplifier;
+    plants::Amplifier amplifier;
 
     void declare(Declare &d) noexcept {
         d.pin(enable, "enable");

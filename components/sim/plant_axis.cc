@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // plant_axis: a motor with its load under a drive that follows positions.
+#include "components/plants/axis.hh"
 #include "hal/sdk/component.hh"
-#include "sim/axis.hh"
 
 namespace mw::components {
 using namespace sdk;
 
 struct PlantAxis {
-    static constexpr sim::AxisSettings START{};
+    static constexpr plants::AxisSettings START{};
     In<double> command, zero, peak_acceleration, coulomb_friction, viscous_friction, backlash, position_gain,
         velocity_gain;
     In<bool> powered;
     Out<double> motor, load, velocity;
-    sim::Axis axis;
+    plants::Axis axis;
     bool wasPowered = false;
 
     void declare(Declare &d) noexcept {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // plant_encoder: a position encoder with its counter, which may lose counts or find some.
+#include "components/plants/encoder.hh"
 #include "hal/sdk/component.hh"
-#include "sim/encoder.hh"
 
 namespace mw::components {
 using namespace sdk;
@@ -11,12 +11,12 @@ struct PlantEncoder {
     In<bool> lost, jump;
     InOut<bool> index_enable;
     Out<double> position, zero;
-    sim::Encoder encoder;
+    plants::Encoder encoder;
     bool wasJumping = false;
 
     void declare(Declare &d) noexcept {
         d.pin(shaft, "shaft");
-        d.pin(counts_per_unit, "counts-per-unit", sim::EncoderSettings{}.counts_per_unit);
+        d.pin(counts_per_unit, "counts-per-unit", plants::EncoderSettings{}.counts_per_unit);
         d.pin(index_spacing, "index-spacing");
         d.pin(index_at, "index-at");
         d.pin(lost, "lost");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // plant_probe: a touch probe above a surface.
+#include "components/plants/touch_probe.hh"
 #include "hal/sdk/component.hh"
-#include "sim/touch_probe.hh"
 
 namespace mw::components {
 using namespace sdk;
@@ -21,8 +21,8 @@ struct PlantProbe {
         d.function<&PlantProbe::update>(this);
     }
     void update() noexcept {
-        using Fault = sim::TouchProbe::Fault;
-        sim::TouchProbe probe(surface, pretravel);
+        using Fault = plants::TouchProbe::Fault;
+        plants::TouchProbe probe(surface, pretravel);
         probe.set_fault(stuck_closed ? Fault::STUCK_CLOSED : stuck_open ? Fault::STUCK_OPEN : Fault::NONE);
         contact = probe.isClosed(tip);
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // plant_spindle: a spindle with its drive, which ramps, reacts late and slips, and its encoder.
+#include "components/plants/spindle_plant.hh"
 #include "hal/sdk/component.hh"
-#include "sim/spindle_plant.hh"
 
 namespace mw::components {
 using namespace sdk;
@@ -13,7 +13,7 @@ struct PlantSpindle {
     InOut<bool> index_enable;
     Out<double> revs, speed_rps, true_revs, true_speed_rps;
     ParamRw<std::int32_t> counts_per_turn;
-    sim::SpindlePlant plant{{}};
+    plants::SpindlePlant plant{{}};
     double last_revs = 0;
     bool isBegun = false, wasLosing = false;
 
@@ -38,9 +38,9 @@ struct PlantSpindle {
         const double period_s = static_cast<double>(period_ns) * 1e-9;
         if (!isBegun) {
             isBegun = true;
-            sim::SpindleTraits traits;
+            plants::SpindleTraits traits;
             traits.counts_per_turn = counts_per_turn > 0 ? static_cast<int>(counts_per_turn) : 1;
-            plant = sim::SpindlePlant(traits);
+            plant = plants::SpindlePlant(traits);
         }
         plant.set_drive(ramp, lag_s, reaction_s, slip);
         if (lose && !wasLosing) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // plant_switch: a switch on an axis whose contact bounces.
+#include "components/plants/bouncing_switch.hh"
 #include "hal/sdk/component.hh"
-#include "sim/bouncing_switch.hh"
 
 namespace mw::components {
 using namespace sdk;
@@ -10,7 +10,7 @@ struct PlantSwitch {
     In<double> place, at, width, hysteresis, bounce_s;
     In<bool> below;
     Out<bool> contact, pressed;
-    sim::BouncingSwitch lever;
+    plants::BouncingSwitch lever;
 
     void declare(Declare &d) noexcept {
         d.pin(place, "place");
@@ -22,7 +22,7 @@ struct PlantSwitch {
         d.pin(contact, "contact");
         d.pin(pressed, "pressed");
         // Each has chances of its own, the same in every run.
-        lever = sim::BouncingSwitch({}, static_cast<std::uint64_t>(d.index()) + 1);
+        lever = plants::BouncingSwitch({}, static_cast<std::uint64_t>(d.index()) + 1);
         d.function<&PlantSwitch::update>(this);
     }
     void update(long period_ns) noexcept {

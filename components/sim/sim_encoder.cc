@@ -7,8 +7,8 @@
 // phase-A, phase-B, phase-Z (bit); rawcounts (s32).
 #include <atomic>
 
+#include "components/plants/quadrature_source.hh"
 #include "hal/sdk/component.hh"
-#include "sim/quadrature_source.hh"
 
 namespace mw::components {
 using namespace sdk;
@@ -21,7 +21,7 @@ struct SimEncoderChannel {
     InOut<std::uint32_t> ppr;
     Out<bool> phase_a, phase_b, phase_z;
     In<std::int32_t> rawcounts;
-    sim::QuadratureSource source;
+    plants::QuadratureSource source;
 
     void declare(Declare &d) noexcept {
         d.pin(speed, "speed");

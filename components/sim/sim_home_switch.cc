@@ -4,8 +4,8 @@
 // `home-sw` (bit) is true once `cur-pos` has reached `home-pos` (1 at start; below it for a negative one) and
 // false when it is back by `hysteresis` (0.1 at start), all in machine units. `index-enable` (bit, I/O) is
 // set back `index-delay-ms` (10 at start) milliseconds after it was set.
+#include "components/plants/home_switch.hh"
 #include "hal/sdk/component.hh"
-#include "sim/home_switch.hh"
 
 namespace mw::components {
 using namespace sdk;
@@ -15,8 +15,8 @@ struct SimHomeSwitch {
     Out<bool> home_sw;
     InOut<bool> index_enable;
     In<double> index_delay_ms;
-    sim::HomeSwitch home_switch;
-    sim::DelayedIndex index;
+    plants::HomeSwitch home_switch;
+    plants::DelayedIndex index;
 
     void declare(Declare &d) noexcept {
         d.pin(cur_pos, "cur-pos");

@@ -4,8 +4,8 @@
 // `velocity-cmd` times the parameter `scale` (1 at start) is the speed in turns per second; `position-fb` the
 // position [turns]. With `index-enable` (bit, I/O) set, the position starts anew at the next whole turn and
 // the pin is set back.
+#include "components/plants/spindle.hh"
 #include "hal/sdk/component.hh"
-#include "sim/spindle.hh"
 
 namespace mw::components {
 using namespace sdk;
@@ -15,7 +15,7 @@ struct SimSpindle {
     Out<double> position_fb;
     InOut<bool> index_enable;
     ParamRw<double> scale;
-    sim::Spindle spindle;
+    plants::Spindle spindle;
 
     void declare(Declare &d) noexcept {
         d.pin(velocity_cmd, "velocity-cmd");

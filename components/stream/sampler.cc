@@ -5,7 +5,7 @@
 // Function sampler.N. Pins of sampler.N: pin.M (in); enable (bit, true at start); curr-depth (s32, samples
 // waiting); full (bit); overruns (s32, I/O, samples lost); sample-num (s32, I/O, samples tried).
 #include "components/stream/stream_pins.hh"
-#include "hal_tools/stream/keys.hh"
+#include "hal/tools/stream/keys.hh"
 
 static int depth[mw::hal::stream_tools::MAX_CHANNELS];
 RTAPI_MP_ARRAY_INT(depth, mw::hal::stream_tools::MAX_CHANNELS, "length of each queue [samples]");

@@ -6,7 +6,7 @@
 // clock-mode (s32: 0 every period, 1 at falling, 2 at rising, 3 at any edge of clock); curr-depth (s32,
 // records waiting); empty (bit); underruns (s32, I/O, periods without a record).
 #include "components/stream/stream_pins.hh"
-#include "hal_tools/stream/keys.hh"
+#include "hal/tools/stream/keys.hh"
 
 static int depth[mw::hal::stream_tools::MAX_CHANNELS];
 RTAPI_MP_ARRAY_INT(depth, mw::hal::stream_tools::MAX_CHANNELS, "length of each queue [records]");

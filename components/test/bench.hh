@@ -8,13 +8,13 @@
 #include <gtest/gtest.h>
 
 #include "hal/core/host.hh"
-#include "hal_lang/lang/session.hh"
-#include "rtapi/virtual_scheduler.hh"
+#include "hal/script/session.hh"
+#include "runtime/virtual_scheduler.hh"
 
 namespace mw::components::test {
 
 /// Keeps everything that a session says.
-class TextOutput final : public hal::lang::Output {
+class TextOutput final : public hal::script::Output {
   public:
     void data(std::string_view text) override { answers += text; }
     void info(std::string_view text) override { infos += std::string(text) + "\n"; }
@@ -37,7 +37,7 @@ class Bench {
         auto made = hal::LocalHost::create(options);
         EXPECT_TRUE(made.has_value()) << made.error().str();
         host = std::move(*made);
-        session = std::make_unique<hal::lang::Session>(*host, programs, output);
+        session = std::make_unique<hal::script::Session>(*host, programs, output);
         run("loadrt threads name1=t period1=" + std::to_string(period_ns) + "\n" + commands + "\nstart\n");
         EXPECT_EQ(output.errors, "");
     }
@@ -66,11 +66,11 @@ class Bench {
         return get(output_pin);
     }
 
-    rtapi::VirtualScheduler clock;
-    hal::lang::InProcessProgramHost programs;
+    runtime::VirtualScheduler clock;
+    hal::script::InProcessProgramHost programs;
     TextOutput output;
     std::unique_ptr<hal::LocalHost> host;
-    std::unique_ptr<hal::lang::Session> session;
+    std::unique_ptr<hal::script::Session> session;
 
   private:
     static hal::Value hal_value(hal::Type type, double value) {

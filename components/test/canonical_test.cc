@@ -22,7 +22,7 @@ class SimParportTest : public ::testing::Test {
     Bench bench{"loadrt sim_parport names=parport.0\naddf parport.0.read t\naddf parport.0.write t"};
 };
 
-TEST_F(SimParportTest, HasPinsAndParametersOfThePortWithTypeAndDirection_B2) {
+TEST_F(SimParportTest, HasPinsAndParametersOfThePortWithTypeAndDirection) {
     using Kind = std::pair<hal::Type, hal::Dir>;
     std::map<std::string, Kind> expected{{"parport.0.reset-time", {hal::Type::FLOAT, hal::Dir::IN}}};
     std::map<std::string, hal::Type> expected_params;
@@ -52,7 +52,7 @@ TEST_F(SimParportTest, HasPinsAndParametersOfThePortWithTypeAndDirection_B2) {
     EXPECT_EQ(params, expected_params);
 }
 
-TEST_F(SimParportTest, CopiesInputsWithTheirInverseAndInvertsOutputs_B2) {
+TEST_F(SimParportTest, CopiesInputsWithTheirInverseAndInvertsOutputs) {
     bench.set(pin_of(15) + "-in-fake", 1);
     bench.set(pin_of(17) + "-out", 1);
     bench.set(pin_of(16) + "-out-invert", 1);

@@ -14,7 +14,7 @@
 #include "components/machine/thermocouple.hh"
 #include "components/test/bench.hh"
 #include "components/test/modules.hh"
-#include "hal/api/kinematics.h"
+#include "hal/include/kinematics.h"
 
 namespace mw::components::test {
 namespace {
@@ -35,7 +35,7 @@ class CarouselTest : public ::testing::Test {
     void set(const std::string &name, double value) { bench.set("carousel.0." + name, value); }
 };
 
-TEST_F(CarouselTest, TurnsTheShorterWayAndStopsThere_B6) {
+TEST_F(CarouselTest, TurnsTheShorterWayAndStopsThere) {
     at(1);
     set("pocket-number", 3);
     set("enable", 1);
@@ -63,7 +63,7 @@ TEST_F(CarouselTest, TurnsTheShorterWayAndStopsThere_B6) {
     EXPECT_EQ(pin("ready"), 1.0);
 }
 
-TEST_F(CarouselTest, StopsWhenDisabledAndRefusesNoPocket_B6) {
+TEST_F(CarouselTest, StopsWhenDisabledAndRefusesNoPocket) {
     at(1);
     set("pocket-number", 3);
     set("enable", 1);
@@ -80,7 +80,7 @@ TEST_F(CarouselTest, StopsWhenDisabledAndRefusesNoPocket_B6) {
     EXPECT_EQ(pin("motor-rev"), 0.0);
 }
 
-TEST_F(CarouselTest, PulsesInReverseAgainstItsStop_B6) {
+TEST_F(CarouselTest, PulsesInReverseAgainstItsStop) {
     set("rev-pulse", 0.003);
     at(3);
     set("pocket-number", 4);
@@ -97,7 +97,7 @@ TEST_F(CarouselTest, PulsesInReverseAgainstItsStop_B6) {
     EXPECT_EQ(pin("ready"), 1.0);
 }
 
-TEST_F(CarouselTest, AlignsOnTheForwardEdge_B6) {
+TEST_F(CarouselTest, AlignsOnTheForwardEdge) {
     set("align-dc", 0.1);
     set("decel-time", 0.002);
     at(3);
@@ -117,7 +117,7 @@ TEST_F(CarouselTest, AlignsOnTheForwardEdge_B6) {
     EXPECT_EQ(pin("ready"), 1.0);
 }
 
-TEST_F(CarouselTest, ChecksParityAndStrobe_B6) {
+TEST_F(CarouselTest, ChecksParityAndStrobe) {
     at(3);
     EXPECT_EQ(pin("parity-error"), 0.0);
     at(1);
@@ -130,7 +130,7 @@ TEST_F(CarouselTest, ChecksParityAndStrobe_B6) {
     EXPECT_EQ(pin("current-position"), 1.0) << "not valid now";
 }
 
-TEST_F(CarouselTest, JogsOnePocket_B6) {
+TEST_F(CarouselTest, JogsOnePocket) {
     at(8);
     set("jog-fwd", 1);
     at(8);
@@ -141,7 +141,7 @@ TEST_F(CarouselTest, JogsOnePocket_B6) {
     EXPECT_EQ(pin("ready"), 0.0);
 }
 
-TEST(CarouselHoming, SearchesTheIndexFirst_B6) {
+TEST(CarouselHoming, SearchesTheIndexFirst) {
     Bench bench("loadrt carousel pockets=4 encoding=index\naddf carousel.0 t\nsetp carousel.0.fwd-dc 1\n"
                 "setp carousel.0.pocket-number 3\nsetp carousel.0.enable 1");
     const auto step = [&](int index, int pulse) {
@@ -167,7 +167,7 @@ TEST(CarouselHoming, SearchesTheIndexFirst_B6) {
     EXPECT_EQ(bench.get("carousel.0.ready"), 1.0);
 }
 
-TEST(CarouselCore, DecodesAndFindsPassedPockets_B6) {
+TEST(CarouselCore, DecodesAndFindsPassedPockets) {
     carousel::Position position;
     position.pockets = 40;
     position.encoding = carousel::Encoding::BCD;
@@ -194,7 +194,7 @@ TEST(CarouselCore, DecodesAndFindsPassedPockets_B6) {
     EXPECT_EQ(position.pocket, 4) << "one before the first";
 }
 
-TEST(BldcCore, EveryPatternHasSixDifferentSectorsThatDifferInOneSensor_B6) {
+TEST(BldcCore, EveryPatternHasSixDifferentSectorsThatDifferInOneSensor) {
     for (int pattern = 0; pattern < bldc::PATTERNS; ++pattern) {
         for (int sector = 0; sector < bldc::SECTORS; ++sector) {
             const unsigned hall = bldc::hall_of_sector(pattern, sector);
@@ -205,7 +205,7 @@ TEST(BldcCore, EveryPatternHasSixDifferentSectorsThatDifferInOneSensor_B6) {
     }
 }
 
-TEST(Thermocouple, FollowsTheTablesOfTypeK_B6) {
+TEST(Thermocouple, FollowsTheTablesOfTypeK) {
     const double points[][2] = {{-100, -3.554}, {0, 0},         {100, 4.096},
                                 {500, 20.644},  {1000, 41.276}, {1300, 52.410}};
     for (const auto &point : points) {
@@ -233,7 +233,7 @@ double read_max31855(Bench &bench, std::uint32_t frame) {
     return bench.get("max31855.0.temp-celsius.0");
 }
 
-TEST(Max31855, ReadsFramesAndFaults_B6) {
+TEST(Max31855, ReadsFramesAndFaults) {
     Bench bench("loadrt max31855 personality=1\naddf max31855.0.bitbang-spi t");
     const auto frame = [](double celsius, double inside) {
         return (static_cast<std::uint32_t>(static_cast<int>(celsius * 4)) << 18) |
@@ -259,7 +259,7 @@ lcd::Item item_of(const char *format) {
     return item;
 }
 
-TEST(LcdCore, ShowsNumbersInTheirFields_B6) {
+TEST(LcdCore, ShowsNumbersInTheirFields) {
     EXPECT_EQ(text_of(lcd::show_float(item_of("%f"), 3.14159, '.')), "3.1416");
     EXPECT_EQ(text_of(lcd::show_float(item_of("%+5.2f"), 3.14159, ',')), "+3,14");
     EXPECT_EQ(text_of(lcd::show_float(item_of("%08.3f"), -3.14159, '.')), "-003.142");
@@ -277,7 +277,7 @@ TEST(LcdCore, ShowsNumbersInTheirFields_B6) {
     }
 }
 
-TEST(Lcd, StreamsThePageThatIsChosen_B6) {
+TEST(Lcd, StreamsThePageThatIsChosen) {
     Bench bench("loadrt lcd \"fmt_strings=X%3d\\nY|second\"\naddf lcd t\nsetp lcd.00.page.00.arg.00 7");
     const auto stream = [&](int periods) {
         std::string text;
@@ -302,7 +302,7 @@ raster::Line line_of(const std::string &text) {
     return line;
 }
 
-TEST(RasterCore, ReadsLinesAndFindsMistakes_B6) {
+TEST(RasterCore, ReadsLinesAndFindsMistakes) {
     const auto line = std::make_unique<raster::Line>(line_of("\n-1.5;8;10.25;3;00\n7Fff"));
     EXPECT_EQ(line->reading(), raster::Reading::COMPLETE);
     EXPECT_EQ(line->offset(), -1.5);
@@ -331,7 +331,7 @@ TEST(RasterCore, ReadsLinesAndFindsMistakes_B6) {
     EXPECT_EQ(line_of(std::string(200, '0')).reading(), raster::Reading::BAD_OFFSET);
 }
 
-TEST(Raster, HasNoPowerWithoutALine_B6) {
+TEST(Raster, HasNoPowerWithoutALine) {
     Bench bench("loadrt raster\naddf raster.0 t");
     EXPECT_EQ(bench.get("raster.0.output"), -1.0);
     EXPECT_EQ(bench.after("raster.0.run", 1, "raster.0.enabled"), 0.0) << "it waits for a line";
@@ -340,7 +340,7 @@ TEST(Raster, HasNoPowerWithoutALine_B6) {
     EXPECT_EQ(bench.after("raster.0.reset", 1, "raster.0.state"), 0.0);
 }
 
-TEST(Millturn, SwitchesBetweenMillAndTurn_B6) {
+TEST(Millturn, SwitchesBetweenMillAndTurn) {
     void *module = dlopen(MW_MODULES_FOLDER "/millturn.so", RTLD_NOW | RTLD_LOCAL);
     ASSERT_NE(module, nullptr) << dlerror();
     const auto forward = reinterpret_cast<decltype(&kinematicsForward)>(dlsym(module, "kinematicsForward"));

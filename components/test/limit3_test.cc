@@ -112,7 +112,7 @@ std::string judge(const Followed &run, int &fractions) {
     return {};
 }
 
-TEST(Limit3, KeepsEveryLimitAndWastesNoPeriod_B6) {
+TEST(Limit3, KeepsEveryLimitAndWastesNoPeriod) {
     constexpr unsigned RUNS = 2000;
     int arrivals_due = 0;
     int fractions = 0;
@@ -127,7 +127,7 @@ TEST(Limit3, KeepsEveryLimitAndWastesNoPeriod_B6) {
     EXPECT_GT(fractions, 0) << "the judge has seen no landing";
 }
 
-TEST(Limit3, BrakesAheadOfMinAndMax_B6) {
+TEST(Limit3, BrakesAheadOfMinAndMax) {
     Bench bench(
         "loadrt limit3\nloadrt siggen\naddf siggen.0.update t\naddf limit3.0 t\n"
         "setp siggen.0.amplitude 100\nnet in siggen.0.sine limit3.0.in\n"
@@ -144,7 +144,7 @@ TEST(Limit3, BrakesAheadOfMinAndMax_B6) {
     EXPECT_EQ(high, 50.0);
 }
 
-TEST(Limit3, ComesBackWithinItsLimitsWhenMaxMovesBelowIt_B6) {
+TEST(Limit3, ComesBackWithinItsLimitsWhenMaxMovesBelowIt) {
     Bench bench("loadrt limit3\naddf limit3.0 t\nsetp limit3.0.maxv 20\nsetp limit3.0.maxa 300\n"
                 "setp limit3.0.in 5");
     bench.pass(1000);
@@ -164,7 +164,7 @@ TEST(Limit3, ComesBackWithinItsLimitsWhenMaxMovesBelowIt_B6) {
     EXPECT_NEAR(last, 4.0, 1e-12);
 }
 
-TEST(Limit3, LimitsThatAreNoNumbersMoveNothing_B6) {
+TEST(Limit3, LimitsThatAreNoNumbersMoveNothing) {
     limit::Limit3 block;
     const double nan = std::nan("");
     block.run(5.0, {-10.0, 10.0, 20.0, nan}, DT, 2);

@@ -223,7 +223,7 @@ TEST(EnumModule, RefusesWhatIsNoEnum) {
     EXPECT_TRUE(bench.hal().pins("enum*").empty());
 }
 
-TEST(LegacyNames, FindPinsAndParametersBesideTheNewOnes_B3) {
+TEST(LegacyNames, FindPinsAndParametersBesideTheNewOnes) {
     Bench bench(
         "loadrt pid num_chan=1\nloadrt encoder num_chan=1\nloadrt filter_kalman\nsetp pid.0.Pgain 12\n"
         "net a encoder.0.phase-A\nsetp filter-kalman.0.Rk 3");

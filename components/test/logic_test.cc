@@ -14,7 +14,7 @@ struct TruthTable {
 
 class TwoInputGate : public ::testing::TestWithParam<TruthTable> {};
 
-TEST_P(TwoInputGate, FollowsItsTruthTable_B6) {
+TEST_P(TwoInputGate, FollowsItsTruthTable) {
     const TruthTable &table = GetParam();
     const std::string name = table.component;
     Bench bench("loadrt " + name + " names=g\naddf g t");
@@ -31,13 +31,13 @@ INSTANTIATE_TEST_SUITE_P(All, TwoInputGate,
                                            TruthTable{"or2", {false, true, true, true}},
                                            TruthTable{"xor2", {false, true, true, false}}));
 
-TEST(Not, Inverts_B6) {
+TEST(Not, Inverts) {
     Bench bench("loadrt not\naddf not.0 t");
     EXPECT_EQ(bench.after("not.0.in", 0, "not.0.out"), 1.0);
     EXPECT_EQ(bench.after("not.0.in", 1, "not.0.out"), 0.0);
 }
 
-TEST(Logic, PersonalityChoosesInputsAndOutputs_B6) {
+TEST(Logic, PersonalityChoosesInputsAndOutputs) {
     Bench bench("loadrt logic count=2 personality=0x1f03,0x102\naddf logic.0 t\naddf logic.1 t");
     EXPECT_FALSE(bench.hal().pin("logic.0.in-03").has_value());
     EXPECT_FALSE(bench.hal().pin("logic.1.or").has_value());
@@ -81,7 +81,7 @@ TEST(Lincurve, LoadsWithAnyNumberOfPoints) {
     }
 }
 
-TEST(Flipflop, LoadsOnRisingClockAndResetWins_B6) {
+TEST(Flipflop, LoadsOnRisingClockAndResetWins) {
     Bench bench("loadrt flipflop\naddf flipflop.0 t");
     bench.set("flipflop.0.data", 1);
     EXPECT_EQ(bench.after("flipflop.0.clk", 1, "flipflop.0.out"), 1.0);
@@ -94,7 +94,7 @@ TEST(Flipflop, LoadsOnRisingClockAndResetWins_B6) {
     EXPECT_EQ(bench.after("flipflop.0.reset", 0, "flipflop.0.out"), 1.0);
 }
 
-TEST(Select8, MakesOneOutputTrue_B6) {
+TEST(Select8, MakesOneOutputTrue) {
     Bench bench("loadrt select8\naddf select8.0 t");
     EXPECT_EQ(bench.after("select8.0.sel", 5, "select8.0.out5"), 1.0);
     EXPECT_EQ(bench.get("select8.0.out0"), 0.0);
@@ -103,7 +103,7 @@ TEST(Select8, MakesOneOutputTrue_B6) {
     EXPECT_EQ(bench.after("select8.0.enable", 0, "select8.0.out0"), 0.0);
 }
 
-TEST(EstopLatch, StaysFaultedUntilResetAndToggleswhileOk_B6) {
+TEST(EstopLatch, StaysFaultedUntilResetAndToggleswhileOk) {
     Bench bench("loadrt estop_latch\naddf estop-latch.0 t");
     bench.pass();
     EXPECT_EQ(bench.get("estop-latch.0.ok-out"), 0.0) << "faulted at start";
@@ -120,7 +120,7 @@ TEST(EstopLatch, StaysFaultedUntilResetAndToggleswhileOk_B6) {
     EXPECT_EQ(bench.after("estop-latch.0.ok-in", 0, "estop-latch.0.fault-out"), 1.0);
 }
 
-TEST(ChargePump, TogglesWhileEnabled_B6) {
+TEST(ChargePump, TogglesWhileEnabled) {
     Bench bench("loadrt charge_pump\naddf charge-pump t");
     const double before = bench.get("charge-pump.out");
     bench.pass();

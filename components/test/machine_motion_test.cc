@@ -45,7 +45,7 @@ class Watch {
     double velocity_ = 0.0;
 };
 
-TEST(SimpleTp, KeepsItsLimitsWhateverTheTargetDoes_B6) {
+TEST(SimpleTp, KeepsItsLimitsWhateverTheTargetDoes) {
     Bench bench("loadrt simple_tp names=tp\naddf tp.update t\nsetp tp.maxvel 2\nsetp tp.maxaccel 40\nsetp "
                 "tp.enable 1");
     Watch watch(bench, "tp.current-pos", 2, 40);
@@ -67,7 +67,7 @@ TEST(SimpleTp, KeepsItsLimitsWhateverTheTargetDoes_B6) {
     EXPECT_EQ(bench.get("tp.current-pos"), 0.25) << "no speed, no way";
 }
 
-TEST(Steptest, GoesToAndFroWithinItsLimits_B6) {
+TEST(Steptest, GoesToAndFroWithinItsLimits) {
     Bench bench("loadrt steptest names=s\nnet p s.position-cmd s.position-fb\naddf s t\nsetp s.maxvel 2\n"
                 "setp s.maxaccel 40\nsetp s.amplitude 0.1");
     Watch watch(bench, "s.position-cmd", 2, 40);
@@ -93,7 +93,7 @@ TEST(Steptest, GoesToAndFroWithinItsLimits_B6) {
     EXPECT_EQ(watch.velocity(), 0.0);
 }
 
-TEST(Anglejog, MovesBothAxesAlongTheLine_B6) {
+TEST(Anglejog, MovesBothAxesAlongTheLine) {
     Bench bench(
         "loadrt anglejog names=j\naddf j t\nsetp j.max-vel 2\nsetp j.max-accel 40\nsetp j.scale-in 0.1\n"
         "setp j.angle-degrees-in 30");
@@ -114,7 +114,7 @@ TEST(Anglejog, MovesBothAxesAlongTheLine_B6) {
     EXPECT_LT(bench.get("j.current-mag"), 1.7);
 }
 
-TEST(Thc, NeverJumpsAndTakesTheCorrectionBackAsZRises_B6) {
+TEST(Thc, NeverJumpsAndTakesTheCorrectionBackAsZRises) {
     Bench bench(
         "loadrt thc\naddf thc t\nsetp thc.vel-scale 1\nsetp thc.velocity-tol 5\nsetp thc.voltage-tol 1\n"
         "setp thc.correction-vel 0.01\nsetp thc.volts-requested 100\nsetp thc.requested-vel 10\n"
@@ -144,7 +144,7 @@ TEST(Thc, NeverJumpsAndTakesTheCorrectionBackAsZRises_B6) {
     EXPECT_EQ(bench.get("thc.z-pos-out"), 4.0);
 }
 
-TEST(Thcud, FollowsItsInputs_B6) {
+TEST(Thcud, FollowsItsInputs) {
     Bench bench("loadrt thcud\naddf thcud t\nsetp thcud.correction-vel 0.01\nsetp thcud.requested-vel 10\n"
                 "setp thcud.current-vel 10\nsetp thcud.enable 1\nsetp thcud.torch-on 1\nsetp thcud.arc-ok 1\n"
                 "setp thcud.torch-up 1");
@@ -174,7 +174,7 @@ class MoveoffTest : public ::testing::Test {
     }
 };
 
-TEST_F(MoveoffTest, AppliesOffsetsWithinTheirLimits_B6) {
+TEST_F(MoveoffTest, AppliesOffsetsWithinTheirLimits) {
     Watch first(bench, "mv.offset-current-0", 10, 100);
     bench.set("mv.offset-in-0", 3);
     first.pass(50);
@@ -199,7 +199,7 @@ TEST_F(MoveoffTest, AppliesOffsetsWithinTheirLimits_B6) {
     EXPECT_EQ(bench.get("mv.offset-applied"), 0.0);
 }
 
-TEST_F(MoveoffTest, GoesBackTheWayItCame_B6) {
+TEST_F(MoveoffTest, GoesBackTheWayItCame) {
     Watch first(bench, "mv.offset-current-0", 10, 100);
     Watch second(bench, "mv.offset-current-1", 5, 50);
     const auto pass = [&](int periods) {
@@ -231,7 +231,7 @@ TEST_F(MoveoffTest, GoesBackTheWayItCame_B6) {
         << "the straight way would be 0.5 off; waypoints are at most 0.05 from the corner";
 }
 
-TEST_F(MoveoffTest, StopsWithoutRoomAndWithoutPower_B6) {
+TEST_F(MoveoffTest, StopsWithoutRoomAndWithoutPower) {
     Watch first(bench, "mv.offset-current-0", 10, 100);
     bench.set("mv.dbg-waypoint-limit-test", 1);
     bench.set("mv.offset-vel-0", 0.5);
@@ -256,7 +256,7 @@ TEST_F(MoveoffTest, StopsWithoutRoomAndWithoutPower_B6) {
     EXPECT_EQ(bench.get("mv.waypoint-limit"), 0.0);
 }
 
-TEST(MachineOutputs, StayNumbersWhenInputsAreNone_B6) {
+TEST(MachineOutputs, StayNumbersWhenInputsAreNone) {
     const struct {
         const char *load;
         const char *function;

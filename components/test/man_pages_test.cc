@@ -91,7 +91,7 @@ bool isNamed(const std::string &pattern, const std::string &name) {
 
 class ManPage : public ::testing::TestWithParam<std::string> {};
 
-TEST_P(ManPage, NamesEverythingThatTheModuleExports_B6) {
+TEST_P(ManPage, NamesEverythingThatTheModuleExports) {
     const std::string &module = GetParam();
     const std::set<std::string> words = bold_words(page_of(module));
     ASSERT_FALSE(words.empty()) << "no page " << page_of(module) << ".9.scd";

@@ -7,7 +7,7 @@
 namespace mw::components::test {
 namespace {
 
-TEST(Plants, AnAmpTakesItsTimeAndKeepsAFaultUntilItIsOff_C3) {
+TEST(Plants, AnAmpTakesItsTimeAndKeepsAFaultUntilItIsOff) {
     Bench bench("loadrt plant_amp\naddf plant-amp.0 t\nsetp plant-amp.0.rise-s 0.0205");
     bench.set("plant-amp.0.enable", 1);
     bench.pass(20);
@@ -20,7 +20,7 @@ TEST(Plants, AnAmpTakesItsTimeAndKeepsAFaultUntilItIsOff_C3) {
     EXPECT_EQ(bench.after("plant-amp.0.enable", 0, "plant-amp.0.fault"), 0.0);
 }
 
-TEST(Plants, AnAxisFollowsWithInertiaAndPlay_C3) {
+TEST(Plants, AnAxisFollowsWithInertiaAndPlay) {
     Bench bench("loadrt plant_axis\naddf plant-axis.0 t\nsetp plant-axis.0.backlash 0.2");
     const auto lead = [&](double from, double to) {
         for (int i = 1; i <= 500; ++i) {
@@ -43,7 +43,7 @@ TEST(Plants, AnAxisFollowsWithInertiaAndPlay_C3) {
     EXPECT_NEAR(bench.get("plant-axis.0.motor"), 2, 1e-6) << "where the drive's counter is zero";
 }
 
-TEST(Plants, AWeakDriveIsAsFastAsItsTorqueAllows_C3) {
+TEST(Plants, AWeakDriveIsAsFastAsItsTorqueAllows) {
     // A torque of 100 units/s^2 makes 100 units/s^2: 0.5 a t^2 after a tenth of a second.
     Bench weak("loadrt plant_axis\naddf plant-axis.0 t\nsetp plant-axis.0.peak-acceleration 100\n"
                "setp plant-axis.0.powered 1\nsetp plant-axis.0.command 1000");
@@ -52,7 +52,7 @@ TEST(Plants, AWeakDriveIsAsFastAsItsTorqueAllows_C3) {
     EXPECT_NEAR(weak.get("plant-axis.0.velocity"), 10, 0.1);
 }
 
-TEST(Plants, AnEncoderCountsFindsItsIndexAndLosesItsCable_C3) {
+TEST(Plants, AnEncoderCountsFindsItsIndexAndLosesItsCable) {
     Bench bench("loadrt plant_encoder\naddf plant-encoder.0 t\nsetp plant-encoder.0.counts-per-unit 100\n"
                 "setp plant-encoder.0.index-spacing 5\nsetp plant-encoder.0.index-at 1");
     EXPECT_DOUBLE_EQ(bench.after("plant-encoder.0.shaft", 0.0161, "plant-encoder.0.position"), 0.02);
@@ -69,7 +69,7 @@ TEST(Plants, AnEncoderCountsFindsItsIndexAndLosesItsCable_C3) {
     EXPECT_NEAR(bench.after("plant-encoder.0.jump", 1, "plant-encoder.0.position"), 2.25, 1e-12) << "once";
 }
 
-TEST(Plants, ASwitchBouncesAndSettles_C3) {
+TEST(Plants, ASwitchBouncesAndSettles) {
     Bench bench("loadrt plant_switch\naddf plant-switch.0 t\nsetp plant-switch.0.at 10\n"
                 "setp plant-switch.0.hysteresis 0.5\nsetp plant-switch.0.bounce-s 0.02");
     bench.pass(50);
@@ -93,7 +93,7 @@ TEST(Plants, ASwitchBouncesAndSettles_C3) {
     EXPECT_EQ(bench.get("plant-switch.0.contact"), 1.0);
 }
 
-TEST(Plants, AProbeGivesWayAndMayStick_C3) {
+TEST(Plants, AProbeGivesWayAndMayStick) {
     Bench bench("loadrt plant_probe\naddf plant-probe.0 t\nsetp plant-probe.0.surface -5\n"
                 "setp plant-probe.0.pretravel 0.1");
     EXPECT_EQ(bench.after("plant-probe.0.tip", -5.05, "plant-probe.0.contact"), 0.0);
@@ -103,7 +103,7 @@ TEST(Plants, AProbeGivesWayAndMayStick_C3) {
     EXPECT_EQ(bench.after("plant-probe.0.stuck-closed", 1, "plant-probe.0.contact"), 1.0);
 }
 
-TEST(Plants, ASpindleRampsSlipsAndCounts_C3) {
+TEST(Plants, ASpindleRampsSlipsAndCounts) {
     Bench bench("loadrt plant_spindle\nsetp plant-spindle.0.counts-per-turn 100\n"
                 "setp plant-spindle.0.ramp 10\naddf plant-spindle.0 t");
     bench.set("plant-spindle.0.command-rps", 5);

@@ -6,7 +6,7 @@
 
 #include "components/test/bench.hh"
 #include "components/test/modules.hh"
-#include "testing/allocation_guard.hh"
+#include "tests/support/allocation_guard.hh"
 
 namespace mw::components::test {
 namespace {
@@ -29,7 +29,7 @@ void add_all_functions(Bench &bench) {
     }
 }
 
-TEST(EveryComponent, RunsWithoutTheHeap_B3) {
+TEST(EveryComponent, RunsWithoutTheHeap) {
     Bench bench(load_all() + "setp stepgen.0.enable 1\nsetp stepgen.0.position-cmd 100\nsetp pid.0.enable 1\n"
                              "setp pid.1.enable 1\nsetp pid.1.tune-mode 1\nsetp pid.1.tune-start 1\n");
     add_all_functions(bench);
@@ -43,7 +43,7 @@ TEST(EveryComponent, RunsWithoutTheHeap_B3) {
     EXPECT_GT(bench.get("sampler.0.overruns"), 0.0) << "a full queue is no reason to stop";
 }
 
-TEST(EveryComponent, StandsAnyInput_B6) {
+TEST(EveryComponent, StandsAnyInput) {
     Bench bench(load_all());
     add_all_functions(bench);
     const double values[] = {std::nan(""), HUGE_VAL, -HUGE_VAL, 1e300, -1.0, 0.0, 1.0, 4e9};

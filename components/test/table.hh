@@ -79,7 +79,7 @@ class TableBench {
 /// A suite of tables: TABLE_SUITE(Gates) with `const std::vector<Table> GATES = {...}`.
 #define MW_TABLE_SUITE(Suite, tables)                                                                        \
     class Suite : public ::testing::TestWithParam<Table> {};                                                 \
-    TEST_P(Suite, FollowsItsTable_B6) {                                                                      \
+    TEST_P(Suite, FollowsItsTable) {                                                                         \
         TableBench bench(GetParam());                                                                        \
         bench.run();                                                                                         \
     }                                                                                                        \

@@ -27,7 +27,7 @@ class PidBench {
     Bench bench_;
 };
 
-TEST(Pid, AnIndexDoesNotChangeTheOutputWhenCommandAndFeedbackJumpTogether_B6) {
+TEST(Pid, AnIndexDoesNotChangeTheOutputWhenCommandAndFeedbackJumpTogether) {
     PidBench pid("setp pid.0.Pgain 10\nsetp pid.0.Igain 1\nsetp pid.0.FF1 0.001\nsetp pid.0.FF2 0.00001\n"
                  "setp pid.0.Dgain 0.001\nsetp pid.0.enable 1\nsetp pid.0.index-enable 1");
     for (int i = 0; i < 10; ++i) {
@@ -47,7 +47,7 @@ TEST(Pid, AnIndexDoesNotChangeTheOutputWhenCommandAndFeedbackJumpTogether_B6) {
     EXPECT_NEAR(pid.get("output"), pid.get("errorI") + 0.1, 1e-6);
 }
 
-TEST(Pid, AnIndexKeepsOnlyEstimatedDerivatives_B6) {
+TEST(Pid, AnIndexKeepsOnlyEstimatedDerivatives) {
     PidBench pid("newsig v float\nnet v pid.0.feedback-deriv\nsets v 90\nsetp pid.0.Dgain 1\n"
                  "setp pid.0.Pgain 0\nsetp pid.0.enable 1\nsetp pid.0.index-enable 1");
     for (int i = 0; i < 5; ++i) {
@@ -59,7 +59,7 @@ TEST(Pid, AnIndexKeepsOnlyEstimatedDerivatives_B6) {
     EXPECT_NEAR(pid.get("errorD"), 10.0, 1e-6) << "command as estimated before, feedback as linked";
 }
 
-TEST(Pid, EnablingWhileTheCommandMovesAddsNoStep_B6) {
+TEST(Pid, EnablingWhileTheCommandMovesAddsNoStep) {
     for (const double previous_target : {0.0, 1.0}) {
         PidBench pid("setp pid.0.Pgain 1\nsetp pid.0.FF1 0.01\nsetp pid.0.FF2 0.001\nsetp pid.0.FF3 0.001");
         pid.set("error-previous-target", previous_target);
@@ -79,7 +79,7 @@ TEST(Pid, EnablingWhileTheCommandMovesAddsNoStep_B6) {
 }
 
 // LinuxCNC takes the command of the period before the first one for 0.
-TEST(Pid, TheFirstPeriodHasNoDerivativeAndNoPreviousTarget_B6) {
+TEST(Pid, TheFirstPeriodHasNoDerivativeAndNoPreviousTarget) {
     PidBench pid(
         "setp pid.0.Pgain 1\nsetp pid.0.Dgain 1\nsetp pid.0.FF1 1\nsetp pid.0.FF2 1\nsetp pid.0.FF3 1\n"
         "setp pid.0.enable 1");
@@ -93,7 +93,7 @@ TEST(Pid, TheFirstPeriodHasNoDerivativeAndNoPreviousTarget_B6) {
     EXPECT_NEAR(pid.get("commandDD"), 0.0, 1e-4);
 }
 
-TEST(Pid, AValueThatIsNoNumberLeavesNothingBehind_B6) {
+TEST(Pid, AValueThatIsNoNumberLeavesNothingBehind) {
     PidBench pid("newsig f float\nnet f pid.0.feedback-deriv\nsetp pid.0.Pgain 1\nsetp pid.0.Dgain 1\n"
                  "setp pid.0.FF1 1\nsetp pid.0.FF2 1\nsetp pid.0.enable 1");
     for (int i = 0; i < 5; ++i) {
@@ -105,14 +105,14 @@ TEST(Pid, AValueThatIsNoNumberLeavesNothingBehind_B6) {
     EXPECT_NEAR(pid.get("output"), 1.0, 1e-9) << "as in a first period";
 }
 
-TEST(Pid, MaxerrorLimitsTheErrorBeforeDeadband_B6) {
+TEST(Pid, MaxerrorLimitsTheErrorBeforeDeadband) {
     PidBench pid(
         "setp pid.0.Pgain 1\nsetp pid.0.deadband 0.05\nsetp pid.0.maxerror 0.5\nsetp pid.0.enable 1");
     pid.step(2.0, 0.0);
     EXPECT_NEAR(pid.get("output"), 0.45, 1e-12);
 }
 
-TEST(Encoder, AnIndexThatIsTrueInTheFirstPeriodIsNotPassed_B6) {
+TEST(Encoder, AnIndexThatIsTrueInTheFirstPeriodIsNotPassed) {
     for (const char *load : {"encoder", "counter"}) {
         const std::string name = load;
         Bench bench("loadrt " + name + " num_chan=1\nsetp " + name + ".0.phase-Z 1\nsetp " + name +
@@ -128,7 +128,7 @@ TEST(Encoder, AnIndexThatIsTrueInTheFirstPeriodIsNotPassed_B6) {
     }
 }
 
-TEST(Carousel, HasTheSensorsOfItsEncoding_B6) {
+TEST(Carousel, HasTheSensorsOfItsEncoding) {
     struct Case {
         const char *load;
         int pins;
@@ -148,14 +148,14 @@ TEST(Carousel, HasTheSensorsOfItsEncoding_B6) {
     EXPECT_NE(bench.output.errors.find("at most 32"), std::string::npos);
 }
 
-TEST(Pid, InnerValuesArePins_B6) {
+TEST(Pid, InnerValuesArePins) {
     Bench bench(
         "loadrt pid num_chan=1 debug=1\nnet i pid.0.errorI\nnet d <= pid.0.errorD\nnet c pid.0.commandD\n"
         "net cc pid.0.commandDD\nnet ccc pid.0.commandDDD");
     EXPECT_EQ(bench.output.errors, "");
 }
 
-TEST(Stepgen, NoStepBeginsAfterEnableFalls_B6) {
+TEST(Stepgen, NoStepBeginsAfterEnableFalls) {
     for (const char *type : {"0", "1", "2", "9"}) {
         Bench bench(
             "loadrt stepgen step_type=" + std::string(type) +
@@ -177,7 +177,7 @@ TEST(Stepgen, NoStepBeginsAfterEnableFalls_B6) {
     }
 }
 
-TEST(Stepgen, AStepThatHasBegunKeepsItsLength_B6) {
+TEST(Stepgen, AStepThatHasBegunKeepsItsLength) {
     Bench bench("loadrt stepgen step_type=0 ctrl_type=v\nsetp stepgen.0.velocity-cmd 50\n"
                 "setp stepgen.0.steplen 5000000\nsetp stepgen.0.enable 1\naddf stepgen.make-pulses t\n"
                 "addf stepgen.update-freq t");
@@ -193,7 +193,7 @@ TEST(Stepgen, AStepThatHasBegunKeepsItsLength_B6) {
     EXPECT_EQ(high, 6) << "five periods high, the sixth is low";
 }
 
-TEST(Bldc, TheSignOfValueDoesNotReverseTheAlignment_B6) {
+TEST(Bldc, TheSignOfValueDoesNotReverseTheAlignment) {
     struct Case {
         double value, rev, initvalue, phase;
     };
@@ -216,7 +216,7 @@ struct MandatoryCase {
     const char *parameter;
 };
 
-TEST(Loadrt, AMissingMandatoryParameterIsAnErrorThatNamesIt_B6) {
+TEST(Loadrt, AMissingMandatoryParameterIsAnErrorThatNamesIt) {
     for (const MandatoryCase &one : {MandatoryCase{"bldc", "cfg="},
                                      {"carousel", "pockets="},
                                      {"debounce", "cfg="},

@@ -259,7 +259,7 @@ const std::vector<Table> VALUES = {
 
 MW_TABLE_SUITE(ValueTable, VALUES);
 
-TEST(Timedelta, MeasuresThePeriod_B6) {
+TEST(Timedelta, MeasuresThePeriod) {
     Bench bench("loadrt timedelta\naddf timedelta.0 t");
     bench.pass(10);
     EXPECT_EQ(bench.get("timedelta.0.out"), 1e6);
@@ -268,7 +268,7 @@ TEST(Timedelta, MeasuresThePeriod_B6) {
     EXPECT_EQ(bench.get("timedelta.0.avg-err"), 0.0);
 }
 
-TEST(Latencybins, CountsPunctualRunsInBinZero_B6) {
+TEST(Latencybins, CountsPunctualRunsInBinZero) {
     Bench bench("loadrt latencybins\naddf latencybins.0 t\nsetp latencybins.0.nsbinsize 1000");
     bench.pass(11);
     EXPECT_EQ(bench.get("latencybins.0.pbinvalue"), 10.0);
@@ -278,7 +278,7 @@ TEST(Latencybins, CountsPunctualRunsInBinZero_B6) {
     EXPECT_EQ(bench.get("latencybins.0.pbinvalue"), -1.0);
 }
 
-TEST(Message, ShowsItsTextAtTheWantedEdgeOnce_B6) {
+TEST(Message, ShowsItsTextAtTheWantedEdgeOnce) {
     Bench bench("loadrt message messages=Oil names=oil\naddf oil t");
     bench.pass(3);
     ::testing::internal::CaptureStderr();
@@ -290,7 +290,7 @@ TEST(Message, ShowsItsTextAtTheWantedEdgeOnce_B6) {
     EXPECT_EQ(shown, "Oil\nOil\n");
 }
 
-TEST(Pushmsg, EachRisingEdgeShowsTheTextOfItsPin_B6) {
+TEST(Pushmsg, EachRisingEdgeShowsTheTextOfItsPin) {
     Bench bench("loadrt pushmsg emsg=Stuck,Jammed wmsg=Careful\naddf pushmsg t");
     bench.pass(3);
     ::testing::internal::CaptureStderr();
@@ -304,7 +304,7 @@ TEST(Pushmsg, EachRisingEdgeShowsTheTextOfItsPin_B6) {
     EXPECT_EQ(::testing::internal::GetCapturedStderr(), "Jammed\nJammed\n");
 }
 
-TEST(LedDim, LooksAsBrightAsItIsAskedFor_B6) {
+TEST(LedDim, LooksAsBrightAsItIsAskedFor) {
     Bench bench("loadrt led_dim\naddf led-dim.0 t");
     const auto at = [&bench](double lightness) {
         bench.set("led-dim.0.in", lightness);

@@ -2,11 +2,11 @@
 // The message EMC_IO_GENERIC (1605): one declaration gives its encodings, its check and its name.
 #pragma once
 
-#include "msgs/check.hh"
+#include "messages/declarations/check.hh"
 
 // clang-format off
 // begin of the declaration
-namespace mw::msgs {
+namespace mw::messages {
 
 struct EmcIoGeneric {
     int index = 0;
@@ -18,6 +18,6 @@ inline constexpr auto DECLARED<EmcIoGeneric> =
             field<&EmcIoGeneric::index>("index", "number of the output", unit::NONE, range(0, 15)),
             field<&EmcIoGeneric::value>("value", "of the output"));
 
-}  // namespace mw::msgs
+}  // namespace mw::messages
 // end of the declaration
 // clang-format on

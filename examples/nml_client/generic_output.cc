@@ -6,10 +6,10 @@
 #include <cstring>
 #include <string>
 
-#include "diag/sink.hh"
+#include "base/diagnostics/sink.hh"
+#include "clients/nml/bridge/channel.hh"
+#include "clients/nml/config/config_file.hh"
 #include "emc_io_generic.hh"
-#include "nml/bridge/channel.hh"
-#include "nml/config/config_file.hh"
 
 namespace {
 
@@ -21,7 +21,7 @@ int fail_with(const std::string &text) {
 }
 
 int send(nml::Channel &channel, int index, double value) {
-    nml::CommandMessage<msgs::EmcIoGeneric> command{{}, {index, value}};
+    nml::CommandMessage<messages::EmcIoGeneric> command{{}, {index, value}};
     const auto written = channel.write(view(command));
     return written.has_value() ? 0 : fail_with(written.error().str());
 }
@@ -34,11 +34,11 @@ int receive(nml::Channel &channel) {
     if (!message.has_value() || !message->has_value()) {
         return fail_with(message.has_value() ? "no message came" : message.error().str());
     }
-    const auto *generic = (*message)->get<msgs::EmcIoGeneric>();
+    const auto *generic = (*message)->get<messages::EmcIoGeneric>();
     if (generic == nullptr) {
         return fail_with("another message came");
     }
-    const auto allowed = msgs::check(msgs::object(*generic));
+    const auto allowed = messages::check(messages::object(*generic));
     if (!allowed.has_value()) {
         return fail_with(allowed.error().str());
     }
@@ -54,13 +54,13 @@ int main(int count, char **words) {
         std::fprintf(stderr, "usage: %s CONFIG send INDEX VALUE | %s CONFIG receive\n", words[0], words[0]);
         return 2;
     }
-    diag::Sink sink;
+    diagnostics::Sink sink;
     const auto config = nml::load_config(words[1], sink);
     if (!config.has_value()) {
         return fail_with(config.error().str());
     }
     nml::Vocabulary vocabulary = nml::Vocabulary::standard();
-    if (const auto added = vocabulary.add<msgs::EmcIoGeneric>(nml::Base::COMMAND); !added.has_value()) {
+    if (const auto added = vocabulary.add<messages::EmcIoGeneric>(nml::Base::COMMAND); !added.has_value()) {
         return fail_with(added.error().str());
     }
     nml::LocalPlaces local;

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Help of programs in Python in the language of the environment, from the catalogues of the other programs (src/language)."""
+"""Help of programs in Python in the language of the environment, from the catalogues of the other programs (src/base/language)."""
 import argparse
 import gettext
 import os

@@ -8,8 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "base/geometry/pose.hh"
 #include "campaign/design_parts.hh"
-#include "geom/pose.hh"
 
 namespace mw::campaign {
 
@@ -17,11 +17,11 @@ double rounded(double x, double step) {
     return std::round(x / step) * step;
 }
 
-double power(sim::Random &random, double low, double high) {
+double power(plants::Random &random, double low, double high) {
     return rounded(std::pow(10.0, random.real(low, high)), 0.01);
 }
 
-JointDesign make_joint(sim::Random &random, bool isAngular, bool isJerkLimited) {
+JointDesign make_joint(plants::Random &random, bool isAngular, bool isJerkLimited) {
     JointDesign j;
     j.isAngular = isAngular;
     j.velocity = power(random, 1.3, 2.5);
@@ -41,7 +41,7 @@ JointDesign make_joint(sim::Random &random, bool isAngular, bool isJerkLimited) 
     return j;
 }
 
-JointDesign make_plain(sim::Random &random, bool isAngular, double reach, bool isJerkLimited) {
+JointDesign make_plain(plants::Random &random, bool isAngular, double reach, bool isJerkLimited) {
     JointDesign j = make_joint(random, isAngular, isJerkLimited);
     j.velocity = std::max(j.velocity, 60.0);
     j.low = -reach;
@@ -59,7 +59,7 @@ namespace {
 /// Switches of the ends of travel are so far beyond the soft limits, home switches a part of it.
 constexpr double TO_HOME_SWITCH = 1;
 
-void make_homing(sim::Random &random, JointDesign &j) {
+void make_homing(plants::Random &random, JointDesign &j) {
     j.home = rounded(random.real(0.5 * j.low, 0.5 * j.high), 0.1);
     j.home_kind = random.chance(0.4)   ? HomeKind::IMMEDIATE
                   : random.chance(0.5) ? HomeKind::SWITCH
@@ -85,12 +85,12 @@ void make_homing(sim::Random &random, JointDesign &j) {
 }
 
 /// The joints move the axes of the letters.
-void make_trivial(sim::Random &random, Design &d, const std::string &letters) {
+void make_trivial(plants::Random &random, Design &d, const std::string &letters) {
     d.coordinates = letters;
     d.kinematics = "trivkins coordinates=" + letters;
     const bool isSequenced = random.chance(0.5);
     for (std::size_t i = 0; i < letters.size(); ++i) {
-        const int axis = geom::axis_of_letter(letters[i]);
+        const int axis = geometry::axis_of_letter(letters[i]);
         const std::size_t first = letters.find(letters[i]);
         if (first != i) {
             // The other leg of a gantry.
@@ -99,7 +99,7 @@ void make_trivial(sim::Random &random, Design &d, const std::string &letters) {
             d.joints.push_back(twin);
             continue;
         }
-        JointDesign j = make_joint(random, geom::isAngular(axis), d.isJerkLimited);
+        JointDesign j = make_joint(random, geometry::isAngular(axis), d.isJerkLimited);
         make_homing(random, j);
         const bool isGantry = letters.find(letters[i], i + 1) != std::string::npos;
         j.sequence = isSequenced || isGantry ? static_cast<int>(i) : 0;
@@ -127,7 +127,7 @@ void make_trivial(sim::Random &random, Design &d, const std::string &letters) {
 }
 
 /// X and Y by two belts.
-void make_corexy(sim::Random &random, Design &d) {
+void make_corexy(plants::Random &random, Design &d) {
     d.coordinates = "XYZ";
     d.kinematics = "corexykins";
     d.isTrivial = false;
@@ -141,12 +141,13 @@ void make_corexy(sim::Random &random, Design &d) {
 }
 
 /// A trunnion under the tool.
-void make_trunnion(sim::Random &random, Design &d) {
+void make_trunnion(plants::Random &random, Design &d) {
     d.coordinates = "XYZAC";
     d.kinematics = "xyzac-trt-kins";
     d.isTrivial = false;
-    for (const int axis : {geom::AXIS_X, geom::AXIS_Y, geom::AXIS_Z, geom::AXIS_A, geom::AXIS_C}) {
-        const bool isAngular = geom::isAngular(axis);
+    for (const int axis :
+         {geometry::AXIS_X, geometry::AXIS_Y, geometry::AXIS_Z, geometry::AXIS_A, geometry::AXIS_C}) {
+        const bool isAngular = geometry::isAngular(axis);
         d.joints.push_back(make_plain(random, isAngular, isAngular ? 720 : 600, d.isJerkLimited));
         AxisDesign a = axis_of(axis, make_joint(random, isAngular, d.isJerkLimited));
         a.low = isAngular ? -40 : -100;
@@ -158,14 +159,14 @@ void make_trunnion(sim::Random &random, Design &d) {
 }
 
 /// A head that tilts, with a quill.
-void make_head(sim::Random &random, Design &d) {
+void make_head(plants::Random &random, Design &d) {
     d.name = "head";
     d.coordinates = "XYZBCW";
     d.kinematics = "5axiskins";
     d.isTrivial = false;
-    for (const int axis :
-         {geom::AXIS_X, geom::AXIS_Y, geom::AXIS_Z, geom::AXIS_B, geom::AXIS_C, geom::AXIS_W}) {
-        const bool isAngular = geom::isAngular(axis);
+    for (const int axis : {geometry::AXIS_X, geometry::AXIS_Y, geometry::AXIS_Z, geometry::AXIS_B,
+                           geometry::AXIS_C, geometry::AXIS_W}) {
+        const bool isAngular = geometry::isAngular(axis);
         d.joints.push_back(make_plain(random, isAngular, isAngular ? 720 : 900, d.isJerkLimited));
         AxisDesign a = axis_of(axis, make_joint(random, isAngular, d.isJerkLimited));
         a.low = isAngular ? -40 : -60;
@@ -175,7 +176,7 @@ void make_head(sim::Random &random, Design &d) {
 }
 
 /// Three carriages on columns.
-void make_delta(sim::Random &random, Design &d) {
+void make_delta(plants::Random &random, Design &d) {
     d.name = "delta";
     d.coordinates = "XYZ";
     d.kinematics = "lineardeltakins";
@@ -186,15 +187,15 @@ void make_delta(sim::Random &random, Design &d) {
         j.start = j.home = j.home_offset = 450;
         d.joints.push_back(j);
         AxisDesign a = axis_of(axis, make_joint(random, false, d.isJerkLimited));
-        a.low = axis == geom::AXIS_Z ? 80 : -50;
-        a.high = axis == geom::AXIS_Z ? 280 : 50;
+        a.low = axis == geometry::AXIS_Z ? 80 : -50;
+        a.high = axis == geometry::AXIS_Z ? 280 : 50;
         d.axes.push_back(a);
     }
 }
 
 }  // namespace
 
-Design make_other_design(sim::Random &random) {
+Design make_other_design(plants::Random &random) {
     Design d;
     d.isJerkLimited = random.chance(0.4);
     d.velocity = power(random, 1.6, 2.6);
@@ -203,7 +204,7 @@ Design make_other_design(sim::Random &random) {
     return d;
 }
 
-Design make_design(sim::Random &random) {
+Design make_design(plants::Random &random) {
     Design d;
     d.isJerkLimited = random.chance(0.4);
     d.velocity = power(random, 1.6, 2.6);
@@ -228,7 +229,7 @@ Design make_design(sim::Random &random) {
 
 namespace {
 
-void hasten_homing(sim::Random &random, JointDesign &j) {
+void hasten_homing(plants::Random &random, JointDesign &j) {
     constexpr double ROOM = 2.5;                                             // for the stop beyond the switch
     const double jerk_way = j.jerk > 0 ? 0.5 * j.acceleration / j.jerk : 0;  // for each unit/s
     // v (v / 2a + w) = ROOM
@@ -284,7 +285,7 @@ double Design::longest_mean_s() const {
         look(d.isAngular, d.velocity, d.acceleration, d.jerk);
     }
     for (const AxisDesign &x : axes) {
-        look(geom::isAngular(x.axis), x.velocity, x.acceleration, x.jerk);
+        look(geometry::isAngular(x.axis), x.velocity, x.acceleration, x.jerk);
     }
     return isJerkLimited ? most : 0;
 }
@@ -294,7 +295,7 @@ double Design::gentlest_ramp(double turns_s) const {
     return turns_s / (turns_s / spindle.ramp + 2 * (spindle.lag_s + spindle.reaction_s) + READING_S);
 }
 
-void wear(sim::Random &random, Design &design) {
+void wear(plants::Random &random, Design &design) {
     const bool hasPlay = random.chance(0.3);
     const bool hasScrews = random.chance(0.3);
     for (std::size_t n = 0; n < design.joints.size(); ++n) {
@@ -326,7 +327,7 @@ bool Design::hasOffsets() const {
     return std::ranges::any_of(axes, [](const AxisDesign &a) { return a.offset_ratio > 0; });
 }
 
-void allow_offsets(sim::Random &random, Design &design) {
+void allow_offsets(plants::Random &random, Design &design) {
     const bool isWorn =
         std::ranges::any_of(design.joints, [](const JointDesign &j) { return j.isCorrected(); });
     if (isWorn || !design.isTrivial || !random.chance(0.4)) {
@@ -337,8 +338,8 @@ void allow_offsets(sim::Random &random, Design &design) {
     }
 }
 
-void equip_spindle(sim::Random &random, Design &design) {
-    sim::SpindleTraits &s = design.spindle;
+void equip_spindle(plants::Random &random, Design &design) {
+    plants::SpindleTraits &s = design.spindle;
     design.hasSpindlePlant = true;
     s.ramp = random.real(7000, 12000) / 60;
     s.lag_s = random.chance(0.5) ? 0 : random.real(0.001, 0.006);
@@ -347,7 +348,7 @@ void equip_spindle(sim::Random &random, Design &design) {
     s.first_turns = random.real(0, 1);
 }
 
-void shorten(sim::Random &random, Design &design) {
+void shorten(plants::Random &random, Design &design) {
     for (std::size_t n = 0; n < design.joints.size(); ++n) {
         JointDesign &j = design.joints[n];
         const std::size_t first = design.isTrivial ? design.coordinates.find(design.coordinates[n]) : n;
@@ -371,7 +372,7 @@ void shorten(sim::Random &random, Design &design) {
             j.home = j.home_offset = rounded(random.real(0.5 * j.low, 0.5 * j.high), 0.1);
         }
         for (AxisDesign &a : design.axes) {
-            if (a.axis == geom::axis_of_letter(design.coordinates[n])) {
+            if (a.axis == geometry::axis_of_letter(design.coordinates[n])) {
                 a.low = j.low;
                 a.high = j.high;
             }
@@ -450,7 +451,7 @@ std::string Design::write(const std::filesystem::path &folder) const {
         }
     }
     for (const AxisDesign &a : axes) {
-        out += fmt::format("[AXIS_{}]\n{}", geom::AXIS_LETTERS[a.axis], limits_of(a));
+        out += fmt::format("[AXIS_{}]\n{}", geometry::AXIS_LETTERS[a.axis], limits_of(a));
         out += a.offset_ratio > 0 ? fmt::format("OFFSET_AV_RATIO = {}\n", a.offset_ratio) : std::string();
     }
     std::ofstream(folder / "campaign.ini") << out;

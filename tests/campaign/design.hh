@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "sim/axis.hh"
-#include "sim/random.hh"
-#include "sim/spindle_plant.hh"
+#include "components/plants/axis.hh"
+#include "components/plants/random.hh"
+#include "components/plants/spindle_plant.hh"
 
 namespace mw::campaign {
 
@@ -36,7 +36,7 @@ struct JointDesign {
     double index_at = 0;                     ///< position of the joint at one of the marks
     double bounce_s = 0, hysteresis = 0.02;  ///< of the home switch
     double home_switch_at = 0;               ///< closed at and below this position
-    sim::AxisSettings drive;
+    plants::AxisSettings drive;
 
     bool isCorrected() const { return backlash > 0 || screw_type >= 0; }
     /// A table goes so far beyond the soft limits; farther out nobody knows the screw.
@@ -51,7 +51,7 @@ struct JointDesign {
 };
 
 struct AxisDesign {
-    int axis = 0;  ///< geom::Axis
+    int axis = 0;  ///< geometry::Axis
     double velocity = 100, acceleration = 1000, jerk = 0;
     double low = -100, high = 100;
     double offset_ratio = 0;  ///< [AXIS_l]OFFSET_AV_RATIO; 0: no external offsets
@@ -72,7 +72,7 @@ struct Design {
     std::vector<AxisDesign> axes;
     std::string hal_lines;
     bool hasSpindlePlant = false;  ///< else one that follows a ramp exactly
-    sim::SpindleTraits spindle;
+    plants::SpindleTraits spindle;
 
     bool hasOffsets() const;
     /// What acceleration takes to rise, of the slowest [s]; 0: no jerk limits.
@@ -86,18 +86,18 @@ struct Design {
     std::string write(const std::filesystem::path &folder) const;
 };
 
-Design make_design(sim::Random &random);
+Design make_design(plants::Random &random);
 /// Of kinematics that the first plan does not have.
-Design make_other_design(sim::Random &random);
+Design make_other_design(plants::Random &random);
 /// Of kinematics that no plan before the fourth has.
-Design make_further_design(sim::Random &random);
+Design make_further_design(plants::Random &random);
 /// Play and screws that are not even, and what the INI file says about them.
-void wear(sim::Random &random, Design &design);
+void wear(plants::Random &random, Design &design);
 /// Axes that HAL pins may offset; those of machines whose joints are axes and do not wear.
-void allow_offsets(sim::Random &random, Design &design);
+void allow_offsets(plants::Random &random, Design &design);
 /// A spindle with a drive and an encoder.
-void equip_spindle(sim::Random &random, Design &design);
+void equip_spindle(plants::Random &random, Design &design);
 /// Ways become shorter and homing quicker, so that a session has time for more.
-void shorten(sim::Random &random, Design &design);
+void shorten(plants::Random &random, Design &design);
 
 }  // namespace mw::campaign

@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "base/geometry/pose.hh"
 #include "campaign/design_parts.hh"
-#include "geom/pose.hh"
 
 namespace mw::campaign {
 namespace {
@@ -23,14 +23,16 @@ struct Travel {
     double low = 0, high = 0, start = 0;
 };
 
-void build(sim::Random &random, Design &d, const std::vector<Span> &room, const std::vector<Travel> &joints) {
+void build(plants::Random &random, Design &d, const std::vector<Span> &room,
+           const std::vector<Travel> &joints) {
     d.isTrivial = false;
     for (const Span &span : room) {
-        AxisDesign a = axis_of(span.axis, make_joint(random, geom::isAngular(span.axis), d.isJerkLimited));
+        AxisDesign a =
+            axis_of(span.axis, make_joint(random, geometry::isAngular(span.axis), d.isJerkLimited));
         a.low = span.low;
         a.high = span.high;
         d.axes.push_back(a);
-        d.coordinates += geom::AXIS_LETTERS[span.axis];
+        d.coordinates += geometry::AXIS_LETTERS[span.axis];
     }
     for (const Travel &t : joints) {
         JointDesign j = make_plain(random, t.isAngular, 1, d.isJerkLimited);
@@ -41,15 +43,15 @@ void build(sim::Random &random, Design &d, const std::vector<Span> &room, const 
     }
 }
 
-void make_scara(sim::Random &random, Design &d) {
+void make_scara(plants::Random &random, Design &d) {
     d.name = d.kinematics = "scarakins";
     build(random, d,
-          {{geom::AXIS_X, 300, 460},
-           {geom::AXIS_Y, -150, 150},
-           {geom::AXIS_Z, 100, 300},
-           {geom::AXIS_A, -40, 40},
-           {geom::AXIS_B, -40, 40},
-           {geom::AXIS_C, -40, 40}},
+          {{geometry::AXIS_X, 300, 460},
+           {geometry::AXIS_Y, -150, 150},
+           {geometry::AXIS_Z, 100, 300},
+           {geometry::AXIS_A, -40, 40},
+           {geometry::AXIS_B, -40, 40},
+           {geometry::AXIS_C, -40, 40}},
           {{true, -170, 170, -50},
            {true, 5, 170, 100},
            {false, 50, 500, 290},
@@ -58,34 +60,35 @@ void make_scara(sim::Random &random, Design &d) {
            {true, -90, 90, 0}});
 }
 
-void make_rotary_delta(sim::Random &random, Design &d) {
+void make_rotary_delta(plants::Random &random, Design &d) {
     d.name = d.kinematics = "rotarydeltakins";
-    build(random, d, {{geom::AXIS_X, -50, 50}, {geom::AXIS_Y, -50, 50}, {geom::AXIS_Z, -330, -240}},
+    build(random, d,
+          {{geometry::AXIS_X, -50, 50}, {geometry::AXIS_Y, -50, 50}, {geometry::AXIS_Z, -330, -240}},
           {{true, -120, 120, 20}, {true, -120, 120, 20}, {true, -120, 120, 20}});
     d.hal_lines = "setp rotarydeltakins.platformradius 100\nsetp rotarydeltakins.thighlength 150\n"
                   "setp rotarydeltakins.shinlength 300\nsetp rotarydeltakins.footradius 50\n";
 }
 
-void make_hexapod(sim::Random &random, Design &d) {
+void make_hexapod(plants::Random &random, Design &d) {
     d.name = d.kinematics = "genhexkins";
     build(random, d,
-          {{geom::AXIS_X, -4, 4},
-           {geom::AXIS_Y, -4, 4},
-           {geom::AXIS_Z, 16, 26},
-           {geom::AXIS_A, -10, 10},
-           {geom::AXIS_B, -10, 10},
-           {geom::AXIS_C, -10, 10}},
+          {{geometry::AXIS_X, -4, 4},
+           {geometry::AXIS_Y, -4, 4},
+           {geometry::AXIS_Z, 16, 26},
+           {geometry::AXIS_A, -10, 10},
+           {geometry::AXIS_B, -10, 10},
+           {geometry::AXIS_C, -10, 10}},
           std::vector<Travel>(6, {false, 10, 60, 29.7462}));
     d.hal_lines = "setp genhexkins.z 20\n";  // where the forward side begins to look
 }
 
-void make_tilting_head(sim::Random &random, Design &d) {
+void make_tilting_head(plants::Random &random, Design &d) {
     d.name = d.kinematics = "maxkins";
     std::vector<Span> room;
     std::vector<Travel> joints;
-    for (int axis = 0; axis < geom::AXIS_COUNT; ++axis) {
-        const bool isAngular = geom::isAngular(axis);
-        const double reach = isAngular ? 40 : axis < geom::AXIS_A ? 60 : 20;
+    for (int axis = 0; axis < geometry::AXIS_COUNT; ++axis) {
+        const bool isAngular = geometry::isAngular(axis);
+        const double reach = isAngular ? 40 : axis < geometry::AXIS_A ? 60 : 20;
         room.push_back({axis, -reach, reach});
         joints.push_back({isAngular, isAngular ? -720.0 : -900.0, isAngular ? 720.0 : 900.0, 0});
     }
@@ -93,7 +96,7 @@ void make_tilting_head(sim::Random &random, Design &d) {
     d.hal_lines = fmt::format("setp maxkins.pivot-length {}\n", random.whole(1, 150));
 }
 
-void make_pentapod(sim::Random &random, Design &d) {
+void make_pentapod(plants::Random &random, Design &d) {
     d.name = d.kinematics = "pentakins";
     // The lengths of its struts at Z150. Around it there is a room without singular poses; lower ones have
     // none.
@@ -103,29 +106,30 @@ void make_pentapod(sim::Random &random, Design &d) {
         struts.push_back({false, 400, 1800, length});
     }
     build(random, d,
-          {{geom::AXIS_X, -40, 40},
-           {geom::AXIS_Y, -40, 40},
-           {geom::AXIS_Z, 110, 190},
-           {geom::AXIS_A, -6, 6},
-           {geom::AXIS_B, -6, 6}},
+          {{geometry::AXIS_X, -40, 40},
+           {geometry::AXIS_Y, -40, 40},
+           {geometry::AXIS_Z, 110, 190},
+           {geometry::AXIS_A, -6, 6},
+           {geometry::AXIS_B, -6, 6}},
           struts);
     d.hal_lines = "setp pentakins.max-error 500\n";  // the forward side begins to look at Z0
 }
 
-void make_rose(sim::Random &random, Design &d) {
+void make_rose(plants::Random &random, Design &d) {
     d.name = d.kinematics = "rosekins";
-    build(random, d, {{geom::AXIS_X, 40, 120}, {geom::AXIS_Y, -60, 60}, {geom::AXIS_Z, -100, 100}},
+    build(random, d,
+          {{geometry::AXIS_X, 40, 120}, {geometry::AXIS_Y, -60, 60}, {geometry::AXIS_Z, -100, 100}},
           {{false, 1, 400, 80}, {false, -300, 300, 0}, {true, -720, 720, 0}});
 }
 
 }  // namespace
 
-Design make_further_design(sim::Random &random) {
+Design make_further_design(plants::Random &random) {
     Design d;
     d.isJerkLimited = random.chance(0.4);
     d.velocity = power(random, 1.6, 2.6);
     d.acceleration = power(random, 2.5, 3.8);
-    using Make = void (*)(sim::Random &, Design &);
+    using Make = void (*)(plants::Random &, Design &);
     static constexpr Make KINDS[] = {make_scara,        make_rotary_delta, make_hexapod,
                                      make_tilting_head, make_pentapod,     make_rose};
     KINDS[random.whole(0, 5)](random, d);

@@ -8,10 +8,10 @@ namespace mw::campaign {
 
 double rounded(double x, double step);
 /// Ten to the power of something between.
-double power(sim::Random &random, double low, double high);
-JointDesign make_joint(sim::Random &random, bool isAngular, bool isJerkLimited);
+double power(plants::Random &random, double low, double high);
+JointDesign make_joint(plants::Random &random, bool isAngular, bool isJerkLimited);
 /// Of a machine whose joints are not axes: from -reach to reach, homed where it stands.
-JointDesign make_plain(sim::Random &random, bool isAngular, double reach, bool isJerkLimited);
+JointDesign make_plain(plants::Random &random, bool isAngular, double reach, bool isJerkLimited);
 AxisDesign axis_of(int axis, const JointDesign &j);
 
 }  // namespace mw::campaign

@@ -143,7 +143,7 @@ LeastStop Judge::time_to_stop() const {
     double least_s = 0;
     for (const AxisDesign &a : design_.axes) {
         std::vector<double> places;
-        for (const geom::Pose &pose : stop_.path.axes) {
+        for (const geometry::Pose &pose : stop_.path.axes) {
             places.push_back(pose[a.axis]);
         }
         if (!stop_.path.areAxesKnown) {
@@ -151,8 +151,8 @@ LeastStop Judge::time_to_stop() const {
         }
         const double jerk = design_.isJerkLimited ? a.jerk : 0;
         least_s = std::max(least_s, least_stop_with_jerk(places, jerk, period_));
-        groups.push_back({{places}, built_up(geom::isAngular(a.axis), a.acceleration_of_path(), a.jerk)});
-        if (!geom::isAngular(a.axis)) {
+        groups.push_back({{places}, built_up(geometry::isAngular(a.axis), a.acceleration_of_path(), a.jerk)});
+        if (!geometry::isAngular(a.axis)) {
             linear.places.push_back(places);
         }
     }
@@ -175,7 +175,7 @@ double Judge::build_up_s() const {
         look(d.isAngular, d.acceleration, d.jerk);
     }
     for (const AxisDesign &a : design_.axes) {
-        look(geom::isAngular(a.axis), a.acceleration, a.jerk);
+        look(geometry::isAngular(a.axis), a.acceleration, a.jerk);
     }
     return most;
 }
@@ -380,7 +380,7 @@ void Judge::check_room(const Sample &s) {
         const double now = axis_place(s, a.axis);
         if (isJudged &&
             leaves(axis_place(last_, a.axis), now, std::min(a.low, back), std::max(a.high, back))) {
-            fail("room", fmt::format("axis {} goes to {:.9g}", geom::AXIS_LETTERS[a.axis], now));
+            fail("room", fmt::format("axis {} goes to {:.9g}", geometry::AXIS_LETTERS[a.axis], now));
         }
     }
 }

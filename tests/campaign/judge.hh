@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
+#include "base/geometry/pose.hh"
 #include "campaign/design.hh"
 #include "campaign/stop_bound.hh"
-#include "geom/pose.hh"
-#include "testing/limit_checker.hh"
+#include "tests/support/limit_checker.hh"
 
 namespace mw::campaign {
 
@@ -42,8 +42,8 @@ struct Sample {
     double spindle_turns = 0;   ///< in truth
     std::uint32_t outputs = 0;  ///< bit per output that can do work: digital outputs, flood, mist
     bool areAxesKnown = false;  ///< all homed, teleop or coord
-    geom::Pose axes;            ///< commanded, without external offsets
-    geom::Pose offsets;         ///< external ones, which come on top
+    geometry::Pose axes;        ///< commanded, without external offsets
+    geometry::Pose offsets;     ///< external ones, which come on top
     std::vector<JointSample> joints;
 };
 
@@ -62,7 +62,7 @@ struct AwaitedStop {
     /// Commanded since, with the samples that tell the speed as it began.
     struct Path {
         std::vector<std::vector<double>> motors;  ///< by joint, sample
-        std::vector<geom::Pose> axes;
+        std::vector<geometry::Pose> axes;
         bool areAxesKnown = false;
     };
     Path path;

@@ -117,7 +117,7 @@ bool Judge::mayBeAtRest() const {
         isSlow = isSlow && std::abs(velocity_[j]) <= CYCLES * design_.joints[j].acceleration * period_;
     }
     // A play may still be taken up where the path stands.
-    const std::vector<geom::Pose> &path = stop_.path.axes;
+    const std::vector<geometry::Pose> &path = stop_.path.axes;
     bool isPathSlow = last_.areAxesKnown && path.size() > 1;
     for (const AxisDesign &a : design_.axes) {
         isPathSlow = isPathSlow && std::abs(path.back()[a.axis] - path[path.size() - 2][a.axis]) <=

@@ -96,7 +96,7 @@ TEST_F(JudgeTest, FindsWhatLeavesItsRoom) {
     EXPECT_EQ(rule(), "room");
 }
 
-TEST_F(JudgeTest, AsksForTheRoomOfAnAxisWithItsExternalOffset_C15) {
+TEST_F(JudgeTest, AsksForTheRoomOfAnAxisWithItsExternalOffset) {
     judge_.allow(Leave::MOVE);
     move_to(45);
     s_.axes[0] = 55;
@@ -256,7 +256,7 @@ TEST_F(JudgeTest, CountsRulesThatAreKnownToBeBroken) {
     EXPECT_EQ(judge_.broken_known().at("homed"), 3);
 }
 
-TEST(StopBound, WithJerkAnAccelerationThatRisesComesDownFirst_C3) {
+TEST(StopBound, WithJerkAnAccelerationThatRisesComesDownFirst) {
     constexpr double J = 1000;
     const auto moving = [](double v, double a) {
         return std::vector<double>{0, (v - a * T) * T, (2 * v - a * T) * T};

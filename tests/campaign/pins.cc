@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "geom/pose.hh"
+#include "base/geometry/pose.hh"
 
 namespace mw::campaign {
 
@@ -34,7 +34,7 @@ std::string MachinePins::bind(hal::Hal &hal, std::size_t num_joints) {
              bit(joint + "homing"), bit(joint + "index-enable"), bit(joint + "home-sw-in"),
              bit(joint + "pos-lim-sw-in"), bit(joint + "neg-lim-sw-in"), bit(joint + "amp-fault-in")});
     }
-    for (const char c : std::string(geom::AXIS_LETTERS_LOWER)) {
+    for (const char c : std::string(geometry::AXIS_LETTERS_LOWER)) {
         axis_wheels.push_back(wheel(fmt::format("axis.{}.", c)));
         const std::string offset = fmt::format("axis.{}.eoffset", c);
         offsets.push_back({static_cast<volatile std::int32_t *>(find(offset + "-counts", hal::Type::S32)),

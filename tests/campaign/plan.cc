@@ -14,7 +14,7 @@ bool isAlone(const Design &design, int joint) {
     return design.joints[static_cast<std::size_t>(joint)].sequence >= 0;
 }
 
-Act make_jog(sim::Random &random, const Design &design) {
+Act make_jog(plants::Random &random, const Design &design) {
     Act act;
     act.work = random.chance(0.5) ? Work::JOG_JOINT : Work::JOG_AXIS;
     double most = 0;
@@ -42,7 +42,7 @@ Act make_jog(sim::Random &random, const Design &design) {
 }
 
 /// A jog by wheel, on the way of one by command.
-void turn_wheel(sim::Random &random, Act &act) {
+void turn_wheel(plants::Random &random, Act &act) {
     Turning &t = act.turning;
     t.isJoint = act.work == Work::JOG_JOINT;
     t.scale = std::round(std::pow(10.0, random.real(-3, 0)) * 1e4) / 1e4;
@@ -54,7 +54,7 @@ void turn_wheel(sim::Random &random, Act &act) {
     act.work = Work::WHEEL;
 }
 
-Trouble make_trouble(sim::Random &random, const Design &design, bool isPassingWanted, int span_ms,
+Trouble make_trouble(plants::Random &random, const Design &design, bool isPassingWanted, int span_ms,
                      Upset last = Upset::WRONG_COMMANDS) {
     Trouble t;
     const int first_passing = static_cast<int>(Upset::PAUSE);
@@ -77,7 +77,7 @@ Trouble make_trouble(sim::Random &random, const Design &design, bool isPassingWa
 /// Sessions of about a minute, as they were first.
 Plan make_long_plan(std::uint64_t seed) {
     Plan plan;
-    sim::Random random(seed * 0x2545f4914f6cdd1dU + 1);
+    plants::Random random(seed * 0x2545f4914f6cdd1dU + 1);
     plan.design = make_design(random);
     const int acts = random.whole(6, 10);
     int troubles = 0;
@@ -106,7 +106,7 @@ Plan make_long_plan(std::uint64_t seed) {
     return plan;
 }
 
-Act make_act(sim::Random &random, const Design &design, unsigned version) {
+Act make_act(plants::Random &random, const Design &design, unsigned version) {
     Act act;
     const double kind = random.real(0, 1);
     if (kind < 0.5) {
@@ -136,7 +136,7 @@ Act make_act(sim::Random &random, const Design &design, unsigned version) {
     return act;
 }
 
-void make_troubles(sim::Random &random, const Design &design, Act &act) {
+void make_troubles(plants::Random &random, const Design &design, Act &act) {
     const int span_ms = isProgram(act.work) ? 2000 : 900;
     while (random.chance(0.35)) {
         act.troubles.push_back(make_trouble(random, design, true, span_ms, Upset::SPINDLE_OVERRIDE));
@@ -162,7 +162,7 @@ void make_troubles(sim::Random &random, const Design &design, Act &act) {
 Plan make_short_plan(std::uint64_t seed, unsigned version) {
     constexpr int MOST_ACTS = 24;
     Plan plan;
-    sim::Random random(seed * 0x2545f4914f6cdd1dU + (version > 3 ? version : 2));
+    plants::Random random(seed * 0x2545f4914f6cdd1dU + (version > 3 ? version : 2));
     const bool isFurther = version > 3 && random.chance(0.6);
     const bool isOther = random.chance(version > 3 ? 0.3 : 0.12);
     plan.design = isFurther ? make_further_design(random)

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "base/geometry/move_settings.hh"
+#include "base/geometry/pose.hh"
 #include "campaign/design.hh"
-#include "geom/move_settings.hh"
-#include "geom/pose.hh"
 
 namespace mw::campaign {
 
@@ -49,10 +49,10 @@ struct Block {
     std::string text;
     bool isMove = false, isArc = false;
     bool isTimed = true;  ///< the time that it takes can be estimated
-    geom::Pose end, centre;
+    geometry::Pose end, centre;
     double angle_rad = 0;  ///< about +Z
     double dwell_s = 0;
-    geom::MoveSettings settings;
+    geometry::MoveSettings settings;
     ProbeMove probe;
 };
 

@@ -21,7 +21,7 @@ double Writer::probe(const Contact &contact, bool isHigh, int kind, double to) {
     const bool isOut = to > contact.high || to < contact.low;
     feed_ = std::round(std::pow(10.0, random_.real(1.8, 3.3)));
     at_[contact.axis] = to_grid(to);
-    push(fmt::format("G38.{} {}{:.4f} F{:.0f}", kind, geom::AXIS_LETTERS[contact.axis], at_[contact.axis],
+    push(fmt::format("G38.{} {}{:.4f} F{:.0f}", kind, geometry::AXIS_LETTERS[contact.axis], at_[contact.axis],
                      feed_),
          false);
     blocks_.back().probe = {contact.axis, wasOut != isOut, wall, feed_ / 60};
@@ -52,7 +52,7 @@ Act Writer::write_probing() {
         act.contacts.push_back(
             {a.axis, to_grid(at_[a.axis] - random_.real(2, 8)), to_grid(at_[a.axis] + random_.real(2, 8))});
     }
-    const geom::Pose start = at_;
+    const geometry::Pose start = at_;
     const int count = random_.whole(1, 4);
     for (int n = 0; n < count && !act.isToFail; ++n) {
         const Contact &c = act.contacts[static_cast<std::size_t>(
@@ -74,7 +74,7 @@ Act Writer::write_probing() {
             }
         }
         at_ = start;
-        push(fmt::format("G0 {}{:.4f}", geom::AXIS_LETTERS[c.axis], at_[c.axis]), true);
+        push(fmt::format("G0 {}{:.4f}", geometry::AXIS_LETTERS[c.axis], at_[c.axis]), true);
     }
     say("M2");
     act.blocks = std::move(blocks_);

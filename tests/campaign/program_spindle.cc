@@ -11,7 +11,7 @@ namespace mw::campaign {
 
 /// Z with the joints that move along with it: where joints are not axes all that are linear may.
 AxisDesign Writer::z_with_joints() const {
-    AxisDesign z = axis(geom::AXIS_Z);
+    AxisDesign z = axis(geometry::AXIS_Z);
     for (const JointDesign &j : design_.joints) {
         if (!design_.isTrivial && !j.isAngular) {
             z.velocity = std::min(z.velocity, j.velocity);
@@ -48,11 +48,11 @@ void Writer::start_spindle(double rpm) {
 
 /// Passes of G33 at one or two depths.
 void Writer::write_threads(SyncWish &sync) {
-    const AxisDesign &x = axis(geom::AXIS_X);
+    const AxisDesign &x = axis(geometry::AXIS_X);
     sync.kind = Sync::THREAD;
     sync.passes = random_.whole(1, 3);
     for (int n = 0; n < sync.passes; ++n) {
-        const double depth = to_grid(at_[geom::AXIS_X] + 0.01 * n * (x.high - x.low));
+        const double depth = to_grid(at_[geometry::AXIS_X] + 0.01 * n * (x.high - x.low));
         say(fmt::format("G0 X{:.4f} Z{:.4f}", depth, sync.from));
         say(fmt::format("G33 Z{:.4f} K{:.4f}", sync.to, sync.lead));
         say(fmt::format("G0 X{:.4f}", depth + 0.5));
@@ -64,7 +64,7 @@ void Writer::write_cycle(SyncWish &sync) {
     sync.kind = Sync::THREAD;
     sync.passes = 2;
     say(design_.coordinates.find('Y') == std::string::npos || random_.chance(0.5) ? "G18" : "G18");
-    say(fmt::format("G0 X{:.4f} Z{:.4f}", at_[geom::AXIS_X] + 2, sync.from));
+    say(fmt::format("G0 X{:.4f} Z{:.4f}", at_[geometry::AXIS_X] + 2, sync.from));
     say(fmt::format("G76 P{:.4f} Z{:.4f} I-1 J0.4 K0.7 R1 Q0 H1", sync.lead, sync.to));
     say("G17");
 }
@@ -85,7 +85,7 @@ void Writer::write_per_turn(SyncWish &sync) {
 }
 
 void Writer::write_surface(SyncWish &sync) {
-    const AxisDesign &x = axis(geom::AXIS_X);
+    const AxisDesign &x = axis(geometry::AXIS_X);
     sync.kind = Sync::SURFACE;
     sync.passes = 1;
     sync.lead = std::round(random_.real(10, 80));

@@ -32,7 +32,7 @@ std::vector<Block> Writer::write(double seconds) {
         if (random_.chance(0.08)) {
             output();
         }
-        expected += random_.chance(0.3) && hasAxis(geom::AXIS_Y) ? arc() : line();
+        expected += random_.chance(0.3) && hasAxis(geometry::AXIS_Y) ? arc() : line();
     }
     say("M63 P0");
     if (isAdaptive_) {
@@ -58,9 +58,9 @@ void Writer::say(const std::string &text) {
 
 void Writer::set_mode() {
     const int kind = random_.whole(0, 9);
-    settings_.mode = kind == 0   ? geom::PathMode::EXACT_STOP
-                     : kind == 1 ? geom::PathMode::EXACT_PATH
-                                 : geom::PathMode::BLEND;
+    settings_.mode = kind == 0   ? geometry::PathMode::EXACT_STOP
+                     : kind == 1 ? geometry::PathMode::EXACT_PATH
+                                 : geometry::PathMode::BLEND;
     settings_.tolerance = to_grid(std::pow(10.0, random_.real(-1.5, -0.2)));
     settings_.naivecam_tolerance = 0;
     if (kind > 1) {
@@ -111,7 +111,7 @@ void Writer::move_to_start() {
     std::string text = "G0";
     for (const AxisDesign &a : design_.axes) {
         at_[a.axis] = to_grid((a.low > 0 || a.high < 0 ? 1 : 0.5) * place(a));
-        text += fmt::format(" {}{:.4f}", geom::AXIS_LETTERS[a.axis], at_[a.axis]);
+        text += fmt::format(" {}{:.4f}", geometry::AXIS_LETTERS[a.axis], at_[a.axis]);
     }
     push(text, true);
 }
@@ -134,13 +134,13 @@ std::string Writer::feed_word() {
 
 /// The time that it takes at its feed.
 double Writer::line() {
-    const geom::Pose from = at_;
+    const geometry::Pose from = at_;
     const double size = std::pow(10.0, random_.real(-1, 0));
     std::string words;
     for (const AxisDesign &a : design_.axes) {
         if (random_.chance(0.6)) {
             at_[a.axis] = to_grid(at_[a.axis] + size * (place(a) - at_[a.axis]));
-            words += fmt::format(" {}{:.4f}", geom::AXIS_LETTERS[a.axis], at_[a.axis]);
+            words += fmt::format(" {}{:.4f}", geometry::AXIS_LETTERS[a.axis], at_[a.axis]);
         }
     }
     if (words.empty()) {
@@ -148,15 +148,15 @@ double Writer::line() {
     }
     const bool isRapid = random_.chance(0.2);
     push((isRapid ? "G0" : "G1") + words + (isRapid ? std::string() : feed_word()), isRapid);
-    const geom::Pose way = at_ - from;
-    double length = geom::norm_linear(way);
-    length = length > 0 ? length : geom::norm_abc(way);
+    const geometry::Pose way = at_ - from;
+    double length = geometry::norm_linear(way);
+    length = length > 0 ? length : geometry::norm_abc(way);
     return isRapid ? length / design_.velocity : length / (feed_ / 60);
 }
 
 double Writer::arc() {
-    const AxisDesign &x = axis(geom::AXIS_X);
-    const AxisDesign &y = axis(geom::AXIS_Y);
+    const AxisDesign &x = axis(geometry::AXIS_X);
+    const AxisDesign &y = axis(geometry::AXIS_Y);
     const double room = 0.9 * std::min({x.high - at_[0], at_[0] - x.low, y.high - at_[1], at_[1] - y.low});
     if (room < 1) {
         return 0;
@@ -168,16 +168,16 @@ double Writer::arc() {
     const bool isLeft = random_.chance(0.5);
     const double angle = random_.real(0.2, 5.8) * (isLeft ? 1 : -1);
     const double from = std::atan2(-j, -i);
-    geom::Pose centre = at_;
+    geometry::Pose centre = at_;
     centre[0] = at_[0] + i;
     centre[1] = at_[1] + j;
     const double r = std::hypot(i, j);
-    const geom::Pose start = at_;
+    const geometry::Pose start = at_;
     at_[0] = to_grid(centre[0] + r * std::cos(from + angle));
     at_[1] = to_grid(centre[1] + r * std::sin(from + angle));
     std::string text = fmt::format("G{} X{:.4f} Y{:.4f}", isLeft ? 3 : 2, at_[0], at_[1]);
     if (random_.chance(0.3)) {
-        const AxisDesign &z = axis(geom::AXIS_Z);
+        const AxisDesign &z = axis(geometry::AXIS_Z);
         at_[2] = to_grid(at_[2] + 0.2 * (place(z) - at_[2]));
         text += fmt::format(" Z{:.4f}", at_[2]);
     }

@@ -14,7 +14,7 @@ double to_grid(double x);
 
 class Writer {
   public:
-    Writer(sim::Random &random, const Design &design) : random_(random), design_(design) {}
+    Writer(plants::Random &random, const Design &design) : random_(random), design_(design) {}
 
     /// What it writes may wait for inputs (M66) and have adaptive feed (M52). True when it does.
     bool allow_waits();
@@ -52,11 +52,11 @@ class Writer {
     double line();
     double arc();
 
-    sim::Random &random_;
+    plants::Random &random_;
     const Design &design_;
     std::vector<Block> blocks_;
-    geom::MoveSettings settings_;
-    geom::Pose at_;
+    geometry::MoveSettings settings_;
+    geometry::Pose at_;
     double feed_ = 1000;
     bool mayWait_ = false, isAdaptive_ = false;
 };

@@ -20,12 +20,12 @@ constexpr double AMPLIFIER_RISE_S = 0;
 
 }  // namespace
 
-Result<rtapi::PeriodicId> LateScheduler::add(const rtapi::PeriodicSpec &spec) {
-    if (spec.order != rtapi::Order::PLANNER) {
+Result<runtime::PeriodicId> LateScheduler::add(const runtime::PeriodicSpec &spec) {
+    if (spec.order != runtime::Order::PLANNER) {
         return clock_.add(spec);
     }
     planner_ = spec;
-    rtapi::PeriodicSpec mine = spec;
+    runtime::PeriodicSpec mine = spec;
     mine.function = plan;
     mine.argument = this;
     return clock_.add(mine);
@@ -42,13 +42,14 @@ Rig::Rig(const Design &design, std::uint64_t seed, std::string ini)
     : design_(design), ini_(std::move(ini)), spindle_(design.spindle) {
     for (const JointDesign &j : design.joints) {
         const double shaft = j.start + j.screw_error_at(j.start) + j.shaft_offset;
-        sim::AxisSettings drive = j.drive;
+        plants::AxisSettings drive = j.drive;
         drive.backlash = j.play;
-        const sim::EncoderSettings encoder{j.counts_per_unit, j.index_spacing, j.index_at + j.shaft_offset};
-        const sim::SwitchSettings home{j.home_switch_at, false, 0, j.hysteresis, j.bounce_s};
-        plants_.push_back({sim::Axis(drive, shaft), sim::Encoder(encoder, shaft),
-                           sim::BouncingSwitch(home, seed + plants_.size()),
-                           sim::Amplifier(AMPLIFIER_RISE_S)});
+        const plants::EncoderSettings encoder{j.counts_per_unit, j.index_spacing,
+                                              j.index_at + j.shaft_offset};
+        const plants::SwitchSettings home{j.home_switch_at, false, 0, j.hysteresis, j.bounce_s};
+        plants_.push_back({plants::Axis(drive, shaft), plants::Encoder(encoder, shaft),
+                           plants::BouncingSwitch(home, seed + plants_.size()),
+                           plants::Amplifier(AMPLIFIER_RISE_S)});
     }
     joint_faults.resize(plants_.size());
     sample_.joints.resize(plants_.size());
@@ -95,7 +96,7 @@ std::string Rig::start() {
         return "no pin " + missing;
     }
     const auto periodic =
-        scheduler_.add({"task", PERIOD_NS, rtapi::Order::TASK,
+        scheduler_.add({"task", PERIOD_NS, runtime::Order::TASK,
                         [](void *self, std::int64_t) { static_cast<Rig *>(self)->step_task(); }, this});
     if (!periodic) {
         return periodic.error().str();
@@ -198,7 +199,7 @@ void Rig::take_sample() {
         out.isTruthKnown = p.isTruthKnown;
         out.offset =
             design_.isTrivial
-                ? *pins_.offsets[static_cast<std::size_t>(geom::axis_of_letter(design_.coordinates[j]))]
+                ? *pins_.offsets[static_cast<std::size_t>(geometry::axis_of_letter(design_.coordinates[j]))]
                        .offset
                 : 0;
         out.isAmpOn = *pins.is_amp_on;
@@ -228,7 +229,7 @@ void Rig::set_contacts(const std::vector<Contact> &contacts) {
     walls_.clear();
     areWallsUp_ = false;
     for (const Contact &c : contacts) {
-        const std::size_t joint = design_.coordinates.find(geom::AXIS_LETTERS[c.axis]);
+        const std::size_t joint = design_.coordinates.find(geometry::AXIS_LETTERS[c.axis]);
         // What machine and plant call a place differs where joints are homed as they stand.
         const double by = plants_[joint].slide - sample_.joints[joint].pos_cmd;
         walls_.push_back({joint, {c.axis, c.low + by, c.high + by}});

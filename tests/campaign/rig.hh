@@ -7,39 +7,39 @@
 #include <string>
 #include <vector>
 
+#include "base/diagnostics/sink.hh"
 #include "campaign/design.hh"
 #include "campaign/judge.hh"
 #include "campaign/pins.hh"
 #include "campaign/plan.hh"
-#include "diag/sink.hh"
-#include "machine/loaded_config.hh"
-#include "machine/machine.hh"
-#include "machine/task_side.hh"
-#include "rtapi/virtual_scheduler.hh"
-#include "sim/amplifier.hh"
-#include "sim/axis.hh"
-#include "sim/bouncing_switch.hh"
-#include "sim/encoder.hh"
-#include "sim/spindle_plant.hh"
+#include "components/plants/amplifier.hh"
+#include "components/plants/axis.hh"
+#include "components/plants/bouncing_switch.hh"
+#include "components/plants/encoder.hh"
+#include "components/plants/spindle_plant.hh"
+#include "machine/assembly/machine.hh"
+#include "machine/assembly/task_side.hh"
+#include "machine/config/loaded_config.hh"
+#include "runtime/virtual_scheduler.hh"
 
 namespace mw::campaign {
 
 /// The virtual clock, under which the planner may miss periods.
-class LateScheduler final : public rtapi::Scheduler {
+class LateScheduler final : public runtime::Scheduler {
   public:
     std::int64_t now_ns() const noexcept override { return clock_.now_ns(); }
     bool isVirtual() const noexcept override { return true; }
-    Result<rtapi::PeriodicId> add(const rtapi::PeriodicSpec &spec) override;
-    void remove(rtapi::PeriodicId id) override { clock_.remove(id); }
-    rtapi::PeriodicStats stats(rtapi::PeriodicId id) const override { return clock_.stats(id); }
+    Result<runtime::PeriodicId> add(const runtime::PeriodicSpec &spec) override;
+    void remove(runtime::PeriodicId id) override { clock_.remove(id); }
+    runtime::PeriodicStats stats(runtime::PeriodicId id) const override { return clock_.stats(id); }
     void run_until(std::int64_t time_ns) { clock_.run_until(time_ns); }
 
     bool isPlannerHeld = false;
 
   private:
     static void plan(void *self, std::int64_t period_ns);
-    rtapi::VirtualScheduler clock_;
-    rtapi::PeriodicSpec planner_;
+    runtime::VirtualScheduler clock_;
+    runtime::PeriodicSpec planner_;
 };
 
 /// Faults of the pins and plants of one joint.
@@ -57,10 +57,10 @@ struct MachineFaults {
 
 /// A joint's motor with what is around it.
 struct Plant {
-    sim::Axis axis;
-    sim::Encoder encoder;
-    sim::BouncingSwitch home_switch;
-    sim::Amplifier amplifier;
+    plants::Axis axis;
+    plants::Encoder encoder;
+    plants::BouncingSwitch home_switch;
+    plants::Amplifier amplifier;
     double slide = 0;   ///< where it is
     double turned = 0;  ///< by how much index marks have moved the encoder's zero
     int resets = 0;
@@ -138,19 +138,19 @@ class Rig final : public machine::Machine {
 
     const Design &design_;
     std::string ini_;
-    diag::Sink sink_;
+    diagnostics::Sink sink_;
     LateScheduler scheduler_;
     std::unique_ptr<machine::LoadedConfig> loaded_;
     std::unique_ptr<hal::LocalHost> host_;
     std::unique_ptr<machine::TaskSide> side_;
-    rtapi::PeriodicId periodic_{};
+    runtime::PeriodicId periodic_{};
     std::vector<Wall> walls_;
     bool areWallsUp_ = false;
     WheelPins *wheel_ = nullptr;
     std::vector<Plant> plants_;
     MachinePins pins_{};
     double spindle_rpm_ = 0, spindle_turns_ = 0;
-    sim::SpindlePlant spindle_;
+    plants::SpindlePlant spindle_;
     std::uint64_t cycles_ = 0;
     Sample sample_;
 };

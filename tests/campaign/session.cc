@@ -94,7 +94,7 @@ void Session::cycle() {
     }
 }
 
-client::Serial Session::post(const msgs::Command &command) {
+client::Serial Session::post(const messages::Command &command) {
     ++verdict_.commands;
     const auto posted = rig_->client().post(command);
     if (!posted) {
@@ -108,16 +108,16 @@ Session::End Session::wait(client::Serial command, double most_s) {
     for (double t = 0; t < most_s && !isOver(); t += PERIOD_S) {
         const client::Outcome outcome = rig_->client().outcome(command);
         switch (outcome.progress) {
-        case msgs::Progress::DONE: return End::DONE;
-        case msgs::Progress::REFUSED:
-        case msgs::Progress::FAILED:
+        case messages::Progress::DONE: return End::DONE;
+        case messages::Progress::REFUSED:
+        case messages::Progress::FAILED:
             ++verdict_.refused;
             ++verdict_.refusals[kind_of(outcome.reason)];
             if (tell_ != nullptr) {
                 std::fprintf(tell_, "  refused: %s\n", outcome.reason.c_str());
             }
-            return outcome.progress == msgs::Progress::REFUSED ? End::REFUSED : End::FAILED;
-        case msgs::Progress::STARTED: break;
+            return outcome.progress == messages::Progress::REFUSED ? End::REFUSED : End::FAILED;
+        case messages::Progress::STARTED: break;
         }
         step_troubles();
         cycle();
@@ -125,7 +125,7 @@ Session::End Session::wait(client::Serial command, double most_s) {
     return End::LATE;
 }
 
-Session::End Session::ask(const msgs::Command &command, double most_s) {
+Session::End Session::ask(const messages::Command &command, double most_s) {
     return wait(post(command), most_s);
 }
 
@@ -141,16 +141,16 @@ void Session::settle(double most_s) {
     }
 }
 
-msgs::State Session::state() {
+messages::State Session::state() {
     return rig_->client().status().task.state;
 }
 
-bool Session::set_mode(msgs::Mode mode) {
+bool Session::set_mode(messages::Mode mode) {
     const int sure = static_cast<int>(judge_.time_to_be_sure() / PERIOD_S);
     for (int i = 0; i < sure && !rig_->isInPosition() && !isOver(); ++i) {
         cycle();
     }
-    const End end = ask(msgs::SetMode{mode});
+    const End end = ask(messages::SetMode{mode});
     if (end != End::DONE && !isStopped_) {
         fail("work", "the mode is not set with the machine at rest");
     }
@@ -174,33 +174,33 @@ void Session::await_slides() {
 
 bool Session::switch_on() {
     constexpr int TRIES = 3;
-    for (int i = 0; i < TRIES && !isOver() && state() != msgs::State::ON; ++i) {
-        ask(msgs::SetState{msgs::State::ESTOP_RESET});
+    for (int i = 0; i < TRIES && !isOver() && state() != messages::State::ON; ++i) {
+        ask(messages::SetState{messages::State::ESTOP_RESET});
         judge_.allow(Leave::SWITCH_ON);
-        ask(msgs::SetState{msgs::State::ON});
+        ask(messages::SetState{messages::State::ON});
         settle(LONGEST_CALM_S);
-        if (state() != msgs::State::ON) {
+        if (state() != messages::State::ON) {
             await_slides();
         }
     }
-    if (!isOver() && state() != msgs::State::ON) {
+    if (!isOver() && state() != messages::State::ON) {
         fail("work", "the machine cannot be switched on with nothing wrong");
     }
     return !isOver();
 }
 
 bool Session::home() {
-    if (!set_mode(msgs::Mode::MANUAL)) {
+    if (!set_mode(messages::Mode::MANUAL)) {
         return false;
     }
-    ask(msgs::SetTeleop{false});
+    ask(messages::SetTeleop{false});
     settle(LONGEST_CALM_S);
     judge_.allow(Leave::MOVE);
-    ask(msgs::UnhomeJoint{-1});
+    ask(messages::UnhomeJoint{-1});
     if (isStopped_) {
         return false;  // whoever stops the machine does not home it at once
     }
-    const End end = ask(msgs::HomeJoint{-1}, 120);
+    const End end = ask(messages::HomeJoint{-1}, 120);
     settle(5);
     if (!isOver() && !isStopped_ && end != End::DONE) {
         fail("work", "homing does not end well with nothing wrong");
@@ -211,7 +211,7 @@ bool Session::home() {
 /// An operator who wants to work without them. An offset stays as long as the axis would be beyond its limits
 /// without it.
 bool Session::clear_offsets() {
-    if (!set_mode(msgs::Mode::MANUAL) || ask(msgs::SetTeleop{true}) != End::DONE) {
+    if (!set_mode(messages::Mode::MANUAL) || ask(messages::SetTeleop{true}) != End::DONE) {
         return false;
     }
     settle(LONGEST_CALM_S);
@@ -220,7 +220,7 @@ bool Session::clear_offsets() {
         const double place = rig_->sample().axes[a.axis];
         const double inside = std::clamp(place, a.low, a.high);
         if (inside != place) {
-            ask(msgs::JogIncrement{false, a.axis, a.velocity, inside - place});
+            ask(messages::JogIncrement{false, a.axis, a.velocity, inside - place});
         }
     }
     rig_->clear_offsets(true);
@@ -254,7 +254,7 @@ bool Session::prepare() {
     }
     settle(10);
     if (!areEncodersTrue_ && rig_->isAskew()) {
-        ask(msgs::SetState{msgs::State::OFF});
+        ask(messages::SetState{messages::State::OFF});
         settle(10);
         rig_->straighten();
         cycle();
@@ -262,8 +262,8 @@ bool Session::prepare() {
     if (isOver() || !switch_on()) {
         return false;
     }
-    ask(msgs::SetFeedOverride{1});
-    ask(msgs::SetRapidOverride{1});
+    ask(messages::SetFeedOverride{1});
+    ask(messages::SetRapidOverride{1});
     if (!areEncodersTrue_ || !rig_->client().status().trajectory.isAllHomed) {
         if (!home()) {
             return false;
@@ -272,7 +272,7 @@ bool Session::prepare() {
         areEncodersTrue_ = true;
     }
     if (plan_.design.hasSpindlePlant) {
-        ask(msgs::SetSpindleOverride{1, 0});
+        ask(messages::SetSpindleOverride{1, 0});
     }
     return !isOver() && (!rig_->hasOffset() || clear_offsets());
 }

@@ -54,18 +54,18 @@ class Session {
     void cycle();
     void fail(const std::string &rule, const std::string &text);
     bool isOver() const { return !verdict_.fault.empty() || isTaskGone_; }
-    client::Serial post(const msgs::Command &command);
+    client::Serial post(const messages::Command &command);
     End wait(client::Serial command, double most_s);
-    End ask(const msgs::Command &command, double most_s = 5);
+    End ask(const messages::Command &command, double most_s = 5);
     void settle(double most_s);
-    msgs::State state();
+    messages::State state();
 
     bool prepare();
     void await_slides();
     bool switch_on();
     bool home();
     bool clear_offsets();
-    bool set_mode(msgs::Mode mode);
+    bool set_mode(messages::Mode mode);
 
     void perform(const Act &act);
     void run_program(const Act &act);
@@ -82,14 +82,14 @@ class Session {
     void begin_offset(const Trouble &t);
     void begin_stop(const Trouble &t);
     void end(const Trouble &t);
-    void check_program(const Act &act, const geom::Pose &from, double took_s);
+    void check_program(const Act &act, const geometry::Pose &from, double took_s);
     void check_sync(const Act &act, End end);
     void check_helix(const SyncWish &sync);
     void check_per_turn(const SyncWish &sync);
     void check_surface(const SyncWish &sync);
     bool isProbeMoved(const Act &act) const;
     void check_probing(const Act &act, End end);
-    double estimate(const Act &act, const geom::Pose &from) const;
+    double estimate(const Act &act, const geometry::Pose &from) const;
 
     const Plan &plan_;
     std::filesystem::path folder_;
@@ -112,7 +112,7 @@ class Session {
     std::uint64_t commanded_ = 0;  ///< cycle of the last commands of any kind
     bool isStopped_ = false, isDisturbed_ = false, isReversed_ = false;
     bool isRecording_ = false;
-    std::vector<geom::Pose> path_;
+    std::vector<geometry::Pose> path_;
     std::vector<JointSample> led_;  ///< the joints where path_ ends
     double led_s_ = 0;  ///< time in which joints were led to where the axes stood before the first move
     std::vector<double> turns_, rpm_;     ///< of the spindle, with path_

@@ -14,7 +14,7 @@ constexpr int LONGEST_MS = 120000;
 }  // namespace
 
 bool Session::begin_manual(bool isJoint) {
-    if (!set_mode(msgs::Mode::MANUAL) || ask(msgs::SetTeleop{!isJoint}) != End::DONE) {
+    if (!set_mode(messages::Mode::MANUAL) || ask(messages::SetTeleop{!isJoint}) != End::DONE) {
         fail("work", "the jogs' mode is not set with the machine at rest");
         return false;
     }
@@ -61,7 +61,7 @@ void Session::keep_lease(const Act &act) {
     const int every = std::max(1, act.lease_ms / 3);
     for (int i = 0; i < act.length_ms && !isOver(); ++i) {
         if (i % every == 0 && !isStopped_) {
-            post(msgs::JogContinuous{isJoint, act.target, act.velocity, act.lease_ms, true});
+            post(messages::JogContinuous{isJoint, act.target, act.velocity, act.lease_ms, true});
         }
         step_troubles();
         cycle();
@@ -87,8 +87,8 @@ void Session::jog(const Act &act) {
     judge_.allow(Leave::MOVE);
     const bool isIncrement = act.distance != 0;
     const client::Serial posted =
-        isIncrement ? post(msgs::JogIncrement{isJoint, act.target, std::abs(act.velocity), act.distance})
-                    : post(msgs::JogContinuous{isJoint, act.target, act.velocity, act.lease_ms, false});
+        isIncrement ? post(messages::JogIncrement{isJoint, act.target, std::abs(act.velocity), act.distance})
+                    : post(messages::JogContinuous{isJoint, act.target, act.velocity, act.lease_ms, false});
     const End end = wait(posted, 5);
     if (act.lease_ms > 0) {
         keep_lease(act);
@@ -98,7 +98,7 @@ void Session::jog(const Act &act) {
             cycle();
         }
         if (!isIncrement) {
-            ask(msgs::JogStop{isJoint, act.target});
+            ask(messages::JogStop{isJoint, act.target});
         }
     }
     for (int i = 0; i < LONGEST_MS && !isOver() && !(judge_.isAtRest() && rig_->isInPosition()); ++i) {

@@ -70,7 +70,7 @@ void Session::check_probing(const Act &act, End end) {
         }
         ++moves;
         const JointDesign &joint =
-            plan_.design.joints[plan_.design.coordinates.find(geom::AXIS_LETTERS[probe.axis])];
+            plan_.design.joints[plan_.design.coordinates.find(geometry::AXIS_LETTERS[probe.axis])];
         const double late = 2.5 * probe.speed * PERIOD_S + 3 / joint.counts_per_unit + 0.02 + 2 * joint.play +
                             2 * joint.screw_error;
         farthest[probe.axis] =
@@ -93,7 +93,7 @@ void Session::check_probing(const Act &act, End end) {
     for (const auto &[axis, most] : farthest) {
         if (beyond_walls_[axis] > most) {
             fail("probe", fmt::format("it goes {:.4g} beyond a wall of {}, {:.4g} allowed",
-                                      beyond_walls_[axis], geom::AXIS_LETTERS[axis], most));
+                                      beyond_walls_[axis], geometry::AXIS_LETTERS[axis], most));
         }
     }
 }

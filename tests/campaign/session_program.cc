@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "campaign/session.hh"
-#include "machine/time_estimate.hh"
-#include "testing/deviation.hh"
+#include "machine/analysis/time_estimate.hh"
+#include "tests/support/deviation.hh"
 
 namespace mw::campaign {
 namespace {
@@ -16,26 +16,26 @@ namespace {
 constexpr double PERIOD_S = 1e-3;
 constexpr int WATCHDOG_MS = 500;
 
-geom::Pose on_arc(const geom::Pose &from, const Block &b, double share) {
+geometry::Pose on_arc(const geometry::Pose &from, const Block &b, double share) {
     const double x = from[0] - b.centre[0];
     const double y = from[1] - b.centre[1];
     const double last = std::hypot(b.end[0] - b.centre[0], b.end[1] - b.centre[1]);
     const double r = std::hypot(x, y) + share * (last - std::hypot(x, y));
     const double angle = std::atan2(y, x) + share * b.angle_rad;
-    geom::Pose p = from + (b.end - from) * share;
+    geometry::Pose p = from + (b.end - from) * share;
     p[0] = b.centre[0] + r * std::cos(angle);
     p[1] = b.centre[1] + r * std::sin(angle);
     return p;
 }
 
 /// The programmed path, cut into steps of at most `step`.
-std::vector<geom::Pose> programmed_path(const Act &act, const geom::Pose &from, double step) {
-    std::vector<geom::Pose> path{from};
+std::vector<geometry::Pose> programmed_path(const Act &act, const geometry::Pose &from, double step) {
+    std::vector<geometry::Pose> path{from};
     for (const Block &b : act.blocks) {
         if (!b.isMove) {
             continue;
         }
-        const geom::Pose start = path.back();
+        const geometry::Pose start = path.back();
         double length = testing::pose_distance(b.end, start);
         if (b.isArc) {
             length += std::abs(b.angle_rad) * std::hypot(start[0] - b.centre[0], start[1] - b.centre[1]);
@@ -62,13 +62,13 @@ double offset_of(const Trouble &t) {
 
 /// A move that is read when the offset is there already may be refused: together they are beyond a soft
 /// limit.
-bool isRoomShort(const Design &design, const Act &act, const geom::Pose &from) {
+bool isRoomShort(const Design &design, const Act &act, const geometry::Pose &from) {
     constexpr double STEP = 0.5, SLACK = 0.1;
-    const std::vector<geom::Pose> path = programmed_path(act, from, STEP);
+    const std::vector<geometry::Pose> path = programmed_path(act, from, STEP);
     return std::ranges::any_of(act.troubles, [&](const Trouble &t) {
         const AxisDesign &axis = offset_axis(design, t);
         return t.what == Upset::OFFSET && axis.offset_ratio > 0 &&
-               std::ranges::any_of(path, [&](const geom::Pose &p) {
+               std::ranges::any_of(path, [&](const geometry::Pose &p) {
                    const double place = p[axis.axis] + offset_of(t);
                    return place > axis.high - SLACK || place < axis.low + SLACK;
                });
@@ -84,12 +84,12 @@ void Session::run_program(const Act &act) {
         out << b.text << '\n';
     }
     out.close();
-    if (!set_mode(msgs::Mode::AUTO) || ask(msgs::OpenProgram{file}) != End::DONE) {
+    if (!set_mode(messages::Mode::AUTO) || ask(messages::OpenProgram{file}) != End::DONE) {
         fail("work", "the program is not opened with the machine at rest");
         return;
     }
     settle(LONGEST_CALM_S);
-    const geom::Pose from = rig_->sample().axes;
+    const geometry::Pose from = rig_->sample().axes;
     path_.clear();
     path_.push_back(from);
     led_.clear();
@@ -101,7 +101,7 @@ void Session::run_program(const Act &act) {
     rig_->set_contacts(act.contacts);
     if (act.sync.kind == Sync::TAP) {
         constexpr double LAGS = 7, SLACK_S = 0.05;
-        const sim::SpindleTraits &spindle = plan_.design.spindle;
+        const plants::SpindleTraits &spindle = plan_.design.spindle;
         judge_.stops_later_s = 2 * std::abs(act.sync.rpm) / 60 / spindle.ramp + LAGS * spindle.lag_s +
                                spindle.reaction_s + SLACK_S;
     }
@@ -117,7 +117,7 @@ void Session::run_program(const Act &act) {
     judge_.allow(Leave::WORK);
     ++verdict_.programs;
     const std::uint64_t begin = rig_->sample().cycle;
-    const End end = wait(post(msgs::RunProgram{}), 300);
+    const End end = wait(post(messages::RunProgram{}), 300);
     const double took_s = static_cast<double>(rig_->sample().cycle - begin) * PERIOD_S;
     isRecording_ = false;
     if (isOver()) {
@@ -142,14 +142,14 @@ void Session::run_program(const Act &act) {
 }
 
 /// It is at its end, has been everywhere in order within the tolerance, and was not slow.
-void Session::check_program(const Act &act, const geom::Pose &from, double took_s) {
+void Session::check_program(const Act &act, const geometry::Pose &from, double took_s) {
     double tolerance = 1e-3;
-    geom::Pose last = from;
+    geometry::Pose last = from;
     for (const Block &b : act.blocks) {
         tolerance = std::max(tolerance, b.isMove ? b.settings.tolerance : 0.0);
         last = b.isMove ? b.end : last;
     }
-    const geom::Pose &at = rig_->sample().axes;
+    const geometry::Pose &at = rig_->sample().axes;
     if (testing::pose_distance(at, last) > (plan_.design.isTrivial ? 1e-9 : 1e-6)) {
         fail("work", fmt::format("the program ends {:.3g} from its end", testing::pose_distance(at, last)));
         return;
@@ -188,7 +188,7 @@ void Session::check_program(const Act &act, const geom::Pose &from, double took_
     }
 }
 
-double Session::estimate(const Act &act, const geom::Pose &from) const {
+double Session::estimate(const Act &act, const geometry::Pose &from) const {
     machine::TimeEstimate time(rig_->config());
     time.start(from);
     bool isCutWaiting = false;
@@ -201,10 +201,10 @@ double Session::estimate(const Act &act, const geom::Pose &from) const {
         }
         isCutWaiting = (isCutWaiting || isStart) && !isCut;
         if (b.isArc) {
-            interp::ArcMove arc;
+            gcode::ArcMove arc;
             arc.end = b.end;
             arc.centre = b.centre;
-            arc.normal[geom::AXIS_Z] = 1;
+            arc.normal[geometry::AXIS_Z] = 1;
             arc.angle_rad = b.angle_rad;
             arc.settings = b.settings;
             time.arc(arc);
@@ -260,15 +260,15 @@ void Session::begin_stop(const Trouble &t) {
     count.judged += judge_.isAtRest() ? 0 : 1;
     switch (t.what) {
     case Upset::ABORT:
-        post(msgs::AbortAll{});
+        post(messages::AbortAll{});
         judge_.stop(Stop::ALONG_THE_PATH, TO_TASK);
         break;
     case Upset::OFF:
-        post(msgs::SetState{msgs::State::OFF});
+        post(messages::SetState{messages::State::OFF});
         judge_.stop(Stop::AT_ONCE, TO_TASK);
         break;
     case Upset::ESTOP_COMMAND:
-        post(msgs::SetState{msgs::State::ESTOP});
+        post(messages::SetState{messages::State::ESTOP});
         judge_.stop(Stop::AT_ONCE, TO_TASK);
         break;
     case Upset::ESTOP:
@@ -339,10 +339,10 @@ void Session::begin_offset(const Trouble &t) {
 
 void Session::begin(const Trouble &t) {
     switch (t.what) {
-    case Upset::PAUSE: post(msgs::PauseProgram{}); break;
+    case Upset::PAUSE: post(messages::PauseProgram{}); break;
     case Upset::SPINDLE_NAN: rig_->faults.isSpindleNan = true; break;
-    case Upset::FEED_OVERRIDE: post(msgs::SetFeedOverride{t.value < 0.1 ? 0 : 1.5 * t.value}); break;
-    case Upset::RAPID_OVERRIDE: post(msgs::SetRapidOverride{t.value}); break;
+    case Upset::FEED_OVERRIDE: post(messages::SetFeedOverride{t.value < 0.1 ? 0 : 1.5 * t.value}); break;
+    case Upset::RAPID_OVERRIDE: post(messages::SetRapidOverride{t.value}); break;
     case Upset::FEED_INHIBIT: rig_->faults.isFeedInhibited = true; break;
     case Upset::ADAPTIVE_NAN: rig_->faults.isAdaptiveNan = true; break;
     case Upset::OFFSET: begin_offset(t); break;
@@ -350,7 +350,7 @@ void Session::begin(const Trouble &t) {
         rig_->faults.adaptive_feed = 2 * t.value - 1;
         isReversed_ = isReversed_ || t.value < 0.5;
         break;
-    case Upset::SPINDLE_OVERRIDE: post(msgs::SetSpindleOverride{0.5 + t.value, 0}); break;
+    case Upset::SPINDLE_OVERRIDE: post(messages::SetSpindleOverride{0.5 + t.value, 0}); break;
     case Upset::PLANNER_LATE:
     case Upset::PLANNER_LOST: rig_->hold_planner(true); break;
     default:
@@ -358,12 +358,12 @@ void Session::begin(const Trouble &t) {
             // Those that come when the program has just ended are commands as any others.
             judge_.allow(Leave::WORK);
             commanded_ = rig_->sample().cycle;
-            post(msgs::SetMode{msgs::Mode::MANUAL});
-            post(msgs::JogIncrement{false, 0, 5, 5});
-            post(msgs::JogContinuous{true, t.joint, 5, 0, false});
-            post(msgs::HomeJoint{-1});
-            post(msgs::RunProgram{});
-            post(msgs::Mdi{"G0 X1"});
+            post(messages::SetMode{messages::Mode::MANUAL});
+            post(messages::JogIncrement{false, 0, 5, 5});
+            post(messages::JogContinuous{true, t.joint, 5, 0, false});
+            post(messages::HomeJoint{-1});
+            post(messages::RunProgram{});
+            post(messages::Mdi{"G0 X1"});
         }
         break;
     }
@@ -372,14 +372,14 @@ void Session::begin(const Trouble &t) {
 void Session::end(const Trouble &t) {
     JointFaults &pins = rig_->joint_faults[static_cast<std::size_t>(t.joint)];
     switch (t.what) {
-    case Upset::PAUSE: post(msgs::ResumeProgram{}); break;
+    case Upset::PAUSE: post(messages::ResumeProgram{}); break;
     case Upset::SPINDLE_NAN: rig_->faults.isSpindleNan = false; break;
-    case Upset::FEED_OVERRIDE: post(msgs::SetFeedOverride{1}); break;
-    case Upset::RAPID_OVERRIDE: post(msgs::SetRapidOverride{1}); break;
+    case Upset::FEED_OVERRIDE: post(messages::SetFeedOverride{1}); break;
+    case Upset::RAPID_OVERRIDE: post(messages::SetRapidOverride{1}); break;
     case Upset::FEED_INHIBIT: rig_->faults.isFeedInhibited = false; break;
     case Upset::ADAPTIVE_NAN: rig_->faults.isAdaptiveNan = false; break;
     case Upset::ADAPTIVE: rig_->faults.adaptive_feed = 1; break;
-    case Upset::SPINDLE_OVERRIDE: post(msgs::SetSpindleOverride{1, 0}); break;
+    case Upset::SPINDLE_OVERRIDE: post(messages::SetSpindleOverride{1, 0}); break;
     case Upset::OFFSET: rig_->clear_offsets(t.value < 0.2); break;
     case Upset::PLANNER_LATE:
     case Upset::PLANNER_LOST: rig_->hold_planner(false); break;

@@ -16,13 +16,13 @@ struct Pass {
     double length = 0;
 };
 
-std::vector<Pass> passes_of(const std::vector<geom::Pose> &path, const SyncWish &sync) {
+std::vector<Pass> passes_of(const std::vector<geometry::Pose> &path, const SyncWish &sync) {
     std::vector<Pass> all;
     const double sense = sync.to > sync.from ? 1 : -1;
     for (std::size_t i = 1; i < path.size(); ++i) {
-        const geom::Pose step = path[i] - path[i - 1];
-        const double z = step[geom::AXIS_Z];
-        const bool isAlone = std::abs(step[geom::AXIS_X]) < 1e-9;
+        const geometry::Pose step = path[i] - path[i - 1];
+        const double z = step[geometry::AXIS_Z];
+        const bool isAlone = std::abs(step[geometry::AXIS_X]) < 1e-9;
         if (!isAlone || !(z * sense > 1e-12)) {
             continue;
         }
@@ -31,7 +31,7 @@ std::vector<Pass> passes_of(const std::vector<geom::Pose> &path, const SyncWish 
         constexpr std::size_t WAIT = 3;
         constexpr double BEGUN = 1e-3;
         const auto isAtStart = [&](std::size_t n) {
-            return std::abs(path[n][geom::AXIS_Z] - sync.from) <= 1e-6;
+            return std::abs(path[n][geometry::AXIS_Z] - sync.from) <= 1e-6;
         };
         const bool isAnother = !all.empty() && isAtStart(i - 1) && !isAtStart(all.back().first);
         const bool isGoingOn =
@@ -44,7 +44,7 @@ std::vector<Pass> passes_of(const std::vector<geom::Pose> &path, const SyncWish 
     }
     std::erase_if(all, [&](const Pass &p) {
         return p.length < 0.6 * std::abs(sync.to - sync.from) ||
-               std::abs(path[p.first][geom::AXIS_Z] - sync.from) > 1e-6;
+               std::abs(path[p.first][geometry::AXIS_Z] - sync.from) > 1e-6;
     });
     return all;
 }
@@ -106,7 +106,7 @@ void Session::check_helix(const SyncWish &sync) {
         Spread helix;
         double deepest = 0;
         for (std::size_t i = p.first; i <= p.last && i + 1 < turns_.size(); ++i) {
-            const double way = (path_[i][geom::AXIS_Z] - sync.from) * sense;
+            const double way = (path_[i][geometry::AXIS_Z] - sync.from) * sense;
             deepest = std::max(deepest, way);
             // The rest is for gaining and losing speed; a tap has it behind its end.
             if (way > 0.4 * length && (way < 0.6 * length || sync.kind == Sync::TAP)) {
@@ -128,7 +128,7 @@ void Session::check_helix(const SyncWish &sync) {
             fail("work", fmt::format("a pass is {:.6g} deep instead of {:.6g}", deepest, length));
         }
     }
-    const double end = std::abs(path_.back()[geom::AXIS_Z] - sync.from);
+    const double end = std::abs(path_.back()[geometry::AXIS_Z] - sync.from);
     if (sync.kind == Sync::TAP && end > 1e-6) {
         fail("work", fmt::format("a tap ends {:.4g} from its start", end));
     }
@@ -143,9 +143,9 @@ void Session::check_per_turn(const SyncWish &sync) {
     const double length = std::abs(sync.to - sync.from);
     double way = 0, turns = 0;
     for (std::size_t i = passes[0].first + 1; i <= passes[0].last; ++i) {
-        const double done = std::abs(path_[i][geom::AXIS_Z] - sync.from);
+        const double done = std::abs(path_[i][geometry::AXIS_Z] - sync.from);
         if (done > 0.4 * length && done < 0.6 * length) {
-            way += std::abs(path_[i][geom::AXIS_Z] - path_[i - 1][geom::AXIS_Z]);
+            way += std::abs(path_[i][geometry::AXIS_Z] - path_[i - 1][geometry::AXIS_Z]);
             turns += std::abs(turns_[i] - turns_[i - 1]);
         }
     }
@@ -159,8 +159,9 @@ void Session::check_surface(const SyncWish &sync) {
     double worst = 0;
     int judged = 0;
     for (std::size_t i = 1; i + 1 < path_.size(); ++i) {
-        const double x = path_[i][geom::AXIS_X];
-        const bool isCut = x < path_[i - 1][geom::AXIS_X] && x <= sync.from && x >= sync.to && rpm_[i] > 0;
+        const double x = path_[i][geometry::AXIS_X];
+        const bool isCut =
+            x < path_[i - 1][geometry::AXIS_X] && x <= sync.from && x >= sync.to && rpm_[i] > 0;
         if (!isCut) {
             continue;
         }
@@ -168,7 +169,7 @@ void Session::check_surface(const SyncWish &sync) {
             return std::min(sync.rpm, sync.lead * 1000 / (2 * 3.14159265358979 * std::max(at, 1e-9)));
         };
         // It follows a place of at most two cycles ago.
-        const double low = wish(path_[i - 1][geom::AXIS_X] + 2 * (path_[i - 1][geom::AXIS_X] - x));
+        const double low = wish(path_[i - 1][geometry::AXIS_X] + 2 * (path_[i - 1][geometry::AXIS_X] - x));
         const double high = wish(x);
         worst = std::max({worst, low / rpm_[i] - 1, rpm_[i] / high - 1});
         ++judged;

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "base/options/command_line.hh"
 #include "campaign_runner/kept.hh"
-#include "options/command_line.hh"
 
 namespace mw::campaign_runner {
 

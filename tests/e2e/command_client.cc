@@ -10,13 +10,13 @@
 
 #include <fmt/format.h>
 
-#include "client/client.hh"
-#include "diag/sink.hh"
-#include "nml/bridge/bridge.hh"
-#include "nml/bridge/channel.hh"
-#include "nml/buffer/shared_lock.hh"
-#include "nml/config/config_file.hh"
-#include "options/command_line.hh"
+#include "base/diagnostics/sink.hh"
+#include "base/options/command_line.hh"
+#include "clients/nml/bridge/bridge.hh"
+#include "clients/nml/bridge/channel.hh"
+#include "clients/nml/buffer/shared_lock.hh"
+#include "clients/nml/config/config_file.hh"
+#include "messages/client/client.hh"
 
 namespace mw {
 namespace {
@@ -35,8 +35,8 @@ struct Course {
 class Way {
   public:
     virtual ~Way() = default;
-    virtual Course carry_out(const msgs::Command &command) = 0;
-    virtual const msgs::MachineStatus &status() const = 0;
+    virtual Course carry_out(const messages::Command &command) = 0;
+    virtual const messages::MachineStatus &status() const = 0;
     virtual bool see_status() = 0;
 };
 
@@ -44,7 +44,7 @@ class ByNml final : public Way {
   public:
     static std::unique_ptr<ByNml> open(const std::string &file, const std::string &process) {
         auto way = std::unique_ptr<ByNml>(new ByNml);
-        diag::Sink sink([](const diag::Diagnostic &d) { fmt::print(stderr, "{}\n", d.str()); });
+        diagnostics::Sink sink([](const diagnostics::Diagnostic &d) { fmt::print(stderr, "{}\n", d.str()); });
         auto config = nml::load_config(file, sink);
         if (!config.has_value()) {
             return nullptr;
@@ -62,7 +62,9 @@ class ByNml final : public Way {
         return way;
     }
 
-    const msgs::MachineStatus &status() const override { return *message_->get<msgs::MachineStatus>(); }
+    const messages::MachineStatus &status() const override {
+        return *message_->get<messages::MachineStatus>();
+    }
     bool see_status() override {
         auto read = statuses_->wait(nml::Timeout{1.0});
         if (read.has_value() && !read->has_value()) {
@@ -72,11 +74,11 @@ class ByNml final : public Way {
             return false;
         }
         message_ = std::move(*read);
-        return message_->get<msgs::MachineStatus>() != nullptr;
+        return message_->get<messages::MachineStatus>() != nullptr;
     }
-    Course carry_out(const msgs::Command &command) override {
+    Course carry_out(const messages::Command &command) override {
         Course course;
-        const geom::Pose from = status().trajectory.position_cmd;
+        const geometry::Pose from = status().trajectory.position_cmd;
         const std::int64_t posted_ns = nml::monotonic_ns();
         const auto written = std::visit(
             [this](const auto &body) {
@@ -95,7 +97,7 @@ class ByNml final : public Way {
                 continue;
             }
             course.taken_ns = course.taken_ns < 0 ? now_ns : course.taken_ns;
-            const bool isAway = geom::norm_xyz(status().trajectory.position_cmd - from) > LEAST_MOVE_MM;
+            const bool isAway = geometry::norm_xyz(status().trajectory.position_cmd - from) > LEAST_MOVE_MM;
             course.motion_ns = isAway && course.motion_ns < 0 ? now_ns : course.motion_ns;
             if (head.state != nml::CommandState::EXECUTING) {
                 course.isDone = head.state == nml::CommandState::DONE;
@@ -119,12 +121,12 @@ class ByNml final : public Way {
 class ByMailbox final : public Way {
   public:
     explicit ByMailbox(client::Client client) : client_(std::move(client)) {}
-    const msgs::MachineStatus &status() const override { return client_.status(); }
+    const messages::MachineStatus &status() const override { return client_.status(); }
     bool see_status() override { return client_.wait_status(1.0).has_value(); }
-    Course carry_out(const msgs::Command &command) override {
+    Course carry_out(const messages::Command &command) override {
         Course course;
         static_cast<void>(client_.read_status());
-        const geom::Pose from = status().trajectory.position_cmd;
+        const geometry::Pose from = status().trajectory.position_cmd;
         const std::int64_t posted_ns = nml::monotonic_ns();
         const auto serial = client_.post(command);
         if (!serial.has_value()) {
@@ -140,13 +142,13 @@ class ByMailbox final : public Way {
         const auto isOver = [&] {
             outcome = client_.outcome(*serial);
             static_cast<void>(client_.read_status());
-            const bool isAway = geom::norm_xyz(status().trajectory.position_cmd - from) > LEAST_MOVE_MM;
+            const bool isAway = geometry::norm_xyz(status().trajectory.position_cmd - from) > LEAST_MOVE_MM;
             course.motion_ns =
                 isAway && course.motion_ns < 0 ? nml::monotonic_ns() - posted_ns : course.motion_ns;
-            return outcome.progress != msgs::Progress::STARTED;
+            return outcome.progress != messages::Progress::STARTED;
         };
         static_cast<void>(client_.wait_until(isOver, STEP_S));
-        course.isDone = outcome.progress == msgs::Progress::DONE;
+        course.isDone = outcome.progress == messages::Progress::DONE;
         course.reason = outcome.reason;
         return course;
     }
@@ -156,13 +158,13 @@ class ByMailbox final : public Way {
 };
 
 bool prepare(Way &way) {
-    const msgs::Command commands[] = {
-        msgs::SetState{msgs::State::ESTOP_RESET}, msgs::SetState{msgs::State::ON},
-        msgs::SetMode{msgs::Mode::MANUAL},        msgs::HomeJoint{},
-        msgs::SetMode{msgs::Mode::MDI},           msgs::Mdi{"G21 G90 G53 G0 X7.5"}};
-    for (const msgs::Command &command : commands) {
+    const messages::Command commands[] = {
+        messages::SetState{messages::State::ESTOP_RESET}, messages::SetState{messages::State::ON},
+        messages::SetMode{messages::Mode::MANUAL},        messages::HomeJoint{},
+        messages::SetMode{messages::Mode::MDI},           messages::Mdi{"G21 G90 G53 G0 X7.5"}};
+    for (const messages::Command &command : commands) {
         const bool isDone =
-            std::holds_alternative<msgs::HomeJoint>(command) && way.status().trajectory.isAllHomed;
+            std::holds_alternative<messages::HomeJoint>(command) && way.status().trajectory.isAllHomed;
         if (isDone) {
             continue;
         }
@@ -188,7 +190,7 @@ void tell(const char *what, std::vector<std::int64_t> times) {
 bool measure(Way &way, int count) {
     std::vector<std::int64_t> taken, motion;
     for (int i = 0; i < count; ++i) {
-        const Course course = way.carry_out(msgs::Mdi{i % 2 == 0 ? "G53 G0 X8.5" : "G53 G0 X7.5"});
+        const Course course = way.carry_out(messages::Mdi{i % 2 == 0 ? "G53 G0 X8.5" : "G53 G0 X7.5"});
         if (!course.isDone || course.motion_ns < 0) {
             fmt::print("move {} failed: {}\n", i, course.reason);
             return false;

@@ -62,7 +62,7 @@ class Runner:
 
 def codes_of(source):
     """All codes of the interpreter's table, as they are written."""
-    table = (source / 'src/interp/codes/codes.cc').read_text()
+    table = (source / 'src/gcode/interpreter/codes/codes.cc').read_text()
     found = set()
     for letter, number in re.findall(r"ROW\('([gm])', (\d+),", table):
         if letter == 'm':

@@ -17,7 +17,7 @@ def main():
     asked = [[program.name] for program in sorted(folder.iterdir()) if not program.name.endswith('_test') and program.is_file()]
     asked += [['millwright', *command.split()] for command in COMMANDS]
     failures = 0
-    completion = (root / 'src/cli/completion/millwright').read_text()
+    completion = (root / 'programs/mains/completion/millwright').read_text()
     for words in asked:
         done = subprocess.run([folder / words[0], *words[1:], '--help'], capture_output=True, text=True, check=False,
                               stdin=subprocess.DEVNULL, timeout=20)

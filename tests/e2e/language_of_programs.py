@@ -22,7 +22,7 @@ GERMAN = ({'LANG': 'de_DE.UTF-8'}, {'LC_ALL': 'de_AT', 'LANG': 'es_ES.UTF-8'}, {
 SPANISH = ({'LANG': 'es_ES.UTF-8'}, {'LC_ALL': 'es', 'LANG': 'de_DE.UTF-8'}, {'LC_MESSAGES': 'es_ES.UTF-8', 'LANG': 'C'}, {'LANGUAGE': 'es:de', 'LANG': 'en_US.UTF-8'})
 ENGLISH = ({}, {'LANG': 'C.UTF-8'}, {'LANG': 'en_GB.UTF-8'}, {'LC_ALL': 'C', 'LANG': 'de_DE.UTF-8'}, {'LANG': 'C.UTF-8', 'LANGUAGE': 'de'})
 # Tools of the build and of tests, which are not installed.
-NOT_INSTALLED = {'message_reference', 'hal_tcl_test'}
+NOT_INSTALLED = {'reference_pages', 'hal_tcl_test'}
 # Words of English that help has, and that neither of the others has.
 ENGLISH_WORDS = re.compile(r'\b(the|of|and|with|is|are|which|this|its|from|to|for|usage|not|default|by|other)\b')
 PLACE = re.compile(r'[\w.]+:\d+:\d+: ')

@@ -10,9 +10,9 @@
 
 #include <gtest/gtest.h>
 
-#include "hal/api/hal.h"
 #include "hal/core/host.hh"
-#include "rtapi/virtual_scheduler.hh"
+#include "hal/include/hal.h"
+#include "runtime/virtual_scheduler.hh"
 
 namespace mw::hal {
 namespace fs = std::filesystem;
@@ -55,12 +55,12 @@ inline std::string corpus(const std::string &file) {
 struct Corpus : ::testing::Test {
     Folder folder;
     std::vector<std::string> messages;
-    rtapi::Log log{rtapi::Log::Mode::SYNCHRONOUS,
-                   [](void *self, rtapi::LogLevel, const char *text) {
-                       static_cast<std::vector<std::string> *>(self)->emplace_back(text);
-                   },
-                   &messages};
-    rtapi::VirtualScheduler clock;
+    runtime::Log log{runtime::Log::Mode::SYNCHRONOUS,
+                     [](void *self, runtime::LogLevel, const char *text) {
+                         static_cast<std::vector<std::string> *>(self)->emplace_back(text);
+                     },
+                     &messages};
+    runtime::VirtualScheduler clock;
     std::unique_ptr<LocalHost> host;
 
     Corpus() {

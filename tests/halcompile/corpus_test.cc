@@ -2,14 +2,14 @@
 // Components written as users write them, compiled by the program halcompile, loaded, and seen to work.
 #include <gtest/gtest.h>
 
-#include "hal/api/hal.h"
-#include "hal/api/kinematics.h"
+#include "hal/include/hal.h"
+#include "hal/include/kinematics.h"
 #include "tests/halcompile/corpus.hh"
 
 namespace mw::hal {
 namespace {
 
-TEST_F(Corpus, OneFunctionWithoutTheWord_B2) {
+TEST_F(Corpus, OneFunctionWithoutTheWord) {
     ASSERT_EQ(load("gain.comp"), "ok");
     set("gain.0.in", "4");
     cycle({"gain.0"});
@@ -18,7 +18,7 @@ TEST_F(Corpus, OneFunctionWithoutTheWord_B2) {
     EXPECT_EQ(number("gain.0.tmax"), 0);
 }
 
-TEST_F(Corpus, SettersNewerTypesAndAPersonalityByOption_B2) {
+TEST_F(Corpus, SettersNewerTypesAndAPersonalityByOption) {
     ASSERT_EQ(load("setters.comp", {"personality=7"}), "ok");
     EXPECT_EQ(hal().pin("setters.0.a")->type, Type::S32);
     EXPECT_EQ(hal().pin("setters.0.b")->type, Type::U32);
@@ -30,7 +30,7 @@ TEST_F(Corpus, SettersNewerTypesAndAPersonalityByOption_B2) {
     EXPECT_EQ(number("setters.0.kept-set"), 1) << "a pin of that name stays a pin";
 }
 
-TEST_F(Corpus, StartValuesNamesAndBits_B2) {
+TEST_F(Corpus, StartValuesNamesAndBits) {
     ASSERT_EQ(load("onoff.comp", {"names=bed,nozzle"}), "ok");
     EXPECT_EQ(number("bed.setpoint"), 20);
     EXPECT_EQ(number("nozzle.enable"), 1);
@@ -45,7 +45,7 @@ TEST_F(Corpus, StartValuesNamesAndBits_B2) {
     EXPECT_EQ(number("bed.heat"), 0);
 }
 
-TEST_F(Corpus, ArraysOfFixedAndDependentSize_B2) {
+TEST_F(Corpus, ArraysOfFixedAndDependentSize) {
     ASSERT_EQ(load("shiftreg.comp"), "ok");
     ASSERT_EQ(load("gate.comp", {"count=3", "personality=0x3,0x212,0x711"}), "ok");
     EXPECT_EQ(pins("gate.0.*"), "gate.0.in-00 gate.0.in-01 gate.0.in-02 gate.0.sum gate.0.time ");
@@ -60,7 +60,7 @@ TEST_F(Corpus, ArraysOfFixedAndDependentSize_B2) {
     EXPECT_EQ(number("shiftreg.0.out-03"), 0);
 }
 
-TEST_F(Corpus, APersonalityThatAsksTooMuchIsRefused_B2) {
+TEST_F(Corpus, APersonalityThatAsksTooMuchIsRefused) {
     EXPECT_NE(load("gate.comp", {"personality=0x520"})
                   .find("personality asks for 5 of weight-#, 0 to 4 are possible"),
               std::string::npos);
@@ -68,14 +68,14 @@ TEST_F(Corpus, APersonalityThatAsksTooMuchIsRefused_B2) {
     EXPECT_EQ(number("gate.0.weight-3"), 1.5);
 }
 
-TEST_F(Corpus, PersonalitiesWrapAtTheirLimit_B2) {
+TEST_F(Corpus, PersonalitiesWrapAtTheirLimit) {
     compile("gate.comp", "--personalities=2");
     ASSERT_EQ(load_only("gate", {"count=3", "personality=1,2"}), "ok");
     EXPECT_EQ(pins("gate.2.in*"), "gate.2.in-00 ") << "takes the first again";
     EXPECT_FALSE(messages.empty());
 }
 
-TEST_F(Corpus, NamesWithNumbersInside_B2) {
+TEST_F(Corpus, NamesWithNumbersInside) {
     ASSERT_EQ(load("bank.comp"), "ok");
     set("bank.0.ch.1.in", "2");
     cycle({"bank.0"});
@@ -83,7 +83,7 @@ TEST_F(Corpus, NamesWithNumbersInside_B2) {
     EXPECT_EQ(number("bank.0.runs"), 17);
 }
 
-TEST_F(Corpus, TimeAndVariables_B2) {
+TEST_F(Corpus, TimeAndVariables) {
     ASSERT_EQ(load("pulse.comp"), "ok");
     cycle({"pulse.0"}, 2);
     set("pulse.0.trigger", "1");
@@ -93,14 +93,14 @@ TEST_F(Corpus, TimeAndVariables_B2) {
     EXPECT_EQ(number("pulse.0.out"), 0);
 }
 
-TEST_F(Corpus, SeveralFunctionsWithNamesOfTheCLibrary_B2) {
+TEST_F(Corpus, SeveralFunctionsWithNamesOfTheCLibrary) {
     ASSERT_EQ(load("twofun.comp", {"count=2"}), "ok");
     set("twofun.1.raw", "8");
     cycle({"twofun.1.read", "twofun.1.write"});
     EXPECT_EQ(number("twofun.1.cooked"), 16);
 }
 
-TEST_F(Corpus, OptionsForInstances_B2) {
+TEST_F(Corpus, OptionsForInstances) {
     ASSERT_EQ(load("single.comp"), "ok");
     cycle({"single.tick"}, 5);
     EXPECT_EQ(number("single.ticks"), 5);
@@ -114,7 +114,7 @@ TEST_F(Corpus, OptionsForInstances_B2) {
     EXPECT_EQ(load_only("onoff", {"count=300"}), "ok");
 }
 
-TEST_F(Corpus, CountFunctionSetUpAndCleanUp_B2) {
+TEST_F(Corpus, CountFunctionSetUpAndCleanUp) {
     ASSERT_EQ(load("counted.comp", {"at=5,6"}), "ok");
     cycle({"counted.0", "counted.1"});
     EXPECT_EQ(number("counted.1.address"), 6);
@@ -126,21 +126,21 @@ TEST_F(Corpus, CountFunctionSetUpAndCleanUp_B2) {
     EXPECT_EQ(pins("counted*"), "");
 }
 
-TEST_F(Corpus, SetUpBeforeAndAfterThePins_B2) {
+TEST_F(Corpus, SetUpBeforeAndAfterThePins) {
     ASSERT_EQ(load("setup.comp", {"names=abcde,xy"}), "ok");
     EXPECT_EQ(number("xy.number"), 11);
     cycle({"abcde"});
     EXPECT_EQ(number("abcde.length"), 5);
 }
 
-TEST_F(Corpus, ModuleParameters_B2) {
+TEST_F(Corpus, ModuleParameters) {
     ASSERT_EQ(load("modp.comp", {"far=1000", "list=1,2", "title=hello", "table=a,bc"}), "ok");
     cycle({"modp.0"});
     EXPECT_EQ(number("modp.0.sum"), 3 + 1000 + 1 + 2 + 7 + 7);
     EXPECT_EQ(number("modp.0.letters"), 305);
 }
 
-TEST_F(Corpus, TypesOfItsOwnPointersAndData_B2) {
+TEST_F(Corpus, TypesOfItsOwnPointersAndData) {
     ASSERT_EQ(load("structs.comp"), "ok");
     ASSERT_EQ(load("ptrs.comp", {"count=2"}), "ok");
     ASSERT_EQ(load("olddata.comp"), "ok");
@@ -153,7 +153,7 @@ TEST_F(Corpus, TypesOfItsOwnPointersAndData_B2) {
     EXPECT_TRUE(host->unload_realtime("ptrs"));
 }
 
-TEST_F(Corpus, HeadersAndWideTypes_B2) {
+TEST_F(Corpus, HeadersAndWideTypes) {
     ASSERT_EQ(load("incl.comp"), "ok");
     ASSERT_EQ(load("wide.comp"), "ok");
     ASSERT_EQ(load("hal_tick.comp"), "ok");
@@ -166,7 +166,7 @@ TEST_F(Corpus, HeadersAndWideTypes_B2) {
     EXPECT_TRUE(hal().component("hal_tick"));
 }
 
-TEST_F(Corpus, KinematicsHomingAndPlannerModules_B2) {
+TEST_F(Corpus, KinematicsHomingAndPlannerModules) {
     ASSERT_EQ(load("polar.comp"), "ok");
     ASSERT_EQ(load("homeall.comp"), "ok");
     ASSERT_EQ(load("tpline.comp"), "ok");
@@ -189,13 +189,13 @@ TEST_F(Corpus, KinematicsHomingAndPlannerModules_B2) {
     EXPECT_NE(host->loader().find_symbol("kinematicsForward"), nullptr);
 }
 
-TEST_F(Corpus, AComponentThatMakesItsInstancesItself_B2) {
+TEST_F(Corpus, AComponentThatMakesItsInstancesItself) {
     ASSERT_EQ(load("ownapp.comp", {"how_many=3"}), "ok");
     cycle({"mine.c"});
     EXPECT_EQ(number("mine.c.number"), 10);
 }
 
-TEST_F(Corpus, PortsByValueAndByAddress_B2) {
+TEST_F(Corpus, PortsByValueAndByAddress) {
     ASSERT_EQ(load("portecho.comp"), "ok");
     for (const char *name : {"to", "from"}) {
         ASSERT_TRUE(hal().new_signal(name, Type::PORT));
@@ -217,7 +217,7 @@ TEST_F(Corpus, PortsByValueAndByAddress_B2) {
     EXPECT_STREQ(text, "ABC");
 }
 
-TEST_F(Corpus, ModulesShareWhatTheyExportAndNothingElse_B5) {
+TEST_F(Corpus, ModulesShareWhatTheyExportAndNothingElse) {
     ASSERT_EQ(load("giver.comp"), "ok");
     ASSERT_EQ(load("taker.comp"), "ok");
     cycle({"taker.0", "giver"});
@@ -231,7 +231,7 @@ TEST_F(Corpus, ModulesShareWhatTheyExportAndNothingElse_B5) {
     EXPECT_TRUE(host->unload_realtime("giver"));
 }
 
-TEST_F(Corpus, ModulesInCAndCxx_B5) {
+TEST_F(Corpus, ModulesInCAndCxx) {
     ASSERT_EQ(load("cmod.c", {"ch=x,y", "scale=3"}), "ok");
     ASSERT_EQ(load("cxxmod.cc"), "ok");
     set("cxxmod.in", "8");

@@ -54,7 +54,7 @@ bool isSoon(const std::function<bool()> &condition) {
     return true;
 }
 
-TEST_F(Halcompile, Programs_B2) {
+TEST_F(Halcompile, Programs) {
     compile("usrcount.comp");
     compile("usrinit.comp");
     compile("cusr.c", "--userspace");
@@ -77,7 +77,7 @@ TEST_F(Halcompile, Programs_B2) {
     EXPECT_EQ(hal().component("usrcount")->type, CompType::USER);
 }
 
-TEST_F(Halcompile, AProgramTakesCountOrNamesButNotBoth_B2) {
+TEST_F(Halcompile, AProgramTakesCountOrNamesButNotBoth) {
     compile("usrcount.comp");
     ::setenv("MILLWRIGHT_INSTANCE", hal().name().c_str(), 1);
     Program refused({folder.path / "usrcount", "count=2", "names=a,b"});
@@ -89,7 +89,7 @@ TEST_F(Halcompile, AProgramTakesCountOrNamesButNotBoth_B2) {
     EXPECT_FALSE(hal().component("usrcount"));
 }
 
-TEST_F(Halcompile, PythonPrograms_B2) {
+TEST_F(Halcompile, PythonPrograms) {
     compile("pyusr.py", "--userspace");
     const fs::path program = folder.path / "pyusr";
     EXPECT_EQ(::access(program.c_str(), X_OK), 0);
@@ -106,7 +106,7 @@ TEST_F(Halcompile, PythonPrograms_B2) {
     EXPECT_NE(halcompile("--compile --userspace " + (folder.path / "bad.py").string()).status, 0);
 }
 
-TEST_F(Halcompile, InstallsWhereItIsTold_B2) {
+TEST_F(Halcompile, InstallsWhereItIsTold) {
     const std::string to = folder.path.string();
     ::setenv("RTLIB_DIR", (to + "/rt").c_str(), 1);
     ::setenv("EMC2_HOME", (to + "/home").c_str(), 1);
@@ -126,7 +126,7 @@ TEST_F(Halcompile, InstallsWhereItIsTold_B2) {
     EXPECT_EQ(::access((to + "/home/man/man1/usrcount.1").c_str(), R_OK), 0);
 }
 
-TEST_F(Halcompile, ThePageOfTheLanguage_B2) {
+TEST_F(Halcompile, ThePageOfTheLanguage) {
     std::ifstream page(std::string(MW_CORPUS) + "/../../../docs/hal/comp.md");
     std::string line;
     std::string text;
@@ -155,7 +155,7 @@ TEST_F(Halcompile, ThePageOfTheLanguage_B2) {
     cycle({"average.0", "batch.0.count"});
 }
 
-TEST_F(Halcompile, TheMakefileLinksSeveralFiles_B2) {
+TEST_F(Halcompile, TheMakefileLinksSeveralFiles) {
     if (run("make --version").status != 0) {
         GTEST_SKIP() << "make is not installed";
     }
@@ -184,7 +184,7 @@ TEST_F(Halcompile, TheMakefileLinksSeveralFiles_B2) {
     EXPECT_EQ(host->loader().find_symbol("two"), nullptr);
 }
 
-TEST_F(Halcompile, ErrorsPointAtTheComponentFile_B2) {
+TEST_F(Halcompile, ErrorsPointAtTheComponentFile) {
     const fs::path file = folder.path / "wrong.comp";
     std::ofstream(file) << "component wrong;\npin in float in;\nfunction _;\nlicense \"GPL\";\n;;\nin = 5;\n";
     const Outcome done = halcompile("--compile " + file.string());

@@ -16,15 +16,16 @@ class ClientDeath : public StartedMachine {
             return process;
         }
         auto mine = client::Client::connect(instance);
-        const auto isDone = [&](const msgs::Command &command) {
+        const auto isDone = [&](const messages::Command &command) {
             const auto posted = mine->post(command);
             const auto outcome =
                 posted.has_value() ? mine->wait(*posted, 30) : std::unexpected(posted.error());
-            return outcome.has_value() && outcome->progress == msgs::Progress::DONE;
+            return outcome.has_value() && outcome->progress == messages::Progress::DONE;
         };
-        char answer = mine.has_value() && isDone(msgs::ClaimOperation{3600}) ? 'y' : 'n';
+        char answer = mine.has_value() && isDone(messages::ClaimOperation{3600}) ? 'y' : 'n';
         if (answer == 'y' && mustRun) {
-            answer = isDone(msgs::OpenProgram{folder / "p.ngc"}) && mine->post(msgs::RunProgram{}).has_value()
+            answer = isDone(messages::OpenProgram{folder / "p.ngc"}) &&
+                             mine->post(messages::RunProgram{}).has_value()
                          ? 'y'
                          : 'n';
         }
@@ -37,11 +38,11 @@ class ClientDeath : public StartedMachine {
     }
     bool isCutting() {
         static_cast<void>(client->read_status());
-        return client->status().task.interp_state != msgs::InterpState::IDLE;
+        return client->status().task.interp_state != messages::InterpState::IDLE;
     }
 };
 
-TEST_F(ClientDeath, TheCutGoesOnAndItsRightToOperateEnds_D1) {
+TEST_F(ClientDeath, TheCutGoesOnAndItsRightToOperateEnds) {
     ASSERT_NO_FATAL_FAILURE(start());
     ASSERT_NO_FATAL_FAILURE(switch_on());
     double slowest_s = 0;
@@ -69,21 +70,21 @@ TEST_F(ClientDeath, TheCutGoesOnAndItsRightToOperateEnds_D1) {
         ASSERT_TRUE(goes_on.has_value()) << "the cut stands still";
         // A short one may have come to its end meanwhile.
         EXPECT_TRUE(isCutting() || client->status().task.programs_ended > 0);
-        EXPECT_EQ(client->status().task.state, msgs::State::ON);
-        ASSERT_NO_FATAL_FAILURE(ask(msgs::SetOptionalStop{true}));
+        EXPECT_EQ(client->status().task.state, messages::State::ON);
+        ASSERT_NO_FATAL_FAILURE(ask(messages::SetOptionalStop{true}));
     }
     std::cout << count_kills() << " kills; the right to operate ended " << 1000 * slowest_s
               << " ms after the kill at the latest\n";
 }
 
 /// A touch-off is on the disk half a second later, whatever becomes of the machine.
-TEST_F(ClientDeath, ATouchOffOutlivesTheMachine_D3) {
+TEST_F(ClientDeath, ATouchOffOutlivesTheMachine) {
     for (int i = 0; i < count_kills(); ++i) {
         SCOPED_TRACE(i);
         ASSERT_NO_FATAL_FAILURE(start());
         ASSERT_NO_FATAL_FAILURE(switch_on());
-        ASSERT_NO_FATAL_FAILURE(ask(msgs::SetMode{msgs::Mode::MDI}));
-        ASSERT_NO_FATAL_FAILURE(ask(msgs::Mdi{"G10 L2 P3 X" + std::to_string(i + 1) + ".25"}));
+        ASSERT_NO_FATAL_FAILURE(ask(messages::SetMode{messages::Mode::MDI}));
+        ASSERT_NO_FATAL_FAILURE(ask(messages::Mdi{"G10 L2 P3 X" + std::to_string(i + 1) + ".25"}));
         std::this_thread::sleep_for(std::chrono::milliseconds(500));
         kill_machine();
         client.reset();

@@ -21,7 +21,7 @@
 
 #include "hal/core/hal.hh"
 #include "kill_count.hh"
-#include "motion/api/channels.hh"
+#include "motion/interface/channels.hh"
 
 namespace mw {
 namespace {
@@ -131,11 +131,11 @@ std::string told(SpscRing<motion::Fault, 256> &faults) {
 
 double speed(const motion::TraceSample &a, const motion::TraceSample &b) {
     const double cycles = static_cast<double>(b.cycle - a.cycle);
-    return geom::norm_xyz(b.carte_pos_cmd - a.carte_pos_cmd) / (cycles * 1e-3);
+    return geometry::norm_xyz(b.carte_pos_cmd - a.carte_pos_cmd) / (cycles * 1e-3);
 }
 
 /// Distance from the square's sides.
-double off_path(const geom::Pose &p) {
+double off_path(const geometry::Pose &p) {
     const double dx = std::fabs(std::fabs(p[0]) - 100.0), dy = std::fabs(std::fabs(p[1]) - 100.0);
     return std::min(dx, dy);
 }
@@ -161,7 +161,7 @@ void check_stop(const std::vector<motion::TraceSample> &s, std::int64_t kill_ns)
     for (std::size_t i = 2; i < s.size(); ++i) {
         EXPECT_LT(off_path(s[i].carte_pos_cmd), 1e-6) << "left the path in cycle " << s[i].cycle;
         const bool isDense = s[i].cycle == s[i - 1].cycle + 1 && s[i - 1].cycle == s[i - 2].cycle + 1;
-        const geom::Pose d2 =
+        const geometry::Pose d2 =
             (s[i].carte_pos_cmd - s[i - 1].carte_pos_cmd) - (s[i - 1].carte_pos_cmd - s[i - 2].carte_pos_cmd);
         for (int axis = 0; axis < 2 && isDense; ++axis) {
             EXPECT_LE(std::fabs(d2[axis]) / 1e-6, MAX_ACCELERATION * (1 + 1e-6) + 1e-6);

@@ -20,9 +20,9 @@
 
 #include "hal/core/hal.hh"
 #include "kill_count.hh"
-#include "motion/api/channels.hh"
-#include "rtapi/process.hh"
-#include "testing/lateness_probe.hh"
+#include "motion/interface/channels.hh"
+#include "runtime/process.hh"
+#include "tests/support/lateness_probe.hh"
 
 namespace mw {
 namespace {
@@ -118,7 +118,7 @@ class RealtimeDeath : public ::testing::Test {
     }
 
     void expect_nothing_left() const {
-        const std::string runtime = *rtapi::runtime_folder() + "/" + instance;
+        const std::string runtime = *runtime::runtime_folder() + "/" + instance;
         for (const std::string &path :
              {runtime + ".lock", runtime + ".sock",
               "/dev/shm/millwright-" + std::to_string(::getuid()) + "-" + instance + ".hal"}) {
@@ -136,7 +136,7 @@ int wait_for_end(pid_t process) {
     return status;
 }
 
-TEST_F(RealtimeDeath, AKilledRealtimeProcessEndsTheRunWithin50ms_B7) {
+TEST_F(RealtimeDeath, AKilledRealtimeProcessEndsTheRunWithin50ms) {
     // Only kills are timed during which the machine gave its processors to this test.
     const int least = mw::testing::count_kills(3);
     std::vector<double> seconds;
@@ -169,7 +169,7 @@ TEST_F(RealtimeDeath, AKilledRealtimeProcessEndsTheRunWithin50ms_B7) {
     EXPECT_LT(seconds[seconds.size() / 2], 0.05);
 }
 
-TEST_F(RealtimeDeath, ACrashInRealtimeNamesTheFunctionAndItsComponent_B7) {
+TEST_F(RealtimeDeath, ACrashInRealtimeNamesTheFunctionAndItsComponent) {
     const pid_t task = start(true);
     const auto hal = join_moving(task);
     ASSERT_NE(hal, nullptr) << log();
@@ -186,7 +186,7 @@ TEST_F(RealtimeDeath, ACrashInRealtimeNamesTheFunctionAndItsComponent_B7) {
     expect_nothing_left();
 }
 
-TEST_F(RealtimeDeath, ACrashInVirtualTimeNamesTheFunctionAndItsComponent_B7) {
+TEST_F(RealtimeDeath, ACrashInVirtualTimeNamesTheFunctionAndItsComponent) {
     std::ofstream(folder / "crash.hal", std::ios::app) << "setp crasher.now 1\n";
     const pid_t task = start(false);
     const int status = wait_for_end(task);

@@ -19,7 +19,7 @@ class KillRecovery : public StartedMachine {
     Bounds cut_and_kill(int from, std::chrono::milliseconds cut_for) {
         std::deque<std::pair<Clock::time_point, int>> seen;
         const auto deadline = Clock::now() + std::chrono::seconds(60);
-        const auto isUnderWay = [&] { return client->outcome(run).progress == msgs::Progress::STARTED; };
+        const auto isUnderWay = [&] { return client->outcome(run).progress == messages::Progress::STARTED; };
         while (Clock::now() < deadline && line_now() <= from && isUnderWay()) {
             std::this_thread::sleep_for(std::chrono::milliseconds(5));
         }
@@ -44,7 +44,7 @@ class KillRecovery : public StartedMachine {
     int stopped = 0;
 };
 
-TEST_F(KillRecovery, TheProgramGoesOnAtTheRightLineAndNothingHasToBeCleaned_D3) {
+TEST_F(KillRecovery, TheProgramGoesOnAtTheRightLineAndNothingHasToBeCleaned) {
     std::srand(static_cast<unsigned>(::getpid()));
     int resumed = 0, latest = 0;
     for (int i = 0; i < count_kills(); ++i) {
@@ -56,27 +56,27 @@ TEST_F(KillRecovery, TheProgramGoesOnAtTheRightLineAndNothingHasToBeCleaned_D3) 
         if (client->status().recovery.isOffered) {
             ++resumed;
             from = client->status().recovery.line;
-            run = client->post(msgs::RecoverProgram{}).value_or(0);
+            run = client->post(messages::RecoverProgram{}).value_or(0);
             ASSERT_TRUE(client
                             ->wait_until(
                                 [&] {
                                     static_cast<void>(client->read_status());
                                     return client->status().approach.number != 0 ||
-                                           client->outcome(run).progress != msgs::Progress::STARTED;
+                                           client->outcome(run).progress != messages::Progress::STARTED;
                                 },
                                 30)
                             .has_value())
                 << client->outcome(run).reason;
-            ASSERT_NO_FATAL_FAILURE(ask(msgs::ConfirmApproach{client->status().approach.number}));
+            ASSERT_NO_FATAL_FAILURE(ask(messages::ConfirmApproach{client->status().approach.number}));
         } else {
-            ASSERT_NO_FATAL_FAILURE(ask(msgs::OpenProgram{folder / "p.ngc"}));
-            run = client->post(msgs::RunProgram{}).value_or(0);
+            ASSERT_NO_FATAL_FAILURE(ask(messages::OpenProgram{folder / "p.ngc"}));
+            run = client->post(messages::RunProgram{}).value_or(0);
         }
         const Bounds bounds = cut_and_kill(from, std::chrono::milliseconds(300 + std::rand() % 2500));
         client.reset();
         ASSERT_NO_FATAL_FAILURE(start());
         static_cast<void>(client->read_status());
-        const msgs::RecoveryStatus offer = client->status().recovery;
+        const messages::RecoveryStatus offer = client->status().recovery;
         EXPECT_TRUE(offer.isOffered) << offer.refusal.str() << content(folder / "log");
         EXPECT_LE(offer.line, bounds.high) << "later than the tool";
         EXPECT_GE(offer.line, bounds.low) << "more than a second of cutting before the tool";
@@ -84,7 +84,7 @@ TEST_F(KillRecovery, TheProgramGoesOnAtTheRightLineAndNothingHasToBeCleaned_D3) 
         std::cout << "line " << bounds.low << " a second before, " << bounds.high << " at the kill, "
                   << offer.line << " offered\n";
         if (offer.line > LINES - 200) {
-            ASSERT_NO_FATAL_FAILURE(ask(msgs::ForgetRecovery{}));
+            ASSERT_NO_FATAL_FAILURE(ask(messages::ForgetRecovery{}));
         }
         EXPECT_EQ(content(folder / "mill_mm.tbl"), content(MW_SOURCE_DIR "/configs/sim/mill_mm.tbl"));
         ::kill(machine, SIGTERM);
@@ -101,7 +101,7 @@ TEST_F(KillRecovery, TheProgramGoesOnAtTheRightLineAndNothingHasToBeCleaned_D3) 
 }
 
 /// The kinematics may read the pin while the machine brakes.
-TEST_F(KillRecovery, TheToolOffsetStaysOnItsPinUntilTheRealtimeProcessEndsAndComesBackWithTheProgram_G6) {
+TEST_F(KillRecovery, TheToolOffsetStaysOnItsPinUntilTheRealtimeProcessEndsAndComesBackWithTheProgram) {
     constexpr double TOOL_2_LENGTH = 35, NO_PIN = -1;
     const auto offset_now = [](const hal::Hal &hal) {
         const auto value = hal.get("motion.tooloffset.z");
@@ -109,11 +109,11 @@ TEST_F(KillRecovery, TheToolOffsetStaysOnItsPinUntilTheRealtimeProcessEndsAndCom
     };
     ASSERT_NO_FATAL_FAILURE(start());
     ASSERT_NO_FATAL_FAILURE(switch_on());
-    ASSERT_NO_FATAL_FAILURE(ask(msgs::OpenProgram{folder / "p.ngc"}));
+    ASSERT_NO_FATAL_FAILURE(ask(messages::OpenProgram{folder / "p.ngc"}));
     auto hal = hal::Hal::attach(instance);
     ASSERT_TRUE(hal.has_value()) << hal.error().str();
     EXPECT_EQ(offset_now(**hal), 0);
-    run = client->post(msgs::RunProgram{}).value_or(0);
+    run = client->post(messages::RunProgram{}).value_or(0);
     static_cast<void>(cut_and_kill(6, std::chrono::milliseconds(300)));
     int seen = 0;
     for (double z = 0; z != NO_PIN && !(*hal)->host_end().has_value(); ++seen) {
@@ -131,14 +131,14 @@ TEST_F(KillRecovery, TheToolOffsetStaysOnItsPinUntilTheRealtimeProcessEndsAndCom
     EXPECT_EQ(client->status().offsets.tool.z(), 0);
     EXPECT_EQ(offset_now(**hal), 0);
     ASSERT_NO_FATAL_FAILURE(switch_on());
-    run = client->post(msgs::RecoverProgram{}).value_or(0);
+    run = client->post(messages::RecoverProgram{}).value_or(0);
     const auto isProposed = [&] {
         static_cast<void>(client->read_status());
         return client->status().approach.number != 0 ||
-               client->outcome(run).progress != msgs::Progress::STARTED;
+               client->outcome(run).progress != messages::Progress::STARTED;
     };
     ASSERT_TRUE(client->wait_until(isProposed, 30).has_value()) << client->outcome(run).reason;
-    ASSERT_NO_FATAL_FAILURE(ask(msgs::ConfirmApproach{client->status().approach.number}));
+    ASSERT_NO_FATAL_FAILURE(ask(messages::ConfirmApproach{client->status().approach.number}));
     const int offered = client->status().recovery.line;
     ASSERT_TRUE(client->wait_until([&] { return line_now() > std::max(offered, 6); }, 60).has_value());
     EXPECT_EQ(offset_now(**hal), TOOL_2_LENGTH);

@@ -19,8 +19,8 @@
 
 #include <gtest/gtest.h>
 
-#include "client/client.hh"
 #include "kill_count.hh"
+#include "messages/client/client.hh"
 
 namespace mw::kill {
 
@@ -84,18 +84,18 @@ class StartedMachine : public ::testing::Test {
         }
         FAIL() << "the machine does not come up:\n" << content(folder / "log");
     }
-    void ask(const msgs::Command &command) {
+    void ask(const messages::Command &command) {
         const auto posted = client->post(command);
         ASSERT_TRUE(posted.has_value()) << posted.error().str();
         const auto outcome = client->wait(*posted, 30);
         ASSERT_TRUE(outcome.has_value()) << outcome.error().str() << content(folder / "log");
-        ASSERT_EQ(outcome->progress, msgs::Progress::DONE) << outcome->reason;
+        ASSERT_EQ(outcome->progress, messages::Progress::DONE) << outcome->reason;
     }
     void switch_on() {
-        ask(msgs::SetState{msgs::State::ESTOP_RESET});
-        ask(msgs::SetState{msgs::State::ON});
-        ask(msgs::HomeJoint{});
-        ask(msgs::SetMode{msgs::Mode::AUTO});
+        ask(messages::SetState{messages::State::ESTOP_RESET});
+        ask(messages::SetState{messages::State::ON});
+        ask(messages::HomeJoint{});
+        ask(messages::SetMode{messages::Mode::AUTO});
     }
     int line_now() {
         static_cast<void>(client->read_status());

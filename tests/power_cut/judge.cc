@@ -115,7 +115,7 @@ Verdict judge_power_cut(std::uint64_t seed, const files::path &folder) {
     if (!verdict.trouble.empty()) {
         return verdict;
     }
-    const msgs::RecoveryStatus recovery = rig.status().recovery;
+    const messages::RecoveryStatus recovery = rig.status().recovery;
     if (!recovery.isOffered) {
         verdict.kind = !recovery.program.empty() ? "refused: " + recovery.refusal.str()
                        : hasEnded                ? "ended"

@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "options/command_line.hh"
+#include "base/options/command_line.hh"
 #include "power_cut/judge.hh"
 
 namespace {

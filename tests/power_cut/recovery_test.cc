@@ -31,7 +31,7 @@ class RecoveryTest : public ::testing::Test {
         for (int i = 0; i < 60000 && status().task.motion_line != line; ++i) {
             ASSERT_FALSE(rig->hasEnded()) << rig->outcome();
             if (status().approach.number != 0) {
-                ASSERT_EQ(rig->ask(msgs::ConfirmApproach{status().approach.number}), "");
+                ASSERT_EQ(rig->ask(messages::ConfirmApproach{status().approach.number}), "");
             }
             rig->cycle(random);
         }
@@ -58,8 +58,8 @@ class RecoveryTest : public ::testing::Test {
         }
         EXPECT_TRUE(rig->recording.isDone) << rig->outcome();
     }
-    const msgs::MachineStatus &status() { return rig->status(); }
-    const msgs::RecoveryStatus &offer() { return rig->status().recovery; }
+    const messages::MachineStatus &status() { return rig->status(); }
+    const messages::RecoveryStatus &offer() { return rig->status().recovery; }
 
     static constexpr const char *SQUARE = "G21 G90 F600\nT2 M6\nG43\nS900 M3\nM8\nG0 X0 Y0 Z5\nG1 Z-1\nG1 "
                                           "X20\nG1 Y20\nG1 X0\nG1 Y0\nG0 Z5\nM2\n";
@@ -69,7 +69,7 @@ class RecoveryTest : public ::testing::Test {
     std::mt19937_64 random{1};
 };
 
-TEST_F(RecoveryTest, TheProgramIsOfferedWithItsLineAndGoesOnOnceTheWayIsConfirmed_D3) {
+TEST_F(RecoveryTest, TheProgramIsOfferedWithItsLineAndGoesOnOnceTheWayIsConfirmed) {
     EXPECT_FALSE(offer().isOffered);
     EXPECT_EQ(rig->recover(), "no program was cut short ");
     run_to(SQUARE, 9);
@@ -85,19 +85,19 @@ TEST_F(RecoveryTest, TheProgramIsOfferedWithItsLineAndGoesOnOnceTheWayIsConfirme
     EXPECT_FALSE(offer().isOffered) << "it has ended";
 }
 
-TEST_F(RecoveryTest, NothingMovesOrTurnsBeforeThatAndTheProposalMayBeDropped_D3) {
+TEST_F(RecoveryTest, NothingMovesOrTurnsBeforeThatAndTheProposalMayBeDropped) {
     run_to(SQUARE, 9);
     cut_and_come_up();
-    const auto posted = rig->machine().client().post(msgs::RecoverProgram{});
+    const auto posted = rig->machine().client().post(messages::RecoverProgram{});
     cycles(1000);
-    EXPECT_EQ(status().approach.to, msgs::ApproachTo::PLACE_LOST);
+    EXPECT_EQ(status().approach.to, messages::ApproachTo::PLACE_LOST);
     EXPECT_EQ(status().approach.tool, 2);
     EXPECT_TRUE(status().approach.mustChangeTool && status().approach.isFloodOn);
     EXPECT_EQ(status().approach.speeds_rpm[0], 900);
     EXPECT_TRUE(status().trajectory.isInPosition);
     EXPECT_EQ(status().spindles[0].direction, 0);
-    EXPECT_EQ(rig->ask(msgs::AbortAll{}), "");
-    EXPECT_EQ(rig->machine().client().outcome(*posted).progress, msgs::Progress::FAILED);
+    EXPECT_EQ(rig->ask(messages::AbortAll{}), "");
+    EXPECT_EQ(rig->machine().client().outcome(*posted).progress, messages::Progress::FAILED);
     EXPECT_TRUE(offer().isOffered) << "the offer stays";
     cut_and_come_up();
     EXPECT_TRUE(offer().isOffered);
@@ -105,24 +105,24 @@ TEST_F(RecoveryTest, NothingMovesOrTurnsBeforeThatAndTheProposalMayBeDropped_D3)
     cycles(50);
     cut_and_come_up();
     EXPECT_EQ(offer().line, 9) << "on the way there";
-    EXPECT_EQ(rig->ask(msgs::ForgetRecovery{}), "");
+    EXPECT_EQ(rig->ask(messages::ForgetRecovery{}), "");
     EXPECT_FALSE(offer().isOffered);
     cycles(5);
     cut_and_come_up();
     EXPECT_FALSE(offer().isOffered);
 }
 
-TEST_F(RecoveryTest, AnEmergencyStopLeavesAnOfferAnAbortAndAnErrorNone_D1) {
+TEST_F(RecoveryTest, AnEmergencyStopLeavesAnOfferAnAbortAndAnErrorNone) {
     run_to(SQUARE, 9);
-    EXPECT_EQ(rig->ask(msgs::SetState{msgs::State::ESTOP}), "");
+    EXPECT_EQ(rig->ask(messages::SetState{messages::State::ESTOP}), "");
     EXPECT_TRUE(offer().isOffered);
     EXPECT_EQ(offer().line, 9);
-    EXPECT_EQ(rig->ask(msgs::SetState{msgs::State::ESTOP_RESET}), "");
-    EXPECT_EQ(rig->ask(msgs::SetState{msgs::State::ON}), "");
+    EXPECT_EQ(rig->ask(messages::SetState{messages::State::ESTOP_RESET}), "");
+    EXPECT_EQ(rig->ask(messages::SetState{messages::State::ON}), "");
     EXPECT_EQ(rig->recover(), "");
     finish();
     run_to(SQUARE, 9);
-    EXPECT_EQ(rig->ask(msgs::AbortAll{}), "");
+    EXPECT_EQ(rig->ask(messages::AbortAll{}), "");
     EXPECT_FALSE(offer().isOffered);
     cycles(5);
     cut_and_come_up();
@@ -134,58 +134,58 @@ class NewLengthTest : public RecoveryTest {
   protected:
     void leave(const std::string &program, int line) {
         run_to(program, line);
-        ASSERT_EQ(rig->ask(msgs::PauseProgram{}), "");
+        ASSERT_EQ(rig->ask(messages::PauseProgram{}), "");
         cycles(500);
-        ASSERT_EQ(rig->ask(msgs::ReleaseAxes{}), "");
-        ASSERT_EQ(rig->ask(msgs::JogIncrement{false, 2, 20, 7.0}), "");
+        ASSERT_EQ(rig->ask(messages::ReleaseAxes{}), "");
+        ASSERT_EQ(rig->ask(messages::JogIncrement{false, 2, 20, 7.0}), "");
         cycles(2000);
     }
     void measure(int tool, double z) {
-        msgs::SetToolEntry entry;
+        messages::SetToolEntry entry;
         entry.toolno = entry.pocket = tool;
-        entry.offset[geom::AXIS_Z] = z;
+        entry.offset[geometry::AXIS_Z] = z;
         ASSERT_EQ(rig->ask(entry), "");
     }
     /// Until the way is proposed; false when the program ends instead.
     bool resume() {
-        EXPECT_EQ(rig->ask(msgs::ResumeProgram{}), "");
+        EXPECT_EQ(rig->ask(messages::ResumeProgram{}), "");
         for (int i = 0; i < 1000 && status().approach.number == 0 && !rig->hasEnded(); ++i) {
             rig->cycle(random);
         }
         return status().approach.number != 0;
     }
-    double z() { return status().trajectory.position_cmd[geom::AXIS_Z]; }
+    double z() { return status().trajectory.position_cmd[geometry::AXIS_Z]; }
 };
 
-TEST_F(NewLengthTest, ToolsThatTheProgramMayCallStayWhileItIsLeft_G4) {
+TEST_F(NewLengthTest, ToolsThatTheProgramMayCallStayWhileItIsLeft) {
     leave(SQUARE, 9);
-    msgs::AddTool added;
+    messages::AddTool added;
     added.toolno = 41;
     EXPECT_EQ(rig->ask(added), "");
-    EXPECT_NE(rig->ask(msgs::RemoveTool{41}).find("a program is held that may call tool 41"),
+    EXPECT_NE(rig->ask(messages::RemoveTool{41}).find("a program is held that may call tool 41"),
               std::string::npos);
-    EXPECT_EQ(rig->ask(msgs::AbortAll{}), "");
+    EXPECT_EQ(rig->ask(messages::AbortAll{}), "");
     cycles(500);
-    EXPECT_EQ(rig->ask(msgs::RemoveTool{41}), "");
+    EXPECT_EQ(rig->ask(messages::RemoveTool{41}), "");
 }
 
-TEST_F(NewLengthTest, ItGoesOnAtTheBlockUnderWayWithTheNewLength_D3) {
+TEST_F(NewLengthTest, ItGoesOnAtTheBlockUnderWayWithTheNewLength) {
     leave(SQUARE, 9);
-    const double old = status().offsets.tool[geom::AXIS_Z], longer = old + 2.25;
+    const double old = status().offsets.tool[geometry::AXIS_Z], longer = old + 2.25;
     measure(2, longer);
     ASSERT_TRUE(resume()) << rig->outcome();
     EXPECT_EQ(status().approach.line, 9);
-    EXPECT_EQ(status().approach.offsets.tool[geom::AXIS_Z], longer);
-    const geom::Pose stands = status().trajectory.position_cmd;
+    EXPECT_EQ(status().approach.offsets.tool[geometry::AXIS_Z], longer);
+    const geometry::Pose stands = status().trajectory.position_cmd;
     cycles(300);
-    EXPECT_EQ(geom::norm_xyz(status().trajectory.position_cmd - stands), 0)
+    EXPECT_EQ(geometry::norm_xyz(status().trajectory.position_cmd - stands), 0)
         << "nothing moves before it is confirmed";
-    ASSERT_EQ(rig->ask(msgs::ConfirmApproach{status().approach.number}), "");
+    ASSERT_EQ(rig->ask(messages::ConfirmApproach{status().approach.number}), "");
     constexpr double ROUNDED_MM = 0.03;  // the corner into the last move
     bool isAtBegin = false, isCutting = false;
     for (int i = 0; i < 100000 && status().task.motion_line < 12 && !rig->hasEnded(); ++i) {
         rig->cycle(random);
-        const geom::Pose &at = status().trajectory.position_cmd;
+        const geometry::Pose &at = status().trajectory.position_cmd;
         isAtBegin = isAtBegin || (std::fabs(at[0] - 20) < 1e-6 && std::fabs(at[1]) < 1e-6 &&
                                   std::fabs(z() - (longer - 1)) < 1e-6);
         isCutting = isCutting || status().task.motion_line >= 10;
@@ -196,15 +196,15 @@ TEST_F(NewLengthTest, ItGoesOnAtTheBlockUnderWayWithTheNewLength_D3) {
     }
     EXPECT_TRUE(isAtBegin && isCutting);
     finish();
-    EXPECT_EQ(status().offsets.tool[geom::AXIS_Z], longer);
+    EXPECT_EQ(status().offsets.tool[geometry::AXIS_Z], longer);
     EXPECT_FALSE(offer().isOffered);
 }
 
 /// The way back belongs to the block that is not done, not to what was read ahead.
-TEST_F(NewLengthTest, APowerCutOnTheWayBackOffersTheBlockUnderWay_D3) {
+TEST_F(NewLengthTest, APowerCutOnTheWayBackOffersTheBlockUnderWay) {
     leave(SQUARE, 9);
     ASSERT_TRUE(resume()) << rig->outcome();
-    ASSERT_EQ(rig->ask(msgs::ConfirmApproach{status().approach.number}), "");
+    ASSERT_EQ(rig->ask(messages::ConfirmApproach{status().approach.number}), "");
     cycles(400);
     ASSERT_FALSE(rig->hasEnded());
     cut_and_come_up();
@@ -214,9 +214,9 @@ TEST_F(NewLengthTest, APowerCutOnTheWayBackOffersTheBlockUnderWay_D3) {
     finish();
 }
 
-TEST_F(RecoveryTest, LinesThatAreNotSkippedAreNotSkippedBehindThatEither_D3) {
+TEST_F(RecoveryTest, LinesThatAreNotSkippedAreNotSkippedBehindThatEither) {
     for (const bool isSkipping : {false, true}) {
-        ASSERT_EQ(rig->ask(msgs::SetBlockDelete{isSkipping}), "");
+        ASSERT_EQ(rig->ask(messages::SetBlockDelete{isSkipping}), "");
         run_to("G21 G90 F600\nG1 X20 Y1\nG1 X0\n/G1 Y20\nM2\n", 2);
         cut_and_come_up();
         ASSERT_TRUE(offer().isOffered);
@@ -228,12 +228,12 @@ TEST_F(RecoveryTest, LinesThatAreNotSkippedAreNotSkippedBehindThatEither_D3) {
     }
 }
 
-TEST_F(NewLengthTest, APowerCutBehindThatGoesOnWithTheNewLengthToo_D3) {
+TEST_F(NewLengthTest, APowerCutBehindThatGoesOnWithTheNewLengthToo) {
     leave(SQUARE, 9);
-    const double longer = status().offsets.tool[geom::AXIS_Z] + 2.25;
+    const double longer = status().offsets.tool[geometry::AXIS_Z] + 2.25;
     measure(2, longer);
     ASSERT_TRUE(resume()) << rig->outcome();
-    ASSERT_EQ(rig->ask(msgs::ConfirmApproach{status().approach.number}), "");
+    ASSERT_EQ(rig->ask(messages::ConfirmApproach{status().approach.number}), "");
     for (int i = 0; i < 60000 && status().task.motion_line != 10; ++i) {
         rig->cycle(random);
     }
@@ -243,20 +243,20 @@ TEST_F(NewLengthTest, APowerCutBehindThatGoesOnWithTheNewLengthToo_D3) {
     EXPECT_EQ(offer().line, 10);
     EXPECT_EQ(rig->recover(), "");
     finish();
-    EXPECT_EQ(status().offsets.tool[geom::AXIS_Z], longer);
+    EXPECT_EQ(status().offsets.tool[geometry::AXIS_Z], longer);
 }
 
-TEST_F(NewLengthTest, WhereItCannotBeKnownTheProgramEndsAndSaysWhy_C5) {
+TEST_F(NewLengthTest, WhereItCannotBeKnownTheProgramEndsAndSaysWhy) {
     leave("G21 G90 F600\nT2 M6\nG10 L1 P2 Z30\nG43\nG0 X0 Y0 Z5\nG1 X20\nG1 X0\nM2\n", 6);
     measure(2, 31);
     EXPECT_FALSE(resume());
     EXPECT_NE(rig->outcome().find("the program itself sets the data of tool 2"), std::string::npos)
         << rig->outcome();
 
-    ASSERT_EQ(rig->ask(msgs::SetMode{msgs::Mode::MDI}), "");
-    ASSERT_EQ(rig->ask(msgs::Mdi{"T2 M6"}), "");
-    ASSERT_EQ(rig->ask(msgs::Mdi{"G43"}), "");
-    ASSERT_EQ(rig->ask(msgs::SetMode{msgs::Mode::AUTO}), "");
+    ASSERT_EQ(rig->ask(messages::SetMode{messages::Mode::MDI}), "");
+    ASSERT_EQ(rig->ask(messages::Mdi{"T2 M6"}), "");
+    ASSERT_EQ(rig->ask(messages::Mdi{"G43"}), "");
+    ASSERT_EQ(rig->ask(messages::SetMode{messages::Mode::AUTO}), "");
     leave("G21 G90 F600\nG0 X0 Y0 Z5\nG1 X20\nG1 X0\nM2\n", 3);
     measure(2, 29);
     EXPECT_FALSE(resume());
@@ -277,7 +277,7 @@ struct Doubtful {
 
 class DoubtTest : public RecoveryTest, public ::testing::WithParamInterface<Doubtful> {};
 
-TEST_P(DoubtTest, IsRefusedWithTheReasonAndTheNearestLine_C5) {
+TEST_P(DoubtTest, IsRefusedWithTheReasonAndTheNearestLine) {
     run_to(GetParam().program, GetParam().line);
     cut_and_come_up();
     EXPECT_FALSE(offer().isOffered);
@@ -302,7 +302,7 @@ INSTANTIATE_TEST_SUITE_P(
                  "line 3; the nearest line before it that can is 3"}),
     [](const auto &one) { return one.param.name; });
 
-TEST_F(RecoveryTest, BeforeTheDoubtItIsOffered_D3) {
+TEST_F(RecoveryTest, BeforeTheDoubtItIsOffered) {
     run_to("G21 F600\nG0 Z5\nG1 X20\nG1 X0\nM66 P0 L0\nG1 X1\nM2\n", 3);
     cut_and_come_up();
     EXPECT_TRUE(offer().isOffered);
@@ -310,7 +310,7 @@ TEST_F(RecoveryTest, BeforeTheDoubtItIsOffered_D3) {
     finish();
 }
 
-TEST_F(RecoveryTest, WhatHasChangedSinceIsNoticed_C5) {
+TEST_F(RecoveryTest, WhatHasChangedSinceIsNoticed) {
     run_to(SQUARE, 9);
     cut_power();
     disk.write_outside(folder / "p.ngc", "G0 X1\nM2\n");
@@ -326,7 +326,7 @@ TEST_F(RecoveryTest, WhatHasChangedSinceIsNoticed_C5) {
     EXPECT_NE(rig->recover().find("the tool table has been changed"), std::string::npos);
 }
 
-TEST_F(RecoveryTest, AProgramThatBeganAtALineIsOfferedTheSameWay_D3) {
+TEST_F(RecoveryTest, AProgramThatBeganAtALineIsOfferedTheSameWay) {
     run_to(SQUARE, 9, 8);
     cut_and_come_up();
     ASSERT_TRUE(offer().isOffered);
@@ -335,17 +335,17 @@ TEST_F(RecoveryTest, AProgramThatBeganAtALineIsOfferedTheSameWay_D3) {
     finish();
 }
 
-TEST_F(RecoveryTest, TheOffsetsOfTheVeryBlockAreShownAndKept_D3) {
+TEST_F(RecoveryTest, TheOffsetsOfTheVeryBlockAreShownAndKept) {
     constexpr const char *PROGRAM = "G21 G90 G55 G43 H2 G1 X20 Z-30 F600\nG1 Y20 F600\nM2\n";
     run_to(PROGRAM, 1);
     finish();
-    const msgs::OffsetsStatus whole = status().offsets;
-    EXPECT_NE(whole.tool[geom::AXIS_Z], 0);
-    ASSERT_EQ(rig->ask(msgs::SetMode{msgs::Mode::MDI}), "");
-    ASSERT_EQ(rig->ask(msgs::Mdi{"G54 G49"}), "");
-    ASSERT_EQ(rig->ask(msgs::Mdi{"G53 G0 X0 Y0"}), "");
-    EXPECT_EQ(status().offsets.tool[geom::AXIS_Z], 0);
-    ASSERT_EQ(rig->ask(msgs::SetMode{msgs::Mode::AUTO}), "");
+    const messages::OffsetsStatus whole = status().offsets;
+    EXPECT_NE(whole.tool[geometry::AXIS_Z], 0);
+    ASSERT_EQ(rig->ask(messages::SetMode{messages::Mode::MDI}), "");
+    ASSERT_EQ(rig->ask(messages::Mdi{"G54 G49"}), "");
+    ASSERT_EQ(rig->ask(messages::Mdi{"G53 G0 X0 Y0"}), "");
+    EXPECT_EQ(status().offsets.tool[geometry::AXIS_Z], 0);
+    ASSERT_EQ(rig->ask(messages::SetMode{messages::Mode::AUTO}), "");
     run_to(PROGRAM, 1);
     cut_and_come_up();
     ASSERT_EQ(offer().line, 1);
@@ -365,7 +365,7 @@ TEST_F(RecoveryTest, ARefusedStartAtALineKeepsAnOlderOffer) {
     EXPECT_NE(offer().program.str(), "");
 }
 
-TEST_F(RecoveryTest, TheMiddleOfAThreadIsRefused_C5) {
+TEST_F(RecoveryTest, TheMiddleOfAThreadIsRefused) {
     run_to("G21 F600\nS300 M3\nG0 X0 Y0 Z5\nG33 Z-5 K1\nG33 Z-20 K1\nG0 X2\nM2\n", 5);
     cut_and_come_up();
     EXPECT_NE(

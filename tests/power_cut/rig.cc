@@ -5,14 +5,14 @@
 
 #include <fmt/format.h>
 
-#include "app/operator.hh"
+#include "programs/run/run_session.hh"
 
 namespace mw::power_cut {
 namespace {
 
 namespace files = std::filesystem;
 
-std::string bits(const geom::Pose &pose) {
+std::string bits(const geometry::Pose &pose) {
     std::string text;
     for (const double coordinate : pose.c) {
         text += fmt::format(" {:a}", coordinate);
@@ -86,22 +86,22 @@ std::string Rig::come_up(const std::vector<std::string> &mdi) {
         return made.error().str();
     }
     machine_ = std::move(*made);
-    app::OwnMachine own(*machine_);
-    app::Operator person(own, loaded_->machine, sink_, {});
+    programs::OwnMachine own(*machine_);
+    programs::RunSession person(own, loaded_->machine, sink_, {});
     auto up = person.switch_on();
     up = up.has_value() ? person.home_all() : up;
     if (!up.has_value()) {
         return up.error().str();
     }
     for (const std::string &line : mdi) {
-        auto trouble = ask(msgs::SetMode{msgs::Mode::MDI});
-        trouble = trouble.empty() ? ask(msgs::Mdi{line}) : trouble;
+        auto trouble = ask(messages::SetMode{messages::Mode::MDI});
+        trouble = trouble.empty() ? ask(messages::Mdi{line}) : trouble;
         if (!trouble.empty()) {
             return line + ": " + trouble;
         }
     }
     listen();
-    return ask(msgs::SetMode{msgs::Mode::AUTO});
+    return ask(messages::SetMode{messages::Mode::AUTO});
 }
 
 /// The interpreter reads them from a real file: as the disk has it.
@@ -122,7 +122,7 @@ void Rig::listen() {
 }
 
 void Rig::tell_what_is_on() {
-    const msgs::MachineStatus &now = status();
+    const messages::MachineStatus &now = status();
     const motion::CommandId under_way = machine_->task().motion_status().active_path_id;
     while (told_ < recording.calls.size() && recording.calls[told_].id <= under_way) {
         recording.calls[told_++].bits +=
@@ -131,7 +131,7 @@ void Rig::tell_what_is_on() {
     }
 }
 
-std::string Rig::ask(const msgs::Command &command, int limit) {
+std::string Rig::ask(const messages::Command &command, int limit) {
     const auto posted = machine_->client().post(command);
     if (!posted.has_value()) {
         return posted.error().str();
@@ -139,8 +139,8 @@ std::string Rig::ask(const msgs::Command &command, int limit) {
     for (int i = 0; i < limit; ++i) {
         machine_->cycle();
         const auto outcome = machine_->client().outcome(*posted);
-        if (outcome.progress != msgs::Progress::STARTED) {
-            return outcome.progress == msgs::Progress::DONE ? "" : outcome.reason + " ";
+        if (outcome.progress != messages::Progress::STARTED) {
+            return outcome.progress == messages::Progress::DONE ? "" : outcome.reason + " ";
         }
     }
     return "it does not end";
@@ -150,8 +150,8 @@ std::string Rig::begin(const std::string &program, int from_line) {
     const files::path path = folder_ / "p.ngc";
     std::ofstream(path) << program;
     disk_.write_outside(path, program);
-    const auto opened = ask(msgs::OpenProgram{path});
-    const auto posted = machine_->client().post(msgs::RunProgram{from_line});
+    const auto opened = ask(messages::OpenProgram{path});
+    const auto posted = machine_->client().post(messages::RunProgram{from_line});
     run_ = posted.value_or(0);
     return opened;
 }
@@ -168,26 +168,26 @@ void Rig::cycle(std::mt19937_64 &random) {
         writer_->work();
     }
     if (hasEnded() && !recording.isDone) {
-        recording.isDone = machine_->client().outcome(run_).progress == msgs::Progress::DONE;
+        recording.isDone = machine_->client().outcome(run_).progress == messages::Progress::DONE;
         static_cast<void>(machine_->task().save_parameters());
         recording.parameters = disk_.files[disk_.names[folder_ / "p.var"]].now;
     }
 }
 
 bool Rig::hasEnded() const {
-    return machine_->client().outcome(run_).progress != msgs::Progress::STARTED;
+    return machine_->client().outcome(run_).progress != messages::Progress::STARTED;
 }
 
 std::string Rig::outcome() {
     return machine_->client().outcome(run_).reason;
 }
 
-const msgs::MachineStatus &Rig::status() {
+const messages::MachineStatus &Rig::status() {
     return machine_->task().status();
 }
 
 std::string Rig::recover() {
-    const auto posted = machine_->client().post(msgs::RecoverProgram{});
+    const auto posted = machine_->client().post(messages::RecoverProgram{});
     if (!posted.has_value()) {
         return posted.error().str();
     }
@@ -196,7 +196,7 @@ std::string Rig::recover() {
     for (int i = 0; i < LIMIT && !hasEnded(); ++i) {
         machine_->cycle();
         if (status().approach.number != 0) {
-            return ask(msgs::ConfirmApproach{status().approach.number});
+            return ask(messages::ConfirmApproach{status().approach.number});
         }
     }
     return hasEnded() ? outcome() + " " : "nothing is proposed";

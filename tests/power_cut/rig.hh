@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "diag/sink.hh"
-#include "journal/test/torn_disk.hh"
-#include "machine/loaded_config.hh"
-#include "machine/machine.hh"
+#include "base/diagnostics/sink.hh"
+#include "machine/assembly/machine.hh"
+#include "machine/config/loaded_config.hh"
+#include "machine/journal/test/torn_disk.hh"
 
 namespace mw::power_cut {
 
@@ -52,12 +52,12 @@ class Rig {
     /// Neither running nor asked for.
     bool hasEnded() const;
     std::string outcome();
-    const msgs::MachineStatus &status();
+    const messages::MachineStatus &status();
     /// Asks for what was cut short, confirms the way. Empty, or the refusal.
     std::string recover();
 
     /// Done, or why not.
-    std::string ask(const msgs::Command &command, int limit = 20000);
+    std::string ask(const messages::Command &command, int limit = 20000);
     machine::Machine &machine() { return *machine_; }
     const std::filesystem::path &folder() const { return folder_; }
 
@@ -76,7 +76,7 @@ class Rig {
     std::filesystem::path folder_;
     journal::test::TornDisk &disk_;
     std::string program_;
-    diag::Sink sink_;
+    diagnostics::Sink sink_;
     std::unique_ptr<machine::LoadedConfig> loaded_;
     std::unique_ptr<journal::Writer> writer_;
     std::unique_ptr<machine::Machine> machine_;

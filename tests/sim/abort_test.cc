@@ -25,7 +25,7 @@ class AbortTest : public VirtualMachineTest {
 constexpr const char *BODY = "(debug,because %d#1)\nG90 G40 G80\nM65 P0\nM9\n";
 constexpr const char *LONG = "G21 G91 F600\nM64 P0\nG1 X100\nM2\n";
 
-TEST_F(AbortTest, TheOnAbortCommandRunsWhenTheMachineStands_I1) {
+TEST_F(AbortTest, TheOnAbortCommandRunsWhenTheMachineStands) {
     switch_on_with(BODY);
     start(LONG);
     cycles(1000);
@@ -45,7 +45,7 @@ TEST_F(AbortTest, TheOnAbortCommandRunsWhenTheMachineStands_I1) {
     EXPECT_GT(rest, 5.0);
 }
 
-TEST_F(AbortTest, TheOnAbortCommandIsToldWhy_I1) {
+TEST_F(AbortTest, TheOnAbortCommandIsToldWhy) {
     switch_on_with("(debug,because %d#1)\n");
     start("G1 X1\nM2\n");  // no feed
     EXPECT_EQ(finish(), task::Progress::FAILED);
@@ -78,7 +78,7 @@ TEST_F(AbortTest, TheOnAbortCommandIsToldWhy_I1) {
 }
 
 /// Nothing starts or moves without a fresh command, whatever a procedure says.
-TEST_F(AbortTest, TheOnAbortCommandCannotMoveOrStartAnything_I1) {
+TEST_F(AbortTest, TheOnAbortCommandCannotMoveOrStartAnything) {
     for (const char *bad :
          {"G0 X50", "G53 G0 Z0", "M3 S1000", "M8", "T1 M6", "G38.3 X9 F10", "M0", "M66 P0 L3 Q9"}) {
         SCOPED_TRACE(bad);
@@ -102,7 +102,7 @@ TEST_F(AbortTest, TheOnAbortCommandCannotMoveOrStartAnything_I1) {
     }
 }
 
-TEST_F(AbortTest, AnOnAbortCommandThatFailsIsToldOnce_I1) {
+TEST_F(AbortTest, AnOnAbortCommandThatFailsIsToldOnce) {
     switch_on_with("M65 P0\nG1 X[1/0]\n");
     start(LONG);
     cycles(1000);
@@ -117,7 +117,7 @@ TEST_F(AbortTest, AnOnAbortCommandThatFailsIsToldOnce_I1) {
     EXPECT_EQ(mdi("G90 G0 X1"), task::Progress::DONE) << messages();
 }
 
-TEST_F(AbortTest, AMissingOnAbortProcedureIsToldAndNothingElse_I1) {
+TEST_F(AbortTest, AMissingOnAbortProcedureIsToldAndNothingElse) {
     switch_on([](task::Settings &task) { task.interpreter.on_abort_command = "O <nowhere> call"; });
     messages();
     ask(task::AbortAll{});
@@ -125,7 +125,7 @@ TEST_F(AbortTest, AMissingOnAbortProcedureIsToldAndNothingElse_I1) {
     EXPECT_NE(messages().find("no subroutine o<nowhere>"), std::string::npos);
 }
 
-TEST_F(AbortTest, AFaultOfTheToolChangerIsInTheParameters_E1) {
+TEST_F(AbortTest, AFaultOfTheToolChangerIsInTheParameters) {
     switch_on_with("(debug,because %d#1: %d#5600 %d#5601)\n");
     ASSERT_TRUE(machine_->hal().unlink("iocontrol.0.tool-changed").has_value());
     set_pin("iocontrol.0.toolchanger-reason", "7");
@@ -142,7 +142,7 @@ TEST_F(AbortTest, AFaultOfTheToolChangerIsInTheParameters_E1) {
 }
 
 /// The axes still brake when the next line comes: it begins where they come to rest.
-TEST_F(AbortTest, WorkRightAfterAnAbortBeginsWhereTheMachineComesToRest_D1) {
+TEST_F(AbortTest, WorkRightAfterAnAbortBeginsWhereTheMachineComesToRest) {
     switch_on();
     start("G21 G90 F6000\nG1 X100\nM2\n");
     cycles(500);
@@ -166,7 +166,7 @@ TEST_F(AbortTest, WorkRightAfterAnAbortBeginsWhereTheMachineComesToRest_D1) {
 }
 
 /// Whenever the abort comes: the machine stops, cleans up once, and takes the next line.
-TEST_F(AbortTest, AnAbortInAnyCycleLeavesAMachineThatGoesOn_D1) {
+TEST_F(AbortTest, AnAbortInAnyCycleLeavesAMachineThatGoesOn) {
     switch_on_with("(debug,because %d#1)\nM65 P0\n");
     constexpr double FASTEST_MM_S = 200.0, PERIOD_S = 1e-3;
     for (int when = 1; when < 2600; when += 37) {
@@ -206,7 +206,7 @@ TEST_F(AbortTest, AnAbortInAnyCycleLeavesAMachineThatGoesOn_D1) {
 }
 
 /// What was read ahead and never came into force: displays, motion and the next line agree about it.
-TEST_F(AbortTest, AfterAnAbortTheCodesAreThoseOfTheExecutedBlock_D1) {
+TEST_F(AbortTest, AfterAnAbortTheCodesAreThoseOfTheExecutedBlock) {
     switch_on();
     EXPECT_EQ(mdi("G10 L2 P2 X10"), task::Progress::DONE);
     EXPECT_EQ(mdi("T1 M6"), task::Progress::DONE);

@@ -106,7 +106,7 @@ class RoundedArcsTest : public VirtualMachineTest {
         }
     }
     void judge(const Plane &plane, int decimals) {
-        const geom::Pose at = motion().carte_pos_cmd;
+        const geometry::Pose at = motion().carte_pos_cmd;
         EXPECT_NEAR(at[plane.first], last_[0], 1e-9);
         EXPECT_NEAR(at[plane.second], last_[1], 1e-9);
         // Ends and centre are each off by up to half a digit in each coordinate, and G61 passes within 1e-6.

@@ -22,7 +22,7 @@ class ChangedLimits : public VirtualMachineTest {
     double x() const { return motion().joint[0].pos_cmd; }
 };
 
-TEST_F(ChangedLimits, AJogOfAJointEndsAtTheLimitThatAClientHasSet_C9) {
+TEST_F(ChangedLimits, AJogOfAJointEndsAtTheLimitThatAClientHasSet) {
     begin_jog(true);
     const double limit = x() + 5;
     const auto id = ask(task::SetJointMaxLimit{0, limit});
@@ -32,7 +32,7 @@ TEST_F(ChangedLimits, AJogOfAJointEndsAtTheLimitThatAClientHasSet_C9) {
     EXPECT_EQ(motion().joint[0].max_limit, limit);
 }
 
-TEST_F(ChangedLimits, AJogOfAnAxisEndsAtTheLimitOfItsPin_C9) {
+TEST_F(ChangedLimits, AJogOfAnAxisEndsAtTheLimitOfItsPin) {
     begin_jog(false);
     const double limit = x() + 5;
     set_pin("ini.x.max_limit", std::to_string(limit));
@@ -40,7 +40,7 @@ TEST_F(ChangedLimits, AJogOfAnAxisEndsAtTheLimitOfItsPin_C9) {
     EXPECT_NEAR(x(), limit, 1e-5) << messages();
 }
 
-TEST_F(ChangedLimits, AJogThatCannotStopBeforeANewLimitComesBackToIt_C9) {
+TEST_F(ChangedLimits, AJogThatCannotStopBeforeANewLimitComesBackToIt) {
     begin_jog(true);
     const double limit = x() + 0.05;  // it needs 0.13 to brake
     ASSERT_EQ(progress(ask(task::SetJointMaxLimit{0, limit})), task::Progress::DONE);
@@ -53,7 +53,7 @@ TEST_F(ChangedLimits, AJogThatCannotStopBeforeANewLimitComesBackToIt_C9) {
     EXPECT_NEAR(x(), limit, 1e-6) << messages();
 }
 
-TEST_F(ChangedLimits, AJogThatIsOutsideOfANewLimitBrakesAndMayOnlyComeBack_C9) {
+TEST_F(ChangedLimits, AJogThatIsOutsideOfANewLimitBrakesAndMayOnlyComeBack) {
     begin_jog(true);
     const double limit = x() - 2;
     const auto id = ask(task::SetJointMaxLimit{0, limit});

@@ -33,7 +33,7 @@ class ChangerTest : public VirtualMachineTest {
         return static_cast<int>(machine_->hal().get("iocontrol.0." + name)->as_s32());
     }
     void set(const std::string &name, bool isOn) { set_pin("iocontrol.0." + name, isOn ? "1" : "0"); }
-    geom::Pose place() const { return motion().carte_pos_cmd; }
+    geometry::Pose place() const { return motion().carte_pos_cmd; }
     /// Answers as a changer does, but for `request`, which it comes to with the pin on; false when it never
     /// is.
     bool run_until(const std::string &request) {
@@ -49,7 +49,7 @@ class ChangerTest : public VirtualMachineTest {
     /// Of the change that is asked for: the machine stands there until it is answered, and then.
     void expect_change_at(double x, double y, double z) {
         ASSERT_TRUE(run_until("tool-change")) << messages();
-        const geom::Pose there = place();
+        const geometry::Pose there = place();
         EXPECT_NEAR(there[0], x, 1e-6);
         EXPECT_NEAR(there[1], y, 1e-6);
         EXPECT_NEAR(there[2], z, 1e-6);
@@ -57,7 +57,7 @@ class ChangerTest : public VirtualMachineTest {
         const std::size_t first = samples_.size();
         cycles(300);
         for (std::size_t i = first; i < samples_.size(); ++i) {
-            ASSERT_EQ(geom::norm_xyz(samples_[i].carte_pos_cmd - there), 0)
+            ASSERT_EQ(geometry::norm_xyz(samples_[i].carte_pos_cmd - there), 0)
                 << "moves with the changer's arm in";
         }
         set("tool-changed", true);
@@ -68,7 +68,7 @@ class ChangerTest : public VirtualMachineTest {
     static constexpr const char *TO_G30 = "G21 G90 F2000\nG0 X50 Y40 Z-30\nG30.1\nG0 X5 Y6 Z-20\n";
 };
 
-TEST_F(ChangerTest, WithoutSettingsTheMachineStaysWhereItIsAndTheSpindleStops_G5) {
+TEST_F(ChangerTest, WithoutSettingsTheMachineStaysWhereItIsAndTheSpindleStops) {
     begin("");
     start(std::string(TO_G30) + "S500 M3\nT2 M6\nG1 X7\nM2\n");
     ASSERT_TRUE(run_until("tool-change"));
@@ -78,7 +78,7 @@ TEST_F(ChangerTest, WithoutSettingsTheMachineStaysWhereItIsAndTheSpindleStops_G5
     EXPECT_EQ(number("tool-number"), 2);
 }
 
-TEST_F(ChangerTest, TOOL_CHANGE_AT_G30IsWhereToolsAreChanged_G5) {
+TEST_F(ChangerTest, TOOL_CHANGE_AT_G30IsWhereToolsAreChanged) {
     begin("TOOL_CHANGE_AT_G30 = 1\n");
     start(std::string(TO_G30) + "T2 M6\nG1 X7\nM2\n");
     expect_change_at(50, 40, -30);
@@ -96,14 +96,14 @@ TEST_F(ChangerTest, TOOL_CHANGE_AT_G30IsWhereToolsAreChanged_G5) {
     EXPECT_EQ(number("tool-number"), 3);
 }
 
-TEST_F(ChangerTest, TOOL_CHANGE_QUILL_UPTakesZToMachineZero_G5) {
+TEST_F(ChangerTest, TOOL_CHANGE_QUILL_UPTakesZToMachineZero) {
     begin("TOOL_CHANGE_QUILL_UP = 1\n");
     start("G21 G90 F2000\nG10 L2 P1 Z-15\nG43 H3\nG0 X5 Y6 Z-20\nT2 M6\nG1 Z-21\nM2\n");
     expect_change_at(5, 6, 0);
     EXPECT_EQ(finish(), task::Progress::DONE) << messages();
 }
 
-TEST_F(ChangerTest, WithBothTheQuillIsUpBeforeItGoesToG30_G5) {
+TEST_F(ChangerTest, WithBothTheQuillIsUpBeforeItGoesToG30) {
     begin("TOOL_CHANGE_QUILL_UP = 1\nTOOL_CHANGE_AT_G30 = 1\n");
     start(std::string(TO_G30) + "T2 M6\nM2\n");
     ASSERT_TRUE(run_until("tool-prepare"));
@@ -116,7 +116,7 @@ TEST_F(ChangerTest, WithBothTheQuillIsUpBeforeItGoesToG30_G5) {
     constexpr double ROUNDED_MM = 0.06;  // the corner of two rapids
     bool isAtTop = false;
     for (std::size_t i = first; i < samples_.size(); ++i) {
-        const geom::Pose &at = samples_[i].carte_pos_cmd;
+        const geometry::Pose &at = samples_[i].carte_pos_cmd;
         isAtTop = isAtTop || std::fabs(at[2]) < ROUNDED_MM;
         const bool isOnItsWay = std::fabs(at[0] - 5) > 1e-6;
         ASSERT_TRUE(isAtTop || !isOnItsWay) << "X moves with the tool down, at Z" << at[2];
@@ -125,7 +125,7 @@ TEST_F(ChangerTest, WithBothTheQuillIsUpBeforeItGoesToG30_G5) {
     EXPECT_EQ(finish(), task::Progress::DONE) << messages();
 }
 
-TEST_F(ChangerTest, TOOL_CHANGE_WITH_SPINDLE_ONLeavesItTurning_G5) {
+TEST_F(ChangerTest, TOOL_CHANGE_WITH_SPINDLE_ONLeavesItTurning) {
     begin("TOOL_CHANGE_WITH_SPINDLE_ON = 1\n");
     start("G21 G90 F2000\nS500 M3\nG4 P0.1\nT2 M6\nG4 P0.1\nM2\n");
     ASSERT_TRUE(run_until("tool-change"));
@@ -142,7 +142,7 @@ TEST_F(ChangerTest, TOOL_CHANGE_WITH_SPINDLE_ONLeavesItTurning_G5) {
     EXPECT_FALSE(VirtualMachineTest::pin("spindle.0.on")) << "M2";
 }
 
-TEST_F(ChangerTest, AFaultIsAcknowledgedEndsTheProgramAndTheNextChangeWaitsForItsEnd_E1) {
+TEST_F(ChangerTest, AFaultIsAcknowledgedEndsTheProgramAndTheNextChangeWaitsForItsEnd) {
     begin("EMCIO = iov2\n");
     set("emc-abort-ack", true);
     start("G21 G90 F2000\nT2 M6\nG1 X7\nM2\n");
@@ -180,7 +180,7 @@ TEST_F(ChangerTest, AFaultIsAcknowledgedEndsTheProgramAndTheNextChangeWaitsForIt
     EXPECT_EQ(number("tool-number"), 2);
 }
 
-TEST_F(ChangerTest, AReasonAboveZeroIsToldAndTheProgramFindsItInItsParameters_E1) {
+TEST_F(ChangerTest, AReasonAboveZeroIsToldAndTheProgramFindsItInItsParameters) {
     begin("EMCIO = iov2\n");
     set("emc-abort-ack", true);
     start("G21 G90 F2000\nT2 M6\nG0 X[#5600 * 10 + #5601]\nM2\n");
@@ -195,20 +195,20 @@ TEST_F(ChangerTest, AReasonAboveZeroIsToldAndTheProgramFindsItInItsParameters_E1
     EXPECT_EQ(number("tool-number"), 0);
 }
 
-TEST_F(ChangerTest, LubricationFollowsTheEmergencyStopAndItsCommands_E1) {
+TEST_F(ChangerTest, LubricationFollowsTheEmergencyStopAndItsCommands) {
     begin("");
     EXPECT_TRUE(pin("lube")) << "on since the emergency stop was reset";
     const auto state = [this] { return machine_->task().status().io.lube; };
     EXPECT_TRUE(state().isOn && state().hasOil);
-    ask(msgs::LubeOff{});
+    ask(messages::LubeOff{});
     EXPECT_FALSE(pin("lube") || state().isOn);
-    ask(msgs::LubeOn{});
+    ask(messages::LubeOn{});
     EXPECT_TRUE(pin("lube"));
-    ask(msgs::SetState{msgs::State::OFF});
+    ask(messages::SetState{messages::State::OFF});
     EXPECT_TRUE(pin("lube")) << "off is no emergency stop";
-    ask(msgs::SetState{msgs::State::ESTOP});
+    ask(messages::SetState{messages::State::ESTOP});
     EXPECT_FALSE(pin("lube"));
-    ask(msgs::SetState{msgs::State::ESTOP_RESET});
+    ask(messages::SetState{messages::State::ESTOP_RESET});
     cycles(20);
     EXPECT_TRUE(pin("lube"));
     EXPECT_EQ(messages().find("oil"), std::string::npos);
@@ -227,7 +227,7 @@ TEST_F(ChangerTest, LubricationFollowsTheEmergencyStopAndItsCommands_E1) {
 }
 
 /// Where tools stand in the table of a changer that swaps them.
-TEST_F(ChangerTest, AStartAtALineOfARandomChangerSetsTheToolInTheSpindleToo_D3) {
+TEST_F(ChangerTest, AStartAtALineOfARandomChangerSetsTheToolInTheSpindleToo) {
     begin("RANDOM_TOOLCHANGER = 1\n", "T1 P0 Z1.5\nT2 P11 Z2.5\n");
     write("p.ngc", "G10 L1 P1 Z4\nG10 L1 P2 Z5\nG43\nM61 Q1\nG0 X1\nM2\n");
     ask(task::SetMode{task::Mode::AUTO});
@@ -236,7 +236,7 @@ TEST_F(ChangerTest, AStartAtALineOfARandomChangerSetsTheToolInTheSpindleToo_D3) 
     for (int i = 0; i < 3000 && progress(run_) == task::Progress::STARTED; ++i) {
         const auto number = machine_->task().status().approach.number;
         if (number != 0) {
-            ask(msgs::ConfirmApproach{number});
+            ask(messages::ConfirmApproach{number});
         }
         cycles(1);
     }

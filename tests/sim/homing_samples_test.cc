@@ -67,7 +67,7 @@ class HomingSamplesTest : public VirtualMachineTest, public ::testing::WithParam
     }
 };
 
-TEST_P(HomingSamplesTest, HomesThreeTimesInARowAfterUnhomingAndFromAnywhere_C4) {
+TEST_P(HomingSamplesTest, HomesThreeTimesInARowAfterUnhomingAndFromAnywhere) {
     switch_on_config(MW_SOURCE_DIR "/configs/sim/" + GetParam() + ".ini");
     ASSERT_NE(machine_, nullptr);
     expect_homes("second time");

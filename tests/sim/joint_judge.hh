@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "machine/machine_config.hh"
-#include "motion/api/channels.hh"
-#include "motion/api/parameters.hh"
-#include "testing/limit_checker.hh"
+#include "machine/config/machine_config.hh"
+#include "motion/interface/channels.hh"
+#include "motion/interface/parameters.hh"
+#include "tests/support/limit_checker.hh"
 
 namespace mw::machine {
 

@@ -103,7 +103,7 @@ class LifecycleTest : public VirtualMachineTest {
     }
 };
 
-TEST_F(LifecycleTest, NothingIsLeftBehindByManyLives_A2) {
+TEST_F(LifecycleTest, NothingIsLeftBehindByManyLives) {
     const char *const wanted = std::getenv("MILLWRIGHT_LIVES");
     const int lives = wanted != nullptr ? std::atoi(wanted) : 20;
     constexpr int FIRST = 5;  // libraries that stay are loaded, pools are filled

@@ -28,7 +28,7 @@ class MachineTest : public VirtualMachineTest {
 
 constexpr const char *LONG_MOVES = "G21 G90 G17 G61 F6000\nG1 X100\nY100\nX0\nY0\nM2\n";
 
-TEST_F(MachineTest, ProgramsReadHalItemsInTheCaseOfTheirNames_I1) {
+TEST_F(MachineTest, ProgramsReadHalItemsInTheCaseOfTheirNames) {
     hal::Hal &hal = machine_->hal();
     ASSERT_TRUE(hal.new_signal("Depth", hal::Type::FLOAT).has_value());
     ASSERT_TRUE(hal.set_signal("Depth", "3").has_value());
@@ -87,7 +87,7 @@ TEST_F(MachineTest, AnAbortBrakesAlongThePathWithinTheLimits) {
     EXPECT_LE(peak_acceleration(), 1500 * (1 + 1e-6) + 1e-6);
     const double y = samples_.back().carte_pos_cmd.y();
     EXPECT_NEAR(y, 0.0, 1e-9) << "still on the first side";
-    const geom::Pose rest = samples_.back().carte_pos_cmd;
+    const geometry::Pose rest = samples_.back().carte_pos_cmd;
     cycles(500);
     EXPECT_EQ(samples_.back().carte_pos_cmd, rest) << "nothing of the old epoch moves";
 }
@@ -97,7 +97,7 @@ TEST_F(MachineTest, PauseHoldsAndResumeGoesOnToTheExactEnd) {
     cycles(700);
     ask(task::PauseProgram{});
     cycles(300);
-    const geom::Pose held = samples_.back().carte_pos_cmd;
+    const geometry::Pose held = samples_.back().carte_pos_cmd;
     cycles(200);
     EXPECT_EQ(samples_.back().carte_pos_cmd, held);
     ask(task::ResumeProgram{});
@@ -107,7 +107,7 @@ TEST_F(MachineTest, PauseHoldsAndResumeGoesOnToTheExactEnd) {
     EXPECT_EQ(samples_.back().carte_pos_cmd.y(), 0.0);
 }
 
-TEST_F(MachineTest, AProgramStopHoldsWhatIsBehindIt_D3) {
+TEST_F(MachineTest, AProgramStopHoldsWhatIsBehindIt) {
     start("G21 G90 G61 F6000\nG1 X2\nM0\nM8\nG1 X4\nM1\nG1 X6\nM60\nM2\n");
     for (const double stands : {2.0, 4.0, 6.0}) {
         for (int i = 0; i < 5000 && !machine_->task().status().task.isPaused; ++i) {
@@ -132,7 +132,7 @@ TEST_F(MachineTest, AProgramErrorStopsTheSpindleToo) {
     EXPECT_TRUE(motion().isEnabled);
 }
 
-TEST_F(MachineTest, FollowingErrorIsAFaultThatSwitchesOff_C13) {
+TEST_F(MachineTest, FollowingErrorIsAFaultThatSwitchesOff) {
     start(LONG_MOVES);
     cycles(300);
     ASSERT_TRUE(machine_->hal().unlink("joint.0.motor-pos-fb").has_value());
@@ -141,7 +141,7 @@ TEST_F(MachineTest, FollowingErrorIsAFaultThatSwitchesOff_C13) {
     EXPECT_NE(messages().find("joint 0 following error"), std::string::npos);
 }
 
-TEST_F(MachineTest, AToolChangeWaitsForItsPin_E1) {
+TEST_F(MachineTest, AToolChangeWaitsForItsPin) {
     ASSERT_TRUE(machine_->hal().unlink("iocontrol.0.tool-changed").has_value());
     start("G21 G90\nT2 M6\nG0 X5\nM2\n");
     cycles(4000);
@@ -153,7 +153,7 @@ TEST_F(MachineTest, AToolChangeWaitsForItsPin_E1) {
 }
 
 /// A tool arm must not come before the spindle has its angle.
-TEST_F(MachineTest, OrientingASpindleIsAwaitedUpToItsTime_E1) {
+TEST_F(MachineTest, OrientingASpindleIsAwaitedUpToItsTime) {
     ASSERT_TRUE(machine_->hal().unlink("spindle.0.is-oriented").has_value());  // a person answers
     const std::string program = "G21 G90\nM19 R90 Q2\nG0 X5\nM19 R180 Q2\nG0 X9\nM2\n";
     start(program);
@@ -180,7 +180,7 @@ TEST_F(MachineTest, OrientingASpindleIsAwaitedUpToItsTime_E1) {
     EXPECT_EQ(finish(), task::Progress::DONE) << "without Q nothing is awaited";
 }
 
-TEST_F(MachineTest, BackBoringMovesAsideOnlyWithAnOrientedSpindle_I1) {
+TEST_F(MachineTest, BackBoringMovesAsideOnlyWithAnOrientedSpindle) {
     ASSERT_TRUE(machine_->hal().unlink("spindle.0.is-oriented").has_value());  // a person answers
     start("G21 G90 G0 X0 Y0 Z5\nS1000 M3\nF3000 G87 X0 Y0 Z-3 R1 I2 J0 K-1\nG80\nM2\n");
     cycles(5000);
@@ -190,7 +190,7 @@ TEST_F(MachineTest, BackBoringMovesAsideOnlyWithAnOrientedSpindle_I1) {
     EXPECT_EQ(finish(), task::Progress::DONE) << messages();
 }
 
-TEST_F(MachineTest, WaitsBeyondTheRangeOfTheClockDoNotEnd_D2) {
+TEST_F(MachineTest, WaitsBeyondTheRangeOfTheClockDoNotEnd) {
     constexpr int CYCLES = 20000;
     for (const char *wait : {"G4 P1000000000000000000", "G4 P9223372037", "M66 P0 L3 Q100000000000"}) {
         start(std::string("G21 G90\n") + wait + "\nG0 X5\nM2\n");
@@ -201,7 +201,7 @@ TEST_F(MachineTest, WaitsBeyondTheRangeOfTheClockDoNotEnd_D2) {
     }
 }
 
-TEST_F(MachineTest, SynchronisedOutputsWithoutAMoveAreNeverTooMany_D2) {
+TEST_F(MachineTest, SynchronisedOutputsWithoutAMoveAreNeverTooMany) {
     std::string text = "G21 G90\nG0 X1\n";
     for (int n = 0; n < 5000; ++n) {
         text += "M62 P0\nM63 P1\n";
@@ -212,7 +212,7 @@ TEST_F(MachineTest, SynchronisedOutputsWithoutAMoveAreNeverTooMany_D2) {
     EXPECT_EQ(motion().digital_out & 3U, 1U);
 }
 
-TEST_F(MachineTest, MoveAndOutputStayInProgramOrder_D2) {
+TEST_F(MachineTest, MoveAndOutputStayInProgramOrder) {
     start("G21 G90 F3000\nG1 X10\nM64 P0\nG1 X20\nM65 P0\nM2\n");
     double on_at = -1, off_at = -1;
     for (int i = 0; i < 3000; ++i) {

@@ -22,11 +22,11 @@ class MachinesTest : public VirtualMachineTest, public ::testing::WithParamInter
             cycles(1);
         }
         EXPECT_EQ(progress(id), task::Progress::DONE)
-            << geom::AXIS_LETTERS[static_cast<std::size_t>(axis)] << ": " << reason(id);
+            << geometry::AXIS_LETTERS[static_cast<std::size_t>(axis)] << ": " << reason(id);
     }
 };
 
-TEST_P(MachinesTest, DrivesItsProgramAndEachOfItsAxesIsJogged_C14) {
+TEST_P(MachinesTest, DrivesItsProgramAndEachOfItsAxesIsJogged) {
     const SampleMachine &machine = GetParam();
     switch_on_config(std::string(MW_SOURCE_DIR "/configs/sim/") + machine.ini + ".ini");
     ask(task::SetMode{task::Mode::AUTO});
@@ -39,7 +39,7 @@ TEST_P(MachinesTest, DrivesItsProgramAndEachOfItsAxesIsJogged_C14) {
     ask(task::SetTeleop{true});
     cycles(20);
     ASSERT_EQ(motion().mode, motion::Mode::TELEOP) << messages();
-    const geom::Pose start = motion().carte_pos_cmd;
+    const geometry::Pose start = motion().carte_pos_cmd;
     for (int axis = 0; axis < MAX_AXES; ++axis) {
         if ((loaded_->machine.axis_mask & 1U << axis) == 0) {
             continue;
@@ -48,10 +48,10 @@ TEST_P(MachinesTest, DrivesItsProgramAndEachOfItsAxesIsJogged_C14) {
             const double before = motion().carte_pos_cmd[axis];
             jog(axis, distance);
             EXPECT_NEAR(motion().carte_pos_cmd[axis], before + distance, 1e-6)
-                << geom::AXIS_LETTERS[static_cast<std::size_t>(axis)] << ": " << messages();
+                << geometry::AXIS_LETTERS[static_cast<std::size_t>(axis)] << ": " << messages();
         }
     }
-    EXPECT_NEAR(geom::norm(motion().carte_pos_cmd - start), 0, 1e-6);
+    EXPECT_NEAR(geometry::norm(motion().carte_pos_cmd - start), 0, 1e-6);
     EXPECT_TRUE(motion().isEnabled);
 }
 

@@ -25,7 +25,7 @@ class ModesTest : public VirtualMachineTest {
     }
 };
 
-TEST_F(ModesTest, AModeThatMotionRefusesIsRefused_D1) {
+TEST_F(ModesTest, AModeThatMotionRefusesIsRefused) {
     ask(task::SetMode{task::Mode::MANUAL});
     cycles(5);
     jog_x(20);
@@ -49,7 +49,7 @@ TEST_F(ModesTest, AModeThatMotionRefusesIsRefused_D1) {
     EXPECT_EQ(finish(), task::Progress::DONE) << messages();
 }
 
-TEST_F(ModesTest, CommandsBehindAModeChangeWaitForIt_D3) {
+TEST_F(ModesTest, CommandsBehindAModeChangeWaitForIt) {
     const auto mode = post(task::SetMode{task::Mode::MDI});
     run_ = post(task::Mdi{"G21 G0 X3"});
     EXPECT_EQ(finish(), task::Progress::DONE) << messages();
@@ -57,7 +57,7 @@ TEST_F(ModesTest, CommandsBehindAModeChangeWaitForIt_D3) {
     EXPECT_DOUBLE_EQ(x(), 3);
 }
 
-TEST_F(ModesTest, AnAbortEndsARunAtAnyTime_D3) {
+TEST_F(ModesTest, AnAbortEndsARunAtAnyTime) {
     for (int wait = 0; wait < 60; wait += 3) {
         ask(task::SetMode{task::Mode::AUTO});
         start("G21 G90 G1 X20 F6000\nX0\nM2\n");
@@ -68,7 +68,7 @@ TEST_F(ModesTest, AnAbortEndsARunAtAnyTime_D3) {
     }
 }
 
-TEST_F(ModesTest, ARunIsNotForgottenHoweverManyRequestsFollow_D1) {
+TEST_F(ModesTest, ARunIsNotForgottenHoweverManyRequestsFollow) {
     start("G21 G90 G1 X100 F600\nM2\n");
     cycles(20);
     for (int i = 0; i < 1000; ++i) {
@@ -82,7 +82,7 @@ TEST_F(ModesTest, ARunIsNotForgottenHoweverManyRequestsFollow_D1) {
     EXPECT_NEAR(x(), 100, 1e-9);
 }
 
-TEST_F(ModesTest, TheFeedOverrideActsOnJogs_C4) {
+TEST_F(ModesTest, TheFeedOverrideActsOnJogs) {
     ask(task::SetMode{task::Mode::MANUAL});
     ask(task::SetFeedOverride{0.5});
     jog_x(20);
@@ -103,7 +103,7 @@ TEST_F(ModesTest, TheFeedOverrideActsOnJogs_C4) {
     EXPECT_NEAR(joint_speed(0), 5, 1e-6);
 }
 
-TEST_F(ModesTest, AJogThatItsClientDoesNotRenewIsStoppedByMotion_C8) {
+TEST_F(ModesTest, AJogThatItsClientDoesNotRenewIsStoppedByMotion) {
     ask(task::SetMode{task::Mode::MANUAL});
     ask(task::SetTeleop{false});
     cycles(10);
@@ -127,7 +127,7 @@ TEST_F(ModesTest, AJogThatItsClientDoesNotRenewIsStoppedByMotion_C8) {
     EXPECT_GT(joint_speed(0), 0);
 }
 
-TEST_F(ModesTest, HomingDuringAJogStopsTheJogAndHomes_C4) {
+TEST_F(ModesTest, HomingDuringAJogStopsTheJogAndHomes) {
     switch_on_config(SimMachine{}.write(folder_));  // joints that home where they stand
     ask(task::SetMode{task::Mode::MANUAL});
     jog_x(50);
@@ -144,14 +144,14 @@ TEST_F(ModesTest, HomingDuringAJogStopsTheJogAndHomes_C4) {
     EXPECT_EQ(joint_speed(0), 0);
 }
 
-TEST_F(ModesTest, ToolOffsetsAreOnThePinsWhenG43IsDone_G6) {
+TEST_F(ModesTest, ToolOffsetsAreOnThePinsWhenG43IsDone) {
     for (const double z : {12.5, -3.25, 40.0}) {
         ASSERT_EQ(mdi(fmt::format("G21 G43.1 Z{}", z)), task::Progress::DONE) << messages();
         EXPECT_DOUBLE_EQ(machine_->hal().get("motion.tooloffset.z")->as_number(), z);
     }
 }
 
-TEST_F(ModesTest, TheSimulatedSpindleOrients_C15) {
+TEST_F(ModesTest, TheSimulatedSpindleOrients) {
     ASSERT_EQ(mdi("S500 M3"), task::Progress::DONE);
     cycles(500);
     for (const double angle : {90.0, 10.0, 270.0}) {
@@ -162,14 +162,14 @@ TEST_F(ModesTest, TheSimulatedSpindleOrients_C15) {
     }
 }
 
-TEST_F(ModesTest, RigidTappingGoesToItsDepthAndBack_C15) {
+TEST_F(ModesTest, RigidTappingGoesToItsDepthAndBack) {
     start("G21 G90 M3 S500\nG0 Z5\nG33.1 Z-5 K1\nG33.1 Z-5 K1 I2\nG0 X3\nM2\n");
     samples_.clear();
     ASSERT_EQ(finish(), task::Progress::DONE) << messages();
     std::vector<double> bottoms;
     bool isDown = false;
     for (const motion::TraceSample &s : samples_) {
-        const double z = s.carte_pos_cmd[geom::AXIS_Z];
+        const double z = s.carte_pos_cmd[geometry::AXIS_Z];
         if (!isDown && z < 0) {
             bottoms.push_back(0);
         }
@@ -185,7 +185,7 @@ TEST_F(ModesTest, RigidTappingGoesToItsDepthAndBack_C15) {
     EXPECT_NEAR(motion().carte_pos_cmd.x(), 3, 1e-9);
 }
 
-TEST_F(ModesTest, ATapThatCannotBeIsRefusedWithItsPlace_C15) {
+TEST_F(ModesTest, ATapThatCannotBeIsRefusedWithItsPlace) {
     start("G21 G90 M3 S500\nG0 Z5\nG33.1 Z-5 K-1\nM2\n");
     EXPECT_EQ(finish(), task::Progress::FAILED);
     EXPECT_NE(messages().find("p.ngc:3"), std::string::npos) << messages();
@@ -199,7 +199,7 @@ TEST_F(ModesTest, ATapThatCannotBeIsRefusedWithItsPlace_C15) {
 
 class AxesTest : public VirtualMachineTest {};
 
-TEST_F(AxesTest, ArcsOfUVWRun_C9) {
+TEST_F(AxesTest, ArcsOfUVWRun) {
     SimMachine foam;
     foam.coordinates = "XYZUVW";
     foam.kinematics = "trivkins coordinates=XYZUVW";
@@ -210,9 +210,9 @@ TEST_F(AxesTest, ArcsOfUVWRun_C9) {
         int first, second;
         const char *words;
     };
-    for (const Case &c : {Case{"G17.1", geom::AXIS_U, geom::AXIS_V, "U10 V0 I5 J0"},
-                          Case{"G18.1", geom::AXIS_W, geom::AXIS_U, "W10 U0 K5 I0"},
-                          Case{"G19.1", geom::AXIS_V, geom::AXIS_W, "V10 W0 J5 K0"}}) {
+    for (const Case &c : {Case{"G17.1", geometry::AXIS_U, geometry::AXIS_V, "U10 V0 I5 J0"},
+                          Case{"G18.1", geometry::AXIS_W, geometry::AXIS_U, "W10 U0 K5 I0"},
+                          Case{"G19.1", geometry::AXIS_V, geometry::AXIS_W, "V10 W0 J5 K0"}}) {
         SCOPED_TRACE(c.code);
         ASSERT_EQ(mdi("G21 G90 G61 G0 U0 V0 W0"), task::Progress::DONE) << messages();
         samples_.clear();
@@ -230,7 +230,7 @@ TEST_F(AxesTest, ArcsOfUVWRun_C9) {
     }
 }
 
-TEST_F(AxesTest, AngularLimitsOfTrajHold_C13) {
+TEST_F(AxesTest, AngularLimitsOfTrajHold) {
     SimMachine mill;
     mill.coordinates = "XYZA";
     mill.kinematics = "trivkins coordinates=XYZA";
@@ -243,7 +243,7 @@ TEST_F(AxesTest, AngularLimitsOfTrajHold_C13) {
     double v = 0;
     double a = 0;
     for (std::size_t i = 2; i < samples_.size(); ++i) {
-        const auto at = [&](std::size_t k) { return samples_[k].carte_pos_cmd[geom::AXIS_A]; };
+        const auto at = [&](std::size_t k) { return samples_[k].carte_pos_cmd[geometry::AXIS_A]; };
         v = std::max(v, std::abs(at(i) - at(i - 1)) * 1e3);
         a = std::max(a, std::abs(at(i) - 2 * at(i - 1) + at(i - 2)) * 1e6);
     }

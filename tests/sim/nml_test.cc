@@ -12,14 +12,14 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "machine/loaded_config.hh"
-#include "machine/machine.hh"
-#include "msgs/catalogue.hh"
-#include "msgs/json.hh"
-#include "nml/bridge/bridge.hh"
-#include "nml/config/config_file.hh"
-#include "nml/message/sender.hh"
-#include "nml/net/server.hh"
+#include "clients/nml/bridge/bridge.hh"
+#include "clients/nml/config/config_file.hh"
+#include "clients/nml/message/sender.hh"
+#include "clients/nml/net/server.hh"
+#include "machine/assembly/machine.hh"
+#include "machine/config/loaded_config.hh"
+#include "messages/declarations/catalogue.hh"
+#include "messages/declarations/json.hh"
 
 namespace mw::nml {
 namespace {
@@ -49,7 +49,7 @@ class OneMachine {
     machine::Machine *operator->() { return machine_.get(); }
 
   private:
-    diag::Sink sink_;
+    diagnostics::Sink sink_;
     std::unique_ptr<machine::LoadedConfig> loaded_;
     std::unique_ptr<machine::Machine> machine_;
 };
@@ -58,7 +58,7 @@ class OneMachine {
 class NmlMachine {
   public:
     explicit NmlMachine(bool isRemote = false) : client_(*client::Client::join(machine_->mailbox())) {
-        diag::Sink sink;
+        diagnostics::Sink sink;
         const std::string place = isRemote ? "REMOTE" : "LOCAL";
         config_ =
             parse_config(fmt::format(fmt::runtime(CHANNELS), "SHMEM", "SHMEM", "SHMEM", place, place, place),
@@ -110,10 +110,10 @@ class NmlMachine {
         EXPECT_TRUE(before.has_value() && after.has_value());
     }
     /// What the status channel says now.
-    StatusMessage<msgs::MachineStatus> status() {
+    StatusMessage<messages::MachineStatus> status() {
         auto message = statuses_->peek();
         EXPECT_TRUE(message.has_value() && message->has_value());
-        return {*(*message)->status_head(), *(*message)->get<msgs::MachineStatus>()};
+        return {*(*message)->status_head(), *(*message)->get<messages::MachineStatus>()};
     }
     /// Cycles until the command of that serial number has ended, or `most` cycles.
     StatusHead end_of(WriteNumber serial, int most = 60000) {
@@ -137,7 +137,7 @@ class NmlMachine {
         if (!message.has_value() || !message->has_value()) {
             return "none";
         }
-        const auto *error = (*message)->get<msgs::OperatorError>();
+        const auto *error = (*message)->get<messages::OperatorError>();
         return error != nullptr ? error->text : (*message)->kind().name();
     }
     OneMachine &machine() { return machine_; }
@@ -163,7 +163,7 @@ void expect_done(const StatusHead &head) {
 }
 
 void operate(NmlMachine &machine) {
-    using namespace msgs;
+    using namespace messages;
     expect_done(machine.done(SetState{State::ESTOP_RESET}));
     expect_done(machine.done(SetState{State::ON}));
     expect_done(machine.done(HomeJoint{-1}));
@@ -180,18 +180,18 @@ void operate(NmlMachine &machine) {
     expect_done(machine.done(JogIncrement{false, 1, 10, -2}));
 }
 
-TEST(NmlMachine, AnOperatorWithSharedMemoryHomesMovesAndJogs_F8_F9) {
+TEST(NmlMachine, AnOperatorWithSharedMemoryHomesMovesAndJogs) {
     NmlMachine machine;
     operate(machine);
 }
 
-TEST(NmlMachine, AnOperatorOverTcpHomesMovesAndJogs_F9) {
+TEST(NmlMachine, AnOperatorOverTcpHomesMovesAndJogs) {
     NmlMachine machine(true);
     operate(machine);
 }
 
-TEST(NmlMachine, EachCommandIsEchoedWithItsSerialNumberAndEndsWithItsStateAndReason_F5) {
-    using namespace msgs;
+TEST(NmlMachine, EachCommandIsEchoedWithItsSerialNumberAndEndsWithItsStateAndReason) {
+    using namespace messages;
     NmlMachine machine;
     const WriteNumber first = machine.send(Null{});
     const WriteNumber second = machine.send(Mdi{"G0 X1"});
@@ -205,8 +205,8 @@ TEST(NmlMachine, EachCommandIsEchoedWithItsSerialNumberAndEndsWithItsStateAndRea
     EXPECT_TRUE(machine.status().head.reason.empty());
 }
 
-TEST(NmlMachine, ValuesOutOfRangeAndWhatIsNoCommandAreRefusedWithTheReasonAndNothingElseHappens_F5) {
-    using namespace msgs;
+TEST(NmlMachine, ValuesOutOfRangeAndWhatIsNoCommandAreRefusedWithTheReasonAndNothingElseHappens) {
+    using namespace messages;
     NmlMachine machine;
     const StatusHead far = machine.done(JogStop{true, 99});
     EXPECT_EQ(far.state, CommandState::ERROR);
@@ -222,8 +222,8 @@ TEST(NmlMachine, ValuesOutOfRangeAndWhatIsNoCommandAreRefusedWithTheReasonAndNot
     expect_done(machine.done(Null{}));
 }
 
-TEST(NmlMachine, MoreCommandsThanTheMailboxTakesInACycleAllComeInTheirOrder_F5) {
-    using namespace msgs;
+TEST(NmlMachine, MoreCommandsThanTheMailboxTakesInACycleAllComeInTheirOrder) {
+    using namespace messages;
     NmlMachine machine;
     WriteNumber last = 0;
     for (int i = 0; i < 60; ++i) {
@@ -234,8 +234,8 @@ TEST(NmlMachine, MoreCommandsThanTheMailboxTakesInACycleAllComeInTheirOrder_F5) 
     EXPECT_EQ(machine.status().body.last_message, 60U);
 }
 
-TEST(NmlMachine, LinesForTheOperatorComeOnceAndWaitWhileNobodyReadsThem_F5) {
-    using namespace msgs;
+TEST(NmlMachine, LinesForTheOperatorComeOnceAndWaitWhileNobodyReadsThem) {
+    using namespace messages;
     NmlMachine machine;
     for (int i = 0; i < 30; ++i) {
         machine.done(OperatorError{std::string(500, static_cast<char>('a' + i % 26))});
@@ -249,8 +249,8 @@ TEST(NmlMachine, LinesForTheOperatorComeOnceAndWaitWhileNobodyReadsThem_F5) {
     EXPECT_EQ(lines, 30);
 }
 
-TEST(NmlMachine, CommandsThatWereSentBeforeTheChannelsWereUpAreDroppedAndToldNotCarriedOut_F8) {
-    using namespace msgs;
+TEST(NmlMachine, CommandsThatWereSentBeforeTheChannelsWereUpAreDroppedAndToldNotCarriedOut) {
+    using namespace messages;
     NmlMachine machine;
     expect_done(machine.done(SetState{State::ESTOP_RESET}));
     machine.restart_bridge([&machine] {
@@ -266,8 +266,8 @@ TEST(NmlMachine, CommandsThatWereSentBeforeTheChannelsWereUpAreDroppedAndToldNot
     expect_done(machine.done(SetState{State::ON}));
 }
 
-TEST(NmlMachine, CommandsThatWaitedWhileTheirServerDidNotRunAreRejectedButForStops_F9) {
-    using namespace msgs;
+TEST(NmlMachine, CommandsThatWaitedWhileTheirServerDidNotRunAreRejectedButForStops) {
+    using namespace messages;
     NmlMachine machine;
     expect_done(machine.done(SetState{State::ESTOP_RESET}));
     machine.pause(std::chrono::seconds(1));
@@ -290,30 +290,30 @@ TEST(NmlMachine, CommandsThatWaitedWhileTheirServerDidNotRunAreRejectedButForSto
 constexpr int CYCLES_EACH = 20;
 
 /// What can be compared of two machines' statuses.
-std::string comparable(msgs::MachineStatus status) {
-    return msgs::to_json(msgs::object(static_cast<const msgs::MachineStatus &>(status)));
+std::string comparable(messages::MachineStatus status) {
+    return messages::to_json(messages::object(static_cast<const messages::MachineStatus &>(status)));
 }
 
-void put_texts(const msgs::Object &body) {
-    for (const msgs::Field &field : body.declaration->fields) {
-        if (field.type.kind == msgs::Kind::TEXT) {
+void put_texts(const messages::Object &body) {
+    for (const messages::Field &field : body.declaration->fields) {
+        if (field.type.kind == messages::Kind::TEXT) {
             *static_cast<std::string *>(field.at(body.data)) = "G0 X1";
         }
     }
 }
 
 /// Every command in emergency stop, then every command switched on.
-std::vector<msgs::Command> all_commands() {
-    std::vector<msgs::Command> all;
+std::vector<messages::Command> all_commands() {
+    std::vector<messages::Command> all;
     const auto add_each = [&all] {
-        for (const msgs::Declaration *declaration : msgs::command_declarations()) {
-            all.push_back(*msgs::make_command(declaration->number));
-            put_texts(msgs::object(all.back()));
+        for (const messages::Declaration *declaration : messages::command_declarations()) {
+            all.push_back(*messages::make_command(declaration->number));
+            put_texts(messages::object(all.back()));
         }
     };
     add_each();
-    all.emplace_back(msgs::SetState{msgs::State::ESTOP_RESET});
-    all.emplace_back(msgs::SetState{msgs::State::ON});
+    all.emplace_back(messages::SetState{messages::State::ESTOP_RESET});
+    all.emplace_back(messages::SetState{messages::State::ON});
     add_each();
     return all;
 }
@@ -324,11 +324,11 @@ struct Seen {
     std::string reason, status;
 };
 
-std::vector<Seen> seen_through_the_mailbox(std::vector<msgs::Command> commands) {
+std::vector<Seen> seen_through_the_mailbox(std::vector<messages::Command> commands) {
     OneMachine machine;
     auto client = *client::Client::join(machine->mailbox());
     std::vector<Seen> all;
-    for (const msgs::Command &command : commands) {
+    for (const messages::Command &command : commands) {
         const auto serial = client.post(command);
         EXPECT_TRUE(serial.has_value()) << serial.error().str();
         for (int i = 0; i < CYCLES_EACH; ++i) {
@@ -336,25 +336,25 @@ std::vector<Seen> seen_through_the_mailbox(std::vector<msgs::Command> commands) 
         }
         const auto outcome = client.outcome(serial.value_or(0));
         EXPECT_TRUE(client.read_status().has_value());
-        const CommandState state = outcome.progress == msgs::Progress::STARTED ? CommandState::EXECUTING
-                                   : outcome.progress == msgs::Progress::DONE  ? CommandState::DONE
-                                                                               : CommandState::ERROR;
+        const CommandState state = outcome.progress == messages::Progress::STARTED ? CommandState::EXECUTING
+                                   : outcome.progress == messages::Progress::DONE  ? CommandState::DONE
+                                                                                   : CommandState::ERROR;
         all.push_back({state, outcome.reason.substr(0, 255), comparable(client.status())});
     }
     return all;
 }
 
 /// Two machines get the same commands at the same cycles: one from a client of its mailbox, one through NML.
-TEST(NmlMachine, EveryCommandDoesThroughNmlWhatItDoesThroughTheMailbox_F8) {
-    std::vector<msgs::Command> commands = all_commands();
+TEST(NmlMachine, EveryCommandDoesThroughNmlWhatItDoesThroughTheMailbox) {
+    std::vector<messages::Command> commands = all_commands();
     const std::vector<Seen> expected = seen_through_the_mailbox(commands);
     NmlMachine machine;
     std::map<CommandState, int> count;
     for (std::size_t n = 0; n < commands.size(); ++n) {
-        const msgs::Object body = msgs::object(commands[n]);
+        const messages::Object body = messages::object(commands[n]);
         const std::string name = fmt::format("{} {}", n, body.declaration->name);
         CommandHead head;
-        const WriteNumber number = machine.send({msgs::object(head), body});
+        const WriteNumber number = machine.send({messages::object(head), body});
         for (int i = 0; i < CYCLES_EACH; ++i) {
             machine.cycle();
         }

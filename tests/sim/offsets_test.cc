@@ -33,7 +33,7 @@ class OffsetMachine : public VirtualMachineTest {
     double number(const std::string &name) const { return machine_->hal().get(name)->as_number(); }
 };
 
-TEST_F(OffsetMachine, ProgramsKnowNothingOfAnExternalOffset_C15) {
+TEST_F(OffsetMachine, ProgramsKnowNothingOfAnExternalOffset) {
     ASSERT_EQ(mdi("G21 G90 G0 X10"), task::Progress::DONE) << messages();
     set_pin("axis.x.eoffset-counts", "200");
     cycles(1000);
@@ -52,7 +52,7 @@ TEST_F(OffsetMachine, ProgramsKnowNothingOfAnExternalOffset_C15) {
     EXPECT_LT(number("joint.0.motor-pos-cmd"), 100);
 }
 
-TEST_F(OffsetMachine, ATableOfScrewErrorsOfTheIniFileMovesTheMotor_C11) {
+TEST_F(OffsetMachine, ATableOfScrewErrorsOfTheIniFileMovesTheMotor) {
     ASSERT_EQ(mdi("G21 G90 G0 Y50"), task::Progress::DONE) << messages();
     EXPECT_NEAR(number("joint.1.motor-pos-cmd"), 50.035, 1e-9);
     EXPECT_NEAR(number("joint.1.pos-fb"), 50, 1e-9);
@@ -63,7 +63,7 @@ TEST_F(OffsetMachine, ATableOfScrewErrorsOfTheIniFileMovesTheMotor_C11) {
     EXPECT_EQ(number("joint.0.backlash-filt"), 0);
 }
 
-TEST_F(OffsetMachine, SettingsOfTheIniFileMayBeTurnedByPins_C7) {
+TEST_F(OffsetMachine, SettingsOfTheIniFileMayBeTurnedByPins) {
     EXPECT_EQ(number("ini.x.max-limit"), 100);
     EXPECT_EQ(number("ini.x.max_limit"), 100) << "as files and scripts of LinuxCNC have it";
     EXPECT_EQ(number("ini.traj_max_velocity"), number("ini.traj-max-velocity"));
@@ -85,7 +85,7 @@ TEST_F(OffsetMachine, SettingsOfTheIniFileMayBeTurnedByPins_C7) {
     EXPECT_NE(messages().find("nothing acts on this setting"), std::string::npos);
 }
 
-TEST_F(OffsetMachine, ASpeedTurnedByAPinWaitsUntilNothingMovesInManualMode_C7) {
+TEST_F(OffsetMachine, ASpeedTurnedByAPinWaitsUntilNothingMovesInManualMode) {
     start("G21 G90 G1 F6000 X50\nX0\nM2\n");
     cycles(100);
     set_pin("ini.0.max-velocity", "5");
@@ -121,7 +121,7 @@ class BeltMachine : public OffsetMachine {
     }
 };
 
-TEST_F(BeltMachine, ACoreXYTableCutsAndFollowsTheHeightThatItsPinAsksFor_C15) {
+TEST_F(BeltMachine, ACoreXYTableCutsAndFollowsTheHeightThatItsPinAsksFor) {
     EXPECT_EQ(messages().find("OFFSET_AV_RATIO"), std::string::npos);
     start("G21 G90 G1 F3000 X40 Y10\nX-20\nM2\n");
     for (int n = 0; n < 40; ++n) {
@@ -138,7 +138,7 @@ TEST_F(BeltMachine, ACoreXYTableCutsAndFollowsTheHeightThatItsPinAsksFor_C15) {
     EXPECT_TRUE(pin("motion.eoffset-active"));
 }
 
-TEST_F(BeltMachine, BeltsEndWhereProgramAndOffsetTakeThemTogether_C13_C15) {
+TEST_F(BeltMachine, BeltsEndWhereProgramAndOffsetTakeThemTogether) {
     ASSERT_EQ(mdi("G21 G90 G0 X90 Y40"), task::Progress::DONE) << messages();
     set_pin("axis.y.eoffset-counts", "3000");
     cycles(2000);

@@ -38,10 +38,10 @@ class PanelTest : public VirtualMachineTest {
         cycles(5);
     }
     bool lamp(const std::string &name) const { return pin("halui." + name); }
-    const msgs::TaskStatus &task() const { return machine_->task().status().task; }
+    const messages::TaskStatus &task() const { return machine_->task().status().task; }
 };
 
-TEST_F(PanelTest, ButtonsOfTheMachineSwitchItAndLampsTell_J4) {
+TEST_F(PanelTest, ButtonsOfTheMachineSwitchItAndLampsTell) {
     EXPECT_TRUE(lamp("machine.is-on"));
     press("machine.off");
     EXPECT_FALSE(lamp("machine.is-on"));
@@ -60,7 +60,7 @@ TEST_F(PanelTest, ButtonsOfTheMachineSwitchItAndLampsTell_J4) {
     EXPECT_FALSE(lamp("machine.is-on")) << "a reset energises nothing";
 }
 
-TEST_F(PanelTest, ButtonsOfTheModesSetThem_J4) {
+TEST_F(PanelTest, ButtonsOfTheModesSetThem) {
     for (const std::string mode : {"auto", "mdi", "manual", "auto", "manual"}) {
         press("mode." + mode);
         for (const std::string other : {"auto", "mdi", "manual"}) {
@@ -75,7 +75,7 @@ TEST_F(PanelTest, ButtonsOfTheModesSetThem_J4) {
     EXPECT_FALSE(lamp("mode.is-joint"));
 }
 
-TEST_F(PanelTest, AButtonThatIsHeldDownActsOnce_J4) {
+TEST_F(PanelTest, AButtonThatIsHeldDownActsOnce) {
     set_pin("halui.mode.auto", "1");
     cycles(5);
     ASSERT_EQ(task().mode, task::Mode::AUTO);
@@ -87,7 +87,7 @@ TEST_F(PanelTest, AButtonThatIsHeldDownActsOnce_J4) {
     EXPECT_EQ(task().mode, task::Mode::MANUAL) << "nothing happens when it is let go";
 }
 
-TEST_F(PanelTest, ButtonsOfJointsHomeAndUnhomeThem_J4) {
+TEST_F(PanelTest, ButtonsOfJointsHomeAndUnhomeThem) {
     press("mode.manual");
     for (const int joint : {0, 1, 2}) {
         const std::string prefix = fmt::format("joint.{}.", joint);
@@ -110,7 +110,7 @@ TEST_F(PanelTest, ButtonsOfJointsHomeAndUnhomeThem_J4) {
     EXPECT_TRUE(lamp("joint.0.is-homed") && lamp("joint.1.is-homed") && lamp("joint.2.is-homed"));
 }
 
-TEST_F(PanelTest, ButtonsOfTheProgramRunHoldAndEndIt_J4) {
+TEST_F(PanelTest, ButtonsOfTheProgramRunHoldAndEndIt) {
     write("p.ngc", "G21 G90 G1 X50 F600\nX0\nM2\n");
     ask(task::OpenProgram{(folder_ / "p.ngc").string()});
     press("mode.auto");
@@ -146,7 +146,7 @@ TEST_F(PanelTest, ButtonsOfTheProgramRunHoldAndEndIt_J4) {
     EXPECT_TRUE(lamp("program.is-idle"));
 }
 
-TEST_F(PanelTest, SwitchesOfTheProgramAndCoolant_J4) {
+TEST_F(PanelTest, SwitchesOfTheProgramAndCoolant) {
     const std::vector<std::pair<std::string, const bool *>> switches = {
         {"program.optional-stop", &task().isOptionalStop}, {"program.block-delete", &task().isBlockDelete}};
     for (const auto &[name, state] : switches) {
@@ -163,10 +163,10 @@ TEST_F(PanelTest, SwitchesOfTheProgramAndCoolant_J4) {
     }
 }
 
-TEST_F(PanelTest, ButtonsActWhoeverHasTheRightToOperate_D1) {
+TEST_F(PanelTest, ButtonsActWhoeverHasTheRightToOperate) {
     auto other = client::Client::join(machine_->mailbox());
     ASSERT_TRUE(other.has_value());
-    ASSERT_TRUE(other->post(msgs::ClaimOperation{60}).has_value());
+    ASSERT_TRUE(other->post(messages::ClaimOperation{60}).has_value());
     cycles(5);
     const auto refused = ask(task::SetMode{task::Mode::MDI});
     EXPECT_EQ(progress(refused), task::Progress::REFUSED);
@@ -176,7 +176,7 @@ TEST_F(PanelTest, ButtonsActWhoeverHasTheRightToOperate_D1) {
     EXPECT_TRUE(lamp("estop.is-activated"));
 }
 
-TEST_F(PanelTest, ThePlannersPinsHoldWhatTheFileSaysAndActAtRestBeforeAnyProgramHasRun_C2) {
+TEST_F(PanelTest, ThePlannersPinsHoldWhatTheFileSaysAndActAtRestBeforeAnyProgramHasRun) {
     EXPECT_EQ(machine_->hal().get("ini.traj-planner-type")->as_number(), 0);
     EXPECT_EQ(machine_->hal().get("ini.traj-scurve-peak-scale")->as_number(), 1);
     set_pin("ini.traj-planner-type", "1");
@@ -191,7 +191,7 @@ TEST_F(PanelTest, ThePlannersPinsHoldWhatTheFileSaysAndActAtRestBeforeAnyProgram
     EXPECT_EQ(machine_->task().planner_mode().corner_scale(), 0.5);
 }
 
-TEST_F(PanelTest, AToolIsChangedByHandAndTheProgramWaitsForIt_E1) {
+TEST_F(PanelTest, AToolIsChangedByHandAndTheProgramWaitsForIt) {
     start("G21 T1 M6\nG0 X1\nM2\n");
     bool hasAsked = false;
     for (int i = 0; i < 400 && !hasAsked; ++i) {

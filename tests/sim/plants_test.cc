@@ -21,7 +21,7 @@ class PlantsTest : public VirtualMachineTest {
 /// Play of 0.02 between motor and load, counts of 0.001.
 constexpr double PLAY = 0.011, COUNT = 0.001;
 
-TEST_F(PlantsTest, HomesToTheIndexMarksAndGoesWhereItSays_C10) {
+TEST_F(PlantsTest, HomesToTheIndexMarksAndGoesWhereItSays) {
     for (const char *axis : {"x", "y", "z"}) {
         EXPECT_NEAR(pin(std::string(axis) + "-axis.load"), 0, PLAY + COUNT) << axis;
     }
@@ -36,10 +36,10 @@ TEST_F(PlantsTest, HomesToTheIndexMarksAndGoesWhereItSays_C10) {
     EXPECT_NEAR(pin("x-axis.load"), 25, PLAY + COUNT);
 }
 
-TEST_F(PlantsTest, AProbeFindsTheTable_G3) {
+TEST_F(PlantsTest, AProbeFindsTheTable) {
     ASSERT_EQ(mdi("G21 G90 G38.2 Z-65 F300"), task::Progress::DONE) << messages();
     // 5 mm/s: a servo period and a count on top of the play.
-    EXPECT_NEAR(motion().probed_pos[geom::AXIS_Z], -60.05, 0.005 + COUNT + 2 * PLAY);
+    EXPECT_NEAR(motion().probed_pos[geometry::AXIS_Z], -60.05, 0.005 + COUNT + 2 * PLAY);
     set_pin("probe.stuck-open", "1");
     cycles(5);
     ASSERT_EQ(mdi("G0 Z0"), task::Progress::DONE) << messages();
@@ -47,7 +47,7 @@ TEST_F(PlantsTest, AProbeFindsTheTable_G3) {
     EXPECT_NE(messages().find("without making contact"), std::string::npos) << messages();
 }
 
-TEST_F(PlantsTest, ADriveThatFailsSwitchesTheMachineOff_C6) {
+TEST_F(PlantsTest, ADriveThatFailsSwitchesTheMachineOff) {
     start("G21 G90 G1 X100 F3000\nM2\n");
     cycles(600);
     ASSERT_TRUE(motion().isEnabled);
@@ -58,7 +58,7 @@ TEST_F(PlantsTest, ADriveThatFailsSwitchesTheMachineOff_C6) {
     EXPECT_EQ(pin("x-amp.powered"), 0);
 }
 
-TEST_F(PlantsTest, AnEncoderWithoutItsCableIsAFollowingError_C13) {
+TEST_F(PlantsTest, AnEncoderWithoutItsCableIsAFollowingError) {
     start("G21 G90 G1 X100 F3000\nM2\n");
     cycles(600);
     set_pin("x-encoder.lost", "1");
@@ -67,7 +67,7 @@ TEST_F(PlantsTest, AnEncoderWithoutItsCableIsAFollowingError_C13) {
     EXPECT_NE(messages().find("following error"), std::string::npos) << messages();
 }
 
-TEST_F(PlantsTest, TheSpindleComesToItsSpeedBeforeTheCut_C15) {
+TEST_F(PlantsTest, TheSpindleComesToItsSpeedBeforeTheCut) {
     start("G21 G90 M3 S1200\nG1 X20 F1000\nM2\n");
     // 20 turns/s at 40 turns/s^2 take half a second.
     cycles(400);

@@ -35,7 +35,7 @@ class ProbeTest : public VirtualMachineTest {
     std::string in_folder(const std::string &name) const { return (folder_ / name).string(); }
 };
 
-TEST_F(ProbeTest, EachProbeThatTripsWritesALineOfNineCoordinates_I1) {
+TEST_F(ProbeTest, EachProbeThatTripsWritesALineOfNineCoordinates) {
     const std::string file = in_folder("points.txt");
     EXPECT_EQ(probe("G21 G90\nG10 L2 P1 X5 Y1\nG0 X0 Y2\n(PROBEOPEN " + file +
                         ")\nG38.3 X20 F600\nG0 X0 Y3\nG38.2 X20\nG0 X0\nG38.3 X-5\n(probeclose)\n"
@@ -60,7 +60,7 @@ TEST_F(ProbeTest, EachProbeThatTripsWritesALineOfNineCoordinates_I1) {
         << "a miss and a probe after (probeclose) write nothing: " << line;
 }
 
-TEST_F(ProbeTest, AnAbortAndTheEndOfTheProgramKeepWhatWasWritten_I1) {
+TEST_F(ProbeTest, AnAbortAndTheEndOfTheProgramKeepWhatWasWritten) {
     const std::string file = in_folder("points.txt");
     EXPECT_EQ(probe("G21 G90\n(probeopen " + file + ")\nG38.3 X20 F600\nG0 X0\nM2\n", 3),
               task::Progress::DONE);
@@ -72,7 +72,7 @@ TEST_F(ProbeTest, AnAbortAndTheEndOfTheProgramKeepWhatWasWritten_I1) {
     EXPECT_EQ(count_lines("points.txt"), 2);
 }
 
-TEST_F(ProbeTest, AFileThatCannotBeWrittenIsToldBeforeTheProbe_I1) {
+TEST_F(ProbeTest, AFileThatCannotBeWrittenIsToldBeforeTheProbe) {
     EXPECT_EQ(
         probe("G21 G90\n(probeopen " + in_folder("no/such/folder/p.txt") + ")\nG38.3 X20 F600\nG0 X0\nM2\n",
               3),
@@ -81,7 +81,7 @@ TEST_F(ProbeTest, AFileThatCannotBeWrittenIsToldBeforeTheProbe_I1) {
     EXPECT_LT(x(), 1.0) << "nothing was probed";
 }
 
-TEST_F(ProbeTest, AFullDiskStopsTheProgram_I1) {
+TEST_F(ProbeTest, AFullDiskStopsTheProgram) {
     // A limit of the process is the same to it as the end of the disk.
     rlimit before{};
     ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
@@ -98,7 +98,7 @@ TEST_F(ProbeTest, AFullDiskStopsTheProgram_I1) {
     EXPECT_NE(all.find("cannot write " + points), std::string::npos) << all;
 }
 
-TEST_F(ProbeTest, ResultsAreInProgramUnitsAndToolOffsetsCount_I1) {
+TEST_F(ProbeTest, ResultsAreInProgramUnitsAndToolOffsetsCount) {
     EXPECT_EQ(
         probe(
             "G20 G90\nG43.1 X0.1\nG0 X0 Y1\nG38.2 X0.6 F20\n(debug,%.3f#5061 %.3f#5062 %d#5070)\nG0 X0\nM2\n",
@@ -108,7 +108,7 @@ TEST_F(ProbeTest, ResultsAreInProgramUnitsAndToolOffsetsCount_I1) {
     EXPECT_NE(messages().find("0.20"), std::string::npos);
 }
 
-TEST_F(ProbeTest, AProbeInItsTargetStateAtTheStartHasTripped_I1) {
+TEST_F(ProbeTest, AProbeInItsTargetStateAtTheStartHasTripped) {
     // G38.3 with a closed probe and G38.5 with an open one: no error, and the program continues.
     for (const auto &[code, probe] : {std::pair{"G38.3", "TRUE"}, std::pair{"G38.5", "FALSE"}}) {
         set_pin("motion.probe-input", probe);
@@ -121,7 +121,7 @@ TEST_F(ProbeTest, AProbeInItsTargetStateAtTheStartHasTripped_I1) {
     }
 }
 
-TEST_F(ProbeTest, AProbeThatMustTripNamesTheStateThatItIsInAtTheStart_I1) {
+TEST_F(ProbeTest, AProbeThatMustTripNamesTheStateThatItIsInAtTheStart) {
     const struct {
         const char *code, *probe, *text;
     } cases[] = {{"G38.2", "TRUE", "the probe is already tripped before G38.2"},
@@ -137,7 +137,7 @@ TEST_F(ProbeTest, AProbeThatMustTripNamesTheStateThatItIsInAtTheStart_I1) {
     }
 }
 
-TEST_F(ProbeTest, AMissEndsTheProgramOnlyWhereItMust_I1) {
+TEST_F(ProbeTest, AMissEndsTheProgramOnlyWhereItMust) {
     EXPECT_EQ(probe("G21 G90\nG38.3 X2 F600\n(debug,hit %d#5070 at %.1f#5061)\nG0 X0\nM2\n", 50),
               task::Progress::DONE);
     std::string all = messages();

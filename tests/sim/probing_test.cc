@@ -76,7 +76,7 @@ class ProbingTest : public VirtualMachineTest {
 
 constexpr const char *BEGIN = "G21 G90 G94\nG49\n";
 
-TEST_F(ProbingTest, FacesAreFoundFromEachSide_I1) {
+TEST_F(ProbingTest, FacesAreFoundFromEachSide) {
     const Solid block = box({10, 20, -50}, {40, 60, -5});
     struct Case {
         const char *place, *call, *name;
@@ -100,7 +100,7 @@ TEST_F(ProbingTest, FacesAreFoundFromEachSide_I1) {
     }
 }
 
-TEST_F(ProbingTest, WhatIsNotThereIsToldAndTheProbeGoesBack_I1) {
+TEST_F(ProbingTest, WhatIsNotThereIsToldAndTheProbeGoesBack) {
     EXPECT_EQ(probe(std::string(BEGIN) + "G0 X5 Y5 Z5\no<probe_edge> call [1] [15] [4] [300] [60] [1]\nM2\n",
                     box({100, 0, -50}, {110, 10, 0})),
               task::Progress::FAILED);
@@ -122,7 +122,7 @@ TEST_F(ProbingTest, WhatIsNotThereIsToldAndTheProbeGoesBack_I1) {
     }
 }
 
-TEST_F(ProbingTest, WrongNumbersAreRefusedBeforeAnythingMoves_I1) {
+TEST_F(ProbingTest, WrongNumbersAreRefusedBeforeAnythingMoves) {
     const char *const calls[] = {
         "o<probe_edge> call [3] [15] [4] [300] [60] [0]",
         "o<probe_edge> call [1] [0] [4] [300] [60] [0]",
@@ -147,7 +147,7 @@ TEST_F(ProbingTest, WrongNumbersAreRefusedBeforeAnythingMoves_I1) {
     }
 }
 
-TEST_F(ProbingTest, OuterAndInnerCornersAreFound_I1) {
+TEST_F(ProbingTest, OuterAndInnerCornersAreFound) {
     EXPECT_EQ(probe(std::string(BEGIN) +
                         "G0 X4 Y13 Z-10\no<probe_corner> call [1] [1] [0] [12] [20] [4] [300] [60] [0]\nM2\n",
                     box({10.25, 20.5, -50}, {40, 60, -5})),
@@ -168,7 +168,7 @@ TEST_F(ProbingTest, OuterAndInnerCornersAreFound_I1) {
     EXPECT_NEAR(told("corner at X[-\\d.]+ Y"), 40, CLOSE_MM) << text_;
 }
 
-TEST_F(ProbingTest, ABoreIsFoundFromBesideItsCentre_I1) {
+TEST_F(ProbingTest, ABoreIsFoundFromBesideItsCentre) {
     EXPECT_EQ(
         probe(std::string(BEGIN) + "G0 X23 Y-8 Z20\nG0 Z-6\no<probe_bore> call [40] [4] [300] [60] [2]\nM2\n",
               bore(21.2, -5.6, 17.35)),
@@ -186,7 +186,7 @@ TEST_F(ProbingTest, ABoreIsFoundFromBesideItsCentre_I1) {
     EXPECT_NEAR(told("here [-\\d.]+"), 0, 1e-6) << text_;
 }
 
-TEST_F(ProbingTest, ABossIsFoundFromAbove_I1) {
+TEST_F(ProbingTest, ABossIsFoundFromAbove) {
     const Solid boss = cylinder(-12.5, 31.75, 14.1, -2);
     EXPECT_EQ(probe(std::string(BEGIN) +
                         "G0 X-11 Y30 Z5\no<probe_boss> call [28] [6] [15] [4] [300] [60] [0]\nM2\n",
@@ -198,7 +198,7 @@ TEST_F(ProbingTest, ABossIsFoundFromAbove_I1) {
     EXPECT_NEAR(told("width X"), 28.2, 2 * CLOSE_MM) << text_;
 }
 
-TEST_F(ProbingTest, SomethingInTheWayStopsTheProbe_I1) {
+TEST_F(ProbingTest, SomethingInTheWayStopsTheProbe) {
     const Solid boss = cylinder(0, 0, 14, -2), clamp = box({15, -10, -50}, {60, 10, 20});
     const Solid both = [=](const Point &p) { return std::min(boss(p), clamp(p)); };
     EXPECT_EQ(
@@ -208,7 +208,7 @@ TEST_F(ProbingTest, SomethingInTheWayStopsTheProbe_I1) {
     EXPECT_NEAR(x(), 13, 0.05) << "it has stopped at the touch";
 }
 
-TEST_F(ProbingTest, AToolIsMeasuredAtTheSetter_I1) {
+TEST_F(ProbingTest, AToolIsMeasuredAtTheSetter) {
     // Tool 1 of the mill is 40 mm long, the setter 12.5 mm high: the controlled point stands that much above
     // the setter's top.
     const Solid setter = [](const Point &p) { return std::max(p.z - (12.5 + 33.25), 0.0); };

@@ -22,7 +22,7 @@ class PythonRemapTest : public VirtualMachineTest {
     }
 };
 
-TEST_F(PythonRemapTest, AToolChangeThroughPythonAndAProcedureKeepsProgramOrder_I1) {
+TEST_F(PythonRemapTest, AToolChangeThroughPythonAndAProcedureKeepsProgramOrder) {
     write("remap.py", "from stdglue import *\n");
     write("change.ngc", "o<change> sub\nG53 G0 Z40\nG53 G0 X-20\nM64 P1\no<change> endsub [1]\n");
     switch_on({"M6 modalgroup=6 prolog=change_prolog ngc=change epilog=change_epilog"});
@@ -47,7 +47,7 @@ TEST_F(PythonRemapTest, AToolChangeThroughPythonAndAProcedureKeepsProgramOrder_I
     EXPECT_NE(messages().find("tool 2"), std::string::npos);
 }
 
-TEST_F(PythonRemapTest, AYieldResumesWhenTheMachineIsThere_I1) {
+TEST_F(PythonRemapTest, AYieldResumesWhenTheMachineIsThere) {
     write("remap.py", "import emccanon\nfrom interpreter import *\n"
                       "def there(self, **words):\n"
                       "    assert self.task == 1\n"
@@ -65,7 +65,7 @@ TEST_F(PythonRemapTest, AYieldResumesWhenTheMachineIsThere_I1) {
     EXPECT_DOUBLE_EQ(x(), 7.0);
 }
 
-TEST_F(PythonRemapTest, AbortDuringAYieldEndsTheScriptAndTheNextProgramRuns_I1) {
+TEST_F(PythonRemapTest, AbortDuringAYieldEndsTheScriptAndTheNextProgramRuns) {
     write("remap.py", "from interpreter import *\nstate = []\n"
                       "def wait(self, **words):\n"
                       "    try:\n        yield INTERP_EXECUTE_FINISH\n        state.append('resumed')\n"
@@ -86,7 +86,7 @@ TEST_F(PythonRemapTest, AbortDuringAYieldEndsTheScriptAndTheNextProgramRuns_I1) 
     EXPECT_DOUBLE_EQ(x(), 3.0);
 }
 
-TEST_F(PythonRemapTest, AnErrorInPythonStopsTheProgramWithItsPlace_I1) {
+TEST_F(PythonRemapTest, AnErrorInPythonStopsTheProgramWithItsPlace) {
     write("remap.py", "def bad(self, **words):\n    return 1 / 0\n");
     switch_on({"M400 py=bad"});
     start("G21 G90\nG0 X1\nM400\nG0 X100\nM2\n");
@@ -96,7 +96,7 @@ TEST_F(PythonRemapTest, AnErrorInPythonStopsTheProgramWithItsPlace_I1) {
     EXPECT_NE(all.find("remap.py:2 in bad"), std::string::npos) << all;
 }
 
-TEST_F(PythonRemapTest, MdiRunsRemapsAndWaits_I1) {
+TEST_F(PythonRemapTest, MdiRunsRemapsAndWaits) {
     write("remap.py", "from interpreter import *\n"
                       "def move(self, **words):\n    self.execute('G0 X8')\n    yield INTERP_EXECUTE_FINISH\n"
                       "    self.execute('G0 X9')\n");

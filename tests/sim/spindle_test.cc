@@ -21,7 +21,7 @@ class SurfaceSpeedTest : public VirtualMachineTest {
     }
 };
 
-TEST_F(SurfaceSpeedTest, FollowsTheDistanceFromTheProgramsOrigin_I1) {
+TEST_F(SurfaceSpeedTest, FollowsTheDistanceFromTheProgramsOrigin) {
     say("G21 G90 G10 L2 P1 X-50");
     say("G54 G0 X20");
     say("G96 D3000 S100 M3");
@@ -32,7 +32,7 @@ TEST_F(SurfaceSpeedTest, FollowsTheDistanceFromTheProgramsOrigin_I1) {
     EXPECT_NEAR(rpm(), 3000, 1e-3);
 }
 
-TEST_F(SurfaceSpeedTest, CountsFeetWhereTheProgramIsInInches_I1) {
+TEST_F(SurfaceSpeedTest, CountsFeetWhereTheProgramIsInInches) {
     say("G20 G90 G0 X1");
     say("G96 D3000 S300 M4");
     EXPECT_NEAR(rpm(), -turning(300 * 12 * 25.4, 25.4), 1e-3);
@@ -42,7 +42,7 @@ TEST_F(SurfaceSpeedTest, CountsFeetWhereTheProgramIsInInches_I1) {
     EXPECT_NEAR(rpm(), -turning(100000, 50.8), 1e-3);
 }
 
-TEST_F(SurfaceSpeedTest, OffsetsThatChangeChangeTheRadius_I1) {
+TEST_F(SurfaceSpeedTest, OffsetsThatChangeChangeTheRadius) {
     say("G21 G90 G10 L2 P1 X-50");
     say("G10 L2 P2 X-30");
     say("G54 G96 D5000 S100 M3");

@@ -14,7 +14,7 @@ class StartsTest : public VirtualMachineTest {
   protected:
     void SetUp() override { switch_on(); }
 
-    const msgs::ApproachStatus &approach() const { return machine_->task().status().approach; }
+    const messages::ApproachStatus &approach() const { return machine_->task().status().approach; }
     bool wait_for(const std::function<bool()> &what, int limit = 5000) {
         for (int i = 0; i < limit && !what(); ++i) {
             cycles(1);
@@ -46,7 +46,7 @@ class StartsTest : public VirtualMachineTest {
     bool stands() const { return motion().isInPosition && motion().current_velocity == 0; }
 };
 
-TEST_F(StartsTest, AProgramBeginsAtALineOnceTheWayIsConfirmed_D3) {
+TEST_F(StartsTest, AProgramBeginsAtALineOnceTheWayIsConfirmed) {
     start_at("G21 G90 G61 F900\nT1 M6\nG43 H1\nS700 M3 M8\nG0 X10 Y10 Z5\nG1 Z-2\nG1 X30\nG1 Y30\nM2\n", 8);
     cycles(1000);
     EXPECT_FALSE(hasMoved());
@@ -54,8 +54,8 @@ TEST_F(StartsTest, AProgramBeginsAtALineOnceTheWayIsConfirmed_D3) {
     EXPECT_EQ(approach().speeds_rpm[0], 700);
     EXPECT_EQ(approach().tool, 1);
     EXPECT_TRUE(approach().isFloodOn && approach().mustChangeTool);
-    const geom::Pose place = approach().moves[approach().num_moves - 1].end;
-    post(msgs::ConfirmApproach{approach().number});
+    const geometry::Pose place = approach().moves[approach().num_moves - 1].end;
+    post(messages::ConfirmApproach{approach().number});
     ASSERT_EQ(finish(), task::Progress::DONE) << messages();
     double highest = -1e9;
     bool isDown = false;
@@ -76,11 +76,11 @@ TEST_F(StartsTest, AProgramBeginsAtALineOnceTheWayIsConfirmed_D3) {
     EXPECT_NEAR(motion().carte_pos_cmd.y(), 30, 1e-9);
 }
 
-TEST_F(StartsTest, AnAbortInAnyCycleOfAStartLeavesNothingThatMoves_D1) {
+TEST_F(StartsTest, AnAbortInAnyCycleOfAStartLeavesNothingThatMoves) {
     for (int when = 1; when < 900; when += 47) {
         SCOPED_TRACE(when);
         start_at("G21 G90 F900 S700 M3\nG0 X10 Y10 Z5\nG1 Z-2\nG1 X30\nM2\n", 4);
-        post(msgs::ConfirmApproach{approach().number});
+        post(messages::ConfirmApproach{approach().number});
         cycles(when);
         post(task::AbortAll{});
         ASSERT_TRUE(wait_for([this] { return stands(); }));
@@ -97,7 +97,7 @@ TEST_F(StartsTest, AnAbortInAnyCycleOfAStartLeavesNothingThatMoves_D1) {
 
 /// Left in the middle of lines and arcs, jogged away, come back to: every sample of the cut lies on the
 /// contour.
-TEST_F(StartsTest, AProgramThatIsLeftGoesOnAtTheVeryPlace_D3) {
+TEST_F(StartsTest, AProgramThatIsLeftGoesOnAtTheVeryPlace) {
     int left = 0;
     for (int when = 700; when < 9000; when += 611) {
         SCOPED_TRACE(when);
@@ -112,8 +112,8 @@ TEST_F(StartsTest, AProgramThatIsLeftGoesOnAtTheVeryPlace_D3) {
         }
         post(task::PauseProgram{});
         ASSERT_TRUE(wait_for([this] { return motion().current_velocity == 0; }));
-        const geom::Pose place = motion().carte_pos_cmd;
-        const auto released = post(msgs::ReleaseAxes{});
+        const geometry::Pose place = motion().carte_pos_cmd;
+        const auto released = post(messages::ReleaseAxes{});
         cycles(20);
         ASSERT_EQ(progress(released), task::Progress::DONE) << reason(released);
         ++left;
@@ -129,7 +129,7 @@ TEST_F(StartsTest, AProgramThatIsLeftGoesOnAtTheVeryPlace_D3) {
         ASSERT_EQ(progress(resumed), task::Progress::DONE) << reason(resumed);
         ASSERT_TRUE(wait_for_proposal());
         cycles(50);
-        const auto confirmed = ask(msgs::ConfirmApproach{approach().number});
+        const auto confirmed = ask(messages::ConfirmApproach{approach().number});
         ASSERT_EQ(progress(confirmed), task::Progress::DONE) << reason(confirmed);
         ASSERT_EQ(finish(), task::Progress::DONE) << messages();
         // Behind the place, at depth, all lies on the contour; the first such sample is the very place.
@@ -140,14 +140,14 @@ TEST_F(StartsTest, AProgramThatIsLeftGoesOnAtTheVeryPlace_D3) {
             return std::min({line, first, second, std::fabs(y - 20)});
         };
         for (std::size_t i = 0; i < samples_.size(); ++i) {
-            const geom::Pose &at = samples_[i].carte_pos_cmd;
+            const geometry::Pose &at = samples_[i].carte_pos_cmd;
             if (at.z() < -1 + 1e-9) {
                 ASSERT_LT(distance(at.x(), at.y()), 1e-5) << at.x() << " " << at.y();
             }
         }
         double nearest = 1e9;
         for (std::size_t i = cut + 500; i < samples_.size(); ++i) {
-            const geom::Pose &at = samples_[i].carte_pos_cmd;
+            const geometry::Pose &at = samples_[i].carte_pos_cmd;
             nearest =
                 std::min(nearest, std::hypot(at.x() - place.x(), at.y() - place.y(), at.z() - place.z()));
         }

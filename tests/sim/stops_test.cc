@@ -13,7 +13,7 @@ constexpr const char *AHEAD =
     "S700\n#31=7\nG1 X1 F10\nM2\n";
 
 /// What screens show of modes, offsets and outputs.
-std::string shown(const msgs::MachineStatus &status) {
+std::string shown(const messages::MachineStatus &status) {
     std::string text;
     for (std::size_t i = 1; i < status.codes.g.size(); ++i) {
         text += fmt::format("{} ", status.codes.g[i]);
@@ -24,8 +24,8 @@ std::string shown(const msgs::MachineStatus &status) {
     for (std::size_t i = 1; i < status.codes.settings.size(); ++i) {
         text += fmt::format("{} ", status.codes.settings[i]);
     }
-    const auto pose = [&](const geom::Pose &p) {
-        for (int axis = 0; axis < geom::AXIS_COUNT; ++axis) {
+    const auto pose = [&](const geometry::Pose &p) {
+        for (int axis = 0; axis < geometry::AXIS_COUNT; ++axis) {
             text += fmt::format("{} ", p[axis]);
         }
     };
@@ -55,7 +55,7 @@ class StopsTest : public VirtualMachineTest {
     }
 };
 
-TEST_F(StopsTest, AfterAnAbortModesOffsetsAndParametersAreThoseOfTheExecutedBlock_D1) {
+TEST_F(StopsTest, AfterAnAbortModesOffsetsAndParametersAreThoseOfTheExecutedBlock) {
     switch_on();
     run_until_moving(AHEAD);
     const std::string running = shown_now();
@@ -69,7 +69,7 @@ TEST_F(StopsTest, AfterAnAbortModesOffsetsAndParametersAreThoseOfTheExecutedBloc
     EXPECT_DOUBLE_EQ(x(), 2.0);
 }
 
-TEST_F(StopsTest, AProgramThatWasStoppedHasNoLineNorHasAnotherMode_D1) {
+TEST_F(StopsTest, AProgramThatWasStoppedHasNoLineNorHasAnotherMode) {
     switch_on();
     run_until_moving(AHEAD);
     EXPECT_EQ(machine_->task().status().task.motion_line, 2);
@@ -85,11 +85,11 @@ TEST_F(StopsTest, AProgramThatWasStoppedHasNoLineNorHasAnotherMode_D1) {
     EXPECT_EQ(machine_->task().status().task.motion_line, 0);
 }
 
-TEST_F(StopsTest, SoTheyAreAfterEveryOtherKindOfStop_D1) {
-    const std::vector<msgs::Command> stops{task::SetState{task::State::OFF},
-                                           task::SetState{task::State::ESTOP},
-                                           task::SetMode{task::Mode::MANUAL}};
-    for (const msgs::Command &stop : stops) {
+TEST_F(StopsTest, SoTheyAreAfterEveryOtherKindOfStop) {
+    const std::vector<messages::Command> stops{task::SetState{task::State::OFF},
+                                               task::SetState{task::State::ESTOP},
+                                               task::SetMode{task::Mode::MANUAL}};
+    for (const messages::Command &stop : stops) {
         switch_on();
         run_until_moving(AHEAD);
         const std::string running = shown_now();
@@ -102,7 +102,7 @@ TEST_F(StopsTest, SoTheyAreAfterEveryOtherKindOfStop_D1) {
     }
 }
 
-TEST_F(StopsTest, WhilePausedTheyAreThoseOfTheExecutedBlock_D1) {
+TEST_F(StopsTest, WhilePausedTheyAreThoseOfTheExecutedBlock) {
     switch_on();
     run_until_moving(AHEAD);
     const std::string running = shown_now();
@@ -114,19 +114,19 @@ TEST_F(StopsTest, WhilePausedTheyAreThoseOfTheExecutedBlock_D1) {
     EXPECT_EQ(shown_now(), running);
 }
 
-TEST_F(StopsTest, ABadLineThatWasReadAheadLeavesNothingOfTheBlocksBeforeItThatWereNotExecuted_D1) {
+TEST_F(StopsTest, ABadLineThatWasReadAheadLeavesNothingOfTheBlocksBeforeItThatWereNotExecuted) {
     switch_on();
     mdi("G54 F1000");
     start("G21 G90 G54\nG1 X20 F300\nG91 G20 F3\nG10 L2 P1 X5\nG1 Q\nM2\n");
     EXPECT_EQ(finish(), task::Progress::FAILED);
     settle();
-    const msgs::MachineStatus &status = machine_->task().status();
+    const messages::MachineStatus &status = machine_->task().status();
     EXPECT_EQ(status.offsets.g5x.x(), 0);
     EXPECT_EQ(mdi("G0 X1"), task::Progress::DONE) << messages();
     EXPECT_DOUBLE_EQ(x(), 1.0);
 }
 
-TEST_F(StopsTest, BlocksThatWereExecutedCountEvenIfTheyMoveNothing_D1) {
+TEST_F(StopsTest, BlocksThatWereExecutedCountEvenIfTheyMoveNothing) {
     switch_on();
     start("G21 G90 G54\n#31=4\nG10 L2 P1 X1\nG4 P0.2\n#31=5\nG91\nG1 X20 F300\n#31=6\nG90\nM2\n");
     for (int i = 0; i < 5000 && x() < 4; ++i) {
@@ -140,7 +140,7 @@ TEST_F(StopsTest, BlocksThatWereExecutedCountEvenIfTheyMoveNothing_D1) {
     EXPECT_NEAR(x(), at + 5, 1e-9) << "G91 and #31 = 5";
 }
 
-TEST_F(StopsTest, CutterCompensationEndsWithTheStop_D1) {
+TEST_F(StopsTest, CutterCompensationEndsWithTheStop) {
     switch_on();
     run_until_moving("G21 G90 G17\nG41.1 D2\nG1 X2 F600\nG1 X20\nG1 Y10\nG91\nG40 G1 X0 Y0\nM2\n");
     EXPECT_EQ(machine_->task().status().codes.g[4], 411);
@@ -153,7 +153,7 @@ TEST_F(StopsTest, CutterCompensationEndsWithTheStop_D1) {
     EXPECT_DOUBLE_EQ(motion().carte_pos_cmd.y(), 0.0);
 }
 
-TEST_F(StopsTest, InASubroutineNamesAndArgumentsOfTheCallersReturn_D1) {
+TEST_F(StopsTest, InASubroutineNamesAndArgumentsOfTheCallersReturn) {
     switch_on();
     start(
         "o<s> sub\n#3=[#1+1]\n#<_seen>=#3\nG1 X20 F300\n#<_seen>=9\n#1=8\no<s> endsub\nG21 G90\n#1=2\n#3=4\n"
@@ -170,7 +170,7 @@ TEST_F(StopsTest, InASubroutineNamesAndArgumentsOfTheCallersReturn_D1) {
     EXPECT_DOUBLE_EQ(motion().carte_pos_cmd.z(), -6.0);
 }
 
-TEST_F(StopsTest, AStopByMdiHasNothingToPause_D1) {
+TEST_F(StopsTest, AStopByMdiHasNothingToPause) {
     switch_on();
     EXPECT_EQ(mdi("M0"), task::Progress::DONE) << messages();
     EXPECT_FALSE(machine_->task().status().task.isPaused);
@@ -191,7 +191,7 @@ class StepsTest : public StopsTest {
     bool isRunning() const { return status().interp_state != task::InterpState::IDLE; }
 };
 
-TEST_F(StepsTest, OneStepIsOneBlockToTheEndOfTheProgram_D3) {
+TEST_F(StepsTest, OneStepIsOneBlockToTheEndOfTheProgram) {
     switch_on();
     mdi("G0 X0 Y0");
     write("p.ngc", "G21 G90 G64\n\n(comment)\nG1 X1 F2000\n#31=3\nG4 P0.1\nM0\nG1 X2\nM2\n");
@@ -210,7 +210,7 @@ TEST_F(StepsTest, OneStepIsOneBlockToTheEndOfTheProgram_D3) {
     EXPECT_EQ(mdi("G0 X0"), task::Progress::DONE) << messages();
 }
 
-TEST_F(StepsTest, AStepWhileAProgramRunsPausesItAtTheEndOfTheMove_D3) {
+TEST_F(StepsTest, AStepWhileAProgramRunsPausesItAtTheEndOfTheMove) {
     switch_on();
     run_until_moving("G21 G90 G61\nG1 X6 F600\nG1 X8\nG1 X10\nG1 X0\nM2\n");
     ask(task::StepProgram{});
@@ -235,7 +235,7 @@ TEST_F(StepsTest, AStepWhileAProgramRunsPausesItAtTheEndOfTheMove_D3) {
     EXPECT_FALSE(isRunning());
 }
 
-TEST_F(StepsTest, AStepInADwellPausesIt_D3) {
+TEST_F(StepsTest, AStepInADwellPausesIt) {
     switch_on();
     start("G21 G90\nG4 P0.5\nG0 X1\nG0 X2\nM2\n");
     cycles(200);

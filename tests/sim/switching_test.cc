@@ -96,7 +96,7 @@ class Switching : public VirtualMachineTest, public ::testing::WithParamInterfac
     }
 };
 
-TEST_P(Switching, ToEachTypeAndBackWithoutAStep_C14) {
+TEST_P(Switching, ToEachTypeAndBackWithoutAStep) {
     const std::vector<Kind> &types = GetParam().types;
     EXPECT_TRUE(isType(0));
     // From each to each other.

@@ -9,7 +9,7 @@
 
 #include "sim/machine_file.hh"
 #include "sim/virtual_machine.hh"
-#include "testing/limit_checker.hh"
+#include "tests/support/limit_checker.hh"
 
 namespace mw::machine {
 namespace {
@@ -69,7 +69,7 @@ class ThreadsTest : public VirtualMachineTest {
     }
     void cycle() {
         cycles(1);
-        const geom::Pose p = motion().carte_pos_cmd;
+        const geometry::Pose p = motion().carte_pos_cmd;
         trace_.push_back({p.x(), p.z(), machine_->hal().get("spindle.0.revs")->as_number()});
     }
     /// The passes at the depth `x`: from where Z leaves `from` until it stands at the end or X has left.
@@ -141,7 +141,7 @@ double allowed(bool isJerkLimited, double shortest) {
 
 class ThreadModes : public ThreadsTest, public ::testing::WithParamInterface<bool> {};
 
-TEST_P(ThreadModes, G33KeepsDepthAndLeadToItsEnd_C15) {
+TEST_P(ThreadModes, G33KeepsDepthAndLeadToItsEnd) {
     make(GetParam());
     double phase = NAN;
     for (const Units &unit : UNITS) {
@@ -172,7 +172,7 @@ TEST_P(ThreadModes, G33KeepsDepthAndLeadToItsEnd_C15) {
     }
 }
 
-TEST_P(ThreadModes, G76KeepsDepthAndLeadToItsEnd_C15) {
+TEST_P(ThreadModes, G76KeepsDepthAndLeadToItsEnd) {
     make(GetParam());
     for (const Units &unit : UNITS) {
         for (const char *mode : MODES) {
@@ -208,7 +208,7 @@ TEST_P(ThreadModes, G76KeepsDepthAndLeadToItsEnd_C15) {
     }
 }
 
-TEST_P(ThreadModes, ThePullOutOfG76BeginsWhereItIsProgrammed_C15) {
+TEST_P(ThreadModes, ThePullOutOfG76BeginsWhereItIsProgrammed) {
     make(GetParam());
     // With jerk limits X needs 50 ms to gain its speed, which the taper has to have room for.
     const double rpm = GetParam() ? 300 : 600;
@@ -232,7 +232,7 @@ TEST_P(ThreadModes, ThePullOutOfG76BeginsWhereItIsProgrammed_C15) {
     }
 }
 
-TEST_P(ThreadModes, G95KeepsItsLead_C15) {
+TEST_P(ThreadModes, G95KeepsItsLead) {
     make(GetParam());
     for (const Units &unit : UNITS) {
         for (const char *mode : MODES) {
@@ -262,7 +262,7 @@ TEST_P(ThreadModes, G95KeepsItsLead_C15) {
 constexpr const char *THREAD = "G21 G90 G18 G40 G49 G94 G64\nM3 S600\nG0 X14 Z5\nG0 X10\n"
                                "G33 Z-20 K1.5\nG0 X14\nG0 Z5\nM2\n";
 
-TEST_P(ThreadModes, AFeedHoldWaitsForTheEndOfTheThread_C15) {
+TEST_P(ThreadModes, AFeedHoldWaitsForTheEndOfTheThread) {
     make(GetParam());
     start(THREAD);
     trace_.clear();
@@ -282,7 +282,7 @@ TEST_P(ThreadModes, AFeedHoldWaitsForTheEndOfTheThread_C15) {
     EXPECT_EQ(finish(), task::Progress::DONE) << messages();
 }
 
-TEST_P(ThreadModes, AnAbortBrakesInTheThreadWithinTheLimits_C15) {
+TEST_P(ThreadModes, AnAbortBrakesInTheThreadWithinTheLimits) {
     make(GetParam());
     start(THREAD);
     trace_.clear();
@@ -302,7 +302,7 @@ TEST_P(ThreadModes, AnAbortBrakesInTheThreadWithinTheLimits_C15) {
 
 /// The mean of this machine is as long as its speed needs, sqrt(2 V / J): not all of its acceleration can be
 /// turned about within it. An abort comes while the tool gains its speed.
-TEST_P(ThreadModes, AnAbortWhileTheToolGainsSpeedKeepsTheLimits_C13_C15) {
+TEST_P(ThreadModes, AnAbortWhileTheToolGainsSpeedKeepsTheLimits) {
     make(GetParam(), 40);
     for (const int later : {2, 6, 12, 20, 30, 40}) {
         start(THREAD);
@@ -325,7 +325,7 @@ TEST_P(ThreadModes, AnAbortWhileTheToolGainsSpeedKeepsTheLimits_C13_C15) {
     }
 }
 
-TEST_P(ThreadModes, TheToolFollowsASpindleThatIsSlowedByTheCut_C15) {
+TEST_P(ThreadModes, TheToolFollowsASpindleThatIsSlowedByTheCut) {
     make(GetParam());
     hal::Hal &hal = machine_->hal();
     start(THREAD);
@@ -350,7 +350,7 @@ TEST_P(ThreadModes, TheToolFollowsASpindleThatIsSlowedByTheCut_C15) {
     EXPECT_LE(j.stop, allowed(GetParam(), shortest_way(15)));
 }
 
-TEST_P(ThreadModes, AThreadThatIsTooFastIsRefusedBeforeItBegins_C15) {
+TEST_P(ThreadModes, AThreadThatIsTooFastIsRefusedBeforeItBegins) {
     make(GetParam());
     // As programmed it would do; the operator has raised the spindle's speed.
     ask(task::SetSpindleOverride{1.2, 0});

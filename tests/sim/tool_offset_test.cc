@@ -36,7 +36,7 @@ class ToolOffsetTest : public VirtualMachineTest {
     }
 };
 
-TEST_F(ToolOffsetTest, APinChangesAfterTheMoveBeforeItAndBeforeTheMoveBehindIt_D2_G6) {
+TEST_F(ToolOffsetTest, APinChangesAfterTheMoveBeforeItAndBeforeTheMoveBehindIt) {
     switch_on();
     start(PROGRAM);
     int changes = 0;
@@ -60,7 +60,7 @@ TEST_F(ToolOffsetTest, APinChangesAfterTheMoveBeforeItAndBeforeTheMoveBehindIt_D
     EXPECT_EQ(changes, 3);
 }
 
-TEST_F(ToolOffsetTest, AfterAnAbortEmergencyStopOrOffThePinsAreThoseOfTheExecutedBlock_D1_G6) {
+TEST_F(ToolOffsetTest, AfterAnAbortEmergencyStopOrOffThePinsAreThoseOfTheExecutedBlock) {
     switch_on();
     const std::vector<std::function<void()>> STOPS = {
         [&] { post(task::AbortAll{}); }, [&] { post(task::SetState{task::State::OFF}); },
@@ -93,7 +93,7 @@ TEST_F(ToolOffsetTest, AfterAnAbortEmergencyStopOrOffThePinsAreThoseOfTheExecute
     }
 }
 
-TEST_F(ToolOffsetTest, AfterAProgramErrorThePinsAreThoseOfTheExecutedBlock_G6) {
+TEST_F(ToolOffsetTest, AfterAProgramErrorThePinsAreThoseOfTheExecutedBlock) {
     switch_on();
     start("G21 G90 F3000\nG43.1 Z2\nG1 X10\nG43.1 Z4\nG1 X9999\nM2\n");
     EXPECT_EQ(finish(), task::Progress::FAILED);
@@ -101,7 +101,7 @@ TEST_F(ToolOffsetTest, AfterAProgramErrorThePinsAreThoseOfTheExecutedBlock_G6) {
     EXPECT_NE(pin_value(), 0);
 }
 
-TEST_F(ToolOffsetTest, AfterTheEndOfAProgramThePinsStay_G6) {
+TEST_F(ToolOffsetTest, AfterTheEndOfAProgramThePinsStay) {
     switch_on();
     start("G21 G90 F3000 G43.1 Z2\nG1 X1\nM2\n");
     EXPECT_EQ(finish(), task::Progress::DONE) << messages();
@@ -113,12 +113,12 @@ TEST_F(ToolOffsetTest, AfterTheEndOfAProgramThePinsStay_G6) {
 }
 
 /// With LinuxCNC the pins show it before the machine is switched on.
-TEST_F(ToolOffsetTest, TheOffsetOfTheStartUpCodeIsOnThePinsBeforeTheFirstProgram_G6) {
+TEST_F(ToolOffsetTest, TheOffsetOfTheStartUpCodeIsOnThePinsBeforeTheFirstProgram) {
     switch_on([](task::Settings &settings) { settings.interpreter.startup_code = "G21 G43.1 Z5"; });
     expect_everywhere(5);
 }
 
-TEST_F(ToolOffsetTest, PinsAreInMachineUnits_G6) {
+TEST_F(ToolOffsetTest, PinsAreInMachineUnits) {
     switch_on();
     ASSERT_EQ(mdi("G20 G43.1 Z1"), task::Progress::DONE) << messages();
     EXPECT_DOUBLE_EQ(pin_value(), 25.4);

@@ -14,9 +14,9 @@
 
 #include <gtest/gtest.h>
 
-#include "app/operator.hh"
-#include "machine/loaded_config.hh"
-#include "machine/machine.hh"
+#include "machine/assembly/machine.hh"
+#include "machine/config/loaded_config.hh"
+#include "programs/run/run_session.hh"
 #include "sim/joint_judge.hh"
 
 namespace mw::machine {
@@ -51,8 +51,8 @@ class VirtualMachineTest : public ::testing::Test {
             make_virtual_machine({loaded_->ini, loaded_->reader, loaded_->machine, sink_}, MachineOptions{});
         ASSERT_TRUE(made.has_value()) << made.error().str();
         machine_ = std::move(*made);
-        app::OwnMachine own(*machine_);
-        app::Operator person(own, loaded_->machine, sink_, {});
+        programs::OwnMachine own(*machine_);
+        programs::RunSession person(own, loaded_->machine, sink_, {});
         ASSERT_TRUE(person.switch_on().has_value());
         ASSERT_TRUE(person.home_all().has_value());
         machine_->channels().isTracing.store(1);
@@ -86,7 +86,7 @@ class VirtualMachineTest : public ::testing::Test {
         return text.str();
     }
 
-    client::Serial post(const msgs::Command &command) {
+    client::Serial post(const messages::Command &command) {
         const auto posted = machine_->client().post(command);
         EXPECT_TRUE(posted.has_value()) << posted.error().str();
         return posted.value_or(0);
@@ -95,7 +95,7 @@ class VirtualMachineTest : public ::testing::Test {
         return machine_->client().outcome(command).progress;
     }
     std::string reason(client::Serial command) const { return machine_->client().outcome(command).reason; }
-    client::Serial ask(const msgs::Command &command) {
+    client::Serial ask(const messages::Command &command) {
         const auto id = post(command);
         cycles(3);
         return id;
@@ -145,7 +145,7 @@ class VirtualMachineTest : public ::testing::Test {
     }
 
     std::filesystem::path folder_;
-    diag::Sink sink_;
+    diagnostics::Sink sink_;
     std::unique_ptr<LoadedConfig> loaded_;
     std::unique_ptr<Machine> machine_;
     std::vector<motion::TraceSample> samples_;

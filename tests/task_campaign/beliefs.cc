@@ -10,7 +10,7 @@
 namespace mw::task_campaign {
 namespace {
 
-Place place_of(const geom::Pose &pose) {
+Place place_of(const geometry::Pose &pose) {
     return {pose[0], pose[1], pose[2]};
 }
 
@@ -23,14 +23,14 @@ std::string str(const Place &p) {
     return fmt::format("{:.4f} {:.4f} {:.4f}", p[0], p[1], p[2]);
 }
 
-bool hasCode(const msgs::CodesStatus &codes, int tenfold) {
+bool hasCode(const messages::CodesStatus &codes, int tenfold) {
     return std::find(codes.g.begin() + 1, codes.g.end(), tenfold) != codes.g.end();
 }
 
-std::vector<Tool> tools_of(const msgs::ToolTable &table, bool isRandom) {
+std::vector<Tool> tools_of(const messages::ToolTable &table, bool isRandom) {
     std::vector<Tool> tools;
     for (std::size_t i = 0; i < table.tools.size(); ++i) {
-        const msgs::ToolRecord &record = table.tools[i];
+        const messages::ToolRecord &record = table.tools[i];
         if (record.toolno > 0 && (i > 0 || isRandom)) {
             tools.push_back({record.toolno, record.pocketno, record.offset[2]});
         }
@@ -59,10 +59,11 @@ std::vector<Tool> tools_of(const std::string &text) {
 }
 
 /// What is the same in all worlds.
-std::string state_trouble(const msgs::MachineStatus &status, msgs::Mode mode, const Beliefs &beliefs) {
-    const msgs::TaskStatus &task = status.task;
-    const msgs::OverridesStatus &overrides = status.overrides;
-    const bool isOff = beliefs.state == msgs::State::OFF && task.state == msgs::State::ESTOP_RESET;
+std::string state_trouble(const messages::MachineStatus &status, messages::Mode mode,
+                          const Beliefs &beliefs) {
+    const messages::TaskStatus &task = status.task;
+    const messages::OverridesStatus &overrides = status.overrides;
+    const bool isOff = beliefs.state == messages::State::OFF && task.state == messages::State::ESTOP_RESET;
     if (task.state != beliefs.state && !isOff) {
         return fmt::format("the state is {}, not {}", static_cast<int>(task.state),
                            static_cast<int>(beliefs.state));
@@ -70,7 +71,7 @@ std::string state_trouble(const msgs::MachineStatus &status, msgs::Mode mode, co
     if (task.mode != mode) {
         return fmt::format("the mode is {}, not {}", static_cast<int>(task.mode), static_cast<int>(mode));
     }
-    if (task.isPaused || task.queued_mdi != 0 || task.interp_state != msgs::InterpState::IDLE ||
+    if (task.isPaused || task.queued_mdi != 0 || task.interp_state != messages::InterpState::IDLE ||
         status.approach.number != 0 || status.trajectory.queue_depth != 0) {
         return "something is held, waits or is proposed";
     }
@@ -86,21 +87,21 @@ std::string state_trouble(const msgs::MachineStatus &status, msgs::Mode mode, co
 }
 
 /// Of pins, which no message passes.
-std::string output_trouble(const Bench &bench, msgs::State state) {
+std::string output_trouble(const Bench &bench, messages::State state) {
     const Bench::Pins &pins = bench.pins();
-    const msgs::MachineStatus &status = bench.status();
-    if (*pins.is_amp_on != (state == msgs::State::ON)) {
+    const messages::MachineStatus &status = bench.status();
+    if (*pins.is_amp_on != (state == messages::State::ON)) {
         return "the amplifiers are not as the state is";
     }
     if (*pins.tool_prepare || *pins.tool_change) {
         return "something is asked of the changer";
     }
-    const msgs::SpindleStatus &spindle = status.spindles[0];
+    const messages::SpindleStatus &spindle = status.spindles[0];
     if (*pins.spindle_on != spindle.isOn || *pins.mist != status.io.coolant.isMistOn ||
         *pins.flood != status.io.coolant.isFloodOn || *pins.tool_number != status.tool.in_spindle) {
         return "pins and status differ";
     }
-    return state != msgs::State::ON && *pins.spindle_on ? "a spindle turns on a machine that is off" : "";
+    return state != messages::State::ON && *pins.spindle_on ? "a spindle turns on a machine that is off" : "";
 }
 
 Modes seen_in_file(const Bench &bench) {
@@ -125,12 +126,12 @@ Modes seen_in_file(const Bench &bench) {
 
 /// `why`: the first thing that does not fit.
 bool fits(const World &world, const Bench &bench, bool isHomed, std::string &why) {
-    const msgs::MachineStatus &status = bench.status();
+    const messages::MachineStatus &status = bench.status();
     const Bench::Pins &pins = bench.pins();
     const Modes &m = world.modes;
     const Doings &d = world.doings;
-    const msgs::OffsetsStatus &offsets = status.offsets;
-    const msgs::CodesStatus &codes = status.codes;
+    const messages::OffsetsStatus &offsets = status.offsets;
+    const messages::CodesStatus &codes = status.codes;
     const Place system = m.systems[static_cast<std::size_t>(m.system - 1)];
     const Place at = place_of(status.trajectory.position_cmd);
     const auto differs = [&](bool isOther, const std::string &text) {
@@ -212,7 +213,7 @@ void adopt_place(const Bench &bench, Beliefs &beliefs) {
     }
 }
 
-std::string judge(Bench &bench, msgs::Mode mode, Beliefs &beliefs) {
+std::string judge(Bench &bench, messages::Mode mode, Beliefs &beliefs) {
     std::string trouble = state_trouble(bench.status(), mode, beliefs);
     trouble = trouble.empty() ? output_trouble(bench, beliefs.state) : trouble;
     if (!trouble.empty()) {

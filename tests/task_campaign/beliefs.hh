@@ -12,7 +12,7 @@ namespace mw::task_campaign {
 
 struct Beliefs {
     std::vector<World> worlds;  ///< one of them is true
-    msgs::State state = msgs::State::ESTOP;
+    messages::State state = messages::State::ESTOP;
     bool isOptionalStop = true, isBlockDelete = true, isHomed = false;
     double feed_override = 1;
 
@@ -26,6 +26,6 @@ void add(std::vector<World> &worlds, const World &world);
 /// The axes are where the status says: after what cannot be foretold.
 void adopt_place(const Bench &bench, Beliefs &beliefs);
 /// Of a machine at rest; worlds that do not fit are dropped. Empty, or "rule: what is wrong".
-std::string judge(Bench &bench, msgs::Mode mode, Beliefs &beliefs);
+std::string judge(Bench &bench, messages::Mode mode, Beliefs &beliefs);
 
 }  // namespace mw::task_campaign

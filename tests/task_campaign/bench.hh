@@ -12,11 +12,11 @@
 #include <string>
 #include <vector>
 
-#include "client/client.hh"
-#include "diag/sink.hh"
-#include "journal/test/torn_disk.hh"
-#include "machine/loaded_config.hh"
-#include "machine/machine.hh"
+#include "base/diagnostics/sink.hh"
+#include "machine/assembly/machine.hh"
+#include "machine/config/loaded_config.hh"
+#include "machine/journal/test/torn_disk.hh"
+#include "messages/client/client.hh"
 #include "task_campaign/plan.hh"
 
 namespace mw::task_campaign {
@@ -44,7 +44,7 @@ class Bench {
     client::Client &client(int number) { return *clients_[static_cast<std::size_t>(number)]; }
     /// As by kill -9; somebody else takes its place.
     void lose_client(int number);
-    const msgs::MachineStatus &status() const { return machine_->task().status(); }
+    const messages::MachineStatus &status() const { return machine_->task().status(); }
     machine::Machine &machine() { return *machine_; }
 
     /// What HAL sees of the machine.
@@ -79,7 +79,7 @@ class Bench {
     std::filesystem::path folder_;
     journal::test::TornDisk disk_;
     std::mt19937_64 random_;
-    diag::Sink sink_;
+    diagnostics::Sink sink_;
     std::unique_ptr<machine::LoadedConfig> loaded_;
     std::unique_ptr<journal::Writer> writer_;
     std::unique_ptr<machine::Machine> machine_;

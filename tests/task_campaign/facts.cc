@@ -188,7 +188,7 @@ std::string plain_text(const Line &line) {
     return "";
 }
 
-Place some_values(sim::Random &random, const Modes &m) {
+Place some_values(plants::Random &random, const Modes &m) {
     Place out{};
     for (double &value : out) {
         value = random.whole(-16, 16) * (m.isInch ? 0.02 : 0.5);
@@ -196,7 +196,7 @@ Place some_values(sim::Random &random, const Modes &m) {
     return out;
 }
 
-void give_axes(sim::Random &random, const World &world, Line &line) {
+void give_axes(plants::Random &random, const World &world, Line &line) {
     const Place values = some_values(random, world.modes);
     for (std::size_t i = 0; i < AXES; ++i) {
         if (random.chance(0.6)) {
@@ -207,12 +207,12 @@ void give_axes(sim::Random &random, const World &world, Line &line) {
     line.values[sure] = values[sure];
 }
 
-int some_tool(sim::Random &random, const Doings &doings) {
+int some_tool(plants::Random &random, const Doings &doings) {
     const auto &tools = doings.tools;
     return tools[static_cast<std::size_t>(random.whole(0, static_cast<int>(tools.size()) - 1))].number;
 }
 
-Line make_offset_line(sim::Random &random, const World &world) {
+Line make_offset_line(plants::Random &random, const World &world) {
     static constexpr Kind KINDS[] = {Kind::SYSTEM,     Kind::SET_SYSTEM,  Kind::TOUCH_OFF,   Kind::G92,
                                      Kind::FORGET_G92, Kind::SUSPEND_G92, Kind::RESTORE_G92, Kind::KEEP_G28,
                                      Kind::KEEP_G30,   Kind::OFFSET,      Kind::NO_OFFSET,   Kind::KEEP};
@@ -230,7 +230,7 @@ Line make_offset_line(sim::Random &random, const World &world) {
     return line;
 }
 
-Line make_device_line(sim::Random &random, const World &world) {
+Line make_device_line(plants::Random &random, const World &world) {
     static constexpr Kind KINDS[] = {Kind::SET_TOOL, Kind::CHANGE, Kind::CHANGE, Kind::SELECT,
                                      Kind::CALL_IT,  Kind::TURN,   Kind::TURN,   Kind::HALT_SPINDLE,
                                      Kind::MIST,     Kind::FLOOD,  Kind::DRY};
@@ -332,7 +332,7 @@ World after_crash(const World &kept) {
     return out;
 }
 
-Line make_line(sim::Random &random, const World &world) {
+Line make_line(plants::Random &random, const World &world) {
     Line line;
     const double choice = random.real(0, 1);
     if (choice < 0.42) {
@@ -356,7 +356,7 @@ Line make_line(sim::Random &random, const World &world) {
     return line;
 }
 
-Line make_wrong_line(sim::Random &random) {
+Line make_wrong_line(plants::Random &random) {
     static constexpr const char *TEXTS[] = {"T77 M6",  "G1 X[1/0] F100", "G43 H78",   "G2 X5 Y5 R0.001 F100",
                                             "M61 Q79", "G10 L2 P12 X0",  "G1 X1 F0 Q"};
     Line line;

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/random.hh"
+#include "components/plants/random.hh"
 
 namespace mw::task_campaign {
 
@@ -115,8 +115,8 @@ void end_program(World &world);
 World after_crash(const World &kept);
 
 /// A line that can be carried out in that world.
-Line make_line(sim::Random &random, const World &world);
-Line make_wrong_line(sim::Random &random);
+Line make_line(plants::Random &random, const World &world);
+Line make_wrong_line(plants::Random &random);
 
 /// "" or the first thing in which they differ.
 std::string difference(const Modes &expected, const Modes &seen);

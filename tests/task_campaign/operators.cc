@@ -62,7 +62,7 @@ void Operators::cycles(int count) {
     }
 }
 
-Operators::Serial Operators::post(int client, const msgs::Command &command, Expected expected,
+Operators::Serial Operators::post(int client, const messages::Command &command, Expected expected,
                                   std::int64_t patience_ms) {
     const auto posted = bench_.client(client).post(command);
     if (!posted.has_value()) {
@@ -70,14 +70,14 @@ Operators::Serial Operators::post(int client, const msgs::Command &command, Expe
         return 0;
     }
     const std::string name = std::visit(
-        [](const auto &body) { return std::string(msgs::DECLARED<std::decay_t<decltype(body)>>.name); },
+        [](const auto &body) { return std::string(messages::DECLARED<std::decay_t<decltype(body)>>.name); },
         command);
     tell(fmt::format("{} posts {} ({})", client, name, *posted));
     ++verdict_.commands;
-    const auto *mode = std::get_if<msgs::SetMode>(&command);
+    const auto *mode = std::get_if<messages::SetMode>(&command);
     orders_.push_back({*posted, client, name, expected, bench_.now_ms(), patience_ms,
                        mode != nullptr ? std::optional(mode->mode) : std::nullopt,
-                       std::holds_alternative<msgs::ReleaseAxes>(command)});
+                       std::holds_alternative<messages::ReleaseAxes>(command)});
     return *posted;
 }
 
@@ -87,14 +87,14 @@ void Operators::look_at_orders() {
     std::vector<std::pair<Order, client::Outcome>> ended;
     std::erase_if(orders_, [&](const Order &order) {
         const auto outcome = bench_.client(order.client).outcome(order.serial);
-        const bool hasEnded = outcome.progress != msgs::Progress::STARTED;
+        const bool hasEnded = outcome.progress != messages::Progress::STARTED;
         if (hasEnded) {
             ended.emplace_back(order, outcome);
         }
         return hasEnded;
     });
     std::ranges::stable_partition(
-        ended, [](const auto &one) { return one.second.progress == msgs::Progress::DONE; });
+        ended, [](const auto &one) { return one.second.progress == messages::Progress::DONE; });
     for (const auto &[order, outcome] : ended) {
         note_end(order, outcome);
     }
@@ -107,8 +107,8 @@ void Operators::look_at_orders() {
 }
 
 std::string Operators::what_it_waits_for() const {
-    const msgs::TaskStatus &task = status().task;
-    const msgs::TrajectoryStatus &motion = status().trajectory;
+    const messages::TaskStatus &task = status().task;
+    const messages::TrajectoryStatus &motion = status().trajectory;
     return fmt::format(
         "interpreter {}, waits for {} {}, paused {}, motion paused {}, stepping {}, {} moves, at "
         "rest {}, line {}",
@@ -121,13 +121,13 @@ void Operators::note_end(const Order &order, const client::Outcome &outcome) {
     ended_[order.serial] = outcome;
     tell(fmt::format("  {} of {}: {} {}", order.serial, order.client, static_cast<int>(outcome.progress),
                      outcome.reason));
-    const bool isRefused = outcome.progress == msgs::Progress::REFUSED;
-    if (outcome.progress == msgs::Progress::DONE) {
+    const bool isRefused = outcome.progress == messages::Progress::REFUSED;
+    if (outcome.progress == messages::Progress::DONE) {
         mode_ = order.mode.value_or(mode_);
         mode_under_way_ = order.mode ? std::nullopt : mode_under_way_;
     } else {
         const bool isOfJogs = order.isRelease || wasAway_;
-        const auto begun = isOfJogs ? std::optional(msgs::Mode::MANUAL) : order.mode;
+        const auto begun = isOfJogs ? std::optional(messages::Mode::MANUAL) : order.mode;
         mode_under_way_ = begun && !isRefused ? begun : mode_under_way_;
         ++verdict_.refused;
         ++verdict_.refusals[kind_of(outcome.reason)];
@@ -143,9 +143,9 @@ void Operators::note_end(const Order &order, const client::Outcome &outcome) {
     }
 }
 
-msgs::Progress Operators::progress_of(Serial serial) const {
+messages::Progress Operators::progress_of(Serial serial) const {
     const auto found = ended_.find(serial);
-    return found != ended_.end() ? found->second.progress : msgs::Progress::STARTED;
+    return found != ended_.end() ? found->second.progress : messages::Progress::STARTED;
 }
 
 bool Operators::isWaited(Serial serial) const {
@@ -163,9 +163,9 @@ void Operators::forget_orders(int client) {
     }
 }
 
-msgs::Progress Operators::ask(int client, const msgs::Command &command, Expected expected) {
+messages::Progress Operators::ask(int client, const messages::Command &command, Expected expected) {
     const Serial serial = post(client, command, expected);
-    while (!isOver() && progress_of(serial) == msgs::Progress::STARTED) {
+    while (!isOver() && progress_of(serial) == messages::Progress::STARTED) {
         cycle();
     }
     return progress_of(serial);
@@ -184,9 +184,9 @@ void Operators::nurse() {
     }
     held_since_ms_ = -1;
     if (status().approach.number != 0) {
-        post(1, msgs::ConfirmApproach{status().approach.number});
+        post(1, messages::ConfirmApproach{status().approach.number});
     } else {
-        post(2, msgs::ResumeProgram{});
+        post(2, messages::ResumeProgram{});
     }
 }
 

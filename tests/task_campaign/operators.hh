@@ -36,7 +36,7 @@ class Operators {
         std::string name;
         Expected expected = Expected::ANY;
         std::int64_t posted_ms = 0, patience_ms = 0;
-        std::optional<msgs::Mode> mode;  ///< that it sets
+        std::optional<messages::Mode> mode;  ///< that it sets
         bool isRelease = false;
     };
 
@@ -45,15 +45,15 @@ class Operators {
     void tell(const std::string &text) const;
     void cycle();
     void cycles(int count);
-    Serial post(int client, const msgs::Command &command, Expected expected = Expected::ANY,
+    Serial post(int client, const messages::Command &command, Expected expected = Expected::ANY,
                 std::int64_t patience_ms = 5000);
-    msgs::Progress ask(int client, const msgs::Command &command, Expected expected = Expected::ANY);
-    msgs::Progress progress_of(Serial serial) const;
+    messages::Progress ask(int client, const messages::Command &command, Expected expected = Expected::ANY);
+    messages::Progress progress_of(Serial serial) const;
     bool isWaited(Serial serial) const;
     /// Nobody waits for what this client has posted; -1: for anything.
     void forget_orders(int client);
-    const msgs::MachineStatus &status() const { return bench_.status(); }
-    bool isRunning() const { return status().task.interp_state != msgs::InterpState::IDLE; }
+    const messages::MachineStatus &status() const { return bench_.status(); }
+    bool isRunning() const { return status().task.interp_state != messages::InterpState::IDLE; }
     /// Whoever stands there: goes on after holds, confirms what is proposed.
     void nurse();
     /// Until nothing runs, moves, waits or is to be written.
@@ -62,10 +62,10 @@ class Operators {
     Bench bench_;
     std::FILE *tell_;
     Verdict verdict_;
-    msgs::Mode mode_ = msgs::Mode::MANUAL;  ///< that was set last
+    messages::Mode mode_ = messages::Mode::MANUAL;  ///< that was set last
     /// Was being set when all was stopped, or that of jogs when what was left for them came to its end: it
     /// may be in force or not.
-    std::optional<msgs::Mode> mode_under_way_;
+    std::optional<messages::Mode> mode_under_way_;
     bool isHeldByUs_ = false;  ///< nobody is to resume
 
   private:

@@ -10,7 +10,7 @@ namespace mw::task_campaign {
 namespace {
 
 /// Lines as if the world before were known; what has really become of it does not matter.
-std::vector<Line> make_lines(sim::Random &random, World world, int count) {
+std::vector<Line> make_lines(plants::Random &random, World world, int count) {
     std::vector<Line> lines;
     for (int i = 0; i < count; ++i) {
         lines.push_back(make_line(random, world));
@@ -19,7 +19,7 @@ std::vector<Line> make_lines(sim::Random &random, World world, int count) {
     return lines;
 }
 
-Work some_work(sim::Random &random) {
+Work some_work(plants::Random &random) {
     static constexpr struct {
         Work work;
         int weight;
@@ -40,7 +40,7 @@ Work some_work(sim::Random &random) {
     return Work::ODD;
 }
 
-Trouble make_trouble(sim::Random &random, bool isEnd, int span_ms) {
+Trouble make_trouble(plants::Random &random, bool isEnd, int span_ms) {
     static constexpr Upset PASSING[] = {Upset::PAUSE,    Upset::PAUSE, Upset::STEP, Upset::LEAVE,
                                         Upset::OVERRIDE, Upset::ODD,   Upset::ODD,  Upset::CLIENT_GONE};
     static constexpr Upset ENDING[] = {Upset::ABORT,  Upset::ABORT,         Upset::ABORT,
@@ -60,7 +60,7 @@ bool isRun(Work work) {
     return work == Work::PROGRAM || work == Work::FROM_LINE || work == Work::MDI;
 }
 
-Act make_act(sim::Random &random, const World &world) {
+Act make_act(plants::Random &random, const World &world) {
     Act act;
     act.work = some_work(random);
     act.client = random.whole(0, CLIENTS - 1);
@@ -107,7 +107,7 @@ const char *name_of(Work work) {
 }
 
 Plan make_plan(std::uint64_t seed) {
-    sim::Random random(seed * 0x2545f4914f6cdd1dU + 15);
+    plants::Random random(seed * 0x2545f4914f6cdd1dU + 15);
     Plan plan;
     plan.seed = seed;
     plan.isRandomChanger = random.chance(0.35);

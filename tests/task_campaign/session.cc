@@ -44,25 +44,25 @@ void Session::check() {
     }
 }
 
-bool Session::prepare(msgs::Mode mode) {
-    const auto isDone = [this](const msgs::Command &command) {
-        const bool isTaken = ask(0, command, Expected::TAKEN) == msgs::Progress::DONE;
+bool Session::prepare(messages::Mode mode) {
+    const auto isDone = [this](const messages::Command &command) {
+        const bool isTaken = ask(0, command, Expected::TAKEN) == messages::Progress::DONE;
         if (!isTaken) {
             fail("work", "the machine cannot be switched on, homed, or set to a mode");
         }
         return isTaken;
     };
-    if (beliefs_.state != msgs::State::ON) {
-        const bool isReset =
-            beliefs_.state != msgs::State::ESTOP || isDone(msgs::SetState{msgs::State::ESTOP_RESET});
-        if (!isReset || !isDone(msgs::SetState{msgs::State::ON})) {
+    if (beliefs_.state != messages::State::ON) {
+        const bool isReset = beliefs_.state != messages::State::ESTOP ||
+                             isDone(messages::SetState{messages::State::ESTOP_RESET});
+        if (!isReset || !isDone(messages::SetState{messages::State::ON})) {
             return false;
         }
-        beliefs_.state = msgs::State::ON;
+        beliefs_.state = messages::State::ON;
     }
     if (!beliefs_.isHomed) {
-        if (!isDone(msgs::SetMode{msgs::Mode::MANUAL}) || !isDone(msgs::SetTeleop{false}) ||
-            !isDone(msgs::HomeJoint{})) {
+        if (!isDone(messages::SetMode{messages::Mode::MANUAL}) || !isDone(messages::SetTeleop{false}) ||
+            !isDone(messages::HomeJoint{})) {
             return false;
         }
         beliefs_.isHomed = true;
@@ -70,7 +70,7 @@ bool Session::prepare(msgs::Mode mode) {
         adopt_place(bench_, beliefs_);
     }
     if (mode_ != mode) {
-        if (!isDone(msgs::SetMode{mode})) {
+        if (!isDone(messages::SetMode{mode})) {
             return false;
         }
     }

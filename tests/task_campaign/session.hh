@@ -25,7 +25,7 @@ class Session : private Operators {
         std::int64_t done_ms = -1;  ///< before: not
     };
 
-    bool prepare(msgs::Mode mode);
+    bool prepare(messages::Mode mode);
     void check();
 
     // --- session_acts.cc

@@ -19,13 +19,13 @@ void Session::step_mdi(std::vector<Typed> &typed) {
         cycle();
     }
     for (Typed &one : typed) {
-        const bool isDone = one.done_ms < 0 && progress_of(one.serial) == msgs::Progress::DONE;
+        const bool isDone = one.done_ms < 0 && progress_of(one.serial) == messages::Progress::DONE;
         one.done_ms = isDone ? bench_.now_ms() : one.done_ms;
     }
 }
 
 void Session::run_mdi(const Act &act) {
-    if (!prepare(msgs::Mode::MDI)) {
+    if (!prepare(messages::Mode::MDI)) {
         return;
     }
     begin_troubles(act);
@@ -35,7 +35,7 @@ void Session::run_mdi(const Act &act) {
         if (isOver() || isStopped_) {
             break;
         }
-        typed.push_back({post(act.client, msgs::Mdi{line.text()}, Expected::ANY, LINE_PATIENCE_MS)});
+        typed.push_back({post(act.client, messages::Mdi{line.text()}, Expected::ANY, LINE_PATIENCE_MS)});
         tell("  " + line.text());
         while (act.isLineTypedLate && !isOver() && !isCrashed_ && isWaited(typed.back().serial)) {
             step_mdi(typed);
@@ -73,7 +73,7 @@ void Session::run_mdi(const Act &act) {
 /// Nothing: it has ended otherwise than it must.
 std::vector<World> Session::after_line(const Line &line, const Typed &typed,
                                        const std::vector<World> &before) {
-    const msgs::Progress progress = progress_of(typed.serial);
+    const messages::Progress progress = progress_of(typed.serial);
     // The writer may not have had the time to keep what it has set.
     const bool isLate = isCrashed_ && typed.done_ms + Bench::MOST_LATE_MS >= bench_.now_ms();
     std::vector<World> all;
@@ -84,16 +84,17 @@ std::vector<World> Session::after_line(const Line &line, const Typed &typed,
             if (isRight) {
                 add(all, after);
             }
-        } else if (progress == msgs::Progress::REFUSED) {
+        } else if (progress == messages::Progress::REFUSED) {
             add(all, world);
         } else {
             for (const World &one : with_or_without(line, world)) {
                 add(all, one);
             }
-            if (progress == msgs::Progress::STARTED) {  // its client is gone: nobody was told that it is done
+            if (progress ==
+                messages::Progress::STARTED) {  // its client is gone: nobody was told that it is done
                 add(all, after);
             }
-            const bool isFailure = progress == msgs::Progress::FAILED && isRight && !isStopped_;
+            const bool isFailure = progress == messages::Progress::FAILED && isRight && !isStopped_;
             if (isFailure && before.size() == 1) {
                 fail("work", "a line that nobody has stopped fails: " + line.text());
             }

@@ -38,15 +38,15 @@ std::size_t first_line_of(const Act &act) {
 }  // namespace
 
 void Session::run_program(const Act &act) {
-    if (!prepare(msgs::Mode::AUTO)) {
+    if (!prepare(messages::Mode::AUTO)) {
         return;
     }
-    ask(act.client, msgs::OpenProgram{bench_.write_program(text_of(act.blocks))}, Expected::TAKEN);
+    ask(act.client, messages::OpenProgram{bench_.write_program(text_of(act.blocks))}, Expected::TAKEN);
     const int from = static_cast<int>(first_line_of(act));
     begin_troubles(act);
     ++verdict_.runs;
     const std::uint64_t ended = ended_before_ = status().task.programs_ended;
-    const Serial run = post(act.client, msgs::RunProgram{from}, Expected::ANY, RUN_PATIENCE_MS);
+    const Serial run = post(act.client, messages::RunProgram{from}, Expected::ANY, RUN_PATIENCE_MS);
     constexpr int SOON_MS = 3;
     const auto isUnderWay = [&] {
         return isRunning() || isWaited(run) || bench_.now_ms() < began_ms_ + SOON_MS;
@@ -67,14 +67,14 @@ void Session::run_program(const Act &act) {
 }
 
 Session::End Session::end_of(Serial run, std::uint64_t ended_before) const {
-    const msgs::Progress progress = progress_of(run);
-    if (progress == msgs::Progress::STARTED) {  // its client is gone: nobody was told
+    const messages::Progress progress = progress_of(run);
+    if (progress == messages::Progress::STARTED) {  // its client is gone: nobody was told
         const bool isError = status().task.error_code != 0 || isStopped_;
         return isError || status().task.programs_ended == ended_before ? End::FAILED : End::DONE;
     }
-    return progress == msgs::Progress::DONE      ? End::DONE
-           : progress == msgs::Progress::REFUSED ? End::REFUSED
-                                                 : End::FAILED;
+    return progress == messages::Progress::DONE      ? End::DONE
+           : progress == messages::Progress::REFUSED ? End::REFUSED
+                                                     : End::FAILED;
 }
 
 void Session::end_program_of(const Act &act, End end) {
@@ -162,15 +162,15 @@ void Session::recover(const Act &act, const World &before, bool isBlockDelete) {
     }
     settle();
     check();
-    if (isOver() || !prepare(msgs::Mode::AUTO)) {
+    if (isOver() || !prepare(messages::Mode::AUTO)) {
         return;
     }
     if (act.seed % 4 == 0) {
-        ask(3, msgs::ForgetRecovery{}, Expected::TAKEN);
+        ask(3, messages::ForgetRecovery{}, Expected::TAKEN);
         return;
     }
-    const Serial run = post(3, msgs::RecoverProgram{}, Expected::ANY, RUN_PATIENCE_MS);
-    while (!isOver() && progress_of(run) == msgs::Progress::STARTED) {
+    const Serial run = post(3, messages::RecoverProgram{}, Expected::ANY, RUN_PATIENCE_MS);
+    while (!isOver() && progress_of(run) == messages::Progress::STARTED) {
         nurse();
         cycle();
     }
@@ -178,14 +178,14 @@ void Session::recover(const Act &act, const World &before, bool isBlockDelete) {
         return;
     }
     // The switches are those with which it began, from when the way was confirmed on.
-    const msgs::TaskStatus &task = status().task;
+    const messages::TaskStatus &task = status().task;
     const bool areRestored = task.isBlockDelete == wasBlockDelete_ && task.isOptionalStop == wasOptionalStop_;
-    if (progress_of(run) == msgs::Progress::DONE || areRestored) {
+    if (progress_of(run) == messages::Progress::DONE || areRestored) {
         beliefs_.isBlockDelete = wasBlockDelete_;
         beliefs_.isOptionalStop = wasOptionalStop_;
     }
     const auto whole = carried_out(act.blocks, before, isBlockDelete, first_line_of(act));
-    if (progress_of(run) == msgs::Progress::DONE) {
+    if (progress_of(run) == messages::Progress::DONE) {
         ++verdict_.recovered;
         if (!whole.has_value()) {
             fail("work", "a program that must fail has come to its end after a crash");

@@ -38,35 +38,35 @@ void Session::begin(const Trouble &t) {
     areDevicesOff_ = areDevicesOff_ || isEstop || t.what == Upset::ABORT || t.what == Upset::OFF;
     if (areDevicesOff_ && status().task.isAway) {
         // In which the axes were jogged, where motion had let them go.
-        const bool areLetGo = status().trajectory.mode != msgs::MotionMode::COORD;
-        mode_ = areLetGo ? msgs::Mode::MANUAL : mode_;
+        const bool areLetGo = status().trajectory.mode != messages::MotionMode::COORD;
+        mode_ = areLetGo ? messages::Mode::MANUAL : mode_;
     }
-    const bool goesOff = t.what == Upset::OFF && beliefs_.state == msgs::State::ON;
-    beliefs_.state = isEstop ? msgs::State::ESTOP : goesOff ? msgs::State::OFF : beliefs_.state;
+    const bool goesOff = t.what == Upset::OFF && beliefs_.state == messages::State::ON;
+    beliefs_.state = isEstop ? messages::State::ESTOP : goesOff ? messages::State::OFF : beliefs_.state;
     switch (t.what) {
-    case Upset::PAUSE: post(t.client, msgs::PauseProgram{}); break;
+    case Upset::PAUSE: post(t.client, messages::PauseProgram{}); break;
     case Upset::STEP:
-        post(t.client, msgs::PauseProgram{});
+        post(t.client, messages::PauseProgram{});
         cycles(t.length_ms);
         for (int i = 0; i < 3 && isRunning(); ++i) {  // where nothing runs it would begin the program
-            post(t.client, msgs::StepProgram{});
+            post(t.client, messages::StepProgram{});
             cycles(t.length_ms);
         }
         break;
     case Upset::LEAVE: leave(t); break;
     case Upset::OVERRIDE:
         beliefs_.feed_override = static_cast<double>(t.seed % 16 + 4) / 10;
-        ask(t.client, msgs::SetFeedOverride{beliefs_.feed_override}, Expected::TAKEN);
+        ask(t.client, messages::SetFeedOverride{beliefs_.feed_override}, Expected::TAKEN);
         break;
     case Upset::ODD: try_odd(t.client, t.seed, false); break;
     case Upset::CLIENT_GONE:
         forget_orders(t.client);
         bench_.lose_client(t.client);
         break;
-    case Upset::ABORT: ask(t.client, msgs::AbortAll{}, Expected::TAKEN); break;
+    case Upset::ABORT: ask(t.client, messages::AbortAll{}, Expected::TAKEN); break;
     case Upset::RESET_INTERPRETER: break;
-    case Upset::OFF: ask(t.client, msgs::SetState{msgs::State::OFF}, Expected::TAKEN); break;
-    case Upset::ESTOP: ask(t.client, msgs::SetState{msgs::State::ESTOP}, Expected::TAKEN); break;
+    case Upset::OFF: ask(t.client, messages::SetState{messages::State::OFF}, Expected::TAKEN); break;
+    case Upset::ESTOP: ask(t.client, messages::SetState{messages::State::ESTOP}, Expected::TAKEN); break;
     case Upset::CHAIN:
         *bench_.pins().chain = false;
         cycles(t.length_ms);
@@ -81,11 +81,11 @@ void Session::begin(const Trouble &t) {
 /// The tool is taken away from a held program and comes back.
 void Session::leave(const Trouble &t) {
     isHeldByUs_ = true;
-    ask(t.client, msgs::PauseProgram{});
+    ask(t.client, messages::PauseProgram{});
     cycles(t.length_ms);
-    if (ask(t.client, msgs::ReleaseAxes{}) == msgs::Progress::DONE) {
+    if (ask(t.client, messages::ReleaseAxes{}) == messages::Progress::DONE) {
         ++verdict_.counts["axes released"];
-        ask(t.client, msgs::JogIncrement{false, 2, 100, 3.0});
+        ask(t.client, messages::JogIncrement{false, 2, 100, 3.0});
         cycles(60);
     }
     isHeldByUs_ = false;
@@ -104,8 +104,8 @@ void Session::crash(bool isPowerCut) {
         fail("start", "after a crash: " + trouble);
         return;
     }
-    beliefs_.state = msgs::State::ESTOP;
-    mode_ = msgs::Mode::MANUAL;
+    beliefs_.state = messages::State::ESTOP;
+    mode_ = messages::Mode::MANUAL;
     beliefs_.isHomed = false;
     wasOptionalStop_ = std::exchange(beliefs_.isOptionalStop, true);
     wasBlockDelete_ = std::exchange(beliefs_.isBlockDelete, true);

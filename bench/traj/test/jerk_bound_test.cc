@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "testing/deviation.hh"
-#include "testing/limit_checker.hh"
+#include "tests/support/deviation.hh"
+#include "tests/support/limit_checker.hh"
 #include "traj/jerk_bound.hh"
 
 namespace mw::bench {
@@ -47,7 +47,7 @@ Pose at(double x, double y) {
     return p;
 }
 
-TEST(JerkBound, LineIsTheClosedForm_C13) {
+TEST(JerkBound, LineIsTheClosedForm) {
     for (const double length : {0.05, 1.0, 20.0, 100.0}) {
         const Trajectory t = best_known_trajectory(program_to({at(length, 0)}));
         // Samples see only means of jerk over one period, so they may be faster by about that.
@@ -55,7 +55,7 @@ TEST(JerkBound, LineIsTheClosedForm_C13) {
     }
 }
 
-TEST(JerkBound, CornerKeepsLimitsAndTolerance_C13) {
+TEST(JerkBound, CornerKeepsLimitsAndTolerance) {
     const Program program = program_to({at(10, 0), at(10, 10)});
     const Trajectory t = best_known_trajectory(program);
     testing::LimitChecker checker({{V, A, J}, {V, A, J}}, t.period_s);
@@ -68,7 +68,7 @@ TEST(JerkBound, CornerKeepsLimitsAndTolerance_C13) {
     const double deviation =
         testing::deviation_in_order(t.samples, sample_path(program, step), step, 10 * program.tolerance);
     EXPECT_LE(deviation, program.tolerance + step);
-    EXPECT_LT(geom::norm(t.samples.back() - program.moves.back().end), 1e-6);
+    EXPECT_LT(geometry::norm(t.samples.back() - program.moves.back().end), 1e-6);
 }
 
 }  // namespace

@@ -8,11 +8,11 @@
 #include <gtest/gtest.h>
 
 #include "hal/core/host.hh"
-#include "motion/api/channels.hh"
-#include "motion/api/parameters.hh"
-#include "motion/api/texts.hh"
-#include "rtapi/virtual_scheduler.hh"
-#include "testing/limit_checker.hh"
+#include "motion/interface/channels.hh"
+#include "motion/interface/parameters.hh"
+#include "motion/interface/texts.hh"
+#include "runtime/virtual_scheduler.hh"
+#include "tests/support/limit_checker.hh"
 
 namespace mw::motion {
 namespace {
@@ -21,7 +21,7 @@ enum class Manner { MILD, FAST, FAR, NOT_A_NUMBER, STUBBORN, GIVING_UP, OWN_PINS
 
 struct HomingModule : ::testing::Test {
     static constexpr double VELOCITY = 20, ACCELERATION = 300, RANGE = 30;
-    rtapi::VirtualScheduler clock;
+    runtime::VirtualScheduler clock;
     std::unique_ptr<hal::LocalHost> host;
     Channels *channels = nullptr;
     CommandId next_id = 1;
@@ -78,7 +78,7 @@ struct HomingModule : ::testing::Test {
     }
 };
 
-TEST_F(HomingModule, HomesAndGivesTheJointItsPlace_C2) {
+TEST_F(HomingModule, HomesAndGivesTheJointItsPlace) {
     ASSERT_NO_FATAL_FAILURE(start(Manner::MILD));
     EXPECT_EQ(host->hal().get("joint.0.homing")->as_number(), 1);
     run(5);
@@ -90,7 +90,7 @@ TEST_F(HomingModule, HomesAndGivesTheJointItsPlace_C2) {
     EXPECT_LE(checker.worst_velocity(), 5.0 / VELOCITY + 1e-6) << "as slowly as it asked for";
 }
 
-TEST_F(HomingModule, SeesFeedbackAndLimitsOfThisCycle_C2) {
+TEST_F(HomingModule, SeesFeedbackAndLimitsOfThisCycle) {
     ASSERT_NO_FATAL_FAILURE(start(Manner::MILD));
     const auto pin = [&](const char *name) { return host->hal().get(name)->as_number(); };
     int moving = 0;
@@ -108,7 +108,7 @@ TEST_F(HomingModule, SeesFeedbackAndLimitsOfThisCycle_C2) {
     EXPECT_EQ(pin("wildhome.0.max-pos-limit"), RANGE / 2);
 }
 
-TEST_F(HomingModule, IsKeptWithinSpeedAccelerationAndRangeAndThatIsTold_C2) {
+TEST_F(HomingModule, IsKeptWithinSpeedAccelerationAndRangeAndThatIsTold) {
     for (const Manner manner : {Manner::FAST, Manner::FAR}) {
         ASSERT_NO_FATAL_FAILURE(start(manner));
         lowest = 0;
@@ -123,7 +123,7 @@ TEST_F(HomingModule, IsKeptWithinSpeedAccelerationAndRangeAndThatIsTold_C2) {
     }
 }
 
-TEST_F(HomingModule, WhatIsNoNumberEndsHoming_C2) {
+TEST_F(HomingModule, WhatIsNoNumberEndsHoming) {
     ASSERT_NO_FATAL_FAILURE(start(Manner::NOT_A_NUMBER));
     run(2);
     EXPECT_FALSE(isHomed());
@@ -131,7 +131,7 @@ TEST_F(HomingModule, WhatIsNoNumberEndsHoming_C2) {
     EXPECT_NE(faults().find("no finite number"), std::string::npos);
 }
 
-TEST_F(HomingModule, AnAbortStopsItWhetherItHearsOrNot_C2) {
+TEST_F(HomingModule, AnAbortStopsItWhetherItHearsOrNot) {
     ASSERT_NO_FATAL_FAILURE(start(Manner::STUBBORN));
     run(1);
     send(Abort{2});
@@ -143,7 +143,7 @@ TEST_F(HomingModule, AnAbortStopsItWhetherItHearsOrNot_C2) {
     EXPECT_TRUE(checker.isWithin()) << checker.report();
 }
 
-TEST_F(HomingModule, AJointThatItLetsGoOfBrakesAndStands_C2) {
+TEST_F(HomingModule, AJointThatItLetsGoOfBrakesAndStands) {
     ASSERT_NO_FATAL_FAILURE(start(Manner::LETTING_GO));
     run(1);
     const double stood = motor();
@@ -155,14 +155,14 @@ TEST_F(HomingModule, AJointThatItLetsGoOfBrakesAndStands_C2) {
     EXPECT_TRUE(checker.isWithin()) << checker.report();
 }
 
-TEST_F(HomingModule, OneThatGivesUpIsToldOf_C2) {
+TEST_F(HomingModule, OneThatGivesUpIsToldOf) {
     ASSERT_NO_FATAL_FAILURE(start(Manner::GIVING_UP));
     run(5);
     EXPECT_FALSE(isHomed());
     EXPECT_EQ(faults(), "homing of joint 0 failed: the homing module gave up; it may have said why\n");
 }
 
-TEST_F(HomingModule, MayHaveTheHomingPinsItself_C2) {
+TEST_F(HomingModule, MayHaveTheHomingPinsItself) {
     ASSERT_NO_FATAL_FAILURE(start(Manner::OWN_PINS));
     EXPECT_TRUE(host->hal().get("joint.0.home-sw-in").has_value());
     EXPECT_FALSE(host->hal().get("joint.0.homing").has_value());

@@ -8,13 +8,13 @@
 #include <gtest/gtest.h>
 
 #include "hal/core/host.hh"
-#include "rtapi/virtual_scheduler.hh"
+#include "runtime/virtual_scheduler.hh"
 
 namespace mw::motion {
 namespace {
 
 struct Loaded {
-    rtapi::VirtualScheduler clock;
+    runtime::VirtualScheduler clock;
     std::unique_ptr<hal::LocalHost> host;
 
     Loaded() {
@@ -140,7 +140,7 @@ std::string page_of(const std::string &module) {
     return text;
 }
 
-TEST(KinematicsModules, HavePinsWithTheValuesOfLinuxCNC_C14) {
+TEST(KinematicsModules, HavePinsWithTheValuesOfLinuxCNC) {
     for (const Module &module : MODULES) {
         SCOPED_TRACE(module.name);
         Loaded machine;
@@ -152,7 +152,7 @@ TEST(KinematicsModules, HavePinsWithTheValuesOfLinuxCNC_C14) {
     }
 }
 
-TEST(KinematicsModules, EveryPinIsInThePage_C14) {
+TEST(KinematicsModules, EveryPinIsInThePage) {
     for (const Module &module : MODULES) {
         Loaded machine;
         ASSERT_EQ(machine.load(module.name), "ok");
@@ -166,7 +166,7 @@ TEST(KinematicsModules, EveryPinIsInThePage_C14) {
     }
 }
 
-TEST(KinematicsModules, MotionLoadsOverEachOfThem_C14) {
+TEST(KinematicsModules, MotionLoadsOverEachOfThem) {
     for (const Module &module : MODULES) {
         Loaded machine;
         ASSERT_EQ(machine.load("tpmod"), "ok");
@@ -177,7 +177,7 @@ TEST(KinematicsModules, MotionLoadsOverEachOfThem_C14) {
     }
 }
 
-TEST(KinematicsModules, RefuseWordsThatTheyDoNotKnow_C14) {
+TEST(KinematicsModules, RefuseWordsThatTheyDoNotKnow) {
     for (const char *name : {"5axiskins", "xyzac-trt-kins", "scarakins"}) {
         Loaded machine;
         EXPECT_NE(machine.load(name, {"coordinates=XYQ"}).find("XYZABCUVW"), std::string::npos);

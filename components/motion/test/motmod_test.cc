@@ -3,15 +3,15 @@
 #include <gtest/gtest.h>
 
 #include "hal/core/host.hh"
-#include "motion/api/channels.hh"
-#include "motion/api/parameters.hh"
-#include "rtapi/virtual_scheduler.hh"
+#include "motion/interface/channels.hh"
+#include "motion/interface/parameters.hh"
+#include "runtime/virtual_scheduler.hh"
 
 namespace mw::motion {
 namespace {
 
 struct Machine {
-    rtapi::VirtualScheduler clock;
+    runtime::VirtualScheduler clock;
     std::unique_ptr<hal::LocalHost> host;
     Channels *channels = nullptr;
     CommandId next_id = 1;
@@ -65,7 +65,7 @@ struct Machine {
     }
 };
 
-TEST(Motmod, APinThatSeldomChangesIsSeenInTheCycleAfterItWasLinked_B6) {
+TEST(Motmod, APinThatSeldomChangesIsSeenInTheCycleAfterItWasLinked) {
     Machine m;
     ASSERT_NO_FATAL_FAILURE(m.start());
     m.ready();
@@ -83,7 +83,7 @@ TEST(Motmod, APinThatSeldomChangesIsSeenInTheCycleAfterItWasLinked_B6) {
     EXPECT_EQ(m.value("joint.1.jog-enable"), 1);
 }
 
-TEST(Motmod, ALineFromThePathChannelReachesTheMotorPins_C1) {
+TEST(Motmod, ALineFromThePathChannelReachesTheMotorPins) {
     Machine m;
     ASSERT_NO_FATAL_FAILURE(m.start());
     m.ready();
@@ -106,7 +106,7 @@ TEST(Motmod, ALineFromThePathChannelReachesTheMotorPins_C1) {
 }
 
 /// Each of them, and no other.
-TEST(Motmod, InputsAndOutputsOfProgramsAreThoseOfTheirPins_C9) {
+TEST(Motmod, InputsAndOutputsOfProgramsAreThoseOfTheirPins) {
     Machine m;
     ASSERT_NO_FATAL_FAILURE(m.start());
     m.ready();
@@ -145,7 +145,7 @@ TEST(Motmod, EstopChainDropsTheAmplifiersInTheSameServoCycle) {
     EXPECT_EQ(m.value("motion.motion-enabled"), 0);
 }
 
-TEST(Motmod, KinematicsOfOthersMoveTheJoints_C14) {
+TEST(Motmod, KinematicsOfOthersMoveTheJoints) {
     Machine m;
     ASSERT_NO_FATAL_FAILURE(m.start("skewkins"));
     m.send(Abort{1});
@@ -173,7 +173,7 @@ TEST(Motmod, WithoutKinematicsItSaysWhatToLoad) {
     EXPECT_TRUE(m.host->hal().components().empty());
 }
 
-TEST(Motmod, RefusesCountsOutOfRange_C12) {
+TEST(Motmod, RefusesCountsOutOfRange) {
     Machine m;
     ASSERT_EQ(m.load("trivkins"), "ok");
     EXPECT_NE(m.load("motmod", {"num_joints=17"}).find("num_joints=17 is out of range"), std::string::npos);
@@ -190,7 +190,7 @@ TEST(Motmod, RefusesCountsOutOfRange_C12) {
     EXPECT_EQ(m.host->hal().pins("motion.digital-in-*").size(), 7U);
 }
 
-TEST(Motmod, KinematicsThatLackAFunctionAreRefusedByItsName_C2_C14) {
+TEST(Motmod, KinematicsThatLackAFunctionAreRefusedByItsName) {
     for (const std::string name : {"Forward", "Inverse", "Type"}) {
         Machine m;
         ASSERT_EQ(m.load("tpmod"), "ok");
@@ -201,14 +201,14 @@ TEST(Motmod, KinematicsThatLackAFunctionAreRefusedByItsName_C2_C14) {
     }
 }
 
-TEST(Motmod, TrivkinsRefusesLettersThatAreNoAxes_C14) {
+TEST(Motmod, TrivkinsRefusesLettersThatAreNoAxes) {
     Machine m;
     EXPECT_NE(m.load("trivkins", {"coordinates=XQ"}).find("XYZABCUVW"), std::string::npos);
     EXPECT_NE(m.load("trivkins", {"kinstype=z"}).find("kinstype"), std::string::npos);
     EXPECT_EQ(m.load("trivkins", {"coordinates=xyyz", "kinstype=BOTH"}), "ok");
 }
 
-TEST(Motmod, ModelsOfOtherMachinesLoad_C14) {
+TEST(Motmod, ModelsOfOtherMachinesLoad) {
     {
         Machine m;
         ASSERT_EQ(m.load("corexykins"), "ok");

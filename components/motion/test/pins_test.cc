@@ -7,10 +7,10 @@
 #include <gtest/gtest.h>
 
 #include "hal/core/host.hh"
-#include "io/tool_offset_pin_tables.hh"
-#include "motion/rt/pin_tables.hh"
-#include "rtapi/virtual_scheduler.hh"
-#include "testing/pin_page.hh"
+#include "machine/io/tool_offset_pin_tables.hh"
+#include "motion/hal/pin_tables.hh"
+#include "runtime/virtual_scheduler.hh"
+#include "tests/support/pin_page.hh"
 
 namespace mw::motion {
 namespace {
@@ -38,7 +38,7 @@ std::map<std::string, PinText> expected(const std::map<std::string, int> &counts
             const std::string two = (i < 10 ? "0" : "") + std::to_string(i);
             std::string name = replaced(row.name, "NN", two);
             name = replaced(name, "N", std::to_string(i));
-            name = i < MAX_AXES ? replaced(name, "L", std::string(1, geom::AXIS_LETTERS_LOWER[i])) : name;
+            name = i < MAX_AXES ? replaced(name, "L", std::string(1, geometry::AXIS_LETTERS_LOWER[i])) : name;
             const bool isOfSwitchable = row.name == "motion.switchkins-type";
             const bool isOfOthers = row.name == "joint.N.posthome-cmd" && i < first_extra;
             if ((!isUnlock || unlocked.contains(i)) && !isOfSwitchable && !isOfOthers) {
@@ -49,8 +49,8 @@ std::map<std::string, PinText> expected(const std::map<std::string, int> &counts
     return out;
 }
 
-TEST(MotmodPins, EveryRowOfTheTablesIsAPinAndEveryPinIsARow_B6) {
-    rtapi::VirtualScheduler clock;
+TEST(MotmodPins, EveryRowOfTheTablesIsAPinAndEveryPinIsARow) {
+    runtime::VirtualScheduler clock;
     hal::HalOptions options;
     options.scheduler = &clock;
     auto host = hal::LocalHost::create(options, {MW_MODULE_FOLDER});
@@ -86,8 +86,8 @@ TEST(MotmodPins, EveryRowOfTheTablesIsAPinAndEveryPinIsARow_B6) {
     EXPECT_EQ(found, wanted.size());
 }
 
-TEST(MotmodPins, SwitchableKinematicsHaveThePinOfTheirType_C14) {
-    rtapi::VirtualScheduler clock;
+TEST(MotmodPins, SwitchableKinematicsHaveThePinOfTheirType) {
+    runtime::VirtualScheduler clock;
     hal::HalOptions options;
     options.scheduler = &clock;
     auto host = hal::LocalHost::create(options, {MW_MODULE_FOLDER});
@@ -100,7 +100,7 @@ TEST(MotmodPins, SwitchableKinematicsHaveThePinOfTheirType_C14) {
     EXPECT_EQ(pins[0].dir, hal::Dir::IN);
 }
 
-TEST(MotmodPins, TheManualPageHasEachRowAndNoOther_B6) {
+TEST(MotmodPins, TheManualPageHasEachRowAndNoOther) {
     std::vector<std::string> wanted;
     std::string section;
     for (const PinText &row : rows()) {
@@ -112,7 +112,7 @@ TEST(MotmodPins, TheManualPageHasEachRowAndNoOther_B6) {
                                                           << section;
 }
 
-TEST(MotmodPins, EveryRowSaysWhatThePinIsFor_B6) {
+TEST(MotmodPins, EveryRowSaysWhatThePinIsFor) {
     std::set<std::string> names;
     for (const PinText &row : rows()) {
         EXPECT_FALSE(row.doc.empty()) << row.name;

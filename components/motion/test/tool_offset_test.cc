@@ -5,9 +5,9 @@
 #include <gtest/gtest.h>
 
 #include "hal/core/host.hh"
-#include "io/pins.hh"
-#include "motion/api/channels.hh"
-#include "rtapi/virtual_scheduler.hh"
+#include "machine/io/pins.hh"
+#include "motion/interface/channels.hh"
+#include "runtime/virtual_scheduler.hh"
 
 namespace mw::motion {
 namespace {
@@ -31,40 +31,41 @@ class ToolOffsetPins : public ::testing::Test {
         ASSERT_TRUE(io.join_tool_offset().has_value());
         channels = static_cast<Channels *>(*hal().shared_block(Channels::SHMEM_KEY, sizeof(Channels)));
     }
-    void write(const geom::Pose &pose) {
+    void write(const geometry::Pose &pose) {
         io::Outputs outputs;
         outputs.tool_offset = pose;
         io.write(outputs);
     }
     void run_cycle() { clock.run_until(clock.now_ns() + 1000000); }
-    geom::Pose shown() {
-        geom::Pose pose;
+    geometry::Pose shown() {
+        geometry::Pose pose;
         for (int i = 0; i < MAX_AXES; ++i) {
-            pose[i] = hal().get(std::string("motion.tooloffset.") + geom::AXIS_LETTERS_LOWER[i])->as_number();
+            pose[i] =
+                hal().get(std::string("motion.tooloffset.") + geometry::AXIS_LETTERS_LOWER[i])->as_number();
         }
         return pose;
     }
 
-    const geom::Pose offset{{1, -2, 3, 4, 5, 6, 7, 8, 9.5}};
-    rtapi::VirtualScheduler clock;
+    const geometry::Pose offset{{1, -2, 3, 4, 5, 6, 7, 8, 9.5}};
+    runtime::VirtualScheduler clock;
     std::unique_ptr<hal::LocalHost> host;
     io::Pins io;
     Channels *channels = nullptr;
 };
 
-TEST_F(ToolOffsetPins, AreMadeWithMotmodAndAreZero_G6) {
+TEST_F(ToolOffsetPins, AreMadeWithMotmodAndAreZero) {
     EXPECT_FALSE(hal().hasPin("motion.tooloffset.z"));
     ASSERT_NO_FATAL_FAILURE(load());
     EXPECT_EQ(hal().pins("motion.tooloffset.*").size(), std::size_t{MAX_AXES});
     EXPECT_EQ(hal().pin("motion.tooloffset.z")->dir, hal::Dir::OUT);
-    EXPECT_EQ(shown().c, geom::Pose{}.c);
+    EXPECT_EQ(shown().c, geometry::Pose{}.c);
 }
 
-TEST_F(ToolOffsetPins, ShowWhatTheIoControllerWritesAndNotWhatMotionIsSent_G6) {
+TEST_F(ToolOffsetPins, ShowWhatTheIoControllerWritesAndNotWhatMotionIsSent) {
     ASSERT_NO_FATAL_FAILURE(load());
     write(offset);
     EXPECT_FALSE(io.read().isToolOffsetShown);
-    EXPECT_EQ(shown().c, geom::Pose{}.c) << "they change between two cycles of the servo thread";
+    EXPECT_EQ(shown().c, geometry::Pose{}.c) << "they change between two cycles of the servo thread";
     run_cycle();
     EXPECT_TRUE(io.read().isToolOffsetShown);
     EXPECT_EQ(shown().c, offset.c);
@@ -74,7 +75,7 @@ TEST_F(ToolOffsetPins, ShowWhatTheIoControllerWritesAndNotWhatMotionIsSent_G6) {
     EXPECT_EQ(shown().c, offset.c);
 }
 
-TEST_F(ToolOffsetPins, KeepTheirValuesWhenTheTaskProcessIsDead_G6) {
+TEST_F(ToolOffsetPins, KeepTheirValuesWhenTheTaskProcessIsDead) {
     ASSERT_NO_FATAL_FAILURE(load());
     write(offset);
     run_cycle();
@@ -87,7 +88,7 @@ TEST_F(ToolOffsetPins, KeepTheirValuesWhenTheTaskProcessIsDead_G6) {
     }
 }
 
-TEST_F(ToolOffsetPins, KeepTheirValuesWhenTheTaskProcessDiesWithinAWrite_G6) {
+TEST_F(ToolOffsetPins, KeepTheirValuesWhenTheTaskProcessDiesWithinAWrite) {
     ASSERT_NO_FATAL_FAILURE(load());
     write(offset);
     run_cycle();
@@ -104,7 +105,7 @@ TEST_F(ToolOffsetPins, KeepTheirValuesWhenTheTaskProcessDiesWithinAWrite_G6) {
 }
 
 /// A signal that has a reader keeps its value when a writer joins.
-TEST_F(ToolOffsetPins, AreSeenInTheCycleAfterTheyWereLinked_G6) {
+TEST_F(ToolOffsetPins, AreSeenInTheCycleAfterTheyWereLinked) {
     ASSERT_NO_FATAL_FAILURE(load());
     write(offset);
     run_cycle();
@@ -114,7 +115,7 @@ TEST_F(ToolOffsetPins, AreSeenInTheCycleAfterTheyWereLinked_G6) {
     EXPECT_EQ(hal().get("motion.adaptive-feed")->as_number(), 3);
 }
 
-TEST_F(ToolOffsetPins, NobodyWaitsForThemWhereMotmodIsNotLoaded_G6) {
+TEST_F(ToolOffsetPins, NobodyWaitsForThemWhereMotmodIsNotLoaded) {
     ASSERT_TRUE(io.join_tool_offset().has_value());
     write(offset);
     EXPECT_TRUE(io.read().isToolOffsetShown) << "motion-logger stands in for motmod";

@@ -5,7 +5,7 @@
 namespace mw::plasma::test {
 namespace {
 
-TEST(PlasmaPins, AreThoseOfThePeer_B6) {
+TEST(PlasmaPins, AreThoseOfThePeer) {
     int inputs = 0, outputs = 0;
     sdk::for_each_pin(INPUT_PINS, [&](const char *, const auto &) { ++inputs; });
     sdk::for_each_pin(OUTPUT_PINS, [&](const char *, const auto &) { ++outputs; });
@@ -18,7 +18,7 @@ TEST(PlasmaPins, AreThoseOfThePeer_B6) {
     EXPECT_TRUE(fresh.in.multi_tool);
 }
 
-TEST(PlasmaCycle, ProbesPiercesCutsAndRetracts_B6) {
+TEST(PlasmaCycle, ProbesPiercesCutsAndRetracts) {
     Cut table;
     table.start();
     for (const State state : {State::PROBE_HEIGHT, State::PROBE_DOWN, State::PROBE_UP, State::ZERO_HEIGHT,
@@ -44,7 +44,7 @@ TEST(PlasmaCycle, ProbesPiercesCutsAndRetracts_B6) {
     EXPECT_EQ(table.out().stop_type_out, 2);
 }
 
-TEST(PlasmaCycle, NeverMovesZFasterThanAsked_B6) {
+TEST(PlasmaCycle, NeverMovesZFasterThanAsked) {
     Cut table;
     table.start();
     const std::int32_t most = 1000000;  // 10 mm a period in counts
@@ -56,7 +56,7 @@ TEST(PlasmaCycle, NeverMovesZFasterThanAsked_B6) {
     }
 }
 
-TEST(PlasmaCycle, TriesTheArcAsOftenAsAllowed_B6) {
+TEST(PlasmaCycle, TriesTheArcAsOftenAsAllowed) {
     Cut table;
     table.volts = 10.0;
     table.start();
@@ -67,7 +67,7 @@ TEST(PlasmaCycle, TriesTheArcAsOftenAsAllowed_B6) {
     EXPECT_EQ(table.core.take_fault(), Fault::NO_ARC);
 }
 
-TEST(PlasmaCycle, DryRunGoesTheWholeWayWithoutTheTorch_B6) {
+TEST(PlasmaCycle, DryRunGoesTheWholeWayWithoutTheTorch) {
     Cut table;
     table.in.torch_enable = false;
     table.start();
@@ -78,7 +78,7 @@ TEST(PlasmaCycle, DryRunGoesTheWholeWayWithoutTheTorch_B6) {
     EXPECT_EQ(table.core.state(), State::CUT_BY_VOLTAGE);
 }
 
-TEST(PlasmaCycle, MeshGoesOnWithoutAnArc_B6) {
+TEST(PlasmaCycle, MeshGoesOnWithoutAnArc) {
     Cut table;
     table.in.mesh_enable = true;
     table.start();
@@ -90,7 +90,7 @@ TEST(PlasmaCycle, MeshGoesOnWithoutAnArc_B6) {
     EXPECT_FALSE(table.out().thc_active);
 }
 
-TEST(PlasmaCycle, PuddleJumpBeginsThePathAboveTheCutHeight_B6) {
+TEST(PlasmaCycle, PuddleJumpBeginsThePathAboveTheCutHeight) {
     Cut table;
     table.in.puddle_jump_height = 150.0;
     table.in.puddle_jump_delay = 0.05;
@@ -102,7 +102,7 @@ TEST(PlasmaCycle, PuddleJumpBeginsThePathAboveTheCutHeight_B6) {
     EXPECT_TRUE(table.reaches(State::CUT_BY_VOLTAGE));
 }
 
-TEST(PlasmaCycle, PauseAtEndKeepsTheTorchOn_B6) {
+TEST(PlasmaCycle, PauseAtEndKeepsTheTorchOn) {
     Cut table;
     table.in.pause_at_end = 0.1;
     table.cut();
@@ -115,7 +115,7 @@ TEST(PlasmaCycle, PauseAtEndKeepsTheTorchOn_B6) {
     EXPECT_FALSE(table.out().torch_on);
 }
 
-TEST(PlasmaCycle, PausedCutStartsAgainAfterResume_B6) {
+TEST(PlasmaCycle, PausedCutStartsAgainAfterResume) {
     Cut table;
     table.cut();
     table.pause();
@@ -129,7 +129,7 @@ TEST(PlasmaCycle, PausedCutStartsAgainAfterResume_B6) {
     EXPECT_EQ(table.out().pierce_count, 2);
 }
 
-TEST(PlasmaCycle, NearTheLastCutNoProbing_B6) {
+TEST(PlasmaCycle, NearTheLastCutNoProbing) {
     Cut table;
     table.in.skip_ihs_distance = 10.0;
     table.cut();
@@ -141,7 +141,7 @@ TEST(PlasmaCycle, NearTheLastCutNoProbing_B6) {
     EXPECT_EQ(table.core.state(), State::PIERCE_HEIGHT);
 }
 
-TEST(PlasmaCycle, OhmicProbeIsTheZeroWithItsOffset_B6) {
+TEST(PlasmaCycle, OhmicProbeIsTheZeroWithItsOffset) {
     Cut table;
     table.in.ohmic_probe_enable = true;
     table.in.ohmic_probe_offset = 0.3;
@@ -158,7 +158,7 @@ TEST(PlasmaCycle, OhmicProbeIsTheZeroWithItsOffset_B6) {
     EXPECT_NEAR(table.torch_mu(), touched + 0.3, 0.02);
 }
 
-TEST(PlasmaCycle, WithoutContactTheFloatSwitchCountsInTheEnd_B6) {
+TEST(PlasmaCycle, WithoutContactTheFloatSwitchCountsInTheEnd) {
     Cut table;
     table.in.ohmic_probe_enable = true;
     table.in.ohmic_max_attempts = 2;
@@ -172,7 +172,7 @@ TEST(PlasmaCycle, WithoutContactTheFloatSwitchCountsInTheEnd_B6) {
     EXPECT_EQ(attempts, 2);
 }
 
-TEST(PlasmaCycle, SpotEndsAfterItsTime_B6) {
+TEST(PlasmaCycle, SpotEndsAfterItsTime) {
     Cut table;
     table.in.spotting_threshold = 50.0;
     table.in.spotting_time = 20.0;
@@ -189,7 +189,7 @@ TEST(PlasmaCycle, SpotEndsAfterItsTime_B6) {
     EXPECT_EQ(table.core.state(), State::SAFE_HEIGHT);
 }
 
-TEST(PlasmaCycle, ScribeGoesDownThenOnThenMoves_B6) {
+TEST(PlasmaCycle, ScribeGoesDownThenOnThenMoves) {
     Cut table;
     table.in.scribe_arm_delay = 0.02;
     table.in.scribe_on_delay = 0.03;
@@ -210,7 +210,7 @@ TEST(PlasmaCycle, ScribeGoesDownThenOnThenMoves_B6) {
     EXPECT_FALSE(table.out().scribe_on || table.out().scribe_arm || table.out().torch_on);
 }
 
-TEST(PlasmaCycle, TorchPulseLastsItsTime_B6) {
+TEST(PlasmaCycle, TorchPulseLastsItsTime) {
     Cut table;
     table.in.torch_pulse_time = 0.05;
     table.in.torch_pulse_start = true;
@@ -222,7 +222,7 @@ TEST(PlasmaCycle, TorchPulseLastsItsTime_B6) {
     EXPECT_EQ(table.core.state(), State::IDLE);
 }
 
-TEST(PlasmaCycle, ManualCutEndsAtTheTop_B6) {
+TEST(PlasmaCycle, ManualCutEndsAtTheTop) {
     Cut table;
     table.in.offsets_active = true;
     table.in.cutting_start = true;
@@ -234,7 +234,7 @@ TEST(PlasmaCycle, ManualCutEndsAtTheTop_B6) {
     EXPECT_TRUE(table.reaches(State::IDLE));
 }
 
-TEST(PlasmaCycle, ConsumablesAreChangedElsewhereWhilePaused_B6) {
+TEST(PlasmaCycle, ConsumablesAreChangedElsewhereWhilePaused) {
     Cut table;
     table.cut();
     table.pause();
@@ -254,7 +254,7 @@ TEST(PlasmaCycle, ConsumablesAreChangedElsewhereWhilePaused_B6) {
     EXPECT_TRUE(table.reaches(State::CUT_BY_VOLTAGE));
 }
 
-TEST(PlasmaCycle, RecoveryStartsBesideThePathAndReturnsToIt_B6) {
+TEST(PlasmaCycle, RecoveryStartsBesideThePathAndReturnsToIt) {
     Cut table;
     table.cut();
     table.pause();
@@ -273,7 +273,7 @@ TEST(PlasmaCycle, RecoveryStartsBesideThePathAndReturnsToIt_B6) {
     EXPECT_FALSE(table.out().cut_recovering);
 }
 
-TEST(PlasmaCycle, PausedMotionFollowsTheKey_B6) {
+TEST(PlasmaCycle, PausedMotionFollowsTheKey) {
     Cut table;
     table.cut();
     table.pause();

@@ -12,7 +12,7 @@ double moved(Cut &table, int cycles) {
     return table.torch_mu() - before;
 }
 
-TEST(PlasmaHeight, TooMuchVoltageBringsTheTorchDown_B6) {
+TEST(PlasmaHeight, TooMuchVoltageBringsTheTorchDown) {
     Cut table;
     table.cut();
     table.volts = 104.0;
@@ -26,7 +26,7 @@ TEST(PlasmaHeight, TooMuchVoltageBringsTheTorchDown_B6) {
     EXPECT_FALSE(table.out().led_up || table.out().led_down);
 }
 
-TEST(PlasmaHeight, IsNotFasterThanItsFeedRate_B6) {
+TEST(PlasmaHeight, IsNotFasterThanItsFeedRate) {
     Cut table;
     table.in.pid_p_gain = 1000.0;
     table.cut();
@@ -34,7 +34,7 @@ TEST(PlasmaHeight, IsNotFasterThanItsFeedRate_B6) {
     EXPECT_NEAR(moved(table, 10), -1.0, 1e-3);  // 6000 mu a minute
 }
 
-TEST(PlasmaHeight, WaitsForFullSpeedAndItsDelay_B6) {
+TEST(PlasmaHeight, WaitsForFullSpeedAndItsDelay) {
     Cut table;
     table.start();
     ASSERT_TRUE(table.reaches(State::CUT_BY_VOLTAGE));
@@ -49,7 +49,7 @@ TEST(PlasmaHeight, WaitsForFullSpeedAndItsDelay_B6) {
     EXPECT_EQ(table.out().target_volts, 100.0);
 }
 
-TEST(PlasmaHeight, HoldsTheMeasuredVoltageWhenAsked_B6) {
+TEST(PlasmaHeight, HoldsTheMeasuredVoltageWhenAsked) {
     Cut table;
     table.in.use_auto_volts = true;
     table.volts = 97.5;
@@ -61,7 +61,7 @@ TEST(PlasmaHeight, HoldsTheMeasuredVoltageWhenAsked_B6) {
     EXPECT_EQ(moved(table, 10), 0.0);
 }
 
-TEST(PlasmaHeight, CornersLockIt_B6) {
+TEST(PlasmaHeight, CornersLockIt) {
     Cut table;
     table.in.cornerlock_enable = true;
     table.cut();
@@ -74,7 +74,7 @@ TEST(PlasmaHeight, CornersLockIt_B6) {
     EXPECT_LT(moved(table, 20), 0.0);
 }
 
-TEST(PlasmaHeight, KerfCrossingLocksItUntilTheVoltageIsFlat_B6) {
+TEST(PlasmaHeight, KerfCrossingLocksItUntilTheVoltageIsFlat) {
     Cut table;
     table.in.voidlock_enable = true;
     table.in.voidlock_slope = 100;
@@ -90,7 +90,7 @@ TEST(PlasmaHeight, KerfCrossingLocksItUntilTheVoltageIsFlat_B6) {
     EXPECT_FALSE(table.out().voidlock_is_locked);
 }
 
-TEST(PlasmaHeight, OverrideMovesByWhatItIsWorth_B6) {
+TEST(PlasmaHeight, OverrideMovesByWhatItIsWorth) {
     Cut table;
     table.in.height_per_volt = 0.1;
     table.cut();
@@ -99,7 +99,7 @@ TEST(PlasmaHeight, OverrideMovesByWhatItIsWorth_B6) {
     EXPECT_NEAR(moved(table, 10), 0.5, 1e-3);
 }
 
-TEST(PlasmaHeight, SwitchesMoveItInMode2_B6) {
+TEST(PlasmaHeight, SwitchesMoveItInMode2) {
     Cut table;
     table.in.mode = 2;
     table.in.arc_ok_in = true;
@@ -113,7 +113,7 @@ TEST(PlasmaHeight, SwitchesMoveItInMode2_B6) {
     EXPECT_EQ(moved(table, 10), 0.0);
 }
 
-TEST(PlasmaHeight, FeedReductionActsInTheCutOnly_B6) {
+TEST(PlasmaHeight, FeedReductionActsInTheCutOnly) {
     Cut table;
     table.in.feed_reduction = 60.0;
     table.start();

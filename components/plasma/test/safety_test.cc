@@ -5,12 +5,12 @@
 #include <random>
 
 #include "components/plasma/test/cut.hh"
-#include "testing/allocation_guard.hh"
+#include "tests/support/allocation_guard.hh"
 
 namespace mw::plasma::test {
 namespace {
 
-TEST(PlasmaSafety, LostArcPausesTheProgram_B6) {
+TEST(PlasmaSafety, LostArcPausesTheProgram) {
     Cut table;
     table.cut();
     table.volts = 0.0;
@@ -22,7 +22,7 @@ TEST(PlasmaSafety, LostArcPausesTheProgram_B6) {
     EXPECT_EQ(table.out().z_offset_counts, 0);
 }
 
-TEST(PlasmaSafety, ShortGapOfTheArcIsNoLoss_B6) {
+TEST(PlasmaSafety, ShortGapOfTheArcIsNoLoss) {
     Cut table;
     table.cut();
     table.volts = 0.0;
@@ -33,7 +33,7 @@ TEST(PlasmaSafety, ShortGapOfTheArcIsNoLoss_B6) {
     EXPECT_TRUE(table.out().torch_on);
 }
 
-TEST(PlasmaSafety, SensorsInTheCutStopItInTheSameCycle_B6) {
+TEST(PlasmaSafety, SensorsInTheCutStopItInTheSameCycle) {
     for (bool Inputs::*sensor : {&Inputs::breakaway, &Inputs::float_switch, &Inputs::ohmic_probe}) {
         Cut table;
         table.cut();
@@ -47,7 +47,7 @@ TEST(PlasmaSafety, SensorsInTheCutStopItInTheSameCycle_B6) {
     }
 }
 
-TEST(PlasmaSafety, ProgramStopTurnsTheTorchOff_B6) {
+TEST(PlasmaSafety, ProgramStopTurnsTheTorchOff) {
     Cut table;
     table.cut();
     table.in.program_is_idle = true;
@@ -57,7 +57,7 @@ TEST(PlasmaSafety, ProgramStopTurnsTheTorchOff_B6) {
     EXPECT_EQ(table.core.state(), State::MAX_HEIGHT);
 }
 
-TEST(PlasmaSafety, MachineOffTurnsAllOff_B6) {
+TEST(PlasmaSafety, MachineOffTurnsAllOff) {
     Cut table;
     table.cut();
     table.in.machine_is_on = false;
@@ -67,7 +67,7 @@ TEST(PlasmaSafety, MachineOffTurnsAllOff_B6) {
     EXPECT_EQ(table.out().z_offset_counts, 0);
 }
 
-TEST(PlasmaSafety, NoMaterialEndsTheProbing_B6) {
+TEST(PlasmaSafety, NoMaterialEndsTheProbing) {
     Cut table;
     table.material_mu = -5.0;
     table.start();
@@ -76,7 +76,7 @@ TEST(PlasmaSafety, NoMaterialEndsTheProbing_B6) {
     EXPECT_EQ(table.out().pierce_count, 0);
 }
 
-TEST(PlasmaSafety, HeightsThatMakeNoSenseStartNoTorch_B6) {
+TEST(PlasmaSafety, HeightsThatMakeNoSenseStartNoTorch) {
     Cut table;
     table.in.pierce_height = 0.0;
     table.start();
@@ -85,7 +85,7 @@ TEST(PlasmaSafety, HeightsThatMakeNoSenseStartNoTorch_B6) {
     EXPECT_EQ(table.out().pierce_count, 0);
 }
 
-TEST(PlasmaSafety, SafeHeightStaysBelowTheEndOfZ_B6) {
+TEST(PlasmaSafety, SafeHeightStaysBelowTheEndOfZ) {
     Cut table;
     table.in.safe_height = 500.0;
     table.cut();
@@ -94,7 +94,7 @@ TEST(PlasmaSafety, SafeHeightStaysBelowTheEndOfZ_B6) {
     EXPECT_LE(table.torch_mu(), 95.001);  // the limit less max-offset
 }
 
-TEST(PlasmaSafety, HeightControlStopsAtTheLowerEnd_B6) {
+TEST(PlasmaSafety, HeightControlStopsAtTheLowerEnd) {
     Cut table;
     table.cut();
     table.hasFloat = false;
@@ -104,7 +104,7 @@ TEST(PlasmaSafety, HeightControlStopsAtTheLowerEnd_B6) {
     EXPECT_EQ(table.core.take_fault(), Fault::THC_AT_BOTTOM);
 }
 
-TEST(PlasmaSafety, LowVoltageStopsBeforeTheArcIsLost_B6) {
+TEST(PlasmaSafety, LowVoltageStopsBeforeTheArcIsLost) {
     Cut table;
     table.in.low_cut_volts = 95;
     table.cut();
@@ -113,7 +113,7 @@ TEST(PlasmaSafety, LowVoltageStopsBeforeTheArcIsLost_B6) {
     EXPECT_FALSE(table.out().torch_on);
 }
 
-TEST(PlasmaSafety, ProbeTestFailsWithASensorClosed_B6) {
+TEST(PlasmaSafety, ProbeTestFailsWithASensorClosed) {
     Cut table;
     table.in.breakaway = true;
     table.in.probe_test = true;
@@ -122,7 +122,7 @@ TEST(PlasmaSafety, ProbeTestFailsWithASensorClosed_B6) {
     EXPECT_EQ(table.out().z_offset_counts, 0);
 }
 
-TEST(PlasmaSafety, WhatIsNoNumberTurnsTheTorchOffAndStandsStill_B6) {
+TEST(PlasmaSafety, WhatIsNoNumberTurnsTheTorchOffAndStandsStill) {
     sdk::for_each_pin(INPUT_PINS, [&](const char *, const auto &row) {
         using Value = typename std::remove_cvref_t<decltype(row)>::Value;
         if constexpr (std::is_same_v<Value, double>) {
@@ -146,7 +146,7 @@ TEST(PlasmaSafety, WhatIsNoNumberTurnsTheTorchOffAndStandsStill_B6) {
     });
 }
 
-TEST(PlasmaSafety, DivisorsOfZeroTurnTheTorchOff_B6) {
+TEST(PlasmaSafety, DivisorsOfZeroTurnTheTorchOff) {
     for (const char *name : {"units-per-mm", "resolution", "gcode-scale"}) {
         Cut table;
         table.cut();
@@ -157,7 +157,7 @@ TEST(PlasmaSafety, DivisorsOfZeroTurnTheTorchOff_B6) {
     }
 }
 
-TEST(PlasmaSafety, WildInputsNeverComeOutAsNoNumbers_B6) {
+TEST(PlasmaSafety, WildInputsNeverComeOutAsNoNumbers) {
     for (unsigned seed = 1; seed <= 60; ++seed) {
         std::mt19937 random(seed);
         Cut table;

@@ -160,7 +160,7 @@ TEST_F(AtomicFile, AFailureNamesTheFile) {
     EXPECT_NE(result.error().message.find("missing/a"), std::string::npos);
 }
 
-TEST_F(AtomicFile, WhatItHadIsInTheBackup_D3) {
+TEST_F(AtomicFile, WhatItHadIsInTheBackup) {
     ASSERT_TRUE(write_file_with_backup(path("a"), "one").has_value());
     EXPECT_FALSE(fs::exists(path("a.bak")));
     ASSERT_TRUE(write_file_with_backup(path("a"), "two").has_value());

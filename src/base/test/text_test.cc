@@ -63,7 +63,7 @@ TEST(Text, AWordOfAShellIsQuotedWhereItMustBe) {
     EXPECT_EQ(shell_word("it's $HOME"), "'it'\\''s $HOME'");
 }
 
-TEST(Text, TheLocaleDoesNotMatter_A8) {
+TEST(Text, TheLocaleDoesNotMatter) {
     std::setlocale(LC_ALL, "de_DE.UTF-8");
     EXPECT_EQ(parse_double("1.5"), 1.5);
     EXPECT_EQ(to_text(1.5), "1.5");

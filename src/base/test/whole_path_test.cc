@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TEST(WholePath, AFileThatIsALinkKeepsItsFolder_A3) {
+TEST(WholePath, AFileThatIsALinkKeepsItsFolder) {
     std::string name = fs::canonical(fs::temp_directory_path()).string() + "/whole_pathXXXXXX";
     ASSERT_NE(::mkdtemp(name.data()), nullptr);
     const fs::path folder(name);

@@ -6,7 +6,7 @@
 #include <benchmark/benchmark.h>
 
 #include "hal/core/hal.hh"
-#include "rtapi/virtual_scheduler.hh"
+#include "runtime/virtual_scheduler.hh"
 
 namespace mw::hal {
 namespace {
@@ -15,7 +15,7 @@ void nothing(void * /*argument*/, long /*period_ns*/) {}
 
 /// Argument: functions in the thread.
 void BM_VirtualPeriod(benchmark::State &state) {
-    rtapi::VirtualScheduler clock;
+    runtime::VirtualScheduler clock;
     HalOptions options;
     options.scheduler = &clock;
     auto hal = Hal::create(options).value();
@@ -34,7 +34,7 @@ void BM_VirtualPeriod(benchmark::State &state) {
 BENCHMARK(BM_VirtualPeriod)->Arg(0)->Arg(10)->Arg(50);
 
 void BM_SetAndGetByName(benchmark::State &state) {
-    rtapi::VirtualScheduler clock;
+    runtime::VirtualScheduler clock;
     HalOptions options;
     options.scheduler = &clock;
     auto hal = Hal::create(options).value();

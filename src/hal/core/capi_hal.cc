@@ -6,23 +6,23 @@
 #include <mutex>
 
 #include "hal/core/detail/capi.hh"
-#include "rtapi/format.hh"
+#include "runtime/format.hh"
 
 namespace mw::hal::detail {
 
-rtapi::Log &current_log() noexcept {
+runtime::Log &current_log() noexcept {
     Hal *hal = current();
     if (hal != nullptr) {
         return hal->log();
     }
     // For messages before an instance is joined; never destroyed, since threads may print while the process
     // ends.
-    static auto *process_log = new rtapi::Log;
+    static auto *process_log = new runtime::Log;
     return *process_log;
 }
 
 int complain(int code, const std::string &message) noexcept {
-    current_log().print(rtapi::LogLevel::ERR, "HAL: %s", message.c_str());
+    current_log().print(runtime::LogLevel::ERR, "HAL: %s", message.c_str());
     return -code;
 }
 
@@ -240,7 +240,7 @@ int hal_export_functf(void (*funct)(void *, long), void *arg, int uses_fp, int r
     char name[NAME_LENGTH + 2];
     std::va_list args;
     va_start(args, fmt);
-    const int length = rtapi::format_text(name, sizeof name, fmt, args);
+    const int length = runtime::format_text(name, sizeof name, fmt, args);
     va_end(args);
     if (length > static_cast<int>(NAME_LENGTH)) {
         return complain(EINVAL, fmt::format("function name '{}...' has {} characters, at most {} are allowed",

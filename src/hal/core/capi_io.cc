@@ -17,8 +17,8 @@
 #include <cstring>
 #include <mutex>
 
-#include "hal/api/rtapi_parport.h"
 #include "hal/core/detail/capi.hh"
+#include "hal/include/rtapi_parport.h"
 
 using namespace mw::hal;
 using namespace mw::hal::detail;

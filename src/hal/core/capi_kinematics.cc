@@ -3,8 +3,8 @@
 #include <array>
 #include <cstring>
 
-#include "hal/api/kinematics.h"
 #include "hal/core/detail/capi.hh"
+#include "hal/include/kinematics.h"
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "hal/api/millwright_ext.h"
+#include "hal/include/millwright_ext.h"
 
 namespace {
 

@@ -17,10 +17,10 @@
 
 #include "base/atomic_file.hh"
 #include "base/text.hh"
-#include "hal/api/rtapi_firmware.h"
-#include "hal/api/rtapi_pci.h"
 #include "hal/core/detail/capi.hh"
-#include "rtapi/format.hh"
+#include "hal/include/rtapi_firmware.h"
+#include "hal/include/rtapi_pci.h"
+#include "runtime/format.hh"
 
 using namespace mw;
 using namespace mw::hal::detail;
@@ -243,7 +243,7 @@ void *rtapi_pci_get_drvdata(struct rtapi_pci_dev *pdev) {
 int rtapi_dev_set_name(struct rtapi_device *dev, const char *name, ...) {
     std::va_list args;
     va_start(args, name);
-    const int length = rtapi::format_text(dev->name, sizeof dev->name, name, args);
+    const int length = runtime::format_text(dev->name, sizeof dev->name, name, args);
     va_end(args);
     return length < static_cast<int>(sizeof dev->name) ? 0
                                                        : complain(EINVAL, "the name of a device is too long");

@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "hal/core/detail/capi.hh"
-#include "rtapi/format.hh"
+#include "runtime/format.hh"
 
 namespace mw::hal::detail {
 namespace {
@@ -19,7 +19,7 @@ struct FormattedName {
     bool isGood;
 
     FormattedName(const char *format, std::va_list args) {
-        const int length = rtapi::format_text(text, sizeof text, format, args);
+        const int length = runtime::format_text(text, sizeof text, format, args);
         isGood = length > 0 && length <= static_cast<int>(NAME_LENGTH);
         if (!isGood) {
             complain(EINVAL, fmt::format("HAL name '{}...' has {} characters, 1 to {} are allowed", text,

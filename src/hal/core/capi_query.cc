@@ -8,7 +8,7 @@
 #include <string>
 
 #include "hal/core/detail/capi.hh"
-#include "rtapi/log.hh"
+#include "runtime/log.hh"
 
 using namespace mw;
 using namespace mw::hal;

@@ -5,15 +5,15 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "hal/api/millwright_ext.h"
-#include "hal/api/rtapi_string.h"
 #include "hal/core/detail/capi.hh"
 #include "hal/core/loader.hh"
-#include "rtapi/format.hh"
+#include "hal/include/millwright_ext.h"
+#include "hal/include/rtapi_string.h"
+#include "runtime/format.hh"
 
 using namespace mw::hal;
 using namespace mw::hal::detail;
-using mw::rtapi::LogLevel;
+using mw::runtime::LogLevel;
 
 namespace {
 
@@ -65,13 +65,13 @@ int rtapi_is_kernelspace(void) {
 }
 
 int rtapi_vsnprintf(char *buf, unsigned long size, const char *fmt, va_list ap) {
-    return mw::rtapi::format_text(buf, size, fmt, ap);
+    return mw::runtime::format_text(buf, size, fmt, ap);
 }
 
 int rtapi_snprintf(char *buf, unsigned long size, const char *fmt, ...) {
     va_list args;
     va_start(args, fmt);
-    const int length = mw::rtapi::format_text(buf, size, fmt, args);
+    const int length = mw::runtime::format_text(buf, size, fmt, args);
     va_end(args);
     return length;
 }
@@ -258,10 +258,10 @@ int mw_ext_planner_new(const char *name, long long period_ns, void (*function)(v
         runner->hal = &hal;
         runner->function = function;
         runner->argument = arg;
-        mw::rtapi::PeriodicSpec spec;
+        mw::runtime::PeriodicSpec spec;
         spec.name = name;
         spec.period_ns = period_ns;
-        spec.order = mw::rtapi::Order::PLANNER;
+        spec.order = mw::runtime::Order::PLANNER;
         spec.function = &run_planner;
         spec.argument = runner.get();
         const auto periodic = hal.scheduler()->add(spec);

@@ -15,8 +15,8 @@
 #include <mutex>
 
 #include "hal/core/detail/capi.hh"
-#include "rtapi/alternate_stack.hh"
-#include "rtapi/scheduler.hh"
+#include "runtime/alternate_stack.hh"
+#include "runtime/scheduler.hh"
 
 using namespace mw;
 using namespace mw::hal;
@@ -107,7 +107,7 @@ void *run_task(void *argument) {
     auto *task = static_cast<Task *>(argument);
     own_task() = task;
     const UseInstance use(task->hal);
-    const rtapi::AlternateStack for_crashes;
+    const runtime::AlternateStack for_crashes;
     context().doing = "a task of a module (rtapi_task_start)";
     task->code(task->argument);
     return nullptr;

@@ -12,7 +12,7 @@
 #include <string_view>
 
 #include "hal/core/detail/impl.hh"
-#include "rtapi/alternate_stack.hh"
+#include "runtime/alternate_stack.hh"
 
 namespace mw::hal {
 
@@ -128,7 +128,7 @@ void Hal::Impl::note_end(const char *text) noexcept {
 }
 
 void report_crashes(const std::string &program, const std::vector<std::string> &leftovers) {
-    static const rtapi::AlternateStack stack_of_this_thread;
+    static const runtime::AlternateStack stack_of_this_thread;
     copy(prepared.program, program);
     for (std::size_t i = 0; i < std::min(leftovers.size(), MOST_LEFTOVERS); ++i) {
         copy(prepared.leftovers[i], leftovers[i]);

@@ -117,8 +117,8 @@ Result<std::unique_ptr<Hal>> Hal::create(const HalOptions &options) {
         return refuse(EINVAL, "a HAL instance needs a scheduler");
     }
     auto memory = options.isShared
-                      ? rtapi::SharedMemory::create(segment_name(options.name), FIRST_SIZE, RESERVE, LAYOUT)
-                      : rtapi::SharedMemory::create_private(FIRST_SIZE, RESERVE, LAYOUT);
+                      ? runtime::SharedMemory::create(segment_name(options.name), FIRST_SIZE, RESERVE, LAYOUT)
+                      : runtime::SharedMemory::create_private(FIRST_SIZE, RESERVE, LAYOUT);
     if (!memory) {
         errno = ENOMEM;
         return std::unexpected(memory.error());
@@ -130,7 +130,7 @@ Result<std::unique_ptr<Hal>> Hal::create(const HalOptions &options) {
     impl->scheduler = options.scheduler;
     impl->log = options.log;
     if (impl->log == nullptr) {
-        impl->own_log = std::make_unique<rtapi::Log>();
+        impl->own_log = std::make_unique<runtime::Log>();
         impl->log = impl->own_log.get();
     }
     impl->segment = Segment(std::move(*memory));
@@ -143,19 +143,19 @@ Result<std::unique_ptr<Hal>> Hal::attach(std::string_view instance) {
     if (auto checked = check_instance(instance); !checked) {
         return std::unexpected(checked.error());
     }
-    auto memory = rtapi::SharedMemory::attach(segment_name(instance), LAYOUT);
+    auto memory = runtime::SharedMemory::attach(segment_name(instance), LAYOUT);
     if (!memory) {
         return refuse(ENOENT, fmt::format("HAL instance '{}': {}", instance, memory.error().message),
                       memory.error().hint.empty() ? "start it with halrun or realtime start"
                                                   : memory.error().hint);
     }
-    if (!rtapi::isAlive(memory->owner())) {
+    if (!runtime::isAlive(memory->owner())) {
         return refuse(ENOENT, fmt::format("HAL instance '{}': its realtime process is gone", instance));
     }
     auto impl = std::make_unique<Impl>();
     impl->name = instance;
     impl->isShared = true;
-    impl->own_log = std::make_unique<rtapi::Log>();
+    impl->own_log = std::make_unique<runtime::Log>();
     impl->log = impl->own_log.get();
     impl->segment = Segment(std::move(*memory));
     return std::unique_ptr<Hal>(new Hal(std::move(impl)));
@@ -188,13 +188,13 @@ std::optional<std::string> Hal::host_end() const {
     if (end.state.load(std::memory_order_acquire) == EndRecord::WHOLE) {
         return end.text.data();
     }
-    const bool isGone = impl_->isShared && !rtapi::isAlive(impl_->segment.memory().owner());
+    const bool isGone = impl_->isShared && !runtime::isAlive(impl_->segment.memory().owner());
     return isGone ? std::optional<std::string>("it was killed, or ended without a word") : std::nullopt;
 }
-rtapi::Log &Hal::log() noexcept {
+runtime::Log &Hal::log() noexcept {
     return *impl_->log;
 }
-rtapi::Scheduler *Hal::scheduler() noexcept {
+runtime::Scheduler *Hal::scheduler() noexcept {
     return impl_->scheduler;
 }
 
@@ -270,7 +270,7 @@ Result<int> Hal::Impl::add_comp(std::string_view name_wanted, CompType type) {
     comp->id = segment.header().next_comp_id;
     segment.header().next_comp_id += 3;
     comp->type = type;
-    comp->process = rtapi::this_process();
+    comp->process = runtime::this_process();
     comp->base = segment.base();
     segment.insert(Kind::COMP, *comp);
     // Other processes and threads do not write beside what this one does.

@@ -14,8 +14,8 @@
 
 #include "base/result.hh"
 #include "hal/core/value.hh"
-#include "rtapi/log.hh"
-#include "rtapi/scheduler.hh"
+#include "runtime/log.hh"
+#include "runtime/scheduler.hh"
 
 namespace mw::hal {
 
@@ -124,8 +124,8 @@ struct HalStatistics {
 struct HalOptions {
     std::string name = "default";  ///< of the instance
     bool isShared = false;         ///< in shared memory for other processes, or private to this process
-    rtapi::Scheduler *scheduler = nullptr;  ///< runs the threads; must outlive the instance
-    rtapi::Log *log = nullptr;  ///< must outlive the instance; a log of its own to stderr when null
+    runtime::Scheduler *scheduler = nullptr;  ///< runs the threads; must outlive the instance
+    runtime::Log *log = nullptr;  ///< must outlive the instance; a log of its own to stderr when null
 };
 
 class Hal {
@@ -150,9 +150,9 @@ class Hal {
     void set_realtime_missing(std::string_view why);
     /// How the realtime host came to its end, or crashes just now; nothing while it is well.
     std::optional<std::string> host_end() const;
-    rtapi::Log &log() noexcept;
+    runtime::Log &log() noexcept;
     /// The scheduler of the host; null in an attached process.
-    rtapi::Scheduler *scheduler() noexcept;
+    runtime::Scheduler *scheduler() noexcept;
     /// rtapi_get_time: of the scheduler in the host, of the same clock elsewhere. [any thread, realtime-safe]
     std::int64_t now_ns() const noexcept;
 

@@ -46,11 +46,11 @@ std::vector<DeathInfo> Hal::deaths() const {
 std::vector<std::string> Hal::reap_dead_components() {
     Guard guard(*impl_);
     std::vector<std::string> names;
-    const rtapi::ProcessId self = rtapi::this_process();
+    const runtime::ProcessId self = runtime::this_process();
     const std::int32_t spared_pid = impl_->segment.header().spared_pid;
     impl_->segment.each<CompRecord>(Kind::COMP, [&](CompRecord &comp) {
         const bool isSpared = comp.process == self || comp.process.pid == spared_pid;
-        if (!isSpared && !rtapi::isAlive(comp.process)) {
+        if (!isSpared && !runtime::isAlive(comp.process)) {
             names.emplace_back(comp.name_view());
             impl_->remove_comp(comp, true);
         }

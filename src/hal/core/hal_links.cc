@@ -4,8 +4,8 @@
 #include <cerrno>
 #include <cstring>
 
-#include "hal/api/hal.h"
 #include "hal/core/detail/impl.hh"
+#include "hal/include/hal.h"
 
 namespace mw::hal {
 

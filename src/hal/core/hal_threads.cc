@@ -152,7 +152,7 @@ void Hal::Impl::wait_for_cycle(const ThreadRecord &thread) const noexcept {
     constexpr int TRIES = 10000;
     constexpr int LOOK_EVERY = 20;
     for (int i = 0; i < TRIES && thread.cycle.load(std::memory_order_seq_cst) == cycle; ++i) {
-        if (i % LOOK_EVERY == 0 && isShared && !rtapi::isAlive(segment.memory().owner())) {
+        if (i % LOOK_EVERY == 0 && isShared && !runtime::isAlive(segment.memory().owner())) {
             return;
         }
         const timespec nap{0, 100'000};
@@ -372,10 +372,10 @@ Result<> Hal::new_thread(std::string_view name, std::int64_t period_ns, bool /*u
     auto runner = std::make_unique<ThreadRunner>();
     runner->hal = impl_.get();
     runner->record = *record;
-    rtapi::PeriodicSpec spec;
+    runtime::PeriodicSpec spec;
     spec.name = name;
     spec.period_ns = period_ns;
-    spec.order = rtapi::Order::THREAD;
+    spec.order = runtime::Order::THREAD;
     spec.function = &run_entry;
     spec.argument = runner.get();
     auto periodic = impl_->scheduler->add(spec);
@@ -443,7 +443,7 @@ Result<> Hal::stop_threads() {
 
 void Hal::Impl::publish_figures() const {
     for (const auto &runner : runners) {
-        const rtapi::PeriodicStats stats = scheduler->stats(runner->periodic);
+        const runtime::PeriodicStats stats = scheduler->stats(runner->periodic);
         runner->record->overruns.store(stats.overruns);
         runner->record->max_latency_ns.store(stats.max_latency_ns);
     }

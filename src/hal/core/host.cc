@@ -37,7 +37,7 @@ Result<std::vector<std::string>> LocalHost::modules() {
     return loader_.modules();
 }
 
-Result<> LocalHost::set_log_level(rtapi::LogLevel level) {
+Result<> LocalHost::set_log_level(runtime::LogLevel level) {
     hal_->log().set_level(level);
     return {};
 }

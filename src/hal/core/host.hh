@@ -28,7 +28,7 @@ class Host {
     /// Loaded modules, newest last.
     virtual Result<std::vector<std::string>> modules() = 0;
     /// What the host's log lets through.
-    virtual Result<> set_log_level(rtapi::LogLevel level) = 0;
+    virtual Result<> set_log_level(runtime::LogLevel level) = 0;
     std::int64_t now_ns() noexcept { return hal().now_ns(); }
 };
 
@@ -47,7 +47,7 @@ class LocalHost final : public Host {
     Result<> unload_realtime(const std::string &name) override;
     Result<bool> isModuleLoaded(const std::string &name) override;
     Result<std::vector<std::string>> modules() override;
-    Result<> set_log_level(rtapi::LogLevel level) override;
+    Result<> set_log_level(runtime::LogLevel level) override;
 
   private:
     LocalHost(std::unique_ptr<Hal> hal, std::vector<std::string> folders);

@@ -20,9 +20,9 @@
 
 #include "base/own_place.hh"
 #include "base/text.hh"
-#include "hal/api/rtapi.h"
+#include "hal/core/command_hints.hh"
 #include "hal/core/detail/impl.hh"
-#include "hal/core/instead.hh"
+#include "hal/include/rtapi.h"
 
 namespace mw::hal {
 
@@ -68,19 +68,19 @@ std::vector<std::string> modules_in(const std::vector<std::string> &folders) {
 
 /// Errors that a module logs while it is loaded are repeated in the failure.
 struct LogTap {
-    rtapi::Log &log;
-    rtapi::Log::Sink sink = &LogTap::receive;
+    runtime::Log &log;
+    runtime::Log::Sink sink = &LogTap::receive;
     void *context = this;
     std::string last_error;
 
-    explicit LogTap(rtapi::Log &of) : log(of) { log.swap_sink(sink, context); }
+    explicit LogTap(runtime::Log &of) : log(of) { log.swap_sink(sink, context); }
     ~LogTap() { log.swap_sink(sink, context); }
     LogTap(const LogTap &) = delete;
     LogTap &operator=(const LogTap &) = delete;
 
-    static void receive(void *self, rtapi::LogLevel level, const char *text) {
+    static void receive(void *self, runtime::LogLevel level, const char *text) {
         auto *tap = static_cast<LogTap *>(self);
-        if (level == rtapi::LogLevel::ERR) {
+        if (level == runtime::LogLevel::ERR) {
             tap->last_error = text;
         }
         tap->sink(tap->context, level, text);
@@ -354,7 +354,7 @@ Result<> Loader::load(const std::string &name, const std::vector<std::string> &a
         for (const std::string &folder : folders_) {
             places += (places.empty() ? "" : ", ") + folder;
         }
-        const std::string instead = instead_of(name);
+        const std::string instead = hint_for_absent(name);
         if (!instead.empty()) {
             return refuse(ENOENT, fmt::format("there is no module '{}'", name), instead);
         }

@@ -17,7 +17,7 @@
 
 #include "base/own_place.hh"
 #include "hal/host/message.hh"
-#include "rtapi/process.hh"
+#include "runtime/process.hh"
 
 namespace mw::hal {
 namespace {
@@ -162,7 +162,7 @@ Result<std::unique_ptr<HostClient>> HostClient::start(const std::string &instanc
     }
     int messages = -1;
     if (messages_to == MessagesTo::FILE) {
-        const auto folder = rtapi::runtime_folder();
+        const auto folder = runtime::runtime_folder();
         if (folder) {
             messages = ::open((*folder + '/' + instance + ".log").c_str(),
                               O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0600);
@@ -262,7 +262,7 @@ Result<bool> HostClient::isModuleLoaded(const std::string &name) {
     return false;
 }
 
-Result<> HostClient::set_log_level(rtapi::LogLevel level) {
+Result<> HostClient::set_log_level(runtime::LogLevel level) {
     impl_->hal->log().set_level(level);
     const auto answer = ask({"debug", std::to_string(static_cast<int>(level))});
     return answer ? Result<>{} : std::unexpected(answer.error());

@@ -37,7 +37,7 @@ class HostClient final : public Host {
     Result<> unload_realtime(const std::string &name) override;
     Result<bool> isModuleLoaded(const std::string &name) override;
     Result<std::vector<std::string>> modules() override;
-    Result<> set_log_level(rtapi::LogLevel level) override;
+    Result<> set_log_level(runtime::LogLevel level) override;
 
     /// From now on the realtime process brakes, stops all and ends when this process does (see HostServer).
     Result<> control();

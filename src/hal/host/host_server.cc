@@ -42,7 +42,7 @@ struct Client {
 
 /// A process with components, and its pidfd.
 struct Program {
-    rtapi::ProcessId process;
+    runtime::ProcessId process;
     int fd = -1;
 };
 
@@ -71,8 +71,8 @@ struct HostServer::Impl {
     std::int64_t looked_ns = 0;  ///< when programs were looked for
     std::vector<Client> clients;
     std::vector<Program> programs;
-    std::unique_ptr<rtapi::Log> log;
-    std::unique_ptr<rtapi::RealtimeScheduler> scheduler;
+    std::unique_ptr<runtime::Log> log;
+    std::unique_ptr<runtime::RealtimeScheduler> scheduler;
     std::unique_ptr<LocalHost> host;
 
     Result<> open(const HostServerOptions &options);
@@ -146,8 +146,8 @@ Result<> HostServer::Impl::open(const HostServerOptions &options) {
     ::sigaddset(&mask, SIGINT);
     ::pthread_sigmask(SIG_BLOCK, &mask, nullptr);
     signals = ::signalfd(-1, &mask, SFD_CLOEXEC | SFD_NONBLOCK);
-    log = std::make_unique<rtapi::Log>(rtapi::Log::Mode::DRAINED, options.sink, options.sink_context);
-    scheduler = std::make_unique<rtapi::RealtimeScheduler>(*log, options.realtime);
+    log = std::make_unique<runtime::Log>(runtime::Log::Mode::DRAINED, options.sink, options.sink_context);
+    scheduler = std::make_unique<runtime::RealtimeScheduler>(*log, options.realtime);
     HalOptions hal_options;
     hal_options.name = instance;
     hal_options.isShared = true;
@@ -274,8 +274,8 @@ Message HostServer::Impl::answer(const Client &client, const Message &request) {
         return take_control(client);
     }
     if (what == "debug") {
-        const auto level = static_cast<rtapi::LogLevel>(std::atoi(name.c_str()));
-        return answer_of(host->set_log_level(std::min(level, rtapi::LogLevel::ALL)));
+        const auto level = static_cast<runtime::LogLevel>(std::atoi(name.c_str()));
+        return answer_of(host->set_log_level(std::min(level, runtime::LogLevel::ALL)));
     }
     if (what == "end") {
         const bool isByController = client.fd == controller_socket;
@@ -297,8 +297,8 @@ void HostServer::Impl::on_controller_gone() {
 
 /// Opens a pidfd for every process that has components, and closes those of the others.
 void HostServer::Impl::look_for_programs() {
-    std::vector<rtapi::ProcessId> wanted;
-    const rtapi::ProcessId self = rtapi::this_process();
+    std::vector<runtime::ProcessId> wanted;
+    const runtime::ProcessId self = runtime::this_process();
     {
         detail::Guard guard(host->hal().impl());
         host->hal().impl().segment.each<detail::CompRecord>(
@@ -316,7 +316,7 @@ void HostServer::Impl::look_for_programs() {
         }
         return isGone;
     });
-    for (const rtapi::ProcessId &process : wanted) {
+    for (const runtime::ProcessId &process : wanted) {
         const bool isKnown = std::any_of(programs.begin(), programs.end(),
                                          [&](const Program &program) { return program.process == process; });
         const int fd = isKnown ? -1 : static_cast<int>(::syscall(SYS_pidfd_open, process.pid, 0));
@@ -341,7 +341,7 @@ void HostServer::Impl::reap() {
         });
         if (isNew) {
             log->print(
-                rtapi::LogLevel::ERR,
+                runtime::LogLevel::ERR,
                 "component '%s' died: its process %d ended without leaving HAL; its outputs have their safe "
                 "values",
                 death.name.c_str(), death.pid);

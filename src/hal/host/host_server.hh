@@ -6,15 +6,15 @@
 #include <string>
 
 #include "base/result.hh"
-#include "rtapi/realtime_scheduler.hh"
+#include "runtime/realtime_scheduler.hh"
 
 namespace mw::hal {
 
 struct HostServerOptions {
     std::string instance;
-    rtapi::RealtimeOptions realtime;
+    runtime::RealtimeOptions realtime;
     /// Where messages of modules go; standard error when null.
-    rtapi::Log::Sink sink = nullptr;
+    runtime::Log::Sink sink = nullptr;
     void *sink_context = nullptr;
     /// A pidfd of the process that controls this one from the start on; -1: none yet.
     int controller_fd = -1;

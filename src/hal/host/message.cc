@@ -11,8 +11,8 @@
 #include <cstring>
 
 #include "hal/core/detail/impl.hh"
-#include "rtapi/process.hh"
-#include "rtapi/shared_memory.hh"
+#include "runtime/process.hh"
+#include "runtime/shared_memory.hh"
 
 namespace mw::hal {
 namespace {
@@ -107,7 +107,7 @@ Result<Message> receive(int fd) {
 }
 
 Result<std::string> socket_path(const std::string &instance) {
-    auto folder = rtapi::runtime_folder();
+    auto folder = runtime::runtime_folder();
     if (!folder) {
         return folder;
     }
@@ -115,7 +115,7 @@ Result<std::string> socket_path(const std::string &instance) {
 }
 
 Result<std::string> lock_path(const std::string &instance) {
-    auto folder = rtapi::runtime_folder();
+    auto folder = runtime::runtime_folder();
     if (!folder) {
         return folder;
     }
@@ -194,7 +194,7 @@ void remove_leftovers(const std::string &instance) {
     if (const auto socket = socket_path(instance)) {
         ::unlink(socket->c_str());
     }
-    rtapi::SharedMemory::remove_stale(detail::segment_name(instance));
+    runtime::SharedMemory::remove_stale(detail::segment_name(instance));
     drop_lock(instance, *lock);
 }
 

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// inifile.h over config::IniFile.
+// inifile.h over ini::IniFile.
 #include <cerrno>
 #include <cstring>
 #include <limits>
 #include <string>
 
+#include "base/ini/ini_file.hh"
+#include "base/ini/ini_value.hh"
 #include "base/text.hh"
-#include "config/ini_file.hh"
-#include "config/ini_value.hh"
-#include "hal/api/inifile.h"
+#include "hal/include/inifile.h"
 
 namespace {
 
 /// The value of the key; null when there is none.
-const std::string *find(const mw::config::IniFile &file, const char *tag, const char *section) {
+const std::string *find(const mw::ini::IniFile &file, const char *tag, const char *section) {
     thread_local std::string value;
-    for (const mw::config::IniEntry &entry : file.entries()) {
+    for (const mw::ini::IniEntry &entry : file.entries()) {
         if (entry.key == tag && (section == nullptr || entry.section == section)) {
             value = entry.value;
             return &value;
@@ -34,16 +34,16 @@ const std::string *find(FILE *stream, const char *tag, const char *section) {
     for (std::size_t got = 0; (got = std::fread(block, 1, sizeof block, stream)) > 0;) {
         text.append(block, got);
     }
-    mw::diag::Sink ignored;  // malformed lines are those of the one who loads the configuration
-    return find(mw::config::IniFile::parse(text, "", ignored), tag, section);
+    mw::diagnostics::Sink ignored;  // malformed lines are those of the one who loads the configuration
+    return find(mw::ini::IniFile::parse(text, "", ignored), tag, section);
 }
 
 const std::string *find(const char *name, const char *tag, const char *section) {
     if (name == nullptr || tag == nullptr) {
         return nullptr;
     }
-    mw::diag::Sink ignored;
-    const auto file = mw::config::IniFile::load(name, ignored);
+    mw::diagnostics::Sink ignored;
+    const auto file = mw::ini::IniFile::load(name, ignored);
     return file ? find(*file, tag, section) : nullptr;
 }
 
@@ -111,7 +111,7 @@ int iniFindDouble(FILE *file, const char *tag, const char *section, double *resu
 
 int iniFindBool(FILE *file, const char *tag, const char *section, bool *result) {
     const std::string *value = find(file, tag, section);
-    return value == nullptr ? -ENOENT : hand_over(mw::config::ini_bool(*value), result);
+    return value == nullptr ? -ENOENT : hand_over(mw::ini::ini_bool(*value), result);
 }
 
 int iniFindString(FILE *file, const char *tag, const char *section, char *dest, size_t n) {
@@ -143,7 +143,7 @@ int iniFindDoubleIn(const char *file, const char *tag, const char *section, doub
 
 int iniFindBoolIn(const char *file, const char *tag, const char *section, bool *result) {
     const std::string *value = find(file, tag, section);
-    return value == nullptr ? -ENOENT : hand_over(mw::config::ini_bool(*value), result);
+    return value == nullptr ? -ENOENT : hand_over(mw::ini::ini_bool(*value), result);
 }
 
 int iniFindStringIn(const char *file, const char *tag, const char *section, char *dest, size_t n) {

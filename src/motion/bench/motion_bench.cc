@@ -4,7 +4,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "testing/motion_rig.hh"
+#include "tests/support/motion_rig.hh"
 
 namespace mw::motion {
 namespace {
@@ -13,7 +13,7 @@ namespace {
 void BM_servo_cycle(benchmark::State &state) {
     testing::MotionRig rig;
     rig.ready();
-    geom::Pose end;
+    geometry::Pose end;
     end[0] = 900;
     end[1] = 500;
     Outputs &out = *rig.out;
@@ -51,7 +51,7 @@ void BM_dense_program(benchmark::State &state) {
             rig.answers.clear();
             while (sent < blocks && rig.channels->path.size() < 2000) {
                 ++sent;
-                geom::Pose p;
+                geometry::Pose p;
                 p[0] = 0.05 * sent;
                 p[2] = 0.5 * std::sin(0.02 * sent);
                 rig.line(p, 250, PathMode::BLEND, 0.01);

@@ -30,7 +30,7 @@ int sequence_word(double sequence) {
     return sequence >= NONE ? TOLD : static_cast<int>(sequence);
 }
 
-std::string words_of(const geom::Pose &p, const char *before_u = ", ") {
+std::string words_of(const geometry::Pose &p, const char *before_u = ", ") {
     return fmt::format(
         "x={:.6g}, y={:.6g}, z={:.6g}, a={:.6g}, b={:.6g}, c={:.6g}{}u={:.6g}, v={:.6g}, w={:.6g}", p[0],
         p[1], p[2], p[3], p[4], p[5], before_u, p[6], p[7], p[8]);
@@ -83,17 +83,17 @@ std::string switch_line(const SetSwitch &set) {
 }
 
 /// The time that a way needs at limits of its axes.
-double time_over(const geom::Pose &way, const std::array<double, geom::AXIS_COUNT> &limits) {
+double time_over(const geometry::Pose &way, const std::array<double, geometry::AXIS_COUNT> &limits) {
     double longest = 0;
-    for (int axis = 0; axis < geom::AXIS_COUNT; ++axis) {
+    for (int axis = 0; axis < geometry::AXIS_COUNT; ++axis) {
         longest = std::max(longest, std::fabs(way[axis]) / limits[static_cast<std::size_t>(axis)]);
     }
     return longest;
 }
 
 /// Over X Y Z if they move, else over U V W, else over A B C.
-double feed_length(const geom::Pose &way) {
-    for (const int first : {geom::AXIS_X, geom::AXIS_U, geom::AXIS_A}) {
+double feed_length(const geometry::Pose &way) {
+    for (const int first : {geometry::AXIS_X, geometry::AXIS_U, geometry::AXIS_A}) {
         const double length = std::hypot(way[first], way[first + 1], way[first + 2]);
         if (length > 0) {
             return length;
@@ -277,14 +277,14 @@ Lines LogText::of(const Command &command) {
         command.body);
 }
 
-std::string LogText::move_words(const geom::Pose &end, const MoveTerms &terms, MotionType type) const {
-    std::array<double, geom::AXIS_COUNT> speeds{}, accelerations{};
-    for (int axis = 0; axis < geom::AXIS_COUNT; ++axis) {
+std::string LogText::move_words(const geometry::Pose &end, const MoveTerms &terms, MotionType type) const {
+    std::array<double, geometry::AXIS_COUNT> speeds{}, accelerations{};
+    for (int axis = 0; axis < geometry::AXIS_COUNT; ++axis) {
         const auto i = static_cast<std::size_t>(axis);
         speeds[i] = get(Parameter::AXIS_MAX_VELOCITY, axis);
         accelerations[i] = get(Parameter::AXIS_MAX_ACCELERATION, axis);
     }
-    const geom::Pose way = end - position_;
+    const geometry::Pose way = end - position_;
     const double length = feed_length(way);
     const double time = time_over(way, speeds), steep = time_over(way, accelerations);
     const double fastest = time > 0 ? length / time : finite(get(Parameter::TRAJ_MAX_VELOCITY));

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "base/limits.hh"
-#include "motion/api/command.hh"
-#include "motion/api/parameters.hh"
-#include "motion/api/path_command.hh"
+#include "motion/interface/command.hh"
+#include "motion/interface/parameters.hh"
+#include "motion/interface/path_command.hh"
 
 namespace mw::motion {
 
@@ -23,7 +23,7 @@ class LogText {
     Lines of(const Command &command);
     Lines of(const PathCommand &command);
     /// Where the path ends.
-    const geom::Pose &position() const { return position_; }
+    const geometry::Pose &position() const { return position_; }
 
   private:
     struct Told;
@@ -32,7 +32,7 @@ class LogText {
     Lines axis_settings(int axis) const;
     void note(const SetParameter &setting);
     double get(Parameter parameter, int index = 0) const;
-    std::string move_words(const geom::Pose &end, const MoveTerms &terms, MotionType type) const;
+    std::string move_words(const geometry::Pose &end, const MoveTerms &terms, MotionType type) const;
     Lines with_synch(const MoveTerms &terms, std::string line);
 
     static constexpr std::size_t INDEXES = MAX_JOINTS > MAX_AXES ? MAX_JOINTS : MAX_AXES;
@@ -41,7 +41,7 @@ class LogText {
     int num_spindles_ = 1;
     unsigned axes_ = 0;      ///< that have settings
     double synch_feed_ = 0;  ///< of the last move [machine units per turn]
-    geom::Pose position_;
+    geometry::Pose position_;
 };
 
 }  // namespace mw::motion

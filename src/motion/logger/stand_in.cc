@@ -126,7 +126,7 @@ void StandIn::publish(std::int64_t time_ns) {
         JointStatus &joint = status_.joint[static_cast<std::size_t>(j)];
         joint.isActive = true;
         joint.isEnabled = status_.isEnabled;
-        joint.pos_cmd = joint.pos_fb = j < geom::AXIS_COUNT ? status_.carte_pos_cmd[j] : 0.0;
+        joint.pos_cmd = joint.pos_fb = j < geometry::AXIS_COUNT ? status_.carte_pos_cmd[j] : 0.0;
     }
     channels_.status.write(status_);
 }

@@ -6,7 +6,7 @@
 #include <functional>
 #include <string>
 
-#include "motion/api/channels.hh"
+#include "motion/interface/channels.hh"
 #include "motion/logger/log_text.hh"
 
 namespace mw::motion {

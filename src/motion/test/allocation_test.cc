@@ -2,14 +2,14 @@
 // What runs in the servo thread, and the planner below it, never touches the heap.
 #include <gtest/gtest.h>
 
-#include "kins/rotary_table.hh"
-#include "testing/allocation_guard.hh"
-#include "testing/motion_rig.hh"
+#include "kinematics/rotary_table.hh"
+#include "tests/support/allocation_guard.hh"
+#include "tests/support/motion_rig.hh"
 
 namespace mw::motion {
 namespace {
 
-TEST(Allocation, TablesOfScrewErrorsAreLoadedAndFollowedWithoutTheHeap_C11) {
+TEST(Allocation, TablesOfScrewErrorsAreLoadedAndFollowedWithoutTheHeap) {
     testing::MotionRig rig;
     std::uint64_t calls = 1;
     constexpr int COUNT = 600;
@@ -37,7 +37,7 @@ TEST(Allocation, ServoCyclesAndPlanningDoNotTouchTheHeap) {
     testing::MotionRig rig;
     rig.ready();
     for (int i = 1; i < 200; ++i) {
-        geom::Pose p;
+        geometry::Pose p;
         p[0] = i;
         p[1] = i % 3;
         rig.line(p, 80, PathMode::BLEND, 0.1);
@@ -104,7 +104,7 @@ TEST(Allocation, ThreadsDoNotTouchTheHeap) {
 }
 
 TEST(Allocation, AxisJogsOfATableDoNotTouchTheHeap) {
-    kins::RotaryTable table;
+    kinematics::RotaryTable table;
     testing::MotionRig rig(table, 5, 100, 1000);
     rig.ready(Mode::TELEOP);
     std::uint64_t calls = 1;

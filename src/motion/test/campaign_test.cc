@@ -9,9 +9,9 @@
 
 #include <gtest/gtest.h>
 
-#include "testing/campaign_seeds.hh"
-#include "testing/limit_checker.hh"
-#include "testing/motion_rig.hh"
+#include "tests/support/campaign_seeds.hh"
+#include "tests/support/limit_checker.hh"
+#include "tests/support/motion_rig.hh"
 
 namespace mw::motion {
 namespace {
@@ -24,7 +24,7 @@ constexpr int CALM_AFTER = 50000;
 class Campaign {
   public:
     Campaign(unsigned seed, bool isJerkLimited) : random_(seed), rig_("XYZABCUVW") {
-        for (int j = 0; j < geom::AXIS_COUNT; ++j) {
+        for (int j = 0; j < geometry::AXIS_COUNT; ++j) {
             const double v = std::pow(10.0, real(0.7, 2.5));
             const double a = std::pow(10.0, real(1.7, 4.0));
             rig_.set(Parameter::JOINT_MAX_VELOCITY, j, v);
@@ -69,15 +69,15 @@ class Campaign {
     void sample(testing::LimitChecker &checker) {
         rig_.isPlannerAlive = !chance(0.01);
         rig_.step();
-        double p[geom::AXIS_COUNT];
-        for (std::size_t j = 0; j < geom::AXIS_COUNT; ++j) {
+        double p[geometry::AXIS_COUNT];
+        for (std::size_t j = 0; j < geometry::AXIS_COUNT; ++j) {
             p[j] = rig_.out->joint[j].motor_pos_cmd;
         }
         checker.sample(p);
     }
 
-    PathBody next_move(geom::Pose &at, double size, int axes, const MoveTerms &terms) {
-        geom::Pose to = at;
+    PathBody next_move(geometry::Pose &at, double size, int axes, const MoveTerms &terms) {
+        geometry::Pose to = at;
         if (chance(0.3)) {
             Arc arc;
             const double radius = size * real(0.1, 2);
@@ -103,7 +103,7 @@ class Campaign {
     }
 
     void drive(testing::LimitChecker &checker, bool isLast) {
-        geom::Pose at = rig_.status().carte_pos_cmd;
+        geometry::Pose at = rig_.status().carte_pos_cmd;
         const double size = std::pow(10.0, real(-1.5, 1.2));
         const int axes = whole(1, 9);
         const int count = whole(5, 80);
@@ -157,7 +157,7 @@ class Campaign {
     /// The stop takes no longer than the machine's limits say, and afterwards nothing of the old epoch moves.
     void abort(testing::LimitChecker &checker) {
         rig_.send(Abort{rig_.epoch + 1});
-        geom::Pose far = rig_.status().carte_pos_cmd;
+        geometry::Pose far = rig_.status().carte_pos_cmd;
         far[0] += 1000;
         for (int i = 0; i < 5; ++i) {
             rig_.send_path(Line{far, {}});
@@ -166,7 +166,7 @@ class Campaign {
             sample(checker);
         }
         EXPECT_TRUE(rig_.status().isInPosition);
-        const geom::Pose stood = rig_.status().carte_pos_cmd;
+        const geometry::Pose stood = rig_.status().carte_pos_cmd;
         for (int n = 0; n < 100; ++n) {
             sample(checker);
         }
@@ -174,8 +174,8 @@ class Campaign {
         ++rig_.epoch;
     }
 
-    void expect_at(const geom::Pose &at) {
-        for (int j = 0; j < geom::AXIS_COUNT; ++j) {
+    void expect_at(const geometry::Pose &at) {
+        for (int j = 0; j < geometry::AXIS_COUNT; ++j) {
             EXPECT_EQ(rig_.out->joint[static_cast<std::size_t>(j)].motor_pos_cmd, at[j]) << "joint " << j;
         }
     }
@@ -198,7 +198,7 @@ TEST(MotionCampaign, RandomProgramsWithAbortsKeepTheLimits) {
     run_all(false);
 }
 
-TEST(MotionCampaign, RandomProgramsWithAbortsKeepJerkLimits_C13) {
+TEST(MotionCampaign, RandomProgramsWithAbortsKeepJerkLimits) {
     run_all(true);
 }
 
@@ -210,7 +210,7 @@ TEST(MotionCampaign, TheSameProgramTwiceGivesTheSameBits) {
         std::mt19937 random(7);
         std::uniform_real_distribution<double> unit(-5, 5);
         for (int i = 0; i < 50; ++i) {
-            geom::Pose p;
+            geometry::Pose p;
             p[0] = unit(random);
             p[1] = unit(random);
             rig.line(p, 60, PathMode::BLEND, 0.05);

@@ -2,7 +2,7 @@
 // A controller that is saved in the middle of what it does goes on as if nothing had been.
 #include <gtest/gtest.h>
 
-#include "testing/motion_rig.hh"
+#include "tests/support/motion_rig.hh"
 
 namespace mw::motion {
 namespace {
@@ -64,18 +64,18 @@ void judge(Mode mode, double jerk, const std::function<void(MotionRig &)> &begin
     ASSERT_FALSE(rig.status().isInPosition) << "in the middle of it";
     rig.isPlannerAlive = false;  // what is committed is driven to its end
     Clone clone(rig);
-    const geom::Pose here = rig.status().carte_pos_cmd;
+    const geometry::Pose here = rig.status().carte_pos_cmd;
     for (int n = 0; n < 3000; ++n) {
         rig.step();
         clone.step(rig.in.time_ns);
         ASSERT_NO_FATAL_FAILURE(expect_same(*rig.out, *clone.out)) << "cycle " << n;
     }
-    EXPECT_GT(geom::norm(rig.status().carte_pos_cmd - here), 0.5) << "it did go on";
+    EXPECT_GT(geometry::norm(rig.status().carte_pos_cmd - here), 0.5) << "it did go on";
 }
 
 void path(MotionRig &rig) {
     for (int i = 1; i <= 10; ++i) {
-        geom::Pose p;
+        geometry::Pose p;
         p[0] = 6 * i;
         p[1] = i % 2 == 0 ? 5 : 0;
         rig.line(p, 80, PathMode::BLEND, 0.1);
@@ -84,23 +84,23 @@ void path(MotionRig &rig) {
     rig.send_path(Flush{});
 }
 
-TEST(Clone, GivesTheSameSamplesOnAPath_C2) {
+TEST(Clone, GivesTheSameSamplesOnAPath) {
     judge(Mode::COORD, 0, path);
 }
 
-TEST(Clone, GivesTheSameSamplesOnAPathWithJerkLimits_C2) {
+TEST(Clone, GivesTheSameSamplesOnAPathWithJerkLimits) {
     judge(Mode::COORD, 20000, path);
 }
 
-TEST(Clone, GivesTheSameSamplesInJogs_C2) {
+TEST(Clone, GivesTheSameSamplesInJogs) {
     judge(Mode::TELEOP, 5000, [](MotionRig &rig) {
-        rig.send(JogContinuous{{false, geom::AXIS_X}, 40});
-        rig.send(JogIncremental{{false, geom::AXIS_Y}, 10, 20});
+        rig.send(JogContinuous{{false, geometry::AXIS_X}, 40});
+        rig.send(JogIncremental{{false, geometry::AXIS_Y}, 10, 20});
     });
     judge(Mode::FREE, 0, [](MotionRig &rig) { rig.send(JogContinuous{{true, 1}, -30}); });
 }
 
-TEST(Clone, WhatItIsToldTheOtherDoesNotHear_C2) {
+TEST(Clone, WhatItIsToldTheOtherDoesNotHear) {
     MotionRig rig;
     rig.ready();
     path(rig);

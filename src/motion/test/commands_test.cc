@@ -10,8 +10,8 @@
 
 #include <gtest/gtest.h>
 
-#include "sim/spindle_plant.hh"
-#include "testing/motion_rig.hh"
+#include "components/plants/spindle_plant.hh"
+#include "tests/support/motion_rig.hh"
 
 namespace mw::motion {
 namespace commands_test {
@@ -89,8 +89,8 @@ bool isAtRest(Situation situation) {
            situation == Situation::COORD;
 }
 
-geom::Pose at(double x, double y = 0, double z = 0) {
-    geom::Pose p;
+geometry::Pose at(double x, double y = 0, double z = 0) {
+    geometry::Pose p;
     p[0] = x;
     p[1] = y;
     p[2] = z;
@@ -229,9 +229,9 @@ std::string result_of(const Case &c, Situation situation) {
     bring_to(rig, situation);
     const Status before = rig.status();
     const bool isPath = std::holds_alternative<PathBody>(c.body);
-    sim::SpindleTraits traits;
+    plants::SpindleTraits traits;
     traits.ramp = 200;
-    sim::SpindlePlant spindle(traits);
+    plants::SpindlePlant spindle(traits);
     if (isPath && std::holds_alternative<RigidTap>(std::get<PathBody>(c.body))) {
         rig.before_step = [&](MotionRig &r) {
             spindle.run(r.out->spindle[0].speed_rpm / 60, 0, MotionRig::T);
@@ -285,16 +285,16 @@ std::string page() {
     return text.str();
 }
 
-TEST(Commands, AreTakenOrRefusedAsThePageSays_C4_C5) {
+TEST(Commands, AreTakenOrRefusedAsThePageSays) {
     const std::string made = table();
     EXPECT_EQ(made.find("no answer"), std::string::npos);
     EXPECT_NE(page().find(made), std::string::npos) << "docs/motion/commands.md should have this:\n" << made;
 }
 
 /// Whatever else is right, a value that is no number is refused, and what moves goes on or stays.
-TEST(Commands, AValueThatIsNoNumberIsRefused_C5) {
+TEST(Commands, AValueThatIsNoNumberIsRefused) {
     const double nan = std::nan("");
-    const geom::Pose far = at(1, nan);
+    const geometry::Pose far = at(1, nan);
     const auto line = [](auto spoil) {
         Line move{at(1), {}};
         move.terms.feed = 20;
@@ -373,7 +373,7 @@ TEST(Commands, AValueThatIsNoNumberIsRefused_C5) {
 }
 
 /// One that is not finite is no number either, whatever a check of its sign says.
-TEST(Commands, APitchScaleThatIsNoNumberIsToldAsSuch_C5) {
+TEST(Commands, APitchScaleThatIsNoNumberIsToldAsSuch) {
     for (const double scale : {std::nan(""), std::numeric_limits<double>::infinity()}) {
         EXPECT_EQ(
             result_of({"", "", PathBody{RigidTap{at(PATH_END, 0, -2), scale, tapping()}}}, Situation::COORD),
@@ -383,7 +383,7 @@ TEST(Commands, APitchScaleThatIsNoNumberIsToldAsSuch_C5) {
 }
 
 /// The planner looks every few cycles only: by then the last move may be over and its path dropped.
-TEST(Commands, AMoveThatWasOverBeforeAStopIsDone_C4) {
+TEST(Commands, AMoveThatWasOverBeforeAStopIsDone) {
     for (const bool isOver : {true, false}) {
         MotionRig rig;
         rig.ready(Mode::COORD);
@@ -404,7 +404,7 @@ TEST(Commands, AMoveThatWasOverBeforeAStopIsDone_C4) {
 }
 
 /// Each alternative of the two channels has a line in the table and is described.
-TEST(Commands, EveryDeclarationIsOnThePage_C4) {
+TEST(Commands, EveryDeclarationIsOnThePage) {
     std::set<std::size_t> immediate, path;
     const std::string text = page();
     for (const Case &c : cases()) {

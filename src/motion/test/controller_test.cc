@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <gtest/gtest.h>
 
-#include "testing/limit_checker.hh"
-#include "testing/motion_rig.hh"
+#include "tests/support/limit_checker.hh"
+#include "tests/support/motion_rig.hh"
 
 namespace mw::motion {
 namespace {
 
 using testing::MotionRig;
 
-geom::Pose at(double x, double y = 0, double z = 0) {
-    geom::Pose p;
+geometry::Pose at(double x, double y = 0, double z = 0) {
+    geometry::Pose p;
     p[0] = x;
     p[1] = y;
     p[2] = z;
     return p;
 }
 
-TEST(Controller, ALineGoesThroughPlannerAndControllerToTheMotors_C9) {
+TEST(Controller, ALineGoesThroughPlannerAndControllerToTheMotors) {
     MotionRig rig;
     rig.ready();
     ASSERT_TRUE(rig.status().isAllHomed);
@@ -34,7 +34,7 @@ TEST(Controller, ALineGoesThroughPlannerAndControllerToTheMotors_C9) {
     EXPECT_EQ(rig.status().last_path_id, flush);
 }
 
-TEST(Controller, EnableTakesTheCommandFromFeedback_C4) {
+TEST(Controller, EnableTakesTheCommandFromFeedback) {
     MotionRig rig;
     rig.in.joint[0].motor_pos_fb = 12.5;
     rig.step();
@@ -45,16 +45,16 @@ TEST(Controller, EnableTakesTheCommandFromFeedback_C4) {
 }
 
 TEST(Controller, AnAxisWhoseJointTheMachineDoesNotHaveIsNotJogged) {
-    kins::Trivial kinematics;
+    kinematics::Trivial kinematics;
     ASSERT_TRUE(kinematics.configure("XYZABCUVW"));
     MotionRig rig(kinematics, 3, 100, 1000);
     rig.ready(Mode::TELEOP);
-    const CommandId known = rig.send(JogIncremental{{false, geom::AXIS_Z}, 10, 1});
-    const CommandId none = rig.send(JogIncremental{{false, geom::AXIS_A}, 10, 1});
+    const CommandId known = rig.send(JogIncremental{{false, geometry::AXIS_Z}, 10, 1});
+    const CommandId none = rig.send(JogIncremental{{false, geometry::AXIS_A}, 10, 1});
     rig.step(500);
     EXPECT_TRUE(rig.isDone(known));
     EXPECT_EQ(rig.refusal(none), Reason::NO_SUCH_AXIS);
-    EXPECT_EQ(rig.status().carte_pos_cmd[geom::AXIS_A], 0);
+    EXPECT_EQ(rig.status().carte_pos_cmd[geometry::AXIS_A], 0);
 }
 
 TEST(Controller, EnableInputFalseDropsTheAmplifiersInThatCycle) {
@@ -75,7 +75,7 @@ TEST(Controller, EnableInputFalseDropsTheAmplifiersInThatCycle) {
     EXPECT_EQ(rig.refusal(enable), Reason::EXTERNAL_ENABLE_OFF);
 }
 
-TEST(Controller, AFeedbackThatIsNoNumberDropsTheAmplifiersInThatCycle_C13) {
+TEST(Controller, AFeedbackThatIsNoNumberDropsTheAmplifiersInThatCycle) {
     for (const double feedback : {std::nan(""), HUGE_VAL}) {
         MotionRig rig;
         rig.ready();
@@ -106,7 +106,7 @@ TEST(Controller, AFeedbackThatIsNoNumberDropsTheAmplifiersInThatCycle_C13) {
     }
 }
 
-TEST(Controller, AbortStopsOnThePathWithinLimitsAndMakesOldCommandsStale_C5) {
+TEST(Controller, AbortStopsOnThePathWithinLimitsAndMakesOldCommandsStale) {
     MotionRig rig;
     rig.ready();
     std::vector<CommandId> ids;
@@ -137,7 +137,7 @@ TEST(Controller, AbortStopsOnThePathWithinLimitsAndMakesOldCommandsStale_C5) {
     EXPECT_EQ(rig.out->joint[0].motor_pos_cmd, 1.0);
 }
 
-TEST(Controller, AnAbortStopsWithoutThePlannerToo_C5) {
+TEST(Controller, AnAbortStopsWithoutThePlannerToo) {
     for (const bool isJerkLimited : {false, true}) {
         MotionRig rig;
         for (int j = 0; j < 3; ++j) {
@@ -182,7 +182,7 @@ TEST(Controller, AnAbortStopsWithoutThePlannerToo_C5) {
     }
 }
 
-TEST(Controller, ModeChangesWhileMovingAreRefused_C5) {
+TEST(Controller, ModeChangesWhileMovingAreRefused) {
     MotionRig rig;
     rig.ready();
     rig.line(at(50));
@@ -232,7 +232,7 @@ TEST(Controller, StepStopsAtEachBlock) {
     }
 }
 
-TEST(Controller, MovesBeyondSoftLimitsAreRefusedBeforeTheyBegin_C13) {
+TEST(Controller, MovesBeyondSoftLimitsAreRefusedBeforeTheyBegin) {
     MotionRig rig;
     rig.set(Parameter::JOINT_MAX_LIMIT, 0, 20);
     rig.ready();
@@ -246,7 +246,7 @@ TEST(Controller, MovesBeyondSoftLimitsAreRefusedBeforeTheyBegin_C13) {
     EXPECT_EQ(rig.out->joint[0].motor_pos_cmd, 15.0);
 }
 
-TEST(Controller, ArcsAreCheckedOverTheirWholeExtent_C13) {
+TEST(Controller, ArcsAreCheckedOverTheirWholeExtent) {
     MotionRig rig;
     rig.set(Parameter::JOINT_MAX_LIMIT, 1, 9);
     rig.ready();
@@ -262,7 +262,7 @@ TEST(Controller, ArcsAreCheckedOverTheirWholeExtent_C13) {
     EXPECT_EQ(rig.out->joint[0].motor_pos_cmd, 0.0);
 }
 
-TEST(Controller, IncrementalJogsAddUpAndStopAtTheLimit_C8) {
+TEST(Controller, IncrementalJogsAddUpAndStopAtTheLimit) {
     MotionRig rig;
     rig.set(Parameter::JOINT_MAX_LIMIT, 0, 20);
     rig.ready(Mode::FREE);
@@ -279,7 +279,7 @@ TEST(Controller, IncrementalJogsAddUpAndStopAtTheLimit_C8) {
     EXPECT_EQ(rig.out->joint[0].motor_pos_cmd, 20.0);
 }
 
-TEST(Controller, EachOfThePinsAgainstJogsRefusesThem_C4_C9) {
+TEST(Controller, EachOfThePinsAgainstJogsRefusesThem) {
     for (bool Inputs::*pin : {&Inputs::isJogInhibited, &Inputs::isJogStopped, &Inputs::isJogStoppedNow}) {
         for (const bool isJoint : {true, false}) {
             MotionRig rig;
@@ -299,7 +299,7 @@ TEST(Controller, EachOfThePinsAgainstJogsRefusesThem_C4_C9) {
     }
 }
 
-TEST(Controller, OutputsWithoutAMoveComeOnAfterAMoveThatWasDropped_C4_C7) {
+TEST(Controller, OutputsWithoutAMoveComeOnAfterAMoveThatWasDropped) {
     MotionRig rig;
     rig.ready();
     rig.line(at(50));
@@ -315,7 +315,7 @@ TEST(Controller, OutputsWithoutAMoveComeOnAfterAMoveThatWasDropped_C4_C7) {
     EXPECT_TRUE(rig.status().isInPosition);
 }
 
-TEST(Controller, TeleopJogsAnAxisOfAGantry_C9) {
+TEST(Controller, TeleopJogsAnAxisOfAGantry) {
     MotionRig rig("XYYZ");
     rig.ready(Mode::TELEOP);
     ASSERT_EQ(rig.status().mode, Mode::TELEOP);
@@ -330,7 +330,7 @@ TEST(Controller, TeleopJogsAnAxisOfAGantry_C9) {
     EXPECT_EQ(rig.refusal(wrong), Reason::WRONG_MODE);
 }
 
-TEST(Controller, FollowingErrorDropsTheAmplifiers_C13) {
+TEST(Controller, FollowingErrorDropsTheAmplifiers) {
     MotionRig rig;
     rig.set(Parameter::JOINT_FERROR, 0, 0.5);
     rig.set(Parameter::JOINT_MIN_FERROR, 0, 0.1);
@@ -392,7 +392,7 @@ TEST(Controller, ProbeStopsWhereItTripsAndAnswersDone) {
     EXPECT_TRUE(rig.faults.empty());
 }
 
-TEST(Controller, AProbeThatTripsWhileItBrakesToItsEndHasTripped_C7) {
+TEST(Controller, AProbeThatTripsWhileItBrakesToItsEndHasTripped) {
     for (const bool isJerkLimited : {false, true}) {
         for (double before = 0.05; before < 8; before *= 1.3) {
             SCOPED_TRACE(before);
@@ -421,7 +421,7 @@ TEST(Controller, AProbeThatTripsWhileItBrakesToItsEndHasTripped_C7) {
     }
 }
 
-TEST(Controller, ProbeThatMustTripAndDoesNotIsAFault_C9) {
+TEST(Controller, ProbeThatMustTripAndDoesNotIsAFault) {
     for (const bool isAway : {false, true}) {
         MotionRig rig;
         rig.ready();
@@ -456,7 +456,7 @@ TEST(Controller, SynchedOutputsChangeWhereThePathPasses) {
     EXPECT_NEAR(x, 10.0, 0.01);
 }
 
-TEST(Controller, HardLimitStopsWithinLimitsThenDropsAmplifiersAndOverrideEndsWithTheNextJog_C6) {
+TEST(Controller, HardLimitStopsWithinLimitsThenDropsAmplifiersAndOverrideEndsWithTheNextJog) {
     MotionRig rig;
     rig.ready(Mode::FREE);
     rig.send(JogContinuous{{true, 0}, 50});

@@ -7,9 +7,9 @@
 
 #include <gtest/gtest.h>
 
-#include "kins/corexy.hh"
-#include "motion/api/texts.hh"
-#include "testing/motion_rig.hh"
+#include "kinematics/corexy.hh"
+#include "motion/interface/texts.hh"
+#include "tests/support/motion_rig.hh"
 
 namespace mw::motion {
 namespace {
@@ -50,7 +50,7 @@ struct ExtraRig {
     void check() const { EXPECT_TRUE(judge.isWithin()) << judge.report(); }
 };
 
-TEST(ExtraJoints, ThePinMovesAJointFromHomingOnAndNotBefore_C2_C8) {
+TEST(ExtraJoints, ThePinMovesAJointFromHomingOnAndNotBefore) {
     ExtraRig r;
     r.pin() = 5;
     r.rig.send(Enable{});
@@ -77,7 +77,7 @@ TEST(ExtraJoints, ThePinMovesAJointFromHomingOnAndNotBefore_C2_C8) {
     r.check();
 }
 
-TEST(ExtraJoints, APinThatJumpsDoesNotMakeTheMotorJump_C8_C13) {
+TEST(ExtraJoints, APinThatJumpsDoesNotMakeTheMotorJump) {
     for (unsigned seed = 1; seed <= 40; ++seed) {
         std::mt19937 random(seed);
         std::uniform_real_distribution<double> part(0, 1);
@@ -99,7 +99,7 @@ TEST(ExtraJoints, APinThatJumpsDoesNotMakeTheMotorJump_C8_C13) {
     }
 }
 
-TEST(ExtraJoints, JerkLimitsHoldWhereThereAreAny_C8_C13) {
+TEST(ExtraJoints, JerkLimitsHoldWhereThereAreAny) {
     ExtraRig r;
     r.judge = testing::LimitChecker({{50, 500, 10000}}, MotionRig::T, 1e-5);
     r.rig.set(Parameter::TRAJ_PLANNER_TYPE, 0, 1);
@@ -116,7 +116,7 @@ TEST(ExtraJoints, JerkLimitsHoldWhereThereAreAny_C8_C13) {
     r.check();
 }
 
-TEST(ExtraJoints, ItStopsAtItsSoftLimitWithoutOvershootAndThatIsToldOnce_C13) {
+TEST(ExtraJoints, ItStopsAtItsSoftLimitWithoutOvershootAndThatIsToldOnce) {
     ExtraRig r;
     r.rig.ready(Mode::FREE);
     for (int n = 0; n < 2000; ++n) {
@@ -134,7 +134,7 @@ TEST(ExtraJoints, ItStopsAtItsSoftLimitWithoutOvershootAndThatIsToldOnce_C13) {
     r.check();
 }
 
-TEST(ExtraJoints, APinThatAsksForTooMuchWhenItTakesOverIsTold_C13) {
+TEST(ExtraJoints, APinThatAsksForTooMuchWhenItTakesOverIsTold) {
     ExtraRig r;
     r.pin() = 30;
     r.rig.ready(Mode::FREE);
@@ -152,7 +152,7 @@ TEST(ExtraJoints, APinThatAsksForTooMuchWhenItTakesOverIsTold_C13) {
     r.check();
 }
 
-TEST(ExtraJoints, APinThatIsNoNumberIsAFaultNotAMotion_C13) {
+TEST(ExtraJoints, APinThatIsNoNumberIsAFaultNotAMotion) {
     for (const double nonsense :
          {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
         ExtraRig r;
@@ -171,7 +171,7 @@ TEST(ExtraJoints, APinThatIsNoNumberIsAFaultNotAMotion_C13) {
     }
 }
 
-TEST(ExtraJoints, AfterAnAbortNothingMovesUntilThePinHasSettledAndChanges_C8) {
+TEST(ExtraJoints, AfterAnAbortNothingMovesUntilThePinHasSettledAndChanges) {
     ExtraRig r;
     r.rig.ready(Mode::COORD);
     r.pin() = 10;
@@ -195,7 +195,7 @@ TEST(ExtraJoints, AfterAnAbortNothingMovesUntilThePinHasSettledAndChanges_C8) {
     r.check();
 }
 
-TEST(ExtraJoints, SwitchingOnMovesNothingUntilThePinChanges_C8) {
+TEST(ExtraJoints, SwitchingOnMovesNothingUntilThePinChanges) {
     ExtraRig r;
     r.rig.ready(Mode::FREE);
     r.pin() = 10;
@@ -217,7 +217,7 @@ TEST(ExtraJoints, SwitchingOnMovesNothingUntilThePinChanges_C8) {
     r.check();
 }
 
-TEST(ExtraJoints, PushedByHandWhileOffItStaysWhereItWasPushedTo_C8) {
+TEST(ExtraJoints, PushedByHandWhileOffItStaysWhereItWasPushedTo) {
     ExtraRig r;
     r.rig.ready(Mode::FREE);
     r.pin() = 10;
@@ -238,7 +238,7 @@ TEST(ExtraJoints, PushedByHandWhileOffItStaysWhereItWasPushedTo_C8) {
 }
 
 /// joint.N.vel-cmd and acc-cmd are those of what the motor is told.
-TEST(ExtraJoints, ItsCommandedAccelerationIsThatOfItsMotion_C3_C8) {
+TEST(ExtraJoints, ItsCommandedAccelerationIsThatOfItsMotion) {
     for (const Mode mode : {Mode::FREE, Mode::TELEOP}) {
         ExtraRig r;
         r.rig.ready(mode);
@@ -254,7 +254,7 @@ TEST(ExtraJoints, ItsCommandedAccelerationIsThatOfItsMotion_C3_C8) {
     }
 }
 
-TEST(ExtraJoints, EveryStopBrakesItWithinItsLimitsBeforeTheMachineGoesOff_C13) {
+TEST(ExtraJoints, EveryStopBrakesItWithinItsLimitsBeforeTheMachineGoesOff) {
     ExtraRig r;
     r.rig.ready(Mode::FREE);
     r.pin() = 15;
@@ -269,7 +269,7 @@ TEST(ExtraJoints, EveryStopBrakesItWithinItsLimitsBeforeTheMachineGoesOff_C13) {
     r.check();
 }
 
-TEST(ExtraJoints, AHomedOneIsNeitherJoggedNorUnhomedWhileTheMachineIsOn_C4_C10) {
+TEST(ExtraJoints, AHomedOneIsNeitherJoggedNorUnhomedWhileTheMachineIsOn) {
     ExtraRig r;
     r.rig.ready(Mode::FREE);
     const CommandId jog = r.rig.send(JogContinuous{{true, EXTRA}, 5});
@@ -297,7 +297,7 @@ TEST(ExtraJoints, AHomedOneIsNeitherJoggedNorUnhomedWhileTheMachineIsOn_C4_C10) 
     r.check();
 }
 
-TEST(ExtraJoints, HomingItAgainBrakesItFirst_C10) {
+TEST(ExtraJoints, HomingItAgainBrakesItFirst) {
     ExtraRig r;
     r.rig.set(Parameter::JOINT_HOME, EXTRA, 4);
     r.rig.ready(Mode::FREE);
@@ -314,7 +314,7 @@ TEST(ExtraJoints, HomingItAgainBrakesItFirst_C10) {
     r.check();
 }
 
-TEST(ExtraJoints, ProgramsAndJogsOfAxesKnowNothingOfIt_C9) {
+TEST(ExtraJoints, ProgramsAndJogsOfAxesKnowNothingOfIt) {
     ExtraRig r;
     r.rig.ready(Mode::COORD);
     r.pin() = 10;
@@ -334,7 +334,7 @@ TEST(ExtraJoints, ProgramsAndJogsOfAxesKnowNothingOfIt_C9) {
     EXPECT_EQ(r.rig.status().carte_pos_cmd[0], 5);
 }
 
-TEST(ExtraJoints, AfterHomingItsFeedbackIsNotWatched_C13) {
+TEST(ExtraJoints, AfterHomingItsFeedbackIsNotWatched) {
     ExtraRig r;
     r.rig.set(Parameter::JOINT_MIN_FERROR, EXTRA, 0.1);
     r.rig.set(Parameter::JOINT_FERROR, EXTRA, 0.1);
@@ -349,7 +349,7 @@ TEST(ExtraJoints, AfterHomingItsFeedbackIsNotWatched_C13) {
     EXPECT_FALSE(r.rig.status().isEnabled) << "its amplifier is";
 }
 
-TEST(ExtraJoints, OneLeftOutStaysWhereItIs_C4) {
+TEST(ExtraJoints, OneLeftOutStaysWhereItIs) {
     ExtraRig r;
     r.rig.ready(Mode::FREE);
     r.rig.send(SetJointActive{EXTRA, false});
@@ -363,7 +363,7 @@ TEST(ExtraJoints, OneLeftOutStaysWhereItIs_C4) {
     r.check();
 }
 
-TEST(ExtraJoints, TheyAreTheLastOnesAndStayInUse_C12) {
+TEST(ExtraJoints, TheyAreTheLastOnesAndStayInUse) {
     ExtraRig r;
     for (const int count : {3, 2, 5}) {
         const CommandId id = r.rig.send(SetNumJoints{count});
@@ -376,7 +376,7 @@ TEST(ExtraJoints, TheyAreTheLastOnesAndStayInUse_C12) {
 }
 
 /// One joint too many would be one of nobody, or beyond them all.
-TEST(ExtraJoints, SwitchingOnReadiesThemAndNoneBeside_C2) {
+TEST(ExtraJoints, SwitchingOnReadiesThemAndNoneBeside) {
     ExtraJoints extra;
     extra.first = 2;
     extra.count = 3;
@@ -391,8 +391,8 @@ TEST(ExtraJoints, SwitchingOnReadiesThemAndNoneBeside_C2) {
     }
 }
 
-TEST(ExtraJoints, AlsoOnMachinesWhoseJointsAreNotAxes_C14) {
-    const kins::CoreXy corexy;
+TEST(ExtraJoints, AlsoOnMachinesWhoseJointsAreNotAxes) {
+    const kinematics::CoreXy corexy;
     MotionRig rig(corexy, 4, 100, 1000, 1);
     rig.ready(Mode::COORD);
     rig.in.joint[3].posthome_cmd = 2;

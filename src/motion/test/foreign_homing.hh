@@ -2,7 +2,7 @@
 // A homing module of a user, for tests.
 #pragma once
 
-#include "homing/module.hh"
+#include "motion/homing/module.hh"
 
 namespace mw::motion {
 

@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "testing/limit_checker.hh"
-#include "testing/motion_rig.hh"
+#include "tests/support/limit_checker.hh"
+#include "tests/support/motion_rig.hh"
 
 namespace mw::motion {
 namespace {
@@ -50,7 +50,7 @@ struct GantryRig : testing::MotionRig {
     testing::LimitChecker checker{std::vector<testing::AxisLimit>(4, {SIDE_VELOCITY, SIDE_ACCELERATION}), T};
 };
 
-TEST(GantrySides, ALittleApartTheyAreLedTogetherWithoutAStep_C3_C9) {
+TEST(GantrySides, ALittleApartTheyAreLedTogetherWithoutAStep) {
     for (const double sag : {0.4, -0.4, 0.001}) {
         GantryRig rig;
         rig.sag(sag);
@@ -60,7 +60,7 @@ TEST(GantrySides, ALittleApartTheyAreLedTogetherWithoutAStep_C3_C9) {
         EXPECT_TRUE(rig.status().isEnabled);
         EXPECT_EQ(rig.status().mode, Mode::COORD);
         EXPECT_EQ(rig.motor(2), sag) << "nothing moves by switching on";
-        geom::Pose end;
+        geometry::Pose end;
         end[1] = 20;
         rig.line(end);
         const CommandId last = rig.send_path(Flush{});
@@ -73,7 +73,7 @@ TEST(GantrySides, ALittleApartTheyAreLedTogetherWithoutAStep_C3_C9) {
     }
 }
 
-TEST(GantrySides, APinThatEnablesOffsetsAsksForNoMotionTheCountsDo_C1_C11) {
+TEST(GantrySides, APinThatEnablesOffsetsAsksForNoMotionTheCountsDo) {
     GantryRig rig;
     rig.set(Parameter::AXIS_OFFSET_RATIO, 0, 0.3);
     rig.in.axis_offset[0].isEnabled = true;
@@ -94,7 +94,7 @@ TEST(GantrySides, APinThatEnablesOffsetsAsksForNoMotionTheCountsDo_C1_C11) {
     EXPECT_EQ(rig.checker.report(), "");
 }
 
-TEST(GantrySides, FarApartTheyAreSwitchedOnInJointModeWhereTheyStand_C3_C4) {
+TEST(GantrySides, FarApartTheyAreSwitchedOnInJointModeWhereTheyStand) {
     GantryRig rig;
     rig.sag(1.9);
     rig.watch(3);
@@ -124,13 +124,13 @@ TEST(GantrySides, FarApartTheyAreSwitchedOnInJointModeWhereTheyStand_C3_C4) {
     EXPECT_EQ(rig.checker.report(), "");
 }
 
-TEST(GantrySides, AStopOnTheWayEndsInJointMode_C4_C6) {
+TEST(GantrySides, AStopOnTheWayEndsInJointMode) {
     GantryRig rig;
     rig.sag(0.4);
     rig.watch(3);
     rig.send(Enable{});
     rig.watch(1);
-    geom::Pose end;
+    geometry::Pose end;
     end[1] = 20;
     rig.line(end);
     rig.send_path(Flush{});
@@ -157,7 +157,7 @@ TEST(GantrySides, AStopOnTheWayEndsInJointMode_C4_C6) {
     EXPECT_EQ(failed.checker.report(), "");
 }
 
-TEST(GantrySides, AJogWaitsUntilTheyAreTogether_C8) {
+TEST(GantrySides, AJogWaitsUntilTheyAreTogether) {
     GantryRig rig;
     rig.send(SetMode{Mode::TELEOP});
     rig.step(3);
@@ -173,9 +173,9 @@ TEST(GantrySides, AJogWaitsUntilTheyAreTogether_C8) {
     EXPECT_EQ(rig.checker.report(), "");
 }
 
-TEST(GantrySides, HomedAgainTheMachineWorksAsBefore_C3_C9) {
+TEST(GantrySides, HomedAgainTheMachineWorksAsBefore) {
     GantryRig rig;
-    geom::Pose end;
+    geometry::Pose end;
     end[1] = 20;
     rig.line(end);
     rig.send_path(Flush{});

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "testing/motion_rig.hh"
+#include "tests/support/motion_rig.hh"
 
 namespace mw::motion {
 namespace {
@@ -12,29 +12,29 @@ namespace {
 using testing::MotionRig;
 
 /// Joints are X Y Z, and are found from less than 10 away only.
-class ShortSighted final : public kins::Kinematics {
+class ShortSighted final : public kinematics::Kinematics {
   public:
-    kins::Kind kind() const noexcept override { return kins::Kind::BOTH; }
-    kins::Status forward(const double *joints, geom::Pose &pose) const noexcept override {
+    kinematics::Kind kind() const noexcept override { return kinematics::Kind::BOTH; }
+    kinematics::Status forward(const double *joints, geometry::Pose &pose) const noexcept override {
         for (int i = 0; i < 3; ++i) {
             if (!(std::abs(joints[i] - pose[i]) < 10)) {
-                return kins::Status::UNREACHABLE;
+                return kinematics::Status::UNREACHABLE;
             }
         }
         for (int i = 0; i < 3; ++i) {
             pose[i] = joints[i];
         }
-        return kins::Status::OK;
+        return kinematics::Status::OK;
     }
-    kins::Status inverse(const geom::Pose &pose, double *joints) const noexcept override {
+    kinematics::Status inverse(const geometry::Pose &pose, double *joints) const noexcept override {
         for (int i = 0; i < 3; ++i) {
             joints[i] = pose[i];
         }
-        return kins::Status::OK;
+        return kinematics::Status::OK;
     }
 };
 
-TEST(HomedPlace, WhatWasLostIsFoundFromTheFirstPlaceAfterHoming_C6_C14) {
+TEST(HomedPlace, WhatWasLostIsFoundFromTheFirstPlaceAfterHoming) {
     ShortSighted kinematics;
     MotionRig rig{kinematics, 3, 100, 1000};
     for (int j = 0; j < 3; ++j) {

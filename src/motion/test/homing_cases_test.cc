@@ -7,10 +7,10 @@
 
 #include <gtest/gtest.h>
 
-#include "motion/api/texts.hh"
+#include "motion/interface/texts.hh"
 #include "motion/test/foreign_homing.hh"
 #include "motion/test/homing_rig.hh"
-#include "testing/limit_checker.hh"
+#include "tests/support/limit_checker.hh"
 
 namespace mw::motion {
 namespace {
@@ -18,7 +18,7 @@ namespace {
 using ::mw::testing::HomingRig;
 using ::mw::testing::MotionRig;
 
-TEST(HomingCases, AnIndexCountsWithASwitchOrWithoutAndWhetherItResetsTheEncoderOrNot_C10) {
+TEST(HomingCases, AnIndexCountsWithASwitchOrWithoutAndWhetherItResetsTheEncoderOrNot) {
     for (const bool isReset : {true, false}) {
         for (const double search : {0.0, -20.0}) {
             HomingRig m;
@@ -43,7 +43,7 @@ TEST(HomingCases, AnIndexCountsWithASwitchOrWithoutAndWhetherItResetsTheEncoderO
     }
 }
 
-TEST(HomingCases, TheMotorDoesNotStepWhereTheIndexResetsItsEncoder_C10) {
+TEST(HomingCases, TheMotorDoesNotStepWhereTheIndexResetsItsEncoder) {
     for (const double lag_s : {0.0, 0.01}) {
         for (const double phase : {1.25, -17.3, 3.0004}) {
             HomingRig m;
@@ -65,7 +65,7 @@ TEST(HomingCases, TheMotorDoesNotStepWhereTheIndexResetsItsEncoder_C10) {
     }
 }
 
-TEST(HomingCases, NorDoesItWhenHomingIsAbortedInThatVeryCycle_C10) {
+TEST(HomingCases, NorDoesItWhenHomingIsAbortedInThatVeryCycle) {
     const auto made = [](HomingRig &m) {
         m.set_up({{.start = 3, .switch_at = -20, .index_pitch = 5, .index_phase = 1.25}});
         m.set(Parameter::JOINT_HOME_USE_INDEX, 1);
@@ -96,7 +96,7 @@ TEST(HomingCases, NorDoesItWhenHomingIsAbortedInThatVeryCycle_C10) {
     }
 }
 
-TEST(HomingCases, AbsoluteEncodersAndImmediateTakeThePlaceWhereTheyStand_C10) {
+TEST(HomingCases, AbsoluteEncodersAndImmediateTakeThePlaceWhereTheyStand) {
     for (const int mode : {0, 1, 2}) {
         HomingRig m;
         m.set_up({{.start = 3}});
@@ -117,7 +117,7 @@ TEST(HomingCases, AbsoluteEncodersAndImmediateTakeThePlaceWhereTheyStand_C10) {
     }
 }
 
-TEST(HomingCases, ALimitSwitchIsToldOfTheJointThatHitIt_C10) {
+TEST(HomingCases, ALimitSwitchIsToldOfTheJointThatHitIt) {
     HomingRig m;
     m.set_up({{.start = 0}, {.start = 0}});
     m.set_switch(0, -10, 1);
@@ -136,7 +136,7 @@ TEST(HomingCases, ALimitSwitchIsToldOfTheJointThatHitIt_C10) {
     EXPECT_FALSE(m.rig.status().isEnabled);
 }
 
-TEST(HomingCases, OnlyTheFinalMoveKeepsAJerkLimit_C10) {
+TEST(HomingCases, OnlyTheFinalMoveKeepsAJerkLimit) {
     HomingRig m;
     m.set_up({{.start = 0, .switch_at = -5}});
     m.set(Parameter::JOINT_MAX_JERK, 4000);
@@ -163,7 +163,7 @@ TEST(HomingCases, OnlyTheFinalMoveKeepsAJerkLimit_C10) {
     EXPECT_GT(final_move.worst_jerk(), 0.9);
 }
 
-TEST(HomingCases, ASwitchThatClosesAgainWhileStoppingIsNoZero_C10) {
+TEST(HomingCases, ASwitchThatClosesAgainWhileStoppingIsNoZero) {
     HomingRig m;
     m.set_up({{.start = 0, .switch_at = -5}});
     m.set_switch(0, -10, -1);
@@ -180,7 +180,7 @@ TEST(HomingCases, ASwitchThatClosesAgainWhileStoppingIsNoZero_C10) {
 
 /// A slow search comes to a stand at once behind the opening edge: without more of a way back the closing
 /// edge comes while play is still taken up.
-TEST(HomingCases, ALatchInTheDirectionOfTheSearchBeginsSoFarOffThatPlayIsTakenUpAtTheEdge_C10_C11) {
+TEST(HomingCases, ALatchInTheDirectionOfTheSearchBeginsSoFarOffThatPlayIsTakenUpAtTheEdge) {
     for (const double play : {0.1, 0.5, 2.0}) {
         for (const double latch : {1.0, 5.0, 20.0}) {
             for (const bool isJerkLimited : {false, true}) {
@@ -204,7 +204,7 @@ TEST(HomingCases, ALatchInTheDirectionOfTheSearchBeginsSoFarOffThatPlayIsTakenUp
     }
 }
 
-TEST(HomingCases, InhibitKeepsHomingFromBeginningAndStopsNothing_C10) {
+TEST(HomingCases, InhibitKeepsHomingFromBeginningAndStopsNothing) {
     HomingRig m;
     m.set_up({{.start = 0}});
     m.rig.send(Enable{});
@@ -229,7 +229,7 @@ TEST(HomingCases, InhibitKeepsHomingFromBeginningAndStopsNothing_C10) {
     EXPECT_EQ(m.rig.refusal(id), Reason::HOMING_INHIBITED);
 }
 
-TEST(HomingCases, AJointThatIsLeftOutIsNotHomed_C10) {
+TEST(HomingCases, AJointThatIsLeftOutIsNotHomed) {
     HomingRig m;
     m.rig.send(SetJointActive{1, false});
     m.rig.step(2);
@@ -268,7 +268,7 @@ struct Indexer {
     }
 };
 
-TEST(HomingCases, ALockingIndexerUnlocksBeforeItHomesAndLocksAfterwards_C10) {
+TEST(HomingCases, ALockingIndexerUnlocksBeforeItHomesAndLocksAfterwards) {
     Indexer i;
     i.m.home(0);
     EXPECT_TRUE(i.m.rig.out->joint[0].isUnlockWanted);
@@ -279,7 +279,7 @@ TEST(HomingCases, ALockingIndexerUnlocksBeforeItHomesAndLocksAfterwards_C10) {
     EXPECT_FALSE(i.hasMovedLocked);
 }
 
-TEST(HomingCases, AnIndexerThatDoesNotUnlockOrLockIsToldOf_C10) {
+TEST(HomingCases, AnIndexerThatDoesNotUnlockOrLockIsToldOf) {
     for (const bool isStuckLocked : {true, false}) {
         Indexer i;
         i.isObedient = !isStuckLocked;
@@ -298,7 +298,7 @@ TEST(HomingCases, AnIndexerThatDoesNotUnlockOrLockIsToldOf_C10) {
     }
 }
 
-TEST(HomingCases, AnAbortedIndexerLocksWhenItStandsAndSwitchedOffAtOnce_C10) {
+TEST(HomingCases, AnAbortedIndexerLocksWhenItStandsAndSwitchedOffAtOnce) {
     for (const bool isOff : {false, true}) {
         Indexer i;
         i.m.home(0);
@@ -312,7 +312,7 @@ TEST(HomingCases, AnAbortedIndexerLocksWhenItStandsAndSwitchedOffAtOnce_C10) {
     }
 }
 
-TEST(HomingCases, AModuleIsAskedForMovesInCyclesInWhichItHasWorkAndInNoOther_C2) {
+TEST(HomingCases, AModuleIsAskedForMovesInCyclesInWhichItHasWorkAndInNoOther) {
     ForeignModule module;
     MotionRig rig;
     rig.controller = std::make_unique<Controller>(ControllerConfig{3, 1, 4, 4, MotionRig::T, 0, &module},

@@ -12,8 +12,8 @@
 #include <gtest/gtest.h>
 
 #include "motion/test/homing_rig.hh"
-#include "testing/campaign_seeds.hh"
-#include "testing/limit_checker.hh"
+#include "tests/support/campaign_seeds.hh"
+#include "tests/support/limit_checker.hh"
 
 namespace mw::motion {
 namespace {
@@ -33,7 +33,7 @@ struct Plan {
     double velocity = 0, acceleration = 0, search = 0, latch = 0, home = 0, offset = 0, scale = 1, skew = 0;
     double bounce_s = 0, play = 0, lag_s = 0, pitch = 0;
     int broken_joint = 0, broken_after = 0;
-    std::vector<sim::HomeAxis::Build> axes;
+    std::vector<plants::HomeAxis::Build> axes;
 
     double between(double low, double high) { return std::uniform_real_distribution<>(low, high)(random); }
     bool isOneIn(int n) { return std::uniform_int_distribution<>(1, n)(random) == 1; }
@@ -64,7 +64,7 @@ struct Plan {
         const double to_switch = way * between(-5, 60);  // below 0: it begins on the switch
         const double part = between(0.25, 0.75);
         for (int j = 0; j < count(); ++j) {
-            sim::HomeAxis::Build b;
+            plants::HomeAxis::Build b;
             b.start = start;
             b.switch_at = start + to_switch + (j == 1 ? between(-0.4, 0.4) * skew : 0.0);
             b.isClosedAbove = way > 0;
@@ -94,7 +94,7 @@ struct Plan {
     }
     /// Where the slide of joint j is when the joint says 0.
     double true_zero(int j) const {
-        const sim::HomeAxis::Build &b = axes[static_cast<std::size_t>(j)];
+        const plants::HomeAxis::Build &b = axes[static_cast<std::size_t>(j)];
         if (!isMoving()) {
             return b.start - offset;
         }
@@ -148,7 +148,7 @@ struct Judge {
         m.rig.step(3);
     }
     void breaks() {
-        sim::HomeAxis::Faults &faults = m.axes[static_cast<std::size_t>(plan.broken_joint)].faults;
+        plants::HomeAxis::Faults &faults = m.axes[static_cast<std::size_t>(plan.broken_joint)].faults;
         switch (plan.broken) {
         case Broken::NOTHING: break;
         case Broken::SWITCH_OPEN: faults.isSwitchOpen = true; break;
@@ -242,7 +242,7 @@ struct Judge {
     }
 };
 
-TEST(HomingJudge, RandomJointsAreHomedToTheirTrueZeroOrSayWhyNot_C10) {
+TEST(HomingJudge, RandomJointsAreHomedToTheirTrueZeroOrSayWhyNot) {
     const auto range = mw::testing::campaign_seeds(150);
     std::map<std::string, int> counts;
     int sound = 0, broken = 0, homed_sound = 0, homed_broken = 0, gantries = 0;

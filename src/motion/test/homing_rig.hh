@@ -5,20 +5,20 @@
 #include <string>
 #include <vector>
 
-#include "motion/api/texts.hh"
-#include "sim/home_axis.hh"
-#include "testing/motion_rig.hh"
+#include "components/plants/home_axis.hh"
+#include "motion/interface/texts.hh"
+#include "tests/support/motion_rig.hh"
 
 namespace mw::testing {
 
 /// Axes between the rig's motor commands and its feedback.
 struct HomingRig {
     MotionRig rig;
-    std::vector<sim::HomeAxis> axes;
+    std::vector<plants::HomeAxis> axes;
 
     explicit HomingRig(const char *coordinates = "XYZ") : rig(coordinates, 50, 500) {}
-    void set_up(const std::vector<sim::HomeAxis::Build> &builds) {
-        for (const sim::HomeAxis::Build &build : builds) {
+    void set_up(const std::vector<plants::HomeAxis::Build> &builds) {
+        for (const plants::HomeAxis::Build &build : builds) {
             axes.emplace_back(build);
         }
         rig.before_step = [this](MotionRig &r) {

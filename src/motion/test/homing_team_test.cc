@@ -23,7 +23,7 @@ struct Gantry {
     bool wasLeg = false;
     double start[2] = {};
 
-    Gantry(const sim::HomeAxis::Build &one, const sim::HomeAxis::Build &other, double most_skew = 3) {
+    Gantry(const plants::HomeAxis::Build &one, const plants::HomeAxis::Build &other, double most_skew = 3) {
         m.set_up({{}, one, other});
         for (const int j : {1, 2}) {
             m.set(Parameter::JOINT_HOME_SEQUENCE, -1, j);
@@ -63,7 +63,7 @@ struct Gantry {
     bool areHomed() const { return m.isHomed(1) && m.isHomed(2); }
 };
 
-TEST(HomingTeam, BothSidesOfAGantryLeaveAndStopTogetherOnEveryLeg_C10) {
+TEST(HomingTeam, BothSidesOfAGantryLeaveAndStopTogetherOnEveryLeg) {
     for (const double latch : {2.0, -2.0}) {
         for (const double start : {0.0, -21.0, -30.0}) {  // off the switches, on one of them, on both
             for (const bool isIndex : {false, true}) {
@@ -88,7 +88,7 @@ TEST(HomingTeam, BothSidesOfAGantryLeaveAndStopTogetherOnEveryLeg_C10) {
     }
 }
 
-TEST(HomingTeam, ASwitchThatIsNotFoundStopsBothBeforeTheyAreTooFarApart_C10) {
+TEST(HomingTeam, ASwitchThatIsNotFoundStopsBothBeforeTheyAreTooFarApart) {
     for (const int dead : {1, 2}) {
         for (const double most : {0.5, 3.0, 0.0}) {
             Gantry g({.start = 0, .switch_at = -20}, {.start = 0, .switch_at = -20}, most);
@@ -108,7 +108,7 @@ TEST(HomingTeam, ASwitchThatIsNotFoundStopsBothBeforeTheyAreTooFarApart_C10) {
     }
 }
 
-TEST(HomingTeam, TheSmallerSkewOfTheTwoHolds_C10) {
+TEST(HomingTeam, TheSmallerSkewOfTheTwoHolds) {
     for (const int dead : {1, 2}) {
         for (const int narrow : {1, 2}) {
             Gantry g({.start = 0, .switch_at = -20}, {.start = 0, .switch_at = -20});
@@ -126,7 +126,7 @@ TEST(HomingTeam, TheSmallerSkewOfTheTwoHolds_C10) {
     }
 }
 
-TEST(HomingTeam, TheSlowerJointAndTheOverrideHoldForBoth_C10) {
+TEST(HomingTeam, TheSlowerJointAndTheOverrideHoldForBoth) {
     for (const double scale : {0.4, 1.0, 1.2}) {
         Gantry g({.start = 0, .switch_at = -20}, {.start = 0, .switch_at = -20});
         g.m.set(Parameter::JOINT_MAX_VELOCITY, 15, 2);
@@ -141,7 +141,7 @@ TEST(HomingTeam, TheSlowerJointAndTheOverrideHoldForBoth_C10) {
     }
 }
 
-TEST(HomingTeam, WhatDiffersOrLeadsApartIsRefusedBeforeItMoves_C10) {
+TEST(HomingTeam, WhatDiffersOrLeadsApartIsRefusedBeforeItMoves) {
     Gantry g({.start = 0, .switch_at = -20}, {.start = 0, .switch_at = -20});
     g.m.set_switch(2, 0, 0);
     g.home();
@@ -157,7 +157,7 @@ TEST(HomingTeam, WhatDiffersOrLeadsApartIsRefusedBeforeItMoves_C10) {
     EXPECT_NE(g.m.fault().find("pushed askew"), std::string::npos) << g.m.fault();
 }
 
-TEST(HomingTeam, AnAbortAtAnyInstantStopsBothTogether_C10) {
+TEST(HomingTeam, AnAbortAtAnyInstantStopsBothTogether) {
     int count = 0;
     for (int cycle = 3; cycle < 20000; cycle += 47, ++count) {
         Gantry g({.start = 0, .switch_at = -6}, {.start = 0, .switch_at = -7});
@@ -181,7 +181,7 @@ TEST(HomingTeam, AnAbortAtAnyInstantStopsBothTogether_C10) {
     EXPECT_GT(count, 20);
 }
 
-TEST(HomingTeam, JointsOfOneSequenceThatMoveDifferentThingsAreNoTeam_C10) {
+TEST(HomingTeam, JointsOfOneSequenceThatMoveDifferentThingsAreNoTeam) {
     HomingRig m;
     m.set_up({{.start = 0, .switch_at = -5}, {.start = 0, .switch_at = -80}, {.start = 0}});
     for (int j = 0; j < 3; ++j) {

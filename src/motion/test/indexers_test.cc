@@ -8,8 +8,8 @@
 
 #include <gtest/gtest.h>
 
-#include "motion/api/texts.hh"
-#include "testing/motion_rig.hh"
+#include "motion/interface/texts.hh"
+#include "tests/support/motion_rig.hh"
 
 namespace mw::motion {
 namespace indexers_test {
@@ -18,7 +18,7 @@ namespace {
 using testing::MotionRig;
 
 constexpr int B = 3;
-constexpr int AXIS_B = geom::AXIS_B;
+constexpr int AXIS_B = geometry::AXIS_B;
 
 /// A lock that takes its time.
 struct Lock {
@@ -104,7 +104,7 @@ struct IndexerRig {
     double b() const { return rig.out->joint[B].motor_pos_cmd; }
     bool isAsked() const { return rig.out->joint[B].isUnlockWanted; }
     bool isMoving() const { return rig.status().joint[B].vel_cmd != 0; }
-    static geom::Pose at(double x, double angle) { return {{x, 0, 0, 0, angle, 0, 0, 0, 0}}; }
+    static geometry::Pose at(double x, double angle) { return {{x, 0, 0, 0, angle, 0, 0, 0, 0}}; }
     CommandId rapid(double x, double angle) { return rig.line(at(x, angle), 0); }
     void check() const {
         EXPECT_TRUE(breaches.empty()) << breaches.substr(0, 500);
@@ -112,7 +112,7 @@ struct IndexerRig {
     }
 };
 
-TEST(Indexers, AProgramsG0UnlocksMovesAndLocksBeforeAnythingElseMoves_C9) {
+TEST(Indexers, AProgramsG0UnlocksMovesAndLocksBeforeAnythingElseMoves) {
     for (const double jerk : {0.0, 20000.0}) {
         IndexerRig r;
         r.rig.set(Parameter::TRAJ_PLANNER_TYPE, 0, jerk > 0 ? 1 : 0);
@@ -144,7 +144,7 @@ TEST(Indexers, AProgramsG0UnlocksMovesAndLocksBeforeAnythingElseMoves_C9) {
     }
 }
 
-TEST(Indexers, TheStatusSaysThatItIndexes_C9) {
+TEST(Indexers, TheStatusSaysThatItIndexes) {
     IndexerRig r;
     r.ready(Mode::COORD);
     r.rapid(0, 90);
@@ -153,7 +153,7 @@ TEST(Indexers, TheStatusSaysThatItIndexes_C9) {
     EXPECT_FALSE(r.rig.status().isInPosition);
 }
 
-TEST(Indexers, EveryOtherMoveOfItInAPathIsRefused_C9_C5) {
+TEST(Indexers, EveryOtherMoveOfItInAPathIsRefused) {
     const std::function<CommandId(IndexerRig &)> moves[] = {
         [](IndexerRig &r) { return r.rapid(5, 30); },
         [](IndexerRig &r) { return r.rig.line(IndexerRig::at(0, 30), 20); },
@@ -187,7 +187,7 @@ TEST(Indexers, EveryOtherMoveOfItInAPathIsRefused_C9_C5) {
     }
 }
 
-TEST(Indexers, JogsUnlockMoveAndLock_C8_C9) {
+TEST(Indexers, JogsUnlockMoveAndLock) {
     for (const bool isJoint : {true, false}) {
         IndexerRig r;
         r.ready(isJoint ? Mode::FREE : Mode::TELEOP);
@@ -214,7 +214,7 @@ TEST(Indexers, JogsUnlockMoveAndLock_C8_C9) {
     }
 }
 
-TEST(Indexers, NothingIsJoggedBesideIt_C5) {
+TEST(Indexers, NothingIsJoggedBesideIt) {
     for (const bool isJoint : {true, false}) {
         IndexerRig r;
         r.ready(isJoint ? Mode::FREE : Mode::TELEOP);
@@ -253,7 +253,7 @@ TEST(Indexers, NothingIsJoggedBesideIt_C5) {
     }
 }
 
-TEST(Indexers, NoModeIsLeftAndNothingHomedWhileOneIsUnlocked_C5) {
+TEST(Indexers, NoModeIsLeftAndNothingHomedWhileOneIsUnlocked) {
     IndexerRig r;
     r.ready(Mode::FREE);
     r.rig.send(JogContinuous{{true, B}, 20});
@@ -307,7 +307,7 @@ void begin(IndexerRig &r, Mode mode) {
     }
 }
 
-TEST(Indexers, EveryStopInEveryStateEndsLockedAndTheMachineGoesOn_C4_C8_C9) {
+TEST(Indexers, EveryStopInEveryStateEndsLockedAndTheMachineGoesOn) {
     for (const Mode mode : {Mode::FREE, Mode::TELEOP, Mode::COORD}) {
         for (const When when : {When::UNLOCKING, When::UNLOCKED, When::MOVING, When::LOCKING}) {
             for (const Event &event : EVENTS) {
@@ -350,7 +350,7 @@ TEST(Indexers, EveryStopInEveryStateEndsLockedAndTheMachineGoesOn_C4_C8_C9) {
     }
 }
 
-TEST(Indexers, OneThatDoesNotUnlockIsAFaultAndNothingMoves_C13) {
+TEST(Indexers, OneThatDoesNotUnlockIsAFaultAndNothingMoves) {
     for (const Mode mode : {Mode::FREE, Mode::TELEOP, Mode::COORD}) {
         IndexerRig r;
         r.ready(mode);
@@ -370,7 +370,7 @@ TEST(Indexers, OneThatDoesNotUnlockIsAFaultAndNothingMoves_C13) {
     }
 }
 
-TEST(Indexers, OneThatDoesNotLockIsAFaultAndNoProgramGoesOn_C13) {
+TEST(Indexers, OneThatDoesNotLockIsAFaultAndNoProgramGoesOn) {
     IndexerRig r;
     r.ready(Mode::COORD);
     const CommandId index = r.rapid(0, 30);
@@ -397,7 +397,7 @@ TEST(Indexers, OneThatDoesNotLockIsAFaultAndNoProgramGoesOn_C13) {
     r.check();
 }
 
-TEST(Indexers, ALockThatShutsInTheMoveSwitchesOffInThatCycle_C13) {
+TEST(Indexers, ALockThatShutsInTheMoveSwitchesOffInThatCycle) {
     for (const Mode mode : {Mode::FREE, Mode::TELEOP, Mode::COORD}) {
         IndexerRig r;
         r.ready(mode);
@@ -413,7 +413,7 @@ TEST(Indexers, ALockThatShutsInTheMoveSwitchesOffInThatCycle_C13) {
     }
 }
 
-TEST(Indexers, HoldsAndOverridesKeepItUnlockedOnItsWay_C9) {
+TEST(Indexers, HoldsAndOverridesKeepItUnlockedOnItsWay) {
     IndexerRig r;
     r.ready(Mode::COORD);
     const CommandId index = r.rapid(0, 90);
@@ -429,7 +429,7 @@ TEST(Indexers, HoldsAndOverridesKeepItUnlockedOnItsWay_C9) {
     r.check();
 }
 
-TEST(Indexers, SwitchedOnWhileOpenItIsWaitedFor_C13) {
+TEST(Indexers, SwitchedOnWhileOpenItIsWaitedFor) {
     IndexerRig r;
     r.ready(Mode::COORD);
     r.rig.send(Disable{});

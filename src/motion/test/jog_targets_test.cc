@@ -5,9 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include "testing/campaign_seeds.hh"
-#include "testing/limit_checker.hh"
-#include "testing/motion_rig.hh"
+#include "tests/support/campaign_seeds.hh"
+#include "tests/support/limit_checker.hh"
+#include "tests/support/motion_rig.hh"
 
 namespace mw::motion {
 namespace jog_targets_test {
@@ -108,25 +108,25 @@ void run_all(Mode mode, double jerk) {
     EXPECT_GT(reached, 1000 * count);
 }
 
-TEST(JogTargets, MayChangeInMotionInFreeMode_C8) {
+TEST(JogTargets, MayChangeInMotionInFreeMode) {
     run_all(Mode::FREE, 0);
 }
 
-TEST(JogTargets, MayChangeInMotionInFreeModeWithJerkLimits_C8) {
+TEST(JogTargets, MayChangeInMotionInFreeModeWithJerkLimits) {
     run_all(Mode::FREE, 3e4);
 }
 
-TEST(JogTargets, MayChangeInMotionInTeleopMode_C9) {
+TEST(JogTargets, MayChangeInMotionInTeleopMode) {
     run_all(Mode::TELEOP, 0);
 }
 
-TEST(JogTargets, MayChangeInMotionInTeleopModeWithJerkLimits_C9) {
+TEST(JogTargets, MayChangeInMotionInTeleopModeWithJerkLimits) {
     run_all(Mode::TELEOP, 3e4);
 }
 
 /// A jerk that is small beside the acceleration: the mean must not be as long as turning about at full
 /// acceleration takes.
-TEST(JogStops, AJogWithALowJerkStopsAsSoonAsItCan_C8_C13) {
+TEST(JogStops, AJogWithALowJerkStopsAsSoonAsItCan) {
     constexpr double V = 100, A = 4000, J = 10000, SLOW = 8;
     for (const bool isJoint : {true, false}) {
         MotionRig rig("XYZ", V, A);
@@ -159,13 +159,13 @@ TEST(JogStops, AJogWithALowJerkStopsAsSoonAsItCan_C8_C13) {
 
 /// A wheel at the axis, by a tenth each count.
 void turn_to(MotionRig &rig, std::int32_t counts) {
-    WheelInput &wheel = rig.in.axis_wheel[geom::AXIS_Y];
+    WheelInput &wheel = rig.in.axis_wheel[geometry::AXIS_Y];
     wheel.isEnabled = true;
     wheel.scale = 0.1;
     wheel.counts = counts;
 }
 
-TEST(JogTargets, AWheelMovesAnAxisByItsCountsAndNoFarther_C9_C15) {
+TEST(JogTargets, AWheelMovesAnAxisByItsCountsAndNoFarther) {
     MotionRig rig;
     rig.ready(Mode::FREE);
     turn_to(rig, 40);
@@ -181,7 +181,7 @@ TEST(JogTargets, AWheelMovesAnAxisByItsCountsAndNoFarther_C9_C15) {
     EXPECT_EQ(rig.out->joint[0].motor_pos_cmd, 0);
 }
 
-TEST(JogTargets, TurnsOfAWheelWhileTheMachineIsOffMoveNoAxis_C9_C15) {
+TEST(JogTargets, TurnsOfAWheelWhileTheMachineIsOffMoveNoAxis) {
     MotionRig rig;
     rig.ready(Mode::TELEOP);
     turn_to(rig, 0);

@@ -2,16 +2,16 @@
 // Joints that are left out, taken in again, not there, or have lost their homes: no motor takes a step.
 #include <gtest/gtest.h>
 
-#include "kins/corexy.hh"
-#include "kins/rotary_table.hh"
-#include "testing/motion_rig.hh"
+#include "kinematics/corexy.hh"
+#include "kinematics/rotary_table.hh"
+#include "tests/support/motion_rig.hh"
 
 namespace mw::motion {
 namespace {
 
 using testing::MotionRig;
 
-TEST(Machine, DeactivatingAJointLeavesItsAmplifierAlone_C6) {
+TEST(Machine, DeactivatingAJointLeavesItsAmplifierAlone) {
     MotionRig rig;
     rig.ready(Mode::FREE);
     ASSERT_TRUE(rig.out->joint[1].isAmpEnabled);
@@ -29,7 +29,7 @@ TEST(Machine, DeactivatingAJointLeavesItsAmplifierAlone_C6) {
     EXPECT_FALSE(rig.out->joint[1].isAmpEnabled) << "and activating it does not raise it";
 }
 
-TEST(Machine, AJointThatIsLeftOutComesBackWithoutAStep_C4) {
+TEST(Machine, AJointThatIsLeftOutComesBackWithoutAStep) {
     MotionRig rig;
     rig.ready(Mode::TELEOP);
     rig.send(SetJointActive{1, false});
@@ -60,8 +60,8 @@ TEST(Machine, AJointThatIsLeftOutComesBackWithoutAStep_C4) {
     EXPECT_TRUE(rig.status().isEnabled);
 }
 
-TEST(Machine, TheNumberOfJointsChangesWhileItIsOff_C12) {
-    kins::Trivial xyz;
+TEST(Machine, TheNumberOfJointsChangesWhileItIsOff) {
+    kinematics::Trivial xyz;
     xyz.configure("XYZ");
     MotionRig rig(xyz, 5, 100, 1000);
     EXPECT_EQ(rig.status().num_joints, 5);
@@ -90,8 +90,8 @@ TEST(Machine, TheNumberOfJointsChangesWhileItIsOff_C12) {
     EXPECT_TRUE(rig.status().isAllHomed) << "the kinematics moves three";
 }
 
-TEST(Machine, AJointThatIsNoLongerThereIsOffAndComesBackWhereItsMotorIs_C12) {
-    kins::Trivial xyz;
+TEST(Machine, AJointThatIsNoLongerThereIsOffAndComesBackWhereItsMotorIs) {
+    kinematics::Trivial xyz;
     xyz.configure("XYZ");
     MotionRig rig(xyz, 4, 100, 1000);
     rig.send(SetJointActive{3, true});
@@ -121,22 +121,22 @@ TEST(Machine, AJointThatIsNoLongerThereIsOffAndComesBackWhereItsMotorIs_C12) {
     EXPECT_TRUE(rig.faults.empty());
 }
 
-TEST(Machine, NotAllJointsOfATableAreThere_C12) {
-    kins::RotaryTable table;
+TEST(Machine, NotAllJointsOfATableAreThere) {
+    kinematics::RotaryTable table;
     MotionRig rig(table, 8, 100, 1000);
     rig.send(SetNumJoints{5});
     rig.ready(Mode::COORD);
     EXPECT_EQ(rig.status().mode, Mode::COORD) << "five homed joints are all";
-    geom::Pose end;
+    geometry::Pose end;
     end[0] = 10;
-    end[geom::AXIS_C] = 30;
+    end[geometry::AXIS_C] = 30;
     rig.line(end, 50);
     const CommandId flush = rig.send_path(Flush{});
     EXPECT_TRUE(rig.run_until([&] { return rig.isDone(flush); }, 10));
 }
 
-TEST(Machine, APoseIsNotTakenUpByJointsThatHaveLostTheirHomes_C14) {
-    kins::CoreXy model;
+TEST(Machine, APoseIsNotTakenUpByJointsThatHaveLostTheirHomes) {
+    kinematics::CoreXy model;
     MotionRig rig(model, 3, 100, 1000);
     rig.set(Parameter::JOINT_VOLATILE_HOME, 0, 1);
     for (const Mode mode : {Mode::COORD, Mode::TELEOP}) {
@@ -162,8 +162,8 @@ TEST(Machine, APoseIsNotTakenUpByJointsThatHaveLostTheirHomes_C14) {
     }
 }
 
-TEST(Machine, ARefusedMoveNamesTheAxisOrJointThatCannot_C5_C13) {
-    kins::CoreXy model;
+TEST(Machine, ARefusedMoveNamesTheAxisOrJointThatCannot) {
+    kinematics::CoreXy model;
     MotionRig rig(model, 3, 100, 1000);
     for (int j = 0; j < 3; ++j) {
         rig.set(Parameter::JOINT_MIN_LIMIT, j, -30);
@@ -172,7 +172,7 @@ TEST(Machine, ARefusedMoveNamesTheAxisOrJointThatCannot_C5_C13) {
     rig.set(Parameter::AXIS_MIN_LIMIT, 2, -20);
     rig.set(Parameter::AXIS_MAX_LIMIT, 2, 20);
     const auto answer = [&](double x, double y, double z) {
-        geom::Pose end;
+        geometry::Pose end;
         end[0] = x;
         end[1] = y;
         end[2] = z;
@@ -203,12 +203,12 @@ TEST(Machine, ARefusedMoveNamesTheAxisOrJointThatCannot_C5_C13) {
 
     MotionRig without_a;
     without_a.ready(Mode::COORD);
-    geom::Pose turned;
-    turned[geom::AXIS_A] = 5;
+    geometry::Pose turned;
+    turned[geometry::AXIS_A] = 5;
     const CommandId id = without_a.line(turned, 50);
     without_a.run_until([&] { return without_a.answer_to(id) != nullptr; }, 1);
     EXPECT_EQ(without_a.answer_to(id)->reason, Reason::NO_SUCH_AXIS);
-    EXPECT_EQ(without_a.answer_to(id)->index, geom::AXIS_A);
+    EXPECT_EQ(without_a.answer_to(id)->index, geometry::AXIS_A);
 }
 
 }  // namespace

@@ -6,11 +6,11 @@
 
 #include <gtest/gtest.h>
 
-#include "kins/corexy.hh"
-#include "kins/rotary_table.hh"
-#include "testing/campaign_seeds.hh"
-#include "testing/limit_checker.hh"
-#include "testing/motion_rig.hh"
+#include "kinematics/corexy.hh"
+#include "kinematics/rotary_table.hh"
+#include "tests/support/campaign_seeds.hh"
+#include "tests/support/limit_checker.hh"
+#include "tests/support/motion_rig.hh"
 
 namespace mw::motion {
 namespace {
@@ -18,7 +18,7 @@ namespace {
 using testing::MotionRig;
 
 struct Machine {
-    const kins::Kinematics &model;
+    const kinematics::Kinematics &model;
     int joints;
     std::string axes;
     bool isJerkLimited;
@@ -40,9 +40,9 @@ class Drive {
             rig_.set(Parameter::JOINT_MAX_LIMIT, j, 1e6);
             limits_.push_back({v, a, jerk});
         }
-        for (int i = 0; i < geom::AXIS_COUNT; ++i) {
+        for (int i = 0; i < geometry::AXIS_COUNT; ++i) {
             // The joints' own limits are what counts.
-            const bool isSet = machine.isJerkLimited && !geom::isAngular(i);
+            const bool isSet = machine.isJerkLimited && !geometry::isAngular(i);
             rig_.set(Parameter::AXIS_MAX_ACCELERATION, i, isSet ? 2000 : 1e6);
             rig_.set(Parameter::AXIS_MAX_JERK, i, isSet && machine.areAxesJerkLimited ? 50000 : 1e9);
         }
@@ -52,13 +52,13 @@ class Drive {
 
     void run() {
         testing::LimitChecker checker(limits_, MotionRig::T);
-        geom::Pose at = rig_.status().carte_pos_cmd;
+        geometry::Pose at = rig_.status().carte_pos_cmd;
         const double size = std::pow(10.0, real(-0.5, 1.5));
         const double tolerance = std::pow(10.0, real(-2, -0.5));
         const int count = whole(5, 40);
         for (int n = 0; n < count; ++n) {
             for (const char letter : machine_.axes) {
-                const int axis = geom::axis_of_letter(letter);
+                const int axis = geometry::axis_of_letter(letter);
                 at[axis] += whole(0, 2) > 0 ? size * real(-1, 1) : 0.0;
             }
             rig_.line(at, real(5, 200), PathMode::BLEND, tolerance);
@@ -75,7 +75,7 @@ class Drive {
         EXPECT_TRUE(rig_.isDone(flush));
         EXPECT_TRUE(checker.isWithin()) << checker.report();
         EXPECT_GT(checker.worst_acceleration(), 0.1);
-        for (int i = 0; i < geom::AXIS_COUNT; ++i) {
+        for (int i = 0; i < geometry::AXIS_COUNT; ++i) {
             EXPECT_NEAR(rig_.status().carte_pos_cmd[i], at[i], 1e-9);
         }
     }
@@ -101,30 +101,30 @@ void drive_all(const Machine &machine) {
     }
 }
 
-TEST(Joints, CoreXyKeepsJointLimits_C13) {
-    drive_all({kins::CoreXy{}, 3, "XYZ", false});
+TEST(Joints, CoreXyKeepsJointLimits) {
+    drive_all({kinematics::CoreXy{}, 3, "XYZ", false});
 }
 
-TEST(Joints, CoreXyKeepsJointJerkLimits_C13) {
-    drive_all({kins::CoreXy{}, 3, "XYZ", true});
+TEST(Joints, CoreXyKeepsJointJerkLimits) {
+    drive_all({kinematics::CoreXy{}, 3, "XYZ", true});
 }
 
-TEST(Joints, RotaryTableKeepsJointLimits_C13) {
-    kins::RotaryTable table;
+TEST(Joints, RotaryTableKeepsJointLimits) {
+    kinematics::RotaryTable table;
     table.set_tilt_axis(5, -40);
     drive_all({table, 5, "XYZAC", false});
 }
 
-TEST(Joints, RotaryTableKeepsJointJerkLimits_C13) {
-    kins::RotaryTable table;
+TEST(Joints, RotaryTableKeepsJointJerkLimits) {
+    kinematics::RotaryTable table;
     table.set_tilt_axis(5, -40);
     drive_all({table, 5, "XYZAC", true});
 }
 
-TEST(Joints, JerkLimitsOfJointsAloneAreKept_C13) {
-    kins::RotaryTable table;
+TEST(Joints, JerkLimitsOfJointsAloneAreKept) {
+    kinematics::RotaryTable table;
     table.set_tilt_axis(5, -40);
-    drive_all({kins::CoreXy{}, 3, "XYZ", true, false});
+    drive_all({kinematics::CoreXy{}, 3, "XYZ", true, false});
     drive_all({table, 5, "XYZAC", true, false});
 }
 

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "testing/motion_rig.hh"
+#include "tests/support/motion_rig.hh"
 
 namespace mw::motion {
 namespace {
@@ -15,35 +15,35 @@ using testing::MotionRig;
 
 /// Type 0: joints are X Y Z. Type 1: the same turned by a quarter about Z and 100 off. Type 2: has no pose
 /// but where joint 0 is at 10 or more. There are no others.
-class Turning final : public kins::Kinematics, public kins::TypeSwitch {
+class Turning final : public kinematics::Kinematics, public kinematics::TypeSwitch {
   public:
     int type = 0;
 
-    kins::Kind kind() const noexcept override { return kins::Kind::BOTH; }
-    kins::Status forward(const double *joints, geom::Pose &pose) const noexcept override {
+    kinematics::Kind kind() const noexcept override { return kinematics::Kind::BOTH; }
+    kinematics::Status forward(const double *joints, geometry::Pose &pose) const noexcept override {
         if (type == 2 && joints[0] < 10) {
-            return kins::Status::UNREACHABLE;
+            return kinematics::Status::UNREACHABLE;
         }
         pose[0] = type == 1 ? joints[1] + 100 : joints[0];
         pose[1] = type == 1 ? -joints[0] : joints[1];
         pose[2] = joints[2];
-        return kins::Status::OK;
+        return kinematics::Status::OK;
     }
-    kins::Status inverse(const geom::Pose &pose, double *joints) const noexcept override {
+    kinematics::Status inverse(const geometry::Pose &pose, double *joints) const noexcept override {
         joints[0] = type == 1 ? -pose[1] : pose[0];
         joints[1] = type == 1 ? pose[0] - 100 : pose[1];
         joints[2] = pose[2];
-        return kins::Status::OK;
+        return kinematics::Status::OK;
     }
     bool switch_to(int wanted) noexcept override {
         type = wanted >= 0 && wanted <= 2 ? wanted : type;
         return type == wanted;
     }
-    kins::TypeSwitch *type_switch() const noexcept override { return const_cast<Turning *>(this); }
+    kinematics::TypeSwitch *type_switch() const noexcept override { return const_cast<Turning *>(this); }
 };
 
-geom::Pose at(double x, double y, double z = 0) {
-    geom::Pose pose;
+geometry::Pose at(double x, double y, double z = 0) {
+    geometry::Pose pose;
     pose[0] = x;
     pose[1] = y;
     pose[2] = z;
@@ -59,7 +59,7 @@ struct KinematicsTypesTest : ::testing::Test {
         rig.ready();
         drive(at(20, 30));
     }
-    CommandId drive(const geom::Pose &end, double feed = 50) {
+    CommandId drive(const geometry::Pose &end, double feed = 50) {
         const CommandId id = rig.line(end, feed);
         rig.send_path(Flush{});
         EXPECT_TRUE(rig.run_until([&] { return rig.answer_to(id) != nullptr && rig.status().isInPosition; }));
@@ -79,7 +79,7 @@ struct KinematicsTypesTest : ::testing::Test {
     }
 };
 
-TEST_F(KinematicsTypesTest, JointsStandWhileTheTypeChangesAndThePoseIsTheNewOne_C14) {
+TEST_F(KinematicsTypesTest, JointsStandWhileTheTypeChangesAndThePoseIsTheNewOne) {
     ask(1);
     EXPECT_FALSE(rig.status().isInPosition) << "who waits for it waits for the new pose";
     settle();
@@ -96,13 +96,13 @@ TEST_F(KinematicsTypesTest, JointsStandWhileTheTypeChangesAndThePoseIsTheNewOne_
     expect_joints(0, 0);
 }
 
-TEST_F(KinematicsTypesTest, MovesSentRightBehindTheChangeAreDrivenInTheNewType_C14) {
+TEST_F(KinematicsTypesTest, MovesSentRightBehindTheChangeAreDrivenInTheNewType) {
     rig.in.kinematics_type = 1;
     drive(at(100, -20));
     expect_joints(20, 0);
 }
 
-TEST_F(KinematicsTypesTest, AChangeOnAPathStopsItAndSaysSo_C14) {
+TEST_F(KinematicsTypesTest, AChangeOnAPathStopsItAndSaysSo) {
     const CommandId first = rig.line(at(90, 30));
     const CommandId second = rig.line(at(0, 0));
     rig.step(200);
@@ -118,7 +118,7 @@ TEST_F(KinematicsTypesTest, AChangeOnAPathStopsItAndSaysSo_C14) {
     EXPECT_TRUE(rig.status().isEnabled);
 }
 
-TEST_F(KinematicsTypesTest, AnErrorOfThePathIsShownUntilAStopOrTheNextSwitchingOn_C1_C14) {
+TEST_F(KinematicsTypesTest, AnErrorOfThePathIsShownUntilAStopOrTheNextSwitchingOn) {
     for (const bool isAborted : {true, false}) {
         EXPECT_FALSE(rig.out->isCoordError);
         rig.line(at(rig.status().carte_pos_cmd[0] + 20, 30));
@@ -144,7 +144,7 @@ TEST_F(KinematicsTypesTest, AnErrorOfThePathIsShownUntilAStopOrTheNextSwitchingO
     }
 }
 
-TEST_F(KinematicsTypesTest, ATypeThatDoesNotExistIsToldOnceAndChangesNothing_C14) {
+TEST_F(KinematicsTypesTest, ATypeThatDoesNotExistIsToldOnceAndChangesNothing) {
     for (const double type : {7.0, 0.5, -1.0, std::nan(""), 1e300}) {
         rig.faults.clear();
         ask(type);
@@ -163,7 +163,7 @@ TEST_F(KinematicsTypesTest, ATypeThatDoesNotExistIsToldOnceAndChangesNothing_C14
 }
 
 /// Pushed by hand to where no pose is known, off, in a mode in which the pose commands the joints.
-TEST_F(KinematicsTypesTest, WithoutAPoseTheMachineGoesOnInJointModeAlone_C6_C14) {
+TEST_F(KinematicsTypesTest, WithoutAPoseTheMachineGoesOnInJointModeAlone) {
     ask(2);
     settle();
     for (const Mode mode : {Mode::TELEOP, Mode::COORD}) {
@@ -196,7 +196,7 @@ TEST_F(KinematicsTypesTest, WithoutAPoseTheMachineGoesOnInJointModeAlone_C6_C14)
     }
 }
 
-TEST_F(KinematicsTypesTest, ATypeWithoutAPoseHereIsRefused_C14) {
+TEST_F(KinematicsTypesTest, ATypeWithoutAPoseHereIsRefused) {
     drive(at(5, 5));
     ask(2);
     rig.step(50);
@@ -211,7 +211,7 @@ TEST_F(KinematicsTypesTest, ATypeWithoutAPoseHereIsRefused_C14) {
     EXPECT_EQ(rig.faults.size(), 1U);
 }
 
-TEST_F(KinematicsTypesTest, AJogOfAnAxisEndsInTheTypeInWhichItWasBegun_C14) {
+TEST_F(KinematicsTypesTest, AJogOfAnAxisEndsInTheTypeInWhichItWasBegun) {
     rig.send(SetMode{Mode::TELEOP});
     rig.step(10);
     const CommandId jog = rig.send(JogIncremental{{false, 0}, 20, 5});
@@ -227,7 +227,7 @@ TEST_F(KinematicsTypesTest, AJogOfAnAxisEndsInTheTypeInWhichItWasBegun_C14) {
     expect_joints(25, 35);
 }
 
-TEST_F(KinematicsTypesTest, WithoutHomesTheTypeChangesAndNoPoseIsNeeded_C14) {
+TEST_F(KinematicsTypesTest, WithoutHomesTheTypeChangesAndNoPoseIsNeeded) {
     rig.send(SetMode{Mode::FREE});
     rig.step(10);
     rig.send(Unhome{-1});
@@ -240,7 +240,7 @@ TEST_F(KinematicsTypesTest, WithoutHomesTheTypeChangesAndNoPoseIsNeeded_C14) {
 
 /// At any instant of any program joints keep their limits (the rig sees to it), the pose is that of the
 /// joints, and a path that was not told as stopped is done.
-TEST_F(KinematicsTypesTest, AskedForAtAnyInstantNothingJumpsAndNothingIsLostInSilence_C14) {
+TEST_F(KinematicsTypesTest, AskedForAtAnyInstantNothingJumpsAndNothingIsLostInSilence) {
     std::mt19937 random(14);
     std::uniform_int_distribution<int> pause(1, 400);
     std::uniform_int_distribution<int> type(0, 1);
@@ -267,10 +267,10 @@ TEST_F(KinematicsTypesTest, AskedForAtAnyInstantNothingJumpsAndNothingIsLostInSi
         stopped += isStopped ? 1 : 0;
         driven += rig.isDone(last) ? 1 : 0;
         EXPECT_TRUE(isStopped != rig.isDone(last) || isFinished) << round;
-        geom::Pose pose;
+        geometry::Pose pose;
         const double joints[MAX_JOINTS] = {joint(0), joint(1), joint(2)};
         kinematics.forward(joints, pose);
-        EXPECT_NEAR(geom::norm_xyz(pose - rig.status().carte_pos_cmd), 0, 1e-9) << round;
+        EXPECT_NEAR(geometry::norm_xyz(pose - rig.status().carte_pos_cmd), 0, 1e-9) << round;
         EXPECT_EQ(kinematics.type, static_cast<int>(rig.in.kinematics_type)) << round;
     }
     EXPECT_GT(stopped, 40);
@@ -278,31 +278,31 @@ TEST_F(KinematicsTypesTest, AskedForAtAnyInstantNothingJumpsAndNothingIsLostInSi
 }
 
 /// Joints are X Y Z; only in type 1 that is said of them to be so everywhere.
-class SaidLinear final : public kins::Kinematics, public kins::TypeSwitch {
+class SaidLinear final : public kinematics::Kinematics, public kinematics::TypeSwitch {
   public:
     int type = 0;
 
-    kins::Kind kind() const noexcept override { return kins::Kind::BOTH; }
-    kins::Status forward(const double *joints, geom::Pose &pose) const noexcept override {
+    kinematics::Kind kind() const noexcept override { return kinematics::Kind::BOTH; }
+    kinematics::Status forward(const double *joints, geometry::Pose &pose) const noexcept override {
         std::copy_n(joints, 3, pose.c.begin());
-        return kins::Status::OK;
+        return kinematics::Status::OK;
     }
-    kins::Status inverse(const geom::Pose &pose, double *joints) const noexcept override {
+    kinematics::Status inverse(const geometry::Pose &pose, double *joints) const noexcept override {
         std::copy_n(pose.c.begin(), 3, joints);
-        return kins::Status::OK;
+        return kinematics::Status::OK;
     }
-    kins::LinearJoints linear() const noexcept override {
-        return type == 1 ? kins::joints_like_axes() : kins::LinearJoints{};
+    kinematics::LinearJoints linear() const noexcept override {
+        return type == 1 ? kinematics::joints_like_axes() : kinematics::LinearJoints{};
     }
     bool switch_to(int wanted) noexcept override {
         type = wanted;
         return true;
     }
-    kins::TypeSwitch *type_switch() const noexcept override { return const_cast<SaidLinear *>(this); }
+    kinematics::TypeSwitch *type_switch() const noexcept override { return const_cast<SaidLinear *>(this); }
 };
 
 /// External offsets are for joints that go in proportion to axes: in whatever mode the type was changed.
-TEST(KinematicsTypes, OffsetsAreThereFromTheChangeOnToATypeThatAllowsThem_C14_C15) {
+TEST(KinematicsTypes, OffsetsAreThereFromTheChangeOnToATypeThatAllowsThem) {
     for (const Mode mode : {Mode::TELEOP, Mode::COORD}) {
         SaidLinear kinematics;
         MotionRig rig(kinematics, 3, 100, 1000);

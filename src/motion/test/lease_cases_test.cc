@@ -5,16 +5,16 @@
 
 #include <gtest/gtest.h>
 
-#include "kins/corexy.hh"
-#include "testing/motion_rig.hh"
+#include "kinematics/corexy.hh"
+#include "tests/support/motion_rig.hh"
 
 namespace mw::motion {
 namespace {
 
 using testing::MotionRig;
 
-TEST(JogLease, HoldsWhereJointsAreNotAxes_C9) {
-    kins::CoreXy model;
+TEST(JogLease, HoldsWhereJointsAreNotAxes) {
+    kinematics::CoreXy model;
     MotionRig rig(model, 3, 100, 1000);
     rig.ready(Mode::TELEOP);
     for (int n = 0; n < 10; ++n) {
@@ -34,7 +34,7 @@ TEST(JogLease, HoldsWhereJointsAreNotAxes_C9) {
 }
 
 /// A person holds the key at the end of the way: no error, no motion, and nothing to tell when he lets go.
-TEST(JogLease, AtTheSoftLimitRenewalsChangeNothing_C8) {
+TEST(JogLease, AtTheSoftLimitRenewalsChangeNothing) {
     MotionRig rig;
     rig.set(Parameter::JOINT_MAX_LIMIT, 0, 2);
     rig.ready(Mode::FREE);
@@ -54,7 +54,7 @@ TEST(JogLease, AtTheSoftLimitRenewalsChangeNothing_C8) {
 }
 
 /// A client that has not heard of a stop renews: nothing moves, whether its jog moved or stood at a limit.
-TEST(JogLease, NoRenewalOutlivesAStop_C8) {
+TEST(JogLease, NoRenewalOutlivesAStop) {
     struct Stop {
         const char *name;
         std::function<void(MotionRig &)> make;
@@ -121,7 +121,7 @@ TEST(JogLease, NoRenewalOutlivesAStop_C8) {
 }
 
 /// Its end is twice the travel from where it began, not from where it was renewed.
-TEST(JogLease, OfAJointThatIsNotHomedEndsWhereItWouldWithoutRenewals_C8) {
+TEST(JogLease, OfAJointThatIsNotHomedEndsWhereItWouldWithoutRenewals) {
     const auto end_of = [](bool isLeased) {
         MotionRig rig;
         rig.set(Parameter::JOINT_MIN_LIMIT, 0, -2);

@@ -9,8 +9,8 @@
 
 #include <gtest/gtest.h>
 
-#include "testing/campaign_seeds.hh"
-#include "testing/motion_rig.hh"
+#include "tests/support/campaign_seeds.hh"
+#include "tests/support/motion_rig.hh"
 
 namespace mw::motion {
 namespace lease_test {
@@ -370,19 +370,19 @@ void run_all(Mode mode, double jerk) {
         all.refused_others);
 }
 
-TEST(JogLease, HoldsInFreeMode_C8) {
+TEST(JogLease, HoldsInFreeMode) {
     run_all(Mode::FREE, 0);
 }
 
-TEST(JogLease, HoldsInFreeModeWithJerkLimits_C8) {
+TEST(JogLease, HoldsInFreeModeWithJerkLimits) {
     run_all(Mode::FREE, 2e4);
 }
 
-TEST(JogLease, HoldsInTeleopMode_C9) {
+TEST(JogLease, HoldsInTeleopMode) {
     run_all(Mode::TELEOP, 0);
 }
 
-TEST(JogLease, HoldsInTeleopModeWithJerkLimits_C9) {
+TEST(JogLease, HoldsInTeleopModeWithJerkLimits) {
     run_all(Mode::TELEOP, 2e4);
 }
 

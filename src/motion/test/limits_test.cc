@@ -2,16 +2,16 @@
 // The one place where limits of joints, axes and the machine become the limits of paths and jogs.
 #include <gtest/gtest.h>
 
-#include "kins/corexy.hh"
-#include "kins/rotary_table.hh"
-#include "kins/rotate.hh"
-#include "kins/trivial.hh"
-#include "motion/api/limits.hh"
+#include "kinematics/corexy.hh"
+#include "kinematics/rotary_table.hh"
+#include "kinematics/rotate.hh"
+#include "kinematics/trivial.hh"
+#include "motion/interface/limits.hh"
 
 namespace mw::motion {
 namespace {
 
-constexpr int X = geom::AXIS_X, Y = geom::AXIS_Y, Z = geom::AXIS_Z;
+constexpr int X = geometry::AXIS_X, Y = geometry::AXIS_Y, Z = geometry::AXIS_Z;
 
 Settings with(std::initializer_list<std::tuple<Parameter, int, double>> values) {
     Settings settings;
@@ -22,7 +22,7 @@ Settings with(std::initializer_list<std::tuple<Parameter, int, double>> values) 
     return settings;
 }
 
-TEST(Limits, AnAxisHasTheTightestOfItsOwnAndOfEveryJointThatMovesIt_C7) {
+TEST(Limits, AnAxisHasTheTightestOfItsOwnAndOfEveryJointThatMovesIt) {
     const Settings s = with({{Parameter::AXIS_MAX_VELOCITY, Y, 80},
                              {Parameter::JOINT_MAX_VELOCITY, 1, 90},
                              {Parameter::JOINT_MAX_VELOCITY, 2, 70},
@@ -36,16 +36,16 @@ TEST(Limits, AnAxisHasTheTightestOfItsOwnAndOfEveryJointThatMovesIt_C7) {
 }
 
 TEST(Limits, JointsThatTheMachineDoesNotHaveMoveNoAxis) {
-    kins::Trivial kinematics;
+    kinematics::Trivial kinematics;
     ASSERT_TRUE(kinematics.configure("XYZABCUVW"));
     const AxisMap map = axis_map(kinematics, 3);
     EXPECT_TRUE(map.hasAxis(Z));
-    EXPECT_FALSE(map.hasAxis(geom::AXIS_A));
+    EXPECT_FALSE(map.hasAxis(geometry::AXIS_A));
     EXPECT_EQ(fold_limits(Settings(), map, ALL_HOMED).axes, 7U);
 }
 
 TEST(Limits, LettersAndKinematicsGiveTheSameMap) {
-    kins::Trivial kinematics;
+    kinematics::Trivial kinematics;
     ASSERT_TRUE(kinematics.configure("xyyz"));
     const AxisMap of_letters = axis_map("XYYZ", 4), of_model = axis_map(kinematics, 4);
     EXPECT_EQ(of_letters.axis_of_joint, of_model.axis_of_joint);
@@ -53,7 +53,7 @@ TEST(Limits, LettersAndKinematicsGiveTheSameMap) {
     EXPECT_EQ(axis_map("XQZ", 3).axis_of_joint[1], -1) << "a letter that is no axis";
 }
 
-TEST(Limits, SoftLimitsHoldForWhatIsHomed_C9) {
+TEST(Limits, SoftLimitsHoldForWhatIsHomed) {
     const Settings s = with({{Parameter::AXIS_MIN_LIMIT, Y, -10},
                              {Parameter::AXIS_MAX_LIMIT, Y, 10},
                              {Parameter::JOINT_MIN_LIMIT, 1, -8},
@@ -94,9 +94,9 @@ TEST(Limits, NoJerkLimitIsNoneEverywhere) {
         AxisMap map = axis_map("XYZ", 3);
         map.kind = kind;
         const FoldedLimits limits = fold_limits(none, map, ALL_HOMED);
-        EXPECT_EQ(limits.path.jerk[X], traj::UNLIMITED);
-        EXPECT_EQ(limits.path.jerk[traj::XYZ_NORM], traj::UNLIMITED);
-        EXPECT_EQ(limits.joints.jerk[0], traj::UNLIMITED);
+        EXPECT_EQ(limits.path.jerk[X], trajectory::UNLIMITED);
+        EXPECT_EQ(limits.path.jerk[trajectory::XYZ_NORM], trajectory::UNLIMITED);
+        EXPECT_EQ(limits.joints.jerk[0], trajectory::UNLIMITED);
         EXPECT_EQ(limits.joint_jog[0].jerk, 0);
         EXPECT_EQ(limits.axis_jog[X].jerk, 0);
     }
@@ -112,7 +112,7 @@ TEST(Limits, JerkOfTheMachineLimitsStraightJogsAndNoTurningOnes) {
     EXPECT_EQ(limits.path.jerk[X], 5000) << "the norm of X Y Z has a limit of its own";
     EXPECT_EQ(limits.axis_jog[X].jerk, 2000);
     EXPECT_EQ(limits.joint_jog[0].jerk, 2000);
-    EXPECT_EQ(limits.axis_jog[geom::AXIS_A].jerk, 3000);
+    EXPECT_EQ(limits.axis_jog[geometry::AXIS_A].jerk, 3000);
     EXPECT_EQ(limits.joint_jog[1].jerk, 3000);
     const Settings off = with({{Parameter::TRAJ_MAX_JERK, 0, 2000}});
     EXPECT_EQ(fold_limits(off, axis_map("X", 1), ALL_HOMED).axis_jog[X].jerk, 0);
@@ -128,7 +128,7 @@ TEST(Limits, KinematicsThatNobodyMayAskLeaveAMarginForJoints) {
     map.kind = AxisMap::Kind::UNKNOWN;
     const FoldedLimits limits = fold_limits(s, map, ALL_HOMED);
     EXPECT_EQ(limits.path.velocity[X], 40);
-    EXPECT_EQ(limits.path.velocity[geom::AXIS_A], 20);
+    EXPECT_EQ(limits.path.velocity[geometry::AXIS_A], 20);
     EXPECT_EQ(limits.axis_jog[X].velocity, 300) << "jogs ask the kinematics every cycle";
     map.kind = AxisMap::Kind::PLANNED;
     EXPECT_EQ(fold_limits(s, map, ALL_HOMED).path.velocity[X], 300) << "the planner keeps the joints' limits";
@@ -136,7 +136,7 @@ TEST(Limits, KinematicsThatNobodyMayAskLeaveAMarginForJoints) {
 }
 
 TEST(Limits, WhereJointsAreNoAxesTheirSoftLimitsAreNoneOfAxes) {
-    const kins::RotaryTable table;
+    const kinematics::RotaryTable table;
     const Settings s = with({{Parameter::JOINT_MIN_LIMIT, 0, -1}, {Parameter::JOINT_MAX_LIMIT, 0, 1}});
     const AxisMap map = axis_map(table, 5);
     EXPECT_EQ(map.kind, AxisMap::Kind::PLANNED);
@@ -146,7 +146,7 @@ TEST(Limits, WhereJointsAreNoAxesTheirSoftLimitsAreNoneOfAxes) {
 }
 
 /// X + Y and X - Y: half of a joint is each axis's when both go at once, and its ratio of that its offset's.
-TEST(Limits, ExternalOffsetsHaveTheirShareOfJointsThatAreNoAxes_C13_C15) {
+TEST(Limits, ExternalOffsetsHaveTheirShareOfJointsThatAreNoAxes) {
     Settings s = with({{Parameter::AXIS_OFFSET_RATIO, X, 0.3},
                        {Parameter::AXIS_OFFSET_RATIO, Y, 0.1},
                        {Parameter::TRAJ_PLANNER_TYPE, 0, 1},
@@ -162,10 +162,10 @@ TEST(Limits, ExternalOffsetsHaveTheirShareOfJointsThatAreNoAxes_C13_C15) {
             ASSERT_EQ(s.set(one, MAX_JOINTS, MAX_SPINDLES), Reason::NONE);
         }
     }
-    const kins::CoreXy corexy;
+    const kinematics::CoreXy corexy;
     const AxisMap map = axis_map(corexy, 3);
     EXPECT_TRUE(map.mayHaveOffset(X));
-    EXPECT_FALSE(map.mayHaveOffset(geom::AXIS_A)) << "no joint of the machine moves it";
+    EXPECT_FALSE(map.mayHaveOffset(geometry::AXIS_A)) << "no joint of the machine moves it";
     const FoldedLimits limits = fold_limits(s, map, ALL_HOMED);
     EXPECT_DOUBLE_EQ(limits.path_joints.velocity[0], 80);
     EXPECT_DOUBLE_EQ(limits.path_joints.acceleration[1], 800);
@@ -188,12 +188,12 @@ TEST(Limits, ExternalOffsetsHaveTheirShareOfJointsThatAreNoAxes_C13_C15) {
     EXPECT_EQ(shared.within(range).high[2], 0) << "not shared";
 }
 
-TEST(Limits, WhatTurnsWithAnotherAxisHasNoExternalOffset_C15) {
-    const kins::Rotate rotate;
-    const kins::RotaryTable table;
+TEST(Limits, WhatTurnsWithAnotherAxisHasNoExternalOffset) {
+    const kinematics::Rotate rotate;
+    const kinematics::RotaryTable table;
     const AxisMap turned = axis_map(rotate, 6);
     EXPECT_FALSE(turned.mayHaveOffset(X));
-    EXPECT_FALSE(turned.mayHaveOffset(geom::AXIS_C));
+    EXPECT_FALSE(turned.mayHaveOffset(geometry::AXIS_C));
     EXPECT_TRUE(turned.mayHaveOffset(Z));
     EXPECT_FALSE(axis_map(table, 5).mayHaveOffset(Z));
     const Settings s = with({{Parameter::AXIS_OFFSET_RATIO, X, 0.3}, {Parameter::AXIS_MAX_VELOCITY, X, 50}});
@@ -202,15 +202,15 @@ TEST(Limits, WhatTurnsWithAnotherAxisHasNoExternalOffset_C15) {
     EXPECT_EQ(limits.path.velocity[X], 50) << "nothing is kept for one that does not come";
 }
 
-TEST(Limits, AJointWithALockHasNoExternalOffset_C15) {
-    const kins::Rotate rotate;
-    const Settings s = with({{Parameter::AXIS_OFFSET_RATIO, geom::AXIS_A, 0.3},
+TEST(Limits, AJointWithALockHasNoExternalOffset) {
+    const kinematics::Rotate rotate;
+    const Settings s = with({{Parameter::AXIS_OFFSET_RATIO, geometry::AXIS_A, 0.3},
                              {Parameter::AXIS_OFFSET_RATIO, Z, 0.3},
-                             {Parameter::AXIS_MAX_VELOCITY, geom::AXIS_A, 50},
+                             {Parameter::AXIS_MAX_VELOCITY, geometry::AXIS_A, 50},
                              {Parameter::AXIS_MAX_VELOCITY, Z, 50},
                              {Parameter::JOINT_LOCKING_INDEXER, 3, 1}});
     const FoldedLimits limits = fold_limits(s, axis_map(rotate, 6), ALL_HOMED);
-    EXPECT_EQ(limits.offset[geom::AXIS_A].velocity, 0);
+    EXPECT_EQ(limits.offset[geometry::AXIS_A].velocity, 0);
     EXPECT_GT(limits.offset[Z].velocity, 0);
 }
 

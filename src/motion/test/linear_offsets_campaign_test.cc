@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "testing/linear_machines.hh"
+#include "tests/support/linear_machines.hh"
 
 namespace mw::motion {
 namespace linear_offsets_campaign_test {
@@ -69,7 +69,7 @@ LinearMachine draw_machine(Random &random, Kind kind, bool isJerkLimited) {
         m.joints[n].low = isTight ? -random.real(40, 90) : -300;
         m.joints[n].high = isTight ? random.real(40, 90) : 300;
         m.ratio[n] = random.chance(0.7) ? random.real(0.05, random.chance(0.2) ? 0.9 : 0.5) : 0.0;
-        const bool isTurned = kind == Kind::TURNED && (i < 2 || i == geom::AXIS_C);
+        const bool isTurned = kind == Kind::TURNED && (i < 2 || i == geometry::AXIS_C);
         hasOffset = hasOffset || (m.ratio[n] > 0 && !isTurned);
     }
     m.ratio[2] = hasOffset ? m.ratio[2] : 0.3;
@@ -77,24 +77,24 @@ LinearMachine draw_machine(Random &random, Kind kind, bool isJerkLimited) {
 }
 
 /// X Y Z alone: tolerances are of these.
-geom::Pose place_of(const geom::Pose &p) {
+geometry::Pose place_of(const geometry::Pose &p) {
     return {{p[0], p[1], p[2]}};
 }
 
 /// How far a place is from a straight line.
-double distance(const geom::Pose &p, const geom::Pose &from, const geom::Pose &to) {
-    const geom::Pose run = to - from;
-    const double length2 = geom::dot(run, run);
-    const double t = length2 > 0 ? std::clamp(geom::dot(p - from, run) / length2, 0.0, 1.0) : 0.0;
-    return geom::norm(p - (from + run * t));
+double distance(const geometry::Pose &p, const geometry::Pose &from, const geometry::Pose &to) {
+    const geometry::Pose run = to - from;
+    const double length2 = geometry::dot(run, run);
+    const double t = length2 > 0 ? std::clamp(geometry::dot(p - from, run) / length2, 0.0, 1.0) : 0.0;
+    return geometry::norm(p - (from + run * t));
 }
 
 struct Way {
-    geom::Pose from, to, centre;
+    geometry::Pose from, to, centre;
     bool isArc = false;
     double radius = 0, angle = 0, sweep = 0;
 
-    double from_here(const geom::Pose &p) const {
+    double from_here(const geometry::Pose &p) const {
         if (!isArc) {
             return distance(p, from, to);
         }
@@ -104,12 +104,12 @@ struct Way {
         double turned = std::remainder(std::atan2(y, x) - angle, 2 * std::numbers::pi);
         turned = sweep > 0 && turned < 0 ? turned + 2 * std::numbers::pi : turned;
         turned = sweep < 0 && turned > 0 ? turned - 2 * std::numbers::pi : turned;
-        double least = std::min(geom::norm(p - from), geom::norm(p - to));
+        double least = std::min(geometry::norm(p - from), geometry::norm(p - to));
         if (std::abs(turned) <= std::abs(sweep)) {
-            geom::Pose on = from;
+            geometry::Pose on = from;
             on[0] = centre[0] + radius * std::cos(angle + turned);
             on[1] = centre[1] + radius * std::sin(angle + turned);
-            least = std::min(least, geom::norm(p - on));
+            least = std::min(least, geometry::norm(p - on));
         }
         return least;
     }
@@ -180,7 +180,7 @@ class Session {
         if (ways_.empty()) {
             return;
         }
-        const geom::Pose p = place_of(rig_.programmed());
+        const geometry::Pose p = place_of(rig_.programmed());
         double least = 1e300;
         for (const Way &way : ways_) {
             least = std::min(least, way.from_here(p));
@@ -188,8 +188,8 @@ class Session {
         worst_off_path_ = std::max(worst_off_path_, least - tolerance_);
         EXPECT_LT(least, tolerance_ + 1e-6) << rig_.machine.name;
     }
-    geom::Pose draw_place(double share) {
-        geom::Pose p = end_;
+    geometry::Pose draw_place(double share) {
+        geometry::Pose p = end_;
         for (int i = 0; i < rig_.machine.num_joints; ++i) {
             const CoordinateLimits &axis = rig_.machine.axes[static_cast<std::size_t>(i)];
             p[i] = random_.chance(0.8) ? random_.real(share * axis.low, share * axis.high) : p[i];
@@ -365,7 +365,7 @@ class Session {
     Count &count_;
     LinearRig rig_;
     std::vector<Way> ways_;
-    geom::Pose end_;
+    geometry::Pose end_;
     double tolerance_ = 0;
     double worst_off_path_ = -1e300;  ///< beyond the tolerance
     bool isMild_ = false;             ///< offsets are short of most limits
@@ -374,7 +374,7 @@ class Session {
 class LinearOffsetCampaign : public ::testing::TestWithParam<bool> {};
 INSTANTIATE_TEST_SUITE_P(WithAndWithoutJerk, LinearOffsetCampaign, ::testing::Bool());
 
-TEST_P(LinearOffsetCampaign, NoSampleOfTheSumLeavesALimitOfJointsOrAxes_C13_C15) {
+TEST_P(LinearOffsetCampaign, NoSampleOfTheSumLeavesALimitOfJointsOrAxes) {
     const char *wanted = std::getenv("MW_OFFSET_SESSIONS");
     const int sessions = wanted != nullptr ? std::atoi(wanted) : 36;
     const char *first = std::getenv("MW_OFFSET_FIRST");

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "testing/linear_machines.hh"
+#include "tests/support/linear_machines.hh"
 
 namespace mw::motion {
 namespace linear_offsets_test {
@@ -26,7 +26,7 @@ LinearMachine corexy(bool isJerkLimited = false) {
     return m;
 }
 
-geom::Pose at(double x, double y, double z) {
+geometry::Pose at(double x, double y, double z) {
     return {{x, y, z}};
 }
 
@@ -37,7 +37,7 @@ void slow_joints(LinearMachine &m) {
     }
 }
 
-TEST(LinearOffsets, HeightOfACoreXYTableFollowsItsPinBesideAProgram_C15) {
+TEST(LinearOffsets, HeightOfACoreXYTableFollowsItsPinBesideAProgram) {
     LinearMachine m = corexy();
     m.ratio[2] = 0.4;
     LinearRig rig(m);
@@ -60,7 +60,7 @@ TEST(LinearOffsets, HeightOfACoreXYTableFollowsItsPinBesideAProgram_C15) {
     rig.expect_within();
 }
 
-TEST(LinearOffsets, OffsetsOfBothAxesOfABeltAndAPathShareWhatTheJointCanDo_C13_C15) {
+TEST(LinearOffsets, OffsetsOfBothAxesOfABeltAndAPathShareWhatTheJointCanDo) {
     for (const bool isJerkLimited : {false, true}) {
         LinearMachine m = corexy(isJerkLimited);
         slow_joints(m);
@@ -120,7 +120,7 @@ std::array<double, 2> speeds_on_circle(double sense) {
 
 /// Corners of chords are moved out, against the mean, as far as the path goes elsewhere, and whichever joint
 /// that takes farther out: mirrored, a circle is driven the same with the joints exchanged.
-TEST(LinearOffsets, ACircleOfChordsIsDrivenTheSameInTheDirectionOfEitherJoint_C13_C15) {
+TEST(LinearOffsets, ACircleOfChordsIsDrivenTheSameInTheDirectionOfEitherJoint) {
     const auto [left_0, left_1] = speeds_on_circle(1);
     const auto [right_0, right_1] = speeds_on_circle(-1);
     EXPECT_GT(left_0, 30);
@@ -128,7 +128,7 @@ TEST(LinearOffsets, ACircleOfChordsIsDrivenTheSameInTheDirectionOfEitherJoint_C1
     EXPECT_NEAR(left_1, right_0, 0.005 * left_1);
 }
 
-TEST(LinearOffsets, AJogHasWhatOffsetsLeaveOfTheJoints_C8_C13_C15) {
+TEST(LinearOffsets, AJogHasWhatOffsetsLeaveOfTheJoints) {
     for (const bool isJerkLimited : {false, true}) {
         LinearMachine m = corexy(isJerkLimited);
         slow_joints(m);
@@ -149,7 +149,7 @@ TEST(LinearOffsets, AJogHasWhatOffsetsLeaveOfTheJoints_C8_C13_C15) {
 }
 
 /// A feed override of 200 % is of jogs as well.
-TEST(LinearOffsets, AJogIsNoFasterThanItsAxisWhateverTheOverride_C8_C13) {
+TEST(LinearOffsets, AJogIsNoFasterThanItsAxisWhateverTheOverride) {
     for (const bool isJerkLimited : {false, true}) {
         LinearRig rig(corexy(isJerkLimited));
         rig.rig->set(Parameter::MAX_FEED_SCALE, 0, 2);
@@ -163,7 +163,7 @@ TEST(LinearOffsets, AJogIsNoFasterThanItsAxisWhateverTheOverride_C8_C13) {
     }
 }
 
-TEST(LinearOffsets, AnOffsetGoesAsFarAsTheJointsOfTheBeltsLetIt_C13_C15) {
+TEST(LinearOffsets, AnOffsetGoesAsFarAsTheJointsOfTheBeltsLetIt) {
     LinearMachine m = corexy();
     m.ratio = {0.2, 0, 0};
     m.joints[0].high = 60;
@@ -189,7 +189,7 @@ TEST(LinearOffsets, AnOffsetGoesAsFarAsTheJointsOfTheBeltsLetIt_C13_C15) {
     rig.expect_within();
 }
 
-TEST(LinearOffsets, AJogStopsWhereTheOffsetLeavesTheJointNoMore_C9_C15) {
+TEST(LinearOffsets, AJogStopsWhereTheOffsetLeavesTheJointNoMore) {
     LinearMachine m = corexy();
     m.ratio = {0.2, 0, 0};
     m.joints[0].high = 60;
@@ -206,7 +206,7 @@ TEST(LinearOffsets, AJogStopsWhereTheOffsetLeavesTheJointNoMore_C9_C15) {
 }
 
 /// What the jog under way is sent to is its own: the offset takes none of the room before.
-TEST(LinearOffsets, AJogUnderWayArrivesWhateverAnOffsetAsksForMeanwhile_C8_C15) {
+TEST(LinearOffsets, AJogUnderWayArrivesWhateverAnOffsetAsksForMeanwhile) {
     for (const bool isJerkLimited : {false, true}) {
         LinearMachine m = corexy(isJerkLimited);
         m.ratio = {0.2, 0, 0};
@@ -224,7 +224,7 @@ TEST(LinearOffsets, AJogUnderWayArrivesWhateverAnOffsetAsksForMeanwhile_C8_C15) 
     }
 }
 
-TEST(LinearOffsets, AnArcIsCheckedWhereItsJointsGoFarthest_C13_C15) {
+TEST(LinearOffsets, AnArcIsCheckedWhereItsJointsGoFarthest) {
     LinearMachine m = corexy();
     m.ratio = {0.2, 0, 0};
     m.joints[0].high = 20 * std::sqrt(2.0) - 5e-5;  // between two of the places that checks look at
@@ -244,7 +244,7 @@ TEST(LinearOffsets, AnArcIsCheckedWhereItsJointsGoFarthest_C13_C15) {
     rig.expect_within();
 }
 
-TEST(LinearOffsets, ARigidTapAlongAnAxisOfTheSameJointsIsRefused_C15) {
+TEST(LinearOffsets, ARigidTapAlongAnAxisOfTheSameJointsIsRefused) {
     LinearMachine m = corexy();
     m.ratio = {0.2, 0, 0};
     LinearRig rig(m);
@@ -263,7 +263,7 @@ TEST(LinearOffsets, ARigidTapAlongAnAxisOfTheSameJointsIsRefused_C15) {
     EXPECT_EQ(rig.rig->refusal(beside), Reason::NONE);
 }
 
-TEST(LinearOffsets, ATurnedTableHasOneOfZAndNoneOfWhatTurns_C15) {
+TEST(LinearOffsets, ATurnedTableHasOneOfZAndNoneOfWhatTurns) {
     LinearMachine m = ::mw::testing::turned_table();
     m.ratio = {0.3, 0.3, 0.3, 0.3, 0, 0.3};
     LinearRig rig(m);
@@ -271,8 +271,8 @@ TEST(LinearOffsets, ATurnedTableHasOneOfZAndNoneOfWhatTurns_C15) {
     for (int i = 0; i < 6; ++i) {
         rig.pins(i).counts = 300;
     }
-    geom::Pose end = at(30, 10, 5);
-    end[geom::AXIS_C] = 40;
+    geometry::Pose end = at(30, 10, 5);
+    end[geometry::AXIS_C] = 40;
     rig.line(end, 0);
     ASSERT_TRUE(rig.finish());
     rig.go(2000);
@@ -285,7 +285,7 @@ TEST(LinearOffsets, ATurnedTableHasOneOfZAndNoneOfWhatTurns_C15) {
     rig.expect_within();
 }
 
-TEST(LinearOffsets, OffAndOnFreeModeAbortAndLostHomesAreAsWhereJointsAreAxes_C6_C15) {
+TEST(LinearOffsets, OffAndOnFreeModeAbortAndLostHomesAreAsWhereJointsAreAxes) {
     LinearMachine m = corexy();
     m.ratio = {0.3, 0.3, 0.3};
     LinearRig rig(m);
@@ -325,7 +325,7 @@ TEST(LinearOffsets, OffAndOnFreeModeAbortAndLostHomesAreAsWhereJointsAreAxes_C6_
     rig.rig->forgive_joints();
 }
 
-TEST(LinearOffsets, PinsOfMatrixkinsThatAreSetLaterCount_C15) {
+TEST(LinearOffsets, PinsOfMatrixkinsThatAreSetLaterCount) {
     LinearMachine m = ::mw::testing::measured({1, 0, 0, 0, 1, 0, 0, 0, 1});
     m.ratio = {0, 0.5, 0};
     LinearRig rig(m);

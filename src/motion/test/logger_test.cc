@@ -36,7 +36,7 @@ class LoggerTest : public testing::Test {
         stand_in.step(0);
         return log;
     }
-    static Line line(const geom::Pose &end, bool isRapid, double feed, int number) {
+    static Line line(const geometry::Pose &end, bool isRapid, double feed, int number) {
         Line line;
         line.end = end;
         line.terms.isRapid = isRapid;
@@ -52,15 +52,15 @@ class LoggerTest : public testing::Test {
     StandIn stand_in{*channels, [this](const std::string &text) { log += text + "\n"; }};
 };
 
-geom::Pose counting(double factor) {
-    geom::Pose pose;
-    for (int axis = 0; axis < geom::AXIS_COUNT; ++axis) {
+geometry::Pose counting(double factor) {
+    geometry::Pose pose;
+    for (int axis = 0; axis < geometry::AXIS_COUNT; ++axis) {
         pose[axis] = factor * (axis + 1);
     }
     return pose;
 }
 
-TEST_F(LoggerTest, MovesHaveTheWordsThatTestsKnow_D2) {
+TEST_F(LoggerTest, MovesHaveTheWordsThatTestsKnow) {
     configure();
     move(line(counting(1), true, 0, 2));
     EXPECT_EQ(said(),
@@ -71,7 +71,7 @@ TEST_F(LoggerTest, MovesHaveTheWordsThatTestsKnow_D2) {
                       "motion_type=2, vel=0.0166667, ini_maxvel=1.66296, acc=415.74, turn=-1\n");
 }
 
-TEST_F(LoggerTest, SettingsAreToldOnceTheyAreWholeAndLaterOnesAtOnce_D2) {
+TEST_F(LoggerTest, SettingsAreToldOnceTheyAreWholeAndLaterOnesAtOnce) {
     set(Parameter::JOINT_MAX_LIMIT, 0, 40);
     EXPECT_EQ(said(), "");
     send(SetNumJoints{1});
@@ -84,7 +84,7 @@ TEST_F(LoggerTest, SettingsAreToldOnceTheyAreWholeAndLaterOnesAtOnce_D2) {
     EXPECT_EQ(said(), "SET_JOINT_MAX_LIMIT index=0, value=30\n");
 }
 
-TEST_F(LoggerTest, CommandsComeInTheOrderInWhichTheyWereSent_D2) {
+TEST_F(LoggerTest, CommandsComeInTheOrderInWhichTheyWereSent) {
     configure();
     move(line(counting(1), true, 0, 1));
     send(SpindleOn{0, 234});
@@ -98,7 +98,7 @@ TEST_F(LoggerTest, CommandsComeInTheOrderInWhichTheyWereSent_D2) {
     EXPECT_LT(second, off);
 }
 
-TEST_F(LoggerTest, AnAbortIsAnAbortOfEachJogAndMakesStaleWhatCameBefore_D2) {
+TEST_F(LoggerTest, AnAbortIsAnAbortOfEachJogAndMakesStaleWhatCameBefore) {
     configure();
     move(line(counting(1), true, 0, 1));
     epoch = 1;

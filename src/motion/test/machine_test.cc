@@ -2,10 +2,10 @@
 // What surrounds the path: homing by switches, backlash, wheels, spindles, watchdog, overrides.
 #include <gtest/gtest.h>
 
-#include "motion/api/texts.hh"
-#include "sim/encoder.hh"
-#include "testing/limit_checker.hh"
-#include "testing/motion_rig.hh"
+#include "components/plants/encoder.hh"
+#include "motion/interface/texts.hh"
+#include "tests/support/limit_checker.hh"
+#include "tests/support/motion_rig.hh"
 
 namespace mw::motion {
 namespace {
@@ -24,7 +24,7 @@ void set_up_switch(MotionRig &rig) {
     rig.step(5);
 }
 
-TEST(Machine, HomesByASwitchAndKeepsTheLimits_C10) {
+TEST(Machine, HomesByASwitchAndKeepsTheLimits) {
     MotionRig rig;
     set_up_switch(rig);
     rig.send(Enable{});
@@ -47,7 +47,7 @@ TEST(Machine, HomesByASwitchAndKeepsTheLimits_C10) {
 /// The drive of joint 0 brings its shaft to where it is told by the next cycle; its encoder is set to zero at
 /// marks every 5 units while motion asks for that.
 struct IndexedDrive {
-    sim::Encoder encoder{{.counts_per_unit = 1e6, .index_spacing = 5, .index_at = 1}, 2};
+    plants::Encoder encoder{{.counts_per_unit = 1e6, .index_spacing = 5, .index_at = 1}, 2};
     double shaft = 2;
     int resets = 0;
 
@@ -60,7 +60,7 @@ struct IndexedDrive {
     }
 };
 
-TEST(Machine, AnIndexThatSetsTheEncoderToZeroMovesNoMotor_C10) {
+TEST(Machine, AnIndexThatSetsTheEncoderToZeroMovesNoMotor) {
     MotionRig rig;
     rig.set(Parameter::JOINT_HOME_LATCH_VEL, 0, 2);
     rig.set(Parameter::JOINT_HOME_USE_INDEX, 0, 1);
@@ -87,7 +87,7 @@ TEST(Machine, AnIndexThatSetsTheEncoderToZeroMovesNoMotor_C10) {
     EXPECT_TRUE(rig.faults.empty());
 }
 
-TEST(Machine, AFailedHomingSaysWhyAndStopsTheOthers_C10) {
+TEST(Machine, AFailedHomingSaysWhyAndStopsTheOthers) {
     MotionRig rig;
     set_up_switch(rig);
     rig.set(Parameter::JOINT_HOME_LATCH_VEL, 0, 0);
@@ -103,7 +103,7 @@ TEST(Machine, AFailedHomingSaysWhyAndStopsTheOthers_C10) {
     EXPECT_TRUE(rig.status().isInPosition);
 }
 
-TEST(Machine, AbortDuringHomingStopsAllJoints_C10) {
+TEST(Machine, AbortDuringHomingStopsAllJoints) {
     MotionRig rig;
     set_up_switch(rig);
     rig.send(Enable{});
@@ -121,7 +121,7 @@ TEST(Machine, AbortDuringHomingStopsAllJoints_C10) {
     EXPECT_EQ(rig.out->joint[0].motor_pos_cmd, stood);
 }
 
-TEST(Machine, BacklashIsTakenUpAtReversalWithinHalfTheLimits_C11) {
+TEST(Machine, BacklashIsTakenUpAtReversalWithinHalfTheLimits) {
     MotionRig rig;
     rig.set(Parameter::JOINT_BACKLASH, 0, 0.4);
     rig.ready(Mode::FREE);
@@ -142,7 +142,7 @@ TEST(Machine, BacklashIsTakenUpAtReversalWithinHalfTheLimits_C11) {
     EXPECT_TRUE(checker.isWithin()) << checker.report();
 }
 
-TEST(Machine, AWheelMovesTheJointByItsCounts_C15) {
+TEST(Machine, AWheelMovesTheJointByItsCounts) {
     MotionRig rig;
     rig.ready(Mode::FREE);
     rig.in.joint[1].wheel.isEnabled = true;
@@ -158,7 +158,7 @@ TEST(Machine, AWheelMovesTheJointByItsCounts_C15) {
     EXPECT_NEAR(rig.out->joint[1].motor_pos_cmd, 2.5, 1e-12);
 }
 
-TEST(Machine, SpindleSpeedIsScaledAndLimited_C15) {
+TEST(Machine, SpindleSpeedIsScaledAndLimited) {
     MotionRig rig;
     rig.set(Parameter::SPINDLE_MAX_FORWARD, 0, 3000);
     rig.set(Parameter::MAX_FEED_SCALE, 0, 1.2);
@@ -181,7 +181,7 @@ TEST(Machine, SpindleSpeedIsScaledAndLimited_C15) {
     EXPECT_EQ(rig.refusal(none), Reason::NO_SUCH_SPINDLE);
 }
 
-TEST(Machine, FeedMovesWaitForTheSpindleAndFollowIt_C15) {
+TEST(Machine, FeedMovesWaitForTheSpindleAndFollowIt) {
     MotionRig rig;
     rig.ready();
     rig.send(SpindleOn{0, 600});
@@ -201,17 +201,17 @@ TEST(Machine, FeedMovesWaitForTheSpindleAndFollowIt_C15) {
     ASSERT_TRUE(rig.run_until([&] { return rig.isDone(id); }, 20));
 }
 
-TEST(Machine, ATeleopVectorMovesAllItsAxesOrNone_C5) {
+TEST(Machine, ATeleopVectorMovesAllItsAxesOrNone) {
     MotionRig rig;
     rig.ready(Mode::TELEOP);
-    geom::Pose velocity;
+    geometry::Pose velocity;
     velocity[0] = 10;
-    velocity[geom::AXIS_C] = 5;
+    velocity[geometry::AXIS_C] = 5;
     const CommandId refused = rig.send(SetTeleopVector{velocity});
     rig.step(100);
     EXPECT_EQ(rig.refusal(refused), Reason::NO_SUCH_AXIS);
-    EXPECT_EQ(rig.status().carte_pos_cmd, geom::Pose{});
-    velocity[geom::AXIS_C] = 0;
+    EXPECT_EQ(rig.status().carte_pos_cmd, geometry::Pose{});
+    velocity[geometry::AXIS_C] = 0;
     velocity[1] = -5;
     const CommandId taken = rig.send(SetTeleopVector{velocity});
     rig.step(100);
@@ -220,7 +220,7 @@ TEST(Machine, ATeleopVectorMovesAllItsAxesOrNone_C5) {
     EXPECT_NEAR(rig.status().axis[1].velocity, -5, 1e-9);
 }
 
-TEST(Machine, HomingEndsAJogAndBeginsWhenItStands_C10) {
+TEST(Machine, HomingEndsAJogAndBeginsWhenItStands) {
     MotionRig rig;
     rig.ready(Mode::FREE);
     rig.send(JogContinuous{{true, 1}, 20});
@@ -235,7 +235,7 @@ TEST(Machine, HomingEndsAJogAndBeginsWhenItStands_C10) {
     EXPECT_TRUE(rig.faults.empty());
 }
 
-TEST(Machine, TheFeedScaleActsOnHoming_C4) {
+TEST(Machine, TheFeedScaleActsOnHoming) {
     MotionRig rig;
     rig.set(Parameter::JOINT_HOME_SEARCH_VEL, 0, 10);
     rig.set(Parameter::JOINT_HOME_LATCH_VEL, 0, 1);
@@ -257,7 +257,7 @@ TEST(Machine, TheFeedScaleActsOnHoming_C4) {
     EXPECT_TRUE(rig.run_until([&] { return rig.status().joint[0].isHomed; }, 30));
 }
 
-TEST(Machine, EveryPassOfAThreadBeginsAtTheSameSpindleAngle_C15) {
+TEST(Machine, EveryPassOfAThreadBeginsAtTheSameSpindleAngle) {
     MotionRig rig;
     rig.before_step = [](MotionRig &r) {
         r.in.spindle[0].speed_in_rps = 8.3;
@@ -292,12 +292,12 @@ TEST(Machine, EveryPassOfAThreadBeginsAtTheSameSpindleAngle_C15) {
     EXPECT_NEAR(phases[2], phases[0], 1e-6);
 }
 
-TEST(Machine, TheWatchdogStopsTheMachineWhenTaskHangs_C6) {
+TEST(Machine, TheWatchdogStopsTheMachineWhenTaskHangs) {
     MotionRig rig;
     rig.ready();
     rig.send(SetWatchdog{true, 0.1});
     rig.before_step = [](MotionRig &r) { r.channels->task_loops.fetch_add(1); };
-    geom::Pose end;
+    geometry::Pose end;
     end[0] = 500;
     rig.line(end);
     rig.send_path(Flush{});
@@ -310,7 +310,7 @@ TEST(Machine, TheWatchdogStopsTheMachineWhenTaskHangs_C6) {
     EXPECT_EQ(rig.faults[0].kind, FaultKind::TASK_LOST);
 }
 
-TEST(Machine, ThePlannerChangesBetweenMovesAtRest_C2) {
+TEST(Machine, ThePlannerChangesBetweenMovesAtRest) {
     MotionRig rig;
     constexpr double JERK = 20000;
     rig.set(Parameter::TRAJ_MAX_JERK, 0, JERK);
@@ -319,7 +319,7 @@ TEST(Machine, ThePlannerChangesBetweenMovesAtRest_C2) {
     }
     rig.ready();
     const auto highest_jerk = [&rig](double x) {
-        geom::Pose end;
+        geometry::Pose end;
         end[0] = x;
         rig.line(end, 50);
         const CommandId flush = rig.send_path(Flush{});
@@ -343,7 +343,7 @@ TEST(Machine, ThePlannerChangesBetweenMovesAtRest_C2) {
     EXPECT_GT(highest_jerk(10), 5 * JERK);
 }
 
-TEST(Machine, JogsKeepTheJerkLimit_C8_C13) {
+TEST(Machine, JogsKeepTheJerkLimit) {
     MotionRig rig;
     constexpr double JERK = 20000;
     rig.set(Parameter::TRAJ_MAX_JERK, 0, JERK);
@@ -376,11 +376,11 @@ TEST(Machine, JogsKeepTheJerkLimit_C8_C13) {
     EXPECT_LE(worst, JERK * (1 + 1e-5));
 }
 
-TEST(Machine, FeedOverrideZeroStandsAndUpGoesOn_C4) {
+TEST(Machine, FeedOverrideZeroStandsAndUpGoesOn) {
     MotionRig rig;
     rig.set(Parameter::MAX_FEED_SCALE, 0, 2.0);
     rig.ready();
-    geom::Pose end;
+    geometry::Pose end;
     end[0] = 60;
     rig.line(end, 20);
     const CommandId flush = rig.send_path(Flush{});
@@ -410,7 +410,7 @@ TEST(Machine, ProbeContactInAJogStopsIt) {
     EXPECT_EQ(rig.faults[0].kind, FaultKind::PROBE_TRIPPED_IN_MOVE);
 }
 
-TEST(Machine, AProbeThatTripsInAJogMayBeLeftOutOfAccount_C4) {
+TEST(Machine, AProbeThatTripsInAJogMayBeLeftOutOfAccount) {
     MotionRig rig;
     rig.set(Parameter::TRAJ_NO_PROBE_JOG_ERROR, 0, 1);
     rig.ready(Mode::FREE);
@@ -425,7 +425,7 @@ TEST(Machine, AProbeThatTripsInAJogMayBeLeftOutOfAccount_C4) {
     rig.step(200);
     rig.send(SetMode{Mode::COORD});
     rig.step(5);
-    geom::Pose end;
+    geometry::Pose end;
     end[0] = 50;
     rig.line(end, 20);
     rig.step(300);
@@ -436,7 +436,7 @@ TEST(Machine, AProbeThatTripsInAJogMayBeLeftOutOfAccount_C4) {
     EXPECT_EQ(rig.faults[0].detail, 0);
 }
 
-TEST(Machine, AProbeThatTripsWhileHomingMayBeLeftOutOfAccount_C4_C10) {
+TEST(Machine, AProbeThatTripsWhileHomingMayBeLeftOutOfAccount) {
     for (const bool isIgnored : {false, true}) {
         MotionRig rig;
         rig.set(Parameter::TRAJ_NO_PROBE_HOME_ERROR, 0, isIgnored ? 1 : 0);

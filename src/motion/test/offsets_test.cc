@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "testing/limit_checker.hh"
-#include "testing/motion_rig.hh"
+#include "tests/support/limit_checker.hh"
+#include "tests/support/motion_rig.hh"
 
 namespace mw::motion {
 namespace offsets_test {
@@ -19,8 +19,8 @@ using ::mw::testing::MotionRig;
 
 constexpr double V = 100, A = 1000, J = 40000, LIMIT = 50;
 
-geom::Pose at(double x, double y, double z) {
-    geom::Pose p;
+geometry::Pose at(double x, double y, double z) {
+    geometry::Pose p;
     p[0] = x;
     p[1] = y;
     p[2] = z;
@@ -80,7 +80,7 @@ struct OffsetRig : MotionRig {
     }
 };
 
-TEST(Offsets, CountsMoveTheAxisBesideWhatIsProgrammed_C15) {
+TEST(Offsets, CountsMoveTheAxisBesideWhatIsProgrammed) {
     OffsetRig rig;
     rig.ready();
     rig.pins(0).counts = 200;
@@ -104,7 +104,7 @@ TEST(Offsets, CountsMoveTheAxisBesideWhatIsProgrammed_C15) {
     rig.expect_within();
 }
 
-TEST(Offsets, EachPartHasItsShareOfVelocityAndAcceleration_C15) {
+TEST(Offsets, EachPartHasItsShareOfVelocityAndAcceleration) {
     OffsetRig rig;
     rig.ready();
     LimitChecker path({{0.8 * V, 0.8 * A}}, MotionRig::T), offset({{0.2 * V, 0.2 * A}}, MotionRig::T);
@@ -126,7 +126,7 @@ TEST(Offsets, EachPartHasItsShareOfVelocityAndAcceleration_C15) {
     rig.expect_within();
 }
 
-TEST(Offsets, AreKeptWithoutEnableAndClearedByTheirPin_C15) {
+TEST(Offsets, AreKeptWithoutEnableAndClearedByTheirPin) {
     OffsetRig rig;
     rig.ready(Mode::TELEOP);
     rig.pins(0).counts = 300;
@@ -151,7 +151,7 @@ TEST(Offsets, AreKeptWithoutEnableAndClearedByTheirPin_C15) {
     rig.expect_within();
 }
 
-TEST(Offsets, SwitchedOffAndOnNothingMovesAndTheyAreZero_C15) {
+TEST(Offsets, SwitchedOffAndOnNothingMovesAndTheyAreZero) {
     OffsetRig rig;
     rig.ready(Mode::TELEOP);
     rig.pins(0).counts = 300;
@@ -173,7 +173,7 @@ TEST(Offsets, SwitchedOffAndOnNothingMovesAndTheyAreZero_C15) {
 }
 
 /// The program goes on from where the machine stands: what was an offset is not taken back with a jump.
-TEST(Offsets, SwitchedOnInAProgramTheMachineStandsWhereItStood_C6_C15) {
+TEST(Offsets, SwitchedOnInAProgramTheMachineStandsWhereItStood) {
     OffsetRig rig;
     rig.ready();
     rig.pins(0).counts = 300;
@@ -192,7 +192,7 @@ TEST(Offsets, SwitchedOnInAProgramTheMachineStandsWhereItStood_C6_C15) {
     rig.expect_within();
 }
 
-TEST(Offsets, StayThroughModesAndJointJogsAndCountOnlyInModesOfAxes_C15) {
+TEST(Offsets, StayThroughModesAndJointJogsAndCountOnlyInModesOfAxes) {
     OffsetRig rig;
     rig.ready(Mode::TELEOP);
     rig.pins(0).counts = 300;
@@ -217,7 +217,7 @@ TEST(Offsets, StayThroughModesAndJointJogsAndCountOnlyInModesOfAxes_C15) {
     rig.expect_within();
 }
 
-TEST(Offsets, WithoutHomesThereAreNone_C15) {
+TEST(Offsets, WithoutHomesThereAreNone) {
     OffsetRig rig;
     rig.send(Enable{});
     rig.step(2);
@@ -245,7 +245,7 @@ TEST(Offsets, WithoutHomesThereAreNone_C15) {
     EXPECT_TRUE(rig.faults.empty());
 }
 
-TEST(Offsets, GrowNoFartherThanTheSoftLimitAndWhatIsProgrammedLetThem_C13_C15) {
+TEST(Offsets, GrowNoFartherThanTheSoftLimitAndWhatIsProgrammedLetThem) {
     OffsetRig rig;
     rig.ready();
     rig.line(at(45, 0, 0), 20);
@@ -269,7 +269,7 @@ TEST(Offsets, GrowNoFartherThanTheSoftLimitAndWhatIsProgrammedLetThem_C13_C15) {
     rig.expect_within();
 }
 
-TEST(Offsets, AJogStopsAtTheSoftLimitOfTheSum_C9_C15) {
+TEST(Offsets, AJogStopsAtTheSoftLimitOfTheSum) {
     OffsetRig rig;
     rig.ready(Mode::TELEOP);
     rig.pins(0).counts = 1000;
@@ -285,7 +285,7 @@ TEST(Offsets, AJogStopsAtTheSoftLimitOfTheSum_C9_C15) {
     rig.expect_within();
 }
 
-TEST(Offsets, AProbeTripsAtAPlaceOfTheProgram_C15) {
+TEST(Offsets, AProbeTripsAtAPlaceOfTheProgram) {
     OffsetRig rig;
     rig.ready();
     rig.pins(0).counts = 500;
@@ -302,7 +302,7 @@ TEST(Offsets, AProbeTripsAtAPlaceOfTheProgram_C15) {
     EXPECT_NEAR(rig.motor(0) - rig.status().axis[0].external_offset, rig.status().probed_pos[0], 0.1);
 }
 
-TEST(Offsets, ARigidTapAlongTheirAxisIsRefusedAlongAnotherItIsNot_C15) {
+TEST(Offsets, ARigidTapAlongTheirAxisIsRefusedAlongAnotherItIsNot) {
     OffsetRig rig;
     rig.ready();
     RigidTap tap;
@@ -320,7 +320,7 @@ TEST(Offsets, ARigidTapAlongTheirAxisIsRefusedAlongAnotherItIsNot_C15) {
     EXPECT_EQ(rig.link->queue_depth.load(), 1U) << "it waits for the spindle";
 }
 
-TEST(Offsets, AStopBrakesThemToo_C6_C15) {
+TEST(Offsets, AStopBrakesThemToo) {
     OffsetRig rig;
     rig.ready();
     rig.pins(0).counts = 3000;
@@ -334,7 +334,7 @@ TEST(Offsets, AStopBrakesThemToo_C6_C15) {
 }
 
 /// Where the emergency stop has cut one off on its way it stays, and nothing waits for it to arrive.
-TEST(Offsets, CutOffOnTheirWayTheyAreAtRest_C6_C15) {
+TEST(Offsets, CutOffOnTheirWayTheyAreAtRest) {
     OffsetRig rig;
     rig.ready(Mode::TELEOP);
     rig.pins(0).counts = 3000;
@@ -353,7 +353,7 @@ TEST(Offsets, CutOffOnTheirWayTheyAreAtRest_C6_C15) {
 }
 
 /// While the planner plans the servo thread goes on: what it has accepted counts there from then on.
-TEST(Offsets, AMoveThatIsAcceptedKeepsItsRoomFromThatInstant_C13_C15) {
+TEST(Offsets, AMoveThatIsAcceptedKeepsItsRoomFromThatInstant) {
     int refused = 0;
     for (int lead = 0; lead < 3 * MotionRig::PLANNER_PERIOD; ++lead) {
         OffsetRig rig;
@@ -377,7 +377,7 @@ TEST(Offsets, AMoveThatIsAcceptedKeepsItsRoomFromThatInstant_C13_C15) {
 }
 
 /// A soft limit keeps it at zero: it is gone with its share, and motion.eoffset-limited with it.
-TEST(Offsets, WithoutAShareNoneIsLimited_C15) {
+TEST(Offsets, WithoutAShareNoneIsLimited) {
     OffsetRig rig;
     rig.ready(Mode::TELEOP);
     rig.send(JogContinuous{{false, 0}, 80});
@@ -397,7 +397,7 @@ TEST(Offsets, WithoutAShareNoneIsLimited_C15) {
     rig.expect_within();
 }
 
-TEST(Offsets, TakenAwayTheShareLeavesTheOffsetWhereItIs_C6_C15) {
+TEST(Offsets, TakenAwayTheShareLeavesTheOffsetWhereItIs) {
     OffsetRig rig;
     rig.ready();
     rig.pins(0).counts = 300;
@@ -419,7 +419,7 @@ TEST(Offsets, TakenAwayTheShareLeavesTheOffsetWhereItIs_C6_C15) {
 class OffsetCampaign : public ::testing::TestWithParam<bool> {};
 INSTANTIATE_TEST_SUITE_P(WithAndWithoutJerk, OffsetCampaign, ::testing::Bool());
 
-TEST_P(OffsetCampaign, NoSampleOfTheSumLeavesALimit_C13_C15) {
+TEST_P(OffsetCampaign, NoSampleOfTheSumLeavesALimit) {
     int refused = 0, done = 0, limited = 0, reached = 0;
     for (unsigned seed = 1; seed <= 24; ++seed) {
         SCOPED_TRACE(seed);

@@ -2,14 +2,14 @@
 // Probing moves whose end is there at the start; outputs that change between moves.
 #include <gtest/gtest.h>
 
-#include "testing/motion_rig.hh"
+#include "tests/support/motion_rig.hh"
 
 namespace mw::motion {
 namespace {
 
 using testing::MotionRig;
 
-TEST(Probing, AProbingMoveIsRefusedWhereItsEndIsThereAtTheStart_C9) {
+TEST(Probing, AProbingMoveIsRefusedWhereItsEndIsThereAtTheStart) {
     for (const bool isAway : {false, true}) {
         MotionRig rig;
         rig.ready();
@@ -26,7 +26,7 @@ TEST(Probing, AProbingMoveIsRefusedWhereItsEndIsThereAtTheStart_C9) {
     }
 }
 
-TEST(Probing, AProbingMoveThatNeedNotTripIsDoneWhereItsEndIsThereAtTheStart_C9) {
+TEST(Probing, AProbingMoveThatNeedNotTripIsDoneWhereItsEndIsThereAtTheStart) {
     constexpr double NEARLY_NOTHING = 0.002;  // what one cycle of acceleration and its braking travel [mm]
     for (const bool isAway : {false, true}) {
         MotionRig rig;
@@ -55,11 +55,11 @@ TEST(Probing, AProbingMoveThatNeedNotTripIsDoneWhereItsEndIsThereAtTheStart_C9) 
     }
 }
 
-TEST(SynchedOutputs, AnyNumberOfSynchronisedOutputsIsTakenBetweenTwoMoves_D2) {
+TEST(SynchedOutputs, AnyNumberOfSynchronisedOutputsIsTakenBetweenTwoMoves) {
     MotionRig rig;
     rig.ready();
     const auto at = [](double x) {
-        geom::Pose place;
+        geometry::Pose place;
         place[0] = x;
         return place;
     };

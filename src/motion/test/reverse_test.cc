@@ -8,8 +8,8 @@
 
 #include <gtest/gtest.h>
 
-#include "testing/limit_checker.hh"
-#include "testing/motion_rig.hh"
+#include "tests/support/limit_checker.hh"
+#include "tests/support/motion_rig.hh"
 
 namespace mw::motion {
 namespace {
@@ -37,7 +37,7 @@ struct ReverseRig : MotionRig {
     /// A zigzag with rounded corners; returns its flush.
     CommandId zigzag(int count) {
         for (int i = 1; i <= count; ++i) {
-            geom::Pose end;
+            geometry::Pose end;
             end[0] = 4.0 * i;
             end[1] = i % 2 == 0 ? 0 : 6;
             end[2] = 0.5 * i;
@@ -61,14 +61,14 @@ struct ReverseRig : MotionRig {
     }
     double x(std::size_t j) const { return out->joint[j].motor_pos_cmd; }
 
-    geom::Pose last;
+    geometry::Pose last;
     std::vector<mw::testing::AxisLimit> limits;
     std::optional<mw::testing::LimitChecker> checker;
 };
 
 class Reverse : public ::testing::TestWithParam<bool> {};
 
-TEST_P(Reverse, GoesBackToTheStartAndForwardToTheEnd_C4) {
+TEST_P(Reverse, GoesBackToTheStartAndForwardToTheEnd) {
     ReverseRig rig(GetParam());
     const CommandId flush = rig.zigzag(6);
     rig.go(400);
@@ -91,7 +91,7 @@ TEST_P(Reverse, GoesBackToTheStartAndForwardToTheEnd_C4) {
     EXPECT_TRUE(rig.checker->isWithin()) << rig.checker->report();
 }
 
-TEST_P(Reverse, AFeedThatIsNotANumberStandsStill_C4) {
+TEST_P(Reverse, AFeedThatIsNotANumberStandsStill) {
     ReverseRig rig(GetParam());
     rig.in.adaptive_feed = 1;
     const CommandId flush = rig.zigzag(6);
@@ -107,7 +107,7 @@ TEST_P(Reverse, AFeedThatIsNotANumberStandsStill_C4) {
     EXPECT_TRUE(rig.checker->isWithin()) << rig.checker->report();
 }
 
-TEST_P(Reverse, AnyChangesKeepTheLimits_C4) {
+TEST_P(Reverse, AnyChangesKeepTheLimits) {
     for (unsigned seed = 1; seed <= 20; ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         ReverseRig rig(GetParam());
@@ -133,7 +133,7 @@ TEST_P(Reverse, AnyChangesKeepTheLimits_C4) {
     }
 }
 
-TEST_P(Reverse, AnAbortOnTheWayBackStopsThereAndANewPathBeginsThere_C4) {
+TEST_P(Reverse, AnAbortOnTheWayBackStopsThereAndANewPathBeginsThere) {
     ReverseRig rig(GetParam());
     rig.zigzag(6);
     rig.go(600);
@@ -145,7 +145,7 @@ TEST_P(Reverse, AnAbortOnTheWayBackStopsThereAndANewPathBeginsThere_C4) {
     rig.go(100);
     EXPECT_EQ(rig.x(0), stood);
     rig.in.adaptive_feed = 1;
-    geom::Pose end;
+    geometry::Pose end;
     end[0] = 1;
     rig.line(end, 50);
     const CommandId flush = rig.send_path(Flush{});
@@ -156,7 +156,7 @@ TEST_P(Reverse, AnAbortOnTheWayBackStopsThereAndANewPathBeginsThere_C4) {
 
 /// The way back begins where the path came to rest: too slowly to be seen at first. Who is stopped then
 /// stands.
-TEST_P(Reverse, AnAbortBeforeAnythingIsSeenToGoBackMovesNothing_C5) {
+TEST_P(Reverse, AnAbortBeforeAnythingIsSeenToGoBackMovesNothing) {
     constexpr double SEEN = 1e-9, NOTHING = 2e-6;
     int judged = 0;
     for (int wait = 0; wait < 150; wait += 3) {
@@ -201,7 +201,7 @@ TEST_P(Reverse, AnAbortBeforeAnythingIsSeenToGoBackMovesNothing_C5) {
 }
 
 /// A program that waits for something else knows the end of its last move as the place where it is.
-TEST_P(Reverse, NobodyGoesBackFromTheEndOfAllThatWasCommanded_C15) {
+TEST_P(Reverse, NobodyGoesBackFromTheEndOfAllThatWasCommanded) {
     ReverseRig rig(GetParam());
     ASSERT_TRUE(rig.finish(rig.zigzag(4), 30));
     rig.in.adaptive_feed = -1;
@@ -210,7 +210,7 @@ TEST_P(Reverse, NobodyGoesBackFromTheEndOfAllThatWasCommanded_C15) {
         ASSERT_EQ(rig.x(0), rig.last[0]);
         ASSERT_EQ(rig.x(1), rig.last[1]);
     }
-    geom::Pose end = rig.last;
+    geometry::Pose end = rig.last;
     end[0] += 10;
     rig.line(end, 50);
     const CommandId flush = rig.send_path(Flush{});
@@ -222,7 +222,7 @@ TEST_P(Reverse, NobodyGoesBackFromTheEndOfAllThatWasCommanded_C15) {
     EXPECT_TRUE(rig.checker->isWithin()) << rig.checker->report();
 }
 
-TEST_P(Reverse, ByCommandWithAndWithoutAdaptiveFeed_C4) {
+TEST_P(Reverse, ByCommandWithAndWithoutAdaptiveFeed) {
     for (const bool isAdaptive : {false, true}) {
         SCOPED_TRACE(isAdaptive);
         ReverseRig rig(GetParam());
@@ -231,7 +231,7 @@ TEST_P(Reverse, ByCommandWithAndWithoutAdaptiveFeed_C4) {
         const CommandId refused = rig.send(SetReverse{true});
         rig.go(5);
         EXPECT_EQ(rig.refusal(refused), Reason::NO_WAY_BACK) << "nothing was driven";
-        geom::Pose end;
+        geometry::Pose end;
         end[0] = 30;
         end[1] = -20;
         rig.line(end, 50);
@@ -249,12 +249,12 @@ TEST_P(Reverse, ByCommandWithAndWithoutAdaptiveFeed_C4) {
     }
 }
 
-TEST_P(Reverse, NobodyGoesBackToBeforeTheSpindleOrTheToolChanged_C4) {
+TEST_P(Reverse, NobodyGoesBackToBeforeTheSpindleOrTheToolChanged) {
     for (const CommandBody &change :
          {CommandBody(SpindleOn{0, 100}), CommandBody(SpindleOff{0}), CommandBody(SetToolOffset{}),
           CommandBody(SetMode{Mode::TELEOP}), CommandBody(Abort{})}) {
         ReverseRig rig(GetParam());
-        geom::Pose end;
+        geometry::Pose end;
         end[0] = 10;
         rig.line(end, 50);
         ASSERT_TRUE(rig.finish(rig.send_path(Flush{}), 5));
@@ -267,7 +267,7 @@ TEST_P(Reverse, NobodyGoesBackToBeforeTheSpindleOrTheToolChanged_C4) {
     }
 }
 
-TEST_P(Reverse, CommandsAtAnyInstantKeepTheLimits_C4) {
+TEST_P(Reverse, CommandsAtAnyInstantKeepTheLimits) {
     for (unsigned seed = 1; seed <= 20; ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         ReverseRig rig(GetParam());
@@ -298,7 +298,7 @@ TEST_P(Reverse, CommandsAtAnyInstantKeepTheLimits_C4) {
     }
 }
 
-TEST_P(Reverse, ByCommandEndsWithAnAbort_C4) {
+TEST_P(Reverse, ByCommandEndsWithAnAbort) {
     ReverseRig rig(GetParam());
     rig.zigzag(6);
     rig.go(600);
@@ -308,7 +308,7 @@ TEST_P(Reverse, ByCommandEndsWithAnAbort_C4) {
     rig.send(Abort{++rig.epoch});
     rig.go(1000);
     EXPECT_FALSE(rig.status().isReverse);
-    geom::Pose end;
+    geometry::Pose end;
     end[0] = 1;
     rig.line(end, 50);
     ASSERT_TRUE(rig.finish(rig.send_path(Flush{}), 30)) << "the next path does not wait for a forward";

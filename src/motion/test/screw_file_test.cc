@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "base/text.hh"
-#include "motion/api/screw_file.hh"
+#include "motion/interface/screw_file.hh"
 
 namespace mw::motion {
 namespace {
@@ -18,7 +18,7 @@ std::string error_of(const std::string &text, ScrewFileType type = ScrewFileType
     return points.has_value() ? "none" : points.error().str();
 }
 
-TEST(ScrewFile, BothTypesOfTheManualAreRead_C11) {
+TEST(ScrewFile, BothTypesOfTheManualAreRead) {
     const auto actual =
         parsed("-1.000 -1.005 -0.995\n0.000 0.002 -0.003\n1.000 1.003 0.998\n", ScrewFileType::ACTUAL);
     ASSERT_TRUE(actual.has_value());
@@ -36,7 +36,7 @@ TEST(ScrewFile, BothTypesOfTheManualAreRead_C11) {
     EXPECT_EQ((*offset)[2].reverse, -0.004);
 }
 
-TEST(ScrewFile, WhatIsWrongIsToldWithLineAndColumn_C11) {
+TEST(ScrewFile, WhatIsWrongIsToldWithLineAndColumn) {
     EXPECT_NE(error_of("0 0 0\n1 0.1 x7\n").find("x.comp:2:7: 'x7' is not a number"), std::string::npos);
     EXPECT_NE(error_of("0 0 0\n1 nan 0\n").find("x.comp:2:3: 'nan' is not a number"), std::string::npos);
     EXPECT_NE(error_of("0,0,0\n").find("x.comp:1:1: '0,0,0' is not a number"), std::string::npos);
@@ -50,7 +50,7 @@ TEST(ScrewFile, WhatIsWrongIsToldWithLineAndColumn_C11) {
     EXPECT_NE(error_of("").find("no point"), std::string::npos);
 }
 
-TEST(ScrewFile, AFileOfTheOtherTypeIsFoundByItsSlope_C11) {
+TEST(ScrewFile, AFileOfTheOtherTypeIsFoundByItsSlope) {
     EXPECT_NE(error_of("0 0 0\n10 10.001 9.999\n", ScrewFileType::OFFSET).find("x.comp:2:4: the correction"),
               std::string::npos);
     EXPECT_NE(error_of("0 0 0\n10 0.001 9.999\n").find("x.comp:2:10: the correction"), std::string::npos)
@@ -59,7 +59,7 @@ TEST(ScrewFile, AFileOfTheOtherTypeIsFoundByItsSlope_C11) {
               std::string::npos);
 }
 
-TEST(ScrewFile, TenThousandPointsAreTakenAndNoMore_C11) {
+TEST(ScrewFile, TenThousandPointsAreTakenAndNoMore) {
     std::string text;
     for (int n = 0; n < MAX_SCREW_POINTS; ++n) {
         text += std::to_string(n) + " 0.01 -0.01\n";

@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "testing/limit_checker.hh"
-#include "testing/motion_rig.hh"
+#include "tests/support/limit_checker.hh"
+#include "tests/support/motion_rig.hh"
 
 namespace mw::motion {
 namespace screw_test {
@@ -143,7 +143,7 @@ double bound_of(const Slide &slide, double pitch, bool isJerkLimited) {
 class Screw : public ::testing::TestWithParam<bool> {};
 INSTANTIATE_TEST_SUITE_P(WithAndWithoutJerk, Screw, ::testing::Bool());
 
-TEST_P(Screw, TheSlideIsWhereItIsToldToBeWithinTheErrorOfTheTable_C11) {
+TEST_P(Screw, TheSlideIsWhereItIsToldToBeWithinTheErrorOfTheTable) {
     ScrewRig rig(GetParam());
     constexpr double PITCH = 1;
     rig.load(measure(rig.slide.play, PITCH));
@@ -163,13 +163,13 @@ TEST_P(Screw, TheSlideIsWhereItIsToldToBeWithinTheErrorOfTheTable_C11) {
     EXPECT_NEAR(rig.status().joint[0].pos_fb, rig.status().joint[0].pos_cmd, V * MotionRig::T + 1e-9);
 }
 
-TEST_P(Screw, WithoutATableTheSlideIsNot_C11) {
+TEST_P(Screw, WithoutATableTheSlideIsNot) {
     ScrewRig rig(GetParam());
     rig.ready(Mode::FREE);
     EXPECT_GT(judge(rig, 0, 40).worst, 0.03) << "else the judge sees nothing";
 }
 
-TEST_P(Screw, HomedByASwitchOnTheSlideThatIsWhereItsZeroIs_C11) {
+TEST_P(Screw, HomedByASwitchOnTheSlideThatIsWhereItsZeroIs) {
     ScrewRig rig(GetParam());
     constexpr double PITCH = 1, TRIP = -12, HOME_OFFSET = -5;
     constexpr double ZERO = TRIP - HOME_OFFSET;  // of the joint, at the slide
@@ -200,7 +200,7 @@ TEST_P(Screw, HomedByASwitchOnTheSlideThatIsWhereItsZeroIs_C11) {
     EXPECT_TRUE(rig.checker.isWithin()) << rig.checker.report();
 }
 
-TEST(ScrewTables, TenThousandPointsAreLoadedWhileTheMachineIsOff_C11) {
+TEST(ScrewTables, TenThousandPointsAreLoadedWhileTheMachineIsOff) {
     ScrewRig rig(false);
     std::vector<LoadCompensation> points;
     for (int n = 0; n < MAX_SCREW_POINTS; ++n) {
@@ -218,7 +218,7 @@ TEST(ScrewTables, TenThousandPointsAreLoadedWhileTheMachineIsOff_C11) {
     EXPECT_NEAR(rig.out->joint[0].motor_pos_cmd, 0.05 + 0.5e-4, 1e-9) << "it stays in force";
 }
 
-TEST(ScrewTables, ANewTableMovesNothing_C11) {
+TEST(ScrewTables, ANewTableMovesNothing) {
     ScrewRig rig(false);
     rig.load(measure(0.03, 1));
     rig.ready(Mode::FREE);
@@ -241,7 +241,7 @@ TEST(ScrewTables, ANewTableMovesNothing_C11) {
 class TakeUp : public ::testing::TestWithParam<bool> {};
 INSTANTIATE_TEST_SUITE_P(OfPlayAndOfATable, TakeUp, ::testing::Bool());
 
-TEST_P(TakeUp, SwitchedOnAgainAMotorStandsUntilTheJointMoves_C1_C11) {
+TEST_P(TakeUp, SwitchedOnAgainAMotorStandsUntilTheJointMoves) {
     ScrewRig rig(false);
     if (GetParam()) {
         rig.load(measure(0.4, 1));

@@ -9,8 +9,8 @@
 #include <functional>
 #include <vector>
 
-#include "sim/spindle_plant.hh"
-#include "testing/motion_rig.hh"
+#include "components/plants/spindle_plant.hh"
+#include "tests/support/motion_rig.hh"
 
 namespace mw::motion {
 
@@ -23,24 +23,24 @@ struct SpindleBench {
         double turns = 0, speed = 0;  ///< of the rotor: the truth
         double command_rpm = 0;
         std::array<double, MAX_JOINTS> joints{};
-        geom::Pose pose;  ///< of a machine whose joints are not axes
+        geometry::Pose pose;  ///< of a machine whose joints are not axes
     };
 
     testing::MotionRig rig;
-    sim::SpindlePlant plant;
-    const kins::Kinematics *model = nullptr;  ///< null: joints are X Y Z
-    geom::Pose base;                          ///< X and Z of moves and samples count from it
+    plants::SpindlePlant plant;
+    const kinematics::Kinematics *model = nullptr;  ///< null: joints are X Y Z
+    geometry::Pose base;                            ///< X and Z of moves and samples count from it
     std::function<double(const Sample &)> load = [](const Sample &) { return 0.0; };
     bool isDriveDead = false;  ///< the drive keeps to what it was told last
     std::vector<Sample> samples;
 
-    explicit SpindleBench(const sim::SpindleTraits &traits, bool isJerkLimited = false)
+    explicit SpindleBench(const plants::SpindleTraits &traits, bool isJerkLimited = false)
         : rig("XYZ", VELOCITY, ACCELERATION), plant(traits) {
         begin(isJerkLimited);
     }
     /// A machine whose joints are not axes, and stand at `start`.
-    SpindleBench(const kins::Kinematics &kinematics, const std::vector<double> &start,
-                 const sim::SpindleTraits &traits, bool isJerkLimited)
+    SpindleBench(const kinematics::Kinematics &kinematics, const std::vector<double> &start,
+                 const plants::SpindleTraits &traits, bool isJerkLimited)
         : rig(kinematics, static_cast<int>(start.size()), VELOCITY, ACCELERATION), plant(traits),
           model(&kinematics), num_joints_(static_cast<int>(start.size())) {
         for (std::size_t j = 0; j < start.size(); ++j) {
@@ -69,9 +69,9 @@ struct SpindleBench {
         rig.run_until([this] { return rig.in.spindle[0].isAtSpeed; });
     }
     CommandId rapid(double x, double z) {
-        geom::Pose end = base;
-        end[geom::AXIS_X] += x;
-        end[geom::AXIS_Z] += z;
+        geometry::Pose end = base;
+        end[geometry::AXIS_X] += x;
+        end[geometry::AXIS_Z] += z;
         return rig.line(end, 0, PathMode::EXACT_STOP);
     }
     MoveTerms synched(double lead) {
@@ -84,16 +84,16 @@ struct SpindleBench {
     }
     CommandId thread(double x, double z, double lead) {
         Line line;
-        line.end[geom::AXIS_X] = x;
-        line.end[geom::AXIS_Z] = z;
+        line.end[geometry::AXIS_X] = x;
+        line.end[geometry::AXIS_Z] = z;
         line.terms = synched(lead);
         return rig.send_path(line);
     }
     CommandId tap(double x, double z, double pitch, double scale = 1) {
         RigidTap move;
         move.end = base;
-        move.end[geom::AXIS_X] += x;
-        move.end[geom::AXIS_Z] += z;
+        move.end[geometry::AXIS_X] += x;
+        move.end[geometry::AXIS_Z] += z;
         move.pitch_scale = scale;
         move.terms = synched(pitch);
         return rig.send_path(move);
@@ -126,13 +126,13 @@ struct SpindleBench {
         for (std::size_t j = 0; j < static_cast<std::size_t>(num_joints_); ++j) {
             s.joints[j] = r.out->joint[j].motor_pos_cmd;
         }
-        geom::Pose pose =
+        geometry::Pose pose =
             r.status().carte_pos_cmd;  // where an inverse alone is known, iteration begins there
         if (model != nullptr) {
             model->forward(s.joints.data(), pose);
         }
-        s.x = model != nullptr ? pose[geom::AXIS_X] - base[geom::AXIS_X] : s.joints[0];
-        s.z = model != nullptr ? pose[geom::AXIS_Z] - base[geom::AXIS_Z] : s.joints[2];
+        s.x = model != nullptr ? pose[geometry::AXIS_X] - base[geometry::AXIS_X] : s.joints[0];
+        s.z = model != nullptr ? pose[geometry::AXIS_Z] - base[geometry::AXIS_Z] : s.joints[2];
         s.pose = pose;
         s.turns = plant.turns();
         s.speed = plant.speed();
@@ -167,8 +167,8 @@ struct SpindleBench {
 
 inline constexpr double PITCH = 1.25, TOP = 5, BOTTOM = -20;
 
-inline sim::SpindleTraits tap_spindle(double seconds_to_1000_rpm = 0.5) {
-    sim::SpindleTraits traits;
+inline plants::SpindleTraits tap_spindle(double seconds_to_1000_rpm = 0.5) {
+    plants::SpindleTraits traits;
     traits.ramp = 1000.0 / 60 / seconds_to_1000_rpm;
     traits.first_turns = 0.61;
     return traits;

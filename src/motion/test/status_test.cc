@@ -5,14 +5,14 @@
 
 #include <gtest/gtest.h>
 
-#include "testing/motion_rig.hh"
+#include "tests/support/motion_rig.hh"
 
 namespace mw::motion {
 namespace {
 
 using testing::MotionRig;
 
-TEST(StatusOfMotion, SettingsAreShownAsTheyAreNow_C1_C7) {
+TEST(StatusOfMotion, SettingsAreShownAsTheyAreNow) {
     MotionRig rig;
     const auto check = [&](int joint, double least, double most, double velocity, double acceleration) {
         rig.set(Parameter::JOINT_MIN_LIMIT, joint, least);
@@ -39,10 +39,10 @@ TEST(StatusOfMotion, SettingsAreShownAsTheyAreNow_C1_C7) {
 }
 
 /// A rapid, a feed, an arc and a probing move, each looked at on its way.
-TEST(StatusOfMotion, TheMoveUnderWayAndNothingBehindTheLast_C1) {
+TEST(StatusOfMotion, TheMoveUnderWayAndNothingBehindTheLast) {
     MotionRig rig;
     rig.ready();
-    geom::Pose end;
+    geometry::Pose end;
     end[0] = 20;
     const CommandId rapid = rig.line(end, 0, PathMode::EXACT_STOP);
     end[1] = 10;
@@ -64,7 +64,7 @@ TEST(StatusOfMotion, TheMoveUnderWayAndNothingBehindTheLast_C1) {
     probe.terms.feed = 10;
     const CommandId probing = rig.send_path(probe);
     const CommandId flush = rig.send_path(Flush{});
-    const auto look = [&](CommandId id, MotionType type, double feed_per_s, const geom::Pose &target) {
+    const auto look = [&](CommandId id, MotionType type, double feed_per_s, const geometry::Pose &target) {
         ASSERT_TRUE(rig.run_until([&] { return rig.status().active_path_id == id; }, 20)) << id;
         rig.step(150);
         const Status &s = rig.status();
@@ -81,7 +81,7 @@ TEST(StatusOfMotion, TheMoveUnderWayAndNothingBehindTheLast_C1) {
         EXPECT_GT(s.distance_to_go, 0.1);
         EXPECT_FALSE(s.isInPosition);
     };
-    geom::Pose first;
+    geometry::Pose first;
     first[0] = 20;
     look(rapid, MotionType::TRAVERSE, 0, first);
     EXPECT_EQ(rig.status().source.line, static_cast<std::int32_t>(rapid));
@@ -91,7 +91,8 @@ TEST(StatusOfMotion, TheMoveUnderWayAndNothingBehindTheLast_C1) {
     EXPECT_EQ(rig.status().source.line, 77);
     EXPECT_EQ(rig.status().source.file_index, 3U);
     EXPECT_EQ(rig.status().source.block, 9U);
-    EXPECT_GT(rig.status().distance_to_go, geom::norm(rig.status().dtg)) << "an arc is longer than its chord";
+    EXPECT_GT(rig.status().distance_to_go, geometry::norm(rig.status().dtg))
+        << "an arc is longer than its chord";
     look(probing, MotionType::PROBING, 10, probe.end);
     ASSERT_TRUE(rig.run_until([&] { return rig.isDone(flush); }, 20));
     rig.step(5);
@@ -105,14 +106,14 @@ TEST(StatusOfMotion, TheMoveUnderWayAndNothingBehindTheLast_C1) {
     EXPECT_EQ(s.requested_velocity, 0);
     EXPECT_EQ(s.current_velocity, 0);
     EXPECT_EQ(s.distance_to_go, 0);
-    EXPECT_EQ(geom::norm(s.dtg), 0);
+    EXPECT_EQ(geometry::norm(s.dtg), 0);
     EXPECT_FALSE(s.isProbing);
     EXPECT_TRUE(s.isInPosition);
     EXPECT_EQ(s.queue_depth, 0U);
 }
 
 /// Published in parts: what a reader has is what the controller says, whatever has changed.
-TEST(StatusOfMotion, ReadersHaveTheWholeOfIt_C1) {
+TEST(StatusOfMotion, ReadersHaveTheWholeOfIt) {
     MotionRig rig;
     auto reader = std::make_unique<PublishedStatus::Copy>();
     int changes = 0;
@@ -139,7 +140,7 @@ TEST(StatusOfMotion, ReadersHaveTheWholeOfIt_C1) {
     go(3);
     rig.set(Parameter::AXIS_MAX_LIMIT, 1, 5);
     go(3);
-    geom::Pose end;
+    geometry::Pose end;
     end[0] = 5;
     rig.line(end, 50);
     go(300);
@@ -153,7 +154,7 @@ TEST(StatusOfMotion, ReadersHaveTheWholeOfIt_C1) {
 
 /// More moves than the planner has room for: that is shown as long as they wait, whether they are driven
 /// then or a stop takes them away.
-TEST(StatusOfMotion, TheQueueIsFullOnlyWhileMovesWaitForRoom_C1) {
+TEST(StatusOfMotion, TheQueueIsFullOnlyWhileMovesWaitForRoom) {
     constexpr int MOVES = 5000;
     for (const bool isAborted : {false, true}) {
         MotionRig rig;
@@ -163,7 +164,7 @@ TEST(StatusOfMotion, TheQueueIsFullOnlyWhileMovesWaitForRoom_C1) {
         int full = 0;
         const auto isOver = [&] {
             for (int n = 0; n < 10 && sent < MOVES; ++n) {
-                geom::Pose end;
+                geometry::Pose end;
                 end[sent % 2] = 0.02;
                 last = rig.line(end, 0, PathMode::EXACT_PATH);
                 ++sent;
@@ -183,10 +184,10 @@ TEST(StatusOfMotion, TheQueueIsFullOnlyWhileMovesWaitForRoom_C1) {
 }
 
 /// Off, there is no move.
-TEST(StatusOfMotion, NothingIsUnderWayOnceTheMachineIsOff_C1_C5) {
+TEST(StatusOfMotion, NothingIsUnderWayOnceTheMachineIsOff) {
     MotionRig rig;
     rig.ready();
-    geom::Pose end;
+    geometry::Pose end;
     end[0] = 20;
     const CommandId id = rig.line(end, 30);
     rig.step(200);
@@ -204,18 +205,18 @@ TEST(StatusOfMotion, NothingIsUnderWayOnceTheMachineIsOff_C1_C5) {
 }
 
 /// A trace has a sample for each cycle with what the status of that cycle says.
-TEST(StatusOfMotion, ATraceSaysOfEachCycleWhatItsStatusSays_C1) {
+TEST(StatusOfMotion, ATraceSaysOfEachCycleWhatItsStatusSays) {
     MotionRig rig;
     rig.ready();
     TraceSample sample;
     rig.step(3);
     EXPECT_FALSE(rig.channels->trace.pop(sample)) << "nobody has asked";
     rig.channels->isTracing.store(1);
-    geom::Pose end;
+    geometry::Pose end;
     end[0] = 5;
     rig.line(end, 50);
     int moving = 0, hasMoved = 0;
-    geom::Pose last = rig.status().carte_pos_cmd;
+    geometry::Pose last = rig.status().carte_pos_cmd;
     for (int n = 0; n < 300; ++n) {
         rig.step();
         const Status &s = rig.status();

@@ -5,15 +5,15 @@
 
 #include <gtest/gtest.h>
 
-#include "kins/corexy.hh"
-#include "kins/linear_delta.hh"
-#include "kins/puma.hh"
-#include "kins/rotary_delta.hh"
-#include "kins/rotary_table.hh"
-#include "kins/scara.hh"
-#include "motion/api/texts.hh"
+#include "kinematics/corexy.hh"
+#include "kinematics/linear_delta.hh"
+#include "kinematics/puma.hh"
+#include "kinematics/rotary_delta.hh"
+#include "kinematics/rotary_table.hh"
+#include "kinematics/scara.hh"
+#include "motion/interface/texts.hh"
 #include "spindle_bench.hh"
-#include "testing/campaign_seeds.hh"
+#include "tests/support/campaign_seeds.hh"
 
 namespace mw::motion {
 namespace {
@@ -28,27 +28,27 @@ Model with_parameters(std::initializer_list<double> values) {
     return model;
 }
 
-kins::RotaryTable tilting_table() {
-    kins::RotaryTable out;
+kinematics::RotaryTable tilting_table() {
+    kinematics::RotaryTable out;
     out.set_tilt_axis(5, -40);
     return out;
 }
 
 struct TapMachine {
     const char *name;
-    const kins::Kinematics &model;
+    const kinematics::Kinematics &model;
     std::vector<double> start;
     double x;
 };
 
 /// Where each stands has curves of joints as well as straight ones.
 const std::vector<TapMachine> &tap_machines() {
-    static const kins::CoreXy corexy;
-    static const kins::LinearDelta delta;
-    static const kins::RotaryTable tilted = tilting_table();
-    static const kins::Scara scara;
-    static const auto puma = with_parameters<kins::Puma>({300, 50, 70, 400, 70});
-    static const auto rotary = with_parameters<kins::RotaryDelta>({100, 150, 300, 50});
+    static const kinematics::CoreXy corexy;
+    static const kinematics::LinearDelta delta;
+    static const kinematics::RotaryTable tilted = tilting_table();
+    static const kinematics::Scara scara;
+    static const auto puma = with_parameters<kinematics::Puma>({300, 50, 70, 400, 70});
+    static const auto rotary = with_parameters<kinematics::RotaryDelta>({100, 150, 300, 50});
     static const std::vector<TapMachine> all{
         {"CoreXy", corexy, {0, 0, 0}, 10},
         {"Delta", delta, {0, 0, 0}, 60},
@@ -66,7 +66,7 @@ class KinematicsTapping : public ::testing::TestWithParam<std::tuple<std::size_t
     bool isJerkLimited() const { return std::get<1>(GetParam()); }
 };
 
-TEST_P(KinematicsTapping, ZFollowsTheAngleAndNoJointDoesMoreThanItCan_C14_C15) {
+TEST_P(KinematicsTapping, ZFollowsTheAngleAndNoJointDoesMoreThanItCan) {
     SpindleBench bench(machine().model, machine().start, tap_spindle(), isJerkLimited());
     const double rpm = std::string(machine().name) == "Puma" ? 300 : 1000;
     bench.spin(rpm);
@@ -130,11 +130,11 @@ class RandomTap {
         const double rpm = real(60, 1200) * (chance(0.5) ? 1 : -1);
         const double pitch = real(0.3, 3);
         bench_.spin(rpm);
-        for (geom::Pose way; length_ < 0.1;) {
+        for (geometry::Pose way; length_ < 0.1;) {
             for (int i = 0; i < 3; ++i) {
                 way[i] = real(-1, 1);
             }
-            length_ = geom::norm_xyz(way);
+            length_ = geometry::norm_xyz(way);
             direction_ = way * (1.0 / length_);
         }
         const std::size_t from = bench_.samples.size();
@@ -175,12 +175,12 @@ class RandomTap {
         for (std::size_t i = from; i < bench_.samples.size(); ++i) {
             const SpindleBench::Sample &s = bench_.samples[i];
             checker.sample(s.joints.data());
-            const geom::Pose way = s.pose - bench_.base;
+            const geometry::Pose way = s.pose - bench_.base;
             double x = 0;
             for (int a = 0; a < 3; ++a) {
                 x += way[a] * direction_[a];
             }
-            EXPECT_NEAR(geom::norm(way - direction_ * x), 0, 1e-6) << "on its line";
+            EXPECT_NEAR(geometry::norm(way - direction_ * x), 0, 1e-6) << "on its line";
             farthest = std::max(farthest, x);
             // Once the spindle is told to turn back the tool must be on its helix.
             const double phase = x / pitch - sense * s.turns;
@@ -205,14 +205,14 @@ class RandomTap {
 
     std::mt19937 random_;
     bool isJerkLimited_;
-    sim::SpindleTraits spindle_;
+    plants::SpindleTraits spindle_;
     SpindleBench bench_;
     std::vector<testing::AxisLimit> limits_;
-    geom::Pose direction_;
+    geometry::Pose direction_;
     double length_ = 0;
 };
 
-TEST(KinematicsTappingCampaign, AnyHoleOnAnyMachineIsMadeWithinItsJointsLimitsOrRefused_C14_C15) {
+TEST(KinematicsTappingCampaign, AnyHoleOnAnyMachineIsMadeWithinItsJointsLimitsOrRefused) {
     const auto [first, count] = testing::campaign_seeds(90);
     int made = 0, refused = 0;
     for (int seed = first; seed < first + count && !::testing::Test::HasFailure(); ++seed) {

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "motion/api/texts.hh"
+#include "motion/interface/texts.hh"
 #include "spindle_bench.hh"
 
 namespace mw::motion {
@@ -28,7 +28,7 @@ class Tapping : public ::testing::TestWithParam<bool> {
     }
 };
 
-TEST_P(Tapping, ZFollowsTheAngleThroughBothReversalsToItsDepth_C15) {
+TEST_P(Tapping, ZFollowsTheAngleThroughBothReversalsToItsDepth) {
     SpindleBench bench(tap_spindle(), GetParam());
     bench.spin(1000);
     for (int n = 0; n < 4; ++n) {
@@ -47,7 +47,7 @@ TEST_P(Tapping, ZFollowsTheAngleThroughBothReversalsToItsDepth_C15) {
     EXPECT_EQ(bench.limit_report(), "");
 }
 
-TEST_P(Tapping, DoesSoAtOtherSpeedsPitchesAndHands_C15) {
+TEST_P(Tapping, DoesSoAtOtherSpeedsPitchesAndHands) {
     struct Case {
         double rpm, pitch, scale;
     };
@@ -69,12 +69,12 @@ TEST_P(Tapping, DoesSoAtOtherSpeedsPitchesAndHands_C15) {
     }
 }
 
-TEST_P(Tapping, FindsTheDepthOfADriveThatReactsLateOrLags_C15) {
-    sim::SpindleTraits late = tap_spindle();
+TEST_P(Tapping, FindsTheDepthOfADriveThatReactsLateOrLags) {
+    plants::SpindleTraits late = tap_spindle();
     late.reaction_s = 0.06;
-    sim::SpindleTraits lagging;
+    plants::SpindleTraits lagging;
     lagging.lag_s = 0.15;
-    for (const sim::SpindleTraits &traits : {late, lagging}) {
+    for (const plants::SpindleTraits &traits : {late, lagging}) {
         SpindleBench bench(traits, GetParam());
         bench.spin(800);
         for (int n = 0; n < 3; ++n) {
@@ -89,7 +89,7 @@ TEST_P(Tapping, FindsTheDepthOfADriveThatReactsLateOrLags_C15) {
     }
 }
 
-TEST_P(Tapping, OverridesAndHoldsWaitForItsEnd_C15) {
+TEST_P(Tapping, OverridesAndHoldsWaitForItsEnd) {
     SpindleBench bench(tap_spindle(), GetParam());
     bench.spin(1000);
     tap(bench, 10);
@@ -119,7 +119,7 @@ TEST_P(Tapping, OverridesAndHoldsWaitForItsEnd_C15) {
     EXPECT_EQ(bench.limit_report(), "");
 }
 
-TEST_P(Tapping, AHoldBeforeItBeginsLeavesItWhole_C15) {
+TEST_P(Tapping, AHoldBeforeItBeginsLeavesItWhole) {
     // Slow enough that the tool stands for a while before the helix comes.
     SpindleBench bench(tap_spindle(), GetParam());
     bench.spin(30);
@@ -144,7 +144,7 @@ enum class Stop { ABORT, ESTOP, SPINDLE_FAULT, TASK_DEAD, DISABLE };
 
 class StoppedTapping : public ::testing::TestWithParam<std::tuple<Stop, bool>> {};
 
-TEST_P(StoppedTapping, InAnyPhaseStandsWithinItsLimitsAndNeverRestartsTheSpindle_C15) {
+TEST_P(StoppedTapping, InAnyPhaseStandsWithinItsLimitsAndNeverRestartsTheSpindle) {
     const auto [stop, isJerkLimited] = GetParam();
     // A whole tap takes some 4.5 s.
     for (int at = 10; at < 4800; at += 331) {
@@ -202,7 +202,7 @@ INSTANTIATE_TEST_SUITE_P(Stops, StoppedTapping,
                                                               Stop::TASK_DEAD, Stop::DISABLE),
                                             ::testing::Bool()));
 
-TEST_P(Tapping, AnAbortLeavesTheTapStandingInItsThread_C15) {
+TEST_P(Tapping, AnAbortLeavesTheTapStandingInItsThread) {
     for (int at = 700; at < 3200; at += 211) {
         SpindleBench bench(tap_spindle(), GetParam());
         bench.spin(1000);
@@ -232,7 +232,7 @@ std::set<FaultKind> kinds(const testing::MotionRig &rig) {
     return out;
 }
 
-TEST_P(Tapping, WhatCannotBeIsRefusedBeforeItMoves_C15) {
+TEST_P(Tapping, WhatCannotBeIsRefusedBeforeItMoves) {
     struct Case {
         double rpm, pitch, seconds, z, scale;
         FaultKind kind;
@@ -264,7 +264,7 @@ TEST_P(Tapping, WhatCannotBeIsRefusedBeforeItMoves_C15) {
     })) << "no turn of room below";
 }
 
-TEST_P(Tapping, ASpindleThatTurnsBackTooSuddenlyForTheJerkLimitsIsRefusedBeforeItMoves_C15) {
+TEST_P(Tapping, ASpindleThatTurnsBackTooSuddenlyForTheJerkLimitsIsRefusedBeforeItMoves) {
     SpindleBench bench(tap_spindle(0.055), GetParam());  // 303 turns/s2
     bench.spin(1000);
     bench.rapid(10, TOP);
@@ -283,7 +283,7 @@ TEST_P(Tapping, ASpindleThatTurnsBackTooSuddenlyForTheJerkLimitsIsRefusedBeforeI
     EXPECT_NE(fault_text(bench.rig.faults[0]).find("so suddenly"), std::string::npos);
 }
 
-TEST_P(Tapping, ASpindleThatDoesNotTurnBackOrJumpsEndsInAStop_C15) {
+TEST_P(Tapping, ASpindleThatDoesNotTurnBackOrJumpsEndsInAStop) {
     for (const bool isJump : {false, true}) {
         SpindleBench bench(tap_spindle(), GetParam());
         bench.spin(1000);
@@ -300,7 +300,7 @@ TEST_P(Tapping, ASpindleThatDoesNotTurnBackOrJumpsEndsInAStop_C15) {
     }
 }
 
-TEST_P(Tapping, FeedbackThatIsNoNumberStopsWhatIsInStepAndNothingElse_C15) {
+TEST_P(Tapping, FeedbackThatIsNoNumberStopsWhatIsInStepAndNothingElse) {
     SpindleBench bench(tap_spindle(), GetParam());
     const auto turn = bench.rig.before_step;
     bool isLost = false;

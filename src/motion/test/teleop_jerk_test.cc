@@ -12,15 +12,15 @@
 
 #include <gtest/gtest.h>
 
-#include "kins/corexy.hh"
-#include "kins/hexapod.hh"
-#include "kins/linear_delta.hh"
-#include "kins/puma.hh"
-#include "kins/rotary_table.hh"
-#include "kins/scara.hh"
-#include "kins/tilting_head.hh"
-#include "testing/campaign_seeds.hh"
-#include "testing/motion_rig.hh"
+#include "kinematics/corexy.hh"
+#include "kinematics/hexapod.hh"
+#include "kinematics/linear_delta.hh"
+#include "kinematics/puma.hh"
+#include "kinematics/rotary_table.hh"
+#include "kinematics/scara.hh"
+#include "kinematics/tilting_head.hh"
+#include "tests/support/campaign_seeds.hh"
+#include "tests/support/motion_rig.hh"
 
 namespace mw::motion {
 namespace {
@@ -29,7 +29,7 @@ using testing::MotionRig;
 
 /// A machine and where it stands at first.
 struct JerkyMachine {
-    const kins::Kinematics &model;
+    const kinematics::Kinematics &model;
     const char *axes;
     std::vector<double> start;
     double reach = 100;  ///< of jogs that have a target [machine units, degrees]
@@ -57,7 +57,7 @@ class JerkLimitedTeleop {
         }
         const bool isAxisLimited = chance(0.5);
         for (const char letter : axes_) {
-            const int axis = geom::axis_of_letter(letter);
+            const int axis = geometry::axis_of_letter(letter);
             rig_.set(Parameter::AXIS_MAX_VELOCITY, axis, std::pow(10.0, real(1, 2.3)));
             rig_.set(Parameter::AXIS_MAX_ACCELERATION, axis, std::pow(10.0, real(2, 3.5)));
             if (isAxisLimited) {
@@ -73,11 +73,11 @@ class JerkLimitedTeleop {
     }
     void run(int cycles) {
         double way = 0;
-        geom::Pose last = rig_.status().carte_pos_cmd;
+        geometry::Pose last = rig_.status().carte_pos_cmd;
         for (int n = 0; n < cycles && judge_->isWithin() && rig_.status().isEnabled; ++n) {
             command();
             step();
-            way += geom::norm(rig_.status().carte_pos_cmd - last);
+            way += geometry::norm(rig_.status().carte_pos_cmd - last);
             last = rig_.status().carte_pos_cmd;
         }
         EXPECT_TRUE(rig_.status().isEnabled);
@@ -110,7 +110,7 @@ class JerkLimitedTeleop {
         }
         return isResting;
     }
-    int axis() { return geom::axis_of_letter(axes_[static_cast<std::size_t>(whole(0, most() - 1))]); }
+    int axis() { return geometry::axis_of_letter(axes_[static_cast<std::size_t>(whole(0, most() - 1))]); }
     double speed() { return std::pow(10.0, real(0, 2.5)); }
     void command() {
         const auto signed_speed = [this] { return speed() * (chance(0.5) ? 1 : -1); };
@@ -201,35 +201,35 @@ void jog_smoothly(const JerkyMachine &machine, int seeds = 6) {
     }
 }
 
-TEST(TeleopJerk, ACoreXyKeepsJointJerk_C13) {
-    jog_smoothly({kins::CoreXy{}, "XYZ", {10, -20, 5}});
+TEST(TeleopJerk, ACoreXyKeepsJointJerk) {
+    jog_smoothly({kinematics::CoreXy{}, "XYZ", {10, -20, 5}});
 }
 
-TEST(TeleopJerk, ARotaryTableKeepsJointJerk_C13) {
-    jog_smoothly({kins::RotaryTable{}, "XYZAC", {30, 10, -20, 20, 30}});
+TEST(TeleopJerk, ARotaryTableKeepsJointJerk) {
+    jog_smoothly({kinematics::RotaryTable{}, "XYZAC", {30, 10, -20, 20, 30}});
 }
 
-TEST(TeleopJerk, ATiltedRotaryTableKeepsJointJerk_C13) {
-    kins::RotaryTable table;
+TEST(TeleopJerk, ATiltedRotaryTableKeepsJointJerk) {
+    kinematics::RotaryTable table;
     table.set_tilt_axis(5, -40);
     jog_smoothly({table, "XYZAC", {30, 10, -20, 20, 30}});
 }
 
-TEST(TeleopJerk, AFiveAxisHeadKeepsJointJerk_C13) {
-    kins::TiltingHead head;
+TEST(TeleopJerk, AFiveAxisHeadKeepsJointJerk) {
+    kinematics::TiltingHead head;
     head.set(0, 120);
     jog_smoothly({head, "XYZABC", {0, 0, 0, 5, 20, 30, 0, 0, 0}});
 }
 
-TEST(TeleopJerk, ALinearDeltaKeepsJointJerk_C13) {
-    kins::LinearDelta delta;
+TEST(TeleopJerk, ALinearDeltaKeepsJointJerk) {
+    kinematics::LinearDelta delta;
     delta.set(0, 130.25);
     delta.set(1, 269);
     jog_smoothly({delta, "XYZ", {0, 0, 0}, 50});
 }
 
-TEST(TeleopJerk, AScaraKeepsJointJerk_C13) {
-    kins::Scara scara;
+TEST(TeleopJerk, AScaraKeepsJointJerk) {
+    kinematics::Scara scara;
     std::size_t i = 0;
     for (const double value : {490.0, 340.0, 50.0, 250.0, 50.0, 50.0}) {
         scara.set(i++, value);
@@ -237,8 +237,8 @@ TEST(TeleopJerk, AScaraKeepsJointJerk_C13) {
     jog_smoothly({scara, "XYZC", {20, -70, 10, 30}, 50});
 }
 
-TEST(TeleopJerk, APumaKeepsJointJerk_C13) {
-    kins::Puma puma;
+TEST(TeleopJerk, APumaKeepsJointJerk) {
+    kinematics::Puma puma;
     std::size_t i = 0;
     for (const double value : {300.0, 50.0, 70.0, 400.0, 70.0}) {
         puma.set(i++, value);
@@ -246,21 +246,21 @@ TEST(TeleopJerk, APumaKeepsJointJerk_C13) {
     jog_smoothly({puma, "XYZABC", {0, -45, 10, 20, 40, 40}, 50}, 2);
 }
 
-TEST(TeleopJerk, AHexapodKeepsJointJerk_C13) {
-    kins::Hexapod hexapod;
-    for (std::size_t strut = 0; strut < kins::Hexapod::STRUTS; ++strut) {
-        hexapod.set(kins::Hexapod::index_of(kins::Hexapod::BASE, strut) + 2, -20);
+TEST(TeleopJerk, AHexapodKeepsJointJerk) {
+    kinematics::Hexapod hexapod;
+    for (std::size_t strut = 0; strut < kinematics::Hexapod::STRUTS; ++strut) {
+        hexapod.set(kinematics::Hexapod::index_of(kinematics::Hexapod::BASE, strut) + 2, -20);
     }
     std::vector<double> start(MAX_JOINTS, 30.0);
-    ASSERT_EQ(hexapod.inverse({}, start.data()), kins::Status::OK);
-    start.resize(kins::Hexapod::STRUTS);
+    ASSERT_EQ(hexapod.inverse({}, start.data()), kinematics::Status::OK);
+    start.resize(kinematics::Hexapod::STRUTS);
     jog_smoothly({hexapod, "XYZABC", start, 4}, 1);
 }
 
 /// The limit of the joints is lowered while one axis has its old share and another begins: X brakes slowly,
 /// and Y would be at its new share long before X has come down to that.
-TEST(TeleopJerk, AnAxisTakesItsShareOnceTheOtherIsDownToItsOwn_C13) {
-    kins::CoreXy model;
+TEST(TeleopJerk, AnAxisTakesItsShareOnceTheOtherIsDownToItsOwn) {
+    kinematics::CoreXy model;
     MotionRig rig(model, 3, 100, 1000);
     for (int j = 0; j < 3; ++j) {
         rig.set(Parameter::JOINT_MAX_JERK, j, 20000);
@@ -289,8 +289,8 @@ TEST(TeleopJerk, AnAxisTakesItsShareOnceTheOtherIsDownToItsOwn_C13) {
 /// One that comes to its target with all of its acceleration keeps it: the other begins later.
 class NoOvershoot : public ::testing::TestWithParam<bool> {};
 
-TEST_P(NoOvershoot, OfAJogWhereAnotherBegins_C8_C13) {
-    kins::CoreXy model;
+TEST_P(NoOvershoot, OfAJogWhereAnotherBegins) {
+    kinematics::CoreXy model;
     for (int begin = 600; begin < 1000; begin += 8) {
         MotionRig rig(model, 3, 100, 1000);
         if (GetParam()) {
@@ -341,8 +341,8 @@ double least_time_s(double way, double v, double a, double j) {
 
 /// Tower 0 of a delta stands across X: its joint hardly moves with X where a jog begins, and a quarter as
 /// fast as X where that stops. The mean of the jog, kept from begin to end, has to serve the stop as well.
-TEST(TeleopJerk, AJogThatBeginsWhereAJointHardlyMovesStopsSoonWhereItDoes_C8_C13) {
-    kins::LinearDelta delta;
+TEST(TeleopJerk, AJogThatBeginsWhereAJointHardlyMovesStopsSoonWhereItDoes) {
+    kinematics::LinearDelta delta;
     delta.set(0, 130.25);
     delta.set(1, 269);
     MotionRig rig(delta, 3, 400, 3000);
@@ -370,10 +370,10 @@ TEST(TeleopJerk, AJogThatBeginsWhereAJointHardlyMovesStopsSoonWhereItDoes_C8_C13
 
 /// Along X of a CoreXY both belts do what the axis does, so the least time is known. A jog takes longer by
 /// the time of its mean at most, tau = min(2 A / J, sqrt(2 V / J)), and one that comes to its speed by 42 %.
-TEST(TeleopJerk, AJogOfAStraightJointLineIsNearTheLeastTime_C13) {
+TEST(TeleopJerk, AJogOfAStraightJointLineIsNearTheLeastTime) {
     for (const double acceleration : {200.0, 1000.0, 3000.0}) {
         for (const double per_s : {3.0, 10.0, 50.0}) {
-            kins::CoreXy model;
+            kinematics::CoreXy model;
             MotionRig rig(model, 3, 100, acceleration);
             const double jerk = per_s * acceleration;
             for (int j = 0; j < 3; ++j) {

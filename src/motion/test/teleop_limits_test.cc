@@ -11,11 +11,11 @@
 
 #include <gtest/gtest.h>
 
-#include "kins/corexy.hh"
-#include "kins/linear_delta.hh"
-#include "kins/rotary_table.hh"
-#include "testing/campaign_seeds.hh"
-#include "testing/motion_rig.hh"
+#include "kinematics/corexy.hh"
+#include "kinematics/linear_delta.hh"
+#include "kinematics/rotary_table.hh"
+#include "tests/support/campaign_seeds.hh"
+#include "tests/support/motion_rig.hh"
 
 namespace mw::motion {
 namespace {
@@ -38,8 +38,8 @@ double beyond(Model model) {
 
 class JogsNearLimits {
   public:
-    JogsNearLimits(const kins::Kinematics &model, std::string axes, int joints, bool isSmooth, double beyond,
-                   unsigned seed)
+    JogsNearLimits(const kinematics::Kinematics &model, std::string axes, int joints, bool isSmooth,
+                   double beyond, unsigned seed)
         : random_(seed), axes_(std::move(axes)), beyond_(beyond), rig_(model, joints, 100, 1000) {
         for (int j = 0; j < joints; ++j) {
             const double a = std::pow(10.0, real(2, 3.3));
@@ -56,7 +56,7 @@ class JogsNearLimits {
         rig_.step(4);
         rig_.ready(Mode::TELEOP);
         for (const char letter : axes_) {
-            const int axis = geom::axis_of_letter(letter);
+            const int axis = geometry::axis_of_letter(letter);
             const double here = rig_.status().carte_pos_cmd[axis];
             low_.push_back(here - real(2, 20));
             high_.push_back(here + real(2, 20));
@@ -85,7 +85,7 @@ class JogsNearLimits {
     void command() {
         const auto i = static_cast<std::size_t>(
             std::uniform_int_distribution<int>(0, static_cast<int>(axes_.size()) - 1)(random_));
-        const int axis = geom::axis_of_letter(axes_[i]);
+        const int axis = geometry::axis_of_letter(axes_[i]);
         const double speed = std::pow(10.0, real(1, 2.5));
         const double choice = real(0, 1);
         if (choice < 0.5) {
@@ -100,7 +100,7 @@ class JogsNearLimits {
     double expect_within(int n) {
         double way = 0;
         for (std::size_t i = 0; i < axes_.size(); ++i) {
-            const int axis = geom::axis_of_letter(axes_[i]);
+            const int axis = geometry::axis_of_letter(axes_[i]);
             const double at = rig_.status().carte_pos_cmd[axis];
             EXPECT_GE(at, low_[i] - beyond_) << axes_[i] << " in cycle " << n;
             EXPECT_LE(at, high_[i] + beyond_) << axes_[i] << " in cycle " << n;
@@ -123,16 +123,17 @@ class JogsNearLimits {
 
 class TeleopLimits : public ::testing::TestWithParam<std::tuple<Model, bool>> {};
 
-TEST_P(TeleopLimits, AreKeptWhileSeveralAxesAreJogged_C8_C13) {
+TEST_P(TeleopLimits, AreKeptWhileSeveralAxesAreJogged) {
     const auto [which, isSmooth] = GetParam();
-    kins::CoreXy corexy;
-    kins::LinearDelta delta;
+    kinematics::CoreXy corexy;
+    kinematics::LinearDelta delta;
     delta.set(0, 130.25);
     delta.set(1, 269);
-    kins::RotaryTable table;
-    const kins::Kinematics &model = which == Model::COREXY  ? static_cast<const kins::Kinematics &>(corexy)
-                                    : which == Model::DELTA ? static_cast<const kins::Kinematics &>(delta)
-                                                            : static_cast<const kins::Kinematics &>(table);
+    kinematics::RotaryTable table;
+    const kinematics::Kinematics &model =
+        which == Model::COREXY  ? static_cast<const kinematics::Kinematics &>(corexy)
+        : which == Model::DELTA ? static_cast<const kinematics::Kinematics &>(delta)
+                                : static_cast<const kinematics::Kinematics &>(table);
     const bool hasRotary = which == Model::TABLE;
     const auto [first, count] = testing::campaign_seeds(10);
     for (int i = 0; i < count && !HasFailure(); ++i) {

@@ -6,12 +6,12 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "kins/corexy.hh"
-#include "kins/linear_delta.hh"
-#include "kins/rotary_table.hh"
-#include "kins/tilting_head.hh"
-#include "testing/campaign_seeds.hh"
-#include "testing/motion_rig.hh"
+#include "kinematics/corexy.hh"
+#include "kinematics/linear_delta.hh"
+#include "kinematics/rotary_table.hh"
+#include "kinematics/tilting_head.hh"
+#include "tests/support/campaign_seeds.hh"
+#include "tests/support/motion_rig.hh"
 
 namespace mw::motion {
 namespace {
@@ -20,7 +20,7 @@ using testing::MotionRig;
 
 class TeleopCampaign {
   public:
-    TeleopCampaign(const kins::Kinematics &model, int joints, const char *axes, unsigned seed)
+    TeleopCampaign(const kinematics::Kinematics &model, int joints, const char *axes, unsigned seed)
         : random_(seed), rig_(model, joints, 100, 1000), axes_(axes) {
         for (int j = 0; j < joints; ++j) {
             rig_.set(Parameter::JOINT_MAX_VELOCITY, j, std::pow(10.0, real(1, 2.3)));
@@ -34,19 +34,21 @@ class TeleopCampaign {
     /// Jogs of up to three axes at a time, begun, changed and stopped at random.
     void run() {
         double way = 0;
-        geom::Pose last = rig_.status().carte_pos_cmd;
+        geometry::Pose last = rig_.status().carte_pos_cmd;
         for (int n = 0; n < 8000; ++n) {
             if (chance(0.004)) {
-                const int axis = geom::axis_of_letter(axes_[static_cast<std::size_t>(whole(0, most() - 1))]);
+                const int axis =
+                    geometry::axis_of_letter(axes_[static_cast<std::size_t>(whole(0, most() - 1))]);
                 const double v = std::pow(10.0, real(0, 2.5)) * (chance(0.5) ? 1 : -1);
                 rig_.send(JogContinuous{{false, axis}, v});
             }
             if (chance(0.003)) {
-                const int axis = geom::axis_of_letter(axes_[static_cast<std::size_t>(whole(0, most() - 1))]);
+                const int axis =
+                    geometry::axis_of_letter(axes_[static_cast<std::size_t>(whole(0, most() - 1))]);
                 rig_.send(JogStop{{false, axis}});
             }
             rig_.step();
-            way += geom::norm(rig_.status().carte_pos_cmd - last);
+            way += geometry::norm(rig_.status().carte_pos_cmd - last);
             last = rig_.status().carte_pos_cmd;
         }
         EXPECT_GT(way, 10) << "the jogs did move";
@@ -71,7 +73,7 @@ class TeleopCampaign {
     std::string axes_;
 };
 
-void jog_all(const kins::Kinematics &model, int joints, const char *axes) {
+void jog_all(const kinematics::Kinematics &model, int joints, const char *axes) {
     const auto [first, count] = testing::campaign_seeds(20);
     for (int i = 0; i < count && !::testing::Test::HasFailure(); ++i) {
         const int seed = first + i;
@@ -80,23 +82,23 @@ void jog_all(const kins::Kinematics &model, int joints, const char *axes) {
     }
 }
 
-TEST(Teleop, CoreXyKeepsJointLimits_C13) {
-    jog_all(kins::CoreXy{}, 3, "XYZ");
+TEST(Teleop, CoreXyKeepsJointLimits) {
+    jog_all(kinematics::CoreXy{}, 3, "XYZ");
 }
 
-TEST(Teleop, RotaryTableKeepsJointLimits_C13) {
-    jog_all(kins::RotaryTable{}, 5, "XYZAC");
+TEST(Teleop, RotaryTableKeepsJointLimits) {
+    jog_all(kinematics::RotaryTable{}, 5, "XYZAC");
 }
 
-TEST(Teleop, TiltedRotaryTableKeepsJointLimits_C13) {
-    kins::RotaryTable table;
+TEST(Teleop, TiltedRotaryTableKeepsJointLimits) {
+    kinematics::RotaryTable table;
     table.set_tilt_axis(5, -40);
     jog_all(table, 5, "XYZAC");
 }
 
 /// Machines with random limits; both ways along one of two axes, to its soft limit and not beyond.
 struct ToSoftLimits {
-    const kins::Kinematics &model;
+    const kinematics::Kinematics &model;
     int joints;
     std::array<int, 2> axes;
     bool isJerkLimited;
@@ -158,31 +160,31 @@ void jog_to_soft_limits(const ToSoftLimits &machine) {
     EXPECT_GT(reached, count);
 }
 
-TEST(Teleop, ADeltaComesToRestAtTheSoftLimitsOfItsAxes_C13) {
-    const kins::LinearDelta delta;
+TEST(Teleop, ADeltaComesToRestAtTheSoftLimitsOfItsAxes) {
+    const kinematics::LinearDelta delta;
     jog_to_soft_limits({delta, 3, {0, 1}, false});
 }
 
-TEST(Teleop, ADeltaComesToRestAtTheSoftLimitsOfItsAxesWithJerkLimits_C13) {
-    const kins::LinearDelta delta;
+TEST(Teleop, ADeltaComesToRestAtTheSoftLimitsOfItsAxesWithJerkLimits) {
+    const kinematics::LinearDelta delta;
     jog_to_soft_limits({delta, 3, {0, 1}, true, 850});
 }
 
-TEST(Teleop, AHeadComesToRestAtTheSoftLimitsOfItsAxes_C13) {
-    const kins::TiltingHead head;
-    jog_to_soft_limits({head, 6, {geom::AXIS_B, geom::AXIS_W}, false});
+TEST(Teleop, AHeadComesToRestAtTheSoftLimitsOfItsAxes) {
+    const kinematics::TiltingHead head;
+    jog_to_soft_limits({head, 6, {geometry::AXIS_B, geometry::AXIS_W}, false});
 }
 
-TEST(Teleop, ATableComesToRestAtItsSoftLimitsWithJerkLimits_C13) {
-    kins::RotaryTable table;
+TEST(Teleop, ATableComesToRestAtItsSoftLimitsWithJerkLimits) {
+    kinematics::RotaryTable table;
     table.set_tilt_axis(5, -40);
-    jog_to_soft_limits({table, 5, {geom::AXIS_A, geom::AXIS_C}, true});
+    jog_to_soft_limits({table, 5, {geometry::AXIS_A, geometry::AXIS_C}, true});
 }
 
 /// A wheel that is turned slowly sends it a little on time and again, so that it brakes and goes on at the
 /// same mean speed. It never goes back on that way.
-TEST(Teleop, WhoCreepsBehindAWheelTurnsNotBack_C8_C13_C15) {
-    const kins::TiltingHead head;
+TEST(Teleop, WhoCreepsBehindAWheelTurnsNotBack) {
+    const kinematics::TiltingHead head;
     MotionRig rig(head, 6, 60, 630);
     constexpr std::array<double, 6> VELOCITY{211, 60, 126, 185, 60, 252};
     constexpr std::array<double, 6> ACCELERATION{758, 2210, 1096, 274.36, 632, 289};
@@ -192,21 +194,21 @@ TEST(Teleop, WhoCreepsBehindAWheelTurnsNotBack_C8_C13_C15) {
         rig.set(Parameter::JOINT_MAX_ACCELERATION, j, ACCELERATION[static_cast<std::size_t>(j)]);
         rig.set(Parameter::JOINT_MAX_JERK, j, JERK[static_cast<std::size_t>(j)]);
     }
-    rig.set(Parameter::AXIS_MAX_VELOCITY, geom::AXIS_B, 170);
-    rig.set(Parameter::AXIS_MAX_ACCELERATION, geom::AXIS_B, 3600);
-    rig.set(Parameter::AXIS_MIN_LIMIT, geom::AXIS_B, -400);
-    rig.set(Parameter::AXIS_MAX_LIMIT, geom::AXIS_B, 400);
+    rig.set(Parameter::AXIS_MAX_VELOCITY, geometry::AXIS_B, 170);
+    rig.set(Parameter::AXIS_MAX_ACCELERATION, geometry::AXIS_B, 3600);
+    rig.set(Parameter::AXIS_MIN_LIMIT, geometry::AXIS_B, -400);
+    rig.set(Parameter::AXIS_MAX_LIMIT, geometry::AXIS_B, 400);
     rig.set(Parameter::TRAJ_PLANNER_TYPE, 0, 1);
     rig.set(Parameter::TRAJ_MAX_JERK, 0, 1e6);
     rig.step(4);
     rig.ready(Mode::TELEOP);
-    WheelInput &wheel = rig.in.axis_wheel[geom::AXIS_B];
+    WheelInput &wheel = rig.in.axis_wheel[geometry::AXIS_B];
     wheel.isEnabled = true;
     wheel.scale = 3.8e-3;
-    const auto place = [&] { return rig.status().carte_pos_cmd[geom::AXIS_B]; };
+    const auto place = [&] { return rig.status().carte_pos_cmd[geometry::AXIS_B]; };
     // The more the tool stands askew, the more turning it takes of what the slides have.
     for (const double from : {-302.4, -250.0, -50.0, 20.0, 70.0, 140.0, 280.0, 301.5, 302.362476}) {
-        rig.send(JogAbsolute{{false, geom::AXIS_B}, 100, from});
+        rig.send(JogAbsolute{{false, geometry::AXIS_B}, 100, from});
         ASSERT_TRUE(rig.run_until([&] { return std::abs(place() - from) < 1e-9; }, 60));
         rig.step(500);
         for (int cycles = 1; cycles <= 12; ++cycles) {
@@ -229,7 +231,7 @@ TEST(Teleop, WhoCreepsBehindAWheelTurnsNotBack_C8_C13_C15) {
 }
 
 TEST(Teleop, ACoreXyJogGoesAsFastAsItsJointsAllow) {
-    kins::CoreXy model;
+    kinematics::CoreXy model;
     MotionRig rig(model, 3, 100, 1000);
     rig.ready(Mode::TELEOP);
     rig.send(JogContinuous{{false, 0}, 1000});
@@ -239,25 +241,25 @@ TEST(Teleop, ACoreXyJogGoesAsFastAsItsJointsAllow) {
 }
 
 /// Keeps how far out in X the joints of a pose were asked for.
-class AskedKinematics final : public kins::Kinematics {
+class AskedKinematics final : public kinematics::Kinematics {
   public:
     mutable double farthest = 0;
 
-    kins::Kind kind() const noexcept override { return kins::Kind::BOTH; }
-    kins::Status forward(const double *joints, kins::Pose &pose) const noexcept override {
+    kinematics::Kind kind() const noexcept override { return kinematics::Kind::BOTH; }
+    kinematics::Status forward(const double *joints, kinematics::Pose &pose) const noexcept override {
         return model_.forward(joints, pose);
     }
-    kins::Status inverse(const kins::Pose &pose, double *joints) const noexcept override {
+    kinematics::Status inverse(const kinematics::Pose &pose, double *joints) const noexcept override {
         farthest = std::max(farthest, pose[0]);
         return model_.inverse(pose, joints);
     }
 
   private:
-    kins::CoreXy model_;
+    kinematics::CoreXy model_;
 };
 
 /// What that costs is paid once, and no place out there matters to an axis that has its mean.
-TEST(Teleop, OnlyAJogThatBeginsIsLookedAtWhereItIsSent_C9) {
+TEST(Teleop, OnlyAJogThatBeginsIsLookedAtWhereItIsSent) {
     constexpr double SENT = 400, NEAR = 20;
     AskedKinematics model;
     MotionRig rig(model, 3, 100, 1000);
@@ -269,7 +271,7 @@ TEST(Teleop, OnlyAJogThatBeginsIsLookedAtWhereItIsSent_C9) {
     rig.step(4);
     rig.ready(Mode::TELEOP);
     model.farthest = 0;
-    rig.send(JogAbsolute{{false, geom::AXIS_X}, 50, SENT});
+    rig.send(JogAbsolute{{false, geometry::AXIS_X}, 50, SENT});
     rig.step();
     EXPECT_GT(model.farthest, SENT - 1);
     model.farthest = 0;

@@ -4,12 +4,12 @@
 
 #include <gtest/gtest.h>
 
-#include "motion/api/texts.hh"
+#include "motion/interface/texts.hh"
 
 namespace mw::motion {
 namespace {
 
-TEST(Texts, EveryReasonAndFaultHasOneOfItsOwn_C5) {
+TEST(Texts, EveryReasonAndFaultHasOneOfItsOwn) {
     std::set<std::string> seen;
     for (int r = 1; r < static_cast<int>(Reason::COUNT); ++r) {
         Answer a;
@@ -35,7 +35,7 @@ TEST(Texts, EveryReasonAndFaultHasOneOfItsOwn_C5) {
     }
 }
 
-TEST(Texts, ARefusalNamesTheJointOrAxisWhereThatIsKnown_C5) {
+TEST(Texts, ARefusalNamesTheJointOrAxisWhereThatIsKnown) {
     Answer a;
     a.reason = Reason::INDEXER_ALONE;
     const auto has = [&](const char *name) {

@@ -13,8 +13,8 @@ namespace {
 constexpr double LEAD = 1.5, PASS_TOP = 5, PASS_BOTTOM = -20;
 constexpr double DEGREE = 1.0 / 360;
 
-sim::SpindleTraits mill_spindle() {
-    sim::SpindleTraits traits;
+plants::SpindleTraits mill_spindle() {
+    plants::SpindleTraits traits;
     traits.ramp = 1000.0 / 60 / 0.5;  // 1,000 rpm in half a second
     traits.slip = 0.1;
     traits.first_turns = 0.37;
@@ -57,7 +57,7 @@ double apart(double a, double b) {
     return std::abs(std::remainder(a - b, 1.0));
 }
 
-TEST_P(ThreadAngle, IsTheSameForAllPassesFrom100To3000Rpm_C15) {
+TEST_P(ThreadAngle, IsTheSameForAllPassesFrom100To3000Rpm) {
     SpindleBench bench(mill_spindle(), GetParam());
     double first = NAN, worst = 0, wander = 0;
     for (const double rpm : {100.0, 300.0, 500.0, 1000.0, 1700.0, 2400.0, 3000.0}) {
@@ -78,7 +78,7 @@ TEST_P(ThreadAngle, IsTheSameForAllPassesFrom100To3000Rpm_C15) {
                 GetParam() ? " with jerk limits" : "", worst / DEGREE, wander / DEGREE);
 }
 
-TEST_P(ThreadAngle, IsKeptWhenTheSpindleIsSlowedWithinThePass_C15) {
+TEST_P(ThreadAngle, IsKeptWhenTheSpindleIsSlowedWithinThePass) {
     SpindleBench bench(mill_spindle(), GetParam());
     double first = NAN, at_start = 0, meanwhile = 0;
     for (const double rpm : {300.0, 1000.0, 2000.0}) {
@@ -107,12 +107,12 @@ TEST_P(ThreadAngle, IsKeptWhenTheSpindleIsSlowedWithinThePass_C15) {
 
 /// What few counts make of the speed puts the helix on either side of a tool that is still slower: it is not
 /// met before the speed is right, since what is gained from there is a tenth of the acceleration.
-TEST_P(ThreadAngle, IsNotTakenForMetByFewCountsWhileSpeedIsGained_C15) {
+TEST_P(ThreadAngle, IsNotTakenForMetByFewCountsWhileSpeedIsGained) {
     constexpr double GENTLE = 90;
     for (const int counts : {500, 1024, 4096}) {
         for (const double rpm : {380.0, 520.0, 663.0}) {
             SCOPED_TRACE(::testing::Message() << counts << " counts, " << rpm << " rpm");
-            sim::SpindleTraits traits;
+            plants::SpindleTraits traits;
             traits.ramp = 150;
             traits.counts_per_turn = counts;
             traits.first_turns = 0.14;
@@ -129,7 +129,7 @@ TEST_P(ThreadAngle, IsNotTakenForMetByFewCountsWhileSpeedIsGained_C15) {
     }
 }
 
-TEST_P(ThreadAngle, AThreadWithoutAPartAtItsLeadIsRefusedBeforeItMoves_C15) {
+TEST_P(ThreadAngle, AThreadWithoutAPartAtItsLeadIsRefusedBeforeItMoves) {
     SpindleBench bench(mill_spindle(), GetParam());
     bench.spin(2000);
     bench.rapid(10, PASS_TOP);

@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "testing/limit_checker.hh"
-#include "testing/motion_rig.hh"
+#include "tests/support/limit_checker.hh"
+#include "tests/support/motion_rig.hh"
 
 namespace mw::motion {
 namespace {
@@ -15,7 +15,7 @@ namespace {
 TEST(Threads, ALateOrLostPlannerNeverBreaksTheLimits) {
     testing::MotionRig rig;
     rig.ready();
-    geom::Pose end;
+    geometry::Pose end;
     for (int i = 1; i <= 400; ++i) {
         end[0] = 0.5 * i;
         end[1] = i % 2;

@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "testing/limit_checker.hh"
-#include "testing/motion_rig.hh"
+#include "tests/support/limit_checker.hh"
+#include "tests/support/motion_rig.hh"
 
 namespace mw::motion {
 namespace {
@@ -28,7 +28,7 @@ double run_program(double first_tolerance) {
     rig.set(Parameter::TRAJ_PLANNER_TYPE, 0, 1);
     rig.ready();
     testing::LimitChecker checker(limits, MotionRig::T);
-    geom::Pose at;
+    geometry::Pose at;
     at[0] = 20;
     rig.line(at, 80, PathMode::BLEND, first_tolerance);
     at[0] = 0;
@@ -54,12 +54,12 @@ double run_program(double first_tolerance) {
     return cycles * MotionRig::T;
 }
 
-TEST(Tolerance, ASmallerOneOnTheWayCostsAStopAndNotTheSpeedOfTheCurves_C13) {
+TEST(Tolerance, ASmallerOneOnTheWayCostsAStopAndNotTheSpeedOfTheCurves) {
     const double alone = run_program(0.01);
     EXPECT_LT(run_program(1.0), alone + 0.2);
 }
 
-TEST(Tolerance, ASmallerOneOnTheWayKeepsSingleSteps_C13) {
+TEST(Tolerance, ASmallerOneOnTheWayKeepsSingleSteps) {
     MotionRig rig("XYZ", V, A);
     for (int j = 0; j < 3; ++j) {
         rig.set(Parameter::AXIS_MAX_JERK, j, J);
@@ -70,7 +70,7 @@ TEST(Tolerance, ASmallerOneOnTheWayKeepsSingleSteps_C13) {
     rig.send(Pause{});
     rig.step(2);
     for (int i = 1; i <= 3; ++i) {
-        geom::Pose at;
+        geometry::Pose at;
         at[0] = 10.0 * i;
         rig.line(at, 50, PathMode::BLEND, std::pow(0.01, i));
     }
@@ -84,10 +84,10 @@ TEST(Tolerance, ASmallerOneOnTheWayKeepsSingleSteps_C13) {
 }
 
 /// Pieces that the path is made of for so many steps of 0.02 along a slow wave of this height.
-traj::Sequence pieces_of(double height, double tolerance) {
+trajectory::Sequence pieces_of(double height, double tolerance) {
     MotionRig rig("XYZ", V, A);
     rig.ready();
-    geom::Pose at;
+    geometry::Pose at;
     for (int i = 1; i <= 200; ++i) {
         at[0] = 0.02 * i;
         at[1] = height * std::sin(at[0]);
@@ -99,7 +99,7 @@ traj::Sequence pieces_of(double height, double tolerance) {
     return rig.link->store.last_piece.load();
 }
 
-TEST(Tolerance, NearlyStraightLinesBecomeOneWithinIt_C13) {
+TEST(Tolerance, NearlyStraightLinesBecomeOneWithinIt) {
     EXPECT_LE(pieces_of(1e-4, 0.01), 20U);
     EXPECT_GE(pieces_of(1e-4, 0), 200U) << "none is asked for: every line is one";
 }

@@ -26,7 +26,7 @@ export interface View {
 
 type Situation = 'estop' | 'off' | 'idle' | 'running' | 'held' | 'proposed' | 'away' | 'line';
 
-/** In the words of docs/task/states.md, with those of the modes put together. */
+/** In the words of states.md, with those of the modes put together. */
 export function situation(status: MachineStatus): Situation {
   const { task } = status;
   if (task.state === 'ESTOP') {

@@ -4,8 +4,8 @@
 
 #include <cerrno>
 
-#include "hal/api/hal.h"
 #include "hal/core/detail/impl.hh"
+#include "hal/include/hal.h"
 
 namespace mw::hal::detail {
 
@@ -19,7 +19,7 @@ int complain(int code, const std::string &message) noexcept;
 int status_of(const Result<> &result) noexcept;
 
 /// The log of the current instance, or of the process.
-rtapi::Log &current_log() noexcept;
+runtime::Log &current_log() noexcept;
 
 /// Runs `work` on the current instance; -EINVAL when there is none.
 template <class Work>

@@ -11,10 +11,10 @@
 
 #include <fmt/core.h>
 
-#include "hal/api/rtapi.h"
 #include "hal/core/detail/segment.hh"
 #include "hal/core/detail/ticks.hh"
 #include "hal/core/hal.hh"
+#include "hal/include/rtapi.h"
 
 namespace mw::hal {
 
@@ -28,7 +28,7 @@ struct PlannerRunner {
     void (*function)(void *, long long) = nullptr;
     void *argument = nullptr;
     int id = 0;
-    rtapi::PeriodicId periodic;
+    runtime::PeriodicId periodic;
 };
 
 /// A module that wants to know of the end of the controlling process, and says when the machine stands.
@@ -43,7 +43,7 @@ struct ControllerWatch {
 struct ThreadRunner {
     Hal::Impl *hal = nullptr;
     ThreadRecord *record = nullptr;
-    rtapi::PeriodicId periodic;
+    runtime::PeriodicId periodic;
 };
 
 /// A failure whose code the C API hands on.
@@ -56,9 +56,9 @@ struct Hal::Impl {
     Hal *self = nullptr;
     bool isHost = false;
     bool isShared = false;
-    rtapi::Scheduler *scheduler = nullptr;
-    rtapi::Log *log = nullptr;
-    std::unique_ptr<rtapi::Log> own_log;
+    runtime::Scheduler *scheduler = nullptr;
+    runtime::Log *log = nullptr;
+    std::unique_ptr<runtime::Log> own_log;
     detail::Segment segment;
     Loader *loader = nullptr;                                      ///< of the host, while there is one
     std::vector<std::unique_ptr<detail::ThreadRunner>> runners;    ///< under the segment's lock

@@ -19,7 +19,7 @@ std::uint32_t hash_of(std::string_view name) noexcept {
 
 }  // namespace
 
-Segment::Segment(rtapi::SharedMemory memory) noexcept : memory_(std::move(memory)), data_(memory_.data()) {}
+Segment::Segment(runtime::SharedMemory memory) noexcept : memory_(std::move(memory)), data_(memory_.data()) {}
 
 void Segment::initialise(bool isVirtual) noexcept {
     auto *fresh = new (data_) Header{};

@@ -14,7 +14,7 @@
 
 #include "base/result.hh"
 #include "hal/core/hal.hh"
-#include "rtapi/shared_memory.hh"
+#include "runtime/shared_memory.hh"
 
 namespace mw::hal::detail {
 
@@ -64,7 +64,7 @@ struct CompRecord : Record {
     bool isReady;
     bool isLoadedByLoadrt;
     bool isAskedToEnd;  ///< its end is no accident
-    rtapi::ProcessId process;
+    runtime::ProcessId process;
     std::uint64_t base;  ///< where the owner has mapped the content
     Offset insmod_args;  ///< a text
 };
@@ -215,20 +215,20 @@ consteval std::uint64_t layout_hash() {
     return hash;
 }
 
-inline constexpr rtapi::SharedLayout LAYOUT{ABI_VERSION, layout_hash()};
+inline constexpr runtime::SharedLayout LAYOUT{ABI_VERSION, layout_hash()};
 
 /// The segment as mapped here. All methods but lock() and at() need the lock held.
 class Segment {
   public:
     Segment() = default;
-    explicit Segment(rtapi::SharedMemory memory) noexcept;
+    explicit Segment(runtime::SharedMemory memory) noexcept;
     /// Sets the header up; once, by the creator.
     void initialise(bool isVirtual) noexcept;
 
     Header &header() const noexcept { return *static_cast<Header *>(data_); }
     char *data() const noexcept { return static_cast<char *>(data_); }
     std::uint64_t base() const noexcept { return reinterpret_cast<std::uint64_t>(data_); }
-    const rtapi::SharedMemory &memory() const noexcept { return memory_; }
+    const runtime::SharedMemory &memory() const noexcept { return memory_; }
 
     /// Waits for the lock; repairs what a process that died with it left half done.
     void lock() noexcept;
@@ -280,7 +280,7 @@ class Segment {
     void unhash(Kind kind, Record &record) noexcept;
     void repair() noexcept;
 
-    rtapi::SharedMemory memory_;
+    runtime::SharedMemory memory_;
     void *data_ = nullptr;
 };
 

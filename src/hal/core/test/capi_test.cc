@@ -9,14 +9,14 @@
 
 #include <gtest/gtest.h>
 
-#include "hal/api/hal.h"
-#include "hal/api/kinematics.h"
-#include "hal/api/millwright_ext.h"
-#include "hal/api/rtapi_firmware.h"
-#include "hal/api/rtapi_mutex.h"
-#include "hal/api/rtapi_parport.h"
-#include "hal/api/rtapi_pci.h"
 #include "hal/core/test/machine.hh"
+#include "hal/include/hal.h"
+#include "hal/include/kinematics.h"
+#include "hal/include/millwright_ext.h"
+#include "hal/include/rtapi_firmware.h"
+#include "hal/include/rtapi_mutex.h"
+#include "hal/include/rtapi_parport.h"
+#include "hal/include/rtapi_pci.h"
 
 namespace mw::hal {
 namespace {
@@ -49,7 +49,7 @@ int add_name(hal_query_t *query, void *names) {
     return 0;
 }
 
-TEST_F(CInterface, GivesZeroedMemoryInHugePages_B5) {
+TEST_F(CInterface, GivesZeroedMemoryInHugePages) {
     constexpr std::size_t HUGE_PAGE = std::size_t{2} << 20U;
     constexpr std::size_t BYTES = HUGE_PAGE + 100;
     auto *memory = static_cast<unsigned char *>(mw_ext_memory_new(BYTES));
@@ -61,7 +61,7 @@ TEST_F(CInterface, GivesZeroedMemoryInHugePages_B5) {
     mw_ext_memory_delete(nullptr, BYTES);
 }
 
-TEST_F(CInterface, ListsWhatThereIs_B5) {
+TEST_F(CInterface, ListsWhatThereIs) {
     std::string names;
     EXPECT_EQ(hal_list_p(nullptr, add_name, &names), 0);
     EXPECT_EQ(names, "c.in c.out c.wide c.level ");
@@ -86,7 +86,7 @@ TEST_F(CInterface, ListsWhatThereIs_B5) {
     EXPECT_EQ(hal_list_p(nullptr, nullptr, nullptr), -EINVAL);
 }
 
-TEST_F(CInterface, GetsAndSetsByName_B5) {
+TEST_F(CInterface, GetsAndSetsByName) {
     hal_query_t query{};
     query.name = "c.wide";
     ASSERT_EQ(hal_get_p(&query, nullptr, nullptr), 0);
@@ -122,7 +122,7 @@ TEST_F(CInterface, GetsAndSetsByName_B5) {
     EXPECT_EQ(hal_get_s(&query, nullptr, nullptr), -ENOENT);
 }
 
-TEST_F(CInterface, GivesReferencesThatCanBeMapped_B5) {
+TEST_F(CInterface, GivesReferencesThatCanBeMapped) {
     hal_query_t query{};
     query.name = "c.in";
     ASSERT_EQ(hal_getref_p(&query), 0);
@@ -137,7 +137,7 @@ TEST_F(CInterface, GivesReferencesThatCanBeMapped_B5) {
     EXPECT_EQ(hal_reference_unmap(&query), -EINVAL);
 }
 
-TEST_F(CInterface, DescribesComponentsAndCounts_B5) {
+TEST_F(CInterface, DescribesComponentsAndCounts) {
     hal_query_t query{};
     ASSERT_EQ(hal_comp_by_name("c", &query), 0);
     EXPECT_EQ(query.comp.comp_id, comp);
@@ -157,7 +157,7 @@ TEST_F(CInterface, DescribesComponentsAndCounts_B5) {
 
 std::string made;
 
-TEST_F(CInterface, MakesInstancesByConstructor_B5) {
+TEST_F(CInterface, MakesInstancesByConstructor) {
     EXPECT_EQ(hal_comp_invoke_make("c", "n", ""), -ENOSYS);
     ASSERT_EQ(hal_set_constructor(comp,
                                   [](const char *prefix, const char *arg) {
@@ -173,7 +173,7 @@ TEST_F(CInterface, MakesInstancesByConstructor_B5) {
     EXPECT_LT(hal_comp_invoke_make("c", "new", ""), 0);
 }
 
-TEST_F(CInterface, PassesBytesThroughQueues_B5) {
+TEST_F(CInterface, PassesBytesThroughQueues) {
     const int writer = rtapi_fifo_new(5, 1, 6, 'W');
     const int reader = rtapi_fifo_new(5, 1, 6, 'R');
     ASSERT_GT(writer, 0);
@@ -194,7 +194,7 @@ TEST_F(CInterface, PassesBytesThroughQueues_B5) {
     EXPECT_EQ(rtapi_fifo_delete(reader, 1), -EINVAL);
 }
 
-TEST_F(CInterface, SharesSemaphoresByKey_B5) {
+TEST_F(CInterface, SharesSemaphoresByKey) {
     const int first = rtapi_sem_new(3, 1);
     ASSERT_GT(first, 0);
     EXPECT_EQ(rtapi_sem_new(3, 2), first);
@@ -210,7 +210,7 @@ TEST_F(CInterface, SharesSemaphoresByKey_B5) {
     EXPECT_EQ(rtapi_sem_try(first), -EINVAL) << "gone";
 }
 
-TEST_F(CInterface, SaysWhyHardwareIsOutOfReach_B5) {
+TEST_F(CInterface, SaysWhyHardwareIsOutOfReach) {
     EXPECT_LT(rtapi_task_new([](void *) {}, nullptr, rtapi_prio_lowest(), 1, 0, 0), 0) << "virtual clock";
     EXPECT_EQ(rtapi_task_self(), -EINVAL);
     EXPECT_EQ(rtapi_task_pll_set_correction(5), -EINVAL);
@@ -233,7 +233,7 @@ void write_file(const fs::path &path, const std::string &text) {
 int probed;
 void *mapped;
 
-TEST_F(CInterface, FindsCardsAndMapsTheirRegisters_B5) {
+TEST_F(CInterface, FindsCardsAndMapsTheirRegisters) {
     const fs::path root = fs::path(::testing::TempDir()) / "mw_sysfs";
     fs::remove_all(root);
     const fs::path card = root / "bus/pci/devices/0000:03:00.0";
@@ -272,7 +272,7 @@ TEST_F(CInterface, FindsCardsAndMapsTheirRegisters_B5) {
     fs::remove_all(root);
 }
 
-TEST_F(CInterface, ReadsFirmware_B5) {
+TEST_F(CInterface, ReadsFirmware) {
     const fs::path root = fs::path(::testing::TempDir()) / "mw_firmware";
     write_file(root / "card/a.bit", "bits");
     ::setenv("MILLWRIGHT_FIRMWARE", root.c_str(), 1);
@@ -288,7 +288,7 @@ TEST_F(CInterface, ReadsFirmware_B5) {
     fs::remove_all(root);
 }
 
-TEST_F(CInterface, MapsCoordinatesToJoints_B5) {
+TEST_F(CInterface, MapsCoordinatesToJoints) {
     int axes[5] = {};
     ASSERT_EQ(map_coordinates_to_jnumbers("XYZY", 5, 1, axes), 0);
     EXPECT_EQ(axes[3], 1);

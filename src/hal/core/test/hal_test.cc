@@ -122,7 +122,7 @@ TEST_F(HalTest, AliasesAreSecondNamesThatListsShow) {
     EXPECT_EQ(hal.pins()[0].name, "driver.0.x");
 }
 
-TEST_F(HalTest, NamesAreCheckedAndListsSorted_B1) {
+TEST_F(HalTest, NamesAreCheckedAndListsSorted) {
     pin("b", Type::BIT, Dir::IN);
     pin("a", Type::BIT, Dir::IN);
     pin(std::string(127, 'z'), Type::BIT, Dir::IN);

@@ -8,7 +8,7 @@ namespace {
 
 using ::testing::Test;
 
-TEST(Loader, RunsACComponentFromASharedObject_B5) {
+TEST(Loader, RunsACComponentFromASharedObject) {
     TestMachine machine;
     ASSERT_EQ(machine.load("threads2"), "ok");
     ASSERT_EQ(machine.load("counter", {"start=5", "steps=2,3", "names=a,b"}), "ok");
@@ -123,7 +123,7 @@ TEST(Loader, SdkComponentHasItsPinsParametersAndFunctions) {
     EXPECT_EQ(machine.value("sdk-sum.1.runs"), Value::of_s32(1));
 }
 
-TEST(Loader, OverlongNamesAreErrorsNeverCut_B1) {
+TEST(Loader, OverlongNamesAreErrorsNeverCut) {
     TestMachine machine;
     const std::string name(120, 'n');
     EXPECT_EQ(machine.load("sdk_sum", {"names=" + name}).find("ok"), std::string::npos)

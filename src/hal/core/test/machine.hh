@@ -7,18 +7,18 @@
 #include <vector>
 
 #include "hal/core/host.hh"
-#include "rtapi/virtual_scheduler.hh"
+#include "runtime/virtual_scheduler.hh"
 
 namespace mw::hal {
 
 /// Collects what is logged.
 struct Messages {
     std::vector<std::string> lines;
-    rtapi::Log log{rtapi::Log::Mode::SYNCHRONOUS,
-                   [](void *self, rtapi::LogLevel, const char *text) {
-                       static_cast<Messages *>(self)->lines.emplace_back(text);
-                   },
-                   this};
+    runtime::Log log{runtime::Log::Mode::SYNCHRONOUS,
+                     [](void *self, runtime::LogLevel, const char *text) {
+                         static_cast<Messages *>(self)->lines.emplace_back(text);
+                     },
+                     this};
 
     std::string all() const {
         std::string text;
@@ -31,7 +31,7 @@ struct Messages {
 
 struct TestMachine {
     Messages messages;
-    rtapi::VirtualScheduler clock;
+    runtime::VirtualScheduler clock;
     std::unique_ptr<LocalHost> host;
 
     explicit TestMachine(const std::string &name = "test") {

@@ -2,9 +2,9 @@
 // What HAL does inside a thread touches neither heap nor locks.
 #include <gtest/gtest.h>
 
-#include "hal/api/hal.h"
 #include "hal/core/test/machine.hh"
-#include "testing/allocation_guard.hh"
+#include "hal/include/hal.h"
+#include "tests/support/allocation_guard.hh"
 
 namespace mw::hal {
 namespace {

@@ -7,11 +7,11 @@
 
 #include <gtest/gtest.h>
 
-#include "hal/api/hal.h"
-#include "hal/api/rtapi_io.h"
 #include "hal/core/test/machine.hh"
-#include "rtapi/realtime_scheduler.hh"
-#include "testing/allocation_guard.hh"
+#include "hal/include/hal.h"
+#include "hal/include/rtapi_io.h"
+#include "runtime/realtime_scheduler.hh"
+#include "tests/support/allocation_guard.hh"
 
 namespace mw::hal {
 namespace {
@@ -30,7 +30,7 @@ bool isSoon(const std::function<bool()> &condition) {
 /// A private instance under the realtime clock, without realtime priority.
 struct RealtimeTasks : ::testing::Test {
     Messages messages;
-    rtapi::RealtimeScheduler clock{messages.log, {.cpu = -2, .isSimulation = true}};
+    runtime::RealtimeScheduler clock{messages.log, {.cpu = -2, .isSimulation = true}};
     std::unique_ptr<Hal> hal;
 
     RealtimeTasks() {
@@ -59,7 +59,7 @@ struct Counter {
     }
 };
 
-TEST_F(RealtimeTasks, RunPauseResumeAndEnd_B5) {
+TEST_F(RealtimeTasks, RunPauseResumeAndEnd) {
     const UseInstance use(hal.get());
     Counter counter;
     const int task = rtapi_task_new(&Counter::loop, &counter, rtapi_prio_lowest(), 1, 0, 1);
@@ -86,7 +86,7 @@ TEST_F(RealtimeTasks, RunPauseResumeAndEnd_B5) {
     EXPECT_EQ(counter.runs, last);
 }
 
-TEST_F(RealtimeTasks, RefuseWhatIsWrong_B5) {
+TEST_F(RealtimeTasks, RefuseWhatIsWrong) {
     const UseInstance use(hal.get());
     EXPECT_LT(rtapi_task_new(nullptr, nullptr, rtapi_prio_lowest(), 1, 0, 0), 0);
     EXPECT_LT(rtapi_task_new(&Counter::loop, nullptr, 1000, 1, 0, 0), 0);
@@ -112,7 +112,7 @@ struct Follower {
     }
 };
 
-TEST_F(RealtimeTasks, AThreadFollowsAnotherClockByOnePercent_B5) {
+TEST_F(RealtimeTasks, AThreadFollowsAnotherClockByOnePercent) {
     constexpr long long PERIOD = 1'000'000;
     const int comp = *hal->new_component("f", CompType::REALTIME);
     Follower follower;
@@ -130,7 +130,7 @@ TEST_F(RealtimeTasks, AThreadFollowsAnotherClockByOnePercent_B5) {
     EXPECT_LE(span, cycles * (PERIOD + PERIOD / 100) + PERIOD);
 }
 
-TEST(RealtimeCalls, OfTheCInterfaceLeaveTheHeapAlone_B5) {
+TEST(RealtimeCalls, OfTheCInterfaceLeaveTheHeapAlone) {
     TestMachine machine;
     const UseInstance use(&machine.hal());
     const int semaphore = rtapi_sem_new(9, 1);

@@ -17,7 +17,7 @@
 
 #include "hal/core/detail/impl.hh"
 #include "hal/host/host_client.hh"
-#include "testing/lateness_probe.hh"
+#include "tests/support/lateness_probe.hh"
 
 namespace mw::hal {
 namespace {
@@ -108,7 +108,7 @@ struct HostTest : ::testing::Test {
     }
 };
 
-TEST_F(HostTest, RunsModulesInARealtimeProcessOfItsOwn_B5) {
+TEST_F(HostTest, RunsModulesInARealtimeProcessOfItsOwn) {
     auto client = start();
     ASSERT_NE(client, nullptr);
     EXPECT_NE(client->pid(), ::getpid());
@@ -193,7 +193,7 @@ TEST_F(HostTest, BrakesAndEndsWhenTheControllingProcessDies) {
 
 /// Task has threads, and the kernel ends them one after the other: the first one is gone before the process
 /// is. An enable chain through its pins must not cut the braking short then.
-TEST_F(HostTest, OutputsOfTheControllingProcessStayUntilTheMachineStands_B7) {
+TEST_F(HostTest, OutputsOfTheControllingProcessStayUntilTheMachineStands) {
     auto client = start();
     ASSERT_NE(client, nullptr);
     Hal &hal = client->hal();
@@ -257,7 +257,7 @@ TEST_F(HostTest, OutputsOfADeadProgramTakeTheirSafeValues) {
     EXPECT_TRUE(hal.pins("program*").empty());
 }
 
-TEST_F(HostTest, ADeathIsNoticedAtOnceAndNamed_B7) {
+TEST_F(HostTest, ADeathIsNoticedAtOnceAndNamed) {
     auto client = start();
     ASSERT_NE(client, nullptr);
     Hal &hal = client->hal();
@@ -292,7 +292,7 @@ TEST_F(HostTest, ADeathIsNoticedAtOnceAndNamed_B7) {
     EXPECT_TRUE(hal.deaths().empty()) << "it is back";
 }
 
-TEST_F(HostTest, EndsWithItsStarterFromTheFirstMomentOn_B7) {
+TEST_F(HostTest, EndsWithItsStarterFromTheFirstMomentOn) {
     const pid_t starter = ::fork();
     if (starter == 0) {
         auto mine = HostClient::start(instance, MessagesTo::FILE, Lifetime::STARTER);
@@ -305,8 +305,8 @@ TEST_F(HostTest, EndsWithItsStarterFromTheFirstMomentOn_B7) {
 TEST_F(HostTest, TheLogLevelReachesTheRealtimeProcess) {
     auto client = start();
     ASSERT_NE(client, nullptr);
-    EXPECT_EQ(text_of(client->set_log_level(rtapi::LogLevel::DBG)), "ok");
-    EXPECT_EQ(client->hal().log().level(), rtapi::LogLevel::DBG);
+    EXPECT_EQ(text_of(client->set_log_level(runtime::LogLevel::DBG)), "ok");
+    EXPECT_EQ(client->hal().log().level(), runtime::LogLevel::DBG);
 }
 
 TEST_F(HostTest, ALockHeldByAKilledProcessIsRecovered) {

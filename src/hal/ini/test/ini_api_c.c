@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-2.0-or-later */
 /* The calls as a component in C writes them. */
-#include "hal/api/inifile.h"
+#include "hal/include/inifile.h"
 
 int level_of_name(const char *name, int *level) {
     return iniFindInt(name, "LEVEL", "A", level);

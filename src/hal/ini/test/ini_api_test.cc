@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "hal/api/inifile.h"
+#include "hal/include/inifile.h"
 
 extern "C" {
 int level_of_name(const char *name, int *level);
@@ -33,7 +33,7 @@ class IniApi : public testing::Test {
     std::string name;
 };
 
-TEST_F(IniApi, AFileIsAStreamOrANameInC_B5) {
+TEST_F(IniApi, AFileIsAStreamOrANameInC) {
     int level = 0;
     EXPECT_EQ(level_of_name(name.c_str(), &level), 0);
     EXPECT_EQ(level, 17);
@@ -49,7 +49,7 @@ TEST_F(IniApi, AFileIsAStreamOrANameInC_B5) {
     EXPECT_STREQ(find_in_name(name.c_str()), "seven c");
 }
 
-TEST_F(IniApi, ValuesByNameAreTyped_B5) {
+TEST_F(IniApi, ValuesByNameAreTyped) {
     int level = 3;
     EXPECT_EQ(iniFindInt(name.c_str(), "WIDE", "A", &level), -EINVAL);
     EXPECT_EQ(iniFindInt(name.c_str(), "TEXT", "A", &level), -EINVAL);

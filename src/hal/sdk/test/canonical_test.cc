@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "hal/core/test/machine.hh"
-#include "testing/allocation_guard.hh"
+#include "tests/support/allocation_guard.hh"
 
 namespace mw::hal {
 namespace {
@@ -36,7 +36,7 @@ class CanonicalDevices : public ::testing::Test {
     TestMachine machine;
 };
 
-TEST_F(CanonicalDevices, HaveTheirPinsAndParameters_B2) {
+TEST_F(CanonicalDevices, HaveTheirPinsAndParameters) {
     using Kind = std::pair<Type, Dir>;
     const std::map<std::string, Kind> expected{
         {"digin-00.in", {Type::BIT, Dir::OUT}},
@@ -77,7 +77,7 @@ TEST_F(CanonicalDevices, HaveTheirPinsAndParameters_B2) {
     EXPECT_EQ(found, expected);
 }
 
-TEST_F(CanonicalDevices, DigitalOutputIsInvertedAndInputHasItsInverse_B2) {
+TEST_F(CanonicalDevices, DigitalOutputIsInvertedAndInputHasItsInverse) {
     set("digout-00.out", "1");
     run(4);
     EXPECT_EQ(get("digin-00.in"), 1.0);
@@ -88,7 +88,7 @@ TEST_F(CanonicalDevices, DigitalOutputIsInvertedAndInputHasItsInverse_B2) {
     EXPECT_EQ(get("digin-00.in-not"), 1.0);
 }
 
-TEST_F(CanonicalDevices, AnalogOutputIsZeroUntilEnabledAndStaysWithinItsLimits_B2) {
+TEST_F(CanonicalDevices, AnalogOutputIsZeroUntilEnabledAndStaysWithinItsLimits) {
     const double bit = get("adcout-00.bit-weight");
     set("adcout-00.value", "3");
     set("adcout-00.offset", "1");
@@ -114,7 +114,7 @@ TEST_F(CanonicalDevices, AnalogOutputIsZeroUntilEnabledAndStaysWithinItsLimits_B
     EXPECT_NEAR(get("adcin-00.value"), -1.5, bit);
 }
 
-TEST_F(CanonicalDevices, EncoderStartsAtTheIndexAndClearsIndexEnable_B2) {
+TEST_F(CanonicalDevices, EncoderStartsAtTheIndexAndClearsIndexEnable) {
     set("encoder-00.scale", "100");
     set("adcout-00.enable", "1");
     set("adcout-00.value", "10");  // 10 counts in each period of 1 ms
@@ -141,7 +141,7 @@ TEST_F(CanonicalDevices, EncoderStartsAtTheIndexAndClearsIndexEnable_B2) {
     EXPECT_EQ(get("encoder-00.position"), get("encoder-00.count")) << "a scale of 0 counts as 1";
 }
 
-TEST_F(CanonicalDevices, NeitherAllocateNorWait_B2) {
+TEST_F(CanonicalDevices, NeitherAllocateNorWait) {
     set("adcout-00.enable", "1");
     set("adcout-00.value", "10");
     set("encoder-00.index-enable", "1");
@@ -151,7 +151,7 @@ TEST_F(CanonicalDevices, NeitherAllocateNorWait_B2) {
     EXPECT_GT(get("encoder-00.position"), 65536.0) << "beyond the range of the 16-bit counter";
 }
 
-TEST(CanonicalNames, OverlongNameEndsTheLoad_B2) {
+TEST(CanonicalNames, OverlongNameEndsTheLoad) {
     TestMachine machine;
     EXPECT_NE(machine.load("loop_board", {"names=" + std::string(100, 'n')}), "ok");
     EXPECT_TRUE(machine.hal().pins().empty());

@@ -16,7 +16,7 @@ constexpr double NOT_A_NUMBER = std::numeric_limits<double>::quiet_NaN();
 constexpr unsigned SEED = 20361128;
 constexpr int ROUNDS = 20000;
 
-TEST(DeviceValues, OutputIsTheInverseOfInputWithinTheRange_B2) {
+TEST(DeviceValues, OutputIsTheInverseOfInputWithinTheRange) {
     std::mt19937_64 random(SEED);
     std::uniform_real_distribution<double> values(-5, 5), scales(0.1, 1.5);
     for (int i = 0; i < ROUNDS; ++i) {
@@ -27,7 +27,7 @@ TEST(DeviceValues, OutputIsTheInverseOfInputWithinTheRange_B2) {
     }
 }
 
-TEST(DeviceValues, CodeIsWithinHalfABitOfTheVoltage_B2) {
+TEST(DeviceValues, CodeIsWithinHalfABitOfTheVoltage) {
     std::mt19937_64 random(SEED);
     std::uniform_real_distribution<double> volts(-10, 10);
     const ConverterRange out{.bit_weight = 20.0 / 4096, .hw_offset = -10},
@@ -43,7 +43,7 @@ TEST(DeviceValues, CodeIsWithinHalfABitOfTheVoltage_B2) {
     EXPECT_EQ(converter_code(NOT_A_NUMBER, {}), 0);
 }
 
-TEST(DeviceValues, OutputNeverLeavesTheLimits_B2) {
+TEST(DeviceValues, OutputNeverLeavesTheLimits) {
     std::mt19937_64 random(SEED);
     std::uniform_real_distribution<double> any(-100, 100);
     for (int i = 0; i < ROUNDS; ++i) {
@@ -58,7 +58,7 @@ TEST(DeviceValues, OutputNeverLeavesTheLimits_B2) {
     }
 }
 
-TEST(DeviceValues, OutputOfFiguresThatAreNotFiniteIsZero_B2) {
+TEST(DeviceValues, OutputOfFiguresThatAreNotFiniteIsZero) {
     const OutputScaling plain{1, 2, -10, 10};
     for (const double bad : {INF, -INF, NOT_A_NUMBER}) {
         EXPECT_EQ(scaled_output(bad, plain, {}), 0.0);
@@ -81,7 +81,7 @@ class EncoderCountTest : public ::testing::TestWithParam<int> {
     }
 };
 
-TEST_P(EncoderCountTest, FollowsAnyPathThroughOverflows_B2) {
+TEST_P(EncoderCountTest, FollowsAnyPathThroughOverflows) {
     std::mt19937_64 random(SEED);
     const std::int64_t most = (std::int64_t{1} << (GetParam() - 1)) - 1;
     std::uniform_int_distribution<std::int64_t> steps(-most, most), starts(-1000000, 1000000);
@@ -107,7 +107,7 @@ TEST_P(EncoderCountTest, FollowsAnyPathThroughOverflows_B2) {
 
 INSTANTIATE_TEST_SUITE_P(CounterBits, EncoderCountTest, ::testing::Values(8, 16, 24, 32));
 
-TEST(DeviceValues, ShownCountWraps_B2) {
+TEST(DeviceValues, ShownCountWraps) {
     EXPECT_EQ(shown_count(2147483648), -2147483647 - 1);
     EXPECT_EQ(shown_count(-2147483649), 2147483647);
 }

@@ -5,28 +5,28 @@
 
 #include <gtest/gtest.h>
 
-#include "kins/corexy.hh"
-#include "kins/trivial.hh"
-#include "motion/core/coord/heading.hh"
-#include "motion/core/coord/lead.hh"
-#include "motion/core/coord/place.hh"
-#include "motion/core/coord/retracing.hh"
+#include "kinematics/corexy.hh"
+#include "kinematics/trivial.hh"
+#include "motion/servo/coord/cartesian_position.hh"
+#include "motion/servo/coord/heading.hh"
+#include "motion/servo/coord/joint_continuity.hh"
+#include "motion/servo/coord/retracing.hh"
 
 namespace mw::motion {
 namespace {
 
 constexpr double T = 1e-3;
 
-geom::Pose at(double x) {
-    geom::Pose p;
+geometry::Pose at(double x) {
+    geometry::Pose p;
     p[0] = x;
     return p;
 }
 
-TEST(PlacePart, JointsLeadOrThePoseDoes_C3) {
-    kins::Trivial kinematics;
+TEST(PlacePart, JointsLeadOrThePoseDoes) {
+    kinematics::Trivial kinematics;
     ASSERT_TRUE(kinematics.configure("XY"));
-    Place place;
+    CartesianPosition place;
     const double joints[MAX_JOINTS] = {3, 4};
     follow_joints(place, kinematics, joints, false);
     EXPECT_EQ(place.cmd[0], 3);
@@ -40,26 +40,27 @@ TEST(PlacePart, JointsLeadOrThePoseDoes_C3) {
 }
 
 /// Models that iterate come back to a place within 1e-4: no step, however slow the joints are.
-TEST(LeadPart, APoseLeadsToWhereTheJointsStandWithinACycleOfThem_C3) {
-    const kins::CoreXy kinematics;
+TEST(LeadPart, APoseLeadsToWhereTheJointsStandWithinACycleOfThem) {
+    const kinematics::CoreXy kinematics;
     for (const double velocity : {100.0, 0.001}) {
         std::array<double, MAX_JOINTS> most{};
         most.fill(velocity);
-        const Stride stride{most.data(), T, 3};
+        const JointStepLimit stride{most.data(), T, 3};
         const double within = std::max(velocity * T, 1e-4);
         for (const double off : {0.0, 0.9 * within, 1.1 * within}) {
             for (const std::size_t j : {0U, 1U, 2U}) {
                 JointValues here{5, 5};
                 here[j] -= off;
-                EXPECT_EQ(leadsTo(kinematics, at(5), here, stride), off < within) << velocity << ' ' << off;
+                EXPECT_EQ(isWithinOneStep(kinematics, at(5), here, stride), off < within)
+                    << velocity << ' ' << off;
             }
         }
     }
 }
 
-TEST(PlacePart, WhereNobodyKnowsThePoseTheLastOneStandsAndIsNotValid_C3) {
-    const kins::CoreXy kinematics;
-    Place place;
+TEST(PlacePart, WhereNobodyKnowsThePoseTheLastOneStandsAndIsNotValid) {
+    const kinematics::CoreXy kinematics;
+    CartesianPosition place;
     place.fb = at(5);
     place.cmd = at(7);
     const double joints[MAX_JOINTS] = {3, 1};
@@ -89,7 +90,7 @@ struct RetracingPart : testing::Test {
         }
     }
     struct Way {
-        geom::Pose pose;
+        geometry::Pose pose;
         bool isNewStart = false;
     };
     Way go(bool isReverse, std::uint64_t drops = 0) { return go(*retracing, isReverse, drops); }
@@ -105,7 +106,7 @@ struct RetracingPart : testing::Test {
     }
 };
 
-TEST_F(RetracingPart, GoesBackAndForthOnThePathThatWasDriven_C4) {
+TEST_F(RetracingPart, GoesBackAndForthOnThePathThatWasDriven) {
     double least = x;
     for (int n = 0; n < 300; ++n) {
         least = std::min(least, go(true).pose[0]);
@@ -136,7 +137,7 @@ TEST_F(RetracingPart, APathThatIsDroppedOnTheWayBackEndsWhereItComesToAStand) {
     EXPECT_TRUE(retracing->retrace.isEmpty());
 }
 
-TEST_F(RetracingPart, AStopWhereThePathWasSlowIsShort_C5) {
+TEST_F(RetracingPart, AStopWhereThePathWasSlowIsShort) {
     // At 20 units/s, then at 5, and it stands.
     constexpr double A = 100;
     limits.path.acceleration.fill(A);
@@ -149,7 +150,7 @@ TEST_F(RetracingPart, AStopWhereThePathWasSlowIsShort_C5) {
         RetraceInputs in;
         in.isReverseWanted = in.isPathHeld = true;
         in.rate = 0.75;
-        geom::Pose pose = at(x);
+        geometry::Pose pose = at(x);
         double last = x;
         for (int n = 0; n < back; ++n) {
             last = pose[0];
@@ -182,27 +183,27 @@ TEST_F(RetracingPart, ACopyGoesTheSameWay) {
     }
 }
 
-geom::Pose place(double x, double y, double z = 0) {
-    geom::Pose p;
+geometry::Pose place(double x, double y, double z = 0) {
+    geometry::Pose p;
     p[0] = x;
     p[1] = y;
     p[2] = z;
     return p;
 }
 
-traj::Primitive arc(const geom::Pose &start, const geom::Pose &end, const geom::Pose &centre,
-                    double angle_rad, int normal = geom::AXIS_Z) {
-    traj::ArcShape shape;
+trajectory::Primitive arc(const geometry::Pose &start, const geometry::Pose &end,
+                          const geometry::Pose &centre, double angle_rad, int normal = geometry::AXIS_Z) {
+    trajectory::ArcShape shape;
     shape.centre = centre;
     shape.normal[normal] = 1;
     shape.angle_rad = angle_rad;
-    traj::Primitive out;
-    EXPECT_EQ(traj::make_arc(start, end, shape, out), traj::ArcFault::NONE);
+    trajectory::Primitive out;
+    EXPECT_EQ(trajectory::make_arc(start, end, shape, out), trajectory::ArcFault::NONE);
     return out;
 }
 
 TEST(HeadingPart, LinesPointAlongTheirWay) {
-    const auto line = traj::make_line(place(1, 1), place(1, 3));
+    const auto line = trajectory::make_line(place(1, 1), place(1, 3));
     Heading h = heading_of(line, MotionType::FEED, place(1, 2), false, {});
     EXPECT_EQ(h.g_code, 10);
     EXPECT_NEAR(h.direction_deg, 90, 1e-9);
@@ -210,7 +211,7 @@ TEST(HeadingPart, LinesPointAlongTheirWay) {
     EXPECT_FALSE(h.isArc);
     EXPECT_EQ(h.radius, 0);
     EXPECT_NEAR(heading_of(line, MotionType::FEED, place(1, 2), true, {}).direction_deg, 270, 1e-9);
-    const auto down = traj::make_line(place(1, 3), place(1, 3, -5));
+    const auto down = trajectory::make_line(place(1, 3), place(1, 3, -5));
     h = heading_of(down, MotionType::TRAVERSE, place(1, 3, -1), false, h);
     EXPECT_EQ(h.g_code, 0);
     EXPECT_NEAR(h.direction_deg, 90, 1e-9) << "straight down it keeps what it was";

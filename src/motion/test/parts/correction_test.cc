@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include "motion/core/joints/joints.hh"
-#include "sim/random.hh"
-#include "testing/limit_checker.hh"
+#include "components/plants/random.hh"
+#include "motion/servo/joints/joints.hh"
+#include "tests/support/limit_checker.hh"
 
 namespace mw::motion {
 namespace {
@@ -49,7 +49,7 @@ struct CorrectionPart : ::testing::Test {
     double at = 0;
 };
 
-TEST_F(CorrectionPart, ATableIsFollowedUpAndDownAndHeldBeyondItsEnds_C11) {
+TEST_F(CorrectionPart, ATableIsFollowedUpAndDownAndHeldBeyondItsEnds) {
     load_three();
     EXPECT_EQ(correction.position, 0) << "nobody has moved yet";
     EXPECT_NEAR(go(1), 0.32, 1e-12);
@@ -63,14 +63,14 @@ TEST_F(CorrectionPart, ATableIsFollowedUpAndDownAndHeldBeyondItsEnds_C11) {
     EXPECT_NEAR(go(0), 0.3, 1e-12);
 }
 
-TEST_F(CorrectionPart, ATableTakesThePlaceOfBacklash_C11) {
+TEST_F(CorrectionPart, ATableTakesThePlaceOfBacklash) {
     set(Parameter::JOINT_BACKLASH, 5);
     load_three();
     EXPECT_NEAR(go(5), 0.4, 1e-12);
 }
 
 /// [TRAJ]MAX_LINEAR_JERK is one of lengths.
-TEST_F(CorrectionPart, AnAngularJointTakesUpItsPlayWithItsOwnJerk_C11) {
+TEST_F(CorrectionPart, AnAngularJointTakesUpItsPlayWithItsOwnJerk) {
     limit_jerk();
     set(Parameter::JOINT_BACKLASH, 0.1);
     const auto cycles_of = [&](double path_jerk, double isAngular) {
@@ -93,7 +93,7 @@ TEST_F(CorrectionPart, AnAngularJointTakesUpItsPlayWithItsOwnJerk_C11) {
 
 /// A long play needs the mean that keeps the jerk at all of the acceleration, 2 a / j, and none that is
 /// longer.
-TEST_F(CorrectionPart, ALongPlayIsTakenUpWithoutDelay_C11) {
+TEST_F(CorrectionPart, ALongPlayIsTakenUpWithoutDelay) {
     limit_jerk();
     constexpr double PLAY = 20, HALF = 0.5;  // of what the joint can do
     constexpr int REVERSAL = 2000;
@@ -111,7 +111,7 @@ TEST_F(CorrectionPart, ALongPlayIsTakenUpWithoutDelay_C11) {
     EXPECT_NEAR(last * CYCLE_S, seconds, 0.005);
 }
 
-TEST_F(CorrectionPart, WhatIsNoTableIsRefused_C11) {
+TEST_F(CorrectionPart, WhatIsNoTableIsRefused) {
     EXPECT_EQ(load(1, 3, 0, 0, 0), Reason::OUT_OF_RANGE) << "not the first one";
     EXPECT_EQ(load(0, MAX_SCREW_POINTS + 1, 0, 0, 0), Reason::OUT_OF_RANGE);
     EXPECT_EQ(load(0, 3, std::numeric_limits<double>::quiet_NaN(), 0, 0), Reason::NOT_A_NUMBER);
@@ -132,7 +132,7 @@ TEST_F(CorrectionPart, WhatIsNoTableIsRefused_C11) {
 
 /// Swings of all lengths with what a joint can do.
 void swing(CorrectionPart &part, testing::LimitChecker &checker) {
-    traj::JogPlanner jog;
+    trajectory::AxisTrajectory jog;
     jog.max_velocity = V;
     jog.max_acceleration = A;
     jog.max_jerk = isJerkLimited(part.settings) ? J : 0;
@@ -152,13 +152,13 @@ void swing(CorrectionPart &part, testing::LimitChecker &checker) {
     EXPECT_GT(checker.worst_acceleration(), 0.2) << "it is taken up with what the joint has";
 }
 
-TEST_F(CorrectionPart, ATableIsFollowedWithinHalfTheLimitsOfTheJoint_C11) {
+TEST_F(CorrectionPart, ATableIsFollowedWithinHalfTheLimitsOfTheJoint) {
     load_three();
     testing::LimitChecker checker({{V / 2, A / 2}}, CYCLE_S);
     swing(*this, checker);
 }
 
-TEST_F(CorrectionPart, ATableIsFollowedWithinHalfTheJerkOfTheJoint_C11) {
+TEST_F(CorrectionPart, ATableIsFollowedWithinHalfTheJerkOfTheJoint) {
     load_three();
     limit_jerk();
     testing::LimitChecker checker({{V / 2, A / 2, J / 2}}, CYCLE_S);
@@ -166,7 +166,7 @@ TEST_F(CorrectionPart, ATableIsFollowedWithinHalfTheJerkOfTheJoint_C11) {
     EXPECT_GT(checker.worst_jerk(), 0.4);
 }
 
-TEST_F(CorrectionPart, BacklashIsTakenUpWithinHalfTheJerkOfTheJoint_C11) {
+TEST_F(CorrectionPart, BacklashIsTakenUpWithinHalfTheJerkOfTheJoint) {
     set(Parameter::JOINT_BACKLASH, 0.4);
     limit_jerk();
     testing::LimitChecker checker({{V / 2, A / 2, J / 2}}, CYCLE_S);
@@ -176,13 +176,13 @@ TEST_F(CorrectionPart, BacklashIsTakenUpWithinHalfTheJerkOfTheJoint_C11) {
     EXPECT_EQ(go(20), 0.2);
 }
 
-TEST_F(CorrectionPart, ASlideIsWhereItIsToBeHoweverSoonTheJointTurnsBack_C11) {
+TEST_F(CorrectionPart, ASlideIsWhereItIsToBeHoweverSoonTheJointTurnsBack) {
     constexpr double PLAY = 0.4;
     set(Parameter::JOINT_BACKLASH, PLAY);
     limit_jerk();
     go(10);
     double slide = at;  // of a machine with play, pushed by its motor
-    sim::Random random(7);
+    plants::Random random(7);
     int short_turns = 0;
     for (int n = 0; n < 300; ++n) {
         for (int turn = 0; turn < 4; ++turn) {
@@ -208,7 +208,7 @@ TEST_F(CorrectionPart, ASlideIsWhereItIsToBeHoweverSoonTheJointTurnsBack_C11) {
 
 /// A slide with play on an uneven screw, against which the joint stops at full speed: a motor that came back
 /// from behind its place would leave it there.
-TEST_F(CorrectionPart, ASlideWithPlayOnAnUnevenScrewIsWhereItIsToBe_C11) {
+TEST_F(CorrectionPart, ASlideWithPlayOnAnUnevenScrewIsWhereItIsToBe) {
     constexpr double PLAY = 0.14, WAVE_MM = 100, UNEVEN = 0.15, PITCH = 0.5;
     const auto uneven = [](double x) { return UNEVEN * std::sin(x * 2 * M_PI / WAVE_MM); };
     limit_jerk();
@@ -217,12 +217,12 @@ TEST_F(CorrectionPart, ASlideWithPlayOnAnUnevenScrewIsWhereItIsToBe_C11) {
         const double x = PITCH * n - 40;
         ASSERT_EQ(load(n, POINTS, x, uneven(x) + 0.5 * PLAY, uneven(x) - 0.5 * PLAY), Reason::NONE);
     }
-    traj::JogPlanner jog;
+    trajectory::AxisTrajectory jog;
     jog.max_velocity = V;
     jog.max_acceleration = A;
     jog.max_jerk = J;
     double slide = 0;  // by the angle of the screw
-    sim::Random random(7);
+    plants::Random random(7);
     for (int n = 0; n < 200; ++n) {
         jog.target = random.real(-35, 35);
         const bool isFar = std::abs(jog.target - jog.position) > 5;
@@ -242,7 +242,7 @@ TEST_F(CorrectionPart, ASlideWithPlayOnAnUnevenScrewIsWhereItIsToBe_C11) {
     }
 }
 
-TEST_F(CorrectionPart, SwitchedOffInTheMiddleItStandsAndGoesOnFromRest_C6) {
+TEST_F(CorrectionPart, SwitchedOffInTheMiddleItStandsAndGoesOnFromRest) {
     set(Parameter::JOINT_BACKLASH, 0.4);
     for (int n = 1; n <= 10; ++n) {
         step(correction, settings, 0, 0.01 * n, CYCLE_S);
@@ -263,7 +263,7 @@ TEST_F(CorrectionPart, SwitchedOffInTheMiddleItStandsAndGoesOnFromRest_C6) {
 }
 
 /// What had been under way before is no speed of the next move.
-TEST_F(CorrectionPart, SwitchedOffBetweenTheSidesOfATableItGoesOnFromRest_C6_C11) {
+TEST_F(CorrectionPart, SwitchedOffBetweenTheSidesOfATableItGoesOnFromRest) {
     load_three();
     go(5);
     double place = 5;
@@ -281,7 +281,7 @@ TEST_F(CorrectionPart, SwitchedOffBetweenTheSidesOfATableItGoesOnFromRest_C6_C11
     EXPECT_LE(std::abs(correction.position - stood) / CYCLE_S, A * CYCLE_S);
 }
 
-TEST_F(CorrectionPart, MovedByHandWhileOffTheTableGoesAlong_C11) {
+TEST_F(CorrectionPart, MovedByHandWhileOffTheTableGoesAlong) {
     load_three();
     go(5);
     follow(correction, 10);
@@ -290,7 +290,7 @@ TEST_F(CorrectionPart, MovedByHandWhileOffTheTableGoesAlong_C11) {
     EXPECT_NEAR(go(10), 0.5, 1e-12);
 }
 
-TEST_F(CorrectionPart, AZeroThatIsFoundTellsHowMuchMoreIsAdded_C11) {
+TEST_F(CorrectionPart, AZeroThatIsFoundTellsHowMuchMoreIsAdded) {
     load_three();
     go(5);
     EXPECT_NEAR(renumber(correction, 10), 0.1, 1e-12);
@@ -301,7 +301,7 @@ TEST_F(CorrectionPart, AZeroThatIsFoundTellsHowMuchMoreIsAdded_C11) {
 
 /// A rotary joint after many turns: a place is known less exactly there, and where it stands rounding may
 /// take it to and fro.
-TEST_F(CorrectionPart, FarOutTheRoundingOfAStopTurnsNothingBack_C11) {
+TEST_F(CorrectionPart, FarOutTheRoundingOfAStopTurnsNothingBack) {
     constexpr double PLAY = 0.3;
     set(Parameter::JOINT_BACKLASH, PLAY);
     for (const double sense : {1.0, -1.0}) {

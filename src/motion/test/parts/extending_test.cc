@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "base/overloaded.hh"
-#include "motion/core/outputs/machine_outputs.hh"
+#include "motion/servo/outputs/machine_outputs.hh"
 
 namespace mw::motion {
 
@@ -19,7 +19,7 @@ struct FlipDigitalOutput {
 // end of the declaration
 
 // begin of the behaviour
-Verdict take(MachineOutputs &outputs, const FlipDigitalOutput &command) noexcept {
+CommandResult take(MachineOutputs &outputs, const FlipDigitalOutput &command) noexcept {
     if (command.index < 0 || command.index >= outputs.num_digital) {
         return {Reason::NO_SUCH_OUTPUT};
     }
@@ -41,10 +41,10 @@ using Body = Extended<CommandBody, FlipDigitalOutput>::Body;
 
 template <class Command>
 concept TakenByOutputs = requires(MachineOutputs &outputs, const Command &command) {
-    { take(outputs, command) } -> std::same_as<Verdict>;
+    { take(outputs, command) } -> std::same_as<CommandResult>;
 };
 
-TEST(ExtendingMotion, TheNewCommandDoesWhatItSaysAndRefusesWhatIsNotThere_A1) {
+TEST(ExtendingMotion, TheNewCommandDoesWhatItSaysAndRefusesWhatIsNotThere) {
     MachineOutputs outputs;
     outputs.num_digital = 4;
     outputs.digital = 0b0101;
@@ -59,10 +59,10 @@ TEST(ExtendingMotion, TheNewCommandDoesWhatItSaysAndRefusesWhatIsNotThere_A1) {
 
 /// What step 3 of the page says: handlers for the old commands alone are no visitor of the new variant, with
 /// the new one in the line of the outputs they are.
-TEST(ExtendingMotion, AVisitorThatForgetsTheNewCommandDoesNotCompile_A1) {
+TEST(ExtendingMotion, AVisitorThatForgetsTheNewCommandDoesNotCompile) {
     const auto others = []<class C>(const C &)
         requires(IS_ALTERNATIVE<C, CommandBody> && !TakenByOutputs<C>)
-    { return Verdict{}; };
+    { return CommandResult{}; };
     MachineOutputs outputs;
     outputs.num_digital = 1;
     const Overloaded old{
@@ -85,7 +85,7 @@ std::string file_text(const std::string &path) {
     return text.str();
 }
 
-TEST(ExtendingMotion, ThePageShowsWhatIsCompiledHereAndLinesThatStand_A1) {
+TEST(ExtendingMotion, ThePageShowsWhatIsCompiledHereAndLinesThatStand) {
     const std::string source = file_text("/src/motion/test/parts/extending_test.cc");
     const std::string page = file_text("/docs/extending/motion_command.md");
     for (const std::string what : {"declaration", "behaviour"}) {
@@ -102,7 +102,7 @@ TEST(ExtendingMotion, ThePageShowsWhatIsCompiledHereAndLinesThatStand_A1) {
     const std::size_t line = page.rfind('\n', place) + 1 + std::string("    ").size();
     const std::string standing =
         page.substr(line, place - line) + joined.substr(std::string(", FlipDigitalOutput").size());
-    EXPECT_NE(file_text("/src/motion/core/controller_commands.cc").find(standing), std::string::npos)
+    EXPECT_NE(file_text("/src/motion/servo/controller_commands.cc").find(standing), std::string::npos)
         << standing;
 }
 

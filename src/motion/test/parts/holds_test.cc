@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "motion/core/holds/holds.hh"
+#include "motion/servo/holds/holds.hh"
 
 namespace mw::motion {
 namespace {
@@ -39,7 +39,7 @@ TEST(HoldsPart, AStepPausesWhereItEnds) {
     EXPECT_TRUE(holds.isPaused);
 }
 
-TEST(HoldsPart, AStopEndsPausesAndStepsAndKeepsTheScales_C4) {
+TEST(HoldsPart, AStopEndsPausesAndStepsAndKeepsTheScales) {
     Holds holds;
     take(holds, SetScale{Scale::FEED, 0, 0.5}, 1.2);
     take(holds, Pause{});
@@ -70,7 +70,7 @@ TEST(HoldsPart, AdaptiveFeedCountsOnlyWhereItIsOnAndNeverWhenItIsNoNumber) {
     EXPECT_GT(holds.reverse_rate, 0);
 }
 
-TEST(HoldsPart, ReverseRunNeedsAWayBack_C4) {
+TEST(HoldsPart, ReverseRunNeedsAWayBack) {
     Holds holds;
     EXPECT_EQ(take(holds, SetReverse{true}, false).reason, Reason::NO_WAY_BACK);
     step(holds, {});
@@ -103,7 +103,7 @@ TEST(HoldsPart, ScalesBeyondTheirRangeAreRefused) {
     EXPECT_EQ(holds.jog_scale(), 1.0);
 }
 
-TEST(HoldsPart, TheStatusShowsEachOfThem_C1) {
+TEST(HoldsPart, TheStatusShowsEachOfThem) {
     Holds holds;
     Status status;
     holds.feed_scale = 0.5;

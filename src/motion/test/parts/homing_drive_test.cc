@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "motion/core/homing/homing_drive.hh"
+#include "motion/servo/homing/homing_drive.hh"
 #include "motion/test/foreign_homing.hh"
 
 namespace mw::motion {
@@ -34,7 +34,7 @@ struct HomingDrivePart : testing::Test {
     }
 };
 
-TEST_F(HomingDrivePart, BeginsWhenNothingMovesAnyMore_C10) {
+TEST_F(HomingDrivePart, BeginsWhenNothingMovesAnyMore) {
     ASSERT_EQ(take(drive, Home{-1}, conditions).reason, Reason::NONE);
     EXPECT_TRUE(drive.isUnderWay());
     conditions.isMoving = true;
@@ -59,10 +59,10 @@ TEST_F(HomingDrivePart, EachReasonAgainstHomingIsTold) {
     EXPECT_EQ(take(drive, Home{0}, conditions).reason, Reason::NOT_ENABLED);
 }
 
-TEST_F(HomingDrivePart, AJointThatIsLeftOutIsNotHomedWhicheverItIs_C4) {
+TEST_F(HomingDrivePart, AJointThatIsLeftOutIsNotHomedWhicheverItIs) {
     for (const int joint : {0, 1}) {
         conditions.inactive = 1U << joint;
-        const Verdict verdict = take(drive, Home{joint}, conditions);
+        const CommandResult verdict = take(drive, Home{joint}, conditions);
         EXPECT_EQ(verdict.reason, Reason::JOINT_INACTIVE);
         EXPECT_EQ(verdict.index, joint);
         EXPECT_FALSE(drive.isUnderWay());
@@ -70,7 +70,7 @@ TEST_F(HomingDrivePart, AJointThatIsLeftOutIsNotHomedWhicheverItIs_C4) {
 }
 
 /// A latch faster than the joint is driven at its speed, and play taken up on that way.
-TEST_F(HomingDrivePart, PlayIsTakenUpAtNoMoreThanTheSpeedOfTheJoint_C10) {
+TEST_F(HomingDrivePart, PlayIsTakenUpAtNoMoreThanTheSpeedOfTheJoint) {
     const auto set = [&](Parameter p, double value) {
         settings.set({static_cast<std::uint16_t>(p), 0, value}, 2, 1);
     };
@@ -121,7 +121,7 @@ TEST_F(HomingDrivePart, WhatFailsIsToldOnceAndWhatIsAbortedIsNot) {
     EXPECT_FALSE(drive.isUnderWay());
 }
 
-TEST_F(HomingDrivePart, AModuleOfAUserThatGivesUpHasFailedAndOneThatIsToldToEndHasNot_C2_C10) {
+TEST_F(HomingDrivePart, AModuleOfAUserThatGivesUpHasFailedAndOneThatIsToldToEndHasNot) {
     ForeignModule module;
     drive.foreign = &module;
     for (const bool isTold : {true, false, true}) {

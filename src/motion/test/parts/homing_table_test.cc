@@ -12,7 +12,7 @@
 
 #include <gtest/gtest.h>
 
-#include "motion/core/homing/homing_drive.hh"
+#include "motion/servo/homing/homing_drive.hh"
 
 namespace mw::motion {
 namespace {
@@ -368,12 +368,12 @@ std::string page() {
     return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
 
-TEST(HomingTable, ThePageShowsTheTable_C10) {
+TEST(HomingTable, ThePageShowsTheTable) {
     const std::string made = made_table();
     EXPECT_NE(page().find("\n" + made), std::string::npos) << "docs/motion/homing.md is to have:\n" << made;
 }
 
-TEST(HomingTable, EveryEventInEveryStateDoesWhatThePageSays_C10) {
+TEST(HomingTable, EveryEventInEveryStateDoesWhatThePageSays) {
     const std::string made = made_matrix();
     EXPECT_NE(page().find("\n" + made), std::string::npos) << "docs/motion/homing.md is to have:\n" << made;
 }

@@ -3,17 +3,17 @@
 
 #include <gtest/gtest.h>
 
-#include "kins/rotary_table.hh"
-#include "motion/core/jogs/jogs.hh"
-#include "motion/core/jogs/teleop.hh"
-#include "motion/core/jogs/teleop_load.hh"
+#include "kinematics/rotary_table.hh"
+#include "motion/servo/jogs/jogs.hh"
+#include "motion/servo/jogs/teleop.hh"
+#include "motion/servo/jogs/teleop_load.hh"
 
 namespace mw::motion {
 namespace {
 
 constexpr double T = 1e-3;
 constexpr JogTarget JOINT{true, 0};
-constexpr JogTarget AXIS{false, geom::AXIS_X};
+constexpr JogTarget AXIS{false, geometry::AXIS_X};
 
 Jogs make() {
     Jogs jogs;
@@ -64,7 +64,7 @@ TEST(JogsPart, AContinuousJogEndsAtTheSoftLimit) {
     EXPECT_EQ(take(jogs, JogContinuous{JOINT, -80}, free_mode()).reason, Reason::NONE);
 }
 
-TEST(JogsPart, ALeaseIsRenewedByTheSameCommandAndEndsOnce_C8) {
+TEST(JogsPart, ALeaseIsRenewedByTheSameCommandAndEndsOnce) {
     constexpr std::int64_t MS = 1000000;
     Jogs jogs = make();
     JogSituation s = free_mode();
@@ -91,7 +91,7 @@ TEST(JogsPart, ALeaseIsRenewedByTheSameCommandAndEndsOnce_C8) {
     EXPECT_EQ(take(jogs, JogContinuous{JOINT, 8, 0.2, true}, s).reason, Reason::NO_JOG_TO_RENEW);
 }
 
-TEST(JogsPart, WhatStopsOrReplacesAJogEndsItsLease_C8) {
+TEST(JogsPart, WhatStopsOrReplacesAJogEndsItsLease) {
     const auto isLeft = [](auto change) {
         Jogs jogs = make();
         EXPECT_EQ(take(jogs, JogContinuous{JOINT, 5, 0.1}, free_mode()).reason, Reason::NONE);
@@ -146,7 +146,7 @@ TEST(JogsPart, AWheelCountsTurnsAcrossTheWrapAndGivesWayToKeys) {
     EXPECT_EQ(turned(jogs.at(JOINT), wheel), 0.0) << "a key is held";
 }
 
-TEST(JogsPart, AStopOfAWheelTakesAllTheAcceleration_C5) {
+TEST(JogsPart, AStopOfAWheelTakesAllTheAcceleration) {
     for (const double jerk : {0.0, 2e4}) {
         JogSituation s = free_mode();
         s.most.jerk = jerk;
@@ -193,7 +193,7 @@ TEST(JogsPart, OverriddenLimitsEndWithTheJog) {
     EXPECT_EQ(jogs.at(JOINT).source, JogSource::NONE);
 }
 
-TEST(JogsPart, OneJoggedJointOrAxisIsEnoughToTellOfAJog_C8) {
+TEST(JogsPart, OneJoggedJointOrAxisIsEnoughToTellOfAJog) {
     for (const bool isJoint : {true, false}) {
         Jogs jogs = make();
         jogs.axes = 0b111;
@@ -216,7 +216,7 @@ TEST(JogsPart, OneJoggedJointOrAxisIsEnoughToTellOfAJog_C8) {
     }
 }
 
-TEST(JogsPart, AJointIsInPositionUnlessItIsJogged_C8) {
+TEST(JogsPart, AJointIsInPositionUnlessItIsJogged) {
     Jogs jogs = make();
     const auto in_position = [&] {
         Outputs out;
@@ -280,18 +280,18 @@ TEST(JogsPart, HomingMovesAJointNoFasterThanItCan) {
 
 /// Joint 0 is X cos C + Y sin C: what it accelerates by while X and C both move goes with the product of
 /// their speeds, twice, as in any square of a sum.
-TEST(TeleopPart, WhatTwoAxesAskOfAJointTogetherIsCountedForEachOfThem_C13) {
-    const kins::RotaryTable table;
+TEST(TeleopPart, WhatTwoAxesAskOfAJointTogetherIsCountedForEachOfThem) {
+    const kinematics::RotaryTable table;
     const FoldedLimits limits;
     TeleopMachine machine{table, limits, limits.path_joints};
     machine.num_joints = 5;
-    geom::Pose pose;
-    pose[geom::AXIS_X] = 50;
-    pose[geom::AXIS_C] = 30;
-    ASSERT_EQ(table.inverse(pose, machine.joint_positions.data()), kins::Status::OK);
+    geometry::Pose pose;
+    pose[geometry::AXIS_X] = 50;
+    pose[geometry::AXIS_C] = 30;
+    ASSERT_EQ(table.inverse(pose, machine.joint_positions.data()), kinematics::Status::OK);
     for (const bool isSmooth : {false, true}) {
         TeleopLoad load;
-        load.axes = {geom::AXIS_X, geom::AXIS_C};
+        load.axes = {geometry::AXIS_X, geometry::AXIS_C};
         load.count = 2;
         load.isSmooth = isSmooth;
         ASSERT_TRUE(add_load(machine, pose, load));
@@ -304,24 +304,24 @@ TEST(TeleopPart, WhatTwoAxesAskOfAJointTogetherIsCountedForEachOfThem_C13) {
 }
 
 /// With jerk limits also how that changes while C turns: the product of three speeds, two of them C's.
-TEST(TeleopPart, WhatACurveOfTwoAxesChangesByWhileOneTurnsIsCountedForThatOne_C13) {
-    const kins::RotaryTable table;
+TEST(TeleopPart, WhatACurveOfTwoAxesChangesByWhileOneTurnsIsCountedForThatOne) {
+    const kinematics::RotaryTable table;
     const FoldedLimits limits;
     TeleopMachine machine{table, limits, limits.path_joints};
     machine.num_joints = 5;
     constexpr double WAY = 5, X_SPEED = 20, C_SPEED = 30, RAD = 3.14159265358979 / 180;
-    geom::Pose pose;
-    pose[geom::AXIS_X] = 50;
-    pose[geom::AXIS_C] = 30;
-    ASSERT_EQ(table.inverse(pose, machine.joint_positions.data()), kins::Status::OK);
+    geometry::Pose pose;
+    pose[geometry::AXIS_X] = 50;
+    pose[geometry::AXIS_C] = 30;
+    ASSERT_EQ(table.inverse(pose, machine.joint_positions.data()), kinematics::Status::OK);
     TeleopLoad load;
-    load.axes = {geom::AXIS_X, geom::AXIS_C};
+    load.axes = {geometry::AXIS_X, geometry::AXIS_C};
     load.count = 2;
     load.isSmooth = true;
     load.speed = {X_SPEED, C_SPEED};
     ASSERT_TRUE(add_load(machine, pose, load));
     EXPECT_EQ(load.turn[1][0], 0) << "as yet it stands";
-    pose[geom::AXIS_C] += WAY;
+    pose[geometry::AXIS_C] += WAY;
     ASSERT_TRUE(add_load(machine, pose, load, {1, WAY}));
     const double change = (std::sin(35 * RAD) - std::sin(30 * RAD)) * RAD / WAY;
     const double exact = 2 * change * X_SPEED * C_SPEED;
@@ -331,26 +331,26 @@ TEST(TeleopPart, WhatACurveOfTwoAxesChangesByWhileOneTurnsIsCountedForThatOne_C1
 }
 
 /// An arm that reaches X by either sense of joint 0 and keeps that which it is told; nobody moves joint 1.
-struct Elbow final : kins::Kinematics {
-    kins::Kind kind() const noexcept override { return kins::Kind::BOTH; }
-    kins::Status forward(const double *joints, geom::Pose &pose) const noexcept override {
+struct Elbow final : kinematics::Kinematics {
+    kinematics::Kind kind() const noexcept override { return kinematics::Kind::BOTH; }
+    kinematics::Status forward(const double *joints, geometry::Pose &pose) const noexcept override {
         pose[0] = joints[0] * joints[0];
-        return kins::Status::OK;
+        return kinematics::Status::OK;
     }
-    kins::Status inverse(const geom::Pose &pose, double *joints) const noexcept override {
+    kinematics::Status inverse(const geometry::Pose &pose, double *joints) const noexcept override {
         joints[0] = std::copysign(std::sqrt(pose[0]), joints[0]);
-        return kins::Status::OK;
+        return kinematics::Status::OK;
     }
 };
 
-TEST(TeleopPart, JointsAreSoughtFromWhereTheyStand_C13_C14) {
+TEST(TeleopPart, JointsAreSoughtFromWhereTheyStand) {
     const Elbow elbow;
     const FoldedLimits limits;
     TeleopMachine machine{elbow, limits, limits.path_joints};
     machine.num_joints = 2;
     for (const double sense : {1.0, -1.0}) {
         machine.joint_positions = {3 * sense, 7};
-        geom::Pose pose;
+        geometry::Pose pose;
         pose[0] = 16;
         JointsAt q{};
         ASSERT_TRUE(find_joints(machine, pose, q));
@@ -360,7 +360,7 @@ TEST(TeleopPart, JointsAreSoughtFromWhereTheyStand_C13_C14) {
 }
 
 TEST(TeleopPart, AJogOfATableStopsBeforeAJointLeavesItsRange) {
-    const kins::RotaryTable table;
+    const kinematics::RotaryTable table;
     Settings settings;
     const auto set = [&](Parameter p, int j, double v) {
         settings.set({static_cast<std::uint16_t>(p), static_cast<std::int16_t>(j), v}, 5, 1);
@@ -375,7 +375,7 @@ TEST(TeleopPart, AJogOfATableStopsBeforeAJointLeavesItsRange) {
     TeleopMachine machine{table, limits, limits.path_joints};
     machine.num_joints = 5;
     Jogs jogs = make();
-    geom::Pose pose;
+    geometry::Pose pose;
     pose[0] = 39;  // C swings this towards Y and on to -39
     pose[1] = 15;
     reset_axes(jogs, pose);
@@ -383,17 +383,17 @@ TEST(TeleopPart, AJogOfATableStopsBeforeAJointLeavesItsRange) {
     s.mode = Mode::TELEOP;
     s.most = {1000, 10000, 0};
     s.range = {-1e9, 1e9};
-    const JogTarget c{false, geom::AXIS_C};
-    ASSERT_EQ(table.inverse(pose, machine.joint_positions.data()), kins::Status::OK);
+    const JogTarget c{false, geometry::AXIS_C};
+    ASSERT_EQ(table.inverse(pose, machine.joint_positions.data()), kinematics::Status::OK);
     ASSERT_EQ(take(jogs, JogContinuous{c, 90}, s).reason, Reason::NONE);
     int told = 0;
     for (int n = 0; n < 5000; ++n) {
         const TeleopStop stopped = limit_teleop(jogs, machine);
         told += stopped.isNew ? 1 : 0;
         jogs.at(c).planner.step(T);
-        pose[geom::AXIS_C] = jogs.at(c).planner.position;
+        pose[geometry::AXIS_C] = jogs.at(c).planner.position;
         const auto last = machine.joint_positions;
-        ASSERT_EQ(table.inverse(pose, machine.joint_positions.data()), kins::Status::OK);
+        ASSERT_EQ(table.inverse(pose, machine.joint_positions.data()), kinematics::Status::OK);
         for (std::size_t j = 0; j < 3; ++j) {
             ASSERT_LE(std::abs(machine.joint_positions[j]), 40 + 1e-6) << "joint " << j;
             ASSERT_LE(std::abs(machine.joint_positions[j] - last[j]) / T, 100 * (1 + 1e-6)) << "joint " << j;
@@ -401,7 +401,7 @@ TEST(TeleopPart, AJogOfATableStopsBeforeAJointLeavesItsRange) {
     }
     EXPECT_EQ(told, 1);
     EXPECT_TRUE(jogs.at(c).planner.isAtRest());
-    EXPECT_GT(std::abs(pose[geom::AXIS_C]), 0.01) << "it did move";
+    EXPECT_GT(std::abs(pose[geometry::AXIS_C]), 0.01) << "it did move";
 }
 
 }  // namespace

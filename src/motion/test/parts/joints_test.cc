@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "motion/core/joints/joints.hh"
+#include "motion/servo/joints/joints.hh"
 
 namespace mw::motion {
 namespace {
@@ -37,7 +37,7 @@ struct JointsPart : testing::Test {
     }
 };
 
-TEST_F(JointsPart, SwitchedOnTheCommandIsTheFeedback_C4) {
+TEST_F(JointsPart, SwitchedOnTheCommandIsTheFeedback) {
     in.joint[0].motor_pos_fb = 12.5;
     read_feedback(joints, in);
     joints[0].isFaulted = joints[0].isFerrorTripped = true;
@@ -125,7 +125,7 @@ TEST_F(JointsPart, SwitchedOffTheCommandFollowsTheMotor) {
     EXPECT_EQ(take(joints, SetJointActive{0, false}, {false, true, true}).reason, Reason::HOMING);
 }
 
-TEST_F(JointsPart, AJointThatIsLeftOutKeepsItsPlaceWhileItsAmplifierIsOn_C4) {
+TEST_F(JointsPart, AJointThatIsLeftOutKeepsItsPlaceWhileItsAmplifierIsOn) {
     set(Parameter::JOINT_BACKLASH, 0, 0.2);
     switch_on(joints);
     for (int n = 1; n <= 1000; ++n) {
@@ -173,7 +173,7 @@ TEST_F(JointsPart, AJointThatDoesMoreThanItCanIsFound) {
     EXPECT_EQ(find_overrun(joints, limits).joint, -1) << "on the way back in";
 }
 
-TEST_F(JointsPart, PinsAndStatusShowEachOfWhatTheyAreMadeOf_C3) {
+TEST_F(JointsPart, PinsAndStatusShowEachOfWhatTheyAreMadeOf) {
     Joint &joint = joints[1];
     int number = 1;
     for (double *value : {&joint.pos_cmd, &joint.pos_fb, &joint.vel_cmd, &joint.acc_cmd, &joint.coarse_pos,
@@ -217,7 +217,7 @@ TEST_F(JointsPart, PinsAndStatusShowEachOfWhatTheyAreMadeOf_C3) {
     }
 }
 
-TEST_F(JointsPart, HomedJointsAreOnTheirSoftLimitsFromThereOn_C13) {
+TEST_F(JointsPart, HomedJointsAreOnTheirSoftLimitsFromThereOn) {
     Outputs out;
     out.status.joint[0].min_limit = -100;
     out.status.joint[0].max_limit = 100;

@@ -6,9 +6,9 @@
 
 #include <gtest/gtest.h>
 
-#include "motion/core/outputs/machine_outputs.hh"
-#include "motion/core/power/power.hh"
-#include "motion/core/watchdog/watchdog.hh"
+#include "motion/servo/outputs/machine_outputs.hh"
+#include "motion/servo/power/power.hh"
+#include "motion/servo/watchdog/watchdog.hh"
 
 namespace mw::motion {
 namespace {
@@ -95,7 +95,7 @@ TEST(OutputsPart, OutputsAreSetAtOnceAndByThePath) {
     EXPECT_EQ(take(outputs, SetAnalogOutput{-1, 1}).reason, Reason::NO_SUCH_OUTPUT);
     EXPECT_EQ(take(outputs, SetAnalogOutput{0, NAN}).reason, Reason::NOT_A_NUMBER);
     take(outputs, SetDigitalOutput{2, true});
-    traj::PathEvent event;
+    trajectory::PathEvent event;
     event.index = 3;
     event.value = 1;
     fire(outputs, event, false);
@@ -109,10 +109,10 @@ TEST(OutputsPart, OutputsAreSetAtOnceAndByThePath) {
     EXPECT_EQ(out->status.digital_out, 12U);
 }
 
-TEST(OutputsPart, AStopThatPassesAPlaceOfThePathSwitchesNothingOn_C6) {
+TEST(OutputsPart, AStopThatPassesAPlaceOfThePathSwitchesNothingOn) {
     MachineOutputs outputs;
     outputs.num_digital = outputs.num_analog = 4;
-    traj::PathEvent event;
+    trajectory::PathEvent event;
     event.index = 2;
     event.value = 1;
     fire(outputs, event, true);

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "kins/corexy.hh"
-#include "motion/core/offsets/external_offsets.hh"
+#include "kinematics/corexy.hh"
+#include "motion/servo/offsets/external_offsets.hh"
 
 namespace mw::motion {
 namespace {
@@ -13,7 +13,7 @@ struct OffsetsPart : ::testing::Test {
     ExternalOffsets offsets;
     FoldedLimits limits;
     Inputs in;
-    Reach programmed;
+    TravelRange programmed;
 
     OffsetsPart() {
         limits.homed.areAll = true;
@@ -32,7 +32,7 @@ struct OffsetsPart : ::testing::Test {
     }
 };
 
-TEST_F(OffsetsPart, WhereItGoesToIsSeenACycleBeforeAndWeighedAgain_C15) {
+TEST_F(OffsetsPart, WhereItGoesToIsSeenACycleBeforeAndWeighedAgain) {
     in.axis_offset[0].counts = 150;
     go(1);
     EXPECT_EQ(offsets.pose[0], 0);
@@ -50,7 +50,7 @@ TEST_F(OffsetsPart, WhereItGoesToIsSeenACycleBeforeAndWeighedAgain_C15) {
 }
 
 /// A change of the kinematics or of a ratio is no turn of a wheel.
-TEST_F(OffsetsPart, WhatWasTurnedBeforeAnAxisCouldHaveOneMovesNothing_C15) {
+TEST_F(OffsetsPart, WhatWasTurnedBeforeAnAxisCouldHaveOneMovesNothing) {
     for (const bool isEnabled : {true, false}) {
         in.axis_offset[1].isEnabled = isEnabled;
         in.axis_offset[1].scale = 0.1;
@@ -76,7 +76,7 @@ TEST_F(OffsetsPart, WhatWasTurnedBeforeAnAxisCouldHaveOneMovesNothing_C15) {
     }
 }
 
-TEST_F(OffsetsPart, NoMoveThatComesLaterMakesItGoBack_C15) {
+TEST_F(OffsetsPart, NoMoveThatComesLaterMakesItGoBack) {
     in.axis_offset[0].counts = 100;
     go(3000);
     programmed.axes.high[0] = 15;
@@ -84,7 +84,7 @@ TEST_F(OffsetsPart, NoMoveThatComesLaterMakesItGoBack_C15) {
     EXPECT_NEAR(offsets.pose[0], 10, 1e-9);
 }
 
-TEST_F(OffsetsPart, CountsWrapAndWhatIsNoNumberCountsForNothing_C15) {
+TEST_F(OffsetsPart, CountsWrapAndWhatIsNoNumberCountsForNothing) {
     in.axis_offset[0].counts = std::numeric_limits<std::int32_t>::max();
     start_at_zero(offsets, in);
     in.axis_offset[0].counts = std::numeric_limits<std::int32_t>::min() + 9;
@@ -104,8 +104,8 @@ TEST_F(OffsetsPart, CountsWrapAndWhatIsNoNumberCountsForNothing_C15) {
 
 /// X and Y of belts: what one takes of a joint's travel is not there for the other, nor for what is
 /// programmed. To either side.
-TEST_F(OffsetsPart, TwoOfOneJointNeverTakeTheSameRoom_C13_C15) {
-    const kins::CoreXy corexy;
+TEST_F(OffsetsPart, TwoOfOneJointNeverTakeTheSameRoom) {
+    const kinematics::CoreXy corexy;
     limits.offset[1] = {10, 100, 0};
     limits.low[1] = -20;
     limits.high[1] = 20;
@@ -140,8 +140,8 @@ TEST_F(OffsetsPart, TwoOfOneJointNeverTakeTheSameRoom_C13_C15) {
     }
 }
 
-TEST_F(OffsetsPart, WhatTheyHaveOfAJointIsTakenOffForJogs_C9_C15) {
-    const kins::CoreXy corexy;
+TEST_F(OffsetsPart, WhatTheyHaveOfAJointIsTakenOffForJogs) {
+    const kinematics::CoreXy corexy;
     limits.joints.low.fill(-30);
     limits.joints.high.fill(30);
     configure(offsets, limits, axis_map(corexy, 3));
@@ -150,7 +150,7 @@ TEST_F(OffsetsPart, WhatTheyHaveOfAJointIsTakenOffForJogs_C9_C15) {
     go(3000);
     std::array<double, MAX_JOINTS> joints{};
     joints.fill(10);
-    traj::JointLimits left = limits.joints;
+    trajectory::JointLimits left = limits.joints;
     take_off(offsets, joints, left);
     EXPECT_NEAR(joints[0], 2, 1e-9);
     EXPECT_NEAR(left.high[0], 22, 1e-9);

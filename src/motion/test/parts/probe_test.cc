@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <gtest/gtest.h>
 
-#include "motion/core/probe/probe.hh"
+#include "motion/servo/probe/probe.hh"
 
 namespace mw::motion {
 namespace {
 
-geom::Pose at(double x) {
-    geom::Pose p;
+geometry::Pose at(double x) {
+    geometry::Pose p;
     p[0] = x;
     return p;
 }
 
-ProbeInputs probing(bool isClosed, bool isAway = false, traj::Sequence move = 5) {
+ProbeInputs probing(bool isClosed, bool isAway = false, trajectory::Sequence move = 5) {
     ProbeInputs in;
     in.isClosed = isClosed;
     in.probing_move = move;
@@ -65,7 +65,7 @@ TEST(ProbePart, BrakingBehindAContactIsNoTouch) {
 
 /// An earlier trip excuses no contact that comes while nothing brakes, and no braking one that follows no
 /// trip.
-TEST(ProbePart, ATripOrAStopAloneExcusesNoContact_C9) {
+TEST(ProbePart, ATripOrAStopAloneExcusesNoContact) {
     TouchProbe probe;
     ProbeInputs in;
     in.isClosed = in.isMoving = in.isDropping = true;

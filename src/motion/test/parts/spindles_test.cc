@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "motion/core/spindles/spindles.hh"
+#include "motion/servo/spindles/spindles.hh"
 
 namespace mw::motion {
 namespace {
@@ -43,7 +43,7 @@ TEST_F(SpindlesPart, TurnOnlyWhileTheMachineIsOn) {
 }
 
 /// M3 and M4 release the brake, M5 engages it, and it may be released to turn one by hand.
-TEST_F(SpindlesPart, TheBrakeIsOffWhileOneTurns_C15) {
+TEST_F(SpindlesPart, TheBrakeIsOffWhileOneTurns) {
     const auto isBrakeOn = [&] { return spindles[0].isBrakeOn; };
     for (const double speed : {300.0, -300.0}) {
         take(spindles, SpindleBrake{0, true});
@@ -82,7 +82,7 @@ TEST_F(SpindlesPart, ConstantSurfaceSpeedFollowsTheDistanceFromTheAxis) {
     EXPECT_EQ(rpm(5), 2000) << "at the axis";
 }
 
-TEST_F(SpindlesPart, ConstantSurfaceSpeedKeepsTheLimitsOfTheSpindle_C15) {
+TEST_F(SpindlesPart, ConstantSurfaceSpeedKeepsTheLimitsOfTheSpindle) {
     set(Parameter::SPINDLE_MAX_FORWARD, 1500);
     set(Parameter::SPINDLE_MIN_FORWARD, 200);
     set(Parameter::SPINDLE_MAX_REVERSE, 900);
@@ -103,7 +103,7 @@ TEST_F(SpindlesPart, ConstantSurfaceSpeedKeepsTheLimitsOfTheSpindle_C15) {
 }
 
 /// Each has its command, its limits and its override: what is told one changes no other.
-TEST_F(SpindlesPart, EightOfThemKnowNothingOfEachOther_C15) {
+TEST_F(SpindlesPart, EightOfThemKnowNothingOfEachOther) {
     spindles.count = MAX_SPINDLES;
     std::mt19937 random(8);
     const auto real = [&](double low, double high) {
@@ -184,7 +184,7 @@ TEST_F(SpindlesPart, OrientationLocksOrFailsOnce) {
 }
 
 /// Whoever turns the spindle goes on for as long as spindle.N.orient is on.
-TEST_F(SpindlesPart, ADriveThatCannotOrientIsAskedNoLonger_C15) {
+TEST_F(SpindlesPart, ADriveThatCannotOrientIsAskedNoLonger) {
     const auto orient_pin = [&] {
         Outputs out;
         fill(spindles, in, true, out);
@@ -204,7 +204,7 @@ TEST_F(SpindlesPart, ADriveThatCannotOrientIsAskedNoLonger_C15) {
     EXPECT_EQ(spindles[0].orient_state, Spindles::ORIENT_FAULTED) << "until it is asked anew";
 }
 
-TEST_F(SpindlesPart, ATapTurnsItBackAtTheOverrideThatItBeganWith_C15) {
+TEST_F(SpindlesPart, ATapTurnsItBackAtTheOverrideThatItBeganWith) {
     take(spindles, SpindleOn{0, 300}, true);
     take(spindles, SetScale{Scale::SPINDLE, 0, 1.2});
     tap = {0, 1};
@@ -223,7 +223,7 @@ TEST_F(SpindlesPart, ATapTurnsItBackAtTheOverrideThatItBeganWith_C15) {
     EXPECT_EQ(rpm(), 150) << "now the override holds";
 }
 
-TEST_F(SpindlesPart, ATapThatIsStoppedLeavesItOff_C15) {
+TEST_F(SpindlesPart, ATapThatIsStoppedLeavesItOff) {
     take(spindles, SpindleOn{0, 300}, true);
     take(spindles, SpindleOn{1, 200}, true);
     tap = {0, -1};

@@ -3,8 +3,8 @@
 // come to rest.
 #include <gtest/gtest.h>
 
-#include "kins/corexy.hh"
-#include "motion/core/jogs/teleop_smooth.hh"
+#include "kinematics/corexy.hh"
+#include "motion/servo/jogs/teleop_smooth.hh"
 
 namespace mw::motion {
 namespace {
@@ -14,7 +14,7 @@ enum Axis : std::uint8_t { X, Y, Z };
 
 /// A CoreXY with jerk limits whose belts are its slowest parts.
 struct TeleopSharesPart : ::testing::Test {
-    kins::CoreXy model;
+    kinematics::CoreXy model;
     FoldedLimits limits;
     Jogs jogs;
 
@@ -35,8 +35,8 @@ struct TeleopSharesPart : ::testing::Test {
         jog(axis).wanted_acceleration = 10 * A;
         jog(axis).planner.target = target;
     }
-    geom::Pose here() {
-        geom::Pose pose;
+    geometry::Pose here() {
+        geometry::Pose pose;
         for (const Axis axis : {X, Y, Z}) {
             pose[axis] = jog(axis).planner.position;
         }
@@ -58,7 +58,7 @@ struct TeleopSharesPart : ::testing::Test {
     double speed(Axis axis) { return std::abs(jog(axis).planner.velocity); }
 };
 
-TEST_F(TeleopSharesPart, WhoWaitsHasNoSpeedUntilTheOtherIsDownToItsShare_C8_C13) {
+TEST_F(TeleopSharesPart, WhoWaitsHasNoSpeedUntilTheOtherIsDownToItsShare) {
     send(X, 1000);
     for (int n = 0; n < 1000; ++n) {
         go();
@@ -82,7 +82,7 @@ TEST_F(TeleopSharesPart, WhoWaitsHasNoSpeedUntilTheOtherIsDownToItsShare_C8_C13)
 }
 
 /// Looked at beside the others, one without a share is taken to stand.
-TEST_F(TeleopSharesPart, WithoutAShareThereIsNeitherAccelerationNorMean_C8_C13) {
+TEST_F(TeleopSharesPart, WithoutAShareThereIsNeitherAccelerationNorMean) {
     send(X, 1000);
     send(Y, 1000);
     TeleopLoad load;
@@ -102,7 +102,7 @@ TEST_F(TeleopSharesPart, WithoutAShareThereIsNeitherAccelerationNorMean_C8_C13) 
 }
 
 /// X comes to its target with all that it has, so that no room is made anew; room for Y was made before.
-TEST_F(TeleopSharesPart, NoRoomIsKeptForWhoHasComeToRest_C8_C13) {
+TEST_F(TeleopSharesPart, NoRoomIsKeptForWhoHasComeToRest) {
     send(X, 60);
     const auto isBraking = [&] {
         return jog(X).planner.leader().velocity < 0.8 * V && jog(X).planner.position > 30;

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The kinds of drives, with the pins and the behaviour towards them of LinuxCNC's programs of the same names.
+#pragma once
+
+#include <memory>
+
+#include "drivers/modbus/drives/drive.hh"
+
+namespace mw::modbus::drives {
+
+/// AutomationDirect GS2.
+struct Gs2Settings {
+    double accel_s = 10.0;
+    double decel_s = 0.0;  ///< 0: it coasts
+    bool hasBrakingResistor = false;
+};
+std::unique_ptr<Drive> make_gs2(const Gs2Settings &settings);
+
+/// Delta VFD-B.
+struct VfdbSettings {
+    double motor_hz = 50.0, motor_rpm = 1410.0;
+    int poll_cycles = 10;  ///< load, current and voltage are read in every so many rounds
+};
+std::unique_ptr<Drive> make_vfdb(const VfdbSettings &settings);
+
+}  // namespace mw::modbus::drives

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// millwright: the one command that people meet.
+#include <cstdio>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "base/language/language.hh"
+#include "base/own_place.hh"
+#include "base/stop_signals.hh"
+#include "gcode/analysis/commands.hh"
+#include "hal/core/command_hints.hh"
+#include "hal/tools/view/commands.hh"
+#include "programs/commands.hh"
+
+namespace {
+
+constexpr const char *USAGE =
+    "usage: millwright COMMAND ...\n"
+    "\n"
+    "  run MACHINE.ini PROGRAM.ngc          start the machine that the INI file describes, home it, run the "
+    "program;\n"
+    "                                       in virtual time, or with --realtime by the clock\n"
+    "  start MACHINE.ini                    keep the machine up for clients, until a signal or its display "
+    "ends it\n"
+    "  recover                              go on with the program that a power cut has ended, at its place\n"
+    "  ui MACHINE.ini                       serve the operator's screen of the machine that is up, to "
+    "browsers\n"
+    "  nml FILE.nml                         the NML channels of the machine that is up, also over the "
+    "network\n"
+    "  doctor MACHINE.ini                   what is wrong with a machine's files and this computer, before "
+    "the "
+    "start\n"
+    "  select                               choose a configuration and start it\n"
+    "  setup FOLDER                         write the configuration of a new machine, and try it\n"
+    "  check PROGRAM.ngc --ini MACHINE.ini  a program against a machine's limits, and the time it takes\n"
+    "  format PROGRAM.ngc ...               write programs in one form, without a change of meaning\n"
+    "  explain LINE                         say in words what a line of G-code does\n"
+    "  hal watch|capture|graph|latency      look at the running HAL\n"
+    "  --help, --version\n"
+    "\n"
+    "Each command has a --help of its own.\n"
+    "exit status: 0 done, 1 refused or failed, 2 wrong usage\n";
+
+}  // namespace
+
+int main(int argc, char **argv) {
+    mw::offer_own_programs();
+    const std::vector<std::string> words(argv + 1, argv + argc);
+    if (words.empty()) {
+        std::fputs(mw::language::shown(USAGE).c_str(), stderr);
+        return 2;
+    }
+    if (words[0] == "--help" || words[0] == "-h") {
+        std::fputs(mw::language::shown(USAGE).c_str(), stdout);
+        return 0;
+    }
+    if (words[0] == "--version") {
+        std::puts("millwright " MW_VERSION);
+        return 0;
+    }
+    const std::vector<std::string> rest(words.begin() + 1, words.end());
+    if (words[0] == "start") {
+        return mw::programs::command_start(rest);
+    }
+    if (words[0] == "run") {
+        return mw::programs::command_run(rest);
+    }
+    if (words[0] == "recover") {
+        return mw::programs::command_recover(rest);
+    }
+    if (words[0] == "ui") {
+        return mw::programs::command_ui(rest);
+    }
+    if (words[0] == "nml") {
+        return mw::programs::command_nml(rest);
+    }
+    if (words[0] == "doctor") {
+        return mw::programs::command_doctor(rest);
+    }
+    if (words[0] == "select") {
+        return mw::programs::command_select(rest);
+    }
+    if (words[0] == "setup") {
+        return mw::programs::command_setup(rest);
+    }
+    if (words[0] == "check") {
+        return mw::programs::command_check(rest);
+    }
+    if (words[0] == "format") {
+        return mw::gcode::command_format(rest);
+    }
+    if (words[0] == "explain") {
+        return mw::gcode::command_explain(rest);
+    }
+    if (words[0] == "hal") {
+        mw::catch_stop_signals();
+        return mw::hal::view::command_hal(rest, mw::stop_signal);
+    }
+    const std::string instead = mw::hal::hint_for_absent(words[0]);
+    mw::language::tell("millwright", mw::Error{"unknown command '" + words[0] + "'; " +
+                                               (instead.empty() ? "see millwright --help" : instead)});
+    return 2;
+}

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// motion-logger [FILE]: stands in for the motion controller and writes what it is asked for (man page
+// motion-logger).
+#include <time.h>
+
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "base/language/language.hh"
+#include "base/stop_signals.hh"
+#include "hal/host/host_client.hh"
+#include "motion/logger/stand_in.hh"
+
+namespace {
+
+constexpr const char *NAME = "motion-logger";
+constexpr const char *USAGE =
+    "usage: motion-logger [FILE]\n"
+    "  stands in for motmod and writes what task asks of it; loadusr -W starts it\n";
+constexpr long PERIOD_NS = 1000000;
+
+struct CloseFile {
+    void operator()(std::FILE *file) const { std::fclose(file); }
+};
+using File = std::unique_ptr<std::FILE, CloseFile>;
+
+std::int64_t monotonic_ns() {
+    constexpr std::int64_t NS_PER_S = 1000000000;
+    timespec now{};
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return now.tv_sec * NS_PER_S + now.tv_nsec;
+}
+
+/// The log; standard output where no file is named. Each line is written at once: others look meanwhile.
+class Log {
+  public:
+    /// The file is there and empty.
+    mw::Result<> open(const std::string &path) {
+        path_ = path;
+        return path_.empty() ? mw::Result<>() : make();
+    }
+    /// What was said stays as it is; what comes begins the file anew, which others may have moved by then.
+    mw::Result<> close() {
+        auto made = path_.empty() || file_ != nullptr ? mw::Result<>() : make();
+        file_.reset();
+        return made;
+    }
+    void say(const std::string &line) {
+        if (!path_.empty() && file_ == nullptr) {
+            if (const auto made = make(); !made.has_value()) {
+                mw::language::tell(NAME, made.error());
+            }
+        }
+        std::FILE *const out = file_ != nullptr ? file_.get() : stdout;
+        fmt::print(out, "{}\n", line);
+        std::fflush(out);
+    }
+
+  private:
+    mw::Result<> make() {
+        file_.reset(std::fopen(path_.c_str(), "w"));
+        return file_ != nullptr ? mw::Result<>() : mw::fail(fmt::format("cannot write '{}'", path_));
+    }
+
+    std::string path_;
+    File file_;
+};
+
+mw::Result<> run(const std::string &path) {
+    using namespace mw;
+    Log log;
+    if (auto opened = log.open(path); !opened.has_value()) {
+        return opened;
+    }
+    auto host = hal::HostClient::connect(hal::default_instance());
+    if (!host.has_value()) {
+        return std::unexpected(host.error());
+    }
+    hal::Hal &hal = (*host)->hal();
+    const auto component = hal.new_component(NAME);
+    if (!component.has_value()) {
+        return std::unexpected(component.error());
+    }
+    const auto reopen = hal.new_pin("motion-logger.reopen-log", hal::Type::BIT, hal::Dir::IO, *component);
+    const auto in_position = hal.new_pin("motion.in-position", hal::Type::BIT, hal::Dir::OUT, *component);
+    const auto block = hal.shared_block(motion::Channels::SHMEM_KEY, sizeof(motion::Channels));
+    for (const Error *error : {reopen.has_value() ? nullptr : &reopen.error(),
+                               in_position.has_value() ? nullptr : &in_position.error(),
+                               block.has_value() ? nullptr : &block.error()}) {
+        if (error != nullptr) {
+            return std::unexpected(*error);
+        }
+    }
+    if (static_cast<motion::Channels *>(*block)->magic == motion::Channels::MAGIC) {
+        return fail("a motion controller is loaded already", {}, "motion-logger takes the place of motmod");
+    }
+    auto *const channels = new (*block) motion::Channels();
+    motion::StandIn stand_in(*channels, [&log](const std::string &line) { log.say(line); });
+    channels->layout_bytes = sizeof(motion::Channels);
+    channels->magic = motion::Channels::MAGIC;
+    if (auto ready = hal.set_ready(*component); !ready.has_value()) {
+        return ready;
+    }
+    constexpr timespec PERIOD{0, PERIOD_NS};
+    while (stop_signal == 0 && !hal.host_end().has_value()) {
+        stand_in.step(monotonic_ns());
+        // Pins may be linked meanwhile: the value is looked for each time.
+        auto *const isReopening = static_cast<volatile bool *>(**reopen);
+        *static_cast<volatile bool *>(**in_position) = stand_in.isInPosition();
+        if (*isReopening) {
+            if (auto closed = log.close(); !closed.has_value()) {
+                return closed;
+            }
+            *isReopening = false;
+        }
+        ::nanosleep(&PERIOD, nullptr);
+    }
+    channels->magic = 0;
+    return {};
+}
+
+}  // namespace
+
+int main(int argc, char **argv) {
+    const std::string first = argc > 1 ? argv[1] : "";
+    if (argc > 2 || first.starts_with("-")) {
+        const bool isAsked = first == "--help" || first == "-h";
+        std::fputs(mw::language::shown(USAGE).c_str(), isAsked ? stdout : stderr);
+        return isAsked ? 0 : 2;
+    }
+    mw::catch_stop_signals();
+    const auto ended = run(first);
+    if (!ended.has_value()) {
+        mw::language::tell(NAME, ended.error());
+    }
+    return ended.has_value() ? 0 : 1;
+}

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// reference_pages FOLDER: writes the reference pages that are generated from declarations: ini.md,
+// messages.md, nml_messages.md and task/states.md. A tool of the build, not installed.
+#include <cstdio>
+#include <filesystem>
+#include <string>
+#include <utility>
+
+#include "base/atomic_file.hh"
+#include "clients/nml/message/sender.hh"
+#include "machine/config/ini_keys.hh"
+#include "machine/task/run/admission.hh"
+#include "messages/declarations/reference.hh"
+
+int main(int count, char **words) {
+    if (count != 2 || words[1][0] == '-') {
+        const bool isHelp = count == 2 && std::string(words[1]) == "--help";
+        std::fputs("usage: reference_pages FOLDER\n", isHelp ? stdout : stderr);
+        return isHelp ? 0 : 2;
+    }
+    const std::string folder = words[1];
+    std::error_code failure;
+    std::filesystem::create_directories(folder + "/task", failure);
+    const std::pair<const char *, std::string> pages[] = {{"ini.md", mw::machine::ini_reference()},
+                                                          {"messages.md", mw::messages::reference_page()},
+                                                          {"nml_messages.md", mw::nml::nml_reference_page()},
+                                                          {"task/states.md", mw::task::states_page()}};
+    for (const auto &[name, text] : pages) {
+        if (const auto written = mw::write_file_atomically(folder + '/' + name, text); !written.has_value()) {
+            std::fprintf(stderr, "%s\n", written.error().message.c_str());
+            return 1;
+        }
+    }
+    return 0;
+}

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// millwright nml: the channels of an NML configuration for a machine that is up.
+#include <cstdio>
+
+#include <fmt/format.h>
+
+#include "base/language/language.hh"
+#include "base/options/command_line.hh"
+#include "base/stop_signals.hh"
+#include "clients/nml/bridge/bridge.hh"
+#include "clients/nml/config/config_file.hh"
+#include "clients/nml/net/server.hh"
+#include "hal/core/hal.hh"
+#include "programs/commands.hh"
+#include "programs/remote/remote_client.hh"
+
+namespace mw::programs {
+namespace {
+
+/// Without a new status the channels are looked at so often.
+constexpr double TICK_S = 0.01;
+
+struct NmlWords {
+    std::string file, process = "emc", server = "emcsvr";
+    options::Words rest;
+
+    options::CommandLine line() {
+        options::CommandLine line(
+            "millwright nml FILE.nml [options]",
+            "Makes the channels emcCommand, emcStatus and emcError of an NML configuration for the machine "
+            "that "
+            "'millwright\n"
+            "start' keeps up, and serves them to other programs, over the network where a B line has a port. "
+            "It is a\n"
+            "client: the machine goes on without it. Ends with the machine, at SIGINT or SIGTERM.\n");
+        line.text("--process", "NAME", "whose P lines say how the machine uses the channels; emc without it",
+                  process);
+        line.text("--server", "NAME",
+                  "whose P lines say which buffers are made and served; emcsvr without it", server);
+        line.rest(rest);
+        line.footer("exit status: 0 ended in order, 1 refused or failed, 2 wrong usage\n");
+        return line;
+    }
+    Result<> parse(const std::vector<std::string> &words) {
+        const auto parsed = line().parse(words);
+        if (parsed.has_value() && rest.size() != 1) {
+            return fail("nml needs an NML configuration file", {}, "millwright nml FILE.nml");
+        }
+        file = parsed.has_value() ? rest[0] : "";
+        return parsed;
+    }
+};
+
+/// Whose address only this computer can reach.
+bool isLoopback(const std::string &host) {
+    return host == "localhost" || host.starts_with("127.") || host == "::1";
+}
+
+/// Keeps what the server process is the master of.
+Result<std::vector<std::unique_ptr<nml::Buffer>>> make_buffers(const nml::Connections &connections) {
+    std::vector<std::unique_ptr<nml::Buffer>> made;
+    for (const nml::BufferSettings &buffer : connections.config.buffers) {
+        const nml::ProcessSettings *line = connections.config.find_process(connections.process, buffer.name);
+        if (line == nullptr || !line->isMaster) {
+            continue;
+        }
+        auto opened = nml::open_buffer(buffer, *line, connections.instance, connections.local);
+        if (!opened.has_value()) {
+            return std::unexpected(opened.error());
+        }
+        made.push_back(std::move(*opened));
+    }
+    return made;
+}
+
+void tell_where(const nml::Config &config, const nml::Server &server, diagnostics::Sink &sink) {
+    for (const nml::BufferSettings &buffer : config.buffers) {
+        const bool isServed =
+            buffer.tcp_port.has_value() || buffer.stcp_port.has_value() || buffer.udp_port.has_value();
+        if (isServed && !isLoopback(buffer.host) && buffer.password_file.empty()) {
+            sink.warning(fmt::format("whoever reaches {} over the network can use buffer '{}'", buffer.host,
+                                     buffer.name),
+                         buffer.place, "ask for a password: passwd=FILE");
+        }
+    }
+    fmt::print("NML channels are up{}{}\n",
+               server.tcp_port() != 0 ? fmt::format(", TCP port {}", server.tcp_port()) : "",
+               server.udp_port() != 0 ? fmt::format(", UDP port {}", server.udp_port()) : "");
+    std::fflush(stdout);
+}
+
+Result<> run_channels(const NmlWords &words, const nml::Config &config, diagnostics::Sink &sink) {
+    const std::string instance = hal::default_instance();
+    const nml::Vocabulary vocabulary = nml::Vocabulary::standard();
+    nml::LocalPlaces local;
+    auto client = connect_to_operate(instance);
+    if (!client.has_value()) {
+        return std::unexpected(client.error());
+    }
+    const auto buffers = make_buffers({config, words.server, instance, vocabulary, local});
+    if (!buffers.has_value()) {
+        return std::unexpected(buffers.error());
+    }
+    auto bridge = nml::Bridge::open({config, words.process, instance, vocabulary, local}, *client);
+    if (!bridge.has_value()) {
+        return std::unexpected(bridge.error());
+    }
+    const auto server = nml::Server::start(config, words.server, instance, vocabulary, local);
+    if (!server.has_value()) {
+        return std::unexpected(server.error());
+    }
+    tell_where(config, **server, sink);
+    std::string last_trouble;
+    while (stop_signal == 0) {
+        if (!client->isMachineAlive()) {
+            return fail("the machine is gone");
+        }
+        // Without a newer status within the time, commands are looked for all the same.
+        static_cast<void>(client->wait_status(TICK_S));
+        (*bridge)->add((*server)->take_left_jogs());
+        const auto stepped = (*bridge)->step();
+        const std::string trouble = stepped.has_value() ? "" : stepped.error().str();
+        if (!trouble.empty() && trouble != last_trouble) {
+            sink.warning(trouble);
+        }
+        last_trouble = trouble;
+    }
+    return {};
+}
+
+}  // namespace
+
+int command_nml(const std::vector<std::string> &arguments) {
+    NmlWords words;
+    if (options::wantsHelp(arguments)) {
+        fmt::print("{}", words.line().help());
+        return 0;
+    }
+    if (const auto parsed = words.parse(arguments); !parsed.has_value()) {
+        fmt::print(stderr, "millwright nml: {}\n", language::shown(parsed.error().str()));
+        return 2;
+    }
+    catch_stop_signals();
+    diagnostics::Sink sink(
+        [](const diagnostics::Diagnostic &d) { fmt::print(stderr, "{}\n", language::shown(d.str())); });
+    const auto config = nml::load_config(words.file, sink);
+    if (!config.has_value()) {
+        return 1;
+    }
+    const auto ended = run_channels(words, *config, sink);
+    if (!ended.has_value()) {
+        sink.failure(ended.error());
+    }
+    return ended.has_value() ? 0 : 1;
+}
+
+}  // namespace mw::programs

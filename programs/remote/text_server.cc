@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "programs/remote/text_server.hh"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "base/language/language.hh"
+#include "base/stop_signals.hh"
+#include "base/text.hh"
+#include "hal/core/hal.hh"
+
+namespace mw::programs {
+namespace {
+
+using rsh::Dialect;
+
+/// Without new bytes the machine is looked at so often.
+constexpr double IDLE_S = 0.05;
+/// Until a machine that starts beside this program takes clients. [s]
+constexpr double PATIENCE_S = 10;
+
+/// A machine that is just coming up is waited for.
+Result<client::Viewer> attach_patiently(const std::string &instance) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(PATIENCE_S);
+    while (true) {
+        auto viewer = client::Viewer::attach(instance);
+        const bool isReady =
+            viewer.has_value() && !viewer->identity().ini.empty() && viewer->read_status().has_value();
+        if (isReady || stop_signal != 0 || std::chrono::steady_clock::now() > end) {
+            return isReady || !viewer.has_value() ? std::move(viewer) : fail("the machine does not come up");
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+}
+
+double task_period(const ini::IniFile &ini) {
+    constexpr double PRESET_S = 0.001;
+    const ini::IniEntry *const entry = ini.find("TASK", "CYCLE_TIME");
+    return entry == nullptr ? PRESET_S : parse_double(entry->value).value_or(PRESET_S);
+}
+
+Result<> serve(TextServerWords &words, TextServiceMaking make, diagnostics::Sink &sink) {
+    const std::string instance = hal::default_instance();
+    auto viewer = attach_patiently(instance);
+    if (!viewer.has_value()) {
+        return std::unexpected(viewer.error());
+    }
+    const std::string path = words.ini.empty() ? viewer->identity().ini.str() : words.ini;
+    auto ini = ini::IniFile::load(std::filesystem::absolute(path).string(), sink);
+    if (!ini.has_value()) {
+        return std::unexpected(ini.error());
+    }
+    rsh::SharedView shared(std::move(*viewer));
+    words.settings.ini = &*ini;
+    words.settings.task_period_s = task_period(*ini);
+    words.settings.num_joints = shared.status().trajectory.num_joints;
+    words.settings.num_spindles = shared.status().trajectory.num_spindles;
+    const auto service = make({words.settings, shared, instance});
+    auto server = rsh::Server::listen(words.server, [&service] { return service->begin(); });
+    if (!server.has_value()) {
+        return std::unexpected(server.error());
+    }
+    if (words.server.port == 0) {
+        fmt::print("port {}\n", (*server)->port());
+        std::fflush(stdout);
+    }
+    (*server)->run(
+        [&shared, &service] {
+            // A status that cannot be read now is that of a machine which ends.
+            const bool isUp = stop_signal == 0 && shared.isMachineAlive() && shared.read().has_value();
+            if (isUp) {
+                service->step(shared.status());
+            }
+            return isUp;
+        },
+        IDLE_S);
+    return {};
+}
+
+}  // namespace
+
+options::CommandLine TextServerWords::line() {
+    options::CommandLine line(program + " [options] [-- -ini MACHINE.ini]", what);
+    line.number("-p,--port", "N", "listen there; 5007 without it, 0: a free one", server.port, 0, 65535);
+    line.text("-n,--name", "NAME", "as the server calls itself; EMCNETSVR without it", settings.name);
+    line.text("-w,--connectpw", "PASSWORD", "of HELLO; EMC without it", settings.connect_password);
+    line.text("-e,--enablepw", "PASSWORD", "of SET ENABLE; EMCTOO without it", settings.enable_password);
+    line.number("-s,--sessions", "N", "connections at a time; -1 without it: as many as come",
+                server.max_sessions, -1, 100000);
+    line.text("-d,--path", "FOLDER", "where programs are that are opened; that of the INI file without it",
+              settings.program_folder);
+    line.text("-b,--bind", "ADDRESS",
+              "listen there, so that other computers can connect; needs passwords of its own",
+              server.address);
+    line.flag("-4,--ipv4", "this computer by IPv4 alone, not by IPv6", server.isIpv4Only);
+    if (hasDialects) {
+        line.text("--dialect", "2.9|2.10", "whose answers are given; 2.10 without it", dialect);
+    }
+    line.flag("-q,--quiet", "say nothing of connections; it never does", isQuiet);
+    line.footer("exit status: 0 ended in order, 1 refused or failed, 2 wrong usage\n");
+    return line;
+}
+
+Result<> TextServerWords::parse(std::vector<std::string> words) {
+    const auto dashes = std::ranges::find(words, "--");
+    std::vector<std::string> behind(dashes == words.end() ? dashes : dashes + 1, words.end());
+    words.erase(dashes, words.end());
+    if (auto parsed = line().parse(words); !parsed.has_value()) {
+        return parsed;
+    }
+    for (std::size_t i = 0; i < behind.size(); ++i) {
+        if ((behind[i] == "-ini" || behind[i] == "--ini") && i + 1 < behind.size()) {
+            ini = behind[++i];
+        } else {
+            return fail("'" + behind[i] + "' behind -- is not known", {}, "-- -ini MACHINE.ini");
+        }
+    }
+    if (dialect != "2.9" && dialect != "2.10") {
+        return fail("there is no dialect '" + dialect + "'", {}, "2.9 or 2.10");
+    }
+    settings.dialect = dialect == "2.9" ? Dialect::OLD : Dialect::NEWER;
+    return check_passwords();
+}
+
+/// The passwords that everybody knows protect nothing.
+Result<> TextServerWords::check_passwords() const {
+    const rsh::Settings preset;
+    const bool isOpen =
+        !server.address.empty() && server.address != "::1" && !server.address.starts_with("127.");
+    if (isOpen && (settings.connect_password == preset.connect_password ||
+                   settings.enable_password == preset.enable_password)) {
+        return fail("--bind lets other computers move this machine: give passwords of your own", {},
+                    "--connectpw and --enablepw");
+    }
+    return {};
+}
+
+int serve_text(TextServerWords words, const std::vector<std::string> &arguments, TextServiceMaking make) {
+    if (options::wantsHelp(arguments)) {
+        fmt::print("{}", words.line().help());
+        return 0;
+    }
+    if (const auto parsed = words.parse(arguments); !parsed.has_value()) {
+        fmt::print(stderr, "{}: {}\n", words.program, language::shown(parsed.error().str()));
+        return 2;
+    }
+    catch_stop_signals();
+    diagnostics::Sink sink([&words](const diagnostics::Diagnostic &d) {
+        fmt::print(stderr, "{}: {}\n", words.program, language::shown(d.str()));
+    });
+    const auto ended = serve(words, make, sink);
+    if (!ended.has_value()) {
+        sink.failure(ended.error());
+    }
+    return ended.has_value() ? 0 : 1;
+}
+
+}  // namespace mw::programs

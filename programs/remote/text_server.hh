@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What linuxcncrsh and schedrmt have in common: the command line, the machine that is found, the port.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/options/command_line.hh"
+#include "clients/rsh/conversation.hh"
+#include "clients/rsh/server.hh"
+#include "clients/rsh/settings.hh"
+#include "clients/rsh/shared_view.hh"
+#include "messages/client/client.hh"
+#include "programs/remote/remote_client.hh"
+
+namespace mw::programs {
+
+/// The command line of a program that listens for lines of text.
+struct TextServerWords {
+    std::string program = {}, what = {};  ///< its name; for --help
+    bool hasDialects = false;             ///< --dialect is known
+    rsh::Settings settings = {};
+    rsh::ServerSettings server = {};
+    std::string ini = {}, dialect = "2.10";
+    bool isQuiet = false;
+
+    options::CommandLine line();
+    Result<> parse(std::vector<std::string> words);
+
+  private:
+    Result<> check_passwords() const;
+};
+
+/// What such a program says at its connections.
+class TextService {
+  public:
+    virtual ~TextService() = default;
+    virtual std::unique_ptr<rsh::Conversation> begin() = 0;
+    /// Before conversations go on.
+    virtual void step(const messages::MachineStatus &) {}
+};
+
+/// What a service is made of; it outlives the service.
+struct TextMachine {
+    const rsh::Settings &settings;
+    rsh::SharedView &view;
+    std::string instance;
+};
+
+using TextServiceMaking = std::unique_ptr<TextService> (*)(const TextMachine &);
+
+/// Runs until the machine ends, a signal comes or a client says SHUTDOWN; exit status of the program.
+int serve_text(TextServerWords words, const std::vector<std::string> &arguments, TextServiceMaking make);
+
+}  // namespace mw::programs

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The machine as whoever runs a program on it has it: made in this process, or running in another.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "machine/assembly/machine.hh"
+#include "messages/client/client.hh"
+
+namespace mw::programs {
+
+/// One thread.
+class MachineAccess {
+  public:
+    virtual ~MachineAccess() = default;
+
+    /// Returns after the next task cycle: runs it, or waits for it.
+    virtual void cycle() = 0;
+    virtual std::int64_t now_ns() const = 0;
+    /// An error once the machine cannot go on. Ask in every cycle.
+    virtual Result<> health() const = 0;
+    virtual client::Client &client() = 0;
+    /// Others may operate the machine as well.
+    virtual bool isShared() const = 0;
+};
+
+class OwnMachine final : public MachineAccess {
+  public:
+    explicit OwnMachine(machine::Machine &machine) : machine_(machine) {}
+
+    void cycle() override { machine_.cycle(); }
+    std::int64_t now_ns() const override { return machine_.now_ns(); }
+    Result<> health() const override { return machine_.health(); }
+    client::Client &client() override { return machine_.client(); }
+    bool isShared() const override { return false; }
+
+  private:
+    machine::Machine &machine_;
+};
+
+/// A machine that `millwright start` keeps up. What its client has begun is aborted when the client goes, in
+/// whatever way.
+class RunningMachine final : public MachineAccess {
+  public:
+    /// Null when no machine of that instance runs. An error when one does that is not to be joined: it was
+    /// started from another file than `ini`, or ends with a program of its own.
+    static Result<std::unique_ptr<RunningMachine>> find(const std::string &instance, const std::string &ini);
+    ~RunningMachine() override;
+
+    /// Asks for the right to operate alone and keeps it, renewed in each cycle, until give_back(). Refused
+    /// while something runs or moves, or another client has it.
+    Result<> take_over();
+    void give_back();
+
+    void cycle() override;
+    std::int64_t now_ns() const override;
+    Result<> health() const override;
+    client::Client &client() override { return client_; }
+    bool isShared() const override { return true; }
+
+  private:
+    explicit RunningMachine(client::Client client) : client_(std::move(client)) {}
+    Result<> check_idle();
+    Result<> ask(const messages::Command &command);
+
+    client::Client client_;
+    bool isGone_ = false;
+    bool isRightOurs_ = false;
+    std::int64_t renewed_ns_ = 0;
+};
+
+/// Aborts whatever runs and waits until the machine stands.
+void stop_motion(MachineAccess &machine);
+/// Holds the program so that the axes stop with the spindle on, then as stop_motion(), then opens the e-stop
+/// chain: spindles, coolant and amplifiers are off.
+void switch_off(MachineAccess &machine);
+
+}  // namespace mw::programs

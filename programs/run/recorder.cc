@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "programs/run/recorder.hh"
+
+#include <fmt/format.h>
+
+namespace mw::programs {
+
+Recorder::Recorder(machine::Machine &machine, const machine::MachineConfig &config)
+    : machine_(machine), monitor_(config.servo_period_ns) {
+    machine_.task().set_move_listener(
+        [this](motion::CommandId id, const motion::PathBody &body) { monitor_.on_move(id, body); });
+}
+
+Result<> Recorder::open_trace(const std::string &path, const machine::MachineConfig &config) {
+    auto writer = TraceWriter::create(path, config.axis_mask, config.num_joints);
+    if (!writer.has_value()) {
+        return std::unexpected(writer.error());
+    }
+    trace_.emplace(std::move(*writer));
+    return {};
+}
+
+void Recorder::start() {
+    monitor_.start(machine_.task().motion_status().carte_pos_cmd);
+    machine_.channels().isTracing.store(1);
+}
+
+void Recorder::drain() {
+    motion::TraceSample sample;
+    while (machine_.channels().trace.pop(sample)) {
+        monitor_.on_sample(sample);
+        if (trace_.has_value()) {
+            trace_->write(sample);
+        }
+    }
+}
+
+Result<> Recorder::finish() {
+    drain();
+    machine_.channels().isTracing.store(0);
+    machine_.task().set_move_listener({});
+    const std::uint64_t lost = machine_.channels().trace_lost.load();
+    const auto closed = trace_.has_value() ? trace_->close() : Result<>{};
+    if (closed.has_value() && trace_.has_value() && lost > 0) {
+        return fail(
+            fmt::format("the trace lacks {} servo cycles: this process was too slow to write them", lost));
+    }
+    return closed;
+}
+
+}  // namespace mw::programs

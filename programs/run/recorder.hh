@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Keeps trace, figures and picture while a program runs on a machine of this process.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "machine/analysis/path_monitor.hh"
+#include "machine/assembly/machine.hh"
+#include "programs/run/trace_writer.hh"
+
+namespace mw::programs {
+
+/// One thread; as long as it lives the machine's moves are told to nobody else.
+class Recorder {
+  public:
+    Recorder(machine::Machine &machine, const machine::MachineConfig &config);
+
+    Result<> open_trace(const std::string &path, const machine::MachineConfig &config);
+    void start();
+    /// Once a task cycle.
+    void drain();
+    /// An error when the trace lacks something.
+    Result<> finish();
+    const machine::PathMonitor &monitor() const { return monitor_; }
+
+  private:
+    machine::Machine &machine_;
+    machine::PathMonitor monitor_;
+    std::optional<TraceWriter> trace_;
+};
+
+}  // namespace mw::programs

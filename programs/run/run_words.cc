@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "programs/run/run_words.hh"
+
+#include "base/options/command_line.hh"
+
+namespace mw::programs {
+namespace {
+
+constexpr double MOST_PATIENCE_S = 1e9;
+constexpr int MOST_LINES = 1000000000;
+
+options::CommandLine run_line(RunWords &run, options::Words &rest) {
+    options::CommandLine line(
+        "millwright run MACHINE.ini PROGRAM.ngc [options]",
+        "Starts the machine that the INI file describes, homes it and runs the program. Before anything "
+        "moves the\n"
+        "program is interpreted, for at most 5 s: one that is known to stop in the middle of a cut is "
+        "refused.\n"
+        "Displays that the INI file names are not started. With --realtime, where 'millwright start' keeps "
+        "the machine\n"
+        "up, the program runs there, and the machine stays on and homed.\n"
+        "\n"
+        "In virtual time (the default) a simulated operator confirms tool changes and passes program stops, "
+        "and says\n"
+        "so. With --realtime a person does, by keys or by HAL pins (halui, hal_manualtoolchange):\n"
+        "  y start    h or space hold    r resume    a abort    t the tool is changed\n");
+    line.flag("--realtime", "by the clock, in two processes; asks at the terminal before it switches on",
+              run.isRealtime);
+    line.flag("--yes", "do not ask before the start, and start without a terminal; confirms nothing else",
+              run.isConfirmed);
+    line.text("--trace", "FILE.csv", "write the commanded positions of every servo cycle", run.trace);
+    line.text("--plot", "FILE", "draw the tool path, as .png or .svg; of a refused program too", run.plot);
+    line.number("--from-line", "N",
+                "begin at this line: what comes before is calculated, the way there confirmed by a person",
+                run.from_line, 1, MOST_LINES);
+    line.number("--patience", "SECONDS",
+                "give up after so long without progress (default 60, in the machine's time)", run.patience_s,
+                0.001, MOST_PATIENCE_S);
+    line.on_or_off("--optional-stop", "M1 stops (on)", run.switches.isOptionalStopOn);
+    line.on_or_off("--block-delete", "lines that begin with / are left out (on)",
+                   run.switches.isBlockDeleteOn);
+    line.flag("--no-estimate", "do not reckon the time that the planner expects", run.isEstimated, false);
+    line.flag("--no-check", "start even a program that is known to fail", run.isChecked, false);
+    line.text("--homemod", "NAME", "a homing module and its parameters, instead of [EMCMOT]HOMEMOD",
+              run.homing_module);
+    line.text("--tpmod", "NAME", "a planner module and its parameters, instead of [TRAJ]TPMOD",
+              run.planner_module);
+    line.flag("--strict", "unknown INI keys are errors", run.isStrict);
+    line.rest(rest);
+    line.footer("exit status: 0 the program ran to its end, 1 refused, failed or stopped, 2 wrong usage\n");
+    return line;
+}
+
+}  // namespace
+
+std::string run_help() {
+    RunWords run;
+    options::Words rest;
+    return run_line(run, rest).help();
+}
+
+Result<RunWords> parse_run(const std::vector<std::string> &words) {
+    RunWords run;
+    options::Words rest;
+    const auto parsed = run_line(run, rest).parse(words);
+    if (!parsed.has_value()) {
+        return std::unexpected(parsed.error());
+    }
+    if (rest.size() != 2) {
+        return fail("run needs a machine's INI file and a program", {},
+                    "millwright run MACHINE.ini PROGRAM.ngc");
+    }
+    run.ini = rest[0];
+    run.program = rest[1];
+    return run;
+}
+
+}  // namespace mw::programs

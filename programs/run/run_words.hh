@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The words of `millwright run`.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "programs/run/run_session.hh"
+
+namespace mw::programs {
+
+struct RunWords {
+    std::string ini, program, trace, plot, homing_module, planner_module;
+    bool isRealtime = false, isStrict = false, isEstimated = true, isChecked = true, isConfirmed = false;
+    ProgramSwitches switches;
+    double patience_s = 60.0;
+    int from_line = 0;  ///< 0: the first
+};
+
+/// What --help says.
+std::string run_help();
+Result<RunWords> parse_run(const std::vector<std::string> &words);
+
+}  // namespace mw::programs

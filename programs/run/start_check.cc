@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "programs/run/start_check.hh"
+
+#include <chrono>
+#include <set>
+
+#include "base/stop_signals.hh"
+#include "programs/run/progress_line.hh"
+
+namespace mw::programs {
+namespace {
+
+/// Of the time for the look ahead, the share after which the reckoning of times is given up for reading
+/// further.
+constexpr double SHARE_FOR_TIMES = 0.6;
+
+/// Tells errors as errors as long as the program's way is known, as warnings behind.
+class Judge {
+  public:
+    explicit Judge(diagnostics::Sink &sink) : sink_(sink) {}
+
+    void take(diagnostics::Diagnostic one) {
+        if (!unknown_.empty() && one.severity == diagnostics::Severity::ERROR) {
+            one.severity = diagnostics::Severity::WARNING;
+            one.what.message += " (if the program comes there)";
+        }
+        hasErrors_ = hasErrors_ || one.severity == diagnostics::Severity::ERROR;
+        sink_.report(std::move(one));
+    }
+    void take_unknown(const SourcePlace &place, std::string_view what) {
+        if (unknown_.insert(std::string(what)).second) {
+            sink_.note("what follows depends on " + std::string(what) +
+                           ": errors behind it cannot be known before the start",
+                       place);
+        }
+    }
+    bool hasErrors() const { return hasErrors_; }
+
+  private:
+    diagnostics::Sink &sink_;
+    std::set<std::string> unknown_;
+    bool hasErrors_ = false;
+};
+
+}  // namespace
+
+StartCheck check_before_start(const machine::MachineConfig &machine, const std::string &program,
+                              gcode::ToolSource &tools, gcode::ParameterSource &values,
+                              diagnostics::Sink &sink, const StartCheckOptions &options) {
+    using Clock = std::chrono::steady_clock;
+    const auto begin = Clock::now();
+    const auto seconds = [begin] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
+    Judge judge(sink);
+    ProgressLine progress;
+    diagnostics::Sink found([&judge](const diagnostics::Diagnostic &one) { judge.take(one); });
+    machine::CheckOptions check;
+    check.statements = 0;  // a program may run for ever: the limits end the look ahead
+    check.isBlockDeleteOn = options.isBlockDeleteOn;
+    check.progress = [&](const gcode::PreviewProgress &now) {
+        progress.show(now);
+        return stop_signal == 0 && now.blocks < options.most_blocks && seconds() < options.most_seconds;
+    };
+    check.unknown = [&judge](const SourcePlace &place, std::string_view what) {
+        judge.take_unknown(place, what);
+    };
+    check.wantsTime = [&] { return options.wantsTime && seconds() < SHARE_FOR_TIMES * options.most_seconds; };
+    check.points = options.points;
+    const machine::CheckResult result = machine::check_program(machine, program, tools, values, found, check);
+    progress.clear();
+    return {judge.hasErrors(), !result.isCancelled, result.blocks, result.time};
+}
+
+}  // namespace mw::programs

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// A time estimate as text for a person.
+#pragma once
+
+#include "machine/analysis/time_estimate.hh"
+
+namespace mw::programs {
+
+/// Prints total, tools, sections and the slowest places to standard output, indented by two blanks.
+void print_times(const machine::TimeFigures &time);
+
+}  // namespace mw::programs

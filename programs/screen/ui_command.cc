@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// millwright ui: serves a machine that is up to browsers.
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "base/duration.hh"
+#include "base/language/language.hh"
+#include "base/memory_killer.hh"
+#include "base/options/command_line.hh"
+#include "base/own_place.hh"
+#include "base/stop_signals.hh"
+#include "base/text.hh"
+#include "base/thread_priority.hh"
+#include "base/whole_path.hh"
+#include "clients/screen/api.hh"
+#include "clients/screen/descriptors.hh"
+#include "clients/screen/server.hh"
+#include "hal/core/hal.hh"
+#include "hal/host/host_client.hh"
+#include "programs/commands.hh"
+#include "programs/run/machine_access.hh"
+#include "programs/run/ui_filter.hh"
+#include "programs/screen/ui_dialogs.hh"
+#include "programs/screen/ui_door.hh"
+#include "programs/screen/ui_facts.hh"
+#include "programs/screen/ui_path.hh"
+#include "programs/screen/ui_tabs.hh"
+#include "programs/setup/first_steps.hh"
+#include "programs/setup/ui_browser.hh"
+#include "programs/start/side_programs.hh"
+
+namespace mw::programs {
+namespace {
+
+/// Outcomes are looked for so often while a screen is open, and the machine otherwise.
+constexpr auto TICK = std::chrono::milliseconds(10), IDLE_TICK = std::chrono::milliseconds(100);
+
+struct UiWords {
+    std::string ini, screen;
+    int port = SCREEN_PORT;
+    bool isOpening = false, isDisplay = false;
+    DoorWords door;
+    options::Words rest;
+
+    options::CommandLine line() {
+        options::CommandLine line(
+            "millwright ui MACHINE.ini [options]",
+            "Serves the operator's screen of a machine that 'millwright start' keeps up, to browsers on this "
+            "computer, and with\n--listen on others. It is a client: the machine goes on without it, and it "
+            "waits for a machine that is not up yet. Ends at "
+            "SIGINT or SIGTERM.\n");
+        line.number("--port", "N", "listen on 127.0.0.1:N, 0: on a free port; 8850 without it", port, 0,
+                    65535);
+        line.flag("--open", "show the screen in the desktop's browser", isOpening);
+        line.flag("--display",
+                  "the machine's display: starts the programs of EMBED_TAB_COMMAND, and runs POSTGUI_HALFILE "
+                  "and _HALCMD",
+                  isDisplay);
+        line.text("--screen", "FOLDER", "serve the screen from there", screen);
+        line.text("--listen", "ADDRESS[:PORT]",
+                  "let other computers in as well, with TLS and a token; 0.0.0.0: at every address; port "
+                  "8851 without one",
+                  door.listen);
+        line.texts("--name", "NAME", "a name by which they call this computer, beside its own", door.names);
+        line.text("--unprotected", "ROLE",
+                  "no TLS and no token: whoever reaches --listen may view, operate or configure; the screen "
+                  "says so",
+                  door.unprotected);
+        line.rest(rest);
+        line.footer("exit status: 0 ended in order, 1 refused or failed, 2 wrong usage\n");
+        return line;
+    }
+    Result<> parse(const std::vector<std::string> &words) {
+        const auto parsed = line().parse(words);
+        if (parsed.has_value() && rest.size() != 1) {
+            return fail("ui needs a machine's INI file", {}, "millwright ui MACHINE.ini");
+        }
+        ini = parsed.has_value() ? rest[0] : "";
+        return parsed;
+    }
+};
+
+/// A client of the machine that is up, if it is the one of this INI file.
+Result<client::Client> connect(const std::string &instance, const std::string &ini,
+                               client::Places places = client::Places::ORDINARY) {
+    auto client = client::Client::connect(instance, client::Role::OPERATOR, places);
+    if (!client.has_value()) {
+        return client;
+    }
+    const mailbox::Identity identity = client->identity();
+    if (identity.ini.empty()) {
+        return fail("the machine starts");
+    }
+    if (!identity.isLasting) {
+        return fail("'millwright run' runs a program on a machine of its own");
+    }
+    if (identity.ini.str() != ini) {
+        return fail("the machine that is up was started from " + identity.ini.str() + ", not from " + ini);
+    }
+    return client;
+}
+
+std::int64_t now_ns() {
+    return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
+}
+
+/// What the screens are told, but for the paths of programs.
+screen::ApiSetup setup_of(const UiWords &words, const machine::LoadedConfig &loaded,
+                          diagnostics::Sink &sink) {
+    const std::string ini = whole_path(words.ini), instance = hal::default_instance();
+    screen::ApiSetup setup;
+    setup.facts = machine_facts(loaded, sink);
+    setup.facts.ini = ini;
+    setup.facts.instance = instance;
+    setup.facts.filters.folder = filtered_folder(instance);
+    setup.screens.connect = [instance, ini] { return connect(instance, ini); };
+    setup.screens.connect_for_all = [instance, ini] {
+        return connect(instance, ini, client::Places::RESERVED);
+    };
+    setup.screens.version = MW_VERSION;
+    setup.screens.status_period_ns = to_ns(status_period_s(loaded.ini, sink));
+    setup.screen_folder = screen_folder(words.screen);
+    setup.dialogs = dialog_facts(loaded.ini, sink);
+    setup.connect_hal = [instance]() -> Result<std::unique_ptr<hal::Host>> {
+        auto joined = hal::HostClient::connect(instance);
+        return joined.has_value() ? Result<std::unique_ptr<hal::Host>>(std::move(*joined))
+                                  : std::unexpected(joined.error());
+    };
+    const auto commands = postgui_commands(loaded.ini, program_folder());
+    if (words.isDisplay && !commands.empty()) {
+        const std::string folder = std::filesystem::path(ini).parent_path().string();
+        setup.begin_hal = [commands, folder] { return run_postgui(commands, folder); };
+    }
+    return setup;
+}
+
+/// Until a signal comes.
+void run(screen::Server &server, const UiWords &words, const machine::LoadedConfig &loaded,
+         screen::ApiSetup setup, diagnostics::Sink &sink) {
+    const std::string address = fmt::format("http://127.0.0.1:{}/", server.port());
+    const bool hasScreen = check_screen(setup.screen_folder).has_value();
+    SidePrograms programs(words.isDisplay ? tab_programs(setup.facts.tabs) : std::vector<std::string>{},
+                          setup.facts.ini, 0);
+    PathReaders readers(loaded, path_look(setup.facts));
+    setup.read_path = [&readers](const std::string &path, const screen::Requester &by) {
+        return readers.read(path, by);
+    };
+    setup.read_times = [&readers](const std::string &path, const screen::TimeOverrides &overrides,
+                                  const screen::Requester &by) {
+        return readers.read_times(path, overrides, by);
+    };
+    setup.run_filter = [&readers, filters = filters_of(loaded.ini),
+                        folder = std::filesystem::path(setup.facts.ini).parent_path().string()](
+                           const std::string &path, const std::string &made, const screen::Requester &by) {
+        const std::string lower = to_lower(path);
+        const auto filter =
+            std::ranges::find_if(filters, [&](const auto &one) { return lower.ends_with(one.first); });
+        if (filter == filters.end()) {
+            return Result<std::shared_ptr<screen::PieceQueue>>(fail("[FILTER] names no program for " + path));
+        }
+        return readers.run(
+            [command = filter->second, folder, path, made](screen::PieceQueue &pieces) {
+                run_filter({command, folder, path, made}, pieces);
+            },
+            by);
+    };
+    const auto post = [&server](std::function<void()> act) { server.post(std::move(act)); };
+    screen::Worker disk(post), hal_looks(post);
+    screen::Api api(server, {disk, hal_looks}, std::move(setup), now_ns);
+    Browser browser;
+    if (words.isOpening && hasScreen && std::getenv(BROWSER_WAITS) == nullptr) {
+        browser.open(address);
+    }
+    raise_priority();
+    while (stop_signal == 0) {
+        server.run_for(api, api.count_screens() > 0 ? TICK : IDLE_TICK);
+        api.tick();
+        programs.step(now_ns(), sink);
+        browser.look();
+    }
+    readers.cancel();
+    programs.ask_to_end();
+    disk.end();
+    hal_looks.end();
+}
+
+/// Without a screen the server is of use for programs alone.
+void print_address(const std::string &machine, int port, const std::string &folder, diagnostics::Sink &sink) {
+    if (const auto found = check_screen(folder); !found.has_value()) {
+        sink.error(found.error());
+        fmt::print("{}", language::shown(fmt::format(
+                             "Web interface of {} for programs: http://127.0.0.1:{}/api/\n", machine, port)));
+        return;
+    }
+    fmt::print("{}", language::shown(fmt::format("screen of {}: http://127.0.0.1:{}/\n", machine, port)));
+}
+
+int serve(const UiWords &words, const machine::LoadedConfig &loaded, diagnostics::Sink &sink) {
+    // Its folder is needed only where other computers come in.
+    const auto folder_of_secrets = secrets_folder();
+    if (!words.door.listen.empty() && !folder_of_secrets.has_value()) {
+        sink.error(folder_of_secrets.error());
+        return 1;
+    }
+    const std::string secrets = folder_of_secrets.value_or("");
+    auto door = remote_door(words.door, secrets);
+    if (!door.has_value()) {
+        sink.error(door.error());
+        return 1;
+    }
+    screen::ApiSetup setup = setup_of(words, loaded, sink);
+    std::vector<std::string> frames;
+    for (const screen::Tab &tab : setup.facts.tabs) {
+        if (tab.kind == screen::Tab::Kind::FRAME) {
+            frames.push_back(tab.content);
+        }
+    }
+    auto server =
+        screen::Server::listen({.port = words.port,
+                                .limits = {},
+                                .remote = *door,
+                                .frames = std::move(frames),
+                                .local_tokens = local_tokens(secrets, sink),
+                                .report = [&sink](const std::string &why) { report_unknown(why, sink); }});
+    if (!server.has_value()) {
+        sink.error(server.error());
+        return 1;
+    }
+    setup.screens.status_note = status_note((*server)->port(), secrets);
+    print_address(loaded.machine.name, (*server)->port(), setup.screen_folder, sink);
+    if (door->has_value()) {
+        fmt::print("{}", language::shown(door_text(**door, (*server)->remote_port(), secrets)));
+    }
+    std::fflush(stdout);
+    run(**server, words, loaded, std::move(setup), sink);
+    return 0;
+}
+
+}  // namespace
+
+int command_ui(const std::vector<std::string> &arguments) {
+    UiWords words;
+    if (options::wantsHelp(arguments)) {
+        fmt::print("{}", words.line().help());
+        return 0;
+    }
+    if (const auto parsed = words.parse(arguments); !parsed.has_value()) {
+        fmt::print(stderr, "millwright ui: {}\n", language::shown(parsed.error().str()));
+        return 2;
+    }
+    catch_stop_signals();
+    screen::raise_descriptor_limit();
+    static_cast<void>(raise_oom_score(SCREENS_OOM_STEP));
+    diagnostics::Sink sink(
+        [](const diagnostics::Diagnostic &d) { fmt::print(stderr, "{}\n", language::shown(d.str())); });
+    const auto loaded = machine::LoadedConfig::load(words.ini, sink);
+    return loaded == nullptr ? 1 : serve(words, *loaded, sink);
+}
+
+}  // namespace mw::programs

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "programs/screen/ui_path.hh"
+
+#include <fcntl.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "base/thread_priority.hh"
+#include "clients/screen/descriptors.hh"
+#include "clients/screen/path_chunks.hh"
+#include "clients/screen/time_chunks.hh"
+#include "machine/analysis/program_check.hh"
+#include "machine/analysis/time_estimate.hh"
+#include "machine/config/ini_parameters.hh"
+#include "machine/config/unscripted.hh"
+#include "machine/tools/tool_data.hh"
+
+namespace mw::programs {
+namespace {
+
+constexpr double MM_PER_INCH = 25.4;
+constexpr std::size_t EVENTS_PER_CHECK = 64;
+
+/// A program with its subroutines or a filter can open files without touching the reserve.
+bool hasDescriptors() {
+    constexpr int MOST_OF_A_PROGRAM = 16;
+    const int fd = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+    const bool isFree = fd >= 0 && !screen::isReserved(fd + MOST_OF_A_PROGRAM);
+    if (fd >= 0) {
+        ::close(fd);
+    }
+    return isFree;
+}
+
+}  // namespace
+
+PathReaders::~PathReaders() {
+    cancel();
+    for (Reader &reader : readers_) {
+        reader.thread.join();
+    }
+}
+
+void PathReaders::cancel() {
+    for (Reader &reader : readers_) {
+        reader.pieces->cancel();
+    }
+}
+
+Result<std::shared_ptr<screen::PieceQueue>> PathReaders::read(const std::string &path,
+                                                              const screen::Requester &by) {
+    return begin([this, path](Reader &reader) { read_all(reader, path); }, by);
+}
+
+Result<std::shared_ptr<screen::PieceQueue>> PathReaders::read_times(const std::string &path,
+                                                                    const screen::TimeOverrides &overrides,
+                                                                    const screen::Requester &by) {
+    return begin([this, path, overrides](Reader &reader) { time_all(reader, path, overrides); }, by);
+}
+
+bool PathReaders::isToEnd(Reader &reader) const {
+    timespec cpu{};
+    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &cpu);
+    const double cpu_s = static_cast<double>(cpu.tv_sec) + 1e-9 * static_cast<double>(cpu.tv_nsec);
+    const std::chrono::duration<double> time = std::chrono::steady_clock::now() - reader.since;
+    reader.isLate = reader.isLate || cpu_s > limits_.cpu_s || time.count() > limits_.time_s;
+    return reader.isLate || reader.pieces->isCancelled();
+}
+
+std::string PathReaders::late_text(const std::string &path) const {
+    return fmt::format("{}: reading takes longer than {} s ({} s of processor time) and was ended. Check the "
+                       "program for wrong coordinates and feeds.",
+                       path, limits_.time_s, limits_.cpu_s);
+}
+
+Result<> PathReaders::check_count(const screen::Requester &by) const {
+    const bool isViewer = by.role <= screen::Role::VIEW;
+    std::size_t of_client = 0, of_viewers = 0;
+    for (const Reader &reader : readers_) {
+        const bool isOfViewer = reader.by.role <= screen::Role::VIEW;
+        of_viewers += isOfViewer ? 1 : 0;
+        of_client += isOfViewer == isViewer && reader.by.address == by.address ? 1 : 0;
+    }
+    if (!hasDescriptors() || readers_.size() >= MOST || (isViewer && of_viewers >= MOST_OF_VIEWERS)) {
+        return fail("as many programs as can be are being read: ask again later");
+    }
+    const std::size_t most = isViewer ? MOST_OF_VIEWER : MOST_OF_CLIENT;
+    return of_client < most
+               ? Result<>{}
+               : fail(fmt::format("{} programs are being read for this computer: ask again later", most));
+}
+
+Result<std::shared_ptr<screen::PieceQueue>> PathReaders::begin(std::function<void(Reader &)> job,
+                                                               const screen::Requester &by) {
+    readers_.remove_if([](Reader &reader) {
+        const bool isOver = reader.isOver.load(std::memory_order_acquire);
+        if (isOver) {
+            reader.thread.join();
+        }
+        return isOver;
+    });
+    if (const auto checked = check_count(by); !checked.has_value()) {
+        return std::unexpected(checked.error());
+    }
+    Reader &reader = readers_.emplace_back();
+    reader.by = by;
+    reader.pieces = std::make_shared<screen::PieceQueue>();
+    reader.thread = std::thread([&reader, job = std::move(job)] {
+        lower_priority();
+        job(reader);
+        reader.pieces->end();
+        // Release: whoever sees it may join without waiting.
+        reader.isOver.store(true, std::memory_order_release);
+    });
+    return reader.pieces;
+}
+
+std::uint32_t PathReaders::interpret(Reader &reader, const std::string &path, const Hearer &hearer) const {
+    std::error_code missing;  // which the reading itself tells, with its place
+    if (std::filesystem::exists(path, missing) && !std::filesystem::is_regular_file(path, missing)) {
+        hearer.error(path + " is no file");  // a pipe would never end
+        return 0;
+    }
+    diagnostics::Sink unheard;
+    auto tools = machine::read_tools(loaded_.machine, unheard);
+    if (!tools.has_value()) {
+        hearer.error(tools.error().str());
+        return 0;
+    }
+    machine::IniParameters ini_values(loaded_.ini, nullptr);
+    machine::UnknownHalValues values(ini_values, [] {});
+    gcode::PreviewMachine stand = machine::preview_stand(loaded_.machine);
+    stand.interpreter.make_script_host = []() -> Result<std::unique_ptr<gcode::ScriptHost>> {
+        return std::make_unique<machine::UnscriptedHost>([] {});
+    };
+    gcode::PreviewOptions options;
+    options.blocks_per_report = 256;
+    gcode::Preview *source = nullptr;
+    gcode::Preview preview(
+        std::move(stand), **tools, values, options,
+        {[&](std::span<const gcode::PreviewEvent> events) { hearer.events(events, *source); },
+         [this, &reader](const gcode::PreviewProgress &) { return !isToEnd(reader); }});
+    source = &preview;
+    diagnostics::Sink errors([&](const diagnostics::Diagnostic &one) {
+        if (one.severity == diagnostics::Severity::ERROR) {
+            preview.flush();  // what comes before it
+            hearer.error(one.what.str());
+        }
+    });
+    static_cast<void>(preview.run(path, errors));  // its failures have been told
+    return static_cast<std::uint32_t>(std::max(preview.place().line, 0));
+}
+
+void PathReaders::read_all(Reader &reader, const std::string &path) const {
+    screen::PathChunks chunks([&reader](std::string piece) { return reader.pieces->push(std::move(piece)); },
+                              loaded_.machine.isMetric ? 1 : MM_PER_INCH, look_);
+    const std::uint32_t line =
+        interpret(reader, path,
+                  {[&](std::span<const gcode::PreviewEvent> events, const gcode::Preview &) {
+                       if (!isToEnd(reader)) {
+                           static_cast<void>(chunks.take(events));
+                       }
+                   },
+                   [&](const std::string &error) { chunks.error(error); }});
+    if (reader.isLate) {
+        chunks.error(late_text(path));
+    }
+    chunks.end(line);
+}
+
+/// The same points are counted as those of the path.
+void PathReaders::time_all(Reader &reader, const std::string &path,
+                           const screen::TimeOverrides &overrides) const {
+    constexpr std::size_t SLOWEST = 30;
+    screen::TimeChunks chunks([&reader](std::string piece) { return reader.pieces->push(std::move(piece)); });
+    screen::PathChunks counted([](const std::string &) { return true; },
+                               loaded_.machine.isMetric ? 1 : MM_PER_INCH, look_);
+    machine::TimeEstimate estimate(loaded_.machine, {overrides.feed, overrides.rapid, overrides.max_velocity},
+                                   [&](const machine::TimedMove &move) {
+                                       chunks.move(static_cast<std::uint32_t>(move.id),
+                                                   static_cast<std::uint32_t>(std::max(move.line, 0)),
+                                                   move.seconds, move.top_velocity);
+                                   });
+    estimate.end_when([this, &reader] { return isToEnd(reader); });
+    estimate.start(machine::home_position(loaded_.machine));
+    bool isSound = true;
+    interpret(reader, path,
+              {[&](std::span<const gcode::PreviewEvent> events, const gcode::Preview &preview) {
+                   for (std::size_t i = 0; i < events.size(); ++i) {
+                       const gcode::PreviewEvent &event = events[i];
+                       if (reader.pieces->isCancelled() || (i % EVENTS_PER_CHECK == 0 && isToEnd(reader))) {
+                           return;
+                       }
+                       static_cast<void>(counted.take({&event, 1}));
+                       estimate.set_place(preview.file(event.file), event.line,
+                                          preview.section(event.section));
+                       estimate.take(event, std::max(counted.count(), 1U) - 1);
+                   }
+               },
+               [&](const std::string &error) {
+                   isSound = false;
+                   chunks.error(error);
+               }});
+    if (reader.isLate) {
+        chunks.error(late_text(path));
+    }
+    if (isToEnd(reader) || !isSound) {
+        return;  // of a program with errors nobody knows how it goes on
+    }
+    const machine::TimeFigures &figures = estimate.finish(SLOWEST);
+    if (isToEnd(reader)) {
+        chunks.error(late_text(path));
+        return;
+    }
+    screen::TimeSum sum{figures.total_s, figures.cutting_s,  figures.rapid_s,
+                        figures.dwell_s, figures.isComplete, {}};
+    for (const machine::SlowPlace &place : figures.slowest) {
+        sum.slowest.push_back({std::filesystem::path(place.file).filename().string(), place.file == path,
+                               place.line, place.lost_s, place.limit});
+    }
+    chunks.end(sum);
+}
+
+}  // namespace mw::programs

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Reads programs for the screen's picture of their path, each in a thread of its own.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <list>
+#include <memory>
+#include <span>
+#include <string>
+#include <thread>
+
+#include "clients/screen/http_types.hh"
+#include "clients/screen/path_geometry.hh"
+#include "clients/screen/piece_queue.hh"
+#include "clients/screen/time_chunks.hh"
+#include "gcode/analysis/preview.hh"
+#include "machine/config/loaded_config.hh"
+
+namespace mw::programs {
+
+/// Nothing of the shop's own is run: no Python, no HAL values. One thread.
+class PathReaders {
+  public:
+    /// Programs that are read at a time: in all, of one client, and by the role VIEW of one client and in
+    /// all.
+    static constexpr std::size_t MOST = 8, MOST_OF_CLIENT = 4, MOST_OF_VIEWER = 2, MOST_OF_VIEWERS = 4;
+
+    /// Of reading one program.
+    struct Limits {
+        double cpu_s = 300, time_s = 900;
+    };
+
+    PathReaders(const machine::LoadedConfig &loaded, screen::PathLook look)
+        : PathReaders(loaded, std::move(look), Limits{}) {}
+    PathReaders(const machine::LoadedConfig &loaded, screen::PathLook look, const Limits &limits)
+        : loaded_(loaded), look_(std::move(look)), limits_(limits) {}
+    /// Ends what is read.
+    ~PathReaders();
+    PathReaders(const PathReaders &) = delete;
+    PathReaders &operator=(const PathReaders &) = delete;
+
+    /// The chunks of docs/api.md, while the program is read; an error when too many are.
+    Result<std::shared_ptr<screen::PieceQueue>> read(const std::string &path,
+                                                     const screen::Requester &by = {});
+    /// Another job that makes pieces, counted as a program that is read.
+    Result<std::shared_ptr<screen::PieceQueue>> run(std::function<void(screen::PieceQueue &)> job,
+                                                    const screen::Requester &by = {}) {
+        return begin([job = std::move(job)](Reader &reader) { job(*reader.pieces); }, by);
+    }
+    /// How long its moves take, by the planner.
+    Result<std::shared_ptr<screen::PieceQueue>> read_times(const std::string &path,
+                                                           const screen::TimeOverrides &overrides,
+                                                           const screen::Requester &by = {});
+    /// Ends all that is read, soon.
+    void cancel();
+
+  private:
+    struct Reader {
+        std::shared_ptr<screen::PieceQueue> pieces;
+        screen::Requester by;
+        std::chrono::steady_clock::time_point since = std::chrono::steady_clock::now();
+        std::atomic<bool> isOver{false};
+        bool isLate = false;  ///< [its thread] a limit has ended it
+        std::thread thread;
+    };
+    Result<> check_count(const screen::Requester &by) const;
+    Result<std::shared_ptr<screen::PieceQueue>> begin(std::function<void(Reader &)> job,
+                                                      const screen::Requester &by);
+    /// Nobody waits for it any more, or a limit is exceeded. [its thread]
+    bool isToEnd(Reader &reader) const;
+    std::string late_text(const std::string &path) const;
+    void read_all(Reader &reader, const std::string &path) const;
+    void time_all(Reader &reader, const std::string &path, const screen::TimeOverrides &overrides) const;
+
+    struct Hearer {
+        std::function<void(std::span<const gcode::PreviewEvent>, const gcode::Preview &)> events;
+        std::function<void(const std::string &)> error;
+    };
+    /// The line at which reading ended.
+    std::uint32_t interpret(Reader &reader, const std::string &path, const Hearer &hearer) const;
+
+    const machine::LoadedConfig &loaded_;
+    screen::PathLook look_;
+    Limits limits_;
+    std::list<Reader> readers_;
+};
+
+}  // namespace mw::programs

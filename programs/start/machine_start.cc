@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "programs/start/machine_start.hh"
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "base/duration.hh"
+#include "base/output_relay.hh"
+#include "base/own_place.hh"
+#include "base/stop_signals.hh"
+#include "base/text.hh"
+#include "base/whole_path.hh"
+#include "hal/core/hal.hh"
+#include "messages/client/shown_message.hh"
+#include "programs/run/ui_filter.hh"
+
+namespace mw::programs {
+namespace {
+
+/// Within so long the programs that were started end by themselves, and so does the file of [HAL]SHUTDOWN.
+constexpr std::int64_t END_NS = 5000000000;
+
+}  // namespace
+
+MachineStart::MachineStart(StartSettings settings, machine::LoadedConfig &loaded, diagnostics::Sink &sink)
+    : settings_(std::move(settings)), loaded_(loaded), sink_(sink), instance_(hal::default_instance()) {}
+
+int MachineStart::run() {
+    if (const std::string why = OutputRelay::begin(); !why.empty()) {
+        sink_.warning("a terminal that is stopped can hold up the machine: " + why);
+    }
+    const int status = run_machine();
+    OutputRelay::end();
+    return status;
+}
+
+int MachineStart::run_machine() {
+    auto status = prepare();
+    if (status.has_value()) {
+        status = make();
+    }
+    if (status.has_value()) {
+        status = keep_up();
+        if (!status.has_value()) {
+            // Before the end of programs, which may take seconds.
+            machine_->task().post(messages::MessageKind::OPERATOR_ERROR, status.error().str());
+            sink_.failure(status.error());
+            static_cast<void>(take_down());
+            return 1;
+        }
+        status = take_down();
+    }
+    if (!status.has_value()) {
+        sink_.failure(status.error());
+        return 1;
+    }
+    return display_status_.value_or(0);
+}
+
+/// What can be refused before anything is made.
+Result<> MachineStart::prepare() {
+    if (const auto other = client::Client::connect(instance_); other.has_value()) {
+        return fail(fmt::format("a machine is up already as instance '{}': {}", instance_,
+                                other->identity().ini.str()),
+                    {}, "end it, or choose another name in MILLWRIGHT_INSTANCE");
+    }
+    if (settings_.isDisplayed && !loaded_.machine.display.empty()) {
+        auto display = DisplayProgram::words(loaded_.machine.display, whole_path(settings_.ini),
+                                             settings_.display_words);
+        if (!display.has_value()) {
+            return std::unexpected(display.error());
+        }
+        display_words_ = std::move(*display);
+    }
+    return {};
+}
+
+Result<> MachineStart::make() {
+    settings_.options.isLasting = true;
+    loaded_.machine.task.confinement.program_folders.push_back(filtered_folder(instance_));
+    auto made = machine::make_realtime_machine({loaded_.ini, loaded_.reader, loaded_.machine, sink_},
+                                               settings_.options);
+    if (!made.has_value()) {
+        return std::unexpected(made.error());
+    }
+    machine_ = std::move(*made);
+    access_.emplace(*machine_);
+    tell_messages();
+    make_parameter_file();
+    check_places();
+    fmt::print("{} is up: instance '{}', {}\n", loaded_.machine.name, instance_, settings_.ini);
+    std::fflush(stdout);
+    const auto delay_ns = to_ns(loaded_.machine.applications_delay_s);
+    const std::string ini = whole_path(settings_.ini);
+    side_programs_.emplace(settings_.isDisplayed ? loaded_.machine.applications : std::vector<std::string>{},
+                           ini, access_->now_ns() + delay_ns);
+    if (display_words_.empty()) {
+        return {};
+    }
+    auto display = DisplayProgram::start(display_words_, ini);
+    if (!display.has_value()) {
+        static_cast<void>(take_down());
+        return std::unexpected(display.error());
+    }
+    display_.emplace(std::move(*display));
+    return {};
+}
+
+/// Screens read it themselves, from their start.
+void MachineStart::make_parameter_file() {
+    const std::string &path = loaded_.machine.task.parameter_file;
+    std::error_code ignored;
+    if (path.empty() || std::filesystem::exists(path, ignored)) {
+        return;
+    }
+    if (const auto saved = machine_->task().save_parameters(); !saved.has_value()) {
+        sink_.warning(saved.error().str());
+    }
+}
+
+/// Reports files that cannot be saved: at the start, before there is anything to lose.
+void MachineStart::check_places() {
+    const machine::MachineConfig &machine = loaded_.machine;
+    for (const std::string &file :
+         {machine.task.parameter_file, machine.tool_table_file, machine.journal_file}) {
+        const std::string folder = std::filesystem::path(file).parent_path().string();
+        if (file.empty() || ::access(folder.empty() ? "." : folder.c_str(), W_OK) == 0) {
+            continue;
+        }
+        const std::string text =
+            fmt::format("changes of {} are not saved: its folder cannot be written", file);
+        sink_.warning(text);
+        machine_->task().post(messages::MessageKind::OPERATOR_ERROR, text);
+    }
+}
+
+Result<> MachineStart::keep_up() {
+    while (stop_signal == 0) {
+        if (auto status = cycle(); !status.has_value()) {
+            return status;
+        }
+        side_programs_->step(access_->now_ns(), sink_);
+        display_status_ = display_.has_value() ? display_->end() : std::nullopt;
+        if (display_status_.has_value()) {
+            if (*display_status_ != 0) {
+                sink_.note(fmt::format("the display ended with status {}", *display_status_));
+            }
+            return {};
+        }
+    }
+    sink_.note("stopped by " + stop_signal_name());
+    return {};
+}
+
+Result<> MachineStart::cycle() {
+    access_->cycle();
+    tell_messages();
+    return access_->health();
+}
+
+/// On every way out: what turns or moves first, the programs last.
+Result<> MachineStart::take_down() {
+    const bool isHealthy = access_->health().has_value();
+    if (isHealthy) {
+        switch_off(*access_);
+        tell_messages();
+    }
+    const auto saved = machine_->task().save_parameters();
+    end_programs();
+    if (isHealthy) {
+        run_shutdown_file();
+    }
+    access_.reset();
+    machine_.reset();
+    return saved;
+}
+
+void MachineStart::end_programs() {
+    if (display_.has_value()) {
+        display_->ask_to_end();
+    }
+    if (side_programs_.has_value()) {
+        side_programs_->ask_to_end();
+    }
+    const auto haveEnded = [this] {
+        return (!display_.has_value() || display_->end().has_value()) &&
+               (!side_programs_.has_value() || side_programs_->haveEnded());
+    };
+    const std::int64_t deadline_ns = access_->now_ns() + END_NS;
+    while (!haveEnded() && access_->now_ns() < deadline_ns) {
+        access_->cycle();  // what they ask for while they end is answered
+    }
+    if (display_.has_value()) {
+        display_->kill();
+    }
+    side_programs_.reset();
+}
+
+/// By halcmd, as the HAL is that of the realtime process; task goes on meanwhile.
+void MachineStart::run_shutdown_file() {
+    const std::string &file = loaded_.machine.shutdown_file;
+    if (file.empty()) {
+        return;
+    }
+    const std::string ini = whole_path(settings_.ini);
+    auto run = DisplayProgram::start({program_folder() + "/halcmd", "-i", ini, "-f", file}, ini);
+    if (!run.has_value()) {
+        sink_.error("[HAL]SHUTDOWN = " + file + ": " + run.error().str());
+        return;
+    }
+    const std::int64_t deadline_ns = access_->now_ns() + END_NS;
+    while (!run->end().has_value() && access_->now_ns() < deadline_ns) {
+        access_->cycle();
+    }
+    if (run->end().value_or(1) != 0) {
+        sink_.error(run->end().has_value() ? "[HAL]SHUTDOWN = " + file + " has failed"
+                                           : "[HAL]SHUTDOWN = " + file + " does not come to its end");
+    }
+}
+
+void MachineStart::tell_messages() {
+    if (const std::string loss = OutputRelay::take_loss(); !loss.empty() && !isLossTold_) {
+        isLossTold_ = true;
+        machine_->task().post(messages::MessageKind::OPERATOR_TEXT, loss);
+    }
+    using Reading = client::Viewer::Reading;
+    while (const auto message = machine_->client().next_message(Reading::LOOKS_ON)) {
+        // What (print,...) says is the program's output, which scripts read.
+        const bool isOutput = message->kind == messages::MessageKind::OPERATOR_TEXT;
+        fmt::print(isOutput ? stdout : stderr, "{}\n", printable(client::shown_message(*message)));
+        std::fflush(stdout);
+    }
+}
+
+}  // namespace mw::programs

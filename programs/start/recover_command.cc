@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// millwright recover: what a machine that is up offers after a power cut, and going on with it.
+#include <unistd.h>
+
+#include <cstdio>
+#include <iostream>
+
+#include <fmt/format.h>
+
+#include "base/language/language.hh"
+#include "base/options/command_line.hh"
+#include "base/text.hh"
+#include "hal/core/hal.hh"
+#include "messages/client/client.hh"
+#include "messages/client/shown_message.hh"
+#include "programs/commands.hh"
+
+namespace mw::programs {
+namespace {
+
+/// Task's cycles take milliseconds; programs are calculated in many of them.
+constexpr double ANSWER_S = 5.0, CALCULATED_S = 600.0;
+
+struct RecoverWords {
+    bool isForgetting = false, isAgreed = false, isOnlyShown = false;
+    options::Words rest;
+
+    options::CommandLine line() {
+        options::CommandLine line(
+            "millwright recover [options]",
+            "Shows the program that a power cut, a crash or an emergency stop has ended, with the place "
+            "where "
+            "it goes on;\nasks whether the way there may be made, and goes on. The machine is one that "
+            "'millwright start' keeps up, on\nand homed. The program goes on when this command has ended.\n");
+        line.flag("--show", "only show what is offered", isOnlyShown);
+        line.flag("--forget", "drop the offer", isForgetting);
+        line.flag("--yes", "make the way without asking: look that it is free", isAgreed);
+        line.rest(rest);
+        line.footer("exit status: 0 done or nothing is offered, 1 refused or failed, 2 wrong usage\n");
+        return line;
+    }
+};
+
+class Recovering {
+  public:
+    explicit Recovering(client::Client client) : client_(std::move(client)) {}
+
+    Result<> run(const RecoverWords &words) {
+        if (const auto read = client_.wait_status(ANSWER_S); !read.has_value()) {
+            return read;
+        }
+        static_cast<void>(client_.read_status());
+        const messages::RecoveryStatus &offer = client_.status().recovery;
+        if (offer.program.empty()) {
+            fmt::print("{}", language::shown("no program was cut short\n"));
+            return {};
+        }
+        fmt::print("{}", language::shown(fmt::format("{} was cut short at line {}\n",
+                                                     printable(offer.program.str()), offer.line)));
+        if (!offer.isOffered) {
+            fmt::print("{}", language::shown(fmt::format("it cannot be gone on with there: {}\n",
+                                                         printable(offer.refusal.str()))));
+        }
+        if (words.isForgetting) {
+            return ask(messages::ForgetRecovery{});
+        }
+        if (words.isOnlyShown) {
+            return {};
+        }
+        return go_on(words.isAgreed);
+    }
+
+  private:
+    Result<> ask(const messages::Command &command) {
+        const auto posted = client_.post(command);
+        if (!posted.has_value()) {
+            return std::unexpected(posted.error());
+        }
+        const auto outcome = client_.wait(*posted, ANSWER_S);
+        if (!outcome.has_value()) {
+            return std::unexpected(outcome.error());
+        }
+        return outcome->progress == messages::Progress::DONE ? Result<>{} : fail(outcome->reason);
+    }
+
+    Result<> go_on(bool isAgreed) {
+        while (client_.next_message(client::Viewer::Reading::LOOKS_ON).has_value()) {  // what was before
+        }
+        if (const auto set = ask(messages::SetMode{messages::Mode::AUTO}); !set.has_value()) {
+            return set;
+        }
+        const auto posted = client_.post(messages::RecoverProgram{});
+        if (!posted.has_value()) {
+            return std::unexpected(posted.error());
+        }
+        const auto isOver = [&] {
+            return client_.outcome(*posted).progress != messages::Progress::STARTED ||
+                   (client_.read_status().has_value() && client_.status().approach.number != 0);
+        };
+        if (const auto waited = client_.wait_until(isOver, CALCULATED_S); !waited.has_value()) {
+            return waited;
+        }
+        if (client_.outcome(*posted).progress != messages::Progress::STARTED) {
+            return fail(client_.outcome(*posted).reason);
+        }
+        while (const auto message = client_.next_message(client::Viewer::Reading::LOOKS_ON)) {
+            fmt::print("{}\n", printable(client::shown_message(*message)));
+        }
+        if (!isAgreed && !hasAgreed()) {
+            const auto dropped = ask(messages::AbortAll{});
+            return dropped.has_value() ? fail("not confirmed: nothing has moved, the offer stays") : dropped;
+        }
+        return ask(messages::ConfirmApproach{client_.status().approach.number});
+    }
+
+    static bool hasAgreed() {
+        if (::isatty(STDIN_FILENO) == 0) {
+            return false;
+        }
+        fmt::print("{}", language::shown("make this way and go on? [y/N] "));
+        std::fflush(stdout);
+        std::string answer;
+        return std::getline(std::cin, answer) && (answer == "y" || answer == "Y");
+    }
+
+    client::Client client_;
+};
+
+}  // namespace
+
+int command_recover(const std::vector<std::string> &arguments) {
+    RecoverWords words;
+    if (options::wantsHelp(arguments)) {
+        fmt::print("{}", words.line().help());
+        return 0;
+    }
+    auto parsed = words.line().parse(arguments);
+    if (parsed.has_value() && !words.rest.empty()) {
+        parsed = fail("recover takes no words", {}, "millwright recover --help");
+    }
+    if (!parsed.has_value()) {
+        fmt::print(stderr, "millwright recover: {}\n", language::shown(parsed.error().str()));
+        return 2;
+    }
+    auto client = client::Client::connect(hal::default_instance());
+    const auto done = client.has_value() ? Recovering(std::move(*client)).run(words)
+                                         : Result<>(std::unexpected(client.error()));
+    if (!done.has_value()) {
+        fmt::print(stderr, "millwright recover: {}\n", language::shown(done.error().str()));
+    }
+    return done.has_value() ? 0 : 1;
+}
+
+}  // namespace mw::programs

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The programs of [APPLICATIONS]: started some time after the machine, ended with it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/diagnostics/sink.hh"
+#include "programs/start/display_program.hh"
+
+namespace mw::programs {
+
+/// One thread.
+class SidePrograms {
+  public:
+    /// `commands` as they are in the file; they are started at `start_ns`.
+    SidePrograms(std::vector<std::string> commands, std::string ini, std::int64_t start_ns)
+        : commands_(std::move(commands)), ini_(std::move(ini)), start_ns_(start_ns) {}
+
+    /// Starts them when their time has come. One that cannot be started is told, the others are.
+    void step(std::int64_t now_ns, diagnostics::Sink &sink);
+    void ask_to_end();
+    bool haveEnded();
+    void kill();
+
+  private:
+    std::vector<std::string> commands_;
+    std::string ini_;
+    std::int64_t start_ns_;
+    std::vector<DisplayProgram> running_;
+};
+
+}  // namespace mw::programs

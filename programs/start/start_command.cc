@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// millwright start: a machine that is up until a signal comes or its display ends; clients run programs on
+// it.
+#include <cstdio>
+
+#include <fmt/format.h>
+
+#include "base/language/language.hh"
+#include "base/options/command_line.hh"
+#include "base/stop_signals.hh"
+#include "machine/config/loaded_config.hh"
+#include "programs/commands.hh"
+#include "programs/start/machine_start.hh"
+
+namespace mw::programs {
+namespace {
+
+struct StartWords {
+    std::string ini, homing_module, planner_module;
+    bool isDisplayed = true, isStrict = false;
+    options::Words rest;
+
+    options::CommandLine line() {
+        options::CommandLine line("millwright start MACHINE.ini [options]",
+                                  "Brings the machine up by the clock, in emergency stop, and keeps it up "
+                                  "for its clients: 'millwright run\n"
+                                  "MACHINE.ini PROGRAM.ngc --realtime' then runs programs on it, one after "
+                                  "the other. It ends when the\n"
+                                  "display does that [DISPLAY]DISPLAY names, or at SIGINT, SIGTERM, SIGHUP "
+                                  "or SIGQUIT: everything stops\n"
+                                  "along its path, spindles, coolant and the machine go off, parameters are "
+                                  "saved. A second SIGINT ends it\n"
+                                  "at once.\n");
+        line.flag("--no-display", "start no display: up until a signal comes", isDisplayed, false);
+        line.text("--homemod", "NAME", "a homing module and its parameters, instead of [EMCMOT]HOMEMOD",
+                  homing_module);
+        line.text("--tpmod", "NAME", "a planner module and its parameters, instead of [TRAJ]TPMOD",
+                  planner_module);
+        line.flag("--strict", "unknown INI keys are errors", isStrict);
+        line.rest(rest);
+        line.footer(
+            "exit status: 0 ended in order, that of the display, 1 refused or failed, 2 wrong usage\n");
+        return line;
+    }
+    Result<> parse(const std::vector<std::string> &words) {
+        const auto parsed = line().parse(words);
+        if (parsed.has_value() && rest.size() != 1) {
+            return fail("start needs a machine's INI file", {}, "millwright start MACHINE.ini");
+        }
+        ini = parsed.has_value() ? rest[0] : "";
+        return parsed;
+    }
+};
+
+}  // namespace
+
+int command_start(const std::vector<std::string> &arguments) {
+    StartWords words;
+    if (options::wantsHelp(arguments)) {
+        fmt::print("{}", words.line().help());
+        return 0;
+    }
+    if (const auto parsed = words.parse(arguments); !parsed.has_value()) {
+        fmt::print(stderr, "millwright start: {}\n", language::shown(parsed.error().str()));
+        return 2;
+    }
+    catch_stop_signals();
+    diagnostics::Sink sink(
+        [](const diagnostics::Diagnostic &d) { fmt::print(stderr, "{}\n", language::shown(d.str())); });
+    auto loaded = machine::LoadedConfig::load(words.ini, sink);
+    if (loaded == nullptr) {
+        return 1;
+    }
+    StartSettings settings;
+    settings.ini = words.ini;
+    settings.isDisplayed = words.isDisplayed;
+    settings.options.isStrict = words.isStrict;
+    settings.options.homing_module = words.homing_module;
+    settings.options.planner_module = words.planner_module;
+    return MachineStart(settings, *loaded, sink).run();
+}
+
+}  // namespace mw::programs

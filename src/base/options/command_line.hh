@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The command line of a program of ours: each option declared once, read, and told by --help. Programs whose
+// words another program has settled read them with base/options/letters.hh or by hand (docs/decisions).
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "base/result.hh"
+
+namespace mw::options {
+
+using Words = std::vector<std::string>;
+
+/// Names are long ("--plot"), short ("-o") or both ("-o,--output"). Values are given as "--name value" or
+/// "--name=value"; of an option that comes twice the last one counts, where it is no list. What is bound must
+/// outlive the object.
+class CommandLine {
+  public:
+    /// Both as they are printed: "millwright run MACHINE.ini PROGRAM.ngc", and what it does.
+    CommandLine(std::string usage, std::string about);
+
+    void flag(const std::string &names, const std::string &doc, bool &into, bool value = true);
+    void text(const std::string &names, const std::string &what, const std::string &doc, std::string &into);
+    /// May come several times.
+    void texts(const std::string &names, const std::string &what, const std::string &doc, Words &into);
+    /// "on" or "off".
+    void on_or_off(const std::string &names, const std::string &doc, bool &into);
+    /// From `low` to `high`.
+    void number(const std::string &names, const std::string &what, const std::string &doc, double &into,
+                double low, double high);
+    /// A whole number from `low` to `high`.
+    template <std::integral T>
+    void number(const std::string &names, const std::string &what, const std::string &doc, T &into,
+                std::int64_t low, std::int64_t high) {
+        take(names, 1, what, doc, [&into, low, high](const Words &words) -> Result<> {
+            const auto number = whole_number(words[0], low, high);
+            if (!number.has_value()) {
+                return std::unexpected(number.error());
+            }
+            into = static_cast<T>(*number);
+            return {};
+        });
+    }
+    /// So many words go to `taker`, each time it comes. Without `doc` --help does not tell it.
+    using Taker = std::function<Result<>(const Words &)>;
+    void take(const std::string &names, int words, const std::string &what, const std::string &doc,
+              Taker taker);
+    /// The words that belong to no option.
+    void rest(Words &into) { rest_ = &into; }
+    /// The same where they are a text with numbers: words of one dash (-5, -.5) belong to it, too, unless the
+    /// program has an option of that letter.
+    void rest_of_text(Words &into) {
+        rest_ = &into;
+        isRestText_ = true;
+    }
+    /// What --help says behind the options.
+    void footer(std::string text) { footer_ = std::move(text); }
+
+    /// An error names the option, and the nearest one where there is none of that name.
+    Result<> parse(const Words &words) const;
+    std::string help() const;
+
+  private:
+    struct Option {
+        std::string names;
+        int words = 0;
+        std::string what, doc;
+        Taker take;
+    };
+    static Result<std::int64_t> whole_number(const std::string &text, std::int64_t low, std::int64_t high);
+    static void hand_over(const Option &option, const Words &values);
+    Words names() const;
+    bool isForOptions(const std::string &word, const Words &known) const;
+    Error unknown(const std::string &word) const;
+
+    std::string usage_, about_, footer_;
+    std::vector<Option> options_;
+    Words *rest_ = nullptr;
+    bool isRestText_ = false;
+};
+
+/// One of the words asks for help.
+bool wantsHelp(const Words &words);
+
+}  // namespace mw::options

@@ -1,6 +1,0 @@
-// SPDX-License-Identifier: GPL-2.0-or-later
-#include "app/commands.hh"
-
-int main(int argc, char **argv) {
-    return mw::app::command_rsh({argv + 1, argv + argc});
-}

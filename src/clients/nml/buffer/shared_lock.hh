@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// A lock and a bell in memory that processes share.
+#pragma once
+
+#include <pthread.h>
+
+#include <atomic>
+#include <cstdint>
+
+#include "clients/nml/timeout.hh"
+
+namespace mw::nml {
+
+std::int64_t monotonic_ns();
+
+/// The end of a wait that begins now. [CLOCK_MONOTONIC]
+class Deadline {
+  public:
+    explicit Deadline(Timeout timeout);
+    bool isOver() const { return !timeout_.isForever() && monotonic_ns() >= end_ns_; }
+    std::int64_t left_ns() const;
+    Timeout timeout() const { return timeout_; }
+    std::int64_t end_ns() const { return end_ns_; }
+
+  private:
+    Timeout timeout_;
+    std::int64_t end_ns_ = 0;
+};
+
+/// The kernel gives it back when its holder dies: whoever comes next finds what the holder had finished.
+class SharedLock {
+  public:
+    enum class Outcome { TAKEN, TIME_OVER, BROKEN };
+
+    /// By whoever makes the memory, before others know of it.
+    bool initialise();
+    Outcome take(const Deadline &deadline);
+    void release();
+
+  private:
+    pthread_mutex_t mutex_;
+};
+
+/// A futex at which others sleep. Zero is a bell that has not rung.
+class Bell {
+  public:
+    std::uint32_t heard() const { return rings_.load(std::memory_order_acquire); }
+    void ring();
+    /// Sleeps until it has rung since `heard`, for at most `longest_ns`; may wake earlier.
+    void sleep(std::uint32_t heard, std::int64_t longest_ns);
+
+  private:
+    std::atomic<std::uint32_t> rings_{0};
+    /// Those that may be asleep; one that was killed stays counted, which only costs a system call.
+    std::atomic<std::uint32_t> sleepers_{0};
+};
+
+}  // namespace mw::nml

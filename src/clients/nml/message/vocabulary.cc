@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "clients/nml/message/vocabulary.hh"
+
+#include <algorithm>
+#include <type_traits>
+
+#include <fmt/format.h>
+
+#include "base/overloaded.hh"
+#include "clients/nml/message/format.hh"
+#include "messages/declarations/command.hh"
+#include "messages/declarations/status_list.hh"
+
+namespace mw::nml {
+namespace {
+
+/// The declarations of src/messages/declarations are checked by tests of their own: adding them cannot fail.
+template <class Body>
+void add_numbered(Vocabulary &vocabulary, Base base) {
+    if (messages::DECLARATION<Body>.number != 0) {
+        static_cast<void>(vocabulary.add<Body>(base));
+    }
+}
+
+template <class... Body>
+void add_commands(Vocabulary &vocabulary, std::type_identity<std::variant<Body...>>) {
+    (add_numbered<Body>(vocabulary, Base::COMMAND), ...);
+}
+
+template <class... Body>
+void add_statuses(Vocabulary &vocabulary, messages::TypeList<Body...>) {
+    (add_numbered<Body>(vocabulary, Base::STATUS), ...);
+}
+
+}  // namespace
+
+const messages::Declaration *MessageKind::head() const {
+    switch (base) {
+    case Base::COMMAND: return &messages::DECLARATION<CommandHead>;
+    case Base::STATUS: return &messages::DECLARATION<StatusHead>;
+    case Base::PLAIN: break;
+    }
+    return &messages::DECLARATION<PlainHead>;
+}
+
+Message::Message(const MessageKind &kind) : kind_(&kind), body_(kind.make()) {
+    switch (kind.base) {
+    case Base::COMMAND: head_ = CommandHead{}; break;
+    case Base::STATUS: head_ = StatusHead{}; break;
+    case Base::PLAIN: break;
+    }
+}
+
+MessageView Message::view() {
+    return {std::visit([](auto &head) { return messages::object(head); }, head_),
+            {kind_->declaration, body_.get()}};
+}
+
+Vocabulary Vocabulary::standard() {
+    Vocabulary vocabulary;
+    add_commands(vocabulary, std::type_identity<messages::CommandVariant>{});
+    add_statuses(vocabulary, messages::StatusList{});
+    return vocabulary;
+}
+
+Result<> Vocabulary::add(MessageKind kind) {
+    const messages::Declaration &declaration = *kind.declaration;
+    if (declaration.number <= 0) {
+        return fail(fmt::format("{} has no number and cannot be a message", declaration.name));
+    }
+    const MessageKind *other = find(declaration.number);
+    for (const char *name : {declaration.name, declaration.nml}) {
+        other = other == nullptr && *name != '\0' ? find(std::string_view(name)) : other;
+    }
+    if (other != nullptr) {
+        return fail(fmt::format("{} ({}) cannot be added: there is {} ({})", declaration.name,
+                                declaration.number, other->declaration->name, other->declaration->number));
+    }
+    kind.shape = shape_of(*kind.head(), declaration);
+    kinds_.emplace(declaration.number, kind);
+    return {};
+}
+
+const MessageKind *Vocabulary::find(int number) const {
+    const auto found = kinds_.find(number);
+    return found == kinds_.end() ? nullptr : &found->second;
+}
+
+const MessageKind *Vocabulary::find(std::string_view name) const {
+    const auto found = std::find_if(kinds_.begin(), kinds_.end(), [name](const auto &entry) {
+        const messages::Declaration &declaration = *entry.second.declaration;
+        return name == declaration.name || (!name.empty() && name == declaration.nml);
+    });
+    return found == kinds_.end() ? nullptr : &found->second;
+}
+
+Result<Message> Vocabulary::make(int number) const {
+    const MessageKind *kind = find(number);
+    return kind != nullptr ? Result<Message>(Message(*kind))
+                           : fail(fmt::format("there is no message {}", number));
+}
+
+}  // namespace mw::nml

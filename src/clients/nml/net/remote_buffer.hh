@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// A buffer of another computer, or of this one through its server.
+#pragma once
+
+#include <memory>
+
+#include "clients/nml/buffer/buffer.hh"
+#include "clients/nml/config/settings.hh"
+#include "clients/nml/net/socket.hh"
+
+namespace mw::nml {
+
+/// Connects by TCP=, else STCP=, else UDP= of the B line to its host, with the first name and password of its
+/// password file. A connection that breaks is made anew by the next access; a write that was under way by
+/// then is an error that says so: it may or may not have been carried out.
+Result<std::unique_ptr<Buffer>> open_remote_buffer(const BufferSettings &buffer,
+                                                   const ProcessSettings &process);
+
+class LocalPlaces;
+/// Local or remote, as the process's line says.
+Result<std::unique_ptr<Buffer>> open_any_buffer(const Config &config, const std::string &process,
+                                                const std::string &buffer, const std::string &instance,
+                                                LocalPlaces &local);
+
+}  // namespace mw::nml

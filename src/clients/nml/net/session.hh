@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What a server does for one client, whatever the network between them is.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+
+#include "clients/nml/buffer/open.hh"
+#include "clients/nml/message/codec.hh"
+#include "clients/nml/net/jog_owners.hh"
+#include "clients/nml/net/passwords.hh"
+#include "clients/nml/net/protocol.hh"
+
+namespace mw::nml {
+
+/// The encoding of a buffer's messages, wherever they are.
+Encoding encoding_of(const BufferSettings &buffer);
+
+struct ServedBuffer {
+    BufferSettings buffer;
+    ProcessSettings process;
+    std::optional<Passwords> passwords;
+};
+
+/// What all sessions of a server share; it does not change while they run.
+struct Service {
+    std::map<std::uint32_t, ServedBuffer> buffers;  ///< by number
+    const Vocabulary &vocabulary;
+    std::string instance;
+    LocalPlaces &local;
+    std::size_t longest = 0;  ///< message
+    JogOwners *jogs = nullptr;
+};
+
+/// One thread.
+class Session {
+  public:
+    explicit Session(const Service &service) : service_(service) {}
+    ~Session();
+    Session(const Session &) = delete;
+    Session &operator=(const Session &) = delete;
+
+    /// The answer to a request. A wait ends early when `isOver` says so.
+    Packet answer(const Packet &request, const std::function<bool()> &isOver);
+    /// A wrong password was given: the client is not heard any more.
+    bool isBarred() const { return isBarred_; }
+
+  private:
+    struct Open {
+        const ServedBuffer *served = nullptr;
+        std::unique_ptr<Buffer> buffer;
+        bool isLoggedIn = false;
+    };
+    Result<Open *> find(std::uint32_t number);
+    Result<Packet> carry_out(const Packet &request, const std::function<bool()> &isOver);
+    Result<Packet> log_in(const Packet &request, Open &open);
+    Result<Packet> write(const Packet &request, Open &open);
+    void note_jog(std::string_view bytes, Encoding encoding);
+    Result<Packet> read(const Packet &request, Open &open, const std::function<bool()> &isOver);
+
+    const Service &service_;
+    std::map<std::uint32_t, Open> open_;
+    bool isBarred_ = false;
+};
+
+}  // namespace mw::nml

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// A userspace component and its pins and parameters, as Python holds them.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "clients/python/hal/instance.hh"
+
+namespace mw::python {
+
+/// A pin or parameter of a component of this process. Using it after the component has ended throws
+/// hal.error.
+struct Item {
+    HalHandle hal;
+    std::string name;  ///< without the prefix
+    hal::Type type = hal::Type::BIT;
+    hal::Dir dir = hal::Dir::IN;
+    bool isPin = true;
+    bool isEnded = false;
+    void **slot = nullptr;  ///< of a pin: where HAL keeps the address of the value
+    void *place = nullptr;  ///< of a parameter
+
+    pybind11::object get() const;
+    void set(pybind11::handle value);
+    /// Where the value lies now.
+    volatile void *address() const;
+};
+
+class Component {
+  public:
+    Component(const std::string &name, const std::string &prefix);
+    ~Component();
+    Component(const Component &) = delete;
+    Component &operator=(const Component &) = delete;
+
+    std::shared_ptr<Item> new_item(const std::string &name, int type, int dir, bool isPin);
+    /// AttributeError when there is none.
+    std::shared_ptr<Item> item(const std::string &name) const;
+    std::shared_ptr<Item> item(const std::string &name, bool isPin) const;
+    void set_ready(bool isReady);
+    void exit();
+    int id() const;
+    HalHandle hal() const { return hal_; }
+
+    std::string name;
+    std::string prefix;
+    std::map<std::string, std::shared_ptr<Item>> items;
+
+  private:
+    HalHandle hal_;
+    int id_ = 0;
+};
+
+}  // namespace mw::python

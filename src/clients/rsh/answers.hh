@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// GET: a table of questions, each with its answer.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "clients/rsh/own_state.hh"
+#include "clients/rsh/settings.hh"
+#include "clients/rsh/words.hh"
+
+namespace mw::rsh {
+
+struct Asked {
+    const Settings &settings;
+    SharedView &shared;
+    OwnState &own;
+    const messages::MachineStatus &status;
+    const Words &words;  ///< behind the name of the question
+};
+
+/// The lines of the answer.
+using Answer = Result<std::vector<std::string>>;
+
+/// `name` in capitals. Nothing: there is no such question.
+using Answering = Answer (*)(const Asked &);
+Answering answering(const Settings &settings, const std::string &name);
+/// For HELP.
+std::vector<std::string> question_names(const Settings &settings);
+
+}  // namespace mw::rsh

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What a connection has set for itself.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "clients/rsh/shared_view.hh"
+#include "messages/declarations/status.hh"
+
+namespace mw::rsh {
+
+/// In which unit lengths are told. AUTO: that of the program.
+enum class LengthUnit : std::uint8_t { AUTO, INCH, MM, CM, CUSTOM };
+enum class AngleUnit : std::uint8_t { AUTO, DEG, RAD, GRAD, CUSTOM };
+
+struct OwnState {
+    bool isGreeted = false;  ///< HELLO with the right password
+    bool isEnabled = false;  ///< may command the machine
+    bool isEchoing = true;
+    bool isVerbose = false;
+    bool isTimed = false;          ///< each line of an answer begins with the time
+    bool isWaitingForDone = true;  ///< an answer to SET comes when the command has ended
+    bool isUpdating = true;        ///< GET tells the newest status
+    double timeout_s = 0;          ///< of SET; 0: none
+    LengthUnit length_unit = LengthUnit::AUTO;
+    AngleUnit angle_unit = AngleUnit::AUTO;
+    std::string protocol = "1.1";
+    ReadUpTo lines{};
+    std::unique_ptr<messages::MachineStatus> kept;  ///< what GET tells while it is not updated
+};
+
+}  // namespace mw::rsh

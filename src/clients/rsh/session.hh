@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// A connection of linuxcncrsh: lines in, lines out, one after another.
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "clients/rsh/commander.hh"
+#include "clients/rsh/conversation.hh"
+#include "clients/rsh/line_input.hh"
+#include "clients/rsh/orders.hh"
+#include "clients/rsh/own_state.hh"
+#include "clients/rsh/settings.hh"
+
+namespace mw::rsh {
+
+/// One thread. A line is looked at when the one before it has been answered. What a connection jogs stops
+/// when it ends.
+class Session final : public Conversation {
+  public:
+    /// All must outlive it.
+    Session(const Settings &settings, SharedView &shared, Joining joining);
+    ~Session() override;
+    Session(const Session &) = delete;
+    Session &operator=(const Session &) = delete;
+
+    void take(std::string_view bytes) override;
+    void end_input() override { input_.end(); }
+    bool isFull() const override { return input_.waiting() > MAX_WAITING; }
+    void step(double now_s) override;
+    std::string &output() override { return output_; }
+    /// It waits for the machine or jogs it.
+    bool isBusy() const override { return wait_.has_value() || commander_.isJogging(); }
+    bool isOver() const override { return isOver_; }
+    bool wantsShutdown() const override { return wantsShutdown_; }
+
+  private:
+    /// Bytes that wait in here, and answers that nobody reads, before others are taken.
+    static constexpr std::size_t MAX_WAITING = 65536;
+
+    struct Wait {
+        std::string order;
+        Waiting what;
+        double end_s = 0;               ///< 0: for ever
+        std::uint64_t shown_cycle = 0;  ///< of task, in which the status shows what has ended; 0: it has not
+    };
+
+    std::optional<std::string> next_line();
+    void carry_out(const std::string &line, double now_s);
+    void hello(const Words &words);
+    void get(const Words &words);
+    void set(const Words &words, const std::string &rest, double now_s);
+    void shut_down();
+    std::optional<std::string> lacks(const Order &order) const;
+    void look_at_wait(double now_s);
+    /// Nothing: not yet; else an error, empty where the machine has told it.
+    std::optional<Result<>> end_of(const Waiting &waiting);
+    bool isProbeWithoutContact(const client::Outcome &outcome) const;
+
+    void say(const std::string &line, const char *end = "\r\n");
+    void tell_error(const std::string &text);
+    void consent(const std::string &order);
+    void refuse(const std::string &order, const std::string &why);
+
+    const Settings &settings_;
+    SharedView &shared_;
+    Commander commander_;
+    OwnState own_;
+    std::deque<std::string> errors_;
+    LineInput input_;
+    std::string output_;
+    std::optional<Wait> wait_;
+    bool isOver_ = false, wantsShutdown_ = false;
+};
+
+}  // namespace mw::rsh

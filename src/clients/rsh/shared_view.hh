@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What all connections see of the machine: its status, and lines for the operator that each of them gets.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+
+#include "messages/client/viewer.hh"
+
+namespace mw::rsh {
+
+/// Where a connection is in the lines, for each kind.
+using ReadUpTo = std::array<std::uint64_t, 3>;
+
+/// One thread.
+class SharedView {
+  public:
+    explicit SharedView(client::Viewer viewer) : viewer_(std::move(viewer)) {}
+
+    /// Brings status and lines up to date.
+    Result<> read();
+    const messages::MachineStatus &status() const { return viewer_.status(); }
+    bool isMachineAlive() const { return viewer_.isMachineAlive(); }
+    Result<> check_machine() const { return viewer_.check_machine(); }
+
+    /// For a connection that begins: what no connection has read yet.
+    ReadUpTo unread() const { return read_up_to_; }
+    /// The next line of a kind; nothing when there is none.
+    std::optional<std::string> next_line(messages::MessageKind kind, ReadUpTo &own);
+
+    /// How many connections there are; counted by whoever makes them.
+    int num_sessions = 0;
+
+  private:
+    /// Lines that are kept for connections: more than anybody reads at once.
+    static constexpr std::size_t MAX_LINES = 500;
+    struct Line {
+        std::uint64_t number = 0;
+        messages::MessageKind kind = messages::MessageKind::OPERATOR_ERROR;
+        std::string text;
+    };
+
+    client::Viewer viewer_;
+    std::deque<Line> lines_;
+    std::uint64_t newest_ = 0;
+    ReadUpTo read_up_to_{};
+};
+
+}  // namespace mw::rsh

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What can be asked of a queue of programs and what can be set: a row for each.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "clients/schedule/session.hh"
+
+namespace mw::schedule {
+
+struct Said {
+    const Shared &shared;
+    OwnState &own;
+    rsh::Words words;  ///< behind the name
+};
+
+/// The lines that answer GET NAME; `name` in capitals.
+Result<std::vector<std::string>> answer_to(const std::string &name, const Said &said);
+/// SET NAME; the connection is greeted. What needs SET ENABLE is refused without it.
+Result<> carry_out_order(const std::string &name, const Said &said);
+/// HELP; `about` in capitals, empty: everything.
+std::vector<std::string> help(const std::string &about);
+
+}  // namespace mw::schedule

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The routes of docs/api.md.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "clients/screen/background_jobs.hh"
+#include "clients/screen/files.hh"
+#include "clients/screen/hal_service.hh"
+#include "clients/screen/message_log.hh"
+#include "clients/screen/screens.hh"
+#include "clients/screen/time_chunks.hh"
+#include "clients/screen/user_files.hh"
+
+namespace mw::screen {
+
+struct ApiSetup {
+    MachineFacts facts;
+    ScreensSetup screens;
+    std::string screen_folder;
+    /// Begins to read a program in a thread of its own; an error when too many are read. The path is one of
+    /// facts.program_prefix.
+    std::function<Result<std::shared_ptr<PieceQueue>>(const std::string &path, const Requester &)> read_path;
+    /// The same for its times, at the overrides of the second.
+    std::function<Result<std::shared_ptr<PieceQueue>>(const std::string &path, const TimeOverrides &,
+                                                      const Requester &)>
+        read_times{};
+    /// The same for a filter that makes `made` from `path`.
+    std::function<Result<std::shared_ptr<PieceQueue>>(const std::string &path, const std::string &made,
+                                                      const Requester &)>
+        run_filter{};
+    HalService::Connect connect_hal;
+    std::vector<DialogFacts> dialogs{};
+    HalService::Begin begin_hal{};
+};
+
+/// What may block goes through one of them, so that neither waits for the other; both end before the Api.
+struct Threads {
+    BackgroundJobs &disk, &hal;
+};
+
+/// One thread, but for the jobs that it gives to `threads`.
+class Api final : public Application {
+  public:
+    /// Time that never goes back. [ns]
+    using Clock = std::function<std::int64_t()>;
+
+    /// Between two looks at what screens watch in HAL.
+    static constexpr std::int64_t WATCH_NS = 100000000;
+
+    Api(Sockets &sockets, const Threads &threads, ApiSetup setup, Clock clock);
+
+    /// Every few milliseconds.
+    void tick();
+
+    void answer(const Request &request, Reply reply) override;
+    void read(std::shared_ptr<BodySource> source, std::function<void(std::string)> take) override;
+    void opened(SessionId session, Role role, Protection protection) override {
+        screens_.opened(session, {role, protection}, clock_());
+    }
+    void received(SessionId session, std::string_view text) override {
+        screens_.received(session, text, clock_());
+    }
+    void closed(SessionId session) override;
+
+    std::size_t count_screens() const { return screens_.count(); }
+
+  private:
+    void answer_files(const Request &request, const std::string &name, Reply reply);
+    void write_file(const Request &request, const std::string &name, Reply reply);
+    void write_log(const std::string &line, std::int64_t age_ns);
+    bool isKeepsake(const Request &request, Reply &reply);
+    Role needed_role(const Request &request) const;
+    void answer_hal(const Request &request, Reply reply);
+    void look_at_hal();
+    Response answer_path(const Request &request);
+    Response answer_times(const Request &request);
+    Response answer_filter(const Request &request);
+    /// Path of the program that a filter has made, or would make, of a file; nothing where it is one itself.
+    std::optional<std::string> made_of(const std::string &name) const;
+    /// What is interpreted when this is opened.
+    Result<std::string> program_of(const std::string &name) const;
+    Response answer_tools();
+    Response metrics() const;
+
+    Threads threads_;
+    ApiSetup setup_;
+    Clock clock_;
+    Screens screens_;
+    ProgramFiles files_;  ///< used by jobs alone
+    UserFiles keepsakes_;
+    MessageLog log_;                     ///< used by jobs alone
+    std::vector<std::string> operable_;  ///< names of HAL that operators set by panels
+    HalService hal_;                     ///< used by jobs alone
+    bool hasHalBegun_ = false;           ///< what waits for HAL is done
+    bool isHalRead_ = false;             ///< at this moment
+    std::int64_t next_watch_ns_ = 0;
+};
+
+}  // namespace mw::screen

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// One open screen as the machine's client: its commands with their outcomes, what it jogs, what it was told.
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "clients/screen/documents.hh"
+#include "clients/screen/lateness.hh"
+#include "clients/screen/origin_check.hh"
+#include "clients/screen/status_delta.hh"
+#include "messages/client/client.hh"
+
+namespace mw::screen {
+
+/// Counts for /metrics.
+struct Counts {
+    std::uint64_t commands = 0, stops = 0, refused = 0, statuses = 0, messages = 0;
+};
+
+/// Stops what it jogs when it ends. One thread; time is passed in.
+class Browser {
+  public:
+    using Send = std::function<void(std::string)>;
+    /// Commands per second; a stop is none of them.
+    static constexpr double COMMANDS_PER_S = 200, COMMANDS_AT_ONCE = 200;
+    /// Commands whose outcome is followed; a stop is carried out all the same.
+    static constexpr std::size_t MOST_FOLLOWED = 60;
+    /// A command that has not ended by then is told as STARTED.
+    static constexpr std::int64_t SOON_NS = 50000000;
+    static const char *const ONLY_STOPS;  ///< why a screen without a place is refused other commands
+    /// A browser that says nothing for so long is gone.
+    static constexpr std::int64_t SILENCE_NS = 5000000000;
+
+    Browser(Send send, Counts &counts, Role role, std::int64_t now_ns)
+        : send_(std::move(send)), counts_(counts), role_(role), heard_ns_(now_ns) {}
+    ~Browser() { stop_jogs(); }
+    Browser(const Browser &) = delete;
+    Browser &operator=(const Browser &) = delete;
+
+    /// The machine is up.
+    void join(client::Client client) {
+        client_.emplace(std::move(client));
+        if (role_ < Role::CONFIGURE) {
+            client_->limit_authority(mailbox::Authority::OPERATE);
+        }
+    }
+    /// The machine is up: `shared` takes stops while this screen has no place of its own. It outlives
+    /// leave().
+    void attach(client::Client &shared) { shared_ = &shared; }
+    bool isAttached() const { return shared_ != nullptr; }
+    /// The next status is a whole one.
+    void forget_status() { hasWhole_ = false; }
+    /// It is gone: what was under way has failed.
+    void leave();
+    bool isJoined() const { return client_.has_value(); }
+    /// Number in the mailbox, 0 without a machine.
+    std::uint32_t number() const { return client_.has_value() ? client_->id() : 0; }
+
+    /// A text from its socket. A stop is posted at once.
+    void receive(std::string_view text, std::int64_t now_ns);
+    /// Tells the outcomes that are new.
+    void follow(std::int64_t now_ns);
+    /// Parts of the status that were read are told with the next one.
+    void note_read(PartMask parts) { unread_ |= parts; }
+    /// The whole at first, then what has changed; nothing when nothing has.
+    void tell_status(const messages::MachineStatus &status);
+    void tell(std::string text) { send_(std::move(text)); }
+    /// Names of HAL that it looks at.
+    const std::vector<std::string> &watched() const { return watched_; }
+    /// Tells those of its names that are new or have changed.
+    void tell_values(const std::map<std::string, std::string> &values);
+    bool isSilent(std::int64_t now_ns) const { return now_ns - heard_ns_ > SILENCE_NS; }
+
+    /// A joint or axis; that of a jog that this browser has begun.
+    using Jogged = std::pair<bool, int>;
+    const std::optional<Jogged> &begun() const { return begun_; }
+    /// Another browser jogs it now.
+    void give_up(const Jogged &what) { jogs_.erase(what); }
+
+  private:
+    struct Followed {
+        std::uint64_t id = 0;
+        client::Client *client = nullptr;  ///< through which it went; null: the screen's own
+        client::Serial serial = 0;
+        std::int64_t since_ns = 0;
+        bool isTold = false;  ///< as STARTED
+    };
+    void carry_out(const Ask &ask, std::int64_t now_ns);
+    /// A lease counts from when it was asked for. False: it is over already.
+    bool shorten_lease(messages::Command &command, const Ask &ask, std::int64_t now_ns);
+    void refuse(std::uint64_t id, std::string reason);
+    void note_jog(const messages::Command &command);
+    void stop_jogs();
+
+    Send send_;
+    Counts &counts_;
+    Role role_;
+    client::Client *shared_ = nullptr;
+    std::optional<client::Client> client_;
+    StatusDelta delta_;
+    bool hasWhole_ = false;
+    PartMask unread_ = 0;
+    std::vector<std::string> watched_;
+    std::map<std::string, std::string> told_values_;
+    std::deque<Followed> followed_;
+    std::set<Jogged> jogs_;
+    std::optional<Jogged> begun_;  ///< by the last text
+    Lateness lateness_;
+    RateLimit rate_{COMMANDS_PER_S, COMMANDS_AT_ONCE};
+    std::int64_t heard_ns_;
+};
+
+}  // namespace mw::screen

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What a stranger can make TLS do is bounded: all screens share one thread. Included by server.cc alone.
+#pragma once
+
+#include <openssl/ssl.h>
+
+#include <boost/asio/ssl.hpp>
+#include <string>
+
+#include "clients/screen/secrets.hh"
+
+namespace mw::screen::detail {
+
+/// Messages of handshakes that a peer may send in all: its greeting has six at the most, the others are
+/// changes of keys, whose reckoning costs more than their sending.
+constexpr int MOST_TLS_MESSAGES = 64;
+
+/// Called by OpenSSL for each message; `messages` is the peer's count. What comes after the last one is
+/// thrown away, and reading ends as if the peer had ended it.
+inline void count_tls_message(int isWritten, int, int type, const void *, std::size_t, SSL *tls,
+                              void *messages) {
+    if (isWritten == 0 && type == SSL3_RT_HANDSHAKE && messages != nullptr &&
+        ++*static_cast<int *>(messages) >= MOST_TLS_MESSAGES) {
+        SSL_set_shutdown(tls, SSL_get_shutdown(tls) | SSL_RECEIVED_SHUTDOWN);
+    }
+}
+
+/// TLS 1.2 or later, without renegotiation, sessions that are kept, and groups that are slow to reckon with
+/// (a key of ffdhe8192 takes as long as several leases of jogs).
+inline boost::system::error_code set_up(boost::asio::ssl::context &context, const Certificate &certificate) {
+    SSL_CTX *raw = context.native_handle();
+    SSL_CTX_set_options(raw, SSL_OP_NO_RENEGOTIATION | SSL_OP_NO_COMPRESSION);
+    SSL_CTX_set_session_cache_mode(raw, SSL_SESS_CACHE_OFF);
+    SSL_CTX_set_msg_callback(raw, count_tls_message);
+    boost::system::error_code error;
+    if (SSL_CTX_set_min_proto_version(raw, TLS1_2_VERSION) != 1 ||
+        SSL_CTX_set1_groups_list(raw, "X25519:P-256") != 1) {
+        error = boost::asio::error::no_protocol_option;
+        return error;
+    }
+    context.use_certificate_chain(boost::asio::buffer(certificate.certificate_pem), error);
+    if (!error) {
+        context.use_private_key(boost::asio::buffer(certificate.key_pem), boost::asio::ssl::context::pem,
+                                error);
+    }
+    return error;
+}
+
+}  // namespace mw::screen::detail

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "clients/screen/dialogs.hh"
+
+#include <algorithm>
+
+namespace mw::screen {
+
+using hal::Dir;
+
+Dialogs::~Dialogs() {
+    if (hal_ != nullptr) {
+        static_cast<void>(hal_->delete_component(component_));  // nothing is to be done where it is gone
+    }
+}
+
+Result<> Dialogs::begin(hal::Hal &hal) {
+    const auto made = hal.new_component(COMPONENT);
+    if (!made.has_value()) {
+        return std::unexpected(made.error());
+    }
+    component_ = *made;
+    askers_.clear();
+    asked_.clear();
+    for (const DialogFacts &one : facts_) {
+        if (std::ranges::find(askers_, one.id, &RequestOrigin::id) == askers_.end()) {
+            askers_.push_back({.id = one.id, .isNumbered = one.number != 0});
+        }
+    }
+    Result<> status;
+    for (RequestOrigin &asker : askers_) {
+        const std::string name = std::string(COMPONENT) + '.' + asker.id;
+        if (asker.isNumbered) {
+            asker.number.make(hal, component_, name, Dir::IO, status);
+        } else {
+            asker.bit.make(hal, component_, name, Dir::IO, status);
+        }
+        asker.waiting.make(hal, component_, name + "-waiting", Dir::OUT, status);
+        asker.response.make(hal, component_, name + "-response", Dir::OUT, status);
+    }
+    if (status.has_value()) {
+        status = hal.set_ready(component_);
+    }
+    if (!status.has_value()) {
+        static_cast<void>(hal.delete_component(component_));
+        return status;
+    }
+    hal_ = &hal;
+    return {};
+}
+
+const DialogFacts *Dialogs::facts_of(const RequestOrigin &asker, std::int32_t value,
+                                     std::size_t &place) const {
+    for (place = 0; place < facts_.size(); ++place) {
+        const DialogFacts &one = facts_[place];
+        if (one.id == asker.id && value != 0 && (one.number == 0 || one.number == value)) {
+            return &one;
+        }
+    }
+    return nullptr;
+}
+
+const std::vector<std::size_t> &Dialogs::look() {
+    asked_.clear();
+    if (hal_ == nullptr) {
+        return asked_;
+    }
+    for (RequestOrigin &asker : askers_) {
+        const std::int32_t value = asker.value();
+        std::size_t place = 0;
+        const DialogFacts *const now = facts_of(asker, value, place);
+        const bool isNew = value != asker.last;
+        asker.last = value;
+        if (isNew && now != nullptr && now->kind.isStatus) {
+            notes_.push_back(now->title.empty() ? now->text : now->title + ": " + now->text);
+        }
+        asker.answered = value == asker.answered ? value : 0;
+        const bool isOpen = now != nullptr && asker.answered == 0;
+        const bool isPerson = isOpen && (now->kind.isOk || now->kind.isYesNo);
+        if (isNew && isPerson) {
+            asker.response = false;
+        }
+        asker.isAsking = isPerson;
+        asker.waiting = isPerson;
+        if (value != 0 && now == nullptr) {
+            if (isNew) {
+                notes_.push_back(std::string(COMPONENT) + '.' + asker.id + " is " + std::to_string(value) +
+                                 ", and [DISPLAY] has no MULTIMESSAGE with this number");
+            }
+            set_zero(asker);  // HAL does not wait for an answer to a question that nobody reads
+        }
+        if (isPerson || (isOpen && now->kind.isLasting)) {
+            asked_.push_back(place);
+        } else if (isOpen && now->kind.isStatus) {
+            set_zero(asker);  // told
+        }
+    }
+    return asked_;
+}
+
+bool Dialogs::answer(const std::string &id, std::int32_t number, bool isYes) {
+    const auto found = std::ranges::find(askers_, id, &RequestOrigin::id);
+    if (hal_ == nullptr || found == askers_.end() || !found->isAsking) {
+        return false;
+    }
+    const std::int32_t value = found->value();
+    if (found->isNumbered && value != number) {
+        return false;  // it asks something else by now
+    }
+    found->response = isYes;
+    found->isAsking = false;
+    found->waiting = false;
+    found->answered = value;
+    set_zero(*found);
+    return true;
+}
+
+}  // namespace mw::screen

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Questions and notes that pins of HAL put to the operator: [DISPLAY]MESSAGE_... and MULTIMESSAGE_...
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/result.hh"
+#include "hal/core/user_pin.hh"
+
+namespace mw::screen {
+
+struct DialogKind {
+    bool isOk = false;       ///< closed by a person
+    bool isYesNo = false;    ///< answered by a person
+    bool isLasting = false;  ///< there as long as its pin says so
+    bool isStatus = false;   ///< a note, too
+};
+
+/// One text of a pin.
+struct DialogFacts {
+    std::string id;  ///< the pin's name behind the component's
+    /// The value at which it is shown, of a MULTIMESSAGE; 0: the pin is a bit.
+    std::int32_t number = 0;
+    DialogKind kind;
+    std::string title, text, details, icon;
+};
+
+/// Component `screen`: for each id a pin ID (bit or s32, in and out), ID-waiting (bit, out: a person is
+/// asked) and ID-response (bit, out: the last answer was yes, or it was closed). A person's answer sets ID to
+/// FALSE or 0.
+class Dialogs {
+  public:
+    static constexpr const char *COMPONENT = "screen";
+
+    explicit Dialogs(std::vector<DialogFacts> facts) : facts_(std::move(facts)) {}
+    ~Dialogs();
+    Dialogs(const Dialogs &) = delete;
+    Dialogs &operator=(const Dialogs &) = delete;
+
+    /// Makes the pins in the HAL of a machine that is up; an error where another screen has them.
+    Result<> begin(hal::Hal &hal);
+    /// The HAL is gone with its pins.
+    void leave() { hal_ = nullptr; }
+    bool isReady() const { return hal_ != nullptr; }
+
+    /// Looks at the pins. What is asked now, by its place in `facts`.
+    const std::vector<std::size_t> &look();
+    /// Notes that have come up since they were taken last.
+    std::vector<std::string> take_notes() { return std::exchange(notes_, {}); }
+    /// A person's answer to what is asked; false: it is asked no more.
+    bool answer(const std::string &id, std::int32_t number, bool isYes);
+    const std::vector<DialogFacts> &facts() const { return facts_; }
+
+  private:
+    struct RequestOrigin {
+        std::string id;
+        bool isNumbered = false;
+        hal::UserPin<bool> bit{}, waiting{}, response{};
+        hal::UserPin<std::int32_t> number{};
+        std::int32_t last = 0;      ///< value, 0 or 1 of a bit
+        std::int32_t answered = 0;  ///< value that was, until the pin has another: who keeps it set asks once
+        bool isAsking = false;
+
+        std::int32_t value() const { return isNumbered ? number.get() : bit.get() ? 1 : 0; }
+    };
+    static void set_zero(RequestOrigin &asker) {
+        asker.isNumbered ? asker.number.set(0) : asker.bit.set(false);
+    }
+    const DialogFacts *facts_of(const RequestOrigin &asker, std::int32_t value, std::size_t &place) const;
+
+    std::vector<DialogFacts> facts_;
+    std::vector<RequestOrigin> askers_;
+    std::vector<std::size_t> asked_;
+    std::vector<std::string> notes_;
+    hal::Hal *hal_ = nullptr;
+    int component_ = 0;
+};
+
+}  // namespace mw::screen

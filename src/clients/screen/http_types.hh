@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What comes from a browser and what it gets, without the library that carries it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "clients/screen/piece_queue.hh"
+
+namespace mw::screen {
+
+/// What whoever asks may do; each role may do what those before it may.
+/// STATUS: sees the status and messages of the machine, and may stop it.
+enum class Role : std::uint8_t { NOBODY, STATUS, VIEW, OPERATE, CONFIGURE };
+
+/// How the way is protected by which somebody came.
+enum class Protection : std::uint8_t {
+    LOCAL,  ///< none leaves this computer
+    TLS,    ///< encrypted, and only with a token
+    NONE    ///< by the wish of who started the server
+};
+
+/// Of one browser.
+struct Rights {
+    Role role = Role::NOBODY;
+    Protection protection = Protection::LOCAL;
+};
+
+/// By whom a request was sent.
+struct Requester {
+    std::string address;  ///< of its computer
+    Role role = Role::NOBODY;
+};
+
+struct Request {
+    std::string method;  ///< "GET"
+    std::string path;    ///< decoded, without the query
+    std::map<std::string, std::string> query;
+    std::string body;
+    Role role = Role::NOBODY;
+    std::string address{};  ///< of the computer that sent it
+};
+
+/// A path with its query as it stands in a request; nothing when it is not one (no leading '/', a broken
+/// escape, a control character).
+std::optional<Request> parse_target(std::string_view target);
+
+/// A body of known size that is read while it is sent: of each client one piece is in memory.
+class BodySource {
+  public:
+    /// Bytes of one piece.
+    static constexpr std::size_t PIECE = 256UL * 1024;
+
+    virtual ~BodySource() = default;
+    virtual std::uint64_t size() const = 0;
+    /// The next piece; empty: there are no more, or the file cannot be read any more. Blocks while the disk
+    /// does. One thread at a time.
+    virtual std::string read() = 0;
+};
+
+struct Response {
+    int status = 200;
+    std::string type = "application/json";
+    std::string body{};
+    bool isKept = false;  ///< the browser need never ask again: another content has another name
+    std::shared_ptr<PieceQueue> pieces{};  ///< instead of a body
+    std::shared_ptr<BodySource> source{};  ///< instead of a body
+    std::string cookie{};                  ///< for the browser to keep; empty: none
+};
+
+/// To be called once, in the server's thread.
+using Reply = std::function<void(Response)>;
+
+/// A browser's open socket. Never 0, never given twice.
+using SessionId = std::uint64_t;
+
+/// What may be done with open sockets. [server's thread]
+class Sockets {
+  public:
+    virtual ~Sockets() = default;
+    /// After all that was sent before. A browser that lets too much wait is disconnected.
+    virtual void send(SessionId session, std::string text) = 0;
+    /// Nothing waits to be sent.
+    virtual bool isIdle(SessionId session) const = 0;
+    virtual void close(SessionId session) = 0;
+};
+
+/// Who answers. Never called from within a call to Sockets. [server's thread]
+class Application {
+  public:
+    virtual ~Application() = default;
+    virtual void answer(const Request &request, Reply reply) = 0;
+    /// Reads the next piece of an answer; `take` is called once, in the server's thread.
+    virtual void read(std::shared_ptr<BodySource> source, std::function<void(std::string)> take) {
+        take(source->read());
+    }
+    virtual void opened(SessionId session, Role role, Protection protection) = 0;
+    virtual void received(SessionId session, std::string_view text) = 0;
+    virtual void closed(SessionId session) = 0;
+};
+
+}  // namespace mw::screen

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The path of a program as the bytes of /api/path: flat arrays that a browser hands to its graphics as they
+// are.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "clients/screen/path_geometry.hh"
+#include "gcode/analysis/preview.hh"
+
+namespace mw::screen {
+
+/// Arcs become chords. One thread.
+class PathChunks {
+  public:
+    /// Chords are at most so far from their arc. [mm]
+    static constexpr double DEVIATION_MM = 0.005;
+    static constexpr std::size_t POINTS_PER_CHUNK = 16384;
+
+    /// `push` takes a chunk; false: nobody reads any more. `unit_mm`: of the machine unit.
+    PathChunks(std::function<bool(std::string)> push, double unit_mm, PathLook look = {})
+        : push_(std::move(push)), unit_mm_(unit_mm), look_(std::move(look)) {}
+
+    /// The first ones are sent at once, later ones when a chunk is full. False: nobody reads any more.
+    bool take(std::span<const gcode::PreviewEvent> events);
+    void error(std::string_view text);
+    /// What is left, the bounds and the end.
+    void end(std::uint32_t lines);
+    /// Points of all chunks up to now, those that stand in two counted once.
+    std::uint32_t count() const { return count_; }
+
+  private:
+    struct Point {
+        std::array<float, 3> place{};
+        std::array<float, 3> wire{};  ///< of a foam cutter: the other end
+        std::uint32_t line = 0;
+        std::uint8_t kind = 0;
+    };
+    /// What holds from a point on.
+    struct Range {
+        std::uint32_t first = 0;
+        float feed = 0;
+        std::uint32_t tool = 0;
+    };
+    void add(const gcode::PreviewEvent &event);
+    void add_straight(const gcode::PreviewEvent &event, const geometry::Pose &from, const geometry::Pose &to,
+                      std::uint8_t kind);
+    void add_arc(const gcode::PreviewEvent &event);
+    void add_point(const geometry::Pose &pose, const gcode::PreviewEvent &event, std::uint8_t kind);
+    void note_range(const gcode::PreviewEvent &event, std::uint8_t kind);
+    bool send();
+    std::string moves(bool isOfWire) const;
+
+    std::function<bool(std::string)> push_;
+    double unit_mm_;
+    PathLook look_;
+    std::vector<Point> points_;
+    std::vector<Range> ranges_;  ///< the one in force, and those that have not been sent
+    std::size_t unsent_ = 0;     ///< of them, at the end
+    Range range_;                ///< that holds now
+    std::uint32_t count_ = 0;
+    bool isRead_ = true;
+    bool isBounded_ = false;
+    std::array<float, 3> low_{}, high_{};
+};
+
+}  // namespace mw::screen

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "clients/screen/time_chunks.hh"
+
+#include <utility>
+
+#include "clients/screen/detail/chunk.hh"
+#include "clients/screen/documents.hh"
+
+namespace mw::screen {
+
+void TimeChunks::move(std::uint32_t point, std::uint32_t line, double seconds, double speed) {
+    moves_.push_back({point, line, static_cast<float>(seconds), static_cast<float>(speed)});
+    if (moves_.size() >= MOVES_PER_CHUNK) {
+        send();
+    }
+}
+
+void TimeChunks::send() {
+    if (moves_.empty() || !isRead_) {
+        return;
+    }
+    std::string body;
+    detail::append(body, static_cast<std::uint32_t>(moves_.size()));
+    for (const Move &move : moves_) {
+        detail::append(body, move.point);
+        detail::append(body, move.line);
+        detail::append(body, move.seconds);
+        detail::append(body, move.speed);
+    }
+    moves_.clear();
+    isRead_ = push_(detail::chunk(detail::Chunk::TIMES, std::move(body), '\0'));
+}
+
+void TimeChunks::error(std::string_view text) {
+    if (isRead_) {
+        isRead_ = push_(detail::chunk(detail::Chunk::ERROR, std::string(text), ' '));
+    }
+}
+
+void TimeChunks::end(const TimeSum &sum) {
+    send();
+    if (isRead_) {
+        isRead_ = push_(detail::chunk(detail::Chunk::TIME_SUM, time_sum_document(sum), ' '));
+    }
+}
+
+}  // namespace mw::screen

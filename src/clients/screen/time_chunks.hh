@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// How long a program takes, move by move, as the bytes of /api/times.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace mw::screen {
+
+/// The time is lost here, against the feed.
+struct SlowSpot {
+    std::string file;
+    bool isInProgram = true;  ///< not in another file
+    int line = 0;
+    double lost_s = 0;
+    std::string reason;
+};
+
+/// What an operator has set: 1 is as programmed; the highest speed in machine units per second, 0: none.
+struct TimeOverrides {
+    double feed = 1, rapid = 1, max_velocity = 0;
+};
+
+struct TimeSum {
+    double total_s = 0, cutting_s = 0, rapid_s = 0, dwell_s = 0;
+    bool isComplete = true;
+    std::vector<SlowSpot> slowest;
+};
+
+/// One thread.
+class TimeChunks {
+  public:
+    static constexpr std::size_t MOVES_PER_CHUNK = 16384;
+
+    /// `push` takes a chunk; false: nobody reads any more.
+    explicit TimeChunks(std::function<bool(std::string)> push) : push_(std::move(push)) {}
+
+    /// `point`: number of the last point of the path, as PathChunks counts, that belongs to it.
+    void move(std::uint32_t point, std::uint32_t line, double seconds, double speed);
+    void error(std::string_view text);
+    /// What is left, and what it comes to.
+    void end(const TimeSum &sum);
+
+  private:
+    struct Move {
+        std::uint32_t point = 0, line = 0;
+        float seconds = 0, speed = 0;
+    };
+    void send();
+
+    std::function<bool(std::string)> push_;
+    std::vector<Move> moves_;
+    bool isRead_ = true;
+};
+
+}  // namespace mw::screen

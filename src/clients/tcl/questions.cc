@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <fmt/format.h>
+
+#include "base/text.hh"
+#include "clients/rsh/units.hh"
+#include "clients/tcl/commands.hh"
+
+namespace mw::tcl {
+namespace {
+
+using Text = Result<std::string>;
+
+constexpr double MM_PER_INCH = 25.4;
+
+/// As Tcl writes a floating-point number; digits that conversions of units have made up are left out.
+std::string number(double value) {
+    const std::string text = fmt::format("{:.12g}", value == 0 ? 0.0 : value);
+    return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;
+}
+
+/// From machine units to those that are shown: with AUTO those of the program.
+double shown_length(const Shell &shell) {
+    const double mm = 1 / shell.status().settings.linear_units;
+    switch (rsh::shown_unit(shell.own, shell.status())) {
+    case rsh::LengthUnit::INCH: return mm / MM_PER_INCH;
+    case rsh::LengthUnit::MM: return mm;
+    case rsh::LengthUnit::CM: return mm / 10;
+    case rsh::LengthUnit::AUTO:
+    case rsh::LengthUnit::CUSTOM: break;
+    }
+    return 1;
+}
+
+double factor_of_axis(const Shell &shell, int axis) {
+    return geometry::isAngular(axis) ? rsh::angle_factor(shell.own, shell.status()) : shown_length(shell);
+}
+
+Result<int> letter(const Words &words) {
+    const int axis = !words.empty() && words[0].size() == 1 ? geometry::axis_of_letter(words[0][0]) : -1;
+    return axis >= 0 ? Result<int>(axis)
+                     : fail(fmt::format("'{}' is not one of X Y Z A B C U V W",
+                                        words.empty() ? "" : printable(words[0])));
+}
+
+Text of_pose(const Shell &shell, const Words &words, const geometry::Pose &pose) {
+    const auto axis = letter(words);
+    return axis.has_value() ? Text(number(pose[*axis] * factor_of_axis(shell, *axis)))
+                            : std::unexpected(axis.error());
+}
+
+Result<std::size_t> joint(const Words &words) {
+    const auto value = parse_int(words.empty() ? "" : words[0]);
+    const bool isJoint = value.has_value() && *value >= 0 && *value < MAX_JOINTS;
+    return isJoint ? Result<std::size_t>(static_cast<std::size_t>(*value))
+                   : fail(fmt::format("'{}' is not a joint: 0 to {}",
+                                      words.empty() ? "" : printable(words[0]), MAX_JOINTS - 1));
+}
+
+/// What is told of a joint.
+template <class Tell>
+Text of_joint(Shell &shell, const Words &words, const Tell &tell) {
+    const auto index = joint(words);
+    if (!index.has_value()) {
+        return std::unexpected(index.error());
+    }
+    return Text(tell(shell.status().joints[*index], shell.status().settings.joints[*index]));
+}
+
+std::string limit_of(const messages::JointStatus &joint) {
+    return joint.isOnNegHardLimit   ? "minhard"
+           : joint.isOnNegSoftLimit ? "minsoft"
+           : joint.isOnPosSoftLimit ? "maxsoft"
+           : joint.isOnPosHardLimit ? "maxhard"
+                                    : "ok";
+}
+
+std::string kind_of(const messages::JointSettings &set) {
+    return set.kind == messages::JointKind::ANGULAR ? "angular" : "linear";
+}
+
+Text unit_of_joint(Shell &shell, const Words &words) {
+    return of_joint(shell, words, [](const messages::JointStatus &joint, const messages::JointSettings &set) {
+        const double units = joint.isPresent ? set.units : 1.0;
+        return to_lower(set.kind == messages::JointKind::ANGULAR ? rsh::name_of_angle(units)
+                                                                 : rsh::name_of_length(units));
+    });
+}
+
+/// An answer of linuxcncrsh in small letters.
+template <class Name>
+Text lower(Shell &shell, const Name &question, const Words &words = {}) {
+    auto text = shell.told(question, words);
+    return text.has_value() ? Text(to_lower(*text)) : text;
+}
+
+/// Of poses linuxcncrsh tells all; here one letter is asked for.
+Text relative(Shell &shell, const Words &words, const char *question) {
+    const auto axis = letter(words);
+    if (!axis.has_value()) {
+        return std::unexpected(axis.error());
+    }
+    auto text = shell.told(question, {words[0]});  // machine units with AUTO
+    const auto value = text.has_value() ? parse_double(rsh::behind_words(*text, 1)) : std::optional<double>();
+    if (!value.has_value()) {
+        return text;
+    }
+    const double told = geometry::isAngular(*axis) ? rsh::angle_factor(shell.own, shell.status())
+                                                   : rsh::length_factor(shell.own, shell.status());
+    return number(*value / told * factor_of_axis(shell, *axis));
+}
+
+Text program(Shell &shell, const Words &) {
+    const std::string path = shell.status().task.program.str();
+    return path.empty() ? "none" : path;
+}
+
+Text program_status(Shell &shell, const Words &) {
+    const messages::TaskStatus &task = shell.status().task;
+    return task.isPaused ? "paused" : task.interp_state == messages::InterpState::IDLE ? "idle" : "running";
+}
+
+Text shown_units(Shell &shell, const Words &) {
+    const std::string name = to_lower(rsh::name_of(rsh::shown_unit(shell.own, shell.status())));
+    return shell.own.length_unit == rsh::LengthUnit::AUTO ? "(" + name + ")" : name;
+}
+
+Text shown_angles(Shell &shell, const Words &) {
+    return shell.own.angle_unit == rsh::AngleUnit::AUTO ? "(deg)"
+                                                        : to_lower(rsh::name_of(shell.own.angle_unit));
+}
+
+/// 1 done, 2 under way, 3 refused or failed.
+int progress_of(const messages::MachineStatus &status) {
+    constexpr int DONE = 1, EXEC = 2, ERROR = 3;
+    switch (status.last_progress) {
+    case messages::Progress::REFUSED:
+    case messages::Progress::FAILED: return ERROR;
+    case messages::Progress::STARTED: return EXEC;
+    case messages::Progress::DONE: break;
+    }
+    return status.task.interp_state == messages::InterpState::IDLE ? DONE : EXEC;
+}
+
+Text last_number(Shell &shell, const Words &) {
+    return std::to_string(shell.status().last_command);
+}
+Text last_progress(Shell &shell, const Words &) {
+    return std::to_string(progress_of(shell.status()));
+}
+/// Which command it was is not in the status.
+Text last_kind(Shell &, const Words &) {
+    return "0";
+}
+
+template <messages::MessageKind KIND>
+Text next_line(Shell &shell, const Words &) {
+    return shell.next_line(KIND).value_or("ok");
+}
+
+constexpr const char *LETTER = "letter", *JOINT = "joint";
+
+constexpr CommandRow ROWS[] = {
+    {"emc_abs_act_pos", 1, 1, LETTER,
+     [](Shell &s, const Words &w) { return of_pose(s, w, s.status().trajectory.position_fb); }},
+    {"emc_abs_cmd_pos", 1, 1, LETTER,
+     [](Shell &s, const Words &w) { return of_pose(s, w, s.status().trajectory.position_cmd); }},
+    {"emc_display_angular_units", 0, 0, "", shown_angles},
+    {"emc_display_linear_units", 0, 0, "", shown_units},
+    {"emc_error", 0, 0, "", next_line<messages::MessageKind::OPERATOR_ERROR>},
+    {"emc_io_command", 0, 0, "", last_kind},
+    {"emc_io_command_number", 0, 0, "", last_number},
+    {"emc_io_command_status", 0, 0, "", last_progress},
+    {"emc_io_heartbeat", 0, 0, "",
+     [](Shell &s, const Words &) { return Text(std::to_string(s.status().cycle)); }},
+    {"emc_joint_fault", 1, 1, JOINT,
+     [](Shell &s, const Words &w) {
+         return of_joint(s, w, [](const messages::JointStatus &j, const auto &) {
+             return std::string(j.isFaulted || j.isFerrorTripped ? "fault" : "ok");
+         });
+     }},
+    {"emc_joint_homed", 1, 1, JOINT,
+     [](Shell &s, const Words &w) {
+         return of_joint(s, w, [](const messages::JointStatus &j, const auto &) {
+             return std::string(j.isHomed ? "homed" : "not");
+         });
+     }},
+    {"emc_joint_limit", 1, 1, JOINT,
+     [](Shell &s, const Words &w) {
+         return of_joint(s, w, [](const messages::JointStatus &j, const auto &) { return limit_of(j); });
+     }},
+    {"emc_joint_pos", 1, 1, JOINT,
+     [](Shell &s, const Words &w) {
+         return of_joint(s, w, [&s](const messages::JointStatus &j, const messages::JointSettings &set) {
+             const bool isAngular = set.kind == messages::JointKind::ANGULAR;
+             return number(j.pos_fb * (isAngular ? rsh::angle_factor(s.own, s.status()) : shown_length(s)));
+         });
+     }},
+    {"emc_joint_type", 1, 1, JOINT,
+     [](Shell &s, const Words &w) {
+         return of_joint(s, w, [](const auto &, const messages::JointSettings &set) { return kind_of(set); });
+     }},
+    {"emc_joint_units", 1, 1, JOINT, unit_of_joint},
+    {"emc_kinematics_type", 0, 0, "", [](Shell &s, const Words &) { return lower(s, "KINEMATICS_TYPE"); }},
+    {"emc_lube_level", 0, 0, "", [](Shell &s, const Words &) { return lower(s, "LUBE_LEVEL"); }},
+    {"emc_motion_command", 0, 0, "", last_kind},
+    {"emc_motion_command_number", 0, 0, "", last_number},
+    {"emc_motion_command_status", 0, 0, "", last_progress},
+    {"emc_motion_heartbeat", 0, 0, "",
+     [](Shell &s, const Words &) { return Text(std::to_string(s.status().motion.cycle)); }},
+    {"emc_operator_display", 0, 0, "", next_line<messages::MessageKind::OPERATOR_DISPLAY>},
+    {"emc_operator_text", 0, 0, "", next_line<messages::MessageKind::OPERATOR_TEXT>},
+    {"emc_pos_offset", 1, 1, LETTER,
+     [](Shell &s, const Words &w) { return of_pose(s, w, s.status().offsets.g5x + s.status().offsets.g92); }},
+    {"emc_probe_tripped", 0, 0, "",
+     [](Shell &s, const Words &) { return Text(s.status().probe.isTripped ? "1" : "0"); }},
+    {"emc_probe_value", 0, 0, "",
+     [](Shell &s, const Words &) { return Text(s.status().probe.isOn ? "1" : "0"); }},
+    {"emc_probed_pos", 1, 1, LETTER,
+     [](Shell &s, const Words &w) { return of_pose(s, w, s.status().probe.position); }},
+    {"emc_program", 0, 0, "", program},
+    {"emc_program_angular_units", 0, 0, "", [](Shell &, const Words &) { return Text("deg"); }},
+    {"emc_program_codes", 0, 0, "", [](Shell &s, const Words &) { return s.told("PROGRAM_CODES"); }},
+    {"emc_program_line", 0, 0, "",
+     [](Shell &s, const Words &) { return Text(std::to_string(s.status().task.motion_line)); }},
+    {"emc_program_linear_units", 0, 0, "",
+     [](Shell &s, const Words &) { return Text(to_lower(rsh::name_of(rsh::program_unit(s.status())))); }},
+    {"emc_program_status", 0, 0, "", program_status},
+    {"emc_rel_act_pos", 1, 1, LETTER, [](Shell &s, const Words &w) { return relative(s, w, "REL_ACT_POS"); }},
+    {"emc_rel_cmd_pos", 1, 1, LETTER, [](Shell &s, const Words &w) { return relative(s, w, "REL_CMD_POS"); }},
+    {"emc_task_command", 0, 0, "", last_kind},
+    {"emc_task_command_number", 0, 0, "", last_number},
+    {"emc_task_command_status", 0, 0, "", last_progress},
+    {"emc_task_heartbeat", 0, 0, "",
+     [](Shell &s, const Words &) { return Text(std::to_string(s.status().cycle)); }},
+    {"emc_tool", 0, 0, "",
+     [](Shell &s, const Words &) { return Text(std::to_string(s.status().tool.in_spindle)); }},
+    {"emc_tool_offset", 0, 1, "[letter]",
+     [](Shell &s, const Words &w) {
+         return of_pose(s, w.empty() ? Words{"Z"} : w, s.status().offsets.tool);
+     }},
+    {"emc_user_angular_units", 0, 0, "",
+     [](Shell &s, const Words &) { return lower(s, "USER_ANGULAR_UNITS"); }},
+    {"emc_user_linear_units", 0, 0, "",
+     [](Shell &s, const Words &) { return lower(s, "USER_LINEAR_UNITS"); }},
+};
+
+}  // namespace
+
+std::span<const CommandRow> questions() {
+    return ROWS;
+}
+
+}  // namespace mw::tcl

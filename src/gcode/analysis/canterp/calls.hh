@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Canon calls as text: one row each.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/result.hh"
+#include "gcode/canon/canon.hh"
+
+namespace mw::gcode::canterp {
+
+/// A line taken apart: two columns that mean nothing here, NAME(arguments).
+struct Call {
+    std::string_view name, arguments;
+    std::size_t name_offset = 0, arguments_offset = 0;  ///< from 0, in the line
+};
+
+enum class Kind { NOTHING, CALL, BAD };
+/// NOTHING for blank lines.
+Kind take_apart(std::string_view line, Call &call);
+
+/// Makes the call; `plane` is the one selected and follows SELECT_PLANE. An error names the column of what is
+/// wrong.
+Result<> make_call(const Call &call, Canon &canon, Plane &plane);
+
+}  // namespace mw::gcode::canterp

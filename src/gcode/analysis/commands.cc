@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "gcode/analysis/commands.hh"
+
+#include <cstdio>
+#include <iostream>
+#include <iterator>
+
+#include "base/atomic_file.hh"
+#include "base/language/language.hh"
+#include "base/options/command_line.hh"
+#include "gcode/analysis/explain.hh"
+#include "gcode/analysis/format.hh"
+
+namespace mw::gcode {
+namespace {
+
+enum class FormatMode { PRINT, CHECK, IN_PLACE };
+
+struct FormatWords {
+    bool isCheck = false, isInPlace = false;
+    options::Words programs;
+
+    options::CommandLine line() {
+        options::CommandLine line("millwright format [--check | --in-place] PROGRAM.ngc|- ...",
+                                  "Writes programs in one form, without a change of meaning; - is standard "
+                                  "input.\n");
+        line.flag("--check", "only say which ones would change; status 1 when any would", isCheck);
+        line.flag("--in-place", "write them back", isInPlace);
+        line.rest(programs);
+        line.footer("exit status: 0 done, 1 failed, 2 wrong usage\n");
+        return line;
+    }
+    FormatMode mode() const {
+        return isCheck ? FormatMode::CHECK : isInPlace ? FormatMode::IN_PLACE : FormatMode::PRINT;
+    }
+};
+
+struct ExplainWords {
+    std::string before = "F100 S1000 M3";
+    options::Words line_words;
+
+    options::CommandLine line() {
+        options::CommandLine line("millwright explain [--before LINES] LINE",
+                                  "Says in words what a line of G-code does.\n");
+        line.text("--before", "LINES",
+                  "lines to run first, one after the other with \\n between (default: 'F100 S1000 M3')",
+                  before);
+        line.rest_of_text(line_words);
+        line.footer("exit status: 0 done, 1 refused, 2 wrong usage\n");
+        return line;
+    }
+};
+
+int wrong_usage(const char *command, const std::string &what) {
+    language::tell(std::string("millwright ") + command + ": " + what);
+    return 2;
+}
+
+Result<std::string> read_program(const std::string &path) {
+    if (path == "-") {
+        return std::string(std::istreambuf_iterator<char>(std::cin), {});
+    }
+    return read_file(path);
+}
+
+/// One program; false when it cannot be read or written, or would change under CHECK.
+bool format_one(const std::string &path, FormatMode mode) {
+    const Result<std::string> text = read_program(path);
+    if (!text) {
+        std::fprintf(stderr, "millwright format: %s\n", text.error().str().c_str());
+        return false;
+    }
+    const std::string made = format_program(*text);
+    const bool isSame = made == *text;
+    if (mode == FormatMode::PRINT || (mode == FormatMode::IN_PLACE && path == "-")) {
+        std::fwrite(made.data(), 1, made.size(), stdout);
+        return true;
+    }
+    if (mode == FormatMode::CHECK) {
+        if (!isSame) {
+            std::printf("%s\n", path.c_str());
+        }
+        return isSame;
+    }
+    const Result<> written = isSame ? Result<>{} : write_file_atomically(path, made);
+    if (!written) {
+        std::fprintf(stderr, "millwright format: %s\n", written.error().str().c_str());
+    }
+    return written.has_value();
+}
+
+/// Blocks on one line are written "\n" in the shell.
+std::string with_newlines(const std::string &text) {
+    std::string out;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const bool isEscape = text[i] == '\\' && i + 1 < text.size() && text[i + 1] == 'n';
+        out += isEscape ? '\n' : text[i];
+        i += isEscape ? 1 : 0;
+    }
+    return out;
+}
+
+}  // namespace
+
+int command_format(const std::vector<std::string> &arguments) {
+    FormatWords words;
+    if (options::wantsHelp(arguments)) {
+        std::fputs(words.line().help().c_str(), stdout);
+        return 0;
+    }
+    if (const auto parsed = words.line().parse(arguments); !parsed) {
+        return wrong_usage("format", parsed.error().str());
+    }
+    if (words.isCheck && words.isInPlace) {
+        return wrong_usage("format", "either --check or --in-place");
+    }
+    if (words.programs.empty()) {
+        return wrong_usage("format",
+                           "needs a program: millwright format [--check | --in-place] PROGRAM.ngc|- ...");
+    }
+    bool isGood = true;
+    for (const std::string &program : words.programs) {
+        isGood = format_one(program, words.mode()) && isGood;
+    }
+    return isGood ? 0 : 1;
+}
+
+int command_explain(const std::vector<std::string> &arguments) {
+    ExplainWords words;
+    if (options::wantsHelp(arguments)) {
+        std::fputs(words.line().help().c_str(), stdout);
+        return 0;
+    }
+    if (const auto parsed = words.line().parse(arguments); !parsed) {
+        return wrong_usage("explain", parsed.error().str());
+    }
+    if (words.line_words.empty()) {
+        return wrong_usage("explain", "needs a line of G-code: millwright explain [--before LINES] LINE");
+    }
+    std::string line = words.line_words[0];
+    for (std::size_t i = 1; i < words.line_words.size(); ++i) {
+        line += ' ' + words.line_words[i];
+    }
+    const Explanation said = explain_line(line, with_newlines(words.before));
+    std::fputs(said.text.c_str(), stdout);
+    return said.isRefused ? 1 : 0;
+}
+
+}  // namespace mw::gcode

@@ -1,0 +1,305 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Canon calls beside motion: spindles, tools, switches, the program's course, texts. canon_calls.hh says what
+// NAME and FIELDS are for.
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <tuple>
+
+#include "gcode/canon/canon_moves.hh"
+#include "gcode/tools/entry.hh"
+
+namespace mw::gcode {
+
+using tools::ToolEntry;
+
+// ---- spindles and tools -----------------------------------------------------------------------------------
+
+/// G96 and G97.
+struct SetSpindleMode {
+    int spindle = 0;
+    double css_max_rpm = 0;  ///< > 0: constant surface speed up to this [rev/min]; 0: constant speed
+
+    static constexpr std::string_view NAME = "SET_SPINDLE_MODE";
+    static constexpr std::tuple FIELDS{&SetSpindleMode::spindle, &SetSpindleMode::css_max_rpm};
+};
+
+/// S.
+struct SetSpindleSpeed {
+    int spindle = 0;
+    double speed = 0;  ///< [rev/min; under constant surface speed metres/min or feet/min]
+
+    static constexpr std::string_view NAME = "SET_SPINDLE_SPEED";
+    static constexpr std::tuple FIELDS{&SetSpindleSpeed::spindle, &SetSpindleSpeed::speed};
+};
+
+/// M3, M4.
+struct StartSpindle {
+    int spindle = 0;
+    bool isClockwise = true;
+    bool isWaiting = true;  ///< the next cut waits until the spindle has its speed
+
+    int direction() const { return isClockwise ? 1 : -1; }
+
+    static constexpr std::array<std::string_view, 2> NAMES{"START_SPINDLE_COUNTERCLOCKWISE",
+                                                           "START_SPINDLE_CLOCKWISE"};
+    static constexpr std::tuple CHOICES{&StartSpindle::isClockwise};
+    static constexpr std::tuple FIELDS{&StartSpindle::spindle};
+};
+
+/// M5.
+struct StopSpindle {
+    int spindle = 0;
+
+    static constexpr std::string_view NAME = "STOP_SPINDLE_TURNING";
+    static constexpr std::tuple FIELDS{&StopSpindle::spindle};
+};
+
+/// M19.
+struct OrientSpindle {
+    int spindle = 0;
+    double angle_deg = 0;
+    int mode = 0;  ///< M19 P: 0 the shorter way, 1 clockwise, 2 counterclockwise
+
+    static constexpr std::string_view NAME = "ORIENT_SPINDLE";
+    static constexpr std::tuple FIELDS{&OrientSpindle::spindle, &OrientSpindle::angle_deg,
+                                       &OrientSpindle::mode};
+};
+
+/// M19 Q: nothing happens until the spindle is oriented.
+struct WaitOrientComplete {
+    int spindle = 0;
+    double timeout_s = 0;  ///< after which it is an error
+
+    static constexpr std::string_view NAME = "WAIT_ORIENT_COMPLETE";
+};
+
+/// T: the changer makes this tool ready.
+struct SelectTool {
+    int toolno = 0;
+
+    static constexpr std::string_view NAME = "SELECT_TOOL";
+    static constexpr std::tuple FIELDS{&SelectTool::toolno};
+};
+
+/// M6: the selected tool comes into the spindle.
+struct ChangeTool {
+    static constexpr std::string_view NAME = "CHANGE_TOOL";
+    static constexpr std::tuple<> FIELDS{};
+};
+
+/// M61: this tool is in the spindle, without a change.
+struct ChangeToolNumber {
+    int toolno = 0;
+
+    static constexpr std::string_view NAME = "CHANGE_TOOL_NUMBER";
+    static constexpr std::tuple FIELDS{&ChangeToolNumber::toolno};
+};
+
+/// G10 L1, L10, L11: an entry of the tool table changes.
+struct SetToolTableEntry {
+    int index = 0;    ///< in the tool table
+    ToolEntry entry;  ///< [machine units, degrees]
+
+    static constexpr std::string_view NAME = "SET_TOOL_TABLE_ENTRY";
+};
+
+/// G10 L0: the tool table is to be read from its file again.
+struct ReloadTools {
+    static constexpr std::string_view NAME = "RELOAD_TOOLDATA";
+    static constexpr std::tuple<> FIELDS{};
+};
+
+// ---- switches, outputs, inputs ----------------------------------------------------------------------------
+
+/// M7, M9.
+struct SwitchMist {
+    bool isOn = false;
+
+    static constexpr std::array<std::string_view, 2> NAMES{"MIST_OFF", "MIST_ON"};
+    static constexpr std::tuple CHOICES{&SwitchMist::isOn};
+    static constexpr std::tuple<> FIELDS{};
+};
+
+/// M8, M9.
+struct SwitchFlood {
+    bool isOn = false;
+
+    static constexpr std::array<std::string_view, 2> NAMES{"FLOOD_OFF", "FLOOD_ON"};
+    static constexpr std::tuple CHOICES{&SwitchFlood::isOn};
+    static constexpr std::tuple<> FIELDS{};
+};
+
+/// M48 to M50: whether the operator's feed override counts.
+struct SwitchFeedOverride {
+    bool isOn = true;
+
+    static constexpr std::array<std::string_view, 2> NAMES{"DISABLE_FEED_OVERRIDE", "ENABLE_FEED_OVERRIDE"};
+    static constexpr std::tuple CHOICES{&SwitchFeedOverride::isOn};
+    static constexpr std::tuple<> FIELDS{};
+};
+
+/// M48, M49, M51: whether the operator's spindle override counts.
+struct SwitchSpeedOverride {
+    int spindle = 0;
+    bool isOn = true;
+
+    static constexpr std::array<std::string_view, 2> NAMES{"DISABLE_SPEED_OVERRIDE", "ENABLE_SPEED_OVERRIDE"};
+    static constexpr std::tuple CHOICES{&SwitchSpeedOverride::isOn};
+    static constexpr std::tuple FIELDS{&SwitchSpeedOverride::spindle};
+};
+
+/// M53: whether pin motion.feed-hold counts.
+struct SwitchFeedHold {
+    bool isOn = true;
+
+    static constexpr std::array<std::string_view, 2> NAMES{"DISABLE_FEED_HOLD", "ENABLE_FEED_HOLD"};
+    static constexpr std::tuple CHOICES{&SwitchFeedHold::isOn};
+    static constexpr std::tuple<> FIELDS{};
+};
+
+/// M52: whether pin motion.adaptive-feed counts.
+struct SwitchAdaptiveFeed {
+    bool isOn = true;
+
+    static constexpr std::array<std::string_view, 2> NAMES{"DISABLE_ADAPTIVE_FEED", "ENABLE_ADAPTIVE_FEED"};
+    static constexpr std::tuple CHOICES{&SwitchAdaptiveFeed::isOn};
+    static constexpr std::tuple<> FIELDS{};
+};
+
+/// M62 to M65.
+struct SetDigitalOutput {
+    int index = 0;
+    bool isOn = false;
+    bool isSynched = false;  ///< in step with the next motion (M62, M63), else at once (M64, M65)
+
+    static constexpr std::array<std::string_view, 4> NAMES{
+        "CLEAR_AUX_OUTPUT_BIT", "SET_AUX_OUTPUT_BIT", "CLEAR_MOTION_OUTPUT_BIT", "SET_MOTION_OUTPUT_BIT"};
+    static constexpr std::tuple CHOICES{&SetDigitalOutput::isOn, &SetDigitalOutput::isSynched};
+    static constexpr std::tuple FIELDS{&SetDigitalOutput::index};
+};
+
+/// M67, M68.
+struct SetAnalogOutput {
+    int index = 0;
+    double value = 0;
+    bool isSynched = false;  ///< in step with the next motion (M67), else at once (M68)
+
+    static constexpr std::array<std::string_view, 2> NAMES{"SET_AUX_OUTPUT_VALUE", "SET_MOTION_OUTPUT_VALUE"};
+    static constexpr std::tuple CHOICES{&SetAnalogOutput::isSynched};
+};
+
+/// M66.
+struct WaitInput {
+    int index = 0;  ///< among the digital inputs, or among the analog ones
+    bool isAnalog = false;
+    WaitKind kind = WaitKind::IMMEDIATE;
+    double timeout_s = 0;
+
+    static constexpr std::string_view NAME = "WAIT";
+};
+
+// ---- the program's course ---------------------------------------------------------------------------------
+
+/// M0, M60; M1.
+struct ProgramStop {
+    bool isOptional = false;  ///< counts only when the operator has asked for optional stops
+
+    static constexpr std::array<std::string_view, 2> NAMES{"PROGRAM_STOP", "OPTIONAL_PROGRAM_STOP"};
+    static constexpr std::tuple CHOICES{&ProgramStop::isOptional};
+    static constexpr std::tuple<> FIELDS{};
+};
+
+/// M2, M30.
+struct ProgramEnd {
+    static constexpr std::string_view NAME = "PROGRAM_END";
+    static constexpr std::tuple<> FIELDS{};
+};
+
+/// M60 and M30: the pallets change places. The stop of M60 is a call of its own.
+struct PalletShuttle {
+    static constexpr std::string_view NAME = "PALLET_SHUTTLE";
+    static constexpr std::tuple<> FIELDS{};
+};
+
+/// All motion is to come to its end: the file is over without M2.
+struct Finish {
+    static constexpr std::string_view NAME = "FINISH";
+    static constexpr std::tuple<> FIELDS{};
+};
+
+/// A user M code M100 to M199.
+struct UserCode {
+    int code = 100;
+    double p = 0, q = 0;  ///< its words; -1 when not given
+
+    static constexpr std::string_view NAME = "USER_DEFINED_FUNCTION";
+    static constexpr std::tuple FIELDS{&UserCode::code, &UserCode::p, &UserCode::q};
+};
+
+// ---- texts ------------------------------------------------------------------------------------------------
+
+struct ProgramComment {
+    std::string text;
+
+    static constexpr std::string_view NAME = "COMMENT";
+    static constexpr std::tuple FIELDS{&ProgramComment::text};
+};
+
+/// (msg,...): to the operator.
+struct OperatorMessage {
+    std::string text;
+
+    static constexpr std::string_view NAME = "MESSAGE";
+    static constexpr std::tuple FIELDS{&OperatorMessage::text};
+};
+
+/// (print,...): to standard output.
+struct PrintLine {
+    std::string text;  ///< one line
+
+    static constexpr std::string_view NAME = "PRINT";
+};
+
+/// (logopen,...), (logappend,...).
+struct OpenLog {
+    std::string path;
+    bool isAppending = false;
+
+    static constexpr std::array<std::string_view, 2> NAMES{"LOGOPEN", "LOGAPPEND"};
+    static constexpr std::tuple CHOICES{&OpenLog::isAppending};
+    static constexpr std::tuple FIELDS{&OpenLog::path};
+};
+
+/// (log,...).
+struct LogLine {
+    std::string text;
+
+    static constexpr std::string_view NAME = "LOG";
+    static constexpr std::tuple FIELDS{&LogLine::text};
+};
+
+/// (logclose).
+struct CloseLog {
+    static constexpr std::string_view NAME = "LOGCLOSE";
+    static constexpr std::tuple<> FIELDS{};
+};
+
+/// (probeopen FILE), (probeclose): each successful probe from here on is written there, nine coordinates a
+/// line.
+struct LogProbes {
+    std::string path;  ///< empty: no longer
+
+    static constexpr std::string_view NAME = "LOG_PROBES";
+};
+
+/// An error that a canon, or a script that calls one, tells the operator.
+struct CanonError {
+    std::string text;
+
+    static constexpr std::string_view NAME = "CANON_ERROR";
+};
+
+}  // namespace mw::gcode

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The calls of the canonical machine: all that a program can ask of a machine, each declared once.
+//
+// A call is a plain struct in canon_moves.hh or canon_actions.hh. NAME is what it is called in text (rs274
+// prints it, canterp and scripts use it); a call with two directions has NAMES instead, false first, chosen
+// by the fields in CHOICES. FIELDS are its arguments in text, in order: printing and reading follow from them
+// unless the printer has a rule of its own. docs/extending/canon_call.md adds one step by step.
+#pragma once
+
+#include <string_view>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+#include "base/overloaded.hh"
+#include "gcode/canon/canon_actions.hh"
+#include "gcode/canon/canon_moves.hh"
+
+namespace mw::gcode {
+
+using CanonVariant =
+    std::variant<StraightFeed, StraightTraverse, ArcFeed, SetFeedRate, NurbsFeed, StraightProbe, RigidTap,
+                 Dwell, StartSpeedFeedSynch, StopSpeedFeedSynch, OnReset, UseLengthUnits, SelectPlane,
+                 SetG5xOffset, SetG92Offset, SetXyRotation, UseToolLengthOffset, SetFeedReference,
+                 SetFeedMode, SetMotionControlMode, SetNaivecamTolerance, SetPlannerMode, SetSpindleMode,
+                 SetSpindleSpeed, StartSpindle, StopSpindle, OrientSpindle, WaitOrientComplete, SelectTool,
+                 ChangeTool, ChangeToolNumber, SetToolTableEntry, ReloadTools, SwitchMist, SwitchFlood,
+                 SwitchFeedOverride, SwitchSpeedOverride, SwitchFeedHold, SwitchAdaptiveFeed,
+                 SetDigitalOutput, SetAnalogOutput, WaitInput, ProgramStop, ProgramEnd, PalletShuttle, Finish,
+                 UserCode, ProgramComment, OperatorMessage, PrintLine, OpenLog, LogLine, CloseLog, LogProbes,
+                 CanonError>;
+
+/// Any call. Closed: who handles calls handles each of these, and the compiler says which is missing. What a
+/// variant of so many does to its members is compiled once.
+class CanonCall : public CanonVariant {
+  public:
+    using Variant = CanonVariant;
+    CanonCall();
+    template <AlternativeOf<CanonVariant> Call>
+    CanonCall(Call &&call)
+        : CanonVariant(std::in_place_type<std::remove_cvref_t<Call>>, std::forward<Call>(call)) {}
+    CanonCall(const CanonCall &other);
+    CanonCall(CanonCall &&other) noexcept;
+    CanonCall &operator=(const CanonCall &other);
+    CanonCall &operator=(CanonCall &&other) noexcept;
+    ~CanonCall();
+};
+
+/// What a call is called in text.
+template <class Call>
+constexpr std::string_view name_of(const Call &call) {
+    if constexpr (requires { Call::CHOICES; }) {
+        std::size_t index = 0, place = 1;
+        const auto count = [&](auto choice) {
+            index += call.*choice ? place : 0;
+            place *= 2;
+        };
+        std::apply([&](auto... choices) { (count(choices), ...); }, Call::CHOICES);
+        return Call::NAMES[index];
+    } else {
+        return Call::NAME;
+    }
+}
+
+/// A call whose text follows from its FIELDS.
+template <class Call>
+concept RegularCall = requires { Call::FIELDS; };
+
+}  // namespace mw::gcode

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "gcode/interpreter/codes/active_codes.hh"
+
+#include "gcode/canon/plane_axes.hh"
+#include "gcode/interpreter/codes/kept_parameters.hh"
+
+namespace mw::gcode::detail {
+
+ActiveCodes active_codes(const State &state, const Parameters &parameters, const BlockCodes &block,
+                         int sequence) {
+    ActiveCodes out;
+    const int feed_code = state.feed_mode == FeedMode::INVERSE_TIME       ? 930
+                          : state.feed_mode == FeedMode::UNITS_PER_MINUTE ? 940
+                                                                          : 950;
+    const int control_code = state.control == geometry::PathMode::EXACT_PATH   ? 610
+                             : state.control == geometry::PathMode::EXACT_STOP ? 611
+                                                                               : 640;
+    const SpindleState &spindle = state.spindles[static_cast<std::size_t>(state.active_spindle)];
+    out.g = {sequence,
+             state.motion,
+             block.non_modal,
+             plane_code(state.plane),
+             state.comp.code(),
+             state.units == LengthUnits::INCH ? 200 : 210,
+             state.isIncremental ? 910 : 900,
+             feed_code,
+             coordinate_system_code(state.g5x_index),
+             state.tool.offset_code,
+             state.isRetractToR ? 990 : 980,
+             control_code,
+             -1,
+             spindle.isConstantSurface ? 960 : 970,
+             state.isCentreAbsolute ? 901 : 911,
+             state.isDiameter ? 70 : 80,
+             parameters.get(P_G92_APPLIED) != 0.0 ? 923 : -1};
+    const bool isSpeedOverride = spindle.isOverridden;
+    out.m = {sequence,
+             block.stop,
+             spindle.direction > 0 ? 3 : (spindle.direction < 0 ? 4 : 5),
+             block.tool_change,
+             state.isMist ? 7 : (state.isFlood ? -1 : 9),
+             state.isFlood ? 8 : -1,
+             state.isFeedOverride ? (isSpeedOverride ? 48 : 50) : (isSpeedOverride ? 51 : 49),
+             state.isAdaptive ? 52 : -1,
+             state.isFeedHold ? 53 : -1,
+             -1};
+    out.settings = {static_cast<double>(sequence), state.feed_in_units(), spindle.speed, state.tolerance,
+                    state.naivecam};
+    return out;
+}
+
+}  // namespace mw::gcode::detail

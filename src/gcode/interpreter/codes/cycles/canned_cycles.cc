@@ -1,0 +1,389 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "gcode/interpreter/codes/cycles/canned_cycles.hh"
+
+#include <cctype>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "gcode/canon/plane_axes.hh"
+#include "gcode/interpreter/codes/block_words.hh"
+#include "gcode/interpreter/codes/moves/targets.hh"
+#include "gcode/interpreter/codes/step_count.hh"
+
+namespace mw::gcode::detail {
+namespace {
+
+constexpr double MM_PER_INCH = 25.4;
+
+bool isCycle(int motion) {
+    return motion == 730 || motion == 740 || (motion >= 810 && motion <= 890);
+}
+
+bool needsDwell(int code) {
+    return code == 820 || code == 860 || code == 880 || code == 890;
+}
+
+bool needsPeck(int code) {
+    return code == 730 || code == 830;
+}
+
+bool needsSpindle(int code) {
+    return code == 740 || code == 840 || code == 860 || code == 870 || code == 880;
+}
+
+/// Words not given keep the values of the cycle before; the first of its kind must have them.
+bool take_cycle_words(const Code &code, const BlockValues &values, State &state, Fault &fault) {
+    const bool isFirst = state.motion != code.number;
+    const char depth = geometry::AXIS_LETTERS_LOWER[plane_axes(state.plane).normal];
+    const std::string name = code_name(code);
+    CycleWords &cycle = state.cycle;
+    struct Need {
+        char word;
+        bool isNeeded;
+        const char *text;
+        double &value;
+    };
+    const Need needs[] = {
+        {depth, true, "the depth", cycle.bottom},
+        {'r', true, "R, the clearance plane,", cycle.r},
+        {'p', needsDwell(code.number), "P, the dwell time,", cycle.p},
+        {'q', needsPeck(code.number), "Q, the peck depth,", cycle.q},
+        {'i', code.number == 870, "I", cycle.i},
+        {'j', code.number == 870, "J", cycle.j},
+        {'k', code.number == 870, "K", cycle.k},
+    };
+    for (const Need &need : needs) {
+        if (values.has(need.word)) {
+            const bool isHalved = need.word == 'x' && state.isDiameter;
+            need.value = values.at(need.word) * (isHalved ? 0.5 : 1.0);
+        } else if (isFirst && need.isNeeded) {
+            return fault.set(fmt::format("{} needs {}{}", name, need.text,
+                                         need.word == depth
+                                             ? fmt::format(" {}", static_cast<char>(std::toupper(depth)))
+                                             : std::string()));
+        }
+    }
+    cycle.hasClearance = needsPeck(code.number) && (values.has('p') || (cycle.hasClearance && !isFirst));
+    if (needsPeck(code.number) && cycle.q <= 0.0) {
+        return fault.set(fmt::format("The peck depth Q of {} must be above 0", name), values.column_of('q'));
+    }
+    if (cycle.p < 0.0) {
+        return fault.set(needsPeck(code.number) ? "The peck clearance P must not be negative"
+                                                : "The dwell time P must not be negative",
+                         values.column_of('p'));
+    }
+    return true;
+}
+
+bool check_cycle(const Code &code, const BlockValues &values, const Machine &machine, State &state,
+                 int &repeats, Fault &fault) {
+    static constexpr char OTHER_AXES[] = "abcuvw";
+    for (const char c : std::string_view(OTHER_AXES)) {
+        if (values.has(c)) {
+            return fault.set(fmt::format("Cannot put an {} in canned cycle", c), values.column_of(c));
+        }
+    }
+    if (plane_axes(state.plane).normal > geometry::AXIS_Z) {
+        return fault.set("Canned cycles need one of the planes G17, G18 or G19");
+    }
+    if (state.feed_mode == FeedMode::INVERSE_TIME) {
+        return fault.set("Cannot use inverse time feed with canned cycles");
+    }
+    if (state.comp.isOn()) {
+        return fault.set("Cannot use canned cycles with cutter radius compensation on");
+    }
+    if (state.feed == 0.0) {
+        return fault.set(fmt::format("Cannot do {} with zero feed rate", code_name(code)));
+    }
+    if (!check_feed_per_revolution(state, fault)) {
+        return false;
+    }
+    repeats = 1;
+    if (values.has('l')) {
+        if (!whole_word(values, 'l', repeats, fault)) {
+            return false;
+        }
+        if (repeats < 1) {
+            return fault.set("The number of repeats L of a canned cycle must be at least 1",
+                             values.column_of('l'));
+        }
+    }
+    if (values.has('$')) {
+        int chosen = 0;
+        if (!spindle_of(values, machine.count_spindles(), chosen, fault)) {
+            return false;
+        }
+        if (chosen < 0) {
+            return fault.set(fmt::format("{} is for one spindle: $ must not be negative", code_name(code)),
+                             values.column_of('$'));
+        }
+        state.active_spindle = chosen;
+    }
+    const SpindleState &spindle = state.spindles[static_cast<std::size_t>(state.active_spindle)];
+    if (needsSpindle(code.number) && spindle.direction == 0) {
+        return fault.set(fmt::format("Spindle not turning in {}", code_name(code)));
+    }
+    if ((code.number == 840 && spindle.direction < 0) || (code.number == 740 && spindle.direction > 0)) {
+        return fault.set(fmt::format("The spindle turns the wrong way for {}: {} first", code_name(code),
+                                     code.number == 840 ? "M3" : "M4"));
+    }
+    return true;
+}
+
+/// One cycle with its heights resolved, program coordinates along the plane's normal.
+struct CyclePlan {
+    int code = 0;
+    double r = 0, bottom = 0, clear = 0;
+};
+
+/// Pecks of G73 and G83 from R to the bottom, at least one.
+double count_pecks(const CyclePlan &plan, double peck) {
+    const double error = FIGURE_ERROR * (std::fabs(plan.r) + std::fabs(plan.bottom)) / peck;
+    const double pecks = (plan.r - plan.bottom) / peck;
+    return std::fmax(1.0, count_steps(pecks, error + FIGURE_ERROR * pecks));
+}
+
+/// What the cycles do at one hole.
+struct CycleMoves {
+    const Settings &settings;
+    State &state;
+    CanonQueue &canon;
+
+    void cycle_move(bool isRapid, int axis, double value);
+    void start_spindle(int direction);
+    void tap_move(double height);
+    void run_cycle(const CyclePlan &plan);
+    void run_peck(const CyclePlan &plan);
+    void run_tap(const CyclePlan &plan, int direction);
+    void run_back_bore(const CyclePlan &plan, int direction);
+};
+
+/// Moves one axis to `value`.
+void CycleMoves::cycle_move(bool isRapid, int axis, double value) {
+    state.position[axis] = value;
+    if (isRapid) {
+        canon.take(StraightTraverse{state.position});
+    } else {
+        canon.take(StraightFeed{state.position});
+    }
+}
+
+void CycleMoves::start_spindle(int direction) {
+    const int spindle = state.active_spindle;
+    canon.take(StartSpindle{spindle, direction > 0, true});
+}
+
+/// From the clearance plane down and back to plan.clear.
+void CycleMoves::run_cycle(const CyclePlan &plan) {
+    const int normal = plane_axes(state.plane).normal;
+    const int direction = state.spindles[static_cast<std::size_t>(state.active_spindle)].direction;
+    switch (plan.code) {
+    case 730:
+    case 830: run_peck(plan); return;
+    case 740:
+    case 840: run_tap(plan, direction); return;
+    case 870: run_back_bore(plan, direction); return;
+    default: break;
+    }
+    cycle_move(false, normal, plan.bottom);
+    if (needsDwell(plan.code)) {
+        canon.take(Dwell{state.cycle.p});
+    }
+    switch (plan.code) {
+    case 850:
+        cycle_move(false, normal, plan.r);
+        cycle_move(true, normal, plan.clear);
+        break;
+    case 860:
+        canon.take(StopSpindle{state.active_spindle});
+        cycle_move(true, normal, plan.clear);
+        start_spindle(direction);
+        break;
+    case 880:  // the operator retracts by hand, to the clear height
+        canon.take(StopSpindle{state.active_spindle});
+        canon.take(ProgramStop{});
+        start_spindle(direction);
+        state.position[normal] = plan.clear;
+        break;
+    case 890: cycle_move(false, normal, plan.clear); break;
+    default: cycle_move(true, normal, plan.clear); break;
+    }
+}
+
+/// G73 breaks chips, G83 goes back to R each time.
+void CycleMoves::run_peck(const CyclePlan &plan) {
+    const int normal = plane_axes(state.plane).normal;
+    const bool isDeep = plan.code == 830;
+    const double clearance_mm =
+        isDeep ? settings.parameter_g83_peck_clearance_mm : settings.parameter_g73_peck_clearance_mm;
+    const double configured = clearance_mm / (state.units == LengthUnits::MM ? 1.0 : MM_PER_INCH);
+    const double clearance = state.cycle.hasClearance ? state.cycle.p : configured;
+    const double pecks = count_pecks(plan, state.cycle.q);
+    for (int peck = 1; peck < static_cast<int>(pecks); ++peck) {
+        const double depth = plan.r - peck * state.cycle.q;
+        cycle_move(false, normal, depth);
+        if (isDeep) {
+            cycle_move(true, normal, plan.r);
+        }
+        cycle_move(true, normal, depth + clearance);
+    }
+    cycle_move(false, normal, plan.bottom);
+    cycle_move(true, normal, plan.clear);
+}
+
+/// The two feeds of a tap, along the plane's normal. LinuxCNC's rs274 turns plane coordinates into machine
+/// ones twice in G18 and G19: moved like that the tap would be dragged through the part, so only what is
+/// printed and never moved follows it.
+void CycleMoves::tap_move(double height) {
+    const int normal = plane_axes(state.plane).normal;
+    state.position[normal] = height;
+    const Pose &place = state.position;
+    Pose sent = place;
+    const bool isTurnedTwice = settings.isTapOrderOfRs274 && normal != geometry::AXIS_Z;
+    for (int axis = geometry::AXIS_X; axis <= geometry::AXIS_Z && isTurnedTwice; ++axis) {
+        constexpr int LENGTHS = 3;
+        sent[axis] = place[(axis + (normal == geometry::AXIS_Y ? 1 : 2)) % LENGTHS];
+    }
+    canon.take(StraightFeed{sent});
+}
+
+/// Tapping with a floating chuck: the spindle turns back at the bottom.
+void CycleMoves::run_tap(const CyclePlan &plan, int direction) {
+    const int spindle = state.active_spindle;
+    const bool isSpeedOverride = state.spindles[static_cast<std::size_t>(spindle)].isOverridden;
+    canon.take(SwitchFeedOverride{false});
+    canon.take(SwitchSpeedOverride{spindle, false});
+    tap_move(plan.bottom);
+    canon.take(StopSpindle{spindle});
+    start_spindle(-direction);
+    canon.take(Dwell{state.cycle.p});
+    tap_move(plan.clear);
+    canon.take(StopSpindle{spindle});
+    start_spindle(direction);
+    if (state.isFeedOverride) {
+        canon.take(SwitchFeedOverride{true});
+    }
+    if (isSpeedOverride) {
+        canon.take(SwitchSpeedOverride{spindle, true});
+    }
+}
+
+/// G87: through the hole beside its axis with the tool turned aside, then cutting from below up to K.
+void CycleMoves::run_back_bore(const CyclePlan &plan, int direction) {
+    const PlaneAxes axes = plane_axes(state.plane);
+    const int spindle = state.active_spindle;
+    constexpr int COUNTERCLOCKWISE = 2;
+    const Pose on_axis = state.position;
+    const double along_first = axes.normal == geometry::AXIS_X ? state.cycle.j : state.cycle.i;
+    const double along_second = axes.normal == geometry::AXIS_Z ? state.cycle.j : state.cycle.k;
+    const auto shift = [&](bool isBeside) {
+        const int a = axes.normal == geometry::AXIS_Y ? geometry::AXIS_X : axes.first;
+        const int b = axes.normal == geometry::AXIS_Y ? geometry::AXIS_Z : axes.second;
+        state.position[a] = on_axis[a] + (isBeside ? along_first : 0.0);
+        state.position[b] = on_axis[b] + (isBeside ? along_second : 0.0);
+        canon.take(StraightTraverse{state.position});
+    };
+    const double up = axes.normal == geometry::AXIS_Z
+                          ? state.cycle.k
+                          : (axes.normal == geometry::AXIS_Y ? state.cycle.j : state.cycle.i);
+    const double top = up + (state.isIncremental ? plan.bottom : 0.0);
+    const auto orient = [&] {
+        constexpr double PATIENCE_S = 60.0;
+        canon.take(StopSpindle{spindle});
+        canon.take(OrientSpindle{spindle, 0.0, COUNTERCLOCKWISE});
+        if (settings.isTask) {  // LinuxCNC's rs274 prints no waiting
+            canon.take(WaitOrientComplete{spindle, PATIENCE_S});
+        }
+    };
+    shift(true);
+    orient();
+    cycle_move(true, axes.normal, plan.bottom);
+    shift(false);
+    start_spindle(direction);
+    cycle_move(false, axes.normal, top);
+    cycle_move(false, axes.normal, plan.bottom);
+    orient();
+    shift(true);
+    cycle_move(true, axes.normal, plan.clear);
+    shift(false);
+    start_spindle(direction);
+}
+
+}  // namespace
+
+bool run_canned_cycle(const Code &code, const BlockValues &values, const Machine &machine, State &state,
+                      CanonQueue &canon, Fault &fault) {
+    int repeats = 1;
+    if (!values.hasAxes() && values.isMotionImplied) {
+        return true;
+    }
+    if (!check_cycle(code, values, machine, state, repeats, fault) ||
+        !take_cycle_words(code, values, state, fault)) {
+        return false;
+    }
+    const PlaneAxes axes = plane_axes(state.plane);
+    const char normal_name = geometry::AXIS_LETTERS_LOWER[axes.normal];
+    if (!isCycle(state.motion) || !state.cycle.isRunning) {
+        state.cycle.initial = state.position[axes.normal];
+    }
+    CycleMoves moves{machine.settings, state, canon};
+    CyclePlan plan;
+    plan.code = code.number;
+    // Incremental R counts from where the sequence of cycles began, so that all holes are alike.
+    plan.r = state.cycle.r + (state.isIncremental ? state.cycle.initial : 0.0);
+    plan.bottom = state.cycle.bottom + (state.isIncremental ? plan.r : 0.0);
+    if (plan.r < plan.bottom) {
+        return fault.set(fmt::format("R value less than {} value in cycle", normal_name),
+                         values.column_of('r'));
+    }
+    constexpr double MOST_MOVES = 1e6;  // a slip of the keyboard, not a program
+    const double pecks = needsPeck(code.number) ? count_pecks(plan, state.cycle.q) : 1.0;
+    if (pecks * repeats > MOST_MOVES) {
+        return fault.set(
+            "This canned cycle would make more than a million moves: is L too large or Q too small?",
+            values.column_of(pecks > repeats ? 'q' : 'l'));
+    }
+    state.motion = code.number;
+    state.cycle.isRunning = true;
+    Pose goal = target(values, state);
+    if (!polar_target(values, state, goal, fault)) {
+        return false;
+    }
+    const geometry::PathMode control = state.control;
+    // In a sequence that began below R every cycle makes this move, though without length but for the first.
+    const double height = state.position[axes.normal];
+    if (height < plan.r || (height == plan.r && state.cycle.initial < plan.r)) {
+        moves.cycle_move(true, axes.normal, plan.r);
+    }
+    if (control != geometry::PathMode::EXACT_PATH) {
+        canon.take(SetMotionControlMode{geometry::PathMode::EXACT_PATH, 0.0});
+    }
+    for (int i = 0; i < repeats; ++i) {
+        plan.clear = state.isRetractToR ? plan.r : std::fmax(state.cycle.initial, plan.r);
+        if (state.isIncremental && i > 0) {  // each repeat goes on from the last hole, polar words too
+            goal = target(values, state);
+            if (!polar_target(values, state, goal, fault)) {
+                return false;
+            }
+        }
+        Pose over = state.position;
+        over[axes.first] = goal[axes.first];
+        over[axes.second] = goal[axes.second];
+        over[axes.normal] = std::fmax(state.position[axes.normal], plan.clear);
+        canon.take(StraightTraverse{over});
+        state.position = over;
+        if (over[axes.normal] != plan.r) {
+            moves.cycle_move(true, axes.normal, plan.r);
+        }
+        moves.run_cycle(plan);
+    }
+    if (control != geometry::PathMode::EXACT_PATH) {
+        canon.take(
+            SetMotionControlMode{control, control == geometry::PathMode::BLEND ? state.tolerance : 0.0});
+        canon.take(SetNaivecamTolerance{state.naivecam});
+    }
+    return true;
+}
+
+}  // namespace mw::gcode::detail

@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "gcode/interpreter/codes/executor.hh"
+
+#include "base/overloaded.hh"
+#include "gcode/interpreter/codes/comments.hh"
+#include "gcode/interpreter/codes/modes/restore_modes.hh"
+#include "gcode/interpreter/codes/moves/rotary.hh"
+#include "gcode/interpreter/codes/moves/splines.hh"
+#include "gcode/interpreter/codes/synchronisation.hh"
+
+namespace mw::gcode::detail {
+namespace {
+
+BlockCodes codes_of(const BlockValues &values) {
+    constexpr int G92 = 920, G92_3 = 923;
+    BlockCodes out;
+    for (const ActiveCode &active : values.codes) {
+        switch (active.code->group) {
+        case Group::NON_MODAL:
+            // LinuxCNC shows G92.1 to G92.3 by what they leave in force alone.
+            out.non_modal =
+                active.code->number > G92 && active.code->number <= G92_3 ? -1 : active.code->number;
+            break;
+        case Group::STOP: out.stop = active.code->number; break;
+        case Group::TOOL_CHANGE: out.tool_change = active.code->number; break;
+        default: break;
+        }
+    }
+    return out;
+}
+
+/// Nothing, or a straight move alone, which fails before it changes anything.
+bool isStateSafe(const BlockValues &values, const State &state) {
+    constexpr int G1 = 10;
+    const bool isStraight = values.codes.size() == 1 && values.motion != nullptr &&
+                            values.motion->number <= G1 && !state.comp.isOn();
+    return values.codes.empty() || isStraight;
+}
+
+}  // namespace
+
+Executor::Executor(World &world, ToolSource &tool_source, ParameterSource &source, const Settings &settings,
+                   Names &names)
+    : tools(tool_source), script_levels{settings.debug_mask, settings.logging_level},
+      machine_{world, settings}, source_(source), names_(names), evaluator_(parameters, names, *this, fault) {
+    state.rotary = settings.rotary;
+}
+
+// ------------------------------------------------------------------------------------------- one block
+
+bool Executor::run(const BlockView &view, std::string_view line_text) {
+    BlockValues &values = block_.values;
+    values.clear();
+    block_codes = {};
+    outcome = Outcome::OK;
+    if (!read_words(view, {evaluator_, remaps}, values, fault) ||
+        (view.block->setting_count > 0 && !settings_.apply(view, evaluator_, names_, parameters, fault))) {
+        return false;
+    }
+    block_.comment.clear();
+    block_.number = view.block->isNumbered ? view.block->sequence : -1;
+    if (lathe.request() != nullptr) {
+        keep_state();
+        return lathe.record(values, machine_.settings, state, fault);
+    }
+    if (view.block->comment_count > 0 && !run_last_comment(view, line_text)) {
+        return false;
+    }
+    if (view.block->word_count == 0) {
+        return true;  // settings and comments alone: lines of loops are mostly that
+    }
+    if (!choose_motion(values, state.motion, remaps, fault) || !check_machine_coordinates(values, fault) ||
+        !check_open_nurbs(values, state, fault) ||
+        !axis_check_.check(values, machine_.world.axis_mask(), fault) || !check_words(values, fault) ||
+        !check_rotary(values, state, fault)) {
+        return false;
+    }
+    block_codes = codes_of(values);
+    return run_codes(values, 0);
+}
+
+/// Only the last comment of a block counts.
+bool Executor::run_last_comment(const BlockView &view, std::string_view line_text) {
+    const Comment &last = view.arena->comments[view.block->first_comment + view.block->comment_count - 1u];
+    const std::string_view comment = line_text.substr(last.begin, last.end - last.begin);
+    if (last.isScript) {
+        block_.script_text = comment;
+        outcome = Outcome::SCRIPT;
+        return true;
+    }
+    if (!remaps.all().empty()) {
+        block_.comment = comment;
+    }
+    return run_comment(comment, last.begin + 1, {evaluator_, names_}, canon, fault);
+}
+
+/// The codes from `first` on; a remapped one interrupts the block, and keeps the rest for after the
+/// procedure.
+bool Executor::run_codes(const BlockValues &values, std::size_t first) {
+    if (!isStateSafe(values, state)) {
+        keep_state();
+    }
+    for (std::size_t i = first; i < values.codes.size(); ++i) {
+        const ActiveCode &active = values.codes[i];
+        if (active.code->remap != nullptr) {
+            remaps.interrupt(
+                {active.code->remap, values, i + 1, block_.comment, block_place.line, block_.number});
+            outcome = Outcome::REMAP;
+            return true;
+        }
+        if (!run_code(*active.code, values)) {
+            if (fault.column == 0) {
+                fault.column = active.column;
+            }
+            return false;
+        }
+        if (remaps.isAnyRunning()) {
+            remaps.count_builtin(*active.code);
+        }
+    }
+    return true;
+}
+
+/// Hands a code the parts that its kind asks for.
+bool Executor::run_code(const Code &code, const BlockValues &values) {
+    return std::visit(
+        Overloaded{
+            [&](ModeHandler act) { return act(code, values, state, canon, fault); },
+            [&](MachineHandler act) { return act(code, values, machine_, state, canon, fault); },
+            [&](OffsetHandler act) { return act(code, values, machine_, parameters, state, canon, fault); },
+            [&](SplineHandler act) { return act(code, values, control_points_, state, canon, fault); },
+            [&](ToolHandler act) { return act(code, values, machine_, tools, state, canon, fault, outcome); },
+            [&](StoreHandler act) {
+                return act(code, values, machine_, tools, parameters, state, canon, fault, outcome);
+            },
+            [&](WaitHandler act) {
+                return act(code, values, parameters, awaited, state, canon, fault, outcome);
+            },
+            [&](LatheHandler act) {
+                return act(code, values, machine_, lathe, state, canon, fault, outcome);
+            },
+            [&](EndHandler act) {
+                return act(code, values, machine_, parameters, state, canon, fault, outcome);
+            },
+            [&](CallHandler act) {
+                return act(code, values, machine_, block_place, fanuc_call, parameters, state, canon, fault,
+                           outcome);
+            },
+            [&](ContextHandler act) {
+                return act(code, values, machine_, saved_modes, parameters, state, canon, fault);
+            },
+        },
+        code.handler);
+}
+
+bool Executor::resume(const PendingBlock &pending) {
+    begin_block();
+    block_.comment = pending.comment;
+    return run_codes(pending.values, pending.next);
+}
+
+// ------------------------------------------------------------------------------------------------ undo
+
+void Executor::begin_block() {
+    begin_light_block();
+    keep_state();
+}
+
+void Executor::begin_light_block() {
+    isStateKept_ = false;
+    codes_before_ = block_codes;
+    canon.begin_undo();
+    outcome = Outcome::OK;
+}
+
+/// The state is large: blocks that leave it alone are spared the copy.
+void Executor::keep_state() {
+    if (!isStateKept_) {
+        before_ = state;
+        isStateKept_ = true;
+    }
+}
+
+void Executor::commit() {
+    parameters.commit();
+    tools.commit();
+    saved_modes.commit();
+    canon.commit();
+}
+
+void Executor::rollback() {
+    if (isStateKept_) {
+        state = before_;
+    }
+    block_codes = codes_before_;
+    parameters.rollback();
+    tools.rollback();
+    saved_modes.rollback();
+    remaps.drop_interrupted();
+    canon.rollback();
+    outcome = Outcome::OK;
+}
+
+void Executor::flush(Canon &target) {
+    if (!state.comp.isHolding()) {
+        canon.flush(target);
+        return;
+    }
+    canon.flush(target, state.comp.held_call());
+    state.comp.set_held_call(0);
+    before_.comp.set_held_call(0);
+}
+
+void Executor::abort_block() {
+    remaps.drop_interrupted();
+    outcome = Outcome::OK;
+    awaited.isProbe = awaited.isInput = false;
+    state.spline.order = 0;
+    isStateKept_ = false;
+    canon.clear();
+    state.comp.forget_move();
+    lathe.forget_roughing();
+}
+
+// ------------------------------------------------------------------------------------- calls, the machine
+
+void Executor::push_call() {
+    parameters.push_call();
+    saved_modes.push_call();
+}
+
+/// Fanuc-style calls have no arguments: #1 to #30 are the caller's own.
+bool Executor::pop_call(bool isFanuc) {
+    const std::optional<State> modes = saved_modes.pop_call();
+    parameters.pop_call(isFanuc);
+    remaps.end_above(saved_modes.depth());
+    if (!modes) {
+        return true;
+    }
+    keep_state();
+    return restore_modes(*modes, machine_, parameters, state, canon, fault);
+}
+
+void Executor::drop_calls(std::size_t depth) {
+    for (std::size_t calls = saved_modes.depth(); calls > depth; --calls) {
+        parameters.pop_call(false);
+    }
+    saved_modes.drop_calls(depth);
+    remaps.end_above(depth);
+    if (depth == 0) {
+        lathe.drop();
+    }
+}
+
+void Executor::announce() {
+    detail::announce(machine_, parameters, state, canon);
+}
+
+void Executor::announce_modes() {
+    detail::announce_modes(machine_, state, canon);
+}
+
+void Executor::synch() {
+    synchronise(machine_, tools, parameters, awaited, state);
+}
+
+}  // namespace mw::gcode::detail

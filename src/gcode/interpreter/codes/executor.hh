@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Runs parsed blocks: owns the parts that codes work on, and hands them to the codes. Knows no code.
+#pragma once
+
+#include <optional>
+#include <set>
+#include <string>
+
+#include "gcode/canon/canon_queue.hh"
+#include "gcode/interpreter/codes/active_codes.hh"
+#include "gcode/interpreter/codes/around_block.hh"
+#include "gcode/interpreter/codes/attributes.hh"
+#include "gcode/interpreter/codes/block_reader.hh"
+#include "gcode/interpreter/codes/kept_parameters.hh"
+#include "gcode/interpreter/codes/lathe/lathe_cycles.hh"
+#include "gcode/interpreter/codes/machine.hh"
+#include "gcode/interpreter/codes/outcome.hh"
+#include "gcode/interpreter/codes/remaps.hh"
+#include "gcode/interpreter/codes/saved_modes.hh"
+#include "gcode/interpreter/codes/state.hh"
+#include "gcode/interpreter/codes/tools/tool_table.hh"
+#include "gcode/interpreter/expressions/evaluator.hh"
+#include "gcode/interpreter/interpreter.hh"
+#include "gcode/syntax/program.hh"
+
+namespace mw::gcode::detail {
+
+/// Values of named parameters that scripts define.
+class ScriptNames {
+  public:
+    virtual ~ScriptNames() = default;
+    virtual bool hasName(std::string_view name) const = 0;
+    /// Nothing after setting the fault.
+    virtual std::optional<double> value_of(std::string_view name) = 0;
+};
+
+/// What is known of the block that runs.
+struct RunningBlock {
+    BlockValues values;
+    std::string comment;      ///< kept while there are remaps
+    std::string script_text;  ///< the statements of its ;py, line
+    int number = -1;          ///< its N word
+};
+
+class Executor : public BuiltIns {
+  public:
+    Executor(World &world, ToolSource &tool_source, ParameterSource &source, const Settings &settings,
+             Names &names);
+
+    /// Words, settings and comments of a block; then its codes. False after setting the fault. `line_text` is
+    /// looked at when the block has comments.
+    bool run(const BlockView &view, std::string_view line_text);
+    /// The rest of a block that a remapped code has interrupted.
+    bool resume(const PendingBlock &pending);
+
+    // The parts. Each takes back what a block that fails has done to it; the state by a copy.
+    State state;
+    Parameters parameters;
+    ToolTable tools;
+    CanonQueue canon;
+    SavedModes saved_modes;
+    Remaps remaps;
+    LatheCycles lathe;
+    // What a block leaves to who runs the program.
+    Fault fault;
+    Outcome outcome = Outcome::OK;
+    FanucCall fanuc_call;  ///< of the M98 that the outcome is about
+    Awaited awaited;
+    BlockPlace block_place;
+    ReturnValue returned;
+    BlockCodes block_codes;
+    ScriptLevels script_levels;
+
+    Evaluator &evaluator() { return evaluator_; }
+    const World &world() const { return machine_.world; }
+    /// The statements of the ;py, line that the outcome is about.
+    const std::string &script_text() const { return block_.script_text; }
+
+    /// Remembers state and queue, so that rollback() can undo the block; commit() keeps what it did.
+    void begin_block();
+    /// The same for a block that may change no state: whoever changes it calls keep_state() before.
+    void begin_light_block();
+    void keep_state();
+    void commit();
+    void rollback();
+    /// Replays the queued calls that no later block can change.
+    void flush(Canon &target);
+    /// After an abort: nothing waits any more.
+    void abort_block();
+
+    /// New local names and modes of its own for a subroutine; back to the caller's. pop_call() restores the
+    /// modes that M73 saved.
+    void push_call();
+    bool pop_call(bool isFanuc);
+    /// Back to `depth` calls, without restoring what M73 saved.
+    void drop_calls(std::size_t depth = 0);
+
+    /// Announces the state to the canon, as at the start of a program.
+    void announce();
+    /// Offsets, spindles' speeds and switches once more: the canon has lost some of them.
+    void announce_modes();
+    /// Takes positions, tools and switches from the machine.
+    void synch();
+    ActiveCodes active_codes() const {
+        return detail::active_codes(state, parameters, block_codes, block_place.sequence);
+    }
+
+    // exec_outside.cc: what programs and scripts read.
+    AttributeSources attribute_sources();
+    void set_script_names(ScriptNames *names) { script_names_ = names; }
+    /// INI values that the program has asked for, as names of parameters.
+    const std::set<std::string, std::less<>> &ini_names_read() const { return ini_names_read_; }
+    bool isBuiltInName(std::string_view name) const override;
+    std::optional<double> built_in(std::string_view name) const override;
+    double built_in(int number) const override;
+
+  private:
+    bool run_last_comment(const BlockView &view, std::string_view line_text);
+    bool run_codes(const BlockValues &values, std::size_t first);
+    bool run_code(const Code &code, const BlockValues &values);
+    KeptSources kept_sources() const;
+
+    const Machine machine_;
+    ParameterSource &source_;
+    Names &names_;
+    Evaluator evaluator_;
+    RunningBlock block_;
+    BlockSettings settings_;
+    AxisCheck axis_check_;
+    std::vector<NurbsPoint> control_points_;  ///< of the NURBS that is open
+    BlockCodes codes_before_;
+    State before_;  ///< as the block found it, once keep_state() was called for it
+    bool isStateKept_ = false;
+    ScriptNames *script_names_ = nullptr;
+    mutable std::set<std::string, std::less<>> ini_names_read_;
+};
+
+}  // namespace mw::gcode::detail

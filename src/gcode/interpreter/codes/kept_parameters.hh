@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Parameters that the interpreter keeps itself: #<_name>, #5021 to #5029 and #5400 to #5428.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "gcode/interpreter/codes/around_block.hh"
+#include "gcode/interpreter/codes/state.hh"
+#include "gcode/interpreter/codes/tools/tool_table.hh"
+#include "gcode/interpreter/expressions/parameters.hh"
+#include "gcode/interpreter/world.hh"
+
+namespace mw::gcode::detail {
+
+/// What they read.
+struct KeptSources {
+    const State &state;
+    const ReturnValue &returned;
+    const BlockPlace &place;
+    const Parameters &parameters;  ///< has what the state does not tell
+    const World &world;
+    Pose position;  ///< of the tool, compensation included [program units, degrees]
+    int running_remaps = 0;
+    bool isTask = false;
+    const ToolTable *tools = nullptr;  ///< without it pockets are told as places in the table
+};
+
+bool isKeptName(std::string_view name);
+/// Nothing when there is no such name.
+std::optional<double> kept_value(std::string_view name, const KeptSources &sources);
+/// `number` as isBuiltInNumber() has it.
+double kept_value(int number, const KeptSources &sources);
+/// All names, sorted.
+std::vector<std::string> kept_names();
+
+/// Ten times the G code of a coordinate system (from 1).
+constexpr int coordinate_system_code(int index) {
+    constexpr int LAST_WHOLE = 6, G53 = 530, BEFORE_G59_1 = 584;
+    return index <= LAST_WHOLE ? G53 + 10 * index : BEFORE_G59_1 + index;
+}
+
+}  // namespace mw::gcode::detail

@@ -1,0 +1,397 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "gcode/interpreter/codes/lathe/lathe_cycles.hh"
+
+#include <cmath>
+#include <expected>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "gcode/interpreter/codes/block_words.hh"
+#include "gcode/interpreter/codes/lathe/lathe_offset.hh"
+#include "gcode/interpreter/codes/moves/arcs.hh"
+#include "gcode/interpreter/codes/moves/targets.hh"
+
+namespace mw::gcode::detail {
+namespace {
+
+constexpr int Z = geometry::AXIS_Z, X = geometry::AXIS_X;
+
+/// How far an arc of a profile may go back before it counts as not monotonic: the arcs of rounded numbers
+/// that touch a shoulder do.
+constexpr double TOLERANCE_MM = 0.001, TOLERANCE_INCH = TOLERANCE_MM / 25.4;
+
+/// A profile in the frame of its cut.
+struct FramedProfile {
+    CutFrame frame;
+    Profile profile;
+};
+
+/// Whether the profile is one for cuts along X. G70 follows what the last roughing with the same subroutine
+/// has cut; without one a profile for both is one for cuts along Z, if that puts the distance D on the same
+/// side. The text after "The profile of Gxx " when that cannot be told.
+std::expected<bool, std::string> choose_facing(const LatheRequest &request, std::optional<bool> roughed,
+                                               double tolerance) {
+    if (request.code != 700) {
+        return request.code >= 720;
+    }
+    const CutFrame turned = frame_of(request.profile, false), faced = frame_of(request.profile, true);
+    const bool isTurnable = isMonotonic(in_frame(request.profile, turned), tolerance);
+    const bool isFaceable = isMonotonic(in_frame(request.profile, faced), tolerance);
+    if (!isTurnable && !isFaceable) {
+        return std::unexpected("is not monotonic: it goes back along both Z and X");
+    }
+    if (!isTurnable || !isFaceable) {
+        return !isTurnable;
+    }
+    const bool isDistanceUsed = request.distance > 0.0 || request.end_distance > 0.0;
+    if (!roughed && isDistanceUsed && turned.turn(1) != faced.turn(1)) {
+        return std::unexpected("could be one of G71 or of G72, which puts the distance D on opposite sides: "
+                               "rough it in this program, or give no D and E");
+    }
+    return roughed.value_or(false);
+}
+
+/// The profile in the frame of its cut, with its corners. The text after "The profile of Gxx " when it cannot
+/// be cut.
+std::expected<FramedProfile, std::string> framed_profile(const Profile &raw, bool isFacing,
+                                                         double tolerance) {
+    FramedProfile framed;
+    framed.frame = frame_of(raw, isFacing);
+    framed.profile = in_frame(raw, framed.frame);
+    if (!isMonotonic(framed.profile, tolerance)) {
+        return std::unexpected(fmt::format("is not monotonic: it goes back along {}", isFacing ? "X" : "Z"));
+    }
+    if (!round_corners(framed.profile) || !isMonotonic(framed.profile, tolerance)) {
+        return std::unexpected("has a corner that its fillet A or chamfer C does not fit");
+    }
+    drop_short(framed.profile, tolerance / 10.0);
+    return framed;
+}
+
+/// The contour of one pass: without arcs that go back, where more than following it is asked for.
+Profile contour_of(const Profile &profile, bool isFollowed, double tolerance) {
+    Profile contour = profile;
+    if (!isFollowed) {
+        straighten(contour);
+        drop_short(contour, tolerance / 10.0);
+    }
+    for (std::size_t i = 0; i < contour.size(); ++i) {
+        contour[i].source = static_cast<int>(i);
+    }
+    return contour;
+}
+
+bool isEndingAbove(const Profile &profile) {
+    return profile.back().end.y > profile.front().end.y;
+}
+
+/// From the end of what is cut across to `height`, at feed: the material may stand there.
+void add_way_out(Profile &cut, double height) {
+    const Point end = cut.back().end;
+    if (end.y < height) {
+        ProfileSegment up;
+        up.start = end;
+        up.end = {end.x, height};
+        up.source = cut.back().source + 1;
+        cut.push_back(up);
+    }
+}
+
+/// The start's height, or the contour's where that is higher.
+double clear_height(const Profile &cut) {
+    double height = cut.front().start.y;
+    for (const ProfileSegment &segment : cut) {
+        height = std::fmax(height, top_of(segment));
+    }
+    return height;
+}
+
+/// The start of the cycle is between the ends of the profile's range in X (facing: Z), so that no side is the
+/// one without material.
+bool refuse_side(const LatheRequest &request, const CutFrame &cut, std::string_view name, bool isDiameter,
+                 Fault &fault) {
+    const auto highest = [&](double across) {
+        const CutFrame frame{.isFacing = cut.isFacing, .across = across};
+        double top = -std::numeric_limits<double>::infinity();
+        for (const ProfileSegment &segment :
+             in_frame({request.profile.begin() + 1, request.profile.end()}, frame)) {
+            top = std::fmax(top, top_of(segment));
+        }
+        return top;
+    };
+    const char axis = cut.isFacing ? 'Z' : 'X';
+    const double scale = isDiameter && !cut.isFacing ? 2.0 : 1.0;
+    const double low = -highest(-1) * scale, high = highest(1) * scale;
+    const double start = request.start[cut.isFacing ? Z : X] * scale;
+    return fault.set(
+        fmt::format(
+            "The profile of {} goes from {}{:g} to {}{:g}, and the cycle starts between them at {}{:g}", name,
+            axis, low, axis, high, axis, start),
+        0,
+        cut.isFacing
+            ? fmt::format("start at Z{:g} or more for a front face, at Z{:g} or less for a back face: "
+                          "move there before the cycle, or give it as the cycle's Z",
+                          high, low)
+            : fmt::format("start at X{:g} or more for an outside, at X{:g} or less for a bore: move "
+                          "there before the cycle, or give it as the cycle's X",
+                          high, low));
+}
+
+/// A move of the cycle, compensated when G41 or G42 is on.
+bool send_profile_move(const ProfileMove &move, const CutFrame &frame, State &state, CanonQueue &canon,
+                       Fault &fault) {
+    Pose end = state.position;
+    const Point machine = frame.from(move.end), centre = frame.from(move.centre);
+    end[Z] = machine.x;
+    end[X] = machine.y;
+    const bool isCompensated = state.comp.isOn();
+    const CompPlace place{state.position, state.plane, state.units};
+    if (move.isArc) {
+        const int rotation = frame.turn(move.turn);
+        if (isCompensated) {
+            if (!state.comp.move_along_arc(place, {end, centre.x, centre.y, rotation}, canon, fault)) {
+                return false;
+            }
+        } else {
+            canon.take(ArcFeed{end[Z], end[X], centre.x, centre.y, rotation, end[geometry::AXIS_Y], end});
+        }
+    } else if (isCompensated) {
+        if (!state.comp.move_straight(place, move.isRapid, end, canon, fault)) {
+            return false;
+        }
+    } else {
+        move.isRapid ? canon.take(StraightTraverse{end}) : canon.take(StraightFeed{end});
+    }
+    state.position = end;
+    return true;
+}
+
+}  // namespace
+
+bool begin_lathe_cycle(const Code &code, const BlockValues &values, const Machine &, LatheCycles &lathe,
+                       State &state, CanonQueue &, Fault &fault, Outcome &outcome) {
+    const std::string name = code_name(code);
+    static constexpr std::string_view OTHER_AXES = "yabcuvw";
+    for (const char c : OTHER_AXES) {
+        if (values.has(c)) {
+            return fault.set(fmt::format("{} takes no axis words but X and Z", name), values.column_of(c));
+        }
+    }
+    LatheRequest request;
+    request.code = code.number;
+    if (!whole_word(values, 'q', request.label, fault) ||
+        (values.has('p') && !whole_word(values, 'p', request.passes, fault))) {
+        return false;
+    }
+    request.distance = values.at('d', 0.0);
+    request.end_distance = values.at('e', 0.0);
+    request.roughing.increment = values.at('i', request.roughing.increment);
+    request.roughing.retract = values.at('r', request.roughing.retract);
+    request.roughing.isVisitingStarts = request.distance != 0.0;
+    request.roughing.pockets = static_cast<RoughingPlan::Pockets>(code.number % 10);
+    constexpr int MAX_PASSES = 10000;
+    struct Check {
+        bool isBad;
+        char word;
+        const char *text;
+    };
+    const Check checks[] = {
+        {state.plane != Plane::XZ, 'q', "needs the plane G18"},
+        {state.comp.isOn() && code.number != 700, 'q', "cannot be used with cutter radius compensation on"},
+        {values.has('@') || values.has('^'), 'q', "takes no polar words"},
+        {state.feed_mode == FeedMode::INVERSE_TIME, 'q', "cannot be used with inverse time feed"},
+        {state.feed == 0.0, 'q', "needs a feed: give F first"},
+        {request.roughing.increment <= 0.0, 'i', "needs a cutting increment I above 0"},
+        {request.distance < 0.0, 'd', "needs a distance D of 0 or more"},
+        {request.end_distance < 0.0, 'e', "needs a last distance E of 0 or more"},
+        {request.passes < 1 || request.passes > MAX_PASSES, 'p', "needs a number of passes P of 1 to 10000"},
+    };
+    for (const Check &check : checks) {
+        if (check.isBad) {
+            return fault.set(fmt::format("{} {}", name, check.text), values.column_of(check.word));
+        }
+    }
+    if (!check_feed_per_revolution(state, fault)) {
+        return false;
+    }
+    request.start = request.position = target(values, state);
+    lathe.open(std::move(request));
+    outcome = Outcome::PROFILE;
+    return true;
+}
+
+/// A block of the profile's subroutine: its move, if it has one.
+bool LatheCycles::record(const BlockValues &values, const Settings &settings, const State &state,
+                         Fault &fault) {
+    LatheRequest &request = *request_;
+    const auto isMove = [](int motion) {
+        return motion == 0 || motion == 10 || motion == 20 || motion == 30;
+    };
+    for (const ActiveCode &active : values.codes) {
+        const bool isMotion = active.code->group == Group::MOTION;
+        if (isMotion && isMove(active.code->number)) {
+            request.motion = active.code->number;
+        } else if (active.code->usesAxes) {
+            return true;  // the axis words are not for a move
+        }
+    }
+    const std::uint32_t used = letters("xzuw");
+    if ((values.present & used) == 0 || !isMove(request.motion)) {
+        return true;
+    }
+    const Pose from = request.position;
+    // The words U and W are steps along X and Z, whatever the distance mode.
+    Pose end = from;
+    for (const auto &[name, step, axis] : {std::tuple{'x', 'u', X}, std::tuple{'z', 'w', Z}}) {
+        const double scale = axis == X && state.isDiameter ? 0.5 : 1.0;
+        if (values.has(name)) {
+            end[axis] = values.at(name) * scale + (state.isIncremental ? end[axis] : 0.0);
+        }
+        if (values.has(step)) {
+            end[axis] += values.at(step) * scale;
+        }
+    }
+    request.position = end;
+    bool isDone = true;
+    ProfileSegment line;
+    line.start = {from[Z], from[X]};
+    line.end = {end[Z], end[X]};
+    const bool isFirst = request.profile.empty();
+    const bool isMoving = from[X] != end[X] || from[Z] != end[Z];
+    if (request.motion >= 20) {
+        if (isFirst) {  // the contour begins where the cycle does
+            line.end = line.start;
+            request.profile.push_back(line);
+        }
+        isDone = record_arc(values, settings, state, from, end, fault);
+    } else if (isFirst || isMoving) {  // the first move leads to the contour, however far that is
+        request.profile.push_back(line);
+    }
+    return isDone && take_corner_word(values, fault);
+}
+
+bool LatheCycles::record_arc(const BlockValues &values, const Settings &settings, const State &state,
+                             const Pose &from, const Pose &end, Fault &fault) {
+    State begin = state;
+    begin.position = from;
+    BlockValues words = values;
+    words.present &= ~(letters("xzacuvwpby"));
+    for (const auto &[name, axis] : {std::pair{'x', X}, std::pair{'z', Z}}) {
+        const double relative = state.isIncremental ? end[axis] - begin.position[axis] : end[axis];
+        words.present |= bit_of(BlockValues::index(name));
+        words.value[static_cast<std::size_t>(BlockValues::index(name))] =
+            axis == X && state.isDiameter ? 2.0 * relative : relative;
+    }
+    ArcPlan arc;
+    if (!plan_arc(request_->motion == 30, words, settings, begin, arc, fault)) {
+        return false;
+    }
+    ProfileSegment segment;
+    segment.isArc = true;
+    segment.start = {begin.position[Z], begin.position[X]};
+    segment.end = {end[Z], end[X]};
+    segment.centre = {arc.first_centre, arc.second_centre};
+    segment.turn = arc.rotation;
+    request_->profile.push_back(segment);
+    return true;
+}
+
+/// A: a fillet at the end of this move, C: a chamfer.
+bool LatheCycles::take_corner_word(const BlockValues &values, Fault &fault) {
+    if (!values.has('a') && !values.has('c')) {
+        return true;
+    }
+    const char name = values.has('a') ? 'a' : 'c';
+    if (values.has('a') && values.has('c')) {
+        return fault.set("A corner of the profile has either a fillet A or a chamfer C",
+                         values.column_of('c'));
+    }
+    if (values.at(name) < 0.0) {
+        return fault.set("The fillet A or chamfer C of a profile must not be negative",
+                         values.column_of(name));
+    }
+    if (!request_->profile.empty()) {
+        request_->profile.back().fillet = values.at(name);
+        request_->profile.back().isChamfer = name == 'c';
+    }
+    return true;
+}
+
+bool LatheCycles::finish(State &state, CanonQueue &canon, Fault &fault) {
+    const LatheRequest request = std::move(*request_);
+    request_.reset();
+    return cut(request, state, canon, fault);
+}
+
+bool LatheCycles::cut(const LatheRequest &request, State &state, CanonQueue &canon, Fault &fault) {
+    const std::string name = code_name(*find_code('g', request.code));
+    const bool isFinishing = request.code == 700;
+    state.motion = 10;
+    state.cycle.isRunning = false;
+    state.comp.set_exit(false);
+    const auto rapid = [](Point to) { return ProfileMove{true, false, to, {}, 1, -1}; };
+    if (!send_profile_move(rapid({request.start[Z], request.start[X]}), {}, state, canon, fault)) {
+        return false;
+    }
+    if (request.profile.size() < 2) {  // no more than the way to its beginning
+        return true;
+    }
+    const double tolerance = state.units == LengthUnits::MM ? TOLERANCE_MM : TOLERANCE_INCH;
+    const bool isRoughed = roughed_ && roughed_->label == request.label;
+    const std::expected<bool, std::string> isFacing =
+        choose_facing(request, isRoughed ? std::optional(roughed_->isFacing) : std::nullopt, tolerance);
+    std::expected<FramedProfile, std::string> framed =
+        isFacing ? framed_profile(request.profile, *isFacing, tolerance) : std::unexpected(isFacing.error());
+    if (!framed) {
+        return fault.set(fmt::format("The profile of {} {}", name, framed.error()));
+    }
+    const bool isSideNeeded = !isFinishing || request.distance > 0.0 || request.end_distance > 0.0;
+    if (isSideNeeded && !framed->frame.isSideClear) {
+        return refuse_side(request, framed->frame, name, state.isDiameter, fault);
+    }
+    ProfileSegment &entry = framed->profile.front();
+    entry.start.x = std::fmin(entry.start.x, entry.end.x);
+    const ProfileMove to_begin = rapid(entry.start);
+    if (!send_profile_move(to_begin, framed->frame, state, canon, fault)) {
+        return false;
+    }
+    RoughingPlan roughing = request.roughing;
+    roughing.narrowest = 20.0 * tolerance;
+    for (int pass = request.passes - 1; pass >= 0; --pass) {
+        const double ahead = (request.distance - request.end_distance) * pass / request.passes;
+        const double distance = isFinishing ? request.end_distance + ahead : request.distance;
+        const bool isLeavingCut = !isFinishing || pass > 0;
+        Profile cut = contour_of(framed->profile, isFinishing && distance == 0.0, tolerance);
+        if (isLeavingCut && !isEndingAbove(cut)) {  // a profile without a shoulder ends at one
+            add_way_out(cut, cut.front().start.y);
+        }
+        cut = offset_profile(cut, distance, tolerance);
+        const Point begin = entry.start, back{begin.x, isFinishing ? clear_height(cut) : begin.y};
+        if (isLeavingCut) {
+            add_way_out(cut, back.y);
+        }
+        std::optional<std::vector<ProfileMove>> moves =
+            isFinishing ? finish_moves(cut) : rough_moves(cut, roughing);
+        if (!moves) {
+            return fault.set(fmt::format("{} would make more than a million moves: is I too small?", name));
+        }
+        if (isFinishing && pass > 0) {
+            if (back.y > begin.y) {  // above the contour first
+                moves->push_back(rapid(back));
+            }
+            moves->push_back(to_begin);
+        }
+        for (const ProfileMove &move : *moves) {
+            if (!send_profile_move(move, framed->frame, state, canon, fault)) {
+                return false;
+            }
+        }
+    }
+    if (!isFinishing) {
+        roughed_ = {request.label, *isFacing};
+    }
+    return true;
+}
+
+}  // namespace mw::gcode::detail

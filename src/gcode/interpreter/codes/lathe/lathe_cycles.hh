@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// G70 (finishing), G71 and G72 (roughing along Z and along X) and their variants for pockets. The profile is
+// a subroutine of which only the moves count; it is read as a call, then cut as a whole.
+#pragma once
+
+#include <optional>
+
+#include "gcode/interpreter/codes/block_values.hh"
+#include "gcode/interpreter/codes/lathe/lathe_layers.hh"
+#include "gcode/interpreter/codes/machine.hh"
+#include "gcode/interpreter/codes/outcome.hh"
+#include "gcode/interpreter/codes/state.hh"
+#include "gcode/syntax/fault.hh"
+
+namespace mw::gcode::detail {
+
+/// The cycle whose profile is being read, and what the last one has left to cut.
+class LatheCycles {
+  public:
+    /// The blocks to come give the profile.
+    void open(LatheRequest request) { request_ = std::move(request); }
+    const LatheRequest *request() const { return request_ ? &*request_ : nullptr; }
+    /// A block of the profile's subroutine: its move, if it has one. False after setting the fault.
+    bool record(const BlockValues &values, const Settings &settings, const State &state, Fault &fault);
+    /// The profile is complete: cuts it. False after setting the fault.
+    bool finish(State &state, CanonQueue &canon, Fault &fault);
+    /// The profile is given up.
+    void drop() { request_.reset(); }
+    /// The program has ended: no G70 follows the last roughing.
+    void forget_roughing() { roughed_.reset(); }
+
+  private:
+    /// The last roughing cycle of the program, for the G70 that follows it.
+    struct Roughed {
+        int label = 0;  ///< of the profile's subroutine
+        bool isFacing = false;
+    };
+    bool record_arc(const BlockValues &values, const Settings &settings, const State &state, const Pose &from,
+                    const Pose &end, Fault &fault);
+    bool take_corner_word(const BlockValues &values, Fault &fault);
+    bool cut(const LatheRequest &request, State &state, CanonQueue &canon, Fault &fault);
+
+    std::optional<LatheRequest> request_;
+    std::optional<Roughed> roughed_;
+};
+
+/// G70 to G72.2: what follows is the profile. False after setting the fault.
+bool begin_lathe_cycle(const Code &code, const BlockValues &values, const Machine &machine,
+                       LatheCycles &lathe, State &state, CanonQueue &canon, Fault &fault, Outcome &outcome);
+
+}  // namespace mw::gcode::detail

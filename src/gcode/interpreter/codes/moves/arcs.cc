@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "gcode/interpreter/codes/moves/arcs.hh"
+
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "gcode/interpreter/codes/block_words.hh"
+#include "gcode/interpreter/codes/moves/targets.hh"
+
+namespace mw::gcode::detail {
+namespace {
+
+/// What the radii at the start and at the end of an arc may differ by: coordinates rounded to 0.01 mm or
+/// 0.001 inch at both ends, in both axes. A hundred times that at most for arcs so large that it is below
+/// RELATIVE_TOLERANCE.
+constexpr double TOLERANCE_MM = 0.02 * std::numbers::sqrt2, TOLERANCE_INCH = 0.002 * std::numbers::sqrt2;
+constexpr double LARGE_FACTOR = 100.0;
+constexpr double RELATIVE_TOLERANCE = 0.001;
+
+constexpr char centre_letter(int axis) {
+    switch (axis) {
+    case geometry::AXIS_X:
+    case geometry::AXIS_U: return 'i';
+    case geometry::AXIS_Y:
+    case geometry::AXIS_V: return 'j';
+    default: return 'k';
+    }
+}
+
+std::string plane_name(const PlaneAxes &axes) {
+    std::string name{geometry::AXIS_LETTERS_LOWER[axes.first], geometry::AXIS_LETTERS_LOWER[axes.second]};
+    return name == "zx" ? "xz" : name;
+}
+
+bool plan_centre_arc(const BlockValues &values, const State &state, ArcPlan &arc, Fault &fault) {
+    const PlaneAxes axes = plane_axes(state.plane);
+    const char first = centre_letter(axes.first), second = centre_letter(axes.second);
+    const double x0 = state.position[axes.first], y0 = state.position[axes.second];
+    if (state.isCentreAbsolute) {
+        for (const char c : {first, second}) {
+            if (!values.has(c)) {
+                return fault.set(
+                    fmt::format("{} word missing in absolute center arc", static_cast<char>(c - 'a' + 'A')));
+            }
+        }
+        arc.first_centre = values.at(first);
+        arc.second_centre = values.at(second);
+    } else {
+        arc.first_centre = x0 + values.at(first, 0.0);
+        arc.second_centre = y0 + values.at(second, 0.0);
+    }
+    const double x1 = arc.end[axes.first], y1 = arc.end[axes.second];
+    const double r1 = std::hypot(x0 - arc.first_centre, y0 - arc.second_centre);
+    const double r2 = std::hypot(x1 - arc.first_centre, y1 - arc.second_centre);
+    const double tolerance = state.units == LengthUnits::MM ? TOLERANCE_MM : TOLERANCE_INCH;
+    constexpr double LEAST_RADIUS = 1e-12;
+    if (r1 < LEAST_RADIUS || r2 < LEAST_RADIUS) {
+        return fault.set("Zero-radius arc: start or end lies in the center", values.column_of(first));
+    }
+    const double error = std::fabs(r1 - r2), relative = error / std::fmax(r1, r2);
+    if (error > tolerance * LARGE_FACTOR || (error > tolerance && relative > RELATIVE_TOLERANCE)) {
+        const char a = geometry::AXIS_LETTERS[axes.first], b = geometry::AXIS_LETTERS[axes.second];
+        return fault.set(
+            fmt::format("Radius to end of arc differs from radius to start: "
+                        "start=({}{:.4f},{}{:.4f}) center=({}{:.4f},{}{:.4f}) end=({}{:.4f},{}{:.4f}) "
+                        "r1={:.4f} r2={:.4f} abs_err={:.4g} rel_err={:.4f}%",
+                        a, x0, b, y0, a, arc.first_centre, b, arc.second_centre, a, x1, b, y1, r1, r2, error,
+                        relative * 100.0));
+    }
+    return true;
+}
+
+/// R > 0: the arc of at most half a turn; R < 0: the other one.
+bool plan_radius_arc(double radius, const Settings &settings, const State &state, ArcPlan &arc,
+                     Fault &fault) {
+    const PlaneAxes axes = plane_axes(state.plane);
+    const double x0 = state.position[axes.first], y0 = state.position[axes.second];
+    const double dx = arc.end[axes.first] - x0, dy = arc.end[axes.second] - y0;
+    const double half = std::hypot(dx, dy) / 2.0;
+    if (half == 0.0) {
+        return fault.set("Current point same as end point of arc");
+    }
+    const double tolerance = state.units == LengthUnits::MM ? settings.center_arc_tolerance.mm
+                                                            : settings.center_arc_tolerance.inch;
+    const double size = std::fabs(radius);
+    if (half - size > tolerance) {
+        return fault.set("Arc radius too small to reach end point");
+    }
+    const double rise = size > half ? std::sqrt(size * size - half * half) : 0.0;
+    const bool isLeft = (arc.rotation > 0) == (radius > 0.0);  // of the chord
+    const double side = (isLeft ? rise : -rise) / (2.0 * half);
+    arc.first_centre = x0 + dx / 2.0 - dy * side;
+    arc.second_centre = y0 + dy / 2.0 + dx * side;
+    return true;
+}
+
+double arc_sweep(const ArcPlan &arc, const PlaneAxes &axes, double x0, double y0) {
+    const double ax = x0 - arc.first_centre, ay = y0 - arc.second_centre;
+    const double bx = arc.end[axes.first] - arc.first_centre, by = arc.end[axes.second] - arc.second_centre;
+    constexpr double FULL_TURN = 2.0 * std::numbers::pi, SAME_ANGLE = 1e-10;
+    double angle = std::atan2(ax * by - ay * bx, ax * bx + ay * by);
+    if (arc.rotation > 0) {
+        angle += (angle < SAME_ANGLE ? FULL_TURN : 0.0) + FULL_TURN * (arc.rotation - 1);
+    } else {
+        angle -= (angle > -SAME_ANGLE ? FULL_TURN : 0.0) + FULL_TURN * (-arc.rotation - 1);
+    }
+    return angle;
+}
+
+void send_arc(const ArcPlan &arc, State &state, CanonQueue &canon) {
+    const PlaneAxes axes = plane_axes(state.plane);
+    if (state.feed_mode == FeedMode::INVERSE_TIME) {
+        const double x0 = state.position[axes.first], y0 = state.position[axes.second];
+        const double radius = std::hypot(x0 - arc.first_centre, y0 - arc.second_centre);
+        send_inverse_time(state, canon,
+                          std::hypot(radius * arc_sweep(arc, plane_axes(state.plane), x0, y0),
+                                     arc.end[axes.normal] - state.position[axes.normal]));
+    }
+    canon.take(ArcFeed{arc.end[axes.first], arc.end[axes.second], arc.first_centre, arc.second_centre,
+                       arc.rotation, arc.end[axes.normal], arc.end});
+    state.position = arc.end;
+}
+
+}  // namespace
+
+bool move_along_arc(const Code &code, const BlockValues &values, const Machine &machine, State &state,
+                    CanonQueue &canon, Fault &fault) {
+    if (state.feed == 0.0 || (state.feed_mode == FeedMode::INVERSE_TIME && !values.has('f'))) {
+        return state.feed == 0.0 ? fault.set("Cannot make arc with zero feed rate")
+                                 : fault.set("F word missing with inverse time arc move");
+    }
+    if (!check_feed_per_revolution(state, fault)) {
+        return false;
+    }
+    if (state.comp.isExit()) {
+        return fault.set("The move just after exiting cutter compensation mode must be straight, not an arc");
+    }
+    ArcPlan arc;
+    if (!plan_arc(code.number == 30, values, machine.settings, state, arc, fault)) {
+        return false;
+    }
+    state.motion = code.number;
+    state.cycle.isRunning = false;
+    if (state.comp.isOn()) {
+        const PlaneAxes axes = plane_axes(state.plane);
+        if (state.feed_mode == FeedMode::INVERSE_TIME) {
+            const Point from{state.position[axes.first], state.position[axes.second]};
+            const Point to{arc.end[axes.first], arc.end[axes.second]};
+            const double radius = distance({arc.first_centre, arc.second_centre}, to);
+            send_inverse_time(state, canon,
+                              std::hypot(radius * arc_sweep(arc, axes, from.x, from.y),
+                                         arc.end[axes.normal] - state.position[axes.normal]));
+        }
+        const CompPlace place{state.position, state.plane, state.units};
+        if (!state.comp.move_along_arc(place, arc, canon, fault)) {
+            return false;
+        }
+        state.position = arc.end;
+        return true;
+    }
+    send_arc(arc, state, canon);
+    return true;
+}
+
+/// The arc that the words describe from where the machine stands.
+bool plan_arc(bool isCounterclockwise, const BlockValues &values, const Settings &settings,
+              const State &state, ArcPlan &arc, Fault &fault) {
+    const PlaneAxes axes = plane_axes(state.plane);
+    const char first = centre_letter(axes.first), second = centre_letter(axes.second);
+    const bool hasCentre = values.has(first) || values.has(second);
+    arc.end = target(values, state);
+    if (!polar_target(values, state, arc.end, fault)) {
+        return false;
+    }
+    int turns = 1;
+    if (values.has('p')) {
+        if (!whole_word(values, 'p', turns, fault)) {
+            return false;
+        }
+        if (turns < 1 || turns > 1000000) {
+            return fault.set("P value should be 1 or greater with G2 or G3", values.column_of('p'));
+        }
+    }
+    arc.rotation = isCounterclockwise ? turns : -turns;
+    for (const char c : {'i', 'j', 'k'}) {
+        if (values.has(c) && c != first && c != second) {
+            return fault.set(fmt::format("{} word given for arc in {} plane",
+                                         static_cast<char>(c - 'a' + 'A'), plane_name(axes)),
+                             values.column_of(c));
+        }
+    }
+    if (values.has('r')) {
+        if (hasCentre) {
+            return fault.set("Mixed radius ijk format for arc", values.column_of('r'));
+        }
+        return plan_radius_arc(values.at('r'), settings, state, arc, fault);
+    }
+    if (!hasCentre) {
+        return fault.set("R i j k words all missing for arc");
+    }
+    return plan_centre_arc(values, state, arc, fault);
+}
+
+}  // namespace mw::gcode::detail

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "gcode/interpreter/codes/moves/rotary.hh"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace mw::gcode::detail {
+namespace {
+
+constexpr double TURN = 360;
+/// Nearer to its angle than this the axis stands there: sums of angles are rounded. [degrees]
+constexpr double SAME_ANGLE = 1e-6;
+
+/// G90 and G91 hold from the block on that has them.
+bool isIncremental(const BlockValues &values, const State &state) {
+    bool is = state.isIncremental;
+    for (const ActiveCode &active : values.codes) {
+        const int number = active.code->letter == 'g' ? active.code->number : 0;
+        is = number == 910 || (is && number != 900);
+    }
+    return is;
+}
+
+/// Words that say where to: those of moves, and the way to G28 and G30.
+bool areAxesPlaces(const BlockValues &values) {
+    bool are = values.motion != nullptr;
+    for (const ActiveCode &active : values.codes) {
+        const int number = active.code->letter == 'g' ? active.code->number : 0;
+        are = are || number == 280 || number == 300;
+    }
+    return are;
+}
+
+bool check_indexer(const BlockValues &values, int axis, Fault &fault) {
+    const char name = geometry::AXIS_LETTERS_LOWER[axis];
+    const bool isPlaced = values.has(name) && values.motion != nullptr;
+    if (!isPlaced) {
+        return true;
+    }
+    if (values.motion->number != 0) {
+        return fault.set(
+            fmt::format("Indexing axis {} can only be moved with G0", geometry::AXIS_LETTERS[axis]),
+            values.column_of(name));
+    }
+    bool isAlone = !values.has('@') && !values.has('^');
+    for (int other = 0; other < geometry::AXIS_COUNT; ++other) {
+        isAlone = isAlone && (other == axis || !values.has(geometry::AXIS_LETTERS_LOWER[other]));
+    }
+    return isAlone ||
+           fault.set(fmt::format("Indexing axis {} can only be moved alone", geometry::AXIS_LETTERS[axis]),
+                     values.column_of(name));
+}
+
+}  // namespace
+
+bool check_rotary(const BlockValues &values, const State &state, Fault &fault) {
+    if (!state.rotary.hasAny() || !values.hasAxes() || !areAxesPlaces(values)) {
+        return true;
+    }
+    const bool isAbsolute = !isIncremental(values, state);
+    for (int axis = RotaryAxes::FIRST; axis <= RotaryAxes::LAST; ++axis) {
+        const char name = geometry::AXIS_LETTERS_LOWER[axis];
+        const bool isWrapped = isAbsolute && state.rotary.isWrapped(axis) && values.has(name);
+        if (isWrapped && !(std::fabs(values.at(name)) < TURN)) {
+            return fault.set(
+                fmt::format("Invalid absolute position {:.2f} for wrapped rotary axis {}: it must be "
+                            "between -360 and 360, and its sign is the direction",
+                            values.at(name), geometry::AXIS_LETTERS[axis]),
+                values.column_of(name));
+        }
+        if (state.rotary.isIndexer(axis) && !check_indexer(values, axis, fault)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+double unwrapped(double word, double here) {
+    const double angle = std::fabs(word);
+    const double turns = (here - angle) / TURN;
+    constexpr double SAME = SAME_ANGLE / TURN;
+    return angle + TURN * (std::signbit(word) ? std::floor(turns + SAME) : std::ceil(turns - SAME));
+}
+
+double unwrapped_place(double place, double here) {
+    const double angle = std::fmod(place, TURN);
+    return unwrapped(angle < 0 ? angle + TURN : std::fabs(angle), here);
+}
+
+void take_indexing(const Pose &end, const State &state, CanonQueue &canon) {
+    const geometry::PathMode control = state.control;
+    const bool isChanging = control != geometry::PathMode::EXACT_PATH;
+    if (isChanging) {
+        canon.take(SetMotionControlMode{geometry::PathMode::EXACT_PATH, 0.0});
+    }
+    canon.take(StraightTraverse{end});
+    if (isChanging) {
+        canon.take(
+            SetMotionControlMode{control, control == geometry::PathMode::BLEND ? state.tolerance : 0.0});
+        canon.take(SetNaivecamTolerance{state.naivecam});
+    }
+}
+
+void take_rapid(const Pose &end, State &state, CanonQueue &canon) {
+    for (int axis = RotaryAxes::FIRST; axis <= RotaryAxes::LAST; ++axis) {
+        if (state.rotary.isIndexer(axis) && end[axis] != state.position[axis]) {
+            state.position[axis] = end[axis];
+            take_indexing(state.position, state, canon);
+        }
+    }
+    canon.take(StraightTraverse{end});
+    state.position = end;
+}
+
+}  // namespace mw::gcode::detail

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Codes whose meaning a subroutine or a script gives: [RS274NGC]REMAP.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/result.hh"
+#include "gcode/interpreter/codes/block_values.hh"
+#include "gcode/interpreter/interpreter.hh"
+#include "gcode/interpreter/scripts/script_host.hh"
+
+namespace mw::gcode::detail {
+
+/// A word that the argspec names.
+struct RemapWord {
+    char letter = 'p';  ///< lower case
+    bool isRequired = false;
+};
+
+struct Remap {
+    char letter = 'g';
+    int number = 0;    ///< ten times the number for G
+    std::string name;  ///< in upper case: "M400", "G88.1"
+    Code code;         ///< its row
+    int modal_group = 0;
+    std::string ngc;               ///< name of the subroutine; or
+    std::string function;          ///< of the script's function (py=, python=)
+    std::string prolog, epilog;    ///< script functions around the subroutine
+    std::string argspec;           ///< as written
+    std::vector<RemapWord> words;  ///< in the order of the argspec
+    bool isPositional = false;     ///< @: words become #1, #2, ...
+    bool needsFeed = false;        ///< >
+    bool needsSpeed = false;       ///< ^
+    bool wantsLine = false;        ///< n: the number of the line becomes #<n>
+    SourcePlace place;
+    std::string refusal;  ///< why the line has no effect
+
+    bool needsScripts() const { return !function.empty() || !prolog.empty() || !epilog.empty(); }
+    /// What stands in messages as the block that failed.
+    const std::string &target() const { return ngc.empty() ? function : ngc; }
+    ScriptRemap described() const;
+};
+
+/// A block that waits for the subroutine of one of its codes.
+struct PendingBlock {
+    const Remap *remap = nullptr;  ///< of that code
+    BlockValues values;
+    std::size_t next = 0;  ///< the code to go on with
+    std::string comment;
+    int line = 0, sequence = -1;
+};
+
+/// Reads one REMAP line, as in "M400 modalgroup=5 argspec=PQ ngc=rm400". Errors name file, line and column.
+Result<Remap> parse_remap(const RemapLine &line);
+
+}  // namespace mw::gcode::detail

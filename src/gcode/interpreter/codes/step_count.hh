@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The number of passes or pecks of a cycle.
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+namespace mw::gcode::detail {
+
+/// The relative error of a figure of a program: decimal fractions have no exact double, and an expression
+/// adds to the error.
+inline constexpr double FIGURE_ERROR = 4.0 * std::numeric_limits<double>::epsilon();
+
+/// Rounds `steps` up. A calculated number that is whole within `error` is whole: no step without depth.
+inline double count_steps(double steps, double error) {
+    const double whole = std::round(steps);
+    return std::fabs(steps - whole) <= error ? whole : std::ceil(steps);
+}
+
+}  // namespace mw::gcode::detail

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "gcode/interpreter/codes/synchronisation.hh"
+
+#include "gcode/interpreter/codes/tools/offsets.hh"
+#include "gcode/interpreter/codes/tools/tools.hh"
+
+namespace mw::gcode::detail {
+namespace {
+
+/// The tool in the spindle, by its place in the table.
+void synch_tool(const MachineSnapshot &snapshot, const ToolTable &tools, ToolModes &tool) {
+    const bool isInTable = snapshot.current_pocket > 0 && snapshot.current_pocket < tools.count();
+    const bool isLoaded = snapshot.tool_in_spindle > 0;
+    const int found = isLoaded && !isInTable ? tools.index_of_tool(snapshot.tool_in_spindle) : -1;
+    if (isLoaded && isInTable) {
+        load_tool(tools, tool, snapshot.current_pocket);
+    } else if (found > 0) {
+        load_tool(tools, tool, found);
+    } else {
+        load_tool(tools, tool, 0);
+        tool.index = snapshot.current_pocket;
+    }
+    tool.in_spindle = snapshot.tool_in_spindle;
+}
+
+}  // namespace
+
+void announce(const Machine &machine, Parameters &parameters, State &state, CanonQueue &canon) {
+    const double to_program = machine.to_program(state.units);
+    state.g5x_index = static_cast<int>(parameters.get(P_COORDINATE_SYSTEM));
+    const int first = P_G5X + 20 * (state.g5x_index - 1);
+    state.frame.g5x = parameter_pose(parameters, first, to_program);
+    state.frame.rotation_deg = parameters.get(first + 9);
+    if (parameters.get(P_G92_APPLIED) != 0.0 && machine.settings.isG92PersistenceDisabled) {
+        parameters.set(P_G92_APPLIED, 0.0);
+        set_parameter_pose(parameters, P_G92, {}, to_program);
+    }
+    state.frame.g92 =
+        parameters.get(P_G92_APPLIED) != 0.0 ? parameter_pose(parameters, P_G92, to_program) : Pose{};
+    canon.take(UseLengthUnits{state.units});
+    canon.take(SetG5xOffset{state.g5x_index, state.frame.g5x});
+    canon.take(SetG92Offset{state.frame.g92});
+    canon.take(SetXyRotation{state.frame.rotation_deg});
+    canon.take(SetFeedReference{});
+}
+
+void announce_modes(const Machine &machine, const State &state, CanonQueue &canon) {
+    canon.take(SetG92Offset{state.frame.g92});
+    send_coordinates(state, canon);
+    canon.take(UseToolLengthOffset{state.frame.tool});
+    for (int i = 0; i < machine.count_spindles(); ++i) {
+        const SpindleState &spindle = state.spindles[static_cast<std::size_t>(i)];
+        canon.take(SetSpindleMode{i, spindle.isConstantSurface ? spindle.css_max_rpm : 0.0});
+        canon.take(SetSpindleSpeed{i, spindle.speed});
+        canon.take(SwitchSpeedOverride{i, spindle.isOverridden});
+    }
+}
+
+void synchronise(const Machine &machine, ToolTable &tools, Parameters &parameters, Awaited &awaited,
+                 State &state) {
+    const MachineSnapshot snapshot = machine.world.snapshot();
+    tools.forget();
+    state.position =
+        state.frame.to_program(scale_lengths(snapshot.position, machine.to_program(state.units)));
+    state.probed =
+        state.frame.to_program(scale_lengths(snapshot.probed_position, machine.to_program(state.units)));
+    if (awaited.isProbe) {
+        for (int axis = 0; axis < geometry::AXIS_COUNT; ++axis) {
+            parameters.set(P_PROBE_RESULT + axis, state.probed[axis]);
+        }
+        parameters.set(P_PROBE_SUCCESS, snapshot.isProbeTripped ? 1.0 : 0.0);
+        awaited.isProbe = false;
+    }
+    if (awaited.isInput) {
+        parameters.set(P_INPUT_RESULT, snapshot.isInputTimedOut ? -1.0 : snapshot.input_value);
+        awaited.isInput = false;
+    }
+    parameters.set(P_TOOL_FAULT, snapshot.isToolFaulted ? 1.0 : 0.0);
+    parameters.set(P_TOOL_FAULT_REASON, snapshot.tool_fault_reason);
+    parameters.commit();
+    state.isMist = snapshot.isMistOn;
+    state.isFlood = snapshot.isFloodOn;
+    state.isFeedOverride = snapshot.isFeedOverrideEnabled;
+    state.isFeedHold = snapshot.isFeedHoldEnabled;
+    state.isAdaptive = snapshot.isAdaptiveFeedEnabled;
+    for (int i = 0; i < machine.count_spindles(); ++i) {
+        SpindleState &spindle = state.spindles[static_cast<std::size_t>(i)];
+        spindle.direction = snapshot.spindle_direction[static_cast<std::size_t>(i)];
+    }
+    state.tool.selected_index = snapshot.selected_pocket;
+    synch_tool(snapshot, tools, state.tool);
+}
+
+}  // namespace mw::gcode::detail

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Which block is next: runs lines, and what their blocks ask for, on the levels of call.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "base/diagnostics/sink.hh"
+#include "gcode/interpreter/flow/flow_parts.hh"
+#include "gcode/interpreter/flow/loop_budget.hh"
+#include "gcode/interpreter/flow/script_calls.hh"
+
+namespace mw::gcode::detail {
+
+class Flow {
+  public:
+    Flow(Executor &executor, Names &names, Canon &target, const Settings &settings);
+    /// Ends suspended scripts.
+    ~Flow();
+
+    Result<> open(const std::string &path);
+    void open_text(const std::string &name, std::string text);
+    void close();
+    /// One line of the open file, or of a call made by MDI.
+    Step step();
+    Step execute(std::string_view text);
+    /// Back to the top level: the line after the outermost call is next.
+    void abort();
+
+    const diagnostics::Diagnostic &error() const { return error_; }
+    /// The block that failed did not decide which one is next: later ones can still be looked at.
+    bool isContinuable() const { return isContinuable_; }
+    const Levels &levels() const { return levels_; }
+    const ProgramFiles &files() const { return files_; }
+    const Scripts &scripts() const { return scripts_; }
+    Scripts &scripts() { return scripts_; }
+    LoopBudget &budget() { return budget_; }
+    /// The line that was read last has no words and no script.
+    bool isLineEmpty() const { return isLineEmpty_; }
+
+    /// Opens the script host if it is needed; see Scripts::load().
+    Result<> load_scripts();
+    Result<> begin_scripts();
+
+  private:
+    Step run_line();
+    Step run_block(const BlockView &view);
+    Step after_block();
+    Step fail_block();
+    Step fail_here(std::string message);
+    Step fail_budget();
+    Step end_of_lines();
+    Step percent();
+    Step finish_mdi();
+    void end_program();
+    /// Drops all calls above `depth` without running what they would restore; suspended scripts among them
+    /// end.
+    void unwind(std::size_t depth = 0);
+
+    bool run_oword(const BlockView &view);
+    bool run_call(const BlockView &view, const OWord &oword);
+    bool run_return(const BlockView &view, const OWord &oword);
+    bool return_fanuc();
+    /// False when a loop begins again that will never end.
+    bool note_turn(const LoopTurn &turn);
+
+    /// Runs a text and what it calls, on a level of its own. False: a waiting point is due.
+    std::expected<bool, ScriptFault> execute_for_script(std::string_view text, int line);
+    std::expected<bool, ScriptFault> run_nested(std::size_t base);
+
+    Executor &executor_;
+    Names &names_;
+    Levels levels_;
+    ProgramFiles files_;
+    Scripts scripts_;
+    ScriptCalls script_calls_;
+    LoopBudget budget_;
+    const FlowParts parts_;
+    std::unique_ptr<InterpreterView> view_;
+    bool isContinuable_ = false;
+    bool isLineEmpty_ = false;
+    diagnostics::Diagnostic error_;
+};
+
+}  // namespace mw::gcode::detail

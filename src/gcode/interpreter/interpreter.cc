@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "gcode/interpreter/interpreter.hh"
+
+#include <filesystem>
+
+#include "base/atomic_file.hh"
+#include "gcode/interpreter/block_history.hh"
+#include "gcode/interpreter/codes/executor.hh"
+#include "gcode/interpreter/flow/flow.hh"
+#include "gcode/interpreter/interpreter_snapshot.hh"
+#include "gcode/syntax/syntax_errors.hh"
+
+namespace mw::gcode {
+
+struct Interpreter::Impl {
+    Impl(Canon &canon, World &world, ToolSource &tools, ParameterSource &source, Settings given)
+        : settings(std::move(given)), target(canon), executor(world, tools, source, settings, names),
+          flow(executor, names, canon, settings), history(executor, flow) {}
+
+    Settings settings;
+    Canon &target;
+    detail::Names names;
+    detail::Executor executor;
+    detail::Flow flow;
+    detail::BlockHistory history;
+};
+
+Interpreter::Interpreter(Canon &canon, World &world, ToolSource &tools, ParameterSource &parameters,
+                         Settings settings)
+    : impl_(std::make_unique<Impl>(canon, world, tools, parameters, std::move(settings))) {}
+
+Interpreter::~Interpreter() = default;
+
+Result<> Interpreter::load_parameters(const std::string &path) {
+    std::error_code ignored;
+    if (!std::filesystem::exists(path, ignored)) {
+        return {};
+    }
+    return impl_->executor.parameters.load(path);
+}
+
+Result<> Interpreter::save_parameters(const std::string &path) const {
+    return write_file_with_backup(path, impl_->history.parameter_text());
+}
+
+Result<> Interpreter::begin() {
+    detail::Executor &executor = impl_->executor;
+    executor.state.units = impl_->settings.initial_units.value_or(executor.world().machine_units());
+    if (Result<> loaded = executor.remaps.load(impl_->settings.remaps); !loaded) {
+        return loaded;
+    }
+    if (Result<> loaded = impl_->flow.load_scripts(); !loaded) {
+        return loaded;
+    }
+    executor.canon.enter_block(nullptr, 0, 0, false, 0);
+    if (impl_->settings.start_tolerance_mm > 0) {
+        constexpr double MM_PER_INCH = 25.4;
+        detail::State &state = executor.state;
+        state.tolerance =
+            impl_->settings.start_tolerance_mm / (state.units == LengthUnits::INCH ? MM_PER_INCH : 1.0);
+        executor.canon.take(SetMotionControlMode{state.control, state.tolerance});
+    }
+    executor.announce();
+    executor.synch();
+    executor.canon.flush(impl_->target);
+    if (Result<> begun = impl_->flow.begin_scripts(); !begun) {
+        return begun;
+    }
+    executor.canon.take(OnReset{});
+    executor.canon.flush(impl_->target);
+    if (!impl_->settings.startup_code.empty() && execute(impl_->settings.startup_code) == Step::FAILED) {
+        Error error = impl_->flow.error().what;
+        error.message = "the start-up code [RS274NGC]RS274NGC_STARTUP_CODE failed: " + error.message;
+        return std::unexpected(std::move(error));
+    }
+    return {};
+}
+
+Result<> Interpreter::open(const std::string &path) {
+    return impl_->flow.open(path);
+}
+
+void Interpreter::open_text(const std::string &name, std::string text) {
+    impl_->flow.open_text(name, std::move(text));
+}
+
+void Interpreter::close() {
+    impl_->flow.close();
+}
+
+Step Interpreter::step() {
+    return impl_->flow.step();
+}
+
+Step Interpreter::execute(std::string_view line) {
+    return impl_->flow.execute(line);
+}
+
+void Interpreter::synch() {
+    impl_->executor.synch();
+}
+
+void Interpreter::abort() {
+    impl_->flow.abort();
+}
+
+void Interpreter::announce() {
+    detail::Executor &executor = impl_->executor;
+    executor.canon.enter_block(nullptr, 0, 0, false, 0);
+    executor.announce_modes();
+    executor.canon.flush(impl_->target);
+}
+
+const std::vector<std::string> &Interpreter::warnings() const {
+    return impl_->flow.scripts().warnings();
+}
+
+const diagnostics::Diagnostic &Interpreter::error() const {
+    return impl_->flow.error();
+}
+
+ActiveCodes Interpreter::active_codes() const {
+    return impl_->executor.active_codes();
+}
+
+int Interpreter::line() const {
+    return impl_->flow.levels().here().line;
+}
+
+const std::string &Interpreter::file() const {
+    return impl_->flow.levels().file();
+}
+
+int Interpreter::call_level() const {
+    return impl_->flow.levels().call_level();
+}
+
+bool Interpreter::isMoveHeld() const {
+    return !impl_->executor.canon.empty();
+}
+
+bool Interpreter::isContinuable() const {
+    return impl_->flow.isContinuable();
+}
+
+bool Interpreter::isAtFileEnd() const {
+    return impl_->flow.levels().here().isAtEnd();
+}
+
+std::vector<diagnostics::Diagnostic> Interpreter::syntax_errors(int after, int most) {
+    detail::Program *const main = impl_->flow.levels().main();
+    return main == nullptr ? std::vector<diagnostics::Diagnostic>()
+                           : detail::syntax_errors(*main, after, most);
+}
+
+void Interpreter::mark_progress(double seconds) {
+    impl_->flow.budget().mark_progress(seconds);
+}
+
+bool Interpreter::isBudgetSpent() const {
+    return impl_->flow.budget().isSpent();
+}
+
+FilePlace Interpreter::place_in_file() const {
+    const detail::Levels &levels = impl_->flow.levels();
+    const detail::Program *const main = levels.main();
+    return main == nullptr ? FilePlace()
+                           : FilePlace{main->text().place_of(levels.main_line()), main->text().count_bytes()};
+}
+
+std::string_view Interpreter::subroutine() const {
+    const detail::NameId label = impl_->flow.levels().subroutine();
+    return label == detail::NO_ID ? std::string_view() : impl_->names.text(label);
+}
+
+std::string Interpreter::line_text(const std::string &file, int line) const {
+    return impl_->flow.files().line_text(file, line);
+}
+
+NextLine Interpreter::next_line() const {
+    const detail::Levels &levels = impl_->flow.levels();
+    const bool isScript = levels.isInCall() && levels.top().isInScript();
+    return {isScript ? 0 : levels.here().next, levels.main_line(), levels.isInCall(),
+            levels.here().program == levels.main()};
+}
+
+std::string Interpreter::why_no_start() const {
+    constexpr int FIRST_CYCLE = 730, LAST_CYCLE = 890;
+    const detail::State &state = impl_->executor.state;
+    if (state.comp.isOn() || state.comp.isExit() || isMoveHeld()) {
+        return "cutter compensation is on there";
+    }
+    if (state.spline.order != 0) {
+        return "it is in the middle of a NURBS";
+    }
+    const bool isCycle =
+        state.motion >= FIRST_CYCLE && state.motion <= LAST_CYCLE && state.motion != detail::MOTION_NONE;
+    if (state.cycle.isRunning && isCycle) {
+        return "it is in the middle of a canned cycle";
+    }
+    if (isThreading()) {
+        return "moves follow the spindle there";
+    }
+    return {};
+}
+
+bool Interpreter::isThreading() const {
+    constexpr int G33 = 330, G33_1 = 331;
+    const int motion = impl_->executor.state.motion;
+    return motion == G33 || motion == G33_1;
+}
+
+std::shared_ptr<const Interpreter::Snapshot> Interpreter::snapshot() const {
+    const detail::Executor &executor = impl_->executor;
+    return std::make_shared<Snapshot>(detail::snapshot(executor));
+}
+
+void Interpreter::restore(const Snapshot &kept) {
+    detail::restore(kept, impl_->executor);
+}
+
+ReadAhead &Interpreter::read_ahead() {
+    return impl_->history;
+}
+
+void Interpreter::know_tools(const std::map<int, ToolEntry> &entries) {
+    for (const auto &[index, entry] : entries) {
+        impl_->executor.tools.set(index, entry);
+    }
+    impl_->executor.tools.commit();
+}
+
+Result<std::string> Interpreter::pack_kept() const {
+    return pack(*snapshot(), impl_->names);
+}
+
+Result<std::shared_ptr<const Interpreter::Snapshot>> Interpreter::unpack_kept(std::string_view bytes) {
+    auto kept = unpack(bytes, *snapshot(), impl_->names);
+    if (!kept.has_value()) {
+        return std::unexpected(kept.error());
+    }
+    return std::make_shared<const Snapshot>(std::move(*kept));
+}
+
+std::uint64_t Interpreter::count_script_calls() const {
+    return impl_->flow.scripts().count_calls();
+}
+
+ProgramLimits &Interpreter::limits() {
+    return impl_->flow.scripts().limits();
+}
+
+double Interpreter::parameter(int number) const {
+    const bool isInRange = number >= 1 && number < detail::PARAMETER_COUNT;
+    return isInRange ? impl_->executor.evaluator().numbered(number) : 0.0;
+}
+
+}  // namespace mw::gcode

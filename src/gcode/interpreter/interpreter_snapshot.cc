@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Modes and parameters of the interpreter as bytes, so that another process can go on with a program.
+#include "gcode/interpreter/interpreter_snapshot.hh"
+
+#include "base/bytes.hh"
+
+namespace mw::gcode {
+namespace {
+
+using detail::State;
+
+constexpr std::uint32_t FORM = 2;
+static_assert(sizeof(State) == 1176, "a new field belongs into the lists below, and FORM counts on");
+
+template <class Io, class Pose>
+void pose(Io &io, Pose &values) {
+    for (int axis = 0; axis < geometry::AXIS_COUNT; ++axis) {
+        io(values[axis]);
+    }
+}
+
+template <class Io, class Spindles>
+void spindles(Io &io, Spindles &all) {
+    for (auto &spindle : all) {
+        io(spindle.speed);
+        io(spindle.direction);
+        io(spindle.isConstantSurface);
+        io(spindle.css_max_rpm);
+        io(spindle.isOverridden);
+    }
+}
+
+template <class Io, class Tool>
+void tool(Io &io, Tool &tool) {
+    io(tool.selected);
+    io(tool.selected_index);
+    io(tool.in_spindle);
+    io(tool.index);
+    pose(io, tool.offset);
+    io(tool.diameter);
+    io(tool.frontangle);
+    io(tool.backangle);
+    io(tool.orientation);
+    io(tool.offset_code);
+}
+
+template <class Io, class Cycle>
+void cycle(Io &io, Cycle &words) {
+    for (auto *word :
+         {&words.bottom, &words.r, &words.p, &words.q, &words.i, &words.j, &words.k, &words.initial}) {
+        io(*word);
+    }
+    io(words.isRunning);
+    io(words.hasClearance);
+}
+
+/// `state` is constant on the way out. What the INI file says (rotary axes) is not in it, nor what cannot be
+/// under way: see why_not_packed().
+template <class Io, class AnyState>
+void fields(Io &io, AnyState &state) {
+    pose(io, state.position);
+    pose(io, state.frame.g5x);
+    pose(io, state.frame.g92);
+    pose(io, state.frame.tool);
+    io(state.frame.rotation_deg);
+    io(state.g5x_index);
+    io(state.motion);
+    io.choice(state.plane, Plane::UW);
+    io.choice(state.units, LengthUnits::MM);
+    io(state.isIncremental);
+    io(state.isCentreAbsolute);
+    io(state.isDiameter);
+    io(state.isRetractToR);
+    io.choice(state.feed_mode, FeedMode::UNITS_PER_REVOLUTION);
+    io(state.feed);
+    io.choice(state.feed_units, LengthUnits::MM);
+    io.choice(state.control, geometry::PathMode::BLEND);
+    io(state.tolerance);
+    io(state.naivecam);
+    io(state.active_spindle);
+    spindles(io, state.spindles);
+    io(state.isMist);
+    io(state.isFlood);
+    io(state.isFeedOverride);
+    io(state.isFeedHold);
+    io(state.isAdaptive);
+    tool(io, state.tool);
+    cycle(io, state.cycle);
+    io(state.spline.out.x);
+    io(state.spline.out.y);
+    pose(io, state.probed);
+}
+
+bool canBe(const State &state) {
+    constexpr int LAST_SYSTEM = 9, SPINDLES = MAX_SPINDLES;
+    return state.g5x_index >= 1 && state.g5x_index <= LAST_SYSTEM && state.active_spindle >= 0 &&
+           state.active_spindle < SPINDLES;
+}
+
+const char *why_not_packed(const State &state) {
+    if (state.comp.isOn() || state.comp.isExit()) {
+        return "cutter compensation is on where it begins";
+    }
+    return state.spline.order != 0 ? "a NURBS is open where it begins" : nullptr;
+}
+
+void pack_numbers(Packer &out, const detail::Parameters &parameters) {
+    for (int number = 1; number < detail::PARAMETER_COUNT; ++number) {
+        out(parameters.get(number));
+    }
+}
+
+void unpack_numbers(Unpacker &in, detail::Parameters &parameters) {
+    for (int number = 1; number < detail::PARAMETER_COUNT && in.isGood(); ++number) {
+        double value = 0;
+        in(value);
+        parameters.set(number, value);
+    }
+    const double system = parameters.get(detail::P_COORDINATE_SYSTEM);
+    if (!(system >= 1 && system <= 9)) {
+        in.spoil();
+    }
+}
+
+void pack_names(Packer &out, const std::vector<std::pair<detail::NameId, double>> &named,
+                const detail::Names &names) {
+    out(static_cast<std::uint64_t>(named.size()));
+    for (const auto &[id, value] : named) {
+        out(names.text(id));
+        out(value);
+    }
+}
+
+void unpack_names(Unpacker &in, bool areGlobal, detail::Parameters &parameters, detail::Names &names) {
+    std::uint64_t count = 0;
+    in(count);
+    for (std::uint64_t i = 0; i < count && in.isGood(); ++i) {
+        std::string name;
+        double value = 0;
+        in(name);
+        in(value);
+        parameters.set_named(names.intern(name), areGlobal, value);
+    }
+}
+
+}  // namespace
+
+Result<std::string> pack(const Interpreter::Snapshot &kept, const detail::Names &names) {
+    const char *const why = why_not_packed(kept.state);
+    if (why != nullptr) {
+        return fail(why);
+    }
+    Packer out;
+    out(FORM);
+    fields(out, kept.state);
+    pack_numbers(out, kept.parameters);
+    pack_names(out, kept.parameters.globals(), names);
+    pack_names(out, kept.parameters.locals(0), names);
+    const State *const saved = kept.saved_modes.saved();
+    const bool isSaved = saved != nullptr && why_not_packed(*saved) == nullptr;
+    out(isSaved);
+    if (isSaved) {
+        fields(out, *saved);
+        out((kept.saved_modes.status(0) & 2) != 0);
+    }
+    return out.bytes();
+}
+
+Result<Interpreter::Snapshot> unpack(std::string_view bytes, const Interpreter::Snapshot &now,
+                                     detail::Names &names) {
+    Unpacker in(bytes);
+    std::uint32_t form = 0;
+    in(form);
+    if (form != FORM) {
+        return fail("modes and parameters were written by another version");
+    }
+    Interpreter::Snapshot kept{now.state, now.parameters, {}, now.returned, now.block_codes};
+    kept.state.comp = {};
+    kept.state.spline = {};
+    fields(in, kept.state);
+    unpack_numbers(in, kept.parameters);
+    kept.parameters.forget_names();
+    unpack_names(in, true, kept.parameters, names);
+    unpack_names(in, false, kept.parameters, names);
+    kept.parameters.commit();
+    bool isSaved = false, isForReturn = false;
+    in(isSaved);
+    if (isSaved) {
+        State saved = kept.state;
+        fields(in, saved);
+        in(isForReturn);
+        isForReturn ? kept.saved_modes.save_until_return(saved) : kept.saved_modes.save(saved);
+        kept.saved_modes.commit();
+    }
+    if (!in.isComplete() || !canBe(kept.state)) {
+        return fail("modes and parameters cannot be read");
+    }
+    return kept;
+}
+
+}  // namespace mw::gcode

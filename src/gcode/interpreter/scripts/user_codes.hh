@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Where the programs of user M codes are.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace mw::gcode {
+
+/// The executable file M100 to M199 in the first of `folders` that has one; empty when none has. Waits for
+/// the disk. `folders`: Settings::user_m_path.
+std::string find_user_program(const std::vector<std::string> &folders, int code);
+
+}  // namespace mw::gcode

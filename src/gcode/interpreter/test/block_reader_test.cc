@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// From a parsed block to its values, without anything being executed.
+#include <memory>
+
+#include <gtest/gtest.h>
+
+#include "gcode/interpreter/codes/block_reader.hh"
+#include "gcode/interpreter/test/code_parts.hh"
+
+namespace mw::gcode::detail {
+namespace {
+
+class NoBuiltIns final : public BuiltIns {
+  public:
+    bool isBuiltInName(std::string_view) const override { return false; }
+    std::optional<double> built_in(std::string_view) const override { return std::nullopt; }
+    double built_in(int) const override { return 0; }
+};
+
+class BlockReaderTest : public testing::Test {
+  protected:
+    bool read(const std::string &line) {
+        program = std::make_unique<Program>("a.ngc", line + "\n", names);
+        values.clear();
+        return read_words(program->block(1), {evaluator, remaps}, values, fault);
+    }
+    /// Codes in the order of execution.
+    std::vector<int> numbers() const {
+        std::vector<int> out;
+        for (const ActiveCode &active : values.codes) {
+            out.push_back(active.code->number);
+        }
+        return out;
+    }
+
+    Names names;
+    Parameters parameters;
+    NoBuiltIns built_ins;
+    Fault fault;
+    Evaluator evaluator{parameters, names, built_ins, fault};
+    Remaps remaps;
+    std::unique_ptr<Program> program;
+    BlockValues values;
+};
+
+TEST_F(BlockReaderTest, WordsAreComputed) {
+    parameters.set(7, 2.5);
+    ASSERT_TRUE(read("G1 X[#7 * 2] Y3"));
+    EXPECT_EQ(values.at('x'), 5);
+    EXPECT_EQ(values.at('y'), 3);
+    EXPECT_FALSE(values.has('z'));
+}
+
+TEST_F(BlockReaderTest, CodesStandInTheOrderOfExecution) {
+    ASSERT_TRUE(read("M0 G1 X1 M3 F100 G21"));
+    EXPECT_EQ(numbers(), (std::vector<int>{0, 3, 210, 10, 0}));  // F, M3, G21, G1, M0
+    EXPECT_EQ(values.motion, find_code('g', 10));
+}
+
+TEST_F(BlockReaderTest, TwoCodesOfOneGroupAreRefused) {
+    EXPECT_FALSE(read("G1 G2 X1"));
+    EXPECT_EQ(fault.message, "Two g codes used from same modal group");
+    EXPECT_EQ(fault.column, 4U);
+}
+
+TEST_F(BlockReaderTest, UnknownCodesAreRefused) {
+    EXPECT_FALSE(read("G77"));
+    EXPECT_FALSE(read("M200"));
+    EXPECT_EQ(fault.message, "M-code greater than 199: M200");
+}
+
+TEST_F(BlockReaderTest, AxisWordsAloneMeanTheMotionInForce) {
+    ASSERT_TRUE(read("X1"));
+    EXPECT_FALSE(choose_motion(values, MOTION_NONE, remaps, fault));
+    ASSERT_TRUE(choose_motion(values, 10, remaps, fault));
+    EXPECT_TRUE(values.isMotionImplied);
+    EXPECT_EQ(numbers(), (std::vector<int>{10}));
+}
+
+TEST_F(BlockReaderTest, AxisWordsOfAnotherCodeAreNoMotion) {
+    ASSERT_TRUE(read("G92 X1"));
+    ASSERT_TRUE(choose_motion(values, 10, remaps, fault));
+    EXPECT_EQ(numbers(), (std::vector<int>{920}));
+}
+
+TEST_F(BlockReaderTest, WordsThatNoCodeUsesAndWordsThatAreMissingAreNamed) {
+    ASSERT_TRUE(read("G4 P1 Q2"));
+    EXPECT_FALSE(check_words(values, fault));
+    EXPECT_EQ(fault.message, "Q word with no g code that uses it");
+    ASSERT_TRUE(read("M62"));
+    EXPECT_FALSE(check_words(values, fault));
+    EXPECT_EQ(fault.message, "m62 needs the word P");
+}
+
+TEST_F(BlockReaderTest, AxesThatTheMachineLacksAreRefusedAlsoAfterItChanges) {
+    constexpr unsigned XYZ = 7, XYZA = 15;
+    AxisCheck axes;
+    ASSERT_TRUE(read("G0 A1"));
+    EXPECT_FALSE(axes.check(values, XYZ, fault));
+    EXPECT_EQ(fault.message, "Bad character 'a' used");
+    EXPECT_TRUE(axes.check(values, XYZA, fault));
+    EXPECT_FALSE(axes.check(values, XYZ, fault));
+}
+
+TEST_F(BlockReaderTest, ParametersAreSetAllAtOnce) {
+    BlockSettings settings;
+    parameters.set(1, 5);
+    ASSERT_TRUE(read("#1=7 #2=#1 #<size>=3"));
+    ASSERT_TRUE(settings.apply(program->block(1), evaluator, names, parameters, fault));
+    EXPECT_EQ(parameters.get(1), 7);
+    EXPECT_EQ(parameters.get(2), 5);
+    EXPECT_EQ(evaluator.named(names.intern("size")), 3);
+    ASSERT_TRUE(read("#3=1 #5420=2"));
+    EXPECT_FALSE(settings.apply(program->block(1), evaluator, names, parameters, fault));
+    EXPECT_EQ(fault.message, "Parameter is readonly: #5420");
+    EXPECT_EQ(parameters.get(3), 0);
+}
+
+}  // namespace
+}  // namespace mw::gcode::detail

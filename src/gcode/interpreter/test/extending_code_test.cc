@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The example of docs/extending/gcode.md.
+#include <fstream>
+#include <sstream>
+#include <variant>
+
+#include <gtest/gtest.h>
+
+#include "gcode/interpreter/codes/block_reader.hh"
+#include "gcode/interpreter/codes/block_words.hh"
+#include "gcode/interpreter/test/code_parts.hh"
+
+namespace mw::gcode::detail {
+namespace {
+
+// clang-format off
+// begin of the function
+bool set_laser_power(const Code &, const BlockValues &values, State &, CanonQueue &canon, Fault &fault) {
+    int head = 0;
+    if (!whole_word(values, 'p', head, fault)) {
+        return false;  // it says why
+    }
+    const double power = values.at('q');
+    if (power < 0.0 || power > 1.0) {
+        return fault.set("The power Q of M90 must be 0 to 1", values.column_of('q'));
+    }
+    canon.take(SetAnalogOutput{head, power, false});
+    return true;
+}
+// end of the function
+const Code LASER_POWER =
+    row('m', 90, Group::IO, Phase::IO, false, "pq", "pq", set_laser_power);
+// clang-format on
+
+/// A block with the code and these words, as it is after reading.
+BlockValues with_code(std::initializer_list<std::pair<char, double>> words) {
+    BlockValues values = test::block(words);
+    values.codes.push_back({&LASER_POWER, 1});
+    return values;
+}
+
+std::string file_text(const std::string &path) {
+    std::ostringstream text;
+    text << std::ifstream(path).rdbuf();
+    return text.str();
+}
+
+TEST(ExtendingCodes, TheRowSaysWhichWordsTheCodeHasAndNeeds) {
+    Fault fault;
+    EXPECT_TRUE(check_words(with_code({{'p', 1}, {'q', 0.5}}), fault));
+    EXPECT_FALSE(check_words(with_code({{'p', 1}}), fault));
+    EXPECT_EQ(fault.message, "m90 needs the word Q");
+    EXPECT_FALSE(check_words(with_code({{'p', 1}, {'q', 0.5}, {'r', 1}}), fault));
+    EXPECT_EQ(fault.message, "R word with no g code that uses it");
+}
+
+TEST(ExtendingCodes, TheFunctionOfTheRowCallsTheCanonOrSaysWhyNot) {
+    test::CodeParts p;
+    const ModeHandler act = std::get<ModeHandler>(LASER_POWER.handler);
+    EXPECT_TRUE(act(LASER_POWER, with_code({{'p', 1}, {'q', 0.5}}), p.state, p.canon, p.fault));
+    EXPECT_EQ(p.calls().size(), 1U);
+    EXPECT_FALSE(act(LASER_POWER, with_code({{'p', 1}, {'q', 2}}), p.state, p.canon, p.fault));
+    EXPECT_EQ(p.fault.message, "The power Q of M90 must be 0 to 1");
+    EXPECT_TRUE(p.canon.empty());
+}
+
+TEST(ExtendingCodes, TheNumberIsStillFree) {
+    EXPECT_EQ(find_code('m', 90), nullptr);
+}
+
+TEST(ExtendingCodes, ThePageShowsWhatIsCompiledHere) {
+    const std::string source = file_text(MW_SOURCE_DIR "/src/gcode/interpreter/test/extending_code_test.cc");
+    const std::string page = file_text(MW_SOURCE_DIR "/docs/extending/gcode.md");
+    const std::string begin = "// begin of the function\n";
+    const std::size_t from = source.find('\n' + begin) + 1 + begin.size();
+    const std::string function = source.substr(from, source.find("// end of the function\n") - from);
+    ASSERT_GT(function.size(), 200U);
+    EXPECT_NE(page.find(function), std::string::npos);
+    const std::size_t row = source.find("    row('m', 90");
+    ASSERT_NE(row, std::string::npos);
+    EXPECT_NE(page.find(source.substr(row, source.find(';', row) - row)), std::string::npos);
+}
+
+}  // namespace
+}  // namespace mw::gcode::detail

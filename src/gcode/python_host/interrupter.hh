@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Ends scripts that run too long for those who wait.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <atomic>
+#include <string>
+#include <thread>
+
+#include "gcode/interpreter/scripts/script_stop.hh"
+
+namespace mw::python_host {
+
+namespace py = pybind11;
+
+/// Follows `stop` in a thread: raises an exception in the script until its call has ended. Python code ends
+/// at its next instruction, a function in C (time.sleep) when it returns.
+class Interrupter {
+  public:
+    explicit Interrupter(gcode::ScriptStop &stop);
+    /// The caller does not hold the GIL.
+    ~Interrupter();
+    Interrupter(const Interrupter &) = delete;
+    Interrupter &operator=(const Interrupter &) = delete;
+
+    /// With the GIL: a script runs in this thread from here on.
+    void enter();
+    /// With the GIL: the outermost script has ended. What was raised and not taken is dropped.
+    void leave();
+
+  private:
+    void work();
+    void raise();
+
+    gcode::ScriptStop &stop_;
+    unsigned long script_thread_ = 0;  ///< under the GIL; 0: none
+    std::atomic<bool> isEnding_{false};
+    std::thread thread_;
+};
+
+/// The type of the exception. With the GIL.
+py::handle script_ended();
+
+}  // namespace mw::python_host

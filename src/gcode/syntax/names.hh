@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Names of parameters and labels as numbers, so that running a program compares no text.
+#pragma once
+
+#include <deque>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+
+#include "gcode/syntax/ast.hh"
+
+namespace mw::gcode::detail {
+
+class Names {
+  public:
+    /// The number of a name as it stands (callers fold case and blanks where the language does).
+    NameId intern(std::string_view name);
+    const std::string &text(NameId id) const { return texts_[id]; }
+    std::size_t size() const { return texts_.size(); }
+
+  private:
+    std::deque<std::string> texts_;  // stable addresses: the map's keys are views into it
+    std::unordered_map<std::string_view, NameId> ids_;
+};
+
+}  // namespace mw::gcode::detail

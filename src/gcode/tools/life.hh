@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What each tool has cut in its life, and the state file that keeps it.
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+
+#include "base/result.hh"
+
+namespace mw::tools {
+
+struct CutLife {
+    double time_s = 0;
+    double length = 0;  ///< [machine units]
+};
+
+/// Not thread-safe. File: a line "T5 3600.5 125000" for each tool, seconds and machine units.
+class LifeBook {
+  public:
+    /// Errors name file and line.
+    static Result<LifeBook> parse(std::string_view text, const std::string &path);
+
+    void add(int toolno, const CutLife &cut);
+    CutLife of(int toolno) const;
+    /// A tool of this number begins anew.
+    void forget(int toolno) { tools_.erase(toolno); }
+    std::string text() const;
+
+  private:
+    std::map<int, CutLife> tools_;
+};
+
+}  // namespace mw::tools

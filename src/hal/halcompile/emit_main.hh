@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The parts of a component's C source that make its instances.
+#pragma once
+
+#include <string>
+
+#include "hal/halcompile/component.hh"
+
+namespace mw::halcompile {
+
+/// count=, names=, personality= and what modparam declares.
+std::string emit_module_parameters(const Component &component, int personalities);
+/// rtapi_app_main and rtapi_app_exit.
+std::string emit_app(const Component &component, const std::string &prefix);
+/// main() of a userspace component.
+std::string emit_main(const Component &component);
+
+}  // namespace mw::halcompile

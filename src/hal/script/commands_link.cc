@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Signals, links and second names.
+#include <fmt/format.h>
+
+#include "hal/script/commands.hh"
+
+namespace mw::hal::script {
+
+namespace {
+
+Result<> check_pin(Hal &hal, const Word &word) {
+    if (hal.hasPin(word.text)) {
+        return {};
+    }
+    return fail(fmt::format("pin '{}' does not exist", word.text), word.place,
+                missing_hint(hal, word.text, pin_names(hal)));
+}
+
+Result<> check_signal(Hal &hal, const Word &word) {
+    if (hal.hasSignal(word.text)) {
+        return {};
+    }
+    return fail(fmt::format("signal '{}' does not exist", word.text), word.place,
+                suggestion(word.text, signal_names(hal)));
+}
+
+/// Links one pin to a signal that exists, or puts a placeholder in its place.
+Result<> link(Session &session, const Word &pin, const Word &signal) {
+    Hal &hal = session.hal();
+    if (session.options().hasPlaceholders && session.placeholders().covers(pin.text)) {
+        return at(session.placeholders().link(pin.text, signal.text), pin.place);
+    }
+    Result<> result = check_signal(hal, signal);
+    result = result ? check_pin(hal, pin) : result;
+    result = result ? at(hal.link(pin.text, signal.text), pin.place) : result;
+    if (result) {
+        session.info(pin.place, fmt::format("Pin '{}' linked to signal '{}'", pin.text, signal.text));
+    }
+    return result;
+}
+
+void warn_deprecated(Session &session, const Call &call) {
+    session.warn(call.place, fmt::format("{} command is deprecated, use 'net'", call.spec.name));
+}
+
+enum class Kind { PIN, PARAM };
+
+Result<Kind> kind_of(const Word &word) {
+    if (word.text == "pin") {
+        return Kind::PIN;
+    }
+    if (word.text == "param") {
+        return Kind::PARAM;
+    }
+    return fail(fmt::format("'{}' is neither pin nor param", word.text), word.place);
+}
+
+/// Sets or (empty) removes the alias of the thing that words 0 and 1 name.
+Result<> set_alias(Session &session, const Call &call, const std::string &alias) {
+    const Result<Kind> kind = kind_of(call.words[0]);
+    if (!kind) {
+        return std::unexpected(kind.error());
+    }
+    Hal &hal = session.hal();
+    const std::string &name = call.text(1);
+    if (*kind == Kind::PIN) {
+        return at(hal.alias_pin(name, alias), call.place_of(1), missing_hint(hal, name, pin_names(hal)));
+    }
+    return at(hal.alias_param(name, alias), call.place_of(1), missing_hint(hal, name, param_names(hal)));
+}
+
+}  // namespace
+
+Result<> run_net(Session &session, const Call &call) {
+    Hal &hal = session.hal();
+    const Word &signal = call.words[0];
+    if (hal.hasPin(signal.text) && !hal.hasSignal(signal.text)) {
+        return fail(fmt::format("signal name '{}' is the name of a pin", signal.text), signal.place,
+                    "the signal comes first: net SIGNAL PIN...");
+    }
+    std::vector<std::string> pins;
+    std::vector<const Word *> placeholders;
+    for (std::size_t i = 1; i < call.words.size(); ++i) {
+        const Word &pin = call.words[i];
+        if (session.options().hasPlaceholders && session.placeholders().covers(pin.text)) {
+            placeholders.push_back(&pin);
+            continue;
+        }
+        const Result<> found = check_pin(hal, pin);
+        if (!found) {
+            return found;
+        }
+        pins.push_back(pin.text);
+    }
+    if (!pins.empty()) {
+        const Result<> linked = at(hal.net(signal.text, pins), call.place_of(1));
+        if (!linked) {
+            return linked;
+        }
+        const Result<> waited = at(session.placeholders().signal_made(signal.text), signal.place);
+        if (!waited) {
+            return waited;
+        }
+    }
+    for (const Word *pin : placeholders) {
+        const Result<> linked = at(session.placeholders().link(pin->text, signal.text), pin->place);
+        if (!linked) {
+            return linked;
+        }
+    }
+    for (const std::string &pin : pins) {
+        session.info(call.place, fmt::format("Pin '{}' linked to signal '{}'", pin, signal.text));
+    }
+    return {};
+}
+
+Result<> run_linkpp(Session &session, const Call &call) {
+    warn_deprecated(session, call);
+    Hal &hal = session.hal();
+    Result<> result = check_pin(hal, call.words[0]);
+    result = result ? check_pin(hal, call.words[1]) : result;
+    if (!result) {
+        return result;
+    }
+    // The signal takes the first pin's name and must be new.
+    if (hal.hasSignal(call.text(0))) {
+        return fail(fmt::format("there is a signal '{}' already", call.text(0)), call.place_of(0));
+    }
+    result = at(hal.new_signal(call.text(0), hal.pin(call.text(0))->type), call.place_of(0));
+    if (!result) {
+        return result;
+    }
+    result = at(hal.link(call.text(0), call.text(0)), call.place_of(0));
+    result = result ? at(hal.link(call.text(1), call.text(0)), call.place_of(1)) : result;
+    if (!result) {
+        // Nothing half done stays.
+        (void)hal.delete_signal(call.text(0));
+    }
+    return result;
+}
+
+Result<> run_linkps(Session &session, const Call &call) {
+    return link(session, call.words[0], call.words[1]);
+}
+
+Result<> run_linksp(Session &session, const Call &call) {
+    return link(session, call.words[1], call.words[0]);
+}
+
+Result<> run_unlinkp(Session &session, const Call &call) {
+    Hal &hal = session.hal();
+    if (session.options().hasPlaceholders && session.placeholders().covers(call.text(0))) {
+        return {};
+    }
+    Result<> result = check_pin(hal, call.words[0]);
+    result = result ? at(hal.unlink(call.text(0)), call.place_of(0)) : result;
+    if (result) {
+        session.info(call.place, fmt::format("Pin '{}' unlinked", call.text(0)));
+    }
+    return result;
+}
+
+Result<> run_newsig(Session &session, const Call &call) {
+    const Result<Type> type = parse_type(call.text(1));
+    if (!type) {
+        return fail(fmt::format("unknown signal type '{}'", call.text(1)), call.place_of(1),
+                    "bit, float, s32, u32, s64, u64 or port");
+    }
+    const Result<> made = at(session.hal().new_signal(call.text(0), *type), call.place_of(0));
+    return made ? at(session.placeholders().signal_made(call.text(0)), call.place_of(0)) : made;
+}
+
+Result<> run_delsig(Session &session, const Call &call) {
+    Hal &hal = session.hal();
+    if (call.text(0) == "all") {
+        Result<> result;
+        for (const std::string &name : signal_names(hal)) {
+            const Result<> deleted = hal.delete_signal(name);
+            result = result ? deleted : result;
+        }
+        return at(result, call.place_of(0));
+    }
+    Result<> result = check_signal(hal, call.words[0]);
+    result = result ? at(hal.delete_signal(call.text(0)), call.place_of(0)) : result;
+    if (result) {
+        session.info(call.place, fmt::format("Signal '{}' deleted", call.text(0)));
+    }
+    return result;
+}
+
+Result<> run_alias(Session &session, const Call &call) {
+    const Result<> result = set_alias(session, call, call.text(2));
+    if (result) {
+        session.info(call.place,
+                     fmt::format("{} '{}' aliased to '{}'", call.text(0), call.text(1), call.text(2)));
+    }
+    return result;
+}
+
+Result<> run_unalias(Session &session, const Call &call) {
+    const Result<> result = set_alias(session, call, "");
+    if (result) {
+        session.info(call.place, fmt::format("{} '{}' unaliased", call.text(0), call.text(1)));
+    }
+    return result;
+}
+
+}  // namespace mw::hal::script

@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Modules, programs and threads.
+#include <unistd.h>
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "base/text.hh"
+#include "hal/script/commands.hh"
+
+namespace mw::hal::script {
+
+namespace {
+
+/// Reads the options of loadusr; the words from the program's name on become argv.
+Result<ProgramRequest> parse_loadusr(const Call &call) {
+    ProgramRequest request;
+    std::size_t i = 0;
+    bool isNamed = false;
+    for (; i < call.words.size() && call.text(i).starts_with('-'); ++i) {
+        const std::string &word = call.text(i);
+        if (word == "-Wn") {
+            if (i + 1 >= call.words.size()) {
+                return fail("-Wn needs the name of a component", call.place_of(i));
+            }
+            request.wait = ProgramRequest::Wait::UNTIL_READY;
+            request.component = call.text(++i);
+            isNamed = true;
+            continue;
+        }
+        for (const char option : word.substr(1)) {
+            if (option == 'W') {
+                request.wait = ProgramRequest::Wait::UNTIL_READY;
+            } else if (option == 'w') {
+                request.wait = ProgramRequest::Wait::UNTIL_END;
+            } else if (option == 'i') {
+                request.ignoresStatus = true;
+            } else {
+                return fail(fmt::format("unknown option '-{}' of loadusr", option), call.place_of(i),
+                            fmt::format("loadusr {}", call.spec.synopsis));
+            }
+        }
+    }
+    for (; i < call.words.size(); ++i) {
+        request.argv.push_back(call.text(i));
+    }
+    if (request.argv.empty()) {
+        return fail("loadusr needs the name of a program", call.place);
+    }
+    if (!isNamed) {
+        const std::string name = base_name(request.argv[0]);
+        request.component = name.ends_with(".py") ? name.substr(0, name.size() - 3) : name;
+    }
+    return request;
+}
+
+Result<> unload_module(Session &session, const std::string &name) {
+    return session.host().unload_realtime(name);
+}
+
+/// Newest first; the first failure, after trying all.
+Result<> unload_all_modules(Session &session) {
+    Result<> result;
+    // Threads must not call what is going away.
+    if (session.hal().isRunning()) {
+        result = session.hal().stop_threads();
+    }
+    const Result<std::vector<std::string>> modules = session.host().modules();
+    if (!modules) {
+        return std::unexpected(modules.error());
+    }
+    for (auto module = modules->rbegin(); module != modules->rend(); ++module) {
+        const Result<> unloaded = unload_module(session, *module);
+        result = result ? unloaded : result;
+    }
+    return result;
+}
+
+std::vector<std::string> component_names(Session &session, CompType type) {
+    std::vector<std::string> names;
+    for (const CompInfo &component : session.hal().components()) {
+        const bool isOurs = component.type == CompType::USER && component.pid == getpid();
+        if (component.type == type && !isOurs) {
+            names.push_back(component.name);
+        }
+    }
+    return names;
+}
+
+std::unexpected<Error> not_loaded(Session &session, const Word &word, CompType type) {
+    return fail(fmt::format("component '{}' is not loaded", word.text), word.place,
+                missing_hint(session.hal(), word.text, component_names(session, type)));
+}
+
+/// A program may have ended by itself already, which is what was wanted.
+Result<> warn_not_loaded(Session &session, const Word &word) {
+    const Error error = not_loaded(session, word, CompType::USER).error();
+    session.warn(error.place, error.message, error.hint);
+    return {};
+}
+
+/// The position of addf and initf: not zero.
+Result<int> parse_position(const Call &call) {
+    if (call.words.size() < 3) {
+        return -1;
+    }
+    const std::optional<std::int64_t> position = parse_int(call.text(2));
+    if (!position || *position == 0 || *position > 10000 || *position < -10000) {
+        return fail(fmt::format("'{}' is no position", call.text(2)), call.place_of(2),
+                    "1 is the first, -1 the last place");
+    }
+    return static_cast<int>(*position);
+}
+
+Result<> check_function_and_thread(Session &session, const Call &call) {
+    std::vector<std::string> functions;
+    for (const FunctInfo &function : session.hal().functs()) {
+        functions.push_back(function.name);
+    }
+    if (std::find(functions.begin(), functions.end(), call.text(0)) == functions.end()) {
+        return fail(fmt::format("function '{}' does not exist", call.text(0)), call.place_of(0),
+                    suggestion(call.text(0), functions));
+    }
+    std::vector<std::string> threads;
+    for (const ThreadInfo &thread : session.hal().threads()) {
+        threads.push_back(thread.name);
+    }
+    if (std::find(threads.begin(), threads.end(), call.text(1)) == threads.end()) {
+        std::string hint = suggestion(call.text(1), threads);
+        hint = threads.empty() ? "there is no thread yet" : hint;
+        return fail(fmt::format("thread '{}' does not exist", call.text(1)), call.place_of(1), hint);
+    }
+    return {};
+}
+
+}  // namespace
+
+Result<> run_loadrt(Session &session, const Call &call) {
+    std::vector<std::string> args;
+    for (std::size_t i = 1; i < call.words.size(); ++i) {
+        args.push_back(call.text(i));
+    }
+    const Result<> loaded = at(session.host().load_realtime(call.text(0), args), call.place_of(0));
+    if (loaded) {
+        session.info(call.place, fmt::format("Realtime module '{}' loaded", call.text(0)));
+    }
+    return loaded;
+}
+
+Result<> run_loadusr(Session &session, const Call &call) {
+    const Result<ProgramRequest> request = parse_loadusr(call);
+    if (!request) {
+        return std::unexpected(request.error());
+    }
+    const Result<ProgramStart> started = session.programs().start(*request);
+    if (!started) {
+        return at(std::unexpected(started.error()), call.place);
+    }
+    if (*started == ProgramStart::LEFT_OUT) {
+        session.placeholders().add_program(request->component, request->argv);
+        return {};
+    }
+    const bool hasEnded = request->wait == ProgramRequest::Wait::UNTIL_END;
+    session.info(call.place,
+                 fmt::format("Program '{}' {}", request->argv[0], hasEnded ? "finished" : "started"));
+    if (request->wait == ProgramRequest::Wait::UNTIL_READY) {
+        session.info(call.place, fmt::format("Component '{}' ready", request->component));
+    }
+    return {};
+}
+
+Result<> run_waitusr(Session &session, const Call &call) {
+    if (!session.hal().hasComponent(call.text(0))) {
+        return warn_not_loaded(session, call.words[0]);
+    }
+    const Result<> ended = at(session.programs().wait_for_end(call.text(0)), call.place_of(0));
+    for (const DeathInfo &death : session.hal().deaths()) {
+        if (ended && death.name == call.text(0)) {
+            session.warn(
+                call.place_of(0),
+                fmt::format("component '{}' died: its process {} ended without leaving HAL; its outputs "
+                            "have their safe values",
+                            death.name, death.pid));
+        }
+    }
+    return ended;
+}
+
+Result<> run_unloadusr(Session &session, const Call &call) {
+    if (call.text(0) == "all") {
+        return at(session.programs().stop_all(), call.place_of(0));
+    }
+    const Result<CompInfo> component = session.hal().component(call.text(0));
+    if (!component) {
+        return warn_not_loaded(session, call.words[0]);
+    }
+    if (component->type != CompType::USER) {
+        return fail(fmt::format("component '{}' is no program", call.text(0)), call.place_of(0),
+                    "use unloadrt for a realtime module");
+    }
+    return at(session.programs().stop(call.text(0)), call.place_of(0));
+}
+
+Result<> run_unloadrt(Session &session, const Call &call) {
+    if (call.text(0) == "all") {
+        return at(unload_all_modules(session), call.place_of(0));
+    }
+    const Result<bool> isLoaded = session.host().isModuleLoaded(call.text(0));
+    if (isLoaded && !*isLoaded) {
+        return not_loaded(session, call.words[0], CompType::REALTIME);
+    }
+    const Result<> unloaded = at(unload_module(session, call.text(0)), call.place_of(0));
+    if (unloaded) {
+        session.info(call.place, fmt::format("Realtime module '{}' unloaded", call.text(0)));
+    }
+    return unloaded;
+}
+
+Result<> run_unload(Session &session, const Call &call) {
+    if (call.text(0) == "all") {
+        const Result<> programs = at(session.programs().stop_all(), call.place_of(0));
+        const Result<> modules = at(unload_all_modules(session), call.place_of(0));
+        return programs ? modules : programs;
+    }
+    const Result<CompInfo> component = session.hal().component(call.text(0));
+    const bool isProgram = component && component->type == CompType::USER;
+    return isProgram ? run_unloadusr(session, call) : run_unloadrt(session, call);
+}
+
+Result<> run_addf(Session &session, const Call &call) {
+    const Result<int> position = parse_position(call);
+    if (!position) {
+        return std::unexpected(position.error());
+    }
+    Result<> result = check_function_and_thread(session, call);
+    result = result ? at(session.hal().add_function(call.text(0), call.text(1), *position), call.place_of(0))
+                    : result;
+    if (result) {
+        session.info(call.place,
+                     fmt::format("Function '{}' added to thread '{}'", call.text(0), call.text(1)));
+    }
+    return result;
+}
+
+Result<> run_initf(Session &session, const Call &call) {
+    const Result<int> position = parse_position(call);
+    if (!position) {
+        return std::unexpected(position.error());
+    }
+    Result<> result = check_function_and_thread(session, call);
+    result =
+        result ? at(session.hal().add_init_function(call.text(0), call.text(1), *position), call.place_of(0))
+               : result;
+    if (result) {
+        session.info(call.place,
+                     fmt::format("Function '{}' added once to thread '{}'", call.text(0), call.text(1)));
+    }
+    return result;
+}
+
+Result<> run_delf(Session &session, const Call &call) {
+    Result<> result = check_function_and_thread(session, call);
+    result =
+        result ? at(session.hal().remove_function(call.text(0), call.text(1)), call.place_of(0)) : result;
+    if (result) {
+        session.info(call.place,
+                     fmt::format("Function '{}' removed from thread '{}'", call.text(0), call.text(1)));
+    }
+    return result;
+}
+
+Result<> run_start(Session &session, const Call &call) {
+    const Result<> result = at(session.hal().start_threads(), call.place);
+    if (result) {
+        session.info(call.place, "Realtime threads started");
+    }
+    return result;
+}
+
+Result<> run_stop(Session &session, const Call &call) {
+    const Result<> result = at(session.hal().stop_threads(), call.place);
+    if (result) {
+        session.info(call.place, "Realtime threads stopped");
+    }
+    return result;
+}
+
+}  // namespace mw::hal::script

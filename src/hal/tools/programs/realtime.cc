@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <unistd.h>
+
+#include <cstdio>
+#include <string>
+
+#include "base/language/language.hh"
+#include "hal/host/host_client.hh"
+#include "hal/tools/programs/command_line.hh"
+
+namespace mw::hal::tools {
+namespace {
+
+constexpr const char *USAGE = R"(usage: realtime start|stop|restart|status|verify
+
+  start    starts a realtime process that stays until it is told to end
+  stop     ends it, and the programs that have components in it
+  restart  both
+  status   says whether it runs; the exit status is 0 when it does
+  verify   starts one of its own and says whether its threads have realtime priority and locked memory; 0 when they have
+)";
+
+int start() {
+    const std::string instance = default_instance();
+    if (isHostAlive(instance)) {
+        return 0;
+    }
+    const auto host = HostClient::start(instance, MessagesTo::FILE);
+    if (!host) {
+        language::tell("realtime", host.error());
+    }
+    return host ? 0 : 1;
+}
+
+int status() {
+    const std::string instance = default_instance();
+    const bool isAlive = isHostAlive(instance);
+    std::printf("the realtime process of instance '%s' %s\n", instance.c_str(),
+                isAlive ? "is running" : "is not running");
+    return isAlive ? 0 : 1;
+}
+
+/// In an instance of its own: a machine that is up is not touched.
+int verify() {
+    auto host = HostClient::start("verify-" + std::to_string(::getpid()));
+    Result<> done = host ? (*host)->control() : std::unexpected(host.error());
+    const std::string missing = done ? (*host)->hal().realtime_missing() : "";
+    const Result<> ended = host ? (*host)->shut_down() : Result<>{};
+    done = done ? ended : done;
+    if (!done) {
+        language::tell("realtime", done.error());
+        return 1;
+    }
+    std::printf("%s%s\n",
+                missing.empty() ? "realtime priority and locked memory" : "no realtime: ", missing.c_str());
+    return missing.empty() ? 0 : 1;
+}
+
+}  // namespace
+
+int realtime(const std::vector<std::string> &arguments) {
+    const std::string what = arguments.size() == 1 ? arguments[0] : "";
+    if (what == "start") {
+        return start();
+    }
+    if (what == "stop") {
+        return end_running("realtime");
+    }
+    if (what == "restart") {
+        const int stopped = end_running("realtime");
+        return stopped != 0 ? stopped : start();
+    }
+    if (what == "status") {
+        return status();
+    }
+    if (what == "verify") {
+        return verify();
+    }
+    const bool isHelp = what == "-h" || what == "--help";
+    std::fputs(language::shown(USAGE).c_str(), isHelp ? stdout : stderr);
+    return isHelp ? 0 : 2;
+}
+
+}  // namespace mw::hal::tools

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Latency of realtime threads: a realtime process of its own, threads that do nothing but count. [one thread]
+#pragma once
+
+#include <atomic>
+#include <csignal>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/result.hh"
+#include "hal/core/host.hh"
+#include "hal/tools/view/latency_block.hh"
+
+namespace mw::hal::view {
+
+struct LatencyThread {
+    std::string name;
+    std::int64_t period_ns = 0;
+    int bin_ns = 1000;
+};
+
+struct LatencyFigures {
+    std::string name;
+    std::int64_t period_ns = 0, bin_ns = 0;
+    std::uint64_t intervals = 0, below = 0, above = 0;
+    std::int64_t last_ns = 0, min_ns = 0, max_ns = 0;
+    double mean_ns = 0.0, deviation_ns = 0.0;  ///< of the deviations from the period; standard deviation
+    std::vector<std::uint64_t> bins;           ///< LATENCY_BINS, the period in the middle
+
+    /// The largest deviation from the period, early or late [ns].
+    std::int64_t jitter_ns() const noexcept;
+};
+
+/// "25us", "1ms", "0.001s", "25000" (ns) as nanoseconds.
+Result<std::int64_t> parse_period(const std::string &text);
+
+/// Makes the threads (fastest first, 1 to 3) in `host`, loads the module and starts them.
+Result<> start_latency(Host &host, const std::vector<LatencyThread> &threads);
+/// What they have counted so far.
+Result<std::vector<LatencyFigures>> read_latency(Hal &hal, const std::vector<LatencyThread> &threads);
+
+/// A line per thread under a headline.
+std::string latency_table(const std::vector<LatencyFigures> &figures);
+/// Bars of text: bins joined so that at most `rows` are shown, from the lowest to the highest that were met.
+std::string latency_bars(const LatencyFigures &figures, int rows = 24, int columns = 60);
+/// A .png or .svg with a histogram for each thread.
+Result<> draw_latency(const std::vector<LatencyFigures> &figures, const std::string &note,
+                      const std::string &path);
+
+struct LatencyOptions {
+    std::vector<LatencyThread> threads;
+    double seconds = 0.0;      ///< 0: until a signal comes
+    bool showsBars = false;    ///< histograms at the end
+    bool isLive = false;       ///< the table anew each second, for a terminal
+    std::string picture_path;  ///< empty: none
+    std::string csv_path;      ///< empty: none; columns thread, deviation [ns], count
+    std::string note;          ///< on the picture
+};
+
+/// Measures with a realtime process of an instance of its own. `stop` ends it early.
+Result<> run_latency(const LatencyOptions &options, volatile std::sig_atomic_t &stop);
+
+}  // namespace mw::hal::view

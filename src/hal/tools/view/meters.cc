@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "hal/tools/view/meters.hh"
+
+#include <unistd.h>
+
+#include <cstdio>
+
+#include "base/language/language.hh"
+#include "base/text.hh"
+#include "hal/tools/view/commands.hh"
+
+namespace mw::hal::view {
+
+std::vector<std::string> meter_words(const std::vector<std::string> &words, bool isTerminal, bool &isWrong) {
+    std::vector<std::string> names;
+    isWrong = false;
+    for (std::size_t i = 0; i < words.size() && !isWrong; ++i) {
+        const std::string &word = words[i];
+        const bool hasNext = i + 1 < words.size();
+        if (word == "-s") {
+            continue;  // a small window
+        }
+        if (word == "-g") {  // its place on a screen
+            while (i + 1 < words.size() && parse_int(words[i + 1]).has_value()) {
+                ++i;
+            }
+        } else if (word == "pin" || word == "sig" || word == "signal" || word == "param" || word == "par") {
+            isWrong = !hasNext;
+            names.push_back(hasNext ? words[++i] : "");
+        } else {
+            isWrong = true;
+        }
+    }
+    if (!isTerminal) {
+        names.insert(names.begin(), "watch");
+    }
+    return names;
+}
+
+namespace {
+
+constexpr const char *METER_USAGE = "usage: halmeter [-s] [pin|sig|param NAME] [-g X Y [WIDTH]]\n"
+                                    "  shows it on the terminal (as `millwright hal NAME`), elsewhere as "
+                                    "lines of text; there is no window, so\n"
+                                    "  that -s and -g change nothing\n";
+constexpr const char *SCOPE_TEXT =
+    "halscope: there is no oscilloscope in a window. `millwright hal capture NAME... --help` records up to "
+    "16\n"
+    "pins, signals and parameters in realtime, with triggers, as CSV, PNG or SVG.\n";
+
+bool wantsHelp(const std::vector<std::string> &words) {
+    return words.size() == 1 && (words[0] == "--help" || words[0] == "-h");
+}
+
+}  // namespace
+
+int halmeter(const std::vector<std::string> &words, volatile std::sig_atomic_t &stop) {
+    bool isWrong = false;
+    const std::vector<std::string> wanted = meter_words(words, ::isatty(STDOUT_FILENO) != 0, isWrong);
+    if (isWrong) {
+        std::fputs(language::shown(METER_USAGE).c_str(), wantsHelp(words) ? stdout : stderr);
+        return wantsHelp(words) ? 0 : 2;
+    }
+    return command_hal(wanted, stop);
+}
+
+int halscope(const std::vector<std::string> &words) {
+    std::fputs(language::shown(SCOPE_TEXT).c_str(), wantsHelp(words) ? stdout : stderr);
+    return wantsHelp(words) ? 0 : 1;
+}
+
+}  // namespace mw::hal::view

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The model on a terminal, with ncurses.
+#pragma once
+
+#include <csignal>
+
+#include "base/result.hh"
+#include "hal/tools/view/watch_model.hh"
+
+namespace mw::hal::view {
+
+/// Shows the model and takes keys until q, or until `stop` becomes nonzero. An error when standard output is
+/// no terminal.
+Result<> run_terminal(WatchModel &model, volatile std::sig_atomic_t &stop);
+
+}  // namespace mw::hal::view

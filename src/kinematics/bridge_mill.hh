@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// A bridge mill whose head turns about C and tilts about B; the work stands still. W moves the tool along its
+// own axis. The place of a letter is what the joints of that letter are driven to:
+//   (X Y Z) + (pivot + W) (direction of the tool) - (0, 0, pivot), B, C, W; A, U and V as they are.
+#pragma once
+
+#include "kinematics/frame.hh"
+#include "kinematics/parameters.hh"
+#include "kinematics/trivial.hh"
+
+namespace mw::kinematics {
+
+inline constexpr Parameter BRIDGE_MILL_PARAMETERS[] = {
+    {"pivot-length", 250, "length", "from the axis B to the tip of the tool at W0"},
+};
+
+class BridgeMill final : public Parametric<BRIDGE_MILL_PARAMETERS> {
+  public:
+    BridgeMill() noexcept { letters_.configure("XYZBCW"); }
+    /// Which letter each joint has. False (and no change) unless it is a word of axes.
+    bool set_letters(const char *letters) noexcept { return letters_.configure(letters); }
+    Status forward(const double *joints, Pose &pose) const noexcept override;
+    Status inverse(const Pose &pose, double *joints) const noexcept override;
+
+  private:
+    Vector lead(const Pose &pose) const noexcept;
+
+    Trivial letters_;
+};
+
+}  // namespace mw::kinematics

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Six turning joints of which the last three meet in one point: the first three bring that point, the wrist,
+// to its place, the others turn the hand. Header-only and realtime-safe.
+#pragma once
+
+#include <algorithm>
+
+#include "kinematics/frame.hh"
+#include "kinematics/kinematics.hh"
+
+namespace mw::kinematics {
+
+/// The joints of a pose whose hand is `hand_length` from the wrist along its Z. `place(wrist, joints)` finds
+/// joints 0 to 2, then `turn(hand, joints)` joints 3 to 5; each says how. Where there is no answer the joints
+/// are as they were.
+template <class Place, class Turn>
+Status inverse_by_wrist(const Pose &pose, double hand_length, double *joints, const Place &place,
+                        const Turn &turn) noexcept {
+    constexpr int JOINTS = 6;
+    if (!isFinite(pose) || !areFinite(joints, JOINTS)) {
+        return Status::UNREACHABLE;
+    }
+    const Rotation hand = rotation_of(pose);
+    double found[JOINTS];
+    std::copy_n(joints, JOINTS, found);
+    const Status placed = place(place_of(pose) - hand.z * hand_length, found);
+    if (placed == Status::UNREACHABLE) {
+        return placed;
+    }
+    const Status turned = turn(hand, found);
+    std::copy_n(found, JOINTS, joints);
+    std::copy_n(pose.c.begin() + geometry::AXIS_U, 3, joints + JOINTS);
+    return placed == Status::OK ? turned : placed;
+}
+
+}  // namespace mw::kinematics

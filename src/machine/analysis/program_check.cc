@@ -1,0 +1,356 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "machine/analysis/program_check.hh"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <span>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "machine/analysis/path_monitor.hh"
+#include "machine/config/unscripted.hh"
+
+namespace mw::machine {
+namespace {
+
+/// Soft limits are compared with this slack, as rounding of offsets must not refuse a move to the very limit.
+constexpr double LIMIT_SLACK = 1e-6;
+
+/// Whether a move beyond a limit is one wherever the machine stands at the start.
+using IsCertain = std::function<bool(const diagnostics::Diagnostic &)>;
+
+/// Looks at each move of a preview.
+class Checker {
+  public:
+    Checker(const MachineConfig &machine, diagnostics::Sink &sink, const CheckOptions &options,
+            IsCertain is_certain)
+        : machine_(machine), sink_(sink), options_(options), isCertain_(std::move(is_certain)),
+          limits_(machine.limits()), estimate_(machine) {
+        estimate_.start(home_position(machine));
+        result.lowest.fill(1e300);
+        result.highest.fill(-1e300);
+    }
+
+    CheckResult result;
+
+    /// `preview` names the places of the events.
+    void take(std::span<const gcode::PreviewEvent> events, const gcode::Preview &preview) {
+        preview_ = &preview;
+        isTimed_ = isTimed_ && (!options_.wantsTime || options_.wantsTime());
+        for (const gcode::PreviewEvent &event : events) {
+            event_ = &event;
+            if (isTimed_) {
+                estimate_.set_place(preview.file(event.file), event.line, preview.section(event.section));
+                estimate_.take(event);
+            }
+            take_event(event);
+        }
+    }
+    void finish_time() {
+        if (isTimed_) {
+            result.time = estimate_.finish();
+        }
+    }
+
+  private:
+    void take_event(const gcode::PreviewEvent &event) {
+        using Kind = gcode::PreviewKind;
+        ProgrammedPiece piece;
+        piece.start = event.start;
+        piece.end = event.end;
+        switch (event.kind) {
+        case Kind::RAPID:
+            piece.isRapid = event.settings.isRapid;
+            take_piece(piece);
+            break;
+        case Kind::FEED:
+        case Kind::PROBE: take_piece(piece); break;
+        case Kind::ARC:
+            piece.centre = event.centre;
+            piece.normal = event.normal;
+            piece.angle_rad = event.angle_rad;
+            check_arc(piece);
+            take_piece(piece);
+            break;
+        case Kind::RIGID_TAP:
+            take_piece(piece);
+            std::swap(piece.start, piece.end);
+            take_piece(piece);
+            break;
+        case Kind::DWELL:
+        case Kind::TOOL_CHANGE:
+        case Kind::PLANNER:
+        case Kind::STOP: break;
+        }
+    }
+    void take_piece(const ProgrammedPiece &piece) {
+        ++result.moves;
+        result.hasMoves = true;
+        (piece.isRapid ? result.rapid_length : result.cutting_length) += feed_length(piece);
+        check_point(piece.end);
+        add_points(piece);
+    }
+    void add_points(const ProgrammedPiece &piece) {
+        if (options_.points == nullptr) {
+            return;
+        }
+        constexpr double CHORDS = 48, MOST_CHORDS = 100000;  ///< of a full turn, of a piece
+        const double turns = std::abs(piece.angle_rad) / (2 * std::numbers::pi);
+        const int chords = static_cast<int>(std::clamp(std::ceil(CHORDS * turns), 1.0, MOST_CHORDS));
+        const PieceShape shape(piece);
+        for (int i = options_.points->all().empty() ? 0 : 1; i <= chords; ++i) {
+            options_.points->add(shape.point_at(static_cast<double>(i) / chords), piece.isRapid);
+        }
+    }
+
+    void check_point(const geometry::Pose &p) {
+        for (int axis = 0; axis < MAX_AXES; ++axis) {
+            if ((machine_.axis_mask & (1U << axis)) != 0) {
+                check_coordinate(axis, p[axis]);
+            }
+        }
+    }
+
+    void check_coordinate(int axis, double value) {
+        const auto i = static_cast<std::size_t>(axis);
+        result.lowest[i] = std::min(result.lowest[i], value);
+        result.highest[i] = std::max(result.highest[i], value);
+        const bool isLow = value < limits_.low[axis] - LIMIT_SLACK;
+        if (!isLow && value <= limits_.high[axis] + LIMIT_SLACK) {
+            return;
+        }
+        const double limit = isLow ? limits_.low[axis] : limits_.high[axis];
+        report(fmt::format("the move goes to {} = {:.4f}, beyond the {} limit {:g} of axis {}",
+                           geometry::AXIS_LETTERS[i], value, isLow ? "lower" : "upper", limit,
+                           geometry::AXIS_LETTERS[i]),
+               key_of_limit(axis, isLow));
+    }
+
+    /// Of an axis and the joints that move it, the one with the tightest limit.
+    std::string key_of_limit(int axis, bool isLow) const {
+        const double limit = isLow ? limits_.low[axis] : limits_.high[axis];
+        std::string section = std::string("AXIS_") + geometry::AXIS_LETTERS[axis];
+        for (int joint = 0; joint < machine_.num_joints; ++joint) {
+            const auto j = static_cast<std::size_t>(joint);
+            const double own = isLow ? limits_.joints.low[j] : limits_.joints.high[j];
+            const bool isJoint = machine_.axis_map.moves(joint, axis) && own == limit;
+            section =
+                isJoint && limit != axis_limit(axis, isLow) ? "JOINT_" + std::to_string(joint) : section;
+        }
+        return fmt::format("[{}]{}_LIMIT", section, isLow ? "MIN" : "MAX");
+    }
+    double axis_limit(int axis, bool isLow) const {
+        return motion::settings_of(machine_.parameters)
+            .get(isLow ? motion::Parameter::AXIS_MIN_LIMIT : motion::Parameter::AXIS_MAX_LIMIT, axis);
+    }
+
+    /// The quarter points of the circle about each principal axis reach furthest; sixty-four chords bound
+    /// them.
+    void check_arc(const ProgrammedPiece &piece) {
+        constexpr int STEPS = 64;
+        const double radius = std::sqrt(std::max(0.0, radius_squared(piece)));
+        for (int axis = 0; axis < 3; ++axis) {
+            const double reach =
+                radius * std::sqrt(std::max(0.0, 1.0 - piece.normal[axis] * piece.normal[axis]));
+            const bool mayReach = piece.centre[axis] - reach < limits_.low[axis] ||
+                                  piece.centre[axis] + reach > limits_.high[axis];
+            if (!mayReach) {
+                continue;
+            }
+            const PieceShape shape(piece);
+            for (int step = 1; step < STEPS; ++step) {
+                check_point(shape.point_at(static_cast<double>(step) / STEPS));
+            }
+            return;
+        }
+    }
+
+    static double radius_squared(const ProgrammedPiece &piece) {
+        const geometry::Pose d = piece.start - piece.centre;
+        double along = 0, all = 0;
+        for (int axis = 0; axis < 3; ++axis) {
+            along += d[axis] * piece.normal[axis];
+            all += d[axis] * d[axis];
+        }
+        return all - along * along;
+    }
+
+    /// One message for each line, not for each axis.
+    void report(std::string message, std::string hint, int column = 1) {
+        if (event_->line == reported_line_ || sink_.count_errors() >= MAX_CHECK_ERRORS) {
+            return;
+        }
+        diagnostics::Diagnostic error{
+            diagnostics::Severity::ERROR,
+            {std::move(message), {preview_->file(event_->file), event_->line, column}, std::move(hint)},
+            {},
+            preview_->line_text(event_->file, event_->line)};
+        if (isCertain_ && !isCertain_(error)) {
+            return;
+        }
+        reported_line_ = event_->line;
+        sink_.report(error);
+    }
+
+    const MachineConfig &machine_;
+    diagnostics::Sink &sink_;
+    const CheckOptions &options_;
+    IsCertain isCertain_;  ///< empty: all are
+    motion::FoldedLimits limits_;
+    TimeEstimate estimate_;
+    bool isTimed_ = true;
+    const gcode::Preview *preview_ = nullptr;
+    const gcode::PreviewEvent *event_ = nullptr;
+    int reported_line_ = -1;
+};
+
+}  // namespace
+
+gcode::PreviewMachine preview_stand(const MachineConfig &machine) {
+    gcode::PreviewMachine stand;
+    stand.interpreter = machine.task.interpreter;
+    stand.units = machine.task.machine_units;
+    stand.axis_mask = machine.axis_mask;
+    stand.spindles = machine.num_spindles;
+    stand.parameter_file = machine.task.parameter_file;
+    stand.position = home_position(machine);
+    stand.tool_change_moves = [&machine](const geometry::Pose &position) {
+        return task::tool_change_moves(machine.task.tool_change_place, position);
+    };
+    return stand;
+}
+
+namespace {
+
+gcode::PreviewOptions preview_options(const CheckOptions &check) {
+    gcode::PreviewOptions options;
+    options.max_errors = MAX_CHECK_ERRORS;
+    if (check.statements) {
+        options.statement_budget = options.idle_budget = static_cast<std::uint64_t>(*check.statements);
+        options.time_budget_s = 0;
+    }
+    return options;
+}
+
+struct ProgramSources {
+    gcode::ToolSource &tools;
+    gcode::ParameterSource &parameters;
+};
+
+/// One reading of the program with the machine at `start`.
+CheckResult check_from(const geometry::Pose &start, const MachineConfig &machine, const std::string &program,
+                       const ProgramSources &sources, diagnostics::Sink &sink, const CheckOptions &check,
+                       IsCertain is_certain) {
+    gcode::Preview *source = nullptr;
+    gcode::PreviewMachine stand = preview_stand(machine);
+    stand.position = start;
+    stand.isBlockDeleteOn = check.isBlockDeleteOn;
+    const auto tell_unknown = [&](std::string_view what) {
+        if (source != nullptr) {
+            source->flush();  // errors before this place are none that might not be
+        }
+        check.unknown(source != nullptr ? source->place() : SourcePlace{}, what);
+    };
+    const bool hasScripts = !stand.interpreter.scripts.top_level.empty();
+    UnknownHalValues unknown_values(sources.parameters, [&] { tell_unknown("a value of HAL"); });
+    if (check.unknown) {
+        stand.interpreter.make_script_host = [&]() -> Result<std::unique_ptr<gcode::ScriptHost>> {
+            return std::make_unique<UnscriptedHost>([&] { tell_unknown("Python"); });
+        };
+    }
+    // What scripts define is not known: an error of the interpreter may be none.
+    diagnostics::Sink errors([&](const diagnostics::Diagnostic &one) {
+        if (check.unknown && hasScripts) {
+            tell_unknown("Python");
+        } else if (source != nullptr) {
+            source->flush();  // findings come in the order of the program
+        }
+        sink.report(one);
+    });
+    Checker checker(machine, sink, check, std::move(is_certain));
+    gcode::Preview preview(
+        std::move(stand), sources.tools, check.unknown ? unknown_values : sources.parameters,
+        preview_options(check),
+        {[&](std::span<const gcode::PreviewEvent> events) { checker.take(events, *source); }, check.progress,
+         check.unknown});
+    source = &preview;
+    const gcode::PreviewEnd end = preview.run(program, errors);
+    checker.result.blocks = preview.progress().blocks;
+    checker.result.isCancelled = end == gcode::PreviewEnd::CANCELLED;
+    if (end == gcode::PreviewEnd::DONE && !sink.hasErrors()) {
+        checker.finish_time();
+    }
+    return checker.result;
+}
+
+std::string words_of(const diagnostics::Diagnostic &one) {
+    return fmt::format("{}:{}: {}", one.what.place.file, one.what.place.line, one.what.message);
+}
+
+/// Where joints are not axes nobody knows the pose before the start. What is beyond a limit from two poses
+/// that have nothing in common is beyond it from all; the second is asked only when something is found. What
+/// is handed over outlives the answer.
+IsCertain beyond_from_elsewhere(const MachineConfig &machine, const std::string &program,
+                                const ProgramSources &sources, const CheckOptions &check) {
+    return [&machine, &program, sources, &check,
+            found = std::optional<std::set<std::string>>()](const diagnostics::Diagnostic &error) mutable {
+        if (!found) {
+            found.emplace();
+            diagnostics::Sink collected(
+                [&found](const diagnostics::Diagnostic &one) { found->insert(words_of(one)); });
+            CheckOptions quiet;
+            quiet.statements = check.statements;
+            quiet.isBlockDeleteOn = check.isBlockDeleteOn;
+            quiet.progress = check.progress;
+            if (check.unknown) {
+                quiet.unknown = [](const SourcePlace &, std::string_view) {};
+            }
+            quiet.wantsTime = [] { return false; };
+            geometry::Pose elsewhere = home_position(machine);
+            for (int axis = 0; axis < MAX_AXES; ++axis) {
+                elsewhere[axis] += 17.37 + 0.913 * axis;
+            }
+            check_from(elsewhere, machine, program, sources, collected, quiet, {});
+        }
+        return found->contains(words_of(error));
+    };
+}
+
+}  // namespace
+
+geometry::Pose home_position(const MachineConfig &machine) {
+    if (!machine.isTrivial) {
+        const motion::FoldedLimits limits = machine.limits();
+        geometry::Pose within;
+        for (int axis = 0; axis < MAX_AXES; ++axis) {
+            within[axis] = std::max(limits.low[axis], std::min(0.0, limits.high[axis]));
+        }
+        return within;
+    }
+    std::array<double, MAX_JOINTS> home{};
+    for (const motion::SetParameter &parameter : machine.parameters) {
+        const bool isHome = parameter.parameter == static_cast<std::uint16_t>(motion::Parameter::JOINT_HOME);
+        if (isHome && parameter.index >= 0 && parameter.index < MAX_JOINTS) {
+            home[static_cast<std::size_t>(parameter.index)] = parameter.value;
+        }
+    }
+    geometry::Pose position;
+    for (int axis = 0; axis < MAX_AXES; ++axis) {
+        const int joint = machine.joint_of_axis[static_cast<std::size_t>(axis)];
+        position[axis] = joint >= 0 ? home[static_cast<std::size_t>(joint)] : 0.0;
+    }
+    return position;
+}
+
+CheckResult check_program(const MachineConfig &machine, const std::string &program, gcode::ToolSource &tools,
+                          gcode::ParameterSource &parameters, diagnostics::Sink &sink,
+                          const CheckOptions &check) {
+    const ProgramSources sources{tools, parameters};
+    const IsCertain is_certain =
+        machine.isTrivial ? IsCertain{} : beyond_from_elsewhere(machine, program, sources, check);
+    return check_from(home_position(machine), machine, program, sources, sink, check, is_certain);
+}
+
+}  // namespace mw::machine

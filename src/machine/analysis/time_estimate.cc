@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "machine/analysis/time_estimate.hh"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "motion/interface/parameters.hh"
+
+namespace mw::machine {
+
+namespace {
+
+/// Time lost in places that are kept until the worst are known; beyond that many the least are let go.
+constexpr std::size_t MOST_PLACES = 100000;
+
+/// Kinds of moves in their tags.
+enum class Shape : std::uint8_t { STRAIGHT, ARC };
+
+std::string name_of(const trajectory::MoveEstimate &move) {
+    const bool isArc = move.tag.type == static_cast<std::uint8_t>(Shape::ARC);
+    const std::string axis = move.axis == trajectory::XYZ_NORM ? "[TRAJ] (X Y Z)"
+                             : move.axis >= 0
+                                 ? std::string(1, geometry::AXIS_LETTERS[static_cast<std::size_t>(move.axis)])
+                                 : "";
+    switch (move.binding) {
+    case trajectory::Binding::FEED: return "feed";
+    case trajectory::Binding::VELOCITY: return "velocity of " + axis;
+    case trajectory::Binding::ACCELERATION:
+        return isArc ? "curvature: acceleration of " + axis : "acceleration of " + axis;
+    case trajectory::Binding::JERK: return "jerk of " + axis;
+    case trajectory::Binding::TOLERANCE: return "tolerance or short moves";
+    }
+    return {};
+}
+
+}  // namespace
+
+TimeEstimate::TimeEstimate(const MachineConfig &machine, const Overrides &overrides, Watch watch)
+    : watch_(std::move(watch)), settings_(motion::settings_of(machine.parameters)),
+      // An estimate knows no kinematics: each joint is taken for the axis of its letter.
+      limits_(motion::fold_limits(settings_, machine.axis_map, motion::ALL_HOMED).path),
+      corner_scale_(settings_.get(motion::Parameter::TRAJ_CORNER_SCALE)),
+      isMergeAdded_(settings_.isSet(motion::Parameter::TRAJ_ADDED_TOLERANCES)),
+      estimator_(std::make_unique<trajectory::Estimator>(
+          limits_, static_cast<double>(machine.servo_period_ns) * 1e-9,
+          [this](const trajectory::MoveEstimate &move) { count(move); })) {
+    const motion::FoldedLimits room = machine.limits();
+    trajectory::Scales scales;
+    scales.feed = overrides.feed;
+    scales.rapid = overrides.rapid;
+    scales.max_velocity = overrides.max_velocity > 0 ? overrides.max_velocity : scales.max_velocity;
+    scales.max_feed = settings_.get(motion::Parameter::MAX_FEED_SCALE);
+    estimator_->set_machine(scales, room.low, room.high);
+}
+
+void TimeEstimate::start(const geometry::Pose &position) {
+    position_ = position;
+    estimator_->begin(position);
+}
+
+void TimeEstimate::set_place(const std::string &file, int line, const std::string &section) {
+    line_ = line;
+    if (files_.empty() || files_[file_] != file) {
+        const auto found = std::find(files_.begin(), files_.end(), file);
+        file_ = static_cast<std::uint32_t>(found - files_.begin());
+        if (found == files_.end()) {
+            files_.push_back(file);
+        }
+    }
+    auto &sections = figures_.by_section;
+    if (sections.empty() || sections[section_].first != section) {
+        const auto found =
+            std::find_if(sections.begin(), sections.end(), [&](const auto &s) { return s.first == section; });
+        section_ = static_cast<std::size_t>(found - sections.begin());
+        if (found == sections.end()) {
+            sections.emplace_back(section, 0.0);
+        }
+    }
+}
+
+trajectory::MoveRequest TimeEstimate::request_of(const geometry::MoveSettings &settings) {
+    trajectory::MoveRequest r;
+    r.tag.requested_velocity = settings.feed;
+    r.tag.line = line_;
+    r.tag.id = id_;
+    r.tag.file_index = file_;
+    r.tag.block = static_cast<std::uint32_t>(section_);
+    r.isRapid = settings.isRapid || !(settings.feed > 0);
+    r.tolerance = settings.tolerance;
+    r.isMergeAdded = isMergeAdded_;
+    r.set_merge(settings.naivecam_tolerance);
+    r.corner_scale = settings.corner_scale > 0 ? settings.corner_scale : corner_scale_;
+    r.join = settings.mode;
+    return r;
+}
+
+namespace {
+
+/// Moves that follow the spindle are timed at its programmed speed.
+geometry::MoveSettings timed(const gcode::PreviewEvent &event) {
+    geometry::MoveSettings out = event.settings;
+    if (out.feed_per_revolution > 0 && event.spindle_rpm > 0) {
+        out.feed = out.feed_per_revolution * event.spindle_rpm / 60.0;
+    }
+    return out;
+}
+
+}  // namespace
+
+void TimeEstimate::take(const gcode::PreviewEvent &event, std::uint64_t id) {
+    using Kind = gcode::PreviewKind;
+    id_ = id;
+    if (event.isSpindleAwaited) {
+        stop();  // how long it waits nobody knows, but it begins at rest
+    }
+    switch (event.kind) {
+    case Kind::RAPID: line(event.end, event.settings); break;
+    case Kind::FEED: line(event.end, timed(event)); break;
+    case Kind::ARC: arc({event.end, event.centre, event.normal, event.angle_rad, timed(event)}); break;
+    case Kind::PROBE:
+        stop();
+        line(event.end, timed(event));
+        stop();
+        break;
+    case Kind::RIGID_TAP:
+        line(event.end, timed(event));
+        line(event.start, timed(event));
+        break;
+    case Kind::DWELL: dwell(event.value); break;
+    case Kind::TOOL_CHANGE: set_tool(event.number); break;
+    case Kind::PLANNER: set_smooth(event.number != 0); break;
+    case Kind::STOP: stop(); break;
+    }
+}
+
+void TimeEstimate::line(const geometry::Pose &end, const geometry::MoveSettings &settings) {
+    estimator_->add(trajectory::make_line(position_, end), request_of(settings));
+    position_ = end;
+}
+
+void TimeEstimate::arc(const gcode::ArcMove &move) {
+    trajectory::Primitive p;
+    const trajectory::ArcShape shape{move.centre, move.normal, move.angle_rad,
+                                     geometry::norm_uvw(move.normal) > 0};
+    if (trajectory::make_arc(position_, move.end, shape, p) == trajectory::ArcFault::NONE) {
+        trajectory::MoveRequest request = request_of(move.settings);
+        request.tag.type = static_cast<std::uint8_t>(Shape::ARC);
+        estimator_->add(p, request);
+    }
+    position_ = move.end;
+}
+
+void TimeEstimate::dwell(double seconds) {
+    stop();
+    figures_.dwell_s += seconds;
+    figures_.by_tool[tool_] += seconds;
+    if (section_ < figures_.by_section.size()) {
+        figures_.by_section[section_].second += seconds;
+    }
+    if (watch_) {
+        watch_({id_, line_, seconds, 0});
+    }
+}
+
+void TimeEstimate::stop() {
+    estimator_->finish();
+    estimator_->begin(position_);
+}
+
+void TimeEstimate::set_smooth(bool isSmooth) {
+    stop();
+    limits_.isJerkLimited = isSmooth && settings_.get(motion::Parameter::TRAJ_MAX_JERK) >= motion::LEAST_JERK;
+    estimator_->set_limits(limits_);
+}
+
+void TimeEstimate::set_tool(int tool) {
+    stop();
+    tool_ = tool;
+}
+
+void TimeEstimate::count(const trajectory::MoveEstimate &move) {
+    if (watch_) {
+        watch_({move.tag.id, move.tag.line, move.seconds, move.top_velocity});
+    }
+    (move.tag.requested_velocity > 0 ? figures_.cutting_s : figures_.rapid_s) += move.seconds;
+    figures_.by_tool[tool_] += move.seconds;
+    if (move.tag.block < figures_.by_section.size()) {
+        figures_.by_section[move.tag.block].second += move.seconds;
+    }
+    const double lost = move.seconds - move.seconds_at_feed;
+    if (move.binding == trajectory::Binding::FEED || !(move.seconds_at_feed > 0) || !(lost > 0)) {
+        return;
+    }
+    if (places_.size() >= MOST_PLACES) {
+        std::erase_if(places_, [&](const auto &p) { return p.second.lost_s < lost; });
+        if (places_.size() >= MOST_PLACES) {
+            return;
+        }
+    }
+    SlowPlace &place = places_[{move.tag.file_index, move.tag.line}];
+    place.file = files_.empty() ? std::string() : files_[move.tag.file_index];
+    place.line = move.tag.line;
+    place.lost_s += lost;
+    place.limit = name_of(move);
+}
+
+const TimeFigures &TimeEstimate::finish(std::size_t slow_places) {
+    estimator_->finish();
+    figures_.isComplete = estimator_->isComplete();
+    figures_.total_s = figures_.cutting_s + figures_.rapid_s + figures_.dwell_s;
+    std::vector<SlowPlace> all;
+    for (const auto &[key, place] : places_) {
+        all.push_back(place);
+    }
+    std::stable_sort(all.begin(), all.end(),
+                     [](const SlowPlace &a, const SlowPlace &b) { return a.lost_s > b.lost_s; });
+    all.resize(std::min(all.size(), slow_places));
+    figures_.slowest = std::move(all);
+    return figures_;
+}
+
+}  // namespace mw::machine

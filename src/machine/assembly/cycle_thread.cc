@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "machine/assembly/cycle_thread.hh"
+
+#include <unistd.h>
+
+#include <chrono>
+
+#include "base/thread_priority.hh"
+
+namespace mw::machine {
+namespace {
+
+/// Task that is not in a call works by itself, and ends soon or begins one.
+constexpr std::chrono::milliseconds LOOK_AGAIN{1};
+
+}  // namespace
+
+CycleThread::CycleThread(task::LongCall &call, Works works)
+    : call_(call), works_(std::move(works)), thread_([this] { work(); }) {}
+
+CycleThread::~CycleThread() {
+    give_back();
+    {
+        const std::lock_guard lock(mutex_);
+        isEnding_ = true;
+    }
+    begun_.notify_one();
+    thread_.join();
+}
+
+void CycleThread::give_back() {
+    if (isTaken_) {
+        isTaken_ = false;
+        raise_priority(thread_id_);  // it returns to task
+        call_.give_back();
+    }
+}
+
+void CycleThread::run(std::int64_t now_ns) {
+    give_back();
+    std::unique_lock lock(mutex_);
+    const auto hasEnded = [this] { return !isRunning_; };
+    if (hasEnded()) {
+        isLate_ = false;
+        now_ns_ = now_ns;
+        isRunning_ = true;
+        begun_.notify_one();
+    }
+    auto patience = isLate_ ? std::chrono::nanoseconds(0) : std::chrono::nanoseconds(PATIENCE_NS);
+    while (!ended_.wait_for(lock, patience, hasEnded)) {
+        if (call_.take()) {
+            isTaken_ = isLate_ = true;
+            lock.unlock();
+            reset_priority(thread_id_);
+            works_.apart(now_ns);
+            return;
+        }
+        patience = LOOK_AGAIN;
+    }
+}
+
+bool CycleThread::end_call(std::int64_t most_ns) {
+    give_back();
+    std::unique_lock lock(mutex_);
+    const bool hasEnded =
+        ended_.wait_for(lock, std::chrono::nanoseconds(most_ns), [this] { return !isRunning_; });
+    isTaken_ = !hasEnded && call_.take();
+    return hasEnded;
+}
+
+void CycleThread::work() {
+    thread_id_ = ::gettid();
+    std::unique_lock lock(mutex_);
+    while (true) {
+        begun_.wait(lock, [this] { return isRunning_ || isEnding_; });
+        if (isEnding_) {
+            return;
+        }
+        const std::int64_t now_ns = now_ns_;
+        lock.unlock();
+        works_.whole(now_ns);
+        lock.lock();
+        isRunning_ = false;
+        ended_.notify_one();
+    }
+}
+
+}  // namespace mw::machine

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Settings of the INI file that may be changed at run time by HAL pins: component "inihal".
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "base/result.hh"
+#include "hal/core/user_pin.hh"
+#include "machine/task/task.hh"
+#include "motion/interface/settings.hh"
+
+namespace mw::machine {
+
+/// ini.N.* of joints, ini.L.* of axes, ini.traj-*, by one table in ini_pins.cc. They hold what the INI file
+/// says, 0 where it says nothing. Not realtime; one thread.
+class IniPins {
+  public:
+    /// [TRAJ]DEFAULT_LINEAR_VELOCITY and DEFAULT_LINEAR_ACCELERATION, which nothing acts on.
+    struct Defaults {
+        double velocity = 0, acceleration = 0;
+    };
+    /// Makes the component and its pins.
+    Result<> create(hal::Hal &hal, const std::vector<motion::SetParameter> &parameters, int num_joints,
+                    const Defaults &defaults);
+    void destroy();
+    /// Tells task what has changed since the last call. Speeds and accelerations wait until nothing moves in
+    /// a mode of jogs, and nothing changes while joints home.
+    void step(task::Task &task);
+
+    /// What a pin is for.
+    struct Use {
+        motion::Parameter parameter = motion::Parameter::COUNT;  ///< COUNT: nothing acts on it
+        bool isRate = false;                                     ///< changes at rest only
+        bool isPositive = false;
+    };
+
+  private:
+    struct Pin {
+        std::string name;
+        std::variant<hal::UserPin<double>, hal::UserPin<std::int32_t>, hal::UserPin<bool>> pin;
+        Use use;
+        int index = 0;
+        double last = 0;
+        bool isWaiting = false, isWaitTold = false;
+
+        double value() const noexcept;
+        void set(double to);
+    };
+    template <class T>
+    void make_named(hal::UserPin<T> &pin, const std::string &name, hal::Hal &hal, Result<> &status);
+    void make_pins(int num_joints, const Defaults &defaults, hal::Hal &hal, Result<> &status);
+    bool isTaken(const Pin &pin, double value, task::Task &task) const;
+    void step(Pin &pin, task::Task &task);
+
+    hal::Hal *hal_ = nullptr;
+    int comp_id_ = 0;
+    std::vector<Pin> pins_;
+    hal::UserPin<std::int32_t> planner_type_;
+    hal::UserPin<double> corner_scale_;
+    std::int32_t last_type_ = 0;
+    double last_scale_ = 1;
+};
+
+}  // namespace mw::machine

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// A script host that runs nothing: for looking at a program before the machine may be touched by anybody's
+// code.
+#pragma once
+
+#include <functional>
+
+#include "gcode/interpreter/scripts/script_host.hh"
+
+namespace mw::machine {
+
+/// Every function of a remap counts as there and does nothing; `asked` hears of each that would have run.
+class UnscriptedHost final : public gcode::ScriptHost {
+  public:
+    explicit UnscriptedHost(std::function<void()> asked) : asked_(std::move(asked)) {}
+
+    Result<> load(const gcode::ScriptSettings &, gcode::InterpreterView &) override { return {}; }
+    Result<> begin() override { return {}; }
+    /// Whether a script or a file answers an O word is not known: a file may.
+    bool hasFunction(gcode::ScriptModule module, std::string_view) const override {
+        return module == gcode::ScriptModule::REMAP;
+    }
+    gcode::ScriptOutcome call(gcode::ScriptModule, const std::string &, const gcode::ScriptArguments &,
+                              std::unique_ptr<gcode::SuspendedScript> &) override {
+        asked_();
+        return {};
+    }
+    gcode::ScriptOutcome run_text(std::string_view) override {
+        asked_();
+        return {};
+    }
+    std::vector<std::string> named_parameters() const override { return {}; }
+    Result<double> named_parameter(const std::string &) override { return 0.0; }
+
+  private:
+    std::function<void()> asked_;
+};
+
+/// Passes values of HAL on as 0 and tells `asked` of each: they are known only while the machine runs.
+class UnknownHalValues final : public gcode::ParameterSource {
+  public:
+    UnknownHalValues(gcode::ParameterSource &values, std::function<void()> asked)
+        : values_(values), asked_(std::move(asked)) {}
+
+    std::optional<double> ini_value(std::string_view section, std::string_view key) const override {
+        return values_.ini_value(section, key);
+    }
+    std::optional<double> hal_value(std::string_view) const override {
+        asked_();
+        return 0.0;
+    }
+
+  private:
+    gcode::ParameterSource &values_;
+    std::function<void()> asked_;
+};
+
+}  // namespace mw::machine

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "machine/halui/dial.hh"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mw::halui {
+
+std::optional<double> Dial::step(const DialInputs &now, double value, const DialRange &range) {
+    // What wheels have turned while they were not enabled does not count.
+    const double turned = isKnown_ ? static_cast<double>(now.counts) - counts_ : 0.0;
+    isKnown_ = true;
+    counts_ = now.counts;
+    const double base = asked_.value_or(value);
+    std::optional<double> wanted;
+    if (turned != 0 && now.isCountEnabled) {
+        wanted = now.isDirect ? now.counts * now.scale : base + turned * now.scale;
+    }
+    if (increase_.step(now.isIncrease)) {
+        wanted = wanted.value_or(base) + now.scale;
+    }
+    if (decrease_.step(now.isDecrease)) {
+        wanted = wanted.value_or(base) - now.scale;
+    }
+    if (reset_.step(now.isReset)) {
+        wanted = 1.0;
+    }
+    if (wanted.has_value() && std::isfinite(*wanted)) {
+        asked_ = std::clamp(*wanted, range.low, std::max(range.low, range.high));
+        return asked_;
+    }
+    return std::nullopt;
+}
+
+}  // namespace mw::halui

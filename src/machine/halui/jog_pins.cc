@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "machine/halui/jog_pins.hh"
+
+#include <cmath>
+#include <utility>
+
+#include "messages/client/jog_speed.hh"
+
+namespace mw::halui {
+namespace {
+
+constexpr int LEASE_MS = 500;
+constexpr std::int64_t RENEWAL_NS = 100000000;
+
+bool isOpposite(double a, double b) {
+    return (a > 0) != (b > 0);
+}
+
+}  // namespace
+
+double JogPins::part_of(const JogInputs &now, const JogSettings &settings) {
+    if (now.isPlus != now.isMinus) {
+        return now.isPlus ? 1.0 : -1.0;
+    }
+    const bool isBeyond =
+        !now.isPlus && std::isfinite(now.analog) && std::abs(now.analog) > settings.deadband;
+    return isBeyond ? now.analog : 0.0;
+}
+
+std::vector<messages::Command> JogPins::step(const JogInputs &now, const JogSettings &settings,
+                                             const Target &target, std::int64_t now_ns) {
+    std::vector<messages::Command> asked;
+    const double part = part_of(now, settings);
+    if (!std::exchange(isKnown_, true)) {
+        isWaiting_ = true;  // what is on at the start was pressed by nobody
+    }
+    if (target.index != target_.index && part_ != 0) {
+        asked.emplace_back(messages::JogStop{target_.isJoint, target_.index});
+        part_ = 0;
+        isWaiting_ = isRefused_;
+    }
+    target_ = target;
+    isWaiting_ = isWaiting_ && part != 0;
+    if (!isWaiting_) {
+        step_held(part, client::per_second(std::abs(settings.speed_per_min)), now_ns, asked);
+    }
+    const bool isForward = plus_.step(now.isIncrementPlus), isBack = minus_.step(now.isIncrementMinus);
+    if (isForward != isBack) {
+        asked.emplace_back(messages::JogIncrement{target.isJoint, target.index,
+                                                  client::per_second(std::abs(settings.speed_per_min)),
+                                                  isForward ? now.increment : -now.increment});
+    }
+    return asked;
+}
+
+void JogPins::step_held(double part, double speed, std::int64_t now_ns,
+                        std::vector<messages::Command> &asked) {
+    if (part_ != 0 && (part == 0 || isOpposite(part, part_))) {
+        asked.emplace_back(messages::JogStop{target_.isJoint, target_.index});
+        part_ = 0;
+    }
+    if (part == 0) {
+        return;
+    }
+    const bool isNew = part_ == 0;
+    if (!isNew && part == part_ && now_ns - renewed_ns_ < RENEWAL_NS) {
+        return;
+    }
+    part_ = part;
+    isRefused_ = isRefused_ && !isNew;
+    renewed_ns_ = now_ns;
+    asked.emplace_back(
+        messages::JogContinuous{target_.isJoint, target_.index, part * speed, LEASE_MS, !isNew});
+}
+
+}  // namespace mw::halui

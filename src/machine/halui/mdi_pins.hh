@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Lines of the INI file on buttons: to MDI mode, the line, and back to the mode before.
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "machine/halui/edge.hh"
+#include "messages/client/client.hh"
+
+namespace mw::halui {
+
+class MdiPins {
+  public:
+    /// Posts a command; 0 when it could not be.
+    using Ask = std::function<client::Serial(const messages::Command &)>;
+
+    explicit MdiPins(std::vector<std::string> lines = {})
+        : lines_(std::move(lines)), buttons_(lines_.size()) {}
+    std::size_t count() const { return lines_.size(); }
+    /// Once a cycle, for each line whether its pin is on.
+    void step(const std::vector<bool> &areOn, client::Client &client, const Ask &ask);
+    /// An abort: what waits for the mode is not run any more.
+    void drop() { waiting_.clear(); }
+
+  private:
+    bool isModeSet(client::Client &client);
+    bool areOver(client::Client &client);
+
+    std::vector<std::string> lines_;
+    std::vector<Edge> buttons_;
+    std::deque<std::size_t> waiting_;      ///< pressed, not posted yet
+    std::vector<client::Serial> running_;  ///< posted
+    client::Serial mode_order_ = 0;
+    bool isActive_ = false;
+    messages::Mode before_ = messages::Mode::MANUAL;
+};
+
+}  // namespace mw::halui

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The discrete I/O controller (requirement E1): e-stop chain, coolant, lube, tool prepare and change
+// handshakes. Pure: inputs in, outputs out. Pins: machine/io/pins.hh.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "base/geometry/pose.hh"
+#include "base/result.hh"
+#include "messages/declarations/names.hh"
+
+namespace mw::io {
+
+struct Inputs {
+    bool emc_enable_in = false;  ///< the e-stop chain is closed
+    bool tool_prepared = false;
+    bool tool_changed = false;
+    bool lube_level = true;
+    bool toolchanger_fault = false;
+    int toolchanger_reason = 0;
+    bool toolchanger_clear_fault = false;
+    bool emc_abort_ack = false;
+    bool start_change_ack = false;
+    bool isToolOffsetShown = true;  ///< the pins have the tool offset of the last outputs
+};
+
+struct Outputs {
+    bool user_enable_out = false;
+    bool user_request_enable = false;
+    bool coolant_mist = false, coolant_flood = false, lube = false;
+    bool tool_prepare = false, tool_change = false;
+    bool emc_abort = false, start_change = false;
+    bool toolchanger_fault_ack = false, toolchanger_faulted = false;
+    int emc_reason = 0;  ///< why what was asked of the changer is given up
+    int tool_prep_number = 0, tool_prep_pocket = 0, tool_prep_index = 0;
+    int tool_number = 0, tool_from_pocket = 0;
+    int state = 0;
+    geometry::Pose tool_offset;  ///< [machine units], active
+};
+
+/// How the changer wants to be spoken to ([EMCIO]EMCIO: io, or iov2 and its option).
+struct Protocol {
+    /// Aborts are answered by emc-abort-ack, a fault stays until it is cleared, and a reason above 0 lets the
+    /// program go on.
+    bool isVersion2 = false;
+    bool hasStartChange = false;  ///< start-change is raised and answered before tool-change
+};
+
+enum class ToolAction : std::uint8_t { IDLE, PREPARING, STARTING, CHANGING, ABORTING };
+
+/// What a finished handshake means for the tool table.
+enum class ToolEvent : std::uint8_t {
+    NONE,
+    PREPARED,
+    CHANGED,
+    FAULT,         ///< the program must not go on
+    FAULT_TOLD,    ///< nothing has changed; the program goes on and finds out by #5600
+    CHANGED_LATE,  ///< tool-changed has come after the change was given up
+};
+
+/// EMC_ABORT_BY_TOOLCHANGER_FAULT
+inline constexpr int REASON_CHANGER_FAULT = 101;
+
+class DiscreteIo {
+  public:
+    explicit DiscreteIo(const Protocol &protocol = {}) : protocol_(protocol) {}
+    Outputs outputs{};
+
+    /// One loop: sees the inputs, moves the handshakes on. Returns what has just been completed.
+    ToolEvent step(const Inputs &inputs);
+
+    /// Opens the chain from our side: user-enable-out false, lube off.
+    void enter_estop();
+    /// Closes our side: user-enable-out true and one pulse of user-request-enable; lube on once the chain is
+    /// closed.
+    void leave_estop();
+    bool isChainClosed() const { return isChainClosed_; }
+    bool isEstopRequested() const { return !outputs.user_enable_out; }
+
+    /// Starts tool-prepare for tool `number` in `pocket` (table index `index`).
+    void start_prepare(int number, int pocket, int index);
+    /// Starts tool-change to the prepared tool.
+    void start_change();
+    /// The prepared tool is in: there is none any more.
+    void clear_prepared();
+    /// Ends any handshake at once: requests drop; emc-abort rises for one loop, in version 2 until it is
+    /// answered.
+    void abort(int reason);
+    ToolAction action() const { return action_; }
+    /// The pin that a handshake waits for.
+    messages::WaitFor waiting_for() const;
+    int fault_reason() const { return fault_reason_; }
+
+    void set_mist(bool isOn) { outputs.coolant_mist = isOn; }
+    void set_flood(bool isOn) { outputs.coolant_flood = isOn; }
+    void set_lube(bool isOn) { outputs.lube = isOn; }
+    bool hasOil() const { return hasOil_; }
+    void set_tool_in_spindle(int number, int from_pocket);
+    /// Ignores values that are not finite: motion rejects the command that comes with them.
+    void set_tool_offset(const geometry::Pose &offset);
+    bool isToolOffsetShown() const { return isToolOffsetShown_; }
+
+  private:
+    void step_chain(const Inputs &inputs);
+    void step_fault(const Inputs &inputs);
+    void step_abort(const Inputs &inputs);
+    ToolEvent step_handshake(const Inputs &inputs);
+    ToolEvent end_by_fault();
+    bool isLate(const Inputs &inputs);
+
+    Protocol protocol_;
+    ToolAction action_ = ToolAction::IDLE;
+    bool isChainClosed_ = false;
+    bool mustPulseRequest_ = false;
+    bool mustPulseAbort_ = false;
+    bool mustLube_ = false;  ///< as soon as the chain is closed
+    bool hasOil_ = true;
+    bool isGivenUp_ = false;  ///< a change was given up before its answer
+    int fault_reason_ = 0;
+    bool isToolOffsetShown_ = true;
+};
+
+}  // namespace mw::io

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The files of a planned machine.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "machine/setup/plan.hh"
+
+namespace mw::setup {
+
+struct File {
+    std::string name;  ///< in the machine's folder: "machine.ini", "nc_files/first_program.ngc"
+    std::string text;
+};
+
+inline constexpr const char *INI_FILE = "machine.ini", *PROGRAM_FILE = "nc_files/first_program.ngc";
+
+/// All that the machine needs, the INI file first; each says in comments what it is for. `plan` has no fault.
+std::vector<File> machine_files(const Plan &plan);
+
+std::string ini_text(const Plan &plan);
+/// Drives, spindle, buttons and switches.
+std::string hal_text(const Plan &plan);
+/// What stands in for the wires of a machine with stepper motors.
+std::string wires_text(const Plan &plan);
+std::string tool_table_text(const Plan &plan);
+/// Moves each axis through the middle of its travel, and stays inside of it.
+std::string program_text(const Plan &plan);
+
+}  // namespace mw::setup

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The INI file: every key with its unit, in the order in which people look for them.
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "base/text.hh"
+#include "machine/setup/files.hh"
+
+namespace mw::setup {
+namespace {
+
+/// Numbers as people write them: no more digits than they mean.
+std::string short_text(double value) {
+    return to_text(parse_double(fmt::format("{:.6g}", value)).value_or(value));
+}
+
+const char *length_unit(const Plan &plan) {
+    return plan.isMetric ? "mm" : "inch";
+}
+
+std::string letters(const Plan &plan, const char *between) {
+    std::string text;
+    for (const Axis &axis : plan.axes) {
+        for (std::size_t i = 0; i < axis.motors.size(); ++i) {
+            text += text.empty() ? "" : between;
+            text += axis.letter;
+        }
+    }
+    return text;
+}
+
+std::string display_text(const Plan &plan) {
+    const char *const increments =
+        plan.isMetric ? "10 mm, 1 mm, 0.1 mm, 0.01 mm" : "1 in, 0.1 in, 0.01 in, 0.001 in";
+    std::string text = fmt::format("[DISPLAY]\n"
+                                   "# The operator's screen, in a browser.\n"
+                                   "DISPLAY = millwright\n"
+                                   "# Programs that the screen lists, and where they call subroutines from.\n"
+                                   "PROGRAM_PREFIX = nc_files\n"
+                                   "# Steps that jogs are offered in.\n"
+                                   "INCREMENTS = {}\n"
+                                   "# 1.2: feeds up to 120 % of what programs ask for.\n"
+                                   "MAX_FEED_OVERRIDE = 1.2\n",
+                                   increments);
+    if (plan.spindle == Spindle::SPEED) {
+        text += fmt::format("# Of the spindle [rev/min].\n"
+                            "MAX_SPINDLE_SPEED = {0}\n"
+                            "DEFAULT_SPINDLE_SPEED = {1}\n",
+                            short_text(plan.spindle_max), short_text(plan.spindle_max / 4));
+    }
+    if (plan.kind == "lathe") {
+        text += "# Pictures show Z to the right and X (a radius) up.\n"
+                "LATHE = 1\n";
+    }
+    if (plan.kind == "foam") {
+        text += fmt::format("# The wire is held by X and Y on one side, by U and V on the other.\n"
+                            "FOAM = 1\n"
+                            "GEOMETRY = XY;UV\n"
+                            "FOAM_Z = 0\n"
+                            "FOAM_W = {}\n",
+                            short_text(plan.foam_width));
+    }
+    return text + '\n';
+}
+
+std::string system_text(const Plan &plan) {
+    std::string text = "[TASK]\n"
+                       "TASK = milltask\n"
+                       "# [s]\n"
+                       "CYCLE_TIME = 0.001\n"
+                       "\n"
+                       "[RS274NGC]\n"
+                       "# Offsets and parameters that outlive a restart; written by the machine.\n"
+                       "PARAMETER_FILE = machine.var\n"
+                       "SUBROUTINE_PATH = nc_files\n"
+                       "\n"
+                       "[EMCMOT]\n"
+                       "EMCMOT = motmod\n"
+                       "# [s]\n"
+                       "COMM_TIMEOUT = 1.0\n"
+                       "# Positions are calculated so often [ns].\n"
+                       "SERVO_PERIOD = 1000000\n";
+    if (plan.isStepper) {
+        text += fmt::format("# Steps are made so often [ns]: the latency of the computer, a step, and the "
+                            "work of the thread.\n"
+                            "BASE_PERIOD = {}\n",
+                            plan.stepping.base_period_ns);
+    }
+    text += "\n[EMCIO]\nTOOL_TABLE = tool.tbl\n\n"
+            "[HAL]\n"
+            "# Carried out in this order when the machine starts.\n"
+            "HALFILE = machine.hal\n";
+    if (plan.isStepper) {
+        text += "# Switches and buttons of a machine that is not there. Take this line away with the "
+                "simulated port.\n"
+                "HALFILE = simulated_wires.hal\n";
+    }
+    return text + "# Pins for buttons of your own: halui.*\nHALUI = halui\n\n";
+}
+
+std::string whole_text(const Plan &plan) {
+    const bool isGantry = plan.kind == "gantry";
+    double acceleration = 0;
+    for (const Axis &axis : plan.axes) {
+        acceleration = std::max(acceleration, axis.acceleration);
+    }
+    return fmt::format("[TRAJ]\n"
+                       "COORDINATES = {}\n"
+                       "LINEAR_UNITS = {}\n"
+                       "ANGULAR_UNITS = degree\n"
+                       "# Of jogs, to begin with; the highest along a path [{}/s]; acceleration [{}/s2].\n"
+                       "DEFAULT_LINEAR_VELOCITY = {}\n"
+                       "MAX_LINEAR_VELOCITY = {}\n"
+                       "MAX_LINEAR_ACCELERATION = {}\n"
+                       "\n"
+                       "[KINS]\n"
+                       "{}"
+                       "KINEMATICS = trivkins coordinates={}{}\n"
+                       "JOINTS = {}\n"
+                       "\n",
+                       letters(plan, " "), length_unit(plan), length_unit(plan), length_unit(plan),
+                       short_text(plan.fastest() / 4), short_text(plan.fastest()), short_text(acceleration),
+                       isGantry ? "# Each motor is a joint; the two of Y move together.\n"
+                                : "# Each motor is a joint.\n",
+                       letters(plan, ""), isGantry ? " kinstype=BOTH" : "", plan.joints());
+}
+
+/// Upper things first, so that nothing is in the way of what moves sideways; motors of one axis together.
+int home_sequence(const Plan &plan, const Axis &axis) {
+    const bool isFirst = plan.kind == "lathe"  ? axis.letter == 'X'
+                         : plan.kind == "foam" ? axis.letter == 'Y' || axis.letter == 'V'
+                                               : axis.letter == 'Z';
+    if (axis.motors.size() > 1) {
+        return -2;
+    }
+    return isFirst ? 0 : 1;
+}
+
+std::string home_text(const Plan &plan, const Axis &axis) {
+    const int sequence = home_sequence(plan, axis);
+    const char *const order = sequence < 0 ? "# Order of homing; negative: these motors end together.\n"
+                                           : "# Order of homing; equal ones together.\n";
+    if (plan.switches == Switches::NONE) {
+        const std::string place = short_text(std::clamp(0.0, axis.min, axis.max));
+        return fmt::format("# No home switch: homing takes the place where the motor stands for this one.\n"
+                           "HOME = {0}\n"
+                           "HOME_OFFSET = {0}\n"
+                           "HOME_SEARCH_VEL = 0\n"
+                           "HOME_LATCH_VEL = 0\n"
+                           "{1}HOME_SEQUENCE = {2}\n",
+                           place, order, sequence);
+    }
+    const double sign = axis.isHomeAtMax ? 1 : -1, end = axis.isHomeAtMax ? axis.max : axis.min;
+    return fmt::format(
+        "# The switch is at HOME_OFFSET; after homing the axis goes to HOME.\n"
+        "HOME = {}\n"
+        "HOME_OFFSET = {}\n"
+        "# Towards the switch, and onto it slowly; the sign is the direction.\n"
+        "HOME_SEARCH_VEL = {}\n"
+        "HOME_LATCH_VEL = {}\n"
+        "{}{}HOME_SEQUENCE = {}\n",
+        short_text(end - sign * plan.millimetres(1)), short_text(end + sign * plan.millimetres(2)),
+        short_text(sign * axis.home_speed), short_text(sign * axis.home_speed / 10),
+        plan.switches == Switches::HOME_AND_LIMITS
+            ? "# The switch is a limit, too, but not while it is looked for.\nHOME_IGNORE_LIMITS = YES\n"
+            : "",
+        order, sequence);
+}
+
+std::string joint_text(const Plan &plan, const Axis &axis, const Motor &motor, int joint) {
+    std::string text = fmt::format(
+        "# Motor {}\n"
+        "[JOINT_{}]\n"
+        "TYPE = LINEAR\n"
+        "MAX_VELOCITY = {}\n"
+        "MAX_ACCELERATION = {}\n"
+        "MIN_LIMIT = {}\n"
+        "MAX_LIMIT = {}\n"
+        "# Farther than this from where it should be, the machine stops: at full speed, standing.\n"
+        "FERROR = {}\n"
+        "MIN_FERROR = {}\n",
+        to_upper(motor.name), joint, short_text(axis.speed), short_text(axis.acceleration),
+        short_text(axis.min), short_text(axis.max), short_text(plan.millimetres(1)),
+        short_text(plan.millimetres(0.25)));
+    if (plan.isStepper) {
+        text += fmt::format("# Steps of one {} of travel; negative: the motor turns the other way round.\n"
+                            "STEP_SCALE = {}\n"
+                            "# The generator may catch up with what it lags behind.\n"
+                            "STEPGEN_MAXVEL = {}\n"
+                            "STEPGEN_MAXACCEL = {}\n",
+                            length_unit(plan), to_text(motor.steps_per_unit), short_text(axis.speed * 1.05),
+                            short_text(axis.acceleration * 1.25));
+    }
+    return text + home_text(plan, axis) + '\n';
+}
+
+}  // namespace
+
+std::string ini_text(const Plan &plan) {
+    std::string text = fmt::format("# SPDX-License-Identifier: GPL-2.0-or-later\n"
+                                   "# {}: {}, {}, {}. Written by `millwright setup`; yours to change.\n"
+                                   "# Lengths are in {}, speeds in {} per second. docs/ini.md has all keys.\n"
+                                   "[EMC]\n"
+                                   "VERSION = 1.1\n"
+                                   "MACHINE = {}\n"
+                                   "DEBUG = 0\n\n",
+                                   plan.name, plan.kind, plan.isMetric ? "metric" : "in inches",
+                                   plan.isStepper ? "stepper motors at a parallel port" : "simulated",
+                                   length_unit(plan), length_unit(plan), plan.name);
+    text += display_text(plan) + system_text(plan) + whole_text(plan);
+    int joint = 0;
+    for (const Axis &axis : plan.axes) {
+        text += fmt::format("[AXIS_{}]\n"
+                            "# Travel, speed and acceleration that programs and jogs keep to.\n"
+                            "MIN_LIMIT = {}\n"
+                            "MAX_LIMIT = {}\n"
+                            "MAX_VELOCITY = {}\n"
+                            "MAX_ACCELERATION = {}\n\n",
+                            axis.letter, short_text(axis.min), short_text(axis.max), short_text(axis.speed),
+                            short_text(axis.acceleration));
+        for (const Motor &motor : axis.motors) {
+            text += joint_text(plan, axis, motor, joint++);
+        }
+    }
+    text.pop_back();
+    return text;
+}
+
+}  // namespace mw::setup

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "machine/setup/questions.hh"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/text.hh"
+
+namespace mw::setup {
+namespace {
+
+/// Of an axis, in mm. Machines in inches get a 25th of it, which is a round number, too.
+struct Preset {
+    char letter;
+    double min, max, speed, acceleration;
+};
+
+struct Kind {
+    std::string_view name, axes;
+    double way_per_turn;  ///< of a motor [mm]
+    std::array<Preset, 4> presets;
+};
+
+constexpr std::array<Kind, 5> ALL{{
+    {"mill", "XYZ", 5, {{{'X', 0, 300, 40, 300}, {'Y', 0, 150, 40, 300}, {'Z', -120, 0, 25, 300}, {}}}},
+    {"router", "XYZ", 10, {{{'X', 0, 600, 80, 500}, {'Y', 0, 900, 80, 500}, {'Z', -100, 0, 40, 300}, {}}}},
+    {"gantry",
+     "XYZ",
+     10,
+     {{{'X', 0, 1000, 100, 500}, {'Y', 0, 1500, 100, 500}, {'Z', -150, 0, 40, 300}, {}}}},
+    {"lathe", "XZ", 5, {{{'X', -5, 100, 25, 250}, {'Z', -300, 0, 30, 250}, {}, {}}}},
+    {"foam",
+     "XYUV",
+     5,
+     {{{'X', 0, 600, 25, 200}, {'Y', 0, 300, 25, 200}, {'U', 0, 600, 25, 200}, {'V', 0, 300, 25, 200}}}},
+}};
+
+constexpr double SHORTEST = 0.001, LONGEST = 100000;
+constexpr double MM_PER_UNIT_OF_PRESETS = 25;
+
+const Kind &kind_of(const Answers &given) {
+    const auto answer = given.find("kind");
+    const std::string_view name = answer == given.end() ? "" : std::string_view(answer->second);
+    const auto *const found = std::ranges::find(ALL, name, &Kind::name);
+    return found == ALL.end() ? ALL[0] : *found;
+}
+
+/// Collects the questions of a machine.
+class Asking {
+  public:
+    Asking(const Answers &given, const Kind &kind) : given_(given), kind_(kind) {}
+
+    std::vector<Question> all() {
+        general();
+        for (std::size_t i = 0; i < kind_.axes.size(); ++i) {
+            axis(kind_.presets.at(i));
+        }
+        if (isChosen("drives", "stepper")) {
+            stepper();
+        }
+        return std::move(asked_);
+    }
+
+  private:
+    bool isChosen(std::string_view key, std::string_view what) const {
+        return answer_of(asked_, given_, key) == what;
+    }
+    void choice(std::string key, std::string text, std::vector<std::string> choices) {
+        std::string preset = choices[0];
+        asked_.push_back(
+            {std::move(key), std::move(text), Form::CHOICE, std::move(preset), std::move(choices)});
+    }
+    void number(std::string key, std::string text, double preset, double low, double high,
+                std::string unit = "") {
+        asked_.push_back(
+            {std::move(key), std::move(text), Form::NUMBER, to_text(preset), {}, low, high, std::move(unit)});
+    }
+    void whole(std::string key, std::string text, int preset, int low, int high, std::string unit = "") {
+        asked_.push_back({std::move(key),
+                          std::move(text),
+                          Form::WHOLE,
+                          std::to_string(preset),
+                          {},
+                          static_cast<double>(low),
+                          static_cast<double>(high),
+                          std::move(unit)});
+    }
+    double length(double mm) const { return isMetric_ ? mm : mm / MM_PER_UNIT_OF_PRESETS; }
+    std::string unit(const char *more = "") const { return (isMetric_ ? "mm" : "in") + std::string(more); }
+
+    void general();
+    void axis(const Preset &preset);
+    void stepper();
+    void motor(const std::string &name, int &next_output, int &next_input);
+
+    const Answers &given_;
+    const Kind &kind_;
+    bool isMetric_ = true;
+    std::vector<Question> asked_;
+};
+
+void Asking::general() {
+    std::vector<std::string> kinds;
+    for (const Kind &kind : ALL) {
+        kinds.emplace_back(kind.name);
+    }
+    asked_.push_back({"kind", "Kind of machine", Form::CHOICE, std::string(kind_.name), std::move(kinds)});
+    asked_.push_back({"name", "Name of the machine", Form::TEXT, "My " + std::string(kind_.name)});
+    choice("units", "Unit of lengths", {"mm", "inch"});
+    isMetric_ = isChosen("units", "mm");
+    choice("drives", "Motors", {"simulated", "stepper"});
+    choice("switches", "Switches", {"none", "home", "home_and_limits"});
+    const bool isFoam = kind_.name == "foam";
+    choice("spindle", isFoam ? "Hot wire" : "Spindle", {"speed", "on_off", "none"});
+    if (isChosen("spindle", "speed")) {
+        number("spindle.max", isFoam ? "S word of full heat" : "Highest speed of the spindle",
+               isFoam ? 100 : 12000, 1, 1000000, isFoam ? "" : "rev/min");
+    }
+    choice("tool_change", "Change of tools",
+           isFoam ? std::vector<std::string>{"none", "by_hand"}
+                  : std::vector<std::string>{"by_hand", "none"});
+    if (isFoam) {
+        number("foam.width", "From the plane of X and Y to that of U and V", length(500), SHORTEST, LONGEST,
+               unit());
+    }
+}
+
+void Asking::axis(const Preset &preset) {
+    const std::string letter(1, preset.letter), key = to_lower(letter);
+    number(key + ".min", letter + ": lowest place", length(preset.min), -LONGEST, LONGEST, unit());
+    number(key + ".max", letter + ": highest place", length(preset.max), -LONGEST, LONGEST, unit());
+    number(key + ".speed", letter + ": highest speed", length(preset.speed), SHORTEST, LONGEST, unit("/s"));
+    number(key + ".acceleration", letter + ": acceleration", length(preset.acceleration), SHORTEST, LONGEST,
+           unit("/s2"));
+    if (!isChosen("switches", "none")) {
+        const bool isAtMax = preset.letter == 'Z' || kind_.name == "lathe";
+        choice(key + ".home", letter + ": end at which its home switch is",
+               isAtMax ? std::vector<std::string>{"max", "min"} : std::vector<std::string>{"min", "max"});
+        number(key + ".home_speed", letter + ": speed towards the home switch", length(10), SHORTEST, LONGEST,
+               unit("/s"));
+    }
+}
+
+void Asking::stepper() {
+    constexpr int MOST_NS = 1000000;
+    whole("step.length", "Length of a step pulse", 5000, 100, MOST_NS, "ns");
+    whole("step.space", "Pause between step pulses", 5000, 100, MOST_NS, "ns");
+    whole("step.dir_setup", "From a change of direction to a step", 20000, 0, MOST_NS, "ns");
+    whole("step.dir_hold", "From a step to a change of direction", 20000, 0, MOST_NS, "ns");
+    whole("latency", "Latency of this computer, as latency-test shows it", 15000, 1000, MOST_NS, "ns");
+    int next_output = 2, next_input = 11;
+    for (const std::string &name : motors_of(kind_.name)) {
+        motor(name, next_output, next_input);
+    }
+    whole("pin.enable", "Pin that switches the drives on, 0: none", 17, 0, 17);
+    if (!isChosen("spindle", "none")) {
+        whole("pin.spindle_on", "Pin that switches the spindle or wire on, 0: none", 14, 0, 17);
+    }
+    if (isChosen("spindle", "speed")) {
+        whole("pin.spindle_pwm", "Pin of its speed, by pulse width", 16, 1, 17);
+        number("spindle.pwm_hz", "Frequency of the pulses", 100, 1, 5000, "Hz");
+    }
+    whole("pin.flood", "Pin of coolant, 0: none", kind_.name == "foam" ? 0 : 1, 0, 17);
+    whole("pin.estop", "Pin of the emergency stop, high while it is not pressed, 0: none", 10, 0, 15);
+    if (!isChosen("switches", "none")) {
+        choice("switch.contacts", "Contacts of the switches", {"open", "closed"});
+    }
+}
+
+void Asking::motor(const std::string &name, int &next_output, int &next_input) {
+    const std::string motor = "Motor " + to_upper(name) + ": ";
+    number(name + ".steps_per_turn", motor + "full steps of a turn", 200, 1, 100000);
+    number(name + ".microsteps", motor + "microsteps of a full step", 4, 1, 1024);
+    number(name + ".way_per_turn", motor + "way of a turn; negative: the other way round",
+           length(kind_.way_per_turn), -LONGEST, LONGEST, unit());
+    whole(name + ".step_pin", motor + "pin of steps", next_output, 1, 17);
+    whole(name + ".dir_pin", motor + "pin of direction", next_output + 1, 1, 17);
+    next_output += 2;
+    if (!isChosen("switches", "none")) {
+        constexpr int BEHIND_13 = 15;
+        whole(name + ".home_pin", motor + "pin of its switch", next_input, 10, 15);
+        next_input = next_input == 13 ? BEHIND_13 : next_input + 1;
+    }
+}
+
+}  // namespace
+
+std::string_view axes_of(std::string_view kind) {
+    const auto *const found = std::ranges::find(ALL, kind, &Kind::name);
+    return found == ALL.end() ? "" : found->axes;
+}
+
+std::vector<std::string> motors_of(std::string_view kind) {
+    std::vector<std::string> motors;
+    for (const char letter : axes_of(kind)) {
+        const std::string name = to_lower(std::string(1, letter));
+        motors.push_back(name);
+        if (kind == "gantry" && letter == 'Y') {
+            motors.push_back(name + "2");
+        }
+    }
+    return motors;
+}
+
+std::vector<Question> questions(const Answers &given) {
+    return Asking(given, kind_of(given)).all();
+}
+
+std::string answer_of(const std::vector<Question> &asked, const Answers &given, std::string_view key) {
+    const auto found = given.find(key);
+    if (found != given.end()) {
+        return std::string(trim(found->second));
+    }
+    const auto question = std::ranges::find(asked, key, &Question::key);
+    return question == asked.end() ? "" : question->preset;
+}
+
+}  // namespace mw::setup

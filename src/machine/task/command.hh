@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The commands that task takes and the names of its states are those of the vocabulary.
+#pragma once
+
+#include "messages/declarations/command.hh"
+
+namespace mw::task {
+
+using namespace messages;  // NOLINT(google-build-using-namespace): task has no words of its own for these
+
+}  // namespace mw::task

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The tool table as clients are shown it: again after each change.
+#pragma once
+
+#include <optional>
+
+#include "machine/task/link/tool_store.hh"
+#include "messages/declarations/status.hh"
+
+namespace mw::task {
+
+/// One thread.
+class ShownTools {
+  public:
+    /// Once a cycle. The table when it has another version than at the last call.
+    std::optional<messages::ToolTable> step(const ToolStore &tools);
+    std::uint64_t version() const { return version_; }
+
+  private:
+    std::uint64_t version_ = 0;
+};
+
+}  // namespace mw::task

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "machine/task/run/block_search.hh"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace mw::task {
+
+BlockSearch::BlockSearch(gcode::Interpreter &interpreter, CanonSwitch &machine,
+                         const SearchMachine::Real &real, int line)
+    : interpreter_(interpreter), switch_(machine), machine_(real), line_(line) {
+    switch_.set_search(&machine_);
+    interpreter_.limits().areScriptsForbidden = true;
+}
+
+BlockSearch::BlockSearch(gcode::Interpreter &interpreter, CanonSwitch &machine,
+                         const SearchMachine::Real &real, const Block &block)
+    : interpreter_(interpreter), switch_(machine), machine_(real), calls_(block.calls) {
+    machine_.set_up(block.set_up);
+    switch_.set_search(&machine_, block.number);
+    interpreter_.limits().areScriptsForbidden = true;
+}
+
+BlockSearch::~BlockSearch() {
+    switch_.set_search(nullptr);
+    interpreter_.limits().areScriptsForbidden = false;
+}
+
+BlockSearch::Outcome BlockSearch::step(int lines) {
+    Outcome outcome = Outcome::GOING;
+    for (int i = 0; i < lines && outcome == Outcome::GOING; ++i) {
+        outcome = look_at_line();
+        outcome = outcome == Outcome::GOING ? run_line() : outcome;
+    }
+    return outcome;
+}
+
+BlockSearch::Outcome BlockSearch::refuse(const std::string &why) {
+    refusal_ = why;
+    return Outcome::REFUSED;
+}
+
+BlockSearch::Outcome BlockSearch::refuse_before(const std::string &why) {
+    const int nearest = last_possible_ > 0 ? last_possible_ : 1;
+    return refuse(fmt::format("{}; the nearest line before it that can is {}", why, nearest));
+}
+
+/// Before the line is run.
+BlockSearch::Outcome BlockSearch::look_at_line() {
+    const gcode::NextLine next = interpreter_.next_line();
+    const bool isIt = line_ > 0 && next.line == line_ && next.isInMainFile;
+    if (next.isInCall) {
+        return isIt ? refuse_before(
+                          fmt::format("line {} is in subroutine o<{}>, which line {} is the first to call",
+                                      line_, interpreter_.subroutine(), next.main_line))
+                    : Outcome::GOING;
+    }
+    const std::string why = interpreter_.why_no_start();
+    wasThreading_ = interpreter_.isThreading();
+    if (isIt) {
+        return !doubt_.empty()
+                   ? refuse_before(fmt::format("what holds at line {} depends on {}", line_, doubt_))
+               : !why.empty() ? refuse_before(fmt::format("nobody can begin at line {}: {}", line_, why))
+                              : Outcome::FOUND;
+    }
+    last_possible_ = why.empty() && doubt_.empty() ? next.line : last_possible_;
+    return Outcome::GOING;
+}
+
+/// What was calculated is what the machine has done.
+BlockSearch::Outcome BlockSearch::check_calls() {
+    if (wasThreading_ && interpreter_.isThreading()) {
+        return refuse_before("it is in the middle of moves that follow the spindle");
+    }
+    return !calls_.has_value() || machine_.sum().value() == *calls_
+               ? Outcome::FOUND
+               : refuse(
+                     "what the program says up to there is not what it said when it ran: a subroutine, the "
+                     "INI file or what it reads has changed since");
+}
+
+BlockSearch::Outcome BlockSearch::run_line() {
+    const gcode::Step step = interpreter_.step();
+    if (doubt_.empty() && !machine_.doubt().empty()) {
+        doubt_ = fmt::format("{} in line {}", machine_.doubt(), interpreter_.line());
+    }
+    last_step_ = step;
+    if (switch_.isPassing()) {
+        return doubt_.empty() ? check_calls()
+                              : refuse_before("what holds where the program was left depends on " + doubt_);
+    }
+    switch (step) {
+    case gcode::Step::OK: break;
+    case gcode::Step::SYNC: interpreter_.synch(); break;
+    case gcode::Step::FAILED: return refuse_before(interpreter_.error().str());
+    case gcode::Step::PROGRAM_END:
+    case gcode::Step::FILE_END:
+        if (line_ == 0) {
+            return refuse("the program ends before the place where it was left");
+        }
+        return first_behind_ > 0 ? refuse(fmt::format("line {} is never reached; the next line that is is {}",
+                                                      line_, first_behind_))
+                                 : refuse_before(fmt::format("line {} is never reached", line_));
+    }
+    const gcode::NextLine next = interpreter_.next_line();
+    if (!next.isInCall && next.line > line_ && line_ > 0) {
+        first_behind_ = first_behind_ == 0 ? next.line : std::min(first_behind_, next.line);
+    }
+    return Outcome::GOING;
+}
+
+}  // namespace mw::task

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The program or line that the operator has started: what it is, how it goes, how it has ended.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "base/diagnostics/sink.hh"
+#include "machine/task/run/run_state.hh"
+#include "machine/task/states/request.hh"
+
+namespace mw::task {
+
+enum class RunKind : std::uint8_t {
+    PROGRAM,
+    MDI,
+    RECOVERY,  ///< a program that goes on where it was cut short
+    AGAIN,     ///< one whose tools were changed while it was held, calculated as it ran before
+    ANEW,      ///< and with the tools as they are now
+};
+
+/// One thread.
+class ProgramRun {
+  public:
+    /// Refused while one runs. `line`: of MDI.
+    Result<Progress> start(RunKind kind, mailbox::Serial command, const std::string &line = {});
+    /// Where the program begins; 0: at its first line.
+    int from_line() const { return from_line_; }
+    void set_from_line(int line) { from_line_ = line; }
+    bool isRecovery() const { return kind_ >= RunKind::RECOVERY; }
+    /// The same command goes on at a place of the program, AGAIN and then ANEW.
+    void begin_again();
+    void go_on_anew() { kind_ = RunKind::ANEW; }
+    /// An event that cannot be in this state changes nothing and says why.
+    Result<> take(RunEvent event) { return state_.take(event); }
+    /// Of events that the run's own parts tell: one that comes too late changes nothing.
+    void change(RunEvent event) { static_cast<void>(state_.take(event)); }
+    /// Over; the end of the command that has started it.
+    std::optional<Ending> end(Progress progress, const std::string &reason);
+
+    const RunState &state() const { return state_; }
+    RunPhase phase() const { return state_.phase(); }
+    Hold hold() const { return state_.hold(); }
+    bool isRunning() const { return state_.isRunning(); }
+    bool isHeld() const { return state_.isHeld(); }
+    bool isProgram() const { return isRunning() && kind_ != RunKind::MDI; }
+    /// Idle, reading, waiting or paused.
+    InterpState shown() const;
+    RunKind kind() const { return kind_; }  ///< of this run, or of the last one
+    const std::string &line() const { return line_; }
+
+    /// Something that was asked for could not be done; the first one counts.
+    void note_failure(const std::string &text);
+    std::optional<std::string> take_failure();
+    void forget_failure() { failure_.reset(); }
+    /// Such a failure is noted and not taken: the run is not done.
+    bool hasFailed() const { return failure_.has_value(); }
+
+    void set_error(diagnostics::Diagnostic error) { error_ = std::move(error); }
+    /// Why the last run failed; nullptr when it did not.
+    const diagnostics::Diagnostic *error() const { return error_.has_value() ? &*error_ : nullptr; }
+
+  private:
+    RunState state_;
+    RunKind kind_ = RunKind::PROGRAM;
+    std::string line_;
+    int from_line_ = 0;
+    Request request_;
+    std::optional<std::string> failure_;
+    std::optional<diagnostics::Diagnostic> error_;
+};
+
+}  // namespace mw::task

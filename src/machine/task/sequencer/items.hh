@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The ordered queue between the interpreter and the machine: what a program does, in program order.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+
+#include "gcode/canon/machine_canon.hh"
+#include "motion/interface/path_command.hh"
+
+namespace mw::task {
+
+struct Item {
+    motion::SourceTag source;
+    gcode::MachineCall call;
+    std::uint64_t read = 0;  ///< number of the step of the interpreter that asked for it; never falls
+};
+
+using ItemQueue = std::deque<Item>;
+
+/// Where an item comes from.
+struct ItemPlace {
+    motion::SourceTag source;
+    std::uint64_t read = 0;  ///< Item::read
+};
+
+}  // namespace mw::task

@@ -1,0 +1,415 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "machine/task/sequencer/sequencer.hh"
+
+#include <cmath>
+#include <type_traits>
+
+#include "base/duration.hh"
+
+namespace mw::task {
+namespace {
+
+/// Items issued in one task cycle at most, so that the cycle stays short.
+constexpr int ITEMS_PER_CYCLE = 500;
+
+struct MoveSource {
+    const motion::SourceTag &tag;
+    bool isHolding;  ///< a cut waits until the spindle has its speed
+};
+
+motion::MoveTerms terms_of(const geometry::MoveSettings &settings, const MoveSource &source) {
+    const bool isWaiting = source.isHolding && !settings.isRapid;
+    return {settings, true, isWaiting, source.tag};
+}
+
+motion::PathBody path_body(const gcode::LineMove &line, const MoveSource &source) {
+    return motion::Line{line.end, terms_of(line.settings, source)};
+}
+
+motion::PathBody path_body(const gcode::ArcMove &arc, const MoveSource &source) {
+    return motion::Arc{arc.end,
+                       arc.centre,
+                       arc.normal,
+                       arc.angle_rad,
+                       geometry::norm_uvw(arc.normal) > 0,
+                       terms_of(arc.settings, source)};
+}
+
+motion::PathBody path_body(const gcode::ProbeMove &probe, const MoveSource &source) {
+    using gcode::ProbeKind;
+    const bool isAway = probe.kind == ProbeKind::AWAY || probe.kind == ProbeKind::AWAY_ERROR;
+    const bool mustTrip = probe.kind == ProbeKind::TOWARD_ERROR || probe.kind == ProbeKind::AWAY_ERROR;
+    return motion::Probe{probe.end, isAway, mustTrip, terms_of(probe.settings, source)};
+}
+
+motion::PathBody path_body(const gcode::TapMove &tap, const MoveSource &source) {
+    return motion::RigidTap{tap.end, tap.scale, terms_of(tap.settings, source)};
+}
+
+/// Whether the visitor is done with the call; one that answers nothing always is.
+template <class Visitor>
+bool carry_out(const Visitor &visitor, const gcode::MachineCall &item) {
+    return std::visit(
+        [&](const AlternativeOf<gcode::MachineCall> auto &call) {
+            if constexpr (std::is_same_v<decltype(visitor(call)), bool>) {
+                return visitor(call);
+            } else {
+                visitor(call);
+                return true;
+            }
+        },
+        item);
+}
+
+/// What must be done before a call is begun.
+enum class Need : std::uint8_t { NOTHING, IO, MOTION, OUTPUTS, MOTION_AND_IO };
+
+Need need_of(const gcode::MachineCall &call) {
+    return std::visit(
+        Overloaded{
+            [](const OneOf<gcode::LineMove, gcode::ArcMove, gcode::SetSpindleMode, gcode::OperatorMessage,
+                           gcode::PrintLine, gcode::OpenLog, gcode::LogLine, gcode::CloseLog,
+                           gcode::LogProbes, gcode::CanonError, gcode::ProgramComment,
+                           gcode::PalletShuttle> auto &) { return Need::NOTHING; },
+            [](const OneOf<gcode::SetDigitalOutput, gcode::SetAnalogOutput> auto &output) {
+                return output.isSynched ? Need::NOTHING : Need::MOTION;
+            },
+            [](const OneOf<gcode::ProbeMove, gcode::TapMove, gcode::Dwell, gcode::UseToolOffset,
+                           gcode::UseOffsets, gcode::UsePlanner, gcode::UseSpindleSpeed, gcode::StartSpindle,
+                           gcode::StopSpindle, gcode::OrientSpindle, gcode::WaitOrientComplete,
+                           gcode::SetToolTableEntry, gcode::ReloadTools, gcode::SwitchMist,
+                           gcode::SwitchFlood, gcode::SwitchFeedOverride, gcode::SwitchSpeedOverride,
+                           gcode::SwitchFeedHold, gcode::SwitchAdaptiveFeed, gcode::UserCode> auto &) {
+                return Need::MOTION;
+            },
+            [](const gcode::SelectTool &) { return Need::IO; },  // the changer does one thing at a time
+            [](const gcode::WaitInput &) { return Need::OUTPUTS; },
+            [](const OneOf<gcode::ChangeTool, gcode::ChangeToolNumber, gcode::ProgramStop, gcode::ProgramEnd,
+                           gcode::Finish> auto &) { return Need::MOTION_AND_IO; },
+        },
+        call);
+}
+
+/// It reads or changes the tool data.
+bool isOfTools(const gcode::MachineCall &call) {
+    return std::visit(
+        []<class C>(const C &) {
+            return OneOf<C, gcode::SelectTool, gcode::ChangeTool, gcode::ChangeToolNumber,
+                         gcode::SetToolTableEntry, gcode::ReloadTools>;
+        },
+        call);
+}
+
+const Confinement *confinement_of(const SequencerEvents &events) {
+    return events.confinement ? events.confinement() : nullptr;
+}
+
+}  // namespace
+
+Sequencer::Sequencer(ItemQueue &queue, MotionLink &motion, io::DiscreteIo &io, ToolStore &tools,
+                     SequencerEvents events, SequencerSettings settings)
+    : queue_(queue), motion_(motion), io_(io), tools_(tools), events_(std::move(events)),
+      settings_(std::move(settings)), tool_change_(settings_.changer_error_text),
+      logs_(settings_.log_works, settings_.log_disk) {}
+
+void Sequencer::step(std::int64_t now_ns, TravelRange reach) {
+    isHeld_ = false;
+    blocked_ = ExecState::DONE;
+    for (int i = 0; i < ITEMS_PER_CYCLE && !isHeld_; ++i) {
+        if (hasFailed_ || !isWaitOver(now_ns) || isStepDone_) {
+            return;
+        }
+        if (queue_.empty()) {
+            motion_.flush();
+            isStepDone_ = isStepping_ && step_read_ != 0 && isIdle();
+            return;
+        }
+        const Item &item = queue_.front();
+        if (reach == TravelRange::NO_TOOLS && isOfTools(item.call)) {
+            return;
+        }
+        if (isStepBoundary(item)) {
+            blocked_ = ExecState::WAITING_FOR_MOTION;
+            return;
+        }
+        if (!isReady(item)) {
+            blocked_ = need_of(item.call) == Need::MOTION_AND_IO ? ExecState::WAITING_FOR_MOTION_AND_IO
+                                                                 : ExecState::WAITING_FOR_MOTION;
+            return;
+        }
+        const ItemPlace place{item.source, item.read};
+        if (!execute(item, now_ns)) {
+            blocked_ = ExecState::WAITING_FOR_MOTION_QUEUE;
+            return;
+        }
+        last_begun_ = place;
+        if (!queue_.empty()) {
+            queue_.pop_front();
+        }
+    }
+}
+
+void Sequencer::check(const Result<> &result) {
+    if (!result.has_value()) {
+        hasFailed_ = true;
+        events_.fail(result.error().str());
+    }
+}
+
+bool Sequencer::isStepBoundary(const Item &item) {
+    if (!isStepping_) {
+        return false;
+    }
+    if (step_read_ == 0) {
+        step_read_ = item.read;
+    }
+    if (item.read == step_read_) {
+        return false;
+    }
+    motion_.flush();
+    isStepDone_ = motion_.isPathComplete() && io_.action() == io::ToolAction::IDLE;
+    return true;
+}
+
+ItemPlace Sequencer::place() const {
+    const Item *const sent = sent_.oldest_after(motion_.status().last_path_id);
+    if (sent != nullptr) {
+        return {sent->source, sent->read};
+    }
+    // What was taken back waits in front again.
+    const bool isBack = !queue_.empty() && queue_.front().source.block < last_begun_.source.block;
+    return isBack ? ItemPlace{queue_.front().source, queue_.front().read} : last_begun_;
+}
+
+void Sequencer::set_stepping(bool isSingle) {
+    isStepping_ = isSingle;
+    isStepDone_ = false;
+    step_read_ = 0;
+}
+
+bool Sequencer::isReady(const Item &item) {
+    const Need need = need_of(item.call);
+    const bool isIoIdle = io_.action() == io::ToolAction::IDLE;
+    if (need == Need::NOTHING || need == Need::IO) {
+        return need == Need::NOTHING || isIoIdle;
+    }
+    motion_.flush();
+    const bool isToolTableDue =
+        std::holds_alternative<gcode::UserCode>(item.call);  // its program may read it
+    if (isToolTableDue && !tools_.isSettled()) {
+        return false;
+    }
+    const bool isMotionDone =
+        motion_.isPathComplete() && (need != Need::OUTPUTS || motion_.areOutputsSettled());
+    return isMotionDone && (need != Need::MOTION_AND_IO || isIoIdle);
+}
+
+bool Sequencer::execute(const Item &item, std::int64_t now_ns) {
+    const auto turn = [this](motion::Switch what, int spindle, bool isOn) {
+        motion_.send(motion::SetSwitch{what, spindle, isOn});
+    };
+    const MoveSource source{item.source, spindles_.isNextCutWaiting()};
+    // A handler that answers false is asked again next cycle.
+    const auto visitor = Overloaded{
+        [&](const OneOf<gcode::LineMove, gcode::ArcMove, gcode::TapMove> auto &move) {
+            return push_move(path_body(move, source), move.settings, item);
+        },
+        [&](const gcode::ProbeMove &move) {
+            isProbeMade_ = push_move(path_body(move, source), move.settings, item);
+            return isProbeMade_;
+        },
+        [&](const OneOf<gcode::SetDigitalOutput, gcode::SetAnalogOutput> auto &output) {
+            const bool isTaken = push_output(output);
+            if (isTaken && output.isSynched) {
+                sent_.note(motion_.last_path_id(), item, motion::programmed_position(motion_.status()));
+            }
+            return isTaken;
+        },
+        [&](const gcode::UsePlanner &planner) { return begin(planner); },
+        [&](const OneOf<gcode::Dwell, gcode::WaitInput, gcode::WaitOrientComplete> auto &wait) {
+            perform(wait, now_ns);
+        },
+        [&](const OneOf<gcode::UserCode, gcode::ChangeTool> auto &call) { perform(call); },
+        [&](const gcode::ProgramStop &stop) { isHeld_ = events_.stop(stop, item.source.line); },
+        [&](const OneOf<gcode::ProgramEnd, gcode::Finish> auto &) {
+            logs_.close();
+            events_.end();
+        },
+        [&](const gcode::OperatorMessage &call) {
+            events_.message(MessageKind::OPERATOR_DISPLAY, call.text);
+        },
+        [&](const gcode::CanonError &call) { events_.message(MessageKind::OPERATOR_ERROR, call.text); },
+        [&](const gcode::PrintLine &call) { events_.print(call.text); },
+        [&](const gcode::LogLine &call) { check(logs_.write(call)); },
+        [&](const gcode::CloseLog &) { logs_.close_lines(); },
+        [&](const OneOf<gcode::OpenLog, gcode::LogProbes> auto &call) {
+            if (call.path.empty()) {  // (probeclose)
+                logs_.close_probes();
+                return;
+            }
+            logs_.open(call, confinement_of(events_));
+            wait_ = Wait::LOG;
+        },
+        [&](const gcode::UseOffsets &offsets) {
+            spindles_.use(offsets, motion_);
+            events_.offsets(offsets);
+        },
+        [&](const gcode::UseToolOffset &offset) {
+            spindles_.use(offset, motion_);
+            wait_for_setting(events_.tool_offset(offset));
+        },
+        [&](const gcode::ReloadTools &) {
+            check(tools_.reload());
+            wait_ = Wait::TOOL_DATA;
+        },
+        [&](const gcode::SelectTool &call) { check(tool_change_.select(call, tools_, io_)); },
+        [&](const gcode::ChangeToolNumber &call) { check(tool_change_.set_number(call, tools_, io_)); },
+        [&](const gcode::SetToolTableEntry &call) { check(tools_.set_entry(call.index, call.entry)); },
+        [&](const gcode::SetSpindleMode &call) { spindles_.set_mode(call); },
+        [&](const gcode::UseSpindleSpeed &call) { spindles_.set_speed(call, motion_); },
+        [&](const gcode::StartSpindle &call) { spindles_.start(call, motion_); },
+        [&](const gcode::StopSpindle &call) { spindles_.stop(call, motion_); },
+        [&](const gcode::OrientSpindle &call) {
+            orient_.command = motion_.send(motion::SpindleOrient{call.spindle, call.angle_deg, call.mode});
+        },
+        [&](const gcode::SwitchMist &call) { io_.set_mist(call.isOn); },
+        [&](const gcode::SwitchFlood &call) { io_.set_flood(call.isOn); },
+        [&](const gcode::SwitchFeedOverride &call) { turn(motion::Switch::FEED_OVERRIDE, 0, call.isOn); },
+        [&](const gcode::SwitchSpeedOverride &call) {
+            turn(motion::Switch::SPINDLE_OVERRIDE, call.spindle, call.isOn);
+        },
+        [&](const gcode::SwitchFeedHold &call) { turn(motion::Switch::FEED_HOLD, 0, call.isOn); },
+        [&](const gcode::SwitchAdaptiveFeed &call) { turn(motion::Switch::ADAPTIVE_FEED, 0, call.isOn); },
+        [](const OneOf<gcode::ProgramComment, gcode::PalletShuttle> auto &) {},
+    };
+    return carry_out(visitor, item.call);
+}
+
+bool Sequencer::push_move(const motion::PathBody &move, const geometry::MoveSettings &settings,
+                          const Item &item) {
+    if (!motion_.hasPathRoom() || !motion_.push_path(move, item.source)) {
+        return false;
+    }
+    sent_.note(motion_.last_path_id(), item, motion::programmed_position(motion_.status()));
+    if (move_listener_) {
+        move_listener_(motion_.last_path_id(), move);
+    }
+    if (!settings.isRapid) {
+        spindles_.end_wait();
+    }
+    return true;
+}
+
+bool Sequencer::push_output(const gcode::SetDigitalOutput &output) {
+    if (output.isSynched) {
+        return motion_.push_path(motion::SynchedDigitalOutput{output.index, output.isOn});
+    }
+    wait_for_setting(motion_.send(motion::SetDigitalOutput{output.index, output.isOn}));
+    return true;
+}
+
+bool Sequencer::push_output(const gcode::SetAnalogOutput &output) {
+    if (output.isSynched) {
+        return motion_.push_path(motion::SynchedAnalogOutput{output.index, output.value});
+    }
+    wait_for_setting(motion_.send(motion::SetAnalogOutput{output.index, output.value}));
+    return true;
+}
+
+void Sequencer::perform(const gcode::Dwell &dwell, std::int64_t now_ns) {
+    wait_ = Wait::DWELL;
+    deadline_ns_ = now_ns + to_ns(dwell.seconds);
+}
+
+void Sequencer::perform(const gcode::WaitInput &input, std::int64_t now_ns) {
+    awaited_input_ = input;
+    wait_ = Wait::INPUT;
+    deadline_ns_ = now_ns + to_ns(input.timeout_s);
+    last_input_ = std::nan("");
+    isInputTimedOut_ = false;
+}
+
+void Sequencer::perform(const gcode::WaitOrientComplete &orient, std::int64_t now_ns) {
+    wait_ = Wait::ORIENT;
+    orient_.spindle = orient.spindle;
+    orient_.timeout_s = orient.timeout_s;
+    deadline_ns_ = now_ns + to_ns(orient.timeout_s);
+    orient_.isTold = false;
+}
+
+bool Sequencer::begin(const gcode::UsePlanner &planner) {
+    const auto setting = events_.planner_mode(planner);
+    awaited_setting_ = setting.value_or(0);
+    wait_ = awaited_setting_ != 0 ? Wait::SETTING : Wait::NONE;
+    return setting.has_value();
+}
+
+void Sequencer::perform(const gcode::UserCode &code) {
+    events_.start_user_code(code);
+    wait_ = Wait::USER_CODE;
+}
+
+void Sequencer::perform(const gcode::ChangeTool &) {
+    if (!tool_change_.isSelected()) {
+        return;  // M6 without T since the last change: the tool in the spindle stays
+    }
+    if (!settings_.isToolChangeWithSpindleOn) {
+        stop_spindles();
+    }
+    if (tool_change_.start(tools_, io_)) {
+        wait_ = Wait::TOOL;
+    }
+}
+
+Result<> Sequencer::take_back(const geometry::Pose &place) {
+    if (wait_ != Wait::NONE && wait_ != Wait::DWELL) {
+        return fail("a tool change or another wait is under way");
+    }
+    const std::string why = sent_.why_not(motion_.status(), place);
+    if (!why.empty()) {
+        return fail(why, {}, "it is resumed, or aborted");
+    }
+    const std::vector<Item> rest = sent_.rest(motion_.status(), place);
+    queue_.insert(queue_.begin(), rest.begin(), rest.end());
+    sent_.clear();
+    isStepping_ = isStepDone_ = false;
+    return {};
+}
+
+void Sequencer::on_tool_event(io::ToolEvent event) {
+    if (event == io::ToolEvent::CHANGED_LATE) {
+        events_.message(MessageKind::OPERATOR_ERROR,
+                        "the changer says iocontrol.0.tool-changed after the change was given up: look which "
+                        "tool is in the spindle, and say it with M61 Q<number>");
+        return;
+    }
+    if (event == io::ToolEvent::FAULT_TOLD) {
+        events_.message(MessageKind::OPERATOR_ERROR, tool_change_.fault_text(io_));
+    }
+    check(tool_change_.on_event(event, tools_, io_));
+}
+
+void Sequencer::abort(int reason) {
+    sent_.clear();
+    last_begun_ = {};
+    blocked_ = ExecState::DONE;
+    logs_.close();
+    queue_.clear();
+    if (wait_ == Wait::TOOL_DATA) {
+        tools_.drop_reload();
+    }
+    wait_ = Wait::NONE;
+    tool_change_.abort(io_);
+    spindles_.end_wait();
+    isStepping_ = false;
+    isStepDone_ = false;
+    hasFailed_ = false;
+    io_.abort(reason);
+}
+
+bool Sequencer::isIdle() const {
+    return queue_.empty() && wait_ == Wait::NONE && motion_.isPathComplete() &&
+           io_.action() == io::ToolAction::IDLE;
+}
+
+}  // namespace mw::task

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Lines of MDI, and taps that clients send, that wait behind the one that runs ([TASK]MDI_QUEUED_COMMANDS).
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/result.hh"
+#include "gcode/canon/machine_canon.hh"
+#include "machine/task/command.hh"
+#include "messages/mailbox/segment.hh"
+
+namespace mw::task {
+
+/// In their order. One thread.
+class MdiQueue {
+  public:
+    struct Line {
+        mailbox::Serial command = 0;
+        std::string text;
+        std::optional<RigidTapMove> tap;  ///< instead of a text
+        mailbox::Authority authority = mailbox::Authority::OPERATE;
+    };
+    explicit MdiQueue(int most) : most_(most) {}
+
+    /// Refused when as many wait as may.
+    Result<Progress> add(Line line) {
+        if (size() >= most_) {
+            return fail(most_ == 0 ? "a line of MDI runs already"
+                                   : std::to_string(most_) + " lines of MDI wait already",
+                        {}, "[TASK]MDI_QUEUED_COMMANDS says how many may");
+        }
+        waiting_.push_back(std::move(line));
+        return Progress::STARTED;
+    }
+    std::optional<Line> next() {
+        if (waiting_.empty()) {
+            return std::nullopt;
+        }
+        Line line = std::move(waiting_.front());
+        waiting_.pop_front();
+        return line;
+    }
+    /// What the taps of clients from here on keep to.
+    void set_sync(const SetSpindleSync &sync) { sync_ = sync; }
+    const SetSpindleSync &sync() const { return sync_; }
+    /// The line that begins is this tap.
+    void set_tap(const gcode::TapMove &tap) { tap_ = tap; }
+    std::optional<gcode::TapMove> take_tap() { return std::exchange(tap_, std::nullopt); }
+    /// All of them; none waits any more, and none is about to begin.
+    std::vector<mailbox::Serial> drop() {
+        std::vector<mailbox::Serial> dropped;
+        for (const Line &line : waiting_) {
+            dropped.push_back(line.command);
+        }
+        waiting_.clear();
+        tap_.reset();
+        sync_ = {};
+        return dropped;
+    }
+    int size() const { return static_cast<int>(waiting_.size()); }
+
+  private:
+    int most_;
+    std::deque<Line> waiting_;
+    SetSpindleSync sync_;
+    std::optional<gcode::TapMove> tap_;
+};
+
+}  // namespace mw::task

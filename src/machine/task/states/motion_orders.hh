@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Commands that end with what motion answers to them.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+
+#include "machine/task/states/request.hh"
+#include "motion/interface/command.hh"
+
+namespace mw::task {
+
+/// Who reads why motion has refused a command.
+enum class RefusalIsFor : std::uint8_t { EVERYBODY, ITS_CLIENT };
+
+/// Any number of them, in the order in which they were given. One thread.
+class MotionOrders {
+  public:
+    void begin(mailbox::Serial command, motion::CommandId order, RefusalIsFor reader, std::int64_t now_ns,
+               std::int64_t timeout_ns = CHANGE_TIMEOUT_NS) {
+        waiting_.push_back({command, order, reader, now_ns + timeout_ns});
+    }
+    /// Motion has refused `order`; nothing when it is none of these.
+    struct Refused {
+        Ending ending;
+        RefusalIsFor reader = RefusalIsFor::EVERYBODY;
+    };
+    std::optional<Refused> refuse(motion::CommandId order, const std::string &reason) {
+        for (auto at = waiting_.begin(); at != waiting_.end(); ++at) {
+            if (at->order == order) {
+                const Refused refused{{at->command, Progress::REFUSED, reason}, at->reader};
+                waiting_.erase(at);
+                return refused;
+            }
+        }
+        return std::nullopt;
+    }
+    /// The oldest that motion has done, or not answered for too long; called until there is none.
+    /// `isAnswered` tells it of an order.
+    template <class Predicate>
+    std::optional<Ending> next(const Predicate &isAnswered, std::int64_t now_ns) {
+        for (auto at = waiting_.begin(); at != waiting_.end(); ++at) {
+            const bool isDone = isAnswered(at->order);
+            if (isDone || now_ns > at->deadline_ns) {
+                const Ending done{at->command, Progress::DONE, {}};
+                const Ending late{at->command, Progress::FAILED,
+                                  "the motion controller does not answer: does millwright-rt run?"};
+                waiting_.erase(at);
+                return isDone ? done : late;
+            }
+        }
+        return std::nullopt;
+    }
+
+  private:
+    struct Waiting {
+        mailbox::Serial command;
+        motion::CommandId order;
+        RefusalIsFor reader;
+        std::int64_t deadline_ns;
+    };
+    std::deque<Waiting> waiting_;
+};
+
+}  // namespace mw::task

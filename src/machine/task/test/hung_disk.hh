@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <latch>
+#include <string>
+
+#include "machine/task/sequencer/program_log.hh"
+
+namespace mw::task::test {
+
+/// A disk that hangs until the test lets it work.
+class HungDisk final : public LogDisk {
+  public:
+    Result<int> open(const std::string &path, bool isAppending, const Confinement *confinement) override {
+        wait();
+        return LogDisk::open(path, isAppending, confinement);
+    }
+    Result<> write(int file, std::string_view text) override {
+        wait();
+        return LogDisk::write(file, text);
+    }
+    void release() { isReleased_.count_down(); }
+
+  private:
+    void wait() { isReleased_.wait(); }
+    std::latch isReleased_{1};
+};
+
+}  // namespace mw::task::test

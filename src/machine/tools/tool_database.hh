@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Tools that a program keeps ([EMCIO]DB_PROGRAM, requirement G1; LinuxCNC manual, "Tool Database Interface"):
+// it says its version, then answers lines.
+//
+//     v2.1                              its first line
+//     g          T1 P1 Z0.5 ... FINI    all tools
+//     p T1 P1 Z0.6 D2      FINI ...     data of a tool have changed
+//     l T1   P0            FINI ...     a tool is in the spindle
+//     u T2   P17           FINI ...     a tool is in a pocket (T0 P0: the spindle is empty)
+//
+// NAK in an answer says that it does not agree: that is told, and the work goes on.
+#pragma once
+
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "machine/tools/line_program.hh"
+#include "machine/tools/tool_data.hh"
+
+namespace mw::machine {
+
+/// Not realtime; one thread. Nothing but start() waits, unless asked to. A program that has ended or does not
+/// answer in time is told by name.
+class ToolDatabase final : public ToolData {
+  public:
+    struct Setup {
+        std::string command;  ///< program and up to ten arguments
+        std::string folder;   ///< where it runs, and where db_spindle.tbl is
+        tools::Changer changer = tools::Changer::FIXED;
+        bool isWaitedFor = false;  ///< each answer is waited for where it is asked: for virtual clocks
+        /// Writes db_spindle.tbl, and outlives this; null: it is written within the call.
+        journal::Writer *keeper = nullptr;
+        double patience_s = 10;  ///< for its first line, and for each answer
+    };
+    static Result<std::unique_ptr<task::ToolStore>> start(const Setup &setup, diagnostics::Sink &sink);
+
+    Result<> load_spindle(int index) override;
+    Result<> set_entry(int index, const gcode::ToolEntry &entry) override;
+    /// The protocol has no words for it.
+    Result<> add(const gcode::ToolEntry &entry) override;
+    Result<> remove(int index) override;
+    bool isSettled() const override {
+        return setup_.keeper == nullptr || setup_.keeper->isSettled(spindle_path());
+    }
+    Result<> reload() override;
+    std::optional<Result<>> reload_result() override;
+    void step() override;
+    std::optional<std::string> take_warning() override;
+
+  private:
+    enum class Kind : std::uint8_t { VERSION, TOOLS, CHANGE };
+    struct Awaited {
+        Kind kind = Kind::CHANGE;
+        std::string line;  ///< that was written
+        std::int64_t deadline_ns = 0;
+    };
+    ToolDatabase(Setup setup, LineProgram program);
+    Result<> ask(Kind kind, const std::string &line);
+    void take_line(const std::string &line);
+    void take_tools();
+    void give_up(const std::string &why);
+    /// Until everything asked for is answered or given up.
+    void wait();
+    std::string spindle_path() const;
+    Result<> keep_spindle();
+    void find_spindle_tool(tools::Table &read);
+
+    Setup setup_;
+    LineProgram program_;
+    std::deque<Awaited> awaited_;
+    std::string tools_text_;
+    std::optional<Result<>> read_{Result<>{}};  ///< how the last reading has ended
+    std::optional<std::string> spindle_text_;   ///< of db_spindle.tbl; nothing before it is read
+    std::deque<std::string> warnings_;
+    std::string trouble_;  ///< why nothing more is asked
+};
+
+}  // namespace mw::machine

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// A client of a machine: commands with their outcome, status, messages. In the machine's process or in
+// another.
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "messages/client/viewer.hh"
+#include "messages/mailbox/places.hh"
+
+namespace mw::client {
+
+using mailbox::Places;
+using mailbox::Role;
+using mailbox::Serial;
+
+/// How a command stands or has ended.
+struct Outcome {
+    messages::Progress progress = messages::Progress::STARTED;
+    std::string reason;  ///< of a refusal or failure
+};
+
+/// One thread. Leaves its place when it is destroyed; what it has started goes on.
+class Client {
+  public:
+    /// Of a machine in another process, by the name of its instance.
+    static Result<Client> connect(const std::string &instance, Role role = Role::OPERATOR,
+                                  Places places = Places::ORDINARY);
+    /// Of a machine in this process, which must outlive it.
+    static Result<Client> join(mailbox::Segment &segment, Role role = Role::OPERATOR,
+                               Places places = Places::ORDINARY);
+    /// Of the machine that the viewer sees, on this computer or another one.
+    static Result<Client> join(Viewer viewer, Role role = Role::OPERATOR, Places places = Places::ORDINARY);
+    ~Client();
+    Client(Client &&other) noexcept;
+    Client &operator=(Client &&other) noexcept;
+
+    /// Takes authority away from the commands from here on; nothing gives it back. For programs that pass on
+    /// commands of others.
+    void limit_authority(mailbox::Authority most);
+
+    /// Number of this client, as the right to operate names it.
+    mailbox::ClientId id() const { return id_; }
+
+    /// Hands a command over; its number among those of all clients. An error when a value is out of range or
+    /// MAX_POSTED commands wait. A stop is taken however many wait.
+    Result<Serial> post(const messages::Command &command);
+    /// STARTED also while it waits to be taken. One that task no longer remembers is REFUSED, and its reason
+    /// says so.
+    Outcome outcome(Serial serial);
+    /// Sleeps until the command ends; an error when the time is over or the machine is gone.
+    Result<Outcome> wait(Serial serial, double timeout_s);
+
+    /// Sleeps until task has taken the command, whatever becomes of it.
+    Result<> wait_taken(Serial serial, double timeout_s);
+
+    /// Sleeps at the bell until `isOver()`, as Viewer::wait_until.
+    template <class IsOver>
+    Result<> wait_until(const IsOver &isOver, double timeout_s) {
+        return viewer_.wait_until(isOver, timeout_s);
+    }
+
+    // What it sees, as any viewer (messages/client/viewer.hh).
+    using Message = Viewer::Message;
+    mailbox::Identity identity() const { return viewer_.identity(); }
+    bool isMachineAlive() const { return viewer_.isMachineAlive(); }
+    Result<> check_machine() const { return viewer_.check_machine(); }
+    Result<> read_status() { return viewer_.read_status(); }
+    const messages::MachineStatus &status() const { return viewer_.status(); }
+    PartMask fresh_parts() const { return viewer_.fresh_parts(); }
+    Result<> wait_status(double timeout_s) { return viewer_.wait_status(timeout_s); }
+    Result<std::optional<messages::ToolTable>> read_tools() { return viewer_.read_tools(); }
+    std::optional<Message> next_message(Viewer::Reading reading = Viewer::Reading::COUNTS) {
+        return viewer_.next_message(reading);
+    }
+    void rewind_messages(std::uint64_t most) { viewer_.rewind_messages(most); }
+    std::uint64_t run() const { return viewer_.run(); }
+    bool claim_log(std::uint64_t number) const { return viewer_.claim_log(number); }
+
+  private:
+    Client(Viewer viewer, int slot, mailbox::ClientId id);
+    mailbox::Slot &slot() const { return viewer_.segment().slots[static_cast<std::size_t>(slot_)]; }
+    void leave() noexcept;
+    void announce() const;
+    Serial post_stop(int place);
+    bool isStopWaiting(Serial serial);
+    bool isTaken(Serial serial);
+
+    Viewer viewer_;
+    bool hasPlace_ = true;  ///< false after a move
+    int slot_ = 0;
+    mailbox::ClientId id_ = 0;
+    /// The outcome that was asked for last, where it was found, and how many had been told by then.
+    struct Found {
+        Serial serial = 0;
+        std::uint64_t told = 0;
+        std::size_t place = 0;
+        Outcome outcome;
+    } found_;
+    struct PostedStop {
+        Serial serial = 0;
+        int place = 0;
+    };
+    std::vector<PostedStop> posted_stops_;  ///< beside the queue, not seen as taken yet
+    /// Stops that a later one of the same kind has taken the place of: number, and that of the later one.
+    std::deque<std::pair<Serial, Serial>> replaced_stops_;
+};
+
+}  // namespace mw::client

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "messages/declarations/command.hh"
+
+#include <memory>
+
+namespace mw::messages {
+
+Command::Command() = default;
+Command::Command(const Command &other) = default;
+Command::Command(Command &&other) noexcept = default;
+Command::~Command() = default;
+
+Command &Command::operator=(const Command &other) {
+    return *this = Command(other);
+}
+
+/// By making it anew: compiling the assignment of one alternative to each other takes longer than all the
+/// rest.
+Command &Command::operator=(Command &&other) noexcept {
+    if (this != &other) {
+        std::destroy_at(this);
+        std::construct_at(this, std::move(other));
+    }
+    return *this;
+}
+
+}  // namespace mw::messages

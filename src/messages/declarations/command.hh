@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Every command: what an operator, a screen or another program asks of the machine. Each ends as done,
+// refused or failed with a reason.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <type_traits>
+#include <variant>
+
+#include "base/overloaded.hh"
+#include "messages/declarations/device_commands.hh"
+#include "messages/declarations/joint_commands.hh"
+#include "messages/declarations/motion_commands.hh"
+#include "messages/declarations/program_commands.hh"
+
+namespace mw::messages {
+
+using CommandVariant = std::variant<
+    SetState, SetMode, OpenProgram, RunProgram, ConfirmApproach, ReleaseAxes, RecoverProgram, ForgetRecovery,
+    ReadProgram, Mdi, PauseProgram, StepProgram, ResumeProgram, EndProgram, CloseProgram, ResetInterpreter,
+    SynchInterpreter, SetOptionalStop, SetBlockDelete, StopOptionally, ReverseProgram, ForwardProgram,
+    InitTask, HaltTask, AbortAll, InitMachine, HaltMachine, AbortMachine, Null, SetDebug, SystemCommand,
+    CallTaskPlugin, OperatorError, OperatorText, OperatorDisplay, ClaimOperation, HandOverOperation,
+    ReleaseOperation, HomeJoint, UnhomeJoint, JogContinuous, JogIncrement, JogAbsolute, JogStop,
+    OverrideLimits, SetJointKind, SetJointUnits, SetJointMinLimit, SetJointMaxLimit, SetJointFerror,
+    SetJointMinFerror, SetJointMaxVelocity, SetJointBacklash, SetJointHoming, InitJoint, HaltJoint,
+    AbortJoint, EnableJoint, DisableJoint, ActivateJoint, DeactivateJoint, LoadCompensation, SetFeedOverride,
+    SetRapidOverride, SetSpindleOverride, EnableFeedOverride, EnableSpindleOverride, EnableFeedHold,
+    EnableAdaptiveFeed, SetMaxVelocity, SetTeleop, SetMotionMode, SetTeleopVector, SetTrajAxes, SetTrajUnits,
+    SetTrajCycleTime, SetTrajVelocity, SetTrajAcceleration, SetMaxAcceleration, SetMotionId, InitTraj,
+    HaltTraj, EnableTraj, DisableTraj, AbortTraj, PauseTraj, StepTraj, ResumeTraj, Delay, LinearMove,
+    CircularMove, SetTermination, SetToolOffset, SetG5x, SetTrajHome, SetRotation, SetG92, ClearProbe,
+    ProbeMove, SetSpindleSync, RigidTapMove, InitMotion, HaltMotion, AbortMotion, SetAnalogOutput,
+    SetDigitalOutput, SpindleOn, SpindleOff, SpindleIncrease, SpindleDecrease, SpindleConstant, ReleaseBrake,
+    EngageBrake, SetSpindleSpeed, OrientSpindle, WaitOriented, MistOn, MistOff, FloodOn, FloodOff, LubeOn,
+    LubeOff, EstopOn, EstopOff, EstopReset, WaitInput, InitTool, HaltTool, AbortTool, PrepareTool, LoadTool,
+    UnloadTool, LoadToolTable, SetToolEntry, AddTool, RemoveTool, SetToolNumber, StartToolChange,
+    ConfirmToolChange, InitIo, HaltIo, AbortIo, SetIoCycleTime, CallIoPlugin>;
+
+/// Where a message stands in the variant.
+template <class Message, class Variant>
+inline constexpr std::size_t INDEX_IN = 0;
+template <class Message, class... All>
+inline constexpr std::size_t INDEX_IN<Message, std::variant<All...>> = [] {
+    constexpr std::array IS_IT{std::is_same_v<Message, All>...};
+    return static_cast<std::size_t>(std::find(IS_IT.begin(), IS_IT.end(), true) - IS_IT.begin());
+}();
+
+/// One of them. What a variant of so many does to its members is compiled once, in command.cc.
+class Command : public CommandVariant {
+  public:
+    using Variant = CommandVariant;
+    Command();
+    template <AlternativeOf<CommandVariant> Message>
+    Command(Message message) : Command(INDEX_IN<Message, CommandVariant>, &message) {}
+    Command(const Command &other);
+    Command(Command &&other) noexcept;
+    Command &operator=(const Command &other);
+    Command &operator=(Command &&other) noexcept;
+    ~Command();
+
+  private:
+    /// `message` is the alternative of that index; it is moved from.
+    Command(std::size_t index, void *message);
+};
+
+}  // namespace mw::messages

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Messages as JSON: {"message":"JogStop","is_joint":true,"index":0}. Enumerations by name, infinite numbers
+// as the texts "inf" and "-inf", what is not a number as "nan".
+#pragma once
+
+#include <string>
+
+#include "base/result.hh"
+#include "messages/declarations/describe.hh"
+
+namespace mw::messages {
+
+std::string to_json(const ConstObject &message);
+/// A single value as it stands in its message; of an array an element.
+std::string to_json(const Field &field, const void *at);
+
+/// The value of "message", by which a reader finds the declaration.
+Result<std::string> json_name(std::string_view json);
+
+/// Reads one message of this declaration. Unknown fields and missing ones without a default are errors.
+Result<> from_json(std::string_view json, const Object &message);
+
+}  // namespace mw::messages

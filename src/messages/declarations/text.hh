@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// One line of text for logs and people.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "messages/declarations/describe.hh"
+
+namespace mw::messages {
+
+/// "JogStop is_joint=true index=0".
+std::string to_text(const ConstObject &message);
+/// In quotes, without what would break a line: \", \\ and \xNN stand for it.
+std::string quoted(std::string_view text);
+
+}  // namespace mw::messages

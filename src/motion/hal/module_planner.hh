@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Speeds by a loaded planner module of a user, through the C functions of planner.h.
+#pragma once
+
+#include "hal/include/planner.h"
+#include "trajectory/timing/speed_choice.hh"
+
+namespace mw::motion {
+
+class ModulePlanner final : public trajectory::SpeedChooser {
+  public:
+    enum class Found : std::uint8_t { NONE, SOME, ALL };
+    /// Looks for the functions among the loaded modules; `missing` is the first that is not there. [while
+    /// loading]
+    Found find(const char *&missing) noexcept;
+    /// Starts it and keeps it loaded as long as component `comp_id` is. 0, or what it answers. [while
+    /// loading]
+    int start(int comp_id, double period_s) noexcept;
+
+    int choose(const trajectory::SpeedStretch &stretch,
+               std::span<trajectory::ChosenPhase> out) noexcept override;
+
+  private:
+    decltype(&::mw_tp_init) init_ = nullptr;
+    decltype(&::mw_tp_plan) plan_ = nullptr;
+};
+
+}  // namespace mw::motion

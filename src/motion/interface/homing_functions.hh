@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What a homing module exports: all of these (hal/include/homing.h declares them). One that lacks some is
+// refused.
+#pragma once
+
+namespace mw::motion {
+
+inline constexpr const char *HOMING_FUNCTIONS[] = {
+    "homeMotFunctions",
+    "homing_init",
+    "read_homing_in_pins",
+    "write_homing_out_pins",
+    "do_home_joint",
+    "do_cancel_homing",
+    "do_homing",
+    "set_unhomed",
+    "set_joint_homing_params",
+    "update_joint_homing_params",
+    "get_home_sequence",
+    "get_homing",
+    "get_homed",
+    "get_allhomed",
+    "get_homing_is_active",
+    "get_home_is_idle",
+    "get_home_is_synchronized",
+    "get_home_needs_unlock_first",
+    "get_index_enable",
+    "get_homing_at_index_search_wait",
+};
+
+}  // namespace mw::motion

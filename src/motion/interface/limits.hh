@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Limits of joints, axes and machine folded together, in one place for paths, jogs, checks and estimates.
+// Pure.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+#include "base/geometry/pose.hh"
+#include "base/limits.hh"
+#include "kinematics/kinematics.hh"
+#include "motion/interface/command.hh"
+#include "motion/interface/settings.hh"
+#include "trajectory/path/joint_map.hh"
+#include "trajectory/path/limits.hh"
+
+namespace mw::motion {
+
+/// A limit of the path's jerk below this turns jerk-limited planning off [machine units/s^3].
+inline constexpr double LEAST_JERK = 1;
+
+/// Which axis each joint moves, and who knows what joints do where there is more to it.
+struct AxisMap {
+    enum class Kind : std::uint8_t {
+        JOINTS_ARE_AXES,  ///< what limits a joint limits its axis
+        PLANNED,          ///< the planner asks the kinematics and keeps the limits of the joints by itself
+        UNKNOWN,          ///< only the servo thread may ask the kinematics
+    };
+    Kind kind = Kind::JOINTS_ARE_AXES;
+    int num_joints = 0;                                   ///< of the machine; there are no others
+    int num_extra = 0;                                    ///< the last of them, which no pose moves
+    std::array<std::int8_t, MAX_JOINTS> axis_of_joint{};  ///< -1: none; used where joints are axes
+    kinematics::LinearJoints linear;                      ///< of joints that are no axes
+
+    /// A joint of the machine moves this axis; kinematics may move any.
+    bool hasAxis(int axis) const noexcept;
+    int num_led() const noexcept { return num_joints - num_extra; }  ///< that a pose moves
+    /// Those of the joints that the machine has and a pose moves, and the axes that move any of them.
+    void set_linear(const kinematics::LinearJoints &all) noexcept;
+    /// False when a parameter of the kinematics has been changed that says how joints are linear.
+    bool isAsIn(const kinematics::Kinematics &kinematics) const noexcept;
+    /// Whatever the axis adds to what a jog or a path does is known to its joints.
+    bool mayHaveOffset(int axis) const noexcept;
+    bool areJointsAxes() const noexcept { return kind == Kind::JOINTS_ARE_AXES; }
+    bool moves(int joint, int axis) const noexcept {
+        return areJointsAxes() && axis_of_joint[static_cast<std::size_t>(joint)] == axis;
+    }
+};
+
+/// The last `num_extra` of `num_joints` are none of the kinematics.
+AxisMap axis_map(const kinematics::Kinematics &kinematics, int num_joints, int num_extra = 0) noexcept;
+/// Joint n moves the axis of the n-th letter.
+AxisMap axis_map(std::string_view letters, int num_joints) noexcept;
+
+/// Soft limits hold for joints that are homed, those of axes when all are.
+struct HomedJoints {
+    std::uint32_t joints = 0;  ///< bit per joint
+    bool areAll = false;
+};
+inline constexpr HomedJoints ALL_HOMED{~0U, true};
+
+/// Where something is or may come to, of each axis.
+struct PoseRange {
+    geometry::Pose low, high;
+
+    void include(const geometry::Pose &pose) noexcept {
+        for (int i = 0; i < geometry::AXIS_COUNT; ++i) {
+            low[i] = std::min(low[i], pose[i]);
+            high[i] = std::max(high[i], pose[i]);
+        }
+    }
+    void include(const PoseRange &other) noexcept {
+        include(other.low);
+        include(other.high);
+    }
+};
+
+/// The same of each joint.
+struct JointRange {
+    std::array<double, MAX_JOINTS> low{}, high{};
+
+    void include(const JointRange &other) noexcept {
+        for (std::size_t j = 0; j < low.size(); ++j) {
+            low[j] = std::min(low[j], other.low[j]);
+            high[j] = std::max(high[j], other.high[j]);
+        }
+    }
+};
+
+/// Joints that are no axes, go in proportion to axes, and are moved by an axis that may have an external
+/// offset: what is programmed and offsets share their travel.
+struct SharedJoints {
+    std::uint32_t joints = 0;  ///< bit per joint
+    std::uint32_t axes = 0;    ///< bit per axis that moves one of them
+    std::array<geometry::Pose, MAX_JOINTS> slope{};
+
+    /// Where they are at a pose; 0 of others.
+    JointRange at(const geometry::Pose &pose) const noexcept;
+    /// Where they may be while each axis is anywhere in its range.
+    JointRange within(const PoseRange &range) const noexcept;
+};
+/// Of axes that may have one, a bit each.
+SharedJoints shared_joints(const kinematics::LinearJoints &linear, std::uint32_t offset_axes) noexcept;
+
+/// Where something is or may come to, of each axis, and of shared joints.
+struct TravelRange {
+    PoseRange axes;
+    JointRange joints;
+
+    void include(const TravelRange &other) noexcept {
+        axes.include(other.axes);
+        joints.include(other.joints);
+    }
+};
+
+struct JogLimits {
+    double velocity = 0, acceleration = 0;
+    double jerk = 0;  ///< 0: none
+};
+
+inline constexpr std::array<std::int8_t, MAX_AXES> NO_INDEXERS = [] {
+    std::array<std::int8_t, MAX_AXES> none{};
+    none.fill(-1);
+    return none;
+}();
+
+struct FoldedLimits {
+    trajectory::Limits path;   ///< of moves of axes: their own and those of the joints that move them
+    geometry::Pose low, high;  ///< soft limits of axes, with those of joints; +-infinity where none holds
+    std::uint32_t axes = 0;    ///< bit per axis that a joint or the kinematics move
+    trajectory::JointLimits joints;
+    trajectory::JointLimits path_joints;  ///< what external offsets leave of them to paths and jogs of axes
+    HomedJoints homed;
+    /// Joint whose lock a program opens for G0 of each axis; -1: none.
+    std::array<std::int8_t, MAX_AXES> indexer = NO_INDEXERS;
+    std::uint32_t locks = 0;                           ///< bit per joint that has a lock
+    std::array<std::uint32_t, MAX_AXES> axis_locks{};  ///< those of them that each axis moves
+    std::array<double, MAX_JOINTS> travel{};           ///< between the soft limits of a joint, homed or not
+    std::array<JogLimits, MAX_JOINTS> joint_jog{};
+    std::array<JogLimits, MAX_AXES> axis_jog{};
+    std::array<JogLimits, MAX_AXES> offset{};  ///< external ones; velocity 0: the axis has none
+
+    /// Locks that are opened for a jog.
+    std::uint32_t locks_of(const JogTarget &target) const noexcept {
+        return target.isJoint ? locks & 1U << target.index
+                              : axis_locks[static_cast<std::size_t>(target.index)];
+    }
+    const JogLimits &jog(const JogTarget &target) const noexcept {
+        const auto i = static_cast<std::size_t>(target.index);
+        return target.isJoint ? joint_jog[i] : axis_jog[i];
+    }
+};
+
+/// Jerk-limited planning is asked for and has a limit to keep.
+bool isJerkLimited(const Settings &settings) noexcept;
+
+/// [any thread]
+FoldedLimits fold_limits(const Settings &settings, const AxisMap &map, const HomedJoints &homed) noexcept;
+
+struct JogRange {
+    double low = 0, high = 0;
+};
+/// Where a jog may go: soft limits of what is homed, before that twice the travel around the present place.
+/// `joint_positions` has MAX_JOINTS elements.
+JogRange jog_range(const FoldedLimits &limits, const AxisMap &map, const JogTarget &target,
+                   const double *joint_positions) noexcept;
+
+}  // namespace mw::motion

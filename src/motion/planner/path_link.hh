@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Between the controller (servo) and the path planner (below it), in one process.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "base/copyable_atomic.hh"
+#include "base/limits.hh"
+#include "base/seqlock.hh"
+#include "motion/interface/limits.hh"
+#include "motion/interface/status.hh"
+#include "trajectory/path/joint_map.hh"
+#include "trajectory/path/limits.hh"
+#include "trajectory/path_store.hh"
+
+namespace mw::motion {
+
+/// Written by the controller when a setting changes or a joint is homed or unhomed.
+struct PathLimits {
+    trajectory::Limits limits;
+    double corner_scale = 1;          ///< of moves that name none
+    bool areTolerancesAdded = false;  ///< what joining takes is on top of P
+    geometry::Pose low, high;         ///< soft limits per axis; +-infinity where none holds
+    std::uint32_t axes = 0;           ///< bit per axis that the kinematics drive
+    std::uint32_t offset_axes = 0;    ///< bit per axis that may have an external offset
+    std::array<std::int8_t, MAX_AXES> indexer = NO_INDEXERS;  ///< as in FoldedLimits
+    trajectory::JointLimits joints;                           ///< where joints are not axes
+    SharedJoints shared;                                      ///< with external offsets
+    /// Where the joints stood before the path: elbows and wrists are on the side of theirs
+    std::array<double, MAX_JOINTS> standing{};
+    int side = 0;              ///< of that place (kinematics::Kinematics)
+    std::uint32_t stands = 0;  ///< counts how often the joints stood anew
+};
+
+/// Where the path may lead, as far as it is planned and not driven.
+struct PathExtent {
+    TravelRange range;
+    bool isEmpty = true;
+};
+
+/// Written by the controller every servo cycle, one consistent picture.
+struct PathView {
+    trajectory::Snapshot executor;
+    Epoch epoch = 0;
+    Mode mode = Mode::FREE;
+    bool isEnabled = false;
+    bool isStopping = false;    ///< everything brakes, what is left will be dropped
+    std::uint32_t enables = 0;  ///< counts Enable
+    std::uint32_t limits_version = 0;
+    geometry::Pose position;  ///< carte_pos_cmd
+    double feed_scale = 1, rapid_scale = 1, max_feed_scale = 1, max_velocity = 0;
+    std::array<double, MAX_SPINDLES> spindle_rps{}, spindle_revs{};
+    std::uint32_t spindles_ready = 0;  ///< bit per spindle that is at speed or off
+    std::uint32_t spindles_reversible = 0;
+    std::array<std::array<double, 2>, MAX_SPINDLES> spindle_ramps{};  ///< see trajectory::SpindleReading
+    bool isProbeClosed = false;
+    std::uint32_t probe_trips = 0;  ///< counts probe moves that were tripped
+    std::uint32_t steps = 0;        ///< counts StepOnce
+    bool isStepping = false;
+    /// Locking indexers, bit per joint: may move, wait or move, have not locked in time.
+    std::uint32_t indexers_unlocked = 0, indexers_busy = 0, indexers_stuck = 0;
+    std::uint32_t type_asks = 0;  ///< counts asks for another type of the kinematics
+    bool isTypePending = false;   ///< paths wait until it is in force
+};
+
+/// Copied only while neither side runs, for a controller that is saved or cloned.
+struct PathLink {
+    trajectory::PathStore store;
+    Seqlock<PathView> view;      ///< controller -> planner
+    PathView newest;             ///< what `view` was written from; the controller's own
+    Seqlock<PathLimits> limits;  ///< controller -> planner
+    /// Where external offsets may be, and where the path may: each side writes its own before it reads the
+    /// other's, so that both never take the same room. Only while there are such offsets.
+    Seqlock<PoseRange> offsets;  ///< controller -> planner
+    Seqlock<PathExtent> extent;  ///< planner -> controller
+    /// planner -> controller: StepOnce count whose stop has been reached
+    CopyableAtomic<std::uint32_t> steps_done{0};
+    /// planner -> controller: type_asks at which nothing was accepted that is not driven
+    CopyableAtomic<std::uint32_t> type_asks_seen{0};
+    /// planner -> controller: the joints that the path wants unlocked, above them the drops of paths it knows
+    /// of
+    CopyableAtomic<std::uint64_t> indexers_wanted{0};
+    CopyableAtomic<std::uint32_t> queue_depth{0};   ///< planner -> controller
+    CopyableAtomic<std::uint32_t> isQueueFull{0};   ///< planner -> controller
+    CopyableAtomic<std::uint64_t> last_done_id{0};  ///< planner -> controller: last path command completed
+};
+
+}  // namespace mw::motion

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Takes path commands, checks them, has them planned, and answers each. Runs below the servo thread, once a
+// period; allocates at construction only.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+#include "kinematics/kinematics.hh"
+#include "motion/interface/channels.hh"
+#include "motion/planner/path_link.hh"
+#include "motion/planner/path_window.hh"
+#include "motion/planner/pending_commands.hh"
+#include "trajectory/planner.hh"
+
+namespace mw::motion {
+
+struct PathPlannerConfig {
+    double servo_period_s = 1e-3;
+    int num_joints = 3;
+    int num_spindles = 1;
+    int num_dio = 4, num_aio = 4;
+    trajectory::SpeedChooser *chooser = nullptr;  ///< a planner module of a user
+};
+
+/// The inverse of pure kinematics, for the planner. Of several answers it gives the one on the side of what
+/// it was told last, or has given last.
+class KinematicsMap final : public trajectory::JointMap {
+  public:
+    using Joints = std::array<double, MAX_JOINTS>;
+
+    explicit KinematicsMap(const kinematics::Kinematics &kinematics) noexcept : kinematics_(kinematics) {}
+    void stand_at(const Joints &joints, int side) noexcept {
+        near_ = joints;
+        side_ = side;
+    }
+    /// The joints at a pose, beside those that `joints` holds; SINGULAR also of a pose that only a singular
+    /// one leads to.
+    kinematics::Status find(const geometry::Pose &pose, double *joints) const noexcept {
+        const bool isBeyond = side_ != 0 && kinematics_.side(pose) != side_;
+        const kinematics::Status status = kinematics_.inverse(pose, joints);
+        return isBeyond && isAnswered(status) ? kinematics::Status::SINGULAR : status;
+    }
+    bool joints_at(const geometry::Pose &pose, double *joints) const noexcept override {
+        std::copy(near_.begin(), near_.end(), joints);
+        const bool isFound = find(pose, joints) == kinematics::Status::OK;
+        if (isFound) {
+            std::copy_n(joints, near_.size(), near_.begin());
+        }
+        return isFound;
+    }
+
+  private:
+    const kinematics::Kinematics &kinematics_;
+    mutable Joints near_{};  // [planner thread]
+    int side_ = 0;
+};
+
+/// How far a line may go on.
+struct TravelToLimit {
+    double way = trajectory::UNLIMITED;  ///< [machine units, degrees]
+    int axis = -1, joint = -1;           ///< whose limit it is; joint MAX_JOINTS: that of the kinematics
+};
+
+/// After a refusal or a stop the rest of the same epoch's path commands is answered STALE, until a new epoch
+/// or Enable: a path with a hole in it is never driven.
+class PathPlanner {
+  public:
+    PathPlanner(const PathPlannerConfig &config, const kinematics::Kinematics &kinematics, Channels &channels,
+                PathLink &link) noexcept;
+
+    /// One planner period. [planner thread]
+    void update() noexcept;
+
+    static constexpr int MAX_COMMANDS_PER_UPDATE = 1024;
+
+  private:
+    void follow_controller() noexcept;
+    void follow_drops() noexcept;
+    void follow_steps() noexcept;
+    void complete_moves() noexcept;
+    bool take_commands() noexcept;
+    bool isWaiting(const PathCommand &c) noexcept;
+    bool isIdle() const noexcept;
+    trajectory::PathDemand demand_of(const PathCommand &c) const noexcept;
+    void begin_path(const PathCommand &c) noexcept;
+    Reason accept(const PathCommand &c) noexcept;
+    Reason accept_flush(const PathCommand &c) noexcept;
+    Reason accept_line(const PathCommand &c, const geometry::Pose &end, const MoveTerms &terms) noexcept;
+    Reason accept_arc(const PathCommand &c, const Arc &arc) noexcept;
+    Reason accept_tap(const PathCommand &c, const RigidTap &tap) noexcept;
+    Reason accept_probe(const PathCommand &c, const Probe &probe) noexcept;
+    Reason accept_digital(const PathCommand &c, const SynchedDigitalOutput &output) noexcept;
+    Reason accept_analog(const PathCommand &c, const SynchedAnalogOutput &output) noexcept;
+    Reason accept_event(const PathCommand &c, const trajectory::PathEvent &event) noexcept;
+    int indexer_of(const PathBody &body) const noexcept;
+    Reason check_reach(const trajectory::Primitive &p, int indexer = -1) noexcept;
+    TravelRange available_travel(const TravelRange &move) noexcept;
+    void publish_extent() noexcept;
+    void tell_overreach(const trajectory::Overreach &overreach) noexcept;
+    /// Where the joints are at a place of a path.
+    struct PathSample {
+        double at = 0;
+        std::array<double, MAX_JOINTS> joints{};
+    };
+    TravelToLimit room_for_joints(const trajectory::Primitive &line, double sense, const TravelToLimit &axes,
+                                  std::array<double, MAX_JOINTS> joints, double turn) const noexcept;
+    bool isSteady(const trajectory::Primitive &p, PathSample from, PathSample to) const noexcept;
+    Reason check_joints(const trajectory::Primitive &p, const JointRange &room) noexcept;
+    Reason check_shared(const trajectory::Primitive &p, const JointRange &move,
+                        const JointRange &room) noexcept;
+    trajectory::MoveRequest request_for(const PathCommand &c, const MoveTerms &terms) const noexcept;
+    void add_pending(const PathCommand &c, const SourceTag &source) noexcept;
+    void open_gates() noexcept;
+    bool areSpindlesReady() const noexcept;
+    bool isThreadPossible(trajectory::Sequence gate) noexcept;
+    bool isTapPossible(trajectory::Sequence gate) noexcept;
+    void tell_impossible(trajectory::Sequence gate, FaultKind kind, double value) noexcept;
+    void publish() noexcept;
+    void answer(CommandId id, AnswerKind kind, Reason reason) noexcept;
+
+    PathPlannerConfig config_;
+    const kinematics::Kinematics &kinematics_;
+    KinematicsMap map_;
+    Channels &channels_;
+    PathLink &link_;
+    trajectory::Planner planner_;
+    PendingCommands pending_;
+
+    PathView view_;
+    PathLimits limits_;
+    PathWindow window_;                            ///< kept while there are external offsets
+    std::array<double, MAX_JOINTS> end_joints_{};  ///< at the end of what was accepted last
+    std::uint32_t stands_ = 0;                     ///< of the limits
+    std::uint32_t limits_version_ = 0;
+    Epoch epoch_ = 0;
+    bool isBroken_ = false;  ///< the path has a hole: nothing more of this epoch
+    bool isPathBegun_ = false;
+    bool isQueueFull_ = false;
+    bool wasLocked_ = false;  ///< the last move keeps to a spindle's angle
+    trajectory::Sequence refused_gate_ = 0;
+    std::uint64_t drops_ = 0;
+    std::uint32_t enables_ = 0;
+    std::uint32_t probe_trips_ = 0;
+    std::uint32_t steps_ = 0;
+    bool isStepPending_ = false;
+    trajectory::Sequence step_from_ = 0;
+    std::int16_t refused_index_ = -1;
+    int idle_updates_ = 0;
+    CommandId last_done_ = 0;
+};
+
+}  // namespace mw::motion

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Spindles: speed with override and limits, constant surface speed, brake, orientation, turning back for a
+// tap.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "base/limits.hh"
+#include "motion/interface/command.hh"
+#include "motion/interface/settings.hh"
+#include "motion/servo/command_result.hh"
+#include "motion/servo/io.hh"
+#include "motion/servo/spindles/spindle_reversal.hh"
+
+namespace mw::motion {
+
+struct Spindle {
+    double speed_rpm = 0, css_factor = 0, css_max_rpm = 0, css_x_offset = 0;
+    double scale = 1;
+    double out_rpm = 0;
+    double commanded_rpm = 0;  ///< within the limits of the spindle, before the override
+    double turns = 0;          ///< the last ones counted that were a number
+    double speed_rps = 0;      ///< measured; 0 while that is no number
+    bool isOn = false, isOverrideEnabled = true, isBrakeOn = true;
+    bool isOrienting = false, isLocked = false;
+    double orient_angle = 0;
+    int orient_mode = 0, orient_state = 0, orient_fault = 0;
+    double tap_factor = 1;  ///< of the speed, while a tap is under way
+    double tap_scale = 1;   ///< the override that the tap began with
+    bool isTapping = false;
+    SpindleReversal turn_back;
+};
+
+/// What a tap under way wants of its spindle.
+struct TapTurning {
+    int spindle = -1;   ///< -1: none is under way
+    double factor = 1;  ///< of the speed that the spindle was started with; 0: off, and not on by itself
+};
+
+struct Spindles {
+    static constexpr int ORIENT_NONE = 0, ORIENT_IN_PROGRESS = 1, ORIENT_COMPLETE = 2, ORIENT_FAULTED = 3;
+
+    int count = 0;
+    std::array<Spindle, MAX_SPINDLES> spindle{};
+
+    Spindle &operator[](int n) noexcept { return spindle[static_cast<std::size_t>(n)]; }
+    const Spindle &operator[](int n) const noexcept { return spindle[static_cast<std::size_t>(n)]; }
+};
+
+CommandResult take(Spindles &spindles, const SpindleOn &command, bool isEnabled) noexcept;
+CommandResult take(Spindles &spindles, const SpindleOff &command) noexcept;
+CommandResult take(Spindles &spindles, const SpindleOrient &command, bool isEnabled) noexcept;
+CommandResult take(Spindles &spindles, const SpindleBrake &command) noexcept;
+/// Of one spindle or, with -1, of all.
+CommandResult take(Spindles &spindles, const SetScale &command) noexcept;
+CommandResult take(Spindles &spindles, const SetSwitch &command) noexcept;
+/// The machine goes off.
+void switch_off(Spindles &spindles) noexcept;
+
+/// What the pins say of the spindles. Bit per spindle of which they say no number.
+std::uint32_t measure(Spindles &spindles, const Inputs &in) noexcept;
+
+struct SpindleCycle {
+    double x = 0;  ///< commanded machine X, for constant surface speed
+    TapTurning tap;
+    double period_s = 1e-3;
+};
+/// One cycle. Bit per spindle whose orientation has failed in it: `orient_fault` says with what.
+std::uint32_t step(Spindles &spindles, const Inputs &in, const Settings &settings,
+                   const SpindleCycle &cycle) noexcept;
+
+/// How fast a spindle turns back, from turning on with its counts and against them [turns/s^2]; 0: not known.
+std::array<double, 2> ramps_of(const Spindles &spindles, int n, const Settings &settings) noexcept;
+/// It may turn in both directions.
+bool isReversible(const Settings &settings, int n) noexcept;
+
+/// Off, or at speed.
+bool isReady(const Spindle &spindle, const SpindleInputs &in) noexcept;
+void fill(const Spindles &spindles, const Inputs &in, bool isEnabled, Outputs &out) noexcept;
+
+}  // namespace mw::motion

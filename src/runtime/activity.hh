@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Whether a process runs.
+#pragma once
+
+#include "runtime/process.hh"
+
+namespace mw::runtime {
+
+enum class Activity : std::uint8_t {
+    RUNNING,
+    STOPPED,  ///< by a signal (SIGSTOP, Ctrl-Z) or a debugger
+    ENDED,    ///< or a zombie
+};
+Activity activity_of(const ProcessId &process);
+
+}  // namespace mw::runtime

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The servo side of path motion: evaluates what the planner has committed, and stops on the path by itself.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "base/limits.hh"
+#include "trajectory/follow/arc_mean.hh"
+#include "trajectory/follow/locked_state.hh"
+#include "trajectory/follow/lone_brake.hh"
+#include "trajectory/follow/mean_filter.hh"
+#include "trajectory/follow/spindle_track.hh"
+#include "trajectory/follow/tap_follower.hh"
+
+namespace mw::trajectory {
+
+/// What a tap wants of its spindle.
+struct TapDemand {
+    int spindle = -1;     ///< -1: no tap is under way
+    double factor = 1;    ///< of the speed that the spindle was started with; 0: off, and not on by itself
+    bool isLost = false;  ///< the tool could not keep to the spindle
+};
+
+/// What the executor commands for the end of a cycle.
+struct ExecutorOutput {
+    Pose position;
+    double velocity = 0;  ///< along the parameter of the path [1/s]
+    Sequence move = 0;    ///< the move under way, 0: none
+    bool isMoving = false;
+    double distance_to_go = 0;  ///< to the end of the move under way
+    bool isOnProbe = false;
+    TapDemand tap;
+};
+
+/// Whether the planner is there in a drop, and stops the leader.
+struct PlannerSilence {
+    std::uint32_t seen_updates = 0;
+    int cycles = 0;           ///< since the last one
+    int waited = 0;           ///< cycles since the drop
+    bool isStopping = false;  ///< the plan in force was made to stop
+};
+
+/// How the executor brakes by itself on the present piece.
+struct Brake {
+    Phase phase;
+    double time = 0;          ///< in it
+    bool isFinal = false;     ///< it ends in a stop
+    double end = 0;           ///< where on the piece it ends otherwise
+    double wait_s = 0;        ///< before: until the mean has forgotten the last rise the speed is kept
+    double most = 0;          ///< what jerk limits leave in this cycle [1/s^2]
+    Sequence plan_phase = 0;  ///< of the plan that it has left, where the leader is now
+};
+
+/// What an executor remembers. A copy of it goes on in another executor whose store holds the same path.
+class ExecutorState {
+  protected:
+    explicit ExecutorState(double period_s) noexcept : period_(period_s) {}
+
+    double period_;
+    Snapshot state_;
+    ExecutorOutput out_;
+    Commit next_switch_;      ///< plan != 0: waits for its cycle
+    Sequence phase_end_ = 0;  ///< phases of the plan taken end here
+    Sequence next_end_ = 0;   ///< the same of the waiting switch
+    Brake brake_;
+    PlannerSilence silence_;
+    Pose leader_;
+    double leader_s_ = 0, leader_tolerance_ = 0;
+    Sequence leader_done_ = 0;
+    MeanFilter mean_;
+    ArcMean arc_;
+    std::uint64_t rest_ticks_ = MAX_FILTER;  ///< since the leader stands
+    std::array<Sequence, HISTORY_CAPACITY> done_history_{};
+
+    std::array<FollowedSpindle, MAX_SPINDLES> spindles_{};
+    LockedState lock_;
+    TapFollower tap_;
+};
+
+/// All methods: servo thread only; bounded, no allocation.
+///
+/// Follows phases; when they run out, or on `hold` and `drop`, it brakes with each piece's own acceleration
+/// along the path. A late or lost planner therefore means a stop on the path.
+/// With jerk limits (Commit::filter above 1) a leader does this and its mean is commanded; the planner then
+/// ends every plan with a stop, and answers `hold` and `drop` with a plan. A planner that is away, or
+/// finds none, leaves a `drop` to the leader's own brake.
+/// Passes that are locked to a spindle's angle (Motion::LOCKED) it drives by itself, from rest to rest;
+/// `hold` waits for their end, since a thread that was held is scrap; `drop` brakes at once. In a tap it
+/// switches the spindle off and follows it to its stand.
+class Executor : private ExecutorState {
+  public:
+    /// `limits` stay valid; what they hold may change. Null: stops without a planner know no jerk limits.
+    explicit Executor(PathStore &store, double period_s, const StopLimits *limits = nullptr) noexcept
+        : ExecutorState(period_s), store_(store), stop_limits_(limits) {}
+    /// Goes on where `other` is; `store` holds the same path.
+    Executor(const Executor &other, PathStore &store, const StopLimits *limits) noexcept
+        : ExecutorState(other), store_(store), stop_limits_(limits) {}
+
+    /// The path begins at `pose`; only at rest and with nothing left of a path.
+    [[gnu::cold]] void set_position(const Pose &pose) noexcept;
+
+    /// The angle [turns] of a spindle; call every cycle before `step`: the speed is told from it.
+    void set_spindle(int spindle, double turns) noexcept {
+        FollowedSpindle &followed = spindles_[static_cast<std::size_t>(spindle)];
+        followed.turns = turns;
+        followed.track.take(turns, period_, static_cast<double>(state_.filter - 1) * period_);
+    }
+    /// How fast a spindle changes its speed when it turns back: see SpindleReading::ramp.
+    void set_ramps(int spindle, const std::array<double, 2> &ramps) noexcept {
+        spindles_[static_cast<std::size_t>(spindle)].ramp = ramps;
+    }
+
+    /// Advances to the end of `cycle`.
+    [[gnu::hot]] const ExecutorOutput &step(std::uint64_t cycle) noexcept;
+
+    /// Held: brakes and takes no plans until released.
+    void hold(bool isHeld) noexcept;
+    /// Brakes; when at rest everything that is left of the path is dropped.
+    void drop() noexcept;
+    /// Stops dead where it is and drops the path (amplifiers are off, nothing can follow a profile).
+    [[gnu::cold]] void stop_now() noexcept;
+
+    /// The next event whose place has been passed, or nullptr; pop with `drop_event`.
+    const PathEvent *due_event() noexcept;
+    void drop_event() noexcept { store_.events.drop(); }
+
+    bool isAtRest() const noexcept { return state_.motion == Motion::REST && state_.isSettled; }
+    /// The spindle that what moves is in step with, -1: none.
+    int locked_spindle() const noexcept {
+        if (state_.motion == Motion::LOCKED) [[unlikely]] {
+            return lock_.pass.spindle;
+        }
+        return -1;
+    }
+    /// Nothing is left of the path.
+    bool isEmpty() const noexcept;
+    const Snapshot &snapshot() const noexcept { return state_; }
+    const ExecutorOutput &output() const noexcept { return out_; }
+
+    /// Upper bound of phases and pieces passed in one cycle; the planner keeps below it.
+    static constexpr int MAX_STEPS_PER_CYCLE = 4096;
+
+  private:
+    void take_commits() noexcept;
+    [[gnu::hot]] void advance(double dt) noexcept;
+    [[gnu::hot]] double follow(double dt) noexcept;
+    [[gnu::cold]] double brake_along(double dt) noexcept;
+    [[gnu::cold]] void start_brake() noexcept;
+    [[gnu::cold]] void brake_on_piece(double dt) noexcept;
+    [[gnu::cold]] double coast_before_brake(double dt) noexcept;
+    [[gnu::cold]] void enter_next_piece(double dt) noexcept;
+    [[gnu::cold]] void come_to_rest() noexcept;
+    [[gnu::hot]] void locate() noexcept;
+    [[gnu::hot]] void filter() noexcept;
+    [[gnu::cold]] void finish_drop() noexcept;
+    [[gnu::cold]] void watch_planner() noexcept;
+    bool isFiltered() const noexcept { return state_.filter > 1; }
+
+    // --- executor_locked.cc
+    [[gnu::cold]] bool take_pass(const Commit &commit) noexcept;
+    void step_locked() noexcept;
+    void advance_locked() noexcept;
+    double acceleration_left() const noexcept;
+    double locked_speed() noexcept;
+    bool descend(double v) noexcept;
+    double leave_piece(double x) noexcept;
+    struct Turned {
+        double turns = 0, per_s = 0;
+    };
+    Turned turned() const noexcept;
+    SpindleReading reading() const noexcept;
+    void advance_tap() noexcept;
+
+    PathStore &store_;
+    const StopLimits *stop_limits_;
+};
+
+}  // namespace mw::trajectory

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What holds for a path besides its moves: limits, where the machine may go, overrides, single blocks.
+// Values; every step of the planner's parts is handed them.
+#pragma once
+
+#include <array>
+
+#include "trajectory/path/path_limits.hh"
+#include "trajectory/path/workspace.hh"
+
+namespace mw::trajectory {
+
+class SpeedChooser;
+
+/// What may change while the path is under way.
+struct Scales {
+    double feed = 1.0;
+    double rapid = 1.0;
+    double max_feed = 1.0;            ///< highest `feed` that will come; limits are made for it
+    double max_velocity = UNLIMITED;  ///< operator's ceiling along the feed length
+    std::array<double, MAX_SPINDLES> spindle_rps{};
+};
+
+/// Single blocks: stops where the source block is another than `block`.
+struct SingleBlocks {
+    bool isOn = false;
+    std::uint32_t block = 0;
+    bool isStopBefore(const MoveTag &tag) const noexcept { return isOn && tag.block != block; }
+};
+
+struct Conditions {
+    explicit Conditions(double period_s) noexcept : limits(period_s) {}
+
+    PathLimits limits;
+    Workspace workspace;
+    Scales scales;
+    SingleBlocks blocks;
+    /// How fast spindles change their speed when they turn back: see SpindleReading.
+    std::array<std::array<double, 2>, MAX_SPINDLES> ramps{};
+    SpeedChooser *chooser = nullptr;  ///< null: as fast as all that holds allows
+
+    /// Driven by the executor, locked to the angle of a spindle. Machines whose joints are not axes drive
+    /// threads by time, but not taps.
+    bool isLocked(const MoveRequest &request) const noexcept {
+        return request.isLocked && (request.isTapped || !workspace.isMapped());
+    }
+    /// Plans are tried out before they are committed.
+    bool isTried() const noexcept { return limits.isFiltered() || workspace.isMapped(); }
+};
+
+}  // namespace mw::trajectory

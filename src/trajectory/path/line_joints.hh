@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What joints that are not axes do along a line that is driven to and fro, as a tap is. Planning side, pure.
+#pragma once
+
+#include "trajectory/path/workspace.hh"
+
+namespace mw::trajectory {
+
+/// Largest derivatives of each joint by the way along a line.
+struct LineJoints {
+    struct Row {
+        double q1 = 0, q2 = 0, q3 = 0;
+    };
+    std::array<Row, MAX_JOINTS> rows{};
+    bool isReachable = false;  ///< all of it
+
+    /// Highest speed along the line that leaves the joints an acceleration.
+    double most_speed(const JointLimits &joints) const noexcept;
+    /// Acceleration along the line that the joints can do in either direction at every speed up to `v`. With
+    /// a mean over `filter_s` (0: none) it may swing from one end to the other within it.
+    double acceleration(const JointLimits &joints, double v, double filter_s) const noexcept;
+};
+
+/// On the part [from, to] of a line, which may go on beyond its ends. By differences of the inverse
+/// kinematics.
+LineJoints joints_along(const Workspace &workspace, const Primitive &line, double from, double to) noexcept;
+
+}  // namespace mw::trajectory

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// One move of a path besides its geometry.
+#pragma once
+
+#include "base/geometry/move_settings.hh"
+#include "trajectory/path_store.hh"
+
+namespace mw::trajectory {
+
+struct MoveRequest {
+    MoveTag tag;
+    geometry::PathMode join = geometry::PathMode::BLEND;
+    /// Of a blend [machine units; degrees over ABC]; 0: as the speed needs, in proportion to the move.
+    double tolerance = 0;
+    double corner_scale = 1;     ///< with jerk limits: part of the reachable speed in corners (G64 R)
+    bool isMergeAdded = false;   ///< joining may take all of merge_tolerance, on top of `tolerance`
+    double merge_tolerance = 0;  ///< lines may be joined to one that is no farther from their ends (G64 Q)
+    /// The merge tolerance that `q` means; call with tolerance and isMergeAdded set.
+    void set_merge(double q) noexcept {
+        // A Q as large as P says no more than P does.
+        merge_tolerance = isMergeAdded || !(tolerance > 0) || q < tolerance ? q : 0.0;
+    }
+    bool isRapid = false;  ///< as fast as the limits allow, scaled by Scales::rapid
+    bool isOverridable = true;
+    bool isAngular = false;  ///< the feed length is over ABC: the operator's velocity ceiling does not apply
+    double feed_per_revolution = 0;  ///< > 0: the speed follows a spindle
+    int spindle = 0;
+    bool isSynched() const noexcept { return feed_per_revolution > 0; }
+    bool isLocked = false;  ///< keeps to the angle of the spindle: a thread
+    bool isGated = false;   ///< a stop before it until the gate opens
+    bool isPhased = false;  ///< the gate opens at a spindle phase
+    /// In to the end of this move with the spindle's angle, and out again along the next one, which is the
+    /// way back to its start.
+    bool isTap = false;
+    bool isTapped = false;  ///< this move, or the way back
+    double tap_scale = 1;   ///< speed of the spindle on the way back over that on the way in
+    double room_before = 0, room_behind = 0;  ///< that the line has before its start and behind its end
+};
+
+}  // namespace mw::trajectory

@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What planner and executor share: geometry, timing and commits from the planner; the state from the
+// executor. Both sides live in one process; each array element has one writer, each counter one writer.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <span>
+
+#include "base/copyable_atomic.hh"
+#include "base/raw_array.hh"
+#include "base/spsc_ring.hh"
+#include "trajectory/path/primitive.hh"
+
+namespace mw::trajectory {
+
+/// Counts moves, pieces, phases and primitives from 1 on; an element n lives in slot n modulo the capacity.
+using Sequence = std::uint64_t;
+
+/// Who a stretch of path belongs to; plain data that planner and executor only carry.
+struct MoveTag {
+    std::uint64_t id = 0;
+    std::int32_t line = 0;
+    std::uint32_t file_index = 0;
+    std::uint32_t block = 0;
+    std::uint8_t type = 0;
+    bool isProbe = false;
+    bool isProbeAway = false;       ///< trips when contact is lost
+    double requested_velocity = 0;  ///< along the feed length; 0: as fast as the limits allow
+    double feed_ratio = 1;          ///< s per feed length
+    Pose end;
+};
+
+/// Path acceleration that a piece allows, by the squared speed b: the least of some lines alpha - beta b.
+struct AccelBound {
+    static constexpr int LINES = 3;
+    std::array<double, LINES> alpha{}, beta{};
+
+    static AccelBound constant(double a) noexcept {
+        AccelBound bound;
+        bound.alpha.fill(a);
+        return bound;
+    }
+    /// Through what is left at LimitTuning::CHORDS of the squared speed v^2.
+    static AccelBound through(const double (&left)[LINES + 1], double v) noexcept;
+    /// The lesser of two up to the speed v; chords of it, so on the safe side.
+    static AccelBound least(const AccelBound &x, const AccelBound &y, double v) noexcept;
+    /// At the squared speed b, never negative.
+    double at(double b) const noexcept {
+        double a = alpha[0] - beta[0] * b;
+        for (std::size_t k = 1; k < LINES; ++k) {
+            const double c = alpha[k] - beta[k] * b;
+            a = c < a ? c : a;
+        }
+        return a > 0 ? a : 0;
+    }
+    /// Highest squared speed from which `length` suffices to come down to `b`.
+    double highest_before(double b, double length) const noexcept {
+        double best = (2.0 * length * alpha[0] + b) / (1.0 + 2.0 * length * beta[0]);
+        for (std::size_t k = 1; k < LINES; ++k) {
+            const double c = (2.0 * length * alpha[k] + b) / (1.0 + 2.0 * length * beta[k]);
+            best = c < best ? c : best;
+        }
+        return best > b ? best : b;
+    }
+};
+
+/// How hard a stop may brake on each part of a piece, parts of equal length, where that is more than what
+/// speeds are planned with: by the squared speed, chords between parts of the highest.
+struct Braking {
+    static constexpr std::size_t PARTS = 6;
+    static constexpr std::size_t MOST_NODES = 7;
+    using Part = std::array<float, MOST_NODES>;  ///< [1/s^2]
+
+    double top = 0;        ///< the highest squared speed; 0: nowhere more than planned
+    bool isDense = false;  ///< chords between `BrakingTuning::DENSE_CHORDS`, else `LimitTuning::CHORDS`
+    std::array<Part, PARTS> parts{};
+
+    /// Parts of `top` at which the bounds are known.
+    std::span<const double> nodes() const noexcept;
+    /// What a part allows at the squared speed b.
+    double at(std::size_t part, double b) const noexcept;
+    /// The part from `x` on, of a piece of `length`; the last one also behind its end.
+    static std::size_t part_at(double x, double length) noexcept;
+    /// Where parts that allow the same end.
+    double end_of(std::size_t part, double length) const noexcept;
+};
+
+/// A stretch of path with limits of its own: a part of one primitive, or of a blend between two.
+///   part:  q(x) = A(offset + x)
+///   blend: q(x) = A(L - d + z - z^2/4d) + B(z^2/4d) - corner,  z = offset + x in [0, 2d], L the length of A
+struct Piece {
+    Sequence primitive = 0;  ///< A; B is the next one
+    Sequence move = 0;       ///< the move of A; B's is the next one
+    double offset = 0;       ///< s of A, or z of the blend, where the piece begins
+    double length = 0;
+    double blend_d = 0;       ///< 0: a part of A
+    bool isToEnd = false;     ///< a part of A that reaches A's end
+    bool isAlong = false;     ///< the mean is taken of the place on A, so A is followed exactly
+    double programmed_s = 0;  ///< where it begins on the programmed path, measured in s from the path's start
+    double tolerance = 0;     ///< deviation from the programmed path that is allowed; 0: any
+    AccelBound acceleration;  ///< along x, such that every axis keeps its limits [1/s^2]
+    Braking braking;          ///< the same for stops, which the speeds are not planned with
+
+    /// How hard a stop brakes from x on at the squared speed b: never less than speeds are planned with.
+    double brake_at(double x, double b) const noexcept;
+    /// The same until x = `end`: where the piece allows another, be it by the place or by a speed that has
+    /// fallen.
+    struct BrakeLeg {
+        double a = 0, end = 0;
+    };
+    BrakeLeg brake_leg(double x, double b) const noexcept;
+    // Of a pass that is locked to a spindle's angle, filled before the executor is told of the pass.
+    double per_turn = 0;           ///< way along x in a turn of the spindle
+    double v_most = 0;             ///< highest speed
+    double v2_in = 0, v2_out = 0;  ///< squared speeds at its ends from which all that follows can be kept
+};
+
+/// x(t) = x0 + v0 t + a t^2 / 2 + j t^3 / 6, t in [0, duration], on one piece.
+struct Phase {
+    Sequence piece = 0;
+    double duration = 0;
+    double x0 = 0, v0 = 0, a = 0, j = 0;
+
+    /// Place and speed at the time t in it.
+    double x_at(double t) const noexcept { return x0 + t * (v0 + t * (0.5 * a + t * j * (1.0 / 6.0))); }
+    double v_at(double t) const noexcept { return v0 + t * (a + 0.5 * t * j); }
+    /// It ends with a speed that is 0 but for rounding.
+    bool isStop(double period_s) const noexcept;
+};
+
+/// A tap along a line: x is 0 at the start and `depth` at the bottom.
+struct TapTerms {
+    double depth = 0;
+    double per_turn = 0;    ///< way along x in a turn
+    double back_scale = 1;  ///< speed of the spindle on the way back over that on the way in
+    double low = 0;         ///< x stays above
+    double high = 0;        ///< and below
+    double velocity = 0;    ///< highest along x
+    double acceleration = 0;
+};
+
+/// A pass over the pieces [first, last], from rest to rest, locked to the angle of a spindle.
+struct Pass {
+    Sequence first = 0, last = 0;  ///< 0: none
+    int spindle = 0;
+    double direction = 1;  ///< -1: the spindle turns backwards
+    double share = 1;      ///< part of the pieces' accelerations for gaining speed and for braking
+    double trim = 1;       ///< and for following the spindle in between
+    /// By which the acceleration may change within the mean [unit/s^2]: a stop that comes while speed is
+    /// gained has what that leaves. 0: any.
+    double swing = 0;
+    bool isTap = false;  ///< in along the first piece, and back to its start
+    TapTerms tap;
+};
+
+/// Tells the executor which phases to follow. They never end with a stop beyond what is committed: when they
+/// run out, the executor brakes along the pieces, which the planner has made sure is possible within the
+/// limits.
+struct Commit {
+    std::uint64_t plan = 0;  ///< increasing
+    bool isSwitch = false;   ///< leave the present plan at `switch_cycle` for phases [begin, end)
+    std::uint64_t switch_cycle = 0;
+    std::uint64_t brakes = 0;     ///< Snapshot::brakes that the plan was made for; another value voids it
+    Sequence begin = 0, end = 0;  ///< not a switch: the present plan `plan` now goes on to `end`
+    std::uint64_t filter = 1;     ///< samples of the mean that is commanded; changes only at rest
+    bool isStop = false;          ///< made to stop, so taken while held or dropping
+    Pass pass;                    ///< instead of phases
+};
+
+/// Poses and places of the leader, by tick; written by the executor, read by the planner.
+struct LeaderSample {
+    Pose pose;
+    double s = 0;            ///< on the programmed path
+    double tolerance = 0;    ///< allowed deviation there; 0: any
+    std::uint64_t move = 0;  ///< under way
+};
+inline constexpr std::uint64_t HISTORY_CAPACITY = 1024;
+/// Longest mean [samples]; with it all that planner and executor look at together fits the history.
+inline constexpr std::uint64_t MAX_FILTER = 400;
+using LeaderHistory = std::array<LeaderSample, HISTORY_CAPACITY>;
+
+enum class Motion : std::uint8_t { REST, FOLLOW, BRAKE, LOCKED };
+
+/// Time since the path speed last rose or fell, valid for the later of the two; far past for the other.
+struct Coasting {
+    static constexpr double LONG_AGO = 1e9;
+    double since_rise_s = LONG_AGO, since_fall_s = LONG_AGO;
+
+    void pass(double a, double dt) noexcept {
+        if (a > 0) {
+            since_rise_s = 0;
+            since_fall_s = LONG_AGO;
+        } else if (a < 0) {
+            since_fall_s = 0;
+            since_rise_s = LONG_AGO;
+        } else {
+            since_rise_s += dt;
+            since_fall_s += dt;
+        }
+    }
+    /// Who stands after a rise has fallen, however slightly he moved.
+    void stand(double dt) noexcept {
+        if (since_rise_s < since_fall_s) {
+            since_fall_s = 0;
+            since_rise_s = LONG_AGO;
+        }
+        pass(0, dt);
+    }
+    void pass(const Phase &phase, double dt) noexcept {
+        if (phase.a == 0 && phase.v0 == 0) {
+            stand(dt);
+        } else {
+            pass(phase.a, dt);
+        }
+    }
+};
+
+/// The executor's state at the end of a servo cycle. With a mean over several samples (jerk limits) this is
+/// the leader's state, which is ahead of what is commanded.
+struct Snapshot {
+    std::uint64_t cycle = 0;
+    std::uint64_t tick = 0;        ///< counts steps of the executor
+    std::uint64_t filter = 1;      ///< samples of the mean
+    std::uint64_t first_tick = 0;  ///< samples before it are all `origin`
+    Pose origin;
+    bool isSettled = true;  ///< the leader rests and the mean has reached it
+    Coasting coasting;
+    std::uint64_t plan = 0;    ///< the last switch that was taken
+    std::uint64_t brakes = 0;  ///< counts how often the executor left a plan by itself
+    std::uint64_t drops = 0;   ///< counts dropped paths; the planner starts afresh for each
+    Motion motion = Motion::REST;
+    bool isDropping = false;  ///< braking, and what is left will be dropped
+    bool isHeld = false;
+    Sequence phase = 0;  ///< FOLLOW: the phase and the time in it
+    double time_in_phase = 0;
+    Sequence piece = 0;  ///< where on the path; 0: no path
+    double x = 0, v = 0;
+    Sequence done_move = 0;  ///< moves completed by what is commanded
+};
+
+inline constexpr std::size_t PRIMITIVE_CAPACITY = 4096;
+inline constexpr std::size_t PIECE_CAPACITY = 16384;
+inline constexpr std::size_t PHASE_CAPACITY = 65536;
+
+/// An output change at a place of the path.
+struct PathEvent {
+    Sequence after_move = 0;  ///< fires when this move is complete
+    std::uint64_t drops = 0;  ///< Snapshot::drops of the path it belongs to; of another path it never fires
+    bool isAnalog = false;
+    std::int16_t index = 0;
+    double value = 0;
+};
+
+/// Owned by whoever assembles the two sides; some megabytes, so never on a stack.
+struct PathStore {
+    RawArray<Primitive, PRIMITIVE_CAPACITY> primitives;
+    RawArray<MoveTag, PRIMITIVE_CAPACITY> moves;
+    RawArray<Piece, PIECE_CAPACITY> pieces;
+    RawArray<Phase, PHASE_CAPACITY> phases;
+    LeaderHistory history{};  ///< executor -> planner; the last samples are read long before they are reused
+    SpscRing<PathEvent, 1024> events;  ///< planner -> executor
+    SpscRing<Commit, 64> commits;      ///< planner -> executor
+    /// Pieces up to here may be read by the executor. Release by the planner after filling, acquire by the
+    /// executor.
+    CopyableAtomic<Sequence> last_piece{0};
+    CopyableAtomic<std::uint32_t> updates{0};  ///< of the planner, for who waits for it
+
+    Primitive &primitive(Sequence n) noexcept { return primitives[n % PRIMITIVE_CAPACITY]; }
+    const Primitive &primitive(Sequence n) const noexcept { return primitives[n % PRIMITIVE_CAPACITY]; }
+    MoveTag &move(Sequence n) noexcept { return moves[n % PRIMITIVE_CAPACITY]; }
+    const MoveTag &move(Sequence n) const noexcept { return moves[n % PRIMITIVE_CAPACITY]; }
+    Piece &piece(Sequence n) noexcept { return pieces[n % PIECE_CAPACITY]; }
+    const Piece &piece(Sequence n) const noexcept { return pieces[n % PIECE_CAPACITY]; }
+    Phase &phase(Sequence n) noexcept { return phases[n % PHASE_CAPACITY]; }
+    const Phase &phase(Sequence n) const noexcept { return phases[n % PHASE_CAPACITY]; }
+};
+
+/// Nearer to the start of a piece that is followed exactly, the leader still stands before it but for
+/// rounding.
+constexpr double on_along(double length) noexcept {
+    return 1e-11 * (1.0 + length);
+}
+
+/// What the path is allowed to deviate at `x`; 0: any. Who stands at the start of a piece is still on the way
+/// that led there, and asks for nothing of its own.
+constexpr double tolerance_at(const Piece &piece, double x) noexcept {
+    return x > 0 ? piece.tolerance : 0.0;
+}
+
+/// Position at `x` of a piece. [servo, planner]
+[[gnu::hot]] Pose position_at(const PathStore &store, const Piece &piece, double x) noexcept;
+
+/// dq/dx at `x` of a piece. [servo, planner]
+Pose derivative_at(const PathStore &store, const Piece &piece, double x) noexcept;
+
+}  // namespace mw::trajectory

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The planning side of path motion: joins moves, finds the fastest profile within the limits, commits it.
+#pragma once
+
+#include "trajectory/path/path_builder.hh"
+#include "trajectory/timing/locked_pass.hh"
+#include "trajectory/timing/tap_plan.hh"
+#include "trajectory/timing/timing_plan.hh"
+#include "trajectory/trial/easing.hh"
+#include "trajectory/trial/trial.hh"
+
+namespace mw::trajectory {
+
+struct Trouble {
+    bool isStuck = false;  ///< it has stood for a second without finding a plan that passes the trial
+    Overreach overreach;   ///< of who chooses speeds: the path stops
+};
+
+/// The face of the parts: PathBuilder makes pieces of moves, TimingPlan plans and commits phases, Trial looks
+/// at what would be commanded, Easing makes slower what it refuses. The parts know nothing of each other;
+/// what one says goes to the next by value.
+///
+/// All methods: planner thread only. Allocates at construction only. Same calls with the same values: same
+/// bits.
+class Planner {
+  public:
+    Planner(PathStore &store, const PlannerSettings &settings) noexcept;
+
+    /// Holds for moves added from now on; jerk limits from the next `begin` on.
+    void set_limits(const Limits &limits) noexcept { conditions_.limits.set(limits); }
+    /// The path that begins now with such a move would be made as the present one.
+    bool isFilterCurrent(const PathDemand &demand) const noexcept {
+        return conditions_.limits.isCurrent(demand);
+    }
+    /// What a path that begins with such a move, from `start` to `end`, is made for.
+    PathDemand demand_of(const MoveRequest &request, const Pose &start, const Pose &end) const noexcept {
+        return conditions_.limits.demand_of(request, start, end);
+    }
+    /// With jerk limits a path is made for what it began with; a much smaller tolerance, or rotary axes that
+    /// it began without, ask for another path, from a stop.
+    bool suits(const PathDemand &demand) const noexcept { return conditions_.limits.suits(demand); }
+
+    /// For machines whose joints are not axes; `map` stays valid. Null: the axes' limits are all there are.
+    void set_joints(const JointMap *map, const JointLimits &limits) noexcept;
+
+    /// Soft limits of the axes: the path is not moved beyond them, wherever the program leads. None to begin
+    /// with; +-infinity where none holds. Joints with a room are kept within that, others within their soft
+    /// limits.
+    void set_room(const Pose &low, const Pose &high, const JointRoom &joints = {}) noexcept;
+
+    /// A new path begins at `start`, where the executor rests with nothing left of another. `demand`: of
+    /// its first move.
+    void begin(const Pose &start, const Snapshot &now, const PathDemand &demand = {}) noexcept;
+
+    /// There is room for one more move.
+    bool hasRoom(const Snapshot &now) const noexcept {
+        return PathBuilder::hasRoom(path_, conditions_.limits, now);
+    }
+    /// Appends a move that starts at `end()`; its length must be greater than 0. Returns its number.
+    Sequence add(const Primitive &primitive, const MoveRequest &request) noexcept;
+    /// Where the next move starts.
+    const Pose &end() const noexcept { return builder_.end(); }
+    /// Of this path, 0 as long as it has none.
+    Sequence last_move() const noexcept { return path_.end_move(); }
+    /// An output change when what has been added so far is complete; false when there is no room.
+    bool add_event(PathEvent event) noexcept;
+    /// Nothing follows for now: the last move is planned to its very end.
+    void release_end() noexcept { builder_.release_end(path_, conditions_); }
+
+    void set_scales(const Scales &scales) noexcept;
+    /// The gate before gated moves; open it once the executor waits there.
+    /// Motion begins `delay_s` after the earliest moment.
+    void open_gate(Sequence move, double delay_s) noexcept;
+    bool isPhased(Sequence move) const noexcept { return path_.move(move).request.isPhased; }
+    int spindle_of(Sequence move) const noexcept { return path_.move(move).request.spindle; }
+    /// The move is driven by the executor, locked to the spindle's angle, with what follows up to a stop.
+    bool isLocked(Sequence move) const noexcept { return conditions_.isLocked(path_.move(move).request); }
+    /// All of the pass that the executor would begin with is known.
+    bool isPassKnown(const Snapshot &now) const noexcept;
+    /// Speed that the pass from this move on needs at the present speed of its spindle, over what the machine
+    /// and the operator allow.
+    double pass_load(Sequence move) const noexcept { return trajectory::pass_load(view(), move); }
+    bool isTap(Sequence move) const noexcept { return path_.move(move).request.isTap; }
+    TapVerdict check_tap(Sequence move) const noexcept { return trajectory::check_tap(view(), move); }
+    /// How fast spindles change their speed when they turn back: see SpindleReading.
+    void set_ramps(const std::array<std::array<double, 2>, MAX_SPINDLES> &ramps) noexcept {
+        conditions_.ramps = ramps;
+    }
+    /// Seconds from a snapshot to the earliest start of a plan made with it.
+    double latency_s() const noexcept { return static_cast<double>(settings_.latency) * settings_.period_s; }
+    /// Move whose gate the executor waits at, 0: none.
+    Sequence waiting_gate(const Snapshot &now) const noexcept;
+    /// Single blocks: stops where the source block is another than `block`.
+    void set_step(bool isStepping, std::uint32_t block) noexcept;
+    /// The executor stands, and only the wish for single blocks keeps it from going on.
+    bool isAtStepStop(const Snapshot &now) const noexcept;
+    /// There is something that `next_block` can tell of.
+    bool hasNext(const Snapshot &now) const noexcept;
+    /// The block that comes next for an executor in state `now`.
+    std::uint32_t next_block(const Snapshot &now) const noexcept;
+
+    /// Commits what the executor needs next. Call once a planner period.
+    void update(const Snapshot &now) noexcept;
+
+    /// The committed plan runs to the end of the known path and there is an open end that could be released.
+    bool isStarving() const noexcept {
+        return builder_.hasOpenEnd() && (timing_.isAtEndOf(path_) || path_.isAllDriven());
+    }
+    /// Why the path does not go on; each once.
+    Trouble take_trouble() noexcept;
+    std::uint32_t moves_left(const Snapshot &now) const noexcept;
+
+  private:
+    PathView view() const noexcept { return {path_, conditions_}; }
+    /// The move at whose very beginning the executor stands, 0: none.
+    Sequence standing_before(const Snapshot &now) const noexcept;
+    void plan_tried(const Snapshot &now) noexcept;
+    bool find_plan(const Snapshot &now, LeaderState from, Ending ending) noexcept;
+    bool ease(const LeaderState &from, const Verdict &verdict, const Cause &cause) noexcept;
+    void start_pass(const Snapshot &now, const LeaderState &from) noexcept;
+
+    PlannerSettings settings_;
+    Conditions conditions_;
+    PlannedPath path_;
+    PathBuilder builder_;
+    TimingPlan timing_;
+    Trial trial_;
+    Easing easing_;
+    std::uint64_t drops_ = 0;  ///< Snapshot::drops of this path
+    bool isOverreachTold_ = false;
+    int refusals_ = 0;  ///< planning at rest, one after the other, for which no plan passed
+};
+
+}  // namespace mw::trajectory

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "trajectory/timing/timing_plan.hh"
+
+#include <cmath>
+
+#include "trajectory/timing/acceleration_limited.hh"
+#include "trajectory/timing/locked_pass.hh"
+#include "trajectory/tuning.hh"
+
+namespace mw::trajectory {
+
+void TimingPlan::begin(const Snapshot &now) noexcept {
+    profile_.begin();
+    commitments_.begin(now, draft_.end);
+    draft_.at = {};
+    draft_.reached = 0;
+    draft_.overreach = {};
+    start_delay_s_ = 0;
+}
+
+void TimingPlan::look(const PathView &view, const Snapshot &now) noexcept {
+    oldest_phase_ = commitments_.oldest_phase(now);
+    if (!view.path.isAllDriven()) {
+        profile_.pass_backward(view, view.path.last_piece(), false);
+    }
+}
+
+bool TimingPlan::isSteady(const Scales &before, const Scales &after, bool isFollowed) noexcept {
+    bool isSame =
+        after.feed == before.feed && after.rapid == before.rapid && after.max_velocity == before.max_velocity;
+    ++steady_updates_;
+    const double slight =
+        steady_updates_ > TimingTuning::STEADY_UPDATES ? TimingTuning::DRIFTED : TimingTuning::CHANGED;
+    for (std::size_t i = 0; i < after.spindle_rps.size() && isSame && isFollowed; ++i) {
+        const double rps = before.spindle_rps[i];
+        isSame = std::abs(after.spindle_rps[i] - rps) <= slight * std::abs(rps);
+    }
+    steady_updates_ = isSame ? steady_updates_ : 0;
+    return isSame;
+}
+
+void TimingPlan::renew_all(const PathView &view) noexcept {
+    profile_.pass_backward(view, view.path.last_piece(), true);
+}
+
+void TimingPlan::rescale(const PathView &view) noexcept {
+    renew_all(view);
+    profile_.change_from(view.path.oldest_piece());
+}
+
+void TimingPlan::renew_up_to(const PathView &view, Sequence piece) noexcept {
+    profile_.pass_backward(view, std::min(piece + 1, view.path.last_piece()), true);
+}
+
+void TimingPlan::renew_span(const PathView &view, Sequence low, Sequence high) noexcept {
+    profile_.renew(view, low, high);
+}
+
+Demand TimingPlan::demand(const PathView &view, const Snapshot &now) noexcept {
+    if (now.isHeld || now.motion == Motion::BRAKE || now.motion == Motion::LOCKED) {
+        return {};
+    }
+    const Sequence changed = profile_.changed_from();
+    const bool isPlanChanged = changed != 0 && changed <= draft_.at.piece + 1;
+    if (commitments_.isPending(now)) {
+        return {isPlanChanged ? Demand::Kind::NOTHING : Demand::Kind::EXTEND, {}};
+    }
+    std::optional<LeaderState> from;
+    if (now.motion == Motion::REST) {
+        from = start_state(view.path, now);
+        if (from && isPassStart(view, *from)) {
+            const bool isFree = !isBarrier(view, from->piece);
+            return {isFree ? Demand::Kind::PASS : Demand::Kind::NOTHING, *from};
+        }
+    } else if (commitments_.isTaken(now) && !isPlanChanged) {
+        profile_.keep();
+        return {Demand::Kind::EXTEND, {}};
+    } else {
+        from = predict(view.path, now, outlook(now));
+    }
+    const bool isFree = from && !isBeforePlanEnd(view, *from);
+    return isFree ? Demand{Demand::Kind::PLAN, *from} : Demand{};
+}
+
+Demand TimingPlan::tried_demand(const PathView &view, const Snapshot &now) const noexcept {
+    const bool isPending = commitments_.isPending(now);
+    const bool mustStop = now.isHeld || now.isDropping;
+    std::optional<LeaderState> from;
+    if (now.motion == Motion::REST) {
+        const bool isSameMean = view.conditions.limits.filter() == now.filter || now.isSettled;
+        if (mustStop || isPending || !isSameMean) {
+            return {};
+        }
+        from = start_state(view.path, now);
+        if (from && isPassStart(view, *from)) {
+            const bool isFree = now.isSettled && !isBarrier(view, from->piece);
+            return {isFree ? Demand::Kind::PASS : Demand::Kind::NOTHING, *from};
+        }
+    } else {
+        const Sequence changed = profile_.changed_from();
+        const bool isShort = !draft_.isAtEndOf(view.path) && draft_.seconds - seconds_driven(now) <
+                                                                 TimingTuning::RENEWAL * settings_.horizon_s;
+        const bool isChanged = changed != 0 && changed <= draft_.looked_at + 1;
+        const bool isStopMade = commitments_.isStopMade(now);
+        const bool isDue =
+            mustStop ? !isStopMade : isStopMade || !commitments_.isTaken(now) || isShort || isChanged;
+        if (!isDue || (isPending && !mustStop)) {
+            return {};
+        }
+        from = predict(view.path, now, outlook(now));
+    }
+    if (!from || isBeforePlanEnd(view, *from)) {
+        return {};
+    }
+    return {mustStop ? Demand::Kind::STOP : Demand::Kind::PLAN, *from};
+}
+
+bool TimingPlan::change_to(PathStore &store, const Snapshot &now, const Commit &commit) noexcept {
+    if (!commitments_.change_to(store, now, commit, settings_.latency)) {
+        return false;
+    }
+    profile_.keep();
+    return true;
+}
+
+void TimingPlan::plan(const PathView &view, PathStore &store, const Snapshot &now,
+                      const LeaderState &from) noexcept {
+    const Sequence begin = draft_.end;
+    draft_.begin(from);
+    if (start_delay_s_ > 0 && from.v <= 0) {
+        draft_.wait(store, start_delay_s_);
+    }
+    const Sequence waited = draft_.end;
+    append_accelerated(draft_, store, {view, profile_, oldest_phase_}, draft_.seconds + settings_.horizon_s);
+    Commit commit;
+    commit.switch_cycle = now.cycle + settings_.latency;
+    commit.begin = begin;
+    commit.end = draft_.end;
+    if (draft_.end == waited || !change_to(store, now, commit)) {
+        draft_.end = begin;
+        return;
+    }
+    start_delay_s_ = 0;
+}
+
+void TimingPlan::extend(const PathView &view, PathStore &store, const Snapshot &now) noexcept {
+    const Sequence end = draft_.end;
+    append_accelerated(draft_, store, {view, profile_, oldest_phase_},
+                       seconds_driven(now) + settings_.horizon_s);
+    if (draft_.end != end) {
+        commitments_.extend(store, now, draft_.end);
+    }
+}
+
+bool TimingPlan::draft(const PathView &view, PathStore &store, Sequence begin, const LeaderState &from,
+                       Ending ending, const StopShape &shape) noexcept {
+    const TimingView timing{view, profile_, oldest_phase_};
+    draft_.end = begin;
+    draft_.begin(from);
+    draft_.looked_at = from.piece;
+    if (start_delay_s_ > 0 && from.v <= 0) {
+        draft_.wait(store, start_delay_s_);
+    }
+    const Sequence waited = draft_.end;
+    if (ending != Ending::ONWARD && from.v <= 0) {
+        draft_.wait(store, settings_.period_s);
+    }
+    if (ending == Ending::ONWARD) {
+        append_smooth(draft_, store, timing, start_delay_s_ + settings_.horizon_s);
+    }
+    const double until_s = draft_.seconds;
+    const bool isEmpty = draft_.end == waited && from.v <= 0;
+    if (isEmpty || !append_stop(draft_, store, timing, shape) || draft_.isStopPassed(view.path, begin)) {
+        return false;
+    }
+    stop_s_ = draft_.seconds;
+    draft_.seconds = until_s;
+    return true;
+}
+
+bool TimingPlan::commit(const PathView &view, PathStore &store, const Snapshot &now, Sequence begin,
+                        Ending ending) noexcept {
+    Commit commit;
+    commit.switch_cycle = now.cycle + settings_.latency;
+    commit.begin = begin;
+    commit.end = draft_.end;
+    commit.filter = view.conditions.limits.filter();
+    commit.isStop = ending != Ending::ONWARD;
+    const bool isTold = change_to(store, now, commit);
+    start_delay_s_ = isTold ? 0.0 : start_delay_s_;
+    return isTold;
+}
+
+void TimingPlan::start_pass(PlannedPath &path, const Conditions &conditions, const Snapshot &now,
+                            Sequence first) noexcept {
+    Commit commit;
+    commit.pass = make_pass({path, conditions}, first);
+    commit.begin = draft_.end;
+    commit.end = draft_.end;
+    commit.filter = conditions.limits.filter();
+    fill_pass(path, conditions.limits, commit.pass);
+    if (!change_to(path.store(), now, commit)) {
+        return;
+    }
+    const Sequence last = commit.pass.last;
+    draft_.reached = last == path.last_piece() ? last : 0;
+    draft_.at = {};
+    draft_.at.piece = last;
+    draft_.at.x = path.piece(last).length;
+}
+
+}  // namespace mw::trajectory

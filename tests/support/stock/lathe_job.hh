@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Random turning jobs: a contour, where the tool starts, and the program that cuts it with G70 to G72.
+#pragma once
+
+#include <random>
+#include <string>
+#include <vector>
+
+#include "tests/support/stock/contour.hh"
+
+namespace mw::testing {
+
+/// One cycle of a job.
+struct JobCycle {
+    std::string code;      ///< "71", "71.1", ... or "70"
+    double allowance = 0;  ///< D [mm]; of G70 what is left at its end
+    double step = 0;       ///< I [mm]
+    bool isPocketLeft = false;
+    bool isFinishing = false;
+};
+
+struct LatheJob {
+    unsigned seed = 0;
+    bool isFacing = false, isInside = false, isInch = false, isDiameter = false;
+    bool isMonotonic = false;  ///< the contour never falls
+    bool hasArcs = false;
+    Contour contour;  ///< of the rounded numbers of the program [mm]
+    Place start;      ///< of the cycles
+    std::vector<JobCycle> cycles;
+    std::string program;  ///< a G4 P0 before each cycle
+
+    /// Where Z and X of the machine [mm] are along the cut.
+    Place place(double z, double x) const;
+    /// From u and h to Z and X.
+    void machine(Place p, double &z, double &x) const;
+    /// Counterclockwise along the cut is counterclockwise from Z to X.
+    bool isSameTurn() const { return (along_sign * across_sign > 0.0) != isFacing; }
+    double largest_allowance() const;
+
+    double along_sign = -1, across_sign = 1;
+    double along_origin = 0, across_origin = 0;
+};
+
+LatheJob make_lathe_job(unsigned seed);
+
+}  // namespace mw::testing
