@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "base/memory_killer.hh"
+#include "base/memory_reserve.hh"
 #include "base/output_relay.hh"
 #include "base/stop_signals.hh"
 #include "base/thread_priority.hh"
@@ -24,6 +25,8 @@ namespace {
 
 constexpr std::int64_t NS_PER_S = 1000000000;
 constexpr int CONFIGURE_CYCLES = 3000;
+/// Of each thread that runs task. A program that cuts, a stop and their messages need less.
+constexpr std::size_t HEAP_RESERVE = std::size_t{16} << 20;
 /// At the end of the machine a call of the interpreter is waited for.
 constexpr std::int64_t END_OF_CALL_NS = NS_PER_S / 5;
 
@@ -79,10 +82,13 @@ class RealtimeMachine final : public Machine {
         const auto started = side_->start(options);
         if (started.has_value()) {
             cycles_.emplace(side_->task().long_call(),
-                            CycleThread::Works{[this](std::int64_t now) { side_->step(now); },
+                            CycleThread::Works{[this](std::int64_t now) { step_task(now); },
                                                [this](std::int64_t now) { side_->step_apart(now); }});
         }
-        return started.has_value() ? side_->finish_start(*this, CONFIGURE_CYCLES) : started;
+        const auto finished = started.has_value() ? side_->finish_start(*this, CONFIGURE_CYCLES) : started;
+        reserve_heap(HEAP_RESERVE);
+        static_cast<void>(lock_present_memory());
+        return finished;
     }
 
     void cycle() override {
@@ -135,6 +141,14 @@ class RealtimeMachine final : public Machine {
     hal::Hal &hal() override { return host_->hal(); }
 
   private:
+    /// In the thread of the cycles.
+    void step_task(std::int64_t now_ns) {
+        if (!isReserved_) {
+            isReserved_ = true;
+            reserve_heap(HEAP_RESERVE);
+        }
+        side_->step(now_ns);
+    }
     void shut_down() {
         if (host_ != nullptr) {
             // Programs of loadusr live on the HAL of this machine: they end with it.
@@ -162,6 +176,7 @@ class RealtimeMachine final : public Machine {
     std::optional<CycleThread> cycles_;
     Lateness lateness_;
     bool isWatched_ = false;
+    bool isReserved_ = false;  ///< used in the thread of the cycles
     std::int64_t next_ns_;
 };
 

@@ -117,7 +117,8 @@ def stops(record):
     if not early:
         return []
     rest = early[0][0]
-    seen = min((sample[0] for sample in record.samples if sample[0] > rest), default=rest)  # they came to rest in between
+    # The stop begins between these times: before STILL_S has passed, the axes may have paused in a corner of the path.
+    seen = max(rest + STILL_S, min((sample[0] for sample in record.samples if sample[0] > rest), default=rest))
     failures = []
     begun = [event for event in record.events if event.begin <= seen and event.causes]
     since = min((max(0.0, rest - event.latest) for event in begun), default=None)

@@ -17,6 +17,7 @@
 #include <fmt/format.h>
 
 #include "base/atomic_file.hh"
+#include "base/thread_priority.hh"
 
 namespace mw::task {
 namespace {
@@ -158,6 +159,7 @@ void ProgramLog::work(Shared &shared) {
 }
 
 void ProgramLog::run_thread(const std::shared_ptr<Shared> &shared) {
+    raise_priority();  // the program waits for what opening a file says
     while (true) {
         work(*shared);
         std::unique_lock lock(shared->mutex);
