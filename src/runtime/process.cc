@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "runtime/process.hh"
 
+#include <fcntl.h>
 #include <signal.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <utility>
 
 #include "runtime/activity.hh"
 
@@ -24,19 +28,7 @@ struct Seen {
 constexpr char UNKNOWN = '?';
 
 /// Source: man 5 proc, /proc/PID/stat, fields 3 and 22.
-Seen look_at(std::int32_t pid) {
-    char path[64];
-    std::snprintf(path, sizeof path, "/proc/%d/stat", pid);
-    std::FILE *file = std::fopen(path, "re");
-    if (file == nullptr) {
-        // Without a free descriptor or memory nothing is known of it: only the kernel's own answer counts.
-        const bool isGone = errno == ENOENT || errno == ESRCH || (::kill(pid, 0) != 0 && errno == ESRCH);
-        return isGone ? Seen{} : Seen{UNKNOWN, 0};
-    }
-    char text[1024];
-    const std::size_t length = std::fread(text, 1, sizeof text - 1, file);
-    std::fclose(file);
-    text[length] = '\0';
+Seen parse(const char *text) {
     // The name in parentheses may hold anything, so count from the last one.
     const char *at = std::strrchr(text, ')');
     if (at == nullptr || at[1] == '\0' || at[2] == 'Z' || at[2] == 'X') {
@@ -51,15 +43,103 @@ Seen look_at(std::int32_t pid) {
     return at == nullptr ? Seen{} : Seen{state, std::strtoull(at + 1, nullptr, 10)};
 }
 
+/// Of an open /proc/PID/stat. It stays that of its process when the process id is used again.
+Seen read_state(int file) {
+    char text[1024];
+    const ssize_t length = ::pread(file, text, sizeof text - 1, 0);
+    if (length <= 0) {
+        return {};
+    }
+    text[length] = '\0';
+    return parse(text);
+}
+
+/// Below 0: errno.
+int open_state(std::int32_t pid) {
+    char path[64];
+    std::snprintf(path, sizeof path, "/proc/%d/stat", pid);
+    const int file = ::open(path, O_RDONLY | O_CLOEXEC);
+    return file >= 0 ? file : -errno;
+}
+
+/// Where the file cannot be opened. Without a free descriptor or memory only the kernel's own answer counts.
+Seen seen_without_file(std::int32_t pid, int error) {
+    const bool isGone = error == ENOENT || error == ESRCH || (::kill(pid, 0) != 0 && errno == ESRCH);
+    return isGone ? Seen{} : Seen{UNKNOWN, 0};
+}
+
+/// The open files of the processes that a thread asks about again and again. Opening one in each cycle takes
+/// memory of the kernel, for which the thread waits when its cgroup has none left.
+class StateFiles {
+  public:
+    StateFiles() = default;
+    ~StateFiles() {
+        for (const Entry &entry : entries_) {
+            if (entry.file >= 0) {
+                ::close(entry.file);
+            }
+        }
+    }
+    StateFiles(const StateFiles &) = delete;
+    StateFiles &operator=(const StateFiles &) = delete;
+
+    Seen look_at(const ProcessId &process) {
+        Entry *entry = std::find_if(entries_.begin(), entries_.end(), [&](const Entry &one) {
+            return one.file >= 0 && one.process == process;
+        });
+        if (entry == entries_.end()) {
+            const int file = open_state(process.pid);
+            if (file < 0) {
+                return seen_without_file(process.pid, -file);
+            }
+            entry = &entries_[next_];
+            next_ = (next_ + 1) % entries_.size();
+            forget(*entry);
+            *entry = {process, file};
+        }
+        const Seen seen = read_state(entry->file);
+        if (seen.start_time != process.start_time) {
+            forget(*entry);
+        }
+        return seen;
+    }
+
+  private:
+    struct Entry {
+        ProcessId process;
+        int file = -1;
+    };
+    static void forget(Entry &entry) {
+        if (entry.file >= 0) {
+            ::close(std::exchange(entry.file, -1));
+        }
+    }
+
+    static constexpr std::size_t MOST = 40;  ///< clients of a machine, and its own processes
+    std::array<Entry, MOST> entries_{};
+    std::size_t next_ = 0;
+};
+
+Seen look_at(const ProcessId &process) {
+    static thread_local StateFiles files;
+    return files.look_at(process);
+}
+
 }  // namespace
 
 ProcessId this_process() {
     const auto pid = static_cast<std::int32_t>(::getpid());
-    return {pid, look_at(pid).start_time};
+    const int file = open_state(pid);
+    if (file < 0) {
+        return {pid, 0};
+    }
+    const Seen seen = read_state(file);
+    ::close(file);
+    return {pid, seen.start_time};
 }
 
 Activity activity_of(const ProcessId &process) {
-    const Seen seen = process.pid > 0 && process.start_time != 0 ? look_at(process.pid) : Seen{};
+    const Seen seen = process.pid > 0 && process.start_time != 0 ? look_at(process) : Seen{};
     if (seen.state == UNKNOWN) {
         return Activity::RUNNING;
     }

@@ -48,5 +48,30 @@ TEST(Process, HasEndedWhenNoDescriptorIsFreeAndTheKernelKnowsNoSuchProcess) {
     EXPECT_FALSE(isAlive(process));
 }
 
+TEST(Process, IsSeenToStopAndToEndWithoutANewDescriptor) {
+    int gate[2];
+    ASSERT_EQ(::pipe(gate), 0);
+    const pid_t child = ::fork();
+    if (child == 0) {
+        const std::uint64_t start = this_process().start_time;
+        static_cast<void>(::write(gate[1], &start, sizeof start) == 0);
+        ::pause();
+        ::_exit(0);
+    }
+    std::uint64_t start = 0;
+    ASSERT_EQ(::read(gate[0], &start, sizeof start), static_cast<ssize_t>(sizeof start));
+    const ProcessId process{child, start};
+    EXPECT_EQ(activity_of(process), Activity::RUNNING);
+    const NoDescriptors none;
+    ::kill(child, SIGSTOP);
+    ::waitpid(child, nullptr, WUNTRACED);
+    EXPECT_EQ(activity_of(process), Activity::STOPPED);
+    ::kill(child, SIGKILL);
+    ::waitpid(child, nullptr, 0);
+    EXPECT_EQ(activity_of(process), Activity::ENDED);
+    ::close(gate[0]);
+    ::close(gate[1]);
+}
+
 }  // namespace
 }  // namespace mw::runtime
