@@ -49,7 +49,17 @@ def by_python(_ports):
     command.abort()  # returns when the status shows that task has carried it out
     answered = time.monotonic()
     answer = command.wait_complete(ANSWER_S)  # until the axes rest
-    return sent, {linuxcnc.RCS_DONE: 'done', linuxcnc.RCS_ERROR: 'error'}.get(answer, 'none'), answered
+    if answer not in (linuxcnc.RCS_DONE, linuxcnc.RCS_ERROR):
+        return sent, f'none: {shown_by_python(command)}', answered
+    return sent, 'done' if answer == linuxcnc.RCS_DONE else 'error', answered
+
+
+def shown_by_python(command):
+    """What the status says of a command that has no answer."""
+    stat = linuxcnc.stat()
+    stat.poll()
+    names = ('echo_serial_number', 'state', 'task_state', 'task_mode', 'interp_state', 'exec_state', 'queue', 'inpos', 'current_line', 'file')
+    return f'command {command.serial}: ' + ', '.join(f'{name} {getattr(stat, name)}' for name in names)
 
 
 def by_web(ports):
