@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Each gate in each situation, against the table of docs/task/states.md, which is made from task's own.
+// Each gate in each situation, against the table of the page states.md, which is generated from task's own.
+import { fileURLToPath } from 'node:url';
 import { readFileSync } from 'node:fs';
 import { describe, expect, it } from 'vitest';
 import * as gates from '../src/lib/gates';
@@ -42,7 +43,8 @@ function view(one: Situation): gates.View {
 
 /** Rows and columns of the table "Commands in situations". */
 function readTable(): Map<string, Map<string, boolean>> {
-  const page = readFileSync(new URL('../../docs/task/states.md', import.meta.url), 'utf8');
+  const build = process.env['MW_BUILD'] ?? fileURLToPath(new URL('../../build/release', import.meta.url));
+  const page = readFileSync(`${build}/share/doc/task/states.md`, 'utf8');
   const lines = (page.split('## Commands in situations')[1] ?? '').split('\n').filter((line) => line.startsWith('|'));
   const cells = (line: string): string[] => line.split('|').slice(1, -1).map((cell) => cell.trim());
   const columns = cells(lines[0] ?? '').slice(1);
