@@ -3,7 +3,6 @@
 
 #include <linux/capability.h>
 #include <sys/resource.h>
-#include <sys/syscall.h>
 #include <sys/utsname.h>
 #include <sys/xattr.h>
 #include <unistd.h>
@@ -17,6 +16,7 @@
 
 #include <fmt/format.h>
 
+#include "base/capabilities.hh"
 #include "base/text.hh"
 #include "runtime/process.hh"
 
@@ -91,13 +91,6 @@ std::uint32_t capabilities_of(const std::string &path) {
     return permitted;
 }
 
-/// Root of a container may lack some.
-std::uint32_t own_capabilities() {
-    __user_cap_header_struct header{_LINUX_CAPABILITY_VERSION_3, 0};
-    std::array<__user_cap_data_struct, _LINUX_CAPABILITY_U32S_3> sets{};
-    return ::syscall(SYS_capget, &header, sets.data()) == 0 ? sets[0].effective : 0;
-}
-
 bool isAllowed(int resource, rlim_t wanted) {
     rlimit limit{};
     return ::getrlimit(static_cast<__rlimit_resource>(resource), &limit) == 0 &&
@@ -108,8 +101,9 @@ void examine_rights(const std::string &program, diagnostics::Sink &sink) {
     constexpr std::uint32_t IPC_LOCK = 1U << CAP_IPC_LOCK, SYS_NICE = 1U << CAP_SYS_NICE,
                             SYS_RESOURCE = 1U << CAP_SYS_RESOURCE;
     constexpr rlim_t PRIORITY = 85, MEMORY = rlim_t{512} << 20U;
-    const std::uint32_t has = ::geteuid() == 0 ? own_capabilities() : capabilities_of(program);
-    const std::string setcap = "sudo setcap cap_sys_nice,cap_ipc_lock,cap_sys_resource+ep " + program;
+    // Root of a container may lack some.
+    const std::uint64_t has = ::geteuid() == 0 ? effective_capabilities() : capabilities_of(program);
+    const std::string setcap = "sudo setcap cap_sys_nice,cap_ipc_lock,cap_sys_resource+p " + program;
     const std::string remedy = setcap + "; or rtprio and memlock in /etc/security/limits.d";
     if ((has & SYS_NICE) == 0 && !isAllowed(RLIMIT_RTPRIO, PRIORITY)) {
         sink.warning("millwright-rt may not raise its priority: the machine is not realtime", {}, remedy);

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/capabilities.hh"
 #include "base/language/language.hh"
 #include "base/memory_killer.hh"
 #include "base/options/command_line.hh"
@@ -51,6 +52,7 @@ struct Arguments {
 int main(int argc, char **argv) {
     std::signal(SIGPIPE, SIG_IGN);  // a starter or terminal that is gone is no reason to end
     mw::tell_when_memory_ends();
+    mw::use_permitted_capabilities();
     static_cast<void>(mw::lower_oom_score(-900));  // `millwright doctor` reports where the right is missing
     const std::vector<std::string> words(argv + 1, argv + argc);
     Arguments arguments;

@@ -4,13 +4,14 @@
 #include <fcntl.h>
 #include <linux/capability.h>
 #include <sys/prctl.h>
-#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <string>
+
+#include "base/capabilities.hh"
 
 namespace mw {
 namespace {
@@ -43,18 +44,6 @@ bool write_score(pid_t process, int score) {
     return isWritten;
 }
 
-/// CAP_SYS_RESOURCE also lifts limits of memory and disks; the values above need it, nothing else does.
-void give_up_resource_right() {
-    __user_cap_header_struct header{_LINUX_CAPABILITY_VERSION_3, 0};
-    std::array<__user_cap_data_struct, _LINUX_CAPABILITY_U32S_3> sets{};
-    if (::syscall(SYS_capget, &header, sets.data()) == 0) {
-        sets[0].effective &= ~(1U << CAP_SYS_RESOURCE);
-        sets[0].permitted &= ~(1U << CAP_SYS_RESOURCE);
-        sets[0].inheritable &= ~(1U << CAP_SYS_RESOURCE);
-        static_cast<void>(::syscall(SYS_capset, &header, sets.data()));
-    }
-}
-
 }  // namespace
 
 bool raise_oom_score(int step, pid_t process) {
@@ -79,7 +68,7 @@ int lower_oom_score(int wanted) {
         static_cast<void>(::prctl(PR_SET_DUMPABLE, 0));
     }
     if (::geteuid() != 0) {
-        give_up_resource_right();
+        give_up_capability(CAP_SYS_RESOURCE);  // it also lifts limits of memory and disks
     }
     return score;
 }
