@@ -8,10 +8,10 @@ import sys
 
 def main():
     page, count = pathlib.Path(sys.argv[1]), int(sys.argv[2])
-    named = [int(number) for number in re.findall(r'^\| components \| (\d+) of them', page.read_text(), re.MULTILINE)]
+    named = [int(number) for number in re.findall(r'^\| components \| (\d+) components;', page.read_text(), re.MULTILINE)]
     if named == [count]:
         return 0
-    print(f'{page}: the line "| components | N of them" says {named}, but the build makes {count} component modules')
+    print(f'{page}: the line "| components | N components;" says {named}, but the build makes {count} component modules')
     return 1
 
 
