@@ -158,7 +158,8 @@ class AttackedMachine(Machine):
         self.cgroup = f'mw-{self.instance}'
         self.hasGroup = os.access(MEMORY, os.W_OK) and (MEMORY / 'memory.limit_in_bytes').exists() and os.geteuid() == 0
         if self.hasGroup:
-            (MEMORY / self.cgroup).mkdir()
+            (MEMORY / self.cgroup).mkdir(exist_ok=True)  # a killed session of this process id left it
+            (MEMORY / self.cgroup / 'memory.limit_in_bytes').write_text('-1')
 
     def enter_group(self):
         if self.hasGroup:
