@@ -36,6 +36,7 @@ ORDER = {
     'machine/task': ('link', 'sequencer', 'states', 'run'),
     'clients': ('nml', 'rsh', 'schedule', 'tcl', 'screen', 'python'),
     'clients/nml': ('config', 'message', 'buffer', 'net', 'bridge', 'remote'),
+    'drivers/mesa': ('lbp16', 'identity', 'hostmot2', 'ethernet'),
     'programs': ('setup', 'run', 'remote', 'start', 'screen', 'doctor', 'mains'),
 }
 # What a folder may not use although its room may.
@@ -46,6 +47,10 @@ NEVER = {
     'motion/servo': ('hal',),
     'machine/journal': ('hal', 'messages', 'motion', 'gcode'),
     'machine/setup': ('hal', 'messages', 'motion', 'gcode'),
+    # Driver and simulated board are written apart, so that one shows the errors of the other.
+    'drivers/mesa/board': ('hal', 'drivers/mesa/hostmot2', 'drivers/mesa/ethernet'),
+    'drivers/mesa/hostmot2': ('drivers/mesa/lbp16', 'drivers/mesa/ethernet', 'drivers/mesa/board'),
+    'drivers/mesa/ethernet': ('drivers/mesa/board',),
 }
 IN_SRC = tuple(room for room in MAY_USE if room not in ('drivers', 'programs', 'components', 'tests/support'))
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"')

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The cards by their names: name in HAL, ports, connectors. Source: shared/hardware.md, part A3.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace mw::mesa {
+
+constexpr std::size_t MAX_PORTS = 6;
+
+/// A type of card.
+struct Card {
+    std::string_view name_begins;  ///< the beginning of the name that the card reports
+    std::string_view hal_name;     ///< hm2_HAL_NAME.0
+    std::uint8_t ports = 0;
+    std::uint8_t port_width = 0;
+    std::array<std::string_view, MAX_PORTS>
+        connectors{};  ///< one for each port; empty: the pins have own names
+};
+
+/// All known cards with Ethernet, longer names before those that they begin with.
+std::span<const Card> ethernet_cards() noexcept;
+/// The card of the name that it reports (16 characters, spaces or zeros at the end); nullptr: an unknown one.
+const Card *find_ethernet_card(std::string_view reported_name) noexcept;
+
+}  // namespace mw::mesa

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// LBP16, the protocol of Mesa's Ethernet boards: one UDP packet holds a list of commands, which the board
+// executes in order. The answer holds the data of all reads, joined. All numbers are little-endian.
+// Source: shared/hardware.md, part A1.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <expected>
+#include <span>
+
+namespace mw::mesa::lbp16 {
+
+/// The UDP port of every board.
+constexpr std::uint16_t BOARD_PORT = 27181;
+/// The largest packet that a driver sends or a board answers [bytes]; it fits one Ethernet frame.
+constexpr std::size_t MAX_PACKET_BYTES = 1400;
+/// The largest number of units of one command.
+constexpr int MAX_UNITS = 127;
+
+/// The memory spaces of a board.
+enum class Space : std::uint8_t {
+    HOSTMOT2 = 0,       ///< registers of the firmware, 32 bit
+    ETHERNET_CHIP = 1,  ///< 16 bit
+    EEPROM = 2,         ///< MAC address, name of the card, IP address; 16 bit
+    FLASH = 3,          ///< 32 bit
+    TIMERS = 4,         ///< time stamp and words that the host may use; 16 bit
+    UNUSED = 5,
+    CONTROL = 6,  ///< errors, counters, reset; 16 bit
+    BOARD = 7,    ///< name of the card, versions, jumpers; 16 bit
+};
+
+/// The size of a unit, as a power of two of bytes: its code in the command word.
+enum class Unit : std::uint8_t { BITS_8 = 0, BITS_16 = 1, BITS_32 = 2, BITS_64 = 3 };
+
+constexpr std::size_t bytes_of(Unit unit) noexcept {
+    return std::size_t{1} << static_cast<unsigned>(unit);
+}
+
+/// One command without its data.
+struct Command {
+    bool writes = false;       ///< false: it reads
+    bool addressed = true;     ///< false: it begins at the stored pointer of the space
+    bool information = false;  ///< of the information area of the space
+    bool incrementing = true;  ///< the address moves on after each unit
+    Space space = Space::HOSTMOT2;
+    Unit unit = Unit::BITS_32;
+    std::uint8_t units = 1;     ///< 0 to 127; 0 is an error of the packet
+    std::uint16_t address = 0;  ///< [bytes]; 0 without `addressed`
+
+    std::size_t data_bytes() const noexcept { return units * bytes_of(unit); }
+    bool operator==(const Command &) const = default;
+};
+
+std::uint16_t command_word(const Command &command) noexcept;
+/// The command of a word; its address is 0.
+Command command_of(std::uint16_t word) noexcept;
+
+/// A packet that a host composes. A command that does not fit is left out and makes the packet full for good,
+/// so that the commands in it are always a beginning of the wanted list. [any thread; no allocation]
+class PacketWriter {
+  public:
+    /// `limit` [bytes], at most MAX_PACKET_BYTES.
+    explicit PacketWriter(std::size_t limit = MAX_PACKET_BYTES) noexcept;
+
+    /// Appends a read; false when it or its answer does not fit any more.
+    bool read(const Command &command) noexcept;
+    /// Appends a write of data.size() bytes, which are command.data_bytes(); false when it does not fit.
+    bool write(const Command &command, std::span<const std::byte> data) noexcept;
+    /// Appends the write of one register of 32 bits in the space HOSTMOT2.
+    bool write_register(std::uint16_t address, std::uint32_t value) noexcept;
+    /// Appends the read of `count` consecutive registers of 32 bits in the space HOSTMOT2.
+    bool read_registers(std::uint16_t address, int count) noexcept;
+
+    std::span<const std::byte> bytes() const noexcept { return std::span(bytes_).first(size_); }
+    /// The size of the answer [bytes]; 0: the board sends none.
+    std::size_t answer_bytes() const noexcept { return answer_bytes_; }
+    bool isFull() const noexcept { return full_; }
+    void clear() noexcept;
+
+  private:
+    bool append(const Command &command, std::span<const std::byte> data) noexcept;
+
+    std::array<std::byte, MAX_PACKET_BYTES> bytes_{};
+    std::size_t limit_;
+    std::size_t size_ = 0;
+    std::size_t answer_bytes_ = 0;
+    bool full_ = false;
+};
+
+/// A command of a packet with the data that it writes.
+struct ReceivedCommand {
+    Command command;
+    std::span<const std::byte> data;  ///< empty for a read
+};
+
+enum class PacketError : std::uint8_t {
+    CUT_COMMAND,  ///< the packet ends inside a command word or an address
+    CUT_DATA,     ///< the packet ends inside the data of a write
+    NO_UNITS,     ///< a command of 0 units
+};
+
+/// Takes a packet apart, as a board does. [any thread; no allocation]
+class PacketReader {
+  public:
+    explicit PacketReader(std::span<const std::byte> bytes) noexcept : rest_(bytes) {}
+
+    bool isAtEnd() const noexcept { return rest_.empty(); }
+    /// The next command. After an error isAtEnd() is true: the rest of the packet cannot be read.
+    std::expected<ReceivedCommand, PacketError> next() noexcept;
+
+  private:
+    std::span<const std::byte> rest_;
+};
+
+/// The number of sizeof(T) bytes at the beginning of `bytes`, which has as many.
+template <class T>
+constexpr T number_at(std::span<const std::byte> bytes) noexcept {
+    std::uint64_t value = 0;
+    for (std::size_t i = 0; i < sizeof(T); ++i) {
+        value |= std::to_integer<std::uint64_t>(bytes[i]) << (8 * i);
+    }
+    return static_cast<T>(value);
+}
+
+/// The bytes of `value`, the lowest first.
+template <class T>
+constexpr std::array<std::byte, sizeof(T)> bytes_of_number(T value) noexcept {
+    std::array<std::byte, sizeof(T)> bytes{};
+    for (std::size_t i = 0; i < sizeof(T); ++i) {
+        bytes[i] = static_cast<std::byte>((static_cast<std::uint64_t>(value) >> (8 * i)) & 0xFFU);
+    }
+    return bytes;
+}
+
+}  // namespace mw::mesa::lbp16
