@@ -93,13 +93,14 @@ def problem(source, target):
     user, used = room_of(source), room_of(target)
     if user is None or used is None:
         return None
+    for folder, others in NEVER.items():
+        other = next((other for other in others if is_in(source, folder) and is_in(target, other)), None)
+        if other:
+            return f'{folder} may not use {other}'
     if user == used:
         return 'parts of the controller may not know each other' if are_parts_mixed(source, target) else problem_of_order(source, target)
     if not any(is_in(target, allowed) for allowed in MAY_USE[user]):
         return f'{user} may not use {used}'
-    for folder, rooms in NEVER.items():
-        if is_in(source, folder) and used in rooms:
-            return f'{folder} may not use {used}'
     return None
 
 

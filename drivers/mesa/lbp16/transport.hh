@@ -25,7 +25,7 @@ class Transport {
     virtual TransportResult send(std::span<const std::byte> packet) noexcept = 0;
     /// The next packet that has arrived, cut to the size of `packet`; EAGAIN without one.
     virtual TransportResult receive(std::span<std::byte> packet) noexcept = 0;
-    /// Gives up the processor until a packet may have arrived, or until `deadline_ns` (monotonic). It may
+    /// Sleeps until a packet may have arrived, or until `deadline_ns` (monotonic). It may
     /// return early. In virtual time it returns at once.
     virtual void wait_until(std::int64_t deadline_ns) noexcept = 0;
     /// Monotonic time, real or virtual [ns].
