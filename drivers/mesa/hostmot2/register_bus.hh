@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// How the driver reaches the registers of a board. Each bus (Ethernet, PCI, SPI, EPP, a board in memory) is
+// one implementation. While a component is loaded, registers are read and written one by one; the servo
+// thread reads one list that was fixed before, and writes one list.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/result.hh"
+
+namespace mw::mesa {
+
+/// `count` consecutive registers of 32 bit from `address` [bytes].
+struct RegisterRange {
+    std::uint16_t address = 0;
+    std::uint16_t count = 1;
+
+    bool operator==(const RegisterRange &) const = default;
+};
+
+/// One register and the value to write.
+struct RegisterWrite {
+    std::uint16_t address = 0;
+    std::uint32_t value = 0;
+
+    bool operator==(const RegisterWrite &) const = default;
+};
+
+/// What became of the read of a cycle.
+enum class CycleRead : std::uint8_t {
+    DONE,     ///< all values are of this cycle
+    FAILED,   ///< no value is new; the bus has counted the failure
+    STOPPED,  ///< too many failures: there is no traffic until an operator resets the fault
+};
+
+class RegisterBus {
+  public:
+    virtual ~RegisterBus() = default;
+
+    /// The name of the card in HAL, such as "7i76e", and the names of the connectors, one for each port.
+    virtual std::string card_name() const = 0;
+    virtual std::vector<std::string> connectors() const = 0;
+
+    /// Reads registers now. [while loading; an error names the board and what failed]
+    virtual Result<std::vector<std::uint32_t>> read_now(RegisterRange range) = 0;
+    /// Writes registers from `address` now. [while loading]
+    virtual Result<> write_now(std::uint16_t address, std::span<const std::uint32_t> values) = 0;
+    /// Fixes what each cycle reads, and the largest number of registers that one cycle writes. An error when
+    /// it is more than the bus can carry in one cycle. [while loading]
+    virtual Result<> set_lists(std::span<const RegisterRange> reads, int max_writes) = 0;
+
+    /// Sends the request of this cycle, so that its answer travels while other boards are read. Optional
+    /// before read(). [servo thread]
+    virtual void request() noexcept = 0;
+    /// The values of all ranges of set_lists(), in their order. `period_ns` of the thread bounds the wait.
+    /// [servo thread; does not block longer than the deadline]
+    virtual CycleRead read(std::span<std::uint32_t> values, long period_ns) noexcept = 0;
+    /// Writes a list in its order; false when it could not be sent. [servo thread]
+    virtual bool write(std::span<const RegisterWrite> writes) noexcept = 0;
+    /// True once after a failure: the board may have missed writes, so that the next write() must hold all
+    /// registers. [servo thread]
+    virtual bool take_rewrite() noexcept = 0;
+};
+
+}  // namespace mw::mesa
