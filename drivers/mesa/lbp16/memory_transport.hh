@@ -13,10 +13,10 @@
 
 namespace mw::mesa::lbp16 {
 
-/// What happens to a packet on its way.
+/// What happens to a packet in the network.
 struct Passage {
     int copies = 1;             ///< 0: the packet is lost
-    std::int64_t delay_ns = 0;  ///< beyond `MemoryTransport::WAY_NS`
+    std::int64_t delay_ns = 0;  ///< added to `MemoryTransport::WAY_NS`
     std::size_t cut_to = MAX_PACKET_BYTES;
     int error = 0;  ///< errno of a send that fails
 };

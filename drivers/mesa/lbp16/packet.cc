@@ -71,6 +71,12 @@ void PacketWriter::clear() noexcept {
     full_ = false;
 }
 
+void PacketWriter::replace(std::size_t offset, std::span<const std::byte> data) noexcept {
+    if (offset <= size_ && data.size() <= size_ - offset) {
+        std::ranges::copy(data, bytes_.begin() + static_cast<std::ptrdiff_t>(offset));
+    }
+}
+
 bool PacketWriter::append(const Command &command, std::span<const std::byte> data) noexcept {
     const std::size_t head = command.addressed ? 4 : 2;
     if (full_ || size_ + head + data.size() > limit_) {

@@ -78,6 +78,8 @@ class PacketWriter {
     std::size_t answer_bytes() const noexcept { return answer_bytes_; }
     bool isFull() const noexcept { return full_; }
     void clear() noexcept;
+    /// Replaces bytes from `offset`, such as the data of a write; both lie within bytes().
+    void replace(std::size_t offset, std::span<const std::byte> data) noexcept;
 
   private:
     bool append(const Command &command, std::span<const std::byte> data) noexcept;

@@ -35,7 +35,8 @@ Result<std::unique_ptr<UdpTransport>> UdpTransport::open(const std::string &addr
     std::unique_ptr<UdpTransport> transport(new UdpTransport(socket));
     if (::connect(socket, reinterpret_cast<const sockaddr *>(&board), sizeof board) != 0) {
         return fail(
-            fmt::format("no network leads to the board at {}: {}", address, std::strerror(errno)), {},
+            fmt::format("no network interface reaches the board at {}: {}", address, std::strerror(errno)),
+            {},
             "give the computer's network interface an address of the board's network, such as 192.168.1.1");
     }
     return transport;
@@ -65,7 +66,7 @@ void UdpTransport::wait_until(std::int64_t deadline_ns) noexcept {
     }
     const timespec rest{.tv_sec = rest_ns / NS_PER_S, .tv_nsec = rest_ns % NS_PER_S};
     pollfd readable{.fd = socket_, .events = POLLIN, .revents = 0};
-    ::ppoll(&readable, 1, &rest, nullptr);  // a failure ends the wait early; the caller looks at the clock
+    ::ppoll(&readable, 1, &rest, nullptr);  // a failure ends the wait early; the caller checks the time
 }
 
 std::int64_t UdpTransport::now_ns() const noexcept {

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What the servo thread does.
+#include "drivers/mesa/ethernet/ethernet_bus.hh"
+
+#include <algorithm>
+#include <cerrno>
+
+namespace mw::mesa {
+
+namespace {
+
+using lbp16::PacketWriter;
+
+/// Packets that a cycle reads; more can only be a flood of old ones.
+constexpr int MAX_RECEIVED = 64;
+/// Registers at consecutive addresses that one command writes.
+constexpr std::size_t MAX_BLOCK = 64;
+
+/// How many writes from the first on are to consecutive addresses.
+std::size_t block_of(std::span<const RegisterWrite> writes) noexcept {
+    std::size_t count = 1;
+    while (count < std::min(writes.size(), MAX_BLOCK) &&
+           writes[count].address == static_cast<std::uint16_t>(writes[count - 1].address + 4)) {
+        ++count;
+    }
+    return count;
+}
+
+/// The bytes of a command that writes `count` registers.
+constexpr std::size_t block_bytes(std::size_t count) noexcept {
+    return 4 + 4 * count;
+}
+
+void append_block(PacketWriter &packet, std::span<const RegisterWrite> block) noexcept {
+    std::array<std::byte, 4 * MAX_BLOCK> data{};
+    for (std::size_t i = 0; i < block.size(); ++i) {
+        std::ranges::copy(lbp16::bytes_of_number(block[i].value),
+                          data.begin() + static_cast<std::ptrdiff_t>(4 * i));
+    }
+    packet.write(
+        {.writes = true, .units = static_cast<std::uint8_t>(block.size()), .address = block[0].address},
+        std::span(data).first(4 * block.size()));
+}
+
+}  // namespace
+
+void EthernetBus::request() noexcept {
+    if (link_ == Link::STOPPED || requested_) {
+        return;
+    }
+    Request &request = link_ == Link::COMPARING ? identity_ : cyclic_;
+    numbers_.number(request.packet);
+    CycleTimes &cycle = cycles_->next();
+    cycle.begin_ns = transport_->now_ns();
+    cycle.number = numbers_.last_request();
+    const lbp16::TransportResult sent = transport_->send(request.packet.bytes());
+    cycle.sent_ns = sent.time_ns;
+    cycle.error = sent.error;
+    requested_ = true;
+}
+
+CycleRead EthernetBus::read(std::span<std::uint32_t> values, long period_ns) noexcept {
+    if (link_ == Link::STOPPED) {
+        return CycleRead::STOPPED;
+    }
+    request();
+    requested_ = false;
+    CycleTimes &cycle = cycles_->last();
+    const std::int64_t deadline_ns = cycle.begin_ns + read_timeout_ns(settings.read_timeout, period_ns);
+    cycle.outcome = cycle.error != 0 ? CycleOutcome::SEND_FAILED : wait_for_answer(deadline_ns, cycle);
+    const bool answered = cycle.outcome == CycleOutcome::DONE || cycle.outcome == CycleOutcome::WRITE_LOST;
+    const bool comparing = link_ == Link::COMPARING;
+    count(cycle.outcome);
+    if (answered && comparing) {
+        numbers_.accept(std::span(answer_).subspan(identity_.data_bytes, HostNumbers::ANSWER_BYTES));
+        link_ = Link::RUNNING;
+        rewriting_ = true;
+    }
+    if (cycle.outcome == CycleOutcome::OTHER_BOARD || errors_.isExceeded()) {
+        stop();
+    }
+    if (link_ == Link::STOPPED) {
+        return CycleRead::STOPPED;
+    }
+    if (!answered || comparing) {
+        return CycleRead::FAILED;
+    }
+    for (std::size_t i = 0; i < std::min(values.size(), cyclic_.data_bytes / 4); ++i) {
+        values[i] = lbp16::number_at<std::uint32_t>(std::span(answer_).subspan(4 * i));
+    }
+    return CycleRead::DONE;
+}
+
+CycleOutcome EthernetBus::wait_for_answer(std::int64_t deadline_ns, CycleTimes &cycle) noexcept {
+    CycleOutcome failure = CycleOutcome::NO_ANSWER;
+    for (int received = 0; received < MAX_RECEIVED; ++received) {
+        const lbp16::TransportResult result = transport_->receive(answer_);
+        if (result.isDone()) {
+            cycle.answered_ns = result.time_ns;
+            const Request &request = current();
+            if (result.bytes != request.data_bytes + HostNumbers::ANSWER_BYTES) {
+                failure = CycleOutcome::SHORT_ANSWER;
+            } else if (!numbers_.isOfLastRequest(std::span(answer_).subspan(request.data_bytes))) {
+                ++cycle.stale;
+            } else {
+                return outcome_of_answer();
+            }
+            continue;
+        }
+        if (result.error != EAGAIN) {
+            failure = CycleOutcome::RECEIVE_FAILED;
+            cycle.error = result.error;
+        }
+        if (result.time_ns >= deadline_ns) {
+            break;
+        }
+        transport_->wait_until(deadline_ns);
+    }
+    cycle.answered_ns = 0;
+    return failure;
+}
+
+/// Of an answer to the last request.
+CycleOutcome EthernetBus::outcome_of_answer() const noexcept {
+    if (link_ == Link::COMPARING) {
+        const bool same = std::equal(known_identity_.begin(), known_identity_.end(), answer_.begin());
+        return same ? CycleOutcome::DONE : CycleOutcome::OTHER_BOARD;
+    }
+    const bool written = numbers_.hasAllWrites(std::span(answer_).subspan(cyclic_.data_bytes));
+    return written ? CycleOutcome::DONE : CycleOutcome::WRITE_LOST;
+}
+
+void EthernetBus::count(CycleOutcome outcome) noexcept {
+    switch (outcome) {
+    case CycleOutcome::DONE: break;
+    case CycleOutcome::NO_ANSWER: ++counters_.no_answer; break;
+    case CycleOutcome::SEND_FAILED: ++counters_.send_failed; break;
+    case CycleOutcome::RECEIVE_FAILED: ++counters_.receive_failed; break;
+    case CycleOutcome::SHORT_ANSWER: ++counters_.short_answer; break;
+    case CycleOutcome::WRITE_LOST: ++counters_.write_lost; break;
+    case CycleOutcome::OTHER_BOARD: break;
+    }
+    counters_.stale += cycles_->last().stale;
+    failed_ = outcome != CycleOutcome::DONE;
+    rewriting_ = rewriting_ || failed_;
+    errors_.count(failed_, settings);
+}
+
+bool EthernetBus::write(std::span<const RegisterWrite> writes) noexcept {
+    if (link_ != Link::RUNNING) {
+        return false;
+    }
+    bool sent = true;
+    PacketWriter packet;
+    std::size_t slot = 0;
+    const auto send = [&] {
+        sent = numbers_.append_to_write(packet, slot) && transport_->send(packet.bytes()).isDone() && sent;
+        packet.clear();
+        ++slot;
+    };
+    while (!writes.empty()) {
+        const std::size_t size = block_of(writes);
+        if (packet.bytes().size() + block_bytes(size) + HostNumbers::WRITE_BYTES > lbp16::MAX_PACKET_BYTES) {
+            send();
+            if (slot == HostNumbers::MAX_WRITE_PACKETS) {
+                return false;  // set_lists() rejects such a list
+            }
+        }
+        append_block(packet, writes.first(size));
+        writes = writes.subspan(size);
+    }
+    send();
+    if (cycles_->size() > 0) {
+        cycles_->last().written_ns = transport_->now_ns();
+    }
+    return sent;
+}
+
+bool EthernetBus::take_rewrite() noexcept {
+    const bool rewriting = rewriting_;
+    rewriting_ = false;
+    return rewriting;
+}
+
+void EthernetBus::stop() noexcept {
+    link_ = Link::STOPPED;
+    requested_ = false;
+}
+
+void EthernetBus::resume() noexcept {
+    if (link_ == Link::STOPPED) {
+        errors_.reset();
+        link_ = Link::COMPARING;
+    }
+}
+
+}  // namespace mw::mesa
