@@ -2,6 +2,7 @@
 #include "programs/setup/configurations.hh"
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -12,6 +13,7 @@
 #include "base/ini/ini_file.hh"
 #include "base/own_place.hh"
 #include "base/text.hh"
+#include "base/unfinished_folder.hh"
 
 namespace mw::programs {
 namespace {
@@ -114,13 +116,16 @@ Result<std::string> copy_sample(const ConfigurationGroup &group, const Configura
     const fs::path programs = fs::path(group.folder).parent_path() / "nc_files";
     std::error_code error;
     if (!fs::exists(to)) {
-        // Whole or not at all.
-        const fs::path partly = to.string() + ".part";
-        fs::remove_all(partly, error);
         fs::create_directories(to.parent_path(), error);
-        fs::copy(from, partly, fs::copy_options::recursive, error);
-        if (!error) {
-            fs::rename(partly, to, error);
+        auto partly = UnfinishedFolder::create(to.string());
+        if (partly.has_value() && !error) {
+            fs::permissions(partly->path(), fs::status(from, error).permissions() | fs::perms::owner_all,
+                            error);
+            fs::copy(from, partly->path(), fs::copy_options::recursive, error);
+        }
+        const bool copied = partly.has_value() && !error && partly->become_target();
+        if (!copied && !error) {
+            error = std::error_code(errno, std::system_category());
         }
         if (error) {
             return fail("the sample cannot be copied to '" + to.string() + "': " + error.message());

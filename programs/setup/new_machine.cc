@@ -9,7 +9,9 @@
 #include <unistd.h>
 
 #include <array>
+#include <cerrno>
 #include <chrono>
+#include <cstring>
 #include <filesystem>
 #include <sstream>
 
@@ -17,6 +19,7 @@
 #include "base/own_place.hh"
 #include "base/stop_signals.hh"
 #include "base/text.hh"
+#include "base/unfinished_folder.hh"
 #include "machine/setup/files.hh"
 
 namespace mw::programs {
@@ -164,24 +167,21 @@ Result<NewMachine> make_machine(const std::string &folder, const setup::Plan &pl
     if (error) {
         return fail("cannot make the folder '" + to.parent_path().string() + "': " + error.message());
     }
-    std::string partly = (to.parent_path() / ("." + to.filename().string() + ".XXXXXX")).string();
-    if (::mkdtemp(partly.data()) == nullptr) {
+    auto partly = UnfinishedFolder::create(to.string());
+    if (!partly.has_value()) {
         return fail("cannot make a folder in '" + to.parent_path().string() + "'");
     }
-    fs::permissions(partly,
+    fs::permissions(partly->path(),
                     fs::perms::others_read | fs::perms::others_exec | fs::perms::group_read |
                         fs::perms::group_exec,
                     fs::perm_options::add, error);
     auto files = setup::machine_files(plan);
     files.push_back({ANSWERS_FILE, answers_text(given)});
-    auto written = write_files(partly, files);
-    if (written.has_value()) {
-        fs::rename(partly, to, error);
-        written = error ? fail("cannot make '" + to.string() + "': " + error.message()) : written;
-    }
-    if (!written.has_value()) {
-        fs::remove_all(partly, error);
+    if (const auto written = write_files(partly->path(), files); !written.has_value()) {
         return std::unexpected(written.error());
+    }
+    if (!partly->become_target()) {
+        return fail("cannot make '" + to.string() + "': " + std::strerror(errno));
     }
     return NewMachine{(to / setup::INI_FILE).string(), (to / setup::PROGRAM_FILE).string()};
 }

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// A folder that gets its name when its content is complete.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace mw {
+
+/// Has a hidden name beside the target, and a lock (flock) until its process ends. The destructor removes a
+/// folder that has not become the target. Errors are in errno.
+class UnfinishedFolder {
+  public:
+    /// Creates it. First it removes the folders that killed processes have left for the same target: those
+    /// that no process has locked. The folder in which the target will lie must exist.
+    static std::optional<UnfinishedFolder> create(const std::string &target);
+    UnfinishedFolder(UnfinishedFolder &&other) noexcept;
+    UnfinishedFolder &operator=(UnfinishedFolder &&) = delete;
+    ~UnfinishedFolder();
+
+    const std::string &path() const { return path_; }
+    /// Renames it to the target, which must not exist or be an empty folder.
+    bool become_target();
+
+  private:
+    UnfinishedFolder(int fd, std::string path, std::string target)
+        : fd_(fd), path_(std::move(path)), target_(std::move(target)) {}
+
+    int fd_ = -1;
+    std::string path_, target_;  ///< no path: it is the target
+};
+
+}  // namespace mw
