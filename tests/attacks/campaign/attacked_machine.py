@@ -216,10 +216,10 @@ class AttackedMachine(Machine):
     def wait_end(self, begin, parts=None):
         """Seconds from `begin` until no process (of these numbers) is left."""
         while time.monotonic() - begin < 5:
-            for process in (self.process, *self.servers.values()):
-                process.poll()
+            # A process that ends has no environment any more before it has a status: one of ours has ended when it has that.
+            own = [process.poll() for process in (self.process, *self.servers.values())]
             left = processes_of(self.instance, 'machine')
-            if not (left if parts is None else set(parts) & set(left)):
+            if not (left or None in own if parts is None else set(parts) & set(left)):
                 return time.monotonic() - begin
             time.sleep(0.01)
         return None
