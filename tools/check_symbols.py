@@ -4,7 +4,8 @@
 
 usage: check_symbols.py ALLOWED FILE...
 ALLOWED lists the undefined symbols that realtime archives and components may have, one glob a line ('#' comments);
-what another of the FILEs defines is allowed too. Exit status 1 lists the others with the object that wants them.
+'NAME.so: glob' allows it to that file only. What another of the FILEs defines is allowed too. Exit status 1 lists the
+others with the object that wants them.
 """
 import fnmatch
 import pathlib
@@ -33,16 +34,21 @@ def readable(names):
 
 
 def main():
-    allowed = []
+    allowed, of_file = [], {}
     for line in pathlib.Path(sys.argv[1]).read_text(encoding='utf-8').splitlines():
         pattern = line.split('#')[0].strip()
-        if pattern:
+        file, colon, of_one = pattern.partition(': ')
+        if colon:
+            of_file.setdefault(file, []).append(of_one)
+        elif pattern:
             allowed.append(pattern)
     isAllowed = re.compile('|'.join(fnmatch.translate(p) for p in [*allowed, *IGNORED])).match
     defined, wanted = set(), {}
     for name in sys.argv[2:]:
         for member, kind, symbol in symbols_of(pathlib.Path(name)):
             # Weak undefined symbols (w, v) may stay absent, but whoever calls them links them.
+            if kind in 'Uwv' and any(fnmatch.fnmatchcase(symbol, one) for one in of_file.get(member, ())):
+                continue
             if kind in 'Uwv':
                 wanted.setdefault(symbol, set()).add(member)
             else:
