@@ -10,6 +10,7 @@
 // and parport.write-all serve all ports. backend= selects how the registers are reached: auto, direct, device
 // (/dev/parportN) or simulated. A simulated port has `pin-NN-in-fake` (bit in) for the levels of its inputs
 // and `pin-NN-out-fake` (bit out) for those of its outputs.
+#include <cstdlib>
 #include <cstring>
 
 #include "drivers/parport/access.hh"
@@ -248,6 +249,9 @@ int rtapi_app_main(void) {
         return -EINVAL;
     }
     mw::parport::Backend wanted = mw::parport::Backend::AUTO;
+    if (backend == nullptr) {
+        backend = std::getenv("MILLWRIGHT_PARPORT");
+    }
     if (backend != nullptr && !mw::parport::find_backend(backend, wanted)) {
         rtapi_print_msg(RTAPI_MSG_ERR, "%s: backend=%s: auto, direct, device and simulated are possible\n",
                         MODULE, backend);

@@ -97,6 +97,14 @@ def main():
                 'G90 G1 F3000 X20\nM66 P0 L0\n(DEBUG, under #<_hal[limits_x.under]> over #<_hal[limits_x.over]>)', 'under 0.*over 0')
     servo = 'PGAIN = 50\nIGAIN = 0\nDGAIN = 0\nBIAS = 0\nFF0 = 0\nFF1 = 1\nFF2 = 0\nDEADBAND = 0\n'
     library.run('servo_sim follows', ['LIB:servo_sim.hal'], MOVE, 'cycle time', servo=servo)
+    # Steps of simulated motors at the pins of a simulated port.
+    stepper = dict(motmod='\nBASE_PERIOD = 50000', servo='SCALE = 100\nSTEPGEN_MAXACCEL = 1200\n',
+                   hal='loadrt hal_parport backend=simulated cfg="0x378 out"\naddf parport.0.write base-thread\nnet Xdir => parport.0.pin-02-out\n'
+                       'net Xstep => parport.0.pin-03-out\nnet estop-loop iocontrol.0.user-enable-out => iocontrol.0.emc-enable-in\n'
+                       'loadrt updown\naddf updown.0 base-thread\nnet steps parport.0.pin-03-out-fake => updown.0.countup\n')
+    library.run('core_stepper makes steps', ['LIB:core_stepper.hal'],
+                'G21 G90\nG1 F1200 X20\nM66 P0 L0\n(DEBUG, steps #<_hal[updown.0.count]> at #<_hal[stepgen.0.position-fb]>)',
+                r'steps (1999|2000|2001)\.0+ at (19\.99|20\.0)', **stepper)
     constraints = ['LIB:core_sim.hal', 'LIB:check_xyz_constraints.hal']
     told = '\nM66 P0 L0\n(DEBUG, broken #<_hal[was_broken.out]>)'
     library.run('check_xyz_constraints: kept', constraints, 'G21 G90 G64 P0.1\nG1 F3000 X20 Y10 Z5\nX0 Y20\nG2 X0 Y10 J-5\nG0 X0 Y0 Z0' + told, 'broken 0')
