@@ -47,7 +47,7 @@ def main():
     for name in sys.argv[2:]:
         for member, kind, symbol in symbols_of(pathlib.Path(name)):
             # Weak undefined symbols (w, v) may stay absent, but whoever calls them links them.
-            if kind in 'Uwv' and any(fnmatch.fnmatchcase(symbol, one) for one in of_file.get(member, ())):
+            if kind in 'Uwv' and any(fnmatch.fnmatchcase(symbol, one) for one in of_file.get(member.split(':')[0], ())):
                 continue
             if kind in 'Uwv':
                 wanted.setdefault(symbol, set()).add(member)
