@@ -109,6 +109,13 @@ def early_stops(record):
     return [(begin, end) for begin, end in standstills(record) if begin + STILL_S < limit_of(record)]
 
 
+def latest_of(event, record):
+    """As Event.latest; a realtime process that is stopped at that time reacts when it continues."""
+    frozen = [other.end for other in record.events
+              if other is not event and other.name == 'signal.stop_motion' and other.begin <= event.latest <= other.end]
+    return max([event.latest, *frozen])
+
+
 def stops(record):
     """The machine cuts on, or stops within STOP_S with a message that names the cause on each screen."""
     if record.isEnding:
@@ -121,7 +128,7 @@ def stops(record):
     seen = max(rest + STILL_S, min((sample[0] for sample in record.samples if sample[0] > rest), default=rest))
     failures = []
     begun = [event for event in record.events if event.begin <= seen and event.causes]
-    since = min((max(0.0, rest - event.latest) for event in begun), default=None)
+    since = min((max(0.0, rest - latest_of(event, record)) for event in begun), default=None)
     if since is None or since > STOP_S:
         names = ', '.join(f'{event.name} {event.begin - record.begin:.2f} to {event.end - record.begin:.2f} s' for event in record.events)
         failures.append(f'stop: the axes rest at {rest - record.begin:.2f} s, {"without" if since is None else f"{since:.2f} s after"} an attack that may stop them ({names})')
