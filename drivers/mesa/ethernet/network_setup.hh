@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What the driver asks of the computer's network for a board: a fixed entry in the ARP table, so that no
+// request waits for one, and a rule that keeps other packets off the interface. Both need CAP_NET_ADMIN;
+// without it the board works, and a warning says what is missing. Both end with the driver.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "base/result.hh"
+
+namespace mw::mesa {
+
+/// The interface that reaches a board.
+struct BoardRoute {
+    std::string interface;           ///< such as eth1
+    std::string own_address;         ///< of this computer there
+    bool has_default_route = false;  ///< other traffic uses it, too
+    bool loopback = false;
+};
+
+/// Finds the interface by asking the kernel for the route. [while loading]
+Result<BoardRoute> find_route(const std::string &board_address);
+
+using MacAddress = std::array<std::uint8_t, 6>;
+
+/// An ARP entry that does not expire; the destructor removes it.
+class FixedArpEntry {
+  public:
+    /// [while loading]
+    static Result<FixedArpEntry> create(const BoardRoute &route, const std::string &board_address,
+                                        const MacAddress &mac);
+    FixedArpEntry(FixedArpEntry &&other) noexcept;
+    FixedArpEntry &operator=(FixedArpEntry &&) = delete;
+    ~FixedArpEntry();
+
+  private:
+    FixedArpEntry(std::string interface, std::string board_address)
+        : interface_(std::move(interface)), board_address_(std::move(board_address)) {}
+
+    std::string interface_, board_address_;  ///< no interface: nothing to remove
+};
+
+/// The rules for nft that let packets to the board pass and keep all others off the interface.
+std::string firewall_rules(const BoardRoute &route, const std::string &board_address);
+
+/// A table of nft of our own; the destructor removes it.
+class BoardFirewall {
+  public:
+    /// An error when nft is missing, when this process may not, or when the interface has the default route:
+    /// then other traffic of the computer needs it. [while loading]
+    static Result<BoardFirewall> create(const BoardRoute &route, const std::string &board_address);
+    BoardFirewall(BoardFirewall &&other) noexcept;
+    BoardFirewall &operator=(BoardFirewall &&) = delete;
+    ~BoardFirewall();
+
+  private:
+    explicit BoardFirewall(std::string table) : table_(std::move(table)) {}
+
+    std::string table_;
+};
+
+}  // namespace mw::mesa
