@@ -100,7 +100,8 @@ TEST(Idrom, TheErrorsHaveTheTextsThatUsersKnow) {
     EXPECT_EQ(error_of(registers), "invalid cookie, got 0x00000000, expected 0x55AACAFE");
     registers = registers_of(small_idrom());
     registers[0x0104] = 0x01020304;
-    EXPECT_EQ(error_of(registers), "invalid config name, got '" + std::string(8, '?') + "', expected 'HOSTMOT2'");
+    EXPECT_EQ(error_of(registers),
+              "invalid config name, got '" + std::string(8, '?') + "', expected 'HOSTMOT2'");
     Idrom idrom = small_idrom();
     idrom.header.type = 0;
     EXPECT_EQ(error_of(idrom), "invalid IDROM type 0, expected 2 or 3, aborting load");
@@ -208,7 +209,8 @@ TEST(Idrom, AChangedDescriptionIsRejectedOrConsistent) {
         for (auto changes = 1 + random() % 3; changes > 0; --changes) {
             auto one = registers.begin();
             std::advance(one, random() % registers.size());
-            one->second = random() % 2 == 0 ? static_cast<std::uint32_t>(random()) : one->second ^ (1U << (random() % 32));
+            one->second = random() % 2 == 0 ? static_cast<std::uint32_t>(random())
+                                            : one->second ^ (1U << (random() % 32));
         }
         const auto idrom = decode_idrom(reader_of(registers));
         if (!idrom.has_value()) {
