@@ -4,8 +4,11 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
+
+#include "base/result.hh"
 
 namespace mw::mesa {
 
@@ -102,5 +105,31 @@ struct Idrom {
 
     bool operator==(const Idrom &) const = default;
 };
+
+/// Reads `count` registers of 32 bits from `address` on; an error is passed on as it is.
+using RegisterReader = std::function<Result<std::vector<std::uint32_t>>(std::uint16_t address, int count)>;
+
+/// The connectors of a card, as its bus knows them; 0: not known, not compared.
+struct CardShape {
+    std::uint32_t ports = 0, port_width = 0;
+};
+
+/// Reads the description of a firmware and checks it: cookie, name, type, port width, ports, width, clocks
+/// (at least 1 MHz), number of modules and pins, addresses. The error names the value that is wrong and the
+/// value that is expected, in the words that users of LinuxCNC's driver know. A module whose gtag or version
+/// is not known is no error. [not realtime]
+Result<Idrom> decode_idrom(const RegisterReader &read, const CardShape &card = {});
+
+/// A register and its value.
+struct RegisterValue {
+    std::uint16_t address = 0;
+    std::uint32_t value = 0;
+
+    bool operator==(const RegisterValue &) const = default;
+};
+
+/// The registers from which decode_idrom() reads `idrom`, with the IDROM at `offset`. It fails when the parts
+/// of the description overlap or do not fit; whether the values make sense is not checked. [not realtime]
+Result<std::vector<RegisterValue>> encode_idrom(const Idrom &idrom, std::uint16_t offset = 0x0400);
 
 }  // namespace mw::mesa

@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "drivers/mesa/board/firmware.hh"
+
+#include <algorithm>
+
+namespace mw::mesa::board {
+
+namespace {
+
+constexpr std::size_t WORDS = 0x10000 / 4;
+constexpr std::uint8_t OUTPUT = 0x80;
+constexpr std::uint8_t STEP_PIN = 0x81, PWM_PIN = 0x81;
+constexpr std::uint8_t ENCODER_A = 1, ENCODER_B = 2, ENCODER_Z = 3;
+constexpr unsigned DPLL_TIMERS = 4;
+
+/// The watchdog or a DPLL timer acts.
+struct TimedEvent {
+    std::int64_t time_ns = 0;
+    unsigned timer = 0;  ///< 0: the watchdog bites
+};
+
+std::uint8_t encoder_bit(std::uint8_t function) {
+    switch (function) {
+    case ENCODER_A: return EncoderControl::A_LEVEL;
+    case ENCODER_B: return EncoderControl::B_LEVEL;
+    case ENCODER_Z: return EncoderControl::INDEX_LEVEL;
+    default: return 0;
+    }
+}
+
+}  // namespace
+
+template <class T, class... Arguments>
+T *Firmware::own(Arguments &&...arguments) {
+    auto module = std::make_unique<T>(std::forward<Arguments>(arguments)...);
+    T *plain = module.get();
+    modules_.push_back(std::move(module));
+    return plain;
+}
+
+Firmware::Firmware(const Idrom &idrom, Physics &physics, std::int64_t power_up_ns)
+    : idrom_(idrom), physics_(physics), identity_(WORDS, 0), slots_(WORDS), outputs_(idrom.pins.size()),
+      inputs_(idrom.pins.size()), ports_(idrom.header.io_ports, idrom.header.port_width),
+      now_ns_(power_up_ns) {
+    if (const auto encoded = encode_idrom(idrom); encoded.has_value()) {
+        for (const RegisterValue &one : *encoded) {
+            identity_[one.address / 4U] = one.value;
+        }
+    }
+    ports_.connect({.outside = [this](unsigned pin) { return outside_level(pin); },
+                    .module = [this](unsigned pin) { return module_level(pin); }});
+    for (const ModuleDescriptor &descriptor : idrom_.modules) {
+        Module *module = add_module(descriptor);
+        module->advance(power_up_ns);
+        map(*module, descriptor);
+        for (std::size_t pin = 0; pin < idrom_.pins.size(); ++pin) {
+            if (idrom_.pins[pin].secondary == descriptor.gtag && outputs_[pin] == nullptr) {
+                outputs_[pin] = module;
+            }
+        }
+    }
+    if (encoder_ != nullptr) {
+        for (unsigned i = 0; i < encoder_->encoders().size(); ++i) {
+            Encoder &encoder = encoder_->encoders()[i];
+            encoder.shaft = physics_.shaft(i).value_or(Shaft{});
+            encoder.zero = encoder.shaft.count;
+            encoder.last_edge_ns = power_up_ns;
+        }
+    }
+}
+
+Module *Firmware::add_module(const ModuleDescriptor &descriptor) {
+    const std::uint32_t clock_hz =
+        descriptor.fast_clock ? idrom_.header.clock_high_hz : idrom_.header.clock_low_hz;
+    const unsigned instances = descriptor.instances;
+    switch (descriptor.gtag) {
+    case Gtag::WATCHDOG: return watchdog_ = own<WatchdogModule>(clock_hz);
+    case Gtag::IO_PORT: return &ports_;
+    case Gtag::STEPGEN: return stepgen_ = own<StepgenModule>(instances, clock_hz);
+    case Gtag::ENCODER:
+    case Gtag::MUXED_ENCODER: return encoder_ = own<EncoderModule>(instances, clock_hz);
+    case Gtag::PWM: return pwm_ = own<PwmModule>(instances);
+    case Gtag::DPLL: return dpll_ = own<DpllModule>(clock_hz);
+    case Gtag::LED: return led_ = own<LedModule>();
+    case Gtag::SSR: return ssr_ = own<SsrModule>();
+    case Gtag::IN_M:
+    case Gtag::IN_MUX: {
+        const auto isInput = [&](const PinDescriptor &pin) {
+            return pin.secondary == descriptor.gtag && (pin.secondary_pin & OUTPUT) == 0;
+        };
+        // InMux reads its inputs one after the other over one pin.
+        const bool isMultiplexed = descriptor.gtag == Gtag::IN_MUX;
+        const auto count = isMultiplexed ? 32 : std::ranges::count_if(idrom_.pins, isInput);
+        auto *module = own<InputModule>(static_cast<unsigned>(std::clamp<std::ptrdiff_t>(count, 1, 32)));
+        module->connect([this] { return input_levels(); });
+        return module;
+    }
+    default: return own<UnknownModule>(descriptor.registers);
+    }
+}
+
+void Firmware::map(Module &module, const ModuleDescriptor &descriptor) {
+    const std::uint32_t register_stride = idrom_.header.register_strides[descriptor.register_stride];
+    const std::uint32_t instance_stride = idrom_.header.instance_strides[descriptor.instance_stride];
+    for (unsigned reg = 0; reg < module.registers(); ++reg) {
+        const bool isEach = reg < 32 && ((descriptor.per_instance >> reg) & 1U) != 0;
+        const unsigned instances = isEach ? descriptor.instances : 1U;
+        for (unsigned i = 0; i < instances; ++i) {
+            const std::uint64_t address = descriptor.base_address + std::uint64_t{reg} * register_stride +
+                                          std::uint64_t{i} * instance_stride;
+            if (address / 4 < WORDS && slots_[address / 4].module == nullptr) {
+                slots_[address / 4] = {&module, {reg, i}};
+            }
+        }
+    }
+}
+
+std::uint32_t Firmware::read(std::uint16_t address) {
+    const std::size_t word = address / 4U;
+    const Slot &slot = slots_[word];
+    if (slot.module == nullptr) {
+        return identity_[word];
+    }
+    const std::uint32_t value = slot.module->read(slot.place);
+    if (dpll_ != nullptr && dpll_->take_sync()) {
+        latch_all(0);
+    }
+    return value;
+}
+
+void Firmware::write(std::uint16_t address, std::uint32_t value) {
+    const Slot &slot = slots_[address / 4U];
+    if (slot.module != nullptr) {
+        slot.module->write(slot.place, value);
+    }
+}
+
+void Firmware::bite() {
+    if (watchdog_ != nullptr) {
+        watchdog_->bite();
+        ports_.release_all();
+    }
+}
+
+void Firmware::latch_all(unsigned timer) {
+    for (const auto &module : modules_) {
+        module->latch(timer);
+    }
+}
+
+void Firmware::advance(std::int64_t to_ns) {
+    std::vector<TimedEvent> events;
+    if (watchdog_ != nullptr) {
+        if (const auto bites_ns = watchdog_->bites_at_ns(); bites_ns.has_value() && *bites_ns <= to_ns) {
+            events.push_back({std::max(*bites_ns, now_ns_), 0});
+        }
+    }
+    for (unsigned timer = 1; dpll_ != nullptr && timer <= DPLL_TIMERS; ++timer) {
+        // Of several times of a timer only the last one matters: nothing reads what was latched before.
+        if (const auto fires_ns = dpll_->last_fire_ns(timer, to_ns); fires_ns.has_value()) {
+            events.push_back({*fires_ns, timer});
+        }
+    }
+    std::ranges::sort(events, {}, &TimedEvent::time_ns);
+    for (const TimedEvent &event : events) {
+        run(event.time_ns);
+        if (event.timer == 0) {
+            bite();
+        } else {
+            latch_all(event.timer);
+        }
+    }
+    run(to_ns);
+}
+
+void Firmware::run(std::int64_t to_ns) {
+    if (to_ns <= now_ns_) {
+        return;
+    }
+    const std::vector<std::int64_t> before = steps_now();
+    for (const auto &module : modules_) {
+        module->advance(to_ns);
+    }
+    physics_.advance(now_ns_, to_ns, drive_inputs(before), [this](unsigned unit, const ShaftMove &move) {
+        if (encoder_ != nullptr && unit < encoder_->encoders().size()) {
+            move_shaft(encoder_->encoders()[unit], move);
+        }
+    });
+    now_ns_ = to_ns;
+}
+
+std::vector<std::int64_t> Firmware::steps_now() const {
+    std::vector<std::int64_t> steps;
+    if (stepgen_ != nullptr) {
+        for (const Stepgen &one : stepgen_->stepgens()) {
+            steps.push_back(one.steps);
+        }
+    }
+    return steps;
+}
+
+DriveInputs Firmware::drive_inputs(const std::vector<std::int64_t> &steps_before) const {
+    DriveInputs inputs;
+    for (unsigned unit = 0; unit < steps_before.size(); ++unit) {
+        const std::int64_t steps = stepgen_->stepgens()[unit].steps - steps_before[unit];
+        inputs.steps.push_back(isDriven(Gtag::STEPGEN, unit) ? steps : 0);
+    }
+    for (unsigned unit = 0; pwm_ != nullptr && unit < pwm_->instances(); ++unit) {
+        inputs.duties.push_back(isDriven(Gtag::PWM, unit) ? pwm_->duty(unit) : 0.0);
+    }
+    return inputs;
+}
+
+bool Firmware::isDriven(Gtag gtag, unsigned unit) const {
+    // The first two outputs: step and direction, or PWM and direction.
+    static_assert(STEP_PIN == PWM_PIN);
+    bool has = false;
+    for (unsigned pin = 0; pin < idrom_.pins.size(); ++pin) {
+        const PinDescriptor &descriptor = idrom_.pins[pin];
+        const bool isOutput =
+            descriptor.secondary_pin == STEP_PIN || descriptor.secondary_pin == STEP_PIN + 1;
+        if (descriptor.secondary == gtag && descriptor.unit == unit && isOutput) {
+            has = true;
+            if (!ports_.isDrivenByModule(pin)) {
+                return false;
+            }
+        }
+    }
+    return has;
+}
+
+void Firmware::set_input(unsigned pin, std::optional<bool> level) {
+    inputs_[pin] = level;
+}
+
+bool Firmware::outside_level(unsigned pin) const {
+    if (inputs_[pin].has_value()) {
+        return *inputs_[pin];
+    }
+    if (const auto level = physics_.switch_level(pin); level.has_value()) {
+        return *level;
+    }
+    const PinDescriptor &descriptor = idrom_.pins[pin];
+    const bool isEncoder =
+        descriptor.secondary == Gtag::ENCODER || descriptor.secondary == Gtag::MUXED_ENCODER;
+    if (isEncoder && encoder_ != nullptr && descriptor.unit < encoder_->encoders().size() &&
+        physics_.shaft(descriptor.unit).has_value()) {
+        return (board::input_levels(encoder_->encoders()[descriptor.unit]) &
+                encoder_bit(descriptor.secondary_pin)) != 0;
+    }
+    return true;  // The cards have pull-up resistors.
+}
+
+bool Firmware::module_level(unsigned pin) const {
+    const PinDescriptor &descriptor = idrom_.pins[pin];
+    return outputs_[pin] != nullptr && (descriptor.secondary_pin & OUTPUT) != 0 &&
+           outputs_[pin]->output(descriptor.unit, descriptor.secondary_pin);
+}
+
+std::uint32_t Firmware::input_levels() const {
+    std::uint32_t levels = 0;
+    for (unsigned pin = 0; pin < idrom_.pins.size(); ++pin) {
+        const PinDescriptor &descriptor = idrom_.pins[pin];
+        const unsigned number = descriptor.secondary_pin;
+        if (descriptor.secondary == Gtag::IN_M && number >= 1 && number <= 32) {
+            levels |= static_cast<std::uint32_t>(ports_.level(pin)) << (number - 1);
+        }
+    }
+    return levels;
+}
+
+}  // namespace mw::mesa::board

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The HostMot2 register space of a board: its modules, its pins, and what is connected to them.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "drivers/mesa/board/modules/dpll.hh"
+#include "drivers/mesa/board/modules/encoder.hh"
+#include "drivers/mesa/board/modules/io_ports.hh"
+#include "drivers/mesa/board/modules/pwm.hh"
+#include "drivers/mesa/board/modules/stepgen.hh"
+#include "drivers/mesa/board/modules/switches.hh"
+#include "drivers/mesa/board/modules/watchdog.hh"
+#include "drivers/mesa/board/physics.hh"
+#include "drivers/mesa/identity/idrom.hh"
+
+namespace mw::mesa::board {
+
+/// The registers from power-up on. Time advances only by advance(). [one thread]
+class Firmware {
+  public:
+    /// `physics` is what the pins are connected to; it outlives the firmware, as motors outlive a reset.
+    Firmware(const Idrom &idrom, Physics &physics, std::int64_t power_up_ns);
+
+    /// Lets time pass up to `to_ns`: watchdog and DPLL timers act at their own times on the way. An earlier
+    /// time than the current one has no effect.
+    void advance(std::int64_t to_ns);
+    std::uint32_t read(std::uint16_t address);
+    void write(std::uint16_t address, std::uint32_t value);
+    /// The watchdog bites now, if there is one.
+    void bite();
+
+    /// Connects a pin to a level from outside; empty: to what it is connected to in the physics.
+    void set_input(unsigned pin, std::optional<bool> level);
+    bool pin_level(unsigned pin) const { return ports_.level(pin); }
+    /// Whether the board drives the pin.
+    Drive pin_drive(unsigned pin) const { return ports_.drive(pin); }
+    std::int64_t now_ns() const { return now_ns_; }
+
+    /// The modules of these types; nullptr or empty where the firmware has none.
+    const StepgenModule *stepgen() const { return stepgen_; }
+    const EncoderModule *encoder() const { return encoder_; }
+    const WatchdogModule *watchdog() const { return watchdog_; }
+    const SsrModule *ssr() const { return ssr_; }
+    const LedModule *led() const { return led_; }
+
+  private:
+    /// Which register a word of the space is.
+    struct Slot {
+        Module *module = nullptr;
+        RegisterPlace place;
+    };
+    Module *add_module(const ModuleDescriptor &descriptor);
+    template <class T, class... Arguments>
+    T *own(Arguments &&...arguments);
+    void map(Module &module, const ModuleDescriptor &descriptor);
+    void run(std::int64_t to_ns);
+    DriveInputs drive_inputs(const std::vector<std::int64_t> &steps_before) const;
+    std::vector<std::int64_t> steps_now() const;
+    bool isDriven(Gtag gtag, unsigned unit) const;
+    bool outside_level(unsigned pin) const;
+    bool module_level(unsigned pin) const;
+    std::uint32_t input_levels() const;
+    void latch_all(unsigned timer);
+
+    Idrom idrom_;
+    Physics &physics_;
+    std::vector<std::uint32_t> identity_;  ///< the registers of the description, by word
+    std::vector<Slot> slots_;              ///< by word
+    std::vector<std::unique_ptr<Module>> modules_;
+    std::vector<Module *> outputs_;  ///< by pin: the module that can drive it
+    std::vector<std::optional<bool>> inputs_;
+    IoPorts ports_;
+    WatchdogModule *watchdog_ = nullptr;
+    StepgenModule *stepgen_ = nullptr;
+    EncoderModule *encoder_ = nullptr;
+    PwmModule *pwm_ = nullptr;
+    DpllModule *dpll_ = nullptr;
+    SsrModule *ssr_ = nullptr;
+    LedModule *led_ = nullptr;
+    std::int64_t now_ns_;
+};
+
+}  // namespace mw::mesa::board

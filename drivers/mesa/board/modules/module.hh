@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What the modules of a firmware have in common. Each module is a few plain structs with functions of
+// (registers, time); the class on top connects them to the register space.
+#pragma once
+
+#include <cstdint>
+
+namespace mw::mesa::board {
+
+/// A register within its module.
+struct RegisterPlace {
+    unsigned reg = 0, instance = 0;
+};
+
+/// One module with all of its instances. The firmware calls advance() up to the time of each access before
+/// it, so that a module knows the current time. [one thread]
+class Module {
+  public:
+    virtual ~Module() = default;
+
+    /// Reading may have an effect, as on the real board (the sync register of the DPLL).
+    virtual std::uint32_t read(RegisterPlace place) = 0;
+    virtual void write(RegisterPlace place, std::uint32_t value) = 0;
+    /// Lets time pass up to `to_ns` [ns since power-up].
+    virtual void advance(std::int64_t /*to_ns*/) {}
+    /// The DPLL timer `timer` (1 to 4; 0: the sync itself) fires.
+    virtual void latch(unsigned /*timer*/) {}
+    /// The level at an output of a unit, by the number in the descriptor of its pin.
+    virtual bool output(unsigned /*unit*/, std::uint8_t /*function*/) const { return false; }
+    /// The number of registers; registers behind those of the descriptor may exist (DPLL timers).
+    virtual unsigned registers() const = 0;
+};
+
+/// A module that this board has no model of: it reads 0, and writes have no effect.
+class UnknownModule final : public Module {
+  public:
+    explicit UnknownModule(unsigned registers) : registers_(registers) {}
+    std::uint32_t read(RegisterPlace /*place*/) override { return 0; }
+    void write(RegisterPlace /*place*/, std::uint32_t /*value*/) override {}
+    unsigned registers() const override { return registers_; }
+
+  private:
+    unsigned registers_;
+};
+
+/// The setting of a register that makes a module latch with a timer of the DPLL: bit 15 on, bits 14 to 12
+/// timer.
+struct LatchTimer {
+    std::uint32_t value = 0;
+
+    bool isOn() const { return (value & 0x8000U) != 0; }
+    unsigned timer() const { return (value >> 12U) & 7U; }
+};
+
+}  // namespace mw::mesa::board

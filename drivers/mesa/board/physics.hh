@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What is connected to the simulated board: motors that follow steps or PWM, encoders on their shafts,
+// switches.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/result.hh"
+#include "drivers/mesa/board/modules/encoder.hh"
+#include "drivers/mesa/identity/idrom.hh"
+
+namespace mw::mesa::board {
+
+enum class MotorType : std::uint8_t {
+    STEPPER,  ///< follows each step at once
+    PWM,      ///< speed follows the duty with a first-order lag
+};
+
+/// A motor as the file declares it.
+struct MotorPlan {
+    std::string name;
+    MotorType type = MotorType::STEPPER;
+    unsigned unit = 0;  ///< of the step generator or of the PWM generator
+    std::int64_t steps_per_rev = 200;
+    double full_rev_s = 1;       ///< speed at a duty of 1 [rev/s]
+    double time_constant_s = 0;  ///< of the lag
+    double start_rev = 0;
+};
+
+struct EncoderPlan {
+    unsigned encoder = 0;
+    std::size_t motor = 0;  ///< index of the motor
+    std::int64_t counts_per_rev = 4000;
+    double index_rev = 0;  ///< where the index is, from 0 to below 1
+};
+
+struct SwitchPlan {
+    unsigned pin = 0;  ///< of the whole board
+    std::size_t motor = 0;
+    double at_rev = 0;
+    bool above = false;        ///< it is closed above `at_rev`; else below
+    bool closed_level = true;  ///< level of the pin while it is closed
+};
+
+struct PhysicsPlan {
+    std::vector<MotorPlan> motors;
+    std::vector<EncoderPlan> encoders;
+    std::vector<SwitchPlan> switches;
+};
+
+/// Lines `motor NAME stepgen=N steps_per_rev=N [start_rev=]`, `motor NAME pwm=N full_rev_s=
+/// time_constant_s=`, `encoder N motor=NAME counts_per_rev=N [index_rev=]` and `switch PIN motor=NAME
+/// below_rev=|above_rev= [closed=high|low]`; units and pins must exist in `idrom`.
+Result<PhysicsPlan> parse_physics(std::string_view text, const std::string &file, const Idrom &idrom);
+
+/// What reaches the motors within a piece of time in which nothing changes.
+struct DriveInputs {
+    std::vector<std::int64_t> steps;  ///< of each step generator whose pins drive
+    std::vector<double> duties;       ///< of each PWM generator whose pins drive
+};
+
+/// The motors at the current time. [one thread]
+class Physics {
+  public:
+    explicit Physics(PhysicsPlan plan);
+
+    using OnMove = std::function<void(unsigned encoder, const ShaftMove &move)>;
+    /// Lets time pass and reports how the shafts of the encoders moved.
+    void advance(std::int64_t from_ns, std::int64_t to_ns, const DriveInputs &inputs, const OnMove &on_move);
+
+    /// The shaft of an encoder, when one is connected.
+    std::optional<Shaft> shaft(unsigned encoder) const;
+    /// The level of a pin with a switch.
+    std::optional<bool> switch_level(unsigned pin) const;
+    /// The position of the motor with that index in the plan [rev].
+    double position_rev(std::size_t motor) const;
+    /// Whole steps that a stepper has made.
+    std::int64_t position_steps(std::size_t motor) const { return motors_[motor].steps; }
+    const PhysicsPlan &plan() const { return plan_; }
+
+  private:
+    struct Motor {
+        std::int64_t steps = 0;
+        double rev = 0, rev_s = 0;
+    };
+    std::int64_t count_of(const EncoderPlan &encoder) const;
+    void move_motors(double span_s, const DriveInputs &inputs, MotorType type);
+    void step(std::int64_t from_ns, std::int64_t to_ns, const DriveInputs &inputs, const OnMove &on_move,
+              MotorType type);
+
+    PhysicsPlan plan_;
+    std::vector<Motor> motors_;
+};
+
+}  // namespace mw::mesa::board

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Text tables of the simulated board (models, physics, faults): each line has a type, perhaps a name, and
+// values as KEY=VALUE. "#" begins a comment.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/result.hh"
+
+namespace mw::mesa::board {
+
+/// One KEY=VALUE.
+struct TableValue {
+    std::string key, value;
+    SourcePlace place;  ///< of the key
+    bool used = false;
+};
+
+/// A line that is no comment. The first error of an access is kept, so that a caller checks once, at the end.
+class TableLine {
+  public:
+    /// Splits `text`, which is line `place.line` of its file.
+    static Result<TableLine> parse(std::string_view text, const SourcePlace &place);
+
+    /// The first word: what the line declares.
+    const std::string &type() const { return type_; }
+    /// The second word; empty without one.
+    const std::string &name() const { return name_; }
+    const SourcePlace &place() const { return place_; }
+
+    /// A whole number (decimal or 0x...) from `low` to `high`; an error without a value where `fallback` is
+    /// empty.
+    std::int64_t whole(std::string_view key, std::int64_t low, std::int64_t high,
+                       std::optional<std::int64_t> fallback = {});
+    double number(std::string_view key, double low, double high, std::optional<double> fallback = {});
+    std::string text(std::string_view key, std::optional<std::string> fallback = {});
+    /// The number of the word among `words`.
+    std::size_t choice(std::string_view key, const std::vector<std::string> &words,
+                       std::optional<std::size_t> fallback = {});
+    bool has(std::string_view key) const;
+
+    /// Keeps an error about the value of `key`, or about the line without such a value.
+    void reject(std::string_view key, std::string message);
+    /// The first error; an error, too, where a value has not been read by anybody.
+    Result<> finish();
+
+  private:
+    TableValue *find(std::string_view key);
+    TableValue *required(std::string_view key, bool isOptional);
+
+    std::string type_, name_;
+    SourcePlace place_;
+    std::vector<TableValue> values_;
+    std::optional<Error> error_;
+};
+
+/// The lines of a whole text; `file` is its name in errors.
+Result<std::vector<TableLine>> parse_table(std::string_view text, const std::string &file);
+/// The same of a file.
+Result<std::string> read_text_file(const std::string &path);
+
+}  // namespace mw::mesa::board
