@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "drivers/mesa/hostmot2/assignment.hh"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace mw::mesa {
+
+namespace {
+
+constexpr std::uint8_t ANY = 0xFF;  // ends the list of versions
+
+/// A module type that the driver knows: the versions that it can use (none: it is ignored without a warning).
+struct Known {
+    Gtag gtag;
+    std::string_view name;
+    std::uint8_t versions[6];
+};
+
+constexpr Known KNOWN[] = {
+    {Gtag::WATCHDOG, "Watchdog", {0, ANY}},
+    {Gtag::IO_PORT, "IOPort", {0, ANY}},
+    {Gtag::ENCODER, "Encoder", {1, 2, 3, 0x83, ANY}},
+    {Gtag::MUXED_ENCODER, "MuxedEncoder", {2, 3, 4, 0x84, ANY}},
+    {Gtag::STEPGEN, "StepGen", {0, 1, 2, 0x42, 0xC2, ANY}},
+    {Gtag::PWM, "PWMGen", {0, 1, ANY}},
+    {Gtag::DPLL, "DPLL", {0, ANY}},
+    {Gtag::LED, "LED", {0, ANY}},
+    {Gtag::SSR, "SSR", {0, ANY}},
+    {Gtag::IRQ, "IRQLogic", {ANY}},
+    {Gtag::TRANSLATION_RAM, "TranslationRAM", {ANY}},
+    {Gtag::MUX_SELECT, "MuxedEncoderSelect", {ANY}},
+    {Gtag::DBSPI, "DBSPI", {ANY}},
+    {Gtag::DATA_PAINTER, "DataPainter", {ANY}},
+    {Gtag::LIO_PORT, "LIOPort", {ANY}},
+};
+
+const Known *known_of(Gtag gtag) noexcept {
+    const auto *known = std::ranges::find(KNOWN, gtag, &Known::gtag);
+    return known == std::end(KNOWN) ? nullptr : known;
+}
+
+bool isIgnored(const ModuleDescriptor &module) noexcept {
+    const Known *known = known_of(module.gtag);
+    return known != nullptr && known->versions[0] == ANY;
+}
+
+/// Pins of a multiplexer belong to the encoders that it serves.
+bool isSelectOfUsedEncoder(const PinDescriptor &pin, const Assignment &assignment) noexcept {
+    return pin.secondary == Gtag::MUX_SELECT &&
+           std::ranges::any_of(assignment.modules, [](const UsedModule &m) {
+               return m.descriptor.gtag == Gtag::MUXED_ENCODER && m.instances > 0;
+           });
+}
+
+constexpr std::uint8_t ALL_UNITS = 0x80;
+
+/// A stepgen has its step and direction pins, and as many table pins as stepgen_width= allows.
+bool isWithinWidth(const PinDescriptor &pin, const Config &config) noexcept {
+    const bool isTablePin = pin.secondary == Gtag::STEPGEN && (pin.secondary_pin & 0x80U) != 0;
+    return !isTablePin || static_cast<int>(pin.secondary_pin & 0x7FU) <= config.stepgen_width;
+}
+
+/// LEDs, watchdog and phase-locked loop exist at least once.
+int instances_of(const ModuleDescriptor &module) noexcept {
+    return module.gtag == Gtag::LED || module.gtag == Gtag::WATCHDOG || module.gtag == Gtag::DPLL
+               ? std::max<int>(module.instances, 1)
+               : module.instances;
+}
+
+bool isUsed(const PinDescriptor &pin, const Assignment &assignment, const Config &config) noexcept {
+    if (pin.secondary == Gtag::NONE || !isWithinWidth(pin, config)) {
+        return false;
+    }
+    if (isSelectOfUsedEncoder(pin, assignment)) {
+        return true;
+    }
+    return std::ranges::any_of(assignment.modules, [&](const UsedModule &module) {
+        const bool isOfIt = (pin.unit & ALL_UNITS) != 0 ? module.instances > 0 : pin.unit < module.instances;
+        return module.descriptor.gtag == pin.secondary && isOfIt;
+    });
+}
+
+Result<int> used_instances(const ModuleDescriptor &module, const Config &config) {
+    const int available = instances_of(module);
+    const int wanted = config.wanted_of(module.gtag);
+    if (wanted > available) {
+        return fail(
+            fmt::format("config: {}={}, but this firmware has {}. Use a number from 0 to {}, or -1 for all.",
+                        token_of(module.gtag), wanted, available, available));
+    }
+    return wanted == ALL_INSTANCES ? available : wanted;
+}
+
+/// A limit of modules that the firmware does not have at all.
+Result<> check_missing(const Idrom &idrom, const Config &config) {
+    for (const auto &[gtag, wanted] : config.wanted) {
+        const std::string_view token = token_of(gtag);
+        const bool isThere = std::ranges::any_of(
+            idrom.modules, [&](const ModuleDescriptor &module) { return token_of(module.gtag) == token; });
+        if (wanted > 0 && !isThere) {
+            return fail(fmt::format("config: {}={}, but this firmware has 0.", token, wanted));
+        }
+    }
+    return {};
+}
+
+UsedModule used_module(const ModuleDescriptor &module, const IdromHeader &header, int instances) {
+    UsedModule used;
+    used.descriptor = module;
+    used.instances = instances;
+    used.clock_hz = module.fast_clock ? header.clock_high_hz : header.clock_low_hz;
+    used.register_stride = static_cast<std::uint16_t>(header.register_strides[module.register_stride & 1U]);
+    used.instance_stride = static_cast<std::uint16_t>(header.instance_strides[module.instance_stride & 1U]);
+    return used;
+}
+
+}  // namespace
+
+bool isSupported(const ModuleDescriptor &module) noexcept {
+    const Known *known = known_of(module.gtag);
+    if (known == nullptr) {
+        return false;
+    }
+    for (const std::uint8_t version : known->versions) {
+        if (version == ANY) {
+            return false;
+        }
+        if (version == module.version) {
+            return true;
+        }
+    }
+    return false;
+}
+
+std::string_view module_name(Gtag gtag) noexcept {
+    const Known *known = known_of(gtag);
+    return known == nullptr ? "unknown" : known->name;
+}
+
+Result<Assignment> assign(const Idrom &idrom, const Config &config) {
+    Assignment assignment;
+    if (auto isThere = check_missing(idrom, config); !isThere) {
+        return std::unexpected(isThere.error());
+    }
+    for (const ModuleDescriptor &module : idrom.modules) {
+        const auto instances = used_instances(module, config);
+        if (!instances) {
+            return std::unexpected(instances.error());
+        }
+        if (isSupported(module)) {
+            assignment.modules.push_back(used_module(module, idrom.header, *instances));
+        } else if (!isIgnored(module)) {
+            assignment.warnings.push_back(fmt::format("Module {} (gtag {}) version {} at 0x{:04X} is not "
+                                                      "supported and not used. Its pins are GPIO.",
+                                                      module_name(module.gtag), static_cast<int>(module.gtag),
+                                                      module.version, module.base_address));
+        }
+    }
+    int number = 0;
+    for (const PinDescriptor &pin : idrom.pins) {
+        UsedPin used;
+        used.number = number++;
+        if (isUsed(pin, assignment, config)) {
+            used.module = pin.secondary;
+            used.instance = pin.unit;
+            used.function = pin.secondary_pin;
+        }
+        assignment.pins.push_back(used);
+    }
+    return assignment;
+}
+
+}  // namespace mw::mesa

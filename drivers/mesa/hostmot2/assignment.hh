@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Which modules and instances of a firmware are used, and which module has each pin.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/result.hh"
+#include "drivers/mesa/hostmot2/config.hh"
+#include "drivers/mesa/identity/idrom.hh"
+
+namespace mw::mesa {
+
+/// A module of the firmware and the number of its instances that are used (the first ones).
+struct UsedModule {
+    ModuleDescriptor descriptor;
+    int instances = 0;
+    std::uint32_t clock_hz = 0;  ///< that it counts
+    std::uint16_t register_stride = 0, instance_stride = 0;
+
+    /// The address of a register of an instance.
+    std::uint16_t address(int reg, int instance = 0) const noexcept {
+        return static_cast<std::uint16_t>(descriptor.base_address + reg * register_stride +
+                                          instance * instance_stride);
+    }
+};
+
+/// A pin of the board. Without a module it is a general input or output.
+struct UsedPin {
+    int number = 0;
+    Gtag module = Gtag::NONE;
+    int instance = 0;
+    std::uint8_t function = 0;  ///< of the module, bit 7: output
+
+    bool isOutputOfModule() const noexcept { return module != Gtag::NONE && (function & 0x80U) != 0; }
+    bool isGeneral() const noexcept { return module == Gtag::NONE; }
+};
+
+struct Assignment {
+    std::vector<UsedModule> modules;
+    std::vector<UsedPin> pins;
+    std::vector<std::string> warnings;  ///< modules that are left out, with gtag, version and base address
+};
+
+/// Whether the driver can use a module of this type and version.
+bool isSupported(const ModuleDescriptor &module) noexcept;
+/// The usual name of a module type, such as "StepGen"; "unknown" for others.
+std::string_view module_name(Gtag gtag) noexcept;
+
+/// Applies a configuration to a firmware. An error says how many instances of a module there are when the
+/// configuration wants more.
+Result<Assignment> assign(const Idrom &idrom, const Config &config);
+
+}  // namespace mw::mesa

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The string config= of a board: how many instances of each module are used, and modes of smart serial
+// channels. Unused instances release their pins as general inputs and outputs.
+#pragma once
+
+#include <array>
+#include <map>
+#include <string>
+#include <string_view>
+
+#include "base/result.hh"
+#include "drivers/mesa/identity/idrom.hh"
+
+namespace mw::mesa {
+
+/// A number of instances that is limited by what the firmware has.
+constexpr int ALL_INSTANCES = -1;
+constexpr int MAX_SMART_SERIAL_PORTS = 4, MAX_CHANNELS = 8;
+
+struct Config {
+    std::string firmware;          ///< file to load into the board; empty: what it has
+    std::map<Gtag, int> wanted{};  ///< instances by module; what is missing uses all
+    int stepgen_width = 2;         ///< output pins of each stepgen
+    bool isRawEnabled = false;
+    /// One character for each channel: a mode, or x for a channel that is not used. Empty: mode 0 for all.
+    std::array<std::string, MAX_SMART_SERIAL_PORTS> sserial_modes{};
+    /// Formats of absolute encoders, by channel: only channels with a format are used.
+    std::map<int, std::string> ssi_formats{}, biss_formats{}, fanuc_formats{};
+
+    /// ALL_INSTANCES unless the string limits the module.
+    int wanted_of(Gtag gtag) const;
+};
+
+/// Reads a string of tokens separated by blanks, such as "num_encoders=1 sserial_port_0=00xx". An error names
+/// the token, and the known one that is most like it.
+Result<Config> parse_config(std::string_view text);
+
+/// The token that limits a module, such as "num_encoders"; empty: there is none.
+std::string_view token_of(Gtag gtag) noexcept;
+
+}  // namespace mw::mesa

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// A module of a board: which registers it needs, its pins, and what it does in a cycle.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "drivers/mesa/hostmot2/assignment.hh"
+#include "drivers/mesa/hostmot2/pins.hh"
+#include "drivers/mesa/hostmot2/registers.hh"
+
+namespace mw::mesa {
+
+/// What all modules know of a cycle.
+struct Cycle {
+    double period_s = 0.001;
+    bool isFresh = false;    ///< the inputs are of this cycle
+    bool isWriting = false;  ///< in write(): what is requested is sent
+};
+
+class Module {
+  public:
+    virtual ~Module() = default;
+
+    /// Names the registers that it reads and writes. [while loading]
+    virtual void plan(Registers &registers) = 0;
+    /// Makes its pins. [while loading]
+    virtual void declare(PinSpace &space) = 0;
+    /// Takes the registers of this cycle; called when all are new. [servo thread]
+    virtual void read(const Registers &registers, const Cycle &cycle) noexcept = 0;
+    /// Sets the registers to write. After a failed read it is called without read(). [servo thread]
+    virtual void write(Registers &registers, const Cycle &cycle) noexcept = 0;
+};
+
+/// What a module needs while it is created.
+struct ModuleRequest {
+    const UsedModule &module;
+    const Assignment &assignment;
+    const Config &config;
+    const Idrom &idrom;
+};
+
+/// The module of a descriptor; null for those that other parts serve (IO ports, watchdog).
+std::unique_ptr<Module> make_module(const ModuleRequest &request);
+
+}  // namespace mw::mesa

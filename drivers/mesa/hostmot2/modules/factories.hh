@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// One function for each module type makes it for a board.
+#pragma once
+
+#include "drivers/mesa/hostmot2/module.hh"
+
+namespace mw::mesa {
+
+std::unique_ptr<Module> make_stepgens(const ModuleRequest &request);
+std::unique_ptr<Module> make_encoders(const ModuleRequest &request);
+std::unique_ptr<Module> make_pwmgens(const ModuleRequest &request);
+std::unique_ptr<Module> make_leds(const ModuleRequest &request);
+std::unique_ptr<Module> make_ssrs(const ModuleRequest &request);
+std::unique_ptr<Module> make_dpll(const ModuleRequest &request);
+
+/// Whether the firmware has a phase-locked loop that is used, so that modules have a timer-number pin.
+bool hasDpll(const Assignment &assignment) noexcept;
+
+}  // namespace mw::mesa

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "drivers/mesa/hostmot2/modules/ioport.hh"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace mw::mesa {
+
+namespace {
+
+enum PortRegister { DATA, DIRECTION, SOURCE, OPEN_DRAIN, INVERT };
+
+constexpr PinRow<GpioPins> INPUT_PINS[] = {
+    {"in", Access::OUT, &GpioPins::in},
+    {"in_not", Access::OUT, &GpioPins::in_not},
+};
+constexpr PinRow<GpioPins> GENERAL_PINS[] = {
+    {"out", Access::IN, &GpioPins::out},
+    {"is_output", Access::RW, &GpioPins::is_output},
+};
+/// Of general pins, and of outputs of modules.
+constexpr PinRow<GpioPins> DRIVE_PINS[] = {
+    {"invert_output", Access::RW, &GpioPins::invert_output},
+    {"is_opendrain", Access::RW, &GpioPins::is_opendrain},
+};
+
+struct OutputName {
+    Gtag module;
+    std::uint8_t function;
+    const char *module_name, *name;
+};
+constexpr OutputName OUTPUT_NAMES[] = {
+    {Gtag::STEPGEN, 0x81, "stepgen", "step"},   {Gtag::STEPGEN, 0x82, "stepgen", "direction"},
+    {Gtag::STEPGEN, 0x83, "stepgen", "table2"}, {Gtag::STEPGEN, 0x84, "stepgen", "table3"},
+    {Gtag::STEPGEN, 0x85, "stepgen", "table4"}, {Gtag::STEPGEN, 0x86, "stepgen", "table5"},
+    {Gtag::STEPGEN, 0x87, "stepgen", "table6"}, {Gtag::STEPGEN, 0x88, "stepgen", "table7"},
+    {Gtag::PWM, 0x81, "pwmgen", "out0"},        {Gtag::PWM, 0x82, "pwmgen", "out1"},
+    {Gtag::PWM, 0x83, "pwmgen", "enable"},
+};
+
+}  // namespace
+
+PortWords port_words(std::span<const UsedPin> used, std::span<const GpioPins> pins) noexcept {
+    PortWords words;
+    for (std::size_t i = 0; i < used.size() && i < pins.size(); ++i) {
+        const std::uint32_t bit = 1U << i;
+        const GpioPins &pin = pins[i];
+        const bool isOutput = used[i].isGeneral() ? pin.is_output : used[i].isOutputOfModule();
+        words.source |= used[i].isGeneral() ? 0U : bit;
+        words.direction |= isOutput && !pin.is_opendrain ? bit : 0U;
+        words.open_drain |= isOutput && pin.is_opendrain ? bit : 0U;
+        words.invert |= isOutput && pin.invert_output ? bit : 0U;
+        words.data |= used[i].isGeneral() && pin.out ? bit : 0U;
+    }
+    return words;
+}
+
+std::string output_name(const UsedPin &pin) {
+    for (const OutputName &one : OUTPUT_NAMES) {
+        if (one.module == pin.module && one.function == pin.function) {
+            return fmt::format("{}.{:02}.{}", one.module_name, pin.instance, one.name);
+        }
+    }
+    return {};
+}
+
+IoPorts::IoPorts(const UsedModule &module, const Assignment &assignment, int port_width)
+    : module_(module), used_(assignment.pins), pins_(assignment.pins.size()) {
+    const int count = static_cast<int>(used_.size());
+    for (int first = 0; first < count; first += port_width) {
+        Port port;
+        port.first = first;
+        port.count = std::min(port_width, count - first);
+        ports_.push_back(port);
+    }
+}
+
+void IoPorts::plan(Registers &registers) {
+    data_ =
+        registers.read({module_.address(DATA), static_cast<std::uint16_t>(ports_.size())}, ReadOrder::PORT);
+    int number = 0;
+    for (Port &port : ports_) {
+        const auto add = [&](int reg, WriteOrder order, Send send) {
+            return registers.write(module_.address(reg, number), order, send);
+        };
+        port.data = add(DATA, WriteOrder::PORT_DATA, Send::ALWAYS);
+        port.invert = add(INVERT, WriteOrder::PORT_INVERT, Send::CHANGED);
+        port.open_drain = add(OPEN_DRAIN, WriteOrder::PORT_OPEN_DRAIN, Send::CHANGED);
+        port.source = add(SOURCE, WriteOrder::PORT_SOURCE, Send::CHANGED);
+        port.direction = add(DIRECTION, WriteOrder::PORT_DIRECTION, Send::CHANGED);
+        ++number;
+    }
+}
+
+void IoPorts::declare(PinSpace &space) {
+    for (std::size_t i = 0; i < used_.size(); ++i) {
+        const std::string name = fmt::format("gpio.{:03}", used_[i].number);
+        inputs_.bind(space, name, INPUT_PINS, pins_[i]);
+        if (used_[i].isGeneral()) {
+            outputs_.bind(space, name, GENERAL_PINS, pins_[i]);
+        }
+        if (used_[i].isGeneral() || used_[i].isOutputOfModule()) {
+            outputs_.bind(space, name, DRIVE_PINS, pins_[i]);
+        }
+        const std::string other = output_name(used_[i]);
+        if (other.empty()) {
+            continue;
+        }
+        // A function on several pins has the number of the pin among them in its names.
+        const auto isSame = [&](const UsedPin &pin) { return output_name(pin) == other; };
+        const auto all = std::ranges::count_if(used_, isSame);
+        const auto before =
+            std::count_if(used_.begin(), used_.begin() + static_cast<std::ptrdiff_t>(i), isSame);
+        const std::size_t dot = other.rfind('.');
+        const std::string alias =
+            all == 1 ? other : fmt::format("{}.{}{}", other.substr(0, dot), before, other.substr(dot));
+        for (const PinRow<GpioPins> &row : DRIVE_PINS) {
+            space.alias_param(name + "." + row.name, alias + "." + row.name);
+        }
+    }
+}
+
+void IoPorts::read(const Registers &registers, const Cycle &) noexcept {
+    for (std::size_t number = 0; number < ports_.size(); ++number) {
+        const std::uint32_t word = registers.value(data_, static_cast<int>(number));
+        const Port &port = ports_[number];
+        for (int i = 0; i < port.count; ++i) {
+            GpioPins &pin = pins_[static_cast<std::size_t>(port.first + i)];
+            pin.in = ((word >> static_cast<unsigned>(i)) & 1U) != 0;
+            pin.in_not = !pin.in;
+        }
+    }
+    inputs_.store();
+}
+
+void IoPorts::write(Registers &registers, const Cycle &) noexcept {
+    outputs_.load();
+    for (const Port &port : ports_) {
+        const auto first = static_cast<std::size_t>(port.first), count = static_cast<std::size_t>(port.count);
+        const PortWords words = port_words(std::span(used_).subspan(first, count),
+                                           std::span<const GpioPins>(pins_).subspan(first, count));
+        registers.set(port.data, words.data);
+        registers.set(port.invert, words.invert);
+        registers.set(port.open_drain, words.open_drain);
+        registers.set(port.source, words.source);
+        registers.set(port.direction, words.direction);
+    }
+}
+
+}  // namespace mw::mesa

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <algorithm>
+
+#include "drivers/mesa/hostmot2/modules/factories.hh"
+
+namespace mw::mesa {
+
+namespace {
+
+struct Factory {
+    Gtag gtag;
+    std::unique_ptr<Module> (*make)(const ModuleRequest &);
+};
+
+constexpr Factory FACTORIES[] = {
+    {Gtag::STEPGEN, make_stepgens}, {Gtag::ENCODER, make_encoders}, {Gtag::MUXED_ENCODER, make_encoders},
+    {Gtag::PWM, make_pwmgens},      {Gtag::LED, make_leds},         {Gtag::SSR, make_ssrs},
+    {Gtag::DPLL, make_dpll},
+};
+
+}  // namespace
+
+std::unique_ptr<Module> make_module(const ModuleRequest &request) {
+    const auto *factory = std::ranges::find(FACTORIES, request.module.descriptor.gtag, &Factory::gtag);
+    return factory == std::end(FACTORIES) ? nullptr : factory->make(request);
+}
+
+bool hasDpll(const Assignment &assignment) noexcept {
+    return std::ranges::any_of(assignment.modules, [](const UsedModule &module) {
+        return module.descriptor.gtag == Gtag::DPLL && module.instances > 0;
+    });
+}
+
+}  // namespace mw::mesa

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Step generator: a rate accumulator of the board makes steps; the driver sets its rate. Registers and
+// formulas: shared/hardware.md, part B4.
+#pragma once
+
+#include <cstdint>
+
+#include "drivers/mesa/hostmot2/pins.hh"
+
+namespace mw::mesa {
+
+constexpr std::uint32_t MAX_STEP_CLOCKS = 0x3FFF;
+constexpr std::uint32_t LONGEST_STEP_TIME = 0xFFFFFFFF;  ///< [ns], limited to what the board can count
+
+/// Values of the pins and parameters of one step generator.
+struct StepgenPins {
+    double position_cmd = 0.0, velocity_cmd = 0.0;  ///< [position units, units/s]
+    double velocity_fb = 0.0, position_fb = 0.0;
+    std::int32_t counts = 0;
+    bool enable = false, isVelocityControl = false, position_reset = false;
+    double ff_vel = 0.0, vel_error = 0.0, s_to_match = 0.0, err_at_match = 0.0, pos_minus_prev_cmd = 0.0;
+    std::int32_t step_rate = 0;
+    double position_scale = 1.0, maxvel = 0.0, maxaccel = 1.0;
+    std::uint32_t steplen = 0, stepspace = 0, dirsetup = 0, dirhold = 0;  ///< [ns]
+    std::uint32_t step_type = 0;
+    bool swap_step_dir = false;
+};
+
+constexpr PinRow<StepgenPins> STEPGEN_PINS[] = {
+    {"position-cmd", Access::IN, &StepgenPins::position_cmd},
+    {"velocity-cmd", Access::IN, &StepgenPins::velocity_cmd},
+    {"velocity-fb", Access::OUT, &StepgenPins::velocity_fb},
+    {"position-fb", Access::OUT, &StepgenPins::position_fb},
+    {"counts", Access::OUT, &StepgenPins::counts},
+    {"enable", Access::IN, &StepgenPins::enable},
+    {"control-type", Access::IN, &StepgenPins::isVelocityControl},
+    {"position-reset", Access::IN, &StepgenPins::position_reset},
+    {"dbg_ff_vel", Access::OUT, &StepgenPins::ff_vel},
+    {"dbg_vel_error", Access::OUT, &StepgenPins::vel_error},
+    {"dbg_s_to_match", Access::OUT, &StepgenPins::s_to_match},
+    {"dbg_err_at_match", Access::OUT, &StepgenPins::err_at_match},
+    {"dbg_pos_minus_prev_cmd", Access::OUT, &StepgenPins::pos_minus_prev_cmd},
+    {"dbg_step_rate", Access::OUT, &StepgenPins::step_rate},
+    {"position-scale", Access::RW, &StepgenPins::position_scale},
+    {"maxvel", Access::RW, &StepgenPins::maxvel},
+    {"maxaccel", Access::RW, &StepgenPins::maxaccel},
+    {"steplen", Access::RW, &StepgenPins::steplen},
+    {"stepspace", Access::RW, &StepgenPins::stepspace},
+    {"dirsetup", Access::RW, &StepgenPins::dirsetup},
+    {"dirhold", Access::RW, &StepgenPins::dirhold},
+    {"step_type", Access::RW, &StepgenPins::step_type},
+};
+/// Of firmware that can swap the outputs.
+constexpr PinRow<StepgenPins> STEPGEN_SWAP_PINS[] = {
+    {"swap_step_dir", Access::RW, &StepgenPins::swap_step_dir},
+};
+
+/// What the driver knows of a step generator between cycles.
+struct StepgenState {
+    std::int64_t total = 0;  ///< steps of the board since the first read [1/65536 step]
+    std::int64_t zero = 0;   ///< total at which counts are 0
+    std::uint32_t accumulator = 0;
+    bool isKnown = false;       ///< the accumulator has been read
+    double moved = 0.0;         ///< estimated motion since the last read that succeeded [steps]
+    double velocity = 0.0;      ///< commanded [position units/s]
+    double previous_cmd = 0.0;  ///< [position units]
+    bool hasPreviousCmd = false;
+};
+
+/// Whole clocks of at least `ns`, limited to what the register holds.
+std::uint32_t step_clocks(std::uint32_t ns, std::uint32_t clock_hz) noexcept;
+/// The longest time that the board can count [ns].
+std::uint32_t longest_step_time(std::uint32_t clock_hz) noexcept;
+/// The register that makes `steps_s`, limited to what it holds.
+std::int32_t step_rate_register(double steps_s, std::uint32_t clock_hz) noexcept;
+/// The velocity that pins and step timing permit [position units/s].
+double stepgen_velocity_limit(const StepgenPins &pins) noexcept;
+
+/// Takes the accumulator: sets counts and position-fb. No step is lost when it wraps.
+void stepgen_read(StepgenState &state, StepgenPins &pins, std::uint32_t accumulator) noexcept;
+/// The rate register of this cycle. A step generator that is not enabled has the rate 0 at once.
+/// `isFresh`: stepgen_read() was called in this cycle; else the position is estimated from the rate.
+std::int32_t stepgen_rate(StepgenState &state, StepgenPins &pins, double period_s, bool isFresh,
+                          std::uint32_t clock_hz) noexcept;
+/// The mode register.
+std::uint32_t stepgen_mode(const StepgenPins &pins) noexcept;
+
+}  // namespace mw::mesa

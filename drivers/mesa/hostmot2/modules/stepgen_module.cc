@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <fmt/format.h>
+
+#include "drivers/mesa/hostmot2/modules/factories.hh"
+#include "drivers/mesa/hostmot2/modules/small.hh"
+#include "drivers/mesa/hostmot2/modules/stepgen.hh"
+
+namespace mw::mesa {
+
+namespace {
+
+enum StepgenRegister {
+    RATE,
+    ACCUMULATOR,
+    MODE,
+    DIRECTION_SETUP,
+    DIRECTION_HOLD,
+    PULSE_WIDTH,
+    PULSE_SPACE,
+    TABLE_DATA,
+    TABLE_LENGTH,
+    MASTER_RATE,
+    TIMER,
+};
+constexpr std::uint32_t FULL_RATE = 0xFFFFFFFF;
+constexpr std::uint8_t SWAP_VERSION = 0x40, FIRST_TIMER_VERSION = 2;
+
+struct TimerPin {
+    std::int32_t timer_number = -1;
+};
+constexpr PinRow<TimerPin> TIMER_PINS[] = {{"timer-number", Access::IN, &TimerPin::timer_number}};
+
+class Stepgens final : public Module {
+  public:
+    explicit Stepgens(const ModuleRequest &request)
+        : module_(request.module), instances_(static_cast<std::size_t>(request.module.instances)),
+          hasTimer_(hasDpll(request.assignment) && request.module.descriptor.version >= FIRST_TIMER_VERSION) {
+        const std::uint32_t longest = longest_step_time(module_.clock_hz);
+        for (Instance &one : instances_) {
+            one.pins.steplen = one.pins.stepspace = longest;
+            one.pins.dirsetup = one.pins.dirhold = longest;
+        }
+    }
+
+    void plan(Registers &registers) override {
+        accumulators_ =
+            registers.read({module_.address(ACCUMULATOR), static_cast<std::uint16_t>(instances_.size())},
+                           ReadOrder::STEP_ACCUMULATOR);
+        registers.write(module_.address(MASTER_RATE), WriteOrder::CONFIGURATION, Send::AFTER_FAULT,
+                        FULL_RATE);
+        if (hasTimer_) {
+            timer_ = registers.write(module_.address(TIMER), WriteOrder::CONFIGURATION, Send::CHANGED);
+        }
+        int number = 0;
+        for (Instance &one : instances_) {
+            const auto add = [&](int reg) {
+                return registers.write(module_.address(reg, number), WriteOrder::CONFIGURATION,
+                                       Send::CHANGED);
+            };
+            one.mode = add(MODE);
+            one.setup = add(DIRECTION_SETUP);
+            one.hold = add(DIRECTION_HOLD);
+            one.width = add(PULSE_WIDTH);
+            one.space = add(PULSE_SPACE);
+            one.rate = registers.write(module_.address(RATE, number), WriteOrder::RATE, Send::ALWAYS);
+            ++number;
+        }
+    }
+    void declare(PinSpace &space) override {
+        int number = 0;
+        for (Instance &one : instances_) {
+            const std::string name = fmt::format("stepgen.{:02}", number++);
+            binding_.bind(space, name, STEPGEN_PINS, one.pins);
+            if ((module_.descriptor.version & SWAP_VERSION) != 0) {
+                binding_.bind(space, name, STEPGEN_SWAP_PINS, one.pins);
+            }
+        }
+        if (hasTimer_) {
+            binding_.bind(space, "stepgen", TIMER_PINS, timer_pins_);
+        }
+    }
+    void read(const Registers &registers, const Cycle &) noexcept override {
+        binding_.load();
+        int number = 0;
+        for (Instance &one : instances_) {
+            stepgen_read(one.state, one.pins, registers.value(accumulators_, number++));
+        }
+        binding_.store();
+    }
+    void write(Registers &registers, const Cycle &cycle) noexcept override {
+        binding_.load();
+        const std::uint32_t clock = module_.clock_hz;
+        for (Instance &one : instances_) {
+            const std::int32_t rate = stepgen_rate(one.state, one.pins, cycle.period_s, cycle.isFresh, clock);
+            registers.set(one.rate, static_cast<std::uint32_t>(rate));
+            registers.set(one.mode, stepgen_mode(one.pins));
+            registers.set(one.setup, step_clocks(one.pins.dirsetup, clock));
+            registers.set(one.hold, step_clocks(one.pins.dirhold, clock));
+            registers.set(one.width, step_clocks(one.pins.steplen, clock));
+            registers.set(one.space, step_clocks(one.pins.stepspace, clock));
+        }
+        if (hasTimer_) {
+            registers.set(timer_, dpll_timer_choice(timer_pins_.timer_number));
+        }
+        binding_.store();
+    }
+
+  private:
+    struct Instance {
+        StepgenPins pins;
+        StepgenState state;
+        WriteHandle rate, mode, setup, hold, width, space;
+    };
+    UsedModule module_;
+    std::vector<Instance> instances_;
+    TimerPin timer_pins_;
+    PinBinding binding_;
+    ReadHandle accumulators_;
+    WriteHandle timer_;
+    bool hasTimer_;
+};
+
+}  // namespace
+
+std::unique_ptr<Module> make_stepgens(const ModuleRequest &request) {
+    return std::make_unique<Stepgens>(request);
+}
+
+}  // namespace mw::mesa

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The watchdog of a board: it turns all pins to inputs when the driver does not write in time. Registers:
+// shared/hardware.md, part B2.
+#pragma once
+
+#include "drivers/mesa/hostmot2/module.hh"
+
+namespace mw::mesa {
+
+struct WatchdogPins {
+    bool has_bit = false;
+    std::uint32_t timeout_ns = 5'000'000;
+};
+
+/// The timer register: (n + 1) / clock is the time.
+std::uint32_t watchdog_timer(std::uint32_t timeout_ns, std::uint32_t clock_hz) noexcept;
+
+/// Status 1 means a bite; at power-up it reads 1, too, until the watchdog is cleared for the first time.
+class Watchdog final : public Module {
+  public:
+    explicit Watchdog(const UsedModule &module) : module_(module) {}
+
+    void plan(Registers &registers) override;
+    void declare(PinSpace &space) override;
+    void read(const Registers &registers, const Cycle &cycle) noexcept override;
+    void write(Registers &registers, const Cycle &cycle) noexcept override;
+
+    /// Bitten until the operator clears has_bit: nothing may be written. [servo thread]
+    bool isBitten() const noexcept { return pins_.has_bit; }
+    /// The next write must hold all registers: the operator cleared has_bit, or the board does not yet
+    /// confirm that it is armed. [servo thread]
+    bool isRewriteWanted() const noexcept { return !isArmed_; }
+    /// True once after a bite was found. [servo thread]
+    bool take_bite() noexcept;
+    std::uint32_t timeout_ns() const noexcept { return pins_.timeout_ns; }
+    std::uint16_t timer_address() const noexcept { return module_.address(0); }
+
+  private:
+    /// Reads with status 1 after which a watchdog that was cleared counts as bitten again. A lost write
+    /// costs one or two.
+    static constexpr int MOST_ATTEMPTS = 10;
+
+    UsedModule module_;
+    WatchdogPins pins_;
+    PinBinding binding_;
+    ReadHandle status_;
+    WriteHandle timer_, clear_, reset_;
+    bool isArmed_ = false, hasBitBefore_ = false, isBiteNew_ = false;
+    int attempts_ = 0;
+};
+
+}  // namespace mw::mesa

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// A board for tests: a map of registers with a record of what is written, and failures on demand.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "drivers/mesa/hostmot2/register_bus.hh"
+
+namespace mw::mesa::test {
+
+class MemoryBus final : public RegisterBus {
+  public:
+    std::string name = "test";
+    std::vector<std::string> connector_names{"P1"};
+    std::map<std::uint16_t, std::uint32_t> registers;
+    /// Called after each write of a register, so that a test plays a module.
+    std::function<void(RegisterWrite)> on_write;
+    /// Called before each read of a cycle.
+    std::function<void()> on_read;
+    /// What the next read gives; the next write is lost, so that the bus requires all registers afterwards.
+    CycleRead next_read = CycleRead::DONE;
+    bool isNextWriteLost = false;
+    bool isRewriteWanted = false;
+    int reads = 0;
+
+    std::vector<RegisterRange> ranges;
+    int max_writes = 0;
+    std::vector<std::vector<RegisterWrite>> written;  ///< the list of each cycle
+    std::vector<RegisterWrite> loading_writes;
+
+    MemoryBus() { written.reserve(1 << 16); }
+
+    /// The value that the last cycle wrote to a register; -1: none.
+    std::int64_t last(std::uint16_t address) const {
+        if (!written.empty()) {
+            for (auto i = written.back().rbegin(); i != written.back().rend(); ++i) {
+                if (i->address == address) {
+                    return i->value;
+                }
+            }
+        }
+        return -1;
+    }
+
+    std::string card_name() const override { return name; }
+    std::vector<std::string> connectors() const override { return connector_names; }
+    Result<std::vector<std::uint32_t>> read_now(RegisterRange range) override {
+        std::vector<std::uint32_t> values;
+        for (int i = 0; i < range.count; ++i) {
+            values.push_back(registers[static_cast<std::uint16_t>(range.address + 4 * i)]);
+        }
+        return values;
+    }
+    Result<> write_now(std::uint16_t address, std::span<const std::uint32_t> values) override {
+        for (const std::uint32_t value : values) {
+            loading_writes.push_back({address, value});
+            registers[address] = value;
+            address = static_cast<std::uint16_t>(address + 4);
+        }
+        return {};
+    }
+    Result<> set_lists(std::span<const RegisterRange> list, int most_writes) override {
+        ranges.assign(list.begin(), list.end());
+        max_writes = most_writes;
+        for (const RegisterRange &range : ranges) {
+            for (int i = 0; i < range.count; ++i) {
+                registers.try_emplace(static_cast<std::uint16_t>(range.address + 4 * i), 0);
+            }
+        }
+        return {};
+    }
+    void request() noexcept override {}
+    CycleRead read(std::span<std::uint32_t> values, long) noexcept override {
+        ++reads;
+        if (on_read) {
+            on_read();
+        }
+        const CycleRead result = next_read;
+        next_read = CycleRead::DONE;
+        if (result != CycleRead::DONE) {
+            isRewriteWanted = true;
+            return result;
+        }
+        std::size_t n = 0;
+        for (const RegisterRange &range : ranges) {
+            for (int i = 0; i < range.count; ++i) {
+                values[n++] = registers.find(static_cast<std::uint16_t>(range.address + 4 * i))->second;
+            }
+        }
+        return result;
+    }
+    bool write(std::span<const RegisterWrite> writes) noexcept override {
+        if (isRecording) {
+            written.emplace_back(writes.begin(), writes.end());
+        }
+        if (isNextWriteLost) {
+            isNextWriteLost = false;
+            isRewriteWanted = true;
+            return true;
+        }
+        for (const RegisterWrite &write : writes) {
+            if (isRecording || registers.contains(write.address)) {
+                registers[write.address] = write.value;
+            }
+            if (on_write) {
+                on_write(write);
+            }
+        }
+        return true;
+    }
+    bool take_rewrite() noexcept override {
+        const bool isWanted = isRewriteWanted;
+        isRewriteWanted = false;
+        return isWanted;
+    }
+    bool isRecording = true;  ///< the record allocates
+};
+
+}  // namespace mw::mesa::test
