@@ -36,8 +36,7 @@ unsigned unit_of(TableLine &line, std::string_view key, unsigned count) {
 unsigned number_of(TableLine &line, std::string_view what, std::size_t count) {
     const auto number = parse_int(line.name());
     if (!number.has_value() || *number < 0 || *number >= static_cast<std::int64_t>(count)) {
-        line.reject("",
-                    fmt::format("'{}' is not a {} of the board, which has {}.", line.name(), what, count));
+        line.reject("", fmt::format("The board has no {1} '{0}': it has {2}.", line.name(), what, count));
         return 0;
     }
     return static_cast<unsigned>(*number);
