@@ -41,6 +41,9 @@ class EthernetBus final : public RegisterBus {
     std::vector<std::string> connectors() const override;
     /// The name that the card reports, without spaces at its end.
     const std::string &reported_name() const { return reported_name_; }
+    bool isKnownCard() const { return card_ != nullptr; }
+    /// The MAC address of the board, the first byte first.
+    std::array<std::uint8_t, 6> mac() const;
 
     Result<std::vector<std::uint32_t>> read_now(RegisterRange range) override;
     Result<> write_now(std::uint16_t address, std::span<const std::uint32_t> values) override;

@@ -116,6 +116,16 @@ std::string EthernetBus::card_name() const {
     return name;
 }
 
+std::array<std::uint8_t, 6> EthernetBus::mac() const {
+    std::array<std::uint8_t, 6> mac{};
+    const auto words = std::span(known_identity_).last(mac.size());
+    for (std::size_t i = 0; i < mac.size(); ++i) {
+        // The lowest word is read first, and in each word the lowest byte.
+        mac[i] = std::to_integer<std::uint8_t>(words[mac.size() - 1 - i]);
+    }
+    return mac;
+}
+
 std::vector<std::string> EthernetBus::connectors() const {
     std::vector<std::string> names;
     for (std::size_t port = 0; card_ != nullptr && port < card_->ports; ++port) {
