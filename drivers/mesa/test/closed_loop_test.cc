@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The driver against the simulated board, which was written from the same description by another person:
-// motors end where HAL commands them, whatever the network loses.
+// motors end where HAL commands them, also when the network loses packets.
 #include <cmath>
 #include <random>
 

@@ -15,7 +15,7 @@
 
 namespace mw::mesa::test {
 
-/// What a rig is made from; texts as the program hm2-board reads them.
+/// The parts of a rig; texts as the program hm2-board reads them.
 struct RigPlan {
     std::string model = "7i76e";
     std::string config{};
