@@ -62,11 +62,13 @@ bool isWithinWidth(const PinDescriptor &pin, const Config &config) noexcept {
     return !isTablePin || static_cast<int>(pin.secondary_pin & 0x7FU) <= config.stepgen_width;
 }
 
-/// LEDs, watchdog and phase-locked loop exist at least once.
-int instances_of(const ModuleDescriptor &module) noexcept {
-    return module.gtag == Gtag::LED || module.gtag == Gtag::WATCHDOG || module.gtag == Gtag::DPLL
-               ? std::max<int>(module.instances, 1)
-               : module.instances;
+/// Watchdog and phase-locked loop exist once; lamps are counted by the card.
+int instances_of(const ModuleDescriptor &module, int leds) noexcept {
+    if (module.gtag == Gtag::LED) {
+        return leds;
+    }
+    const bool isSingle = module.gtag == Gtag::WATCHDOG || module.gtag == Gtag::DPLL;
+    return isSingle ? 1 : module.instances;
 }
 
 bool isUsed(const PinDescriptor &pin, const Assignment &assignment, const Config &config) noexcept {
@@ -82,8 +84,8 @@ bool isUsed(const PinDescriptor &pin, const Assignment &assignment, const Config
     });
 }
 
-Result<int> used_instances(const ModuleDescriptor &module, const Config &config) {
-    const int available = instances_of(module);
+Result<int> used_instances(const ModuleDescriptor &module, const Config &config, int leds) {
+    const int available = instances_of(module, leds);
     const int wanted = config.wanted_of(module.gtag);
     if (wanted > available) {
         return fail(
@@ -139,17 +141,23 @@ std::string_view module_name(Gtag gtag) noexcept {
     return known == nullptr ? "unknown" : known->name;
 }
 
-Result<Assignment> assign(const Idrom &idrom, const Config &config) {
+Result<Assignment> assign(const Idrom &idrom, const Config &config, int leds) {
     Assignment assignment;
     if (auto isThere = check_missing(idrom, config); !isThere) {
         return std::unexpected(isThere.error());
     }
     for (const ModuleDescriptor &module : idrom.modules) {
-        const auto instances = used_instances(module, config);
+        const auto instances = used_instances(module, config, leds);
         if (!instances) {
             return std::unexpected(instances.error());
         }
-        if (isSupported(module)) {
+        const bool isSecond = std::ranges::any_of(
+            assignment.modules, [&](const UsedModule &used) { return used.descriptor.gtag == module.gtag; });
+        if (isSecond) {
+            assignment.warnings.push_back(fmt::format(
+                "Module {} (gtag {}) at 0x{:04X} is the second of its type and not used. Its pins are GPIO.",
+                module_name(module.gtag), static_cast<int>(module.gtag), module.base_address));
+        } else if (isSupported(module)) {
             assignment.modules.push_back(used_module(module, idrom.header, *instances));
         } else if (!isIgnored(module)) {
             assignment.warnings.push_back(fmt::format("Module {} (gtag {}) version {} at 0x{:04X} is not "

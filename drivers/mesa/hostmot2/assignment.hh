@@ -49,7 +49,7 @@ bool isSupported(const ModuleDescriptor &module) noexcept;
 std::string_view module_name(Gtag gtag) noexcept;
 
 /// Applies a configuration to a firmware. An error says how many instances of a module there are when the
-/// configuration wants more.
-Result<Assignment> assign(const Idrom &idrom, const Config &config);
+/// configuration wants more. `leds`: lamps of the card, which the firmware does not count.
+Result<Assignment> assign(const Idrom &idrom, const Config &config, int leds);
 
 }  // namespace mw::mesa

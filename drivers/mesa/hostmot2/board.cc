@@ -20,7 +20,7 @@ Cycle cycle_of(long period_ns) noexcept {
 }  // namespace
 
 Result<std::unique_ptr<Board>> Board::make(RegisterBus &bus, const Idrom &idrom, const Config &config) {
-    auto assignment = assign(idrom, config);
+    auto assignment = assign(idrom, config, bus.leds());
     if (!assignment) {
         return std::unexpected(assignment.error());
     }
@@ -80,7 +80,9 @@ void Board::read(long period_ns) noexcept {
         module->read(registers_, cycle);
     }
     if (watchdog_ != nullptr && watchdog_->take_bite()) {
-        events_ = {true, longest_gap_ns_, failed_reads_};
+        events_.hasBitten = true;
+        events_.longest_gap_ns = longest_gap_ns_;
+        events_.failed_reads = failed_reads_;
         longest_gap_ns_ = 0;
     }
     failed_reads_ = 0;
@@ -104,6 +106,7 @@ void Board::write(long period_ns, std::int64_t now_ns) noexcept {
         isRewriteDue_ = true;
         return;
     }
+    note_timeout(period_ns);
     const bool isSent = bus_.write(registers_.list(isRewriteDue_));
     isRewriteDue_ = !isSent;
     if (isSent) {
@@ -115,6 +118,16 @@ void Board::note_write(std::int64_t now_ns) noexcept {
     longest_gap_ns_ = hasWritten_ ? std::max(longest_gap_ns_, now_ns - last_write_ns_) : 0;
     last_write_ns_ = now_ns;
     hasWritten_ = true;
+}
+
+void Board::note_timeout(long period_ns) noexcept {
+    const std::int64_t timeout_ns = watchdog_ == nullptr ? 0 : watchdog_->timeout_ns();
+    if (timeout_ns == checked_timeout_ns_) {
+        return;
+    }
+    checked_timeout_ns_ = timeout_ns;
+    // A cycle that is half a period late must not be a bite.
+    events_.isTimeoutShort = timeout_ns < period_ns + period_ns / 2;
 }
 
 BoardEvents Board::take_events() noexcept {

@@ -15,6 +15,7 @@ struct BoardEvents {
     bool hasBitten = false;           ///< the watchdog has turned the outputs off
     std::int64_t longest_gap_ns = 0;  ///< the longest time between two writes before it
     int failed_reads = 0;             ///< reads in a row that failed before it
+    bool isTimeoutShort = false;      ///< the time of the watchdog is less than 1.5 periods
 };
 
 class Board {
@@ -39,6 +40,8 @@ class Board {
     /// What happened since the last call. [servo thread]
     BoardEvents take_events() noexcept;
 
+    std::int64_t timeout_ns() const noexcept { return checked_timeout_ns_; }
+
     /// Lets the watchdog bite at once, so that all outputs are off. [while unloading]
     void stop() noexcept;
 
@@ -46,6 +49,7 @@ class Board {
     Board(RegisterBus &bus, Assignment assignment) : bus_(bus), assignment_(std::move(assignment)) {}
     void add(const Idrom &idrom, const Config &config, const UsedModule &module);
     void note_write(std::int64_t now_ns) noexcept;
+    void note_timeout(long period_ns) noexcept;
 
     RegisterBus &bus_;
     Assignment assignment_;
@@ -53,7 +57,7 @@ class Board {
     std::vector<std::unique_ptr<Module>> modules_;
     Watchdog *watchdog_ = nullptr;  ///< in modules_; null: the firmware has none
     bool isFresh_ = false, isReadOnce_ = false, isStopped_ = false, isRewriteDue_ = true;
-    std::int64_t last_write_ns_ = 0, longest_gap_ns_ = 0;
+    std::int64_t last_write_ns_ = 0, longest_gap_ns_ = 0, checked_timeout_ns_ = 0;
     bool hasWritten_ = false;
     int failed_reads_ = 0;
     BoardEvents events_;

@@ -43,6 +43,10 @@ class RegisterBus {
     /// The name of the card in HAL, such as "7i76e", and the names of the connectors, one for each port.
     virtual std::string card_name() const = 0;
     virtual std::vector<std::string> connectors() const = 0;
+    /// Pins of each connector; 0: as the firmware says.
+    virtual int port_width() const { return 0; }
+    /// Lamps that the driver can switch: the pins CR01, CR02...
+    virtual int leds() const { return 4; }
 
     /// Reads registers now. [while loading; an error names the board and what failed]
     virtual Result<std::vector<std::uint32_t>> read_now(RegisterRange range) = 0;

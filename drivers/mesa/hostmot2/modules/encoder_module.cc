@@ -21,14 +21,10 @@ struct BoardPins {
     bool hires_timestamp = false;
     std::int32_t timer_number = -1;
 };
-constexpr PinRow<BoardPins> PLAIN_PINS[] = {
-    {"sample-frequency", Access::IN, &BoardPins::sample_frequency},
-    {"hires-timestamp", Access::IN, &BoardPins::hires_timestamp},
-};
+constexpr PinRow<BoardPins> PLAIN_PINS[] = {{"sample-frequency", Access::IN, &BoardPins::sample_frequency}};
 constexpr PinRow<BoardPins> MUXED_PINS[] = {
-    {"muxed-sample-frequency", Access::IN, &BoardPins::muxed_sample_frequency},
-    {"hires-timestamp", Access::IN, &BoardPins::hires_timestamp},
-};
+    {"muxed-sample-frequency", Access::IN, &BoardPins::muxed_sample_frequency}};
+constexpr PinRow<BoardPins> STAMP_PINS[] = {{"hires-timestamp", Access::IN, &BoardPins::hires_timestamp}};
 constexpr PinRow<BoardPins> SKEW_PINS[] = {{"muxed-skew", Access::IN, &BoardPins::muxed_skew}};
 constexpr PinRow<BoardPins> TIMER_PINS[] = {{"timer-number", Access::IN, &BoardPins::timer_number}};
 
@@ -61,10 +57,12 @@ class Encoders final : public Module {
         hasProbe_ = (request.module.descriptor.version & PROBE_VERSION) != 0;
         hasSkew_ = isMuxed_ && version >= FIRST_SKEW_VERSION;
         hasTimer_ = hasDpll(request.assignment) && version >= FIRST_TIMER_VERSION;
-        // A firmware with both types numbers the muxed encoders after the plain ones.
+        // A firmware with both types numbers the muxed encoders after the plain ones, which have the pins of
+        // the board.
         for (const UsedModule &other : request.assignment.modules) {
             first_ += isMuxed_ && other.descriptor.gtag == Gtag::ENCODER ? other.instances : 0;
         }
+        hasTimer_ = hasTimer_ && first_ == 0;
     }
 
     void plan(Registers &registers) override {
@@ -96,6 +94,9 @@ class Encoders final : public Module {
             binding_.bind(space, "encoder", MUXED_PINS, board_);
         } else {
             binding_.bind(space, "encoder", PLAIN_PINS, board_);
+        }
+        if (first_ == 0) {
+            binding_.bind(space, "encoder", STAMP_PINS, board_);
         }
         if (hasSkew_) {
             binding_.bind(space, "encoder", SKEW_PINS, board_);

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "drivers/mesa/hostmot2/modules/factories.hh"
@@ -10,6 +12,7 @@ namespace {
 
 enum PwmRegister { VALUE, MODE, PWM_RATE, PDM_RATE, ENABLE };
 constexpr std::uint8_t DITHER_VERSION = 1;
+constexpr int MAX_GENERATORS = 32;  // bits of the enable register
 
 struct BoardPins {
     std::uint32_t pwm_frequency = 20'000, pdm_frequency = 20'000;  ///< [Hz]
@@ -22,7 +25,8 @@ constexpr PinRow<BoardPins> BOARD_PINS[] = {
 class PwmGenerators final : public Module {
   public:
     explicit PwmGenerators(const ModuleRequest &request)
-        : module_(request.module), instances_(static_cast<std::size_t>(request.module.instances)) {}
+        : module_(request.module),
+          instances_(static_cast<std::size_t>(std::min(request.module.instances, MAX_GENERATORS))) {}
 
     void plan(Registers &registers) override {
         pwm_rate_ = registers.write(module_.address(PWM_RATE), WriteOrder::CONFIGURATION, Send::CHANGED);

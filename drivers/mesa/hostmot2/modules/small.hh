@@ -8,7 +8,7 @@
 
 namespace mw::mesa {
 
-/// The register of the lamps (LED): CR01 is bit 31.
+/// The register of the lamps: CR01 is bit 31.
 std::uint32_t led_word(std::span<const bool> lit) noexcept;
 
 /// The rate register of solid state relays: enable, and the divisor of the drive frequency.

@@ -46,7 +46,7 @@ TEST(ConfigString, RefusesValuesThatAreNotNumbersOrModes) {
 }
 
 Result<Assignment> assigned(const std::string &config) {
-    return assign(firmware(), parse_config(config).value());
+    return assign(firmware(), parse_config(config).value(), 4);
 }
 
 int general_pins(const Assignment &assignment) {
@@ -101,7 +101,7 @@ TEST(AssignmentOfModules, LeavesOutUnknownModulesAndVersionsWithAWarning) {
     idrom.modules.push_back(unknown);
     idrom.modules[3].version = 9;
     idrom.modules.push_back({Gtag::IRQ, 5, false, 1, 0x0A00, 1, 0, 0, 0});
-    const auto assignment = assign(idrom, {});
+    const auto assignment = assign(idrom, {}, 4);
     ASSERT_TRUE(assignment.has_value());
     ASSERT_EQ(assignment->warnings.size(), 2U);
     EXPECT_EQ(

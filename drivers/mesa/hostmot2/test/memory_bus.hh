@@ -46,6 +46,8 @@ class MemoryBus final : public RegisterBus {
     }
 
     std::string card_name() const override { return name; }
+    int width = 0;
+    int port_width() const override { return width; }
     std::vector<std::string> connectors() const override { return connector_names; }
     Result<std::vector<std::uint32_t>> read_now(RegisterRange range) override {
         std::vector<std::uint32_t> values;

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "drivers/mesa/hostmot2/hal/driver.hh"
+
+#include <algorithm>
+#include <cerrno>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "drivers/mesa/hostmot2/board.hh"
+#include "drivers/mesa/hostmot2/hal/hal_pins.hh"
+#include "drivers/mesa/hostmot2/hal/log_idrom.hh"
+#include "drivers/mesa/hostmot2/read_idrom.hh"
+#include "hal.h"
+#include "rtapi.h"
+
+namespace mw::mesa {
+
+namespace {
+
+constexpr long long NS_PER_US = 1000;
+
+struct HalBoard {
+    int comp_id = 0;
+    std::string name;
+    std::unique_ptr<Board> board;
+};
+
+DriverOptions &options() {
+    static DriverOptions instance;
+    return instance;
+}
+
+std::vector<std::unique_ptr<HalBoard>> &boards() {
+    static std::vector<std::unique_ptr<HalBoard>> all;
+    return all;
+}
+
+/// One message for each event. [servo thread]
+void report(HalBoard &board) noexcept {
+    const BoardEvents events = board.board->take_events();
+    const char *name = board.name.c_str();
+    if (events.hasBitten) {
+        rtapi_print_msg(
+            RTAPI_MSG_ERR,
+            "hm2/%s: The watchdog has bitten: all outputs are off. The longest time between two writes "
+            "was %lld us, the limit is %lld us; failed reads before: %d. Clear %s.watchdog.has_bit.",
+            name, static_cast<long long>(events.longest_gap_ns) / NS_PER_US,
+            static_cast<long long>(board.board->timeout_ns()) / NS_PER_US, events.failed_reads, name);
+    }
+    if (events.isTimeoutShort) {
+        rtapi_print_msg(
+            RTAPI_MSG_ERR,
+            "hm2/%s: watchdog.timeout_ns is %lld, less than 1.5 periods of the thread. Increase it.", name,
+            static_cast<long long>(board.board->timeout_ns()));
+    }
+}
+
+void read_function(void *self, long period_ns) {
+    static_cast<HalBoard *>(self)->board->read(period_ns);
+}
+void request_function(void *self, long) {
+    static_cast<HalBoard *>(self)->board->request();
+}
+void write_function(void *self, long period_ns) {
+    auto &board = *static_cast<HalBoard *>(self);
+    board.board->write(period_ns, rtapi_get_time());
+    report(board);
+}
+
+int export_functions(HalBoard &board) {
+    const std::pair<const char *, void (*)(void *, long)> functions[] = {
+        {"read", read_function}, {"read-request", request_function}, {"write", write_function}};
+    for (const auto &[name, function] : functions) {
+        const std::string full = board.name + "." + name;
+        if (const int status = hal_export_funct(full.c_str(), function, &board, 1, 0, board.comp_id);
+            status < 0) {
+            return status;
+        }
+    }
+    return 0;
+}
+
+/// Each line of a message as a message of the board.
+int refuse(const std::string &name, std::string_view text) {
+    while (!text.empty()) {
+        const std::size_t end = std::min(text.find('\n'), text.size());
+        rtapi_print_msg(RTAPI_MSG_ERR, "hm2/%s: %.*s\n", name.c_str(), static_cast<int>(end), text.data());
+        text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    return -EIO;
+}
+
+}  // namespace
+
+void set_driver_options(const DriverOptions &wanted) {
+    options() = wanted;
+}
+const DriverOptions &driver_options() noexcept {
+    return options();
+}
+
+int register_board(const BoardRequest &request) {
+    const auto config = parse_config(request.config);
+    if (!config) {
+        refuse(request.name, config.error().message);
+        return -EINVAL;
+    }
+    const auto idrom = read_idrom(*request.bus);
+    if (!idrom) {
+        return refuse(request.name, idrom.error().message);
+    }
+    log_idrom(request.name, *idrom, options());
+    auto board = Board::make(*request.bus, *idrom, *config);
+    if (!board) {
+        refuse(request.name, board.error().message);
+        return -EINVAL;
+    }
+    for (const std::string &warning : (*board)->warnings()) {
+        rtapi_print_msg(RTAPI_MSG_WARN, "hm2/%s: %s\n", request.name.c_str(), warning.c_str());
+    }
+    HalPins pins(request.comp_id, request.name);
+    (*board)->declare(pins);
+    if (pins.status() < 0) {
+        return pins.status();
+    }
+    auto made = std::make_unique<HalBoard>(HalBoard{request.comp_id, request.name, std::move(*board)});
+    boards().push_back(std::move(made));
+    return export_functions(*boards().back());
+}
+
+void unregister_boards(int comp_id) {
+    std::erase_if(boards(), [&](const std::unique_ptr<HalBoard> &board) {
+        const bool isOfIt = board->comp_id == comp_id;
+        if (isOfIt) {
+            board->board->stop();
+        }
+        return isOfIt;
+    });
+}
+
+}  // namespace mw::mesa

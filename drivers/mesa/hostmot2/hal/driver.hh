@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The library that all HostMot2 components use: `hostmot2` sets its options, and the component of a bus
+// (hm2_eth, hm2_test) registers its boards, which get pins and the functions NAME.read, .write and
+// .read-request.
+//
+//     // in rtapi_app_main of a bus, with a bus for each board that outlives the component
+//     auto board = mw::mesa::register_board({comp_id, "hm2_7i76e.0", &bus, "num_encoders=1"});
+//     // in rtapi_app_exit, before hal_exit
+//     mw::mesa::unregister_boards(comp_id);
+#pragma once
+
+#include <string>
+
+#include "drivers/mesa/hostmot2/register_bus.hh"
+
+#define MW_HOSTMOT2_API __attribute__((visibility("default")))
+
+namespace mw::mesa {
+
+/// Options of `loadrt hostmot2`.
+struct DriverOptions {
+    bool hasIdromLog = false, hasModuleLog = false, hasPinLog = false, hasUseLog = false;
+    bool isNamedBySerialNumber = false;
+    int sserial_baudrate = -1;  ///< of smart serial ports [bit/s]; -1: that of the firmware
+};
+
+/// [while loading]
+MW_HOSTMOT2_API void set_driver_options(const DriverOptions &options);
+MW_HOSTMOT2_API const DriverOptions &driver_options() noexcept;
+
+struct BoardRequest {
+    int comp_id = 0;             ///< that owns the pins
+    std::string name;            ///< in HAL, such as hm2_7i76e.0
+    RegisterBus *bus = nullptr;  ///< must stay until unregister_boards()
+    std::string config;          ///< part of config= of this board
+};
+
+/// Reads the firmware of a board and makes its pins and functions: 0, or a negated errno with a message in
+/// the log. [while loading]
+MW_HOSTMOT2_API int register_board(const BoardRequest &request);
+/// Turns the outputs of all boards of a component off and forgets them. No function of theirs may run.
+MW_HOSTMOT2_API void unregister_boards(int comp_id);
+
+}  // namespace mw::mesa

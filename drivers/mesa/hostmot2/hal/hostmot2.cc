@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// hostmot2: options of all HostMot2 boards. It is loaded before the component of a bus.
+#include "drivers/mesa/hostmot2/hal/driver.hh"
+#include "hal/sdk/component.hh"
+
+namespace {
+
+int debug_idrom = 0;
+int debug_module_descriptors = 0;
+int debug_pin_descriptors = 0;
+int debug_modules = 0;
+int use_serial_numbers = 0;
+int sserial_baudrate = -1;
+RTAPI_MP_INT(debug_idrom, "1: log the header of the description of the firmware");
+RTAPI_MP_INT(debug_module_descriptors, "1: log the modules of the firmware");
+RTAPI_MP_INT(debug_pin_descriptors, "1: log the pins of the firmware");
+RTAPI_MP_INT(debug_modules, "1: log the modules that are used");
+RTAPI_MP_INT(use_serial_numbers, "1: name smart serial cards by their serial number");
+RTAPI_MP_INT(sserial_baudrate, "baud rate of smart serial ports; -1: that of the firmware");
+
+int comp_id = -1;
+
+}  // namespace
+
+int rtapi_app_main(void) {
+    comp_id = hal_init("hostmot2");
+    if (comp_id < 0) {
+        return comp_id;
+    }
+    mw::mesa::DriverOptions options;
+    options.hasIdromLog = debug_idrom != 0;
+    options.hasModuleLog = debug_module_descriptors != 0;
+    options.hasPinLog = debug_pin_descriptors != 0;
+    options.hasUseLog = debug_modules != 0;
+    options.isNamedBySerialNumber = use_serial_numbers != 0;
+    options.sserial_baudrate = sserial_baudrate;
+    mw::mesa::set_driver_options(options);
+    return mw::sdk::finish(comp_id, 0) < 0 ? -1 : 0;
+}
+
+void rtapi_app_exit(void) {
+    hal_exit(comp_id);
+}

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// hm2_memory: a board in memory as a component, for tests of the pins in HAL.
+#include "drivers/mesa/hostmot2/hal/driver.hh"
+#include "drivers/mesa/hostmot2/test/firmware.hh"
+#include "drivers/mesa/hostmot2/test/memory_bus.hh"
+#include "hal/sdk/component.hh"
+
+namespace {
+
+char *config = nullptr;
+RTAPI_MP_STRING(config, "instances that are used");
+
+int comp_id = -1;
+mw::mesa::test::MemoryBus bus;
+
+}  // namespace
+
+int rtapi_app_main(void) {
+    comp_id = hal_init("hm2_memory");
+    bus.registers = mw::mesa::test::image_of(mw::mesa::test::firmware());
+    bus.connector_names = {"P1", "P2", "P3"};
+    bus.registers[0x0D00] = 1;
+    const int status =
+        mw::mesa::register_board({comp_id, "hm2_7i76e.0", &bus, config == nullptr ? "" : config});
+    return mw::sdk::finish(comp_id, status) < 0 ? status : 0;
+}
+
+void rtapi_app_exit(void) {
+    mw::mesa::unregister_boards(comp_id);
+    hal_exit(comp_id);
+}
