@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The boards of hm2_eth: opens the connection of each, prepares the network, and registers it with the
+// driver.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "drivers/mesa/hostmot2/hal/driver.hh"
+
+namespace mw::mesa {
+
+/// Boards of one load.
+constexpr int MAX_ETHERNET_BOARDS = 4;
+
+/// The module parameters of hm2_eth.
+struct EthernetLoad {
+    int comp_id = 0;
+    std::span<char *const>
+        addresses;  ///< board_ip=: ADDRESS or ADDRESS:PORT; the first empty one ends the list
+    std::span<char *const> configs;  ///< config=
+    std::string firewall;            ///< auto, nft or none
+};
+
+/// 0, or a negated errno with a message in the log; then nothing is left. [while loading]
+MW_HOSTMOT2_API int load_ethernet_boards(const EthernetLoad &load);
+/// Turns the outputs of the boards off and removes what the network was prepared with. No function of theirs
+/// may run.
+MW_HOSTMOT2_API void unload_ethernet_boards(int comp_id);
+
+}  // namespace mw::mesa

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// hm2_eth: Mesa boards on Ethernet.
+//
+//     loadrt hostmot2
+//     loadrt hm2_eth board_ip=192.168.1.121 config="num_encoders=1 num_stepgens=3"
+//
+// Strings of several boards are separated by commas. firewall=auto or nft keeps other packets off the
+// interface of a board, none leaves it open.
+#include "drivers/mesa/ethernet/hal/ethernet_boards.hh"
+#include "hal/sdk/component.hh"
+
+namespace {
+
+using mw::mesa::MAX_ETHERNET_BOARDS;
+
+char *board_ip[MAX_ETHERNET_BOARDS];
+char *config[MAX_ETHERNET_BOARDS];
+char *firewall = nullptr;
+char *board_rtnet = nullptr;
+int debug = 0;
+RTAPI_MP_ARRAY_STRING(board_ip, MAX_ETHERNET_BOARDS, "addresses of the boards");
+RTAPI_MP_ARRAY_STRING(config, MAX_ETHERNET_BOARDS, "which modules of each board are used");
+RTAPI_MP_STRING(firewall, "auto, nft or none");
+RTAPI_MP_STRING(board_rtnet, "posix: the sockets of Linux");
+RTAPI_MP_INT(debug, "accepted for files of LinuxCNC; failures are always counted");
+
+int comp_id = -1;
+
+}  // namespace
+
+int rtapi_app_main(void) {
+    comp_id = hal_init("hm2_eth");
+    if (comp_id < 0) {
+        return comp_id;
+    }
+    const int status = mw::mesa::load_ethernet_boards({.comp_id = comp_id,
+                                                       .addresses = board_ip,
+                                                       .configs = config,
+                                                       .firewall = firewall == nullptr ? "auto" : firewall});
+    const int result = mw::sdk::finish(comp_id, status);
+    return result < 0 ? result : 0;
+}
+
+void rtapi_app_exit(void) {
+    hal_exit(comp_id);  // no function of a board runs after this
+    mw::mesa::unload_ethernet_boards(comp_id);
+}
