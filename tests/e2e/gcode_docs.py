@@ -80,7 +80,7 @@ def main():
         runner = Runner(rs274, pathlib.Path(name))
         for path in sorted((source / 'docs/user/gcode').glob('*.md')):
             text = path.read_text()
-            for heading in re.findall(r'^### (.*)$', text, re.M):
+            for heading in re.findall(r'^## (.*)$', text, re.M):
                 documented.update(re.findall(r'[GM]\d+(?:\.\d)?', heading))
 
             def replace(match):

@@ -41,7 +41,7 @@ def main():
     rs274, path = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]) / 'docs/integrator/remap.md'
     text = path.read_text()
     failed, count = 0, 0
-    for section in re.split(r'^### ', text, flags=re.M)[1:]:
+    for section in re.split(r'^## ', text, flags=re.M)[1:]:
         with tempfile.TemporaryDirectory() as name:
             folder, program = pathlib.Path(name), None
             for kind, file, content in FENCE.findall(section):
