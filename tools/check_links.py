@@ -131,7 +131,8 @@ def main():
             findings += [f'{name}:{number}: {what}' for number, what in links_of(tree, name, text)]
         findings += [f'{name}:{number}: {what}' for number, what in pages_named(tree, text)]
     findings += [f'{name}: {what}' for name, what in not_in_an_index(tree)]
-    print('\n'.join(dict.fromkeys(findings)))
+    for finding in dict.fromkeys(findings):
+        print(finding)
     print(f'{pages} pages checked, {len(set(findings))} findings')
     return 1 if findings else 0
 

@@ -25,7 +25,7 @@ html_css_files = ['paper.css' if html_theme == 'basic' else 'screen.css']
 html_copy_source = False
 html_show_sourcelink = False
 html_show_sphinx = False
-html_theme_options = {} if html_theme == 'basic' else {'navigation_depth': 3, 'collapse_navigation': True}
+html_theme_options = {} if html_theme == 'basic' else {'navigation_depth': 4, 'collapse_navigation': True}
 
 # Languages of examples that Pygments does not know.
 PLAIN_LANGUAGES = ('ngc', 'canon', 'error', 'program', 'comp')

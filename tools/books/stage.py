@@ -22,11 +22,12 @@ LINK = re.compile(r'(?<!!)\[[^\]]*\]\(([^)#\s]+\.md)\)')
 
 
 def contents_of(index, text):
-    """The pages that an index links to in its own folder and below, without .md: each once, in order."""
+    """The pages that an index links to in its own folder and below, without .md: each once, in order. A folder below with an index is that index."""
     pages = []
     for target in LINK.findall(text):
         path = os.path.normpath(target)
-        if not path.startswith('..') and path[:-3] not in pages and (index.parent / path).is_file():
+        is_of_other_index = '/' in path and not path.endswith('/index.md') and (index.parent / path).with_name('index.md').is_file()
+        if not path.startswith('..') and path[:-3] not in pages and (index.parent / path).is_file() and not is_of_other_index:
             pages.append(path[:-3])
     return pages
 
