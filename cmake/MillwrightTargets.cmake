@@ -2,7 +2,7 @@
 # One function per kind of target, so that every folder's CMake file reads as a list of what is in it.
 include(CMakeParseArguments)
 
-# Flags of code that runs in a realtime thread (docs/architecture.md, "Realtime").
+# Flags of code that runs in a realtime thread (docs/developer/architecture.md, "Realtime").
 set(MW_REALTIME_FLAGS $<$<COMPILE_LANGUAGE:CXX>:-fno-exceptions> $<$<COMPILE_LANGUAGE:CXX>:-fno-rtti>)
 set_property(GLOBAL PROPERTY MW_REALTIME_TARGETS "")
 
@@ -82,7 +82,7 @@ function(mw_unite target)
 endfunction()
 
 # mw_test(NAME SOURCES ... DEPENDS ... [LABELS ...] [TIMEOUT s] [COMPONENTS and2 ...] [ROWS C10 ...] [APART]
-# [OPTIMISED]): a GoogleTest program, one CTest test per case. COMPONENTS are built first. ROWS are the rows of docs/requirements.md
+# [OPTIMISED]): a GoogleTest program, one CTest test per case. COMPONENTS are built first. ROWS are the rows of docs/developer/requirements.md
 # that it tests: labels row-C10 (ctest -L row-C10). The sources of one that is
 # APART give different things one name; one that is OPTIMISED computes much itself.
 function(mw_test name)

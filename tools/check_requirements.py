@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Keeps the column "tests" of docs/requirements.md: which test programs cover each row.
+"""Keeps the column "tests" of docs/developer/requirements.md: which test programs cover each row.
 
 usage: check_requirements.py ROOT [--write]
 A test names its rows in CMake: mw_test(NAME ... ROWS C10 ...) or, where it is no GoogleTest program, a label (row-C10). The exit
@@ -39,7 +39,7 @@ def column(counts):
 
 def main():
     root = pathlib.Path(sys.argv[1])
-    page = root / 'docs' / 'requirements.md'
+    page = root / 'docs/developer/requirements.md'
     rows = tests_by_row(root)
     failures, seen, lines = 0, set(), []
     for number, line in enumerate(page.read_text().splitlines(), 1):
@@ -50,16 +50,16 @@ def main():
             wanted = column(rows[tag]) or '-'
             if wanted == '-' and state == 'whole':
                 failures += 1
-                print(f'docs/requirements.md:{number}: {tag} is called whole and no test names it')
+                print(f'docs/developer/requirements.md:{number}: {tag} is called whole and no test names it')
             if tests != wanted and '--write' not in sys.argv:
                 failures += 1
-                print(f'docs/requirements.md:{number}: {tag}: the tests are now: {wanted} (--write puts it right)')
+                print(f'docs/developer/requirements.md:{number}: {tag}: the tests are now: {wanted} (--write puts it right)')
             line = f'| {tag} | {what} | {state} | {wanted} |'
         lines.append(line)
     for tag in sorted(set(rows) - seen):
         if rows[tag]:
             failures += 1
-            print(f'{tag} is named by {column(rows[tag])} and is no row of docs/requirements.md')
+            print(f'{tag} is named by {column(rows[tag])} and is no row of docs/developer/requirements.md')
     if '--write' in sys.argv:
         page.write_text('\n'.join(lines) + '\n')
     print(f'{len(seen)} rows checked, {failures} findings')

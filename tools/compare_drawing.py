@@ -5,7 +5,7 @@
 usage: compare_drawing.py [--modules DIR]
 
 Each draws into the feedback buffer of a context of Mesa without a window; the lines that arrive are compared. Rotations
-are left out: docs/compatibility.md tells how they differ.
+are left out: docs/reference/compatibility.md tells how they differ.
 """
 import argparse
 import ctypes

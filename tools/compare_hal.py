@@ -4,7 +4,7 @@
 
 Streamers feed the components and samplers record them. Linked components run once for each order of their functions.
 LinuxCNC's halrun runs as an ordinary user in namespaces of its own, ours as an instance of its own.
-Intended differences are listed in tools/hal_differences.py, each with its row in docs/compatibility.md; anything else
+Intended differences are listed in tools/hal_differences.py, each with its row in docs/reference/compatibility.md; anything else
 makes the exit status 1.
 """
 import argparse
@@ -247,9 +247,9 @@ def main():
     options = parser.parse_args()
     if shutil.which(REFERENCE) is None:
         sys.exit(f'{REFERENCE} is missing: install linuxcnc-uspace to compare with it')
-    without = hal_differences.rows_without_page((ROOT / 'docs/compatibility.md').read_text())
+    without = hal_differences.rows_without_page((ROOT / 'docs/reference/compatibility.md').read_text())
     if without:
-        sys.exit('docs/compatibility.md has no row for: ' + '; '.join(without))
+        sys.exit('docs/reference/compatibility.md has no row for: ' + '; '.join(without))
     folder = pathlib.Path(tempfile.mkdtemp(prefix='compare-hal-'))
     folder.chmod(0o755)
     cache = pathlib.Path(options.cache) if options.cache else None

@@ -477,7 +477,7 @@ def random_line(rng):
     ])
 
 
-# What differs on purpose: (what a line of LinuxCNC or ours matches). Reasons in docs/compatibility.md.
+# What differs on purpose: (what a line of LinuxCNC or ours matches). Reasons in docs/reference/compatibility.md.
 DIFFERENCES = [
     r'used/total shared memory:',
     r'active/recycled ',

@@ -4,7 +4,7 @@
 
 The last printed digit of a number may differ by one, and -0 is 0. Texts of messages are not compared, nor what a failing
 block has done before it failed. Differences that are meant are recognised (interp_differences.py), counted by their kind
-and explained in docs/compatibility.md; any other is listed and makes the exit status 1.
+and explained in docs/reference/compatibility.md; any other is listed and makes the exit status 1.
 """
 import argparse
 import collections

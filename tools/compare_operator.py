@@ -7,7 +7,7 @@ usage: compare_operator.py [--prefix DIR] [--user NAME] [--machine NAME] [--firs
 
 Simulated machines (MACHINES) are started by both, each in namespaces of its own, with operator_session.py as their display. It
 sends commands by Python, halui and linuxcncrsh, and writes the status after each act. Fields that differ must be in
-operator_differences.INTENDED, whose texts are rows of docs/compatibility.md; anything else is a failure. Seeds are spread over the machines; --each: sessions
+operator_differences.INTENDED, whose texts are rows of docs/reference/compatibility.md; anything else is a failure. Seeds are spread over the machines; --each: sessions
 in one start of a machine; --cache keeps LinuxCNC's side. Needs root and the user NAME (default cnc).
 """
 import argparse
@@ -25,7 +25,7 @@ import tempfile
 import operator_differences
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-PAGE = ROOT / 'docs/compatibility.md'
+PAGE = ROOT / 'docs/reference/compatibility.md'
 # name: (letters of the joints, lines of [KINS], of [EMCIO], of [TRAJ], spindles)
 MACHINES = {
     'mill': ('XYZ', 'KINEMATICS = trivkins coordinates=XYZ', '', '', 1),
@@ -180,7 +180,7 @@ def main():
     page = PAGE.read_text(encoding='utf-8')
     missing = [text for text, _, _ in operator_differences.INTENDED if text not in page]
     if missing:
-        sys.exit('not in docs/compatibility.md: ' + '; '.join(missing))
+        sys.exit('not in docs/reference/compatibility.md: ' + '; '.join(missing))
     names = [options.machine] if options.machine else list(MACHINES)
     parts = []
     for i, first in enumerate(range(options.first, options.first + options.count, options.each)):

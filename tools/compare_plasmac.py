@@ -185,7 +185,7 @@ def peer_outputs(folder, rows, inputs, outputs):
 
 
 def isAllowed(name, ours, peer):
-    """Differences that are explained in docs/compatibility.md; `ours` and `peer` are the outputs of one cycle."""
+    """Differences that are explained in docs/reference/compatibility.md; `ours` and `peer` are the outputs of one cycle."""
     state = int(peer['state-out'])
     if name in ('led-up', 'led-down'):  # the peer's stay lit together, and after the cut
         return bool(peer['led-up'] and peer['led-down']) or int(ours['state-out']) not in (11, 12)

@@ -3,7 +3,7 @@
 """Runs remap programs (G-code and Python handlers of our own) through LinuxCNC's rs274 and ours and compares what they print,
 and whether they fail.
 
-Texts of errors are not compared. Differences that are meant are in MEANT below and in docs/compatibility.md; any other makes
+Texts of errors are not compared. Differences that are meant are in MEANT below and in docs/reference/compatibility.md; any other makes
 the exit status 1. LinuxCNC refuses root: it runs as the user nobody.
 """
 import argparse

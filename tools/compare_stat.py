@@ -4,7 +4,7 @@
 
 usage: compare_stat.py [--prefix DIR] [--user NAME] [--table]
 
-Attributes that differ must be rows of "linuxcnc.stat, field by field" in docs/compatibility.md; anything else is a failure.
+Attributes that differ must be rows of "linuxcnc.stat, field by field" in docs/reference/compatibility.md; anything else is a failure.
 --table prints those rows. TIMED attributes depend on the instant, and are compared by their type alone. Needs root.
 """
 import argparse
@@ -64,7 +64,7 @@ def main():
             elif name not in TIMED:
                 for part, x, y in parts(name, a[name], b[name]):
                     rows.setdefault(re.sub(r'^(spindle|tool_table)\[\d+\]', r'\1[n]', part), (state, y, x))
-    page = (ROOT / 'docs/compatibility.md').read_text(encoding='utf-8')
+    page = (ROOT / 'docs/reference/compatibility.md').read_text(encoding='utf-8')
     failures = 0
     for name, (state, y, x) in sorted(rows.items()):
         if options.table:

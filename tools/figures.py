@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Draws the figures of docs/architecture.md: the layers (from the table of check_layers.py), the processes, and one move.
+"""Draws the figures of docs/developer/architecture.md: the layers (from the table of check_layers.py), the processes, and one move.
 
 usage: figures.py ROOT           writes docs/figures/*.svg (needs dot of graphviz)
        figures.py ROOT --check   exit status 1: a figure is older than its source, or a name in it is not in the file that it names

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Differences from LinuxCNC's components that are intended, for compare_hal.py.
 
-Each entry names the pins that may differ and the row of docs/compatibility.md that explains it. `avoid` has inputs or
+Each entry names the pins that may differ and the row of docs/reference/compatibility.md that explains it. `avoid` has inputs or
 parameters with which the difference does not occur: most files use them, and then the entry does not count.
 """
 import dataclasses
@@ -14,7 +14,7 @@ from hal_components import LateBit, SlowBit, uniform
 class Difference:
     component: str  # regular expression over the module's name
     pins: str       # regular expression over the outputs, without the prefix
-    row: str        # beginning of the row in docs/compatibility.md, without '| '
+    row: str        # beginning of the row in docs/reference/compatibility.md, without '| '
     load: str = ''  # regular expression over the load, where the difference depends on it
     shift: int = 0  # values may come so many periods earlier or later
     first: int = 0  # in so many periods the pins may differ even then
@@ -76,7 +76,7 @@ DIFFERENCES = [
 
 
 def rows_without_page(page):
-    """The rows that docs/compatibility.md does not have."""
+    """The rows that docs/reference/compatibility.md does not have."""
     return sorted({d.row for d in DIFFERENCES if not re.search(r'^\| ' + re.escape(d.row), page, re.M)})
 
 

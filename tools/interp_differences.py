@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Differences from LinuxCNC's rs274 that are meant: recognised one by one, each explained in docs/compatibility.md.
+"""Differences from LinuxCNC's rs274 that are meant: recognised one by one, each explained in docs/reference/compatibility.md.
 
 Each function takes a Pair and changes its two lists of calls where it finds its own difference and nothing else. What is
 equal after all of them is explained by those that have changed something.

@@ -25,7 +25,8 @@ static bool isReplaced() {
         }
     }
     if (missing[0] != '\0') {
-        rtapi_print_msg(RTAPI_MSG_ERR, "%s is no homing module, it lacks %s: see docs/extending/homing.md\n",
+        rtapi_print_msg(RTAPI_MSG_ERR,
+                        "%s is no homing module, it lacks %s: see docs/developer/extending/homing.md\n",
                         replaced_by, missing);
     }
     return missing[0] == '\0';

@@ -159,7 +159,7 @@ int find_homing() {
     if (found == motion::ModuleHoming::Found::SOME) {
         rtapi_print_msg(RTAPI_MSG_ERR,
                         "motmod: a loaded module has some functions of a homing module, but not %s: see "
-                        "docs/extending/homing.md\n",
+                        "docs/developer/extending/homing.md\n",
                         missing);
         return -2;  // ENOENT
     }
@@ -185,7 +185,7 @@ int find_planner() {
     if (found == motion::ModulePlanner::Found::SOME) {
         rtapi_print_msg(RTAPI_MSG_ERR,
                         "motmod: a loaded module has a function of a planner module, but not %s: see "
-                        "docs/extending/planner.md\n",
+                        "docs/developer/extending/planner.md\n",
                         missing);
         return -2;  // ENOENT
     }

@@ -15,7 +15,7 @@ int rtapi_app_main(void) {
     for (const char *name : FUNCTIONS) {
         if (replaced_by != nullptr && mw_ext_find_symbol(name) == nullptr) {
             rtapi_print_msg(RTAPI_MSG_ERR,
-                            "%s is no planner module, it lacks %s: see docs/extending/planner.md\n",
+                            "%s is no planner module, it lacks %s: see docs/developer/extending/planner.md\n",
                             replaced_by, name);
             return -8;  // ENOEXEC
         }

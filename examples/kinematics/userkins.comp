@@ -4,7 +4,7 @@ description """
 Three joints that are the axes X, Y and Z, where Y may lean: for each unit of Y the machine goes userkins.lean units of X.
 
 Copy this file, name it and its component anew, write the two functions, then: halcompile --install NAME.comp and
-[KINS]KINEMATICS = NAME. What a kinematics may assume stands in docs/extending/kinematics.md.
+[KINS]KINEMATICS = NAME. What a kinematics may assume stands in docs/developer/extending/kinematics.md.
 """;
 pin out s32 fpin = 0 "counts the runs of fdemo: a component has a pin of its own";
 function fdemo;

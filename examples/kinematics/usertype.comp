@@ -5,7 +5,7 @@ What the modules of kinematics that can be switched have as type 2: the machine 
 along X, as a second fixture may want it.
 
 Copy this file, name its component anew, write the functions, then: halcompile --install NAME.comp and loadrt NAME in a HAL
-file before the kinematics is loaded. Programs switch by M68 and M66 (docs/extending/kinematics.md).
+file before the kinematics is loaded. Programs switch by M68 and M66 (docs/developer/extending/kinematics.md).
 """;
 pin out s32 fpin = 0 "a component has a pin of its own";
 option singleton yes;

@@ -4,7 +4,7 @@ description """
 Drives paths with a share of the machine's speed and acceleration: easytp.speed-share and easytp.acceleration-share, 0.05 to 1.
 
 Copy this file, name its component anew, write mw_tp_plan, then: halcompile --install NAME.comp and [TRAJ]TPMOD = NAME. What a
-planner module may assume stands in docs/extending/planner.md.
+planner module may assume stands in docs/developer/extending/planner.md.
 """;
 pin out s32 asked = 0 "a component has a pin of its own";
 option singleton yes;

@@ -5,7 +5,7 @@ Makes the threads of a machine before motmod is loaded: servo-thread, in which m
 thread io-thread for slow inputs, whose cycles the function userthreads.count counts.
 
 Copy this file, name its component anew, then: halcompile --install NAME.comp and loadrt NAME in a HAL file before motmod. What
-such a module may assume stands in docs/extending/threads.md.
+such a module may assume stands in docs/developer/extending/threads.md.
 """;
 pin out s32 cycles = 0 "runs of the function";
 function count;

@@ -20,11 +20,11 @@ int main(int count, char **words) {
     }
     const std::string folder = words[1];
     std::error_code failure;
-    std::filesystem::create_directories(folder + "/task", failure);
+    std::filesystem::create_directories(folder, failure);
     const std::pair<const char *, std::string> pages[] = {{"ini.md", mw::machine::ini_reference()},
                                                           {"messages.md", mw::messages::reference_page()},
                                                           {"nml_messages.md", mw::nml::nml_reference_page()},
-                                                          {"task/states.md", mw::task::states_page()}};
+                                                          {"states.md", mw::task::states_page()}};
     for (const auto &[name, text] : pages) {
         if (const auto written = mw::write_file_atomically(folder + '/' + name, text); !written.has_value()) {
             std::fprintf(stderr, "%s\n", written.error().message.c_str());

@@ -9,7 +9,7 @@
 namespace mw::programs {
 
 /// Commands come over TCP from programs that nobody has identified as the machine's user: their authority is
-/// OPERATE (docs/security.md).
+/// OPERATE (docs/integrator/security.md).
 inline Result<client::Client> connect_to_operate(const std::string &instance) {
     auto client = client::Client::connect(instance);
     if (client.has_value()) {

@@ -41,7 +41,7 @@ class PathReaders {
     PathReaders(const PathReaders &) = delete;
     PathReaders &operator=(const PathReaders &) = delete;
 
-    /// The chunks of docs/api.md, while the program is read; an error when too many are.
+    /// The chunks of docs/reference/api.md, while the program is read; an error when too many are.
     Result<std::shared_ptr<screen::PieceQueue>> read(const std::string &path,
                                                      const screen::Requester &by = {});
     /// Another job that makes pieces, counted as a program that is read.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Every figure of the planner and executor that was chosen, by the part that uses it, with its reason. Where
-// the reason is a measurement, docs/motion/planner.md ("Figures") tells what another value costs.
+// the reason is a measurement, docs/developer/planner.md ("Figures") tells what another value costs.
 #pragma once
 
 #include <array>
@@ -64,7 +64,7 @@ struct LimitTuning {
     /// Share of an axis's acceleration that turning takes on a blend that is made for a given speed: at 0.7
     /// as much (sqrt(1 - 0.7^2) = 0.71 of a norm) is left for braking on it.
     static constexpr double BLEND_SHARE = 0.7;
-    /// The mean is at most this part longer than what is best on curves: see docs/motion/planner.md.
+    /// The mean is at most this part longer than what is best on curves: see docs/developer/planner.md.
     /// Measured: 0.96 is 0.8 % slower, 1.5 as fast.
     static constexpr double CURVE_SHARE = 1.2;
     /// Part of what rotary axes need for themselves that the mean has at least where they turn beside linear
@@ -311,7 +311,7 @@ struct TapTuning {
     static constexpr double MEETING_SHARE = 0.97;
     /// With a mean: a tap that would be farther off the helix, as its spindle turns back, is refused [turns].
     /// The change is seen by this part of the mean late, and by what reading the speed takes, of which half
-    /// the square counts [s^2]. Measured, for means from 0.02 to 0.2 s: docs/motion/spindles.md.
+    /// the square counts [s^2]. Measured, for means from 0.02 to 0.2 s: docs/integrator/spindles.md.
     /// After a change the tool is on the helix again within so many means.
     static constexpr double MOST_OFF = 0.1, LATE_MEANS = 0.6, LATE_S2 = 2e-4, SETTLING_MEANS = 2;
     /// The tool leaves the thread by this much before the spindle turns forward again [turns].

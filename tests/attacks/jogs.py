@@ -18,7 +18,7 @@ from mill_by_hand import Findings  # noqa: E402  pylint: disable=wrong-import-po
 from nml_session import CHANNELS, Client as Nml  # noqa: E402  pylint: disable=wrong-import-position
 from rig import Machine  # noqa: E402  pylint: disable=wrong-import-position
 
-END_S = 0.3    # what docs/security.md states
+END_S = 0.3    # what docs/integrator/security.md states
 SPEED = 4.0    # slow enough that no limit ends the jog in this test
 FOUND = Findings()
 expect = FOUND.expect

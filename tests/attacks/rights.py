@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Who may do what: each row of the table in docs/security.md is tried at a running machine by a client of each column. What counts is
+"""Who may do what: each row of the table in docs/integrator/security.md is tried at a running machine by a client of each column. What counts is
 what happened: a file that is written, a program that is open, an axis that has moved.
 
 usage: rights.py BIN_FOLDER ROOT
@@ -350,8 +350,8 @@ COLUMNS = {
 
 
 def table(root):
-    """{(row, column): 'yes', 'no' or '-'} of docs/security.md."""
-    text = (root / 'docs/security.md').read_text().split('## Who may do what')[1]
+    """{(row, column): 'yes', 'no' or '-'} of docs/integrator/security.md."""
+    text = (root / 'docs/integrator/security.md').read_text().split('## Who may do what')[1]
     lines = [[cell.strip() for cell in line.strip('|\n').split('|')] for line in text.splitlines() if line.startswith('|')]
     head, rows = lines[0], lines[2:]
     return {(row[0], column): cell for row in rows if len(row) == len(head) for column, cell in zip(head[1:], row[1:])}

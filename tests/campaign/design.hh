@@ -77,7 +77,8 @@ struct Design {
     bool hasOffsets() const;
     /// What acceleration takes to rise, of the slowest [s]; 0: no jerk limits.
     double rise_s() const;
-    /// The longest mean that any linear axis or joint asks for (docs/motion/planner.md, "Choice of tau") [s].
+    /// The longest mean that any linear axis or joint asks for (docs/developer/planner.md, "Choice of tau")
+    /// [s].
     double longest_mean_s() const;
     /// What motion may take for the ramp of its spindle, whose drive is late and lags, as it has started to a
     /// speed [turns/s] and not turned back yet [turns/s^2].

@@ -16,7 +16,7 @@ constexpr double PLACE_ROUNDING = 2e-6, RATE_ROUNDING = 1e-5;
 constexpr double WITH_BACKLASH = 1.5;
 /// What a stop may take of the least, and on top of it for commands on their way.
 constexpr double STOP_FACTOR = 2.2, STOP_SLACK_S = 0.02;
-/// For so long a planner that is away may still come (docs/motion/planner.md).
+/// For so long a planner that is away may still come (docs/developer/planner.md).
 constexpr double WAIT_FOR_PLANNER_S = 0.02;
 /// How often a stop under way is judged [cycles].
 constexpr int LOOK_EVERY = 16;
@@ -165,7 +165,7 @@ LeastStop Judge::time_to_stop() const {
 }
 
 /// Of all that is linear, the longest time in which an acceleration is built up. Angular axes get no longer:
-/// docs/motion/planner.md, "Known limits".
+/// docs/developer/planner.md, "Known limits".
 double Judge::build_up_s() const {
     double most = 0;
     const auto look = [&](bool isAngular, double acceleration, double jerk) {

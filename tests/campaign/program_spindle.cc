@@ -101,7 +101,7 @@ void Writer::write_surface(SyncWish &sync) {
 }
 
 /// How far the mean of a tool is off the helix while the spindle turns back [turns]; measured, and written in
-/// docs/motion/spindles.md.
+/// docs/integrator/spindles.md.
 double Writer::off_helix(double lead, double ramp, double mean_s) const {
     const double a = 0.49 * std::min(z_with_joints().acceleration, design_.acceleration);
     const double use = std::min(0.99, lead * ramp / a);

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Every example of docs/gcode does what stands beside it, and every code of the interpreter has an entry (I1).
+"""Every example of docs/user/gcode does what stands beside it, and every code of the interpreter has an entry (I1).
 
 usage: gcode_docs.py RS274 SOURCE_FOLDER [--update]    --update writes what comes out into the files: read the difference
 """
@@ -78,9 +78,9 @@ def main():
     failed, count, documented = 0, 0, set()
     with tempfile.TemporaryDirectory() as name:
         runner = Runner(rs274, pathlib.Path(name))
-        for path in sorted((source / 'docs/gcode').glob('*.md')):
+        for path in sorted((source / 'docs/user/gcode').glob('*.md')):
             text = path.read_text()
-            for heading in re.findall(r'^### (.*)$', text, re.M):
+            for heading in re.findall(r'^## (.*)$', text, re.M):
                 documented.update(re.findall(r'[GM]\d+(?:\.\d)?', heading))
 
             def replace(match):
@@ -98,7 +98,7 @@ def main():
     missing = sorted(codes_of(source) - documented)
     if missing or count == 0:
         failed += 1
-        print('codes without an entry in docs/gcode:', ' '.join(missing))
+        print('codes without an entry in docs/user/gcode:', ' '.join(missing))
     print(f'{count} examples, {failed} failed')
     return 1 if failed else 0
 

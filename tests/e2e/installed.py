@@ -69,7 +69,7 @@ def main():
             failures.append('script/environment')
             print(f'FAIL script/environment: status {sourced.returncode}\n{sourced.stdout}{sourced.stderr}')
         for page in ('share/man/man1/millwright.1', 'share/bash-completion/completions/millwright', 'share/doc/millwright/README.md',
-                     'share/doc/millwright/gcode/motion.md'):
+                     'share/doc/millwright/user/gcode/motion.md'):
             if not (prefix / page).is_file():
                 failures.append(page)
                 print(f'FAIL {page} is not installed')

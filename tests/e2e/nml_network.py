@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """An NML client on another computer (F9): its own network namespace, which a pair of virtual Ethernet devices joins to that of the
 machine. A program with the client library finds the machine by a configuration that names a remote host; a client made from
-docs/nml.md alone does the same over a bare socket. Nobody gets in where the file says localhost, nor without `millwright nml`; a
+docs/reference/nml.md alone does the same over a bare socket. Nobody gets in where the file says localhost, nor without `millwright nml`; a
 cable that is pulled stops nothing.
 
 All of it in a user namespace of its own, so that nothing of this computer's network is touched. Where the kernel does not allow
@@ -122,7 +122,7 @@ def by_library(bench, elsewhere, command_client, encoding, key):
 
 
 def by_socket(bench, elsewhere):
-    """A client that knows docs/nml.md only."""
+    """A client that knows docs/reference/nml.md only."""
     done = run(*elsewhere.there(sys.executable, __file__, 'operate', HERE, str(bench.port)))
     expect(done.returncode == 0, 'a client of the documented protocol operates it', done.stdout, done.stderr)
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
 """`millwright nml` for a machine that `millwright start` keeps up, from the other side of a network (F9): a client made from
-docs/nml.md alone switches on, homes and moves; who sends rubbish harms nobody; whoever is killed, the others go on.
+docs/reference/nml.md alone switches on, homes and moves; who sends rubbish harms nobody; whoever is killed, the others go on.
 
 usage: nml_session.py MILLWRIGHT HALCMD ROOT
 """
@@ -36,7 +36,7 @@ P emcsvr emcError LOCAL localhost R 1 1.0 1 2
 
 
 class Client:
-    """Speaks what docs/nml.md says."""
+    """Speaks what docs/reference/nml.md says."""
 
     def __init__(self, port, host='127.0.0.1'):
         self.socket = socket.create_connection((host, port), STEP_S)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Every example of docs/gcode/remap.md does what stands beside it (I1).
+"""Every example of docs/integrator/remap.md does what stands beside it (I1).
 
 usage: remap_docs.py RS274 SOURCE_FOLDER [--update]    --update writes what comes out into the file: read the difference
 
@@ -38,10 +38,10 @@ def outcome(rs274, folder, program):
 
 
 def main():
-    rs274, path = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]) / 'docs/gcode/remap.md'
+    rs274, path = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]) / 'docs/integrator/remap.md'
     text = path.read_text()
     failed, count = 0, 0
-    for section in re.split(r'^### ', text, flags=re.M)[1:]:
+    for section in re.split(r'^## ', text, flags=re.M)[1:]:
         with tempfile.TemporaryDirectory() as name:
             folder, program = pathlib.Path(name), None
             for kind, file, content in FENCE.findall(section):

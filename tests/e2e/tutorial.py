@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Follows docs/hal/tutorial.md word by word. usage: tutorial.py BIN SOURCE_DIR
+"""Follows docs/integrator/hal/tutorial.md word by word. usage: tutorial.py BIN SOURCE_DIR
 
 Files are those of the page, lines behind "halcmd:" go to one halrun, lines behind "$" are run while it waits; only
 `--install` becomes `--compile`, so that nothing is left in the build folder.
@@ -75,7 +75,7 @@ class Session:
 
 def main():
     bin_folder, source = (pathlib.Path(p).resolve() for p in sys.argv[1:3])
-    steps = steps_of((source / 'docs/hal/tutorial.md').read_text(encoding='utf-8'))
+    steps = steps_of((source / 'docs/integrator/hal/tutorial.md').read_text(encoding='utf-8'))
     assert sum(step[0] == 'file' for step in steps) == 2 and len(steps) > 25, steps
     with tempfile.TemporaryDirectory() as folder:
         env = dict(os.environ, PATH=f'{bin_folder}:/usr/local/bin:/usr/bin:/bin', MILLWRIGHT_MODULE_PATH=folder,

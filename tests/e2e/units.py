@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Each pin, argument and field that carries a speed, length, angle, time or ratio has the unit of docs/units.md.
+"""Each pin, argument and field that carries a speed, length, angle, time or ratio has the unit of docs/reference/units.md.
 
-units_screen.py measures them by what the machine does; docs/units.md has the same measurement of LinuxCNC beside it. Every
+units_screen.py measures them by what the machine does; docs/reference/units.md has the same measurement of LinuxCNC beside it. Every
 pin of the type float of halui, motion and ini must be in the page.
 
 usage: units.py BIN_FOLDER ROOT
@@ -43,7 +43,7 @@ def unit_of(dimension, factor):
 
 
 def read_page(path):
-    """{name: (unit of LinuxCNC, unit of Millwright)} of the tables of docs/units.md."""
+    """{name: (unit of LinuxCNC, unit of Millwright)} of the tables of docs/reference/units.md."""
     rows = {}
     for line in path.read_text(encoding='utf-8').splitlines():
         cells = [cell.strip() for cell in line.strip('|').split('|')]
@@ -72,15 +72,15 @@ def measure(programs, root, folder):
 def check_there(path, page):
     for name, value in json.loads(path.read_text()).items():
         if name != 'pins':
-            expect(not isinstance(value, str) and page.get(name, ('',))[0] in unit_of(*value), f'{name}: {value}, and docs/units.md has {page.get(name)}')
+            expect(not isinstance(value, str) and page.get(name, ('',))[0] in unit_of(*value), f'{name}: {value}, and docs/reference/units.md has {page.get(name)}')
     return FOUND.status()
 
 
 def main():
     if sys.argv[1] == '--there':
-        return check_there(pathlib.Path(sys.argv[2]), read_page(pathlib.Path(sys.argv[3]) / 'docs/units.md'))
+        return check_there(pathlib.Path(sys.argv[2]), read_page(pathlib.Path(sys.argv[3]) / 'docs/reference/units.md'))
     programs, root = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
-    page = read_page(root / 'docs/units.md')
+    page = read_page(root / 'docs/reference/units.md')
     with tempfile.TemporaryDirectory(prefix='mw_units_') as name:
         found = measure(programs, root, pathlib.Path(name))
     pins = found.pop('pins', [])
@@ -89,13 +89,13 @@ def main():
             expect(False, f'{name}: {value}')
             continue
         here = page.get(name, ('', ''))[1]
-        expect(here in unit_of(*value), f'{name} is {value[1]:.6g}, that is {" or ".join(unit_of(*value)) or "no unit"}, and docs/units.md has "{here}"')
+        expect(here in unit_of(*value), f'{name} is {value[1]:.6g}, that is {" or ".join(unit_of(*value)) or "no unit"}, and docs/reference/units.md has "{here}"')
     measured = set(found)
     for name, (_, here) in page.items():
-        expect(name in measured or here.startswith('('), f'{name} is in docs/units.md and not measured')
+        expect(name in measured or here.startswith('('), f'{name} is in docs/reference/units.md and not measured')
     known = {re.sub(r' \(.*', '', name) for name in page}
     for name in pins:
-        expect(name in known, f'the pin {name} is not in docs/units.md')
+        expect(name in known, f'the pin {name} is not in docs/reference/units.md')
     return FOUND.status()
 
 

@@ -25,8 +25,8 @@ def run(*command, cwd):
 
 
 def driver_of_page():
-    """The driver that docs/hal/drivers.md shows."""
-    text = (source / 'docs/hal/drivers.md').read_text()
+    """The driver that docs/integrator/hal/drivers.md shows."""
+    text = (source / 'docs/integrator/hal/drivers.md').read_text()
     shown = re.search(r'^    #include <millwright/canonical.hh>\n(.*?)MW_COMPONENT\(.*?\n', text, re.M | re.S).group(0)
     return re.sub('^    ', '', shown, flags=re.M)
 

@@ -127,7 +127,7 @@ TEST_F(Halcompile, InstallsWhereItIsTold) {
 }
 
 TEST_F(Halcompile, ThePageOfTheLanguage) {
-    std::ifstream page(std::string(MW_CORPUS) + "/../../../docs/hal/comp.md");
+    std::ifstream page(std::string(MW_CORPUS) + "/../../../docs/integrator/hal/comp.md");
     std::string line;
     std::string text;
     bool isExample = false;

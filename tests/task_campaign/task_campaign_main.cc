@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Random sessions of operators at whole machines, docs/task/campaign.md.
+// Random sessions of operators at whole machines, docs/developer/task_campaign.md.
 #include <cstdio>
 #include <cstdlib>
 #include <map>

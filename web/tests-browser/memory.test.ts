@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // A page that stays open for a shift keeps its memory: the status of a running machine is recorded, and replayed at 50 times
-// its speed (J3). MW_SCREEN_REPLAY_H=3 gives the figure of docs/screen.md.
+// its speed (J3). MW_SCREEN_REPLAY_H=3 gives the figure of docs/user/screen.md.
 import { afterAll, beforeAll, expect, it } from 'vitest';
 import type { CDPSession, Page } from 'playwright-core';
 import { bringUp, errorsOf, Rig, sleep, untilText } from './rig';

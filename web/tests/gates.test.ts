@@ -44,7 +44,7 @@ function view(one: Situation): gates.View {
 /** Rows and columns of the table "Commands in situations". */
 function readTable(): Map<string, Map<string, boolean>> {
   const build = process.env['MW_BUILD'] ?? fileURLToPath(new URL('../../build/release', import.meta.url));
-  const page = readFileSync(`${build}/share/doc/task/states.md`, 'utf8');
+  const page = readFileSync(`${build}/share/doc/states.md`, 'utf8');
   const lines = (page.split('## Commands in situations')[1] ?? '').split('\n').filter((line) => line.startsWith('|'));
   const cells = (line: string): string[] => line.split('|').slice(1, -1).map((cell) => cell.trim());
   const columns = cells(lines[0] ?? '').slice(1);

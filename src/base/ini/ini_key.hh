@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // A key of an INI file, declared once: reading it, finding unknown ones and the reference page follow from
-// it (docs/ini.md).
+// it (docs/reference/ini.md).
 #pragma once
 
 #include <cstdint>

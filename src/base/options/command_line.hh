@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The command line of a program of ours: each option declared once, read, and told by --help. Programs whose
-// words another program has settled read them with base/options/letters.hh or by hand (docs/decisions).
+// words another program has settled read them with base/options/letters.hh or by hand
+// (docs/developer/decisions).
 #pragma once
 
 #include <concepts>

@@ -212,7 +212,7 @@ void Api::answer(const Request &request, Reply reply) {
     } else if (path == "/metrics") {
         reply(metrics());
     } else if (path.starts_with(API)) {
-        reply(error_response(404, "there is no '" + path + "'; docs/api.md names what there is"));
+        reply(error_response(404, "there is no '" + path + "'; docs/reference/api.md names what there is"));
     } else {
         threads_.disk.run([folder = setup_.screen_folder, path] { return screen_file(folder, path); },
                           std::move(reply));

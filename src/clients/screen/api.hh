@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The routes of docs/api.md.
+// The routes of docs/reference/api.md.
 #pragma once
 
 #include <chrono>

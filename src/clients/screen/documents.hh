@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The JSON of docs/api.md, but for the fields of the status.
+// The JSON of docs/reference/api.md, but for the fields of the status.
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@ Response error_response(int status, std::string_view text);
 
 /// Commands and status as they are declared.
 std::string schema_document();
-/// An error when it is no panel as docs/screen.md has them.
+/// An error when it is no panel as docs/user/screen.md has them.
 Result<> check_panel(std::string_view text);
 /// Names of HAL that a person may set by this panel, whatever he may otherwise.
 std::vector<std::string> settable_names(std::string_view panel);

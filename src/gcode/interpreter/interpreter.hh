@@ -193,7 +193,7 @@ class Interpreter final : public ProgramInterpreter {
     std::string line_text(const std::string &file, int line) const;
     double parameter(int number) const override;
 
-    // For starts that are not at the first line (docs/task/run_from_line.md).
+    // For starts that are not at the first line (docs/user/run_from_line.md).
     NextLine next_line() const;
     /// Why nobody can begin at the next line although all before it is known; empty: one can.
     std::string why_no_start() const;

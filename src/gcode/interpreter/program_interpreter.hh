@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // What runs programs: the RS-274/NGC interpreter, or a plug-in for another language (`rs274 -p`,
-// [TASK]INTERPRETER). A plug-in is a shared object compiled against this header; see docs/gcode/plugins.md.
+// [TASK]INTERPRETER). A plug-in is a shared object compiled against this header; see
+// docs/developer/extending/plugins.md.
 #pragma once
 
 #include <array>

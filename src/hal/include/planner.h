@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-or-later */
-/* What a trajectory planner module of a user exports ([TRAJ]TPMOD); docs/extending/planner.md. */
+/* What a trajectory planner module of a user exports ([TRAJ]TPMOD); docs/developer/extending/planner.md. */
 #ifndef MILLWRIGHT_PLANNER_H
 #define MILLWRIGHT_PLANNER_H
 

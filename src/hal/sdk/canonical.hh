@@ -8,7 +8,7 @@
 //
 // A prefix contains its separator. `declare` runs while loading and returns 0 or a negated errno, which the
 // Declare keeps too, so that the load fails. `read` and `write` belong to the thread of the driver; they
-// neither allocate nor wait. docs/hal/drivers.md explains the devices with an example.
+// neither allocate nor wait. docs/integrator/hal/drivers.md explains the devices with an example.
 #pragma once
 
 #include "component.hh"

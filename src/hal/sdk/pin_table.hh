@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Pins declared once: a row of a table names a pin, its direction, type, unit and meaning, and says what is
 // read from it or written to it. From the table follow the pins in HAL, the copying of each cycle and the
-// manual page; a new pin is one row (docs/extending/pin.md).
+// manual page; a new pin is one row (docs/developer/extending/pin.md).
 //
 //     constexpr auto AXIS_PINS = sdk::pin_table("axis.@",
 //         sdk::in<bool>("jog-enable", "", "the wheel is on", [](AxisIn &a, bool v) { a.isEnabled = v; }),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The thread that runs the cycles of task, so that the main thread never waits for a file
-// or a script: docs/task/long_calls.md.
+// or a script: docs/developer/long_calls.md.
 #pragma once
 
 #include <atomic>

@@ -55,7 +55,7 @@ inline constexpr auto INI_KEYS = std::to_array<ini::IniKey>({
     ini::ini_elsewhere("TRAJ", "MAX_ACCELERATION", "old files; today MAX_LINEAR_ACCELERATION"),
     ini::ini_text("TRAJ", "TPMOD",
                   "a module that chooses speeds along the path, and its parameters; tpmod: none "
-                  "(docs/extending/planner.md)"),
+                  "(docs/developer/extending/planner.md)"),
     ini::ini_without_effect("TRAJ", "POSITION_FILE",
                             "joint positions are not kept over a restart: home the machine"),
     ini::ini_without_effect("TRAJ", "ARC_BLEND_ENABLE", why::ARCS, "1"),
@@ -146,7 +146,7 @@ ini::IniKey ini_key(motion::Parameter parameter);
 /// All that any part of the system declares.
 std::vector<ini::IniKey> all_ini_keys();
 
-/// The reference page docs/ini.md.
+/// The reference page docs/reference/ini.md.
 std::string ini_reference();
 
 }  // namespace mw::machine

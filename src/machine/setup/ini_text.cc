@@ -198,16 +198,17 @@ std::string joint_text(const Plan &plan, const Axis &axis, const Motor &motor, i
 }  // namespace
 
 std::string ini_text(const Plan &plan) {
-    std::string text = fmt::format("# SPDX-License-Identifier: GPL-2.0-or-later\n"
-                                   "# {}: {}, {}, {}. Written by `millwright setup`; yours to change.\n"
-                                   "# Lengths are in {}, speeds in {} per second. docs/ini.md has all keys.\n"
-                                   "[EMC]\n"
-                                   "VERSION = 1.1\n"
-                                   "MACHINE = {}\n"
-                                   "DEBUG = 0\n\n",
-                                   plan.name, plan.kind, plan.isMetric ? "metric" : "in inches",
-                                   plan.isStepper ? "stepper motors at a parallel port" : "simulated",
-                                   length_unit(plan), length_unit(plan), plan.name);
+    std::string text =
+        fmt::format("# SPDX-License-Identifier: GPL-2.0-or-later\n"
+                    "# {}: {}, {}, {}. Written by `millwright setup`; yours to change.\n"
+                    "# Lengths are in {}, speeds in {} per second. docs/reference/ini.md has all keys.\n"
+                    "[EMC]\n"
+                    "VERSION = 1.1\n"
+                    "MACHINE = {}\n"
+                    "DEBUG = 0\n\n",
+                    plan.name, plan.kind, plan.isMetric ? "metric" : "in inches",
+                    plan.isStepper ? "stepper motors at a parallel port" : "simulated", length_unit(plan),
+                    length_unit(plan), plan.name);
     text += display_text(plan) + system_text(plan) + whole_text(plan);
     int joint = 0;
     for (const Axis &axis : plan.axes) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What task does while a call into the interpreter takes long: docs/task/long_calls.md.
+// What task does while a call into the interpreter takes long: docs/developer/long_calls.md.
 #include "machine/task/task_apart.hh"
 
 #include <fmt/format.h>

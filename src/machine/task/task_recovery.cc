@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The journal of a program that runs, and going on with one that was cut short (docs/task/journal.md).
+// The journal of a program that runs, and going on with one that was cut short (docs/integrator/journal.md).
 #include <cmath>
 
 #include <fmt/format.h>

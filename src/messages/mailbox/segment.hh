@@ -61,8 +61,9 @@ enum class Role : std::uint8_t {
     ATTENDED,  ///< as OPERATOR; what it has begun is aborted when it leaves or dies: it watches over its work
 };
 
-/// What the commands of a client may reach on this computer besides the machine (docs/security.md). The
-/// lesser of two is their std::min; a place that nobody has filled in has the least.
+/// What the commands of a client may reach on this computer besides the machine
+/// (docs/integrator/security.md). The lesser of two is their std::min; a place that nobody has filled in has
+/// the least.
 enum class Authority : std::uint8_t {
     OPERATE,    ///< programs of the program folder, logs in it, no lines of Python
     CONFIGURE,  ///< all files of the machine's user, and Python

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Homing of a joint as one table: what each event leads to in each state. docs/motion/homing.md shows it.
+// Homing of a joint as one table: what each event leads to in each state. docs/integrator/homing.md shows it.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Every setting of the motion controller, declared once (requirement C7): number, name, INI key, unit, range.
-// Adding one is one row here; SetParameter, the INI reading and the page docs/ini.md follow from it.
+// Adding one is one row here; SetParameter, the INI reading and the page docs/reference/ini.md follow from
+// it.
 #pragma once
 
 #include <array>

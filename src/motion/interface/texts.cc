@@ -138,7 +138,7 @@ std::string reason_text(const Answer &answer) {
                "contact first";
     case Reason::NOT_A_NUMBER: return "a value is not a finite number";
     case Reason::NO_WAY_BACK:
-        return "there is no way back: nothing is remembered of the path (docs/motion/commands.md)";
+        return "there is no way back: nothing is remembered of the path (docs/developer/motion_commands.md)";
     case Reason::BAD_ARC: return "the arc's centre, normal and end do not make a helix";
     case Reason::JOG_INHIBITED:
         return "jogging is inhibited: pin motion.jog-inhibit, motion.jog-stop or motion.jog-stop-immediate "

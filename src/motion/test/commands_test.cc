@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Every command in every situation of the machine, compared with the table of docs/motion/commands.md.
+// Every command in every situation of the machine, compared with the table of
+// docs/developer/motion_commands.md.
 #include <cmath>
 #include <fstream>
 #include <limits>
@@ -281,14 +282,15 @@ std::string table() {
 
 std::string page() {
     std::ostringstream text;
-    text << std::ifstream(MW_SOURCE_DIR "/docs/motion/commands.md").rdbuf();
+    text << std::ifstream(MW_SOURCE_DIR "/docs/developer/motion_commands.md").rdbuf();
     return text.str();
 }
 
 TEST(Commands, AreTakenOrRefusedAsThePageSays) {
     const std::string made = table();
     EXPECT_EQ(made.find("no answer"), std::string::npos);
-    EXPECT_NE(page().find(made), std::string::npos) << "docs/motion/commands.md should have this:\n" << made;
+    EXPECT_NE(page().find(made), std::string::npos) << "docs/developer/motion_commands.md should have this:\n"
+                                                    << made;
 }
 
 /// Whatever else is right, a value that is no number is refused, and what moves goes on or stays.

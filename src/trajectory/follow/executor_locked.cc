@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Passes that are locked to the angle of a spindle: threads. The speed of the coming cycle is the greatest
-// that meets the helix without passing it, within what the path allows. Formulas: docs/motion/planner.md.
+// that meets the helix without passing it, within what the path allows. Formulas: docs/developer/planner.md.
 #include <algorithm>
 #include <cmath>
 

@@ -27,7 +27,7 @@ double least_brake(const PathStore &store, const Snapshot &now, Sequence &phase,
 /// The hardest brake of the range that keeps the jerk limits a cycle on, when `commanded` is what was
 /// commanded last; where none does, the one that exceeds them least. The jerk of a mean over N samples is
 /// what the leader's acceleration has changed by within N samples, so each cycle has a bound of its own.
-/// docs/motion/planner.md ("Stops without a planner").
+/// docs/developer/planner.md ("Stops without a planner").
 double brake_within_jerk(const PathStore &store, const Snapshot &now, const Pose &commanded,
                          const StopLimits &limits, const BrakeRange &range, double period_s) noexcept;
 

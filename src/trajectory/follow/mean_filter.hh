@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Mean of the last n poses. The mean of positions within limits of speed and acceleration keeps both limits,
-// and its jerk is (a(t) - a(t - n T)) / (n T): see docs/motion/planner.md. Realtime-safe.
+// and its jerk is (a(t) - a(t - n T)) / (n T): see docs/developer/planner.md. Realtime-safe.
 #pragma once
 
 #include <cstdint>

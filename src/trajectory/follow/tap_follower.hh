@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Rigid tapping: along a line with the angle of a spindle, in, through the reversal and back. Knows only the
-// place on the line and what is measured of the spindle. Formulas: docs/motion/spindles.md.
+// place on the line and what is measured of the spindle. Formulas: docs/integrator/spindles.md.
 #pragma once
 
 #include <cstdint>

@@ -8,7 +8,8 @@ namespace mw::trajectory {
 
 /// The braking of a curved piece that is driven at most at `limit.v`. Where turning and braking pull a
 /// coordinate the same way they share its acceleration, as limit.a says for all; where they pull against each
-/// other each may take all of it. Without a gain it is limit.a everywhere. Formulas: docs/motion/planner.md
+/// other each may take all of it. Without a gain it is limit.a everywhere. Formulas:
+/// docs/developer/planner.md
 /// ("Stops on curves").
 Braking braking_on(const PathStore &store, const Piece &piece, const Conditions &conditions,
                    const SpeedLimit &limit) noexcept;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Formulas: docs/motion/planner.md.
+// Formulas: docs/developer/planner.md.
 #include "trajectory/path/corner.hh"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Speed and acceleration of arcs that must be followed exactly: they lie between stops, and the mean is taken
-// of the place on them. Formulas: docs/motion/planner.md.
+// of the place on them. Formulas: docs/developer/planner.md.
 #pragma once
 
 #include <array>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Speed and path acceleration of a stretch of path such that every axis keeps its limits. Planning side,
-// pure. Formulas: docs/motion/planner.md.
+// pure. Formulas: docs/developer/planner.md.
 #pragma once
 
 #include <algorithm>
@@ -41,7 +41,7 @@ inline double time_of_mean(double velocity, double acceleration, double jerk) no
 /// an axis of X Y Z U V W, the XYZ norm or a joint needs to build up its acceleration, or the acceleration
 /// with which it gets to its speed soonest; no longer than what suits curves within the tolerance. Where
 /// rotary axes turn, at least a part of what they need. 1 without jerk limits. Formulas:
-/// docs/motion/planner.md.
+/// docs/developer/planner.md.
 std::uint64_t filter_length(const Limits &limits, double period_s, const PathDemand &demand) noexcept;
 
 /// The limits with accelerations that a mean over `filter` samples can build up within the jerk limits.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// With jerk limits: the profile of a leader whose mean is commanded (docs/motion/planner.md).
+// With jerk limits: the profile of a leader whose mean is commanded (docs/developer/planner.md).
 // Between rising and falling the leader keeps its speed for as long as the mean takes, so that the
 // acceleration never swings by more than the mean can spread.
 #pragma once

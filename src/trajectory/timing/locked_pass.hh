@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Passes that are locked to the angle of a spindle (threads): their limits, and how much of the acceleration
-// is for what. The executor drives them. Formulas: docs/motion/planner.md.
+// is for what. The executor drives them. Formulas: docs/developer/planner.md.
 #pragma once
 
 #include <array>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Rigid taps before they begin: whether the machine can follow the spindle through its reversals, and with
-// what. Formulas: docs/motion/spindles.md.
+// what. Formulas: docs/integrator/spindles.md.
 #pragma once
 
 #include <cstdint>

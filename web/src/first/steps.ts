@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What `millwright select --browser` answers: docs/api.md, First steps.
+// What `millwright select --browser` answers: docs/reference/api.md, First steps.
 
 export interface Choice {
   ini: string;

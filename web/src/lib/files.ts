@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Programs in the machine's folder, by docs/api.md.
+// Programs in the machine's folder, by docs/reference/api.md.
 
 export interface ProgramFile {
   name: string;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// HAL by docs/api.md: what there is, what is watched, the oscilloscope.
+// HAL by docs/reference/api.md: what there is, what is watched, the oscilloscope.
 import type { HalValue } from './link';
 
 export interface HalName {

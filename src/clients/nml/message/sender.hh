@@ -18,7 +18,7 @@ enum class Sender {
 /// Of every numbered command and status of src/messages/declarations.
 Sender sender_of(const messages::Declaration &declaration);
 
-/// docs/nml_messages.md.
+/// docs/reference/nml_messages.md.
 std::string nml_reference_page();
 
 }  // namespace mw::nml

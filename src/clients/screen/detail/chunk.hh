@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Chunks of the streams of docs/api.md.
+// Chunks of the streams of docs/reference/api.md.
 #pragma once
 
 #include <bit>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The routes of docs/api.md (J3).
+// The routes of docs/reference/api.md (J3).
 #include <unistd.h>
 
 #include <filesystem>
@@ -210,7 +210,7 @@ TEST_F(ApiTest, PagesFiguresAndWhatThereIsNot) {
     EXPECT_NE(ask("GET", "/metrics").body.find("\nmillwright_machine_up 1\n"), std::string::npos);
 }
 
-/// The table of docs/api.md, Who may: a row is a request and the least role that it needs.
+/// The table of docs/reference/api.md, Who may: a row is a request and the least role that it needs.
 TEST_F(ApiTest, EachRequestNeedsTheRoleOfTheTable) {
     struct Row {
         const char *method, *target, *body;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A path in chunks: read back by the words of docs/api.md, it is the program's (J3).
+// A path in chunks: read back by the words of docs/reference/api.md, it is the program's (J3).
 #include <array>
 #include <cmath>
 #include <cstring>

@@ -404,7 +404,7 @@ TEST(MachineFrame, TurnsInchesOfAProgramIntoMillimetresOfTheMachine) {
     EXPECT_NEAR(std::get<UseSpindleSpeed>(machine.calls[1]).surface_unit, 12 * 25.4, EXACT);
 }
 
-// The example of docs/extending/canon_call.md; the test below holds both together.
+// The example of docs/developer/extending/canon_call.md; the test below holds both together.
 /// M180: the laser's power.
 struct SetLaserPower {
     int head = 0;
@@ -429,7 +429,7 @@ TEST(CanonCalls, OfTheDocumentedExampleAreTheseOfThisTest) {
         out << in.rdbuf();
         return out.str();
     };
-    const std::string document = read("/docs/extending/canon_call.md"),
+    const std::string document = read("/docs/developer/extending/canon_call.md"),
                       test = read("/src/gcode/interpreter/test/canon_call_test.cc");
     const std::size_t begin = document.find("/// M180"), end = document.find("};\n", begin);
     ASSERT_NE(begin, std::string::npos);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The example of docs/extending/gcode.md.
+// The example of docs/developer/extending/gcode.md.
 #include <fstream>
 #include <sstream>
 #include <variant>
@@ -70,7 +70,7 @@ TEST(ExtendingCodes, TheNumberIsStillFree) {
 
 TEST(ExtendingCodes, ThePageShowsWhatIsCompiledHere) {
     const std::string source = file_text(MW_SOURCE_DIR "/src/gcode/interpreter/test/extending_code_test.cc");
-    const std::string page = file_text(MW_SOURCE_DIR "/docs/extending/gcode.md");
+    const std::string page = file_text(MW_SOURCE_DIR "/docs/developer/extending/gcode.md");
     const std::string begin = "// begin of the function\n";
     const std::size_t from = source.find('\n' + begin) + 1 + begin.size();
     const std::string function = source.substr(from, source.find("// end of the function\n") - from);

@@ -261,7 +261,7 @@ TEST(MachineConfig, AFileOfAnOlderFormNamesUpdateIni) {
     EXPECT_TRUE(axes.says("update_ini"));
 }
 
-/// What a new key takes: one row in a table (docs/extending/ini_key.md).
+/// What a new key takes: one row in a table (docs/developer/extending/ini_key.md).
 TEST(IniKeys, EachIsDeclaredOnceWithItsMeaning) {
     std::set<std::pair<std::string_view, std::string_view>> seen;
     for (const ini::IniKey &key : all_ini_keys()) {

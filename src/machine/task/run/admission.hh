@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Which command is taken in which situation: one table, from which docs/task/states.md is made.
+// Which command is taken in which situation: one table, from which docs/reference/states.md is made.
 #pragma once
 
 #include <string>
@@ -32,7 +32,7 @@ const char *refusal_of(CommandClass what, Situation situation);
 /// The same as a result.
 Result<> admit(CommandClass what, Situation situation);
 
-/// docs/task/states.md.
+/// docs/reference/states.md.
 std::string states_page();
 
 }  // namespace mw::task

@@ -80,7 +80,7 @@ class ProgramReader {
     /// The result of a probe, as a line of the file of (probeopen); empty when it has not tripped.
     std::string probe_line() const;
 
-    // A start elsewhere than at the first line of the program that is open (docs/task/run_from_line.md). The
+    // A start elsewhere than at the first line of the program that is open (docs/user/run_from_line.md). The
     // machine has been synched.
     Result<> begin_search(int line);
     /// The same at a block of a program that has begun as `record` says, on a machine that has come up since.

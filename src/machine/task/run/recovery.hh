@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The journal of the run, and the offer to go on with one that a power cut, a crash or an emergency stop has
-// ended (docs/task/journal.md).
+// ended (docs/integrator/journal.md).
 #pragma once
 
 #include <cstdint>

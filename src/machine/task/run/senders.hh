@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Who has sent a command, and what that allows the run that it begins (docs/security.md).
+// Who has sent a command, and what that allows the run that it begins (docs/integrator/security.md).
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// docs/task/states.md, from the tables that task goes by.
+// docs/reference/states.md, from the tables that task goes by.
 #include <array>
 #include <map>
 #include <vector>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Which files of this computer the authority to operate reaches (docs/security.md).
+// Which files of this computer the authority to operate reaches (docs/integrator/security.md).
 #pragma once
 
 #include <string>

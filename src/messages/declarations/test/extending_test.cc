@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The example of docs/extending/message.md.
+// The example of docs/developer/extending/message.md.
 
 #include <gtest/gtest.h>
 
@@ -51,7 +51,8 @@ TEST(ExtendingMessages, ThePageShowsWhatIsCompiledHere) {
     const std::size_t from = source.find('\n' + begin) + 1 + begin.size();
     const std::string example = source.substr(from, source.find("// end of the example\n") - from);
     ASSERT_GT(example.size(), 200U);
-    EXPECT_NE(read_file(MW_SOURCE_DIR "/docs/extending/message.md").value().find(example), std::string::npos);
+    EXPECT_NE(read_file(MW_SOURCE_DIR "/docs/developer/extending/message.md").value().find(example),
+              std::string::npos);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The example of docs/extending/motion_command.md.
+// The example of docs/developer/extending/motion_command.md.
 #include <fstream>
 #include <sstream>
 #include <variant>
@@ -87,7 +87,7 @@ std::string file_text(const std::string &path) {
 
 TEST(ExtendingMotion, ThePageShowsWhatIsCompiledHereAndLinesThatStand) {
     const std::string source = file_text("/src/motion/test/parts/extending_test.cc");
-    const std::string page = file_text("/docs/extending/motion_command.md");
+    const std::string page = file_text("/docs/developer/extending/motion_command.md");
     for (const std::string what : {"declaration", "behaviour"}) {
         const std::string begin = "\n// begin of the " + what + "\n";
         const std::size_t from = source.find(begin) + begin.size();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The table of homing as docs/motion/homing.md shows it, and what every event does in every state.
+// The table of homing as docs/integrator/homing.md shows it, and what every event does in every state.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -364,18 +364,20 @@ std::string made_matrix() {
 }
 
 std::string page() {
-    std::ifstream in(MW_SOURCE_DIR "/docs/motion/homing.md");
+    std::ifstream in(MW_SOURCE_DIR "/docs/integrator/homing.md");
     return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
 
 TEST(HomingTable, ThePageShowsTheTable) {
     const std::string made = made_table();
-    EXPECT_NE(page().find("\n" + made), std::string::npos) << "docs/motion/homing.md is to have:\n" << made;
+    EXPECT_NE(page().find("\n" + made), std::string::npos) << "docs/integrator/homing.md is to have:\n"
+                                                           << made;
 }
 
 TEST(HomingTable, EveryEventInEveryStateDoesWhatThePageSays) {
     const std::string made = made_matrix();
-    EXPECT_NE(page().find("\n" + made), std::string::npos) << "docs/motion/homing.md is to have:\n" << made;
+    EXPECT_NE(page().find("\n" + made), std::string::npos) << "docs/integrator/homing.md is to have:\n"
+                                                           << made;
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The streams of /api/path and /api/times: chunks of moves, bounds, errors, times and the end, as docs/api.md has them.
+// The streams of /api/path and /api/times: chunks of moves, bounds, errors, times and the end, as docs/reference/api.md has them.
 import type { TimeSum } from './times';
 import type { TimedMoves } from './times_worker';
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The example of docs/nml.md, word by word.
+// The example of docs/reference/nml.md, word by word.
 #include <string>
 #include <vector>
 
@@ -97,7 +97,7 @@ TEST(NmlExample, ThePageShowsWhatIsCompiledHere) {
     const std::string source =
         read_file(MW_SOURCE_DIR "/examples/nml_client/emc_io_generic.hh").value() +
         read_file(MW_SOURCE_DIR "/src/clients/nml/bridge/test/example_test.cc").value();
-    const std::string page = read_file(MW_SOURCE_DIR "/docs/nml.md").value();
+    const std::string page = read_file(MW_SOURCE_DIR "/docs/reference/nml.md").value();
     for (const std::string part : {"declaration", "sender", "receiver", "configuration", "connection"}) {
         const std::string begin = "// begin of the " + part + "\n", end = "// end of the " + part + "\n";
         const std::size_t from = source.find(begin) + begin.size();
