@@ -246,8 +246,8 @@ TEST(BoardPhysics, ASwitchClosesAtItsPosition) {
 TEST(BoardPhysics, ASpindleFollowsItsPwmWithALag) {
     Host host("7i97",
               "motor s pwm=0 full_rev_s=50 time_constant_s=0.1\nencoder 0 motor=s counts_per_rev=400\n");
-    host.write(0x1204, 0x7F);
-    host.write(0x1104, 0x7F);
+    host.write(0x1200, 0x1FF);
+    host.write(0x1100, 0x1FF);
     host.write(0x4100, 3);                            // 12 bits
     host.write(0x4000, 0x80000000 | (2048U << 16U));  // half, backwards
     host.time_ns = 2 * S;
