@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Lets LinuxCNC's own hm2_eth, unmodified, drive the simulated 7I76E: positions, counts, index, watchdog.
+"""Lets LinuxCNC's own hm2_eth, unmodified, drive the simulated 7I76E: positions, counts, index, inputs, smart serial, watchdog.
 
 usage: linuxcnc_board.py HM2_BOARD (as root)
 Exit status: 0 all agree, 1 something differs, 77 skipped, with the reason. Board and driver run in network namespaces of their own, and the
@@ -21,10 +21,10 @@ HALRUN = '/usr/bin/halrun'
 IP = '192.168.1.121'
 # The driver makes a fixed ARP entry of the address that the EEPROM of the board names.
 MAC = '00:60:1B:16:00:01'
-PHYSICS = 'motor x stepgen=0 steps_per_rev=200\nencoder 0 motor=x counts_per_rev=4000 index_rev=0.25\nswitch 17 motor=x above_rev=3\n'
+PHYSICS = 'motor x stepgen=0 steps_per_rev=200\nencoder 0 motor=x counts_per_rev=4000 index_rev=0.25\nswitch 17 motor=x above_rev=3\nremote 0 card=7i76\nremote 1 card=7i84\n'
 HAL = '''
 loadrt hostmot2
-loadrt hm2_eth board_ip=192.168.1.121 config="num_encoders=1 num_stepgens=5 sserial_port_0=xxxxxxxx"
+loadrt hm2_eth board_ip=192.168.1.121 config="num_encoders=1 num_stepgens=5 sserial_port_0=20xxxxxx"
 loadrt threads name1=servo period1=4000000
 addf hm2_7i76e.0.read servo
 addf hm2_7i76e.0.write servo
@@ -42,6 +42,10 @@ setp hm2_7i76e.0.stepgen.00.enable 1
 setp hm2_7i76e.0.encoder.00.index-invert 1
 setp hm2_7i76e.0.encoder.00.index-enable 1
 setp hm2_7i76e.0.stepgen.00.position-cmd 3.1275
+setp hm2_7i76e.0.7i76.0.0.output-03 1
+setp hm2_7i76e.0.7i76.0.0.spinout 50
+setp hm2_7i76e.0.7i76.0.0.spinena 1
+setp hm2_7i76e.0.7i84.0.1.output-15 1
 loadusr -w sleep 3
 show pin hm2_7i76e.0
 show param hm2_7i76e.0.io_error
@@ -129,6 +133,12 @@ def check(output, log):
         problems.append(f'count is {value("encoder.00.count")} after the index, not {raw - 1000}')
     if value('gpio.017.in') != 'TRUE':
         problems.append('the switch at 3 revolutions is not seen')
+    # Output 3 and half of the speed in the first word, the enable in the second one.
+    sent = {register: re.findall(rf'W0 0x{register} 1x32 (\w{{8}})', log) for register in ('5D00', '5E00', '5D04')}
+    if not ('7FFF0008' in sent['5D00'] and '00000001' in sent['5E00'] and '00008000' in sent['5D04']):
+        problems.append('the outputs of the smart serial cards are not sent')
+    if value('sserial.port-0.port_state') != '0x00000003' or value('sserial.port-0.fault-count') != '0x00000000':
+        problems.append('smart serial does not run without faults')
     if value('io_error') != 'FALSE':
         problems.append('io_error')
     bites = re.findall(r'^\s+\d+\s+bit\s+I/O\s+(\S+)\s+hm2_7i76e\.0\.watchdog\.has_bit', output, re.M)
@@ -145,7 +155,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         os.chmod(folder, 0o777)
         problems = check(*run(os.path.abspath(sys.argv[1]), pathlib.Path(folder)))
-    print('\n'.join(problems) or 'LinuxCNC drives the simulated 7I76E: position, counts, index, input and watchdog agree')
+    print('\n'.join(problems) or 'LinuxCNC drives the simulated 7I76E: position, counts, index, input, smart serial and watchdog agree')
     return 1 if problems else 0
 
 
