@@ -12,6 +12,7 @@ constexpr std::uint8_t OUTPUT = 0x80;
 constexpr std::uint8_t STEP_PIN = 0x81, PWM_PIN = 0x81;
 constexpr std::uint8_t ENCODER_A = 1, ENCODER_B = 2, ENCODER_Z = 3;
 constexpr unsigned DPLL_TIMERS = 4;
+constexpr std::uint32_t FIRST_SERIAL_NUMBER = 0x1000'0001;
 
 /// The watchdog or a DPLL timer acts.
 struct TimedEvent {
@@ -83,6 +84,7 @@ Module *Firmware::add_module(const ModuleDescriptor &descriptor) {
     case Gtag::DPLL: return dpll_ = own<DpllModule>(clock_hz);
     case Gtag::LED: return led_ = own<LedModule>();
     case Gtag::SSR: return ssr_ = own<SsrModule>();
+    case Gtag::SMART_SERIAL: return serial_ = add_serial(descriptor);
     case Gtag::IN_M:
     case Gtag::IN_MUX: {
         const auto isInput = [&](const PinDescriptor &pin) {
@@ -99,17 +101,36 @@ Module *Firmware::add_module(const ModuleDescriptor &descriptor) {
     }
 }
 
+SmartSerialModule *Firmware::add_serial(const ModuleDescriptor &descriptor) {
+    // Receive pins 1 to 8 of the port are its channels.
+    const auto channels = std::ranges::count_if(idrom_.pins, [&](const PinDescriptor &pin) {
+        return pin.secondary == descriptor.gtag && pin.unit == 0 && pin.secondary_pin >= 1 &&
+               pin.secondary_pin <= SERIAL_CHANNELS;
+    });
+    std::vector<ConnectedRemote> remotes;
+    for (const RemotePlan &plan : physics_.plan().remotes) {
+        if (const RemoteCard *card = find_remote_card(plan.card); card != nullptr) {
+            remotes.push_back({plan.port, plan.channel, Remote(*card, FIRST_SERIAL_NUMBER + plan.channel)});
+        }
+    }
+    return own<SmartSerialModule>(descriptor.instances, static_cast<unsigned>(channels), std::move(remotes));
+}
+
 void Firmware::map(Module &module, const ModuleDescriptor &descriptor) {
     const std::uint32_t register_stride = idrom_.header.register_strides[descriptor.register_stride];
     const std::uint32_t instance_stride = idrom_.header.instance_strides[descriptor.instance_stride];
     for (unsigned reg = 0; reg < module.registers(); ++reg) {
-        const bool isEach = reg < 32 && ((descriptor.per_instance >> reg) & 1U) != 0;
+        const bool isEach =
+            module.isInEachInstance(reg) || (reg < 32 && ((descriptor.per_instance >> reg) & 1U) != 0);
         const unsigned instances = isEach ? descriptor.instances : 1U;
         for (unsigned i = 0; i < instances; ++i) {
             const std::uint64_t address = descriptor.base_address + std::uint64_t{reg} * register_stride +
                                           std::uint64_t{i} * instance_stride;
-            if (address / 4 < WORDS && slots_[address / 4].module == nullptr) {
-                slots_[address / 4] = {&module, {reg, i}};
+            for (unsigned word = 0; word < module.words(reg); ++word) {
+                const std::uint64_t slot = address / 4 + word;
+                if (slot < WORDS && slots_[slot].module == nullptr) {
+                    slots_[slot] = {&module, {reg, i, word}};
+                }
             }
         }
     }

@@ -10,6 +10,7 @@
 #include "drivers/mesa/board/modules/encoder.hh"
 #include "drivers/mesa/board/modules/io_ports.hh"
 #include "drivers/mesa/board/modules/pwm.hh"
+#include "drivers/mesa/board/modules/smart_serial.hh"
 #include "drivers/mesa/board/modules/stepgen.hh"
 #include "drivers/mesa/board/modules/switches.hh"
 #include "drivers/mesa/board/modules/watchdog.hh"
@@ -45,6 +46,7 @@ class Firmware {
     const WatchdogModule *watchdog() const { return watchdog_; }
     const SsrModule *ssr() const { return ssr_; }
     const LedModule *led() const { return led_; }
+    SmartSerialModule *smart_serial() { return serial_; }
 
   private:
     /// Which register a word of the space is.
@@ -53,6 +55,7 @@ class Firmware {
         RegisterPlace place;
     };
     Module *add_module(const ModuleDescriptor &descriptor);
+    SmartSerialModule *add_serial(const ModuleDescriptor &descriptor);
     template <class T, class... Arguments>
     T *own(Arguments &&...arguments);
     void map(Module &module, const ModuleDescriptor &descriptor);
@@ -80,6 +83,7 @@ class Firmware {
     DpllModule *dpll_ = nullptr;
     SsrModule *ssr_ = nullptr;
     LedModule *led_ = nullptr;
+    SmartSerialModule *serial_ = nullptr;
     std::int64_t now_ns_;
 };
 

@@ -46,15 +46,23 @@ struct SwitchPlan {
     bool closed_level = true;  ///< level of the pin while it is closed
 };
 
+/// A smart serial card on a channel.
+struct RemotePlan {
+    unsigned port = 0, channel = 0;
+    std::string card;  ///< 7i76, 7i77, 7i84
+};
+
 struct PhysicsPlan {
     std::vector<MotorPlan> motors;
     std::vector<EncoderPlan> encoders;
     std::vector<SwitchPlan> switches;
+    std::vector<RemotePlan> remotes;
 };
 
 /// Lines `motor NAME stepgen=N steps_per_rev=N [start_rev=]`, `motor NAME pwm=N full_rev_s=
-/// time_constant_s=`, `encoder N motor=NAME counts_per_rev=N [index_rev=]` and `switch PIN motor=NAME
-/// below_rev=|above_rev= [closed=high|low]`; units and pins must exist in `idrom`.
+/// time_constant_s=`, `encoder N motor=NAME counts_per_rev=N [index_rev=]`, `switch PIN motor=NAME
+/// below_rev=|above_rev= [closed=high|low]` and `remote CHANNEL card=7i76 [port=N]`; units and pins must
+/// exist in `idrom`.
 Result<PhysicsPlan> parse_physics(std::string_view text, const std::string &file, const Idrom &idrom);
 
 /// What reaches the motors within a piece of time in which nothing changes.

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "base/text.hh"
+#include "drivers/mesa/board/modules/smart_serial.hh"
 #include "drivers/mesa/board/physics.hh"
 #include "drivers/mesa/board/table_file.hh"
 
@@ -89,6 +90,18 @@ void read_switch(TableLine &line, PhysicsPlan &plan, const Idrom &idrom) {
     plan.switches.push_back(one);
 }
 
+void read_remote(TableLine &line, PhysicsPlan &plan, const Idrom &idrom) {
+    RemotePlan remote;
+    remote.channel = number_of(line, "smart serial channel", SERIAL_CHANNELS);
+    remote.port = line.has("port") ? unit_of(line, "port", instances_of(idrom, {Gtag::SMART_SERIAL})) : 0U;
+    remote.card = line.text("card");
+    if (find_remote_card(remote.card) == nullptr) {
+        line.reject("card", fmt::format("Unknown card '{}', known are {}.", remote.card,
+                                        fmt::join(remote_card_names(), ", ")));
+    }
+    plan.remotes.push_back(remote);
+}
+
 }  // namespace
 
 Result<PhysicsPlan> parse_physics(std::string_view text, const std::string &file, const Idrom &idrom) {
@@ -104,9 +117,12 @@ Result<PhysicsPlan> parse_physics(std::string_view text, const std::string &file
             read_encoder(line, plan, idrom);
         } else if (line.type() == "switch") {
             read_switch(line, plan, idrom);
+        } else if (line.type() == "remote") {
+            read_remote(line, plan, idrom);
         } else {
-            return fail(fmt::format("Unknown line '{}', expected motor, encoder or switch.", line.type()),
-                        line.place());
+            return fail(
+                fmt::format("Unknown line '{}', expected motor, encoder, switch or remote.", line.type()),
+                line.place());
         }
         if (auto finished = line.finish(); !finished.has_value()) {
             return std::unexpected(finished.error());

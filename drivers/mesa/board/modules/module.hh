@@ -10,6 +10,7 @@ namespace mw::mesa::board {
 /// A register within its module.
 struct RegisterPlace {
     unsigned reg = 0, instance = 0;
+    unsigned word = 0;  ///< of registers that have several words, such as one for each channel
 };
 
 /// One module with all of its instances. The firmware calls advance() up to the time of each access before
@@ -29,6 +30,10 @@ class Module {
     virtual bool output(unsigned /*unit*/, std::uint8_t /*function*/) const { return false; }
     /// The number of registers; registers behind those of the descriptor may exist (DPLL timers).
     virtual unsigned registers() const = 0;
+    /// The consecutive words of a register in each instance.
+    virtual unsigned words(unsigned /*reg*/) const { return 1; }
+    /// The register is in each instance, although the descriptor says otherwise.
+    virtual bool isInEachInstance(unsigned /*reg*/) const { return false; }
 };
 
 /// A module that this board has no model of: it reads 0, and writes have no effect.

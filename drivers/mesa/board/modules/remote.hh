@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Smart serial remotes: cards that describe their own data. Source: shared/hardware.md, part B9. The 7I76 is
+// as described there; the fields of the other cards are examples of the same form.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace mw::mesa::board {
+
+enum class FieldType : std::uint8_t {
+    PAD = 0,
+    BITS = 1,
+    UNSIGNED = 2,
+    SIGNED = 3,
+    BOOLEAN = 7,
+    ENCODER_LOW = 0x18
+};
+enum class FieldDirection : std::uint8_t { INPUT = 0, BOTH = 0x40, OUTPUT = 0x80 };
+
+/// One process data record of a card.
+struct RemoteField {
+    std::string_view name, unit;
+    std::uint8_t bits = 0;
+    FieldType type = FieldType::BITS;
+    FieldDirection direction = FieldDirection::INPUT;  ///< seen from the host: INPUT is what it reads
+    float min = 0, max = 0;
+    std::uint8_t first_mode = 0, last_mode = 255;  ///< the modes in which the card has it
+};
+
+struct RemoteMode {
+    std::string_view name;
+    std::uint8_t index = 0;
+};
+
+/// A type of card.
+struct RemoteCard {
+    std::string_view name;  ///< 4 characters, as the card reports it: 7I76
+    std::span<const RemoteField> fields;
+    std::span<const RemoteMode> modes;
+};
+
+/// The known cards, found in any case: 7i76, 7i77, 7i84. nullptr: unknown.
+const RemoteCard *find_remote_card(std::string_view name);
+std::vector<std::string_view> remote_card_names();
+
+/// The three user registers of a channel.
+using UserWords = std::array<std::uint32_t, 3>;
+
+/// A card on a channel. [one thread]
+class Remote {
+  public:
+    Remote(const RemoteCard &card, std::uint32_t serial_number);
+
+    /// What the user registers read after the start of set-up: serial number, name, addresses of the lists.
+    UserWords identity() const;
+    /// The fields of the mode are exchanged from now on.
+    void set_mode(std::uint8_t mode);
+    std::uint8_t read_byte(std::uint16_t address) const;
+    void write_byte(std::uint16_t address, std::uint8_t value);
+    /// Takes the outputs of the host; returns the inputs.
+    UserWords exchange(const UserWords &from_host);
+
+    /// An input of the card, or what it got last for an output; by the name of the field.
+    void set_value(std::string_view field, std::uint32_t value);
+    std::uint32_t value(std::string_view field) const;
+
+  private:
+    bool isInMode(const RemoteField &field) const;
+    std::uint16_t append_field(const RemoteField &field, std::uint16_t value_address);
+    void append_list(const std::vector<std::uint16_t> &addresses);
+    void append_text(std::string_view text);
+    void describe();
+
+    const RemoteCard *card_;
+    std::uint32_t serial_number_;
+    std::uint8_t mode_ = 0;
+    std::uint16_t process_list_ = 0, global_list_ = 0;
+    std::vector<std::uint8_t> memory_;
+    std::vector<std::uint32_t> values_;  ///< by field
+};
+
+}  // namespace mw::mesa::board

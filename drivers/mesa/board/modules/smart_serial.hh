@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The smart serial processor with its channels. Source: shared/hardware.md, part B9.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "drivers/mesa/board/modules/module.hh"
+#include "drivers/mesa/board/modules/remote.hh"
+
+namespace mw::mesa::board {
+
+constexpr unsigned SERIAL_CHANNELS = 8;
+
+/// One port: what the host reads is not what it has written.
+struct SerialPort {
+    struct Channel {
+        std::uint32_t cs_in = 0, cs_out = 0;  ///< written by the host; read by it
+        UserWords user_in{}, user_out{};
+        enum class State : std::uint8_t { STOPPED, SET_UP, RUNNING } state = State::STOPPED;
+    };
+    std::uint32_t command = 0, data_in = 0, data_out = 0;
+    std::int64_t done_ns = 0;  ///< until then the command register reads the command
+    std::vector<Channel> channels{SERIAL_CHANNELS};
+};
+
+/// A remote that is connected to a channel of a port.
+struct ConnectedRemote {
+    unsigned port = 0, channel = 0;
+    Remote remote;
+};
+
+/// Registers: command, data, then CS and user registers of each channel.
+class SmartSerialModule final : public Module {
+  public:
+    SmartSerialModule(unsigned ports, unsigned channels, std::vector<ConnectedRemote> remotes);
+    std::uint32_t read(RegisterPlace place) override;
+    void write(RegisterPlace place, std::uint32_t value) override;
+    void advance(std::int64_t to_ns) override { time_ns_ = to_ns; }
+    unsigned registers() const override { return 6; }
+    unsigned words(unsigned reg) const override { return reg < 2 ? 1 : SERIAL_CHANNELS; }
+    bool isInEachInstance(unsigned /*reg*/) const override { return true; }
+
+    /// The remote of a channel; nullptr without one.
+    Remote *remote(unsigned port, unsigned channel);
+
+  private:
+    void execute(unsigned port, std::uint32_t command);
+    /// What a command does with one channel; false: the channel failed.
+    bool start(unsigned port, unsigned channel, bool isSetUp);
+    bool exchange(unsigned port, unsigned channel);
+    bool access_memory(SerialPort::Channel &channel, Remote &remote);
+    std::uint8_t local_byte(std::uint32_t address) const;
+
+    std::vector<SerialPort> ports_;
+    unsigned channels_;
+    std::vector<ConnectedRemote> remotes_;
+    std::int64_t time_ns_ = 0;
+};
+
+}  // namespace mw::mesa::board

@@ -1,0 +1,163 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Lets LinuxCNC's own hm2_eth, unmodified, drive the simulated 7I76E: positions, counts, index, inputs, smart serial, watchdog.
+
+usage: linuxcnc_board.py HM2_BOARD (as root)
+Exit status: 0 all agree, 1 something differs, 77 skipped, with the reason. Board and driver run in network namespaces of their own, and the
+driver in its own IPC namespace, so that it meets no other HAL of the machine. Timing is that of an ordinary process: the period is
+4 ms, and single packet errors do not count.
+"""
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+
+SKIPPED = 77
+HALRUN = '/usr/bin/halrun'
+IP = '192.168.1.121'
+# The driver makes a fixed ARP entry of the address that the EEPROM of the board names.
+MAC = '00:60:1B:16:00:01'
+PHYSICS = 'motor x stepgen=0 steps_per_rev=200\nencoder 0 motor=x counts_per_rev=4000 index_rev=0.25\nswitch 17 motor=x above_rev=3\nremote 0 card=7i76\nremote 1 card=7i84\n'
+HAL = '''
+loadrt hostmot2
+loadrt hm2_eth board_ip=192.168.1.121 config="num_encoders=1 num_stepgens=5 sserial_port_0=20xxxxxx"
+loadrt threads name1=servo period1=4000000
+addf hm2_7i76e.0.read servo
+addf hm2_7i76e.0.write servo
+setp hm2_7i76e.0.watchdog.timeout_ns 100000000
+setp hm2_7i76e.0.packet-error-limit 1000
+setp hm2_7i76e.0.stepgen.00.position-scale 200
+setp hm2_7i76e.0.stepgen.00.maxvel 20
+setp hm2_7i76e.0.stepgen.00.maxaccel 100
+setp hm2_7i76e.0.stepgen.00.steplen 2000
+setp hm2_7i76e.0.stepgen.00.stepspace 2000
+setp hm2_7i76e.0.encoder.00.scale 4000
+start
+loadusr -w sleep 0.5
+setp hm2_7i76e.0.stepgen.00.enable 1
+setp hm2_7i76e.0.encoder.00.index-invert 1
+setp hm2_7i76e.0.encoder.00.index-enable 1
+setp hm2_7i76e.0.stepgen.00.position-cmd 3.1275
+setp hm2_7i76e.0.7i76.0.0.output-03 1
+setp hm2_7i76e.0.7i76.0.0.spinout 50
+setp hm2_7i76e.0.7i76.0.0.spinena 1
+setp hm2_7i76e.0.7i84.0.1.output-15 1
+loadusr -w sleep 3
+show pin hm2_7i76e.0
+show param hm2_7i76e.0.io_error
+stop
+loadusr -w sleep 0.5
+start
+loadusr -w sleep 0.5
+show pin hm2_7i76e.0.watchdog
+'''
+
+
+def reason_to_skip():
+    if os.geteuid() != 0:
+        return 'network namespaces need root'
+    missing = [program for program in ('ip', 'unshare', 'iptables', HALRUN) if shutil.which(program) is None]
+    return f'{", ".join(missing)}: not installed' if missing else None
+
+
+def ip(*words):
+    subprocess.run(['ip', *words], check=True)
+
+
+class Network:
+    """Two namespaces with a cable between them."""
+
+    def __init__(self):
+        tag = f'b{os.getpid() % 100000}'
+        self.host, self.board = f'{tag}h', f'{tag}b'
+
+    def __enter__(self):
+        for name in (self.host, self.board):
+            ip('netns', 'add', name)
+        ip('link', 'add', self.host, 'netns', self.host, 'type', 'veth', 'peer', 'name', self.board, 'netns', self.board)
+        ip('-n', self.board, 'link', 'set', self.board, 'address', MAC)
+        for name, address in ((self.host, '192.168.1.1'), (self.board, IP)):
+            ip('-n', name, 'addr', 'add', f'{address}/24', 'dev', name)
+            ip('-n', name, 'link', 'set', name, 'up')
+            ip('-n', name, 'link', 'set', 'lo', 'up')
+        return self
+
+    def __exit__(self, *_):
+        for name in (self.host, self.board):
+            subprocess.run(['ip', 'netns', 'del', name], check=False)
+
+
+def run(program, folder):
+    (folder / 'physics.txt').write_text(PHYSICS)
+    (folder / 'test.hal').write_text(HAL)
+    with Network() as network:
+        command = ['ip', 'netns', 'exec', network.board, program, '--listen', IP, '--physics', str(folder / 'physics.txt'),
+                   '--log', str(folder / 'log')]
+        with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as board:
+            board.stdout.readline()
+            environment = dict(os.environ, RTAPI_UID='65534', RTAPI_FIFO_PATH=str(folder / 'fifo'))
+            done = subprocess.run(['ip', 'netns', 'exec', network.host, 'unshare', '-i', '--', HALRUN, '-f', str(folder / 'test.hal')],
+                                  env=environment, capture_output=True, text=True, timeout=120)
+            time.sleep(0.2)
+            board.terminate()
+    return done.stdout + done.stderr, (folder / 'log').read_text()
+
+
+def check(output, log):
+    def value(name):
+        found = re.findall(rf'\s(\S+)\s+hm2_7i76e\.0\.{re.escape(name)}$', output, re.M)
+        return found[0] if found else None
+
+    steps, wanted = 625, 3.1275
+    problems = []
+    if value('stepgen.00.counts') is None:
+        return ['the driver has not loaded:\n' + output[-3000:]]
+    if abs(float(value('stepgen.00.position-fb')) - wanted) > 0.005:
+        problems.append(f'position-fb is {value("stepgen.00.position-fb")}, not {wanted}')
+    # The motor has made the whole steps of the accumulator; each is 20 counts.
+    accumulators = re.findall(r'R0 0x2100 5x32 (\w{8})', log)
+    raw = int(value('encoder.00.rawcounts'))
+    if raw % 20 != 0 or abs(raw // 20 - steps) > 1:
+        problems.append(f'the encoder reads {raw}, not the counts of about {steps} steps')
+    moved = next((int(a, 16) >> 16 for a in reversed(accumulators)), 0)
+    if moved * 20 != raw:
+        problems.append(f'accumulator {moved} steps, encoder {raw} counts')
+    if value('encoder.00.index-enable') != 'FALSE':
+        problems.append('index-enable has not been cleared')
+    # The index is at 1000 counts: there the position becomes 0.
+    if int(value('encoder.00.count')) != raw - 1000:
+        problems.append(f'count is {value("encoder.00.count")} after the index, not {raw - 1000}')
+    if value('gpio.017.in') != 'TRUE':
+        problems.append('the switch at 3 revolutions is not seen')
+    # Output 3 and half of the speed in the first word, the enable in the second one.
+    sent = {register: re.findall(rf'W0 0x{register} 1x32 (\w{{8}})', log) for register in ('5D00', '5E00', '5D04')}
+    if not ('7FFF0008' in sent['5D00'] and '00000001' in sent['5E00'] and '00008000' in sent['5D04']):
+        problems.append('the outputs of the smart serial cards are not sent')
+    if value('sserial.port-0.port_state') != '0x00000003' or value('sserial.port-0.fault-count') != '0x00000000':
+        problems.append('smart serial does not run without faults')
+    if value('io_error') != 'FALSE':
+        problems.append('io_error')
+    bites = re.findall(r'^\s+\d+\s+bit\s+I/O\s+(\S+)\s+hm2_7i76e\.0\.watchdog\.has_bit', output, re.M)
+    if bites != ['FALSE', 'TRUE']:
+        problems.append(f'watchdog.has_bit is {bites}: FALSE while the thread runs, TRUE after a pause of 0.5 s')
+    return problems
+
+
+def main():
+    reason = reason_to_skip()
+    if reason is not None:
+        print(f'skipped: {reason}')
+        return SKIPPED
+    with tempfile.TemporaryDirectory() as folder:
+        os.chmod(folder, 0o777)
+        problems = check(*run(os.path.abspath(sys.argv[1]), pathlib.Path(folder)))
+    print('\n'.join(problems) or 'LinuxCNC drives the simulated 7I76E: position, counts, index, input, smart serial and watchdog agree')
+    return 1 if problems else 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())

@@ -1,0 +1,89 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Lets mesaflash, which other people wrote, report the simulated boards; its report must agree with the model files.
+
+usage: mesaflash_board.py HM2_BOARD MODELS_FOLDER
+Exit status: 0 agrees, 1 differs, 77 skipped (mesaflash is not installed). Needs no privileges.
+"""
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+SKIPPED = 77
+# The names of the boards in mesaflash.
+DEVICES = {'7i76e': '7i76e', '7i80': '7i80db-16', '7i92': '7i92', '7i95': '7i95', '7i96s': '7i96s', '7i97': '7i97'}
+# How mesaflash names the modules of a pin.
+NAMES = {'stepgen': 'StepGen', 'encoder': 'QCount', 'muxed-encoder': 'MuxedQCount', 'mux-select': 'MuxedQCountSel', 'pwm': 'PWM',
+         'smart-serial': 'SSerial', 'ssr': 'SSR', 'inm': 'InM', 'inmux': 'InMux'}
+PIN = re.compile(r'\s(\d+)\s+IOPort\s+(\S+)(?:\s+(\d+)\s+.*\((In|Out)\))?\s*$')
+# Each run has its own address, so that runs at the same time do not meet.
+ADDRESS = f'127.{1 + os.getpid() % 250}.{1 + os.getpid() // 250 % 250}.9'
+
+
+def mesaflash(device, *options):
+    run = subprocess.run(['mesaflash', '--device', device, '--addr', ADDRESS, *options], capture_output=True, text=True, timeout=60)
+    return run.stdout + run.stderr
+
+
+def pins_of_model(text):
+    """{pin: (module, unit, direction)} of the declared pins."""
+    pins = {}
+    for number, module, unit, function in re.findall(r'^pin\s+(\d+) module=(\S+) unit=(\d+) function=0x(\w+)', text, re.M):
+        pins[int(number)] = (NAMES[module], int(unit), 'Out' if int(function, 16) & 0x80 else 'In')
+    return pins
+
+
+def pins_of_report(report):
+    pins = {}
+    for match in filter(None, map(PIN.search, report.splitlines())):
+        number, module, unit, direction = match.groups()
+        if module != 'None':
+            pins[int(number)] = (module, int(unit), direction)
+    return pins
+
+
+def check(name, device, text):
+    """The differences of one board."""
+    report = mesaflash(device, '--readhmid')
+    wanted, reported = pins_of_model(text), pins_of_report(report)
+    problems = [f'pin {pin}: {reported.get(pin)} reported, {wanted.get(pin)} in the model'
+                for pin in sorted(wanted.keys() | reported.keys()) if wanted.get(pin) != reported.get(pin)]
+    board = re.search(r'^board .* name=(\S+) ports=(\d+) port_width=(\d+)', text, re.M).groups()
+    for fact, pattern in zip(board, (r'BoardName : (\S+)', r'Number of IO Ports: (\d+)', r'Width of one I/O port: (\d+)')):
+        found = re.search(pattern, report)
+        if found is None or found.group(1) != fact:
+            problems.append(f'{fact} expected for "{pattern}": {found and found.group(1)}')
+    for module, instances in re.findall(r'^module (\S+)\s+instances=(\d+)', text, re.M):
+        if module in NAMES and f'There are {instances} of {NAMES[module]} in configuration' not in report:
+            problems.append(f'{instances} of {NAMES[module]} are not reported')
+    verbose = mesaflash(device, '--verbose')
+    for fact in ('ip address: 192.168.1.121', 'protocol: LBP16 version 3', '0: HostMot2 (registers, RW, 32-bit) [size=64K]',
+                 'parse errors: 0, mem errors 0, write errors 0'):
+        if fact not in verbose:
+            problems.append(f'"{fact}" is not reported')
+    mesaflash(device, '--wpo=0x0200=0xA0000000')
+    if 'A0000000' not in mesaflash(device, '--rpo=0x0200'):
+        problems.append('a register does not read what was written')
+    return [f'{name}: {problem}' for problem in problems]
+
+
+def main():
+    program, models = sys.argv[1], pathlib.Path(sys.argv[2])
+    if shutil.which('mesaflash') is None:
+        print('skipped: mesaflash is not installed (apt-get install mesaflash)')
+        return SKIPPED
+    problems = []
+    for name, device in DEVICES.items():
+        with subprocess.Popen([program, '--listen', ADDRESS, '--model', name], stdout=subprocess.PIPE, text=True) as board:
+            board.stdout.readline()
+            problems += check(name, device, (models / f'{name}.txt').read_text())
+            board.terminate()
+    print('\n'.join(problems) or f'{len(DEVICES)} boards are reported as their models declare them')
+    return 1 if problems else 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())
