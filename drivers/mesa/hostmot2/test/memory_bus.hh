@@ -89,10 +89,15 @@ class MemoryBus final : public RegisterBus {
         std::size_t n = 0;
         for (const RegisterRange &range : ranges) {
             for (int i = 0; i < range.count; ++i) {
-                values[n++] = registers.find(static_cast<std::uint16_t>(range.address + 4 * i))->second;
+                const auto found = registers.find(static_cast<std::uint16_t>(range.address + 4 * i));
+                values[n++] = found == registers.end() ? 0U : found->second;
             }
         }
         return result;
+    }
+    bool redirect(int range, std::uint16_t address) noexcept override {
+        ranges[static_cast<std::size_t>(range)].address = address;
+        return true;
     }
     bool write(std::span<const RegisterWrite> writes) noexcept override {
         if (isRecording) {
