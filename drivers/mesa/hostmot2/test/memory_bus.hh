@@ -23,6 +23,7 @@ class MemoryBus final : public RegisterBus {
     /// What the next read gives; the next write is lost, so that the bus requires all registers afterwards.
     CycleRead next_read = CycleRead::DONE;
     bool isNextWriteLost = false;
+    bool isNextWriteRefused = false;  ///< it cannot be sent
     bool isRewriteWanted = false;
     int reads = 0;
 
@@ -100,6 +101,10 @@ class MemoryBus final : public RegisterBus {
         return true;
     }
     bool write(std::span<const RegisterWrite> writes) noexcept override {
+        if (isNextWriteRefused) {
+            isNextWriteRefused = false;
+            return false;
+        }
         if (isRecording) {
             written.emplace_back(writes.begin(), writes.end());
         }
