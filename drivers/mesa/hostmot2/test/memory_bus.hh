@@ -18,6 +18,8 @@ class MemoryBus final : public RegisterBus {
     std::map<std::uint16_t, std::uint32_t> registers;
     /// Called after each write of a register, so that a test plays a module.
     std::function<void(RegisterWrite)> on_write;
+    /// Called instead of a write while loading.
+    std::function<void(RegisterWrite)> on_load_write;
     /// Called before each read of a cycle.
     std::function<void()> on_read;
     /// What the next read gives; the next write is lost, so that the bus requires all registers afterwards.
@@ -60,7 +62,11 @@ class MemoryBus final : public RegisterBus {
     Result<> write_now(std::uint16_t address, std::span<const std::uint32_t> values) override {
         for (const std::uint32_t value : values) {
             loading_writes.push_back({address, value});
-            registers[address] = value;
+            if (on_load_write) {
+                on_load_write({address, value});
+            } else {
+                registers[address] = value;
+            }
             address = static_cast<std::uint16_t>(address + 4);
         }
         return {};
