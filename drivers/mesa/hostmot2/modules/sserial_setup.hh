@@ -25,7 +25,7 @@ struct SserialCard {
 
 class SserialSetup {
   public:
-    /// Waits between two looks at the command register.
+    /// Waits between two reads of the command register.
     using Pause = std::function<void()>;
     /// The port `instance` of a module. The bus and the module must stay.
     SserialSetup(RegisterBus &bus, const UsedModule &module, int instance, Pause pause)
