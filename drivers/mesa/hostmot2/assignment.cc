@@ -28,6 +28,7 @@ constexpr Known KNOWN[] = {
     {Gtag::DPLL, "DPLL", {0, ANY}},
     {Gtag::LED, "LED", {0, ANY}},
     {Gtag::SSR, "SSR", {0, ANY}},
+    {Gtag::OUT_M, "OutM", {0, ANY}},
     {Gtag::IRQ, "IRQLogic", {ANY}},
     {Gtag::TRANSLATION_RAM, "TranslationRAM", {ANY}},
     {Gtag::MUX_SELECT, "MuxedEncoderSelect", {ANY}},

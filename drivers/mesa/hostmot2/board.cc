@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "drivers/mesa/hostmot2/modules/factories.hh"
 #include "drivers/mesa/hostmot2/modules/ioport.hh"
 
 namespace mw::mesa {
@@ -27,6 +28,9 @@ Result<std::unique_ptr<Board>> Board::make(RegisterBus &bus, const Idrom &idrom,
     std::unique_ptr<Board> board(new Board(bus, std::move(*assignment)));
     for (const UsedModule &module : board->assignment_.modules) {
         board->add(idrom, config, module);
+    }
+    if (config.isRawEnabled) {
+        board->modules_.push_back(make_raw());
     }
     for (const auto &module : board->modules_) {
         module->plan(board->registers_);

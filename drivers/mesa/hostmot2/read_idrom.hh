@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Reads how a firmware describes itself from the board, and refuses what cannot be used.
+// Reads how a firmware describes itself from the board, and rejects what cannot be used.
 #pragma once
 
 #include "drivers/mesa/hostmot2/register_bus.hh"

@@ -62,6 +62,13 @@ class RegisterBus {
     /// The values of all ranges of set_lists(), in their order. `period_ns` of the thread bounds the wait.
     /// [servo thread; does not block longer than the deadline]
     virtual CycleRead read(std::span<std::uint32_t> values, long period_ns) noexcept = 0;
+    /// Reads another address as range number `range` from the next request on, for raw access by a user;
+    /// false: this bus cannot. [servo thread]
+    virtual bool redirect(int range, std::uint16_t address) noexcept {
+        (void)range;
+        (void)address;
+        return false;
+    }
     /// Writes a list in its order; false when it could not be sent. [servo thread]
     virtual bool write(std::span<const RegisterWrite> writes) noexcept = 0;
     /// True once after a failure: the board may have missed writes, so that the next write() must hold all

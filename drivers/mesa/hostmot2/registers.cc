@@ -7,7 +7,7 @@
 namespace mw::mesa {
 
 ReadHandle Registers::read(RegisterRange range, ReadOrder order) {
-    reads_.push_back({range, order, 0});
+    reads_.push_back({range, order, 0, 0});
     return {static_cast<int>(reads_.size()) - 1};
 }
 
@@ -25,9 +25,11 @@ Result<> Registers::fix(RegisterBus &bus) {
     std::vector<std::size_t> order(reads_.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::ranges::stable_sort(order, {}, [&](std::size_t i) { return reads_[i].order; });
+    bus_ = &bus;
     ranges_.clear();
     int words = 0;
     for (const std::size_t i : order) {
+        reads_[i].position = static_cast<int>(ranges_.size());
         ranges_.push_back(reads_[i].range);
         reads_[i].first = words;
         words += reads_[i].range.count;
@@ -38,6 +40,10 @@ Result<> Registers::fix(RegisterBus &bus) {
     std::ranges::stable_sort(sequence_, {}, [&](std::uint16_t i) { return writes_[i].order; });
     list_.reserve(writes_.size());
     return bus.set_lists(ranges_, static_cast<int>(writes_.size()));
+}
+
+bool Registers::redirect(ReadHandle handle, std::uint16_t address) noexcept {
+    return bus_->redirect(reads_[static_cast<std::size_t>(handle.index)].position, address);
 }
 
 bool Registers::isDue(const Write &write, bool areAll) noexcept {

@@ -82,6 +82,12 @@ class Registers {
         write.value = value;
         write.isRequested = true;
     }
+    /// Writes to another register from now on. [servo thread]
+    void set_address(WriteHandle handle, std::uint16_t address) noexcept {
+        writes_[static_cast<std::size_t>(handle.index)].address = address;
+    }
+    /// Reads another address; false: the bus cannot. [servo thread]
+    bool redirect(ReadHandle handle, std::uint16_t address) noexcept;
     /// The list of this cycle; valid until the next call. Each value in it counts as written. [servo thread]
     std::span<const RegisterWrite> list(bool areAll) noexcept;
     /// As list(), of what is written when all registers are; for tests and messages.
@@ -91,7 +97,8 @@ class Registers {
     struct Read {
         RegisterRange range;
         ReadOrder order = ReadOrder::OTHER;
-        int first = 0;  ///< index of its first word
+        int first = 0;     ///< index of its first word
+        int position = 0;  ///< in ranges_
     };
     struct Write {
         std::uint16_t address = 0;
@@ -102,6 +109,7 @@ class Registers {
     };
     static bool isDue(const Write &write, bool areAll) noexcept;
 
+    RegisterBus *bus_ = nullptr;
     std::vector<Read> reads_;
     std::vector<Write> writes_;
     std::vector<std::uint16_t> sequence_;  ///< indices of writes_ in their order

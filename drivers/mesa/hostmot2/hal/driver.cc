@@ -126,7 +126,11 @@ int register_board(const BoardRequest &request) {
     }
     auto made = std::make_unique<HalBoard>(HalBoard{request.comp_id, request.name, std::move(*board)});
     boards().push_back(std::move(made));
-    return export_functions(*boards().back());
+    const int status = export_functions(*boards().back());
+    if (status < 0) {
+        boards().pop_back();
+    }
+    return status;
 }
 
 void unregister_boards(int comp_id) {

@@ -11,7 +11,11 @@ std::unique_ptr<Module> make_encoders(const ModuleRequest &request);
 std::unique_ptr<Module> make_pwmgens(const ModuleRequest &request);
 std::unique_ptr<Module> make_leds(const ModuleRequest &request);
 std::unique_ptr<Module> make_ssrs(const ModuleRequest &request);
+std::unique_ptr<Module> make_outms(const ModuleRequest &request);
 std::unique_ptr<Module> make_dpll(const ModuleRequest &request);
+
+/// Access of a user to any register (enable_raw in config=).
+std::unique_ptr<Module> make_raw();
 
 /// Whether the firmware has a phase-locked loop that is used, so that modules have a timer-number pin.
 bool hasDpll(const Assignment &assignment) noexcept;

@@ -41,72 +41,6 @@ class Leds final : public Module {
     WriteHandle word_;
 };
 
-/// Solid state relays: a word of outputs for each instance.
-class Ssrs final : public Module {
-  public:
-    explicit Ssrs(const ModuleRequest &request)
-        : module_(request.module), instances_(static_cast<std::size_t>(request.module.instances)) {
-        constexpr std::uint8_t FIRST_OUTPUT = 0x81, LAST_OUTPUT = 0x9F;
-        for (const UsedPin &pin : request.assignment.pins) {
-            const bool isOutput = pin.module == Gtag::SSR && pin.function >= FIRST_OUTPUT &&
-                                  pin.function <= LAST_OUTPUT &&
-                                  static_cast<std::size_t>(pin.instance) < instances_.size();
-            if (isOutput) {
-                instances_[static_cast<std::size_t>(pin.instance)].used |=
-                    1U << static_cast<unsigned>(pin.function - FIRST_OUTPUT);
-            }
-        }
-    }
-
-    void plan(Registers &registers) override {
-        enum SsrRegister { DATA, RATE };
-        int number = 0;
-        for (Instance &one : instances_) {
-            one.rate_word =
-                registers.write(module_.address(RATE, number), WriteOrder::CONFIGURATION, Send::CHANGED);
-            one.data = registers.write(module_.address(DATA, number), WriteOrder::RATE, Send::CHANGED);
-            ++number;
-        }
-    }
-    void declare(PinSpace &space) override {
-        int number = 0;
-        for (Instance &one : instances_) {
-            const std::string name = fmt::format("ssr.{:02}", number++);
-            binding_.add(space, name + ".rate", PinType::U32, Access::IN, &one.rate_hz);
-            for (std::size_t i = 0; i < MAX_BITS; ++i) {
-                if (((one.used >> i) & 1U) != 0) {
-                    binding_.add(space, fmt::format("{}.out-{:02}", name, i), PinType::BIT, Access::IN,
-                                 &one.out[i]);
-                    binding_.add(space, fmt::format("{}.invert-{:02}", name, i), PinType::BIT, Access::IN,
-                                 &one.invert[i]);
-                }
-            }
-        }
-    }
-    void read(const Registers &, const Cycle &) noexcept override {}
-    void write(Registers &registers, const Cycle &) noexcept override {
-        binding_.load();
-        for (Instance &one : instances_) {
-            std::uint32_t word = 0;
-            for (std::size_t i = 0; i < MAX_BITS; ++i) {
-                word |= one.out[i] != one.invert[i] ? 1U << i : 0U;
-            }
-            registers.set(one.data, word & one.used);
-            registers.set(one.rate_word, ssr_rate(one.rate_hz, module_.clock_hz));
-        }
-    }
-
-  private:
-    struct Instance {
-        std::uint32_t used = 0, rate_hz = 1'000'000;
-        std::array<bool, MAX_BITS> out{}, invert{};
-        WriteHandle data, rate_word;
-    };
-    UsedModule module_;
-    std::vector<Instance> instances_;
-    PinBinding binding_;
-};
-
 struct DpllPins {
     double timer_us[4] = {100.0, 100.0, 100.0, 100.0};
     double base_freq_khz = -1.0;  ///< negative: that of the thread
@@ -178,9 +112,6 @@ class Dpll final : public Module {
 
 std::unique_ptr<Module> make_leds(const ModuleRequest &request) {
     return std::make_unique<Leds>(request);
-}
-std::unique_ptr<Module> make_ssrs(const ModuleRequest &request) {
-    return std::make_unique<Ssrs>(request);
 }
 std::unique_ptr<Module> make_dpll(const ModuleRequest &request) {
     return std::make_unique<Dpll>(request);

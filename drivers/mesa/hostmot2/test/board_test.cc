@@ -79,6 +79,15 @@ TEST_F(CycleOfBoard, WritesAllAfterAFailure) {
     EXPECT_EQ(bus.written.back().size(), few);
 }
 
+TEST_F(CycleOfBoard, WritesAllAfterAWriteThatCouldNotBeSent) {
+    cycle(3);
+    pins.set("gpio.017.is_output", 1);
+    bus.isNextWriteRefused = true;
+    cycle(2);
+    EXPECT_EQ(bus.last(DIRECTION + 4), 1);
+    EXPECT_GE(position(DIRECTION), 0);
+}
+
 TEST_F(CycleOfBoard, WritesNothingWhileTheBusIsStopped) {
     cycle(3);
     const std::size_t count = bus.written.size();

@@ -18,11 +18,14 @@ class MemoryBus final : public RegisterBus {
     std::map<std::uint16_t, std::uint32_t> registers;
     /// Called after each write of a register, so that a test plays a module.
     std::function<void(RegisterWrite)> on_write;
+    /// Called instead of a write while loading.
+    std::function<void(RegisterWrite)> on_load_write;
     /// Called before each read of a cycle.
     std::function<void()> on_read;
     /// What the next read gives; the next write is lost, so that the bus requires all registers afterwards.
     CycleRead next_read = CycleRead::DONE;
     bool isNextWriteLost = false;
+    bool isNextWriteRefused = false;  ///< it cannot be sent
     bool isRewriteWanted = false;
     int reads = 0;
 
@@ -59,7 +62,11 @@ class MemoryBus final : public RegisterBus {
     Result<> write_now(std::uint16_t address, std::span<const std::uint32_t> values) override {
         for (const std::uint32_t value : values) {
             loading_writes.push_back({address, value});
-            registers[address] = value;
+            if (on_load_write) {
+                on_load_write({address, value});
+            } else {
+                registers[address] = value;
+            }
             address = static_cast<std::uint16_t>(address + 4);
         }
         return {};
@@ -89,12 +96,21 @@ class MemoryBus final : public RegisterBus {
         std::size_t n = 0;
         for (const RegisterRange &range : ranges) {
             for (int i = 0; i < range.count; ++i) {
-                values[n++] = registers.find(static_cast<std::uint16_t>(range.address + 4 * i))->second;
+                const auto found = registers.find(static_cast<std::uint16_t>(range.address + 4 * i));
+                values[n++] = found == registers.end() ? 0U : found->second;
             }
         }
         return result;
     }
+    bool redirect(int range, std::uint16_t address) noexcept override {
+        ranges[static_cast<std::size_t>(range)].address = address;
+        return true;
+    }
     bool write(std::span<const RegisterWrite> writes) noexcept override {
+        if (isNextWriteRefused) {
+            isNextWriteRefused = false;
+            return false;
+        }
         if (isRecording) {
             written.emplace_back(writes.begin(), writes.end());
         }

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// How a smart serial card describes its process data: records in its memory, listed by two tables (PTOC:
+// process data and modes; GTOC: all). Source: shared/hardware.md, part B9.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/result.hh"
+
+namespace mw::mesa {
+
+/// Reads one byte of the memory of a card. [while loading]
+using ReadCardByte = std::function<Result<std::uint8_t>(std::uint16_t address)>;
+
+enum class FieldType : std::uint8_t {
+    PAD = 0,
+    BITS = 1,
+    UNSIGNED = 2,
+    SIGNED = 3,
+    NV_UNSIGNED = 4,
+    NV_SIGNED = 5,
+    STREAM = 6,
+    BOOLEAN = 7,
+    ENCODER = 8,
+    FLOAT = 0x10,
+    NV_FLOAT = 0x11,
+    ENCODER_HIGH = 0x18,
+    ENCODER_LOW = 0x28,
+};
+/// Seen from the host: an input is data that the card sends.
+enum class FieldDirection : std::uint8_t { INPUT = 0, BOTH = 0x40, OUTPUT = 0x80 };
+
+/// A field of process data, or a parameter.
+struct DataRecord {
+    int bits = 0;
+    FieldType type = FieldType::PAD;
+    FieldDirection direction = FieldDirection::INPUT;
+    float min = 0.0F, max = 0.0F;
+    std::uint16_t value_address = 0;
+    std::string unit, name;     ///< as the card has them
+    std::uint16_t address = 0;  ///< of the record
+
+    bool operator==(const DataRecord &) const = default;
+};
+/// A set of process data that the card offers.
+struct ModeRecord {
+    int index = 0;
+    bool isSoftware = false;
+    std::string name;
+
+    bool operator==(const ModeRecord &) const = default;
+};
+
+struct CardRecords {
+    std::vector<DataRecord> process;     ///< in the order of the PTOC
+    std::vector<DataRecord> parameters;  ///< in the GTOC and not in the PTOC
+    std::vector<ModeRecord> modes;
+};
+
+/// All records of a card. An error names the address of what cannot be read or is not a record.
+/// [while loading]
+Result<CardRecords> read_card_records(const ReadCardByte &read, std::uint16_t ptoc, std::uint16_t gtoc);
+
+/// The position of a field in the words that are exchanged.
+struct FieldPosition {
+    int record = 0;  ///< index in CardRecords::process
+    int first_bit = 0;
+};
+/// Inputs and outputs are packed apart, each from bit 0 in the order of the PTOC. A field in both directions
+/// has a position in both.
+struct ProcessLayout {
+    std::vector<FieldPosition> inputs, outputs;
+    int input_bits = 0, output_bits = 0;
+};
+/// An error when the data do not fit into `most_bits`. [while loading]
+Result<ProcessLayout> process_layout(const std::vector<DataRecord> &process, int most_bits);
+
+/// `bits` (1 to 64) of words of 32 bit, from bit `first`. [any thread]
+std::uint64_t field_bits(std::span<const std::uint32_t> words, int first, int bits) noexcept;
+/// Replaces them. [any thread]
+void set_field_bits(std::span<std::uint32_t> words, int first, int bits, std::uint64_t value) noexcept;
+
+}  // namespace mw::mesa
