@@ -21,8 +21,7 @@ panelui pi500_vfd pmx485 pmx485-test pncconf puma560gui pumagui pyngcgui pyui py
 qtplasmac-plasmac2qt qtplasmac_gcode qtvcp rotarydelta rs274 rtapi_app scaragui schedrmt scorbot-er-3 sendkeys setup_designer shuttle
 sim-torch sim_pin simulate_probe stepconf svd-ps_vfd teach-in thermistor tool_mmap_read tool_watch tooledit touchy update_ini vfdb_vfd
 vfs11_vfd wj200_vfd xhc-hb04 xhc-hb04-accels xhc-whb04b-6 xyzab-tdr-gui xyzac-trt-gui xyzbc-trt-gui z_level_compensation'''.split()
-MODULES = '''axistest boss_plc classicladder_rt hal_bb_gpio hal_gm hal_lib hal_parport hal_pi_gpio hal_ppmc hal_speaker hm2_7i43 hm2_7i90 hm2_eth
-hm2_pci hm2_rpspi hm2_spi hm2_test homecomp hostmot2 mesa_7i65 mesa_pktgyro_test mesa_uart scope_rt serport setsserial tp userkins
+MODULES = '''axistest boss_plc classicladder_rt hal_bb_gpio hal_gm hal_lib hal_ppmc hal_speaker hm2_7i43 hm2_7i90 hm2_pci hm2_rpspi hm2_spi homecomp mesa_7i65 mesa_pktgyro_test mesa_uart scope_rt serport setsserial tp userkins
 xhc_hb04_util'''.split()
 
 

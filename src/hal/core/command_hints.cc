@@ -13,13 +13,14 @@ struct Absent {
 };
 
 constexpr Absent ABSENT[] = {
-    {" hostmot2 hm2_7i43 hm2_7i90 hm2_eth hm2_pci hm2_rpspi hm2_spi hm2_spix hm2_modbus hm2_test mesa_uart "
+    {" hm2_7i43 hm2_7i90 hm2_pci hm2_rpspi hm2_spi hm2_spix hm2_modbus mesa_uart "
      "mesa_7i65"
-     " mesa_pktgyro_test hal_parport probe_parport hal_ppmc hal_motenc hal_stg hal_vti hal_gm hal_speaker "
+     " mesa_pktgyro_test probe_parport hal_ppmc hal_motenc hal_stg hal_vti hal_gm hal_speaker "
      "hal_bb_gpio"
-     " hal_pi_gpio hal_ax5214h opto_ac5 pcl720 pluto_step pluto_servo serport setsserial elbpcom ",
-     "drivers of boards come with a later version; this one runs simulated machines, programs of loadusr and "
-     "components of your own"},
+     " hal_ax5214h opto_ac5 pcl720 pluto_step pluto_servo serport setsserial elbpcom ",
+     "there is no driver of this board yet; there are drivers of Mesa boards on Ethernet (hm2_eth), parallel "
+     "ports "
+     "(hal_parport) and GPIO lines (hal_gpio, hal_pi_gpio)"},
     {" hy_vfd hy_gt_vfd pi500_vfd svd-ps_vfd vfs11_vfd wj200_vfd thermistor sendkeys "
      "xhc-hb04 xhc-whb04b-6 xhc-hb04-accels monitor-xhc-hb04 ",
      "that of an installed LinuxCNC runs on this HAL as it is: start the machine by script/screens "
