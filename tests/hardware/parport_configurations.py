@@ -26,7 +26,7 @@ class Machine:
         self.env = {**os.environ, 'MILLWRIGHT_PARPORT': 'simulated', 'MILLWRIGHT_INSTANCE': f'parport_{os.getpid()}',
                     'INI_FILE_NAME': str(ini), 'HOME': str(folder), 'PATH': f'{programs}:{os.environ["PATH"]}'}
         os.environ.update(self.env)
-        self.process = subprocess.Popen([programs / 'millwright', 'start', ini, '--no-display'], env=self.env, stdin=subprocess.DEVNULL,
+        self.process = subprocess.Popen([programs / 'millwright', 'start', ini, '--no-display'], env=self.env, cwd=ini.parent, stdin=subprocess.DEVNULL,
                                         stdout=self.output.open('w'), stderr=subprocess.STDOUT)
 
     def text(self):
