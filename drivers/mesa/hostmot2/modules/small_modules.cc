@@ -53,7 +53,7 @@ constexpr PinRow<DpllPins> DPLL_PINS[] = {
     {"time-const", Access::IN, &DpllPins::time_const},
     {"plimit", Access::IN, &DpllPins::plimit},
     {"ddsize", Access::OUT, &DpllPins::ddsize},
-    {"prescale", Access::IN, &DpllPins::prescale},
+    {"prescale", Access::OUT, &DpllPins::prescale},
 };
 
 class Dpll final : public Module {
