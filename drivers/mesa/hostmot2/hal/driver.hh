@@ -5,7 +5,7 @@
 //
 //     // in rtapi_app_main of a bus, with a bus for each board that outlives the component
 //     auto board = mw::mesa::register_board({comp_id, "hm2_7i76e.0", &bus, "num_encoders=1"});
-//     // in rtapi_app_exit, before hal_exit
+//     // in rtapi_app_exit, after hal_exit: then no function of a board runs any more
 //     mw::mesa::unregister_boards(comp_id);
 #pragma once
 
