@@ -49,6 +49,7 @@ struct LinePins {
     Out<bool> out_fake[MAX_LINES];
     Out<bool> fault;
     ParamRw<std::uint32_t> reset_ns;
+    FailureState reading, writing;
     Levels inputs = 0, written = 0;
     bool known = false;  ///< `written` is what the lines have
     long long written_ns = 0;
@@ -90,7 +91,7 @@ struct LinePins {
                 simulated.inputs |= high != lines.line[i].inverted ? bit_of(i) : 0;
             }
         }
-        keep(access->read(inputs), "read");
+        keep(access->read(inputs), reading, "read");
         for (std::size_t i = 0; i < lines.count; ++i) {
             if (lines.line[i].direction == Direction::INPUT) {
                 in[i].read((inputs & bit_of(i)) != 0);
@@ -111,17 +112,7 @@ struct LinePins {
         if ((written & resetting) == 0) {
             return;
         }
-        const long most_ns = period_ns / 4;
-        const long wanted_ns =
-            reset_ns < static_cast<std::uint32_t>(most_ns) ? static_cast<long>(reset_ns) : most_ns;
-        // The clock of a simulation does not move within a cycle: the number of delays is bounded, too.
-        for (long waited_ns = 0; waited_ns < wanted_ns; waited_ns += rtapi_delay_max()) {
-            const long long rest_ns = written_ns + wanted_ns - rtapi_get_time();
-            if (rest_ns <= 0) {
-                break;
-            }
-            rtapi_delay(static_cast<long>(rest_ns));
-        }
+        delay_after(written_ns, reset_ns, period_ns);
         send(written & ~resetting);
     }
 
@@ -138,7 +129,7 @@ struct LinePins {
         if (known && levels == written) {
             return;
         }
-        known = keep(access->write(levels), "written");
+        known = keep(access->write(levels), writing, "written");
         written = levels;
         for (std::size_t i = 0; i < lines.count && access == &simulated; ++i) {
             if (lines.line[i].direction == Direction::OUTPUT) {
@@ -147,12 +138,12 @@ struct LinePins {
         }
     }
     /// Shows a failure, with one message when it begins.
-    bool keep(bool good, const char *what) noexcept {
-        if (!good && !fault) {
+    bool keep(bool good, FailureState &state, const char *what) noexcept {
+        if (state.begins(good)) {
             rtapi_print_msg(RTAPI_MSG_ERR, "GPIO lines from '%s' on cannot be %s: errno %d\n",
                             lines.line[0].name, what, errno);
         }
-        fault = !good;
+        fault = reading.isFailing() || writing.isFailing();
         return good;
     }
 };

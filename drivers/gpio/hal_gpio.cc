@@ -135,47 +135,31 @@ RTAPI_MP_ARRAY_STRING(pulldown, MAX_NAMES, "lines with pull-down")
 static mw::gpio::Names pullup;
 RTAPI_MP_ARRAY_STRING(pullup, MAX_NAMES, "lines with pull-up")
 
-static int comp_id = -1;
-static LinePins *pins = nullptr;
+namespace {
 
-static int load() {
-    pins = mw::sdk::make<LinePins>();
-    if (pins == nullptr) {
-        return -ENOMEM;
+struct Gpio : LinePins {
+    int load(int comp_id) noexcept {
+        int status = mw::gpio::read_lines(
+            {::inputs, outputs, invert, ::reset, opendrain, opensource, biasdisable, pulldown, pullup},
+            *this);
+        status = status == 0 ? open(MODULE) : status;
+        if (status != 0) {
+            return status;
+        }
+        mw::sdk::Declare d(comp_id, MODULE, 0);
+        declare(d, [this](std::size_t i) {
+            mw::sdk::Name name;
+            rtapi_snprintf(name.text, sizeof name.text, "%s", lines.line[i].name);
+            return name;
+        });
+        if (resetting != 0) {
+            d.param(reset_ns, "reset_ns");
+            d.function<&LinePins::reset>(this, "reset");
+        }
+        return d.status();
     }
-    int status = mw::gpio::read_lines(
-        {inputs, outputs, invert, reset, opendrain, opensource, biasdisable, pulldown, pullup}, *pins);
-    status = status == 0 ? pins->open(MODULE) : status;
-    if (status != 0) {
-        return status;
-    }
-    mw::sdk::Declare declare(comp_id, MODULE, 0);
-    pins->declare(declare, [](std::size_t i) {
-        mw::sdk::Name name;
-        rtapi_snprintf(name.text, sizeof name.text, "%s", pins->lines.line[i].name);
-        return name;
-    });
-    if (pins->resetting != 0) {
-        declare.param(pins->reset_ns, "reset_ns");
-        declare.function<&LinePins::reset>(pins, "reset");
-    }
-    return declare.status();
-}
+};
 
-int rtapi_app_main(void) {
-    comp_id = hal_init(MODULE);
-    if (comp_id < 0) {
-        return comp_id;
-    }
-    const int status = load();
-    if (status != 0 && pins != nullptr) {
-        pins->end();
-    }
-    const int result = mw::sdk::finish(comp_id, status);
-    return result < 0 ? result : 0;
-}
+}  // namespace
 
-void rtapi_app_exit(void) {
-    pins->end();
-    hal_exit(comp_id);
-}
+MW_COMPONENT_DEVICE(Gpio, MODULE);

@@ -49,58 +49,41 @@ RTAPI_MP_STRING(dir, "mask of the outputs")
 static char *exclude = nullptr;
 RTAPI_MP_STRING(exclude, "mask of the lines that are left alone")
 
-static int comp_id = -1;
-static LinePins *pins = nullptr;
 static std::uint8_t header_pin[mw::gpio::NUM_LINES];
 
-static int load() {
-    unsigned outputs = 0, excluded = 0;
-    if (!mw::gpio::read_mask("dir", dir, mw::gpio::ALL, outputs) ||
-        !mw::gpio::read_mask("exclude", exclude, 0, excluded)) {
-        return -EINVAL;
-    }
-    pins = mw::sdk::make<LinePins>();
-    if (pins == nullptr) {
-        return -ENOMEM;
-    }
-    mw::gpio::Lines &lines = pins->lines;
-    for (unsigned i = 0; i < mw::gpio::NUM_LINES; ++i) {
-        if ((excluded & (1U << i)) != 0) {
-            continue;
+namespace {
+
+struct Gpio : LinePins {
+    int load(int comp_id) noexcept {
+        unsigned outputs = 0, excluded = 0;
+        if (!mw::gpio::read_mask("dir", dir, mw::gpio::ALL, outputs) ||
+            !mw::gpio::read_mask("exclude", exclude, 0, excluded)) {
+            return -EINVAL;
         }
-        mw::gpio::Line &line = lines.line[lines.count];
-        rtapi_snprintf(line.name, sizeof line.name, "GPIO%u", i + mw::gpio::FIRST_GPIO);
-        line.direction =
-            (outputs & (1U << i)) != 0 ? mw::gpio::Direction::OUTPUT : mw::gpio::Direction::INPUT;
-        header_pin[lines.count] = mw::gpio::HEADER_PIN[i];
-        ++lines.count;
+        for (unsigned i = 0; i < mw::gpio::NUM_LINES; ++i) {
+            if ((excluded & (1U << i)) != 0) {
+                continue;
+            }
+            mw::gpio::Line &line = lines.line[lines.count];
+            rtapi_snprintf(line.name, sizeof line.name, "GPIO%u", i + mw::gpio::FIRST_GPIO);
+            line.direction =
+                (outputs & (1U << i)) != 0 ? mw::gpio::Direction::OUTPUT : mw::gpio::Direction::INPUT;
+            header_pin[lines.count] = mw::gpio::HEADER_PIN[i];
+            ++lines.count;
+        }
+        if (lines.count == 0) {
+            rtapi_print_msg(RTAPI_MSG_ERR, "%s: exclude= leaves no line\n", MODULE);
+            return -EINVAL;
+        }
+        if (const int status = open(MODULE); status != 0) {
+            return status;
+        }
+        mw::sdk::Declare d(comp_id, MODULE, 0);
+        declare(d, [](std::size_t i) { return mw::sdk::numbered("pin-%02d", header_pin[i]); });
+        return d.status();
     }
-    if (lines.count == 0) {
-        rtapi_print_msg(RTAPI_MSG_ERR, "%s: exclude= leaves no line\n", MODULE);
-        return -EINVAL;
-    }
-    if (const int status = pins->open(MODULE); status != 0) {
-        return status;
-    }
-    mw::sdk::Declare declare(comp_id, MODULE, 0);
-    pins->declare(declare, [](std::size_t i) { return mw::sdk::numbered("pin-%02d", header_pin[i]); });
-    return declare.status();
-}
+};
 
-int rtapi_app_main(void) {
-    comp_id = hal_init(MODULE);
-    if (comp_id < 0) {
-        return comp_id;
-    }
-    const int status = load();
-    if (status != 0 && pins != nullptr) {
-        pins->end();
-    }
-    const int result = mw::sdk::finish(comp_id, status);
-    return result < 0 ? result : 0;
-}
+}  // namespace
 
-void rtapi_app_exit(void) {
-    pins->end();
-    hal_exit(comp_id);
-}
+MW_COMPONENT_DEVICE(Gpio, MODULE);

@@ -37,6 +37,21 @@ struct Lines {
     std::size_t count = 0;
 };
 
+/// One message when a failure begins, not one in each cycle.
+class FailureState {
+  public:
+    /// Takes the result of a call; true when the failure begins with it.
+    bool begins(bool good) noexcept {
+        const bool begun = !good && !failing_;
+        failing_ = !good;
+        return begun;
+    }
+    bool isFailing() const noexcept { return failing_; }
+
+  private:
+    bool failing_ = false;
+};
+
 /// Reads and writes lines. [read and write: servo thread, no allocation]
 class LineAccess {
   public:

@@ -45,24 +45,24 @@ struct PortPins {
     ParamRw<std::uint32_t> reset_time;
     long long written_ns = 0;
 
-    int open(const PortConfig &config, Backend backend) noexcept {
+    int open(const PortConfig &config, Backend wanted) noexcept {
         const bool numbered = config.address < FIRST_ADDRESS;
         int status = -ENODEV;
-        if (backend == Backend::SIMULATED) {
+        if (wanted == Backend::SIMULATED) {
             access = &simulated;
             status = 0;
         }
-        if (backend == Backend::AUTO || backend == Backend::DIRECT) {
+        if (wanted == Backend::AUTO || wanted == Backend::DIRECT) {
             status = direct.open(MODULE, config.address);
             access = &direct;
         }
-        if (backend == Backend::DEVICE && !numbered) {
+        if (wanted == Backend::DEVICE && !numbered) {
             rtapi_print_msg(
                 RTAPI_MSG_ERR,
                 "%s: backend=device needs the number of the port, such as cfg=\"0 out\", not 0x%x\n", MODULE,
                 config.address);
         }
-        if (status != 0 && backend != Backend::DIRECT && numbered) {
+        if (status != 0 && wanted != Backend::DIRECT && numbered) {
             status = device.open(MODULE, config.address);
             access = &device;
         }
@@ -131,17 +131,7 @@ struct PortPins {
         if (mask == 0) {
             return;
         }
-        const long most_ns = period_ns / 4;
-        const long wanted_ns =
-            reset_time < static_cast<std::uint32_t>(most_ns) ? static_cast<long>(reset_time) : most_ns;
-        // The clock of a simulation does not move within a cycle: the number of delays is bounded, too.
-        for (long waited_ns = 0; waited_ns < wanted_ns; waited_ns += rtapi_delay_max()) {
-            const long long rest_ns = written_ns + wanted_ns - rtapi_get_time();
-            if (rest_ns <= 0) {
-                break;
-            }
-            rtapi_delay(static_cast<long>(rest_ns));
-        }
+        delay_after(written_ns, reset_time, period_ns);
         port.reset(mask, levels);
         show_levels();
     }
@@ -171,33 +161,66 @@ struct PortPins {
     }
 };
 
+char *cfg = nullptr;
+RTAPI_MP_STRING(cfg, "addresses and types of the ports")
+char *backend = nullptr;
+RTAPI_MP_STRING(backend, "auto, direct, device or simulated")
+
+bool find_backend(const char *name, Backend &found) noexcept {
+    constexpr const char *NAMES[] = {"auto", "direct", "device", "simulated"};
+    for (std::size_t i = 0; i < std::size(NAMES); ++i) {
+        if (std::strcmp(name, NAMES[i]) == 0) {
+            found = static_cast<Backend>(i);
+            return true;
+        }
+    }
+    return false;
+}
+
 struct Ports {
     PortPins *port[MAX_PORTS] = {};
     int count = 0;
 
-    int load(int comp_id, const Config &config, Backend backend) noexcept {
+    int load(int comp_id) noexcept {
+        const Config config = read_config(cfg == nullptr ? "" : cfg);
+        if (config.problem != nullptr) {
+            rtapi_print_msg(RTAPI_MSG_ERR, "%s: cfg=: %s%s%s\n", MODULE, config.token.data(),
+                            config.token[0] != '\0' ? " " : "", config.problem);
+            return -EINVAL;
+        }
+        const char *const name = backend != nullptr ? backend : std::getenv("MILLWRIGHT_PARPORT");
+        Backend wanted = Backend::AUTO;
+        if (name != nullptr && !find_backend(name, wanted)) {
+            rtapi_print_msg(RTAPI_MSG_ERR,
+                            "%s: backend=%s: auto, direct, device and simulated are possible\n", MODULE,
+                            name);
+            return -EINVAL;
+        }
         for (int i = 0; i < config.count; ++i) {
-            const PortConfig &wanted = config.port[static_cast<std::size_t>(i)];
-            PortPins *const one = make<PortPins>();
-            if (one == nullptr) {
-                return -ENOMEM;
-            }
-            if (const int status = one->open(wanted, backend); status != 0) {
+            if (const int status = add(comp_id, config.port[static_cast<std::size_t>(i)], wanted);
+                status < 0) {
                 return status;
-            }
-            port[i] = one;
-            ++count;
-            one->port.begin(*one->access, wanted.mode, 0);
-            Declare declare(comp_id, numbered("parport.%d", i).text, i);
-            one->declare(declare);
-            if (declare.status() != 0) {
-                return declare.status();
             }
         }
         Declare all(comp_id, "parport", 0);
         all.function<&Ports::read_all>(this, "read-all");
         all.function<&Ports::write_all>(this, "write-all");
         return all.status();
+    }
+    int add(int comp_id, const PortConfig &config, Backend wanted) noexcept {
+        PortPins *const one = make<PortPins>();
+        if (one == nullptr) {
+            return -ENOMEM;
+        }
+        if (const int status = one->open(config, wanted); status < 0) {
+            return status;
+        }
+        port[count] = one;
+        one->port.begin(*one->access, config.mode, 0);
+        Declare declare(comp_id, numbered("parport.%d", count).text, count);
+        ++count;
+        one->declare(declare);
+        return declare.status();
     }
     void read_all() noexcept {
         for (int i = 0; i < count; ++i) {
@@ -216,61 +239,8 @@ struct Ports {
     }
 };
 
-bool find_backend(const char *name, Backend &backend) noexcept {
-    constexpr const char *NAMES[] = {"auto", "direct", "device", "simulated"};
-    for (std::size_t i = 0; i < std::size(NAMES); ++i) {
-        if (std::strcmp(name, NAMES[i]) == 0) {
-            backend = static_cast<Backend>(i);
-            return true;
-        }
-    }
-    return false;
-}
-
 }  // namespace
 
 }  // namespace mw::parport
 
-using mw::parport::MODULE;
-
-static char *cfg = nullptr;
-RTAPI_MP_STRING(cfg, "addresses and types of the ports");
-static char *backend = nullptr;
-RTAPI_MP_STRING(backend, "auto, direct, device or simulated");
-
-static int comp_id = -1;
-static mw::parport::Ports *ports = nullptr;
-
-int rtapi_app_main(void) {
-    const mw::parport::Config config = mw::parport::read_config(cfg == nullptr ? "" : cfg);
-    if (config.problem != nullptr) {
-        rtapi_print_msg(RTAPI_MSG_ERR, "%s: cfg=: %s%s%s\n", MODULE, config.token.data(),
-                        config.token[0] != '\0' ? " " : "", config.problem);
-        return -EINVAL;
-    }
-    mw::parport::Backend wanted = mw::parport::Backend::AUTO;
-    if (backend == nullptr) {
-        backend = std::getenv("MILLWRIGHT_PARPORT");
-    }
-    if (backend != nullptr && !mw::parport::find_backend(backend, wanted)) {
-        rtapi_print_msg(RTAPI_MSG_ERR, "%s: backend=%s: auto, direct, device and simulated are possible\n",
-                        MODULE, backend);
-        return -EINVAL;
-    }
-    comp_id = hal_init(MODULE);
-    if (comp_id < 0) {
-        return comp_id;
-    }
-    ports = mw::sdk::make<mw::parport::Ports>();
-    const int status = ports == nullptr ? -ENOMEM : ports->load(comp_id, config, wanted);
-    if (status != 0 && ports != nullptr) {
-        ports->end();
-    }
-    const int result = mw::sdk::finish(comp_id, status);
-    return result < 0 ? result : 0;
-}
-
-void rtapi_app_exit(void) {
-    ports->end();
-    hal_exit(comp_id);
-}
+MW_COMPONENT_DEVICE(mw::parport::Ports, mw::parport::MODULE);

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Every example of docs/user/gcode does what stands beside it, and every code of the interpreter has an entry (I1).
+"""Every example of docs/user/gcode gives the output beside it, and every code of the interpreter has an entry (I1).
 
 usage: gcode_docs.py RS274 SOURCE_FOLDER [--update]    --update writes what comes out into the files: read the difference
 """

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Every example of docs/integrator/remap.md does what stands beside it (I1).
+"""Every example of docs/integrator/remap.md gives the output beside it (I1).
 
 usage: remap_docs.py RS274 SOURCE_FOLDER [--update]    --update writes what comes out into the file: read the difference
 

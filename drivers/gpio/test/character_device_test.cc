@@ -174,6 +174,18 @@ TEST(GpioCharacterDevice, AFailureKeepsTheLastStates) {
     EXPECT_FALSE(device.write(bit_of(1)));
 }
 
+// Reads and writes have separate states: reads that work do not end a failure of writes.
+TEST(GpioFailureState, BeginsOnce) {
+    FailureState writing;
+    EXPECT_FALSE(writing.begins(true));
+    EXPECT_TRUE(writing.begins(false));
+    EXPECT_FALSE(writing.begins(false));
+    EXPECT_TRUE(writing.isFailing());
+    EXPECT_FALSE(writing.begins(true));
+    EXPECT_FALSE(writing.isFailing());
+    EXPECT_TRUE(writing.begins(false));
+}
+
 TEST(GpioCharacterDevice, ReadsAndWrites64Lines) {
     Kernel kernel;
     kernel.chips = {{}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What whoever asks may do, by the way he came in and the token he shows: the table of docs/reference/api.md.
+// The rights of a client, by its connection and its token: the table of docs/reference/api.md.
 #pragma once
 
 #include <cstdint>

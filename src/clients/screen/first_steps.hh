@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Before a machine is up: configurations to choose from, and a new one from answers. docs/reference/api.md,
-// First steps.
+// Before the start of a machine: the list of configurations, and a new configuration from answers.
+// docs/reference/api.md, First steps.
 #pragma once
 
 #include <functional>

@@ -4,7 +4,7 @@
 // A call is a plain struct in canon_moves.hh or canon_actions.hh. NAME is what it is called in text (rs274
 // prints it, canterp and scripts use it); a call with two directions has NAMES instead, false first, chosen
 // by the fields in CHOICES. FIELDS are its arguments in text, in order: printing and reading follow from them
-// unless the printer has a rule of its own. docs/developer/extending/canon_call.md adds one step by step.
+// unless the printer has a special rule. docs/developer/extending/canon_call.md adds a call step by step.
 #pragma once
 
 #include <string_view>

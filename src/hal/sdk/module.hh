@@ -141,6 +141,37 @@ int load_single(const char *module) noexcept {
     return finish(comp_id, all == nullptr ? -ENOMEM : all->load(comp_id));
 }
 
+/// As load_single, for a T that has hardware: `end()` releases it when the load fails, and at the exit.
+template <class T>
+int load_device(const char *module, T *&device) noexcept {
+    const int comp_id = hal_init(module);
+    if (comp_id < 0) {
+        return comp_id;
+    }
+    device = make<T>();
+    const int status = device == nullptr ? -ENOMEM : device->load(comp_id);
+    if (status < 0 && device != nullptr) {
+        device->end();
+    }
+    return finish(comp_id, status);
+}
+
+/// Waits until `wanted_ns` after `begin_ns` (rtapi_get_time), at most a quarter of the period: for outputs
+/// that are reset within the cycle. The clock of a simulation does not move within a cycle; the wait ends
+/// there, too. [servo or base thread]
+inline void delay_after(long long begin_ns, std::uint32_t wanted_ns, long period_ns) noexcept {
+    const long most_ns = period_ns / 4;
+    const long delay_ns =
+        wanted_ns < static_cast<std::uint32_t>(most_ns) ? static_cast<long>(wanted_ns) : most_ns;
+    for (long waited_ns = 0; waited_ns < delay_ns; waited_ns += rtapi_delay_max()) {
+        const long long rest_ns = begin_ns + delay_ns - rtapi_get_time();
+        if (rest_ns <= 0) {
+            return;
+        }
+        rtapi_delay(static_cast<long>(rest_ns));
+    }
+}
+
 /// Channels that module-wide functions work on together.
 template <class Channel, int MAX>
 struct Channels {
@@ -212,6 +243,21 @@ int load_channels(const Request &request) noexcept {
     }                                                                                                        \
     void rtapi_app_exit(void) {                                                                              \
         hal_exit(mw_comp_id);                                                                                \
+    }                                                                                                        \
+    static_assert(true)
+
+/// As MW_COMPONENT_SINGLE, for a device; see load_device. At the exit no function runs any more when `end()`
+/// is called.
+#define MW_COMPONENT_DEVICE(Type, module)                                                                    \
+    static int mw_comp_id = -1;                                                                              \
+    static Type *mw_device = nullptr;                                                                        \
+    int rtapi_app_main(void) {                                                                               \
+        mw_comp_id = mw::sdk::load_device<Type>(module, mw_device);                                          \
+        return mw_comp_id < 0 ? mw_comp_id : 0;                                                              \
+    }                                                                                                        \
+    void rtapi_app_exit(void) {                                                                              \
+        hal_exit(mw_comp_id);                                                                                \
+        mw_device->end();                                                                                    \
     }                                                                                                        \
     static_assert(true)
 

@@ -2,8 +2,8 @@
 // A servo cycle from feedback to motor commands; faults and stops. [[likely]] and [[unlikely]] here and in
 // the parts mark the way through a cycle in which nothing happens: between two cycles the processor forgets
 // its jumps, and each one that is taken costs as much as a dozen instructions
-// (docs/developer/performance.md). Functions of that way are marked hot, those of events cold: each kind
-// stands together in the module, so that a cycle touches fewer pages and lines of it.
+// (docs/developer/performance.md). Functions of that path are marked hot, those of events cold. The linker
+// groups each type, so that a cycle touches fewer pages and lines of the module.
 #include "motion/servo/controller.hh"
 
 #include <algorithm>

@@ -216,7 +216,7 @@ class AttackedMachine(Machine):
     def wait_end(self, begin, parts=None):
         """Seconds from `begin` until no process (of these numbers) is left."""
         while time.monotonic() - begin < 5:
-            # A process that ends has no environment any more before it has a status: one of ours has ended when it has that.
+            # A process loses its environment before it has an exit status. A process of this program has ended when it has a status.
             own = [process.poll() for process in (self.process, *self.servers.values())]
             left = processes_of(self.instance, 'machine')
             if not (left or None in own if parts is None else set(parts) & set(left)):
