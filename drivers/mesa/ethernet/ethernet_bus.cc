@@ -176,6 +176,15 @@ bool EthernetBus::write(std::span<const RegisterWrite> writes) noexcept {
     return sent;
 }
 
+bool EthernetBus::redirect(int range, std::uint16_t address) noexcept {
+    const auto i = static_cast<std::size_t>(range);
+    const bool possible = i < single_offsets_.size() && single_offsets_[i] != 0;
+    if (possible) {
+        cyclic_.packet.replace(single_offsets_[i], lbp16::bytes_of_number(address));
+    }
+    return possible;
+}
+
 bool EthernetBus::take_rewrite() noexcept {
     const bool rewriting = rewriting_;
     rewriting_ = false;

@@ -39,6 +39,7 @@ class EthernetBus final : public RegisterBus {
 
     std::string card_name() const override;
     std::vector<std::string> connectors() const override;
+    int port_width() const override;
     /// The name that the card reports, without spaces at its end.
     const std::string &reported_name() const { return reported_name_; }
     bool isKnownCard() const { return card_ != nullptr; }
@@ -51,6 +52,8 @@ class EthernetBus final : public RegisterBus {
 
     void request() noexcept override;
     CycleRead read(std::span<std::uint32_t> values, long period_ns) noexcept override;
+    /// Only of a range of one register.
+    bool redirect(int range, std::uint16_t address) noexcept override;
     bool write(std::span<const RegisterWrite> writes) noexcept override;
     bool take_rewrite() noexcept override;
 
@@ -96,6 +99,8 @@ class EthernetBus final : public RegisterBus {
     const Card *card_ = nullptr;  ///< nullptr: not in the table
 
     Request cyclic_, identity_;
+    std::vector<std::size_t>
+        single_offsets_;  ///< of the address of each range in the request; 0: several registers
     std::vector<std::byte> known_identity_;
     std::array<std::byte, lbp16::MAX_PACKET_BYTES> answer_{};
 

@@ -20,6 +20,8 @@ using lbp16::Unit;
 
 constexpr std::int64_t TIMEOUT_NS = 200'000'000;
 constexpr int TRIES = 3;
+/// Answers to earlier requests that are discarded before a new one.
+constexpr int MOST_OLD = 64;
 constexpr int NAME_WORDS = 8, MAC_WORDS = 3;
 constexpr std::uint16_t MAC_ADDRESS = 2;
 /// Header, modules and pins of the largest IDROM [registers].
@@ -92,6 +94,13 @@ Result<> EthernetBus::identify() {
             {}, "write a HostMot2 firmware to the board with mesaflash");
     }
     const auto idrom = lbp16::number_at<std::uint32_t>(std::span(*words).subspan(12));
+    constexpr std::uint32_t LAST_IDROM = 0x10000 - 4 * IDROM_REGISTERS;
+    if (idrom % 4 != 0 || idrom > LAST_IDROM) {
+        return fail(fmt::format(
+            "the firmware of the board {} at {} has its description at {:#x}, outside the registers",
+            reported_name_, address_, idrom));
+    }
+    // 1,110 bytes: it fits one packet.
     append_reads(identity_.packet, {.address = COOKIE_ADDRESS, .count = FIRMWARE_REGISTERS});
     append_reads(identity_.packet, {.address = static_cast<std::uint16_t>(idrom), .count = IDROM_REGISTERS});
     append_words(identity_.packet, Space::EEPROM, MAC_ADDRESS, MAC_WORDS);
@@ -126,6 +135,10 @@ std::array<std::uint8_t, 6> EthernetBus::mac() const {
     return mac;
 }
 
+int EthernetBus::port_width() const {
+    return card_ != nullptr ? card_->port_width : 0;
+}
+
 std::vector<std::string> EthernetBus::connectors() const {
     std::vector<std::string> names;
     for (std::size_t port = 0; card_ != nullptr && port < card_->ports; ++port) {
@@ -138,7 +151,7 @@ Result<std::vector<std::byte>> EthernetBus::exchange(const PacketWriter &packet,
     int error = 0;
     for (int attempt = 0; attempt < TRIES; ++attempt) {
         // An answer that was late would be taken for this one.
-        for (int old = 0; old < 64 && transport_->receive(answer_).isDone(); ++old) {
+        for (int old = 0; old < MOST_OLD && transport_->receive(answer_).isDone(); ++old) {
         }
         const auto sent = transport_->send(packet.bytes());
         if (!sent.isDone()) {
@@ -205,7 +218,10 @@ Result<> EthernetBus::write_now(std::uint16_t address, std::span<const std::uint
 Result<> EthernetBus::set_lists(std::span<const RegisterRange> reads, int max_writes) {
     cyclic_ = Request();
     bool fits = true;
+    single_offsets_.clear();
     for (const RegisterRange &range : reads) {
+        constexpr std::size_t COMMAND_WORD = 2;
+        single_offsets_.push_back(range.count == 1 ? cyclic_.packet.bytes().size() + COMMAND_WORD : 0);
         fits = fits && append_reads(cyclic_.packet, range);
     }
     cyclic_.data_bytes = cyclic_.packet.answer_bytes();

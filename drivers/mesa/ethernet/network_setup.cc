@@ -187,23 +187,29 @@ FixedArpEntry::~FixedArpEntry() {
             &request);  // at the end of the program there is no remedy for a failure
 }
 
-std::string firewall_rules(const BoardRoute &route, const std::string &board_address) {
+std::string firewall_rules(const BoardRoute &route, const std::vector<BoardAddress> &boards) {
     const std::string table = "millwright-" + route.interface;
+    std::string accepted;
+    for (const BoardAddress &board : boards) {
+        accepted += fmt::format("    oifname \"{0}\" ip daddr {1} udp dport {2} accept\n"
+                                "    oifname \"{0}\" ip daddr {1} icmp type echo-request accept\n",
+                                route.interface, board.ip, board.port);
+    }
     // Declared, deleted and declared: a table that a killed process has left is replaced.
     return fmt::format("table ip {0}\n"
                        "delete table ip {0}\n"
                        "table ip {0} {{\n"
                        "  chain output {{\n"
                        "    type filter hook output priority 0; policy accept;\n"
-                       "    oifname \"{1}\" ip daddr {2} udp dport {3} accept\n"
-                       "    oifname \"{1}\" ip daddr {2} icmp type echo-request accept\n"
+                       "{2}"
                        "    oifname \"{1}\" drop\n"
                        "  }}\n"
                        "}}\n",
-                       table, route.interface, board_address, lbp16::BOARD_PORT);
+                       table, route.interface, accepted);
 }
 
-Result<BoardFirewall> BoardFirewall::create(const BoardRoute &route, const std::string &board_address) {
+Result<BoardFirewall> BoardFirewall::create(const BoardRoute &route,
+                                            const std::vector<BoardAddress> &boards) {
     if (route.loopback) {
         return fail("the loopback interface is left open");
     }
@@ -212,7 +218,7 @@ Result<BoardFirewall> BoardFirewall::create(const BoardRoute &route, const std::
             fmt::format("other packets are not kept off {}: it has the default route", route.interface), {},
             "connect the board to a separate network interface");
     }
-    if (run_nft(firewall_rules(route, board_address)) != 0) {
+    if (run_nft(firewall_rules(route, boards)) != 0) {
         return fail(
             fmt::format("other packets are not kept off {}: nft does not accept the rules", route.interface),
             {}, "install nftables, and give millwright-rt the capability cap_net_admin");

@@ -7,10 +7,18 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "base/result.hh"
+#include "drivers/mesa/lbp16/packet.hh"
 
 namespace mw::mesa {
+
+/// Where a board answers.
+struct BoardAddress {
+    std::string ip;
+    std::uint16_t port = lbp16::BOARD_PORT;
+};
 
 /// The interface that reaches a board.
 struct BoardRoute {
@@ -42,15 +50,16 @@ class FixedArpEntry {
     std::string interface_, board_address_;  ///< no interface: nothing to remove
 };
 
-/// The rules for nft that let packets to the board pass and keep all others off the interface.
-std::string firewall_rules(const BoardRoute &route, const std::string &board_address);
+/// The rules for nft that let packets to the boards pass and keep all others off the interface.
+std::string firewall_rules(const BoardRoute &route, const std::vector<BoardAddress> &boards);
 
-/// A table of nft of our own; the destructor removes it.
+/// The table of nft for one interface, with all boards that it reaches; the destructor removes it. After
+/// SIGKILL it stays until the next start.
 class BoardFirewall {
   public:
     /// An error when nft is missing, when this process may not, or when the interface has the default route:
     /// then other traffic of the computer needs it. [while loading]
-    static Result<BoardFirewall> create(const BoardRoute &route, const std::string &board_address);
+    static Result<BoardFirewall> create(const BoardRoute &route, const std::vector<BoardAddress> &boards);
     BoardFirewall(BoardFirewall &&other) noexcept;
     BoardFirewall &operator=(BoardFirewall &&) = delete;
     ~BoardFirewall();

@@ -232,6 +232,11 @@ Result<std::vector<PinDescriptor>> read_pins(const RegisterReader &read, std::ui
             return fail(fmt::format("pin {} primary tag is 0 (end-of-list sentinel), expected {} pins!",
                                     pins.size(), count));
         }
+        if (byte_of(word, 3) != static_cast<std::uint8_t>(Gtag::IO_PORT)) {
+            return fail(
+                fmt::format("pin {} primary tag is {}, but only {} (IOPort) is possible, aborting load",
+                            pins.size(), byte_of(word, 3), static_cast<unsigned>(Gtag::IO_PORT)));
+        }
         pins.push_back({.secondary_pin = byte_of(word, 0),
                         .secondary = static_cast<Gtag>(byte_of(word, 1)),
                         .unit = byte_of(word, 2),

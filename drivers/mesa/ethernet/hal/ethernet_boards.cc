@@ -26,6 +26,7 @@ class PinnedBus final : public RegisterBus {
 
     std::string card_name() const override { return bus_->card_name(); }
     std::vector<std::string> connectors() const override { return bus_->connectors(); }
+    int port_width() const override { return bus_->port_width(); }
     Result<std::vector<std::uint32_t>> read_now(RegisterRange range) override {
         return bus_->read_now(range);
     }
@@ -46,6 +47,9 @@ class PinnedBus final : public RegisterBus {
         return result;
     }
     bool write(std::span<const RegisterWrite> writes) noexcept override { return bus_->write(writes); }
+    bool redirect(int range, std::uint16_t address) noexcept override {
+        return bus_->redirect(range, address);
+    }
     bool take_rewrite() noexcept override { return bus_->take_rewrite(); }
 
   private:
@@ -54,13 +58,20 @@ class PinnedBus final : public RegisterBus {
 };
 
 struct EthernetBoard {
+    std::string name;
+    BoardAddress address;
+    std::optional<BoardRoute> route;  ///< empty: not found, with a warning
     std::unique_ptr<PinnedBus> bus;
     std::optional<FixedArpEntry> arp;
-    std::optional<BoardFirewall> firewall;
 };
 
 std::vector<EthernetBoard> &boards() {
     static std::vector<EthernetBoard> all;
+    return all;
+}
+
+std::vector<BoardFirewall> &firewalls() {
+    static std::vector<BoardFirewall> all;
     return all;
 }
 
@@ -69,15 +80,10 @@ int refuse(const Error &error) {
     return -EIO;
 }
 
-/// An address with its port, which is the boards' own unless it is given.
-struct Address {
-    std::string ip;
-    std::uint16_t port = lbp16::BOARD_PORT;
-};
-
-Result<Address> address_of(std::string_view text) {
+/// ADDRESS or ADDRESS:PORT.
+Result<BoardAddress> address_of(std::string_view text) {
     const std::size_t colon = text.find(':');
-    Address address{.ip = std::string(text.substr(0, colon))};
+    BoardAddress address{.ip = std::string(text.substr(0, colon))};
     if (colon != std::string_view::npos) {
         const std::string_view port = text.substr(colon + 1);
         const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), address.port);
@@ -98,20 +104,33 @@ std::optional<T> optional_of(Result<T> result, const std::string &name) {
     return std::move(*result);
 }
 
-void prepare_network(EthernetBoard &board, const EthernetLoad &load, const std::string &name,
-                     const std::string &ip, const MacAddress &mac) {
-    const auto route = optional_of(find_route(ip), name);
-    if (!route || route->loopback) {
-        return;
+void find_board(EthernetBoard &board, const MacAddress &mac) {
+    board.route = optional_of(find_route(board.address.ip), board.name);
+    if (board.route && !board.route->loopback) {
+        auto arp = optional_of(FixedArpEntry::create(*board.route, board.address.ip, mac), board.name);
+        if (arp) {
+            board.arp.emplace(std::move(*arp));
+        }
     }
-    if (auto arp = optional_of(FixedArpEntry::create(*route, ip, mac), name)) {
-        board.arp.emplace(std::move(*arp));
+}
+
+/// One firewall for each interface, as it lets only the boards pass that it knows.
+void close_interfaces() {
+    std::map<std::string, std::vector<const EthernetBoard *>> interfaces;
+    for (const EthernetBoard &board : boards()) {
+        if (board.route && !board.route->loopback) {
+            interfaces[board.route->interface].push_back(&board);
+        }
     }
-    if (load.firewall == "none") {
-        return;
-    }
-    if (auto firewall = optional_of(BoardFirewall::create(*route, ip), name)) {
-        board.firewall.emplace(std::move(*firewall));
+    for (const auto &[interface, reached] : interfaces) {
+        std::vector<BoardAddress> addresses;
+        for (const EthernetBoard *board : reached) {
+            addresses.push_back(board->address);
+        }
+        if (auto firewall = optional_of(BoardFirewall::create(*reached.front()->route, addresses),
+                                        reached.front()->name)) {
+            firewalls().push_back(std::move(*firewall));
+        }
     }
 }
 
@@ -138,8 +157,8 @@ int load_board(const EthernetLoad &load, std::size_t i, std::map<std::string, in
         rtapi_print_msg(RTAPI_MSG_WARN, "%s: the card '%s' at %s is not known; its firmware describes it\n",
                         name.c_str(), (*bus)->reported_name().c_str(), load.addresses[i]);
     }
-    EthernetBoard board;
-    prepare_network(board, load, name, address->ip, (*bus)->mac());
+    EthernetBoard board{.name = name, .address = *address, .route = {}, .bus = nullptr, .arp = {}};
+    find_board(board, (*bus)->mac());
     board.bus = std::make_unique<PinnedBus>(std::move(*bus), *pins);
     boards().push_back(std::move(board));
     const char *const config = i < load.configs.size() && load.configs[i] != nullptr ? load.configs[i] : "";
@@ -170,12 +189,19 @@ int load_ethernet_boards(const EthernetLoad &load) {
             return status;
         }
     }
-    return count > 0 ? 0 : refuse({.message = "no board is given, such as board_ip=192.168.1.121"});
+    if (count == 0) {
+        return refuse({.message = "no board is given, such as board_ip=192.168.1.121"});
+    }
+    if (load.firewall != "none") {
+        close_interfaces();
+    }
+    return 0;
 }
 
 void unload_ethernet_boards(int comp_id) {
     unregister_boards(comp_id);
     boards().clear();
+    firewalls().clear();
 }
 
 }  // namespace mw::mesa

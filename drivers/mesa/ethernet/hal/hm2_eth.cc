@@ -6,6 +6,9 @@
 //
 // Strings of several boards are separated by commas. firewall=auto or nft keeps other packets off the
 // interface of a board, none leaves it open.
+#include <cerrno>
+#include <cstring>
+
 #include "drivers/mesa/ethernet/hal/ethernet_boards.hh"
 #include "hal/sdk/component.hh"
 
@@ -29,6 +32,10 @@ int comp_id = -1;
 }  // namespace
 
 int rtapi_app_main(void) {
+    if (board_rtnet != nullptr && std::strcmp(board_rtnet, "posix") != 0) {
+        rtapi_print_msg(RTAPI_MSG_ERR, "hm2_eth: board_rtnet=%s: only posix is possible\n", board_rtnet);
+        return -EINVAL;
+    }
     comp_id = hal_init("hm2_eth");
     if (comp_id < 0) {
         return comp_id;

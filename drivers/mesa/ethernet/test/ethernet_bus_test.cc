@@ -66,6 +66,7 @@ TEST(EthernetBus, KnowsTheCard) {
     EXPECT_EQ(bench.bus->reported_name(), "7I76E-16");
     EXPECT_EQ(bench.bus->card_name(), "7i76e");
     EXPECT_EQ(bench.bus->connectors(), (std::vector<std::string>{"P1", "P2", "P3"}));
+    EXPECT_EQ(bench.bus->port_width(), 17);
 }
 
 TEST(EthernetBus, ABoardThatDoesNotAnswerIsAnErrorWithItsAddress) {
@@ -91,6 +92,30 @@ TEST(EthernetBus, ACycleIsOneRequestAndOneWrite) {
                                         {0x2000, 1}, {0x2004, 2}, {0x2100, 3}, {0x0E00, 0x5A000000}}));
     EXPECT_FALSE(bench.bus->take_rewrite());
     EXPECT_EQ(bench.bus->errors().total(), 0U);
+}
+
+TEST(EthernetBus, ARangeOfOneRegisterCanBeRedirected) {
+    Bench bench;
+    bench.board->set_register(0x1000, 11);
+    bench.board->set_register(0x3000, 13);
+    bench.board->set_register(0x4568, 99);
+    EXPECT_FALSE(bench.bus->redirect(0, 0x4568)) << "two registers";
+    EXPECT_FALSE(bench.bus->redirect(2, 0x4568)) << "no such range";
+    EXPECT_TRUE(bench.bus->redirect(1, 0x4568));
+    EXPECT_EQ(bench.read(), CycleRead::DONE);
+    EXPECT_EQ(bench.values, (std::array<std::uint32_t, 3>{11, 0, 99}));
+}
+
+TEST(EthernetBus, ADescriptionOutsideTheRegistersIsAnError) {
+    for (const std::uint32_t address : {0x10000U, 0xFFFCU, 0x0401U}) {
+        auto transport = std::make_unique<MemoryTransport>();
+        transport->set_register(COOKIE_ADDRESS, COOKIE);
+        transport->set_register(IDROM_OFFSET_ADDRESS, address);
+        const auto opened = EthernetBus::open(std::move(transport), "10.0.0.2");
+        ASSERT_FALSE(opened.has_value()) << address;
+        EXPECT_NE(opened.error().message.find("outside the registers"), std::string::npos)
+            << opened.error().message;
+    }
 }
 
 TEST(EthernetBus, AnEarlyRequestIsTheRequestOfTheCycle) {

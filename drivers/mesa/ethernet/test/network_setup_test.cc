@@ -21,22 +21,27 @@ TEST(BoardRoute, AnAddressThatIsNoneIsNamed) {
     EXPECT_NE(route.error().message.find("'board'"), std::string::npos);
 }
 
-TEST(BoardFirewall, LetsOnlyTheBoardPass) {
+TEST(BoardFirewall, LetsOnlyTheBoardsPass) {
     const std::string rules =
-        firewall_rules({.interface = "eth1", .own_address = "192.168.1.1"}, "192.168.1.121");
-    EXPECT_NE(rules.find("oifname \"eth1\" ip daddr 192.168.1.121 udp dport 27181 accept"),
-              std::string::npos);
-    EXPECT_LT(rules.find("accept\n    oifname"), rules.find("oifname \"eth1\" drop"));
+        firewall_rules({.interface = "eth1", .own_address = "192.168.1.1"},
+                       {{.ip = "192.168.1.121"}, {.ip = "192.168.1.122", .port = 27182}});
+    const std::size_t first = rules.find("oifname \"eth1\" ip daddr 192.168.1.121 udp dport 27181 accept");
+    const std::size_t second = rules.find("oifname \"eth1\" ip daddr 192.168.1.122 udp dport 27182 accept");
+    const std::size_t others = rules.find("oifname \"eth1\" drop");
+    EXPECT_LT(first, second);
+    EXPECT_LT(second, others);
+    EXPECT_NE(others, std::string::npos);
 }
 
 TEST(BoardFirewall, LeavesTheInterfaceOfOtherTrafficOpen) {
-    const auto firewall = BoardFirewall::create(
-        {.interface = "eth0", .own_address = "192.168.1.1", .has_default_route = true}, "192.168.1.121");
+    const auto firewall =
+        BoardFirewall::create({.interface = "eth0", .own_address = "192.168.1.1", .has_default_route = true},
+                              {{.ip = "192.168.1.121"}});
     ASSERT_FALSE(firewall.has_value());
     EXPECT_NE(firewall.error().message.find("default route"), std::string::npos);
-    EXPECT_FALSE(
-        BoardFirewall::create({.interface = "lo", .own_address = "127.0.0.1", .loopback = true}, "127.0.0.1")
-            .has_value());
+    EXPECT_FALSE(BoardFirewall::create({.interface = "lo", .own_address = "127.0.0.1", .loopback = true},
+                                       {{.ip = "127.0.0.1"}})
+                     .has_value());
 }
 
 }  // namespace

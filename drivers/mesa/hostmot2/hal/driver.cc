@@ -10,7 +10,7 @@
 #include "drivers/mesa/hostmot2/board.hh"
 #include "drivers/mesa/hostmot2/hal/hal_pins.hh"
 #include "drivers/mesa/hostmot2/hal/log_idrom.hh"
-#include "drivers/mesa/hostmot2/read_idrom.hh"
+#include "drivers/mesa/identity/idrom.hh"
 #include "hal.h"
 #include "rtapi.h"
 
@@ -106,9 +106,15 @@ int register_board(const BoardRequest &request) {
         refuse(request.name, config.error().message);
         return -EINVAL;
     }
-    const auto idrom = read_idrom(*request.bus);
+    const RegisterReader read = [&](std::uint16_t address, int count) {
+        return request.bus->read_now({.address = address, .count = static_cast<std::uint16_t>(count)});
+    };
+    const auto idrom =
+        decode_idrom(read, {.ports = static_cast<std::uint32_t>(request.bus->connectors().size()),
+                            .port_width = static_cast<std::uint32_t>(request.bus->port_width())});
     if (!idrom) {
-        return refuse(request.name, idrom.error().message);
+        refuse(request.name, idrom.error().message);
+        return refuse(request.name, idrom.error().hint);
     }
     log_idrom(request.name, *idrom, options());
     auto board = Board::make(*request.bus, *idrom, *config);

@@ -120,7 +120,7 @@ TEST_F(BoardInHal, EveryTestBoardIsRefused) {
                                  "IDROM ClockLow is 12345, that's too low",
                                  "IDROM ClockHigh is 0, that's too low",
                                  "pin 0 primary tag is 0 (end-of-list sentinel), expected 144 pins!",
-                                 "firmware has 24 pins but no IOPort module",
+                                 "hm2_set_pin_source: invalid pin number 0",
                                  "invalid IDROM PortWidth 24, this board has 5 pins",
                                  "IDROM IOPorts is 0 but llio num_ioport_connectors is 1"};
     ASSERT_EQ(machine.load("hostmot2"), "ok");

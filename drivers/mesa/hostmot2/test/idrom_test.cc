@@ -1,13 +1,23 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <random>
 
-#include "drivers/mesa/hostmot2/read_idrom.hh"
 #include "drivers/mesa/hostmot2/test/board_fixture.hh"
+#include "drivers/mesa/identity/idrom.hh"
 
 namespace mw::mesa::test {
 namespace {
 
 constexpr std::uint16_t HEADER = 0x0400;
+
+/// As register_board() reads it.
+Result<Idrom> read_idrom(MemoryBus &bus) {
+    return decode_idrom(
+        [&](std::uint16_t address, int count) {
+            return bus.read_now({.address = address, .count = static_cast<std::uint16_t>(count)});
+        },
+        {.ports = static_cast<std::uint32_t>(bus.connectors().size()),
+         .port_width = static_cast<std::uint32_t>(bus.port_width())});
+}
 
 class DescriptionOfFirmware : public ::testing::Test {
   protected:
@@ -18,7 +28,11 @@ class DescriptionOfFirmware : public ::testing::Test {
     }
     std::string error() {
         const auto idrom = read_idrom(bus);
-        return idrom ? "" : idrom.error().message;
+        if (idrom) {
+            return "";
+        }
+        const Error &error = idrom.error();
+        return error.hint.empty() ? error.message : error.message + "\n" + error.hint;
     }
     std::string error_with(int word, std::uint32_t value) {
         bus.registers = image_of(firmware());
