@@ -14,8 +14,10 @@ namespace mw::sdk {
 /// what was wrong is in the log already. [while loading]
 class Declare {
   public:
-    Declare(int comp_id, const char *prefix, int index) noexcept
-        : comp_id_(comp_id), prefix_(prefix), index_(index) {}
+    /// Copies `prefix`, which may be a temporary. One that is too long stays too long, and every name fails.
+    Declare(int comp_id, const char *prefix, int index) noexcept : comp_id_(comp_id), index_(index) {
+        rtapi_snprintf(prefix_, sizeof prefix_, "%s", prefix);
+    }
 
     /// The pin PREFIX.NAME (only PREFIX when `name` is empty).
     template <class T, hal_pin_dir_t DIR>
@@ -139,7 +141,7 @@ class Declare {
     }
 
     int comp_id_;
-    const char *prefix_;
+    char prefix_[NAME_SIZE + 1];
     int index_;
     int status_ = 0;
 };
