@@ -8,8 +8,9 @@
 // until `reset-time` [ns] after the write and takes data pins whose parameter `pin-NN-out-reset` is true back
 // to their inactive state, so that a stepgen with stepspace 0 makes one step in each period. parport.read-all
 // and parport.write-all serve all ports. backend= selects how the registers are reached: auto, direct, device
-// (/dev/parportN) or simulated. A simulated port has `pin-NN-in-fake` (bit in) for the levels of its inputs
-// and `pin-NN-out-fake` (bit out) for those of its outputs.
+// (/dev/parportN) or simulated. Under the virtual clock ports are simulated. A simulated port has
+// `pin-NN-in-fake` (bit in) for the levels of its inputs and `pin-NN-out-fake` (bit out) for those of its
+// outputs.
 #include <cstdlib>
 #include <cstring>
 
@@ -17,6 +18,7 @@
 #include "drivers/parport/config.hh"
 #include "drivers/parport/port.hh"
 #include "hal/sdk/canonical.hh"
+#include "millwright_ext.h"
 
 namespace mw::parport {
 
@@ -195,6 +197,9 @@ struct Ports {
                             "%s: backend=%s: auto, direct, device and simulated are possible\n", MODULE,
                             name);
             return -EINVAL;
+        }
+        if (mw_ext_is_virtual() != 0) {
+            wanted = Backend::SIMULATED;  // another process may drive a machine by this port
         }
         for (int i = 0; i < config.count; ++i) {
             if (const int status = add(comp_id, config.port[static_cast<std::size_t>(i)], wanted);

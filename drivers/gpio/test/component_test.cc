@@ -32,6 +32,13 @@ TEST_F(HalGpio, CopiesStatesBothWays) {
     EXPECT_EQ(bench.get("hal_gpio.fault"), 0.0);
 }
 
+TEST(HalGpioLines, AreNotTouchedUnderTheVirtualClock) {
+    Bench bench{"loadrt hal_gpio inputs=GPIO5 outputs=GPIO20\naddf hal_gpio.read t\naddf hal_gpio.write t"};
+    bench.set("hal_gpio.GPIO20-out", 1);
+    bench.pass();
+    EXPECT_EQ(bench.get("hal_gpio.GPIO20-out-fake"), 1.0) << "a simulated line";
+}
+
 TEST_F(HalGpio, TheResetEndsAStep) {
     Bench bench{
         "loadrt hal_gpio outputs=GPIO20,GPIO21 reset=GPIO20\naddf hal_gpio.write t\naddf hal_gpio.reset t"};

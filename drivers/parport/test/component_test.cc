@@ -22,6 +22,13 @@ TEST(HalParport, HasPinsOfEachPort) {
     EXPECT_EQ(params[0].type, hal::Type::U32);
 }
 
+TEST(HalParport, TouchesNoPortUnderTheVirtualClock) {
+    Bench bench{"loadrt hal_parport cfg=\"0x378 out\"\naddf parport.0.write t"};
+    bench.set("parport.0.pin-02-out", 1);
+    bench.pass();
+    EXPECT_EQ(bench.get("parport.0.pin-02-out-fake"), 1.0) << "a simulated port";
+}
+
 TEST(HalParport, CopiesLevelsBothWays) {
     Bench bench{
         "loadrt hal_parport backend=simulated cfg=0x378\naddf parport.0.read t\naddf parport.0.write t"};

@@ -18,6 +18,7 @@
 #include "base/atomic_file.hh"
 #include "base/text.hh"
 #include "hal/core/detail/capi.hh"
+#include "hal/include/millwright_ext.h"
 #include "hal/include/rtapi_firmware.h"
 #include "hal/include/rtapi_pci.h"
 #include "runtime/format.hh"
@@ -146,6 +147,12 @@ int rtapi_pci_register_driver(struct rtapi_pci_driver *driver) {
         return complain(EINVAL, "a PCI driver needs a table of ids and a probe function");
     }
     driver->devices = nullptr;
+    // Another process may drive a machine by the cards of this computer.
+    if (mw_ext_is_virtual() != 0 && std::getenv("MILLWRIGHT_SYSFS") == nullptr) {
+        rtapi_print_msg(RTAPI_MSG_ERR, "%s: PCI cards are not used under the virtual clock\n",
+                        driver->name == nullptr ? "PCI driver" : driver->name);
+        return 0;
+    }
     for (const std::string &name : card_names()) {
         rtapi_pci_dev *card = read_card(name);
         const rtapi_pci_device_id *entry = card == nullptr ? nullptr : find_entry(driver->id_table, *card);

@@ -223,6 +223,27 @@ TEST_F(CInterface, SaysWhyHardwareIsOutOfReach) {
     EXPECT_GT(rtapi_prio_next_higher(rtapi_prio_lowest()), 0);
 }
 
+// A second process, such as doctor, must not touch what moves a machine.
+TEST_F(CInterface, TouchesNoPortUnderTheVirtualClock) {
+    constexpr unsigned short DATA = 0x378;
+    void *const region = rtapi_request_region(DATA, 3, "c");
+    ASSERT_NE(region, nullptr) << "also without CAP_SYS_RAWIO";
+    rtapi_outb(0x55, DATA);
+    EXPECT_EQ(rtapi_inb(DATA), 0xff);
+    EXPECT_EQ(rtapi_request_region(DATA + 1, 1, "other"), nullptr) << "regions have an owner all the same";
+    rtapi_release_region(DATA, 3);
+    ::unsetenv("MILLWRIGHT_SYSFS");
+    static const rtapi_pci_device_id table[] = {{0x2718, 0x5125, 0, 0, 0, 0, 42}, {}};
+    rtapi_pci_driver driver{};
+    driver.name = "cards";
+    driver.id_table = table;
+    driver.probe = [](rtapi_pci_dev *, const rtapi_pci_device_id *) { return 0; };
+    EXPECT_EQ(rtapi_pci_register_driver(&driver), 0);
+    EXPECT_EQ(driver.devices, nullptr);
+    EXPECT_NE(machine.messages.all().find("cards: PCI cards are not used under the virtual clock"),
+              std::string::npos);
+}
+
 namespace fs = std::filesystem;
 
 void write_file(const fs::path &path, const std::string &text) {
