@@ -141,8 +141,8 @@ BoardEvents Board::take_events() noexcept {
 }
 
 void Board::stop() noexcept {
-    if (watchdog_ == nullptr) {
-        return;
+    if (watchdog_ == nullptr || !hasWritten_) {
+        return;  // the outputs are off, or another host drives the board
     }
     // The shortest time of the watchdog passes before the next register could be written.
     const std::uint32_t shortest = 0;

@@ -42,7 +42,8 @@ class Board {
 
     std::int64_t timeout_ns() const noexcept { return checked_timeout_ns_; }
 
-    /// Lets the watchdog bite at once, so that all outputs are off. [while unloading]
+    /// Lets the watchdog bite at once, so that all outputs are off; nothing when this driver has written
+    /// nothing, as another host may drive the board. [while unloading]
     void stop() noexcept;
 
   private:

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The whole machine in one process under the virtual clock.
+#include <cstdlib>
+#include <filesystem>
+
 #include "hal/core/crash_report.hh"
 #include "hal/core/host.hh"
 #include "machine/assembly/machine.hh"
@@ -85,6 +88,10 @@ class VirtualMachine final : public Machine {
 
 Result<std::unique_ptr<Machine>> make_virtual_machine(const MachineParts &parts,
                                                       const MachineOptions &options) {
+    // Components find the files of a configuration in CONFIG_DIR, as they do when linuxcnc starts a machine.
+    std::error_code unknown;
+    const auto ini = std::filesystem::absolute(parts.ini.path(), unknown);
+    ::setenv("CONFIG_DIR", ini.parent_path().c_str(), 1);
     auto machine = std::make_unique<VirtualMachine>(parts);
     const auto started = machine->start(options);
     if (!started.has_value()) {

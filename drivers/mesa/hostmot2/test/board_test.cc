@@ -149,6 +149,16 @@ TEST_F(CycleOfBoard, AWatchdogThatStaysBittenIsReported) {
     EXPECT_EQ(pins.get("watchdog.has_bit"), 1.0);
 }
 
+TEST_F(CycleOfBoard, UnloadingBeforeTheFirstWriteWritesNothing) {
+    bus.loading_writes.clear();
+    board->stop();
+    EXPECT_TRUE(bus.loading_writes.empty()) << "another host may drive the board";
+    cycle(2);
+    board->stop();
+    ASSERT_EQ(bus.loading_writes.size(), 1U);
+    EXPECT_EQ(bus.loading_writes[0], (RegisterWrite{0x0C00, 0}));
+}
+
 TEST_F(CycleOfBoard, WatchdogTimeIsItsParameter) {
     cycle();
     EXPECT_EQ(bus.registers[0x0C00], CLOCK_LOW / 200 - 1) << "5 ms";

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "drivers/mesa/ethernet/hal/ethernet_boards.hh"
+#include "drivers/mesa/hm2_eth/ethernet_boards.hh"
 
 #include <cerrno>
 #include <charconv>
+#include <cstdlib>
 #include <map>
 #include <memory>
 #include <optional>
@@ -13,7 +14,9 @@
 #include "drivers/mesa/ethernet/ethernet_bus.hh"
 #include "drivers/mesa/ethernet/ethernet_pins.hh"
 #include "drivers/mesa/ethernet/network_setup.hh"
+#include "drivers/mesa/hm2_eth/virtual_board.hh"
 #include "drivers/mesa/lbp16/udp_transport.hh"
+#include "millwright_ext.h"
 
 namespace mw::mesa {
 
@@ -134,12 +137,52 @@ void close_interfaces() {
     }
 }
 
+bool isVirtual() {
+    return mw_ext_is_virtual() != 0;
+}
+
+const char *value_at(std::span<char *const> values, std::size_t i) {
+    return i < values.size() && values[i] != nullptr ? values[i] : "";
+}
+
+/// A relative path is one in the folder of the configuration, where that is known.
+std::string path_of(const std::string &file) {
+    const char *const folder = std::getenv("CONFIG_DIR");
+    const bool relative = !file.empty() && file.front() != '/';
+    return relative && folder != nullptr ? fmt::format("{}/{}", folder, file) : file;
+}
+
+/// The connection to board number `i`.
+Result<std::unique_ptr<lbp16::Transport>> open_transport(const EthernetLoad &load, std::size_t i,
+                                                        const BoardAddress &address) {
+    if (!isVirtual()) {
+        auto udp = lbp16::UdpTransport::open(address.ip, address.port);
+        return udp ? Result<std::unique_ptr<lbp16::Transport>>(std::move(*udp))
+                   : std::unexpected(udp.error());
+    }
+    const char *const list = std::getenv("MILLWRIGHT_MESA");
+    VirtualBoardPlan plan = find_virtual_board(list == nullptr ? "" : list, load.addresses[i]);
+    if (plan.model.empty()) {
+        plan = parse_virtual_board(value_at(load.virtual_boards, i));
+    }
+    if (plan.model.empty()) {
+        return fail(fmt::format("the board at {} is not asked under the virtual clock; name its model, such as "
+                                "MILLWRIGHT_MESA={}=7i76e in the environment, or virtual_board=7i76e",
+                                load.addresses[i], load.addresses[i]));
+    }
+    plan.physics_file = path_of(plan.physics_file);
+    if (plan.model.contains('.')) {
+        plan.model = path_of(plan.model);
+    }
+    return open_virtual_board(plan, [] { return static_cast<std::int64_t>(rtapi_get_time()); });
+}
+
 int load_board(const EthernetLoad &load, std::size_t i, std::map<std::string, int> &numbers) {
     const auto address = address_of(load.addresses[i]);
     if (!address) {
         return refuse(address.error());
     }
-    auto transport = lbp16::UdpTransport::open(address->ip, address->port);
+    auto transport = open_transport(load, i, *address);
     if (!transport) {
         return refuse(transport.error());
     }
@@ -158,11 +201,12 @@ int load_board(const EthernetLoad &load, std::size_t i, std::map<std::string, in
                         name.c_str(), (*bus)->reported_name().c_str(), load.addresses[i]);
     }
     EthernetBoard board{.name = name, .address = *address, .route = {}, .bus = nullptr, .arp = {}};
-    find_board(board, (*bus)->mac());
+    if (!isVirtual()) {
+        find_board(board, (*bus)->mac());
+    }
     board.bus = std::make_unique<PinnedBus>(std::move(*bus), *pins);
     boards().push_back(std::move(board));
-    const char *const config = i < load.configs.size() && load.configs[i] != nullptr ? load.configs[i] : "";
-    const int status = register_board({load.comp_id, name, boards().back().bus.get(), config});
+    const int status = register_board({load.comp_id, name, boards().back().bus.get(), value_at(load.configs, i)});
     if (status != 0) {
         return status;
     }
@@ -192,7 +236,7 @@ int load_ethernet_boards(const EthernetLoad &load) {
     if (count == 0) {
         return refuse({.message = "no board is given, such as board_ip=192.168.1.121"});
     }
-    if (load.firewall != "none") {
+    if (load.firewall != "none" && !isVirtual()) {
         close_interfaces();
     }
     return 0;

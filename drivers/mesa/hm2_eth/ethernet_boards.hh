@@ -19,7 +19,8 @@ struct EthernetLoad {
     std::span<char *const>
         addresses;  ///< board_ip=: ADDRESS or ADDRESS:PORT; the first empty one ends the list
     std::span<char *const> configs;  ///< config=
-    std::string firewall;            ///< auto, nft or none
+    std::span<char *const> virtual_boards;  ///< virtual_board=: MODEL[:PHYSICS_FILE] under the virtual clock
+    std::string firewall;                   ///< auto, nft or none
 };
 
 /// 0, or a negated errno with a message in the log; then nothing is left. [while loading]

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Boards under the virtual clock: each is simulated in this process. A real board is never asked there, since
+// another process may drive a machine by it, and since its time is not that of the clock.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "base/result.hh"
+#include "drivers/mesa/lbp16/transport.hh"
+
+namespace mw::mesa {
+
+/// Which board is simulated in place of the one at an address.
+struct VirtualBoardPlan {
+    std::string model;         ///< a built-in one such as 7i76e, or a file
+    std::string physics_file;  ///< motors, encoders and switches; empty: none
+
+    bool operator==(const VirtualBoardPlan &) const = default;
+};
+
+/// Reads MODEL or MODEL:PHYSICS_FILE.
+VirtualBoardPlan parse_virtual_board(std::string_view text);
+/// What a list of ADDRESS=MODEL[:PHYSICS_FILE], separated by commas, says of `address`; without a model:
+/// nothing.
+VirtualBoardPlan find_virtual_board(std::string_view list, std::string_view address);
+
+/// A connection to a simulated board. Its time follows `clock_ns` and is ahead of it while packets travel
+/// within a cycle. It allocates: for the virtual clock only. [one thread]
+Result<std::unique_ptr<lbp16::Transport>> open_virtual_board(const VirtualBoardPlan &plan,
+                                                            std::function<std::int64_t()> clock_ns);
+
+}  // namespace mw::mesa
