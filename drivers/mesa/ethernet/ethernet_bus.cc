@@ -11,6 +11,8 @@ namespace {
 
 using lbp16::PacketWriter;
 
+constexpr std::size_t BOARD_PACKETS_BYTES = 2;
+
 /// Packets that a cycle reads; more can only be a flood of old ones.
 constexpr int MAX_RECEIVED = 64;
 /// Registers at consecutive addresses that one command writes.
@@ -50,8 +52,9 @@ void EthernetBus::request() noexcept {
     }
     Request &request = link_ == Link::COMPARING ? identity_ : cyclic_;
     numbers_.number(request.packet);
-    CycleTimes &cycle = cycles_->next();
+    CycleTimes &cycle = log_.next();
     cycle.begin_ns = transport_->now_ns();
+    cycle.host_packets = ++host_packets_;
     cycle.number = numbers_.last_request();
     const lbp16::TransportResult sent = transport_->send(request.packet.bytes());
     cycle.sent_ns = sent.time_ns;
@@ -65,7 +68,8 @@ CycleRead EthernetBus::read(std::span<std::uint32_t> values, long period_ns) noe
     }
     request();
     requested_ = false;
-    CycleTimes &cycle = cycles_->last();
+    CycleTimes &cycle = log_.last();
+    log_.set_period(period_ns);
     const std::int64_t deadline_ns = cycle.begin_ns + read_timeout_ns(settings.read_timeout, period_ns);
     cycle.outcome = cycle.error != 0 ? CycleOutcome::SEND_FAILED : wait_for_answer(deadline_ns, cycle);
     const bool answered = cycle.outcome == CycleOutcome::DONE || cycle.outcome == CycleOutcome::WRITE_LOST;
@@ -78,6 +82,8 @@ CycleRead EthernetBus::read(std::span<std::uint32_t> values, long period_ns) noe
     }
     if (cycle.outcome == CycleOutcome::OTHER_BOARD || errors_.isExceeded()) {
         stop();
+        log_.keep(errors_.isExceeded() ? BoardFault::STOPPED : BoardFault::OTHER_BOARD,
+                  transport_->now_ns());
     }
     if (link_ == Link::STOPPED) {
         return CycleRead::STOPPED;
@@ -85,6 +91,8 @@ CycleRead EthernetBus::read(std::span<std::uint32_t> values, long period_ns) noe
     if (!answered || comparing) {
         return CycleRead::FAILED;
     }
+    cycle.board_packets =
+        lbp16::number_at<std::uint16_t>(std::span(answer_).subspan(cyclic_.data_bytes - BOARD_PACKETS_BYTES));
     for (std::size_t i = 0; i < std::min(values.size(), cyclic_.data_bytes / 4); ++i) {
         values[i] = lbp16::number_at<std::uint32_t>(std::span(answer_).subspan(4 * i));
     }
@@ -140,7 +148,7 @@ void EthernetBus::count(CycleOutcome outcome) noexcept {
     case CycleOutcome::WRITE_LOST: ++counters_.write_lost; break;
     case CycleOutcome::OTHER_BOARD: break;
     }
-    counters_.stale += cycles_->last().stale;
+    counters_.stale += log_.last().stale;
     failed_ = outcome != CycleOutcome::DONE;
     rewriting_ = rewriting_ || failed_;
     errors_.count(failed_, settings);
@@ -154,6 +162,7 @@ bool EthernetBus::write(std::span<const RegisterWrite> writes) noexcept {
     PacketWriter packet;
     std::size_t slot = 0;
     const auto send = [&] {
+        ++host_packets_;
         sent = numbers_.append_to_write(packet, slot) && transport_->send(packet.bytes()).isDone() && sent;
         packet.clear();
         ++slot;
@@ -170,8 +179,8 @@ bool EthernetBus::write(std::span<const RegisterWrite> writes) noexcept {
         writes = writes.subspan(size);
     }
     send();
-    if (cycles_->size() > 0) {
-        cycles_->last().written_ns = transport_->now_ns();
+    if (!log_.isEmpty()) {
+        log_.last().written_ns = transport_->now_ns();
     }
     return sent;
 }

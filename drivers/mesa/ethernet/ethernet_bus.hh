@@ -65,7 +65,11 @@ class EthernetBus final : public RegisterBus {
     bool isStopped() const noexcept { return link_ == Link::STOPPED; }
     const ErrorLevel &errors() const noexcept { return errors_; }
     const EthernetCounters &counters() const noexcept { return counters_; }
-    const CycleRing &cycles() const noexcept { return *cycles_; }
+    /// The last cycle; nullptr before the first.
+    const CycleTimes *last_cycle() const noexcept { return log_.isEmpty() ? nullptr : &log_.last(); }
+    /// Lets the cycles be written to `record`, which outlives the bus. [while loading]
+    void record_cycles_in(CycleRecord &record) noexcept { log_ = CycleLog(record); }
+    void note_watchdog_bite() noexcept override { log_.keep(BoardFault::WATCHDOG, transport_->now_ns()); }
     /// Stops all traffic, as too many failures do. [servo thread]
     void stop() noexcept;
     /// An operator resets the fault: the board is compared and then served again. [servo thread]
@@ -78,7 +82,8 @@ class EthernetBus final : public RegisterBus {
         STOPPED,    ///< no traffic
         COMPARING,  ///< reads the identity
     };
-    /// A request that lacks only its number, and the bytes of its answer before the numbers.
+    /// A request that lacks only its number, and the bytes of its answer before the numbers. The last two of
+    /// the cyclic one are the number of packets that the board has received.
     struct Request {
         lbp16::PacketWriter packet;
         std::size_t data_bytes = 0;
@@ -111,7 +116,9 @@ class EthernetBus final : public RegisterBus {
     HostNumbers numbers_;
     ErrorLevel errors_;
     EthernetCounters counters_;
-    std::unique_ptr<CycleRing> cycles_ = std::make_unique<CycleRing>();
+    std::uint16_t host_packets_ = 0;
+    std::unique_ptr<CycleRecord> own_record_ = std::make_unique<CycleRecord>();
+    CycleLog log_{*own_record_};
 };
 
 }  // namespace mw::mesa

@@ -24,6 +24,7 @@ constexpr int TRIES = 3;
 constexpr int MOST_OLD = 64;
 constexpr int NAME_WORDS = 8, MAC_WORDS = 3;
 constexpr std::uint16_t MAC_ADDRESS = 2;
+constexpr std::uint16_t RECEIVED_PACKETS_ADDRESS = 8;
 /// Header, modules and pins of the largest IDROM [registers].
 constexpr int IDROM_REGISTERS = 272;
 /// Cookie, name of the firmware, offset of the IDROM [registers].
@@ -224,6 +225,7 @@ Result<> EthernetBus::set_lists(std::span<const RegisterRange> reads, int max_wr
         single_offsets_.push_back(range.count == 1 ? cyclic_.packet.bytes().size() + COMMAND_WORD : 0);
         fits = fits && append_reads(cyclic_.packet, range);
     }
+    fits = fits && append_words(cyclic_.packet, Space::CONTROL, RECEIVED_PACKETS_ADDRESS, 1);
     cyclic_.data_bytes = cyclic_.packet.answer_bytes();
     fits = fits && HostNumbers::append_to_request(cyclic_.packet);
     if (!fits) {

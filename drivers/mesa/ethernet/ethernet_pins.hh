@@ -75,10 +75,10 @@ class EthernetPins {
   private:
     /// One message for a burst of failures.
     void tell(const EthernetBus &bus, long period_ns) const noexcept {
-        if (bus.cycles().size() == 0) {
+        if (bus.last_cycle() == nullptr) {
             return;
         }
-        const CycleTimes &cycle = bus.cycles().at(0);
+        const CycleTimes &cycle = *bus.last_cycle();
         const auto timeout_us = static_cast<long>(read_timeout_ns(packet_read_timeout_, period_ns) / 1000);
         switch (cycle.outcome) {
         case CycleOutcome::DONE: break;

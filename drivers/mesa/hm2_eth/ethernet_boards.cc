@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "drivers/mesa/ethernet/cycle_record_file.hh"
 #include "drivers/mesa/ethernet/ethernet_bus.hh"
 #include "drivers/mesa/ethernet/ethernet_pins.hh"
 #include "drivers/mesa/ethernet/network_setup.hh"
@@ -54,6 +55,7 @@ class PinnedBus final : public RegisterBus {
         return bus_->redirect(range, address);
     }
     bool take_rewrite() noexcept override { return bus_->take_rewrite(); }
+    void note_watchdog_bite() noexcept override { bus_->note_watchdog_bite(); }
 
   private:
     std::unique_ptr<EthernetBus> bus_;
@@ -64,6 +66,7 @@ struct EthernetBoard {
     std::string name;
     BoardAddress address;
     std::optional<BoardRoute> route;  ///< empty: not found, with a warning
+    std::optional<CycleRecordFile> cycles;
     std::unique_ptr<PinnedBus> bus;
     std::optional<FixedArpEntry> arp;
 };
@@ -200,9 +203,13 @@ int load_board(const EthernetLoad &load, std::size_t i, std::map<std::string, in
         rtapi_print_msg(RTAPI_MSG_WARN, "%s: the card '%s' at %s is not known; its firmware describes it\n",
                         name.c_str(), (*bus)->reported_name().c_str(), load.addresses[i]);
     }
-    EthernetBoard board{.name = name, .address = *address, .route = {}, .bus = nullptr, .arp = {}};
+    EthernetBoard board{.name = name, .address = *address, .route = {}, .cycles = {}, .bus = nullptr, .arp = {}};
     if (!isVirtual()) {
         find_board(board, (*bus)->mac());
+        board.cycles = optional_of(CycleRecordFile::create(name, load.addresses[i]), name);
+    }
+    if (board.cycles) {
+        (*bus)->record_cycles_in(board.cycles->record());
     }
     board.bus = std::make_unique<PinnedBus>(std::move(*bus), *pins);
     boards().push_back(std::move(board));

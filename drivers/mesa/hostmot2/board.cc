@@ -84,6 +84,7 @@ void Board::read(long period_ns) noexcept {
         module->read(registers_, cycle);
     }
     if (watchdog_ != nullptr && watchdog_->take_bite()) {
+        bus_.note_watchdog_bite();
         events_.hasBitten = true;
         events_.longest_gap_ns = longest_gap_ns_;
         events_.failed_reads = failed_reads_;

@@ -74,6 +74,8 @@ class RegisterBus {
     /// True once after a failure: the board may have missed writes, so that the next write() must hold all
     /// registers. [servo thread]
     virtual bool take_rewrite() noexcept = 0;
+    /// The watchdog of the board has bitten: a bus that records its cycles keeps them. [servo thread]
+    virtual void note_watchdog_bite() noexcept {}
 };
 
 }  // namespace mw::mesa

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "drivers/mesa/ethernet/cycle_report.hh"
 #include "drivers/mesa/test/rig.hh"
 
 namespace mw::mesa::test {
@@ -119,6 +120,26 @@ TEST(MesaClosedLoop, OnePercentOfLossIsNoFault) {
     EXPECT_FALSE(rig.bus->isStopped());
     EXPECT_GT(rig.bus->errors().total(), 500U);
     EXPECT_NEAR(static_cast<double>(rig.steps(0)), last * SCALE, 1.0);
+}
+
+TEST(MesaClosedLoop, TheRecordOfCyclesTellsWhichWayPacketsWereLost) {
+    Rig rig({.config = "num_stepgens=1", .physics = STEPPER, .faults = "seed 3\nto_board loss=0.01"});
+    auto record = std::make_unique<CycleRecord>();
+    rig.bus->record_cycles_in(*record);
+    prepare_stepgen(rig, "stepgen.00");
+    const auto before = rig.link.counts();
+    run_random(rig, 3, 5'000);
+    const auto lost = static_cast<std::int64_t>((rig.link.counts().sent - before.sent) -
+                                                (rig.link.counts().executed - before.executed));
+    const CycleRing &ring = record->rings[0];
+    std::vector<CycleTimes> cycles;
+    for (std::size_t age = ring.size(); age-- > 0;) {
+        cycles.push_back(ring.at(age));
+    }
+    const CycleFigures figures = figures_of(cycles, Rig::PERIOD_NS);
+    EXPECT_GT(lost, 50);
+    EXPECT_NEAR(static_cast<double>(figures.lost_to_board), static_cast<double>(lost), 2);
+    EXPECT_LE(figures.failures(), static_cast<std::size_t>(lost));
 }
 
 // Random arms at random speeds; the index is at 0.25 rev, 1000 counts, of each turn of 4000.

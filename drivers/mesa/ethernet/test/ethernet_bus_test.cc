@@ -137,7 +137,7 @@ TEST(EthernetBus, ALostAnswerIsCountedAndAsksForARewrite) {
     EXPECT_TRUE(bench.bus->isFailed());
     EXPECT_TRUE(bench.bus->take_rewrite());
     EXPECT_EQ(bench.bus->counters().no_answer, 1U);
-    EXPECT_EQ(bench.bus->cycles().at(0).outcome, CycleOutcome::NO_ANSWER);
+    EXPECT_EQ(bench.bus->last_cycle()->outcome, CycleOutcome::NO_ANSWER);
     EXPECT_EQ(bench.read(), CycleRead::DONE);
     EXPECT_FALSE(bench.bus->isFailed());
 }
@@ -184,7 +184,7 @@ TEST(EthernetBus, ASendThatTheKernelRefusesIsCountedWithItsError) {
     bench.disturb_requests([](std::size_t n) { return Passage{.error = n == 0 ? ENETUNREACH : 0}; });
     EXPECT_EQ(bench.read(), CycleRead::FAILED);
     EXPECT_EQ(bench.bus->counters().send_failed, 1U);
-    EXPECT_EQ(bench.bus->cycles().at(0).error, ENETUNREACH);
+    EXPECT_EQ(bench.bus->last_cycle()->error, ENETUNREACH);
     EXPECT_EQ(bench.read(), CycleRead::DONE);
 }
 
@@ -252,7 +252,7 @@ TEST(EthernetBus, AnotherBoardAfterAFaultIsNotWritten) {
     bench.board->set_register(0x0410, 0x12345678);
     bench.bus->resume();
     EXPECT_EQ(bench.read(), CycleRead::STOPPED);
-    EXPECT_EQ(bench.bus->cycles().at(0).outcome, CycleOutcome::OTHER_BOARD);
+    EXPECT_EQ(bench.bus->last_cycle()->outcome, CycleOutcome::OTHER_BOARD);
     EXPECT_TRUE(bench.bus->isStopped());
     EXPECT_TRUE(bench.board->written.empty());
 }

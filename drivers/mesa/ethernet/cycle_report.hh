@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Who was late: what the recorded cycles of a board say of the thread, the kernel, the network and the board.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "drivers/mesa/ethernet/cycle_ring.hh"
+
+namespace mw::mesa {
+
+/// A time in all cycles [ns].
+struct TimeFigures {
+    std::int64_t median_ns = 0, p999_ns = 0, max_ns = 0;
+};
+
+/// What cycles show when they are counted.
+struct CycleFigures {
+    std::size_t cycles = 0;
+    std::int64_t period_ns = 0;
+    TimeFigures late;     ///< begin of a cycle after it was due
+    TimeFigures send;     ///< the request, until the kernel has accepted it
+    TimeFigures answer;   ///< from the request to its answer
+    TimeFigures gap;      ///< between two writes
+    std::size_t late_cycles = 0;  ///< that began more than half a period late
+    std::size_t no_answer = 0, send_failed = 0, receive_failed = 0, short_answer = 0, write_lost = 0;
+    std::size_t late_answers = 0;  ///< that came after the deadline
+    std::int64_t lost_to_board = 0;  ///< packets that the board has not received
+    int error = 0;                   ///< the last errno
+
+    std::size_t failures() const {
+        return no_answer + send_failed + receive_failed + short_answer + write_lost;
+    }
+};
+
+/// `cycles`, the oldest first.
+CycleFigures figures_of(std::span<const CycleTimes> cycles, std::int64_t period_ns);
+
+/// A cause, its evidence and what to change.
+struct CycleCause {
+    std::string cause, remedy;
+};
+
+/// The causes of failures and of long times, the most probable first; empty: all cycles were good.
+std::vector<CycleCause> causes_of(const CycleFigures &figures);
+
+}  // namespace mw::mesa
