@@ -6,6 +6,7 @@
 #include "hal/core/hal.hh"
 #include "machine/config/loaded_config.hh"
 #include "messages/client/viewer.hh"
+#include "programs/doctor/boards.hh"
 #include "programs/doctor/contradictions.hh"
 #include "programs/doctor/hal_files.hh"
 #include "programs/doctor/latency.hh"
@@ -61,6 +62,7 @@ void examine(const std::string &ini, const Scope &scope, volatile std::sig_atomi
     }
     if (scope.hasSystem) {
         examine_system("", program_folder() + "/millwright-rt", sink);
+        examine_boards(sink);
     }
     if (scope.latency_s > 0 && isUp) {
         sink.warning("a machine is up: latency was not measured");

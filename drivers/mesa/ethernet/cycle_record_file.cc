@@ -92,7 +92,8 @@ Result<CycleRecordFile> CycleRecordFile::create(const std::string &board, const 
         errno = error;
         return failed(path, "reserve memory for");
     }
-    void *const memory = ::mmap(nullptr, sizeof(CycleRecord), PROT_READ | PROT_WRITE, MAP_SHARED, file.get(), 0);
+    void *const memory =
+        ::mmap(nullptr, sizeof(CycleRecord), PROT_READ | PROT_WRITE, MAP_SHARED, file.get(), 0);
     if (memory == MAP_FAILED) {
         return failed(path, "map");
     }
@@ -116,7 +117,7 @@ std::vector<std::string> find_cycle_records() {
 
 Result<RecordedCycles> read_cycle_record(const std::string &path) {
     const File file(::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC));
-    struct stat status {};
+    struct stat status{};
     if (file.get() < 0 || ::fstat(file.get(), &status) != 0) {
         return failed(path, "open");
     }
@@ -130,8 +131,8 @@ Result<RecordedCycles> read_cycle_record(const std::string &path) {
     const auto unmap = [](const CycleRecord *mapped) {
         ::munmap(const_cast<CycleRecord *>(mapped), sizeof *mapped);
     };
-    const std::unique_ptr<const CycleRecord, decltype(unmap)> record(
-        static_cast<const CycleRecord *>(memory), unmap);
+    const std::unique_ptr<const CycleRecord, decltype(unmap)> record(static_cast<const CycleRecord *>(memory),
+                                                                     unmap);
     if (record->magic != CycleRecord::MAGIC || record->layout != CycleRecord::LAYOUT) {
         return fail(fmt::format("{} is a record of cycles of another version", path));
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The record of a board's cycles as a file in shared memory: it outlives the process that drives the board and
-// lasts until the computer is restarted or the board is loaded again.
+// The record of a board's cycles as a file in shared memory: it outlives the process that drives the board
+// and lasts until the computer is restarted or the board is loaded again.
 #pragma once
 
 #include <memory>

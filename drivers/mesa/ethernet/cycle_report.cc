@@ -91,27 +91,29 @@ CycleFigures figures_of(std::span<const CycleTimes> cycles, std::int64_t period_
 std::vector<CycleCause> causes_of(const CycleFigures &figures) {
     std::vector<CycleCause> causes;
     if (figures.send_failed > 0 || figures.receive_failed > 0) {
-        causes.push_back({fmt::format("The kernel did not send or receive {} packets: {}.",
-                                      figures.send_failed + figures.receive_failed,
-                                      std::strerror(figures.error)),
-                          "Look at the cable, at the address of the network card and at firewall rules: ip "
-                          "address, nft list ruleset."});
+        causes.push_back(
+            {fmt::format("The kernel did not send or receive {} packets: {}.",
+                         figures.send_failed + figures.receive_failed, std::strerror(figures.error)),
+             "Look at the cable, at the address of the network card and at firewall rules: ip "
+             "address, nft list ruleset."});
     }
     if (figures.late_cycles > 0) {
-        causes.push_back({fmt::format("The thread began {} cycles more than half a period late, the worst by {}.",
-                                      figures.late_cycles, us(figures.late.max_ns)),
-                          "Measure with latency-test. Use the realtime kernel, isolate a processor "
-                          "(isolcpus=), and switch power saving off."});
+        causes.push_back(
+            {fmt::format("The thread began {} cycles more than half a period late, the worst by {}.",
+                         figures.late_cycles, us(figures.late.max_ns)),
+             "Measure with latency-test. Use the realtime kernel, isolate a processor "
+             "(isolcpus=), and switch power saving off."});
     }
     if (figures.send.p999_ns > SLOW_SEND_NS || figures.send.max_ns > figures.period_ns / 2) {
-        causes.push_back({fmt::format("The kernel needed up to {} to accept a packet.", us(figures.send.max_ns)),
-                          "Give the network card to the board alone, and its interrupt a high priority."});
+        causes.push_back(
+            {fmt::format("The kernel needed up to {} to accept a packet.", us(figures.send.max_ns)),
+             "Give the network card to the board alone, and its interrupt a high priority."});
     }
     if (figures.late_answers > 0) {
-        causes.push_back(
-            {fmt::format("{} answers came after the deadline.", figures.late_answers),
-             "The network card is slow or shared. Switch interrupt coalescing off (ethtool -C CARD rx-usecs 0) "
-             "and use no switch between card and board; or raise packet-read-timeout."});
+        causes.push_back({fmt::format("{} answers came after the deadline.", figures.late_answers),
+                          "The network card is slow or shared. Switch interrupt coalescing off (ethtool -C "
+                          "CARD rx-usecs 0) "
+                          "and use no switch between card and board; or raise packet-read-timeout."});
     }
     if (figures.lost_to_board > 0) {
         causes.push_back({fmt::format("{} packets did not reach the board.", figures.lost_to_board),

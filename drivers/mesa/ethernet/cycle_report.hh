@@ -20,13 +20,13 @@ struct TimeFigures {
 struct CycleFigures {
     std::size_t cycles = 0;
     std::int64_t period_ns = 0;
-    TimeFigures late;     ///< begin of a cycle after it was due
-    TimeFigures send;     ///< the request, until the kernel has accepted it
-    TimeFigures answer;   ///< from the request to its answer
-    TimeFigures gap;      ///< between two writes
+    TimeFigures late;             ///< begin of a cycle after it was due
+    TimeFigures send;             ///< the request, until the kernel has accepted it
+    TimeFigures answer;           ///< from the request to its answer
+    TimeFigures gap;              ///< between two writes
     std::size_t late_cycles = 0;  ///< that began more than half a period late
     std::size_t no_answer = 0, send_failed = 0, receive_failed = 0, short_answer = 0, write_lost = 0;
-    std::size_t late_answers = 0;  ///< that came after the deadline
+    std::size_t late_answers = 0;    ///< that came after the deadline
     std::int64_t lost_to_board = 0;  ///< packets that the board has not received
     int error = 0;                   ///< the last errno
 

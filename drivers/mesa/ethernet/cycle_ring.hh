@@ -78,7 +78,8 @@ struct CycleRecord {
     std::array<char, 48> board{};    ///< name in HAL, such as hm2_7i76e.0
     std::array<char, 48> address{};  ///< ADDRESS or ADDRESS:PORT
     std::atomic<std::int64_t> period_ns{0};
-    std::atomic<std::uint32_t> current{0};  ///< the ring to which cycles go; the other one has those before the fault
+    std::atomic<std::uint32_t> current{
+        0};  ///< the ring to which cycles go; the other one has those before the fault
     std::atomic<BoardFault> fault{BoardFault::NONE};
     std::atomic<std::int64_t> fault_ns{0};  ///< monotonic time
     std::array<CycleRing, 2> rings;

@@ -82,8 +82,7 @@ CycleRead EthernetBus::read(std::span<std::uint32_t> values, long period_ns) noe
     }
     if (cycle.outcome == CycleOutcome::OTHER_BOARD || errors_.isExceeded()) {
         stop();
-        log_.keep(errors_.isExceeded() ? BoardFault::STOPPED : BoardFault::OTHER_BOARD,
-                  transport_->now_ns());
+        log_.keep(errors_.isExceeded() ? BoardFault::STOPPED : BoardFault::OTHER_BOARD, transport_->now_ns());
     }
     if (link_ == Link::STOPPED) {
         return CycleRead::STOPPED;

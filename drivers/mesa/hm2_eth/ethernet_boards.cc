@@ -157,7 +157,7 @@ std::string path_of(const std::string &file) {
 
 /// The connection to board number `i`.
 Result<std::unique_ptr<lbp16::Transport>> open_transport(const EthernetLoad &load, std::size_t i,
-                                                        const BoardAddress &address) {
+                                                         const BoardAddress &address) {
     if (!isVirtual()) {
         auto udp = lbp16::UdpTransport::open(address.ip, address.port);
         return udp ? Result<std::unique_ptr<lbp16::Transport>>(std::move(*udp))
@@ -169,9 +169,10 @@ Result<std::unique_ptr<lbp16::Transport>> open_transport(const EthernetLoad &loa
         plan = parse_virtual_board(value_at(load.virtual_boards, i));
     }
     if (plan.model.empty()) {
-        return fail(fmt::format("the board at {} is not asked under the virtual clock; name its model, such as "
-                                "MILLWRIGHT_MESA={}=7i76e in the environment, or virtual_board=7i76e",
-                                load.addresses[i], load.addresses[i]));
+        return fail(
+            fmt::format("the board at {} is not asked under the virtual clock; name its model, such as "
+                        "MILLWRIGHT_MESA={}=7i76e in the environment, or virtual_board=7i76e",
+                        load.addresses[i], load.addresses[i]));
     }
     plan.physics_file = path_of(plan.physics_file);
     if (plan.model.contains('.')) {
@@ -203,7 +204,8 @@ int load_board(const EthernetLoad &load, std::size_t i, std::map<std::string, in
         rtapi_print_msg(RTAPI_MSG_WARN, "%s: the card '%s' at %s is not known; its firmware describes it\n",
                         name.c_str(), (*bus)->reported_name().c_str(), load.addresses[i]);
     }
-    EthernetBoard board{.name = name, .address = *address, .route = {}, .cycles = {}, .bus = nullptr, .arp = {}};
+    EthernetBoard board{
+        .name = name, .address = *address, .route = {}, .cycles = {}, .bus = nullptr, .arp = {}};
     if (!isVirtual()) {
         find_board(board, (*bus)->mac());
         board.cycles = optional_of(CycleRecordFile::create(name, load.addresses[i]), name);
@@ -213,7 +215,8 @@ int load_board(const EthernetLoad &load, std::size_t i, std::map<std::string, in
     }
     board.bus = std::make_unique<PinnedBus>(std::move(*bus), *pins);
     boards().push_back(std::move(board));
-    const int status = register_board({load.comp_id, name, boards().back().bus.get(), value_at(load.configs, i)});
+    const int status =
+        register_board({load.comp_id, name, boards().back().bus.get(), value_at(load.configs, i)});
     if (status != 0) {
         return status;
     }

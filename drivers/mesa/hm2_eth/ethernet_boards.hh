@@ -18,7 +18,7 @@ struct EthernetLoad {
     int comp_id = 0;
     std::span<char *const>
         addresses;  ///< board_ip=: ADDRESS or ADDRESS:PORT; the first empty one ends the list
-    std::span<char *const> configs;  ///< config=
+    std::span<char *const> configs;         ///< config=
     std::span<char *const> virtual_boards;  ///< virtual_board=: MODEL[:PHYSICS_FILE] under the virtual clock
     std::string firewall;                   ///< auto, nft or none
 };

@@ -5,9 +5,9 @@
 //     loadrt hm2_eth board_ip=192.168.1.121 config="num_encoders=1 num_stepgens=3"
 //
 // Strings of several boards are separated by commas. firewall=auto or nft keeps other packets off the
-// interface of a board, none leaves it open. Under the virtual clock boards are simulated: virtual_board=MODEL or
-// MODEL:PHYSICS_FILE names them, or for files that are not to be changed the environment variable
-// MILLWRIGHT_MESA=ADDRESS=MODEL[:PHYSICS_FILE],...
+// interface of a board, none leaves it open. Under the virtual clock boards are simulated:
+// virtual_board=MODEL or MODEL:PHYSICS_FILE names them, or for files that are not to be changed the
+// environment variable MILLWRIGHT_MESA=ADDRESS=MODEL[:PHYSICS_FILE],...
 #include <cerrno>
 #include <cstring>
 

@@ -14,11 +14,8 @@ namespace {
 class VirtualTransport final : public lbp16::Transport {
   public:
     VirtualTransport(board::Model model, board::PhysicsPlan physics, std::function<std::int64_t()> clock_ns)
-        : clock_ns_(std::move(clock_ns)),
-          board_(model, std::move(physics)),
-          link_(board_, {}),
-          transport_(link_),
-          last_clock_ns_(clock_ns_()) {}
+        : clock_ns_(std::move(clock_ns)), board_(model, std::move(physics)), link_(board_, {}),
+          transport_(link_), last_clock_ns_(clock_ns_()) {}
 
     lbp16::TransportResult send(std::span<const std::byte> packet) noexcept override {
         transport_.sleep_until(now_ns());
@@ -68,7 +65,7 @@ VirtualBoardPlan find_virtual_board(std::string_view list, std::string_view addr
 }
 
 Result<std::unique_ptr<lbp16::Transport>> open_virtual_board(const VirtualBoardPlan &plan,
-                                                            std::function<std::int64_t()> clock_ns) {
+                                                             std::function<std::int64_t()> clock_ns) {
     auto model = board::load_model(plan.model);
     if (!model) {
         return std::unexpected(model.error());

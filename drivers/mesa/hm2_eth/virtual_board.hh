@@ -30,6 +30,6 @@ VirtualBoardPlan find_virtual_board(std::string_view list, std::string_view addr
 /// A connection to a simulated board. Its time follows `clock_ns` and is ahead of it while packets travel
 /// within a cycle. It allocates: for the virtual clock only. [one thread]
 Result<std::unique_ptr<lbp16::Transport>> open_virtual_board(const VirtualBoardPlan &plan,
-                                                            std::function<std::int64_t()> clock_ns);
+                                                             std::function<std::int64_t()> clock_ns);
 
 }  // namespace mw::mesa
