@@ -86,6 +86,11 @@ void Link::execute(const Delivery &packet) {
     }
 }
 
+void Link::disturb(const DirectionFaults &to_board, const DirectionFaults &to_host, std::uint64_t seed) {
+    to_board_ = FaultyDirection(to_board, seed);
+    to_host_ = FaultyDirection(to_host, seed + 1);
+}
+
 void Link::perform(const FaultEvent &event) {
     switch (event.type) {
     case FaultType::RESET: board_.restart(event.at_ns, 0); break;

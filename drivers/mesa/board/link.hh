@@ -29,11 +29,14 @@ class Link {
     std::optional<Delivery> receive(std::int64_t now_ns);
     /// When something happens next; empty: nothing without a new packet.
     std::optional<std::int64_t> next_ns() const;
+    /// An event happens now, at its time; events of the plan need no call.
+    void perform(const FaultEvent &event);
+    /// The faults of both directions from now on.
+    void disturb(const DirectionFaults &to_board, const DirectionFaults &to_host, std::uint64_t seed);
     const LinkCounts &counts() const { return counts_; }
 
   private:
     void execute(const Delivery &packet);
-    void perform(const FaultEvent &event);
     void read_as_second_host(std::int64_t now_ns);
     bool isDown(std::int64_t time_ns) const;
 

@@ -112,8 +112,11 @@ void Board::write(long period_ns, std::int64_t now_ns) noexcept {
         return;
     }
     note_timeout(period_ns);
-    const bool isSent = bus_.write(registers_.list(isRewriteDue_));
-    isRewriteDue_ = !isSent;
+    // All registers only when the read of this cycle has shown that the watchdog has not bitten: else the
+    // configuration would turn the outputs on again that a bite has turned off.
+    const bool areAll = isRewriteDue_ && cycle.isFresh;
+    const bool isSent = bus_.write(registers_.list(areAll));
+    isRewriteDue_ = !isSent || (isRewriteDue_ && !areAll);
     if (isSent) {
         note_write(now_ns);
     }

@@ -28,7 +28,7 @@ std::uint32_t watchdog_timer(std::uint32_t timeout_ns, std::uint32_t clock_hz) n
 void Watchdog::plan(Registers &registers) {
     status_ = registers.read({module_.address(STATUS), 1}, ReadOrder::WATCHDOG);
     timer_ = registers.write(module_.address(TIMER), WriteOrder::WATCHDOG_SETUP, Send::CHANGED);
-    clear_ = registers.write(module_.address(STATUS), WriteOrder::WATCHDOG_SETUP, Send::AFTER_FAULT, 0);
+    clear_ = registers.write(module_.address(STATUS), WriteOrder::WATCHDOG_SETUP, Send::REQUESTED);
     reset_ = registers.write(module_.address(RESET), WriteOrder::WATCHDOG_RESET, Send::ALWAYS, RESTART);
 }
 
@@ -59,6 +59,7 @@ void Watchdog::write(Registers &registers, const Cycle &cycle) noexcept {
     hasBitBefore_ = pins_.has_bit;
     if (!pins_.has_bit && !isArmed_ && cycle.isFresh) {
         ++attempts_;
+        registers.request(clear_, 0);  // at the start, and when an operator has cleared has_bit
     }
     registers.set(timer_, watchdog_timer(pins_.timeout_ns, module_.clock_hz));
 }

@@ -71,12 +71,36 @@ TEST_F(CycleOfBoard, LaterWritesOnlyWhatChanges) {
 TEST_F(CycleOfBoard, WritesAllAfterAFailure) {
     cycle(3);
     const std::size_t few = bus.written.back().size();
-    bus.next_read = CycleRead::FAILED;
-    cycle();
+    bus.isNextWriteLost = true;
+    cycle(2);
     EXPECT_GT(bus.written.back().size(), few);
     EXPECT_GE(position(DIRECTION), 0);
     cycle();
     EXPECT_EQ(bus.written.back().size(), few);
+}
+
+// A bite of which the driver does not know yet must not be undone.
+TEST_F(CycleOfBoard, WritesNoConfigurationInACycleWhoseReadFailed) {
+    cycle(3);
+    const std::size_t few = bus.written.back().size();
+    bus.next_read = CycleRead::FAILED;
+    bus.registers[STATUS] = 1;
+    cycle();
+    EXPECT_EQ(bus.written.back().size(), few);
+    EXPECT_LT(position(DIRECTION), 0);
+    EXPECT_EQ(bus.registers[STATUS], 1U);
+    cycle();
+    EXPECT_EQ(pins.get("watchdog.has_bit"), 1.0);
+    EXPECT_EQ(bus.registers[STATUS], 1U);
+}
+
+TEST_F(CycleOfBoard, WritesAllInTheFirstCycleThatIsReadAfterAFailure) {
+    cycle(3);
+    bus.next_read = CycleRead::FAILED;
+    cycle();
+    cycle();
+    EXPECT_GE(position(DIRECTION), 0);
+    EXPECT_LT(position(STATUS), 0) << "only an operator clears a bite";
 }
 
 TEST_F(CycleOfBoard, WritesAllAfterAWriteThatCouldNotBeSent) {
