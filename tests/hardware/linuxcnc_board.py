@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Lets LinuxCNC's own hm2_eth, unmodified, drive the simulated 7I76E: positions, counts, index, inputs, smart serial, watchdog.
+"""Lets LinuxCNC's own hm2_eth, unmodified, drive simulated boards: of a 7I76E positions, counts, index, inputs, smart serial and watchdog; of
+the other models the values of their modules.
 
 usage: linuxcnc_board.py HM2_BOARD (as root)
 Exit status: 0 all agree, 1 something differs, 77 skipped, with the reason. Board and driver run in network namespaces of their own, and the
@@ -56,6 +57,54 @@ loadusr -w sleep 0.5
 show pin hm2_7i76e.0.watchdog
 '''
 
+# Other models: what is connected, parameters of hm2_eth, further HAL lines, and pins (without the name of the board) with their values. A
+# number may differ by a hundredth.
+CASES = {
+    '7i80hd-3pwm': ('', 'num_leds=4', """
+setp BOARD.3pwmgen.00.enable 1
+setp BOARD.3pwmgen.00.A-value 0.5
+""", {'3pwmgen.00.fault': 'FALSE', '3pwmgen.05.enable': 'FALSE'}),
+    '7i80hd-resolver': ('motor s pwm=0 full_rev_s=10 start_rev=0.25\nresolver 0 motor=s\nresolver 1 motor=s cycles_per_rev=3\n',
+                        'sserial_port_0=xxxxxxxx', '', {'resolver.00.angle': 0.25, 'resolver.01.angle': 0.75, 'resolver.00.velocity': 0, 'resolver.00.error': 'FALSE',
+      'resolver.02.error': 'TRUE'}),
+    '7i92-latch': ('motor x stepgen=0 steps_per_rev=200\nswitch 5 motor=x above_rev=1\n', '', """
+setp BOARD.stepgen.00.position-scale 200
+setp BOARD.stepgen.00.maxvel 10
+setp BOARD.stepgen.00.maxaccel 100
+setp BOARD.stepgen.00.steplen 2000
+setp BOARD.stepgen.00.stepspace 2000
+setp BOARD.stepgen.00.probe-invert 1
+setp BOARD.stepgen.00.probe-enable 1
+setp BOARD.stepgen.00.position-cmd 2
+setp BOARD.stepgen.00.enable 1
+loadusr -w sleep 1
+""", {'stepgen.00.position-fb': 2, 'stepgen.00.position-latch': 1.005, 'stepgen.00.probe-enable': 'FALSE', 'inmux.00.input-31': 'FALSE'}),
+    '7i92-uart': ('', '', """
+setp BOARD.rcpwmgen.00.width 1.5
+""", {'rcpwmgen.rate': 50}),
+    '7i80': ('remote 0 card=7i77\nremote 2 card=7i73\n', 'sserial_port_0=0020xxxx', """
+setp BOARD.7i77.0.1.analogena 1
+setp BOARD.7i77.0.1.analogout3 5
+""", {'7i77.0.0.input-31': 'FALSE', '7i77.0.1.analogout3': 5, '7i73.0.2.input-23': 'FALSE', 'sserial.port-0.port_state': '0x00000003'}),
+}
+CASE_HAL = """
+loadrt hostmot2
+loadrt hm2_eth board_ip=192.168.1.121 config="CONFIG"
+loadrt threads name1=servo period1=4000000
+addf BOARD.read servo
+addf BOARD.write servo
+setp BOARD.watchdog.timeout_ns 100000000
+setp BOARD.packet-error-limit 1000
+start
+loadusr -w sleep 0.5
+LINES
+loadusr -w sleep 1
+show pin BOARD
+show param BOARD.io_error
+"""
+# What the driver says when it does not like something.
+COMPLAINT = re.compile(r'(?i)\b(error|warning|fail(?:ed|ure)?|unknown|unsupported|not supported|inconsistent)\b')
+
 
 def reason_to_skip():
     if os.geteuid() != 0:
@@ -91,11 +140,13 @@ class Network:
             subprocess.run(['ip', 'netns', 'del', name], check=False)
 
 
-def run(program, folder):
-    (folder / 'physics.txt').write_text(PHYSICS)
-    (folder / 'test.hal').write_text(HAL)
+def run(program, folder, model, physics, hal):
+    """Output of halrun, and the log of the board."""
+    (folder / 'physics.txt').write_text(physics)
+    (folder / 'test.hal').write_text(hal)
+    (folder / 'log').unlink(missing_ok=True)
     with Network() as network:
-        command = ['ip', 'netns', 'exec', network.board, program, '--listen', IP, '--physics', str(folder / 'physics.txt'),
+        command = ['ip', 'netns', 'exec', network.board, program, '--listen', IP, '--model', model, '--physics', str(folder / 'physics.txt'),
                    '--log', str(folder / 'log')]
         with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as board:
             board.stdout.readline()
@@ -105,6 +156,26 @@ def run(program, folder):
             time.sleep(0.2)
             board.terminate()
     return done.stdout + done.stderr, (folder / 'log').read_text()
+
+
+def agrees(found, wanted):
+    if found is None or isinstance(wanted, str):
+        return found == wanted
+    return abs(float(found) - wanted) <= 0.01
+
+
+def check_case(program, folder, model):
+    """The differences of one model of CASES."""
+    physics, config, lines, pins = CASES[model]
+    board = f'hm2_{model.split("-")[0].removesuffix("hd")}.0'
+    hal = CASE_HAL.replace('LINES', lines).replace('CONFIG', config).replace('BOARD', board)
+    output, _ = run(program, folder, model, physics, hal)
+    problems = [f'{model}: {line}' for line in output.splitlines() if COMPLAINT.search(line) and board + '.' not in line]
+    for name, wanted in pins.items():
+        found = re.findall(rf'\s(\S+)\s+{re.escape(board)}\.{re.escape(name)}(?:\s|$)', output, re.M)
+        if not agrees(found[0] if found else None, wanted):
+            problems.append(f'{model}: {name} is {found[:1]}, not {wanted}')
+    return problems
 
 
 def check(output, log):
@@ -154,8 +225,11 @@ def main():
         return SKIPPED
     with tempfile.TemporaryDirectory() as folder:
         os.chmod(folder, 0o777)
-        problems = check(*run(os.path.abspath(sys.argv[1]), pathlib.Path(folder)))
-    print('\n'.join(problems) or 'LinuxCNC drives the simulated 7I76E: position, counts, index, input, smart serial and watchdog agree')
+        program, path = os.path.abspath(sys.argv[1]), pathlib.Path(folder)
+        problems = check(*run(program, path, '7i76e', PHYSICS, HAL))
+        for model in CASES:
+            problems += check_case(program, path, model)
+    print('\n'.join(problems) or f'LinuxCNC drives the simulated 7I76E and {len(CASES)} further models: all values agree')
     return 1 if problems else 0
 
 

@@ -11,13 +11,20 @@ import re
 import shutil
 import subprocess
 import sys
+import tempfile
 
 SKIPPED = 77
 # The names of the boards in mesaflash.
-DEVICES = {'7i76e': '7i76e', '7i80': '7i80db-16', '7i92': '7i92', '7i95': '7i95', '7i96s': '7i96s', '7i97': '7i97'}
+DEVICES = {'7i76e': '7i76e', '7i80': '7i80db-16', '7i80hd-3pwm': '7i80hd-16', '7i80hd-resolver': '7i80hd-16', '7i92': '7i92', '7i92-latch': '7i92',
+           '7i92-uart': '7i92', '7i95': '7i95', '7i96s': '7i96s', '7i97': '7i97'}
 # How mesaflash names the modules of a pin.
 NAMES = {'stepgen': 'StepGen', 'encoder': 'QCount', 'muxed-encoder': 'MuxedQCount', 'mux-select': 'MuxedQCountSel', 'pwm': 'PWM',
-         'smart-serial': 'SSerial', 'ssr': 'SSR', 'inm': 'InM', 'inmux': 'InMux'}
+         'smart-serial': 'SSerial', 'ssr': 'SSR', 'inm': 'InM', 'inmux': 'InMux', 'three-phase-pwm': 'TPPWM', 'resolver': 'ResolverMod',
+         'bspi': 'BufSPI', 'uart-tx': 'UARTTX', 'uart-rx': 'UARTRX', 'pkt-uart-tx': 'PktUARTTX', 'pkt-uart-rx': 'PktUARTRX', 'rc-pwm': 'RCPWM'}
+# Smart serial cards on channels 0 to 3, with the modes that they describe.
+REMOTES = 'remote 0 card=7i77\nremote 2 card=7i73\nremote 3 card=7i76\n'
+REMOTE_FACTS = {0: ('7I77', 'I/O [index 00]'), 1: ('7I77', 'Analog [index 00]'), 2: ('7I73', 'I/O_Enc_Ana_FD [index 02]'),
+                3: ('7I76', 'I/O_Spin_Ana_Enc [index 02]')}
 PIN = re.compile(r'\s(\d+)\s+IOPort\s+(\S+)(?:\s+(\d+)\s+.*\((In|Out)\))?\s*$')
 # Each run has its own address, so that runs at the same time do not meet.
 ADDRESS = f'127.{1 + os.getpid() % 250}.{1 + os.getpid() // 250 % 250}.9'
@@ -70,6 +77,19 @@ def check(name, device, text):
     return [f'{name}: {problem}' for problem in problems]
 
 
+def check_remotes():
+    """The differences in the report about the smart serial cards."""
+    report = mesaflash(DEVICES['7i80'], '--sserial')
+    parts = re.split(r'sserial device at channel (\d)', report)
+    found = {int(channel): text for channel, text in zip(parts[1::2], parts[2::2])}
+    problems = []
+    for channel, (card, mode) in REMOTE_FACTS.items():
+        for fact in (card, mode, 'NVBaudRate = 2.5Mb', 'NVWatchDogTimeout = 50ms', 'SwRevision = 14'):
+            if fact not in found.get(channel, ''):
+                problems.append(f'smart serial channel {channel}: "{fact}" is not reported')
+    return problems
+
+
 def main():
     program, models = sys.argv[1], pathlib.Path(sys.argv[2])
     if shutil.which('mesaflash') is None:
@@ -81,7 +101,14 @@ def main():
             board.stdout.readline()
             problems += check(name, device, (models / f'{name}.txt').read_text())
             board.terminate()
-    print('\n'.join(problems) or f'{len(DEVICES)} boards are reported as their models declare them')
+    with tempfile.NamedTemporaryFile('w', suffix='.txt') as physics:
+        physics.write(REMOTES)
+        physics.flush()
+        with subprocess.Popen([program, '--listen', ADDRESS, '--model', '7i80', '--physics', physics.name], stdout=subprocess.PIPE, text=True) as board:
+            board.stdout.readline()
+            problems += check_remotes()
+            board.terminate()
+    print('\n'.join(problems) or f'{len(DEVICES)} boards and 4 smart serial channels are reported as their models declare them')
     return 1 if problems else 0
 
 

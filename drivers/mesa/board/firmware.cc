@@ -12,6 +12,8 @@ constexpr std::uint8_t OUTPUT = 0x80;
 constexpr std::uint8_t STEP_PIN = 0x81, PWM_PIN = 0x81;
 constexpr std::uint8_t ENCODER_A = 1, ENCODER_B = 2, ENCODER_Z = 3;
 constexpr unsigned DPLL_TIMERS = 4;
+/// Bounds the work of a long time without requests.
+constexpr std::int64_t MAX_SPANS = 100'000;
 constexpr std::uint32_t FIRST_SERIAL_NUMBER = 0x1000'0001;
 
 /// The watchdog or a DPLL timer acts.
@@ -40,7 +42,7 @@ T *Firmware::own(Arguments &&...arguments) {
 }
 
 Firmware::Firmware(const Idrom &idrom, Physics &physics, std::int64_t power_up_ns)
-    : idrom_(idrom), physics_(physics), identity_(WORDS, 0), slots_(WORDS), outputs_(idrom.pins.size()),
+    : idrom_(idrom), physics_(physics), identity_(WORDS, 0), slots_(WORDS), pin_modules_(idrom.pins.size()),
       inputs_(idrom.pins.size()), ports_(idrom.header.io_ports, idrom.header.port_width),
       now_ns_(power_up_ns) {
     if (const auto encoded = encode_idrom(idrom); encoded.has_value()) {
@@ -55,8 +57,8 @@ Firmware::Firmware(const Idrom &idrom, Physics &physics, std::int64_t power_up_n
         module->advance(power_up_ns);
         map(*module, descriptor);
         for (std::size_t pin = 0; pin < idrom_.pins.size(); ++pin) {
-            if (idrom_.pins[pin].secondary == descriptor.gtag && outputs_[pin] == nullptr) {
-                outputs_[pin] = module;
+            if (idrom_.pins[pin].secondary == descriptor.gtag && pin_modules_[pin] == nullptr) {
+                pin_modules_[pin] = module;
             }
         }
     }
@@ -68,6 +70,7 @@ Firmware::Firmware(const Idrom &idrom, Physics &physics, std::int64_t power_up_n
             encoder.last_edge_ns = power_up_ns;
         }
     }
+    sample();
 }
 
 Module *Firmware::add_module(const ModuleDescriptor &descriptor) {
@@ -77,7 +80,7 @@ Module *Firmware::add_module(const ModuleDescriptor &descriptor) {
     switch (descriptor.gtag) {
     case Gtag::WATCHDOG: return watchdog_ = own<WatchdogModule>(clock_hz);
     case Gtag::IO_PORT: return &ports_;
-    case Gtag::STEPGEN: return stepgen_ = own<StepgenModule>(instances, clock_hz);
+    case Gtag::STEPGEN: return stepgen_ = own<StepgenModule>(instances, clock_hz, descriptor.version);
     case Gtag::ENCODER:
     case Gtag::MUXED_ENCODER: return encoder_ = own<EncoderModule>(instances, clock_hz);
     case Gtag::PWM: return pwm_ = own<PwmModule>(instances);
@@ -86,19 +89,52 @@ Module *Firmware::add_module(const ModuleDescriptor &descriptor) {
     case Gtag::SSR: return ssr_ = own<SsrModule>();
     case Gtag::SMART_SERIAL: return serial_ = add_serial(descriptor);
     case Gtag::IN_M:
-    case Gtag::IN_MUX: {
-        const auto isInput = [&](const PinDescriptor &pin) {
-            return pin.secondary == descriptor.gtag && (pin.secondary_pin & OUTPUT) == 0;
-        };
-        // InMux reads its inputs one after the other over one pin.
-        const bool isMultiplexed = descriptor.gtag == Gtag::IN_MUX;
-        const auto count = isMultiplexed ? 32 : std::ranges::count_if(idrom_.pins, isInput);
-        auto *module = own<InputModule>(static_cast<unsigned>(std::clamp<std::ptrdiff_t>(count, 1, 32)));
-        module->connect([this] { return input_levels(); });
+    case Gtag::IN_MUX: return add_inputs(descriptor, clock_hz);
+    case Gtag::THREE_PHASE_PWM: return three_phase_pwm_ = own<ThreePhasePwmModule>(instances, clock_hz);
+    case Gtag::RC_PWM: return rc_pwm_ = own<RcPwmModule>(instances, clock_hz);
+    case Gtag::RESOLVER: {
+        auto *module = own<ResolverModule>(clock_hz);
+        module->connect([this](unsigned channel) { return physics_.resolver_rev(channel); });
         return module;
     }
+    case Gtag::BSPI: return bspi_ = own<BspiModule>(instances);
+    case Gtag::UART_TX:
+    case Gtag::UART_RX:
+    case Gtag::PKT_UART_TX:
+    case Gtag::PKT_UART_RX: return add_uart(descriptor, clock_hz);
     default: return own<UnknownModule>(descriptor.registers);
     }
+}
+
+Module *Firmware::add_inputs(const ModuleDescriptor &descriptor, std::uint32_t clock_hz) {
+    const auto count = [&](bool isOutput) {
+        return std::ranges::count_if(idrom_.pins, [&](const PinDescriptor &pin) {
+            return pin.secondary == descriptor.gtag && ((pin.secondary_pin & OUTPUT) != 0) == isOutput;
+        });
+    };
+    // InMux reads its inputs one after the other over one pin; its outputs are the address.
+    const std::ptrdiff_t inputs = descriptor.gtag == Gtag::IN_MUX
+                                      ? std::ptrdiff_t{1} << std::min<std::ptrdiff_t>(count(true), 5)
+                                      : count(false);
+    auto *module =
+        own<InputModule>(static_cast<unsigned>(std::clamp<std::ptrdiff_t>(inputs, 1, 32)), clock_hz);
+    module->connect([this, &descriptor] { return input_levels(descriptor); });
+    return module;
+}
+
+Module *Firmware::add_uart(const ModuleDescriptor &descriptor, std::uint32_t clock_hz) {
+    const bool isPacket = descriptor.gtag == Gtag::PKT_UART_TX || descriptor.gtag == Gtag::PKT_UART_RX;
+    const bool transmits = descriptor.gtag == Gtag::UART_TX || descriptor.gtag == Gtag::PKT_UART_TX;
+    auto &lines = lines_[isPacket ? Gtag::PKT_UART_TX : Gtag::UART_TX];
+    if (lines == nullptr) {
+        lines = std::make_shared<SerialLines>();
+    }
+    lines->resize(std::max<std::size_t>(lines->size(), descriptor.instances));
+    const UartRole role = transmits ? UartRole::TRANSMIT : UartRole::RECEIVE;
+    if (isPacket) {
+        return own<PacketUartModule>(role, lines, clock_hz);
+    }
+    return own<UartModule>(role, lines, clock_hz);
 }
 
 SmartSerialModule *Firmware::add_serial(const ModuleDescriptor &descriptor) {
@@ -195,9 +231,31 @@ void Firmware::advance(std::int64_t to_ns) {
 }
 
 void Firmware::run(std::int64_t to_ns) {
-    if (to_ns <= now_ns_) {
-        return;
+    while (now_ns_ < to_ns) {
+        std::int64_t span_ns = 0;
+        for (const auto &module : modules_) {
+            const std::int64_t wanted_ns = module->input_span_ns();
+            span_ns = wanted_ns > 0 && (span_ns == 0 || wanted_ns < span_ns) ? wanted_ns : span_ns;
+        }
+        move(span_ns > 0 ? std::min(to_ns, now_ns_ + std::max(span_ns, (to_ns - now_ns_) / MAX_SPANS))
+                         : to_ns);
+        sample();
     }
+}
+
+void Firmware::sample() {
+    for (const auto &module : modules_) {
+        module->sample();
+    }
+    for (unsigned pin = 0; pin < idrom_.pins.size(); ++pin) {
+        const PinDescriptor &descriptor = idrom_.pins[pin];
+        if (pin_modules_[pin] != nullptr && (descriptor.secondary_pin & OUTPUT) == 0) {
+            pin_modules_[pin]->input(descriptor.unit, descriptor.secondary_pin, ports_.level(pin));
+        }
+    }
+}
+
+void Firmware::move(std::int64_t to_ns) {
     const std::vector<std::int64_t> before = steps_now();
     for (const auto &module : modules_) {
         module->advance(to_ns);
@@ -252,6 +310,12 @@ bool Firmware::isDriven(Gtag gtag, unsigned unit) const {
 
 void Firmware::set_input(unsigned pin, std::optional<bool> level) {
     inputs_[pin] = level;
+    sample();
+}
+
+void Firmware::set_multiplexed_input(unsigned input, bool level) {
+    multiplexed_inputs_ = (multiplexed_inputs_ & ~(1U << input)) | (level ? 1U << input : 0U);
+    sample();
 }
 
 bool Firmware::outside_level(unsigned pin) const {
@@ -274,16 +338,19 @@ bool Firmware::outside_level(unsigned pin) const {
 
 bool Firmware::module_level(unsigned pin) const {
     const PinDescriptor &descriptor = idrom_.pins[pin];
-    return outputs_[pin] != nullptr && (descriptor.secondary_pin & OUTPUT) != 0 &&
-           outputs_[pin]->output(descriptor.unit, descriptor.secondary_pin);
+    return pin_modules_[pin] != nullptr && (descriptor.secondary_pin & OUTPUT) != 0 &&
+           pin_modules_[pin]->output(descriptor.unit, descriptor.secondary_pin);
 }
 
-std::uint32_t Firmware::input_levels() const {
+std::uint32_t Firmware::input_levels(const ModuleDescriptor &module) const {
+    if (module.gtag == Gtag::IN_MUX) {
+        return multiplexed_inputs_;
+    }
     std::uint32_t levels = 0;
     for (unsigned pin = 0; pin < idrom_.pins.size(); ++pin) {
         const PinDescriptor &descriptor = idrom_.pins[pin];
         const unsigned number = descriptor.secondary_pin;
-        if (descriptor.secondary == Gtag::IN_M && number >= 1 && number <= 32) {
+        if (descriptor.secondary == module.gtag && number >= 1 && number <= 32) {
             levels |= static_cast<std::uint32_t>(ports_.level(pin)) << (number - 1);
         }
     }

@@ -2,17 +2,24 @@
 // The HostMot2 register space of a board: its modules, its pins, and what is connected to them.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <vector>
 
+#include "drivers/mesa/board/modules/bspi.hh"
 #include "drivers/mesa/board/modules/dpll.hh"
 #include "drivers/mesa/board/modules/encoder.hh"
+#include "drivers/mesa/board/modules/inputs.hh"
 #include "drivers/mesa/board/modules/io_ports.hh"
 #include "drivers/mesa/board/modules/pwm.hh"
+#include "drivers/mesa/board/modules/rc_pwm.hh"
+#include "drivers/mesa/board/modules/resolver.hh"
 #include "drivers/mesa/board/modules/smart_serial.hh"
 #include "drivers/mesa/board/modules/stepgen.hh"
 #include "drivers/mesa/board/modules/switches.hh"
+#include "drivers/mesa/board/modules/three_phase_pwm.hh"
+#include "drivers/mesa/board/modules/uart.hh"
 #include "drivers/mesa/board/modules/watchdog.hh"
 #include "drivers/mesa/board/physics.hh"
 #include "drivers/mesa/identity/idrom.hh"
@@ -35,6 +42,8 @@ class Firmware {
 
     /// Connects a pin to a level from outside; empty: to what it is connected to in the physics.
     void set_input(unsigned pin, std::optional<bool> level);
+    /// The level of an input that is read over the multiplexer of InMux; low at power-up.
+    void set_multiplexed_input(unsigned input, bool level);
     bool pin_level(unsigned pin) const { return ports_.level(pin); }
     /// Whether the board drives the pin.
     Drive pin_drive(unsigned pin) const { return ports_.drive(pin); }
@@ -47,6 +56,11 @@ class Firmware {
     const SsrModule *ssr() const { return ssr_; }
     const LedModule *led() const { return led_; }
     SmartSerialModule *smart_serial() { return serial_; }
+    const ThreePhasePwmModule *three_phase_pwm() const { return three_phase_pwm_; }
+    const RcPwmModule *rc_pwm() const { return rc_pwm_; }
+    BspiModule *bspi() { return bspi_; }
+    /// The lines of the UARTs (Gtag::UART_TX) or of the packet UARTs (Gtag::PKT_UART_TX).
+    SerialLines &serial_lines(Gtag transmitter) { return *lines_.at(transmitter); }
 
   private:
     /// Which register a word of the space is.
@@ -55,17 +69,21 @@ class Firmware {
         RegisterPlace place;
     };
     Module *add_module(const ModuleDescriptor &descriptor);
+    Module *add_inputs(const ModuleDescriptor &descriptor, std::uint32_t clock_hz);
+    Module *add_uart(const ModuleDescriptor &descriptor, std::uint32_t clock_hz);
     SmartSerialModule *add_serial(const ModuleDescriptor &descriptor);
     template <class T, class... Arguments>
     T *own(Arguments &&...arguments);
     void map(Module &module, const ModuleDescriptor &descriptor);
     void run(std::int64_t to_ns);
+    void move(std::int64_t to_ns);
+    void sample();
     DriveInputs drive_inputs(const std::vector<std::int64_t> &steps_before) const;
     std::vector<std::int64_t> steps_now() const;
     bool isDriven(Gtag gtag, unsigned unit) const;
     bool outside_level(unsigned pin) const;
     bool module_level(unsigned pin) const;
-    std::uint32_t input_levels() const;
+    std::uint32_t input_levels(const ModuleDescriptor &descriptor) const;
     void latch_all(unsigned timer);
 
     Idrom idrom_;
@@ -73,8 +91,10 @@ class Firmware {
     std::vector<std::uint32_t> identity_;  ///< the registers of the description, by word
     std::vector<Slot> slots_;              ///< by word
     std::vector<std::unique_ptr<Module>> modules_;
-    std::vector<Module *> outputs_;  ///< by pin: the module that can drive it
+    std::vector<Module *> pin_modules_;  ///< by pin: the module that can use it
     std::vector<std::optional<bool>> inputs_;
+    std::uint32_t multiplexed_inputs_ = 0;
+    std::map<Gtag, std::shared_ptr<SerialLines>> lines_;  ///< by the type of the transmitter
     IoPorts ports_;
     WatchdogModule *watchdog_ = nullptr;
     StepgenModule *stepgen_ = nullptr;
@@ -84,6 +104,9 @@ class Firmware {
     SsrModule *ssr_ = nullptr;
     LedModule *led_ = nullptr;
     SmartSerialModule *serial_ = nullptr;
+    ThreePhasePwmModule *three_phase_pwm_ = nullptr;
+    RcPwmModule *rc_pwm_ = nullptr;
+    BspiModule *bspi_ = nullptr;
     std::int64_t now_ns_;
 };
 

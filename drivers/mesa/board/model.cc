@@ -36,6 +36,10 @@ constexpr ModuleName MODULES[] = {
     {"inm", Gtag::IN_M},
     {"outm", Gtag::OUT_M},
     {"resolver", Gtag::RESOLVER},
+    {"rc-pwm", Gtag::RC_PWM},
+    {"uart-tx", Gtag::UART_TX},
+    {"uart-rx", Gtag::UART_RX},
+    {"bspi", Gtag::BSPI},
     {"pkt-uart-tx", Gtag::PKT_UART_TX},
     {"pkt-uart-rx", Gtag::PKT_UART_RX},
 };
@@ -70,7 +74,7 @@ void read_board(TableLine &line, Model &model) {
     header.clock_low_hz = number("clock_low_hz", 100'000'000);
     header.clock_high_hz = number("clock_high_hz", 200'000'000);
     header.instance_strides[0] = 4;
-    header.instance_strides[1] = 0x40;
+    header.instance_strides[1] = static_cast<std::uint32_t>(line.whole("instance_stride1", 4, 0x100, 0x40));
     header.register_strides[0] = header.register_strides[1] = 0x100;
     model.idrom.pins.assign(std::min<std::uint32_t>(header.io_width, MAX_PINS), {});
 }

@@ -111,6 +111,14 @@ std::optional<Shaft> Physics::shaft(unsigned encoder) const {
                  .counts_per_rev = one->counts_per_rev};
 }
 
+std::optional<double> Physics::resolver_rev(unsigned channel) const {
+    const auto one = std::ranges::find(plan_.resolvers, channel, &ResolverPlan::channel);
+    if (one == plan_.resolvers.end()) {
+        return {};
+    }
+    return (position_rev(one->motor) - one->zero_rev) * static_cast<double>(one->cycles_per_rev);
+}
+
 std::optional<bool> Physics::switch_level(unsigned pin) const {
     const auto one = std::ranges::find(plan_.switches, pin, &SwitchPlan::pin);
     if (one == plan_.switches.end()) {

@@ -46,23 +46,32 @@ struct SwitchPlan {
     bool closed_level = true;  ///< level of the pin while it is closed
 };
 
+/// A resolver on the shaft of a motor.
+struct ResolverPlan {
+    unsigned channel = 0;
+    std::size_t motor = 0;
+    std::int64_t cycles_per_rev = 1;
+    double zero_rev = 0;  ///< where its angle is 0
+};
+
 /// A smart serial card on a channel.
 struct RemotePlan {
     unsigned port = 0, channel = 0;
-    std::string card;  ///< 7i76, 7i77, 7i84
+    std::string card;  ///< the key of a RemoteCard
 };
 
 struct PhysicsPlan {
     std::vector<MotorPlan> motors;
     std::vector<EncoderPlan> encoders;
     std::vector<SwitchPlan> switches;
+    std::vector<ResolverPlan> resolvers;
     std::vector<RemotePlan> remotes;
 };
 
 /// Lines `motor NAME stepgen=N steps_per_rev=N [start_rev=]`, `motor NAME pwm=N full_rev_s=
 /// time_constant_s=`, `encoder N motor=NAME counts_per_rev=N [index_rev=]`, `switch PIN motor=NAME
-/// below_rev=|above_rev= [closed=high|low]` and `remote CHANNEL card=7i76 [port=N]`; units and pins must
-/// exist in `idrom`.
+/// below_rev=|above_rev= [closed=high|low]`, `resolver CHANNEL motor=NAME [cycles_per_rev=] [zero_rev=]` and
+/// `remote CHANNEL card=7i76 [port=N]`; units and pins must exist in `idrom`.
 Result<PhysicsPlan> parse_physics(std::string_view text, const std::string &file, const Idrom &idrom);
 
 /// What reaches the motors within a piece of time in which nothing changes.
@@ -82,6 +91,8 @@ class Physics {
 
     /// The shaft of an encoder, when one is connected.
     std::optional<Shaft> shaft(unsigned encoder) const;
+    /// The electrical revolutions of a resolver, when one is connected.
+    std::optional<double> resolver_rev(unsigned channel) const;
     /// The level of a pin with a switch.
     std::optional<bool> switch_level(unsigned pin) const;
     /// The position of the motor with that index in the plan [rev].

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "base/text.hh"
+#include "drivers/mesa/board/modules/resolver.hh"
 #include "drivers/mesa/board/modules/smart_serial.hh"
 #include "drivers/mesa/board/physics.hh"
 #include "drivers/mesa/board/table_file.hh"
@@ -90,6 +91,15 @@ void read_switch(TableLine &line, PhysicsPlan &plan, const Idrom &idrom) {
     plan.switches.push_back(one);
 }
 
+void read_resolver(TableLine &line, PhysicsPlan &plan, const Idrom &idrom) {
+    ResolverPlan resolver;
+    resolver.channel = number_of(line, "resolver", instances_of(idrom, {Gtag::RESOLVER}) * RESOLVER_CHANNELS);
+    resolver.motor = motor_of(line, plan);
+    resolver.cycles_per_rev = line.whole("cycles_per_rev", 1, 1000, 1);
+    resolver.zero_rev = line.number("zero_rev", -FAR_REV, FAR_REV, 0.0);
+    plan.resolvers.push_back(resolver);
+}
+
 void read_remote(TableLine &line, PhysicsPlan &plan, const Idrom &idrom) {
     RemotePlan remote;
     remote.channel = number_of(line, "smart serial channel", SERIAL_CHANNELS);
@@ -99,7 +109,17 @@ void read_remote(TableLine &line, PhysicsPlan &plan, const Idrom &idrom) {
         line.reject("card", fmt::format("Unknown card '{}', known are {}.", remote.card,
                                         fmt::join(remote_card_names(), ", ")));
     }
-    plan.remotes.push_back(remote);
+    // Each part of a card with several channels is a remote of its own.
+    for (const RemoteCard *card = find_remote_card(remote.card); card != nullptr;
+         card = find_remote_card(card->next_channel)) {
+        if (remote.channel >= SERIAL_CHANNELS) {
+            line.reject("card", fmt::format("Card '{}' needs more channels than the port has.", remote.card));
+            break;
+        }
+        remote.card = card->key;
+        plan.remotes.push_back(remote);
+        remote.channel += 1;
+    }
 }
 
 }  // namespace
@@ -117,12 +137,14 @@ Result<PhysicsPlan> parse_physics(std::string_view text, const std::string &file
             read_encoder(line, plan, idrom);
         } else if (line.type() == "switch") {
             read_switch(line, plan, idrom);
+        } else if (line.type() == "resolver") {
+            read_resolver(line, plan, idrom);
         } else if (line.type() == "remote") {
             read_remote(line, plan, idrom);
         } else {
-            return fail(
-                fmt::format("Unknown line '{}', expected motor, encoder, switch or remote.", line.type()),
-                line.place());
+            return fail(fmt::format("Unknown line '{}', expected motor, encoder, switch, resolver or remote.",
+                                    line.type()),
+                        line.place());
         }
         if (auto finished = line.finish(); !finished.has_value()) {
             return std::unexpected(finished.error());

@@ -5,7 +5,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <sstream>
+#include <iterator>
 
 #include <fmt/format.h>
 
@@ -144,11 +144,11 @@ Result<std::vector<TableLine>> parse_table(std::string_view text, const std::str
 
 Result<std::string> read_text_file(const std::string &path) {
     std::ifstream file(path, std::ios::binary);
-    std::ostringstream text;
-    if (!file || !(text << file.rdbuf())) {
+    std::string text{std::istreambuf_iterator<char>(file), {}};
+    if (file.fail() || file.bad()) {
         return fail(fmt::format("Cannot read '{}': {}.", path, std::strerror(errno)));
     }
-    return text.str();
+    return text;
 }
 
 }  // namespace mw::mesa::board

@@ -11,6 +11,7 @@ namespace {
 
 using Control = EncoderControl;
 enum : unsigned { COUNT, CONTROL, DIVIDER, TIME_STAMP, FILTER, DPLL_TIMER };
+constexpr std::uint8_t PROBE_PIN = 5;
 
 /// The whole number of `step` in `value`, rounded down.
 std::int64_t floor_divide(std::int64_t value, std::int64_t step) {
@@ -149,6 +150,12 @@ void EncoderModule::write(RegisterPlace place, std::uint32_t value) {
     case FILTER: filter_rate_ = value; break;
     case DPLL_TIMER: timer_.value = value; break;
     default: break;
+    }
+}
+
+void EncoderModule::input(unsigned unit, std::uint8_t function, bool level) {
+    if (unit < encoders_.size() && function == PROBE_PIN) {
+        set_probe(encoders_[unit], level);
     }
 }
 

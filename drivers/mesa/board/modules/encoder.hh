@@ -66,6 +66,7 @@ class EncoderModule final : public Module {
     void write(RegisterPlace place, std::uint32_t value) override;
     void advance(std::int64_t to_ns) override { time_ns_ = to_ns; }
     void latch(unsigned timer) override;
+    void input(unsigned unit, std::uint8_t function, bool level) override;
     unsigned registers() const override { return ENCODER_REGISTERS; }
 
     std::vector<Encoder> &encoders() { return encoders_; }

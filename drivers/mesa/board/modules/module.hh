@@ -28,6 +28,13 @@ class Module {
     virtual void latch(unsigned /*timer*/) {}
     /// The level at an output of a unit, by the number in the descriptor of its pin.
     virtual bool output(unsigned /*unit*/, std::uint8_t /*function*/) const { return false; }
+    /// The level at an input of a unit, at the current time. The firmware reports it after each piece of
+    /// time.
+    virtual void input(unsigned /*unit*/, std::uint8_t /*function*/, bool /*level*/) {}
+    /// What is connected to the pins has moved to the time of the last advance().
+    virtual void sample() {}
+    /// The longest piece of time after which the module has to see its inputs [ns]; 0: any.
+    virtual std::int64_t input_span_ns() const { return 0; }
     /// The number of registers; registers behind those of the descriptor may exist (DPLL timers).
     virtual unsigned registers() const = 0;
     /// The consecutive words of a register in each instance.

@@ -16,6 +16,8 @@ using enum FieldDirection;
 constexpr std::uint8_t DATA_RECORD = 0xA0, MODE_RECORD = 0xB0, SOFTWARE_MODE = 1;
 /// Where the description begins; lower addresses hold the values.
 constexpr std::uint16_t DESCRIPTION = 0x100;
+/// Where the globals begin, and the bytes of each.
+constexpr std::uint16_t GLOBAL_VALUES = 0x80, GLOBAL_BYTES = 4;
 
 constexpr RemoteField FIELDS_7I76[] = {
     {"Output", "None", 16, BITS, OUTPUT, 0, 0},
@@ -32,21 +34,59 @@ constexpr RemoteField FIELDS_7I76[] = {
 };
 constexpr RemoteMode MODES_7I76[] = {{"I/O_Spin", 0}, {"I/O_Spin_Ana", 1}, {"I/O_Spin_Ana_Enc", 2}};
 
+/// The 7I77 has two channels: field inputs and outputs, and the analogue outputs.
 constexpr RemoteField FIELDS_7I77[] = {
     {"Output", "None", 16, BITS, OUTPUT, 0, 0},
     {"Input", "None", 32, BITS, INPUT, 0, 0},
 };
+constexpr RemoteField FIELDS_7I77_ANALOG[] = {
+    {"AnalogOut0", "Volts", 12, SIGNED, OUTPUT, -10, 10},
+    {"AnalogOut1", "Volts", 12, SIGNED, OUTPUT, -10, 10},
+    {"AnalogOut2", "Volts", 12, SIGNED, OUTPUT, -10, 10},
+    {"AnalogOut3", "Volts", 12, SIGNED, OUTPUT, -10, 10},
+    {"AnalogOut4", "Volts", 12, SIGNED, OUTPUT, -10, 10},
+    {"AnalogOut5", "Volts", 12, SIGNED, OUTPUT, -10, 10},
+    {"AnalogEna", "None", 1, BOOLEAN, OUTPUT, 0, 0},
+    {"SpinEna", "None", 1, BOOLEAN, OUTPUT, 0, 0},
+};
 constexpr RemoteMode MODES_IO[] = {{"I/O", 0}};
+constexpr RemoteMode MODES_ANALOG[] = {{"Analog", 0}};
+
+constexpr RemoteField FIELDS_7I73[] = {
+    {"Output", "None", 22, BITS, OUTPUT, 0, 0},
+    {"Input", "None", 24, BITS, INPUT, 0, 0},
+    {"Enc0", "None", 8, ENCODER, INPUT, 0, 0},
+    {"Enc1", "None", 8, ENCODER, INPUT, 0, 0},
+    {"Enc2", "None", 8, ENCODER, INPUT, 0, 0},
+    {"Enc3", "None", 8, ENCODER, INPUT, 0, 0},
+    {"AnalogIn0", "Volts", 10, UNSIGNED, INPUT, 0, 3.3F, 1},
+    {"AnalogIn1", "Volts", 10, UNSIGNED, INPUT, 0, 3.3F, 1},
+    {"AnalogIn2", "Volts", 10, UNSIGNED, INPUT, 0, 3.3F, 1},
+    {"AnalogIn3", "Volts", 10, UNSIGNED, INPUT, 0, 3.3F, 1},
+    {"Display", "None", 8, STREAM, OUTPUT, 0, 0, 1, 1},
+    {"Display32", "None", 32, STREAM, OUTPUT, 0, 0, 2},
+};
+constexpr RemoteMode MODES_7I73[] = {{"I/O_Enc", 0}, {"I/O_Enc_Ana", 1}, {"I/O_Enc_Ana_FD", 2}};
 
 constexpr RemoteField FIELDS_7I84[] = {
     {"Output", "None", 16, BITS, OUTPUT, 0, 0},
     {"Input", "None", 32, BITS, INPUT, 0, 0},
 };
 
+/// What the field cards have in common.
+constexpr RemoteGlobal GLOBALS[] = {
+    {"SwRevision", 16, UNSIGNED, 14},
+    {"NVBaudRate", 8, NON_VOLATILE_UNSIGNED, 9},
+    {"NVUnitNumber", 32, NON_VOLATILE_UNSIGNED, 0},
+    {"NVWatchDogTimeout", 16, NON_VOLATILE_UNSIGNED, 50},
+};
+
 constexpr RemoteCard CARDS[] = {
-    {"7I76", FIELDS_7I76, MODES_7I76},
-    {"7I77", FIELDS_7I77, MODES_IO},
-    {"7I84", FIELDS_7I84, MODES_IO},
+    {"7i73", "7I73", FIELDS_7I73, MODES_7I73, GLOBALS, {}},
+    {"7i76", "7I76", FIELDS_7I76, MODES_7I76, GLOBALS, {}},
+    {"7i77", "7I77", FIELDS_7I77, MODES_IO, GLOBALS, "7i77-analog"},
+    {"7i77-analog", "7I77", FIELDS_7I77_ANALOG, MODES_ANALOG, GLOBALS, {}},
+    {"7i84", "7I84", FIELDS_7I84, MODES_IO, GLOBALS, {}},
 };
 
 /// Takes or sets `bits` bits at `position` of the user words.
@@ -79,20 +119,26 @@ void append_float(std::vector<std::uint8_t> &memory, float value) {
 
 const RemoteCard *find_remote_card(std::string_view name) {
     const auto *card = std::ranges::find_if(
-        CARDS, [&](const RemoteCard &one) { return equals_ignoring_case(one.name, name); });
+        CARDS, [&](const RemoteCard &one) { return equals_ignoring_case(one.key, name); });
     return card == std::end(CARDS) ? nullptr : card;
 }
 
 std::vector<std::string_view> remote_card_names() {
     std::vector<std::string_view> names;
     for (const RemoteCard &card : CARDS) {
-        names.push_back(card.name);
+        names.push_back(card.key);
     }
     return names;
 }
 
 Remote::Remote(const RemoteCard &card, std::uint32_t serial_number)
     : card_(&card), serial_number_(serial_number), values_(card.fields.size(), 0) {
+    memory_.assign(GLOBAL_VALUES, 0);
+    for (const RemoteGlobal &one : card.globals) {
+        const std::uint32_t value = one.value != 0 ? one.value : serial_number;
+        append_word(memory_, static_cast<std::uint16_t>(value & 0xFFFFU));
+        append_word(memory_, static_cast<std::uint16_t>(value >> 16U));
+    }
     describe();
 }
 
@@ -125,9 +171,22 @@ void Remote::append_list(const std::vector<std::uint16_t> &addresses) {
 }
 
 void Remote::describe() {
-    memory_.assign(DESCRIPTION, 0);
+    // The values lie below the description and keep what the host has written.
+    memory_.resize(DESCRIPTION);
     std::vector<std::uint16_t> process, global;
-    std::uint16_t value_address = 0;
+    std::uint16_t value_address = GLOBAL_VALUES;
+    for (const RemoteGlobal &one : card_->globals) {
+        const RemoteField field{.name = one.name,
+                                .unit = "None",
+                                .bits = one.bits,
+                                .type = one.type,
+                                .direction = INPUT,
+                                .min = 0,
+                                .max = 0};
+        global.push_back(append_field(field, value_address));
+        value_address = static_cast<std::uint16_t>(value_address + GLOBAL_BYTES);
+    }
+    value_address = 0;
     for (const RemoteField &field : card_->fields) {
         if (isInMode(field)) {
             process.push_back(append_field(field, value_address));

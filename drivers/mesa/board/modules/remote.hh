@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Smart serial remotes: cards that describe their own data. Source: shared/hardware.md, part B9. The 7I76 is
-// as described there; the fields of the other cards are examples of the same form.
+// Smart serial remotes: cards that describe their own data. Source: shared/hardware.md, part B9, for the
+// 7I76; the names of the other cards' data are those of the manual page sserial(9), their widths are
+// examples.
 #pragma once
 
 #include <array>
@@ -16,7 +17,10 @@ enum class FieldType : std::uint8_t {
     BITS = 1,
     UNSIGNED = 2,
     SIGNED = 3,
+    NON_VOLATILE_UNSIGNED = 4,
+    STREAM = 6,
     BOOLEAN = 7,
+    ENCODER = 8,
     ENCODER_LOW = 0x18
 };
 enum class FieldDirection : std::uint8_t { INPUT = 0, BOTH = 0x40, OUTPUT = 0x80 };
@@ -36,14 +40,26 @@ struct RemoteMode {
     std::uint8_t index = 0;
 };
 
-/// A type of card.
+/// A value that is read and written in set-up mode only.
+struct RemoteGlobal {
+    std::string_view name;
+    std::uint8_t bits = 0;
+    FieldType type = FieldType::UNSIGNED;
+    std::uint32_t value = 0;  ///< at power-up; 0: the serial number
+};
+
+/// A type of card, or the part of it that one channel serves.
 struct RemoteCard {
+    std::string_view key;   ///< in the physics file
     std::string_view name;  ///< 4 characters, as the card reports it: 7I76
     std::span<const RemoteField> fields;
     std::span<const RemoteMode> modes;
+    std::span<const RemoteGlobal> globals;
+    std::string_view
+        next_channel;  ///< the key of the part on the next channel; empty: the card has one channel
 };
 
-/// The known cards, found in any case: 7i76, 7i77, 7i84. nullptr: unknown.
+/// The known cards, found in any case: 7i73, 7i76, 7i77 (on two channels), 7i84. nullptr: unknown.
 const RemoteCard *find_remote_card(std::string_view name);
 std::vector<std::string_view> remote_card_names();
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Step generators. Source: shared/hardware.md, part B4. The rate is added to an accumulator of 48 bits with
 // each tick of ClockLow; its upper 16 bits are whole steps. Times of direction setup and hold do not delay
-// the accumulator in this model.
+// the accumulator in this model. Version 0xC2 latches the position at an edge of its index or probe input.
 #pragma once
 
 #include <array>
@@ -12,6 +12,19 @@
 namespace mw::mesa::board {
 
 constexpr unsigned STEPGEN_REGISTERS = 11;
+constexpr std::size_t STEP_TABLE_ENTRIES = 16;
+
+/// The bits of the mode register.
+struct StepgenMode {
+    static constexpr std::uint32_t TYPE = 3, SWAPPED = 4, LATCH_ON_INDEX = 0x10, INDEX_POLARITY = 0x20,
+                                   LATCH_ON_PROBE = 0x40, PROBE_POLARITY = 0x80, WRITABLE = 0xFF;
+};
+
+/// What drives the outputs.
+enum class StepType : std::uint8_t { STEP_DIRECTION, UP_DOWN, QUADRATURE, TABLE };
+
+/// The two inputs that latch a position.
+enum class LatchInput : std::uint8_t { INDEX, PROBE };
 
 /// One step generator.
 struct Stepgen {
@@ -20,6 +33,9 @@ struct Stepgen {
     std::uint32_t latched = 0;      ///< what the accumulator register read when the DPLL timer fired
     std::int64_t steps = 0;         ///< whole steps since power-up, down counts negative
     std::array<std::uint32_t, STEPGEN_REGISTERS> settings{};  ///< by the number of the register
+    std::array<std::uint32_t, STEP_TABLE_ENTRIES> table{};    ///< the entry written last is the first one
+    std::uint32_t latched_position = 0;                       ///< of index or probe, steps in 16.8
+    std::array<bool, 2> latch_levels{true, true};             ///< by LatchInput
 };
 
 /// Lets `ticks` pass. @return the whole steps in this time
@@ -29,22 +45,33 @@ std::uint32_t position_register(const Stepgen &stepgen);
 /// The level of the step output: high for the pulse width after each step.
 bool step_level(const Stepgen &stepgen);
 
+/// The level of an output, 0 or 1 for the first two; further ones exist with a table.
+bool step_output(const Stepgen &stepgen, unsigned number);
+/// Sets the level of an input; its active edge (polarity 1: rising) latches the position where the mode asks
+/// for it.
+void set_latch_input(Stepgen &stepgen, LatchInput input, bool level);
+
 /// All step generators of a firmware.
 class StepgenModule final : public Module {
   public:
-    StepgenModule(unsigned instances, std::uint32_t clock_hz) : stepgens_(instances), clock_hz_(clock_hz) {}
+    StepgenModule(unsigned instances, std::uint32_t clock_hz, std::uint8_t version = 0)
+        : stepgens_(instances), clock_hz_(clock_hz), latches_(version == LATCHING_VERSION) {}
     std::uint32_t read(RegisterPlace place) override;
     void write(RegisterPlace place, std::uint32_t value) override;
     void advance(std::int64_t to_ns) override;
     void latch(unsigned timer) override;
     bool output(unsigned unit, std::uint8_t function) const override;
+    void input(unsigned unit, std::uint8_t function, bool level) override;
+    std::int64_t input_span_ns() const override;
     unsigned registers() const override { return STEPGEN_REGISTERS; }
 
     const std::vector<Stepgen> &stepgens() const { return stepgens_; }
 
   private:
+    static constexpr std::uint8_t LATCHING_VERSION = 0xC2;
     std::vector<Stepgen> stepgens_;
     std::uint32_t clock_hz_;
+    bool latches_;
     std::uint32_t master_rate_ = 0;
     LatchTimer timer_;
     std::int64_t tick_ = 0;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// LEDs, solid-state outputs and inputs with filters. Source: shared/hardware.md, part B7.
+// LEDs and solid-state outputs. Source: shared/hardware.md, part B7.
 #pragma once
-
-#include <functional>
 
 #include "drivers/mesa/board/modules/module.hh"
 
@@ -37,24 +35,6 @@ class SsrModule final : public Module {
   private:
     static constexpr std::uint32_t ENABLED = 1U << 12U;
     std::uint32_t data_ = 0, rate_ = 0;
-};
-
-/// InM and InMux: inputs, without the delay of their filters and without MPG counters. Registers: control,
-/// inputs with the slow filter, filtered levels, raw levels, MPG counters.
-class InputModule final : public Module {
-  public:
-    using Levels = std::function<std::uint32_t()>;
-    explicit InputModule(unsigned inputs) : inputs_(inputs) {}
-    /// The levels of all inputs, one bit each.
-    void connect(Levels levels) { levels_ = std::move(levels); }
-    std::uint32_t read(RegisterPlace place) override;
-    void write(RegisterPlace place, std::uint32_t value) override;
-    unsigned registers() const override { return 5; }
-
-  private:
-    unsigned inputs_;
-    std::uint32_t control_ = 0, slow_ = 0;
-    Levels levels_;
 };
 
 }  // namespace mw::mesa::board

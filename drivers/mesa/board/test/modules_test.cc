@@ -78,6 +78,84 @@ TEST(BoardStepgen, MotorAndAccumulatorAgreeOnEveryStep) {
     }
 }
 
+/// A stepgen of version 0xC2 that drives a motor with a switch at its index or probe input.
+struct LatchHost : Host {
+    explicit LatchHost(const std::string &switches)
+        : Host("7i92-latch", "motor x stepgen=0 steps_per_rev=200\n" + switches) {
+        write(0x1200, 0x3F);
+        write(0x1100, 0x0F);
+    }
+    double latched() { return (read(0x2200) >> 8U) / 256.0; }
+};
+
+TEST(BoardStepgen, TheIndexLatchesThePosition) {
+    LatchHost host("switch 4 motor=x above_rev=1\n");
+    host.write(0x2000, rate_of(20'000));
+    host.write(0x2200, 0x30);  // latch at a rising edge
+    host.time_ns = 9 * MS;
+    EXPECT_EQ(host.read(0x2200), 0x30U) << "the switch is at 200 steps";
+    host.time_ns = 30 * MS;
+    EXPECT_EQ(host.read(0x2200) & 0xFFU, 0x20U) << "the latch is used up";
+    EXPECT_NEAR(host.latched(), 201, 1);
+    EXPECT_EQ(host.read(0x2204), 0U) << "the other one does not latch";
+}
+
+TEST(BoardStepgen, TheProbeLatchesAtItsOwnEdge) {
+    LatchHost host("switch 5 motor=x above_rev=1 closed=low\n");
+    host.write(0x2000, rate_of(20'000));
+    host.write(0x2200, 0x40);  // latch at a falling edge
+    host.time_ns = 30 * MS;
+    EXPECT_EQ(host.read(0x2200) & 0xFFU, 0U);
+    EXPECT_NEAR(host.latched(), 201, 1);
+    host.write(0x2000, rate_of(-20'000));
+    host.time_ns = 50 * MS;
+    EXPECT_NEAR(host.latched(), 201, 1) << "no latch is wanted";
+}
+
+TEST(BoardStepgen, OtherVersionsHaveNoLatch) {
+    Host host("7i76e", AXIS);
+    host.enable_port0();
+    host.write(0x2000, rate_of(20'000));
+    host.write(0x2200, 0x50);
+    host.time_ns = S;
+    EXPECT_EQ(host.read(0x2200), 0x50U);
+}
+
+TEST(BoardStepgen, TheOutputsFollowTheirType) {
+    Stepgen stepgen;
+    const auto outputs = [&](std::uint32_t type, std::int64_t steps) {
+        stepgen.settings[2] = type;
+        stepgen.steps = steps;
+        return (step_output(stepgen, 0) ? 1U : 0U) | (step_output(stepgen, 1) ? 2U : 0U) |
+               (step_output(stepgen, 2) ? 4U : 0U);
+    };
+    stepgen.rate = -1;
+    stepgen.accumulator = 0xFFFFFFFF;  // just after a step downwards
+    stepgen.settings[5] = 100;
+    EXPECT_EQ(outputs(0, 0), 3U) << "step, direction high";
+    EXPECT_EQ(outputs(4, 0), 3U);
+    EXPECT_EQ(outputs(1, 0), 2U) << "down";
+    EXPECT_EQ(outputs(2, -1), 2U) << "quadrature";
+    EXPECT_EQ(outputs(2, 1), 1U);
+    EXPECT_EQ(outputs(2, 2), 3U);
+}
+
+TEST(BoardStepgen, ATableIsRunThroughWithTheSteps) {
+    Host host("7i92-latch");
+    for (const std::uint32_t entry : {0x8U, 0x4U, 0x2U, 0x1U}) {  // the last entry first
+        host.write(0x2700, entry);
+    }
+    host.write(0x2800, 3);
+    host.write(0x2200, 3);
+    host.write(0x1200, 0xF);
+    host.write(0x1100, 0xF);
+    host.write(0x2000, rate_of(1000));
+    for (int step = 0; step < 20; ++step) {
+        host.time_ns = step * MS + MS / 2;
+        EXPECT_EQ(host.read(0x1000) & 0xFU, 1U << (step % 4)) << step;
+    }
+}
+
 TEST(BoardWatchdog, StartsBittenAndBitesAtItsTime) {
     Host host("7i76e", AXIS);
     EXPECT_EQ(host.read(0x0D00), 1U);
@@ -230,6 +308,15 @@ TEST(BoardEncoder, TheProbeLatches) {
     set_probe(encoder, false);
     set_probe(encoder, true);
     EXPECT_EQ(encoder.latch, 1234);
+}
+
+TEST(BoardEncoder, TheProbePinLatches) {
+    Host host("7i80hd-3pwm");
+    host.write(0x3100, 0x7040);  // latch on probe, rising, once
+    host.board.firmware().set_input(11, false);
+    EXPECT_EQ(host.read(0x3100) & 0x2000U, 0x2000U);
+    host.board.firmware().set_input(11, true);
+    EXPECT_EQ(host.read(0x3100) & 0x2000U, 0U);
 }
 
 TEST(BoardPhysics, ASwitchClosesAtItsPosition) {

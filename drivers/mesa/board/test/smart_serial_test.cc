@@ -137,10 +137,70 @@ TEST(BoardSmartSerial, AChannelWithoutARemoteFails) {
     EXPECT_EQ(host.run(0x1001), 1U) << "a stopped channel does not exchange";
 }
 
+TEST(BoardSmartSerial, A7I77HasTwoChannels) {
+    SerialHost host("remote 0 card=7i77\n");
+    host.run(0x4000);
+    EXPECT_EQ(host.run(0xF03), 0U);
+    EXPECT_EQ(host.read(0x5E00), host.read(0x5E04)) << "both report 7I77";
+    using Names = std::vector<std::string>;
+    EXPECT_EQ(host.names(0, 0), (Names{"Output", "Input"}));
+    EXPECT_EQ(host.names(1, 0), (Names{"AnalogOut0", "AnalogOut1", "AnalogOut2", "AnalogOut3", "AnalogOut4",
+                                       "AnalogOut5", "AnalogEna", "SpinEna"}));
+    host.run(0x8FF);
+    host.write(0x5C00, 0);
+    host.write(0x5C04, 0);
+    EXPECT_EQ(host.run(0x903), 0U);
+    host.write(0x5D04, 0x800U | (0x7FFU << 12U));
+    host.write(0x5F04, 0x100);
+    EXPECT_EQ(host.run(0x1003), 0U);
+    EXPECT_EQ(host.remote(1).value("AnalogOut0"), 0x800U);
+    EXPECT_EQ(host.remote(1).value("AnalogOut1"), 0x7FFU);
+    EXPECT_EQ(host.remote(1).value("AnalogEna"), 1U);
+}
+
+TEST(BoardSmartSerial, A7I73HasThreeModes) {
+    SerialHost host("remote 0 card=7i73\n");
+    host.run(0x4000);
+    EXPECT_EQ(host.names(0, 0).size(), 6U);
+    EXPECT_EQ(host.names(0, 1).back(), "Display");
+    EXPECT_EQ(host.names(0, 2).back(), "Display32");
+    host.start(2);
+    host.remote(0).set_value("Enc3", 0xFF);
+    host.write(0x5D00, 0x12400001);
+    host.write(0x5E00, 0x8D159E);
+    EXPECT_EQ(host.run(0x1001), 0U);
+    EXPECT_EQ(host.remote(0).value("Output"), 1U);
+    EXPECT_EQ(host.read(0x5E00) & 0xFF0000U, 0xFF0000U);
+}
+
+TEST(BoardSmartSerial, GlobalsKeepWhatIsWritten) {
+    SerialHost host("remote 0 card=7i76\n");
+    host.run(0x4000);
+    host.run(0xF01);
+    const std::uint32_t list = host.read(0x5F00) >> 16U;
+    const std::uint32_t record = host.remote_word(0, list + 6);
+    EXPECT_EQ(host.remote_text(0, record + 19), "NVWatchDogTimeout");
+    const std::uint32_t at = host.remote_word(0, record + 12);
+    EXPECT_EQ(host.remote_word(0, at), 50U);
+    host.write(0x5D00, 80);
+    host.write(0x5C00, 0x65000000 | at);
+    EXPECT_EQ(host.run(0x1001), 0U);
+    EXPECT_EQ(host.remote_word(0, at), 80U);
+    host.run(0xF01);
+    EXPECT_EQ(host.remote_word(0, at), 80U) << "a new start keeps it";
+}
+
+TEST(BoardSmartSerial, ACardThatDoesNotFitIsAnError) {
+    const auto plan = parse_physics("remote 7 card=7i77", "p.txt", model_of("7i76e").idrom);
+    ASSERT_FALSE(plan.has_value());
+    EXPECT_EQ(plan.error().str(), "p.txt:1:10: Card '7i77' needs more channels than the port has.");
+}
+
 TEST(BoardSmartSerial, AnUnknownCardIsAnError) {
     const auto plan = parse_physics("remote 0 card=7i99", "p.txt", model_of("7i76e").idrom);
     ASSERT_FALSE(plan.has_value());
-    EXPECT_EQ(plan.error().str(), "p.txt:1:10: Unknown card '7i99', known are 7I76, 7I77, 7I84.");
+    EXPECT_EQ(plan.error().str(),
+              "p.txt:1:10: Unknown card '7i99', known are 7i73, 7i76, 7i77, 7i77-analog, 7i84.");
 }
 
 }  // namespace
