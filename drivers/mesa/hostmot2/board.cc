@@ -33,6 +33,9 @@ Result<std::unique_ptr<Board>> Board::make(RegisterBus &bus, const Idrom &idrom,
         board->modules_.push_back(make_raw());
     }
     for (const auto &module : board->modules_) {
+        if (auto prepared = module->prepare(bus); !prepared) {
+            return std::unexpected(prepared.error());
+        }
         module->plan(board->registers_);
     }
     if (auto fixed = board->registers_.fix(bus); !fixed) {

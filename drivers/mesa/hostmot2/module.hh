@@ -22,6 +22,11 @@ class Module {
   public:
     virtual ~Module() = default;
 
+    /// Reads what it must know before it makes its pins. [while loading]
+    virtual Result<> prepare(RegisterBus &bus) {
+        (void)bus;
+        return {};
+    }
     /// Names the registers that it reads and writes. [while loading]
     virtual void plan(Registers &registers) = 0;
     /// Makes its pins. [while loading]
