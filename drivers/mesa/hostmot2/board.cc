@@ -77,12 +77,16 @@ void Board::read(long period_ns) noexcept {
     isFresh_ = result == CycleRead::DONE;
     isStopped_ = result == CycleRead::STOPPED;
     isReadOnce_ = isReadOnce_ || isFresh_;
+    isRewriteDue_ = bus_.take_rewrite() || isRewriteDue_;
+    isWriteDoubtful_ = isWriteDoubtful_ || isRewriteDue_ || !isFresh_;
     if (!isFresh_) {
         ++failed_reads_;
         return;
     }
     Cycle cycle = cycle_of(period_ns);
     cycle.isFresh = true;
+    cycle.hasLostWrite = isWriteDoubtful_;
+    isWriteDoubtful_ = false;
     for (const auto &module : modules_) {
         module->read(registers_, cycle);
     }

@@ -14,8 +14,9 @@ namespace mw::mesa {
 /// What all modules know of a cycle.
 struct Cycle {
     double period_s = 0.001;
-    bool isFresh = false;    ///< the inputs are of this cycle
-    bool isWriting = false;  ///< in write(): what is requested is sent
+    bool isFresh = false;       ///< the inputs are of this cycle
+    bool hasLostWrite = false;  ///< in read(): a write since the last read() may not have reached the board
+    bool isWriting = false;     ///< in write(): what is requested is sent
 };
 
 class Module {

@@ -84,6 +84,10 @@ class Registers {
         write.isRequested = true;
         write.hasBeenRequested = true;
     }
+    /// A register with Send::REPEATED is not written any more until the next request(). [servo thread]
+    void forget(WriteHandle handle) noexcept {
+        writes_[static_cast<std::size_t>(handle.index)].hasBeenRequested = false;
+    }
     /// Writes to another register from now on. [servo thread]
     void set_address(WriteHandle handle, std::uint16_t address) noexcept {
         writes_[static_cast<std::size_t>(handle.index)].address = address;
