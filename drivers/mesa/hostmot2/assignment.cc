@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "drivers/mesa/hostmot2/modules/resolver.hh"
+
 namespace mw::mesa {
 
 namespace {
@@ -29,6 +31,11 @@ constexpr Known KNOWN[] = {
     {Gtag::LED, "LED", {0, ANY}},
     {Gtag::SSR, "SSR", {0, ANY}},
     {Gtag::OUT_M, "OutM", {0, ANY}},
+    {Gtag::IN_MUX, "InMux", {0, ANY}},
+    {Gtag::IN_M, "InM", {0, ANY}},
+    {Gtag::THREE_PHASE_PWM, "ThreePhasePWM", {0, ANY}},
+    {Gtag::RC_PWM, "RCPWMGen", {0, ANY}},
+    {Gtag::RESOLVER, "Resolver", {0, ANY}},
     {Gtag::IRQ, "IRQLogic", {ANY}},
     {Gtag::TRANSLATION_RAM, "TranslationRAM", {ANY}},
     {Gtag::MUX_SELECT, "MuxedEncoderSelect", {ANY}},
@@ -67,6 +74,9 @@ bool isWithinWidth(const PinDescriptor &pin, const Config &config) noexcept {
 int instances_of(const ModuleDescriptor &module, int leds) noexcept {
     if (module.gtag == Gtag::LED) {
         return leds;
+    }
+    if (module.gtag == Gtag::RESOLVER) {
+        return module.instances * RESOLVER_CHANNELS;
     }
     const bool isSingle = module.gtag == Gtag::WATCHDOG || module.gtag == Gtag::DPLL;
     return isSingle ? 1 : module.instances;

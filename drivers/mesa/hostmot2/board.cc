@@ -33,6 +33,9 @@ Result<std::unique_ptr<Board>> Board::make(RegisterBus &bus, const Idrom &idrom,
         board->modules_.push_back(make_raw());
     }
     for (const auto &module : board->modules_) {
+        if (auto prepared = module->prepare(bus); !prepared) {
+            return std::unexpected(prepared.error());
+        }
         module->plan(board->registers_);
     }
     if (auto fixed = board->registers_.fix(bus); !fixed) {
@@ -74,12 +77,16 @@ void Board::read(long period_ns) noexcept {
     isFresh_ = result == CycleRead::DONE;
     isStopped_ = result == CycleRead::STOPPED;
     isReadOnce_ = isReadOnce_ || isFresh_;
+    isRewriteDue_ = bus_.take_rewrite() || isRewriteDue_;
+    isWriteDoubtful_ = isWriteDoubtful_ || isRewriteDue_ || !isFresh_;
     if (!isFresh_) {
         ++failed_reads_;
         return;
     }
     Cycle cycle = cycle_of(period_ns);
     cycle.isFresh = true;
+    cycle.hasLostWrite = isWriteDoubtful_;
+    isWriteDoubtful_ = false;
     for (const auto &module : modules_) {
         module->read(registers_, cycle);
     }

@@ -14,14 +14,20 @@ namespace mw::mesa {
 /// What all modules know of a cycle.
 struct Cycle {
     double period_s = 0.001;
-    bool isFresh = false;    ///< the inputs are of this cycle
-    bool isWriting = false;  ///< in write(): what is requested is sent
+    bool isFresh = false;       ///< the inputs are of this cycle
+    bool hasLostWrite = false;  ///< in read(): a write since the last read() may not have reached the board
+    bool isWriting = false;     ///< in write(): what is requested is sent
 };
 
 class Module {
   public:
     virtual ~Module() = default;
 
+    /// Reads what it must know before it makes its pins. [while loading]
+    virtual Result<> prepare(RegisterBus &bus) {
+        (void)bus;
+        return {};
+    }
     /// Names the registers that it reads and writes. [while loading]
     virtual void plan(Registers &registers) = 0;
     /// Makes its pins. [while loading]

@@ -51,6 +51,7 @@ bool Registers::isDue(const Write &write, bool areAll) noexcept {
     case Send::ALWAYS: return true;
     case Send::CHANGED: return areAll || !write.isWritten || write.value != write.written;
     case Send::AFTER_FAULT: return areAll;
+    case Send::REPEATED: return write.isRequested || (areAll && write.hasBeenRequested);
     case Send::REQUESTED: break;
     }
     return write.isRequested;

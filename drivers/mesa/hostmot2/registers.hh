@@ -48,6 +48,7 @@ enum class Send : std::uint8_t {
     CHANGED,      ///< when its value changed, and after a failure
     AFTER_FAULT,  ///< when all registers are written
     REQUESTED,    ///< after request() only
+    REPEATED,     ///< after request(), and from then on when all registers are written
 };
 
 struct ReadHandle {
@@ -81,6 +82,11 @@ class Registers {
         Write &write = writes_[static_cast<std::size_t>(handle.index)];
         write.value = value;
         write.isRequested = true;
+        write.hasBeenRequested = true;
+    }
+    /// A register with Send::REPEATED is not written any more until the next request(). [servo thread]
+    void forget(WriteHandle handle) noexcept {
+        writes_[static_cast<std::size_t>(handle.index)].hasBeenRequested = false;
     }
     /// Writes to another register from now on. [servo thread]
     void set_address(WriteHandle handle, std::uint16_t address) noexcept {
@@ -105,7 +111,7 @@ class Registers {
         WriteOrder order = WriteOrder::CONFIGURATION;
         Send send = Send::CHANGED;
         std::uint32_t value = 0, written = 0;
-        bool isWritten = false, isRequested = false;
+        bool isWritten = false, isRequested = false, hasBeenRequested = false;
     };
     static bool isDue(const Write &write, bool areAll) noexcept;
 

@@ -13,6 +13,11 @@ std::unique_ptr<Module> make_leds(const ModuleRequest &request);
 std::unique_ptr<Module> make_ssrs(const ModuleRequest &request);
 std::unique_ptr<Module> make_outms(const ModuleRequest &request);
 std::unique_ptr<Module> make_dpll(const ModuleRequest &request);
+std::unique_ptr<Module> make_inmuxs(const ModuleRequest &request);
+std::unique_ptr<Module> make_inms(const ModuleRequest &request);
+std::unique_ptr<Module> make_three_phase_pwms(const ModuleRequest &request);
+std::unique_ptr<Module> make_rc_pwms(const ModuleRequest &request);
+std::unique_ptr<Module> make_resolvers(const ModuleRequest &request);
 
 /// Access of a user to any register (enable_raw in config=).
 std::unique_ptr<Module> make_raw();

@@ -31,12 +31,32 @@ struct OutputName {
     const char *module_name, *name;
 };
 constexpr OutputName OUTPUT_NAMES[] = {
-    {Gtag::STEPGEN, 0x81, "stepgen", "step"},   {Gtag::STEPGEN, 0x82, "stepgen", "direction"},
-    {Gtag::STEPGEN, 0x83, "stepgen", "table2"}, {Gtag::STEPGEN, 0x84, "stepgen", "table3"},
-    {Gtag::STEPGEN, 0x85, "stepgen", "table4"}, {Gtag::STEPGEN, 0x86, "stepgen", "table5"},
-    {Gtag::STEPGEN, 0x87, "stepgen", "table6"}, {Gtag::STEPGEN, 0x88, "stepgen", "table7"},
-    {Gtag::PWM, 0x81, "pwmgen", "out0"},        {Gtag::PWM, 0x82, "pwmgen", "out1"},
+    {Gtag::STEPGEN, 0x81, "stepgen", "step"},
+    {Gtag::STEPGEN, 0x82, "stepgen", "direction"},
+    {Gtag::STEPGEN, 0x83, "stepgen", "table2"},
+    {Gtag::STEPGEN, 0x84, "stepgen", "table3"},
+    {Gtag::STEPGEN, 0x85, "stepgen", "table4"},
+    {Gtag::STEPGEN, 0x86, "stepgen", "table5"},
+    {Gtag::STEPGEN, 0x87, "stepgen", "table6"},
+    {Gtag::STEPGEN, 0x88, "stepgen", "table7"},
+    {Gtag::PWM, 0x81, "pwmgen", "out0"},
+    {Gtag::PWM, 0x82, "pwmgen", "out1"},
     {Gtag::PWM, 0x83, "pwmgen", "enable"},
+    {Gtag::THREE_PHASE_PWM, 0x81, "3pwmgen", "phase-A"},
+    {Gtag::THREE_PHASE_PWM, 0x82, "3pwmgen", "phase-B"},
+    {Gtag::THREE_PHASE_PWM, 0x83, "3pwmgen", "phase-C"},
+    {Gtag::THREE_PHASE_PWM, 0x84, "3pwmgen", "phase-A-inverted"},
+    {Gtag::THREE_PHASE_PWM, 0x85, "3pwmgen", "phase-B-inverted"},
+    {Gtag::THREE_PHASE_PWM, 0x86, "3pwmgen", "phase-C-inverted"},
+    {Gtag::THREE_PHASE_PWM, 0x87, "3pwmgen", "enable"},
+    {Gtag::RESOLVER, 0x81, "resolver", "nc"},
+    {Gtag::RESOLVER, 0x82, "resolver", "refpdm-plus"},
+    {Gtag::RESOLVER, 0x83, "resolver", "refpdm-minus"},
+    {Gtag::RESOLVER, 0x84, "resolver", "amux0"},
+    {Gtag::RESOLVER, 0x85, "resolver", "amux1"},
+    {Gtag::RESOLVER, 0x86, "resolver", "amux2"},
+    {Gtag::RESOLVER, 0x87, "resolver", "spics"},
+    {Gtag::RESOLVER, 0x88, "resolver", "spiclk"},
 };
 
 }  // namespace

@@ -13,9 +13,19 @@ struct Factory {
 };
 
 constexpr Factory FACTORIES[] = {
-    {Gtag::STEPGEN, make_stepgens}, {Gtag::ENCODER, make_encoders}, {Gtag::MUXED_ENCODER, make_encoders},
-    {Gtag::PWM, make_pwmgens},      {Gtag::LED, make_leds},         {Gtag::SSR, make_ssrs},
-    {Gtag::DPLL, make_dpll},        {Gtag::OUT_M, make_outms},
+    {Gtag::STEPGEN, make_stepgens},
+    {Gtag::ENCODER, make_encoders},
+    {Gtag::MUXED_ENCODER, make_encoders},
+    {Gtag::PWM, make_pwmgens},
+    {Gtag::LED, make_leds},
+    {Gtag::SSR, make_ssrs},
+    {Gtag::DPLL, make_dpll},
+    {Gtag::OUT_M, make_outms},
+    {Gtag::IN_MUX, make_inmuxs},
+    {Gtag::IN_M, make_inms},
+    {Gtag::THREE_PHASE_PWM, make_three_phase_pwms},
+    {Gtag::RC_PWM, make_rc_pwms},
+    {Gtag::RESOLVER, make_resolvers},
 };
 
 }  // namespace

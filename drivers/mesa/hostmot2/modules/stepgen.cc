@@ -11,6 +11,11 @@ namespace {
 
 constexpr double UNITS_PER_STEP = 65536.0, RATE_UNITS = 4294967296.0;
 
+/// Bits of the mode register.
+constexpr std::uint32_t TABLE_MODE = 3, SWAP = 1U << 2U, LATCH_ON_INDEX = 1U << 4U, INDEX_POLARITY = 1U << 5U,
+                        LATCH_ON_PROBE = 1U << 6U, PROBE_POLARITY = 1U << 7U, SETTINGS = 0xF7,
+                        LATCHED = 0xFFFFFF00;
+
 bool isFinite(double value) noexcept {
     return value - value == 0.0;
 }
@@ -146,9 +151,69 @@ std::int32_t stepgen_rate(StepgenState &state, StepgenPins &pins, double period_
     return pins.step_rate;
 }
 
-std::uint32_t stepgen_mode(const StepgenPins &pins) noexcept {
-    constexpr std::uint32_t SWAP = 1U << 2U;
-    return std::min(pins.step_type, 3U) | (pins.swap_step_dir ? SWAP : 0U);
+std::uint32_t stepgen_mode(StepgenPins &pins) noexcept {
+    pins.step_type = std::min(pins.step_type, MAX_TABLE_STEPS);
+    return std::min(pins.step_type, TABLE_MODE) | (pins.swap_step_dir ? SWAP : 0U);
+}
+
+StepTable step_table(const StepgenPins &pins) noexcept {
+    constexpr unsigned STEPS_PER_WORD = 4, BITS_PER_STEP = 8;
+    const std::uint32_t words[] = {pins.table_data_0, pins.table_data_1, pins.table_data_2,
+                                   pins.table_data_3};
+    StepTable table;
+    table.length = pins.step_type < TABLE_MODE ? 0U : std::min(pins.step_type, MAX_TABLE_STEPS);
+    for (unsigned i = 0; i < table.length; ++i) {
+        table.steps[i] =
+            static_cast<std::uint8_t>(words[i / STEPS_PER_WORD] >> (BITS_PER_STEP * (i % STEPS_PER_WORD)));
+    }
+    return table;
+}
+
+void stepgen_take_latch(StepgenLatch &latch, StepgenState &state, StepgenPins &pins,
+                        const StepgenModeReading &reading) noexcept {
+    latch.mode = reading.value;
+    const std::uint32_t arm = pins.index_enable ? LATCH_ON_INDEX : LATCH_ON_PROBE;
+    const bool isArmed = (reading.value & arm) != 0;
+    if (!latch.isSent || !(pins.index_enable || pins.probe_enable)) {
+        return;
+    }
+    // When it is not known whether the arm was received, an event shows by another position.
+    latch.isConfirmed =
+        latch.isConfirmed || isArmed || !reading.hasLostWrite || (reading.value & LATCHED) != latch.before;
+    if (isArmed || !latch.isConfirmed) {
+        return;
+    }
+    const auto change = static_cast<std::int32_t>((reading.value & LATCHED) - state.accumulator);
+    const std::int64_t latched = state.total + change;
+    if (pins.index_enable) {
+        state.zero = latched;
+        const std::int64_t position = state.total - state.zero;
+        pins.counts = static_cast<std::int32_t>(position >> 16);
+        pins.position_fb = static_cast<double>(position) / UNITS_PER_STEP / usable_scale(pins.position_scale);
+        state.hasPreviousCmd = false;
+    }
+    pins.position_latch =
+        static_cast<double>(latched - state.zero) / UNITS_PER_STEP / usable_scale(pins.position_scale);
+    pins.index_enable = false;
+    pins.probe_enable = false;
+    latch.isSent = latch.isConfirmed = false;
+}
+
+StepgenModeWrite stepgen_latch_mode(StepgenLatch &latch, StepgenPins &pins) noexcept {
+    const std::uint32_t settings = stepgen_mode(pins) | (pins.index_invert ? INDEX_POLARITY : 0U) |
+                                   (pins.probe_invert ? PROBE_POLARITY : 0U);
+    const std::uint32_t arm = pins.index_enable ? LATCH_ON_INDEX : pins.probe_enable ? LATCH_ON_PROBE : 0U;
+    const std::uint32_t has = latch.mode & SETTINGS;
+    if (arm != 0 && latch.isConfirmed && (has & arm) != 0) {
+        return {};  // a write now could arm again after an event that is not read yet
+    }
+    if (arm == 0) {
+        latch.isSent = latch.isConfirmed = false;
+    } else if (!latch.isSent) {
+        latch.before = latch.mode & LATCHED;
+        latch.isSent = true;
+    }
+    return {has != (settings | arm), settings | arm};
 }
 
 }  // namespace mw::mesa

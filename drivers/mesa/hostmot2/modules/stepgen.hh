@@ -3,13 +3,14 @@
 // formulas: shared/hardware.md, part B4.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "drivers/mesa/hostmot2/pins.hh"
 
 namespace mw::mesa {
 
-constexpr std::uint32_t MAX_STEP_CLOCKS = 0x3FFF;
+constexpr std::uint32_t MAX_STEP_CLOCKS = 0x3FFF, MAX_TABLE_STEPS = 16;
 constexpr std::uint32_t LONGEST_STEP_TIME = 0xFFFFFFFF;  ///< [ns], limited to what the board can count
 
 /// Values of the pins and parameters of one step generator.
@@ -24,6 +25,9 @@ struct StepgenPins {
     std::uint32_t steplen = 0, stepspace = 0, dirsetup = 0, dirhold = 0;  ///< [ns]
     std::uint32_t step_type = 0;
     bool swap_step_dir = false;
+    bool index_enable = false, index_invert = false, probe_enable = false, probe_invert = false;
+    double position_latch = 0.0;  ///< [position units]
+    std::uint32_t table_data_0 = 0, table_data_1 = 0, table_data_2 = 0, table_data_3 = 0;
 };
 
 constexpr PinRow<StepgenPins> STEPGEN_PINS[] = {
@@ -55,6 +59,22 @@ constexpr PinRow<StepgenPins> STEPGEN_SWAP_PINS[] = {
     {"swap_step_dir", Access::RW, &StepgenPins::swap_step_dir},
 };
 
+/// Of firmware that latches the position at an index or probe edge.
+constexpr PinRow<StepgenPins> STEPGEN_LATCH_PINS[] = {
+    {"index-enable", Access::IO, &StepgenPins::index_enable},
+    {"index-invert", Access::IN, &StepgenPins::index_invert},
+    {"probe-enable", Access::IO, &StepgenPins::probe_enable},
+    {"probe-invert", Access::IN, &StepgenPins::probe_invert},
+    {"position-latch", Access::OUT, &StepgenPins::position_latch},
+};
+/// Of firmware with outputs for tables of steps. Each word holds four steps, the first in the low byte.
+constexpr PinRow<StepgenPins> STEPGEN_TABLE_PINS[] = {
+    {"table-data-0", Access::RW, &StepgenPins::table_data_0},
+    {"table-data-1", Access::RW, &StepgenPins::table_data_1},
+    {"table-data-2", Access::RW, &StepgenPins::table_data_2},
+    {"table-data-3", Access::RW, &StepgenPins::table_data_3},
+};
+
 /// What the driver knows of a step generator between cycles.
 struct StepgenState {
     std::int64_t total = 0;  ///< steps of the board since the first read [1/65536 step]
@@ -82,7 +102,41 @@ void stepgen_read(StepgenState &state, StepgenPins &pins, std::uint32_t accumula
 /// `isFresh`: stepgen_read() was called in this cycle; else the position is estimated from the rate.
 std::int32_t stepgen_rate(StepgenState &state, StepgenPins &pins, double period_s, bool isFresh,
                           std::uint32_t clock_hz) noexcept;
-/// The mode register.
-std::uint32_t stepgen_mode(const StepgenPins &pins) noexcept;
+/// The mode register without the latches. A step_type from 3 on is a table of so many steps, at most 16.
+std::uint32_t stepgen_mode(StepgenPins &pins) noexcept;
+
+/// The table of steps, as the outputs of each.
+struct StepTable {
+    std::array<std::uint8_t, MAX_TABLE_STEPS> steps{};
+    std::uint32_t length = 0;  ///< 0: the step_type is not a table
+
+    bool operator==(const StepTable &) const = default;
+};
+StepTable step_table(const StepgenPins &pins) noexcept;
+
+/// The latch of a step generator. The mode register shows whether it is armed, and the latched position. As
+/// with encoders it is written only when it is known what the board has: a lost packet never arms twice.
+struct StepgenLatch {
+    bool isSent = false;       ///< an arm was written for the present request
+    bool isConfirmed = false;  ///< the board has received it
+    std::uint32_t before = 0;  ///< latched position when the arm was written
+    std::uint32_t mode = 0;    ///< as last read
+};
+/// The mode register in one cycle.
+struct StepgenModeReading {
+    std::uint32_t value = 0;
+    bool hasLostWrite = false;  ///< the last write may not have reached the board
+};
+/// Takes the mode register, after stepgen_read(): a latch that happened clears index-enable or probe-enable.
+/// An index makes the latched position the new zero.
+void stepgen_take_latch(StepgenLatch &latch, StepgenState &state, StepgenPins &pins,
+                        const StepgenModeReading &reading) noexcept;
+/// Whether the mode register has to be written, and with what. Only in a cycle with a reading; when the
+/// result is due it must be written.
+struct StepgenModeWrite {
+    bool isDue = false;
+    std::uint32_t value = 0;
+};
+StepgenModeWrite stepgen_latch_mode(StepgenLatch &latch, StepgenPins &pins) noexcept;
 
 }  // namespace mw::mesa

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include <algorithm>
+#include <array>
+
 #include <fmt/format.h>
 
 #include "drivers/mesa/hostmot2/modules/factories.hh"
@@ -23,7 +26,16 @@ enum StepgenRegister {
     TIMER,
 };
 constexpr std::uint32_t FULL_RATE = 0xFFFFFFFF;
-constexpr std::uint8_t SWAP_VERSION = 0x40, FIRST_TIMER_VERSION = 2;
+constexpr std::uint8_t SWAP_VERSION = 0x40, LATCH_VERSION = 0x80, FIRST_TIMER_VERSION = 2,
+                       VERSION_MASK = 0x3F;
+constexpr std::uint8_t FIRST_TABLE_PIN = 0x83, LAST_TABLE_PIN = 0x88;
+
+bool hasTablePins(const Idrom &idrom) {
+    return std::ranges::any_of(idrom.pins, [](const PinDescriptor &pin) {
+        return pin.secondary == Gtag::STEPGEN && pin.secondary_pin >= FIRST_TABLE_PIN &&
+               pin.secondary_pin <= LAST_TABLE_PIN;
+    });
+}
 
 struct TimerPin {
     std::int32_t timer_number = -1;
@@ -34,7 +46,10 @@ class Stepgens final : public Module {
   public:
     explicit Stepgens(const ModuleRequest &request)
         : module_(request.module), instances_(static_cast<std::size_t>(request.module.instances)),
-          hasTimer_(hasDpll(request.assignment) && request.module.descriptor.version >= FIRST_TIMER_VERSION) {
+          hasTimer_(hasDpll(request.assignment) &&
+                    (request.module.descriptor.version & VERSION_MASK) >= FIRST_TIMER_VERSION),
+          hasLatch_((request.module.descriptor.version & LATCH_VERSION) != 0),
+          hasTables_(hasTablePins(request.idrom)) {
         const std::uint32_t longest = longest_step_time(module_.clock_hz);
         for (Instance &one : instances_) {
             one.pins.steplen = one.pins.stepspace = longest;
@@ -46,6 +61,10 @@ class Stepgens final : public Module {
         accumulators_ =
             registers.read({module_.address(ACCUMULATOR), static_cast<std::uint16_t>(instances_.size())},
                            ReadOrder::STEP_ACCUMULATOR);
+        if (hasLatch_) {
+            modes_ = registers.read({module_.address(MODE), static_cast<std::uint16_t>(instances_.size())},
+                                    ReadOrder::STEP_ACCUMULATOR);
+        }
         registers.write(module_.address(MASTER_RATE), WriteOrder::CONFIGURATION, Send::AFTER_FAULT,
                         FULL_RATE);
         if (hasTimer_) {
@@ -57,7 +76,15 @@ class Stepgens final : public Module {
                 return registers.write(module_.address(reg, number), WriteOrder::CONFIGURATION,
                                        Send::CHANGED);
             };
-            one.mode = add(MODE);
+            one.mode = registers.write(module_.address(MODE, number), WriteOrder::CONFIGURATION,
+                                       hasLatch_ ? Send::REQUESTED : Send::CHANGED);
+            if (hasTables_) {
+                one.length = add(TABLE_LENGTH);
+                for (WriteHandle &step : one.steps) {
+                    step = registers.write(module_.address(TABLE_DATA, number), WriteOrder::CONFIGURATION,
+                                           Send::REPEATED);
+                }
+            }
             one.setup = add(DIRECTION_SETUP);
             one.hold = add(DIRECTION_HOLD);
             one.width = add(PULSE_WIDTH);
@@ -74,16 +101,27 @@ class Stepgens final : public Module {
             if ((module_.descriptor.version & SWAP_VERSION) != 0) {
                 binding_.bind(space, name, STEPGEN_SWAP_PINS, one.pins);
             }
+            if (hasLatch_) {
+                binding_.bind(space, name, STEPGEN_LATCH_PINS, one.pins);
+            }
+            if (hasTables_) {
+                binding_.bind(space, name, STEPGEN_TABLE_PINS, one.pins);
+            }
         }
         if (hasTimer_) {
             binding_.bind(space, "stepgen", TIMER_PINS, timer_pins_);
         }
     }
-    void read(const Registers &registers, const Cycle &) noexcept override {
+    void read(const Registers &registers, const Cycle &cycle) noexcept override {
         binding_.load();
         int number = 0;
         for (Instance &one : instances_) {
-            stepgen_read(one.state, one.pins, registers.value(accumulators_, number++));
+            stepgen_read(one.state, one.pins, registers.value(accumulators_, number));
+            if (hasLatch_) {
+                stepgen_take_latch(one.latch, one.state, one.pins,
+                                   {registers.value(modes_, number), cycle.hasLostWrite});
+            }
+            ++number;
         }
         binding_.store();
     }
@@ -93,7 +131,8 @@ class Stepgens final : public Module {
         for (Instance &one : instances_) {
             const std::int32_t rate = stepgen_rate(one.state, one.pins, cycle.period_s, cycle.isFresh, clock);
             registers.set(one.rate, static_cast<std::uint32_t>(rate));
-            registers.set(one.mode, stepgen_mode(one.pins));
+            write_mode(registers, cycle, one);
+            write_table(registers, cycle, one);
             registers.set(one.setup, step_clocks(one.pins.dirsetup, clock));
             registers.set(one.hold, step_clocks(one.pins.dirhold, clock));
             registers.set(one.width, step_clocks(one.pins.steplen, clock));
@@ -109,15 +148,44 @@ class Stepgens final : public Module {
     struct Instance {
         StepgenPins pins;
         StepgenState state;
-        WriteHandle rate, mode, setup, hold, width, space;
+        StepgenLatch latch;
+        StepTable table;  ///< as it was sent
+        WriteHandle rate, mode, setup, hold, width, space, length;
+        std::array<WriteHandle, MAX_TABLE_STEPS> steps;
     };
+
+    void write_mode(Registers &registers, const Cycle &cycle, Instance &one) const noexcept {
+        if (!hasLatch_) {
+            registers.set(one.mode, stepgen_mode(one.pins));
+        } else if (cycle.isFresh && cycle.isWriting) {
+            if (const StepgenModeWrite mode = stepgen_latch_mode(one.latch, one.pins); mode.isDue) {
+                registers.request(one.mode, mode.value);
+            }
+        }
+    }
+    /// The board takes the steps of a table from the last to the first, always all of them.
+    void write_table(Registers &registers, const Cycle &cycle, Instance &one) const noexcept {
+        const StepTable table = step_table(one.pins);
+        if (!hasTables_ || !cycle.isWriting || table == one.table) {
+            return;
+        }
+        one.table = table;
+        registers.set(one.length, table.length == 0 ? 0U : table.length - 1);
+        for (const WriteHandle step : one.steps) {
+            registers.forget(step);
+        }
+        for (std::size_t i = 0; i < table.length; ++i) {
+            registers.request(one.steps[one.steps.size() - 1 - i], table.steps[i]);
+        }
+    }
+
     UsedModule module_;
     std::vector<Instance> instances_;
     TimerPin timer_pins_;
     PinBinding binding_;
-    ReadHandle accumulators_;
+    ReadHandle accumulators_, modes_;
     WriteHandle timer_;
-    bool hasTimer_;
+    bool hasTimer_, hasLatch_, hasTables_;
 };
 
 }  // namespace

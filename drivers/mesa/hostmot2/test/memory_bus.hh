@@ -26,6 +26,7 @@ class MemoryBus final : public RegisterBus {
     CycleRead next_read = CycleRead::DONE;
     bool isNextWriteLost = false;
     bool isNextWriteRefused = false;  ///< it cannot be sent
+    bool isReadRefused = false;       ///< while loading
     bool isRewriteWanted = false;
     int reads = 0;
 
@@ -53,6 +54,9 @@ class MemoryBus final : public RegisterBus {
     int port_width() const override { return width; }
     std::vector<std::string> connectors() const override { return connector_names; }
     Result<std::vector<std::uint32_t>> read_now(RegisterRange range) override {
+        if (isReadRefused) {
+            return fail("The board does not answer.");
+        }
         std::vector<std::uint32_t> values;
         for (int i = 0; i < range.count; ++i) {
             values.push_back(registers[static_cast<std::uint16_t>(range.address + 4 * i)]);
