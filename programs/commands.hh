@@ -19,6 +19,8 @@ int command_nml(const std::vector<std::string> &words);
 int command_rsh(const std::vector<std::string> &words);
 int command_schedule(const std::vector<std::string> &words);
 int command_check(const std::vector<std::string> &words);
+/// Mesa boards on the network.
+int command_boards(const std::vector<std::string> &words);
 int command_doctor(const std::vector<std::string> &words);
 /// The words of `linuxcnc_check_ini`.
 int command_check_ini(const std::vector<std::string> &words);

@@ -46,12 +46,13 @@ std::string quoted(const std::string &message) {
     return end == std::string::npos ? std::string() : message.substr(first + 1, end - first - 1);
 }
 
-/// Leaves out that pins and functions of a module are missing which is missing itself.
+/// Leaves out that pins and functions are missing of a module that is missing itself or was not loaded.
 class Consequences {
   public:
     bool isOne(const diagnostics::Diagnostic &finding) {
         const std::string name = quoted(finding.what.message);
-        if (finding.what.message.starts_with("there is no module ")) {
+        if (finding.what.message.starts_with("there is no module ") ||
+            finding.what.message.starts_with("module '")) {
             std::string module = name.ends_with(".so") ? name.substr(0, name.size() - 3) : name;
             module = module.starts_with("hal_") ? module.substr(4) : module;
             // hm2_pci makes hm2_5i25.0.read, classicladder_rt makes classicladder.0.in-00

@@ -31,6 +31,7 @@ constexpr const char *USAGE =
     "  doctor MACHINE.ini                   what is wrong with a machine's files and this computer, before "
     "the "
     "start\n"
+    "  boards [ADDRESS ...]                 Mesa boards on the network, their pins and firmware\n"
     "  select                               choose a configuration and start it\n"
     "  setup FOLDER                         write the configuration of a new machine, and try it\n"
     "  check PROGRAM.ngc --ini MACHINE.ini  a program against a machine's limits, and the time it takes\n"
@@ -77,6 +78,9 @@ int main(int argc, char **argv) {
     }
     if (words[0] == "doctor") {
         return mw::programs::command_doctor(rest);
+    }
+    if (words[0] == "boards") {
+        return mw::programs::command_boards(rest);
     }
     if (words[0] == "select") {
         return mw::programs::command_select(rest);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <vector>
 
 #include <fmt/format.h>
@@ -79,10 +80,23 @@ void read_board(TableLine &line, Model &model) {
     model.idrom.pins.assign(std::min<std::uint32_t>(header.io_width, MAX_PINS), {});
 }
 
-const ModuleName *find_module(TableLine &line, std::string_view key, const std::string &name) {
+/// A module without a name in the table is gtag-N.
+constexpr std::string_view GTAG = "gtag-";
+
+std::string name_of(Gtag gtag) {
+    const auto *one = std::ranges::find(MODULES, gtag, &ModuleName::gtag);
+    return one != std::end(MODULES) ? std::string(one->name)
+                                    : fmt::format("{}{}", GTAG, static_cast<int>(gtag));
+}
+
+std::optional<Gtag> find_module(TableLine &line, std::string_view key, const std::string &name) {
     const auto *one = std::ranges::find(MODULES, name, &ModuleName::name);
     if (one != std::end(MODULES)) {
-        return one;
+        return one->gtag;
+    }
+    const auto number = name.starts_with(GTAG) ? parse_uint(name.substr(GTAG.size())) : std::nullopt;
+    if (number.has_value() && *number > 0 && *number <= 255) {
+        return static_cast<Gtag>(*number);
     }
     std::vector<std::string> names;
     for (const ModuleName &module : MODULES) {
@@ -91,22 +105,23 @@ const ModuleName *find_module(TableLine &line, std::string_view key, const std::
     const std::string near = nearest_name(name, names);
     line.reject(key, fmt::format("Unknown module '{}'.{}", name,
                                  near.empty() ? "" : fmt::format(" Did you mean '{}'?", near)));
-    return nullptr;
+    return {};
 }
 
 void read_module(TableLine &line, Model &model) {
-    const ModuleName *name = find_module(line, "", line.name());
+    const auto gtag = find_module(line, "", line.name());
     const auto byte = [&](std::string_view key, std::int64_t fallback) {
         return static_cast<std::uint8_t>(line.whole(key, 0, 255, fallback));
     };
     ModuleDescriptor module;
-    module.gtag = name == nullptr ? Gtag::NONE : name->gtag;
+    module.gtag = gtag.value_or(Gtag::NONE);
     module.base_address = static_cast<std::uint16_t>(line.whole("base", 0, 0xFFFF));
     module.registers = static_cast<std::uint8_t>(line.whole("registers", 1, 255));
     module.version = byte("version", 0);
     module.instances = byte("instances", 1);
     module.fast_clock = line.choice("clock", {"low", "high"}, 0) == 1;
     module.instance_stride = static_cast<std::uint8_t>(line.whole("instance_stride", 0, 1, 0));
+    module.register_stride = static_cast<std::uint8_t>(line.whole("register_stride", 0, 1, 0));
     module.per_instance = static_cast<std::uint32_t>(line.whole("per_instance", 0, MAX_U32, 0));
     if (model.idrom.modules.size() >= static_cast<std::size_t>(MAX_MODULES)) {
         line.reject("", fmt::format("A board has at most {} modules.", MAX_MODULES));
@@ -121,11 +136,11 @@ void read_pin(TableLine &line, Model &model) {
         line.reject("", fmt::format("'{}' is not a pin from 0 to {}.", line.name(), pins - 1));
     }
     const std::string module = line.text("module");
-    const ModuleName *name = find_module(line, "module", module);
+    const auto gtag = find_module(line, "module", module);
     const auto unit = static_cast<std::uint8_t>(line.whole("unit", 0, 255, 0));
     const auto secondary = static_cast<std::uint8_t>(line.whole("function", 1, 255));
-    if (name != nullptr && std::ranges::find(model.idrom.modules, name->gtag, &ModuleDescriptor::gtag) ==
-                               model.idrom.modules.end()) {
+    if (gtag.has_value() &&
+        std::ranges::find(model.idrom.modules, *gtag, &ModuleDescriptor::gtag) == model.idrom.modules.end()) {
         line.reject("module", fmt::format("The board has no module '{}'.", module));
     }
     if (line.finish().has_value()) {
@@ -133,7 +148,7 @@ void read_pin(TableLine &line, Model &model) {
         if (pin.secondary != Gtag::NONE) {
             line.reject("", fmt::format("Pin {} is declared twice.", *number));
         }
-        pin = {.secondary_pin = secondary, .secondary = name->gtag, .unit = unit};
+        pin = {.secondary_pin = secondary, .secondary = *gtag, .unit = unit};
     }
 }
 
@@ -196,6 +211,48 @@ Result<Model> parse_model(std::string_view text, const std::string &file) {
         return std::unexpected(checked.error());
     }
     return model;
+}
+
+Result<std::string> write_model(const Model &model) {
+    const IdromHeader &header = model.idrom.header;
+    std::string text =
+        fmt::format("# The firmware of a board, for virtual boards and hm2-board --model FILE.\n"
+                    "board card={} name={} ports={} port_width={} clock_low_hz={} clock_high_hz={} "
+                    "idrom_type={} fpga_size={} "
+                    "fpga_pins={} instance_stride1={:#x} firmware_version={} flash_id={:#x}\n",
+                    model.card_name, header.board_name, header.io_ports, header.port_width,
+                    header.clock_low_hz, header.clock_high_hz, header.type, header.fpga_size,
+                    header.fpga_pins, header.instance_strides[1], model.firmware_version, model.flash_id);
+    for (const ModuleDescriptor &module : model.idrom.modules) {
+        text += fmt::format(
+            "module {} version={} instances={} base={:#x} registers={} clock={} register_stride={} "
+            "instance_stride={} per_instance={:#x}\n",
+            name_of(module.gtag), module.version, module.instances, module.base_address, module.registers,
+            module.fast_clock ? "high" : "low", module.register_stride, module.instance_stride,
+            module.per_instance);
+    }
+    int number = 0;
+    for (const PinDescriptor &pin : model.idrom.pins) {
+        if (pin.secondary != Gtag::NONE) {
+            text += fmt::format("pin {} module={} unit={} function={:#x}\n", number, name_of(pin.secondary),
+                                pin.unit, pin.secondary_pin);
+        }
+        ++number;
+    }
+    const auto again = parse_model(text, "firmware");
+    if (!again) {
+        return fail(fmt::format("the firmware of the board {} cannot be written as a model: {}",
+                                model.card_name, again.error().str()));
+    }
+    Idrom idrom = model.idrom;
+    idrom.header.modules_offset = again->idrom.header.modules_offset;  // where the lists are does not matter
+    idrom.header.pins_offset = again->idrom.header.pins_offset;
+    if (again->idrom != idrom) {
+        return fail(
+            fmt::format("the firmware of the board {} has strides or pins that a model cannot describe",
+                        model.card_name));
+    }
+    return text;
 }
 
 Result<Model> load_model(const std::string &name) {

@@ -24,6 +24,10 @@ struct Model {
 /// The model of a text; `file` is its name in errors.
 Result<Model> parse_model(std::string_view text, const std::string &file);
 
+/// The text from which parse_model() makes `model`, such as that of a real board; an error when such a text
+/// cannot describe it.
+Result<std::string> write_model(const Model &model);
+
 /// A model that is part of the library.
 struct BuiltInModel {
     std::string_view name, text;

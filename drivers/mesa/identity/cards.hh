@@ -18,7 +18,7 @@ struct Card {
     std::uint8_t ports = 0;
     std::uint8_t port_width = 0;
     std::array<std::string_view, MAX_PORTS>
-        connectors{};  ///< one for each port; empty: the pins have own names
+        connectors{};  ///< one for each port, as on the board; empty: the pins have own names
 };
 
 /// All known cards with Ethernet, longer names before those that they begin with.

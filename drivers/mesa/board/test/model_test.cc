@@ -98,5 +98,25 @@ TEST(BoardModel, AModelThatADriverRejectsIsAnError) {
               "Cannot read './missing.txt': No such file or directory.");
 }
 
+TEST(Model, IsWrittenAsATextThatGivesItAgain) {
+    for (const BuiltInModel &built_in : built_in_models()) {
+        const auto model = parse_model(built_in.text, std::string(built_in.name));
+        ASSERT_TRUE(model.has_value()) << model.error().str();
+        const auto text = write_model(*model);
+        ASSERT_TRUE(text.has_value()) << text.error().str();
+        const auto again = parse_model(*text, "again");
+        ASSERT_TRUE(again.has_value()) << again.error().str();
+        EXPECT_EQ(*again, *model) << built_in.name;
+    }
+}
+
+TEST(Model, WritesModulesThatItDoesNotKnow) {
+    auto model = *load_model("7i92");
+    model.idrom.modules.back().gtag = static_cast<Gtag>(77);
+    const auto text = write_model(model);
+    ASSERT_TRUE(text.has_value()) << text.error().str();
+    EXPECT_NE(text->find("module gtag-77 "), std::string::npos) << *text;
+}
+
 }  // namespace
 }  // namespace mw::mesa::board
