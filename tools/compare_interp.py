@@ -88,7 +88,7 @@ def compare(folder, number, program):
                 names.append(name)
                 ref_status = our_status
     if 'G7X error' in error_of(ref_err) and 'profile of g7' in '\n'.join(our_err) and our_status:
-        names.append('a lathe cycle that is refused has made no move')
+        names.append('a lathe cycle that is rejected has made no move')
         ref_calls = ref_calls[:len(our_calls)]
     elif 'G7X error' in error_of(ref_err) and len(our_calls) > len(ref_calls):
         names.append('a lathe profile that only LinuxCNC refuses')

@@ -217,7 +217,7 @@ def set_number(self, **given):
                   'o<change> endsub [1]\n',
 }
 
-# A bar stands for a new line.
+# A bar means a new line.
 PROGRAMS = '''
 M400 P1
 N7 M400 P1 Q2 (a comment)

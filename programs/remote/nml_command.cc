@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// millwright nml: the channels of an NML configuration for a machine that is up.
+// millwright nml: the channels of an NML configuration for a machine that runs.
 #include <cstdio>
 
 #include <fmt/format.h>

@@ -78,7 +78,7 @@ class Run {
         return draw(recorder.monitor().points()) ? 0 : 1;
     }
 
-    /// On a machine that is up, and stays up.
+    /// On a machine that runs already and is not shut down.
     int run_there(RunningMachine &machine) {
         RunSession person(machine, loaded_.machine, sink_, operator_options());
         if (!isForClients() || !check(person.status().tool.in_spindle)) {

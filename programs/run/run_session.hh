@@ -48,7 +48,7 @@ class RunSession {
     Result<> run_program(int from_line, const std::function<void()> &each_cycle);
     /// Stops whatever moves; the machine stays on.
     void stop();
-    /// Stops whatever moves and switches the machine off.
+    /// Stops all motion and switches the machine off.
     void switch_off();
 
     /// As of the last cycle.

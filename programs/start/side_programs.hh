@@ -18,7 +18,7 @@ class SidePrograms {
     SidePrograms(std::vector<std::string> commands, std::string ini, std::int64_t start_ns)
         : commands_(std::move(commands)), ini_(std::move(ini)), start_ns_(start_ns) {}
 
-    /// Starts them when their time has come. One that cannot be started is told, the others are.
+    /// Starts them when their time has come. One that cannot be started is reported; the others are started.
     void step(std::int64_t now_ns, diagnostics::Sink &sink);
     void ask_to_end();
     bool haveEnded();

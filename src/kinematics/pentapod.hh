@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // A pentapod (Metrom): five struts hold an effector by rings that swivel about its axis, so that it has a
-// place and a direction, X Y Z A B, and no turn of its own. Joints 0 to 4 are the lengths of the struts. The
-// axis of the effector points along Ry(B) Rx(A) z. The inverse is the distance of each base joint from its
-// ring (Merlet, Parallel Robots, 3.1, with the ring's nearest point as the joint); the forward side iterates
-// from the last pose (Newton, Merlet 4.4).
+// place and a direction, X Y Z A B, and no rotation about it. Joints 0 to 4 are the lengths of the struts.
+// The axis of the effector points along Ry(B) Rx(A) z. The inverse is the distance of each base joint from
+// its ring (Merlet, Parallel Robots, 3.1, with the ring's nearest point as the joint); the forward side
+// iterates from the last pose (Newton, Merlet 4.4).
 #pragma once
 
 #include "kinematics/frame.hh"

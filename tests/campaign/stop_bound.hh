@@ -15,7 +15,7 @@ struct StoppingGroup {
 };
 
 /// Seconds from the third sample on, by the speed that it has there. The groups have as many samples each.
-/// With `isOver` false the path ends before whoever brakes so stands.
+/// With `isOver` false the path ends before such a stop.
 struct LeastStop {
     double seconds = 0;
     bool isOver = false;

@@ -117,7 +117,7 @@ def main():
         time.sleep(0.3)
         before = position()
         time.sleep(0.5)
-        expect(position() == before, 'what is held stands')
+        expect(position() == before, 'what is held is stopped')
         here = len(one.text)
         one.key('r')
         expect(one.wait_for('runs', here), 'r goes on', one)

@@ -95,7 +95,7 @@ def check_second(mill):
         status, output = mill.launch('status')
         expect(status == 1 and 'is up already' in output, 'a second start is refused', status, output)
         first.terminate()
-        expect(first.wait(STEP_S) == 0, 'the first one goes on, and ends by a signal', first.stdout.read())
+        expect(first.wait(STEP_S) == 0, 'the first one continues, and ends by a signal', first.stdout.read())
 
 
 def main(linuxcnc, halcmd, root):

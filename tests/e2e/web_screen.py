@@ -288,7 +288,7 @@ def end_while_jogging(bench, server, port, has_lease):
 
 
 def who_is_killed(bench, screen, server, port):
-    """The server; the machine goes on."""
+    """The server; the machine continues."""
     begin = screen.joint()['pos_cmd']
     screen.do('SetMode', mode='MANUAL')
     server.kill()

@@ -67,7 +67,7 @@ TEST_F(ClientDeath, TheCutGoesOnAndItsRightToOperateEnds) {
         ASSERT_TRUE(ended.has_value()) << "its right to operate stays";
         slowest_s = std::max(slowest_s, std::chrono::duration<double>(Clock::now() - killed).count());
         const auto goes_on = client->wait_until([&] { return line_now() > line + 3 || !isCutting(); }, 30);
-        ASSERT_TRUE(goes_on.has_value()) << "the cut stands still";
+        ASSERT_TRUE(goes_on.has_value()) << "the cut is stopped";
         // A short one may have come to its end meanwhile.
         EXPECT_TRUE(isCutting() || client->status().task.programs_ended > 0);
         EXPECT_EQ(client->status().task.state, messages::State::ON);

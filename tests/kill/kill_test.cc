@@ -140,7 +140,7 @@ double off_path(const geometry::Pose &p) {
     return std::min(dx, dy);
 }
 
-/// The last samples, for whoever reads of a failure.
+/// The last samples, for the report of a failure.
 std::string told(const std::vector<motion::TraceSample> &samples, std::int64_t kill_ns) {
     constexpr std::size_t MOST = 12;
     std::string text;

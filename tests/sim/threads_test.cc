@@ -162,7 +162,7 @@ TEST_P(ThreadModes, G33KeepsDepthAndLeadToItsEnd) {
                             GetParam() ? " jerk" : "", j.run_in, j.stop, shortest_way(v));
                 EXPECT_LE(j.run_in, allowed(GetParam(), shortest_way(v)));
                 EXPECT_LE(j.stop, allowed(GetParam(), shortest_way(v)));
-                EXPECT_NEAR(j.length, 25, 1e-9) << "depth is held to the programmed end";
+                EXPECT_NEAR(j.length, 25, 1e-9) << "depth is kept to the programmed end";
                 // The same thread whatever the speed, but for what the encoder shows a cycle late.
                 const double here = j.phase - std::floor(j.phase);
                 phase = std::isnan(phase) ? here : phase;
@@ -194,7 +194,7 @@ TEST_P(ThreadModes, G76KeepsDepthAndLeadToItsEnd) {
                         EXPECT_LE(j.stop, allowed(GetParam(), shortest_way(v)));
                         run_in = std::max(run_in, j.run_in);
                         stop = std::max(stop, j.stop);
-                        EXPECT_NEAR(j.length, 25, 1e-9) << "depth is held to the programmed end";
+                        EXPECT_NEAR(j.length, 25, 1e-9) << "depth is kept to the programmed end";
                         const double here = j.phase - std::floor(j.phase);
                         phase = std::isnan(phase) ? here : phase;
                         EXPECT_LE(std::abs(std::remainder(here - phase, 1.0)), TOLERANCE);
@@ -253,7 +253,7 @@ TEST_P(ThreadModes, G95KeepsItsLead) {
                 EXPECT_LE(j.stop, allowed(GetParam(), shortest_way(v)));
                 // In the cycle in which Z comes to a stand X may begin.
                 EXPECT_NEAR(j.length, 25, 0.5 * ACCELERATION * T * T)
-                    << "depth is held to the programmed end";
+                    << "depth is kept to the programmed end";
             }
         }
     }

@@ -54,7 +54,7 @@ class Operators {
     void forget_orders(int client);
     const messages::MachineStatus &status() const { return bench_.status(); }
     bool isRunning() const { return status().task.interp_state != messages::InterpState::IDLE; }
-    /// Whoever stands there: goes on after holds, confirms what is proposed.
+    /// The operator: resumes after holds, confirms what is proposed.
     void nurse();
     /// Until nothing runs, moves, waits or is to be written.
     void settle();

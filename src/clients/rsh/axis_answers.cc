@@ -12,7 +12,7 @@
 namespace mw::rsh {
 namespace {
 
-/// 2.9 tells so many axes and joints, whatever the machine has.
+/// 2.9 reports so many axes and joints on each machine.
 constexpr int OLD_COUNT = 6;
 
 /// "NAME a b c", or "NAME 1 b" of the one that is asked for.

@@ -38,7 +38,7 @@ Result<JogTarget> target_of(const Ordered &o) {
     return JogTarget{true, static_cast<int>(*joint)};
 }
 
-/// Clients are used to an answer of consent; the operator is told that nothing moves.
+/// Clients are used to an answer of consent; a message to the operator says that nothing moves.
 bool isNoTimeToJog(const Ordered &o) {
     const messages::TaskStatus &task = o.status().task;
     if (task.mode == messages::Mode::MANUAL || task.isAway) {

@@ -34,7 +34,7 @@ struct ChoiceGroup {
 
 struct FirstStepsSetup {
     std::string screen_folder;
-    std::string key;  ///< whoever asks shows it: the address that was printed has it
+    std::string key;  ///< each request has it: the address that was printed has it
     /// What may block; each is called by one thread at a time.
     std::function<std::vector<ChoiceGroup>()> find;
     std::function<std::string()> last;  ///< INI file of the last time; empty: none

@@ -100,7 +100,7 @@ class Session {
     /// One command as given by words (of a command line): no comment, no substitution, no splitting.
     Result<> run_words(const std::vector<std::string> &words);
 
-    /// One command for a script: its answer. Failures are the result only; nobody is told.
+    /// One command for a script: its answer. Failures are in the result only; no message is sent.
     Result<std::string> call(const std::vector<std::string> &words);
     /// The interpreter for Tcl, loaded when it is first asked for.
     Result<ScriptRunner *> tcl();

@@ -21,7 +21,7 @@ constexpr double LIMIT_SLACK = 1e-6;
 /// Whether a move beyond a limit is one wherever the machine stands at the start.
 using IsCertain = std::function<bool(const diagnostics::Diagnostic &)>;
 
-/// Looks at each move of a preview.
+/// Checks each move of a preview.
 class Checker {
   public:
     Checker(const MachineConfig &machine, diagnostics::Sink &sink, const CheckOptions &options,

@@ -31,7 +31,7 @@ class TaskSide final : private task::IoPins {
              hal::script::ProgramHost *programs);
     ~TaskSide() override;
 
-    /// Makes pins, runs the HAL files, starts the threads, makes task and hands it the motion settings.
+    /// Makes pins, runs the HAL files, starts the threads, makes task and gives it the motion settings.
     Result<> start(const MachineOptions &options);
     /// Runs cycles until motion has taken all settings, then reads the parameter file and announces the state
     /// to the interpreter. An error names the first setting that was refused.

@@ -20,7 +20,7 @@ class JogPins {
         int index = 0;
     };
     /// Once a cycle; what is to be asked for. Another target ends the jog of the one before, and begins its
-    /// own while the pins are held, unless something else has ended the jog before.
+    /// own while the pins are true, unless something else has ended the jog before.
     std::vector<messages::Command> step(const JogInputs &now, const JogSettings &settings,
                                         const Target &target, std::int64_t now_ns);
 

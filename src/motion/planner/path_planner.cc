@@ -302,7 +302,7 @@ bool PathPlanner::areSpindlesReady() const noexcept {
     return (view_.spindles_ready & all) == all;
 }
 
-/// Moves that wait for spindles go on once these are at speed; threads at a full turn of theirs, so that
+/// Moves that wait for spindles start once these are at speed; threads at a full turn of theirs, so that
 /// every pass begins at the same angle.
 void PathPlanner::open_gates() noexcept {
     const trajectory::Sequence gate = isPathBegun_ ? planner_.waiting_gate(view_.executor) : 0;

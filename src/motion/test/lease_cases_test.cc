@@ -53,7 +53,8 @@ TEST(JogLease, AtTheSoftLimitRenewalsChangeNothing) {
     EXPECT_EQ(rig.refusal(fresh), Reason::BEYOND_SOFT_LIMIT);
 }
 
-/// A client that has not heard of a stop renews: nothing moves, whether its jog moved or stood at a limit.
+/// A client that has not heard of a stop renews: nothing moves, whether its jog moved or was stopped at a
+/// limit.
 TEST(JogLease, NoRenewalOutlivesAStop) {
     struct Stop {
         const char *name;

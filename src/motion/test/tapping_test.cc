@@ -182,7 +182,7 @@ TEST_P(StoppedTapping, InAnyPhaseStandsWithinItsLimitsAndNeverRestartsTheSpindle
         if (!isDead) {
             EXPECT_EQ(bench.limit_report(), "") << at;
         }
-        // Whatever is done next turns nothing on.
+        // No next command turns anything on.
         rig.in.isEnableOn = true;
         rig.in.spindle[0].isAmpFaulted = false;
         rig.channels->isTaskDead.store(0);

@@ -150,7 +150,7 @@ class JerkLimitedTeleop {
             rig_.in.axis_wheel[static_cast<std::size_t>(wheel_)].counts += whole(-10, 20);
         }
     }
-    /// A stop of everything, whatever is under way.
+    /// A stop of all motion.
     void expect_stop() {
         rig_.send(SetScale{Scale::FEED, 0, 1});
         rig_.send(Abort{++rig_.epoch});

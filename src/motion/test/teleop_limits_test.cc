@@ -24,7 +24,7 @@ using testing::MotionRig;
 
 enum class Model { COREXY, DELTA, TABLE };
 
-/// How far an axis may go beyond its limit [mm, degrees]: where joints follow axes along curves an axis that
+/// How far an axis may exceed its limit [mm, degrees]: where joints follow axes along curves an axis that
 /// brakes may have to do with less than it was promised, while others turn about ("Known limits" of
 /// planner.md).
 double beyond(Model model) {

@@ -10,7 +10,7 @@ namespace mw::trajectory {
 
 namespace {
 
-/// Turns until a spindle of this speed stands.
+/// Revolutions until a spindle of this speed is stopped.
 double overrun_of(double speed, double ramp) noexcept {
     return ramp > 0 ? 0.5 * speed * speed / ramp : 0.0;
 }

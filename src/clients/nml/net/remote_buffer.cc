@@ -180,7 +180,7 @@ class RemoteBuffer final : public Buffer {
         return answer.has_value() ? Result<>{} : std::unexpected(answer.error());
     }
 
-    /// Room for the text of a refusal.
+    /// Room for the text of an error.
     static constexpr std::size_t MAX_ERROR = 4096;
 
     std::string host_;

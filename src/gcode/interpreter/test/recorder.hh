@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A machine for tests: remembers what a program asks for.
+// A machine for tests: remembers what a program requests.
 #pragma once
 
 #include <unistd.h>

@@ -170,7 +170,7 @@ void Segment::repair() noexcept {
         Table &of = table(kind);
         of.buckets.fill(0);
         of.count = 0;
-        // What was on its way to the free list is lost, which harms nobody.
+        // A block that was being freed is lost, which does no harm.
         of.free = 0;
         each<Record>(kind, [&](Record &record) {
             Offset &bucket = of.buckets[record.hash % BUCKETS];

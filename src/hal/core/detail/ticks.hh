@@ -18,7 +18,7 @@ class TickCounter {
   public:
     TickCounter() noexcept {
 #if defined(__x86_64__)
-        // "Invariant TSC": the same rate whatever the processor's frequency and sleep are.
+        // "Invariant TSC": the same rate at each frequency and in each sleep state of the processor.
         unsigned a = 0, b = 0, c = 0, d = 0;
         constexpr unsigned ADVANCED_POWER = 0x80000007;
         constexpr unsigned INVARIANT = 1U << 8U;

@@ -31,7 +31,7 @@ class SessionTest : public ::testing::Test {
         hal_options.name = "session-test";
         hal_options.scheduler = &clock;
         host = std::move(*LocalHost::create(hal_options));
-        // Components of other folders are not built for this test: pins of its own.
+        // Components of other folders are not built for this test: it has own pins.
         const int id = *host->hal().new_component("board");
         for (const char *name : {"board.in0", "board.in1", "board.io"}) {
             slots.push_back(*host->hal().new_pin(name, Type::BIT,

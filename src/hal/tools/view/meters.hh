@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The names of older programs that look at HAL: what menus and scripts start.
+// The names of older programs that show HAL: what menus and scripts start.
 #pragma once
 
 #include <csignal>

@@ -111,7 +111,7 @@ TEST(PathMonitor, LinesThatThePlannerHasJoinedAreAllLookedAt) {
         line.end = at(0.1 * i, std::sin(0.1 * i));
         monitor.on_move(static_cast<motion::CommandId>(i), line);
     }
-    // One move stands for ten lines, and the commanded mean is 0.35 behind the leader.
+    // One move replaces ten lines, and the commanded position is 0.35 behind the reference.
     for (int i = 0; i <= 1000; ++i) {
         const double x = 0.01 * i;
         const int leader = std::min(100, i / 10 + 4);

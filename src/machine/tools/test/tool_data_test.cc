@@ -37,7 +37,7 @@ class ToolDataTest : public ::testing::Test {
         config_.isRandomToolchanger = isRandom;
         return open();
     }
-    /// A database program of this shell script, which logs what it is told.
+    /// A database program of this shell script, which logs its input.
     task::ToolStore &open_database(const std::string &script, bool isRandom = false) {
         write("db", "#!/bin/sh\n" + script);
         std::filesystem::permissions(path("db"), std::filesystem::perms::owner_all);

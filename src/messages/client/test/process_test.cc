@@ -125,7 +125,7 @@ Result<Client> connect_in_time(const std::string &name) {
     ::_exit(1);
 }
 
-/// Both halves: nobody else is hurt, and the work goes on: places and the right to operate come back.
+/// Both halves: no other client is affected, and places and the right to operate are free again.
 TEST(MailboxProcess, ClientsKilledAtAnyInstantHurtNobody) {
     const std::string name = instance("kill");
     auto memory = mailbox::Memory::create(name);

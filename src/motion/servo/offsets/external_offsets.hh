@@ -49,7 +49,7 @@ void step(ExternalOffsets &offsets, const OffsetInputs &in) noexcept;
 void configure(ExternalOffsets &offsets, const FoldedLimits &limits, const AxisMap &map) noexcept;
 /// They are zero from here, and the pins count from here; nothing moves.
 void start_at_zero(ExternalOffsets &offsets, const Inputs &in) noexcept;
-/// All of them brake; they stand in this cycle.
+/// All of them brake; they are stopped in this cycle.
 void stop(ExternalOffsets &offsets) noexcept;
 void stop_at_once(ExternalOffsets &offsets) noexcept;
 bool areAtRest(const ExternalOffsets &offsets) noexcept;

@@ -102,7 +102,7 @@ TEST_F(SpindlesPart, ConstantSurfaceSpeedKeepsTheLimitsOfTheSpindle) {
     }
 }
 
-/// Each has its command, its limits and its override: what is told one changes no other.
+/// Each has its command, its limits and its override: a command to one changes no other.
 TEST_F(SpindlesPart, EightOfThemKnowNothingOfEachOther) {
     spindles.count = MAX_SPINDLES;
     std::mt19937 random(8);
