@@ -61,12 +61,12 @@ Result<> run(const Settings &settings) {
         simulated.set_log([&](const board::ExecutedCommand &one) { log << board::log_line(one) << '\n'; });
     }
     board::Link link(simulated, std::move(*faults));
-    std::fputs(fmt::format("hm2-board: {} at {}:{}\n", model->card_name, settings.server.address,
-                           settings.server.port)
-                   .c_str(),
-               stdout);
-    std::fflush(stdout);
-    return board::serve(link, settings.server, mw::stop_signal);
+    board::ServerSettings server = settings.server;
+    server.listening = [&] {
+        fmt::print("hm2-board: {} at {}:{}\n", model->card_name, server.address, server.port);
+        std::fflush(stdout);
+    };
+    return board::serve(link, server, mw::stop_signal);
 }
 
 }  // namespace

@@ -197,6 +197,9 @@ Result<> serve(Link &link, const ServerSettings &settings, const volatile std::s
         return fail(fmt::format("Cannot listen on {}:{}: {}.", settings.address, settings.port,
                                 std::strerror(errno)));
     }
+    if (settings.listening) {
+        settings.listening();
+    }
     return Server(link, settings, socket.descriptor()).run(stop);
 }
 
