@@ -13,9 +13,16 @@ struct Factory {
 };
 
 constexpr Factory FACTORIES[] = {
-    {Gtag::STEPGEN, make_stepgens}, {Gtag::ENCODER, make_encoders}, {Gtag::MUXED_ENCODER, make_encoders},
-    {Gtag::PWM, make_pwmgens},      {Gtag::LED, make_leds},         {Gtag::SSR, make_ssrs},
-    {Gtag::DPLL, make_dpll},        {Gtag::OUT_M, make_outms},
+    {Gtag::STEPGEN, make_stepgens},
+    {Gtag::ENCODER, make_encoders},
+    {Gtag::MUXED_ENCODER, make_encoders},
+    {Gtag::PWM, make_pwmgens},
+    {Gtag::LED, make_leds},
+    {Gtag::SSR, make_ssrs},
+    {Gtag::DPLL, make_dpll},
+    {Gtag::OUT_M, make_outms},
+    {Gtag::SMART_SERIAL, make_sserial},
+    {Gtag::SMART_SERIAL_B, make_sserial},
 };
 
 }  // namespace
