@@ -55,6 +55,7 @@ class Firmware {
         RegisterPlace place;
     };
     Module *add_module(const ModuleDescriptor &descriptor);
+    void set_field_inputs(const RemoteChannel &channel, Remote &remote) const;
     SmartSerialModule *add_serial(const ModuleDescriptor &descriptor);
     template <class T, class... Arguments>
     T *own(Arguments &&...arguments);
