@@ -15,14 +15,14 @@ import linuxcnc_board
 
 HAL = '''
 loadrt hostmot2
-loadrt hm2_eth board_ip=192.168.1.121 config="num_encoders=1 num_stepgens=5"
+loadrt hm2_eth board_ip=192.168.1.121 config="num_encoders=1 num_stepgens=5 sserial_port_0=20xxxxxx"
 loadrt threads name1=servo period1=4000000
 show pin hm2_7i76e.0
 show param hm2_7i76e.0
 '''
 ROW = re.compile(r'^\s+\d+\s+(bit|float|s32|u32)\s+(IN|OUT|I/O|RW|RO)\s+\S+\s+(hm2\S+)', re.M)
 # Smart serial, also the pins that it takes from GPIO; times of functions; counters that only ours has.
-LEFT_OUT = re.compile(r'\.(7i76|7i84|sserial)\.|\.tmax|gpio\.01[0-3]\.|\.packets-|\.0\.debug')
+LEFT_OUT = re.compile(r"\.tmax|\.packets-|\.0\.debug|\.sserial\.port-\d\.fault$")
 
 
 def rows_of(halrun, board):

@@ -149,7 +149,26 @@ SmartSerialModule *Firmware::add_serial(const ModuleDescriptor &descriptor) {
             remotes.push_back({plan.port, plan.channel, Remote(*card, FIRST_SERIAL_NUMBER + plan.channel)});
         }
     }
-    return own<SmartSerialModule>(descriptor.instances, static_cast<unsigned>(channels), std::move(remotes));
+    auto *module =
+        own<SmartSerialModule>(descriptor.instances, static_cast<unsigned>(channels), std::move(remotes));
+    module->connect([this](unsigned port, unsigned channel, Remote &remote) {
+        set_field_inputs({port, channel}, remote);
+    });
+    return module;
+}
+
+void Firmware::set_field_inputs(const RemoteChannel &channel, Remote &remote) const {
+    for (const SwitchPlan &one : physics_.plan().switches) {
+        if (one.remote == channel) {
+            const std::uint32_t bit = 1U << one.pin, others = remote.value("Input") & ~bit;
+            remote.set_value("Input", others | (physics_.level_of(one) ? bit : 0U));
+        }
+    }
+    for (const FieldPlan &field : physics_.plan().fields) {
+        if (field.remote == channel) {
+            remote.set_value(field.name, physics_.field_value(field));
+        }
+    }
 }
 
 void Firmware::map(Module &module, const ModuleDescriptor &descriptor) {

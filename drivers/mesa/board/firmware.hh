@@ -71,6 +71,7 @@ class Firmware {
     Module *add_module(const ModuleDescriptor &descriptor);
     Module *add_inputs(const ModuleDescriptor &descriptor, std::uint32_t clock_hz);
     Module *add_uart(const ModuleDescriptor &descriptor, std::uint32_t clock_hz);
+    void set_field_inputs(const RemoteChannel &channel, Remote &remote) const;
     SmartSerialModule *add_serial(const ModuleDescriptor &descriptor);
     template <class T, class... Arguments>
     T *own(Arguments &&...arguments);

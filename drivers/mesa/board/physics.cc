@@ -120,13 +120,24 @@ std::optional<double> Physics::resolver_rev(unsigned channel) const {
 }
 
 std::optional<bool> Physics::switch_level(unsigned pin) const {
-    const auto one = std::ranges::find(plan_.switches, pin, &SwitchPlan::pin);
-    if (one == plan_.switches.end()) {
-        return {};
+    const auto one = std::ranges::find_if(plan_.switches, [&](const SwitchPlan &candidate) {
+        return candidate.pin == pin && !candidate.remote.has_value();
+    });
+    return one == plan_.switches.end() ? std::nullopt : std::optional(level_of(*one));
+}
+
+bool Physics::level_of(const SwitchPlan &one) const {
+    const double position = position_rev(one.motor);
+    const bool closed = one.above ? position > one.at_rev : position < one.at_rev;
+    return closed == one.closed_level;
+}
+
+std::uint32_t Physics::field_value(const FieldPlan &field) const {
+    if (!field.motor.has_value()) {
+        return field.value;
     }
-    const double position = position_rev(one->motor);
-    const bool closed = one->above ? position > one->at_rev : position < one->at_rev;
-    return closed == one->closed_level;
+    const double counts = position_rev(*field.motor) * static_cast<double>(field.counts_per_rev);
+    return static_cast<std::uint32_t>(static_cast<std::int64_t>(std::floor(counts)));
 }
 
 }  // namespace mw::mesa::board

@@ -38,8 +38,16 @@ struct EncoderPlan {
     double index_rev = 0;  ///< where the index is, from 0 to below 1
 };
 
+/// A channel of a smart serial port.
+struct RemoteChannel {
+    unsigned port = 0, channel = 0;
+
+    bool operator==(const RemoteChannel &) const = default;
+};
+
 struct SwitchPlan {
-    unsigned pin = 0;  ///< of the whole board
+    unsigned pin = 0;  ///< of the whole board, or bit of the field Input of `remote`
+    std::optional<RemoteChannel> remote{};
     std::size_t motor = 0;
     double at_rev = 0;
     bool above = false;        ///< it is closed above `at_rev`; else below
@@ -60,18 +68,29 @@ struct RemotePlan {
     std::string card;  ///< the key of a RemoteCard
 };
 
+/// What an input of a smart serial card reads, as bits of the card.
+struct FieldPlan {
+    RemoteChannel remote;
+    std::string name;                    ///< of the field, as the card has it
+    std::uint32_t value = 0;             ///< without a motor
+    std::optional<std::size_t> motor{};  ///< its counts
+    std::int64_t counts_per_rev = 0;
+};
+
 struct PhysicsPlan {
     std::vector<MotorPlan> motors;
     std::vector<EncoderPlan> encoders;
     std::vector<SwitchPlan> switches;
     std::vector<ResolverPlan> resolvers;
     std::vector<RemotePlan> remotes;
+    std::vector<FieldPlan> fields;
 };
 
 /// Lines `motor NAME stepgen=N steps_per_rev=N [start_rev=]`, `motor NAME pwm=N full_rev_s=
 /// time_constant_s=`, `encoder N motor=NAME counts_per_rev=N [index_rev=]`, `switch PIN motor=NAME
-/// below_rev=|above_rev= [closed=high|low]`, `resolver CHANNEL motor=NAME [cycles_per_rev=] [zero_rev=]` and
-/// `remote CHANNEL card=7i76 [port=N]`; units and pins must exist in `idrom`.
+/// below_rev=|above_rev= [closed=high|low] [remote=CHANNEL [port=N]]`, `resolver CHANNEL motor=NAME
+/// [cycles_per_rev=] [zero_rev=]`, `field CHANNEL name=AnalogIn1 value=N|motor=NAME counts_per_rev=N
+/// [port=N]` and `remote CHANNEL card=7i76 [port=N]`; units and pins must exist in `idrom`.
 Result<PhysicsPlan> parse_physics(std::string_view text, const std::string &file, const Idrom &idrom);
 
 /// What reaches the motors within a piece of time in which nothing changes.
@@ -95,6 +114,10 @@ class Physics {
     std::optional<double> resolver_rev(unsigned channel) const;
     /// The level of a pin with a switch.
     std::optional<bool> switch_level(unsigned pin) const;
+    /// The level of any switch.
+    bool level_of(const SwitchPlan &one) const;
+    /// What a field of a smart serial card reads.
+    std::uint32_t field_value(const FieldPlan &field) const;
     /// The position of the motor with that index in the plan [rev].
     double position_rev(std::size_t motor) const;
     /// Whole steps that a stepper has made.

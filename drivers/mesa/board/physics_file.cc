@@ -81,9 +81,19 @@ void read_encoder(TableLine &line, PhysicsPlan &plan, const Idrom &idrom) {
     plan.encoders.push_back(encoder);
 }
 
+unsigned port_of(TableLine &line, const Idrom &idrom) {
+    return line.has("port") ? unit_of(line, "port", instances_of(idrom, {Gtag::SMART_SERIAL})) : 0U;
+}
+
 void read_switch(TableLine &line, PhysicsPlan &plan, const Idrom &idrom) {
     SwitchPlan one;
-    one.pin = number_of(line, "pin", idrom.pins.size());
+    if (line.has("remote")) {
+        constexpr std::size_t INPUT_BITS = 32;
+        one.remote = {port_of(line, idrom), unit_of(line, "remote", SERIAL_CHANNELS)};
+        one.pin = number_of(line, "input", INPUT_BITS);
+    } else {
+        one.pin = number_of(line, "pin", idrom.pins.size());
+    }
     one.motor = motor_of(line, plan);
     one.above = line.has("above_rev");
     one.at_rev = line.number(one.above ? "above_rev" : "below_rev", -FAR_REV, FAR_REV);
@@ -100,10 +110,23 @@ void read_resolver(TableLine &line, PhysicsPlan &plan, const Idrom &idrom) {
     plan.resolvers.push_back(resolver);
 }
 
+void read_field(TableLine &line, PhysicsPlan &plan, const Idrom &idrom) {
+    FieldPlan field;
+    field.remote = {port_of(line, idrom), number_of(line, "smart serial channel", SERIAL_CHANNELS)};
+    field.name = line.text("name");
+    if (line.has("motor")) {
+        field.motor = motor_of(line, plan);
+        field.counts_per_rev = line.whole("counts_per_rev", 1, 100'000'000);
+    } else {
+        field.value = static_cast<std::uint32_t>(line.whole("value", 0, UINT32_MAX));
+    }
+    plan.fields.push_back(field);
+}
+
 void read_remote(TableLine &line, PhysicsPlan &plan, const Idrom &idrom) {
     RemotePlan remote;
     remote.channel = number_of(line, "smart serial channel", SERIAL_CHANNELS);
-    remote.port = line.has("port") ? unit_of(line, "port", instances_of(idrom, {Gtag::SMART_SERIAL})) : 0U;
+    remote.port = port_of(line, idrom);
     remote.card = line.text("card");
     if (find_remote_card(remote.card) == nullptr) {
         line.reject("card", fmt::format("Unknown card '{}', known are {}.", remote.card,
@@ -139,12 +162,15 @@ Result<PhysicsPlan> parse_physics(std::string_view text, const std::string &file
             read_switch(line, plan, idrom);
         } else if (line.type() == "resolver") {
             read_resolver(line, plan, idrom);
+        } else if (line.type() == "field") {
+            read_field(line, plan, idrom);
         } else if (line.type() == "remote") {
             read_remote(line, plan, idrom);
         } else {
-            return fail(fmt::format("Unknown line '{}', expected motor, encoder, switch, resolver or remote.",
-                                    line.type()),
-                        line.place());
+            return fail(
+                fmt::format("Unknown line '{}', expected motor, encoder, switch, resolver, field or remote.",
+                            line.type()),
+                line.place());
         }
         if (auto finished = line.finish(); !finished.has_value()) {
             return std::unexpected(finished.error());

@@ -48,6 +48,7 @@ class EthernetBus final : public RegisterBus {
 
     Result<std::vector<std::uint32_t>> read_now(RegisterRange range) override;
     Result<> write_now(std::uint16_t address, std::span<const std::uint32_t> values) override;
+    void pause_now(std::chrono::nanoseconds duration) override;
     Result<> set_lists(std::span<const RegisterRange> reads, int max_writes) override;
 
     void request() noexcept override;

@@ -196,6 +196,10 @@ Result<std::vector<std::uint32_t>> EthernetBus::read_now(RegisterRange range) {
     return values;
 }
 
+void EthernetBus::pause_now(std::chrono::nanoseconds duration) {
+    transport_->wait_until(transport_->now_ns() + duration.count());
+}
+
 Result<> EthernetBus::write_now(std::uint16_t address, std::span<const std::uint32_t> values) {
     PacketWriter packet;
     for (std::size_t i = 0; i < values.size(); ++i) {

@@ -37,6 +37,7 @@ class PinnedBus final : public RegisterBus {
     Result<> write_now(std::uint16_t address, std::span<const std::uint32_t> values) override {
         return bus_->write_now(address, values);
     }
+    void pause_now(std::chrono::nanoseconds duration) override { bus_->pause_now(duration); }
     Result<> set_lists(std::span<const RegisterRange> reads, int max_writes) override {
         return bus_->set_lists(reads, max_writes);
     }

@@ -29,6 +29,8 @@ constexpr Known KNOWN[] = {
     {Gtag::PWM, "PWMGen", {0, 1, ANY}},
     {Gtag::DPLL, "DPLL", {0, ANY}},
     {Gtag::LED, "LED", {0, ANY}},
+    {Gtag::SMART_SERIAL, "SmartSerial", {0, ANY}},
+    {Gtag::SMART_SERIAL_B, "SmartSerialB", {0, ANY}},
     {Gtag::SSR, "SSR", {0, ANY}},
     {Gtag::OUT_M, "OutM", {0, ANY}},
     {Gtag::IN_MUX, "InMux", {0, ANY}},

@@ -8,6 +8,7 @@
 
 #include "base/result.hh"
 #include "drivers/mesa/hostmot2/config.hh"
+#include "drivers/mesa/hostmot2/modules/sserial_found.hh"
 #include "drivers/mesa/identity/idrom.hh"
 
 namespace mw::mesa {
@@ -40,7 +41,8 @@ struct UsedPin {
 struct Assignment {
     std::vector<UsedModule> modules;
     std::vector<UsedPin> pins;
-    std::vector<std::string> warnings;  ///< modules that are left out, with gtag, version and base address
+    std::vector<FoundPort> serial_ports;  ///< filled by discover_sserial()
+    std::vector<std::string> warnings;    ///< modules that are left out, with gtag, version and base address
 };
 
 /// Whether the driver can use a module of this type and version.

@@ -5,6 +5,7 @@
 
 #include "drivers/mesa/hostmot2/modules/factories.hh"
 #include "drivers/mesa/hostmot2/modules/ioport.hh"
+#include "drivers/mesa/hostmot2/modules/sserial_discovery.hh"
 
 namespace mw::mesa {
 
@@ -24,6 +25,9 @@ Result<std::unique_ptr<Board>> Board::make(RegisterBus &bus, const Idrom &idrom,
     auto assignment = assign(idrom, config, bus.leds());
     if (!assignment) {
         return std::unexpected(assignment.error());
+    }
+    if (auto found = discover_sserial(bus, idrom, config, *assignment); !found) {
+        return std::unexpected(found.error());
     }
     std::unique_ptr<Board> board(new Board(bus, std::move(*assignment)));
     for (const UsedModule &module : board->assignment_.modules) {
@@ -72,7 +76,7 @@ void Board::declare(PinSpace &space) {
     }
 }
 
-void Board::read(long period_ns) noexcept {
+void Board::read(long period_ns, std::int64_t now_ns) noexcept {
     const CycleRead result = bus_.read(registers_.inputs(), period_ns);
     isFresh_ = result == CycleRead::DONE;
     isStopped_ = result == CycleRead::STOPPED;
@@ -87,6 +91,7 @@ void Board::read(long period_ns) noexcept {
     cycle.isFresh = true;
     cycle.hasLostWrite = isWriteDoubtful_;
     isWriteDoubtful_ = false;
+    cycle.now_ns = now_ns != 0 ? now_ns : last_write_ns_ + period_ns;
     for (const auto &module : modules_) {
         module->read(registers_, cycle);
     }
@@ -103,6 +108,7 @@ void Board::read(long period_ns) noexcept {
 void Board::write(long period_ns, std::int64_t now_ns) noexcept {
     Cycle cycle = cycle_of(period_ns);
     cycle.isFresh = isFresh_;
+    cycle.now_ns = now_ns;
     const bool hasBitten = watchdog_ != nullptr && watchdog_->isBitten();
     cycle.isWriting = isReadOnce_ && !isStopped_ && !hasBitten;
     for (const auto &module : modules_) {
@@ -149,6 +155,15 @@ BoardEvents Board::take_events() noexcept {
     const BoardEvents events = events_;
     events_ = {};
     return events;
+}
+
+std::size_t Board::take_message(std::span<char> text) noexcept {
+    for (const auto &module : modules_) {
+        if (const std::size_t length = module->take_message(text); length > 0) {
+            return length;
+        }
+    }
+    return 0;
 }
 
 void Board::stop() noexcept {

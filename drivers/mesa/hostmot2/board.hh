@@ -20,8 +20,8 @@ struct BoardEvents {
 
 class Board {
   public:
-    /// Uses the modules of a firmware as the configuration says, and fixes the lists of the bus. Nothing is
-    /// written. [while loading]
+    /// Uses the modules of a firmware as the configuration says, and fixes the lists of the bus. Only smart
+    /// serial is written to, to find its cards. [while loading]
     static Result<std::unique_ptr<Board>> make(RegisterBus &bus, const Idrom &idrom, const Config &config);
 
     /// Makes all pins and parameters. [while loading]
@@ -32,13 +32,16 @@ class Board {
 
     /// Sends the request of this cycle early. [servo thread]
     void request() noexcept { bus_.request(); }
-    /// Reads all registers; after a failure all pins keep their values. [servo thread]
-    void read(long period_ns) noexcept;
+    /// Reads all registers; after a failure all pins keep their values. `now_ns` of the same clock as in
+    /// write(); 0: one period after the last write. [servo thread]
+    void read(long period_ns, std::int64_t now_ns = 0) noexcept;
     /// Writes what is due. Nothing is written before a read succeeded, nor while the watchdog has bitten.
     /// `now_ns` of any clock measures the time between writes. [servo thread]
     void write(long period_ns, std::int64_t now_ns) noexcept;
     /// What happened since the last call. [servo thread]
     BoardEvents take_events() noexcept;
+    /// A message of a module into `text`: its length, or 0. [servo thread]
+    std::size_t take_message(std::span<char> text) noexcept;
 
     std::int64_t timeout_ns() const noexcept { return checked_timeout_ns_; }
 

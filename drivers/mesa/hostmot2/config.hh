@@ -22,7 +22,8 @@ struct Config {
     std::map<Gtag, int> wanted{};  ///< instances by module; what is missing uses all
     int stepgen_width = 2;         ///< output pins of each stepgen
     bool isRawEnabled = false;
-    /// One character for each channel: a mode, or x for a channel that is not used. Empty: mode 0 for all.
+    /// One character for each channel: a mode, or x for a channel that is not used. Channels without one have
+    /// mode 0.
     std::array<std::string, MAX_SMART_SERIAL_PORTS> sserial_modes{};
     /// Formats of absolute encoders, by channel: only channels with a format are used.
     std::map<int, std::string> ssi_formats{}, biss_formats{}, fanuc_formats{};

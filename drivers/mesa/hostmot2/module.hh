@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "drivers/mesa/hostmot2/assignment.hh"
@@ -17,6 +18,7 @@ struct Cycle {
     bool isFresh = false;       ///< the inputs are of this cycle
     bool hasLostWrite = false;  ///< in read(): a write since the last read() may not have reached the board
     bool isWriting = false;     ///< in write(): what is requested is sent
+    std::int64_t now_ns = 0;    ///< of any clock
 };
 
 class Module {
@@ -36,6 +38,12 @@ class Module {
     virtual void read(const Registers &registers, const Cycle &cycle) noexcept = 0;
     /// Sets the registers to write. After a failed read it is called without read(). [servo thread]
     virtual void write(Registers &registers, const Cycle &cycle) noexcept = 0;
+    /// Writes what happened into `text` and returns its length, once for each event; 0: nothing happened.
+    /// [servo thread]
+    virtual std::size_t take_message(std::span<char> text) noexcept {
+        (void)text;
+        return 0;
+    }
 };
 
 /// What a module needs while it is created.

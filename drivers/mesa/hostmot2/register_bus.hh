@@ -4,9 +4,11 @@
 // thread reads one list that was fixed before, and writes one list.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <span>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "base/result.hh"
@@ -52,6 +54,8 @@ class RegisterBus {
     virtual Result<std::vector<std::uint32_t>> read_now(RegisterRange range) = 0;
     /// Writes registers from `address` now. [while loading]
     virtual Result<> write_now(std::uint16_t address, std::span<const std::uint32_t> values) = 0;
+    /// Lets time pass, so that a processor of the board works. [while loading]
+    virtual void pause_now(std::chrono::nanoseconds duration) { std::this_thread::sleep_for(duration); }
     /// Fixes what each cycle reads, and the largest number of registers that one cycle writes. An error when
     /// it is more than the bus can carry in one cycle. [while loading]
     virtual Result<> set_lists(std::span<const RegisterRange> reads, int max_writes) = 0;

@@ -140,6 +140,9 @@ bool SmartSerialModule::exchange(unsigned port, unsigned channel) {
     if (one.state == Channel::State::SET_UP) {
         return access_memory(one, *card);
     }
+    if (field_inputs_) {
+        field_inputs_(port, channel, *card);
+    }
     one.user_out = card->exchange(one.user_in);
     return true;
 }

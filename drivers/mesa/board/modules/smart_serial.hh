@@ -2,7 +2,9 @@
 // The smart serial processor with its channels. Source: shared/hardware.md, part B9.
 #pragma once
 
+#include <functional>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "drivers/mesa/board/modules/module.hh"
@@ -41,6 +43,9 @@ class SmartSerialModule final : public Module {
     unsigned words(unsigned reg) const override { return reg < 2 ? 1 : SERIAL_CHANNELS; }
     bool isInEachInstance(unsigned /*reg*/) const override { return true; }
 
+    /// Sets the inputs of a card before each exchange.
+    using FieldInputs = std::function<void(unsigned port, unsigned channel, Remote &remote)>;
+    void connect(FieldInputs field_inputs) { field_inputs_ = std::move(field_inputs); }
     /// The remote of a channel; nullptr without one.
     Remote *remote(unsigned port, unsigned channel);
 
@@ -55,6 +60,7 @@ class SmartSerialModule final : public Module {
     std::vector<SerialPort> ports_;
     unsigned channels_;
     std::vector<ConnectedRemote> remotes_;
+    FieldInputs field_inputs_;
     std::int64_t time_ns_ = 0;
 };
 

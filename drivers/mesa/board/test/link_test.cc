@@ -160,7 +160,7 @@ TEST(BoardPhysics, ErrorsNameFileLineAndColumn) {
     EXPECT_EQ(error("motor x stepgen=0 steps_per_rev=200\nswitch 51 motor=x below_rev=0"),
               "p.txt:2:1: The board has no pin '51': it has 51.");
     EXPECT_EQ(error("brake z"),
-              "p.txt:1:1: Unknown line 'brake', expected motor, encoder, switch, resolver or remote.");
+              "p.txt:1:1: Unknown line 'brake', expected motor, encoder, switch, resolver, field or remote.");
 }
 
 }  // namespace

@@ -126,6 +126,19 @@ TEST(BoardSmartSerial, ProcessDataAreExchangedWithEachDoIt) {
     EXPECT_EQ(host.read(0x5E00), 0xABCU << 12U);
 }
 
+TEST(BoardSmartSerial, SwitchesAndFieldsSetTheInputsOfACard) {
+    SerialHost host(
+        "motor x stepgen=0 steps_per_rev=200 start_rev=2.5\nremote 0 card=7i76\n"
+        "switch 3 remote=0 motor=x above_rev=2\nswitch 4 remote=0 motor=x above_rev=2 closed=low\n"
+        "field 0 name=AnalogIn1 value=0x123\nfield 0 name=Enc0 motor=x counts_per_rev=100\n");
+    host.run(0x4000);
+    host.start(2);
+    EXPECT_EQ(host.run(0x1001), 0U);
+    EXPECT_EQ(host.read(0x5D00), 8U);
+    EXPECT_EQ(host.read(0x5E00), 0x123U << 12U);
+    EXPECT_EQ(host.read(0x5F00) >> 16U, 250U) << "the encoder counts 2.5 revolutions";
+}
+
 TEST(BoardSmartSerial, AChannelWithoutARemoteFails) {
     SerialHost host("remote 0 card=7i76\n");
     host.run(0x4000);

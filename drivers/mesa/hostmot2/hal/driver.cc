@@ -36,6 +36,19 @@ std::vector<std::unique_ptr<HalBoard>> &boards() {
     return all;
 }
 
+/// Messages of modules. [servo thread]
+void report_modules(HalBoard &board) noexcept {
+    constexpr int MOST_IN_A_CYCLE = 8;
+    char text[512];
+    for (int i = 0; i < MOST_IN_A_CYCLE; ++i) {
+        const std::size_t length = board.board->take_message(text);
+        if (length == 0) {
+            return;
+        }
+        rtapi_print_msg(RTAPI_MSG_ERR, "hm2/%s: %.*s", board.name.c_str(), static_cast<int>(length), text);
+    }
+}
+
 /// One message for each event. [servo thread]
 void report(HalBoard &board) noexcept {
     const BoardEvents events = board.board->take_events();
@@ -57,7 +70,7 @@ void report(HalBoard &board) noexcept {
 }
 
 void read_function(void *self, long period_ns) {
-    static_cast<HalBoard *>(self)->board->read(period_ns);
+    static_cast<HalBoard *>(self)->board->read(period_ns, rtapi_get_time());
 }
 void request_function(void *self, long) {
     static_cast<HalBoard *>(self)->board->request();
@@ -66,6 +79,7 @@ void write_function(void *self, long period_ns) {
     auto &board = *static_cast<HalBoard *>(self);
     board.board->write(period_ns, rtapi_get_time());
     report(board);
+    report_modules(board);
 }
 
 int export_functions(HalBoard &board) {

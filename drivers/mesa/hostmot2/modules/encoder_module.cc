@@ -12,8 +12,7 @@ namespace mw::mesa {
 namespace {
 
 enum EncoderRegister { COUNT, CONTROL, STAMP_DIVIDER, STAMP_COUNT, FILTER_RATE, TIMER };
-constexpr std::uint8_t PROBE_VERSION = 0x80, FIRST_TIMER_VERSION = 3, FIRST_SKEW_VERSION = 4,
-                       VERSION_MASK = 0x7F;
+constexpr std::uint8_t PROBE_VERSION = 0x80, FIRST_SKEW_VERSION = 4, VERSION_MASK = 0x7F;
 
 struct BoardPins {
     std::uint32_t sample_frequency = 25'000'000, muxed_sample_frequency = 8'000'000;  ///< [Hz]
@@ -56,7 +55,8 @@ class Encoders final : public Module {
         const std::uint8_t version = request.module.descriptor.version & VERSION_MASK;
         hasProbe_ = (request.module.descriptor.version & PROBE_VERSION) != 0;
         hasSkew_ = isMuxed_ && version >= FIRST_SKEW_VERSION;
-        hasTimer_ = hasDpll(request.assignment) && version >= FIRST_TIMER_VERSION;
+        // The number of the version does not show whether the register exists; others ignore it.
+        hasTimer_ = hasDpll(request.assignment);
         // A firmware with both types numbers the muxed encoders after the plain ones, which have the pins of
         // the board.
         for (const UsedModule &other : request.assignment.modules) {

@@ -12,6 +12,7 @@ std::unique_ptr<Module> make_pwmgens(const ModuleRequest &request);
 std::unique_ptr<Module> make_leds(const ModuleRequest &request);
 std::unique_ptr<Module> make_ssrs(const ModuleRequest &request);
 std::unique_ptr<Module> make_outms(const ModuleRequest &request);
+std::unique_ptr<Module> make_sserial(const ModuleRequest &request);
 std::unique_ptr<Module> make_dpll(const ModuleRequest &request);
 std::unique_ptr<Module> make_inmuxs(const ModuleRequest &request);
 std::unique_ptr<Module> make_inms(const ModuleRequest &request);

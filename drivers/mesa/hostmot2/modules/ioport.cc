@@ -76,7 +76,20 @@ PortWords port_words(std::span<const UsedPin> used, std::span<const GpioPins> pi
     return words;
 }
 
+/// Of a smart serial channel: 0x81 to 0x88 transmit, 0x91 to 0x98 enable it, 0xA1 to 0xA8 with inverted
+/// level.
+std::string serial_output_name(const UsedPin &pin) {
+    constexpr unsigned GROUP = 0xF0, TRANSMIT = 0x80, ENABLE = 0x90, NUMBER = 0x0F;
+    const unsigned group = pin.function & GROUP;
+    const char *name = group == TRANSMIT ? "tx" : group == ENABLE ? "txen" : "txenb";
+    return fmt::format("sserial.{:02}.{}{}", pin.instance, name, (pin.function & NUMBER) - 1U);
+}
+
 std::string output_name(const UsedPin &pin) {
+    const bool isSerial = pin.module == Gtag::SMART_SERIAL || pin.module == Gtag::SMART_SERIAL_B;
+    if (isSerial && pin.isOutputOfModule()) {
+        return serial_output_name(pin);
+    }
     for (const OutputName &one : OUTPUT_NAMES) {
         if (one.module == pin.module && one.function == pin.function) {
             return fmt::format("{}.{:02}.{}", one.module_name, pin.instance, one.name);

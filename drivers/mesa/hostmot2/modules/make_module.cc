@@ -26,6 +26,8 @@ constexpr Factory FACTORIES[] = {
     {Gtag::THREE_PHASE_PWM, make_three_phase_pwms},
     {Gtag::RC_PWM, make_rc_pwms},
     {Gtag::RESOLVER, make_resolvers},
+    {Gtag::SMART_SERIAL, make_sserial},
+    {Gtag::SMART_SERIAL_B, make_sserial},
 };
 
 }  // namespace

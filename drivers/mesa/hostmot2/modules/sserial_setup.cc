@@ -2,6 +2,7 @@
 #include "drivers/mesa/hostmot2/modules/sserial_setup.hh"
 
 #include <algorithm>
+#include <bit>
 
 #include <fmt/format.h>
 
@@ -10,20 +11,35 @@ namespace mw::mesa {
 namespace {
 
 constexpr std::uint32_t RESET = 0x4000, READ_LOCAL = 0x2000, STOP = 0x800, START_NORMAL = 0x900,
-                        START_SETUP = 0xF00, DO_IT = 0x1000, READ_CARD_BYTE = 0x4C000000;
+                        START_SETUP = 0xF00, DO_IT = 0x1000, READ_CARD_BYTE = 0x4C000000,
+                        READ_NONVOLATILE = 0x44000000, OPEN_NONVOLATILE = 0xEC000000;
+constexpr unsigned SIZE_SHIFT = 24, MODE_SHIFT = 24;
 /// Bit 31 of the command register has another use.
 constexpr std::uint32_t COMMAND_MASK = 0x7FFFFFFF, CHANNEL_MASK = 0xFF;
-constexpr int MOST_LOOKS = 5000, OLDEST_MINOR = 43;
+constexpr int MOST_LOOKS = 5000, OLDEST_MINOR = 43, MOST_REPEATS = 4;
 enum LocalAddress : std::uint16_t { MAJOR = 2, MINOR = 3, CHANNELS = 7 };
 
 }  // namespace
 
+// The discovery of a card takes thousands of packets, so that more of them may be lost in a row than
+// elsewhere.
 Result<std::uint32_t> SserialSetup::read(std::uint16_t address) {
-    const auto words = bus_.read_now({address, 1});
+    auto words = bus_.read_now({address, 1});
+    for (int again = 0; !words && again < MOST_REPEATS; ++again) {
+        words = bus_.read_now({address, 1});
+    }
     if (!words) {
         return std::unexpected(words.error());
     }
     return words->front();
+}
+
+Result<> SserialSetup::write(std::uint16_t address, std::uint32_t value) {
+    auto written = bus_.write_now(address, {&value, 1});
+    for (int again = 0; !written && again < MOST_REPEATS; ++again) {
+        written = bus_.write_now(address, {&value, 1});
+    }
+    return written;
 }
 
 Result<> SserialSetup::wait() {
@@ -101,18 +117,27 @@ Result<std::uint32_t> SserialSetup::start(std::uint32_t command_bits, std::uint3
     return mask & ~*failed & CHANNEL_MASK;
 }
 
-Result<std::uint32_t> SserialSetup::start_setup(std::uint32_t mask) {
-    if (auto stopped = stop(CHANNEL_MASK); !stopped) {
-        return std::unexpected(stopped.error());
-    }
+Result<> SserialSetup::write_modes(std::uint32_t mask, std::span<const std::uint8_t> modes) {
     for (int channel = 0; channel < MAX_CHANNELS; ++channel) {
-        const bool isWanted = ((mask >> static_cast<unsigned>(channel)) & 1U) != 0;
+        const auto number = static_cast<std::size_t>(channel);
+        const bool isWanted = ((mask >> number) & 1U) != 0;
+        const std::uint32_t mode = number < modes.size() ? modes[number] : 0U;
         if (!isWanted) {
             continue;
         }
-        if (auto written = write(status_address(channel), 0); !written) {
-            return std::unexpected(written.error());
+        if (auto written = write(status_address(channel), mode << MODE_SHIFT); !written) {
+            return written;
         }
+    }
+    return {};
+}
+
+Result<std::uint32_t> SserialSetup::start_setup(std::uint32_t mask, std::span<const std::uint8_t> modes) {
+    if (auto stopped = stop(CHANNEL_MASK); !stopped) {
+        return std::unexpected(stopped.error());
+    }
+    if (auto written = write_modes(mask, modes); !written) {
+        return std::unexpected(written.error());
     }
     return start(START_SETUP, mask);
 }
@@ -138,23 +163,31 @@ Result<SserialCard> SserialSetup::card(int channel) {
     return card;
 }
 
-Result<std::uint8_t> SserialSetup::read_card_byte(int channel, std::uint16_t address) {
+/// Executes the command in the status register with a card in set-up.
+Result<> SserialSetup::card_command(int channel, std::uint32_t status) {
     constexpr std::uint32_t FAULTS = 0xFF00;
-    if (auto written = write(status_address(channel), READ_CARD_BYTE | address); !written) {
-        return std::unexpected(written.error());
+    if (auto written = write(status_address(channel), status); !written) {
+        return written;
     }
     if (auto done = command(DO_IT | (1U << static_cast<unsigned>(channel))); !done) {
-        return std::unexpected(done.error());
+        return done;
     }
-    const auto status = read(status_address(channel));
-    if (!status) {
-        return std::unexpected(status.error());
+    const auto result = read(status_address(channel));
+    if (!result) {
+        return std::unexpected(result.error());
     }
-    if ((*status & FAULTS) != 0) {
+    if ((*result & FAULTS) != 0) {
         return fail(
             fmt::format("The card of smart serial channel {}.{} does not answer (status 0x{:08X}). Check its "
                         "cable and supply.",
-                        instance_, channel, *status));
+                        instance_, channel, *result));
+    }
+    return {};
+}
+
+Result<std::uint8_t> SserialSetup::read_card_byte(int channel, std::uint16_t address) {
+    if (auto done = card_command(channel, READ_CARD_BYTE | address); !done) {
+        return std::unexpected(done.error());
     }
     const auto byte = read(user_address(0, channel));
     if (!byte) {
@@ -163,16 +196,51 @@ Result<std::uint8_t> SserialSetup::read_card_byte(int channel, std::uint16_t add
     return static_cast<std::uint8_t>(*byte);
 }
 
+Result<std::uint64_t> SserialSetup::read_card_value(int channel, std::uint16_t address, int bytes) {
+    std::uint64_t value = 0;
+    for (int i = 0; i < bytes; ++i) {
+        const auto byte = read_card_byte(channel, static_cast<std::uint16_t>(address + i));
+        if (!byte) {
+            return std::unexpected(byte.error());
+        }
+        value |= std::uint64_t{*byte} << static_cast<unsigned>(8 * i);
+    }
+    return value;
+}
+
+Result<std::uint64_t> SserialSetup::read_nonvolatile_value(int channel, std::uint16_t address, int bytes) {
+    constexpr std::uint32_t OPEN = 1, CLOSED = 0;
+    const auto set_access = [&](std::uint32_t access) -> Result<> {
+        if (auto written = write(user_address(0, channel), access); !written) {
+            return written;
+        }
+        return card_command(channel, OPEN_NONVOLATILE);
+    };
+    if (auto opened = set_access(OPEN); !opened) {
+        return std::unexpected(opened.error());
+    }
+    const auto size = static_cast<std::uint32_t>(std::countr_zero(static_cast<unsigned>(bytes)));
+    if (auto done = card_command(channel, READ_NONVOLATILE | (size << SIZE_SHIFT) | address); !done) {
+        return std::unexpected(done.error());
+    }
+    const auto low = read(user_address(0, channel)), high = read(user_address(1, channel));
+    if (auto closed = set_access(CLOSED); !closed) {
+        return std::unexpected(closed.error());
+    }
+    if (!low || !high) {
+        return std::unexpected(low ? high.error() : low.error());
+    }
+    constexpr int ALL_BYTES = 8;
+    const std::uint64_t value = *low | (std::uint64_t{*high} << 32U);
+    return bytes == ALL_BYTES ? value : value & ((std::uint64_t{1} << static_cast<unsigned>(8 * bytes)) - 1);
+}
+
 Result<std::uint32_t> SserialSetup::start_normal(std::uint32_t mask, std::span<const std::uint8_t> modes) {
-    constexpr unsigned MODE_SHIFT = 24;
     if (auto stopped = stop(CHANNEL_MASK); !stopped) {
         return std::unexpected(stopped.error());
     }
-    int channel = 0;
-    for (const std::uint8_t mode : modes) {
-        if (auto written = write(status_address(channel++), std::uint32_t{mode} << MODE_SHIFT); !written) {
-            return std::unexpected(written.error());
-        }
+    if (auto written = write_modes(mask, modes); !written) {
+        return std::unexpected(written.error());
     }
     return start(START_NORMAL, mask);
 }

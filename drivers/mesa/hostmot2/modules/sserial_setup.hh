@@ -33,12 +33,16 @@ class SserialSetup {
 
     /// Resets the processor of the port and reads its version.
     Result<SserialPort> reset();
-    /// Starts the set-up of the channels in `mask`: the mask of those with a card.
-    Result<std::uint32_t> start_setup(std::uint32_t mask);
+    /// Starts the set-up of the channels in `mask`: the mask of those with a card. The description of a card
+    /// depends on its mode; `modes` has one for each channel, without one it is mode 0.
+    Result<std::uint32_t> start_setup(std::uint32_t mask, std::span<const std::uint8_t> modes = {});
     /// The card of a channel in set-up.
     Result<SserialCard> card(int channel);
     /// A byte of the memory of a card in set-up.
     Result<std::uint8_t> read_card_byte(int channel, std::uint16_t address);
+    /// A value of 1, 2, 4 or 8 bytes, the lowest byte first. Where it is stored differs in how it is read.
+    Result<std::uint64_t> read_card_value(int channel, std::uint16_t address, int bytes);
+    Result<std::uint64_t> read_nonvolatile_value(int channel, std::uint16_t address, int bytes);
     /// Starts the exchange of process data with a mode for each channel: the mask of those that follow.
     Result<std::uint32_t> start_normal(std::uint32_t mask, std::span<const std::uint8_t> modes);
     Result<> stop(std::uint32_t mask);
@@ -55,13 +59,13 @@ class SserialSetup {
         return static_cast<std::uint16_t>(module_.address(reg, instance_) + 4 * channel);
     }
     Result<std::uint32_t> read(std::uint16_t address);
-    Result<> write(std::uint16_t address, std::uint32_t value) {
-        return bus_.write_now(address, {&value, 1});
-    }
+    Result<> write(std::uint16_t address, std::uint32_t value);
     Result<> command(std::uint32_t value);
     Result<> wait();
     Result<std::uint8_t> read_local(std::uint16_t address);
     Result<std::uint32_t> start(std::uint32_t command_bits, std::uint32_t mask);
+    Result<> write_modes(std::uint32_t mask, std::span<const std::uint8_t> modes);
+    Result<> card_command(int channel, std::uint32_t status);
 
     RegisterBus &bus_;
     const UsedModule &module_;

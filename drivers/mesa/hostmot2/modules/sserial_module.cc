@@ -1,0 +1,400 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <algorithm>
+#include <array>
+#include <bit>
+
+#include <fmt/format.h>
+
+#include "drivers/mesa/hostmot2/modules/factories.hh"
+#include "drivers/mesa/hostmot2/modules/sserial_discovery.hh"
+#include "drivers/mesa/hostmot2/modules/sserial_port.hh"
+#include "drivers/mesa/hostmot2/modules/sserial_values.hh"
+
+namespace mw::mesa {
+
+namespace {
+
+enum SerialRegister { COMMAND, DATA, STATUS, USER };
+constexpr int WORD_BITS = 32, MAX_WORDS = 7;
+constexpr unsigned MODE_SHIFT = 24;
+
+/// Faults in the status of a channel.
+enum StatusBit : std::uint32_t { REMOTE_FAULT = 1U << 8U, NO_CONTACT = 1U << 13U, WATCHDOG = 1U << 24U };
+struct StatusName {
+    std::uint32_t mask;
+    const char *text;
+};
+constexpr StatusName STATUS_NAMES[] = {
+    {NO_CONTACT | 1U << 0U, "CRC error"},
+    {NO_CONTACT | 1U << 1U, "wrong cookie"},
+    {NO_CONTACT | 1U << 2U, "overrun"},
+    {NO_CONTACT | 1U << 3U, "no answer"},
+    {NO_CONTACT | 1U << 4U, "extra character"},
+    {NO_CONTACT | 1U << 5U, "break"},
+    {REMOTE_FAULT | WATCHDOG, "watchdog"},
+    {REMOTE_FAULT | 1U << 25U, "not enabled"},
+    {REMOTE_FAULT | 1U << 26U, "over-temperature"},
+    {REMOTE_FAULT | 1U << 27U, "over-current"},
+    {REMOTE_FAULT | 1U << 28U, "over-voltage"},
+    {REMOTE_FAULT | 1U << 29U, "under-voltage"},
+    {REMOTE_FAULT | 1U << 30U, "illegal mode"},
+    {REMOTE_FAULT | 1U << 31U, "communication fault"},
+};
+
+/// A communication error, or a card whose watchdog has turned its outputs off.
+bool isFaulty(std::uint32_t status) noexcept {
+    constexpr std::uint32_t BITTEN = REMOTE_FAULT | WATCHDOG;
+    return (status & NO_CONTACT) != 0 || (status & BITTEN) == BITTEN;
+}
+
+const char *status_text(std::uint32_t status) noexcept {
+    for (const StatusName &one : STATUS_NAMES) {
+        if ((status & one.mask) == one.mask) {
+            return one.text;
+        }
+    }
+    return "no reason";
+}
+
+int words_of(int bits) noexcept {
+    return (bits + WORD_BITS - 1) / WORD_BITS;
+}
+
+/// A parameter of a card and the value that its pin shows.
+struct SerialParameter {
+    std::string name;
+    PinType type = PinType::U32;
+    Access access = Access::RO;
+    std::uint32_t u32 = 0;
+    std::int32_t s32 = 0;
+    double real = 0.0;
+
+    void *field() noexcept {
+        switch (type) {
+        case PinType::FLOAT: return &real;
+        case PinType::S32: return &s32;
+        default: return &u32;
+        }
+    }
+};
+
+/// Parameters of other types have no pins.
+bool set_parameter(SerialParameter &parameter, const FoundParameter &found) {
+    const DataRecord &record = found.record;
+    parameter.name = lower_case(record.name);
+    parameter.access = record.direction == FieldDirection::INPUT ? Access::RO : Access::RW;
+    switch (record.type) {
+    case FieldType::UNSIGNED:
+    case FieldType::NV_UNSIGNED:
+        parameter.type = PinType::U32;
+        parameter.u32 = static_cast<std::uint32_t>(found.value);
+        return true;
+    case FieldType::SIGNED:
+    case FieldType::NV_SIGNED: {
+        const auto shift = static_cast<unsigned>(std::max(WORD_BITS - record.bits, 0));
+        parameter.type = PinType::S32;
+        parameter.s32 = static_cast<std::int32_t>(static_cast<std::uint32_t>(found.value) << shift) >>
+                        static_cast<int>(shift);
+        return true;
+    }
+    case FieldType::FLOAT:
+    case FieldType::NV_FLOAT:
+        parameter.type = PinType::FLOAT;
+        parameter.real = record.bits == 2 * WORD_BITS
+                             ? std::bit_cast<double>(found.value)
+                             : double{std::bit_cast<float>(static_cast<std::uint32_t>(found.value))};
+        return true;
+    default: return false;
+    }
+}
+
+struct SerialCard {
+    int channel = 0;
+    std::uint8_t mode = 0;
+    std::string name;  ///< of its pins: 7i76.0.0
+    int input_words = 0, output_words = 0;
+    SserialCardValues values;
+    std::vector<SerialParameter> parameters;
+    std::uint32_t status = 0;  ///< of the last fault
+    WriteHandle mode_write;
+    std::array<WriteHandle, MAX_WORDS> user_writes;
+};
+
+struct SerialPort {
+    explicit SerialPort(const FoundPort &found, std::uint32_t channels)
+        : number(found.port), control(channels) {}
+
+    int number = 0;
+    SserialPortPins pins;
+    SserialPortControl control;
+    std::vector<SerialCard> cards;
+    ReadHandle command_read, data_read, status_read;
+    std::array<ReadHandle, MAX_WORDS> user_reads;
+    WriteHandle command_write;
+};
+
+class SmartSerial final : public Module {
+  public:
+    explicit SmartSerial(const ModuleRequest &request) : module_(request.module) {
+        ports_.reserve(request.assignment.serial_ports.size());
+        for (const FoundPort &found : request.assignment.serial_ports) {
+            add_port(found);
+        }
+    }
+
+    void plan(Registers &registers) override {
+        for (SerialPort &port : ports_) {
+            plan_reads(registers, port);
+            for (SerialCard &card : port.cards) {
+                const auto write = [&](int reg) {
+                    return registers.write(address(port, reg, card.channel), WriteOrder::SMART_SERIAL,
+                                           Send::REQUESTED);
+                };
+                card.mode_write = write(STATUS);
+                for (int i = 0; i < card.output_words; ++i) {
+                    card.user_writes[static_cast<std::size_t>(i)] = write(USER + i);
+                }
+            }
+            // After what it acts on.
+            port.command_write =
+                registers.write(address(port, COMMAND, 0), WriteOrder::SMART_SERIAL, Send::REQUESTED);
+        }
+    }
+    void declare(PinSpace &space) override {
+        for (SerialPort &port : ports_) {
+            binding_.bind(space, fmt::format("sserial.port-{}", port.number), SSERIAL_PORT_PINS, port.pins);
+            for (SerialCard &card : port.cards) {
+                for (const SserialField &field : card.values.fields) {
+                    declare_field(space, card, field);
+                }
+                for (SerialParameter &parameter : card.parameters) {
+                    binding_.add(space, card.name + "." + parameter.name, parameter.type, parameter.access,
+                                 parameter.field());
+                }
+            }
+        }
+    }
+    void read(const Registers &registers, const Cycle &cycle) noexcept override {
+        binding_.load();
+        for (SerialPort &port : ports_) {
+            read_port(registers, port, cycle);
+        }
+        binding_.store();
+    }
+    void write(Registers &registers, const Cycle &cycle) noexcept override {
+        binding_.load();
+        for (SerialPort &port : ports_) {
+            write_port(registers, port, cycle);
+        }
+        binding_.store();
+    }
+    std::size_t take_message(std::span<char> text) noexcept override {
+        for (SerialPort &port : ports_) {
+            const SserialEvents event = port.control.take_event();
+            if (event.type != SserialEvents::Type::NONE) {
+                return message(port, event, text);
+            }
+        }
+        return 0;
+    }
+
+  private:
+    void add_port(const FoundPort &found) {
+        std::uint32_t channels = 0;
+        for (const FoundCard &card : found.cards) {
+            channels |= 1U << static_cast<unsigned>(card.channel);
+        }
+        SerialPort &port = ports_.emplace_back(found, channels);
+        for (const FoundCard &card : found.cards) {
+            SerialCard &added = port.cards.emplace_back();
+            added.channel = card.channel;
+            added.mode = card.mode;
+            added.name = fmt::format("{}.{}.{}", card.name, found.port, card.channel);
+            added.input_words = words_of(card.layout.input_bits);
+            added.output_words = words_of(card.layout.output_bits);
+            added.values = make_sserial_card(card.process, card.layout);
+            for (const FoundParameter &parameter : card.parameters) {
+                SerialParameter one;
+                if (set_parameter(one, parameter)) {
+                    added.parameters.push_back(std::move(one));
+                }
+            }
+        }
+    }
+    std::uint16_t address(const SerialPort &port, int reg, int channel) const noexcept {
+        return static_cast<std::uint16_t>(module_.address(reg, port.number) + 4 * channel);
+    }
+    void plan_reads(Registers &registers, SerialPort &port) const {
+        const auto read = [&](int reg, int count) {
+            return registers.read({address(port, reg, 0), static_cast<std::uint16_t>(count)},
+                                  ReadOrder::SMART_SERIAL);
+        };
+        port.command_read = read(COMMAND, 1);
+        port.data_read = read(DATA, 1);
+        port.status_read = read(STATUS, port.cards.back().channel + 1);
+        for (int word = 0; word < MAX_WORDS; ++word) {
+            int count = 0;
+            for (const SerialCard &card : port.cards) {
+                count = card.input_words > word ? card.channel + 1 : count;
+            }
+            if (count > 0) {
+                port.user_reads[static_cast<std::size_t>(word)] = read(USER + word, count);
+            }
+        }
+    }
+    void declare_field(PinSpace &space, SerialCard &card, const SserialField &field) {
+        const std::string name = card.name + "." + field.name;
+        const Access access = !field.hasOutput() ? Access::OUT : !field.hasInput() ? Access::IN : Access::IO;
+        switch (field.pins) {
+        case FieldPins::BITS:
+            for (int i = 0; i < field.bits; ++i) {
+                declare_bit(space, fmt::format("{}-{:02}", name, i), access,
+                            card.values.bits[field.index + static_cast<std::size_t>(i)]);
+            }
+            return;
+        case FieldPins::BOOLEAN: declare_bit(space, name, access, card.values.bits[field.index]); return;
+        case FieldPins::UNSIGNED:
+        case FieldPins::SIGNED:
+        case FieldPins::REAL: {
+            SserialNumber &number = card.values.numbers[field.index];
+            binding_.add(space, name, PinType::FLOAT, access, &number.value);
+            if (field.pins == FieldPins::REAL) {
+                return;
+            }
+            binding_.add(space, name + "-scalemax", PinType::FLOAT, Access::RW, &number.scale_max);
+            if (field.hasOutput()) {
+                binding_.add(space, name + "-maxlim", PinType::FLOAT, Access::RW, &number.max_limit);
+                binding_.add(space, name + "-minlim", PinType::FLOAT, Access::RW, &number.min_limit);
+            }
+            return;
+        }
+        case FieldPins::STREAM:
+            binding_.add(space, name, PinType::U32, access, &card.values.streams[field.index].value);
+            return;
+        case FieldPins::COUNTER:
+            binding_.bind(space, name, SSERIAL_COUNTER_PINS, card.values.counters[field.index]);
+            return;
+        case FieldPins::NONE: return;
+        }
+    }
+    void declare_bit(PinSpace &space, const std::string &name, Access access, SserialBit &bit) {
+        binding_.add(space, name, PinType::BIT, access, &bit.value);
+        if (access == Access::OUT) {
+            binding_.add(space, name + "-not", PinType::BIT, Access::OUT, &bit.inverse);
+        } else if (access == Access::IN) {
+            binding_.add(space, name + "-invert", PinType::BIT, Access::RW, &bit.invert);
+        }
+    }
+    static void read_port(const Registers &registers, SerialPort &port, const Cycle &cycle) noexcept {
+        SserialReading reading;
+        reading.command = registers.value(port.command_read);
+        reading.failed = registers.value(port.data_read);
+        reading.now_ns = cycle.now_ns;
+        reading.period_s = cycle.period_s;
+        for (SerialCard &card : port.cards) {
+            const std::uint32_t status = registers.value(port.status_read, card.channel);
+            const auto channel = static_cast<unsigned>(card.channel);
+            if (isFaulty(status)) {
+                reading.faulty |= 1U << channel;
+            }
+            const bool isFailed = ((reading.failed >> channel) & 1U) != 0;
+            card.status = isFailed || isFaulty(status) ? status : card.status;
+        }
+        const std::uint32_t fresh = port.control.read(port.pins, reading);
+        for (SerialCard &card : port.cards) {
+            if (((fresh >> static_cast<unsigned>(card.channel)) & 1U) == 0) {
+                continue;
+            }
+            std::array<std::uint32_t, MAX_WORDS> words{};
+            for (std::size_t i = 0; i < static_cast<std::size_t>(card.input_words); ++i) {
+                words[i] = registers.value(port.user_reads[i], card.channel);
+            }
+            sserial_read(card.values, words);
+        }
+    }
+    static void write_port(Registers &registers, SerialPort &port, const Cycle &cycle) noexcept {
+        const SserialCommand command =
+            port.control.write(port.pins, {cycle.now_ns, cycle.period_s, cycle.isWriting});
+        const SserialOutputs outputs = port.control.take_outputs();
+        for (SerialCard &card : port.cards) {
+            if (outputs == SserialOutputs::HELD) {
+                hold_outputs(card.values);
+            } else if (outputs == SserialOutputs::RELEASED) {
+                release_outputs(card.values);
+            }
+            std::array<std::uint32_t, MAX_WORDS> words{};
+            sserial_write(card.values, words);
+            for (std::size_t i = 0; command.hasData && i < static_cast<std::size_t>(card.output_words); ++i) {
+                registers.request(card.user_writes[i], words[i]);
+            }
+            if (command.hasModes) {
+                registers.request(card.mode_write, std::uint32_t{card.mode} << MODE_SHIFT);
+            }
+        }
+        if (command.isDue) {
+            registers.request(port.command_write, command.command);
+        }
+    }
+
+    static std::size_t message(const SerialPort &port, const SserialEvents &event,
+                               std::span<char> text) noexcept;
+
+    UsedModule module_;
+    std::vector<SerialPort> ports_;
+    PinBinding binding_;
+};
+
+std::size_t SmartSerial::message(const SerialPort &port, const SserialEvents &event,
+                                 std::span<char> text) noexcept {
+    constexpr std::int64_t NS_PER_US = 1000, NS_PER_MS = 1'000'000, STEP_US = 100;
+    const SerialCard *failed = nullptr;
+    for (const SerialCard &card : port.cards) {
+        const bool isFailed = ((event.channels >> static_cast<unsigned>(card.channel)) & 1U) != 0;
+        failed = failed == nullptr && isFailed ? &card : failed;
+    }
+    const auto print = [&]<class... Values>(fmt::format_string<Values...> format, Values &&...values) {
+        const auto result =
+            fmt::format_to_n(text.data(), text.size(), format, std::forward<Values>(values)...);
+        return std::min(result.size, text.size());
+    };
+    const std::int64_t shortest_us = event.shortest_ns / NS_PER_US;
+    switch (event.type) {
+    case SserialEvents::Type::LATE: {
+        const std::int64_t longest_us = event.longest_ns / NS_PER_US;
+        return print("Smart serial port {}: an exchange took {} to {} us, longer than the servo period of {} "
+                     "us allows. Use a servo period of at least {} us, or connect fewer cards to this port.",
+                     port.number, shortest_us, longest_us, event.period_ns / NS_PER_US,
+                     (longest_us / STEP_US + 1) * STEP_US);
+    }
+    case SserialEvents::Type::FAULT:
+        if (failed == nullptr) {
+            return print(
+                "Smart serial port {} stopped: exchanges were not finished after {} us. Use a longer "
+                "servo period. The port starts again by itself.",
+                port.number, shortest_us);
+        }
+        return print("Smart serial card {} failed: {} (status 0x{:08X}). Port {} is stopped and starts again "
+                     "by itself. Check the cable and the field supply of the card.",
+                     failed->name, status_text(failed->status), failed->status, port.number);
+    case SserialEvents::Type::NO_START:
+        return print("Smart serial card {} does not start: {} (status 0x{:08X}). Port {} tries again. Check "
+                     "the cable and the field supply of the card.",
+                     failed == nullptr ? std::string_view("?") : std::string_view(failed->name),
+                     failed == nullptr ? "no reason" : status_text(failed->status),
+                     failed == nullptr ? 0U : failed->status, port.number);
+    case SserialEvents::Type::RECOVERED:
+        return print("Smart serial port {} runs again after {} ms. Each output stays off until its pin has "
+                     "been off once, or sserial.port-{}.run has been false.",
+                     port.number, event.stopped_ns / NS_PER_MS, port.number);
+    case SserialEvents::Type::NONE: break;
+    }
+    return 0;
+}
+
+}  // namespace
+
+std::unique_ptr<Module> make_sserial(const ModuleRequest &request) {
+    return std::make_unique<SmartSerial>(request);
+}
+
+}  // namespace mw::mesa

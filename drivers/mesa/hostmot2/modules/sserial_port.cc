@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "drivers/mesa/hostmot2/modules/sserial_port.hh"
+
+#include <algorithm>
+
+namespace mw::mesa {
+
+namespace {
+
+constexpr std::uint32_t DO_IT = 0x1000, STOP = 0x800, START_NORMAL = 0x900, CHANNELS = 0xFF;
+/// Bit 31 of the command register has another use.
+constexpr std::uint32_t COMMAND_MASK = 0x7FFFFFFF;
+/// A card turns its outputs off when it hears nothing for some 10 ms.
+constexpr double OUTPUTS_OFF_S = 0.1;
+/// The longest time for a start, and between two attempts.
+constexpr double START_LIMIT_S = 0.25, RETRY_S = 0.25;
+/// After this time without a write the cards have turned their outputs off and are started again.
+constexpr double LONGEST_GAP_S = 0.01;
+/// A start whose packet was lost shows as failures of the first exchanges, which start the cards once more.
+constexpr int FIRST_EXCHANGES = 10, MOST_SILENT_STARTS = 5;
+/// The pins of the port become outputs with the first write; a start must come later.
+constexpr double SETTLE_S = 0.01;
+/// A port without a late exchange for this time may report the next one.
+constexpr double QUIET_S = 10.0;
+
+}  // namespace
+
+void SserialPortControl::enter(SserialPortPins &pins, SserialState state) noexcept {
+    state_ = state;
+    in_state_s_ = 0.0;
+    isStopSent_ = false;
+    pins.port_state = static_cast<std::uint32_t>(state);
+}
+
+SserialCommand SserialPortControl::send(std::uint32_t command) noexcept {
+    last_command_ = command;
+    isClear_ = false;
+    isAnswered_ = false;
+    return {.isDue = true, .command = command};
+}
+
+SserialCommand SserialPortControl::start(SserialPortPins &pins) noexcept {
+    enter(pins, SserialState::STARTING);
+    exchanges_ = 0;
+    late_shortest_ns_ = 0;
+    pins.fault_count = 0;
+    SserialCommand command = send(START_NORMAL | channels_);
+    command.hasModes = true;
+    command.hasData = true;
+    return command;
+}
+
+void SserialPortControl::stop_by_faults(SserialPortPins &pins, SserialEvents::Type type,
+                                        std::uint32_t channels) noexcept {
+    // One message for each burst: attempts that fail belong to the same one.
+    if (!isRecovering_) {
+        event_ = {.type = type, .channels = channels, .shortest_ns = late_shortest_ns_};
+        stopped_s_ = 0.0;
+    }
+    isRecovering_ = true;
+    pins.fault = true;
+    outputs_ = SserialOutputs::HELD;
+    const bool isStart = type == SserialEvents::Type::NO_START;
+    enter(pins, isStart ? SserialState::FAULTED : SserialState::STOPPING);
+}
+
+void SserialPortControl::note_fault(SserialPortPins &pins, std::uint32_t channels) noexcept {
+    const std::uint64_t sum = std::uint64_t{pins.fault_count} + pins.fault_inc;
+    pins.fault_count = static_cast<std::uint32_t>(std::min<std::uint64_t>(sum, UINT32_MAX));
+    if (pins.fault_inc > 0 && pins.fault_count >= pins.fault_lim) {
+        stop_by_faults(pins, SserialEvents::Type::FAULT, channels);
+    }
+}
+
+void SserialPortControl::note_late(SserialPortPins &pins, const SserialReading &reading) noexcept {
+    const std::int64_t elapsed_ns = reading.now_ns - sent_ns_;
+    const auto period_ns = static_cast<std::int64_t>(reading.period_s * 1e9);
+    // The thread was late with its write and read soon after it: the exchange is not too long.
+    if (elapsed_ns < period_ns / 2) {
+        return;
+    }
+    late_shortest_ns_ = std::max(late_shortest_ns_, elapsed_ns);
+    note_fault(pins, 0);
+}
+
+void SserialPortControl::evaluate_start(SserialPortPins &pins, const SserialReading &reading) noexcept {
+    if ((reading.failed & channels_) != 0) {
+        stop_by_faults(pins, SserialEvents::Type::NO_START, reading.failed & channels_);
+        return;
+    }
+    enter(pins, SserialState::RUNNING);
+}
+
+std::uint32_t SserialPortControl::read(SserialPortPins &pins, const SserialReading &reading) noexcept {
+    isClear_ = (reading.command & COMMAND_MASK) == 0;
+    const bool isExchange = (last_command_ & DO_IT) != 0;
+    if (!isClear_) {
+        if (isExchange && state_ == SserialState::RUNNING) {
+            note_late(pins, reading);
+        }
+        return 0;
+    }
+    if (isAnswered_) {
+        return 0;
+    }
+    isAnswered_ = true;
+    if (state_ == SserialState::STARTING) {
+        evaluate_start(pins, reading);
+        return 0;
+    }
+    if (state_ != SserialState::RUNNING || !isExchange) {
+        return 0;
+    }
+    if (late_shortest_ns_ != 0) {
+        if (!isLateReported_ && event_.type == SserialEvents::Type::NONE) {
+            event_ = {.type = SserialEvents::Type::LATE,
+                      .shortest_ns = late_shortest_ns_,
+                      .longest_ns = reading.now_ns - sent_ns_,
+                      .period_ns = static_cast<std::int64_t>(reading.period_s * 1e9)};
+        }
+        isLateReported_ = true;
+        quiet_s_ = 0.0;
+        late_shortest_ns_ = 0;
+    }
+    const std::uint32_t failed = (reading.failed | reading.faulty) & channels_;
+    const bool isFirst = exchanges_ < FIRST_EXCHANGES;
+    exchanges_ += isFirst ? 1 : 0;
+    if (failed != 0 && isFirst && silent_starts_ < MOST_SILENT_STARTS) {
+        ++silent_starts_;
+        enter(pins, SserialState::IDLE);
+    } else if (failed != 0) {
+        note_fault(pins, failed);
+    } else {
+        pins.fault_count -= std::min(pins.fault_count, pins.fault_dec);
+        silent_starts_ = isFirst ? silent_starts_ : 0;
+        if (isRecovering_ && !isFirst) {
+            isRecovering_ = false;
+            pins.fault = false;
+            event_ = {.type = SserialEvents::Type::RECOVERED,
+                      .stopped_ns = static_cast<std::int64_t>(stopped_s_ * 1e9)};
+        }
+    }
+    return channels_ & ~failed;
+}
+
+/// Stops the cards for a while, then starts them.
+SserialCommand SserialPortControl::write_stopping(SserialPortPins &pins, double period_s) noexcept {
+    in_state_s_ += period_s;
+    if (!isStopSent_) {
+        // A processor that is still busy is stopped all the same: it may hang.
+        isStopSent_ = true;
+        return send(STOP | CHANNELS);
+    }
+    const double pause_s = state_ == SserialState::FAULTED ? RETRY_S : OUTPUTS_OFF_S;
+    return in_state_s_ >= pause_s ? start(pins) : SserialCommand{};
+}
+
+SserialCommand SserialPortControl::write_idle(SserialPortPins &pins, double period_s) noexcept {
+    in_state_s_ += period_s;
+    // Cards may run, from before a fault of the bus or of another program.
+    if (!isStopSent_) {
+        isStopSent_ = true;
+        return send(STOP | CHANNELS);
+    }
+    return isClear_ && in_state_s_ >= SETTLE_S ? start(pins) : SserialCommand{};
+}
+
+SserialCommand SserialPortControl::write(SserialPortPins &pins, const Moment &moment) noexcept {
+    stopped_s_ += isRecovering_ ? moment.period_s : 0.0;
+    quiet_s_ += moment.period_s;
+    isLateReported_ = isLateReported_ && quiet_s_ < QUIET_S;
+    if (!moment.isWriting) {
+        gap_s_ += moment.period_s;
+        return {};
+    }
+    const bool hasGap = gap_s_ > LONGEST_GAP_S;
+    gap_s_ = 0.0;
+    if (hasGap && state_ != SserialState::IDLE && !isRecovering_) {
+        enter(pins, SserialState::IDLE);
+    }
+    if (!pins.run) {
+        const bool isStopDue = state_ != SserialState::IDLE || !isStopSent_;
+        if (!isStopDue) {
+            return {};
+        }
+        // The operator stops the port: this ends a fault, and outputs follow their pins after the next start.
+        enter(pins, SserialState::IDLE);
+        isStopSent_ = true;
+        isRecovering_ = pins.fault = false;
+        pins.fault_count = 0;
+        silent_starts_ = 0;
+        outputs_ = SserialOutputs::RELEASED;
+        return send(STOP | CHANNELS);
+    }
+    switch (state_) {
+    case SserialState::IDLE: return write_idle(pins, moment.period_s);
+    case SserialState::STOPPING:
+    case SserialState::FAULTED: return write_stopping(pins, moment.period_s);
+    case SserialState::STARTING:
+        in_state_s_ += moment.period_s;
+        if (in_state_s_ > START_LIMIT_S) {
+            stop_by_faults(pins, SserialEvents::Type::NO_START, channels_);
+        }
+        return {};
+    case SserialState::RUNNING: break;
+    }
+    if (!isClear_) {
+        return {};
+    }
+    SserialCommand command = send(DO_IT | channels_);
+    command.hasData = true;
+    sent_ns_ = moment.now_ns;
+    return command;
+}
+
+SserialEvents SserialPortControl::take_event() noexcept {
+    const SserialEvents event = event_;
+    event_ = {};
+    return event;
+}
+
+SserialOutputs SserialPortControl::take_outputs() noexcept {
+    const SserialOutputs outputs = outputs_;
+    outputs_ = SserialOutputs::KEPT;
+    return outputs;
+}
+
+}  // namespace mw::mesa

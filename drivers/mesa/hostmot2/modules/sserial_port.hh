@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The state of a smart serial port: it starts the exchange with its cards, requests one exchange in each
+// cycle, counts faults, and starts again by itself after too many. Pure functions without registers.
+// Source: shared/hardware.md, parts B9 and G.
+#pragma once
+
+#include <cstdint>
+
+#include "drivers/mesa/hostmot2/pins.hh"
+
+namespace mw::mesa {
+
+/// Values of the pin port_state.
+enum class SserialState : std::uint32_t {
+    IDLE = 0,      ///< `run` is false, or nothing has been written yet
+    STARTING = 2,  ///< the cards are started
+    RUNNING = 3,
+    STOPPING = 4,  ///< stopped after faults, with a pause in which the cards turn their outputs off
+    FAULTED = 10,  ///< the last attempt to start has failed; the next one follows
+};
+
+struct SserialPortPins {
+    bool run = true;
+    bool fault = false;  ///< stopped by faults: inputs are old and outputs are off
+    std::uint32_t fault_count = 0, port_state = 0, port_state2 = 0, port_state3 = 0;
+    std::uint32_t fault_inc = 10, fault_dec = 1, fault_lim = 200;
+};
+constexpr PinRow<SserialPortPins> SSERIAL_PORT_PINS[] = {
+    {"run", Access::IN, &SserialPortPins::run},
+    {"fault", Access::OUT, &SserialPortPins::fault},
+    {"fault-count", Access::OUT, &SserialPortPins::fault_count},
+    {"port_state", Access::OUT, &SserialPortPins::port_state},
+    {"port_state2", Access::OUT, &SserialPortPins::port_state2},
+    {"port_state3", Access::OUT, &SserialPortPins::port_state3},
+    {"fault-inc", Access::RW, &SserialPortPins::fault_inc},
+    {"fault-dec", Access::RW, &SserialPortPins::fault_dec},
+    {"fault-lim", Access::RW, &SserialPortPins::fault_lim},
+};
+
+/// What the registers of a port read.
+struct SserialReading {
+    std::uint32_t command = 0;  ///< 0: the last command is done
+    std::uint32_t failed = 0;   ///< bits of channels of the data register
+    std::uint32_t faulty = 0;   ///< channels whose status has a fault
+    std::int64_t now_ns = 0;    ///< time of this read
+    double period_s = 0.001;
+};
+
+/// What happened to a port, for one message for each burst.
+struct SserialEvents {
+    enum class Type : std::uint8_t {
+        NONE,
+        LATE,       ///< an exchange is longer than the period
+        FAULT,      ///< too many faults: stopped
+        NO_START,   ///< the cards do not start
+        RECOVERED,  ///< runs again
+    } type = Type::NONE;
+    std::uint32_t channels = 0;                    ///< that failed
+    std::int64_t shortest_ns = 0, longest_ns = 0;  ///< limits of the time of an exchange; 0: not known
+    std::int64_t stopped_ns = 0;                   ///< how long the port was stopped
+    std::int64_t period_ns = 0;
+};
+
+/// What a port writes in this cycle.
+struct SserialCommand {
+    bool isDue = false;
+    std::uint32_t command = 0;
+    bool hasModes = false;  ///< with the modes of the cards
+    bool hasData = false;   ///< with their outputs
+};
+
+/// What becomes of the outputs with the next command.
+enum class SserialOutputs : std::uint8_t { KEPT, HELD, RELEASED };
+
+class SserialPortControl {
+  public:
+    explicit SserialPortControl(std::uint32_t channels) noexcept : channels_(channels) {}
+
+    /// Evaluates a fresh read; the mask of channels whose words are new. [servo thread]
+    std::uint32_t read(SserialPortPins &pins, const SserialReading &reading) noexcept;
+    /// Chooses the command of this cycle. `isWriting` false: nothing can be sent. [servo thread]
+    struct Moment {
+        std::int64_t now_ns = 0;
+        double period_s = 0.001;
+        bool isWriting = false;
+    };
+    SserialCommand write(SserialPortPins &pins, const Moment &moment) noexcept;
+    /// What happened since the last call, once. [servo thread]
+    SserialEvents take_event() noexcept;
+    SserialOutputs take_outputs() noexcept;
+
+  private:
+    void note_late(SserialPortPins &pins, const SserialReading &reading) noexcept;
+    void note_fault(SserialPortPins &pins, std::uint32_t channels) noexcept;
+    void stop_by_faults(SserialPortPins &pins, SserialEvents::Type type, std::uint32_t channels) noexcept;
+    void enter(SserialPortPins &pins, SserialState state) noexcept;
+    SserialCommand send(std::uint32_t command) noexcept;
+    SserialCommand start(SserialPortPins &pins) noexcept;
+    SserialCommand write_idle(SserialPortPins &pins, double period_s) noexcept;
+    SserialCommand write_stopping(SserialPortPins &pins, double period_s) noexcept;
+    void evaluate_start(SserialPortPins &pins, const SserialReading &reading) noexcept;
+
+    std::uint32_t channels_;
+    SserialState state_ = SserialState::IDLE;
+    double in_state_s_ = 0.0, gap_s_ = 0.0, stopped_s_ = 0.0, quiet_s_ = 0.0;
+    std::uint32_t last_command_ = 0;
+    bool isClear_ = false;    ///< the last read saw no command in work
+    bool isAnswered_ = true;  ///< the last command has been evaluated
+    bool isStopSent_ = false, isRecovering_ = false, isLateReported_ = false;
+    int exchanges_ = 0;  ///< since the start of the cards, up to a few
+    int silent_starts_ = 0;
+    std::int64_t sent_ns_ = 0, late_shortest_ns_ = 0;
+    SserialEvents event_;
+    SserialOutputs outputs_ = SserialOutputs::KEPT;
+};
+
+}  // namespace mw::mesa
