@@ -142,7 +142,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
     for (int cycle = 0; cycle < 20 || (!numbers.isEmpty() && cycle < 200); ++cycle) {
         constexpr long PERIOD_NS = 1'000'000;
         pins.change(numbers);
-        (*driver)->read(PERIOD_NS);
+        (*driver)->read(PERIOD_NS, now_ns);
         (*driver)->write(PERIOD_NS, now_ns += PERIOD_NS);
     }
     return 0;

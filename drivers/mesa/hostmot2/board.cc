@@ -91,7 +91,8 @@ void Board::read(long period_ns, std::int64_t now_ns) noexcept {
     cycle.isFresh = true;
     cycle.hasLostWrite = isWriteDoubtful_;
     isWriteDoubtful_ = false;
-    cycle.now_ns = now_ns != 0 ? now_ns : last_write_ns_ + period_ns;
+    read_ns_ = now_ns;
+    cycle.now_ns = read_ns_;
     for (const auto &module : modules_) {
         module->read(registers_, cycle);
     }
@@ -125,14 +126,19 @@ void Board::write(long period_ns, std::int64_t now_ns) noexcept {
         return;
     }
     note_timeout(period_ns);
-    // All registers only when the read of this cycle has shown that the watchdog has not bitten: else the
-    // configuration would turn the outputs on again that a bite has turned off.
-    const bool areAll = isRewriteDue_ && cycle.isFresh;
+    const bool areAll = isRewriteDue_ && cycle.isFresh && isReadRecent(now_ns);
     const bool isSent = bus_.write(registers_.list(areAll));
     isRewriteDue_ = !isSent || (isRewriteDue_ && !areAll);
     if (isSent) {
         note_write(now_ns);
     }
+}
+
+// The configuration turns the outputs on again that a bite has turned off. So all registers are written only
+// when the read of this cycle has shown that the watchdog has not bitten, and when it cannot have bitten
+// since: the process may have been suspended between read and write.
+bool Board::isReadRecent(std::int64_t now_ns) const noexcept {
+    return watchdog_ == nullptr || now_ns - read_ns_ < std::int64_t{watchdog_->timeout_ns()} / 2;
 }
 
 void Board::note_write(std::int64_t now_ns) noexcept {

@@ -33,8 +33,8 @@ class Board {
     /// Sends the request of this cycle early. [servo thread]
     void request() noexcept { bus_.request(); }
     /// Reads all registers; after a failure all pins keep their values. `now_ns` of the same clock as in
-    /// write(); 0: one period after the last write. [servo thread]
-    void read(long period_ns, std::int64_t now_ns = 0) noexcept;
+    /// write(). [servo thread]
+    void read(long period_ns, std::int64_t now_ns) noexcept;
     /// Writes what is due. Nothing is written before a read succeeded, nor while the watchdog has bitten.
     /// `now_ns` of any clock measures the time between writes. [servo thread]
     void write(long period_ns, std::int64_t now_ns) noexcept;
@@ -52,6 +52,7 @@ class Board {
   private:
     Board(RegisterBus &bus, Assignment assignment) : bus_(bus), assignment_(std::move(assignment)) {}
     void add(const Idrom &idrom, const Config &config, const UsedModule &module);
+    bool isReadRecent(std::int64_t now_ns) const noexcept;
     void note_write(std::int64_t now_ns) noexcept;
     void note_timeout(long period_ns) noexcept;
 
@@ -62,7 +63,7 @@ class Board {
     Watchdog *watchdog_ = nullptr;  ///< in modules_; null: the firmware has none
     bool isFresh_ = false, isReadOnce_ = false, isStopped_ = false, isRewriteDue_ = true;
     bool isWriteDoubtful_ = true;  ///< since the last read that succeeded
-    std::int64_t last_write_ns_ = 0, longest_gap_ns_ = 0, checked_timeout_ns_ = 0;
+    std::int64_t last_write_ns_ = 0, read_ns_ = 0, longest_gap_ns_ = 0, checked_timeout_ns_ = 0;
     bool hasWritten_ = false;
     int failed_reads_ = 0;
     BoardEvents events_;

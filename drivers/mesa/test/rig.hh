@@ -55,7 +55,7 @@ class Rig {
     void read() {
         next_ns_ += PERIOD_NS;
         transport->sleep_until(next_ns_);
-        driver->read(PERIOD_NS);
+        driver->read(PERIOD_NS, transport->now_ns());
     }
     void write() { driver->write(PERIOD_NS, transport->now_ns()); }
     /// Time passes without the driver, as after SIGKILL.

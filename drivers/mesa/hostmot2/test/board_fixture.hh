@@ -88,7 +88,7 @@ class BoardTest : public ::testing::Test {
         board = std::move(*made);
         board->declare(pins);
     }
-    void read() { board->read(PERIOD_NS); }
+    void read() { board->read(PERIOD_NS, now_ns); }
     void write() {
         now_ns += PERIOD_NS;
         board->write(PERIOD_NS, now_ns);

@@ -94,6 +94,20 @@ TEST_F(CycleOfBoard, WritesNoConfigurationInACycleWhoseReadFailed) {
     EXPECT_EQ(bus.registers[STATUS], 1U);
 }
 
+TEST_F(CycleOfBoard, WritesNoConfigurationWhenItWasSuspendedAfterTheRead) {
+    cycle(3);
+    const std::size_t few = bus.written.back().size();
+    bus.isNextWriteLost = true;
+    cycle();
+    board->read(PERIOD_NS, now_ns + PERIOD_NS);
+    now_ns += 100 * PERIOD_NS;
+    bus.registers[STATUS] = 1;  // the watchdog bites meanwhile
+    write();
+    EXPECT_EQ(bus.written.back().size(), few);
+    cycle();
+    EXPECT_EQ(pins.get("watchdog.has_bit"), 1.0);
+}
+
 TEST_F(CycleOfBoard, WritesAllInTheFirstCycleThatIsReadAfterAFailure) {
     cycle(3);
     bus.next_read = CycleRead::FAILED;

@@ -88,7 +88,7 @@ TEST_F(DescriptionOfFirmware, WithAnyWordDamagedIsRefusedOrUsable) {
         PinMap pins;
         (*board)->declare(pins);
         for (int cycle = 0; cycle < 3; ++cycle) {
-            (*board)->read(PERIOD_NS);
+            (*board)->read(PERIOD_NS, 0);
             (*board)->write(PERIOD_NS, 0);
         }
     }
