@@ -72,6 +72,14 @@ void Board::declare(PinSpace &space) {
     }
 }
 
+Ports Board::ports() {
+    Ports all;
+    for (const auto &module : modules_) {
+        module->add_ports(all);
+    }
+    return all;
+}
+
 void Board::read(long period_ns) noexcept {
     const CycleRead result = bus_.read(registers_.inputs(), period_ns);
     isFresh_ = result == CycleRead::DONE;

@@ -26,6 +26,8 @@ class Board {
 
     /// Makes all pins and parameters. [while loading]
     void declare(PinSpace &space);
+    /// Serial interfaces for other components. [while loading]
+    Ports ports();
     /// Modules that are left out. [while loading]
     const std::vector<std::string> &warnings() const noexcept { return assignment_.warnings; }
     const Assignment &assignment() const noexcept { return assignment_; }

@@ -10,6 +10,7 @@
 #include "drivers/mesa/hostmot2/board.hh"
 #include "drivers/mesa/hostmot2/hal/hal_pins.hh"
 #include "drivers/mesa/hostmot2/hal/log_idrom.hh"
+#include "drivers/mesa/hostmot2/hal/serial.hh"
 #include "drivers/mesa/identity/idrom.hh"
 #include "hal.h"
 #include "rtapi.h"
@@ -130,10 +131,12 @@ int register_board(const BoardRequest &request) {
     if (pins.status() < 0) {
         return pins.status();
     }
+    register_ports(request.name, (*board)->ports());
     auto made = std::make_unique<HalBoard>(HalBoard{request.comp_id, request.name, std::move(*board)});
     boards().push_back(std::move(made));
     const int status = export_functions(*boards().back());
     if (status < 0) {
+        unregister_ports(request.name);
         boards().pop_back();
     }
     return status;
@@ -143,6 +146,7 @@ void unregister_boards(int comp_id) {
     std::erase_if(boards(), [&](const std::unique_ptr<HalBoard> &board) {
         const bool isOfIt = board->comp_id == comp_id;
         if (isOfIt) {
+            unregister_ports(board->name);
             board->board->stop();
         }
         return isOfIt;

@@ -26,6 +26,9 @@ constexpr Factory FACTORIES[] = {
     {Gtag::THREE_PHASE_PWM, make_three_phase_pwms},
     {Gtag::RC_PWM, make_rc_pwms},
     {Gtag::RESOLVER, make_resolvers},
+    {Gtag::UART_TX, make_uarts},
+    {Gtag::PKT_UART_TX, make_packet_uarts},
+    {Gtag::BSPI, make_bspis},
 };
 
 }  // namespace
@@ -33,6 +36,12 @@ constexpr Factory FACTORIES[] = {
 std::unique_ptr<Module> make_module(const ModuleRequest &request) {
     const auto *factory = std::ranges::find(FACTORIES, request.module.descriptor.gtag, &Factory::gtag);
     return factory == std::end(FACTORIES) ? nullptr : factory->make(request);
+}
+
+const UsedModule *find_module(const Assignment &assignment, Gtag gtag) noexcept {
+    const auto found = std::ranges::find_if(
+        assignment.modules, [&](const UsedModule &module) { return module.descriptor.gtag == gtag; });
+    return found == assignment.modules.end() ? nullptr : &*found;
 }
 
 bool hasDpll(const Assignment &assignment) noexcept {
