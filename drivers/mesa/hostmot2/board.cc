@@ -72,6 +72,16 @@ void Board::declare(PinSpace &space) {
     }
 }
 
+bool Board::hasTriggers() const noexcept {
+    return std::ranges::any_of(modules_, [](const auto &module) { return module->hasTrigger(); });
+}
+
+void Board::trigger_encoders() noexcept {
+    for (const auto &module : modules_) {
+        module->trigger();
+    }
+}
+
 Ports Board::ports() {
     Ports all;
     for (const auto &module : modules_) {

@@ -32,6 +32,10 @@ class Board {
     const std::vector<std::string> &warnings() const noexcept { return assignment_.warnings; }
     const Assignment &assignment() const noexcept { return assignment_; }
 
+    /// Whether there are encoders that trigger_encoders() starts. [while loading]
+    bool hasTriggers() const noexcept;
+    /// Starts the transfers of absolute encoders with the next write. [servo thread]
+    void trigger_encoders() noexcept;
     /// Sends the request of this cycle early. [servo thread]
     void request() noexcept { bus_.request(); }
     /// Reads all registers; after a failure all pins keep their values. [servo thread]

@@ -35,6 +35,10 @@ class Module {
     virtual void declare(PinSpace &space) = 0;
     /// Adds its interfaces for other components. [while loading]
     virtual void add_ports(Ports &ports) { (void)ports; }
+    /// Whether a user starts transfers of encoders with trigger(). [while loading]
+    virtual bool hasTrigger() const noexcept { return false; }
+    /// Starts the transfers of encoders with the next write. [servo thread]
+    virtual void trigger() noexcept {}
     /// Takes the registers of this cycle; called when all are new. [servo thread]
     virtual void read(const Registers &registers, const Cycle &cycle) noexcept = 0;
     /// Sets the registers to write. After a failed read it is called without read(). [servo thread]

@@ -63,6 +63,9 @@ void read_function(void *self, long period_ns) {
 void request_function(void *self, long) {
     static_cast<HalBoard *>(self)->board->request();
 }
+void trigger_function(void *self, long) {
+    static_cast<HalBoard *>(self)->board->trigger_encoders();
+}
 void write_function(void *self, long period_ns) {
     auto &board = *static_cast<HalBoard *>(self);
     board.board->write(period_ns, rtapi_get_time());
@@ -70,8 +73,11 @@ void write_function(void *self, long period_ns) {
 }
 
 int export_functions(HalBoard &board) {
-    const std::pair<const char *, void (*)(void *, long)> functions[] = {
+    std::vector<std::pair<const char *, void (*)(void *, long)>> functions = {
         {"read", read_function}, {"read-request", request_function}, {"write", write_function}};
+    if (board.board->hasTriggers()) {
+        functions.emplace_back("trigger-encoders", trigger_function);
+    }
     for (const auto &[name, function] : functions) {
         const std::string full = board.name + "." + name;
         if (const int status = hal_export_funct(full.c_str(), function, &board, 1, 0, board.comp_id);

@@ -29,6 +29,9 @@ constexpr Factory FACTORIES[] = {
     {Gtag::UART_TX, make_uarts},
     {Gtag::PKT_UART_TX, make_packet_uarts},
     {Gtag::BSPI, make_bspis},
+    {Gtag::SSI, make_absolute_encoders},
+    {Gtag::BISS, make_absolute_encoders},
+    {Gtag::FANUC_ABSOLUTE, make_absolute_encoders},
 };
 
 }  // namespace
