@@ -18,6 +18,9 @@ std::unique_ptr<Module> make_inms(const ModuleRequest &request);
 std::unique_ptr<Module> make_three_phase_pwms(const ModuleRequest &request);
 std::unique_ptr<Module> make_rc_pwms(const ModuleRequest &request);
 std::unique_ptr<Module> make_resolvers(const ModuleRequest &request);
+std::unique_ptr<Module> make_galvanometers(const ModuleRequest &request);
+std::unique_ptr<Module> make_one_shots(const ModuleRequest &request);
+std::unique_ptr<Module> make_period_meters(const ModuleRequest &request);
 std::unique_ptr<Module> make_absolute_encoders(const ModuleRequest &request);
 /// Of a firmware with transmitters and receivers; null otherwise.
 std::unique_ptr<Module> make_uarts(const ModuleRequest &request);

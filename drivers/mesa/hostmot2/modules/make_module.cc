@@ -32,6 +32,9 @@ constexpr Factory FACTORIES[] = {
     {Gtag::SSI, make_absolute_encoders},
     {Gtag::BISS, make_absolute_encoders},
     {Gtag::FANUC_ABSOLUTE, make_absolute_encoders},
+    {Gtag::XY2_100, make_galvanometers},
+    {Gtag::ONE_SHOT, make_one_shots},
+    {Gtag::PERIOD_METER, make_period_meters},
 };
 
 }  // namespace
