@@ -16,6 +16,7 @@ struct BoardEvents {
     std::int64_t longest_gap_ns = 0;  ///< the longest time between two writes before it
     int failed_reads = 0;             ///< reads in a row that failed before it
     bool isTimeoutShort = false;      ///< the time of the watchdog is less than 1.5 periods
+    bool isDumpRequested = false;     ///< a user wants describe() in the log
 };
 
 class Board {
@@ -45,6 +46,10 @@ class Board {
     void write(long period_ns, std::int64_t now_ns) noexcept;
     /// What happened since the last call. [servo thread]
     BoardEvents take_events() noexcept;
+
+    /// Line `line` of the state of the board: modules, then registers with the values that were written last.
+    /// False: there are no more lines. [servo thread]
+    bool describe(int line, std::span<char> text) const noexcept;
 
     std::int64_t timeout_ns() const noexcept { return checked_timeout_ns_; }
 

@@ -39,6 +39,8 @@ class Module {
     virtual bool hasTrigger() const noexcept { return false; }
     /// Starts the transfers of encoders with the next write. [servo thread]
     virtual void trigger() noexcept {}
+    /// True once after a user requested the state of the board for the log. [servo thread]
+    virtual bool take_dump_request() noexcept { return false; }
     /// Takes the registers of this cycle; called when all are new. [servo thread]
     virtual void read(const Registers &registers, const Cycle &cycle) noexcept = 0;
     /// Sets the registers to write. After a failed read it is called without read(). [servo thread]

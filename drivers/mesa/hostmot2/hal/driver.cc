@@ -25,6 +25,7 @@ struct HalBoard {
     int comp_id = 0;
     std::string name;
     std::unique_ptr<Board> board;
+    int dump_line = -1;  ///< the next line of the state for the log; negative: none
 };
 
 DriverOptions &options() {
@@ -55,6 +56,21 @@ void report(HalBoard &board) noexcept {
             "hm2/%s: watchdog.timeout_ns is %lld, less than 1.5 periods of the thread. Increase it.", name,
             static_cast<long long>(board.board->timeout_ns()));
     }
+    if (events.isDumpRequested) {
+        board.dump_line = 0;
+    }
+}
+
+/// One line of the state in each cycle, so that the log does not overflow. [servo thread]
+void dump(HalBoard &board) noexcept {
+    constexpr std::size_t MAX_LINE = 128;
+    char text[MAX_LINE];
+    if (board.dump_line >= 0 && board.board->describe(board.dump_line, text)) {
+        rtapi_print("hm2/%s: %s\n", board.name.c_str(), text);
+        ++board.dump_line;
+    } else {
+        board.dump_line = -1;
+    }
 }
 
 void read_function(void *self, long period_ns) {
@@ -70,6 +86,7 @@ void write_function(void *self, long period_ns) {
     auto &board = *static_cast<HalBoard *>(self);
     board.board->write(period_ns, rtapi_get_time());
     report(board);
+    dump(board);
 }
 
 int export_functions(HalBoard &board) {

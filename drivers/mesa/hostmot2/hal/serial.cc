@@ -12,7 +12,7 @@ void add(std::vector<NamedPort<Port>> &all, const std::string &board,
          const std::vector<NamedPort<Port>> &ports, const char *type) {
     for (const NamedPort<Port> &port : ports) {
         all.push_back({board + "." + port.name, port.port});
-        rtapi_print_msg(RTAPI_MSG_INFO, "hm2/%s: %s %s\n", board.c_str(), type, all.back().name.c_str());
+        rtapi_print("hm2/%s: %s %s\n", board.c_str(), type, all.back().name.c_str());
     }
 }
 

@@ -36,7 +36,7 @@ std::uint32_t one_shot_rate(double hz, std::uint32_t clock_hz) noexcept {
 }
 
 std::uint32_t one_shot_control(const OneShotPins &pins) noexcept {
-    constexpr unsigned RISE = 3, FALL = 4, AGAIN = 5, ENABLE = 6, RESET = 7, SOFTWARE_BIT = 10;
+    constexpr unsigned RISE = 3, FALL = 4, AGAIN = 5, ENABLE = 6, RESET = 7, SOFTWARE_BIT = 10, TIMER = 12;
     const auto source = [](std::uint32_t select) { return select <= TIMER_2 ? select : std::uint32_t{OFF}; };
     const std::uint32_t first = source(pins.select1) | flag(pins.on_rise1, RISE) | flag(pins.on_fall1, FALL) |
                                 flag(pins.retriggerable1, AGAIN) | flag(pins.enable1, ENABLE) |
@@ -45,7 +45,10 @@ std::uint32_t one_shot_control(const OneShotPins &pins) noexcept {
                                  flag(pins.on_fall2, FALL) | flag(pins.retriggerable2, AGAIN) |
                                  flag(pins.enable2, ENABLE) | flag(pins.reset2, RESET) |
                                  flag(pins.software2, SOFTWARE_BIT);
-    return first | (second << SECOND_TIMER);
+    constexpr std::int32_t LAST_TIMER = 4;
+    const bool isTimer = pins.dpll_timer_number > 0 && pins.dpll_timer_number <= LAST_TIMER;
+    const std::uint32_t timer = isTimer ? static_cast<std::uint32_t>(pins.dpll_timer_number) << TIMER : 0U;
+    return first | timer | (second << SECOND_TIMER);
 }
 
 void one_shot_read(OneShotPins &pins, std::uint32_t control_register) noexcept {

@@ -17,6 +17,7 @@ struct OneShotPins {
     double filter1 = 0.1, filter2 = 0.1;  ///< [ms]
     double rate = 1000.0;                 ///< [Hz]
     std::uint32_t select1 = OFF, select2 = OFF;
+    std::int32_t dpll_timer_number = 0;  ///< 1 to 4; others: none
     bool on_rise1 = false, on_rise2 = false, on_fall1 = false, on_fall2 = false;
     bool retriggerable1 = false, retriggerable2 = false, enable1 = false, enable2 = false;
     bool reset1 = false, reset2 = false, software1 = false, software2 = false;
@@ -31,6 +32,7 @@ constexpr PinRow<OneShotPins> ONE_SHOT_PINS[] = {
     {"rate", Access::IN, &OneShotPins::rate},
     {"trigger_select1", Access::IN, &OneShotPins::select1},
     {"trigger_select2", Access::IN, &OneShotPins::select2},
+    {"dpll_timer_number", Access::IN, &OneShotPins::dpll_timer_number},
     {"trigger_on_rise1", Access::IN, &OneShotPins::on_rise1},
     {"trigger_on_rise2", Access::IN, &OneShotPins::on_rise2},
     {"trigger_on_fall1", Access::IN, &OneShotPins::on_fall1},

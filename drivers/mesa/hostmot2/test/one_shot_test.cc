@@ -47,6 +47,10 @@ TEST_F(OneShotOfBoard, HasTheRegistersOfLinuxCnc) {
     pins.set(name + "trigger_select2", 5);
     cycle();
     EXPECT_EQ(bus.registers[CONTROL], expected | 1U | (5U << 16U));
+    pins.set(name + "dpll_timer_number", 1);
+    cycle();
+    EXPECT_EQ(bus.registers[CONTROL], expected | 0x1001U | (5U << 16U));
+    pins.set(name + "dpll_timer_number", 0);
     pins.set(name + "trigger_select2", 9);
     cycle();
     EXPECT_EQ(bus.registers[CONTROL], expected | 1U) << "no such source";
