@@ -49,9 +49,12 @@ std::uint32_t galvanometer_mode(const GalvanometerPins &x, const GalvanometerPin
                                 bool isEnabled) noexcept {
     constexpr std::uint32_t CONTROL_MASK = 7, BITS_18_X = 1U << 10U, BITS_18_Y = 1U << 11U,
                             COMMAND_X = 1U << 12U, COMMAND_Y = 1U << 13U;
-    const std::uint32_t clear = OVERFLOW_POS_X | OVERFLOW_POS_Y | OVERFLOW_VEL_X | OVERFLOW_VEL_Y;
-    return (x.control & CONTROL_MASK) | ((y.control & CONTROL_MASK) << 3U) | (isEnabled ? 0U : clear) |
-           (x.is18Bit ? BITS_18_X : 0U) | (y.is18Bit ? BITS_18_Y : 0U) | (x.isCommandMode ? COMMAND_X : 0U) |
+    constexpr std::uint32_t DATA_X = 1, DATA_Y = 1U << 3U;
+    if (!isEnabled) {
+        return DATA_X | DATA_Y | OVERFLOW_POS_X | OVERFLOW_POS_Y | OVERFLOW_VEL_X | OVERFLOW_VEL_Y;
+    }
+    return (x.control & CONTROL_MASK) | ((y.control & CONTROL_MASK) << 3U) | (x.is18Bit ? BITS_18_X : 0U) |
+           (y.is18Bit ? BITS_18_Y : 0U) | (x.isCommandMode ? COMMAND_X : 0U) |
            (y.isCommandMode ? COMMAND_Y : 0U);
 }
 

@@ -32,7 +32,7 @@ GalvanometerWords galvanometer_words(const GalvanometerPins &pins, std::uint32_t
 void galvanometer_read(GalvanometerPins &pins, const GalvanometerWords &words,
                        std::uint32_t clock_hz) noexcept;
 
-/// The mode register. While the interface is not enabled it clears the overflows.
+/// The mode register. While the interface is not enabled it sends positions, and clears the overflows.
 std::uint32_t galvanometer_mode(const GalvanometerPins &x, const GalvanometerPins &y,
                                 bool isEnabled) noexcept;
 /// The words that are sent in command mode.
