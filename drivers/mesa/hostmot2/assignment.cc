@@ -38,6 +38,17 @@ constexpr Known KNOWN[] = {
     {Gtag::THREE_PHASE_PWM, "ThreePhasePWM", {0, ANY}},
     {Gtag::RC_PWM, "RCPWMGen", {0, ANY}},
     {Gtag::RESOLVER, "Resolver", {0, ANY}},
+    {Gtag::UART_TX, "UARTTX", {0, ANY}},
+    {Gtag::UART_RX, "UARTRX", {0, ANY}},
+    {Gtag::PKT_UART_TX, "PktUARTTX", {0, 1, 2, 3, ANY}},
+    {Gtag::PKT_UART_RX, "PktUARTRX", {0, 1, 2, 3, ANY}},
+    {Gtag::BSPI, "BSPI", {0, ANY}},
+    {Gtag::SSI, "SSI", {0, ANY}},
+    {Gtag::BISS, "BISS", {0, ANY}},
+    {Gtag::FANUC_ABSOLUTE, "FanucAbs", {0, ANY}},
+    {Gtag::XY2_100, "XY2Mod", {0, ANY}},
+    {Gtag::ONE_SHOT, "OneShot", {0, ANY}},
+    {Gtag::PERIOD_METER, "PeriodM", {0, ANY}},
     {Gtag::IRQ, "IRQLogic", {ANY}},
     {Gtag::TRANSLATION_RAM, "TranslationRAM", {ANY}},
     {Gtag::MUX_SELECT, "MuxedEncoderSelect", {ANY}},
@@ -91,6 +102,9 @@ bool isUsed(const PinDescriptor &pin, const Assignment &assignment, const Config
     if (isSelectOfUsedEncoder(pin, assignment)) {
         return true;
     }
+    if (const auto *formats = config.formats_of(pin.secondary)) {
+        return formats->contains(pin.unit);
+    }
     return std::ranges::any_of(assignment.modules, [&](const UsedModule &module) {
         const bool isOfIt = (pin.unit & ALL_UNITS) != 0 ? module.instances > 0 : pin.unit < module.instances;
         return module.descriptor.gtag == pin.secondary && isOfIt;
@@ -99,6 +113,15 @@ bool isUsed(const PinDescriptor &pin, const Assignment &assignment, const Config
 
 Result<int> used_instances(const ModuleDescriptor &module, const Config &config, int leds) {
     const int available = instances_of(module, leds);
+    if (const auto *formats = config.formats_of(module.gtag)) {
+        const int highest = formats->empty() ? -1 : formats->rbegin()->first;
+        if (highest >= available) {
+            return fail(
+                fmt::format("config: a format of channel {} of {}, but this firmware has {} channels.",
+                            highest, module_name(module.gtag), available));
+        }
+        return highest + 1;
+    }
     const int wanted = config.wanted_of(module.gtag);
     if (wanted > available) {
         return fail(
@@ -116,6 +139,13 @@ Result<> check_missing(const Idrom &idrom, const Config &config) {
             idrom.modules, [&](const ModuleDescriptor &module) { return token_of(module.gtag) == token; });
         if (wanted > 0 && !isThere) {
             return fail(fmt::format("config: {}={}, but this firmware has 0.", token, wanted));
+        }
+    }
+    for (const Gtag gtag : {Gtag::SSI, Gtag::BISS, Gtag::FANUC_ABSOLUTE}) {
+        const bool isThere = std::ranges::count(idrom.modules, gtag, &ModuleDescriptor::gtag) > 0;
+        if (!config.formats_of(gtag)->empty() && !isThere) {
+            return fail(
+                fmt::format("config: a format of {}, but this firmware has 0 channels.", module_name(gtag)));
         }
     }
     return {};

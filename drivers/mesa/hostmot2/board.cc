@@ -2,6 +2,7 @@
 #include "drivers/mesa/hostmot2/board.hh"
 
 #include <algorithm>
+#include <cstdio>
 
 #include "drivers/mesa/hostmot2/modules/factories.hh"
 #include "drivers/mesa/hostmot2/modules/ioport.hh"
@@ -76,6 +77,24 @@ void Board::declare(PinSpace &space) {
     }
 }
 
+bool Board::hasTriggers() const noexcept {
+    return std::ranges::any_of(modules_, [](const auto &module) { return module->hasTrigger(); });
+}
+
+void Board::trigger_encoders() noexcept {
+    for (const auto &module : modules_) {
+        module->trigger();
+    }
+}
+
+Ports Board::ports() {
+    Ports all;
+    for (const auto &module : modules_) {
+        module->add_ports(all);
+    }
+    return all;
+}
+
 void Board::read(long period_ns, std::int64_t now_ns) noexcept {
     const CycleRead result = bus_.read(registers_.inputs(), period_ns);
     isFresh_ = result == CycleRead::DONE;
@@ -114,6 +133,9 @@ void Board::write(long period_ns, std::int64_t now_ns) noexcept {
     cycle.isWriting = isReadOnce_ && !isStopped_ && !hasBitten;
     for (const auto &module : modules_) {
         module->write(registers_, cycle);
+    }
+    for (const auto &module : modules_) {
+        events_.isDumpRequested = module->take_dump_request() || events_.isDumpRequested;
     }
     isRewriteDue_ = bus_.take_rewrite() || isRewriteDue_;
     if (watchdog_ != nullptr) {
@@ -170,6 +192,23 @@ std::size_t Board::take_message(std::span<char> text) noexcept {
         }
     }
     return 0;
+}
+
+bool Board::describe(int line, std::span<char> text) const noexcept {
+    const int modules = static_cast<int>(assignment_.modules.size());
+    if (line < modules) {
+        const UsedModule &module = assignment_.modules[static_cast<std::size_t>(line)];
+        const std::string_view name = module_name(module.descriptor.gtag);
+        std::snprintf(text.data(), text.size(), "module %.*s version %d at 0x%04X: %d used, clock %u Hz",
+                      static_cast<int>(name.size()), name.data(), module.descriptor.version,
+                      module.descriptor.base_address, module.instances, module.clock_hz);
+        return true;
+    }
+    const auto written = registers_.written(line - modules);
+    if (written) {
+        std::snprintf(text.data(), text.size(), "register 0x%04X = 0x%08X", written->address, written->value);
+    }
+    return written.has_value();
 }
 
 void Board::stop() noexcept {

@@ -16,6 +16,7 @@ struct BoardEvents {
     std::int64_t longest_gap_ns = 0;  ///< the longest time between two writes before it
     int failed_reads = 0;             ///< reads in a row that failed before it
     bool isTimeoutShort = false;      ///< the time of the watchdog is less than 1.5 periods
+    bool isDumpRequested = false;     ///< a user wants describe() in the log
 };
 
 class Board {
@@ -26,10 +27,16 @@ class Board {
 
     /// Makes all pins and parameters. [while loading]
     void declare(PinSpace &space);
+    /// Serial interfaces for other components. [while loading]
+    Ports ports();
     /// Modules that are left out. [while loading]
     const std::vector<std::string> &warnings() const noexcept { return assignment_.warnings; }
     const Assignment &assignment() const noexcept { return assignment_; }
 
+    /// Whether there are encoders that trigger_encoders() starts. [while loading]
+    bool hasTriggers() const noexcept;
+    /// Starts the transfers of absolute encoders with the next write. [servo thread]
+    void trigger_encoders() noexcept;
     /// Sends the request of this cycle early. [servo thread]
     void request() noexcept { bus_.request(); }
     /// Reads all registers; after a failure all pins keep their values. `now_ns` of the same clock as in
@@ -42,6 +49,10 @@ class Board {
     BoardEvents take_events() noexcept;
     /// A message of a module into `text`: its length, or 0. [servo thread]
     std::size_t take_message(std::span<char> text) noexcept;
+
+    /// Line `line` of the state of the board: modules, then registers with the values that were written last.
+    /// False: there are no more lines. [servo thread]
+    bool describe(int line, std::span<char> text) const noexcept;
 
     std::int64_t timeout_ns() const noexcept { return checked_timeout_ns_; }
 

@@ -171,6 +171,15 @@ Result<> read_token(Config &config, const Token &token) {
 
 }  // namespace
 
+const std::map<int, std::string> *Config::formats_of(Gtag gtag) const noexcept {
+    switch (gtag) {
+    case Gtag::SSI: return &ssi_formats;
+    case Gtag::BISS: return &biss_formats;
+    case Gtag::FANUC_ABSOLUTE: return &fanuc_formats;
+    default: return nullptr;
+    }
+}
+
 int Config::wanted_of(Gtag gtag) const {
     const auto found = wanted.find(gtag);
     return found == wanted.end() ? ALL_INSTANCES : found->second;

@@ -28,6 +28,8 @@ struct Config {
     /// Formats of absolute encoders, by channel: only channels with a format are used.
     std::map<int, std::string> ssi_formats{}, biss_formats{}, fanuc_formats{};
 
+    /// Formats of a module of absolute encoders; null: of others.
+    const std::map<int, std::string> *formats_of(Gtag gtag) const noexcept;
     /// ALL_INSTANCES unless the string limits the module.
     int wanted_of(Gtag gtag) const;
 };

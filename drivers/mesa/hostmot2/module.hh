@@ -8,6 +8,7 @@
 
 #include "drivers/mesa/hostmot2/assignment.hh"
 #include "drivers/mesa/hostmot2/pins.hh"
+#include "drivers/mesa/hostmot2/ports.hh"
 #include "drivers/mesa/hostmot2/registers.hh"
 
 namespace mw::mesa {
@@ -34,6 +35,14 @@ class Module {
     virtual void plan(Registers &registers) = 0;
     /// Makes its pins. [while loading]
     virtual void declare(PinSpace &space) = 0;
+    /// Adds its interfaces for other components. [while loading]
+    virtual void add_ports(Ports &ports) { (void)ports; }
+    /// Whether a user starts transfers of encoders with trigger(). [while loading]
+    virtual bool hasTrigger() const noexcept { return false; }
+    /// Starts the transfers of encoders with the next write. [servo thread]
+    virtual void trigger() noexcept {}
+    /// True once after a user requested the state of the board for the log. [servo thread]
+    virtual bool take_dump_request() noexcept { return false; }
     /// Takes the registers of this cycle; called when all are new. [servo thread]
     virtual void read(const Registers &registers, const Cycle &cycle) noexcept = 0;
     /// Sets the registers to write. After a failed read it is called without read(). [servo thread]

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "base/result.hh"
@@ -96,6 +97,14 @@ class Registers {
     bool redirect(ReadHandle handle, std::uint16_t address) noexcept;
     /// The list of this cycle; valid until the next call. Each value in it counts as written. [servo thread]
     std::span<const RegisterWrite> list(bool areAll) noexcept;
+    /// Register number `i` and the value that was written last; nothing: there are fewer. A register that was
+    /// never written has the value 0. [any time between cycles]
+    std::optional<RegisterWrite> written(int i) const noexcept {
+        const auto n = static_cast<std::size_t>(i);
+        return n < sequence_.size() ? std::optional<RegisterWrite>(
+                                          {writes_[sequence_[n]].address, writes_[sequence_[n]].written})
+                                    : std::nullopt;
+    }
     /// As list(), of what is written when all registers are; for tests and messages.
     const std::vector<RegisterRange> &ranges() const noexcept { return ranges_; }
 

@@ -10,6 +10,7 @@
 #include "drivers/mesa/hostmot2/board.hh"
 #include "drivers/mesa/hostmot2/hal/hal_pins.hh"
 #include "drivers/mesa/hostmot2/hal/log_idrom.hh"
+#include "drivers/mesa/hostmot2/hal/serial.hh"
 #include "drivers/mesa/identity/idrom.hh"
 #include "hal.h"
 #include "rtapi.h"
@@ -24,6 +25,7 @@ struct HalBoard {
     int comp_id = 0;
     std::string name;
     std::unique_ptr<Board> board;
+    int dump_line = -1;  ///< the next line of the state for the log; negative: none
 };
 
 DriverOptions &options() {
@@ -67,6 +69,21 @@ void report(HalBoard &board) noexcept {
             "hm2/%s: watchdog.timeout_ns is %lld, less than 1.5 periods of the thread. Increase it.", name,
             static_cast<long long>(board.board->timeout_ns()));
     }
+    if (events.isDumpRequested) {
+        board.dump_line = 0;
+    }
+}
+
+/// One line of the state in each cycle, so that the log does not overflow. [servo thread]
+void dump(HalBoard &board) noexcept {
+    constexpr std::size_t MAX_LINE = 128;
+    char text[MAX_LINE];
+    if (board.dump_line >= 0 && board.board->describe(board.dump_line, text)) {
+        rtapi_print("hm2/%s: %s\n", board.name.c_str(), text);
+        ++board.dump_line;
+    } else {
+        board.dump_line = -1;
+    }
 }
 
 void read_function(void *self, long period_ns) {
@@ -75,16 +92,23 @@ void read_function(void *self, long period_ns) {
 void request_function(void *self, long) {
     static_cast<HalBoard *>(self)->board->request();
 }
+void trigger_function(void *self, long) {
+    static_cast<HalBoard *>(self)->board->trigger_encoders();
+}
 void write_function(void *self, long period_ns) {
     auto &board = *static_cast<HalBoard *>(self);
     board.board->write(period_ns, rtapi_get_time());
     report(board);
     report_modules(board);
+    dump(board);
 }
 
 int export_functions(HalBoard &board) {
-    const std::pair<const char *, void (*)(void *, long)> functions[] = {
+    std::vector<std::pair<const char *, void (*)(void *, long)>> functions = {
         {"read", read_function}, {"read-request", request_function}, {"write", write_function}};
+    if (board.board->hasTriggers()) {
+        functions.emplace_back("trigger-encoders", trigger_function);
+    }
     for (const auto &[name, function] : functions) {
         const std::string full = board.name + "." + name;
         if (const int status = hal_export_funct(full.c_str(), function, &board, 1, 0, board.comp_id);
@@ -144,10 +168,12 @@ int register_board(const BoardRequest &request) {
     if (pins.status() < 0) {
         return pins.status();
     }
+    register_ports(request.name, (*board)->ports());
     auto made = std::make_unique<HalBoard>(HalBoard{request.comp_id, request.name, std::move(*board)});
     boards().push_back(std::move(made));
     const int status = export_functions(*boards().back());
     if (status < 0) {
+        unregister_ports(request.name);
         boards().pop_back();
     }
     return status;
@@ -157,6 +183,7 @@ void unregister_boards(int comp_id) {
     std::erase_if(boards(), [&](const std::unique_ptr<HalBoard> &board) {
         const bool isOfIt = board->comp_id == comp_id;
         if (isOfIt) {
+            unregister_ports(board->name);
             board->board->stop();
         }
         return isOfIt;

@@ -19,6 +19,17 @@ std::unique_ptr<Module> make_inms(const ModuleRequest &request);
 std::unique_ptr<Module> make_three_phase_pwms(const ModuleRequest &request);
 std::unique_ptr<Module> make_rc_pwms(const ModuleRequest &request);
 std::unique_ptr<Module> make_resolvers(const ModuleRequest &request);
+std::unique_ptr<Module> make_galvanometers(const ModuleRequest &request);
+std::unique_ptr<Module> make_one_shots(const ModuleRequest &request);
+std::unique_ptr<Module> make_period_meters(const ModuleRequest &request);
+std::unique_ptr<Module> make_absolute_encoders(const ModuleRequest &request);
+/// Of a firmware with transmitters and receivers; null otherwise.
+std::unique_ptr<Module> make_uarts(const ModuleRequest &request);
+std::unique_ptr<Module> make_packet_uarts(const ModuleRequest &request);
+std::unique_ptr<Module> make_bspis(const ModuleRequest &request);
+
+/// A module that is used; null: the firmware does not have it.
+const UsedModule *find_module(const Assignment &assignment, Gtag gtag) noexcept;
 
 /// Access of a user to any register (enable_raw in config=).
 std::unique_ptr<Module> make_raw();

@@ -28,6 +28,15 @@ constexpr Factory FACTORIES[] = {
     {Gtag::RESOLVER, make_resolvers},
     {Gtag::SMART_SERIAL, make_sserial},
     {Gtag::SMART_SERIAL_B, make_sserial},
+    {Gtag::UART_TX, make_uarts},
+    {Gtag::PKT_UART_TX, make_packet_uarts},
+    {Gtag::BSPI, make_bspis},
+    {Gtag::SSI, make_absolute_encoders},
+    {Gtag::BISS, make_absolute_encoders},
+    {Gtag::FANUC_ABSOLUTE, make_absolute_encoders},
+    {Gtag::XY2_100, make_galvanometers},
+    {Gtag::ONE_SHOT, make_one_shots},
+    {Gtag::PERIOD_METER, make_period_meters},
 };
 
 }  // namespace
@@ -35,6 +44,12 @@ constexpr Factory FACTORIES[] = {
 std::unique_ptr<Module> make_module(const ModuleRequest &request) {
     const auto *factory = std::ranges::find(FACTORIES, request.module.descriptor.gtag, &Factory::gtag);
     return factory == std::end(FACTORIES) ? nullptr : factory->make(request);
+}
+
+const UsedModule *find_module(const Assignment &assignment, Gtag gtag) noexcept {
+    const auto found = std::ranges::find_if(
+        assignment.modules, [&](const UsedModule &module) { return module.descriptor.gtag == gtag; });
+    return found == assignment.modules.end() ? nullptr : &*found;
 }
 
 bool hasDpll(const Assignment &assignment) noexcept {

@@ -7,12 +7,12 @@ namespace {
 
 struct RawPins {
     std::uint32_t read_address = 0, read_data = 0, write_address = 0, write_data = 0;
-    bool write_strobe = false;
+    bool write_strobe = false, dump_state = false;
 };
 constexpr PinRow<RawPins> RAW_PINS[] = {
     {"read_address", Access::IN, &RawPins::read_address},   {"read_data", Access::OUT, &RawPins::read_data},
     {"write_address", Access::IN, &RawPins::write_address}, {"write_data", Access::IN, &RawPins::write_data},
-    {"write_strobe", Access::IO, &RawPins::write_strobe},
+    {"write_strobe", Access::IO, &RawPins::write_strobe},   {"dump_state", Access::IO, &RawPins::dump_state},
 };
 
 class Raw final : public Module {
@@ -39,7 +39,14 @@ class Raw final : public Module {
             registers.request(write_, pins_.write_data);
             pins_.write_strobe = false;
         }
+        isDumpRequested_ = isDumpRequested_ || pins_.dump_state;
+        pins_.dump_state = false;
         binding_.store();
+    }
+    bool take_dump_request() noexcept override {
+        const bool isRequested = isDumpRequested_;
+        isDumpRequested_ = false;
+        return isRequested;
     }
 
   private:
@@ -48,6 +55,7 @@ class Raw final : public Module {
     ReadHandle data_;
     WriteHandle write_;
     std::uint16_t address_ = 0;
+    bool isDumpRequested_ = false;
 };
 
 }  // namespace

@@ -156,12 +156,11 @@ std::uint32_t stepgen_mode(StepgenPins &pins) noexcept {
     return std::min(pins.step_type, TABLE_MODE) | (pins.swap_step_dir ? SWAP : 0U);
 }
 
-StepTable step_table(const StepgenPins &pins) noexcept {
+StepTable step_table(std::uint32_t step_type, const StepTablePins &pins) noexcept {
     constexpr unsigned STEPS_PER_WORD = 4, BITS_PER_STEP = 8;
-    const std::uint32_t words[] = {pins.table_data_0, pins.table_data_1, pins.table_data_2,
-                                   pins.table_data_3};
+    const std::uint32_t words[] = {pins.data_0, pins.data_1, pins.data_2, pins.data_3};
     StepTable table;
-    table.length = pins.step_type < TABLE_MODE ? 0U : std::min(pins.step_type, MAX_TABLE_STEPS);
+    table.length = step_type < TABLE_MODE ? 0U : std::min(step_type, MAX_TABLE_STEPS);
     for (unsigned i = 0; i < table.length; ++i) {
         table.steps[i] =
             static_cast<std::uint8_t>(words[i / STEPS_PER_WORD] >> (BITS_PER_STEP * (i % STEPS_PER_WORD)));

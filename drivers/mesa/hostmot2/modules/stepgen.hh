@@ -27,7 +27,10 @@ struct StepgenPins {
     bool swap_step_dir = false;
     bool index_enable = false, index_invert = false, probe_enable = false, probe_invert = false;
     double position_latch = 0.0;  ///< [position units]
-    std::uint32_t table_data_0 = 0, table_data_1 = 0, table_data_2 = 0, table_data_3 = 0;
+};
+/// Steps of a table. Each word holds four, the first in the low byte.
+struct StepTablePins {
+    std::uint32_t data_0 = 0, data_1 = 0, data_2 = 0, data_3 = 0;
 };
 
 constexpr PinRow<StepgenPins> STEPGEN_PINS[] = {
@@ -67,12 +70,12 @@ constexpr PinRow<StepgenPins> STEPGEN_LATCH_PINS[] = {
     {"probe-invert", Access::IN, &StepgenPins::probe_invert},
     {"position-latch", Access::OUT, &StepgenPins::position_latch},
 };
-/// Of firmware with outputs for tables of steps. Each word holds four steps, the first in the low byte.
-constexpr PinRow<StepgenPins> STEPGEN_TABLE_PINS[] = {
-    {"table-data-0", Access::RW, &StepgenPins::table_data_0},
-    {"table-data-1", Access::RW, &StepgenPins::table_data_1},
-    {"table-data-2", Access::RW, &StepgenPins::table_data_2},
-    {"table-data-3", Access::RW, &StepgenPins::table_data_3},
+/// Of firmware with outputs for tables of steps.
+constexpr PinRow<StepTablePins> STEPGEN_TABLE_PINS[] = {
+    {"table-data-0", Access::RW, &StepTablePins::data_0},
+    {"table-data-1", Access::RW, &StepTablePins::data_1},
+    {"table-data-2", Access::RW, &StepTablePins::data_2},
+    {"table-data-3", Access::RW, &StepTablePins::data_3},
 };
 
 /// What the driver knows of a step generator between cycles.
@@ -112,7 +115,7 @@ struct StepTable {
 
     bool operator==(const StepTable &) const = default;
 };
-StepTable step_table(const StepgenPins &pins) noexcept;
+StepTable step_table(std::uint32_t step_type, const StepTablePins &pins) noexcept;
 
 /// The latch of a step generator. The mode register shows whether it is armed, and the latched position. As
 /// with encoders it is written only when it is known what the board has: a lost packet never arms twice.

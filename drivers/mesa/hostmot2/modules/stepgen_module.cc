@@ -105,7 +105,7 @@ class Stepgens final : public Module {
                 binding_.bind(space, name, STEPGEN_LATCH_PINS, one.pins);
             }
             if (hasTables_) {
-                binding_.bind(space, name, STEPGEN_TABLE_PINS, one.pins);
+                binding_.bind(space, name, STEPGEN_TABLE_PINS, one.table_pins);
             }
         }
         if (hasTimer_) {
@@ -149,6 +149,7 @@ class Stepgens final : public Module {
         StepgenPins pins;
         StepgenState state;
         StepgenLatch latch;
+        StepTablePins table_pins;
         StepTable table;  ///< as it was sent
         WriteHandle rate, mode, setup, hold, width, space, length;
         std::array<WriteHandle, MAX_TABLE_STEPS> steps;
@@ -165,7 +166,7 @@ class Stepgens final : public Module {
     }
     /// The board takes the steps of a table from the last to the first, always all of them.
     void write_table(Registers &registers, const Cycle &cycle, Instance &one) const noexcept {
-        const StepTable table = step_table(one.pins);
+        const StepTable table = step_table(one.pins.step_type, one.table_pins);
         if (!hasTables_ || !cycle.isWriting || table == one.table) {
             return;
         }

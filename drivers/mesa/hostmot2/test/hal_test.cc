@@ -97,6 +97,21 @@ TEST_F(BoardInHal, ReleasesPinsByItsConfiguration) {
     EXPECT_FALSE(machine.hal().get("hm2_7i76e.0.stepgen.00.enable").has_value());
 }
 
+TEST_F(BoardInHal, OtherComponentsUseItsSerialInterfaces) {
+    ASSERT_EQ(machine.load("hostmot2"), "ok");
+    ASSERT_EQ(machine.load("threads2"), "ok");
+    ASSERT_EQ(machine.load("hm2_memory", {"uarts=1"}), "ok") << machine.messages.all();
+    EXPECT_NE(machine.load("uart_user", {"name=hm2_7i76e.0.uart.1"}), "ok") << "there is one UART";
+    ASSERT_EQ(machine.load("uart_user", {"name=hm2_7i76e.0.uart.0"}), "ok") << machine.messages.all();
+    for (const char *function : {"hm2_7i76e.0.read", "uart-user", "hm2_7i76e.0.write"}) {
+        ASSERT_TRUE(machine.hal().add_function(function, "fast"));
+    }
+    ASSERT_TRUE(machine.hal().start_threads());
+    run();
+    EXPECT_EQ(machine.value("uart-user.sent").as_number(), 3.0);
+    EXPECT_EQ(machine.value("uart-user.received").as_number(), 0.0);
+}
+
 TEST_F(BoardInHal, IsRefusedWithAWrongConfiguration) {
     ASSERT_EQ(machine.load("hostmot2"), "ok");
     EXPECT_NE(machine.load("hm2_memory", {"config=num_encoders=3"}), "ok");

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,8 @@ class MemoryBus final : public RegisterBus {
     std::function<void(RegisterWrite)> on_write;
     /// Called instead of a write while loading.
     std::function<void(RegisterWrite)> on_load_write;
+    /// Plays registers whose reads have an effect, such as FIFOs; nothing: the map has the value.
+    std::function<std::optional<std::uint32_t>(std::uint16_t)> on_read_register;
     /// Called before each read of a cycle.
     std::function<void()> on_read;
     /// What the next read gives; the next write is lost, so that the bus requires all registers afterwards.
@@ -100,7 +103,12 @@ class MemoryBus final : public RegisterBus {
         std::size_t n = 0;
         for (const RegisterRange &range : ranges) {
             for (int i = 0; i < range.count; ++i) {
-                const auto found = registers.find(static_cast<std::uint16_t>(range.address + 4 * i));
+                const auto address = static_cast<std::uint16_t>(range.address + 4 * i);
+                if (const auto own = on_read_register ? on_read_register(address) : std::nullopt) {
+                    values[n++] = *own;
+                    continue;
+                }
+                const auto found = registers.find(address);
                 values[n++] = found == registers.end() ? 0U : found->second;
             }
         }

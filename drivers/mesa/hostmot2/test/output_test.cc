@@ -58,6 +58,25 @@ TEST_F(OutputsOfBoard, RawAccessReadsAndWritesAnyRegister) {
     EXPECT_EQ(bus.last(0x4321), -1) << "once";
 }
 
+TEST_F(OutputsOfBoard, StateOfTheBoardIsDescribedOnRequest) {
+    load(with_outputs(), "enable_raw");
+    cycle();
+    EXPECT_FALSE(board->take_events().isDumpRequested);
+    pins.set("raw.dump_state", 1);
+    cycle();
+    EXPECT_EQ(pins.get("raw.dump_state"), 0.0);
+    EXPECT_TRUE(board->take_events().isDumpRequested);
+    EXPECT_FALSE(board->take_events().isDumpRequested) << "once";
+    std::string all;
+    char text[128];
+    for (int line = 0; board->describe(line, text); ++line) {
+        all += std::string(text) + "\n";
+    }
+    EXPECT_NE(all.find("module StepGen version 2 at 0x2000: 5 used, clock 100000000 Hz"), std::string::npos)
+        << all;
+    EXPECT_NE(all.find("register 0x7E00 = 0x00001030"), std::string::npos) << all;
+}
+
 TEST_F(OutputsOfBoard, RawAccessExistsOnlyWhenItIsEnabled) {
     load(firmware());
     EXPECT_FALSE(pins.pins.contains("raw.read_address"));

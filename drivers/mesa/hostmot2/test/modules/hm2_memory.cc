@@ -10,6 +10,9 @@ namespace {
 char *config = nullptr;
 RTAPI_MP_STRING(config, "instances that are used");
 
+int uarts = 0;
+RTAPI_MP_INT(uarts, "UARTs that the firmware has besides");
+
 int comp_id = -1;
 mw::mesa::test::MemoryBus bus;
 
@@ -17,7 +20,17 @@ mw::mesa::test::MemoryBus bus;
 
 int rtapi_app_main(void) {
     comp_id = hal_init("hm2_memory");
-    bus.registers = mw::mesa::test::image_of(mw::mesa::test::firmware());
+    mw::mesa::Idrom idrom = mw::mesa::test::firmware();
+    for (const auto &[gtag, base] :
+         {std::pair{mw::mesa::Gtag::UART_TX, 0x6100}, {mw::mesa::Gtag::UART_RX, 0x6500}}) {
+        mw::mesa::ModuleDescriptor module;
+        module.gtag = gtag;
+        module.instances = static_cast<std::uint8_t>(uarts);
+        module.base_address = static_cast<std::uint16_t>(base);
+        module.instance_stride = 1;
+        idrom.modules.push_back(module);
+    }
+    bus.registers = mw::mesa::test::image_of(idrom);
     bus.connector_names = {"P1", "P2", "P3"};
     bus.registers[0x0D00] = 1;
     const int status =

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Fields of the answer of a serial absolute encoder, and an encoder that is one of them.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace mw::mesa {
+
+constexpr int MAX_FIELD_BITS = 64;
+
+enum class BitFieldType : std::uint8_t {
+    PADDING,
+    BIT,
+    UNSIGNED,
+    SIGNED,
+    BITS,
+    ENCODER,
+    ENCODER_LOW,
+    ENCODER_HIGH
+};
+
+struct BitField {
+    BitFieldType type = BitFieldType::PADDING;
+    int first = 0, bits = 0;
+    bool isGray = false, isMultiTurn = false;
+};
+
+/// The bits of a field in words, the first word with the lowest bits; Gray code is converted.
+std::uint64_t bits_of(const BitField &field, std::span<const std::uint32_t> words) noexcept;
+/// The number that the two's complement of a field means.
+std::int64_t signed_bits(std::uint64_t value, int bits) noexcept;
+
+/// An absolute encoder that behaves as one that counts.
+struct AbsoluteEncoder {
+    std::int32_t count = 0, rawcounts = 0;
+    double position = 0.0;  ///< [position units]
+    bool index_enable = false, reset = false;
+    double scale = 1.0;  ///< [counts per unit]
+    std::uint32_t counts_per_rev = 256;
+
+    std::int64_t raw = 0, zero = 0;  ///< between cycles
+    std::uint64_t last = 0;
+    bool isKnown = false;
+};
+/// Takes the value of a field. Without `isMultiTurn` a jump of more than half of the range is a wrap.
+/// The index is where raw counts pass a multiple of counts_per_rev.
+void absolute_encoder_read(AbsoluteEncoder &encoder, std::uint64_t value, const BitField &field) noexcept;
+
+}  // namespace mw::mesa
