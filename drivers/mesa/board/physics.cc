@@ -121,7 +121,7 @@ std::optional<double> Physics::resolver_rev(unsigned channel) const {
 
 std::optional<bool> Physics::switch_level(unsigned pin) const {
     const auto one = std::ranges::find_if(plan_.switches, [&](const SwitchPlan &candidate) {
-        return candidate.pin == pin && !candidate.remote.has_value();
+        return candidate.pin == pin && !candidate.remote.has_value() && !candidate.multiplexed;
     });
     return one == plan_.switches.end() ? std::nullopt : std::optional(level_of(*one));
 }

@@ -46,7 +46,8 @@ struct RemoteChannel {
 };
 
 struct SwitchPlan {
-    unsigned pin = 0;  ///< of the whole board, or bit of the field Input of `remote`
+    unsigned pin = 0;          ///< of the whole board, bit of the field Input of `remote`, or input of InMux
+    bool multiplexed = false;  ///< at an input of InMux
     std::optional<RemoteChannel> remote{};
     std::size_t motor = 0;
     double at_rev = 0;
@@ -88,7 +89,7 @@ struct PhysicsPlan {
 
 /// Lines `motor NAME stepgen=N steps_per_rev=N [start_rev=]`, `motor NAME pwm=N full_rev_s=
 /// time_constant_s=`, `encoder N motor=NAME counts_per_rev=N [index_rev=]`, `switch PIN motor=NAME
-/// below_rev=|above_rev= [closed=high|low] [remote=CHANNEL [port=N]]`, `resolver CHANNEL motor=NAME
+/// below_rev=|above_rev= [closed=high|low] [remote=CHANNEL [port=N] | inmux=0]`, `resolver CHANNEL motor=NAME
 /// [cycles_per_rev=] [zero_rev=]`, `field CHANNEL name=AnalogIn1 value=N|motor=NAME counts_per_rev=N
 /// [port=N]` and `remote CHANNEL card=7i76 [port=N]`; units and pins must exist in `idrom`.
 Result<PhysicsPlan> parse_physics(std::string_view text, const std::string &file, const Idrom &idrom);

@@ -91,6 +91,11 @@ void read_switch(TableLine &line, PhysicsPlan &plan, const Idrom &idrom) {
         constexpr std::size_t INPUT_BITS = 32;
         one.remote = {port_of(line, idrom), unit_of(line, "remote", SERIAL_CHANNELS)};
         one.pin = number_of(line, "input", INPUT_BITS);
+    } else if (line.has("inmux")) {
+        constexpr std::size_t INPUTS = 32;
+        one.multiplexed = true;
+        unit_of(line, "inmux", instances_of(idrom, {Gtag::IN_MUX}));
+        one.pin = number_of(line, "input", INPUTS);
     } else {
         one.pin = number_of(line, "pin", idrom.pins.size());
     }
