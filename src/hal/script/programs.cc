@@ -2,7 +2,9 @@
 #include "hal/script/programs.hh"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <spawn.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -12,6 +14,7 @@
 #include <cstdio>
 #include <cstring>
 #include <ctime>
+#include <memory>
 
 #include <fmt/format.h>
 
@@ -106,15 +109,28 @@ Result<> SystemProgramHost::wait_until_ready(const ProgramRequest &request, int 
 }
 
 Result<> SystemProgramHost::wait_for_status(const ProgramRequest &request, int pid) {
+    constexpr int LOOK_MS = 50;
+    // A stop signal may arrive before the wait begins, so the wait is never longer than this.
+    const int end = static_cast<int>(syscall(SYS_pidfd_open, pid, 0));
+    const auto closed = [](const int *file) {
+        if (*file >= 0) {
+            close(*file);
+        }
+    };
+    const std::unique_ptr<const int, decltype(closed)> closing(&end, closed);
     int status = 0;
-    // Signals interrupt the wait, so a stop is seen at once.
-    while (waitpid(pid, &status, 0) < 0) {
-        if (errno != EINTR) {
+    for (pid_t found = 0; found != pid;) {
+        found = waitpid(pid, &status, WNOHANG);
+        if (found < 0) {
             return fail(fmt::format("lost sight of program '{}': {}", request.argv[0], std::strerror(errno)));
         }
-        if (isStopped()) {
+        if (found == 0 && isStopped()) {
             kill(pid, SIGTERM);
             return fail(fmt::format("stopped while waiting for '{}'", request.argv[0]));
+        }
+        if (found == 0) {
+            pollfd one{.fd = end, .events = POLLIN, .revents = 0};
+            poll(&one, 1, LOOK_MS);
         }
     }
     const bool isFine = WIFEXITED(status) && WEXITSTATUS(status) == 0;

@@ -209,5 +209,27 @@ TEST_F(SessionTest, PrintAndEchoGoToTheNotes) {
     EXPECT_EQ(output.notes, "test.hal:1: HALCMD MSG: \"hello there\"\n(3)<echo>: unecho\n");
 }
 
+// The signal arrived before the wait began.
+TEST_F(SessionTest, AStopIsSeenAlsoByAWaitThatBeginsAfterIt) {
+    const volatile std::sig_atomic_t stop = SIGINT;
+    SystemProgramHost system(host->hal(), &stop);
+    ProgramRequest request;
+    request.argv = {"sleep", "600"};
+    request.wait = ProgramRequest::Wait::UNTIL_END;
+    const auto started = system.start(request);
+    ASSERT_FALSE(started.has_value());
+    EXPECT_NE(started.error().message.find("stopped while waiting for 'sleep'"), std::string::npos);
+}
+
+TEST_F(SessionTest, TheStatusOfAProgramIsTheResultOfItsWait) {
+    SystemProgramHost system(host->hal());
+    ProgramRequest request;
+    request.argv = {"true"};
+    request.wait = ProgramRequest::Wait::UNTIL_END;
+    EXPECT_TRUE(system.start(request).has_value());
+    request.argv = {"false"};
+    EXPECT_FALSE(system.start(request).has_value());
+}
+
 }  // namespace
 }  // namespace mw::hal::script
