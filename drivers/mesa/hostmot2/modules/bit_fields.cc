@@ -44,7 +44,7 @@ void absolute_encoder_read(AbsoluteEncoder &encoder, std::uint64_t value, const 
     const std::int64_t before = encoder.raw;
     const std::uint64_t change = (value - encoder.last) & mask_of(field.bits);
     if (!encoder.isKnown || field.isMultiTurn) {
-        encoder.raw = static_cast<std::int64_t>(value);
+        encoder.raw = signed_bits(value, field.bits);
     } else {
         encoder.raw += signed_bits(change, field.bits);
     }

@@ -43,8 +43,9 @@ struct AbsoluteEncoder {
     std::uint64_t last = 0;
     bool isKnown = false;
 };
-/// Takes the value of a field. Without `isMultiTurn` a jump of more than half of the range is a wrap.
-/// The index is where raw counts pass a multiple of counts_per_rev.
+/// Takes the value of a field. The first one is a signed number, as LinuxCNC's driver has it; so is each one
+/// with `isMultiTurn`. Without it a jump of more than half of the range is a wrap. The index is where raw
+/// counts pass a multiple of counts_per_rev.
 void absolute_encoder_read(AbsoluteEncoder &encoder, std::uint64_t value, const BitField &field) noexcept;
 
 }  // namespace mw::mesa

@@ -61,9 +61,6 @@ void take_index(ResolverState &state, ResolverPins &pins, std::int64_t before) n
 
 void resolver_read(ResolverState &state, ResolverPins &pins, const ResolverReading &reading) noexcept {
     pins.error = reading.hasError;
-    if (reading.hasError) {
-        return;
-    }
     const std::int64_t before = state.isKnown ? state.total : std::int64_t{reading.position};
     state.total = state.isKnown ? before + static_cast<std::int32_t>(reading.position - state.last) : before;
     state.last = reading.position;

@@ -56,7 +56,8 @@ struct ResolverState {
     bool isPlaced = false;  ///< the position file has been taken
 };
 
-/// Takes a reading. While the resolver has an error, position and velocity keep their values.
+/// Takes a reading. With an error position and velocity are shown, too, but are not valid: Mesa's register
+/// map and LinuxCNC's driver disagree on the polarity of the error, so that nothing depends on it.
 void resolver_read(ResolverState &state, ResolverPins &pins, const ResolverReading &reading) noexcept;
 
 /// The choices of excitation: 10, 5 and 2.5 kHz with a clock of 50 MHz.

@@ -84,9 +84,9 @@ TEST(AbsoluteEncoders, CountEveryTurn) {
     field.bits = 12;
     AbsoluteEncoder encoder;
     encoder.scale = 10.0;
-    std::int64_t position = 3000;
-    absolute_encoder_read(encoder, 3000, field);
-    EXPECT_EQ(encoder.rawcounts, 3000);
+    std::int64_t position = 4000 - 4096;
+    absolute_encoder_read(encoder, 4000, field);
+    EXPECT_EQ(encoder.rawcounts, position);
     for (int i = 0; i < 20'000; ++i) {
         position += change(random);
         absolute_encoder_read(encoder, static_cast<std::uint64_t>(position) & 0xFFFU, field);
@@ -102,7 +102,9 @@ TEST(AbsoluteEncoders, AMultiTurnEncoderNeverWraps) {
     AbsoluteEncoder encoder;
     absolute_encoder_read(encoder, 10, field);
     absolute_encoder_read(encoder, 4090, field);
-    EXPECT_EQ(encoder.rawcounts, 4090);
+    EXPECT_EQ(encoder.rawcounts, -6);
+    absolute_encoder_read(encoder, 2047, field);
+    EXPECT_EQ(encoder.rawcounts, 2047);
 }
 
 TEST(AbsoluteEncoders, IndexIsAtMultiplesOfARevolutionInBothDirections) {

@@ -54,19 +54,20 @@ TEST_F(ResolverOfBoard, ShowsWhatLinuxCncShows) {
     EXPECT_EQ(pins.get(name + "rawcounts"), 4718592.0);
 }
 
-TEST_F(ResolverOfBoard, KeepsItsValuesWithAnError) {
+TEST_F(ResolverOfBoard, ShowsErrorsAndKeepsItsValuesAfterAFailedRead) {
     turn_to(0x40000000);
     bus.registers[STATUS] = 1;
     turn_to(0x50000000);
     EXPECT_EQ(pins.get(name + "error"), 1.0);
-    EXPECT_EQ(pins.get(name + "position"), 0.25);
     EXPECT_EQ(pins.get("resolver.01.error"), 0.0);
+    EXPECT_EQ(pins.get(name + "position"), 0.3125);
     bus.registers[STATUS] = 0;
     bus.next_read = CycleRead::FAILED;
-    cycle();
-    EXPECT_EQ(pins.get(name + "position"), 0.25);
-    cycle();
+    turn_to(0x60000000);
+    EXPECT_EQ(pins.get(name + "error"), 1.0);
     EXPECT_EQ(pins.get(name + "position"), 0.3125);
+    cycle();
+    EXPECT_EQ(pins.get(name + "position"), 0.375);
 }
 
 TEST_F(ResolverOfBoard, SetsTheNearestExcitation) {
