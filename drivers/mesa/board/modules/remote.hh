@@ -17,7 +17,8 @@ enum class FieldType : std::uint8_t {
     UNSIGNED = 2,
     SIGNED = 3,
     BOOLEAN = 7,
-    ENCODER_LOW = 0x18
+    ENCODER = 8,
+    ENCODER_HIGH = 0x18
 };
 enum class FieldDirection : std::uint8_t { INPUT = 0, BOTH = 0x40, OUTPUT = 0x80 };
 
