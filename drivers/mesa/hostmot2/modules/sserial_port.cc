@@ -16,7 +16,7 @@ constexpr double OUTPUTS_OFF_S = 0.1;
 constexpr double START_LIMIT_S = 0.25, RETRY_S = 0.25;
 /// After this time without a write the cards have turned their outputs off and are started again.
 constexpr double LONGEST_GAP_S = 0.01;
-/// A start whose packet was lost shows as failures of the first exchanges, which start the cards once more.
+/// A start whose packet was lost shows as failures of the first exchanges, which start the cards again.
 constexpr int FIRST_EXCHANGES = 10, MOST_SILENT_STARTS = 5;
 /// The pins of the port become outputs with the first write; a start must come later.
 constexpr double SETTLE_S = 0.01;
@@ -163,7 +163,7 @@ std::uint32_t SserialPortControl::read(SserialPortPins &pins, const SserialReadi
 SserialCommand SserialPortControl::write_stopping(SserialPortPins &pins, double period_s) noexcept {
     in_state_s_ += period_s;
     if (!isStopSent_) {
-        // A processor that is still busy is stopped all the same: it may hang.
+        // A processor that is still busy may hang: it is stopped, too.
         isStopSent_ = true;
         return send(STOP | CHANNELS);
     }
