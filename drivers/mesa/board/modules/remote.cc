@@ -29,8 +29,8 @@ constexpr RemoteField FIELDS_7I76[] = {
     {"AnalogIn1", "Volts", 12, UNSIGNED, INPUT, 0, 36.3F, 1},
     {"AnalogIn2", "Volts", 12, UNSIGNED, INPUT, 0, 36.3F, 1},
     {"AnalogIn3", "Volts", 12, UNSIGNED, INPUT, 0, 36.3F, 1},
-    {"Enc0", "None", 8, ENCODER_LOW, INPUT, 0, 0, 2},
-    {"Enc1", "None", 8, ENCODER_LOW, INPUT, 0, 0, 2},
+    {"Enc0", "None", 8, ENCODER, INPUT, 0, 0, 2},
+    {"Enc1", "None", 8, ENCODER, INPUT, 0, 0, 2},
 };
 constexpr RemoteMode MODES_7I76[] = {{"I/O_Spin", 0}, {"I/O_Spin_Ana", 1}, {"I/O_Spin_Ana_Enc", 2}};
 

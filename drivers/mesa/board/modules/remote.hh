@@ -21,7 +21,7 @@ enum class FieldType : std::uint8_t {
     STREAM = 6,
     BOOLEAN = 7,
     ENCODER = 8,
-    ENCODER_LOW = 0x18
+    ENCODER_HIGH = 0x18
 };
 enum class FieldDirection : std::uint8_t { INPUT = 0, BOTH = 0x40, OUTPUT = 0x80 };
 

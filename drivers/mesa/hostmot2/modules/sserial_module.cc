@@ -162,31 +162,34 @@ class SmartSerial final : public Module {
     }
     void declare(PinSpace &space) override {
         for (SerialPort &port : ports_) {
-            binding_.bind(space, fmt::format("sserial.port-{}", port.number), SSERIAL_PORT_PINS, port.pins);
+            port_pins_.bind(space, fmt::format("sserial.port-{}", port.number), SSERIAL_PORT_PINS, port.pins);
             for (SerialCard &card : port.cards) {
                 for (const SserialField &field : card.values.fields) {
                     declare_field(space, card, field);
                 }
                 for (SerialParameter &parameter : card.parameters) {
-                    binding_.add(space, card.name + "." + parameter.name, parameter.type, parameter.access,
-                                 parameter.field());
+                    card_pins_.add(space, card.name + "." + parameter.name, parameter.type, parameter.access,
+                                   parameter.field());
                 }
             }
         }
     }
     void read(const Registers &registers, const Cycle &cycle) noexcept override {
-        binding_.load();
+        port_pins_.load();
+        card_pins_.load();
         for (SerialPort &port : ports_) {
             read_port(registers, port, cycle);
         }
-        binding_.store();
+        card_pins_.store();
+        port_pins_.store();
     }
     void write(Registers &registers, const Cycle &cycle) noexcept override {
-        binding_.load();
+        port_pins_.load();
+        card_pins_.load();
         for (SerialPort &port : ports_) {
             write_port(registers, port, cycle);
         }
-        binding_.store();
+        port_pins_.store();
     }
     std::size_t take_message(std::span<char> text) noexcept override {
         for (SerialPort &port : ports_) {
@@ -257,32 +260,32 @@ class SmartSerial final : public Module {
         case FieldPins::SIGNED:
         case FieldPins::REAL: {
             SserialNumber &number = card.values.numbers[field.index];
-            binding_.add(space, name, PinType::FLOAT, access, &number.value);
+            card_pins_.add(space, name, PinType::FLOAT, access, &number.value);
             if (field.pins == FieldPins::REAL) {
                 return;
             }
-            binding_.add(space, name + "-scalemax", PinType::FLOAT, Access::RW, &number.scale_max);
+            card_pins_.add(space, name + "-scalemax", PinType::FLOAT, Access::RW, &number.scale_max);
             if (field.hasOutput()) {
-                binding_.add(space, name + "-maxlim", PinType::FLOAT, Access::RW, &number.max_limit);
-                binding_.add(space, name + "-minlim", PinType::FLOAT, Access::RW, &number.min_limit);
+                card_pins_.add(space, name + "-maxlim", PinType::FLOAT, Access::RW, &number.max_limit);
+                card_pins_.add(space, name + "-minlim", PinType::FLOAT, Access::RW, &number.min_limit);
             }
             return;
         }
         case FieldPins::STREAM:
-            binding_.add(space, name, PinType::U32, access, &card.values.streams[field.index].value);
+            card_pins_.add(space, name, PinType::U32, access, &card.values.streams[field.index].value);
             return;
         case FieldPins::COUNTER:
-            binding_.bind(space, name, SSERIAL_COUNTER_PINS, card.values.counters[field.index]);
+            card_pins_.bind(space, name, SSERIAL_COUNTER_PINS, card.values.counters[field.index]);
             return;
         case FieldPins::NONE: return;
         }
     }
     void declare_bit(PinSpace &space, const std::string &name, Access access, SserialBit &bit) {
-        binding_.add(space, name, PinType::BIT, access, &bit.value);
+        card_pins_.add(space, name, PinType::BIT, access, &bit.value);
         if (access == Access::OUT) {
-            binding_.add(space, name + "-not", PinType::BIT, Access::OUT, &bit.inverse);
+            card_pins_.add(space, name + "-not", PinType::BIT, Access::OUT, &bit.inverse);
         } else if (access == Access::IN) {
-            binding_.add(space, name + "-invert", PinType::BIT, Access::RW, &bit.invert);
+            card_pins_.add(space, name + "-invert", PinType::BIT, Access::RW, &bit.invert);
         }
     }
     static void read_port(const Registers &registers, SerialPort &port, const Cycle &cycle) noexcept {
@@ -341,7 +344,7 @@ class SmartSerial final : public Module {
 
     UsedModule module_;
     std::vector<SerialPort> ports_;
-    PinBinding binding_;
+    PinBinding port_pins_, card_pins_;
 };
 
 std::size_t SmartSerial::message(const SerialPort &port, const SserialEvents &event,

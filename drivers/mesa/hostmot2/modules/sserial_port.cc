@@ -16,10 +16,12 @@ constexpr double OUTPUTS_OFF_S = 0.1;
 constexpr double START_LIMIT_S = 0.25, RETRY_S = 0.25;
 /// After this time without a write the cards have turned their outputs off and are started again.
 constexpr double LONGEST_GAP_S = 0.01;
-/// A start whose packet was lost shows as failures of the first exchanges, which start the cards once more.
+/// A start whose packet was lost shows as failures of the first exchanges, which start the cards again.
 constexpr int FIRST_EXCHANGES = 10, MOST_SILENT_STARTS = 5;
 /// The pins of the port become outputs with the first write; a start must come later.
 constexpr double SETTLE_S = 0.01;
+/// Exchanges in a row that were late, or reads of one exchange that saw it in work, before they are a fault.
+constexpr int LATE_STREAK = 3, LATE_READS = 2;
 /// A port without a late exchange for this time may report the next one.
 constexpr double QUIET_S = 10.0;
 
@@ -43,6 +45,7 @@ SserialCommand SserialPortControl::start(SserialPortPins &pins) noexcept {
     enter(pins, SserialState::STARTING);
     exchanges_ = 0;
     late_shortest_ns_ = 0;
+    late_streak_ = late_reads_ = 0;
     pins.fault_count = 0;
     SserialCommand command = send(START_NORMAL | channels_);
     command.hasModes = true;
@@ -79,8 +82,31 @@ void SserialPortControl::note_late(SserialPortPins &pins, const SserialReading &
     if (elapsed_ns < period_ns / 2) {
         return;
     }
+    late_streak_ += late_reads_ == 0 ? 1 : 0;
+    ++late_reads_;
+    // A packet that was late looks alike. An exchange that is too long is late each time.
+    if (late_streak_ < LATE_STREAK && late_reads_ < LATE_READS) {
+        return;
+    }
     late_shortest_ns_ = std::max(late_shortest_ns_, elapsed_ns);
     note_fault(pins, 0);
+}
+
+void SserialPortControl::note_in_time(const SserialReading &reading) noexcept {
+    late_streak_ = late_reads_ == 0 ? 0 : late_streak_;
+    late_reads_ = 0;
+    if (late_shortest_ns_ == 0) {
+        return;
+    }
+    if (!isLateReported_ && event_.type == SserialEvents::Type::NONE) {
+        event_ = {.type = SserialEvents::Type::LATE,
+                  .shortest_ns = late_shortest_ns_,
+                  .longest_ns = reading.now_ns - sent_ns_,
+                  .period_ns = static_cast<std::int64_t>(reading.period_s * 1e9)};
+    }
+    isLateReported_ = true;
+    quiet_s_ = 0.0;
+    late_shortest_ns_ = 0;
 }
 
 void SserialPortControl::evaluate_start(SserialPortPins &pins, const SserialReading &reading) noexcept {
@@ -111,17 +137,7 @@ std::uint32_t SserialPortControl::read(SserialPortPins &pins, const SserialReadi
     if (state_ != SserialState::RUNNING || !isExchange) {
         return 0;
     }
-    if (late_shortest_ns_ != 0) {
-        if (!isLateReported_ && event_.type == SserialEvents::Type::NONE) {
-            event_ = {.type = SserialEvents::Type::LATE,
-                      .shortest_ns = late_shortest_ns_,
-                      .longest_ns = reading.now_ns - sent_ns_,
-                      .period_ns = static_cast<std::int64_t>(reading.period_s * 1e9)};
-        }
-        isLateReported_ = true;
-        quiet_s_ = 0.0;
-        late_shortest_ns_ = 0;
-    }
+    note_in_time(reading);
     const std::uint32_t failed = (reading.failed | reading.faulty) & channels_;
     const bool isFirst = exchanges_ < FIRST_EXCHANGES;
     exchanges_ += isFirst ? 1 : 0;
@@ -147,7 +163,7 @@ std::uint32_t SserialPortControl::read(SserialPortPins &pins, const SserialReadi
 SserialCommand SserialPortControl::write_stopping(SserialPortPins &pins, double period_s) noexcept {
     in_state_s_ += period_s;
     if (!isStopSent_) {
-        // A processor that is still busy is stopped all the same: it may hang.
+        // A processor that is still busy may hang: it is stopped, too.
         isStopSent_ = true;
         return send(STOP | CHANNELS);
     }

@@ -91,6 +91,7 @@ class SserialPortControl {
 
   private:
     void note_late(SserialPortPins &pins, const SserialReading &reading) noexcept;
+    void note_in_time(const SserialReading &reading) noexcept;
     void note_fault(SserialPortPins &pins, std::uint32_t channels) noexcept;
     void stop_by_faults(SserialPortPins &pins, SserialEvents::Type type, std::uint32_t channels) noexcept;
     void enter(SserialPortPins &pins, SserialState state) noexcept;
@@ -109,6 +110,8 @@ class SserialPortControl {
     bool isStopSent_ = false, isRecovering_ = false, isLateReported_ = false;
     int exchanges_ = 0;  ///< since the start of the cards, up to a few
     int silent_starts_ = 0;
+    int late_streak_ = 0;  ///< exchanges in a row that a read saw in work
+    int late_reads_ = 0;   ///< reads that saw this exchange in work
     std::int64_t sent_ns_ = 0, late_shortest_ns_ = 0;
     SserialEvents event_;
     SserialOutputs outputs_ = SserialOutputs::KEPT;

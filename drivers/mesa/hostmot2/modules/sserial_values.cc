@@ -29,7 +29,7 @@ double fraction_of(const SserialNumber &number) noexcept {
     return std::isfinite(fraction) ? std::clamp(fraction, -1.0, 1.0) : 0.0;
 }
 
-/// The bits that the pins of an output ask for.
+/// The bits that the pins of an output request.
 std::uint64_t requested_bits(const SserialCardValues &card, const SserialField &field) noexcept {
     switch (field.pins) {
     case FieldPins::BITS: {

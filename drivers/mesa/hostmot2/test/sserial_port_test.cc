@@ -152,6 +152,16 @@ TEST_F(PortOfSmartSerial, AThreadThatWasLateIsNoFault) {
     EXPECT_TRUE(events.empty());
 }
 
+TEST_F(PortOfSmartSerial, AWritePacketThatArrivedLateIsNoFault) {
+    start();
+    for (int i = 0; i < 100; ++i) {
+        exchange_ns = i % 10 == 0 ? 950'000 : 150'000;
+        cycle();
+    }
+    EXPECT_EQ(pins.fault_count, 0U);
+    EXPECT_TRUE(events.empty());
+}
+
 TEST_F(PortOfSmartSerial, AnExchangeLongerThanThePeriodIsReportedWithItsTime) {
     start();
     exchange_ns = 1'200'000;
