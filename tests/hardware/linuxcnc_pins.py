@@ -26,11 +26,11 @@ LEFT_OUT = re.compile(r'\.(7i76|7i84|sserial)\.|\.tmax|gpio\.01[0-3]\.|\.packets
 
 
 def rows_of(halrun, board):
-    linuxcnc_board.HALRUN, linuxcnc_board.HAL = halrun, HAL
+    linuxcnc_board.HALRUN = halrun
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         folder.chmod(0o777)  # the driver of LinuxCNC runs as another user
-        output, _ = linuxcnc_board.run(board, folder)
+        output, _ = linuxcnc_board.run(board, folder, '7i76e', linuxcnc_board.PHYSICS, HAL)
     return {(match[3], match[1], match[2]) for match in ROW.finditer(output) if not LEFT_OUT.search(match[3])}
 
 
