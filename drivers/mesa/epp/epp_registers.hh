@@ -14,7 +14,10 @@ enum class Width : std::uint8_t { BYTES, WIDE };
 
 class EppRegisters final : public RegisterAccess {
   public:
-    EppRegisters(std::unique_ptr<Port> port, Width width) : port_(std::move(port)), width_(width) { begin(); }
+    EppRegisters(std::unique_ptr<Port> port, Width width);
+    ~EppRegisters() override;
+    EppRegisters(const EppRegisters &) = delete;
+    EppRegisters &operator=(const EppRegisters &) = delete;
 
     /// False when the port reports a time-out, which is then cleared.
     bool read(std::uint16_t address, std::span<std::uint32_t> values) noexcept override;

@@ -8,26 +8,6 @@
 
 namespace mw::mesa::spi {
 
-namespace {
-
-/// What is read at once while loading, with its commands.
-constexpr std::size_t LEAST_ROOM = 512;
-
-}  // namespace
-
-SpiRegisters::SpiRegisters(std::unique_ptr<Device> device) : device_(std::move(device)), words_(LEAST_ROOM) {}
-
-Result<> SpiRegisters::prepare(std::span<const RegisterRange> reads, int max_writes) {
-    std::size_t room = std::max(LEAST_ROOM, 2 * static_cast<std::size_t>(std::max(max_writes, 0)));
-    std::size_t read_words = 0;
-    for (const RegisterRange &range : reads) {
-        read_words += transfer_words(range.count);
-    }
-    room = std::max(room, read_words);
-    words_.assign(room, 0);
-    return {};
-}
-
 bool SpiRegisters::append(std::uint32_t word) noexcept {
     if (used_ == words_.size()) {
         last_error_ = EMSGSIZE;

@@ -13,6 +13,9 @@ namespace mw::mesa::spi {
 class SpiRegisters final : public RegisterAccess {
   public:
     explicit SpiRegisters(std::unique_ptr<Device> device);
+    ~SpiRegisters() override;
+    SpiRegisters(const SpiRegisters &) = delete;
+    SpiRegisters &operator=(const SpiRegisters &) = delete;
 
     bool read(std::uint16_t address, std::span<std::uint32_t> values) noexcept override;
     bool write(std::uint16_t address, std::span<const std::uint32_t> values) noexcept override;
