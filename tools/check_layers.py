@@ -36,7 +36,7 @@ ORDER = {
     'machine/task': ('link', 'sequencer', 'states', 'run'),
     'clients': ('nml', 'rsh', 'schedule', 'tcl', 'screen', 'python'),
     'clients/nml': ('config', 'message', 'buffer', 'net', 'bridge', 'remote'),
-    'drivers/mesa': ('lbp16', 'identity', 'hostmot2', 'ethernet', 'board', 'hm2_eth'),
+    'drivers/mesa': ('lbp16', 'identity', 'hostmot2', 'ethernet', 'direct', 'pci', 'epp', 'spi', 'board', 'hm2_eth'),
     'programs': ('setup', 'run', 'remote', 'start', 'screen', 'doctor', 'mains'),
 }
 # What a folder may not use although its room may.
@@ -48,7 +48,8 @@ NEVER = {
     'machine/journal': ('hal', 'messages', 'motion', 'gcode'),
     'machine/setup': ('hal', 'messages', 'motion', 'gcode'),
     # Driver and simulated board are written apart, so that one shows the errors of the other.
-    'drivers/mesa/board': ('hal', 'drivers/mesa/hostmot2', 'drivers/mesa/ethernet'),
+    'drivers/mesa/board': ('hal', 'drivers/mesa/hostmot2', 'drivers/mesa/ethernet', 'drivers/mesa/direct', 'drivers/mesa/pci',
+                           'drivers/mesa/epp', 'drivers/mesa/spi'),
     'drivers/mesa/hostmot2': ('drivers/mesa/lbp16', 'drivers/mesa/ethernet', 'drivers/mesa/board'),
     'drivers/mesa/ethernet': ('drivers/mesa/board',),
 }

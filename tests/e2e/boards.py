@@ -53,7 +53,7 @@ with tempfile.TemporaryDirectory() as name:
     hal = folder / 'mesa/7i76e.hal'
     hal.write_text(hal.read_text().replace(' virtual_board=7i76e:7i76e_motors.txt', ''))
     ini = folder / 'mesa/7i76e.ini'
-    env = dict(os.environ, MILLWRIGHT_MESA=f'127.0.0.1={firmware}')
+    env = dict(os.environ, MILLWRIGHT_MESA=f'127.0.0.1={firmware}:7i76e_motors.txt')
     words = ('doctor', str(ini), '--latency', '0', '--no-system')
     good = run(*words, env=env)
     check(good.returncode == 0 and ' 0 errors' in good.stderr, good.stdout + good.stderr)

@@ -137,7 +137,7 @@ void read_remote(TableLine &line, PhysicsPlan &plan, const Idrom &idrom) {
         line.reject("card", fmt::format("Unknown card '{}', known are {}.", remote.card,
                                         fmt::join(remote_card_names(), ", ")));
     }
-    // Each part of a card with several channels is a remote of its own.
+    // Each part of a card with several channels is a separate remote.
     for (const RemoteCard *card = find_remote_card(remote.card); card != nullptr;
          card = find_remote_card(card->next_channel)) {
         if (remote.channel >= SERIAL_CHANNELS) {

@@ -99,7 +99,8 @@ void Board::read(long period_ns, std::int64_t now_ns) noexcept {
     const CycleRead result = bus_.read(registers_.inputs(), period_ns);
     isFresh_ = result == CycleRead::DONE;
     isStopped_ = result == CycleRead::STOPPED;
-    isReadOnce_ = isReadOnce_ || isFresh_;
+    // After a stop the watchdog may have bitten: nothing is written before its status has been read again.
+    isReadOnce_ = isFresh_ || (isReadOnce_ && !isStopped_);
     isRewriteDue_ = bus_.take_rewrite() || isRewriteDue_;
     isWriteDoubtful_ = isWriteDoubtful_ || isRewriteDue_ || !isFresh_;
     if (!isFresh_) {

@@ -228,5 +228,27 @@ TEST(MesaClosedLoop, ABoardThatWasSwitchedOffDoesNotMoveUntilAnOperatorActs) {
     EXPECT_EQ(rig.steps(0), at_stop);
 }
 
+// The reset of io_error alone must not switch outputs on: the operator clears has_bit, too.
+TEST(MesaClosedLoop, ABiteDuringAStopIsShownAfterTheReset) {
+    Rig rig({.config = "num_stepgens=1", .physics = STEPPER});
+    const auto run = [&](int cycles) {
+        for (int i = 0; i < cycles; ++i) {
+            rig.cycle();
+        }
+    };
+    run(10);
+    ASSERT_NE(rig.simulated.firmware().read(0x1100), 0U);
+    rig.bus->stop();
+    run(20);
+    EXPECT_EQ(rig.simulated.firmware().read(0x0D00), 1U);
+    rig.bus->resume();
+    run(5);
+    EXPECT_EQ(rig.pins.get("watchdog.has_bit"), 1.0);
+    EXPECT_EQ(rig.simulated.firmware().read(0x1100), 0U);
+    rig.pins.set("watchdog.has_bit", 0);
+    run(5);
+    EXPECT_NE(rig.simulated.firmware().read(0x1100), 0U);
+}
+
 }  // namespace
 }  // namespace mw::mesa::test

@@ -37,7 +37,7 @@ class ThreePhasePwmModule final : public Module {
     bool output(unsigned unit, std::uint8_t function) const override;
     void input(unsigned unit, std::uint8_t function, bool level) override;
     unsigned registers() const override { return 4; }
-    /// The setup is, too, although the firmware does not say so.
+    /// The setup is, too, although the descriptor does not list it.
     bool isInEachInstance(unsigned reg) const override { return reg < 3; }
 
     const std::vector<ThreePhasePwm> &generators() const { return generators_; }

@@ -25,7 +25,7 @@ TEST(BoardThreePhasePwm, EachPhaseHasItsDutyWhileEnabled) {
     EXPECT_EQ(host.read(0x4800), 0U);
 }
 
-// The mean of the level over whole periods is the duty; the lower switch has the opposite level.
+// The average of the level over whole periods is the duty; the lower switch has the opposite level.
 TEST(BoardThreePhasePwm, TheOutputsFollowTheDuty) {
     Host host("7i80hd-3pwm");
     host.write(0x4600, 0x300);

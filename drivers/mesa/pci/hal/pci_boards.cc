@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "drivers/mesa/pci/hal/pci_boards.hh"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "drivers/mesa/direct/hal/direct_boards.hh"
+#include "drivers/mesa/pci/pci_cards.hh"
+#include "drivers/mesa/pci/pci_registers.hh"
+#include "rtapi.h"
+#include "rtapi_pci.h"
+
+namespace mw::mesa {
+
+namespace {
+
+/// What is loaded now: rtapi calls functions without a context.
+struct Load {
+    int comp_id = 0;
+    std::span<char *const> configs;
+    std::size_t found = 0;
+    int status = 0;
+};
+
+Load &current() {
+    static Load load;
+    return load;
+}
+
+std::array<rtapi_pci_device_id, std::size(PCI_CARDS) + 1> id_table() {
+    std::array<rtapi_pci_device_id, std::size(PCI_CARDS) + 1> table{};
+    for (std::size_t i = 0; i < std::size(PCI_CARDS); ++i) {
+        const PciIds &ids = PCI_CARDS[i].ids;
+        const bool isMesa = ids.vendor == MESA_VENDOR;
+        table[i].vendor = ids.vendor;
+        table[i].device = ids.device;
+        table[i].subvendor = isMesa ? RTAPI_PCI_ANY_ID : ids.subsystem_vendor;
+        table[i].subdevice = isMesa ? RTAPI_PCI_ANY_ID : ids.subsystem_device;
+    }
+    return table;
+}
+
+/// Lets the bridge of a 5I20 or 4I65 acknowledge accesses.
+void prepare_bridge(rtapi_pci_dev &device) {
+    volatile void *const mapped = rtapi_pci_ioremap_bar(&device, 0);
+    if (mapped == nullptr) {
+        return;  // reported; where the bridge is not ready, the card has no cookie
+    }
+    auto *const registers = static_cast<volatile std::uint32_t *>(mapped);
+    for (const std::uint16_t offset : Plx9030::DESCRIPTORS) {
+        const std::uint32_t value = registers[offset / 4U];
+        if ((value & Plx9030::READY_INPUT) == 0) {
+            registers[offset / 4U] = value | Plx9030::READY_INPUT;
+        }
+    }
+    rtapi_iounmap(mapped);
+}
+
+int load_card(rtapi_pci_dev &device, const PciCard &card) {
+    const std::string place = fmt::format("PCI {}", rtapi_pci_name(&device));
+    if (rtapi_pci_resource_len(&device, card.region) != PCI_REGISTER_BYTES) {
+        rtapi_print_msg(RTAPI_MSG_ERR, "hm2_pci: the card %.*s at %s has no memory region %d of 64 KiB\n",
+                        static_cast<int>(card.hal_name.size()), card.hal_name.data(), place.c_str(),
+                        card.region);
+        return -ENODEV;
+    }
+    if (const int status = rtapi_pci_enable_device(&device); status != 0) {
+        return status;
+    }
+    if (card.ids.device == PLX_9030) {
+        prepare_bridge(device);
+    }
+    volatile void *const mapped = rtapi_pci_ioremap_bar(&device, card.region);
+    if (mapped == nullptr) {
+        return -ENODEV;
+    }
+    DirectCard direct{.hal_name = std::string(card.hal_name),
+                      .connectors = {},
+                      .port_width = card.port_width,
+                      .leds = card.leds,
+                      .most_failures = 5};
+    for (std::size_t port = 0; port < card.ports; ++port) {
+        direct.connectors.emplace_back(card.connectors.at(port));
+    }
+    auto access = std::make_unique<PciRegisters>(static_cast<volatile std::uint32_t *>(mapped),
+                                                 [mapped] { rtapi_iounmap(mapped); });
+    return add_direct_board({.comp_id = current().comp_id,
+                             .module = "hm2_pci",
+                             .access = std::move(access),
+                             .card = std::move(direct),
+                             .place = place,
+                             .config = text_at(current().configs, current().found)});
+}
+
+int probe(rtapi_pci_dev *device, const rtapi_pci_device_id * /*entry*/) {
+    Load &load = current();
+    const PciCard *card = find_pci_card({.vendor = device->vendor,
+                                         .device = device->device,
+                                         .subsystem_vendor = device->subsystem_vendor,
+                                         .subsystem_device = device->subsystem_device});
+    if (card == nullptr || load.status != 0) {
+        return -ENODEV;
+    }
+    if (load.found == MAX_PCI_BOARDS) {
+        rtapi_print_msg(RTAPI_MSG_ERR, "hm2_pci: more than %d cards; the others are not used\n",
+                        MAX_PCI_BOARDS);
+        return -ENODEV;
+    }
+    load.status = load_card(*device, *card);
+    ++load.found;
+    return 0;  // also after an error: the memory stays mapped until all boards are forgotten
+}
+
+void remove(rtapi_pci_dev *device) {
+    rtapi_pci_disable_device(device);
+}
+
+rtapi_pci_driver &driver() {
+    static const auto table = id_table();
+    static rtapi_pci_driver instance{
+        .name = "hm2_pci", .id_table = table.data(), .probe = probe, .remove = remove, .devices = nullptr};
+    return instance;
+}
+
+}  // namespace
+
+int load_pci_boards(int comp_id, std::span<char *const> configs) {
+    current() = {.comp_id = comp_id, .configs = configs, .found = 0, .status = 0};
+    int status = rtapi_pci_register_driver(&driver());
+    if (status == 0) {
+        status = current().status;
+    }
+    if (status == 0 && current().found == 0) {
+        rtapi_print_msg(RTAPI_MSG_ERR,
+                        "hm2_pci: there is no Mesa card on PCI; lspci -nn lists the cards of the computer\n");
+        status = -ENODEV;
+    }
+    if (status != 0) {
+        unload_pci_boards(comp_id);
+    }
+    return status;
+}
+
+void unload_pci_boards(int comp_id) {
+    remove_direct_boards(comp_id);
+    rtapi_pci_unregister_driver(&driver());
+}
+
+}  // namespace mw::mesa

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The boards of hm2_pci: all cards of the table that the computer has, in the order of their PCI addresses.
+#pragma once
+
+#include <span>
+
+#include "drivers/mesa/hostmot2/hal/driver.hh"
+
+namespace mw::mesa {
+
+constexpr int MAX_PCI_BOARDS = 8;
+
+/// 0, or a negated errno with a message. [while loading]
+MW_HOSTMOT2_API int load_pci_boards(int comp_id, std::span<char *const> configs);
+/// After no function of the boards can run any more.
+MW_HOSTMOT2_API void unload_pci_boards(int comp_id);
+
+}  // namespace mw::mesa

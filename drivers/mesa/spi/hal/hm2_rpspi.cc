@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// hm2_rpspi: Mesa boards on the SPI buses of a Raspberry Pi, through /dev/spidev.
+//
+//     loadrt hostmot2
+//     loadrt hm2_rpspi spiclk_rate=12500 config="num_encoders=1"
+#include "drivers/mesa/direct/hal/direct_boards.hh"
+#include "drivers/mesa/spi/hal/spi_boards.hh"
+#include "hal/sdk/component.hh"
+
+namespace {
+
+int spiclk_rate = 31'250, spiclk_rate_rd = -1, spi_probe = 1;
+int spiclk_base = 400'000'000, spi_pull_miso = 1, spi_pull_mosi = 1, spi_pull_sclk = 1, spi_debug = -1;
+char *config[mw::mesa::MAX_SPI_BOARDS];
+RTAPI_MP_INT(spiclk_rate, "clock rate [kHz]");
+RTAPI_MP_INT(spiclk_rate_rd, "clock rate of reads [kHz]; -1: the same");
+RTAPI_MP_INT(spi_probe, "boards, a sum of 1: SPI0/CE0, 2: SPI0/CE1, 4: SPI1/CE0, 8: SPI1/CE1, 16: SPI1/CE2");
+RTAPI_MP_ARRAY_STRING(config, mw::mesa::MAX_SPI_BOARDS, "which modules of each board are used");
+// Linux sets up the controller and its pins.
+RTAPI_MP_INT(spiclk_base, "accepted for files of LinuxCNC, without an effect");
+RTAPI_MP_INT(spi_pull_miso, "accepted for files of LinuxCNC, without an effect");
+RTAPI_MP_INT(spi_pull_mosi, "accepted for files of LinuxCNC, without an effect");
+RTAPI_MP_INT(spi_pull_sclk, "accepted for files of LinuxCNC, without an effect");
+RTAPI_MP_INT(spi_debug, "accepted for files of LinuxCNC, without an effect");
+
+int comp_id = -1;
+
+}  // namespace
+
+int rtapi_app_main(void) {
+    comp_id = hal_init("hm2_rpspi");
+    if (comp_id < 0) {
+        return comp_id;
+    }
+    const int status = mw::mesa::load_probed_boards({.comp_id = comp_id,
+                                                     .module = "hm2_rpspi",
+                                                     .probe = static_cast<unsigned>(spi_probe),
+                                                     .rates_khz = {&spiclk_rate, 1},
+                                                     .read_rates_khz = {&spiclk_rate_rd, 1},
+                                                     .configs = config});
+    const int result = mw::sdk::finish(comp_id, status);
+    return result < 0 ? result : 0;
+}
+
+void rtapi_app_exit(void) {
+    hal_exit(comp_id);  // no function of a board runs after this
+    mw::mesa::remove_direct_boards(comp_id);
+}
