@@ -50,8 +50,8 @@ with tempfile.TemporaryDirectory() as name:
 
     # The configuration of a shop, on a computer without the board.
     shutil.copytree(pathlib.Path(source) / 'configs/mesa', folder / 'mesa')
-    hal = folder / 'mesa/7i76e.hal'
-    hal.write_text(hal.read_text().replace(' virtual_board=7i76e:7i76e_motors.txt', ''))
+    hal = folder / 'mesa/board.hal'
+    hal.write_text(hal.read_text().replace(' virtual_board=[HOSTMOT2](BOARD):[HOSTMOT2](MOTORS)', ''))
     ini = folder / 'mesa/7i76e.ini'
     env = dict(os.environ, MILLWRIGHT_MESA=f'127.0.0.1={firmware}:7i76e_motors.txt')
     words = ('doctor', str(ini), '--latency', '0', '--no-system')

@@ -2,9 +2,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The sample configuration with a simulated Mesa board starts, homes by its switches, cuts, survives a lost board safely, and ends.
 
-usage: simulated_board.py BIN_FOLDER ROOT
+usage: simulated_board.py BIN_FOLDER ROOT [BOARD ...] (all samples without a name)
 """
 import pathlib
+import re
 import shutil
 import socket
 import subprocess
@@ -38,7 +39,7 @@ def run(machine, linuxcnc, folder, text):
     return status if machine.until(lambda: status('interp_state') != linuxcnc.INTERP_IDLE, 5) else None
 
 
-def drive(machine, folder):
+def drive(machine, folder, board):
     if not machine.until(lambda: 'is up' in machine.text() or machine.process.poll() is not None, START_S) or 'is up' not in machine.text():
         return 'it does not start: ' + machine.text()[-1500:]
     import linuxcnc  # pylint: disable=import-outside-toplevel
@@ -66,7 +67,8 @@ def drive(machine, folder):
     if error:
         return f'an error: {error}'
     # The home switches are 2 mm from the zero points: steps that were lost would show here.
-    positions = [float(machine.hal('getp', f'hm2_7i76e.0.stepgen.{joint:02}.position-fb')) for joint in range(3)]
+    names = [f'encoder.{joint:02}.position' if board == '7i97' else f'stepgen.{joint:02}.position-fb' for joint in range(3)]
+    positions = [float(machine.hal('getp', f'hm2_{board}.0.{name}')) for name in names]
     wanted = [float(machine.hal('getp', f'joint.{joint}.motor-pos-cmd')) for joint in range(3)]
     if any(abs(one - other) > 0.02 for one, other in zip(positions, wanted)):
         return f'the motors are at {positions}, not at {wanted}'
@@ -77,32 +79,43 @@ def drive(machine, folder):
     subprocess.run(['pkill', '-KILL', '-f', f'hm2-board --listen 127.0.0.1:{machine.port}'], check=False)
     if not machine.until(lambda: status('task_state') != linuxcnc.STATE_ON, 2):
         return 'the machine stays on without its board'
-    if not machine.until(lambda: machine.hal('getp', 'hm2_7i76e.0.io_error').strip() == 'TRUE', 2):
+    if not machine.until(lambda: machine.hal('getp', f'hm2_{board}.0.io_error').strip() == 'TRUE', 2):
         return 'io_error is not set'
     return '' if 'has not answered' in machine.text() or 'cannot be' in machine.text() else 'no message names the board: ' + machine.text()[-800:]
 
 
-def main():
-    programs, root = (pathlib.Path(word).resolve() for word in sys.argv[1:3])
+def run_sample(programs, root, board):
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         shutil.copytree(root / 'configs' / 'mesa', folder / 'configs' / 'mesa')
-        ini, port = folder / 'configs' / 'mesa' / '7i76e.ini', free_port()
+        mesa, port = folder / 'configs' / 'mesa', free_port()
+        ini = mesa / f'{board}.ini'
         # Limits for a computer without realtime: cycles come late.
         text = ini.read_text().replace('BOARD_IP = 127.0.0.1', f'BOARD_IP = 127.0.0.1:{port}')
-        ini.write_text(text.replace('MIN_FERROR = 0.1', 'MIN_FERROR = 10').replace('FERROR = 1\n', 'FERROR = 10\n'))
-        hal = folder / 'configs' / 'mesa' / '7i76e.hal'
-        hal.write_text(hal.read_text().replace('timeout_ns 20000000', 'timeout_ns 400000000') + 'setp hm2_7i76e.0.packet-error-limit 200\n')
+        ini.write_text(text)
+        for file in (ini, mesa / 'stepper_mill.inc'):
+            file.write_text(re.sub(r'MIN_FERROR = 0\.\d', 'MIN_FERROR = 10', file.read_text()).replace('\nFERROR = 1\n', '\nFERROR = 10\n'))
+        hal = mesa / 'board.hal'
+        hal.write_text(hal.read_text().replace('timeout_ns 20000000', 'timeout_ns 400000000') + f'setp hm2_{board}.0.packet-error-limit 200\n')
         machine = Machine(programs, ini, folder)
         machine.port = port
         try:
-            problem = drive(machine, folder)
+            problem = drive(machine, folder, board)
         finally:
             status = machine.end()
             subprocess.run(['pkill', '-KILL', '-f', f'hm2-board --listen 127.0.0.1:{port}'], check=False)
         problem = problem or ('' if status == 0 else f'it ends with status {status}: {machine.text()[-1500:]}')
-    print(problem or 'passed')
-    return 1 if problem else 0
+    print(f'{board}: {problem or "passed"}', flush=True)
+    return problem
+
+
+def main():
+    programs, root = (pathlib.Path(word).resolve() for word in sys.argv[1:3])
+    boards = sys.argv[3:] or sorted(path.stem for path in (root / 'configs' / 'mesa').glob('*.ini'))
+    # One process for each: the Python module is bound to one machine.
+    if len(boards) == 1:
+        return 1 if run_sample(programs, root, boards[0]) else 0
+    return max(subprocess.run([sys.executable, __file__, programs, root, board], check=False).returncode for board in boards)
 
 
 if __name__ == '__main__':
