@@ -79,6 +79,7 @@ struct SerialPort {
         : number(found.port), control(channels) {}
 
     int number = 0;
+    std::string card_names;  ///< for messages
     SserialPortPins pins;
     SserialPortControl control;
     SserialWriteStep step;    ///< of the parameter that is written
@@ -169,6 +170,7 @@ class SmartSerial final : public Module {
             added.channel = card.channel;
             added.mode = card.mode;
             added.name = fmt::format("{}.{}.{}", card.name, found.port, card.channel);
+            port.card_names += (port.card_names.empty() ? "" : ", ") + added.name;
             added.input_words = words_of(card.layout.input_bits);
             added.output_words = words_of(card.layout.output_bits);
             added.values = make_sserial_card(card.process, card.layout);
@@ -373,17 +375,18 @@ std::size_t SmartSerial::message(const SerialPort &port, const SserialEvents &ev
     switch (event.type) {
     case SserialEvents::Type::LATE: {
         const std::int64_t longest_us = event.longest_ns / NS_PER_US;
-        return print("Smart serial port {}: an exchange took {} to {} us, longer than the servo period of {} "
-                     "us allows. Use a servo period of at least {} us, or connect fewer cards to this port.",
-                     port.number, shortest_us, longest_us, event.period_ns / NS_PER_US,
-                     (longest_us / STEP_US + 1) * STEP_US);
+        return print(
+            "Smart serial port {}: an exchange with {} took {} to {} us, longer than the servo period of {} "
+            "us allows. Use a servo period of at least {} us, or connect fewer cards to this port.",
+            port.number, port.card_names, shortest_us, longest_us, event.period_ns / NS_PER_US,
+            (longest_us / STEP_US + 1) * STEP_US);
     }
     case SserialEvents::Type::FAULT:
         if (failed == nullptr) {
             return print(
-                "Smart serial port {} stopped: exchanges were not finished after {} us. Use a longer "
-                "servo period. The port starts again by itself.",
-                port.number, shortest_us);
+                "Smart serial port {} stopped: exchanges with {} were not finished after {} us. Use a longer "
+                "servo period, or connect fewer cards to this port. It starts again by itself.",
+                port.number, port.card_names, shortest_us);
         }
         return print("Smart serial card {} failed: {} (status 0x{:08X}). Port {} is stopped and starts again "
                      "by itself. Check the cable and the field supply of the card.",

@@ -126,6 +126,23 @@ TEST_F(ModuleOfSmartSerial, WritesNothingWhileACommandIsInWork) {
     EXPECT_FALSE(cycle().empty());
 }
 
+TEST_F(ModuleOfSmartSerial, AnExchangeThatIsTooLongIsReportedWithItsCardsAndTimes) {
+    for (int i = 0; i < 30; ++i) {
+        cycle();
+    }
+    char text[512];
+    std::string message;
+    for (int i = 0; i < 12; ++i) {
+        cycle(i % 2 == 0 ? 0x1005 : 0);
+        message += std::string(text, serial->take_message(text));
+    }
+    EXPECT_EQ(
+        message,
+        "Smart serial port 0: an exchange with 7i99.0.0, 7i84.0.2 took 900 to 1900 us, longer than the "
+        "servo period of 1000 us allows. Use a servo period of at least 2000 us, or connect fewer cards "
+        "to this port.");
+}
+
 TEST_F(ModuleOfSmartSerial, ParametersShowWhatTheCardHas) {
     EXPECT_EQ(pins.get("7i99.0.0.swrevision"), 14);
     EXPECT_EQ(pins.pins["7i99.0.0.swrevision"].access, Access::RO);
