@@ -2,6 +2,7 @@
 // hostmot2: options of all HostMot2 boards. It is loaded before the component of a bus.
 #include "drivers/mesa/hostmot2/hal/driver.hh"
 #include "hal/sdk/component.hh"
+#include "rtapi.h"
 
 namespace {
 
@@ -15,8 +16,8 @@ RTAPI_MP_INT(debug_idrom, "1: log the header of the description of the firmware"
 RTAPI_MP_INT(debug_module_descriptors, "1: log the modules of the firmware");
 RTAPI_MP_INT(debug_pin_descriptors, "1: log the pins of the firmware");
 RTAPI_MP_INT(debug_modules, "1: log the modules that are used");
-RTAPI_MP_INT(use_serial_numbers, "1: name smart serial cards by their serial number");
-RTAPI_MP_INT(sserial_baudrate, "baud rate of smart serial ports; -1: that of the firmware");
+RTAPI_MP_INT(use_serial_numbers, "without effect: smart serial cards are named by port and channel");
+RTAPI_MP_INT(sserial_baudrate, "without effect: smart serial uses the baud rate of the firmware");
 
 int comp_id = -1;
 
@@ -35,6 +36,16 @@ int rtapi_app_main(void) {
     options.isNamedBySerialNumber = use_serial_numbers != 0;
     options.sserial_baudrate = sserial_baudrate;
     mw::mesa::set_driver_options(options);
+    if (use_serial_numbers != 0) {
+        rtapi_print_msg(RTAPI_MSG_WARN,
+                        "hostmot2: use_serial_numbers has no effect. Smart serial cards are named by port "
+                        "and channel.\n");
+    }
+    if (sserial_baudrate != -1) {
+        rtapi_print_msg(RTAPI_MSG_WARN,
+                        "hostmot2: sserial_baudrate has no effect. Smart serial uses the baud rate of "
+                        "the firmware.\n");
+    }
     return mw::sdk::finish(comp_id, 0) < 0 ? -1 : 0;
 }
 

@@ -7,6 +7,7 @@
 
 #include "drivers/mesa/hostmot2/modules/factories.hh"
 #include "drivers/mesa/hostmot2/modules/sserial_discovery.hh"
+#include "drivers/mesa/hostmot2/modules/sserial_parameters.hh"
 #include "drivers/mesa/hostmot2/modules/sserial_port.hh"
 #include "drivers/mesa/hostmot2/modules/sserial_values.hh"
 
@@ -60,62 +61,15 @@ int words_of(int bits) noexcept {
     return (bits + WORD_BITS - 1) / WORD_BITS;
 }
 
-/// A parameter of a card and the value that its pin shows.
-struct SerialParameter {
-    std::string name;
-    PinType type = PinType::U32;
-    Access access = Access::RO;
-    std::uint32_t u32 = 0;
-    std::int32_t s32 = 0;
-    double real = 0.0;
-
-    void *field() noexcept {
-        switch (type) {
-        case PinType::FLOAT: return &real;
-        case PinType::S32: return &s32;
-        default: return &u32;
-        }
-    }
-};
-
-/// Parameters of other types have no pins.
-bool set_parameter(SerialParameter &parameter, const FoundParameter &found) {
-    const DataRecord &record = found.record;
-    parameter.name = lower_case(record.name);
-    parameter.access = record.direction == FieldDirection::INPUT ? Access::RO : Access::RW;
-    switch (record.type) {
-    case FieldType::UNSIGNED:
-    case FieldType::NV_UNSIGNED:
-        parameter.type = PinType::U32;
-        parameter.u32 = static_cast<std::uint32_t>(found.value);
-        return true;
-    case FieldType::SIGNED:
-    case FieldType::NV_SIGNED: {
-        const auto shift = static_cast<unsigned>(std::max(WORD_BITS - record.bits, 0));
-        parameter.type = PinType::S32;
-        parameter.s32 = static_cast<std::int32_t>(static_cast<std::uint32_t>(found.value) << shift) >>
-                        static_cast<int>(shift);
-        return true;
-    }
-    case FieldType::FLOAT:
-    case FieldType::NV_FLOAT:
-        parameter.type = PinType::FLOAT;
-        parameter.real = record.bits == 2 * WORD_BITS
-                             ? std::bit_cast<double>(found.value)
-                             : double{std::bit_cast<float>(static_cast<std::uint32_t>(found.value))};
-        return true;
-    default: return false;
-    }
-}
-
 struct SerialCard {
     int channel = 0;
     std::uint8_t mode = 0;
     std::string name;  ///< of its pins: 7i76.0.0
     int input_words = 0, output_words = 0;
     SserialCardValues values;
-    std::vector<SerialParameter> parameters;
-    std::uint32_t status = 0;  ///< of the last fault
+    std::vector<SserialParameter> parameters;
+    std::uint32_t status = 0;      ///< of the last fault
+    std::uint32_t status_now = 0;  ///< of the last read
     WriteHandle mode_write;
     std::array<WriteHandle, MAX_WORDS> user_writes;
 };
@@ -125,8 +79,11 @@ struct SerialPort {
         : number(found.port), control(channels) {}
 
     int number = 0;
+    std::string card_names;  ///< for messages
     SserialPortPins pins;
     SserialPortControl control;
+    SserialWriteStep step;    ///< of the parameter that is written
+    bool isDoubtful = false;  ///< the last command may be lost
     std::vector<SerialCard> cards;
     ReadHandle command_read, data_read, status_read;
     std::array<ReadHandle, MAX_WORDS> user_reads;
@@ -151,7 +108,7 @@ class SmartSerial final : public Module {
                                            Send::REQUESTED);
                 };
                 card.mode_write = write(STATUS);
-                for (int i = 0; i < card.output_words; ++i) {
+                for (int i = 0; i < std::max(card.output_words, SserialWriteStep::WORDS); ++i) {
                     card.user_writes[static_cast<std::size_t>(i)] = write(USER + i);
                 }
             }
@@ -167,7 +124,7 @@ class SmartSerial final : public Module {
                 for (const SserialField &field : card.values.fields) {
                     declare_field(space, card, field);
                 }
-                for (SerialParameter &parameter : card.parameters) {
+                for (SserialParameter &parameter : card.parameters) {
                     card_pins_.add(space, card.name + "." + parameter.name, parameter.type, parameter.access,
                                    parameter.field());
                 }
@@ -213,13 +170,13 @@ class SmartSerial final : public Module {
             added.channel = card.channel;
             added.mode = card.mode;
             added.name = fmt::format("{}.{}.{}", card.name, found.port, card.channel);
+            port.card_names += (port.card_names.empty() ? "" : ", ") + added.name;
             added.input_words = words_of(card.layout.input_bits);
             added.output_words = words_of(card.layout.output_bits);
             added.values = make_sserial_card(card.process, card.layout);
             for (const FoundParameter &parameter : card.parameters) {
-                SerialParameter one;
-                if (set_parameter(one, parameter)) {
-                    added.parameters.push_back(std::move(one));
+                if (auto one = make_parameter(parameter)) {
+                    added.parameters.push_back(std::move(*one));
                 }
             }
         }
@@ -297,6 +254,7 @@ class SmartSerial final : public Module {
         for (SerialCard &card : port.cards) {
             const std::uint32_t status = registers.value(port.status_read, card.channel);
             const auto channel = static_cast<unsigned>(card.channel);
+            card.status_now = status;
             if (isFaulty(status)) {
                 reading.faulty |= 1U << channel;
             }
@@ -316,8 +274,13 @@ class SmartSerial final : public Module {
         }
     }
     static void write_port(Registers &registers, SerialPort &port, const Cycle &cycle) noexcept {
-        const SserialCommand command =
-            port.control.write(port.pins, {cycle.now_ns, cycle.period_s, cycle.isWriting});
+        const SserialCommand command = port.control.write(
+            port.pins, {cycle.now_ns, cycle.period_s, cycle.isWriting, hasParameters(port)});
+        port.isDoubtful = port.isDoubtful || cycle.isWriteLost;
+        if (command.isSetupStep) {
+            write_parameters(registers, port);
+            return;
+        }
         const SserialOutputs outputs = port.control.take_outputs();
         for (SerialCard &card : port.cards) {
             if (outputs == SserialOutputs::HELD) {
@@ -336,7 +299,55 @@ class SmartSerial final : public Module {
         }
         if (command.isDue) {
             registers.request(port.command_write, command.command);
+            port.step = {};
+            port.isDoubtful = false;
         }
+    }
+
+    static bool hasParameters(const SerialPort &port) noexcept {
+        return std::ranges::any_of(port.cards, [](const SerialCard &card) {
+            return std::ranges::any_of(card.parameters, &SserialParameter::isChanged);
+        });
+    }
+    /// One step of a parameter in each cycle. What may be lost is repeated.
+    static void write_parameters(Registers &registers, SerialPort &port) noexcept {
+        const bool isFirst = port.step.number == 0;
+        if (isFirst && port.isDoubtful) {
+            port.control.repeat_setup(port.pins);
+            return;
+        }
+        for (SerialCard &card : port.cards) {
+            const auto one = std::ranges::find_if(card.parameters, &SserialParameter::isChanged);
+            if (one != card.parameters.end()) {
+                write_parameter(registers, port, card, *one);
+                return;
+            }
+        }
+        port.control.finish_setup(port.pins, 0);
+    }
+    static void write_parameter(Registers &registers, SerialPort &port, SerialCard &card,
+                                SserialParameter &parameter) noexcept {
+        constexpr std::uint32_t FAULTS = 0xFF00;
+        const bool isFirst = port.step.number == 0;
+        if (!isFirst && !port.isDoubtful && (card.status_now & FAULTS) != 0) {
+            card.status = card.status_now;
+            parameter.known = port.step.value;  // not tried again until it changes
+            port.step = {};
+            port.control.finish_setup(port.pins, 1U << static_cast<unsigned>(card.channel));
+            return;
+        }
+        const SserialWriteStep last = port.step;
+        port.step = port.isDoubtful ? last : next_step(parameter, last);
+        if (port.step.number == 0) {
+            parameter.known = last.value;  // the next cycle takes the next parameter
+            return;
+        }
+        registers.request(card.mode_write, port.step.status);
+        for (std::size_t i = 0; i < port.step.words.size(); ++i) {
+            registers.request(card.user_writes[i], port.step.words[i]);
+        }
+        registers.request(port.command_write, port.control.setup_step(card.channel).command);
+        port.isDoubtful = false;
     }
 
     static std::size_t message(const SerialPort &port, const SserialEvents &event,
@@ -364,17 +375,18 @@ std::size_t SmartSerial::message(const SerialPort &port, const SserialEvents &ev
     switch (event.type) {
     case SserialEvents::Type::LATE: {
         const std::int64_t longest_us = event.longest_ns / NS_PER_US;
-        return print("Smart serial port {}: an exchange took {} to {} us, longer than the servo period of {} "
-                     "us allows. Use a servo period of at least {} us, or connect fewer cards to this port.",
-                     port.number, shortest_us, longest_us, event.period_ns / NS_PER_US,
-                     (longest_us / STEP_US + 1) * STEP_US);
+        return print(
+            "Smart serial port {}: an exchange with {} took {} to {} us, longer than the servo period of {} "
+            "us allows. Use a servo period of at least {} us, or connect fewer cards to this port.",
+            port.number, port.card_names, shortest_us, longest_us, event.period_ns / NS_PER_US,
+            (longest_us / STEP_US + 1) * STEP_US);
     }
     case SserialEvents::Type::FAULT:
         if (failed == nullptr) {
             return print(
-                "Smart serial port {} stopped: exchanges were not finished after {} us. Use a longer "
-                "servo period. The port starts again by itself.",
-                port.number, shortest_us);
+                "Smart serial port {} stopped: exchanges with {} were not finished after {} us. Use a longer "
+                "servo period, or connect fewer cards to this port. It starts again by itself.",
+                port.number, port.card_names, shortest_us);
         }
         return print("Smart serial card {} failed: {} (status 0x{:08X}). Port {} is stopped and starts again "
                      "by itself. Check the cable and the field supply of the card.",
@@ -385,6 +397,13 @@ std::size_t SmartSerial::message(const SerialPort &port, const SserialEvents &ev
                      failed == nullptr ? std::string_view("?") : std::string_view(failed->name),
                      failed == nullptr ? "no reason" : status_text(failed->status),
                      failed == nullptr ? 0U : failed->status, port.number);
+    case SserialEvents::Type::NO_SETUP:
+        return print(
+            "Smart serial card {} has not taken a parameter: {} (status 0x{:08X}). Check the value and "
+            "the cable.",
+            failed == nullptr ? std::string_view("?") : std::string_view(failed->name),
+            failed == nullptr ? "no reason" : status_text(failed->status),
+            failed == nullptr ? 0U : failed->status);
     case SserialEvents::Type::RECOVERED:
         return print("Smart serial port {} runs again after {} ms. Each output stays off until its pin has "
                      "been off once, or sserial.port-{}.run has been false.",

@@ -7,7 +7,8 @@ namespace mw::mesa {
 
 namespace {
 
-constexpr std::uint32_t DO_IT = 0x1000, STOP = 0x800, START_NORMAL = 0x900, CHANNELS = 0xFF;
+constexpr std::uint32_t DO_IT = 0x1000, STOP = 0x800, START_NORMAL = 0x900, START_SETUP = 0xF00,
+                        CHANNELS = 0xFF;
 /// Bit 31 of the command register has another use.
 constexpr std::uint32_t COMMAND_MASK = 0x7FFFFFFF;
 /// A card turns its outputs off when it hears nothing for some 10 ms.
@@ -171,14 +172,47 @@ SserialCommand SserialPortControl::write_stopping(SserialPortPins &pins, double 
     return in_state_s_ >= pause_s ? start(pins) : SserialCommand{};
 }
 
-SserialCommand SserialPortControl::write_idle(SserialPortPins &pins, double period_s) noexcept {
-    in_state_s_ += period_s;
+SserialCommand SserialPortControl::write_idle(SserialPortPins &pins, const Moment &moment) noexcept {
+    in_state_s_ += moment.period_s;
     // Cards may run, from before a fault of the bus or of another program.
     if (!isStopSent_) {
         isStopSent_ = true;
         return send(STOP | CHANNELS);
     }
-    return isClear_ && in_state_s_ >= SETTLE_S ? start(pins) : SserialCommand{};
+    if (!isClear_ || in_state_s_ < SETTLE_S) {
+        return {};
+    }
+    const bool isSetupDue = moment.hasParameters && !isSetupDone_;
+    isSetupDone_ = false;
+    if (!isSetupDue) {
+        return start(pins);
+    }
+    enter(pins, SserialState::SETUP);
+    SserialCommand command = send(START_SETUP | channels_);
+    command.hasModes = true;
+    return command;
+}
+
+SserialCommand SserialPortControl::write_setup(SserialPortPins &pins, double period_s) noexcept {
+    in_state_s_ += period_s;
+    if (in_state_s_ > START_LIMIT_S) {
+        finish_setup(pins, channels_);
+        return {};
+    }
+    return {.isSetupStep = isClear_};
+}
+
+SserialCommand SserialPortControl::setup_step(int channel) noexcept {
+    in_state_s_ = 0.0;
+    return send(DO_IT | (1U << static_cast<unsigned>(channel)));
+}
+
+void SserialPortControl::finish_setup(SserialPortPins &pins, std::uint32_t failed) noexcept {
+    enter(pins, SserialState::IDLE);
+    isSetupDone_ = true;
+    if (failed != 0) {
+        event_ = {.type = SserialEvents::Type::NO_SETUP, .channels = failed};
+    }
 }
 
 SserialCommand SserialPortControl::write(SserialPortPins &pins, const Moment &moment) noexcept {
@@ -209,7 +243,8 @@ SserialCommand SserialPortControl::write(SserialPortPins &pins, const Moment &mo
         return send(STOP | CHANNELS);
     }
     switch (state_) {
-    case SserialState::IDLE: return write_idle(pins, moment.period_s);
+    case SserialState::IDLE: return write_idle(pins, moment);
+    case SserialState::SETUP: return write_setup(pins, moment.period_s);
     case SserialState::STOPPING:
     case SserialState::FAULTED: return write_stopping(pins, moment.period_s);
     case SserialState::STARTING:

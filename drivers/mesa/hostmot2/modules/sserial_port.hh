@@ -16,6 +16,7 @@ enum class SserialState : std::uint32_t {
     STARTING = 2,  ///< the cards are started
     RUNNING = 3,
     STOPPING = 4,  ///< stopped after faults, with a pause in which the cards turn their outputs off
+    SETUP = 7,     ///< parameters are written to the cards
     FAULTED = 10,  ///< the last attempt to start has failed; the next one follows
 };
 
@@ -53,6 +54,7 @@ struct SserialEvents {
         LATE,       ///< an exchange is longer than the period
         FAULT,      ///< too many faults: stopped
         NO_START,   ///< the cards do not start
+        NO_SETUP,   ///< parameters could not be written
         RECOVERED,  ///< runs again
     } type = Type::NONE;
     std::uint32_t channels = 0;                    ///< that failed
@@ -65,8 +67,9 @@ struct SserialEvents {
 struct SserialCommand {
     bool isDue = false;
     std::uint32_t command = 0;
-    bool hasModes = false;  ///< with the modes of the cards
-    bool hasData = false;   ///< with their outputs
+    bool isSetupStep = false;  ///< the cards are in set-up: setup_step() or finish_setup() must follow
+    bool hasModes = false;     ///< with the modes of the cards
+    bool hasData = false;      ///< with their outputs
 };
 
 /// What becomes of the outputs with the next command.
@@ -83,8 +86,15 @@ class SserialPortControl {
         std::int64_t now_ns = 0;
         double period_s = 0.001;
         bool isWriting = false;
+        bool hasParameters = false;  ///< parameters differ from those of the cards
     };
     SserialCommand write(SserialPortPins &pins, const Moment &moment) noexcept;
+    /// One exchange in set-up with a channel. [servo thread]
+    SserialCommand setup_step(int channel) noexcept;
+    /// All parameters are written, or one of `failed` channels could not be. [servo thread]
+    void finish_setup(SserialPortPins &pins, std::uint32_t failed) noexcept;
+    /// The start of the set-up may be lost. [servo thread]
+    void repeat_setup(SserialPortPins &pins) noexcept { enter(pins, SserialState::IDLE); }
     /// What happened since the last call, once. [servo thread]
     SserialEvents take_event() noexcept;
     SserialOutputs take_outputs() noexcept;
@@ -97,7 +107,8 @@ class SserialPortControl {
     void enter(SserialPortPins &pins, SserialState state) noexcept;
     SserialCommand send(std::uint32_t command) noexcept;
     SserialCommand start(SserialPortPins &pins) noexcept;
-    SserialCommand write_idle(SserialPortPins &pins, double period_s) noexcept;
+    SserialCommand write_idle(SserialPortPins &pins, const Moment &moment) noexcept;
+    SserialCommand write_setup(SserialPortPins &pins, double period_s) noexcept;
     SserialCommand write_stopping(SserialPortPins &pins, double period_s) noexcept;
     void evaluate_start(SserialPortPins &pins, const SserialReading &reading) noexcept;
 
@@ -107,7 +118,7 @@ class SserialPortControl {
     std::uint32_t last_command_ = 0;
     bool isClear_ = false;    ///< the last read saw no command in work
     bool isAnswered_ = true;  ///< the last command has been evaluated
-    bool isStopSent_ = false, isRecovering_ = false, isLateReported_ = false;
+    bool isStopSent_ = false, isSetupDone_ = false, isRecovering_ = false, isLateReported_ = false;
     int exchanges_ = 0;  ///< since the start of the cards, up to a few
     int silent_starts_ = 0;
     int late_streak_ = 0;  ///< exchanges in a row that a read saw in work

@@ -9,7 +9,7 @@ namespace mw::mesa {
 
 namespace {
 
-constexpr int REAL_BITS = 32, WORD_BITS = 32, ALL_BITS = 64;
+constexpr int REAL_BITS = 32, WORD_BITS = 32, ALL_BITS = 64, MAX_COUNTER_BITS = 32;
 constexpr double SIGNED_END = 2147483647.0;
 
 std::uint64_t mask_of(int bits) noexcept {
@@ -19,6 +19,11 @@ std::uint64_t mask_of(int bits) noexcept {
 std::int64_t sign_extended(std::uint64_t raw, int bits) noexcept {
     const auto shift = static_cast<unsigned>(ALL_BITS - bits);
     return static_cast<std::int64_t>(raw << shift) >> shift;
+}
+
+/// 0 instead of a value that is not finite, such as with a wrong scale.
+double finite(double value) noexcept {
+    return std::isfinite(value) ? value : 0.0;
 }
 
 /// The limited value as a fraction of the scale, within -1 ... 1.
@@ -105,6 +110,9 @@ void read_field(SserialCardValues &card, const SserialField &field,
 }
 
 FieldPins pins_of(const DataRecord &record) noexcept {
+    if (record.bits <= 0) {
+        return FieldPins::NONE;
+    }
     switch (record.type) {
     case FieldType::BITS: return FieldPins::BITS;
     case FieldType::BOOLEAN: return FieldPins::BOOLEAN;
@@ -114,7 +122,8 @@ FieldPins pins_of(const DataRecord &record) noexcept {
     case FieldType::STREAM: return FieldPins::STREAM;
     case FieldType::ENCODER:
     case FieldType::ENCODER_HIGH:
-    case FieldType::ENCODER_LOW: return FieldPins::COUNTER;
+    case FieldType::ENCODER_LOW:
+        return record.bits <= MAX_COUNTER_BITS ? FieldPins::COUNTER : FieldPins::NONE;
     case FieldType::PAD:
     case FieldType::NV_UNSIGNED:
     case FieldType::NV_SIGNED:
@@ -143,9 +152,9 @@ std::size_t add_values(SserialCardValues &card, const SserialField &field) {
 void join_halves(SserialCardValues &card, const std::vector<DataRecord> &process) {
     for (std::size_t i = 0; i < process.size(); ++i) {
         for (std::size_t j = 0; j < process.size(); ++j) {
-            const bool isPair = process[i].type == FieldType::ENCODER_HIGH &&
-                                process[j].type == FieldType::ENCODER_LOW &&
-                                process[i].name == process[j].name;
+            const bool isPair =
+                process[i].type == FieldType::ENCODER_HIGH && process[j].type == FieldType::ENCODER_LOW &&
+                process[i].name == process[j].name && process[i].bits + process[j].bits <= MAX_COUNTER_BITS;
             if (isPair) {
                 card.fields[i].input_low = card.fields[j].input;
                 card.fields[i].low_bits = card.fields[j].bits;
@@ -241,13 +250,13 @@ std::uint64_t signed_bits(const SserialNumber &number, int bits) noexcept {
 }
 
 double unsigned_number(std::uint64_t raw, int bits, double scale_max) noexcept {
-    return static_cast<double>(raw) / static_cast<double>(mask_of(bits)) * scale_max;
+    return finite(static_cast<double>(raw) / static_cast<double>(mask_of(bits)) * scale_max);
 }
 
 double signed_number(std::uint64_t raw, int bits, double scale_max) noexcept {
     // 2^31 of a word of 32 bits, also for shorter and longer numbers.
-    return std::ldexp(static_cast<double>(sign_extended(raw, bits)), WORD_BITS - bits) / SIGNED_END *
-           scale_max;
+    const double word = std::ldexp(static_cast<double>(sign_extended(raw, bits)), WORD_BITS - bits);
+    return finite(word / SIGNED_END * scale_max);
 }
 
 void count_encoder(SserialCounter &counter, std::uint64_t raw, int bits) noexcept {
@@ -273,8 +282,7 @@ void count_encoder(SserialCounter &counter, std::uint64_t raw, int bits) noexcep
     }
     counter.rawcounts = static_cast<std::int32_t>(counter.total);
     counter.count = static_cast<std::int32_t>(counter.total - counter.zero);
-    const double position = static_cast<double>(counter.total - counter.zero) / counter.scale;
-    counter.position = std::isfinite(position) ? position : 0.0;
+    counter.position = finite(static_cast<double>(counter.total - counter.zero) / counter.scale);
 }
 
 }  // namespace mw::mesa

@@ -94,6 +94,7 @@ void release_outputs(SserialCardValues &card) noexcept;
 /// give 0. [any thread]
 std::uint64_t unsigned_bits(const SserialNumber &number, int bits) noexcept;
 std::uint64_t signed_bits(const SserialNumber &number, int bits) noexcept;
+/// The number of bits from a card; 0 when it is not finite. [any thread]
 double unsigned_number(std::uint64_t raw, int bits, double scale_max) noexcept;
 double signed_number(std::uint64_t raw, int bits, double scale_max) noexcept;
 /// Counts on by the low bits of a count; resets the position, and finds the index: with index-enable, the

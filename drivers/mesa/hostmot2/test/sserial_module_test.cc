@@ -76,6 +76,7 @@ class ModuleOfSmartSerial : public ::testing::Test {
     void step() noexcept {
         Cycle now;
         now.isFresh = now.isWriting = true;
+        now.isWriteLost = isWriteLost;
         now.now_ns = time_ns += PERIOD_NS;
         serial->read(registers, now);
         now.now_ns += PERIOD_NS / 10;
@@ -91,6 +92,7 @@ class ModuleOfSmartSerial : public ::testing::Test {
     PinMap pins;
     std::unique_ptr<Module> serial;
     std::int64_t time_ns = 0;
+    bool isWriteLost = false;
 };
 
 TEST_F(ModuleOfSmartSerial, ReadsEachRegisterOfAllChannelsAtOnce) {
@@ -124,6 +126,23 @@ TEST_F(ModuleOfSmartSerial, WritesNothingWhileACommandIsInWork) {
     EXPECT_FALSE(cycle().empty());
 }
 
+TEST_F(ModuleOfSmartSerial, AnExchangeThatIsTooLongIsReportedWithItsCardsAndTimes) {
+    for (int i = 0; i < 30; ++i) {
+        cycle();
+    }
+    char text[512];
+    std::string message;
+    for (int i = 0; i < 12; ++i) {
+        cycle(i % 2 == 0 ? 0x1005 : 0);
+        message += std::string(text, serial->take_message(text));
+    }
+    EXPECT_EQ(
+        message,
+        "Smart serial port 0: an exchange with 7i99.0.0, 7i84.0.2 took 900 to 1900 us, longer than the "
+        "servo period of 1000 us allows. Use a servo period of at least 2000 us, or connect fewer cards "
+        "to this port.");
+}
+
 TEST_F(ModuleOfSmartSerial, ParametersShowWhatTheCardHas) {
     EXPECT_EQ(pins.get("7i99.0.0.swrevision"), 14);
     EXPECT_EQ(pins.pins["7i99.0.0.swrevision"].access, Access::RO);
@@ -132,6 +151,95 @@ TEST_F(ModuleOfSmartSerial, ParametersShowWhatTheCardHas) {
     EXPECT_EQ(pins.get("7i99.0.0.gain"), 1.5);
     EXPECT_EQ(pins.pins["7i99.0.0.gain"].access, Access::RW);
     EXPECT_FALSE(pins.pins.contains("7i99.0.0.stream"));
+}
+
+/// The exchanges in set-up: status and first user register of channel 0.
+std::vector<std::pair<std::uint32_t, std::uint32_t>>
+setup_of(const std::vector<std::vector<RegisterWrite>> &lists) {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> steps;
+    for (const auto &list : lists) {
+        if (list.empty() || list.back() != RegisterWrite{BASE, 0x1001}) {
+            continue;
+        }
+        const auto value = [&](int address) {
+            const auto found =
+                std::ranges::find(list, static_cast<std::uint16_t>(address), &RegisterWrite::address);
+            return found == list.end() ? 0U : found->value;
+        };
+        steps.emplace_back(value(BASE + 0x200), value(BASE + 0x300));
+    }
+    return steps;
+}
+
+TEST_F(ModuleOfSmartSerial, WritesParametersThatDifferBeforeItStartsTheCards) {
+    pins.set("7i99.0.0.offset", -6);
+    pins.set("7i99.0.0.gain", 2.0);
+    std::vector<std::vector<RegisterWrite>> lists;
+    for (int i = 0; i < 60; ++i) {
+        lists.push_back(cycle());
+    }
+    // 16 bits at once; non-volatile memory is opened before and closed after. So does LinuxCNC.
+    const std::vector<std::pair<std::uint32_t, std::uint32_t>> expected{
+        {0x65000000, 0xFFFA}, {0xEC000000, 1}, {0x66000000, 0x40000000}, {0xEC000000, 0}};
+    EXPECT_EQ(setup_of(lists), expected);
+    EXPECT_EQ(pins.get("sserial.port-0.port_state"), 3);
+    const auto last = [&](std::uint32_t command) {
+        return std::ranges::find_if(lists, [&](const auto &list) {
+            return !list.empty() && list.back() == RegisterWrite{BASE, command};
+        });
+    };
+    EXPECT_LT(last(0xF05), last(0x1001));
+    EXPECT_LT(last(0x1001), last(0x905));
+    pins.set("sserial.port-0.run", 0);
+    cycle();
+    pins.set("sserial.port-0.run", 1);
+    lists.clear();
+    for (int i = 0; i < 60; ++i) {
+        lists.push_back(cycle());
+    }
+    EXPECT_TRUE(setup_of(lists).empty()) << "equal values are not written again";
+}
+
+TEST_F(ModuleOfSmartSerial, RepeatsAStepThatMayBeLost) {
+    pins.set("7i99.0.0.offset", 7);
+    std::vector<std::vector<RegisterWrite>> lists;
+    bool isLost = false;
+    for (int i = 0; i < 80; ++i) {
+        isWriteLost = isLost;
+        lists.push_back(cycle());
+        const bool isStep = !lists.back().empty() && lists.back().back() == RegisterWrite{BASE, 0x1001};
+        const bool isSetup = !lists.back().empty() && lists.back().back() == RegisterWrite{BASE, 0xF05};
+        isLost = (isStep || isSetup) && i < 40;
+    }
+    const auto steps = setup_of(lists);
+    ASSERT_GE(steps.size(), 1U);
+    for (const auto &step : steps) {
+        EXPECT_EQ(step, (std::pair<std::uint32_t, std::uint32_t>{0x65000000, 7}));
+    }
+    EXPECT_EQ(pins.get("sserial.port-0.port_state"), 3);
+}
+
+TEST_F(ModuleOfSmartSerial, AParameterThatTheCardRejectsIsReportedOnce) {
+    pins.set("7i99.0.0.offset", 7);
+    std::size_t messages = 0;
+    char text[512];
+    for (int i = 0; i < 100; ++i) {
+        for (std::uint32_t &word : registers.inputs()) {
+            word = 0;
+        }
+        // The first set-up reports a fault of the card.
+        registers.inputs()[2] = pins.get("sserial.port-0.port_state") == 7 ? 0x100U : 0U;
+        step();
+        (void)registers.list(false);
+        const std::size_t length = serial->take_message(text);
+        messages += length > 0 ? 1U : 0U;
+        if (length > 0) {
+            EXPECT_NE(std::string_view(text, length).find("7i99.0.0 has not taken a parameter"),
+                      std::string_view::npos);
+        }
+    }
+    EXPECT_EQ(messages, 1U);
+    EXPECT_EQ(pins.get("sserial.port-0.port_state"), 3) << "the cards run without it";
 }
 
 TEST_F(ModuleOfSmartSerial, AnyRegistersAndPinsNeverAllocateNorGiveInvalidNumbers) {

@@ -3,6 +3,7 @@
 // simulated card for the same pins.
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -102,6 +103,39 @@ TEST(SserialFields, HaveTheirDefaultsFromTheCard) {
     EXPECT_EQ(card.numbers[2].min_limit, -5.0);
     EXPECT_EQ(card.numbers[2].max_limit, 10.0);
     EXPECT_EQ(card.fields[0].name, "volt");
+}
+
+TEST(SserialFields, OfDamagedDescriptionsNeverGiveInvalidNumbers) {
+    std::mt19937 random(3);
+    const FieldType types[] = {FieldType::BITS,         FieldType::UNSIGNED,       FieldType::SIGNED,
+                               FieldType::FLOAT,        FieldType::BOOLEAN,        FieldType::ENCODER,
+                               FieldType::ENCODER_HIGH, FieldType::ENCODER_LOW,    FieldType::STREAM,
+                               FieldType::PAD,          static_cast<FieldType>(99)};
+    const FieldDirection directions[] = {FieldDirection::INPUT, FieldDirection::OUTPUT, FieldDirection::BOTH};
+    for (int i = 0; i < 3000; ++i) {
+        std::vector<DataRecord> process;
+        for (int n = 0; n < 3; ++n) {
+            process.push_back(record("a", static_cast<int>(random() % 65), types[random() % std::size(types)],
+                                     directions[random() % 3], static_cast<float>(random()),
+                                     random() % 4 == 0 ? 0.0F : static_cast<float>(random())));
+        }
+        auto layout = process_layout(process, 224);
+        ASSERT_TRUE(layout.has_value());
+        auto card = make_sserial_card(process, *layout);
+        for (SserialNumber &one : card.numbers) {
+            one.scale_max = random() % 3 == 0 ? std::nan("") : one.scale_max;
+        }
+        std::uint32_t words[7];
+        for (int cycle = 0; cycle < 5; ++cycle) {
+            std::ranges::generate(words, [&] { return static_cast<std::uint32_t>(random()); });
+            sserial_read(card, words);
+            for (const SserialNumber &one : card.numbers) {
+                ASSERT_TRUE(std::isfinite(one.value))
+                    << one.value << " of " << one.scale_max << " max " << one.max_limit;
+            }
+            sserial_write(card, words);
+        }
+    }
 }
 
 TEST(SserialFields, OutputsArePackedAndInverted) {
