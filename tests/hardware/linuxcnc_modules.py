@@ -131,6 +131,9 @@ def main():
             folder = pathlib.Path(name)
             folder.chmod(0o777)  # the driver of LinuxCNC runs as another user
             output, log = run(halrun, folder)
+        if not PIN.search(output):
+            print(f'{halrun} has not loaded the driver:\n{output[-2000:]}')
+            return 1
         pins.append({(row[3], row[1], row[2]) for row in PIN.finditer(output) if not OTHER_PIN.search(row[3])})
         registers.append(states(log))
     problems = [f'only {whose}: {" ".join(row)}' for whose, rows in (('LinuxCNC', pins[0] - pins[1]), ('Millwright', pins[1] - pins[0]))

@@ -54,10 +54,13 @@ void Board::add(const Idrom &idrom, const Config &config, const UsedModule &modu
         return;
     }
     switch (module.descriptor.gtag) {
-    case Gtag::IO_PORT:
-        modules_.push_back(
-            std::make_unique<IoPorts>(module, assignment_, static_cast<int>(idrom.header.port_width)));
+    case Gtag::IO_PORT: {
+        auto ports =
+            std::make_unique<IoPorts>(module, assignment_, static_cast<int>(idrom.header.port_width));
+        ports_ = ports.get();
+        modules_.push_back(std::move(ports));
         return;
+    }
     case Gtag::WATCHDOG: {
         auto watchdog = std::make_unique<Watchdog>(module);
         watchdog_ = watchdog.get();
@@ -146,6 +149,8 @@ void Board::write(long period_ns, std::int64_t now_ns) noexcept {
     }
     isFresh_ = false;  // a cycle without read() has no new inputs
     if (!cycle.isWriting) {
+        isOutputOn_.store(false,
+                          std::memory_order_relaxed);  // the fast thread needs no other data of this one
         isRewriteDue_ = true;
         return;
     }
@@ -153,6 +158,7 @@ void Board::write(long period_ns, std::int64_t now_ns) noexcept {
     const bool areAll = isRewriteDue_ && cycle.isFresh && isReadRecent(now_ns);
     const bool isSent = bus_.write(registers_.list(areAll));
     isRewriteDue_ = !isSent || (isRewriteDue_ && !areAll);
+    isOutputOn_.store(isSent, std::memory_order_relaxed);
     if (isSent) {
         note_write(now_ns);
     }
@@ -179,6 +185,18 @@ void Board::note_timeout(long period_ns) noexcept {
     checked_timeout_ns_ = timeout_ns;
     // A cycle that is half a period late must not be a bite.
     events_.isTimeoutShort = timeout_ns < period_ns + period_ns / 2;
+}
+
+void Board::read_gpio() noexcept {
+    if (hasFastGpio()) {
+        ports_->read_immediately(bus_);
+    }
+}
+
+void Board::write_gpio() noexcept {
+    if (hasFastGpio() && isOutputOn_.load(std::memory_order_relaxed)) {
+        ports_->write_immediately(bus_);
+    }
 }
 
 BoardEvents Board::take_events() noexcept {

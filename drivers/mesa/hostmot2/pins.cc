@@ -2,6 +2,7 @@
 #include "drivers/mesa/hostmot2/pins.hh"
 
 #include <bit>
+#include <cstddef>
 
 namespace mw::mesa {
 
@@ -43,6 +44,15 @@ void PinBinding::add(PinSpace &space, const std::string &name, PinType type, Acc
         pin.loaded = bits_of(value);
     });
     pins_.push_back(pin);
+}
+
+PinBinding PinBinding::moved(const void *from, void *to) const {
+    PinBinding copy = *this;
+    for (Bound &pin : copy.pins_) {
+        const auto offset = static_cast<const std::byte *>(pin.field) - static_cast<const std::byte *>(from);
+        pin.field = static_cast<std::byte *>(to) + offset;
+    }
+    return copy;
 }
 
 void PinBinding::load() noexcept {

@@ -78,6 +78,10 @@ class PinBinding {
     /// Makes one pin for one field. [while loading]
     void add(PinSpace &space, const std::string &name, PinType type, Access access, void *field);
 
+    /// The same pins with other fields: a field `n` bytes behind `from` becomes the one `n` bytes behind
+    /// `to`. So a second thread has values of its own. [while loading]
+    PinBinding moved(const void *from, void *to) const;
+
     /// Copies what others may set (IN, IO, RW) to the fields. [servo thread]
     void load() noexcept;
     /// Copies the fields of OUT and RO to HAL, and those of IO and RW that changed since load(), so that a

@@ -75,6 +75,20 @@ class RegisterBus {
     }
     /// Writes a list in its order; false when it could not be sent. [servo thread]
     virtual bool write(std::span<const RegisterWrite> writes) noexcept = 0;
+    /// Whether registers can be read and written at any moment, also by a faster thread than that of the
+    /// cycle, such as on PCI. Then both functions below work besides the cycle. [while loading]
+    virtual bool hasImmediateAccess() const noexcept { return false; }
+    /// Reads `values.size()` registers from `address`; false: it failed. [any realtime thread]
+    virtual bool read_immediately(std::uint16_t address, std::span<std::uint32_t> values) noexcept {
+        (void)address;
+        (void)values;
+        return false;
+    }
+    /// Writes a list in its order; false: it failed. [any realtime thread]
+    virtual bool write_immediately(std::span<const RegisterWrite> writes) noexcept {
+        (void)writes;
+        return false;
+    }
     /// True once after a failure: the board may have missed writes, so that the next write() must hold all
     /// registers. [servo thread]
     virtual bool take_rewrite() noexcept = 0;

@@ -103,9 +103,20 @@ void write_function(void *self, long period_ns) {
     dump(board);
 }
 
+void read_gpio_function(void *self, long) {
+    static_cast<HalBoard *>(self)->board->read_gpio();
+}
+void write_gpio_function(void *self, long) {
+    static_cast<HalBoard *>(self)->board->write_gpio();
+}
+
 int export_functions(HalBoard &board) {
     std::vector<std::pair<const char *, void (*)(void *, long)>> functions = {
         {"read", read_function}, {"read-request", request_function}, {"write", write_function}};
+    if (board.board->hasFastGpio()) {
+        functions.emplace_back("read_gpio", read_gpio_function);
+        functions.emplace_back("write_gpio", write_gpio_function);
+    }
     if (board.board->hasTriggers()) {
         functions.emplace_back("trigger-encoders", trigger_function);
     }

@@ -10,6 +10,7 @@ namespace mw::mesa {
 namespace {
 
 enum PortRegister { DATA, DIRECTION, SOURCE, OPEN_DRAIN, INVERT };
+constexpr std::size_t MOST_WORDS = MAX_PINS;  // of one pin each
 
 constexpr PinRow<GpioPins> INPUT_PINS[] = {
     {"in", Access::OUT, &GpioPins::in},
@@ -116,7 +117,8 @@ std::string output_name(const UsedPin &pin) {
 }
 
 IoPorts::IoPorts(const UsedModule &module, const Assignment &assignment, int port_width)
-    : module_(module), used_(assignment.pins), pins_(assignment.pins.size()) {
+    : module_(module), used_(assignment.pins) {
+    cycle_.pins.resize(used_.size());
     const int count = static_cast<int>(used_.size());
     for (int first = 0; first < count; first += port_width) {
         Port port;
@@ -146,12 +148,12 @@ void IoPorts::plan(Registers &registers) {
 void IoPorts::declare(PinSpace &space) {
     for (std::size_t i = 0; i < used_.size(); ++i) {
         const std::string name = fmt::format("gpio.{:03}", used_[i].number);
-        inputs_.bind(space, name, INPUT_PINS, pins_[i]);
+        cycle_.inputs.bind(space, name, INPUT_PINS, cycle_.pins[i]);
         if (used_[i].isGeneral()) {
-            outputs_.bind(space, name, GENERAL_PINS, pins_[i]);
+            cycle_.outputs.bind(space, name, GENERAL_PINS, cycle_.pins[i]);
         }
         if (used_[i].isGeneral() || used_[i].isOutputOfModule()) {
-            outputs_.bind(space, name, DRIVE_PINS, pins_[i]);
+            cycle_.outputs.bind(space, name, DRIVE_PINS, cycle_.pins[i]);
         }
         const std::string other = output_name(used_[i]);
         if (other.empty()) {
@@ -169,32 +171,73 @@ void IoPorts::declare(PinSpace &space) {
             space.alias_param(name + "." + row.name, alias + "." + row.name);
         }
     }
+    fast_.pins = cycle_.pins;
+    fast_.inputs = cycle_.inputs.moved(cycle_.pins.data(), fast_.pins.data());
+    fast_.outputs = cycle_.outputs.moved(cycle_.pins.data(), fast_.pins.data());
+    sent_.assign(ports_.size(), {});
+}
+
+PortWords IoPorts::words_of(const View &view, const Port &port) const noexcept {
+    const auto first = static_cast<std::size_t>(port.first), count = static_cast<std::size_t>(port.count);
+    return port_words(std::span(used_).subspan(first, count), std::span(view.pins).subspan(first, count));
+}
+
+void IoPorts::show(View &view, const Port &port, std::uint32_t word) const noexcept {
+    for (int i = 0; i < port.count; ++i) {
+        GpioPins &pin = view.pins[static_cast<std::size_t>(port.first + i)];
+        pin.in = ((word >> static_cast<unsigned>(i)) & 1U) != 0;
+        pin.in_not = !pin.in;
+    }
 }
 
 void IoPorts::read(const Registers &registers, const Cycle &) noexcept {
-    for (std::size_t number = 0; number < ports_.size(); ++number) {
-        const std::uint32_t word = registers.value(data_, static_cast<int>(number));
-        const Port &port = ports_[number];
-        for (int i = 0; i < port.count; ++i) {
-            GpioPins &pin = pins_[static_cast<std::size_t>(port.first + i)];
-            pin.in = ((word >> static_cast<unsigned>(i)) & 1U) != 0;
-            pin.in_not = !pin.in;
-        }
+    int number = 0;
+    for (const Port &port : ports_) {
+        show(cycle_, port, registers.value(data_, number++));
     }
-    inputs_.store();
+    cycle_.inputs.store();
 }
 
 void IoPorts::write(Registers &registers, const Cycle &) noexcept {
-    outputs_.load();
+    cycle_.outputs.load();
     for (const Port &port : ports_) {
-        const auto first = static_cast<std::size_t>(port.first), count = static_cast<std::size_t>(port.count);
-        const PortWords words = port_words(std::span(used_).subspan(first, count),
-                                           std::span<const GpioPins>(pins_).subspan(first, count));
+        const PortWords words = words_of(cycle_, port);
         registers.set(port.data, words.data);
         registers.set(port.invert, words.invert);
         registers.set(port.open_drain, words.open_drain);
         registers.set(port.source, words.source);
         registers.set(port.direction, words.direction);
+    }
+}
+
+void IoPorts::read_immediately(RegisterBus &bus) noexcept {
+    std::array<std::uint32_t, MOST_WORDS> words{};
+    const auto values = std::span(words).first(std::min(ports_.size(), MOST_WORDS));
+    if (!bus.read_immediately(module_.address(DATA), values)) {
+        return;
+    }
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        show(fast_, ports_[i], values[i]);
+    }
+    fast_.inputs.store();
+}
+
+void IoPorts::write_immediately(RegisterBus &bus) noexcept {
+    fast_.outputs.load();
+    for (std::size_t i = 0; i < ports_.size(); ++i) {
+        const int number = static_cast<int>(i);
+        const PortWords words = words_of(fast_, ports_[i]);
+        const RegisterWrite all[] = {{module_.address(DATA, number), words.data},
+                                     {module_.address(INVERT, number), words.invert},
+                                     {module_.address(OPEN_DRAIN, number), words.open_drain},
+                                     {module_.address(SOURCE, number), words.source},
+                                     {module_.address(DIRECTION, number), words.direction}};
+        PortWords only_data = sent_[i];
+        only_data.data = words.data;
+        const bool isOnlyData = only_data == words;
+        if (bus.write_immediately(std::span(all).first(isOnlyData ? 1 : std::size(all)))) {
+            sent_[i] = words;
+        }
     }
 }
 

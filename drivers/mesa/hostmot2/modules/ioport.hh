@@ -34,17 +34,30 @@ class IoPorts final : public Module {
     void read(const Registers &registers, const Cycle &cycle) noexcept override;
     void write(Registers &registers, const Cycle &cycle) noexcept override;
 
+    /// Read and write the general pins at once, for read_gpio and write_gpio. They have values of their own,
+    /// so that the thread of the cycle is not disturbed. [one realtime thread, after declare()]
+    void read_immediately(RegisterBus &bus) noexcept;
+    void write_immediately(RegisterBus &bus) noexcept;
+
   private:
     struct Port {
         WriteHandle data, direction, source, open_drain, invert;
         int first = 0, count = 0;  ///< its pins
     };
 
+    /// The pins as one thread sees them.
+    struct View {
+        std::vector<GpioPins> pins;
+        PinBinding inputs, outputs;
+    };
+    PortWords words_of(const View &view, const Port &port) const noexcept;
+    void show(View &view, const Port &port, std::uint32_t word) const noexcept;
+
     UsedModule module_;
     std::vector<UsedPin> used_;
-    std::vector<GpioPins> pins_;
     std::vector<Port> ports_;
-    PinBinding inputs_, outputs_;
+    View cycle_, fast_;
+    std::vector<PortWords> sent_;  ///< by write_immediately()
     ReadHandle data_;
 };
 

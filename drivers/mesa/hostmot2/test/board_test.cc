@@ -275,6 +275,54 @@ TEST_F(CycleOfBoard, ACycleDoesNotAllocate) {
     EXPECT_EQ(guard.calls(), 0U);
 }
 
+TEST(FastGpioOfBoard, NeedsABusWithImmediateAccess) {
+    MemoryBus bus;
+    auto board = Board::make(bus, firmware(), *parse_config(""));
+    ASSERT_TRUE(board.has_value());
+    EXPECT_FALSE((*board)->hasFastGpio());
+}
+
+class FastGpio : public BoardTest {
+  protected:
+    void SetUp() override {
+        bus.isImmediate = true;
+        load(firmware());
+        pins.set("gpio.020.is_output", 1);
+    }
+    static constexpr std::uint32_t PIN_20 = 1U << 3U;
+};
+
+TEST_F(FastGpio, ReadsAndWritesBetweenTwoCycles) {
+    cycle(2);
+    bus.registers[DATA] = 1;
+    board->read_gpio();
+    EXPECT_EQ(pins.get("gpio.000.in"), 1.0);
+    EXPECT_EQ(pins.get("gpio.000.in_not"), 0.0);
+    pins.set("gpio.020.out", 1);
+    board->write_gpio();
+    EXPECT_EQ(bus.registers[DATA + 4], PIN_20);
+    EXPECT_EQ(bus.registers[DIRECTION + 4] & PIN_20, PIN_20);
+    pins.set("gpio.020.is_output", 0);
+    board->write_gpio();
+    EXPECT_EQ(bus.registers[DIRECTION + 4] & PIN_20, 0U);
+    cycle();
+    EXPECT_EQ(bus.registers[DIRECTION + 4] & PIN_20, 0U) << "the cycle agrees";
+}
+
+TEST_F(FastGpio, WritesNothingUnlessTheCycleDoes) {
+    board->write_gpio();
+    EXPECT_TRUE(bus.immediate_writes.empty()) << "before the first cycle";
+    cycle(2);
+    board->write_gpio();
+    EXPECT_FALSE(bus.immediate_writes.empty());
+    bus.registers[STATUS] = 1;  // a bite
+    cycle(12);
+    ASSERT_EQ(pins.get("watchdog.has_bit"), 1.0);
+    bus.immediate_writes.clear();
+    board->write_gpio();
+    EXPECT_TRUE(bus.immediate_writes.empty()) << "while the watchdog has bitten";
+}
+
 TEST(SolidStateRelays, RateIsADivisorWithItsEnable) {
     EXPECT_EQ(ssr_rate(1'000'000, CLOCK_LOW), (1U << 12U) | 48U);
     EXPECT_EQ(ssr_rate(1, CLOCK_LOW), (1U << 12U) | 1998U) << "limited to 25 kHz";

@@ -141,6 +141,24 @@ class MemoryBus final : public RegisterBus {
         }
         return true;
     }
+    bool isImmediate = false;
+    std::vector<RegisterWrite> immediate_writes;
+    bool hasImmediateAccess() const noexcept override { return isImmediate; }
+    bool read_immediately(std::uint16_t address, std::span<std::uint32_t> values) noexcept override {
+        for (std::uint32_t &value : values) {
+            const auto found = registers.find(address);
+            value = found == registers.end() ? 0U : found->second;
+            address = static_cast<std::uint16_t>(address + 4);
+        }
+        return true;
+    }
+    bool write_immediately(std::span<const RegisterWrite> writes) noexcept override {
+        immediate_writes.assign(writes.begin(), writes.end());
+        for (const RegisterWrite &write : writes) {
+            registers[write.address] = write.value;
+        }
+        return true;
+    }
     bool take_rewrite() noexcept override {
         const bool isWanted = isRewriteWanted;
         isRewriteWanted = false;

@@ -23,6 +23,7 @@ class OneShotOfBoard : public BoardTest {
 /// The words that LinuxCNC's driver writes with the same pins and a clock of 100 MHz.
 TEST_F(OneShotOfBoard, HasTheRegistersOfLinuxCnc) {
     EXPECT_EQ(bus.registers[WIDTH_1], 0x186A0U);
+    EXPECT_EQ(bus.registers[WIDTH_2], 0x186A0U);
     EXPECT_EQ(bus.registers[FILTER_1], 0x2710U);
     EXPECT_EQ(bus.registers[RATE], 0xA7C5U);
     std::uint32_t expected = 0;
