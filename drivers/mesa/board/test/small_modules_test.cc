@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <cmath>
+#include <random>
 
 #include <gtest/gtest.h>
 
@@ -220,6 +221,27 @@ TEST(BoardInMux, MpgCountersCountTheirInputs) {
     EXPECT_EQ(host.read(0x8400), 40U | (10U << 8U));
     turn(-60);
     EXPECT_EQ(host.read(0x8400), 0xECU | (0xFBU << 8U)) << "-20 and -5";
+}
+
+// Any registers at any time: nothing crashes, and the description of the firmware stays.
+TEST(BoardModels, SurviveRandomRegisters) {
+    for (const BuiltInModel &model : built_in_models()) {
+        SCOPED_TRACE(model.name);
+        std::mt19937_64 random(11);
+        Board board(*load_model(std::string(model.name)));
+        std::int64_t time_ns = 0;
+        for (int i = 0; i < 20'000; ++i) {
+            const auto address = static_cast<std::uint16_t>(4 * (random() % 0x2800));
+            if (random() % 2 == 0) {
+                board.firmware().write(address, static_cast<std::uint32_t>(random()));
+            } else {
+                (void)board.firmware().read(address);
+            }
+            time_ns += static_cast<std::int64_t>(random() % 50'000);
+            board.advance(time_ns);
+        }
+        EXPECT_EQ(board.firmware().read(0x0100), COOKIE);
+    }
 }
 
 }  // namespace
