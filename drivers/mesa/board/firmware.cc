@@ -344,7 +344,7 @@ bool Firmware::module_level(unsigned pin) const {
 
 std::uint32_t Firmware::input_levels(const ModuleDescriptor &module) const {
     if (module.gtag == Gtag::IN_MUX) {
-        return multiplexed_inputs_;
+        return physics_.multiplexed_levels(multiplexed_inputs_);
     }
     std::uint32_t levels = 0;
     for (unsigned pin = 0; pin < idrom_.pins.size(); ++pin) {

@@ -119,14 +119,25 @@ std::optional<double> Physics::resolver_rev(unsigned channel) const {
     return (position_rev(one->motor) - one->zero_rev) * static_cast<double>(one->cycles_per_rev);
 }
 
+bool Physics::level_of(const SwitchPlan &one) const {
+    const double position = position_rev(one.motor);
+    const bool closed = one.above ? position > one.at_rev : position < one.at_rev;
+    return closed == one.closed_level;
+}
+
 std::optional<bool> Physics::switch_level(unsigned pin) const {
-    const auto one = std::ranges::find(plan_.switches, pin, &SwitchPlan::pin);
-    if (one == plan_.switches.end()) {
-        return {};
+    const auto one = std::ranges::find_if(
+        plan_.switches, [&](const SwitchPlan &plan) { return plan.pin == pin && !plan.multiplexed; });
+    return one == plan_.switches.end() ? std::nullopt : std::optional(level_of(*one));
+}
+
+std::uint32_t Physics::multiplexed_levels(std::uint32_t levels) const {
+    for (const SwitchPlan &one : plan_.switches) {
+        if (one.multiplexed) {
+            levels = (levels & ~(1U << one.pin)) | (level_of(one) ? 1U << one.pin : 0U);
+        }
     }
-    const double position = position_rev(one->motor);
-    const bool closed = one->above ? position > one->at_rev : position < one->at_rev;
-    return closed == one->closed_level;
+    return levels;
 }
 
 }  // namespace mw::mesa::board

@@ -39,7 +39,8 @@ struct EncoderPlan {
 };
 
 struct SwitchPlan {
-    unsigned pin = 0;  ///< of the whole board
+    unsigned pin = 0;          ///< of the whole board, or the number of an input of InMux
+    bool multiplexed = false;  ///< it is at an input of InMux
     std::size_t motor = 0;
     double at_rev = 0;
     bool above = false;        ///< it is closed above `at_rev`; else below
@@ -95,6 +96,8 @@ class Physics {
     std::optional<double> resolver_rev(unsigned channel) const;
     /// The level of a pin with a switch.
     std::optional<bool> switch_level(unsigned pin) const;
+    /// `levels` of the inputs of InMux with the levels of the switches there.
+    std::uint32_t multiplexed_levels(std::uint32_t levels) const;
     /// The position of the motor with that index in the plan [rev].
     double position_rev(std::size_t motor) const;
     /// Whole steps that a stepper has made.
@@ -107,6 +110,7 @@ class Physics {
         double rev = 0, rev_s = 0;
     };
     std::int64_t count_of(const EncoderPlan &encoder) const;
+    bool level_of(const SwitchPlan &one) const;
     void move_motors(double span_s, const DriveInputs &inputs, MotorType type);
     void step(std::int64_t from_ns, std::int64_t to_ns, const DriveInputs &inputs, const OnMove &on_move,
               MotorType type);

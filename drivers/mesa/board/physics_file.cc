@@ -83,7 +83,21 @@ void read_encoder(TableLine &line, PhysicsPlan &plan, const Idrom &idrom) {
 
 void read_switch(TableLine &line, PhysicsPlan &plan, const Idrom &idrom) {
     SwitchPlan one;
-    one.pin = number_of(line, "pin", idrom.pins.size());
+    // inmux3 is an input of InMux, 3 a pin.
+    constexpr std::string_view INMUX = "inmux";
+    one.multiplexed = line.name().starts_with(INMUX);
+    if (one.multiplexed) {
+        constexpr std::int64_t INPUTS = 32;
+        const auto number = parse_int(line.name().substr(INMUX.size()));
+        const bool isThere =
+            instances_of(idrom, {Gtag::IN_MUX}) > 0 && number.has_value() && *number >= 0 && *number < INPUTS;
+        if (!isThere) {
+            line.reject("", fmt::format("The board has no input '{}'.", line.name()));
+        }
+        one.pin = isThere ? static_cast<unsigned>(*number) : 0;
+    } else {
+        one.pin = number_of(line, "pin", idrom.pins.size());
+    }
     one.motor = motor_of(line, plan);
     one.above = line.has("above_rev");
     one.at_rev = line.number(one.above ? "above_rev" : "below_rev", -FAR_REV, FAR_REV);

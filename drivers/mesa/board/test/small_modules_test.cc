@@ -200,6 +200,27 @@ TEST(BoardInMux, AnInputIsTakenAfterItsScans) {
     EXPECT_EQ(host.read(0x8200), 3U) << "a short change is filtered";
 }
 
+TEST(BoardInMux, ASwitchOfAMotorIsAnInput) {
+    Host host("7i92-latch", "motor x stepgen=0 steps_per_rev=200\nswitch inmux31 motor=x above_rev=0.5\n");
+    set_filters(host, 0, 1, 1);
+    host.write(0x1200, 0x3);
+    host.write(0x1100, 0x3);
+    host.write(0x2000, 429'497);  // 10,000 steps/s
+    host.time_ns = 9 * MS;
+    EXPECT_EQ(host.read(0x8300), 0U);
+    host.time_ns = 11 * MS;
+    EXPECT_EQ(host.read(0x8300), 0x80000000U);
+    const auto error = [](const std::string &model, const std::string &text) {
+        return parse_physics("motor x stepgen=0 steps_per_rev=200\n" + text, "p.txt", model_of(model).idrom)
+            .error()
+            .str();
+    };
+    EXPECT_EQ(error("7i92-latch", "switch inmux32 motor=x above_rev=1"),
+              "p.txt:2:1: The board has no input 'inmux32'.");
+    EXPECT_EQ(error("7i76e", "switch inmux3 motor=x above_rev=1"),
+              "p.txt:2:1: The board has no input 'inmux3'.");
+}
+
 TEST(BoardInMux, MpgCountersCountTheirInputs) {
     Host host("7i92-latch");
     set_filters(host, 0, 1, 1);
