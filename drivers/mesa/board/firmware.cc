@@ -363,11 +363,7 @@ bool Firmware::module_level(unsigned pin) const {
 
 std::uint32_t Firmware::input_levels(const ModuleDescriptor &module) const {
     if (module.gtag == Gtag::IN_MUX) {
-        std::uint32_t levels = multiplexed_inputs_;
-        for (const SwitchPlan &one : physics_.plan().switches) {
-            levels |= one.multiplexed && physics_.level_of(one) ? 1U << one.pin : 0U;
-        }
-        return levels;
+        return physics_.multiplexed_levels(multiplexed_inputs_);
     }
     std::uint32_t levels = 0;
     for (unsigned pin = 0; pin < idrom_.pins.size(); ++pin) {

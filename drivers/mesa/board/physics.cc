@@ -119,17 +119,17 @@ std::optional<double> Physics::resolver_rev(unsigned channel) const {
     return (position_rev(one->motor) - one->zero_rev) * static_cast<double>(one->cycles_per_rev);
 }
 
+bool Physics::level_of(const SwitchPlan &one) const {
+    const double position = position_rev(one.motor);
+    const bool closed = one.above ? position > one.at_rev : position < one.at_rev;
+    return closed == one.closed_level;
+}
+
 std::optional<bool> Physics::switch_level(unsigned pin) const {
     const auto one = std::ranges::find_if(plan_.switches, [&](const SwitchPlan &candidate) {
         return candidate.pin == pin && !candidate.remote.has_value() && !candidate.multiplexed;
     });
     return one == plan_.switches.end() ? std::nullopt : std::optional(level_of(*one));
-}
-
-bool Physics::level_of(const SwitchPlan &one) const {
-    const double position = position_rev(one.motor);
-    const bool closed = one.above ? position > one.at_rev : position < one.at_rev;
-    return closed == one.closed_level;
 }
 
 std::uint32_t Physics::field_value(const FieldPlan &field) const {
@@ -138,6 +138,15 @@ std::uint32_t Physics::field_value(const FieldPlan &field) const {
     }
     const double counts = position_rev(*field.motor) * static_cast<double>(field.counts_per_rev);
     return static_cast<std::uint32_t>(static_cast<std::int64_t>(std::floor(counts)));
+}
+
+std::uint32_t Physics::multiplexed_levels(std::uint32_t levels) const {
+    for (const SwitchPlan &one : plan_.switches) {
+        if (one.multiplexed) {
+            levels = (levels & ~(1U << one.pin)) | (level_of(one) ? 1U << one.pin : 0U);
+        }
+    }
+    return levels;
 }
 
 }  // namespace mw::mesa::board

@@ -119,6 +119,8 @@ class Physics {
     bool level_of(const SwitchPlan &one) const;
     /// What a field of a smart serial card reads.
     std::uint32_t field_value(const FieldPlan &field) const;
+    /// `levels` of the inputs of InMux with the levels of the switches there.
+    std::uint32_t multiplexed_levels(std::uint32_t levels) const;
     /// The position of the motor with that index in the plan [rev].
     double position_rev(std::size_t motor) const;
     /// Whole steps that a stepper has made.

@@ -34,9 +34,10 @@ class SerialLine {
         const auto bits = static_cast<std::int64_t>(frame.size()) * BITS_IN_BYTE;
         sent_ns_ = (sent_ns_ > now_ns ? sent_ns_ : now_ns) + bits * NS_IN_S / bits_per_s;
         const auto answer = peer_ ? peer_(frame) : std::optional(frame);
-        if (answer.has_value()) {
+        if (answer.has_value() && arrivals_.size() < MOST_FRAMES) {
             arrivals_.push_back({sent_ns_, *answer});
         }
+        (void)pending(now_ns);
         sending_.push_back(sent_ns_);
     }
     /// The frames that are not yet sent.
@@ -58,6 +59,8 @@ class SerialLine {
 
   private:
     static constexpr std::int64_t BITS_IN_BYTE = 10;
+    /// Frames that the host does not read; further ones are lost.
+    static constexpr std::size_t MOST_FRAMES = 4096;
     struct Arrival {
         std::int64_t time_ns = 0;
         SerialBytes bytes;

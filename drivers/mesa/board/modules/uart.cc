@@ -7,6 +7,7 @@ namespace {
 
 enum : unsigned { DATA, COUNT, RATE, MODE };
 constexpr std::size_t UART_FIFO_BYTES = 16;
+constexpr std::size_t PACKET_FIFO_WORDS = 1024;
 constexpr std::size_t MAX_FRAMES = 16, BYTES_IN_WORD = 4;
 constexpr std::uint32_t CLEAR = 0x80010000, FRAMES_SHIFT = 16, FRAMES_MASK = 0x1FU << FRAMES_SHIFT;
 
@@ -123,7 +124,7 @@ void PacketUartModule::write(RegisterPlace place, std::uint32_t value) {
     const bool transmits = role_ == UartRole::TRANSMIT;
     switch (place.reg) {
     case DATA:
-        if (transmits) {
+        if (transmits && port.words.size() < PACKET_FIFO_WORDS) {
             port.words.push_back(value);
         }
         break;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <cmath>
+#include <random>
 
 #include <gtest/gtest.h>
 
@@ -199,6 +200,27 @@ TEST(BoardInMux, AnInputIsTakenAfterItsScans) {
     EXPECT_EQ(host.read(0x8200), 3U) << "a short change is filtered";
 }
 
+TEST(BoardInMux, ASwitchOfAMotorIsAnInput) {
+    Host host("7i92-latch", "motor x stepgen=0 steps_per_rev=200\nswitch 31 inmux=0 motor=x above_rev=0.5\n");
+    set_filters(host, 0, 1, 1);
+    host.write(0x1200, 0x3);
+    host.write(0x1100, 0x3);
+    host.write(0x2000, 429'497);  // 10,000 steps/s
+    host.time_ns = 9 * MS;
+    EXPECT_EQ(host.read(0x8300), 0U);
+    host.time_ns = 11 * MS;
+    EXPECT_EQ(host.read(0x8300), 0x80000000U);
+    const auto error = [](const std::string &model, const std::string &text) {
+        return parse_physics("motor x stepgen=0 steps_per_rev=200\n" + text, "p.txt", model_of(model).idrom)
+            .error()
+            .str();
+    };
+    EXPECT_EQ(error("7i92-latch", "switch 32 inmux=0 motor=x above_rev=1"),
+              "p.txt:2:1: The board has no input '32': it has 32.");
+    EXPECT_EQ(error("7i76e", "switch 3 inmux=0 motor=x above_rev=1"),
+              "p.txt:2:10: The board has no module 'inmux'.");
+}
+
 TEST(BoardInMux, MpgCountersCountTheirInputs) {
     Host host("7i92-latch");
     set_filters(host, 0, 1, 1);
@@ -220,6 +242,27 @@ TEST(BoardInMux, MpgCountersCountTheirInputs) {
     EXPECT_EQ(host.read(0x8400), 40U | (10U << 8U));
     turn(-60);
     EXPECT_EQ(host.read(0x8400), 0xECU | (0xFBU << 8U)) << "-20 and -5";
+}
+
+// Any registers at any time: nothing crashes, and the description of the firmware stays.
+TEST(BoardModels, SurviveRandomRegisters) {
+    for (const BuiltInModel &model : built_in_models()) {
+        SCOPED_TRACE(model.name);
+        std::mt19937_64 random(11);
+        Board board(*load_model(std::string(model.name)));
+        std::int64_t time_ns = 0;
+        for (int i = 0; i < 20'000; ++i) {
+            const auto address = static_cast<std::uint16_t>(4 * (random() % 0x2800));
+            if (random() % 2 == 0) {
+                board.firmware().write(address, static_cast<std::uint32_t>(random()));
+            } else {
+                (void)board.firmware().read(address);
+            }
+            time_ns += static_cast<std::int64_t>(random() % 50'000);
+            board.advance(time_ns);
+        }
+        EXPECT_EQ(board.firmware().read(0x0100), COOKIE);
+    }
 }
 
 }  // namespace
