@@ -79,7 +79,7 @@ class PinBinding {
     void add(PinSpace &space, const std::string &name, PinType type, Access access, void *field);
 
     /// The same pins with other fields: a field `n` bytes behind `from` becomes the one `n` bytes behind
-    /// `to`. So a second thread has values of its own. [while loading]
+    /// `to`. So a second thread has separate values. [while loading]
     PinBinding moved(const void *from, void *to) const;
 
     /// Copies what others may set (IN, IO, RW) to the fields. [servo thread]

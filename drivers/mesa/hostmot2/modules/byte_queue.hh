@@ -8,7 +8,7 @@
 
 namespace mw::mesa {
 
-/// Bytes in the order of their arrival, in memory of its own. One thread uses it.
+/// Bytes in the order of their arrival, without allocation. One thread uses it.
 template <std::size_t CAPACITY>
 class ByteQueue {
   public:

@@ -70,7 +70,6 @@ constexpr PinRow<StepgenPins> STEPGEN_LATCH_PINS[] = {
     {"probe-invert", Access::IN, &StepgenPins::probe_invert},
     {"position-latch", Access::OUT, &StepgenPins::position_latch},
 };
-/// Of firmware with outputs for tables of steps.
 constexpr PinRow<StepTablePins> STEPGEN_TABLE_PINS[] = {
     {"table-data-0", Access::RW, &StepTablePins::data_0},
     {"table-data-1", Access::RW, &StepTablePins::data_1},

@@ -104,9 +104,8 @@ class Stepgens final : public Module {
             if (hasLatch_) {
                 binding_.bind(space, name, STEPGEN_LATCH_PINS, one.pins);
             }
-            if (hasTables_) {
-                binding_.bind(space, name, STEPGEN_TABLE_PINS, one.table_pins);
-            }
+            // LinuxCNC has them with every firmware; without table pins they have no effect.
+            binding_.bind(space, name, STEPGEN_TABLE_PINS, one.table_pins);
         }
         if (hasTimer_) {
             binding_.bind(space, "stepgen", TIMER_PINS, timer_pins_);
