@@ -36,7 +36,7 @@ ORDER = {
     'machine/task': ('link', 'sequencer', 'states', 'run'),
     'clients': ('nml', 'rsh', 'schedule', 'tcl', 'screen', 'python'),
     'clients/nml': ('config', 'message', 'buffer', 'net', 'bridge', 'remote'),
-    'drivers/mesa': ('lbp16', 'identity', 'hostmot2', 'ethernet', 'direct', 'pci', 'epp', 'spi', 'board', 'hm2_eth'),
+    'drivers/mesa': ('lbp16', 'identity', 'hostmot2', 'ethernet', 'direct', 'board', 'virtual', 'hm2_eth', 'pci', 'epp', 'spi'),
     'programs': ('setup', 'run', 'remote', 'start', 'screen', 'doctor', 'mains'),
 }
 # What a folder may not use although its room may.

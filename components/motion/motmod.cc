@@ -21,6 +21,8 @@ using namespace mw;
 
 static long base_period_nsec = 0;
 RTAPI_MP_LONG(base_period_nsec, "period of base-thread [ns]; 0: none");
+static int key = 0;
+RTAPI_MP_INT(key, "accepted; the memory of motion has no key");
 static int base_thread_fp = 0;
 RTAPI_MP_INT(base_thread_fp, "accepted; every thread may use floating point");
 static long servo_period_nsec = 1000000;

@@ -126,10 +126,16 @@ bool Physics::level_of(const SwitchPlan &one) const {
 }
 
 std::optional<bool> Physics::switch_level(unsigned pin) const {
-    const auto one = std::ranges::find_if(plan_.switches, [&](const SwitchPlan &candidate) {
-        return candidate.pin == pin && !candidate.remote.has_value() && !candidate.multiplexed;
-    });
-    return one == plan_.switches.end() ? std::nullopt : std::optional(level_of(*one));
+    std::optional<bool> level;
+    for (const SwitchPlan &one : plan_.switches) {
+        if (one.pin != pin || one.remote.has_value() || one.multiplexed) {
+            continue;
+        }
+        // Several switches at a pin are parallel: each of them can close it.
+        const bool own = level_of(one);
+        level = !level.has_value() || own == one.closed_level ? own : level;
+    }
+    return level;
 }
 
 std::uint32_t Physics::field_value(const FieldPlan &field) const {

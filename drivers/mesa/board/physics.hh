@@ -113,7 +113,7 @@ class Physics {
     std::optional<Shaft> shaft(unsigned encoder) const;
     /// The electrical revolutions of a resolver, when one is connected.
     std::optional<double> resolver_rev(unsigned channel) const;
-    /// The level of a pin with a switch.
+    /// The level of a pin with one or more switches.
     std::optional<bool> switch_level(unsigned pin) const;
     /// The level of any switch.
     bool level_of(const SwitchPlan &one) const;

@@ -56,6 +56,13 @@ class DirectBus final : public RegisterBus {
     bool redirect(int range, std::uint16_t address) noexcept override;
     bool write(std::span<const RegisterWrite> writes) noexcept override;
     bool take_rewrite() noexcept override;
+    bool hasImmediateAccess() const noexcept override { return access_->isImmediate(); }
+    bool read_immediately(std::uint16_t address, std::span<std::uint32_t> values) noexcept override {
+        return access_->read(address, values);
+    }
+    bool write_immediately(std::span<const RegisterWrite> writes) noexcept override {
+        return access_->write_list(writes);
+    }
 
     bool isFailed() const noexcept { return fault_ != DirectFault::NONE; }
     bool isStopped() const noexcept { return link_ == Link::STOPPED; }

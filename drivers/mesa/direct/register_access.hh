@@ -59,6 +59,8 @@ class RegisterAccess {
         }
         return true;
     }
+    /// Another thread may use it at the same time, such as on PCI.
+    virtual bool isImmediate() const noexcept { return false; }
     /// The errno of the last failure; 0: the access has none.
     virtual int last_error() const noexcept { return 0; }
 };

@@ -3,7 +3,6 @@
 
 #include <cerrno>
 #include <charconv>
-#include <cstdlib>
 #include <map>
 #include <memory>
 #include <optional>
@@ -15,8 +14,8 @@
 #include "drivers/mesa/ethernet/ethernet_bus.hh"
 #include "drivers/mesa/ethernet/ethernet_pins.hh"
 #include "drivers/mesa/ethernet/network_setup.hh"
-#include "drivers/mesa/hm2_eth/virtual_board.hh"
 #include "drivers/mesa/lbp16/udp_transport.hh"
+#include "drivers/mesa/virtual/virtual_board.hh"
 #include "millwright_ext.h"
 
 namespace mw::mesa {
@@ -149,13 +148,6 @@ const char *value_at(std::span<char *const> values, std::size_t i) {
     return i < values.size() && values[i] != nullptr ? values[i] : "";
 }
 
-/// A relative path is one in the folder of the configuration, where that is known.
-std::string path_of(const std::string &file) {
-    const char *const folder = std::getenv("CONFIG_DIR");
-    const bool relative = !file.empty() && file.front() != '/';
-    return relative && folder != nullptr ? fmt::format("{}/{}", folder, file) : file;
-}
-
 /// The connection to board number `i`.
 Result<std::unique_ptr<lbp16::Transport>> open_transport(const EthernetLoad &load, std::size_t i,
                                                          const BoardAddress &address) {
@@ -164,20 +156,12 @@ Result<std::unique_ptr<lbp16::Transport>> open_transport(const EthernetLoad &loa
         return udp ? Result<std::unique_ptr<lbp16::Transport>>(std::move(*udp))
                    : std::unexpected(udp.error());
     }
-    const char *const list = std::getenv("MILLWRIGHT_MESA");
-    VirtualBoardPlan plan = find_virtual_board(list == nullptr ? "" : list, load.addresses[i]);
+    VirtualBoardPlan plan = virtual_board_of(load.addresses[i]);
     if (plan.model.empty()) {
-        plan = parse_virtual_board(value_at(load.virtual_boards, i));
+        plan = with_paths(parse_virtual_board(value_at(load.virtual_boards, i)));
     }
     if (plan.model.empty()) {
-        return fail(
-            fmt::format("the board at {} is not asked under the virtual clock; name its model, such as "
-                        "MILLWRIGHT_MESA={}=7i76e in the environment, or virtual_board=7i76e",
-                        load.addresses[i], load.addresses[i]));
-    }
-    plan.physics_file = path_of(plan.physics_file);
-    if (plan.model.contains('.')) {
-        plan.model = path_of(plan.model);
+        return fail(fmt::format("{}, or virtual_board=7i76e", missing_virtual_board(load.addresses[i])));
     }
     return open_virtual_board(plan, [] { return static_cast<std::int64_t>(rtapi_get_time()); });
 }

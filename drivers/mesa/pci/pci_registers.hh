@@ -37,6 +37,7 @@ class PciRegisters final : public RegisterAccess {
         }
         return true;
     }
+    bool isImmediate() const noexcept override { return true; }
 
   private:
     /// The addresses wrap, so that no access is outside.

@@ -49,6 +49,13 @@ class PinnedBus final : public RegisterBus {
         return bus_->redirect(range, address);
     }
     bool take_rewrite() noexcept override { return bus_->take_rewrite(); }
+    bool hasImmediateAccess() const noexcept override { return bus_->hasImmediateAccess(); }
+    bool read_immediately(std::uint16_t address, std::span<std::uint32_t> values) noexcept override {
+        return bus_->read_immediately(address, values);
+    }
+    bool write_immediately(std::span<const RegisterWrite> writes) noexcept override {
+        return bus_->write_immediately(writes);
+    }
 
   private:
     std::unique_ptr<DirectBus> bus_;

@@ -9,6 +9,8 @@
 
 #include "drivers/mesa/direct/hal/direct_boards.hh"
 #include "drivers/mesa/epp/epp_registers.hh"
+#include "drivers/mesa/virtual/virtual_board.hh"
+#include "millwright_ext.h"
 #include "rtapi.h"
 #include "rtapi_parport.h"
 
@@ -64,6 +66,26 @@ EppFacts facts_of(EppCard card) {
              .most_failures = 1}};
 }
 
+/// Under the virtual clock: MILLWRIGHT_MESA=hm2_7i90=7i90, hm2_7i90.1= for a second one.
+int load_virtual_board(const EppLoad &load, std::size_t i, EppFacts facts) {
+    const std::string key = i == 0 ? std::string(facts.module) : fmt::format("{}.{}", facts.module, i);
+    const VirtualBoardPlan plan = virtual_board_of(key);
+    Result<VirtualRegisters> board =
+        plan.model.empty()
+            ? fail(missing_virtual_board(key))
+            : open_virtual_registers(plan, [] { return static_cast<std::int64_t>(rtapi_get_time()); });
+    if (!board) {
+        rtapi_print_msg(RTAPI_MSG_ERR, "%s: %s\n", facts.module, board.error().str().c_str());
+        return -ENODEV;
+    }
+    return add_direct_board({.comp_id = load.comp_id,
+                             .module = facts.module,
+                             .access = std::move(board->access),
+                             .card = std::move(facts.card),
+                             .place = key,
+                             .config = text_at(load.configs, i)});
+}
+
 int load_board(const EppLoad &load, std::size_t i) {
     EppFacts facts = facts_of(load.card);
     constexpr int MAX_PORT = 0xFFFF;
@@ -72,6 +94,9 @@ int load_board(const EppLoad &load, std::size_t i) {
         rtapi_print_msg(RTAPI_MSG_ERR, "%s: ioaddr=%#x ioaddr_hi=%#x are not both from 0 to 0xffff\n",
                         facts.module, static_cast<unsigned>(address), static_cast<unsigned>(high));
         return -EINVAL;
+    }
+    if (mw_ext_is_virtual() != 0) {
+        return load_virtual_board(load, i, std::move(facts));
     }
     rtapi_parport_t port{};
     const int status = rtapi_parport_get(facts.module, &port, static_cast<unsigned short>(address),

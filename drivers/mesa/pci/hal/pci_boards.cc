@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cerrno>
+#include <cstdlib>
 #include <memory>
 #include <string>
 #include <vector>
@@ -13,6 +15,8 @@
 #include "drivers/mesa/direct/hal/direct_boards.hh"
 #include "drivers/mesa/pci/pci_cards.hh"
 #include "drivers/mesa/pci/pci_registers.hh"
+#include "drivers/mesa/virtual/virtual_board.hh"
+#include "millwright_ext.h"
 #include "rtapi.h"
 #include "rtapi_pci.h"
 
@@ -62,6 +66,18 @@ void prepare_bridge(rtapi_pci_dev &device) {
     rtapi_iounmap(mapped);
 }
 
+DirectCard direct_card(const PciCard &card) {
+    DirectCard direct{.hal_name = std::string(card.hal_name),
+                      .connectors = {},
+                      .port_width = card.port_width,
+                      .leds = card.leds,
+                      .most_failures = 5};
+    for (std::size_t port = 0; port < card.ports; ++port) {
+        direct.connectors.emplace_back(card.connectors.at(port));
+    }
+    return direct;
+}
+
 int load_card(rtapi_pci_dev &device, const PciCard &card) {
     const std::string place = fmt::format("PCI {}", rtapi_pci_name(&device));
     if (rtapi_pci_resource_len(&device, card.region) != PCI_REGISTER_BYTES) {
@@ -80,20 +96,12 @@ int load_card(rtapi_pci_dev &device, const PciCard &card) {
     if (mapped == nullptr) {
         return -ENODEV;
     }
-    DirectCard direct{.hal_name = std::string(card.hal_name),
-                      .connectors = {},
-                      .port_width = card.port_width,
-                      .leds = card.leds,
-                      .most_failures = 5};
-    for (std::size_t port = 0; port < card.ports; ++port) {
-        direct.connectors.emplace_back(card.connectors.at(port));
-    }
     auto access = std::make_unique<PciRegisters>(static_cast<volatile std::uint32_t *>(mapped),
                                                  [mapped] { rtapi_iounmap(mapped); });
     return add_direct_board({.comp_id = current().comp_id,
                              .module = "hm2_pci",
                              .access = std::move(access),
-                             .card = std::move(direct),
+                             .card = direct_card(card),
                              .place = place,
                              .config = text_at(current().configs, current().found)});
 }
@@ -130,7 +138,65 @@ rtapi_pci_driver &driver() {
 
 }  // namespace
 
+namespace {
+
+/// The card that names itself so: 5I20.
+const PciCard *find_named_card(const std::string &name) {
+    std::string hal_name = name.substr(0, name.find('-'));
+    std::ranges::transform(hal_name, hal_name.begin(),
+                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const auto *card = std::ranges::find(PCI_CARDS, hal_name, &PciCard::hal_name);
+    return card == std::end(PCI_CARDS) ? nullptr : card;
+}
+
+int refuse(const std::string &text) {
+    rtapi_print_msg(RTAPI_MSG_ERR, "hm2_pci: %s\n", text.c_str());
+    return -ENODEV;
+}
+
+/// Under the virtual clock: MILLWRIGHT_MESA=hm2_pci=5i20,hm2_pci.1=5i23.
+int load_virtual_cards(int comp_id, std::span<char *const> configs) {
+    for (std::size_t i = 0; i < MAX_PCI_BOARDS; ++i) {
+        const std::string key = i == 0 ? "hm2_pci" : fmt::format("hm2_pci.{}", i);
+        const VirtualBoardPlan plan = virtual_board_of(key);
+        if (plan.model.empty()) {
+            return i > 0 ? 0 : refuse(missing_virtual_board(key));
+        }
+        auto board = open_virtual_registers(plan, [] { return static_cast<std::int64_t>(rtapi_get_time()); });
+        if (!board) {
+            return refuse(board.error().str());
+        }
+        const PciCard *card = find_named_card(board->card_name);
+        if (card == nullptr) {
+            return refuse(fmt::format("the model {} is no card on PCI", board->card_name));
+        }
+        if (const int status = add_direct_board({.comp_id = comp_id,
+                                                 .module = "hm2_pci",
+                                                 .access = std::move(board->access),
+                                                 .card = direct_card(*card),
+                                                 .place = key,
+                                                 .config = text_at(configs, i)});
+            status != 0) {
+            return status;
+        }
+    }
+    return 0;
+}
+
+bool isVirtual() {
+    return mw_ext_is_virtual() != 0 && std::getenv("MILLWRIGHT_SYSFS") == nullptr;
+}
+
+}  // namespace
+
 int load_pci_boards(int comp_id, std::span<char *const> configs) {
+    if (isVirtual()) {
+        const int status = load_virtual_cards(comp_id, configs);
+        if (status != 0) {
+            remove_direct_boards(comp_id);
+        }
+        return status;
+    }
     current() = {.comp_id = comp_id, .configs = configs, .found = 0, .status = 0};
     int status = rtapi_pci_register_driver(&driver());
     if (status == 0) {

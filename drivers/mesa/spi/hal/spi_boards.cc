@@ -10,6 +10,8 @@
 #include "drivers/mesa/spi/spi_cards.hh"
 #include "drivers/mesa/spi/spi_registers.hh"
 #include "drivers/mesa/spi/spidev.hh"
+#include "drivers/mesa/virtual/virtual_board.hh"
+#include "millwright_ext.h"
 #include "rtapi.h"
 
 namespace mw::mesa {
@@ -42,6 +44,26 @@ int rate_of(std::span<const int> rates, std::size_t board, int fallback) {
     return rate > 0 ? rate : fallback;
 }
 
+/// Under the virtual clock: MILLWRIGHT_MESA=/dev/spidev0.0=7i90.
+int load_virtual_board(const SpiLoad &load) {
+    const VirtualBoardPlan plan = virtual_board_of(load.path);
+    Result<VirtualRegisters> board =
+        plan.model.empty()
+            ? fail(missing_virtual_board(load.path))
+            : open_virtual_registers(plan, [] { return static_cast<std::int64_t>(rtapi_get_time()); });
+    if (!board) {
+        rtapi_print_msg(RTAPI_MSG_ERR, "%s: %s\n", load.module.c_str(), board.error().str().c_str());
+        return -ENODEV;
+    }
+    DirectCard card = spi::card_of(board_name_of(*board->access));
+    return add_direct_board({.comp_id = load.comp_id,
+                             .module = load.module,
+                             .access = std::move(board->access),
+                             .card = std::move(card),
+                             .place = load.path,
+                             .config = load.config});
+}
+
 }  // namespace
 
 int load_spi_board(const SpiLoad &load) {
@@ -50,6 +72,9 @@ int load_spi_board(const SpiLoad &load) {
         rtapi_print_msg(RTAPI_MSG_ERR, "%s: clock rates of %d and %d kHz are not both from 1 to %d kHz\n",
                         load.module.c_str(), load.rate_khz, read_khz, MAX_RATE_KHZ);
         return -EINVAL;
+    }
+    if (mw_ext_is_virtual() != 0) {
+        return load_virtual_board(load);
     }
     auto device =
         spi::open_spidev(load.path, {.read_hz = static_cast<std::uint32_t>(read_khz) * HZ_IN_KHZ,

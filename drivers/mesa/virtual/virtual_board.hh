@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "base/result.hh"
+#include "drivers/mesa/direct/register_access.hh"
 #include "drivers/mesa/lbp16/transport.hh"
 
 namespace mw::mesa {
@@ -23,9 +24,25 @@ struct VirtualBoardPlan {
 
 /// Reads MODEL or MODEL:PHYSICS_FILE.
 VirtualBoardPlan parse_virtual_board(std::string_view text);
-/// What a list of ADDRESS=MODEL[:PHYSICS_FILE], separated by commas, says of `address`; without a model:
-/// nothing.
-VirtualBoardPlan find_virtual_board(std::string_view list, std::string_view address);
+/// What a list of BOARD=MODEL[:PHYSICS_FILE], separated by commas, says of `board`: an address, or a
+/// component such as hm2_pci, with .1 behind it for its second board. Without a model: nothing.
+VirtualBoardPlan find_virtual_board(std::string_view list, std::string_view board);
+/// The same of the environment variable MILLWRIGHT_MESA. A relative path of a file is one in the folder
+/// CONFIG_DIR of the environment.
+VirtualBoardPlan virtual_board_of(std::string_view board);
+/// The plan with such paths.
+VirtualBoardPlan with_paths(VirtualBoardPlan plan);
+/// Why there is no virtual board, and how to name its model.
+std::string missing_virtual_board(std::string_view board);
+
+/// A simulated board whose registers this process reaches as on PCI.
+struct VirtualRegisters {
+    std::string card_name;  ///< as the card names itself: 5I20
+    std::unique_ptr<RegisterAccess> access;
+};
+/// Its time follows `clock_ns`. It allocates: for the virtual clock only. [one thread]
+Result<VirtualRegisters> open_virtual_registers(const VirtualBoardPlan &plan,
+                                                std::function<std::int64_t()> clock_ns);
 
 /// A connection to a simulated board. Its time follows `clock_ns` and is ahead of it while packets travel
 /// within a cycle. It allocates: for the virtual clock only. [one thread]

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "drivers/mesa/virtual/virtual_board.hh"
+
+#include <algorithm>
+#include <cstdlib>
+
+#include <fmt/format.h>
+
+#include "drivers/mesa/board/board_transport.hh"
+#include "drivers/mesa/board/model.hh"
+#include "drivers/mesa/board/table_file.hh"
+
+namespace mw::mesa {
+
+namespace {
+
+class VirtualTransport final : public lbp16::Transport {
+  public:
+    VirtualTransport(board::Model model, board::PhysicsPlan physics, std::function<std::int64_t()> clock_ns)
+        : clock_ns_(std::move(clock_ns)), board_(model, std::move(physics)), link_(board_, {}),
+          transport_(link_), last_clock_ns_(clock_ns_()) {}
+
+    lbp16::TransportResult send(std::span<const std::byte> packet) noexcept override {
+        transport_.sleep_until(now_ns());
+        begin_ns_ = transport_.now_ns();
+        last_clock_ns_ = clock_ns_();
+        return transport_.send(packet);
+    }
+    lbp16::TransportResult receive(std::span<std::byte> packet) noexcept override {
+        return transport_.receive(packet);
+    }
+    void wait_until(std::int64_t deadline_ns) noexcept override { transport_.wait_until(deadline_ns); }
+    std::int64_t now_ns() const noexcept override {
+        return std::max(begin_ns_ + (clock_ns_() - last_clock_ns_), transport_.now_ns());
+    }
+
+  private:
+    std::function<std::int64_t()> clock_ns_;
+    board::Board board_;
+    board::Link link_;
+    board::BoardTransport transport_;
+    std::int64_t last_clock_ns_;  ///< of the clock at the last packet
+    std::int64_t begin_ns_ = 0;   ///< time of the board then
+};
+
+/// Registers of a simulated board without any protocol.
+class SimulatedRegisters final : public RegisterAccess {
+  public:
+    SimulatedRegisters(const board::Model &model, board::PhysicsPlan physics,
+                       std::function<std::int64_t()> clock_ns)
+        : clock_ns_(std::move(clock_ns)), board_(model, std::move(physics)), last_clock_ns_(clock_ns_()) {}
+
+    bool read(std::uint16_t address, std::span<std::uint32_t> values) noexcept override {
+        advance();
+        for (std::uint32_t &value : values) {
+            value = board_.firmware().read(address);
+            address = static_cast<std::uint16_t>(address + 4);
+        }
+        return true;
+    }
+    bool write(std::uint16_t address, std::span<const std::uint32_t> values) noexcept override {
+        advance();
+        for (const std::uint32_t value : values) {
+            board_.firmware().write(address, value);
+            address = static_cast<std::uint16_t>(address + 4);
+        }
+        return true;
+    }
+
+  private:
+    /// An access takes time, so that what waits for the board while loading comes to an end.
+    void advance() {
+        constexpr std::int64_t ACCESS_NS = 1000;
+        const std::int64_t clock = clock_ns_();
+        if (clock != last_clock_ns_) {
+            begin_ns_ = std::max(begin_ns_ + (clock - last_clock_ns_), time_ns_);
+            last_clock_ns_ = clock;
+            time_ns_ = begin_ns_;
+        } else {
+            time_ns_ += ACCESS_NS;
+        }
+        board_.advance(time_ns_);
+    }
+
+    std::function<std::int64_t()> clock_ns_;
+    board::Board board_;
+    std::int64_t last_clock_ns_;  ///< of the clock at the last access
+    std::int64_t begin_ns_ = 0;   ///< time of the board when the clock last moved
+    std::int64_t time_ns_ = 0;
+};
+
+/// What is simulated.
+struct Parts {
+    board::Model model;
+    board::PhysicsPlan physics;
+};
+Result<Parts> load(const VirtualBoardPlan &plan) {
+    auto model = board::load_model(plan.model);
+    if (!model) {
+        return std::unexpected(model.error());
+    }
+    Parts parts{.model = std::move(*model), .physics = {}};
+    if (!plan.physics_file.empty()) {
+        const auto text = board::read_text_file(plan.physics_file);
+        if (!text) {
+            return std::unexpected(text.error());
+        }
+        auto physics = board::parse_physics(*text, plan.physics_file, parts.model.idrom);
+        if (!physics) {
+            return std::unexpected(physics.error());
+        }
+        parts.physics = std::move(*physics);
+    }
+    return parts;
+}
+
+/// A relative path is one in the folder of the configuration, where that is known.
+std::string path_of(const std::string &file) {
+    const char *const folder = std::getenv("CONFIG_DIR");
+    const bool relative = !file.empty() && file.front() != '/';
+    return relative && folder != nullptr ? fmt::format("{}/{}", folder, file) : file;
+}
+
+}  // namespace
+
+VirtualBoardPlan with_paths(VirtualBoardPlan plan) {
+    plan.physics_file = path_of(plan.physics_file);
+    if (plan.model.contains('.')) {
+        plan.model = path_of(plan.model);
+    }
+    return plan;
+}
+
+VirtualBoardPlan virtual_board_of(std::string_view board) {
+    const char *const list = std::getenv("MILLWRIGHT_MESA");
+    return with_paths(find_virtual_board(list == nullptr ? "" : list, board));
+}
+
+std::string missing_virtual_board(std::string_view board) {
+    return fmt::format("the board of {} is not used under the virtual clock; name its model, such as "
+                       "MILLWRIGHT_MESA={}=7i76e in the environment",
+                       board, board);
+}
+
+Result<VirtualRegisters> open_virtual_registers(const VirtualBoardPlan &plan,
+                                                std::function<std::int64_t()> clock_ns) {
+    auto parts = load(plan);
+    if (!parts) {
+        return std::unexpected(parts.error());
+    }
+    return VirtualRegisters{.card_name = parts->model.card_name,
+                            .access = std::make_unique<SimulatedRegisters>(
+                                parts->model, std::move(parts->physics), std::move(clock_ns))};
+}
+
+VirtualBoardPlan parse_virtual_board(std::string_view text) {
+    const std::size_t colon = text.find(':');
+    VirtualBoardPlan plan{.model = std::string(text.substr(0, colon)), .physics_file = {}};
+    if (colon != std::string_view::npos) {
+        plan.physics_file = text.substr(colon + 1);
+    }
+    return plan;
+}
+
+VirtualBoardPlan find_virtual_board(std::string_view list, std::string_view board) {
+    while (!list.empty()) {
+        const std::size_t end = std::min(list.find(','), list.size());
+        const std::string_view one = list.substr(0, end);
+        const std::size_t equals = one.find('=');
+        if (equals != std::string_view::npos && one.substr(0, equals) == board) {
+            return parse_virtual_board(one.substr(equals + 1));
+        }
+        list.remove_prefix(std::min(end + 1, list.size()));
+    }
+    return {};
+}
+
+Result<std::unique_ptr<lbp16::Transport>> open_virtual_board(const VirtualBoardPlan &plan,
+                                                             std::function<std::int64_t()> clock_ns) {
+    auto parts = load(plan);
+    if (!parts) {
+        return std::unexpected(parts.error());
+    }
+    return std::make_unique<VirtualTransport>(std::move(parts->model), std::move(parts->physics),
+                                              std::move(clock_ns));
+}
+
+}  // namespace mw::mesa
