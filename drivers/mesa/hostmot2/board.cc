@@ -78,12 +78,16 @@ void Board::read(long period_ns, std::int64_t now_ns) noexcept {
     isFresh_ = result == CycleRead::DONE;
     isStopped_ = result == CycleRead::STOPPED;
     isReadOnce_ = isReadOnce_ || isFresh_;
+    isRewriteDue_ = bus_.take_rewrite() || isRewriteDue_;
+    isWriteDoubtful_ = isWriteDoubtful_ || isRewriteDue_ || !isFresh_;
     if (!isFresh_) {
         ++failed_reads_;
         return;
     }
     Cycle cycle = cycle_of(period_ns);
     cycle.isFresh = true;
+    cycle.hasLostWrite = isWriteDoubtful_;
+    isWriteDoubtful_ = false;
     cycle.now_ns = now_ns != 0 ? now_ns : last_write_ns_ + period_ns;
     for (const auto &module : modules_) {
         module->read(registers_, cycle);
@@ -103,11 +107,10 @@ void Board::write(long period_ns, std::int64_t now_ns) noexcept {
     cycle.now_ns = now_ns;
     const bool hasBitten = watchdog_ != nullptr && watchdog_->isBitten();
     cycle.isWriting = isReadOnce_ && !isStopped_ && !hasBitten;
-    isRewriteDue_ = bus_.take_rewrite() || isRewriteDue_;
-    cycle.isWriteLost = isRewriteDue_;
     for (const auto &module : modules_) {
         module->write(registers_, cycle);
     }
+    isRewriteDue_ = bus_.take_rewrite() || isRewriteDue_;
     if (watchdog_ != nullptr) {
         isRewriteDue_ = isRewriteDue_ || watchdog_->isRewriteWanted();
         cycle.isWriting = cycle.isWriting && !watchdog_->isBitten();

@@ -60,6 +60,7 @@ class Board {
     std::vector<std::unique_ptr<Module>> modules_;
     Watchdog *watchdog_ = nullptr;  ///< in modules_; null: the firmware has none
     bool isFresh_ = false, isReadOnce_ = false, isStopped_ = false, isRewriteDue_ = true;
+    bool isWriteDoubtful_ = true;  ///< since the last read that succeeded
     std::int64_t last_write_ns_ = 0, longest_gap_ns_ = 0, checked_timeout_ns_ = 0;
     bool hasWritten_ = false;
     int failed_reads_ = 0;

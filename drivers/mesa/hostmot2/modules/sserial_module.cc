@@ -246,6 +246,7 @@ class SmartSerial final : public Module {
         }
     }
     static void read_port(const Registers &registers, SerialPort &port, const Cycle &cycle) noexcept {
+        port.isDoubtful = port.isDoubtful || cycle.hasLostWrite;
         SserialReading reading;
         reading.command = registers.value(port.command_read);
         reading.failed = registers.value(port.data_read);
@@ -276,7 +277,6 @@ class SmartSerial final : public Module {
     static void write_port(Registers &registers, SerialPort &port, const Cycle &cycle) noexcept {
         const SserialCommand command = port.control.write(
             port.pins, {cycle.now_ns, cycle.period_s, cycle.isWriting, hasParameters(port)});
-        port.isDoubtful = port.isDoubtful || cycle.isWriteLost;
         if (command.isSetupStep) {
             write_parameters(registers, port);
             return;
