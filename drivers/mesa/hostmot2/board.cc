@@ -135,14 +135,13 @@ void Board::write(long period_ns, std::int64_t now_ns) noexcept {
     cycle.now_ns = now_ns;
     const bool hasBitten = watchdog_ != nullptr && watchdog_->isBitten();
     cycle.isWriting = isReadOnce_ && !isStopped_ && !hasBitten;
-    isRewriteDue_ = bus_.take_rewrite() || isRewriteDue_;
-    cycle.isWriteLost = isRewriteDue_;
     for (const auto &module : modules_) {
         module->write(registers_, cycle);
     }
     for (const auto &module : modules_) {
         events_.isDumpRequested = module->take_dump_request() || events_.isDumpRequested;
     }
+    isRewriteDue_ = bus_.take_rewrite() || isRewriteDue_;
     if (watchdog_ != nullptr) {
         isRewriteDue_ = isRewriteDue_ || watchdog_->isRewriteWanted();
         cycle.isWriting = cycle.isWriting && !watchdog_->isBitten();

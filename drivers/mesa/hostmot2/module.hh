@@ -19,7 +19,6 @@ struct Cycle {
     bool isFresh = false;       ///< the inputs are of this cycle
     bool hasLostWrite = false;  ///< in read(): a write since the last read() may not have reached the board
     bool isWriting = false;     ///< in write(): what is requested is sent
-    bool isWriteLost = false;   ///< in write(): the writes of the last cycle may be lost
     std::int64_t now_ns = 0;    ///< of any clock
 };
 

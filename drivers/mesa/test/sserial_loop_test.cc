@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Smart serial cards of the simulated board driven through HAL pins: field outputs and inputs, faults of the
 // exchange, lost packets.
+#include <random>
+
 #include <gtest/gtest.h>
 
 #include "drivers/mesa/test/rig.hh"
@@ -173,6 +175,51 @@ INSTANTIATE_TEST_SUITE_P(Faults, MesaSmartSerialLoss,
                          ::testing::Values("to_board loss=0.01\nto_host loss=0.01",
                                            "to_board loss=0.05\nto_host loss=0.05",
                                            "to_board burst=0.001 burst_packets=4"));
+
+// Random faults of the exchange, lost packets, bites of the watchdog and stops by the operator.
+TEST_F(MesaSmartSerial, AfterAnyFaultItRunsWithinASecondAndNoOutputReturnsByItself) {
+    for (unsigned seed = 1; seed <= 4; ++seed) {
+        messages.clear();
+        load("00xxxxxx", "seed " + std::to_string(seed) + "\nto_board loss=0.01\nto_host loss=0.01");
+        std::mt19937 random(seed);
+        const auto happens = [&](double chance) { return std::bernoulli_distribution(chance)(random); };
+        set("7i76.0.0.output-03", 1);
+        cycle(5);
+        bool isHeld = false;
+        int faulty = 0, bursts = 0;
+        for (int i = 0; i < 20'000; ++i) {
+            if (happens(0.001)) {
+                disturb();
+            }
+            if (happens(0.0002)) {
+                rig->wait(100'000'000);
+            }
+            if (get("watchdog.has_bit") != 0 && happens(0.01)) {
+                set("watchdog.has_bit", 0);
+            }
+            const bool isToggled = happens(0.0005);
+            if (isToggled) {
+                set("sserial.port-0.run", 0);
+                cycle(3);
+                set("sserial.port-0.run", 1);
+                isHeld = false;
+            }
+            const bool wasFaulty = get("sserial.port-0.fault") != 0;
+            cycle(1);
+            const bool isFaulty = get("sserial.port-0.fault") != 0;
+            bursts += isFaulty && !wasFaulty ? 1 : 0;
+            isHeld = isHeld || isFaulty;
+            const bool isBitten = get("watchdog.has_bit") != 0;
+            faulty = isFaulty && !isBitten ? faulty + 1 : 0;
+            ASSERT_LT(faulty, 1000) << "seed " << seed << " cycle " << i;
+            if (isHeld && get("sserial.port-0.port_state") == 3) {
+                ASSERT_EQ(remote(0).value("Output"), 0U) << "seed " << seed << " cycle " << i;
+            }
+        }
+        EXPECT_GT(bursts, 3) << seed;
+        EXPECT_LE(messages.size(), static_cast<std::size_t>(2 * bursts) + 2U) << seed;
+    }
+}
 
 TEST_F(MesaSmartSerial, AfterABiteOfTheWatchdogItRunsWithoutAFault) {
     load();

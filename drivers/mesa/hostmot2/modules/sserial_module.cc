@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <algorithm>
 #include <array>
-#include <bit>
+#include <cstdio>
 
 #include <fmt/format.h>
 
@@ -246,6 +246,7 @@ class SmartSerial final : public Module {
         }
     }
     static void read_port(const Registers &registers, SerialPort &port, const Cycle &cycle) noexcept {
+        port.isDoubtful = port.isDoubtful || cycle.hasLostWrite;
         SserialReading reading;
         reading.command = registers.value(port.command_read);
         reading.failed = registers.value(port.data_read);
@@ -276,7 +277,6 @@ class SmartSerial final : public Module {
     static void write_port(Registers &registers, SerialPort &port, const Cycle &cycle) noexcept {
         const SserialCommand command = port.control.write(
             port.pins, {cycle.now_ns, cycle.period_s, cycle.isWriting, hasParameters(port)});
-        port.isDoubtful = port.isDoubtful || cycle.isWriteLost;
         if (command.isSetupStep) {
             write_parameters(registers, port);
             return;
@@ -361,56 +361,65 @@ class SmartSerial final : public Module {
 std::size_t SmartSerial::message(const SerialPort &port, const SserialEvents &event,
                                  std::span<char> text) noexcept {
     constexpr std::int64_t NS_PER_US = 1000, NS_PER_MS = 1'000'000, STEP_US = 100;
-    const SerialCard *failed = nullptr;
+    const SerialCard *failed = &port.cards.front();
     for (const SerialCard &card : port.cards) {
-        const bool isFailed = ((event.channels >> static_cast<unsigned>(card.channel)) & 1U) != 0;
-        failed = failed == nullptr && isFailed ? &card : failed;
-    }
-    const auto print = [&]<class... Values>(fmt::format_string<Values...> format, Values &&...values) {
-        const auto result =
-            fmt::format_to_n(text.data(), text.size(), format, std::forward<Values>(values)...);
-        return std::min(result.size, text.size());
-    };
-    const std::int64_t shortest_us = event.shortest_ns / NS_PER_US;
-    switch (event.type) {
-    case SserialEvents::Type::LATE: {
-        const std::int64_t longest_us = event.longest_ns / NS_PER_US;
-        return print(
-            "Smart serial port {}: an exchange with {} took {} to {} us, longer than the servo period of {} "
-            "us allows. Use a servo period of at least {} us, or connect fewer cards to this port.",
-            port.number, port.card_names, shortest_us, longest_us, event.period_ns / NS_PER_US,
-            (longest_us / STEP_US + 1) * STEP_US);
-    }
-    case SserialEvents::Type::FAULT:
-        if (failed == nullptr) {
-            return print(
-                "Smart serial port {} stopped: exchanges with {} were not finished after {} us. Use a longer "
-                "servo period, or connect fewer cards to this port. It starts again by itself.",
-                port.number, port.card_names, shortest_us);
+        if (((event.channels >> static_cast<unsigned>(card.channel)) & 1U) != 0) {
+            failed = &card;
+            break;
         }
-        return print("Smart serial card {} failed: {} (status 0x{:08X}). Port {} is stopped and starts again "
-                     "by itself. Check the cable and the field supply of the card.",
-                     failed->name, status_text(failed->status), failed->status, port.number);
+    }
+    const char *card = failed->name.c_str(), *cause = status_text(failed->status);
+    const auto shortest_us = static_cast<long long>(event.shortest_ns / NS_PER_US);
+    const auto longest_us = static_cast<long long>(event.longest_ns / NS_PER_US);
+    int length = 0;
+    switch (event.type) {
+    case SserialEvents::Type::LATE:
+        length = std::snprintf(
+            text.data(), text.size(),
+            "Smart serial port %d: an exchange with %s took %lld to %lld us, longer than the servo period of "
+            "%lld us allows. Use a servo period of at least %lld us, or connect fewer cards to this port.",
+            port.number, port.card_names.c_str(), shortest_us, longest_us,
+            static_cast<long long>(event.period_ns / NS_PER_US), (longest_us / STEP_US + 1) * STEP_US);
+        break;
+    case SserialEvents::Type::FAULT:
+        length =
+            event.channels == 0
+                ? std::snprintf(
+                      text.data(), text.size(),
+                      "Smart serial port %d stopped: exchanges with %s were not finished after %lld us. Use "
+                      "a "
+                      "longer servo period, or connect fewer cards to this port. It starts again by itself.",
+                      port.number, port.card_names.c_str(), shortest_us)
+                : std::snprintf(
+                      text.data(), text.size(),
+                      "Smart serial card %s failed: %s (status 0x%08X). Port %d is stopped and starts "
+                      "again by itself. Check the cable and the field supply of the card.",
+                      card, cause, failed->status, port.number);
+        break;
     case SserialEvents::Type::NO_START:
-        return print("Smart serial card {} does not start: {} (status 0x{:08X}). Port {} tries again. Check "
-                     "the cable and the field supply of the card.",
-                     failed == nullptr ? std::string_view("?") : std::string_view(failed->name),
-                     failed == nullptr ? "no reason" : status_text(failed->status),
-                     failed == nullptr ? 0U : failed->status, port.number);
+        length =
+            std::snprintf(text.data(), text.size(),
+                          "Smart serial card %s does not start: %s (status 0x%08X). Port %d tries again. "
+                          "Check the cable and the field supply of the card.",
+                          card, cause, failed->status, port.number);
+        break;
     case SserialEvents::Type::NO_SETUP:
-        return print(
-            "Smart serial card {} has not taken a parameter: {} (status 0x{:08X}). Check the value and "
-            "the cable.",
-            failed == nullptr ? std::string_view("?") : std::string_view(failed->name),
-            failed == nullptr ? "no reason" : status_text(failed->status),
-            failed == nullptr ? 0U : failed->status);
+        length =
+            std::snprintf(text.data(), text.size(),
+                          "Smart serial card %s has not taken a parameter: %s (status 0x%08X). Check the "
+                          "value and the cable.",
+                          card, cause, failed->status);
+        break;
     case SserialEvents::Type::RECOVERED:
-        return print("Smart serial port {} runs again after {} ms. Each output stays off until its pin has "
-                     "been off once, or sserial.port-{}.run has been false.",
-                     port.number, event.stopped_ns / NS_PER_MS, port.number);
+        length =
+            std::snprintf(text.data(), text.size(),
+                          "Smart serial port %d runs again after %lld ms. Each output stays off until its "
+                          "pin has been off once, or sserial.port-%d.run has been false.",
+                          port.number, static_cast<long long>(event.stopped_ns / NS_PER_MS), port.number);
+        break;
     case SserialEvents::Type::NONE: break;
     }
-    return 0;
+    return std::min(static_cast<std::size_t>(std::max(length, 0)), text.size());
 }
 
 }  // namespace

@@ -155,7 +155,7 @@ void join_halves(SserialCardValues &card, const std::vector<DataRecord> &process
             const bool isPair =
                 process[i].type == FieldType::ENCODER_HIGH && process[j].type == FieldType::ENCODER_LOW &&
                 process[i].name == process[j].name && process[i].bits + process[j].bits <= MAX_COUNTER_BITS;
-            if (isPair) {
+            if (isPair && card.fields[i].hasInput() && card.fields[j].hasInput()) {
                 card.fields[i].input_low = card.fields[j].input;
                 card.fields[i].low_bits = card.fields[j].bits;
                 card.fields[j].pins = FieldPins::NONE;

@@ -76,7 +76,7 @@ class ModuleOfSmartSerial : public ::testing::Test {
     void step() noexcept {
         Cycle now;
         now.isFresh = now.isWriting = true;
-        now.isWriteLost = isWriteLost;
+        now.hasLostWrite = isWriteLost;
         now.now_ns = time_ns += PERIOD_NS;
         serial->read(registers, now);
         now.now_ns += PERIOD_NS / 10;

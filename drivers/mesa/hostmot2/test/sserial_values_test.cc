@@ -107,10 +107,10 @@ TEST(SserialFields, HaveTheirDefaultsFromTheCard) {
 
 TEST(SserialFields, OfDamagedDescriptionsNeverGiveInvalidNumbers) {
     std::mt19937 random(3);
-    const FieldType types[] = {FieldType::BITS,         FieldType::UNSIGNED,       FieldType::SIGNED,
-                               FieldType::FLOAT,        FieldType::BOOLEAN,        FieldType::ENCODER,
-                               FieldType::ENCODER_HIGH, FieldType::ENCODER_LOW,    FieldType::STREAM,
-                               FieldType::PAD,          static_cast<FieldType>(99)};
+    const FieldType types[] = {FieldType::BITS,         FieldType::UNSIGNED,    FieldType::SIGNED,
+                               FieldType::FLOAT,        FieldType::BOOLEAN,     FieldType::ENCODER,
+                               FieldType::ENCODER_HIGH, FieldType::ENCODER_LOW, FieldType::STREAM,
+                               FieldType::PAD,          FieldType::NV_FLOAT};
     const FieldDirection directions[] = {FieldDirection::INPUT, FieldDirection::OUTPUT, FieldDirection::BOTH};
     for (int i = 0; i < 3000; ++i) {
         std::vector<DataRecord> process;
