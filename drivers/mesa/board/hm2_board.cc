@@ -6,11 +6,11 @@
 
 #include <fmt/format.h>
 
+#include "base/atomic_file.hh"
 #include "base/language/language.hh"
 #include "base/options/command_line.hh"
 #include "base/own_place.hh"
 #include "base/stop_signals.hh"
-#include "drivers/mesa/board/table_file.hh"
 #include "drivers/mesa/board/udp_server.hh"
 
 namespace {
@@ -30,7 +30,7 @@ auto read_table(const std::string &path, Parse parse) -> decltype(parse(std::str
     if (path.empty()) {
         return parse(std::string{});
     }
-    const auto text = board::read_text_file(path);
+    const auto text = mw::read_file(path);
     return text.has_value() ? parse(*text) : std::unexpected(text.error());
 }
 

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "base/atomic_file.hh"
 #include "base/text.hh"
 #include "drivers/mesa/board/table_file.hh"
 
@@ -257,7 +258,7 @@ Result<std::string> write_model(const Model &model) {
 
 Result<Model> load_model(const std::string &name) {
     if (name.find_first_of("/.") != std::string::npos) {
-        const auto text = read_text_file(name);
+        const auto text = read_file(name);
         return text.has_value() ? parse_model(*text, name) : std::unexpected(text.error());
     }
     const auto models = built_in_models();

@@ -2,10 +2,6 @@
 #include "drivers/mesa/board/table_file.hh"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
-#include <iterator>
 
 #include <fmt/format.h>
 
@@ -140,15 +136,6 @@ Result<std::vector<TableLine>> parse_table(std::string_view text, const std::str
         text.remove_prefix(std::min(end + 1, text.size()));
     }
     return lines;
-}
-
-Result<std::string> read_text_file(const std::string &path) {
-    std::ifstream file(path, std::ios::binary);
-    std::string text{std::istreambuf_iterator<char>(file), {}};
-    if (file.fail() || file.bad()) {
-        return fail(fmt::format("Cannot read '{}': {}.", path, std::strerror(errno)));
-    }
-    return text;
 }
 
 }  // namespace mw::mesa::board

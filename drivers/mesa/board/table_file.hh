@@ -60,7 +60,5 @@ class TableLine {
 
 /// The lines of a whole text; `file` is its name in errors.
 Result<std::vector<TableLine>> parse_table(std::string_view text, const std::string &file);
-/// The same of a file.
-Result<std::string> read_text_file(const std::string &path);
 
 }  // namespace mw::mesa::board

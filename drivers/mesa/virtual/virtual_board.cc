@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
+#include "base/atomic_file.hh"
 #include "drivers/mesa/board/board_transport.hh"
 #include "drivers/mesa/board/model.hh"
-#include "drivers/mesa/board/table_file.hh"
 
 namespace mw::mesa {
 
@@ -101,7 +101,7 @@ Result<Parts> load(const VirtualBoardPlan &plan) {
     }
     Parts parts{.model = std::move(*model), .physics = {}};
     if (!plan.physics_file.empty()) {
-        const auto text = board::read_text_file(plan.physics_file);
+        const auto text = mw::read_file(plan.physics_file);
         if (!text) {
             return std::unexpected(text.error());
         }

@@ -95,7 +95,7 @@ TEST(BoardModel, AModelThatADriverRejectsIsAnError) {
               "7i80hd-resolver, 7i90, 7i92, 7i92-latch, 7i92-uart, 7i95, 7i96s, 7i97; a file is given by its "
               "path.");
     EXPECT_EQ(load_model("./missing.txt").error().message,
-              "Cannot read './missing.txt': No such file or directory.");
+              "cannot open './missing.txt': No such file or directory");
 }
 
 TEST(Model, IsWrittenAsATextThatGivesItAgain) {
