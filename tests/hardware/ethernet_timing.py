@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Times of a cycle with one and with two boards over virtual Ethernet links at 1 kHz.
 
-usage: ethernet_timing.py BIN [--seconds N] [--cases one,two,loss,delay] (as root)
+usage: ethernet_timing.py BIN [--seconds N] [--limit N] [--cases one,two,loss,delay] (as root)
 Each board runs in a network namespace of its own; driver and boards have SCHED_FIFO. The times are from the record of cycles that doctor reads, too.
 Prints a table; exit status 0 done, 77 skipped with the reason.
 """
@@ -19,6 +19,7 @@ SKIPPED = 77
 HEADER = struct.Struct('<II48s48sqIB3xq')
 CYCLE = struct.Struct('<qqqqIiHHHBx')
 CYCLES = 10_000
+STOPPING_FAULTS = (1, 2)
 OUTCOMES = ('done', 'no answer', 'send failed', 'receive failed', 'wrong size', 'write lost', 'other board')
 
 
@@ -51,7 +52,7 @@ class Links:
             subprocess.run(['ip', 'netns', 'delete', name], capture_output=True)
 
 
-def hal_file(count, seconds):
+def hal_file(count, seconds, limit):
     addresses = ','.join(f'192.168.{10 + i}.121' for i in range(count))
     config = ','.join(['num_encoders=1 num_stepgens=5'] * count)
     lines = ['loadrt hostmot2', f'loadrt hm2_eth board_ip={addresses} config="{config}" firewall=none', 'loadrt threads name1=servo period1=1000000']
@@ -60,7 +61,7 @@ def hal_file(count, seconds):
         lines += [f'addf {board}.read-request servo' for board in boards]
     lines += [f'addf {board}.read servo' for board in boards] + [f'addf {board}.write servo' for board in boards]
     for board in boards:
-        lines += [f'setp {board}.packet-error-limit 1000000', f'setp {board}.watchdog.timeout_ns 100000000']
+        lines += [f'setp {board}.packet-error-limit {limit}', f'setp {board}.watchdog.timeout_ns 100000000']
         for i in range(5):
             lines += [f'setp {board}.stepgen.0{i}.position-scale 200', f'setp {board}.stepgen.0{i}.steplen 2000', f'setp {board}.stepgen.0{i}.stepspace 2000',
                       f'setp {board}.stepgen.0{i}.control-type 1', f'setp {board}.stepgen.0{i}.maxaccel 100', f'setp {board}.stepgen.0{i}.velocity-cmd {i + 1}',
@@ -74,10 +75,12 @@ def read_cycles(board):
     header = HEADER.unpack_from(data)
     if header[0] != 0x4D574359 or header[1] != 1:
         sys.exit('the record of cycles has another layout than this script')
-    current = header[5]
-    first = HEADER.size + current * (CYCLES * CYCLE.size + 8)
+    # After a stop, the ring with the cycles before it.
+    stopped = header[6] in STOPPING_FAULTS
+    ring = header[5] if not stopped else 1 - header[5]
+    first = HEADER.size + ring * (CYCLES * CYCLE.size + 8)
     count = struct.unpack_from('<Q', data, first + CYCLES * CYCLE.size)[0]
-    return [CYCLE.unpack_from(data, first + (i % CYCLES) * CYCLE.size) for i in range(max(0, count - CYCLES), max(0, count - 1))]
+    return [CYCLE.unpack_from(data, first + (i % CYCLES) * CYCLE.size) for i in range(max(0, count - CYCLES), max(0, count - 1))], stopped
 
 
 def at(values, part):
@@ -85,7 +88,8 @@ def at(values, part):
     return values[min(len(values) - 1, int(part * len(values)))] / 1000 if values else float('nan')
 
 
-def measure(binaries, count, seconds, faults):
+def measure(options, count, faults):
+    binaries, seconds = options.binaries, options.seconds
     links = Links(count)
     boards = []
     with tempfile.TemporaryDirectory() as folder:
@@ -99,12 +103,12 @@ def measure(binaries, count, seconds, faults):
                 boards.append(subprocess.Popen(links.command(1 + i, 'chrt', '-f', '60', *words), stdout=subprocess.PIPE))
                 boards[-1].stdout.readline()
             hal = pathlib.Path(folder) / 'timing.hal'
-            hal.write_text(hal_file(count, seconds))
+            hal.write_text(hal_file(count, seconds, options.limit))
             done = subprocess.run(links.command(0, f'{binaries}/halrun', '-f', str(hal)), capture_output=True, text=True, timeout=seconds + 60)
             if done.returncode != 0:
                 sys.exit(f'halrun: {done.stdout}{done.stderr}')
-            cycles = [read_cycles(f'hm2_7i76e.{i}') for i in range(count)]
-            stopped = any(line.endswith('TRUE hm2_7i76e.0.io_error') for line in done.stdout.splitlines())
+            read = [read_cycles(f'hm2_7i76e.{i}') for i in range(count)]
+            cycles, stopped = [one for one, _ in read], any(stop for _, stop in read)
         finally:
             for board in boards:
                 board.kill()
@@ -122,6 +126,7 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument('binaries')
     parser.add_argument('--seconds', type=int, default=10)
+    parser.add_argument('--limit', type=int, default=1000000, help='packet-error-limit; 10 is the default of the driver')
     parser.add_argument('--cases', default='one,two,loss 0.1 %,loss 1 %,loss 5 %,duplicates 5 %,delay 0.5 ms')
     options = parser.parse_args()
     if os.geteuid() != 0:
@@ -133,7 +138,7 @@ def main():
     print(f'{"case":16} {"read to write: p50":>19} {"p99":>7} {"p99.9":>7} {"max us":>8} | {"answer p50":>10} {"p99.9":>7} | {"thread late p99.9":>17} | of the last 10 s')
     medians = {}
     for case in options.cases.split(','):
-        busy, answer, late, counts, stopped = measure(options.binaries, 2 if case == 'two' else 1, options.seconds, faults[case])
+        busy, answer, late, counts, stopped = measure(options, 2 if case == 'two' else 1, faults[case])
         medians[case] = at(busy, 0.5)
         print(f'{case:16} {at(busy, 0.5):19.0f} {at(busy, 0.99):7.0f} {at(busy, 0.999):7.0f} {at(busy, 1):8.0f} | {at(answer, 0.5):10.0f} {at(answer, 0.999):7.0f} '
               f'| {at(late, 0.999):17.0f} | {counts or "no failure"}{" STOPPED" if stopped else ""}')

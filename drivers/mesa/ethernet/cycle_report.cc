@@ -40,7 +40,9 @@ void count_outcome(const CycleTimes &cycle, CycleFigures &figures) {
 }
 
 bool hasCounters(const CycleTimes &cycle) {
-    return cycle.outcome == CycleOutcome::DONE || cycle.outcome == CycleOutcome::WRITE_LOST;
+    // Without the counter it was a comparison of the board after a fault.
+    return cycle.board_packets != 0 &&
+           (cycle.outcome == CycleOutcome::DONE || cycle.outcome == CycleOutcome::WRITE_LOST);
 }
 
 /// Packets that were sent between two answered cycles and that the board has not counted.

@@ -75,6 +75,10 @@ CycleRead EthernetBus::read(std::span<std::uint32_t> values, long period_ns) noe
     const bool answered = cycle.outcome == CycleOutcome::DONE || cycle.outcome == CycleOutcome::WRITE_LOST;
     const bool comparing = link_ == Link::COMPARING;
     count(cycle.outcome);
+    if (answered && !comparing) {
+        cycle.board_packets = lbp16::number_at<std::uint16_t>(
+            std::span(answer_).subspan(cyclic_.data_bytes - BOARD_PACKETS_BYTES));
+    }
     if (answered && comparing) {
         numbers_.accept(std::span(answer_).subspan(identity_.data_bytes, HostNumbers::ANSWER_BYTES));
         link_ = Link::RUNNING;
@@ -90,8 +94,6 @@ CycleRead EthernetBus::read(std::span<std::uint32_t> values, long period_ns) noe
     if (!answered || comparing) {
         return CycleRead::FAILED;
     }
-    cycle.board_packets =
-        lbp16::number_at<std::uint16_t>(std::span(answer_).subspan(cyclic_.data_bytes - BOARD_PACKETS_BYTES));
     for (std::size_t i = 0; i < std::min(values.size(), cyclic_.data_bytes / 4); ++i) {
         values[i] = lbp16::number_at<std::uint32_t>(std::span(answer_).subspan(4 * i));
     }

@@ -142,6 +142,29 @@ TEST(MesaClosedLoop, TheRecordOfCyclesTellsWhichWayPacketsWereLost) {
     EXPECT_LE(figures.failures(), static_cast<std::size_t>(lost));
 }
 
+TEST(MesaClosedLoop, TheRecordOfCyclesIsRightInTheCycleThatStopsTheTraffic) {
+    for (const unsigned seed : {1U, 2U, 3U, 4U, 5U, 6U}) {
+        Rig rig({.config = "num_stepgens=1", .physics = STEPPER});
+        rig.link.disturb({.loss = 0.2}, {}, seed);
+        auto record = std::make_unique<CycleRecord>();
+        rig.bus->record_cycles_in(*record);
+        rig.pins.set("watchdog.timeout_ns", 500'000'000);
+        const auto before = rig.link.counts();
+        for (int i = 0; i < 8'000 && !rig.bus->isStopped(); ++i) {
+            rig.cycle();
+        }
+        ASSERT_TRUE(rig.bus->isStopped());
+        const auto lost = static_cast<std::int64_t>((rig.link.counts().sent - before.sent) -
+                                                    (rig.link.counts().executed - before.executed));
+        const CycleRing &ring = record->rings[1 - record->current.load()];
+        std::vector<CycleTimes> cycles;
+        for (std::size_t age = ring.size(); age-- > 0;) {
+            cycles.push_back(ring.at(age));
+        }
+        EXPECT_LE(figures_of(cycles, Rig::PERIOD_NS).lost_to_board, lost) << "seed " << seed;
+    }
+}
+
 // Random arms at random speeds; the index is at 0.25 rev, 1000 counts, of each turn of 4000.
 TEST(MesaClosedLoop, EachIndexIsLatchedWhereItIs) {
     for (const char *faults : {"", "seed 5\nto_board loss=0.05\nto_host loss=0.05"}) {
