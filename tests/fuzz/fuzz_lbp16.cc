@@ -33,7 +33,7 @@ void send_to_board(std::span<const std::uint8_t> data) {
     }
 }
 
-/// Damages answers once it is told to.
+/// Damages answers as soon as `data` is set.
 class DamagingTransport final : public lbp16::Transport {
   public:
     explicit DamagingTransport(board::Link &link) : inner_(link) {}

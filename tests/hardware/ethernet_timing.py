@@ -3,7 +3,7 @@
 """Times of a cycle with one and with two boards over virtual Ethernet links at 1 kHz.
 
 usage: ethernet_timing.py BIN [--seconds N] [--limit N] [--cases one,two,loss,delay] (as root)
-Each board runs in a network namespace of its own; driver and boards have SCHED_FIFO. The times are from the record of cycles that doctor reads, too.
+Each board has a separate network namespace; driver and boards have SCHED_FIFO. The times are from the record of cycles, which doctor reads, too.
 Prints a table; exit status 0 done, 77 skipped with the reason.
 """
 import argparse

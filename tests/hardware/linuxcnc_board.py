@@ -112,7 +112,7 @@ show param BOARD.io_error
 COMPLAINT = re.compile(r'(?i)\b(error|warning|fail(?:ed|ure)?|unknown|unsupported|not supported|inconsistent)\b')
 
 
-# LinuxCNC reads these registers apart from its packet of the cycle, and says so.
+# LinuxCNC reads these registers with extra packets and prints a message about it.
 OF_LINUXCNC = 'used llio->read in realtime task'
 
 

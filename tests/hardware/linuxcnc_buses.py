@@ -4,7 +4,7 @@
 
 usage: linuxcnc_buses.py HALRUN MODELS_FOLDER (as root)
 Exit status: 0 all agree, 1 something differs, 77 skipped, with the reason. bus_shim.c answers instead of ports and devices; a folder that is
-mounted over /sys/bus/pci in a namespace of its own has the cards. Both drivers get the same registers. What only newer versions of LinuxCNC
+mounted over /sys/bus/pci in a separate namespace has the cards. Both drivers get the same registers. What only newer versions of LinuxCNC
 have, and what ours adds or lacks, is listed in LEFT_OUT.
 """
 import difflib

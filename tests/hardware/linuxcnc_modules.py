@@ -75,7 +75,7 @@ DIFFERENT = {
 # Ports, watchdog, lamps and phase-locked loop, which other tests compare.
 OTHER = re.compile('1[0-4]..|0[CDE]..|7...|02..')
 PIN = re.compile(r'^\s+\d+\s+(bit|float|s32|u32)\s+(IN|OUT|I/O|RW|RO)\s+\S+\s+hm2_7i80\.0\.(\S+)', re.M)
-# Times of functions and counters of ours; names that the list of LinuxCNC cuts; an input that both drivers reset, and which is I/O here.
+# Not compared: times of functions, our counters, names that LinuxCNC's list cuts, an input that both drivers reset and that is I/O here.
 OTHER_PIN = re.compile(r'\.tmax|raw\.write_strobe|\.time$|^packet|debug|io_error|data-incomplete|phase-.-inverted|refpdm')
 MARK = 0xFF00
 PREFIX = 'hm2_7i80.0.'

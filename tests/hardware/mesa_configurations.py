@@ -17,7 +17,7 @@ import tempfile
 SKIPPED = 77
 SAMPLES = '/usr/share/doc/linuxcnc/examples/sample-configs'
 FOLDERS = ('by_interface/mesa',)
-# What is only looked at by doctor, and why.
+# Configurations that only doctor checks, with the reason.
 DOCTOR_ONLY = {'plasma-5i20/plasma-5i20.ini': 'its switches are at a parallel port, which has no motors in virtual time',
                'hm2-servo/7i90.ini': 'its home switch is at a pin that is a step generator in the firmware of our model'}
 COUNTS_PER_REV = 4000

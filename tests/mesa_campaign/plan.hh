@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What a seed stands for: faults of the network, and acts of host, cable and board.
+// The session of a seed: faults of the network, and events of host, cable and board.
 #pragma once
 
 #include <cstdint>

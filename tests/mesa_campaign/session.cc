@@ -362,7 +362,7 @@ class Session {
     void be_silent(std::int64_t duration_ns) {
         const std::int64_t first_ns = std::min(duration_ns, watchdog_ns());
         rig_.wait(first_ns);
-        // The motor goes on at its last rate, and then has to come back.
+        // The motor keeps its last rate until the watchdog bites, and then moves back.
         allowed_steps_ += plan_.steps_per_mm * (plan_.speed * static_cast<double>(first_ns) * 1e-9 +
                                                 plan_.speed * plan_.speed / (2 * plan_.max_accel));
         if (duration_ns == first_ns) {

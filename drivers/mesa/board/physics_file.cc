@@ -94,7 +94,7 @@ void read_switch(TableLine &line, PhysicsPlan &plan, const Idrom &idrom) {
     } else if (line.has("inmux")) {
         constexpr std::size_t INPUTS = 32;
         one.multiplexed = true;
-        unit_of(line, "inmux", instances_of(idrom, {Gtag::IN_MUX}));
+        unit_of(line, "inmux", std::min(instances_of(idrom, {Gtag::IN_MUX}), 1U));  // one is simulated
         one.pin = number_of(line, "input", INPUTS);
     } else {
         one.pin = number_of(line, "pin", idrom.pins.size());

@@ -48,6 +48,7 @@ class DirectBus final : public RegisterBus {
 
     Result<std::vector<std::uint32_t>> read_now(RegisterRange range) override;
     Result<> write_now(std::uint16_t address, std::span<const std::uint32_t> values) override;
+    void pause_now(std::chrono::nanoseconds duration) override { access_->pause(duration); }
     Result<> set_lists(std::span<const RegisterRange> reads, int max_writes) override;
 
     /// The read of a cycle needs no request before it.

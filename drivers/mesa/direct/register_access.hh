@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <span>
+#include <thread>
 
 #include "drivers/mesa/hostmot2/register_bus.hh"
 
@@ -59,6 +61,8 @@ class RegisterAccess {
         }
         return true;
     }
+    /// Lets time pass for the board. [while loading]
+    virtual void pause(std::chrono::nanoseconds duration) { std::this_thread::sleep_for(duration); }
     /// Another thread may use it at the same time, such as on PCI.
     virtual bool isImmediate() const noexcept { return false; }
     /// The errno of the last failure; 0: the access has none.

@@ -69,7 +69,10 @@ class EthernetBus final : public RegisterBus {
     /// The last cycle; nullptr before the first.
     const CycleTimes *last_cycle() const noexcept { return log_.isEmpty() ? nullptr : &log_.last(); }
     /// Lets the cycles be written to `record`, which outlives the bus. [while loading]
-    void record_cycles_in(CycleRecord &record) noexcept { log_ = CycleLog(record); }
+    void record_cycles_in(CycleRecord &record) noexcept {
+        log_ = CycleLog(record);
+        own_record_.reset();
+    }
     void note_watchdog_bite() noexcept override { log_.keep(BoardFault::WATCHDOG, transport_->now_ns()); }
     /// Stops all traffic, as too many failures do. [servo thread]
     void stop() noexcept;

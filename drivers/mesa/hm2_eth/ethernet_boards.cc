@@ -14,6 +14,7 @@
 #include "drivers/mesa/ethernet/ethernet_bus.hh"
 #include "drivers/mesa/ethernet/ethernet_pins.hh"
 #include "drivers/mesa/ethernet/network_setup.hh"
+#include "drivers/mesa/hostmot2/forwarding_bus.hh"
 #include "drivers/mesa/lbp16/udp_transport.hh"
 #include "drivers/mesa/virtual/virtual_board.hh"
 #include "millwright_ext.h"
@@ -23,23 +24,11 @@ namespace mw::mesa {
 namespace {
 
 /// A bus whose settings and results are pins.
-class PinnedBus final : public RegisterBus {
+class PinnedBus final : public ForwardingBus {
   public:
-    PinnedBus(std::unique_ptr<EthernetBus> bus, EthernetPins &pins) : bus_(std::move(bus)), pins_(pins) {}
+    PinnedBus(std::unique_ptr<EthernetBus> bus, EthernetPins &pins)
+        : ForwardingBus(*bus), bus_(std::move(bus)), pins_(pins) {}
 
-    std::string card_name() const override { return bus_->card_name(); }
-    std::vector<std::string> connectors() const override { return bus_->connectors(); }
-    int port_width() const override { return bus_->port_width(); }
-    Result<std::vector<std::uint32_t>> read_now(RegisterRange range) override {
-        return bus_->read_now(range);
-    }
-    Result<> write_now(std::uint16_t address, std::span<const std::uint32_t> values) override {
-        return bus_->write_now(address, values);
-    }
-    void pause_now(std::chrono::nanoseconds duration) override { bus_->pause_now(duration); }
-    Result<> set_lists(std::span<const RegisterRange> reads, int max_writes) override {
-        return bus_->set_lists(reads, max_writes);
-    }
     void request() noexcept override {
         pins_.before(*bus_);
         bus_->request();
@@ -50,12 +39,6 @@ class PinnedBus final : public RegisterBus {
         pins_.after(*bus_, period_ns);
         return result;
     }
-    bool write(std::span<const RegisterWrite> writes) noexcept override { return bus_->write(writes); }
-    bool redirect(int range, std::uint16_t address) noexcept override {
-        return bus_->redirect(range, address);
-    }
-    bool take_rewrite() noexcept override { return bus_->take_rewrite(); }
-    void note_watchdog_bite() noexcept override { bus_->note_watchdog_bite(); }
 
   private:
     std::unique_ptr<EthernetBus> bus_;
@@ -224,7 +207,6 @@ int load_ethernet_boards(const EthernetLoad &load) {
          ++count) {
         const int status = load_board(load, count, numbers);
         if (status != 0) {
-            unload_ethernet_boards(load.comp_id);
             return status;
         }
     }

@@ -23,7 +23,8 @@ struct EthernetLoad {
     std::string firewall;                   ///< auto, nft or none
 };
 
-/// 0, or a negated errno with a message in the log; then nothing is left. [while loading]
+/// 0, or a negated errno with a message in the log; unload_ethernet_boards() follows also then. [while
+/// loading]
 MW_HOSTMOT2_API int load_ethernet_boards(const EthernetLoad &load);
 /// Turns the outputs of the boards off and removes what the network was prepared with. No function of theirs
 /// may run.

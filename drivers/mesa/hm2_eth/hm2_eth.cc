@@ -12,7 +12,7 @@
 #include <cstring>
 
 #include "drivers/mesa/hm2_eth/ethernet_boards.hh"
-#include "hal/sdk/component.hh"
+#include "hal/sdk/module.hh"
 
 namespace {
 
@@ -31,29 +31,24 @@ RTAPI_MP_STRING(firewall, "auto, nft or none");
 RTAPI_MP_STRING(board_rtnet, "posix: the sockets of Linux");
 RTAPI_MP_INT(debug, "accepted for files of LinuxCNC; failures are always counted");
 
-int comp_id = -1;
+struct Boards {
+    int comp_id = 0;
+
+    int load(int id) noexcept {
+        comp_id = id;
+        if (board_rtnet != nullptr && std::strcmp(board_rtnet, "posix") != 0) {
+            rtapi_print_msg(RTAPI_MSG_ERR, "hm2_eth: board_rtnet=%s: only posix is possible\n", board_rtnet);
+            return -EINVAL;
+        }
+        return mw::mesa::load_ethernet_boards({.comp_id = id,
+                                               .addresses = board_ip,
+                                               .configs = config,
+                                               .virtual_boards = virtual_board,
+                                               .firewall = firewall == nullptr ? "auto" : firewall});
+    }
+    void end() noexcept { mw::mesa::unload_ethernet_boards(comp_id); }
+};
 
 }  // namespace
 
-int rtapi_app_main(void) {
-    if (board_rtnet != nullptr && std::strcmp(board_rtnet, "posix") != 0) {
-        rtapi_print_msg(RTAPI_MSG_ERR, "hm2_eth: board_rtnet=%s: only posix is possible\n", board_rtnet);
-        return -EINVAL;
-    }
-    comp_id = hal_init("hm2_eth");
-    if (comp_id < 0) {
-        return comp_id;
-    }
-    const int status = mw::mesa::load_ethernet_boards({.comp_id = comp_id,
-                                                       .addresses = board_ip,
-                                                       .configs = config,
-                                                       .virtual_boards = virtual_board,
-                                                       .firewall = firewall == nullptr ? "auto" : firewall});
-    const int result = mw::sdk::finish(comp_id, status);
-    return result < 0 ? result : 0;
-}
-
-void rtapi_app_exit(void) {
-    hal_exit(comp_id);  // no function of a board runs after this
-    mw::mesa::unload_ethernet_boards(comp_id);
-}
+MW_COMPONENT_DEVICE(Boards, "hm2_eth");

@@ -164,8 +164,8 @@ void Board::write(long period_ns, std::int64_t now_ns) noexcept {
 }
 
 // The configuration turns the outputs on again that a bite has turned off. So all registers are written only
-// when the read of this cycle has shown that the watchdog has not bitten, and when it cannot have bitten
-// since: the process may have been suspended between read and write.
+// when the read of this cycle has shown that the watchdog has not bitten, and when that was not long ago: the
+// process may have been suspended between read and write.
 bool Board::isReadRecent(std::int64_t now_ns) const noexcept {
     return watchdog_ == nullptr || now_ns - read_ns_ < std::int64_t{watchdog_->timeout_ns()} / 2;
 }

@@ -14,33 +14,55 @@ namespace mw::mesa {
 
 namespace {
 
+/// The time of a board: it advances with a clock, and is ahead of it while packets travel or accesses take
+/// time.
+class FollowedClock {
+  public:
+    explicit FollowedClock(std::function<std::int64_t()> clock_ns)
+        : clock_ns_(std::move(clock_ns)), last_ns_(clock_ns_()) {}
+
+    /// The time now, for a board that is at `board_ns`.
+    std::int64_t now(std::int64_t board_ns) const {
+        return std::max(begin_ns_ + (clock_ns_() - last_ns_), board_ns);
+    }
+    /// The same. When the clock has moved, its next step counts from here: what the board was ahead within a
+    /// cycle does not add up.
+    std::int64_t follow(std::int64_t board_ns) {
+        const std::int64_t now_ns = now(board_ns), clock = clock_ns_();
+        if (clock != last_ns_) {
+            begin_ns_ = now_ns;
+            last_ns_ = clock;
+        }
+        return now_ns;
+    }
+
+  private:
+    std::function<std::int64_t()> clock_ns_;
+    std::int64_t last_ns_;       ///< of the clock
+    std::int64_t begin_ns_ = 0;  ///< time of the board when the clock was at last_ns_
+};
+
 class VirtualTransport final : public lbp16::Transport {
   public:
     VirtualTransport(board::Model model, board::PhysicsPlan physics, std::function<std::int64_t()> clock_ns)
-        : clock_ns_(std::move(clock_ns)), board_(model, std::move(physics)), link_(board_, {}),
-          transport_(link_), last_clock_ns_(clock_ns_()) {}
+        : clock_(std::move(clock_ns)), board_(model, std::move(physics)), link_(board_, {}),
+          transport_(link_) {}
 
     lbp16::TransportResult send(std::span<const std::byte> packet) noexcept override {
-        transport_.sleep_until(now_ns());
-        begin_ns_ = transport_.now_ns();
-        last_clock_ns_ = clock_ns_();
+        transport_.sleep_until(clock_.follow(transport_.now_ns()));
         return transport_.send(packet);
     }
     lbp16::TransportResult receive(std::span<std::byte> packet) noexcept override {
         return transport_.receive(packet);
     }
     void wait_until(std::int64_t deadline_ns) noexcept override { transport_.wait_until(deadline_ns); }
-    std::int64_t now_ns() const noexcept override {
-        return std::max(begin_ns_ + (clock_ns_() - last_clock_ns_), transport_.now_ns());
-    }
+    std::int64_t now_ns() const noexcept override { return clock_.now(transport_.now_ns()); }
 
   private:
-    std::function<std::int64_t()> clock_ns_;
+    FollowedClock clock_;
     board::Board board_;
     board::Link link_;
     board::BoardTransport transport_;
-    std::int64_t last_clock_ns_;  ///< of the clock at the last packet
-    std::int64_t begin_ns_ = 0;   ///< time of the board then
 };
 
 /// Registers of a simulated board without any protocol.
@@ -48,10 +70,10 @@ class SimulatedRegisters final : public RegisterAccess {
   public:
     SimulatedRegisters(const board::Model &model, board::PhysicsPlan physics,
                        std::function<std::int64_t()> clock_ns)
-        : clock_ns_(std::move(clock_ns)), board_(model, std::move(physics)), last_clock_ns_(clock_ns_()) {}
+        : clock_(std::move(clock_ns)), board_(model, std::move(physics)) {}
 
     bool read(std::uint16_t address, std::span<std::uint32_t> values) noexcept override {
-        advance();
+        pass(ACCESS_NS);
         for (std::uint32_t &value : values) {
             value = board_.firmware().read(address);
             address = static_cast<std::uint16_t>(address + 4);
@@ -59,33 +81,25 @@ class SimulatedRegisters final : public RegisterAccess {
         return true;
     }
     bool write(std::uint16_t address, std::span<const std::uint32_t> values) noexcept override {
-        advance();
+        pass(ACCESS_NS);
         for (const std::uint32_t value : values) {
             board_.firmware().write(address, value);
             address = static_cast<std::uint16_t>(address + 4);
         }
         return true;
     }
+    void pause(std::chrono::nanoseconds duration) override { pass(duration.count()); }
 
   private:
-    /// An access takes time, so that what waits for the board while loading comes to an end.
-    void advance() {
-        constexpr std::int64_t ACCESS_NS = 1000;
-        const std::int64_t clock = clock_ns_();
-        if (clock != last_clock_ns_) {
-            begin_ns_ = std::max(begin_ns_ + (clock - last_clock_ns_), time_ns_);
-            last_clock_ns_ = clock;
-            time_ns_ = begin_ns_;
-        } else {
-            time_ns_ += ACCESS_NS;
-        }
+    static constexpr std::int64_t ACCESS_NS = 1000;
+
+    void pass(std::int64_t duration_ns) {
+        time_ns_ = clock_.follow(time_ns_ + duration_ns);
         board_.advance(time_ns_);
     }
 
-    std::function<std::int64_t()> clock_ns_;
+    FollowedClock clock_;
     board::Board board_;
-    std::int64_t last_clock_ns_;  ///< of the clock at the last access
-    std::int64_t begin_ns_ = 0;   ///< time of the board when the clock last moved
     std::int64_t time_ns_ = 0;
 };
 
@@ -137,9 +151,10 @@ VirtualBoardPlan virtual_board_of(std::string_view board) {
 }
 
 std::string missing_virtual_board(std::string_view board) {
+    const char *const list = std::getenv("MILLWRIGHT_MESA");
     return fmt::format("the board of {} is not used under the virtual clock; name its model, such as "
-                       "MILLWRIGHT_MESA={}=7i76e in the environment",
-                       board, board);
+                       "MILLWRIGHT_MESA={}=7i76e in the environment{}",
+                       board, board, list == nullptr ? "" : fmt::format(", which has '{}'", list));
 }
 
 Result<VirtualRegisters> open_virtual_registers(const VirtualBoardPlan &plan,

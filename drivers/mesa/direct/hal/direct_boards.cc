@@ -8,30 +8,18 @@
 #include <fmt/format.h>
 
 #include "drivers/mesa/direct/direct_pins.hh"
+#include "drivers/mesa/hostmot2/forwarding_bus.hh"
 
 namespace mw::mesa {
 
 namespace {
 
 /// A bus whose fault is a parameter.
-class PinnedBus final : public RegisterBus {
+class PinnedBus final : public ForwardingBus {
   public:
-    PinnedBus(std::unique_ptr<DirectBus> bus, DirectPins &pins) : bus_(std::move(bus)), pins_(pins) {}
+    PinnedBus(std::unique_ptr<DirectBus> bus, DirectPins &pins)
+        : ForwardingBus(*bus), bus_(std::move(bus)), pins_(pins) {}
 
-    std::string card_name() const override { return bus_->card_name(); }
-    std::vector<std::string> connectors() const override { return bus_->connectors(); }
-    int port_width() const override { return bus_->port_width(); }
-    int leds() const override { return bus_->leds(); }
-    Result<std::vector<std::uint32_t>> read_now(RegisterRange range) override {
-        return bus_->read_now(range);
-    }
-    Result<> write_now(std::uint16_t address, std::span<const std::uint32_t> values) override {
-        return bus_->write_now(address, values);
-    }
-    Result<> set_lists(std::span<const RegisterRange> reads, int max_writes) override {
-        return bus_->set_lists(reads, max_writes);
-    }
-    void request() noexcept override {}
     CycleRead read(std::span<std::uint32_t> values, long period_ns) noexcept override {
         pins_.before(*bus_);
         const CycleRead result = bus_->read(values, period_ns);
@@ -44,17 +32,6 @@ class PinnedBus final : public RegisterBus {
             pins_.after(*bus_);
         }
         return done;
-    }
-    bool redirect(int range, std::uint16_t address) noexcept override {
-        return bus_->redirect(range, address);
-    }
-    bool take_rewrite() noexcept override { return bus_->take_rewrite(); }
-    bool hasImmediateAccess() const noexcept override { return bus_->hasImmediateAccess(); }
-    bool read_immediately(std::uint16_t address, std::span<std::uint32_t> values) noexcept override {
-        return bus_->read_immediately(address, values);
-    }
-    bool write_immediately(std::span<const RegisterWrite> writes) noexcept override {
-        return bus_->write_immediately(writes);
     }
 
   private:

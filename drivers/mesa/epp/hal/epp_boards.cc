@@ -121,7 +121,6 @@ int load_board(const EppLoad &load, std::size_t i) {
 int load_epp_boards(const EppLoad &load) {
     for (std::size_t i = 0; i < load.addresses.size() && load.addresses[i] >= 0; ++i) {
         if (const int status = load_board(load, i); status != 0) {
-            remove_direct_boards(load.comp_id);
             return status;
         }
     }

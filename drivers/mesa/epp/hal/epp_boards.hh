@@ -23,7 +23,7 @@ struct EppLoad {
     std::span<char *const> configs;
 };
 
-/// 0, or a negated errno with a message. [while loading]
+/// 0, or a negated errno with a message; remove_direct_boards() follows also then. [while loading]
 MW_HOSTMOT2_API int load_epp_boards(const EppLoad &load);
 
 }  // namespace mw::mesa

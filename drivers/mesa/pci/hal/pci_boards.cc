@@ -191,11 +191,7 @@ bool isVirtual() {
 
 int load_pci_boards(int comp_id, std::span<char *const> configs) {
     if (isVirtual()) {
-        const int status = load_virtual_cards(comp_id, configs);
-        if (status != 0) {
-            remove_direct_boards(comp_id);
-        }
-        return status;
+        return load_virtual_cards(comp_id, configs);
     }
     current() = {.comp_id = comp_id, .configs = configs, .found = 0, .status = 0};
     int status = rtapi_pci_register_driver(&driver());
@@ -206,9 +202,6 @@ int load_pci_boards(int comp_id, std::span<char *const> configs) {
         rtapi_print_msg(RTAPI_MSG_ERR,
                         "hm2_pci: there is no Mesa card on PCI; lspci -nn lists the cards of the computer\n");
         status = -ENODEV;
-    }
-    if (status != 0) {
-        unload_pci_boards(comp_id);
     }
     return status;
 }

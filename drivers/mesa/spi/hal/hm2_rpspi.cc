@@ -5,7 +5,7 @@
 //     loadrt hm2_rpspi spiclk_rate=12500 config="num_encoders=1"
 #include "drivers/mesa/direct/hal/direct_boards.hh"
 #include "drivers/mesa/spi/hal/spi_boards.hh"
-#include "hal/sdk/component.hh"
+#include "hal/sdk/module.hh"
 
 namespace {
 
@@ -23,26 +23,21 @@ RTAPI_MP_INT(spi_pull_mosi, "accepted for files of LinuxCNC, without an effect")
 RTAPI_MP_INT(spi_pull_sclk, "accepted for files of LinuxCNC, without an effect");
 RTAPI_MP_INT(spi_debug, "accepted for files of LinuxCNC, without an effect");
 
-int comp_id = -1;
+struct Boards {
+    int comp_id = 0;
+
+    int load(int id) noexcept {
+        comp_id = id;
+        return mw::mesa::load_probed_boards({.comp_id = id,
+                                             .module = "hm2_rpspi",
+                                             .probe = static_cast<unsigned>(spi_probe),
+                                             .rates_khz = {&spiclk_rate, 1},
+                                             .read_rates_khz = {&spiclk_rate_rd, 1},
+                                             .configs = config});
+    }
+    void end() noexcept { mw::mesa::remove_direct_boards(comp_id); }
+};
 
 }  // namespace
 
-int rtapi_app_main(void) {
-    comp_id = hal_init("hm2_rpspi");
-    if (comp_id < 0) {
-        return comp_id;
-    }
-    const int status = mw::mesa::load_probed_boards({.comp_id = comp_id,
-                                                     .module = "hm2_rpspi",
-                                                     .probe = static_cast<unsigned>(spi_probe),
-                                                     .rates_khz = {&spiclk_rate, 1},
-                                                     .read_rates_khz = {&spiclk_rate_rd, 1},
-                                                     .configs = config});
-    const int result = mw::sdk::finish(comp_id, status);
-    return result < 0 ? result : 0;
-}
-
-void rtapi_app_exit(void) {
-    hal_exit(comp_id);  // no function of a board runs after this
-    mw::mesa::remove_direct_boards(comp_id);
-}
+MW_COMPONENT_DEVICE(Boards, "hm2_rpspi");

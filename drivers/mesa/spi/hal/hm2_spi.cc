@@ -5,7 +5,7 @@
 //     loadrt hm2_spi spidev_path=/dev/spidev1.0 spidev_rate=24000 config="num_encoders=1"
 #include "drivers/mesa/direct/hal/direct_boards.hh"
 #include "drivers/mesa/spi/hal/spi_boards.hh"
-#include "hal/sdk/component.hh"
+#include "hal/sdk/module.hh"
 
 namespace {
 
@@ -21,37 +21,26 @@ RTAPI_MP_ARRAY_STRING(spidev_path, MAX_SPI_BOARDS, "devices of the boards");
 RTAPI_MP_ARRAY_INT(spidev_rate, MAX_SPI_BOARDS, "clock rates [kHz]");
 RTAPI_MP_ARRAY_STRING(config, MAX_SPI_BOARDS, "which modules of each board are used");
 
-int comp_id = -1;
+struct Boards {
+    int comp_id = 0;
 
-int load_boards() {
-    for (int i = 0; i < MAX_SPI_BOARDS && spidev_path[i] != nullptr; ++i) {
-        const int status =
-            mw::mesa::load_spi_board({.comp_id = comp_id,
-                                      .module = "hm2_spi",
-                                      .path = spidev_path[i],
-                                      .rate_khz = spidev_rate[i],
-                                      .read_rate_khz = 0,
-                                      .config = mw::mesa::text_at(config, static_cast<unsigned>(i))});
-        if (status != 0) {
-            mw::mesa::remove_direct_boards(comp_id);
-            return status;
+    int load(int id) noexcept {
+        comp_id = id;
+        int status = 0;
+        for (int i = 0; i < MAX_SPI_BOARDS && spidev_path[i] != nullptr && status == 0; ++i) {
+            status =
+                mw::mesa::load_spi_board({.comp_id = id,
+                                          .module = "hm2_spi",
+                                          .path = spidev_path[i],
+                                          .rate_khz = spidev_rate[i],
+                                          .read_rate_khz = 0,
+                                          .config = mw::mesa::text_at(config, static_cast<unsigned>(i))});
         }
+        return status;
     }
-    return 0;
-}
+    void end() noexcept { mw::mesa::remove_direct_boards(comp_id); }
+};
 
 }  // namespace
 
-int rtapi_app_main(void) {
-    comp_id = hal_init("hm2_spi");
-    if (comp_id < 0) {
-        return comp_id;
-    }
-    const int result = mw::sdk::finish(comp_id, load_boards());
-    return result < 0 ? result : 0;
-}
-
-void rtapi_app_exit(void) {
-    hal_exit(comp_id);  // no function of a board runs after this
-    mw::mesa::remove_direct_boards(comp_id);
-}
+MW_COMPONENT_DEVICE(Boards, "hm2_spi");

@@ -5,7 +5,7 @@
 //     loadrt hm2_spix spi_probe=3 spiclk_rate=25000,20000 config="num_encoders=1,num_stepgens=4"
 #include "drivers/mesa/direct/hal/direct_boards.hh"
 #include "drivers/mesa/spi/hal/spi_boards.hh"
-#include "hal/sdk/component.hh"
+#include "hal/sdk/module.hh"
 
 namespace {
 
@@ -20,26 +20,21 @@ RTAPI_MP_INT(spi_probe, "boards, a sum of 1: SPI0/CE0, 2: SPI0/CE1, 4: SPI1/CE0,
 RTAPI_MP_ARRAY_STRING(config, MAX_SPI_BOARDS, "which modules of each board are used");
 RTAPI_MP_STRING(force_driver, "accepted for files of LinuxCNC: Linux chooses the driver of the controller");
 
-int comp_id = -1;
+struct Boards {
+    int comp_id = 0;
+
+    int load(int id) noexcept {
+        comp_id = id;
+        return mw::mesa::load_probed_boards({.comp_id = id,
+                                             .module = "hm2_spix",
+                                             .probe = static_cast<unsigned>(spi_probe),
+                                             .rates_khz = spiclk_rate,
+                                             .read_rates_khz = spiclk_rate_rd,
+                                             .configs = config});
+    }
+    void end() noexcept { mw::mesa::remove_direct_boards(comp_id); }
+};
 
 }  // namespace
 
-int rtapi_app_main(void) {
-    comp_id = hal_init("hm2_spix");
-    if (comp_id < 0) {
-        return comp_id;
-    }
-    const int status = mw::mesa::load_probed_boards({.comp_id = comp_id,
-                                                     .module = "hm2_spix",
-                                                     .probe = static_cast<unsigned>(spi_probe),
-                                                     .rates_khz = spiclk_rate,
-                                                     .read_rates_khz = spiclk_rate_rd,
-                                                     .configs = config});
-    const int result = mw::sdk::finish(comp_id, status);
-    return result < 0 ? result : 0;
-}
-
-void rtapi_app_exit(void) {
-    hal_exit(comp_id);  // no function of a board runs after this
-    mw::mesa::remove_direct_boards(comp_id);
-}
+MW_COMPONENT_DEVICE(Boards, "hm2_spix");

@@ -112,7 +112,6 @@ int load_probed_boards(const ProbeLoad &load) {
                                            .read_rate_khz = rate_of(load.read_rates_khz, board, 0),
                                            .config = text_at(load.configs, board)});
         if (status != 0) {
-            remove_direct_boards(load.comp_id);
             return status;
         }
         ++board;

@@ -21,7 +21,7 @@ struct SpiLoad {
     std::string config;
 };
 
-/// 0, or a negated errno with a message. [while loading]
+/// 0, or a negated errno with a message; remove_direct_boards() follows also then. [while loading]
 MW_HOSTMOT2_API int load_spi_board(const SpiLoad &load);
 
 /// The module parameters of hm2_rpspi and hm2_spix.
@@ -34,7 +34,8 @@ struct ProbeLoad {
     std::span<char *const> configs;
 };
 
-/// Loads the boards of all probe bits: 0, or a negated errno with a message. [while loading]
+/// Loads the boards of all probe bits: 0, or a negated errno with a message; remove_direct_boards() follows
+/// also then. [while loading]
 MW_HOSTMOT2_API int load_probed_boards(const ProbeLoad &load);
 
 }  // namespace mw::mesa
