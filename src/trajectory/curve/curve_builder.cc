@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "trajectory/curve/curve_builder.hh"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mw::trajectory::curve {
+
+namespace {
+
+/// Change of the knot spacing per length.
+constexpr double GROWTH = 0.25;
+/// Deviation of a curve at a corner over the change of the tangent times the knot spacing, for even knots.
+/// Only the first guess: what is too wide is narrowed.
+constexpr double CORNER_DEVIATION = 28.0 / 120.0;
+/// Length over which a control point takes the mean of the path, over the knot spacing.
+constexpr double MEAN_WIDTH = 1.5;
+constexpr int MAX_ROUNDS = 60;
+/// Part of the tolerance by which the bound of the deviation may exceed the deviation.
+constexpr double BOUND_SLACK = 0.02;
+constexpr int MAX_PARTS = 16;
+/// A corner gets a knot of its own where the last one is this many spacings away.
+constexpr double APART = 3.0;
+/// Knots before the first open span that its control points depend on, and behind it that those of the last
+/// final span do: a control point depends on its neighbours, whose means reach to theirs.
+constexpr std::size_t KNOTS_BEFORE = DEGREE + 1, KNOTS_BEHIND = DEGREE + 2;
+/// Least spacing [units]: keeps the number of knots bounded whatever the tolerance.
+constexpr double LEAST_SPACING = 1e-6;
+
+double larger_norm(const Pose &p) noexcept {
+    return std::max(geometry::norm_linear(p), geometry::norm_abc(p));
+}
+
+}  // namespace
+
+CurveBuilder::CurveBuilder(double widest) : widest_(widest) {
+    begin();
+}
+
+void CurveBuilder::begin() noexcept {
+    path_.clear();
+    caps_.assign(1, {0, widest_, true});
+    knots_.assign(1, 0.0);
+    spans_.clear();
+    fixed_ = 1;
+    first_open_ = 0;
+    final_worst_ = 0;
+    rounds_ = 0;
+}
+
+void CurveBuilder::add(const Primitive &primitive, double tolerance) {
+    if (!path_.moves().empty()) {
+        const ProgrammedMove &last = path_.moves().back();
+        const Pose step = derivative_at(primitive, 0) - derivative_at(last.primitive, last.primitive.length);
+        const double turn = std::max(larger_norm(step), 1e-12);
+        const double spacing = std::min(tolerance, last.tolerance) / (CORNER_DEVIATION * turn);
+        if (spacing < widest_) {
+            caps_.push_back({path_.length(), std::max(spacing, LEAST_SPACING), true});
+        }
+    }
+    path_.add(primitive, tolerance);
+}
+
+void CurveBuilder::extend(bool complete) {
+    if (path_.moves().empty() || path_.length() <= knots_[fixed_ - 1]) {
+        return;
+    }
+    for (int round = 0; round < MAX_ROUNDS; ++round) {
+        ++rounds_;
+        spread_caps();
+        lay_knots();
+        place_controls();
+        if (check()) {
+            break;
+        }
+        caps_.insert(caps_.end(), found_.begin(), found_.end());
+        std::sort(caps_.begin(), caps_.end(), [](const Cap &a, const Cap &b) { return a.s < b.s; });
+    }
+    keep_final(complete);
+}
+
+void CurveBuilder::spread_caps() {
+    envelope_.resize(caps_.size());
+    for (std::size_t i = 0; i < caps_.size(); ++i) {
+        const double reach = i == 0 ? widest_ : envelope_[i - 1] + GROWTH * (caps_[i].s - caps_[i - 1].s);
+        envelope_[i] = std::min(reach, caps_[i].spacing);
+    }
+    for (std::size_t i = caps_.size(); i-- > 1;) {
+        envelope_[i - 1] = std::min(envelope_[i - 1], envelope_[i] + GROWTH * (caps_[i].s - caps_[i - 1].s));
+    }
+}
+
+double CurveBuilder::spacing_at(double s, std::size_t &cap) const noexcept {
+    while (cap + 1 < caps_.size() && s >= caps_[cap + 1].s) {
+        ++cap;
+    }
+    const double behind =
+        cap + 1 < caps_.size() ? envelope_[cap + 1] + GROWTH * (caps_[cap + 1].s - s) : widest_;
+    return std::min({widest_, envelope_[cap] + GROWTH * std::abs(s - caps_[cap].s), behind});
+}
+
+void CurveBuilder::lay_between(double from, double to, std::size_t cap) {
+    const std::size_t first = knots_.size();
+    double s = from;
+    while (s < to) {
+        // The spacing half a step ahead: knots lie alike from both ends.
+        const double near = spacing_at(s, cap);
+        std::size_t ahead = cap;
+        s += spacing_at(std::min(s + 0.5 * near, to), ahead);
+        knots_.push_back(s);
+    }
+    if (knots_.size() > first + 1 && s - to > to - knots_[knots_.size() - 2]) {
+        knots_.pop_back();
+        s = knots_.back();
+    }
+    const double scale = (to - from) / (s - from);
+    for (std::size_t i = first; i < knots_.size(); ++i) {
+        knots_[i] = from + (knots_[i] - from) * scale;
+    }
+    knots_.back() = to;
+}
+
+void CurveBuilder::lay_knots() {
+    knots_.resize(fixed_);
+    const double length = path_.length();
+    std::size_t cap = 0;
+    while (cap + 1 < caps_.size() && caps_[cap + 1].s <= knots_.back()) {
+        ++cap;
+    }
+    for (std::size_t i = cap + 1; i < caps_.size(); ++i) {
+        const bool is_least = caps_[i].is_corner && envelope_[i] == caps_[i].spacing;
+        const double need = APART * caps_[i].spacing;
+        if (is_least && caps_[i].s - knots_.back() > need && length - caps_[i].s > need) {
+            lay_between(knots_.back(), caps_[i].s, cap);
+            cap = i;
+        }
+    }
+    lay_between(knots_.back(), length, cap);
+}
+
+void CurveBuilder::place_controls() {
+    const KnotRow row(knots_);
+    const std::size_t n = row.controls();
+    // The first open span needs the control points from its own number on, and their neighbours.
+    const std::size_t from = first_open_ == 0 ? 0 : first_open_ - 1;
+    places_.resize(n);
+    means_.resize(n);
+    controls_.resize(n);
+    for (std::size_t i = from == 0 ? 0 : from - 1; i < n; ++i) {
+        places_[i] = row.greville(i);
+    }
+    const auto width = [&](std::size_t i) {
+        return i == 0 || i + 1 == n
+                   ? 0.0
+                   : MEAN_WIDTH * std::min(places_[i + 1] - places_[i], places_[i] - places_[i - 1]);
+    };
+    std::size_t move = 0;
+    for (std::size_t i = from; i < n; ++i) {
+        const double reach = 0.5 * width(i);
+        move = path_.move_at(places_[i] - reach, move);
+        means_[i] = path_.mean(move, places_[i] - reach, places_[i] + reach);
+    }
+    for (std::size_t i = first_open_; i < n; ++i) {
+        controls_[i] = means_[i];
+        if (i > 0 && i + 1 < n) {
+            const double before = places_[i] - places_[i - 1], behind = places_[i + 1] - places_[i];
+            const Pose second =
+                ((means_[i + 1] - means_[i]) * (1 / behind) - (means_[i] - means_[i - 1]) * (1 / before)) *
+                (2 / (before + behind));
+            const double w = width(i);
+            controls_[i] = controls_[i] + second * (0.5 * (row.curvature_shift(i) - w * w / 12));
+        }
+    }
+    open_.clear();
+    for (std::size_t k = first_open_; k < row.spans(); ++k) {
+        open_.push_back(span_of(k));
+    }
+}
+
+Span CurveBuilder::span_of(std::size_t k) const noexcept {
+    Span span;
+    span.start_s = knots_[k];
+    span.length = knots_[k + 1] - knots_[k];
+    KnotRow::Weights w;
+    KnotRow(knots_).weights(k, w);
+    for (std::size_t n = 0; n < COEFFICIENTS; ++n) {
+        for (std::size_t j = 0; j < COEFFICIENTS; ++j) {
+            for (std::size_t i = 0; i < geometry::AXIS_COUNT; ++i) {
+                span.c[n].c[i] += w[n][j] * controls_[k + j].c[i];
+            }
+        }
+    }
+    return span;
+}
+
+/// Spacing times deviation is constant at a corner, spacing squared times deviation on a curve.
+void CurveBuilder::narrow(double s, double excess, double length) {
+    const auto behind =
+        std::upper_bound(caps_.begin(), caps_.end(), s, [](double x, const Cap &c) { return x < c.s; });
+    std::size_t before = static_cast<std::size_t>(std::max<long>(0, behind - caps_.begin() - 1));
+    const double spacing = std::min(spacing_at(s, before), length);
+    std::size_t nearest = caps_.size();
+    double least = 1.5 * spacing;
+    for (const std::size_t i : {before, before + 1}) {
+        if (i < caps_.size() && std::abs(caps_[i].s - s) < least) {
+            least = std::abs(caps_[i].s - s);
+            nearest = i;
+        }
+    }
+    constexpr double MOST = 0.3;
+    constexpr double MORE = 0.99;
+    if (nearest < caps_.size()) {
+        Cap &cap = caps_[nearest];
+        const double share = MORE / (cap.is_corner ? excess : std::sqrt(excess));
+        cap.spacing = std::max(std::min(cap.spacing, spacing) * std::max(share, MOST), LEAST_SPACING);
+        is_narrowed_ = true;
+    } else {
+        found_.push_back(
+            {s, std::max(spacing * std::max(MOST, MORE / std::sqrt(excess)), LEAST_SPACING), false});
+    }
+}
+
+void CurveBuilder::check_span(const Span &span, std::size_t &move) {
+    // The Bernstein coefficients of the second derivative bound it: between two points the deviation exceeds
+    // the larger of theirs by at most an eighth of the bound times the square of their distance.
+    const double per2 = 1.0 / (span.length * span.length);
+    const Pose d0 = span.c[2] * (2 * per2), d1 = span.c[3] * (6 * per2), d2 = span.c[4] * (12 * per2),
+               d3 = span.c[5] * (20 * per2);
+    const double bend =
+        std::max({larger_norm(d0), larger_norm(d0 + d1 * (1.0 / 3)),
+                  larger_norm(d0 + d1 * (2.0 / 3) + d2 * (1.0 / 3)), larger_norm(d0 + d1 + d2 + d3)});
+    double worst = 0, worst_s = span.start_s;
+    move = path_.move_at(span.start_s, move);
+    for (double s = span.start_s; s < span.end_s();) {
+        const ProgrammedMove &m = path_.moves()[move];
+        const bool is_last = move + 1 == path_.moves().size();
+        const double end = is_last ? span.end_s() : std::min(span.end_s(), m.end_s());
+        const double curvature =
+            m.primitive.isArc ? second_derivative_bound(m.primitive)[XYZ_NORM] + std::abs(m.primitive.omega)
+                              : 0.0;
+        const double step = end - s;
+        const double straight = step * step * (bend + curvature) / 8;
+        const int parts = std::clamp(
+            static_cast<int>(std::ceil(std::sqrt(straight / (BOUND_SLACK * m.tolerance)))), 1, MAX_PARTS);
+        for (int i = 0; i <= parts; ++i) {
+            const double at = s + step * i / parts;
+            const double deviation =
+                larger_norm(position_at(span, at) - path_.position_at(move, at)) + straight / (parts * parts);
+            if (deviation > worst * m.tolerance) {
+                worst = deviation / m.tolerance;
+                worst_s = at;
+            }
+        }
+        s = end;
+        move += s < span.end_s() && !is_last ? 1 : 0;
+    }
+    worst_ = std::max(worst_, worst);
+    if (worst > 1) {
+        narrow(worst_s, worst, span.length);
+    }
+}
+
+bool CurveBuilder::check() {
+    found_.clear();
+    is_narrowed_ = false;
+    worst_ = 0;
+    std::size_t move = 0;
+    for (const Span &span : open_) {
+        check_span(span, move);
+    }
+    return found_.empty() && !is_narrowed_;
+}
+
+void CurveBuilder::keep_final(bool complete) {
+    // A corner behind the end may narrow knots as far back as this.
+    const double end = complete ? path_.length() : path_.length() - widest_ / GROWTH;
+    std::size_t final = 0;
+    while (final < open_.size() && open_[final].end_s() <= end &&
+           (complete || first_open_ + final + 1 + KNOTS_BEHIND < knots_.size())) {
+        spans_.push_back(open_[final++]);
+    }
+    if (final == 0) {
+        return;
+    }
+    final_worst_ = std::max(final_worst_, worst_);
+    std::size_t open = first_open_ + final;
+    const std::size_t drop = open > KNOTS_BEFORE ? open - KNOTS_BEFORE : 0;
+    knots_.erase(knots_.begin(), knots_.begin() + static_cast<long>(drop));
+    first_open_ = open - drop;
+    fixed_ = std::min(first_open_ + KNOTS_BEHIND, knots_.size());
+    // Caps and moves before the kept knots have no part in what is still open; the last cap before them has.
+    std::size_t old = 0;
+    while (old + 1 < caps_.size() && caps_[old + 1].s <= knots_[0]) {
+        ++old;
+    }
+    caps_.erase(caps_.begin(), caps_.begin() + static_cast<long>(old));
+    path_.drop_before(knots_[0]);
+}
+
+}  // namespace mw::trajectory::curve

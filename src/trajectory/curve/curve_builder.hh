@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Fits a spline to the programmed path within its tolerance, while moves are still added.
+//
+// Control point i is the mean position of the programmed path around its place, moved by half of the variance
+// of the spline's weights times the second difference there: lines and parabolas are reproduced. The spacing
+// of the knots is as wide as the tolerance allows. One rule for corners, arcs and short chords.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "trajectory/curve/programmed_path.hh"
+#include "trajectory/curve/spline.hh"
+
+namespace mw::trajectory::curve {
+
+/// Planner thread. Memory: the moves and knots of the part that is not yet final, and the spans until they
+/// are dropped.
+class CurveBuilder {
+  public:
+    /// `widest`: largest knot spacing [units].
+    explicit CurveBuilder(double widest);
+
+    /// A curve begins at the start of the next move.
+    void begin() noexcept;
+    /// `tolerance`: largest distance of the curve from the move, lengths and angles apart; above 0.
+    void add(const Primitive &primitive, double tolerance);
+    /// Makes spans of what has been added; `complete`: nothing follows, so all of it. Otherwise the end stays
+    /// open, as far as a next move can change it.
+    void extend(bool complete);
+
+    /// Length of the programmed path.
+    double programmed_length() const noexcept { return path_.length(); }
+    /// Spans that do not change any more.
+    const std::vector<Span> &spans() const noexcept { return spans_; }
+    double final_s() const noexcept { return spans_.empty() ? 0.0 : spans_.back().end_s(); }
+    /// Largest deviation so far over the tolerance there: a bound of it, not a sample.
+    double worst_deviation() const noexcept { return final_worst_; }
+    /// Fits of the open part until it was within the tolerance.
+    int rounds() const noexcept { return rounds_; }
+
+  private:
+    /// A place where knots may not be wider apart.
+    struct Cap {
+        double s = 0, spacing = 0;
+        bool is_corner = false;
+    };
+    void spread_caps();
+    void lay_knots();
+    void lay_between(double from, double to, std::size_t cap);
+    double spacing_at(double s, std::size_t &cap) const noexcept;
+    void place_controls();
+    Span span_of(std::size_t k) const noexcept;
+    bool check();
+    void check_span(const Span &span, std::size_t &move);
+    void narrow(double s, double excess, double length);
+    void keep_final(bool complete);
+
+    double widest_;
+    ProgrammedPath path_;
+    std::vector<Cap> caps_, found_;
+    bool is_narrowed_ = false;
+    std::vector<double> envelope_;
+    // Knots: first those of spans that are final, `fixed_` of them; then those of the open part.
+    std::vector<double> knots_;
+    std::size_t fixed_ = 1;
+    std::size_t first_open_ = 0;  ///< span of the row of knots that is the first one not final
+    std::vector<double> places_;
+    std::vector<Pose> controls_, means_;
+    std::vector<Span> open_, spans_;
+    double worst_ = 0, final_worst_ = 0;
+    int rounds_ = 0;
+};
+
+}  // namespace mw::trajectory::curve

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The programmed path between two stops, by its length: what a curve is fitted to.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "trajectory/path/primitive.hh"
+
+namespace mw::trajectory::curve {
+
+/// One move of the programmed path.
+struct ProgrammedMove {
+    Primitive primitive;
+    double start_s = 0;    ///< length of the path before it [units]
+    double tolerance = 0;  ///< distance that the curve may keep from it [units; degrees over A B C]
+    double end_s() const noexcept { return start_s + primitive.length; }
+};
+
+/// Moves one after the other, the end of each the start of the next.
+class ProgrammedPath {
+  public:
+    void clear() noexcept { moves_.clear(); }
+    void add(const Primitive &primitive, double tolerance);
+    /// Forgets moves that end before `s`, but for the last ones.
+    void drop_before(double s) noexcept;
+    const std::vector<ProgrammedMove> &moves() const noexcept { return moves_; }
+    double length() const noexcept { return moves_.empty() ? 0.0 : moves_.back().end_s(); }
+    /// Index of the move at `s`, searched from the move `near` on.
+    std::size_t move_at(double s, std::size_t near) const noexcept;
+    /// On the move `index`.
+    Pose position_at(std::size_t index, double s) const noexcept;
+    /// Mean position of [from, to]; `index`: the move at `from`.
+    Pose mean(std::size_t index, double from, double to) const noexcept;
+
+  private:
+    std::vector<ProgrammedMove> moves_;
+};
+
+}  // namespace mw::trajectory::curve

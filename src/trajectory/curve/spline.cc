@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "trajectory/curve/spline.hh"
+
+#include <algorithm>
+
+namespace mw::trajectory::curve {
+
+Pose position_at(const Span &span, double s) noexcept {
+    const double u = (s - span.start_s) / span.length;
+    Pose q = span.c[DEGREE];
+    for (std::size_t k = DEGREE; k-- > 0;) {
+        for (std::size_t i = 0; i < geometry::AXIS_COUNT; ++i) {
+            q.c[i] = q.c[i] * u + span.c[k].c[i];
+        }
+    }
+    return q;
+}
+
+CurvePoint point_at(const Span &span, double s) noexcept {
+    const double per = 1.0 / span.length;
+    const double u = (s - span.start_s) * per;
+    CurvePoint p;
+    for (std::size_t i = 0; i < geometry::AXIS_COUNT; ++i) {
+        const auto c = [&](std::size_t k) { return span.c[k].c[i]; };
+        p.position.c[i] = c(0) + u * (c(1) + u * (c(2) + u * (c(3) + u * (c(4) + u * c(5)))));
+        p.first.c[i] = per * (c(1) + u * (2 * c(2) + u * (3 * c(3) + u * (4 * c(4) + u * 5 * c(5)))));
+        p.second.c[i] = per * per * (2 * c(2) + u * (6 * c(3) + u * (12 * c(4) + u * 20 * c(5))));
+        p.third.c[i] = per * per * per * (6 * c(3) + u * (24 * c(4) + u * 60 * c(5)));
+    }
+    return p;
+}
+
+double KnotRow::at(long k) const noexcept {
+    return knots_[static_cast<std::size_t>(std::clamp(k, 0L, static_cast<long>(knots_.size()) - 1))];
+}
+
+double KnotRow::greville(std::size_t i) const noexcept {
+    double sum = 0;
+    for (long k = 0; k < DEGREE; ++k) {
+        sum += at(static_cast<long>(i) - DEGREE + 1 + k);
+    }
+    return sum / DEGREE;
+}
+
+double KnotRow::curvature_shift(std::size_t i) const noexcept {
+    const double centre = greville(i);
+    double squares = 0;
+    for (long k = 0; k < DEGREE; ++k) {
+        const double d = at(static_cast<long>(i) - DEGREE + 1 + k) - centre;
+        squares += d * d;
+    }
+    // The sum over pairs of products is minus half of the sum of squares, as the deviations add up to 0.
+    return -0.5 * squares / (DEGREE * (DEGREE - 1) / 2);
+}
+
+void KnotRow::weights(std::size_t span, Weights &w) const noexcept {
+    const auto k = static_cast<long>(span);
+    const double from = at(k);
+    const double h = at(k + 1) - from;
+    // basis[j]: the function of degree p whose support begins at knot k - p + j, as a polynomial in u.
+    std::array<std::array<double, COEFFICIENTS>, COEFFICIENTS> basis{}, next{};
+    basis[0][0] = 1;
+    for (long p = 1; p <= DEGREE; ++p) {
+        for (auto &row : next) {
+            row.fill(0);
+        }
+        for (long j = 0; j < p; ++j) {
+            // The function basis[j] of degree p - 1 spans the knots left .. right.
+            const double left = at(k - p + 1 + j);
+            const double right = at(k + 1 + j);
+            const double per = 1.0 / (right - left);
+            const double rise0 = (from - left) * per;
+            const double fall0 = (right - from) * per;
+            const double slope = h * per;
+            const auto &f = basis[static_cast<std::size_t>(j)];
+            auto &low = next[static_cast<std::size_t>(j)];
+            auto &high = next[static_cast<std::size_t>(j + 1)];
+            for (std::size_t n = 0; n < static_cast<std::size_t>(p); ++n) {
+                low[n] += fall0 * f[n];
+                low[n + 1] -= slope * f[n];
+                high[n] += rise0 * f[n];
+                high[n + 1] += slope * f[n];
+            }
+        }
+        basis = next;
+    }
+    for (std::size_t n = 0; n < COEFFICIENTS; ++n) {
+        for (std::size_t j = 0; j < COEFFICIENTS; ++j) {
+            w[n][j] = basis[j][n];
+        }
+    }
+}
+
+}  // namespace mw::trajectory::curve

@@ -1,0 +1,341 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "trajectory/profile/cells.hh"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace mw::trajectory::profile {
+
+namespace {
+
+constexpr int NODES_PER_SPAN = 3;
+/// A limit above it is none.
+constexpr double UNLIMITED_BOUND = 1e100;
+
+double square(double x) noexcept {
+    return x * x;
+}
+
+/// Largest change of direction in a cell [rad].
+constexpr double TURN_PER_CELL = 0.2;
+
+/// Speed after the way ds from v with a^2 <= 2 J v (a start from rest with constant jerk) and a <= A.
+double faster(double v, double ds, double acceleration, double jerk) noexcept {
+    const double by_jerk = std::pow(v * std::sqrt(v) + 1.5 * std::sqrt(2 * jerk) * ds, 2.0 / 3);
+    return std::min(by_jerk, std::sqrt(v * v + 2 * acceleration * ds));
+}
+
+}  // namespace
+
+double FeedLimit::share(const Pose &first) const noexcept {
+    const double length = along == Along::XYZ   ? geometry::norm_xyz(first)
+                          : along == Along::UVW ? geometry::norm_uvw(first)
+                                                : 1.0;
+    return length * length / (velocity * velocity);
+}
+
+std::size_t Run::feed_at(double s) const noexcept {
+    const auto at = std::lower_bound(feeds->begin(), feeds->end(), s,
+                                     [](const FeedLimit &f, double x) { return f.end_s < x; });
+    return std::min(static_cast<std::size_t>(at - feeds->begin()), feeds->size() - 1);
+}
+
+double RoughProfile::ramp_at(const Run &run, double s) noexcept {
+    const Node node = node_at(run, span_at(*run.spans, s), s, 1e-9);
+    const double t = std::min(node.acceleration / node.jerk, std::sqrt(node.v / node.jerk));
+    return node.jerk * t * t * t / 6;
+}
+
+RoughProfile::Node RoughProfile::node_at(const Run &run, std::size_t span, double s, double cell_s) noexcept {
+    const CurvePoint p = curve::point_at((*run.spans)[span], s);
+    Node node{s, 1e300, 1e300, 1e300, 0};
+    double direction = 0, bend = 0;
+    for (std::size_t i = 0; i < geometry::AXIS_COUNT; ++i) {
+        const Bounds &b = run.limits.axes[i];
+        const double q1 = std::max(std::abs(p.first.c[i]), 1e-30);
+        node.v = std::min({node.v, b.velocity / q1,
+                           std::sqrt(b.acceleration / std::max(std::abs(p.second.c[i]), 1e-30)),
+                           std::cbrt(b.jerk / std::max(std::abs(p.third.c[i]), 1e-30))});
+        node.acceleration = std::min(node.acceleration, b.acceleration / q1);
+        node.jerk = std::min(node.jerk, b.jerk / q1);
+        direction += p.first.c[i] * p.first.c[i];
+        bend += p.second.c[i] * p.second.c[i];
+    }
+    const Bounds &b = run.limits.xyz;
+    const double n1 = std::max(geometry::norm_xyz(p.first), 1e-30);
+    node.v = std::min({node.v, b.velocity / n1,
+                       std::sqrt(b.acceleration / std::max(geometry::norm_xyz(p.second), 1e-30)),
+                       std::cbrt(b.jerk / std::max(geometry::norm_xyz(p.third), 1e-30))});
+    node.acceleration = std::min(node.acceleration, b.acceleration / n1);
+    node.jerk = std::min(node.jerk, b.jerk / n1);
+    node.v = std::min(node.v, 1 / std::sqrt(std::max((*run.feeds)[run.feed_at(s)].share(p.first), 1e-30)));
+    node.v = std::min(node.v,
+                      TURN_PER_CELL / cell_s * std::sqrt(std::max(direction, 1e-4) / std::max(bend, 1e-30)));
+    return node;
+}
+
+const std::vector<double> &RoughProfile::lay(const Run &run, const Stretch &stretch) {
+    knots_.clear();
+    lay_nodes(run, stretch);
+    if (nodes_.size() > 1) {
+        lay_knots(stretch);
+    }
+    return knots_;
+}
+
+/// Nodes as far as the speed without what comes behind takes a good deal more than the horizon; then braking.
+void RoughProfile::lay_nodes(const Run &run, const Stretch &stretch) {
+    constexpr double FARTHER = 1.5;
+    nodes_.clear();
+    reaches_end_ = false;
+    const auto &spans = *run.spans;
+    std::size_t k = span_at(spans, stretch.from_s);
+    nodes_.push_back(node_at(run, k, stretch.from_s, stretch.cell_s));
+    if (stretch.from_rest) {
+        nodes_.back().v = 0;
+    }
+    double t = 0;
+    for (; k < spans.size() && t < FARTHER * stretch.horizon_s; ++k) {
+        for (int n = 1; n <= NODES_PER_SPAN; ++n) {
+            const double s = spans[k].start_s + spans[k].length * n / NODES_PER_SPAN;
+            const Node last = nodes_.back();
+            if (s <= last.s + 1e-12) {
+                continue;
+            }
+            Node node = node_at(run, k, s, stretch.cell_s);
+            node.v = std::min(node.v, faster(last.v, s - last.s, node.acceleration, node.jerk));
+            t += 2 * (s - last.s) / (last.v + node.v);
+            nodes_.push_back(node);
+        }
+    }
+    reaches_end_ = k == spans.size();
+    if (reaches_end_ && stretch.to_rest) {
+        nodes_.back().v = 0;
+    }
+    for (std::size_t i = nodes_.size() - 1; i-- > 0;) {
+        Node &n = nodes_[i];
+        const Node &next = nodes_[i + 1];
+        n.v = std::min(n.v, faster(next.v, next.s - n.s, n.acceleration, n.jerk));
+    }
+}
+
+void RoughProfile::lay_knots(const Stretch &stretch) {
+    for (std::size_t i = 1; i < nodes_.size(); ++i) {
+        const Node &a = nodes_[i - 1];
+        Node &b = nodes_[i];
+        b.t = a.t + (std::min(a.v, b.v) == 0 ? 3.0 : 2.0) * (b.s - a.s) / (a.v + b.v);
+    }
+    const double whole = nodes_.back().t;
+    const bool is_all = reaches_end_ && whole <= stretch.horizon_s + stretch.cell_s;
+    const double time = is_all ? whole : std::min(whole, stretch.horizon_s);
+    const auto cells = static_cast<std::size_t>(std::max(1.0, std::ceil(time / stretch.cell_s)));
+    const double h = time / static_cast<double>(cells);
+    std::size_t node = 1;
+    for (std::size_t k = 1; k <= cells; ++k) {
+        const double t = h * static_cast<double>(k);
+        while (node + 1 < nodes_.size() && nodes_[node].t < t) {
+            ++node;
+        }
+        const Node &a = nodes_[node - 1];
+        const Node &b = nodes_[node];
+        const double x = std::clamp((t - a.t) / (b.t - a.t), 0.0, 1.0);
+        const double y = 1 - x;
+        knots_.push_back(a.v == 0   ? a.s + (b.s - a.s) * x * x * x
+                         : b.v == 0 ? b.s - (b.s - a.s) * y * y * y
+                                    : a.s + x * (b.t - a.t) * (a.v + 0.5 * (b.v - a.v) * x));
+    }
+    if (is_all) {
+        knots_.back() = nodes_.back().s;
+    }
+}
+
+namespace {
+
+/// Change of the scale per length: what a control spline changes by.
+constexpr double GROWTH = 0.25;
+
+Bounds least_of(const CurveLimits &limits) noexcept {
+    Bounds least = limits.xyz;
+    for (const Bounds &b : limits.axes) {
+        least.velocity = std::min(least.velocity, b.velocity);
+        least.acceleration = std::min(least.acceleration, b.acceleration);
+        least.jerk = std::min(least.jerk, b.jerk);
+    }
+    return least;
+}
+
+/// Lengths over which the path, its map and its speed limits change, at the middle of each cell.
+class Scales {
+  public:
+    Scales(const Run &run, const Bounds &least) : run_(run), least_(least) {}
+
+    const std::vector<double> &find(const RestMap &map, const std::vector<double> &knots, double end_ramp) {
+        const auto &spans = *run_.spans;
+        const std::size_t cells = knots.size() - 1;
+        scale_.resize(cells);
+        std::size_t span = span_at(spans, map.at(knots[0]).s);
+        std::size_t feed = run_.feed_at(map.at(knots[0]).s);
+        double s = 0;
+        for (std::size_t k = 0; k < cells; ++k) {
+            const double middle = 0.5 * (knots[k] + knots[k + 1]);
+            s = map.at(middle).s;
+            while (span + 1 < spans.size() && s >= spans[span].end_s()) {
+                ++span;
+            }
+            // All moves in the cell: a short one may lie between the places where limits are checked.
+            double v = std::min(least_.velocity, (*run_.feeds)[feed].velocity);
+            while (feed + 1 < run_.feeds->size() && map.at(knots[k + 1]).s >= (*run_.feeds)[feed].end_s) {
+                v = std::min(v, (*run_.feeds)[++feed].velocity);
+            }
+            const double before_stop =
+                RestMap::scale_of(end_ramp) + GROWTH * std::max(0.0, spans.back().end_s() - end_ramp - s);
+            scale_[k] = std::min({spans[span].length, map.scale_at(middle), before_stop, scale_of_speed(v)});
+        }
+        look_ahead(s, span, feed);
+        spread(knots);
+        return scale_;
+    }
+
+  private:
+    /// A speed limit counts as the scale at which jerk leads to it.
+    double scale_of_speed(double v) const noexcept { return std::sqrt(v * v * v / least_.jerk); }
+
+    /// What comes behind the last cell, as far as it can be in its reach.
+    void look_ahead(double s, std::size_t span, std::size_t feed) {
+        double &last = scale_.back();
+        const auto &spans = *run_.spans;
+        for (std::size_t j = span + 1; j < spans.size() && GROWTH * (spans[j].start_s - s) < last; ++j) {
+            last = std::min(last, spans[j].length + GROWTH * std::max(0.0, spans[j].start_s - s));
+        }
+        for (std::size_t j = feed + 1;
+             j < run_.feeds->size() && GROWTH * ((*run_.feeds)[j - 1].end_s - s) < last; ++j) {
+            last = std::min(last, scale_of_speed((*run_.feeds)[j].velocity) +
+                                      GROWTH * std::max(0.0, (*run_.feeds)[j - 1].end_s - s));
+        }
+    }
+
+    void spread(const std::vector<double> &knots) {
+        const auto apart = [&](std::size_t k) { return GROWTH * 0.5 * (knots[k + 1] - knots[k - 1]); };
+        for (std::size_t k = 1; k < scale_.size(); ++k) {
+            scale_[k] = std::min(scale_[k], scale_[k - 1] + apart(k));
+        }
+        for (std::size_t k = scale_.size() - 1; k > 0; --k) {
+            scale_[k - 1] = std::min(scale_[k - 1], scale_[k] + apart(k));
+        }
+    }
+
+    const Run &run_;
+    const Bounds &least_;
+    std::vector<double> scale_;
+};
+
+}  // namespace
+
+void creep(const Run &run, const RestMap &map, const std::vector<double> &knots, double end_ramp,
+           std::vector<double> &c) {
+    // Times the speed at which the path alone takes all of the jerk or of the acceleration.
+    constexpr double SHARE = 0.15;
+    const Bounds least = least_of(run.limits);
+    Scales scales(run, least);
+    const std::vector<double> &scale = scales.find(map, knots, end_ramp);
+    // Coefficient k belongs to the middle of cell k - 1.
+    const std::size_t cells = scale.size();
+    for (std::size_t k = c.size(); k < cells + 2; ++k) {
+        const double d = scale[std::clamp<std::size_t>(k, 1, cells) - 1];
+        c.push_back(
+            square(SHARE * std::min(std::cbrt(least.jerk * d * d), std::sqrt(least.acceleration * d))));
+    }
+}
+
+std::size_t span_at(const std::vector<Span> &spans, double s) noexcept {
+    const auto behind = std::upper_bound(spans.begin(), spans.end(), s,
+                                         [](double x, const Span &span) { return x < span.start_s; });
+    return static_cast<std::size_t>(std::max<long>(0, behind - spans.begin() - 1));
+}
+
+namespace {
+
+/// A point of the curve, its derivatives by the parameter.
+struct ParameterPoint {
+    std::array<std::array<double, geometry::AXIS_COUNT>, 3> q{};
+};
+
+ParameterPoint by_parameter(const CurvePoint &p, const MapPoint &m) noexcept {
+    ParameterPoint out;
+    for (std::size_t i = 0; i < geometry::AXIS_COUNT; ++i) {
+        out.q[0][i] = p.first.c[i] * m.first;
+        out.q[1][i] = p.second.c[i] * m.first * m.first + p.first.c[i] * m.second;
+        out.q[2][i] = p.third.c[i] * m.first * m.first * m.first + 3 * p.second.c[i] * m.first * m.second +
+                      p.first.c[i] * m.third;
+    }
+    return out;
+}
+
+NormRow norm_row(const ParameterPoint &point, const Bounds &l) noexcept {
+    const auto dot = [&](std::size_t i, std::size_t j) {
+        const auto &x = point.q[i], &y = point.q[j];
+        return x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
+    };
+    const double a = 1 / (l.acceleration * l.acceleration), j = 1 / (l.jerk * l.jerk);
+    return {a * dot(0, 0), a * dot(0, 1),     a * dot(1, 1),     j * dot(0, 0), 3 * j * dot(0, 1),
+            j * dot(0, 2), 9 * j * dot(1, 1), 3 * j * dot(1, 2), j * dot(2, 2)};
+}
+
+/// Coordinates that move on the spans, as bits.
+unsigned moving_coordinates(const std::vector<Span> &spans) noexcept {
+    unsigned moving = 0;
+    for (const Span &span : spans) {
+        for (std::size_t i = 0; i < geometry::AXIS_COUNT; ++i) {
+            moving |= span.c[1].c[i] != 0 || span.c[2].c[i] != 0 || span.c[3].c[i] != 0 ? 1U << i : 0U;
+        }
+    }
+    return moving;
+}
+
+}  // namespace
+
+void make_rows(const Run &run, const RestMap &map, const double *knots, std::size_t cells, Rows &rows) {
+    const auto &spans = *run.spans;
+    const unsigned moving = moving_coordinates(spans);
+    const Bounds &xyz = run.limits.xyz;
+    rows.begin(static_cast<std::size_t>(std::popcount(moving)),
+               xyz.acceleration < UNLIMITED_BOUND || xyz.jerk < UNLIMITED_BOUND);
+    std::size_t span = span_at(spans, map.at(knots[0]).s);
+    std::size_t feed = run.feed_at(map.at(knots[0]).s);
+    for (std::size_t k = 0; k < cells; ++k) {
+        const double h = knots[k + 1] - knots[k];
+        rows.add_cell(h);
+        for (std::size_t p = 0; p < PLACES; ++p) {
+            const MapPoint m = map.at(knots[k] + h * PLACE_PART[p]);
+            while (span + 1 < spans.size() && m.s >= spans[span].end_s()) {
+                ++span;
+            }
+            while (feed + 1 < run.feeds->size() && m.s > (*run.feeds)[feed].end_s) {
+                ++feed;
+            }
+            const CurvePoint c = curve::point_at(spans[span], m.s);
+            const ParameterPoint point = by_parameter(c, m);
+            double v2 = (*run.feeds)[feed].share(c.first) * m.first * m.first;
+            v2 = std::max(v2, square(geometry::norm_xyz(c.first) * m.first / xyz.velocity));
+            std::size_t n = 0;
+            for (std::size_t i = 0; i < geometry::AXIS_COUNT; ++i) {
+                if ((moving >> i & 1U) == 0) {
+                    continue;
+                }
+                const Bounds &l = run.limits.axes[i];
+                const double q1 = point.q[0][i], q2 = point.q[1][i], q3 = point.q[2][i];
+                v2 = std::max(v2, square(q1 / l.velocity));
+                rows.set(
+                    p, n++,
+                    {q1 / l.acceleration, q2 / l.acceleration, q1 / l.jerk, 3 * q2 / l.jerk, q3 / l.jerk});
+            }
+            if (rows.hasNorm()) {
+                rows.set_norm(p, norm_row(point, xyz));
+            }
+            rows.set_velocity(p, v2);
+        }
+    }
+}
+
+}  // namespace mw::trajectory::profile

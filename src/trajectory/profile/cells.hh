@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Cells of the timing problem along a curve, about equal in time, and their rows.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "trajectory/curve/spline.hh"
+#include "trajectory/path/primitive.hh"
+#include "trajectory/profile/rest_map.hh"
+#include "trajectory/profile/rows.hh"
+
+namespace mw::trajectory::profile {
+
+using curve::CurvePoint;
+using curve::Span;
+using geometry::Pose;
+
+/// Limits of one coordinate.
+struct Bounds {
+    double velocity = 1e300, acceleration = 1e300, jerk = 1e300;
+};
+struct CurveLimits {
+    std::array<Bounds, geometry::AXIS_COUNT> axes;
+    Bounds xyz;  ///< of the norm over X Y Z
+};
+
+/// Highest speed of a move, up to `end_s` of the programmed path.
+struct FeedLimit {
+    enum class Along : std::uint8_t {
+        XYZ,
+        UVW,
+        LENGTH
+    };  ///< what the speed counts along; the last: length of the programmed path
+    double end_s = 0;
+    double velocity = 1e300;
+    Along along = Along::XYZ;
+    /// Square of the derivative of that length by s, over the squared velocity.
+    double share(const Pose &first) const noexcept;
+};
+
+/// A curve from stop to stop.
+struct Run {
+    const std::vector<Span> *spans = nullptr;
+    const std::vector<FeedLimit> *feeds = nullptr;  ///< in order, up to the end of the spans at least
+    CurveLimits limits;
+    /// Index of the limit at s.
+    std::size_t feed_at(double s) const noexcept;
+};
+
+/// A rough profile of the speed, with which cells are laid.
+class RoughProfile {
+  public:
+    /// Where a profile begins and how far it reaches.
+    struct Stretch {
+        double from_s = 0;
+        bool from_rest = false, to_rest = false;  ///< the latter at the end of the spans
+        double horizon_s = 0;                     ///< time of what is laid
+        double cell_s = 0;                        ///< time of a cell
+    };
+    /// Ends of cells of about equal time along the curve, after the start.
+    const std::vector<double> &lay(const Run &run, const Stretch &stretch);
+    /// Length of a start or stop at s with constant jerk, up to the full acceleration or half of the speed
+    /// limit.
+    static double ramp_at(const Run &run, double s) noexcept;
+
+  private:
+    struct Node {
+        double s = 0, v = 0, acceleration = 0, jerk = 0, t = 0;
+    };
+    static Node node_at(const Run &run, std::size_t span, double s, double cell_s) noexcept;
+    void lay_nodes(const Run &run, const Stretch &stretch);
+    void lay_knots(const Stretch &stretch);
+    std::vector<Node> nodes_;
+    std::vector<double> knots_;
+    bool reaches_end_ = false;
+};
+
+/// The span at s.
+std::size_t span_at(const std::vector<Span> &spans, double s) noexcept;
+void make_rows(const Run &run, const RestMap &map, const double *knots, std::size_t cells, Rows &rows);
+/// Adds the coefficients of cells that have none: slow enough to keep every row by far. `end_ramp`: length
+/// before the end of the spans over which the map may come to be blended into a stop.
+void creep(const Run &run, const RestMap &map, const std::vector<double> &knots, double end_ramp,
+           std::vector<double> &c);
+
+}  // namespace mw::trajectory::profile

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The timing of a curve from stop to stop, planned in windows while the curve still grows.
+//
+// A window begins with the state at the end of what was passed on and ends in a creep. The last plan,
+// followed by a creep over what is new, keeps every limit: each plan starts from it, so a plan that is late
+// or stopped early can be driven.
+#pragma once
+
+#include <vector>
+
+#include "trajectory/profile/cells.hh"
+#include "trajectory/profile/time_law.hh"
+
+namespace mw::trajectory::profile {
+
+/// s(t) of a cell: a polynomial of degree five from its start, t in [0, duration].
+struct TimeCell {
+    double duration = 0;
+    std::array<double, 6> c{};
+    double s_at(double t) const noexcept {
+        return c[0] + t * (c[1] + t * (c[2] + t * (c[3] + t * (c[4] + t * c[5]))));
+    }
+};
+
+struct ProfileSettings {
+    double cell_s =
+        2e-3;  ///< length of a cell in time; with high jerk limits a part of the time of a full acceleration
+    double window_s = 0.5;  ///< planned at once
+};
+
+class Profile {
+  public:
+    explicit Profile(const ProfileSettings &settings) : settings_(settings) {}
+
+    /// A curve begins, at rest at s = 0.
+    void begin() noexcept;
+    /// Plans the next window of the curve; `complete`: its spans end in the stop.
+    void plan(const Run &run, bool complete);
+    /// Passes on the plan's next cells, of `seconds` at least, all of a window that reaches the stop if
+    /// `seconds` do.
+    void commit(double seconds, std::vector<TimeCell> &out);
+    bool isDone() const noexcept { return is_done_; }
+    /// Largest row over its limit of the plan that the last one started from.
+    double worst_start() const noexcept { return worst_start_; }
+    int steps() const noexcept { return steps_; }
+    /// Cells that are planned and not passed on.
+    std::size_t cells() const noexcept { return knots_.empty() ? 0 : knots_.size() - 1; }
+
+  private:
+    void take_limits(const Run &run);
+    void lay_cells(bool complete);
+    double planned_s() const noexcept;
+
+    ProfileSettings settings_;
+    double cell_s_ = 0;
+    RestMap map_;
+    RoughProfile rough_;
+    Run run_;  ///< with the limits that the rows are made of
+    Rows rows_;
+    TimeLaw law_;
+    std::vector<double> knots_, c_;  ///< of the cells that have not been passed on
+    double before_ = 0;              ///< length of the cell before them; 0: there is none
+    double end_s_ = 0,
+           end_ramp_ =
+               0;  ///< end of the curve as it is known, and the length over which a stop there is blended
+    bool has_end_ = false;  ///< the last cell ends in the stop
+    bool is_done_ = false;
+    double worst_start_ = 0;
+    int steps_ = 0;
+};
+
+}  // namespace mw::trajectory::profile

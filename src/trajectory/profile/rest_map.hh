@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The parameter of a path between two stops: its length, but near a stop the length is cubic in the
+// parameter. A start with constant jerk then has a constant speed of the parameter, so a stop is a regular
+// point of the timing problem.
+#pragma once
+
+namespace mw::trajectory::profile {
+
+struct MapPoint {
+    double s = 0, first = 0, second = 0, third = 0;  ///< length and its derivatives by the parameter
+};
+
+class RestMap {
+  public:
+    /// `ramp`: length of the path over which the two are blended behind the stop at its start; 0: no stop
+    /// there.
+    void set_start(double ramp) noexcept;
+    /// The path ends with a stop at `length`, the ramp before it.
+    void set_end(double length, double ramp) noexcept;
+    /// Parameter of the end.
+    double end() const noexcept { return end_; }
+    MapPoint at(double p) const noexcept;
+    /// Length over which the map changes at p; in a blend of such a length.
+    static double scale_of(double ramp) noexcept;
+    double scale_at(double p) const noexcept;
+    /// The parameter at a length.
+    double parameter_at(double s) const noexcept;
+
+  private:
+    double length_ = 1e300, start_ = 0, stop_ = 0, end_ = 1e300;
+};
+
+}  // namespace mw::trajectory::profile

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "trajectory/profile/rows.hh"
+
+namespace mw::trajectory::profile {
+
+void Rows::begin(std::size_t coordinates, bool has_norm) {
+    has_norm_ = has_norm;
+    norms_.clear();
+    coordinates_ = coordinates;
+    cells_ = 0;
+    lengths_.clear();
+    velocity_.clear();
+    rows_.clear();
+}
+
+void Rows::add_cell(double h) {
+    if (cells_ % LANES == 0) {
+        velocity_.resize(velocity_.size() + PLACES, VelocityLanes{});
+        norms_.resize(norms_.size() + (has_norm_ ? PLACES : 0), NormLanes{});
+        rows_.resize(rows_.size() + PLACES * coordinates_, RowLanes{});
+    }
+    lengths_.push_back(h);
+    ++cells_;
+}
+
+void Rows::set_velocity(std::size_t place, double v2) noexcept {
+    const std::size_t cell = cells_ - 1;
+    velocity_[cell / LANES * PLACES + place].v2[cell % LANES] = v2;
+}
+
+double Rows::velocity(std::size_t cell, std::size_t place) const noexcept {
+    return velocity_[cell / LANES * PLACES + place].v2[cell % LANES];
+}
+
+// The solver's unknowns in a cell are b, h a and h^2 w: the rows are scaled by 1, 1/h and 1/h^2.
+void Rows::set(std::size_t place, std::size_t coordinate, const Row &row) noexcept {
+    const std::size_t cell = cells_ - 1;
+    const std::size_t lane = cell % LANES;
+    const double per_h = 1 / lengths_[cell];
+    RowLanes &r = rows_[(cell / LANES * PLACES + place) * coordinates_ + coordinate];
+    r.a1[lane] = row.a1 * per_h;
+    r.a2[lane] = row.a2;
+    r.j1[lane] = row.j1 * per_h * per_h;
+    r.j2[lane] = row.j2 * per_h;
+    r.j3[lane] = row.j3;
+}
+
+void Rows::set_norm(std::size_t place, const NormRow &row) noexcept {
+    const std::size_t cell = cells_ - 1;
+    const std::size_t i = cell % LANES;
+    const double p1 = 1 / lengths_[cell], p2 = p1 * p1;
+    NormLanes &n = norms_[cell / LANES * PLACES + place];
+    n.aa[i] = row.aa * p2;
+    n.ab[i] = row.ab * p1;
+    n.bb[i] = row.bb;
+    n.jww[i] = row.jww * p2 * p2;
+    n.jwa[i] = row.jwa * p2 * p1;
+    n.jwb[i] = row.jwb * p2;
+    n.jaa[i] = row.jaa * p2;
+    n.jab[i] = row.jab * p1;
+    n.jbb[i] = row.jbb;
+}
+
+NormRow Rows::get_norm(std::size_t cell, std::size_t place) const noexcept {
+    const std::size_t i = cell % LANES;
+    const double h = lengths_[cell], h2 = h * h;
+    const NormLanes &n = norms_[cell / LANES * PLACES + place];
+    return {n.aa[i] * h2,  n.ab[i] * h,  n.bb[i], n.jww[i] * h2 * h2, n.jwa[i] * h2 * h, n.jwb[i] * h2,
+            n.jaa[i] * h2, n.jab[i] * h, n.jbb[i]};
+}
+
+Row Rows::get(std::size_t cell, std::size_t place, std::size_t coordinate) const noexcept {
+    const std::size_t lane = cell % LANES;
+    const double h = lengths_[cell];
+    const RowLanes &r = rows_[(cell / LANES * PLACES + place) * coordinates_ + coordinate];
+    return {r.a1[lane] * h, r.a2[lane], r.j1[lane] * h * h, r.j2[lane] * h, r.j3[lane]};
+}
+
+}  // namespace mw::trajectory::profile

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The shortest time along a path within velocity, acceleration and jerk of every coordinate: an
+// interior-point method.
+//
+// p is the parameter of the path, b(p) = (dp/dt)^2 the unknown: a quadratic spline. With a = b'/2 and w =
+// b''/2 every limit is a row in (b, a, w):
+//   q'^2 b <= V^2,  |q' a + q'' b| <= A,  |q' w + 3 q'' a + q''' b| <= J/sqrt(b).
+// 1/sqrt(b) is convex, so its tangent is a safe bound: each step of Newton's method keeps every row, and the
+// result of each step can be driven.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "trajectory/profile/rows.hh"
+
+namespace mw::trajectory::profile {
+
+/// b, a = b'/2 and w = b''/2 at a place.
+struct LawState {
+    double b = 0, a = 0, w = 0;
+};
+
+struct SolveSettings {
+    double cell_s = 1e-3;  ///< time that counts as 1 in the objective
+    double first_mu = 1, last_mu = 1e-3, factor = 0.2;
+    int steps_per_mu = 8;
+};
+
+class TimeLaw {
+  public:
+    /// Rows of the problem; they stay valid.
+    /// `before`, `behind`: lengths of the cells beside them.
+    void begin(const Rows &rows, double before, double behind);
+    std::size_t cells() const noexcept { return rows_->cells(); }
+    /// One more and one less than the cells have ends.
+    std::vector<double> &coefficients() noexcept { return c_; }
+    /// From the present coefficients, which keep every row. The first `fixed_start` and the last `fixed_end`
+    /// of them stay. Returns the steps of Newton's method.
+    int solve(std::size_t fixed_start, std::size_t fixed_end, const SolveSettings &settings);
+
+    /// At the part x in [0, 1] of a cell.
+    LawState state(std::size_t cell, double x) const noexcept;
+    /// Time of a cell [s].
+    double time_of(std::size_t cell) const noexcept;
+    double time() const noexcept;
+    /// The largest row over its limit; above 1 one is not kept.
+    double worst() const noexcept;
+
+  private:
+    double worst_at(std::size_t cell, std::size_t place) const noexcept;
+    double newton(double mu, std::size_t first, std::size_t last);
+    void assemble(double mu);
+    void factorise(std::size_t first, std::size_t last);
+    double longest_step() const;
+
+    const Rows *rows_ = nullptr;
+    std::vector<double> c_, step_, gradient_;
+    std::vector<double> h_, alpha_;  ///< padded: lengths of the cells; 1/(h of a cell + h of the one before)
+    std::array<std::vector<double>, 3> diagonal_;  ///< of the Hessian: on the diagonal, one and two beside it
+    double decrement_ = 0;
+};
+
+}  // namespace mw::trajectory::profile

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Profiles from stop to stop: limits at every servo sample, shortest times, plans that start from what can be
+// driven.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/campaign_seeds.hh"
+#include "trajectory/curve/curve_builder.hh"
+#include "trajectory/profile/profile.hh"
+#include "trajectory/test/campaign.hh"
+
+namespace mw::trajectory::profile {
+namespace {
+
+constexpr double T = 1e-3;
+
+CurveLimits limits_of(const Limits &limits) {
+    CurveLimits out;
+    for (std::size_t i = 0; i < geometry::AXIS_COUNT; ++i) {
+        out.axes[i] = {limits.velocity[i], limits.acceleration[i], limits.jerk[i]};
+    }
+    out.xyz = {limits.velocity[XYZ_NORM], limits.acceleration[XYZ_NORM], limits.jerk[XYZ_NORM]};
+    return out;
+}
+
+struct Driven {
+    std::vector<Pose> samples;
+    double time_s = 0, worst_start = 0, worst_deviation = 0;
+    bool is_done = false;
+};
+
+/// The whole program on one curve, the curve streamed, planned in windows.
+Driven drive(const std::vector<Primitive> &moves, const std::vector<double> &velocity,
+             const CurveLimits &limits, double tolerance) {
+    curve::CurveBuilder builder(3.0);
+    std::vector<FeedLimit> feeds;
+    double end = 0;
+    for (std::size_t i = 0; i < moves.size(); ++i) {
+        builder.add(moves[i], tolerance);
+        end += moves[i].length;
+        feeds.push_back({end, velocity[i], FeedLimit::Along::LENGTH});
+        if (builder.programmed_length() - builder.final_s() > 30) {
+            builder.extend(false);
+        }
+    }
+    builder.extend(true);
+    Profile profile({2e-3, 0.5});
+    profile.begin();
+    std::vector<TimeCell> cells;
+    Driven out;
+    const Run run{&builder.spans(), &feeds, limits};
+    for (int n = 0; n < 4000 && !profile.isDone(); ++n) {
+        profile.plan(run, true);
+        profile.commit(0.05, cells);
+    }
+    out.is_done = profile.isDone();
+    out.worst_start = profile.worst_start();
+    out.worst_deviation = builder.worst_deviation();
+    out.samples.push_back(moves.front().start);
+    std::size_t span = 0;
+    for (const TimeCell &cell : cells) {
+        for (double t = T * static_cast<double>(out.samples.size()) - out.time_s; t <= cell.duration;
+             t = T * static_cast<double>(out.samples.size()) - out.time_s) {
+            const double s = cell.s_at(t);
+            while (span + 1 < builder.spans().size() && s >= builder.spans()[span].end_s()) {
+                ++span;
+            }
+            out.samples.push_back(curve::position_at(builder.spans()[span], s));
+        }
+        out.time_s += cell.duration;
+    }
+    out.samples.insert(out.samples.end(), 3, moves.back().end);
+    return out;
+}
+
+CurveLimits even_limits(double velocity, double acceleration, double jerk) {
+    CurveLimits limits;
+    limits.axes.fill({velocity, acceleration, jerk});
+    return limits;
+}
+
+Pose xyz(double x, double y) {
+    Pose p;
+    p[0] = x;
+    p[1] = y;
+    return p;
+}
+
+TEST(RestMap, HasTheDerivativesThatItTells) {
+    RestMap map;
+    map.set_start(0.5);
+    map.set_end(10, 0.2);
+    constexpr double D = 1e-5;
+    for (double p = 0.01; p < map.end() - 0.01; p += 0.037) {
+        const MapPoint m = map.at(p);
+        EXPECT_NEAR(m.first, (map.at(p + D).s - map.at(p - D).s) / (2 * D), 1e-7);
+        EXPECT_NEAR(m.second, (map.at(p + D).first - map.at(p - D).first) / (2 * D), 1e-6);
+        EXPECT_NEAR(map.parameter_at(m.s), p, 1e-9);
+    }
+    EXPECT_EQ(map.at(0).s, 0);
+    EXPECT_EQ(map.at(map.end()).s, 10);
+    EXPECT_EQ(map.at(0).second, 0);
+}
+
+TEST(Profile, TakesTheTimeOfTheClosedFormOnAStraightLine) {
+    struct Case {
+        double length, velocity, acceleration, jerk;
+    };
+    for (const Case &c : {Case{50, 100, 1000, 50000}, Case{50, 100, 1000, 5000}, Case{1, 100, 1000, 10000},
+                          Case{0.01, 200, 1000, 20000}}) {
+        const Driven out = drive({make_line(Pose{}, xyz(c.length, 0))}, {1e300},
+                                 even_limits(c.velocity, c.acceleration, c.jerk), 0.01);
+        ASSERT_TRUE(out.is_done);
+        // Seven phases: with the top speed v the move takes length/v and one ramp.
+        const auto ramp = [&](double v) {
+            return v >= c.acceleration * c.acceleration / c.jerk
+                       ? v / c.acceleration + c.acceleration / c.jerk
+                       : 2 * std::sqrt(v / c.jerk);
+        };
+        double low = 0, high = c.velocity;
+        for (int i = 0; i < 60; ++i) {
+            const double v = 0.5 * (low + high);
+            (v * ramp(v) < c.length ? low : high) = v;
+        }
+        const double best = c.length / low + ramp(low);
+        EXPECT_GE(out.time_s, best);
+        EXPECT_LT(out.time_s, 1.01 * best + 1e-3) << c.length << ' ' << c.jerk;
+    }
+}
+
+TEST(Profile, PassesACornerFasterThanTheFullStopsOfItsLines) {
+    const std::vector<Primitive> moves{make_line(Pose{}, xyz(10, 0)), make_line(xyz(10, 0), xyz(10, 10))};
+    const Driven out = drive(moves, {100, 100}, even_limits(200, 1000, 10000), 0.05);
+    ASSERT_TRUE(out.is_done);
+    // Study of the corner: 0.635 s with a stop, 0.597 s at best.
+    EXPECT_LT(out.time_s, 0.606);
+    EXPECT_LE(out.worst_deviation, 1);
+}
+
+/// Largest velocity, acceleration and jerk of the XYZ norm over their limits, by differences of the samples.
+double worst_norm(const std::vector<Pose> &samples, const Limits &limits) {
+    double worst = 0;
+    for (std::size_t i = 3; i < samples.size(); ++i) {
+        const Pose d1 = samples[i] - samples[i - 1], d2 = samples[i - 1] - samples[i - 2],
+                   d3 = samples[i - 2] - samples[i - 3];
+        worst = std::max({worst, geometry::norm_xyz(d1) / (T * limits.velocity[XYZ_NORM]),
+                          geometry::norm_xyz(d1 - d2) / (T * T * limits.acceleration[XYZ_NORM]),
+                          geometry::norm_xyz(d1 - d2 * 2 + d3) / (T * T * T * limits.jerk[XYZ_NORM])});
+    }
+    return worst;
+}
+
+TEST(Profile, RandomProgramsKeepLimitsAndTolerance) {
+    const auto [first, count] = testing::campaign_seeds(12);
+    int driven = 0;
+    for (int i = 0; i < count; ++i) {
+        const auto seed = static_cast<unsigned>(first + i);
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        test::Maker maker(seed, true);
+        const test::Program program =
+            seed % 2 == 0 ? maker.make_curve() : maker.make_long(seed % 4 == 1, 3.0);
+        if (program.primitives.empty()) {
+            continue;
+        }
+        std::vector<double> velocity;
+        for (std::size_t k = 0; k < program.primitives.size(); ++k) {
+            const Primitive &p = program.primitives[k];
+            const MoveRequest &r = program.requests[k];
+            velocity.push_back(r.isRapid || !(r.tag.requested_velocity > 0)
+                                   ? 1e300
+                                   : r.tag.requested_velocity * p.length / feed_length(p).length);
+        }
+        const double tolerance = program.tolerance > 0 ? program.tolerance : 1e-3;
+        const Driven out = drive(program.primitives, velocity, limits_of(program.limits), tolerance);
+        ASSERT_TRUE(out.is_done);
+        EXPECT_LE(out.worst_start, 1 + 1e-3) << "a plan began from one that leaves a limit";
+        EXPECT_LE(out.worst_deviation, 1);
+        auto checker = test::make_checker(program.limits, T);
+        for (const Pose &sample : out.samples) {
+            checker.sample(sample.c.data());
+        }
+        EXPECT_TRUE(checker.isWithin()) << checker.report();
+        EXPECT_LE(worst_norm(out.samples, program.limits), 1 + 1e-4);
+        EXPECT_TRUE(test::isWithinProgram(out.samples, program, tolerance));
+        ++driven;
+    }
+    EXPECT_GE(2 * driven, count);
+}
+
+}  // namespace
+}  // namespace mw::trajectory::profile
