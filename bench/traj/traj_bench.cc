@@ -11,11 +11,16 @@
 #include "traj/bound.hh"
 #include "traj/jerk_bound.hh"
 #include "traj/kinds.hh"
+#include "trajectory/curve/curve_builder.hh"
 #include "trajectory/follow/executor.hh"
 #include "trajectory/planner.hh"
+#include "trajectory/profile/profile.hh"
 
 namespace mw::bench {
 namespace {
+
+namespace curve = trajectory::curve;
+namespace profile = trajectory::profile;
 
 constexpr double T = 1e-3;
 
@@ -24,6 +29,7 @@ struct Options {
     bool isFast = false;
     bool isRate = false;
     bool isBound = false;
+    bool third_order = false;
     std::string trace, only;
     double jerk_share = 1;  ///< of the jerk limits of all kinds
 
@@ -32,6 +38,8 @@ struct Options {
                                   "Drives each kind of program with the planner in virtual time.\n");
         line.flag("--jerk", "with jerk limits", isJerkLimited);
         line.flag("--fast", "leave the deviation out", isFast);
+        line.flag("--third-order",
+                  "with the third-order profile instead of the planner (kinds with G64 only)", third_order);
         line.flag("--bound", "the bound beside each", isBound);
         line.flag("--rate", "planning alone, merging off, on 0.01 mm blocks in nine coordinates", isRate);
         line.text("--trace", "FOLDER", "write the samples of each kind there", trace);
@@ -116,6 +124,64 @@ Run drive(const Program &program, bool isJerkLimited, bool isMerging) {
     return run;
 }
 
+profile::Run run_of(const Program &program, const std::vector<curve::Span> &spans,
+                    const std::vector<profile::FeedLimit> &feeds) {
+    profile::Run run{&spans, &feeds, {}};
+    for (int i = 0; i < geometry::AXIS_COUNT; ++i) {
+        run.limits.axes[static_cast<std::size_t>(i)] = {program.max_velocity[i], program.max_acceleration[i],
+                                                        program.max_jerk[i]};
+    }
+    return run;
+}
+
+/// The whole program on one curve, planned in windows of 0.5 s every 50 ms; the time of both counts.
+Run drive_third_order(const Program &program) {
+    constexpr double WIDEST = 3.0, OPEN = 30.0, COMMIT_S = 0.05;
+    Run out;
+    const auto begin = std::chrono::steady_clock::now();
+    curve::CurveBuilder builder(WIDEST);
+    std::vector<profile::FeedLimit> feeds;
+    Pose from = program.start;
+    double length = 0;
+    for (const Move &m : program.moves) {
+        const trajectory::Primitive p = primitive_of(from, m);
+        builder.add(p, program.tolerance);
+        length += p.length;
+        feeds.push_back({length, m.feed > 0 ? m.feed : 1e300});
+        from = m.end;
+        if (builder.programmed_length() - builder.final_s() > OPEN) {
+            builder.extend(false);
+        }
+    }
+    builder.extend(true);
+    profile::Profile profile({});
+    profile.begin();
+    std::vector<profile::TimeCell> cells;
+    const profile::Run run = run_of(program, builder.spans(), feeds);
+    for (int n = 0; n < 100000 && !profile.isDone(); ++n) {
+        profile.plan(run, true);
+        profile.commit(COMMIT_S, cells);
+    }
+    out.planning_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    out.isFinished = profile.isDone();
+    out.samples.push_back(program.start);
+    std::size_t span = 0;
+    double cell_start = 0;
+    for (const profile::TimeCell &cell : cells) {
+        for (double t = T * static_cast<double>(out.samples.size()) - cell_start; t <= cell.duration;
+             t += T) {
+            const double s = cell.s_at(t);
+            while (span + 1 < builder.spans().size() && s >= builder.spans()[span].end_s()) {
+                ++span;
+            }
+            out.samples.push_back(curve::position_at(builder.spans()[span], s));
+        }
+        cell_start += cell.duration;
+    }
+    out.samples.insert(out.samples.end(), 3, program.moves.back().end);
+    return out;
+}
+
 /// Seconds from the first to the last sample that moves.
 double cycle_time(const std::vector<Pose> &samples) {
     std::size_t first = 0;
@@ -180,7 +246,8 @@ void print_bound(const Options &options, const Program &program, double time_s) 
 }
 
 bool measure(const Options &options, const Program &program) {
-    const Run run = drive(program, options.isJerkLimited, !options.isRate);
+    const Run run = options.third_order ? drive_third_order(program)
+                                        : drive(program, options.isJerkLimited, !options.isRate);
     testing::LimitChecker checker(axis_limits(program, options.isJerkLimited), T);
     for (const Pose &p : run.samples) {
         checker.sample(p.c.data());
@@ -220,6 +287,7 @@ int main(int argc, char **argv) {
         return 2;
     }
     options.isFast = options.isFast || options.isRate;
+    options.isJerkLimited = options.isJerkLimited || options.third_order;
     std::printf("%-18s %6s %10s  %17s  %12s  %9s\n", "kind", "blocks", "time", "worst v a j", "deviation",
                 "blocks/s");
     bool isOk = true;
@@ -228,7 +296,8 @@ int main(int argc, char **argv) {
     }
     for (mw::bench::Program program : mw::bench::all_kinds()) {
         program.max_jerk = program.max_jerk * options.jerk_share;
-        if (program.name.find(options.only) != std::string::npos) {
+        const bool is_blend = program.moves[0].control == mw::geometry::PathMode::BLEND;
+        if (program.name.find(options.only) != std::string::npos && (is_blend || !options.third_order)) {
             isOk = mw::bench::measure(options, program) && isOk;
         }
     }
