@@ -14,7 +14,7 @@ struct EmcIoGeneric {
 };
 template <>
 inline constexpr auto DECLARED<EmcIoGeneric> =
-    declare("EmcIoGeneric", 1605, "EMC_IO_GENERIC_TYPE", "sets a generic output",
+    declare("EmcIoGeneric", 1605, "sets a generic output",
             field<&EmcIoGeneric::index>("index", "number of the output", unit::NONE, range(0, 15)),
             field<&EmcIoGeneric::value>("value", "of the output"));
 

@@ -60,7 +60,8 @@ int main(int count, char **words) {
         return fail_with(config.error().str());
     }
     nml::Vocabulary vocabulary = nml::Vocabulary::standard();
-    if (const auto added = vocabulary.add<messages::EmcIoGeneric>(nml::Base::COMMAND); !added.has_value()) {
+    if (const auto added = vocabulary.add<messages::EmcIoGeneric>(nml::Base::COMMAND, "EMC_IO_GENERIC_TYPE");
+        !added.has_value()) {
         return fail_with(added.error().str());
     }
     nml::LocalPlaces local;

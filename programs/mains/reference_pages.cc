@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "base/atomic_file.hh"
-#include "clients/nml/message/sender.hh"
+#include "clients/nml/message/wire_table.hh"
 #include "machine/config/ini_keys.hh"
 #include "machine/task/run/admission.hh"
 #include "messages/declarations/reference.hh"

@@ -34,10 +34,10 @@ def fill(machine, found):
     return clients
 
 
-def answered_s(screen, message):
+def answered_s(screen, message, **fields):
     """How long the answer DONE to a command takes."""
     begin = time.monotonic()
-    outcome = screen.do(message)
+    outcome = screen.do(message, **fields)
     return time.monotonic() - begin if outcome == 'DONE' else float('inf')
 
 
@@ -50,8 +50,8 @@ def stops(machine, found, server, when):
     found.expect(took < ABORT_S, f'{when}: Abort of a new screen is answered in {took:.3f} s', screen.outcomes)
     screen = Screen(server.port)
     screen.until(lambda: bool(screen.status), 5)
-    took = answered_s(screen, 'EstopOn')
-    found.expect(took < ABORT_S, f'{when}: EstopOn of a new screen is answered in {took:.3f} s', screen.outcomes)
+    took = answered_s(screen, 'SetState', state='ESTOP')
+    found.expect(took < ABORT_S, f'{when}: Emergency stop of a new screen is answered in {took:.3f} s', screen.outcomes)
     found.expect(machine.until(lambda: machine.stat.task_state == machine.linuxcnc.STATE_ESTOP, 2), f'{when}: the machine is in emergency stop')
 
 

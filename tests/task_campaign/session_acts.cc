@@ -148,11 +148,7 @@ void Session::try_odd(int client, std::uint64_t seed, bool isAtRest) {
         {messages::ForwardProgram{}, Expected::REFUSED},
         {messages::ConfirmApproach{77}, Expected::REFUSED},
         {messages::ReleaseAxes{}, Expected::REFUSED},
-        {messages::StepTraj{}, taken_if(false)},
-        {messages::LinearMove{}, Expected::REFUSED},
-        {messages::EndProgram{}, Expected::REFUSED},
-        {messages::SystemCommand{"true"}, Expected::REFUSED},
-        {messages::InitTask{}, Expected::REFUSED},
+        {messages::StepProgram{}, taken_if(false)},
         {messages::SetJointBacklash{}, taken_if(isOn && mode_ == Mode::MANUAL)},
         {messages::SetJointMinLimit{0, 1e9}, Expected::REFUSED},
         {messages::Null{}, Expected::TAKEN},
@@ -175,11 +171,11 @@ void Session::try_odd(int client, std::uint64_t seed, bool isAtRest) {
         // What would end or change the run is a trouble of its own.
         const bool isOther = std::holds_alternative<messages::AbortAll>(all[choice].command) ||
                              std::holds_alternative<messages::Mdi>(all[choice].command) ||
-                             std::holds_alternative<messages::StepTraj>(all[choice].command);
+                             std::holds_alternative<messages::StepProgram>(all[choice].command);
         post(client, isOther ? messages::Command{messages::Null{}} : all[choice].command);
         return;
     }
-    if (std::holds_alternative<messages::StepTraj>(all[choice].command)) {
+    if (std::holds_alternative<messages::StepProgram>(all[choice].command)) {
         choice = 0;  // where nothing runs it begins a program
     }
     const Odd &odd = all[choice];

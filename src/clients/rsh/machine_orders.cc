@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/text.hh"
+#include "clients/nml/message/wire_table.hh"
 
 namespace mw::rsh {
 namespace {
@@ -78,7 +79,7 @@ Result<Waiting> ask(const Ordered &o, const messages::Command &command, Until un
 }
 
 void tell_wrong_mode(const Ordered &o, const messages::Declaration &what) {
-    std::string name = what.nml;
+    std::string name(nml::wire_name(what));
     name.resize(name.size() - std::string_view("_TYPE").size());
     o.errors.push_back(
         fmt::format("can't do that ({}:{}) in {}", name, what.number, phrase(o.status().task.mode)));

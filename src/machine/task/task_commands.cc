@@ -245,7 +245,7 @@ Outcome Task::Handler::operator()(const SynchInterpreter &) {
     return saved.has_value() ? Outcome(Progress::DONE) : std::unexpected(saved.error());
 }
 
-Outcome Task::Handler::abort_all() {
+Outcome Task::Handler::operator()(const AbortAll &) {
     task.desk_.refuse(task.inbox_.drop_before(id), OVERTAKEN);
     Meanwhile{task}.stop_work("aborted", AbortReason::ABORT, false);
     return Meanwhile{task}.settle(id);

@@ -133,33 +133,15 @@ struct Task::Handler {
         return tell(MessageKind::OPERATOR_DISPLAY, command.text);
     }
 
-    // Other names of the same.
-    template <OneOf<EnableTraj, DisableTraj> C>
-    Outcome operator()(const C &) {
-        return (*this)(SetState{std::is_same_v<C, EnableTraj> ? State::ON : State::OFF});
-    }
-    Outcome operator()(const EstopOn &) { return (*this)(SetState{State::ESTOP}); }
-    template <OneOf<EstopOff, EstopReset> C>
-    Outcome operator()(const C &) {
-        return (*this)(SetState{State::ESTOP_RESET});
-    }
-    Outcome operator()(const PauseTraj &) { return (*this)(PauseProgram{}); }
-    Outcome operator()(const StepTraj &) { return (*this)(StepProgram{}); }
-    Outcome operator()(const ResumeTraj &) { return (*this)(ResumeProgram{}); }
-    Outcome operator()(const AbortJoint &command) { return (*this)(JogStop{true, command.joint}); }
-    template <command_lists::AnyAbort C>
-    Outcome operator()(const C &) {
-        return abort_all();
-    }
+    Outcome operator()(const AbortAll &);
 
-    /// Never taken: the table has said so.
-    template <command_lists::Never C>
+    /// The mailbox executes these; the table of admission rejects them here.
+    template <command_lists::OfTheMailbox C>
     Outcome operator()(const C &) {
         return fail(refusal_of(class_of<C>(), Situation::MANUAL));
     }
 
   private:
-    Outcome abort_all();
     Outcome send(const motion::CommandBody &body) {
         task.motion_.send(body);
         return Progress::DONE;

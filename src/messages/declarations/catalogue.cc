@@ -49,10 +49,6 @@ constexpr auto all_declarations(TypeList<Status...>) {
 }
 constexpr auto STATUSES = all_declarations(StatusList{});
 
-bool isCalled(const Declaration &declaration, std::string_view name) {
-    return name == declaration.name || (*declaration.nml != '\0' && name == declaration.nml);
-}
-
 template <class Wanted>
 const Alternative *find_alternative(const Wanted &isWanted) {
     const auto found = std::find_if(ALTERNATIVES.begin(), ALTERNATIVES.end(),
@@ -110,7 +106,7 @@ const Declaration *find_declaration(int number) {
 }
 
 const Declaration *find_declaration(std::string_view name) {
-    return find([name](const Declaration &d) { return isCalled(d, name); });
+    return find([name](const Declaration &d) { return name == d.name; });
 }
 
 Result<Command> make_command(int number) {
@@ -123,7 +119,7 @@ Result<Command> make_command(int number) {
 }
 
 Result<Command> make_command(std::string_view name) {
-    const Alternative *found = find_alternative([name](const Declaration &d) { return isCalled(d, name); });
+    const Alternative *found = find_alternative([name](const Declaration &d) { return name == d.name; });
     if (found == nullptr) {
         return fail(fmt::format("there is no command '{}'", name));
     }

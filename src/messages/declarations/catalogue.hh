@@ -17,7 +17,7 @@ std::span<const Declaration *const> command_declarations();
 /// The status of a machine, its parts, the tool table.
 std::span<const Declaration *const> status_declarations();
 
-/// Of a command or a status; null when there is none. Names also by their legacy name.
+/// Of a command or a status; null when there is none.
 const Declaration *find_declaration(int number);
 const Declaration *find_declaration(std::string_view name);
 

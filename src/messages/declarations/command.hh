@@ -18,25 +18,17 @@ namespace mw::messages {
 
 using CommandVariant = std::variant<
     SetState, SetMode, OpenProgram, RunProgram, ConfirmApproach, ReleaseAxes, RecoverProgram, ForgetRecovery,
-    ReadProgram, Mdi, PauseProgram, StepProgram, ResumeProgram, EndProgram, CloseProgram, ResetInterpreter,
-    SynchInterpreter, SetOptionalStop, SetBlockDelete, StopOptionally, ReverseProgram, ForwardProgram,
-    InitTask, HaltTask, AbortAll, InitMachine, HaltMachine, AbortMachine, Null, SetDebug, SystemCommand,
-    CallTaskPlugin, OperatorError, OperatorText, OperatorDisplay, ClaimOperation, HandOverOperation,
-    ReleaseOperation, HomeJoint, UnhomeJoint, JogContinuous, JogIncrement, JogAbsolute, JogStop,
-    OverrideLimits, SetJointKind, SetJointUnits, SetJointMinLimit, SetJointMaxLimit, SetJointFerror,
-    SetJointMinFerror, SetJointMaxVelocity, SetJointBacklash, SetJointHoming, InitJoint, HaltJoint,
-    AbortJoint, EnableJoint, DisableJoint, ActivateJoint, DeactivateJoint, LoadCompensation, SetFeedOverride,
+    Mdi, PauseProgram, StepProgram, ResumeProgram, CloseProgram, ResetInterpreter, SynchInterpreter,
+    SetOptionalStop, SetBlockDelete, StopOptionally, ReverseProgram, ForwardProgram, AbortAll, Null, SetDebug,
+    OperatorError, OperatorText, OperatorDisplay, ClaimOperation, HandOverOperation, ReleaseOperation,
+    HomeJoint, UnhomeJoint, JogContinuous, JogIncrement, JogAbsolute, JogStop, OverrideLimits,
+    SetJointMinLimit, SetJointMaxLimit, SetJointFerror, SetJointMinFerror, SetJointBacklash, SetJointHoming,
+    EnableJoint, DisableJoint, ActivateJoint, DeactivateJoint, LoadCompensation, SetFeedOverride,
     SetRapidOverride, SetSpindleOverride, EnableFeedOverride, EnableSpindleOverride, EnableFeedHold,
-    EnableAdaptiveFeed, SetMaxVelocity, SetTeleop, SetMotionMode, SetTeleopVector, SetTrajAxes, SetTrajUnits,
-    SetTrajCycleTime, SetTrajVelocity, SetTrajAcceleration, SetMaxAcceleration, SetMotionId, InitTraj,
-    HaltTraj, EnableTraj, DisableTraj, AbortTraj, PauseTraj, StepTraj, ResumeTraj, Delay, LinearMove,
-    CircularMove, SetTermination, SetToolOffset, SetG5x, SetTrajHome, SetRotation, SetG92, ClearProbe,
-    ProbeMove, SetSpindleSync, RigidTapMove, InitMotion, HaltMotion, AbortMotion, SetAnalogOutput,
-    SetDigitalOutput, SpindleOn, SpindleOff, SpindleIncrease, SpindleDecrease, SpindleConstant, ReleaseBrake,
-    EngageBrake, SetSpindleSpeed, OrientSpindle, WaitOriented, MistOn, MistOff, FloodOn, FloodOff, LubeOn,
-    LubeOff, EstopOn, EstopOff, EstopReset, WaitInput, InitTool, HaltTool, AbortTool, PrepareTool, LoadTool,
-    UnloadTool, LoadToolTable, SetToolEntry, AddTool, RemoveTool, SetToolNumber, StartToolChange,
-    ConfirmToolChange, InitIo, HaltIo, AbortIo, SetIoCycleTime, CallIoPlugin>;
+    EnableAdaptiveFeed, SetMaxVelocity, SetTeleop, SetMotionMode, SetTeleopVector, ClearProbe, SetSpindleSync,
+    RigidTapMove, SetAnalogOutput, SetDigitalOutput, SpindleOn, SpindleOff, SpindleIncrease, SpindleDecrease,
+    SpindleConstant, ReleaseBrake, EngageBrake, MistOn, MistOff, FloodOn, FloodOff, LubeOn, LubeOff,
+    LoadToolTable, SetToolEntry, AddTool, RemoveTool, ConfirmToolChange>;
 
 /// Where a message stands in the variant.
 template <class Message, class Variant>

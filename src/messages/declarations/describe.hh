@@ -97,8 +97,7 @@ struct Field {
 
 struct Declaration {
     const char *name;
-    int number;       ///< the legacy NML number where there is one, else above 3000; 0: a part only
-    const char *nml;  ///< legacy name, or empty
+    int number;  ///< 0: a part of others only
     const char *doc;
     std::span<const Field> fields;
 };
@@ -107,7 +106,6 @@ template <std::size_t N>
 struct Declared {
     const char *name;
     int number;
-    const char *nml;
     const char *doc;
     std::array<Field, N> fields;
 };
@@ -116,15 +114,15 @@ template <class T>
 inline constexpr std::nullptr_t DECLARED = nullptr;
 
 template <class T>
-inline constexpr Declaration DECLARATION{DECLARED<T>.name, DECLARED<T>.number, DECLARED<T>.nml,
-                                         DECLARED<T>.doc, std::span<const Field>(DECLARED<T>.fields)};
+inline constexpr Declaration DECLARATION{DECLARED<T>.name, DECLARED<T>.number, DECLARED<T>.doc,
+                                         std::span<const Field>(DECLARED<T>.fields)};
 
-/// First number of messages that the NML vocabulary does not have.
+/// Messages that LinuxCNC has keep its numbers; those of Millwright alone begin here.
 inline constexpr int FIRST_OWN_NUMBER = 3001;
 
 template <class... F>
-constexpr auto declare(const char *name, int number, const char *nml, const char *doc, F... fields) {
-    return Declared<sizeof...(F)>{name, number, nml, doc, std::array<Field, sizeof...(F)>{fields...}};
+constexpr auto declare(const char *name, int number, const char *doc, F... fields) {
+    return Declared<sizeof...(F)>{name, number, doc, std::array<Field, sizeof...(F)>{fields...}};
 }
 
 namespace detail {

@@ -35,7 +35,7 @@ struct JointStatus {
 };
 template <>
 inline constexpr auto DECLARED<JointStatus> =
-    declare("JointStatus", 198, "EMC_JOINT_STAT_TYPE", "a joint",
+    declare("JointStatus", 198, "a joint",
             field<&JointStatus::isPresent>(
                 "is_present", "false: the machine has no such joint, nothing else here means anything"),
             field<&JointStatus::pos_cmd>("pos_cmd", "commanded position", unit::JOINT),
@@ -74,7 +74,7 @@ struct AxisStatus {
 };
 template <>
 inline constexpr auto DECLARED<AxisStatus> =
-    declare("AxisStatus", 199, "EMC_AXIS_STAT_TYPE", "an axis",
+    declare("AxisStatus", 199, "an axis",
             field<&AxisStatus::isPresent>(
                 "is_present", "false: the machine has no such axis, nothing else here means anything"),
             field<&AxisStatus::velocity>("velocity", "of a jog", unit::JOINT_SPEED),
@@ -97,7 +97,7 @@ struct SpindleStatus {
 };
 template <>
 inline constexpr auto DECLARED<SpindleStatus> = declare(
-    "SpindleStatus", 1399, "EMC_SPINDLE_STAT_TYPE", "a spindle",
+    "SpindleStatus", 1399, "a spindle",
     field<&SpindleStatus::isPresent>(
         "is_present", "false: the machine has no such spindle, nothing else here means anything"),
     field<&SpindleStatus::speed_cmd_rpm>("speed_cmd_rpm", "commanded speed, negative: counterclockwise",

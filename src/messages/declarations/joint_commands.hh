@@ -14,7 +14,7 @@ struct HomeJoint {
 };
 template <>
 inline constexpr auto DECLARED<HomeJoint> = declare(
-    "HomeJoint", 123, "EMC_JOINT_HOME_TYPE", "homes; done when homed",
+    "HomeJoint", 123, "homes; done when homed",
     field<&HomeJoint::joint>("joint", "-1: all, in their sequence", unit::NONE, range(-1, MAX_JOINTS - 1)));
 
 struct UnhomeJoint {
@@ -22,7 +22,7 @@ struct UnhomeJoint {
 };
 template <>
 inline constexpr auto DECLARED<UnhomeJoint> =
-    declare("UnhomeJoint", 135, "EMC_JOINT_UNHOME_TYPE", "forgets that joints are homed",
+    declare("UnhomeJoint", 135, "forgets that joints are homed",
             field<&UnhomeJoint::joint>("joint", "-1: all; -2: those of VOLATILE_HOME", unit::NONE,
                                        range(-2, MAX_JOINTS - 1)));
 
@@ -37,7 +37,7 @@ struct JogContinuous {
 };
 template <>
 inline constexpr auto DECLARED<JogContinuous> = declare(
-    "JogContinuous", 124, "EMC_JOG_CONT_TYPE",
+    "JogContinuous", 124,
     "moves until it is stopped, or until its lease ends; the same command again renews the lease",
     field<&JogContinuous::isJoint>("is_joint", "true: a joint, in free mode; false: an axis, in teleop mode"),
     field<&JogContinuous::index>("index", "number of the joint, or of the axis: 0 X ... 8 W", unit::NONE,
@@ -58,7 +58,7 @@ struct JogIncrement {
 };
 template <>
 inline constexpr auto DECLARED<JogIncrement> = declare(
-    "JogIncrement", 125, "EMC_JOG_INCR_TYPE", "moves by a distance",
+    "JogIncrement", 125, "moves by a distance",
     field<&JogIncrement::isJoint>("is_joint", "true: a joint, in free mode; false: an axis, in teleop mode"),
     field<&JogIncrement::index>("index", "number of the joint, or of the axis: 0 X ... 8 W", unit::NONE,
                                 JOINTS),
@@ -73,7 +73,7 @@ struct JogAbsolute {
 };
 template <>
 inline constexpr auto DECLARED<JogAbsolute> = declare(
-    "JogAbsolute", 126, "EMC_JOG_ABS_TYPE", "moves to a position",
+    "JogAbsolute", 126, "moves to a position",
     field<&JogAbsolute::isJoint>("is_joint", "true: a joint, in free mode; false: an axis, in teleop mode"),
     field<&JogAbsolute::index>("index", "number of the joint, or of the axis: 0 X ... 8 W", unit::NONE,
                                JOINTS),
@@ -86,7 +86,7 @@ struct JogStop {
 };
 template <>
 inline constexpr auto DECLARED<JogStop> = declare(
-    "JogStop", 136, "EMC_JOG_STOP_TYPE", "ends a jog",
+    "JogStop", 136, "ends a jog",
     field<&JogStop::isJoint>("is_joint", "true: a joint, in free mode; false: an axis, in teleop mode"),
     field<&JogStop::index>("index", "number of the joint, or of the axis: 0 X ... 8 W", unit::NONE, JOINTS));
 
@@ -97,29 +97,8 @@ struct OverrideLimits {
 };
 template <>
 inline constexpr auto DECLARED<OverrideLimits> = declare(
-    "OverrideLimits", 129, "EMC_JOINT_OVERRIDE_LIMITS_TYPE",
-    "lets joints be jogged off their hard limits, until the next jog",
+    "OverrideLimits", 129, "lets joints be jogged off their hard limits, until the next jog",
     optional(field<&OverrideLimits::joint>("joint", "-1: all", unit::NONE, range(-1, MAX_JOINTS - 1))));
-
-struct SetJointKind {
-    int joint = 0;
-    JointKind kind = JointKind::LINEAR;
-};
-template <>
-inline constexpr auto DECLARED<SetJointKind> =
-    declare("SetJointKind", 101, "EMC_JOINT_SET_JOINT_TYPE", "says whether a joint is linear",
-            field<&SetJointKind::joint>("joint", "number of the joint", unit::NONE, JOINTS),
-            field<&SetJointKind::kind>("kind", "linear or angular"));
-
-struct SetJointUnits {
-    int joint = 0;
-    double units = 1;
-};
-template <>
-inline constexpr auto DECLARED<SetJointUnits> =
-    declare("SetJointUnits", 102, "EMC_JOINT_SET_UNITS_TYPE", "sets the units of a joint",
-            field<&SetJointUnits::joint>("joint", "number of the joint", unit::NONE, JOINTS),
-            field<&SetJointUnits::units>("units", "per millimetre or degree", unit::NONE, AT_LEAST_0));
 
 struct SetJointMinLimit {
     int joint = 0;
@@ -127,7 +106,7 @@ struct SetJointMinLimit {
 };
 template <>
 inline constexpr auto DECLARED<SetJointMinLimit> =
-    declare("SetJointMinLimit", 107, "EMC_JOINT_SET_MIN_POSITION_LIMIT_TYPE", "sets the lower soft limit",
+    declare("SetJointMinLimit", 107, "sets the lower soft limit",
             field<&SetJointMinLimit::joint>("joint", "number of the joint", unit::NONE, JOINTS),
             field<&SetJointMinLimit::limit>("limit", "lowest position", unit::JOINT));
 
@@ -137,7 +116,7 @@ struct SetJointMaxLimit {
 };
 template <>
 inline constexpr auto DECLARED<SetJointMaxLimit> =
-    declare("SetJointMaxLimit", 108, "EMC_JOINT_SET_MAX_POSITION_LIMIT_TYPE", "sets the upper soft limit",
+    declare("SetJointMaxLimit", 108, "sets the upper soft limit",
             field<&SetJointMaxLimit::joint>("joint", "number of the joint", unit::NONE, JOINTS),
             field<&SetJointMaxLimit::limit>("limit", "highest position", unit::JOINT));
 
@@ -147,8 +126,7 @@ struct SetJointFerror {
 };
 template <>
 inline constexpr auto DECLARED<SetJointFerror> =
-    declare("SetJointFerror", 111, "EMC_JOINT_SET_FERROR_TYPE",
-            "sets the following error allowed at full speed",
+    declare("SetJointFerror", 111, "sets the following error allowed at full speed",
             field<&SetJointFerror::joint>("joint", "number of the joint", unit::NONE, JOINTS),
             field<&SetJointFerror::ferror>("ferror", "allowed", unit::JOINT, AT_LEAST_0));
 
@@ -158,20 +136,9 @@ struct SetJointMinFerror {
 };
 template <>
 inline constexpr auto DECLARED<SetJointMinFerror> =
-    declare("SetJointMinFerror", 115, "EMC_JOINT_SET_MIN_FERROR_TYPE",
-            "sets the following error allowed at low speed",
+    declare("SetJointMinFerror", 115, "sets the following error allowed at low speed",
             field<&SetJointMinFerror::joint>("joint", "number of the joint", unit::NONE, JOINTS),
             field<&SetJointMinFerror::ferror>("ferror", "allowed", unit::JOINT, AT_LEAST_0));
-
-struct SetJointMaxVelocity {
-    int joint = 0;
-    double velocity = 0;
-};
-template <>
-inline constexpr auto DECLARED<SetJointMaxVelocity> =
-    declare("SetJointMaxVelocity", 116, "EMC_JOINT_SET_MAX_VELOCITY_TYPE", "sets the highest speed",
-            field<&SetJointMaxVelocity::joint>("joint", "number of the joint", unit::NONE, JOINTS),
-            field<&SetJointMaxVelocity::velocity>("velocity", "highest", unit::JOINT_SPEED, AT_LEAST_0));
 
 struct SetJointBacklash {
     int joint = 0;
@@ -179,7 +146,7 @@ struct SetJointBacklash {
 };
 template <>
 inline constexpr auto DECLARED<SetJointBacklash> =
-    declare("SetJointBacklash", 134, "EMC_JOINT_SET_BACKLASH_TYPE", "sets the backlash",
+    declare("SetJointBacklash", 134, "sets the backlash",
             field<&SetJointBacklash::joint>("joint", "number of the joint", unit::NONE, JOINTS),
             field<&SetJointBacklash::backlash>("backlash", "width", unit::JOINT));
 
@@ -201,7 +168,7 @@ struct SetJointHoming {
 };
 template <>
 inline constexpr auto DECLARED<SetJointHoming> = declare(
-    "SetJointHoming", 112, "EMC_JOINT_SET_HOMING_PARAMS_TYPE", "sets how a joint is homed",
+    "SetJointHoming", 112, "sets how a joint is homed",
     field<&SetJointHoming::joint>("joint", "number of the joint", unit::NONE, JOINTS),
     field<&SetJointHoming::home>("home", "where it stands after homing", unit::JOINT),
     field<&SetJointHoming::offset>("offset", "of the switch or index", unit::JOINT),
@@ -221,36 +188,12 @@ inline constexpr auto DECLARED<SetJointHoming> = declare(
     field<&SetJointHoming::absolute_encoder>("absolute_encoder", "0 none, 1 no move, 2 with a final move",
                                              unit::NONE, range(0, 2)));
 
-struct InitJoint {
-    int joint = 0;
-};
-template <>
-inline constexpr auto DECLARED<InitJoint> =
-    declare("InitJoint", 118, "EMC_JOINT_INIT_TYPE", "sets a joint up",
-            field<&InitJoint::joint>("joint", "number of the joint", unit::NONE, JOINTS));
-
-struct HaltJoint {
-    int joint = 0;
-};
-template <>
-inline constexpr auto DECLARED<HaltJoint> =
-    declare("HaltJoint", 119, "EMC_JOINT_HALT_TYPE", "ends a joint",
-            field<&HaltJoint::joint>("joint", "number of the joint", unit::NONE, JOINTS));
-
-struct AbortJoint {
-    int joint = 0;
-};
-template <>
-inline constexpr auto DECLARED<AbortJoint> =
-    declare("AbortJoint", 120, "EMC_JOINT_ABORT_TYPE", "stops a joint",
-            field<&AbortJoint::joint>("joint", "number of the joint", unit::NONE, JOINTS));
-
 struct EnableJoint {
     int joint = 0;
 };
 template <>
 inline constexpr auto DECLARED<EnableJoint> =
-    declare("EnableJoint", 121, "EMC_JOINT_ENABLE_TYPE", "enables the amplifier of a joint",
+    declare("EnableJoint", 121, "enables the amplifier of a joint",
             field<&EnableJoint::joint>("joint", "number of the joint", unit::NONE, JOINTS));
 
 struct DisableJoint {
@@ -258,7 +201,7 @@ struct DisableJoint {
 };
 template <>
 inline constexpr auto DECLARED<DisableJoint> =
-    declare("DisableJoint", 122, "EMC_JOINT_DISABLE_TYPE", "disables the amplifier of a joint",
+    declare("DisableJoint", 122, "disables the amplifier of a joint",
             field<&DisableJoint::joint>("joint", "number of the joint", unit::NONE, JOINTS));
 
 struct ActivateJoint {
@@ -266,7 +209,7 @@ struct ActivateJoint {
 };
 template <>
 inline constexpr auto DECLARED<ActivateJoint> =
-    declare("ActivateJoint", 127, "EMC_JOINT_ACTIVATE_TYPE", "lets a joint take part",
+    declare("ActivateJoint", 127, "lets a joint take part",
             field<&ActivateJoint::joint>("joint", "number of the joint", unit::NONE, JOINTS));
 
 struct DeactivateJoint {
@@ -274,7 +217,7 @@ struct DeactivateJoint {
 };
 template <>
 inline constexpr auto DECLARED<DeactivateJoint> =
-    declare("DeactivateJoint", 128, "EMC_JOINT_DEACTIVATE_TYPE", "leaves a joint out",
+    declare("DeactivateJoint", 128, "leaves a joint out",
             field<&DeactivateJoint::joint>("joint", "number of the joint", unit::NONE, JOINTS));
 
 struct LoadCompensation {
@@ -284,7 +227,7 @@ struct LoadCompensation {
 };
 template <>
 inline constexpr auto DECLARED<LoadCompensation> =
-    declare("LoadCompensation", 131, "EMC_JOINT_LOAD_COMP_TYPE", "loads a table of screw errors",
+    declare("LoadCompensation", 131, "loads a table of screw errors",
             field<&LoadCompensation::joint>("joint", "number of the joint", unit::NONE, JOINTS),
             field<&LoadCompensation::path>("path", "of the file", unit::NONE, range(1, 1023)),
             field<&LoadCompensation::kind>("kind", "0 nominal forward reverse, 1 nominal with trims",

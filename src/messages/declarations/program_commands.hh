@@ -16,8 +16,7 @@ struct SetState {
 };
 template <>
 inline constexpr auto DECLARED<SetState> =
-    declare("SetState", 505, "EMC_TASK_SET_STATE_TYPE",
-            "switches the machine on or off, sets or resets the emergency stop",
+    declare("SetState", 505, "switches the machine on or off, sets or resets the emergency stop",
             field<&SetState::state>("state", "wanted state; done when it is reached"));
 
 struct SetMode {
@@ -25,8 +24,7 @@ struct SetMode {
 };
 template <>
 inline constexpr auto DECLARED<SetMode> =
-    declare("SetMode", 504, "EMC_TASK_SET_MODE_TYPE",
-            "sets the mode of operation; done when motion has followed",
+    declare("SetMode", 504, "sets the mode of operation; done when motion has followed",
             field<&SetMode::mode>("mode", "refused while a program or line runs"));
 
 struct OpenProgram {
@@ -34,7 +32,7 @@ struct OpenProgram {
 };
 template <>
 inline constexpr auto DECLARED<OpenProgram> =
-    declare("OpenProgram", 506, "EMC_TASK_PLAN_OPEN_TYPE", "opens a program",
+    declare("OpenProgram", 506, "opens a program",
             field<&OpenProgram::path>("path", "of the file", unit::NONE, LINE));
 
 struct RunProgram {
@@ -42,7 +40,7 @@ struct RunProgram {
 };
 template <>
 inline constexpr auto DECLARED<RunProgram> =
-    declare("RunProgram", 507, "EMC_TASK_PLAN_RUN_TYPE", "runs the open program; done at its end",
+    declare("RunProgram", 507, "runs the open program; done at its end",
             optional(field<&RunProgram::from_line>(
                 "from_line",
                 "0 and 1: the start; above: what comes before is calculated, and the way there confirmed; "
@@ -55,165 +53,109 @@ struct ConfirmApproach {
 };
 template <>
 inline constexpr auto DECLARED<ConfirmApproach> =
-    declare("ConfirmApproach", 3005, "", "makes the moves that are proposed, then goes on with the program",
+    declare("ConfirmApproach", 3005, "makes the moves that are proposed, then goes on with the program",
             field<&ConfirmApproach::number>("number", "of the proposal, as ApproachStatus shows it"));
 
 /// Of a held program: it goes on later at the place that it has left.
 struct ReleaseAxes {};
 template <>
 inline constexpr auto DECLARED<ReleaseAxes> =
-    declare("ReleaseAxes", 3006, "", "lets the axes be jogged away from a program that is held");
+    declare("ReleaseAxes", 3006, "lets the axes be jogged away from a program that is held");
 
 struct RecoverProgram {};
 template <>
 inline constexpr auto DECLARED<RecoverProgram> =
-    declare("RecoverProgram", 3007, "",
+    declare("RecoverProgram", 3007,
             "goes on with the program that a power cut or a crash has ended, once the way is confirmed");
 
 struct ForgetRecovery {};
 template <>
 inline constexpr auto DECLARED<ForgetRecovery> =
-    declare("ForgetRecovery", 3008, "", "drops the offer to go on with a program that was cut short");
-
-struct ReadProgram {};
-template <>
-inline constexpr auto DECLARED<ReadProgram> =
-    declare("ReadProgram", 508, "EMC_TASK_PLAN_READ_TYPE", "reads the next line of the open program");
+    declare("ForgetRecovery", 3008, "drops the offer to go on with a program that was cut short");
 
 struct Mdi {
     std::string line;
 };
 template <>
 inline constexpr auto DECLARED<Mdi> =
-    declare("Mdi", 509, "EMC_TASK_PLAN_EXECUTE_TYPE", "executes one line; done at its end",
+    declare("Mdi", 509, "executes one line; done at its end",
             field<&Mdi::line>("line", "of G-code", unit::NONE, range(0, MAX_TEXT)));
 
 struct PauseProgram {};
 template <>
-inline constexpr auto DECLARED<PauseProgram> =
-    declare("PauseProgram", 510, "EMC_TASK_PLAN_PAUSE_TYPE", "holds what runs, on its path");
+inline constexpr auto DECLARED<PauseProgram> = declare("PauseProgram", 510, "holds what runs, on its path");
 
 /// Runs one block and pauses; starts the program when idle.
 struct StepProgram {};
 template <>
-inline constexpr auto DECLARED<StepProgram> = declare(
-    "StepProgram", 511, "EMC_TASK_PLAN_STEP_TYPE", "runs one block and holds; starts the program when idle");
+inline constexpr auto DECLARED<StepProgram> =
+    declare("StepProgram", 511, "runs one block and holds; starts the program when idle");
 
 struct ResumeProgram {};
 template <>
 inline constexpr auto DECLARED<ResumeProgram> =
-    declare("ResumeProgram", 512, "EMC_TASK_PLAN_RESUME_TYPE", "goes on after a hold or a program stop");
-
-struct EndProgram {};
-template <>
-inline constexpr auto DECLARED<EndProgram> =
-    declare("EndProgram", 513, "EMC_TASK_PLAN_END_TYPE", "ends the program as M2 does");
+    declare("ResumeProgram", 512, "goes on after a hold or a program stop");
 
 struct CloseProgram {};
 template <>
-inline constexpr auto DECLARED<CloseProgram> =
-    declare("CloseProgram", 514, "EMC_TASK_PLAN_CLOSE_TYPE", "closes the open program");
+inline constexpr auto DECLARED<CloseProgram> = declare("CloseProgram", 514, "closes the open program");
 
 struct ResetInterpreter {};
 template <>
 inline constexpr auto DECLARED<ResetInterpreter> =
-    declare("ResetInterpreter", 515, "EMC_TASK_PLAN_INIT_TYPE",
-            "ends what the interpreter has under way and closes the program");
+    declare("ResetInterpreter", 515, "ends what the interpreter has under way and closes the program");
 
 struct SynchInterpreter {};
 template <>
-inline constexpr auto DECLARED<SynchInterpreter> =
-    declare("SynchInterpreter", 516, "EMC_TASK_PLAN_SYNCH_TYPE",
-            "takes the machine's position as the program's; writes the parameter file");
+inline constexpr auto DECLARED<SynchInterpreter> = declare(
+    "SynchInterpreter", 516, "takes the machine's position as the program's; writes the parameter file");
 
 struct SetOptionalStop {
     bool isOn = true;
 };
 template <>
 inline constexpr auto DECLARED<SetOptionalStop> =
-    declare("SetOptionalStop", 517, "EMC_TASK_PLAN_SET_OPTIONAL_STOP_TYPE", "says whether M1 stops",
-            field<&SetOptionalStop::isOn>("on", "M1 stops"));
+    declare("SetOptionalStop", 517, "says whether M1 stops", field<&SetOptionalStop::isOn>("on", "M1 stops"));
 
 struct SetBlockDelete {
     bool isOn = true;
 };
 template <>
 inline constexpr auto DECLARED<SetBlockDelete> =
-    declare("SetBlockDelete", 518, "EMC_TASK_PLAN_SET_BLOCK_DELETE_TYPE",
-            "says whether lines that begin with / are left out",
+    declare("SetBlockDelete", 518, "says whether lines that begin with / are left out",
             field<&SetBlockDelete::isOn>("on", "such lines are left out"));
 
 struct StopOptionally {};
 template <>
 inline constexpr auto DECLARED<StopOptionally> =
-    declare("StopOptionally", 519, "EMC_TASK_PLAN_OPTIONAL_STOP_TYPE",
-            "holds as M1 does, where optional stops are on");
+    declare("StopOptionally", 519, "holds as M1 does, where optional stops are on");
 
 struct ReverseProgram {};
 template <>
 inline constexpr auto DECLARED<ReverseProgram> =
-    declare("ReverseProgram", 520, "EMC_TASK_PLAN_REVERSE_TYPE",
-            "goes back along the path, of a held program when it is resumed");
+    declare("ReverseProgram", 520, "goes back along the path, of a held program when it is resumed");
 
 struct ForwardProgram {};
 template <>
 inline constexpr auto DECLARED<ForwardProgram> =
-    declare("ForwardProgram", 521, "EMC_TASK_PLAN_FORWARD_TYPE", "goes forward along the path again");
-
-struct InitTask {};
-template <>
-inline constexpr auto DECLARED<InitTask> = declare("InitTask", 501, "EMC_TASK_INIT_TYPE", "sets task up");
-struct HaltTask {};
-template <>
-inline constexpr auto DECLARED<HaltTask> = declare("HaltTask", 502, "EMC_TASK_HALT_TYPE", "ends task");
+    declare("ForwardProgram", 521, "goes forward along the path again");
 
 /// The operator's abort: never subject to the right to operate.
 struct AbortAll {};
 template <>
 inline constexpr auto DECLARED<AbortAll> =
-    declare("AbortAll", 503, "EMC_TASK_ABORT_TYPE", "stops everything along its path within the limits");
-
-struct InitMachine {};
-template <>
-inline constexpr auto DECLARED<InitMachine> =
-    declare("InitMachine", 1901, "EMC_INIT_TYPE", "sets task, motion and I/O up");
-struct HaltMachine {};
-template <>
-inline constexpr auto DECLARED<HaltMachine> =
-    declare("HaltMachine", 1902, "EMC_HALT_TYPE", "ends task, motion and I/O");
-struct AbortMachine {};
-template <>
-inline constexpr auto DECLARED<AbortMachine> =
-    declare("AbortMachine", 1903, "EMC_ABORT_TYPE", "stops everything, as AbortAll");
+    declare("AbortAll", 503, "stops everything along its path within the limits");
 
 struct Null {};
 template <>
-inline constexpr auto DECLARED<Null> =
-    declare("Null", 21, "EMC_NULL_TYPE", "does nothing; shows that commands are taken");
+inline constexpr auto DECLARED<Null> = declare("Null", 21, "does nothing; shows that commands are taken");
 
 struct SetDebug {
     std::uint32_t mask = 0;
 };
 template <>
 inline constexpr auto DECLARED<SetDebug> =
-    declare("SetDebug", 22, "EMC_SET_DEBUG_TYPE", "sets what is logged, as [EMC]DEBUG",
-            field<&SetDebug::mask>("mask", "bits"));
-
-struct SystemCommand {
-    std::string line;
-};
-template <>
-inline constexpr auto DECLARED<SystemCommand> =
-    declare("SystemCommand", 30, "EMC_SYSTEM_CMD_TYPE", "runs a program beside task",
-            field<&SystemCommand::line>("line", "words of its command line", unit::NONE, LINE));
-
-struct CallTaskPlugin {
-    std::string call;
-};
-template <>
-inline constexpr auto DECLARED<CallTaskPlugin> =
-    declare("CallTaskPlugin", 1112, "EMC_EXEC_PLUGIN_CALL_TYPE", "calls a Python function of task",
-            field<&CallTaskPlugin::call>("call", "pickled name and arguments", unit::NONE, LINE));
+    declare("SetDebug", 22, "sets what is logged, as [EMC]DEBUG", field<&SetDebug::mask>("mask", "bits"));
 
 /// Texts for the operator: what task tells, and what a client may tell all others.
 struct OperatorError {
@@ -221,22 +163,21 @@ struct OperatorError {
 };
 template <>
 inline constexpr auto DECLARED<OperatorError> =
-    declare("OperatorError", 11, "EMC_OPERATOR_ERROR_TYPE", "an error for the operator",
+    declare("OperatorError", 11, "an error for the operator",
             field<&OperatorError::text>("text", "what, where, what to do", unit::NONE, LINE));
 struct OperatorText {
     std::string text;
 };
 template <>
 inline constexpr auto DECLARED<OperatorText> =
-    declare("OperatorText", 12, "EMC_OPERATOR_TEXT_TYPE", "a note for the operator",
+    declare("OperatorText", 12, "a note for the operator",
             field<&OperatorText::text>("text", "the note", unit::NONE, LINE));
 struct OperatorDisplay {
     std::string text;
 };
 template <>
 inline constexpr auto DECLARED<OperatorDisplay> =
-    declare("OperatorDisplay", 13, "EMC_OPERATOR_DISPLAY_TYPE",
-            "a message of the program, as (MSG) and (DEBUG)",
+    declare("OperatorDisplay", 13, "a message of the program, as (MSG) and (DEBUG)",
             field<&OperatorDisplay::text>("text", "the message", unit::NONE, LINE));
 
 // --- the right to operate, kept by the mailbox
@@ -247,7 +188,7 @@ struct ClaimOperation {
 };
 template <>
 inline constexpr auto DECLARED<ClaimOperation> =
-    declare("ClaimOperation", 3001, "", "asks for the right to operate alone, or renews it",
+    declare("ClaimOperation", 3001, "asks for the right to operate alone, or renews it",
             optional(field<&ClaimOperation::lease_s>("lease_s", "it ends by itself after so long",
                                                      unit::SECOND, range(0.1, 3600))));
 struct HandOverOperation {
@@ -255,11 +196,11 @@ struct HandOverOperation {
 };
 template <>
 inline constexpr auto DECLARED<HandOverOperation> =
-    declare("HandOverOperation", 3002, "", "gives the right to operate to another client",
+    declare("HandOverOperation", 3002, "gives the right to operate to another client",
             field<&HandOverOperation::client>("client", "number of a connected client"));
 struct ReleaseOperation {};
 template <>
 inline constexpr auto DECLARED<ReleaseOperation> =
-    declare("ReleaseOperation", 3003, "", "opens the machine to all clients again");
+    declare("ReleaseOperation", 3003, "opens the machine to all clients again");
 
 }  // namespace mw::messages

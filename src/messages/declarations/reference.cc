@@ -58,8 +58,7 @@ std::string range_text(const Field &field) {
 void append(const Declaration &declaration, std::string &page) {
     page += fmt::format("\n### {}\n", declaration.name);
     if (declaration.number != 0) {
-        page += fmt::format("{}{}: ", declaration.number,
-                            *declaration.nml == '\0' ? "" : fmt::format(", `{}`", declaration.nml));
+        page += fmt::format("{}: ", declaration.number);
     }
     page += fmt::format("{}.\n", declaration.doc);
     if (declaration.fields.empty()) {
@@ -80,7 +79,7 @@ std::string reference_page() {
         "# Messages\n"
         "\n"
         "Generated from the declarations in `src/messages/declarations`.\n"
-        "Numbers below 3000 are those of the NML vocabulary. JSON: "
+        "NML names: `nml_messages.md`. JSON: "
         "`{\"message\":\"JogStop\",\"is_joint\":true,"
         "\"index\":0}`;\n"
         "binary: `src/messages/declarations/binary.hh`. Which commands a machine carries out is said by "

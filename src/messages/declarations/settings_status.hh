@@ -16,7 +16,7 @@ struct JointSettings {
 };
 template <>
 inline constexpr auto DECLARED<JointSettings> = declare(
-    "JointSettings", 0, "", "what is set for a joint",
+    "JointSettings", 0, "what is set for a joint",
     field<&JointSettings::units>("units", "units of the joint in a millimetre or degree"),
     field<&JointSettings::backlash>("backlash", "play that is made up at each reversal", unit::JOINT),
     field<&JointSettings::max_ferror>("max_ferror", "following error allowed at full speed", unit::JOINT),
@@ -35,7 +35,7 @@ struct SettingsStatus {
 };
 template <>
 inline constexpr auto DECLARED<SettingsStatus> =
-    declare("SettingsStatus", 0, "", "what is set for the machine",
+    declare("SettingsStatus", 0, "what is set for the machine",
             field<&SettingsStatus::linear_units>("linear_units", "machine units in a millimetre"),
             field<&SettingsStatus::angular_units>("angular_units", "machine units in a degree"),
             field<&SettingsStatus::cycle_time_s>("cycle_time", "period of the planner", unit::SECOND),

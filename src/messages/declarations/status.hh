@@ -36,7 +36,7 @@ struct TrajectoryStatus {
 };
 template <>
 inline constexpr auto DECLARED<TrajectoryStatus> = declare(
-    "TrajectoryStatus", 299, "EMC_TRAJ_STAT_TYPE", "motion as a whole and the move that is executed",
+    "TrajectoryStatus", 299, "motion as a whole and the move that is executed",
     field<&TrajectoryStatus::axis_mask>("axis_mask", "bit 0 X ... bit 8 W"),
     field<&TrajectoryStatus::num_joints>("num_joints", "joints that the machine has"),
     field<&TrajectoryStatus::num_extra_joints>("num_extra_joints",
@@ -70,7 +70,7 @@ struct ProbeStatus {
 };
 template <>
 inline constexpr auto DECLARED<ProbeStatus> =
-    declare("ProbeStatus", 0, "", "the probe",
+    declare("ProbeStatus", 0, "the probe",
             field<&ProbeStatus::position>("position", "where it tripped last", unit::POSE),
             field<&ProbeStatus::isProbing>("is_probing", "a probe move is executed"),
             field<&ProbeStatus::isTripped>("tripped", "the last probe move has met something"),
@@ -86,7 +86,7 @@ struct OverridesStatus {
 };
 template <>
 inline constexpr auto DECLARED<OverridesStatus> = declare(
-    "OverridesStatus", 0, "", "overrides of feed and rapids",
+    "OverridesStatus", 0, "overrides of feed and rapids",
     field<&OverridesStatus::feed>("feed", "of feeds and jogs", unit::FACTOR),
     field<&OverridesStatus::rapid>("rapid", "of rapids", unit::FACTOR),
     field<&OverridesStatus::net>("net", "all together", unit::FACTOR),
@@ -104,7 +104,7 @@ struct MotionStatus {
 };
 template <>
 inline constexpr auto DECLARED<MotionStatus> =
-    declare("MotionStatus", 399, "EMC_MOTION_STAT_TYPE", "the motion controller and its inputs and outputs",
+    declare("MotionStatus", 399, "the motion controller and its inputs and outputs",
             field<&MotionStatus::cycle>("cycle", "servo cycles since it was loaded"),
             field<&MotionStatus::isTaskLost>("task_lost", "motion has seen task dead or hanging"),
             field<&MotionStatus::digital_in>("digital_in", "bit per pin"),
@@ -119,7 +119,7 @@ struct OperationStatus {
 };
 template <>
 inline constexpr auto DECLARED<OperationStatus> =
-    declare("OperationStatus", 3010, "", "who may operate the machine",
+    declare("OperationStatus", 3010, "who may operate the machine",
             field<&OperationStatus::holder>("holder", "client that operates alone, 0: open to all"),
             field<&OperationStatus::lease_left_s>("lease_left_s", "until its right runs out", unit::SECOND),
             field<&OperationStatus::handovers>("handovers", "changes of the holder"));
@@ -150,7 +150,7 @@ struct MachineStatus {
 };
 template <>
 inline constexpr auto DECLARED<MachineStatus> = declare(
-    "MachineStatus", 1999, "EMC_STAT_TYPE", "the whole machine",
+    "MachineStatus", 1999, "the whole machine",
     field<&MachineStatus::cycle>("cycle", "task cycles since the start"),
     field<&MachineStatus::time_ns>("time_ns", "clock of the cycle", unit::NANOSECOND),
     field<&MachineStatus::last_command>("last_command", "serial number of the command that task took last"),
@@ -184,7 +184,7 @@ struct ToolRecord {
 };
 template <>
 inline constexpr auto DECLARED<ToolRecord> =
-    declare("ToolRecord", 0, "", "an entry of the tool table",
+    declare("ToolRecord", 0, "an entry of the tool table",
             field<&ToolRecord::toolno>("toolno", "number of the tool, -1: an empty entry"),
             field<&ToolRecord::pocketno>("pocketno", "where it is kept"),
             field<&ToolRecord::offset>("offset", "of the tool", unit::POSE),
@@ -203,7 +203,7 @@ struct ToolTable {
 };
 template <>
 inline constexpr auto DECLARED<ToolTable> =
-    declare("ToolTable", 3011, "", "the tool table, with the version that ToolStatus names",
+    declare("ToolTable", 3011, "the tool table, with the version that ToolStatus names",
             field<&ToolTable::version>("version", "counts changes"),
             field<&ToolTable::tools>("tools", "[0] is the spindle", unit::NONE, range(0, MAX_TOOLS)));
 

@@ -15,7 +15,7 @@ struct Waiting {
 };
 template <>
 inline constexpr auto DECLARED<Waiting> =
-    declare("Waiting", 0, "", "what has to happen before the program goes on",
+    declare("Waiting", 0, "what has to happen before the program goes on",
             field<&Waiting::what>("what", "kind"),
             field<&Waiting::index>("index", "number of the pin, joint or spindle; -1: all or none"));
 
@@ -54,7 +54,7 @@ struct TaskStatus {
 };
 template <>
 inline constexpr auto DECLARED<TaskStatus> =
-    declare("TaskStatus", 599, "EMC_TASK_STAT_TYPE", "states, program and place in it",
+    declare("TaskStatus", 599, "states, program and place in it",
             field<&TaskStatus::state>("state", "of the machine"),
             field<&TaskStatus::mode>("mode", "of operation"),
             field<&TaskStatus::interp_state>("interp_state", "of the program"),
@@ -86,7 +86,7 @@ struct CodesStatus {
 };
 template <>
 inline constexpr auto DECLARED<CodesStatus> =
-    declare("CodesStatus", 0, "", "modal codes in force",
+    declare("CodesStatus", 0, "modal codes in force",
             field<&CodesStatus::g>("g", "[0] sequence number, then ten times the code, -1 none"),
             field<&CodesStatus::m>("m", "[0] sequence number, then codes, -1 none"),
             field<&CodesStatus::settings>("settings", "sequence number, feed, speed, G64 P, G64 Q"));
@@ -100,7 +100,7 @@ struct OffsetsStatus {
 };
 template <>
 inline constexpr auto DECLARED<OffsetsStatus> =
-    declare("OffsetsStatus", 0, "", "offsets in force",
+    declare("OffsetsStatus", 0, "offsets in force",
             field<&OffsetsStatus::g5x_index>("g5x_index", "1 G54 ... 9 G59.3"),
             field<&OffsetsStatus::g5x>("g5x", "work offset", unit::POSE),
             field<&OffsetsStatus::g92>("g92", "G92 offset", unit::POSE),
@@ -114,7 +114,7 @@ struct ApproachMove {
 };
 template <>
 inline constexpr auto DECLARED<ApproachMove> =
-    declare("ApproachMove", 0, "", "a move of an approach",
+    declare("ApproachMove", 0, "a move of an approach",
             field<&ApproachMove::end>("end", "where it ends, machine coordinates", unit::POSE),
             field<&ApproachMove::isRapid>("rapid", "a rapid; else at feed"));
 
@@ -140,8 +140,7 @@ struct ApproachStatus {
 };
 template <>
 inline constexpr auto DECLARED<ApproachStatus> =
-    declare("ApproachStatus", 0, "",
-            "how a program is to go on; ConfirmApproach with its number makes the moves",
+    declare("ApproachStatus", 0, "how a program is to go on; ConfirmApproach with its number makes the moves",
             field<&ApproachStatus::number>("number", "of the proposal, 0: none"),
             field<&ApproachStatus::to>("to", "where the moves lead"),
             field<&ApproachStatus::line>("line", "that is executed next"),
@@ -166,7 +165,7 @@ struct RecoveryStatus {
 };
 template <>
 inline constexpr auto DECLARED<RecoveryStatus> = declare(
-    "RecoveryStatus", 0, "", "the program that was cut short when the controller ended last",
+    "RecoveryStatus", 0, "the program that was cut short when the controller ended last",
     field<&RecoveryStatus::isOffered>("offered", "RecoverProgram goes on with it"),
     field<&RecoveryStatus::line>("line", "that it goes on with"),
     field<&RecoveryStatus::block>("block", "the same as a number, of the blocks since the start"),
@@ -185,7 +184,7 @@ struct ToolStatus {
 };
 template <>
 inline constexpr auto DECLARED<ToolStatus> = declare(
-    "ToolStatus", 1199, "EMC_TOOL_STAT_TYPE", "the tool changer",
+    "ToolStatus", 1199, "the tool changer",
     field<&ToolStatus::in_spindle>("in_spindle", "number of the tool, 0 none"),
     field<&ToolStatus::from_pocket>("from_pocket", "where it was taken from"),
     field<&ToolStatus::prepared_index>("prepared_index", "entry of the tool table prepared by T, -1 none"),
@@ -202,7 +201,7 @@ struct AuxStatus {
 };
 template <>
 inline constexpr auto DECLARED<AuxStatus> =
-    declare("AuxStatus", 1299, "EMC_AUX_STAT_TYPE", "the e-stop chain",
+    declare("AuxStatus", 1299, "the e-stop chain",
             field<&AuxStatus::isEstopRequested>("estop_requested", "our side of the chain is open"),
             field<&AuxStatus::isChainClosed>("chain_closed", "pin iocontrol.0.emc-enable-in"));
 
@@ -212,8 +211,7 @@ struct CoolantStatus {
 };
 template <>
 inline constexpr auto DECLARED<CoolantStatus> =
-    declare("CoolantStatus", 1499, "EMC_COOLANT_STAT_TYPE", "coolant",
-            field<&CoolantStatus::isMistOn>("mist", "mist is on"),
+    declare("CoolantStatus", 1499, "coolant", field<&CoolantStatus::isMistOn>("mist", "mist is on"),
             field<&CoolantStatus::isFloodOn>("flood", "flood is on"));
 
 struct LubeStatus {
@@ -222,8 +220,7 @@ struct LubeStatus {
 };
 template <>
 inline constexpr auto DECLARED<LubeStatus> =
-    declare("LubeStatus", 1599, "EMC_LUBE_STAT_TYPE", "lubrication",
-            field<&LubeStatus::isOn>("on", "lubrication is on"),
+    declare("LubeStatus", 1599, "lubrication", field<&LubeStatus::isOn>("on", "lubrication is on"),
             field<&LubeStatus::hasOil>("level_ok", "pin iocontrol.0.lube_level"));
 
 struct IoStatus {
@@ -232,8 +229,9 @@ struct IoStatus {
     LubeStatus lube;
 };
 template <>
-inline constexpr auto DECLARED<IoStatus> = declare(
-    "IoStatus", 1699, "EMC_IO_STAT_TYPE", "the I/O controller", field<&IoStatus::aux>("aux", "e-stop chain"),
-    field<&IoStatus::coolant>("coolant", "mist and flood"), field<&IoStatus::lube>("lube", "lubrication"));
+inline constexpr auto DECLARED<IoStatus> =
+    declare("IoStatus", 1699, "the I/O controller", field<&IoStatus::aux>("aux", "e-stop chain"),
+            field<&IoStatus::coolant>("coolant", "mist and flood"),
+            field<&IoStatus::lube>("lube", "lubrication"));
 
 }  // namespace mw::messages

@@ -16,11 +16,8 @@ using namespace messages;
 constexpr int INDICES = 16;  ///< of joints and axes, as their fields allow
 
 std::vector<Command> all_stops() {
-    std::vector<Command> all{
-        SetState{State::ESTOP}, SetState{State::OFF}, EstopOn{}, AbortAll{},     AbortMachine{}, AbortTraj{},
-        AbortMotion{},          AbortTool{},          AbortIo{}, PauseProgram{}, PauseTraj{}};
+    std::vector<Command> all{SetState{State::ESTOP}, SetState{State::OFF}, AbortAll{}, PauseProgram{}};
     for (int i = 0; i < INDICES; ++i) {
-        all.emplace_back(AbortJoint{i});
         all.emplace_back(JogStop{true, i});
         all.emplace_back(JogStop{false, i});
     }
@@ -33,12 +30,7 @@ bool isStop(const Command &command) {
     if (const auto *state = std::get_if<SetState>(&command)) {
         return state->state == State::ESTOP || state->state == State::OFF;
     }
-    return std::visit(
-        []<class C>(const C &) {
-            return OneOf<C, EstopOn, AbortAll, AbortMachine, AbortTraj, AbortMotion, AbortJoint, AbortTool,
-                         AbortIo, JogStop, PauseProgram, PauseTraj, DisableTraj>;
-        },
-        command);
+    return std::visit([]<class C>(const C &) { return OneOf<C, AbortAll, JogStop, PauseProgram>; }, command);
 }
 
 std::optional<int> stop_place(const Command &command) {
@@ -46,9 +38,7 @@ std::optional<int> stop_place(const Command &command) {
         return std::nullopt;
     }
     const auto all = all_stops();
-    // Another name of the same.
-    const bool isOff = std::holds_alternative<DisableTraj>(command);
-    const std::string bytes = encode(isOff ? Command(SetState{State::OFF}) : command);
+    const std::string bytes = encode(command);
     const auto found =
         std::find_if(all.begin(), all.end(), [&](const Command &stop) { return encode(stop) == bytes; });
     return found == all.end() ? std::nullopt : std::optional(static_cast<int>(found - all.begin()));

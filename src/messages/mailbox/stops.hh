@@ -12,7 +12,7 @@ namespace mw::mailbox {
 bool isStop(const messages::Command &command);
 
 /// As many as there are different stops: each kind, of each joint and axis.
-inline constexpr int STOP_PLACES = 59;
+inline constexpr int STOP_PLACES = 36;
 /// The place of a stop; nothing for a command that is none.
 std::optional<int> stop_place(const messages::Command &command);
 /// The stop that has this place, from 0 to STOP_PLACES - 1.

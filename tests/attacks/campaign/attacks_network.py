@@ -15,9 +15,7 @@ NOBODY = 65534
 OWN_CONNECTIONS = 8       # of 64: a user may take all places of his own machine
 FOREIGN_CONNECTIONS = 40
 # What a machine that cuts rejects, and an idle one in AUTO mode, too.
-REJECTED = ('Null', 'SystemCommand', 'JogContinuous', 'JogIncrement', 'JogAbsolute', 'LoadCompensation', 'SetTrajCycleTime', 'SetIoCycleTime', 'Delay',
-            'LinearMove', 'CircularMove', 'ProbeMove', 'RigidTapMove', 'OpenProgram', 'ReadProgram', 'Mdi', 'WaitInput', 'WaitOriented', 'CallTaskPlugin',
-            'CallIoPlugin')
+REJECTED = ('Null', 'JogContinuous', 'JogIncrement', 'JogAbsolute', 'LoadCompensation', 'RigidTapMove', 'OpenProgram', 'Mdi')
 
 
 def become_other_user(rng):

@@ -165,37 +165,22 @@ Result<std::optional<Bridge::Held>> Bridge::next_command() {
         if (!*found) {
             return std::nullopt;
         }
-        auto held = decode(received);
-        if (held.has_value()) {
-            return std::optional(std::move(*held));
-        }
+        auto message = commands_.codec().decode(received.bytes);
         StatusHead head;
         head.echo_serial_number = commands_.isNumbered() ? received.number : 0;
-        refuse(head, held.error().str());
+        if (message.has_value() && message->command_head() != nullptr) {
+            head.command_type = message->number();
+            head.state = CommandState::EXECUTING;
+            head.echo_serial_number =
+                commands_.isNumbered() ? received.number : message->command_head()->serial_number;
+        }
+        auto command = message.has_value() ? message->command() : std::unexpected(message.error());
+        if (command.has_value()) {
+            return std::optional(Held{std::move(*command), head});
+        }
+        refuse(head, command.error().str());
     }
     return std::nullopt;
-}
-
-Result<Bridge::Held> Bridge::decode(const Received &received) const {
-    const auto kind = commands_.codec().kind_of(received.bytes);
-    if (!kind.has_value()) {
-        return std::unexpected(kind.error());
-    }
-    auto command = messages::make_command((*kind)->declaration->number);
-    if (!command.has_value()) {
-        return fail(fmt::format("{} is no command of this machine", (*kind)->name()));
-    }
-    Held held{std::move(*command), {}};
-    CommandHead head;
-    const auto decoded =
-        commands_.codec().decode(received.bytes, {messages::object(head), messages::object(held.command)});
-    if (!decoded.has_value()) {
-        return std::unexpected(decoded.error());
-    }
-    held.head.command_type = (*kind)->declaration->number;
-    held.head.echo_serial_number = commands_.isNumbered() ? received.number : head.serial_number;
-    held.head.state = CommandState::EXECUTING;
-    return held;
 }
 
 bool Bridge::post(const Held &held) {

@@ -49,7 +49,6 @@ class Bridge {
     Result<> take_commands();
     void post_own();
     Result<std::optional<Held>> next_command();
-    Result<Held> decode(const Received &received) const;
     /// False: it waits for room.
     bool post(const Held &held);
     void refuse(StatusHead head, const std::string &reason);

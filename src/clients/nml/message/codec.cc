@@ -54,7 +54,8 @@ Result<const MessageKind *> read_kind(Format &format, const Vocabulary &vocabula
     if (kind == nullptr) {
         return fail(fmt::format("there is no message {}", head.number));
     }
-    if (head.shape != 0 ? head.shape != kind->shape : head.name != kind->name()) {
+    const bool same_shape = kind->rejection != nullptr || head.shape == kind->shape;
+    if (head.shape != 0 ? !same_shape : head.name != kind->name()) {
         return fail(fmt::format("whoever wrote message {} declares it otherwise than {} here", head.number,
                                 kind->declaration->name),
                     {}, "both sides must have the same version");
@@ -62,8 +63,12 @@ Result<const MessageKind *> read_kind(Format &format, const Vocabulary &vocabula
     return kind;
 }
 
-Result<> update_all(Format &format, const MessageView &message) {
+/// Fields of a message that is rejected in any case are not read.
+Result<> update_all(Format &format, const MessageKind &kind, const MessageView &message) {
     auto status = update(format, message.head);
+    if (format.isReading() && kind.rejection != nullptr) {
+        return status;
+    }
     status = status.has_value() ? update(format, message.body) : status;
     if (status.has_value() && !format.end()) {
         return fail(fmt::format("{}: {}", message.body.declaration->name, format.problem()));
@@ -84,9 +89,9 @@ Result<> Codec::encode(const MessageView &message, std::string &bytes) const {
     }
     const std::size_t before = bytes.size();
     const auto status = with_writer(encoding_, bytes, [&](Format &format) {
-        FrameHead head{kind->declaration->number, kind->shape, kind->name()};
+        FrameHead head{kind->number, kind->shape, kind->name()};
         format.head(head);
-        return update_all(format, message);
+        return update_all(format, *kind, message);
     });
     if (!status.has_value()) {
         bytes.resize(before);
@@ -109,7 +114,7 @@ Result<> Codec::decode(std::string_view bytes, const MessageView &message) const
                                     (*kind)->declaration->number, (*kind)->declaration->name,
                                     message.body.declaration->number, message.body.declaration->name));
         }
-        return update_all(format, message);
+        return update_all(format, **kind, message);
     });
 }
 

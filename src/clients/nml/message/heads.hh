@@ -70,20 +70,20 @@ inline constexpr auto NAMES<nml::CommandState> =
 
 template <>
 inline constexpr auto DECLARED<nml::PlainHead> =
-    declare("PlainHead", 0, "", "of a message that is neither command nor status");
+    declare("PlainHead", 0, "of a message that is neither command nor status");
 template <>
 inline constexpr auto DECLARED<nml::CommandHead> =
-    declare("CommandHead", 0, "", "of every command",
+    declare("CommandHead", 0, "of every command",
             field<&nml::CommandHead::serial_number>("serial_number", "by which its status is recognised"));
 template <>
 inline constexpr auto DECLARED<nml::CommandOutcome> =
-    declare("CommandOutcome", 0, "", "state of one command",
+    declare("CommandOutcome", 0, "state of one command",
             field<&nml::CommandOutcome::serial_number>("serial_number", "of the command, 0: none"),
             field<&nml::CommandOutcome::state>("state", "of the command"),
             field<&nml::CommandOutcome::reason>("reason", "why it was refused or has failed"));
 template <>
 inline constexpr auto DECLARED<nml::StatusHead> =
-    declare("StatusHead", 0, "", "of every status",
+    declare("StatusHead", 0, "of every status",
             field<&nml::StatusHead::command_type>("command_type", "number of the last command, 0: none"),
             field<&nml::StatusHead::echo_serial_number>("echo_serial_number", "of that command"),
             field<&nml::StatusHead::state>("state", "how that command stands"),

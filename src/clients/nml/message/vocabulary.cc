@@ -8,28 +8,37 @@
 
 #include "base/overloaded.hh"
 #include "clients/nml/message/format.hh"
-#include "messages/declarations/command.hh"
+#include "clients/nml/message/wire_table.hh"
 #include "messages/declarations/status_list.hh"
 
 namespace mw::nml {
 namespace {
 
-/// The declarations of src/messages/declarations are checked by tests of their own: adding them cannot fail.
+/// The table and the declarations are checked by tests of their own: adding them cannot fail.
 template <class Body>
-void add_numbered(Vocabulary &vocabulary, Base base) {
-    if (messages::DECLARATION<Body>.number != 0) {
-        static_cast<void>(vocabulary.add<Body>(base));
+void add_other(Vocabulary &vocabulary, Base base) {
+    const int number = messages::DECLARATION<Body>.number;
+    if (number != 0 && vocabulary.find(number) == nullptr) {
+        MessageKind kind;
+        kind.number = number;
+        kind.declaration = &messages::DECLARATION<Body>;
+        kind.base = base;
+        kind.make = make_body<Body>;
+        if constexpr (AlternativeOf<Body, messages::CommandVariant>) {
+            kind.convert = convert_body<Body>;
+        }
+        static_cast<void>(vocabulary.add(kind));
     }
 }
 
 template <class... Body>
 void add_commands(Vocabulary &vocabulary, std::type_identity<std::variant<Body...>>) {
-    (add_numbered<Body>(vocabulary, Base::COMMAND), ...);
+    (add_other<Body>(vocabulary, Base::COMMAND), ...);
 }
 
 template <class... Body>
 void add_statuses(Vocabulary &vocabulary, messages::TypeList<Body...>) {
-    (add_numbered<Body>(vocabulary, Base::STATUS), ...);
+    (add_other<Body>(vocabulary, Base::STATUS), ...);
 }
 
 }  // namespace
@@ -56,8 +65,19 @@ MessageView Message::view() {
             {kind_->declaration, body_.get()}};
 }
 
+Result<messages::Command> Message::command() const {
+    if (kind_->rejection != nullptr) {
+        return fail(kind_->rejection);
+    }
+    return kind_->convert != nullptr ? Result<messages::Command>(kind_->convert(body_.get()))
+                                     : fail(fmt::format("{} is no command of this machine", kind_->name()));
+}
+
 Vocabulary Vocabulary::standard() {
     Vocabulary vocabulary;
+    for (const MessageKind &kind : wire_messages()) {
+        static_cast<void>(vocabulary.add(kind));
+    }
     add_commands(vocabulary, std::type_identity<messages::CommandVariant>{});
     add_statuses(vocabulary, messages::StatusList{});
     return vocabulary;
@@ -65,19 +85,19 @@ Vocabulary Vocabulary::standard() {
 
 Result<> Vocabulary::add(MessageKind kind) {
     const messages::Declaration &declaration = *kind.declaration;
-    if (declaration.number <= 0) {
+    if (kind.number <= 0) {
         return fail(fmt::format("{} has no number and cannot be a message", declaration.name));
     }
-    const MessageKind *other = find(declaration.number);
-    for (const char *name : {declaration.name, declaration.nml}) {
+    const MessageKind *other = find(kind.number);
+    for (const char *name : {declaration.name, kind.wire_name}) {
         other = other == nullptr && *name != '\0' ? find(std::string_view(name)) : other;
     }
     if (other != nullptr) {
-        return fail(fmt::format("{} ({}) cannot be added: there is {} ({})", declaration.name,
-                                declaration.number, other->declaration->name, other->declaration->number));
+        return fail(fmt::format("{} ({}) cannot be added: there is {} ({})", declaration.name, kind.number,
+                                other->declaration->name, other->number));
     }
     kind.shape = shape_of(*kind.head(), declaration);
-    kinds_.emplace(declaration.number, kind);
+    kinds_.emplace(kind.number, kind);
     return {};
 }
 
@@ -88,8 +108,8 @@ const MessageKind *Vocabulary::find(int number) const {
 
 const MessageKind *Vocabulary::find(std::string_view name) const {
     const auto found = std::find_if(kinds_.begin(), kinds_.end(), [name](const auto &entry) {
-        const messages::Declaration &declaration = *entry.second.declaration;
-        return name == declaration.name || (!name.empty() && name == declaration.nml);
+        const MessageKind &kind = entry.second;
+        return name == kind.declaration->name || (!name.empty() && name == kind.wire_name);
     });
     return found == kinds_.end() ? nullptr : &found->second;
 }

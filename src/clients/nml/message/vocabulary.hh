@@ -9,7 +9,7 @@
 
 #include "base/result.hh"
 #include "clients/nml/message/heads.hh"
-#include "messages/declarations/describe.hh"
+#include "messages/declarations/command.hh"
 
 namespace mw::nml {
 
@@ -29,15 +29,29 @@ MessageView view(Typed<Body> &message) {
 
 /// What a vocabulary knows about one kind of message.
 struct MessageKind {
+    int number = 0;
+    const char *wire_name = "";  ///< LinuxCNC's name, or empty
     const messages::Declaration *declaration = nullptr;
     Base base = Base::PLAIN;
     std::uint32_t shape = 0;
     std::shared_ptr<void> (*make)() = nullptr;  ///< the body with its default values
+    /// The machine's command for a body. Null: the machine has none.
+    messages::Command (*convert)(const void *body) = nullptr;
+    /// Why the machine rejects the message, whatever its fields are: they are not read. Null: it does not.
+    const char *rejection = nullptr;
 
     const messages::Declaration *head() const;
-    /// The legacy name where it has one.
-    const char *name() const { return *declaration->nml != '\0' ? declaration->nml : declaration->name; }
+    /// LinuxCNC's name where it has one.
+    const char *name() const { return *wire_name != '\0' ? wire_name : declaration->name; }
 };
+template <class Body>
+std::shared_ptr<void> make_body() {
+    return std::make_shared<Body>();
+}
+template <class Body>
+messages::Command convert_body(const void *body) {
+    return *static_cast<const Body *>(body);
+}
 
 /// A message of any kind.
 class Message {
@@ -45,8 +59,10 @@ class Message {
     explicit Message(const MessageKind &kind);
 
     const MessageKind &kind() const { return *kind_; }
-    int number() const { return kind_->declaration->number; }
+    int number() const { return kind_->number; }
     MessageView view();
+    /// The machine's command; an error with the reason when it has none.
+    Result<messages::Command> command() const;
 
     /// Null when it is of another kind.
     template <class Body>
@@ -65,15 +81,23 @@ class Message {
 
 class Vocabulary {
   public:
-    /// Every command and numbered status of src/messages/declarations.
+    /// LinuxCNC's messages (wire_table.hh), and every other command and numbered status of
+    /// src/messages/declarations.
     static Vocabulary standard();
 
-    /// An error when it has no number or number or name are taken.
+    /// An error when it has no number, or when number or name are taken. `wire_name` stands in texts for the
+    /// name of the declaration.
     template <class Body>
-    Result<> add(Base base) {
-        return add({&messages::DECLARATION<Body>, base, 0,
-                    []() -> std::shared_ptr<void> { return std::make_shared<Body>(); }});
+    Result<> add(Base base, const char *wire_name = "") {
+        MessageKind kind;
+        kind.number = messages::DECLARATION<Body>.number;
+        kind.wire_name = wire_name;
+        kind.declaration = &messages::DECLARATION<Body>;
+        kind.base = base;
+        kind.make = make_body<Body>;
+        return add(kind);
     }
+    Result<> add(MessageKind kind);
 
     /// Null when there is none. Kinds stay where they are as long as the vocabulary does.
     const MessageKind *find(int number) const;
@@ -82,8 +106,6 @@ class Vocabulary {
     const std::map<int, MessageKind> &kinds() const { return kinds_; }
 
   private:
-    Result<> add(MessageKind kind);
-
     std::map<int, MessageKind> kinds_;
 };
 

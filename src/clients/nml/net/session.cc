@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "messages/declarations/catalogue.hh"
+#include "clients/nml/message/codec.hh"
 
 namespace mw::nml {
 namespace {
@@ -39,16 +39,9 @@ Session::~Session() {
     }
 }
 
-void Session::note_jog(std::string_view bytes, Encoding encoding) {
-    const Codec codec(service_.vocabulary, encoding);
-    const auto kind = codec.kind_of(bytes);
-    if (!kind.has_value() || service_.jogs == nullptr) {
-        return;
-    }
-    auto command = messages::make_command((*kind)->declaration->number);
-    CommandHead head;
-    if (command.has_value() &&
-        codec.decode(bytes, {messages::object(head), messages::object(*command)}).has_value()) {
+void Session::note_jog(const Message &message) {
+    const auto command = message.command();
+    if (command.has_value() && service_.jogs != nullptr) {
         service_.jogs->note(this, *command);
     }
 }
@@ -119,12 +112,11 @@ Result<Packet> Session::log_in(const Packet &request, Open &open) {
 
 Result<Packet> Session::write(const Packet &request, Open &open) {
     // Nobody else gets what is no message.
-    const Encoding encoding = encoding_of(open.served->buffer);
-    const auto message = Codec(service_.vocabulary, encoding).decode(request.bytes);
+    const auto message = Codec(service_.vocabulary, encoding_of(open.served->buffer)).decode(request.bytes);
     if (!message.has_value()) {
         return std::unexpected(message.error());
     }
-    note_jog(request.bytes, encoding);
+    note_jog(*message);
     const auto number = open.buffer->write(request.bytes, timeout_of(request));
     return number.has_value() ? Result<Packet>(answer_to(request, Status::DONE, {}, *number))
                               : std::unexpected(number.error());

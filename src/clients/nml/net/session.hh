@@ -58,7 +58,7 @@ class Session {
     Result<Packet> carry_out(const Packet &request, const std::function<bool()> &isOver);
     Result<Packet> log_in(const Packet &request, Open &open);
     Result<Packet> write(const Packet &request, Open &open);
-    void note_jog(std::string_view bytes, Encoding encoding);
+    void note_jog(const Message &message);
     Result<Packet> read(const Packet &request, Open &open, const std::function<bool()> &isOver);
 
     const Service &service_;

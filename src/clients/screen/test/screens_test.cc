@@ -236,7 +236,7 @@ TEST_F(ScreensTest, AScreenOfAnotherUserSeesStatusAndStopsTheMachine) {
     EXPECT_EQ(first[2]["full"], true);
     screens->received(7, R"({"watch": ["joint.0.pos-cmd"]})", now_ns);
     EXPECT_TRUE(screens->watched().empty()) << "values of HAL are not for it";
-    command(7, 1, "EstopOff");
+    command(7, 1, "SynchInterpreter");
     command(7, 2, "AbortAll");
     EXPECT_EQ(go(20).size(), 1U) << "the stop alone";
 }
@@ -254,9 +254,9 @@ TEST_F(ScreensTest, AScreenWithoutAPlaceStopsTheMachine) {
     EXPECT_EQ(first[0]["hello"]["client"], 0);
     EXPECT_NE(first[1]["note"].get<std::string>().find("only stop"), std::string::npos);
     EXPECT_EQ(first[2]["full"], true) << "it sees the machine";
-    command(7, 1, "EstopOn");
+    command(7, 1, "SynchInterpreter");
     command(7, 2, "AbortAll");
-    command(7, 3, "EstopOff");
+    command(7, 3, "PauseProgram");
     EXPECT_EQ(go(20).size(), 2U);
     const auto outcomes = of_kind(7, "outcome");
     ASSERT_EQ(outcomes.size(), 3U);

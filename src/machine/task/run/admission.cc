@@ -74,16 +74,7 @@ constexpr std::array<Row, CLASSES> TABLE{{
     {NO_WAY, NO_WAY, NO_WAY, NO_WAY, NO_WAY, NO_WAY, TAKEN, NO_WAY, NO_WAY, NO_WAY, NO_WAY},
     /* RELEASE */
     {ESTOP, OFF, NOT_HELD, NOT_HELD, NOT_HELD, TAKEN, TAKEN, TAKEN, NOT_HELD, NOT_LINES, NOT_LINES},
-    /* PART_OF_PROGRAM */ all("this is a part of programs (give it as G-code, by Mdi)"),
-    /* PART_OF_CONFIGURATION */
-    all("this is set by the INI file and does not change while the machine runs"),
-    /* PART_OF_START */ all("this begins and ends with the machine"),
     /* OF_THE_MAILBOX */ all("the right to operate belongs to clients that are connected"),
-    /* OF_PLUGINS */
-    all("task has no Python functions of its own (PYTHON_TASK); remapped codes run Python: [RS274NGC]REMAP"),
-    /* OF_THE_SYSTEM */
-    all("a machine runs no programs for those who can send messages to it; M100 to M199 run those that its "
-        "files name"),
 }};
 
 Situation of_run(const RunState &run, Situation idle, Situation running, Situation held) {

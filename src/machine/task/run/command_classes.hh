@@ -11,30 +11,25 @@
 namespace mw::task {
 
 enum class CommandClass : std::uint8_t {
-    ANY_TIME,      ///< stops, messages, overrides, what ends something
-    MODE,          ///< what manual, auto and MDI are
-    PROGRAM_FILE,  ///< which program is open, and what the interpreter is set to
-    RUN,           ///< begins a program
-    STEP,          ///< one block
-    PAUSE,         ///< holds what runs
-    RESUME,        ///< goes on after a hold
-    TURN,          ///< backwards along the path, and forwards again
-    MDI,           ///< one line, or a tap that a client sends
-    JOG,           ///< moves by hand
-    TELEOP,        ///< whether moves by hand are those of axes or of joints
-    JOINTS,        ///< homing of joints, and their limits and homing parameters
-    UNHOME,        ///< forgets where joints are
-    ENERGISE,      ///< starts a spindle, coolant, lubrication
-    TOOL_TABLE,    ///< reads it again, or sets an entry
-    SCREW_TABLE,   ///< what is set only while the machine is off
-    CONFIRM,       ///< of an approach that is proposed
-    RELEASE,       ///< lets the axes of a held program be jogged
-    PART_OF_PROGRAM,
-    PART_OF_CONFIGURATION,
-    PART_OF_START,
-    OF_THE_MAILBOX,
-    OF_PLUGINS,     ///< Python functions of task, which ours has none of
-    OF_THE_SYSTEM,  ///< other programs
+    ANY_TIME,        ///< stops, messages, overrides, what ends something
+    MODE,            ///< what manual, auto and MDI are
+    PROGRAM_FILE,    ///< which program is open, and what the interpreter is set to
+    RUN,             ///< begins a program
+    STEP,            ///< one block
+    PAUSE,           ///< holds what runs
+    RESUME,          ///< goes on after a hold
+    TURN,            ///< backwards along the path, and forwards again
+    MDI,             ///< one line, or a tap that a client sends
+    JOG,             ///< moves by hand
+    TELEOP,          ///< whether moves by hand are those of axes or of joints
+    JOINTS,          ///< homing of joints, and their limits and homing parameters
+    UNHOME,          ///< forgets where joints are
+    ENERGISE,        ///< starts a spindle, coolant, lubrication
+    TOOL_TABLE,      ///< reads it again, or sets an entry
+    SCREW_TABLE,     ///< what is set only while the machine is off
+    CONFIRM,         ///< of an approach that is proposed
+    RELEASE,         ///< lets the axes of a held program be jogged
+    OF_THE_MAILBOX,  ///< the right to operate: the mailbox executes them
     COUNT
 };
 
@@ -47,11 +42,11 @@ concept ProgramFile = OneOf<T, OpenProgram, CloseProgram, ResetInterpreter, Sync
 template <class T>
 concept Run = OneOf<T, RunProgram, RecoverProgram>;
 template <class T>
-concept Step = OneOf<T, StepProgram, StepTraj>;
+concept Step = OneOf<T, StepProgram>;
 template <class T>
-concept Pause = OneOf<T, PauseProgram, PauseTraj, StopOptionally>;
+concept Pause = OneOf<T, PauseProgram, StopOptionally>;
 template <class T>
-concept Resume = OneOf<T, ResumeProgram, ResumeTraj>;
+concept Resume = OneOf<T, ResumeProgram>;
 template <class T>
 concept Turn = OneOf<T, ReverseProgram, ForwardProgram>;
 template <class T>
@@ -78,27 +73,8 @@ template <class T>
 concept Confirm = OneOf<T, ConfirmApproach>;
 template <class T>
 concept Release = OneOf<T, ReleaseAxes>;
-/// What an operator asks in G-code.
-template <class T>
-concept PartOfPrograms = OneOf<T, LinearMove, CircularMove, ProbeMove, Delay, SetTermination, SetG5x, SetG92,
-                               SetRotation, SetToolOffset, SetTrajVelocity, SetTrajAcceleration, SetMotionId,
-                               SetSpindleSpeed, OrientSpindle, WaitOriented, WaitInput, PrepareTool, LoadTool,
-                               UnloadTool, SetToolNumber, StartToolChange, ReadProgram, EndProgram>;
-/// What the INI file says.
-template <class T>
-concept PartOfConfiguration =
-    OneOf<T, SetJointKind, SetJointUnits, SetJointMaxVelocity, SetTrajAxes, SetTrajUnits, SetTrajCycleTime,
-          SetMaxAcceleration, SetTrajHome, SetIoCycleTime>;
-/// What starts and ends with the machine.
-template <class T>
-concept PartOfStart = OneOf<T, InitTask, HaltTask, InitMachine, HaltMachine, InitMotion, HaltMotion, InitTraj,
-                            HaltTraj, InitJoint, HaltJoint, InitTool, HaltTool, InitIo, HaltIo>;
 template <class T>
 concept OfTheMailbox = OneOf<T, ClaimOperation, HandOverOperation, ReleaseOperation>;
-template <class T>
-concept OfPlugins = OneOf<T, CallTaskPlugin, CallIoPlugin>;
-template <class T>
-concept OfTheSystem = OneOf<T, SystemCommand>;
 /// What motion does by itself (machine/task/link/motion_words.hh).
 template <class T>
 concept CarriedOutByMotion =
@@ -106,20 +82,11 @@ concept CarriedOutByMotion =
           EnableSpindleOverride, EnableFeedHold, EnableAdaptiveFeed, OverrideLimits, EnableJoint,
           DisableJoint, ActivateJoint, DeactivateJoint, ClearProbe, SetDigitalOutput, SetAnalogOutput,
           EngageBrake, ReleaseBrake>;
-/// Other names of the operator's abort.
-template <class T>
-concept AnyAbort = OneOf<T, AbortAll, AbortMachine, AbortTraj, AbortMotion, AbortTool, AbortIo>;
 template <class T>
 concept AnyTime =
-    CarriedOutByMotion<T> || AnyAbort<T> ||
-    OneOf<T, SetState, EnableTraj, DisableTraj, SetDebug, EstopOn, EstopOff, EstopReset, JogStop, AbortJoint,
-          SpindleOff, MistOff, FloodOff, LubeOff, SetOptionalStop, SetBlockDelete, ConfirmToolChange, Null,
-          OperatorError, OperatorText, OperatorDisplay>;
-
-/// Never taken, in any situation.
-template <class T>
-concept Never = PartOfPrograms<T> || PartOfConfiguration<T> || PartOfStart<T> || OfTheMailbox<T> ||
-                OfPlugins<T> || OfTheSystem<T>;
+    CarriedOutByMotion<T> ||
+    OneOf<T, SetState, AbortAll, SetDebug, JogStop, SpindleOff, MistOff, FloodOff, LubeOff, SetOptionalStop,
+          SetBlockDelete, ConfirmToolChange, Null, OperatorError, OperatorText, OperatorDisplay>;
 
 }  // namespace command_lists
 
@@ -145,12 +112,7 @@ constexpr CommandClass class_of() {
                                ScrewTable<T>,
                                Confirm<T>,
                                Release<T>,
-                               PartOfPrograms<T>,
-                               PartOfConfiguration<T>,
-                               PartOfStart<T>,
-                               OfTheMailbox<T>,
-                               OfPlugins<T>,
-                               OfTheSystem<T>};
+                               OfTheMailbox<T>};
     static_assert(IS_IN.size() == static_cast<std::size_t>(CommandClass::COUNT));
     static_assert(std::count(IS_IN.begin(), IS_IN.end(), true) == 1, "each command is of one class");
     return static_cast<CommandClass>(std::find(IS_IN.begin(), IS_IN.end(), true) - IS_IN.begin());

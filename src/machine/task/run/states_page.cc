@@ -49,12 +49,7 @@ constexpr std::array<Named, static_cast<std::size_t>(CommandClass::COUNT)> CLASS
     {"screw table", "is set while the machine is off"},
     {"confirm", "makes the approach that is proposed"},
     {"release", "lets the axes of a held program be jogged"},
-    {"part of programs", ""},
-    {"part of the configuration", ""},
-    {"part of the start", ""},
-    {"of the mailbox", ""},
-    {"of Python in task", "there is none"},
-    {"of the system", "runs other programs"},
+    {"of the mailbox", "the right to operate, which the mailbox keeps"},
 }};
 
 /// Refusals as numbers, in the order in which they come.

@@ -12,18 +12,12 @@ namespace {
 /// Held, the program waits either way: while the mode changes nothing runs, and what waits to run comes
 /// before its hold.
 bool isHold(const messages::Command &command) {
-    return std::visit(
-        []<class C>(const C &) { return OneOf<C, messages::PauseProgram, messages::PauseTraj>; }, command);
+    return std::holds_alternative<messages::PauseProgram>(command);
 }
 
 /// On, off and emergency stop: the change of mode must not keep anybody from them, in either direction.
 bool isOfMachineState(const messages::Command &command) {
-    return std::visit(
-        []<class C>(const C &) {
-            return OneOf<C, messages::SetState, messages::EstopOn, messages::EstopOff, messages::EstopReset,
-                         messages::EnableTraj, messages::DisableTraj>;
-        },
-        command);
+    return std::holds_alternative<messages::SetState>(command);
 }
 
 /// What does not wait for a change of mode or state.

@@ -54,7 +54,7 @@ void JogGuard::note(const Command &command, std::uint64_t owner) {
                 begin(std::nullopt, one.velocity != geometry::Pose{} ? owner : 0);
             } else if constexpr (OneOf<C, JogIncrement, JogAbsolute, JogStop>) {
                 end(std::pair(one.isJoint, one.index));
-            } else if constexpr (OneOf<C, AbortAll, SetState, EstopOn, DisableTraj>) {
+            } else if constexpr (OneOf<C, AbortAll, SetState>) {
                 end_all();
             }
         },

@@ -43,7 +43,8 @@ TEST_F(MdiQueueTest, LinesWaitBehindTheOneThatRunsAndRunInTheirOrder) {
 }
 
 TEST_F(MdiQueueTest, AnAbortLeavesNothingQueued) {
-    for (const Command &stop : {Command{AbortAll{}}, Command{SetState{State::OFF}}, Command{EstopOn{}}}) {
+    for (const Command &stop :
+         {Command{AbortAll{}}, Command{SetState{State::OFF}}, Command{SetState{State::ESTOP}}}) {
         motion.isHolding = true;
         const auto given = give(3);
         motion.log.clear();

@@ -55,7 +55,8 @@ TEST_F(TaskTest, AHoldOfARunThatWaitsForTheModeHoldsIt) {
 }
 
 TEST_F(TaskTest, AStopAlsoEndsOlderCommandsThatStillWaitForTheMode) {
-    for (const Command &stop : {Command{AbortAll{}}, Command{SetState{State::OFF}}, Command{EstopOn{}}}) {
+    for (const Command &stop :
+         {Command{AbortAll{}}, Command{SetState{State::OFF}}, Command{SetState{State::ESTOP}}}) {
         ASSERT_EQ(ask(SetMode{Mode::MDI}), Progress::DONE);
         post(SetMode{Mode::AUTO});
         const auto waiting = post(Mdi{"G21 G1 X7 F600"}), text = post(OperatorText{"told all the same"});

@@ -71,7 +71,7 @@ TEST_F(TaskTest, ARefusedRenewalIsToldToItsClientAlone) {
     EXPECT_EQ(ask(JogContinuous{true, 0, 5, 100, true}), Progress::REFUSED);
     EXPECT_TRUE(motion.last_jog.isRenewal);
     EXPECT_NE(reason(request).find("renew"), std::string::npos) << reason(request);
-    ASSERT_EQ(ask(EstopOn{}), Progress::DONE);
+    ASSERT_EQ(ask(SetState{State::ESTOP}), Progress::DONE);
     cycles(5);
     messages();
     motion.log.clear();

@@ -205,11 +205,11 @@ TEST_F(ClientTest, AStopOfAClientThatLeavesIsTakenAndItsPlaceIsClean) {
         for (std::uint32_t i = 0; i < mailbox::MAX_POSTED; ++i) {
             ASSERT_TRUE(a.post(messages::Null{}).has_value());
         }
-        ASSERT_TRUE(a.post(messages::EstopOn{}).has_value());
+        ASSERT_TRUE(a.post(messages::AbortAll{}).has_value());
     }
     const auto taken = cycle();
     ASSERT_EQ(taken.size(), mailbox::MAX_POSTED + 1);
-    EXPECT_TRUE(std::holds_alternative<messages::EstopOn>(taken.back().command));
+    EXPECT_TRUE(std::holds_alternative<messages::AbortAll>(taken.back().command));
     Client next = made();
     EXPECT_TRUE(cycle().empty());
 }

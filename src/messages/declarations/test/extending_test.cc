@@ -19,7 +19,7 @@ struct SetGenericOutput {
 };
 template <>
 inline constexpr auto DECLARED<SetGenericOutput> =
-    declare("SetGenericOutput", 1605, "EMC_IO_GENERIC_TYPE", "sets a generic output",
+    declare("SetGenericOutput", 1605, "sets a generic output",
             field<&SetGenericOutput::index>("index", "number of the output", unit::NONE, range(0, 15)),
             field<&SetGenericOutput::value>("value", "of the output"));
 // end of the example

@@ -34,7 +34,6 @@ TEST(Stops, OfTheWholeVocabularyHavePlacesAndNothingElseHas) {
     for (int i = 0; i < 16; ++i) {
         EXPECT_TRUE(stop_place(messages::JogStop{true, i}).has_value());
         EXPECT_TRUE(stop_place(messages::JogStop{false, i}).has_value());
-        EXPECT_TRUE(stop_place(messages::AbortJoint{i}).has_value());
     }
     EXPECT_TRUE(stop_place(messages::SetState{messages::State::ESTOP}).has_value());
     EXPECT_TRUE(stop_place(messages::SetState{messages::State::OFF}).has_value());

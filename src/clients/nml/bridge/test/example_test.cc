@@ -58,7 +58,7 @@ TEST(NmlExample, AMessageAddedInOnePlaceIsSentAndDoesItsWork) {
     // clang-format off
     // begin of the connection
     Vocabulary vocabulary = Vocabulary::standard();
-    vocabulary.add<messages::EmcIoGeneric>(Base::COMMAND).value();
+    vocabulary.add<messages::EmcIoGeneric>(Base::COMMAND, "EMC_IO_GENERIC_TYPE").value();
     LocalPlaces local;
     auto io = Channel::open({config, "io", "my-machine", vocabulary, local}, "ioGeneric");
     auto gui = Channel::open({config, "gui", "my-machine", vocabulary, local}, "ioGeneric");
@@ -80,7 +80,7 @@ TEST(NmlExample, AMessageAddedInOnePlaceIsSentAndDoesItsWork) {
 
 TEST(NmlExample, EveryMessageIsWrittenInEachEncodingToo) {
     Vocabulary vocabulary = Vocabulary::standard();
-    ASSERT_TRUE(vocabulary.add<messages::EmcIoGeneric>(Base::COMMAND).has_value());
+    ASSERT_TRUE(vocabulary.add<messages::EmcIoGeneric>(Base::COMMAND, "EMC_IO_GENERIC_TYPE").has_value());
     for (const Encoding encoding : ALL_ENCODINGS) {
         const Codec codec(vocabulary, encoding);
         CommandMessage<messages::EmcIoGeneric> command{{5}, {3, 1.5}};
