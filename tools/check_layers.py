@@ -25,7 +25,7 @@ MAY_USE = {
 # The folders of a room in the order in which they may use each other. '' is what lies beside them.
 ORDER = {
     'base': ('', 'diagnostics', 'geometry', 'language', 'options', 'ini', 'charts'),
-    'messages': ('declarations', 'mailbox', 'client'),
+    'messages': ('declarations', 'legacy', 'mailbox', 'client'),
     'hal': ('include', 'sdk', 'core', 'host', 'ini', 'halcompile', 'script', 'tcl', 'tools'),
     'hal/tools': ('stream', 'view', 'programs'),
     'trajectory': ('path', 'curve', 'profile', 'follow', 'timing', 'trial'),

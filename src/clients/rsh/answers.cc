@@ -3,14 +3,16 @@
 
 #include <unistd.h>
 
-#include <array>
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
+#include <string_view>
 
 #include <fmt/format.h>
 
 #include "clients/rsh/axis_answers.hh"
 #include "clients/rsh/units.hh"
+#include "messages/legacy/units.hh"
 
 namespace mw::rsh {
 namespace {
@@ -31,12 +33,6 @@ Answer line(std::string text) {
 Answer on_off(const char *name, bool isOn) {
     return line(fmt::format("{} {}", name, isOn ? "ON" : "OFF"));
 }
-/// What 2.9 tells by other words.
-Answer flag(const Asked &asked, const char *name, bool isOn, const char *old_on, const char *old_off) {
-    return asked.settings.isOld() ? line(fmt::format("{} {}", name, isOn ? old_on : old_off))
-                                  : on_off(name, isOn);
-}
-
 Answer operator_line(const Asked &asked, const char *name, MessageKind kind) {
     const auto text = asked.shared.next_line(kind, asked.own.lines);
     // A line of the protocol is one line.
@@ -69,15 +65,6 @@ Answer time(const Asked &) {
     return line(fmt::format("TIME {:.6f}", std::chrono::duration<double>(now).count()));
 }
 
-const char *mode_name(messages::Mode mode) {
-    switch (mode) {
-    case messages::Mode::MANUAL: return "MANUAL";
-    case messages::Mode::AUTO: return "AUTO";
-    case messages::Mode::MDI: break;
-    }
-    return "MDI";
-}
-
 Answer program_status(const Asked &asked) {
     switch (asked.status.task.interp_state) {
     case messages::InterpState::IDLE: return line("PROGRAM_STATUS IDLE");
@@ -88,9 +75,10 @@ Answer program_status(const Asked &asked) {
     return line("PROGRAM_STATUS RUNNING");
 }
 
+/// What newer versions also call OPEN.
 Answer program(const Asked &asked) {
-    const std::string path(asked.status.task.program.view());
-    return line("PROGRAM " + (path.empty() ? "NONE" : path));
+    return line("PROGRAM " +
+                legacy::text(legacy::Form::PATH, dialect(asked), asked.status.task.program.str()));
 }
 
 Answer program_codes(const Asked &asked) {
@@ -104,11 +92,6 @@ Answer program_codes(const Asked &asked) {
     }
     return line(
         fmt::format("{} F{:g} S{:g}", text, asked.status.codes.settings[1], asked.status.codes.settings[2]));
-}
-
-Answer percent(const Asked &asked, const std::string &name, double factor) {
-    return line(asked.settings.isOld() ? fmt::format("{} {:.0f}", name, factor * 100)
-                                       : fmt::format("{} {:f}", name, factor * 100));
 }
 
 /// Of one spindle, the first without a number, or of all.
@@ -130,38 +113,12 @@ Answer for_spindles(const Asked &asked, const Each &each) {
     return lines;
 }
 
-Answer spindle(const Asked &asked) {
-    return for_spindles(asked, [](int i, const messages::SpindleStatus &spindle) {
-        return line(fmt::format("SPINDLE {} {}", i,
-                                spindle.direction > 0   ? "FORWARD"
-                                : spindle.direction < 0 ? "REVERSE"
-                                                        : "OFF"));
-    });
-}
-
 Answer brake(const Asked &asked) {
     return for_spindles(asked, [&asked](int i, const messages::SpindleStatus &spindle) {
         const char *const state = spindle.isBrakeOn ? "ON" : "OFF";
         return line(asked.settings.isOld() ? fmt::format("BRAKE {}", state)
                                            : fmt::format("BRAKE {} {}", i, state));
     });
-}
-
-Answer spindle_override(const Asked &asked) {
-    return for_spindles(asked, [&asked](int i, const messages::SpindleStatus &spindle) {
-        return percent(asked, fmt::format("SPINDLE_OVERRIDE {}", i), spindle.override_factor);
-    });
-}
-
-Answer probe_tripped(const Asked &asked) {
-    const bool isTripped = asked.status.probe.isTripped;
-    return line(asked.settings.isOld() ? fmt::format("PROBE_TRIPPED {}", isTripped ? 1 : 0)
-                                       : fmt::format("PROBE_TRIPPED {}", isTripped ? "YES" : "NO"));
-}
-
-Answer debug(const Asked &asked) {
-    const std::uint32_t mask = asked.status.settings.debug;
-    return line(asked.settings.isOld() ? fmt::format("DEBUG {}", mask) : fmt::format("DEBUG 0x{:08x}", mask));
 }
 
 Answer wait_mode(const Asked &asked) {
@@ -175,16 +132,35 @@ Answer timeout(const Asked &asked) {
 }
 
 Answer tool_offset(const Asked &asked) {
-    const double z = asked.status.offsets.tool[geometry::AXIS_Z] * length_factor(asked.own, asked.status);
+    const double z =
+        asked.status.offsets.tool[geometry::AXIS_Z] * length_factor(asked.own.length_unit, asked.status);
     return line(fmt::format("TOOL_OFFSET {:f}", z));
+}
+
+/// A row of the table of the status.
+template <std::size_t I>
+Answer status_answer(const Asked &asked) {
+    constexpr const auto &ROW = std::get<I>(legacy::STATUS);
+    const auto value = ROW.get(asked.status);
+    if constexpr (ROW.form == legacy::Form::POSE) {
+        return pose(asked, ROW.names.rsh, value);
+    } else {
+        return line(fmt::format("{} {}", ROW.names.rsh, legacy::text(ROW.form, dialect(asked), value)));
+    }
+}
+template <std::size_t I>
+Answer spindle_answer(const Asked &asked) {
+    constexpr const auto &ROW = std::get<I>(legacy::SPINDLE_STATUS);
+    return for_spindles(asked, [&asked](int i, const messages::SpindleStatus &spindle) {
+        return line(fmt::format("{} {} {}", ROW.names.rsh, i,
+                                legacy::text(ROW.form, dialect(asked), ROW.get(spindle))));
+    });
 }
 
 constexpr SpokenBy BOTH = SpokenBy::BOTH, NEWER = SpokenBy::NEWER, OLD = SpokenBy::OLD;
 
-/// In the order of the alphabet, as HELP lists them.
+/// Of the connection, and values that other clients do not read in this form.
 constexpr Question QUESTIONS[] = {
-    {"ABS_ACT_POS", BOTH, absolute_actual},
-    {"ABS_CMD_POS", BOTH, absolute_commanded},
     {"ANGULAR_UNIT_CONVERSION", BOTH,
      [](const Asked &a) {
          return line(fmt::format("ANGULAR_UNIT_CONVERSION {}", name_of(a.own.angle_unit)));
@@ -195,7 +171,6 @@ constexpr Question QUESTIONS[] = {
     {"COMM_MODE", BOTH, [](const Asked &) { return line("COMM_MODE ASCII"); }},
     {"COMM_PROT", BOTH, [](const Asked &a) { return line("COMM_PROT " + a.own.protocol); }},
     {"CONFIG", OLD, [](const Asked &) { return line("CONFIG"); }},
-    {"DEBUG", BOTH, debug},
     {"DISPLAY_ANGULAR_UNITS", BOTH,
      [](const Asked &a) {
          return line(fmt::format("DISPLAY_ANGULAR_UNITS {}",
@@ -208,89 +183,66 @@ constexpr Question QUESTIONS[] = {
     {"ECHO", BOTH, [](const Asked &a) { return on_off("ECHO", a.own.isEchoing); }},
     {"ENABLE", BOTH, [](const Asked &a) { return on_off("ENABLE", a.own.isEnabled); }},
     {"ERROR", BOTH, [](const Asked &a) { return operator_line(a, "ERROR", MessageKind::OPERATOR_ERROR); }},
-    {"ESTOP", BOTH,
-     [](const Asked &a) { return on_off("ESTOP", a.status.task.state == messages::State::ESTOP); }},
-    {"FEED_OVERRIDE", BOTH,
-     [](const Asked &a) { return percent(a, "FEED_OVERRIDE", a.status.overrides.feed); }},
-    {"FLOOD", BOTH, [](const Asked &a) { return on_off("FLOOD", a.status.io.coolant.isFloodOn); }},
     {"INI", NEWER, ini_entry},
     {"INIFILE", BOTH, [](const Asked &a) { return line("INIFILE " + ini_path(a.settings)); }},
-    {"JOINT_FAULT", BOTH, joint_fault},
-    {"JOINT_HOMED", BOTH, joint_homed},
-    {"JOINT_LIMIT", BOTH, joint_limit},
-    {"JOINT_POS", BOTH, joint_position},
-    {"JOINT_TYPE", BOTH, joint_type},
-    {"JOINT_UNITS", BOTH, joint_units},
-    {"JOINT_VELOCITY", NEWER, joint_velocity},
-    {"KINEMATICS_TYPE", BOTH,
-     [](const Asked &a) {
-         return line(fmt::format("KINEMATICS_TYPE {}", static_cast<int>(a.status.settings.kinematics)));
-     }},
     {"LINEAR_UNIT_CONVERSION", BOTH,
      [](const Asked &a) {
          return line(fmt::format("LINEAR_UNIT_CONVERSION {}", name_of(a.own.length_unit)));
      }},
-    {"LUBE", BOTH, [](const Asked &a) { return on_off("LUBE", a.status.io.lube.isOn); }},
-    {"LUBE_LEVEL", BOTH,
-     [](const Asked &a) { return line(a.status.io.lube.hasOil ? "LUBE_LEVEL OK" : "LUBE_LEVEL LOW"); }},
-    {"MACHINE", BOTH,
-     [](const Asked &a) { return on_off("MACHINE", a.status.task.state == messages::State::ON); }},
-    {"MIST", BOTH, [](const Asked &a) { return on_off("MIST", a.status.io.coolant.isMistOn); }},
-    {"MODE", BOTH,
-     [](const Asked &a) { return line(fmt::format("MODE {}", mode_name(a.status.task.mode))); }},
+    {"JOINT_VELOCITY", NEWER, joint_velocity},
     {"OPEN", NEWER, program},
     {"OPERATOR_DISPLAY", BOTH,
      [](const Asked &a) { return operator_line(a, "OPERATOR_DISPLAY", MessageKind::OPERATOR_DISPLAY); }},
     {"OPERATOR_TEXT", BOTH,
      [](const Asked &a) { return operator_line(a, "OPERATOR_TEXT", MessageKind::OPERATOR_TEXT); }},
-    {"OPTIONAL_STOP", BOTH,
-     [](const Asked &a) { return flag(a, "OPTIONAL_STOP", a.status.task.isOptionalStop, "1", "0"); }},
-    {"OVERRIDE_LIMITS", BOTH,
-     [](const Asked &a) {
-         return flag(a, "OVERRIDE_LIMITS", a.status.joints[0].isOverridingLimits, "1", "0");
-     }},
     {"PLAT", BOTH, [](const Asked &) { return line("PLAT Linux"); }},
     {"POS_OFFSET", BOTH, position_offset},
-    {"PROBE_TRIPPED", BOTH, probe_tripped},
-    {"PROBE_VALUE", BOTH,
-     [](const Asked &a) { return line(a.status.probe.isOn ? "PROBE_VALUE 1" : "PROBE_VALUE 0"); }},
-    {"PROGRAM", BOTH, program},
     {"PROGRAM_ANGULAR_UNITS", BOTH, [](const Asked &) { return line("PROGRAM_ANGULAR_UNITS DEG"); }},
     {"PROGRAM_CODES", BOTH, program_codes},
-    {"PROGRAM_LINE", BOTH,
-     [](const Asked &a) { return line(fmt::format("PROGRAM_LINE {}", a.status.task.motion_line)); }},
     {"PROGRAM_LINEAR_UNITS", BOTH,
      [](const Asked &a) { return line(fmt::format("PROGRAM_UNITS {}", name_of(program_unit(a.status)))); }},
     {"PROGRAM_STATUS", BOTH, program_status},
     {"PROGRAM_UNITS", BOTH,
      [](const Asked &a) { return line(fmt::format("PROGRAM_UNITS {}", name_of(program_unit(a.status)))); }},
-    {"REL_ACT_POS", BOTH, relative_actual},
-    {"REL_CMD_POS", BOTH, relative_commanded},
     {"SET_WAIT", OLD, wait_mode},
-    {"SPINDLE", BOTH, spindle},
-    {"SPINDLE_OVERRIDE", BOTH, spindle_override},
-    {"TELEOP_ENABLE", BOTH,
-     [](const Asked &a) {
-         return flag(a, "TELEOP_ENABLE", a.status.trajectory.mode == messages::MotionMode::TELEOP, "YES",
-                     "NO");
-     }},
     {"TIME", BOTH, time},
     {"TIMEOUT", BOTH, timeout},
     {"TIMESTAMP", NEWER, [](const Asked &a) { return on_off("TIMESTAMP", a.own.isTimed); }},
-    {"TOOL", BOTH, [](const Asked &a) { return line(fmt::format("TOOL {}", a.status.tool.in_spindle)); }},
     {"TOOL_OFFSET", BOTH, tool_offset},
     {"UPDATE", BOTH, [](const Asked &a) { return line(a.own.isUpdating ? "UPDATE AUTO" : "UPDATE NONE"); }},
     {"USER_ANGULAR_UNITS", BOTH,
      [](const Asked &a) {
-         return line("USER_ANGULAR_UNITS " + name_of_angle(a.status.settings.angular_units));
+         return line("USER_ANGULAR_UNITS " + legacy::name_of_angle(a.status.settings.angular_units));
      }},
     {"USER_LINEAR_UNITS", BOTH,
      [](const Asked &a) {
-         return line("USER_LINEAR_UNITS " + name_of_length(a.status.settings.linear_units));
+         return line("USER_LINEAR_UNITS " + legacy::name_of_length(a.status.settings.linear_units));
      }},
     {"VERBOSE", BOTH, [](const Asked &a) { return on_off("VERBOSE", a.own.isVerbose); }},
     {"WAIT_MODE", NEWER, wait_mode},
 };
+
+constexpr auto OF_STATUS = legacy::from_rows<legacy::STATUS, &legacy::Names::rsh>(
+    []<std::size_t I>() { return Question{std::get<I>(legacy::STATUS).names.rsh, BOTH, status_answer<I>}; });
+constexpr auto OF_SPINDLES =
+    legacy::from_rows<legacy::SPINDLE_STATUS, &legacy::Names::rsh>([]<std::size_t I>() {
+        return Question{std::get<I>(legacy::SPINDLE_STATUS).names.rsh, BOTH, spindle_answer<I>};
+    });
+
+/// All, in alphabetical order, as HELP lists them.
+const std::vector<Question> &questions() {
+    static const std::vector<Question> ALL = [] {
+        std::vector<Question> all(std::begin(QUESTIONS), std::end(QUESTIONS));
+        all.insert(all.end(), OF_STATUS.begin(), OF_STATUS.end());
+        all.insert(all.end(), OF_SPINDLES.begin(), OF_SPINDLES.end());
+        for (const auto &[name, answering] : joint_answers()) {
+            all.push_back({name, BOTH, answering});
+        }
+        std::ranges::sort(all, {}, [](const Question &one) { return std::string_view(one.name); });
+        return all;
+    }();
+    return ALL;
+}
 
 bool isSpoken(const Question &question, const Settings &settings) {
     return question.dialect != (settings.isOld() ? NEWER : OLD);
@@ -299,7 +251,7 @@ bool isSpoken(const Question &question, const Settings &settings) {
 }  // namespace
 
 Answering answering(const Settings &settings, const std::string &name) {
-    for (const Question &question : QUESTIONS) {
+    for (const Question &question : questions()) {
         if (question.name == name && isSpoken(question, settings)) {
             return question.answering;
         }
@@ -309,7 +261,7 @@ Answering answering(const Settings &settings, const std::string &name) {
 
 std::vector<std::string> question_names(const Settings &settings) {
     std::vector<std::string> names;
-    for (const Question &question : QUESTIONS) {
+    for (const Question &question : questions()) {
         if (isSpoken(question, settings)) {
             names.emplace_back(question.name);
         }

@@ -8,6 +8,7 @@
 #include "clients/rsh/own_state.hh"
 #include "clients/rsh/settings.hh"
 #include "clients/rsh/words.hh"
+#include "messages/legacy/status_table.hh"
 
 namespace mw::rsh {
 
@@ -18,6 +19,10 @@ struct Asked {
     const messages::MachineStatus &status;
     const Words &words;  ///< behind the name of the question
 };
+
+inline legacy::Dialect dialect(const Asked &asked) {
+    return asked.settings.isOld() ? legacy::Dialect::OLD_RSH : legacy::Dialect::RSH;
+}
 
 /// The lines of the answer.
 using Answer = Result<std::vector<std::string>>;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "clients/rsh/axis_answers.hh"
 
-#include <cmath>
-#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
@@ -54,54 +52,46 @@ Answer of_joints(const Asked &asked, const char *name, const char *blank, const 
     }
     return list(name, isOld ? OLD_COUNT : asked.settings.num_joints, one, isOld ? blank : " ", [&](int i) {
         const auto place = static_cast<std::size_t>(i);
-        return std::string(each(asked.status.joints[place], asked.status.settings.joints[place]));
+        return each(legacy::Joint{asked.status.joints[place], asked.status.settings.joints[place]});
     });
 }
 
 /// 2.9 tells machine units whatever conversion was set.
 double factor(const Asked &asked, bool isAngular) {
     return asked.settings.isOld() ? 1
-           : isAngular            ? angle_factor(asked.own, asked.status)
-                                  : length_factor(asked.own, asked.status);
+           : isAngular            ? angle_factor(asked.own.angle_unit, asked.status)
+                                  : length_factor(asked.own.length_unit, asked.status);
 }
 
 double factor_of_axis(const Asked &asked, int axis) {
     return factor(asked, geometry::isAngular(axis));
 }
 
-Answer pose(const Asked &asked, const char *name, const geometry::Pose &pose) {
-    return of_axes(asked, name,
-                   [&](int axis) { return fmt::format("{:f}", pose[axis] * factor_of_axis(asked, axis)); });
+/// A row of the table of joints.
+template <std::size_t I>
+Answer joint_answer(const Asked &asked) {
+    using legacy::Form;
+    constexpr const auto &ROW = std::get<I>(legacy::JOINT_STATUS);
+    const char *const blank = ROW.form == Form::TYPE ? "  " : " ";
+    return of_joints(asked, ROW.names.rsh, blank, [&](const legacy::Joint &joint) {
+        if constexpr (ROW.form == Form::LENGTH) {
+            return fmt::format("{:f}", ROW.get(joint) * factor(asked, joint.isAngular()));
+        } else {
+            return legacy::text(ROW.form, dialect(asked), ROW.get(joint));
+        }
+    });
 }
 
-/// Of the program: without the offsets that are in force.
-geometry::Pose relative(const Asked &asked, const geometry::Pose &absolute) {
-    const messages::OffsetsStatus &offsets = asked.status.offsets;
-    geometry::Pose pose = absolute - offsets.g5x - offsets.tool;
-    const double angle = -offsets.rotation_xy_deg * std::numbers::pi / 180;
-    const double x = pose.x(), y = pose.y();
-    pose[geometry::AXIS_X] = x * std::cos(angle) - y * std::sin(angle);
-    pose[geometry::AXIS_Y] = x * std::sin(angle) + y * std::cos(angle);
-    return pose - offsets.g92;
-}
-
-double factor_of_joint(const Asked &asked, const messages::JointSettings &set) {
-    return factor(asked, set.kind == messages::JointKind::ANGULAR);
-}
+constexpr auto JOINT_ANSWERS =
+    legacy::from_rows<legacy::JOINT_STATUS, &legacy::Names::rsh>([]<std::size_t I>() {
+        return NamedAnswer{std::get<I>(legacy::JOINT_STATUS).names.rsh, joint_answer<I>};
+    });
 
 }  // namespace
 
-Answer absolute_actual(const Asked &asked) {
-    return pose(asked, "ABS_ACT_POS", asked.status.trajectory.position_fb);
-}
-Answer absolute_commanded(const Asked &asked) {
-    return pose(asked, "ABS_CMD_POS", asked.status.trajectory.position_cmd);
-}
-Answer relative_actual(const Asked &asked) {
-    return pose(asked, "REL_ACT_POS", relative(asked, asked.status.trajectory.position_fb));
-}
-Answer relative_commanded(const Asked &asked) {
-    return pose(asked, "REL_CMD_POS", relative(asked, asked.status.trajectory.position_cmd));
+Answer pose(const Asked &asked, const char *name, const geometry::Pose &pose) {
+    return of_axes(asked, name,
+                   [&](int axis) { return fmt::format("{:f}", pose[axis] * factor_of_axis(asked, axis)); });
 }
 
 Answer axis_velocity(const Asked &asked) {
@@ -130,55 +120,14 @@ Answer position_offset(const Asked &asked) {
                                    offset[axis] * factor_of_axis(asked, axis))};
 }
 
-Answer joint_fault(const Asked &asked) {
-    return of_joints(asked, "JOINT_FAULT", " ", [](const messages::JointStatus &joint, const auto &) {
-        return joint.isFaulted || joint.isFerrorTripped ? "FAULT" : "OK";
-    });
-}
-
-Answer joint_homed(const Asked &asked) {
-    return of_joints(asked, "JOINT_HOMED", " ", [](const messages::JointStatus &joint, const auto &) {
-        return joint.isHomed ? "YES" : "NO";
-    });
-}
-
-Answer joint_limit(const Asked &asked) {
-    return of_joints(asked, "JOINT_LIMIT", " ", [](const messages::JointStatus &joint, const auto &) {
-        return joint.isOnNegHardLimit   ? "MINHARD"
-               : joint.isOnNegSoftLimit ? "MINSOFT"
-               : joint.isOnPosSoftLimit ? "MAXSOFT"
-               : joint.isOnPosHardLimit ? "MAXHARD"
-                                        : "OK";
-    });
-}
-
-Answer joint_position(const Asked &asked) {
-    return of_joints(asked, "JOINT_POS", " ",
-                     [&](const messages::JointStatus &joint, const messages::JointSettings &set) {
-                         return fmt::format("{:f}", joint.pos_fb * factor_of_joint(asked, set));
-                     });
-}
-
-Answer joint_type(const Asked &asked) {
-    return of_joints(asked, "JOINT_TYPE", "  ", [](const auto &, const messages::JointSettings &set) {
-        return set.kind == messages::JointKind::ANGULAR ? "ANGULAR" : "LINEAR";
-    });
-}
-
-Answer joint_units(const Asked &asked) {
-    return of_joints(asked, "JOINT_UNITS", "  ",
-                     [](const messages::JointStatus &joint, const messages::JointSettings &set) {
-                         const double units = joint.isPresent ? set.units : 1.0;
-                         return set.kind == messages::JointKind::ANGULAR ? name_of_angle(units)
-                                                                         : name_of_length(units);
-                     });
-}
-
 Answer joint_velocity(const Asked &asked) {
-    return of_joints(asked, "JOINT_VELOCITY", " ",
-                     [&](const messages::JointStatus &joint, const messages::JointSettings &set) {
-                         return fmt::format("{:f}", joint.vel_cmd * factor_of_joint(asked, set));
-                     });
+    return of_joints(asked, "JOINT_VELOCITY", " ", [&](const legacy::Joint &joint) {
+        return fmt::format("{:f}", joint.now.vel_cmd * factor(asked, joint.isAngular()));
+    });
+}
+
+std::span<const NamedAnswer> joint_answers() {
+    return JOINT_ANSWERS;
 }
 
 }  // namespace mw::rsh

@@ -2,22 +2,23 @@
 // Answers about axes and joints: of all, or of the one that is named.
 #pragma once
 
+#include <span>
+
 #include "clients/rsh/answers.hh"
 
 namespace mw::rsh {
 
-Answer absolute_actual(const Asked &asked);
-Answer absolute_commanded(const Asked &asked);
-Answer relative_actual(const Asked &asked);
-Answer relative_commanded(const Asked &asked);
+struct NamedAnswer {
+    const char *name;
+    Answering answering;
+};
+/// Of legacy::JOINT_STATUS.
+std::span<const NamedAnswer> joint_answers();
+
+/// The position of all axes, or of the one that is requested.
+Answer pose(const Asked &asked, const char *name, const geometry::Pose &pose);
 Answer axis_velocity(const Asked &asked);
 Answer position_offset(const Asked &asked);
-Answer joint_fault(const Asked &asked);
-Answer joint_homed(const Asked &asked);
-Answer joint_limit(const Asked &asked);
-Answer joint_position(const Asked &asked);
-Answer joint_type(const Asked &asked);
-Answer joint_units(const Asked &asked);
 Answer joint_velocity(const Asked &asked);
 
 }  // namespace mw::rsh

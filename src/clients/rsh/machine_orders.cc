@@ -7,13 +7,13 @@
 
 #include "base/text.hh"
 #include "clients/nml/message/wire_table.hh"
+#include "messages/legacy/units.hh"
 
 namespace mw::rsh {
 namespace {
 
 /// Of a spindle for which no speed was programmed. [rev/min]
 constexpr double PRESET_SPEED = 500;
-constexpr double PERCENT = 100;
 
 const char *phrase(messages::Mode mode) {
     switch (mode) {
@@ -240,7 +240,7 @@ Result<Waiting> set_spindle_override(const Ordered &o) {
         return std::unexpected(percent.error());
     }
     return for_spindles(o, *spindle,
-                        [&](int i) { return messages::SetSpindleOverride{*percent / PERCENT, i}; });
+                        [&](int i) { return messages::SetSpindleOverride{legacy::factor(*percent), i}; });
 }
 
 Result<Waiting> load_tool_table(const Ordered &o) {

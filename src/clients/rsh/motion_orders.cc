@@ -7,12 +7,11 @@
 
 #include "base/text.hh"
 #include "clients/rsh/machine_orders.hh"
-#include "messages/client/jog_speed.hh"
+#include "messages/legacy/units.hh"
 
 namespace mw::rsh {
 namespace {
 
-constexpr double PERCENT = 100;
 /// Until a joint that was asked to home has begun.
 constexpr double PATIENCE_S = 2;
 
@@ -104,7 +103,7 @@ Result<Waiting> jog(const Ordered &o) {
     if (isNoTimeToJog(o)) {
         return Waiting{};
     }
-    const auto serial = o.commander.jog(*target, client::per_second(*speed));
+    const auto serial = o.commander.jog(*target, legacy::per_second(*speed));
     return serial.has_value() ? Result<Waiting>(Waiting{Until::TAKEN, {*serial}, {}, false})
                               : std::unexpected(serial.error());
 }
@@ -120,7 +119,7 @@ Result<Waiting> jog_increment(const Ordered &o) {
     if (isNoTimeToJog(o)) {
         return Waiting{};
     }
-    const double velocity = client::per_second(*speed);
+    const double velocity = legacy::per_second(*speed);
     return ask(o,
                messages::JogIncrement{target->isJoint, target->index, std::abs(velocity),
                                       velocity < 0 ? -*distance : *distance},
@@ -151,7 +150,7 @@ Result<Waiting> set_teleop(const Ordered &o) {
 
 Result<Waiting> set_feed_override(const Ordered &o) {
     const auto percent = number(word(o, 0), "percentage");
-    return percent.has_value() ? ask(o, messages::SetFeedOverride{*percent / PERCENT})
+    return percent.has_value() ? ask(o, messages::SetFeedOverride{legacy::factor(*percent)})
                                : std::unexpected(percent.error());
 }
 

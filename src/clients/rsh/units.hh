@@ -8,18 +8,14 @@
 
 namespace mw::rsh {
 
-/// "INCH", "MM", "CM" or "CUSTOM" for so many machine units in a millimetre.
-std::string name_of_length(double units_per_mm);
-/// "DEG", "RAD", "GRAD" or "CUSTOM".
-std::string name_of_angle(double units_per_deg);
 /// Of the program: G20 or G21.
 LengthUnit program_unit(const messages::MachineStatus &status);
 /// What AUTO means now.
 LengthUnit shown_unit(const OwnState &own, const messages::MachineStatus &status);
 /// By which machine lengths, and angles, are multiplied to be told: with AUTO they stay what they are, so
 /// that a program's G20 does not change what a client reads.
-double length_factor(const OwnState &own, const messages::MachineStatus &status);
-double angle_factor(const OwnState &own, const messages::MachineStatus &status);
+double length_factor(LengthUnit unit, const messages::MachineStatus &status);
+double angle_factor(AngleUnit unit, const messages::MachineStatus &status);
 
 const char *name_of(LengthUnit unit);
 const char *name_of(AngleUnit unit);

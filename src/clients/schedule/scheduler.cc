@@ -6,12 +6,12 @@
 
 #include <fmt/format.h>
 
+#include "messages/legacy/units.hh"
+
 namespace mw::schedule {
 namespace {
 
 using messages::Progress;
-
-constexpr double PERCENT = 100;
 
 /// Zones 1 to 9.
 constexpr std::array<const char *, 9> SYSTEMS{"G54", "G55",   "G56",   "G57",  "G58",
@@ -52,9 +52,9 @@ std::deque<messages::Command> commands_for(const Job &job, const std::string &fo
         commands.emplace_back(messages::Mdi{"G43"});
     }
     commands.emplace_back(messages::Mdi{origin_of(job)});
-    commands.emplace_back(messages::SetFeedOverride{job.feed_percent / PERCENT});
+    commands.emplace_back(messages::SetFeedOverride{legacy::factor(job.feed_percent)});
     for (int spindle = 0; spindle < status.trajectory.num_spindles; ++spindle) {
-        commands.emplace_back(messages::SetSpindleOverride{job.spindle_percent / PERCENT, spindle});
+        commands.emplace_back(messages::SetSpindleOverride{legacy::factor(job.spindle_percent), spindle});
     }
     commands.emplace_back(messages::SetMode{messages::Mode::AUTO});
     commands.emplace_back(messages::OpenProgram{path.string()});

@@ -19,7 +19,7 @@ struct CommandRow {
     Handler handler;
 };
 
-/// What a machine tells.
+/// Values of the status; some also set it.
 std::span<const CommandRow> questions();
 /// What it is asked for; without words most of them tell how it is.
 std::span<const CommandRow> orders();

@@ -6,18 +6,14 @@
 
 #include "base/text.hh"
 #include "clients/tcl/commands.hh"
-#include "messages/client/jog_speed.hh"
+#include "messages/legacy/forms.hh"
+#include "messages/legacy/units.hh"
 
 namespace mw::tcl {
 namespace {
 
 using Text = Result<std::string>;
 
-constexpr double PERCENT = 100;
-
-std::string on_off(bool isOn) {
-    return isOn ? "on" : "off";
-}
 std::string digit(bool isOn) {
     return isOn ? "1" : "0";
 }
@@ -28,24 +24,6 @@ Result<int> whole(const Words &words, std::size_t place, const char *what) {
     return isWhole ? Result<int>(static_cast<int>(*value))
                    : fail(fmt::format("{} is a whole number, not '{}'", what,
                                       words.size() > place ? printable(words[place]) : ""));
-}
-
-/// Without words `now`; else the order.
-Text told_or_asked(Shell &shell, const Words &words, const std::string &now, const char *order) {
-    return words.empty() ? Text(now) : shell.ask(order, words);
-}
-
-/// The same of 0 and 1, which linuxcncrsh takes for ON and OFF as well.
-Text switched(Shell &shell, const Words &words, bool isOn, const char *order) {
-    return told_or_asked(shell, words, digit(isOn), order);
-}
-
-Text mode(Shell &shell, const Words &words) {
-    const auto now = shell.status().task.mode;
-    const char *const name = now == messages::Mode::AUTO  ? "auto"
-                             : now == messages::Mode::MDI ? "mdi"
-                                                          : "manual";
-    return told_or_asked(shell, words, name, "MODE");
 }
 
 /// The words of an order that may end with the number of a spindle; without one it is the first.
@@ -78,7 +56,7 @@ Text brake(Shell &shell, const Words &words) {
     if (!asked.has_value()) {
         return std::unexpected(asked.error());
     }
-    return asked->order.empty() ? Text(on_off(spindle_at(shell, asked->spindle).isBrakeOn))
+    return asked->order.empty() ? Text(spindle_at(shell, asked->spindle).isBrakeOn ? "on" : "off")
                                 : shell.ask("BRAKE", {asked->order[0], std::to_string(asked->spindle)});
 }
 
@@ -95,7 +73,7 @@ Text spindle(Shell &shell, const Words &words) {
 }
 
 std::string percent(double factor) {
-    return std::to_string(std::lround(factor * PERCENT));
+    return legacy::text(legacy::Form::PERCENT, legacy::Dialect::TCL, factor);
 }
 
 Text rapid_override(Shell &shell, const Words &words) {
@@ -103,17 +81,13 @@ Text rapid_override(Shell &shell, const Words &words) {
         return percent(shell.status().overrides.rapid);
     }
     const auto value = parse_double(words[0]);
-    return value.has_value() && *value >= 0 ? shell.send(messages::SetRapidOverride{*value / PERCENT})
+    return value.has_value() && *value >= 0 ? shell.send(messages::SetRapidOverride{legacy::factor(*value)})
                                             : fail("a percentage is a number from 0 on");
 }
 
 Text spindle_override(Shell &shell, const Words &words) {
     return words.empty() ? Text(percent(spindle_at(shell, 0).override_factor))
                          : shell.ask("SPINDLE_OVERRIDE", words);
-}
-
-Text debug(Shell &shell, const Words &words) {
-    return told_or_asked(shell, words, std::to_string(shell.status().settings.debug), "DEBUG");
 }
 
 struct Target {
@@ -138,7 +112,7 @@ Result<Target> target(const Words &words) {
         if (!speed.has_value()) {
             return fail(fmt::format("a speed is a number, not '{}'", printable(words[SPEED])));
         }
-        out.velocity = client::per_second(*speed);
+        out.velocity = legacy::per_second(*speed);
     }
     return out;
 }
@@ -219,19 +193,6 @@ Text joint_load_comp(Shell &shell, const Words &words) {
 constexpr CommandRow ROWS[] = {
     {"emc_abort", 0, 0, "", [](Shell &s, const Words &) { return s.ask("ABORT"); }},
     {"emc_brake", 0, 2, "[on|off] [spindle]", brake},
-    {"emc_debug", 0, 1, "[bits]", debug},
-    {"emc_estop", 0, 1, "[on|off]",
-     [](Shell &s, const Words &w) {
-         return told_or_asked(s, w, on_off(s.status().task.state == messages::State::ESTOP), "ESTOP");
-     }},
-    {"emc_feed_override", 0, 1, "[percent]",
-     [](Shell &s, const Words &w) {
-         return told_or_asked(s, w, percent(s.status().overrides.feed), "FEED_OVERRIDE");
-     }},
-    {"emc_flood", 0, 1, "[on|off]",
-     [](Shell &s, const Words &w) {
-         return told_or_asked(s, w, on_off(s.status().io.coolant.isFloodOn), "FLOOD");
-     }},
     {"emc_home", 1, 1, "joint|-1", home},
     {"emc_jog", 3, 3, "number joint-jog speed", jog},
     {"emc_jog_incr", 4, 4, "number joint-jog speed distance", jog_increment},
@@ -241,27 +202,8 @@ constexpr CommandRow ROWS[] = {
     {"emc_joint_load_comp", 3, 3, "joint file type", joint_load_comp},
     {"emc_load_tool_table", 0, 1, "[file]",
      [](Shell &s, const Words &w) { return s.ask("LOAD_TOOL_TABLE", w); }},
-    {"emc_lube", 0, 1, "[on|off]",
-     [](Shell &s, const Words &w) { return told_or_asked(s, w, on_off(s.status().io.lube.isOn), "LUBE"); }},
-    {"emc_machine", 0, 1, "[on|off]",
-     [](Shell &s, const Words &w) {
-         return told_or_asked(s, w, on_off(s.status().task.state == messages::State::ON), "MACHINE");
-     }},
     {"emc_mdi", 1, 100, "line", [](Shell &s, const Words &w) { return s.ask("MDI", w); }},
-    {"emc_mist", 0, 1, "[on|off]",
-     [](Shell &s, const Words &w) {
-         return told_or_asked(s, w, on_off(s.status().io.coolant.isMistOn), "MIST");
-     }},
-    {"emc_mode", 0, 1, "[manual|auto|mdi]", mode},
     {"emc_open", 1, 1, "file", open},
-    {"emc_optional_stop", 0, 1, "[0|1]",
-     [](Shell &s, const Words &w) {
-         return switched(s, w, s.status().task.isOptionalStop, "OPTIONAL_STOP");
-     }},
-    {"emc_override_limit", 0, 1, "[0|1]",
-     [](Shell &s, const Words &w) {
-         return switched(s, w, s.status().joints[0].isOverridingLimits, "OVERRIDE_LIMITS");
-     }},
     {"emc_pause", 0, 0, "", [](Shell &s, const Words &) { return s.ask("PAUSE"); }},
     {"emc_probe_clear", 0, 0, "", [](Shell &s, const Words &) { return s.ask("PROBE_CLEAR"); }},
     {"emc_probe_move", 3, 3, "x y z", [](Shell &s, const Words &w) { return s.ask("PROBE", w); }},
@@ -274,10 +216,6 @@ constexpr CommandRow ROWS[] = {
     {"emc_spindle_override", 0, 2, "[[spindle] percent]", spindle_override},
     {"emc_step", 0, 0, "", [](Shell &s, const Words &) { return s.ask("STEP"); }},
     {"emc_task_plan_init", 0, 0, "", [](Shell &s, const Words &) { return s.ask("TASK_PLAN_INIT"); }},
-    {"emc_teleop_enable", 0, 1, "[0|1]",
-     [](Shell &s, const Words &w) {
-         return switched(s, w, s.status().trajectory.mode == messages::MotionMode::TELEOP, "TELEOP_ENABLE");
-     }},
     {"emc_unhome", 1, 1, "joint|-1|-2", unhome},
 };
 

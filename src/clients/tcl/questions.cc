@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include <iterator>
+#include <vector>
+
 #include <fmt/format.h>
 
 #include "base/text.hh"
 #include "clients/rsh/units.hh"
 #include "clients/tcl/commands.hh"
+#include "messages/legacy/status_table.hh"
+#include "messages/legacy/units.hh"
 
 namespace mw::tcl {
 namespace {
 
 using Text = Result<std::string>;
-
-constexpr double MM_PER_INCH = 25.4;
 
 /// As Tcl writes a floating-point number; digits that conversions of units have made up are left out.
 std::string number(double value) {
@@ -20,19 +23,12 @@ std::string number(double value) {
 
 /// From machine units to those that are shown: with AUTO those of the program.
 double shown_length(const Shell &shell) {
-    const double mm = 1 / shell.status().settings.linear_units;
-    switch (rsh::shown_unit(shell.own, shell.status())) {
-    case rsh::LengthUnit::INCH: return mm / MM_PER_INCH;
-    case rsh::LengthUnit::MM: return mm;
-    case rsh::LengthUnit::CM: return mm / 10;
-    case rsh::LengthUnit::AUTO:
-    case rsh::LengthUnit::CUSTOM: break;
-    }
-    return 1;
+    return rsh::length_factor(rsh::shown_unit(shell.own, shell.status()), shell.status());
 }
 
 double factor_of_axis(const Shell &shell, int axis) {
-    return geometry::isAngular(axis) ? rsh::angle_factor(shell.own, shell.status()) : shown_length(shell);
+    return geometry::isAngular(axis) ? rsh::angle_factor(shell.own.angle_unit, shell.status())
+                                     : shown_length(shell);
 }
 
 Result<int> letter(const Words &words) {
@@ -56,36 +52,6 @@ Result<std::size_t> joint(const Words &words) {
                                       words.empty() ? "" : printable(words[0]), MAX_JOINTS - 1));
 }
 
-/// What is told of a joint.
-template <class Tell>
-Text of_joint(Shell &shell, const Words &words, const Tell &tell) {
-    const auto index = joint(words);
-    if (!index.has_value()) {
-        return std::unexpected(index.error());
-    }
-    return Text(tell(shell.status().joints[*index], shell.status().settings.joints[*index]));
-}
-
-std::string limit_of(const messages::JointStatus &joint) {
-    return joint.isOnNegHardLimit   ? "minhard"
-           : joint.isOnNegSoftLimit ? "minsoft"
-           : joint.isOnPosSoftLimit ? "maxsoft"
-           : joint.isOnPosHardLimit ? "maxhard"
-                                    : "ok";
-}
-
-std::string kind_of(const messages::JointSettings &set) {
-    return set.kind == messages::JointKind::ANGULAR ? "angular" : "linear";
-}
-
-Text unit_of_joint(Shell &shell, const Words &words) {
-    return of_joint(shell, words, [](const messages::JointStatus &joint, const messages::JointSettings &set) {
-        const double units = joint.isPresent ? set.units : 1.0;
-        return to_lower(set.kind == messages::JointKind::ANGULAR ? rsh::name_of_angle(units)
-                                                                 : rsh::name_of_length(units));
-    });
-}
-
 /// An answer of linuxcncrsh in small letters.
 template <class Name>
 Text lower(Shell &shell, const Name &question, const Words &words = {}) {
@@ -104,14 +70,10 @@ Text relative(Shell &shell, const Words &words, const char *question) {
     if (!value.has_value()) {
         return text;
     }
-    const double told = geometry::isAngular(*axis) ? rsh::angle_factor(shell.own, shell.status())
-                                                   : rsh::length_factor(shell.own, shell.status());
+    const double told = geometry::isAngular(*axis)
+                            ? rsh::angle_factor(shell.own.angle_unit, shell.status())
+                            : rsh::length_factor(shell.own.length_unit, shell.status());
     return number(*value / told * factor_of_axis(shell, *axis));
-}
-
-Text program(Shell &shell, const Words &) {
-    const std::string path = shell.status().task.program.str();
-    return path.empty() ? "none" : path;
 }
 
 Text program_status(Shell &shell, const Words &) {
@@ -157,13 +119,51 @@ Text next_line(Shell &shell, const Words &) {
     return shell.next_line(KIND).value_or("ok");
 }
 
-constexpr const char *LETTER = "letter", *JOINT = "joint";
+constexpr const char *LETTER = "letter";
+
+/// A row of the table of the status.
+template <std::size_t I>
+Text status_text(Shell &shell, const Words &words) {
+    constexpr const auto &ROW = std::get<I>(legacy::STATUS);
+    const auto value = ROW.get(shell.status());
+    if constexpr (ROW.form == legacy::Form::POSE) {
+        return of_pose(shell, words, value);
+    } else {
+        const bool isOrder = legacy::isNamed(ROW.names.tcl_order) && !words.empty();
+        return isOrder ? shell.ask(ROW.names.rsh, words)
+                       : Text(legacy::text(ROW.form, legacy::Dialect::TCL, value));
+    }
+}
+
+template <std::size_t I>
+Text joint_text(Shell &shell, const Words &words) {
+    constexpr const auto &ROW = std::get<I>(legacy::JOINT_STATUS);
+    const auto index = joint(words);
+    if (!index.has_value()) {
+        return std::unexpected(index.error());
+    }
+    const messages::MachineStatus &status = shell.status();
+    const legacy::Joint one{status.joints[*index], status.settings.joints[*index]};
+    if constexpr (ROW.form == legacy::Form::LENGTH) {
+        const double factor =
+            one.isAngular() ? rsh::angle_factor(shell.own.angle_unit, status) : shown_length(shell);
+        return number(ROW.get(one) * factor);
+    } else {
+        return legacy::text(ROW.form, legacy::Dialect::TCL, ROW.get(one));
+    }
+}
+
+constexpr auto OF_STATUS = legacy::from_rows<legacy::STATUS, &legacy::Names::tcl>([]<std::size_t I>() {
+    constexpr const auto &ROW = std::get<I>(legacy::STATUS);
+    constexpr bool POSE = ROW.form == legacy::Form::POSE;
+    const int most = POSE || legacy::isNamed(ROW.names.tcl_order) ? 1 : 0;
+    return CommandRow{ROW.names.tcl, POSE ? 1 : 0, most, POSE ? LETTER : ROW.names.tcl_order, status_text<I>};
+});
+constexpr auto OF_JOINTS = legacy::from_rows<legacy::JOINT_STATUS, &legacy::Names::tcl>([]<std::size_t I>() {
+    return CommandRow{std::get<I>(legacy::JOINT_STATUS).names.tcl, 1, 1, "joint", joint_text<I>};
+});
 
 constexpr CommandRow ROWS[] = {
-    {"emc_abs_act_pos", 1, 1, LETTER,
-     [](Shell &s, const Words &w) { return of_pose(s, w, s.status().trajectory.position_fb); }},
-    {"emc_abs_cmd_pos", 1, 1, LETTER,
-     [](Shell &s, const Words &w) { return of_pose(s, w, s.status().trajectory.position_cmd); }},
     {"emc_display_angular_units", 0, 0, "", shown_angles},
     {"emc_display_linear_units", 0, 0, "", shown_units},
     {"emc_error", 0, 0, "", next_line<messages::MessageKind::OPERATOR_ERROR>},
@@ -172,56 +172,13 @@ constexpr CommandRow ROWS[] = {
     {"emc_io_command_status", 0, 0, "", last_progress},
     {"emc_io_heartbeat", 0, 0, "",
      [](Shell &s, const Words &) { return Text(std::to_string(s.status().cycle)); }},
-    {"emc_joint_fault", 1, 1, JOINT,
-     [](Shell &s, const Words &w) {
-         return of_joint(s, w, [](const messages::JointStatus &j, const auto &) {
-             return std::string(j.isFaulted || j.isFerrorTripped ? "fault" : "ok");
-         });
-     }},
-    {"emc_joint_homed", 1, 1, JOINT,
-     [](Shell &s, const Words &w) {
-         return of_joint(s, w, [](const messages::JointStatus &j, const auto &) {
-             return std::string(j.isHomed ? "homed" : "not");
-         });
-     }},
-    {"emc_joint_limit", 1, 1, JOINT,
-     [](Shell &s, const Words &w) {
-         return of_joint(s, w, [](const messages::JointStatus &j, const auto &) { return limit_of(j); });
-     }},
-    {"emc_joint_pos", 1, 1, JOINT,
-     [](Shell &s, const Words &w) {
-         return of_joint(s, w, [&s](const messages::JointStatus &j, const messages::JointSettings &set) {
-             const bool isAngular = set.kind == messages::JointKind::ANGULAR;
-             return number(j.pos_fb * (isAngular ? rsh::angle_factor(s.own, s.status()) : shown_length(s)));
-         });
-     }},
-    {"emc_joint_type", 1, 1, JOINT,
-     [](Shell &s, const Words &w) {
-         return of_joint(s, w, [](const auto &, const messages::JointSettings &set) { return kind_of(set); });
-     }},
-    {"emc_joint_units", 1, 1, JOINT, unit_of_joint},
-    {"emc_kinematics_type", 0, 0, "", [](Shell &s, const Words &) { return lower(s, "KINEMATICS_TYPE"); }},
-    {"emc_lube_level", 0, 0, "", [](Shell &s, const Words &) { return lower(s, "LUBE_LEVEL"); }},
     {"emc_motion_command", 0, 0, "", last_kind},
     {"emc_motion_command_number", 0, 0, "", last_number},
     {"emc_motion_command_status", 0, 0, "", last_progress},
-    {"emc_motion_heartbeat", 0, 0, "",
-     [](Shell &s, const Words &) { return Text(std::to_string(s.status().motion.cycle)); }},
     {"emc_operator_display", 0, 0, "", next_line<messages::MessageKind::OPERATOR_DISPLAY>},
     {"emc_operator_text", 0, 0, "", next_line<messages::MessageKind::OPERATOR_TEXT>},
-    {"emc_pos_offset", 1, 1, LETTER,
-     [](Shell &s, const Words &w) { return of_pose(s, w, s.status().offsets.g5x + s.status().offsets.g92); }},
-    {"emc_probe_tripped", 0, 0, "",
-     [](Shell &s, const Words &) { return Text(s.status().probe.isTripped ? "1" : "0"); }},
-    {"emc_probe_value", 0, 0, "",
-     [](Shell &s, const Words &) { return Text(s.status().probe.isOn ? "1" : "0"); }},
-    {"emc_probed_pos", 1, 1, LETTER,
-     [](Shell &s, const Words &w) { return of_pose(s, w, s.status().probe.position); }},
-    {"emc_program", 0, 0, "", program},
     {"emc_program_angular_units", 0, 0, "", [](Shell &, const Words &) { return Text("deg"); }},
     {"emc_program_codes", 0, 0, "", [](Shell &s, const Words &) { return s.told("PROGRAM_CODES"); }},
-    {"emc_program_line", 0, 0, "",
-     [](Shell &s, const Words &) { return Text(std::to_string(s.status().task.motion_line)); }},
     {"emc_program_linear_units", 0, 0, "",
      [](Shell &s, const Words &) { return Text(to_lower(rsh::name_of(rsh::program_unit(s.status())))); }},
     {"emc_program_status", 0, 0, "", program_status},
@@ -230,10 +187,6 @@ constexpr CommandRow ROWS[] = {
     {"emc_task_command", 0, 0, "", last_kind},
     {"emc_task_command_number", 0, 0, "", last_number},
     {"emc_task_command_status", 0, 0, "", last_progress},
-    {"emc_task_heartbeat", 0, 0, "",
-     [](Shell &s, const Words &) { return Text(std::to_string(s.status().cycle)); }},
-    {"emc_tool", 0, 0, "",
-     [](Shell &s, const Words &) { return Text(std::to_string(s.status().tool.in_spindle)); }},
     {"emc_tool_offset", 0, 1, "[letter]",
      [](Shell &s, const Words &w) {
          return of_pose(s, w.empty() ? Words{"Z"} : w, s.status().offsets.tool);
@@ -247,7 +200,13 @@ constexpr CommandRow ROWS[] = {
 }  // namespace
 
 std::span<const CommandRow> questions() {
-    return ROWS;
+    static const std::vector<CommandRow> ALL = [] {
+        std::vector<CommandRow> all(std::begin(ROWS), std::end(ROWS));
+        all.insert(all.end(), OF_STATUS.begin(), OF_STATUS.end());
+        all.insert(all.end(), OF_JOINTS.begin(), OF_JOINTS.end());
+        return all;
+    }();
+    return ALL;
 }
 
 }  // namespace mw::tcl

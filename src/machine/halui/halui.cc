@@ -7,23 +7,6 @@
 namespace mw::halui {
 namespace {
 
-/// A machine position in the coordinates of programs.
-geometry::Pose relative_position(const messages::MachineStatus &status) {
-    constexpr double RAD_PER_DEG = 3.14159265358979323846 / 180.0;
-    geometry::Pose place = status.trajectory.position_cmd;
-    for (int axis = 0; axis < geometry::AXIS_COUNT; ++axis) {
-        place[axis] -= status.offsets.tool[axis] + status.offsets.g5x[axis];
-    }
-    const double angle = -status.offsets.rotation_xy_deg * RAD_PER_DEG;
-    const double x = place[0], y = place[1];
-    place[0] = x * std::cos(angle) - y * std::sin(angle);
-    place[1] = x * std::sin(angle) + y * std::cos(angle);
-    for (int axis = 0; axis < geometry::AXIS_COUNT; ++axis) {
-        place[axis] -= status.offsets.g92[axis];
-    }
-    return place;
-}
-
 bool isStop(const messages::Command &command) {
     const auto *state = std::get_if<messages::SetState>(&command);
     const bool isOff = state != nullptr && state->state != messages::State::ON;
@@ -301,9 +284,11 @@ void Halui::show() {
     }
     lamps_.write(Shown{status, joint_, axis_, tool_diameter_, settings_.units_per_mm, isRefused_, refusals_});
     for (std::size_t i = 0; i < joint_lamps_.size(); ++i) {
-        joint_lamps_[i].write(JointShown{status.joints[i], static_cast<int>(i) == joint_});
+        joint_lamps_[i].write(
+            JointShown{{status.joints[i], status.settings.joints[i]}, static_cast<int>(i) == joint_});
     }
-    selected_lamps_.write(JointShown{status.joints[static_cast<std::size_t>(joint_)], true});
+    const auto selected = static_cast<std::size_t>(joint_);
+    selected_lamps_.write(JointShown{{status.joints[selected], status.settings.joints[selected]}, true});
     show_axes(status);
     for (std::size_t i = 0; i < spindles_.size(); ++i) {
         spindles_[i].lamps.write(status.spindles[i]);
@@ -315,7 +300,7 @@ void Halui::show() {
 }
 
 void Halui::show_axes(const messages::MachineStatus &status) {
-    const geometry::Pose relative = relative_position(status);
+    const geometry::Pose relative = legacy::program_position(status, status.trajectory.position_cmd);
     for (int axis = 0; axis < MAX_AXES; ++axis) {
         if (hasAxis(axis)) {
             axis_lamps_[static_cast<std::size_t>(axis)].write(AxisShown{status.trajectory.position_cmd[axis],

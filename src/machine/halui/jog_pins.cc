@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "messages/client/jog_speed.hh"
+#include "messages/legacy/units.hh"
 
 namespace mw::halui {
 namespace {
@@ -42,12 +42,12 @@ std::vector<messages::Command> JogPins::step(const JogInputs &now, const JogSett
     target_ = target;
     isWaiting_ = isWaiting_ && part != 0;
     if (!isWaiting_) {
-        step_held(part, client::per_second(std::abs(settings.speed_per_min)), now_ns, asked);
+        step_held(part, legacy::per_second(std::abs(settings.speed_per_min)), now_ns, asked);
     }
     const bool isForward = plus_.step(now.isIncrementPlus), isBack = minus_.step(now.isIncrementMinus);
     if (isForward != isBack) {
         asked.emplace_back(messages::JogIncrement{target.isJoint, target.index,
-                                                  client::per_second(std::abs(settings.speed_per_min)),
+                                                  legacy::per_second(std::abs(settings.speed_per_min)),
                                                   isForward ? now.increment : -now.increment});
     }
     return asked;

@@ -5,7 +5,7 @@
 
 #include "hal/sdk/pin_table.hh"
 #include "messages/declarations/command.hh"
-#include "messages/declarations/status.hh"
+#include "messages/legacy/status_table.hh"
 
 namespace mw::halui {
 
@@ -19,7 +19,7 @@ struct Shown {
     std::uint32_t refusals = 0;
 };
 struct JointShown {
-    const messages::JointStatus &joint;
+    legacy::Joint joint;
     bool isSelected = false;
 };
 struct AxisShown {
@@ -67,6 +67,16 @@ template <class Make>
 constexpr auto button(const char *name, const char *doc, Make command) {
     return sdk::PinRow<bool, HAL_IN, Make, sdk::Unused>{name, "", doc, command, {}};
 }
+
+/// Lamps that show rows of messages/legacy/status_table.hh.
+template <legacy::RowName NAME>
+struct Value {
+    auto operator()(const Shown &s) const { return legacy::value<legacy::STATUS, NAME>(s.status); }
+    auto operator()(const JointShown &s) const { return legacy::value<legacy::JOINT_STATUS, NAME>(s.joint); }
+    auto operator()(const SpindleStatus &s) const { return legacy::value<legacy::SPINDLE_STATUS, NAME>(s); }
+};
+template <legacy::RowName NAME>
+inline constexpr Value<NAME> value{};
 
 using Count = std::int32_t;
 using Index = std::uint32_t;
@@ -203,23 +213,23 @@ inline constexpr auto MDI_BUTTONS = pin_table("halui",
     in<bool>("mdi-command-##", "", "[HALUI]MDI_COMMAND of this number: to MDI mode, the line, and back", [](MdiInput &p, bool v) { p.isOn = v; }));
 
 inline constexpr auto LAMPS = pin_table("halui",
-    out<bool>("machine.is-on", "", "the machine is on", [](const Shown &s) { return s.status.task.state == State::ON; }),
-    out<bool>("estop.is-activated", "", "emergency stop", [](const Shown &s) { return s.status.task.state == State::ESTOP; }),
+    out<bool>("machine.is-on", "", "the machine is on", value<"MACHINE">),
+    out<bool>("estop.is-activated", "", "emergency stop", value<"estop">),
     out<bool>("mode.is-auto", "", "mode of programs", [](const Shown &s) { return s.status.task.mode == Mode::AUTO; }),
     out<bool>("mode.is-manual", "", "mode of jogs and homing", [](const Shown &s) { return s.status.task.mode == Mode::MANUAL; }),
     out<bool>("mode.is-mdi", "", "mode of single lines", [](const Shown &s) { return s.status.task.mode == Mode::MDI; }),
     out<bool>("mode.is-joint", "", "jogs move joints", [](const Shown &s) { return s.status.trajectory.mode == MotionMode::FREE; }),
-    out<bool>("mode.is-teleop", "", "jogs move axes", [](const Shown &s) { return s.status.trajectory.mode == MotionMode::TELEOP; }),
+    out<bool>("mode.is-teleop", "", "jogs move axes", value<"TELEOP_ENABLE">),
     out<bool>("program.is-idle", "", "no program runs", [](const Shown &s) { return s.status.task.interp_state == InterpState::IDLE; }),
     out<bool>("program.is-running", "", "a program runs and is not held", [](const Shown &s) { return s.status.task.interp_state != InterpState::IDLE && s.status.task.interp_state != InterpState::PAUSED; }),
     out<bool>("program.is-paused", "", "a program is held", [](const Shown &s) { return s.status.task.interp_state == InterpState::PAUSED; }),
     out<double>("machine.units-per-mm", "", "[TRAJ]LINEAR_UNITS: 1, or 1/25.4 for inches", [](const Shown &s) { return s.units_per_mm; }),
-    out<bool>("program.optional-stop.is-on", "", "M1 stops", [](const Shown &s) { return s.status.task.isOptionalStop; }),
-    out<bool>("program.block-delete.is-on", "", "lines that begin with / are left out", [](const Shown &s) { return s.status.task.isBlockDelete; }),
-    out<bool>("flood.is-on", "", "flood is on", [](const Shown &s) { return s.status.io.coolant.isFloodOn; }),
-    out<bool>("mist.is-on", "", "mist is on", [](const Shown &s) { return s.status.io.coolant.isMistOn; }),
-    out<bool>("lube.is-on", "", "lubrication is on", [](const Shown &s) { return s.status.io.lube.isOn; }),
-    out<Index>("tool.number", "", "the tool in the spindle, 0 none", [](const Shown &s) { return s.status.tool.in_spindle; }),
+    out<bool>("program.optional-stop.is-on", "", "M1 stops", value<"optional_stop">),
+    out<bool>("program.block-delete.is-on", "", "lines that begin with / are left out", value<"block_delete">),
+    out<bool>("flood.is-on", "", "flood is on", value<"flood">),
+    out<bool>("mist.is-on", "", "mist is on", value<"mist">),
+    out<bool>("lube.is-on", "", "lubrication is on", value<"lube">),
+    out<Index>("tool.number", "", "the tool in the spindle, 0 none", value<"tool_in_spindle">),
     out<double>("tool.diameter", "unit", "of the tool in the spindle", [](const Shown &s) { return s.tool_diameter; }),
     out<double>("tool.length_offset.x", "unit", "tool offset in force", [](const Shown &s) { return s.status.offsets.tool[0]; }),
     out<double>("tool.length_offset.y", "unit", "tool offset in force", [](const Shown &s) { return s.status.offsets.tool[1]; }),
@@ -236,23 +246,23 @@ inline constexpr auto LAMPS = pin_table("halui",
     out<Index>("outcome.refusals", "", "how many were, since the start", [](const Shown &s) { return s.refusals; }));
 
 inline constexpr auto JOINT_LAMPS = pin_table("halui.joint.#",
-    out<bool>("is-homed", "", "the joint is homed", [](const JointShown &s) { return s.joint.isHomed; }),
-    out<bool>("has-fault", "", "its amplifier reports a fault", [](const JointShown &s) { return s.joint.isFaulted; }),
-    out<bool>("override-limits", "", "its limits are overridden until the next jog", [](const JointShown &s) { return s.joint.isOverridingLimits; }),
-    out<bool>("on-hard-min-limit", "", "its lower limit switch is on", [](const JointShown &s) { return s.joint.isOnNegHardLimit; }),
-    out<bool>("on-hard-max-limit", "", "its upper limit switch is on", [](const JointShown &s) { return s.joint.isOnPosHardLimit; }),
-    out<bool>("on-soft-min-limit", "", "it is at its lower soft limit", [](const JointShown &s) { return s.joint.isOnNegSoftLimit; }),
-    out<bool>("on-soft-max-limit", "", "it is at its upper soft limit", [](const JointShown &s) { return s.joint.isOnPosSoftLimit; }),
+    out<bool>("is-homed", "", "the joint is homed", value<"homed">),
+    out<bool>("has-fault", "", "its amplifier reports a fault", value<"fault">),
+    out<bool>("override-limits", "", "its limits are overridden until the next jog", value<"override_limits">),
+    out<bool>("on-hard-min-limit", "", "its lower limit switch is on", value<"min_hard_limit">),
+    out<bool>("on-hard-max-limit", "", "its upper limit switch is on", value<"max_hard_limit">),
+    out<bool>("on-soft-min-limit", "", "it is at its lower soft limit", value<"min_soft_limit">),
+    out<bool>("on-soft-max-limit", "", "it is at its upper soft limit", value<"max_soft_limit">),
     out<bool>("is-selected", "", "it is the selected one", [](const JointShown &s) { return s.isSelected; }));
 
 inline constexpr auto SELECTED_LAMPS = pin_table("halui.joint.selected",
-    out<bool>("is-homed", "", "the joint is homed", [](const JointShown &s) { return s.joint.isHomed; }),
-    out<bool>("has-fault", "", "its amplifier reports a fault", [](const JointShown &s) { return s.joint.isFaulted; }),
-    out<bool>("override-limits", "", "its limits are overridden until the next jog", [](const JointShown &s) { return s.joint.isOverridingLimits; }),
-    out<bool>("on-hard-min-limit", "", "its lower limit switch is on", [](const JointShown &s) { return s.joint.isOnNegHardLimit; }),
-    out<bool>("on-hard-max-limit", "", "its upper limit switch is on", [](const JointShown &s) { return s.joint.isOnPosHardLimit; }),
-    out<bool>("on-soft-min-limit", "", "it is at its lower soft limit", [](const JointShown &s) { return s.joint.isOnNegSoftLimit; }),
-    out<bool>("on-soft-max-limit", "", "it is at its upper soft limit", [](const JointShown &s) { return s.joint.isOnPosSoftLimit; }));
+    out<bool>("is-homed", "", "the joint is homed", value<"homed">),
+    out<bool>("has-fault", "", "its amplifier reports a fault", value<"fault">),
+    out<bool>("override-limits", "", "its limits are overridden until the next jog", value<"override_limits">),
+    out<bool>("on-hard-min-limit", "", "its lower limit switch is on", value<"min_hard_limit">),
+    out<bool>("on-hard-max-limit", "", "its upper limit switch is on", value<"max_hard_limit">),
+    out<bool>("on-soft-min-limit", "", "it is at its lower soft limit", value<"min_soft_limit">),
+    out<bool>("on-soft-max-limit", "", "it is at its upper soft limit", value<"max_soft_limit">));
 
 inline constexpr auto AXIS_LAMPS = pin_table("halui.axis.@",
     out<bool>("is-selected", "", "it is the selected one", [](const AxisShown &s) { return s.isSelected; }),
@@ -261,10 +271,10 @@ inline constexpr auto AXIS_LAMPS = pin_table("halui.axis.@",
     out<double>("pos-relative", "unit", "commanded position in the coordinates of programs", [](const AxisShown &s) { return s.relative; }));
 
 inline constexpr auto SPINDLE_LAMPS = pin_table("halui.spindle.#",
-    out<bool>("is-on", "", "the spindle is to turn", [](const SpindleStatus &s) { return s.isOn; }),
+    out<bool>("is-on", "", "the spindle is to turn", value<"enabled">),
     out<bool>("runs-forward", "", "clockwise", [](const SpindleStatus &s) { return s.isOn && s.direction > 0; }),
     out<bool>("runs-backward", "", "counterclockwise", [](const SpindleStatus &s) { return s.isOn && s.direction < 0; }),
-    out<bool>("brake-is-on", "", "its brake is engaged", [](const SpindleStatus &s) { return s.isBrakeOn; }));
+    out<bool>("brake-is-on", "", "its brake is engaged", value<"brake">));
 // clang-format on
 
 /// Calls `show(scope, row)` for every pin.

@@ -6,33 +6,15 @@ namespace py = pybind11;
 namespace mw::python {
 namespace {
 
-/// As a joint that the machine has not.
-constexpr double NO_LIMIT = 1.0;
-
-py::dict joint_dict(const messages::JointStatus &joint, const messages::JointSettings &set) {
+/// The rows of the table that have a name in Python.
+template <class Table, class From>
+py::dict dict_of(const Table &table, const From &from) {
     py::dict out;
-    out["jointType"] = static_cast<int>(joint.isPresent ? set.kind : messages::JointKind::LINEAR);
-    out["units"] = joint.isPresent ? set.units : 1.0;
-    out["backlash"] = set.backlash;
-    out["min_position_limit"] = joint.isPresent ? joint.min_limit : -NO_LIMIT;
-    out["max_position_limit"] = joint.isPresent ? joint.max_limit : NO_LIMIT;
-    out["max_ferror"] = set.max_ferror;
-    out["min_ferror"] = set.min_ferror;
-    out["ferror_current"] = joint.ferror;
-    out["ferror_highmark"] = joint.ferror_highmark;
-    out["output"] = joint.pos_cmd;
-    out["input"] = joint.pos_fb;
-    out["velocity"] = joint.vel_cmd;
-    out["inpos"] = static_cast<int>(!joint.isPresent || joint.isInPosition);
-    out["homing"] = static_cast<int>(joint.isHoming);
-    out["homed"] = static_cast<int>(joint.isHomed);
-    out["fault"] = static_cast<int>(joint.isFaulted);
-    out["enabled"] = static_cast<int>(joint.isEnabled);
-    out["min_soft_limit"] = static_cast<int>(joint.isOnNegSoftLimit);
-    out["max_soft_limit"] = static_cast<int>(joint.isOnPosSoftLimit);
-    out["min_hard_limit"] = static_cast<int>(joint.isOnNegHardLimit);
-    out["max_hard_limit"] = static_cast<int>(joint.isOnPosHardLimit);
-    out["override_limits"] = static_cast<int>(joint.isOverridingLimits);
+    legacy::for_each_row(table, [&](const auto &row) {
+        if (const char *const name = python_name(row.names); legacy::isNamed(name)) {
+            out[name] = python_value(row, from);
+        }
+    });
     return out;
 }
 
@@ -44,20 +26,6 @@ py::dict axis_dict(const messages::AxisStatus &axis) {
     return out;
 }
 
-py::dict spindle_dict(const messages::SpindleStatus &spindle) {
-    py::dict out;
-    out["brake"] = static_cast<int>(spindle.isBrakeOn);
-    out["direction"] = spindle.direction;
-    out["enabled"] = static_cast<int>(spindle.isOn);
-    out["override_enabled"] = spindle.isOverrideEnabled;
-    out["speed"] = spindle.speed_cmd_rpm;
-    out["override"] = spindle.override_factor;
-    out["homed"] = false;
-    out["orient_state"] = spindle.orient_state;
-    out["orient_fault"] = spindle.orient_fault;
-    return out;
-}
-
 py::tuple tool_tuple(const messages::ToolRecord &tool, const py::object &kind) {
     const geometry::Pose &o = tool.offset;
     return kind(tool.toolno, o[0], o[1], o[2], o[3], o[4], o[5], o[6], o[7], o[8], tool.diameter,
@@ -66,14 +34,10 @@ py::tuple tool_tuple(const messages::ToolRecord &tool, const py::object &kind) {
 
 }  // namespace
 
-py::tuple pose(const geometry::Pose &pose) {
-    return py::make_tuple(pose[0], pose[1], pose[2], pose[3], pose[4], pose[5], pose[6], pose[7], pose[8]);
-}
-
 py::tuple joint_dicts(const messages::MachineStatus &status) {
     py::tuple out(status.joints.size());
     for (std::size_t i = 0; i < status.joints.size(); ++i) {
-        out[i] = joint_dict(status.joints[i], status.settings.joints[i]);
+        out[i] = dict_of(legacy::JOINT_STATUS, legacy::Joint{status.joints[i], status.settings.joints[i]});
     }
     return out;
 }
@@ -89,7 +53,7 @@ py::tuple axis_dicts(const messages::MachineStatus &status) {
 py::tuple spindle_dicts(const messages::MachineStatus &status) {
     py::tuple out(status.spindles.size());
     for (std::size_t i = 0; i < status.spindles.size(); ++i) {
-        out[i] = spindle_dict(status.spindles[i]);
+        out[i] = dict_of(legacy::SPINDLE_STATUS, status.spindles[i]);
     }
     return out;
 }

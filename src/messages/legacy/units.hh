@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Units in which operators' pins, lines and Tcl commands differ from messages.
+#pragma once
+
+#include <string>
+
+namespace mw::legacy {
+
+/// A jog speed of halui's pins, of linuxcncrsh or of Tcl [units/min] as messages carry it [units/s].
+constexpr double per_second(double per_minute) {
+    constexpr double SECONDS_PER_MINUTE = 60;
+    return per_minute / SECONDS_PER_MINUTE;
+}
+
+/// An override of linuxcncrsh or Tcl as messages carry it: 100 is 1.0.
+constexpr double factor(double percent) {
+    return percent / 100;
+}
+constexpr double percent(double factor) {
+    return factor * 100;
+}
+
+/// "INCH", "MM", "CM" or "CUSTOM".
+std::string name_of_length(double units_per_mm);
+/// "DEG", "RAD", "GRAD" or "CUSTOM".
+std::string name_of_angle(double units_per_deg);
+
+inline constexpr double MM_PER_INCH = 25.4, RAD_PER_DEG = 3.14159265358979323846 / 180,
+                        GRAD_PER_DEG = 100.0 / 90;
+
+}  // namespace mw::legacy
