@@ -56,7 +56,7 @@ Answer of_joints(const Asked &asked, const char *name, const char *blank, const 
     });
 }
 
-/// 2.9 tells machine units whatever conversion was set.
+/// 2.9 reports machine units with any conversion.
 double factor(const Asked &asked, bool isAngular) {
     return asked.settings.isOld() ? 1
            : isAngular            ? angle_factor(asked.own.angle_unit, asked.status)

@@ -76,7 +76,7 @@ void Commander::keep_jogging(double now_s) {
         jog.serial = serial.value_or(jog.serial);
         jog.renewed_s = now_s;
     }
-    // A limit, an abort or somebody else has ended it.
+    // A limit, an abort or another client has ended it.
     std::erase_if(jogs_, [this](const Jog &jog) {
         const auto progress = outcome(jog.serial).progress;
         return progress == messages::Progress::REFUSED || progress == messages::Progress::FAILED;

@@ -18,15 +18,15 @@ class Conversation {
     virtual void end_input() = 0;
     /// No more bytes are wanted now.
     virtual bool isFull() const = 0;
-    /// Carries out what can be; `now_s` is of any clock that goes on.
+    /// Executes the orders that are ready; `now_s` is of any steady clock.
     virtual void step(double now_s) = 0;
-    /// What is to be sent; whoever sends it takes it away.
+    /// Bytes to send; the sender removes them.
     virtual std::string &output() = 0;
     /// step() is wanted soon, without new bytes.
     virtual bool isBusy() const = 0;
     /// Everything is answered, and the connection is to be closed.
     virtual bool isOver() const = 0;
-    /// Somebody who may has asked for the end of the server.
+    /// A permitted client has requested the end of the server.
     virtual bool wantsShutdown() const = 0;
 };
 

@@ -48,7 +48,7 @@ Lines help(const Settings &settings, const std::string &about) {
                 "enable <password>'."};
     }
     if (about == "HELP") {
-        return {"Usage: Help <command>", "  Tells what a command is for."};
+        return {"Usage: Help <command>", "  Describes a command."};
     }
     return {about + " is not a valid command."};
 }

@@ -144,7 +144,7 @@ Result<Waiting> run(const Ordered &o) {
 }
 
 Result<Waiting> pause(const Ordered &o) {
-    // Clients pause whatever goes on; where nothing does there is nothing to be refused.
+    // Clients also pause when nothing runs, which is no error.
     return o.status().task.interp_state == messages::InterpState::IDLE ? Waiting{}
                                                                        : ask(o, messages::PauseProgram{});
 }

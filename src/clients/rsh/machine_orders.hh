@@ -30,7 +30,7 @@ Result<Waiting> set_tool_offset(const Ordered &o);
 
 /// Asks the machine; the answer waits for it.
 Result<Waiting> ask(const Ordered &o, const messages::Command &command, Until until = Until::AS_SET);
-/// What it is told that asks for something in a mode that does not have it.
+/// The answer to an order in a mode that does not permit it.
 void tell_wrong_mode(const Ordered &o, const messages::Declaration &what);
 /// The word at a place, or none.
 std::string word(const Ordered &o, std::size_t place);

@@ -28,7 +28,7 @@ Result<JogTarget> target_of(const Ordered &o) {
                          : fail(fmt::format("Invalid axis '{}', teleop mode has letters", printable(name)));
     }
     const auto joint = parse_int(name);
-    // A joint that the machine does not have: 2.9 lets the machine say so.
+    // A joint that the machine does not have: 2.9 lets the machine report it.
     const int count = o.settings.isOld() ? MAX_JOINTS : o.settings.num_joints;
     if (!joint.has_value() || *joint < 0 || *joint >= count) {
         return fail(fmt::format("Invalid joint '{}', valid range [0,{}]", printable(name),

@@ -15,7 +15,7 @@
 
 namespace mw::rsh {
 
-/// What a connection must have before an order is looked at.
+/// State of a connection that an order needs.
 enum class Needs : std::uint8_t { NOTHING, HELLO, ENABLE, MACHINE_ON };
 
 /// When an order is answered.
@@ -23,7 +23,7 @@ enum class Until : std::uint8_t {
     AS_SET,    ///< as WAIT_MODE says
     TAKEN,     ///< when the machine has taken it: what it starts may take long
     ENDED,     ///< when it has ended
-    WHATEVER,  ///< when it has ended, be it refused
+    WHATEVER,  ///< when it has ended or is rejected
     WHATEVER_TAKEN
 };
 

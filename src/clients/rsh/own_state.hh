@@ -11,7 +11,7 @@
 
 namespace mw::rsh {
 
-/// In which unit lengths are told. AUTO: that of the program.
+/// Unit of lengths in answers. AUTO: that of the program.
 enum class LengthUnit : std::uint8_t { AUTO, INCH, MM, CM, CUSTOM };
 enum class AngleUnit : std::uint8_t { AUTO, DEG, RAD, GRAD, CUSTOM };
 
@@ -22,13 +22,13 @@ struct OwnState {
     bool isVerbose = false;
     bool isTimed = false;          ///< each line of an answer begins with the time
     bool isWaitingForDone = true;  ///< an answer to SET comes when the command has ended
-    bool isUpdating = true;        ///< GET tells the newest status
+    bool isUpdating = true;        ///< GET reports the newest status
     double timeout_s = 0;          ///< of SET; 0: none
     LengthUnit length_unit = LengthUnit::AUTO;
     AngleUnit angle_unit = AngleUnit::AUTO;
     std::string protocol = "1.1";
     ReadUpTo lines{};
-    std::unique_ptr<messages::MachineStatus> kept;  ///< what GET tells while it is not updated
+    std::unique_ptr<messages::MachineStatus> kept;  ///< status of GET while it is not updated
 };
 
 }  // namespace mw::rsh

@@ -26,7 +26,7 @@ namespace net = boost::asio;
 using boost::system::error_code;
 using net::ip::tcp;
 
-/// A conversation that waits for the machine is looked at so often.
+/// Interval of conversations that wait for the machine.
 constexpr double BUSY_S = 0.001;
 /// For answers that are on their way when the server ends.
 constexpr std::chrono::milliseconds LAST_WORDS{500};

@@ -18,7 +18,7 @@ struct ServerSettings {
     int max_sessions = -1;    ///< -1: as many as come
 };
 
-/// One thread. Connections that nobody is at any more are found out by the kernel's probes.
+/// One thread. The kernel's probes end connections of clients that have gone.
 class Server {
   public:
     class Impl;  ///< of server.cc alone
@@ -29,9 +29,9 @@ class Server {
     ~Server();
 
     int port() const;
-    /// Does what there is to do. `prepare` is called before conversations go on, so that they see what is
-    /// new; false ends it, as a conversation can. Sleeps until a byte comes, or for `idle_s`; shortly while a
-    /// conversation is busy.
+    /// Processes all input. `prepare` is called before conversations continue, so that they see the newest
+    /// status; false ends it, as a conversation can. Sleeps until a byte comes, or for `idle_s`; shortly
+    /// while a conversation is busy.
     void run(const std::function<bool()> &prepare, double idle_s);
 
   private:

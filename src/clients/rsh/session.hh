@@ -16,8 +16,8 @@
 
 namespace mw::rsh {
 
-/// One thread. A line is looked at when the one before it has been answered. What a connection jogs stops
-/// when it ends.
+/// One thread. A line is read when the one before it has been answered. Jogs of a connection stop when it
+/// ends.
 class Session final : public Conversation {
   public:
     /// All must outlive it.
@@ -37,7 +37,7 @@ class Session final : public Conversation {
     bool wantsShutdown() const override { return wantsShutdown_; }
 
   private:
-    /// Bytes that wait in here, and answers that nobody reads, before others are taken.
+    /// Bytes that wait in here, and answers that are not read, before others are taken.
     static constexpr std::size_t MAX_WAITING = 65536;
 
     struct Wait {

@@ -8,7 +8,7 @@
 
 namespace mw::rsh {
 
-/// NEWER: that of LinuxCNC 2.10, and what a server speaks unless it is told otherwise. OLD: that of 2.9.
+/// NEWER: that of LinuxCNC 2.10, the default of a server. OLD: that of 2.9.
 enum class Dialect { NEWER, OLD };
 
 struct Settings {
@@ -17,7 +17,7 @@ struct Settings {
     std::string enable_password = "EMCTOO";
     std::string program_folder;  ///< of programs whose name is no path; empty: that of the INI file
     Dialect dialect = Dialect::NEWER;
-    const ini::IniFile *ini = nullptr;  ///< of the machine; must outlive whoever holds this
+    const ini::IniFile *ini = nullptr;  ///< of the machine; must outlive this
     double task_period_s = 0.001;
     int num_joints = 3;
     int num_spindles = 1;

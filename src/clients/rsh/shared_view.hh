@@ -31,7 +31,7 @@ class SharedView {
     /// The next line of a kind; nothing when there is none.
     std::optional<std::string> next_line(messages::MessageKind kind, ReadUpTo &own);
 
-    /// How many connections there are; counted by whoever makes them.
+    /// Number of connections; their maker counts them.
     int num_sessions = 0;
 
   private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Units in which a connection is told lengths and angles.
+// Units of lengths and angles in the answers to a connection.
 #pragma once
 
 #include <string>
@@ -12,8 +12,8 @@ namespace mw::rsh {
 LengthUnit program_unit(const messages::MachineStatus &status);
 /// What AUTO means now.
 LengthUnit shown_unit(const OwnState &own, const messages::MachineStatus &status);
-/// By which machine lengths, and angles, are multiplied to be told: with AUTO they stay what they are, so
-/// that a program's G20 does not change what a client reads.
+/// Factor of machine lengths, and angles, in answers: 1 with AUTO, so that a program's G20 does not change
+/// them.
 double length_factor(LengthUnit unit, const messages::MachineStatus &status);
 double angle_factor(AngleUnit unit, const messages::MachineStatus &status);
 

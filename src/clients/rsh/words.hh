@@ -30,7 +30,7 @@ Result<Value> one_of(const std::string &word,
 /// "invalid value 'x', valid A, B".
 std::unexpected<Error> no_such_value(const std::string &word, const std::string &valid);
 bool isSameWord(std::string_view word, std::string_view name);
-/// Takes as long whatever is wrong.
+/// Takes the same time for each wrong password.
 bool isSamePassword(std::string_view given, std::string_view wanted);
 /// What is left of `line` behind its first `count` words.
 std::string behind_words(std::string_view line, int count);

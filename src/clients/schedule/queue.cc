@@ -65,7 +65,7 @@ Result<int> Queue::next_tag() const {
     int tag = last_auto_tag_;
     do {
         if (tag >= MAX_TAG) {
-            return fail("no tag is left: set AutoTagId anew");
+            return fail("no tag is left: set AutoTagId again");
         }
         ++tag;
     } while (by_tag(tag) != nullptr);

@@ -29,7 +29,7 @@ class Queue {
     static constexpr int MAX_TAG = 2'000'000'000;
 
     const std::vector<Job> &jobs() const { return jobs_; }
-    /// A tag of 0 is replaced by the next number. Refused: a tag that another has, values out of range, a
+    /// A tag of 0 is replaced by the next number. Rejected: a tag that another has, values out of range, a
     /// full queue.
     Result<> add(Job job);
     /// Null: there is none.

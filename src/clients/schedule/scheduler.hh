@@ -14,7 +14,7 @@ namespace mw::schedule {
 enum class QueueMode { STOP, RUN, PAUSE, ERROR };
 
 /// One thread. A program leaves the queue once it has ended well. One that fails or is aborted stays, and
-/// the queue stands in ERROR until it is stopped or run again: nothing follows a program that failed.
+/// the queue stays in ERROR until it is stopped or run again: no program follows one that failed.
 class Scheduler {
   public:
     /// `folder`: of programs whose name is no path.
@@ -24,7 +24,7 @@ class Scheduler {
     Queue &queue() { return queue_; }
     const Queue &queue() const { return queue_; }
     QueueMode mode() const { return mode_; }
-    /// Why it stands in ERROR.
+    /// Why it is in ERROR.
     const std::string &error() const { return error_; }
 
     /// Begins with the first program; a machine that is not ready for one is an error. Goes back to STOP when
@@ -35,7 +35,7 @@ class Scheduler {
     Result<> resume();
     /// Aborts the program that runs. It stays in the queue.
     Result<> stop();
-    /// Refused for the program that runs.
+    /// Rejected for the running program.
     Result<> remove(int tag);
 
     /// Looks for what has ended, and at most every `poll_s` for the next program.

@@ -30,7 +30,7 @@ struct Shared {
     Scheduler &scheduler;
 };
 
-/// One thread. What a connection has begun goes on when it ends: the queue is the server's.
+/// One thread. What a connection has started continues when it ends: the queue is the server's.
 class Session final : public rsh::Conversation {
   public:
     explicit Session(const Shared &shared) : shared_(shared) {}
@@ -45,7 +45,7 @@ class Session final : public rsh::Conversation {
     bool wantsShutdown() const override { return wantsShutdown_; }
 
   private:
-    /// Bytes that wait in here, and answers that nobody reads, before others are taken.
+    /// Bytes that wait in here, and answers that are not read, before others are taken.
     static constexpr std::size_t MAX_WAITING = 65536;
 
     void carry_out(const std::string &line);

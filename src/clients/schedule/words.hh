@@ -17,7 +17,7 @@ struct Said {
 
 /// The lines that answer GET NAME; `name` in capitals.
 Result<std::vector<std::string>> answer_to(const std::string &name, const Said &said);
-/// SET NAME; the connection is greeted. What needs SET ENABLE is refused without it.
+/// SET NAME; the connection is greeted. Orders that need SET ENABLE are rejected without it.
 Result<> carry_out_order(const std::string &name, const Said &said);
 /// HELP; `about` in capitals, empty: everything.
 std::vector<std::string> help(const std::string &about);

@@ -163,7 +163,7 @@ Response Access::login(const Request &request, int port, std::int64_t now_ns) {
         return answer(request.role);
     }
     if (everybody_ != Role::NOBODY) {
-        return error_response(404, "nobody needs a token here");
+        return error_response(404, "this server needs no token");
     }
     const std::string rules = fmt::format("; Path=/{}; HttpOnly; SameSite=Strict",
                                           protection_ == Protection::LOCAL ? "" : "; Secure");

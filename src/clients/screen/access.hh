@@ -16,12 +16,12 @@ namespace mw::screen {
 
 /// "local", "tls", "none".
 std::string_view protection_name(Protection protection);
-/// "view", "operate", "configure"; "" for NOBODY, "view" for STATUS, which screens need not tell apart.
+/// "view", "operate", "configure"; "" without a role, "view" for STATUS, which is the same for screens.
 std::string_view role_name(Role role);
 std::optional<Role> role_of_name(std::string_view name);
 
-/// Secrets of 256 bits and what they open. Whoever can read the file can operate this computer's machine
-/// anyway, so that it keeps them as they are.
+/// Secrets of 256 bits and what they open. A process that can read the file can operate the machine of this
+/// computer anyway, so the file keeps them unencrypted.
 class Tokens {
   public:
     struct Token {
@@ -47,7 +47,7 @@ class Tokens {
     std::vector<Token> all_;
 };
 
-/// What a request shows of who asks.
+/// Credentials of a request.
 struct Credentials {
     std::string_view authorization;  ///< header: "Bearer SECRET"
     std::string_view cookie;         ///< header
@@ -58,7 +58,7 @@ struct Credentials {
 /// Of one way in.
 class Access {
   public:
-    /// Everybody has this role.
+    /// All requests have this role.
     Access(Protection protection, Role everybody) : protection_(protection), everybody_(everybody) {}
     /// With TLS: who shows a token has its role.
     explicit Access(Tokens tokens)
@@ -69,11 +69,11 @@ class Access {
     static Access of_this_computer(Tokens tokens, Tokens cookies);
 
     Protection protection() const { return protection_; }
-    /// NOBODY where no token, or a wrong one, is shown. `port`: of the server; keeps the cookies of servers
+    /// No role without a token or with a wrong one. `port`: of the server; keeps the cookies of servers
     /// on one computer apart.
     Role role_of(const Credentials &shown, int port) const;
-    /// GET: the role of who asks. POST {"token": "..."}: a cookie that no script can read, for the browser;
-    /// 403 for a wrong one, 429 when there were too many wrong ones. DELETE: forgets the cookie.
+    /// GET: the role of the request. POST {"token": "..."}: a cookie that no script can read, for the
+    /// browser; 403 for a wrong one, 429 when there were too many wrong ones. DELETE: forgets the cookie.
     Response login(const Request &request, int port, std::int64_t now_ns);
 
   private:

@@ -63,7 +63,7 @@ Api::Api(Sockets &sockets, const Threads &threads, ApiSetup setup, Clock clock)
     }
 }
 
-/// The first line that cannot be written is told, and is the last that was tried.
+/// The first line that cannot be written is reported, and no further line is tried.
 void Api::write_log(const std::string &line, std::int64_t age_ns) {
     const auto failed = std::make_shared<std::string>();
     threads_.disk.run(
@@ -88,7 +88,7 @@ Role Api::needed_role(const Request &request) const {
     if (!isHal && !request.path.starts_with(SCOPE)) {
         return Role::OPERATE;
     }
-    // A value of HAL can move anything, whatever the machine's state; those of a panel are meant for
+    // A value of HAL can move anything, in any state of the machine; values of a panel are for
     // operators.
     const bool isOfPanel =
         isHal && std::ranges::find(operable_, request.path.substr(HAL.size())) != operable_.end();
@@ -125,7 +125,7 @@ void Api::tick() {
 
 void Api::closed(SessionId session) {
     screens_.closed(session);
-    if (screens_.count() == 0) {  // nobody looks at the oscilloscope: it leaves the thread of the servo
+    if (screens_.count() == 0) {  // no screen shows the oscilloscope: it leaves the servo thread
         threads_.hal.run([this] { return hal_.scope("DELETE", ""); }, [](const Response &) {});
     }
 }

@@ -21,7 +21,7 @@ struct ApiSetup {
     MachineFacts facts;
     ScreensSetup screens;
     std::string screen_folder;
-    /// Begins to read a program in a thread of its own; an error when too many are read. The path is one of
+    /// Begins to read a program in a separate thread; an error when too many are read. The path is one of
     /// facts.program_prefix.
     std::function<Result<std::shared_ptr<PieceQueue>>(const std::string &path, const Requester &)> read_path;
     /// The same for its times, at the overrides of the second.
@@ -42,13 +42,13 @@ struct Threads {
     BackgroundJobs &disk, &hal;
 };
 
-/// One thread, but for the jobs that it gives to `threads`.
+/// One thread, except for the jobs that it passes to `threads`.
 class Api final : public Application {
   public:
     /// Time that never goes back. [ns]
     using Clock = std::function<std::int64_t()>;
 
-    /// Between two looks at what screens watch in HAL.
+    /// Between two reads of the HAL values that screens show.
     static constexpr std::int64_t WATCH_NS = 100000000;
 
     Api(Sockets &sockets, const Threads &threads, ApiSetup setup, Clock clock);

@@ -23,7 +23,7 @@ class BackgroundJobs {
     virtual void run(Job job, Reply reply) = 0;
 };
 
-/// A thread of its own.
+/// A separate thread.
 class Worker final : public BackgroundJobs {
   public:
     /// `post` calls a function in the server's thread; it must outlive the worker.

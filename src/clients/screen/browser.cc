@@ -7,7 +7,7 @@
 namespace mw::screen {
 namespace {
 
-/// Motion ends the jog by itself when nobody renews it. Not where jogs have no leases.
+/// Motion ends the jog by itself when it is not renewed. Not where jogs have no leases.
 template <class Jog>
 bool hasLease(const Jog &jog) {
     if constexpr (requires { jog.lease_ms; }) {
@@ -17,7 +17,7 @@ bool hasLease(const Jog &jog) {
     }
 }
 
-/// Goes on for ever when the browser freezes, or the server is killed.
+/// Continues without end when the browser freezes, or the server is killed.
 bool isEndless(const messages::Command &command) {
     const auto *jog = std::get_if<messages::JogContinuous>(&command);
     return jog != nullptr && !hasLease(*jog);
@@ -82,7 +82,7 @@ void Browser::carry_out(const Ask &ask, std::int64_t now_ns) {
     ++(isStop ? counts_.stops : counts_.commands);
     client::Client *const shared = client_.has_value() ? nullptr : shared_;
     if (!client_.has_value() && (shared == nullptr || !isStop)) {
-        refuse(ask.id, shared == nullptr ? "no machine is up" : ONLY_STOPS);
+        refuse(ask.id, shared == nullptr ? "no machine is running" : ONLY_STOPS);
         return;
     }
     if (!isStop && role_ < Role::OPERATE) {
@@ -116,7 +116,7 @@ void Browser::carry_out(const Ask &ask, std::int64_t now_ns) {
     note_jog(command);
     if (!isFollowed) {  // never the oldest: what takes long is what a person waits for
         send_(outcome_text(ask.id, {messages::Progress::FAILED,
-                                    "it was handed over; too many others are under way to follow it"}));
+                                    "the command was sent; too many others are active to follow it"}));
         return;
     }
     followed_.push_back({ask.id, shared, *posted, now_ns});

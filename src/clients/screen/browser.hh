@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// One open screen as the machine's client: its commands with their outcomes, what it jogs, what it was told.
+// One open screen as the machine's client: its commands with their outcomes, its jogs, and the last status
+// that it has.
 #pragma once
 
 #include <deque>
@@ -30,11 +31,11 @@ class Browser {
     using Send = std::function<void(std::string)>;
     /// Commands per second; a stop is none of them.
     static constexpr double COMMANDS_PER_S = 200, COMMANDS_AT_ONCE = 200;
-    /// Commands whose outcome is followed; a stop is carried out all the same.
+    /// Commands whose outcome is followed; a further stop is still executed.
     static constexpr std::size_t MOST_FOLLOWED = 60;
-    /// A command that has not ended by then is told as STARTED.
+    /// A command that has not ended by then is reported as STARTED.
     static constexpr std::int64_t SOON_NS = 50000000;
-    static const char *const ONLY_STOPS;  ///< why a screen without a place is refused other commands
+    static const char *const ONLY_STOPS;  ///< why other commands of a screen without a slot are rejected
     /// A browser that says nothing for so long is gone.
     static constexpr std::int64_t SILENCE_NS = 5000000000;
 
@@ -44,14 +45,14 @@ class Browser {
     Browser(const Browser &) = delete;
     Browser &operator=(const Browser &) = delete;
 
-    /// The machine is up.
+    /// The machine is running.
     void join(client::Client client) {
         client_.emplace(std::move(client));
         if (role_ < Role::CONFIGURE) {
             client_->limit_authority(mailbox::Authority::OPERATE);
         }
     }
-    /// The machine is up: `shared` takes stops while this screen has no place of its own. It outlives
+    /// The machine is running: `shared` takes stops while this screen has no slot. It outlives
     /// leave().
     void attach(client::Client &shared) { shared_ = &shared; }
     bool isAttached() const { return shared_ != nullptr; }
@@ -67,14 +68,14 @@ class Browser {
     void receive(std::string_view text, std::int64_t now_ns);
     /// Tells the outcomes that are new.
     void follow(std::int64_t now_ns);
-    /// Parts of the status that were read are told with the next one.
+    /// Parts of the status that were read are sent with the next one.
     void note_read(PartMask parts) { unread_ |= parts; }
     /// The whole at first, then what has changed; nothing when nothing has.
     void tell_status(const messages::MachineStatus &status);
     void tell(std::string text) { send_(std::move(text)); }
-    /// Names of HAL that it looks at.
+    /// Names of HAL that it shows.
     const std::vector<std::string> &watched() const { return watched_; }
-    /// Tells those of its names that are new or have changed.
+    /// Sends those of its names that are new or have changed.
     void tell_values(const std::map<std::string, std::string> &values);
     bool isSilent(std::int64_t now_ns) const { return now_ns - heard_ns_ > SILENCE_NS; }
 

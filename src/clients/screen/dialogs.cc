@@ -86,7 +86,7 @@ const std::vector<std::size_t> &Dialogs::look() {
                 notes_.push_back(std::string(COMPONENT) + '.' + asker.id + " is " + std::to_string(value) +
                                  ", and [DISPLAY] has no MULTIMESSAGE with this number");
             }
-            set_zero(asker);  // HAL does not wait for an answer to a question that nobody reads
+            set_zero(asker);  // HAL does not wait for an answer to a question that no one reads
         }
         if (isPerson || (isOpen && now->kind.isLasting)) {
             asked_.push_back(place);

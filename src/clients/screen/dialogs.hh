@@ -15,7 +15,7 @@ namespace mw::screen {
 struct DialogKind {
     bool isOk = false;       ///< closed by a person
     bool isYesNo = false;    ///< answered by a person
-    bool isLasting = false;  ///< there as long as its pin says so
+    bool isLasting = false;  ///< shown while its pin is TRUE
     bool isStatus = false;   ///< a note, too
 };
 
@@ -40,13 +40,13 @@ class Dialogs {
     Dialogs(const Dialogs &) = delete;
     Dialogs &operator=(const Dialogs &) = delete;
 
-    /// Makes the pins in the HAL of a machine that is up; an error where another screen has them.
+    /// Makes the pins in the HAL of a running machine; an error where another screen has them.
     Result<> begin(hal::Hal &hal);
     /// The HAL is gone with its pins.
     void leave() { hal_ = nullptr; }
     bool isReady() const { return hal_ != nullptr; }
 
-    /// Looks at the pins. What is asked now, by its place in `facts`.
+    /// Reads the pins. Returns the active questions, by their index in `facts`.
     const std::vector<std::size_t> &look();
     /// Notes that have come up since they were taken last.
     std::vector<std::string> take_notes() { return std::exchange(notes_, {}); }

@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Numbers beyond are not exact in a browser.
+/// Larger numbers are not exact in a browser.
 constexpr std::uint64_t MOST_ID = std::uint64_t{1} << 53;
 
 std::string text_of(const Json &json) {
@@ -337,7 +337,7 @@ Result<std::variant<Ping, Ask, Watch>> read_text(std::string_view text) {
     const bool isDated = sent != json.end() && sent->is_number() && std::isfinite(sent->get<double>());
     if (id == json.end() || command == json.end() || json.size() != (isDated ? 3 : 2)) {
         return fail(R"(a text is {"ping": number}, {"watch": [names]} or {"id": number, "command": {...}}, )"
-                    R"(with "sent": number where it is told)");
+                    R"(with "sent": number)");
     }
     if (!id->is_number_unsigned() || id->get<std::uint64_t>() > MOST_ID) {
         return fail("the id of a command is a whole number from 0 to 2^53");

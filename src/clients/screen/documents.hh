@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The JSON of docs/reference/api.md, but for the fields of the status.
+// The JSON of docs/reference/api.md, except for the fields of the status.
 #pragma once
 
 #include <array>
@@ -26,7 +26,7 @@ Response error_response(int status, std::string_view text);
 std::string schema_document();
 /// An error when it is no panel as docs/user/screen.md has them.
 Result<> check_panel(std::string_view text);
-/// Names of HAL that a person may set by this panel, whatever he may otherwise.
+/// Names of HAL that a person may set by this panel, also without other rights.
 std::vector<std::string> settable_names(std::string_view panel);
 std::string machine_document(const MachineFacts &facts);
 
@@ -37,7 +37,7 @@ bool isObject(std::string_view json);
 /// Nine offsets and the rotation [deg] of each coordinate system.
 std::string offsets_document(std::span<const std::array<double, 10>> systems);
 
-/// Lines of what a filter tells: how far it is, or how it has ended.
+/// Reports of a filter: its progress, or how it has ended.
 std::string filter_progress_text(int percent);
 std::string filter_made_text(std::string_view path);
 std::string filter_error_text(std::string_view why);

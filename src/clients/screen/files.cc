@@ -194,7 +194,7 @@ Response ProgramFiles::read(const std::string &name, const std::optional<std::st
 
 Response ProgramFiles::begin(const std::string &name, const std::string &path, std::uint64_t size) {
     uploads_.erase(name);
-    if (uploads_.size() >= MOST_UPLOADS) {  // one that nobody continues
+    if (uploads_.size() >= MOST_UPLOADS) {  // the oldest one is abandoned
         uploads_.erase(
             std::ranges::min_element(uploads_, {}, [](const auto &one) { return one.second.begun; }));
     }

@@ -143,7 +143,7 @@ void FirstSteps::answer(const Request &request, Reply reply) {
     } else if (what == "/start" && method == "POST") {
         start(request.body, std::move(reply));
     } else {
-        reply(error_response(404, "no machine is up: there is no '" + printable(path) + "'"));
+        reply(error_response(404, "no machine is running: there is no '" + printable(path) + "'"));
     }
 }
 

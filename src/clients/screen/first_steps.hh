@@ -20,7 +20,7 @@ struct Choice {
     std::string ini;      ///< whole path
     std::string name;     ///< in its group
     std::string machine;  ///< [EMC]MACHINE
-    std::string kind;     ///< "mill", "lathe", "foam", "gantry", "other": which drawing stands for it
+    std::string kind;     ///< "mill", "lathe", "foam", "gantry", "other": the drawing of the machine
     std::string axes;     ///< "XYZ"
     std::string unit;     ///< "mm", "inch"; empty: not told
     std::string notes;    ///< what its author says of it
@@ -46,14 +46,14 @@ struct FirstStepsSetup {
     std::function<Result<std::string>(const Made &)> try_out;
     struct Start {
         std::string ini;
-        int port = 0;  ///< of its screen in a browser; 0: it has a display of its own
+        int port = 0;  ///< of its screen in a browser; 0: it has a separate display
     };
     /// What will be started: of a sample, a copy.
     std::function<Result<Start>(const std::string &ini)> prepare;
     std::string proposed_folder;  ///< in which new machines are proposed
 };
 
-/// One thread, but for the jobs that it gives to `disk`.
+/// One thread, except for the jobs that it passes to `disk`.
 class FirstSteps final : public Application {
   public:
     FirstSteps(BackgroundJobs &disk, FirstStepsSetup setup) : disk_(disk), setup_(std::move(setup)) {}
@@ -63,7 +63,7 @@ class FirstSteps final : public Application {
     void received(SessionId, std::string_view) override {}
     void closed(SessionId) override {}
 
-    /// The INI file that is to be started; nothing as long as nobody has chosen.
+    /// The INI file that is to be started; nothing until a person has chosen one.
     const std::optional<std::string> &chosen() const { return chosen_; }
 
   private:

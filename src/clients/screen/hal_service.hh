@@ -24,10 +24,10 @@ class HalService {
   public:
     /// Joins the realtime process; an error says why there is none.
     using Connect = std::function<Result<std::unique_ptr<hal::Host>>()>;
-    /// Points of a record that screens are told.
+    /// Points of a record that are sent to screens.
     static constexpr std::uint32_t MOST_SAMPLES = 100000;
 
-    /// Called once, when HAL and the pins of dialogs are there; what it tells are notes for the operator.
+    /// Called once, when HAL and the pins of dialogs are there; what it returns are notes for the operator.
     using Begin = std::function<std::vector<std::string>()>;
 
     explicit HalService(Connect connect, std::vector<DialogFacts> dialogs = {}, Begin begin = nullptr)

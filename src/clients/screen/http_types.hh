@@ -15,15 +15,15 @@
 
 namespace mw::screen {
 
-/// What whoever asks may do; each role may do what those before it may.
+/// Rights of a request; each role includes the rights of those before it.
 /// STATUS: sees the status and messages of the machine, and may stop it.
 enum class Role : std::uint8_t { NOBODY, STATUS, VIEW, OPERATE, CONFIGURE };
 
-/// How the way is protected by which somebody came.
+/// Protection of a connection.
 enum class Protection : std::uint8_t {
     LOCAL,  ///< none leaves this computer
     TLS,    ///< encrypted, and only with a token
-    NONE    ///< by the wish of who started the server
+    NONE    ///< as the server was started
 };
 
 /// Of one browser.
@@ -47,7 +47,7 @@ struct Request {
     std::string address{};  ///< of the computer that sent it
 };
 
-/// A path with its query as it stands in a request; nothing when it is not one (no leading '/', a broken
+/// A path with its query as in a request; nothing when it is invalid (no leading '/', a broken
 /// escape, a control character).
 std::optional<Request> parse_target(std::string_view target);
 
@@ -77,7 +77,7 @@ struct Response {
 /// To be called once, in the server's thread.
 using Reply = std::function<void(Response)>;
 
-/// A browser's open socket. Never 0, never given twice.
+/// A browser's open socket. Never 0, unique.
 using SessionId = std::uint64_t;
 
 /// What may be done with open sockets. [server's thread]

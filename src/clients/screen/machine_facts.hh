@@ -20,7 +20,7 @@ struct Tab {
     enum class Kind : std::uint8_t {
         FRAME,   ///< a page of another server
         PANEL,   ///< lamps, values and buttons bound to HAL
-        PROGRAM  ///< has a window of its own
+        PROGRAM  ///< has a separate window
     };
     std::string name, location;
     Kind kind = Kind::PROGRAM;
@@ -36,7 +36,7 @@ struct ScreenFiles {
     std::string log;         ///< what operators have been told
 };
 
-/// How a machine is looked at.
+/// View of a machine.
 enum class MachineKind : std::uint8_t {
     MILL,
     LATHE,       ///< Z to the right, the tool in front of the part: X downwards

@@ -18,8 +18,8 @@ struct RequestOrigin {
     std::string_view site;    ///< header Sec-Fetch-Site
 };
 
-/// Lets pages of this server in and no others: neither those of other sites, nor those of a name that
-/// somebody else's name server leads here.
+/// Accepts pages of this server and no others: neither those of other sites, nor those of a name that a
+/// foreign name server resolves to this server.
 class OriginCheck {
   public:
     /// `names` of the server in small letters, without a port; an IPv6 address in brackets. `port` as it

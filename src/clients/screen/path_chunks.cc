@@ -68,7 +68,7 @@ void PathChunks::add(const gcode::PreviewEvent &event) {
     }
 }
 
-/// Where turns bend it in the picture it is made of chords.
+/// Where rotary axes bend it in the picture, it consists of chords.
 void PathChunks::add_straight(const gcode::PreviewEvent &event, const geometry::Pose &from,
                               const geometry::Pose &to, std::uint8_t kind) {
     constexpr double CHORD_DEG = 3, MOST_CHORDS = 20000;
@@ -140,7 +140,7 @@ void PathChunks::add_arc(const gcode::PreviewEvent &event) {
     add_point(event.end, event, kind);
 }
 
-/// Rapid moves have no feed, and leave that of the last cut in force.
+/// Rapid moves have no feed, and do not change that of the last cut.
 void PathChunks::note_range(const gcode::PreviewEvent &event, std::uint8_t kind) {
     constexpr double S_PER_MIN = 60;
     const geometry::MoveSettings &settings = event.settings;
@@ -211,7 +211,7 @@ bool PathChunks::send() {
             append(body, ranges_[i].feed);
             append(body, ranges_[i].tool);
         }
-        ranges_.erase(ranges_.begin(), ranges_.end() - 1);  // the one in force
+        ranges_.erase(ranges_.begin(), ranges_.end() - 1);  // the active one
         unsent_ = 0;
         isRead_ = push_(chunk(Chunk::RANGES, std::move(body), '\0'));
     }

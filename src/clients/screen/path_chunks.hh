@@ -23,16 +23,16 @@ class PathChunks {
     static constexpr double DEVIATION_MM = 0.005;
     static constexpr std::size_t POINTS_PER_CHUNK = 16384;
 
-    /// `push` takes a chunk; false: nobody reads any more. `unit_mm`: of the machine unit.
+    /// `push` takes a chunk; false: the reader has gone. `unit_mm`: of the machine unit.
     PathChunks(std::function<bool(std::string)> push, double unit_mm, PathLook look = {})
         : push_(std::move(push)), unit_mm_(unit_mm), look_(std::move(look)) {}
 
-    /// The first ones are sent at once, later ones when a chunk is full. False: nobody reads any more.
+    /// The first ones are sent at once, later ones when a chunk is full. False: the reader has gone.
     bool take(std::span<const gcode::PreviewEvent> events);
     void error(std::string_view text);
     /// What is left, the bounds and the end.
     void end(std::uint32_t lines);
-    /// Points of all chunks up to now, those that stand in two counted once.
+    /// Points of all chunks up to now, those in two chunks counted once.
     std::uint32_t count() const { return count_; }
 
   private:
@@ -42,7 +42,7 @@ class PathChunks {
         std::uint32_t line = 0;
         std::uint8_t kind = 0;
     };
-    /// What holds from a point on.
+    /// Values from a point on.
     struct Range {
         std::uint32_t first = 0;
         float feed = 0;
@@ -61,7 +61,7 @@ class PathChunks {
     double unit_mm_;
     PathLook look_;
     std::vector<Point> points_;
-    std::vector<Range> ranges_;  ///< the one in force, and those that have not been sent
+    std::vector<Range> ranges_;  ///< the active one, and those that have not been sent
     std::size_t unsent_ = 0;     ///< of them, at the end
     Range range_;                ///< that holds now
     std::uint32_t count_ = 0;

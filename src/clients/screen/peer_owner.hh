@@ -34,8 +34,8 @@ enum class PeerOwner : std::uint8_t {
 class SocketFinder {
   public:
     SocketFinder();
-    /// The socket at `client` of a connection to `server`. An error says why the kernel does not tell, or
-    /// that there is no such socket in this network namespace.
+    /// The socket at `client` of a connection to `server`. An error states why the kernel does not report it,
+    /// or that there is no such socket in this network namespace.
     Result<SocketFacts> operator()(const Endpoint &client, const Endpoint &server);
 
   private:
@@ -45,7 +45,7 @@ class SocketFinder {
 };
 
 /// SERVER_USER only for an established socket with these ends, which a process has open, of `server_uid` or
-/// root. The kernel reports user 0 for sockets that nobody has open, and OVERFLOW_UID for users that this
+/// root. The kernel reports user 0 for sockets that no process has open, and OVERFLOW_UID for users that this
 /// user namespace does not have.
 PeerOwner owner_of(const SocketFacts &socket, const Endpoint &client, const Endpoint &server,
                    std::uint32_t server_uid);

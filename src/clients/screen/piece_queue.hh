@@ -19,7 +19,7 @@ class PieceQueue {
 
     // Of the maker's thread.
 
-    /// Sleeps while too much waits. False: nobody reads any more, and nothing is to be made.
+    /// Sleeps while too much waits. False: the reader has gone, and no further piece is needed.
     bool push(std::string piece);
     /// There are no more.
     void end();
@@ -29,7 +29,7 @@ class PieceQueue {
 
     /// PIECE: the next one is in `piece`. LATER: `wake` is called, in the maker's thread, when there is more.
     State take(std::string &piece, std::function<void()> wake);
-    /// Nobody reads any more.
+    /// The reader has gone.
     void cancel();
 
   private:

@@ -147,7 +147,7 @@ void Screens::look_for_machine() {
         }
         watch_.emplace(std::move(*client));
         watch_->rewind_messages(MOST_KEPT);  // also those that appeared before this server was started
-        log("the machine is up");
+        log("the machine is running");
         hasStatus_ = false;
     }
     for (const auto &[session, browser] : browsers_) {
@@ -180,7 +180,7 @@ void Screens::lose_machine(const std::string &reason) {
     watch_.reset();
     hasStatus_ = false;
     tools_.reset();
-    kept_.clear();  // another machine counts its messages anew
+    kept_.clear();  // another machine counts its messages from 1
 }
 
 void Screens::tell_all(const std::string &text) {

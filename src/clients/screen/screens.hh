@@ -17,7 +17,7 @@ namespace mw::screen {
 struct ScreensSetup {
     /// A client of the machine; an error says why there is none. Called for each screen and once for all.
     std::function<Result<client::Client>()> connect;
-    /// The same for the one for all, through which a screen without a place of its own stops the machine;
+    /// The same for the one for all, through which a screen without a slot stops the machine;
     /// empty: as `connect`.
     std::function<Result<client::Client>()> connect_for_all{};
     std::string version;
@@ -31,7 +31,7 @@ class Screens {
   public:
     /// Between two looks for a machine, and whether it still lives.
     static constexpr std::int64_t LOOK_NS = 250000000;
-    /// Messages that a new screen is told.
+    /// Messages that a new screen receives.
     static constexpr std::size_t MOST_KEPT = 100;
 
     Screens(Sockets &sockets, ScreensSetup setup);
@@ -48,7 +48,7 @@ class Screens {
 
     bool isLogKept() const { return log_ != nullptr; }
 
-    /// Names of HAL that any screen looks at, each once.
+    /// Names of HAL that any screen shows, each once.
     std::vector<std::string> watched() const;
     /// What HAL asks persons: told when it changes, and to each new screen.
     void tell_questions(const std::string &questions);
@@ -76,9 +76,9 @@ class Screens {
 
     Sockets &sockets_;
     ScreensSetup setup_;
-    std::string session_;                      ///< of this server: another one after its restart
-    std::optional<client::Client> watch_;      ///< reads status and messages for all
-    std::string reason_ = "no machine is up";  ///< why there is none
+    std::string session_;                           ///< of this server: another one after its restart
+    std::optional<client::Client> watch_;           ///< reads status and messages for all
+    std::string reason_ = "no machine is running";  ///< why there is none
     bool hasStatus_ = false;
     std::uint64_t last_cycle_ = 0;              ///< of task, as read last
     std::int64_t last_advance_ns_ = 0;          ///< when that was new

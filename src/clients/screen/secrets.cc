@@ -163,7 +163,7 @@ Result<std::optional<std::string>> read_secret_file(const std::string &path) {
     if (!text.has_value()) {
         return std::unexpected(text.error());
     }
-    return text->empty() ? std::nullopt : std::optional(std::move(*text));  // cut short when it was made
+    return text->empty() ? std::nullopt : std::optional(std::move(*text));  // truncated when it was written
 }
 
 Result<> write_secret_file(const std::string &path, std::string_view text) {

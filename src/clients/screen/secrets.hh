@@ -19,8 +19,8 @@ bool areSame(std::string_view a, std::string_view b);
 
 /// Nothing where there is no such file; an error when another user could read it.
 Result<std::optional<std::string>> read_secret_file(const std::string &path);
-/// For this user alone, in a folder that is made where it is missing; synced, and the old file or the new one
-/// whatever happens.
+/// For this user alone, in a folder that is created when missing. Synced: after a crash it is the old file
+/// or the new one.
 Result<> write_secret_file(const std::string &path, std::string_view text);
 
 struct Certificate {

@@ -112,7 +112,7 @@ void Server::Impl::accept_later(Listener &listener) {
 
 void Server::Impl::accept(Listener &listener) {
     if (listener.door.greetings.has_value() && !listener.door.greetings->take(monotonic_ns())) {
-        accept_later(listener);  // who comes waits in the kernel
+        accept_later(listener);  // new connections wait in the kernel
         return;
     }
     listener.acceptor.async_accept([this, &listener](error_code error, tcp::socket socket) {

@@ -74,11 +74,11 @@ class Server final : public Sockets {
     ~Server() override;
 
     int port() const;
-    /// 0: nobody comes from other computers.
+    /// 0: no connections from other computers.
     int remote_port() const;
     /// Does what there is to do, waits for more, and returns when the time is over.
     void run_for(Application &application, std::chrono::nanoseconds time);
-    /// `act` is called within run_for(). Whoever calls this, replies and makers of pieces end before the
+    /// `act` is called within run_for(). Callers, replies and makers of pieces end before the
     /// server. [any thread]
     void post(std::function<void()> act);
 

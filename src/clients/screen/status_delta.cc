@@ -65,7 +65,7 @@ class Comparison {
         return !isSame;
     }
 
-    /// Whether any of its bytes lies in a part that is looked at.
+    /// Whether any of its bytes lies in a part that is compared.
     bool isFresh(const messages::Type &type, const void *at) const {
         const auto &starts = messages::status_part::STARTS;
         const auto low = static_cast<std::size_t>(static_cast<const char *>(at) - begin_);
@@ -79,7 +79,7 @@ class Comparison {
         return false;
     }
 
-    /// @return the length to go back to when there is nothing to tell of it
+    /// @return the length to return to when it has no change
     std::size_t begin(std::size_t object, std::string_view name) {
         const std::size_t undo = text.size();
         text += text.size() == object ? "{\"" : ",\"";

@@ -12,11 +12,11 @@ namespace mw::screen {
 /// Of one browser. One thread.
 class StatusDelta {
   public:
-    /// The whole status as JSON; what follows is told against it.
+    /// The whole status as JSON; later changes are relative to it.
     std::string whole(const messages::MachineStatus &now);
     /// The fields that are other than told last, nested as in the whole; of an array the elements, by index:
     /// {"joints":{"2":{"pos_cmd":4.5}}}. Empty when nothing is. Only `parts` (messages::status_part) are
-    /// looked at: those that have been read since.
+    /// compared: those that have been read since.
     std::string next(const messages::MachineStatus &now, PartMask parts = messages::PublishedStatus::ALL);
 
   private:

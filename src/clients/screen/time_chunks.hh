@@ -35,7 +35,7 @@ class TimeChunks {
   public:
     static constexpr std::size_t MOVES_PER_CHUNK = 16384;
 
-    /// `push` takes a chunk; false: nobody reads any more.
+    /// `push` takes a chunk; false: the reader has gone.
     explicit TimeChunks(std::function<bool(std::string)> push) : push_(std::move(push)) {}
 
     /// `point`: number of the last point of the path, as PathChunks counts, that belongs to it.

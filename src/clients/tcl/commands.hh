@@ -21,7 +21,7 @@ struct CommandRow {
 
 /// Values of the status; some also set it.
 std::span<const CommandRow> questions();
-/// What it is asked for; without words most of them tell how it is.
+/// Orders; without words most of them return the current value.
 std::span<const CommandRow> orders();
 /// The INI file, the connection, numbers.
 std::span<const CommandRow> settings();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The shared part that wish and tclsh load: the commands emc_* of the package Linuxcnc.
+// The shared library that Tcl shells load: the commands emc_* of the package Linuxcnc.
 #include <tcl.h>
 
 #include <filesystem>

@@ -59,7 +59,7 @@ Text lower(Shell &shell, const Name &question, const Words &words = {}) {
     return text.has_value() ? Text(to_lower(*text)) : text;
 }
 
-/// Of poses linuxcncrsh tells all; here one letter is asked for.
+/// linuxcncrsh returns all axes; this returns the one of the letter.
 Text relative(Shell &shell, const Words &words, const char *question) {
     const auto axis = letter(words);
     if (!axis.has_value()) {
@@ -91,7 +91,7 @@ Text shown_angles(Shell &shell, const Words &) {
                                                         : to_lower(rsh::name_of(shell.own.angle_unit));
 }
 
-/// 1 done, 2 under way, 3 refused or failed.
+/// 1 done, 2 executing, 3 rejected or failed.
 int progress_of(const messages::MachineStatus &status) {
     constexpr int DONE = 1, EXEC = 2, ERROR = 3;
     switch (status.last_progress) {

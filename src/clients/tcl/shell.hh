@@ -34,7 +34,7 @@ class Shell {
 
     /// The words behind the name of an answer of GET.
     Result<std::string> told(const std::string &question, const Words &words = {});
-    /// SET; an empty text, or why it was refused: that is an answer, not an error of the program.
+    /// SET; an empty text, or the reason of the rejection: that is an answer, not an error of the program.
     Result<std::string> ask(const std::string &order, const Words &words = {});
     Result<std::string> send(const messages::Command &command);
     Result<std::string> jog(const rsh::JogTarget &target, double velocity);

@@ -53,7 +53,7 @@ Result<Client> Client::join(mailbox::Segment &segment, Role role, Places places)
 Result<Client> Client::join(Viewer viewer, Role role, Places places) {
     mailbox::Segment &segment = viewer.segment();
     const std::uint64_t me = mailbox::owner_word();
-    // Before the place: task looks at no more places than numbers were given out.
+    // Before the slot: task reads no more slots than numbers were assigned.
     const mailbox::ClientId id = segment.client_ids.fetch_add(1, std::memory_order_acq_rel) + 1;
     const int first = places == Places::RESERVED ? 0 : mailbox::RESERVED_CLIENTS;
     for (int i = first; i < mailbox::MAX_CLIENTS; ++i) {
@@ -153,14 +153,14 @@ Outcome Client::outcome(Serial serial) {
     if (!isTaken(serial)) {
         return {};
     }
-    // Before the outcomes: what is told later is looked at by the next call.
+    // Before the outcomes: the next call reads those that are reported later.
     const std::uint64_t told = slot().told.load(std::memory_order_acquire);
     if (found_.serial == serial && found_.told == told) {
         return found_.outcome;
     }
     const auto &outcomes = slot().outcomes;
     for (std::size_t i = 0; i < outcomes.size(); ++i) {
-        const std::size_t place = (found_.place + i) % outcomes.size();  // mostly asked again
+        const std::size_t place = (found_.place + i) % outcomes.size();  // mostly requested again
         mailbox::Outcome outcome;
         if (viewer_.read_whole(outcomes[place], outcome) && outcome.serial == serial) {
             found_ = {serial, told, place, {outcome.progress, outcome.reason.str()}};

@@ -19,13 +19,13 @@ using mailbox::Places;
 using mailbox::Role;
 using mailbox::Serial;
 
-/// How a command stands or has ended.
+/// Progress of a command, or how it has ended.
 struct Outcome {
     messages::Progress progress = messages::Progress::STARTED;
-    std::string reason;  ///< of a refusal or failure
+    std::string reason;  ///< of a rejection or failure
 };
 
-/// One thread. Leaves its place when it is destroyed; what it has started goes on.
+/// One thread. Frees its slot when it is destroyed; what it has started continues.
 class Client {
   public:
     /// Of a machine in another process, by the name of its instance.
@@ -40,23 +40,23 @@ class Client {
     Client(Client &&other) noexcept;
     Client &operator=(Client &&other) noexcept;
 
-    /// Takes authority away from the commands from here on; nothing gives it back. For programs that pass on
-    /// commands of others.
+    /// Reduces the authority of all further commands; it cannot be increased again. For programs that pass
+    /// commands of other programs.
     void limit_authority(mailbox::Authority most);
 
     /// Number of this client, as the right to operate names it.
     mailbox::ClientId id() const { return id_; }
 
-    /// Hands a command over; its number among those of all clients. An error when a value is out of range or
-    /// MAX_POSTED commands wait. A stop is taken however many wait.
+    /// Posts a command and returns its number among those of all clients. An error when a value is out of
+    /// range or MAX_POSTED commands wait. A stop is always accepted.
     Result<Serial> post(const messages::Command &command);
-    /// STARTED also while it waits to be taken. One that task no longer remembers is REFUSED, and its reason
-    /// says so.
+    /// STARTED also while it waits for task. A command that task no longer remembers is rejected, and the
+    /// reason states it.
     Outcome outcome(Serial serial);
     /// Sleeps until the command ends; an error when the time is over or the machine is gone.
     Result<Outcome> wait(Serial serial, double timeout_s);
 
-    /// Sleeps until task has taken the command, whatever becomes of it.
+    /// Sleeps until task has taken the command, before its outcome.
     Result<> wait_taken(Serial serial, double timeout_s);
 
     /// Sleeps at the bell until `isOver()`, as Viewer::wait_until.
@@ -95,7 +95,7 @@ class Client {
     bool hasPlace_ = true;  ///< false after a move
     int slot_ = 0;
     mailbox::ClientId id_ = 0;
-    /// The outcome that was asked for last, where it was found, and how many had been told by then.
+    /// The outcome that was requested last, its position, and the number of outcomes reported by then.
     struct Found {
         Serial serial = 0;
         std::uint64_t told = 0;
@@ -107,7 +107,7 @@ class Client {
         int place = 0;
     };
     std::vector<PostedStop> posted_stops_;  ///< beside the queue, not seen as taken yet
-    /// Stops that a later one of the same kind has taken the place of: number, and that of the later one.
+    /// Stops that a later one of the same type has replaced: number, and that of the later one.
     std::deque<std::pair<Serial, Serial>> replaced_stops_;
 };
 

@@ -7,8 +7,8 @@
 
 namespace mw::client {
 
-/// A line for the operator as a person reads it: in the language of this process's environment, but what
-/// programs say (OPERATOR_DISPLAY: (MSG,), clients), which is in that of whoever wrote it.
+/// A line for the operator in the language of this process's environment. Texts of programs and clients
+/// (OPERATOR_DISPLAY) are not translated.
 std::string shown_message(const Viewer::Message &message);
 
 }  // namespace mw::client

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Who looks at a machine without commanding it: status, tool table, messages. In the machine's process or in
+// Reads a machine without commanding it: status, tool table, messages. In the machine's process or in
 // another.
 #pragma once
 
@@ -15,14 +15,14 @@
 
 namespace mw::client {
 
-/// One thread. Takes no place among the clients: any number of them may look, and none costs task anything.
+/// One thread. Occupies no client slot: any number of viewers may read, at no cost for task.
 class Viewer {
   public:
-    /// At a machine in another process, by the name of its instance.
+    /// Of a machine in another process, by the name of its instance.
     static Result<Viewer> attach(const std::string &instance);
-    /// At a machine in this process, which must outlive it.
+    /// Of a machine in this process, which must outlive it.
     explicit Viewer(mailbox::Segment &segment);
-    /// At a machine on another computer.
+    /// Of a machine on another computer.
     explicit Viewer(std::shared_ptr<MachineLink> link);
 
     mailbox::Segment &segment() const { return *segment_; }
@@ -55,10 +55,10 @@ class Viewer {
         messages::MessageKind kind = messages::MessageKind::OPERATOR_ERROR;
         std::string text;
     };
-    /// Whether what it reads counts as seen by somebody: who comes later gets what nobody has seen.
+    /// Whether messages that it reads count as read. A later viewer gets the messages that are not read yet.
     enum class Reading : std::uint8_t { COUNTS, LOOKS_ON };
     /// The next message; nothing when there is none. Messages that were overwritten before they were read
-    /// come as one that says how many.
+    /// come as one that states their number.
     std::optional<Message> next_message(Reading reading = Reading::COUNTS);
     /// next_message() continues with the oldest of the last `most` messages, whether others have read them
     /// or not; of at most mailbox::MAX_MESSAGES.
@@ -68,8 +68,8 @@ class Viewer {
     /// Whether the message is not yet in [DISPLAY]LOG_FILE; from here on it counts as written there.
     bool claim_log(std::uint64_t number) const;
 
-    /// Sleeps at the bell until `isOver()`, which is asked after each cycle of task; an error when the time
-    /// is over or the machine is gone.
+    /// Sleeps at the bell until `isOver()`, which is evaluated after each cycle of task; an error when the
+    /// time is over or the machine is gone.
     template <class IsOver>
     Result<> wait_until(const IsOver &isOver, double timeout_s);
     /// False when task died within writing it.
@@ -91,7 +91,7 @@ class Viewer {
 
 template <class Lock, class Value>
 bool Viewer::read_whole(const Lock &lock, Value &value) const {
-    // How long task may lie interrupted within a write before it counts as dead: as long as its watchdog.
+    // Longest interruption of task within a write before it counts as dead: the time of its watchdog.
     constexpr std::chrono::milliseconds WRITER_PATIENCE{500};
     return read_patiently(lock, value, WRITER_PATIENCE, [this] { return isMachineAlive(); });
 }

@@ -12,7 +12,7 @@
 namespace mw::messages {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "numbers are copied as they stand in memory");
+static_assert(std::endian::native == std::endian::little, "numbers are copied as they are in memory");
 
 template <class T>
 void append(std::string &bytes, T value) {

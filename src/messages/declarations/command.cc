@@ -14,8 +14,8 @@ Command &Command::operator=(const Command &other) {
     return *this = Command(other);
 }
 
-/// By making it anew: compiling the assignment of one alternative to each other takes longer than all the
-/// rest.
+/// Constructs the alternative again: compiling the assignment of one alternative to each other takes longer
+/// than all the rest.
 Command &Command::operator=(Command &&other) noexcept {
     if (this != &other) {
         std::destroy_at(this);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Every command: what an operator, a screen or another program asks of the machine. Each ends as done,
-// refused or failed with a reason.
+// Every command: what an operator, a screen or another program requests of the machine. Each ends as
+// done, or as rejected or failed with a reason.
 #pragma once
 
 #include <algorithm>
@@ -30,7 +30,7 @@ using CommandVariant = std::variant<
     SpindleConstant, ReleaseBrake, EngageBrake, MistOn, MistOff, FloodOn, FloodOff, LubeOn, LubeOff,
     LoadToolTable, SetToolEntry, AddTool, RemoveTool, ConfirmToolChange>;
 
-/// Where a message stands in the variant.
+/// Index of a message in the variant.
 template <class Message, class Variant>
 inline constexpr std::size_t INDEX_IN = 0;
 template <class Message, class... All>
@@ -39,7 +39,7 @@ inline constexpr std::size_t INDEX_IN<Message, std::variant<All...>> = [] {
     return static_cast<std::size_t>(std::find(IS_IT.begin(), IS_IT.end(), true) - IS_IT.begin());
 }();
 
-/// One of them. What a variant of so many does to its members is compiled once, in command.cc.
+/// One of them. The operations of this large variant are compiled once, in command.cc.
 class Command : public CommandVariant {
   public:
     using Variant = CommandVariant;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Joints, axes and spindles as the status tells them.
+// Joints, axes and spindles as the status reports them.
 #pragma once
 
 #include "base/limits.hh"
@@ -49,11 +49,11 @@ inline constexpr auto DECLARED<JointStatus> =
                 "ferror_highmark", "largest following error since the machine was enabled", unit::JOINT),
             field<&JointStatus::min_limit>("min_limit", "lower soft limit", unit::JOINT),
             field<&JointStatus::max_limit>("max_limit", "upper soft limit", unit::JOINT),
-            field<&JointStatus::max_velocity>("max_velocity", "highest speed", unit::JOINT_SPEED),
-            field<&JointStatus::max_acceleration>("max_acceleration", "highest acceleration",
+            field<&JointStatus::max_velocity>("max_velocity", "maximum speed", unit::JOINT_SPEED),
+            field<&JointStatus::max_acceleration>("max_acceleration", "maximum acceleration",
                                                   unit::JOINT_ACCELERATION),
             field<&JointStatus::isActive>("is_active", "takes part"),
-            field<&JointStatus::isInPosition>("in_position", "stands where it is commanded to"),
+            field<&JointStatus::isInPosition>("in_position", "has reached its commanded position"),
             field<&JointStatus::isEnabled>("is_enabled", "amplifier enabled"),
             field<&JointStatus::isHoming>("is_homing", "is being homed"),
             field<&JointStatus::isHomed>("is_homed", "is homed"),

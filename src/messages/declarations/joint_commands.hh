@@ -47,8 +47,9 @@ inline constexpr auto DECLARED<JogContinuous> = declare(
         "lease_ms", "motion ends the jog when it is not renewed within so long, at least 20; 0: no lease",
         unit::MILLISECOND, range(0, LONGEST_JOG_LEASE_MS))),
     optional(field<&JogContinuous::isRenewal>(
-        "is_renewal", "true: renews the lease of a jog under way and never begins one, so that no jog goes "
-                      "on that was stopped; a refusal is told to its client alone")));
+        "is_renewal",
+        "true: renews the lease of an active jog and never starts one, so that a stopped jog does "
+        "not continue; a rejection is reported to its client only")));
 
 struct JogIncrement {
     bool isJoint = true;
@@ -170,7 +171,7 @@ template <>
 inline constexpr auto DECLARED<SetJointHoming> = declare(
     "SetJointHoming", 112, "sets how a joint is homed",
     field<&SetJointHoming::joint>("joint", "number of the joint", unit::NONE, JOINTS),
-    field<&SetJointHoming::home>("home", "where it stands after homing", unit::JOINT),
+    field<&SetJointHoming::home>("home", "position after homing", unit::JOINT),
     field<&SetJointHoming::offset>("offset", "of the switch or index", unit::JOINT),
     field<&SetJointHoming::final_velocity>("final_velocity", "of the last move; 0: rapid", unit::JOINT_SPEED),
     field<&SetJointHoming::search_velocity>(

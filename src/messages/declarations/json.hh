@@ -11,7 +11,7 @@
 namespace mw::messages {
 
 std::string to_json(const ConstObject &message);
-/// A single value as it stands in its message; of an array an element.
+/// A single value of a message; of an array, one element.
 std::string to_json(const Field &field, const void *at);
 
 /// The value of "message", by which a reader finds the declaration.

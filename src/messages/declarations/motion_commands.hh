@@ -129,7 +129,7 @@ inline constexpr auto DECLARED<RigidTapMove> =
     declare("RigidTapMove", 237, "taps to a depth and back",
             field<&RigidTapMove::end>("end", "end point", unit::POSE),
             field<&RigidTapMove::velocity>("velocity", "along the path", unit::SPEED, AT_LEAST_0),
-            field<&RigidTapMove::scale>("scale", "of the speed of the way back", unit::FACTOR, AT_LEAST_0));
+            field<&RigidTapMove::scale>("scale", "of the retract speed", unit::FACTOR, AT_LEAST_0));
 
 struct SetAnalogOutput {
     int index = 0;

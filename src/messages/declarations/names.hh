@@ -23,7 +23,7 @@ inline constexpr auto NAMES<InterpState> =
     std::array{named(InterpState::IDLE, "IDLE"), named(InterpState::READING, "READING"),
                named(InterpState::PAUSED, "PAUSED"), named(InterpState::WAITING, "WAITING")};
 
-/// What task waits for, in the words of clients written for LinuxCNC.
+/// What task waits for, as clients of LinuxCNC read it.
 enum class ExecState : std::uint8_t {
     ERROR = 1,
     DONE = 2,
@@ -90,7 +90,7 @@ inline constexpr auto NAMES<Kinematics> =
     std::array{named(Kinematics::IDENTITY, "IDENTITY"), named(Kinematics::FORWARD_ONLY, "FORWARD_ONLY"),
                named(Kinematics::INVERSE_ONLY, "INVERSE_ONLY"), named(Kinematics::BOTH, "BOTH")};
 
-/// What has to happen before the program goes on. The argument is the number of the pin, joint or spindle.
+/// What has to happen before the program continues. The argument is the number of the pin, joint or spindle.
 enum class WaitFor : std::uint8_t {
     NOTHING,
     DWELL,

@@ -25,7 +25,7 @@ struct SetMode {
 template <>
 inline constexpr auto DECLARED<SetMode> =
     declare("SetMode", 504, "sets the mode of operation; done when motion has followed",
-            field<&SetMode::mode>("mode", "refused while a program or line runs"));
+            field<&SetMode::mode>("mode", "rejected while a program or line runs"));
 
 struct OpenProgram {
     std::string path;
@@ -43,35 +43,35 @@ inline constexpr auto DECLARED<RunProgram> =
     declare("RunProgram", 507, "runs the open program; done at its end",
             optional(field<&RunProgram::from_line>(
                 "from_line",
-                "0 and 1: the start; above: what comes before is calculated, and the way there confirmed; "
+                "0 and 1: the start; above: the lines before are calculated, and the approach is confirmed; "
                 "-1: only reads it",
                 unit::NONE, range(-1, 1e9))));
 
-/// The moves of ApproachStatus, which a person has seen, may be made.
+/// A person has seen the moves of ApproachStatus and confirms them.
 struct ConfirmApproach {
     std::uint64_t number = 0;
 };
 template <>
 inline constexpr auto DECLARED<ConfirmApproach> =
-    declare("ConfirmApproach", 3005, "makes the moves that are proposed, then goes on with the program",
+    declare("ConfirmApproach", 3005, "executes the proposed moves, then resumes the program",
             field<&ConfirmApproach::number>("number", "of the proposal, as ApproachStatus shows it"));
 
-/// Of a held program: it goes on later at the place that it has left.
+/// Of a paused program: it resumes later at the position that it has left.
 struct ReleaseAxes {};
 template <>
 inline constexpr auto DECLARED<ReleaseAxes> =
-    declare("ReleaseAxes", 3006, "lets the axes be jogged away from a program that is held");
+    declare("ReleaseAxes", 3006, "permits jogs of the axes while a program is paused");
 
 struct RecoverProgram {};
 template <>
 inline constexpr auto DECLARED<RecoverProgram> =
     declare("RecoverProgram", 3007,
-            "goes on with the program that a power cut or a crash has ended, once the way is confirmed");
+            "resumes the program that a power cut or a crash has ended, once the approach is confirmed");
 
 struct ForgetRecovery {};
 template <>
 inline constexpr auto DECLARED<ForgetRecovery> =
-    declare("ForgetRecovery", 3008, "drops the offer to go on with a program that was cut short");
+    declare("ForgetRecovery", 3008, "withdraws the offer to resume an interrupted program");
 
 struct Mdi {
     std::string line;
@@ -83,18 +83,19 @@ inline constexpr auto DECLARED<Mdi> =
 
 struct PauseProgram {};
 template <>
-inline constexpr auto DECLARED<PauseProgram> = declare("PauseProgram", 510, "holds what runs, on its path");
+inline constexpr auto DECLARED<PauseProgram> =
+    declare("PauseProgram", 510, "pauses the program or MDI line on its path");
 
 /// Runs one block and pauses; starts the program when idle.
 struct StepProgram {};
 template <>
 inline constexpr auto DECLARED<StepProgram> =
-    declare("StepProgram", 511, "runs one block and holds; starts the program when idle");
+    declare("StepProgram", 511, "runs one block and pauses; starts the program when idle");
 
 struct ResumeProgram {};
 template <>
 inline constexpr auto DECLARED<ResumeProgram> =
-    declare("ResumeProgram", 512, "goes on after a hold or a program stop");
+    declare("ResumeProgram", 512, "resumes after a pause or a program stop");
 
 struct CloseProgram {};
 template <>
@@ -103,7 +104,7 @@ inline constexpr auto DECLARED<CloseProgram> = declare("CloseProgram", 514, "clo
 struct ResetInterpreter {};
 template <>
 inline constexpr auto DECLARED<ResetInterpreter> =
-    declare("ResetInterpreter", 515, "ends what the interpreter has under way and closes the program");
+    declare("ResetInterpreter", 515, "ends the active work of the interpreter and closes the program");
 
 struct SynchInterpreter {};
 template <>
@@ -157,7 +158,7 @@ template <>
 inline constexpr auto DECLARED<SetDebug> =
     declare("SetDebug", 22, "sets what is logged, as [EMC]DEBUG", field<&SetDebug::mask>("mask", "bits"));
 
-/// Texts for the operator: what task tells, and what a client may tell all others.
+/// Texts for the operator, from task or from a client to all others.
 struct OperatorError {
     std::string text;
 };
@@ -188,7 +189,7 @@ struct ClaimOperation {
 };
 template <>
 inline constexpr auto DECLARED<ClaimOperation> =
-    declare("ClaimOperation", 3001, "asks for the right to operate alone, or renews it",
+    declare("ClaimOperation", 3001, "requests the exclusive right to operate, or renews it",
             optional(field<&ClaimOperation::lease_s>("lease_s", "it ends by itself after so long",
                                                      unit::SECOND, range(0.1, 3600))));
 struct HandOverOperation {

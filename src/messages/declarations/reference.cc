@@ -82,11 +82,8 @@ std::string reference_page() {
         "NML names: `nml_messages.md`. JSON: "
         "`{\"message\":\"JogStop\",\"is_joint\":true,"
         "\"index\":0}`;\n"
-        "binary: `src/messages/declarations/binary.hh`. Which commands a machine carries out is said by "
-        "their "
-        "outcome: what it does "
-        "not\n"
-        "carry out it refuses with a reason.\n"
+        "binary: `src/messages/declarations/binary.hh`. Each command ends with an outcome: done,\n"
+        "or rejected or failed with a reason.\n"
         "\n"
         "## Commands\n";
     std::vector<const Declaration *> commands(command_declarations().begin(), command_declarations().end());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the INI file has settled, as far as clients must know it to read the rest of the status.
+// Settings of the INI file that clients need to read the rest of the status.
 #pragma once
 
 #include "base/limits.hh"

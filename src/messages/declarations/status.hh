@@ -44,8 +44,8 @@ inline constexpr auto DECLARED<TrajectoryStatus> = declare(
     field<&TrajectoryStatus::num_spindles>("num_spindles", "spindles that the machine has"),
     field<&TrajectoryStatus::mode>("mode", "of motion"),
     field<&TrajectoryStatus::isEnabled>("is_enabled", "motion is enabled"),
-    field<&TrajectoryStatus::isInPosition>("in_position", "nothing moves and nothing is on its way"),
-    field<&TrajectoryStatus::isPaused>("is_paused", "motion is held"),
+    field<&TrajectoryStatus::isInPosition>("in_position", "nothing moves and no move waits"),
+    field<&TrajectoryStatus::isPaused>("is_paused", "motion is paused"),
     field<&TrajectoryStatus::isStepping>("is_stepping", "one block at a time"),
     field<&TrajectoryStatus::isReverse>("is_reverse", "goes back along the path"),
     field<&TrajectoryStatus::isAllHomed>("all_homed", "all joints are homed"),
@@ -158,7 +158,7 @@ inline constexpr auto DECLARED<MachineStatus> = declare(
     field<&MachineStatus::last_message>("last_message", "number of the newest message to the operator"),
     field<&MachineStatus::task>("task", "states and program"),
     field<&MachineStatus::codes>("codes", "modal codes"),
-    field<&MachineStatus::offsets>("offsets", "in force"),
+    field<&MachineStatus::offsets>("offsets", "active offsets"),
     field<&MachineStatus::trajectory>("trajectory", "motion as a whole"),
     field<&MachineStatus::probe>("probe", "probe"),
     field<&MachineStatus::overrides>("overrides", "of feed and rapids"),
@@ -169,7 +169,7 @@ inline constexpr auto DECLARED<MachineStatus> = declare(
     field<&MachineStatus::io>("io", "e-stop chain, coolant"),
     field<&MachineStatus::operation>("operation", "who may operate"),
     field<&MachineStatus::approach>("approach", "what a person is to confirm"),
-    field<&MachineStatus::recovery>("recovery", "what can be gone on with after a crash"),
+    field<&MachineStatus::recovery>("recovery", "the program that can be resumed after a crash"),
     field<&MachineStatus::settings>("settings", "what is set for the machine"));
 
 struct ToolRecord {

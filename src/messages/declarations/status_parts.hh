@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The parts of the machine's status in which it is published: who reads it often copies only what has
+// The parts of the machine's status in which it is published: frequent readers copy only parts that have
 // changed.
 #pragma once
 

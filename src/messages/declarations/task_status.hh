@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What task, interpreter, tool changer and I/O tell.
+// Status of task, interpreter, tool changer and I/O.
 #pragma once
 
 #include <string>
@@ -15,16 +15,16 @@ struct Waiting {
 };
 template <>
 inline constexpr auto DECLARED<Waiting> =
-    declare("Waiting", 0, "what has to happen before the program goes on",
+    declare("Waiting", 0, "what has to happen before the program continues",
             field<&Waiting::what>("what", "kind"),
             field<&Waiting::index>("index", "number of the pin, joint or spindle; -1: all or none"));
 
 /// "pin motion.digital-in-03", "the end of a dwell"; empty for nothing.
 std::string waiting_text(const Waiting &waiting);
 
-/// Longest path of a program that the status can tell. [bytes]
+/// Longest path of a program in the status. [bytes]
 inline constexpr std::size_t MAX_STATUS_TEXT = 1023;
-/// Longest block that it tells; of a longer one the beginning. [bytes]
+/// Longest block in the status; a longer one is cut at the end. [bytes]
 inline constexpr std::size_t MAX_STATUS_BLOCK = 255;
 
 struct TaskStatus {
@@ -59,23 +59,23 @@ inline constexpr auto DECLARED<TaskStatus> =
             field<&TaskStatus::mode>("mode", "of operation"),
             field<&TaskStatus::interp_state>("interp_state", "of the program"),
             field<&TaskStatus::exec_state>("exec_state", "what task waits for"),
-            field<&TaskStatus::isAway>("is_away", "the axes of a held program are released for jogs"),
-            field<&TaskStatus::isPaused>("is_paused", "held"),
-            field<&TaskStatus::isStoppedByProgram>("stopped_by_program", "held by M0, M1 or M60"),
+            field<&TaskStatus::isAway>("is_away", "the axes of a paused program are released for jogs"),
+            field<&TaskStatus::isPaused>("is_paused", "paused"),
+            field<&TaskStatus::isStoppedByProgram>("stopped_by_program", "paused by M0, M1 or M60"),
             field<&TaskStatus::isOptionalStop>("optional_stop", "M1 stops"),
-            field<&TaskStatus::isBlockDelete>("block_delete", "lines that begin with / are left out"),
+            field<&TaskStatus::isBlockDelete>("block_delete", "lines that begin with / are skipped"),
             field<&TaskStatus::program>("program", "path of the open program"),
             field<&TaskStatus::read_line>("read_line", "last line that the interpreter has read"),
             field<&TaskStatus::motion_line>("motion_line", "line of the move that is executed"),
             field<&TaskStatus::stop_line>("stop_line", "line of the last M0, M1 or M60 reached"),
-            field<&TaskStatus::stops>("stops", "M0, M1 and M60 that have held a program"),
+            field<&TaskStatus::stops>("stops", "M0, M1 and M60 that have paused a program"),
             field<&TaskStatus::blocks>("blocks", "executed since the program started"),
             field<&TaskStatus::call_level>("call_level", "depth of subroutines"),
             field<&TaskStatus::queued_mdi>("queued_mdi", "lines of MDI that wait behind the one that runs"),
             field<&TaskStatus::programs_ended>("programs_ended", "by M2, M30, end of file, abort or error"),
             field<&TaskStatus::waiting>("waiting", "what the program waits for"),
             field<&TaskStatus::delay_left_s>("delay_left", "of a dwell", unit::SECOND),
-            field<&TaskStatus::isInputTimedOut>("input_timeout", "the last M66 has waited in vain"),
+            field<&TaskStatus::isInputTimedOut>("input_timeout", "the last M66 has timed out"),
             field<&TaskStatus::error_code>("error_code", "0; 5 after a program or line that failed"),
             field<&TaskStatus::block>("block", "that was read last; of MDI, the line"));
 
@@ -86,7 +86,7 @@ struct CodesStatus {
 };
 template <>
 inline constexpr auto DECLARED<CodesStatus> =
-    declare("CodesStatus", 0, "modal codes in force",
+    declare("CodesStatus", 0, "active modal codes",
             field<&CodesStatus::g>("g", "[0] sequence number, then ten times the code, -1 none"),
             field<&CodesStatus::m>("m", "[0] sequence number, then codes, -1 none"),
             field<&CodesStatus::settings>("settings", "sequence number, feed, speed, G64 P, G64 Q"));
@@ -100,7 +100,7 @@ struct OffsetsStatus {
 };
 template <>
 inline constexpr auto DECLARED<OffsetsStatus> =
-    declare("OffsetsStatus", 0, "offsets in force",
+    declare("OffsetsStatus", 0, "active offsets",
             field<&OffsetsStatus::g5x_index>("g5x_index", "1 G54 ... 9 G59.3"),
             field<&OffsetsStatus::g5x>("g5x", "work offset", unit::POSE),
             field<&OffsetsStatus::g92>("g92", "G92 offset", unit::POSE),
@@ -119,10 +119,10 @@ inline constexpr auto DECLARED<ApproachMove> =
             field<&ApproachMove::isRapid>("rapid", "a rapid; else at feed"));
 
 inline constexpr std::size_t MAX_APPROACH_MOVES = 4;
-/// Longest explanation that the status can tell. [bytes]
+/// Longest explanation in the status. [bytes]
 inline constexpr std::size_t MAX_STATUS_REASON = 255;
 
-/// What is in force at the place where a program is to go on, and the way there.
+/// Active codes and offsets at the position where a program is to resume, and the approach to it.
 struct ApproachStatus {
     std::uint64_t number = 0;
     ApproachTo to = ApproachTo::NOTHING;
@@ -140,20 +140,21 @@ struct ApproachStatus {
 };
 template <>
 inline constexpr auto DECLARED<ApproachStatus> =
-    declare("ApproachStatus", 0, "how a program is to go on; ConfirmApproach with its number makes the moves",
+    declare("ApproachStatus", 0,
+            "how a program is to resume; ConfirmApproach with its number executes the moves",
             field<&ApproachStatus::number>("number", "of the proposal, 0: none"),
-            field<&ApproachStatus::to>("to", "where the moves lead"),
+            field<&ApproachStatus::to>("to", "target of the moves"),
             field<&ApproachStatus::line>("line", "that is executed next"),
             field<&ApproachStatus::tool>("tool", "that is to be in the spindle, 0 none"),
             field<&ApproachStatus::mustChangeTool>("must_change_tool", "another is in the spindle now"),
-            field<&ApproachStatus::isMistOn>("mist", "mist goes on before the last move"),
-            field<&ApproachStatus::isFloodOn>("flood", "flood goes on before the last move"),
+            field<&ApproachStatus::isMistOn>("mist", "mist is switched on before the last move"),
+            field<&ApproachStatus::isFloodOn>("flood", "flood is switched on before the last move"),
             field<&ApproachStatus::feed>("feed", "of the last move", unit::SPEED),
             field<&ApproachStatus::speeds_rpm>("speeds_rpm",
                                                "of the spindles that start before the last move", unit::RPM),
-            field<&ApproachStatus::offsets>("offsets", "in force there"),
-            field<&ApproachStatus::codes>("codes", "in force there"),
-            field<&ApproachStatus::num_moves>("num_moves", "moves of the way"),
+            field<&ApproachStatus::offsets>("offsets", "active at that line"),
+            field<&ApproachStatus::codes>("codes", "active at that line"),
+            field<&ApproachStatus::num_moves>("num_moves", "number of moves"),
             field<&ApproachStatus::moves>("moves", "in their order"));
 
 struct RecoveryStatus {
@@ -164,13 +165,14 @@ struct RecoveryStatus {
     FixedText<MAX_STATUS_REASON> refusal;
 };
 template <>
-inline constexpr auto DECLARED<RecoveryStatus> = declare(
-    "RecoveryStatus", 0, "the program that was cut short when the controller ended last",
-    field<&RecoveryStatus::isOffered>("offered", "RecoverProgram goes on with it"),
-    field<&RecoveryStatus::line>("line", "that it goes on with"),
-    field<&RecoveryStatus::block>("block", "the same as a number, of the blocks since the start"),
-    field<&RecoveryStatus::program>("program", "path"),
-    field<&RecoveryStatus::refusal>("refusal", "why it cannot go on, empty: it can, or none was cut short"));
+inline constexpr auto DECLARED<RecoveryStatus> =
+    declare("RecoveryStatus", 0, "the program that was interrupted when the controller last ended",
+            field<&RecoveryStatus::isOffered>("offered", "RecoverProgram resumes it"),
+            field<&RecoveryStatus::line>("line", "at which it resumes"),
+            field<&RecoveryStatus::block>("block", "the same as a number, of the blocks since the start"),
+            field<&RecoveryStatus::program>("program", "path"),
+            field<&RecoveryStatus::refusal>(
+                "refusal", "why it cannot resume; empty: it can, or no program was interrupted"));
 
 struct ToolStatus {
     int in_spindle = 0;
@@ -189,8 +191,8 @@ inline constexpr auto DECLARED<ToolStatus> = declare(
     field<&ToolStatus::from_pocket>("from_pocket", "where it was taken from"),
     field<&ToolStatus::prepared_index>("prepared_index", "entry of the tool table prepared by T, -1 none"),
     field<&ToolStatus::table_version>("table_version", "counts changes of the tool table"),
-    field<&ToolStatus::isPersonAsked>("person_asked", "ConfirmToolChange is waited for"),
-    field<&ToolStatus::isFaulted>("faulted", "the changer has told a fault that is not cleared"),
+    field<&ToolStatus::isPersonAsked>("person_asked", "task waits for ConfirmToolChange"),
+    field<&ToolStatus::isFaulted>("faulted", "the changer has reported a fault that is not cleared"),
     field<&ToolStatus::cut_time_s>("cut_time_s", "that the tool in the spindle has cut in its life",
                                    unit::SECOND),
     field<&ToolStatus::cut_length>("cut_length", "that it has cut", unit::LENGTH));

@@ -11,7 +11,7 @@ namespace mw::messages {
 
 /// "JogStop is_joint=true index=0".
 std::string to_text(const ConstObject &message);
-/// In quotes, without what would break a line: \", \\ and \xNN stand for it.
+/// In quotes; characters that would break a line are written as \", \\ and \xNN.
 std::string quoted(std::string_view text);
 
 }  // namespace mw::messages

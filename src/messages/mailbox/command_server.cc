@@ -19,8 +19,8 @@ namespace {
 
 using messages::Progress;
 
-/// In one of so many cycles one place is looked at for a dead owner, each in its turn; and those of attended
-/// clients. When no place is free, one place in each cycle.
+/// Once in so many cycles one slot is checked for a dead owner, in turn, and the slots of attended clients.
+/// When no slot is free, one slot in each cycle.
 constexpr std::uint64_t OWNER_CHECK_CYCLES = 4;
 
 /// A byte that is no authority counts as the least.
@@ -107,7 +107,8 @@ void CommandServer::take_slot(int index, std::vector<Delivery> &out) {
         for (; stop != stops.end() && stop->serial < serial; ++stop) {
             accept(index, stop->serial, stop_at(stop->place), out);
             Serial accepted = stop->serial;
-            // Release: who no longer sees it waiting finds its outcome. A newer one of its kind stays.
+            // Release: a client that no longer sees it waiting finds its outcome. A newer one of its type
+            // stays.
             slot.stops[static_cast<std::size_t>(stop->place)].compare_exchange_strong(
                 accepted, 0, std::memory_order_acq_rel);
         }
@@ -130,7 +131,7 @@ void CommandServer::take_slot(int index, std::vector<Delivery> &out) {
 std::vector<CommandServer::WaitingStop> CommandServer::waiting_stops(int index) {
     const Slot &slot = segment_.slots[static_cast<std::size_t>(index)];
     std::vector<WaitingStop> waiting;
-    // Acquire: who sees the number finds the stop in its place.
+    // Acquire: a reader that sees the number finds the stop in its slot.
     const Serial newest = slot.newest_stop.load(std::memory_order_acquire);
     if (newest == newest_stops_[static_cast<std::size_t>(index)]) {
         return waiting;
@@ -178,7 +179,7 @@ void CommandServer::check_owner(int index, std::vector<Delivery> &out) {
     if (isOf(slot, Role::ATTENDED)) {
         stop_unattended(index, out);
     }
-    // Commands of others go on: who started a program need not stay. Nobody asks for their outcomes any more.
+    // Commands of other clients continue: a client need not outlive its program. Their outcomes are dropped.
     std::erase_if(going_, [index](const auto &going) { return going.second.slot == index; });
     serials_[static_cast<std::size_t>(index)].fill(0);
     for (auto &outcome : slot.outcomes) {
@@ -225,7 +226,7 @@ void CommandServer::accept(int index, Serial serial, Result<messages::Command> c
     const Authority authority = authority_of(slot);
     const std::uint64_t owner = slot.owner.load(std::memory_order_relaxed);
     if (isNew && place < 0 && command.has_value() && isStop(*command)) {
-        // A stop is never dropped: it is carried out though nothing tells its outcome.
+        // A stop is never dropped: it is executed although its outcome cannot be reported.
         note(serial, Progress::STARTED);
         slot.taken.store(taken, std::memory_order_release);
         out.push_back({serial, client, std::move(*command), isPanel, authority, owner});
@@ -248,7 +249,7 @@ void CommandServer::accept(int index, Serial serial, Result<messages::Command> c
     serials_[static_cast<std::size_t>(index)][static_cast<std::size_t>(place)] = serial;
     write(going_[serial]);
     note(serial, Progress::STARTED);
-    // Release: who sees it as taken finds its outcome.
+    // Release: a client that sees it as taken finds its outcome.
     slot.taken.store(taken, std::memory_order_release);
     if (!command.has_value()) {
         tell(serial, Progress::REFUSED, command.error().str());
@@ -285,7 +286,7 @@ bool CommandServer::operate(const Delivery &delivery) {
 void CommandServer::write(const Place &place) {
     Slot &slot = segment_.slots[static_cast<std::size_t>(place.slot)];
     slot.outcomes[static_cast<std::size_t>(place.outcome)].write(place.written);
-    // Release: who sees the count finds the outcome.
+    // Release: a reader that sees the count finds the outcome.
     slot.told.fetch_add(1, std::memory_order_release);
 }
 
@@ -319,7 +320,7 @@ void CommandServer::post(messages::MessageKind kind, std::string_view text) {
     message->kind = kind;
     assign(message->text, text);
     segment_.messages[message->number % MAX_MESSAGES].write(*message);
-    // Release: who sees the number finds the message.
+    // Release: a reader that sees the number finds the message.
     segment_.newest_message.store(message->number, std::memory_order_release);
 }
 

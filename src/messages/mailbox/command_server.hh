@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Task's side of the mailbox: takes commands, tells outcomes, messages and status.
+// Task's side of the mailbox: takes commands, reports outcomes, messages and status.
 #pragma once
 
 #include <functional>
@@ -32,14 +32,14 @@ class CommandServer {
     explicit CommandServer(Segment &segment, Rights rights = Rights::HERE,
                            std::function<std::int64_t()> clock = {});
 
-    /// Once a cycle. The new commands of all clients in the order of their numbers. What may not be carried
-    /// out (bytes that are no command, values out of range, another's right to operate) is refused here;
+    /// Once a cycle. The new commands of all clients in the order of their numbers. Invalid
+    /// commands (bytes that are no command, values out of range, no right to operate) are rejected here;
     /// commands about the right to operate end here. Places of dead clients become free.
     std::vector<Delivery> take(std::int64_t now_ns);
     /// How far a command has come. An end is final. That of the newest command is also in the status.
     void tell(Serial serial, messages::Progress progress, const std::string &reason);
 
-    /// The same of commands that are not even begun.
+    /// The same of commands that have not started.
     void refuse(const std::vector<Serial> &commands, const std::string &reason) {
         for (const Serial command : commands) {
             tell(command, messages::Progress::REFUSED, reason);
@@ -50,7 +50,7 @@ class CommandServer {
     void post(messages::MessageKind kind, std::string_view text);
     std::uint64_t newest_message() const { return segment_.newest_message.load(std::memory_order_relaxed); }
     /// The status of this cycle; the right to operate and the last command are filled in. Wakes clients. Of
-    /// what motion tells only `motion_parts` (messages::status_part) may be other than in the last cycle.
+    /// the values of motion only `motion_parts` (messages::status_part) may differ from the last cycle.
     void publish(messages::MachineStatus &status, PartMask motion_parts = messages::PublishedStatus::ALL);
     /// False when the table is larger than MAX_TOOL_BYTES; clients keep the one before.
     bool publish_tools(const messages::ToolTable &table);
@@ -69,14 +69,14 @@ class CommandServer {
     /// Stops that wait beside the queue of a client, in the order of their numbers.
     std::vector<WaitingStop> waiting_stops(int index);
     void accept(int index, Serial serial, Result<messages::Command> command, std::vector<Delivery> &out);
-    /// The end of what task never gets is that of the last command all the same.
+    /// The end of a command that task never gets is also that of the last command.
     void note(Serial serial, messages::Progress progress);
     /// The command ends here when it is about the right to operate.
     bool operate(const Delivery &delivery);
     int free_outcome(int slot) const;
     void write(const Place &place);
     void check_owner(int index, std::vector<Delivery> &out);
-    /// The stop that ends what an attended client has left under way.
+    /// The stop that ends the work of an attended client that has ended.
     void stop_unattended(int index, std::vector<Delivery> &out);
     bool isConnected(ClientId client) const;
 
@@ -87,7 +87,7 @@ class CommandServer {
     std::map<Serial, Place> going_;  ///< commands under way
     /// Which command each outcome belongs to, and whether it is under way.
     std::array<std::array<Serial, MAX_OUTCOMES>, MAX_CLIENTS> serials_{};
-    std::array<Serial, MAX_CLIENTS> newest_stops_{};  ///< as each client told, all looked at
+    std::array<Serial, MAX_CLIENTS> newest_stops_{};  ///< as each client reported, all checked
     Posted posted_;                                   ///< the one being taken
     bool isFull_ = false;  ///< in the last cycle each place for ordinary clients had an owner
     Serial last_command_ = 0;

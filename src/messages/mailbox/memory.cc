@@ -31,7 +31,7 @@ std::string name_of(const std::string &instance) {
 }  // namespace
 
 Memory Memory::in_process() {
-    // Zeroed pages are an empty segment, and those that nobody looks at cost nothing.
+    // Zeroed pages are an empty segment, and pages that no process reads cost nothing.
     void *pages =
         ::mmap(nullptr, sizeof(Segment), PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (pages == MAP_FAILED) {
@@ -90,7 +90,7 @@ int Memory::owner_pid() const {
 }
 
 void Memory::ring(Segment &segment) {
-    // Release: whoever sees the new value sees what was written before it.
+    // Release: a reader that sees the new value sees the earlier writes.
     segment.bell.fetch_add(1, std::memory_order_release);
     if (segment.waiting.load(std::memory_order_seq_cst) > 0) {
         ::syscall(SYS_futex, &segment.bell, FUTEX_WAKE, INT32_MAX, nullptr, nullptr, 0);
@@ -100,7 +100,7 @@ void Memory::ring(Segment &segment) {
 bool Memory::wait(Segment &segment, std::uint32_t heard, std::int64_t timeout_ns) {
     segment.waiting.fetch_add(1, std::memory_order_seq_cst);
     const timespec time{timeout_ns / NS_PER_S, timeout_ns % NS_PER_S};
-    // The kernel compares again: a ring between our look and our sleep is not missed.
+    // The kernel compares again: a ring between this check and the sleep is not missed.
     if (segment.bell.load(std::memory_order_acquire) == heard) {
         ::syscall(SYS_futex, &segment.bell, FUTEX_WAIT, heard, &time, nullptr, 0);
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Where a mailbox lies: in this process, or in shared memory that is named after the machine's instance.
+// Memory of a mailbox: in this process, or in shared memory that is named after the machine's instance.
 #pragma once
 
 #include <memory>
@@ -12,13 +12,13 @@
 
 namespace mw::mailbox {
 
-/// Owns the mapping; both kinds are used alike.
+/// Owns the mapping; both types are used alike.
 class Memory {
   public:
     /// For task and clients in one process, as under the virtual clock.
     static Memory in_process();
-    /// By task: an error when a living task has one of this name, of whatever user; one of a dead task is
-    /// replaced, and that of another user's does not matter: each user has names of his own.
+    /// By task: an error when a running task of any user has one of this name. One of a dead task is
+    /// replaced; that of another user does not matter, because each user has separate names.
     static Result<Memory> create(const std::string &instance);
     /// By a client.
     static Result<Memory> attach(const std::string &instance);
@@ -31,7 +31,7 @@ class Memory {
     bool isOwnerAlive() const;
     /// That process, of a shared one; this one otherwise.
     int owner_pid() const;
-    /// Wakes whoever sleeps at the bell.
+    /// Wakes all that sleep at the bell.
     static void ring(Segment &segment);
     /// Sleeps until the bell has another value than `heard`, or the time is over. True: it has.
     static bool wait(Segment &segment, std::uint32_t heard, std::int64_t timeout_ns);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Who may operate the machine: all clients, until one asks for the right alone.
+// The right to operate the machine: all clients have it, until one requests it exclusively.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ using ClientId = std::uint32_t;
 /// A lease with an end. Time is passed in. One thread.
 class RightToOperate {
   public:
-    /// Takes the right, or renews it for `lease_s` from now. Refused while another client has it.
+    /// Takes the right, or renews it for `lease_s` from now. An error while another client has it.
     Result<> claim(ClientId client, double lease_s, std::int64_t now_ns);
     /// Only the holder gives it away; the lease begins again.
     Result<> hand_over(ClientId from, ClientId to, std::int64_t now_ns);
@@ -26,7 +26,7 @@ class RightToOperate {
     /// Ends a lease that was not renewed; true when it has just ended.
     bool step(std::int64_t now_ns);
 
-    /// An error says who operates. Stops are always allowed.
+    /// The error names the client that operates. Stops are always allowed.
     Result<> check(ClientId client, const messages::Command &command) const;
     messages::OperationStatus status(std::int64_t now_ns) const;
 

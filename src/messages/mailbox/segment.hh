@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The memory between task and its clients: in one process or shared between several. Holds no pointers and no
-// locks: whoever is killed, at any instruction, leaves it usable for all others.
+// locks: a process that is killed, at any instruction, leaves it usable for all others.
 #pragma once
 
 #include <array>
@@ -38,7 +38,7 @@ struct Posted {
 struct Outcome {
     Serial serial = 0;
     messages::Progress progress = messages::Progress::STARTED;
-    messages::FixedText<491> reason;  ///< why it was refused or has failed
+    messages::FixedText<491> reason;  ///< why it was rejected or has failed
 };
 
 struct NumberedMessage {
@@ -54,7 +54,7 @@ struct Bytes {
     std::array<char, MAX_TOOL_BYTES> bytes{};
 };
 
-/// Who a client is to the mailbox.
+/// Role of a client at the mailbox.
 enum class Role : std::uint8_t {
     OPERATOR,  ///< subject to another's right to operate
     PANEL,     ///< wired to the machine (halui): never
@@ -62,21 +62,21 @@ enum class Role : std::uint8_t {
 };
 
 /// What the commands of a client may reach on this computer besides the machine
-/// (docs/integrator/security.md). The lesser of two is their std::min; a place that nobody has filled in has
-/// the least.
+/// (docs/integrator/security.md). The lesser of two is their std::min; an empty slot has the
+/// least.
 enum class Authority : std::uint8_t {
     OPERATE,    ///< programs of the program folder, logs in it, no lines of Python
     CONFIGURE,  ///< all files of the machine's user, and Python
 };
 
-/// What the machine is, said when it is ready for clients.
+/// Identity of the machine, written when it is ready for clients.
 struct Identity {
     messages::FixedText<1023> ini;  ///< path of the INI file
     bool isLasting = false;         ///< stays up when a program has ended, for any client
 };
 
-/// A client's place. A free one has no owner; the owner's word is set in one step, so that task can always
-/// tell whether the process that took it still lives.
+/// A client's place. A free one has no owner; the owner's word is set in one step, so that task always
+/// knows whether the process that took it is alive.
 struct Slot {
     std::atomic<std::uint64_t> owner{0};     ///< [client takes it, task frees it] owner_word(), 0: free
     std::atomic<std::uint32_t> client{0};    ///< its id, written after the owner
@@ -85,7 +85,7 @@ struct Slot {
     std::atomic<std::uint8_t> authority{0};  ///< Authority, written before the first command
     std::atomic<Serial> taken{0};            ///< [task] the last command taken from it
     SpscRing<Posted, MAX_POSTED> posted;     ///< client -> task
-    /// Stops for which `posted` has no room: the number of the newest one of each kind, 0: none. The client
+    /// Stops for which `posted` has no space: the number of the newest one of each type, 0: none. The client
     /// writes it, task clears it once the stop's outcome is written.
     std::array<std::atomic<Serial>, STOP_PLACES> stops{};
     std::atomic<Serial> newest_stop{0};                   ///< [client] written after its place in `stops`
@@ -98,7 +98,7 @@ struct Segment {
     std::atomic<Serial> serials{0};       ///< given out
     std::atomic<ClientId> client_ids{0};  ///< given out
     std::array<Slot, MAX_CLIENTS> slots;
-    Seqlock<Identity> identity;  ///< [whoever makes the machine] once
+    Seqlock<Identity> identity;  ///< [the process of the machine] once
 
     messages::PublishedStatus status;  ///< [task] once a cycle
     std::atomic<std::uint64_t> cycles{0};

@@ -34,7 +34,7 @@ CommandState state_of(messages::Progress progress) {
 template <class Text>
 Result<WriteNumber> write_line(Channel &channel, std::uint64_t number, const std::string &text) {
     CommandMessage<Text> line{{number}, {text.substr(0, messages::MAX_TEXT)}};
-    return channel.write(view(line), AT_ONCE);  // whoever reads it may be at it: the next step tries again
+    return channel.write(view(line), AT_ONCE);  // a reader may hold the lock: the next step tries again
 }
 
 Result<WriteNumber> write_line(Channel &channel, messages::MessageKind kind, std::uint64_t number,
@@ -303,11 +303,12 @@ void Bridge::keep_message(messages::MessageKind kind, std::uint64_t number, cons
     lines_.push_back({kind, number, text});
 }
 
-/// A full queue is no error: nobody may be listening.
+/// A full queue is no error: there may be no reader.
 Result<> Bridge::tell_messages() {
-    if (lost_lines_ > 0 && write_line(errors_, messages::MessageKind::OPERATOR_TEXT, 0,
-                                      fmt::format("{} messages were lost: nobody had read them", lost_lines_))
-                               .has_value()) {
+    if (lost_lines_ > 0 &&
+        write_line(errors_, messages::MessageKind::OPERATOR_TEXT, 0,
+                   fmt::format("{} messages were lost because no client read them", lost_lines_))
+            .has_value()) {
         lost_lines_ = 0;
     }
     while (!lines_.empty() &&

@@ -18,17 +18,17 @@ namespace mw::nml {
 class Bridge {
   public:
     using Clock = std::chrono::steady_clock;
-    /// Less than the time without a status after which a remote client gives up.
+    /// Less than the time without a status after which a remote client reports a failure.
     static constexpr std::chrono::milliseconds STALL_LIMIT{2500};
 
-    /// `client` must outlive it. The buffers are there. Commands that wait already are dropped, and that is
-    /// told: whoever sent them did not mean the machine of now.
+    /// `client` must outlive it. The buffers are there. Commands that wait already are dropped and
+    /// reported: they were sent to an earlier machine.
     static Result<std::unique_ptr<Bridge>> open(const Connections &connections, client::Client &client);
 
-    /// Hands on what has come since the last step: commands in their order, then the status when it is newer,
-    /// then messages for the operator. What is no message, or has values out of range, ends here with its
-    /// reason on emcError and in the status. After a pause of more than STALL_LIMIT since the last step, the
-    /// commands that wait are rejected, but for stops: remote clients have reported a failure by then. An
+    /// Passes everything since the last step: commands in their order, then the status when it is newer,
+    /// then messages for the operator. Invalid messages and values out of range end here with their reason
+    /// on emcError and in the status. After a pause of more than STALL_LIMIT since the last step, the
+    /// commands that wait are rejected, except stops: remote clients have reported a failure by then. An
     /// error: a channel cannot be used now; the next step tries again.
     Result<> step(Clock::time_point now = Clock::now());
 
@@ -38,7 +38,7 @@ class Bridge {
   private:
     /// Commands in the `recent` list of the status whose end the mailbox has not reported: 0 elsewhere.
     using Posted = std::array<client::Serial, RECENT_COMMANDS>;
-    /// A command that the mailbox had no room for.
+    /// A command for which the mailbox had no space.
     struct Held {
         messages::Command command;
         StatusHead head;
@@ -68,7 +68,7 @@ class Bridge {
     /// A command that task has not taken, or has taken in a later cycle than that of the last status.
     struct Waiting {
         StatusHead head;
-        client::Serial posted = 0;  ///< 0: refused here
+        client::Serial posted = 0;  ///< 0: rejected here
     };
     std::deque<Waiting> waiting_;
     StatusHead head_;
@@ -87,7 +87,7 @@ class Bridge {
         std::uint64_t number;
         std::string text;
     };
-    std::deque<Line> lines_;  ///< that emcError had no room for
+    std::deque<Line> lines_;  ///< for which emcError had no space
     std::uint64_t lost_lines_ = 0;
 };
 

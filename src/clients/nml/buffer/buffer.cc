@@ -10,11 +10,11 @@ std::unexpected<Error> Buffer::bad(const std::string &what, const std::string &h
 }
 
 Result<> Buffer::need_read() const {
-    return rights_.mayRead ? Result<>{} : bad("this process may not read it", "its P line says so: ops");
+    return rights_.mayRead ? Result<>{} : bad("this process may not read it", "see ops in its P line");
 }
 
 Result<> Buffer::need_write() const {
-    return rights_.mayWrite ? Result<>{} : bad("this process may not write to it", "its P line says so: ops");
+    return rights_.mayWrite ? Result<>{} : bad("this process may not write to it", "see ops in its P line");
 }
 
 Result<WriteNumber> Buffer::write(std::string_view bytes, Timeout timeout) {

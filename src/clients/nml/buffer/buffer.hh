@@ -37,8 +37,8 @@ struct Rights {
     bool mayWrite = true;
 };
 
-/// One thread. What an access may wait for is that nobody else uses the buffer, and that a queue has room;
-/// wait() alone waits for a message. An error says what to do; when time is over it says so. After an error
+/// One thread. An access may wait for other users of the buffer and for free space in a queue; wait() alone
+/// waits for a message. An error states what to do, or that the time is over. After an error
 /// the connection is as good as before, unless the error says that the buffer is gone.
 class Buffer {
   public:
@@ -59,7 +59,7 @@ class Buffer {
     Result<bool> peek(Received &message, Timeout timeout);
     /// read(), sleeping until there is a message. False: the time was over first.
     Result<bool> wait(Received &message, Timeout timeout);
-    /// Takes out whatever is in.
+    /// Removes all messages.
     Result<> clear(Timeout timeout);
     /// Empty unless the buffer is diagnosed.
     virtual Result<std::vector<AccessFigures>> figures() { return std::vector<AccessFigures>{}; }

@@ -11,9 +11,9 @@
 namespace mw::nml {
 namespace {
 
-/// A sleeper looks after so long whether whoever keeps the memory lives.
+/// Interval in which a sleeper checks that the owner of the memory is alive.
 constexpr std::int64_t LONGEST_SLEEP_NS = 100000000;
-/// Writes that may come between before a reader asks for the lock.
+/// Writes that may interrupt a reader before it takes the lock.
 constexpr int PATIENCE = 32;
 constexpr const char *TIME_OVER = "the time is over";
 
@@ -69,7 +69,7 @@ class MemoryBuffer final : public Buffer {
         }
         if (free == nullptr) {
             return bad(fmt::format("{} processes use it, which is as many as may", store().seats().size()),
-                       "max_procs in its B line says so");
+                       "see max_procs in its B line");
         }
         for (std::atomic<std::uint64_t> *count :
              {&free->writes, &free->reads, &free->bytes_written, &free->bytes_read}) {
@@ -245,7 +245,7 @@ class MemoryBuffer final : public Buffer {
 
     Result<bool> take_next(Received &message, Timeout timeout) override {
         if (!isBlockingAllowed_) {
-            return bad("nobody may wait for its messages", "bsem=-1 in its B line says so");
+            return bad("waits for its messages are disabled", "see bsem=-1 in its B line");
         }
         const Deadline deadline(timeout);
         for (;;) {

@@ -156,9 +156,9 @@ Result<std::shared_ptr<Place>> open_shared_place(const BufferSettings &buffer, c
     if (isMaster && !place->store.initialise()) {
         return no_lock(buffer);
     }
-    // Acquire: pairs with the release of whoever made it.
+    // Acquire: pairs with the release of the process that made it.
     if (place->store.head().isReady.load(std::memory_order_acquire) == 0 || !place->isKept()) {
-        return bad(buffer, "whoever makes it has not finished, or has ended", "try again");
+        return bad(buffer, "the process that creates it has not finished, or has ended", "try again");
     }
     return place;
 }
@@ -199,7 +199,7 @@ Result<std::shared_ptr<Place>> open_file_place(const BufferSettings &buffer, boo
         return bad(buffer, fmt::format("{} is not a file of this buffer", buffer.file), "remove it");
     }
     auto place = std::make_shared<FilePlace>(shape, std::move(mapped), std::move(file));
-    // A lock does not outlive the computer's last start: the first process makes it anew.
+    // A lock does not outlive the computer's last start: the first process makes it again.
     if (!isUsed(place->store) && !place->store.initialise()) {
         return no_lock(buffer);
     }

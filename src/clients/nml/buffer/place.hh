@@ -19,9 +19,9 @@ class Place {
     Place(const Place &) = delete;
     Place &operator=(const Place &) = delete;
     virtual ~Place() = default;
-    /// Whoever made it lives, or it needs nobody.
+    /// Its owner is alive, or it needs none.
     virtual bool isKept() const { return true; }
-    /// Whoever has opened it is known to others now.
+    /// Others now know the process that has opened it.
     virtual void settle() {}
 
     Store store;
@@ -30,7 +30,7 @@ class Place {
 /// Buffers of kind LOCMEM, by name: one for a process. Any thread.
 class LocalPlaces {
   public:
-    /// The master makes it; others find it as long as somebody uses it.
+    /// The master makes it; others find it while it is in use.
     Result<std::shared_ptr<Place>> open(const BufferSettings &buffer, bool isMaster);
 
   private:
@@ -43,7 +43,7 @@ class LocalPlaces {
 Result<std::shared_ptr<Place>> open_shared_place(const BufferSettings &buffer, const std::string &instance,
                                                  bool isMaster);
 
-/// A file, which keeps the last message, and a queue, when nobody uses it.
+/// A file, which keeps the last message, and a queue, when it is not in use.
 Result<std::shared_ptr<Place>> open_file_place(const BufferSettings &buffer, bool isMaster);
 
 }  // namespace mw::nml

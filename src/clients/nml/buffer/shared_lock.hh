@@ -27,12 +27,12 @@ class Deadline {
     std::int64_t end_ns_ = 0;
 };
 
-/// The kernel gives it back when its holder dies: whoever comes next finds what the holder had finished.
+/// The kernel releases it when its holder dies: the next process finds what the holder had finished.
 class SharedLock {
   public:
     enum class Outcome { TAKEN, TIME_OVER, BROKEN };
 
-    /// By whoever makes the memory, before others know of it.
+    /// By the process that makes the memory, before others know of it.
     bool initialise();
     Outcome take(const Deadline &deadline);
     void release();

@@ -60,7 +60,7 @@ Store::Store(void *memory, const StoreShape &shape)
 
 bool Store::initialise() {
     const bool isGood = head_->lock.initialise();
-    // Release: whoever sees it ready may use the lock.
+    // Release: a process that sees it ready may use the lock.
     head_->isReady.store(isGood ? 1 : 0, std::memory_order_release);
     return isGood;
 }
@@ -96,7 +96,7 @@ Store::Outcome Store::write_copy(std::string_view bytes, WriteNumber number) {
         to[RECORD_HEAD + i].store(word, std::memory_order_relaxed);
     }
     to[0].store(number, std::memory_order_release);
-    // From here on it counts. Release: whoever sees the number sees the copy.
+    // From here on it counts. Release: a reader that sees the number sees the copy.
     head_->newest.store(number, std::memory_order_release);
     return Outcome::DONE;
 }
@@ -154,7 +154,7 @@ Store::Outcome Store::write_queue(std::string_view bytes, WriteNumber number) {
         next(word);
     }
     head_->newest.store(number, std::memory_order_relaxed);
-    // From here on it counts. Release: whoever sees the end sees the words before it.
+    // From here on it counts. Release: a reader that sees the end sees the words before it.
     head_->end.store(end + need, std::memory_order_release);
     return Outcome::DONE;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// How messages lie in the memory of a buffer. Whoever is killed, at any instruction, leaves the messages
+// Layout of messages in the memory of a buffer. A process that is killed, at any instruction, leaves them
 // whole: each change takes effect with one store.
 #pragma once
 

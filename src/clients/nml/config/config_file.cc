@@ -140,7 +140,7 @@ void take_line(std::string_view line, const SourcePlace &place, Config &config, 
                            [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; });
     });
     if (bad != words.end()) {
-        sink.error("a control character stands in the line", bad->place);
+        sink.error("the line has a control character", bad->place);
         return;
     }
     if (words[0].text == "B") {

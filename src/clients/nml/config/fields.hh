@@ -25,7 +25,7 @@ struct LineField {
     Result<> (*read)(std::string_view word, Line &line);
 };
 
-/// An option stands behind the fields, anywhere: NAME or NAME=VALUE.
+/// An option follows the fields, in any order: NAME or NAME=VALUE.
 template <class Line>
 struct LineOption {
     enum class Value { NONE, NEEDED, ALLOWED };
@@ -55,7 +55,7 @@ const LineForm<ProcessSettings> &process_form();
 /// False when its value is wrong, which has been told; an unknown one is a warning with the nearest name.
 bool read_option(const Word &word, const LineForm<BufferSettings> &form, BufferSettings &buffer,
                  diagnostics::Sink &sink);
-/// Process lines have no options of their own.
+/// Process lines have no options.
 bool read_option(const Word &word, const LineForm<ProcessSettings> &form, ProcessSettings &process,
                  diagnostics::Sink &sink);
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What an NML configuration file says, as values: it is read once, by config_file, and nobody looks at its
-// text again (F3).
+// The values of an NML configuration file: config_file reads its text once (F3).
 #pragma once
 
 #include <cstddef>
@@ -27,7 +26,7 @@ enum class BufferKind : std::uint8_t {
 /// Who keeps accesses to a buffer apart.
 enum class Mutex : std::uint8_t {
     OS_SEM,         ///< a lock that the kernel gives back when its holder dies
-    NONE,           ///< nobody: one process writes, one reads
+    NONE,           ///< no lock: one process writes, one reads
     NO_INTERRUPTS,  ///< not on Linux: as OS_SEM
     NO_SWITCHING,   ///< not on Linux: as OS_SEM
     MAO,            ///< several copies of the message: readers never wait for the writer
@@ -79,7 +78,7 @@ struct ProcessSettings {
     SourcePlace place;
 };
 
-/// The name in place of a buffer's for whatever a process has no line of its own for.
+/// Name of the line for all buffers without a separate line of the process.
 inline constexpr std::string_view DEFAULT_BUFFER = "default";
 
 struct Config {

@@ -21,7 +21,7 @@ namespace mw::nml {
 
 inline constexpr std::size_t BINARY_FRAME_HEAD = 12;
 
-/// How numbers stand in memory.
+/// Numbers as in memory.
 struct RawBytes {
     static constexpr bool isBigEndian = std::endian::native == std::endian::big;
     static constexpr std::size_t ALIGNMENT = 1;

@@ -56,7 +56,7 @@ Result<const MessageKind *> read_kind(Format &format, const Vocabulary &vocabula
     }
     const bool same_shape = kind->rejection != nullptr || head.shape == kind->shape;
     if (head.shape != 0 ? !same_shape : head.name != kind->name()) {
-        return fail(fmt::format("whoever wrote message {} declares it otherwise than {} here", head.number,
+        return fail(fmt::format("the sender of message {} declares {} differently", head.number,
                                 kind->declaration->name),
                     {}, "both sides must have the same version");
     }

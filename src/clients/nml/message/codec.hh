@@ -29,7 +29,7 @@ class Codec {
     /// before memory is taken. Ranges are not checked (messages::check). On an error the message is partly
     /// written.
     Result<> decode(std::string_view bytes, const MessageView &message) const;
-    /// A message of whatever kind it is.
+    /// A message of any kind.
     Result<Message> decode(std::string_view bytes) const;
 
   private:

@@ -12,7 +12,7 @@
 
 namespace mw::nml {
 
-/// What stands before every message.
+/// The frame before every message.
 struct FrameHead {
     int number = 0;
     /// Of names and types of all fields: two programs that declare a message otherwise notice it.
@@ -32,7 +32,7 @@ class Format {
     virtual ~Format() = default;
     /// Values are taken out of bytes.
     virtual bool isReading() const = 0;
-    /// A form without numbers of its own for the shape leaves it 0.
+    /// A form without a number for the shape leaves it 0.
     virtual bool head(FrameHead &head) = 0;
     virtual bool integer(const Value &value, std::int64_t &number) = 0;
     virtual bool real(const Value &value, double &number) = 0;

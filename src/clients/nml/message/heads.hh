@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The base classes of NML messages (F5): what stands before the fields of every command and of every status.
+// The base classes of NML messages (F5): the fields that precede those of every command and every status.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace mw::nml {
 
-/// How a command stands. Numbers as clients written for LinuxCNC compare them.
+/// State of a command. Numbers as clients written for LinuxCNC compare them.
 enum class CommandState : std::uint8_t { UNKNOWN = 0, DONE = 1, EXECUTING = 2, ERROR = 3 };
 
 /// Which base class a message has.
@@ -80,14 +80,14 @@ inline constexpr auto DECLARED<nml::CommandOutcome> =
     declare("CommandOutcome", 0, "state of one command",
             field<&nml::CommandOutcome::serial_number>("serial_number", "of the command, 0: none"),
             field<&nml::CommandOutcome::state>("state", "of the command"),
-            field<&nml::CommandOutcome::reason>("reason", "why it was refused or has failed"));
+            field<&nml::CommandOutcome::reason>("reason", "why it was rejected or has failed"));
 template <>
 inline constexpr auto DECLARED<nml::StatusHead> =
     declare("StatusHead", 0, "of every status",
             field<&nml::StatusHead::command_type>("command_type", "number of the last command, 0: none"),
             field<&nml::StatusHead::echo_serial_number>("echo_serial_number", "of that command"),
-            field<&nml::StatusHead::state>("state", "how that command stands"),
-            field<&nml::StatusHead::reason>("reason", "why it was refused or has failed"),
+            field<&nml::StatusHead::state>("state", "state of that command"),
+            field<&nml::StatusHead::reason>("reason", "why it was rejected or has failed"),
             field<&nml::StatusHead::recent>("recent", "the last commands, in no order"));
 
 }  // namespace mw::messages

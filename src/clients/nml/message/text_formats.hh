@@ -4,7 +4,7 @@
 //   ascii:    number,shape,value,value,...\n
 //   display:  NAME number\n  then name=value\n for each, "joints[2].pos_cmd=1.5"; enumerations by name
 //
-// A real number is the shortest text that reads back as the same, or inf, -inf, nan. Texts stand in quotes;
+// A real number is the shortest text that reads back as the same, or inf, -inf, nan. Texts are in quotes;
 // in them
 // \" \\ and \xHH. Bytes above 7f stay as they are.
 #pragma once

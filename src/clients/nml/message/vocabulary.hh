@@ -37,7 +37,7 @@ struct MessageKind {
     std::shared_ptr<void> (*make)() = nullptr;  ///< the body with its default values
     /// The machine's command for a body. Null: the machine has none.
     messages::Command (*convert)(const void *body) = nullptr;
-    /// Why the machine rejects the message, whatever its fields are: they are not read. Null: it does not.
+    /// Why the machine rejects the message; its fields are not read. Null: it does not.
     const char *rejection = nullptr;
 
     const messages::Declaration *head() const;
@@ -85,8 +85,8 @@ class Vocabulary {
     /// src/messages/declarations.
     static Vocabulary standard();
 
-    /// An error when it has no number, or when number or name are taken. `wire_name` stands in texts for the
-    /// name of the declaration.
+    /// An error when it has no number, or when number or name are taken. Texts show `wire_name` instead
+    /// of the name of the declaration.
     template <class Body>
     Result<> add(Base base, const char *wire_name = "") {
         MessageKind kind;

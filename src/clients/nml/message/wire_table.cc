@@ -98,7 +98,7 @@ constexpr const char *PART_OF_CONFIGURATION =
     "this is set by the INI file and does not change while the machine runs";
 constexpr const char *PART_OF_START = "this begins and ends with the machine";
 constexpr const char *NO_PLUGINS =
-    "task has no Python functions of its own (PYTHON_TASK); remapped codes run Python: [RS274NGC]REMAP";
+    "task has no Python functions (PYTHON_TASK); remapped codes run Python: [RS274NGC]REMAP";
 constexpr const char *NO_PROGRAMS =
     "a machine runs no programs for those who can send messages to it; M100 to M199 run those that its files "
     "name";

@@ -15,7 +15,7 @@
 namespace mw::nml {
 namespace {
 
-/// Looks at every byte whatever the first difference is.
+/// Compares every byte, also after the first difference.
 bool isSame(std::string_view given, std::string_view right) {
     unsigned difference = given.size() == right.size() ? 0 : 1;
     for (std::size_t i = 0; i < given.size(); ++i) {
@@ -55,7 +55,7 @@ Result<Passwords> Passwords::load(const std::string &path) {
         passwords.users_.push_back({std::string(line.substr(0, colon)), std::string(line.substr(colon + 1))});
     }
     if (passwords.users_.empty()) {
-        return fail("the password file names nobody", {path, 0, 0});
+        return fail("the password file has no name", {path, 0, 0});
     }
     return passwords;
 }

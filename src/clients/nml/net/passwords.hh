@@ -20,7 +20,7 @@ class Passwords {
     /// An error when the file cannot be read, others than its owner may read it, or a line is wrong.
     static Result<Passwords> load(const std::string &path);
 
-    /// Takes the same time whatever is wrong.
+    /// Takes the same time for each wrong password.
     bool isRight(std::string_view name, std::string_view password) const;
     /// What a client says of itself: the first line.
     const Credentials &first() const { return users_.front(); }

@@ -14,7 +14,7 @@
 namespace mw::nml {
 namespace {
 
-/// What the network and a busy server may take beyond the time of the access itself.
+/// Time of the network and a busy server in addition to the time of the access.
 constexpr double PATIENCE_S = 5.0;
 /// A datagram is sent again when no answer has come within it.
 constexpr double DATAGRAM_PATIENCE_S = 0.2;
@@ -43,7 +43,7 @@ class RemoteBuffer final : public Buffer {
             return bad(socket.error().message, "is its server running?");
         }
         socket_ = std::move(*socket);
-        seen_ = 0;  // the server may have started again and count anew
+        seen_ = 0;  // the server may have started again and count from 1
         if (!credentials_.has_value()) {
             return {};
         }
@@ -159,7 +159,7 @@ class RemoteBuffer final : public Buffer {
 
     Result<bool> take_next(Received &message, Timeout timeout) override {
         if (!isBlockingAllowed_) {
-            return bad("nobody may wait for its messages", "bsem=-1 in its B line says so");
+            return bad("waits for its messages are disabled", "see bsem=-1 in its B line");
         }
         const Deadline deadline(timeout);
         for (;;) {
@@ -180,7 +180,7 @@ class RemoteBuffer final : public Buffer {
         return answer.has_value() ? Result<>{} : std::unexpected(answer.error());
     }
 
-    /// Room for the text of an error.
+    /// Space for the text of an error.
     static constexpr std::size_t MAX_ERROR = 4096;
 
     std::string host_;

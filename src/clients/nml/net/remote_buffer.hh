@@ -11,8 +11,8 @@
 namespace mw::nml {
 
 /// Connects by TCP=, else STCP=, else UDP= of the B line to its host, with the first name and password of its
-/// password file. A connection that breaks is made anew by the next access; a write that was under way by
-/// then is an error that says so: it may or may not have been carried out.
+/// password file. The next access renews a broken connection; a write that was active then is an error: it
+/// may or may not have been executed.
 Result<std::unique_ptr<Buffer>> open_remote_buffer(const BufferSettings &buffer,
                                                    const ProcessSettings &process);
 

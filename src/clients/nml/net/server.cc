@@ -18,7 +18,7 @@ namespace {
 constexpr int LOOK_MS = 50;
 /// A client must send and take the whole of a message within it.
 constexpr Timeout MESSAGE_TIME{10.0};
-/// More than the largest message: room for a name and password.
+/// In addition to the largest message: space for a name and password.
 constexpr std::size_t EXTRA_BYTES = 1024;
 /// Clients over UDP whose last answer is remembered.
 constexpr std::size_t MAX_DATAGRAM_CLIENTS = 64;
@@ -149,7 +149,7 @@ void Server::take_client(Listener &listener) {
         const Packet full{
             Operation::PEEK, Status::REFUSED, 0, 0, 0, 0, "the server has as many clients as it can have"};
         static_cast<void>(
-            client.send_packet(full, Deadline(AT_ONCE)));  // whoever does not hear it sees it closed
+            client.send_packet(full, Deadline(AT_ONCE)));  // a client that misses it sees a closed connection
         return;
     }
     Worker &worker = listener.workers.emplace_back(std::move(client));
@@ -203,7 +203,7 @@ void Server::serve_datagrams(Listener &listener) {
             continue;  // anybody may send anything: no answer to what is no request
         }
         request->bytes = datagram.substr(PACKET_HEAD);
-        request->time_ms = 0;  // one thread for all: nobody is waited for
+        request->time_ms = 0;  // one thread for all: no client may wait
         DatagramClient &client = clients[std::string(reinterpret_cast<const char *>(&address), size)];
         client.used = ++count;
         const bool isNew = client.session == nullptr || request->request != client.last_request;

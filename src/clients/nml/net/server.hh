@@ -19,8 +19,8 @@ namespace mw::nml {
 inline constexpr std::size_t MAX_SESSIONS = 128;
 
 /// Every buffer of the configuration for which the process's line says server=1, at the ports of its B line,
-/// at the address of its host there: "localhost" is heard by this computer alone. The buffers are opened by
-/// then: a process that is their master keeps them open by connections of its own. Ends its threads when it
+/// at the address of its host there: "localhost" serves this computer alone. The buffers are opened by
+/// then: a process that is their master keeps them open by separate connections. Ends its threads when it
 /// is destroyed.
 class Server {
   public:
@@ -50,7 +50,7 @@ class Server {
         Socket socket;
         Transport transport = Transport::TCP;
         int port = 0;
-        std::list<Worker> workers;  ///< of its own thread
+        std::list<Worker> workers;  ///< of this thread
         std::thread thread;
     };
 

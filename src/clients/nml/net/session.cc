@@ -111,7 +111,7 @@ Result<Packet> Session::log_in(const Packet &request, Open &open) {
 }
 
 Result<Packet> Session::write(const Packet &request, Open &open) {
-    // Nobody else gets what is no message.
+    // Invalid messages are not passed to other clients.
     const auto message = Codec(service_.vocabulary, encoding_of(open.served->buffer)).decode(request.bytes);
     if (!message.has_value()) {
         return std::unexpected(message.error());

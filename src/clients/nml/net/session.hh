@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What a server does for one client, whatever the network between them is.
+// The work of a server for one client, over any network.
 #pragma once
 
 #include <atomic>
@@ -43,7 +43,7 @@ class Session {
     Session(const Session &) = delete;
     Session &operator=(const Session &) = delete;
 
-    /// The answer to a request. A wait ends early when `isOver` says so.
+    /// The answer to a request. A wait ends early when `isOver` returns true.
     Packet answer(const Packet &request, const std::function<bool()> &isOver);
     /// A wrong password was given: the client is not heard any more.
     bool isBarred() const { return isBarred_; }

@@ -47,7 +47,7 @@ struct FreeAddresses {
 };
 using Addresses = std::unique_ptr<addrinfo, FreeAddresses>;
 
-/// "localhost" is this computer's loopback, also where no hosts file says so (RFC 6761, 6.3).
+/// "localhost" is this computer's loopback, also without a hosts file (RFC 6761, 6.3).
 Result<Addresses> find_addresses(const std::string &host, int port, Transport transport, bool isListening) {
     addrinfo wanted{};
     wanted.ai_family = AF_UNSPEC;

@@ -24,7 +24,7 @@ class Socket {
     int fd() const { return fd_; }
     bool isOpen() const { return fd_ >= 0; }
     void close();
-    /// Wakes whoever waits at it, in another thread.
+    /// Wakes a thread that waits for it.
     void shut_down() const;
 
     Result<> send(std::string_view bytes, const Deadline &deadline) const;

@@ -35,16 +35,16 @@ class PythonTools final : public gcode::ToolSource {
 };
 
 /// Calls the object's methods, with next_line before the first call of each line. An exception in a method
-/// keeps everything that follows from being called; take_exception() hands it over. All under the GIL.
+/// ends all further calls; take_exception() returns it. All under the GIL.
 class PythonCanon final : public gcode::Canon {
   public:
     PythonCanon(pybind11::object canon, PythonTools &tools);
 
-    /// The codes in force before the blocks that come now.
+    /// The modal codes before the next blocks.
     void set_codes(const gcode::ActiveCodes &codes) { codes_ = codes; }
     bool hasException() const { return exception_.has_value(); }
     pybind11::error_already_set take_exception();
-    /// Hands over the moves that are still in the batch.
+    /// Passes the moves that are still in the batch.
     void finish_batch();
 
     void begin_block(const gcode::BlockRef &block) override { line_ = block.line; }

@@ -38,7 +38,7 @@ constexpr CodeName CODE_NAMES[] = {
 }  // namespace
 
 void define_linecode(py::module_ &module) {
-    py::class_<LineCode> line(module, "linecode", "The modal codes in force before a line of a program.");
+    py::class_<LineCode> line(module, "linecode", "The active modal codes before a line of a program.");
     for (const CodeName &code : CODE_NAMES) {
         line.def_property_readonly(code.name, [code](const LineCode &self) {
             return code.isM ? self.codes.m[code.place] : self.codes.g[code.place];

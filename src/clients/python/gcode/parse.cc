@@ -29,7 +29,7 @@ constexpr const char *CODE_TEXTS[] = {"done", "the program has ended", "the mach
                                       "the file has ended", "no file is open"};
 
 constexpr const char *LAST_ERROR = "_last_error";
-/// How often the canon object is asked whether to go on.
+/// Interval of the check whether the canon object continues.
 constexpr std::chrono::milliseconds ASK_EVERY{100};
 constexpr int STEPS_PER_LOOK = 64;
 
@@ -230,7 +230,7 @@ void define_parse(py::module_ &module) {
         "parse(file, canon, [code, ...], interpname='') -> (result, line)\n\n"
         "An empty file name: the codes alone. "
         "Interprets a program and calls the canon object's methods. A result above MIN_ERROR is an error, in "
-        "`line` of the file; strerror(result) tells it. An exception in a method ends the program.");
+        "`line` of the file; strerror(result) is its text. An exception in a method ends the program.");
     module.def(
         "strerror",
         [self](int code) -> py::object {

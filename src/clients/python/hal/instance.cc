@@ -51,7 +51,7 @@ void check(const Result<> &result) {
 
 void define_error(py::module_ &module) {
     process().error_class =
-        PyErr_NewExceptionWithDoc("hal.error", "HAL refused something.", nullptr, nullptr);
+        PyErr_NewExceptionWithDoc("hal.error", "HAL has rejected a call.", nullptr, nullptr);
     module.attr("error") = py::handle(process().error_class);
 }
 

@@ -12,14 +12,14 @@
 
 namespace mw::python {
 
-/// Keeps the instance in memory while somebody holds it; null deleter when the process owns it otherwise.
+/// Keeps the instance in memory while it is in use; null deleter when the process owns it otherwise.
 using HalHandle = std::shared_ptr<hal::Hal>;
 
 /// The instance of this process: the one that it hosts or has joined, else the one that $MILLWRIGHT_INSTANCE
 /// names is joined. Throws RuntimeError when no realtime process keeps it.
 HalHandle instance();
 
-/// Something was refused by HAL: throws hal.error with the reason.
+/// HAL has rejected a call: throws hal.error with the reason.
 [[noreturn]] void throw_hal_error(const std::string &text);
 /// As above unless the result is good.
 void check(const Result<> &result);

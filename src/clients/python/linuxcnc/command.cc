@@ -98,8 +98,8 @@ void Command::send_and_look(const messages::Command &command) {
     }
 }
 
-/// An outcome is told before the status of its cycle, and the queue of motion shows its end a cycle later:
-/// who polls next is to see that nothing is under way.
+/// An outcome is reported before the status of its cycle, and the queue of motion shows its end a cycle
+/// later: the next poll is to see that no work is active.
 bool Command::show_end(double seconds) {
     const auto isShown = [this] {
         const bool isRead = client_->read_status().has_value();

@@ -10,19 +10,19 @@
 
 namespace mw::python {
 
-/// Guarded by the GIL, which is let go while it waits; another thread that uses the same object meanwhile
+/// Guarded by the GIL, which is released while it waits; another thread that uses the same object meanwhile
 /// waits for it.
 class Command {
   public:
-    /// Hands the command over and waits until task has taken it and says so in its status, at most as long as
-    /// clients are used to. What cannot be handed over is told to the operator and counts as refused.
+    /// Posts the command and waits until task has taken it and its status shows it, at most for the usual
+    /// time. A command that cannot be posted is reported to the operator and counts as rejected.
     void send(const messages::Command &command);
     /// The same, and waits a moment for its end: scripts that have sent a line which takes no time find it
     /// done when they look.
     void send_and_look(const messages::Command &command);
-    /// How the last command stands: RCS_DONE, RCS_ERROR, or -1 when the time is over before it has ended.
-    /// Sleeps at the machine's bell. Without a time the usual one, and homing is not waited for longer than
-    /// HOMING_PATIENCE_S: screens go on, and a machine that homes on the spot is homed.
+    /// State of the last command: RCS_DONE, RCS_ERROR, or -1 when the time is over before it has ended.
+    /// Sleeps at the machine's bell. Without a time it waits the usual time, for homing at most
+    /// HOMING_PATIENCE_S: then screens continue. A machine with immediate homing is homed by then.
     int wait_complete(std::optional<double> timeout_s);
     /// Of the last command that was sent, 0: none.
     client::Serial serial() const { return serial_; }

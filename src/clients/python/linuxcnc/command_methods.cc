@@ -154,7 +154,7 @@ void define_modes(Class &command) {
             "The interpreter takes the machine's position.")
         .def(
             "reset_interpreter", [](Command &self) { self.send(messages::ResetInterpreter{}); },
-            "The interpreter begins anew; the program is closed.")
+            "Resets the interpreter and closes the program.")
         .def(
             "set_optional_stop", [](Command &self, int on) { self.send(messages::SetOptionalStop{on != 0}); },
             py::arg("on"))
@@ -309,7 +309,7 @@ void define_devices(Class &command) {
 void define_command(py::module_ &module) {
     Class command(module, "command",
                   "command(): a client of the machine. Each method returns when task has taken its command; "
-                  "wait_complete() tells how it ends.");
+                  "wait_complete() returns how it ends.");
     command.def(py::init<>())
         .def_property_readonly("serial", &Command::serial, "Number of the last command sent.")
         .def("wait_complete", &Command::wait_complete, py::arg("timeout") = py::none(),

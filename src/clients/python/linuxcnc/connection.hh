@@ -11,19 +11,19 @@
 
 namespace mw::python {
 
-/// A look at the machine. One for each Python object; guarded by the GIL.
+/// A view of the machine. One for each Python object; guarded by the GIL.
 class View {
   public:
     /// Joins the machine where it has not; throws linuxcnc.error when there is none, or when it is gone.
     client::Viewer &viewer();
-    /// Throws linuxcnc.error when the machine is gone. Looks only now and then at a machine that stands
-    /// still, and never at one that goes on.
+    /// Throws linuxcnc.error when the machine is gone. Checks rarely while the status does not change, and
+    /// never while it changes.
     void check_alive();
     bool isJoined() const { return viewer_.has_value(); }
 
   private:
     std::optional<client::Viewer> viewer_;
-    std::uint64_t cycle_ = 0;  ///< when it was looked at last
+    std::uint64_t cycle_ = 0;  ///< at the last check
     std::chrono::steady_clock::time_point seen_{};
 };
 

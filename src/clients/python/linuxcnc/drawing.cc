@@ -170,7 +170,7 @@ void draw_cross(const Gl &gl, const Vertex &at, std::size_t normal) {
 void draw_dwells(const py::list &dwells, double alpha, bool isSelecting, bool isLathe) {
     const Gl &gl = Gl::library();
     Strip strip(gl);
-    // What stands across the planes XY, XZ and YZ.
+    // Normals of the planes XY, XZ and YZ.
     constexpr std::array<std::size_t, 3> NORMALS{2, 1, 0};
     for (const py::handle words : dwells) {
         const py::tuple item = item_of(words, 6);

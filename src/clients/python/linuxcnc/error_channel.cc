@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// linuxcnc.error_channel: lines for the operator. Each reader gets every line from where it begins: what
-// nobody has read yet. When lines come faster than they are read the oldest are dropped, and a line says so.
+// linuxcnc.error_channel: lines for the operator. Each reader gets all lines that were unread when it
+// began. When lines come faster than they are read, the oldest are dropped, and a line reports it.
 #include "clients/python/linuxcnc/connection.hh"
 #include "clients/python/linuxcnc/module.hh"
 #include "messages/client/shown_message.hh"

@@ -57,7 +57,7 @@ class Ini {
                                 : py::make_tuple(entry->place.file, entry->place.line);
     }
 
-    /// A value of one type; `read` says what it means and tells what is wrong with it.
+    /// A value of one type; `read` converts it and reports an error.
     template <class Reader>
     py::object value(const std::string &section, const std::string &key, int number,
                      const py::object &fallback, Reader read) const {
@@ -77,7 +77,7 @@ class Ini {
 
   private:
     static ini::IniFile load(const std::string &path) {
-        diagnostics::Sink ignored;  // what else is wrong with the file is told by the machine that runs it
+        diagnostics::Sink ignored;  // other errors of the file are reported by the machine that runs it
         auto file = ini::IniFile::load(path, ignored);
         if (!file) {
             throw_error(file.error().str());

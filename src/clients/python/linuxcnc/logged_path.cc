@@ -19,7 +19,7 @@ double dot(const std::array<double, 3> &a, const std::array<double, 3> &b) {
 
 }  // namespace
 
-/// The step to the sample goes on in the direction of the last line. Compared with the line from its start,
+/// The step to the sample continues in the direction of the last line. Compared with the line from its start,
 /// an arc would never leave it: each sample bends only a little from the one before.
 bool LoggedPath::isStraightOn(const LoggedPoint &sample) const {
     const LoggedPoint &last = points_.back(), &before = points_[points_.size() - 2];

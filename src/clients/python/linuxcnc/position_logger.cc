@@ -60,9 +60,8 @@ class PositionLogger {
     PositionLogger(const PositionLogger &) = delete;
     PositionLogger &operator=(const PositionLogger &) = delete;
 
-    /// Samples until stop(), in the thread that calls it. A program that ends meanwhile takes this thread
-    /// down where it wants to go on in Python: by an unwinding that no destructor may be in the way of, as
-    /// gil_scoped_release is.
+    /// Samples until stop(), in the thread that calls it. When the program ends meanwhile, Python ends this
+    /// thread by unwinding at its next call. No destructor may run then, so gil_scoped_release is not used.
     void start(double interval_s) {
         isWanted_.store(true);
         const std::string instance = machine_instance(), file = nml_file();

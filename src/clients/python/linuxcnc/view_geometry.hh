@@ -19,9 +19,9 @@ struct RotationCentre {
     std::bitset<geometry::AXIS_COUNT> turning{0x1ff};
 };
 
-/// Where the tool stands in the picture. `geometry` is [DISPLAY]GEOMETRY from its last letter to its first,
-/// as screens hand it over: each letter moves or turns what the letters before it have made, a minus turns
-/// its sense round.
+/// Position of the tool in the picture. `geometry` is [DISPLAY]GEOMETRY from its last letter to its first,
+/// as screens pass it: each letter moves or rotates the result of the letters before it, a minus reverses
+/// its direction.
 Vertex vertex_of(const std::string &geometry, const geometry::Pose &pose, const RotationCentre &rotation);
 
 /// What a screen has set for all that is drawn. Any thread.

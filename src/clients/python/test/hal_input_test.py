@@ -76,7 +76,7 @@ class HalInputTest(unittest.TestCase):
         return done.stdout, done.stderr
 
     def send(self, text, *more):
-        """A line of HAL that gives events to the device, and waits until a pin says so."""
+        """A line of HAL that gives events to the device, and waits until a pin is TRUE."""
         name = self.folder / f'send{len(list(self.folder.glob("send*")))}.sh'
         pin, value = more
         name.write_text(f"printf '{text}' > {self.folder}/event3\nfor i in $(seq 400); do [ \"$(halcmd getp {pin})\" = {value} ] && exit 0; sleep 0.01; done\n"

@@ -35,7 +35,7 @@ class MdroTest(unittest.TestCase):
         self.place.cleanup()
 
     def start(self, words, after='', nets='net x mdro.axis.0\nnet y mdro.axis.1\nnet i mdro.index-enable.0\n'):
-        """mdro beside a HAL at whose prompt nobody types yet; signals x, y, z are its scales."""
+        """mdro beside a HAL at whose prompt no one types yet; signals x, y, z are its scales."""
         (self.folder / 'a.hal').write_text('newsig x float\nnewsig y float\nnewsig z float\nnewsig i bit\n' f'loadusr -W mdro {words}\n{nets}{after}')
         with open(self.folder / 'said', 'w') as said:
             self.hal = subprocess.Popen([BIN / 'halrun', '-I', 'a.hal'], cwd=self.folder, env=self.env, text=True, stdin=subprocess.PIPE,
@@ -85,7 +85,7 @@ class MdroTest(unittest.TestCase):
         self.do('set', 0, 12.7)
         self.do('units', value='inch')
         self.assertEqual(self.values(), [0.5, -0.75, 10])
-        # Each coordinate system has offsets of its own; the machine's cannot be changed.
+        # Each coordinate system has separate offsets; the machine's cannot be changed.
         self.do('system', value='G55')
         self.assertEqual(self.values(), [3, -1.5, 90])
         self.do('system', value='machine')
@@ -128,7 +128,7 @@ class MdroTest(unittest.TestCase):
                               (dict(do='dance'), 'nothing that it does')):
             self.assertIn(text, self.ask('do', **request), request)
         self.assertEqual(self.values()[0], 4)
-        # Nobody who does not know its address.
+        # A request without its address.
         whole, self.address = self.address, re.sub(r'[^/]+/$', '', self.address)
         for path in ('', 'state', 'do', 'x/state', '../state'):
             self.assertEqual(self.ask(path), 404)

@@ -134,7 +134,7 @@ class ReliefTest(unittest.TestCase):
                     text = self.program(f'{name}.png', *self.COMMON, '--tool', tool, '--pattern', pattern, '--direction', direction, '--step-over', over)
                     judge = self.judge(gray, text, tool)
                     if over == 1:
-                        # All that this tool reaches anywhere is cut, but for what a guard of an eighth of a pixel costs on slopes.
+                        # All that this tool reaches anywhere is cut, except for what a guard of an eighth of a pixel costs on slopes.
                         reached = self.reachable(judge)
                         slope = max(np.abs(np.diff(judge.h, axis=0)).max(), np.abs(np.diff(judge.h, axis=1)).max())
                         self.assertLessEqual((judge.left - reached).max(), 0.01 + slope / 4 + 2e-4, (name, tool, pattern))
@@ -142,7 +142,7 @@ class ReliefTest(unittest.TestCase):
 
     @staticmethod
     def reachable(judge):
-        """The lowest that the tool can leave when it stands over pixels: each place, brute force."""
+        """The lowest that the tool can leave over pixels: each position, brute force."""
         rows, columns = judge.h.shape
         yy, xx = np.mgrid[0:rows, 0:columns]
         left = np.full(judge.h.shape, np.inf)
@@ -183,7 +183,7 @@ class ReliefTest(unittest.TestCase):
         gray = self.picture('steps.png', self.steps)
         text = self.program('steps.png', *self.COMMON, '--tool', 'flat', '--step-over', 2, '--roughing-offset', 0.5, '--roughing-depth', 1.5)
         self.judge(gray, text, 'flat')
-        # No cut takes more than a layer: what stands is remembered along the way.
+        # No cut takes more than a layer: the remaining height is updated on the path.
         judge, last = Judge((gray - 1) * 4, 0.5, 'flat', 3.0), None
         judge.left[:] = 0.0
         for rapid, _, x, y, z in path_of(text):

@@ -69,7 +69,7 @@ TEST(LoggedPathTest, AStraightLineIsTwoPointsAndEachCornerStays) {
     for (int i = 1; i <= 500; ++i) {
         path.add(at(10, 10 - i * 0.01));  // back over the same line
     }
-    path.add(at(10, 5));  // stands
+    path.add(at(10, 5));  // stopped
     ASSERT_EQ(path.points().size(), 4U);
     EXPECT_EQ(path.points()[1].x, 10.0F);
     EXPECT_EQ(path.points()[2].y, 10.0F);

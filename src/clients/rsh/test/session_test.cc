@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A connection with a task that takes what it asks for.
+// A connection with a task that accepts its commands.
 #include <memory>
 #include <string>
 
@@ -99,7 +99,7 @@ TEST_F(RshTest, NothingIsCommandedBeforeHelloAndTheSecondPassword) {
     EXPECT_EQ(say("set enable EMCTOO"), "set enable EMCTOO\r\n");
     EXPECT_EQ(say("set mode mdi"), "set mode mdi\r\n");
     EXPECT_NE(asked, "");
-    // Whoever gives a wrong password afterwards has lost both.
+    // A wrong password afterwards revokes both.
     EXPECT_EQ(say("hello WRONG me 1.0"), "HELLO NAK\r\n");
     EXPECT_EQ(say("set mode mdi"), "SET MODE NAK\r\n");
 }
@@ -327,7 +327,7 @@ TEST_F(OldRshTest, AnswersHaveTheEndsThatScriptsOf29Know) {
     EXPECT_EQ(say("get teleop_enable"), "TELEOP_ENABLE NO\r\n");
     EXPECT_EQ(say("get joint_homed"), "JOINT_HOMED NO NO NO NO NO NO\r\n");
     say("set enable EMCTOO");
-    // An order that is refused has been received.
+    // A rejected order has been received.
     progress = Progress::REFUSED;
     EXPECT_EQ(say("set mdi g0x1"), "SET MDI ACK\n\r");
 }

@@ -33,7 +33,7 @@ inline std::int64_t monotonic_ns() {
     return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
 }
 
-/// For what is still on its way when a connection ends.
+/// For bytes that still arrive when a connection ends.
 inline constexpr std::chrono::milliseconds DRAIN_TIME{2000};
 
 /// One connection, one request after the other.
@@ -86,7 +86,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
             if (isHttp && error != http::error::end_of_stream && error != http::error::partial_message) {
                 reply(error_response(400, "this is no HTTP request: " + error.message()));
             }
-            return;  // or nobody is there
+            return;  // or no client is there
         }
         const HttpRequest &request = parser_->get();
         // An answer to HEAD has no body by its rule, ours has: nothing may follow it.
@@ -126,7 +126,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
             reply(std::move(answer));
             return;
         }
-        // The screen itself is no secret: it asks for the token.
+        // The screen itself is no secret: its first page requests the token.
         const bool isForAll = !asked->path.starts_with("/api/") && asked->path != "/metrics";
         if (asked->role == Role::NOBODY && !isForAll) {
             reply(error_response(401, "show a token: 'Authorization: Bearer TOKEN', or POST /api/login"));
@@ -318,7 +318,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
         drain();
     }
 
-    /// Reads off what is still on its way: closed before, the browser would not see the answer.
+    /// Reads the bytes that still arrive: if it closed before, the browser would not see the answer.
     void drain() {
         constexpr std::size_t MOST = 16UL * 1024 * 1024;
         buffer_.clear();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the server is made of, and its open sockets. Included by server.cc alone.
+// Parts of the server, and its open sockets. Included by server.cc alone.
 #pragma once
 
 #include <boost/asio/steady_timer.hpp>
@@ -24,7 +24,7 @@ using HttpRequest = http::request<http::string_body>;
 
 class Session;
 
-/// Who comes in at one port, and how.
+/// Connections of one port, and their protection.
 struct Door {
     Access access;
     RateLimit requests;
@@ -57,11 +57,11 @@ class Server::Impl {
     Result<> listen(detail::Door &door, const detail::net::ip::address &address, int port);
     void accept(detail::Listener &listener);
     void accept_later(detail::Listener &listener);
-    /// False where the kernel does not tell.
+    /// False where the kernel does not report it.
     bool isOfServerUser(const detail::tcp::socket &socket);
     /// Their browsers connect again, with the cookie that they have got meanwhile.
     void close_status_sessions();
-    /// The socket is gone, for whatever reason.
+    /// The socket is closed, for any reason.
     void forget(SessionId id);
 
     const ServerLimits limits;

@@ -12,7 +12,7 @@
 namespace mw::screen::detail {
 
 /// Messages of handshakes that a peer may send in all: its greeting has six at the most, the others are
-/// changes of keys, whose reckoning costs more than their sending.
+/// changes of keys, which cost more to calculate than to send.
 constexpr int MOST_TLS_MESSAGES = 64;
 
 /// Called by OpenSSL for each message; `messages` is the peer's count. What comes after the last one is
@@ -25,7 +25,7 @@ inline void count_tls_message(int isWritten, int, int type, const void *, std::s
     }
 }
 
-/// TLS 1.2 or later, without renegotiation, sessions that are kept, and groups that are slow to reckon with
+/// TLS 1.2 or later, without renegotiation, sessions that are kept, and groups that are slow to calculate
 /// (a key of ffdhe8192 takes as long as several leases of jogs).
 inline boost::system::error_code set_up(boost::asio::ssl::context &context, const Certificate &certificate) {
     SSL_CTX *raw = context.native_handle();

@@ -111,7 +111,7 @@ class Wire {
     std::optional<net::ssl::stream<beast::tcp_stream &>> tls_;
 };
 
-/// A wire as Beast wants a stream: it can be handed over.
+/// A wire as a stream of Beast, which can be moved.
 class Link {
   public:
     using executor_type = beast::tcp_stream::executor_type;

@@ -58,7 +58,9 @@ class ApiTest : public testing::Test {
             return read.size() < 2 ? Result<std::shared_ptr<PieceQueue>>(std::make_shared<PieceQueue>())
                                    : fail("too many");
         };
-        setup.connect_hal = []() -> Result<std::unique_ptr<hal::Host>> { return fail("no machine is up"); };
+        setup.connect_hal = []() -> Result<std::unique_ptr<hal::Host>> {
+            return fail("no machine is running");
+        };
         api.emplace(sockets, Threads{here, here}, std::move(setup), [this] { return now_ns += 1000000; });
     }
     ~ApiTest() override {
@@ -92,7 +94,7 @@ class ApiTest : public testing::Test {
 };
 
 TEST_F(ApiTest, TheToolTableIsTold) {
-    EXPECT_EQ(ask("GET", "/api/tools").status, 503) << "no machine is up";
+    EXPECT_EQ(ask("GET", "/api/tools").status, 503) << "no machine is running";
     messages::ToolTable table;
     table.version = 7;
     table.tools.resize(2);
@@ -277,8 +279,8 @@ TEST_F(ApiTest, EachCommandIsAStopOrNeedsAnOperator) {
             sockets.take(session);
             Json text{{"id", 1}, {"command", Json::parse(messages::to_json(messages::object(*command)))}};
             for (Json &value : text["command"]) {
-                value = value == "" ? Json("x")
-                                    : value;  // an empty text is refused before anybody is asked for a role
+                value =
+                    value == "" ? Json("x") : value;  // an empty text is rejected before the role is checked
             }
             api->received(session, text.dump());
             task.cycle();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Stand-ins for the server and for task.
+// Fakes of the server and of task.
 #pragma once
 
 #include <map>

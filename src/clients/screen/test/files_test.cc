@@ -89,7 +89,7 @@ TEST_F(ProgramFilesTest, WhatIsNotWholeLeavesNothing) {
         EXPECT_EQ(files_->write(std::to_string(i) + ".ngc", 0, 9, "abc").status, 200);
     }
     EXPECT_EQ(count_entries(), ProgramFiles::MOST_UPLOADS);
-    EXPECT_EQ(files_->write("0.ngc", 3, 9, "defghi").status, 409);  // the oldest ones are given up
+    EXPECT_EQ(files_->write("0.ngc", 3, 9, "defghi").status, 409);  // the oldest ones are abandoned
     EXPECT_TRUE(listed().empty());
     files_.reset();
     EXPECT_EQ(count_entries(), 0U);

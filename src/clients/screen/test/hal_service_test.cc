@@ -21,7 +21,7 @@ class HalDeskTest : public testing::Test {
     /// The bench keeps its host; the desk gets a second handle on it.
     Result<std::unique_ptr<hal::Host>> connect() {
         if (!isUp) {
-            return fail("no machine is up");
+            return fail("no machine is running");
         }
         return std::make_unique<Borrowed>(*bench.host);
     }
@@ -77,10 +77,10 @@ TEST_F(HalDeskTest, TellsWhichInputsOfMotionHaveASource) {
         add(fmt::format("spindle.{}.speed-in", spindle).c_str(), hal::Type::FLOAT);
         add(fmt::format("spindle.{}.at-speed", spindle).c_str(), hal::Type::BIT);
     }
-    bench.run("net nobody-writes motion.probe-input\nnet wave spindle.1.speed-in\n");
+    bench.run("net no-writer motion.probe-input\nnet wave spindle.1.speed-in\n");
     EXPECT_EQ(body(desk.inputs()), Json::parse(R"({"probe": false, "spindles": [
         {"speed_in": false, "at_speed": false}, {"speed_in": true, "at_speed": false}]})"));
-    bench.run("net nobody-writes siggen.0.clock\nnet nobody-writes spindle.0.at-speed\n");
+    bench.run("net no-writer siggen.0.clock\nnet no-writer spindle.0.at-speed\n");
     const Json now = body(desk.inputs());
     EXPECT_EQ(now["probe"], true);
     EXPECT_EQ(now["spindles"][0]["at_speed"], true);

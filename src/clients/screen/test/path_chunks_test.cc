@@ -179,7 +179,7 @@ TEST(PathChunks, TheFirstPathComesAtOnceAndChunksGoOnWhereTheLastEnded) {
         return events;
     };
     EXPECT_TRUE(chunks.take(batch(10)));
-    EXPECT_EQ(pieces.size(), 2U) << "what holds for it, and the path";
+    EXPECT_EQ(pieces.size(), 2U) << "its values, and the path";
     for (int i = 0; i < 40; ++i) {
         EXPECT_TRUE(chunks.take(batch(1000)));
     }

@@ -47,7 +47,8 @@ TEST(PeerOwner, NeedsAnOpenEstablishedSocketOfThisConnection) {
         SocketFacts socket = OWN;
         socket.uid = uid;
         socket.inode = 0;
-        EXPECT_EQ(owner(socket), PeerOwner::OTHER) << "the kernel reports user 0 for what nobody has open";
+        EXPECT_EQ(owner(socket), PeerOwner::OTHER)
+            << "the kernel reports user 0 for sockets that no process has open";
         for (Endpoint SocketFacts::*const end : {&SocketFacts::own, &SocketFacts::peer}) {
             socket = OWN;
             socket.uid = uid;

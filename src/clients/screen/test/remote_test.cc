@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 const std::string VIEW(64, 'a'), OPERATE(64, 'b');
 
-/// Tells what it was asked, and by whom.
+/// Answers with the request and its role.
 class Ear final : public Application {
   public:
     void answer(const Request &request, Reply reply) override {
@@ -37,7 +37,7 @@ class Ear final : public Application {
     std::vector<Rights> open;
 };
 
-/// A blocking client, for a thread of its own.
+/// A blocking client, for a separate thread.
 class Caller {
   public:
     Caller(int port, bool hasTls) : fd_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
@@ -113,7 +113,7 @@ class RemoteTest : public testing::Test {
             fs::remove_all(folder);
         }
     }
-    /// `call` in a thread of its own, while the server runs.
+    /// `call` in a separate thread, while the server runs.
     void with_server(const std::function<void()> &call) {
         std::atomic<bool> isDone{false};
         std::thread caller([&] {
@@ -158,7 +158,7 @@ TEST_F(RemoteTest, OnlyATokenOpensIt) {
         EXPECT_EQ(ask(path, "").substr(0, 3), "401") << path;
         EXPECT_EQ(ask(path, bearer("wrong")).substr(0, 3), "401") << path;
     }
-    EXPECT_EQ(ask("/", ""), "200\n/ by ");  // the screen, which asks for the token
+    EXPECT_EQ(ask("/", ""), "200\n/ by ");  // the screen, which requests the token
     EXPECT_EQ(ask("/api/login", ""), "200\n{\"role\":\"\",\"protection\":\"tls\"}");
 }
 

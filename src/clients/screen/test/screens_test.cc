@@ -37,7 +37,7 @@ class ScreensTest : public testing::Test {
         now_ns += 1000 * MS;
         task.message_ns = now_ns;
     }
-    /// Time goes on, in steps of a tick; task cycles between them.
+    /// Time continues in steps of a tick; task cycles between them.
     std::vector<mailbox::CommandServer::Delivery> go(std::int64_t ms) {
         std::vector<mailbox::CommandServer::Delivery> taken;
         for (const std::int64_t end = now_ns + ms * MS; now_ns < end;) {
@@ -291,7 +291,7 @@ TEST_F(ScreensTest, StopsAreNeverLimited) {
     for (int i = 0; i < 1000; ++i) {
         command(1, i, "SetFeedOverride", R"("factor":1.0)");
     }
-    EXPECT_GT(of_kind(1, "outcome").size(), 900U);  // refused
+    EXPECT_GT(of_kind(1, "outcome").size(), 900U);  // rejected
     for (int i = 0; i < 200; ++i) {
         command(1, 2000 + i, "AbortAll");
         command(1, 3000 + i, "SetState", R"("state":"ESTOP")");
@@ -414,8 +414,8 @@ TEST_F(ScreensTest, WhatOperatorsAreToldIsWrittenDown) {
     task.desk.post(messages::MessageKind::OPERATOR_TEXT, "done");
     go(50);
     screens->tell_note("a panel is missing");
-    EXPECT_EQ(lines, (std::vector<std::string>{"the machine is up", "ERROR: tool 4 is missing", "TEXT: done",
-                                               "NOTE: a panel is missing"}));
+    EXPECT_EQ(lines, (std::vector<std::string>{"the machine is running", "ERROR: tool 4 is missing",
+                                               "TEXT: done", "NOTE: a panel is missing"}));
 }
 
 TEST_F(ScreensTest, WithoutAMachineAScreenIsToldAndCommandsAreRefused) {
@@ -463,7 +463,7 @@ TEST_F(ScreensTest, ALeaseCountsFromWhenItWasAskedFor) {
     EXPECT_EQ(lease(2, 0, true), 100);
     EXPECT_NEAR(lease(3, 25, true), 75, 1);
     EXPECT_NEAR(lease(4, 79, true), 21, 1);
-    EXPECT_EQ(lease(5, 85, true), 0) << "too little is left: it is refused";
+    EXPECT_EQ(lease(5, 85, true), 0) << "too little is left: it is rejected";
     EXPECT_EQ(lease(6, 0, true), 100);
     bool isRefused = false;
     for (const Json &one : sockets.take(1)) {

@@ -153,7 +153,7 @@ class ServerTest : public testing::Test {
         });
         return peer.received;
     }
-    /// The first line of the answer, on a connection of its own.
+    /// The first line of the answer, on a separate connection.
     std::string status_of(const std::string &bytes) {
         Peer peer(server->port());
         const std::string answer = ask(peer, bytes, "\r\n\r\n");

@@ -339,7 +339,7 @@ TEST_F(ServerTest, WhoNeverEndsHisRequestIsCutOff) {
     listen(limits);
     Peer slow(server->port());
     write(slow, "GET /x HTTP/1.1\r\nHost: ");
-    EXPECT_EQ(status_of(get("/x")), "HTTP/1.1 200 OK");  // nobody waits for it
+    EXPECT_EQ(status_of(get("/x")), "HTTP/1.1 200 OK");  // no one waits for it
     EXPECT_TRUE(run_until([&] {
         slow.read();
         return slow.isClosed;
@@ -393,7 +393,7 @@ TEST_F(ServerTest, ABrokenFrameEndsThoughThePeerStays) {
     EXPECT_TRUE(run_until([&] { return echo.ended.size() == 1; }));
 }
 
-/// Bytes that begin as something does and go on as nothing does.
+/// Bytes with a valid beginning and an invalid rest.
 TEST_F(ServerTest, AnythingMayComeOverAConnection) {
     listen();
     std::mt19937_64 random(17);

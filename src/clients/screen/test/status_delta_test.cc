@@ -17,7 +17,7 @@ namespace {
 using Json = nlohmann::json;
 using Random = std::mt19937_64;
 
-/// As docs/reference/api.md tells browsers to.
+/// As docs/reference/api.md describes it for browsers.
 void merge(Json &into, const Json &delta) {
     for (const auto &[key, value] : delta.items()) {
         if (into.is_array()) {

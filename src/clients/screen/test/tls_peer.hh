@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A client of TLS whose records lie in `out` before they are sent: they can be held, cut and spoiled. Also of
-// tests/fuzz/fuzz_web_tls.cc.
+// A client of TLS whose records lie in `out` before they are sent: they can be delayed, cut and spoiled. Also
+// of tests/fuzz/fuzz_web_tls.cc.
 #pragma once
 
 #include <arpa/inet.h>

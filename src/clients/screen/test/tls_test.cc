@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // What a stranger may send to the port for other computers (J3): records in pieces, spoiled, none at all;
-// greetings that never end. None of it is answered as if it were in order, holds up who is there already, or
-// is kept.
+// greetings that never end. None of it is answered as valid, delays other clients, or is
+// kept.
 #include <filesystem>
 #include <functional>
 #include <vector>
@@ -81,7 +81,7 @@ class TlsTest : public testing::Test {
         return "GET " + path + " HTTP/1.1\r\nHost: 127.0.0.1:" + std::to_string(server->remote_port()) +
                "\r\nAuthorization: Bearer " + TOKEN + "\r\n" + more + "\r\n";
     }
-    /// Somebody in order is answered.
+    /// A valid client is answered.
     bool isServed(const TlsPeer::Wish &wish = {}) {
         TlsPeer peer(server->remote_port(), wish);
         if (!greet(peer)) {

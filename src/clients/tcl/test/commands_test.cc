@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The commands emc_* with a task that takes what it is asked for.
+// The commands emc_* with a task that accepts them.
 #include <functional>
 #include <memory>
 #include <optional>
@@ -41,7 +41,7 @@ class TclTest : public ::testing::Test {
             }
         });
     }
-    /// A cycle of task, in a thread of its own, as a command sleeps until it is taken.
+    /// A cycle of task, in a separate thread, as a command sleeps until it is taken.
     void cycle() {
         const std::scoped_lock lock(mutex);
         for (const auto &delivery : desk.take(now_ns += 1000000)) {
@@ -115,7 +115,7 @@ TEST_F(TclTest, TellsTheMachine) {
     EXPECT_EQ(say("emc_joint_homed", {"0"}), "not");
     EXPECT_EQ(say("emc_joint_homed", {"1"}), "homed");
     EXPECT_EQ(say("emc_joint_limit", {"2"}), "maxhard");
-    EXPECT_EQ(say("emc_joint_limit", {"15"}), "ok") << "screens look at all places";
+    EXPECT_EQ(say("emc_joint_limit", {"15"}), "ok") << "screens read all joints";
     EXPECT_EQ(say("emc_joint_type", {"2"}), "angular");
     EXPECT_EQ(say("emc_tool"), "7");
     EXPECT_EQ(say("emc_program"), "none");

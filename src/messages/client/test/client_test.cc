@@ -13,7 +13,7 @@ using messages::Progress;
 
 constexpr std::int64_t S = 1000000000;
 
-/// A task that answers as it is told to.
+/// A task with the answers that the test sets.
 class ClientTest : public testing::Test {
   protected:
     Client made(Role role = Role::OPERATOR) {
@@ -143,7 +143,7 @@ TEST_F(ClientTest, AStopIsTakenHoweverManyCommandsAreUnderWay) {
         ASSERT_EQ(cycle().size(), 1U);
     }
     ASSERT_TRUE(a.post(messages::Null{}).has_value());
-    EXPECT_TRUE(cycle().empty()) << "nothing could tell its outcome";
+    EXPECT_TRUE(cycle().empty()) << "no slot is left for its outcome";
     ASSERT_TRUE(a.post(messages::AbortAll{}).has_value());
     const auto taken = cycle();
     ASSERT_EQ(taken.size(), 1U);
@@ -306,7 +306,7 @@ TEST_F(ClientTest, AClientThatLeavesGivesItsPlaceAndRightBack) {
         many.push_back(made());
     }
     EXPECT_FALSE(Client::join(memory.segment()).has_value());
-    for (int i = 0; i < mailbox::RESERVED_CLIENTS; ++i) {  // which servers of screens find all the same
+    for (int i = 0; i < mailbox::RESERVED_CLIENTS; ++i) {  // which servers of screens still find
         auto one = Client::join(memory.segment(), Role::OPERATOR, Places::RESERVED);
         ASSERT_TRUE(one.has_value());
         ASSERT_TRUE(one->post(messages::AbortAll{}).has_value());
@@ -354,7 +354,7 @@ TEST_F(ClientTest, AReaderMayReadTheLastMessagesAgain) {
         }
         EXPECT_FALSE(b.next_message().has_value());
     }
-    EXPECT_FALSE(made().next_message().has_value()) << "another reader gets what nobody has read";
+    EXPECT_FALSE(made().next_message().has_value()) << "another reader gets only unread messages";
 }
 
 TEST_F(ClientTest, EachStartOfTheMachineHasItsOwnNumber) {

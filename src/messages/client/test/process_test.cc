@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Task and clients in processes of their own, which are killed at any instant.
+// Task and clients in separate processes, which are killed at any instant.
 #include <signal.h>
 #include <sys/mman.h>
 #include <sys/wait.h>
@@ -24,7 +24,7 @@ std::string instance(const char *what) {
     return std::string("test-") + what + '-' + std::to_string(::getpid());
 }
 
-/// Takes commands and publishes until it is told to stop.
+/// Takes commands and publishes until a stop is requested.
 void serve(mailbox::Memory &memory, const std::atomic<bool> &isOver) {
     mailbox::CommandServer desk(memory.segment());
     auto status = std::make_unique<messages::MachineStatus>();
@@ -258,7 +258,7 @@ TEST(MailboxProcess, TaskKilledAtAnyInstantIsNoticedAndItsNameIsFree) {
         ::usleep(static_cast<useconds_t>(random() % 4000));
         ::kill(child, SIGKILL);
         ::waitpid(child, nullptr, 0);
-        static_cast<void>(client->read_status());  // ends, whatever task was at
+        static_cast<void>(client->read_status());  // ends, at any point of task's cycle
         static_cast<void>(client->next_message());
         const auto serial = client->post(messages::Null{});
         ASSERT_TRUE(serial.has_value());
@@ -266,7 +266,7 @@ TEST(MailboxProcess, TaskKilledAtAnyInstantIsNoticedAndItsNameIsFree) {
         ASSERT_FALSE(outcome.has_value());
         EXPECT_EQ(outcome.error().message, "the machine is no longer running");
     }
-    // Who takes the name over also takes away what the last one that was killed has left behind.
+    // The next owner of the name removes what the killed one has left behind.
     EXPECT_TRUE(mailbox::Memory::create(name).has_value());
     EXPECT_FALSE(Client::connect(name).has_value());
 }

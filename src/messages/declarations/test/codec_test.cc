@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Binary, JSON and text forms: round trips, literal bytes, and what is refused.
+// Binary, JSON and text forms: round trips, literal bytes, and what is rejected.
 #include <cmath>
 #include <limits>
 #include <random>

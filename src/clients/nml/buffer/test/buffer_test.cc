@@ -137,7 +137,7 @@ TEST_P(NmlBufferTest, AFullQueueSaysSoWhenTimeIsOverAndTakesMoreWhenOneWasTakenO
         ++written;
     }
     EXPECT_EQ(written, 7);
-    EXPECT_EQ(a->write("x", {0.001}).value(), 8U) << "it has room for a small one";
+    EXPECT_EQ(a->write("x", {0.001}).value(), 8U) << "a small one still fits";
     EXPECT_NE(a->write(std::string(84, 'q'), {0.001}).error().message.find("queue is full"),
               std::string::npos);
     std::jthread reader([&b] { read_one(*b); });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Processes that use a buffer and are killed at any instant (F5): what is read is whole, nobody hangs, no
-// message comes twice or out of order, and the buffer goes on.
+// Processes that use a buffer and are killed at any instant (F5): messages are whole, no process hangs, no
+// message comes twice or out of order, and the buffer still works.
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
@@ -30,7 +30,7 @@ Config death_config(const std::string &options) {
                         "test.nml", sink);
 }
 
-/// Bytes that tell a reader whether all of them are of one message, without the buffer's help.
+/// Bytes by which a reader knows that all of them are of one message, without the buffer's help.
 std::string telling(unsigned number) {
     std::string bytes = std::to_string(number) + ":";
     const std::size_t size = bytes.size() + number * 131 % 5000;
@@ -158,7 +158,7 @@ TEST_P(NmlDeathTest, AWriterThatIsKilledLeavesWholeMessagesAndNobodyHangs) {
         }
     }
     EXPECT_GT(read, static_cast<unsigned>(ROUNDS));
-    ASSERT_TRUE(reader->write(telling(9), {1.0}).has_value()) << "and the buffer goes on";
+    ASSERT_TRUE(reader->write(telling(9), {1.0}).has_value()) << "and the buffer still works";
     Received message;
     unsigned number = 0;
     ASSERT_TRUE(reader->read(message, {1.0}).value());
@@ -201,7 +201,7 @@ TEST_P(NmlDeathTest, PlacesOfTheDeadAreFreeForOthers) {
         });
         char open = 0;
         ::close(ready[1]);
-        EXPECT_EQ(::read(ready[0], &open, 1), 1) << "the place was refused";
+        EXPECT_EQ(::read(ready[0], &open, 1), 1) << "no slot was free";
         ::close(ready[0]);
         ASSERT_TRUE(peer.kill()) << "it ended by itself";
     }

@@ -155,7 +155,7 @@ TEST(NmlConfig, AWrongLineIsOneErrorWithFileLineAndField) {
     EXPECT_EQ(told("P p a LOCAL h R 0 soon 0 0\nB a SHMEM h 10 0 0 1 1 1"),
               "E m.nml:1:19: field 'timeout': 'soon' is neither a number of seconds nor INF");
     EXPECT_EQ(told(std::string("B a\x01 SHMEM h 10 0 0 1 1 1")),
-              "E m.nml:1:3: a control character stands in the line");
+              "E m.nml:1:3: the line has a control character");
 }
 
 TEST(NmlConfig, SeveralWrongFieldsAreToldInOneRunAndGoodLinesStay) {

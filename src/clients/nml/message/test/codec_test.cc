@@ -190,7 +190,7 @@ TEST(NmlCodec, CutLengthenedAndChangedBytesAreErrorsOrOtherMessagesAndNothingEls
                 std::string bad = good;
                 bad[random() % bad.size()] = static_cast<char>(random());
                 auto read = codec.decode(bad);
-                if (read.has_value()) {  // a message of its own: it comes back too
+                if (read.has_value()) {  // another valid message: it comes back too
                     std::string again;
                     ASSERT_TRUE(codec.encode(read->view(), again).has_value());
                     auto second = codec.decode(again);
@@ -209,8 +209,7 @@ TEST(NmlCodec, WhoeverDeclaresAMessageOtherwiseIsToldSo) {
     std::string bytes;
     ASSERT_TRUE(codec.encode(view(stop), bytes).has_value());
     bytes[5] = static_cast<char>(bytes[5] + 1);
-    EXPECT_EQ(codec.decode(bytes).error().message,
-              "whoever wrote message 136 declares it otherwise than JogStop here");
+    EXPECT_EQ(codec.decode(bytes).error().message, "the sender of message 136 declares JogStop differently");
     EXPECT_EQ(codec.decode("").error().message, "the bytes are too few for a message");
     CommandMessage<messages::Mdi> mdi;
     bytes[5] = static_cast<char>(bytes[5] - 1);

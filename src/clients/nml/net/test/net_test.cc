@@ -237,7 +237,7 @@ TEST_F(NmlNetTest, AClientFindsItsServerAgainAfterARestart) {
     EXPECT_NE((*status)->read(message, {1.0}).error().str().find("is its server running?"),
               std::string::npos);
     restart();
-    ASSERT_TRUE((*status)->read(message, {1.0}).value()) << "a new connection reads the message anew";
+    ASSERT_TRUE((*status)->read(message, {1.0}).value()) << "a new connection reads the message again";
     EXPECT_EQ(message.bytes, "one");
 }
 
@@ -338,7 +338,7 @@ TEST_F(NmlNetTest, ARemoteProcessNeedsAPortInItsBuffer) {
     config_.buffers[0].tcp_port.reset();
     EXPECT_EQ(client("cmd").error().str(), "net.nml:5:1: buffer 'cmd': process 'gui' is REMOTE, but the "
                                            "buffer has no port (add TCP=PORT to its B line)");
-    EXPECT_EQ(client("nobody").error().message, "the NML configuration has no B line for buffer 'nobody'");
+    EXPECT_EQ(client("missing").error().message, "the NML configuration has no B line for buffer 'missing'");
 }
 
 }  // namespace

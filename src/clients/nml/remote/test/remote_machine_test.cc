@@ -54,7 +54,7 @@ Config config_of(int port) {
     return config;
 }
 
-/// What the test is told of a command.
+/// The outcome of a command.
 struct Taken {
     std::uint64_t number = 0;
     std::string line;
