@@ -30,8 +30,8 @@ struct Question {
 Answer line(std::string text) {
     return std::vector{std::move(text)};
 }
-Answer on_off(const char *name, bool isOn) {
-    return line(fmt::format("{} {}", name, isOn ? "ON" : "OFF"));
+Answer on_off(const char *name, bool on) {
+    return line(fmt::format("{} {}", name, on ? "ON" : "OFF"));
 }
 Answer operator_line(const Asked &asked, const char *name, MessageKind kind) {
     const auto text = asked.shared.next_line(kind, asked.own.lines);
@@ -123,7 +123,7 @@ Answer brake(const Asked &asked) {
 
 Answer wait_mode(const Asked &asked) {
     return line(fmt::format("{} {}", asked.settings.isOld() ? "SET_WAIT" : "WAIT_MODE",
-                            asked.own.isWaitingForDone ? "DONE" : "RECEIVED"));
+                            asked.own.waiting_for_done ? "DONE" : "RECEIVED"));
 }
 
 Answer timeout(const Asked &asked) {
@@ -209,7 +209,7 @@ constexpr Question QUESTIONS[] = {
     {"TIMEOUT", BOTH, timeout},
     {"TIMESTAMP", NEWER, [](const Asked &a) { return on_off("TIMESTAMP", a.own.isTimed); }},
     {"TOOL_OFFSET", BOTH, tool_offset},
-    {"UPDATE", BOTH, [](const Asked &a) { return line(a.own.isUpdating ? "UPDATE AUTO" : "UPDATE NONE"); }},
+    {"UPDATE", BOTH, [](const Asked &a) { return line(a.own.updating ? "UPDATE AUTO" : "UPDATE NONE"); }},
     {"USER_ANGULAR_UNITS", BOTH,
      [](const Asked &a) {
          return line("USER_ANGULAR_UNITS " + legacy::name_of_angle(a.status.settings.angular_units));

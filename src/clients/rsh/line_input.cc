@@ -17,14 +17,14 @@ std::optional<LineInput::Line> LineInput::next() {
         const std::size_t end = input_.find_first_of(LINE_ENDS);
         if (end == std::string::npos && (!isOver_ || input_.empty())) {
             if (input_.size() > MAX_LINE) {
-                isLineTooLong_ = true;
+                line_too_long_ = true;
                 input_.clear();
             }
             return std::nullopt;
         }
         std::string line = input_.substr(0, end);
         input_.erase(0, end == std::string::npos ? end : end + 1);
-        if (line.size() > MAX_LINE || std::exchange(isLineTooLong_, false)) {
+        if (line.size() > MAX_LINE || std::exchange(line_too_long_, false)) {
             return Line{{}, true};
         }
         if (!trim(line).empty()) {

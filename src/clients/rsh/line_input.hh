@@ -29,7 +29,7 @@ class LineInput {
 
   private:
     std::string input_;
-    bool isLineTooLong_ = false, isOver_ = false;
+    bool line_too_long_ = false, isOver_ = false;
 };
 
 }  // namespace mw::rsh

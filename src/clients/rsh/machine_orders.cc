@@ -182,9 +182,9 @@ Result<Waiting> set_lube(const Ordered &o) {
 
 Result<Waiting> set_spindle(const Ordered &o) {
     enum class Turn : std::uint8_t { FORWARD, REVERSE, INCREASE, DECREASE, CONSTANT, OFF };
-    const bool isOff = isSameWord(word(o, 0), "OFF");
+    const bool is_off = isSameWord(word(o, 0), "OFF");
     // Without a number one spindle is turned, but all are stopped.
-    const auto spindle = spindle_at(o, 1, isOff ? -1 : 0);
+    const auto spindle = spindle_at(o, 1, is_off ? -1 : 0);
     if (!spindle.has_value()) {
         return std::unexpected(spindle.error());
     }
@@ -229,13 +229,12 @@ Result<Waiting> set_brake(const Ordered &o) {
 }
 
 Result<Waiting> set_spindle_override(const Ordered &o) {
-    const bool isNumbered = o.words.size() > 1;
-    const auto spindle =
-        isNumbered ? index_of(o.words[0], "spindle", o.settings.num_spindles) : Result<int>(0);
+    const bool numbered = o.words.size() > 1;
+    const auto spindle = numbered ? index_of(o.words[0], "spindle", o.settings.num_spindles) : Result<int>(0);
     if (!spindle.has_value()) {
         return std::unexpected(spindle.error());
     }
-    const auto percent = number(word(o, isNumbered ? 1 : 0), "percentage");
+    const auto percent = number(word(o, numbered ? 1 : 0), "percentage");
     if (!percent.has_value()) {
         return std::unexpected(percent.error());
     }

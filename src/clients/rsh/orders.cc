@@ -87,23 +87,23 @@ Result<Waiting> set_angle_unit(const Ordered &o) {
 }
 
 Result<Waiting> set_wait_mode(const Ordered &o) {
-    return choose<bool>(o, o.own.isWaitingForDone, {{"DONE", true}, {"RECEIVED", false}});
+    return choose<bool>(o, o.own.waiting_for_done, {{"DONE", true}, {"RECEIVED", false}});
 }
 
 Result<Waiting> wait_for_last(const Ordered &o) {
-    bool isDone = true;
-    auto chosen = choose<bool>(o, isDone, {{"DONE", true}, {"RECEIVED", false}});
+    bool is_done = true;
+    auto chosen = choose<bool>(o, is_done, {{"DONE", true}, {"RECEIVED", false}});
     if (chosen.has_value()) {
-        chosen->until = isDone ? Until::WHATEVER : Until::WHATEVER_TAKEN;
+        chosen->until = is_done ? Until::WHATEVER : Until::WHATEVER_TAKEN;
         chosen->serials = o.commander.last();
     }
     return chosen;
 }
 
 Result<Waiting> set_update(const Ordered &o) {
-    auto chosen = choose<bool>(o, o.own.isUpdating, {{"AUTO", true}, {"NONE", false}});
+    auto chosen = choose<bool>(o, o.own.updating, {{"AUTO", true}, {"NONE", false}});
     if (chosen.has_value()) {
-        o.own.kept = o.own.isUpdating ? nullptr : std::make_unique<messages::MachineStatus>(o.status());
+        o.own.kept = o.own.updating ? nullptr : std::make_unique<messages::MachineStatus>(o.status());
     }
     return chosen;
 }
@@ -134,8 +134,8 @@ Result<Waiting> set_protocol(const Ordered &o) {
 }
 
 Result<Waiting> set_comm_mode(const Ordered &o) {
-    bool isText = true;
-    return choose<bool>(o, isText, {{"ASCII", true}});
+    bool is_text = true;
+    return choose<bool>(o, is_text, {{"ASCII", true}});
 }
 
 /// So many cycles of task.

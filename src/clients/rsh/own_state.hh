@@ -16,13 +16,13 @@ enum class LengthUnit : std::uint8_t { AUTO, INCH, MM, CM, CUSTOM };
 enum class AngleUnit : std::uint8_t { AUTO, DEG, RAD, GRAD, CUSTOM };
 
 struct OwnState {
-    bool isGreeted = false;  ///< HELLO with the right password
+    bool greeted = false;    ///< HELLO with the right password
     bool isEnabled = false;  ///< may command the machine
     bool isEchoing = true;
     bool isVerbose = false;
     bool isTimed = false;          ///< each line of an answer begins with the time
-    bool isWaitingForDone = true;  ///< an answer to SET comes when the command has ended
-    bool isUpdating = true;        ///< GET reports the newest status
+    bool waiting_for_done = true;  ///< an answer to SET comes when the command has ended
+    bool updating = true;          ///< GET reports the newest status
     double timeout_s = 0;          ///< of SET; 0: none
     LengthUnit length_unit = LengthUnit::AUTO;
     AngleUnit angle_unit = AngleUnit::AUTO;

@@ -81,14 +81,14 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
   private:
     void read() {
-        const bool isWanted = !isReading_ && !isInputOver_ && !isGone_ && !conversation_->isFull();
-        if (!isWanted) {
+        const bool wanted = !reading_ && !isInputOver_ && !isGone_ && !conversation_->isFull();
+        if (!wanted) {
             return;
         }
-        isReading_ = true;
+        reading_ = true;
         socket_.async_read_some(net::buffer(bytes_),
                                 [self = shared_from_this()](error_code error, std::size_t size) {
-                                    self->isReading_ = false;
+                                    self->reading_ = false;
                                     if (self->isGone_) {
                                         return;
                                     }
@@ -106,7 +106,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     }
     void write() {
         std::string &output = conversation_->output();
-        if (isWriting_ || isGone_) {
+        if (writing_ || isGone_) {
             return;
         }
         if (output.empty()) {
@@ -115,11 +115,11 @@ class Connection : public std::enable_shared_from_this<Connection> {
             }
             return;
         }
-        isWriting_ = true;
+        writing_ = true;
         sent_ = std::exchange(output, {});
         net::async_write(socket_, net::buffer(sent_),
                          [self = shared_from_this()](error_code error, std::size_t) {
-                             self->isWriting_ = false;
+                             self->writing_ = false;
                              if (error && !self->isGone_) {
                                  self->end();
                              }
@@ -130,8 +130,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     std::unique_ptr<Conversation> conversation_;
     std::array<char, 4096> bytes_{};
     std::string sent_;
-    bool isReading_ = false, isWriting_ = false, isInputOver_ = false, isGone_ = false,
-         wantsShutdown_ = false;
+    bool reading_ = false, writing_ = false, isInputOver_ = false, isGone_ = false, wantsShutdown_ = false;
 };
 
 }  // namespace

@@ -20,7 +20,7 @@ constexpr const char *PROTOCOL = "1.1";
 Session::Session(const Settings &settings, SharedView &shared, Joining joining)
     : settings_(settings), shared_(shared), commander_(std::move(joining)) {
     own_.lines = shared.unread();
-    own_.isWaitingForDone = !settings.isOld();
+    own_.waiting_for_done = !settings.isOld();
     ++shared_.num_sessions;
 }
 
@@ -53,8 +53,8 @@ void Session::step(double now_s) {
         carry_out(*line, now_s);
         look_at_wait(now_s);
     }
-    const bool isAnswered = !wait_.has_value() && input_.waiting() == 0;
-    if (input_.isOver() && isAnswered) {
+    const bool answered = !wait_.has_value() && input_.waiting() == 0;
+    if (input_.isOver() && answered) {
         commander_.stop_jogs();
         isOver_ = true;
     }
@@ -63,7 +63,7 @@ void Session::step(double now_s) {
 void Session::carry_out(const std::string &line, double now_s) {
     const Words words = split_words(line);
     const std::string command = to_upper(words[0]);
-    if (own_.isGreeted && own_.isEchoing && command != "HELLO") {
+    if (own_.greeted && own_.isEchoing && command != "HELLO") {
         output_ += line + "\r\n";
     }
     const Words behind(words.begin() + 1, words.end());
@@ -94,12 +94,12 @@ void Session::hello(const Words &words) {
     constexpr std::size_t PASSWORD_AND_NAME = 2;
     if (words.size() < PASSWORD_AND_NAME || !isSamePassword(words[0], settings_.connect_password)) {
         if (!settings_.isOld()) {
-            own_.isGreeted = own_.isEnabled = false;
+            own_.greeted = own_.isEnabled = false;
         }
         say("HELLO NAK");
         return;
     }
-    own_.isGreeted = true;
+    own_.greeted = true;
     own_.protocol = words.size() > PASSWORD_AND_NAME && settings_.isOld() ? words[2] : PROTOCOL;
     say(fmt::format("HELLO ACK {} {}", settings_.name, PROTOCOL));
 }
@@ -113,8 +113,8 @@ void Session::get(const Words &words) {
     const std::string name = to_upper(words[0]);
     const Words behind(words.begin() + 1, words.end());
     const Answering answering = rsh::answering(settings_, name);
-    const bool isLocal = name == "ERROR" && !errors_.empty();
-    if (isLocal) {
+    const bool is_local = name == "ERROR" && !errors_.empty();
+    if (is_local) {
         say("ERROR " + errors_.front());
         errors_.pop_front();
         return;
@@ -122,8 +122,8 @@ void Session::get(const Words &words) {
     const messages::MachineStatus &status = own_.kept != nullptr ? *own_.kept : shared_.status();
     const Answer answer = answering == nullptr ? fail(fmt::format("Unknown question '{}'", printable(name)))
                                                : answering({settings_, shared_, own_, status, behind});
-    const bool isOnlyOrder = answering == nullptr && find_order(settings_, name) != nullptr;
-    if (isOnlyOrder && !settings_.isOld()) {
+    const bool only_order = answering == nullptr && find_order(settings_, name) != nullptr;
+    if (only_order && !settings_.isOld()) {
         return;  // scripts ask so for what can only be set, and expect no line
     }
     if (!answer.has_value()) {
@@ -137,7 +137,7 @@ void Session::get(const Words &words) {
 }
 
 std::optional<std::string> Session::lacks(const Order &order) const {
-    if (order.needs >= Needs::HELLO && !own_.isGreeted) {
+    if (order.needs >= Needs::HELLO && !own_.greeted) {
         return fmt::format("HELLO must come before SET {}", order.name);
     }
     if (order.needs >= Needs::ENABLE && !own_.isEnabled) {
@@ -150,10 +150,10 @@ std::optional<std::string> Session::lacks(const Order &order) const {
 }
 
 void Session::set(const Words &words, const std::string &rest, double now_s) {
-    const bool isMute = settings_.isOld() && !own_.isGreeted;
-    if (words.empty() || isMute) {
-        tell_error(isMute ? "HELLO must come before SET" : "SET needs an order");
-        say("SET NAK", isMute || !settings_.isOld() ? "\r\n" : "\n\r");
+    const bool mute = settings_.isOld() && !own_.greeted;
+    if (words.empty() || mute) {
+        tell_error(mute ? "HELLO must come before SET" : "SET needs an order");
+        say("SET NAK", mute || !settings_.isOld() ? "\r\n" : "\n\r");
         return;
     }
     const std::string name = to_upper(words[0]);
@@ -173,14 +173,14 @@ void Session::set(const Words &words, const std::string &rest, double now_s) {
         refuse(name, waiting.error().str());
         return;
     }
-    if (waiting->until == Until::AS_SET && !own_.isWaitingForDone) {
+    if (waiting->until == Until::AS_SET && !own_.waiting_for_done) {
         waiting->until = Until::TAKEN;
     }
     wait_.emplace(Wait{name, std::move(*waiting), own_.timeout_s > 0 ? now_s + own_.timeout_s : 0, 0});
 }
 
 void Session::shut_down() {
-    if (!own_.isGreeted || !own_.isEnabled) {
+    if (!own_.greeted || !own_.isEnabled) {
         tell_error("Connection must be 'ENABLED' for SHUTDOWN");
         say("SHUTDOWN NAK");
         return;
@@ -200,18 +200,18 @@ bool Session::isProbeWithoutContact(const client::Outcome &outcome) const {
 std::optional<Result<>> Session::end_of(const Waiting &waiting) {
     for (const client::Serial serial : waiting.serials) {
         const client::Outcome outcome = commander_.outcome(serial);
-        const bool isTaken =
+        const bool taken =
             outcome.progress != messages::Progress::STARTED || shared_.status().last_command >= serial;
-        const bool isTakenEnough = waiting.until == Until::TAKEN || waiting.until == Until::WHATEVER_TAKEN;
-        const bool isEnded = isTakenEnough ? isTaken : outcome.progress != messages::Progress::STARTED;
-        if (!isEnded) {
+        const bool taken_enough = waiting.until == Until::TAKEN || waiting.until == Until::WHATEVER_TAKEN;
+        const bool ended = taken_enough ? taken : outcome.progress != messages::Progress::STARTED;
+        if (!ended) {
             return std::nullopt;
         }
-        const bool isBad =
+        const bool bad =
             outcome.progress == messages::Progress::REFUSED || outcome.progress == messages::Progress::FAILED;
-        const bool mayBeBad = waiting.until == Until::WHATEVER || waiting.until == Until::WHATEVER_TAKEN ||
-                              isProbeWithoutContact(outcome) || (settings_.isOld() && isTakenEnough);
-        if (isBad && !mayBeBad) {
+        const bool may_be_bad = waiting.until == Until::WHATEVER || waiting.until == Until::WHATEVER_TAKEN ||
+                                isProbeWithoutContact(outcome) || (settings_.isOld() && taken_enough);
+        if (bad && !may_be_bad) {
             return Result<>(fail(""));
         }
     }
@@ -230,17 +230,17 @@ void Session::look_at_wait(double now_s) {
         return;
     }
     const auto end = end_of(wait_->what);
-    const bool isLate = wait_->end_s > 0 && now_s >= wait_->end_s;
-    if (!end.has_value() && !isLate) {
+    const bool late = wait_->end_s > 0 && now_s >= wait_->end_s;
+    if (!end.has_value() && !late) {
         return;
     }
     // What an order has changed is in the status when it is answered.
     constexpr std::uint64_t CYCLES_TO_SHOW = 3;
-    const bool isShown = !end.has_value() || wait_->what.serials.empty() || !own_.isWaitingForDone;
-    if (!isShown && wait_->shown_cycle == 0) {
+    const bool is_shown = !end.has_value() || wait_->what.serials.empty() || !own_.waiting_for_done;
+    if (!is_shown && wait_->shown_cycle == 0) {
         wait_->shown_cycle = shared_.status().cycle + CYCLES_TO_SHOW;
     }
-    if (!isShown && shared_.status().cycle < wait_->shown_cycle) {
+    if (!is_shown && shared_.status().cycle < wait_->shown_cycle) {
         return;
     }
     const std::string order = wait_->order;

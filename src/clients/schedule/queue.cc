@@ -18,10 +18,10 @@ Result<> check(const Job &job) {
     if (job.zone < 0 || job.zone > LAST_ZONE) {
         return fail(fmt::format("zone {} is not one of 0 (offsets) and 1 (G54) to 9 (G59.3)", job.zone));
     }
-    const bool isPlace = std::isfinite(job.x) && std::isfinite(job.y) && std::isfinite(job.z);
-    const bool isScaled = job.feed_percent >= 0 && job.spindle_percent >= 0 &&
-                          std::isfinite(job.feed_percent) && std::isfinite(job.spindle_percent);
-    if (!isPlace || !isScaled) {
+    const bool is_place = std::isfinite(job.x) && std::isfinite(job.y) && std::isfinite(job.z);
+    const bool scaled = job.feed_percent >= 0 && job.spindle_percent >= 0 &&
+                        std::isfinite(job.feed_percent) && std::isfinite(job.spindle_percent);
+    if (!is_place || !scaled) {
         return fail("offsets are numbers, overrides are percentages from 0 on");
     }
     if (job.tool < 0) {
@@ -78,8 +78,8 @@ const Job *Queue::by_tag(int tag) const {
 }
 
 const Job *Queue::by_index(std::int64_t index) const {
-    const bool isThere = index >= 0 && index < static_cast<std::int64_t>(jobs_.size());
-    return isThere ? &jobs_[static_cast<std::size_t>(index)] : nullptr;
+    const bool there = index >= 0 && index < static_cast<std::int64_t>(jobs_.size());
+    return there ? &jobs_[static_cast<std::size_t>(index)] : nullptr;
 }
 
 bool Queue::remove(int tag) {

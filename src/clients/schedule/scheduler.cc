@@ -102,11 +102,11 @@ Result<> Scheduler::resume() {
 }
 
 Result<> Scheduler::stop() {
-    const bool isWorking = work_.has_value();
+    const bool working = work_.has_value();
     work_.reset();
     mode_ = QueueMode::STOP;
     error_.clear();
-    if (isWorking) {
+    if (working) {
         if (auto posted = commander_.post(messages::AbortAll{}); !posted.has_value()) {
             return std::unexpected(posted.error());
         }

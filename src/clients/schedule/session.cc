@@ -33,7 +33,7 @@ void Session::step(double) {
 void Session::carry_out(const std::string &line) {
     const rsh::Words words = split_words(line);
     const std::string command = to_upper(words[0]);
-    if (own_.isGreeted && own_.isEchoing && command != "HELLO") {
+    if (own_.greeted && own_.isEchoing && command != "HELLO") {
         output_ += line + "\r\n";
     }
     const rsh::Words behind(words.begin() + 1, words.end());
@@ -60,11 +60,11 @@ void Session::hello(const rsh::Words &words) {
     constexpr std::size_t PASSWORD_NAME_AND_VERSION = 3;
     if (words.size() < PASSWORD_NAME_AND_VERSION ||
         !rsh::isSamePassword(words[0], shared_.settings.connect_password)) {
-        own_.isGreeted = own_.isEnabled = false;
+        own_.greeted = own_.isEnabled = false;
         say("HELLO NAK");
         return;
     }
-    own_.isGreeted = true;
+    own_.greeted = true;
     own_.protocol = words[2];
     say(fmt::format("HELLO ACK {} {}", shared_.settings.name, PROTOCOL));
 }
@@ -89,7 +89,7 @@ void Session::get(const rsh::Words &words) {
 }
 
 void Session::set(const rsh::Words &words) {
-    if (words.empty() || !own_.isGreeted) {
+    if (words.empty() || !own_.greeted) {
         say("SET NAK");
         return;
     }
@@ -103,7 +103,7 @@ void Session::set(const rsh::Words &words) {
 }
 
 void Session::shut_down() {
-    if (!own_.isGreeted || !own_.isEnabled) {
+    if (!own_.greeted || !own_.isEnabled) {
         refuse("SHUTDOWN", "Connection must be 'ENABLED' for SHUTDOWN");
         return;
     }

@@ -16,7 +16,7 @@ namespace mw::schedule {
 
 /// What a connection has set for itself.
 struct OwnState {
-    bool isGreeted = false;  ///< HELLO with the right password
+    bool greeted = false;    ///< HELLO with the right password
     bool isEnabled = false;  ///< may command the queue
     bool isEchoing = true;
     bool isVerbose = false;

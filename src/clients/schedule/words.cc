@@ -63,8 +63,8 @@ const char *text_of(QueueMode mode) {
     return "ERROR";
 }
 
-const char *on_off(bool isOn) {
-    return isOn ? "ON" : "OFF";
+const char *on_off(bool on) {
+    return on ? "ON" : "OFF";
 }
 
 Answer one(std::string line) {
@@ -154,19 +154,19 @@ constexpr Question QUESTIONS[] = {
 
 template <bool OwnState::*SETTING>
 Result<> switch_own(const Said &said) {
-    const auto isOn = rsh::on_or_off(word(said, 0));
-    if (!isOn.has_value()) {
-        return std::unexpected(isOn.error());
+    const auto on = rsh::on_or_off(word(said, 0));
+    if (!on.has_value()) {
+        return std::unexpected(on.error());
     }
-    said.own.*SETTING = *isOn;
+    said.own.*SETTING = *on;
     return {};
 }
 
 Result<> enable(const Said &said) {
     said.own.isEnabled = !rsh::isSameWord(word(said, 0), "OFF") &&
                          rsh::isSamePassword(word(said, 0), said.shared.settings.enable_password);
-    const bool isMeant = said.own.isEnabled || rsh::isSameWord(word(said, 0), "OFF");
-    return isMeant ? Result<>{} : fail("the password is wrong");
+    const bool is_meant = said.own.isEnabled || rsh::isSameWord(word(said, 0), "OFF");
+    return is_meant ? Result<>{} : fail("the password is wrong");
 }
 
 Result<> set_comm_mode(const Said &said) {

@@ -136,10 +136,10 @@ Role Access::role_of(const Credentials &shown, int port) const {
     if (everybody_ != Role::NOBODY) {
         return everybody_;
     }
-    const bool isLocal = protection_ == Protection::LOCAL;
-    return isLocal && shown.isOfServerUser ? Role::CONFIGURE
-           : isLocal                       ? std::max(Role::STATUS, role_of_token(shown, port))
-                                           : role_of_token(shown, port);
+    const bool is_local = protection_ == Protection::LOCAL;
+    return is_local && shown.isOfServerUser ? Role::CONFIGURE
+           : is_local                       ? std::max(Role::STATUS, role_of_token(shown, port))
+                                            : role_of_token(shown, port);
 }
 
 Role Access::role_of_token(const Credentials &shown, int port) const {

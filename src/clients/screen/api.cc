@@ -84,15 +84,15 @@ Role Api::needed_role(const Request &request) const {
     if (request.method == "GET") {
         return std::ranges::find(OF_STATUS, request.path) != OF_STATUS.end() ? Role::STATUS : Role::VIEW;
     }
-    const bool isHal = request.path.starts_with(HAL);
-    if (!isHal && !request.path.starts_with(SCOPE)) {
+    const bool is_hal = request.path.starts_with(HAL);
+    if (!is_hal && !request.path.starts_with(SCOPE)) {
         return Role::OPERATE;
     }
     // A value of HAL can move anything, in any state of the machine; values of a panel are for
     // operators.
-    const bool isOfPanel =
-        isHal && std::ranges::find(operable_, request.path.substr(HAL.size())) != operable_.end();
-    return isOfPanel ? Role::OPERATE : Role::CONFIGURE;
+    const bool of_panel =
+        is_hal && std::ranges::find(operable_, request.path.substr(HAL.size())) != operable_.end();
+    return of_panel ? Role::OPERATE : Role::CONFIGURE;
 }
 
 bool Api::isKeepsake(const Request &request, Reply &reply) {
@@ -117,7 +117,7 @@ bool Api::isKeepsake(const Request &request, Reply &reply) {
 void Api::tick() {
     const std::int64_t now_ns = clock_();
     screens_.tick(now_ns);
-    if (now_ns >= next_watch_ns_ && !isHalRead_) {
+    if (now_ns >= next_watch_ns_ && !hal_read_) {
         next_watch_ns_ = now_ns + WATCH_NS;
         look_at_hal();
     }
@@ -135,7 +135,7 @@ void Api::look_at_hal() {
     if (names.empty() && setup_.dialogs.empty() && hasHalBegun_) {
         return;
     }
-    isHalRead_ = true;
+    hal_read_ = true;
     const auto news = std::make_shared<HalService::News>();
     threads_.hal.run(
         [this, news, names = std::move(names)] {
@@ -143,8 +143,8 @@ void Api::look_at_hal() {
             return Response{};
         },
         [this, news](const Response &) {
-            isHalRead_ = false;
-            hasHalBegun_ = news->hasBegun;
+            hal_read_ = false;
+            hasHalBegun_ = news->has_begun;
             screens_.tell_values(news->values);
             screens_.tell_questions(news->questions);
             for (const std::string &note : news->notes) {
@@ -183,8 +183,8 @@ void Api::answer(const Request &request, Reply reply) {
         reply(not_allowed(needed));
         return;
     }
-    const bool isOfHal = path == "/api/hal" || path.starts_with(HAL) || path.starts_with(SCOPE);
-    if (isOfHal || path == "/api/questions" || path == INPUTS) {
+    const bool of_hal = path == "/api/hal" || path.starts_with(HAL) || path.starts_with(SCOPE);
+    if (of_hal || path == "/api/questions" || path == INPUTS) {
         answer_hal(request, std::move(reply));
         return;
     }
@@ -264,9 +264,9 @@ void Api::write_file(const Request &request, const std::string &name, Reply repl
                                       "add them"));
         return;
     }
-    const bool isPiece = request.query.contains("offset") || request.query.contains("size");
-    const auto offset = isPiece ? number(request, "offset") : 0;
-    const auto size = isPiece ? number(request, "size") : request.body.size();
+    const bool is_piece = request.query.contains("offset") || request.query.contains("size");
+    const auto offset = is_piece ? number(request, "offset") : 0;
+    const auto size = is_piece ? number(request, "size") : request.body.size();
     if (!offset.has_value() || !size.has_value()) {
         reply(error_response(400, "a piece of a file needs ?offset=N&size=TOTAL, whole numbers of bytes"));
         return;
@@ -326,9 +326,9 @@ Response Api::answer_times(const Request &request) {
 std::optional<std::string> Api::made_of(const std::string &name) const {
     const std::string lower = to_lower(name);
     const auto &all = setup_.facts.filters.extensions;
-    const bool isFiltered =
+    const bool filtered =
         std::ranges::any_of(all, [&](const std::string &one) { return lower.ends_with(one); });
-    return isFiltered ? std::optional(setup_.facts.filters.folder + '/' + name + ".ngc") : std::nullopt;
+    return filtered ? std::optional(setup_.facts.filters.folder + '/' + name + ".ngc") : std::nullopt;
 }
 
 Result<std::string> Api::program_of(const std::string &name) const {

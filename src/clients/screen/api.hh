@@ -96,7 +96,7 @@ class Api final : public Application {
     std::vector<std::string> operable_;  ///< names of HAL that operators set by panels
     HalService hal_;                     ///< used by jobs alone
     bool hasHalBegun_ = false;           ///< what waits for HAL is done
-    bool isHalRead_ = false;             ///< at this moment
+    bool hal_read_ = false;              ///< at this moment
     std::int64_t next_watch_ns_ = 0;
 };
 

@@ -35,7 +35,7 @@ void Browser::leave() {
     client_.reset();
     shared_ = nullptr;
     jogs_.clear();
-    hasWhole_ = false;
+    has_whole_ = false;
 }
 
 void Browser::stop_jogs() {
@@ -95,8 +95,8 @@ void Browser::carry_out(const Ask &ask, std::int64_t now_ns) {
                "is gone; jog by increments without one");
         return;
     }
-    const bool isFollowed = followed_.size() < MOST_FOLLOWED;
-    if (!isStop && !isFollowed) {
+    const bool followed = followed_.size() < MOST_FOLLOWED;
+    if (!isStop && !followed) {
         refuse(ask.id, "as many commands as can be are under way");
         return;
     }
@@ -114,7 +114,7 @@ void Browser::carry_out(const Ask &ask, std::int64_t now_ns) {
         return;
     }
     note_jog(command);
-    if (!isFollowed) {  // never the oldest: what takes long is what a person waits for
+    if (!followed) {  // never the oldest: what takes long is what a person waits for
         send_(outcome_text(ask.id, {messages::Progress::FAILED,
                                     "the command was sent; too many others are active to follow it"}));
         return;
@@ -153,20 +153,20 @@ void Browser::follow(std::int64_t now_ns) {
     std::erase_if(followed_, [this, now_ns](Followed &one) {
         const client::Outcome outcome =
             one.client != nullptr ? one.client->outcome(one.serial) : client_->outcome(one.serial);
-        const bool isOver = outcome.progress != messages::Progress::STARTED;
-        const bool isToBeTold = isOver || (!one.isTold && now_ns - one.since_ns >= SOON_NS);
-        if (isToBeTold) {
+        const bool over = outcome.progress != messages::Progress::STARTED;
+        const bool to_be_told = over || (!one.isTold && now_ns - one.since_ns >= SOON_NS);
+        if (to_be_told) {
             one.isTold = true;
             counts_.refused += outcome.progress == messages::Progress::REFUSED ? 1 : 0;
             send_(outcome_text(one.id, outcome));
         }
-        return isOver;
+        return over;
     });
 }
 
 void Browser::tell_status(const messages::MachineStatus &status) {
-    if (!hasWhole_) {
-        hasWhole_ = true;
+    if (!has_whole_) {
+        has_whole_ = true;
         unread_ = 0;
         ++counts_.statuses;
         send_(status_text(delta_.whole(status), true));

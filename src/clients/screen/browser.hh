@@ -57,7 +57,7 @@ class Browser {
     void attach(client::Client &shared) { shared_ = &shared; }
     bool isAttached() const { return shared_ != nullptr; }
     /// The next status is a whole one.
-    void forget_status() { hasWhole_ = false; }
+    void forget_status() { has_whole_ = false; }
     /// It is gone: what was under way has failed.
     void leave();
     bool isJoined() const { return client_.has_value(); }
@@ -106,7 +106,7 @@ class Browser {
     client::Client *shared_ = nullptr;
     std::optional<client::Client> client_;
     StatusDelta delta_;
-    bool hasWhole_ = false;
+    bool has_whole_ = false;
     PartMask unread_ = 0;
     std::vector<std::string> watched_;
     std::map<std::string, std::string> told_values_;

@@ -68,36 +68,36 @@ const std::vector<std::size_t> &Dialogs::look() {
         const std::int32_t value = asker.value();
         std::size_t place = 0;
         const DialogFacts *const now = facts_of(asker, value, place);
-        const bool isNew = value != asker.last;
+        const bool is_new = value != asker.last;
         asker.last = value;
-        if (isNew && now != nullptr && now->kind.isStatus) {
+        if (is_new && now != nullptr && now->kind.isStatus) {
             notes_.push_back(now->title.empty() ? now->text : now->title + ": " + now->text);
         }
         asker.answered = value == asker.answered ? value : 0;
-        const bool isOpen = now != nullptr && asker.answered == 0;
-        const bool isPerson = isOpen && (now->kind.isOk || now->kind.isYesNo);
-        if (isNew && isPerson) {
+        const bool is_open = now != nullptr && asker.answered == 0;
+        const bool is_person = is_open && (now->kind.isOk || now->kind.isYesNo);
+        if (is_new && is_person) {
             asker.response = false;
         }
-        asker.isAsking = isPerson;
-        asker.waiting = isPerson;
+        asker.isAsking = is_person;
+        asker.waiting = is_person;
         if (value != 0 && now == nullptr) {
-            if (isNew) {
+            if (is_new) {
                 notes_.push_back(std::string(COMPONENT) + '.' + asker.id + " is " + std::to_string(value) +
                                  ", and [DISPLAY] has no MULTIMESSAGE with this number");
             }
             set_zero(asker);  // HAL does not wait for an answer to a question that no one reads
         }
-        if (isPerson || (isOpen && now->kind.isLasting)) {
+        if (is_person || (is_open && now->kind.isLasting)) {
             asked_.push_back(place);
-        } else if (isOpen && now->kind.isStatus) {
+        } else if (is_open && now->kind.isStatus) {
             set_zero(asker);  // told
         }
     }
     return asked_;
 }
 
-bool Dialogs::answer(const std::string &id, std::int32_t number, bool isYes) {
+bool Dialogs::answer(const std::string &id, std::int32_t number, bool is_yes) {
     const auto found = std::ranges::find(askers_, id, &RequestOrigin::id);
     if (hal_ == nullptr || found == askers_.end() || !found->isAsking) {
         return false;
@@ -106,7 +106,7 @@ bool Dialogs::answer(const std::string &id, std::int32_t number, bool isYes) {
     if (found->isNumbered && value != number) {
         return false;  // it asks something else by now
     }
-    found->response = isYes;
+    found->response = is_yes;
     found->isAsking = false;
     found->waiting = false;
     found->answered = value;

@@ -64,13 +64,13 @@ Json field_document(const messages::Field &field) {
     } else if (type.isArray) {
         json["count"] = type.count;
     }
-    const bool isText = type.kind == messages::Kind::TEXT || type.kind == messages::Kind::FIXED_TEXT;
+    const bool is_text = type.kind == messages::Kind::TEXT || type.kind == messages::Kind::FIXED_TEXT;
     if (std::isfinite(field.range.min)) {
         json["min"] = field.range.min;
     }
     if (std::isfinite(field.range.max)) {
         json["max"] = field.range.max;
-    } else if (isText) {
+    } else if (is_text) {
         json["max"] = messages::longest_text(field);
     }
     json["unit"] = field.unit;
@@ -99,8 +99,8 @@ Json declarations_document(std::span<const messages::Declaration *const> declara
 }
 
 Result<Watch> read_watch(const Json &names) {
-    const bool isList = names.is_array() && names.size() <= Watch::MOST;
-    if (!isList || !std::ranges::all_of(names, [](const Json &name) { return name.is_string(); })) {
+    const bool is_list = names.is_array() && names.size() <= Watch::MOST;
+    if (!is_list || !std::ranges::all_of(names, [](const Json &name) { return name.is_string(); })) {
         return fail("what is watched is a list of at most " + std::to_string(Watch::MOST) + " names");
     }
     return Watch{names.get<std::vector<std::string>>()};
@@ -260,11 +260,11 @@ std::optional<std::vector<std::string>> read_lines(std::string_view text, std::s
     if (!json.is_object() || lines == json.end() || !lines->is_array() || lines->size() > most) {
         return std::nullopt;
     }
-    const bool areLines = std::ranges::all_of(*lines, [](const Json &line) {
+    const bool are_lines = std::ranges::all_of(*lines, [](const Json &line) {
         return line.is_string() &&
                line.get_ref<const std::string &>().find_first_of("\r\n") == std::string::npos;
     });
-    return areLines ? std::optional(lines->get<std::vector<std::string>>()) : std::nullopt;
+    return are_lines ? std::optional(lines->get<std::vector<std::string>>()) : std::nullopt;
 }
 
 bool isObject(std::string_view json) {
@@ -296,7 +296,7 @@ std::string time_sum_document(const TimeSum &sum) {
     Json slowest = Json::array();
     for (const SlowSpot &spot : sum.slowest) {
         slowest.push_back({{"file", spot.file},
-                           {"is_in_program", spot.isInProgram},
+                           {"is_in_program", spot.in_program},
                            {"line", spot.line},
                            {"lost_s", spot.lost_s},
                            {"reason", spot.reason}});
@@ -334,8 +334,8 @@ Result<std::variant<Ping, Ask, Watch>> read_text(std::string_view text) {
     const auto id = json.find("id");
     const auto command = json.find("command");
     const auto sent = json.find("sent");
-    const bool isDated = sent != json.end() && sent->is_number() && std::isfinite(sent->get<double>());
-    if (id == json.end() || command == json.end() || json.size() != (isDated ? 3 : 2)) {
+    const bool dated = sent != json.end() && sent->is_number() && std::isfinite(sent->get<double>());
+    if (id == json.end() || command == json.end() || json.size() != (dated ? 3 : 2)) {
         return fail(R"(a text is {"ping": number}, {"watch": [names]} or {"id": number, "command": {...}}, )"
                     R"(with "sent": number)");
     }
@@ -343,14 +343,14 @@ Result<std::variant<Ping, Ask, Watch>> read_text(std::string_view text) {
         return fail("the id of a command is a whole number from 0 to 2^53");
     }
     return Ask{id->get<std::uint64_t>(), messages::command_from_json(text_of(*command)),
-               isDated ? std::optional(sent->get<double>()) : std::nullopt};
+               dated ? std::optional(sent->get<double>()) : std::nullopt};
 }
 
 std::optional<std::string> token_of_login(std::string_view text) {
     const Json json = messages::parse_json(text);
     const auto token = json.is_object() ? json.find("token") : json.end();
-    const bool isToken = json.is_object() && token != json.end() && token->is_string();
-    return isToken ? std::optional(token->get<std::string>()) : std::nullopt;
+    const bool is_token = json.is_object() && token != json.end() && token->is_string();
+    return is_token ? std::optional(token->get<std::string>()) : std::nullopt;
 }
 
 std::string hello_text(const Hello &hello) {
@@ -406,16 +406,16 @@ std::string note_text(std::string_view note) {
 
 std::string values_text(const std::map<std::string, std::string> &values) {
     std::string text = R"({"hal":{)";
-    bool isFirst = true;
+    bool is_first = true;
     for (const auto &[name, value] : values) {
-        text += (isFirst ? "" : ",") + text_of(name) + ':' + value;
-        isFirst = false;
+        text += (is_first ? "" : ",") + text_of(name) + ':' + value;
+        is_first = false;
     }
     return text + "}}";
 }
 
-std::string status_text(std::string_view status, bool isWhole) {
-    return R"({"status":)" + std::string(status) + (isWhole ? R"(,"full":true})" : "}");
+std::string status_text(std::string_view status, bool whole) {
+    return R"({"status":)" + std::string(status) + (whole ? R"(,"full":true})" : "}");
 }
 
 }  // namespace mw::screen

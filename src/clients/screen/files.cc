@@ -92,9 +92,9 @@ Response file_response(const std::string &path, std::string type, const std::str
         return error_response(503, "too many files are open: ask again later");
     }
     struct stat facts{};
-    const bool isFile = ::fstat(fd, &facts) == 0 && S_ISREG(facts.st_mode);
-    auto source = std::make_shared<FileBody>(fd, isFile ? static_cast<std::uint64_t>(facts.st_size) : 0);
-    if (!isFile) {
+    const bool is_file = ::fstat(fd, &facts) == 0 && S_ISREG(facts.st_mode);
+    auto source = std::make_shared<FileBody>(fd, is_file ? static_cast<std::uint64_t>(facts.st_size) : 0);
+    if (!is_file) {
         return error_response(404, missing);
     }
     if (source->size() > MOST_READ) {
@@ -148,10 +148,10 @@ Result<std::string> ProgramFiles::path_of(const std::string &name) const {
                     std::to_string(LONGEST_NAME) + " bytes");
     }
     const std::string lower = to_lower(name);
-    const bool isProgram = std::ranges::any_of(extensions_, [&](const std::string &one) {
+    const bool is_program = std::ranges::any_of(extensions_, [&](const std::string &one) {
         return lower.ends_with(one) && lower.size() > one.size();
     });
-    if (!isProgram) {
+    if (!is_program) {
         std::string all;
         for (const std::string &one : extensions_) {
             all += ' ' + one;

@@ -235,10 +235,10 @@ void FirstSteps::start(const std::string &body, Reply reply) {
         [this, body, ini] {
             const Json json = object_of(body);
             const std::string wanted = json.is_object() ? text_at(json, "ini") : "";
-            const bool isFound = std::ranges::any_of(found_, [&](const ChoiceGroup &group) {
+            const bool is_found = std::ranges::any_of(found_, [&](const ChoiceGroup &group) {
                 return std::ranges::find(group.choices, wanted, &Choice::ini) != group.choices.end();
             });
-            if (!isFound && std::ranges::find(made_, wanted, &FirstStepsSetup::Made::ini) == made_.end()) {
+            if (!is_found && std::ranges::find(made_, wanted, &FirstStepsSetup::Made::ini) == made_.end()) {
                 return error_response(404, "only what is shown can be started");
             }
             const auto prepared = setup_.prepare(wanted);
@@ -249,9 +249,9 @@ void FirstSteps::start(const std::string &body, Reply reply) {
             return document(Json{{"ini", prepared->ini}, {"port", prepared->port}});
         },
         [this, ini, reply = std::move(reply)](Response response) {
-            const bool isChosen = response.status == 200;
+            const bool is_chosen = response.status == 200;
             reply(std::move(response));
-            if (isChosen) {
+            if (is_chosen) {
                 chosen_ = *ini;
             }
         });

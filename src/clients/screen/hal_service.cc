@@ -128,10 +128,9 @@ Result<CaptureRequest> request_of(const Json &json) {
     const auto trigger_name = member<std::string>(json, "trigger_name", "");
     const auto level = member<double>(json, "level", 0.5),
                pretrigger = member<double>(json, "pretrigger", 0.0);
-    const bool isWhole = names.has_value() && samples.has_value() && every.has_value() &&
-                         trigger.has_value() && trigger_name.has_value() && level.has_value() &&
-                         pretrigger.has_value();
-    if (!isWhole) {
+    const bool whole = names.has_value() && samples.has_value() && every.has_value() && trigger.has_value() &&
+                       trigger_name.has_value() && level.has_value() && pretrigger.has_value();
+    if (!whole) {
         return fail(
             "a record wants names, samples, every, trigger, trigger_name, level, pretrigger in their types");
     }
@@ -164,7 +163,7 @@ hal::Host *HalService::host() {
     if (host_ != nullptr && host_->hal().host_end().has_value()) {
         capture_.reset();
         dialogs_.leave();
-        hasToldFailure_ = false;
+        has_told_failure_ = false;
         host_.reset();
     }
     if (host_ == nullptr) {
@@ -233,12 +232,12 @@ Response HalService::set(const std::string &name, std::string_view body) {
         return error_response(400, R"(a value is set by {"value": "..."})");
     }
     hal::Hal &hal = joined->hal();
-    const bool isSignal = !hal.hasParam(name) && !hal.hasPin(name) && hal.hasSignal(name);
+    const bool is_signal = !hal.hasParam(name) && !hal.hasPin(name) && hal.hasSignal(name);
     const auto put = [&](const std::string &text) {
-        return isSignal ? hal.set_signal(name, text) : hal.set(name, text);
+        return is_signal ? hal.set_signal(name, text) : hal.set(name, text);
     };
     const auto pulse_ms = member<std::uint32_t>(json, "pulse_ms", 0);
-    const auto before = isSignal ? hal.get_signal(name) : hal.get(name);
+    const auto before = is_signal ? hal.get_signal(name) : hal.get(name);
     if (!pulse_ms.has_value() || *pulse_ms > MOST_PULSE_MS) {
         return error_response(400, "a pulse is at most " + std::to_string(MOST_PULSE_MS) + " ms long");
     }
@@ -271,10 +270,10 @@ std::map<std::string, std::string> HalService::read(const std::vector<std::strin
 
 void HalService::look_at_dialogs(News &news) {
     hal::Host *const joined = dialogs_.facts().empty() ? nullptr : host();
-    if (joined != nullptr && !dialogs_.isReady() && !hasToldFailure_) {
+    if (joined != nullptr && !dialogs_.isReady() && !has_told_failure_) {
         const auto begun = dialogs_.begin(joined->hal());
         if (!begun.has_value()) {
-            hasToldFailure_ = true;
+            has_told_failure_ = true;
             news.notes.push_back("[DISPLAY]MESSAGE_PINNAME: " + begun.error().str());
         }
     }
@@ -307,7 +306,7 @@ HalService::News HalService::look(const std::vector<std::string> &names) {
             news.notes.push_back(std::move(note));
         }
     }
-    news.hasBegun = begin_ == nullptr;
+    news.has_begun = begin_ == nullptr;
     return news;
 }
 
@@ -319,8 +318,8 @@ Response HalService::answer(std::string_view body) {
     if (!id.has_value() || !number.has_value()) {
         return error_response(400, R"(an answer is {"id": "...", "number": 0, "yes": true})");
     }
-    const bool isTaken = dialogs_.answer(*id, static_cast<std::int32_t>(*number), json["yes"].get<bool>());
-    return isTaken ? document(Json::object()) : error_response(409, "this is asked no more");
+    const bool taken = dialogs_.answer(*id, static_cast<std::int32_t>(*number), json["yes"].get<bool>());
+    return taken ? document(Json::object()) : error_response(409, "this is asked no more");
 }
 
 Response HalService::state() const {

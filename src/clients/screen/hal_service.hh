@@ -45,7 +45,7 @@ class HalService {
         std::map<std::string, std::string> values;
         std::string questions;           ///< a JSON list of what a person is asked
         std::vector<std::string> notes;  ///< for the operator
-        bool hasBegun = false;           ///< `begin` has been called, or there is none
+        bool has_begun = false;          ///< `begin` has been called, or there is none
     };
     News look(const std::vector<std::string> &names);
     /// POST {"id": "door", "number": 0, "yes": true}: a person's answer.
@@ -73,7 +73,7 @@ class HalService {
     std::string thread_;  ///< of capture_, as it was asked for
     std::string reason_;
     Dialogs dialogs_;
-    bool hasToldFailure_ = false;  ///< that the pins of dialogs_ cannot be made
+    bool has_told_failure_ = false;  ///< that the pins of dialogs_ cannot be made
 };
 
 }  // namespace mw::screen

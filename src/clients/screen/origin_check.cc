@@ -7,16 +7,16 @@
 
 namespace mw::screen {
 
-OriginCheck::OriginCheck(bool hasTls, int port, const std::vector<std::string> &names)
-    : scheme_(hasTls ? "https://" : "http://"), port_(":" + std::to_string(port)),
-      isPortPreset_(port == (hasTls ? 443 : 80)), names_(names) {}
+OriginCheck::OriginCheck(bool has_tls, int port, const std::vector<std::string> &names)
+    : scheme_(has_tls ? "https://" : "http://"), port_(":" + std::to_string(port)),
+      isPortPreset_(port == (has_tls ? 443 : 80)), names_(names) {}
 
 bool OriginCheck::isOurs(std::string_view host, std::string_view address) const {
     const std::string asked = to_lower(host);
     const auto isNamed = [&](std::string_view name) {
-        const bool isStart = !name.empty() && asked.starts_with(name);
-        const std::string_view rest = isStart ? std::string_view(asked).substr(name.size()) : "";
-        return isStart && (rest == port_ || (rest.empty() && isPortPreset_));
+        const bool is_start = !name.empty() && asked.starts_with(name);
+        const std::string_view rest = is_start ? std::string_view(asked).substr(name.size()) : "";
+        return is_start && (rest == port_ || (rest.empty() && isPortPreset_));
     };
     return isNamed(address) || std::ranges::any_of(names_, isNamed);
 }
@@ -28,11 +28,11 @@ Result<> OriginCheck::check(const RequestOrigin &asker, std::string_view path,
         return fail("'" + printable(asker.host) + "' is no name of this server: open " + scheme_ +
                     std::string(known) + port_);
     }
-    const bool isOwnPage = asker.origin.empty() || (asker.origin.starts_with(scheme_) &&
-                                                    isOurs(asker.origin.substr(scheme_.size()), address));
-    const bool isOwnSite = asker.site.empty() || asker.site == "same-origin" || asker.site == "none" ||
-                           !path.starts_with("/api/");
-    return isOwnPage && isOwnSite ? Result<>{} : fail("pages of other sites may ask nothing here");
+    const bool own_page = asker.origin.empty() || (asker.origin.starts_with(scheme_) &&
+                                                   isOurs(asker.origin.substr(scheme_.size()), address));
+    const bool own_site = asker.site.empty() || asker.site == "same-origin" || asker.site == "none" ||
+                          !path.starts_with("/api/");
+    return own_page && own_site ? Result<>{} : fail("pages of other sites may ask nothing here");
 }
 
 bool RateLimit::take(std::int64_t now_ns) {

@@ -37,14 +37,14 @@ Place along(const Place &a, double k, const Place &b) {
 }  // namespace
 
 bool PathChunks::take(std::span<const gcode::PreviewEvent> events) {
-    const bool isFirst = count_ == 0;
+    const bool is_first = count_ == 0;
     for (const gcode::PreviewEvent &event : events) {
         add(event);
         if (points_.size() >= POINTS_PER_CHUNK && !send()) {
             return false;
         }
     }
-    return isFirst ? send() : isRead_;
+    return is_first ? send() : is_read_;
 }
 
 void PathChunks::add(const gcode::PreviewEvent &event) {
@@ -130,9 +130,9 @@ void PathChunks::add_arc(const gcode::PreviewEvent &event) {
             at = along(at, scale * std::sin(angle), side);
             geometry::Pose pose;
             for (int axis = 0; axis < geometry::AXIS_COUNT; ++axis) {
-                const bool isOfArc = axis >= first && axis < first + 3;
-                pose[axis] = isOfArc ? at[static_cast<std::size_t>(axis - first)]
-                                     : event.start[axis] + part * (event.end[axis] - event.start[axis]);
+                const bool of_arc = axis >= first && axis < first + 3;
+                pose[axis] = of_arc ? at[static_cast<std::size_t>(axis - first)]
+                                    : event.start[axis] + part * (event.end[axis] - event.start[axis]);
             }
             add_point(pose, event, kind);
         }
@@ -144,16 +144,16 @@ void PathChunks::add_arc(const gcode::PreviewEvent &event) {
 void PathChunks::note_range(const gcode::PreviewEvent &event, std::uint8_t kind) {
     constexpr double S_PER_MIN = 60;
     const geometry::MoveSettings &settings = event.settings;
-    const bool isPerTurn = settings.feed_per_revolution > 0 && event.spindle_rpm > 0;
+    const bool is_per_turn = settings.feed_per_revolution > 0 && event.spindle_rpm > 0;
     const double feed =
-        isPerTurn ? settings.feed_per_revolution * event.spindle_rpm / S_PER_MIN : settings.feed;
+        is_per_turn ? settings.feed_per_revolution * event.spindle_rpm / S_PER_MIN : settings.feed;
     if (kind != static_cast<std::uint8_t>(Move::RAPID)) {
         range_.feed = static_cast<float>(feed);
     }
     range_.first = count_;
-    const bool isSame =
+    const bool same =
         !ranges_.empty() && ranges_.back().feed == range_.feed && ranges_.back().tool == range_.tool;
-    if (!isSame) {
+    if (!same) {
         ranges_.push_back(range_);
         ++unsent_;
     }
@@ -164,10 +164,10 @@ void PathChunks::add_point(const geometry::Pose &pose, const gcode::PreviewEvent
     const auto put = [&](std::array<float, 3> &to, const Place &place) {
         for (std::size_t i = 0; i < place.size(); ++i) {
             to[i] = static_cast<float>(place[i]);
-            low_[i] = isBounded_ ? std::min(low_[i], to[i]) : to[i];
-            high_[i] = isBounded_ ? std::max(high_[i], to[i]) : to[i];
+            low_[i] = bounded_ ? std::min(low_[i], to[i]) : to[i];
+            high_[i] = bounded_ ? std::max(high_[i], to[i]) : to[i];
         }
-        isBounded_ = true;
+        bounded_ = true;
     };
     if (look_.foam.has_value()) {
         put(point.place, {pose[geometry::AXIS_X], pose[geometry::AXIS_Y], look_.foam->z});
@@ -181,12 +181,12 @@ void PathChunks::add_point(const geometry::Pose &pose, const gcode::PreviewEvent
     ++count_;
 }
 
-std::string PathChunks::moves(bool isOfWire) const {
+std::string PathChunks::moves(bool of_wire) const {
     std::string body;
     body.reserve(4 + points_.size() * 17 + 4);
     append(body, static_cast<std::uint32_t>(points_.size()));
     for (const Point &point : points_) {
-        for (const float coordinate : isOfWire ? point.wire : point.place) {
+        for (const float coordinate : of_wire ? point.wire : point.place) {
             append(body, coordinate);
         }
     }
@@ -200,8 +200,8 @@ std::string PathChunks::moves(bool isOfWire) const {
 }
 
 bool PathChunks::send() {
-    if (points_.size() < 2 || !isRead_) {
-        return isRead_;
+    if (points_.size() < 2 || !is_read_) {
+        return is_read_;
     }
     if (unsent_ > 0) {
         std::string body;
@@ -213,19 +213,19 @@ bool PathChunks::send() {
         }
         ranges_.erase(ranges_.begin(), ranges_.end() - 1);  // the active one
         unsent_ = 0;
-        isRead_ = push_(chunk(Chunk::RANGES, std::move(body), '\0'));
+        is_read_ = push_(chunk(Chunk::RANGES, std::move(body), '\0'));
     }
-    isRead_ = isRead_ && push_(chunk(Chunk::MOVES, moves(false), '\0'));
+    is_read_ = is_read_ && push_(chunk(Chunk::MOVES, moves(false), '\0'));
     if (look_.foam.has_value()) {
-        isRead_ = isRead_ && push_(chunk(Chunk::WIRES, moves(true), '\0'));
+        is_read_ = is_read_ && push_(chunk(Chunk::WIRES, moves(true), '\0'));
     }
     points_.erase(points_.begin(), points_.end() - 1);
-    return isRead_;
+    return is_read_;
 }
 
 void PathChunks::error(std::string_view text) {
-    if (isRead_) {
-        isRead_ = push_(chunk(Chunk::ERROR, std::string(text), ' '));
+    if (is_read_) {
+        is_read_ = push_(chunk(Chunk::ERROR, std::string(text), ' '));
     }
 }
 
@@ -241,8 +241,8 @@ void PathChunks::end(std::uint32_t lines) {
     }
     append(counts, lines);
     append(counts, count_);
-    isRead_ = push_(chunk(Chunk::BOUNDS, std::move(bounds), '\0')) &&
-              push_(chunk(Chunk::END, std::move(counts), '\0'));
+    is_read_ = push_(chunk(Chunk::BOUNDS, std::move(bounds), '\0')) &&
+               push_(chunk(Chunk::END, std::move(counts), '\0'));
 }
 
 }  // namespace mw::screen

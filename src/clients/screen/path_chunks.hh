@@ -55,7 +55,7 @@ class PathChunks {
     void add_point(const geometry::Pose &pose, const gcode::PreviewEvent &event, std::uint8_t kind);
     void note_range(const gcode::PreviewEvent &event, std::uint8_t kind);
     bool send();
-    std::string moves(bool isOfWire) const;
+    std::string moves(bool of_wire) const;
 
     std::function<bool(std::string)> push_;
     double unit_mm_;
@@ -65,8 +65,8 @@ class PathChunks {
     std::size_t unsent_ = 0;     ///< of them, at the end
     Range range_;                ///< that holds now
     std::uint32_t count_ = 0;
-    bool isRead_ = true;
-    bool isBounded_ = false;
+    bool is_read_ = true;
+    bool bounded_ = false;
     std::array<float, 3> low_{}, high_{};
 };
 

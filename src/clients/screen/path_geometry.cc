@@ -64,13 +64,13 @@ bool PathGeometry::isTurnedBetween(const geometry::Pose &from, const geometry::P
 
 bool PathGeometry::isPlain() const {
     // A turn of nothing, done before all translations, is none.
-    bool hasMoved = false;
+    bool has_moved = false;
     for (const Step &step : steps_) {
-        const bool isTurn = geometry::isAngular(step.axis);
-        if ((isTurn && hasMoved) || (!isTurn && (step.sign < 0 || step.axis >= geometry::AXIS_U))) {
+        const bool is_turn = geometry::isAngular(step.axis);
+        if ((is_turn && has_moved) || (!is_turn && (step.sign < 0 || step.axis >= geometry::AXIS_U))) {
             return false;
         }
-        hasMoved = hasMoved || !isTurn;
+        has_moved = has_moved || !is_turn;
     }
     return true;
 }

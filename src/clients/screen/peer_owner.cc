@@ -120,10 +120,10 @@ Result<SocketFacts> SocketFinder::operator()(const Endpoint &client, const Endpo
 
 PeerOwner owner_of(const SocketFacts &socket, const Endpoint &client, const Endpoint &server,
                    std::uint32_t server_uid) {
-    const bool isItsSocket =
+    const bool its_socket =
         socket.own == client && socket.peer == server && socket.state == TCP_ESTABLISHED && socket.inode != 0;
-    const bool isTrusted = socket.uid == 0 || (socket.uid == server_uid && socket.uid != OVERFLOW_UID);
-    return isItsSocket && isTrusted ? PeerOwner::SERVER_USER : PeerOwner::OTHER;
+    const bool trusted = socket.uid == 0 || (socket.uid == server_uid && socket.uid != OVERFLOW_UID);
+    return its_socket && trusted ? PeerOwner::SERVER_USER : PeerOwner::OTHER;
 }
 
 }  // namespace mw::screen

@@ -31,7 +31,7 @@ Screens::Screens(Sockets &sockets, ScreensSetup setup)
     : sockets_(sockets), setup_(std::move(setup)), session_(random_name()) {}
 
 const messages::MachineStatus *Screens::status() const {
-    return watch_.has_value() && hasStatus_ ? &watch_->status() : nullptr;
+    return watch_.has_value() && has_status_ ? &watch_->status() : nullptr;
 }
 
 Result<messages::ToolTable> Screens::tools() {
@@ -148,14 +148,14 @@ void Screens::look_for_machine() {
         watch_.emplace(std::move(*client));
         watch_->rewind_messages(MOST_KEPT);  // also those that appeared before this server was started
         log("the machine is running");
-        hasStatus_ = false;
+        has_status_ = false;
     }
     for (const auto &[session, browser] : browsers_) {
-        const bool isNew = !browser->isAttached();
-        if (isNew) {
+        const bool is_new = !browser->isAttached();
+        if (is_new) {
             browser->attach(*watch_);
         }
-        if ((!browser->isJoined() && join(*browser)) || isNew) {
+        if ((!browser->isJoined() && join(*browser)) || is_new) {
             browser->tell(machine_up_text(browser->number()));
             browser->forget_status();
         }
@@ -178,7 +178,7 @@ void Screens::lose_machine(const std::string &reason) {
         }
     }
     watch_.reset();
-    hasStatus_ = false;
+    has_status_ = false;
     tools_.reset();
     kept_.clear();  // another machine counts its messages from 1
 }
@@ -263,12 +263,12 @@ void Screens::tell_silence() {
 }
 
 void Screens::tell_statuses() {
-    const bool isRead = watch_->read_status().has_value();
-    hasStatus_ = hasStatus_ || isRead;
-    if (hasStatus_) {
+    const bool is_read = watch_->read_status().has_value();
+    has_status_ = has_status_ || is_read;
+    if (has_status_) {
         tell_silence();
     }
-    if (!isRead) {
+    if (!is_read) {
         return;  // it has not begun, or has died, which the next look finds
     }
     const PartMask fresh = watch_->fresh_parts();

@@ -79,7 +79,7 @@ class Screens {
     std::string session_;                           ///< of this server: another one after its restart
     std::optional<client::Client> watch_;           ///< reads status and messages for all
     std::string reason_ = "no machine is running";  ///< why there is none
-    bool hasStatus_ = false;
+    bool has_status_ = false;
     std::uint64_t last_cycle_ = 0;              ///< of task, as read last
     std::int64_t last_advance_ns_ = 0;          ///< when that was new
     std::int64_t silence_told_ns_ = 0;          ///< 0: task is not silent

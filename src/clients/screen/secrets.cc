@@ -84,11 +84,11 @@ X509Ptr sign_new(EVP_PKEY *key, const std::vector<std::string> &names) {
         alternatives +=
             (alternatives.empty() ? "" : ",") + std::string(isAddress(name) ? "IP:" : "DNS:") + name;
     }
-    const bool isWhole = add_extension(made.get(), NID_basic_constraints, "critical,CA:FALSE") &&
-                         add_extension(made.get(), NID_ext_key_usage, "serverAuth") &&
-                         add_extension(made.get(), NID_subject_alt_name, alternatives) &&
-                         X509_sign(made.get(), key, EVP_sha256()) > 0;
-    return isWhole ? std::move(made) : nullptr;
+    const bool whole = add_extension(made.get(), NID_basic_constraints, "critical,CA:FALSE") &&
+                       add_extension(made.get(), NID_ext_key_usage, "serverAuth") &&
+                       add_extension(made.get(), NID_subject_alt_name, alternatives) &&
+                       X509_sign(made.get(), key, EVP_sha256()) > 0;
+    return whole ? std::move(made) : nullptr;
 }
 
 Result<std::string> fingerprint_of(const X509 *certificate) {
@@ -109,10 +109,10 @@ Result<Certificate> make(const std::string &certificate_path, const std::string 
     const Key key(EVP_EC_gen("P-256"));
     const X509Ptr made = key == nullptr ? nullptr : sign_new(key.get(), names);
     const Bio key_text(BIO_new(BIO_s_mem())), certificate_text(BIO_new(BIO_s_mem()));
-    const bool isWritten =
+    const bool is_written =
         made != nullptr && PEM_write_bio_X509(certificate_text.get(), made.get()) == 1 &&
         PEM_write_bio_PrivateKey(key_text.get(), key.get(), nullptr, nullptr, 0, nullptr, nullptr) == 1;
-    if (!isWritten) {
+    if (!is_written) {
         return fail("OpenSSL cannot make a certificate");
     }
     Certificate certificate{text_of(certificate_text.get()), text_of(key_text.get()), ""};
@@ -196,8 +196,8 @@ Result<Certificate> read_or_make_certificate(const std::string &folder,
         return std::unexpected(key.error());
     }
     std::error_code ignored;
-    const bool hasCertificate = fs::exists(certificate_path, ignored);
-    if (!key->has_value() && !hasCertificate) {
+    const bool has_certificate = fs::exists(certificate_path, ignored);
+    if (!key->has_value() && !has_certificate) {
         return make(certificate_path, key_path, names);
     }
     if (!key->has_value()) {

@@ -26,8 +26,8 @@ constexpr const char *PAGE_RULES = "default-src 'self'; style-src 'self' 'unsafe
 Server::Impl::Impl(const ServerOptions &options) : limits(options.limits), page_rules(PAGE_RULES) {
     page_rules += "; frame-src 'self'";
     for (const std::string &address : options.frames) {
-        const bool isPlain = address.find_first_of(";, \t\r\n") == std::string::npos;
-        page_rules += isPlain ? ' ' + address : "";
+        const bool plain = address.find_first_of(";, \t\r\n") == std::string::npos;
+        page_rules += plain ? ' ' + address : "";
     }
 }
 
@@ -131,10 +131,10 @@ void Server::Impl::accept(Listener &listener) {
         if (connections < limits.connections && door.connections < door.most_connections) {
             keep_to_ourselves(socket.native_handle());
             send_promptly(socket);
-            const bool isLocal = door.access.protection() == Protection::LOCAL;
-            const bool isForeign = isLocal && !isOfServerUser(socket);
-            if (!isForeign || door.foreign_connections < limits.foreign_connections) {
-                std::make_shared<Connection>(*this, door, std::move(socket), isLocal, isForeign)->begin();
+            const bool is_local = door.access.protection() == Protection::LOCAL;
+            const bool foreign = is_local && !isOfServerUser(socket);
+            if (!foreign || door.foreign_connections < limits.foreign_connections) {
+                std::make_shared<Connection>(*this, door, std::move(socket), is_local, foreign)->begin();
             }
         }
         accept(listener);
@@ -172,9 +172,9 @@ void Server::Impl::forget(SessionId id) {
     if (found == sessions.end()) {
         return;
     }
-    const bool wasOpen = found->second->isOpen();
+    const bool was_open = found->second->isOpen();
     sessions.erase(found);
-    if (wasOpen) {
+    if (was_open) {
         application->closed(id);
     }
 }

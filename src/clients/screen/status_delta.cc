@@ -56,13 +56,13 @@ class Comparison {
         if (type.kind == Kind::PARTS) {
             return fields(*type.parts, now, told);
         }
-        const bool isText = type.kind == Kind::TEXT || type.kind == Kind::FIXED_TEXT;
-        const bool isSame = isText ? messages::get_text(type, now) == messages::get_text(type, told)
-                                   : std::memcmp(now, told, type.bytes) == 0;
-        if (!isSame) {
+        const bool is_text = type.kind == Kind::TEXT || type.kind == Kind::FIXED_TEXT;
+        const bool same = is_text ? messages::get_text(type, now) == messages::get_text(type, told)
+                                  : std::memcmp(now, told, type.bytes) == 0;
+        if (!same) {
             text += messages::to_json(field, now);
         }
-        return !isSame;
+        return !same;
     }
 
     /// Whether any of its bytes lies in a part that is compared.

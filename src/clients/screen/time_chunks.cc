@@ -16,7 +16,7 @@ void TimeChunks::move(std::uint32_t point, std::uint32_t line, double seconds, d
 }
 
 void TimeChunks::send() {
-    if (moves_.empty() || !isRead_) {
+    if (moves_.empty() || !is_read_) {
         return;
     }
     std::string body;
@@ -28,19 +28,19 @@ void TimeChunks::send() {
         detail::append(body, move.speed);
     }
     moves_.clear();
-    isRead_ = push_(detail::chunk(detail::Chunk::TIMES, std::move(body), '\0'));
+    is_read_ = push_(detail::chunk(detail::Chunk::TIMES, std::move(body), '\0'));
 }
 
 void TimeChunks::error(std::string_view text) {
-    if (isRead_) {
-        isRead_ = push_(detail::chunk(detail::Chunk::ERROR, std::string(text), ' '));
+    if (is_read_) {
+        is_read_ = push_(detail::chunk(detail::Chunk::ERROR, std::string(text), ' '));
     }
 }
 
 void TimeChunks::end(const TimeSum &sum) {
     send();
-    if (isRead_) {
-        isRead_ = push_(detail::chunk(detail::Chunk::TIME_SUM, time_sum_document(sum), ' '));
+    if (is_read_) {
+        is_read_ = push_(detail::chunk(detail::Chunk::TIME_SUM, time_sum_document(sum), ' '));
     }
 }
 

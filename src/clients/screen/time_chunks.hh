@@ -13,7 +13,7 @@ namespace mw::screen {
 /// The time is lost here, against the feed.
 struct SlowSpot {
     std::string file;
-    bool isInProgram = true;  ///< not in another file
+    bool in_program = true;  ///< not in another file
     int line = 0;
     double lost_s = 0;
     std::string reason;
@@ -53,7 +53,7 @@ class TimeChunks {
 
     std::function<bool(std::string)> push_;
     std::vector<Move> moves_;
-    bool isRead_ = true;
+    bool is_read_ = true;
 };
 
 }  // namespace mw::screen

@@ -128,8 +128,8 @@ Response UserFiles::offsets() const {
         const auto number = words.size() == 2 ? parse_int(words[0]) : std::nullopt;
         const auto value = words.size() == 2 ? parse_double(words[1]) : std::nullopt;
         const std::int64_t at = number.value_or(0) - FIRST;
-        const bool isOffset = at >= 0 && at < SYSTEMS * STEP && at % STEP < NUMBERS;
-        if (isOffset && value.has_value()) {
+        const bool offset = at >= 0 && at < SYSTEMS * STEP && at % STEP < NUMBERS;
+        if (offset && value.has_value()) {
             systems[static_cast<std::size_t>(at / STEP)][static_cast<std::size_t>(at % STEP)] = *value;
         }
     }

@@ -14,16 +14,16 @@ namespace {
 
 using Text = Result<std::string>;
 
-std::string digit(bool isOn) {
-    return isOn ? "1" : "0";
+std::string digit(bool on) {
+    return on ? "1" : "0";
 }
 
 Result<int> whole(const Words &words, std::size_t place, const char *what) {
     const auto value = parse_int(words.size() > place ? words[place] : "");
-    const bool isWhole = value.has_value() && *value >= INT32_MIN && *value <= INT32_MAX;
-    return isWhole ? Result<int>(static_cast<int>(*value))
-                   : fail(fmt::format("{} is a whole number, not '{}'", what,
-                                      words.size() > place ? printable(words[place]) : ""));
+    const bool is_whole = value.has_value() && *value >= INT32_MIN && *value <= INT32_MAX;
+    return is_whole ? Result<int>(static_cast<int>(*value))
+                    : fail(fmt::format("{} is a whole number, not '{}'", what,
+                                       words.size() > place ? printable(words[place]) : ""));
 }
 
 /// The words of an order that may end with the number of a spindle; without one it is the first.
@@ -161,11 +161,11 @@ Text joint_enable(Shell &shell, const Words &words) {
     if (words.size() == 1) {
         return digit(shell.status().joints[static_cast<std::size_t>(*joint)].isEnabled);
     }
-    const auto isOn = rsh::on_or_off(words[1]);
-    if (!isOn.has_value()) {
-        return std::unexpected(isOn.error());
+    const auto on = rsh::on_or_off(words[1]);
+    if (!on.has_value()) {
+        return std::unexpected(on.error());
     }
-    return *isOn ? shell.send(messages::EnableJoint{*joint}) : shell.send(messages::DisableJoint{*joint});
+    return *on ? shell.send(messages::EnableJoint{*joint}) : shell.send(messages::DisableJoint{*joint});
 }
 
 Text joint_backlash(Shell &shell, const Words &words) {

@@ -46,10 +46,10 @@ Text of_pose(const Shell &shell, const Words &words, const geometry::Pose &pose)
 
 Result<std::size_t> joint(const Words &words) {
     const auto value = parse_int(words.empty() ? "" : words[0]);
-    const bool isJoint = value.has_value() && *value >= 0 && *value < MAX_JOINTS;
-    return isJoint ? Result<std::size_t>(static_cast<std::size_t>(*value))
-                   : fail(fmt::format("'{}' is not a joint: 0 to {}",
-                                      words.empty() ? "" : printable(words[0]), MAX_JOINTS - 1));
+    const bool is_joint = value.has_value() && *value >= 0 && *value < MAX_JOINTS;
+    return is_joint ? Result<std::size_t>(static_cast<std::size_t>(*value))
+                    : fail(fmt::format("'{}' is not a joint: 0 to {}",
+                                       words.empty() ? "" : printable(words[0]), MAX_JOINTS - 1));
 }
 
 /// An answer of linuxcncrsh in small letters.
@@ -129,9 +129,9 @@ Text status_text(Shell &shell, const Words &words) {
     if constexpr (ROW.form == legacy::Form::POSE) {
         return of_pose(shell, words, value);
     } else {
-        const bool isOrder = legacy::isNamed(ROW.names.tcl_order) && !words.empty();
-        return isOrder ? shell.ask(ROW.names.rsh, words)
-                       : Text(legacy::text(ROW.form, legacy::Dialect::TCL, value));
+        const bool is_order = legacy::isNamed(ROW.names.tcl_order) && !words.empty();
+        return is_order ? shell.ask(ROW.names.rsh, words)
+                        : Text(legacy::text(ROW.form, legacy::Dialect::TCL, value));
     }
 }
 

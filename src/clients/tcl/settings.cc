@@ -73,12 +73,12 @@ Text ini_flag(Shell &shell, const Words &words) {
 /// An element of a list of Tcl: in braces, or with a backslash before each that would end it.
 std::string element(const std::string &text) {
     int depth = 0;
-    bool isPlain = text.find('\\') == std::string::npos;
+    bool plain = text.find('\\') == std::string::npos;
     for (const char c : text) {
         depth += c == '{' ? 1 : c == '}' ? -1 : 0;
-        isPlain = isPlain && depth >= 0;
+        plain = plain && depth >= 0;
     }
-    if (isPlain && depth == 0) {
+    if (plain && depth == 0) {
         return "{" + text + "}";
     }
     constexpr std::string_view SPECIAL = "{}[]$\\\"; \t";
@@ -120,13 +120,13 @@ Text ini_load(Shell &shell, const Words &words) {
 
 Text set_wait(Shell &shell, const Words &words) {
     if (words.empty()) {
-        return shell.own.isWaitingForDone ? "done" : "received";
+        return shell.own.waiting_for_done ? "done" : "received";
     }
     const auto isDone = rsh::one_of<bool>(words[0], {{"received", false}, {"done", true}});
     if (!isDone.has_value()) {
         return std::unexpected(isDone.error());
     }
-    shell.own.isWaitingForDone = *isDone;
+    shell.own.waiting_for_done = *isDone;
     return "";
 }
 
@@ -153,7 +153,7 @@ Text update(Shell &shell, const Words &words) {
         if (!isAuto.has_value()) {
             return std::unexpected(isAuto.error());
         }
-        shell.own.isUpdating = *isAuto;
+        shell.own.updating = *isAuto;
         shell.own.kept = *isAuto ? nullptr : std::make_unique<messages::MachineStatus>(shell.status());
         return "";
     }

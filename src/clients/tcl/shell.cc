@@ -25,7 +25,7 @@ Shell::Shell(client::Viewer viewer, rsh::Joining joining, ini::IniFile ini)
       commander_(std::move(joining)) {
     settings_.dialect = rsh::Dialect::NEWER;
     settings_.ini = ini_.get();
-    own.isWaitingForDone = false;
+    own.waiting_for_done = false;
     if (view_.read().has_value()) {
         settings_.num_joints = view_.status().trajectory.num_joints;
         settings_.num_spindles = view_.status().trajectory.num_spindles;
@@ -104,12 +104,12 @@ void Shell::keep_jogging() {
 }
 
 Result<bool> Shell::isOver(const rsh::Waiting &waiting, bool untilDone) {
-    const bool isToEnd =
+    const bool to_end =
         waiting.until == rsh::Until::ENDED || (untilDone && waiting.until != rsh::Until::TAKEN);
     for (const client::Serial serial : waiting.serials) {
-        const bool hasEnded = commander_.outcome(serial).progress != messages::Progress::STARTED;
-        const bool isShown = view_.status().last_command >= serial;
-        if (!isShown || (isToEnd && !hasEnded)) {
+        const bool has_ended = commander_.outcome(serial).progress != messages::Progress::STARTED;
+        const bool is_shown = view_.status().last_command >= serial;
+        if (!is_shown || (to_end && !has_ended)) {
             return false;
         }
     }
@@ -125,7 +125,7 @@ Result<std::string> Shell::finish(rsh::Waiting waiting) {
         if (!machine.has_value() || !read.has_value()) {
             return machine.has_value() ? read.error().str() : machine.error().str();
         }
-        const auto over = isOver(waiting, own.isWaitingForDone);
+        const auto over = isOver(waiting, own.waiting_for_done);
         if (!over.has_value()) {
             return over.error().str();
         }

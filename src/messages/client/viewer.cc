@@ -86,8 +86,8 @@ Result<> Viewer::sleep(std::uint32_t heard, std::int64_t end_ns) const {
     if (left_ns <= 0) {
         return fail("the time to wait is over");
     }
-    const bool isRung = mailbox::Memory::wait(*segment_, heard, std::min(left_ns, LONGEST_SLEEP_NS));
-    return isRung ? Result<>{} : check_machine();
+    const bool rung = mailbox::Memory::wait(*segment_, heard, std::min(left_ns, LONGEST_SLEEP_NS));
+    return rung ? Result<>{} : check_machine();
 }
 
 Result<> Viewer::wait_status(double timeout_s) {
@@ -142,8 +142,8 @@ std::optional<Viewer::Message> Viewer::next_message(Reading reading) {
         return std::nullopt;
     }
     auto read = std::make_unique<mailbox::NumberedMessage>();
-    const bool isWhole = read_whole(segment_->messages[next_message_ % mailbox::MAX_MESSAGES], *read);
-    if (!isWhole || read->number != next_message_) {  // overwritten meanwhile, or task died within it
+    const bool whole = read_whole(segment_->messages[next_message_ % mailbox::MAX_MESSAGES], *read);
+    if (!whole || read->number != next_message_) {  // overwritten meanwhile, or task died within it
         const std::uint64_t now = segment_->newest_message.load(std::memory_order_acquire);
         const std::uint64_t oldest =
             now > mailbox::MAX_MESSAGES ? now - mailbox::MAX_MESSAGES + 2 : next_message_ + 1;

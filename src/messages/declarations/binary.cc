@@ -148,8 +148,8 @@ class Decoder {
             if (!reader_.take(&bits, type.bytes)) {
                 return bad(field, "the message ends within it");
             }
-            const bool isNumber = type.kind == Kind::INTEGER || type.kind == Kind::UNSIGNED;
-            if (!isNumber && !isRepresentable(type, static_cast<std::int64_t>(bits))) {
+            const bool is_number = type.kind == Kind::INTEGER || type.kind == Kind::UNSIGNED;
+            if (!is_number && !isRepresentable(type, static_cast<std::int64_t>(bits))) {
                 return bad(field, fmt::format("{} is not one of its values", bits));
             }
             set_integer(type, at, static_cast<std::int64_t>(bits));

@@ -55,9 +55,9 @@ Result<> check_element(const ConstObject &message, const Field &field, const voi
     case Kind::INTEGER:
     case Kind::UNSIGNED: {
         const std::int64_t value = get_integer(field.type, at);
-        const bool isLarge = field.type.kind == Kind::UNSIGNED && value < 0;
+        const bool large = field.type.kind == Kind::UNSIGNED && value < 0;
         const double number =
-            isLarge ? static_cast<double>(static_cast<std::uint64_t>(value)) : static_cast<double>(value);
+            large ? static_cast<double>(static_cast<std::uint64_t>(value)) : static_cast<double>(value);
         return isSeries(field.type) || isWithin(field.range, number)
                    ? Result<>{}
                    : refuse(message, field, fmt::format("{:.0f}", number), range_text(field));

@@ -73,14 +73,13 @@ class Reading {
   public:
     explicit Reading(const Declaration &declaration) : declaration_(declaration) {}
 
-    Result<> parts(const Json &json, const Object &object, bool isWhole) {
+    Result<> parts(const Json &json, const Object &object, bool is_whole) {
         for (const auto &[key, value] : json.items()) {
             const auto &fields = object.declaration->fields;
-            const bool isKnown = (isWhole && key == NAME_KEY) ||
-                                 std::any_of(fields.begin(), fields.end(), [&name = key](const Field &field) {
-                                     return name == field.name;
-                                 });
-            if (!isKnown) {
+            const bool known = (is_whole && key == NAME_KEY) ||
+                               std::any_of(fields.begin(), fields.end(),
+                                           [&name = key](const Field &field) { return name == field.name; });
+            if (!known) {
                 return fail(fmt::format("{}: there is no field '{}'", declaration_.name, key));
             }
         }
@@ -159,18 +158,17 @@ class Reading {
     }
 
     Result<> integer(const Field &field, const Json &json, void *at) {
-        const bool isUnsigned = json.is_number_unsigned();
-        if (!isUnsigned && !json.is_number_integer()) {
+        const bool is_unsigned = json.is_number_unsigned();
+        if (!is_unsigned && !json.is_number_integer()) {
             return bad(field, "must be a whole number");
         }
         constexpr auto MOST = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
-        const bool isLarge = isUnsigned && json.get<std::uint64_t>() > MOST;
-        const bool isWide = field.type.kind == Kind::UNSIGNED && field.type.bytes == 8;
+        const bool large = is_unsigned && json.get<std::uint64_t>() > MOST;
+        const bool wide = field.type.kind == Kind::UNSIGNED && field.type.bytes == 8;
         const auto value = static_cast<std::int64_t>(
-            isUnsigned ? json.get<std::uint64_t>() : static_cast<std::uint64_t>(json.get<std::int64_t>()));
-        const bool isFitting =
-            isWide ? (isLarge || value >= 0) : !isLarge && isRepresentable(field.type, value);
-        if (!isFitting) {
+            is_unsigned ? json.get<std::uint64_t>() : static_cast<std::uint64_t>(json.get<std::int64_t>()));
+        const bool fitting = wide ? (large || value >= 0) : !large && isRepresentable(field.type, value);
+        if (!fitting) {
             return bad(field, "is " + json.dump() + ", which is out of its range");
         }
         set_integer(field.type, at, value);

@@ -43,11 +43,11 @@ std::string type_text(const Field &field) {
 
 std::string range_text(const Field &field) {
     const Range &range = field.range;
-    const bool isText = field.type.kind == Kind::TEXT || field.type.kind == Kind::FIXED_TEXT;
+    const bool is_text = field.type.kind == Kind::TEXT || field.type.kind == Kind::FIXED_TEXT;
     const double most =
-        isText && std::isinf(range.max) ? static_cast<double>(longest_text(field)) : range.max;
-    const double least = isText && std::isinf(range.min) ? 0 : range.min;
-    const std::string what = isText ? " bytes" : field.type.list != nullptr ? " entries" : "";
+        is_text && std::isinf(range.max) ? static_cast<double>(longest_text(field)) : range.max;
+    const double least = is_text && std::isinf(range.min) ? 0 : range.min;
+    const std::string what = is_text ? " bytes" : field.type.list != nullptr ? " entries" : "";
     if (std::isinf(least) && std::isinf(most)) {
         return "";
     }

@@ -80,7 +80,7 @@ std::vector<CommandServer::Delivery> CommandServer::take(std::int64_t now_ns) {
             owned += i >= RESERVED_CLIENTS ? 1 : 0;
         }
     }
-    isFull_ = owned == MAX_CLIENTS - RESERVED_CLIENTS;
+    full_ = owned == MAX_CLIENTS - RESERVED_CLIENTS;
     std::sort(taken.begin(), taken.end(),
               [](const Delivery &a, const Delivery &b) { return a.serial < b.serial; });
     std::vector<Delivery> allowed;
@@ -119,11 +119,11 @@ void CommandServer::take_slot(int index, std::vector<Delivery> &out) {
         accept(index, posted_.serial, messages::decode_command({posted_.bytes.data(), size}), out);
     }
     accept_stops_before(std::numeric_limits<Serial>::max());
-    const std::uint64_t check_cycles = isFull_ ? 1 : OWNER_CHECK_CYCLES;
-    const bool isTurn = cycles_ % check_cycles == 0 &&
-                        (cycles_ / check_cycles) % MAX_CLIENTS == static_cast<std::uint64_t>(index);
-    const bool isWatched = cycles_ % OWNER_CHECK_CYCLES == 0 && isOf(slot, Role::ATTENDED);
-    if (isLeaving || isTurn || isWatched) {
+    const std::uint64_t check_cycles = full_ ? 1 : OWNER_CHECK_CYCLES;
+    const bool is_turn = cycles_ % check_cycles == 0 &&
+                         (cycles_ / check_cycles) % MAX_CLIENTS == static_cast<std::uint64_t>(index);
+    const bool watched = cycles_ % OWNER_CHECK_CYCLES == 0 && isOf(slot, Role::ATTENDED);
+    if (isLeaving || is_turn || watched) {
         check_owner(index, out);
     }
 }
@@ -150,9 +150,9 @@ std::vector<CommandServer::WaitingStop> CommandServer::waiting_stops(int index) 
 }
 
 void CommandServer::stop_unattended(int index, std::vector<Delivery> &out) {
-    const bool isUnderWay = std::any_of(going_.begin(), going_.end(),
-                                        [index](const auto &going) { return going.second.slot == index; });
-    if (!isUnderWay) {
+    const bool under_way = std::any_of(going_.begin(), going_.end(),
+                                       [index](const auto &going) { return going.second.slot == index; });
+    if (!under_way) {
         return;
     }
     const ClientId client = segment_.slots[static_cast<std::size_t>(index)].client.load();
@@ -206,8 +206,8 @@ int CommandServer::free_outcome(int slot) const {
     int oldest = -1;
     for (int i = 0; i < MAX_OUTCOMES; ++i) {
         const Serial serial = serials[static_cast<std::size_t>(i)];
-        const bool isUnderWay = serial != 0 && going_.contains(serial);
-        if (!isUnderWay && (oldest < 0 || serial < serials[static_cast<std::size_t>(oldest)])) {
+        const bool under_way = serial != 0 && going_.contains(serial);
+        if (!under_way && (oldest < 0 || serial < serials[static_cast<std::size_t>(oldest)])) {
             oldest = i;
         }
     }
@@ -217,7 +217,7 @@ int CommandServer::free_outcome(int slot) const {
 void CommandServer::accept(int index, Serial serial, Result<messages::Command> command,
                            std::vector<Delivery> &out) {
     Slot &slot = segment_.slots[static_cast<std::size_t>(index)];
-    const bool isNew =
+    const bool is_new =
         serial != 0 && serial <= segment_.serials.load(std::memory_order_relaxed) && !going_.contains(serial);
     const int place = free_outcome(index);
     const Serial taken = std::max(serial, slot.taken.load(std::memory_order_relaxed));
@@ -225,21 +225,21 @@ void CommandServer::accept(int index, Serial serial, Result<messages::Command> c
     const ClientId client = slot.client.load(std::memory_order_relaxed);
     const Authority authority = authority_of(slot);
     const std::uint64_t owner = slot.owner.load(std::memory_order_relaxed);
-    if (isNew && place < 0 && command.has_value() && isStop(*command)) {
+    if (is_new && place < 0 && command.has_value() && isStop(*command)) {
         // A stop is never dropped: it is executed although its outcome cannot be reported.
         note(serial, Progress::STARTED);
         slot.taken.store(taken, std::memory_order_release);
         out.push_back({serial, client, std::move(*command), isPanel, authority, owner});
         return;
     }
-    if (!isNew || place < 0) {
+    if (!is_new || place < 0) {
         // A number that the mailbox has not given out, or MAX_OUTCOMES commands under way: nothing can be
         // answered.
         post(messages::MessageKind::OPERATOR_ERROR,
              "client " + std::to_string(client) +
-                 (isNew ? " has too many commands under way: one was dropped"
-                        : " sent a command with a wrong number"));
-        if (isNew) {
+                 (is_new ? " has too many commands under way: one was dropped"
+                         : " sent a command with a wrong number"));
+        if (is_new) {
             note(serial, Progress::REFUSED);
         }
         slot.taken.store(taken, std::memory_order_release);
@@ -291,9 +291,9 @@ void CommandServer::write(const Place &place) {
 }
 
 void CommandServer::note(Serial serial, Progress progress) {
-    const bool isNewer = serial > last_command_;
-    const bool isGoing = serial == last_command_ && last_progress_ == Progress::STARTED;
-    if (isNewer || isGoing) {
+    const bool newer = serial > last_command_;
+    const bool is_going = serial == last_command_ && last_progress_ == Progress::STARTED;
+    if (newer || is_going) {
         last_command_ = serial;
         last_progress_ = progress;
     }

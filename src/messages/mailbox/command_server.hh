@@ -89,7 +89,7 @@ class CommandServer {
     std::array<std::array<Serial, MAX_OUTCOMES>, MAX_CLIENTS> serials_{};
     std::array<Serial, MAX_CLIENTS> newest_stops_{};  ///< as each client reported, all checked
     Posted posted_;                                   ///< the one being taken
-    bool isFull_ = false;  ///< in the last cycle each place for ordinary clients had an owner
+    bool full_ = false;  ///< in the last cycle each place for ordinary clients had an owner
     Serial last_command_ = 0;
     messages::Progress last_progress_ = messages::Progress::DONE;
     std::uint64_t cycles_ = 0;

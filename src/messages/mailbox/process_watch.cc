@@ -62,11 +62,11 @@ void ProcessWatch::run() {
                 continue;
             }
             const runtime::Activity activity = activity_of(owner);
-            const bool isStopped = activity == runtime::Activity::STOPPED;
+            const bool stopped = activity == runtime::Activity::STOPPED;
             State state = activity == runtime::Activity::ENDED ? State::ENDED : State::RUNNING;
             // A debugger or tracer stops a process for moments only, many times a second.
-            state = isStopped && stopped_before[i] == owner ? State::STOPPED : state;
-            stopped_before[i] = isStopped ? owner : 0;
+            state = stopped && stopped_before[i] == owner ? State::STOPPED : state;
+            stopped_before[i] = stopped ? owner : 0;
             if (one.owner.load(std::memory_order_acquire) == owner) {
                 one.state.store(state, std::memory_order_release);
             }

@@ -56,11 +56,11 @@ void RightToOperate::forget(ClientId client) {
 }
 
 bool RightToOperate::step(std::int64_t now_ns) {
-    const bool isOver = holder_ != 0 && now_ns >= end_ns_;
-    if (isOver) {
+    const bool over = holder_ != 0 && now_ns >= end_ns_;
+    if (over) {
         forget(holder_);
     }
-    return isOver;
+    return over;
 }
 
 Result<> RightToOperate::check(ClientId client, const Command &command) const {

@@ -43,7 +43,7 @@ void tell(benchmark::State &state, const char *what, std::vector<std::int64_t> &
 }
 
 /// Writes and reads in this process; with `isShared` another process reads all the time too.
-void measure(benchmark::State &state, const std::string &options, bool isShared) {
+void measure(benchmark::State &state, const std::string &options, bool shared) {
     const Config config = perf_config(options);
     LocalPlaces local;
     const std::string instance = "perf" + std::to_string(::getpid());
@@ -52,7 +52,7 @@ void measure(benchmark::State &state, const std::string &options, bool isShared)
         state.SkipWithError(master.error().str().c_str());
         return;
     }
-    const pid_t pid = isShared ? ::fork() : -1;
+    const pid_t pid = shared ? ::fork() : -1;
     if (pid == 0) {
         ::prctl(PR_SET_PDEATHSIG, SIGKILL);
         LocalPlaces places;

@@ -127,7 +127,7 @@ void Bridge::add(std::vector<messages::Command> commands) {
 
 /// A stop always has a place in the mailbox.
 void Bridge::post_own() {
-    if (isEmptied_) {
+    if (emptied_) {
         for (const messages::Command &command : std::exchange(own_, {})) {
             static_cast<void>(client_.post(command));
         }
@@ -135,7 +135,7 @@ void Bridge::post_own() {
 }
 
 Result<> Bridge::take_commands() {
-    isEmptied_ = false;
+    emptied_ = false;
     for (int i = 0; i < COMMANDS_PER_STEP; ++i) {
         if (!held_.has_value()) {
             auto next = next_command();
@@ -145,7 +145,7 @@ Result<> Bridge::take_commands() {
             held_ = std::move(*next);
         }
         is_late_ = is_late_ && held_.has_value();
-        isEmptied_ = !held_.has_value();
+        emptied_ = !held_.has_value();
         if (!held_.has_value() || !post(*held_)) {
             return {};
         }
@@ -229,7 +229,7 @@ void Bridge::note(const StatusHead &head, client::Serial posted) {
     head_.echo_serial_number = head.echo_serial_number;
     head_.state = head.state;
     head_.reason = head.reason;
-    isHeadNew_ = true;
+    head_new_ = true;
 }
 
 void Bridge::follow() {
@@ -249,7 +249,7 @@ void Bridge::follow() {
             head_.state = ended.state;
             head_.reason = ended.reason;
         }
-        isHeadNew_ = true;
+        head_new_ = true;
     }
 }
 
@@ -281,7 +281,7 @@ Result<> Bridge::publish() {
         return read;
     }
     note_taken();
-    if (client_.status().cycle == published_cycle_ && !isHeadNew_) {
+    if (client_.status().cycle == published_cycle_ && !head_new_) {
         return {};
     }
     status_->head = head_;
@@ -291,7 +291,7 @@ Result<> Bridge::publish() {
         return std::unexpected(written.error());
     }
     published_cycle_ = status_->body.cycle;
-    isHeadNew_ = false;
+    head_new_ = false;
     return {};
 }
 

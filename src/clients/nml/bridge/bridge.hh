@@ -73,13 +73,13 @@ class Bridge {
     std::deque<Waiting> waiting_;
     StatusHead head_;
     Posted posted_{};
-    bool isHeadNew_ = true;
+    bool head_new_ = true;
     std::optional<Clock::time_point> last_step_;
     bool is_late_ = false;  ///< commands that waited through a pause may be in the channel
     std::uint64_t published_cycle_ = 0;
     std::optional<Held> held_;
     std::vector<messages::Command> own_;
-    bool isEmptied_ = false;  ///< the channel, in this step
+    bool emptied_ = false;  ///< the channel, in this step
     std::unique_ptr<StatusMessage<messages::MachineStatus>> status_;
     std::optional<StatusMessage<messages::ToolTable>> table_;  ///< not written yet
     struct Line {

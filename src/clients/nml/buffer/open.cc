@@ -44,10 +44,10 @@ class Phantom final : public Buffer {
 class MemoryBuffer final : public Buffer {
   public:
     MemoryBuffer(const BufferSettings &settings, Rights rights, std::shared_ptr<Place> place)
-        : Buffer(settings.name, rights), place_(std::move(place)), isQueue_(settings.isQueue),
+        : Buffer(settings.name, rights), place_(std::move(place)), isQueue_(settings.is_queue),
           isLocked_(settings.mutex != Mutex::NONE),
-          isReadLocked_(isLocked_ && (settings.isQueue || settings.mutex != Mutex::MAO)),
-          isBlockingAllowed_(settings.isBlockingAllowed()), isDiagnosed_(settings.isDiagnosed) {}
+          isReadLocked_(isLocked_ && (settings.is_queue || settings.mutex != Mutex::MAO)),
+          isBlockingAllowed_(settings.isBlockingAllowed()), isDiagnosed_(settings.diagnosed) {}
     ~MemoryBuffer() override { leave(); }
 
     /// Takes a place among those who may use the buffer.
@@ -123,8 +123,8 @@ class MemoryBuffer final : public Buffer {
         }
         return bad("its lock is broken", "end all processes that use it");
     }
-    Result<Held> locked_if(bool isNeeded, const Deadline &deadline) const {
-        return isNeeded ? locked(deadline) : Result<Held>(Held(nullptr));
+    Result<Held> locked_if(bool needed, const Deadline &deadline) const {
+        return needed ? locked(deadline) : Result<Held>(Held(nullptr));
     }
 
     Result<> need_kept() const {
@@ -201,14 +201,14 @@ class MemoryBuffer final : public Buffer {
     }
 
     /// False: there is nothing.
-    Result<bool> get(Received &message, WriteNumber seen, bool isTaken, const Deadline &deadline) {
+    Result<bool> get(Received &message, WriteNumber seen, bool taken, const Deadline &deadline) {
         const std::int64_t begin_ns = isDiagnosed_ ? monotonic_ns() : 0;
         for (int tries = 0;; ++tries) {
             const auto lock = locked_if(isReadLocked_ || (isLocked_ && tries >= PATIENCE), deadline);
             if (!lock.has_value()) {
                 return std::unexpected(lock.error());
             }
-            switch (store().read(message, seen, isTaken)) {
+            switch (store().read(message, seen, taken)) {
             case Store::Outcome::DONE:
                 count(begin_ns, seat_->reads, seat_->bytes_read, message.bytes.size());
                 return true;

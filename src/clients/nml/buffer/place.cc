@@ -122,13 +122,13 @@ bool isUsed(const Store &store) {
 
 }  // namespace
 
-Result<std::shared_ptr<Place>> LocalPlaces::open(const BufferSettings &buffer, bool isMaster) {
+Result<std::shared_ptr<Place>> LocalPlaces::open(const BufferSettings &buffer, bool is_master) {
     const std::lock_guard guard(mutex_);
     std::weak_ptr<Place> &known = places_[buffer.name];
     if (auto place = known.lock()) {
         return place;
     }
-    if (!isMaster) {
+    if (!is_master) {
         return bad(buffer, "this process has none yet", NEEDS_MASTER);
     }
     const StoreShape shape = StoreShape::of(buffer);
@@ -141,19 +141,19 @@ Result<std::shared_ptr<Place>> LocalPlaces::open(const BufferSettings &buffer, b
 }
 
 Result<std::shared_ptr<Place>> open_shared_place(const BufferSettings &buffer, const std::string &instance,
-                                                 bool isMaster) {
+                                                 bool is_master) {
     const StoreShape shape = StoreShape::of(buffer);
     const std::string name = fmt::format("millwright-{}-nml-{}-{}", ::getuid(), instance, buffer.key);
     const runtime::SharedLayout layout{ABI_VERSION, shape.hash()};
-    auto memory = isMaster ? runtime::SharedMemory::create(name, shape.bytes(), shape.bytes(), layout)
-                           : runtime::SharedMemory::attach(name, layout);
+    auto memory = is_master ? runtime::SharedMemory::create(name, shape.bytes(), shape.bytes(), layout)
+                            : runtime::SharedMemory::attach(name, layout);
     if (!memory.has_value()) {
         const std::string hint =
-            memory.error().hint.empty() && !isMaster ? NEEDS_MASTER : memory.error().hint;
+            memory.error().hint.empty() && !is_master ? NEEDS_MASTER : memory.error().hint;
         return bad(buffer, memory.error().message, hint);
     }
     auto place = std::make_shared<SharedPlace>(shape, std::move(*memory));
-    if (isMaster && !place->store.initialise()) {
+    if (is_master && !place->store.initialise()) {
         return no_lock(buffer);
     }
     // Acquire: pairs with the release of the process that made it.
@@ -163,25 +163,25 @@ Result<std::shared_ptr<Place>> open_shared_place(const BufferSettings &buffer, c
     return place;
 }
 
-Result<std::shared_ptr<Place>> open_file_place(const BufferSettings &buffer, bool isMaster) {
+Result<std::shared_ptr<Place>> open_file_place(const BufferSettings &buffer, bool is_master) {
     if (buffer.file.empty()) {
         return bad(buffer, "FILEMEM needs the name of its file", "add the option file=PATH to its B line");
     }
     const StoreShape shape = StoreShape::of(buffer);
     const std::size_t size = sizeof(FileHead) + shape.bytes();
     Descriptor file(
-        ::open(buffer.file.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | (isMaster ? O_CREAT : 0), 0600));
+        ::open(buffer.file.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | (is_master ? O_CREAT : 0), 0600));
     struct stat status{};
     // One process at a time looks whether the file is whole and in use, until it can be seen to use it.
     if (file.get() < 0 || ::flock(file.get(), LOCK_EX) != 0 || ::fstat(file.get(), &status) != 0) {
         return bad(buffer, fmt::format("{}: {}", buffer.file, std::strerror(errno)),
-                   isMaster ? "" : NEEDS_MASTER);
+                   is_master ? "" : NEEDS_MASTER);
     }
-    const bool isNew = status.st_size == 0 && isMaster;
-    if (!isNew && status.st_size != static_cast<off_t>(size)) {
+    const bool is_new = status.st_size == 0 && is_master;
+    if (!is_new && status.st_size != static_cast<off_t>(size)) {
         return bad(buffer, fmt::format("{} is not a file of this buffer", buffer.file), "remove it");
     }
-    const int error = isNew ? ::posix_fallocate(file.get(), 0, static_cast<off_t>(size)) : 0;
+    const int error = is_new ? ::posix_fallocate(file.get(), 0, static_cast<off_t>(size)) : 0;
     if (error != 0) {
         return bad(buffer, fmt::format("{}: {}", buffer.file, std::strerror(error)));
     }
@@ -193,7 +193,7 @@ Result<std::shared_ptr<Place>> open_file_place(const BufferSettings &buffer, boo
     FileHead wanted;
     wanted.shape = shape.hash();
     FileHead &head = mapped.head();
-    if (isNew) {
+    if (is_new) {
         head = wanted;
     } else if (head.mark != wanted.mark || head.version != wanted.version || head.shape != wanted.shape) {
         return bad(buffer, fmt::format("{} is not a file of this buffer", buffer.file), "remove it");

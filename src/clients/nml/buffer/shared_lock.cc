@@ -47,11 +47,11 @@ bool SharedLock::initialise() {
     if (::pthread_mutexattr_init(&kind) != 0) {
         return false;
     }
-    const bool isGood = ::pthread_mutexattr_setpshared(&kind, PTHREAD_PROCESS_SHARED) == 0 &&
-                        ::pthread_mutexattr_setrobust(&kind, PTHREAD_MUTEX_ROBUST) == 0 &&
-                        ::pthread_mutex_init(&mutex_, &kind) == 0;
+    const bool is_good = ::pthread_mutexattr_setpshared(&kind, PTHREAD_PROCESS_SHARED) == 0 &&
+                         ::pthread_mutexattr_setrobust(&kind, PTHREAD_MUTEX_ROBUST) == 0 &&
+                         ::pthread_mutex_init(&mutex_, &kind) == 0;
     ::pthread_mutexattr_destroy(&kind);
-    return isGood;
+    return is_good;
 }
 
 SharedLock::Outcome SharedLock::take(const Deadline &deadline) {

@@ -27,10 +27,10 @@ std::size_t words_at(const StoreShape &shape) {
 
 StoreShape StoreShape::of(const BufferSettings &buffer) {
     StoreShape shape;
-    shape.isQueue = buffer.isQueue;
+    shape.is_queue = buffer.is_queue;
     shape.words = words_for(buffer.size);
     // A second copy in any case: a writer that dies has not touched the one that counts.
-    shape.copies = buffer.isQueue               ? 1
+    shape.copies = buffer.is_queue              ? 1
                    : buffer.mutex == Mutex::MAO ? static_cast<std::size_t>(buffer.copies)
                                                 : 2;
     shape.seats = static_cast<std::size_t>(buffer.max_processes);
@@ -38,7 +38,7 @@ StoreShape StoreShape::of(const BufferSettings &buffer) {
 }
 
 std::size_t StoreShape::bytes() const {
-    const std::size_t each = isQueue ? words : words + 2;
+    const std::size_t each = is_queue ? words : words + 2;
     return words_at(*this) + each * copies * WORD;
 }
 
@@ -46,7 +46,7 @@ std::uint64_t StoreShape::hash() const {
     constexpr std::uint64_t FNV_PRIME = 1099511628211ULL;
     std::uint64_t hash = 14695981039346656037ULL;
     for (const std::uint64_t part :
-         {std::uint64_t{isQueue}, std::uint64_t{words}, std::uint64_t{copies}, std::uint64_t{seats},
+         {std::uint64_t{is_queue}, std::uint64_t{words}, std::uint64_t{copies}, std::uint64_t{seats},
           std::uint64_t{sizeof(StoreHead)}, std::uint64_t{sizeof(Seat)}}) {
         hash = (hash ^ part) * FNV_PRIME;
     }
@@ -59,10 +59,10 @@ Store::Store(void *memory, const StoreShape &shape)
       shape_(shape) {}
 
 bool Store::initialise() {
-    const bool isGood = head_->lock.initialise();
+    const bool is_good = head_->lock.initialise();
     // Release: a process that sees it ready may use the lock.
-    head_->isReady.store(isGood ? 1 : 0, std::memory_order_release);
-    return isGood;
+    head_->isReady.store(is_good ? 1 : 0, std::memory_order_release);
+    return is_good;
 }
 
 std::span<Seat> Store::seats() const {
@@ -76,7 +76,7 @@ Store::WordOf *Store::copy(std::uint64_t number) const {
 
 Store::Outcome Store::write(std::string_view bytes, WriteNumber &number) {
     number = head_->newest.load(std::memory_order_relaxed) + 1;
-    return shape_.isQueue ? write_queue(bytes, number) : write_copy(bytes, number);
+    return shape_.is_queue ? write_queue(bytes, number) : write_copy(bytes, number);
 }
 
 Store::Outcome Store::write_copy(std::string_view bytes, WriteNumber number) {
@@ -111,8 +111,8 @@ Store::Outcome Store::read_copy(Received &message, WriteNumber seen) const {
         return Outcome::AGAIN;
     }
     const std::uint64_t size = from[1].load(std::memory_order_relaxed);
-    const bool isPossible = size <= shape_.words * WORD;
-    if (isPossible) {
+    const bool possible = size <= shape_.words * WORD;
+    if (possible) {
         message.bytes.resize(size);
         for (std::size_t i = 0; i < words_for(size); ++i) {
             const std::uint64_t word = from[RECORD_HEAD + i].load(std::memory_order_relaxed);
@@ -125,7 +125,7 @@ Store::Outcome Store::read_copy(Received &message, WriteNumber seen) const {
         return Outcome::AGAIN;
     }
     message.number = number;
-    return isPossible ? Outcome::DONE : Outcome::DAMAGED;
+    return possible ? Outcome::DONE : Outcome::DAMAGED;
 }
 
 Store::Outcome Store::write_queue(std::string_view bytes, WriteNumber number) {
@@ -159,7 +159,7 @@ Store::Outcome Store::write_queue(std::string_view bytes, WriteNumber number) {
     return Outcome::DONE;
 }
 
-Store::Outcome Store::read_queue(Received &message, bool isTaken) {
+Store::Outcome Store::read_queue(Received &message, bool taken) {
     const std::uint64_t first = head_->first.load(std::memory_order_relaxed);
     const std::uint64_t used = head_->end.load(std::memory_order_acquire) - first;
     if (used == 0) {
@@ -181,15 +181,15 @@ Store::Outcome Store::read_queue(Received &message, bool isTaken) {
         const std::uint64_t word = word_at(RECORD_HEAD + i);
         std::memcpy(message.bytes.data() + i * WORD, &word, std::min<std::size_t>(WORD, size - i * WORD));
     }
-    if (isTaken) {
+    if (taken) {
         // Release: pairs with the writer's acquire, which writes over what was read.
         head_->first.store(first + RECORD_HEAD + words_for(size), std::memory_order_release);
     }
     return Outcome::DONE;
 }
 
-Store::Outcome Store::read(Received &message, WriteNumber seen, bool isTaken) {
-    return shape_.isQueue ? read_queue(message, isTaken) : read_copy(message, seen);
+Store::Outcome Store::read(Received &message, WriteNumber seen, bool taken) {
+    return shape_.is_queue ? read_queue(message, taken) : read_copy(message, seen);
 }
 
 void Store::clear() {

@@ -36,7 +36,7 @@ struct StoreHead {
 
 /// How much of what there is.
 struct StoreShape {
-    bool isQueue = false;
+    bool is_queue = false;
     std::size_t words = 0;  ///< of a copy, or of the queue
     std::size_t copies = 1;
     std::size_t seats = 1;

@@ -41,19 +41,19 @@ bool read_line(const std::vector<Word> &words, const LineForm<Line> &form, Line 
                    end, form.usage());
         return false;
     }
-    bool isGood = true;
+    bool is_good = true;
     for (std::size_t i = 0; i < form.fields.size(); ++i) {
         const auto status = form.fields[i].read(words[i + 1].text, line);
         if (!status.has_value()) {
             sink.error(fmt::format("field '{}': {}", form.fields[i].name, status.error().message),
                        words[i + 1].place, status.error().hint);
-            isGood = false;
+            is_good = false;
         }
     }
     for (std::size_t i = form.fields.size() + 1; i < words.size(); ++i) {
-        isGood = read_option(words[i], form, line, sink) && isGood;
+        is_good = read_option(words[i], form, line, sink) && is_good;
     }
-    return isGood;
+    return is_good;
 }
 
 std::string place_text(const SourcePlace &place) {
@@ -69,18 +69,18 @@ bool check_buffer(const BufferSettings &buffer, const Config &config, diagnostic
                 buffer.place);
             return false;
         }
-        const bool areShared = other.kind == BufferKind::SHMEM && buffer.kind == BufferKind::SHMEM;
-        if (areShared && other.key == buffer.key && other.host == buffer.host) {
+        const bool shared = other.kind == BufferKind::SHMEM && buffer.kind == BufferKind::SHMEM;
+        if (shared && other.key == buffer.key && other.host == buffer.host) {
             sink.error(fmt::format("key {} is that of buffer '{}' in {}: both would be one memory",
                                    buffer.key, other.name, place_text(other.place)),
                        buffer.place);
             return false;
         }
-        const bool haveOneServer = other.host == buffer.host &&
-                                   ((buffer.tcp_port.has_value() && other.tcp_port == buffer.tcp_port) ||
-                                    (buffer.stcp_port.has_value() && other.stcp_port == buffer.stcp_port) ||
-                                    (buffer.udp_port.has_value() && other.udp_port == buffer.udp_port));
-        if (haveOneServer && other.buffer_number == buffer.buffer_number) {
+        const bool have_one_server = other.host == buffer.host &&
+                                     ((buffer.tcp_port.has_value() && other.tcp_port == buffer.tcp_port) ||
+                                      (buffer.stcp_port.has_value() && other.stcp_port == buffer.stcp_port) ||
+                                      (buffer.udp_port.has_value() && other.udp_port == buffer.udp_port));
+        if (have_one_server && other.buffer_number == buffer.buffer_number) {
             sink.error(fmt::format("buffer# {} is that of buffer '{}' in {}, which has the same port",
                                    buffer.buffer_number, other.name, place_text(other.place)),
                        buffer.place);
@@ -108,10 +108,11 @@ void check_processes(Config &config, diagnostics::Sink &sink) {
     std::vector<ProcessSettings> kept;
     for (ProcessSettings &process : config.processes) {
         const BufferSettings *buffer = config.find_buffer(process.buffer);
-        const bool isSecond = std::any_of(kept.begin(), kept.end(), [&process](const ProcessSettings &other) {
-            return other.name == process.name && other.buffer == process.buffer;
-        });
-        if (isSecond) {
+        const bool is_second =
+            std::any_of(kept.begin(), kept.end(), [&process](const ProcessSettings &other) {
+                return other.name == process.name && other.buffer == process.buffer;
+            });
+        if (is_second) {
             sink.error(
                 fmt::format("process '{}' has a line for buffer '{}' already", process.name, process.buffer),
                 process.place);

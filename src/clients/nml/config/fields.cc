@@ -110,7 +110,7 @@ constexpr std::array BUFFER_FIELDS{
     LineField<B>{"host", [](std::string_view word, B &line) { return name(word, line.host); }},
     LineField<B>{"size",
                  [](std::string_view word, B &line) { return whole_number(word, 1, MAX_SIZE, line.size); }},
-    LineField<B>{"neut", [](std::string_view word, B &line) { return yes_or_no(word, line.isNeutral); }},
+    LineField<B>{"neut", [](std::string_view word, B &line) { return yes_or_no(word, line.neutral); }},
     // Only a place holder: files of old have all sorts of things there.
     LineField<B>{"RPC#",
                  [](std::string_view word, B &line) {
@@ -140,7 +140,7 @@ constexpr std::array PROCESS_FIELDS{
                                 ? Result<>{}
                                 : fail(fmt::format("'{}' is not one of R, W, RW", word));
                  }},
-    LineField<P>{"server", [](std::string_view word, P &line) { return yes_or_no(word, line.isServer); }},
+    LineField<P>{"server", [](std::string_view word, P &line) { return yes_or_no(word, line.is_server); }},
     LineField<P>{"timeout", [](std::string_view word, P &line) { return timeout(word, line.timeout); }},
     LineField<P>{"master", [](std::string_view word, P &line) { return yes_or_no(word, line.isMaster); }},
     LineField<P>{"c_num",
@@ -185,7 +185,7 @@ constexpr std::array BUFFER_OPTIONS{
                   }},
     LineOption<B>{"queue", Value::NONE,
                   [](std::string_view, B &line) {
-                      line.isQueue = true;
+                      line.is_queue = true;
                       return Result<>{};
                   }},
     LineOption<B>{"ascii", Value::NONE,
@@ -196,12 +196,12 @@ constexpr std::array BUFFER_OPTIONS{
                   [](std::string_view, B &line) { return encode_as(Encoding::XDR, line); }},
     LineOption<B>{"diag", Value::NONE,
                   [](std::string_view, B &line) {
-                      line.isDiagnosed = true;
+                      line.diagnosed = true;
                       return Result<>{};
                   }},
     LineOption<B>{"confirm_write", Value::NONE,
                   [](std::string_view, B &line) {
-                      line.isWriteConfirmed = true;
+                      line.write_confirmed = true;
                       return Result<>{};
                   }},
     LineOption<B>{"serial", Value::NONE,

@@ -38,7 +38,7 @@ struct BufferSettings {
     BufferKind kind = BufferKind::SHMEM;
     std::string host;      ///< where its server runs
     std::size_t size = 0;  ///< of the largest message; of a queue: of all that wait. [bytes]
-    bool isNeutral = false;
+    bool neutral = false;
     int rpc_number = 0;     ///< means nothing any more
     int buffer_number = 0;  ///< by which a server knows it
     int max_processes = 1;
@@ -52,12 +52,12 @@ struct BufferSettings {
     std::string serial_device;
     std::string password_file;
     std::optional<std::int64_t> blocking_key;  ///< -1: reads may not wait for a message
-    bool isQueue = false;
+    bool is_queue = false;
     std::optional<Encoding> encoding;
-    bool isDiagnosed = false;       ///< counts and times of each access are kept
-    bool isWriteConfirmed = false;  ///< a remote write ends when the server has it
-    bool isNumbered = false;        ///< the buffer gives commands their serial numbers
-    std::string file;               ///< of FILEMEM
+    bool diagnosed = false;        ///< counts and times of each access are kept
+    bool write_confirmed = false;  ///< a remote write ends when the server has it
+    bool isNumbered = false;       ///< the buffer gives commands their serial numbers
+    std::string file;              ///< of FILEMEM
     SourcePlace place;
 
     bool isBlockingAllowed() const { return blocking_key != -1; }
@@ -71,7 +71,7 @@ struct ProcessSettings {
     std::string host;
     bool mayRead = false;
     bool mayWrite = false;
-    bool isServer = false;
+    bool is_server = false;
     Timeout timeout;
     bool isMaster = false;  ///< makes the buffer and takes it away
     int connection_number = 0;

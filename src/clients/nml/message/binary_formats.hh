@@ -23,12 +23,12 @@ inline constexpr std::size_t BINARY_FRAME_HEAD = 12;
 
 /// Numbers as in memory.
 struct RawBytes {
-    static constexpr bool isBigEndian = std::endian::native == std::endian::big;
+    static constexpr bool IS_BIG_ENDIAN = std::endian::native == std::endian::big;
     static constexpr std::size_t ALIGNMENT = 1;
     static std::size_t width(const messages::Type &type) { return type.bytes; }
 };
 struct XdrBytes {
-    static constexpr bool isBigEndian = true;
+    static constexpr bool IS_BIG_ENDIAN = true;
     static constexpr std::size_t ALIGNMENT = 4;
     static std::size_t width(const messages::Type &type) { return type.bytes > 4 ? 8 : 4; }
 };
@@ -76,7 +76,7 @@ class BinaryWriter final : public Format {
     static std::array<char, 8> bytes_of(std::uint64_t value, std::size_t width) {
         std::array<char, 8> bytes{};
         for (std::size_t i = 0; i < width; ++i) {
-            const std::size_t place = Bytes::isBigEndian ? width - 1 - i : i;
+            const std::size_t place = Bytes::IS_BIG_ENDIAN ? width - 1 - i : i;
             bytes[place] = static_cast<char>(value >> (8 * i));
         }
         return bytes;
@@ -162,7 +162,7 @@ class BinaryReader final : public Format {
         }
         value = 0;
         for (std::size_t i = 0; i < width; ++i) {
-            const std::size_t place = Bytes::isBigEndian ? width - 1 - i : i;
+            const std::size_t place = Bytes::IS_BIG_ENDIAN ? width - 1 - i : i;
             value |= static_cast<std::uint64_t>(static_cast<unsigned char>(bytes_[place])) << (8 * i);
         }
         bytes_.remove_prefix(width);

@@ -185,24 +185,24 @@ bool TextReader::head(FrameHead &head) {
     if (line == std::string_view::npos) {
         return refuse("the message has no line");
     }
-    const bool isAscii = style_ == TextStyle::ASCII;
-    const std::size_t space = bytes_.substr(0, line).find(isAscii ? ',' : ' ');
+    const bool ascii = style_ == TextStyle::ASCII;
+    const std::size_t space = bytes_.substr(0, line).find(ascii ? ',' : ' ');
     if (space == std::string_view::npos) {
         return refuse("the message has no number");
     }
-    const std::size_t end = isAscii ? std::min(bytes_.find(',', space + 1), line) : line;
+    const std::size_t end = ascii ? std::min(bytes_.find(',', space + 1), line) : line;
     const std::string_view first = bytes_.substr(0, space),
                            second = bytes_.substr(space + 1, end - space - 1);
-    const auto number = parse_int(isAscii ? first : second);
-    const auto shape = isAscii ? parse_uint(second) : 0;
+    const auto number = parse_int(ascii ? first : second);
+    const auto shape = ascii ? parse_uint(second) : 0;
     if (!number.has_value() || *number < 0 || *number > std::numeric_limits<int>::max() ||
         !shape.has_value() || *shape > std::numeric_limits<std::uint32_t>::max()) {
         return refuse("the message does not begin with its number");
     }
     head.number = static_cast<int>(*number);
     head.shape = static_cast<std::uint32_t>(*shape);
-    head.name = isAscii ? "" : first;
-    bytes_.remove_prefix(isAscii ? end : end + 1);
+    head.name = ascii ? "" : first;
+    bytes_.remove_prefix(ascii ? end : end + 1);
     return true;
 }
 
@@ -219,9 +219,9 @@ bool TextReader::integer(const Value &value, std::int64_t &number) {
     }
     if (isWide(value)) {
         const auto read = parse_uint(text);
-        const bool isFitting = read.has_value() && (value.field.type.bytes == 8 || *read <= 0xffffffffU);
+        const bool fitting = read.has_value() && (value.field.type.bytes == 8 || *read <= 0xffffffffU);
         number = static_cast<std::int64_t>(read.value_or(0));
-        return isFitting || refuse("it is no whole number of its type");
+        return fitting || refuse("it is no whole number of its type");
     }
     const auto read = parse_int(text);
     number = read.value_or(0);
@@ -284,8 +284,8 @@ void TextReader::leave() {
 }
 
 bool TextReader::end() {
-    const bool isAtEnd = style_ == TextStyle::ASCII ? bytes_ == "\n" : bytes_.empty();
-    return isAtEnd || refuse(fmt::format("{} bytes too many", bytes_.size()));
+    const bool at_end = style_ == TextStyle::ASCII ? bytes_ == "\n" : bytes_.empty();
+    return at_end || refuse(fmt::format("{} bytes too many", bytes_.size()));
 }
 
 }  // namespace mw::nml

@@ -41,8 +41,8 @@ class Update {
     std::unexpected<Error> bad(const Field &field, const std::string &what) const {
         return fail(fmt::format("{}: {}: {}", declaration_.name, field.name, what));
     }
-    Result<> told(const Field &field, bool isGood) const {
-        return isGood ? Result<>{} : bad(field, format_.problem());
+    Result<> told(const Field &field, bool is_good) const {
+        return is_good ? Result<>{} : bad(field, format_.problem());
     }
 
     Result<> list(const Field &field, void *at) {
@@ -68,11 +68,11 @@ class Update {
         case Kind::NAMED: return integer(value, at);
         case Kind::REAL: {
             double number = messages::get_real(at);
-            const bool isGood = format_.real(value, number);
-            if (isGood && format_.isReading()) {
+            const bool is_good = format_.real(value, number);
+            if (is_good && format_.isReading()) {
                 messages::set_real(at, number);
             }
-            return told(value.field, isGood);
+            return told(value.field, is_good);
         }
         case Kind::TEXT:
         case Kind::FIXED_TEXT: return text(value, at);

@@ -63,8 +63,8 @@ Result<Passwords> Passwords::load(const std::string &path) {
 bool Passwords::isRight(std::string_view name, std::string_view password) const {
     bool isRight = false;
     for (const Credentials &user : users_) {
-        const bool isName = isSame(name, user.name), isPassword = isSame(password, user.password);
-        isRight = isRight || (isName && isPassword);
+        const bool is_name = isSame(name, user.name), is_password = isSame(password, user.password);
+        isRight = isRight || (is_name && is_password);
     }
     return isRight;
 }

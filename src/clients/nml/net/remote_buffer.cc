@@ -76,9 +76,9 @@ class RemoteBuffer final : public Buffer {
                                                    : exchange_datagrams(request, deadline);
         if (!answer.has_value()) {
             socket_.close();  // an answer that comes late must not be taken for that to another request
-            const bool isChange = operation == Operation::WRITE || operation == Operation::CLEAR;
+            const bool is_change = operation == Operation::WRITE || operation == Operation::CLEAR;
             return bad(answer.error().message,
-                       isChange ? "whether it was carried out is not known" : "is its server running?");
+                       is_change ? "whether it was carried out is not known" : "is its server running?");
         }
         if (answer->status == Status::REFUSED) {
             return bad(fmt::format("its server says: {}", answer->bytes));
@@ -98,8 +98,8 @@ class RemoteBuffer final : public Buffer {
                                         : std::unexpected(received.error());
         }
         // A server that does not understand a request cannot say which.
-        const bool isOurs = answer.request == request.request || answer.status == Status::REFUSED;
-        return isOurs ? Result<Packet>(std::move(answer)) : fail("its server answers something else");
+        const bool ours = answer.request == request.request || answer.status == Status::REFUSED;
+        return ours ? Result<Packet>(std::move(answer)) : fail("its server answers something else");
     }
 
     Result<Packet> exchange_datagrams(const Packet &request, const Deadline &deadline) {

@@ -46,7 +46,7 @@ Result<std::unique_ptr<Server>> Server::start(const Config &config, const std::s
     std::set<std::tuple<std::string, int, Transport>> places;
     for (const BufferSettings &buffer : config.buffers) {
         const ProcessSettings *line = config.find_process(process, buffer.name);
-        if (line == nullptr || !line->isServer) {
+        if (line == nullptr || !line->is_server) {
             continue;
         }
         for (const auto &port : {buffer.tcp_port, buffer.stcp_port}) {
@@ -206,11 +206,11 @@ void Server::serve_datagrams(Listener &listener) {
         request->time_ms = 0;  // one thread for all: no client may wait
         DatagramClient &client = clients[std::string(reinterpret_cast<const char *>(&address), size)];
         client.used = ++count;
-        const bool isNew = client.session == nullptr || request->request != client.last_request;
+        const bool is_new = client.session == nullptr || request->request != client.last_request;
         if (client.session == nullptr || client.session->isBarred()) {
             client.session = std::make_unique<Session>(service_);
         }
-        if (isNew) {
+        if (is_new) {
             client.last_request = request->request;
             client.last_answer = to_wire(client.session->answer(*request, [] { return true; }));
         }

@@ -28,9 +28,9 @@ Packet answer_to(const Packet &request, Status status, std::string bytes = {}, s
 }  // namespace
 
 Encoding encoding_of(const BufferSettings &buffer) {
-    const bool isForOthers = buffer.isNeutral || buffer.tcp_port.has_value() ||
-                             buffer.stcp_port.has_value() || buffer.udp_port.has_value();
-    return buffer.encoding.value_or(isForOthers ? Encoding::XDR : Encoding::RAW);
+    const bool for_others = buffer.neutral || buffer.tcp_port.has_value() || buffer.stcp_port.has_value() ||
+                            buffer.udp_port.has_value();
+    return buffer.encoding.value_or(for_others ? Encoding::XDR : Encoding::RAW);
 }
 
 Session::~Session() {
@@ -80,7 +80,7 @@ Result<Packet> Session::carry_out(const Packet &request, const std::function<boo
     if (request.operation == Operation::LOGIN) {
         return log_in(request, **open);
     }
-    if (!(*open)->isLoggedIn) {
+    if (!(*open)->logged_in) {
         return fail(fmt::format("buffer '{}' needs a password", (*open)->buffer->name()), {},
                     "name a password file in its B line: passwd=FILE");
     }
@@ -105,8 +105,8 @@ Result<Packet> Session::log_in(const Packet &request, Open &open) {
     const bool isRight = !open.served->passwords.has_value() ||
                          (zero != std::string::npos &&
                           open.served->passwords->isRight(bytes.substr(0, zero), bytes.substr(zero + 1)));
-    open.isLoggedIn = isRight;
-    isBarred_ = !isRight;
+    open.logged_in = isRight;
+    barred_ = !isRight;
     return isRight ? Result<Packet>(answer_to(request, Status::DONE)) : fail("name or password are wrong");
 }
 
@@ -123,25 +123,25 @@ Result<Packet> Session::write(const Packet &request, Open &open) {
 }
 
 Result<Packet> Session::read(const Packet &request, Open &open, const std::function<bool()> &isOver) {
-    const bool isQueue = open.served->buffer.isQueue;
-    const bool isPeek = request.operation == Operation::PEEK;
-    const bool isWait = request.operation == Operation::WAIT;
+    const bool is_queue = open.served->buffer.is_queue;
+    const bool is_peek = request.operation == Operation::PEEK;
+    const bool is_wait = request.operation == Operation::WAIT;
     const Deadline deadline(timeout_of(request));
     for (;;) {
         Received message;
         const auto found =
-            isWait               ? open.buffer->wait(message,
-                                                     {std::min(SLICE_S, static_cast<double>(deadline.left_ns()) / 1e9)})
-            : isPeek || !isQueue ? open.buffer->peek(message, timeout_of(request))
-                                 : open.buffer->read(message, timeout_of(request));
+            is_wait                ? open.buffer->wait(message,
+                                                       {std::min(SLICE_S, static_cast<double>(deadline.left_ns()) / 1e9)})
+            : is_peek || !is_queue ? open.buffer->peek(message, timeout_of(request))
+                                   : open.buffer->read(message, timeout_of(request));
         if (!found.has_value()) {
             return std::unexpected(found.error());
         }
         // Each client says itself what it has read: several connections of one client are one reader.
-        if (*found && (isPeek || isQueue || message.number > request.number)) {
+        if (*found && (is_peek || is_queue || message.number > request.number)) {
             return answer_to(request, Status::DONE, std::move(message.bytes), message.number);
         }
-        if (!isWait || deadline.isOver() || isOver()) {
+        if (!is_wait || deadline.isOver() || isOver()) {
             return answer_to(request, Status::NOTHING);
         }
     }

@@ -46,13 +46,13 @@ class Session {
     /// The answer to a request. A wait ends early when `isOver` returns true.
     Packet answer(const Packet &request, const std::function<bool()> &isOver);
     /// A wrong password was given: the client is not heard any more.
-    bool isBarred() const { return isBarred_; }
+    bool isBarred() const { return barred_; }
 
   private:
     struct Open {
         const ServedBuffer *served = nullptr;
         std::unique_ptr<Buffer> buffer;
-        bool isLoggedIn = false;
+        bool logged_in = false;
     };
     Result<Open *> find(std::uint32_t number);
     Result<Packet> carry_out(const Packet &request, const std::function<bool()> &isOver);
@@ -63,7 +63,7 @@ class Session {
 
     const Service &service_;
     std::map<std::uint32_t, Open> open_;
-    bool isBarred_ = false;
+    bool barred_ = false;
 };
 
 }  // namespace mw::nml

@@ -48,11 +48,11 @@ struct FreeAddresses {
 using Addresses = std::unique_ptr<addrinfo, FreeAddresses>;
 
 /// "localhost" is this computer's loopback, also without a hosts file (RFC 6761, 6.3).
-Result<Addresses> find_addresses(const std::string &host, int port, Transport transport, bool isListening) {
+Result<Addresses> find_addresses(const std::string &host, int port, Transport transport, bool listening) {
     addrinfo wanted{};
     wanted.ai_family = AF_UNSPEC;
     wanted.ai_socktype = transport == Transport::TCP ? SOCK_STREAM : SOCK_DGRAM;
-    wanted.ai_flags = AI_NUMERICSERV | (isListening ? AI_PASSIVE : 0);
+    wanted.ai_flags = AI_NUMERICSERV | (listening ? AI_PASSIVE : 0);
     addrinfo *found = nullptr;
     int error = ::getaddrinfo(host.c_str(), std::to_string(port).c_str(), &wanted, &found);
     if (error != 0 && host == "localhost") {

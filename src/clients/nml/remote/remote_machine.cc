@@ -79,7 +79,7 @@ RemoteMachine::~RemoteMachine() {
 
 Result<> RemoteMachine::open() {
     const BufferSettings *const commands = config_.find_buffer(COMMAND_CHANNEL);
-    if (commands != nullptr && (!commands->isQueue || !commands->isNumbered)) {
+    if (commands != nullptr && (!commands->is_queue || !commands->isNumbered)) {
         return fail(
             fmt::format("buffer '{}': a remote client needs a queue with serial numbers", COMMAND_CHANNEL),
             commands->place, "Add the options queue and serial to the B line.");

@@ -44,11 +44,11 @@ void PythonTools::ask(py::handle canon) {
         used = entries_.back().toolno >= 0 ? entries_.size() : used;
     }
     entries_.resize(used);
-    isRandom_ = py::hasattr(canon, "random") && py::bool_(canon.attr("random"));
+    random_ = py::hasattr(canon, "random") && py::bool_(canon.attr("random"));
 }
 
 int PythonTools::index_of_tool(int toolno) const {
-    for (std::size_t i = isRandom_ ? 0 : 1; i < entries_.size(); ++i) {
+    for (std::size_t i = random_ ? 0 : 1; i < entries_.size(); ++i) {
         if (entries_[i].toolno == toolno) {
             return static_cast<int>(i);
         }
@@ -63,8 +63,8 @@ void PythonTools::set_entry(int index, const gcode::ToolEntry &entry) {
 }
 
 PythonCanon::PythonCanon(py::object canon, PythonTools &tools) : canon_(std::move(canon)), tools_(tools) {
-    isBatching_ = py::hasattr(canon_, "use_move_batches") && py::bool_(canon_.attr("use_move_batches")) &&
-                  py::hasattr(canon_, "move_batch");
+    batching_ = py::hasattr(canon_, "use_move_batches") && py::bool_(canon_.attr("use_move_batches")) &&
+                py::hasattr(canon_, "move_batch");
 }
 
 py::error_already_set PythonCanon::take_exception() {
@@ -114,14 +114,13 @@ void PythonCanon::call_pose(const char *name, const gcode::Pose &pose) {
 }
 
 /// Tuples (0 rapid or 1 feed, line, nine coordinates) for canons that take them by the thousand.
-void PythonCanon::move(bool isFeed, const gcode::Pose &end) {
-    if (!isBatching_) {
-        call_pose(isFeed ? "straight_feed" : "straight_traverse", end);
+void PythonCanon::move(bool feed, const gcode::Pose &end) {
+    if (!batching_) {
+        call_pose(feed ? "straight_feed" : "straight_traverse", end);
         return;
     }
     const gcode::Pose p = inches(end);
-    batch_.append(
-        py::make_tuple(isFeed ? 1 : 0, line_, p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7], p[8]));
+    batch_.append(py::make_tuple(feed ? 1 : 0, line_, p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7], p[8]));
     if (batch_.size() >= BATCH_MOVES && !exception_) {
         try {
             finish_batch();
@@ -193,9 +192,10 @@ void PythonCanon::hand_on(const gcode::ArcFeed &arc) {
         return;
     }
     const gcode::Pose end = inches(arc.end);
-    const bool isUvw = plane_ == gcode::Plane::UV || plane_ == gcode::Plane::VW || plane_ == gcode::Plane::UW;
+    const bool is_uvw =
+        plane_ == gcode::Plane::UV || plane_ == gcode::Plane::VW || plane_ == gcode::Plane::UW;
     // The three axes that the plane leaves out follow as they are; those of the arc's own space are in front.
-    const int other = isUvw ? geometry::AXIS_X : geometry::AXIS_U;
+    const int other = is_uvw ? geometry::AXIS_X : geometry::AXIS_U;
     call("arc_feed", inches(arc.first_end), inches(arc.second_end), inches(arc.first_centre),
          inches(arc.second_centre), arc.rotation, inches(arc.axis_end), end[3], end[4], end[5], end[other],
          end[other + 1], end[other + 2]);
@@ -204,8 +204,8 @@ void PythonCanon::hand_on(const gcode::ArcFeed &arc) {
 /// As straight moves and arcs that keep close to the curve.
 void PythonCanon::hand_on(const gcode::NurbsFeed &nurbs) {
     constexpr double TOLERANCE_INCH = 0.0002;
-    const bool isMm = units_ == gcode::LengthUnits::MM;
-    const auto pieces = approximate(nurbs, isMm ? TOLERANCE_INCH * MM_PER_INCH : TOLERANCE_INCH);
+    const bool is_mm = units_ == gcode::LengthUnits::MM;
+    const auto pieces = approximate(nurbs, is_mm ? TOLERANCE_INCH * MM_PER_INCH : TOLERANCE_INCH);
     const int first = plane_ == gcode::Plane::XY ? 0 : plane_ == gcode::Plane::YZ ? 1 : 2;
     const int second = plane_ == gcode::Plane::XY ? 1 : plane_ == gcode::Plane::YZ ? 2 : 0;
     const int normal = 3 - first - second;

@@ -25,13 +25,13 @@ class PythonTools final : public gcode::ToolSource {
     int count() const override { return static_cast<int>(entries_.size()); }
     gcode::ToolEntry entry(int index) const override { return entries_.at(static_cast<std::size_t>(index)); }
     int index_of_tool(int toolno) const override;
-    bool isRandom() const override { return isRandom_; }
+    bool isRandom() const override { return random_; }
 
     void set_entry(int index, const gcode::ToolEntry &entry);
 
   private:
     std::vector<gcode::ToolEntry> entries_{1};
-    bool isRandom_ = false;
+    bool random_ = false;
 };
 
 /// Calls the object's methods, with next_line before the first call of each line. An exception in a method
@@ -86,7 +86,7 @@ class PythonCanon final : public gcode::Canon {
     gcode::Plane plane_ = gcode::Plane::XY;
     int line_ = 0, announced_line_ = -1;
     int selected_ = -1;
-    bool isBatching_ = false;
+    bool batching_ = false;
     pybind11::list batch_;
 };
 

@@ -11,7 +11,7 @@ namespace {
 /// Places in ActiveCodes, with the names that preview programs use.
 struct CodeName {
     const char *name;
-    bool isM;
+    bool is_m;
     std::size_t place;
 };
 constexpr CodeName CODE_NAMES[] = {
@@ -41,7 +41,7 @@ void define_linecode(py::module_ &module) {
     py::class_<LineCode> line(module, "linecode", "The active modal codes before a line of a program.");
     for (const CodeName &code : CODE_NAMES) {
         line.def_property_readonly(code.name, [code](const LineCode &self) {
-            return code.isM ? self.codes.m[code.place] : self.codes.g[code.place];
+            return code.is_m ? self.codes.m[code.place] : self.codes.g[code.place];
         });
     }
     line.def_property_readonly("feed_rate", [](const LineCode &self) { return self.codes.settings[1]; })

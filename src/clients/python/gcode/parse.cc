@@ -211,15 +211,15 @@ void define_parse(py::module_ &module) {
         [self](const std::string &file, const py::object &canon, const py::object &unitcode,
                const py::object &initcode, const py::object &interpname) {
             // parse(file, canon, [code, ...], interpname) as well: then the fourth word is the name.
-            const bool isList = py::isinstance<py::list>(unitcode) || py::isinstance<py::tuple>(unitcode);
-            const std::string name = text_of(isList ? initcode : interpname);
+            const bool is_list = py::isinstance<py::list>(unitcode) || py::isinstance<py::tuple>(unitcode);
+            const std::string name = text_of(is_list ? initcode : interpname);
             if (!name.empty()) {
                 throw_runtime("gcode.parse: interpreters other than the built-in one are not supported, but "
                               "interpname is '" +
                               name + "'");
             }
             std::vector<std::string> codes = codes_of(unitcode);
-            if (!isList) {
+            if (!is_list) {
                 codes.push_back(text_of(initcode));
             }
             return Parse(canon, self).run(file, codes);

@@ -146,8 +146,8 @@ std::shared_ptr<Item> Component::item(const std::string &item_name, bool isPin) 
     return found;
 }
 
-void Component::set_ready(bool isReady) {
-    check(hal_->set_ready(id(), isReady));
+void Component::set_ready(bool ready) {
+    check(hal_->set_ready(id(), ready));
 }
 
 void Component::exit() {

@@ -42,11 +42,11 @@ std::int64_t signed_in(py::handle object, std::int64_t low, std::int64_t high) {
 std::uint64_t unsigned_below(py::handle object, std::uint64_t high) {
     const py::int_ whole = as_int(object);
     const unsigned long long value = PyLong_AsUnsignedLongLong(whole.ptr());
-    const bool isBad = value == static_cast<unsigned long long>(-1) && PyErr_Occurred() != nullptr;
-    if (isBad) {
+    const bool bad = value == static_cast<unsigned long long>(-1) && PyErr_Occurred() != nullptr;
+    if (bad) {
         PyErr_Clear();
     }
-    if (isBad || value > high) {
+    if (bad || value > high) {
         throw_overflow(whole);
     }
     return value;

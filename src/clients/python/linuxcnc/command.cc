@@ -41,16 +41,16 @@ client::Client &Command::client() {
 
 template <class Act>
 void Command::away(const Act &act) {
-    while (isBusy_) {  // another thread of this program waits with the same object
+    while (busy_) {  // another thread of this program waits with the same object
         py::gil_scoped_release release;
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
-    isBusy_ = true;
+    busy_ = true;
     {
         py::gil_scoped_release release;
         act();
     }
-    isBusy_ = false;
+    busy_ = false;
     if (PyErr_CheckSignals() != 0) {
         throw py::error_already_set();
     }
@@ -64,9 +64,9 @@ void Command::refuse(const std::string &reason) {
 
 void Command::send(const messages::Command &command) {
     client::Client &to = client();
-    isHoming_ = std::holds_alternative<messages::HomeJoint>(command);
+    homing_ = std::holds_alternative<messages::HomeJoint>(command);
     isStop_ = mailbox::isStop(command);
-    isAbort_ = std::holds_alternative<messages::AbortAll>(command);
+    abort_ = std::holds_alternative<messages::AbortAll>(command);
     isRefused_ = false;
     away([&] {
         const auto posted = to.post(command);
@@ -102,9 +102,9 @@ void Command::send_and_look(const messages::Command &command) {
 /// later: the next poll is to see that no work is active.
 bool Command::show_end(double seconds) {
     const auto isShown = [this] {
-        const bool isRead = client_->read_status().has_value();
+        const bool is_read = client_->read_status().has_value();
         const messages::MachineStatus &status = client_->status();
-        return isRead && (status.last_command != serial_ || rcs_state(status) != RcsState::EXEC);
+        return is_read && (status.last_command != serial_ || rcs_state(status) != RcsState::EXEC);
     };
     return client_->wait_until(isShown, seconds).has_value();
 }
@@ -116,10 +116,10 @@ int Command::wait_complete(std::optional<double> timeout_s) {
     if (isRefused_) {
         return static_cast<int>(RcsState::ERROR);
     }
-    const bool isShort = isHoming_ && !timeout_s.has_value();
-    double left_s = isShort ? HOMING_PATIENCE_S : std::max(0.0, timeout_s.value_or(USUAL_TIMEOUT_S));
+    const bool is_short = homing_ && !timeout_s.has_value();
+    double left_s = is_short ? HOMING_PATIENCE_S : std::max(0.0, timeout_s.value_or(USUAL_TIMEOUT_S));
     client::Outcome outcome;
-    bool isAtRest = !isAbort_;
+    bool at_rest = !abort_;
     while (true) {
         const double slice_s = std::min(left_s, LONGEST_SLEEP_S);
         away([&] {
@@ -129,19 +129,19 @@ int Command::wait_complete(std::optional<double> timeout_s) {
             if (outcome.progress == messages::Progress::STARTED) {
                 return;
             }
-            if (!isAtRest) {  // axes brake
-                isAtRest = outcome.progress != messages::Progress::DONE || show_end(slice_s);
+            if (!at_rest) {  // axes brake
+                at_rest = outcome.progress != messages::Progress::DONE || show_end(slice_s);
             } else {
                 show_end(isStop_ ? STOP_SHOWN_WITHIN_S : SHOWN_WITHIN_S);
             }
         });
         left_s -= slice_s;
-        if (outcome.progress != messages::Progress::STARTED && isAtRest) {
-            const bool isDone = outcome.progress == messages::Progress::DONE;
-            return static_cast<int>(isDone ? RcsState::DONE : RcsState::ERROR);
+        if (outcome.progress != messages::Progress::STARTED && at_rest) {
+            const bool done = outcome.progress == messages::Progress::DONE;
+            return static_cast<int>(done ? RcsState::DONE : RcsState::ERROR);
         }
         if (left_s <= 0) {
-            return isShort ? static_cast<int>(RcsState::DONE) : TIME_IS_OVER;
+            return is_short ? static_cast<int>(RcsState::DONE) : TIME_IS_OVER;
         }
     }
 }

@@ -36,12 +36,12 @@ class Command {
     void away(const Act &act);
 
     std::optional<client::Client> client_;
-    bool isBusy_ = false;
+    bool busy_ = false;
     client::Serial serial_ = 0;
     bool isRefused_ = false;  ///< before it came to task
-    bool isHoming_ = false;
+    bool homing_ = false;
     bool isStop_ = false;
-    bool isAbort_ = false;
+    bool abort_ = false;
 };
 
 }  // namespace mw::python

@@ -73,21 +73,21 @@ void jog(Command &self, const py::args &words) {
         need(3);
     }
     const auto kind = checked<JogWord>(words[0].cast<int>(), STOP, INCREMENT, "jog");
-    const bool isJoint = words[1].cast<int>() != 0;
+    const bool is_joint = words[1].cast<int>() != 0;
     const int index = words[2].cast<int>();
     switch (kind) {
     case STOP:
         need(3);
-        self.send(messages::JogStop{isJoint, index});
+        self.send(messages::JogStop{is_joint, index});
         return;
     case CONTINUOUS:
         need(4);
-        self.send(messages::JogContinuous{isJoint, index, words[3].cast<double>()});
+        self.send(messages::JogContinuous{is_joint, index, words[3].cast<double>()});
         return;
     case INCREMENT: {
         need(5);
         const double speed = words[3].cast<double>(), distance = words[4].cast<double>();
-        self.send(messages::JogIncrement{isJoint, index, speed, speed < 0 ? -distance : distance});
+        self.send(messages::JogIncrement{is_joint, index, speed, speed < 0 ? -distance : distance});
         return;
     }
     }
@@ -98,9 +98,9 @@ void turn_spindle(Command &self, const py::args &words) {
         throw py::type_error("spindle(word, ...) needs SPINDLE_FORWARD, SPINDLE_OFF, ...");
     }
     const int word = words[0].cast<int>();
-    const bool isTurned = word == TURN || word == TURN_BACK;
-    const double rpm = isTurned && words.size() > 1 ? words[1].cast<double>() : 0;
-    const std::size_t place = isTurned ? 2 : 1;
+    const bool turned = word == TURN || word == TURN_BACK;
+    const double rpm = turned && words.size() > 1 ? words[1].cast<double>() : 0;
+    const std::size_t place = turned ? 2 : 1;
     const int spindle = words.size() > place ? words[place].cast<int>() : 0;
     switch (word) {
     case TURN:

@@ -115,22 +115,22 @@ class Strip {
     void begin(unsigned mode) {
         end();
         gl_.begin(mode);
-        isOpen_ = true;
+        is_open_ = true;
     }
     void end() {
-        if (isOpen_) {
+        if (is_open_) {
             gl_.end();
         }
-        isOpen_ = false;
+        is_open_ = false;
     }
-    bool isOpen() const { return isOpen_; }
+    bool isOpen() const { return is_open_; }
 
   private:
     const Gl &gl_;
-    bool isOpen_ = false;
+    bool is_open_ = false;
 };
 
-void draw_lines(const Drawing &drawing, const py::list &lines, bool isSelecting) {
+void draw_lines(const Drawing &drawing, const py::list &lines, bool selecting) {
     const Gl &gl = Gl::library();
     Strip strip(gl);
     geometry::Pose last;
@@ -139,10 +139,10 @@ void draw_lines(const Drawing &drawing, const py::list &lines, bool isSelecting)
         const py::tuple item = item_of(words, 3);
         const long line = static_cast<long>(line_of(item));
         const geometry::Pose from = pose_of(item[1]), to = pose_of(item[2]);
-        const bool isNewLine = isSelecting && line != last_line;
-        if (!strip.isOpen() || isNewLine || !(from == last)) {
+        const bool new_line = selecting && line != last_line;
+        if (!strip.isOpen() || new_line || !(from == last)) {
             strip.end();
-            if (isNewLine) {
+            if (new_line) {
                 gl.load_name(static_cast<unsigned>(line));
             }
             strip.begin(Gl::LINE_STRIP);
@@ -167,7 +167,7 @@ void draw_cross(const Gl &gl, const Vertex &at, std::size_t normal) {
     }
 }
 
-void draw_dwells(const py::list &dwells, double alpha, bool isSelecting, bool isLathe) {
+void draw_dwells(const py::list &dwells, double alpha, bool selecting, bool is_lathe) {
     const Gl &gl = Gl::library();
     Strip strip(gl);
     // Normals of the planes XY, XZ and YZ.
@@ -176,8 +176,8 @@ void draw_dwells(const py::list &dwells, double alpha, bool isSelecting, bool is
         const py::tuple item = item_of(words, 6);
         const auto colour = item[1].cast<std::array<double, 3>>();
         const Vertex at{item[2].cast<double>(), item[3].cast<double>(), item[4].cast<double>()};
-        const auto plane = static_cast<std::size_t>(isLathe ? 1 : std::clamp(item[5].cast<int>(), 0, 2));
-        if (isSelecting) {
+        const auto plane = static_cast<std::size_t>(is_lathe ? 1 : std::clamp(item[5].cast<int>(), 0, 2));
+        if (selecting) {
             strip.end();
             gl.load_name(line_of(item));
         } else {
@@ -196,15 +196,15 @@ void draw_dwells(const py::list &dwells, double alpha, bool isSelecting, bool is
 void define_drawing(py::module_ &module, const std::shared_ptr<ViewGeometry> &view) {
     module.def(
         "draw_lines",
-        [view](const std::string &geometry, const py::list &lines, bool isSelecting) {
-            draw_lines(Drawing(geometry, view->centre()), lines, isSelecting);
+        [view](const std::string &geometry, const py::list &lines, bool selecting) {
+            draw_lines(Drawing(geometry, view->centre()), lines, selecting);
         },
         py::arg("geometry"), py::arg("lines"), py::arg("for_selection") = false,
         "Draws moves: items (line, nine coordinates of the start, nine of the end, ...).");
     module.def(
         "draw_dwells",
-        [](const std::string &, const py::list &dwells, double alpha, bool isSelecting, bool isLathe) {
-            draw_dwells(dwells, alpha, isSelecting, isLathe);
+        [](const std::string &, const py::list &dwells, double alpha, bool selecting, bool is_lathe) {
+            draw_dwells(dwells, alpha, selecting, is_lathe);
         },
         py::arg("geometry"), py::arg("dwells"), py::arg("alpha"), py::arg("for_selection") = false,
         py::arg("is_lathe") = false,

@@ -28,8 +28,8 @@ class Ini {
     py::list find_all(const std::string &section, const std::string &key) const {
         py::list out;
         for (const ini::IniEntry &entry : file_.entries()) {
-            const bool isWanted = entry.section == section && (key.empty() || entry.key == key);
-            if (isWanted && !entry.value.empty()) {
+            const bool wanted = entry.section == section && (key.empty() || entry.key == key);
+            if (wanted && !entry.value.empty()) {
                 out.append(py::str(text_of(entry)));
             }
         }
@@ -41,11 +41,11 @@ class Ini {
     }
     py::list sections() const { return list_of(file_.sections()); }
     py::list variables(const py::object &section) const {
-        const bool isOfAll = section.is_none();
-        const std::string name = isOfAll ? std::string() : section.cast<std::string>();
+        const bool of_all = section.is_none();
+        const std::string name = of_all ? std::string() : section.cast<std::string>();
         py::list out;
         for (const ini::IniEntry &entry : file_.entries()) {
-            if (isOfAll || entry.section == name) {
+            if (of_all || entry.section == name) {
                 out.append(py::make_tuple(entry.key, text_of(entry)));
             }
         }

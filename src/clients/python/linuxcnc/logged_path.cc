@@ -25,8 +25,8 @@ bool LoggedPath::isStraightOn(const LoggedPoint &sample) const {
     const LoggedPoint &last = points_.back(), &before = points_[points_.size() - 2];
     const auto way = step_of(before, last), next = step_of(last, sample);
     const double lengths = std::sqrt(dot(way, way) * dot(next, next));
-    const bool isOtherEndStill = last.a == sample.a && last.b == sample.b && last.c == sample.c;
-    return isOtherEndStill && (lengths == 0 || dot(way, next) / lengths > 1 - STRAIGHT);
+    const bool other_end_still = last.a == sample.a && last.b == sample.b && last.c == sample.c;
+    return other_end_still && (lengths == 0 || dot(way, next) / lengths > 1 - STRAIGHT);
 }
 
 void LoggedPath::add(const LoggedPoint &sample) {

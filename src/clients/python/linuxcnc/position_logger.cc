@@ -55,7 +55,7 @@ class PositionLogger {
         }
         colours_ = colours_of(py::sequence(words[py::slice(1, 1 + COLOURS, 1)]));
         geometry_ = words[GEOMETRY].cast<std::string>();
-        isFoam_ = words.size() > GEOMETRY + 1 && words[GEOMETRY + 1].cast<int>() != 0;
+        is_foam_ = words.size() > GEOMETRY + 1 && words[GEOMETRY + 1].cast<int>() != 0;
     }
     PositionLogger(const PositionLogger &) = delete;
     PositionLogger &operator=(const PositionLogger &) = delete;
@@ -63,7 +63,7 @@ class PositionLogger {
     /// Samples until stop(), in the thread that calls it. When the program ends meanwhile, Python ends this
     /// thread by unwinding at its next call. No destructor may run then, so gil_scoped_release is not used.
     void start(double interval_s) {
-        isWanted_.store(true);
+        wanted_.store(true);
         const std::string instance = machine_instance(), file = nml_file();
         PyThreadState *const python = PyEval_SaveThread();
         sample_until_stop(instance, file, interval_s);
@@ -71,7 +71,7 @@ class PositionLogger {
     }
     void sample_until_stop(const std::string &instance, const std::string &file, double interval_s) {
         auto viewer = nml::find_machine(instance, file);
-        while (isWanted_.load()) {
+        while (wanted_.load()) {
             // A machine that was started again, or a connection that was lost, is found again.
             if (!viewer.has_value() || !viewer->isMachineAlive()) {
                 viewer = nml::find_machine(instance, file);
@@ -81,7 +81,7 @@ class PositionLogger {
             std::this_thread::sleep_for(std::chrono::duration<double>(interval_s));
         }
     }
-    void stop() { isWanted_.store(false); }
+    void stop() { wanted_.store(false); }
     void clear() {
         const std::lock_guard lock(mutex_);
         path_.clear();
@@ -130,13 +130,13 @@ class PositionLogger {
             return;
         }
         // A foam cutter's point is a line between the ends of its wire: two vertices of half the size.
-        const int stride = static_cast<int>(sizeof(LoggedPoint)) / (isFoam_ ? 2 : 1);
+        const int stride = static_cast<int>(sizeof(LoggedPoint)) / (is_foam_ ? 2 : 1);
         gl.enable_client_state(Gl::VERTEX_ARRAY);
         gl.enable_client_state(Gl::COLOR_ARRAY);
         gl.vertex_pointer(3, Gl::FLOAT, stride, &points.front().x);
         gl.color_pointer(4, Gl::UNSIGNED_BYTE, stride, points.front().colour.data());
         const int count = static_cast<int>(points.size());
-        gl.draw_arrays(isFoam_ ? Gl::LINES : Gl::LINE_STRIP, 0, isFoam_ ? 2 * count : count);
+        gl.draw_arrays(is_foam_ ? Gl::LINES : Gl::LINE_STRIP, 0, is_foam_ ? 2 * count : count);
         gl.disable_client_state(Gl::COLOR_ARRAY);
         gl.disable_client_state(Gl::VERTEX_ARRAY);
     }
@@ -147,7 +147,7 @@ class PositionLogger {
         drawn_ = points.size();
         return py::make_tuple(
             py::bytes(reinterpret_cast<const char *>(points.data()), points.size() * sizeof(LoggedPoint)),
-            points.size(), isFoam_);
+            points.size(), is_foam_);
     }
 
   private:
@@ -161,7 +161,7 @@ class PositionLogger {
         LoggedPoint point;
         point.colour = point.other_colour = colours_[std::min(kind, COLOURS - 1)];
         const auto f = [](double value) { return static_cast<float>(value); };
-        if (isFoam_) {
+        if (is_foam_) {
             point.x = f(pose[geometry::AXIS_X]), point.y = f(pose[geometry::AXIS_Y]), point.z = foam_z_;
             point.a = f(pose[geometry::AXIS_U]), point.b = f(pose[geometry::AXIS_V]), point.c = foam_w_;
         } else {
@@ -175,10 +175,10 @@ class PositionLogger {
 
     std::shared_ptr<ViewGeometry> view_;
     std::mutex mutex_;
-    std::atomic<bool> isWanted_{false};
+    std::atomic<bool> wanted_{false};
     Colours colours_{};
     std::string geometry_;
-    bool isFoam_ = false;
+    bool is_foam_ = false;
     float foam_z_ = 0, foam_w_ = 0;
     LoggedPath path_;
     std::size_t drawn_ = 0;  ///< points that the screen has taken

@@ -47,20 +47,20 @@ class Stat {
             shown_table_ = py::none();
         }
         view_.check_alive();
-        isPolled_ = true;
+        polled_ = true;
         if (ini_.empty()) {
             ini_ = viewer.identity().ini.str();
         }
     }
-    const Status &status() { return isPolled_ && view_.isJoined() ? view_.viewer().status() : nothing(); }
+    const Status &status() { return polled_ && view_.isJoined() ? view_.viewer().status() : nothing(); }
     const std::string &ini() {
-        if (isPolled_ && view_.isJoined() && view_.viewer().link() != nullptr) {
+        if (polled_ && view_.isJoined() && view_.viewer().link() != nullptr) {
             throw_error("ini_filename: the machine is on another computer, and so is its INI file");
         }
         return ini_;
     }
     const messages::ToolTable &table() {
-        if (isPolled_ && view_.isJoined() && view_.viewer().link() != nullptr) {
+        if (polled_ && view_.isJoined() && view_.viewer().link() != nullptr) {
             if (const auto tools = view_.viewer().link()->check_tools(); !tools.has_value()) {
                 throw_error(tools.error().str());
             }
@@ -77,7 +77,7 @@ class Stat {
 
   private:
     View view_;
-    bool isPolled_ = false;
+    bool polled_ = false;
     std::string ini_;
     messages::ToolTable table_;
     py::object shown_table_ = py::none();

@@ -16,14 +16,14 @@ RcsState rcs_state(const messages::MachineStatus &status) {
     case messages::Progress::DONE: break;
     }
     const messages::TrajectoryStatus &trajectory = status.trajectory;
-    const bool isCommanded = status.last_progress == messages::Progress::STARTED ||
-                             status.task.interp_state != messages::InterpState::IDLE ||
-                             status.task.waiting.what != WaitFor::NOTHING;
+    const bool commanded = status.last_progress == messages::Progress::STARTED ||
+                           status.task.interp_state != messages::InterpState::IDLE ||
+                           status.task.waiting.what != WaitFor::NOTHING;
     // Jogs of axes are no work that is under way: screens give further commands meanwhile. A line has ended
     // with its last move, however the feedback follows.
-    const bool isMoving = trajectory.queue_depth > 0 || trajectory.isHoming ||
-                          (!trajectory.isInPosition && trajectory.mode == messages::MotionMode::FREE);
-    return isCommanded || isMoving ? RcsState::EXEC : RcsState::DONE;
+    const bool moving = trajectory.queue_depth > 0 || trajectory.isHoming ||
+                        (!trajectory.isInPosition && trajectory.mode == messages::MotionMode::FREE);
+    return commanded || moving ? RcsState::EXEC : RcsState::DONE;
 }
 
 }  // namespace mw::python

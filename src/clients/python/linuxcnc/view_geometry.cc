@@ -43,9 +43,9 @@ Vertex vertex_of(const std::string &geometry, const geometry::Pose &pose, const 
     return p;
 }
 
-void ViewGeometry::choose(const std::string &coordinates, bool isOffset) {
+void ViewGeometry::choose(const std::string &coordinates, bool offset) {
     const std::lock_guard lock(mutex_);
-    isOffset_ = isOffset;
+    offset_ = offset;
     turning_.reset();
     for (const char letter : coordinates) {
         if (const int axis = geometry::axis_of_letter(letter); axis >= 0) {
@@ -61,7 +61,7 @@ void ViewGeometry::place_origin(const Vertex &origin) {
 
 RotationCentre ViewGeometry::centre() const {
     const std::lock_guard lock(mutex_);
-    return {isOffset_ ? origin_ : Vertex{}, turning_};
+    return {offset_ ? origin_ : Vertex{}, turning_};
 }
 
 }  // namespace mw::python

@@ -27,14 +27,14 @@ Vertex vertex_of(const std::string &geometry, const geometry::Pose &pose, const 
 /// What a screen has set for all that is drawn. Any thread.
 class ViewGeometry {
   public:
-    /// `isOffset`: the rotations are about the origin of the work piece, else about that of the machine.
-    void choose(const std::string &coordinates, bool isOffset);
+    /// `offset`: the rotations are about the origin of the work piece, else about that of the machine.
+    void choose(const std::string &coordinates, bool offset);
     void place_origin(const Vertex &origin);
     RotationCentre centre() const;
 
   private:
     mutable std::mutex mutex_;
-    bool isOffset_ = false;
+    bool offset_ = false;
     Vertex origin_{};
     std::bitset<geometry::AXIS_COUNT> turning_{0x1ff};
 };

@@ -19,28 +19,28 @@ namespace {
 /// Says each byte again; ends at a full stop, and the server at an exclamation mark.
 class Echo final : public Conversation {
   public:
-    Echo(std::atomic<int> &living, bool isMute) : living_(living), isMute_(isMute) { ++living_; }
+    Echo(std::atomic<int> &living, bool mute) : living_(living), isMute_(mute) { ++living_; }
     ~Echo() override { --living_; }
     void take(std::string_view bytes) override { in_ += bytes; }
-    void end_input() override { isOver_ = true; }
+    void end_input() override { over_ = true; }
     bool isFull() const override { return false; }
     void step(double) override {
         out_ += isMute_ ? "" : in_;
-        isOver_ = isOver_ || in_.find('.') != std::string::npos;
-        isEnd_ = isEnd_ || in_.find('!') != std::string::npos;
-        isOver_ = isOver_ || isEnd_;
+        over_ = over_ || in_.find('.') != std::string::npos;
+        is_end_ = is_end_ || in_.find('!') != std::string::npos;
+        over_ = over_ || is_end_;
         in_.clear();
     }
     std::string &output() override { return out_; }
     bool isBusy() const override { return false; }
-    bool isOver() const override { return isOver_; }
-    bool wantsShutdown() const override { return isEnd_; }
+    bool isOver() const override { return over_; }
+    bool wantsShutdown() const override { return is_end_; }
 
   private:
     std::atomic<int> &living_;
     bool isMute_;
     std::string in_, out_;
-    bool isOver_ = false, isEnd_ = false;
+    bool over_ = false, is_end_ = false;
 };
 
 class RshServerTest : public ::testing::Test {
@@ -49,13 +49,13 @@ class RshServerTest : public ::testing::Test {
         ServerSettings settings;
         settings.port = 0;
         settings.max_sessions = max_sessions;
-        auto made = Server::listen(settings, [this] { return std::make_unique<Echo>(living, isMute); });
+        auto made = Server::listen(settings, [this] { return std::make_unique<Echo>(living, mute); });
         ASSERT_TRUE(made.has_value()) << made.error().str();
         server = std::move(*made);
-        thread = std::thread([this] { server->run([this] { return !isEnded; }, 0.01); });
+        thread = std::thread([this] { server->run([this] { return !ended; }, 0.01); });
     }
     void TearDown() override {
-        isEnded = true;
+        ended = true;
         if (thread.joinable()) {
             thread.join();
         }
@@ -83,8 +83,8 @@ class RshServerTest : public ::testing::Test {
     }
 
     std::atomic<int> living{0};
-    bool isMute = false;
-    std::atomic<bool> isEnded{false};
+    bool mute = false;
+    std::atomic<bool> ended{false};
     std::unique_ptr<Server> server;
     std::thread thread;
 };
@@ -129,7 +129,7 @@ TEST_F(RshServerTest, LastWordsAreSaidWhenTheServerEnds) {
 }
 
 TEST_F(RshServerTest, ItAlsoEndsForWhoHasNothingMoreToHear) {
-    isMute = true;
+    mute = true;
     start();
     const int one = connect();
     say(one, "!");

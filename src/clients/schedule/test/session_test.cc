@@ -36,7 +36,7 @@ class ScheduleTest : public ::testing::Test {
             status->last_command = delivery.serial;
             if (!refused.empty() && text.find(refused) != std::string::npos) {
                 desk.tell(delivery.serial, Progress::REFUSED, "no");
-            } else if (isRunning && text.find("RunProgram") != std::string::npos) {
+            } else if (is_running && text.find("RunProgram") != std::string::npos) {
                 running = delivery.serial;
             } else {
                 desk.tell(delivery.serial, Progress::DONE, "");
@@ -75,7 +75,7 @@ class ScheduleTest : public ::testing::Test {
     std::optional<Scheduler> scheduler;
     std::unique_ptr<Session> session;
     std::string asked, refused;
-    bool isRunning = false;  ///< a program does not end by itself
+    bool is_running = false;  ///< a program does not end by itself
     mailbox::Serial running = 0;
 };
 
@@ -150,7 +150,7 @@ TEST_F(ScheduleTest, NothingFollowsAProgramThatFailed) {
 
 TEST_F(ScheduleTest, StopAbortsWhatRunsAndKeepsIt) {
     greet();
-    isRunning = true;
+    is_running = true;
     say("set pgmadd 1 7 0 0 0 1 a.ngc 100 100 0");
     say("set qmode run");
     cycles(30);

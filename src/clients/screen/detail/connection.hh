@@ -39,8 +39,8 @@ inline constexpr std::chrono::milliseconds DRAIN_TIME{2000};
 /// One connection, one request after the other.
 class Connection : public std::enable_shared_from_this<Connection> {
   public:
-    Connection(Server::Impl &server, Door &door, tcp::socket socket, bool isLocal, bool isForeign)
-        : server_(server), door_(door), isOfServerUser_(isLocal && !isForeign), isForeign_(isForeign),
+    Connection(Server::Impl &server, Door &door, tcp::socket socket, bool is_local, bool isForeign)
+        : server_(server), door_(door), isOfServerUser_(is_local && !isForeign), isForeign_(isForeign),
           wire_(std::make_unique<Wire>(std::move(socket), door.tls.has_value() ? &*door.tls : nullptr)) {
         ++door_.connections;
         door_.foreign_connections += isForeign_ ? 1 : 0;
@@ -76,21 +76,21 @@ class Connection : public std::enable_shared_from_this<Connection> {
                          [self = shared_from_this()](error_code error, std::size_t) { self->take(error); });
     }
     void take(error_code error) {
-        isLast_ = true;
+        is_last_ = true;
         if (error == http::error::body_limit || error == http::error::header_limit) {
             reply(error_response(413, "the request is too large: send files in pieces of at most 1 MiB"));
             return;
         }
-        const bool isHttp = error.category() == make_error_code(http::error::bad_method).category();
+        const bool is_http = error.category() == make_error_code(http::error::bad_method).category();
         if (error) {
-            if (isHttp && error != http::error::end_of_stream && error != http::error::partial_message) {
+            if (is_http && error != http::error::end_of_stream && error != http::error::partial_message) {
                 reply(error_response(400, "this is no HTTP request: " + error.message()));
             }
             return;  // or no client is there
         }
         const HttpRequest &request = parser_->get();
         // An answer to HEAD has no body by its rule, ours has: nothing may follow it.
-        isLast_ = !request.keep_alive() || request.method() == http::verb::head;
+        is_last_ = !request.keep_alive() || request.method() == http::verb::head;
         if (const auto twice = field_set_twice(request); !twice.empty()) {
             reply(error_response(400, "the request has two headers '" + std::string(twice) + "'"));
             return;
@@ -127,8 +127,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
             return;
         }
         // The screen itself is no secret: its first page requests the token.
-        const bool isForAll = !asked->path.starts_with("/api/") && asked->path != "/metrics";
-        if (asked->role == Role::NOBODY && !isForAll) {
+        const bool for_all = !asked->path.starts_with("/api/") && asked->path != "/metrics";
+        if (asked->role == Role::NOBODY && !for_all) {
             reply(error_response(401, "show a token: 'Authorization: Bearer TOKEN', or POST /api/login"));
             return;
         }
@@ -148,8 +148,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
             return;
         }
         const bool isFull = static_cast<int>(server_.sessions.size()) >= server_.limits.sessions;
-        const bool isForeignFull = isForeign_ && door_.foreign_sessions >= server_.limits.foreign_sessions;
-        if (isFull || isForeignFull || door_.sessions >= door_.most_sessions) {
+        const bool foreign_full = isForeign_ && door_.foreign_sessions >= server_.limits.foreign_sessions;
+        if (isFull || foreign_full || door_.sessions >= door_.most_sessions) {
             reply(error_response(503, "as many screens as can be are open: close one"));
             return;
         }
@@ -173,7 +173,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
         if (!response.cookie.empty()) {
             message.set(http::field::set_cookie, response.cookie);
         }
-        message.keep_alive(!isLast_);
+        message.keep_alive(!is_last_);
     }
 
     void reply(Response response) {
@@ -308,7 +308,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
             return;
         }
         piece_ = {};
-        if (!isLast_) {
+        if (!is_last_) {
             read();
             return;
         }
@@ -346,7 +346,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     std::string piece_;
     std::size_t held_bytes_ = 0;  ///< of the body that is being sent, in memory
     std::size_t drained_ = 0;
-    bool isLast_ = false;
+    bool is_last_ = false;
 };
 
 }  // namespace mw::screen::detail

@@ -251,9 +251,9 @@ TEST_F(ApiTest, EachRequestNeedsTheRoleOfTheTable) {
         for (const Role asking : ALL) {
             role = asking;
             const Response answer = ask(row.method, row.target, row.body);
-            const bool isRefused =
+            const bool refused =
                 answer.status == 403 && answer.body.find("needs a token of the role") != std::string::npos;
-            EXPECT_EQ(isRefused, asking < row.least)
+            EXPECT_EQ(refused, asking < row.least)
                 << row.method << ' ' << row.target << " as " << role_name(asking) << ": " << answer.status
                 << ' ' << answer.body;
         }
@@ -285,17 +285,17 @@ TEST_F(ApiTest, EachCommandIsAStopOrNeedsAnOperator) {
             api->received(session, text.dump());
             task.cycle();
             api->tick();
-            bool isOfRole = false;
+            bool of_role = false;
             for (const Json &told : sockets.take(session)) {
-                isOfRole |= told.dump().find("may look, and stop, but not operate") != std::string::npos;
+                of_role |= told.dump().find("may look, and stop, but not operate") != std::string::npos;
             }
-            const bool isStop = stops.contains(std::string(declaration->name));
-            EXPECT_EQ(isOfRole, asking <= Role::VIEW && !isStop)
+            const bool stop = stops.contains(std::string(declaration->name));
+            EXPECT_EQ(of_role, asking <= Role::VIEW && !stop)
                 << declaration->name << " as " << role_name(asking);
         }
     }
     // Of one command it depends on its word.
-    for (const auto &[state, isStop] :
+    for (const auto &[state, stop] :
          {std::pair("ESTOP", true), {"OFF", true}, {"ON", false}, {"ESTOP_RESET", false}}) {
         constexpr SessionId VIEWER = 0;
         sockets.take(VIEWER);
@@ -303,7 +303,7 @@ TEST_F(ApiTest, EachCommandIsAStopOrNeedsAnOperator) {
                                   state + R"("}})");
         task.cycle();
         api->tick();
-        EXPECT_EQ(Json(sockets.take(VIEWER)).dump().find("may look, and stop") == std::string::npos, isStop)
+        EXPECT_EQ(Json(sockets.take(VIEWER)).dump().find("may look, and stop") == std::string::npos, stop)
             << state;
     }
 }

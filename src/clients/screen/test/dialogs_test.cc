@@ -50,12 +50,12 @@ TEST_F(DialogsTest, AQuestionIsTakenBackByItsPin) {
 }
 
 TEST_F(DialogsTest, YesAndNoAreToldToHal) {
-    for (const bool isYes : {false, true}) {
+    for (const bool is_yes : {false, true}) {
         set("probe", 1);
         EXPECT_EQ(dialogs.look(), Places{1});
         EXPECT_EQ(dialogs.take_notes(), std::vector<std::string>{"Is the probe in?"});
-        EXPECT_TRUE(dialogs.answer("probe", 0, isYes));
-        EXPECT_EQ(get("probe-response"), isYes ? 1 : 0);
+        EXPECT_TRUE(dialogs.answer("probe", 0, is_yes));
+        EXPECT_EQ(get("probe-response"), is_yes ? 1 : 0);
         dialogs.look();
     }
 }

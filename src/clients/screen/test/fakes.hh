@@ -45,7 +45,7 @@ class FakeTask {
         ++status->cycle;
         auto taken = desk.take(now_ns);
         for (const auto &delivery : taken) {
-            if (!isKeeping) {
+            if (!keeping) {
                 desk.tell(delivery.serial, messages::Progress::DONE, "");
             }
         }
@@ -59,7 +59,7 @@ class FakeTask {
                                 [this] { return message_ns; }};
     std::unique_ptr<messages::MachineStatus> status = std::make_unique<messages::MachineStatus>();
     std::int64_t now_ns = 0;
-    bool isKeeping = false;
+    bool keeping = false;
 };
 
 }  // namespace mw::screen::test

@@ -20,7 +20,7 @@ class HalDeskTest : public testing::Test {
     HalDeskTest() : desk([this] { return connect(); }) {}
     /// The bench keeps its host; the desk gets a second handle on it.
     Result<std::unique_ptr<hal::Host>> connect() {
-        if (!isUp) {
+        if (!up) {
             return fail("no machine is running");
         }
         return std::make_unique<Borrowed>(*bench.host);
@@ -44,23 +44,24 @@ class HalDeskTest : public testing::Test {
     std::string state() { return body(desk.scope("GET", ""))["state"]; }
 
     components::test::Bench bench{SIGGEN};
-    bool isUp = true;
+    bool up = true;
     HalService desk;
 };
 
 TEST_F(HalDeskTest, ListsWhatThereIs) {
     const Json all = body(desk.list("siggen.0.*"));
     EXPECT_TRUE(all["signals"].empty());
-    bool hasFrequency = false;
+    bool has_frequency = false;
     for (const Json &pin : all["pins"]) {
-        hasFrequency = hasFrequency || (pin["name"] == "siggen.0.frequency" && pin["value"] == 10.0 &&
-                                        pin["type"] == "float" && pin["dir"] == "IN" && pin["signal"] == "");
+        has_frequency =
+            has_frequency || (pin["name"] == "siggen.0.frequency" && pin["value"] == 10.0 &&
+                              pin["type"] == "float" && pin["dir"] == "IN" && pin["signal"] == "");
     }
-    EXPECT_TRUE(hasFrequency) << all["pins"].dump();
+    EXPECT_TRUE(has_frequency) << all["pins"].dump();
     const Json wave = body(desk.list("wave"))["signals"][0];
     EXPECT_EQ(wave["writers"], 1);
     EXPECT_EQ(wave["pins"][0]["name"], "siggen.0.sine");
-    isUp = false;
+    up = false;
     HalService other([this] { return connect(); });
     EXPECT_EQ(other.list("*").status, 503);
 }
@@ -84,7 +85,7 @@ TEST_F(HalDeskTest, TellsWhichInputsOfMotionHaveASource) {
     const Json now = body(desk.inputs());
     EXPECT_EQ(now["probe"], true);
     EXPECT_EQ(now["spindles"][0]["at_speed"], true);
-    isUp = false;
+    up = false;
     HalService other([this] { return connect(); });
     EXPECT_EQ(other.inputs().status, 503);
 }

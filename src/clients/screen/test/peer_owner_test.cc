@@ -65,11 +65,11 @@ TEST(PeerOwner, NeedsAnOpenEstablishedSocketOfThisConnection) {
 /// A listening socket of the loopback and a client of it.
 class PeerOwnerOfASocket : public testing::Test {
   protected:
-    static Endpoint end_of(int fd, bool isOwn) {
+    static Endpoint end_of(int fd, bool is_own) {
         sockaddr_in place{};
         socklen_t size = sizeof place;
         auto *const bytes = reinterpret_cast<sockaddr *>(&place);
-        EXPECT_EQ(isOwn ? ::getsockname(fd, bytes, &size) : ::getpeername(fd, bytes, &size), 0);
+        EXPECT_EQ(is_own ? ::getsockname(fd, bytes, &size) : ::getpeername(fd, bytes, &size), 0);
         return {ntohl(place.sin_addr.s_addr), ntohs(place.sin_port)};
     }
     PeerOwnerOfASocket() {
@@ -135,8 +135,8 @@ TEST_F(PeerOwnerOfASocket, OfAnotherUserIsNotTheServersUser) {
     constexpr uid_t NOBODY = 65534;
     const pid_t child = ::fork();
     if (child == 0) {
-        const bool isOther = ::setgid(NOBODY) == 0 && ::setuid(NOBODY) == 0;
-        const int fd = isOther ? connect() : -1;
+        const bool other = ::setgid(NOBODY) == 0 && ::setuid(NOBODY) == 0;
+        const int fd = other ? connect() : -1;
         char byte = 0;
         ::_exit(fd >= 0 && ::read(fd, &byte, 1) == 1 ? 0 : 1);
     }

@@ -40,19 +40,19 @@ class Ear final : public Application {
 /// A blocking client, for a separate thread.
 class Caller {
   public:
-    Caller(int port, bool hasTls) : fd_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+    Caller(int port, bool has_tls) : fd_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
         sockaddr_in place{};
         place.sin_family = AF_INET;
         place.sin_port = htons(static_cast<std::uint16_t>(port));
         place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
         timeval patience{10, 0};
         ::setsockopt(fd_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
-        isUp_ = ::connect(fd_, reinterpret_cast<sockaddr *>(&place), sizeof place) == 0;
-        if (isUp_ && hasTls) {
+        up_ = ::connect(fd_, reinterpret_cast<sockaddr *>(&place), sizeof place) == 0;
+        if (up_ && has_tls) {
             context_ = SSL_CTX_new(TLS_client_method());
             tls_ = SSL_new(context_);
             SSL_set_fd(tls_, fd_);
-            isUp_ = SSL_connect(tls_) == 1;
+            up_ = SSL_connect(tls_) == 1;
         }
     }
     ~Caller() {
@@ -63,17 +63,17 @@ class Caller {
     Caller(const Caller &) = delete;
     Caller &operator=(const Caller &) = delete;
 
-    bool isUp() const { return isUp_; }
+    bool isUp() const { return up_; }
     std::string ask(const std::string &bytes, const std::string &end) {
-        if (!isUp_) {
+        if (!up_) {
             return "";
         }
         const int size = static_cast<int>(bytes.size());
-        const bool isSent = tls_ != nullptr ? SSL_write(tls_, bytes.data(), size) == size
-                                            : ::send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL) == size;
+        const bool sent = tls_ != nullptr ? SSL_write(tls_, bytes.data(), size) == size
+                                          : ::send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL) == size;
         std::string answer;
         char some[4096];
-        while (isSent && answer.find(end) == std::string::npos) {
+        while (sent && answer.find(end) == std::string::npos) {
             const auto got =
                 tls_ != nullptr ? SSL_read(tls_, some, sizeof some) : ::recv(fd_, some, sizeof some, 0);
             if (got <= 0) {
@@ -88,15 +88,15 @@ class Caller {
     int fd_;
     SSL_CTX *context_ = nullptr;
     SSL *tls_ = nullptr;
-    bool isUp_ = false;
+    bool up_ = false;
 };
 
 class RemoteTest : public testing::Test {
   protected:
-    void listen(bool hasTls, const ServerLimits &limits = {}) {
-        hasTls_ = hasTls;
+    void listen(bool has_tls, const ServerLimits &limits = {}) {
+        hasTls_ = has_tls;
         RemoteDoor door{"127.0.0.1", 0, {"mill"}, Access(Protection::NONE, Role::OPERATE), {}};
-        if (hasTls) {
+        if (has_tls) {
             folder = fs::temp_directory_path() / ("mw_remote_" + std::to_string(::getpid()));
             auto certificate = read_or_make_certificate(folder.string(), {"127.0.0.1"});
             ASSERT_TRUE(certificate.has_value()) << certificate.error().str();

@@ -20,12 +20,12 @@ class ScreensTest : public testing::Test {
   protected:
     ScreensTest() {
         setup.connect = [this]() -> Result<client::Client> {
-            return isUp ? client::Client::join(task.memory.segment()) : fail("no machine here");
+            return is_up ? client::Client::join(task.memory.segment()) : fail("no machine here");
         };
         setup.connect_for_all = [this]() -> Result<client::Client> {
-            return isUp ? client::Client::join(task.memory.segment(), client::Role::OPERATOR,
-                                               client::Places::RESERVED)
-                        : fail("no machine here");
+            return is_up ? client::Client::join(task.memory.segment(), client::Role::OPERATOR,
+                                                client::Places::RESERVED)
+                         : fail("no machine here");
         };
         setup.version = "0.1";
         setup.status_note = "status only";
@@ -74,7 +74,7 @@ class ScreensTest : public testing::Test {
     ScreensSetup setup;
     std::optional<Screens> screens;
     std::int64_t now_ns = 1;
-    bool isUp = true;
+    bool is_up = true;
 };
 
 TEST_F(ScreensTest, AScreenIsGreetedThenToldTheWholeThenChanges) {
@@ -152,7 +152,7 @@ TEST_F(ScreensTest, EachCommandHasItsOutcome) {
     ASSERT_EQ(outcomes.size(), 1U);
     EXPECT_EQ(outcomes[0]["outcome"], Json::parse(R"({"id":7,"progress":"DONE"})"));
 
-    task.isKeeping = true;
+    task.keeping = true;
     command(1, 8, "HomeJoint", R"("joint":-1)");
     const auto taken = go(200);
     ASSERT_EQ(taken.size(), 1U);
@@ -269,7 +269,7 @@ TEST_F(ScreensTest, AScreenWithoutAPlaceStopsTheMachine) {
     const auto up = of_kind(7, "machine");
     ASSERT_EQ(up.size(), 1U) << "it has a place now";
     EXPECT_GT(up[0]["client"], 0);
-    isUp = false;
+    is_up = false;
 }
 
 TEST_F(ScreensTest, AJogThatNothingWouldEndIsRefused) {
@@ -296,14 +296,14 @@ TEST_F(ScreensTest, StopsAreNeverLimited) {
         command(1, 2000 + i, "AbortAll");
         command(1, 3000 + i, "SetState", R"("state":"ESTOP")");
     }
-    bool isAborted = false, isEstop = false;
+    bool aborted = false, estop = false;
     for (const auto &one : task.cycle()) {
-        isAborted = isAborted || std::holds_alternative<messages::AbortAll>(one.command);
+        aborted = aborted || std::holds_alternative<messages::AbortAll>(one.command);
         const auto *state = std::get_if<messages::SetState>(&one.command);
-        isEstop = isEstop || (state != nullptr && state->state == messages::State::ESTOP);
+        estop = estop || (state != nullptr && state->state == messages::State::ESTOP);
     }
-    EXPECT_TRUE(isAborted);
-    EXPECT_TRUE(isEstop);
+    EXPECT_TRUE(aborted);
+    EXPECT_TRUE(estop);
     for (const Json &one : of_kind(1, "outcome")) {
         EXPECT_NE(one["outcome"]["progress"], "REFUSED") << one;
     }
@@ -419,7 +419,7 @@ TEST_F(ScreensTest, WhatOperatorsAreToldIsWrittenDown) {
 }
 
 TEST_F(ScreensTest, WithoutAMachineAScreenIsToldAndCommandsAreRefused) {
-    isUp = false;
+    is_up = false;
     go(300);
     screens->opened(1, {Role::OPERATE, Protection::LOCAL}, now_ns);
     auto told = sockets.take(1);
@@ -431,7 +431,7 @@ TEST_F(ScreensTest, WithoutAMachineAScreenIsToldAndCommandsAreRefused) {
     told = sockets.take(1);
     ASSERT_EQ(told.size(), 1U);
     EXPECT_EQ(told[0]["outcome"]["progress"], "REFUSED");
-    isUp = true;
+    is_up = true;
     go(500);
     told = sockets.take(1);
     ASSERT_GE(told.size(), 2U);
@@ -444,12 +444,12 @@ TEST_F(ScreensTest, ALeaseCountsFromWhenItWasAskedFor) {
     go(10);
     open(1);
     double sent_ms = 5000;
-    const auto lease = [&](int id, double late_ms, bool isRenewal) {
+    const auto lease = [&](int id, double late_ms, bool renewal) {
         now_ns += static_cast<std::int64_t>(late_ms * 1e6);
         say(1,
             R"({"id":)" + std::to_string(id) + R"(,"sent":)" + std::to_string(sent_ms) +
                 R"(,"command":{"message":"JogContinuous","is_joint":false,"index":0,"velocity":5,"lease_ms":100)" +
-                (isRenewal ? R"(,"is_renewal":true}})" : "}}"));
+                (renewal ? R"(,"is_renewal":true}})" : "}}"));
         now_ns += 30 * MS - static_cast<std::int64_t>(late_ms * 1e6);
         sent_ms += 30;
         for (const auto &delivery : task.cycle()) {
@@ -465,12 +465,12 @@ TEST_F(ScreensTest, ALeaseCountsFromWhenItWasAskedFor) {
     EXPECT_NEAR(lease(4, 79, true), 21, 1);
     EXPECT_EQ(lease(5, 85, true), 0) << "too little is left: it is rejected";
     EXPECT_EQ(lease(6, 0, true), 100);
-    bool isRefused = false;
+    bool refused = false;
     for (const Json &one : sockets.take(1)) {
-        isRefused |=
+        refused |=
             one.contains("outcome") && one["outcome"]["id"] == 5 && one["outcome"]["progress"] == "REFUSED";
     }
-    EXPECT_TRUE(isRefused);
+    EXPECT_TRUE(refused);
 }
 
 TEST(Lateness, FollowsClocksThatDriftApart) {

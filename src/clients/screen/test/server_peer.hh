@@ -34,7 +34,7 @@ class Echo final : public Application {
             reply({.source = make_source()});
         } else if (!body.empty()) {
             reply({.body = body});
-        } else if (isLater) {
+        } else if (is_later) {
             later = std::move(reply);
         } else {
             reply({.type = "text/plain", .body = request.method + ' ' + request.path + '|' + request.body});
@@ -61,7 +61,7 @@ class Echo final : public Application {
     std::shared_ptr<PieceQueue> pieces;
     std::function<std::shared_ptr<BodySource>()> make_source;
     std::string body;
-    bool isLater = false;
+    bool is_later = false;
     Reply later;
 };
 

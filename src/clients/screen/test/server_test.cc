@@ -106,11 +106,11 @@ TEST_F(ServerTest, NobodyHasMoreThanStatusWhereTheKernelDoesNotTellTheUser) {
 }
 
 TEST_F(ServerTest, OtherUsersLeaveConnectionsToTheUserOfTheServer) {
-    bool isForeign = true;
+    bool foreign = true;
     listen(ServerOptions{.port = 0,
                          .limits = {.connections = 4, .foreign_connections = 2},
                          .find_socket = [&](const Endpoint &from, const Endpoint &to) {
-                             return isForeign ? of_another_user(from, to) : SocketFinder()(from, to);
+                             return foreign ? of_another_user(from, to) : SocketFinder()(from, to);
                          }});
     std::vector<std::unique_ptr<Peer>> peers;
     for (int i = 0; i < 5; ++i) {
@@ -122,7 +122,7 @@ TEST_F(ServerTest, OtherUsersLeaveConnectionsToTheUserOfTheServer) {
                    return peer->isClosed;
                }) == 3;
     }));
-    isForeign = false;
+    foreign = false;
     EXPECT_EQ(status_of(get("/api/x")), "HTTP/1.1 200 OK");
     EXPECT_EQ(echo.asked.back().role, Role::CONFIGURE);
 }
@@ -246,19 +246,19 @@ TEST_F(ServerTest, WhoDoesNotReadDoesNotFillTheMemory) {
     Peer peer(server->port());
     EXPECT_TRUE(ask(peer, upgrade(), "\r\n\r\n").starts_with("HTTP/1.1 101"));
     ASSERT_TRUE(areOpened(1));
-    bool wasBusy = false;
+    bool busy = false;
     for (int i = 0; i < 20000 && echo.ended.empty(); ++i) {
         server->send(echo.open[0], std::string(4096, 'x'));
         server->run_for(echo, std::chrono::microseconds(10));
-        wasBusy = wasBusy || !server->isIdle(echo.open[0]);
+        busy = busy || !server->isIdle(echo.open[0]);
     }
-    EXPECT_TRUE(wasBusy);
+    EXPECT_TRUE(busy);
     EXPECT_TRUE(run_until([&] { return !echo.ended.empty(); }));
 }
 
 TEST_F(ServerTest, AnAnswerMayComeLaterFromAnotherThread) {
     listen();
-    echo.isLater = true;
+    echo.is_later = true;
     Peer peer(server->port());
     write(peer, get("/x"));
     ASSERT_TRUE(run_until([&] { return echo.later != nullptr; }));
@@ -317,10 +317,10 @@ int count_inherited(int port) {
     for (int fd = 0; fd < 1024; ++fd) {
         sockaddr_in place{};
         socklen_t size = sizeof place;
-        const bool isSocket = ::getsockname(fd, reinterpret_cast<sockaddr *>(&place), &size) == 0;
-        const bool isOfServer = isSocket && place.sin_family == AF_INET &&
-                                place.sin_port == htons(static_cast<std::uint16_t>(port));
-        found += isOfServer && (::fcntl(fd, F_GETFD) & FD_CLOEXEC) == 0 ? 1 : 0;
+        const bool is_socket = ::getsockname(fd, reinterpret_cast<sockaddr *>(&place), &size) == 0;
+        const bool of_server = is_socket && place.sin_family == AF_INET &&
+                               place.sin_port == htons(static_cast<std::uint16_t>(port));
+        found += of_server && (::fcntl(fd, F_GETFD) & FD_CLOEXEC) == 0 ? 1 : 0;
     }
     return found;
 }
@@ -400,9 +400,9 @@ TEST_F(ServerTest, AnythingMayComeOverAConnection) {
     const auto pick = [&random](std::size_t count) { return static_cast<std::size_t>(random() % count); };
     for (int i = 0; i < 400; ++i) {
         std::string bytes = get("/x", "Origin: http://127.0.0.1:" + std::to_string(server->port()) + "\r\n");
-        const bool isSocket = pick(2) == 0;
+        const bool is_socket = pick(2) == 0;
         Peer peer(server->port());
-        if (isSocket) {
+        if (is_socket) {
             ASSERT_TRUE(ask(peer, upgrade(), "\r\n\r\n").starts_with("HTTP/1.1 101")) << i;
             bytes.clear();
             for (std::size_t n = pick(4) + 1; n > 0; --n) {

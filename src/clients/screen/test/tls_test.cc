@@ -198,7 +198,7 @@ TEST_F(TlsTest, GreetingsThatNeverEndAreEnded) {
     TlsPeer late(server->remote_port(), {});
     EXPECT_TRUE(isTurnedAway(late));  // all places are taken
     const std::size_t before = own.taken;
-    const bool areEnded = run_until([&] {
+    const bool are_ended = run_until([&] {
         own.out = std::string("\x81\x81\0\0\0\0x", 7);
         own.send();
         own.think();
@@ -210,7 +210,7 @@ TEST_F(TlsTest, GreetingsThatNeverEndAreEnded) {
         }
         return ended == static_cast<int>(slow.size());
     });
-    EXPECT_TRUE(areEnded);
+    EXPECT_TRUE(are_ended);
     EXPECT_GT(own.taken, before + 3 * 20);  // three bytes for each renewal: it was served meanwhile
     EXPECT_TRUE(isServed());
 }

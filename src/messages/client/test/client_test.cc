@@ -26,7 +26,7 @@ class ClientTest : public testing::Test {
         now_ns += S / 1000;
         auto taken = desk.take(now_ns);
         for (const auto &delivery : taken) {
-            if (!isKeeping) {
+            if (!keeping) {
                 desk.tell(delivery.serial, Progress::DONE, "");
             }
         }
@@ -38,7 +38,7 @@ class ClientTest : public testing::Test {
     CommandServer desk{memory.segment()};
     std::unique_ptr<messages::MachineStatus> status = std::make_unique<messages::MachineStatus>();
     std::int64_t now_ns = 0;
-    bool isKeeping = false;
+    bool keeping = false;
 };
 
 TEST_F(ClientTest, CommandsOfAllClientsComeInTheOrderOfOneCount) {
@@ -57,7 +57,7 @@ TEST_F(ClientTest, CommandsOfAllClientsComeInTheOrderOfOneCount) {
 
 TEST_F(ClientTest, EachCommandEndsWithItsOutcomeAndReason) {
     Client a = made();
-    isKeeping = true;
+    keeping = true;
     const auto first = *a.post(messages::RunProgram{}), second = *a.post(messages::PauseProgram{});
     EXPECT_EQ(a.outcome(first).progress, Progress::STARTED) << "not taken yet";
     cycle();
@@ -78,7 +78,7 @@ TEST_F(ClientTest, WhatAnAttendedClientHasBegunIsAbortedWhenItLeavesAndNothingEl
             return std::holds_alternative<messages::AbortAll>(d.command) && d.serial > 0;
         });
     };
-    isKeeping = true;
+    keeping = true;
     for (const Role role : {Role::ATTENDED, Role::OPERATOR, Role::PANEL}) {
         std::optional<Client> client = made(role);
         ASSERT_TRUE(client->post(messages::RunProgram{}).has_value());
@@ -97,7 +97,7 @@ TEST_F(ClientTest, WhatAnAttendedClientHasBegunIsAbortedWhenItLeavesAndNothingEl
 
 TEST_F(ClientTest, TheStopForAnAttendedClientComesAfterWhatItPostedLast) {
     std::optional<Client> client = made(Role::ATTENDED);
-    isKeeping = true;
+    keeping = true;
     ASSERT_TRUE(client->post(messages::RunProgram{}).has_value());
     client.reset();
     const auto taken = cycle();
@@ -117,12 +117,12 @@ TEST_F(ClientTest, AMachineSaysWhatItIs) {
 
 TEST_F(ClientTest, ACommandUnderWayIsRememberedHoweverManyComeAfterIt) {
     Client a = made(), b = made();
-    isKeeping = true;
+    keeping = true;
     const auto run = *a.post(messages::RunProgram{});
     const auto early = *a.post(messages::Null{});
     cycle();
     desk.tell(early, Progress::DONE, "");
-    isKeeping = false;
+    keeping = false;
     for (int i = 0; i < 300; ++i) {
         ASSERT_TRUE(a.post(messages::Null{}).has_value());
         ASSERT_TRUE(b.post(messages::Null{}).has_value());
@@ -137,7 +137,7 @@ TEST_F(ClientTest, ACommandUnderWayIsRememberedHoweverManyComeAfterIt) {
 
 TEST_F(ClientTest, AStopIsTakenHoweverManyCommandsAreUnderWay) {
     Client a = made();
-    isKeeping = true;
+    keeping = true;
     for (int i = 0; i < mailbox::MAX_OUTCOMES; ++i) {
         ASSERT_TRUE(a.post(messages::Null{}).has_value());
         ASSERT_EQ(cycle().size(), 1U);
@@ -222,7 +222,7 @@ TEST_F(ClientTest, WhatTheDeskRefusesIsTheLastCommandOfTheStatusToo) {
     cycle();
     EXPECT_EQ(status->last_command, refused);
     EXPECT_EQ(status->last_progress, Progress::REFUSED);
-    isKeeping = true;
+    keeping = true;
     const auto kept = *a.post(messages::RunProgram{}), last = *a.post(messages::Null{});
     cycle();
     EXPECT_EQ(status->last_command, last);

@@ -49,14 +49,14 @@ TEST(MailboxProcess, AClientInAnotherProcessCommandsAndWaitsWithoutPolling) {
     const pid_t child = ::fork();
     if (child == 0) {
         auto client = Client::connect(name);
-        bool isGood = client.has_value();
-        for (int i = 0; isGood && i < 20; ++i) {
+        bool is_good = client.has_value();
+        for (int i = 0; is_good && i < 20; ++i) {
             const auto serial = client->post(messages::Mdi{"G0 X" + std::to_string(i)});
             const auto outcome = client->wait(*serial, 20);
-            isGood = outcome.has_value() && outcome->progress == Progress::DONE &&
-                     client->wait_status(20).has_value();
+            is_good = outcome.has_value() && outcome->progress == Progress::DONE &&
+                      client->wait_status(20).has_value();
         }
-        ::_exit(isGood ? 0 : 1);
+        ::_exit(is_good ? 0 : 1);
     }
     std::atomic<bool> isOver{false};
     std::thread task([&] { serve(*memory, isOver); });
@@ -207,8 +207,8 @@ TEST(MailboxProcess, TheProgramOfAnAttendedClientThatIsKilledIsAborted) {
     const pid_t child = ::fork();
     if (child == 0) {
         auto client = Client::connect(name, Role::ATTENDED);
-        const bool isPosted = client.has_value() && client->post(messages::RunProgram{}).has_value();
-        (void)!::write(ready[1], isPosted ? "y" : "n", 1);
+        const bool is_posted = client.has_value() && client->post(messages::RunProgram{}).has_value();
+        (void)!::write(ready[1], is_posted ? "y" : "n", 1);
         ::pause();
         ::_exit(1);
     }

@@ -104,10 +104,10 @@ TEST(Messages, AValueOutOfRangeIsNamedWithFieldAndRange) {
 
 TEST(Messages, EveryCommandIsAllowedWithItsOwnDefaultsUnlessItNeedsAText) {
     for (const Declaration *d : command_declarations()) {
-        const bool hasText = std::any_of(d->fields.begin(), d->fields.end(), [](const Field &field) {
+        const bool has_text = std::any_of(d->fields.begin(), d->fields.end(), [](const Field &field) {
             return field.type.kind == Kind::TEXT && field.range.min > 0;
         });
-        EXPECT_EQ(check(*make_command(d->number)).has_value(), !hasText) << d->name;
+        EXPECT_EQ(check(*make_command(d->number)).has_value(), !has_text) << d->name;
     }
 }
 

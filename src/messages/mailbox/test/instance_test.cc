@@ -25,14 +25,14 @@ std::string instance_of(const char *what) {
 /// A process that has a machine's memory, as another user where this one may change to it. False: it may not.
 class Machine {
   public:
-    Machine(const std::string &instance, bool isOfOther) {
+    Machine(const std::string &instance, bool of_other) {
         int ready[2];
         EXPECT_EQ(::pipe(ready), 0);
         pid_ = ::fork();
         if (pid_ == 0) {
-            const bool isOther = !isOfOther || ::setuid(OTHER) == 0;
+            const bool other = !of_other || ::setuid(OTHER) == 0;
             const auto memory = Memory::create(instance);
-            const char answer = isOther && memory.has_value() ? 'y' : 'n';
+            const char answer = other && memory.has_value() ? 'y' : 'n';
             static_cast<void>(::write(ready[1], &answer, 1));
             for (;;) {
                 ::pause();
@@ -42,10 +42,10 @@ class Machine {
         EXPECT_EQ(::read(ready[0], &answer, 1), 1);
         ::close(ready[0]);
         ::close(ready[1]);
-        isUp_ = answer == 'y';
+        up_ = answer == 'y';
     }
     ~Machine() { kill(); }
-    bool isUp() const { return isUp_; }
+    bool isUp() const { return up_; }
     int pid() const { return pid_; }
     void kill() {
         if (pid_ > 0) {
@@ -57,7 +57,7 @@ class Machine {
 
   private:
     pid_t pid_ = -1;
-    bool isUp_ = false;
+    bool up_ = false;
 };
 
 TEST(Instance, ALivingMachineIsNamedWithItsProcessUserAndRemedy) {

@@ -264,7 +264,7 @@ TEST(NmlBuffer, AFileKeepsItsMessageWhenNobodyUsesIt) {
 TEST(NmlBuffer, TwoProgramsThatDescribeABufferOtherwiseDoNotShareIt) {
     OneBuffer setup("SHMEM", "");
     const auto a = setup.open("master");
-    setup.config().buffers[0].isQueue = true;
+    setup.config().buffers[0].is_queue = true;
     EXPECT_FALSE(setup.try_open("reader").has_value());
 }
 

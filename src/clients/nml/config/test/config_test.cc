@@ -20,8 +20,8 @@ Parsed parse(std::string_view text) {
     diagnostics::Sink sink;
     Parsed parsed{parse_config(text, "m.nml", sink), {}};
     for (const diagnostics::Diagnostic &diagnostic : sink.all()) {
-        const bool isError = diagnostic.severity == diagnostics::Severity::ERROR;
-        parsed.told.push_back((isError ? "E " : "W ") + diagnostic.what.str());
+        const bool is_error = diagnostic.severity == diagnostics::Severity::ERROR;
+        parsed.told.push_back((is_error ? "E " : "W ") + diagnostic.what.str());
     }
     return parsed;
 }
@@ -44,7 +44,7 @@ TEST(NmlConfig, ABufferLineIsReadWithEachFieldOnce) {
     EXPECT_EQ(b.kind, BufferKind::SHMEM);
     EXPECT_EQ(b.host, "10.0.0.7");
     EXPECT_EQ(b.size, 20480U);
-    EXPECT_TRUE(b.isNeutral);
+    EXPECT_TRUE(b.neutral);
     EXPECT_EQ(b.rpc_number, 7);
     EXPECT_EQ(b.buffer_number, 2);
     EXPECT_EQ(b.max_processes, 16);
@@ -53,7 +53,7 @@ TEST(NmlConfig, ABufferLineIsReadWithEachFieldOnce) {
     EXPECT_EQ(b.encoding, Encoding::XDR);
     EXPECT_EQ(b.place.line, 3);
     EXPECT_EQ(b.mutex, Mutex::OS_SEM) << "the default";
-    EXPECT_FALSE(b.isQueue || b.isDiagnosed || b.isWriteConfirmed || b.isNumbered);
+    EXPECT_FALSE(b.is_queue || b.diagnosed || b.write_confirmed || b.isNumbered);
     EXPECT_TRUE(b.isBlockingAllowed());
 }
 
@@ -75,11 +75,11 @@ TEST(NmlConfig, EveryDocumentedOptionHasItsMeaning) {
     EXPECT_FALSE(with("bsem=-1").isBlockingAllowed());
     EXPECT_EQ(with("bsem=1010").blocking_key, 1010);
     EXPECT_TRUE(with("bsem=1010").isBlockingAllowed());
-    EXPECT_TRUE(with("queue").isQueue);
+    EXPECT_TRUE(with("queue").is_queue);
     EXPECT_EQ(with("ascii").encoding, Encoding::ASCII);
     EXPECT_EQ(with("disp").encoding, Encoding::DISPLAY);
-    EXPECT_TRUE(with("diag").isDiagnosed);
-    EXPECT_TRUE(with("confirm_write").isWriteConfirmed);
+    EXPECT_TRUE(with("diag").diagnosed);
+    EXPECT_TRUE(with("confirm_write").write_confirmed);
     EXPECT_TRUE(with("serial").isNumbered);
     EXPECT_EQ(with("file=/tmp/x").file, "/tmp/x");
 }
@@ -93,13 +93,13 @@ TEST(NmlConfig, AProcessLineIsReadWithEachFieldOnce) {
     EXPECT_EQ(server.name, "emcsvr");
     EXPECT_EQ(server.buffer, "emcCommand");
     EXPECT_FALSE(server.isRemote || server.mayRead);
-    EXPECT_TRUE(server.mayWrite && server.isServer && server.isMaster);
+    EXPECT_TRUE(server.mayWrite && server.is_server && server.isMaster);
     EXPECT_EQ(server.timeout.seconds, 1.5);
     EXPECT_EQ(server.connection_number, 2);
     EXPECT_TRUE(client.isRemote && client.mayRead && client.mayWrite);
     EXPECT_EQ(client.host, "10.0.0.7");
     EXPECT_TRUE(client.timeout.isForever());
-    EXPECT_FALSE(client.isServer || client.isMaster);
+    EXPECT_FALSE(client.is_server || client.isMaster);
 }
 
 TEST(NmlConfig, TimeoutsAreAsTheManualSays) {

@@ -54,9 +54,9 @@ TEST(NmlVocabulary, HasEveryDocumentedMessageWithItsNameAndNumber) {
         EXPECT_EQ(kind->name(), name);
         EXPECT_EQ(vocabulary.find(std::string_view(name)), kind);
         EXPECT_EQ(vocabulary.find(std::string_view(kind->declaration->name)), kind);
-        const bool isStatus = name.ends_with("_STAT_TYPE");
-        EXPECT_EQ(kind->base, isStatus ? Base::STATUS : Base::COMMAND) << name;
-        EXPECT_EQ(kind->convert == nullptr && kind->rejection == nullptr, isStatus) << name;
+        const bool is_status = name.ends_with("_STAT_TYPE");
+        EXPECT_EQ(kind->base, is_status ? Base::STATUS : Base::COMMAND) << name;
+        EXPECT_EQ(kind->convert == nullptr && kind->rejection == nullptr, is_status) << name;
         seen.insert(number);
     }
     EXPECT_EQ(seen.size(), 146U);

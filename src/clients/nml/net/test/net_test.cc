@@ -307,9 +307,9 @@ TEST_F(NmlNetTest, AClientThatIsKilledHarmsNobodyElse) {
         ::close(ready[0]);
         ::close(ready[1]);
         Received message;
-        for (bool isMore = true; isMore;) {
-            isMore = cmd_->read(message, {5.0}).value();
-            ASSERT_TRUE(!isMore || Codec(vocabulary_, Encoding::XDR).decode(message.bytes).has_value());
+        for (bool is_more = true; is_more;) {
+            is_more = cmd_->read(message, {5.0}).value();
+            ASSERT_TRUE(!is_more || Codec(vocabulary_, Encoding::XDR).decode(message.bytes).has_value());
         }
     }
     ASSERT_TRUE(sts_->write("still", AT_ONCE).has_value());
