@@ -396,7 +396,7 @@ TEST(NmlMachine, AMessageWithoutACommandIsRejectedWithItsReasonWhateverItsFields
     ASSERT_TRUE(number.has_value()) << number.error().str();
     const StatusHead head = machine.end_of(*number, 20);
     EXPECT_EQ(head.state, CommandState::ERROR);
-    EXPECT_EQ(head.reason.view(), "this is a part of programs (give it as G-code, by Mdi)");
+    EXPECT_EQ(head.reason.view(), "only programs contain this: send it as G-code, by Mdi");
     EXPECT_EQ(head.command_type, 220);
 }
 

@@ -75,7 +75,7 @@ Answer program_status(const Asked &asked) {
     return line("PROGRAM_STATUS RUNNING");
 }
 
-/// What newer versions also call OPEN.
+/// PROGRAM, which newer versions also call OPEN.
 Answer program(const Asked &asked) {
     return line("PROGRAM " +
                 legacy::text(legacy::Form::PATH, dialect(asked), asked.status.task.program.str()));
@@ -94,7 +94,7 @@ Answer program_codes(const Asked &asked) {
         fmt::format("{} F{:g} S{:g}", text, asked.status.codes.settings[1], asked.status.codes.settings[2]));
 }
 
-/// Of one spindle, the first without a number, or of all.
+/// The answer for one spindle, the first without a number, or for all.
 template <class Each>
 Answer for_spindles(const Asked &asked, const Each &each) {
     const auto asked_for = asked.words.empty()
@@ -159,7 +159,7 @@ Answer spindle_answer(const Asked &asked) {
 
 constexpr SpokenBy BOTH = SpokenBy::BOTH, NEWER = SpokenBy::NEWER, OLD = SpokenBy::OLD;
 
-/// Of the connection, and values that other clients do not read in this form.
+/// State of the connection, and values that other clients do not read in this form.
 constexpr Question QUESTIONS[] = {
     {"ANGULAR_UNIT_CONVERSION", BOTH,
      [](const Asked &a) {

@@ -12,7 +12,7 @@
 namespace mw::rsh {
 namespace {
 
-/// Of a spindle for which no speed was programmed. [rev/min]
+/// Speed of a spindle without a programmed speed. [rev/min]
 constexpr double PRESET_SPEED = 500;
 
 const char *phrase(messages::Mode mode) {
@@ -33,7 +33,7 @@ Result<Waiting> toggle(const Ordered &o, const On &on, const Off &off) {
     return ask(o, *isOn ? messages::Command(on) : messages::Command(off));
 }
 
-/// What `make` makes for one spindle, or for all with -1.
+/// Posts the command of `make` for one spindle, or for all with -1.
 template <class Make>
 Result<Waiting> for_spindles(const Ordered &o, int spindle, const Make &make) {
     Waiting waiting;

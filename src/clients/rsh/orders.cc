@@ -22,7 +22,7 @@ Result<Waiting> done() {
     return Waiting{};
 }
 
-/// Of the connection: ON or OFF.
+/// A switch of the connection: ON or OFF.
 template <bool OwnState::*SETTING>
 Result<Waiting> switch_own(const Ordered &o) {
     const auto isOn = o.words.empty() ? on_or_off("") : on_or_off(o.words[0]);

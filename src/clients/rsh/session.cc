@@ -234,7 +234,7 @@ void Session::look_at_wait(double now_s) {
     if (!end.has_value() && !late) {
         return;
     }
-    // What an order has changed is in the status when it is answered.
+    // The status shows the change of an order when it is answered.
     constexpr std::uint64_t CYCLES_TO_SHOW = 3;
     const bool is_shown = !end.has_value() || wait_->what.serials.empty() || !own_.waiting_for_done;
     if (!is_shown && wait_->shown_cycle == 0) {

@@ -21,7 +21,7 @@ namespace {
 constexpr std::string_view API = "/api/", FILES = "/api/files/", HAL = "/api/hal/", SCOPE = "/api/scope",
                            INPUTS = "/api/inputs";
 
-/// What a screen needs to show the status of the machine.
+/// Facts that a screen needs to show the status of the machine.
 constexpr std::array<std::string_view, 4> OF_STATUS{"/api/icon", "/api/machine", "/api/schema", "/api/tools"};
 
 Response not_allowed(Role needed) {
@@ -245,7 +245,7 @@ void Api::answer_files(const Request &request, const std::string &name, Reply re
 
 namespace {
 
-/// What filters read as data. A filter may run any other file: [FILTER] py = python3.
+/// Extensions of files that filters read as data. A filter may run any other file: [FILTER] py = python3.
 constexpr std::array<std::string_view, 12> DATA_EXTENSIONS{".png",  ".gif", ".jpg", ".jpeg", ".bmp", ".tif",
                                                            ".tiff", ".pgm", ".svg", ".dxf",  ".stl", ".gbr"};
 

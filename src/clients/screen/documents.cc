@@ -122,7 +122,7 @@ std::string schema_document() {
 
 namespace {
 
-/// Of a panel, and whether a person sets a value by it.
+/// Parts of a panel, and whether a person sets a value by them.
 constexpr std::array<std::pair<std::string_view, bool>, 6> PARTS{{{"lamp", false},
                                                                   {"value", false},
                                                                   {"bar", false},

@@ -73,7 +73,7 @@ Json faults_document(const std::vector<setup::Fault> &faults) {
     return list;
 }
 
-/// What is asked of the machine of these answers, what is wrong with them, and the files they give.
+/// Questions for the machine of these answers, their errors, and the files that they produce.
 Response questions_document(const std::string &body) {
     auto answers = answers_of(object_of(body));
     if (!answers.has_value()) {

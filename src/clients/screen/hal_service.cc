@@ -43,7 +43,7 @@ Json json_of(const hal::Value &value) {
     return nullptr;
 }
 
-/// What watches HAL waits for it.
+/// Readers of HAL wait for it.
 constexpr std::uint32_t MOST_PULSE_MS = 500;
 
 std::string text_of(const Json &json) {

@@ -68,7 +68,7 @@ void PathChunks::add(const gcode::PreviewEvent &event) {
     }
 }
 
-/// Where rotary axes bend it in the picture, it consists of chords.
+/// A line that rotary axes bend in the picture consists of chords.
 void PathChunks::add_straight(const gcode::PreviewEvent &event, const geometry::Pose &from,
                               const geometry::Pose &to, std::uint8_t kind) {
     constexpr double CHORD_DEG = 3, MOST_CHORDS = 20000;

@@ -9,7 +9,7 @@
 namespace mw::screen {
 namespace {
 
-/// By an angle about X, Y or Z.
+/// Rotates by an angle about X, Y or Z.
 Place turned(const Place &place, int about, double angle_deg) {
     const double angle = angle_deg * std::numbers::pi / 180;
     const auto first = static_cast<std::size_t>((about + 1) % 3),

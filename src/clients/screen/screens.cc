@@ -274,7 +274,7 @@ void Screens::tell_statuses() {
     const PartMask fresh = watch_->fresh_parts();
     for (const auto &[session, browser] : browsers_) {
         browser->note_read(fresh);
-        // What a slow one cannot take now goes with its next one.
+        // A slow screen gets the rest with its next status.
         if (browser->isAttached() && sockets_.isIdle(session)) {
             browser->tell_status(watch_->status());
         }

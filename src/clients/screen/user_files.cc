@@ -21,7 +21,7 @@ Response document(std::string body) {
     return response;
 }
 
-/// Of a file that may be missing yet.
+/// Content of a file; empty when it does not exist.
 Result<std::string> content(const std::string &path) {
     std::error_code error;
     return std::filesystem::exists(path, error) ? read_file(path) : Result<std::string>("");

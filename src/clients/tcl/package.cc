@@ -16,7 +16,7 @@
 namespace mw::tcl {
 namespace {
 
-/// What is jogged is renewed so often, as long as the program's events are served.
+/// Interval in which jogs are renewed while the program's events are served.
 constexpr int RENEWAL_MS = 80;
 
 /// The state of an interpreter: nothing until emc_init.

@@ -15,7 +15,7 @@ namespace {
 
 using Text = Result<std::string>;
 
-/// As Tcl writes a floating-point number; digits that conversions of units have made up are left out.
+/// A floating-point number as Tcl writes it, without the digits that unit conversions add.
 std::string number(double value) {
     const std::string text = fmt::format("{:.12g}", value == 0 ? 0.0 : value);
     return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;

@@ -159,7 +159,7 @@ Result<std::string> Shell::wait(bool untilDone) {
 std::optional<std::string> Shell::next_line(messages::MessageKind kind) {
     static_cast<void>(view_.read());
     auto line = view_.next_line(kind, own.lines);
-    // As client::shown_message(): what programs say is in their own language.
+    // As client::shown_message(): texts of programs are not translated.
     return line.has_value() && kind != messages::MessageKind::OPERATOR_DISPLAY ? language::shown(*line)
                                                                                : line;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// How long a message of 200 bytes takes through a buffer: median and 99.9th percentile of each access, in
+// Time that a message of 200 bytes takes through a buffer: median and 99.9th percentile of each access, in
 // nanoseconds.
 #include <signal.h>
 #include <sys/prctl.h>

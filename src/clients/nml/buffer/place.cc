@@ -59,7 +59,7 @@ class SharedPlace final : public Place {
     runtime::SharedMemory memory_;
 };
 
-/// Before the store in a file: is it one of this shape?
+/// Header before the store in a file, by which its shape is checked.
 struct alignas(64) FileHead {
     std::array<char, 8> mark{'M', 'W', 'N', 'M', 'L', 'b', 'u', 'f'};
     std::uint64_t version = ABI_VERSION;

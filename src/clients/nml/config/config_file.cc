@@ -60,7 +60,7 @@ std::string place_text(const SourcePlace &place) {
     return fmt::format("line {}", place.line);
 }
 
-/// What other lines make wrong of this one.
+/// Errors of this line because of other lines.
 bool check_buffer(const BufferSettings &buffer, const Config &config, diagnostics::Sink &sink) {
     for (const BufferSettings &other : config.buffers) {
         if (other.name == buffer.name) {
@@ -103,7 +103,7 @@ void tell_what_differs(const BufferSettings &buffer, diagnostics::Sink &sink) {
     }
 }
 
-/// Of lines that name a buffer: all buffers are known by now.
+/// Checks lines that name a buffer: all buffers are known by now.
 void check_processes(Config &config, diagnostics::Sink &sink) {
     std::vector<ProcessSettings> kept;
     for (ProcessSettings &process : config.processes) {

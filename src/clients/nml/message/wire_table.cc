@@ -93,15 +93,14 @@ consteval MessageKind rejected(int number, const char *name, const char *reason)
     made.rejection = reason;
     return made;
 }
-constexpr const char *PART_OF_PROGRAM = "this is a part of programs (give it as G-code, by Mdi)";
+constexpr const char *PART_OF_PROGRAM = "only programs contain this: send it as G-code, by Mdi";
 constexpr const char *PART_OF_CONFIGURATION =
-    "this is set by the INI file and does not change while the machine runs";
-constexpr const char *PART_OF_START = "this begins and ends with the machine";
+    "this is a setting of the INI file and cannot change while the machine runs";
+constexpr const char *PART_OF_START = "the machine does this itself when it starts and ends";
 constexpr const char *NO_PLUGINS =
     "task has no Python functions (PYTHON_TASK); remapped codes run Python: [RS274NGC]REMAP";
 constexpr const char *NO_PROGRAMS =
-    "a machine runs no programs for those who can send messages to it; M100 to M199 run those that its files "
-    "name";
+    "a machine runs no programs for clients that send messages: use M100 to M199";
 
 constexpr auto ROWS = std::to_array<MessageKind>({
     command<OperatorError>(11, "EMC_OPERATOR_ERROR_TYPE"),
@@ -252,7 +251,7 @@ constexpr auto ROWS = std::to_array<MessageKind>({
     status<MachineStatus>(1999, "EMC_STAT_TYPE"),
 });
 
-/// What the rows without a declaration have as theirs.
+/// Declarations of the rows that have none.
 constexpr auto WITHOUT_FIELDS = [] {
     std::array<Declaration, ROWS.size()> all{};
     std::transform(ROWS.begin(), ROWS.end(), all.begin(), [](const MessageKind &row) {

@@ -18,7 +18,7 @@ namespace {
 constexpr double PATIENCE_S = 5.0;
 /// A datagram is sent again when no answer has come within it.
 constexpr double DATAGRAM_PATIENCE_S = 0.2;
-/// Between two questions for a message over UDP, where the server does not wait.
+/// Interval of requests for a message over UDP, where the server does not wait.
 constexpr std::int64_t ASK_AGAIN_NS = 10000000;
 constexpr std::size_t MAX_DATAGRAM = 65507;
 

@@ -14,7 +14,7 @@
 namespace mw::nml {
 namespace {
 
-/// Between two looks whether the server is to end.
+/// Interval of the check whether the server ends.
 constexpr int LOOK_MS = 50;
 /// A client must send and take the whole of a message within it.
 constexpr Timeout MESSAGE_TIME{10.0};
@@ -29,7 +29,7 @@ bool isReadable(int fd) {
     return ::poll(&one, 1, LOOK_MS) > 0;
 }
 
-/// What came from one address, so that a request that comes twice is carried out once.
+/// Requests of one address, so that a repeated request is executed once.
 struct DatagramClient {
     std::unique_ptr<Session> session;
     std::uint32_t last_request = 0;

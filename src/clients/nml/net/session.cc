@@ -12,7 +12,7 @@ namespace {
 
 /// A server holds a request no longer: the client asks again, and knows that the server lives.
 constexpr double LONGEST_WAIT_S = 1.0;
-/// Between two looks whether the client is still there.
+/// Interval of the check whether the client is connected.
 constexpr double SLICE_S = 0.05;
 
 Timeout timeout_of(const Packet &request) {

@@ -201,7 +201,7 @@ void PythonCanon::hand_on(const gcode::ArcFeed &arc) {
          end[other + 1], end[other + 2]);
 }
 
-/// As straight moves and arcs that keep close to the curve.
+/// Approximates the curve by straight moves and arcs.
 void PythonCanon::hand_on(const gcode::NurbsFeed &nurbs) {
     constexpr double TOLERANCE_INCH = 0.0002;
     const bool is_mm = units_ == gcode::LengthUnits::MM;

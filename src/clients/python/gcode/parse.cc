@@ -16,7 +16,7 @@ namespace py = pybind11;
 namespace mw::python {
 namespace {
 
-/// What parse answers first, as preview programs know it: above MIN_ERROR is an error.
+/// Result codes of parse, as preview programs read them: numbers above MIN_ERROR are errors.
 enum Code {
     CODE_OK = 0,
     CODE_EXIT = 1,

@@ -7,7 +7,7 @@ namespace mw::python {
 
 namespace {
 
-/// What belongs to the process and not to an interpreter; never destroyed, since Python may drop components
+/// State of the process, not of an interpreter; never destroyed, since Python may drop components
 /// after static destructors have begun.
 struct Process {
     HalHandle joined;

@@ -20,7 +20,7 @@ namespace {
 constexpr double TAKEN_WITHIN_S = 5.0;
 constexpr double USUAL_TIMEOUT_S = 5.0;
 constexpr double SHOWN_WITHIN_S = 0.5;
-/// Of stops other than aborts: a paused program stays under way, and other axes may jog on.
+/// After stops other than aborts, a paused program stays active, and other axes may continue to jog.
 constexpr double STOP_SHOWN_WITHIN_S = 0.03;
 constexpr double HOMING_PATIENCE_S = 0.5;
 /// A sleeper sees so often whether Python has a signal for it (Ctrl-C).

@@ -61,7 +61,7 @@ class Drawing {
 
     void point(const geometry::Pose &pose) const { gl_.vertex(vertex_of(geometry_, pose, rotation_).data()); }
 
-    /// How many straight pieces show a move: one, unless it turns.
+    /// Number of straight pieces that show a move: one without rotation.
     static int pieces(const geometry::Pose &from, const geometry::Pose &to) {
         constexpr int LEAST = 10;
         constexpr double DEGREES = 10;

@@ -23,7 +23,7 @@ py::str text_of(const std::string &bytes) {
 class ErrorChannel {
   public:
     ErrorChannel() {
-        // What comes after it was made is not missed; without a machine yet, from the first poll() on.
+        // No line after its construction is missed; before a machine runs, none after the first poll().
         try {
             if (client::MachineLink *const link = view_.viewer().link(); link != nullptr) {
                 link->request_messages();

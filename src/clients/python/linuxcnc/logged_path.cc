@@ -6,7 +6,7 @@
 namespace mw::python {
 namespace {
 
-/// How far the cosine of a bend may be from 1 on a straight line.
+/// Largest difference of the cosine of a bend from 1 on a straight line.
 constexpr double STRAIGHT = 1e-4;
 
 std::array<double, 3> step_of(const LoggedPoint &from, const LoggedPoint &to) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What screens draw: where nine coordinates are in the picture, and the path behind the tool.
+// The picture of screens: the position of nine coordinates in it, and the path behind the tool.
 #include <cmath>
 #include <numbers>
 
@@ -83,7 +83,7 @@ TEST(LoggedPathTest, AnArcOfAnyFinenessStaysAnArc) {
             const double angle = 2 * std::numbers::pi * i / samples;
             path.add(at(20 * std::cos(angle), 20 * std::sin(angle)));
         }
-        // What is drawn stays near the circle in the middle of each line too.
+        // The middle of each line is near the circle, too.
         const auto &points = path.points();
         for (std::size_t i = 1; i < points.size(); ++i) {
             const double x = (points[i - 1].x + points[i].x) / 2, y = (points[i - 1].y + points[i].y) / 2;

@@ -69,7 +69,7 @@ class RshServerTest : public ::testing::Test {
         EXPECT_EQ(::connect(fd, reinterpret_cast<const sockaddr *>(&place), sizeof place), 0);
         return fd;
     }
-    /// What comes until the other side closes, or so many bytes have.
+    /// Bytes until the other side closes, or at most so many.
     static std::string hear(int fd, std::size_t most) {
         std::string all;
         char byte = 0;

@@ -52,7 +52,7 @@ class RshTest : public ::testing::Test {
         EXPECT_TRUE(shared->read().has_value());
         session->step(static_cast<double>(now_ns) * 1e-9);
     }
-    /// What a line is answered with, within some cycles.
+    /// The answer to a line within some cycles.
     std::string say(const std::string &line) {
         asked.clear();
         session->take(line + "\r\n");
@@ -108,7 +108,7 @@ TEST_F(RshTest, AnOrderIsAnsweredWhenItHasEnded) {
     greet();
     progress = Progress::STARTED;
     EXPECT_EQ(say("set mdi g0 x1"), "");
-    // What comes behind it waits.
+    // Later lines wait.
     EXPECT_EQ(say("get mode"), "");
     desk.tell(last_serial, Progress::DONE, "");
     EXPECT_EQ(say(""), "SET MDI ACK\r\nMODE MANUAL\r\n");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the server keeps of large answers for clients that are slow or have hung up (issue 37).
+// Memory of the server for large answers to slow and closed clients.
 #include <gtest/gtest.h>
 
 #include "clients/screen/test/server_peer.hh"

@@ -294,7 +294,7 @@ TEST_F(ApiTest, EachCommandIsAStopOrNeedsAnOperator) {
                 << declaration->name << " as " << role_name(asking);
         }
     }
-    // Of one command it depends on its word.
+    // SetState depends on its state.
     for (const auto &[state, stop] :
          {std::pair("ESTOP", true), {"OFF", true}, {"ON", false}, {"ESTOP_RESET", false}}) {
         constexpr SessionId VIEWER = 0;

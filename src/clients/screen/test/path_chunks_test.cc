@@ -21,7 +21,7 @@ struct Point {
     std::uint8_t kind;
 };
 
-/// What a browser makes of the bytes.
+/// Decodes the bytes as a browser does.
 struct Range {
     std::uint32_t first;
     float feed;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What a browser puts together from deltas is the status (J3).
+// A browser gets the whole status from the deltas (J3).
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What a stranger may send to the port for other computers (J3): records in pieces, spoiled, none at all;
+// Invalid input at the port for other computers (J3): records in pieces, spoiled, none at all;
 // greetings that never end. None of it is answered as valid, delays other clients, or is
 // kept.
 #include <filesystem>

@@ -136,10 +136,10 @@ TEST(NmlVocabulary, AnAbortOfAJointStopsItsJog) {
 
 TEST(NmlVocabulary, WhatTheMachineHasNoCommandForIsRejectedWithTheReason) {
     EXPECT_EQ(command_of("EMC_TRAJ_LINEAR_MOVE_TYPE"),
-              "this is a part of programs (give it as G-code, by Mdi)");
+              "only programs contain this: send it as G-code, by Mdi");
     EXPECT_EQ(command_of("EMC_JOINT_SET_MAX_VELOCITY_TYPE"),
-              "this is set by the INI file and does not change while the machine runs");
-    EXPECT_EQ(command_of("EMC_TASK_INIT_TYPE"), "this begins and ends with the machine");
+              "this is a setting of the INI file and cannot change while the machine runs");
+    EXPECT_EQ(command_of("EMC_TASK_INIT_TYPE"), "the machine does this itself when it starts and ends");
     EXPECT_NE(command_of("EMC_EXEC_PLUGIN_CALL_TYPE").find("PYTHON_TASK"), std::string::npos);
     EXPECT_NE(command_of("EMC_IO_PLUGIN_CALL_TYPE").find("PYTHON_TASK"), std::string::npos);
     EXPECT_NE(command_of("EMC_SYSTEM_CMD_TYPE").find("M100 to M199"), std::string::npos);

@@ -120,7 +120,7 @@ TEST_P(NmlTransportTest, AClientWritesReadsPeeksWaitsAndClearsAsALocalOne) {
     EXPECT_FALSE(cmd_->peek(message, AT_ONCE).value());
 }
 
-/// What the server has to stop, once it is something; empty after a second without.
+/// Jogs that the server stops; empty if none comes within a second.
 std::vector<messages::Command> left_by(Server &server) {
     for (int i = 0; i < 1000; ++i) {
         auto left = server.take_left_jogs();
