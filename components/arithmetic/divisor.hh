@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What one may divide by. Realtime-safe.
+// A divisor that is never 0. Realtime-safe.
 #pragma once
 
 #include <cmath>
 
 namespace mw::arithmetic {
 
-/// `value`, or the deadband with its sign when it is nearer to zero; never 0.
+/// `value`, but at least as far from zero as the deadband, with its sign; never 0.
 inline double divisor(double value, double deadband) noexcept {
     constexpr double SMALLEST = 1e-12;
     const double least = deadband > SMALLEST ? deadband : SMALLEST;

@@ -41,7 +41,7 @@ struct Lincurve {
     }
 
   private:
-    /// Files for LinuxCNC may have any number: it clamps them without a message.
+    /// LinuxCNC clamps any number of points without a message, so configurations for it may give any number.
     void declare_points(Declare &d) noexcept {
         const int wanted = personality[d.index()];
         points = std::clamp(wanted, MIN_POINTS, MAX_POINTS);

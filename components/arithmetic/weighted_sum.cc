@@ -2,7 +2,7 @@
 // weighted_sum: numbers made of bits. `wsum_sizes=2,4,...` makes up to 8 sums of 1 to 16 bits.
 //
 // `wsum.N.sum` (s32) is `wsum.N.offset` plus the `wsum.N.bit.M.weight` (s32, 2^M at start) of each
-// `wsum.N.bit.M.in` (bit) that is true; it stands still while `wsum.N.hold` (bit) is true. One function
+// `wsum.N.bit.M.in` (bit) that is true; it does not change while `wsum.N.hold` (bit) is true. One function
 // `process_wsums` for all.
 #include "hal/sdk/component.hh"
 

@@ -11,7 +11,7 @@
 namespace mw::components {
 using namespace sdk;
 
-/// `value` to the nearest whole number, modulo 2^32.
+/// `value` rounded to the nearest integer, modulo 2^32.
 static std::int32_t wrapped(double value) noexcept {
     const double rest = std::fmod(std::floor(value + 0.5), 4294967296.0);
     return static_cast<std::int32_t>(static_cast<std::uint32_t>(static_cast<std::int64_t>(rest)));
@@ -22,7 +22,7 @@ struct Ilowpass {
     Out<std::int32_t> out;
     ParamRw<double> scale, gain;
     std::int32_t last_in = 0;
-    std::int64_t counts = 0;  ///< `in` without the jumps at the end of its type
+    std::int64_t counts = 0;  ///< `in` without the jumps from the wrap of its type
     double value = 0.0;       ///< [counts * scale]
 
     void declare(Declare &d) noexcept {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// joyhandle: bends the way of a joystick: `out` is scale * (a * in^power + b * in) + offset, with a and b
+// joyhandle: bends the curve of a joystick: `out` is scale * (a * in^power + b * in) + offset, with a and b
 // such that it starts with offset at the deadband and ends with scale + offset at 1.
 //
-// Below `deadband` (0 to 0.99) out is 0, beyond 1 it stays. Negative inputs give the negative of it. With
+// Below `deadband` (0 to 0.99) out is 0, above 1 it stays. Negative inputs give the negative of it. With
 // `inverse` (bit) the curve is turned round: steep first. All other parameters and pins are float; power (2
 // at start) counts as 1 when less.
 #include <cmath>

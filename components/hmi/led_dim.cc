@@ -22,7 +22,7 @@ struct LedDim {
 
     void update() noexcept {
         constexpr double PERCENT = 100.0;
-        constexpr double STRAIGHT = 8.0, SLOPE = 903.3;  // below that lightness: a straight line
+        constexpr double STRAIGHT = 8.0, SLOPE = 903.3;  // below this lightness: a straight line
         constexpr double OFFSET = 16.0, SCALE = 116.0;
         const double lightness = PERCENT * (std::isfinite(in) ? limit::between(in, 0.0, 1.0) : 0.0);
         const double root = (lightness + OFFSET) / SCALE;

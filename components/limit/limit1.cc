@@ -21,7 +21,7 @@ struct Limit1 {
     }
     void update() noexcept {
         set_finite(out, limit::between(in, min, max));
-        // A limit that came nearer holds for the value before too.
+        // A limit that has moved inwards also applies to the previous value.
         out = limit::between(out, min, max);
     }
 };

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A bit that must hold still before it counts. Realtime-safe.
+// A bit that must be stable before it counts. Realtime-safe.
 #pragma once
 
 namespace mw::logic {
 
-/// Counts up in every period that the input is true and down in every other, from 0 to the delay; the output
-/// changes at the ends.
+/// Counts up in every period in which the input is true and down in every other one, between 0 and the delay.
+/// The output changes when the count reaches an end.
 class Debouncer {
   public:
     /// `delay` [periods], at least 1.

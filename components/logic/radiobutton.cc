@@ -4,7 +4,7 @@
 //
 // `personality=` gives the number of buttons, 2 to 32 (default 8). `selected` (u32, I/O) is the number of the
 // one that is true; it may be set from outside, and starts at 0. When several become true in one period the
-// lowest counts. `enable` (bit, true at start): while false the inputs are not looked at.
+// lowest counts. `enable` (bit, true at start): while false the inputs are ignored.
 #include "hal/sdk/component.hh"
 
 MW_PERSONALITY("buttons of each instance");

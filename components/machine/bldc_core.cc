@@ -8,8 +8,8 @@ namespace mw::bldc {
 
 namespace {
 
-// In octal: the sensors H1 H2 H3 of the six sectors in their order. The numbering of the patterns is the one
-// that configurations of LinuxCNC use.
+// In octal: the sensors H1 H2 H3 of the six sectors in order. LinuxCNC configurations use this numbering of
+// the patterns.
 constexpr std::uint32_t PATTERN_TABLE[PATTERNS] = {
     0013764, 0102675, 0023754, 0132645, 0231546, 0320457, 0201576, 0310467, 0015762, 0104673,
     0026751, 0137640, 0237540, 0326451, 0204573, 0315462, 0045732, 0154623, 0046731, 0157620,
@@ -39,8 +39,8 @@ int sector_of_hall(int pattern, unsigned hall) noexcept {
 }
 
 int sector_of_phase(double phase) noexcept {
-    // B-A is the field around 150 degrees, C-A around 210 degrees: from 1/6 turn on with the lead of 90
-    // degrees.
+    // B-A is the field around 150 degrees and C-A the field around 210 degrees: with the lead of 90 degrees
+    // they start at 1/6 turn.
     const int sixth = static_cast<int>(fraction(phase) * SECTORS);
     return (sixth + SECTORS - 1) % SECTORS;
 }

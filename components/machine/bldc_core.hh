@@ -9,17 +9,17 @@ namespace mw::bldc {
 constexpr int PATTERNS = 48;
 constexpr int SECTORS = 6;
 
-/// The part of `turns` above the whole number below; 0 for what is not a number.
+/// The fractional part of `turns` above the next lower whole number; 0 for NaN.
 double fraction(double turns) noexcept;
 
-/// The hall sensors (H1 is bit 2, H3 bit 0) in sector `sector` of commutation pattern `pattern`. The sectors
-/// are, by source and sink, B-A, C-A, C-B, A-B, A-C, B-C.
+/// The hall sensors (H1 is bit 2, H3 bit 0) in sector `sector` of commutation pattern `pattern`. As source
+/// and sink, the sectors are B-A, C-A, C-B, A-B, A-C, B-C.
 unsigned hall_of_sector(int pattern, int sector) noexcept;
 
-/// The sector with those hall sensors, or -1.
+/// The sector with these hall sensors, or -1.
 int sector_of_hall(int pattern, unsigned hall) noexcept;
 
-/// The sector of a field at the angle `phase`.
+/// The sector for a field at the angle `phase`.
 int sector_of_phase(double phase) noexcept;
 
 struct Phases {
@@ -28,9 +28,9 @@ struct Phases {
     double c = 0.0;
 };
 
-/// Sine-shaped phases of a field at `phase`.
+/// Sinusoidal phase voltages for a field at `phase`.
 Phases sine(double phase, double amplitude) noexcept;
-/// One phase is source, one sink, one off.
+/// One phase is the source, one the sink, and one is off.
 Phases trapezoid(int sector, double amplitude) noexcept;
 
 }  // namespace mw::bldc

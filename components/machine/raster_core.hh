@@ -8,7 +8,7 @@ namespace mw::raster {
 
 constexpr int MAX_PIXELS = 32768;
 constexpr int MAX_FIELD = 32;
-/// Output where there is nothing to engrave.
+/// The output when there is nothing to engrave.
 constexpr double NO_PIXEL = -1.0;
 
 enum class Reading : std::uint8_t {
@@ -23,21 +23,22 @@ enum class Reading : std::uint8_t {
     BAD_PIXEL
 };
 
-/// "OFFSET;BITS;PPU;COUNT;" and COUNT pixels of BITS / 4 hexadecimal digits.
+/// "OFFSET;BITS;PPU;COUNT;" followed by COUNT pixels of BITS / 4 hexadecimal digits.
 class Line {
   public:
-    /// Takes the next byte; at COMPLETE and mistakes it takes none until `clear`.
+    /// Takes the next byte. When the line is complete or has an error, bytes are ignored until `clear`.
     void take(char byte) noexcept;
     void clear() noexcept { reading_ = Reading::NOTHING; }
     Reading reading() const noexcept { return reading_; }
 
     double offset() const noexcept { return offset_; }  ///< from the start to the first pixel [units]
-    double pixels_per_unit() const noexcept { return per_unit_; }  ///< above 0
+    double pixels_per_unit() const noexcept { return per_unit_; }  ///< greater than 0
     int bits() const noexcept { return 4 * digits_; }
     int count() const noexcept { return count_; }
-    /// Of pixel 0 to count - 1: 0 to 100 [%], the highest value but one being 100; NO_PIXEL for the highest.
+    /// Of pixel 0 to count - 1: 0 to 100 [%]. The second highest value is 100 %; the highest value is
+    /// NO_PIXEL.
     double percent(int index) const noexcept;
-    /// The place in the line, in pixels from the first one, of a position `from_start`. A negative offset
+    /// The position in the line, in pixels from the first one, at `from_start`. With a negative offset it
     /// runs downwards.
     double way(double from_start) const noexcept;
 
@@ -47,9 +48,9 @@ class Line {
     Reading take_field() noexcept;
 
     Reading reading_ = Reading::NOTHING;
-    char header_[MAX_FIELD] = {};  ///< the field being read
+    char header_[MAX_FIELD] = {};  ///< the field that is being read
     int header_size_ = 0;
-    int fields_ = 0;  ///< of the header that have ended
+    int fields_ = 0;  ///< number of complete header fields
     double offset_ = 0.0;
     double per_unit_ = 1.0;
     int digits_ = 2;

@@ -8,7 +8,7 @@
 
 namespace mw::thermocouple {
 
-constexpr double LOWEST_C = -200.0;  ///< range of the inverse polynomials
+constexpr double LOWEST_C = -200.0;  ///< valid range of the inverse polynomials
 constexpr double HIGHEST_C = 1350.0;
 
 inline double polynomial(std::span<const double> coefficients, double x) noexcept {
@@ -19,7 +19,7 @@ inline double polynomial(std::span<const double> coefficients, double x) noexcep
     return sum;
 }
 
-/// The voltage of a thermocouple at `celsius` with its other end at 0 degrees [mV].
+/// The voltage of a thermocouple at `celsius` with its reference junction at 0 degrees [mV].
 inline double type_k_mv(double celsius) noexcept {
     constexpr double BELOW[] = {0.0,
                                 0.394501280250e-01,
@@ -43,7 +43,7 @@ inline double type_k_mv(double celsius) noexcept {
     return polynomial(ABOVE, celsius) + 0.118597600000 * std::exp(-0.118343200000e-03 * distance * distance);
 }
 
-/// The temperature that makes `mv`; not a number outside of LOWEST_C to HIGHEST_C.
+/// The temperature that gives `mv`; NaN outside LOWEST_C to HIGHEST_C.
 inline double type_k_celsius(double mv) noexcept {
     constexpr double COLD[] = {0.0,           2.5173462e1,   -1.1662878,    -1.0833638,   -8.9773540e-1,
                                -3.7342377e-1, -8.6632643e-2, -1.0450598e-2, -5.1920577e-4};

@@ -10,7 +10,7 @@ struct SerialPins {
     hal_u32_t *last_iterations;
 };
 
-/// The model as its pins have it, and how hard it was.
+/// The model with the values of its pins, and the number of iterations it needed.
 struct LiveSerial {
     mw::components::PinnedModel<mw::kinematics::Serial> pinned;
     SerialPins *pins = nullptr;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A model whose forward side iterates, with pins that tell how it went.
+// A model whose forward side iterates, with pins that show the result.
 #pragma once
 
 #include "components/motion/model_pins.hh"
@@ -9,7 +9,8 @@ namespace mw::components {
 template <class Model>
 class IteratingModel {
   public:
-    /// Pins of the model and PREFIX.last-iterations, max-iterations. 0 or a negated errno. [while loading]
+    /// Creates the pins of the model and PREFIX.last-iterations and max-iterations. Returns 0 or a negated
+    /// errno. [while loading]
     int declare(int comp_id, const char *prefix) noexcept {
         pins_ = static_cast<Pins *>(hal_malloc(static_cast<long>(sizeof(Pins))));
         if (pins_ == nullptr) {

@@ -16,7 +16,7 @@ inline geometry::Pose pose_of(const EmcPose &world) noexcept {
     return {{world.tran.x, world.tran.y, world.tran.z, world.a, world.b, world.c, world.u, world.v, world.w}};
 }
 
-/// `world` holds a guess and what no joint drives. -1 when the model has no answer.
+/// `world` holds a first guess and the axes that no joint drives. -1 when the model has no solution.
 template <class Model>
 int model_forward(const Model &model, const double *joint, EmcPose *world) noexcept {
     geometry::Pose pose = pose_of(*world);
@@ -32,12 +32,12 @@ kinematics::Status model_inverse(const Model &model, const EmcPose *world, doubl
     return model.inverse(pose_of(*world), joint);
 }
 
-/// Of a module without pins.
+/// For a module without pins.
 inline int no_pins(int) noexcept {
     return 0;
 }
 
-/// 0 of what has no sides.
+/// 0 for a model without sides.
 template <class Model>
 int model_side(const Model &model, const geometry::Pose &pose) noexcept {
     if constexpr (requires { model.side(pose); }) {
@@ -47,7 +47,7 @@ int model_side(const Model &model, const geometry::Pose &pose) noexcept {
     }
 }
 
-/// Of what is linear: `slope` has MAX_JOINTS rows of AXIS_COUNT. The joints that are, a bit each.
+/// For linear joints: `slope` has MAX_JOINTS rows of AXIS_COUNT. Returns one bit per linear joint.
 template <class Model>
 unsigned model_linear(const Model &model, double *slope, unsigned *axes) noexcept {
     *axes = 0;
@@ -65,9 +65,9 @@ unsigned model_linear(const Model &model, double *slope, unsigned *axes) noexcep
 
 }  // namespace mw::components
 
-/// Defines kinematicsForward, kinematicsInverse and kinematicsHome over `model`, an object of the module;
-/// mw_kinematics_inverse, which tells a singular pose from another (0 as it should be, 1 out of reach, 2
-/// singular); mw_kinematics_side and mw_kinematics_linear (kinematics/kinematics.hh).
+/// Defines kinematicsForward, kinematicsInverse and kinematicsHome for `model`, an object of the module. Also
+/// defines mw_kinematics_inverse, which distinguishes a singular pose (0 success, 1 out of reach, 2
+/// singular), mw_kinematics_side and mw_kinematics_linear (kinematics/kinematics.hh).
 #define MW_KINEMATICS_FUNCTIONS(model)                                                                       \
     extern "C" int kinematicsForward(const double *joint, struct EmcPose *world,                             \
                                      const KINEMATICS_FORWARD_FLAGS *, KINEMATICS_INVERSE_FLAGS *) {         \
@@ -92,7 +92,7 @@ unsigned model_linear(const Model &model, double *slope, unsigned *axes) noexcep
     }                                                                                                        \
     static_assert(true)
 
-/// The same for a module that has one type only.
+/// The same for a module with only one type.
 #define MW_KINEMATICS(model)                                                                                 \
     MW_KINEMATICS_FUNCTIONS(model);                                                                          \
     extern "C" {                                                                                             \
@@ -100,7 +100,8 @@ unsigned model_linear(const Model &model, double *slope, unsigned *axes) noexcep
     }                                                                                                        \
     static_assert(true)
 
-/// The loading and unloading of module `name`; `declare(comp_id)` makes its pins, 0 or a negated errno.
+/// Loading and unloading of module `name`. `declare(comp_id)` creates its pins and returns 0 or a negated
+/// errno.
 #define MW_KINEMATICS_MAIN(name, declare)                                                                    \
     static int component = -1;                                                                               \
     int rtapi_app_main(void) {                                                                               \
@@ -117,11 +118,11 @@ unsigned model_linear(const Model &model, double *slope, unsigned *axes) noexcep
     }                                                                                                        \
     static_assert(true)
 
-/// Says that joints are not axes, and that no call leaves anything behind: the planner may call these
-/// functions while the servo thread does.
+/// Declares that joints are not axes, and that no call changes any state: the planner may call these
+/// functions at the same time as the servo thread.
 #define MW_KINEMATICS_PURE MW_KINEMATICS_PURE_IF(true)
 
-/// The same where that is known after loading only.
+/// The same when this is only known after loading.
 #define MW_KINEMATICS_PURE_IF(condition)                                                                     \
     extern "C" KINEMATICS_TYPE kinematicsType(void) {                                                        \
         return KINEMATICS_BOTH;                                                                              \

@@ -8,13 +8,13 @@
 
 namespace mw::components {
 
-/// `Head` says about which axis the table turns. One for each module; pins go by `name`.
+/// `Head` gives the axis about which the table turns. There is one for each module; the pins use `name`.
 template <class Head>
 class LeaningHead {
   public:
     Switchable &switchable() noexcept { return switchable_; }
 
-    /// Makes the pins of `name`_kins; 0 or a negated errno.
+    /// Creates the pins of `name`_kins. Returns 0 or a negated errno.
     int declare(int comp_id, const char *name, const char *pins, const char *letters) noexcept {
         const char *expected = "xyzabc";
         int i = 0;
@@ -29,7 +29,7 @@ class LeaningHead {
     }
 
   private:
-    /// The same machine in coordinates of the tool.
+    /// The same machine in tool coordinates.
     struct InPlane {
         const PinnedModel<Head> &pinned;
 

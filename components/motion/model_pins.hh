@@ -10,11 +10,12 @@
 
 namespace mw::components {
 
-/// The model as its pins have it at each call.
+/// The model with the values of its pins at each call.
 template <class Model>
 class PinnedModel {
   public:
-    /// Makes the pins PREFIX.NAME with what the table starts them at. 0 or a negated errno. [while loading]
+    /// Creates the pins PREFIX.NAME with the start values from the table. Returns 0 or a negated errno.
+    /// [while loading]
     int declare(int comp_id, const char *prefix) noexcept {
         void *memory = hal_malloc(static_cast<long>(sizeof(Cells)));
         if (memory == nullptr) {
@@ -36,7 +37,7 @@ class PinnedModel {
         }
         return out;
     }
-    /// What is no pin of a model: its letters.
+    /// The part of the model that is not on pins: its letters.
     Model &base() noexcept { return base_; }
     kinematics::Status forward(const double *joints, kinematics::Pose &pose) const noexcept {
         return model().forward(joints, pose);
@@ -49,7 +50,7 @@ class PinnedModel {
 
   private:
     struct Cell {
-        void *slot = nullptr;  // the C API keeps it pointing at the value
+        void *slot = nullptr;  // the C API keeps this pointing at the value
         double param = 0;
     };
     struct Cells {
@@ -121,7 +122,7 @@ class PinnedModel {
 
 }  // namespace mw::components
 
-/// A module of one type: the model with its pins, NAME.PARAMETER.
+/// A module with one type: the model and its pins, NAME.PARAMETER.
 #define MW_MODEL_MODULE(Model, name)                                                                         \
     static mw::components::PinnedModel<Model> pinned;                                                        \
     MW_KINEMATICS(pinned);                                                                                   \

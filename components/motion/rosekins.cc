@@ -13,12 +13,12 @@ struct RosePins {
     hal_float_t *revolutions, *theta, *big_theta;
 };
 
-/// The model, and where the work is on the pins.
+/// The model, and the position of the work on its pins.
 struct LiveRose {
     mw::kinematics::Rose model;
     RosePins *pins = nullptr;
 
-    /// Of the servo thread only; the planner asks the other way.
+    /// Only for the servo thread; the planner calls the inverse.
     mw::kinematics::Status forward(const double *joints, mw::kinematics::Pose &pose) const noexcept {
         const mw::kinematics::Status status = model.forward(joints, pose);
         if (isAnswered(status)) {

@@ -18,7 +18,7 @@ MW_KINEMATICS(model);
 
 MW_KINEMATICS_PURE;
 
-/// False when the text is no number. The realtime process keeps the locale C.
+/// False when the text is not a number. The realtime process always uses the C locale.
 static bool read_number(const char *name, const char *text, double &value) {
     if (text == nullptr || text[0] == '\0') {
         return true;

@@ -20,7 +20,7 @@ extern "C" KINEMATICS_TYPE kinematicsType(void) {
     return type;
 }
 
-/// Whatever kinstype= tells operators: each joint is an axis.
+/// Each joint is an axis, with any kinstype=.
 extern "C" RTAPI_EXPORT int mw_kinematics_is_identity(void) {
     return 1;
 }

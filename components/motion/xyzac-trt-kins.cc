@@ -7,7 +7,7 @@ static mw::components::PinnedModel<mw::kinematics::XyzacTable> pinned;
 
 static int declare_model(int comp_id, const char *letters) {
     if (!pinned.base().set_letters(letters)) {
-        return -EINVAL;  // told already
+        return -EINVAL;  // already reported
     }
     return pinned.declare(comp_id, "xyzac-trt-kins");
 }

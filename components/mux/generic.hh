@@ -24,7 +24,7 @@ struct Config {
     const TypeLetter *to = nullptr;
     int size = 0;
 
-    /// Reads an item of config=; false when it is none.
+    /// Reads one item of config=. False when it is invalid.
     bool parse(const char *text) noexcept {
         for (; *text != '\0'; ++text) {
             if (*text >= '0' && *text <= '9') {
@@ -48,7 +48,7 @@ struct Config {
     }
 };
 
-/// Copies a value to one of another type; what does not fit becomes the nearest value.
+/// Copies a value to a value of another type; a value that does not fit becomes the nearest one.
 template <class From>
 void copy_value(From value, hal_type_t to, hal_data_u *output) noexcept {
     switch (to) {
@@ -73,8 +73,8 @@ inline void copy_pin(const hal_data_u *input, hal_type_t from, hal_type_t to, ha
     }
 }
 
-/// Loads a T, which has a `shape` and declares its pins, for each item of config=: PREFIX.00, PREFIX.01, ...
-/// The component id, or a negated errno.
+/// Loads one T for each item of config=: PREFIX.00, PREFIX.01, ... A T has a `shape` and declares its pins.
+/// Returns the component id, or a negated errno.
 template <class T>
 int load_generic(const char *module, const char *prefix, char *const *config, int max) noexcept {
     const int comp_id = hal_init(module);

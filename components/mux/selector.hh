@@ -9,8 +9,8 @@ namespace mw::mux {
 
 class Selector {
   public:
-    /// `wanted` is the selection asked for, `debounce_us` how long it must be stable [us].
-    /// With `skipsZero` a selection of 0 changes nothing. Answers the selection in force, below `size`.
+    /// `wanted` is the requested selection and `debounce_us` the time for which it must be stable [us]. With
+    /// `skips_zero` a selection of 0 changes nothing. Returns the active selection, below `size`.
     std::uint32_t run(std::uint32_t wanted, std::uint32_t size, std::uint32_t debounce_us, bool skipsZero,
                       std::int64_t period_ns) noexcept {
         is_suppressed_ = skipsZero && wanted == 0;
@@ -31,9 +31,10 @@ class Selector {
         return bounded(selected_, size);
     }
 
-    /// False while the output keeps its value: a new selection is debounced, or none is skipped.
+    /// False while the output keeps its value: a new selection is being debounced, or a selection of 0 is
+    /// skipped.
     bool is_settled() const noexcept { return wanted_ == selected_ && !is_suppressed_; }
-    /// As asked for, not bounded.
+    /// The requested selection, without limits.
     std::uint32_t selected() const noexcept { return selected_; }
     std::uint32_t waited_us() const noexcept { return static_cast<std::uint32_t>(waited_ns_ / 1000); }
 
@@ -48,7 +49,7 @@ class Selector {
     std::int64_t waited_ns_ = 0;
 };
 
-/// Four inputs chosen by two bits, two by one: bit 0 is the first.
+/// Two bits choose one of four inputs, one bit one of two; bit 0 is the first.
 template <class... Bits>
 constexpr unsigned index_of_bits(Bits... bits) noexcept {
     unsigned index = 0;

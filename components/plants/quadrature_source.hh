@@ -9,19 +9,20 @@ namespace mw::plants {
 
 class QuadratureSource {
   public:
-    /// `counts_per_second` and `counts_per_turn` (four counts a pulse) hold until the next call. A speed that
-    /// is no number is none.
+    /// `counts_per_second` and `counts_per_turn` (four counts per pulse) apply until the next call. A speed
+    /// that is not a number counts as 0.
     void set_speed(double counts_per_second, std::int32_t counts_per_turn) noexcept {
         counts_per_second_ = std::isnan(counts_per_second) ? 0.0 : counts_per_second;
         counts_per_turn_ = counts_per_turn > 0 ? counts_per_turn : 1;
     }
 
-    /// One pulse period of `dt` seconds; at most one count, as a real edge cannot be skipped.
+    /// One pulse period of `dt` seconds. At most one count, because a real edge cannot be skipped.
     void run(double dt) noexcept {
         double step = counts_per_second_ * dt;
         step = step > 1.0 ? 1.0 : (step < -1.0 ? -1.0 : step);
         fraction_ += step;
-        // Sums of binary fractions end a hair short of whole counts; that hair is not worth a period.
+        // Sums of binary fractions end slightly below whole counts; such a small difference must not cost a
+        // period.
         constexpr double HAIR = 1e-9;
         if (fraction_ >= 1.0 - HAIR) {
             fraction_ -= 1.0;
@@ -34,7 +35,7 @@ class QuadratureSource {
 
     bool phase_a() const noexcept { return (counts_ & 3) < 2; }
     bool phase_b() const noexcept { return (counts_ & 3) == 1 || (counts_ & 3) == 2; }
-    /// True for one count a turn.
+    /// True for one count per turn.
     bool index() const noexcept { return in_turn_ == 0; }
     std::int32_t counts() const noexcept { return counts_; }
 

@@ -6,7 +6,7 @@
 
 namespace mw::plants {
 
-/// Weyl sequence through a mixing function (Steele, Lea, Flood: "Fast splittable pseudorandom number
+/// A Weyl sequence with a mixing function (Steele, Lea, Flood: "Fast splittable pseudorandom number
 /// generators", 2014).
 class Random {
   public:
@@ -19,12 +19,12 @@ class Random {
         z = (z ^ (z >> 27U)) * 0x94d049bb133111ebU;
         return z ^ (z >> 31U);
     }
-    /// Evenly in [low, high).
+    /// Uniform in [low, high).
     double real(double low, double high) noexcept {
         constexpr double STEP = 1.0 / 9007199254740992.0;  // 2^-53
         return low + (high - low) * (static_cast<double>(next() >> 11U) * STEP);
     }
-    /// Evenly in low..high, both included.
+    /// Uniform in low..high, both included.
     int whole(int low, int high) noexcept {
         const auto count = static_cast<std::uint64_t>(static_cast<std::int64_t>(high) - low + 1);
         return low + static_cast<int>(next() % count);

@@ -21,7 +21,7 @@ struct PlantSwitch {
         d.pin(bounce_s, "bounce-s");
         d.pin(contact, "contact");
         d.pin(pressed, "pressed");
-        // Each has chances of its own, the same in every run.
+        // Each instance has its own random sequence, the same in every run.
         lever = plants::BouncingSwitch({}, static_cast<std::uint64_t>(d.index()) + 1);
         d.function<&PlantSwitch::update>(this);
     }

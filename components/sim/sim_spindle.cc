@@ -2,7 +2,7 @@
 // sim_spindle: a spindle that turns as commanded, with an index.
 //
 // `velocity-cmd` times the parameter `scale` (1 at start) is the speed in turns per second; `position-fb` the
-// position [turns]. With `index-enable` (bit, I/O) set, the position starts anew at the next whole turn and
+// position [turns]. With `index-enable` (bit, I/O) set, the position restarts at the next whole turn and
 // the pin is set back.
 #include "components/plants/spindle.hh"
 #include "hal/sdk/component.hh"

@@ -13,7 +13,7 @@ struct StreamPins {
     hal_type_t type[HAL_STREAM_MAX_PINS] = {};
     hal_data_u *slot[HAL_STREAM_MAX_PINS] = {};
 
-    /// Makes the stream and PREFIX.pin.0, PREFIX.pin.1, ... of the types that `config` asks for.
+    /// Creates the stream and the pins PREFIX.pin.0, PREFIX.pin.1, ... of the types in `config`.
     void declare(Declare &d, hal_pin_dir_t dir, int key, unsigned depth, const char *config) noexcept {
         if (!d.keep(hal_stream_create(&stream, d.comp_id(), key, depth, config))) {
             rtapi_print_msg(RTAPI_MSG_ERR,
@@ -61,7 +61,7 @@ struct StreamPins {
     }
 };
 
-/// Loads one T for each item of cfg=, with prefix MODULE.N; `all` gets them, null-terminated.
+/// Loads one T for each item of cfg=, with prefix MODULE.N. `all` receives them, null-terminated.
 template <class T>
 int load_streams(const char *module, const int *depth, char *const *cfg, T **all, int max) noexcept {
     const int comp_id = hal_init(module);

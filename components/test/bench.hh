@@ -13,7 +13,7 @@
 
 namespace mw::components::test {
 
-/// Keeps everything that a session says.
+/// Keeps all output of a session.
 class TextOutput final : public hal::script::Output {
   public:
     void data(std::string_view text) override { answers += text; }
@@ -29,7 +29,7 @@ class Bench {
   public:
     static constexpr std::int64_t PERIOD_NS = 1000000;
 
-    /// Loads threads with thread "t" of PERIOD_NS and runs `commands`; functions are added by them.
+    /// Loads threads with thread "t" of PERIOD_NS and runs `commands`, which add the functions.
     explicit Bench(const std::string &commands, std::int64_t period_ns = PERIOD_NS) : period_ns_(period_ns) {
         hal::HalOptions options;
         options.name = "component-test";
@@ -45,9 +45,9 @@ class Bench {
     void run(const std::string &commands) { (void)session->run_text(commands, "test"); }
     hal::Hal &hal() { return host->hal(); }
 
-    /// Lets `periods` periods of the thread pass.
+    /// Runs `periods` periods of the thread.
     void pass(int periods = 1) { clock.run_until(clock.now_ns() + periods * period_ns_); }
-    /// setp, or the signal's value when there is no such pin.
+    /// Uses setp, or sets the signal when there is no such pin.
     void set(const std::string &name, double value) {
         const auto pin = hal().get(name);
         ASSERT_TRUE(pin.has_value()) << name;
@@ -59,7 +59,7 @@ class Bench {
         EXPECT_TRUE(value.has_value()) << name;
         return value ? value->as_number() : 0.0;
     }
-    /// Sets an input, lets one period pass and reads an output.
+    /// Sets an input, runs one period and reads an output.
     double after(const std::string &input, double value, const std::string &output_pin) {
         set(input, value);
         pass();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Components that move something or keep something safe: their failing cases, and limits in every period.
+// Components that move something or have a safety function: their fault cases, and limits in every period.
 #include <random>
 
 #include "components/test/table.hh"
@@ -235,7 +235,7 @@ const std::vector<Table> MACHINES = {
      "bldc.0",
      {"bldc.0"},
      "value=0.5",
-     {{"", "hall-error=1 a-value=0 b-value=0 c-value=0"},  // 000 cannot be
+     {{"", "hall-error=1 a-value=0 b-value=0 c-value=0"},  // 000 is not possible
       {"hall1=1 hall3=1", "a-value=-0.5 b-value=0.5 c-value=0"},
       {"hall3=0", "a-value=-0.5 b-value=0 c-value=0.5 hall-error=0"},
       {"value=-0.5", "a-value=0.5 b-value=0 c-value=-0.5 out-dir=1"},
@@ -257,7 +257,7 @@ const std::vector<Table> MACHINES = {
      {{"keycode=197", "key.r1c1=1"},
       {"keycode=64", "key.r1c1=1"},
       {"keycode=192", "key.r0c0=1"},
-      {"keycode=194", "key.r0c2=0"},  // beyond the rollover
+      {"keycode=194", "key.r0c2=0"},  // above the rollover
       {"keycode=133", "key.r1c1=0"}}},
     {"MatrixKbScan",
      "matrix_kb config=2x2s",

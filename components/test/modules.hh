@@ -9,7 +9,7 @@
 
 namespace mw::components::test {
 
-/// Names of the modules of this folder, from the build.
+/// Names of the modules in this folder, from the build.
 inline std::vector<std::string> all_modules() {
     std::istringstream words(MW_ALL_COMPONENTS);
     std::vector<std::string> modules;
@@ -19,7 +19,7 @@ inline std::vector<std::string> all_modules() {
     return modules;
 }
 
-/// Arguments for modules that load nothing, or little, without.
+/// Arguments for modules that load little or nothing without them.
 inline std::string arguments_of(const std::string &module) {
     static const std::map<std::string, std::string> ARGUMENTS = {{"logic", "personality=0x1f03"},
                                                                  {"mux_generic", "config=fs4"},

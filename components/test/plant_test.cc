@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Plants as components: figures that are worked out by hand, and faults.
+// Plants as components: values calculated by hand, and faults.
 #include <cmath>
 
 #include "components/test/bench.hh"
@@ -44,7 +44,7 @@ TEST(Plants, AnAxisFollowsWithInertiaAndPlay) {
 }
 
 TEST(Plants, AWeakDriveIsAsFastAsItsTorqueAllows) {
-    // A torque of 100 units/s^2 makes 100 units/s^2: 0.5 a t^2 after a tenth of a second.
+    // A torque of 100 units/s^2 accelerates by 100 units/s^2: 0.5 a t^2 after a tenth of a second.
     Bench weak("loadrt plant_axis\naddf plant-axis.0 t\nsetp plant-axis.0.peak-acceleration 100\n"
                "setp plant-axis.0.powered 1\nsetp plant-axis.0.command 1000");
     weak.pass(100);

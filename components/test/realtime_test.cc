@@ -11,11 +11,11 @@
 namespace mw::components::test {
 namespace {
 
-/// Commands that load one of each module, pins prefixed by the module's name.
+/// Commands that load one of each module; the prefix of the pins is the name of the module.
 std::string load_all() {
     std::string commands;
     for (const std::string &module : all_modules()) {
-        // at_pid has the pins of pid; the bench has threads of its own.
+        // at_pid has the pins of pid; the bench has its own threads.
         if (module != "at_pid" && module != "threads") {
             commands += "loadrt " + module + " " + arguments_of(module) + "\n";
         }

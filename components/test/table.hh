@@ -16,16 +16,16 @@ namespace mw::components::test {
 
 struct Row {
     std::string set;     ///< "in=1 reset=0"
-    std::string expect;  ///< "out=0.5"; values are compared with a tolerance of 1e-6 of themselves
+    std::string expect;  ///< "out=0.5"; values are compared with a relative tolerance of 1e-6
     int periods = 1;
 };
 
 struct Table {
-    std::string name;    ///< of the test
+    std::string name;    ///< name of the test
     std::string load;    ///< "integ" or "gantry personality=2"
-    std::string prefix;  ///< of the pins, "integ.0"
+    std::string prefix;  ///< prefix of the pins, "integ.0"
     std::vector<std::string> functions;
-    std::string setup;  ///< pins and parameters set before, as in a row
+    std::string setup;  ///< pins and parameters that are set before, as in a row
     std::vector<Row> rows;
 };
 

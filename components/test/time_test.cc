@@ -77,7 +77,7 @@ TEST(Encoder, CountsWhatASimulatedEncoderTurns) {
         "addf sim-encoder.update-speed t\naddf sim-encoder.make-pulses t\naddf encoder.update-counters t\n"
         "addf encoder.capture-position t");
     bench.pass(1000);
-    // Two turns a second, the first count (A is high at start) included.
+    // Two turns per second, including the first count (A is high at the start).
     EXPECT_NEAR(bench.get("e.position"), 2.0, 0.021);
     EXPECT_NEAR(bench.get("e.velocity"), 2.0, 1e-6);
     EXPECT_NEAR(bench.get("e.velocity-rpm"), 120.0, 1e-4);
@@ -98,7 +98,7 @@ TEST(Encoder, MissingTeethAreTheIndexInCounterMode) {
     Bench bench(
         "loadrt encoder num_chan=1\nsetp encoder.0.counter-mode 1\nsetp encoder.0.missing-teeth 1\n"
         "setp encoder.0.index-enable 1\naddf encoder.update-counters t\naddf encoder.capture-position t");
-    // Teeth every 4 ms, the fourth of each turn is missing.
+    // Teeth every 4 ms; the fourth of each turn is missing.
     for (int turn = 0; turn < 2; ++turn) {
         for (int tooth = 0; tooth < 4; ++tooth) {
             bench.after("encoder.0.phase-A", tooth == 3 ? 0 : 1, "encoder.0.counts");
@@ -153,7 +153,7 @@ TEST(Stepgen, StepsToTheCommandWithinItsLimits) {
         last_step = step;
         const double frequency = bench.get("stepgen.0.frequency");
         ASSERT_LE(std::fabs(frequency), 5000.0 + 1e-6);
-        // 500 units/s^2 at 100 steps/unit in 20 us: 1 step/s; the start assumes a period of 50 us.
+        // 500 units/s^2 at 100 steps/unit in 20 us: 1 step/s. The start assumes a period of 50 us.
         ASSERT_LE(std::fabs(frequency - last_frequency), 2.5 + 1e-3) << i;
         last_frequency = frequency;
     }
@@ -174,7 +174,7 @@ TEST(Stepgen, VelocityModeAndItsTimes) {
                 20000);
     bench.pass(1000);
     EXPECT_EQ(bench.get("stepgen.0.steplen"), 40000.0) << "rounded up to periods";
-    // 40 us high and 60 us low at least: 10 steps a ms in 20 ms, less the start.
+    // At least 40 us high and 60 us low: 10 steps per ms for 20 ms, minus the start.
     EXPECT_NEAR(bench.get("stepgen.0.counts"), 200.0, 2.0);
 }
 
@@ -194,7 +194,7 @@ TEST(Pid, ProportionalIntegralAndFeedForwardAddUp) {
 }
 
 TEST(Pid, AutoTuningFindsGainsThatHoldAPlant) {
-    // Plant: an integrator behind a lag, made of lowpass and this loop.
+    // Plant: an integrator after a lag, built from lowpass and this loop.
     Bench bench(
         "loadrt pid num_chan=1\naddf pid.0.do-pid-calcs t\nsetp pid.0.error-previous-target 0\n"
         "setp pid.0.Pgain 0\nsetp pid.0.tune-effort 1\nsetp pid.0.tune-cycles 20\nsetp pid.0.enable 1\n"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// threads: makes up to three realtime threads; it has no pins of its own and may be unloaded afterwards.
+// threads: makes up to three realtime threads; it has no pins and may be unloaded afterwards.
 //
 // `name1=`, `period1=` [ns] to `name3=`, `period3=`, fastest first; without a name one thread "thread1" of 1
 // ms. `fp1=` to `fp3=` are accepted: every thread may use floating point.
@@ -39,7 +39,7 @@ static bool isGiven(const Wanted &thread) noexcept {
     return thread.name != nullptr && thread.name[0] != '\0';
 }
 
-/// Refuses a set of threads that is not complete or not ordered: 0, or a negated errno.
+/// Rejects a set of threads that is incomplete or not in order. Returns 0, or a negated errno.
 static int check(const Wanted *threads, int count) noexcept {
     for (int i = 0; i < count; ++i) {
         if (threads[i].period_ns <= 0) {

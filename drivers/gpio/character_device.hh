@@ -6,7 +6,7 @@
 
 namespace mw::gpio {
 
-/// The calls of the system that are used; tests have their own. All return as the calls do, with errno.
+/// The system calls used here; tests replace them. All return as the calls do, with errno.
 class System {
   public:
     virtual int open(const char *path) noexcept = 0;
@@ -38,7 +38,7 @@ class CharacterDevice final : public LineAccess {
         std::size_t count = 0;
         std::uint8_t line[MAX_LINES] = {};  ///< of the component, for each line of the group
     };
-    /// Where a line is.
+    /// Location of a line.
     struct Place {
         bool found = false;
         std::size_t chip = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What hal_gpio and hal_pi_gpio have in common: lines with their HAL pins and functions.
+// The common part of hal_gpio and hal_pi_gpio: lines with their HAL pins and functions.
 #pragma once
 
 #include <cstdlib>
@@ -31,8 +31,8 @@ class SimulatedLines final : public LineAccess {
     Levels inputs = 0, outputs = 0;
 };
 
-/// Lines are simulated under the virtual clock, since another process may drive a machine by them, and when
-/// the environment variable asks for it.
+/// Lines are simulated under the virtual clock, because another process may control a machine through them,
+/// and when the environment variable requires it.
 inline bool isSimulated() noexcept {
     const char *const value = std::getenv("MILLWRIGHT_GPIO");
     return mw_ext_is_virtual() != 0 || (value != nullptr && std::strcmp(value, "simulated") == 0);
@@ -53,7 +53,7 @@ struct LinePins {
     ParamRw<std::uint32_t> reset_ns;
     FailureState reading, writing;
     Levels inputs = 0, written = 0;
-    bool known = false;  ///< `written` is what the lines have
+    bool known = false;  ///< `written` has the current outputs
     long long written_ns = 0;
 
     /// Claims the lines: 0, or a negated errno with a message.
@@ -62,7 +62,7 @@ struct LinePins {
         return access->open(module, lines);
     }
 
-    /// `name_of(i)` is the beginning of the names of line i's pins.
+    /// `name_of(i)` is the prefix of the names of line i's pins.
     template <class NameOf>
     void declare(Declare &d, NameOf name_of) noexcept {
         for (std::size_t i = 0; i < lines.count; ++i) {
@@ -139,7 +139,7 @@ struct LinePins {
             }
         }
     }
-    /// Shows a failure, with one message when it begins.
+    /// Shows a failure, with one message for its first cycle.
     bool keep(bool good, FailureState &state, const char *what) noexcept {
         if (state.begins(good)) {
             rtapi_print_msg(RTAPI_MSG_ERR, "GPIO lines from '%s' on cannot be %s: errno %d\n",

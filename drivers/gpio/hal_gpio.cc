@@ -62,10 +62,10 @@ int add(Lines &lines, const Names &names, Direction direction) noexcept {
     return 0;
 }
 
-/// Lines that a list may name.
+/// Lines that a list may contain.
 enum class Allowed : std::uint8_t { ALL, OUTPUTS };
 
-/// Calls apply(line) for each line of a list; an error for a name that it may not have.
+/// Calls apply(line) for each line of a list; an error for a name that is not permitted.
 template <class Apply>
 int apply_to(Lines &lines, const Names &names, const char *list, Allowed allowed, Apply apply) noexcept {
     for (std::size_t i = 0; i < count_of(names); ++i) {

@@ -20,7 +20,7 @@ constexpr unsigned FIRST_GPIO = 2;
 constexpr std::uint8_t HEADER_PIN[NUM_LINES] = {3,  5,  7,  29, 31, 26, 24, 21, 19, 23, 32, 33, 8,
                                                 10, 36, 11, 12, 35, 38, 40, 15, 16, 18, 22, 37, 13};
 
-/// A mask as loadrt gives it; false, with a message, when it is no number or has too many bits.
+/// Parses a mask from loadrt; false, with a message, when it is not a number or has too many bits.
 bool read_mask(const char *name, const char *text, unsigned fallback, unsigned &mask) noexcept {
     mask = fallback;
     if (text == nullptr) {

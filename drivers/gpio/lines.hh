@@ -23,7 +23,7 @@ enum class Direction : std::uint8_t { INPUT, OUTPUT };
 enum class Drive : std::uint8_t { PUSH_PULL, OPEN_DRAIN, OPEN_SOURCE };
 enum class Bias : std::uint8_t { AS_IS, DISABLED, PULL_DOWN, PULL_UP };
 
-/// A line as it is wanted.
+/// A requested line.
 struct Line {
     char name[NAME_SIZE] = {};  ///< as gpioinfo shows it
     Direction direction = Direction::INPUT;
@@ -37,7 +37,7 @@ struct Lines {
     std::size_t count = 0;
 };
 
-/// One message when a failure begins, not one in each cycle.
+/// One message for the first cycle of a failure.
 class FailureState {
   public:
     /// Takes the result of a call; true when the failure begins with it.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The HAL component that carries a setup out: its pins, and a thread for each link.
+// The HAL component for a setup: its pins, and a thread for each link.
 #pragma once
 
 #include <csignal>
@@ -9,9 +9,9 @@
 
 namespace mw::modbus {
 
-/// Makes the pins, says that the component is ready and repeats the transactions until `stop` is not 0. A
-/// device that does not answer is told once, counted on its pin num_errors, and asked again; what was read
-/// last stays.
+/// Creates the pins, marks the component as ready and repeats the transactions until `stop` is not 0. A
+/// device that does not answer is reported once, counted on its pin num_errors, and polled again; the last
+/// values are kept.
 Result<> run(const Setup &setup, const volatile std::sig_atomic_t &stop);
 
 }  // namespace mw::modbus

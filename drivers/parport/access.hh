@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// How the registers of a parallel port are reached: directly, through the kernel's driver, or simulated.
+// Access to the registers of a parallel port: directly, through the kernel's driver, or simulated.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ class PortAccess {
   public:
     virtual std::uint8_t read(Register reg) noexcept = 0;
     virtual void write(Register reg, std::uint8_t value) noexcept = 0;
-    /// Selects the mode of the chip where it has the register for it. [while loading]
+    /// Selects the mode of the chip if it has the register for it. [while loading]
     virtual void select(Mode mode) noexcept = 0;
     virtual void release() noexcept = 0;
 
@@ -53,7 +53,7 @@ class DeviceAccess final : public PortAccess {
     int file_ = -1;
 };
 
-/// A port in memory: outputs keep what is written, and inputs have the levels that set_level() sets.
+/// A port in memory: outputs keep their values, and inputs have the levels that set_level() sets.
 class SimulatedAccess final : public PortAccess {
   public:
     std::uint8_t read(Register reg) noexcept override;

@@ -15,7 +15,7 @@ bool isDigit(char c) noexcept {
     return c >= '0' && c <= '9';
 }
 
-/// The type by its first letter, as users write it; false: there is no such type.
+/// The type with this first letter; false: there is no such type.
 bool find_mode(char letter, Mode &mode) noexcept {
     constexpr struct {
         char letter;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the recorded cycles of Ethernet boards show: who was late, and what to change.
+// A report from the recorded cycles of Ethernet boards: the cause of late packets, and how to fix it.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +9,10 @@
 
 namespace mw::doctor {
 
-/// One finding for each cause in the records of this user's boards.
+/// Reports one finding for each cause in the records of this user's boards.
 void examine_boards(diagnostics::Sink &sink);
 
-/// The same of one board; `now_ns` is monotonic.
+/// Findings for one board; `now_ns` is monotonic.
 void judge_board(const mesa::RecordedCycles &cycles, std::int64_t now_ns, diagnostics::Sink &sink);
 
 }  // namespace mw::doctor

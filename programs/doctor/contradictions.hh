@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Settings of which each is good by itself and that cannot go together.
+// Settings that are valid alone but contradict each other.
 #pragma once
 
 #include "base/diagnostics/sink.hh"

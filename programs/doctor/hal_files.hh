@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The HAL files of a machine, carried out without a machine.
+// Runs the HAL files of a machine without a machine.
 #pragma once
 
 #include "base/diagnostics/sink.hh"
@@ -7,9 +7,9 @@
 
 namespace mw::doctor {
 
-/// In this process under the virtual clock; programs of loadusr are left out, their pins stand in. Goes on
-/// after errors. Also tells unknown keys, as a key that a HAL file uses is none. The configuration must be
-/// without errors.
+/// Runs the HAL files in this process under the virtual clock, without the programs of loadusr, whose pins
+/// are replaced. Continues after errors. Also reports unknown keys, because keys that a HAL file uses are
+/// known. The configuration must be without errors.
 void examine_hal_files(ini::IniFile ini, diagnostics::Sink &sink);
 
 }  // namespace mw::doctor

@@ -13,7 +13,7 @@
 namespace mw::doctor {
 namespace {
 
-/// Part of a period by which a thread may be late: beyond it, positions are visibly old and steps uneven.
+/// Tolerable latency as a fraction of the period: above it, positions are noticeably old and steps uneven.
 constexpr double TOLERABLE = 0.25;
 
 std::string microseconds(std::int64_t ns) {

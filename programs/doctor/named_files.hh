@@ -8,7 +8,7 @@
 
 namespace mw::doctor {
 
-/// HAL files of [HAL]HALFILE and the tool table are read by whoever makes the machine, and told there.
+/// Reading the configuration reports HAL files of [HAL]HALFILE and the tool table.
 void examine_named_files(const ini::IniFile &ini, const machine::MachineConfig &machine,
                          diagnostics::Sink &sink);
 

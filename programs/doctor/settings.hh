@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Single settings as numbers, for comparisons. What is no number is told by who reads the machine.
+// Single settings as numbers, for comparisons. Reading the machine reports invalid numbers.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace mw::doctor {
 
-/// A setting that is a number, and where it stands.
+/// A numeric setting and its position.
 struct Setting {
     double value = 0;
     const ini::IniEntry *entry = nullptr;
@@ -19,10 +19,10 @@ struct Setting {
     const SourcePlace &place() const { return entry->place; }
 };
 
-/// The first setting of that name; nothing where there is none or it is no number.
+/// The first setting of that name; nothing if there is none or it is not a number.
 std::optional<Setting> number(const ini::IniFile &ini, const std::string &section, const char *key);
 
-/// Its text up to a comment; empty where there is none.
+/// Its text up to a comment; empty if there is none.
 std::string text(const ini::IniFile &ini, const std::string &section, const char *key);
 
 }  // namespace mw::doctor

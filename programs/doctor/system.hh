@@ -8,7 +8,7 @@
 
 namespace mw::doctor {
 
-/// All findings are warnings or notes: a simulated machine runs without any of it.
+/// All findings are warnings or notes: a simulated machine needs none of it.
 /// @param root  in front of /sys and /proc, for tests
 /// @param realtime_program  the program that needs rights for realtime
 void examine_system(const std::string &root, const std::string &realtime_program, diagnostics::Sink &sink);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the two stream programs do alike: read their words, join the instance, end on signals, report.
+// The common part of the two stream programs: reading their words, joining the instance, ending on signals,
+// reporting.
 #pragma once
 
 #include <csignal>
@@ -18,7 +19,7 @@
 
 namespace mw::programs {
 
-/// Runs `work` attached to the user's instance; the exit status.
+/// Runs `work` attached to the user's instance; returns the exit status.
 inline int run_attached(const char *program,
                         const std::function<Result<>(volatile std::sig_atomic_t &)> &work) {
     catch_stop_signals();
@@ -42,7 +43,7 @@ struct StreamWords {
     int status = 1;
 };
 
-/// Hands each option to `take` with its number, 0 where it has none. Wrong usage is said, and is status 1.
+/// Calls `take` for each option with its number, 0 if it has none. Wrong usage is reported, with status 1.
 inline StreamWords read_stream_words(const char *program, const std::vector<std::string> &words,
                                      std::span<const options::KnownLetter> known, const char *usage,
                                      const std::function<void(char letter, long number)> &take) {

@@ -8,7 +8,7 @@
 
 namespace mw::programs {
 
-/// Commands come over TCP from programs that nobody has identified as the machine's user: their authority is
+/// Commands over TCP come from programs that are not authenticated as the machine's user: their authority is
 /// OPERATE (docs/integrator/security.md).
 inline Result<client::Client> connect_to_operate(const std::string &instance) {
     auto client = client::Client::connect(instance);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// linuxcncrsh: a machine that is up, by lines of text over TCP.
+// linuxcncrsh: controls a running machine by lines of text over TCP.
 #include "clients/rsh/session.hh"
 #include "programs/commands.hh"
 #include "programs/remote/text_server.hh"

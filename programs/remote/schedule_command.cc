@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// schedrmt: a queue of programs for a machine that is up, by lines of text over TCP.
+// schedrmt: a queue of programs for a running machine, by lines of text over TCP.
 #include <chrono>
 
 #include "clients/schedule/session.hh"

@@ -11,13 +11,13 @@
 
 namespace mw::programs {
 
-/// Writes `path` (.png or .svg by its ending). A mill is seen from above, with holes marked, and from an
-/// angle; a lathe (no Y, or [DISPLAY]LATHE) with Z to the right and X upwards, the centre line drawn. Machine
+/// Writes `path` (.png or .svg by its extension). A mill is drawn from above, with holes marked, and from an
+/// angle; a lathe (no Y, or [DISPLAY]LATHE) with Z to the right and X upwards, with the centre line. Machine
 /// coordinates.
 Result<> plot_path(const std::vector<machine::PathPoint> &points, const machine::MachineConfig &machine,
                    const std::string &program, const std::string &path);
 
-/// What plot_path() would refuse, before the work is done.
+/// Checks for errors of plot_path() in advance.
 Result<> check_picture(const std::string &path);
 
 }  // namespace mw::programs

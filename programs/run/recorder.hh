@@ -11,7 +11,7 @@
 
 namespace mw::programs {
 
-/// One thread; as long as it lives the machine's moves are told to nobody else.
+/// One thread; during its lifetime it is the only listener of the machine's moves.
 class Recorder {
   public:
     Recorder(machine::Machine &machine, const machine::MachineConfig &config);
@@ -20,7 +20,7 @@ class Recorder {
     void start();
     /// Once a task cycle.
     void drain();
-    /// An error when the trace lacks something.
+    /// An error when the trace is incomplete.
     Result<> finish();
     const machine::PathMonitor &monitor() const { return monitor_; }
 

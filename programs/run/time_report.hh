@@ -6,7 +6,7 @@
 
 namespace mw::programs {
 
-/// Prints total, tools, sections and the slowest places to standard output, indented by two blanks.
+/// Prints total, tools, sections and the slowest positions to standard output, indented by two blanks.
 void print_times(const machine::TimeFigures &time);
 
 }  // namespace mw::programs

@@ -11,21 +11,21 @@
 
 namespace mw::programs {
 
-/// Commands by the extension of files, in lower case with its dot.
+/// Commands by file name extension, in lower case with the dot.
 std::map<std::string, std::string> filters_of(const ini::IniFile &ini);
 
-/// Where the programs of filters lie, which outlive the server: a folder of this user and machine.
+/// Folder of programs made by filters, which outlive the server: for this user and machine.
 std::string filtered_folder(const std::string &instance);
 
 struct FilterRun {
-    std::string command;  ///< for a shell; the file is its last word
-    std::string folder;   ///< in which it runs
+    std::string command;  ///< shell command; the file is its last word
+    std::string folder;   ///< working folder
     std::string input;    ///< path of the file
-    std::string output;   ///< path of the program, replaced as a whole when all is well
+    std::string output;   ///< path of the program, replaced atomically on success
 };
 
-/// Runs it to its end, or until nobody reads. `pieces` gets lines of JSON: {"progress": 40} as the filter
-/// says FILTER_PROGRESS=40, then {"made": "/path"} or {"error": "..."}. Blocks.
+/// Runs it to its end, or until there is no reader. `pieces` receives lines of JSON: {"progress": 40} for the
+/// filter's FILTER_PROGRESS=40, then {"made": "/path"} or {"error": "..."}. Blocks.
 void run_filter(const FilterRun &run, screen::PieceQueue &pieces);
 
 }  // namespace mw::programs

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The texts that [DISPLAY]MESSAGE_... and MULTIMESSAGE_... put to the operator.
+// The texts of [DISPLAY]MESSAGE_... and MULTIMESSAGE_... for the operator.
 #pragma once
 
 #include <vector>
@@ -10,7 +10,8 @@
 
 namespace mw::programs {
 
-/// In their order. What has no text, type or pin is told as an error in `sink`, with its place, and left out.
+/// The messages in order. One without text, type or pin is reported to `sink` as an error, with its position,
+/// and omitted.
 std::vector<screen::DialogFacts> dialog_facts(const ini::IniFile &ini, diagnostics::Sink &sink);
 
 }  // namespace mw::programs

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What a screen has to know of the machine, from its INI file.
+// The facts about the machine that a screen needs, from its INI file.
 #pragma once
 
 #include <string>
@@ -13,18 +13,19 @@
 
 namespace mw::programs {
 
-/// What cannot be read is warned of in `sink` and left out.
+/// Values that cannot be read are omitted, with a warning in `sink`.
 screen::MachineFacts machine_facts(const machine::LoadedConfig &loaded, diagnostics::Sink &sink);
 
-/// The entries of [DISPLAY]INCREMENTS: "1 mm, .01 in, 1/8 in, 5 mil, 45 deg"; without commas blanks part
-/// them. `unit_mm`: of the machine unit. What is none of these is in `bad`.
+/// The entries of [DISPLAY]INCREMENTS: "1 mm, .01 in, 1/8 in, 5 mil, 45 deg", separated by commas or blanks.
+/// `unit_mm`: length of the machine unit. `bad` receives invalid entries.
 std::vector<screen::Increment> parse_increments(std::string_view text, double unit_mm,
                                                 std::vector<std::string> &bad);
 
-/// [DISPLAY]CYCLE_TIME: seconds, from 1 on milliseconds; 20 to 200 ms, 50 ms where it is not set. [s]
+/// [DISPLAY]CYCLE_TIME: seconds, or milliseconds for values from 1 on; 20 to 200 ms, 50 ms if it is not set.
+/// [s]
 double status_period_s(const ini::IniFile &ini, diagnostics::Sink &sink);
 
-/// How paths of programs are drawn.
+/// Drawing style of program paths.
 screen::PathLook path_look(const screen::MachineFacts &facts);
 
 }  // namespace mw::programs

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The shop's own panels of [DISPLAY]EMBED_TAB_..., and the programs that go with the screen.
+// The user panels of [DISPLAY]EMBED_TAB_..., and the programs that belong to the screen.
 #pragma once
 
 #include <string>
@@ -11,19 +11,20 @@
 
 namespace mw::programs {
 
-/// In their order. What has no command, or whose file cannot be read, is told as an error in `sink` and left
-/// out.
+/// The tabs in order. One without a command, or whose file cannot be read, is reported to `sink` as an error
+/// and omitted.
 std::vector<screen::Tab> tabs_of(const ini::IniFile &ini, diagnostics::Sink &sink);
 
-/// The commands of tabs that are programs with windows of their own: a place in a window of X ({XID}) is
-/// taken out, as a browser has none to give.
+/// Commands of tabs that are programs with their own windows: removes the id of an X window ({XID}), because
+/// a browser has none.
 std::vector<std::string> tab_programs(const std::vector<screen::Tab> &tabs);
 
-/// The commands that wait for the screen's pins, in their order: halcmd with each [HAL]POSTGUI_HALFILE,
-/// haltcl with those of Tcl, then each [HAL]POSTGUI_HALCMD.
+/// Commands to run after the screen's pins exist, in order: halcmd with each [HAL]POSTGUI_HALFILE, haltcl for
+/// Tcl files, then each [HAL]POSTGUI_HALCMD.
 std::vector<std::vector<std::string>> postgui_commands(const ini::IniFile &ini, const std::string &programs);
 
-/// Runs them one after the other and waits for each; failures are notes for the operator. An error ends none.
+/// Runs them one after the other and waits for each; failures become messages for the operator. Continues
+/// after errors.
 std::vector<std::string> run_postgui(const std::vector<std::vector<std::string>> &commands,
                                      const std::string &folder);
 

@@ -9,36 +9,36 @@
 
 namespace mw::programs {
 
-/// Where packages put configurations of theirs.
+/// Folder where packages install their configurations.
 inline constexpr const char *AUX_EXAMPLES = "/usr/share/linuxcnc/aux_examples";
 
 bool isFolder(const std::string &path);
-/// Without links and dots; the path as it is where it leads nowhere.
+/// The path without links and dots; unchanged if it does not exist.
 std::string canonical_path(const std::string &path);
 
 struct Configuration {
-    std::string ini;      ///< whole path
-    std::string name;     ///< as it is shown: relative to the folder of its group
+    std::string ini;      ///< absolute path
+    std::string name;     ///< displayed name: relative to the folder of its group
     std::string machine;  ///< [EMC]MACHINE, may be empty
 };
 struct ConfigurationGroup {
     std::string title;
     std::string folder;
-    bool isCopied = false;  ///< samples: a copy of the user's is started
+    bool isCopied = false;  ///< samples: a copy for the user is started
     std::vector<Configuration> configurations;
 };
 
-/// Groups in the order in which they are shown, without empty ones. Sources: ~/millwright/configs,
-/// ~/linuxcnc/configs, LINUXCNC_AUX_CONFIGS (folders separated by colons), AUX_EXAMPLES, samples of ours.
+/// The groups in display order, without empty ones. Sources: ~/millwright/configs, ~/linuxcnc/configs,
+/// LINUXCNC_AUX_CONFIGS (folders separated by colons), AUX_EXAMPLES, our samples.
 std::vector<ConfigurationGroup> find_configurations();
 
-/// Copies the folder of a sample to ~/millwright/configs, with a link to the programs that it names by
-/// ../../nc_files, unless it is there already. @return the path of the INI file there
+/// Copies the folder of a sample to ~/millwright/configs, unless it exists there, with a link to the programs
+/// that it names by ../../nc_files. @return the path of the INI file there
 Result<std::string> copy_sample(const ConfigurationGroup &group, const Configuration &configuration);
 
 /// [PICKCONFIG]LAST_CONFIG of ~/.linuxcncrc; empty when there is none.
 std::string last_configuration();
-/// Keeps it there, and what else the file has.
+/// Stores it there, and keeps the rest of the file.
 Result<> remember_configuration(const std::string &ini);
 
 }  // namespace mw::programs

@@ -8,8 +8,8 @@
 
 namespace mw::programs {
 
-/// Shows configurations on standard output and asks for one on standard input. @return its INI file, whole
-/// path, remembered as the last one; empty when the person leaves
+/// Prints the configurations on standard output and reads a selection from standard input. @return the
+/// absolute path of its INI file, stored as the last one; empty without a selection
 Result<std::string> select_configuration();
 
 }  // namespace mw::programs

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The screen's files, and the desktop's browser that shows it.
+// The files of the screen, and the desktop browser that shows it.
 #pragma once
 
 #include <sys/types.h>
@@ -10,19 +10,19 @@
 
 namespace mw::programs {
 
-/// Where a screen is served that has no other port.
+/// Default port of a screen.
 inline constexpr int SCREEN_PORT = 8850;
 
-/// Installed, and in the build folder; `given` where it is not empty.
+/// The installed folder, or that of the build folder; `given` if it is not empty.
 std::string screen_folder(const std::string &given);
-/// An error where the folder has no screen: an address of it would show an error in the browser.
+/// An error if the folder has no screen, because its address would show an error in the browser.
 Result<> check_screen(const std::string &folder);
 
 class Browser {
   public:
-    /// Where there is a desktop; what opens it goes its own way.
+    /// Opens the address if there is a desktop; does not wait.
     void open(const std::string &address);
-    /// Now and then: whether what opens it has ended.
+    /// Call now and then: collects the program that opens it.
     void look();
 
   private:

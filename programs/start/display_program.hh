@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The program that [DISPLAY]DISPLAY names, while a machine is up.
+// The program that [DISPLAY]DISPLAY names, while a machine is running.
 #pragma once
 
 #include <sys/types.h>
@@ -12,11 +12,11 @@
 
 namespace mw::programs {
 
-/// One thread. Its program does not outlive the process that started it.
+/// One thread. The display does not outlive the process that started it.
 class DisplayProgram {
   public:
-    /// The words of its command line: the program, which is looked for beside the INI file and along PATH,
-    /// then "-ini", the INI file, what else the key says, and the words `more`. "millwright" is the screen of
+    /// The command line of the display: the program, searched beside the INI file and in PATH, then "-ini",
+    /// the INI file, the other words of the key, and the words `more`. "millwright" is the screen of
     /// `millwright ui`, "linuxcncrsh" has its own words before the file, tklinuxcnc is a script of
     /// $LINUXCNC_TCL_DIR, and "dummy" waits for ENTER.
     static Result<std::vector<std::string>> words(const std::string &display, const std::string &ini,
@@ -28,11 +28,11 @@ class DisplayProgram {
     DisplayProgram(DisplayProgram &&other) noexcept;
     DisplayProgram &operator=(DisplayProgram &&) = delete;
 
-    /// How it has ended: its exit status, or a signal's number plus 128. Never blocks.
+    /// Its exit status, or a signal's number plus 128, when it has ended. Does not block.
     std::optional<int> end();
-    /// Asks it to end.
+    /// Requests it to end.
     void ask_to_end();
-    /// Ends it at once.
+    /// Kills it.
     void kill();
 
   private:

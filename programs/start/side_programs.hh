@@ -14,11 +14,11 @@ namespace mw::programs {
 /// One thread.
 class SidePrograms {
   public:
-    /// `commands` as they are in the file; they are started at `start_ns`.
+    /// `commands` as in the INI file; they are started at `start_ns`.
     SidePrograms(std::vector<std::string> commands, std::string ini, std::int64_t start_ns)
         : commands_(std::move(commands)), ini_(std::move(ini)), start_ns_(start_ns) {}
 
-    /// Starts them when their time has come. One that cannot be started is reported; the others are started.
+    /// Starts them at their time. One that cannot be started is reported; the others are started.
     void step(std::int64_t now_ns, diagnostics::Sink &sink);
     void ask_to_end();
     bool haveEnded();

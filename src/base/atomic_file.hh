@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Files that are either the old ones or the new ones, whatever happens in between.
+// Atomic replacement of files: after a crash a file has either its old or its new content.
 #pragma once
 
 #include <cstddef>
@@ -10,25 +10,25 @@
 
 namespace mw {
 
-/// Replaces `path` by `content`: writes a temporary file beside it, syncs it, renames it over, syncs the
-/// folder. Permissions of an existing file are kept. On any error the old file is untouched and the temporary
-/// is removed. That of a process that was killed is removed by the next write of the same file
+/// Replaces `path` by `content`: writes a temporary file beside it, syncs it, renames it to `path`, and syncs
+/// the folder. Permissions of an existing file are kept. On any error the old file is unchanged and the
+/// temporary file is removed. The next write of the same file removes the temporary file of a killed process
 /// (base/temporary_file.hh).
 Result<> write_file_atomically(const std::string &path, std::string_view content);
 
-/// As write_file_atomically(); what `path` had is in `path` + ".bak" before. The same content again leaves a
-/// backup that is there as it is. Where the backup cannot be made, the file is written all the same, and the
-/// error returned.
+/// As write_file_atomically(); copies the old content of `path` to `path` + ".bak" first. If the content does
+/// not change, an existing backup is kept. If the backup cannot be made, the file is still written, and the
+/// error is returned.
 Result<> write_file_with_backup(const std::string &path, std::string_view content);
 
-/// The name of the backup of a file.
+/// Name of the backup of a file.
 std::string backup_of(const std::string &path);
 
-/// A regular file for reading, or for `flags` of open(2); the caller closes the descriptor. A pipe, a device
-/// or a folder is an error at once: reading or writing those may never end.
+/// Opens a regular file for reading, or with `flags` of open(2); the caller closes the descriptor. A pipe, a
+/// device or a folder is an error: reading or writing those may never end.
 Result<int> open_regular_file(const std::string &path, int flags = 0);
 
-/// The whole regular file as text; the error names the file and the system's reason. A file of more than
+/// Content of a regular file. The error names the file and the system's reason. A file of more than
 /// `most_bytes` is an error.
 inline constexpr std::size_t MOST_FILE_BYTES = std::size_t{512} << 20;
 Result<std::string> read_file(const std::string &path, std::size_t most_bytes = MOST_FILE_BYTES);

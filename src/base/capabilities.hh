@@ -6,14 +6,14 @@
 
 namespace mw {
 
-/// Bit per capability.
+/// The effective capabilities of this process, bit per capability.
 std::uint64_t effective_capabilities();
 
-/// Makes those effective that the program file permits (setcap ...+p). A file that made them effective by
-/// itself (+ep) could not be started where a container lacks one of them.
+/// Makes the permitted capabilities of the program file (setcap ...+p) effective. With a file that makes them
+/// effective itself (+ep) the program would not start in a container that lacks one of them.
 void use_permitted_capabilities();
 
-/// This process and what it starts have the capability no more.
+/// Removes the capability from this process and the processes that it starts.
 void give_up_capability(int capability);
 
 }  // namespace mw

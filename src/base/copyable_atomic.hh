@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// An atomic inside of a structure that is copied as a whole while nobody writes to it.
+// An atomic inside a structure that is copied as a whole while no thread writes to it.
 #pragma once
 
 #include <atomic>
 
 namespace mw {
 
-/// As std::atomic; a copy takes the value alone and promises nothing about what else was written before it.
+/// As std::atomic. A copy takes only the value and gives no ordering with other writes.
 template <class T>
 class CopyableAtomic : public std::atomic<T> {
   public:

@@ -11,7 +11,7 @@ inline constexpr std::int64_t NS_PER_SECOND = 1'000'000'000;
 /// The longest duration, 73 years. A time of any clock and a duration can be added without overflow.
 inline constexpr std::int64_t LONGEST_DURATION_NS = std::numeric_limits<std::int64_t>::max() / 4;
 
-/// `seconds` in nanoseconds, rounded; within +-LONGEST_DURATION_NS, and 0 for a value that is not a number.
+/// `seconds` in nanoseconds, rounded and limited to +-LONGEST_DURATION_NS; 0 for NaN.
 constexpr std::int64_t to_ns(double seconds) noexcept {
     constexpr double LONGEST_S =
         static_cast<double>(LONGEST_DURATION_NS) / static_cast<double>(NS_PER_SECOND);

@@ -21,7 +21,7 @@ bool isProgram(const fs::path &path) {
 
 std::string find_program(const std::string &name, const std::string &folder) {
     if (name.find('/') != std::string::npos) {
-        const fs::path path = fs::path(folder) / name;  // an absolute name stays as it is
+        const fs::path path = fs::path(folder) / name;  // an absolute name is not changed
         return isProgram(path) ? path.string() : std::string();
     }
     const char *const path = std::getenv("PATH");

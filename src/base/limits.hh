@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Sizes that fixed layouts (shared memory, pins) are made for.
+// Maximum sizes of fixed layouts (shared memory, pins).
 #pragma once
 
 namespace mw {

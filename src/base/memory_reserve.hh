@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Memory that a process has before it needs it: without it, each new page of a process is waited for while
-// the kernel looks for memory or ends another process.
+// Memory that a process allocates in advance. Without a reserve a process waits for each new page while the
+// kernel searches for memory or ends another process.
 #pragma once
 
 #include <cstddef>
 
 namespace mw {
 
-/// The calling thread's heap gets `bytes` more, in memory now, which the process keeps until its end.
+/// Adds `bytes` of resident memory to the heap of the calling thread, which the process keeps until it ends.
 void reserve_heap(std::size_t bytes);
 
-/// Locks all memory that this process has now: programs, libraries, heap, shared memory. Later memory is not
-/// locked. False where the limit 'memlock' does not allow it; nothing is locked then.
+/// Locks all memory that this process has now: programs, libraries, heap, shared memory. Memory allocated
+/// later is not locked. False if the limit 'memlock' does not permit it; then nothing is locked.
 bool lock_present_memory();
 
 }  // namespace mw

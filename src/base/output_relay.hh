@@ -1,30 +1,30 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Standard output and standard error of a program that must never wait for whoever reads them: a terminal
-// that was stopped or closed, a pipe that nobody reads, a full disk.
+// Standard output and standard error of a program that must never wait for their reader: a terminal that was
+// stopped or closed, a pipe without a reader, a full disk.
 #pragma once
 
 #include <string>
 
 namespace mw {
 
-/// From its begin() on, descriptors 1 and 2 are pipes that a thread of this process empties at once, and
-/// other threads write what comes out of them to where both pointed before. What is written there is lost
-/// only where that cannot take it: after 256 kB that wait, or an error. Any thread may call.
+/// After begin(), descriptors 1 and 2 are pipes. One thread of this process empties them at once; other
+/// threads write the data to the original destinations. Output is lost only when a destination does not
+/// accept it: after 256 kB of waiting data, or on an error. [any thread]
 class OutputRelay {
   public:
-    /// Once in a process. Where a pipe or thread cannot be made the output stays as it was: the error says
-    /// why.
+    /// Call once in a process. If a pipe or thread cannot be created, output is not redirected and the reason
+    /// is returned.
     static std::string begin();
     /// Why output was lost since the last call, as "the output of this program is lost: No space left on
     /// device"; empty: nothing was lost.
     static std::string take_loss();
-    /// Waits at most 0.5 s for what is still to be written. Afterwards both descriptors are as before
-    /// begin(), or lead to nothing where they could not be written.
+    /// Waits at most 0.5 s for pending output. Afterwards both descriptors are as before begin(), or discard
+    /// output if they could not be written.
     static void end();
-    /// Whether output of `descriptor` (1 or 2) ends up in a terminal.
+    /// True if the output of `descriptor` (1 or 2) goes to a terminal.
     static bool isTerminal(int descriptor);
-    /// In a forked child before exec: a program with a person at its terminal gets the terminal itself.
-    /// Async-signal-safe; does nothing before begin().
+    /// Call in a forked child before exec: a program with a person at its terminal gets the terminal itself.
+    /// Async-signal-safe; no effect before begin().
     static void restore_in_child() noexcept;
 };
 

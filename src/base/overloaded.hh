@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Visitors of closed variants: one handler per alternative, none for "the rest".
+// Visitors of closed variants: one handler per alternative, no default handler.
 #pragma once
 
 #include <concepts>
@@ -9,7 +9,8 @@
 
 namespace mw {
 
-/// Handlers as one visitor: std::visit(Overloaded{[](const A &) {...}, [](const B &) {...}}, variant).
+/// Combines handlers to one visitor: std::visit(Overloaded{[](const A &) {...}, [](const B &) {...}},
+/// variant).
 template <class... Handlers>
 struct Overloaded : Handlers... {
     using Handlers::operator()...;
@@ -17,7 +18,7 @@ struct Overloaded : Handlers... {
 template <class... Handlers>
 Overloaded(Handlers...) -> Overloaded<Handlers...>;
 
-/// For a handler of several alternatives, which names each of them: [](const OneOf<A, B> auto &) {...}.
+/// For a handler of several named alternatives: [](const OneOf<A, B> auto &) {...}.
 template <class Type, class... Types>
 concept OneOf = (std::same_as<std::remove_cvref_t<Type>, Types> || ...);
 
@@ -25,7 +26,7 @@ template <class Type, class Variant>
 inline constexpr bool IS_ALTERNATIVE = false;
 template <class Type, class... Types>
 inline constexpr bool IS_ALTERNATIVE<Type, std::variant<Types...>> = OneOf<Type, Types...>;
-/// A class of its own that is a variant, whose base is named Variant.
+/// A class derived from a variant, with the base named Variant.
 template <class Type, class Class>
     requires requires { typename Class::Variant; }
 inline constexpr bool IS_ALTERNATIVE<Type, Class> = IS_ALTERNATIVE<Type, typename Class::Variant>;

@@ -11,7 +11,7 @@ namespace mw {
 
 namespace {
 
-/// Prepends `folder` to a list of folders in the environment unless it begins with it.
+/// Prepends `folder` to a list of folders in the environment unless it is first already.
 void prepend(const char *variable, const std::string &folder, const char *fallback) {
     const char *set = std::getenv(variable);
     const std::string before = set != nullptr ? set : fallback;
@@ -21,7 +21,8 @@ void prepend(const char *variable, const std::string &folder, const char *fallba
     ::setenv(variable, (before.empty() ? folder : folder + ":" + before).c_str(), 1);
 }
 
-/// TCLLIBPATH is a Tcl list. Of packages with the same name and version Tcl takes that of the first folder.
+/// TCLLIBPATH is a Tcl list. Of several packages with the same name and version Tcl uses that of the first
+/// folder.
 void prepend_tcl(const std::string &folder) {
     const char *set = std::getenv("TCLLIBPATH");
     const std::string before = set != nullptr ? set : "", word = '{' + folder + '}';
@@ -53,7 +54,7 @@ void offer_own_programs() {
     tell_when_memory_ends();
     const std::string here = program_folder();
     prepend("PATH", here, "/usr/local/bin:/usr/bin:/bin");
-    // In the build folder, and installed.
+    // For the build folder and the installed program.
     for (const char *packages : {"/../lib/tcl", "/../lib/millwright/tcl"}) {
         if (::access((here + packages + "/pkgIndex.tcl").c_str(), R_OK) == 0) {
             prepend_tcl(here + packages);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Room for many elements that are written before they are read.
+// Uninitialised memory for many elements that are written before they are read.
 #pragma once
 
 #include <cstddef>
@@ -8,9 +8,9 @@
 
 namespace mw {
 
-/// As std::array, but nothing is set at the beginning: megabytes of which a run uses little cost neither time
-/// nor memory. May be copied as a whole whatever has been written; holds no pointers of its own, so it may
-/// live in shared memory. Whoever reads an element has written it before.
+/// As std::array, but not initialised: megabytes of which a run uses little cost neither time nor memory. May
+/// be copied as a whole at any time. Holds no pointers, so it may live in shared memory. An element must be
+/// written before it is read.
 template <class T, std::size_t N>
 class RawArray {
     static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// How code outside realtime says that something failed: a value with a place, never an exception.
+// Errors of code outside realtime: a value with the position of the error, never an exception.
 #pragma once
 
 #include <expected>
@@ -8,22 +8,22 @@
 
 namespace mw {
 
-/// A place in a text that a person wrote. Lines and columns count from 1; 0 means unknown.
+/// A position in a text that a person wrote. Lines and columns count from 1; 0 means unknown.
 struct SourcePlace {
     std::string file;
     int line = 0;
     int column = 0;
 
-    /// "file:line:column", leaving out what is unknown; empty when nothing is known.
+    /// "file:line:column" without the unknown parts; empty when nothing is known.
     std::string str() const;
 };
 
-/// What went wrong, where, and what to do about it. The message is complete without the hint.
+/// What failed, where, and what to do about it. The message is complete without the hint.
 struct Error {
     std::string message;
     SourcePlace place{};
     std::string hint{};
-    /// Whoever found it has told it to a person already, with all that belongs to it: it is not told again.
+    /// Already reported to a person in full; not reported again.
     bool isTold = false;
 
     /// "file:line:column: message (hint)".
@@ -38,7 +38,8 @@ inline std::unexpected<Error> fail(std::string message, SourcePlace place = {}, 
     return std::unexpected(Error{std::move(message), std::move(place), std::move(hint)});
 }
 
-/// As fail(), for what a person has been told already: `message` sums it up for whoever asks.
+/// As fail(), for an error that has been reported to a person already; `message` is its summary for the
+/// caller.
 inline std::unexpected<Error> fail_told(std::string message, SourcePlace place = {}) {
     return std::unexpected(Error{std::move(message), std::move(place), {}, true});
 }

@@ -13,8 +13,8 @@
 
 namespace mw {
 
-/// The payload is stored as relaxed atomic words, so that a torn read is a retry and never undefined
-/// behaviour. write(): one thread only, wait-free. read(): any thread; retries while a write is under way.
+/// The payload is stored as relaxed atomic words, so a torn read is a retry and not undefined behaviour.
+/// write(): one thread only, wait-free. read(): any thread; retries during a write.
 template <class T>
 class Seqlock {
     static_assert(std::is_trivially_copyable_v<T>);
@@ -43,10 +43,10 @@ class Seqlock {
         sequence_.store(seq + 2, std::memory_order_release);
     }
 
-    /// Changes with each write: what was read at the same number is still the newest. [any thread]
+    /// Changes with each write: data read at the same number is current. [any thread]
     std::uint32_t version() const noexcept { return sequence_.load(std::memory_order_acquire); }
 
-    /// Tries once; false when a write was under way. [any thread]
+    /// Tries once; false during a write. [any thread]
     bool try_read(T &value) const noexcept {
         const std::uint32_t before = sequence_.load(std::memory_order_acquire);
         if ((before & 1U) != 0) {
@@ -68,7 +68,7 @@ class Seqlock {
         return sequence_.load(std::memory_order_relaxed) == before;
     }
 
-    /// Reads with at most `tries` attempts; false when the writer died inside a write. [any thread]
+    /// Reads with at most `tries` attempts; false when the writer died during a write. [any thread]
     bool read(T &value, int tries = 1000000) const noexcept {
         for (int i = 0; i < tries; ++i) {
             if (try_read(value)) {

@@ -6,8 +6,8 @@
 
 namespace mw {
 
-/// `text` for a message that quotes a file, which may have megabytes in one line: more than 1000 bytes are
-/// cut after 300, with "..." in their place. No character of UTF-8 is cut in half.
+/// `text` for a message that quotes a file, which may have megabytes in one line: a text of more than 1000
+/// bytes is cut after 300 and ends in "...". UTF-8 characters are not split.
 inline std::string short_text(std::string_view text) {
     constexpr std::size_t LONGEST = 1000, SHOWN = 300;
     if (text.size() <= LONGEST) {

@@ -23,7 +23,7 @@ void catch_stop_signals() {
     for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
         ::sigaction(number, &action, nullptr);
     }
-    // Programs that are started later have the default again, which a signal that is ignored would not be.
+    // Programs that are started later have the default action again; an ignored signal would stay ignored.
     struct sigaction survive{};
     survive.sa_handler = [](int) {};
     survive.sa_flags = SA_RESTART;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Small text helpers. Numbers are read and written without any regard to the locale.
+// Small text helpers. Reading and writing numbers is independent of the locale.
 #pragma once
 
 #include <cstdint>
@@ -11,15 +11,15 @@
 
 namespace mw {
 
-/// The whole of `text` as a number ("1", "-2.5", "+.15", "4.2e1"); nothing when anything is left over or the
-/// value is not finite. A decimal comma is never accepted.
+/// `text` as a number ("1", "-2.5", "+.15", "4.2e1"); nothing if characters are left over or the value is not
+/// finite. A decimal comma is not accepted.
 std::optional<double> parse_double(std::string_view text);
 
-/// As parse_double(), and hexadecimal as C writes it ("-0x10", "0x1.8p3"). Too small a value is 0.
+/// As parse_double(), and hexadecimal in C syntax ("-0x10", "0x1.8p3"). A value that is too small becomes 0.
 std::optional<double> parse_c_double(std::string_view text);
 
-/// The whole of `text` as an integer, decimal or with prefix 0x, which follows the sign; nothing on leftovers
-/// or overflow.
+/// `text` as an integer, decimal or with prefix 0x after the sign; nothing if characters are left over or on
+/// overflow.
 std::optional<std::int64_t> parse_int(std::string_view text);
 std::optional<std::uint64_t> parse_uint(std::string_view text);
 
@@ -30,15 +30,15 @@ std::optional<std::uint64_t> parse_c_uint(std::string_view text);
 /// Shortest text that reads back as the same double.
 std::string to_text(double value);
 
-/// Room for any number that write_fixed4() writes: the largest double has 309 digits before the point.
+/// Size for any number that write_fixed4() writes: the largest double has 309 digits before the point.
 inline constexpr std::size_t FIXED4_SIZE = 320;
-/// Writes `value` as printf's "%.4f" does in the C locale, without an end. @return its length
+/// Writes `value` as printf's "%.4f" does in the C locale, without a terminating zero. @return its length
 std::size_t write_fixed4(std::span<char, FIXED4_SIZE> out, double value);
 
-/// `text` for a terminal: control characters but tabs and newlines become question marks, one for each byte.
+/// `text` for a terminal: each byte of control characters other than tab and newline becomes a question mark.
 std::string printable(std::string_view text);
 
-/// `text` as one word of a shell: in single quotes where it has more than letters, digits and _ - . / + @ : ,
+/// `text` quoted as one word of a shell, if it has other characters than letters, digits and _ - . / + @ : ,
 std::string shell_word(std::string_view text);
 
 /// `text` without the UTF-8 byte order mark that some editors write at the start of a file.

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Which threads of this process run before those of other programs.
+// Priority of threads of this process relative to other programs.
 #pragma once
 
 namespace mw {
 
-/// The thread runs before those of ordinary programs, where this process may do that: by SCHED_RR of the
-/// lowest priority, far below the servo thread, else by a nice value. What it starts is ordinary again.
-/// @param thread_id as gettid() gives it; 0 is the calling thread
+/// Raises the thread above those of ordinary programs, if this process may: by SCHED_RR with the lowest
+/// priority, far below the servo thread, else by a nice value. Threads that it starts have normal priority.
+/// @param thread_id as gettid() returns it; 0 is the calling thread
 void raise_priority(int thread_id = 0) noexcept;
-/// The thread is ordinary again.
+/// Sets normal priority.
 void reset_priority(int thread_id = 0) noexcept;
-/// The thread runs behind ordinary ones. Everybody may do that.
+/// Lowers the thread below normal priority. Needs no privilege.
 void lower_priority(int thread_id = 0) noexcept;
 
 }  // namespace mw

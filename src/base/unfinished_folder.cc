@@ -17,8 +17,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t RANDOM_LETTERS = 6;  // of mkdtemp()
 
-/// A lock on the folder that ends with the process, or -1: another process has it, or there is no such
-/// folder.
+/// Locks the folder until the process ends; -1: another process has the lock, or there is no such folder.
 int lock_of(const std::string &path) {
     const int fd = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
     if (fd >= 0 && ::flock(fd, LOCK_EX | LOCK_NB) != 0) {
@@ -28,7 +27,7 @@ int lock_of(const std::string &path) {
     return fd;
 }
 
-/// The path is still that of the open folder.
+/// True if the path still refers to the open folder.
 bool isSame(const std::string &path, int fd) {
     struct stat named{}, opened{};
     return ::lstat(path.c_str(), &named) == 0 && ::fstat(fd, &opened) == 0 && named.st_ino == opened.st_ino &&
@@ -45,7 +44,7 @@ void remove_dead(const fs::path &parent, const std::string &prefix) {
         }
         const int fd = lock_of(entry->path().string());
         if (fd >= 0) {
-            std::error_code ignored;  // what cannot be removed does not hinder the new folder
+            std::error_code ignored;  // a file that cannot be removed does not prevent the new folder
             fs::remove_all(entry->path(), ignored);
             ::close(fd);
         }

@@ -8,19 +8,19 @@
 
 namespace mw {
 
-/// Has a hidden name beside the target, and a lock (flock) until its process ends. The destructor removes a
-/// folder that has not become the target. Errors are in errno.
+/// A folder with a hidden name beside the target, locked (flock) until its process ends. The destructor
+/// removes a folder that has not become the target. Errors are in errno.
 class UnfinishedFolder {
   public:
-    /// Creates it. First it removes the folders that killed processes have left for the same target: those
-    /// that no process has locked. The folder in which the target will lie must exist.
+    /// Creates the folder. First removes folders that killed processes have left for the same target: those
+    /// that no process has locked. The parent folder of the target must exist.
     static std::optional<UnfinishedFolder> create(const std::string &target);
     UnfinishedFolder(UnfinishedFolder &&other) noexcept;
     UnfinishedFolder &operator=(UnfinishedFolder &&) = delete;
     ~UnfinishedFolder();
 
     const std::string &path() const { return path_; }
-    /// Renames it to the target, which must not exist or be an empty folder.
+    /// Renames it to the target, which must not exist or must be an empty folder.
     bool become_target();
 
   private:
@@ -28,7 +28,7 @@ class UnfinishedFolder {
         : fd_(fd), path_(std::move(path)), target_(std::move(target)) {}
 
     int fd_ = -1;
-    std::string path_, target_;  ///< no path: it is the target
+    std::string path_, target_;  ///< empty path: it has become the target
 };
 
 }  // namespace mw

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Names of files as all programs and clients of a machine write them.
+// File names in the form that all programs and clients of a machine use.
 #pragma once
 
 #include <string>
 
 namespace mw {
 
-/// Absolute, without links in the names of folders. A file that is a link itself keeps its own name and
-/// folder: what an INI file names is looked for beside the link. A path that does not exist stays as it is.
+/// The absolute path with links in folder names resolved. A file that is itself a link keeps its name and
+/// folder: files named in an INI file are searched beside the link. A path that does not exist is not
+/// changed.
 std::string whole_path(const std::string &path);
 
 }  // namespace mw

@@ -3,7 +3,7 @@
 
 namespace mw::kinematics {
 
-/// What the joints of X, Y and Z are ahead of the tip of the tool.
+/// Offset of the X, Y and Z joints from the tool tip.
 Vector BridgeMill::lead(const Pose &pose) const noexcept {
     const double b = pose[geometry::AXIS_B];
     const double c = pose[geometry::AXIS_C];

@@ -22,11 +22,10 @@ inline double cosine(double degrees) noexcept {
 inline double arc_tangent(double y, double x) noexcept {
     return std::atan2(y, x) * DEGREES;
 }
-/// `angle` and the full turns that bring it nearest to `near`.
+/// `angle` plus the multiple of 360 degrees that brings it nearest to `near`.
 inline double nearest_turn(double angle, double near) noexcept {
     return angle + 360.0 * std::round((near - angle) / 360.0);
 }
-/// The square of x.
 constexpr double square(double x) noexcept {
     return x * x;
 }
@@ -52,7 +51,7 @@ constexpr Vector cross(const Vector &a, const Vector &b) noexcept {
 inline double length(const Vector &a) noexcept {
     return std::sqrt(dot(a, a));
 }
-/// The direction of `a`, which is not zero.
+/// Unit vector of `a`, which must not be zero.
 inline Vector direction(const Vector &a) noexcept {
     return a * (1.0 / length(a));
 }
@@ -73,7 +72,7 @@ inline Vector turned_z(const Vector &v, double degrees) noexcept {
     return {c * v.x - s * v.y, s * v.x + c * v.y, v.z};
 }
 
-/// A rotation by its columns: where the axes X, Y and Z come to lie.
+/// A rotation matrix by columns: the rotated X, Y and Z axes.
 struct Rotation {
     Vector x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
 
@@ -111,8 +110,8 @@ inline Rotation rotation_about(const Vector &v) noexcept {
 struct Angles {
     double a = 0, b = 0, c = 0;
 };
-/// The angles of a rotation, B from -90 to 90, A and C in the turns of `near`. At B = +-90 only A -+ C is
-/// known: C is taken from `near`.
+/// The angles of a rotation, B from -90 to 90, A and C in the revolution nearest to `near`. At B = +-90 only
+/// A -+ C is determined: C is taken from `near`.
 inline Angles angles_of(const Rotation &r, const Angles &near) noexcept {
     constexpr double POLE = 1e-10;
     const double level = std::hypot(r.x.x, r.x.y);
@@ -141,7 +140,7 @@ inline void set_place(geometry::Pose &pose, const Vector &v) noexcept {
 inline Rotation rotation_of(const geometry::Pose &pose) noexcept {
     return rotation_of(pose[geometry::AXIS_A], pose[geometry::AXIS_B], pose[geometry::AXIS_C]);
 }
-/// What `pose` holds is the last one, for the turns.
+/// `pose` holds the previous pose, which selects the revolution of the angles.
 inline void set_rotation(geometry::Pose &pose, const Rotation &r) noexcept {
     const Angles angles =
         angles_of(r, {pose[geometry::AXIS_A], pose[geometry::AXIS_B], pose[geometry::AXIS_C]});
@@ -152,7 +151,7 @@ inline void set_rotation(geometry::Pose &pose, const Rotation &r) noexcept {
 inline bool isFinite(const Vector &v) noexcept {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
-/// True when the first `count` are numbers.
+/// True when the first `count` values are finite.
 inline bool areFinite(const double *values, int count) noexcept {
     double sum = 0;
     for (int i = 0; i < count; ++i) {

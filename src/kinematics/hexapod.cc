@@ -10,7 +10,7 @@ Vector Hexapod::row(Group group, std::size_t strut) const noexcept {
     return {get(i), get(i + 1), get(i + 2)};
 }
 
-/// Of the platform, which turns are measured by.
+/// Size of the platform, to which rotations are scaled.
 double Hexapod::size() const noexcept {
     double sum = 0;
     for (std::size_t i = 0; i < STRUTS; ++i) {
@@ -19,7 +19,7 @@ double Hexapod::size() const noexcept {
     return std::max(sum / STRUTS, 1e-9);
 }
 
-/// The angle between the cross pieces of both joints, as the strut's screw sees it.
+/// The angle between the cross pieces of both joints about the axis of the strut's screw.
 double Hexapod::correction_of(std::size_t strut, const Vector &along, const Rotation &turn) const noexcept {
     const double lead = get(SCREW_LEAD);
     if (lead == 0.0) {
@@ -45,7 +45,8 @@ Hexapod::Struts Hexapod::struts_of(const Vector &place, const Rotation &turn) co
     return out;
 }
 
-/// How the lengths follow the place and the turn of the platform, a turn as the way of its rim.
+/// Derivatives of the strut lengths by the position and rotation of the platform; a rotation is measured as
+/// arc length at the rim.
 Square<Hexapod::STRUTS> Hexapod::derivatives_of(const Struts &struts, double rim) noexcept {
     Square<STRUTS> m{};
     for (std::size_t i = 0; i < STRUTS; ++i) {
@@ -89,7 +90,7 @@ Status Hexapod::forward(const double *joints, Pose &pose, int &iterations) const
         double rim;
         Vector place;
         Rotation turn;
-        Vector move, spin;  ///< of the way; [rad] about an axis
+        Vector move, spin;  ///< [machine units] of the path; [rad] about an axis
 
         Vector place_ahead(double share) const noexcept { return place + move * share; }
         Rotation turn_ahead(double share) const noexcept { return rotation_about(spin * share) * turn; }

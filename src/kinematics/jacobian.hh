@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// How joints follow a pose and a pose follows joints, by differences: for models that know no derivatives of
-// their own, foreign modules among them.
+// Derivatives of joints by pose and of pose by joints, by finite differences: for models without analytic
+// derivatives, including foreign modules.
 #pragma once
 
 #include "kinematics/kinematics.hh"
@@ -12,13 +12,12 @@ struct Jacobian {
     std::array<std::array<double, geometry::AXIS_COUNT>, MAX_JOINTS> of{};
 };
 
-/// Central differences over +-`step` [machine units and degrees] of the axes in `axes` (bit per axis; the
-/// others' columns are 0). SINGULAR or UNREACHABLE where one of the poses beside it is. `joints` are those of
-/// the pose.
+/// Central differences over +-`step` [machine units and degrees] of the axes in `axes` (bit per axis; other
+/// columns are 0). SINGULAR or UNREACHABLE if an adjacent pose is. `joints` belong to the pose.
 Status joints_by_pose(const Kinematics &model, const Pose &pose, const double *joints, unsigned axes,
                       double step, Jacobian &out) noexcept;
 
-/// The same of the pose, over +-`step` of the first `count` joints.
+/// Derivatives of the pose, over +-`step` of the first `count` joints.
 Status pose_by_joints(const Kinematics &model, const double *joints, int count, const Pose &pose, double step,
                       Jacobian &out) noexcept;
 

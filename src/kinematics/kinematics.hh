@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Joints to pose and back. Pure: parameters in the object, no statics; every call answers, none aborts.
+// Forward and inverse kinematics. Pure: parameters are in the object, no statics; every call returns a
+// status, none aborts.
 #pragma once
 
 #include <array>
@@ -14,12 +15,12 @@ using geometry::Pose;
 
 enum class Status : std::uint8_t {
     OK,
-    UNREACHABLE,  ///< no answer; what was to be filled is as it was
-    /// Answered, but solutions meet here or there are infinitely many: a machine may stand here, and what it
-    /// stands at is kept, yet no path leads through.
+    UNREACHABLE,  ///< no solution; outputs are unchanged
+    /// A solution exists, but several meet here or there are infinitely many. The machine may be stopped here
+    /// and its position is kept, but no path may pass through.
     SINGULAR,
 };
-/// True when there is an answer.
+/// True when there is a solution.
 constexpr bool isAnswered(Status status) noexcept {
     return status != Status::UNREACHABLE;
 }
@@ -41,11 +42,11 @@ struct IdentityMap {
     }
 };
 
-/// Joints that go in proportion to axes, everywhere alike: joint = slope . pose.
+/// Joints that are linear in the axes at all poses: joint = slope . pose.
 struct LinearJoints {
-    std::uint32_t joints = 0;              ///< bit per joint that does
-    std::uint32_t axes = 0;                ///< bit per axis that moves no joints but these
-    std::array<Pose, MAX_JOINTS> slope{};  ///< of each of them, by axis
+    std::uint32_t joints = 0;              ///< bit per linear joint
+    std::uint32_t axes = 0;                ///< bit per axis that moves only these joints
+    std::array<Pose, MAX_JOINTS> slope{};  ///< slope of each joint, by axis
 
     constexpr bool moves(int joint, int axis) const noexcept {
         return (joints >> joint & 1U) != 0 && slope[static_cast<std::size_t>(joint)][axis] != 0;
@@ -63,10 +64,11 @@ constexpr LinearJoints joints_like_axes() noexcept {
     return out;
 }
 
-/// Of kinematics with several types, such as a tilting table and the same machine with joints for axes.
+/// For kinematics with several types, such as a tilting table and the same machine with trivial kinematics.
 class TypeSwitch {
   public:
-    /// False when there is no such type: then the one in force stays. While nothing moves. [servo thread]
+    /// Selects a type; false, and no change, when there is no such type. Only while nothing moves. [servo
+    /// thread]
     virtual bool switch_to(int type) noexcept = 0;
 
   protected:
@@ -77,27 +79,27 @@ class TypeSwitch {
 class Kinematics {
   public:
     virtual Kind kind() const noexcept = 0;
-    /// The pose of these joint positions. `pose` holds the last pose: iterating models begin there, and where
-    /// there are several poses the one of its side is taken. What no joint drives stays as it is.
+    /// The pose of these joint positions. `pose` holds the last pose: iterating models start there, and of
+    /// several poses the one on its side is chosen. Coordinates that no joint drives are not changed.
     virtual Status forward(const double *joints, Pose &pose) const noexcept = 0;
     /// The joint positions of this pose. `joints` holds the last ones: of several solutions (elbow up or
-    /// down) theirs is taken, and of an angle the turn nearest to theirs.
+    /// down) the one on their side is chosen, and for an angle the nearest revolution.
     virtual Status inverse(const Pose &pose, double *joints) const noexcept = 0;
-    /// Not null when each joint is one axis: limits then fold together without any Jacobian.
+    /// Not null when each joint is one axis: limits are then combined without a Jacobian.
     virtual const IdentityMap *identity() const noexcept { return nullptr; }
 
-    /// Which joints are linear, and how; with parameters as they are now. None where joints are axes.
+    /// The linear joints and their slopes, with the current parameters. None when joints are axes.
     virtual LinearJoints linear() const noexcept { return {}; }
 
-    /// Of poses that meet only at singular ones, which a pose is of: above and below the motors, either way
-    /// to put the struts of a platform together; a path from one to another leads through a singular pose. 0:
-    /// the model has one only, or the side is that of the joints.
+    /// Side of a pose. Poses of different sides are separated by singular poses: above and below the motors,
+    /// or the assembly modes of a platform's struts. 0: the model has one side only, or the side depends on
+    /// the joints.
     virtual int side(const Pose &) const noexcept { return 0; }
 
-    /// Null where there is one type only.
+    /// Null when there is one type only.
     virtual TypeSwitch *type_switch() const noexcept { return nullptr; }
 
-    /// False when calls share hidden state, so that only the servo thread may make them.
+    /// False when calls share hidden state; then only the servo thread may call.
     virtual bool isShareable() const noexcept { return true; }
 
   protected:

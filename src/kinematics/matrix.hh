@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Axes that are not quite at right angles, or not quite true: joints 0 to 2 = C (X Y Z) with a matrix C that
+// Axes that are not exactly at right angles or not straight: joints 0 to 2 = C (X Y Z) with a matrix C that
 // was measured on the machine; joints 3 to 8 = A B C U V W.
 #pragma once
 
@@ -18,7 +18,7 @@ inline constexpr Parameter MATRIX_PARAMETERS[] = {
 
 class Matrix final : public Parametric<MATRIX_PARAMETERS> {
   public:
-    /// UNREACHABLE both ways while the matrix has no inverse.
+    /// UNREACHABLE in both directions while the matrix has no inverse.
     Status forward(const double *joints, Pose &pose) const noexcept override;
     Status inverse(const Pose &pose, double *joints) const noexcept override;
     LinearJoints linear() const noexcept override;

@@ -14,7 +14,7 @@ Vector turned_by_table(const Vector &v, double degrees) noexcept {
 
 }  // namespace
 
-/// In the plane across the table's axis.
+/// Position in the plane normal to the axis of the table.
 template <int TABLE, const auto &ROWS>
 Vector NutatingHead<TABLE, ROWS>::across(double length, double z) noexcept {
     return TABLE == geometry::AXIS_A ? Vector{0, length, z} : Vector{length, 0, z};
@@ -26,14 +26,14 @@ Vector NutatingHead<TABLE, ROWS>::leaned(const Vector &v, double degrees) const 
     return rotation_about(across(sine(lean), cosine(lean)) * (degrees * RADIANS)) * v;
 }
 
-/// From the axis C of the head to the tip of the tool.
+/// Vector from the axis C of the head to the tool tip.
 template <int TABLE, const auto &ROWS>
 Vector NutatingHead<TABLE, ROWS>::tip(double primary, double secondary) const noexcept {
     const Vector nose = leaned(Vector{} - pivot() - tool(), secondary);
     return turned_z(nose - offset(), primary);
 }
 
-/// From the axis C of the head at home; along itself it may lie anywhere.
+/// Vector from the axis C of the head at home; its component along that axis is arbitrary.
 template <int TABLE, const auto &ROWS>
 Vector NutatingHead<TABLE, ROWS>::table_axis() const noexcept {
     return across(this->get(ACROSS_ROT), this->get(Z_ROT)) - pivot() - offset();

@@ -46,10 +46,10 @@ inline constexpr Parameter HEAD_OVER_B_PARAMETERS[] = {
     {"secondary-angle", 0, "degree", "type 2: the angle A of the plane"},
 };
 
-/// In which coordinates poses are.
+/// The coordinate system of poses.
 enum class HeadFrame : std::uint8_t { WORK, TOOL };
 
-/// TABLE: the axis about which the table turns, A or B. `ROWS` is its table of parameters.
+/// TABLE: the rotary axis of the table, A or B. `ROWS` is its table of parameters.
 template <int TABLE, const auto &ROWS>
 class NutatingHead final : public Parametric<ROWS> {
     static_assert(TABLE == geometry::AXIS_A || TABLE == geometry::AXIS_B);
@@ -74,14 +74,14 @@ class NutatingHead final : public Parametric<ROWS> {
     Status inverse(const Pose &pose, double *joints) const noexcept override;
 
   private:
-    /// The axis of the head beside C.
+    /// The second axis of the head, besides C.
     static constexpr int SECOND = TABLE == geometry::AXIS_A ? geometry::AXIS_B : geometry::AXIS_A;
 
     static Vector across(double length, double z) noexcept;
     Vector pivot() const noexcept { return across(this->get(ACROSS_PIVOT), this->get(Z_PIVOT)); }
     Vector offset() const noexcept { return {this->get(X_OFFSET), this->get(Y_OFFSET), 0}; }
     Vector tool() const noexcept { return {0, 0, this->get(TOOL)}; }
-    /// `v` turned by the second axis of the head.
+    /// `v` rotated by the second axis of the head.
     Vector leaned(const Vector &v, double degrees) const noexcept;
     Vector tip(double primary, double secondary) const noexcept;
     Vector table_axis() const noexcept;

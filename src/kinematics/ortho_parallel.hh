@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Industrial arms: six turning joints [degrees], joints 1 and 2 parallel and across joint 0, the last three
-// through one point. A, B and C are roll, pitch and yaw of the hand. Parameters and signs of M.
+// Industrial arms: six rotary joints [degrees], joints 1 and 2 parallel and perpendicular to joint 0, the
+// last three through one point. A, B and C are roll, pitch and yaw of the hand. Parameters and signs of M.
 // Brandstoetter, A. Angerer, M. Hofbaur, An Analytical Solution of the Inverse Kinematics Problem of
 // Industrial Serial Manipulators with an Ortho-parallel Basis and a Spherical Wrist (Austrian Robotics
 // Workshop 2014).
@@ -21,21 +21,21 @@ inline constexpr Parameter ORTHO_PARALLEL_PARAMETERS[] = {
     {"c4", 65, "length", "from the wrist to the hand"},
 };
 
-/// At zero both arms point up and the hand does.
+/// At zero both arms and the hand point up.
 class OrthoParallel final : public Parametric<ORTHO_PARALLEL_PARAMETERS> {
   public:
     enum Index : std::size_t { A1, A2, B, C1, C2, C3, C4 };
     static constexpr int JOINTS = 6;
 
     Status forward(const double *joints, Pose &pose) const noexcept override;
-    /// Shoulder, elbow and wrist stay on the side that they are on in `joints`.
+    /// Keeps the sides of shoulder, elbow and wrist in `joints`.
     Status inverse(const Pose &pose, double *joints) const noexcept override;
 
   private:
     struct Sides {
         double shoulder = 1, elbow = 1, wrist = 1;
     };
-    /// The lower arm as one line from axis 2 to the wrist: its length, and its angle from what joint 2 says.
+    /// Length of the line from axis 2 to the wrist, and its angle relative to joint 2.
     double lower() const noexcept { return std::hypot(get(A2), get(C3)); }
     double lower_angle() const noexcept { return arc_tangent(get(A2), get(C3)); }
     double ahead_of(const double *joints) const noexcept;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The numbers that describe a machine's geometry, declared once: a row of a table is a value of the model, a
-// pin of the module and a line of its manual page.
+// The geometry parameters of a machine, declared once: a row of a table is a value of the model, a pin of the
+// module and a line of its manual page.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace mw::kinematics {
 
-/// What HAL shows of a parameter.
+/// Type of the HAL pin or parameter.
 enum class PinKind : std::uint8_t {
     FLOAT,        ///< float, in
     FLOAT_IO,     ///< float, in and out
@@ -30,7 +30,7 @@ struct Parameter {
     PinKind kind = PinKind::FLOAT;
 };
 
-/// A model whose geometry is the table PARAMETERS.
+/// A model with the geometry parameters in TABLE.
 template <const auto &TABLE>
 class Parametric : public Kinematics {
   public:

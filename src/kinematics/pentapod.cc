@@ -5,7 +5,7 @@
 
 namespace mw::kinematics {
 
-/// Of the effector, which turns are measured by.
+/// Size of the effector, to which rotations are scaled.
 double Pentapod::size() const noexcept {
     double sum = 0;
     for (std::size_t i = 0; i < STRUTS; ++i) {

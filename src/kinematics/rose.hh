@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A rose engine: the place on the work in polar coordinates. Joints 0 = distance from the axis (transverse),
-// 1 = Z (along the axis), 2 = angle of the work [degrees], which counts its turns.
+// A rose engine: polar coordinates on the workpiece. Joints 0 = distance from the axis (transverse), 1 = Z
+// (along the axis), 2 = angle of the workpiece [degrees], not limited to one revolution.
 #pragma once
 
 #include "kinematics/kinematics.hh"
@@ -11,7 +11,7 @@ class Rose final : public Kinematics {
   public:
     Kind kind() const noexcept override { return Kind::BOTH; }
     Status forward(const double *joints, Pose &pose) const noexcept override;
-    /// On the axis any angle will do: the last one is kept, and the pose is SINGULAR.
+    /// On the axis every angle is a solution: the last one is kept, and the pose is SINGULAR.
     Status inverse(const Pose &pose, double *joints) const noexcept override;
 };
 

@@ -16,7 +16,7 @@ double leg_angle(int leg) noexcept {
 }  // namespace
 
 Status RotaryDelta::forward(const double *joints, Pose &pose) const noexcept {
-    // Seen from the middle of the foot the knees come nearer by the foot's radius.
+    // Reduces the foot to a point: each knee moves inward by the foot's radius.
     std::array<Sphere, 3> spheres;
     for (int i = 0; i < 3; ++i) {
         const Vector knee{get(PLATFORM) - get(FOOT) + get(THIGH) * cosine(joints[i]), 0,
@@ -52,7 +52,8 @@ Status RotaryDelta::inverse(const Pose &pose, double *joints) const noexcept {
     std::array<Vector, 3> shins;
     double least = 1;
     for (int i = 0; i < 3; ++i) {
-        // In the plane of the thigh, from the shoulder; the ankle is y beside it.
+        // Relative to the shoulder, in the plane of the thigh; y is the distance of the ankle from that
+        // plane.
         Vector ankle = turned_z(place_of(pose), -leg_angle(i));
         ankle.x += get(FOOT) - get(PLATFORM);
         const double reach = std::hypot(ankle.x, ankle.z);

@@ -12,7 +12,7 @@ namespace mw::kinematics {
 
 class RotaryTable final : public Kinematics {
   public:
-    /// A point of the axis A as seen from the origin, at A = 0 [machine units].
+    /// A point on the axis A relative to the origin, at A = 0 [machine units].
     void set_tilt_axis(double y, double z) noexcept {
         tilt_y_ = y;
         tilt_z_ = z;

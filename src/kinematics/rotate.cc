@@ -27,7 +27,7 @@ Status Rotate::inverse(const Pose &pose, double *joints) const noexcept {
     return Status::OK;
 }
 
-/// X and Y move joints 0 and 1 as C has turned them, and C turns these too.
+/// X and Y move joints 0 and 1, rotated by C; C also moves these joints.
 LinearJoints Rotate::linear() const noexcept {
     LinearJoints out = joints_like_axes();
     constexpr std::uint32_t TURNED_JOINTS = 3;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// X and Y turned by the axis C: joints 0 and 1 are the place in the table's own directions, joints 2 to 8 = Z
-// A B C U V W.
-//   j = Rz(C) p
+// X and Y rotated by the axis C: joints 0 and 1 are the position in the table's own directions, joints 2 to 8
+// = Z A B C U V W. j = Rz(C) p
 #pragma once
 
 #include "kinematics/kinematics.hh"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Any arm of six turning joints [degrees], described by modified Denavit-Hartenberg rows: to the next joint
-// by ALPHA about X, A along X, then the joint's angle about Z and D along Z (Craig, Introduction to
-// Robotics, 3.4). A, B and C are roll, pitch and yaw of the hand; joints 6 to 8 = U V W. The inverse iterates
-// (Newton on the six equations of the pose, the Jacobian from the joints' axes: Craig 5.7), along the
-// straight way from where the last joints are, so that elbows and wrists stay on their side.
+// Any arm of six rotary joints [degrees], described by modified Denavit-Hartenberg rows: to the next joint by
+// ALPHA about X, A along X, then the joint's angle about Z and D along Z (Craig, Introduction to Robotics,
+// 3.4). A, B and C are roll, pitch and yaw of the hand; joints 6 to 8 = U V W. The inverse iterates (Newton
+// on the six equations of the pose, the Jacobian from the joints' axes: Craig 5.7) along a straight line from
+// the last joint positions, so that elbows and wrists stay on their side.
 #pragma once
 
 #include "kinematics/frame.hh"
@@ -51,7 +51,7 @@ class Serial final : public Parametric<SERIAL_PARAMETERS> {
 
     Status forward(const double *joints, Pose &pose) const noexcept override;
     Status inverse(const Pose &pose, double *joints) const noexcept override;
-    /// The same, and how many iterations it took.
+    /// As above; also returns the number of iterations.
     Status inverse(const Pose &pose, double *joints, int &iterations) const noexcept;
 
   private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Six turning joints of which the last three meet in one point: the first three bring that point, the wrist,
-// to its place, the others turn the hand. Header-only and realtime-safe.
+// Six rotary joints of which the last three meet in one point: the first three position that point, the
+// wrist, and the others orient the hand. Header-only and realtime-safe.
 #pragma once
 
 #include <algorithm>
@@ -10,9 +10,9 @@
 
 namespace mw::kinematics {
 
-/// The joints of a pose whose hand is `hand_length` from the wrist along its Z. `place(wrist, joints)` finds
-/// joints 0 to 2, then `turn(hand, joints)` joints 3 to 5; each says how. Where there is no answer the joints
-/// are as they were.
+/// The joints of a pose whose hand is `hand_length` from the wrist along its Z. `place(wrist, joints)`
+/// calculates joints 0 to 2, then `turn(hand, joints)` joints 3 to 5; both return a Status. Without a
+/// solution the joints are not changed.
 template <class Place, class Turn>
 Status inverse_by_wrist(const Pose &pose, double hand_length, double *joints, const Place &place,
                         const Turn &turn) noexcept {

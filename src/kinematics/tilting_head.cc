@@ -5,7 +5,7 @@
 
 namespace mw::kinematics {
 
-/// What the joints of X, Y and Z are ahead of the place on the turned table.
+/// Offset of the X, Y and Z joints from the point on the rotated table.
 Vector TiltingHead::lead(double b, double u, double v, double w) const noexcept {
     const double s = sine(b);
     const double c = cosine(b);

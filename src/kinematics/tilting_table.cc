@@ -12,7 +12,7 @@ Vector turned(const Vector &v, double degrees) noexcept {
 
 }  // namespace
 
-/// From the table's axis to the tilting one, across the latter.
+/// Vector from the table's axis to the tilting axis, normal to the tilting axis.
 template <int TILT>
 Vector TiltingTable<TILT>::offset() const noexcept {
     const double z = get(Z_OFFSET) + get(TOOL);

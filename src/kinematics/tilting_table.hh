@@ -26,7 +26,7 @@ inline constexpr Parameter TILTING_TABLE_PARAMETERS[] = {
     {"tool-offset", 0, "length", "length of the tool, from motion.tooloffset.z"},
 };
 
-/// TILT: the axis about which the lower table tilts, A or B.
+/// TILT: the tilting axis of the lower table, A or B.
 template <int TILT>
 class TiltingTable final : public Parametric<TILTING_TABLE_PARAMETERS> {
     static_assert(TILT == geometry::AXIS_A || TILT == geometry::AXIS_B);
@@ -35,7 +35,7 @@ class TiltingTable final : public Parametric<TILTING_TABLE_PARAMETERS> {
     enum Index : std::size_t { X_ROT, Y_ROT, Z_ROT, X_OFFSET, Y_OFFSET, Z_OFFSET, TOOL };
 
     TiltingTable() noexcept { letters_.configure(TILT == geometry::AXIS_A ? "XYZAC" : "XYZBC"); }
-    /// Which letter each joint has. False (and no change) unless it is a word of axes.
+    /// Assigns a letter to each joint. False (and no change) unless it is a word of axes.
     bool set_letters(const char *letters) noexcept { return letters_.configure(letters); }
     Status forward(const double *joints, Pose &pose) const noexcept override;
     Status inverse(const Pose &pose, double *joints) const noexcept override;
@@ -61,7 +61,7 @@ inline constexpr Parameter XYZAB_TABLE_PARAMETERS[] = {
     {"z-rot-point", 0, "length", "Z of the rotation point in the machine"},
 };
 
-/// Joints 0 to 4 = X Y Z A B. `x-offset` shifts along the axis A and changes nothing.
+/// Joints 0 to 4 = X Y Z A B. `x-offset` is a shift along the axis A and has no effect.
 class XyzabTable final : public Parametric<XYZAB_TABLE_PARAMETERS> {
   public:
     enum Index : std::size_t { TOOL, X_OFFSET, Z_OFFSET, X_ROT, Y_ROT, Z_ROT };

@@ -16,7 +16,7 @@ inline constexpr Parameter TRIPOD_PARAMETERS[] = {
 class Tripod final : public Parametric<TRIPOD_PARAMETERS> {
   public:
     enum Index : std::size_t { BX, CX, CY };
-    /// Z has the sign of the last pose; the point above the motors is taken where that is 0.
+    /// Z keeps the sign of the last pose; if that is 0, the point above the motors is chosen.
     Status forward(const double *joints, Pose &pose) const noexcept override;
     Status inverse(const Pose &pose, double *joints) const noexcept override;
     int side(const Pose &pose) const noexcept override;

@@ -25,7 +25,7 @@ bool Trivial::configure(const char *letters) noexcept {
 }
 
 Status Trivial::forward(const double *joints, Pose &pose) const noexcept {
-    // Of a gantry the first joint tells; the axes without joint stay as they are.
+    // The first joint of a gantry determines the axis; axes without a joint are not changed.
     for (int j = map_.num_joints - 1; j >= 0; --j) {
         pose[map_.axis_of_joint[static_cast<std::size_t>(j)]] = joints[j];
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Whether a process runs.
+// Activity of a process.
 #pragma once
 
 #include "runtime/process.hh"

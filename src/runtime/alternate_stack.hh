@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A stack for signal handlers of the thread that makes it, so that a crash can be told when the thread's own
-// stack is at its end.
+// A stack for signal handlers of the creating thread, so that a crash can be reported when the thread's own
+// stack is exhausted.
 #pragma once
 
 #include <csignal>
@@ -25,7 +25,7 @@ class AlternateStack {
     AlternateStack &operator=(const AlternateStack &) = delete;
 
   private:
-    /// More than the largest vector state that the kernel saves there (MINSIGSTKSZ can be 11 kB).
+    /// More than the largest vector state that the kernel saves on it (MINSIGSTKSZ can be 11 kB).
     static constexpr std::size_t SIZE = 64U << 10U;
     alignas(16) unsigned char bytes_[SIZE];
 };

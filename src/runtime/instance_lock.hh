@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// One machine of a name on this computer, whichever user has started it.
+// Ensures one machine of a name on this computer, for all users.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace mw::runtime {
 
-/// A socket in the kernel's abstract names: it leaves no file, and ends with its process however that ends.
-/// [not realtime]
+/// A socket in the abstract namespace of the kernel: it leaves no file, and disappears when its process ends
+/// for any reason. [not realtime]
 class InstanceLock {
   public:
     InstanceLock() = default;
@@ -21,7 +21,7 @@ class InstanceLock {
         return *this;
     }
 
-    /// An error names the process that holds it, its user, and what to do.
+    /// An error names the process that holds the lock, its user, and what to do.
     static Result<InstanceLock> take(const std::string &instance);
 
   private:

@@ -12,8 +12,8 @@
 namespace mw::runtime {
 namespace {
 
-/// Order of records is that of the tickets writers take. `turn` says whose slot it is: for the record with
-/// ticket t it is t while a writer may fill it, t+1 when it is filled, t+RECORDS once it has been printed.
+/// Records are in the order of the writers' tickets. For ticket t, `turn` is t while a writer may fill the
+/// slot, t+1 when it is filled, t+RECORDS once it has been printed.
 struct Record {
     std::atomic<std::uint64_t> turn{0};
     LogLevel level = LogLevel::NONE;
@@ -27,7 +27,7 @@ void to_standard_files(void * /*context*/, LogLevel level, const char *text) {
     std::fflush(file);
 }
 
-/// True if there was one.
+/// True if there was a newline.
 bool trim_newline(char *text, std::size_t length) noexcept {
     const std::size_t whole = length;
     while (length > 0 && text[length - 1] == '\n') {
@@ -53,7 +53,7 @@ void fill(Record &record, LogLevel level, const char *format, std::va_list args)
 
 struct Log::Impl {
     Mode mode;
-    std::mutex printing;  // one drains at a time; realtime threads never take it
+    std::mutex printing;  // only one thread prints at a time; realtime threads never take it
     Sink sink;
     void *context;
     std::array<Record, RECORDS> records;
@@ -63,7 +63,7 @@ struct Log::Impl {
     std::uint64_t lost_told = 0;  // under `printing`
     std::atomic<bool> isStopping{false};
     std::thread drainer;
-    std::array<char, 4 * TEXT_SIZE> line{};  // begin of a line that is continued, under `printing`
+    std::array<char, 4 * TEXT_SIZE> line{};  // begin of a line that the next text continues, under `printing`
     std::size_t line_size = 0;               // under `printing`
 
     void drain_locked();
@@ -113,8 +113,8 @@ void Log::vprint(LogLevel level, const char *format, std::va_list args) noexcept
 void Log::vprint_always(LogLevel level, const char *format, std::va_list args) noexcept {
     std::uint64_t ticket = impl_->head.load(std::memory_order_relaxed);
     Record *record = nullptr;
-    // A ticket is taken only for a free slot, so that a full ring loses the newest and never waits. Each
-    // failed exchange means that another writer got on, so the loop is bounded by the number of writers.
+    // A ticket is taken only for a free slot, so a full ring loses the newest record and never waits. Each
+    // failed exchange means that another writer succeeded, so the number of writers bounds the loop.
     while (true) {
         record = &impl_->records[ticket % RECORDS];
         // Acquire: pairs with the drainer's release; the text has been printed before it is overwritten.
@@ -132,7 +132,7 @@ void Log::vprint_always(LogLevel level, const char *format, std::va_list args) n
         }
     }
     fill(*record, level, format, args);
-    // Release: pairs with the drainer's acquire; who sees the turn sees the text.
+    // Release: pairs with the drainer's acquire; a thread that sees the turn sees the text.
     record->turn.store(ticket + 1, std::memory_order_release);
     if (impl_->mode == Mode::SYNCHRONOUS) {
         drain();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Who a process is, safe against process ids that are used again.
+// Identity of a process, safe against reuse of process ids.
 #pragma once
 
 #include <cstdint>
@@ -17,11 +17,11 @@ struct ProcessId {
 };
 
 ProcessId this_process();
-/// False when that process is gone (or a zombie), even if its number belongs to another one now.
+/// False when that process has ended (or is a zombie), even if its id has been reused.
 bool isAlive(const ProcessId &process);
 
-/// The folder of this user's sockets and locks: $XDG_RUNTIME_DIR/millwright or /tmp/millwright-UID, made with
-/// mode 0700; an error when it belongs to someone else or others may enter it.
+/// The folder of this user's sockets and locks, mode 0700: $XDG_RUNTIME_DIR/millwright or
+/// /tmp/millwright-UID. An error when it belongs to another user or others may enter it.
 Result<std::string> runtime_folder();
 
 }  // namespace mw::runtime

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Homing by a module of a user: it homes, and cannot take a joint beyond its limits.
+// Homing by a module of a user: it homes, and cannot move a joint outside its limits.
 #include <algorithm>
 #include <cmath>
 #include <string>

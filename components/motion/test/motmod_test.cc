@@ -72,7 +72,7 @@ TEST(Motmod, APinThatSeldomChangesIsSeenInTheCycleAfterItWasLinked) {
     hal::Hal &hal = m.host->hal();
     ASSERT_EQ(m.value("joint.1.homed"), 1);
     ASSERT_EQ(m.value("joint.1.amp-enable-out"), 1);
-    // A signal that has a reader keeps its value when a writer joins.
+    // A signal with a reader keeps its value when a writer is linked.
     ASSERT_TRUE(hal.net("homed", {"joint.0.home-sw-in"}));
     ASSERT_TRUE(hal.net("amp", {"joint.1.jog-enable"}));
     ASSERT_TRUE(hal.net("homed", {"joint.1.homed"}));
@@ -105,7 +105,7 @@ TEST(Motmod, ALineFromThePathChannelReachesTheMotorPins) {
     EXPECT_EQ(m.value("motion.in-position"), 1);
 }
 
-/// Each of them, and no other.
+/// All of these pins, and no others.
 TEST(Motmod, InputsAndOutputsOfProgramsAreThoseOfTheirPins) {
     Machine m;
     ASSERT_NO_FATAL_FAILURE(m.start());

@@ -9,7 +9,7 @@ TEST(PlasmaPins, AreThoseOfThePeer) {
     int inputs = 0, outputs = 0;
     sdk::for_each_pin(INPUT_PINS, [&](const char *, const auto &) { ++inputs; });
     sdk::for_each_pin(OUTPUT_PINS, [&](const char *, const auto &) { ++outputs; });
-    EXPECT_EQ(inputs, 127);  // counted in `halcmd show pin plasmac` of the peer, plasmac.time apart
+    EXPECT_EQ(inputs, 127);  // as counted in LinuxCNC's `halcmd show pin plasmac`, without plasmac.time
     EXPECT_EQ(outputs, 49);
     const Table fresh;
     EXPECT_EQ(fresh.in.resolution, 100);

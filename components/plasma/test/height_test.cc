@@ -5,7 +5,7 @@
 namespace mw::plasma::test {
 namespace {
 
-/// How far Z went in so many cycles [mu].
+/// The movement of Z in this many cycles [mu].
 double moved(Cut &table, int cycles) {
     const double before = table.torch_mu();
     table.run(cycles);
@@ -109,7 +109,7 @@ TEST(PlasmaHeight, SwitchesMoveItInMode2) {
     table.run(5);
     table.in.move_up = true;
     EXPECT_NEAR(moved(table, 10), 0.1, 1e-3);
-    table.in.move_down = true;  // both: neither
+    table.in.move_down = true;  // both set: no movement
     EXPECT_EQ(moved(table, 10), 0.0);
 }
 

@@ -15,7 +15,7 @@
 namespace mw::gpio {
 namespace {
 
-/// Answers as Linux does for chips whose lines have names.
+/// Responds as Linux does for chips with named lines.
 struct Kernel final : System {
     struct Request {
         int chip;
@@ -23,7 +23,7 @@ struct Kernel final : System {
     };
     std::vector<std::vector<std::string>> chips{{"GPIO0", "GPIO5", "GPIO6"}, {"", "LED", "GPIO20", "GPIO21"}};
     std::map<int, Request> requests;
-    std::map<std::string, bool> levels;  ///< by name of the line, electrical
+    std::map<std::string, bool> levels;  ///< electrical levels by name of the line
     int next_file = 100;
     int calls = 0;
     int failing = 0;  ///< errno of reads and writes

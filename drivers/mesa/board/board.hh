@@ -31,7 +31,7 @@ struct Reply {
     std::int64_t time_ns = 0;  ///< later than the packet when it waits
 };
 
-/// A board and what it is connected to. Times are ns since it was made and do not decrease. [one thread]
+/// A board and its connected hardware. Times are ns since its creation and do not decrease. [one thread]
 class Board {
   public:
     explicit Board(const Model &model, PhysicsPlan physics = {});
@@ -40,7 +40,7 @@ class Board {
 
     /// Executes a packet that arrives at `time_ns`. No reply: it has no reads, or the board has no power.
     std::optional<Reply> execute(std::span<const std::byte> packet, std::int64_t time_ns);
-    /// Lets time pass.
+    /// Advances the time.
     void advance(std::int64_t time_ns);
     /// All registers are as at power-up; for `off_ns` the board does not answer.
     void restart(std::int64_t time_ns, std::int64_t off_ns);

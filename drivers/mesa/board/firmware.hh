@@ -29,18 +29,18 @@ namespace mw::mesa::board {
 /// The registers from power-up on. Time advances only by advance(). [one thread]
 class Firmware {
   public:
-    /// `physics` is what the pins are connected to; it outlives the firmware, as motors outlive a reset.
+    /// `physics` is the hardware at the pins; it outlives the firmware, as motors outlive a reset.
     Firmware(const Idrom &idrom, Physics &physics, std::int64_t power_up_ns);
 
-    /// Lets time pass up to `to_ns`: watchdog and DPLL timers act at their own times on the way. An earlier
-    /// time than the current one has no effect.
+    /// Advances the time to `to_ns`: watchdog and DPLL timers act at their own times. An earlier time than
+    /// the current one has no effect.
     void advance(std::int64_t to_ns);
     std::uint32_t read(std::uint16_t address);
     void write(std::uint16_t address, std::uint32_t value);
     /// The watchdog bites now, if there is one.
     void bite();
 
-    /// Connects a pin to a level from outside; empty: to what it is connected to in the physics.
+    /// Connects a pin to a level from outside; empty: to the physics.
     void set_input(unsigned pin, std::optional<bool> level);
     /// The level of an input that is read over the multiplexer of InMux; low at power-up.
     void set_multiplexed_input(unsigned input, bool level);
@@ -63,7 +63,7 @@ class Firmware {
     SerialLines &serial_lines(Gtag transmitter) { return *lines_.at(transmitter); }
 
   private:
-    /// Which register a word of the space is.
+    /// The register of a word of the space.
     struct Slot {
         Module *module = nullptr;
         RegisterPlace place;

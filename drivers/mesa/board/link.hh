@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A board behind a link with faults: packets and replies on their way, and the events of the plan.
+// A board behind a link with faults: packets and replies in transit, and the events of the plan.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace mw::mesa::board {
 
-/// How many packets of each end.
+/// Number of packets at each end.
 struct LinkCounts {
     std::uint64_t sent = 0, executed = 0, replies = 0, received = 0;
 };
@@ -23,13 +23,13 @@ class Link {
 
     /// A host sends a packet at `now_ns`.
     void send(std::vector<std::byte> bytes, std::int64_t now_ns, int host = 0);
-    /// Does everything that happens up to `now_ns`, in the order of the times.
+    /// Executes all events up to `now_ns`, in order of time.
     void run_until(std::int64_t now_ns);
     /// The next reply that has arrived at its host by `now_ns`.
     std::optional<Delivery> receive(std::int64_t now_ns);
-    /// When something happens next; empty: nothing without a new packet.
+    /// Time of the next event; empty: none without a new packet.
     std::optional<std::int64_t> next_ns() const;
-    /// An event happens now, at its time; events of the plan need no call.
+    /// Executes an event now; events of the plan need no call.
     void perform(const FaultEvent &event);
     /// The faults of both directions from now on.
     void disturb(const DirectionFaults &to_board, const DirectionFaults &to_host, std::uint64_t seed);

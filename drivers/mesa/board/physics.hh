@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What is connected to the simulated board: motors that follow steps or PWM, encoders on their shafts,
+// The devices connected to the simulated board: motors that follow steps or PWM, encoders on their shafts,
 // switches.
 #pragma once
 
@@ -20,7 +20,7 @@ enum class MotorType : std::uint8_t {
     PWM,      ///< speed follows the duty with a first-order lag
 };
 
-/// A motor as the file declares it.
+/// A motor of the file.
 struct MotorPlan {
     std::string name;
     MotorType type = MotorType::STEPPER;
@@ -35,7 +35,7 @@ struct EncoderPlan {
     unsigned encoder = 0;
     std::size_t motor = 0;  ///< index of the motor
     std::int64_t counts_per_rev = 4000;
-    double index_rev = 0;  ///< where the index is, from 0 to below 1
+    double index_rev = 0;  ///< position of the index, from 0 to below 1
 };
 
 /// A channel of a smart serial port.
@@ -69,7 +69,7 @@ struct RemotePlan {
     std::string card;  ///< the key of a RemoteCard
 };
 
-/// What an input of a smart serial card reads, as bits of the card.
+/// Value of an input of a smart serial card, as bits of the card.
 struct FieldPlan {
     RemoteChannel remote;
     std::string name;                    ///< of the field, as the card has it
@@ -94,7 +94,7 @@ struct PhysicsPlan {
 /// [port=N]` and `remote CHANNEL card=7i76 [port=N]`; units and pins must exist in `idrom`.
 Result<PhysicsPlan> parse_physics(std::string_view text, const std::string &file, const Idrom &idrom);
 
-/// What reaches the motors within a piece of time in which nothing changes.
+/// Inputs of the motors in a time step without changes.
 struct DriveInputs {
     std::vector<std::int64_t> steps;  ///< of each step generator whose pins drive
     std::vector<double> duties;       ///< of each PWM generator whose pins drive
@@ -106,7 +106,7 @@ class Physics {
     explicit Physics(PhysicsPlan plan);
 
     using OnMove = std::function<void(unsigned encoder, const ShaftMove &move)>;
-    /// Lets time pass and reports how the shafts of the encoders moved.
+    /// Advances the time and reports how the shafts of the encoders moved.
     void advance(std::int64_t from_ns, std::int64_t to_ns, const DriveInputs &inputs, const OnMove &on_move);
 
     /// The shaft of an encoder, when one is connected.
@@ -117,7 +117,7 @@ class Physics {
     std::optional<bool> switch_level(unsigned pin) const;
     /// The level of any switch.
     bool level_of(const SwitchPlan &one) const;
-    /// What a field of a smart serial card reads.
+    /// Value of a field of a smart serial card.
     std::uint32_t field_value(const FieldPlan &field) const;
     /// `levels` of the inputs of InMux with the levels of the switches there.
     std::uint32_t multiplexed_levels(std::uint32_t levels) const;

@@ -12,7 +12,7 @@
 
 namespace mw::mesa::board {
 
-/// What the information area of a space reports, and the size of the space.
+/// The information area of a space, and the size of the space.
 struct SpaceFacts {
     std::uint16_t cookie = 0;  ///< 0: the space does not exist
     std::uint16_t size_word = 0, ranges_word = 0;

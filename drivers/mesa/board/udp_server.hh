@@ -10,7 +10,7 @@
 
 namespace mw::mesa::board {
 
-/// Where the board is and how its time passes.
+/// Address of the board, and its time.
 struct ServerSettings {
     std::string address = "127.0.0.1";
     std::uint16_t port = lbp16::BOARD_PORT;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the servo thread does.
+// The part of the direct bus that the servo thread runs.
 #include "drivers/mesa/direct/direct_bus.hh"
 
 #include <algorithm>

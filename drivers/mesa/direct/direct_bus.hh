@@ -18,20 +18,20 @@
 
 namespace mw::mesa {
 
-/// A card, as its bus knows it.
+/// A card, as known to its bus.
 struct DirectCard {
     std::string hal_name{};                 ///< 5i25
     std::vector<std::string> connectors{};  ///< one for each port; empty: as the firmware says
     int port_width = 0;                     ///< 0: as the firmware says
     int leds = 0;
-    int most_failures = 1;  ///< failed cycles in a row that stop the traffic
+    int most_failures = 1;  ///< consecutive failed cycles that stop the traffic
 };
 
 /// Why a cycle has failed.
 enum class DirectFault : std::uint8_t {
     NONE,
     ACCESS,       ///< the bus reports an error
-    NO_COOKIE,    ///< what is read is not the firmware
+    NO_COOKIE,    ///< the values read are not from the firmware
     OTHER_BOARD,  ///< after a reset by the operator: not the board of the load
 };
 
@@ -100,13 +100,13 @@ class DirectBus final : public RegisterBus {
     std::vector<std::uint32_t> values_;  ///< of all ranges
     std::uint16_t idrom_address_ = 0;
     std::vector<std::uint32_t> identity_;  ///< the description of the firmware
-    std::size_t compared_ = 0;             ///< words of it that are the same
+    std::size_t compared_ = 0;             ///< number of words compared so far
 
     Link link_ = Link::RUNNING;
     DirectFault fault_ = DirectFault::NONE;
     bool answered_ = false;  ///< the last read was successful, so that a write may follow
     bool rewriting_ = false;
-    int failures_ = 0;  ///< in a row
+    int failures_ = 0;  ///< consecutive failures
     std::uint32_t failed_cycles_ = 0;
     std::uint32_t cookie_ = 0;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the bus does while it is loaded: it may allocate.
+// Loading of the direct bus: it may allocate memory.
 #include <algorithm>
 #include <cstring>
 

@@ -20,7 +20,7 @@ class DirectPins {
         rtapi_snprintf(name_.text, sizeof name_.text, "%s", d.prefix());
     }
 
-    /// An operator, or HAL, who sets io_error stops the traffic; who clears it lets the board be compared and
+    /// Setting io_error, by an operator or HAL, stops the traffic; clearing it lets the board be compared and
     /// served again. [servo thread]
     void before(DirectBus &bus) noexcept {
         if (io_error_ && !bus.isStopped()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Registers of a board that this computer reaches itself, without packets that may be late: PCI, EPP, SPI.
+// Registers of a board that this computer accesses directly, without packets that may be late: PCI, EPP, SPI.
 #pragma once
 
 #include <algorithm>
@@ -33,7 +33,7 @@ class RegisterAccess {
     virtual bool read(std::uint16_t address, std::span<std::uint32_t> values) noexcept = 0;
     virtual bool write(std::uint16_t address, std::span<const std::uint32_t> values) noexcept = 0;
 
-    /// Allocates the buffers for a cycle that reads and writes so much. [while loading]
+    /// Allocates the buffers for the reads and writes of a cycle. [while loading]
     virtual Result<> prepare(std::span<const RegisterRange> /*reads*/, int /*max_writes*/) { return {}; }
     /// All ranges, in their order.
     virtual bool read_list(std::span<const RegisterRange> ranges, std::span<std::uint32_t> values) noexcept {
@@ -61,7 +61,7 @@ class RegisterAccess {
         }
         return true;
     }
-    /// Lets time pass for the board. [while loading]
+    /// Waits, in the time of the board. [while loading]
     virtual void pause(std::chrono::nanoseconds duration) { std::this_thread::sleep_for(duration); }
     /// Another thread may use it at the same time, such as on PCI.
     virtual bool isImmediate() const noexcept { return false; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// How registers of a board are reached over a parallel port in EPP mode. Sources: shared/hardware.md, part
+// The access to the registers of a board over a parallel port in EPP mode. Sources: shared/hardware.md, part
 // C1; the bytes are those that LinuxCNC's hm2_7i90 and hm2_7i43 send.
 #pragma once
 

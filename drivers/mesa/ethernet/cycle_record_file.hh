@@ -41,7 +41,7 @@ struct RecordedCycles {
 
 /// The files of this user.
 std::vector<std::string> find_cycle_records();
-/// Copies a file. The driver may write it meanwhile: what changed is left out.
+/// Copies a file. The driver may write it meanwhile: changed records are omitted.
 Result<RecordedCycles> read_cycle_record(const std::string &path);
 
 }  // namespace mw::mesa

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Who was late: what the recorded cycles of a board say of the thread, the kernel, the network and the board.
+// A report from the recorded cycles of a board: whether the thread, the kernel, the network or the board was
+// late.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +17,7 @@ struct TimeFigures {
     std::int64_t median_ns = 0, p999_ns = 0, max_ns = 0;
 };
 
-/// What cycles show when they are counted.
+/// Statistics of cycles.
 struct CycleFigures {
     std::size_t cycles = 0;
     std::int64_t period_ns = 0;

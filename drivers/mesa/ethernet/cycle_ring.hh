@@ -9,26 +9,26 @@
 
 namespace mw::mesa {
 
-/// How a cycle has ended.
+/// Result of a cycle.
 enum class CycleOutcome : std::uint8_t {
     DONE,
-    NO_ANSWER,    ///< nothing came before the deadline
+    NO_ANSWER,    ///< no answer before the deadline
     SEND_FAILED,  ///< the kernel did not accept the request; `error` says why
     RECEIVE_FAILED,
     SHORT_ANSWER,  ///< an answer of the wrong size
     WRITE_LOST,    ///< the answer came, but the board has not had the last write
-    OTHER_BOARD,   ///< after a fault: the board that answers is not the one that was loaded
+    OTHER_BOARD,   ///< after a fault: the board is not the one that was loaded
 };
 
 /// Times are monotonic [ns]; 0: it did not happen.
 struct CycleTimes {
     std::int64_t begin_ns = 0;     ///< the thread began its cycle
-    std::int64_t sent_ns = 0;      ///< the request was handed to the kernel
-    std::int64_t answered_ns = 0;  ///< the answer was there
-    std::int64_t written_ns = 0;   ///< the write packet was handed to the kernel
+    std::int64_t sent_ns = 0;      ///< the request was passed to the kernel
+    std::int64_t answered_ns = 0;  ///< the answer arrived
+    std::int64_t written_ns = 0;   ///< the write packet was passed to the kernel
     std::uint32_t number = 0;      ///< of the request
     std::int32_t error = 0;        ///< errno
-    std::uint16_t stale = 0;       ///< older answers that came meanwhile
+    std::uint16_t stale = 0;       ///< older answers that arrived meanwhile
     /// Packets that the host has sent, this request included, and packets that the board has received
     /// (0 without an answer). Both run over.
     std::uint16_t host_packets = 0, board_packets = 0;
@@ -60,7 +60,7 @@ class CycleRing {
     std::atomic<std::uint64_t> count_{0};
 };
 
-/// Why the cycles before an event were kept.
+/// Reason for keeping the cycles before an event.
 enum class BoardFault : std::uint8_t {
     NONE,
     STOPPED,      ///< too many failures: the traffic was stopped
@@ -68,7 +68,7 @@ enum class BoardFault : std::uint8_t {
     WATCHDOG,     ///< the watchdog of the board has bitten
 };
 
-/// What a board leaves for those who look for a cause. Its layout is that of the file.
+/// Data for finding the cause of a fault. Its layout is that of the file.
 struct CycleRecord {
     static constexpr std::uint32_t MAGIC = 0x4D574359;  ///< "MWCY"
     static constexpr std::uint32_t LAYOUT = 1;

@@ -7,7 +7,7 @@
 
 namespace mw::mesa {
 
-/// What the parameters packet-error-* and packet-read-timeout hold.
+/// Values of the parameters packet-error-* and packet-read-timeout.
 struct EthernetSettings {
     int read_timeout = 80;  ///< up to 0: 80 percent of the period; to 99: percent of it; above: nanoseconds
     int error_limit = 10;

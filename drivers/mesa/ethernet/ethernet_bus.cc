@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the servo thread does.
+// The part of the Ethernet bus that the servo thread runs.
 #include "drivers/mesa/ethernet/ethernet_bus.hh"
 
 #include <algorithm>
@@ -129,7 +129,7 @@ CycleOutcome EthernetBus::wait_for_answer(std::int64_t deadline_ns, CycleTimes &
     return failure;
 }
 
-/// Of an answer to the last request.
+/// Result of an answer to the last request.
 CycleOutcome EthernetBus::outcome_of_answer() const noexcept {
     if (link_ == Link::COMPARING) {
         const bool same = std::equal(known_identity_.begin(), known_identity_.end(), answer_.begin());

@@ -25,7 +25,7 @@
 
 namespace mw::mesa {
 
-/// Failures by their kind, each counted.
+/// Numbers of failures by type.
 struct EthernetCounters {
     std::uint32_t no_answer = 0, send_failed = 0, receive_failed = 0, short_answer = 0, write_lost = 0;
     std::uint32_t stale = 0;  ///< answers to older requests; no failure
@@ -33,7 +33,7 @@ struct EthernetCounters {
 
 class EthernetBus final : public RegisterBus {
   public:
-    /// Finds out which card answers. `address` is for messages. [while loading]
+    /// Identifies the card that answers. `address` is for messages. [while loading]
     static Result<std::unique_ptr<EthernetBus>> open(std::unique_ptr<lbp16::Transport> transport,
                                                      std::string address);
 
@@ -80,7 +80,7 @@ class EthernetBus final : public RegisterBus {
     void resume() noexcept;
 
   private:
-    /// What the bus does in a cycle.
+    /// State of the bus in a cycle.
     enum class Link : std::uint8_t {
         RUNNING,
         STOPPED,    ///< no traffic

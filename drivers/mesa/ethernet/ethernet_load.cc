@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the bus does while it is loaded: it may allocate and wait.
+// Loading of the Ethernet bus: it may allocate memory and wait.
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
@@ -151,7 +151,7 @@ std::vector<std::string> EthernetBus::connectors() const {
 Result<std::vector<std::byte>> EthernetBus::exchange(const PacketWriter &packet, std::string_view what) {
     int error = 0;
     for (int attempt = 0; attempt < TRIES; ++attempt) {
-        // An answer that was late would be taken for this one.
+        // A late answer would be taken for this one.
         for (int old = 0; old < MOST_OLD && transport_->receive(answer_).isDone(); ++old) {
         }
         const auto sent = transport_->send(packet.bytes());

@@ -32,7 +32,7 @@ class EthernetPins {
         rtapi_snprintf(name_.text, sizeof name_.text, "%s", d.prefix());
     }
 
-    /// Before the request of a cycle. An operator, or HAL, who sets io_error stops the traffic; who clears it
+    /// Before the request of a cycle. Setting io_error, by an operator or HAL, stops the traffic; clearing it
     /// lets the board be compared and served again. [servo thread]
     void before(EthernetBus &bus) noexcept {
         bus.settings = {.read_timeout = packet_read_timeout_,

@@ -17,9 +17,9 @@ class HostNumbers {
     static constexpr std::uint16_t ADDRESS = 0x10;
     /// Packets into which one write may be divided.
     static constexpr std::size_t MAX_WRITE_PACKETS = 3;
-    /// What append_to_request() adds to an answer.
+    /// Bytes that append_to_request() adds to an answer.
     static constexpr std::size_t ANSWER_BYTES = 4 + 4 * MAX_WRITE_PACKETS;
-    /// What append_to_write() adds to a packet.
+    /// Bytes that append_to_write() adds to a packet.
     static constexpr std::size_t WRITE_BYTES = 8;
 
     /// Makes a request store its number and return all numbers. It is the last command of the request.
@@ -54,7 +54,7 @@ class HostNumbers {
         }
         return true;
     }
-    /// Expects what the board has, such as after it was switched on again.
+    /// Expects the numbers of the board, for example after it was switched on again.
     void accept(std::span<const std::byte> numbers) noexcept {
         for (std::size_t slot = 0; slot < MAX_WRITE_PACKETS; ++slot) {
             writes_[slot] = lbp16::number_at<std::uint32_t>(numbers.subspan(4 + 4 * slot));

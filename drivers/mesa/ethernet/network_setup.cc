@@ -102,7 +102,7 @@ arpreq arp_request(const std::string &interface, const sockaddr_in &board) {
     return request;
 }
 
-/// Runs nft with the text as its standard input: its status, or -1 when it cannot be run.
+/// Runs nft with the text as its standard input; returns its status, or -1 when it cannot be run.
 int run_nft(const std::string &text) {
     std::array<int, 2> ends{};
     if (::pipe2(ends.data(), O_CLOEXEC) != 0) {
@@ -184,7 +184,7 @@ FixedArpEntry::~FixedArpEntry() {
     arpreq request = arp_request(interface_, board);
     const Socket socket;
     ::ioctl(socket.number(), SIOCDARP,
-            &request);  // at the end of the program there is no remedy for a failure
+            &request);  // at the end of the program a failure cannot be corrected
 }
 
 std::string firewall_rules(const BoardRoute &route, const std::vector<BoardAddress> &boards) {

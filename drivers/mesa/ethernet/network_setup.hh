@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the driver asks of the computer's network for a board: a fixed entry in the ARP table, so that no
-// request waits for one, and a rule that keeps other packets off the interface. Both need CAP_NET_ADMIN;
-// without it the board works, and a warning says what is missing. Both end with the driver.
+// The network settings of the computer for a board: a fixed entry in the ARP table, so that no request waits
+// for one, and a rule that keeps other packets off the interface. Both need CAP_NET_ADMIN; without it the
+// board works, and a warning names the missing setting. Both end with the driver.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace mw::mesa {
 
-/// Where a board answers.
+/// Address of a board.
 struct BoardAddress {
     std::string ip;
     std::uint16_t port = lbp16::BOARD_PORT;

@@ -83,7 +83,7 @@ Result<BoardAddress> address_of(std::string_view text) {
     return address;
 }
 
-/// What a board can do without is a warning.
+/// A failure that the board does not depend on is a warning.
 template <class T>
 std::optional<T> optional_of(Result<T> result, const std::string &name) {
     if (!result) {
@@ -103,7 +103,7 @@ void find_board(EthernetBoard &board, const MacAddress &mac) {
     }
 }
 
-/// One firewall for each interface, as it lets only the boards pass that it knows.
+/// One firewall for each interface, because it passes only packets of known boards.
 void close_interfaces() {
     std::map<std::string, std::vector<const EthernetBoard *>> interfaces;
     for (const EthernetBoard &board : boards()) {

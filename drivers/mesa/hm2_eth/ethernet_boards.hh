@@ -26,8 +26,8 @@ struct EthernetLoad {
 /// 0, or a negated errno with a message in the log; unload_ethernet_boards() follows also then. [while
 /// loading]
 MW_HOSTMOT2_API int load_ethernet_boards(const EthernetLoad &load);
-/// Turns the outputs of the boards off and removes what the network was prepared with. No function of theirs
-/// may run.
+/// Switches the outputs of the boards off and undoes the changes of the network. None of their functions may
+/// run. [while unloading]
 MW_HOSTMOT2_API void unload_ethernet_boards(int comp_id);
 
 }  // namespace mw::mesa

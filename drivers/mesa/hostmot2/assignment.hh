@@ -42,7 +42,7 @@ struct Assignment {
     std::vector<UsedModule> modules;
     std::vector<UsedPin> pins;
     std::vector<FoundPort> serial_ports;  ///< filled by discover_sserial()
-    std::vector<std::string> warnings;    ///< modules that are left out, with gtag, version and base address
+    std::vector<std::string> warnings;    ///< omitted modules, with gtag, version and base address
 };
 
 /// Whether the driver can use a module of this type and version.

@@ -15,16 +15,16 @@
 namespace mw::mesa {
 
 enum class PinType : std::uint8_t { BIT, FLOAT, S32, U32 };
-/// IN, OUT and IO are pins, seen from the driver; RW and RO are parameters.
+/// IN, OUT and IO are pins, as seen by the driver; RW and RO are parameters.
 enum class Access : std::uint8_t { IN, OUT, IO, RW, RO };
 
-/// Where pins and parameters are made: HAL, or a map of a test. Names are without the prefix of the board.
+/// Creates pins and parameters: in HAL, or in a map of a test. Names are without the prefix of the board.
 class PinSpace {
   public:
     virtual ~PinSpace() = default;
 
-    /// Makes a pin or parameter with the value 0. The slot points to its value and is valid for the life of
-    /// the driver; its contents may change when a pin is linked to a signal. [while loading]
+    /// Creates a pin or parameter with the value 0. The slot points to its value and is valid for the life of
+    /// the driver; its content may change when a pin is linked to a signal. [while loading]
     virtual void *const volatile *make(const std::string &name, PinType type, Access access) = 0;
     /// A second name of a parameter. [while loading]
     virtual void alias_param(const std::string &name, const std::string &alias) = 0;
@@ -67,7 +67,7 @@ struct PinRow {
 /// The pins of a module and the fields with their values. The fields must not move once they are bound.
 class PinBinding {
   public:
-    /// Makes the pin PREFIX.NAME of each row. [while loading]
+    /// Creates the pin PREFIX.NAME of each row. [while loading]
     template <class Values, std::size_t N>
     void bind(PinSpace &space, const std::string &prefix, const PinRow<Values> (&rows)[N], Values &values) {
         for (const PinRow<Values> &row : rows) {
@@ -75,14 +75,14 @@ class PinBinding {
             add(space, prefix + separator + row.name, row.type, row.access, row.field_of(values));
         }
     }
-    /// Makes one pin for one field. [while loading]
+    /// Creates one pin for one field. [while loading]
     void add(PinSpace &space, const std::string &name, PinType type, Access access, void *field);
 
     /// The same pins with other fields: a field `n` bytes behind `from` becomes the one `n` bytes behind
     /// `to`. So a second thread has separate values. [while loading]
     PinBinding moved(const void *from, void *to) const;
 
-    /// Copies what others may set (IN, IO, RW) to the fields. [servo thread]
+    /// Copies the values that others may set (IN, IO, RW) to the fields. [servo thread]
     void load() noexcept;
     /// Copies the fields of OUT and RO to HAL, and those of IO and RW that changed since load(), so that a
     /// value that a user set meanwhile is not overwritten. [servo thread]

@@ -31,7 +31,7 @@ struct RegisterWrite {
     bool operator==(const RegisterWrite &) const = default;
 };
 
-/// What became of the read of a cycle.
+/// Result of the read of a cycle.
 enum class CycleRead : std::uint8_t {
     DONE,     ///< all values are of this cycle
     FAILED,   ///< no value is new; the bus has counted the failure
@@ -45,7 +45,7 @@ class RegisterBus {
     /// The name of the card in HAL, such as "7i76e", and the names of the connectors, one for each port.
     virtual std::string card_name() const = 0;
     virtual std::vector<std::string> connectors() const = 0;
-    /// Pins of each connector; 0: as the firmware says.
+    /// Pins of each connector; 0: as in the firmware.
     virtual int port_width() const { return 0; }
     /// Lamps that the driver can switch: the pins CR01, CR02...
     virtual int leds() const { return 4; }
@@ -54,13 +54,13 @@ class RegisterBus {
     virtual Result<std::vector<std::uint32_t>> read_now(RegisterRange range) = 0;
     /// Writes registers from `address` now. [while loading]
     virtual Result<> write_now(std::uint16_t address, std::span<const std::uint32_t> values) = 0;
-    /// Lets time pass, so that a processor of the board works. [while loading]
+    /// Waits while a processor of the board works. [while loading]
     virtual void pause_now(std::chrono::nanoseconds duration) { std::this_thread::sleep_for(duration); }
-    /// Fixes what each cycle reads, and the largest number of registers that one cycle writes. An error when
-    /// it is more than the bus can carry in one cycle. [while loading]
+    /// Fixes the registers that each cycle reads, and the maximum number of registers that one cycle writes.
+    /// An error when they do not fit into one cycle of the bus. [while loading]
     virtual Result<> set_lists(std::span<const RegisterRange> reads, int max_writes) = 0;
 
-    /// Sends the request of this cycle, so that its answer travels while other boards are read. Optional
+    /// Sends the request of this cycle, so that its answer arrives while other boards are read. Optional
     /// before read(). [servo thread]
     virtual void request() noexcept = 0;
     /// The values of all ranges of set_lists(), in their order. `period_ns` of the thread bounds the wait.
@@ -92,7 +92,7 @@ class RegisterBus {
     /// True once after a failure: the board may have missed writes, so that the next write() must hold all
     /// registers. [servo thread]
     virtual bool take_rewrite() noexcept = 0;
-    /// The watchdog of the board has bitten: a bus that records its cycles keeps them. [servo thread]
+    /// The watchdog of the board has bitten: a bus that records its cycles stores them. [servo thread]
     virtual void note_watchdog_bite() noexcept {}
 };
 

@@ -23,7 +23,7 @@ struct Card {
 
 /// All known cards with Ethernet, longer names before those that they begin with.
 std::span<const Card> ethernet_cards() noexcept;
-/// The card of the name that it reports (16 characters, spaces or zeros at the end); nullptr: an unknown one.
+/// The card with the reported name (16 characters, spaces or zeros at the end); nullptr: unknown.
 const Card *find_ethernet_card(std::string_view reported_name) noexcept;
 
 }  // namespace mw::mesa

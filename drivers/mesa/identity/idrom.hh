@@ -109,7 +109,7 @@ struct Idrom {
 /// Reads `count` registers of 32 bits from `address` on; an error is passed on as it is.
 using RegisterReader = std::function<Result<std::vector<std::uint32_t>>(std::uint16_t address, int count)>;
 
-/// The connectors of a card, as its bus knows them; 0: not known, not compared.
+/// The connectors of a card, as known to its bus; 0: not known, not compared.
 struct CardShape {
     std::uint32_t ports = 0, port_width = 0;
 };
@@ -128,8 +128,8 @@ struct RegisterValue {
     bool operator==(const RegisterValue &) const = default;
 };
 
-/// The registers from which decode_idrom() reads `idrom`, with the IDROM at `offset`. It fails when the parts
-/// of the description overlap or do not fit; whether the values make sense is not checked. [not realtime]
+/// The registers from which decode_idrom() reads `idrom`, with the IDROM at `offset`. An error when the parts
+/// of the description overlap or do not fit; the values are not checked. [not realtime]
 Result<std::vector<RegisterValue>> encode_idrom(const Idrom &idrom, std::uint16_t offset = 0x0400);
 
 }  // namespace mw::mesa

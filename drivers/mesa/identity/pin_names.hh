@@ -13,7 +13,7 @@ namespace mw::mesa {
 /// 50 pins and 24 signals; 0: the board's manual names the terminals.
 int connector_pin(int port_width, int i) noexcept;
 
-/// What a pin can be besides GPIO, such as "step generator 0: step"; empty: GPIO only.
+/// Function of a pin besides GPIO, such as "step generator 0: step"; empty: GPIO only.
 std::string pin_function(const PinDescriptor &pin);
 
 }  // namespace mw::mesa

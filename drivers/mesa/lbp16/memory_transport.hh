@@ -13,7 +13,7 @@
 
 namespace mw::mesa::lbp16 {
 
-/// What happens to a packet in the network.
+/// Treatment of a packet in the network.
 struct Passage {
     int copies = 1;             ///< 0: the packet is lost
     std::int64_t delay_ns = 0;  ///< added to `MemoryTransport::WAY_NS`
@@ -46,8 +46,8 @@ class MemoryTransport final : public Transport {
 
     std::vector<Written> written;
     std::size_t requests = 0;                        ///< packets that the board has received
-    std::function<Passage(std::size_t)> to_board;    ///< of the packet number, from 0; empty: nothing happens
-    std::function<Passage(std::size_t)> from_board;  ///< of the answer number
+    std::function<Passage(std::size_t)> to_board;    ///< for the packet number, from 0; empty: no faults
+    std::function<Passage(std::size_t)> from_board;  ///< for the answer number
 
   private:
     struct Packet {

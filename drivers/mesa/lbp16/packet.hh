@@ -57,8 +57,8 @@ std::uint16_t command_word(const Command &command) noexcept;
 /// The command of a word; its address is 0.
 Command command_of(std::uint16_t word) noexcept;
 
-/// A packet that a host composes. A command that does not fit is left out and makes the packet full for good,
-/// so that the commands in it are always a beginning of the wanted list. [any thread; no allocation]
+/// A packet that a host composes. A command that does not fit is omitted and makes the packet permanently
+/// full, so that the packet is always a prefix of the requested list. [any thread; no allocation]
 class PacketWriter {
   public:
     /// `limit` [bytes], at most MAX_PACKET_BYTES.
@@ -103,7 +103,7 @@ enum class PacketError : std::uint8_t {
     NO_UNITS,     ///< a command of 0 units
 };
 
-/// Takes a packet apart, as a board does. [any thread; no allocation]
+/// Splits a packet into commands, as a board does. [any thread; no allocation]
 class PacketReader {
   public:
     explicit PacketReader(std::span<const std::byte> bytes) noexcept : rest_(bytes) {}

@@ -8,7 +8,7 @@
 
 namespace mw::mesa::lbp16 {
 
-/// What became of one attempt to send or to receive.
+/// Result of one attempt to send or receive.
 struct TransportResult {
     std::size_t bytes = 0;     ///< sent, or received; 0 with `error`
     int error = 0;             ///< errno; EAGAIN: nothing has arrived yet

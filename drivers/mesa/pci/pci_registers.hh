@@ -11,7 +11,7 @@ namespace mw::mesa {
 
 constexpr std::size_t PCI_REGISTER_BYTES = 0x10000;
 
-/// An access to PCI has no errors: a card that is gone reads as ones.
+/// An access to PCI has no errors: a removed card reads as ones.
 class PciRegisters final : public RegisterAccess {
   public:
     /// `registers` are PCI_REGISTER_BYTES; `release` is called at the end.

@@ -13,7 +13,7 @@ enum class Direction : std::uint8_t { READS, WRITES };
 class Device {
   public:
     virtual ~Device() = default;
-    /// Sends the words and replaces them by what came back at the same time; 0, or the errno.
+    /// Sends the words and replaces them by the received ones; returns 0, or the errno.
     virtual int transfer(std::span<std::uint32_t> words, Direction direction) noexcept = 0;
 };
 

@@ -9,7 +9,7 @@ namespace mw::mesa::spi {
 
 namespace {
 
-/// What is read at once while loading, with its commands.
+/// Registers read at once while loading, with their commands.
 constexpr std::size_t LEAST_ROOM = 512;
 
 }  // namespace

@@ -46,7 +46,7 @@ bool SpiRegisters::read_list(std::span<const RegisterRange> ranges,
     if (!fits || !transfer(Direction::READS)) {
         return false;
     }
-    // The data come at the places of the data words.
+    // Received data are at the positions of the data words.
     std::size_t at = 0, value = 0;
     for (const RegisterRange &range : ranges) {
         for (int i = 0; i < range.count; ++i) {

@@ -19,7 +19,7 @@ struct ClockRates {
 /// the same order. [while loading]
 Result<std::unique_ptr<Device>> open_spidev(const std::string &path, ClockRates rates);
 
-/// What probe bits of hm2_rpspi and hm2_spix name, in the order in which they are tried: 1 SPI0/CE0, 2
+/// Devices of the probe bits of hm2_rpspi and hm2_spix, in the order in which they are tried: 1 SPI0/CE0, 2
 /// SPI0/CE1, 4 SPI1/CE0, 8 SPI1/CE1, 16 SPI1/CE2. Empty: no such bit.
 std::string path_of_probe(unsigned bit);
 

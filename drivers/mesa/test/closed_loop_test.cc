@@ -48,7 +48,7 @@ class RandomCommand {
     double accel_ = 0, velocity_ = 0, position_ = 0;
 };
 
-/// Runs the command, then rests: the last command.
+/// Runs the command, then stops; returns the last command.
 double run_random(Rig &rig, unsigned seed, int cycles) {
     RandomCommand command(seed);
     double last = 0;
@@ -210,7 +210,7 @@ TEST(MesaClosedLoop, WithoutItsHostTheBoardTurnsItsOutputsOff) {
     const std::int64_t after = rig.steps(0);
     // 50 mm/s for the 5 ms of the watchdog and one period.
     EXPECT_LE(after - before, static_cast<std::int64_t>(50 * SCALE * 0.0061) + 1);
-    // The host comes back: it sees the bite, and nothing moves until a user clears it.
+    // The host returns: it sees the bite, and nothing moves until a user clears it.
     for (int i = 0; i < 100; ++i) {
         rig.cycle();
     }
@@ -228,8 +228,8 @@ TEST(MesaClosedLoop, WithoutItsHostTheBoardTurnsItsOutputsOff) {
     for (int i = 0; i < 1000; ++i) {
         rig.cycle();
     }
-    // The step generator has counted on while its pins were off: the motor makes the steps of the new move
-    // only.
+    // The step generator has continued counting while its pins were off: the motor makes only the steps of
+    // the new move.
     EXPECT_NEAR(static_cast<double>(rig.steps(0) - after), 1.0 * SCALE, 1.0);
 }
 
@@ -251,7 +251,7 @@ TEST(MesaClosedLoop, ABoardThatWasSwitchedOffDoesNotMoveUntilAnOperatorActs) {
     EXPECT_EQ(rig.steps(0), at_stop);
 }
 
-// The reset of io_error alone must not switch outputs on: the operator clears has_bit, too.
+// Resetting io_error alone must not switch outputs on: the operator must also clear has_bit.
 TEST(MesaClosedLoop, ABiteDuringAStopIsShownAfterTheReset) {
     Rig rig({.config = "num_stepgens=1", .physics = STEPPER});
     const auto run = [&](int cycles) {

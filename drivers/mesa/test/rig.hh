@@ -15,7 +15,7 @@
 
 namespace mw::mesa::test {
 
-/// The parts of a rig; texts as the program hm2-board reads them.
+/// The parts of a rig, in the syntax of the program hm2-board.
 struct RigPlan {
     std::string model = "7i76e";
     std::string config{};
@@ -58,7 +58,7 @@ class Rig {
         driver->read(PERIOD_NS, transport->now_ns());
     }
     void write() { driver->write(PERIOD_NS, transport->now_ns()); }
-    /// Time passes without the driver, as after SIGKILL.
+    /// Advances the time without the driver, as after SIGKILL.
     void wait(std::int64_t duration_ns) {
         next_ns_ += duration_ns;
         transport->sleep_until(next_ns_);

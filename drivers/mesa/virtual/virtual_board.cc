@@ -25,8 +25,8 @@ class FollowedClock {
     std::int64_t now(std::int64_t board_ns) const {
         return std::max(begin_ns_ + (clock_ns_() - last_ns_), board_ns);
     }
-    /// The same. When the clock has moved, its next step counts from here: what the board was ahead within a
-    /// cycle does not add up.
+    /// As now(). When the clock has moved, its next step counts from here, so that the lead of the board
+    /// within a cycle does not add up.
     std::int64_t follow(std::int64_t board_ns) {
         const std::int64_t now_ns = now(board_ns), clock = clock_ns_();
         if (clock != last_ns_) {
@@ -103,7 +103,7 @@ class SimulatedRegisters final : public RegisterAccess {
     std::int64_t time_ns_ = 0;
 };
 
-/// What is simulated.
+/// Parts of the simulation.
 struct Parts {
     board::Model model;
     board::PhysicsPlan physics;
@@ -128,7 +128,7 @@ Result<Parts> load(const VirtualBoardPlan &plan) {
     return parts;
 }
 
-/// A relative path is one in the folder of the configuration, where that is known.
+/// A relative path is relative to the folder of the configuration, if that is known.
 std::string path_of(const std::string &file) {
     const char *const folder = std::getenv("CONFIG_DIR");
     const bool relative = !file.empty() && file.front() != '/';

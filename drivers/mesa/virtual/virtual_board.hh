@@ -14,7 +14,7 @@
 
 namespace mw::mesa {
 
-/// Which board is simulated in place of the one at an address.
+/// The simulated board for an address.
 struct VirtualBoardPlan {
     std::string model;         ///< a built-in one such as 7i76e, or a file
     std::string physics_file;  ///< motors, encoders and switches; empty: none
@@ -24,20 +24,20 @@ struct VirtualBoardPlan {
 
 /// Reads MODEL or MODEL:PHYSICS_FILE.
 VirtualBoardPlan parse_virtual_board(std::string_view text);
-/// What a list of BOARD=MODEL[:PHYSICS_FILE], separated by commas, says of `board`: an address, or a
-/// component such as hm2_pci, with .1 behind it for its second board. Without a model: nothing.
+/// The plan for `board` from a list of BOARD=MODEL[:PHYSICS_FILE], separated by commas: an address, or a
+/// component such as hm2_pci, with the suffix .1 for its second board. Without a model: nothing.
 VirtualBoardPlan find_virtual_board(std::string_view list, std::string_view board);
-/// The same of the environment variable MILLWRIGHT_MESA. A relative path of a file is one in the folder
-/// CONFIG_DIR of the environment.
+/// The plan from the environment variable MILLWRIGHT_MESA. A relative path of a file is relative to the
+/// folder CONFIG_DIR of the environment.
 VirtualBoardPlan virtual_board_of(std::string_view board);
-/// The plan with such paths.
+/// The plan with absolute paths.
 VirtualBoardPlan with_paths(VirtualBoardPlan plan);
 /// Why there is no virtual board, and how to name its model.
 std::string missing_virtual_board(std::string_view board);
 
-/// A simulated board whose registers this process reaches as on PCI.
+/// A simulated board whose registers this process accesses as on PCI.
 struct VirtualRegisters {
-    std::string card_name;  ///< as the card names itself: 5I20
+    std::string card_name;  ///< the name that the card reports: 5I20
     std::unique_ptr<RegisterAccess> access;
 };
 /// Its time follows `clock_ns`. It allocates: for the virtual clock only. [one thread]

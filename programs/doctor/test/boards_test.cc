@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What is said of the cycles of a board.
+// The reports about the cycles of a board.
 #include <gtest/gtest.h>
 
 #include "programs/doctor/boards.hh"

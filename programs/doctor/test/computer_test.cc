@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What is said of computers and their latency. Requirement A5.
+// The reports about computers and their latency. Requirement A5.
 #include <filesystem>
 #include <fstream>
 
@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder that stands for / of another computer.
+/// A folder that replaces / of another computer.
 class Computer {
   public:
     Computer() : root_(fs::temp_directory_path() / ("doctor-" + std::to_string(::getpid()))) {}
@@ -88,7 +88,7 @@ TEST(DoctorTest, latencyIsHeldAgainstThePeriod) {
     EXPECT_NE(judged(figures(25'000, 15'000)).find("warning"), std::string::npos);
     EXPECT_NE(judged(figures(25'000, 15'000)).find("a period of 100000 ns"), std::string::npos);
     EXPECT_NE(judged(figures(1'000'000, 1'200'000)).find("misses its turn"), std::string::npos);
-    // Ten milliseconds are no period for a machine: nothing is proposed.
+    // Ten milliseconds is not a possible period for a machine: none is proposed.
     EXPECT_EQ(judged(figures(1'000'000, 9'000'000)).find("a period of"), std::string::npos);
     hal::view::LatencyFigures none = figures(1'000'000, 0);
     none.intervals = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The shop's own panels, and what waits for the screen's pins (J1, J2).
+// User panels, and programs that wait for the screen's pins (J1, J2).
 #include <unistd.h>
 
 #include <filesystem>
@@ -46,7 +46,7 @@ TEST_F(UiTabs, PagesPanelsAndProgramsAreToldApart) {
     EXPECT_TRUE(told.empty()) << told[0];
     ASSERT_EQ(all.size(), 3U);
     EXPECT_EQ(all[0].kind, Tab::Kind::FRAME);
-    EXPECT_EQ(all[0].location, "right");  // the first location is the first tab's
+    EXPECT_EQ(all[0].location, "right");  // the first location belongs to the first tab
     EXPECT_EQ(all[1].kind, Tab::Kind::PANEL);
     EXPECT_EQ(tab_programs(all), std::vector<std::string>{"gladevcp  old.ui"});
 }

@@ -5,7 +5,7 @@
 
 namespace mw::diagnostics {
 
-/// Readers of files end after so many errors and warnings: a file may have millions of wrong lines.
+/// Readers of files stop after this number of errors and warnings: a file may have millions of wrong lines.
 inline constexpr std::size_t MOST_OF_A_FILE = 100;
 
 }  // namespace mw::diagnostics

@@ -18,7 +18,7 @@ const char *name_of(Severity severity) {
     return "error";
 }
 
-/// A byte of UTF-8 that goes on with the character before.
+/// A continuation byte of UTF-8.
 bool isContinuation(char c) {
     return (static_cast<unsigned char>(c) & 0xc0U) == 0x80U;
 }
@@ -33,7 +33,7 @@ std::string caret_line(const std::string &text, int column) {
     return out + '^';
 }
 
-/// The part of a line around a column that fits on a screen, and the column there.
+/// The part of a line around a column that fits on a screen, and the column in that part.
 std::string shortened(const std::string &line, int &column) {
     constexpr std::size_t LONGEST = 200, BEFORE = 100;
     constexpr const char *MORE = "...";
@@ -55,7 +55,7 @@ std::string shortened(const std::string &line, int &column) {
     return before + line.substr(first, last - first) + after;
 }
 
-/// One line for each caller, but one for a run of the same.
+/// One line for each caller; repeated callers share one line.
 std::string callers_text(const std::vector<SourcePlace> &callers) {
     std::string out;
     for (std::size_t i = 0; i < callers.size();) {

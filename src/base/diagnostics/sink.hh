@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Where messages for a person go: errors, warnings and notes, each with its place.
+// Receiver of messages for a person: errors, warnings and notes, each with its position in a text.
 #pragma once
 
 #include <functional>
@@ -15,18 +15,19 @@ enum class Severity { NOTE, WARNING, ERROR };
 struct Diagnostic {
     Severity severity = Severity::ERROR;
     Error what;
-    /// Innermost caller first: where the place was reached from (subroutine calls, sourced files).
+    /// Callers of this position, innermost first (subroutine calls, sourced files).
     std::vector<SourcePlace> called_from{};
-    /// The line of text that the place is in, for the caret; empty when there is none.
+    /// The line of text at this position, for the caret; empty when there is none.
     std::string line_text{};
 
     /// Several lines: "file:line:col: error: message", the text with a caret, "  called from ...".
     std::string str() const;
-    /// The part of str() after its first line, indented; empty when there is neither text nor caller.
+    /// The part of str() after its first line, indented; empty when there is neither a line of text nor a
+    /// caller.
     std::string context() const;
 };
 
-/// Collects diagnostics; work goes on after an error so that several are reported in one run.
+/// Collects diagnostics. Work continues after an error, so one run reports several.
 class Sink {
   public:
     using Listener = std::function<void(const Diagnostic &)>;
@@ -37,7 +38,7 @@ class Sink {
     void report(Diagnostic diagnostic);
     void error(std::string message, SourcePlace place = {}, std::string hint = {});
     void error(Error what) { report({Severity::ERROR, std::move(what)}); }
-    /// The failure of a Result: nothing when it has been told already.
+    /// Adds the failure of a Result, unless it has been reported already.
     void failure(const Error &what);
     void warning(std::string message, SourcePlace place = {}, std::string hint = {});
     void note(std::string message, SourcePlace place = {});

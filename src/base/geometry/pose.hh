@@ -8,7 +8,7 @@
 
 namespace mw::geometry {
 
-/// The Cartesian letters, in the order of all tables and files. An axis is never a joint.
+/// The Cartesian letters, in the order of all tables and files. An axis is not a joint.
 enum Axis : int { AXIS_X, AXIS_Y, AXIS_Z, AXIS_A, AXIS_B, AXIS_C, AXIS_U, AXIS_V, AXIS_W, AXIS_COUNT };
 
 inline constexpr char AXIS_LETTERS[] = "XYZABCUVW";
@@ -19,7 +19,7 @@ constexpr bool isAngular(int axis) noexcept {
     return axis >= AXIS_A && axis <= AXIS_C;
 }
 
-/// Index of a letter in either case, or -1.
+/// Index of an upper or lower case letter, or -1.
 constexpr int axis_of_letter(char letter) noexcept {
     for (int i = 0; i < AXIS_COUNT; ++i) {
         if (letter == AXIS_LETTERS[i] || letter == AXIS_LETTERS_LOWER[i]) {
@@ -30,7 +30,7 @@ constexpr int axis_of_letter(char letter) noexcept {
 }
 
 /// Nine coordinates X Y Z A B C U V W; lengths in machine units, angles in degrees, unless a name says
-/// otherwise. Also used for directions, velocities and offsets.
+/// otherwise. Also for directions, velocities and offsets.
 struct Pose {
     std::array<double, AXIS_COUNT> c{};
 
@@ -42,7 +42,7 @@ struct Pose {
     constexpr bool operator==(const Pose &) const noexcept = default;
 };
 
-// Sums are written out: in a servo cycle each loop costs two jumps that nobody predicts.
+// Sums are unrolled: in a servo cycle each loop costs two mispredicted branches.
 constexpr Pose operator+(const Pose &p, const Pose &q) noexcept {
     Pose r;
 #pragma GCC unroll 9

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// An INI file with the place of each entry. Syntax: LinuxCNC Integrator Manual, "INI Configuration" (format
-// facts).
+// An INI file with the position of each entry. Syntax: LinuxCNC Integrator Manual, "INI Configuration"
+// (format facts).
 #pragma once
 
 #include <cstddef>
@@ -20,34 +20,33 @@ namespace mw::ini {
 struct IniEntry {
     std::string section;
     std::string key;
-    std::string value;  ///< trimmed; ';' and '#' inside a value belong to it
-    SourcePlace place;  ///< of the value's first character
+    std::string value;  ///< trimmed; ';' and '#' in a value belong to the value
+    SourcePlace place;  ///< position of the value's first character
 };
 
-/// TOLERANT is what a machine's file is read with: all problems are reported, values stay as they are
-/// written. STRICT stops at the first fault, which also a key's name, an escape or a missing include can be,
-/// replaces escapes, and has the messages that scripts know of inivalue.
+/// TOLERANT reads the file of a machine: all problems are reported, values are not changed. STRICT stops at
+/// the first error, also in the name of a key, an escape or a missing include. It replaces escapes and uses
+/// the messages of inivalue, which scripts know.
 enum class IniSyntax { TOLERANT, STRICT };
 
 /// Sections and keys keep their order and their case; a key may occur several times (then it is a list).
 /// `#INCLUDE file` inserts another file, found beside the including one, in the working folder, or by '~'.
 class IniFile {
   public:
-    /// Reads `path`. Every malformed line is reported to `sink`; the result is empty-handed only when the
-    /// file itself cannot be read.
+    /// Reads `path`. Reports each malformed line to `sink`. Fails only when the file itself cannot be read.
     static Result<IniFile> load(const std::string &path, diagnostics::Sink &sink,
                                 IniSyntax syntax = IniSyntax::TOLERANT);
-    /// The same for text in memory; `path` names it in messages and is the base of includes.
+    /// Reads text in memory; `path` names it in messages and is the base of includes.
     static IniFile parse(std::string_view text, const std::string &path, diagnostics::Sink &sink,
                          IniSyntax syntax = IniSyntax::TOLERANT);
 
     const std::string &path() const { return path_; }
     /// The folder of the path as given (symbolic links are not resolved), "." when it has none.
     std::string folder() const;
-    /// `name` relative to the folder of the INI file; absolute names and '~' stay what they are.
+    /// `name` relative to the folder of the INI file. Absolute names and '~' are not changed.
     std::string resolve_path(std::string_view name) const;
 
-    /// The first setting that stands before any section, and so belongs to none.
+    /// The first setting before any section.
     const std::optional<IniEntry> &early_key() const { return early_key_; }
     bool hasSection(std::string_view section) const;
     /// The `number`-th entry (from 1) of that key, or nullptr.
@@ -56,7 +55,7 @@ class IniFile {
     const std::vector<IniEntry> &entries() const { return entries_; }
     std::vector<std::string> sections() const;
     std::vector<std::string> keys(std::string_view section) const;
-    /// Where the section's header stands; the file alone when there is no such section.
+    /// Position of the section header; only the file when there is no such section.
     SourcePlace place_of_section(std::string_view section) const;
 
   private:
@@ -68,9 +67,9 @@ class IniFile {
     };
     friend class IniParser;
 
-    /// The first header counts for place_of_section().
+    /// place_of_section() returns the first header.
     void add_section(const std::string &name, const SourcePlace &place);
-    /// Of a section that has been added.
+    /// The section must have been added.
     void add_entry(IniEntry entry);
     const std::vector<std::size_t> *indices(std::string_view section, std::string_view key) const;
 

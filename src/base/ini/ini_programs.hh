@@ -13,7 +13,7 @@ struct ProgramOutput {
 };
 
 /// inivar -var NAME [-sec SECTION] [-num N] [-ini FILE] [-tildeexpand]: the words after the program's name.
-/// Status 0 found, 1 not found or wrong usage, 255 no such file; messages are those that scripts know.
+/// Status 0 found, 1 not found or wrong usage, 255 no such file. The messages are LinuxCNC's.
 ProgramOutput run_inivar(const std::vector<std::string> &words);
 
 /// inivalue [OPTIONS] FILE: see USAGE in the source. Values can be checked for a type and a range and have a

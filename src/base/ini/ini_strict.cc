@@ -14,7 +14,7 @@ bool isDigit(char c) {
     return c >= '0' && c <= '9';
 }
 
-/// Any printing ASCII character but those that mean something in an INI file.
+/// A printing ASCII character without a meaning in the INI syntax.
 bool isOfName(char c) {
     return c > ' ' && c < '\x7f' && std::string_view("[]=#;\"'\\").find(c) == std::string_view::npos;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What a line of an INI file must look like for the strict readers (IniSyntax::STRICT).
+// Syntax of a line of an INI file for the strict readers (IniSyntax::STRICT).
 #pragma once
 
 #include <optional>
@@ -8,11 +8,11 @@
 
 namespace mw::ini {
 
-/// What is wrong with a trimmed line that starts with '['; nothing when it is a section's header. Text after
-/// the ']' is no fault.
+/// The error in a trimmed line that starts with '['; nothing if it is a section header. Text after the ']' is
+/// allowed.
 std::optional<std::string> fault_of_header(std::string_view line);
 
-/// What is wrong with a trimmed line that is neither empty, a comment nor a header.
+/// The error in a trimmed line that is not empty, not a comment and not a header.
 std::optional<std::string> fault_of_setting(std::string_view line);
 
 }  // namespace mw::ini

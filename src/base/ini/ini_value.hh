@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What words in an INI file mean.
+// Meaning of words in an INI file.
 #pragma once
 
 #include <optional>

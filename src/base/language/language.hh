@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The language of the person whom this process shows texts to, as gettext finds it out.
+// The language of the reader of the texts of this process, determined as by gettext.
 #pragma once
 
 #include <functional>
@@ -12,24 +12,24 @@
 
 namespace mw::language {
 
-/// The languages that are asked for, the best one first ("de_AT", "de"): LANGUAGE, but only where one of
-/// LC_ALL, LC_MESSAGES, LANG names a locale other than C; then that one. Empty: English.
-/// @param get the value of a variable of the environment, null where it is not set
+/// The requested languages in order of preference ("de_AT", "de"): LANGUAGE, if one of LC_ALL, LC_MESSAGES,
+/// LANG names a locale other than C; then that locale. Empty: English. @param get returns an environment
+/// variable, null if it is not set
 std::vector<std::string> wanted(const std::function<const char *(const char *)> &get);
 
-/// The catalogue of this process's environment, read at the first call from share/locale above the folder of
-/// our code; empty where there is none. A catalogue that cannot be read is told on standard error once.
+/// The catalogue for the environment of this process. The first call reads it from share/locale above our
+/// folder; empty if there is none. A catalogue that cannot be read is reported once on standard error.
 const Catalogue &catalogue();
 
-/// `english` in the language of this process's environment: call it where a text is shown to a person, never
-/// where a program reads it. Any thread, not realtime.
+/// `english` in the language of the environment. For texts that a person reads, not a program. [any thread,
+/// not realtime]
 std::string shown(std::string_view english);
 
-/// Prints `english` as a line on standard error, in the language of this process's environment. Standard
-/// error is for people; what programs read goes to standard output in English.
+/// Prints `english` as a line on standard error, in the language of the environment. Output for programs goes
+/// to standard output in English.
 void tell(std::string_view english);
 
-/// The same for "PROGRAM: ERROR".
+/// Prints "PROGRAM: ERROR".
 void tell(std::string_view program, const Error &error);
 
 }  // namespace mw::language

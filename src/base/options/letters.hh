@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Options of one letter, as programs of the field have them: several behind one dash (-kf), a value at once
-// or as the next word (-iFILE, -i FILE).
+// Options of one letter: several after one dash (-kf), a value directly after the letter or as the next word
+// (-iFILE, -i FILE).
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace mw::options {
 
-/// An option of a program: `value` says what it takes ("the name of an INI file"), null: nothing.
+/// An option of a program: `value` describes its value ("the name of an INI file"); null: it has no value.
 struct KnownLetter {
     char letter = 0;
     const char *value = nullptr;
@@ -24,17 +24,17 @@ struct Letter {
 };
 
 struct Letters {
-    std::vector<Letter> options;     ///< in the order in which they came
+    std::vector<Letter> options;     ///< in the order of the command line
     std::vector<std::string> words;  ///< the other words
 };
 
 /// Where options end.
 enum class EndOfLetters : std::uint8_t {
-    FIRST_WORD,  ///< what follows the first other word belongs to it
-    ALL_WORDS,   ///< they may stand behind other words
+    FIRST_WORD,  ///< the words after the first non-option belong to it
+    ALL_WORDS,   ///< options may follow other words
 };
 
-/// "--" ends the options; "-" is a word. A first word --help is -h.
+/// "--" ends the options; "-" is a word. The first word --help means -h.
 Result<Letters> read_letters(const std::vector<std::string> &words, std::span<const KnownLetter> known,
                              EndOfLetters end);
 

@@ -20,7 +20,7 @@ int score_of(pid_t process) {
     return score;
 }
 
-/// Runs `body` in a child; its value, 0 to 255, is that of the child.
+/// Runs `body` in a child process and returns its value, 0 to 255.
 int in_child(const std::function<int()> &body) {
     const pid_t child = ::fork();
     if (child == 0) {
@@ -31,8 +31,8 @@ int in_child(const std::function<int()> &body) {
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-/// As an ordinary user, also where root runs the tests. His files in /proc are root's until he is dumpable
-/// again, as they are for a program with file capabilities.
+/// Becomes an ordinary user if root runs the tests. The files in /proc belong to root until the process is
+/// dumpable again, as for a program with file capabilities.
 bool become_ordinary() {
     return ::geteuid() != 0 || (::setgid(65534) == 0 && ::setuid(65534) == 0);
 }

@@ -57,7 +57,7 @@ TEST(UnfinishedFolder, OfAKilledProcessIsRemovedByTheNextOne) {
     if (child == 0) {
         const auto folder = UnfinishedFolder::create(place.target());
         std::ofstream(folder->path() + "/mill.ini") << "[EMC]\n" << std::flush;
-        ::_exit(0);  // no destructor, as after SIGKILL
+        ::_exit(0);  // ends without destructors, as after SIGKILL
     }
     ::waitpid(child, nullptr, 0);
     EXPECT_EQ(place.entries(), 1U);

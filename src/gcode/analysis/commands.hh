@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The commands of `millwright` that need no machine, each from its words to the exit status: 0 done, 1
-// refused or failed, 2 wrong usage.
+// Commands of `millwright` that need no machine. Each takes its words and returns the exit status: 0 done, 1
+// rejected or failed, 2 wrong usage.
 #pragma once
 
 #include <string>

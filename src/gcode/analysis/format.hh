@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// One form for programs that mean the same.
+// Standard form of a program's text.
 #pragma once
 
 #include <string>
@@ -7,10 +7,10 @@
 
 namespace mw::gcode {
 
-/// The program with one blank between words, codes without leading zeros, expressions with the brackets that
-/// they need, comments behind the words, and the bodies of O words indented. Each line stays a line; lines
-/// that cannot be parsed, and whatever the last line has for an end, stay as they are. Formatting twice
-/// changes nothing, and the program does what it did.
+/// The program with one blank between words, codes without leading zeros, only necessary brackets in
+/// expressions, comments after the words, and bodies of O words indented. Each line remains one line; lines
+/// that cannot be parsed and the end of the last line are not changed. Formatting twice gives the same text,
+/// and the meaning of the program is the same.
 std::string format_program(std::string_view text);
 
 }  // namespace mw::gcode

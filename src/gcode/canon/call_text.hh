@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Canon calls as text, from their declarations.
+// Text of canon calls, generated from their declarations.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace mw::gcode {
 
-// Arguments as they stand in a call: numbers with four decimals, poses from X to C, texts in quotes.
+// Arguments in the text of a call: numbers with four decimals, poses from X to C, texts in quotes.
 void append_argument(std::string &text, double value);
 void append_argument(std::string &text, int value);
 void append_argument(std::string &text, const Pose &pose);
@@ -22,7 +22,7 @@ void append_argument(std::string &text, Enum value) {
     text += CALL_WORDS<Enum>[static_cast<std::size_t>(value)];
 }
 
-/// NAME(first, second): the form of all calls but those that the printer has a rule of its own for.
+/// NAME(first, second): the form of all calls except those with their own rule in the printer.
 template <RegularCall Call>
 void append_call(std::string &text, const Call &call) {
     text.append(name_of(call)).append(1, '(');

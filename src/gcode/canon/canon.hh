@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The canonical machine: what the interpreter asks of whoever runs, prints, checks or previews a program.
+// The canonical machine: the interface between the interpreter and the code that runs, prints, checks or
+// previews a program.
 #pragma once
 
 #include <string_view>
@@ -9,26 +10,25 @@
 
 namespace mw::gcode {
 
-/// The block that the calls after it come from. Views live until the call returns.
+/// The block of the calls that follow. Views are valid until the call returns.
 struct BlockRef {
     std::string_view file;
     int line = 0;        ///< from 1, in `file`
-    int sequence = 0;    ///< the N word, else `line`; what operators see as the line number
+    int sequence = 0;    ///< the N word, else `line`; the line number that operators see
     int call_level = 0;  ///< 0 in the main program
     std::string_view text;
     bool isNumbered = false;  ///< the block has an N word
 };
 
-/// Positions and lengths are in program units (as the last UseLengthUnits said) and in program coordinates,
-/// that is before rotation, G5x, G92 and tool offsets, which are announced by calls of their own; angles in
-/// degrees. No call blocks, and none answers: what the interpreter must know of the machine it asks a
-/// `World`. `gcode::MachineFrame` hands on to a `MachineCanon` with all of it converted to machine
-/// coordinates and units.
+/// Positions and lengths are in program units (see UseLengthUnits) and program coordinates, that is before
+/// rotation, G5x, G92 and tool offsets, which have separate calls; angles in degrees. Calls neither block nor
+/// return anything: the interpreter reads the state of the machine from a `World`. `gcode::MachineFrame`
+/// converts the calls to machine coordinates and units and passes them to a `MachineCanon`.
 class Canon {
   public:
     virtual ~Canon() = default;
 
-    /// Names the block that all following calls belong to.
+    /// Names the block of the following calls.
     virtual void begin_block(const BlockRef &block) = 0;
     virtual void take(const CanonCall &call) = 0;
 };

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The calls of the canonical machine: all that a program can ask of a machine, each declared once.
-//
-// A call is a plain struct in canon_moves.hh or canon_actions.hh. NAME is what it is called in text (rs274
-// prints it, canterp and scripts use it); a call with two directions has NAMES instead, false first, chosen
-// by the fields in CHOICES. FIELDS are its arguments in text, in order: printing and reading follow from them
-// unless the printer has a special rule. docs/developer/extending/canon_call.md adds a call step by step.
+// The calls of the canonical machine, each declared once. A call is a plain struct in canon_moves.hh or
+// canon_actions.hh. NAME is its name in text (rs274 prints it, canterp and scripts use it); a call with two
+// directions has NAMES instead, false first, selected by the fields in CHOICES. FIELDS are its arguments in
+// text, in order: printing and reading use them unless the printer has a special rule.
+// docs/developer/extending/canon_call.md adds a call step by step.
 #pragma once
 
 #include <string_view>
@@ -31,8 +30,8 @@ using CanonVariant =
                  UserCode, ProgramComment, OperatorMessage, PrintLine, OpenLog, LogLine, CloseLog, LogProbes,
                  CanonError>;
 
-/// Any call. Closed: who handles calls handles each of these, and the compiler says which is missing. What a
-/// variant of so many does to its members is compiled once.
+/// Any canon call. The variant is closed: a handler must handle each alternative, and the compiler reports a
+/// missing one. Its special member functions are compiled once.
 class CanonCall : public CanonVariant {
   public:
     using Variant = CanonVariant;
@@ -47,7 +46,7 @@ class CanonCall : public CanonVariant {
     ~CanonCall();
 };
 
-/// What a call is called in text.
+/// Name of a call in text.
 template <class Call>
 constexpr std::string_view name_of(const Call &call) {
     if constexpr (requires { Call::CHOICES; }) {
@@ -63,7 +62,7 @@ constexpr std::string_view name_of(const Call &call) {
     }
 }
 
-/// A call whose text follows from its FIELDS.
+/// A call whose text is generated from its FIELDS.
 template <class Call>
 concept RegularCall = requires { Call::FIELDS; };
 

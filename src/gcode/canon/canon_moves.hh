@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Canon calls that move the tool or say how. canon_calls.hh says what NAME and FIELDS are for.
+// Canon calls for moves and their settings. canon_calls.hh explains NAME and FIELDS.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ enum class FeedReference { XYZ };
 enum class ProbeKind { TOWARD_ERROR, TOWARD, AWAY_ERROR, AWAY };               // G38.2 G38.3 G38.4 G38.5
 enum class WaitKind { IMMEDIATE = 0, RISE = 1, FALL = 2, HIGH = 3, LOW = 4 };  // M66 L
 
-/// The enumerators in text, in their order.
+/// Names of the enumerators, in their order.
 template <class Enum>
 inline constexpr std::array<std::string_view, 0> CALL_WORDS{};
 template <>
@@ -40,13 +40,13 @@ inline constexpr std::array<std::string_view, 1> CALL_WORDS<FeedReference>{"CANO
 
 // ---- modes ------------------------------------------------------------------------------------------------
 
-/// The interpreter starts afresh.
+/// The interpreter has been reset.
 struct OnReset {
     static constexpr std::string_view NAME = "ON_RESET";
     static constexpr std::tuple<> FIELDS{};
 };
 
-/// G20, G21: the program units from here on.
+/// G20, G21: the program units from now on.
 struct UseLengthUnits {
     LengthUnits units = LengthUnits::MM;
 
@@ -54,7 +54,7 @@ struct UseLengthUnits {
     static constexpr std::tuple FIELDS{&UseLengthUnits::units};
 };
 
-/// G17 to G19.1: the plane of the arcs from here on.
+/// G17 to G19.1: the plane of arcs from now on.
 struct SelectPlane {
     Plane plane = Plane::XY;
 
@@ -62,7 +62,7 @@ struct SelectPlane {
     static constexpr std::tuple FIELDS{&SelectPlane::plane};
 };
 
-/// G54 to G59.3: the coordinate system in force.
+/// G54 to G59.3: the active coordinate system.
 struct SetG5xOffset {
     int index = 1;  ///< 1: G54, to 9: G59.3
     Pose offset;    ///< [program units, degrees]
@@ -71,7 +71,7 @@ struct SetG5xOffset {
     static constexpr std::tuple FIELDS{&SetG5xOffset::index, &SetG5xOffset::offset};
 };
 
-/// G92: the offset on top of the coordinate system.
+/// G92: the offset added to the coordinate system.
 struct SetG92Offset {
     Pose offset;  ///< [program units, degrees]
 
@@ -79,7 +79,7 @@ struct SetG92Offset {
     static constexpr std::tuple FIELDS{&SetG92Offset::offset};
 };
 
-/// G10 L2 R: the coordinate system is turned about Z.
+/// G10 L2 R: rotation of the coordinate system about Z.
 struct SetXyRotation {
     double angle_deg = 0;  ///< counterclockwise [degrees]
 
@@ -87,14 +87,14 @@ struct SetXyRotation {
     static constexpr std::tuple FIELDS{&SetXyRotation::angle_deg};
 };
 
-/// G43 to G49: the tool offset in force.
+/// G43 to G49: the active tool offset.
 struct UseToolLengthOffset {
     Pose offset;  ///< [program units, degrees]
 
     static constexpr std::string_view NAME = "USE_TOOL_LENGTH_OFFSET";
 };
 
-/// What a feed is measured along.
+/// What feed rates are measured along.
 struct SetFeedReference {
     FeedReference reference = FeedReference::XYZ;
 
@@ -102,7 +102,8 @@ struct SetFeedReference {
     static constexpr std::tuple FIELDS{&SetFeedReference::reference};
 };
 
-/// F. Under inverse time (G93) it comes before each move, with the rate that this move's length and F make.
+/// F. In inverse time mode (G93) it precedes each move, with the rate that follows from F and the length of
+/// the move.
 struct SetFeedRate {
     double rate = 0;  ///< [program units/min; under units per revolution program units/rev]
 
@@ -110,23 +111,23 @@ struct SetFeedRate {
     static constexpr std::tuple FIELDS{&SetFeedRate::rate};
 };
 
-/// G93, G94, G95: what F means from here on.
+/// G93, G94, G95: the meaning of F from now on.
 struct SetFeedMode {
-    int spindle = 0;  ///< whose revolutions G95 counts
+    int spindle = 0;  ///< the spindle of G95
     FeedMode mode = FeedMode::UNITS_PER_MINUTE;
 
     static constexpr std::string_view NAME = "SET_FEED_MODE";
 };
 
-/// G61, G61.1, G64 P: how moves join from here on.
+/// G61, G61.1, G64 P: path control mode from now on.
 struct SetMotionControlMode {
     geometry::PathMode mode = geometry::PathMode::BLEND;
-    double tolerance = 0;  ///< G64 P [program units]; 0 when not given
+    double tolerance = 0;  ///< G64 P [program units]; 0 when not programmed
 
     static constexpr std::string_view NAME = "SET_MOTION_CONTROL_MODE";
 };
 
-/// G64 Q: how far the ends of moves that become one may be off the line.
+/// G64 Q: maximum distance of intermediate points from the line when moves are combined.
 struct SetNaivecamTolerance {
     double tolerance = 0;  ///< [program units]
 
@@ -134,10 +135,10 @@ struct SetNaivecamTolerance {
     static constexpr std::tuple FIELDS{&SetNaivecamTolerance::tolerance};
 };
 
-/// G64 R: the planner from here on.
+/// G64 R: the planner from now on.
 struct SetPlannerMode {
     int type = 0;           ///< 0: trapezoidal; else jerk-limited
-    double peak_scale = 0;  ///< part of the reachable speed in corners, 0 to 1
+    double peak_scale = 0;  ///< fraction of the reachable speed in corners, 0 to 1
 
     static constexpr std::string_view NAME = "SET_PLANNER_MODE";
 };
@@ -165,9 +166,9 @@ struct StraightFeed {
 struct ArcFeed {
     double first_end = 0, second_end = 0;        ///< [program units]
     double first_centre = 0, second_centre = 0;  ///< absolute, [program units]
-    int rotation = 1;     ///< full or partial turns; > 0 counterclockwise, < 0 clockwise
+    int rotation = 1;     ///< number of full or partial revolutions; > 0 counterclockwise, < 0 clockwise
     double axis_end = 0;  ///< end along the normal [program units]
-    Pose end;             ///< the whole end pose in XYZABCUVW, consistent with the above
+    Pose end;             ///< end pose in XYZABCUVW, consistent with the fields above
 
     static constexpr std::string_view NAME = "ARC_FEED";
 };
@@ -178,17 +179,17 @@ struct NurbsPoint {
     double weight = 1;
 };
 
-/// A curve in the selected plane; its first control point is where the tool is, its last one where it ends.
+/// A curve in the selected plane; its first control point is the current position, its last one the end.
 struct NurbsFeed {
     std::vector<NurbsPoint> points;  ///< at least `order`
     int order = 3;                   ///< degree + 1: 2 to MAX_NURBS_ORDER
-    Pose end;                        ///< the whole end pose
+    Pose end;                        ///< end pose
 
     static constexpr std::string_view NAME = "NURBS_FEED";
 };
 inline constexpr int MAX_NURBS_ORDER = 32;
 
-/// G38.2 to G38.5: straight, until the probe trips.
+/// G38.2 to G38.5: straight move until the probe trips.
 struct StraightProbe {
     Pose end;  ///< [program units, degrees]
     ProbeKind kind = ProbeKind::TOWARD_ERROR;
@@ -196,16 +197,16 @@ struct StraightProbe {
     static constexpr std::string_view NAME = "STRAIGHT_PROBE";
 };
 
-/// G33.1: to a depth in step with the spindle and back.
+/// G33.1: to a depth and back, synchronised with the spindle.
 struct RigidTap {
     double x = 0, y = 0, z = 0;  ///< [program units]
-    double scale = 1;            ///< speed of the way back as a multiple of that of the way in
+    double scale = 1;            ///< speed of the return move relative to the first move
 
     static constexpr std::string_view NAME = "RIGID_TAP";
     static constexpr std::tuple FIELDS{&RigidTap::x, &RigidTap::y, &RigidTap::z};
 };
 
-/// G4: the machine stands.
+/// G4: dwell.
 struct Dwell {
     double seconds = 0;
 
@@ -213,11 +214,11 @@ struct Dwell {
     static constexpr std::tuple FIELDS{&Dwell::seconds};
 };
 
-/// G33 and its kin: moves from here on follow the spindle.
+/// G33 and similar: moves from now on follow the spindle.
 struct StartSpeedFeedSynch {
     int spindle = 0;
     double feed_per_revolution = 0;  ///< [program units]
-    bool isVelocityMode = false;     ///< follows the spindle's speed, else its angle
+    bool isVelocityMode = false;     ///< follows the spindle speed, else its angle
 
     static constexpr std::string_view NAME = "START_SPEED_FEED_SYNC";
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Between program coordinates and the machine's: machine = rotate(program + G92) + G5x + tool offset.
+// Conversion between program and machine coordinates: machine = rotate(program + G92) + G5x + tool offset.
 #pragma once
 
 #include <cmath>
@@ -11,7 +11,7 @@ namespace mw::gcode::detail {
 
 using geometry::Pose;
 
-/// Turns X and Y counterclockwise by `angle_deg`.
+/// Rotates X and Y counterclockwise by `angle_deg`.
 inline void rotate_xy(Pose &p, double angle_deg) {
     if (angle_deg == 0.0) {
         return;

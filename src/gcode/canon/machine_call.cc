@@ -14,8 +14,8 @@ MachineCall &MachineCall::operator=(const MachineCall &other) {
     return *this = MachineCall(other);
 }
 
-/// By making it anew: compiling the assignment of one alternative to each other takes longer than all the
-/// rest.
+/// Constructs the alternative again: compiling an assignment for each pair of alternatives takes longer than
+/// all other code.
 MachineCall &MachineCall::operator=(MachineCall &&other) noexcept {
     if (this != &other) {
         std::destroy_at(this);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The canon in machine coordinates: what a program does to the machine, with all frames and units resolved.
+// The canon in machine coordinates: actions of a program with all frames and units resolved.
 #pragma once
 
 #include <variant>
@@ -21,38 +21,39 @@ struct LineMove {
 struct ArcMove {
     Pose end;
     Pose centre;  ///< only the three axes of the arc's space count
-    Pose normal;  ///< unit vector; right-handed: a positive angle turns counterclockwise seen against it
-    double angle_rad = 0;  ///< total signed sweep, full turns included
+    Pose normal;  ///< unit vector; right-handed: positive angles are counterclockwise when it points to the
+                  ///< viewer
+    double angle_rad = 0;  ///< total signed sweep, including full revolutions
     MoveSettings settings;
 };
 
-/// Straight, until the probe trips.
+/// Straight move until the probe trips.
 struct ProbeMove {
     Pose end;  ///< machine coordinates
     MoveSettings settings;
     ProbeKind kind = ProbeKind::TOWARD_ERROR;
 };
 
-/// To `end` in step with the spindle, and back to where it began.
+/// To `end` and back to the start, synchronised with the spindle.
 struct TapMove {
     Pose end;  ///< machine coordinates
     MoveSettings settings;
-    double scale = 1;  ///< speed of the way back as a multiple of that of the way in
+    double scale = 1;  ///< speed of the return move relative to the first move
 };
 
-/// The tool offset in force from here on.
+/// The tool offset from now on.
 struct UseToolOffset {
     Pose offset;  ///< [machine units, degrees]
 };
 
-/// Coordinate systems in force from here on, for status displays.
+/// The coordinate systems from now on, for status displays.
 struct UseOffsets {
     int g5x_index = 1;
     Pose g5x, g92;  ///< [machine units, degrees]
     double rotation_xy_deg = 0;
 };
 
-/// G64 R: from here on motion is planned with jerk limits, or without. The corner speed is in MoveSettings.
+/// G64 R: selects planning with or without jerk limits from now on. The corner speed is in MoveSettings.
 struct UsePlanner {
     bool isSmooth = false;
 };
@@ -60,7 +61,7 @@ struct UsePlanner {
 struct UseSpindleSpeed {
     int spindle = 0;
     double speed = 0;         ///< [rev/min; under constant surface speed surface units/min]
-    double surface_unit = 0;  ///< the metre or foot of a surface speed [machine units]
+    double surface_unit = 0;  ///< length unit (metre or foot) of a surface speed [machine units]
 };
 
 using MachineVariant =
@@ -72,8 +73,8 @@ using MachineVariant =
                  PalletShuttle, Finish, UserCode, ProgramComment, OperatorMessage, PrintLine, OpenLog,
                  LogLine, CloseLog, LogProbes, CanonError>;
 
-/// One call in machine coordinates. What is not a move keeps its order between moves. Alternatives of
-/// CanonCall that stand here as well have nothing in them that a frame changes.
+/// One call in machine coordinates. Other calls keep their order between moves. Alternatives shared with
+/// CanonCall contain nothing that depends on a frame.
 class MachineCall : public MachineVariant {
   public:
     using Variant = MachineVariant;
@@ -88,7 +89,7 @@ class MachineCall : public MachineVariant {
     ~MachineCall();
 };
 
-/// Takes one program in machine coordinates.
+/// Receives a program in machine coordinates.
 class MachineCanon {
   public:
     virtual ~MachineCanon() = default;

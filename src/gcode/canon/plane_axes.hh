@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The selected plane: which axes it has, the code that selects it, and arcs in it.
+// The selected plane: its axes, its G code, and arcs in it.
 #pragma once
 
 #include "gcode/canon/canon.hh"
 
 namespace mw::gcode::detail {
 
-/// Axes of a plane; the normal is where canned cycles move.
+/// Axes of a plane; canned cycles move along the normal.
 struct PlaneAxes {
     int first, second, normal;
 };
@@ -24,7 +24,7 @@ constexpr PlaneAxes plane_axes(Plane plane) {
     return {AXIS_X, AXIS_Y, AXIS_Z};
 }
 
-/// Ten times the G code that selects it.
+/// Ten times the number of the G code that selects it.
 constexpr int plane_code(Plane plane) {
     switch (plane) {
     case Plane::XY: return 170;

@@ -65,7 +65,7 @@ void BlockHistory::mark_executed(std::uint64_t number) {
     }
 }
 
-/// The calls that the executed step was in end with the program, as those that were read later.
+/// The calls of the executed step end with the program, as do calls that were read later.
 void BlockHistory::return_to_executed() {
     flow_.abort();
     if (!isRecording()) {
@@ -77,7 +77,7 @@ void BlockHistory::return_to_executed() {
     }
     executor_.saved_modes.drop_calls(0);
     executor_.abort_block();
-    executor_.state.comp = {};  // the next move goes where it says, not beside it
+    executor_.state.comp = {};  // the next move is not compensated
     begin();
 }
 

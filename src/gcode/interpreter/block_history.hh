@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the interpreter knew after each step that the machine may not have reached: an abort returns to the
-// executed one.
+// States of the interpreter after steps that the machine may not have reached: an abort returns to the
+// executed step.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ namespace mw::gcode::detail {
 Interpreter::Snapshot snapshot(const Executor &executor);
 void restore(const Interpreter::Snapshot &kept, Executor &executor);
 
-/// Holds the state as of the executed step, and what each later step has changed.
+/// Stores the state at the executed step, and the changes of each later step.
 class BlockHistory final : public ReadAhead {
   public:
     /// Both must outlive the history.
@@ -38,7 +38,7 @@ class BlockHistory final : public ReadAhead {
         State state;
         ReturnValue returned;
         BlockCodes block_codes;
-        std::shared_ptr<const SavedModes> saved_modes;  ///< null: as before the step
+        std::shared_ptr<const SavedModes> saved_modes;  ///< null: unchanged by the step
         std::vector<ParameterChange> changes;
     };
     bool isRecording() const { return executed_ != nullptr; }
@@ -47,7 +47,7 @@ class BlockHistory final : public ReadAhead {
     Flow &flow_;
     std::unique_ptr<Interpreter::Snapshot> executed_;
     std::deque<Entry> entries_;
-    std::uint64_t modes_revision_ = 0;  ///< of the saved modes that were noted last
+    std::uint64_t modes_revision_ = 0;  ///< revision of the last stored saved modes
 };
 
 }  // namespace mw::gcode::detail

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What Interpreter::snapshot() holds: modes and parameters at the top level.
+// Content of Interpreter::snapshot(): modes and parameters at the top level.
 #pragma once
 
 #include <string>
@@ -22,9 +22,9 @@ struct Interpreter::Snapshot {
     detail::BlockCodes block_codes;
 };
 
-/// As bytes; an error says what is under way that cannot be told so.
+/// The snapshot as bytes; an error names a state that cannot be packed.
 Result<std::string> pack(const Interpreter::Snapshot &kept, const detail::Names &names);
-/// Back; what is not in the bytes is as in `now`.
+/// Reads the bytes; other fields are copied from `now`.
 Result<Interpreter::Snapshot> unpack(std::string_view bytes, const Interpreter::Snapshot &now,
                                      detail::Names &names);
 

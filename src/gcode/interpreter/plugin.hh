@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Opens an interpreter that is a plug-in.
+// Opens an interpreter plug-in.
 #pragma once
 
 #include <memory>
@@ -9,8 +9,8 @@
 
 namespace mw::gcode {
 
-/// `name` as it stands when absolute; otherwise in $EMC2_HOME/lib/linuxcnc, then beside our own modules. A
-/// file that is no plug-in of this version is refused (LinuxCNC's own plug-ins have another interface).
+/// `name` unchanged when absolute; otherwise in $EMC2_HOME/lib/linuxcnc, then beside our own modules. A file
+/// that is not a plug-in of this version is rejected (LinuxCNC's own plug-ins have another interface).
 Result<std::unique_ptr<ProgramInterpreter>> open_plugin(const std::string &name, const PluginParts &parts);
 
 }  // namespace mw::gcode

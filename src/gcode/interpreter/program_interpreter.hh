@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What runs programs: the RS-274/NGC interpreter, or a plug-in for another language (`rs274 -p`,
+// Interface of interpreters: the RS-274/NGC interpreter, or a plug-in for another language (`rs274 -p`,
 // [TASK]INTERPRETER). A plug-in is a shared object compiled against this header; see
 // docs/developer/extending/plugins.md.
 #pragma once
@@ -18,57 +18,57 @@
 namespace mw::gcode {
 
 enum class Step {
-    OK,           ///< one block done; call again
+    OK,           ///< one block is done; call again
     SYNC,         ///< the caller must let queued work finish, then call synch() and step() again
     PROGRAM_END,  ///< M2 or M30
     FILE_END,     ///< the closing % or the end of the file
-    FAILED,       ///< see error(); the block changed nothing
+    FAILED,       ///< see error(); the block has changed nothing
 };
 
-/// The codes in force, in the shapes that status displays rely on (facts.md).
+/// The active codes in the form of LinuxCNC's status.
 struct ActiveCodes {
     std::array<int, 17> g{};  ///< [0] sequence number, then ten times the code, -1 none
     std::array<int, 10> m{};
     std::array<double, 5> settings{};  ///< sequence, feed, speed, G64 P, G64 Q
 };
 
-/// One object belongs to one thread; no call blocks; no exception leaves it.
+/// One object belongs to one thread; calls do not block and throw no exceptions.
 class ProgramInterpreter {
   public:
     virtual ~ProgramInterpreter() = default;
 
     /// Reads the parameter file (RS274NGC_VAR); a missing file is an empty one. Errors name line and column.
     virtual Result<> load_parameters(const std::string &) { return {}; }
-    /// Writes it atomically; keeps the numbers that the file had and those that must be there.
+    /// Writes it atomically, with the numbers that the file had and the required ones.
     virtual Result<> save_parameters(const std::string &) const { return {}; }
     /// The value of #number; 0 where there are no parameters.
     virtual double parameter(int) const { return 0.0; }
 
-    /// Before the first program.
+    /// Call before the first program.
     virtual Result<> begin() = 0;
     /// Reads a file; its lines are executed by step().
     virtual Result<> open(const std::string &path) = 0;
     virtual void close() = 0;
     /// Executes the next block of the open file.
     virtual Step step() = 0;
-    /// Executes one line of MDI; what it starts goes on with step() until FILE_END.
+    /// Executes one line of MDI; step() continues it until FILE_END.
     virtual Step execute(std::string_view line) = 0;
-    /// Takes the machine's state as the current one (after a stop, a probe, a tool change).
+    /// Reads the machine's state as the current one (after a stop, a probe, a tool change).
     virtual void synch() = 0;
-    /// Back to the top level after an abort.
+    /// Returns to the top level after an abort.
     virtual void abort() = 0;
-    /// Tells the canon the offsets, speeds and switches in force, for one that has lost what was read ahead.
+    /// Announces the active offsets, speeds and switches to a canon that has lost the blocks read ahead.
     virtual void announce() {}
 
     /// The last failure: message, file:line:column, the block's text, the callers.
     virtual const diagnostics::Diagnostic &error() const = 0;
     virtual ActiveCodes active_codes() const { return {}; }
-    virtual int line() const = 0;  ///< of the block last read, in file()
+    virtual int line() const = 0;  ///< line of the last block, in file()
     virtual const std::string &file() const = 0;
     virtual int call_level() const { return 0; }
-    /// No line of the open file is left.
+    /// The open file has no more lines.
     virtual bool isAtFileEnd() const = 0;
-    /// Cutter compensation holds the last move back until the next one, or G40, says where it ends.
+    /// Cutter compensation keeps the last move until the next one, or G40, determines its end.
     virtual bool isMoveHeld() const { return false; }
     /// Warnings of begin().
     virtual const std::vector<std::string> &warnings() const {
@@ -77,7 +77,7 @@ class ProgramInterpreter {
     }
 };
 
-/// What a plug-in works with; all references outlive it.
+/// Objects that a plug-in uses; all references outlive it.
 struct PluginParts {
     Canon &canon;
     World &world;
@@ -87,7 +87,7 @@ struct PluginParts {
 
 inline constexpr int PLUGIN_VERSION = 2;
 /// Symbols that a plug-in exports, with C linkage: `int millwright_plugin_version`, which must be
-/// PLUGIN_VERSION, and makeInterp, which makes an interpreter (to be deleted by the caller).
+/// PLUGIN_VERSION, and makeInterp, which creates an interpreter (the caller deletes it).
 inline constexpr char PLUGIN_VERSION_SYMBOL[] = "millwright_plugin_version";
 inline constexpr char PLUGIN_FACTORY_SYMBOL[] = "makeInterp";
 using PluginFactory = ProgramInterpreter *(*)(const PluginParts &parts);

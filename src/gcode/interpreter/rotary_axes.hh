@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What an INI file says of the axes A, B and C that turn on and on, or are held by a lock.
+// INI settings of axes A, B and C that rotate without limit or have a locking indexer.
 #pragma once
 
 #include <array>

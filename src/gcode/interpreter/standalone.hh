@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The world of an interpreter without a machine: positions are where the program has sent them.
+// The world of an interpreter without a machine: the position is the programmed one.
 #pragma once
 
 #include <functional>
@@ -10,7 +10,7 @@
 
 namespace mw::gcode {
 
-/// World, ToolSource and ParameterSource for `rs274` and for tools that run programs without a machine.
+/// World, ToolSource and ParameterSource for `rs274` and tools that run programs without a machine.
 class Standalone : public World, public ToolSource, public ParameterSource {
   public:
     using IniLookup = std::function<std::optional<double>(std::string_view section, std::string_view key)>;
@@ -24,8 +24,8 @@ class Standalone : public World, public ToolSource, public ParameterSource {
 
     MachineSnapshot snapshot() const override { return state; }
     LengthUnits machine_units() const override { return units; }
-    /// LinuxCNC's standalone machine counts 0.03937007874016 inch to the millimetre; in places where a
-    /// coordinate lies halfway between two printed digits, programs' outputs depend on it.
+    /// LinuxCNC's standalone interpreter uses 0.03937007874016 inch per millimetre; where a coordinate lies
+    /// half-way between two printed digits, the output depends on it.
     double mm_per_machine_unit() const override {
         constexpr double INCH_PER_MM = 0.03937007874016;
         return units == LengthUnits::MM ? 1.0 : 1.0 / INCH_PER_MM;
@@ -47,7 +47,7 @@ class Standalone : public World, public ToolSource, public ParameterSource {
     std::optional<double> hal_value(std::string_view) const override { return std::nullopt; }
 };
 
-/// The three tools that are there without a tool table file [inch].
+/// The three tools that exist without a tool table file [inch].
 tools::Table built_in_tools();
 
 }  // namespace mw::gcode

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Which interpreter's script runs. Python's modules are one per process, so this is too; a script may use an
-// interpreter only from inside a call that the interpreter has made, in that thread.
+// The interpreter of the running script. Python's modules exist once per process, so this does too; a script
+// may use an interpreter only inside a call that the interpreter has made, in that thread.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@ namespace mw::python_host {
 /// script runs in this thread.
 gcode::InterpreterView &current_view();
 
-/// Makes `view` the current one while it lives; nests. Needs the GIL.
+/// Makes `view` the current one during its lifetime; nests. Needs the GIL.
 class CurrentScope {
   public:
     explicit CurrentScope(gcode::InterpreterView &view);
@@ -25,11 +25,11 @@ class CurrentScope {
     gcode::InterpreterView *before_;
 };
 
-/// What Python holds of an interpreter: it may outlive it.
+/// Python's reference to an interpreter, which it may outlive.
 struct ViewHandle {
-    gcode::InterpreterView *view = nullptr;  ///< null once the interpreter has gone
+    gcode::InterpreterView *view = nullptr;  ///< null after the interpreter was destroyed
 
-    /// Throws unless the interpreter lives and is the one that calls the running script.
+    /// Throws unless the interpreter exists and is calling the running script.
     gcode::InterpreterView &get() const;
 };
 

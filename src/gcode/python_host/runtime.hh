@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The embedded Python: started once per process and kept, as Python cannot be started again soundly after
+// The embedded Python: started once per process and kept, because Python cannot be restarted safely after
 // extension modules were loaded. In a process that is Python itself, the running one is used.
 #pragma once
 
@@ -11,20 +11,21 @@ namespace mw::python_host {
 
 namespace py = pybind11;
 
-/// Starts Python unless it runs already. On return the calling thread does not hold the GIL (unless it did).
+/// Starts Python unless it is running. On return the calling thread does not hold the GIL, unless it did
+/// before.
 void start_python();
-/// Python ran before start_python(): it belongs to the process, which must find sys.path and __main__ as they
-/// were.
+/// Python was running before start_python(): it belongs to the process, which needs its own sys.path and
+/// __main__ back.
 bool isForeignPython();
 
-/// Folders with our own modules, to be searched last.
+/// Adds folders of our own modules, searched last.
 void add_own_modules();
 
-/// The error that is set, in one line: what and where in the script, callers after it. Clears it.
-/// `log_level` above 0 also prints the whole traceback on standard error.
+/// The current error in one line: message and position in the script, then callers. Clears it. `log_level`
+/// above 0 also prints the traceback on standard error.
 std::string error_text(py::error_already_set &error, int log_level);
 
-/// Runs what scripts registered with atexit, and flushes their output.
+/// Runs functions that scripts registered with atexit, and flushes their output.
 void run_exit_functions();
 
 }  // namespace mw::python_host

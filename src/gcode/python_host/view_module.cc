@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// _millwright_script: the interpreter's view as plain functions; modules/interpreter.py gives them their
-// shape.
+// _millwright_script: the interpreter's view as plain functions, wrapped by modules/interpreter.py.
 #include <pybind11/stl.h>
 
 #include "gcode/python_host/modules.hh"

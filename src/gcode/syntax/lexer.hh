@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Characters and numbers of one line. Blanks mean nothing outside comments, and case means nothing.
+// Characters and numbers of one line. Blanks outside comments and case are ignored.
 #pragma once
 
 #include <cstdint>
@@ -9,14 +9,14 @@
 
 namespace mw::gcode::detail {
 
-/// A name without the blanks and in lower case, but for what _hal[ encloses: names of HAL keep their case.
+/// A name in lower case without blanks, except the text in _hal[...]: HAL names keep their case.
 std::string folded_name(std::string_view text);
 
 class Lexer {
   public:
     explicit Lexer(std::string_view line) : line_(line) {}
 
-    /// The next character that is not blank, in lower case; 0 at the end. Takes nothing but blanks.
+    /// The next character that is not blank, in lower case; 0 at the end. Skips only blanks.
     char peek() {
         for (; pos_ < line_.size(); ++pos_) {
             if (!isBlank(line_[pos_])) {
@@ -25,9 +25,9 @@ class Lexer {
         }
         return '\0';
     }
-    /// Takes the character that peek() showed.
+    /// Skips the character that peek() returned.
     void take() { ++pos_; }
-    /// Takes `c` if it is next.
+    /// Skips `c` if it is next.
     bool accept(char c) {
         if (peek() != c) {
             return false;
@@ -35,17 +35,17 @@ class Lexer {
         take();
         return true;
     }
-    /// What unsigned numbers begin with.
+    /// True for the first character of an unsigned number.
     static constexpr bool beginsNumber(char c) { return isDigit(c) || c == '.'; }
-    /// Takes a word of letters if it is next (blanks allowed inside), else nothing.
+    /// Skips a word of letters if it is next (blanks allowed inside), else nothing.
     bool accept_word(std::string_view word);
 
     enum class Number { OK, NONE, BAD };
-    /// Takes an unsigned decimal number. BAD: dots without a digit, or too large.
+    /// Reads an unsigned decimal number. BAD: dots without a digit, or too large.
     Number take_number(double &value);
-    /// What stands from `start` up to here, without the blanks.
+    /// The text from `start` to the current position, without blanks.
     std::string text_from(std::size_t start) const;
-    /// Takes everything up to and including `closer`, as folded_name gives it. Nothing when there is none.
+    /// Reads up to and including `closer`, as by folded_name. Nothing when there is none.
     std::optional<std::string> take_name(char closer);
 
     std::uint32_t column() const { return static_cast<std::uint32_t>(pos_) + 1; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Names of parameters and labels as numbers, so that running a program compares no text.
+// Numbers for names of parameters and labels, so that running a program compares no texts.
 #pragma once
 
 #include <deque>
@@ -13,13 +13,13 @@ namespace mw::gcode::detail {
 
 class Names {
   public:
-    /// The number of a name as it stands (callers fold case and blanks where the language does).
+    /// The number of a name, which is not changed (callers remove case and blanks where the language does).
     NameId intern(std::string_view name);
     const std::string &text(NameId id) const { return texts_[id]; }
     std::size_t size() const { return texts_.size(); }
 
   private:
-    std::deque<std::string> texts_;  // stable addresses: the map's keys are views into it
+    std::deque<std::string> texts_;  // has stable addresses: the map's keys are views into it
     std::unordered_map<std::string_view, NameId> ids_;
 };
 

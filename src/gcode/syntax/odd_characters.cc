@@ -15,7 +15,7 @@ struct Named {
     const char *name;
 };
 
-/// What editors and word processors leave in programs.
+/// Characters that editors and word processors leave in programs.
 constexpr std::array NAMED{
     Named{0x0000, "NUL"},
     Named{0x001b, "escape"},
@@ -40,7 +40,7 @@ constexpr std::array NAMED{
     Named{0xff0d, "minus sign, not '-'"},
 };
 
-/// The character of UTF-8 that begins at `text`; nothing when it is none.
+/// The UTF-8 character at the start of `text`; nothing when it is not valid.
 std::optional<std::uint32_t> decode(std::string_view text) {
     const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
     const unsigned first = byte(0);
@@ -74,7 +74,7 @@ std::string name_of(std::string_view text) {
 }  // namespace
 
 std::optional<OddCharacter> find_odd_character(std::string_view line) {
-    char closer = '\0';  // of the comment or name that the character stands in
+    char closer = '\0';  // closing character of the current comment or name
     for (std::size_t i = 0; i < line.size(); ++i) {
         const char c = line[i];
         if (closer != '\0') {

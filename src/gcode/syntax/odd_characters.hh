@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Characters that no program may have outside of comments and names: control characters and what is not
-// ASCII.
+// Characters that programs may contain only in comments and names: control characters and non-ASCII
+// characters.
 #pragma once
 
 #include <cstddef>

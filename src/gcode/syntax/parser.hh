@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// One line of RS-274/NGC to a Block in an Arena: one method per rule of the grammar.
+// Parses one line of RS-274/NGC into a Block in an Arena: one method per rule of the grammar.
 #pragma once
 
 #include <string>
@@ -11,18 +11,19 @@
 
 namespace mw::gcode::detail {
 
-/// A line with nothing but a percent sign.
+/// A line with only a percent sign.
 bool isPercentLine(std::string_view line);
 
 class Parser {
   public:
     Parser(Arena &arena, Names &names) : arena_(arena), names_(names) {}
 
-    /// Parses one line without its newline. A syntax error is kept in the block, which then has nothing else.
+    /// Parses one line without its newline. A syntax error is kept in the block, which then has no other
+    /// content.
     Block parse_line(std::string_view line, std::uint32_t number);
 
   private:
-    // Every rule returns false after fail(); the line's error then says why.
+    // Each rule returns false after fail(), which sets the error of the line.
     bool block(Lexer &in, Block &out);
     bool line_number(Lexer &in, Block &out);
     bool item(Lexer &in, Block &out, char c);
@@ -55,8 +56,8 @@ class Parser {
     std::string error_;
     std::uint32_t error_column_ = 0;
     int depth_ = 0;
-    int operators_ = 0;               ///< of this line, with an operand on each side
-    std::uint32_t letters_seen_ = 0;  ///< bit per letter but G and M, of the line
+    int operators_ = 0;               ///< number of binary operators in this line
+    std::uint32_t letters_seen_ = 0;  ///< bit per letter of the line, except G and M
 };
 
 }  // namespace mw::gcode::detail

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The syntax tree as text again, in one form for each meaning.
+// Prints the syntax tree as text, in one form for each meaning.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace mw::gcode::detail {
 
-/// Writes parts of one line; names and comments are taken from the line as its author spelled them.
+/// Prints parts of one line; names and comments are copied from the line.
 class Printer {
   public:
     Printer(const Arena &arena, std::string_view line) : arena_(arena), line_(line) {}
@@ -19,9 +19,9 @@ class Printer {
     std::string word(const Word &word) const;
     std::string setting(const Setting &setting) const;
     std::string oword(const OWord &oword) const;
-    /// What stands after a letter, # or =: a number, #5, -#<a>, or [an expression].
+    /// The value after a letter, # or =: a number, #5, -#<a>, or [an expression].
     std::string value(NodeId node) const;
-    /// What stands inside of brackets.
+    /// The text inside brackets.
     std::string expression(NodeId node) const;
     std::string comments(const Block &block) const;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The lines of one file: held in memory, or, for large files whose lines are read in order, in windows.
+// The lines of one file: in memory, or in windows for large files whose lines are read in order.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace mw::gcode::detail {
 
-/// Files from this size on stay on the disk while they have no O words [bytes].
+/// Minimum size of files that remain on disk if they have no O words [bytes].
 inline constexpr std::uint64_t WINDOWED_FROM_BYTES = 16U << 20U;
 
 class ProgramText {
@@ -22,24 +22,24 @@ class ProgramText {
     ProgramText(ProgramText &&) noexcept;
     ProgramText &operator=(ProgramText &&) noexcept;
 
-    /// Large files are left on the disk, until hold() asks for all of it.
+    /// Large files remain on disk until hold().
     static Result<ProgramText> open(const std::string &path);
-    /// Reads a file that was left on the disk into memory: its lines will be asked for in any order.
+    /// Reads a file on disk into memory, for reading its lines in any order.
     Result<> hold();
     bool isHeld() const { return reader_ == nullptr; }
 
     std::uint64_t count_bytes() const { return size_; }
     int count_lines() const { return count_; }
-    /// Where a line begins; of a file on the disk, where its window begins [bytes].
+    /// Position of a line; of a file on disk, the position of its window [bytes].
     std::uint64_t place_of(int line) const;
-    /// `line` from 1, without the newline. Of a file on the disk it is valid until lines of two other windows
-    /// have been asked for, and empty once the file cannot be read any more: see failure().
+    /// `line` from 1, without the newline. For a file on disk it is valid until lines of two other windows
+    /// have been read, and empty when the file can no longer be read: see failure().
     std::string_view line(int line) const;
-    /// Why lines cannot be read: the file was changed or is gone. Empty while all is well.
+    /// Why lines cannot be read: the file was changed or removed. Empty without an error.
     const std::string &failure() const;
 
-    /// Visits all lines in order, and finds where they are. The visitor answers false to end it.
-    /// @return false when it was ended.
+    /// Visits all lines in order, and records their positions. The visitor returns false to stop. @return
+    /// false when it was stopped.
     template <class Visitor>
     Result<bool> scan(Visitor &&visitor) {
         begin_scan();
@@ -60,8 +60,8 @@ class ProgramText {
     Result<bool> end_scan();
 
     std::string text_;
-    std::vector<std::uint64_t> starts_;  ///< of each line in text_
-    std::unique_ptr<Reader> reader_;     ///< of a file on the disk
+    std::vector<std::uint64_t> starts_;  ///< start of each line in text_
+    std::unique_ptr<Reader> reader_;     ///< for a file on disk
     std::uint64_t size_ = 0;
     int count_ = 0;
     std::uint64_t scanned_ = 0;

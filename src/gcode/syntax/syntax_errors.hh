@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What of a program cannot be read, without running it.
+// Finds lines of a program that cannot be parsed, without running it.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace mw::gcode::detail {
 
-/// Syntax errors behind the line `after` and before the program's closing percent sign, at most so many.
+/// Syntax errors between the line `after` and the program's closing percent sign, up to a maximum number.
 std::vector<diagnostics::Diagnostic> syntax_errors(Program &program, int after, int most);
 
 }  // namespace mw::gcode::detail

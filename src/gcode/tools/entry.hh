@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// One tool as the tool table knows it.
+// One tool of the tool table.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What each tool has cut in its life, and the state file that keeps it.
+// Accumulated cutting time and length of each tool, and the state file that keeps them.
 #pragma once
 
 #include <map>
@@ -15,7 +15,7 @@ struct CutLife {
     double length = 0;  ///< [machine units]
 };
 
-/// Not thread-safe. File: a line "T5 3600.5 125000" for each tool, seconds and machine units.
+/// Tool life. Not thread-safe. File: a line "T5 3600.5 125000" for each tool, seconds and machine units.
 class LifeBook {
   public:
     /// Errors name file and line.
@@ -23,7 +23,7 @@ class LifeBook {
 
     void add(int toolno, const CutLife &cut);
     CutLife of(int toolno) const;
-    /// A tool of this number begins anew.
+    /// Resets the tool of this number.
     void forget(int toolno) { tools_.erase(toolno); }
     std::string text() const;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// One line of a tool table as text: "T1 P17 X0 Z+0.511 D0.125 I J Q ;remark", and the older forms of columns
-// below a header: "POC FMS LEN DIAM COMMENT" of mills, "POC FMS ZOFF XOFF DIAM FRONTANGLE BACKANGLE ORIENT"
-// of lathes, also with TOOLNO and POCKET.
+// One line of a tool table as text: "T1 P17 X0 Z+0.511 D0.125 I J Q ;remark", and the older forms with
+// columns below a header: "POC FMS LEN DIAM COMMENT" for mills, "POC FMS ZOFF XOFF DIAM FRONTANGLE BACKANGLE
+// ORIENT" for lathes, also with TOOLNO and POCKET.
 #pragma once
 
 #include <optional>
@@ -14,16 +14,16 @@
 
 namespace mw::tools {
 
-/// What a column of an older table stands for: a letter as in a line of words.
+/// Meaning of each column of an older table, as the letter of a word.
 using Columns = std::vector<char>;
 
-/// Of mills, where no header says otherwise.
+/// Columns of tables for mills, the default without a header.
 const Columns &columns_of_mills();
-/// The line names columns: a header of an older table, without its remark's.
+/// The columns that a header of an older table names, without its comment's.
 std::optional<Columns> columns_of_header(std::string_view line);
-/// A line of numbers, as older tables have them.
+/// A line of numbers in columns, as in older tables.
 bool isInColumns(std::string_view line);
-/// There is more in it than a remark.
+/// The line has more than a comment.
 bool hasTool(std::string_view line);
 
 /// A tool whose line has no P word has pocket NO_POCKET. Errors name file, line and column.
@@ -31,7 +31,7 @@ inline constexpr int NO_POCKET = -1;
 Result<ToolEntry> parse_line(std::string_view line, const SourcePlace &place);
 Result<ToolEntry> parse_columns(std::string_view line, const Columns &columns, const SourcePlace &place);
 
-/// One line as the file has it.
+/// The entry as a line of the file.
 std::string format_entry(const ToolEntry &entry);
 
 }  // namespace mw::tools

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What HAL itself costs in a period of the virtual clock: the figure bounds how much faster than realtime a
-// machine can be (200 times at 1 ms leaves 5 us for everything).
+// The time of HAL itself in a period of the virtual clock. It limits how much faster than realtime a machine
+// can run (200 times at 1 ms leaves 5 us for everything).
 #include <string>
 
 #include <benchmark/benchmark.h>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Memory in pages of 2 MB, where the kernel has them. What a servo cycle looks at lies in some fifty of the
-// small pages of 4 KB: on a virtual machine a good part of its waiting for memory goes into finding those.
+// Memory in pages of 2 MB, if the kernel has them. The data of a servo cycle lies in about fifty small pages
+// of 4 KB; on a virtual machine address translation for these takes much of the time that the cycle waits for
+// memory.
 
 #include <sys/mman.h>
 
@@ -23,8 +24,7 @@ extern "C" {
 
 void *mw_ext_memory_new(unsigned long bytes) {
     const std::size_t size = rounded_up(bytes);
-    // Not to be touched at first: where memory is locked, small pages would be there before huge ones are
-    // asked for.
+    // Not accessed yet: in locked memory, small pages would be allocated before huge pages are requested.
     void *all = ::mmap(nullptr, size + HUGE_PAGE, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (all == MAP_FAILED) {
         return nullptr;
@@ -39,7 +39,7 @@ void *mw_ext_memory_new(unsigned long bytes) {
     if (before < HUGE_PAGE) {
         ::munmap(begin + size, HUGE_PAGE - before);
     }
-    ::madvise(begin, size, MADV_HUGEPAGE);  // a kernel without them says no, and nothing is lost
+    ::madvise(begin, size, MADV_HUGEPAGE);  // fails without effect on a kernel without huge pages
     if (::mprotect(begin, size, PROT_READ | PROT_WRITE) != 0) {
         ::munmap(begin, size);
         return nullptr;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// hal_port_*: bytes through the queue that a port signal owns. The value of a port pin is the queue's offset.
+// hal_port_*: bytes through the queue of a port signal. The value of a port pin is the queue's offset.
 #include <time.h>
 
 #include <algorithm>

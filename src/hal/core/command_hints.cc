@@ -8,7 +8,7 @@ namespace mw::hal {
 namespace {
 
 struct Absent {
-    std::string_view names;  ///< with a blank before, between and behind them
+    std::string_view names;  ///< separated by blanks, with a blank at both ends
     std::string_view instead;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Programs and modules that users of such controllers know, that configurations call, and that are not here.
+// Programs and modules of LinuxCNC that configurations use and that Millwright does not have.
 #pragma once
 
 #include <string>
@@ -7,8 +7,7 @@
 
 namespace mw::hal {
 
-/// What to do where `name` is such a module or program: a hint for the error that says it is not there. Empty
-/// for any other name.
+/// Hint for the error that the module or program `name` does not exist. Empty for other names.
 std::string hint_for_absent(std::string_view name);
 
 }  // namespace mw::hal

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What a process that runs realtime functions says when one of them crashes.
+// The message of a process that runs realtime functions when one of them crashes.
 #pragma once
 
 #include <string>
@@ -7,10 +7,10 @@
 
 namespace mw::hal {
 
-/// From now on a crash of this process (SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT) is told on standard error
-/// with the function, component and thread that it happened in, and noted in the instance for the processes
-/// that are attached to it; then `leftovers` (paths) are removed and the signal takes its course. For the
-/// whole process, once, from main() or what stands for it; a handler that is there already is called after.
+/// Reports a crash of this process (SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT) on standard error with its
+/// function, component and thread, and stores it in the instance for attached processes. Then it removes
+/// `leftovers` (paths), and the signal ends the process. Call once per process, at its start; existing
+/// handlers are called afterwards.
 void report_crashes(const std::string &program, const std::vector<std::string> &leftovers = {});
 
 }  // namespace mw::hal

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Whoever loads realtime modules for a HAL instance: this process under the virtual clock, or the realtime
-// process.
+// The process that loads realtime modules for a HAL instance: this process under the virtual clock, or the
+// realtime process.
 #pragma once
 
 #include <memory>
@@ -18,7 +18,7 @@ class Host {
   public:
     virtual ~Host() = default;
 
-    /// The instance, as this process sees it.
+    /// The instance, as seen by this process.
     virtual Hal &hal() noexcept = 0;
     /// loadrt: `args` are "name=value" words.
     virtual Result<> load_realtime(const std::string &name, const std::vector<std::string> &args) = 0;
@@ -27,15 +27,15 @@ class Host {
     virtual Result<bool> isModuleLoaded(const std::string &name) = 0;
     /// Loaded modules, newest last.
     virtual Result<std::vector<std::string>> modules() = 0;
-    /// What the host's log lets through.
+    /// Maximum level of the host's log.
     virtual Result<> set_log_level(runtime::LogLevel level) = 0;
     std::int64_t now_ns() noexcept { return hal().now_ns(); }
 };
 
-/// Loads into this process: for the virtual clock, and inside the realtime process itself.
+/// Loads into this process: under the virtual clock, and in the realtime process.
 class LocalHost final : public Host {
   public:
-    /// A private (or, with options.isShared, shared) instance under options.scheduler, which must outlive it.
+    /// A private (or, with options.shared, shared) instance under options.scheduler, which must outlive it.
     static Result<std::unique_ptr<LocalHost>>
     create(const HalOptions &options, std::vector<std::string> folders = Loader::default_folders());
     /// Stops the threads and unloads everything.

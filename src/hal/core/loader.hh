@@ -14,7 +14,7 @@ namespace mw::hal {
 
 class Loader {
   public:
-    /// Looks for NAME.so in `folders`, first match wins.
+    /// Searches NAME.so in `folders`; the first match is used.
     Loader(Hal &hal, std::vector<std::string> folders);
     /// Unloads all, newest first.
     ~Loader();
@@ -26,10 +26,10 @@ class Loader {
     static std::vector<std::string> default_folders();
 
     /// Loads a module and runs its rtapi_app_main with `args` ("count=2", "names=a,b"). Every instance and
-    /// every load has module statics of its own. On failure nothing is left; the message carries what the
-    /// module logged.
+    /// every load has its own module statics. A failure leaves nothing behind; its message includes the
+    /// module's log.
     Result<> load(const std::string &name, const std::vector<std::string> &args);
-    /// Runs rtapi_app_exit. Refused while another module uses its symbols.
+    /// Runs rtapi_app_exit. Rejected while another module uses its symbols.
     Result<> unload(const std::string &name);
     Result<> unload_all();
     bool isLoaded(std::string_view name) const;
@@ -46,7 +46,7 @@ class Loader {
     Result<> set_parameters(Module &module, const std::vector<std::string> &args);
     Result<> open(Module &module);
     std::string link(Module &module, const std::string &path);
-    /// The newest loaded module that exports the symbol itself, or null.
+    /// The newest loaded module that exports the symbol, or null.
     Module *exporter_of(const char *symbol) const;
     Result<> run_main(Module &module);
     void close(Module &module);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Typed handles to pins of a component that lives in an ordinary program.
+// Typed handles to pins of a component in an ordinary program.
 #pragma once
 
 #include <cstdint>
@@ -10,11 +10,11 @@
 
 namespace mw::hal {
 
-/// A pin of this process: reads and assigns like a T once made. [the thread that owns the component]
+/// A pin of this process: reads and assigns like a T. [the thread that owns the component]
 template <class T>
 class UserPin {
   public:
-    /// Makes the pin; the first failure of several makes stays in `status`.
+    /// Creates the pin; `status` keeps the first failure of several calls.
     void make(Hal &hal, int comp_id, const std::string &name, Dir dir, Result<> &status) {
         if (!status.has_value()) {
             return;
@@ -47,7 +47,7 @@ class UserPin {
             return Type::U32;
         }
     }
-    void *volatile *slot_ = nullptr;  // HAL moves it to the signal when the pin is linked
+    void *volatile *slot_ = nullptr;  // HAL changes it to the signal when the pin is linked
 };
 
 }  // namespace mw::hal

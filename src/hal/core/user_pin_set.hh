@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The pins of a table (hal/sdk/pin_table.hh) in an ordinary program, where sdk::PinSet is for modules.
+// The pins of a table (hal/sdk/pin_table.hh) in an ordinary program; sdk::PinSet is for modules.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@
 
 namespace mw::hal {
 
-/// The name of a row's pin for an instance: SCOPE.NAME with the number in its places.
+/// Name of a row's pin for an instance: SCOPE.NAME with the number inserted.
 inline std::string pin_name(const char *scope, const char *name, int number) {
     char first[HAL_NAME_LEN + 1], second[HAL_NAME_LEN + 1];
     sdk::expand_name(scope, number, first);
@@ -24,7 +24,7 @@ inline std::string pin_name(const char *scope, const char *name, int number) {
 template <const auto &TABLE>
 class UserPinSet {
   public:
-    /// Makes the pins; the first failure of several makes stays in `status`.
+    /// Creates the pins; `status` keeps the first failure of several calls.
     void make(Hal &hal, int comp_id, int number, Result<> &status) {
         each(pins_, [&](const auto &row, auto &pin) {
             pin.make(hal, comp_id, pin_name(TABLE.scope, row.name, number), static_cast<Dir>(row.DIRECTION),

@@ -16,7 +16,7 @@ namespace {
 struct TypeRow {
     Type type;
     const char *name;
-    const char *other;  ///< the newer word
+    const char *other;  ///< LinuxCNC's newer name
 };
 constexpr std::array TYPES{TypeRow{Type::BIT, "bit", "bool"},   TypeRow{Type::FLOAT, "float", "real"},
                            TypeRow{Type::S32, "s32", "si32"},   TypeRow{Type::U32, "u32", "ui32"},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The values that HAL carries: seven distinct types, read from and written as text.
+// HAL values: seven distinct types, read from and written as text.
 #pragma once
 
 #include <cstdint>
@@ -13,12 +13,12 @@ namespace mw::hal {
 /// Numbers as in hal.h (hal_type_t).
 enum class Type : std::uint8_t { BIT = 1, FLOAT = 2, S32 = 3, U32 = 4, PORT = 5, S64 = 6, U64 = 7 };
 
-/// Directions as in hal.h: the first three of pins as the component sees them, RO and RW of parameters.
+/// Directions as in hal.h: the first three for pins as seen by the component, RO and RW for parameters.
 enum class Dir : std::uint8_t { IN = 16, OUT = 32, IO = 48, RO = 64, RW = 192 };
 
 /// "bit", "float", "s32", "u32", "port", "s64", "u64".
 const char *type_name(Type type) noexcept;
-/// The type of that name; also LinuxCNC's newer words bool, real, sint, uint.
+/// The type with that name; also LinuxCNC's newer names bool, real, sint, uint.
 Result<Type> parse_type(std::string_view name);
 /// "IN", "OUT", "I/O", "RO", "RW".
 const char *dir_name(Dir dir) noexcept;
@@ -26,7 +26,7 @@ const char *dir_name(Dir dir) noexcept;
 /// One value of one type. Zero is false, 0.0 and 0.
 struct Value {
     Type type = Type::BIT;
-    std::uint64_t bits = 0;  ///< as it lies in HAL memory, little end first, unused bytes zero
+    std::uint64_t bits = 0;  ///< as in HAL memory, little-endian, unused bytes zero
 
     static Value of_bit(bool v) noexcept;
     static Value of_float(double v) noexcept;
@@ -41,7 +41,7 @@ struct Value {
     std::uint32_t as_u32() const noexcept;
     std::int64_t as_s64() const noexcept;
     std::uint64_t as_u64() const noexcept;
-    /// Whatever the type is, as a number (bit: 0 or 1).
+    /// The value as a number, for every type (bit: 0 or 1).
     double as_number() const noexcept;
 
     /// "TRUE"/"FALSE", the number in decimal, a float with %.7g as getp prints it.
@@ -49,8 +49,8 @@ struct Value {
     bool operator==(const Value &) const noexcept = default;
 };
 
-/// Reads "true", "TRUE", "1", "12", "-3", "0x1F", ".15", "4.2e1" as a value of `type`; an error says what is
-/// expected and which range.
+/// Parses "true", "TRUE", "1", "12", "-3", "0x1F", ".15", "4.2e1" as a value of `type`; an error names the
+/// expected form and range.
 Result<Value> parse_value(Type type, std::string_view text);
 
 }  // namespace mw::hal

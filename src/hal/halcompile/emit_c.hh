@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Writes the C source of a component. The framework comes first, then the macros that stand for pins,
-// parameters and variables, then the component's own code, so that no name of a pin can change the framework.
+// Writes the C source of a component. The framework comes first, then the macros for pins, parameters and
+// variables, then the component's own code, so that no name of a pin can change the framework.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@ namespace mw::halcompile {
 
 inline constexpr int DEFAULT_PERSONALITIES = 64;
 
-/// The C source of a checked component. `personalities` is how many values personality= takes.
+/// The C source of a checked component. `personalities`: maximum number of values of personality=.
 std::string emit_c(const Component &component, int personalities = DEFAULT_PERSONALITIES);
 
 }  // namespace mw::halcompile

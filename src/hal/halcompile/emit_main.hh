@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The parts of a component's C source that make its instances.
+// Writes the parts of a component's C source that create its instances.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace mw::halcompile {
 
-/// count=, names=, personality= and what modparam declares.
+/// count=, names=, personality= and the modparams.
 std::string emit_module_parameters(const Component &component, int personalities);
 /// rtapi_app_main and rtapi_app_exit.
 std::string emit_app(const Component &component, const std::string &prefix);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Looks into compiled objects (64-bit ELF of this machine's byte order).
+// Reads compiled objects (64-bit ELF in this machine's byte order).
 #pragma once
 
 #include <string>
@@ -12,11 +12,11 @@ namespace mw::halcompile {
 
 struct ObjectFacts {
     std::vector<std::string> exported;   ///< named by EXPORT_SYMBOL
-    std::vector<std::string> defined;    ///< global symbols that the object has
+    std::vector<std::string> defined;    ///< global symbols that the object defines
     std::vector<std::string> undefined;  ///< global symbols that it needs
 };
 
-/// What the bytes of an object say; an error when they are no such object.
+/// Reads the bytes of an object; an error when they are not an object.
 Result<ObjectFacts> look_at_object(std::string_view bytes, const std::string &file);
 
 }  // namespace mw::halcompile

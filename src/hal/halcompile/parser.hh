@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Reads the text of a .comp file. Errors go to the sink with their places; reading goes on at the next
+// Parses the text of a .comp file. Errors go to the sink with their positions; reading continues at the next
 // declaration.
 #pragma once
 
@@ -11,8 +11,8 @@
 
 namespace mw::halcompile {
 
-/// The declarations and the code of `text`; `file` is what places and #line directives name. What was wrong
-/// is in the sink; the tree then holds what could be read.
+/// Parses the declarations and the code of `text`; `file` is the name for positions and #line directives.
+/// Errors go to the sink; the tree has everything that could be read.
 Component parse(std::string_view text, const std::string &file, diagnostics::Sink &sink);
 
 }  // namespace mw::halcompile

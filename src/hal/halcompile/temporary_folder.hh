@@ -8,7 +8,7 @@
 
 namespace mw::halcompile {
 
-/// A folder of our own that vanishes with its content.
+/// A temporary folder that is removed with its content.
 class TemporaryFolder {
   public:
     static Result<TemporaryFolder> make();

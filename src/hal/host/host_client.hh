@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The realtime process (millwright-rt) as other processes see it. [one thread]
+// The realtime process (millwright-rt) as seen by other processes. [one thread]
 #pragma once
 
 #include <cstdint>
@@ -13,20 +13,20 @@
 
 namespace mw::hal {
 
-/// Where the realtime process writes the messages of modules: to the standard error of who starts it, or, for
-/// one that shall outlive its starter, to INSTANCE.log in the runtime folder.
+/// Destination of modules' messages: standard error of the starter, or, for a process that outlives its
+/// starter, INSTANCE.log in the runtime folder.
 enum class MessagesTo : std::uint8_t { STDERR, FILE };
 
-/// How long a realtime process lives: until it is told to end, or at most as long as the process that starts
-/// it.
+/// Lifetime of a realtime process: until it is ended on request, or at most as long as the process that
+/// starts it.
 enum class Lifetime : std::uint8_t { OWN, STARTER };
 
 class HostClient final : public Host {
   public:
-    /// Joins the realtime process of `instance`; an error when none is alive.
+    /// Joins the realtime process of `instance`; an error when none is running.
     static Result<std::unique_ptr<HostClient>> connect(const std::string &instance);
-    /// Starts bin/millwright-rt for `instance` (an error when one is alive) and joins it. With
-    /// Lifetime::STARTER it is controlled by this process from its first moment on, as by control().
+    /// Starts bin/millwright-rt for `instance` (an error when one is running) and joins it. With
+    /// Lifetime::STARTER this process controls it from its first moment on, as by control().
     static Result<std::unique_ptr<HostClient>> start(const std::string &instance,
                                                      MessagesTo messages = MessagesTo::STDERR,
                                                      Lifetime lifetime = Lifetime::OWN);
@@ -39,12 +39,13 @@ class HostClient final : public Host {
     Result<std::vector<std::string>> modules() override;
     Result<> set_log_level(runtime::LogLevel level) override;
 
-    /// From now on the realtime process brakes, stops all and ends when this process does (see HostServer).
+    /// From now on the realtime process brakes, stops everything and ends when this process ends (see
+    /// HostServer).
     Result<> control();
-    /// Tells the realtime process to stop all and end, and waits until it has.
+    /// Requests the realtime process to stop everything and end, and waits until it has.
     Result<> shut_down();
-    /// That the realtime process has ended, and how; nothing while it is well. The kernel's word, so it is
-    /// quick, and true at once. [any thread]
+    /// Error with the reason when the realtime process has ended; nothing while it runs. From the kernel, so
+    /// it is fast and immediate. [any thread]
     std::optional<Error> death() const;
     /// Process id of the realtime process.
     int pid() const noexcept;
@@ -56,10 +57,10 @@ class HostClient final : public Host {
     std::unique_ptr<Impl> impl_;
 };
 
-/// True when a realtime process of this instance is alive.
+/// True when a realtime process of this instance is running.
 bool isHostAlive(const std::string &instance);
 
-/// Removes what a realtime process of this instance left behind that has died; nothing while one is alive.
+/// Removes files of a dead realtime process of this instance; no effect while one is running.
 void remove_leftovers(const std::string &instance);
 
 }  // namespace mw::hal

@@ -171,7 +171,7 @@ extern int hal_statistics(hal_statistics_t *sts);
 
 /* ---- pins ----
  * data_ptr_addr lies in memory of hal_malloc; from then on *data_ptr_addr points at the value: the pin's own
- * while it is unlinked, the signal's afterwards. Read the pointer anew at each use. */
+ * while it is unlinked, the signal's afterwards. Read the pointer again at each use. */
 extern int hal_pin_new(const char *name, hal_type_t type, hal_pin_dir_t dir, void **data_ptr_addr,
                        int comp_id);
 extern int hal_pin_bit_new(const char *name, hal_pin_dir_t dir, hal_bit_t **data_ptr_addr, int comp_id);
@@ -411,7 +411,7 @@ extern void hal_stream_wait_writable(hal_stream_t *stream, sig_atomic_t *stop);
 /* ---- ports: a queue of bytes on a signal of type port, between its one OUT pin and its one reader ----
  * The queue exists once the signal has been given its size (sets SIGNAL N; it holds N-1 bytes, N at most
  * HAL_PORT_SIZE_MAX). Before, and while the pin is not linked, it has no room and no content. Reads and
- * writes move all the bytes or none. Realtime-safe but for the waits. */
+ * writes move all the bytes or none. Realtime-safe except for the waits. */
 extern bool hal_port_read(const hal_port_t *port, char *dest, unsigned count);
 /* As read, but leaves the bytes in the queue. */
 extern bool hal_port_peek(const hal_port_t *port, char *dest, unsigned count);

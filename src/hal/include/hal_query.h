@@ -113,7 +113,8 @@ extern int hal_list_thread(hal_query_t *q, hal_query_cb cb, void *arg);
 extern int hal_get_p(hal_query_t *query, hal_query_cb cb, void *arg);
 extern int hal_get_s(hal_query_t *query, hal_query_cb cb, void *arg);
 /* Sets it to query->pp.value (query->sig.value). A cb is called first with what is there now and puts the new
- * value in; when it answers other than 0, nothing is set and that is the result. Refused as by setp and sets.
+ * value in; when it answers other than 0, nothing is set and that is the result. Errors are those of setp and
+ * sets.
  */
 extern int hal_set_p(hal_query_t *query, hal_query_cb cb, void *arg);
 extern int hal_set_s(hal_query_t *query, hal_query_cb cb, void *arg);

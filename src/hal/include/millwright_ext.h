@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-2.0-or-later */
 /* What Millwright offers to realtime modules beyond the common API. Keep to it sparingly: a module that
- * includes this runs under Millwright only. Nothing here is realtime-safe unless it says so. */
+ * includes this runs under Millwright only. Nothing here is realtime-safe unless stated. */
 #ifndef MILLWRIGHT_EXT_H
 #define MILLWRIGHT_EXT_H
 

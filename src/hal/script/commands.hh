@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The commands of the HAL language, each declared once: name, number of words, help and what it does.
+// The commands of the HAL language, each declared once: name, number of words, help and function.
 #pragma once
 
 #include <span>
@@ -14,14 +14,14 @@ namespace mw::hal::script {
 
 struct CommandSpec;
 
-/// A command with its words (without its name; arrows dropped where they only document).
+/// A command and its words (without its name and without arrows that only document).
 struct Call {
     const CommandSpec &spec;
     SourcePlace place;  ///< of the command's name
     std::vector<Word> words;
 
     const std::string &text(std::size_t i) const { return words[i].text; }
-    /// Place of word `i`, or of the command when there are fewer.
+    /// Position of word `i`, or of the command when there are fewer words.
     const SourcePlace &place_of(std::size_t i) const { return i < words.size() ? words[i].place : place; }
 };
 
@@ -38,31 +38,31 @@ struct CommandSpec {
 };
 
 std::span<const CommandSpec> commands();
-/// Null when there is none of that name.
+/// Null when the command does not exist.
 const CommandSpec *find_command(std::string_view name);
 /// The failure for an unknown command, with the nearest known one.
 Error unknown_command(const Word &word);
 /// Checks the number of words.
 Result<> check_words(const Call &call);
-/// For a person, in the language of the environment.
+/// Text for a person, in the language of the environment.
 std::string help_text(const CommandSpec &spec);
-/// The same of all commands, a line each.
+/// The same for all commands, one line each.
 std::string help_overview();
 
-/// `result` with its place and a hint filled in where it has none.
+/// `result` with position and hint added if missing.
 Result<> at(Result<> result, const SourcePlace &place, const std::string &hint = {});
 /// "did you mean 'x'?" for the candidate nearest to `name`, or empty.
 std::string suggestion(std::string_view name, const std::vector<std::string> &candidates);
 
-/// Why there is nothing of that name: its component died, or "did you mean 'x'?", or empty.
+/// Why the name does not exist: its component died, or "did you mean 'x'?", or empty.
 std::string missing_hint(Hal &hal, std::string_view name, const std::vector<std::string> &candidates);
 
-// Names of what exists, for suggestions.
+// Names of existing objects, for suggestions.
 std::vector<std::string> pin_names(Hal &hal);
 std::vector<std::string> param_names(Hal &hal);
 std::vector<std::string> signal_names(Hal &hal);
 
-// The commands. Their words have been counted.
+// The commands. The number of words has been checked.
 Result<> run_loadrt(Session &session, const Call &call);
 Result<> run_loadusr(Session &session, const Call &call);
 Result<> run_waitusr(Session &session, const Call &call);

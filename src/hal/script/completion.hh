@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What could follow on a line that somebody types.
+// Completion of a line that a person types.
 #pragma once
 
 #include <string>
@@ -9,12 +9,11 @@
 
 namespace mw::hal::script {
 
-/// The words that could stand where `line` ends and begin with its last, unfinished word: commands, then what
-/// the position in the command demands (pins, signals, functions, modules, files...). Sorted; folders end
-/// with '/'.
+/// Possible words at the end of `line` that begin with its last, incomplete word: commands, then the objects
+/// for this position (pins, signals, functions, modules, files...). Sorted; folders end with '/'.
 std::vector<std::string> completions(Session &session, const std::string &line);
 
-/// The longest beginning that all have in common.
+/// The longest common prefix.
 std::string common_beginning(const std::vector<std::string> &words);
 
 }  // namespace mw::hal::script

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Lines and words of the HAL file language, with the place that every character came from.
-//
-// Order of work on a line: physical lines joined at a final backslash; comment cut off; environment and INI
-// variables substituted (also inside quotes); the result split into words at blanks, quotes grouping.
+// Lines and words of the HAL file language, with the position of each character. Processing of a line:
+// physical lines are joined at a final backslash; comments are removed; environment and INI variables are
+// substituted (also inside quotes); the result is split into words at blanks, with quotes grouping.
 #pragma once
 
 #include <optional>
@@ -14,7 +13,7 @@
 
 namespace mw::hal::script {
 
-/// Where `[SECTION]NAME` comes from: whoever has the INI file implements it.
+/// Source of `[SECTION]NAME`, implemented by the owner of the INI file.
 class IniLookup {
   public:
     virtual ~IniLookup() = default;
@@ -30,7 +29,7 @@ class IniLookup {
     virtual std::vector<std::string> sections() const { return {}; }
 };
 
-/// Text in which every character remembers its line and column in the file.
+/// Text with the line and column of every character.
 class PlacedText {
   public:
     struct Position {
@@ -39,13 +38,13 @@ class PlacedText {
     };
 
     void append(char c, Position position);
-    /// Appends text that all came from one place (a substituted value).
+    /// Appends text that has one position (a substituted value).
     void append(std::string_view text, Position position);
     void truncate(std::size_t size);
 
     const std::string &text() const { return text_; }
     std::size_t size() const { return text_.size(); }
-    /// Position of character `i`; behind the end that of the last character plus one.
+    /// Position of character `i`; after the end, that of the last character plus one.
     Position at(std::size_t i) const;
 
   private:
@@ -53,23 +52,23 @@ class PlacedText {
     std::vector<Position> positions_;
 };
 
-/// One command's worth of text: a line with its continuations, without comment.
+/// Text of one command: a line with its continuations, without comment.
 struct LogicalLine {
     PlacedText text;
     int first_line = 0;
 };
 
-/// A word of a command. `text` has its quotes removed, `raw` is as written (after substitution).
+/// A word of a command. `text` is without quotes, `raw` is unchanged (after substitution).
 struct Word {
     std::string text;
     std::string raw;
     SourcePlace place;
 };
 
-/// Cuts `source`, whose first line has the number `first_line`, into logical lines; empty ones are left out.
+/// Splits `source`, whose first line has the number `first_line`, into logical lines without empty ones.
 std::vector<LogicalLine> split_lines(std::string_view source, int first_line = 1);
 
-/// The environment and INI file that variables are taken from.
+/// The environment and INI file for variables.
 struct Variables {
     /// Value of an environment variable, nothing when it is not set. Null: the environment of the process.
     std::optional<std::string> (*environment)(const std::string &name) = nullptr;
@@ -79,7 +78,7 @@ struct Variables {
 /// Replaces $VAR, $(VAR), [SECTION]VAR and [SECTION](VAR). A name without parentheses ends at a blank.
 Result<PlacedText> substitute(const PlacedText &line, const std::string &file, const Variables &variables);
 
-/// Splits at blanks; a quoted part ('..' or "..") belongs to its word whole.
+/// Splits at blanks; a quoted part ('..' or "..") is not split.
 Result<std::vector<Word>> split_words(const PlacedText &line, const std::string &file);
 
 /// True for the arrows =>, <=, <=> and their longer forms: words that only document a direction.

@@ -56,7 +56,7 @@ Result<> Placeholders::make(const std::string &pin, const std::string &signal, T
     }
     // Pins can be added only while a component is not ready.
     (void)hal_.set_ready(comp_id_, false);
-    // An input never stands in the way of another pin; as nobody drives it the signal keeps its value.
+    // An input never conflicts with another pin; as no pin writes the signal, it keeps its value.
     const Result<void **> slot = hal_.new_pin(pin, type, Dir::IN, comp_id_);
     if (!slot) {
         return std::unexpected(slot.error());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Pins of programs that were left out: so that the lines of HAL files which name them still do what they can.
+// Pins of omitted programs, so that lines of HAL files that name them still work.
 #pragma once
 
 #include <string>
@@ -14,19 +14,19 @@ class Placeholders {
   public:
     explicit Placeholders(Hal &hal) : hal_(hal) {}
 
-    /// A program that was not started: pins whose name starts with its component or one of its words are its
-    /// own.
+    /// Adds a program that was not started: pins whose name starts with its component or one of its words
+    /// belong to it.
     void add_program(const std::string &component, const std::vector<std::string> &argv);
-    /// True when pin `name` does not exist and would belong to a program that was left out.
+    /// True when pin `name` does not exist and belongs to an omitted program.
     bool covers(const std::string &name) const;
-    /// Links the pin to a signal: as an input of the signal's type, at once or as soon as the signal exists.
+    /// Links the pin to a signal: as an input of the signal's type, at once or when the signal exists.
     Result<> link(const std::string &pin, const std::string &signal);
-    /// Links what waited for `signal`, which exists now.
+    /// Links pins that waited for `signal`, which exists now.
     Result<> signal_made(const std::string &signal);
-    /// A value that a line gives to such a pin: kept nowhere, as nobody reads it; the pin is noted.
+    /// A line sets such a pin: the value is not stored, because nothing reads it; the pin is recorded.
     void note(const std::string &pin);
 
-    /// What was left out: a line a program with its pins.
+    /// The omitted programs: one line for each, with its pins.
     std::vector<std::string> report() const;
 
   private:

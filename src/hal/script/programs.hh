@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Programs that HAL files start with loadusr: as processes, or as parts of this process in their place.
+// Programs that HAL files start with loadusr: as processes, or as parts of this process.
 #pragma once
 
 #include <csignal>
@@ -19,31 +19,31 @@ struct ProgramRequest {
     std::vector<std::string> argv;  ///< program and arguments
     Wait wait = Wait::NO;
     std::string component;       ///< its HAL component: named with -Wn, else the program's base name
-    bool ignoresStatus = false;  ///< with UNTIL_END: any exit status will do
+    bool ignoresStatus = false;  ///< with UNTIL_END: any exit status is accepted
 };
 
 enum class ProgramStart {
     RUNNING,  ///< started (and ready or ended, when that was waited for)
-    LEFT_OUT  ///< not started here: its pins will not appear
+    LEFT_OUT  ///< not started here: its pins will not exist
 };
 
 class ProgramHost {
   public:
     virtual ~ProgramHost() = default;
     virtual Result<ProgramStart> start(const ProgramRequest &request) = 0;
-    /// Asks the program of a component to end (SIGTERM).
+    /// Requests the program of a component to end (SIGTERM).
     virtual Result<> stop(const std::string &component) = 0;
-    /// Ends all programs of components, and those started here that have none yet; returns when they are
-    /// gone.
+    /// Ends all programs with components, and those started here that have none yet; returns when they have
+    /// ended.
     virtual Result<> stop_all() = 0;
-    /// Until the component is gone.
+    /// Waits until the component is removed.
     virtual Result<> wait_for_end(const std::string &component) = 0;
 };
 
 /// Starts processes; finds them through PATH. [one thread, not realtime]
 class SystemProgramHost final : public ProgramHost {
   public:
-    /// Waiting ends (as a failure) when `stop` is given and *stop is not zero.
+    /// Waiting fails when `stop` is not null and *stop is not zero.
     explicit SystemProgramHost(Hal &hal, const volatile std::sig_atomic_t *stop = nullptr)
         : hal_(hal), stop_(stop) {}
 
@@ -69,12 +69,12 @@ class SystemProgramHost final : public ProgramHost {
     std::vector<int> children_;
 };
 
-/// For the virtual clock: programs that exist as parts of this process are made there, no other is started.
+/// For the virtual clock: creates programs that exist as parts of this process; starts no others.
 class InProcessProgramHost final : public ProgramHost {
   public:
     using Part = std::function<Result<>(const ProgramRequest &request)>;
 
-    /// `make` is called for `loadusr ... NAME ...`, whatever folder the name is given with.
+    /// `make` is called for `loadusr ... NAME ...`, with any folder in the name.
     void add_part(const std::string &program, Part make) { parts_[program] = std::move(make); }
 
     Result<ProgramStart> start(const ProgramRequest &request) override;

@@ -36,8 +36,8 @@ Result<std::unique_ptr<ScriptRunner>> load_tcl(Session &session) {
         if (access(path.c_str(), R_OK) != 0) {
             continue;
         }
-        // Never unloaded: Tcl keeps state until the process ends. Global, since extensions of Tcl look for
-        // its symbols.
+        // Never unloaded: Tcl keeps state until the process ends. Global, because Tcl extensions need its
+        // symbols.
         void *library = dlopen(path.c_str(), RTLD_NOW | RTLD_GLOBAL);
         if (library == nullptr) {
             why = dlerror();

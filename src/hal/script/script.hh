@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// HAL files in a language of their own (Tcl): what runs them is a shared part that is loaded when it is
-// needed, so that everything else works without it.
+// HAL files in another language (Tcl). A shared part that is loaded on demand runs them, so that everything
+// else works without it.
 #pragma once
 
 #include <cstddef>
@@ -18,16 +18,16 @@ class Session;
 class ScriptRunner {
   public:
     virtual ~ScriptRunner() = default;
-    /// Runs a script; an error has file and line where the interpreter knows them.
+    /// Runs a script; an error has file and line if the interpreter reports them.
     virtual Result<> run_file(const std::string &path, const std::vector<std::string> &arguments) = 0;
-    /// Reads and runs commands from standard input until its end or `exit`, with a prompt on a terminal.
+    /// Runs commands from standard input until its end or `exit`, with a prompt on a terminal.
     virtual Result<> run_standard_input() = 0;
 };
 
 /// The Tcl interpreter of hal/tcl; an error when that part (or Tcl) is not installed.
 Result<std::unique_ptr<ScriptRunner>> load_tcl(Session &session);
 
-/// What the shared part exports, by this name; null when it was built with another `layout` of Session.
+/// Symbol that the shared part exports; returns null when it was built with another `layout` of Session.
 inline constexpr const char *NEW_SCRIPT_RUNNER = "mw_new_script_runner";
 using NewScriptRunner = ScriptRunner *(*)(Session *session, std::size_t layout);
 /// Differs when the program and the shared part were built from different sources.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// HAL files that are gone through twice ([HAL]TWOPASS): first the loadrt lines of all files are collected, so
-// that several lines for one module become one, and programs are started; then everything else is done.
+// HAL files that are read twice ([HAL]TWOPASS): the first pass collects the loadrt lines of all files, so
+// that several lines for one module become one, and starts programs; the second pass does everything else.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 namespace mw::hal::script {
 
 /// The loadrt lines of several files, one per module. `names=` and `personality=` lists are joined, `count=`
-/// and `num_chan=` added; any other parameter must be the same wherever it is given.
+/// and `num_chan=` added; any other parameter must be equal in all lines.
 class MergedLoads final : public LoadCollector {
   public:
     struct Parameter {
@@ -23,7 +23,7 @@ class MergedLoads final : public LoadCollector {
     };
     struct Load {
         std::string module;
-        SourcePlace place;  ///< of its first line
+        SourcePlace place;  ///< position of its first line
         std::vector<std::string> names;
         std::vector<SourcePlace> name_places;
         std::string count_word;  ///< count or num_chan; empty without
@@ -31,7 +31,7 @@ class MergedLoads final : public LoadCollector {
         std::vector<std::string> personalities;
         std::vector<Parameter> others;
 
-        /// The words of the one loadrt command.
+        /// The words of the combined loadrt command.
         std::vector<std::string> words() const;
     };
 
@@ -47,22 +47,21 @@ class MergedLoads final : public LoadCollector {
     std::vector<Load> loads_;
 };
 
-/// A HAL file as an INI file names it.
+/// A HAL file in an INI file.
 struct HalFileEntry {
     std::string text;   ///< the file and, for scripts, its arguments
     SourcePlace place;  ///< in the INI file
 };
 
 enum class TwoPassReport {
-    NOTHING,  ///< failures only
+    NOTHING,  ///< only failures
     FILES,    ///< the files found
     VERBOSE   ///< and each step
 };
 
-/// Runs the files through `session`, whose options say how. A file with a line `#NOTWOPASS` (case and blanks
-/// do not matter) is left out of both passes and runs as a whole, keeping going after failures, when the
-/// modules of the files before it have been loaded. `keywords` is the value of [HAL]TWOPASS: verbose,
-/// nodelete and any others.
+/// Runs the files through `session` with its options. A file with a line `#NOTWOPASS` (case and blanks are
+/// ignored) is excluded from both passes and runs as a whole, also after failures, when the modules of
+/// earlier files have been loaded. `keywords` is the value of [HAL]TWOPASS: verbose, nodelete and any others.
 Result<> run_two_pass(Session &session, const std::vector<HalFileEntry> &files, const std::string &keywords,
                       TwoPassReport report);
 

@@ -22,7 +22,7 @@
 // default.
 #pragma once
 
-// By their plain names: they stand beside this file also where it is installed.
+// Plain names: the files are beside this one also when installed.
 #include "declare.hh"
 #include "module.hh"
 #include "numbers.hh"

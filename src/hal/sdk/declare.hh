@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What a component in C++ declares: pins, parameters and functions under the prefix of an instance.
+// Declarations of a C++ component: pins, parameters and functions with the prefix of an instance.
 #pragma once
 
 #include <cerrno>
@@ -10,11 +10,11 @@
 
 namespace mw::sdk {
 
-/// Makes the pins, parameters and functions of one instance. The first failure is kept and ends the loading;
-/// what was wrong is in the log already. [while loading]
+/// Creates the pins, parameters and functions of one instance. The first failure is kept and ends the
+/// loading; its message has been logged. [while loading]
 class Declare {
   public:
-    /// Copies `prefix`, which may be a temporary. One that is too long stays too long, and every name fails.
+    /// Copies `prefix`, which may be a temporary. If it is too long, every name fails.
     Declare(int comp_id, const char *prefix, int index) noexcept : comp_id_(comp_id), index_(index) {
         rtapi_snprintf(prefix_, sizeof prefix_, "%s", prefix);
     }
@@ -40,7 +40,7 @@ class Declare {
         }
     }
 
-    /// The pin PREFIX.NAME by the naming rules, which files written before find under `legacy` too.
+    /// The pin PREFIX.NAME by the naming rules, with its `legacy` name for older HAL files.
     template <class T, hal_pin_dir_t DIR>
     void legacy_pin(Pin<T, DIR> &renamed, const char *name, const char *legacy,
                     std::type_identity_t<T> start = T{}) noexcept {
@@ -62,7 +62,7 @@ class Declare {
         }
     }
 
-    /// A pin whose name has its number in `format`, as in "in-%02d".
+    /// A pin with its number formatted into the name, as in "in-%02d".
     template <class T, hal_pin_dir_t DIR>
     void pin_at(Pin<T, DIR> &numbered, const char *format, int number,
                 std::type_identity_t<T> start = T{}) noexcept {
@@ -71,7 +71,7 @@ class Declare {
         pin(numbered, name, start);
     }
 
-    /// A parameter whose name has its number in `format`.
+    /// A parameter with its number formatted into the name.
     template <class T, hal_param_dir_t DIR>
     void param_at(Param<T, DIR> &numbered, const char *format, int number,
                   std::type_identity_t<T> start = T{}) noexcept {
@@ -80,7 +80,8 @@ class Declare {
         param(numbered, name, start);
     }
 
-    /// The `wanted` number from personality= (0: `fallback`), from 0 to `max`; else an error naming `what`.
+    /// The `wanted` number from personality= (0: `fallback`), from 0 to `max`; otherwise an error that names
+    /// `what`.
     int personality_number(int wanted, int fallback, int max, const char *what) noexcept {
         const int number = wanted == 0 ? fallback : wanted;
         if (number < 0 || number > max) {
@@ -92,8 +93,8 @@ class Declare {
         return number;
     }
 
-    /// The function PREFIX.NAME (only PREFIX without a name), which calls METHOD, a noexcept member that
-    /// takes nothing or the period [ns].
+    /// The function PREFIX.NAME (only PREFIX without a name), which calls METHOD, a noexcept member without
+    /// parameters or with the period [ns].
     template <auto METHOD, class Self>
     void function(Self *self, const char *name = "") noexcept {
         char full[NAME_SIZE];
@@ -102,7 +103,7 @@ class Declare {
         }
     }
 
-    /// Remembers a failure of a C API call made beside this class; true when `status` is none.
+    /// Keeps a failure of a C API call made outside this class; true if `status` is not a failure.
     bool keep(int status) noexcept {
         if (status < 0 && status_ == 0) {
             status_ = status;

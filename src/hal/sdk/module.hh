@@ -11,18 +11,18 @@
 
 namespace mw::sdk {
 
-/// Most instances of a component that sets no lower limit.
+/// Maximum number of instances of a component without a lower limit.
 constexpr int MANY = 1024;
 
-/// What the module parameters of a load ask for.
+/// Values of the module parameters.
 struct Request {
     const char *module;      ///< name of the module, as in loadrt
     const char *count_name;  ///< "count" or "num_chan"
-    int count;               ///< 0: not given
-    char *const *names;      ///< null-terminated unless all `max` are given
-    int fallback;            ///< instances when neither is given
+    int count;               ///< 0: not set
+    char *const *names;      ///< null-terminated unless all `max` names are set
+    int fallback;            ///< number of instances when neither is set
     int max;
-    const char *prefix = nullptr;  ///< of pins, where it is not the module's name
+    const char *prefix = nullptr;  ///< prefix of pins, if it is not the module's name
 
     bool isNamed() const noexcept { return names[0] != nullptr && names[0][0] != '\0'; }
 };
@@ -46,7 +46,7 @@ inline int instance_count(const Request &request) noexcept {
     return named > 0 ? named : (request.count > 0 ? request.count : request.fallback);
 }
 
-/// A HAL name, built in place.
+/// A HAL name in a fixed buffer.
 struct Name {
     char text[HAL_NAME_LEN + 1] = {};
 
@@ -61,7 +61,7 @@ struct Name {
     }
 };
 
-/// The prefix of instance `i`: its name, or MODULE.i. False (and a message) when it is too long.
+/// The prefix of instance `i`: its name, or MODULE.i. False, with a message, when it is too long.
 inline bool make_prefix(Name &out, const Request &request, int i) noexcept {
     const int length =
         request.isNamed()
@@ -85,7 +85,7 @@ T *make() noexcept {
     return memory == nullptr ? nullptr : new (memory) T();
 }
 
-/// Ends a load: ready, or everything undone. The component id, or a negated errno.
+/// Completes a load: ready, or everything undone. Returns the component id, or a negated errno.
 inline int finish(int comp_id, int status) noexcept {
     const int final_status = status == 0 ? hal_ready(comp_id) : status;
     if (final_status < 0) {
@@ -95,7 +95,7 @@ inline int finish(int comp_id, int status) noexcept {
     return comp_id;
 }
 
-/// Makes instance `i` and what it declares: 0, or a negated errno.
+/// Creates instance `i` with its declarations: 0, or a negated errno.
 template <class T>
 int make_instance(int comp_id, const Request &request, int i, T *&out) noexcept {
     out = make<T>();
@@ -111,7 +111,7 @@ int make_instance(int comp_id, const Request &request, int i, T *&out) noexcept 
     return declare.status();
 }
 
-/// Loads separate instances of T, each with functions of its own.
+/// Loads separate instances of T, each with its own functions.
 template <class T>
 int load_instances(const Request &request) noexcept {
     const int count = instance_count(request);
@@ -130,7 +130,8 @@ int load_instances(const Request &request) noexcept {
     return finish(comp_id, status);
 }
 
-/// Loads one T, which makes all pins and functions of the module in `load(comp_id)` (0, or a negated errno).
+/// Loads one T, which creates all pins and functions of the module in `load(comp_id)` (0, or a negated
+/// errno).
 template <class T>
 int load_single(const char *module) noexcept {
     const int comp_id = hal_init(module);
@@ -141,7 +142,7 @@ int load_single(const char *module) noexcept {
     return finish(comp_id, all == nullptr ? -ENOMEM : all->load(comp_id));
 }
 
-/// As load_single, for a T that has hardware: `end()` releases it when the load fails, and at the exit.
+/// As load_single, for a T with hardware: `end()` releases it when the load fails, and at the exit.
 template <class T>
 int load_device(const char *module, T *&device) noexcept {
     const int comp_id = hal_init(module);
@@ -157,8 +158,8 @@ int load_device(const char *module, T *&device) noexcept {
 }
 
 /// Waits until `wanted_ns` after `begin_ns` (rtapi_get_time), at most a quarter of the period: for outputs
-/// that are reset within the cycle. The clock of a simulation does not move within a cycle; the wait ends
-/// there, too. [servo or base thread]
+/// that are reset within the cycle. The clock of a simulation does not advance within a cycle; the wait ends
+/// at once then. [servo or base thread]
 inline void delay_after(long long begin_ns, std::uint32_t wanted_ns, long period_ns) noexcept {
     const long most_ns = period_ns / 4;
     const long delay_ns =
@@ -172,13 +173,13 @@ inline void delay_after(long long begin_ns, std::uint32_t wanted_ns, long period
     }
 }
 
-/// Channels that module-wide functions work on together.
+/// Channels that share module-wide functions.
 template <class Channel, int MAX>
 struct Channels {
     int count = 0;
     Channel *channel[MAX] = {};
 
-    /// Makes the channels' pins: 0, or a negated errno.
+    /// Creates the channels' pins: 0, or a negated errno.
     int make_channels(int comp_id, const Request &request, int wanted) noexcept {
         for (int i = 0; i < wanted; ++i) {
             if (const int status = make_instance(comp_id, request, i, channel[i]); status < 0) {
@@ -234,7 +235,7 @@ int load_channels(const Request &request) noexcept {
 /// A component with count= (at most `max`) and names=, one instance by default.
 #define MW_COMPONENT(Type, module, max) MW_MODULE(module, count, 1, max, mw::sdk::load_instances<Type>)
 
-/// A module with parameters of its own instead of count= and names=; see load_single.
+/// A module with its own parameters instead of count= and names=; see load_single.
 #define MW_COMPONENT_SINGLE(Type, module)                                                                    \
     static int mw_comp_id = -1;                                                                              \
     int rtapi_app_main(void) {                                                                               \
@@ -246,8 +247,8 @@ int load_channels(const Request &request) noexcept {
     }                                                                                                        \
     static_assert(true)
 
-/// As MW_COMPONENT_SINGLE, for a device; see load_device. At the exit no function runs any more when `end()`
-/// is called.
+/// As MW_COMPONENT_SINGLE, for a device; see load_device. At the exit no function runs when `end()` is
+/// called.
 #define MW_COMPONENT_DEVICE(Type, module)                                                                    \
     static int mw_comp_id = -1;                                                                              \
     static Type *mw_device = nullptr;                                                                        \

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Small arithmetic that components share.
+// Small arithmetic functions shared by components.
 #pragma once
 
 #include <cstdint>
@@ -8,14 +8,14 @@
 
 namespace mw::sdk {
 
-/// Sets an output that moves something; a value that is not a number, or infinite, leaves it as it was.
+/// Sets an output that causes motion; NaN or an infinite value leaves it unchanged.
 inline void set_finite(Out<double> &out, double value) noexcept {
     if (value - value == 0.0) {
         out = value;
     }
 }
 
-/// The next number of a counter that runs over the end of its type.
+/// The next number of a counter that wraps at the end of its type.
 constexpr std::int32_t next_count(std::int32_t count) noexcept {
     return static_cast<std::int32_t>(static_cast<std::uint32_t>(count) + 1U);
 }

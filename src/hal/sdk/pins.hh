@@ -29,7 +29,7 @@ constexpr hal_type_t type_of() noexcept {
 }
 
 /// A pin: reads and assigns like a T. Each use is one access to the value in HAL memory, which others may
-/// change in between; copy it into a local where one function must see one value. [any thread]
+/// change in between; copy it to a local variable where a function needs one value. [any thread]
 template <class T, hal_pin_dir_t DIR>
 class Pin {
   public:
@@ -49,7 +49,7 @@ class Pin {
 
   private:
     friend class Declare;
-    volatile T *slot_ = nullptr;  // the C API keeps it pointing at the value
+    volatile T *slot_ = nullptr;  // the C API updates it
 };
 
 template <class T>

@@ -14,16 +14,16 @@
 namespace mw::hal::tcl {
 
 /// Adds the HAL commands to `interpreter`: each by its name, except where Tcl has a command of that name
-/// (gets, list, exit), and all as `hal COMMAND ...`. getp, gets, list, ptype, stype and status are answered
-/// as the result; show, save and help print. The value of setp and sets is an expression. `session` must
-/// outlive the interpreter.
+/// (gets, list, exit), and all as `hal COMMAND ...`. getp, gets, list, ptype, stype and status return their
+/// result; show, save and help print it. The value of setp and sets is an expression. `session` must outlive
+/// the interpreter.
 void add_commands(Tcl_Interp *interpreter, script::Session &session);
 
-/// Makes an array SECTION with the elements ITEM for every INI entry; each value is a list of all values
-/// given.
+/// Creates an array SECTION with the elements ITEM for every INI entry; each value is a list of all its
+/// values.
 void add_ini(Tcl_Interp *interpreter, const script::IniLookup &ini);
 
-/// An interpreter of its own for one session. `exit` ends the script, not the process.
+/// An interpreter for one session. `exit` ends the script, not the process.
 class Interpreter final : public script::ScriptRunner {
   public:
     explicit Interpreter(script::Session &session);

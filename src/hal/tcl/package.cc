@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the shared part exports: the interpreter for our own programs, and the Tcl package Hal for any tclsh.
+// Exports of the shared part: the interpreter for our own programs, and the Tcl package Hal for any tclsh.
 #include <memory>
 
 #include "hal/core/host.hh"

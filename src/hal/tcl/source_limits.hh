@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// How deeply a script of Tcl may nest: Tcl parses commands within commands with one level of its stack for
-// each, and ends the process when that is used up.
+// Maximum nesting of a Tcl script: Tcl uses one level of its stack for each nested command, and ends the
+// process when the stack is exhausted.
 #pragma once
 
 #include <tcl.h>
@@ -12,10 +12,10 @@
 
 namespace mw::hal::tcl {
 
-/// An error where more than 1000 `[` and `$name(` are open in one another; `path` is for its place.
+/// An error if more than 1000 `[` and `$name(` are nested; `path` is for its position.
 Result<> check_nesting(std::string_view script, const std::string &path);
 
-/// As check_nesting(), for a file. A file that cannot be read is no error here: Tcl reports it.
+/// As check_nesting(), for a file. Tcl reports a file that cannot be read.
 Result<> check_nesting_of_file(const std::string &path);
 
 /// Makes `source` check each file first.

@@ -8,7 +8,7 @@ namespace {
 
 TEST(LinearSolve, FindsTheSolutionWhateverTheOrderOfTheRows) {
     const Square<3> m{Row<3>{0, 2, 1}, Row<3>{3, 0, 0}, Row<3>{0, 0, -4}};
-    Row<3> right{8, 3, -8};  // of x = 1, 3, 2
+    Row<3> right{8, 3, -8};  // right side for x = 1, 3, 2
     EXPECT_NEAR(solve(m, right), 0.5, 1e-15);
     EXPECT_NEAR(right[0], 1, 1e-15);
     EXPECT_NEAR(right[1], 3, 1e-15);

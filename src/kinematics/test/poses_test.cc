@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Poses worked out by hand: right angles, sums of lengths and triangles of 3, 4 and 5 in the figures that the
-// models name, and what a model does where there are several answers or none.
+// Poses calculated by hand: right angles, sums of lengths and 3-4-5 triangles in the dimensions of the
+// models, and the result where several solutions or none exist.
 #include <cmath>
 #include <vector>
 
@@ -30,7 +30,7 @@ namespace {
 
 using Joints = std::array<double, MAX_JOINTS>;
 
-/// Both ways between a pose and its joints.
+/// Checks forward and inverse kinematics of a pose and its joints.
 void expect_pair(const Kinematics &model, const Pose &pose, const std::vector<double> &joints,
                  Status status = Status::OK) {
     Joints found{};
@@ -66,7 +66,7 @@ TEST(HandPoses, APointOfTheTiltingAxisStaysWhereItIs) {
     table.set(XyzacTable::Y_OFFSET, 20);
     table.set(XyzacTable::Z_OFFSET, -30);
     expect_pair(table, {{7, 20, -30, 60, 0, 0}}, {7, 20, -30, 60, 0});
-    table.set(XyzacTable::TOOL, 50);  // with a tool the joints carry its tip
+    table.set(XyzacTable::TOOL, 50);  // with a tool the joints move its tip
     expect_pair(table, {{7, 20, 20, 60, 0, 0}}, {7, 20, 20, 60, 0});
 }
 
@@ -90,15 +90,15 @@ Head head_with(double lean, double z_pivot) {
 }
 
 TEST(HandPoses, AForkSwingsTheToolAboutItsPivot) {
-    // The tool hangs 100 below the pivot; a quarter about X swings it to +Y, about Y to -X.
+    // The tool hangs 100 below the pivot. 90 degrees about X rotate it to +Y, about Y to -X.
     expect_pair(head_with<NutatingHeadOverB>(90, 100), {{0, 0, 0, 90, 0, 0}}, {0, -100, -100, 90, 0, 0});
     expect_pair(head_with<NutatingHeadOverA>(90, 100), {{0, 0, 0, 0, 90, 0}}, {100, 0, -100, 0, 90, 0});
-    // With C turned by a quarter before that, what was +Y is -X.
+    // With C rotated by 90 degrees before that, +Y becomes -X.
     expect_pair(head_with<NutatingHeadOverB>(90, 100), {{0, 0, 0, 90, 0, 90}}, {100, 0, -100, 90, 0, 90});
 }
 
 TEST(HandPoses, HalfATurnAboutAnAxisThatLeansBy45LaysTheToolLevel) {
-    // Turned about what halves the angle between Z and Y, -Z comes to lie along -Y.
+    // Rotated by 180 degrees about the bisector of Z and Y, -Z becomes -Y.
     expect_pair(head_with<NutatingHeadOverA>(45, 100), {{0, 0, 0, 0, 180, 0}}, {0, 100, -100, 0, 180, 0});
     expect_pair(head_with<NutatingHeadOverB>(45, 100), {{0, 0, 0, 180, 0, 0}}, {100, 0, -100, 180, 0, 0});
     auto longer = head_with<NutatingHeadOverA>(45, 80);
@@ -111,7 +111,7 @@ TEST(HandPoses, TheAxisOfTheTableUnderAHeadStaysWhereItIs) {
     over_a.set(NutatingHeadOverA::ACROSS_ROT, 10);
     over_a.set(NutatingHeadOverA::Z_ROT, 20);
     expect_pair(over_a, {{5, 10, 20, 90, 0, 0}}, {5, 10, 20, 90, 0, 0});
-    // The work turns as the table does: what lay at +Y of its axis is above it after a quarter.
+    // The workpiece rotates with the table: after 90 degrees a point at +Y of its axis is above it.
     expect_pair(over_a, {{5, 10, 27, 90, 0, 0}}, {5, 17, 20, 90, 0, 0});
     auto over_b = head_with<NutatingHeadOverB>(45, 100);
     over_b.set(NutatingHeadOverB::ACROSS_ROT, 10);
@@ -123,8 +123,8 @@ TEST(HandPoses, InATiltedPlaneZRunsAlongTheTool) {
     auto head = head_with<NutatingHeadOverA>(45, 100);
     head.set(NutatingHeadOverA::SECONDARY, 180);
     head.set_frame(HeadFrame::TOOL);
-    // The tool points to -Y: off the work is +Y. The plane's origin is where joints are 0 with the head
-    // upright.
+    // The tool points to -Y, so +Y is away from the workpiece. The origin of the plane is at joints 0 with
+    // the head upright.
     expect_pair(head, {{0, 0, 0, 0, 180, 0}}, {0, 100, -100, 0, 180, 0});
     expect_pair(head, {{0, 0, 10, 0, 180, 0}}, {0, 110, -100, 0, 180, 0});
     expect_pair(head, {{10, 0, 0, 0, 180, 0}}, {-10, 100, -100, 0, 180, 0});
@@ -186,7 +186,7 @@ TEST(HandPoses, APumaAtZero) {
     EXPECT_NEAR(pose[1], 350, 1e-12);
 }
 
-/// Worked out on paper with the lengths of a KUKA KR 6 R700 of the paper named in ortho_parallel.hh.
+/// Calculated by hand with the lengths of a KUKA KR 6 R700 from the paper cited in ortho_parallel.hh.
 TEST(HandPoses, AnIndustrialArmUprightAndStretchedAhead) {
     OrthoParallel arm;
     const double lengths[] = {25, -35, 0, 400, 315, 365, 80};
@@ -199,14 +199,14 @@ TEST(HandPoses, AnIndustrialArmUprightAndStretchedAhead) {
     EXPECT_NEAR(pose[0], 25 - 35, 1e-12);
     EXPECT_NEAR(pose[1], 0, 1e-12);
     EXPECT_NEAR(pose[2], 400 + 315 + 365 + 80, 1e-12);
-    // The upper arm up, the lower one and the hand ahead: what was ahead is now below.
+    // Upper arm up, lower arm and hand ahead: the forward direction of the zero position is now down.
     const Joints ahead{0, 0, 90, 0, 0, 0};
     pose = {};
     EXPECT_EQ(arm.forward(ahead.data(), pose), Status::OK);
     EXPECT_NEAR(pose[0], 25 + 365 + 80, 1e-12);
     EXPECT_NEAR(pose[2], 400 + 315 + 35, 1e-12);
     EXPECT_NEAR(pose[4], 90, 1e-6);
-    // Turned to Y, the upper arm ahead, the lower one down, the hand bent back to look ahead; 12 sideways.
+    // Rotated to Y, upper arm ahead, lower arm down, hand bent to point ahead; 12 sideways.
     arm.set(OrthoParallel::B, 12);
     const Joints bent{90, 90, 90, 0, -90, 0};
     pose = {};
@@ -217,7 +217,7 @@ TEST(HandPoses, AnIndustrialArmUprightAndStretchedAhead) {
     expect_pair(arm, pose, {90, 90, 90, 0, -90, 0});
 }
 
-/// A machine that stands at a singular place stands still: its joints are kept as they are.
+/// A machine stopped at a singular pose stays stopped: its joints are kept.
 TEST(HandPoses, WhereTheWristIsInLineItsTurnIsKept) {
     for (const double bend : {0.0, 180.0}) {
         Joints joints{10, -50, 20, 33, bend, 44};
@@ -250,7 +250,7 @@ TEST(HandPoses, TwoKindsOfTheSameArmAgree) {
         EXPECT_NEAR(by_rows[i], closed[i], 1e-10) << "axis " << i;
     }
     serial.set(Serial::index_of(Serial::UNROTATE, 2), 1);
-    const Joints coupled{20, -30, 70, 50, -60, 70};  // joint 1 comes on top of joint 2
+    const Joints coupled{20, -30, 70, 50, -60, 70};  // joint 1 is added to joint 2
     Pose uncoupled;
     ASSERT_EQ(serial.forward(coupled.data(), uncoupled), Status::OK);
     EXPECT_NEAR(uncoupled[0], by_rows[0], 1e-10);
@@ -274,7 +274,7 @@ TEST(HandPoses, UprightStrutsAreAsLongAsThePlatformIsHigh) {
     for (std::size_t i = 0; i < Hexapod::STRUTS; ++i) {
         EXPECT_NEAR(joints[i], 5, 1e-12);
     }
-    // A ring of radius 10 around a vertical axis, 3 beside and 4 below the strut's base.
+    // A ring of radius 10 around a vertical axis, 3 beside and 4 below the base of the strut.
     Pentapod pentapod;
     const double base_and_ring[] = {13, 0, 104, 10, 0};
     for (std::size_t k = 0; k < 5; ++k) {

@@ -19,7 +19,7 @@ TEST(Trivial, GantryJointsShareAnAxis) {
     EXPECT_EQ(joints[1], 2);
     EXPECT_EQ(joints[2], 2);
     EXPECT_EQ(joints[3], 3);
-    joints[2] = 7;  // the second of a gantry does not tell the pose
+    joints[2] = 7;  // the second joint of a gantry does not affect the pose
     Pose back;
     EXPECT_EQ(kins.forward(joints, back), Status::OK);
     EXPECT_EQ(back, pose);

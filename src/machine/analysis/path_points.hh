@@ -14,7 +14,7 @@ struct PathPoint {
     bool isRapid;   ///< of the move that ends here
 };
 
-/// Keeps every n-th point; n doubles whenever there are too many.
+/// Keeps every n-th point; doubles n when there are too many.
 class PathPoints {
   public:
     static constexpr std::size_t MOST = 400000;

@@ -12,16 +12,16 @@ namespace mw::machine {
 
 class HalSetup {
   public:
-    /// `programs`: starts what loadusr names beside the parts of this process; null: nothing else is started.
+    /// `programs`: starts programs of loadusr besides the parts of this process; null: none are started.
     HalSetup(const MachineParts &parts, hal::Host &host, hal::script::ProgramHost *programs,
              const MachineOptions &options)
         : parts_(parts), host_(host), programs_(programs), options_(options) {}
 
-    /// Makes the in-process part for `loadusr hal_manualtoolchange`.
+    /// Creates the in-process part for `loadusr hal_manualtoolchange`.
     std::function<Result<>()> on_tool_change_program;
 
-    /// The first failure ends it; its message has file, line and column of the HAL file. What was left out is
-    /// told in one warning.
+    /// Ends at the first failure, with file, line and column of the HAL file in the message. One warning
+    /// names omitted programs.
     Result<> run();
 
   private:

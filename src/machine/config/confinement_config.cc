@@ -20,7 +20,7 @@ void add_list(std::string_view list, std::vector<std::string> &extensions) {
     }
 }
 
-/// [DISPLAY]PROGRAM_PREFIX, with colons between; the folder of the INI file where there is none.
+/// [DISPLAY]PROGRAM_PREFIX, separated by colons; the default is the folder of the INI file.
 std::vector<std::string> program_folders(const ini::IniFile &ini) {
     const ini::IniEntry *entry = ini.find("DISPLAY", "PROGRAM_PREFIX");
     std::string_view rest = entry == nullptr ? std::string_view(".") : std::string_view(entry->value);

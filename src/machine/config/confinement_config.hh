@@ -10,11 +10,10 @@
 
 namespace mw::machine {
 
-/// Extensions of programs and of files that filters make programs from, in lower case with their dot.
+/// File name extensions of programs and of files that filters convert, in lower case with the dot.
 std::vector<std::string> program_extensions(const ini::IniFile &ini);
 
-/// Every file that a value of the INI file names is a file of the machine, and `parameter_file`, which may
-/// not be there yet.
+/// Files of the machine: all that values of the INI file name, and `parameter_file`, which may not exist yet.
 task::Confinement read_confinement(const ini::IniFile &ini, const std::string &parameter_file);
 
 }  // namespace mw::machine

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Whether an INI file has the current form, which update_ini writes.
+// Checks whether an INI file has the current form, which update_ini writes.
 #pragma once
 
 #include "base/ini/ini_reader.hh"
 
 namespace mw::machine {
 
-/// Names update_ini where the file has sections or a version of LinuxCNC before 2.8.
+/// Suggests update_ini for a file with sections or a version of LinuxCNC before 2.8.
 void check_form(ini::IniReader &ini);
 
 }  // namespace mw::machine

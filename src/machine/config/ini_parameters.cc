@@ -14,7 +14,7 @@ std::optional<double> IniParameters::hal_value(std::string_view name) const {
     if (hal_ == nullptr) {
         return std::nullopt;
     }
-    // G-code knows no case: what is not there as written may be there in lower case.
+    // G-code ignores case: a key that does not exist as written may exist in lower case.
     for (const std::string &spelling : {std::string(name), to_lower(name)}) {
         auto value = hal_->get(spelling);
         if (!value.has_value()) {

@@ -10,10 +10,10 @@ namespace mw::machine {
 
 class IniParameters final : public gcode::ParameterSource {
   public:
-    /// `hal` may be null: then no HAL value is known.
+    /// `hal` may be null: then HAL values are unknown.
     IniParameters(const ini::IniFile &ini, const hal::Hal *hal) : ini_(ini), hal_(hal) {}
 
-    /// Section and key in any case, as G-code has none.
+    /// Section and key in upper or lower case, because G-code ignores case.
     std::optional<double> ini_value(std::string_view section, std::string_view key) const override;
     std::optional<double> hal_value(std::string_view name) const override;
 

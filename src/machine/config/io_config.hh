@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the INI file says of tools, the tool changer and pins for an operator.
+// The settings of an INI file for tools, the tool changer and pins for an operator.
 #pragma once
 
 #include "base/ini/ini_reader.hh"
@@ -7,9 +7,9 @@
 
 namespace mw::machine {
 
-/// After the settings of the interpreter.
+/// Call after reading the settings of the interpreter.
 void read_io(ini::IniReader &ini, MachineConfig &machine);
-/// After the settings of motion.
+/// Call after reading the settings of motion.
 void read_panel(ini::IniReader &ini, MachineConfig &machine);
 
 }  // namespace mw::machine

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// An INI file together with all that was read from it.
+// An INI file together with all files that were read from it.
 #pragma once
 
 #include <memory>
@@ -16,7 +16,7 @@ struct LoadedConfig {
         : ini(std::move(file)), reader(ini, sink), machine(read_machine_config(reader)) {
         machine.task.confinement = read_confinement(ini, machine.task.parameter_file);
     }
-    /// Null when the file cannot be read or has errors; they are in the sink.
+    /// Null when the file cannot be read or has errors; the sink has them.
     static std::unique_ptr<LoadedConfig> load(const std::string &path, diagnostics::Sink &sink);
 
     ini::IniFile ini;

@@ -11,10 +11,11 @@
 
 namespace mw::machine {
 
-/// What the module says of itself once it is loaded; matrixkins: as its pins begin.
+/// As reported by the module after loading; matrixkins: with the initial values of its pins.
 kinematics::LinearJoints linear_joints(const std::vector<std::string> &kinematics);
 
-/// Tells of an axis that may have no external offset, and takes its ratio away: it keeps all of its speed.
+/// Reports an axis that cannot have an external offset, and removes its ratio, so that it keeps its full
+/// speed.
 void check_offset(ini::IniReader &ini, const std::string &section, int axis, MachineConfig &machine);
 
 }  // namespace mw::machine

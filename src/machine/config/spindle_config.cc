@@ -12,7 +12,7 @@ namespace {
 using ini::IniKey;
 using motion::Parameter;
 
-/// The limits of one spindle among the parameters of a machine.
+/// The limits of one spindle in the parameters of a machine.
 struct Limits {
     MachineConfig &machine;
     int spindle;
@@ -34,7 +34,7 @@ struct Limits {
     }
 };
 
-/// Two limits of one direction are a contradiction: the narrower one is safe.
+/// Two limits of one direction contradict each other: the narrower one is safe.
 template <class Narrower>
 void read_limit(ini::IniReader &ini, Limits limits, const IniKey &both, Parameter forward, Parameter reverse,
                 Narrower narrower) {

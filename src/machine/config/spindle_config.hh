@@ -9,8 +9,8 @@
 
 namespace mw::machine {
 
-/// [SPINDLE_n]MIN_VELOCITY and MAX_VELOCITY, which count with the limits that name a direction, and the
-/// limits of M4 where there are none: those of M3. Call it after the settings that name a direction.
+/// Reads [SPINDLE_n]MIN_VELOCITY and MAX_VELOCITY, which apply in addition to the limits per direction.
+/// Without limits for M4 those of M3 apply. Call it after reading the settings per direction.
 void read_spindle_limits(ini::IniReader &ini, int spindle, MachineConfig &machine);
 
 }  // namespace mw::machine

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A script host that runs nothing: for looking at a program before the machine may be touched by anybody's
-// code.
+// A script host that runs nothing: for checking a program before user code may affect the machine.
 #pragma once
 
 #include <functional>
@@ -9,14 +8,15 @@
 
 namespace mw::machine {
 
-/// Every function of a remap counts as there and does nothing; `asked` hears of each that would have run.
+/// Every function of a remap exists and does nothing; `asked` is called for each function that would have
+/// run.
 class UnscriptedHost final : public gcode::ScriptHost {
   public:
     explicit UnscriptedHost(std::function<void()> asked) : asked_(std::move(asked)) {}
 
     Result<> load(const gcode::ScriptSettings &, gcode::InterpreterView &) override { return {}; }
     Result<> begin() override { return {}; }
-    /// Whether a script or a file answers an O word is not known: a file may.
+    /// It is unknown whether a script or a file implements an O word: assumes a file.
     bool hasFunction(gcode::ScriptModule module, std::string_view) const override {
         return module == gcode::ScriptModule::REMAP;
     }
@@ -36,7 +36,7 @@ class UnscriptedHost final : public gcode::ScriptHost {
     std::function<void()> asked_;
 };
 
-/// Passes values of HAL on as 0 and tells `asked` of each: they are known only while the machine runs.
+/// Returns 0 for HAL values and calls `asked` for each: they are known only while the machine runs.
 class UnknownHalValues final : public gcode::ParameterSource {
   public:
     UnknownHalValues(gcode::ParameterSource &values, std::function<void()> asked)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Pins of halui with what makes commands of them.
+// Pins of halui, and the code that turns them into commands.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace mw::halui {
 
-/// An input pin that means one command; `number` is its instance, or SELECTED.
+/// An input pin for one command; `number` is its instance, or SELECTED.
 struct HaluiButton {
     hal::UserPin<bool> pin;
     messages::Command (*make)(int number) = nullptr;
@@ -25,7 +25,7 @@ template <const auto &TABLE>
 struct Jogged {
     hal::UserPinSet<TABLE> pins;
     JogPins jog;
-    client::Serial order = 0;  ///< the last jog that was asked for
+    client::Serial order = 0;  ///< the last jog command
     Edge select;
 };
 template <const auto &TABLE>

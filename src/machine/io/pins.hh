@@ -13,13 +13,13 @@ namespace mw::io {
 /// Not realtime; one thread.
 class Pins {
   public:
-    /// Makes the component and its pins.
+    /// Creates the component and its pins.
     Result<> create(hal::Hal &hal);
-    /// Ends the component; its pins vanish.
+    /// Removes the component and its pins.
     void destroy();
 
-    /// Finds what shows the tool offset in the realtime process: once the HAL files have loaded motmod. A
-    /// program that stands in for it (motion-logger) has no such pins.
+    /// Finds the pins of the tool offset in the realtime process, after the HAL files have loaded motmod. A
+    /// substitute for motmod (motion-logger) has no such pins.
     Result<> join_tool_offset();
 
     Inputs read();
@@ -29,7 +29,7 @@ class Pins {
     hal::Hal *hal_ = nullptr;
     int comp_id_ = 0;
     hal::UserPinSet<pins::IOCONTROL> pins_;
-    ToolOffsetBlock *block_ = nullptr;  ///< null: nobody shows the tool offset
+    ToolOffsetBlock *block_ = nullptr;  ///< null: no tool offset pins
     NumberedOffset sent_;
 };
 

@@ -12,7 +12,7 @@
 namespace mw::io {
 
 struct NumberedOffset {
-    std::uint32_t number = 0;  ///< counts the values; 0: none yet
+    std::uint32_t number = 0;  ///< number of the value; 0: none yet
     geometry::Pose offset;     ///< [machine units]
 };
 

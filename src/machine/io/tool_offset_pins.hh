@@ -14,18 +14,18 @@ namespace mw::io {
 /// Lives in HAL memory.
 class ToolOffsetPins {
   public:
-    /// Makes the pins; 0 or a negated errno. [while loading]
+    /// Creates the pins; returns 0 or a negated errno. [while loading]
     int declare(int comp_id) noexcept;
-    /// Writes the latest offset to all pins, between two cycles of the threads that read them. While a write
-    /// of the I/O controller is under way, and for ever after one that its process did not finish, the pins
-    /// keep their values. [servo]
+    /// Writes the latest offset to all pins, between two cycles of the threads that read them. During a write
+    /// of the I/O controller, and after a write that its process did not finish, the pins keep their values.
+    /// [servo]
     [[gnu::hot]] void step(ToolOffsetBlock &block) noexcept;
 
   private:
     NumberedOffset current_;
-    const std::uint32_t *links_ = nullptr;  ///< of HAL: counts the links of pins
+    const std::uint32_t *links_ = nullptr;  ///< counter of HAL: changes with the links of pins
     std::uint32_t last_links_ = 0;
-    std::uint32_t last_version_ = 0;  ///< of the block
+    std::uint32_t last_version_ = 0;  ///< version of the block
     sdk::PinSet<pins::TOOL_OFFSET> pins_[MAX_AXES];
 };
 

@@ -16,16 +16,17 @@ struct File {
 
 inline constexpr const char *INI_FILE = "machine.ini", *PROGRAM_FILE = "nc_files/first_program.ngc";
 
-/// All that the machine needs, the INI file first; each says in comments what it is for. `plan` has no fault.
+/// All files of the machine, the INI file first; comments in each explain its purpose. `plan` must be free of
+/// faults.
 std::vector<File> machine_files(const Plan &plan);
 
 std::string ini_text(const Plan &plan);
 /// Drives, spindle, buttons and switches.
 std::string hal_text(const Plan &plan);
-/// What stands in for the wires of a machine with stepper motors.
+/// Simulated wires of a machine with stepper motors.
 std::string wires_text(const Plan &plan);
 std::string tool_table_text(const Plan &plan);
-/// Moves each axis through the middle of its travel, and stays inside of it.
+/// Moves each axis through the middle of its travel, within the limits.
 std::string program_text(const Plan &plan);
 
 }  // namespace mw::setup

@@ -8,13 +8,13 @@
 
 namespace mw::task {
 
-/// Works on task; has nothing of its own.
+/// Works on task; has no state.
 struct Task::ProgramResume {
     Task &task;
 
-    /// What comes before the line is calculated from here on.
+    /// Starts calculating the state before the line.
     void begin();
-    /// The same for the program that was cut short.
+    /// As begin(), for the interrupted program.
     Result<> open_recovery();
     void begin_recovery();
     void prepare_journal();
@@ -22,27 +22,27 @@ struct Task::ProgramResume {
     void show_journal();
     void note_place();
     void note_doubt();
-    /// Once a cycle while it is.
+    /// Once a cycle while active.
     void step();
-    /// A person has agreed; `number` as in Approach::check().
+    /// A person has confirmed; `number` as in Approach::check().
     Result<Progress> confirm(std::uint64_t number);
-    /// Nothing is searched or proposed any more.
+    /// Ends the search or the proposal.
     void drop();
 
     void watch_hold();
-    /// Lets the axes of a held program be jogged.
+    /// Releases the axes of a paused program for jogging.
     Result<Progress> release(mailbox::Serial command);
-    /// A resume has to bring something about first.
+    /// A resume requires an approach or a calculation first.
     bool isReturnNeeded() const {
         return task.run_.hold() == Hold::AWAY || (task.left_.has_value() && isSomethingOff());
     }
     Result<Progress> come_back();
-    /// Another tool table than when the program was held.
+    /// The tool table has changed since the program was paused.
     bool areToolsChanged() const;
 
   private:
     Result<> check_recovery() const;
-    /// What was read ahead has other tools: the program is calculated again up to the block under way.
+    /// Blocks read ahead used other tool data: calculates the program again up to the current block.
     Result<Progress> calculate_again();
     void begin_with_tools_now();
     bool isOldOffsetKept() const;
@@ -52,7 +52,7 @@ struct Task::ProgramResume {
     /// What of it is the same for all: the way, the feed; then it is shown.
     void propose(ApproachPlan plan);
     void complete(ApproachPlan &plan) const;
-    /// Where a tool is changed when the machine comes from `at`.
+    /// Tool change position when the machine comes from `at`.
     geometry::Pose find_change_place(geometry::Pose at, ApproachPlan &plan) const;
     void go_on(const ApproachPlan &plan);
     void restore_switches(const StartRecord &record);

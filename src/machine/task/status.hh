@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What task tells: the status of the machine, and lines for the operator.
+// The output of task: the status of the machine, and lines for the operator.
 #pragma once
 
 #include <cstdint>
@@ -10,19 +10,19 @@
 
 namespace mw::task {
 
-/// As it is published once a cycle.
+/// The status that is published once a cycle.
 using Status = messages::MachineStatus;
 
 /// Why all work was stopped: the argument of [RS274NGC]ON_ABORT_COMMAND.
 enum class AbortReason : std::uint8_t {
-    EXECUTION_ERROR = 1,  ///< a move was refused, or something that the program asked for failed
+    EXECUTION_ERROR = 1,  ///< a move was rejected, or an action of the program failed
     ESTOP_CHAIN = 2,
     MOTION_FAULT = 3,  ///< following error, limit switch, amplifier
     STATE_OFF = 4,
     STATE_ESTOP_RESET = 5,
     STATE_ESTOP = 6,
-    STATE_NOT_ON = 7,  ///< the machine went off by itself
-    ABORT = 8,         ///< the operator's
+    STATE_NOT_ON = 7,  ///< the machine was switched off by itself
+    ABORT = 8,         ///< by the operator
     INTERPRETER_ERROR = 9,
     INTERPRETER_ERROR_MDI = 10,
 };

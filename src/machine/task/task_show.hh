@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What task tells its clients.
+// The status that task sends to its clients.
 #pragma once
 
 #include "machine/task/task.hh"
 
 namespace mw::task {
 
-/// Works on task; has nothing of its own.
+/// Works on task; has no state.
 struct Task::Show {
     Task &task;
 
     /// At the end of a cycle.
     void all();
-    // Parts of it, for cycles beside a long call: what needs neither the interpreter nor the tool data.
+    // Parts for cycles during a long call, which need neither the interpreter nor the tool data.
     void states();
     void sequencer();
     void publish();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A program that is spoken to in lines: its input and output are ours.
+// A program that communicates in lines through its standard input and output.
 #pragma once
 
 #include <sys/types.h>
@@ -13,23 +13,24 @@
 
 namespace mw::machine {
 
-/// Ends with its object: its input is closed, then it is asked, then killed. Not realtime; one thread.
+/// The destructor ends the program: closes its input, then requests its end, then kills it. Not realtime; one
+/// thread.
 class LineProgram {
   public:
     /// `words`: the program, by its path from `folder` or found in PATH, and its arguments. It runs in
-    /// `folder`; what it writes to stderr goes where ours goes.
+    /// `folder` and shares our stderr.
     static Result<LineProgram> start(const std::vector<std::string> &words, const std::string &folder);
     LineProgram(LineProgram &&other) noexcept;
     LineProgram &operator=(LineProgram &&other) noexcept;
     ~LineProgram();
 
     const std::string &name() const { return name_; }
-    /// Never blocks: what the program does not take at once waits; an error when it has ended, or takes
-    /// nothing for too long.
+    /// Does not block: text that the program does not accept at once waits; an error when it has ended, or
+    /// accepts nothing for too long.
     Result<> write(const std::string &line);
-    /// A whole line that has come, without its end. Never blocks.
+    /// The next complete line without its end. Does not block.
     std::optional<std::string> read();
-    /// Sleeps until something comes or `timeout_s` is over.
+    /// Sleeps until a line arrives or `timeout_s` has passed.
     void sleep(double timeout_s) const;
     /// "it has ended with status 1"; nothing while it runs.
     std::optional<std::string> ending();

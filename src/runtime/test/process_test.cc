@@ -12,7 +12,7 @@
 namespace mw::runtime {
 namespace {
 
-/// As when all descriptors of the process are in use.
+/// Simulates a process without free descriptors.
 class NoDescriptors {
   public:
     NoDescriptors() {

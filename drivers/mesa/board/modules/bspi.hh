@@ -21,7 +21,7 @@ constexpr unsigned BSPI_CHANNELS = 16;
 class BspiModule final : public Module {
   public:
     explicit BspiModule(unsigned instances) : ports_(instances) {}
-    /// What the device on a channel answers to a frame.
+    /// Answer of the device on a channel to a frame.
     using Device = std::function<std::uint32_t(unsigned channel, std::uint32_t frame)>;
     void connect(unsigned instance, Device device) { ports_[instance].device = std::move(device); }
 

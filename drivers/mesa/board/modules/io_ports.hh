@@ -18,7 +18,7 @@ struct IoPort {
     std::uint32_t inverted = 0;
 };
 
-/// What the board does with a pin.
+/// How the board drives a pin.
 enum class Drive : std::uint8_t { NONE, LOW, HIGH };
 
 /// `module_level` is the output of the module of that pin, when it has one.
@@ -40,9 +40,9 @@ class IoPorts final : public Module {
 
     Drive drive(unsigned pin) const;
     bool level(unsigned pin) const;
-    /// The module drives the pin: direction and source are set so.
+    /// The module drives the pin, by its direction and source.
     bool isDrivenByModule(unsigned pin) const;
-    /// What a bite of the watchdog does: all pins become inputs.
+    /// A bite of the watchdog: all pins become inputs.
     void release_all();
     unsigned pins() const { return static_cast<unsigned>(ports_.size()) * port_width_; }
 

@@ -22,28 +22,27 @@ class Module {
     /// Reading may have an effect, as on the real board (the sync register of the DPLL).
     virtual std::uint32_t read(RegisterPlace place) = 0;
     virtual void write(RegisterPlace place, std::uint32_t value) = 0;
-    /// Lets time pass up to `to_ns` [ns since power-up].
+    /// Advances the time to `to_ns` [ns since power-up].
     virtual void advance(std::int64_t /*to_ns*/) {}
     /// The DPLL timer `timer` (1 to 4; 0: the sync itself) fires.
     virtual void latch(unsigned /*timer*/) {}
     /// The level at an output of a unit, by the number in the descriptor of its pin.
     virtual bool output(unsigned /*unit*/, std::uint8_t /*function*/) const { return false; }
-    /// The level at an input of a unit, at the current time. The firmware reports it after each piece of
-    /// time.
+    /// The level at an input of a unit, at the current time. The firmware reports it after each time step.
     virtual void input(unsigned /*unit*/, std::uint8_t /*function*/, bool /*level*/) {}
-    /// What is connected to the pins has moved to the time of the last advance().
+    /// The hardware at the pins has moved to the time of the last advance().
     virtual void sample() {}
-    /// The longest piece of time after which the module has to see its inputs [ns]; 0: any.
+    /// The maximum time step after which the module must see its inputs [ns]; 0: any.
     virtual std::int64_t input_span_ns() const { return 0; }
     /// The number of registers; registers behind those of the descriptor may exist (DPLL timers).
     virtual unsigned registers() const = 0;
-    /// The consecutive words of a register in each instance.
+    /// The number of consecutive words of a register in each instance.
     virtual unsigned words(unsigned /*reg*/) const { return 1; }
     /// The register is in each instance, although the descriptor says otherwise.
     virtual bool isInEachInstance(unsigned /*reg*/) const { return false; }
 };
 
-/// A module that this board has no model of: it reads 0, and writes have no effect.
+/// A module without a model in this board: it reads 0, and writes have no effect.
 class UnknownModule final : public Module {
   public:
     explicit UnknownModule(unsigned registers) : registers_(registers) {}

@@ -13,7 +13,7 @@ struct Pwm {
     std::uint32_t value = 0, mode = 0;
 };
 
-/// The part of the time in which the output is on, from -1 to 1 with the sign bit; 0 when it is not enabled.
+/// Duty cycle of the output, from -1 to 1 with the sign bit; 0 when it is not enabled.
 double duty_of(const Pwm &pwm);
 
 /// Registers: value, mode, PWM rate, PDM rate, enable; the last three exist once.

@@ -73,7 +73,7 @@ constexpr RemoteField FIELDS_7I84[] = {
     {"Input", "None", 32, BITS, INPUT, 0, 0},
 };
 
-/// What the field cards have in common.
+/// Parameters common to the field cards.
 constexpr RemoteGlobal GLOBALS[] = {
     {"SwRevision", 16, UNSIGNED, 14},
     {"NVBaudRate", 8, NON_VOLATILE_UNSIGNED, 9},

@@ -71,7 +71,7 @@ class Remote {
   public:
     Remote(const RemoteCard &card, std::uint32_t serial_number);
 
-    /// What the user registers read after the start of set-up: serial number, name, addresses of the lists.
+    /// Content of the user registers after the start of set-up: serial number, name, addresses of the lists.
     UserWords identity() const;
     /// The fields of the mode are exchanged from now on.
     void set_mode(std::uint8_t mode);
@@ -80,7 +80,7 @@ class Remote {
     /// Takes the outputs of the host; returns the inputs.
     UserWords exchange(const UserWords &from_host);
 
-    /// An input of the card, or what it got last for an output; by the name of the field.
+    /// An input of the card, or the last value of an output; by the name of the field.
     void set_value(std::string_view field, std::uint32_t value);
     std::uint32_t value(std::string_view field) const;
 

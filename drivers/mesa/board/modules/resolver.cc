@@ -15,7 +15,7 @@ constexpr std::uint32_t DIVIDERS[] = {0, 20'000, 10'000, 5'000};
 constexpr std::int64_t COMMAND_NS = 50'000;
 constexpr double FULL_REV = 4294967296.0;
 
-/// A part of a revolution as a register; whole revolutions are lost.
+/// The fractional revolution as a register.
 std::uint32_t fraction_register(double rev) {
     return static_cast<std::uint32_t>(
         static_cast<std::int64_t>(std::floor((rev - std::floor(rev)) * FULL_REV)));

@@ -20,7 +20,7 @@ constexpr unsigned RESOLVER_CHANNELS = 6;
 class ResolverModule final : public Module {
   public:
     explicit ResolverModule(std::uint32_t clock_hz) : clock_hz_(clock_hz) {}
-    /// The electrical revolutions of a channel at the current time; empty: nothing is connected.
+    /// Electrical revolutions of a channel at the current time; empty: not connected.
     using Angle = std::function<std::optional<double>(unsigned channel)>;
     void connect(Angle angle) { angle_ = std::move(angle); }
 

@@ -22,11 +22,11 @@ constexpr std::int64_t bits_per_s(std::uint32_t rate, std::uint32_t clock_hz) {
 /// One line. A frame arrives when its last bit has been sent: 10 bits for each byte. [one thread]
 class SerialLine {
   public:
-    /// What a peer answers to a frame; without a peer, the line is a loop.
+    /// Answer of a peer to a frame; without a peer, the line is a loop.
     using Peer = std::function<std::optional<SerialBytes>(const SerialBytes &frame)>;
     void connect(Peer peer) { peer_ = std::move(peer); }
 
-    /// Sends a frame after those that are on their way. A bit rate of 0 sends nothing.
+    /// Sends a frame after the pending ones. A bit rate of 0 sends nothing.
     void send(const SerialBytes &frame, std::int64_t now_ns, std::int64_t bits_per_s) {
         if (bits_per_s <= 0) {
             return;

@@ -20,7 +20,7 @@ struct StepgenMode {
                                    LATCH_ON_PROBE = 0x40, PROBE_POLARITY = 0x80, WRITABLE = 0xFF;
 };
 
-/// What drives the outputs.
+/// Output signals of the step generator.
 enum class StepType : std::uint8_t { STEP_DIRECTION, UP_DOWN, QUADRATURE, TABLE };
 
 /// The two inputs that latch a position.
@@ -38,9 +38,9 @@ struct Stepgen {
     std::array<bool, 2> latch_levels{true, true};             ///< by LatchInput
 };
 
-/// Lets `ticks` pass. @return the whole steps in this time
+/// Advances by `ticks`. @return the whole steps in this time
 std::int64_t run_stepgen(Stepgen &stepgen, std::int64_t ticks);
-/// What the accumulator register reads: steps in 16.16.
+/// The accumulator register: steps in 16.16.
 std::uint32_t position_register(const Stepgen &stepgen);
 /// The level of the step output: high for the pulse width after each step.
 bool step_level(const Stepgen &stepgen);

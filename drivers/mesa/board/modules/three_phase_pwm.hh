@@ -20,7 +20,7 @@ struct ThreePhasePwm {
 };
 
 constexpr unsigned PHASES = 3;
-/// The part of the time in which the upper switch of a phase is on, from 0 to below 1; 0 while it is off.
+/// Duty cycle of the upper switch of a phase, from 0 to below 1; 0 while it is off.
 double phase_duty(const ThreePhasePwm &pwm, unsigned phase);
 /// Sets the level of the fault input: low is a fault, with bit 15 of the setup high.
 void set_fault_input(ThreePhasePwm &pwm, bool level);

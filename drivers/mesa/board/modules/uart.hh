@@ -33,7 +33,7 @@ class UartModule final : public Module {
         std::uint32_t rate = 0, mode = 0;
         std::deque<std::uint8_t> received;
     };
-    /// Takes what has arrived into the FIFO; what does not fit is lost.
+    /// Moves received bytes into the FIFO; bytes that do not fit are lost.
     void take(unsigned instance);
 
     UartRole role_;

@@ -17,7 +17,7 @@ struct Watchdog {
 
 constexpr std::uint32_t WATCHDOG_RESET = 0x5A000000;
 
-/// Arms it, or starts its time again. A timer value that was written before takes effect here.
+/// Arms it, or restarts its time. A timer value that was written before takes effect here.
 void reset_watchdog(Watchdog &watchdog, std::int64_t tick);
 
 /// Registers: timer, status, reset.
@@ -29,7 +29,7 @@ class WatchdogModule final : public Module {
     void advance(std::int64_t to_ns) override { time_ns_ = to_ns; }
     unsigned registers() const override { return 3; }
 
-    /// When it bites next [ns].
+    /// Time of the next bite [ns].
     std::optional<std::int64_t> bites_at_ns() const;
     void bite();
     bool isBitten() const { return watchdog_.bitten; }

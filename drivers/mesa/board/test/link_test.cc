@@ -16,7 +16,7 @@ FaultPlan faults_of(const std::string &text) {
     return plan.value_or(FaultPlan{});
 }
 
-/// What a host with cycles of 1 ms gets: one read in each cycle, with a time limit of 0.8 ms.
+/// Results of a host with cycles of 1 ms: one read in each cycle, with a time limit of 0.8 ms.
 struct Cycles {
     int answered = 0, late = 0, extra = 0;
     std::vector<int> lost;  ///< the cycles without an answer in time

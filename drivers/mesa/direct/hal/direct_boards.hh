@@ -22,7 +22,8 @@ struct DirectBoardRequest {
 
 /// Registers a board as hm2_CARD.N with its pins: 0, or a negated errno with a message. [while loading]
 MW_HOSTMOT2_API int add_direct_board(DirectBoardRequest request);
-/// Turns the outputs of all boards of a component off and forgets them. No function of theirs may run.
+/// Switches the outputs of all boards of a component off and removes the boards. None of their functions may
+/// run. [while unloading]
 MW_HOSTMOT2_API void remove_direct_boards(int comp_id);
 /// The text of an array of module parameters, empty where none was set.
 MW_HOSTMOT2_API std::string text_at(std::span<char *const> texts, std::size_t index);

@@ -18,7 +18,7 @@ struct EppLoad {
     EppCard card = EppCard::CARD_7I90;
     std::span<const int>
         addresses;  ///< ioaddr=; below 16: the number of a port; the first negative one ends the list
-    std::span<const int> high_addresses;  ///< ioaddr_hi=; 0: found out
+    std::span<const int> high_addresses;  ///< ioaddr_hi=; 0: detected
     std::span<const int> wide;            ///< epp_wide=
     std::span<char *const> configs;
 };

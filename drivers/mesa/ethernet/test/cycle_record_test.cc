@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What is kept of the last cycles, and what they show.
+// The record of the last cycles, and the report from it.
 #include <fcntl.h>
 #include <unistd.h>
 

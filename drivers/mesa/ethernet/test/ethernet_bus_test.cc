@@ -45,7 +45,7 @@ struct Bench {
         board->advance(PERIOD_NS);
         return bus->read(values, PERIOD_NS);
     }
-    /// What happens to the packets from now on, by their number from now on.
+    /// Treatment of the packets from now on, by their number from now on.
     void disturb_requests(std::function<Passage(std::size_t)> passage) {
         board->to_board = [passage = std::move(passage), n = std::size_t{0}](std::size_t) mutable {
             return passage(n++);

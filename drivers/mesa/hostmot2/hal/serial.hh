@@ -11,9 +11,9 @@ namespace mw::mesa {
 
 /// All interfaces, with the names of their boards. They change only while boards are loaded and unloaded.
 MW_HOSTMOT2_API Ports &known_ports() noexcept;
-/// Makes the interfaces of a board known, and reports their names. [while loading]
+/// Registers the interfaces of a board, and logs their names. [while loading]
 void register_ports(const std::string &board, const Ports &ports);
-/// Forgets them. [while unloading]
+/// Removes them. [while unloading]
 void unregister_ports(const std::string &board);
 
 }  // namespace mw::mesa

@@ -12,7 +12,7 @@ struct Clocks {
     std::uint32_t low_hz = 0, high_hz = 0;
 };
 
-/// What starts a transfer: a timer of the phase-locked loop (1 to 4), or with 0 the function
+/// Source that starts a transfer: a timer of the phase-locked loop (1 to 4), or with 0 the function
 /// trigger-encoders.
 std::uint32_t transfer_start(std::uint32_t timer) noexcept;
 

@@ -27,7 +27,7 @@ class ByteQueue {
         }
         return true;
     }
-    /// Removes the oldest bytes; the number of those that there were.
+    /// Removes the oldest bytes; returns their number.
     std::size_t pop(std::span<std::uint8_t> bytes) noexcept {
         std::size_t count = 0;
         for (; count < bytes.size() && size_ > 0; ++count) {

@@ -34,8 +34,8 @@ class IoPorts final : public Module {
     void read(const Registers &registers, const Cycle &cycle) noexcept override;
     void write(Registers &registers, const Cycle &cycle) noexcept override;
 
-    /// Read and write the general pins at once, for read_gpio and write_gpio. They have values of their own,
-    /// so that the thread of the cycle is not disturbed. [one realtime thread, after declare()]
+    /// Read and write the general pins at once, for read_gpio and write_gpio. They have separate values, so
+    /// that they do not disturb the thread of the cycle. [one realtime thread, after declare()]
     void read_immediately(RegisterBus &bus) noexcept;
     void write_immediately(RegisterBus &bus) noexcept;
 
@@ -45,7 +45,7 @@ class IoPorts final : public Module {
         int first = 0, count = 0;  ///< its pins
     };
 
-    /// The pins as one thread sees them.
+    /// The pins as seen by one thread.
     struct View {
         std::vector<GpioPins> pins;
         PinBinding inputs, outputs;

@@ -34,7 +34,7 @@ constexpr PinRow<PwmPins> PWM_DITHER_PINS[] = {
 struct PwmRate {
     int bits = 12;                   ///< 9 to 12
     std::uint32_t rate = 0;          ///< register, 16 bit
-    std::uint32_t frequency_hz = 0;  ///< that results
+    std::uint32_t frequency_hz = 0;  ///< resulting frequency
 };
 constexpr int MIN_PWM_BITS = 9, MAX_PWM_BITS = 12, PDM_BITS = 12;
 

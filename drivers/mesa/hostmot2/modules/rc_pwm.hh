@@ -21,7 +21,7 @@ constexpr PinRow<RcPwmPins> RC_PWM_PINS[] = {
     {"scale", Access::IN, &RcPwmPins::scale},
 };
 
-/// The width register, limited to what it holds; no pulse when a figure is not finite.
+/// The width register, limited to its range; no pulse when a value is not finite.
 std::uint32_t rc_pwm_width(const RcPwmPins &pins, std::uint32_t clock_hz) noexcept;
 /// The rate register; the frequency is limited to 0.01 Hz to 1 kHz.
 std::uint32_t rc_pwm_rate(double frequency_hz, std::uint32_t clock_hz) noexcept;

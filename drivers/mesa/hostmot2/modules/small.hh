@@ -21,7 +21,7 @@ std::uint32_t dpll_base_rate(double base_hz, std::uint32_t prescale, std::uint32
 std::uint32_t dpll_timer(double offset_us, double period_s) noexcept;
 /// [us]
 double dpll_phase_error_us(std::uint32_t phase_register, double period_s) noexcept;
-/// What a module writes to follow a timer: 0 to 4; a negative number switches it off.
+/// Register value of a module that follows a timer: 0 to 4; a negative number switches it off.
 std::uint32_t dpll_timer_choice(std::int32_t timer) noexcept;
 
 }  // namespace mw::mesa

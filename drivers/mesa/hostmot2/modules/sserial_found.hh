@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the driver has found at the smart serial ports of a board while it was loaded.
+// The smart serial ports of a board that the driver found while loading.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace mw::mesa {
 /// A parameter of a card and its value at the time of the discovery.
 struct FoundParameter {
     DataRecord record;
-    std::uint64_t value = 0;  ///< the bits as the card has them
+    std::uint64_t value = 0;  ///< the bits in the card
 };
 
 /// A card on a channel.

@@ -11,7 +11,7 @@
 
 namespace mw::mesa {
 
-/// What a port says of itself.
+/// Data that a port reports.
 struct SserialPort {
     int major = 0, minor = 0;
     int channels = 0;
@@ -40,7 +40,7 @@ class SserialSetup {
     Result<SserialCard> card(int channel);
     /// A byte of the memory of a card in set-up.
     Result<std::uint8_t> read_card_byte(int channel, std::uint16_t address);
-    /// A value of 1, 2, 4 or 8 bytes, the lowest byte first. Where it is stored differs in how it is read.
+    /// Reads a value of 1, 2, 4 or 8 bytes, the lowest byte first. The record determines how it is read.
     Result<std::uint64_t> read_card_value(int channel, std::uint16_t address, int bytes);
     Result<std::uint64_t> read_nonvolatile_value(int channel, std::uint16_t address, int bytes);
     /// Starts the exchange of process data with a mode for each channel: the mask of those that follow.

@@ -14,8 +14,8 @@ namespace mw::mesa {
 struct SserialBit {
     bool value = false, inverse = true, invert = false;
 };
-/// A number that the card has as a fraction of its range: `scale_max` is the end of the range. An output is
-/// limited to min_limit ... max_limit.
+/// A number that the card stores as a fraction of its range: `scale_max` is the end of the range. An output
+/// is limited to min_limit ... max_limit.
 struct SserialNumber {
     double value = 0.0;
     double scale_max = 1.0, max_limit = 1.0, min_limit = 0.0;
@@ -45,7 +45,7 @@ constexpr PinRow<SserialCounter> SSERIAL_COUNTER_PINS[] = {
     {"counts-per-rev", Access::RW, &SserialCounter::counts_per_rev},
 };
 
-/// What the pins of a field are.
+/// Type of the pins of a field.
 enum class FieldPins : std::uint8_t { NONE, BITS, BOOLEAN, UNSIGNED, SIGNED, REAL, STREAM, COUNTER };
 
 /// A field of process data and its values.
@@ -77,7 +77,7 @@ struct SserialCardValues {
 
 /// The fields of a description with their default values. [while loading]
 SserialCardValues make_sserial_card(const std::vector<DataRecord> &process, const ProcessLayout &layout);
-/// A name as pins have it. [while loading]
+/// A name in the form of pin names. [while loading]
 std::string lower_case(std::string_view text);
 
 /// Takes the words of a card. [servo thread]
@@ -97,7 +97,7 @@ std::uint64_t signed_bits(const SserialNumber &number, int bits) noexcept;
 /// The number of bits from a card; 0 when it is not finite. [any thread]
 double unsigned_number(std::uint64_t raw, int bits, double scale_max) noexcept;
 double signed_number(std::uint64_t raw, int bits, double scale_max) noexcept;
-/// Counts on by the low bits of a count; resets the position, and finds the index: with index-enable, the
+/// Continues the count from its low bits; resets the position, and finds the index: with index-enable, the
 /// multiple of counts-per-rev that was passed becomes 0. [servo thread]
 void count_encoder(SserialCounter &counter, std::uint64_t raw, int bits) noexcept;
 

@@ -75,7 +75,7 @@ TEST(Idrom, WhatIsEncodedIsDecoded) {
     }
 }
 
-// The words by hand, so that an error that encoder and decoder share would show.
+// The words are written by hand, to find an error that encoder and decoder share.
 TEST(Idrom, TheRegistersHaveTheKnownLayout) {
     const Registers registers = registers_of(small_idrom());
     EXPECT_EQ(registers.at(0x0100), 0x55AACAFEU);

@@ -13,7 +13,7 @@
 namespace mw::mesa::lbp16 {
 namespace {
 
-/// A UDP socket on a free port of the loopback interface, in the place of a board.
+/// A UDP socket on a free port of the loopback interface, instead of a board.
 struct Peer {
     int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
     sockaddr_in address{};

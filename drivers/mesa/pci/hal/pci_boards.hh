@@ -12,7 +12,7 @@ constexpr int MAX_PCI_BOARDS = 8;
 
 /// 0, or a negated errno with a message; unload_pci_boards() follows also then. [while loading]
 MW_HOSTMOT2_API int load_pci_boards(int comp_id, std::span<char *const> configs);
-/// After no function of the boards can run any more.
+/// Call when no function of the boards can run any more.
 MW_HOSTMOT2_API void unload_pci_boards(int comp_id);
 
 }  // namespace mw::mesa

@@ -19,11 +19,11 @@ namespace mw::mesa {
 namespace {
 
 constexpr std::uint32_t HZ_IN_KHZ = 1000;
-/// The fastest clock that a 7I90 takes.
+/// The maximum clock of a 7I90.
 constexpr int MAX_RATE_KHZ = 62'500;
 constexpr unsigned PROBE_BITS = 5;
 
-/// The 8 characters with which the firmware names its board; spaces where it does not answer.
+/// The 8 characters of the board's name in the firmware; spaces if it does not answer.
 std::string board_name_of(RegisterAccess &access) {
     constexpr std::uint16_t NAME_OFFSET = 12;
     std::uint32_t offset = 0;

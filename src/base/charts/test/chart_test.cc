@@ -48,7 +48,7 @@ TEST_F(ChartTest, StripsShowEveryCurve) {
                     {"broken", std::vector<double>(100, NAN), false}};
     chart.trigger_s = 0.05;
     ASSERT_TRUE(draw_strips(chart, folder / "a.svg"));
-    // Names are drawn as glyphs; a strip has its frame, so that more curves make a higher picture.
+    // Names are drawn as glyphs. Each strip has a frame, so more curves make a taller picture.
     const std::string three = read("a.svg");
     EXPECT_NE(three.find("<svg"), std::string::npos);
     chart.curves.pop_back();
@@ -66,7 +66,7 @@ TEST_F(ChartTest, BadPathsAreRefused) {
 
 TEST_F(ChartTest, HistogramsStandBelowEachOther) {
     Histogram histogram{"servo", -5, 1, "us", {0, 1, 10, 1000, 3}, 1, 2};
-    // Byte 20 to 23 of a PNG: its height.
+    // Bytes 20 to 23 of a PNG file: its height.
     const auto height = [this](const std::vector<Histogram> &all) {
         EXPECT_TRUE(draw_histograms(all, folder / "h.png"));
         const std::string png = read("h.png");

@@ -15,12 +15,12 @@ namespace {
 
 constexpr std::string_view BLANKS = " \t\r";
 
-/// Reads arguments one after the other; blanks and commas separate them.
+/// Reads arguments in order; blanks and commas separate them.
 class Arguments {
   public:
     Arguments(const Call &call, Plane in_plane) : plane(in_plane), call_(call), rest_(call.arguments) {}
 
-    const Plane plane;  ///< selected by the calls before
+    const Plane plane;  ///< plane selected by earlier calls
 
     std::string_view next_word() {
         const std::size_t begin = rest_.find_first_not_of(" \t,");
@@ -58,7 +58,7 @@ class Arguments {
         }
         return out;
     }
-    /// One of the words; its place among them.
+    /// Index of one of the words.
     template <class Enum>
     Enum choice(std::span<const std::string_view> words) {
         const std::string_view word = next_word();
@@ -72,7 +72,7 @@ class Arguments {
         }
         return {};
     }
-    /// All of the arguments as text, without quotes around it.
+    /// The whole argument as text, without quotes.
     std::string_view text() {
         std::string_view out = call_.arguments;
         if (out.size() >= 2 && out.front() == '"' && out.back() == '"') {
@@ -113,7 +113,7 @@ class Arguments {
 
 using Reader = CanonCall (*)(Arguments &in);
 
-/// A call by its FIELDS; `choices` are what its name says.
+/// A call made from its FIELDS; `choices` are the values that its name determines.
 template <RegularCall Made, bool... choices>
 CanonCall regular(Arguments &in) {
     Made call;
@@ -132,7 +132,7 @@ CanonCall arc_feed(Arguments &in) {
     arc.second_centre = in.number();
     arc.rotation = in.whole();
     arc.axis_end = in.number();
-    // First, second and normal axis of each plane, as the canon numbers them.
+    // First, second and normal axis of each plane, in the canon's numbering.
     constexpr int AXES[3][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}};
     const int *const axes = AXES[in.plane == Plane::XY ? 0 : (in.plane == Plane::YZ ? 1 : 2)];
     arc.end[axes[0]] = arc.first_end;
@@ -229,7 +229,7 @@ constexpr Row ROWS[] = {
     {UseToolLengthOffset::NAME, &tool_length_offset},
 };
 
-/// The next word of `line` from `at` on, which moves behind it.
+/// The next word of `line` from `at` on; moves `at` behind it.
 std::string_view word_at(std::string_view line, std::size_t &at, std::string_view ends) {
     const std::size_t begin = line.find_first_not_of(BLANKS, at);
     if (begin == std::string_view::npos) {

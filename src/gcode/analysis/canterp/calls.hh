@@ -11,18 +11,17 @@
 
 namespace mw::gcode::canterp {
 
-/// A line taken apart: two columns that mean nothing here, NAME(arguments).
+/// A line split into two columns that are ignored and NAME(arguments).
 struct Call {
     std::string_view name, arguments;
-    std::size_t name_offset = 0, arguments_offset = 0;  ///< from 0, in the line
+    std::size_t name_offset = 0, arguments_offset = 0;  ///< offset in the line, from 0
 };
 
 enum class Kind { NOTHING, CALL, BAD };
 /// NOTHING for blank lines.
 Kind take_apart(std::string_view line, Call &call);
 
-/// Makes the call; `plane` is the one selected and follows SELECT_PLANE. An error names the column of what is
-/// wrong.
+/// Makes the call; `plane` is the selected plane, which SELECT_PLANE changes. An error names the column.
 Result<> make_call(const Call &call, Canon &canon, Plane &plane);
 
 }  // namespace mw::gcode::canterp

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The words of `millwright format` and `millwright explain`, up to the exit status.
+// Command lines of `millwright format` and `millwright explain`, up to the exit status.
 #include <unistd.h>
 
 #include <filesystem>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Interpreters that are plug-ins: how they are found, refused, and canterp, which reads canon calls.
+// Interpreter plug-ins: how they are found and rejected, and canterp, which reads canon calls.
 #include <algorithm>
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The codes in force.
+// The active codes.
 #pragma once
 
 #include "gcode/interpreter/codes/around_block.hh"
@@ -9,7 +9,7 @@
 
 namespace mw::gcode::detail {
 
-/// `sequence`: of the block that ran last.
+/// `sequence`: number of the last executed block.
 ActiveCodes active_codes(const State &state, const Parameters &parameters, const BlockCodes &block,
                          int sequence);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// From a parsed block to its values: words computed, codes looked up and put in the order of execution, all
-// checked against the table of codes. All functions: false after setting the fault.
+// Reads the values of a parsed block: computes words, finds codes, sorts them in the order of execution, and
+// checks all against the table of codes. All functions return false after setting the fault.
 #pragma once
 
 #include <cstdint>
@@ -14,41 +14,41 @@
 
 namespace mw::gcode::detail {
 
-/// What words and codes mean.
+/// Meaning of words and codes.
 struct BlockSources {
     const Evaluator &evaluator;
     const Remaps &remaps;
 };
 
-/// Into `values`, which are clear.
+/// Reads the words into `values`, which must be clear.
 bool read_words(const BlockView &view, const BlockSources &sources, BlockValues &values, Fault &fault);
-/// Axis words belong to a code of the block that uses them, else to the motion in force.
+/// Axis words belong to a code of the block that uses them, else to the current motion mode.
 bool choose_motion(BlockValues &values, int motion, const Remaps &remaps, Fault &fault);
-/// Each code has the words that it needs, each word a code that uses it.
+/// Checks that each code has its required words, and each word a code that uses it.
 bool check_words(const BlockValues &values, Fault &fault);
-/// G53 is for straight moves: G0 or G1 is in the block, or current with axis words.
+/// G53 needs a straight move: G0 or G1 in the block, or current with axis words.
 bool check_machine_coordinates(const BlockValues &values, Fault &fault);
 
-/// The machine must have the axes that a block names.
+/// Checks that the machine has the axes that a block names.
 class AxisCheck {
   public:
     /// `mask`: bit per axis of the machine.
     bool check(const BlockValues &values, unsigned mask, Fault &fault);
 
   private:
-    unsigned mask_ = ~0U;       ///< when absent_ was made
-    std::uint32_t absent_ = 0;  ///< letters of the axes that the machine lacks
+    unsigned mask_ = ~0U;       ///< mask for which absent_ was calculated
+    std::uint32_t absent_ = 0;  ///< letters of axes that the machine does not have
 };
 
-/// Parameters that a block sets.
+/// Parameter settings of a block.
 class BlockSettings {
   public:
-    /// All values are computed before any is set.
+    /// All values are computed before the first one is set.
     bool apply(const BlockView &view, const Evaluator &evaluator, const Names &names, Parameters &parameters,
                Fault &fault);
 
   private:
-    /// A parameter and the value that it is to have.
+    /// A parameter and its new value.
     struct MadeSetting {
         int number = 0;
         NameId name = NO_ID;
@@ -57,7 +57,7 @@ class BlockSettings {
     static bool compute_setting(const Arena &arena, const Setting &setting, const Evaluator &evaluator,
                                 const Names &names, MadeSetting &out, Fault &fault);
 
-    std::vector<MadeSetting> made_;  ///< of the block that runs
+    std::vector<MadeSetting> made_;  ///< settings of the current block
 };
 
 }  // namespace mw::gcode::detail

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The words of a block as what they stand for.
+// Interpretation of the words of a block.
 #pragma once
 
 #include <string>
@@ -9,14 +9,14 @@
 
 namespace mw::gcode::detail {
 
-/// A word that the block has, as a whole number. False after setting the fault.
+/// A word of the block as a whole number. False after setting the fault.
 bool whole_word(const BlockValues &values, char name, int &out, Fault &fault);
 
 inline constexpr int ALL_SPINDLES = -1;
-/// The word $: one of so many spindles, or ALL_SPINDLES; 0 without it. False after setting the fault.
+/// The word $: a spindle, or ALL_SPINDLES; 0 without it. False after setting the fault.
 bool spindle_of(const BlockValues &values, int spindles, int &spindle, Fault &fault);
 
-/// As messages name it: "g33.1", "m6".
+/// Name for messages: "g33.1", "m6".
 std::string code_name(const Code &code);
 
 }  // namespace mw::gcode::detail

@@ -162,7 +162,7 @@ constexpr int FIRST_USER_CODE = 100;
 struct Index {
     std::array<const Code *, MAX_G> g{};
     std::array<const Code *, MAX_M> m{};
-    std::array<Code, MAX_M - FIRST_USER_CODE> users{};  ///< M100 to M199 differ in their number only
+    std::array<Code, MAX_M - FIRST_USER_CODE> users{};  ///< M100 to M199 differ only in their number
 
     Index() {
         for (const Code &code : TABLE) {

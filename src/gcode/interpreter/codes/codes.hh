@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The one table of codes: modal group, words, place in the order of execution, handler.
+// The table of codes: modal group, words, phase of execution, handler.
 #pragma once
 
 #include <cstdint>
@@ -29,7 +29,7 @@ struct Machine;
 struct State;
 struct Remap;
 
-/// In the order in which the parts of one block take place.
+/// Order of execution of the parts of a block.
 enum class Phase : std::uint8_t {
     COMMENT,
     SPINDLE_MODE,
@@ -61,7 +61,7 @@ enum class Phase : std::uint8_t {
     STOP,
 };
 
-/// At most one code of each group may stand in a block.
+/// A block may contain at most one code of each group.
 enum class Group : std::uint8_t {
     NON_MODAL,
     MOTION,
@@ -90,8 +90,8 @@ enum class Group : std::uint8_t {
     WORD_T,
 };
 
-// What a code does: a function that reads the block and the state, changes the state and hands calls to the
-// canon; false after setting the fault. One kind for each set of parts that codes need.
+// Handlers of codes: a handler reads the block and the state, changes the state and makes canon calls; false
+// after setting the fault. One type for each set of objects that codes need.
 using ModeHandler = bool (*)(const Code &, const BlockValues &, State &, CanonQueue &, Fault &);
 using MachineHandler = bool (*)(const Code &, const BlockValues &, const Machine &, State &, CanonQueue &,
                                 Fault &);
@@ -122,14 +122,14 @@ struct Code {
     int number = 0;  ///< ten times the number for G, the number for M
     Group group{};
     Phase phase{};
-    bool usesAxes = false;       ///< axis words in the block are this code's
-    std::uint32_t words = 0;     ///< letters that it may have, beside axes
-    std::uint32_t required = 0;  ///< letters that it must have
+    bool usesAxes = false;       ///< uses the axis words of the block
+    std::uint32_t words = 0;     ///< permitted letters, except axes
+    std::uint32_t required = 0;  ///< required letters
     Handler handler;
-    const Remap *remap = nullptr;  ///< for remapped codes
+    const Remap *remap = nullptr;  ///< not null for remapped codes
 };
 
-/// All rows of the table, user codes left out.
+/// All rows of the table except user codes.
 std::span<const Code> all_codes();
 /// The row of a code, or null. `number` as in Code.
 const Code *find_code(char letter, int number);
@@ -140,7 +140,7 @@ constexpr std::uint32_t bit_of(int letter_index) {
     return 1u << letter_index;
 }
 
-/// Letters as a set: "xyz@" and so on.
+/// Set of letters: "xyz@" and so on.
 constexpr std::uint32_t letters(std::string_view text) {
     std::uint32_t set = 0;
     for (const char c : text) {

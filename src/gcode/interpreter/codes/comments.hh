@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Comments that do something: (msg,...), (debug,...), (print,...), (log...), (probeopen ...), (abort,...).
+// Active comments: (msg,...), (debug,...), (print,...), (log...), (probeopen ...), (abort,...).
 #pragma once
 
 #include <cstdint>
@@ -12,14 +12,14 @@
 
 namespace mw::gcode::detail {
 
-/// What comments show.
+/// Values that comments print.
 struct ShownValues {
     const Evaluator &evaluator;
     Names &names;
 };
 
-/// Hands on what a comment asks for, or the comment itself. `column` of its first character. False after
-/// setting the fault.
+/// Makes the call of an active comment, or passes on the comment. `column` of its first character. False
+/// after setting the fault.
 bool run_comment(std::string_view comment, std::uint32_t column, const ShownValues &shown, CanonQueue &canon,
                  Fault &fault);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What codes ask of the machine around the interpreter.
+// State of the machine and settings that codes read.
 #pragma once
 
 #include "gcode/interpreter/interpreter.hh"
@@ -12,7 +12,7 @@ struct Machine {
     const Settings &settings;
 
     int count_spindles() const { return world.count_spindles(); }
-    /// Factor for lengths of the parameter file and the tool table [machine units] to program units.
+    /// Factor from lengths of the parameter file and the tool table [machine units] to program units.
     double to_program(LengthUnits units) const {
         constexpr double MM_PER_INCH = 25.4;
         const double mm = world.mm_per_machine_unit();

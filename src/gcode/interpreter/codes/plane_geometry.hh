@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Points, lines and circles in a plane, as cutter compensation and the lathe cycles need them.
+// Points, lines and circles in a plane, for cutter compensation and lathe cycles.
 #pragma once
 
 #include <cmath>
 
 namespace mw::gcode::detail {
 
-/// A point or a vector in a plane: along its first and its second axis.
+/// A point or vector in a plane, along its first and second axis.
 struct Point {
     double x = 0, y = 0;
 
@@ -36,13 +36,13 @@ inline Point unit(Point from, Point to) {
     return {(to.x - from.x) / length, (to.y - from.y) / length};
 }
 
-/// Where two paths cross: none, one or two points.
+/// Intersections of two paths: none, one or two points.
 struct Crossings {
     int count = 0;
     Point points[2];
 };
 
-/// A line by a point and its direction, and a circle.
+/// Intersections of a line, by a point and its direction, and a circle.
 inline Crossings cross_line_circle(Point on_line, Point along, Point centre, double radius) {
     const Point foot = sum(on_line, along, dot({centre.x - on_line.x, centre.y - on_line.y}, along));
     const double off = distance(foot, centre);

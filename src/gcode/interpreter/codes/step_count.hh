@@ -7,11 +7,12 @@
 
 namespace mw::gcode::detail {
 
-/// The relative error of a figure of a program: decimal fractions have no exact double, and an expression
-/// adds to the error.
+/// Relative error of a number of a program: decimal fractions have no exact double, and an expression adds to
+/// the error.
 inline constexpr double FIGURE_ERROR = 4.0 * std::numeric_limits<double>::epsilon();
 
-/// Rounds `steps` up. A calculated number that is whole within `error` is whole: no step without depth.
+/// Rounds `steps` up. A number within `error` of a whole number counts as whole, so that no step has zero
+/// depth.
 inline double count_steps(double steps, double error) {
     const double whole = std::round(steps);
     return std::fabs(steps - whole) <= error ? whole : std::ceil(steps);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the canon is told at a start, and what the machine tells at a waiting point.
+// Announcing the state to the canon at a start, and reading the state of the machine at a waiting point.
 #pragma once
 
 #include "gcode/canon/canon_queue.hh"
@@ -11,11 +11,11 @@
 
 namespace mw::gcode::detail {
 
-/// Takes the coordinate system from the parameters and announces the state, as at the start of a program.
+/// Reads the coordinate system from the parameters and announces the state, as at the start of a program.
 void announce(const Machine &machine, Parameters &parameters, State &state, CanonQueue &canon);
-/// Offsets, spindles' speeds and switches once more: the canon has lost some of them.
+/// Announces offsets, spindle speeds and switches again: the canon may have lost some of them.
 void announce_modes(const Machine &machine, const State &state, CanonQueue &canon);
-/// Takes positions, tools, switches and awaited results from the machine.
+/// Reads positions, tools, switches and awaited results from the machine.
 void synchronise(const Machine &machine, ToolTable &tools, Parameters &parameters, Awaited &awaited,
                  State &state);
 

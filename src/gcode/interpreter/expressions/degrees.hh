@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Sine, cosine and tangent of angles in degrees, rounded from extended precision: sin[30] is 0.5 and a
-// program that compares or rounds it finds what it finds in LinuxCNC. Several times faster than the
-// library's in long double.
+// Sine, cosine and tangent of angles in degrees, rounded from extended precision: sin[30] is 0.5, and a
+// program that compares or rounds the value gets the same result as in LinuxCNC. Several times faster than
+// the library's functions in long double.
 #pragma once
 
 namespace mw::gcode::detail {
 
-/// Any finite angle [deg]; within a unit in the last place of the library's long double result, and next to
-/// zeros (below 0.001) and poles exactly that.
+/// Sine of any finite angle [deg]; within one unit in the last place of the library's long double result, and
+/// equal to it near zeros (below 0.001) and poles.
 double sine_of_degrees(double degrees);
 double cosine_of_degrees(double degrees);
 double tangent_of_degrees(double degrees);

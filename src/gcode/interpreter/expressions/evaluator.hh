@@ -13,12 +13,12 @@
 
 namespace mw::gcode::detail {
 
-/// Where parameters come from that the interpreter itself keeps: modes, positions, INI and HAL values.
+/// Parameters of the interpreter itself: modes, positions, INI and HAL values.
 class BuiltIns {
   public:
     virtual ~BuiltIns() = default;
     virtual bool isBuiltInName(std::string_view name) const = 0;
-    /// Nothing when it has no value (an INI key that is not there).
+    /// Nothing when it has no value (an INI key that does not exist).
     virtual std::optional<double> built_in(std::string_view name) const = 0;
     /// #5400 to #5428.
     virtual double built_in(int number) const = 0;
@@ -31,7 +31,7 @@ class Evaluator {
 
     /// False after setting the fault.
     bool value(const Arena &arena, NodeId node, double &out) const;
-    /// A value that must be whole (within 1e-4).
+    /// A value that must be a whole number (within 1e-4).
     bool whole(const Arena &arena, NodeId node, int &out) const;
 
     std::optional<double> named(NameId name) const;
@@ -42,9 +42,9 @@ class Evaluator {
         int number = 0;
         return take_number(index, number);
     }
-    /// The parameter that `index` names; false when it is not isNumber().
+    /// The number of the parameter `index`; false unless isNumber().
     static bool take_number(double index, int &number) {
-        // Nearly all are whole numbers: those need no rounding.
+        // Most values are whole numbers and need no rounding.
         constexpr double MOST = PARAMETER_COUNT - 1;
         if (index >= 1.0 && index <= MOST) {
             number = static_cast<int>(index);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The parameter file: one "number value" per line, numbers rising.
+// The parameter file: one "number value" per line, numbers ascending.
 #include <algorithm>
 #include <set>
 
@@ -12,7 +12,7 @@
 namespace mw::gcode::detail {
 namespace {
 
-/// Those that must be in every parameter file: G28, G30, G92, and the nine coordinate systems.
+/// Parameters required in every parameter file: G28, G30, G92, and the nine coordinate systems.
 std::set<int> required_numbers() {
     std::set<int> numbers;
     const auto add = [&](int first, int count) {

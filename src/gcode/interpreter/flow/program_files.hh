@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The programs that have been read: the open file, subroutines in files of their own, lines of MDI, and texts
+// The programs that have been read: the open file, subroutines in separate files, lines of MDI, and texts
 // that scripts have executed.
 #pragma once
 
@@ -16,14 +16,13 @@ namespace mw::gcode::detail {
 
 class ProgramFiles {
   public:
-    /// Keeps a program under its path, in place of the one that was there.
+    /// Stores a program under its path and replaces an earlier one.
     Program *keep(std::unique_ptr<Program> program);
-    /// `name`.ngc in the first of the folders that has it, read when it is asked for the first time; null
-    /// when none has one that can be read.
+    /// `name`.ngc in the first of the folders that has it, read on first use; null when none can be read.
     Program *find_subroutine(std::string_view name, std::span<const std::string> folders, Names &names);
-    /// A line of a file that was read, empty when it was not.
+    /// A line of a file; empty when the file has not been read.
     std::string line_text(const std::string &file, int line) const;
-    /// Drops files, not lines of MDI and texts of scripts.
+    /// Drops files, but not lines of MDI and texts of scripts.
     void close_files() { files_.clear(); }
 
     Program *keep_mdi(std::string_view line, Names &names);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the interpreter asks of a script language (remap handlers, O words, named parameters, ;py, lines), and
-// what it shows to scripts. No language is known here: an optional shared object implements ScriptHost.
+// Interface between the interpreter and a script language (remap handlers, O words, named parameters, ;py,
+// lines). It is independent of the language: an optional shared object implements ScriptHost.
 #pragma once
 
 #include <array>
@@ -21,57 +21,59 @@ namespace mw::gcode {
 
 using ScriptValue = std::variant<bool, std::int64_t, double, std::string>;
 
-/// A remapped code as its INI line defines it.
+/// A remapped code as defined in its INI line.
 struct ScriptRemap {
     std::string name, argspec, prolog, epilog, ngc, function;
     int modal_group = 0;
     int motion_code = -1;  ///< ten times the number of a G code
 };
 
-/// A block that a script can look into: words, codes, comment. Letters as indices: a is 0.
+/// A block as scripts read it: words, codes, comment. Letters as indices: a is 0.
 struct ScriptBlock {
     std::uint32_t present = 0;  ///< bit per letter
     std::array<double, 26> value{};
     std::optional<double> radius, angle;  ///< the polar words @ and ^
-    std::array<int, 17> g_modes{};        ///< by number of modal group; ten times the code, -1 none
+    std::array<int, 17> g_modes{};        ///< by modal group number; ten times the code, -1 none
     std::array<int, 11> m_modes{};
     int motion = -1;  ///< the motion code of the block
     int m_count = 0;
     int line = 0;      ///< from 1
     int number = -1;   ///< the N word
-    int builtins = 0;  ///< how often the procedure of a remap used the built-in meaning of its code
+    int builtins = 0;  ///< how often the procedure of a remap has used the built-in meaning of its code
     std::string comment, o_name;
-    std::vector<double> params;  ///< arguments of an O word's call
+    std::vector<double> params;  ///< arguments of an O word call
     std::optional<ScriptRemap> remap;
 };
 
-/// One level of call.
+/// One call level.
 struct ScriptContext {
     std::string name, file;
     int line = 0;
     int kind = 0;    ///< 0 main, 1 procedure, 2 by M98, 3 script of an O word, 4 remap
-    int status = 0;  ///< bit 0: modes saved (M70, M73); bit 1: restored at the return; bit 2: a remap
+    int status = 0;  ///< bit 0: modes saved (M70, M73); bit 1: restored at return; bit 2: a remap
     ActiveCodes saved;
     std::array<double, 30> arguments{};  ///< #1 to #30 of the caller
     std::vector<std::pair<std::string, double>> named;
 };
 
-/// Why a block that a script had executed failed.
+/// Why a block that a script executed has failed.
 struct ScriptFault {
     std::string message;
     int line = 0;
     std::string text;
 };
 
-/// The interpreter as scripts see it. Valid as long as the interpreter; used only while it calls a script.
+/// The interpreter's interface for scripts. Valid as long as the interpreter; used only while it calls a
+/// script.
 class InterpreterView {
   public:
     virtual ~InterpreterView() = default;
 
-    /// Runs a block, and the subroutines it calls. True: done; false: a waiting point (probe, tool change,
-    /// input) is due, the script must suspend before it executes more. `line` names the block; 0: none.
+    /// Runs a block and the subroutines that it calls. True: done; false: a waiting point (probe, tool
+    /// change, input) is due, and the script must suspend before it executes more. `line` names the block; 0:
+    /// none.
     virtual std::expected<bool, ScriptFault> execute(std::string_view text, int line) = 0;
-    /// Canon calls by scripts, in program order; deliver() hands them on.
+    /// Canon calls of scripts, in program order; deliver() passes them on.
     virtual Canon &canon() = 0;
     virtual void deliver() = 0;
     /// The next waiting point reads the result of an input (M66, WAIT) or of a probe.
@@ -85,9 +87,9 @@ class InterpreterView {
     virtual Result<> set_named(std::string_view name, double value) = 0;
     virtual std::vector<std::string> local_names() const = 0;
     virtual std::vector<std::string> global_names() const = 0;
-    /// Those of the global names that the interpreter or a script computes: read only.
+    /// Global names that the interpreter or a script computes: read only.
     virtual std::vector<std::string> predefined_names() const = 0;
-    /// Those of them that a script computes.
+    /// Global names that a script computes.
     virtual std::vector<std::string> script_names() const = 0;
 
     /// State by its name ("feed_rate"); nothing when there is no such name.
@@ -103,17 +105,17 @@ class InterpreterView {
     virtual int count_tools() const = 0;
     virtual ToolEntry tool(int index) const = 0;
     virtual int find_tool(int number) const = 0;  ///< -1 when the table has no such tool
-    /// The tool of current_pocket is in the spindle: #5400 to #5413 follow.
+    /// The tool of current_pocket is in the spindle: #5400 to #5413 are updated.
     virtual void load_tool() = 0;
     virtual void synch() = 0;
 
-    /// Blocks at and below the current one: 0 the block itself, n that of the n-th nested remap.
+    /// The current block and its outer ones: 0 the block itself, n that of the n-th nested remap.
     virtual ScriptBlock block(int level) const = 0;
     virtual std::vector<ScriptContext> contexts() const = 0;
     virtual const World &world() const = 0;
 };
 
-/// What calling a script has come to.
+/// Result of calling a script.
 struct ScriptOutcome {
     enum class Kind { DONE, VALUE, WAITING, EXIT, FAILED };
     Kind kind = Kind::DONE;
@@ -121,7 +123,7 @@ struct ScriptOutcome {
     std::string message;  ///< of FAILED; with the place in the script
 };
 
-/// A script that has suspended itself. Destroying it ends it without going on.
+/// A suspended script. Destroying the object ends the script without continuing it.
 class SuspendedScript {
   public:
     virtual ~SuspendedScript() = default;
@@ -133,7 +135,7 @@ struct ScriptArguments {
     std::vector<std::pair<std::string, double>> words;  ///< names in lower case
 };
 
-/// Where a script's function stands.
+/// Module of a script function.
 enum class ScriptModule { REMAP, OWORD };
 
 class ScriptStop;
@@ -141,32 +143,33 @@ class ScriptStop;
 class ScriptHost {
   public:
     virtual ~ScriptHost() = default;
-    /// Scripts end when `stop`, which outlives the host, is requested.
+    /// Scripts end when `stop`, which outlives the host, receives a request.
     virtual void follow(ScriptStop &stop) { static_cast<void>(stop); }
     /// Runs the top-level script. `view` must outlive the host.
     virtual Result<> load(const ScriptSettings &settings, InterpreterView &view) = 0;
-    /// The interpreter is ready: calls the top-level script's __init__, if there is one.
+    /// The interpreter is ready: calls __init__ of the top-level script, if it exists.
     virtual Result<> begin() = 0;
     virtual bool hasFunction(ScriptModule module, std::string_view name) const = 0;
     /// `rest` is set when the outcome is WAITING.
     virtual ScriptOutcome call(ScriptModule module, const std::string &name, const ScriptArguments &arguments,
                                std::unique_ptr<SuspendedScript> &rest) = 0;
-    /// Statements of a ;py, line.
+    /// Runs the statements of a ;py, line.
     virtual ScriptOutcome run_text(std::string_view text) = 0;
-    /// Names (with their leading underscore) that scripts define as named parameters.
+    /// Named parameters (with their leading underscore) that scripts define.
     virtual std::vector<std::string> named_parameters() const = 0;
     virtual Result<double> named_parameter(const std::string &name) = 0;
 };
 
-/// Opens the shared object `file` (see script_library()) and makes a host. An error says what to install.
+/// Opens the shared object `file` (see script_library()) and creates a host. An error names the package to
+/// install.
 Result<std::unique_ptr<ScriptHost>> open_script_host(const std::string &file);
-/// Where the host for Python is: beside this program, in the build folder or the installation.
+/// Path of the host for Python: beside this program, in the build folder or the installation.
 std::string script_library();
 
-/// The symbol in that shared object, and the version that both sides must have.
+/// The symbol in that shared object, and the version that both sides must match.
 inline constexpr char SCRIPT_HOST_SYMBOL[] = "millwright_script_host";
 inline constexpr int SCRIPT_HOST_VERSION = 3;
-/// Writes a new host to *host; 0 when `version` is not the one that was compiled in.
+/// Writes a new host to *host; returns 0 when `version` is not the compiled one.
 using ScriptHostFactory = int (*)(int version, ScriptHost **host);
 
 }  // namespace mw::gcode

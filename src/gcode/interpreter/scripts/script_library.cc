@@ -16,7 +16,7 @@ namespace {
 
 constexpr char LIBRARY[] = "python_host.so";
 
-/// The folder of the file that this code was loaded from: a program, or a Python module.
+/// Folder of the file that contains this code: a program, or a Python module.
 std::string own_file_folder() {
     Dl_info info{};
     if (::dladdr(reinterpret_cast<const void *>(&script_library), &info) == 0 || info.dli_fname == nullptr) {

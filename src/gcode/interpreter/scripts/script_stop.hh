@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// How a thread that must not wait ends a script that runs in another one.
+// Lets a thread that must not wait end a script in another thread.
 #pragma once
 
 #include <atomic>
@@ -11,21 +11,21 @@
 
 namespace mw::gcode {
 
-/// One in a process. The thread that runs the interpreter calls begin(). Another thread calls request()
-/// during a call of the interpreter. The script host waits for requests in a separate thread.
+/// One per process. The thread that runs the interpreter calls begin(). Another thread calls request() during
+/// a call of the interpreter. The script host waits for requests in a separate thread.
 class ScriptStop {
   public:
-    /// A call of the interpreter begins or has ended: what was requested before it does not count any more.
+    /// A call of the interpreter begins or has ended: earlier requests no longer apply.
     void begin() noexcept { seen_.store(requests_.load()); }
-    /// Scripts of the call that is under way end with an error.
+    /// Ends the scripts of the current call with an error.
     void request() {
         ++requests_;
         wake();
     }
     bool isDue() const noexcept { return requests_.load() != seen_.load(); }
 
-    /// Of the script host. wait() returns at the next request or wake() after `known`, which it then is. (Not
-    /// std::atomic's wait(): its notify_all() does not reach waiters in another shared object.)
+    /// For the script host. wait() returns at the next request or wake() after `known`, which it updates.
+    /// (Not std::atomic's wait(): its notify_all() does not reach waiters in another shared object.)
     std::uint32_t changes() const {
         const std::lock_guard lock(mutex_);
         return changes_;
@@ -40,7 +40,7 @@ class ScriptStop {
         ++changes_;
         changed_.notify_all();
     }
-    /// Where the script was that had to end last, "file:line"; empty: no script ran.
+    /// Position of the last script that was ended, "file:line"; empty: none was running.
     void set_place(std::string place) {
         const std::lock_guard lock(mutex_);
         place_ = std::move(place);
@@ -52,13 +52,13 @@ class ScriptStop {
 
   private:
     std::atomic<std::uint32_t> requests_{0}, seen_{0};
-    mutable std::mutex mutex_;  ///< held for moments only
+    mutable std::mutex mutex_;  ///< locked only briefly
     mutable std::condition_variable changed_;
     std::uint32_t changes_ = 0;
     std::string place_;
 };
 
-/// That of this process.
+/// The object of this process.
 ScriptStop &script_stop();
 
 }  // namespace mw::gcode

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Where the programs of user M codes are.
+// Search for the programs of user M codes.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace mw::gcode {
 
-/// The executable file M100 to M199 in the first of `folders` that has one; empty when none has. Waits for
-/// the disk. `folders`: Settings::user_m_path.
+/// The executable file M100 to M199 in the first of `folders` that has one; empty when none has. Reads the
+/// disk. `folders`: Settings::user_m_path.
 std::string find_user_program(const std::vector<std::string> &folders, int code);
 
 }  // namespace mw::gcode

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Each canon call alone: its name, its printed line, its way through the queue and through the frame.
+// Each canon call: its name, its printed line, and its path through the queue and the frame.
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -37,13 +37,13 @@ ToolEntry tool(int number) {
     return out;
 }
 
-/// A call, and how rs274 prints it; empty: not at all.
+/// A call and its text from rs274; empty: not printed.
 struct Printed {
     CanonCall call;
     std::string text;
 };
 
-/// With all that their names can say.
+/// Calls with all their variants.
 std::vector<Printed> move_calls() {
     return {
         {OnReset{}, "ON_RESET()"},
@@ -138,7 +138,7 @@ std::vector<Printed> action_calls() {
     };
 }
 
-/// One of each call at least.
+/// At least one of each call.
 const std::vector<Printed> &all_calls() {
     static const std::vector<Printed> CALLS = [] {
         std::vector<Printed> calls = move_calls(), actions = action_calls();
@@ -150,7 +150,7 @@ const std::vector<Printed> &all_calls() {
     return CALLS;
 }
 
-/// What a PrintCanon writes while `run` uses it.
+/// Text that a PrintCanon writes while `run` uses it.
 template <class Run>
 std::string printed(Run run) {
     char *text = nullptr;
@@ -166,7 +166,7 @@ std::string printed(Run run) {
     return out;
 }
 
-/// Without counter and block number.
+/// The text without counter and block number.
 std::string calls_only(const std::string &lines) {
     std::istringstream in(lines);
     std::string out;
@@ -240,7 +240,7 @@ TEST(CanonQueue, HandsOnEachCallAsItCame) {
     EXPECT_TRUE(queue.empty());
 }
 
-/// Notes blocks and calls by their lines and names.
+/// Records blocks and calls by lines and names.
 class Notes final : public Canon {
   public:
     std::vector<std::string> notes;
@@ -330,7 +330,7 @@ TEST(CanonQueue, KeepsMovedEndsOnceTheBlockHasSucceeded) {
               "STRAIGHT_FEED(5.0000, 6.0000, 0.0000, 0.0000, 0.0000, 0.0000)");
 }
 
-/// Keeps all of it.
+/// Records all machine calls.
 class Machine final : public MachineCanon {
   public:
     std::vector<MachineCall> calls;
@@ -344,7 +344,8 @@ std::vector<std::size_t> kinds() {
     return {MachineCall(Calls{}).index()...};
 }
 
-/// What each call is for the machine; nothing for what is in the coordinates and settings of later calls.
+/// The machine call for each call; nothing for calls whose effect is in the coordinates and settings of later
+/// calls.
 std::vector<std::size_t> machine_kinds(const CanonCall &call) {
     return std::visit(
         Overloaded{
@@ -376,7 +377,7 @@ TEST(MachineFrame, MapsEachCallToWhatTheMachineDoes) {
             found.push_back(call.index());
         }
         if (std::holds_alternative<NurbsFeed>(one.call)) {
-            EXPECT_FALSE(found.empty()) << one.text;  // as many moves as it takes
+            EXPECT_FALSE(found.empty()) << one.text;  // any number of moves
         } else {
             EXPECT_EQ(found, machine_kinds(one.call)) << one.text;
         }
@@ -395,7 +396,7 @@ TEST(MachineFrame, TurnsInchesOfAProgramIntoMillimetresOfTheMachine) {
     frame.take(StraightFeed{pose(1, 0, 0)});
     frame.take(SetSpindleSpeed{0, 300});
     ASSERT_EQ(machine.calls.size(), 2u);
-    constexpr double EXACT = 1e-9;  // a few products
+    constexpr double EXACT = 1e-9;  // rounding of a few products
     const auto &move = std::get<LineMove>(machine.calls[0]);
     EXPECT_NEAR(move.end[geometry::AXIS_X], 50.8, EXACT);
     EXPECT_NEAR(move.end[geometry::AXIS_Z], 50.8, EXACT);
@@ -404,11 +405,11 @@ TEST(MachineFrame, TurnsInchesOfAProgramIntoMillimetresOfTheMachine) {
     EXPECT_NEAR(std::get<UseSpindleSpeed>(machine.calls[1]).surface_unit, 12 * 25.4, EXACT);
 }
 
-// The example of docs/developer/extending/canon_call.md; the test below holds both together.
+// The example of docs/developer/extending/canon_call.md; the test below compares both.
 /// M180: the laser's power.
 struct SetLaserPower {
     int head = 0;
-    double power = 0;  ///< part of the full power, 0 to 1
+    double power = 0;  ///< fraction of full power, 0 to 1
 
     static constexpr std::string_view NAME = "SET_LASER_POWER";
     static constexpr std::tuple FIELDS{&SetLaserPower::head, &SetLaserPower::power};

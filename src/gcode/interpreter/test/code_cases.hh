@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Programs for codes_test.cc: what they call, or what they are refused with. The calls of the good ones agree
-// with LinuxCNC's standalone interpreter.
+// Programs for codes_test.cc: their canon calls, or the error with which they are rejected. The calls of
+// accepted programs agree with LinuxCNC's standalone interpreter.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@ namespace mw::gcode {
 
 struct GoodCase {
     const char *program;
-    std::vector<std::string> calls;  ///< FINISH() left out
+    std::vector<std::string> calls;  ///< without FINISH()
 };
 
 struct BadCase {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The parts that codes work on, without an interpreter around them.
+// The objects that codes use, without an interpreter.
 #pragma once
 
 #include <initializer_list>
@@ -23,7 +23,7 @@
 
 namespace mw::gcode::test {
 
-/// A block that has these words.
+/// A block with these words.
 inline detail::BlockValues block(std::initializer_list<std::pair<char, double>> words) {
     detail::BlockValues values;
     for (const auto &[name, value] : words) {
@@ -35,7 +35,7 @@ inline detail::BlockValues block(std::initializer_list<std::pair<char, double>> 
     return values;
 }
 
-/// Notes calls as text.
+/// Records calls as text.
 class CallTexts final : public Canon {
   public:
     std::vector<std::string> texts;
@@ -69,7 +69,7 @@ struct CodeParts {
     detail::Fault fault;
     detail::Outcome outcome = detail::Outcome::OK;
 
-    /// The calls that wait, in order.
+    /// The queued calls, in order.
     std::vector<std::string> calls() {
         CallTexts out;
         canon.flush(out);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Cutter compensation at corners: what the tool's disc sweeps, not how it was computed.
+// Cutter compensation at corners, judged by the area that the tool's disc sweeps.
 #include <fmt/format.h>
 
 #include "gcode/interpreter/test/comp_judge.hh"
@@ -8,8 +8,8 @@
 namespace mw::gcode::test {
 namespace {
 
-/// A line to the origin along X, then a way back that turns by 180 degrees less `from_reversal`, as a line
-/// (`bend` 0) or as an arc of radius 5 to the left (+1) or to the right.
+/// A line to the origin along X, then a return path at 180 degrees less `from_reversal`, as a line (`bend` 0)
+/// or as an arc of radius 5 to the left (+1) or to the right.
 CompContour way_back(int side, double from_reversal_deg, int bend, double radius) {
     CompContour c;
     c.side = side;
@@ -188,7 +188,7 @@ TEST(Compensation, JudgesSeeWhatIsWrong) {
     other.layer = 2.0 * pocket.layer;
     EXPECT_NE(judge_pocket(pocket, program_of(other)).fault.find("layer"), std::string::npos);
     std::string rapid = program_of(pocket);
-    rapid.replace(rapid.find("\nG1 Z") + 1, 2, "G0");  // down to the material: still sound
+    rapid.replace(rapid.find("\nG1 Z") + 1, 2, "G0");  // down to the material: no fault
     EXPECT_EQ(judge_pocket(pocket, rapid).fault, "");
     rapid.replace(rapid.find("G41.1") != std::string::npos ? rapid.find("\nG1 ", rapid.find("G41.1")) + 1
                                                            : rapid.find("\nG1 ", rapid.find("G42.1")) + 1,

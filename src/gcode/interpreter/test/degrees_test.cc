@@ -26,7 +26,7 @@ TEST(Degrees, ExactValuesAreExact) {
 
 TEST(Degrees, FollowTheLibraryInLongDouble) {
     std::mt19937 random(7);
-    // A unit in the last place, and the rounding of the angle in the library's own way.
+    // One unit in the last place, plus the library's rounding of the angle.
     const auto isNear = [](double found, long double wanted, long double angle) {
         const long double allowed = std::numeric_limits<double>::epsilon() * std::fabs(wanted) +
                                     std::numeric_limits<long double>::epsilon() * std::fabs(angle);

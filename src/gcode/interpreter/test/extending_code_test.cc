@@ -18,7 +18,7 @@ namespace {
 bool set_laser_power(const Code &, const BlockValues &values, State &, CanonQueue &canon, Fault &fault) {
     int head = 0;
     if (!whole_word(values, 'p', head, fault)) {
-        return false;  // it says why
+        return false;  // the fault has the reason
     }
     const double power = values.at('q');
     if (power < 0.0 || power > 1.0) {
@@ -32,7 +32,7 @@ const Code LASER_POWER =
     row('m', 90, Group::IO, Phase::IO, false, "pq", "pq", set_laser_power);
 // clang-format on
 
-/// A block with the code and these words, as it is after reading.
+/// A block with the code and these words, as after reading.
 BlockValues with_code(std::initializer_list<std::pair<char, double>> words) {
     BlockValues values = test::block(words);
     values.codes.push_back({&LASER_POWER, 1});

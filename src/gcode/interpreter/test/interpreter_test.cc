@@ -42,7 +42,7 @@ TEST(Interpreter, NumberedParametersTakeEffectAfterTheirLine) {
     EXPECT_DOUBLE_EQ(machine.record.lines[1].end[0], 6);
 }
 
-/// A block that saves or forgets modes, and then fails at its move.
+/// A block that saves or discards modes, and then fails at its move.
 Step fail_with(test::Machine &machine, const std::string &saving) {
     return machine.interpreter->execute(saving + " G2 X1 Y1 R0.01");
 }

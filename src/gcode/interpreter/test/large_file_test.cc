@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Files too large to hold: read in windows while they run, refused when they change under way.
+// Files too large for memory: read in windows while they run, rejected when they change meanwhile.
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -24,7 +24,7 @@ class LargeFile : public testing::Test {
     }
     ~LargeFile() override { std::filesystem::remove(path_); }
 
-    /// Lines of numbered moves, just beyond what is held in memory.
+    /// Lines of numbered moves, slightly more than the limit for text in memory.
     int write(const std::string &head, const std::string &tail) {
         std::ofstream out(path_, std::ios::binary);
         out << head;

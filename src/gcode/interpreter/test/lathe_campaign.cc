@@ -11,7 +11,7 @@
 namespace mw::gcode::test {
 namespace {
 
-/// The moves of the cycles in machine coordinates, in order; a dwell begins each.
+/// The moves of the cycles in machine coordinates, in order; a dwell precedes each cycle.
 class CycleRecorder : public MachineCanon {
   public:
     struct Move {
@@ -19,7 +19,7 @@ class CycleRecorder : public MachineCanon {
         double z = 0, x = 0, centre_z = 0, centre_x = 0, angle = 0;
     };
     std::vector<std::vector<Move>> cycles;
-    double z = 0, x = 0;  ///< where the tool was before the first
+    double z = 0, x = 0;  ///< tool position before the first move
 
     void begin_block(const BlockRef &) override {}
     void take(const MachineCall &call) override {
@@ -37,7 +37,7 @@ class CycleRecorder : public MachineCanon {
         add({move.settings.isRapid, false, move.end[geometry::AXIS_Z], move.end[geometry::AXIS_X], 0, 0, 0});
     }
     void arc(const ArcMove &move) {
-        // The normal of G18 is Y: a positive angle turns from Z to X.
+        // The normal of G18 is Y: positive angles are from Z to X.
         add({false, true, move.end[geometry::AXIS_Z], move.end[geometry::AXIS_X],
              move.centre[geometry::AXIS_Z], move.centre[geometry::AXIS_X],
              move.angle_rad * (move.normal[geometry::AXIS_Y] < 0.0 ? -1.0 : 1.0)});
@@ -52,7 +52,7 @@ class CycleRecorder : public MachineCanon {
     }
 };
 
-/// Refusals of one kind have one text.
+/// Rejections for the same reason have the same text.
 std::string without_figures(const std::string &error) {
     std::string out;
     for (const char c : error.substr(0, error.find('\n'))) {
@@ -121,7 +121,7 @@ LatheVerdict run_lathe_job(const testing::LatheJob &job) {
             at = move.path.to;
             ++verdict.moves;
         }
-        // What G71.1 leaves for G71.2 and G71 for G70 on the face at the contour's end.
+        // Material that G71.1 leaves for G71.2, and G71 for G70, on the face at the contour's end.
         skin = cycle.allowance;
         const double end_allowance = std::fmax(cycle.allowance, 0.0);
         const std::string left = stock.unfinished(cycle.allowance, cycle.isPocketLeft, end_allowance);

@@ -9,10 +9,10 @@
 namespace mw::gcode::test {
 
 struct LatheVerdict {
-    std::string refusal;  ///< the interpreter's, without figures; nothing when it has run
-    std::string fault;    ///< what is wrong with the moves, or with what is left
+    std::string refusal;  ///< the interpreter's text without numbers; nothing when it has run
+    std::string fault;    ///< fault of the moves, or of the remaining material
     std::size_t moves = 0;
-    std::vector<testing::Place> last_places;  ///< after each G4 P0: the last one fed to
+    std::vector<testing::Place> last_places;  ///< after each G4 P0: end of the last feed move
 };
 
 LatheVerdict run_lathe_job(const testing::LatheJob &job);

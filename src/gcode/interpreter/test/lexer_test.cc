@@ -32,7 +32,7 @@ TEST(Lexer, NumbersAreTheNearestDoubles) {
         return text;
     };
     for (int i = 0; i < COUNT; ++i) {
-        // Short ones as programs have them, and long ones that need more digits than a double has.
+        // Short numbers as in programs, and long ones with more digits than a double has.
         const std::uint64_t most = i % 4 == 0 ? 22 : i % 4 == 1 ? 9 : 4;
         std::string text = digits(most);
         text += below(5) > 0 || text.empty() ? "." + digits(most) : "";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What an interpreter asks of a machine, in memory.
+// A machine in memory for the interpreter.
 #pragma once
 
 #include <string_view>

@@ -14,7 +14,7 @@ struct P {
     double x, y;
 };
 
-/// The curve by the recursive definition of B-splines, apart from the code under test.
+/// The curve by the recursive definition of B-splines, independent of the code under test.
 double basis(const std::vector<double> &knots, std::size_t i, int order, double u) {
     if (order == 1) {
         return u >= knots[i] && u < knots[i + 1] ? 1.0 : 0.0;
@@ -42,7 +42,7 @@ P point(const NurbsFeed &nurbs, double part) {
     return {x / w, y / w};
 }
 
-/// Places along the pieces, close together, and the largest bend at a joint [rad].
+/// Closely spaced points along the pieces, and the largest angle at a joint [rad].
 std::vector<P> walk(const NurbsFeed &nurbs, const std::vector<PlanePiece> &pieces, double &bend) {
     std::vector<P> places;
     P at{nurbs.points[0].first, nurbs.points[0].second};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Parameters alone: what a failed block takes back, what a call keeps aside.
+// Parameters in isolation: undo of a failed block, and values saved by calls.
 #include <random>
 
 #include <gtest/gtest.h>
@@ -45,7 +45,7 @@ TEST_F(ParametersTest, RollbackLeavesWhatWasCommitted) {
     EXPECT_EQ(parameters.get(100), 1);
 }
 
-/// Any block of settings, taken back, leaves exactly the values before it.
+/// Rolling back any block of settings restores the values before it exactly.
 TEST_F(ParametersTest, RollbackIsExact) {
     constexpr unsigned SEED = 3;
     std::mt19937 random(SEED);
@@ -69,7 +69,7 @@ TEST_F(ParametersTest, RollbackIsExact) {
             continue;
         }
         parameters.rollback();
-        // Room for globals may have grown; what is not set has no value.
+        // Memory for globals may have grown; unset ones have no value.
         Parameters::Values after = parameters.values();
         while (after.globals.size() > before.globals.size()) {
             ASSERT_EQ(after.globals.back(), std::nullopt);
@@ -123,7 +123,7 @@ TEST_F(ParametersTest, ManyArgumentsAreKeptAsideWithTheirCall) {
     const std::vector<double> given(40, 1.5);
     parameters.set_arguments(given);
     parameters.set(41, 90);
-    parameters.push_call();  // an inner call with few has none of them to restore
+    parameters.push_call();  // an inner call with few arguments has none of them to restore
     parameters.set(31, 2.5);
     parameters.pop_call(false);
     EXPECT_EQ(parameters.get(31), 2.5);

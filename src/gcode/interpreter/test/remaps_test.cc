@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Remapped codes without an interpreter: rows, procedures that run, words that they get.
+// Remapped codes without an interpreter: rows, running procedures, and the words that they receive.
 #include <gtest/gtest.h>
 
 #include "gcode/interpreter/codes/remaps.hh"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Axes that turn on and on ([AXIS_l]WRAPPED_ROTARY) and axes that are held by a lock.
+// Axes that rotate without limit ([AXIS_l]WRAPPED_ROTARY) and locking indexers.
 #include <cmath>
 #include <random>
 #include <string>
@@ -28,7 +28,7 @@ TEST(IniSettings, SubroutinesAreLookedForBesideTheIniFileFirst) {
         settings_of("[RS274NGC]\nSUBROUTINE_PATH = /s:t\n[DISPLAY]\nPROGRAM_PREFIX = /p\n");
     std::vector<std::string> path = settings.subroutine_path;
     while (!path.empty() && path.back().ends_with("/probing")) {
-        path.pop_back();  // our own programs, behind everything of the machine's
+        path.pop_back();  // our own programs are searched last
     }
     EXPECT_EQ(path, (std::vector<std::string>{".", "/p", "/s", "./t"}));
     EXPECT_GT(settings.subroutine_path.size(), path.size());
@@ -37,7 +37,7 @@ TEST(IniSettings, SubroutinesAreLookedForBesideTheIniFileFirst) {
 struct Table : Machine {
     explicit Table(const std::string &ini = "[AXIS_A]\nWRAPPED_ROTARY = 1\n[AXIS_C]\nWRAPPED_ROTARY = 1\n")
         : Machine(settings_of(ini)) {}
-    /// Where A goes to in each move.
+    /// End position of A in each move.
     std::vector<double> way(const std::string &text) {
         record.lines.clear();
         record.arcs.clear();
@@ -50,7 +50,7 @@ struct Table : Machine {
     }
 };
 
-/// Each as LinuxCNC's rs274 has it.
+/// Results of LinuxCNC's rs274.
 TEST(Rotary, TheSignOfAnAbsoluteWordIsTheDirection) {
     struct Case {
         const char *text;
@@ -94,7 +94,7 @@ TEST(Rotary, ArcsAndProbesGoTheSameWay) {
 TEST(Rotary, OffsetsAreOfTheProgramsAngle) {
     Table table;
     const std::vector<double> way = table.way("G10 L2 P1 A30\nG0 A90\nG0 A-10\nG53 G0 A0\nG0 A20\n");
-    // Machine coordinates: 30 more than the program's.
+    // Machine coordinates: 30 more than program coordinates.
     const double wanted[] = {120, 40, 360, 410};
     ASSERT_EQ(way.size(), 4u);
     for (std::size_t i = 0; i < 4; ++i) {
@@ -130,8 +130,8 @@ TEST(Rotary, RoundingTurnsNoWholeTurn) {
     EXPECT_NEAR(way.back(), 300, 1e-6);
 }
 
-/// The judge knows angles only: where the table points, which way it turned, and that it never turned further
-/// than it had to.
+/// The judge compares angles only: position of the table, direction, and that it moved no further than
+/// necessary.
 TEST(Rotary, RandomWordsLeadToTheirAngleInTheirDirectionWithinATurn) {
     for (unsigned seed = 1; seed <= 200; ++seed) {
         std::mt19937 random(seed);

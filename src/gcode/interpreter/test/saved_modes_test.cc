@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What M70 to M73 keep, alone.
+// Modes saved by M70 to M73.
 #include <gtest/gtest.h>
 
 #include "gcode/interpreter/codes/saved_modes.hh"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The tool table as a program changes it, block by block.
+// Changes of the tool table by a program, block by block.
 #include <gtest/gtest.h>
 
 #include "gcode/interpreter/codes/tools/tool_table.hh"

@@ -145,7 +145,7 @@ class CANON_TOOL_TABLE:
 
 
 class _Array:
-    """Items counted from 0; IndexError beyond the end."""
+    """Items counted from 0; IndexError after the end."""
 
     def __init__(self, size, read, write=None):
         self._size, self._read, self._write = size, read, write
@@ -353,7 +353,7 @@ class Params:
 
 
 class Interp:
-    """The interpreter. Its state stands in attributes by name; other attributes are the script's own and stay."""
+    """The interpreter. Attributes give its state by name; other attributes belong to the script and are kept."""
 
     def __init__(self, view):
         object.__setattr__(self, '_view', view)

@@ -39,7 +39,7 @@ TEST(PythonRemap, PrologProcedureAndEpilogShareTheirLocalParameters) {
     EXPECT_EQ(it.error(), "user-defined M400: missing: P");
 }
 
-/// Another python3 before that of the library on the PATH, with a library of its own that has nothing in it.
+/// Another python3 with an empty library is first in PATH.
 TEST(PythonRemap, FindsItsOwnModulesWhateverPythonIsFirstOnThePath) {
     namespace fs = std::filesystem;
     const fs::path other = fs::temp_directory_path() / ("mw-other-python-" + std::to_string(::getpid()));
@@ -236,7 +236,7 @@ TEST(PythonRemap, ErrorsCarryThePlaceInTheScript) {
     EXPECT_EQ(it.run("G0 X2\n"), Step::PROGRAM_END);
 }
 
-/// As an abort of the machine does, from another thread.
+/// Like an abort of the machine, from another thread.
 TEST(PythonRemap, AScriptWithoutAnEndIsEndedWithItsPlace) {
     Scripted it;
     it.remap("M400 modalgroup=5 py=endless");

@@ -7,7 +7,7 @@ namespace {
 
 using Events = std::vector<std::string>;
 
-/// T and M6 through procedures that record what they are given.
+/// T and M6 as procedures that record their arguments.
 void add_changer(Scripted &it, const std::string &change_body, const std::string &prepare_body = "") {
     it.remap("T prolog=prepare_prolog ngc=prepare epilog=prepare_epilog");
     it.remap("M6 modalgroup=6 prolog=change_prolog ngc=change epilog=change_epilog");

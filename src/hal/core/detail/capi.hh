@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Between the C API and the C++ view: failures become a line in the log and a negated errno.
+// Adapts the C++ classes to the C API: failures become a line in the log and a negated errno.
 #pragma once
 
 #include <cerrno>
@@ -9,13 +9,13 @@
 
 namespace mw::hal::detail {
 
-/// Logs an error of Hal; the negated errno that Hal left.
+/// Logs an error of Hal; returns the negated errno of Hal.
 int complain(const Error &error) noexcept;
 
-/// Logs the message; the negated code.
+/// Logs the message; returns the negated code.
 int complain(int code, const std::string &message) noexcept;
 
-/// 0, or complains.
+/// 0, or the result of complain().
 int status_of(const Result<> &result) noexcept;
 
 /// The log of the current instance, or of the process.

@@ -50,7 +50,7 @@ TEST_F(HalTest, ValuesOfAComponentLieSideBySideAndAloneInTheirCacheLines) {
     const int other = *hal.new_component("other");
     void **of_other = *hal.new_pin("other.p", Type::FLOAT, Dir::OUT, other);
     EXPECT_FALSE(lines.contains(place(of_other) / 64));
-    // Used again, a value is zero.
+    // A reused value is zero.
     write(of_other, 3);
     const std::uintptr_t used = place(of_other);
     ASSERT_TRUE(hal.delete_component(other));

@@ -11,7 +11,7 @@
 
 namespace mw::hal {
 
-/// Collects what is logged.
+/// Collects log messages.
 struct Messages {
     std::vector<std::string> lines;
     runtime::Log log{runtime::Log::Mode::SYNCHRONOUS,

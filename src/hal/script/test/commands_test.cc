@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Every command, in calls that are good and calls that are not.
+// Every command, with valid and invalid calls.
 #include <algorithm>
 #include <set>
 
@@ -11,7 +11,7 @@
 namespace mw::hal::script {
 namespace {
 
-/// Lines, and what they answer, or how the message of the last one begins behind its place.
+/// Lines and their result, or the beginning of the last line's message after its position.
 struct Case {
     const char *lines;
     const char *answer;
@@ -179,7 +179,7 @@ constexpr Case BAD[] = {
     {"getp 'board.in0", "unterminated quoted string"},
 };
 
-/// A fresh instance for every case.
+/// A new instance for every case.
 class Sandbox : public SessionTest {
   public:
     Sandbox() {
@@ -237,7 +237,7 @@ TEST(HalCommands, EachHasACaseOfEachKind) {
     };
     const auto good = named(GOOD);
     const auto bad = named(BAD);
-    // Programs and files, notes: tested with processes (src/hal/tools/programs) and in session_test.
+    // Programs, files and notes are tested with processes (src/hal/tools/programs) and in session_test.
     const std::set<std::string, std::less<>> elsewhere = {
         "loadrt", "loadusr", "waitusr", "unload", "unloadusr", "source", "echo", "unecho", "print"};
     for (const CommandSpec &spec : commands()) {

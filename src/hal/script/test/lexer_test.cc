@@ -36,7 +36,7 @@ std::optional<std::string> test_environment(const std::string &name) {
     return name == "FOO" ? std::optional<std::string>("bar") : std::nullopt;
 }
 
-/// The words of the only line of `source`, or the error's text.
+/// The words of the only line of `source`, or the text of the error.
 std::string words_of(const std::string &source) {
     MapIni ini;
     ini.entries["KINS"] = {{"KINEMATICS", "trivkins coordinates=XYZ"}, {"JOINTS", "3"}};

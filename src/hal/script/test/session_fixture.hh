@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A session in this process under the virtual clock, with a component of its own.
+// A session in this process under the virtual clock, with its own component.
 #pragma once
 
 #include <memory>
@@ -31,7 +31,7 @@ class SessionTest : public ::testing::Test {
         hal_options.name = "session-test";
         hal_options.scheduler = &clock;
         host = std::move(*LocalHost::create(hal_options));
-        // Components of other folders are not built for this test: it has own pins.
+        // Components of other folders are not built for this test: it has its own pins.
         const int id = *host->hal().new_component("board");
         for (const char *name : {"board.in0", "board.in1", "board.io"}) {
             slots.push_back(*host->hal().new_pin(name, Type::BIT,
@@ -45,7 +45,7 @@ class SessionTest : public ::testing::Test {
         EXPECT_TRUE(host->hal().set_ready(id));
     }
 
-    /// Runs lines; the answers, or the errors when there are any.
+    /// Runs lines; returns the results, or the errors if there are any.
     std::string run(const std::string &text) {
         TextOutput out;
         Session session(*host, programs, out, options);

@@ -25,7 +25,7 @@ class TextOutput final : public Output {
     std::string answers, infos, errors;
 };
 
-/// Remembers what would be loaded.
+/// Records the modules to be loaded.
 class RecordingHost final : public Host {
   public:
     explicit RecordingHost(const HalOptions &options) : hal_(std::move(*Hal::create(options))) {}
@@ -54,7 +54,7 @@ class TwoPassTest : public ::testing::Test {
     TwoPassTest() { fs::create_directories(folder); }
     ~TwoPassTest() override { fs::remove_all(folder); }
 
-    /// Runs files a.hal, b.hal... with these texts; what was printed, errors last.
+    /// Runs files a.hal, b.hal... with these texts; returns the output, errors last.
     std::string run(const std::vector<std::string> &texts, const std::string &keywords = "on",
                     TwoPassReport report = TwoPassReport::NOTHING) {
         HalOptions hal_options;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What Declare does with the prefix it is given.
+// Prefixes in Declare.
 #include <cstring>
 #include <string>
 

@@ -53,7 +53,7 @@ class TclTest : public ::testing::Test {
         std::ofstream(path) << text;
         return path;
     }
-    /// Runs a script; what it said, errors last.
+    /// Runs a script; returns its output, errors last.
     std::string run(const std::string &text, const std::vector<std::string> &arguments = {}) {
         TextOutput output;
         Session session(*host, programs, output, options);
@@ -95,7 +95,7 @@ TEST_F(TclTest, HalShowIsAResultAndShowPrints) {
 }
 
 TEST_F(TclTest, AnIniValueOfSeveralWordsIsAModuleAndItsParameters) {
-    // As loadrt $::KINS(KINEMATICS) has it: a list of one element.
+    // As in loadrt $::KINS(KINEMATICS): a list of one element.
     EXPECT_NE(run("loadrt [list {nosuchkins coordinates=xyz}]\n").find("'nosuchkins.so'"), std::string::npos);
     EXPECT_FALSE(last_result);
 }

@@ -15,7 +15,7 @@ namespace {
 constexpr auto LOOK_EVERY = std::chrono::milliseconds(20);
 constexpr auto INTERRUPT_EVERY = std::chrono::milliseconds(10);
 
-/// Sleeps; false at once when the watch shall end.
+/// Sleeps; false at once when the watch ends.
 bool hasSlept(const std::stop_token &stop, std::chrono::milliseconds time) {
     std::mutex mutex;
     std::condition_variable_any never;
@@ -28,7 +28,7 @@ bool hasSlept(const std::stop_token &stop, std::chrono::milliseconds time) {
 
 HostWatch::HostWatch(const HostClient &host, std::function<void()> on_death)
     : thread_([&host, on_death = std::move(on_death), maker = ::pthread_self()](const std::stop_token &stop) {
-          // Signals of the process are for the thread that handles commands.
+          // The thread that runs commands handles signals of the process.
           sigset_t all;
           ::sigfillset(&all);
           ::pthread_sigmask(SIG_BLOCK, &all, nullptr);

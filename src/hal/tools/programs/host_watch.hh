@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Notices within 20 ms that the realtime process has ended, whatever the program itself waits for.
+// Detects the end of the realtime process within 20 ms, independent of the program's own waits.
 #pragma once
 
 #include <functional>
@@ -11,9 +11,9 @@ namespace mw::hal::tools {
 
 class HostWatch {
   public:
-    /// `on_death` is called once, in a thread of the watch. After that the thread that made the watch gets
-    /// SIGTERM every 10 ms until the watch ends, so that no system call keeps it; who lets on_death return
-    /// handles that signal. `host` must outlive the watch.
+    /// `on_death` is called once, in a separate thread. If it returns, the thread that created the watch
+    /// receives SIGTERM every 10 ms until the watch ends, so that no system call blocks it; that thread must
+    /// handle the signal. `host` must outlive the watch.
     HostWatch(const HostClient &host, std::function<void()> on_death);
     ~HostWatch();
     HostWatch(const HostWatch &) = delete;

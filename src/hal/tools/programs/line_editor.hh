@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Lines that somebody types at a terminal, with editing, history and completion.
+// Lines typed at a terminal, with editing, history and completion.
 #pragma once
 
 #include <csignal>
@@ -13,12 +13,12 @@ namespace mw::hal::tools {
 
 struct LineEditorOptions {
     std::string history_file;  ///< kept over sessions; empty: none
-    /// The words that could stand at the end of the line so far.
+    /// Returns possible words at the end of the line.
     std::function<std::vector<std::string>(const std::string &line)> complete;
     const volatile std::sig_atomic_t *stop = nullptr;  ///< not zero: input ends
 };
 
-/// Built on libedit; ^C drops the line, unless somebody watches `stop`. [one thread]
+/// Uses libedit; ^C discards the line, unless `stop` is used. [one thread]
 class LineEditor {
   public:
     explicit LineEditor(LineEditorOptions options);
@@ -35,7 +35,7 @@ class LineEditor {
     std::unique_ptr<Impl> impl_;
 };
 
-/// Where the history of a program is kept: $XDG_STATE_HOME/millwright/NAME_history, or below ~/.local/state.
+/// Path of a program's history: $XDG_STATE_HOME/millwright/NAME_history, or below ~/.local/state.
 std::string history_file(const std::string &name);
 
 }  // namespace mw::hal::tools

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Records of sampler and streamer as lines of text: the format that halsampler writes and halstreamer reads.
+// Records of sampler and streamer as lines of text, in the format of halsampler and halstreamer.
 #pragma once
 
 #include <string>
@@ -11,13 +11,13 @@
 
 namespace mw::hal::stream_tools {
 
-/// The values with a blank behind each: floats with six decimals, bits as 0 and 1, integers in decimal.
+/// The values, each followed by a blank: floats with six decimals, bits as 0 and 1, integers in decimal.
 std::string format_record(const std::vector<hal_type_t> &types, const hal_stream_data_u *values);
 
 /// True for lines without a record: empty, or starting with '#'.
 bool isSkipped(std::string_view line);
 
-/// The fields of a line, separated by blanks; text behind the last one is ignored.
+/// The fields of a line, separated by blanks; text after the last one is ignored.
 Result<std::vector<hal_stream_data_u>> parse_record(const std::vector<hal_type_t> &types,
                                                     std::string_view line);
 

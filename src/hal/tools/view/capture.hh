@@ -15,37 +15,37 @@ namespace mw::hal::view {
 struct CaptureRequest {
     std::vector<std::string> names;  ///< pins, signals or parameters, 1 to CAPTURE_CHANNELS
     std::uint32_t samples = 1000;
-    std::uint32_t every = 1;  ///< record each N-th period
+    std::uint32_t every = 1;  ///< record every N-th period
     TriggerKind trigger = TriggerKind::NONE;
-    /// Of a pin, signal or parameter; becomes a channel when it is none of `names`.
+    /// A pin, signal or parameter; an additional channel if it is not in `names`.
     std::string trigger_name = {};
     double level = 0.5;
-    double pretrigger = 0.0;  ///< part of the record before the trigger, 0 to below 1
+    double pretrigger = 0.0;  ///< fraction of the record before the trigger, 0 to below 1
 };
 
 struct CaptureRecord {
     std::vector<std::string> names;
     std::vector<Type> types;
-    std::vector<double> times_s;               ///< of each sample, the trigger's is 0
-    std::vector<std::vector<double>> columns;  ///< for each name a value per sample
-    /// Names whose links changed while it was recorded: their values are of the old place from then on.
+    std::vector<double> times_s;               ///< of each sample; 0 at the trigger
+    std::vector<std::vector<double>> columns;  ///< one value per sample for each name
+    /// Names whose links changed during the record: later values are those of the old address.
     std::vector<std::string> moved;
 };
 
-/// The module's memory, used by one program at a time.
+/// The memory of the module, used by one program at a time.
 class Capture {
   public:
     /// Loads the module unless it is loaded, and appends capture.sample to `thread` unless a thread has it;
-    /// an empty name means the only thread, or servo-thread. An error when another live program uses it.
+    /// an empty name means the only thread, or servo-thread. An error when another running program uses it.
     static Result<Capture> open(Host &host, const std::string &thread);
     Capture(Capture &&other) noexcept;
     Capture &operator=(Capture &&) = delete;
-    /// Cancels what is going on, takes the function out of the thread again if it was put there.
+    /// Cancels the record, and removes the function from the thread if it was added here.
     ~Capture();
 
-    /// Begins a record; the next cycle takes it up.
+    /// Begins a record, which starts with the next cycle.
     Result<> begin(const CaptureRequest &request);
-    /// Of the last record begun; FILLING before the next cycle has seen it.
+    /// State of the last record; FILLING until the next cycle.
     CaptureState state() const noexcept;
     /// Triggers it now.
     void force() noexcept;
@@ -59,15 +59,15 @@ class Capture {
 
     Hal *hal_;
     CaptureBlock *block_;
-    std::string added_to_;  ///< thread that capture.sample was put in
+    std::string added_to_;  ///< thread to which capture.sample was added
     std::vector<std::string> names_;
     CaptureSettings settings_{};
     std::uint32_t request_ = 0;
 };
 
-/// The record as CSV: a header of names, then time [s] and values, in as many digits as needed.
+/// The record as CSV: a header of names, then time [s] and values, with the necessary digits.
 std::string to_csv(const CaptureRecord &record);
-/// The record as .csv, .png or .svg, by the ending of `path`.
+/// Writes the record as .csv, .png or .svg, by the extension of `path`.
 Result<> write_record(const CaptureRecord &record, const std::string &title, const std::string &path);
 
 }  // namespace mw::hal::view

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The shared block between the realtime module `capture` and who looks at its records.
-//
-// The client writes `settings` while nothing is recorded, then increases `request`; the module answers in its
-// next cycle by setting `seen` to the same number, and from then on `state` is about that request. Records
-// stay in place until the next request.
+// The shared block between the realtime module `capture` and its client. The client writes `settings` while
+// nothing is recorded, then increases `request`; the module answers in its next cycle by setting `seen` to
+// the same number, and from then on `state` refers to that request. Records are kept until the next request.
 #pragma once
 
 #include <atomic>
@@ -17,26 +15,27 @@ inline constexpr std::uint32_t CAPTURE_MAGIC = 0x4d576361;
 inline constexpr int CAPTURE_CHANNELS = 16;
 
 enum class CaptureState : std::uint32_t {
-    IDLE,       ///< nothing asked for, or cancelled
+    IDLE,       ///< no request, or cancelled
     FILLING,    ///< recording the samples before the trigger
-    WAITING,    ///< for the trigger
+    WAITING,    ///< waiting for the trigger
     TRIGGERED,  ///< recording the samples after it
     DONE,       ///< `first` and `trigger_sample` are valid
-    REFUSED     ///< the settings make no sense
+    REFUSED     ///< the settings are not valid
 };
 
 enum class TriggerKind : std::uint32_t {
-    NONE,     ///< at once
+    NONE,     ///< immediately
     ABOVE,    ///< the value is above the level
     BELOW,    ///< the value is below the level
-    RISING,   ///< the value gets above the level
-    FALLING,  ///< the value gets below the level
-    EITHER    ///< one of the two
+    RISING,   ///< the value rises above the level
+    FALLING,  ///< the value falls below the level
+    EITHER    ///< either of the two
 };
 
 struct CaptureChannel {
-    std::uint32_t type;   ///< hal_type_t
-    std::int64_t offset;  ///< of the value from the start of the block [bytes]; both lie in the HAL segment
+    std::uint32_t type;  ///< hal_type_t
+    std::int64_t
+        offset;  ///< offset of the value from the start of the block [bytes]; both are in the HAL segment
 };
 
 struct CaptureSettings {
@@ -44,31 +43,31 @@ struct CaptureSettings {
     CaptureChannel channel[CAPTURE_CHANNELS];
     std::uint32_t samples;     ///< length of the record
     std::uint32_t pretrigger;  ///< samples before the trigger, below `samples`
-    std::uint32_t every;  ///< record each N-th call, at least 1; triggers are looked at in each one recorded
+    std::uint32_t every;  ///< record every N-th call, at least 1; triggers are checked in recorded calls only
     TriggerKind trigger;
-    std::uint32_t trigger_channel;  ///< its index; a channel that is only the trigger's is recorded, too
+    std::uint32_t trigger_channel;  ///< its index; a channel only for the trigger is recorded, too
     double level;
 };
 
 struct CaptureBlock {
     std::uint32_t magic;
     std::uint32_t capacity;              ///< words in `data`
-    std::atomic<std::int32_t> client;    ///< process that uses it, 0: nobody
+    std::atomic<std::int32_t> client;    ///< process that uses it, 0: none
     CaptureSettings settings;            // written by the client before `request` is released
     std::atomic<std::uint32_t> request;  // released by the client, acquired by the module
-    std::atomic<std::uint32_t> cancel;   // request that shall end without a record
-    std::atomic<std::uint32_t> force;    // request that shall be triggered now
-    // The module's: `data`, `first`, `trigger_sample` are written before DONE is released.
+    std::atomic<std::uint32_t> cancel;   // request to end without a record
+    std::atomic<std::uint32_t> force;    // request to trigger now
+    // Written by the module: `data`, `first`, `trigger_sample` are written before DONE is released.
     std::atomic<std::uint32_t> seen;
     std::atomic<CaptureState> state;
     std::atomic<std::uint32_t> recorded;  ///< samples so far, at most `samples`
     std::uint32_t first;                  ///< position of the oldest sample in the ring of `samples`
     std::uint32_t trigger_sample;         ///< index of the trigger's sample, the oldest is 0
-    /// Samples: the time [ns], then a word for each channel as it lies in HAL memory.
+    /// Samples: the time [ns], then a word for each channel as in HAL memory.
     alignas(64) std::uint64_t data[1];
 };
 
-/// Words that a record takes.
+/// Number of words of a record.
 constexpr std::uint64_t capture_words(const CaptureSettings &settings) noexcept {
     return static_cast<std::uint64_t>(settings.samples) * (settings.channels + 1);
 }

@@ -10,17 +10,17 @@
 namespace mw::hal::view {
 
 struct NetlistOptions {
-    std::string glob = "*";      ///< components or instances that match, with what they are linked to
-    bool showsUnlinked = false;  ///< pins without a signal, too
-    bool showsValues = false;    ///< signals' values at this moment
+    std::string glob = "*";  ///< matching components or instances, with the objects to which they are linked
+    bool showsUnlinked = false;  ///< also pins without a signal
+    bool showsValues = false;    ///< also the current values of signals
 };
 
-/// A graph in the language of Graphviz: a box for each instance (the pins' names up to their last dot) with
-/// its linked pins, inputs left, outputs right; an edge for each reader from the signal's writer, or from a
-/// node of the signal when it has none or several.
+/// A graph in the Graphviz language: a box for each instance (the pins' names up to their last dot) with its
+/// linked pins, inputs left, outputs right; an edge for each reader from the signal's writer, or from a node
+/// of the signal when it has none or several.
 std::string netlist_dot(const Hal &hal, const NetlistOptions &options);
 
-/// Writes `path` by its ending: .dot is the text itself, .svg, .png and .pdf go through Graphviz' program
+/// Writes `path` by its extension: .dot is the text itself; .svg, .png and .pdf are made by Graphviz' program
 /// dot.
 Result<> write_netlist(const Hal &hal, const NetlistOptions &options, const std::string &path);
 

@@ -9,8 +9,8 @@
 
 namespace mw::hal::view {
 
-/// Shows the model and takes keys until q, or until `stop` becomes nonzero. An error when standard output is
-/// no terminal.
+/// Shows the model and handles keys until q, or until `stop` becomes nonzero. An error when standard output
+/// is not a terminal.
 Result<> run_terminal(WatchModel &model, volatile std::sig_atomic_t &stop);
 
 }  // namespace mw::hal::view

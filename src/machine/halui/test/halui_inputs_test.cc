@@ -9,7 +9,7 @@ namespace {
 
 using HaluiInputs = HaluiRig;
 
-/// Name of a dial, its command, and what is in force.
+/// Name of a dial, its command, and its current value.
 struct DialCase {
     const char *name;
     std::function<messages::Command(double)> command;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What is asked of a new machine, and what answers cannot be (J1). That the files run is
-// tests/e2e/first_steps.py.
+// The questions about a new machine, and invalid answers (J1). tests/e2e/first_steps.py tests that the files
+// run.
 #include <algorithm>
 
 #include <gtest/gtest.h>
@@ -83,8 +83,8 @@ TEST(Setup, EachWrongAnswerIsTold) {
 }
 
 TEST(Setup, StepsThatCannotBeMadeAreRefused) {
-    // 200 * 16 / 5 mm = 640 steps per mm, at 40 mm/s and 5 % 26880 in a second; a base period of 30000 ns
-    // makes 16667.
+    // 200 * 16 / 5 mm = 640 steps per mm; at 40 mm/s plus 5 % that is 26880 per second; a base period of
+    // 30000 ns permits 16667.
     const auto planned = plan_of({{"drives", "stepper"}, {"y.microsteps", "16"}});
     ASSERT_EQ(planned.faults.size(), 1U) << faults_text(planned);
     EXPECT_EQ(planned.faults[0].key, "y.speed");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Operators' commands that motion carries out by itself, in its words. What each needs motion decides.
+// Operators' commands that motion carries out by itself, as motion commands. Motion decides what each one
+// needs.
 #pragma once
 
 #include "messages/declarations/command.hh"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The machine's settings as clients are shown them: what motion is told, in the words of the vocabulary.
+// The machine's settings for clients: the settings of motion, in the types of the vocabulary.
 #pragma once
 
 #include "messages/declarations/status.hh"
@@ -11,19 +11,19 @@ namespace mw::task {
 /// One thread.
 class ShownSettings {
   public:
-    /// `fixed`: what does not come as a setting of motion.
+    /// `fixed`: values that are not settings of motion.
     explicit ShownSettings(const messages::SettingsStatus &fixed) : shown_(fixed) {
         shown_.max_velocity = shown_.max_acceleration = most_velocity_;
     }
 
-    /// A setting that motion is told.
+    /// Notes a setting that is sent to motion.
     void note(const motion::SetParameter &parameter);
-    /// The operator limits the speed of the path; never above the machine's own.
+    /// The operator limits the path speed; never above the machine's limit.
     void limit_velocity(double velocity);
-    /// Bits as of [EMC]DEBUG, for clients that go by them.
+    /// Bits as in [EMC]DEBUG, for clients that use them.
     void set_debug(std::uint32_t mask) { shown_.debug = mask; }
     const messages::SettingsStatus &shown() const { return shown_; }
-    /// All settings as motion has them.
+    /// All settings as in motion.
     const motion::Settings &settings() const { return settings_; }
 
   private:

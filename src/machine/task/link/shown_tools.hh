@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The tool table as clients are shown it: again after each change.
+// The tool table for clients: sent again after each change.
 #pragma once
 
 #include <optional>
@@ -12,7 +12,7 @@ namespace mw::task {
 /// One thread.
 class ShownTools {
   public:
-    /// Once a cycle. The table when it has another version than at the last call.
+    /// Once a cycle. The table if its version has changed since the last call.
     std::optional<messages::ToolTable> step(const ToolStore &tools);
     std::uint64_t version() const { return version_; }
 

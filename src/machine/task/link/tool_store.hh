@@ -14,37 +14,37 @@ namespace mw::task {
 
 class ToolStore : public gcode::ToolSource {
   public:
-    /// Puts the tool of table entry `index` (0: none, of a random changer: the one that is there) into the
-    /// spindle, by the rules of the changer, and keeps that. An error: it is so, but could not be kept. Never
-    /// waits for a disk.
+    /// Loads the tool of table entry `index` (0: none; of a random changer: the current one) into the
+    /// spindle, by the rules of the changer, and stores that. On an error the tool is loaded but could not be
+    /// stored. Does not wait for a disk.
     virtual Result<> load_spindle(int index) = 0;
-    /// Changes the data of the tool that `entry` names, and keeps them; `index` is where it was last. Never
-    /// waits for a disk.
+    /// Changes the data of the tool in `entry`, and stores them; `index` is its last index. Does not wait for
+    /// a disk.
     virtual Result<> set_entry(int index, const gcode::ToolEntry &entry) = 0;
-    /// Puts a new tool into the table and keeps it; pocket 0: one that is free. Nothing has changed on an
-    /// error. Waits for the disk.
+    /// Adds a tool to the table and stores it; pocket 0: a free one. An error changes nothing. Waits for the
+    /// disk.
     virtual Result<> add(const gcode::ToolEntry &) { return fail("tools are not added here"); }
-    /// Takes one out, that is not in the spindle; the others keep their indices. Nothing has changed on an
-    /// error. Waits for the disk.
+    /// Removes a tool that is not in the spindle; the others keep their indices. An error changes nothing.
+    /// Waits for the disk.
     virtual Result<> remove(int) { return fail("tools are not removed here"); }
     /// Waits until all changes are on the disk.
     virtual Result<> save() { return {}; }
     /// All changes are on the disk, or cannot be written, or the disk has not answered for 1 s.
     virtual bool isSettled() const { return true; }
-    /// Begins to read the tools again.
+    /// Starts reading the tools again.
     virtual Result<> reload() = 0;
-    /// How the reading has ended; nothing before its end.
+    /// Result of reading; nothing before its end.
     virtual std::optional<Result<>> reload_result() { return Result<>{}; }
-    /// What is read later changes nothing.
+    /// Discards the result of a read in progress.
     virtual void drop_reload() {}
     /// Once a cycle; never blocks.
     virtual void step() {}
-    /// What the operator is to know of the data's keeper: nothing when there is no more.
+    /// Next message for the operator; nothing when there are no more.
     virtual std::optional<std::string> take_warning() { return std::nullopt; }
-    /// The tool has cut this much more, and all in its life.
+    /// Adds to the cutting time and length of the tool.
     virtual void note_cut(int, const tools::CutLife &) {}
     virtual tools::CutLife life(int) const { return {}; }
-    /// Another number after each change; never 0.
+    /// Changes with each modification; never 0.
     virtual std::uint64_t version() const = 0;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Which command is taken in which situation: one table, from which docs/reference/states.md is made.
+// Which command is accepted in which situation: one table, from which docs/reference/states.md is made.
 #pragma once
 
 #include <string>
@@ -10,16 +10,16 @@
 
 namespace mw::task {
 
-/// What the machine is doing, as far as it decides which commands are taken.
+/// State of the machine that determines which commands are accepted.
 enum class Situation : std::uint8_t {
     ESTOP,
     OFF,
     MANUAL,
     AUTO_IDLE,
-    AUTO_RUNNING,   ///< reading, cutting, waiting, stepping
-    AUTO_HELD,      ///< by the operator, M0, M1 or M60
-    AUTO_PROPOSED,  ///< an approach waits for its confirmation
-    AUTO_AWAY,      ///< the axes of a held program are released
+    AUTO_RUNNING,   ///< reading, moving, waiting, stepping
+    AUTO_HELD,      ///< paused by the operator, M0, M1 or M60
+    AUTO_PROPOSED,  ///< an approach waits for confirmation
+    AUTO_AWAY,      ///< the axes of a paused program are released
     MDI_IDLE,
     MDI_RUNNING,
     MDI_HELD,
@@ -27,9 +27,9 @@ enum class Situation : std::uint8_t {
 };
 Situation situation_of(State state, Mode mode, const RunState &run);
 
-/// Null: taken; else the reason why not.
+/// Null: accepted; else the reason.
 const char *refusal_of(CommandClass what, Situation situation);
-/// The same as a result.
+/// As above, as a result.
 Result<> admit(CommandClass what, Situation situation);
 
 /// docs/reference/states.md.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The way to where a program goes on: safe height first, then over the place, then down at feed. Shown to a
-// person, who confirms it.
+// The approach to the place where a program continues: safe height first, then over the place, then down at
+// feed. Shown to a person, who confirms it.
 #pragma once
 
 #include <cstdint>
@@ -14,46 +14,46 @@
 
 namespace mw::task {
 
-/// Speed of the last move where the program has set none. [mm/s]
+/// Speed of the last move if the program has set none. [mm/s]
 inline constexpr double DEFAULT_APPROACH_FEED_MM_S = 5.0;
 
-/// From `from` to `to`, Z at `safe_z` in between; no move where it is not needed.
+/// From `from` to `to`, with Z at `safe_z` in between; moves without length are omitted.
 std::vector<ApproachMove> approach_moves(const geometry::Pose &from, const geometry::Pose &to, double safe_z);
 
-/// What is to be there, and what is.
+/// Target state and current state.
 struct ApproachPlan {
     ApproachTo to = ApproachTo::NOTHING;
     int line = 0;
     FoundModes modes;
     int tool_now = 0;
     double feed = 0;      ///< of the last move [machine units/s]
-    geometry::Pose from;  ///< where the machine stands
-    /// Where M6 goes before the changer begins; none where it stays.
+    geometry::Pose from;  ///< current position
+    /// Moves of M6 before the changer starts; none if it does not move.
     std::vector<geometry::Pose> change_moves;
     std::vector<ApproachMove> moves;
 
     bool mustChangeTool() const { return modes.tool != tool_now; }
-    /// Fills in the moves: with a tool change, which ends at `changed_at`, up before it and again after it.
+    /// Calculates the moves: with a tool change, which ends at `changed_at`, up before it and again after it.
     void find_way(double safe_z, const geometry::Pose &changed_at);
-    /// Something has to be done that a person must know of.
+    /// True if the approach has steps that a person must confirm.
     bool isNeeded() const;
-    /// What is done, in its order: up, tool, settings, spindles, over the place, coolant, down.
+    /// The steps in order: up, tool, settings, spindles, above the position, coolant, down.
     std::vector<gcode::MachineCall> calls() const;
 };
 
-/// One proposal or none. One thread.
+/// At most one proposal. One thread.
 class Approach {
   public:
-    /// Another number than all before it.
+    /// Its number differs from all earlier ones.
     void propose(ApproachPlan plan, std::int64_t now_ns);
-    /// It is not open any more.
+    /// Discards the proposal.
     void forget() { plan_.reset(); }
     bool isOpen() const { return plan_.has_value(); }
-    /// `number` 0: of a client that does not know about numbers; it is taken only when a person has had time
-    /// to see the proposal.
+    /// `number` 0: a client that does not use numbers; accepted only when a person has had time to see the
+    /// proposal.
     Result<> check(std::uint64_t number, std::int64_t now_ns) const;
     const ApproachPlan &plan() const { return *plan_; }
-    /// As clients are shown it; `offsets` and `codes` are those in force there.
+    /// Status for clients; `offsets` and `codes` are those at the line.
     void show(ApproachStatus &status, const OffsetsStatus &offsets, const CodesStatus &codes) const;
 
   private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What kind of thing each command asks for: one row of the table in admission.hh decides for all of a kind.
+// The class of each command: one row of the table in admission.hh decides for all commands of a class.
 #pragma once
 
 #include <algorithm>
@@ -11,25 +11,25 @@
 namespace mw::task {
 
 enum class CommandClass : std::uint8_t {
-    ANY_TIME,        ///< stops, messages, overrides, what ends something
-    MODE,            ///< what manual, auto and MDI are
-    PROGRAM_FILE,    ///< which program is open, and what the interpreter is set to
-    RUN,             ///< begins a program
-    STEP,            ///< one block
-    PAUSE,           ///< holds what runs
-    RESUME,          ///< goes on after a hold
-    TURN,            ///< backwards along the path, and forwards again
-    MDI,             ///< one line, or a tap that a client sends
-    JOG,             ///< moves by hand
-    TELEOP,          ///< whether moves by hand are those of axes or of joints
-    JOINTS,          ///< homing of joints, and their limits and homing parameters
-    UNHOME,          ///< forgets where joints are
-    ENERGISE,        ///< starts a spindle, coolant, lubrication
-    TOOL_TABLE,      ///< reads it again, or sets an entry
-    SCREW_TABLE,     ///< what is set only while the machine is off
-    CONFIRM,         ///< of an approach that is proposed
-    RELEASE,         ///< lets the axes of a held program be jogged
-    OF_THE_MAILBOX,  ///< the right to operate: the mailbox executes them
+    ANY_TIME,      ///< stops, messages, overrides, ends of actions
+    MODE,          ///< manual, auto and MDI mode
+    PROGRAM_FILE,  ///< opens programs and sets up the interpreter
+    RUN,           ///< starts a program
+    STEP,          ///< runs one block
+    PAUSE,         ///< pauses
+    RESUME,        ///< resumes after a pause
+    TURN,          ///< reverse run and forward run
+    MDI,           ///< one line, or a tap sent by a client
+    JOG,           ///< jogs
+    TELEOP,        ///< jogging of axes or joints
+    JOINTS,        ///< homing of joints, and their limits and homing parameters
+    UNHOME,        ///< marks joints as not homed
+    ENERGISE,      ///< starts a spindle, coolant, lubrication
+    TOOL_TABLE,    ///< reads the tool table again, or sets an entry
+    SCREW_TABLE,   ///< settings that change only while the machine is off
+    CONFIRM,       ///< confirms a proposed approach
+    RELEASE,       ///< releases the axes of a paused program for jogging
+    OF_THE_MAILBOX,
     COUNT
 };
 
@@ -75,7 +75,7 @@ template <class T>
 concept Release = OneOf<T, ReleaseAxes>;
 template <class T>
 concept OfTheMailbox = OneOf<T, ClaimOperation, HandOverOperation, ReleaseOperation>;
-/// What motion does by itself (machine/task/link/motion_words.hh).
+/// Internal actions of motion (machine/task/link/motion_words.hh).
 template <class T>
 concept CarriedOutByMotion =
     OneOf<T, SetFeedOverride, SetRapidOverride, SetSpindleOverride, SetMaxVelocity, EnableFeedOverride,
@@ -90,7 +90,7 @@ concept AnyTime =
 
 }  // namespace command_lists
 
-/// A command that stands in none of the lists, or in several, does not compile.
+/// A command in none of the lists, or in several, does not compile.
 template <class T>
 constexpr CommandClass class_of() {
     using namespace command_lists;
@@ -118,7 +118,7 @@ constexpr CommandClass class_of() {
     return static_cast<CommandClass>(std::find(IS_IN.begin(), IS_IN.end(), true) - IS_IN.begin());
 }
 
-/// Of a command as it is given: a spindle at 0 rev/min is a stop, and the mode that is in force already
+/// Class of a command with its values: a spindle at 0 rev/min is a stop, and selecting the current mode
 /// changes nothing.
 CommandClass class_of(const Command &command, messages::Mode mode);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What was in force when a program was held: an operator may stop the spindle, jog and change the tool before
-// it goes on.
+// The state when a program was paused: an operator may stop the spindle, jog and change the tool before it
+// continues.
 #pragma once
 
 #include <cstdint>
@@ -11,9 +11,9 @@
 namespace mw::task {
 
 struct LeftPlace {
-    geometry::Pose position;  ///< of the machine; of when the axes were released
+    geometry::Pose position;  ///< of the machine, when the axes were released
     int line = 0;
-    int tool = 0;             ///< in the spindle
+    int tool = 0;             ///< tool in the spindle
     std::uint64_t tools = 0;  ///< checksum of the tool table
     std::uint64_t tools_version = 0;
     ProgramSpindles spindles;

@@ -8,14 +8,14 @@
 
 namespace mw::task {
 
-/// Two threads share task. Its own runs Task::step(); the other one may run Task::step_apart(), and touch
-/// task, only between take() and give_back(), and take() works only while the first one is in a call.
-/// So one of them at most works on task at any time, besides the call itself.
+/// Two threads share task. Its own thread runs Task::step(). The other one may run Task::step_apart(), and
+/// use task, only between take() and give_back(), and take() succeeds only while the first one is in a call.
+/// So at most one thread uses task at any time, apart from the call itself.
 class LongCall {
   public:
-    /// Task's own thread: around each call that may take long. They do not nest.
+    /// Task's own thread: around each call that may take long. Calls do not nest.
     void begin() noexcept { state_.store(State::CALLING, std::memory_order_release); }
-    /// Waits while the other thread works on task.
+    /// Waits while the other thread uses task.
     void end() noexcept {
         State expected = State::CALLING;
         while (!state_.compare_exchange_strong(expected, State::NONE, std::memory_order_acq_rel)) {

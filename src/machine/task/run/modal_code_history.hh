@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The modal codes of the blocks that are read and not done: programs are read ahead, people are shown what
-// holds for the move under way.
+// The modal codes of blocks that are read but not done: programs are read ahead, while clients see the codes
+// of the current move.
 #pragma once
 
 #include <cstdint>
@@ -13,28 +13,27 @@ namespace mw::task {
 /// One thread.
 class ModalCodeHistory {
   public:
-    /// The codes once the block of that number has been read. Blocks come in their order; of one that is told
-    /// again, while it waits for the machine, the first telling counts.
+    /// Notes the codes after the block with this number was read. Blocks come in order; of a block that is
+    /// noted again while it waits for the machine, the first note counts.
     void note(std::uint32_t block, const gcode::ActiveCodes &codes);
-    /// What holds in a block; something has been noted. `line` takes the place of the sequence
-    /// numbers.
+    /// Codes at a block; at least one must have been noted. `line` replaces the sequence numbers.
     gcode::ActiveCodes at(std::uint32_t block, int line) const;
     bool isEmpty() const { return entries_.empty(); }
     void clear() { entries_.clear(); }
 
   private:
-    /// Places of the past that are kept: a path can be gone back along.
+    /// Number of past entries kept, for a reverse run.
     static constexpr std::size_t MAX_ENTRIES = 20000;
 
     struct Entry {
-        std::uint32_t block = 0;  ///< from which on they hold
+        std::uint32_t block = 0;  ///< first block with these codes
         gcode::ActiveCodes codes;
     };
     std::deque<Entry> entries_;
     std::uint32_t newest_ = 0;
 };
 
-/// With another sequence number.
+/// The codes with another sequence number.
 gcode::ActiveCodes numbered(gcode::ActiveCodes codes, int line);
 
 }  // namespace mw::task

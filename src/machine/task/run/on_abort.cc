@@ -10,7 +10,7 @@
 namespace mw::task {
 namespace {
 
-/// Blocks that the command may have: it is read at once, so that it cannot get lost.
+/// Maximum number of blocks of the command, which is read at once, so that it cannot be lost.
 constexpr int MAX_BLOCKS = 10000;
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The file of the numbered parameters: offsets, G28, G30 and what else outlives the machine.
+// The file of the numbered parameters: offsets, G28, G30 and others that are kept between runs.
 #pragma once
 
 #include <string>
@@ -9,20 +9,20 @@
 
 namespace mw::task {
 
-/// Parameters with one way to the disk, so that no older text comes over a newer one; what the file had
-/// before is its .bak. One thread.
+/// Writes parameters in order, so that an older text never replaces a newer one; the previous content is in
+/// its .bak file. One thread.
 class ParameterFile {
   public:
-    /// `path` empty: parameters live in memory only. Without a writer, or where a plug-in keeps its own,
-    /// keep() does nothing.
+    /// `path` empty: parameters are only in memory. Without a writer, or with a plug-in that stores its own
+    /// parameters, keep() has no effect.
     ParameterFile(std::string path, ProgramReader &reader, journal::Writer *writer)
         : path_(std::move(path)), reader_(reader), writer_(writer) {}
 
-    /// The file has been read: what is in force is what it has.
+    /// The file has been read: the current parameters are those of the file.
     void note_loaded() { kept_ = reader_.parameter_text(); }
-    /// Has them written soon when they have changed; never waits.
+    /// Has them written soon if they have changed; does not wait.
     void keep();
-    /// Waits until they are written: a long call.
+    /// Writes them and waits: a long call.
     Result<> save();
 
   private:

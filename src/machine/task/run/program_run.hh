@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The program or line that the operator has started: what it is, how it goes, how it has ended.
+// The program or line that the operator has started: its content, its progress and its result.
 #pragma once
 
 #include <optional>
@@ -14,28 +14,28 @@ namespace mw::task {
 enum class RunKind : std::uint8_t {
     PROGRAM,
     MDI,
-    RECOVERY,  ///< a program that goes on where it was cut short
-    AGAIN,     ///< one whose tools were changed while it was held, calculated as it ran before
-    ANEW,      ///< and with the tools as they are now
+    RECOVERY,  ///< continues a program that was interrupted
+    AGAIN,     ///< repeats the calculation of a program whose tools changed while it was paused
+    ANEW,      ///< continues it with the current tools
 };
 
 /// One thread.
 class ProgramRun {
   public:
-    /// Refused while one runs. `line`: of MDI.
+    /// Rejected while one runs. `line`: of MDI.
     Result<Progress> start(RunKind kind, mailbox::Serial command, const std::string &line = {});
-    /// Where the program begins; 0: at its first line.
+    /// Start line of the program; 0: its first line.
     int from_line() const { return from_line_; }
     void set_from_line(int line) { from_line_ = line; }
     bool isRecovery() const { return kind_ >= RunKind::RECOVERY; }
-    /// The same command goes on at a place of the program, AGAIN and then ANEW.
+    /// The same command continues at a position of the program, AGAIN and then ANEW.
     void begin_again();
     void go_on_anew() { kind_ = RunKind::ANEW; }
-    /// An event that cannot be in this state changes nothing and says why.
+    /// An event that is not possible in this state changes nothing and returns the reason.
     Result<> take(RunEvent event) { return state_.take(event); }
-    /// Of events that the run's own parts tell: one that comes too late changes nothing.
+    /// For events from the run's own parts: one that comes too late changes nothing.
     void change(RunEvent event) { static_cast<void>(state_.take(event)); }
-    /// Over; the end of the command that has started it.
+    /// Ends the run; returns the outcome of the command that started it.
     std::optional<Ending> end(Progress progress, const std::string &reason);
 
     const RunState &state() const { return state_; }
@@ -46,14 +46,14 @@ class ProgramRun {
     bool isProgram() const { return isRunning() && kind_ != RunKind::MDI; }
     /// Idle, reading, waiting or paused.
     InterpState shown() const;
-    RunKind kind() const { return kind_; }  ///< of this run, or of the last one
+    RunKind kind() const { return kind_; }  ///< of the current or last run
     const std::string &line() const { return line_; }
 
-    /// Something that was asked for could not be done; the first one counts.
+    /// A requested action has failed; the first failure counts.
     void note_failure(const std::string &text);
     std::optional<std::string> take_failure();
     void forget_failure() { failure_.reset(); }
-    /// Such a failure is noted and not taken: the run is not done.
+    /// A failure has been noted: the run does not succeed.
     bool hasFailed() const { return failure_.has_value(); }
 
     void set_error(diagnostics::Diagnostic error) { error_ = std::move(error); }

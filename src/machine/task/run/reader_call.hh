@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A call of the program reader that takes long, and what another thread may know of it meanwhile.
+// A long call of the program reader, and the data that other threads may read meanwhile.
 #pragma once
 
 #include <cstdint>
@@ -12,12 +12,12 @@ namespace mw::task {
 
 struct ReaderCall {
     LongCall call;
-    ItemQueue fresh;  ///< what it asks of the machine: queued at its end
+    ItemQueue fresh;  ///< its calls: queued when it ends
     std::uint64_t reads_before = 0;
     std::optional<std::uint64_t> fixed_executed;
 
-    /// The work is stopped meanwhile: what the machine has executed by now counts, whatever the call still
-    /// reads.
+    /// The work is being stopped: what the machine has executed by now counts, independent of what the call
+    /// still reads.
     void fix_executed(const Sequencer &sequencer) {
         if (!fixed_executed.has_value()) {
             fixed_executed = sequencer.isIdle() ? reads_before : sequencer.place().read;

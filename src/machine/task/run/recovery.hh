@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The journal of the run, and the offer to go on with one that a power cut, a crash or an emergency stop has
+// The journal of the run, and the offer to continue one that a power cut, a crash or an emergency stop has
 // ended (docs/integrator/journal.md).
 #pragma once
 
@@ -15,7 +15,7 @@
 
 namespace mw::task {
 
-/// The block that is not done, and the machine there.
+/// The first block that is not done, and the state of the machine there.
 struct RunPlace {
     std::uint32_t block = 0;
     int line = 0;
@@ -23,41 +23,42 @@ struct RunPlace {
     int tool = 0;
 };
 
-/// One thread; never waits.
+/// One thread; does not wait.
 class Recovery {
   public:
-    /// `writer` null: nothing is journalled or offered.
+    /// `writer` null: runs are neither journalled nor offered.
     explicit Recovery(journal::Writer *writer) : writer_(writer) {}
 
-    /// Takes up what the writer has found. A line for the operator, empty for none.
+    /// Reads the writer's findings. Returns a message for the operator, empty for none.
     std::string find();
     bool isOn() const { return writer_ != nullptr && writer_->isOn(); }
 
-    /// A program is to begin. `why_not`: why its state cannot be told, empty: it can.
+    /// A program will start. `why_not`: why its state cannot be stored; empty: it can.
     void prepare(const std::string &program, const StartRecord &record, const std::string &why_not);
-    /// It begins, with block `first`. A line for the operator where an offer ends with that, else empty.
+    /// The program starts with block `first`. Returns a message for the operator if that ends an offer, else
+    /// empty.
     std::string begin(std::uint32_t first);
-    /// The run that was offered goes on where it was, from the start that it was calculated with; `calls` and
-    /// `tools`: checksums of what comes before that place, and of the tool table.
+    /// The offered run continues from the start with which it was calculated; `calls` and `tools`: checksums
+    /// of the calls before that position, and of the tool table.
     void begin_again(const StartRecord &record, std::uint64_t calls, std::uint64_t tools);
-    /// The run is to be calculated again up to `place`, because other tools are in the table: it is the one
-    /// that offer() tells from here on. Refused where what holds there cannot be calculated.
+    /// The run will be calculated again up to `place`, because the tool table has changed: offer() returns it
+    /// from now on. Rejected where its state cannot be calculated.
     Result<> call_back(const RunPlace &place, ChecksumMarks &marks);
-    /// Once a cycle of the run. `marks`: the canon's; `tools` as they are.
+    /// Once a cycle of the run. `marks` of the canon; `tools` as they are.
     void step(std::int64_t now_ns, const RunPlace &place, ChecksumMarks &marks, const ToolStore &tools);
     void note_doubt(std::uint32_t block, int line, const std::string &what);
-    /// The run has come to its end, by itself or because somebody wanted it.
+    /// The run has ended normally or was ended on request.
     void end();
-    /// It was stopped in the middle: it is offered.
+    /// The run was interrupted: it is offered.
     void cut_short();
-    /// What trouble there is with the journal, once.
+    /// Message about a problem with the journal, once.
     std::optional<std::string> take_trouble();
-    /// Of the disk of the journal and of the files beside it, as Writer::take_delay().
+    /// For the disk of the journal and its files, as Writer::take_delay().
     std::optional<std::string> take_delay(std::int64_t now_ns);
 
-    /// Nothing when there is none, or it is refused.
+    /// An error when there is none, or it cannot be continued.
     Result<const journal::Run *> offer() const;
-    /// Looked at closely it cannot be gone on with.
+    /// A closer check found that it cannot be continued.
     void refuse(const std::string &why) { refusal_ = why; }
     void forget();
     void show(RecoveryStatus &status) const;
@@ -70,13 +71,13 @@ class Recovery {
     std::optional<journal::Run> offer_;
     std::string refusal_;
     std::optional<journal::Run> prepared_;
-    std::optional<journal::Run> run_;  ///< that goes on now
-    std::uint32_t first_ = 0;          ///< its first block here
+    std::optional<journal::Run> run_;  ///< the current run
+    std::uint32_t first_ = 0;          ///< its first block in this session
     std::int64_t noted_ns_ = 0;
     std::uint64_t summed_version_ = 0, sum_of_tools_ = 0;
 };
 
-/// Of a file that was looked at when the machine came up and has not changed since.
+/// For a file that was checked when the machine started and has not changed since.
 std::string refusal_of(const journal::Run &run);
 
 }  // namespace mw::task

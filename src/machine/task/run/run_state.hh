@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// How a program or line runs: its phase, and whether it is held. Two tables say what each event leads to.
+// How a program or line runs: its phase, and whether it is paused. Two tables give the result of each event.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +10,12 @@ namespace mw::task {
 
 enum class RunPhase : std::uint8_t {
     IDLE,
-    CLEANING,   ///< nothing runs; what an abort has asked for is on its way
-    STARTING,   ///< asked for; begins when the axes are at rest
-    SEARCHING,  ///< what comes before the place where it is to begin is calculated
+    CLEANING,   ///< nothing runs; actions after an abort are being executed
+    STARTING,   ///< requested; begins when the axes are stopped
+    SEARCHING,  ///< calculates the state at the start position
     READING,    ///< the interpreter reads ahead
-    SYNCHING,   ///< the interpreter waits until everything before is done
-    FINISHING,  ///< all is read; the rest is carried out
+    SYNCHING,   ///< the interpreter waits until all earlier items are done
+    FINISHING,  ///< all is read; the rest is being executed
     COUNT
 };
 
@@ -24,37 +24,37 @@ enum class Hold : std::uint8_t {
     STEPPING,  ///< until the end of a block
     HELD,      ///< by the operator, or after a step
     STOPPED,   ///< by M0, M1 or M60
-    PROPOSED,  ///< until a person confirms the way to where it goes on
-    AWAY,      ///< the axes are released: they are jogged, the program keeps its place
+    PROPOSED,  ///< until a person confirms the approach
+    AWAY,      ///< the axes are released for jogging; the program keeps its position
     COUNT
 };
 
 enum class RunEvent : std::uint8_t {
     START,         ///< the operator runs a program or line
-    BEGUN,         ///< the axes are at rest, the interpreter begins
+    BEGUN,         ///< the axes are stopped, the interpreter starts
     SEARCH,        ///< the same, not from the first line
     SYNC,          ///< the interpreter must wait
-    SYNCED,        ///< it may go on
-    READ,          ///< it has come to the end
-    END,           ///< carried out, failed or aborted
-    CLEAN,         ///< after an abort: nothing may run on, the rest is put in order
-    CLEANED,       ///< that is done
-    PAUSE,         ///< the operator holds
-    RESUME,        ///< the operator goes on
-    STEP,          ///< the operator goes on for one block
-    STEP_MOVE,     ///< the operator lets a held planner make one move
-    STEP_DONE,     ///< the block is carried out
-    PROGRAM_STOP,  ///< M0, M1 or M60 are reached
-    RELEASE,       ///< the operator wants the axes of a held program
-    PROPOSE,       ///< the way to where it goes on is known
-    CONFIRM,       ///< a person has agreed to it
+    SYNCED,        ///< it may continue
+    READ,          ///< it has reached the end
+    END,           ///< completed, failed or aborted
+    CLEAN,         ///< after an abort: cleans up
+    CLEANED,       ///< clean-up is done
+    PAUSE,         ///< the operator pauses
+    RESUME,        ///< the operator resumes
+    STEP,          ///< the operator resumes for one block
+    STEP_MOVE,     ///< the operator lets a paused planner make one move
+    STEP_DONE,     ///< the block is done
+    PROGRAM_STOP,  ///< M0, M1 or M60 is reached
+    RELEASE,       ///< the operator releases the axes of a paused program
+    PROPOSE,       ///< the approach is known
+    CONFIRM,       ///< a person has confirmed it
     COUNT
 };
 
 /// Phase and hold of the run. Pure; one thread.
 class RunState {
   public:
-    /// An event that cannot be in this state changes nothing and says why.
+    /// An event that is not possible in this state changes nothing and returns the reason.
     Result<> take(RunEvent event);
 
     RunPhase phase() const { return phase_; }
@@ -67,7 +67,7 @@ class RunState {
     Hold hold_ = Hold::GOING;
 };
 
-/// What an event leads to: a state, or a reason why not.
+/// Result of an event: a state, or the reason for a rejection.
 template <class State>
 struct Transition {
     State to;

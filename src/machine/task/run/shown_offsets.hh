@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Offsets of the program as clients are shown them.
+// Offsets of the program for clients.
 #pragma once
 
 #include "machine/task/run/task_canon.hh"
@@ -14,7 +14,7 @@ inline void show(const gcode::UseOffsets &from, messages::OffsetsStatus &to) {
     to.rotation_xy_deg = from.rotation_xy_deg;
 }
 
-/// What was announced is in force without a run: at the start, and after what an abort has dropped.
+/// Announced offsets are active at once without a run: at the start, and after an abort.
 inline void show_announced(const TaskCanon &canon, messages::OffsetsStatus &to) {
     if (canon.offsets().has_value()) {
         show(*canon.offsets(), to);

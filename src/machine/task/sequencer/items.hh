@@ -13,12 +13,12 @@ namespace mw::task {
 struct Item {
     motion::SourceTag source;
     gcode::MachineCall call;
-    std::uint64_t read = 0;  ///< number of the step of the interpreter that asked for it; never falls
+    std::uint64_t read = 0;  ///< number of the interpreter step that made it; never decreases
 };
 
 using ItemQueue = std::deque<Item>;
 
-/// Where an item comes from.
+/// Source position of an item.
 struct ItemPlace {
     motion::SourceTag source;
     std::uint64_t read = 0;  ///< Item::read

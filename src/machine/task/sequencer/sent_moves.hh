@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What was handed to the planner and is not done: it can be taken back and begun again from where the machine
-// stands.
+// The moves that were sent to the planner and are not done: they can be taken back and restarted from the
+// position of the machine.
 #pragma once
 
 #include <deque>
@@ -16,20 +16,20 @@ namespace mw::task {
 /// One thread.
 class SentMoves {
   public:
-    /// `item` went on as path command `id`; `position` is where the machine stands if none is under way.
+    /// `item` was sent as path command `id`; `position` is that of the machine if no move is active.
     void note(motion::CommandId id, const Item &item, const geometry::Pose &position);
-    /// Forgets what motion has done.
+    /// Drops completed moves.
     void follow(const motion::Status &status);
-    /// Source line of the move under way, or of the last that was under way; 0 for none since clear_line().
+    /// Source line of the current move, or of the last one; 0 for none since clear_line().
     int line() const { return line_; }
     void clear_line() { line_ = 0; }
     void clear() { sent_.clear(); }
-    /// The first that is not done when those up to `id` are; null for none.
+    /// The first move that is not done when those up to `id` are; null for none.
     const Item *oldest_after(motion::CommandId id) const;
 
-    /// Why the move under way cannot be begun again from `place`, in its middle; empty: it can.
+    /// Why the current move cannot be restarted from `place`, in its middle; empty: it can.
     std::string why_not(const motion::Status &status, const geometry::Pose &place) const;
-    /// All that is not done, in its order; the move under way from `place` on.
+    /// All moves that are not done, in order; the current one from `place` on.
     std::vector<Item> rest(const motion::Status &status, const geometry::Pose &place) const;
 
   private:
@@ -41,12 +41,12 @@ class SentMoves {
     std::deque<Sent>::const_iterator under_way(const motion::Status &status) const;
 
     std::deque<Sent> sent_;
-    geometry::Pose end_;  ///< of the last move that was noted
+    geometry::Pose end_;  ///< end of the last move
     int line_ = 0;
 };
 
-/// The rest of an arc that began at `start`, of which `to_go` is left [machine units], from `place` on:
-/// itself, with a short line to it before where `place` lies beside it (in a rounded corner).
+/// The rest of an arc that began at `start`, with `to_go` left [machine units], from `place` on: the arc,
+/// preceded by a short line to it if `place` is beside it (in a rounded corner).
 std::vector<gcode::MachineCall> rest_of_arc(const gcode::ArcMove &arc, const geometry::Pose &start,
                                             const geometry::Pose &place, double to_go);
 

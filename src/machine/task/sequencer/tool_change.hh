@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// T, M6 and M61: from a tool's number to its place in the table, to the changer, and into the table again.
+// T, M6 and M61: from the number of a tool to its place in the table, to the changer, and back into the
+// table.
 #pragma once
 
 #include <optional>
@@ -13,40 +14,39 @@
 
 namespace mw::task {
 
-/// Which tool is ready and which is on its way. The table follows the changer: it changes in the cycle in
-/// which the changer says that the tool is in, and at no other time. One thread.
+/// The prepared tool and the tool being loaded. The table follows the changer: it changes only in the cycle
+/// in which the changer reports the tool as loaded. One thread.
 class ToolChange {
   public:
-    /// `error_text` of [TASK]IO_ERROR: %d is the reason; empty: ours.
+    /// `error_text` of [TASK]IO_ERROR: %d is the reason; empty: our text.
     explicit ToolChange(std::string error_text = {}) : error_text_(std::move(error_text)) {}
-    /// The changer makes it ready; an error when the table has none of this number.
+    /// The changer prepares it; an error when the table does not have this number.
     Result<> select(const gcode::SelectTool &call, const ToolStore &tools, io::DiscreteIo &io);
-    /// A tool was selected since the last change: without one M6 leaves the spindle's tool in place.
+    /// A tool was selected since the last change: without one M6 keeps the spindle's tool.
     bool isSelected() const { return selected_.has_value(); }
-    /// The changer begins; over when it is idle again. False when that tool is in the spindle already: there
-    /// is nothing to change.
+    /// Starts the change; it is done when the changer is idle again. False when the tool is already in the
+    /// spindle.
     bool start(const ToolStore &tools, io::DiscreteIo &io);
-    /// This tool is in the spindle, without a change.
+    /// Sets the tool in the spindle without a change.
     Result<> set_number(const gcode::ChangeToolNumber &call, ToolStore &tools, io::DiscreteIo &io);
     Result<> on_event(io::ToolEvent event, ToolStore &tools, io::DiscreteIo &io);
-    /// What the operator is told of a fault of the changer.
+    /// Message for the operator about a fault of the changer.
     std::string fault_text(const io::DiscreteIo &io) const;
-    /// What is on its way is given up, and what was made ready with it; a tool that was ready before stays
-    /// so.
+    /// Aborts the current change and its prepared tool; a tool prepared earlier is kept.
     void abort(const io::DiscreteIo &io);
-    /// In the tool table; -1: none.
+    /// Index in the tool table; -1: none.
     int selected_index(const ToolStore &tools) const;
-    /// As the changer has told it, when its last work ended with a fault.
+    /// Reason reported by the changer when its last request ended with a fault.
     std::optional<int> fault_reason() const { return fault_reason_; }
 
   private:
-    /// By its number: places in the table change.
+    /// By number: indices in the table change.
     std::optional<int> selected_, changing_;
     std::optional<int> fault_reason_;
     std::string error_text_;
 };
 
-/// Shows the tool in the spindle at the start, as the table has it.
+/// Shows the table's tool in the spindle at the start.
 void show_first_tool(const ToolStore &tools, io::DiscreteIo &io);
 
 }  // namespace mw::task

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The machine's state: emergency stop, reset, on. As asked for, and as the e-stop chain and motion allow.
+// The state of the machine: emergency stop, reset, on. Requested states, and the states that the e-stop chain
+// and motion allow.
 #pragma once
 
 #include "base/result.hh"
@@ -7,19 +8,19 @@
 
 namespace mw::task {
 
-/// Pure: says what has changed; who owns chain, motion and programs acts on it. One thread.
+/// Pure: reports changes; the owners of chain, motion and programs act on them. One thread.
 class MachineState {
   public:
     struct Seen {
         bool isChainClosed = false;     ///< pin iocontrol.0.emc-enable-in
-        bool isEstopRequested = false;  ///< our side of the chain is open
+        bool isEstopRequested = false;  ///< this side of the chain is open
         bool isEnabled = false;         ///< by motion
     };
     enum class Event : std::uint8_t {
         NONE,
         CHAIN_OPENED,  ///< the machine is in emergency stop now
         ESTOP_RESET,   ///< it has left emergency stop
-        WENT_OFF,      ///< motion is not enabled any more
+        WENT_OFF,      ///< motion is no longer enabled
     };
     struct News {
         Event event = Event::NONE;
@@ -29,21 +30,21 @@ class MachineState {
     News step(const Seen &seen);
 
     struct Asked {
-        Result<Progress> outcome;  ///< STARTED: the state comes when chain or motion agree
+        Result<Progress> outcome;  ///< STARTED: the state changes when chain or motion agree
         std::optional<Ending> replaced;
     };
-    /// Emergency stop and off are done at once.
+    /// Emergency stop and off take effect at once.
     Asked ask(State wanted, mailbox::Serial command, std::int64_t now_ns);
-    /// Motion is asked to enable by `order`.
+    /// `order` requests motion to enable.
     void set_order(motion::CommandId order) { request_.set_order(order); }
     std::optional<Ending> refuse(motion::CommandId order, const std::string &reason) {
         return request_.refuse(order, reason);
     }
-    /// Once a cycle, after the commands: what was asked for has come about, or its time is over.
+    /// Once a cycle, after the commands: the requested state is reached, or its time has expired.
     std::optional<Ending> end_request(std::int64_t now_ns);
 
     State state() const { return state_; }
-    /// What was asked for has not come about yet.
+    /// A requested state has not been reached yet.
     bool isChanging() const { return request_.isUnderWay(); }
 
   private:

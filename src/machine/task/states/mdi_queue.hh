@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Lines of MDI, and taps that clients send, that wait behind the one that runs ([TASK]MDI_QUEUED_COMMANDS).
+// Waiting MDI lines, and taps from clients, after the one that runs ([TASK]MDI_QUEUED_COMMANDS).
 #pragma once
 
 #include <deque>
@@ -15,7 +15,7 @@
 
 namespace mw::task {
 
-/// In their order. One thread.
+/// MDI lines in order. One thread.
 class MdiQueue {
   public:
     struct Line {
@@ -26,7 +26,7 @@ class MdiQueue {
     };
     explicit MdiQueue(int most) : most_(most) {}
 
-    /// Refused when as many wait as may.
+    /// Rejected when the queue is full.
     Result<Progress> add(Line line) {
         if (size() >= most_) {
             return fail(most_ == 0 ? "a line of MDI runs already"
@@ -44,13 +44,13 @@ class MdiQueue {
         waiting_.pop_front();
         return line;
     }
-    /// What the taps of clients from here on keep to.
+    /// Spindle synchronisation of later taps from clients.
     void set_sync(const SetSpindleSync &sync) { sync_ = sync; }
     const SetSpindleSync &sync() const { return sync_; }
-    /// The line that begins is this tap.
+    /// The starting line is this tap.
     void set_tap(const gcode::TapMove &tap) { tap_ = tap; }
     std::optional<gcode::TapMove> take_tap() { return std::exchange(tap_, std::nullopt); }
-    /// All of them; none waits any more, and none is about to begin.
+    /// Removes and returns all of them.
     std::vector<mailbox::Serial> drop() {
         std::vector<mailbox::Serial> dropped;
         for (const Line &line : waiting_) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// One command of the operator that is under way, from its start to its one end.
+// One command of the operator, from its start to its only result.
 #pragma once
 
 #include <cstdint>
@@ -14,14 +14,14 @@
 
 namespace mw::task {
 
-/// How a command has ended: to be told to who gave it.
+/// Outcome of a command, for the client that sent it.
 struct Ending {
     mailbox::Serial command = 0;
     Progress progress = Progress::DONE;
-    std::string reason;  ///< of a refusal or failure
+    std::string reason;  ///< of a rejection or failure
 };
 
-/// None or one at a time. One thread.
+/// At most one command at a time. One thread.
 class Request {
   public:
     static constexpr std::int64_t NO_DEADLINE = std::numeric_limits<std::int64_t>::max();
@@ -32,21 +32,21 @@ class Request {
         order_ = 0;
     }
     void set_deadline(std::int64_t deadline_ns) { deadline_ns_ = deadline_ns; }
-    /// What motion was asked to do for it.
+    /// The command sent to motion for it.
     void set_order(motion::CommandId order) { order_ = order; }
     motion::CommandId order() const { return order_; }
 
     bool isUnderWay() const { return command_ != 0; }
     bool isLate(std::int64_t now_ns) const { return isUnderWay() && now_ns > deadline_ns_; }
 
-    /// Nothing when none is under way.
+    /// Nothing when none is active.
     std::optional<Ending> end(Progress progress, std::string reason = {}) {
         if (!isUnderWay()) {
             return std::nullopt;
         }
         return Ending{std::exchange(command_, 0), progress, std::move(reason)};
     }
-    /// Motion has refused `order`: nothing when that is not this one's.
+    /// Motion has rejected `order`: nothing when it does not belong to this command.
     std::optional<Ending> refuse(motion::CommandId order, const std::string &reason) {
         return order_ != 0 && order == order_ ? end(Progress::REFUSED, reason) : std::nullopt;
     }
@@ -57,7 +57,7 @@ class Request {
     motion::CommandId order_ = 0;
 };
 
-/// A change of state or mode that has not come about after so long has failed.
+/// Timeout of a change of state or mode.
 inline constexpr std::int64_t CHANGE_TIMEOUT_NS = 2000000000;
 
 }  // namespace mw::task

@@ -10,7 +10,7 @@
 
 namespace mw::task::test {
 
-/// A folder of this test, gone with it.
+/// A temporary folder of this test.
 class Folder {
   public:
     Folder() : path_(std::filesystem::temp_directory_path() / ("mw_parts_" + std::to_string(::getpid()))) {

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 using test::Folder;
 using test::text_of;
 
-/// What the log is asked for is done.
+/// Waits until the log has executed its jobs.
 void settle(const ProgramLog &log) {
     while (!log.isSettled()) {
         std::this_thread::yield();
@@ -59,7 +59,7 @@ TEST(ProgramLog, AFullDiskIsToldOnce) {
     ProgramLog log(LogWorks::ON_CALL);
     log.open(folder / "log", false);
     ASSERT_TRUE(log.opened().value().has_value());
-    // A limit of the process is the same to it as the end of the disk.
+    // A limit of the process has the same effect as a full disk.
     rlimit before{};
     ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
     const rlimit none{0, before.rlim_max};
@@ -92,7 +92,7 @@ TEST(ProgramLog, AHungDiskHoldsUpNobodyAndNoLineIsLost) {
     EXPECT_NE(log.take_delay().value().find("has not answered for 1 s"), std::string::npos);
     EXPECT_FALSE(log.take_delay().has_value()) << "it is reported once";
     disk->release();
-    while (text_of(folder / "log") != expected) {  // else this test times out
+    while (text_of(folder / "log") != expected) {  // otherwise this test times out
         std::this_thread::yield();
     }
     EXPECT_FALSE(log.take_failure().has_value());
@@ -118,7 +118,7 @@ TEST(ProgramLog, WhatWaitsForAHungDiskHasALimitAndSoHasItsEnd) {
     EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10));
     disk->release();
     while (!fs::exists(folder / "log") ||
-           fs::file_size(folder / "log") != bytes) {  // what was taken is written
+           fs::file_size(folder / "log") != bytes) {  // accepted lines are written
         std::this_thread::yield();
     }
 }

@@ -13,7 +13,7 @@ namespace mw::gcode::detail {
 /// G40; G41 and G42 (tool number D), G41.1 and G42.1 (diameter D). False after setting the fault.
 bool set_compensation(const Code &code, const BlockValues &values, const Machine &machine, ToolTable &tools,
                       State &state, CanonQueue &canon, Fault &fault, Outcome &outcome);
-/// What G40 does.
+/// Action of G40.
 void end_compensation(State &state, CanonQueue &canon);
 
 }  // namespace mw::gcode::detail

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // G70 (finishing), G71 and G72 (roughing along Z and along X) and their variants for pockets. The profile is
-// a subroutine of which only the moves count; it is read as a call, then cut as a whole.
+// a subroutine of which only the moves count; it is read as a call, then cut.
 #pragma once
 
 #include <optional>
@@ -14,17 +14,17 @@
 
 namespace mw::gcode::detail {
 
-/// The cycle whose profile is being read, and what the last one has left to cut.
+/// The cycle whose profile is being read, and the last roughing cycle.
 class LatheCycles {
   public:
-    /// The blocks to come give the profile.
+    /// The following blocks are the profile.
     void open(LatheRequest request) { request_ = std::move(request); }
     const LatheRequest *request() const { return request_ ? &*request_ : nullptr; }
-    /// A block of the profile's subroutine: its move, if it has one. False after setting the fault.
+    /// Records the move of a block of the profile's subroutine, if it has one. False after setting the fault.
     bool record(const BlockValues &values, const Settings &settings, const State &state, Fault &fault);
     /// The profile is complete: cuts it. False after setting the fault.
     bool finish(State &state, CanonQueue &canon, Fault &fault);
-    /// The profile is given up.
+    /// Discards the profile.
     void drop() { request_.reset(); }
     /// The program has ended: no G70 follows the last roughing.
     void forget_roughing() { roughed_.reset(); }
@@ -44,7 +44,7 @@ class LatheCycles {
     std::optional<Roughed> roughed_;
 };
 
-/// G70 to G72.2: what follows is the profile. False after setting the fault.
+/// G70 to G72.2: the following blocks are the profile. False after setting the fault.
 bool begin_lathe_cycle(const Code &code, const BlockValues &values, const Machine &machine,
                        LatheCycles &lathe, State &state, CanonQueue &canon, Fault &fault, Outcome &outcome);
 

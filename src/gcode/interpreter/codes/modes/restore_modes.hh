@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// M70 to M73: modes saved and restored, per level of call.
+// M70 to M73: saves and restores modes, per call level.
 #pragma once
 
 #include "gcode/interpreter/codes/block_values.hh"
@@ -11,7 +11,7 @@
 
 namespace mw::gcode::detail {
 
-/// Positions, motion mode, tool and offsets of coordinate systems stay what they are. False after setting the
+/// Does not change positions, motion mode, tool and offsets of coordinate systems. False after setting the
 /// fault.
 bool restore_modes(const State &wanted, const Machine &machine, Parameters &parameters, State &state,
                    CanonQueue &canon, Fault &fault);

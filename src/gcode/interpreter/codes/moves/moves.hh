@@ -14,7 +14,7 @@ bool move_straight(const Code &code, const BlockValues &values, State &state, Ca
 /// G80.
 bool cancel_motion(const Code &code, const BlockValues &values, State &state, CanonQueue &canon,
                    Fault &fault);
-/// G53 has no action of its own: it says what the block's move means.
+/// G53 has no action: it changes the meaning of the block's move.
 bool note_machine_coordinates(const Code &code, const BlockValues &values, State &state, CanonQueue &canon,
                               Fault &fault);
 

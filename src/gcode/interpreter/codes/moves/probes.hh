@@ -11,7 +11,7 @@
 
 namespace mw::gcode::detail {
 
-/// The program waits for the machine behind it. False after setting the fault.
+/// G38.2 to G38.5. The program waits for the machine after it. False after setting the fault.
 bool move_probe(const Code &code, const BlockValues &values, Parameters &parameters, Awaited &awaited,
                 State &state, CanonQueue &canon, Fault &fault, Outcome &outcome);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Moves in step with the spindle: G33 and G33.1.
+// Spindle-synchronised moves: G33 and G33.1.
 #pragma once
 
 #include "gcode/interpreter/codes/block_values.hh"
@@ -9,12 +9,11 @@
 
 namespace mw::gcode::detail {
 
-/// G33 (a synchronised straight move) and G33.1 (rigid tapping: there and back). False after setting the
-/// fault.
+/// G33 (a synchronised straight move) and G33.1 (rigid tapping). False after setting the fault.
 bool move_with_spindle(const Code &code, const BlockValues &values, const Machine &machine, State &state,
                        CanonQueue &canon, Fault &fault);
 
-/// The feed that the pitch makes at the programmed speed must be within the machine's.
+/// Checks that the feed from pitch and programmed speed is within the machine's limit.
 bool check_pitch(const Machine &machine, const State &state, Fault &fault, int spindle, double pitch,
                  std::uint32_t column);
 

@@ -17,15 +17,15 @@ bool move_along_cubic(const Code &code, const BlockValues &values, State &state,
 /// G5.1.
 bool move_along_quadratic(const Code &code, const BlockValues &values, State &state, CanonQueue &canon,
                           Fault &fault);
-/// G5.2 itself and the lines after it: a control point each. Of `points` the first state.spline.count count;
-/// those behind are left over from blocks that failed.
+/// G5.2 and the lines after it: one control point each. Only the first state.spline.count `points` are valid;
+/// later ones are left over from failed blocks.
 bool add_nurbs_point(const Code &code, const BlockValues &values, std::vector<NurbsPoint> &points,
                      State &state, CanonQueue &canon, Fault &fault);
 /// G5.3.
 bool end_nurbs(const Code &code, const BlockValues &values, std::vector<NurbsPoint> &points, State &state,
                CanonQueue &canon, Fault &fault);
 
-/// Between G5.2 and G5.3 there are control points and nothing else that moves or ends.
+/// Between G5.2 and G5.3 only control points are permitted, no other moves or program end.
 bool check_open_nurbs(const BlockValues &values, const State &state, Fault &fault);
 
 }  // namespace mw::gcode::detail

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// M98 and M99: subroutines in the manner of Fanuc.
+// M98 and M99: Fanuc-style subroutines.
 #pragma once
 
 #include "gcode/interpreter/codes/around_block.hh"
@@ -12,8 +12,7 @@
 
 namespace mw::gcode::detail {
 
-/// M99 in the main program begins it anew, or ends it where there is no machine. False after setting the
-/// fault.
+/// M99 in the main program restarts it, or ends it without a machine. False after setting the fault.
 bool call_or_return(const Code &code, const BlockValues &values, const Machine &machine,
                     const BlockPlace &place, FanucCall &call, Parameters &parameters, State &state,
                     CanonQueue &canon, Fault &fault, Outcome &outcome);

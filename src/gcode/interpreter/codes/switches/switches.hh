@@ -20,7 +20,7 @@ bool switch_overrides(const Code &code, const BlockValues &values, const Machine
                       CanonQueue &canon, Fault &fault);
 /// M62 to M65 (digital), M67 and M68 (analog).
 bool set_output(const Code &code, const BlockValues &values, State &state, CanonQueue &canon, Fault &fault);
-/// M66. The program waits for the machine behind it.
+/// M66. The program waits for the machine after it.
 bool wait_for_input(const Code &code, const BlockValues &values, Parameters &parameters, Awaited &awaited,
                     State &state, CanonQueue &canon, Fault &fault, Outcome &outcome);
 /// M100 to M199: a program of that name in one of the folders for them.

@@ -12,7 +12,7 @@
 
 namespace mw::gcode::detail {
 
-/// L0 reads the tool table again: the program waits for that. False after setting the fault.
+/// G10. L0 reads the tool table again: the program waits for that. False after setting the fault.
 bool set_stored_data(const Code &code, const BlockValues &values, const Machine &machine, ToolTable &tools,
                      Parameters &parameters, State &state, CanonQueue &canon, Fault &fault, Outcome &outcome);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The tool table as the program has changed it.
+// The tool table with the changes of the program.
 #pragma once
 
 #include <map>
@@ -8,8 +8,8 @@
 
 namespace mw::gcode::detail {
 
-/// Entries that G10 has set stand before those of the source until the owner of the table has them. What a
-/// block sets counts at once and is dropped when the block fails.
+/// Entries set by G10 override those of the source until the owner of the table has them. A change takes
+/// effect at once and is dropped when its block fails.
 class ToolTable {
   public:
     explicit ToolTable(const ToolSource &source) : source_(source) {}
@@ -22,7 +22,7 @@ class ToolTable {
     void commit();
     void rollback() { of_block_.clear(); }
     bool hasChanges() const { return !changes_.empty(); }
-    /// The source has them all.
+    /// The source has all changes.
     void forget() { changes_.clear(); }
 
   private:

@@ -15,25 +15,25 @@ namespace mw::gcode::detail {
 /// The word T.
 bool select_tool(const Code &code, const BlockValues &values, const Machine &machine, ToolTable &tools,
                  State &state, CanonQueue &canon, Fault &fault, Outcome &outcome);
-/// M6. The program waits for the changer behind it.
+/// M6. The program waits for the changer after it.
 bool change_tool(const Code &code, const BlockValues &values, const Machine &machine, ToolTable &tools,
                  Parameters &parameters, State &state, CanonQueue &canon, Fault &fault, Outcome &outcome);
 /// M61.
 bool set_tool_number(const Code &code, const BlockValues &values, const Machine &machine, ToolTable &tools,
                      State &state, CanonQueue &canon, Fault &fault, Outcome &outcome);
-/// G43 (from the table), G43.1 (from the words), G43.2 (on top of what is there), G49 (none).
+/// G43 (from the table), G43.1 (from the words), G43.2 (added to the current offset), G49 (none).
 bool set_tool_offset(const Code &code, const BlockValues &values, const Machine &machine, ToolTable &tools,
                      State &state, CanonQueue &canon, Fault &fault, Outcome &outcome);
 
-/// The place of a tool in the table.
+/// Index of a tool in the table.
 bool find_tool(const ToolTable &tools, int toolno, std::uint32_t column, int &index, Fault &fault);
-/// The tool at `index` is in the spindle; index 0 of a table without random places means none.
+/// Loads the tool at `index` into the spindle; index 0 of a table without random pockets means none.
 void load_tool(const ToolTable &tools, ToolModes &tool, int index);
-/// The same for the index that the modes tell; none when the table has no such place.
+/// As above, for the index in the modes; none when the table has no such index.
 void load_tool_at_index(const ToolTable &tools, ToolModes &tool);
-/// Another tool offset is in force; the machine stays where it is.
+/// Changes the tool offset; the machine does not move.
 void move_by_tool_offset(State &state, const Pose &offset);
-/// Announced; `code`: ten times the G code that is in force from here on.
+/// Sets and announces the offset; `code`: ten times the G code that is active from now on.
 void apply_tool_offset(State &state, CanonQueue &canon, const Pose &offset, int code);
 
 }  // namespace mw::gcode::detail

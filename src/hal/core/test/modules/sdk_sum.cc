@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A component in C++ with every kind of thing that the SDK offers.
+// A C++ component that uses every feature of the SDK.
 #include "hal/sdk/component.hh"
 
 namespace {

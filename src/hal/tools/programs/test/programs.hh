@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Runs our programs as processes, in an instance and a folder of their own.
+// Runs our programs as processes, each in a separate instance and folder.
 #pragma once
 
 #include <fcntl.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// halrun and halcmd as processes: what they print, how they end and what they leave behind.
+// halrun and halcmd as processes: their output, their end and the files that they leave.
 #include "hal/tools/programs/test/programs.hh"
 
 namespace mw::hal::tools {
@@ -92,7 +92,7 @@ TEST_F(Programs, NothingSurvivesAKilledHalrun) {
     (void)wait(pid);
     for (int i = 0; i < 1000 && (isHostAlive(instance) || kill(program, 0) == 0); ++i) {
         usleep(10000);
-        // An orphan of this test's process group may stay a zombie where nobody collects it.
+        // An orphan of this test's process group may remain a zombie if no process collects it.
         const auto state = read_file("/proc/" + std::to_string(program) + "/stat").value_or("");
         if (!isHostAlive(instance) && state.find(") Z ") != std::string::npos) {
             break;
@@ -107,7 +107,7 @@ TEST_F(Programs, SignalsEndHalrunInOrder) {
     for (const int signal : {SIGTERM, SIGINT, SIGKILL}) {
         std::ofstream(folder / "b.hal") << "loadrt threads\nstart\nloadusr -w sleep 30\n";
         const pid_t pid = start({"halrun", "b.hal"});
-        // Up to 10 s for a loaded machine; the usual time is some milliseconds.
+        // Up to 10 s on a loaded computer; usually some milliseconds.
         for (int i = 0; i < 1000 && !isHostAlive(instance); ++i) {
             usleep(10000);
         }
