@@ -35,7 +35,7 @@ NOT_SHOWN = re.compile(r'/(test|bench|logger|canon)/|keys\.hh$|pin_tables\.hh$|m
                        r'|base/ini/ini(value|var|_strict|_escape|_script)\.cc$|programs/setup/var_command\.cc$|command_classes\.hh$|/kinematics/\w+\.hh$|machine/config/ini_keys\.cc$'
                        r'|/capi_\w+\.cc$|halcompile/emit_(c|main|man)\.cc$|runtime/log\.cc$|reference_pages\.cc$|view/watch_model\.cc$')
 # Clients look for these words (docs/reference/compatibility.md), canon comments are rs274's output, and the compiler reads the others.
-NEVER = re.compile(r'on limit switch error|^interpreter: |^each command is of one class$|^A machine is up already|^Machine configuration file is'
+NEVER = re.compile(r'on limit switch error|^interpreter: |^each command is of one class$|^A machine is already running|^Machine configuration file is'
                    r'|^; life of tools|^# What was answered|^there is no module $|^(exec|port) \{\}$|^millwright \w+ [^a-z]*(\.ini|\.ngc|options|help)|^\{\} \[options\]|^(un)?loadrt |^echo |^-- -ini|^10? (in|mm), |^--connectpw and')
 LANGUAGES = ('de', 'es')
 TOKEN = re.compile(r'''//[^\n]*|/\*.*?\*/|R"(\w*)\((.*?)\)\1"|"((?:[^"\\\n]|\\.)*)"|'(?:[^'\\\n]|\\.)+'|\w+|\s+|.''', re.S)

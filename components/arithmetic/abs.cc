@@ -26,8 +26,8 @@ struct Abs {
     void update() noexcept {
         using Limits = std::numeric_limits<ABS_TYPE>;
         const ABS_TYPE value = in;
-        const bool isLowest = Limits::is_integer && value == Limits::lowest();
-        out = isLowest ? Limits::max() : (value < 0 ? -value : value);
+        const bool is_lowest = Limits::is_integer && value == Limits::lowest();
+        out = is_lowest ? Limits::max() : (value < 0 ? -value : value);
         sign = value < 0;
         is_positive = value > 0;
         is_negative = value < 0;

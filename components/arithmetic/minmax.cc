@@ -21,11 +21,11 @@ struct Minmax {
 
     void update() noexcept {
         const double value = in;
-        const bool isReset = reset;
-        if (isReset || value > max) {
+        const bool is_reset = reset;
+        if (is_reset || value > max) {
             max = value;
         }
-        if (isReset || value < min) {
+        if (is_reset || value < min) {
             min = value;
         }
     }

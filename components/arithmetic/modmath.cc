@@ -32,15 +32,15 @@ struct Modmath {
         const std::int64_t from = actual;
         const std::int64_t to = desired;
         const std::int64_t size = std::int64_t{max_num} - min_num + 1;
-        const bool isInside = isOnCircle(from) && isOnCircle(to);
+        const bool inside = isOnCircle(from) && isOnCircle(to);
         std::int64_t steps = to - from;
         if (wrap && size > 0) {
             steps = (steps % size + size) % size;
             steps = 2 * steps > size ? steps - size : steps;
         }
-        up = isInside && steps > 0;
-        down = isInside && steps < 0;
-        on_target = isInside && steps == 0;
+        up = inside && steps > 0;
+        down = inside && steps < 0;
+        on_target = inside && steps == 0;
     }
 
   private:

@@ -26,10 +26,10 @@ struct Near {
         const double a = in1;
         const double b = in2;
         const double factor = scale >= 1.0 ? scale.get() : 1.0 / scale;
-        const bool isClose = std::fabs(a - b) <= difference;
+        const bool close = std::fabs(a - b) <= difference;
         const double low = a >= 0.0 ? a / factor : a * factor;
         const double high = a >= 0.0 ? a * factor : a / factor;
-        out = isClose || (low <= b && b <= high);
+        out = close || (low <= b && b <= high);
     }
 };
 

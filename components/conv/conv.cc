@@ -31,7 +31,7 @@ struct Conv {
         const conv::Converted<CONV_TO> result = conv::convert<CONV_TO>(in.get(), clamp);
         out = result.value;
         if constexpr (conv::canOverflow<CONV_FROM, CONV_TO>()) {
-            out_of_range = result.isOutOfRange;
+            out_of_range = result.out_of_range;
         }
     }
 };

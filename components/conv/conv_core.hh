@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// One value of a HAL type as another: bool, double and integers of 32 and 64 bits. Realtime-safe.
+// Converts values between HAL types: bool, double and integers of 32 and 64 bits. Realtime-safe.
 #pragma once
 
 #include <cmath>
@@ -9,7 +9,7 @@
 
 namespace mw::conv {
 
-/// Floats nearer to zero than this count as zero when they become a bit.
+/// A float whose size is below this counts as zero when it is converted to a bit.
 constexpr double FALSE_BELOW = 1e-6;
 
 /// True when some values of `From` do not fit into `To`. Any value fits into a float.
@@ -25,14 +25,14 @@ constexpr bool canOverflow() noexcept {
     }
 }
 
-/// The value, and whether it lay outside the range of `To`.
+/// The value, and whether the input was outside the range of `To`.
 template <class To>
 struct Converted {
     To value{};
-    bool isOutOfRange = false;
+    bool out_of_range = false;
 };
 
-/// The nearest value of an integer type; a float is cut towards zero first, not-a-number is 0.
+/// The nearest value of an integer type. A float is first truncated towards zero; NaN becomes 0.
 template <class To, class From>
 Converted<To> clamped(From value) noexcept {
     using Limits = std::numeric_limits<To>;
@@ -70,7 +70,7 @@ Converted<To> clamped(From value) noexcept {
     }
 }
 
-/// `value` modulo 2^bits, as copying the low bits of an integer would do it.
+/// `value` modulo 2^bits, the same as copying the low bits of an integer.
 template <class To, class From>
 To wrapped(From value) noexcept {
     if constexpr (std::is_floating_point_v<From>) {
@@ -85,23 +85,22 @@ To wrapped(From value) noexcept {
     }
 }
 
-/// Converts; what is out of range is clamped or wrapped around.
+/// Converts `value`; a value outside the range is clamped or wrapped.
 template <class To, class From>
-Converted<To> convert(From value, bool isClamping) noexcept {
+Converted<To> convert(From value, bool clamping) noexcept {
     if constexpr (std::is_same_v<From, bool> || std::is_floating_point_v<To>) {
         return {static_cast<To>(value), false};
     } else if constexpr (std::is_same_v<To, bool>) {
         if constexpr (std::is_floating_point_v<From>) {
             const bool is_negative = value < 0.0;
-            return {std::fabs(value) > FALSE_BELOW && !(is_negative && isClamping),
-                    is_negative || value > 1.0};
+            return {std::fabs(value) > FALSE_BELOW && !(is_negative && clamping), is_negative || value > 1.0};
         } else {
             const bool is_below = value < From{0};
-            return {value != 0 && !(is_below && isClamping), is_below || value > From{1}};
+            return {value != 0 && !(is_below && clamping), is_below || value > From{1}};
         }
     } else {
         Converted<To> result = clamped<To>(value);
-        if (result.isOutOfRange && !isClamping) {
+        if (result.out_of_range && !clamping) {
             result.value = wrapped<To>(value);
         }
         return result;

@@ -39,14 +39,15 @@ struct CounterChannel {
 
     void sample(long period_ns) noexcept {
         encoder::FastSettings settings;
-        settings.isCounter = true;
+        settings.is_counter = true;
         settings.isIndexEnabled = index_enable;
         fast.run({phase_a, false, phase_z, false}, settings, period_ns);
         show_raw();
     }
 
     void capture() noexcept {
-        // Without an input for it, velocity is taken as 0 after a tenth of a second without a count.
+        // Without the input for the minimum speed, the velocity becomes 0 after a tenth of a second without a
+        // count.
         constexpr double SLOWEST_COUNTS_PER_S = 10.0;
         const double scale = position_scale;
         const double slowest = scale != 0.0 ? SLOWEST_COUNTS_PER_S / (scale < 0.0 ? -scale : scale) : 0.0;

@@ -8,7 +8,7 @@ namespace mw::encoder {
 namespace {
 
 constexpr double SECONDS_PER_UNIT = static_cast<double>(Stamp::TIME_UNIT_NS) * 1e-9;
-/// A pause this much longer than the tooth before it is a gap.
+/// A pause longer than the previous tooth by this factor is a gap.
 constexpr double GAP_FACTOR = 1.5;
 
 std::int32_t plus(std::int32_t a, std::int32_t b) noexcept {
@@ -26,20 +26,20 @@ unsigned pair_of(const Phases &phases) noexcept {
 }  // namespace
 
 int FastPart::change_of(const Phases &phases, const FastSettings &settings) const noexcept {
-    if (settings.isCounter) {
+    if (settings.is_counter) {
         return phases.a && !last_.a ? 1 : 0;
     }
     const int change = quadrature_change(pair_of(last_), pair_of(phases));
-    if (settings.isX4) {
+    if (settings.is_x4) {
         return change;
     }
-    // Once per cycle: at the edges of A while B is low.
-    const bool isAtEdge = phases.a != last_.a && !phases.b && !last_.b;
-    return isAtEdge ? change : 0;
+    // One count per cycle: at the edges of A while B is low.
+    const bool at_edge = phases.a != last_.a && !phases.b && !last_.b;
+    return at_edge ? change : 0;
 }
 
 bool FastPart::isIndex(const Phases &phases, const FastSettings &settings, int change) noexcept {
-    const bool usesGap = settings.isCounter && settings.missing_teeth > 0;
+    const bool usesGap = settings.is_counter && settings.missing_teeth > 0;
     if (!usesGap) {
         return phases.z && !last_.z;
     }
@@ -47,17 +47,17 @@ bool FastPart::isIndex(const Phases &phases, const FastSettings &settings, int c
         return false;
     }
     const std::int64_t interval = now_ns_ - last_tooth_ns_;
-    const bool isGap = tooth_interval_ns_ > 0 &&
-                       static_cast<double>(interval) > GAP_FACTOR * static_cast<double>(tooth_interval_ns_);
+    const bool is_gap = tooth_interval_ns_ > 0 &&
+                        static_cast<double>(interval) > GAP_FACTOR * static_cast<double>(tooth_interval_ns_);
     last_tooth_ns_ = now_ns_;
-    if (!isGap && hasTooth_) {
+    if (!is_gap && has_tooth_) {
         tooth_interval_ns_ = interval;
     }
-    hasTooth_ = true;
-    if (isGap) {
+    has_tooth_ = true;
+    if (is_gap) {
         raw_ = plus(raw_, settings.missing_teeth);
     }
-    return isGap;
+    return is_gap;
 }
 
 void FastPart::run(const Phases &phases, const FastSettings &settings, std::int64_t period_ns) noexcept {
@@ -65,17 +65,17 @@ void FastPart::run(const Phases &phases, const FastSettings &settings, std::int6
     const auto time = static_cast<std::uint32_t>(now_ns_ / Stamp::TIME_UNIT_NS);
     const int change = change_of(phases, settings);
     raw_ = plus(raw_, change);
-    const bool hasIndex = isIndex(phases, settings, change);
+    const bool has_index = isIndex(phases, settings, change);
     if (change != 0) {
         latest_.store(Stamp{raw_, time}.pack(), std::memory_order_relaxed);
     }
-    if (hasIndex && settings.isIndexEnabled && index_.load(std::memory_order_relaxed) == 0) {
+    if (has_index && settings.isIndexEnabled && index_.load(std::memory_order_relaxed) == 0) {
         const std::uint64_t count = static_cast<std::uint32_t>(raw_);
         index_.store((count << 1U) | 1U, std::memory_order_relaxed);
     }
-    const bool isLatchEdge =
+    const bool is_latch_edge =
         phases.latch != last_.latch && (phases.latch ? settings.latchRising : settings.latchFalling);
-    if (isLatchEdge) {
+    if (is_latch_edge) {
         latched_.store(raw_, std::memory_order_relaxed);
     }
     time_.store(time, std::memory_order_relaxed);
@@ -86,15 +86,16 @@ double SlowPart::velocity_of(const Stamp &latest, std::uint32_t now, const Setti
     const std::int32_t counts = minus(latest.count, last_.count);
     if (counts != 0) {
         const double seconds = static_cast<double>(latest.time - last_.time) * SECONDS_PER_UNIT;
-        // The first count after standing still, or after a turn of direction, says nothing about the speed.
-        const bool isForward = counts > 0;
-        const bool goesOn = hasMoved_ && isForward == isForward_;
+        // The first count after standstill or after a change of direction gives no information about the
+        // speed.
+        const bool forward = counts > 0;
+        const bool goesOn = moved_ && forward == forward_;
         velocity_ = goesOn && seconds > 0.0 ? counts / seconds : 0.0;
-        hasMoved_ = true;
-        isForward_ = isForward;
+        moved_ = true;
+        forward_ = forward;
         last_ = latest;
-    } else if (hasMoved_) {
-        // No count since: not faster than one count in the time that has passed.
+    } else if (moved_) {
+        // There was no new count: the speed is at most one count in the elapsed time.
         const double seconds = static_cast<double>(now - last_.time) * SECONDS_PER_UNIT;
         const double most = seconds > 0.0 ? 1.0 / seconds : std::fabs(velocity_);
         if (std::fabs(velocity_) > most) {
@@ -102,7 +103,7 @@ double SlowPart::velocity_of(const Stamp &latest, std::uint32_t now, const Setti
         }
         if (most < std::fabs(settings.min_speed * settings.scale)) {
             velocity_ = 0.0;
-            hasMoved_ = false;
+            moved_ = false;
         }
     }
     return velocity_;

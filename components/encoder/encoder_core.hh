@@ -11,8 +11,8 @@ namespace mw::encoder {
 
 constexpr int MAX_CHANNELS = 8;
 
-/// What a transition of phases A (bit 1) and B (bit 0) is worth in quadrature; A leads B when counting up.
-/// Both changed at once: 0, the direction is not known.
+/// The change of the count for a quadrature transition of the phases A (bit 1) and B (bit 0). A leads B when
+/// counting up. When both phases change at once the direction is unknown, and the result is 0.
 inline int quadrature_change(unsigned before, unsigned after) noexcept {
     // Position in the cycle 00 -> 10 -> 11 -> 01.
     constexpr unsigned char CYCLE[4] = {0, 3, 1, 2};
@@ -20,7 +20,7 @@ inline int quadrature_change(unsigned before, unsigned after) noexcept {
     return difference == 1 ? 1 : (difference == 3 ? -1 : 0);
 }
 
-/// A count with the time at which it was reached, packed so that both are read at once.
+/// A count and the time at which it was reached, packed into one word so that both are read together.
 struct Stamp {
     std::int32_t count = 0;
     std::uint32_t time = 0;  ///< [TIME_UNIT_NS], wraps
@@ -44,12 +44,12 @@ struct Phases {
 };
 
 struct FastSettings {
-    bool isCounter = false;  ///< count rising edges of A only
-    bool isX4 = true;        ///< else once per cycle
+    bool is_counter = false;  ///< count rising edges of A only
+    bool is_x4 = true;        ///< otherwise one count per cycle
     bool isIndexEnabled = false;
     bool latchRising = true;
     bool latchFalling = true;
-    std::int32_t missing_teeth = 0;  ///< in counter mode: a gap of so many teeth is the index; 0: no
+    std::int32_t missing_teeth = 0;  ///< in counter mode: a gap of this many teeth is the index; 0: no index
 };
 
 /// Samples the phases. [realtime, the faster thread]
@@ -64,22 +64,22 @@ class FastPart {
     int change_of(const Phases &phases, const FastSettings &settings) const noexcept;
     bool isIndex(const Phases &phases, const FastSettings &settings, int change) noexcept;
 
-    Phases last_{.z = true};  // an index signal that is TRUE in the first period is no edge
+    Phases last_{.z = true};  // an index signal that is TRUE in the first period is not an edge
     std::int32_t raw_ = 0;
     std::int64_t now_ns_ = 0;
     std::int64_t last_tooth_ns_ = 0;
-    std::int64_t tooth_interval_ns_ = 0;  ///< 0: not known yet
-    bool hasTooth_ = false;
-    // Written by the fast part, read by the slow one; each word is complete in itself, so relaxed order is
-    // enough.
+    std::int64_t tooth_interval_ns_ = 0;  ///< 0: not yet known
+    bool has_tooth_ = false;
+    // The fast part writes these and the slow part reads them. Each word is complete by itself, so relaxed
+    // order is enough.
     std::atomic<std::uint64_t> latest_{0};  ///< Stamp of the last change
-    std::atomic<std::uint32_t> time_{0};    ///< now, in Stamp units
+    std::atomic<std::uint32_t> time_{0};    ///< the current time, in Stamp units
     std::atomic<std::uint64_t> index_{
         0};  ///< count at the index << 1 | 1; 0: none. Cleared by the slow part.
     std::atomic<std::int32_t> latched_{0};  ///< count at the last edge of the latch input
 };
 
-/// What the slow part tells after a run.
+/// The results of one run of the slow part.
 struct Measured {
     std::int32_t counts = 0;
     double position = 0.0;
@@ -87,10 +87,10 @@ struct Measured {
     double velocity = 0.0;  ///< [units/s]
     std::int32_t counts_latched = 0;
     double position_latched = 0.0;
-    bool indexSeen = false;  ///< the index has been passed: counts start there
+    bool indexSeen = false;  ///< the index was passed; counting starts there
 };
 
-/// Makes position and velocity. [realtime, the slower thread]
+/// Computes position and velocity. [realtime, the slower thread]
 class SlowPart {
   public:
     struct Settings {
@@ -106,8 +106,8 @@ class SlowPart {
     std::int32_t offset_ = 0;
     Stamp last_{};
     double velocity_ = 0.0;  ///< [counts/s]
-    bool hasMoved_ = false;
-    bool isForward_ = true;  ///< direction of the last counts
+    bool moved_ = false;
+    bool forward_ = true;  ///< direction of the last counts
 };
 
 }  // namespace mw::encoder

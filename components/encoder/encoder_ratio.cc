@@ -20,7 +20,7 @@ struct RatioChannel {
 
     unsigned last_master = 0;
     unsigned last_slave = 0;
-    bool isFirst = true;                  ///< where the signals stand at first is no movement
+    bool first = true;                    ///< the state of the signals in the first period is not a movement
     std::atomic<std::int32_t> master{0};  ///< counts while enabled; written by sample, read by update
     std::atomic<std::int32_t> slave{0};   ///< counts
 
@@ -40,13 +40,13 @@ struct RatioChannel {
     void sample() noexcept {
         const std::int32_t master_step = change(master_a, master_b, last_master);
         const std::int32_t slave_step = change(slave_a, slave_b, last_slave);
-        if (!isFirst && enable) {
+        if (!first && enable) {
             master.fetch_add(master_step, std::memory_order_relaxed);
         }
-        if (!isFirst) {
+        if (!first) {
             slave.fetch_add(slave_step, std::memory_order_relaxed);
         }
-        isFirst = false;
+        first = false;
     }
 
     void update() noexcept {

@@ -22,7 +22,7 @@ struct Biquad {
     Out<bool> valid;
     In<std::uint32_t> type;
     ParamRw<double> d1, d2, n0, n1, n2;
-    bool wasEnabled = false;
+    bool was_enabled = false;
 
     void declare(Declare &d) noexcept;
     void update(long period_ns) noexcept;
@@ -56,9 +56,9 @@ bool Biquad::design(double period_s) noexcept {
     }
     const double quality = q;
     const double frequency = f0;
-    const bool isPossible =
+    const bool possible =
         kind <= 2 && quality >= 0.5 && quality <= 2.0 && frequency > 0.0 && frequency * period_s < 0.5;
-    if (!isPossible) {
+    if (!possible) {
         return false;
     }
     const double angle = 2.0 * std::numbers::pi * frequency * period_s;
@@ -77,12 +77,12 @@ bool Biquad::design(double period_s) noexcept {
 
 void Biquad::update(long period_ns) noexcept {
     const double input = in;
-    const bool isEnabled = enable;
-    if (isEnabled && !wasEnabled) {
+    const bool enabled = enable;
+    if (enabled && !was_enabled) {
         valid = design(seconds(period_ns));
     }
-    wasEnabled = isEnabled;
-    if (!isEnabled || !valid || !std::isfinite(input)) {
+    was_enabled = enabled;
+    if (!enabled || !valid || !std::isfinite(input)) {
         out = input;
         return;
     }

@@ -6,25 +6,25 @@
 
 namespace mw::pwm {
 
-/// One output. `plan` sets the duty cycle, `tick` is one step of the time base.
+/// One output. `plan` sets the duty cycle; `tick` runs one step of the time base.
 class Generator {
   public:
-    /// `duty` 0 to 1; `period_ticks` 0 spreads the pulses (pulse density), else it is the period of the
-    /// pulses. With `isDithered` the mean over many periods is exact, else each period is the nearest
-    /// possible.
-    void plan(double duty, long period_ticks, bool isDithered) noexcept {
+    /// `duty` is 0 to 1. `period_ticks` is the period of the pulses; 0 spreads the pulses (pulse density).
+    /// With `dithered` the mean over many periods is exact; otherwise each period is the nearest possible
+    /// one.
+    void plan(double duty, long period_ticks, bool dithered) noexcept {
         duty_ = duty;
         period_ticks_ = period_ticks;
-        isDithered_ = isDithered;
+        dithered_ = dithered;
     }
 
     bool tick() noexcept {
         if (period_ticks_ <= 0) {
             tick_ = 0;
             owed_ += duty_;
-            const bool isHigh = owed_ > 0.0;
-            owed_ -= isHigh ? 1.0 : 0.0;
-            return isHigh;
+            const bool high = owed_ > 0.0;
+            owed_ -= high ? 1.0 : 0.0;
+            return high;
         }
         if (tick_ >= period_ticks_) {
             tick_ = 0;
@@ -35,7 +35,7 @@ class Generator {
         return tick_++ < high_ticks_;
     }
 
-    /// All low, at the beginning of a period.
+    /// Sets all outputs low, at the start of a period.
     void stop() noexcept {
         tick_ = 0;
         owed_ = 0.0;
@@ -44,9 +44,9 @@ class Generator {
 
   private:
     void start_period() noexcept {
-        const double wanted = duty_ * static_cast<double>(period_ticks_) + (isDithered_ ? owed_ : 0.0);
+        const double wanted = duty_ * static_cast<double>(period_ticks_) + (dithered_ ? owed_ : 0.0);
         high_ticks_ = std::lround(wanted);
-        owed_ = isDithered_ ? wanted - static_cast<double>(high_ticks_) : 0.0;
+        owed_ = dithered_ ? wanted - static_cast<double>(high_ticks_) : 0.0;
     }
 
     double duty_ = 0.0;
@@ -54,7 +54,7 @@ class Generator {
     long tick_ = 0;
     long high_ticks_ = 0;
     double owed_ = 0.0;
-    bool isDithered_ = false;
+    bool dithered_ = false;
 };
 
 }  // namespace mw::pwm

@@ -32,7 +32,7 @@ struct PwmChannel {
     InOut<bool> dither;
     pwm::Generator generator;
     bool isEnabled = false;  // as of the last update
-    bool isNegative = false;
+    bool negative = false;
 
     void declare(Declare &d) noexcept;
     void update(double tick_ns) noexcept;
@@ -64,7 +64,7 @@ void PwmChannel::declare(Declare &d) noexcept {
     d.pin(curr_dc, "curr-dc");
 }
 
-/// The wanted duty cycle, with its sign; puts impossible limits right.
+/// The requested duty cycle, with its sign. Also corrects invalid limits.
 double PwmChannel::duty() noexcept {
     const double high = max_dc >= 0.0 ? std::fmin(max_dc, 1.0) : 1.0;
     const double low = min_dc > 0.0 ? std::fmin(min_dc, high) : 0.0;
@@ -82,7 +82,7 @@ double PwmChannel::duty() noexcept {
     return std::copysign(std::fmax(low, std::fmin(high, std::fabs(possible))), possible);
 }
 
-/// The period of the pulses, 0 for pulse density; sets pwm-freq to what is made.
+/// The period of the pulses, 0 for pulse density. Sets pwm-freq to the frequency that is really used.
 long PwmChannel::period_ticks(double tick_ns) noexcept {
     const double tick_hz = 1e9 / tick_ns;
     double wanted_hz = pwm_freq;
@@ -103,33 +103,33 @@ void PwmChannel::update(double tick_ns) noexcept {
     if (ticks > 0 && !dither) {
         made = std::round(made * static_cast<double>(ticks)) / static_cast<double>(ticks);
     }
-    isNegative = wanted < 0.0;
+    negative = wanted < 0.0;
     isEnabled = enable;
     if (type == 1) {
-        dir = isNegative;  // ahead of the first pulse, also while disabled
+        dir = negative;  // set before the first pulse, also while disabled
     }
     generator.plan(made, ticks, dither);
     curr_dc = std::copysign(made, wanted);
 }
 
 void PwmChannel::make_pulses() noexcept {
-    const bool isOn = isEnabled && enable;
-    if (!isOn) {
+    const bool on = isEnabled && enable;
+    if (!on) {
         generator.stop();
     }
-    const bool isHigh = isOn && generator.tick();
+    const bool is_high = on && generator.tick();
     if (type == 2) {
-        up = isHigh && !isNegative;
-        down = isHigh && isNegative;
+        up = is_high && !negative;
+        down = is_high && negative;
         return;
     }
-    pulse = isHigh;
+    pulse = is_high;
 }
 
 struct Pwmgen {
     int count = 0;
     PwmChannel *channel[MAX_PWM] = {};
-    long tick_ns = 0;  // of make-pulses; 0 until it has run
+    long tick_ns = 0;  // period of make-pulses; 0 until it has run
 
     int load(int comp_id) noexcept {
         for (; count < MAX_PWM && output_type[count] != NO_TYPE; ++count) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// steptest: moves an axis to and fro, to find out what speed and acceleration it stands.
+// steptest: moves an axis to and fro, to find out what speed and acceleration it can reach.
 //
 // While `run` (bit) is true `position-cmd` goes between `run-low` and `run-high`, `amplitude` away from
 // `run-start`, to one side only with `dir` (s32) 1 (up) or 2 (down), and waits `pause` (s32) [s] at each end
@@ -27,8 +27,8 @@ struct Steptest {
     ParamRo<double> elapsed;
     Follower follower;
     double goal = 0.0;
-    bool isFirst = true;
-    bool wasJogging = false;
+    bool first = true;
+    bool was_jogging = false;
 
     void declare(Declare &d) noexcept;
     void update(long period_ns) noexcept;
@@ -71,8 +71,8 @@ void Steptest::start() noexcept {
 }
 
 void Steptest::turn_at_ends(double dt) noexcept {
-    const bool isThere = !follower.isMoving() && std::fabs(position_fb - run_target) <= std::fabs(epsilon);
-    if (!isThere) {
+    const bool present = !follower.isMoving() && std::fabs(position_fb - run_target) <= std::fabs(epsilon);
+    if (!present) {
         elapsed = 0.0;
         return;
     }
@@ -85,32 +85,32 @@ void Steptest::turn_at_ends(double dt) noexcept {
 
 void Steptest::update(long period_ns) noexcept {
     const double dt = seconds(period_ns);
-    if (isFirst) {
+    if (first) {
         const double at = position_fb;
         goal = std::isfinite(at) ? at : 0.0;
         follower.planner.reset(goal);
-        isFirst = false;
+        first = false;
     }
-    const bool wasRunning = running;
-    const bool isRunning = run;
-    if (isRunning && !wasRunning) {
+    const bool was_running = running;
+    const bool requested = run;
+    if (requested && !was_running) {
         start();
     }
-    running = isRunning;
-    const int jog = isRunning ? 0 : (jog_plus ? 1 : 0) - (jog_minus ? 1 : 0);
-    if (isRunning) {
+    running = requested;
+    const int jog = requested ? 0 : (jog_plus ? 1 : 0) - (jog_minus ? 1 : 0);
+    if (requested) {
         turn_at_ends(dt);
         goal = run_target;
-    } else if (wasRunning) {
+    } else if (was_running) {
         goal = run_start;
     } else if (jog != 0) {
-        // Always further than it can get in this period.
+        // This is always further than the output can move in one period.
         const double speed = std::fmax(0.0, maxvel);
         const double brake = maxaccel > 0.0 ? speed * speed / maxaccel : 0.0;
         goal = follower.position() + jog * (brake + 2.0 * speed * dt);
-        wasJogging = true;
-    } else if (wasJogging) {
-        wasJogging = false;
+        was_jogging = true;
+    } else if (was_jogging) {
+        was_jogging = false;
         follower.planner.stop();
         goal = follower.planner.target;
     }

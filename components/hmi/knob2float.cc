@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // knob2float: a knob without ends sets a value. While `enable` (bit) is true `out` changes by `scale` (float)
 // for each count of `counts` (s32), held between the parameters `min-out` (0) and `max-out` (1). Counts made
-// while enable is false, and those before the first run, are not looked at.
+// while enable is false, and those before the first run, are ignored.
 #include "components/limit/limit_core.hh"
 #include "hal/sdk/component.hh"
 
@@ -15,7 +15,7 @@ struct Knob2float {
     Out<double> out;
     ParamRw<double> max_out, min_out;
     std::int32_t last_counts = 0;
-    bool isFirst = true;
+    bool first = true;
 
     void declare(Declare &d) noexcept {
         d.pin(counts, "counts");
@@ -29,12 +29,12 @@ struct Knob2float {
 
     void update() noexcept {
         const std::int32_t now = counts;
-        // Through unsigned, so that a wrap of the counter is one step.
-        const std::int32_t turned = isFirst
+        // Subtracted as unsigned, so that a wrap of the counter is one step.
+        const std::int32_t turned = first
                                         ? 0
                                         : static_cast<std::int32_t>(static_cast<std::uint32_t>(now) -
                                                                     static_cast<std::uint32_t>(last_counts));
-        isFirst = false;
+        first = false;
         last_counts = now;
         if (enable) {
             out = limit::between(out + turned * scale, min_out, max_out);

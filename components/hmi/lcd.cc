@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// lcd: streams values to a character display, one character a period. The manual page tells all.
+// lcd: streams values to a character display, one character a period. The manual page describes all pins.
 #include "components/hmi/lcd_core.hh"
 #include "hal/sdk/component.hh"
 
@@ -22,7 +22,7 @@ constexpr char TAB_CODES[] = "    ";
 
 struct LcdItem {
     lcd::Item format;
-    hal_data_u *value = nullptr;  ///< of a number
+    hal_data_u *value = nullptr;  ///< for a number
 };
 
 struct Lcd {
@@ -34,7 +34,7 @@ struct Lcd {
     In<double> contrast;
     ParamRw<std::uint32_t> separator;
 
-    lcd::Text pending;  // characters to send before the next item
+    lcd::Text pending;  // characters that are sent before the next item
     int sent = 0;
     int item = 0;
     int page = -1;
@@ -52,13 +52,13 @@ struct Lcd {
     void send_item(const LcdItem &shown) noexcept;
 };
 
-/// One piece of a format; a number gets a pin of its type.
+/// Adds one item of a format; a number gets a pin of its type.
 bool Lcd::add_item(Declare &d, const char *&text, int &args) noexcept {
     if (first_item[pages] >= MAX_ITEMS - 4) {
         return false;
     }
-    const bool isCode = text[0] == '\\' && (text[1] == 'n' || text[1] == 't');
-    if (isCode) {
+    const bool is_code = text[0] == '\\' && (text[1] == 'n' || text[1] == 't');
+    if (is_code) {
         for (const char *code = text[1] == 'n' ? LINE_CODES : TAB_CODES; *code != '\0'; ++code) {
             items[first_item[pages]++].format.character = static_cast<std::uint8_t>(*code);
         }
@@ -82,7 +82,7 @@ bool Lcd::add_item(Declare &d, const char *&text, int &args) noexcept {
     return d.keep(hal_pin_new(name.text, type, HAL_IN, reinterpret_cast<void **>(&made.value), d.comp_id()));
 }
 
-/// first_item[p] is the beginning of page p, first_item[pages] the end of the last.
+/// first_item[p] is the first item of page p; first_item[pages] is the end of the last page.
 bool Lcd::parse(Declare &d, const char *text) noexcept {
     int args = 0;
     pages = 1;
@@ -141,7 +141,7 @@ void Lcd::send_item(const LcdItem &shown) noexcept {
     }
 }
 
-/// The next characters to send; none for a period at the end of a page.
+/// The next characters to send; none for one period at the end of a page.
 void Lcd::refill() noexcept {
     pending = lcd::Text{};
     sent = 0;

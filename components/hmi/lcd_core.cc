@@ -15,7 +15,7 @@ int hex_digit(char c) noexcept {
     return lower >= 'a' && lower <= 'f' ? lower - 'a' + 10 : -1;
 }
 
-/// A character or \NN, and moves behind it.
+/// Reads a character or \NN, and moves `text` past it.
 bool parse_character(const char *&text, std::uint8_t &out) noexcept {
     if (*text == '\0') {
         return false;
@@ -69,9 +69,9 @@ bool parse_kind(const char *&text, Item &out) noexcept {
     }
 }
 
-/// `digits` with sign and padding in the item's field.
-Text in_field(const Item &item, const Text &digits, bool isNegative) noexcept {
-    const char sign = isNegative ? '-' : (item.hasPlus ? '+' : '\0');
+/// `digits` with sign and padding, in the field of the item.
+Text in_field(const Item &item, const Text &digits, bool negative) noexcept {
+    const char sign = negative ? '-' : (item.has_plus ? '+' : '\0');
     const int needed = digits.length + (sign != '\0' ? 1 : 0);
     const int width = item.width > 0 ? item.width : needed;
     Text out;
@@ -81,13 +81,13 @@ Text in_field(const Item &item, const Text &digits, bool isNegative) noexcept {
         }
         return out;
     }
-    for (int i = needed; i < width && !item.isZeroPadded; ++i) {
+    for (int i = needed; i < width && !item.zero_padded; ++i) {
         out.add(' ');
     }
     if (sign != '\0') {
         out.add(sign);
     }
-    for (int i = needed; i < width && item.isZeroPadded; ++i) {
+    for (int i = needed; i < width && item.zero_padded; ++i) {
         out.add('0');
     }
     for (int i = 0; i < digits.length; ++i) {
@@ -122,8 +122,8 @@ bool parse_item(const char *&text, Item &out) noexcept {
         return true;
     }
     while (*text == ' ' || *text == '0' || *text == '+') {
-        out.isZeroPadded = out.isZeroPadded || *text == '0';
-        out.hasPlus = out.hasPlus || *text == '+';
+        out.zero_padded = out.zero_padded || *text == '0';
+        out.has_plus = out.has_plus || *text == '+';
         ++text;
     }
     if (!parse_number(text, out.width, MAX_FIELD)) {
@@ -145,7 +145,7 @@ Text show_float(const Item &item, double value, char separator) noexcept {
     }
     const double scaled = std::round(std::fabs(value) * scale);
     Text digits;
-    if (!(scaled < 1e18)) {  // too large, or not a number
+    if (!(scaled < 1e18)) {  // too large, or NaN
         for (int i = 0; i < (item.width > 0 ? item.width : 6); ++i) {
             digits.add('*');
         }
@@ -161,11 +161,11 @@ Text show_float(const Item &item, double value, char separator) noexcept {
     return in_field(item, digits, value < 0.0);
 }
 
-Text show_integer(const Item &item, std::uint32_t magnitude, bool isNegative) noexcept {
+Text show_integer(const Item &item, std::uint32_t magnitude, bool negative) noexcept {
     const unsigned base = item.kind == Item::Kind::HEX ? 16 : (item.kind == Item::Kind::OCTAL ? 8 : 10);
     Text digits;
     add_digits(digits, magnitude, base, 1);
-    return in_field(item, digits, isNegative);
+    return in_field(item, digits, negative);
 }
 
 Text show_character(const Item &item, std::uint32_t value) noexcept {

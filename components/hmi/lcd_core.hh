@@ -8,19 +8,19 @@ namespace mw::lcd {
 
 constexpr int MAX_FIELD = 20;
 
-/// One piece of a page: a character as it is, or a number in a field.
+/// One item of a page: a plain character, or a number in a field.
 struct Item {
     enum class Kind : std::uint8_t { CHARACTER, FLOAT, SIGNED, UNSIGNED, HEX, OCTAL, CHAR_CODE, BIT };
     Kind kind = Kind::CHARACTER;
     std::uint8_t character = 0;
-    std::uint8_t other = 0;  ///< of a BIT: what is shown for false
+    std::uint8_t other = 0;  ///< for a BIT: the character for false
     std::uint8_t width = 0;  ///< 0: as wide as needed
     std::uint8_t decimals = 4;
-    bool isZeroPadded = false;
-    bool hasPlus = false;
+    bool zero_padded = false;
+    bool has_plus = false;
 };
 
-/// What a field shows.
+/// The contents of a field.
 struct Text {
     char text[MAX_FIELD + 24];
     int length = 0;
@@ -32,13 +32,13 @@ struct Text {
     }
 };
 
-/// Reads the piece of a format that starts at `text` and moves behind it. False at a mistake.
+/// Reads the format item at the start of `text` and moves `text` past it. False when it is invalid.
 bool parse_item(const char *&text, Item &out) noexcept;
 
-/// `value` in the field; a number that does not fit becomes asterisks.
+/// `value` in the field; a number that does not fit is shown as asterisks.
 Text show_float(const Item &item, double value, char separator) noexcept;
-Text show_integer(const Item &item, std::uint32_t magnitude, bool isNegative) noexcept;
-/// CHAR_CODE and BIT.
+Text show_integer(const Item &item, std::uint32_t magnitude, bool negative) noexcept;
+/// For CHAR_CODE and BIT.
 Text show_character(const Item &item, std::uint32_t value) noexcept;
 
 }  // namespace mw::lcd

@@ -3,12 +3,12 @@
 // makes keyboards of 4 rows and 8 columns, and of 2 rows and 3 columns that are scanned (`s`); `names=` names
 // them.
 //
-// `key.rRcC` (bit) is true while the key is held. Without s `keycode` (u32) is an input: 0xC0 plus the number
-// of the key when it is pressed, 0x80 plus it when it is released, others change nothing; the number is the
-// row times the power of two not below the columns, plus the column. With s keycode is an output with such
-// codes (0x40 in between); in each run one of `row-RR-out` (bit) is active and `col-CC-in` (bit) of the row
-// before are read; a key counts when it is the same in two scans. Parameters: `key-rollover` (u32, 2; old
-// name key_rollover), how many keys may be held at once; with s `negative-logic` (bit, true): active is
+// `key.rRcC` (bit) is true while the key is pressed. Without s `keycode` (u32) is an input: 0xC0 plus the
+// number of the key when it is pressed, 0x80 plus it when it is released, others change nothing; the number
+// is the row times the power of two not below the columns, plus the column. With s keycode is an output with
+// such codes (0x40 in between); in each run one of `row-RR-out` (bit) is active and `col-CC-in` (bit) of the
+// row before are read; a key counts when it is the same in two scans. Parameters: `key-rollover` (u32, 2; old
+// name key_rollover), how many keys may be pressed at once; with s `negative-logic` (bit, true): active is
 // false.
 #include "hal/sdk/component.hh"
 
@@ -31,7 +31,7 @@ struct MatrixKb {
     int rows = 0;
     int columns = 0;
     int column_bits = 0;
-    bool isScanned = false;
+    bool scanned = false;
     In<bool> column_in[MAX_LINES];
     Out<bool> row_out[MAX_LINES];
     Out<bool> *key = nullptr;  ///< rows * columns
@@ -48,14 +48,14 @@ struct MatrixKb {
     void update() noexcept;
 
   private:
-    bool change(Out<bool> &changed, bool isDown) noexcept;
+    bool change(Out<bool> &changed, bool down) noexcept;
     void take(std::uint32_t code) noexcept;
     void scan() noexcept;
 };
 
 bool MatrixKb::parse(const char *text) noexcept {
     int *number = &rows;
-    for (; *text != '\0' && !isScanned; ++text) {
+    for (; *text != '\0' && !scanned; ++text) {
         if (*text >= '0' && *text <= '9') {
             *number = 10 * *number + (*text - '0');
             if (*number > MAX_LINES) {
@@ -64,7 +64,7 @@ bool MatrixKb::parse(const char *text) noexcept {
         } else if ((*text == 'x' || *text == 'X') && number == &rows) {
             number = &columns;
         } else if (*text == 's' || *text == 'S') {
-            isScanned = true;
+            scanned = true;
         } else {
             return false;
         }
@@ -92,7 +92,7 @@ void MatrixKb::declare(Declare &d) noexcept {
         d.pin(key[i], name);
     }
     d.legacy_param(rollover, "key-rollover", "key_rollover", 2U);
-    if (isScanned) {
+    if (scanned) {
         for (int i = 0; i < rows; ++i) {
             d.pin_at(row_out[i], "row-%02d-out", i);
         }
@@ -107,17 +107,17 @@ void MatrixKb::declare(Declare &d) noexcept {
     d.function<&MatrixKb::update>(this);
 }
 
-/// Sets a key; false when that changes nothing or is beyond the rollover.
-bool MatrixKb::change(Out<bool> &changed, bool isDown) noexcept {
-    if (isDown == changed.get() || (isDown && held >= rollover)) {
+/// Sets a key. False when nothing changes, or when the press is above the rollover.
+bool MatrixKb::change(Out<bool> &changed, bool down) noexcept {
+    if (down == changed.get() || (down && held >= rollover)) {
         return false;
     }
-    changed = isDown;
-    held = isDown ? held + 1 : held - 1;
+    changed = down;
+    held = down ? held + 1 : held - 1;
     return true;
 }
 
-/// Sets the key of a code; a press beyond the rollover is dropped.
+/// Sets the key for a code; a press above the rollover is ignored.
 void MatrixKb::take(std::uint32_t code) noexcept {
     const std::uint32_t kind = code & ~KEY_NUMBER;
     const std::uint32_t number = code & KEY_NUMBER;
@@ -134,13 +134,13 @@ void MatrixKb::scan() noexcept {
     std::uint32_t code = NO_KEY;
     for (int column = 0; column < columns; ++column) {
         const int i = row * columns + column;
-        const bool isDown = column_in[column] == active;
-        const bool isSteady = isDown == lastScan[i];
-        lastScan[i] = isDown;
-        if (isSteady && change(key[i], isDown)) {
+        const bool down = column_in[column] == active;
+        const bool steady = down == lastScan[i];
+        lastScan[i] = down;
+        if (steady && change(key[i], down)) {
             const std::uint32_t number =
                 (static_cast<std::uint32_t>(row) << column_bits) + static_cast<std::uint32_t>(column);
-            code = (isDown ? KEY_DOWN : KEY_UP) + number;
+            code = (down ? KEY_DOWN : KEY_UP) + number;
         }
     }
     code_out = code;
@@ -151,7 +151,7 @@ void MatrixKb::scan() noexcept {
 }
 
 void MatrixKb::update() noexcept {
-    if (isScanned) {
+    if (scanned) {
         scan();
     } else {
         take(code_in);
@@ -175,8 +175,8 @@ struct MatrixKbs {
                 return -EINVAL;
             }
             Name prefix;
-            const bool isNamed = names[count] != nullptr && names[count][0] != '\0';
-            if (isNamed) {
+            const bool named = names[count] != nullptr && names[count][0] != '\0';
+            if (named) {
                 rtapi_snprintf(prefix.text, sizeof prefix.text, "%s", names[count]);
             } else {
                 rtapi_snprintf(prefix.text, sizeof prefix.text, "matrix_kb.%d", count);

@@ -17,9 +17,9 @@ struct Message {
     In<bool> trigger, force;
     ParamRw<bool> edge;
     const char *text = nullptr;
-    bool wasActive = false;
+    bool was_active = false;
     bool last_force = false;
-    bool isFirst = true;
+    bool first = true;
 
     void declare(Declare &d) noexcept {
         text = messages[d.index()];
@@ -35,16 +35,16 @@ struct Message {
     }
 
     void update() noexcept {
-        const bool isActive = trigger == edge;
-        const bool isForced = force;
-        const bool isNew = isActive && !wasActive && !isFirst;
-        const bool isAgain = isActive && isForced && !last_force;
-        if (isNew || isAgain) {
+        const bool active = trigger == edge;
+        const bool forced = force;
+        const bool is_new = active && !was_active && !first;
+        const bool repeated = active && forced && !last_force;
+        if (is_new || repeated) {
             rtapi_print_msg(RTAPI_MSG_ERR, "%s\n", text);
         }
-        wasActive = isActive;
-        last_force = isForced;
-        isFirst = false;
+        was_active = active;
+        last_force = forced;
+        first = false;
     }
 };
 

@@ -39,15 +39,15 @@ struct Multiswitch {
     }
 
     void update() noexcept {
-        const bool isUp = up;
-        const bool isDown = down;
+        const bool is_up = up;
+        const bool is_down = down;
         const std::int64_t limit = top_position;
         const std::int64_t last = limit < size ? limit : size - 1;
         std::int64_t now = position;
-        now += isUp && !last_up ? 1 : 0;
-        now -= isDown && !last_down ? 1 : 0;
-        last_up = isUp;
-        last_down = isDown;
+        now += is_up && !last_up ? 1 : 0;
+        now -= is_down && !last_down ? 1 : 0;
+        last_up = is_up;
+        last_down = is_down;
         now = now > last ? 0 : (now < 0 ? last : now);
         position = static_cast<std::int32_t>(now);
         for (int i = 0; i < size; ++i) {

@@ -50,12 +50,12 @@ struct Pushmsg {
     void update() noexcept {
         for (Level &level : levels) {
             for (int i = 0; i < SLOTS; ++i) {
-                const bool isOn = level.pins[i];
+                const bool on = level.pins[i];
                 const char *const text = level.texts[i];
-                if (isOn && !level.last[i] && text != nullptr && text[0] != '\0') {
+                if (on && !level.last[i] && text != nullptr && text[0] != '\0') {
                     rtapi_print_msg(level.level, "%s\n", text);
                 }
-                level.last[i] = isOn;
+                level.last[i] = on;
             }
         }
     }

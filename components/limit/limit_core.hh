@@ -6,15 +6,16 @@
 
 namespace mw::limit {
 
-/// `value` held between `low` and `high`; `high` wins when they cross.
+/// `value` clamped to `low` and `high`; `high` wins when they cross.
 inline double between(double value, double low, double high) noexcept {
     const double at_least = value < low ? low : value;
     return at_least > high ? high : at_least;
 }
 
-/// The largest speed to start a period with so that slowing down by `accel * dt` in every later period stops
-/// within `distance`. Exact for a motion in steps of `dt`: with speeds w, w-1, w-2... (in units of accel*dt)
-/// the way is (n+1)w - n(n+1)/2 with n = floor(w); solved for w. Without an acceleration nothing can stop.
+/// The largest speed for this period from which braking by `accel * dt` in every later period stops within
+/// `distance`. Exact for motion in steps of `dt`: with the speeds w, w-1, w-2... (in units of accel*dt) the
+/// distance is (n+1)w - n(n+1)/2 with n = floor(w); this is solved for w. Without acceleration nothing can
+/// stop.
 inline double stoppable_speed(double distance, double accel, double dt) noexcept {
     const double unit = accel * dt * dt;
     if (distance <= 0.0 || !(unit > 0.0)) {
@@ -25,9 +26,10 @@ inline double stoppable_speed(double distance, double accel, double dt) noexcept
     return (u + 0.5 * n * (n + 1.0)) / (n + 1.0) * accel * dt;
 }
 
-/// Position, velocity and acceleration within limits, following an input without lag where the limits allow.
-/// The acceleration is the full one, up or down, in each period except at the largest speed and where the way
-/// ends: within END_PART of the input, of min or of max, or within END_UNITS of what one period can change.
+/// Keeps position, velocity and acceleration within limits, and follows the input without lag where the
+/// limits allow it. Every period uses the full acceleration, up or down, except at the largest speed and at
+/// the end of a movement: within END_PART of the input, of min or of max, or within END_UNITS of the change
+/// that one period can make.
 struct Limit3 {
     struct Bounds {
         double min = -1e20;
@@ -37,20 +39,20 @@ struct Limit3 {
     };
 
     static constexpr double END_PART = 0.000999;
-    /// In units of max_accel * dt^2: where full steps alone cannot land.
+    /// In units of max_accel * dt^2: the range in which full steps alone cannot reach the target.
     static constexpr double END_UNITS = 1.0;
 
     double out = 0.0;
     double velocity = 0.0;  ///< of `out` [units/s]
     double last_target = 0.0;
 
-    /// Moves `out` towards `target` for one period of `dt` seconds.
-    /// `smooth_steps`: the last bit of the way takes about this many periods less one (0 to 2: at once).
+    /// Moves `out` towards `target` for one period of `dt` seconds. `smooth_steps`: the end of the movement
+    /// takes about this many periods minus one (0 to 2: one period).
     void run(double target, const Bounds &bounds, double dt, unsigned smooth_steps) noexcept;
     void load(double value) noexcept;
 
   private:
-    /// What one period can do.
+    /// The largest changes in one period.
     struct Reach {
         double dt;
         double accel;
@@ -71,56 +73,59 @@ inline void Limit3::load(double value) noexcept {
     last_target = value;
 }
 
-/// Whether a period at `speed` ends so near to a place `remaining` away from its end that any speed is due.
+/// Whether a period at `speed` ends so close to a place `remaining` away that any speed is allowed.
 inline bool Limit3::isAtEnd(double remaining, double speed, const Reach &reach) const noexcept {
     const double near = END_PART * std::fabs(out + speed * reach.dt);
     return remaining <= near || remaining <= END_UNITS * reach.step * reach.dt;
 }
 
-/// The speed that lands on a standing place `distance` (not negative) ahead.
+/// The speed that reaches a fixed place `distance` (not negative) ahead.
 inline double Limit3::part_at_end(double distance, const Reach &reach) noexcept {
     const double speed = stoppable_speed(distance, reach.accel, reach.dt);
-    // The last part of the way, less than one period's change of speed, may be spread over more periods.
-    const bool isLastPart = speed <= reach.step && reach.smooth_steps > 2;
-    return isLastPart ? distance / ((reach.smooth_steps - 1) * reach.dt) : speed;
+    // The last part of the movement, less than the change of speed in one period, may be spread over more
+    // periods.
+    const bool is_last_part = speed <= reach.step && reach.smooth_steps > 2;
+    return is_last_part ? distance / ((reach.smooth_steps - 1) * reach.dt) : speed;
 }
 
-/// The next speed towards a goal that is `distance` away in its own frame and moves with `goal_velocity`.
+/// The next speed towards a target at `distance`, where the target moves with `goal_velocity`.
 inline double Limit3::approach(double distance, double goal_velocity, const Reach &reach) const noexcept {
     const double side = distance < 0.0 ? -1.0 : 1.0;
     const double way = side * distance;
     const double speed = side * velocity;
     const double landing = part_at_end(way, reach);
     const double exact = between(side * goal_velocity + landing, -reach.max_vel, reach.max_vel);
-    const bool isReachable = std::fabs(exact - speed) <= reach.step;
-    if (isReachable && isAtEnd(way - landing * reach.dt, side * exact, reach)) {
+    const bool reachable = std::fabs(exact - speed) <= reach.step;
+    if (reachable && isAtEnd(way - landing * reach.dt, side * exact, reach)) {
         return side * exact;
     }
     const double faster = between(speed + reach.step, -reach.max_vel, reach.max_vel);
     return side * (faster <= exact ? faster : speed - reach.step);
 }
 
-/// `wanted`, or less where it could not stop before `limit`, which is the upper (side 1) or lower (-1) one.
+/// `wanted`, or less if the output could not stop before `limit`; the limit is the upper (side 1) or the
+/// lower (-1) one.
 inline double Limit3::hold_before(double limit, double side, double wanted,
                                   const Reach &reach) const noexcept {
     const double room = side * (limit - out);
     if (!(room >= 0.0)) {
-        return wanted;  // Outside, because the limit has moved: the goal leads back.
+        return wanted;  // Outside because the limit has moved: the target leads back inside.
     }
     const double fastest = stoppable_speed(room, reach.accel, reach.dt);
     if (side * wanted <= fastest) {
         return wanted;
     }
     const double slower = side * velocity - reach.step;
-    const bool canLand = slower <= fastest && isAtEnd(room - fastest * reach.dt, side * fastest, reach);
-    return side * (canLand ? fastest : slower);
+    const bool landing_possible =
+        slower <= fastest && isAtEnd(room - fastest * reach.dt, side * fastest, reach);
+    return side * (landing_possible ? fastest : slower);
 }
 
 inline void Limit3::run(double target, const Bounds &bounds, double dt, unsigned smooth_steps) noexcept {
     const double low = bounds.min > bounds.max ? bounds.max : bounds.min;
     const double goal = between(target, low, bounds.max);
-    // A goal that moves no faster than the output may is followed in its own frame; a jump counts as
-    // standing.
+    // A target that moves no faster than the output is allowed to is followed relative to its motion; a jump
+    // of the target counts as standing still.
     const double accel = bounds.max_accel > 0.0 ? bounds.max_accel : 0.0;
     const Reach reach{dt, accel, accel * dt, bounds.max_vel > 0.0 ? bounds.max_vel : 0.0, smooth_steps};
     double goal_velocity = (goal - last_target) / dt;
@@ -132,11 +137,11 @@ inline void Limit3::run(double target, const Bounds &bounds, double dt, unsigned
     const double below = hold_before(bounds.max, 1.0, free, reach);
     const double wanted = hold_before(low, -1.0, below, reach);
     velocity = between(wanted, velocity - reach.step, velocity + reach.step);
-    // Braking began ahead of the limits; this takes off what rounding adds, or stops where maxa has become
-    // too small for the speed.
-    const bool wasInside = out >= low && out <= bounds.max;
+    // Braking started before the limits were reached. This removes rounding errors, or stops the output when
+    // maxa has become too small for the speed.
+    const bool was_inside = out >= low && out <= bounds.max;
     const double next = out + velocity * dt;
-    out = wasInside ? between(next, low, bounds.max) : next;
+    out = was_inside ? between(next, low, bounds.max) : next;
 }
 
 }  // namespace mw::limit

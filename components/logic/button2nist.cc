@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // toggle2nist, momentary2nist: one button for something with inputs to switch on and off. A press of `in`
-// (bit) makes `on` true until `is-on` tells that it is on; a press while is-on is true makes `off` true until
+// (bit) makes `on` true until `is-on` shows that it is on; a press while is-on is true makes `off` true until
 // is-on is false. All pins bit. Presses in between are ignored. Built twice (BUTTON_MODULE).
 #include "hal/sdk/component.hh"
 
@@ -22,12 +22,12 @@ struct Button2nist {
 
     void update() noexcept {
         const bool input = in;
-        const bool isOn = is_on;
-        const bool isPressed = input && !last_in;
+        const bool is_lit = is_on;
+        const bool pressed = input && !last_in;
         last_in = input;
-        const bool isBusy = on || off;
-        on = !isOn && (on || (isPressed && !isBusy));
-        off = isOn && (off || (isPressed && !isBusy));
+        const bool busy = on || off;
+        on = !is_lit && (on || (pressed && !busy));
+        off = is_lit && (off || (pressed && !busy));
     }
 };
 

@@ -22,11 +22,11 @@ struct ChargePump {
     }
 
     void update() noexcept {
-        const bool isEnabled = enable;
-        calls += isEnabled ? 1U : 0U;
-        out = isEnabled && (calls & 1U) != 0;
-        out_2 = isEnabled && (calls & 2U) != 0;
-        out_4 = isEnabled && (calls & 4U) != 0;
+        const bool enabled = enable;
+        calls += enabled ? 1U : 0U;
+        out = enabled && (calls & 1U) != 0;
+        out_2 = enabled && (calls & 2U) != 0;
+        out_4 = enabled && (calls & 4U) != 0;
     }
 };
 

@@ -40,10 +40,10 @@ struct Demux {
         }
         const std::uint64_t last = static_cast<std::uint64_t>(outputs - 1);
         const std::uint64_t chosen = selected < last ? selected : last;
-        const bool isBar = bargraph;
+        const bool is_bar = bargraph;
         for (int i = 0; i < outputs; ++i) {
             const std::uint64_t number = static_cast<std::uint64_t>(i);
-            out[i] = isBar ? number < selected : number == chosen;
+            out[i] = is_bar ? number < selected : number == chosen;
         }
     }
 };

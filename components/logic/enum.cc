@@ -26,27 +26,27 @@ struct EnumItem {
 
 struct Enum {
     const char *text = "";
-    bool isEncoder = false;
+    bool is_encoder = false;
     int items = 0;
     EnumItem item[MAX_ITEMS];
     In<std::uint32_t> input;
     Out<std::uint32_t> output;
 
     void declare(Declare &d) noexcept {
-        isEncoder = (text[0] | 0x20) == 'e';
-        const bool isDecoder = (text[0] | 0x20) == 'd';
+        is_encoder = (text[0] | 0x20) == 'e';
+        const bool is_decoder = (text[0] | 0x20) == 'd';
         const char *rest = text[0] == '\0' ? text : text + 1;
-        bool isGood = (isEncoder || isDecoder) && *rest == ';';
-        for (std::uint32_t number = 0; isGood && *rest == ';'; ++number) {
+        bool good = (is_encoder || is_decoder) && *rest == ';';
+        for (std::uint32_t number = 0; good && *rest == ';'; ++number) {
             ++rest;
             int length = 0;
             while (rest[length] != '\0' && rest[length] != ';') {
                 ++length;
             }
-            isGood = length == 0 || declare_item(d, rest, length, number);
+            good = length == 0 || declare_item(d, rest, length, number);
             rest += length;
         }
-        if (!isGood || items == 0) {
+        if (!good || items == 0) {
             rtapi_print_msg(
                 RTAPI_MSG_ERR,
                 "enum: '%s' is not E or D and up to %d names of at most %d characters, as in E;off;on", text,
@@ -54,7 +54,7 @@ struct Enum {
             d.keep(-EINVAL);
             return;
         }
-        if (isEncoder) {
+        if (is_encoder) {
             d.pin(output, "output");
         } else {
             d.pin(input, "input");
@@ -63,7 +63,7 @@ struct Enum {
     }
 
     void update() noexcept {
-        if (!isEncoder) {
+        if (!is_encoder) {
             const std::uint32_t number = input;
             for (int i = 0; i < items; ++i) {
                 item[i].out = item[i].value == number;
@@ -85,8 +85,8 @@ struct Enum {
         char name[MAX_LABEL + 8];
         rtapi_snprintf(name, sizeof name, "%.*s-val", length, label);
         d.param(item[items].value, name, number);
-        rtapi_snprintf(name, sizeof name, "%.*s-%s", length, label, isEncoder ? "in" : "out");
-        if (isEncoder) {
+        rtapi_snprintf(name, sizeof name, "%.*s-%s", length, label, is_encoder ? "in" : "out");
+        if (is_encoder) {
             d.pin(item[items].in, name);
         } else {
             d.pin(item[items].out, name);
@@ -107,8 +107,8 @@ struct Enums {
             }
             made->text = enums[count];
             Name prefix;
-            const bool isNamed = names[count] != nullptr && names[count][0] != '\0';
-            if (isNamed) {
+            const bool named = names[count] != nullptr && names[count][0] != '\0';
+            if (named) {
                 rtapi_snprintf(prefix.text, sizeof prefix.text, "%s", names[count]);
             } else {
                 rtapi_snprintf(prefix.text, sizeof prefix.text, "enum.%d", count);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// estop_latch: keeps a fault until it is gone and somebody resets it. Starts in the faulted state.
+// estop_latch: keeps a fault until it is gone and a person resets it. Starts in the faulted state.
 //
 // Pins (bit): `ok-in` (true at start) and `fault-in` tell the state of the chain; a rising edge of `reset`
 // leaves the faulted state when ok-in is true and fault-in false. `ok-out` and `fault-out` are the state;
@@ -25,14 +25,14 @@ struct EstopLatch {
     }
 
     void update() noexcept {
-        const bool isReset = reset;
-        const bool isHealthy = ok_in && !fault_in;
-        const bool isReleased = ok_out || (isReset && !last_reset);
-        const bool isOk = isHealthy && isReleased;
-        last_reset = isReset;
-        ok_out = isOk;
-        fault_out = !isOk;
-        if (isOk) {
+        const bool is_reset = reset;
+        const bool healthy = ok_in && !fault_in;
+        const bool released = ok_out || (is_reset && !last_reset);
+        const bool ok = healthy && released;
+        last_reset = is_reset;
+        ok_out = ok;
+        fault_out = !ok;
+        if (ok) {
             watchdog = !watchdog;
         }
     }

@@ -20,7 +20,7 @@ struct Logic {
     In<bool> in[MAX_INPUTS];
     Out<bool> out[OUTPUTS];
     int inputs = 0;
-    bool hasOutput[OUTPUTS] = {};
+    bool has_output[OUTPUTS] = {};
 
     void declare(Declare &d) noexcept {
         const int wanted = personality[d.index()];
@@ -37,8 +37,8 @@ struct Logic {
             d.pin(in[i], name);
         }
         for (int i = 0; i < OUTPUTS; ++i) {
-            hasOutput[i] = (wanted & (0x100 << i)) != 0;
-            if (hasOutput[i]) {
+            has_output[i] = (wanted & (0x100 << i)) != 0;
+            if (has_output[i]) {
                 d.pin(out[i], OUTPUT_NAMES[i]);
             }
         }
@@ -50,11 +50,11 @@ struct Logic {
         for (int i = 0; i < inputs; ++i) {
             trues += in[i] ? 1 : 0;
         }
-        const bool isAll = trues == inputs;
-        const bool isAny = trues > 0;
-        const bool values[OUTPUTS] = {isAll, isAny, (trues & 1) != 0, !isAll, !isAny};
+        const bool all = trues == inputs;
+        const bool any = trues > 0;
+        const bool values[OUTPUTS] = {all, any, (trues & 1) != 0, !all, !any};
         for (int i = 0; i < OUTPUTS; ++i) {
-            if (hasOutput[i]) {
+            if (has_output[i]) {
                 out[i] = values[i];
             }
         }

@@ -23,11 +23,11 @@ struct Match8 {
     }
 
     void update() noexcept {
-        bool isMatch = in;
+        bool is_match = in;
         for (int i = 0; i < BITS; ++i) {
-            isMatch = isMatch && a[i].get() == b[i].get();
+            is_match = is_match && a[i].get() == b[i].get();
         }
-        out = isMatch;
+        out = is_match;
     }
 };
 

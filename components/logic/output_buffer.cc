@@ -26,9 +26,9 @@ struct OutputBuffer {
     }
 
     void update() noexcept {
-        const bool isEnabled = enable;
+        const bool enabled = enable;
         for (int i = 0; i < channels; ++i) {
-            out[i] = isEnabled && in[i];
+            out[i] = enabled && in[i];
         }
     }
 };

@@ -36,14 +36,14 @@ struct Reset {
     }
 
     void update() noexcept {
-        const bool isTriggered = trigger;
-        if (isTriggered && (!last_trigger || retriggerable)) {
+        const bool triggered = trigger;
+        if (triggered && (!last_trigger || retriggerable)) {
             out_bit = reset_bit.get();
             out_float = reset_float.get();
             out_s32 = reset_s32.get();
             out_u32 = reset_u32.get();
         }
-        last_trigger = isTriggered;
+        last_trigger = triggered;
     }
 };
 

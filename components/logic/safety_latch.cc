@@ -38,16 +38,16 @@ struct SafetyLatch {
     }
 
     void update() noexcept {
-        const bool isError = error_in;
-        const bool isReset = reset && !last_reset;
+        const bool is_error = error_in;
+        const bool is_reset = reset && !last_reset;
         last_reset = reset;
-        count_error(isError);
-        const bool isReleased = latching ? (isReset && !isError) : counter == 0;
-        counter = isReleased ? 0 : counter;
-        const bool isTooMuch = counter >= threshold && (counter > 0 || isError);
-        if (isTooMuch || !enable) {
+        count_error(is_error);
+        const bool released = latching ? (is_reset && !is_error) : counter == 0;
+        counter = released ? 0 : counter;
+        const bool is_too_much = counter >= threshold && (counter > 0 || is_error);
+        if (is_too_much || !enable) {
             isFaulted = true;
-        } else if (isReleased) {
+        } else if (released) {
             isFaulted = false;
         }
         error_out = isFaulted;
@@ -56,10 +56,10 @@ struct SafetyLatch {
     }
 
   private:
-    void count_error(bool isError) noexcept {
+    void count_error(bool is_error) noexcept {
         const std::uint32_t limit = max > threshold ? max.get() : threshold.get();
         const std::uint32_t down = heal;
-        if (isError) {
+        if (is_error) {
             const std::uint64_t sum = std::uint64_t{counter} + harm;
             counter = sum < limit ? static_cast<std::uint32_t>(sum) : limit;
         } else {

@@ -22,10 +22,10 @@ struct Select8 {
     }
 
     void update() noexcept {
-        const bool isEnabled = enable;
+        const bool enabled = enable;
         const std::int32_t selected = sel;
         for (int i = 0; i < OUTPUTS; ++i) {
-            out[i] = isEnabled && i == selected;
+            out[i] = enabled && i == selected;
         }
     }
 };

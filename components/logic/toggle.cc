@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // toggle: each press of the button `in` (bit) changes `out` (bit, I/O), which others may set too. The
-// parameter `debounce` (u32, 2 at start) is how long the button must be held or released [periods].
+// parameter `debounce` (u32, 2 at start) is how long the button must be pressed or released [periods].
 #include "components/logic/debouncer.hh"
 #include "hal/sdk/component.hh"
 
@@ -12,7 +12,7 @@ struct Toggle {
     InOut<bool> out;
     ParamRw<std::uint32_t> debounce;
     logic::Debouncer debouncer;
-    bool wasPressed = false;
+    bool was_pressed = false;
 
     void declare(Declare &d) noexcept {
         d.pin(in, "in");
@@ -22,11 +22,11 @@ struct Toggle {
     }
 
     void update() noexcept {
-        const bool isPressed = debouncer.run(in, static_cast<long>(debounce.get()));
-        if (isPressed && !wasPressed) {
+        const bool pressed = debouncer.run(in, static_cast<long>(debounce.get()));
+        if (pressed && !was_pressed) {
             out = !out;
         }
-        wasPressed = isPressed;
+        was_pressed = pressed;
     }
 };
 

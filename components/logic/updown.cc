@@ -3,7 +3,7 @@
 // it is 0 while `reset` (bit) is true.
 //
 // Parameters: `clamp` (bit) holds count between `min` (s32, 0) and `max` (s32, 2147483647); `wrap` (bit,
-// stronger than clamp) goes on at the other end instead. Without both it runs over the ends of its type.
+// stronger than clamp) continues at the other end instead. Without both it runs over the ends of its type.
 #include "hal/sdk/component.hh"
 
 namespace mw::components {
@@ -14,7 +14,7 @@ struct Updown {
     Out<std::int32_t> count;
     ParamRw<bool> clamp, wrap;
     ParamRw<std::int32_t> max, min;
-    bool last_up = true;  // an input that is TRUE in the first period is no edge
+    bool last_up = true;  // an input that is TRUE in the first period is not an edge
     bool last_down = true;
 
     void declare(Declare &d) noexcept {
@@ -30,13 +30,13 @@ struct Updown {
     }
 
     void update() noexcept {
-        const bool isUp = countup;
-        const bool isDown = countdown;
+        const bool up = countup;
+        const bool down = countdown;
         std::int64_t number = count;
-        number += isUp && !last_up ? 1 : 0;
-        number -= isDown && !last_down ? 1 : 0;
-        last_up = isUp;
-        last_down = isDown;
+        number += up && !last_up ? 1 : 0;
+        number -= down && !last_down ? 1 : 0;
+        last_up = up;
+        last_down = down;
         count = static_cast<std::int32_t>(bounded(reset ? 0 : number));
     }
 

@@ -29,7 +29,7 @@ struct Watchdog {
     WatchedInput input[MAX_INPUTS];
     In<bool> enable;
     Out<bool> ok;
-    bool isArmed = false;  // enable-in was true at the last set-timeouts
+    bool armed = false;  // enable-in was true at the last set-timeouts
     bool isBroken = true;
 
     int load(int comp_id) noexcept {
@@ -58,26 +58,26 @@ struct Watchdog {
             watched.last = now;
             isBroken = isBroken || watched.waited_ns > watched.timeout_ns;
         }
-        ok = enable && isArmed && !isBroken;
+        ok = enable && armed && !isBroken;
     }
 
     void set_timeouts() noexcept {
-        bool isPossible = true;
+        bool possible = true;
         for (int i = 0; i < num_inputs; ++i) {
             const double wanted = input[i].timeout;
-            const bool isValid = wanted > 0.0 && wanted < 1e9;
-            input[i].timeout_ns = isValid ? static_cast<std::int64_t>(wanted * 1e9) : 0;
-            isPossible = isPossible && isValid;
+            const bool valid = wanted > 0.0 && wanted < 1e9;
+            input[i].timeout_ns = valid ? static_cast<std::int64_t>(wanted * 1e9) : 0;
+            possible = possible && valid;
         }
-        const bool isEnabled = enable;
-        if (isEnabled && !isArmed) {
+        const bool enabled = enable;
+        if (enabled && !armed) {
             isBroken = false;
             for (int i = 0; i < num_inputs; ++i) {
                 input[i].waited_ns = 0;
             }
         }
-        isArmed = isEnabled;
-        isBroken = isBroken || !isPossible || !isEnabled;
+        armed = enabled;
+        isBroken = isBroken || !possible || !enabled;
     }
 };
 

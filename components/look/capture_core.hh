@@ -8,7 +8,7 @@ namespace mw::components {
 
 class CaptureCore {
   public:
-    /// `read(channel)` gives the value as it lies in HAL memory, `number(channel, word)` that as a number.
+    /// `read(channel)` returns the raw value in HAL memory; `number(channel, word)` converts it to a number.
     template <class Read, class Number>
     void step(hal::view::CaptureBlock &block, std::int64_t now_ns, Read read, Number number) noexcept {
         using hal::view::CaptureState;
@@ -17,9 +17,9 @@ class CaptureCore {
             begin(block, request);
         }
         const CaptureState state = block.state.load(std::memory_order_relaxed);
-        const bool isBusy = state == CaptureState::FILLING || state == CaptureState::WAITING ||
-                            state == CaptureState::TRIGGERED;
-        if (!isBusy) {
+        const bool busy = state == CaptureState::FILLING || state == CaptureState::WAITING ||
+                          state == CaptureState::TRIGGERED;
+        if (!busy) {
             return;
         }
         if (block.cancel.load(std::memory_order_relaxed) == request) {
@@ -43,11 +43,11 @@ class CaptureCore {
         settings_ = block.settings;
         position_ = 0;
         recorded_ = 0;
-        calls_ = settings_.every - 1;  // the first sample comes at once
-        hasLast_ = false;
-        const bool isGood = isSensible(settings_, block.capacity);
+        calls_ = settings_.every - 1;  // the first sample is taken at once
+        has_last_ = false;
+        const bool good = isSensible(settings_, block.capacity);
         block.recorded.store(0, std::memory_order_relaxed);
-        block.state.store(isGood ? CaptureState::FILLING : CaptureState::REFUSED, std::memory_order_relaxed);
+        block.state.store(good ? CaptureState::FILLING : CaptureState::REFUSED, std::memory_order_relaxed);
         block.seen.store(request, std::memory_order_release);
     }
 
@@ -66,39 +66,39 @@ class CaptureCore {
 
     bool isTriggered(double value) noexcept {
         using hal::view::TriggerKind;
-        const bool isAbove = value > settings_.level, isBelow = value < settings_.level;
-        const bool hasRisen = hasLast_ && isAbove && !(last_ > settings_.level);
-        const bool hasFallen = hasLast_ && isBelow && !(last_ < settings_.level);
+        const bool above = value > settings_.level, below = value < settings_.level;
+        const bool risen = has_last_ && above && !(last_ > settings_.level);
+        const bool fallen = has_last_ && below && !(last_ < settings_.level);
         last_ = value;
-        hasLast_ = true;
+        has_last_ = true;
         switch (settings_.trigger) {
         case TriggerKind::NONE: return true;
-        case TriggerKind::ABOVE: return isAbove;
-        case TriggerKind::BELOW: return isBelow;
-        case TriggerKind::RISING: return hasRisen;
-        case TriggerKind::FALLING: return hasFallen;
-        case TriggerKind::EITHER: return hasRisen || hasFallen;
+        case TriggerKind::ABOVE: return above;
+        case TriggerKind::BELOW: return below;
+        case TriggerKind::RISING: return risen;
+        case TriggerKind::FALLING: return fallen;
+        case TriggerKind::EITHER: return risen || fallen;
         }
         return false;
     }
 
-    /// After a sample was recorded: looks for the trigger and for the end.
+    /// Called after each sample: checks for the trigger and for the end of the record.
     void advance(hal::view::CaptureBlock &block, std::uint32_t request, double trigger_value) noexcept {
         using hal::view::CaptureState;
         CaptureState state = block.state.load(std::memory_order_relaxed);
-        const bool hasTrigger = isTriggered(trigger_value);
+        const bool has_trigger = isTriggered(trigger_value);
         if (state == CaptureState::FILLING && recorded_ > settings_.pretrigger) {
             state = CaptureState::WAITING;
         }
         if (state == CaptureState::WAITING &&
-            (hasTrigger || block.force.load(std::memory_order_relaxed) == request)) {
+            (has_trigger || block.force.load(std::memory_order_relaxed) == request)) {
             state = CaptureState::TRIGGERED;
             remaining_ = settings_.samples - settings_.pretrigger - 1;
         } else if (state == CaptureState::TRIGGERED) {
             --remaining_;
         }
         if (state == CaptureState::TRIGGERED && remaining_ == 0) {
-            // At least `samples` have been recorded by now: the next place is that of the oldest.
+            // At least `samples` have been recorded, so the next position holds the oldest sample.
             block.first = position_;
             block.trigger_sample = settings_.pretrigger;
             state = CaptureState::DONE;
@@ -107,12 +107,12 @@ class CaptureCore {
     }
 
     hal::view::CaptureSettings settings_{};
-    std::uint32_t position_ = 0;   ///< where the next sample goes
-    std::uint32_t recorded_ = 0;   ///< samples in the ring
-    std::uint32_t calls_ = 0;      ///< since the last sample
-    std::uint32_t remaining_ = 0;  ///< samples to come after the trigger's
+    std::uint32_t position_ = 0;   ///< position of the next sample
+    std::uint32_t recorded_ = 0;   ///< number of samples in the ring
+    std::uint32_t calls_ = 0;      ///< calls since the last sample
+    std::uint32_t remaining_ = 0;  ///< number of samples still to record after the trigger
     double last_ = 0.0;
-    bool hasLast_ = false;
+    bool has_last_ = false;
 };
 
 }  // namespace mw::components

@@ -3,12 +3,12 @@
 //
 // `count=` instances (1 to 4, default 2), one for each thread; `bin=` width of a bin of each [ns]. Function
 // latency.N. Pins: last, min, max (s32, out: intervals between two calls [ns]), jitter (s32, out: largest
-// deviation from the period [ns]), reset (bit, in: begin anew while true).
+// deviation from the period [ns]), reset (bit, in: start again while true).
 #include "hal/sdk/component.hh"
 #include "hal/tools/view/latency_block.hh"
 
 static int count = 2;
-RTAPI_MP_INT(count, "number of threads to look at");
+RTAPI_MP_INT(count, "number of threads to measure");
 static int bin[mw::hal::view::LATENCY_THREADS];
 RTAPI_MP_ARRAY_INT(bin, mw::hal::view::LATENCY_THREADS, "width of a bin of each [ns]");
 
@@ -25,7 +25,7 @@ struct Latency {
     hal::view::LatencySlot *slot = nullptr;
     std::int64_t bin_ns = DEFAULT_BIN_NS;
     long long last_call_ns = 0;
-    bool hasLast = false;
+    bool has_last = false;
 
     void declare(Declare &d) noexcept {
         d.pin(last, "last");
@@ -52,7 +52,7 @@ struct Latency {
 
     void update(long period_ns) noexcept {
         const long long now_ns = rtapi_get_time();
-        if (reset || !hasLast) {
+        if (reset || !has_last) {
             begin(period_ns);
         } else {
             const long long interval_ns = now_ns - last_call_ns;
@@ -60,7 +60,7 @@ struct Latency {
             show(interval_ns, period_ns);
         }
         last_call_ns = now_ns;
-        hasLast = true;
+        has_last = true;
     }
 
     void show(long long interval_ns, long period_ns) noexcept {

@@ -4,7 +4,7 @@
 // While `enable-in` (bit) is true each count of `counts-in` (s32) moves a point on the line by the scale,
 // with at most `max-vel` and `max-accel`; `coscounts` and `sincounts` (s32) are its coordinates in units of
 // `current-scale-out`, which is the scale divided by `iscale-factor` (s32, 10000 at start).
-// `angle-degrees-in`, `scale-in` and iscale-factor are looked at while enable-in is false and at the start
+// `angle-degrees-in`, `scale-in` and iscale-factor are read while enable-in is false and at the start
 // only; those in use are `current-angle-degrees`, `current-scale`. Others: enable-out, active (bit);
 // current-mag, current-vel; cos-accel-fraction, sin-accel-fraction: the parts of `accel-fraction-in` (1).
 // Float where not said.
@@ -31,7 +31,7 @@ struct Anglejog {
     double cosine = 1.0;
     double sine = 0.0;
     std::int32_t last_counts = 0;
-    bool isFirst = true;
+    bool first = true;
 
     void declare(Declare &d) noexcept;
     void update(long period_ns) noexcept;
@@ -81,20 +81,20 @@ void Anglejog::take_settings() noexcept {
 
 void Anglejog::update(long period_ns) noexcept {
     const double dt = seconds(period_ns);
-    const bool isEnabled = enable_in;
+    const bool enabled = enable_in;
     const std::int32_t counts = counts_in;
-    // Through unsigned, so that a wrap of the counter is one step.
+    // Subtracted as unsigned, so that a wrap of the counter is one step.
     const auto turned = static_cast<std::int32_t>(static_cast<std::uint32_t>(counts) -
                                                   static_cast<std::uint32_t>(last_counts));
     last_counts = counts;
-    if (isFirst || !isEnabled) {
+    if (first || !enabled) {
         take_settings();
     }
-    const bool isStart = isFirst;
-    isFirst = false;
-    enable_out = isEnabled;
-    if (isEnabled) {
-        target += isStart ? 0.0 : turned * current_scale;
+    const bool is_start = first;
+    first = false;
+    enable_out = enabled;
+    if (enabled) {
+        target += is_start ? 0.0 : turned * current_scale;
         follower.run(target, max_vel, max_accel, dt);
     } else {
         follower.stop(max_accel, dt);

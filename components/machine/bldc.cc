@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // bldc: commutation of three-phase motors from hall sensors, encoders or nothing. `cfg=` is a list of up to 8
-// instances, each made of letters. The manual page tells all.
+// instances, each made of letters. The manual page describes all pins.
 #include <cmath>
 
 #include "components/logic/gray.hh"
@@ -27,8 +27,8 @@ enum BldcTag : unsigned {
     TRAPEZOID = 0x1000
 };
 constexpr unsigned PHASE_OUTPUTS = BITS_OUT | SIX_OUT | HALL_OUT | FANUC_OUT;
-constexpr double ALIGN_TURN_S = 1.0;  ///< the field moves this long
-constexpr double ALIGN_HOLD_S = 1.0;  ///< and stands this long
+constexpr double ALIGN_TURN_S = 1.0;  ///< time during which the field turns
+constexpr double ALIGN_HOLD_S = 1.0;  ///< time during which the field then does not move
 
 enum class BldcHoming : std::int32_t { NONE, ALIGNING, SEARCHING, DONE };
 
@@ -53,7 +53,7 @@ struct Bldc {
     std::int32_t zero_counts = 0;
     bool last_init = false;
     bool last_index = false;
-    bool isAligned = false;
+    bool aligned = false;
     BldcHoming homing = BldcHoming::NONE;
 
     void declare(Declare &d) noexcept;
@@ -112,10 +112,10 @@ void Bldc::declare_inputs(Declare &d) noexcept {
 void Bldc::declare_outputs(Declare &d) noexcept {
     constexpr char LETTER[] = {'A', 'B', 'C'};
     const unsigned kind = tags & PHASE_OUTPUTS;
-    const bool isSix = kind == SIX_OUT || kind == (SIX_OUT | BITS_OUT);
-    const bool isThree = kind == 0 || kind == BITS_OUT;
-    for (int i = 0; i < 6 && (isSix || (isThree && i < 3)); ++i) {
-        const char *half = !isSix ? "" : (i < 3 ? "-high" : "-low");
+    const bool is_six = kind == SIX_OUT || kind == (SIX_OUT | BITS_OUT);
+    const bool is_three = kind == 0 || kind == BITS_OUT;
+    for (int i = 0; i < 6 && (is_six || (is_three && i < 3)); ++i) {
+        const char *half = !is_six ? "" : (i < 3 ? "-high" : "-low");
         const char *tail = kind == 0 ? "-value" : (has(BITS_OUT) ? "-on" : "");
         char name[24];
         char legacy[24];
@@ -183,62 +183,64 @@ void Bldc::read_hall() noexcept {
     const std::uint32_t wanted = pattern;
     const int number = wanted < bldc::PATTERNS ? static_cast<int>(wanted) : 0;
     const int now = bldc::sector_of_hall(number, state);
-    const bool hasMoved = now >= 0 && sector >= 0 && now != sector;
-    const int step = hasMoved ? (now - sector + bldc::SECTORS) % bldc::SECTORS : 0;
+    const bool moved = now >= 0 && sector >= 0 && now != sector;
+    const int step = moved ? (now - sector + bldc::SECTORS) % bldc::SECTORS : 0;
     if (now < 0 || wanted >= bldc::PATTERNS || (step != 0 && step != 1 && step != bldc::SECTORS - 1)) {
         hall_error = true;
     } else if (step != 0) {
         hall_error = false;
-        // The edge between two sectors is where the rotor is now.
+        // The edge between the two sectors is the present position of the rotor.
         const int later = step == 1 ? now : sector;
-        if (has(QUADRATURE) && !has(INDEX) && !isAligned) {
+        if (has(QUADRATURE) && !has(INDEX) && !aligned) {
             const double edge = (later + 0.5) / bldc::SECTORS;
             zero_counts = rawcounts - static_cast<std::int32_t>(std::lround(edge * counts_per_turn()));
             offset_measured = zero_counts;
-            isAligned = true;
+            aligned = true;
         }
     }
     sector = now;
-    if (now >= 0 && !isAligned) {
+    if (now >= 0 && !aligned) {
         rotor = bldc::fraction((now + 1.0) / bldc::SECTORS);
     }
 }
 
-/// The rotor from the counts, and half of the way since the last period on: as it will be in the next one.
+/// The rotor angle from the counts, plus half of the movement since the last period: this is the angle in the
+/// middle of the next period.
 void Bldc::read_encoder() noexcept {
     const std::int32_t counts = rawcounts;
-    const bool isIndex = has(INDEX) && last_index && !index_enable;
-    if (isIndex && !has(ABSOLUTE)) {
+    const bool is_index = has(INDEX) && last_index && !index_enable;
+    if (is_index && !has(ABSOLUTE)) {
         zero_counts = counts + encoder_offset;
         offset_measured = zero_counts;
-        isAligned = true;
+        aligned = true;
     }
     const std::int32_t zero = has(ABSOLUTE) ? encoder_offset.get() : zero_counts;
-    if (has(ABSOLUTE) || isAligned) {
+    if (has(ABSOLUTE) || aligned) {
         const double ahead = 0.5 * (static_cast<double>(counts) - last_counts);
         rotor = bldc::fraction((static_cast<double>(counts) - zero + ahead) / counts_per_turn());
     }
     last_counts = counts;
 }
 
-/// Without hall sensors: turn the field until the index comes, or to zero, and call that the rotor's angle.
+/// Without hall sensors: turns the field until the index is found, or to zero, and takes that as the angle of
+/// the rotor.
 void Bldc::run_homing(double dt) noexcept {
-    const bool isInit = init;
-    if (isInit && !last_init) {
+    const bool is_init = init;
+    if (is_init && !last_init) {
         homing = has(INDEX) ? BldcHoming::SEARCHING : BldcHoming::ALIGNING;
-        isAligned = false;
+        aligned = false;
         init_done = false;
         waited_s = 0.0;
         if (has(INDEX)) {
             index_enable = true;
         }
     }
-    last_init = isInit;
+    last_init = is_init;
     waited_s += dt;
     const double direction = rev != (initvalue < 0.0) ? -1.0 : 1.0;
     if (homing == BldcHoming::SEARCHING) {
         field = bldc::fraction(direction * waited_s);
-        if (isAligned) {
+        if (aligned) {
             homing = BldcHoming::DONE;
             init_done = true;
         }
@@ -249,7 +251,7 @@ void Bldc::run_homing(double dt) noexcept {
             const double at = drive_offset / 360.0 * counts_per_turn();
             zero_counts = rawcounts - (std::isfinite(at) ? static_cast<std::int32_t>(at) : 0);
             offset_measured = zero_counts;
-            isAligned = true;
+            aligned = true;
             homing = BldcHoming::DONE;
             init_done = true;
         }
@@ -257,10 +259,10 @@ void Bldc::run_homing(double dt) noexcept {
 }
 
 void Bldc::write(double phase, int commuted, double size) noexcept {
-    const bool isTrapezoid = commuted >= 0;
-    const bldc::Phases phases = isTrapezoid ? bldc::trapezoid(commuted, size) : bldc::sine(phase, size);
+    const bool is_trapezoid = commuted >= 0;
+    const bldc::Phases phases = is_trapezoid ? bldc::trapezoid(commuted, size) : bldc::sine(phase, size);
     const bldc::Phases switched =
-        bldc::trapezoid(isTrapezoid ? commuted : bldc::sector_of_phase(phase), size);
+        bldc::trapezoid(is_trapezoid ? commuted : bldc::sector_of_phase(phase), size);
     const unsigned kind = tags & PHASE_OUTPUTS;
     const double values[3] = {phases.a, phases.b, phases.c};
     const double sources[3] = {switched.a, switched.b, switched.c};
@@ -317,17 +319,17 @@ void Bldc::update(long period_ns) noexcept {
         run_homing(dt);
     }
     last_index = has(INDEX) && index_enable;
-    const bool isHoming = homing == BldcHoming::ALIGNING || homing == BldcHoming::SEARCHING;
-    const bool usesHall = has(HALL) && !has(ABSOLUTE) && !isAligned;
-    const bool isLost = !has(ABSOLUTE | HALL) && has(QUADRATURE) && !isAligned && !isHoming;
-    const bool isFree = !has(HALL | ABSOLUTE | QUADRATURE | FANUC);
-    if (isHoming) {
+    const bool is_homing = homing == BldcHoming::ALIGNING || homing == BldcHoming::SEARCHING;
+    const bool usesHall = has(HALL) && !has(ABSOLUTE) && !aligned;
+    const bool lost = !has(ABSOLUTE | HALL) && has(QUADRATURE) && !aligned && !is_homing;
+    const bool free = !has(HALL | ABSOLUTE | QUADRATURE | FANUC);
+    if (is_homing) {
         amplitude = std::fabs(initvalue);
-    } else if (isLost || (usesHall && sector < 0)) {
+    } else if (lost || (usesHall && sector < 0)) {
         amplitude = 0.0;
     }
-    const double lead = isFree || isHoming ? 0.0 : (has(ABSOLUTE | QUADRATURE) ? lead_angle / 360.0 : 0.25);
-    const double phase = bldc::fraction((isHoming ? field : rotor) + (amplitude < 0.0 ? -lead : lead));
+    const double lead = free || is_homing ? 0.0 : (has(ABSOLUTE | QUADRATURE) ? lead_angle / 360.0 : 0.25);
+    const double phase = bldc::fraction((is_homing ? field : rotor) + (amplitude < 0.0 ? -lead : lead));
     int commuted = -1;
     if (usesHall && sector >= 0) {
         commuted = amplitude < 0.0 ? (sector + 3) % bldc::SECTORS : sector;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// carousel: turns a tool carousel to a pocket, with sensors of many kinds. The manual page tells all.
+// carousel: turns a tool carousel to a pocket, with sensors of many kinds. The manual page describes all
+// pins.
 #include <cmath>
 
 #include "components/machine/carousel_core.hh"
@@ -29,8 +30,8 @@ enum CarouselState : std::int32_t { IDLE, HOMING, MOVING, LOCKING, SLOWING, BACK
 
 struct Carousel {
     carousel::Position position;
-    bool isBidirectional = true;
-    bool isOddParity = false;
+    bool bidirectional = true;
+    bool odd_parity = false;
 
     In<std::int32_t> pocket_number;
     In<bool> enable, strobe, parity_in, sense[MAX_SENSE];
@@ -121,13 +122,13 @@ carousel::Sensors Carousel::sensors() noexcept {
     carousel::Sensors now;
     int trues = parity_in ? 1 : 0;
     for (int i = 0; i < position.sense_pins; ++i) {
-        const bool isHigh = sense[i];
-        now.bits |= isHigh ? 1U << i : 0U;
-        trues += isHigh ? 1 : 0;
+        const bool high = sense[i];
+        now.bits |= high ? 1U << i : 0U;
+        trues += high ? 1 : 0;
     }
-    now.isValid = strobe;
-    if (now.isValid && !position.needsHoming()) {
-        parity_error = (trues % 2 != 0) != isOddParity;
+    now.valid = strobe;
+    if (now.valid && !position.needsHoming()) {
+        parity_error = (trues % 2 != 0) != odd_parity;
     }
     now.counts = counts;
     now.scale = scale;
@@ -153,8 +154,8 @@ void Carousel::start() noexcept {
 }
 
 void Carousel::start_jog(int direction) noexcept {
-    const bool isPossible = direction > 0 || isBidirectional;
-    if (!isPossible || position.pocket < 1) {
+    const bool possible = direction > 0 || bidirectional;
+    if (!possible || position.pocket < 1) {
         return;
     }
     isJogging = true;
@@ -166,7 +167,7 @@ void Carousel::start_jog(int direction) noexcept {
 }
 
 void Carousel::begin_move() noexcept {
-    search_direction = carousel::shortest_way(position.pocket, target, position.pockets, isBidirectional);
+    search_direction = carousel::shortest_way(position.pocket, target, position.pockets, bidirectional);
     if (search_direction == 0) {
         finish_move();
         return;
@@ -174,7 +175,7 @@ void Carousel::begin_move() noexcept {
     state = MOVING;
 }
 
-/// The pocket has come into position.
+/// The requested pocket has reached its position.
 void Carousel::arrive() noexcept {
     timer = 0.0;
     if (align_dc != 0.0) {
@@ -192,7 +193,7 @@ void Carousel::finish_move() noexcept {
     ready = !isJogging;
 }
 
-/// Homing goes on when enable is set back, so that it can be begun by a pulse.
+/// Homing continues after enable becomes false, so a pulse is enough to start it.
 void Carousel::run_homing(const carousel::Sensors &now) noexcept {
     if (!position.findHome(now)) {
         return;
@@ -206,12 +207,12 @@ void Carousel::run_homing(const carousel::Sensors &now) noexcept {
 }
 
 void Carousel::run_alignment(const carousel::Sensors &now) noexcept {
-    const bool isOn = position.isOnMarker(now, target);
-    if (state == BACK_ON && isOn) {
+    const bool on = position.isOnMarker(now, target);
+    if (state == BACK_ON && on) {
         state = BACK_OFF;
-    } else if (state == BACK_OFF && !isOn) {
+    } else if (state == BACK_OFF && !on) {
         state = FORWARD_ON;
-    } else if (state == FORWARD_ON && isOn) {
+    } else if (state == FORWARD_ON && on) {
         timer = 0.0;
         state = rev_pulse > 0.0 ? LOCKING : IDLE;
         if (state == IDLE) {
@@ -249,23 +250,23 @@ void Carousel::run_state(const carousel::Sensors &now, double dt) noexcept {
 
 void Carousel::update(long period_ns) noexcept {
     const carousel::Sensors now = sensors();
-    const bool isAligning = state >= SLOWING;
-    if (!isAligning || !position.needsHoming()) {
+    const bool aligning = state >= SLOWING;
+    if (!aligning || !position.needsHoming()) {
         position.read(now, motor_dir);
     }
     if (unhome) {
         position.isHomed = false;
     }
-    const bool isEnabled = enable;
-    const bool isStarted = isEnabled && !last_enable;
-    last_enable = isEnabled;
-    if (state == IDLE && isStarted) {
+    const bool enabled = enable;
+    const bool started = enabled && !last_enable;
+    last_enable = enabled;
+    if (state == IDLE && started) {
         start();
-    } else if (state == IDLE && !isEnabled && jog_fwd && !last_jog_fwd) {
+    } else if (state == IDLE && !enabled && jog_fwd && !last_jog_fwd) {
         start_jog(1);
-    } else if (state == IDLE && !isEnabled && jog_rev && !last_jog_rev) {
+    } else if (state == IDLE && !enabled && jog_rev && !last_jog_rev) {
         start_jog(-1);
-    } else if (state != IDLE && state != HOMING && !isEnabled && !isJogging) {
+    } else if (state != IDLE && state != HOMING && !enabled && !isJogging) {
         state = IDLE;
         active = false;
     } else {
@@ -290,7 +291,7 @@ void Carousel::update(long period_ns) noexcept {
 }
 
 struct Carousels {
-    /// One for each pocket, index and pulse, or `num_sense`.
+    /// One pin each for the pockets, index and pulse, or `num_sense` pins.
     static int sense_pins_of(carousel::Encoding kind, int pockets_of_one, int inputs) noexcept {
         switch (kind) {
         case carousel::Encoding::SINGLE: return pockets_of_one;
@@ -325,9 +326,9 @@ struct Carousels {
                                 MAX_SENSE, pockets[count]);
                 return -EINVAL;
             }
-            const bool isPossible = pockets[count] > 0 && pockets[count] <= MAX_POCKETS && inputs > 0 &&
-                                    inputs <= MAX_SENSE && (directions == 1 || directions == 2);
-            if (!isPossible) {
+            const bool possible = pockets[count] > 0 && pockets[count] <= MAX_POCKETS && inputs > 0 &&
+                                  inputs <= MAX_SENSE && (directions == 1 || directions == 2);
+            if (!possible) {
                 rtapi_print_msg(RTAPI_MSG_ERR,
                                 "carousel: needs 1 to %d pockets, num_sense of 1 to %d and dir of 1 or 2",
                                 MAX_POCKETS, MAX_SENSE);
@@ -340,8 +341,8 @@ struct Carousels {
             made->position.encoding = kind;
             made->position.pockets = pockets[count];
             made->position.sense_pins = sense_pins_of(kind, pockets[count], inputs);
-            made->isBidirectional = directions == 2;
-            made->isOddParity = odd != 0;
+            made->bidirectional = directions == 2;
+            made->odd_parity = odd != 0;
             Name prefix;
             rtapi_snprintf(prefix.text, sizeof prefix.text, "carousel.%d", count);
             Declare d(comp_id, prefix.text, count);

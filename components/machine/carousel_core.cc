@@ -32,22 +32,22 @@ std::int32_t Position::decoded(std::uint32_t bits) const noexcept {
     case Encoding::GRAY: return static_cast<std::int32_t>(logic::binary_of_gray(bits));
     case Encoding::BCD: return static_cast<std::int32_t>((bits >> 4 & 15U) * 10 + (bits & 15U));
     case Encoding::SINGLE: {
-        const bool isOne = bits != 0 && (bits & (bits - 1)) == 0;
-        return isOne ? __builtin_ctz(bits) + 1 : 0;
+        const bool is_one = bits != 0 && (bits & (bits - 1)) == 0;
+        return is_one ? __builtin_ctz(bits) + 1 : 0;
     }
     default: return static_cast<std::int32_t>(bits);
     }
 }
 
-void Position::read_pulse(bool isPulse, int direction) noexcept {
-    const bool isCounted = encoding == Encoding::EDGE ? isPulse != last_pulse_ : isPulse && !last_pulse_;
-    last_pulse_ = isPulse;
-    if (isCounted && isHomed && direction != 0) {
+void Position::read_pulse(bool is_pulse, int direction) noexcept {
+    const bool counted = encoding == Encoding::EDGE ? is_pulse != last_pulse_ : is_pulse && !last_pulse_;
+    last_pulse_ = is_pulse;
+    if (counted && isHomed && direction != 0) {
         pocket = (pocket - 1 + direction + pockets) % pockets + 1;
     }
 }
 
-/// A pocket is in position near its centre, and when its centre was passed since the last period.
+/// A pocket is in position when it is near its centre, or when its centre was passed since the last period.
 void Position::read_counts(const Sensors &sensors) noexcept {
     const std::int64_t scale = sensors.scale > 0 ? sensors.scale : 1;
     const std::int64_t way = std::int64_t{sensors.counts} - home_counts_ - sensors.home_offset;
@@ -73,7 +73,7 @@ void Position::read_counts(const Sensors &sensors) noexcept {
 }
 
 void Position::read(const Sensors &sensors, int direction) noexcept {
-    if (!sensors.isValid) {
+    if (!sensors.valid) {
         return;
     }
     if (encoding == Encoding::COUNTS) {
@@ -99,16 +99,16 @@ bool Position::findHome(const Sensors &sensors) noexcept {
 }
 
 bool Position::isOnMarker(const Sensors &sensors, std::int32_t target) const noexcept {
-    const bool hasPulse = encoding == Encoding::INDEX || encoding == Encoding::EDGE;
-    return hasPulse ? (sensors.bits & 2U) != 0 : pocket == target;
+    const bool has_pulse = encoding == Encoding::INDEX || encoding == Encoding::EDGE;
+    return has_pulse ? (sensors.bits & 2U) != 0 : pocket == target;
 }
 
-int shortest_way(std::int32_t from, std::int32_t to, int pockets, bool isBidirectional) noexcept {
+int shortest_way(std::int32_t from, std::int32_t to, int pockets, bool bidirectional) noexcept {
     if (from == to) {
         return 0;
     }
     const std::int32_t forwards = ((to - from) % pockets + pockets) % pockets;
-    return !isBidirectional || 2 * forwards <= pockets ? 1 : -1;
+    return !bidirectional || 2 * forwards <= pockets ? 1 : -1;
 }
 
 }  // namespace mw::carousel

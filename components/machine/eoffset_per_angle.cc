@@ -6,8 +6,8 @@
 // `fnum` (s32) chooses: 0 the distance of a polygon of `fmult` (6, at least 3) sides around the circle
 // (1+F)R, less R; 1 the same for the polygon inside that circle; 2 a sinus from 0 to FR, fmult times a turn;
 // 3 the same as a square wave. Other numbers count as 0. `is-on` and `enable-in` (bit) start it, is-on false
-// stops it at once; else `enable-out` stays true until `active` (bit) tells that the offset is gone. `clear`,
-// `is-off` (bit), `eoffset-dbg`, `state-dbg` (u32).
+// stops it at once; else `enable-out` stays true until `active` (bit) shows that the offset is removed.
+// `clear`, `is-off` (bit), `eoffset-dbg`, `state-dbg` (u32).
 #include <cmath>
 #include <numbers>
 
@@ -35,7 +35,7 @@ struct EoffsetPerAngle {
 
   private:
     bool compute(double &offset) const noexcept;
-    EoffsetState next_state(bool isComputed) const noexcept;
+    EoffsetState next_state(bool computed) const noexcept;
 };
 
 void EoffsetPerAngle::declare(Declare &d) noexcept {
@@ -59,7 +59,7 @@ void EoffsetPerAngle::declare(Declare &d) noexcept {
     d.function<&EoffsetPerAngle::update>(this);
 }
 
-/// The offset of the function at the angle; false when a parameter makes none.
+/// Computes the offset at the angle. False when a parameter is invalid.
 bool EoffsetPerAngle::compute(double &offset) const noexcept {
     constexpr double FULL_TURN = 360.0;
     const double turned = angle - start_angle;
@@ -79,7 +79,7 @@ bool EoffsetPerAngle::compute(double &offset) const noexcept {
     if (multiple < 3.0) {
         return false;
     }
-    // The distance of a side from the centre, seen at the angle from the middle of that side.
+    // The distance from the centre to a side, at an angle measured from the middle of that side.
     const double side = FULL_TURN / multiple;
     const double from_middle = std::remainder(turned, side) * radians;
     const double outer = (radius + amplitude) / std::cos(from_middle);
@@ -87,17 +87,17 @@ bool EoffsetPerAngle::compute(double &offset) const noexcept {
     return true;
 }
 
-EoffsetState EoffsetPerAngle::next_state(bool isComputed) const noexcept {
-    const bool isEnabled = enable_in;
+EoffsetState EoffsetPerAngle::next_state(bool computed) const noexcept {
+    const bool enabled = enable_in;
     if (!is_on) {
         return EOFFSET_OFF;
     }
     switch (state) {
-    case EOFFSET_OFF: return isEnabled ? EOFFSET_OFF : EOFFSET_READY;
-    case EOFFSET_READY: return isEnabled ? EOFFSET_ON : EOFFSET_READY;
-    case EOFFSET_ON: return isEnabled && isComputed ? EOFFSET_ON : EOFFSET_RETURNING;
+    case EOFFSET_OFF: return enabled ? EOFFSET_OFF : EOFFSET_READY;
+    case EOFFSET_READY: return enabled ? EOFFSET_ON : EOFFSET_READY;
+    case EOFFSET_ON: return enabled && computed ? EOFFSET_ON : EOFFSET_RETURNING;
     case EOFFSET_RETURNING: return active ? EOFFSET_RETURNING : EOFFSET_DONE;
-    default: return isEnabled ? EOFFSET_DONE : EOFFSET_READY;
+    default: return enabled ? EOFFSET_DONE : EOFFSET_READY;
     }
 }
 
@@ -105,10 +105,10 @@ void EoffsetPerAngle::update() noexcept {
     constexpr std::uint32_t DEFAULT_K = 10000;
     const std::uint32_t factor = k != 0 ? k.get() : DEFAULT_K;
     double offset = 0.0;
-    const bool isComputed = compute(offset);
-    state = next_state(isComputed);
-    const bool isFollowing = state == EOFFSET_ON && isComputed;
-    const std::int32_t counts = isFollowing ? conv::convert<std::int32_t>(offset * factor, true).value : 0;
+    const bool computed = compute(offset);
+    state = next_state(computed);
+    const bool following = state == EOFFSET_ON && computed;
+    const std::int32_t counts = following ? conv::convert<std::int32_t>(offset * factor, true).value : 0;
     is_off = !is_on;
     enable_out = state == EOFFSET_ON || state == EOFFSET_RETURNING;
     clear = state == EOFFSET_RETURNING && !enable_in;

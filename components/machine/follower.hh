@@ -15,14 +15,14 @@ struct Follower {
     double position() const noexcept { return planner.position; }
     double velocity() const noexcept { return planner.velocity; }
 
-    /// One period towards `target`. Limits that are 0, negative or not a number, or such a target, stop it:
-    /// with the last good acceleration, at once when there was none.
+    /// One period of movement towards `target`. A target or a limit that is NaN, and a limit of 0 or below,
+    /// stops the movement: with the last valid acceleration, or at once when there was none.
     void run(double target, double max_velocity, double max_acceleration, double dt) noexcept {
         if (max_acceleration > 0.0 && std::isfinite(max_acceleration)) {
             planner.max_acceleration = max_acceleration;
         }
-        const bool isPossible = std::isfinite(target) && max_velocity > 0.0;
-        if (isPossible) {
+        const bool possible = std::isfinite(target) && max_velocity > 0.0;
+        if (possible) {
             planner.target = target;
             planner.max_velocity = max_velocity;
         } else {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// gantry: several motors move one axis and home to switches of their own; `personality=` gives their number,
+// gantry: several motors move one axis and home to separate switches; `personality=` gives their number,
 // up to 7.
 //
 // Function gantry.N.read: `home` (bit) is true when all `joint.NN.home` (bit) are, `limit` when any is;
 // `position-fb` is joint.NN.pos-fb + joint.NN.offset of one joint: the one that reached its switch last.
 // Function gantry.N.write: `joint.NN.pos-cmd` is `position-cmd` less the joint's offset. While position-cmd
 // moves in the direction of `search-vel` and some switches are made and some not, the joints at their switch
-// stand still and their offset follows. Positions [machine units] are float. A command that is not a number
+// do not move and their offset follows. Positions [machine units] are float. A command that is not a number
 // is not passed on.
 #include <cmath>
 
@@ -71,9 +71,9 @@ struct Gantry {
         const double way = command - last_cmd;
         last_cmd = command;
         const int made = joints_at_switch();
-        const bool isHoming = made > 0 && made < joints && way * search_vel > 0.0;
+        const bool homing = made > 0 && made < joints && way * search_vel > 0.0;
         for (int i = 0; i < joints; ++i) {
-            if (isHoming && joint[i].home) {
+            if (homing && joint[i].home) {
                 joint[i].offset = joint[i].offset + way;
             }
             joint[i].pos_cmd = command - joint[i].offset;

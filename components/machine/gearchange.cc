@@ -42,12 +42,12 @@ struct Gearchange {
         if (!(scale2 >= 1.0)) {
             scale2 = 1.0;
         }
-        const bool isSecond = sel;
+        const bool is_second = sel;
         const double size = std::isfinite(wanted) ? std::fabs(wanted) : 0.0;
         const double speed =
-            isSecond ? limit::between(size, min2, max2) / scale2 : limit::between(size, min1, max1);
+            is_second ? limit::between(size, min2, max2) / scale2 : limit::between(size, min1, max1);
         speed_out = std::copysign(speed, wanted);
-        dir_out = dir_in != (isSecond && reverse);
+        dir_out = dir_in != (is_second && reverse);
     }
 };
 

@@ -42,8 +42,8 @@ struct Laserpower {
         }
         const double bounded = limit::between(fraction, min_fraction, 1.0);
         const double wanted = limit::between(power * bounded, min_power, max_power);
-        const bool isPossible = std::isfinite(wanted) && std::isfinite(fraction);
-        out = enable && isPossible ? wanted : 0.0;
+        const bool possible = std::isfinite(wanted) && std::isfinite(fraction);
+        out = enable && possible ? wanted : 0.0;
     }
 };
 

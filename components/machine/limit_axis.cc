@@ -5,7 +5,7 @@
 // `fb` is the position that chooses; range NN is the first one with `enable-NN` (bit, true at start) for
 // which it is between `min-range-NN` and `max-range-NN`, both included. `min-output` and `max-output` are
 // then `min-limit-NN` and `max-limit-NN`, and `current-range` (u32) is NN. With `sticky-NN` (bit) the range
-// in force is kept while fb is in it, though an earlier one matches too. When no range matches, or fb is not
+// is kept while fb is in it, though an earlier one matches too. When no range matches, or fb is not
 // a number, `error-no-range` (bit) is true and the limits stay, as they do when the chosen ones are not
 // usable (max below min). Float where not said.
 #include "hal/sdk/component.hh"
@@ -57,9 +57,9 @@ struct LimitAxis {
         for (int i = 0; i < ranges && match < 0; ++i) {
             match = isIn(range[i], position) ? i : -1;
         }
-        const bool isUsable = match >= 0 && range[match].min_limit <= range[match].max_limit;
-        error_no_range = !isUsable;
-        if (isUsable) {
+        const bool usable = match >= 0 && range[match].min_limit <= range[match].max_limit;
+        error_no_range = !usable;
+        if (usable) {
             chosen = match;
             current_range = static_cast<std::uint32_t>(match);
             min_output = range[match].min_limit.get();

@@ -6,7 +6,7 @@
 // Outputs: temp-celsius.M, temp-fahrenheit.M, temp-kelvin.M (float), which keep their value in a fault;
 // `fault.M` (bit) and `fault-flags.M` (u32): 1 open, 2 short to ground, 4 short to supply. Frame and slope:
 // data sheet 19-5793 of Maxim Integrated. From -200 to 1350 degrees C the thermocouple's curve is put right;
-// beyond, the reading is as it comes.
+// outside of it, the reading is not changed.
 #include "components/machine/thermocouple.hh"
 #include "hal/sdk/component.hh"
 
@@ -17,7 +17,8 @@ using namespace sdk;
 
 constexpr int MAX_SENSORS = 15;
 constexpr int FRAME_BITS = 32;
-constexpr int REFRESH_CALLS = 4;  ///< select is high this long between frames, so that new values are taken
+constexpr int REFRESH_CALLS =
+    4;  ///< select stays high this long between frames, so that the converter measures again
 
 struct Max31855Sensor {
     In<bool> data;
@@ -32,10 +33,10 @@ struct Max31855Sensor {
 void Max31855Sensor::take_frame() noexcept {
     constexpr double MV_PER_DEGREE = 0.041276;
     flags = frame & 7U;
-    const bool isFault = (frame & 0x10000U) != 0 || (frame & 7U) != 0;
-    fault = isFault;
-    // All high or all low is a broken wire, not a temperature.
-    if (isFault || frame == 0) {
+    const bool is_fault = (frame & 0x10000U) != 0 || (frame & 7U) != 0;
+    fault = is_fault;
+    // All bits high or all bits low means a broken wire, not a temperature.
+    if (is_fault || frame == 0) {
         return;
     }
     const double linear = (static_cast<std::int32_t>(frame) >> 18) * 0.25;
@@ -69,7 +70,7 @@ struct Max31855 {
         d.function<&Max31855::update>(this, "bitbang-spi");
     }
 
-    /// Select goes low, then for each bit: the data are read and the clock goes high; the clock goes low.
+    /// Select goes low; then for each bit the data is read, the clock goes high and the clock goes low.
     void update() noexcept {
         const int bit_steps = step - REFRESH_CALLS;
         if (bit_steps < 0) {

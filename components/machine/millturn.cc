@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // millturn: kinematics of a machine that mills and turns, with three linear joints X Y Z and one rotary A.
 // Type 0 (mill): joints are the axes X Y Z A. Type 1 (turn): joint 0 is Z, joint 1 is -Y, joint 2 is X, and A
-// is a spindle. Switched through motion.switchkins-type. Pins kinstype.is-0 and is-1 (bit, out) tell which is
-// in force; `millturn.0.fpin` (s32) counts runs of the function millturn.0.fdemo.
+// is a spindle. Switched through motion.switchkins-type. Pins kinstype.is-0 and is-1 (bit, out) show which is
+// active; `millturn.0.fpin` (s32) counts runs of the function millturn.0.fdemo.
 #include <atomic>
 
 #include "hal/include/kinematics.h"
@@ -13,7 +13,7 @@ using namespace sdk;
 
 struct Millturn {
     Out<std::int32_t> fpin;
-    Out<bool> is_type[2];  ///< of the first instance
+    Out<bool> is_type[2];  ///< pins of the first instance
 
     void declare(Declare &d) noexcept;
     void demo() noexcept { fpin = next_count(fpin); }
@@ -24,7 +24,7 @@ struct Millturn {
 namespace {
 
 enum MillturnType { MILL = 0, TURN = 1 };
-// Written by the servo thread when motion switches, read by the planner's as well.
+// The servo thread writes this when motion switches; the planner thread also reads it.
 std::atomic<int> current_type{MILL};
 mw::components::Millturn *first_instance = nullptr;
 
@@ -48,10 +48,10 @@ extern "C" {
 
 int kinematicsForward(const double *joint, struct EmcPose *world, const KINEMATICS_FORWARD_FLAGS *,
                       KINEMATICS_INVERSE_FLAGS *) {
-    const bool isTurn = current_type == TURN;
-    world->tran.x = isTurn ? joint[2] : joint[0];
-    world->tran.y = isTurn ? -joint[1] : joint[1];
-    world->tran.z = isTurn ? joint[0] : joint[2];
+    const bool is_turn = current_type == TURN;
+    world->tran.x = is_turn ? joint[2] : joint[0];
+    world->tran.y = is_turn ? -joint[1] : joint[1];
+    world->tran.z = is_turn ? joint[0] : joint[2];
     world->a = joint[3];
     world->b = world->c = world->u = world->v = world->w = 0.0;
     return 0;
@@ -59,10 +59,10 @@ int kinematicsForward(const double *joint, struct EmcPose *world, const KINEMATI
 
 int kinematicsInverse(const struct EmcPose *world, double *joint, const KINEMATICS_INVERSE_FLAGS *,
                       KINEMATICS_FORWARD_FLAGS *) {
-    const bool isTurn = current_type == TURN;
-    joint[0] = isTurn ? world->tran.z : world->tran.x;
-    joint[1] = isTurn ? -world->tran.y : world->tran.y;
-    joint[2] = isTurn ? world->tran.x : world->tran.z;
+    const bool is_turn = current_type == TURN;
+    joint[0] = is_turn ? world->tran.z : world->tran.x;
+    joint[1] = is_turn ? -world->tran.y : world->tran.y;
+    joint[2] = is_turn ? world->tran.x : world->tran.z;
     joint[3] = world->a;
     return 0;
 }

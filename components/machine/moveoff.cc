@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // moveoff: offsets added to joint positions in HAL, such as to move the tool out of the way in a pause; up to
-// 9 joints (`personality=`, 3 by default). The manual page tells all.
+// 9 joints (`personality=`, 3 by default). The manual page describes all pins.
 #include <cmath>
 
 #include "components/limit/limit_core.hh"
@@ -47,10 +47,10 @@ struct Moveoff {
     double waypoint[MAX_WAYPOINTS][MAX_JOINTS] = {};
     int waypoints = 0;
     double since_waypoint_s = 0.0;
-    double tolerance = 0.0005;  // the settings in use while not idle
+    double tolerance = 0.0005;  // the settings that are used while not idle
     double threshold = 0.02;
     double sample_s = 0.02;
-    bool isLegStarted = false;
+    bool leg_started = false;
     MoveoffState state = MOVEOFF_IDLE;
 
     void declare(Declare &d) noexcept;
@@ -68,8 +68,8 @@ struct Moveoff {
     void stop(double dt) noexcept;
     void return_home(double dt) noexcept;
     void start_leg() noexcept;
-    void next_state(bool isEnabled) noexcept;
-    void show(bool isEnabled) noexcept;
+    void next_state(bool enabled) noexcept;
+    void show(bool enabled) noexcept;
 };
 
 void Moveoff::declare(Declare &d) noexcept {
@@ -136,7 +136,7 @@ void Moveoff::take_settings() noexcept {
     since_waypoint_s = 0.0;
 }
 
-/// Remembers where the joints are, when they are far enough from the last place remembered.
+/// Records the positions of the joints when they are far enough from the last recorded position.
 void Moveoff::record(double dt) noexcept {
     since_waypoint_s += dt;
     if (since_waypoint_s < sample_s) {
@@ -176,18 +176,18 @@ void Moveoff::stop(double dt) noexcept {
     }
 }
 
-/// A straight line to the next waypoint: every joint with the same part of its way at all times. Without
-/// backtracking each joint goes to 0 on its own.
+/// A straight line to the next waypoint: all joints cover the same fraction of their distance at all times.
+/// Without backtracking each joint moves to 0 by itself.
 void Moveoff::start_leg() noexcept {
-    const bool isLast = waypoints == 0 || !backtrack_enable;
-    waypoints = isLast ? 0 : waypoints - 1;
-    double rate = 1e30;  // parts of the way a second, a second squared
+    const bool is_last = waypoints == 0 || !backtrack_enable;
+    waypoints = is_last ? 0 : waypoints - 1;
+    double rate = 1e30;  // fraction of the distance per second, and per second squared
     double rate2 = 1e30;
     for (int i = 0; i < joints; ++i) {
-        joint[i].leg_target = isLast ? 0.0 : waypoint[waypoints][i];
+        joint[i].leg_target = is_last ? 0.0 : waypoint[waypoints][i];
         const double way = std::fabs(joint[i].leg_target - joint[i].follower.position());
         if (way < NEGLIGIBLE) {
-            // Its part of the line would be slower than positions can be told apart.
+            // Its share of the line would be slower than the resolution of positions.
             joint[i].follower.planner.reset(joint[i].leg_target);
             continue;
         }
@@ -196,44 +196,44 @@ void Moveoff::start_leg() noexcept {
     }
     for (int i = 0; i < joints; ++i) {
         const double way = std::fabs(joint[i].leg_target - joint[i].follower.position());
-        const bool isStraight = backtrack_enable;
-        joint[i].leg_velocity = isStraight ? rate * way : joint[i].vel.get();
-        joint[i].leg_acceleration = isStraight ? rate2 * way : joint[i].accel.get();
+        const bool straight = backtrack_enable;
+        joint[i].leg_velocity = straight ? rate * way : joint[i].vel.get();
+        joint[i].leg_acceleration = straight ? rate2 * way : joint[i].accel.get();
     }
 }
 
 void Moveoff::return_home(double dt) noexcept {
-    if (!isLegStarted) {
+    if (!leg_started) {
         start_leg();
-        isLegStarted = true;
+        leg_started = true;
     }
-    bool isThere = true;
+    bool present = true;
     for (int i = 0; i < joints; ++i) {
         MoveoffJoint &moved = joint[i];
-        // A joint without limits cannot move; it must not keep the others from their way.
+        // A joint without limits cannot move; it must not block the others.
         moved.follower.run(moved.leg_target, moved.leg_velocity, moved.leg_acceleration, dt);
         const double missing = std::fabs(moved.follower.position() - moved.leg_target);
-        const bool isNear = missing <= tolerance && moved.follower.velocity() == 0.0;
-        isThere = isThere && (isNear || !moved.hasLimits());
+        const bool near = missing <= tolerance && moved.follower.velocity() == 0.0;
+        present = present && (near || !moved.hasLimits());
     }
-    isLegStarted = !isThere;
+    leg_started = !present;
 }
 
-void Moveoff::next_state(bool isEnabled) noexcept {
+void Moveoff::next_state(bool enabled) noexcept {
     switch (state) {
     case MOVEOFF_IDLE:
         take_settings();
-        state = isEnabled ? MOVEOFF_ON : MOVEOFF_IDLE;
+        state = enabled ? MOVEOFF_ON : MOVEOFF_IDLE;
         break;
     case MOVEOFF_ON:
-    case MOVEOFF_FULL: state = isEnabled ? state : MOVEOFF_STOPPING; break;
+    case MOVEOFF_FULL: state = enabled ? state : MOVEOFF_STOPPING; break;
     case MOVEOFF_STOPPING:
     case MOVEOFF_RETURNING:
-        if (isEnabled) {
+        if (enabled) {
             state = MOVEOFF_ON;
         } else if (state == MOVEOFF_STOPPING && !isMoving()) {
             state = MOVEOFF_RETURNING;
-            isLegStarted = false;
+            leg_started = false;
         } else if (state == MOVEOFF_RETURNING && !isAway() && !isMoving()) {
             state = MOVEOFF_IDLE;
         }
@@ -241,17 +241,17 @@ void Moveoff::next_state(bool isEnabled) noexcept {
     }
 }
 
-void Moveoff::show(bool isEnabled) noexcept {
-    bool isApplied = false;
+void Moveoff::show(bool enabled) noexcept {
+    bool applied = false;
     for (int i = 0; i < joints; ++i) {
-        isApplied = isApplied || std::fabs(joint[i].follower.position()) > tolerance;
+        applied = applied || std::fabs(joint[i].follower.position()) > tolerance;
     }
-    const bool isDropped = isApplied && !apply_offsets && power_on;
-    if (isDropped && !warning && !isEnabled) {
+    const bool dropped = applied && !apply_offsets && power_on;
+    if (dropped && !warning && !enabled) {
         rtapi_print_msg(RTAPI_MSG_ERR, "moveoff: apply-offsets became false while offsets are applied\n");
     }
-    warning = isDropped;
-    offset_applied = isApplied;
+    warning = dropped;
+    offset_applied = applied;
     waypoint_limit = state == MOVEOFF_FULL;
     waypoint_ct = waypoints;
     waypoint_percent = 100 * waypoints / max_waypoints();
@@ -260,17 +260,17 @@ void Moveoff::show(bool isEnabled) noexcept {
 
 void Moveoff::read_inputs(long period_ns) noexcept {
     const double dt = seconds(period_ns);
-    const bool isEnabled = move_enable && apply_offsets;
+    const bool enabled = move_enable && apply_offsets;
     if (!power_on) {
-        // Nothing can move; the offsets stay as they are, so that the feedback stays true.
+        // Nothing can move. The offsets stay as they are, so that the feedback stays correct.
         for (int i = 0; i < joints; ++i) {
             joint[i].follower.planner.reset(joint[i].follower.position());
         }
-        isLegStarted = false;
-        show(isEnabled);
+        leg_started = false;
+        show(enabled);
         return;
     }
-    next_state(isEnabled);
+    next_state(enabled);
     switch (state) {
     case MOVEOFF_ON:
         follow_inputs(dt);
@@ -281,7 +281,7 @@ void Moveoff::read_inputs(long period_ns) noexcept {
     case MOVEOFF_RETURNING: return_home(dt); break;
     default: break;
     }
-    show(isEnabled);
+    show(enabled);
 }
 
 void Moveoff::write_outputs() noexcept {

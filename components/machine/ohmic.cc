@@ -44,8 +44,8 @@ struct Ohmic {
         thcad_volts = volts;
         ohmic_volts = sensed;
         arc_on = volts >= fullscale;
-        const bool isTouch = !(sensed < threshold);  // true for what is not a number
-        if (is_probing && isTouch) {
+        const bool is_touch = !(sensed < threshold);  // true for NaN
+        if (is_probing && is_touch) {
             ohmic_on = true;
         } else if (sensed < low) {
             ohmic_on = false;

@@ -18,7 +18,7 @@ struct Orient {
     In<double> position, angle, tolerance;
     Out<double> command, poserr;
     Out<bool> is_oriented;
-    bool wasEnabled = false;
+    bool was_enabled = false;
 
     void declare(Declare &d) noexcept {
         d.pin(enable, "enable");
@@ -33,17 +33,17 @@ struct Orient {
     }
 
     void update() noexcept {
-        const bool isEnabled = enable;
+        const bool enabled = enable;
         const double now = position;
-        if (isEnabled && !wasEnabled) {
+        if (enabled && !was_enabled) {
             const double wanted = target(now);
             command = std::isfinite(wanted) ? wanted : command.get();
         }
-        wasEnabled = isEnabled;
-        if (isEnabled) {
+        was_enabled = enabled;
+        if (enabled) {
             poserr = (now - command) * 360.0;
         }
-        is_oriented = isEnabled && std::fabs(poserr) < tolerance;
+        is_oriented = enabled && std::fabs(poserr) < tolerance;
     }
 
   private:

@@ -40,7 +40,7 @@ struct Raster {
     raster::Line line;
     double start = 0.0;
     bool last_run = false;
-    bool isAwaited = false;  ///< run is true, and the line is not complete yet
+    bool isAwaited = false;  ///< run is true, but the line is not yet complete
 
     void declare(Declare &d) noexcept;
     void update() noexcept;
@@ -111,7 +111,7 @@ void Raster::begin() noexcept {
     state = RASTER_RUNNING;
 }
 
-/// The power at the position, between the pixels before and behind it; none beside the line.
+/// The power at this position, interpolated between the two neighbouring pixels; none outside the line.
 void Raster::show() noexcept {
     const double at = position;
     if (!std::isfinite(at) || !std::isfinite(start)) {
@@ -119,22 +119,22 @@ void Raster::show() noexcept {
         return;
     }
     const double way = line.way(at - start);
-    const bool isInside = way >= 0.0 && way <= line.count() - 1;
-    const int before = isInside ? static_cast<int>(way) : 0;
+    const bool inside = way >= 0.0 && way <= line.count() - 1;
+    const int before = inside ? static_cast<int>(way) : 0;
     const int behind = before + 1 < line.count() ? before + 1 : before;
-    const double first = isInside ? line.percent(before) : raster::NO_PIXEL;
-    const double second = isInside ? line.percent(behind) : raster::NO_PIXEL;
+    const double first = inside ? line.percent(before) : raster::NO_PIXEL;
+    const double second = inside ? line.percent(behind) : raster::NO_PIXEL;
     bitmap_position = way;
-    fraction = isInside ? way - before : 0.0;
-    current_pixel_index = isInside ? behind : -1;
+    fraction = inside ? way - before : 0.0;
+    current_pixel_index = inside ? behind : -1;
     previous_pixel_value = first;
     current_pixel_value = second;
-    const bool isDark = first < 0.0 || second < 0.0;
-    output = isDark ? raster::NO_PIXEL : first + (second - first) * (way - before);
+    const bool dark = first < 0.0 || second < 0.0;
+    output = dark ? raster::NO_PIXEL : first + (second - first) * (way - before);
 }
 
 void Raster::update() noexcept {
-    const bool isRun = run;
+    const bool is_run = run;
     if (reset) {
         state = RASTER_IDLE;
         fault_code = FAULT_NONE;
@@ -143,19 +143,19 @@ void Raster::update() noexcept {
         hal_port_clear(program);
     } else {
         read_line();
-        if (isRun && !last_run) {
+        if (is_run && !last_run) {
             start = position;
             isAwaited = true;
         }
-        isAwaited = isAwaited && isRun;
+        isAwaited = isAwaited && is_run;
         if (isAwaited && state == RASTER_READY) {
             begin();
-        } else if (!isRun && state == RASTER_RUNNING) {
+        } else if (!is_run && state == RASTER_RUNNING) {
             state = RASTER_IDLE;
             line.clear();
         }
     }
-    last_run = isRun;
+    last_run = is_run;
     if (state == RASTER_RUNNING) {
         show();
     }

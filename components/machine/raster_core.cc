@@ -7,15 +7,15 @@ namespace mw::raster {
 
 namespace {
 
-/// The power of ten behind an 'e', to two digits; 1 when there is none. Moves behind it.
+/// The power of ten after an 'e', up to two digits; 1 when there is none. Moves `text` past it.
 double read_exponent(const char *&text) noexcept {
     constexpr int MOST = 12;
     if ((*text | 0x20) != 'e') {
         return 1.0;
     }
     ++text;
-    const bool isNegative = *text == '-';
-    text += isNegative || *text == '+' ? 1 : 0;
+    const bool negative = *text == '-';
+    text += negative || *text == '+' ? 1 : 0;
     int exponent = 0;
     for (int digits = 0; digits < 2 && *text >= '0' && *text <= '9'; ++digits) {
         exponent = 10 * exponent + (*text++ - '0');
@@ -24,57 +24,58 @@ double read_exponent(const char *&text) noexcept {
     for (int i = 0; i < exponent && i <= MOST; ++i) {
         power *= 10.0;
     }
-    return isNegative ? 1.0 / power : power;
+    return negative ? 1.0 / power : power;
 }
 
-/// A decimal number up to `end`; moves behind the character there. False when there is none.
+/// Reads a decimal number that ends with the character `end`, and moves `text` past that character. False
+/// when there is none.
 bool read_number(const char *&text, char end, double &out) noexcept {
     constexpr double LARGEST = 1e12;
-    const bool isNegative = *text == '-';
-    text += isNegative ? 1 : 0;
+    const bool negative = *text == '-';
+    text += negative ? 1 : 0;
     double number = 0.0;
-    double place = 0.0;  // of the last digit behind the point: 10, 100, ...; 0 before the point
-    bool hasDigit = false;
+    double place = 0.0;  // place of the last digit after the point: 10, 100, ...; 0 before the point
+    bool has_digit = false;
     for (; (*text >= '0' && *text <= '9') || (*text == '.' && place == 0.0); ++text) {
         if (*text == '.') {
             place = 1.0;
             continue;
         }
-        hasDigit = true;
+        has_digit = true;
         number = 10.0 * number + (*text - '0');
         place *= 10.0;
     }
     number = place > 1.0 ? number / place : number;
-    number *= hasDigit ? read_exponent(text) : 1.0;
-    const bool isWhole = hasDigit && *text == end && number <= LARGEST;
-    text += isWhole ? 1 : 0;
-    out = isNegative ? -number : number;
-    return isWhole;
+    number *= has_digit ? read_exponent(text) : 1.0;
+    const bool whole = has_digit && *text == end && number <= LARGEST;
+    text += whole ? 1 : 0;
+    out = negative ? -number : number;
+    return whole;
 }
 
 }  // namespace
 
-/// Takes the field of the header that has just ended with ';'. What is wrong with it, or HEADER or PIXELS.
+/// Evaluates the header field that has just ended with ';'. Returns the error, or HEADER or PIXELS.
 Reading Line::take_field() noexcept {
     const char *text = header_;
     header_[header_size_ - 1] = ';';
     double number = 0.0;
-    const bool isRead = read_number(text, ';', number);
+    const bool is_read = read_number(text, ';', number);
     header_size_ = 0;
     switch (fields_++) {
-    case 0: offset_ = number; return isRead ? Reading::HEADER : Reading::BAD_OFFSET;
+    case 0: offset_ = number; return is_read ? Reading::HEADER : Reading::BAD_OFFSET;
     case 1: {
-        const int digits = isRead && number >= 4.0 && number <= 32.0 ? static_cast<int>(number) / 4 : 0;
+        const int digits = is_read && number >= 4.0 && number <= 32.0 ? static_cast<int>(number) / 4 : 0;
         digits_ = digits;
         return digits > 0 && number == 4.0 * digits ? Reading::HEADER : Reading::BAD_BITS;
     }
-    case 2: per_unit_ = number; return isRead && number > 0.0 ? Reading::HEADER : Reading::BAD_SCALE;
+    case 2: per_unit_ = number; return is_read && number > 0.0 ? Reading::HEADER : Reading::BAD_SCALE;
     default: {
-        const bool isGood = isRead && number >= 2.0 && number <= MAX_PIXELS && number == std::floor(number);
-        count_ = isGood ? static_cast<int>(number) : 0;
+        const bool good = is_read && number >= 2.0 && number <= MAX_PIXELS && number == std::floor(number);
+        count_ = good ? static_cast<int>(number) : 0;
         pixels_ = 0;
         digit_ = 0;
-        return isGood ? Reading::PIXELS : Reading::BAD_COUNT;
+        return good ? Reading::PIXELS : Reading::BAD_COUNT;
     }
     }
 }
@@ -94,13 +95,13 @@ void Line::take_header(char byte) noexcept {
 
 void Line::take_pixel(char byte) noexcept {
     const char lower = static_cast<char>(byte | 0x20);
-    const bool isDecimal = byte >= '0' && byte <= '9';
-    const bool isLetter = lower >= 'a' && lower <= 'f';
-    if (!isDecimal && !isLetter) {
+    const bool decimal = byte >= '0' && byte <= '9';
+    const bool is_letter = lower >= 'a' && lower <= 'f';
+    if (!decimal && !is_letter) {
         reading_ = Reading::BAD_PIXEL;
         return;
     }
-    const unsigned nibble = static_cast<unsigned>(isDecimal ? byte - '0' : lower - 'a' + 10);
+    const unsigned nibble = static_cast<unsigned>(decimal ? byte - '0' : lower - 'a' + 10);
     const unsigned before = digit_ == 0 ? 0U : pixel_[pixels_];
     pixel_[pixels_] = before << 4U | nibble;
     if (++digit_ == digits_) {

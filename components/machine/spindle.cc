@@ -5,7 +5,7 @@
 // The speed follows `commanded-speed` [rpm], its size held between the gear's `min` and `max`, with at most
 // `accel` and `decel` [rpm/s]: with `simulate-encoder` (bit) in ramps; else `output` is at most that many rpm
 // [rpm] ahead of `actual-speed` [turns/s]. While `enable` (bit) is false the speed asked for is 0. The manual
-// page tells all pins. A command that is not a number counts as 0.
+// page describes all pins. A command that is not a number counts as 0.
 #include <cmath>
 
 #include "components/limit/limit_core.hh"
@@ -87,7 +87,7 @@ void Spindle::declare_gear(Declare &d, int number) noexcept {
     d.pin_at(made.select, "select.%d", number, gears == 1);
 }
 
-/// The highest one selected by a bit, else the number of select-gear.
+/// The highest gear selected by a bit, otherwise the number in select-gear.
 std::uint32_t Spindle::chosen_gear() const noexcept {
     for (int i = gears - 1; i > 0; --i) {
         if (gear[i].select) {
@@ -98,7 +98,7 @@ std::uint32_t Spindle::chosen_gear() const noexcept {
     return wanted < static_cast<std::uint32_t>(gears) ? wanted : 0U;
 }
 
-/// The speed asked for, within the gear's limits [rpm].
+/// The requested speed, within the limits of the gear [rpm].
 double Spindle::target(const Gear &used) noexcept {
     const double command = commanded_speed;
     const double size = std::isfinite(command) ? std::fabs(command) : 0.0;
@@ -115,12 +115,12 @@ double Spindle::target(const Gear &used) noexcept {
 void Spindle::show(double rpm, double wanted, const Gear &used, double dt) noexcept {
     spindle_rpm = rpm;
     const double size = std::fabs(rpm);
-    const bool isAtSpeed = std::fabs(rpm - wanted) < used.speed_tolerance;
+    const bool is_at_speed = std::fabs(rpm - wanted) < used.speed_tolerance;
     const double filter = spindle_lpf * dt;
-    const bool isFiltered = isAtSpeed && filter > 0.0 && filter < 1.0 && std::isfinite(smooth_rpm);
-    smooth_rpm = isFiltered ? smooth_rpm + (size - smooth_rpm) * filter : size;
+    const bool filtered = is_at_speed && filter > 0.0 && filter < 1.0 && std::isfinite(smooth_rpm);
+    smooth_rpm = filtered ? smooth_rpm + (size - smooth_rpm) * filter : size;
     spindle_rpm_abs = smooth_rpm;
-    at_speed = isAtSpeed;
+    at_speed = is_at_speed;
     zero_speed = size < used.zero_tolerance;
 }
 
@@ -130,25 +130,25 @@ void Spindle::update(long period_ns) noexcept {
     const Gear &used = gear[number];
     current_gear = number;
     const double wanted = target(used);
-    const bool isSimulated = simulate_encoder;
+    const bool simulated = simulate_encoder;
     const double measured = actual_speed * 60.0;
-    const double base = isSimulated || !std::isfinite(measured) ? ramp_rpm : measured;
-    // Away from zero with accel, towards it with decel, and through zero in two steps.
-    const double unit = isSimulated ? dt : 1.0;
+    const double base = simulated || !std::isfinite(measured) ? ramp_rpm : measured;
+    // Uses accel away from zero and decel towards zero; a change of direction takes two steps.
+    const double unit = simulated ? dt : 1.0;
     const double up = std::fmax(0.0, used.accel) * unit;
     const double down = std::fmax(0.0, used.decel) * unit;
     const double sign = base < 0.0 || (base == 0.0 && wanted < 0.0) ? -1.0 : 1.0;
     const double size = std::fabs(base);
     const double goal = wanted * sign;
-    const bool isSlowing = goal < size;
-    const double next = isSlowing ? std::fmax(std::fmax(goal, 0.0), size - down) : std::fmin(goal, size + up);
+    const bool slowing = goal < size;
+    const double next = slowing ? std::fmax(std::fmax(goal, 0.0), size - down) : std::fmin(goal, size + up);
     ramp_rpm = sign * next;
-    brake = isSlowing;
+    brake = slowing;
     forward = ramp_rpm > 0.0;
     reverse = ramp_rpm < 0.0;
     set_finite(output, (std::fabs(ramp_rpm) + used.offset) * used.scale);
     const double asked = enable ? commanded_speed.get() : 0.0;
-    show(isSimulated ? ramp_rpm : measured, asked, used, dt);
+    show(simulated ? ramp_rpm : measured, asked, used, dt);
 }
 
 }  // namespace mw::components

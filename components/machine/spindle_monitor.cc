@@ -45,12 +45,12 @@ struct SpindleMonitor {
         const double wanted = command;
         const double turning = feedback;
         const double missing = std::fabs(wanted) - turning * std::copysign(1.0, wanted);
-        const bool isNear = std::fabs(wanted - turning) < threshold;
-        const bool isSlow = !(missing <= threshold);  // true for what is not a number
+        const bool near = std::fabs(wanted - turning) < threshold;
+        const bool slow = !(missing <= threshold);  // true for NaN
         switch (level) {
         case 0: return 1;
-        case 1: return isNear ? 2 : 1;
-        case 2: return isSlow ? 3 : 2;
+        case 1: return near ? 2 : 1;
+        case 2: return slow ? 3 : 2;
         default: return 3;
         }
     }

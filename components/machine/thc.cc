@@ -4,7 +4,7 @@
 // `volts` is (`encoder-vel` - `scale-offset`) * `vel-scale`. While `enable`, `torch-on` and `arc-ok` (bit)
 // are true and `vel-status` (bit) is - `current-vel` at least `requested-vel` less `velocity-tol` percent -,
 // the torch goes up by `correction-vel` a period when volts are below `volts-requested` by more than
-// `voltage-tol`, down when above. When the torch is off the correction is taken back as far as Z rises; while
+// `voltage-tol`, down when above. When the torch is off the correction is removed while Z rises; while
 // enable is false, by correction-vel a period. `z-pos-out` = `z-pos-in` + `offset-value`; `z-fb-out` =
 // z-pos-in. Pins `vel-tol` (not used) and others float; vel-scale, scale-offset, velocity-tol, voltage-tol,
 // correction-vel are parameters.
@@ -53,7 +53,7 @@ struct Thc {
         const double arc = (encoder_vel - scale_offset) * vel_scale;
         volts = arc;
         vel_status = torch::isAtSpeed(current_vel, requested_vel, velocity_tol);
-        const bool isCutting = torch_on && arc_ok;
+        const bool cutting = torch_on && arc_ok;
         int direction = 0;
         if (vel_status) {
             direction = arc < volts_requested - voltage_tol   ? 1
@@ -61,7 +61,7 @@ struct Thc {
                                                               : 0;
         }
         const double z = z_pos_in;
-        set_finite(z_pos_out, correction.run(z, enable, isCutting, direction, correction_vel));
+        set_finite(z_pos_out, correction.run(z, enable, cutting, direction, correction_vel));
         set_finite(z_fb_out, z);
         offset_value = correction.offset;
     }

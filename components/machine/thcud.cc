@@ -5,7 +5,7 @@
 // While `enable`, `torch-on` and `arc-ok` (bit) are true and `vel-status` (bit) is - `current-vel` at least
 // `requested-vel` less `velocity-tol` percent -, the torch moves by `correction-vel` a period up while
 // `torch-up` (bit) is true, down while `torch-down` is (not at all while both are). When the torch is off the
-// correction is taken back as far as Z rises (`removing-offset`, bit); while enable is false, by
+// correction is removed while Z rises (`removing-offset`, bit); while enable is false, by
 // correction-vel a period. `z-pos-out` = `z-pos-in` + `cur-offset`; `z-fb-out` = z-pos-in. Others float;
 // velocity-tol and correction-vel are parameters.
 #include "components/machine/torch.hh"
@@ -53,7 +53,7 @@ struct Thcud {
                    correction.run(z, enable, torch_on && arc_ok, vel_status ? wanted : 0, correction_vel));
         set_finite(z_fb_out, z);
         cur_offset = correction.offset;
-        removing_offset = correction.isRemoving;
+        removing_offset = correction.removing;
     }
 };
 

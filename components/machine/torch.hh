@@ -6,33 +6,33 @@
 
 namespace mw::torch {
 
-/// True when the torch moves at least at the requested speed less `tolerance_percent`.
+/// True when the torch moves at least at the requested speed minus `tolerance_percent`.
 inline bool isAtSpeed(double current, double requested, double tolerance_percent) noexcept {
     return current >= requested * (1.0 - tolerance_percent / 100.0);
 }
 
 struct Correction {
-    double offset = 0.0;  ///< what is added to Z [machine units]
+    double offset = 0.0;  ///< offset that is added to Z [machine units]
     double last_z = 0.0;
-    bool isRemoving = false;
+    bool removing = false;
 
-    /// One period: `direction` -1, 0 or 1 while cutting moves the torch by `step`; while not cutting a
-    /// correction is taken back as far as Z rises; while disabled it is taken back by `step`. The position
-    /// for the motor never jumps.
-    double run(double z, bool isEnabled, bool isCutting, int direction, double step) noexcept {
+    /// One period. While cutting, `direction` -1, 0 or 1 moves the torch by `step`. While not cutting, a
+    /// correction is removed while Z rises. While disabled, it is removed by `step` per period. The
+    /// position for the motor never jumps.
+    double run(double z, bool enabled, bool cutting, int direction, double step) noexcept {
         if (!std::isfinite(z)) {
             return z;
         }
         const double rise = z - last_z;
         last_z = z;
         const double possible = std::isfinite(step) ? std::fabs(step) : 0.0;
-        isRemoving = false;
-        if (isEnabled && isCutting) {
+        removing = false;
+        if (enabled && cutting) {
             offset += direction * possible;
         } else {
-            const double most = isEnabled ? std::fmax(0.0, rise) : possible;
+            const double most = enabled ? std::fmax(0.0, rise) : possible;
             const double back = std::fmin(std::fabs(offset), most);
-            isRemoving = back > 0.0;
+            removing = back > 0.0;
             offset -= std::copysign(back, offset);
         }
         return z + offset;

@@ -2,7 +2,7 @@
 // Kinematics of hexapods (kinematics/hexapod.hh), switchable to identity. Beside those of the model, pins
 // (out): genhexkins.last-iterations and max-iterations of the forward side, fwd-kins-fail when it found
 // nothing, correction.N of the struts; (in) genhexkins.x to c: where the forward side looks first when the
-// last pose leads nowhere; skgui.x to c: where the platform is, whatever type is in force, for screens that
+// last pose leads nowhere; skgui.x to c: where the platform is, with any type, for screens that
 // draw it.
 #include "components/motion/iterations.hh"
 #include "components/motion/switchable.hh"
@@ -17,7 +17,7 @@ using mw::kinematics::Status;
 struct HexapodPins {
     hal_float_t *guess[6];
     hal_float_t *correction[Hexapod::STRUTS];
-    hal_bit_t *isFailed;
+    hal_bit_t *failed;
     hal_float_t *shown[6];
 };
 
@@ -30,7 +30,7 @@ struct LiveHexapod {
             *pins->shown[i] = pose[i];
         }
     }
-    /// Where the platform is while another type is in force: of the servo thread.
+    /// Tracks the platform while another type is active. Only for the servo thread.
     void watch(const double *joints) const noexcept {
         Pose pose;
         for (int i = 0; i < 6; ++i) {
@@ -41,7 +41,7 @@ struct LiveHexapod {
         }
     }
 
-    /// Of the servo thread only; the planner asks the other way.
+    /// Only for the servo thread; the planner calls the inverse.
     Status forward(const double *joints, Pose &pose) const noexcept {
         Status status = iterating.forward(joints, pose);
         if (status == Status::UNREACHABLE) {
@@ -52,7 +52,7 @@ struct LiveHexapod {
             status = iterating.forward(joints, guess);
             pose = isAnswered(status) ? guess : pose;
         }
-        *pins->isFailed = status == Status::UNREACHABLE;
+        *pins->failed = status == Status::UNREACHABLE;
         if (isAnswered(status)) {
             const auto corrections = iterating.model().corrections_at(pose);
             for (std::size_t i = 0; i < Hexapod::STRUTS; ++i) {
@@ -75,7 +75,7 @@ int declare_model(int comp_id, const char *) {
     if (live.pins == nullptr) {
         return -ENOMEM;
     }
-    int status = hal_pin_bit_new("genhexkins.fwd-kins-fail", HAL_OUT, &live.pins->isFailed, comp_id);
+    int status = hal_pin_bit_new("genhexkins.fwd-kins-fail", HAL_OUT, &live.pins->failed, comp_id);
     for (int i = 0; i < 6 && status >= 0; ++i) {
         status = hal_pin_float_newf(HAL_IN, &live.pins->guess[i], comp_id, "genhexkins.%c", "xyzabc"[i]);
         status = status < 0 ? status

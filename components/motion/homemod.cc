@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Stands for motmod's built-in homing (src/motion/homing), which existing start files load as a module of its
+// Represents motmod's built-in homing (src/motion/homing), which existing start files load as a module of its
 // own; and says whether the module that is to take its place is one.
 #include <string.h>
 
@@ -9,7 +9,7 @@
 #include "motion/interface/homing_functions.hh"
 
 static char *replaced_by = nullptr;
-RTAPI_MP_STRING(replaced_by, "the homing module that is loaded: refused where it lacks a function");
+RTAPI_MP_STRING(replaced_by, "the homing module that is loaded; it must have all functions");
 
 static int component = -1;
 
@@ -17,9 +17,9 @@ static bool isReplaced() {
     char missing[600] = "";
     size_t length = 0;
     for (const char *name : mw::motion::HOMING_FUNCTIONS) {
-        const bool isMissing = mw_ext_find_symbol(name) == nullptr;
-        const bool isRoom = length + strlen(name) + 3 < sizeof missing;
-        if (isMissing && isRoom) {
+        const bool is_missing = mw_ext_find_symbol(name) == nullptr;
+        const bool room_left = length + strlen(name) + 3 < sizeof missing;
+        if (is_missing && room_left) {
             rtapi_snprintf(missing + length, sizeof missing - length, "%s%s", length == 0 ? "" : ", ", name);
             length = strlen(missing);
         }

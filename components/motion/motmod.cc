@@ -28,7 +28,7 @@ RTAPI_MP_INT(base_thread_fp, "accepted; every thread may use floating point");
 static long servo_period_nsec = 1000000;
 RTAPI_MP_LONG(servo_period_nsec, "period of servo-thread [ns]");
 static long traj_period_nsec = 0;
-RTAPI_MP_LONG(traj_period_nsec, "accepted; the path planner has a period of its own");
+RTAPI_MP_LONG(traj_period_nsec, "accepted; the path planner has its own period");
 static int num_joints = MAX_JOINTS;
 RTAPI_MP_INT(num_joints, "joints, 1 to 16");
 static int num_spindles = 1;
@@ -48,21 +48,21 @@ namespace {
 
 constexpr int FAILED = -22;  // EINVAL
 
-/// What is too large for the library itself.
+/// Objects that are too large for the library itself.
 struct Memory {
     alignas(motion::PathLink) unsigned char link[sizeof(motion::PathLink)];
     alignas(motion::Controller) unsigned char controller[sizeof(motion::Controller)];
     alignas(motion::PathPlanner) unsigned char planner[sizeof(motion::PathPlanner)];
 };
 
-/// Everything of this load but the pins, the channels and the block of the tool offset, which live in shared
+/// All data of this load except the pins, the channels and the block of the tool offset, which are in shared
 /// memory.
 struct Module {
     motion::ModuleKinematics kinematics;
     motion::ModuleHoming homing;
-    bool isHomingForeign = false;  ///< a module of a user homes
+    bool homing_foreign = false;  ///< a user module does the homing
     motion::ModulePlanner speeds;
-    bool areSpeedsForeign = false;  ///< a module of a user chooses speeds
+    bool are_speeds_foreign = false;  ///< a user module plans the speeds
     motion::PathLink *link = nullptr;
     motion::Inputs in;
     motion::Outputs out;
@@ -74,7 +74,7 @@ struct Module {
     motion::PathPlanner *planner = nullptr;
     Memory *memory = nullptr;
     int component = -1, planner_id = -1, shmem_id = -1, tool_offset_id = -1;
-    rtapi_u32 is_safe = 0;  ///< the task process is gone, motion has stopped and the amplifiers are off
+    rtapi_u32 is_safe = 0;  ///< the task process has ended, motion has stopped and the amplifiers are off
 };
 
 Module module;
@@ -90,8 +90,8 @@ Module module;
     module.controller->step(module.in, module.out);
     module.pins->write(module.out);
     module.tool_offset_pins->step(*module.tool_offset);
-    const bool isSafe = module.out.status.isTaskLost && !module.out.status.isEnabled;
-    std::atomic_ref(module.is_safe).store(isSafe ? 1 : 0, std::memory_order_release);
+    const bool safe = module.out.status.isTaskLost && !module.out.status.isEnabled;
+    std::atomic_ref(module.is_safe).store(safe ? 1 : 0, std::memory_order_release);
 }
 
 void plan(void *, long long) {
@@ -108,14 +108,14 @@ bool isInRange(const char *name, long value, long low, long high) {
 }
 
 bool isConfigured() {
-    const bool isSound = isInRange("num_joints", num_joints, 1, MAX_JOINTS) &&
-                         isInRange("num_spindles", num_spindles, 1, MAX_SPINDLES) &&
-                         isInRange("num_dio", num_dio, 1, MAX_DIGITAL_IO) &&
-                         isInRange("num_aio", num_aio, 1, MAX_ANALOG_IO) &&
-                         isInRange("num_misc_error", num_misc_error, 0, MAX_DIGITAL_IO) &&
-                         isInRange("servo_period_nsec", servo_period_nsec, 1000, 100000000) &&
-                         isInRange("base_period_nsec", base_period_nsec, 0, servo_period_nsec);
-    if (!isSound) {
+    const bool sound = isInRange("num_joints", num_joints, 1, MAX_JOINTS) &&
+                       isInRange("num_spindles", num_spindles, 1, MAX_SPINDLES) &&
+                       isInRange("num_dio", num_dio, 1, MAX_DIGITAL_IO) &&
+                       isInRange("num_aio", num_aio, 1, MAX_ANALOG_IO) &&
+                       isInRange("num_misc_error", num_misc_error, 0, MAX_DIGITAL_IO) &&
+                       isInRange("servo_period_nsec", servo_period_nsec, 1000, 100000000) &&
+                       isInRange("base_period_nsec", base_period_nsec, 0, servo_period_nsec);
+    if (!sound) {
         return false;
     }
     return isInRange("num_extrajoints", num_extrajoints, 0, num_joints - 1);
@@ -151,7 +151,7 @@ int get_unlock(int joint) {
     return module.homing.isUnlocked(joint) ? 1 : 0;
 }
 
-/// A module of a user that homes, if one is loaded.
+/// Finds a user module for homing, if one is loaded.
 int find_homing() {
     const char *missing = nullptr;
     const auto found = module.homing.find(missing);
@@ -173,11 +173,11 @@ int find_homing() {
                         started);
         return started < 0 ? started : FAILED;
     }
-    module.isHomingForeign = true;
+    module.homing_foreign = true;
     return module.homing.hold(module.component);
 }
 
-/// A module of a user that plans speeds, if one is loaded.
+/// Finds a user module that plans speeds, if one is loaded.
 int find_planner() {
     const char *missing = nullptr;
     const auto found = module.speeds.find(missing);
@@ -197,15 +197,15 @@ int find_planner() {
                         started);
         return started;
     }
-    module.areSpeedsForeign = true;
+    module.are_speeds_foreign = true;
     return 0;
 }
 
 bool hasPin(const char *name) {
     hal_type_t type = HAL_BIT;
     hal_data_u *data = nullptr;
-    bool isConnected = false;
-    return hal_get_pin_value_by_name(name, &type, &data, &isConnected) == 0;
+    bool connected = false;
+    return hal_get_pin_value_by_name(name, &type, &data, &connected) == 0;
 }
 
 int make_channels() {
@@ -236,7 +236,7 @@ int make_pins() {
     return module.pins->declare(module.component, counts);
 }
 
-/// Of the I/O controller: only the thread and the component are those of motion.
+/// These belong to the I/O controller; only the thread and the component are those of motion.
 int make_tool_offset_pins() {
     const int key = io::ToolOffsetBlock::SHMEM_KEY;
     module.tool_offset_id = rtapi_shmem_new(key, module.component, sizeof(io::ToolOffsetBlock));
@@ -257,7 +257,7 @@ int make_tool_offset_pins() {
     return module.tool_offset_pins->declare(module.component);
 }
 
-/// Unless a module that was loaded before has made it, with that period.
+/// Does nothing when an earlier module has already created the thread with that period.
 int make_thread(const char *name, long period_ns, int uses_fp) {
     const long long there = mw_ext_thread_period(name);
     if (there == 0) {
@@ -283,11 +283,11 @@ int make_controller() {
     module.link = new (module.memory->link) motion::PathLink;
     module.controller = new (module.memory->controller)
         motion::Controller({num_joints, num_spindles, num_dio, num_aio, period_s, num_extrajoints,
-                            module.isHomingForeign ? &module.homing : nullptr},
+                            module.homing_foreign ? &module.homing : nullptr},
                            module.kinematics, *module.channels, *module.link);
     module.planner = new (module.memory->planner)
         motion::PathPlanner({period_s, num_joints - num_extrajoints, num_spindles, num_dio, num_aio,
-                             module.areSpeedsForeign ? &module.speeds : nullptr},
+                             module.are_speeds_foreign ? &module.speeds : nullptr},
                             module.kinematics, *module.channels, *module.link);
     return 0;
 }
@@ -307,7 +307,7 @@ int make_functions() {
 }
 
 int start_planner() {
-    // Long against the servo period, short against what an operator notices.
+    // Long compared with the servo period, but too short for an operator to notice.
     constexpr long long SHORTEST_NS = 5000000;
     const long long servo = servo_period_nsec;
     const long long period = servo * ((SHORTEST_NS + servo - 1) / servo);
@@ -315,7 +315,7 @@ int start_planner() {
     return module.planner_id > 0 ? 0 : module.planner_id;
 }
 
-/// The kernel's word that the task process is gone reaches the controller through the channels.
+/// The kernel reports the end of the task process; the controller learns it through the channels.
 int watch_task() {
     static_assert(sizeof(module.channels->isTaskDead) == sizeof(rtapi_u32));
     auto *is_gone = reinterpret_cast<rtapi_u32 *>(&module.channels->isTaskDead);

@@ -13,7 +13,7 @@
 
 namespace mw::components {
 
-/// `Live` has forward and inverse.
+/// `Live` provides forward and inverse.
 template <class Live>
 class PartOf final : public TypePart {
   public:
@@ -37,23 +37,23 @@ class PartOf final : public TypePart {
 
 class Switchable {
   public:
-    /// Model, identity, the user's.
+    /// Types: model, identity, user.
     explicit Switchable(const TypePart &model) noexcept : types_{&model, &identity_, &user_} {}
-    /// Identity, and one or two models; none is a user's.
+    /// Types: identity and one or two models; none is a user type.
     Switchable(const TypePart *model, const TypePart *second) noexcept : types_{&identity_, model, second} {}
     Switchable(const Switchable &) = delete;
     Switchable &operator=(const Switchable &) = delete;
 
-    /// Reads the arguments of the load and makes the pins kinstype.is-N. 0 or a negated errno, with a message
-    /// in the log. [while loading]
+    /// Reads the load arguments and creates the pins kinstype.is-N. Returns 0, or a negated errno with a
+    /// message in the log. [while loading]
     int declare(int comp_id, const char *module, const char *letters, const char *sparm) noexcept {
         if (!letters_.configure(letters)) {
             rtapi_print_msg(RTAPI_MSG_ERR, "%s: coordinates=%s: expected up to 16 of the letters XYZABCUVW\n",
                             module, letters);
             return -EINVAL;
         }
-        const bool isUsers = types_[MAX_TYPES - 1] == &user_;
-        int status = isUsers ? user_.declare(comp_id, module, letters, sparm) : 0;
+        const bool is_users = types_[MAX_TYPES - 1] == &user_;
+        int status = is_users ? user_.declare(comp_id, module, letters, sparm) : 0;
         if (status < 0) {
             return status;
         }
@@ -77,7 +77,7 @@ class Switchable {
         }
         return 0;
     }
-    /// 0 when there is such a type. While nothing moves. [servo]
+    /// Returns 0 when the type exists. Only while nothing moves. [servo]
     int switch_to(int type) noexcept {
         if (type < 0 || type >= count()) {
             return -1;
@@ -101,7 +101,7 @@ class Switchable {
         return now().inverse(pose, joints);
     }
     int side(const kinematics::Pose &pose) const noexcept { return now().side(pose); }
-    /// True when any thread may ask at any time.
+    /// True when any thread may call the functions at any time.
     bool isPure() const noexcept { return user_.isPure(); }
 
   private:
@@ -115,7 +115,7 @@ class Switchable {
         return *a == *b;
     }
     int count() const noexcept { return types_[MAX_TYPES - 1] == nullptr ? MAX_TYPES - 1 : MAX_TYPES; }
-    /// Pairs with switch_to: the planner's thread sees a type only whole.
+    /// Pairs with switch_to: the planner thread always sees a complete type.
     const TypePart &now() const noexcept {
         return *types_[static_cast<std::size_t>(type_.load(std::memory_order_acquire))];
     }
@@ -130,14 +130,14 @@ class Switchable {
 
 }  // namespace mw::components
 
-/// A module of model, identity and a user's type. `live` is an object with forward and inverse;
-/// `declare_model(comp_id, letters)` makes its pins and takes its letters, 0 or a negated errno.
+/// A module with a model, identity and a user type. `live` is an object with forward and inverse;
+/// `declare_model(comp_id, letters)` creates its pins, takes its letters, and returns 0 or a negated errno.
 #define MW_SWITCHABLE_MODULE(live, name, default_letters, declare_model)                                     \
     static mw::components::PartOf model_part(live);                                                          \
     static mw::components::Switchable switchable(model_part);                                                \
     MW_SWITCHED_MODULE(name, default_letters, declare_model)
 
-/// The arguments, the functions and the loading of a module with an object `switchable`.
+/// The arguments, the functions and the load code of a module with an object `switchable`.
 #define MW_SWITCHED_MODULE(name, default_letters, declare_model)                                             \
     static char *coordinates;                                                                                \
     RTAPI_MP_STRING(coordinates, "axis letters in the order of the joints");                                 \

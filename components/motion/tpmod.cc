@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Stands for motmod's built-in trajectory planner (src/trajectory), which existing start files load as a
+// Represents motmod's built-in trajectory planner (src/trajectory), which existing start files load as a
 // module of its own; and says whether the module that is to choose speeds in its place is one.
 #include "hal/include/hal.h"
 #include "hal/include/millwright_ext.h"
 #include "hal/include/rtapi_app.h"
 
 static char *replaced_by = nullptr;
-RTAPI_MP_STRING(replaced_by, "the planner module that is loaded: refused where it lacks a function");
+RTAPI_MP_STRING(replaced_by, "the planner module that is loaded; it must have all functions");
 
 static int component = -1;
 

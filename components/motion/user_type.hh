@@ -9,13 +9,13 @@
 
 namespace mw::components {
 
-/// One of the types of a module.
+/// One of the kinematics types of a module.
 class TypePart {
   public:
     virtual kinematics::Status forward(const double *joints, kinematics::Pose &pose) const noexcept = 0;
     virtual kinematics::Status inverse(const kinematics::Pose &pose, double *joints) const noexcept = 0;
     virtual int side(const kinematics::Pose &pose) const noexcept = 0;
-    /// Where the joints are while another type is in force. [servo]
+    /// Receives the joint positions while another type is active. [servo]
     virtual void watch(const double *) const noexcept {}
 
   protected:
@@ -28,8 +28,8 @@ class UserType final : public TypePart {
     UserType(const UserType &) = delete;
     UserType &operator=(const UserType &) = delete;
 
-    /// Finds the functions and sets them up. 0, what the user's setup answers when that is below, or a
-    /// negated errno; each with a message. [while loading]
+    /// Finds the functions and calls the setup. Returns 0, the result of the user's setup when it is
+    /// negative, or a negated errno; each error has a message. [while loading]
     int declare(int comp_id, const char *module, const char *letters, const char *sparm) noexcept {
         setup_ = find<decltype(setup_)>("userkKinematicsSetup");
         forward_ = find<decltype(forward_)>("userkKinematicsForward");
@@ -59,11 +59,11 @@ class UserType final : public TypePart {
             return status;
         }
         const auto is_pure = find<int (*)()>("mw_userk_is_pure");
-        isPure_ = is_pure != nullptr && is_pure() != 0;
+        pure_ = is_pure != nullptr && is_pure() != 0;
         return mw_ext_use_module("userkKinematicsInverse", comp_id);
     }
     bool isThere() const noexcept { return forward_ != nullptr; }
-    bool isPure() const noexcept { return !isThere() || isPure_; }
+    bool isPure() const noexcept { return !isThere() || pure_; }
 
     kinematics::Status forward(const double *joints, kinematics::Pose &pose) const noexcept override {
         if (forward_ == nullptr) {
@@ -82,8 +82,8 @@ class UserType final : public TypePart {
         }
         const EmcPose world = {
             {pose[0], pose[1], pose[2]}, pose[3], pose[4], pose[5], pose[6], pose[7], pose[8]};
-        const bool isFound = inverse_(&world, joints, &inverse_flags_, &forward_flags_) == 0;
-        return isFound ? kinematics::Status::OK : kinematics::Status::UNREACHABLE;
+        const bool found = inverse_(&world, joints, &inverse_flags_, &forward_flags_) == 0;
+        return found ? kinematics::Status::OK : kinematics::Status::UNREACHABLE;
     }
     int side(const kinematics::Pose &) const noexcept override { return 0; }
 
@@ -97,10 +97,10 @@ class UserType final : public TypePart {
     decltype(&userkKinematicsSetup) setup_ = nullptr;
     decltype(&userkKinematicsForward) forward_ = nullptr;
     decltype(&userkKinematicsInverse) inverse_ = nullptr;
-    // Of a user whose functions keep something in them; such a module is asked by the servo thread only.
+    // For a user whose functions keep state in these; such a module is called only by the servo thread.
     mutable KINEMATICS_FORWARD_FLAGS forward_flags_ = 0;
     mutable KINEMATICS_INVERSE_FLAGS inverse_flags_ = 0;
-    bool isPure_ = false;
+    bool pure_ = false;
 };
 
 }  // namespace mw::components

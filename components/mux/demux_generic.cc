@@ -71,11 +71,11 @@ void DemuxGeneric::update(long period_ns) noexcept {
         selector.run(wanted, static_cast<std::uint32_t>(shape.size), debounce_us, suppress, period_ns);
     elapsed = selector.waited_us();
     selected = selector.selected();
-    const bool isNone = suppress && wanted == 0;
+    const bool none = suppress && wanted == 0;
     for (int i = 0; zero_others && i < shape.size; ++i) {
         copy_value(0, shape.to->type, outputs[i]);
     }
-    if (!isNone) {
+    if (!none) {
         copy_pin(input, shape.from->type, shape.to->type, outputs[chosen]);
     }
 }

@@ -21,7 +21,7 @@ RTAPI_MP_INT(debug, "1: export inner values as pins");
 namespace mw::components {
 using namespace sdk;
 
-/// A float input that knows whether it is linked: while it is not, its slot points at its own value.
+/// A float input that knows whether it is linked: while it is not linked, its slot points at its own value.
 struct LinkableInput {
     volatile double *slot = nullptr;
     const volatile double *own = nullptr;
@@ -38,7 +38,7 @@ struct LinkableInput {
     double get() const noexcept { return isLinked() ? *slot : 0.0; }
 };
 
-/// The pins that debug=1 adds.
+/// The additional pins of debug=1.
 struct InnerPins {
     Out<double> error_i, error_d, command_d, command_dd, command_ddd, ultimate_gain, ultimate_period;
 
@@ -153,7 +153,7 @@ pid::Tuning Pid::tuning() const noexcept {
     return result;
 }
 
-/// One period in tune-mode: the controller rests, the relay swings while tuning.
+/// One period in tune-mode: the controller is off, and the relay oscillates while tuning.
 void Pid::tune(double dt) noexcept {
     const double difference = command - feedback;
     error = difference;
@@ -193,37 +193,37 @@ void Pid::update(long period_ns) noexcept {
     pid::Inputs in;
     const double wanted = command;
     const double measured = feedback;
-    // A sensor that is broken must not reach the motor, nor stay in the integrator.
+    // A broken sensor must not affect the motor, nor stay in the integrator.
     const double command_derivative = command_deriv.get();
     const double feedback_derivative = feedback_deriv.get();
-    const bool isSane = std::isfinite(wanted) && std::isfinite(measured) &&
-                        std::isfinite(command_derivative) && std::isfinite(feedback_derivative);
+    const bool sane = std::isfinite(wanted) && std::isfinite(measured) && std::isfinite(command_derivative) &&
+                      std::isfinite(feedback_derivative);
     last_command = std::isfinite(wanted) ? wanted : last_command;
     last_feedback = std::isfinite(measured) ? measured : last_feedback;
-    in.isEnabled = enable && isSane;
+    in.isEnabled = enable && sane;
     in.command = last_command;
     in.feedback = last_feedback;
-    in.hasCommandDerivative = command_deriv.isLinked() && isSane;
+    in.has_command_derivative = command_deriv.isLinked() && sane;
     in.command_derivative = command_derivative;
-    in.hasFeedbackDerivative = feedback_deriv.isLinked() && isSane;
+    in.has_feedback_derivative = feedback_deriv.isLinked() && sane;
     in.feedback_derivative = feedback_derivative;
     in.usesPreviousTarget = error_previous_target;
     in.isIndexEnabled = index_enable;
     const pid::Outputs out = controller.run(in, tuning(), dt);
     error = out.error;
     output = out.output;
-    saturated = out.isSaturated;
+    saturated = out.saturated;
     saturated_s = out.saturated_s;
     saturated_count = out.saturated_count;
     if (debug != 0) {
         inner.show(controller);
     }
-    if (!isSane) {
+    if (!sane) {
         controller.reset();
     }
 }
 
-/// at_pid is another name of the module; the pins are those of pid.
+/// at_pid is another name for the module; the pins are those of pid.
 static int load_pids(Request request) noexcept {
     request.prefix = "pid";
     return load_instances<Pid>(request);

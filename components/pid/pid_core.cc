@@ -16,7 +16,7 @@ double limited(double value, double limit) noexcept {
     return value > most ? most : (value < -most ? -most : value);
 }
 
-/// What is left of `error` outside the band, without a step at its edge.
+/// The part of `error` outside the band, without a step at its edge.
 double outside(double error, double band) noexcept {
     if (error > band) {
         return error - band;
@@ -30,7 +30,7 @@ void Controller::reset() noexcept {
     *this = Controller{};
 }
 
-/// The command that feedback is compared with. A previous target of other coordinates does not count.
+/// The command that is compared with the feedback. A previous target in other coordinates is not used.
 double Controller::target(const Inputs &in) noexcept {
     const bool is_comparable = has_samples_ && !has_jumped_;
     return in.usesPreviousTarget && is_comparable ? previous_command_ : in.command;
@@ -41,14 +41,14 @@ void Controller::derive_command(const Inputs &in, const Tuning &tuning, double d
     const double before_dd = command_dd;
     const bool had_d = has_command_d_;
     const bool had_dd = has_command_dd_;
-    if (in.hasCommandDerivative) {
+    if (in.has_command_derivative) {
         raw_command_d_ = in.command_derivative;
     } else if (!has_samples_) {
         raw_command_d_ = 0.0;
     } else if (!has_jumped_) {
         raw_command_d_ = (in.command - previous_command_) / dt;
     }
-    has_command_d_ = in.hasCommandDerivative || has_samples_;
+    has_command_d_ = in.has_command_derivative || has_samples_;
     has_command_dd_ = has_command_d_ && had_d;
     command_d = limited(raw_command_d_, tuning.max_command_d);
     command_dd = has_command_dd_ ? limited((command_d - before_d) / dt, tuning.max_command_dd) : 0.0;
@@ -57,12 +57,12 @@ void Controller::derive_command(const Inputs &in, const Tuning &tuning, double d
 }
 
 void Controller::derive_error(const Inputs &in, const Tuning &tuning, double dt) noexcept {
-    if (in.hasFeedbackDerivative) {
+    if (in.has_feedback_derivative) {
         feedback_d_ = in.feedback_derivative;
     } else if (!has_jumped_) {
         feedback_d_ = has_samples_ ? (in.feedback - previous_feedback_) / dt : 0.0;
     }
-    const bool is_known = has_command_d_ && (in.hasFeedbackDerivative || has_samples_);
+    const bool is_known = has_command_d_ && (in.has_feedback_derivative || has_samples_);
     error_d = is_known ? limited(raw_command_d_ - feedback_d_, tuning.max_error_d) : 0.0;
 }
 
@@ -84,7 +84,7 @@ Outputs Controller::run(const Inputs &in, const Tuning &tuning, double dt) noexc
         return out;
     }
     const double error = outside(limited(out.error, tuning.max_error), tuning.deadband);
-    // While the output is limited, error that would push further must not pile up.
+    // While the output is limited, an error that would increase it must not accumulate.
     const bool windsUp = limit_state_ != 0 && (error > 0.0) == (limit_state_ > 0);
     if (!windsUp) {
         error_i = limited(error_i + error * dt, tuning.max_error_i);
@@ -95,35 +95,35 @@ Outputs Controller::run(const Inputs &in, const Tuning &tuning, double dt) noexc
     out.output = limited(sum, tuning.max_output);
     limit_state_ =
         tuning.max_output != 0.0 && std::fabs(sum) >= std::fabs(tuning.max_output) ? (sum > 0.0 ? 1 : -1) : 0;
-    out.isSaturated = limit_state_ != 0;
-    saturated_s_ = out.isSaturated ? saturated_s_ + dt : 0.0;
-    saturated_count_ = out.isSaturated ? saturated_count_ + 1 : 0;
+    out.saturated = limit_state_ != 0;
+    saturated_s_ = out.saturated ? saturated_s_ + dt : 0.0;
+    saturated_count_ = out.saturated ? saturated_count_ + 1 : 0;
     out.saturated_s = saturated_s_;
     out.saturated_count = saturated_count_;
     return out;
 }
 
 double Tuner::run(double error, const Settings &settings, Tuning &tuning, double dt) noexcept {
-    // The first half cycles bring the loop into its rhythm and are not measured.
+    // The loop settles during the first half cycles, so they are not measured.
     constexpr std::uint32_t SETTLING = 2;
-    const bool isMeasuring = half_cycles_ > SETTLING;
-    time_ += isMeasuring ? dt : 0.0;
+    const bool measuring = half_cycles_ > SETTLING;
+    time_ += measuring ? dt : 0.0;
     peak_ = std::fabs(error) > peak_ ? std::fabs(error) : peak_;
-    const bool hasCrossed = isPositive_ ? error < 0.0 : error > 0.0;
-    if (hasCrossed) {
-        isPositive_ = !isPositive_;
-        if (isMeasuring) {
+    const bool crossed = positive_ ? error < 0.0 : error > 0.0;
+    if (crossed) {
+        positive_ = !positive_;
+        if (measuring) {
             peak_sum_ += peak_;
         }
         peak_ = 0.0;
         ++half_cycles_;
     }
     const std::uint32_t cycles = settings.cycles < 2 ? 2 : settings.cycles;
-    const bool isDone = half_cycles_ > SETTLING + cycles;
-    if (!isDone) {
-        return settings.bias + (isPositive_ ? settings.effort : -settings.effort);
+    const bool done = half_cycles_ > SETTLING + cycles;
+    if (!done) {
+        return settings.bias + (positive_ ? settings.effort : -settings.effort);
     }
-    isRunning_ = false;
+    running_ = false;
     const double amplitude = peak_sum_ / cycles;
     ultimate_period = 2.0 * time_ / cycles;
     ultimate_gain = amplitude > 0.0 ? 4.0 * settings.effort / (std::numbers::pi * amplitude) : 0.0;
@@ -133,7 +133,7 @@ double Tuner::run(double error, const Settings &settings, Tuning &tuning, double
         tuning.d = tuning.p * 0.125 * ultimate_period;
         tuning.ff1 = 0.0;
     } else {
-        // Scaled in units per second the plant is an integrator: velocity goes through unchanged.
+        // Scaled in units per second, the plant is an integrator: velocity passes through unchanged.
         tuning.p = 0.45 * ultimate_gain;
         tuning.i = tuning.p / (ultimate_period / 1.2);
         tuning.d = 0.0;

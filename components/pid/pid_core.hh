@@ -8,8 +8,8 @@ namespace mw::pid {
 
 constexpr int MAX_CHANNELS = 16;
 
-/// Gains and limits; a limit of 0 means none. Error is in units of the command, output in what the actuator
-/// takes.
+/// Gains and limits; a limit of 0 means no limit. Errors are in command units, the output is in units of the
+/// actuator.
 struct Tuning {
     double p = 1.0;
     double i = 0.0;  ///< [1/s]
@@ -33,32 +33,32 @@ struct Inputs {
     bool isEnabled = false;
     double command = 0.0;
     double feedback = 0.0;
-    bool hasCommandDerivative = false;  ///< else it is estimated
+    bool has_command_derivative = false;  ///< otherwise it is estimated
     double command_derivative = 0.0;
-    bool hasFeedbackDerivative = false;
+    bool has_feedback_derivative = false;
     double feedback_derivative = 0.0;
-    bool usesPreviousTarget = true;  ///< compare the feedback with the command of the call before
+    bool usesPreviousTarget = true;  ///< compare the feedback with the command of the previous call
     bool isIndexEnabled = false;     ///< its falling edge means that command and feedback have jumped
 };
 
 struct Outputs {
     double error = 0.0;
     double output = 0.0;
-    bool isSaturated = false;
+    bool saturated = false;
     double saturated_s = 0.0;
     std::int32_t saturated_count = 0;
 };
 
-/// Derivatives are computed in every period, enabled or not, from samples of the present coordinates only:
-/// not across an index, and not before there are enough samples. Until then they are 0, so that neither the
-/// first period nor an index adds a step to the output.
+/// Derivatives are computed in every period, enabled or not. They only use samples in the current
+/// coordinates, never across an index, and only when there are enough samples. Until then they are 0, so that
+/// neither the first period nor an index adds a step to the output.
 class Controller {
   public:
     Outputs run(const Inputs &in, const Tuning &tuning, double dt) noexcept;
-    /// Forgets integrator and samples: the next period is like the first one.
+    /// Clears the integrator and the samples: the next period is like the first one.
     void reset() noexcept;
 
-    // For tuning by eye.
+    // For manual tuning.
     double error_i = 0.0;
     double error_d = 0.0;
     double command_d = 0.0;
@@ -77,39 +77,40 @@ class Controller {
     bool was_index_enabled_ = false;
     double previous_command_ = 0.0;
     double previous_feedback_ = 0.0;
-    double raw_command_d_ = 0.0;  ///< not limited
+    double raw_command_d_ = 0.0;  ///< before limiting
     double feedback_d_ = 0.0;
     int limit_state_ = 0;  ///< sign of the limited output of the previous period
     double saturated_s_ = 0.0;
     std::int32_t saturated_count_ = 0;
 };
 
-/// Finds gains with a relay in place of the controller (Astrom and Hagglund 1984): the loop swings in a limit
-/// cycle whose amplitude and period give the ultimate gain, and from it gains after Ziegler and Nichols.
+/// Finds gains with a relay instead of the controller (Astrom and Hagglund 1984). The loop goes into a limit
+/// cycle; its amplitude and period give the ultimate gain, and the gains follow from the rules of Ziegler and
+/// Nichols.
 class Tuner {
   public:
     struct Settings {
         double effort = 0.5;        ///< output of the relay
-        std::uint32_t cycles = 50;  ///< half cycles to measure
+        std::uint32_t cycles = 50;  ///< number of half cycles to measure
         std::uint32_t type = 0;     ///< 0: P, I and D; 1: P, I and FF1
         double bias = 0.0;
     };
 
-    /// Starts anew.
+    /// Starts a new tuning.
     void start() noexcept {
         *this = Tuner{};
-        isRunning_ = true;
+        running_ = true;
     }
-    bool isRunning() const noexcept { return isRunning_; }
-    /// The output for this period. When the last half cycle is over the gains are in `tuning` and it stops.
+    bool isRunning() const noexcept { return running_; }
+    /// The output for this period. After the last half cycle the gains are in `tuning` and the tuner stops.
     double run(double error, const Settings &settings, Tuning &tuning, double dt) noexcept;
 
     double ultimate_gain = 0.0;
     double ultimate_period = 0.0;  ///< [s]
 
   private:
-    bool isRunning_ = false;
-    bool isPositive_ = true;
+    bool running_ = false;
+    bool positive_ = true;
     std::uint32_t half_cycles_ = 0;
     double peak_ = 0.0;
     double peak_sum_ = 0.0;

@@ -10,26 +10,26 @@ class Amplifier {
     explicit Amplifier(double rise_s = 0) noexcept : rise_s_(rise_s) {}
 
     void set_rise(double rise_s) noexcept { rise_s_ = rise_s; }
-    /// `dt` seconds with this enable; true when the motor has power.
-    bool run(bool isEnabled, double dt) noexcept {
-        on_s_ = isEnabled ? on_s_ + dt : 0.0;
-        isEnabled_ = isEnabled;
+    /// Runs for `dt` seconds with this enable input. True when the motor has power.
+    bool run(bool enabled, double dt) noexcept {
+        on_s_ = enabled ? on_s_ + dt : 0.0;
+        enabled_ = enabled;
         return isPowered();
     }
-    bool isPowered() const noexcept { return isEnabled_ && !isFaulted_ && on_s_ > rise_s_; }
+    bool isPowered() const noexcept { return enabled_ && !faulted_ && on_s_ > rise_s_; }
 
-    void trip() noexcept { isFaulted_ = true; }
-    bool isFaulted() const noexcept { return isFaulted_; }
-    /// False, and nothing is reset, while it is enabled.
+    void trip() noexcept { faulted_ = true; }
+    bool isFaulted() const noexcept { return faulted_; }
+    /// False, without a reset, while it is enabled.
     bool reset() noexcept {
-        isFaulted_ = isFaulted_ && isEnabled_;
-        return !isFaulted_;
+        faulted_ = faulted_ && enabled_;
+        return !faulted_;
     }
 
   private:
     double rise_s_;
     double on_s_ = 0;
-    bool isEnabled_ = false, isFaulted_ = false;
+    bool enabled_ = false, faulted_ = false;
 };
 
 }  // namespace mw::plants

@@ -10,11 +10,11 @@
 namespace mw::plants {
 
 struct SwitchSettings {
-    double at = 0;          ///< closed at and beyond this position
-    bool isAbove = true;    ///< beyond: above; else below
-    double width = 0;       ///< it opens again so far beyond; 0: it stays closed
-    double hysteresis = 0;  ///< it opens so far before the place at which it closes
-    double bounce_s = 0;    ///< contact is uncertain so long after a change
+    double at = 0;          ///< closed at this position and past it
+    bool above = true;      ///< past means above; otherwise below
+    double width = 0;       ///< it opens again at this distance; 0: it stays closed
+    double hysteresis = 0;  ///< it opens this far before the place at which it closes
+    double bounce_s = 0;    ///< time after a change during which the contact is uncertain
 };
 
 class BouncingSwitch {
@@ -25,21 +25,21 @@ class BouncingSwitch {
     void set(const SwitchSettings &settings) noexcept { settings_ = settings; }
     /// The contact after `dt` seconds at `position`.
     bool run(double position, double dt) noexcept {
-        const double beyond = (settings_.isAbove ? 1.0 : -1.0) * (position - settings_.at);
-        const double slack = isPressed_ ? settings_.hysteresis : 0.0;
-        const bool isWithin = settings_.width <= 0.0 || beyond <= settings_.width + slack;
-        const bool isPressed = beyond >= -slack && isWithin;
-        unsettled_s_ = isPressed != isPressed_ ? settings_.bounce_s : std::max(0.0, unsettled_s_ - dt);
-        isPressed_ = isPressed;
-        return unsettled_s_ > 0.0 ? random_.chance(0.5) : isPressed_;
+        const double beyond = (settings_.above ? 1.0 : -1.0) * (position - settings_.at);
+        const double slack = pressed_ ? settings_.hysteresis : 0.0;
+        const bool within = settings_.width <= 0.0 || beyond <= settings_.width + slack;
+        const bool pressed = beyond >= -slack && within;
+        unsettled_s_ = pressed != pressed_ ? settings_.bounce_s : std::max(0.0, unsettled_s_ - dt);
+        pressed_ = pressed;
+        return unsettled_s_ > 0.0 ? random_.chance(0.5) : pressed_;
     }
-    /// The lever, whatever the contact says.
-    bool isPressed() const noexcept { return isPressed_; }
+    /// The state of the lever, independent of the contact.
+    bool isPressed() const noexcept { return pressed_; }
 
   private:
     SwitchSettings settings_;
     Random random_;
-    bool isPressed_ = false;
+    bool pressed_ = false;
     double unsettled_s_ = 0;
 };
 

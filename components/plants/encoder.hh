@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // A position encoder with its counter: resolution, index marks at which the counter can be set to zero, and
-// the faults of such a thing: counts that stand still, counts that jump. Realtime-safe.
+// the faults of such a thing: counts that stop, counts that jump. Realtime-safe.
 #pragma once
 
 #include <cmath>
@@ -19,47 +19,48 @@ class Encoder {
     explicit Encoder(const EncoderSettings &settings = {}, double position = 0) noexcept
         : settings_(settings), zero_(position), seen_(position) {}
 
-    /// Another resolution or other marks from here on; the counter keeps its zero.
+    /// Sets another resolution or other marks; the zero of the counter does not change.
     void set(const EncoderSettings &settings) noexcept { settings_ = settings; }
-    /// Looks at the shaft; a place that is no number is not seen. With `isIndexArmed` the counter is set to
-    /// zero at the first mark that is passed; the return value says that this has happened.
-    bool run(double position, bool isIndexArmed) noexcept {
+    /// Reads the shaft; a position that is not a number is ignored. With `index_armed` the counter is set to
+    /// zero at the first mark that is passed; the return value reports this.
+    bool run(double position, bool index_armed) noexcept {
         if (!std::isfinite(position)) {
             return false;
         }
         const double before = seen_;
         seen_ = position;
-        if (isLost_) {
+        if (lost_) {
             return false;
         }
-        bool hasIndex = false;
-        if (isIndexArmed && settings_.index_spacing > 0) {
+        bool has_index = false;
+        if (index_armed && settings_.index_spacing > 0) {
             const double a = (before - settings_.index_at) / settings_.index_spacing;
             const double b = (position - settings_.index_at) / settings_.index_spacing;
-            hasIndex = std::isfinite(a) && std::isfinite(b) && std::floor(a) != std::floor(b);
-            if (hasIndex) {
+            has_index = std::isfinite(a) && std::isfinite(b) && std::floor(a) != std::floor(b);
+            if (has_index) {
                 const double mark = b > a ? std::floor(b) : std::floor(a);
                 zero_ = settings_.index_at + mark * settings_.index_spacing;
             }
         }
         reading_ =
             std::floor((position - zero_) * settings_.counts_per_unit + 0.5) / settings_.counts_per_unit;
-        return hasIndex;
+        return has_index;
     }
 
-    /// What the counter says [unit].
+    /// The value of the counter [unit].
     double reading() const noexcept { return reading_; }
-    /// Position of the shaft where the counter is zero: what nobody but the plant knows.
+    /// The true position of the shaft where the counter is zero; only the plant knows it.
     double zero() const noexcept { return zero_; }
 
-    /// The cable is off: the counter stands still. Plugged in again it goes on counting from there.
-    void lose(bool isLost) noexcept {
-        if (isLost_ && !isLost) {
+    /// The cable is unplugged: the counter stops. After it is plugged in again, counting continues from
+    /// there.
+    void lose(bool lost) noexcept {
+        if (lost_ && !lost) {
             zero_ = seen_ - reading_;
         }
-        isLost_ = isLost;
+        lost_ = lost;
     }
-    /// Counts that were never there: the reading is `by` more from now on.
+    /// Adds counts that did not happen: the reading is larger by `by` from now on.
     void jump(double by) noexcept { zero_ -= std::isfinite(by) ? by : 0.0; }
 
   private:
@@ -67,7 +68,7 @@ class Encoder {
     double zero_;
     double seen_;
     double reading_ = 0;
-    bool isLost_ = false;
+    bool lost_ = false;
 };
 
 }  // namespace mw::plants

@@ -7,32 +7,32 @@ namespace mw::plants {
 
 class HomeSwitch {
   public:
-    /// `position` of the axis and of the switch `at`, and the way back that releases it, in machine units.
-    /// A switch at a positive position is tripped at and beyond it, one at a negative position at and below
-    /// it.
+    /// `position` is that of the axis, `at` that of the switch, and `hysteresis` the distance back that
+    /// releases it, in machine units. A switch at a positive position is closed at and past it; a switch at
+    /// a negative position is closed at and below it.
     bool run(double position, double at, double hysteresis) noexcept {
         const double direction = at < 0.0 ? -1.0 : 1.0;
         const double beyond = direction * (position - at);
         if (beyond >= 0.0) {
-            isTripped_ = true;
+            tripped_ = true;
         } else if (direction * position <= direction * at - hysteresis) {
-            isTripped_ = false;
+            tripped_ = false;
         }
-        return isTripped_;
+        return tripped_;
     }
 
   private:
-    bool isTripped_ = false;
+    bool tripped_ = false;
 };
 
 class DelayedIndex {
   public:
-    /// True `delay` seconds after the period in which `isAsked` became true.
-    bool run(bool isAsked, double delay, double dt) noexcept {
-        waited_ = isAsked && was_asked_ ? waited_ + dt : 0.0;
-        const bool isDue = isAsked && waited_ >= delay;
-        was_asked_ = isAsked && !isDue;
-        return isDue;
+    /// True `delay` seconds after the period in which `requested` became true.
+    bool run(bool requested, double delay, double dt) noexcept {
+        waited_ = requested && was_asked_ ? waited_ + dt : 0.0;
+        const bool due = requested && waited_ >= delay;
+        was_asked_ = requested && !due;
+        return due;
     }
 
   private:

@@ -8,25 +8,25 @@ namespace mw::plants {
 
 class Spindle {
   public:
-    /// Turns for `dt` seconds at `turns_per_second`, or not at all where that is no number. With
-    /// `isIndexEnabled` the position is set back at the next whole turn, to what is past it; the return value
-    /// says that this happened.
-    bool run(double turns_per_second, bool isIndexEnabled, double dt) noexcept {
+    /// Turns for `dt` seconds at `turns_per_second`; a speed that is not a number counts as 0. With
+    /// `index_enabled` the position is reset at the next whole turn, to the part after it; the return value
+    /// reports this.
+    bool run(double turns_per_second, bool index_enabled, double dt) noexcept {
         if (!std::isfinite(turns_per_second)) {
             return false;
         }
         const double before = angle_;
         angle_ += turns_per_second * dt;
         const double turn = turns_per_second >= 0.0 ? std::floor(angle_) : std::ceil(angle_);
-        const bool hasPassed = turns_per_second >= 0.0 ? turn > std::floor(before) : turn < std::ceil(before);
-        const bool hasIndex = isIndexEnabled && hasPassed;
-        if (hasIndex) {
+        const bool passed = turns_per_second >= 0.0 ? turn > std::floor(before) : turn < std::ceil(before);
+        const bool has_index = index_enabled && passed;
+        if (has_index) {
             zero_ = turn;
         }
-        return hasIndex;
+        return has_index;
     }
 
-    /// Since the last index that was asked for [turns].
+    /// Since the last requested index [turns].
     double position() const noexcept { return angle_ - zero_; }
 
   private:

@@ -6,7 +6,8 @@
 
 namespace mw::plasma {
 
-/// Mode 0 and 1 measure the arc; the sign of the input does not matter (either polarity of a divider).
+/// Modes 0 and 1 measure the arc. The sign of the input does not matter, so a divider may have either
+/// polarity.
 void Arc::measure_voltage() noexcept {
     constexpr double TWO_PI = 6.283185307179586;
     last_voltage_ = out_.arc_voltage_out;
@@ -23,64 +24,65 @@ void Arc::measure_voltage() noexcept {
     out_.arc_voltage_out = std::fabs(volts) < in_.zero_window ? 0.0 : volts;
 }
 
-/// Mode 0: between the limits for as many readings as asked for, steps between two of them not too large.
-/// Once good, one reading outside is bad, or as many as asked for while the height control works.
+/// Mode 0: the voltage must be within the limits for the requested number of readings, without large steps
+/// between them. Once it is good, one reading outside makes it bad; while the height control works, the
+/// requested number of readings does.
 bool Arc::isVoltageGood() noexcept {
     const double volts = out_.arc_voltage_out;
-    const bool isWithin = volts >= in_.arc_ok_low && volts <= in_.arc_ok_high;
+    const bool within = volts >= in_.arc_ok_low && volts <= in_.arc_ok_high;
     if (!out_.arc_ok_out) {
-        const bool isSteady = std::fabs(volts - last_voltage_) <= in_.ok_sample_threshold;
-        if (!isWithin) {
+        const bool steady = std::fabs(volts - last_voltage_) <= in_.ok_sample_threshold;
+        if (!within) {
             ok_count_ = 0;
         } else if (ok_count_ < in_.ok_sample_counts) {
-            ok_count_ = !wasWithin_ ? 1 : isSteady ? ok_count_ + 1 : 0;
+            ok_count_ = !was_within_ ? 1 : steady ? ok_count_ + 1 : 0;
         }
-        wasWithin_ = isWithin;
-        if (!isWithin || ok_count_ < in_.ok_sample_counts) {
+        was_within_ = within;
+        if (!within || ok_count_ < in_.ok_sample_counts) {
             return false;
         }
         bad_count_ = 0;
         return true;
     }
-    if (isWithin) {
+    if (within) {
         bad_count_ = 0;
         return true;
     }
     bad_count_ += 1;
-    return hasTarget_ && bad_count_ < in_.ok_sample_counts;
+    return has_target_ && bad_count_ < in_.ok_sample_counts;
 }
 
-/// Sets arc-ok-out; an arc that was good may be missing for arc-lost-delay.
+/// Sets arc-ok-out. An arc that was good may be missing for arc-lost-delay.
 void Arc::watch_arc() noexcept {
     if (!out_.torch_on) {
         out_.arc_ok_out = false;
-        isArcBad_ = false;
-        wasWithin_ = false;
+        arc_bad_ = false;
+        was_within_ = false;
         return;
     }
-    const bool isGood = in_.mode == 0 ? isVoltageGood() : in_.arc_ok_in;
-    if (isGood) {
+    const bool good = in_.mode == 0 ? isVoltageGood() : in_.arc_ok_in;
+    if (good) {
         if (!out_.arc_ok_out) {
             out_.arc_ok_out = true;
             lost_.left_s = in_.arc_lost_delay;
         }
         if (in_.mode != 0) {
             lost_.left_s = in_.arc_lost_delay;
-            isArcBad_ = false;
+            arc_bad_ = false;
         }
         return;
     }
     if (!isManualCut() && (in_.mode != 0 || out_.arc_ok_out)) {
-        isArcBad_ = true;
+        arc_bad_ = true;
     }
-    const bool isAllowed = isArcIgnored() || in_.mesh_enable || isManualCut();
-    if (!out_.arc_ok_out || (isAllowed && state_ != State::PAUSE_AT_END)) {
+    const bool allowed = isArcIgnored() || in_.mesh_enable || isManualCut();
+    if (!out_.arc_ok_out || (allowed && state_ != State::PAUSE_AT_END)) {
         return;
     }
     if (lost_.runOut(period_s_)) {
         out_.arc_ok_out = false;
-        const bool isCut = state_ >= State::PIERCE_DELAY && state_ <= State::CUT_BY_SWITCHES;
-        if (isCut) {
+        const bool is_cut = state_ >= State::PIERCE_DELAY && state_ <= State::CUT_BY_SWITCHES;
+        if (is_cut) {
             pending_ = Fault::ARC_LOST;
         }
     }

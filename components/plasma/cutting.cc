@@ -12,7 +12,7 @@ void Cutting::pierce_height() noexcept {
     }
     starts_ = 0;
     timer_.left_s = 0.0;
-    if (isProbeTest_) {
+    if (is_probe_test_) {
         state_ = State::PROBE_TEST;
     } else if (in_.torch_enable) {
         state_ = State::TORCH_ON;
@@ -22,7 +22,7 @@ void Cutting::pierce_height() noexcept {
     }
 }
 
-/// The torch on, after the delay when it is not the first time.
+/// Switches the torch on; after the delay, except the first time.
 void Cutting::start_torch() noexcept {
     if (starts_ >= in_.arc_max_starts) {
         if (!out_.program_pause) {
@@ -44,15 +44,15 @@ void Cutting::start_torch() noexcept {
 }
 
 void Cutting::wait_for_arc() noexcept {
-    if (isSpotting_) {
+    if (spotting_) {
         spot();
         if (state_ != State::ARC_OK) {
             return;
         }
     }
-    const bool isStarted = out_.arc_ok_out && !isSpotting_;
-    const bool isUnwatched = isArcIgnored() || (in_.mesh_enable && in_.mesh_arc_ok);
-    if (isStarted || (isUnwatched && !isSpotting_)) {
+    const bool started = out_.arc_ok_out && !spotting_;
+    const bool unwatched = isArcIgnored() || (in_.mesh_enable && in_.mesh_arc_ok);
+    if (started || (unwatched && !spotting_)) {
         timer_.left_s = in_.pierce_delay;
         state_ = State::PIERCE_DELAY;
         return;
@@ -65,7 +65,7 @@ void Cutting::wait_for_arc() noexcept {
     }
 }
 
-/// A spot: torch off when its time is over, which begins with the voltage.
+/// A spot: the torch is switched off after its time, which starts with the voltage.
 void Cutting::spot() noexcept {
     if (out_.arc_voltage_out >= in_.spotting_threshold) {
         if (spot_.runOut(period_s_)) {
@@ -80,13 +80,13 @@ void Cutting::pierce() noexcept {
     if (!timer_.runOut(period_s_)) {
         return;
     }
-    const bool isAsked = in_.puddle_jump_height > 0.0 || in_.puddle_jump_delay > 0.0;
-    const bool isPuddle = isAsked && !out_.cut_recovering;
+    const bool requested = in_.puddle_jump_height > 0.0 || in_.puddle_jump_delay > 0.0;
+    const bool is_puddle = requested && !out_.cut_recovering;
     timer_.left_s = in_.puddle_jump_delay;
-    state_ = isPuddle ? State::PUDDLE_JUMP : State::CUT_HEIGHT;
+    state_ = is_puddle ? State::PUDDLE_JUMP : State::CUT_HEIGHT;
 }
 
-/// Over the puddle: the path begins at a height of its own.
+/// Over the puddle: this part of the path starts at its own height.
 void Cutting::puddle_jump() noexcept {
     out_.feed_hold = false;
     const double percent = in_.puddle_jump_height > 0.0 ? std::min(in_.puddle_jump_height, 200.0) : 100.0;
@@ -116,27 +116,27 @@ void Cutting::pause_at_end() noexcept {
     }
 }
 
-/// Up to where rapid moves are safe, but not above the highest place.
+/// Moves up to the height at which rapid moves are safe, but not above the highest position.
 void Cutting::safe_height() noexcept {
     out_.cornerlock_is_locked = false;
     const double highest = in_.axis_z_max_limit - std::max(0, in_.max_offset) * in_.units_per_mm - zero_mu_;
-    // A torch that was raised keeps its distance; one that was lowered goes to the full safe height.
+    // A torch that was raised keeps that distance; a torch that was lowered goes to the full safe height.
     const double raised = std::max(0, thc_shift_) * out_.offset_scale;
     const double wanted = in_.safe_height > 0.0 ? std::min(in_.safe_height + raised, highest) : highest;
-    const std::int32_t target = hasZero_ ? height_counts(wanted) - thc_shift_ : 0;
+    const std::int32_t target = has_zero_ ? height_counts(wanted) - thc_shift_ : 0;
     if (moveZ(target, steps_of(in_.setup_feed_rate))) {
         out_.feed_hold = false;
         state_ = State::END_CUT;
     }
 }
 
-/// The offset of Z taken away.
+/// Removes the offset of Z.
 void Cutting::max_height() noexcept {
     if (!moveZ(0, steps_of(in_.setup_feed_rate))) {
         return;
     }
-    if (isConsumableWait_) {
-        isConsumableWait_ = false;
+    if (is_consumable_wait_) {
+        is_consumable_wait_ = false;
         state_ = State::CONSUMABLES_OUT;
         return;
     }
@@ -148,14 +148,14 @@ void Cutting::end_cut() noexcept {
     out_.adaptive_feed = 1.0;
     out_.cutting_stop = false;
     out_.cornerlock_is_locked = false;
-    hasTarget_ = false;
-    isSpotting_ = false;
+    has_target_ = false;
+    spotting_ = false;
     state_ = stop_ == Stop::WAIT || stop_ == Stop::NONE ? State::END_JOB : State::IDLE;
-    isProbeTest_ = isProbeTest_ && in_.probe_test;
+    is_probe_test_ = is_probe_test_ && in_.probe_test;
     out_.probe_test_error = false;
 }
 
-/// Nothing starts before motion has taken the offsets away.
+/// Nothing starts before motion has removed the offsets.
 void Cutting::end_job() noexcept {
     out_.paused_motion = false;
     if (in_.offsets_active) {

@@ -12,14 +12,14 @@ bool HeightControl::isThcWanted() const noexcept {
     return in_.thc_enable && !in_.thc_disable && !in_.mesh_enable && !isArcIgnored();
 }
 
-/// thc-enabled and thc-active say what was true when the cycle before ended.
+/// thc-enabled and thc-active show the state at the end of the previous cycle.
 void HeightControl::set_thc_pins() noexcept {
-    out_.thc_enabled = isThcWanted() && !isArcBad_;
-    const bool isCut = state_ == State::CUT_BY_VOLTAGE || state_ == State::CUT_BY_SWITCHES;
-    const bool isReady = state_ == State::CUT_BY_SWITCHES || hasTarget_;
-    out_.thc_active = out_.thc_enabled && isCut && isReady && out_.torch_on && !out_.cornerlock_is_locked &&
+    out_.thc_enabled = isThcWanted() && !arc_bad_;
+    const bool is_cut = state_ == State::CUT_BY_VOLTAGE || state_ == State::CUT_BY_SWITCHES;
+    const bool ready = state_ == State::CUT_BY_SWITCHES || has_target_;
+    out_.thc_active = out_.thc_enabled && is_cut && ready && out_.torch_on && !out_.cornerlock_is_locked &&
                       !out_.voidlock_is_locked;
-    // The voltages before the cut count too when it is to begin as soon as they are steady.
+    // Voltages before the cut also count when the control starts as soon as they are steady.
     if (!out_.torch_on) {
         sample_count_ = 0;
         sum_ = 0.0;
@@ -53,12 +53,12 @@ bool HeightControl::isAtSpeed(double share) const noexcept {
 
 void HeightControl::start_cut() noexcept {
     out_.feed_hold = false;
-    hasTarget_ = false;
+    has_target_ = false;
     target_count_ = 0;
-    isVoidWatched_ = false;
+    void_watched_ = false;
     last_error_ = 0.0;
     override_ = 0.0;
-    isOverrideNew_ = false;
+    override_new_ = false;
     timer_.left_s = in_.thc_delay;
     state_ = in_.mode == 2 ? State::CUT_BY_SWITCHES : State::CUT_BY_VOLTAGE;
 }
@@ -69,7 +69,7 @@ void HeightControl::cut_by_voltage() noexcept {
         out_.led_up = out_.led_down = false;
         return;
     }
-    if (!hasTarget_) {
+    if (!has_target_) {
         out_.cornerlock_is_locked = true;
         wait_for_target();
         return;
@@ -89,7 +89,8 @@ void HeightControl::cut_by_voltage() noexcept {
     hold_voltage();
 }
 
-/// The voltage to hold: that of the material, or the one measured when it is steady or the delay is over.
+/// Finds the voltage to hold: the one for the material, or the one measured when it is steady or the delay is
+/// over.
 void HeightControl::wait_for_target() noexcept {
     constexpr double FULL_SPEED = 0.999;
     if (!isAtSpeed(FULL_SPEED)) {
@@ -100,7 +101,7 @@ void HeightControl::wait_for_target() noexcept {
     if (in_.use_auto_volts && in_.thc_auto) {
         if (sample_count_ > 0 && sample_count_ >= in_.thc_sample_counts) {
             out_.target_volts = sum_ / sample_count_;
-            hasTarget_ = true;
+            has_target_ = true;
         }
         return;
     }
@@ -109,7 +110,7 @@ void HeightControl::wait_for_target() noexcept {
     }
     if (!in_.use_auto_volts) {
         out_.target_volts = in_.cut_volts;
-        hasTarget_ = true;
+        has_target_ = true;
         return;
     }
     target_sum_ = target_count_ == 0 ? 0.0 : target_sum_;
@@ -117,7 +118,7 @@ void HeightControl::wait_for_target() noexcept {
     target_sum_ += out_.arc_voltage_out;
     if (target_count_ == in_.target_samples) {
         out_.target_volts = target_sum_ / target_count_;
-        hasTarget_ = true;
+        has_target_ = true;
     }
 }
 
@@ -127,7 +128,8 @@ void HeightControl::watch_locks() noexcept {
     watch_void();
 }
 
-/// A gap: the voltage changes steeply for some cycles; free again when it has been flat for some.
+/// A gap: the voltage changes steeply for some cycles. The lock ends when the voltage has been flat for some
+/// cycles.
 void HeightControl::watch_void() noexcept {
     const double change = std::fabs(out_.arc_voltage_out - void_voltage_);
     void_voltage_ = out_.arc_voltage_out;
@@ -136,8 +138,8 @@ void HeightControl::watch_void() noexcept {
         steep_count_ = flat_count_ = 0;
         return;
     }
-    if (!isVoidWatched_) {
-        isVoidWatched_ = true;
+    if (!void_watched_) {
+        void_watched_ = true;
         steep_count_ = flat_count_ = 0;
     }
     if (change > in_.voidlock_slope * period_s_ * in_.voidlock_on_cycles) {
@@ -155,24 +157,24 @@ void HeightControl::watch_void() noexcept {
     }
 }
 
-/// A change of the override moves the torch at once by what it is worth; the control waits meanwhile.
+/// A change of the override moves the torch at once by the corresponding height; the control waits meanwhile.
 bool HeightControl::isOverridden() noexcept {
-    if (isOverrideNew_) {
-        isOverrideNew_ = false;
+    if (override_new_) {
+        override_new_ = false;
         add_z(counts_of((in_.height_override - override_) * in_.height_per_volt));
         override_ = in_.height_override;
         return true;
     }
     if (in_.height_override != override_) {
-        isOverrideNew_ = counts_of((in_.height_override - override_) * in_.height_per_volt) != 0;
-        override_ = isOverrideNew_ ? override_ : in_.height_override;
+        override_new_ = counts_of((in_.height_override - override_) * in_.height_per_volt) != 0;
+        override_ = override_new_ ? override_ : in_.height_override;
         out_.led_up = out_.led_down = false;
         return true;
     }
     return false;
 }
 
-/// PID on the error of the voltage; errors below the threshold are none.
+/// PID on the voltage error; errors below the threshold count as 0.
 void HeightControl::hold_voltage() noexcept {
     const double deviation = out_.target_volts + override_ - out_.arc_voltage_out;
     const double error = std::fabs(deviation) < in_.thc_threshold ? 0.0 : deviation;

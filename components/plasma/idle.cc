@@ -9,8 +9,8 @@ namespace mw::plasma {
 void Idle::idle() noexcept {
     out_.ohmic_enable = in_.offset_set_probe;
     out_.scribe_arm = in_.offset_set_scribe;
-    if (isAlarmed_) {
-        isAlarmed_ = sensor_fault() != Fault::NONE;
+    if (alarmed_) {
+        alarmed_ = sensor_fault() != Fault::NONE;
         return;
     }
     if (stop_ == Stop::PAUSED) {
@@ -33,19 +33,19 @@ void Idle::idle() noexcept {
     out_.feed_hold = out_.feed_hold && (in_.cutting_start || in_.spotting_start);
 }
 
-/// Near the last cut, or the last probe, the height found there is good enough.
+/// Close to the last cut, or to the last probe, the height found there is accurate enough.
 bool Idle::isNearLastCut() const noexcept {
     const double way = std::hypot(in_.axis_x_position - last_cut_x_, in_.axis_y_position - last_cut_y_);
-    return in_.skip_ihs_distance > 0.0 && hasProbed_ && way < in_.skip_ihs_distance;
+    return in_.skip_ihs_distance > 0.0 && probed_ && way < in_.skip_ihs_distance;
 }
 
 bool Idle::startOfCut() noexcept {
-    const bool isWanted = in_.cutting_start || in_.spotting_start;
-    if (!isWanted || out_.program_pause || in_.program_is_paused) {
+    const bool wanted = in_.cutting_start || in_.spotting_start;
+    if (!wanted || out_.program_pause || in_.program_is_paused) {
         return false;
     }
-    isSpotting_ = !in_.cutting_start;
-    isProbeTest_ = false;
+    spotting_ = !in_.cutting_start;
+    is_probe_test_ = false;
     stop_ = Stop::NONE;
     out_.feed_hold = true;
     if (isNearLastCut()) {
@@ -56,10 +56,10 @@ bool Idle::startOfCut() noexcept {
     return true;
 }
 
-/// Paused within a cut: consumables, recovery, or along the path.
+/// Actions while paused within a cut: change of consumables, recovery, movement along the path.
 bool Idle::startWhilePaused() noexcept {
     if (in_.consumable_change && !out_.consumable_changing) {
-        isConsumableWait_ = true;
+        is_consumable_wait_ = true;
         state_ = State::MAX_HEIGHT;
     } else if (out_.consumable_changing && !in_.consumable_change) {
         state_ = State::CONSUMABLES_BACK;
@@ -83,7 +83,7 @@ bool Idle::startOfSideAction() noexcept {
         return false;
     } else if (in_.probe_test) {
         out_.feed_hold = true;
-        isProbeTest_ = true;
+        is_probe_test_ = true;
         if (sensor_fault() != Fault::NONE) {
             fault_ = Fault::SENSOR_BEFORE_TEST;
             out_.probe_test_error = true;

@@ -16,7 +16,7 @@ void Core::step(const Inputs &in, double period_s) noexcept {
         return;
     }
     out_.offset_scale = in_.units_per_mm * 0.001 / in_.resolution;
-    if (wasIdle_ && !in_.program_is_idle) {
+    if (was_idle_ && !in_.program_is_idle) {
         out_.run_time = out_.rapid_time = out_.probe_time = 0.0;
         out_.torch_time = out_.cut_time = out_.paused_time = out_.cut_length = 0.0;
         out_.pierce_count = 0;
@@ -28,24 +28,24 @@ void Core::step(const Inputs &in, double period_s) noexcept {
         watch_stops();
         watch_arc();
         started_ = state_;
-        wasTorchOn_ = out_.torch_on;
-        if (!isEndedNow_) {
+        was_torch_on_ = out_.torch_on;
+        if (!ended_now_) {
             run_state();
         }
     } else {
         machine_off();
     }
-    inhibit_jog(isProbeTest_ ? before_ : started_);
+    inhibit_jog(is_probe_test_ ? before_ : started_);
     run_requests();
     count_times();
     finish();
 }
 
-/// Numbers that can be divided by, a period, and none that is infinite or no number.
+/// True when divisors and the period are valid, and all inputs are finite numbers.
 bool Core::areUsable() const noexcept {
     constexpr double LEAST = 1.0e-6;
     constexpr std::int32_t MOST_RESOLUTION = 1000000;
-    return in_.areNumbers && period_s_ > 0.0 && in_.units_per_mm >= LEAST && in_.gcode_scale >= LEAST &&
+    return in_.are_numbers && period_s_ > 0.0 && in_.units_per_mm >= LEAST && in_.gcode_scale >= LEAST &&
            in_.resolution > 0 && in_.resolution <= MOST_RESOLUTION;
 }
 
@@ -82,30 +82,30 @@ void Core::run_state() noexcept {
 }
 
 void Core::count_times() noexcept {
-    const bool isJob = !in_.program_is_idle && !wasIdle_;
-    if (isJob) {
+    const bool is_job = !in_.program_is_idle && !was_idle_;
+    if (is_job) {
         out_.run_time += period_s_;
         out_.rapid_time += in_.motion_type == 1 ? period_s_ : 0.0;
         out_.paused_time += in_.program_is_paused ? period_s_ : 0.0;
     }
-    out_.torch_time += wasTorchOn_ ? period_s_ : 0.0;
-    const bool isCutting = started_ == State::CUT_BY_VOLTAGE || started_ == State::CUT_BY_SWITCHES;
-    if (isCutting) {
+    out_.torch_time += was_torch_on_ ? period_s_ : 0.0;
+    const bool cutting = started_ == State::CUT_BY_VOLTAGE || started_ == State::CUT_BY_SWITCHES;
+    if (cutting) {
         out_.cut_time += period_s_;
         out_.cut_length += in_.current_velocity * period_s_;
     }
-    const bool isProbing = started_ >= State::PROBE_HEIGHT && started_ <= State::PROBE_UP;
-    const bool isAgain = started_ == State::PROBE_UP && state_ == State::PROBE_DOWN;
-    out_.probe_time += isProbing && !isAgain && !isProbeWaiting_ ? period_s_ : 0.0;
+    const bool probing = started_ >= State::PROBE_HEIGHT && started_ <= State::PROBE_UP;
+    const bool repeated = started_ == State::PROBE_UP && state_ == State::PROBE_DOWN;
+    out_.probe_time += probing && !repeated && !probe_waiting_ ? period_s_ : 0.0;
 }
 
-/// What is shown at the end of each cycle, whatever happened in it.
+/// Sets the outputs at the end of every cycle.
 void Core::finish() noexcept {
     out_.state_out = static_cast<std::int32_t>(state_);
     out_.stop_type_out = static_cast<std::int32_t>(stop_);
     out_.z_height = in_.axis_z_position - zero_mu_;
     out_.current_feed_rate = in_.current_velocity * 60.0;
-    wasIdle_ = in_.program_is_idle;
+    was_idle_ = in_.program_is_idle;
 }
 
 }  // namespace mw::plasma

@@ -13,14 +13,14 @@
 
 namespace mw::plasma {
 
-/// The arc: arc.cc.
+/// The arc; see arc.cc.
 class Arc : protected Shared {
   protected:
     void measure_voltage() noexcept;
     void watch_arc() noexcept;
 
     double last_voltage_ = 0.0;
-    bool hasTarget_ = false;  // the height control has a voltage to hold
+    bool has_target_ = false;  // the height control has a target voltage
     std::int32_t ok_count_ = 0;
 
   private:
@@ -28,11 +28,11 @@ class Arc : protected Shared {
 
     double filtered_ = 0.0;
     std::int32_t bad_count_ = 0;
-    bool wasWithin_ = false;
+    bool was_within_ = false;
     Countdown lost_;
 };
 
-/// The cut and its height: height_control.cc.
+/// The cut and its height; see height_control.cc.
 class HeightControl : protected Arc {
   protected:
     void set_thc_pins() noexcept;
@@ -52,19 +52,19 @@ class HeightControl : protected Arc {
     void show_feed_rates() noexcept;
 
     static constexpr int MOST_SAMPLES = 1000;
-    std::array<double, MOST_SAMPLES> samples_{};  // steady voltages, the newest before next_sample_
+    std::array<double, MOST_SAMPLES> samples_{};  // steady voltages; the newest is before next_sample_
     int next_sample_ = 0, sample_count_ = 0;
     double sum_ = 0.0;
     std::int32_t target_count_ = 0;
     double target_sum_ = 0.0;
     double last_error_ = 0.0, override_ = 0.0;
-    bool isOverrideNew_ = false;
+    bool override_new_ = false;
     double void_voltage_ = 0.0;
     std::int32_t steep_count_ = 0, flat_count_ = 0;
-    bool isVoidWatched_ = false;
+    bool void_watched_ = false;
 };
 
-/// X and Y beside the path: sideways.cc.
+/// X and Y offsets from the path; see sideways.cc.
 class Sideways : protected HeightControl {
   protected:
     void consumables_out() noexcept;
@@ -77,11 +77,11 @@ class Sideways : protected HeightControl {
     void follow_laser() noexcept;
     bool moveStraight(std::int32_t x, std::int32_t y) noexcept;
 
-    bool isUnderWay_ = false, isAtTarget_ = false;
+    bool active_ = false, is_at_target_ = false;
     double step_x_ = 0.0, step_y_ = 0.0;
 };
 
-/// Finding the material: probing.cc.
+/// Finding the material; see probing.cc.
 class Probing : protected Sideways {
   protected:
     void watch_sensors() noexcept;
@@ -92,17 +92,17 @@ class Probing : protected Sideways {
     void probe_up() noexcept;
     void zero_height() noexcept;
 
-    bool isProbeWaiting_ = false;
+    bool probe_waiting_ = false;
     double last_cut_x_ = 0.0, last_cut_y_ = 0.0;
 
   private:
-    bool isZeroed_ = false, isOhmic_ = false;
-    bool isFoundByContact_ = false, isEarly_ = false, isRetry_ = false, isBeside_ = false;
+    bool zeroed_ = false, ohmic_ = false;
+    bool found_by_contact_ = false, early_ = false, is_retry_ = false, is_beside_ = false;
     std::int32_t ohmic_attempts_ = 0, sense_count_ = 0;
     std::int32_t probe_target_ = 0;
 };
 
-/// From the zero height to the end: cutting.cc.
+/// From the zero height to the end of a cut; see cutting.cc.
 class Cutting : protected Probing {
   protected:
     void pierce_height() noexcept;
@@ -117,7 +117,7 @@ class Cutting : protected Probing {
     void end_cut() noexcept;
     void end_job() noexcept;
 
-    bool isConsumableWait_ = false;
+    bool is_consumable_wait_ = false;
 
   private:
     void spot() noexcept;
@@ -126,7 +126,7 @@ class Cutting : protected Probing {
     std::int32_t starts_ = 0;
 };
 
-/// What is no cut: side_actions.cc.
+/// Actions other than a cut; see side_actions.cc.
 class SideActions : protected Cutting {
   protected:
     void torch_pulse() noexcept;
@@ -138,10 +138,10 @@ class SideActions : protected Cutting {
     int scribe_phase_ = 0;
 
   private:
-    bool isPulseNew_ = false;
+    bool pulse_new_ = false;
 };
 
-/// What ends a cut before its end: stops.cc.
+/// Conditions that stop a cut early; see stops.cc.
 class Stops : protected SideActions {
   protected:
     void watch_stops() noexcept;
@@ -149,19 +149,19 @@ class Stops : protected SideActions {
     void machine_off() noexcept;
     void run_requests() noexcept;
 
-    bool isAlarmed_ = false;      // a sensor ended the cut
-    bool isEndedNow_ = false;     // by the operator, in this cycle
-    State before_ = State::IDLE;  // when this cycle began
+    bool alarmed_ = false;        // a sensor ended the cut
+    bool ended_now_ = false;      // ended by the operator in this cycle
+    State before_ = State::IDLE;  // state at the start of this cycle
 
   private:
     bool isStopped() noexcept;
     bool isTorchAllowed() noexcept;
     void end_by_operator() noexcept;
 
-    bool isStopAfterReturn_ = false, isTorchTaken_ = false;
+    bool is_stop_after_return_ = false, torch_taken_ = false;
 };
 
-/// What starts what: idle.cc.
+/// Decides which action starts; see idle.cc.
 class Idle : protected Stops {
   protected:
     void idle() noexcept;
@@ -175,11 +175,11 @@ class Idle : protected Stops {
 
 class Core : protected Idle {
   public:
-    /// One servo period of `period_s` [s]. [servo]
+    /// Runs one servo period of `period_s` [s]. [servo]
     void step(const Inputs &in, double period_s) noexcept;
     const Outputs &out() const noexcept { return out_; }
     State state() const noexcept { return state_; }
-    /// What went wrong since the last call. [servo]
+    /// The fault since the last call. [servo]
     Fault take_fault() noexcept {
         const Fault fault = fault_;
         fault_ = Fault::NONE;
@@ -192,8 +192,8 @@ class Core : protected Idle {
     void finish() noexcept;
     bool areUsable() const noexcept;
 
-    State started_ = State::IDLE;  // after what stops a cut
-    bool wasTorchOn_ = false;
+    State started_ = State::IDLE;  // state after the stop conditions were checked
+    bool was_torch_on_ = false;
 };
 
 }  // namespace mw::plasma

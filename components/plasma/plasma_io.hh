@@ -8,7 +8,7 @@
 
 namespace mw::plasma {
 
-/// Of the torch and its arc.
+/// Inputs from the torch and its arc.
 struct ArcInputs {
     double arc_fail_delay{}, arc_lost_delay{}, arc_ok_high{}, arc_ok_low{}, arc_voltage_in{},
         arc_voltage_offset{}, arc_voltage_scale{}, lowpass_frequency{}, ok_sample_threshold{}, pierce_delay{},
@@ -18,7 +18,7 @@ struct ArcInputs {
     std::int32_t arc_max_starts{}, low_cut_volts{}, mode{}, ok_sample_counts{};
 };
 
-/// Of the machine.
+/// Inputs from the machine.
 struct MachineInputs {
     double axis_x_max_limit{}, axis_x_min_limit{}, axis_x_position{}, axis_y_max_limit{}, axis_y_min_limit{},
         axis_y_position{}, axis_z_max_limit{}, axis_z_min_limit{}, axis_z_position{}, current_velocity{},
@@ -27,7 +27,7 @@ struct MachineInputs {
     std::int32_t max_offset{}, motion_type{}, resolution{};
 };
 
-/// Of finding the material.
+/// Inputs for finding the material.
 struct ProbeInputs {
     double float_switch_travel{}, offset_probe_delay{}, offset_probe_x{}, offset_probe_y{},
         ohmic_probe_offset{}, probe_feed_rate{}, probe_start_height{}, skip_ihs_distance{};
@@ -36,7 +36,7 @@ struct ProbeInputs {
     std::int32_t ohmic_max_attempts{}, ohmic_sense_off_delay{}, ohmic_sense_on_delay{}, probe_final_speed{};
 };
 
-/// Of the operator and the program.
+/// Inputs from the operator and the program.
 struct OperatorInputs {
     double paused_motion_speed{}, scribe_arm_delay{}, scribe_on_delay{}, xy_feed_rate{};
     bool consumable_change{}, cut_recovery{}, cutting_start{}, multi_tool{}, program_is_idle{},
@@ -44,7 +44,7 @@ struct OperatorInputs {
     std::int32_t laser_recovery_start{}, laser_x_offset{}, laser_y_offset{}, x_offset{}, y_offset{};
 };
 
-/// Of the height control.
+/// Inputs for the height control.
 struct HeightInputs {
     double cornerlock_threshold{}, cut_volts{}, height_override{}, height_per_volt{}, pid_d_gain{},
         pid_i_gain{}, pid_p_gain{}, thc_delay{}, thc_feed_rate{}, thc_sample_threshold{}, thc_threshold{};
@@ -54,7 +54,7 @@ struct HeightInputs {
         voidlock_slope{};
 };
 
-/// Of the cut and its material.
+/// Inputs for the cut and its material.
 struct JobInputs {
     double cut_feed_rate{}, cut_height{}, feed_override{}, feed_reduction{}, feed_upm{}, gcode_scale{},
         kerf_width{}, pause_at_end{}, pierce_height{}, puddle_jump_delay{}, puddle_jump_height{},
@@ -62,10 +62,10 @@ struct JobInputs {
 };
 
 struct Inputs : ArcInputs, MachineInputs, ProbeInputs, OperatorInputs, HeightInputs, JobInputs {
-    bool areNumbers = true;  ///< no input of this cycle was infinite, beyond all measure or not a number
+    bool are_numbers = true;  ///< all inputs in this cycle are numbers of a reasonable size
 };
 
-/// Of the torch, its arc and what moves it.
+/// Outputs to the torch, its arc and its movement.
 struct MotionOutputs {
     double adaptive_feed{}, arc_voltage_out{}, current_feed_rate{}, offset_scale{}, requested_feed_rate{},
         target_volts{}, z_height{}, z_relative{};
@@ -74,7 +74,7 @@ struct MotionOutputs {
     std::int32_t x_offset_counts{}, y_offset_counts{}, z_offset_counts{};
 };
 
-/// Of the job.
+/// Outputs about the job.
 struct JobOutputs {
     double cut_length{}, cut_time{}, paused_time{}, probe_time{}, rapid_time{}, run_time{}, torch_time{};
     bool consumable_changing{}, cut_recovering{}, cutting_stop{}, jog_inhibit{}, ohmic_enable{},

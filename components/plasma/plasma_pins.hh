@@ -7,17 +7,18 @@
 
 namespace mw::plasma {
 
-/// Nothing that is measured or set at a table is larger; products of such numbers stay finite.
+/// No measured value or setting at a table is larger; products of such numbers stay finite.
 inline constexpr double MOST_VALUE = 1.0e9;
 
-/// Copies a pin into a member; what is no such number is reported instead, and the member keeps what it was.
+/// Copies a pin into a member. A value that is not such a number is reported, and the member keeps its old
+/// value.
 template <class T>
 struct ToMember {
     T Inputs::*member;
     constexpr void operator()(Inputs &in, T value) const noexcept {
         if constexpr (std::is_same_v<T, double>) {
             if (!(value >= -MOST_VALUE && value <= MOST_VALUE)) {
-                in.areNumbers = false;
+                in.are_numbers = false;
                 return;
             }
         }
@@ -75,13 +76,13 @@ constexpr auto INPUT_PINS = sdk::pin_table("plasmac",
     in("feed-reduction", "%", "feed rate in holes, motion.analog-out-03", &Inputs::feed_reduction),
     in("feed-upm", "mu/min", "motion.feed-upm", &Inputs::feed_upm),
     in("float-switch", "", "the floating head is pushed up", &Inputs::float_switch),
-    in("float-switch-travel", "mu", "way of the head until its switch closes", &Inputs::float_switch_travel),
+    in("float-switch-travel", "mu", "travel of the head until its switch closes", &Inputs::float_switch_travel),
     in("gcode-scale", "", "scale of the program", &Inputs::gcode_scale, 1.0),
     in("height-override", "V", "added to the voltage to hold", &Inputs::height_override),
     in("height-per-volt", "mu/V", "height of one volt", &Inputs::height_per_volt),
     in("homed", "", "motion.is-all-homed", &Inputs::homed),
-    in("ignore-arc-ok-0", "", "cut whatever the arc is, motion.digital-out-01", &Inputs::ignore_arc_ok_0),
-    in("ignore-arc-ok-1", "", "cut whatever the arc is, from the screen", &Inputs::ignore_arc_ok_1),
+    in("ignore-arc-ok-0", "", "cut with any arc, motion.digital-out-01", &Inputs::ignore_arc_ok_0),
+    in("ignore-arc-ok-1", "", "cut with any arc, from the screen", &Inputs::ignore_arc_ok_1),
     in("kerf-width", "mu", "for programs; not used here", &Inputs::kerf_width),
     in("laser-recovery-start", "", "cut recovery with the laser", &Inputs::laser_recovery_start),
     in("laser-x-offset", "count", "of the laser from the torch", &Inputs::laser_x_offset),
@@ -173,7 +174,7 @@ constexpr auto OUTPUT_PINS = sdk::pin_table("plasmac",
     out("adaptive-feed", "", "motion.adaptive-feed", &Outputs::adaptive_feed),
     out("arc-ok-out", "", "the arc is good", &Outputs::arc_ok_out),
     out("arc-voltage-out", "V", "the arc voltage", &Outputs::arc_voltage_out),
-    out("consumable-changing", "", "at or on the way to where consumables are changed", &Outputs::consumable_changing),
+    out("consumable-changing", "", "at or moving to the position for changing consumables", &Outputs::consumable_changing),
     out("cornerlock-is-locked", "", "too slow for height control", &Outputs::cornerlock_is_locked),
     out("current-feed-rate", "mu/min", "how fast it goes", &Outputs::current_feed_rate),
     out("cut-length", "mu", "cut in this job", &Outputs::cut_length),

@@ -6,7 +6,7 @@
 
 namespace mw::plasma {
 
-/// Counts in one cycle at this rate; none at a rate that is negative.
+/// Counts per cycle at this rate; 0 for a rate that is negative.
 std::int32_t Shared::steps_of(double rate_mu_min) const noexcept {
     return to_counts(steps_exactly(rate_mu_min));
 }
@@ -19,12 +19,12 @@ std::int32_t Shared::counts_of(double mu) const noexcept {
     return to_counts(mu / out_.offset_scale);
 }
 
-/// Offset counts at this height above the material.
+/// Offset counts for this height above the material.
 std::int32_t Shared::height_counts(double height_mu) const noexcept {
     return to_counts(zero_counts_ + thc_shift_ + height_mu / out_.offset_scale);
 }
 
-/// One step of Z to `target`; true when it was there before.
+/// Moves Z one step towards `target`. True when it was already there.
 bool Shared::moveZ(std::int32_t target, std::int32_t step) noexcept {
     const std::int64_t left = std::int64_t{target} - out_.z_offset_counts;
     if (left == 0) {
@@ -40,7 +40,7 @@ bool Shared::moveZ(std::int32_t target, std::int32_t step) noexcept {
     return false;
 }
 
-/// One step of the offsets towards (x, y), along a line; true when they were there before.
+/// Moves the offsets one step towards (x, y), along a line. True when they were already there.
 bool Shared::moveSideways(double x, double y, double step) noexcept {
     const double dx = x - out_.x_offset_counts;
     const double dy = y - out_.y_offset_counts;
@@ -61,12 +61,13 @@ bool Shared::moveSideways(double x, double y, double step) noexcept {
 Fault Shared::sensor_fault() const noexcept {
     return in_.breakaway      ? Fault::BREAKAWAY
            : in_.float_switch ? Fault::FLOAT_SWITCH
-           : in_.ohmic_probe_enable && (state_ == State::IDLE ? wasOhmic_ : in_.ohmic_probe)
+           : in_.ohmic_probe_enable && (state_ == State::IDLE ? was_ohmic_ : in_.ohmic_probe)
                ? Fault::OHMIC_PROBE
                : Fault::NONE;
 }
 
-/// Torch off and up. The program is paused, or the manual cut stopped, when it is not by now.
+/// Switches the torch off and moves up. Pauses the program, or stops the manual cut, if that has not happened
+/// yet.
 void Shared::fail(Fault fault) noexcept {
     fault_ = fault;
     pending_ = Fault::NONE;
@@ -85,12 +86,12 @@ void Shared::stop(Stop type) noexcept {
     arc_off();
     out_.z_offset_enable = true;
     out_.program_resume = false;
-    isArcBad_ = false;
+    arc_bad_ = false;
     out_.cornerlock_is_locked = false;
     out_.voidlock_is_locked = false;
     out_.ohmic_enable = false;
     out_.feed_hold = true;
-    hasProbed_ = false;
+    probed_ = false;
     stop_ = type;
     state_ = State::MAX_HEIGHT;
 }

@@ -22,8 +22,8 @@ enum class State : std::int32_t {
     PIERCE_DELAY = 8,
     PUDDLE_JUMP = 9,
     CUT_HEIGHT = 10,
-    CUT_BY_VOLTAGE = 11,   // modes 0 and 1
-    CUT_BY_SWITCHES = 12,  // mode 2
+    CUT_BY_VOLTAGE = 11,   // in modes 0 and 1
+    CUT_BY_SWITCHES = 12,  // in mode 2
     PAUSE_AT_END = 13,
     SAFE_HEIGHT = 14,
     MAX_HEIGHT = 15,
@@ -40,10 +40,10 @@ enum class State : std::int32_t {
     RECOVERY_BACK = 26,
 };
 
-/// Why the way back to the safe place was taken (stop-type-out).
+/// The reason for the return to the safe position (stop-type-out).
 enum class Stop : std::int32_t { NONE = 0, WAIT = 1, CUT_ENDED = 2, PAUSED = 3 };
 
-/// What to tell the operator.
+/// Faults that are reported to the operator.
 enum class Fault {
     NONE,
     NO_ARC,
@@ -61,10 +61,10 @@ enum class Fault {
     SENSOR_BEFORE_TEST,
 };
 
-/// Counts down; the residue of the last period counts, as in the time of the parts it waits for.
+/// Counts down. The remainder of the last period counts, as it does in the times that this replaces.
 struct Countdown {
     double left_s = 0.0;
-    /// True when the time is over; else one period of it goes by.
+    /// True when the time is over; otherwise one period passes.
     bool runOut(double period_s) noexcept {
         if (left_s <= 0.0) {
             return true;
@@ -74,7 +74,7 @@ struct Countdown {
     }
 };
 
-/// Within the 32 bits of the pins of counts.
+/// Clamped to the 32 bits of the count pins.
 inline std::int32_t to_counts(double counts) noexcept {
     constexpr double MOST_COUNTS = 2.0e9;
     return static_cast<std::int32_t>(std::clamp(counts, -MOST_COUNTS, MOST_COUNTS));
@@ -93,7 +93,7 @@ class Shared {
     bool moveSideways(double x, double y, double step) noexcept;
     bool isArcIgnored() const noexcept { return in_.ignore_arc_ok_0 || in_.ignore_arc_ok_1; }
     bool isManualCut() const noexcept { return in_.program_is_idle; }
-    bool isCutWanted() const noexcept { return isSpotting_ ? in_.spotting_start : in_.cutting_start; }
+    bool isCutWanted() const noexcept { return spotting_ ? in_.spotting_start : in_.cutting_start; }
     Fault sensor_fault() const noexcept;
     void torch_off() noexcept { out_.torch_on = false; }
     void arc_off() noexcept {
@@ -109,16 +109,16 @@ class Shared {
     State state_ = State::IDLE;
     Stop stop_ = Stop::NONE;
     Fault fault_ = Fault::NONE;
-    Fault pending_ = Fault::NONE;  // takes effect with the next cycle
+    Fault pending_ = Fault::NONE;  // takes effect in the next cycle
     Countdown timer_;
-    bool wasIdle_ = true;
-    bool isArcBad_ = false;  // the voltage was lost in this cut
-    bool isProbeTest_ = false, isSpotting_ = false;
-    bool wasOhmic_ = false;
-    bool hasProbed_ = false, hasZero_ = false;
-    double zero_mu_ = 0.0;          // Z at the material
-    std::int32_t zero_counts_ = 0;  // offset counts there
-    std::int32_t thc_shift_ = 0;    // how far the height control moved the torch from the cut height
+    bool was_idle_ = true;
+    bool arc_bad_ = false;  // the voltage was lost during this cut
+    bool is_probe_test_ = false, spotting_ = false;
+    bool was_ohmic_ = false;
+    bool probed_ = false, has_zero_ = false;
+    double zero_mu_ = 0.0;          // Z at the surface of the material
+    std::int32_t zero_counts_ = 0;  // offset counts at that height
+    std::int32_t thc_shift_ = 0;    // distance that the height control moved the torch from the cut height
 };
 
 }  // namespace mw::plasma

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // plasmac: the controller of a plasma table as a HAL component. The work is plasma_core.hh; here are pins
-// (plasma_pins.hh), the function, and what is told to the operator.
+// (plasma_pins.hh), the function, and the messages for the operator.
 #include "components/plasma/plasma_core.hh"
 #include "components/plasma/plasma_pins.hh"
 
@@ -53,7 +53,7 @@ struct Plasmac {
     }
 
     void update(long period_ns) noexcept {
-        in.areNumbers = true;
+        in.are_numbers = true;
         inputs.read(in);
         core.step(in, seconds(period_ns));
         outputs.write(core.out());

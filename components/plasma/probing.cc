@@ -5,10 +5,10 @@
 namespace mw::plasma {
 
 void Probing::watch_sensors() noexcept {
-    wasOhmic_ = isOhmic_;
-    isOhmic_ = in_.ohmic_probe && in_.ohmic_probe_enable;
-    out_.sensor_active = in_.float_switch || in_.breakaway || wasOhmic_;
-    // The relay counts when it has held its new state for the cycles of the debounce.
+    was_ohmic_ = ohmic_;
+    ohmic_ = in_.ohmic_probe && in_.ohmic_probe_enable;
+    out_.sensor_active = in_.float_switch || in_.breakaway || was_ohmic_;
+    // A change of the relay counts after the new state has lasted for the debounce cycles.
     if (in_.ohmic_sense_in == out_.ohmic_sense_out) {
         sense_count_ = 0;
     } else {
@@ -20,60 +20,61 @@ void Probing::watch_sensors() noexcept {
     }
 }
 
-/// No jogging into what a sensor touches.
+/// Prevents jogging towards an object that a sensor touches.
 void Probing::inhibit_jog(State state) noexcept {
-    const bool isProbing = state >= State::PROBE_HEIGHT && state <= State::ZERO_HEIGHT;
-    out_.jog_inhibit = out_.sensor_active && !in_.override_jog && in_.program_is_idle && !isProbing;
+    const bool probing = state >= State::PROBE_HEIGHT && state <= State::ZERO_HEIGHT;
+    out_.jog_inhibit = out_.sensor_active && !in_.override_jog && in_.program_is_idle && !probing;
 }
 
 void Probing::start_probing() noexcept {
     ohmic_attempts_ = 0;
-    isZeroed_ = false;
+    zeroed_ = false;
     thc_shift_ = 0;
-    isProbeWaiting_ = false;
-    isRetry_ = false;
+    probe_waiting_ = false;
+    is_retry_ = false;
     timer_.left_s = in_.offset_probe_delay;
     state_ = State::PROBE_HEIGHT;
 }
 
-/// To where probing begins. A probe beside the torch goes to its place meanwhile.
+/// Moves to the start height of the probing. An offset probe moves to its position at the same time.
 void Probing::probe_height() noexcept {
     out_.z_offset_enable = true;
     out_.ohmic_enable = in_.ohmic_probe_enable;
-    isBeside_ = in_.ohmic_probe_enable && (in_.offset_probe_x != 0.0 || in_.offset_probe_y != 0.0);
-    bool isThere = true;
-    if (isBeside_) {
+    is_beside_ = in_.ohmic_probe_enable && (in_.offset_probe_x != 0.0 || in_.offset_probe_y != 0.0);
+    bool present = true;
+    if (is_beside_) {
         out_.xy_offset_enable = true;
-        isThere = moveSideways(counts_of(in_.offset_probe_x), counts_of(in_.offset_probe_y),
+        present = moveSideways(counts_of(in_.offset_probe_x), counts_of(in_.offset_probe_y),
                                steps_of(in_.setup_feed_rate));
     }
     timer_.runOut(period_s_);
-    const bool isContact = in_.ohmic_probe && in_.ohmic_probe_enable;
-    if (isContact || (in_.float_switch && ohmic_attempts_ == 0)) {
-        isFoundByContact_ = isContact;
-        isEarly_ = true;
+    const bool is_contact = in_.ohmic_probe && in_.ohmic_probe_enable;
+    if (is_contact || (in_.float_switch && ohmic_attempts_ == 0)) {
+        found_by_contact_ = is_contact;
+        early_ = true;
         state_ = State::PROBE_UP;
         return;
     }
     const double base = in_.axis_z_position - in_.z_offset_current;
     probe_target_ = counts_of(in_.axis_z_min_limit + in_.probe_start_height - base);
-    const bool isDown = in_.probe_start_height <= 0.0 || moveZ(probe_target_, steps_of(in_.setup_feed_rate));
-    if (isDown && isThere && isRetry_) {
-        isRetry_ = false;
-    } else if (isDown && isThere) {
+    const bool down = in_.probe_start_height <= 0.0 || moveZ(probe_target_, steps_of(in_.setup_feed_rate));
+    if (down && present && is_retry_) {
+        is_retry_ = false;
+    } else if (down && present) {
         state_ = State::PROBE_DOWN;
     }
 }
 
-/// Down until the torch touches. When contact was to be sensed and only the float switch came, once more.
+/// Moves down until the torch touches. Repeats this when contact was expected and only the float switch
+/// closed.
 void Probing::probe_down() noexcept {
-    const bool isProbeOut = timer_.runOut(period_s_);
-    isEarly_ = false;
+    const bool probe_out = timer_.runOut(period_s_);
+    early_ = false;
     if (in_.float_switch) {
-        isFoundByContact_ = false;
+        found_by_contact_ = false;
         if (in_.ohmic_probe_enable && ohmic_attempts_ < in_.ohmic_max_attempts) {
             ohmic_attempts_ += 1;
-            isRetry_ = true;
+            is_retry_ = true;
             state_ = State::PROBE_HEIGHT;
         } else {
             state_ = State::PROBE_UP;
@@ -81,12 +82,12 @@ void Probing::probe_down() noexcept {
         return;
     }
     if (in_.ohmic_probe_enable && in_.ohmic_probe) {
-        isFoundByContact_ = true;
+        found_by_contact_ = true;
         state_ = State::PROBE_UP;
         return;
     }
-    isProbeWaiting_ = !isProbeOut;
-    if (!isProbeOut) {
+    probe_waiting_ = !probe_out;
+    if (!probe_out) {
         return;
     }
     if (in_.axis_z_position <= in_.axis_z_min_limit + in_.units_per_mm * 1.001) {
@@ -96,11 +97,12 @@ void Probing::probe_down() noexcept {
     add_z(-steps_of(in_.probe_feed_rate));
 }
 
-/// Slowly up until the sensor opens. Contact before probing had begun is no height: it begins then.
+/// Moves up slowly until the sensor opens. Contact before the start of probing is not a height: probing
+/// starts there.
 void Probing::probe_up() noexcept {
-    const bool isClosed = in_.float_switch || (in_.ohmic_probe && in_.ohmic_probe_enable);
-    if (!isClosed) {
-        if (isEarly_ && isFoundByContact_) {
+    const bool closed = in_.float_switch || (in_.ohmic_probe && in_.ohmic_probe_enable);
+    if (!closed) {
+        if (early_ && found_by_contact_) {
             state_ = State::PROBE_DOWN;
             return;
         }
@@ -109,28 +111,27 @@ void Probing::probe_up() noexcept {
         return;
     }
     constexpr int EARLY_SPEED = 10;
-    add_z(static_cast<double>(in_.resolution) *
-          (isEarly_ ? EARLY_SPEED : std::max(0, in_.probe_final_speed)));
+    add_z(static_cast<double>(in_.resolution) * (early_ ? EARLY_SPEED : std::max(0, in_.probe_final_speed)));
 }
 
-/// Where the sensor opened, and the way it took from there, is the zero of all heights.
+/// The position where the sensor opened, and its travel, give the zero of all heights.
 void Probing::zero_height() noexcept {
-    const double way = isFoundByContact_ ? in_.ohmic_probe_offset : in_.float_switch_travel;
-    if (!isZeroed_) {
-        isZeroed_ = true;
-        hasZero_ = true;
+    const double way = found_by_contact_ ? in_.ohmic_probe_offset : in_.float_switch_travel;
+    if (!zeroed_) {
+        zeroed_ = true;
+        has_zero_ = true;
         zero_counts_ = out_.z_offset_counts + counts_of(way);
         zero_mu_ = in_.axis_z_position + counts_of(way) * out_.offset_scale;
     }
-    const bool isBack = !isBeside_ || moveSideways(0.0, 0.0, steps_of(in_.setup_feed_rate));
-    if (!moveZ(zero_counts_, steps_of(in_.setup_feed_rate)) || !isBack) {
+    const bool returned = !is_beside_ || moveSideways(0.0, 0.0, steps_of(in_.setup_feed_rate));
+    if (!moveZ(zero_counts_, steps_of(in_.setup_feed_rate)) || !returned) {
         return;
     }
-    hasProbed_ = true;
+    probed_ = true;
     last_cut_x_ = in_.axis_x_position;
     last_cut_y_ = in_.axis_y_position;
-    const bool areMissing = in_.pierce_height <= 0.0 || in_.cut_height <= 0.0 || in_.cut_volts <= 0.0;
-    if (areMissing && !isProbeTest_) {
+    const bool missing = in_.pierce_height <= 0.0 || in_.cut_height <= 0.0 || in_.cut_volts <= 0.0;
+    if (missing && !is_probe_test_) {
         pending_ = Fault::HEIGHTS_MISSING;
         return;
     }

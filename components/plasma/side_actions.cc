@@ -4,16 +4,16 @@
 
 namespace mw::plasma {
 
-/// The torch on for the time of the pulse.
+/// The torch is on for the duration of the pulse.
 void SideActions::torch_pulse() noexcept {
     if (!out_.torch_on) {
         out_.torch_on = true;
         timer_.left_s = in_.torch_pulse_time;
-        isPulseNew_ = true;
+        pulse_new_ = true;
         return;
     }
-    if (isPulseNew_) {
-        isPulseNew_ = false;
+    if (pulse_new_) {
+        pulse_new_ = false;
         return;
     }
     timer_.runOut(period_s_);
@@ -33,7 +33,7 @@ void SideActions::ohmic_test() noexcept {
     }
 }
 
-/// Waits at the pierce height, or where the test failed, until it is taken back; then up.
+/// Waits at the pierce height, or where the test failed, until the request is removed; then moves up.
 void SideActions::probe_test() noexcept {
     out_.z_offset_enable = true;
     if (in_.probe_test) {
@@ -46,7 +46,7 @@ void SideActions::probe_test() noexcept {
     }
 }
 
-/// Down, on, then the path; while paused neither.
+/// Lowers the scribe, switches it on, then the path starts; while paused it does neither.
 void SideActions::scribe() noexcept {
     if (!in_.scribe_start || in_.program_is_idle) {
         out_.scribe_arm = out_.scribe_on = false;
@@ -77,7 +77,7 @@ void SideActions::scribe() noexcept {
     }
 }
 
-/// Along the path, forward or back, while the operator holds the key.
+/// Moves along the path, forward or back, while the operator holds the key.
 void SideActions::paused_motion() noexcept {
     const double speed = in_.paused_motion_speed;
     if (speed != 0.0) {

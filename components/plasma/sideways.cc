@@ -6,19 +6,19 @@
 
 namespace mw::plasma {
 
-/// To and from where consumables are changed: the step of each axis is set when the way begins.
+/// Moves to and from the position for changing consumables; the step of each axis is set at the start.
 bool Sideways::moveStraight(std::int32_t x, std::int32_t y) noexcept {
-    if (!isUnderWay_) {
+    if (!active_) {
         const double dx = static_cast<double>(x) - out_.x_offset_counts;
         const double dy = static_cast<double>(y) - out_.y_offset_counts;
         const double way = std::hypot(dx, dy);
         const double share = way > 0.0 ? steps_exactly(in_.xy_feed_rate) / way : 0.0;
         step_x_ = std::fabs(dx) * share;
         step_y_ = std::fabs(dy) * share;
-        isUnderWay_ = true;
+        active_ = true;
     }
     if (out_.x_offset_counts == x && out_.y_offset_counts == y) {
-        isUnderWay_ = false;
+        active_ = false;
         return true;
     }
     const auto approach = [](std::int32_t from, std::int32_t to, double step) {
@@ -37,7 +37,7 @@ void Sideways::consumables_out() noexcept {
         out_.xy_offset_enable = true;
         return;
     }
-    if (in_.breakaway || in_.float_switch || wasOhmic_) {
+    if (in_.breakaway || in_.float_switch || was_ohmic_) {
         return;
     }
     if (moveStraight(in_.x_offset, in_.y_offset)) {
@@ -46,7 +46,7 @@ void Sideways::consumables_out() noexcept {
 }
 
 void Sideways::consumables_back() noexcept {
-    if (in_.breakaway || in_.float_switch || wasOhmic_) {
+    if (in_.breakaway || in_.float_switch || was_ohmic_) {
         return;
     }
     if (moveStraight(0, 0)) {
@@ -56,7 +56,7 @@ void Sideways::consumables_back() noexcept {
     }
 }
 
-/// Off the path as far as the operator says, and as far again as the laser is from the torch.
+/// Moves off the path by the offset from the operator, plus the distance between laser and torch.
 void Sideways::recovery_out() noexcept {
     if (!in_.program_is_paused) {
         state_ = State::IDLE;
@@ -70,8 +70,8 @@ void Sideways::recovery_out() noexcept {
     }
     const std::int32_t laser_before = out_.laser_recovery_state;
     follow_laser();
-    const bool isLaser = out_.laser_recovery_state >= 2;
-    if (isLaser ? laser_before < 2 : out_.laser_recovery_state == 1) {
+    const bool is_laser = out_.laser_recovery_state >= 2;
+    if (is_laser ? laser_before < 2 : out_.laser_recovery_state == 1) {
         return;
     }
     const auto approach = [&](std::int32_t from, std::int64_t to) {
@@ -79,27 +79,27 @@ void Sideways::recovery_out() noexcept {
         const std::int64_t left = to - from;
         return static_cast<std::int32_t>(from + (left > step ? step : left < -step ? -step : left));
     };
-    const std::int64_t x = to_counts(0.0 + in_.x_offset + (isLaser ? in_.laser_x_offset : 0));
-    const std::int64_t y = to_counts(0.0 + in_.y_offset + (isLaser ? in_.laser_y_offset : 0));
+    const std::int64_t x = to_counts(0.0 + in_.x_offset + (is_laser ? in_.laser_x_offset : 0));
+    const std::int64_t y = to_counts(0.0 + in_.y_offset + (is_laser ? in_.laser_y_offset : 0));
     out_.x_offset_counts = approach(out_.x_offset_counts, x);
     out_.y_offset_counts = approach(out_.y_offset_counts, y);
-    isAtTarget_ = out_.x_offset_counts == x && out_.y_offset_counts == y;
+    is_at_target_ = out_.x_offset_counts == x && out_.y_offset_counts == y;
 }
 
-/// One step a cycle: asked for, going there, there.
+/// One step per cycle: requested, moving, arrived.
 void Sideways::follow_laser() noexcept {
     if (in_.laser_recovery_start <= 0) {
         return;
     }
     if (out_.laser_recovery_state < 2) {
         out_.laser_recovery_state += 1;
-        isAtTarget_ = false;
-    } else if (out_.laser_recovery_state == 2 && isAtTarget_) {
+        is_at_target_ = false;
+    } else if (out_.laser_recovery_state == 2 && is_at_target_) {
         out_.laser_recovery_state = 3;
     }
 }
 
-/// From under the laser to under the torch, before a cut begins again.
+/// Moves from under the laser to under the torch before a cut starts again.
 void Sideways::leave_laser() noexcept {
     if (out_.laser_recovery_state < 5) {
         out_.laser_recovery_state = out_.laser_recovery_state < 4 ? 4 : 5;
@@ -110,7 +110,7 @@ void Sideways::leave_laser() noexcept {
     }
 }
 
-/// To the path: with the torch on at the feed rate of the cut, else at half of it.
+/// Moves back to the path: at the feed rate of the cut with the torch on, otherwise at half of it.
 void Sideways::recovery_back() noexcept {
     const double rate = in_.cut_feed_rate * (stop_ == Stop::PAUSED ? 0.5 : 1.0);
     if (!moveSideways(0.0, 0.0, steps_exactly(rate))) {

@@ -4,13 +4,13 @@
 
 namespace mw::plasma {
 
-/// Nothing moves and nothing burns, as long as the inputs cannot be believed.
+/// Stops all movement and the torch while the inputs are invalid.
 void Stops::halt(Fault fault) noexcept {
-    const bool wasBusy = state_ != State::IDLE && state_ != State::END_JOB;
+    const bool was_busy = state_ != State::IDLE && state_ != State::END_JOB;
     torch_off();
     out_.scribe_on = false;
     out_.ohmic_enable = false;
-    if (!wasBusy) {
+    if (!was_busy) {
         return;
     }
     if (pending_ != fault) {
@@ -33,56 +33,56 @@ void Stops::machine_off() noexcept {
     out_.laser_recovery_state = 0;
     out_.adaptive_feed = 1.0;
     out_.x_offset_counts = out_.y_offset_counts = out_.z_offset_counts = 0;
-    hasZero_ = hasProbed_ = hasTarget_ = isConsumableWait_ = isAlarmed_ = false;
+    has_zero_ = probed_ = has_target_ = is_consumable_wait_ = alarmed_ = false;
     pending_ = Fault::NONE;
     thc_shift_ = 0;
     stop_ = Stop::NONE;
     state_ = State::IDLE;
 }
 
-/// True when the operator ends what goes on: program stopped, paused, or the start taken back.
+/// True when the operator ends the action: program stopped or paused, or the start request removed.
 bool Stops::isStopped() noexcept {
-    const bool isCut = state_ >= State::PROBE_HEIGHT && state_ <= State::PAUSE_AT_END;
-    const bool isEnding = state_ >= State::SAFE_HEIGHT && state_ <= State::END_JOB;
-    const bool isIdleNow = in_.program_is_idle && !wasIdle_;
-    if (isProbeTest_) {
-        if (!in_.probe_test && state_ <= State::PIERCE_HEIGHT && isCut) {
+    const bool is_cut = state_ >= State::PROBE_HEIGHT && state_ <= State::PAUSE_AT_END;
+    const bool ending = state_ >= State::SAFE_HEIGHT && state_ <= State::END_JOB;
+    const bool idle_now = in_.program_is_idle && !was_idle_;
+    if (is_probe_test_) {
+        if (!in_.probe_test && state_ <= State::PIERCE_HEIGHT && is_cut) {
             state_ = State::PROBE_TEST;
-            isEndedNow_ = true;
+            ended_now_ = true;
         }
-        return isEndedNow_;
+        return ended_now_;
     }
     if (state_ == State::END_JOB) {
         return false;
     }
-    const bool isBeside = state_ >= State::CONSUMABLES_OUT || out_.consumable_changing || out_.cut_recovering;
-    if (isStopAfterReturn_ && state_ == State::IDLE) {
-        isStopAfterReturn_ = false;
+    const bool beside = state_ >= State::CONSUMABLES_OUT || out_.consumable_changing || out_.cut_recovering;
+    if (is_stop_after_return_ && state_ == State::IDLE) {
+        is_stop_after_return_ = false;
         stop(Stop::WAIT);
         return true;
     }
-    if (isIdleNow && isBeside) {
-        isStopAfterReturn_ = true;
+    if (idle_now && beside) {
+        is_stop_after_return_ = true;
         state_ = out_.cut_recovering ? State::RECOVERY_BACK : State::CONSUMABLES_BACK;
         return false;
     }
-    const bool isNothing = state_ == State::IDLE && stop_ == Stop::NONE;
-    if (isIdleNow && state_ != State::SCRIBING && !isNothing) {
+    const bool nothing = state_ == State::IDLE && stop_ == Stop::NONE;
+    if (idle_now && state_ != State::SCRIBING && !nothing) {
         stop(Stop::WAIT);
         return true;
     }
-    if (isCut && in_.program_is_paused) {
+    if (is_cut && in_.program_is_paused) {
         stop(Stop::PAUSED);
         return true;
     }
-    if (isCut && !isCutWanted()) {
+    if (is_cut && !isCutWanted()) {
         end_by_operator();
         return true;
     }
-    return isEnding;
+    return ending;
 }
 
-/// The start was taken back: the end of the cut in a program, the end of all in a manual cut.
+/// The start request was removed: this ends the cut in a program, and everything in a manual cut.
 void Stops::end_by_operator() noexcept {
     if (state_ == State::PAUSE_AT_END) {
         return;
@@ -101,37 +101,37 @@ void Stops::end_by_operator() noexcept {
         timer_.left_s = in_.pause_at_end;
         timer_.runOut(period_s_);
         timer_.runOut(period_s_);
-        isEndedNow_ = true;
+        ended_now_ = true;
         state_ = State::PAUSE_AT_END;
         return;
     }
     arc_off();
-    isEndedNow_ = true;
+    ended_now_ = true;
     state_ = State::SAFE_HEIGHT;
 }
 
-/// torch-off ends the arc within a cut; a cut goes on without it only as long as that says so.
+/// torch-off switches the arc off within a cut; the cut continues without it only while torch-off is true.
 bool Stops::isTorchAllowed() noexcept {
-    const bool isCutting = state_ == State::CUT_BY_VOLTAGE || state_ == State::CUT_BY_SWITCHES;
-    const bool isBurning = state_ >= State::ARC_OK && state_ <= State::PAUSE_AT_END;
-    if (isBurning && in_.torch_off && out_.torch_on) {
+    const bool cutting = state_ == State::CUT_BY_VOLTAGE || state_ == State::CUT_BY_SWITCHES;
+    const bool burning = state_ >= State::ARC_OK && state_ <= State::PAUSE_AT_END;
+    if (burning && in_.torch_off && out_.torch_on) {
         arc_off();
-        isTorchTaken_ = isCutting;
+        torch_taken_ = cutting;
     }
-    if (!isCutting) {
-        isTorchTaken_ = false;
+    if (!cutting) {
+        torch_taken_ = false;
         return true;
     }
-    return in_.torch_off || !isTorchTaken_ || isArcIgnored() || in_.mesh_enable;
+    return in_.torch_off || !torch_taken_ || isArcIgnored() || in_.mesh_enable;
 }
 
-/// Before the state runs.
+/// Runs before the state does.
 void Stops::watch_stops() noexcept {
-    isEndedNow_ = false;
+    ended_now_ = false;
     if (pending_ != Fault::NONE) {
         const Fault fault = pending_;
         pending_ = Fault::NONE;
-        if (isProbeTest_) {
+        if (is_probe_test_) {
             fault_ = fault;
             out_.probe_test_error = true;
             out_.probe_time += period_s_;
@@ -148,41 +148,41 @@ void Stops::watch_stops() noexcept {
         fail(Fault::ARC_LOST);
         return;
     }
-    const bool isProbing = state_ >= State::PROBE_HEIGHT && state_ <= State::PIERCE_HEIGHT;
-    const bool isCutting = state_ >= State::TORCH_ON && state_ <= State::PAUSE_AT_END;
-    const bool isWaiting = state_ == State::IDLE && !in_.program_is_idle && !wasIdle_;
+    const bool probing = state_ >= State::PROBE_HEIGHT && state_ <= State::PIERCE_HEIGHT;
+    const bool cutting = state_ >= State::TORCH_ON && state_ <= State::PAUSE_AT_END;
+    const bool waiting = state_ == State::IDLE && !in_.program_is_idle && !was_idle_;
     Fault fault = Fault::NONE;
-    if (isProbing) {
+    if (probing) {
         fault = in_.breakaway ? Fault::BREAKAWAY : Fault::NONE;
-    } else if (isCutting || isWaiting) {
+    } else if (cutting || waiting) {
         fault = sensor_fault();
     }
     if (fault != Fault::NONE) {
-        if (isProbeTest_) {
+        if (is_probe_test_) {
             pending_ = fault;
             return;
         }
-        const bool isNews = !isAlarmed_;
-        isAlarmed_ = true;
+        const bool is_news = !alarmed_;
+        alarmed_ = true;
         fail(fault);
-        fault_ = isNews ? fault : Fault::NONE;
+        fault_ = is_news ? fault : Fault::NONE;
         return;
     }
     if (out_.thc_active && in_.low_cut_volts > 0 && out_.arc_voltage_out < in_.low_cut_volts) {
-        isAlarmed_ = true;
+        alarmed_ = true;
         fail(Fault::VOLTAGE_LOW);
     }
 }
 
-/// Requests to the user interface stay until it has done what they ask.
+/// Requests to the user interface stay set until they are carried out.
 void Stops::run_requests() noexcept {
     if (out_.program_pause && in_.program_is_paused && state_ != State::PAUSED_MOTION) {
         out_.program_pause = false;
     }
-    const bool isCutting = before_ == State::CUT_BY_VOLTAGE || before_ == State::CUT_BY_SWITCHES;
-    if (isCutting) {
-        const bool isReduced = in_.feed_reduction >= 10.0 && in_.feed_reduction <= 100.0;
-        out_.adaptive_feed = isReduced ? in_.feed_reduction * 0.01 : 1.0;
+    const bool cutting = before_ == State::CUT_BY_VOLTAGE || before_ == State::CUT_BY_SWITCHES;
+    if (cutting) {
+        const bool reduced = in_.feed_reduction >= 10.0 && in_.feed_reduction <= 100.0;
+        out_.adaptive_feed = reduced ? in_.feed_reduction * 0.01 : 1.0;
     } else if (!out_.paused_motion) {
         out_.adaptive_feed = 1.0;
     }

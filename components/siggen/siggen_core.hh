@@ -20,10 +20,10 @@ struct Waves {
 
 class Generator {
   public:
-    /// One sample, `dt` seconds after the last. `frequency` [Hz] (taken as positive), at most half the sample
-    /// rate.
-    Waves run(double frequency, double amplitude, double offset, bool isReset, double dt) noexcept {
-        if (isReset) {
+    /// One sample, `dt` seconds after the previous one. `frequency` [Hz] is taken as positive and is limited
+    /// to half the sample rate.
+    Waves run(double frequency, double amplitude, double offset, bool is_reset, double dt) noexcept {
+        if (is_reset) {
             phase_ = 0.5;
         } else {
             double step = std::fabs(frequency) * dt;
@@ -33,15 +33,15 @@ class Generator {
                 phase_ -= 1.0;
             }
         }
-        // The wave starts at the positive peak of triangle and cosine; the second half is the rising one.
-        const bool isSecondHalf = phase_ > 0.5;
+        // The wave starts at the positive peak of the triangle and the cosine; it rises in the second half.
+        const bool is_second_half = phase_ > 0.5;
         const double angle = 2.0 * std::numbers::pi * phase_;
         Waves waves;
-        waves.clock = isSecondHalf;
-        waves.square = offset + (isSecondHalf ? amplitude : -amplitude);
+        waves.clock = is_second_half;
+        waves.square = offset + (is_second_half ? amplitude : -amplitude);
         waves.sine = offset + amplitude * std::sin(angle);
         waves.cosine = offset + amplitude * std::cos(angle);
-        waves.triangle = offset + amplitude * (isSecondHalf ? 4.0 * phase_ - 3.0 : 1.0 - 4.0 * phase_);
+        waves.triangle = offset + amplitude * (is_second_half ? 4.0 * phase_ - 3.0 : 1.0 - 4.0 * phase_);
         waves.sawtooth = offset + amplitude * (2.0 * phase_ - 1.0);
         return waves;
     }

@@ -12,7 +12,7 @@ struct PlantEncoder {
     InOut<bool> index_enable;
     Out<double> position, zero;
     plants::Encoder encoder;
-    bool wasJumping = false;
+    bool was_jumping = false;
 
     void declare(Declare &d) noexcept {
         d.pin(shaft, "shaft");
@@ -32,10 +32,10 @@ struct PlantEncoder {
             encoder.set({counts_per_unit, index_spacing, index_at});
         }
         encoder.lose(lost);
-        if (jump && !wasJumping) {
+        if (jump && !was_jumping) {
             encoder.jump(jump_by);
         }
-        wasJumping = jump;
+        was_jumping = jump;
         if (encoder.run(shaft, index_enable)) {
             index_enable = false;
         }

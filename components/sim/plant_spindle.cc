@@ -15,7 +15,7 @@ struct PlantSpindle {
     ParamRw<std::int32_t> counts_per_turn;
     plants::SpindlePlant plant{{}};
     double last_revs = 0;
-    bool isBegun = false, wasLosing = false;
+    bool isBegun = false, was_losing = false;
 
     void declare(Declare &d) noexcept {
         d.pin(command_rps, "command-rps");
@@ -43,10 +43,10 @@ struct PlantSpindle {
             plant = plants::SpindlePlant(traits);
         }
         plant.set_drive(ramp, lag_s, reaction_s, slip);
-        if (lose && !wasLosing) {
+        if (lose && !was_losing) {
             plant.lose_counts(lose_counts);
         }
-        wasLosing = lose;
+        was_losing = lose;
         plant.run(command_rps, load, period_s);
         speed_rps = (plant.shown_turns() - last_revs) / period_s;
         if (index_enable && plant.hasIndex()) {

@@ -44,19 +44,19 @@ struct SimAxis {
         pin(d, bothsw_homesw_out, axis, "bothsw-homesw-out");
     }
 
-    void update(double limit_offset, bool isHoming) noexcept {
+    void update(double limit_offset, bool is_homing) noexcept {
         const double at = current_pos;
-        const bool isHome = std::fabs(at - homesw_pos) <= homesw_hyst / 2.0;
-        const bool isMax = maxsw_lower + limit_offset < at && at < maxsw_upper;
-        const bool isMin = minsw_lower < at && at < minsw_upper - limit_offset;
-        const bool isLimit = (isMax || isMin) && !isHoming;
-        homesw_out = isHome;
-        maxsw_out = isMax;
-        minsw_out = isMin;
-        bothsw_out = isLimit;
-        maxsw_homesw_out = isMax || isHome;
-        minsw_homesw_out = isMin || isHome;
-        bothsw_homesw_out = isLimit || isHome;
+        const bool is_home = std::fabs(at - homesw_pos) <= homesw_hyst / 2.0;
+        const bool is_max = maxsw_lower + limit_offset < at && at < maxsw_upper;
+        const bool is_min = minsw_lower < at && at < minsw_upper - limit_offset;
+        const bool is_limit = (is_max || is_min) && !is_homing;
+        homesw_out = is_home;
+        maxsw_out = is_max;
+        minsw_out = is_min;
+        bothsw_out = is_limit;
+        maxsw_homesw_out = is_max || is_home;
+        minsw_homesw_out = is_min || is_home;
+        bothsw_homesw_out = is_limit || is_home;
     }
 
   private:
@@ -88,21 +88,21 @@ struct SimAxisHardware {
     }
 
     void update() noexcept {
-        bool isHoming = false;
+        bool is_homing = false;
         for (const SimAxis &each : axis) {
-            isHoming = isHoming || each.homing;
+            is_homing = is_homing || each.homing;
         }
-        bool isHome = false;
-        bool isLimit = false;
+        bool is_home = false;
+        bool is_limit = false;
         const double offset = limit_offset;
         for (SimAxis &each : axis) {
-            each.update(offset, isHoming);
-            isHome = isHome || (isHoming && each.homesw_out);
-            isLimit = isLimit || each.bothsw_out;
+            each.update(offset, is_homing);
+            is_home = is_home || (is_homing && each.homesw_out);
+            is_limit = is_limit || each.bothsw_out;
         }
-        homesw_all = isHome;
-        limitsw_all = isLimit;
-        limitsw_homesw_all = isHome || isLimit;
+        homesw_all = is_home;
+        limitsw_all = is_limit;
+        limitsw_homesw_all = is_home || is_limit;
     }
 };
 

@@ -2,7 +2,7 @@
 // sim_matrix_kb: the key codes of a keyboard of 8 by 8 buttons that exists only in pins. When
 // `button.cCC.rRR` (bit) changes, `out` (u32) is for a period its number, 8 * row + column, plus 0xC0 when
 // pressed and 0x80 when released; one change a period, lower columns first. Otherwise it is 0x40 while a
-// button is held, else 0.
+// button is pressed, else 0.
 #include "hal/sdk/component.hh"
 
 namespace mw::components {
@@ -27,12 +27,12 @@ struct SimMatrixKb {
     void update() noexcept {
         for (std::uint32_t i = 0; i < SIZE * SIZE; ++i) {
             const std::uint32_t number = SIZE * (i % SIZE) + i / SIZE;
-            const bool isPressed = button[i];
+            const bool pressed = button[i];
             const std::uint64_t mask = std::uint64_t{1} << i;
-            const bool wasPressed = (last & mask) != 0;
-            if (isPressed != wasPressed) {
+            const bool was_pressed = (last & mask) != 0;
+            if (pressed != was_pressed) {
                 last ^= mask;
-                out = number + (isPressed ? 0xc0U : 0x80U);
+                out = number + (pressed ? 0xc0U : 0x80U);
                 return;
             }
         }

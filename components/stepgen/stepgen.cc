@@ -41,12 +41,12 @@ struct StepChannel {
 
     PulseChannel pulses;
     RateControl control;
-    bool isVelocity = false;
+    bool is_velocity = false;
 
     void declare(Declare &d) noexcept;
     void make_pulses(long period_ns) noexcept;
     void capture() noexcept;
-    void update(std::int64_t pulse_period_ns, std::int64_t period_ns, bool isPeriodKnown) noexcept;
+    void update(std::int64_t pulse_period_ns, std::int64_t period_ns, bool period_known) noexcept;
 
   private:
     void declare_outputs(Declare &d) noexcept;
@@ -80,7 +80,7 @@ void StepChannel::declare(Declare &d) noexcept {
     d.pin(counts, "counts");
     d.pin(position_fb, "position-fb");
     d.pin(enable, "enable");
-    if (isVelocity) {
+    if (is_velocity) {
         d.pin(velocity_cmd, "velocity-cmd");
     } else {
         d.pin(position_cmd, "position-cmd");
@@ -95,7 +95,7 @@ void StepChannel::declare(Declare &d) noexcept {
 }
 
 double StepChannel::scale() noexcept {
-    // A scale of zero would make every position the same.
+    // With a scale of zero every position would be the same.
     constexpr double SMALLEST = 1e-20;
     const double value = position_scale;
     if (value < SMALLEST && value > -SMALLEST) {
@@ -127,10 +127,10 @@ void StepChannel::capture() noexcept {
     position_fb = pulses.position() / scale();
 }
 
-void StepChannel::update(std::int64_t pulse_period_ns, std::int64_t period_ns, bool isPeriodKnown) noexcept {
+void StepChannel::update(std::int64_t pulse_period_ns, std::int64_t period_ns, bool period_known) noexcept {
     Timing timing{steplen, stepspace, dirsetup, dirhold, dirdelay};
     timing.round_up_to(pulse_period_ns);
-    if (isPeriodKnown) {
+    if (period_known) {
         steplen = timing.steplen;
         stepspace = timing.stepspace;
         dirsetup = timing.dirsetup;
@@ -140,11 +140,11 @@ void StepChannel::update(std::int64_t pulse_period_ns, std::int64_t period_ns, b
     pulses.timing = timing;
     Command command;
     command.isEnabled = enable;
-    command.isVelocity = isVelocity;
+    command.is_velocity = is_velocity;
     command.scale = scale();
     command.max_vel = maxvel;
     command.max_accel = maxaccel;
-    if (isVelocity) {
+    if (is_velocity) {
         command.velocity = velocity_cmd;
     } else {
         command.position = position_cmd;
@@ -158,7 +158,7 @@ void StepChannel::update(std::int64_t pulse_period_ns, std::int64_t period_ns, b
 }
 
 struct Stepgen : Channels<StepChannel, MAX_CHANNELS> {
-    /// Until make-pulses has run once its period is not known.
+    /// The period of make-pulses is unknown until it has run once.
     static constexpr std::int64_t ASSUMED_PERIOD_NS = 50000;
     std::int64_t pulse_period_ns = 0;
 
@@ -169,9 +169,9 @@ struct Stepgen : Channels<StepChannel, MAX_CHANNELS> {
     }
 
     void make_pulses(long period_ns) noexcept {
-        // A shorter period than was assumed would make the first rate too high.
-        const bool isTooFast = pulse_period_ns == 0 && period_ns < ASSUMED_PERIOD_NS;
-        for (int i = 0; i < count && isTooFast; ++i) {
+        // If the period were shorter than assumed, the first rate would be too high.
+        const bool too_fast = pulse_period_ns == 0 && period_ns < ASSUMED_PERIOD_NS;
+        for (int i = 0; i < count && too_fast; ++i) {
             channel[i]->pulses.rate = channel[i]->pulses.rate * period_ns / ASSUMED_PERIOD_NS;
         }
         pulse_period_ns = period_ns;
@@ -181,10 +181,10 @@ struct Stepgen : Channels<StepChannel, MAX_CHANNELS> {
     }
 
     void update_freq(long period_ns) noexcept {
-        const bool isKnown = pulse_period_ns > 0;
+        const bool known = pulse_period_ns > 0;
         for (int i = 0; i < count; ++i) {
-            channel[i]->update(isKnown ? pulse_period_ns : ASSUMED_PERIOD_NS,
-                               isKnown ? period_ns : ASSUMED_PERIOD_NS, isKnown);
+            channel[i]->update(known ? pulse_period_ns : ASSUMED_PERIOD_NS,
+                               known ? period_ns : ASSUMED_PERIOD_NS, known);
         }
     }
 
@@ -195,7 +195,7 @@ struct Stepgen : Channels<StepChannel, MAX_CHANNELS> {
     }
 };
 
-/// The pattern of user_step_type=; nothing when it is not given.
+/// The pattern of user_step_type=; empty when it is not given.
 static Pattern user_pattern() noexcept {
     Pattern pattern;
     while (pattern.length < MAX_STATES && user_step_type[pattern.length] >= 0) {
@@ -207,7 +207,7 @@ static Pattern user_pattern() noexcept {
     return pattern;
 }
 
-/// Sets type and control of channel `i`: 0, or a negated errno with a message in the log.
+/// Sets step type and control type of channel `i`. Returns 0, or a negated errno with a message in the log.
 static int configure(StepChannel &channel, int i) noexcept {
     const int type = step_type[i];
     if (type > USER_TYPE) {
@@ -229,7 +229,7 @@ static int configure(StepChannel &channel, int i) noexcept {
                         ctrl_type[i], i);
         return -EINVAL;
     }
-    channel.isVelocity = control == 'v';
+    channel.is_velocity = control == 'v';
     return 0;
 }
 

@@ -7,7 +7,7 @@ namespace mw::stepgen {
 
 namespace {
 
-// Phase A is bit 0. States in the order of forward steps, from count 0 on.
+// Phase A is bit 0. The states are in the order of forward steps, starting at count 0.
 constexpr std::array<Pattern, LAST_STATE_TYPE - FIRST_STATE_TYPE + 1> PATTERNS{{
     {2, 4, {0b01, 0b11, 0b10, 0b00}},                                          // 2: quadrature
     {3, 3, {0b001, 0b010, 0b100}},                                             // 3: three phases, full step
@@ -30,7 +30,7 @@ constexpr std::array<Pattern, LAST_STATE_TYPE - FIRST_STATE_TYPE + 1> PATTERNS{{
       0b10011}},  // 14: half step
 }};
 
-/// Position errors below this are not worth a correction [steps].
+/// Position errors below this are not corrected [steps].
 constexpr double NEGLIGIBLE_STEPS = 1e-4;
 
 std::uint32_t rounded_up(std::uint32_t time_ns, std::int64_t period_ns) noexcept {
@@ -53,23 +53,23 @@ double following_velocity(double error, double velocity, double command_velocity
                           double dt) noexcept {
     const double relative = velocity - command_velocity;
     const double time_to_match = std::fabs(relative) / accel;
-    // The command was sampled at the start of this period and the output holds its velocity for a whole one,
-    // so at the end the output stands one and a half periods of the command behind.
+    // The command was sampled at the start of this period and the output keeps its velocity for a whole
+    // period, so at the end the output is one and a half periods of the command behind.
     const double error_when_matched = error + 0.5 * relative * time_to_match + 1.5 * command_velocity * dt;
-    const bool isNearlyMatched = time_to_match <= dt * (1.0 + 1e-9);
-    if (isNearlyMatched) {
+    const bool nearly_matched = time_to_match <= dt * (1.0 + 1e-9);
+    if (nearly_matched) {
         if (std::fabs(error_when_matched) < NEGLIGIBLE_STEPS) {
             return command_velocity;
         }
         const double wanted = command_velocity - 0.5 * error_when_matched / dt;
         return velocity + clamped(wanted - velocity, accel * dt);
     }
-    // Braking relative to the command now ends at error_when_matched; putting it off for a period moves that
-    // end by about twice the relative travel of a period. Brake once that would be no improvement.
+    // Braking relative to the command now ends at error_when_matched. Braking one period later moves that end
+    // by about twice the relative travel of a period. Brake when that would not reduce the error.
     const double direction = relative > 0.0 ? 1.0 : -1.0;
     const double shortfall = -direction * error_when_matched;
-    const bool isEarly = shortfall > 2.0 * std::fabs(relative) * dt;
-    return velocity + (isEarly ? direction : -direction) * accel * dt;
+    const bool early = shortfall > 2.0 * std::fabs(relative) * dt;
+    return velocity + (early ? direction : -direction) * accel * dt;
 }
 
 }  // namespace
@@ -109,16 +109,16 @@ void PulseChannel::run_timers(std::int64_t period_ns) noexcept {
     }
 }
 
-/// Makes the direction that of the rate as soon as the timing allows. False while it cannot.
+/// Sets the direction to that of the rate as soon as the timing allows it. False while it does not.
 bool PulseChannel::turn_if_needed() noexcept {
-    const bool wantsReverse = rate < 0;
-    if (rate == 0 || wantsReverse == isReverse) {
+    const bool wants_reverse = rate < 0;
+    if (rate == 0 || wants_reverse == isReverse) {
         return true;
     }
     if (step || reverse_left_ns > 0) {
         return false;
     }
-    isReverse = wantsReverse;
+    isReverse = wants_reverse;
     setup_left_ns = type == STEP_AND_DIR ? timing.dirsetup : 0;
     return true;
 }
@@ -138,17 +138,17 @@ void PulseChannel::emit_step(int direction) noexcept {
 void PulseChannel::run(std::int64_t period_ns) noexcept {
     run_timers(period_ns);
     if (isEnabled) {
-        const bool hasDirection = turn_if_needed();
+        const bool has_direction = turn_if_needed();
         const Phase next = phase + rate;
         const Phase steps = (next >> PHASE_BITS) - (phase >> PHASE_BITS);
-        const bool mayStep = hasDirection && !step && space_left_ns == 0 && setup_left_ns == 0;
+        const bool may_step = has_direction && !step && space_left_ns == 0 && setup_left_ns == 0;
         if (steps == 0) {
             phase = next;
-        } else if (mayStep) {
+        } else if (may_step) {
             phase = next;
             emit_step(steps > 0 ? 1 : -1);
         }
-        // Otherwise the position waits where it is until the waveform allows the step.
+        // Otherwise the position does not change until the waveform allows the step.
     }
     if (type >= FIRST_STATE_TYPE && pattern.length > 0) {
         const std::int32_t remainder = counts % pattern.length;
@@ -171,7 +171,7 @@ void RateControl::run(const Command &command, PulseChannel &channel, std::int64_
 
     const double velocity = static_cast<double>(channel.rate) / static_cast<double>(ONE_STEP) / pulse_dt;
     double wanted = 0.0;
-    if (command.isVelocity) {
+    if (command.is_velocity) {
         wanted =
             velocity + clamped(clamped(command.velocity * command.scale, highest) - velocity, accel * dt);
     } else {

@@ -25,23 +25,23 @@ struct Pattern {
     std::array<std::uint8_t, MAX_STATES> states{};
 };
 
-/// Pattern of step types 2 to 14; type 15 is made by the user.
+/// Pattern of the step types 2 to 14; the user defines type 15.
 const Pattern &pattern_of(int type) noexcept;
 
-/// Minimum times of the waveform [ns]. Which ones a step type has: see step_type_uses_*.
+/// Minimum times of the waveform [ns]. step_type_uses_* shows which ones a step type has.
 struct Timing {
     std::uint32_t steplen = 1;
-    std::uint32_t stepspace = 1;  ///< types 0 and 1
-    std::uint32_t dirsetup = 1;   ///< type 0
-    std::uint32_t dirhold = 1;    ///< type 0
-    std::uint32_t dirdelay = 1;   ///< types 1 and up
+    std::uint32_t stepspace = 1;  ///< for types 0 and 1
+    std::uint32_t dirsetup = 1;   ///< for type 0
+    std::uint32_t dirhold = 1;    ///< for type 0
+    std::uint32_t dirdelay = 1;   ///< for types 1 and above
 
     /// Rounds all up to whole pulse periods; steplen is at least one.
     void round_up_to(std::int64_t period_ns) noexcept;
 };
 
-/// Position in steps as a binary fraction: 28 bits behind the point. Rates are truncated to it; recorded step
-/// sequences depend on that resolution to the period.
+/// Position in steps as a binary fraction with 28 fractional bits. Rates are truncated to it; recorded step
+/// sequences depend on that resolution to the exact period.
 using Phase = std::int64_t;
 constexpr int PHASE_BITS = 28;
 constexpr Phase ONE_STEP = Phase{1} << PHASE_BITS;
@@ -52,7 +52,7 @@ struct PulseChannel {
     int type = STEP_AND_DIR;
     Pattern pattern{};
     Timing timing{};
-    bool isEnabled = false;  ///< set by the fast part in every period: without it no step begins
+    bool isEnabled = false;  ///< the fast part sets this in every period; without it no step starts
     Phase rate = 0;          ///< steps per pulse period
 
     // Outputs.
@@ -61,7 +61,7 @@ struct PulseChannel {
     std::uint8_t phases = 0;  ///< state types
     std::int32_t counts = 0;
 
-    /// Half a step ahead, so that a step comes in the middle between two whole positions.
+    /// Half a step ahead, so that a step is halfway between two whole positions.
     Phase phase = HALF_STEP;
     std::int64_t high_left_ns = 0;
     std::int64_t space_left_ns = 0;
@@ -78,10 +78,10 @@ struct PulseChannel {
     void emit_step(int direction) noexcept;
 };
 
-/// What the slow part needs to know in a call. Lengths in machine units.
+/// The inputs of the slow part in one call. Lengths are in machine units.
 struct Command {
     bool isEnabled = false;
-    bool isVelocity = false;  ///< control type v instead of p
+    bool is_velocity = false;  ///< control type v instead of p
     double position = 0.0;
     double velocity = 0.0;   ///< [units/s]
     double scale = 1.0;      ///< [steps/unit]
@@ -91,7 +91,7 @@ struct Command {
 
 /// The slow part: follows a command within velocity and acceleration. [realtime]
 struct RateControl {
-    double last_position = 0.0;  ///< command of the call before [units]
+    double last_position = 0.0;  ///< command of the previous call [units]
     double frequency = 0.0;      ///< [steps/s]
 
     /// Sets `channel.rate` for the time until the next call. `pulse_period_ns` is that of the fast part.

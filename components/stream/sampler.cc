@@ -37,9 +37,9 @@ struct Sampler {
         }
         hal_stream_data_u record[HAL_STREAM_MAX_PINS];
         pins.read(record);
-        const bool isStored = hal_stream_write(&pins.stream, record) >= 0;
-        full = !isStored;
-        if (!isStored) {
+        const bool stored = hal_stream_write(&pins.stream, record) >= 0;
+        full = !stored;
+        if (!stored) {
             overruns = next_count(overruns);
         }
         sample_num = next_count(sample_num);

@@ -38,10 +38,10 @@ struct Streamer {
     }
 
     void update() noexcept {
-        const bool isDue = isClocked();
+        const bool due = isClocked();
         curr_depth = static_cast<std::int32_t>(hal_stream_depth(&pins.stream));
         empty = !hal_stream_readable(&pins.stream);
-        if (!enable || !isDue) {
+        if (!enable || !due) {
             return;
         }
         hal_stream_data_u record[HAL_STREAM_MAX_PINS];
@@ -55,13 +55,13 @@ struct Streamer {
   private:
     bool isClocked() noexcept {
         const bool now = clock;
-        const bool isRising = now && !last_clock;
-        const bool isFalling = !now && last_clock;
+        const bool rising = now && !last_clock;
+        const bool falling = !now && last_clock;
         last_clock = now;
         switch (clock_mode) {
-        case FALLING_EDGE: return isFalling;
-        case RISING_EDGE: return isRising;
-        case ANY_EDGE: return isRising || isFalling;
+        case FALLING_EDGE: return falling;
+        case RISING_EDGE: return rising;
+        case ANY_EDGE: return rising || falling;
         default: return true;
         }
     }

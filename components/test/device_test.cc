@@ -19,7 +19,7 @@
 namespace mw::components::test {
 namespace {
 
-/// A carousel of eight pockets with binary sensors.
+/// A carousel with eight pockets and binary sensors.
 class CarouselTest : public ::testing::Test {
   protected:
     Bench bench{"loadrt carousel pockets=8 encoding=binary\naddf carousel.0 t\nsetp carousel.0.fwd-dc 1.5\n"
@@ -106,7 +106,7 @@ TEST_F(CarouselTest, AlignsOnTheForwardEdge) {
     at(3);
     at(4);
     EXPECT_EQ(pin("motor-vel"), 0.0) << "slowing down";
-    at(0);  // it ran on
+    at(0);  // it overshot
     at(0);
     EXPECT_EQ(pin("motor-vel"), -0.1);
     at(4);
@@ -151,7 +151,7 @@ TEST(CarouselHoming, SearchesTheIndexFirst) {
     };
     step(0, 1);
     EXPECT_EQ(bench.get("carousel.0.homing"), 1.0);
-    bench.set("carousel.0.enable", 0);  // homing goes on
+    bench.set("carousel.0.enable", 0);  // homing continues
     step(1, 0);
     EXPECT_EQ(bench.get("carousel.0.motor-fwd"), 1.0);
     bench.set("carousel.0.enable", 1);
@@ -215,7 +215,7 @@ TEST(Thermocouple, FollowsTheTablesOfTypeK) {
     EXPECT_TRUE(std::isnan(thermocouple::type_k_celsius(60)));
 }
 
-/// A converter on the other end of the wires.
+/// A converter at the other end of the wires.
 double read_max31855(Bench &bench, std::uint32_t frame) {
     int bit = 31;
     bool last_clock = false;
@@ -246,7 +246,7 @@ TEST(Max31855, ReadsFramesAndFaults) {
     EXPECT_EQ(bench.get("max31855.0.fault.0"), 1.0);
     EXPECT_EQ(bench.get("max31855.0.fault-flags.0"), 2.0);
     EXPECT_NEAR(read_max31855(bench, frame(-50, 20)), -55.7, 0.2) << "the converter counts straight on";
-    EXPECT_EQ(read_max31855(bench, frame(1500, 20)), 1500.0) << "beyond the curve: as it comes";
+    EXPECT_EQ(read_max31855(bench, frame(1500, 20)), 1500.0) << "outside the curve: unchanged";
 }
 
 std::string text_of(const lcd::Text &text) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// limit3 under random limits and inputs, judged from its output alone: what it may do, and that it does it.
+// limit3 with random limits and inputs; the test checks only its output.
 #include <cmath>
 #include <cstdlib>
 #include <random>
@@ -16,15 +16,15 @@ namespace {
 
 constexpr double DT = 1e-3;  ///< [s]
 constexpr int SAMPLES = 3000;
-constexpr int STANDING = 1000;  ///< last samples, in which the input stands
+constexpr int STANDING = 1000;  ///< number of last samples in which the input does not change
 
-/// One machine and what it is asked to follow.
+/// One machine and the input that it follows.
 struct Followed {
     limit::Limit3::Bounds bounds;
     std::vector<double> in, out;
 };
 
-/// Sine, triangle, steps, or a walk of random speed, over more than the room between the limits.
+/// Sine, triangle, steps, or a random walk, over more than the range between the limits.
 double input_at(int kind, double t, double amplitude, double hertz, std::mt19937 &random, double last) {
     const double phase = t * hertz - std::floor(t * hertz);
     switch (kind) {
@@ -60,21 +60,21 @@ Followed make_run(unsigned seed) {
     return run;
 }
 
-/// Within 0.1 % of `place`, or of what one period changes at full acceleration, below which full steps cannot
-/// land.
+/// Within 0.1 % of `place`, or of the change that one period makes at full acceleration; full steps cannot be
+/// more accurate.
 bool isNear(double out, double place, const limit::Limit3::Bounds &bounds) {
     return std::fabs(out - place) <= 1e-3 * std::fabs(out) ||
            std::fabs(out - place) <= 1.01 * bounds.max_accel * DT * DT;
 }
 
-/// Time to come to rest anywhere between the limits from any state: a stop, then the whole room once.
+/// Time to reach standstill anywhere between the limits from any state: a stop, then the whole range once.
 double longest_way_s(const limit::Limit3::Bounds &b) {
     const double room = b.max - b.min;
     const double stop = b.max_vel / b.max_accel;
     return stop + 2.0 * std::sqrt(room / b.max_accel) + room / b.max_vel + stop + 0.01;
 }
 
-/// What is wrong with the run, or nothing. `fractions` counts accelerations that are less than the full one.
+/// The error in the run, or nothing. `fractions` counts accelerations below the full one.
 std::string judge(const Followed &run, int &fractions) {
     const auto &b = run.bounds;
     double v_last = 0.0;
@@ -82,7 +82,7 @@ std::string judge(const Followed &run, int &fractions) {
         const double out = run.out[i];
         const double v = (out - (i == 0 ? 0.0 : run.out[i - 1])) / DT;
         const double a = (v - v_last) / DT;
-        // Rounding of differences of numbers of this size.
+        // Rounding error of differences between numbers of this size.
         const double v_slack = 1e-9 * (1.0 + b.max - b.min);
         const double a_slack = v_slack / DT;
         const std::string at = " at sample " + std::to_string(i) + ", out " + std::to_string(out);
@@ -95,11 +95,11 @@ std::string judge(const Followed &run, int &fractions) {
         if (std::fabs(a) > b.max_accel + a_slack) {
             return "more than maxa" + at;
         }
-        const bool isFull = std::fabs(a) >= b.max_accel - a_slack;
-        const bool isFastest = std::fabs(v) >= b.max_vel - v_slack;
-        const bool isThere = isNear(out, run.in[i], b) || isNear(out, b.min, b) || isNear(out, b.max, b);
-        fractions += isFull || isFastest ? 0 : 1;
-        if (!isFull && !isFastest && !isThere) {
+        const bool full = std::fabs(a) >= b.max_accel - a_slack;
+        const bool fastest = std::fabs(v) >= b.max_vel - v_slack;
+        const bool present = isNear(out, run.in[i], b) || isNear(out, b.min, b) || isNear(out, b.max, b);
+        fractions += full || fastest ? 0 : 1;
+        if (!full && !fastest && !present) {
             return "less than maxa without a reason" + at;
         }
         v_last = v;

@@ -231,9 +231,9 @@ TEST(LegacyNames, FindPinsAndParametersBesideTheNewOnes) {
     EXPECT_EQ(bench.get("filter-kalman.0.rk"), 3.0);
     EXPECT_EQ(bench.hal().pin("encoder.0.phase-a")->signal, "a");
     for (const hal::PinInfo &pin : bench.hal().pins("*")) {
-        const bool hasUpper = std::any_of(pin.name.begin(), pin.name.end(),
-                                          [](unsigned char c) { return std::isupper(c) != 0; });
-        EXPECT_FALSE(hasUpper) << pin.name;
+        const bool has_upper = std::any_of(pin.name.begin(), pin.name.end(),
+                                           [](unsigned char c) { return std::isupper(c) != 0; });
+        EXPECT_FALSE(has_upper) << pin.name;
     }
 }
 

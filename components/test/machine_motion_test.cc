@@ -12,7 +12,7 @@ namespace {
 
 constexpr double DT = 0.001;
 
-/// Watches an output: its speed and acceleration in every period.
+/// Checks the speed and acceleration of an output in every period.
 class Watch {
   public:
     Watch(Bench &bench, std::string pin, double max_vel, double max_acc)
@@ -24,7 +24,7 @@ class Watch {
         const double velocity = (now - last_) / DT;
         EXPECT_TRUE(std::isfinite(now)) << pin_;
         EXPECT_LE(std::fabs(velocity), max_vel_ * (1 + 1e-6) + 1e-9) << pin_;
-        // Positions in the middle of two periods: the mean speeds may differ by one period's acceleration.
+        // Mean speeds belong to the middle of each period; they may differ by the acceleration of one period.
         EXPECT_LE(std::fabs(velocity - velocity_), max_acc_ * DT * (1 + 1e-6) + 1e-7) << pin_;
         last_ = now;
         velocity_ = velocity;
@@ -168,9 +168,9 @@ class MoveoffTest : public ::testing::Test {
         "setp mv.power-on 1\nsetp mv.offset-vel-0 10\nsetp mv.offset-accel-0 100\nsetp mv.offset-vel-1 5\n"
         "setp mv.offset-accel-1 50\nsetp mv.offset-max-0 2\nsetp mv.pos-0 7\nsetp mv.fb-0 6"};
 
-    void enable(bool isOn) {
-        bench.set("mv.move-enable", isOn ? 1 : 0);
-        bench.set("mv.apply-offsets", isOn ? 1 : 0);
+    void enable(bool on) {
+        bench.set("mv.move-enable", on ? 1 : 0);
+        bench.set("mv.apply-offsets", on ? 1 : 0);
     }
 };
 
@@ -205,7 +205,7 @@ TEST_F(MoveoffTest, GoesBackTheWayItCame) {
     const auto pass = [&](int periods) {
         for (int i = 0; i < periods; ++i) {
             first.pass();
-            // The second watch looks at the same period.
+            // The second check reads the same period.
             const double now = bench.get("mv.offset-current-1");
             EXPECT_TRUE(std::isfinite(now));
         }
@@ -217,7 +217,7 @@ TEST_F(MoveoffTest, GoesBackTheWayItCame) {
     pass(1000);
     EXPECT_GT(bench.get("mv.waypoint-ct"), 10.0);
     enable(false);
-    double farthest = 0.0;  // from the corner's two sides
+    double farthest = 0.0;  // from both sides of the corner
     for (int i = 0; i < 20000 && bench.get("mv.dbg-state") != 0.0; ++i) {
         first.pass();
         const double x = bench.get("mv.offset-current-0");
@@ -289,7 +289,7 @@ TEST(MachineOutputs, StayNumbersWhenInputsAreNone) {
             bench.set(pin.name, 1);
         }
         bench.pass(3);
-        // The inputs that carry positions, speeds and measured values; not the settings.
+        // The inputs for positions, speeds and measured values; not the settings.
         for (const char *input :
              {"*-cmd",         "*-fb",      "in",           "*.in",         "command",
               "*.command",     "*feedback", "*pos-in",      "*target-pos",  "*pos-?",

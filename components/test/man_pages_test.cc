@@ -14,7 +14,7 @@
 namespace mw::components::test {
 namespace {
 
-/// The page that describes a module: its own, or that of the one it is built with.
+/// The page that describes a module: its own, or that of the module with the same source.
 std::string page_of(const std::string &module) {
     static const std::map<std::string, std::string> SHARED = {{"abs_s32", "abs"},
                                                               {"abs_s64", "abs"},
@@ -29,7 +29,7 @@ std::string page_of(const std::string &module) {
     return module.rfind("conv_", 0) == 0 ? "conv" : module;
 }
 
-/// The words of a page that are set in bold.
+/// The bold words on a page.
 std::set<std::string> bold_words(const std::string &page) {
     for (const auto &folder : std::filesystem::directory_iterator(MW_COMPONENTS_FOLDER)) {
         std::ifstream file(folder.path() / "man" / (page + ".9.scd"));
@@ -39,17 +39,17 @@ std::set<std::string> bold_words(const std::string &page) {
         const std::string text(std::istreambuf_iterator<char>(file), {});
         std::set<std::string> words;
         std::string word;
-        bool isBold = false;
+        bool is_bold = false;
         for (std::size_t i = 0; i < text.size(); ++i) {
-            const bool isEscaped = text[i] == '\\' && i + 1 < text.size();
+            const bool escaped = text[i] == '\\' && i + 1 < text.size();
             if (text[i] == '*') {
-                if (isBold) {
+                if (is_bold) {
                     words.insert(word);
                 }
-                isBold = !isBold;
+                is_bold = !is_bold;
                 word.clear();
             } else {
-                i += isEscaped ? 1 : 0;
+                i += escaped ? 1 : 0;
                 word += text[i];
             }
         }
@@ -58,8 +58,8 @@ std::set<std::string> bold_words(const std::string &page) {
     return {};
 }
 
-/// True when `name` is `pattern` with numbers in the place of its index letters (N, M, MM, FROM-TO and so
-/// on), or the letter of an axis in the place of L.
+/// True when `name` matches `pattern`: numbers replace its index letters (N, M, MM, FROM-TO and so on), and
+/// the letter of an axis replaces L.
 bool isNamed(const std::string &pattern, const std::string &name) {
     std::size_t p = 0;
     std::size_t n = 0;
@@ -70,9 +70,9 @@ bool isNamed(const std::string &pattern, const std::string &name) {
         return at < name.size() && std::isdigit(static_cast<unsigned char>(name[at])) != 0;
     };
     while (p < pattern.size() && n < name.size()) {
-        const bool isAxis = p < pattern.size() && pattern[p] == 'L' && n < name.size() &&
-                            std::string_view("xyzabcuvw").find(name[n]) != std::string_view::npos;
-        if (isAxis) {
+        const bool is_axis = p < pattern.size() && pattern[p] == 'L' && n < name.size() &&
+                             std::string_view("xyzabcuvw").find(name[n]) != std::string_view::npos;
+        if (is_axis) {
             ++p;
             ++n;
         } else if (is_upper(p) && is_digit(n)) {
@@ -96,10 +96,10 @@ TEST_P(ManPage, NamesEverythingThatTheModuleExports) {
     const std::set<std::string> words = bold_words(page_of(module));
     ASSERT_FALSE(words.empty()) << "no page " << page_of(module) << ".9.scd";
     if (module == "threads") {
-        return;  // every bench has loaded it; it exports threads only
+        return;  // every bench has loaded it; it exports only threads
     }
-    const bool isMotion = module == "motmod";
-    Bench bench(isMotion ? "loadrt trivkins\nloadrt tpmod\nloadrt homemod" : "");
+    const bool is_motion = module == "motmod";
+    Bench bench(is_motion ? "loadrt trivkins\nloadrt tpmod\nloadrt homemod" : "");
     bench.run("loadrt " + module + " " + arguments_of(module));
     ASSERT_EQ(bench.output.errors, "");
     const auto expect_named = [&](std::string name) {
@@ -112,9 +112,9 @@ TEST_P(ManPage, NamesEverythingThatTheModuleExports) {
             std::replace(shared.begin(), shared.end(), '_', '-');
             name.replace(0, name.find('.'), shared);
         }
-        const bool isThere = std::any_of(words.begin(), words.end(),
+        const bool present = std::any_of(words.begin(), words.end(),
                                          [&](const std::string &word) { return isNamed(word, name); });
-        EXPECT_TRUE(isThere) << name << " is not in the page of " << module;
+        EXPECT_TRUE(present) << name << " is not in the page of " << module;
     };
     for (const hal::PinInfo &pin : bench.hal().pins("*")) {
         if (pin.owner == module && !pin.name.ends_with(".time")) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What components do in the period in which something changes: the first period, an enable, an index, an
-// edge. The figures are those of LinuxCNC 2.9 unless a test says otherwise.
+// The behaviour of components in the period in which something changes: the first period, an enable, an
+// index, an edge. The values are those of LinuxCNC 2.9 unless a test states otherwise.
 #include <cmath>
 
 #include "components/test/bench.hh"
@@ -9,7 +9,7 @@
 namespace mw::components::test {
 namespace {
 
-/// A pid whose command and feedback are set in every period; the gains show each term by its size.
+/// A pid with command and feedback set in every period; the gains give each term its own size.
 class PidBench {
   public:
     explicit PidBench(const std::string &setup)
@@ -73,12 +73,12 @@ TEST(Pid, EnablingWhileTheCommandMovesAddsNoStep) {
         }
         pid.set("enable", 0);
         pid.step(1.8, 1.3);
-        EXPECT_NEAR(pid.get("commandD"), 100.0, 1e-6) << "goes on while disabled";
+        EXPECT_NEAR(pid.get("commandD"), 100.0, 1e-6) << "continues while disabled";
         EXPECT_EQ(pid.get("errorI"), 0.0);
     }
 }
 
-// LinuxCNC takes the command of the period before the first one for 0.
+// LinuxCNC takes the command of the period before the first one as 0.
 TEST(Pid, TheFirstPeriodHasNoDerivativeAndNoPreviousTarget) {
     PidBench pid(
         "setp pid.0.Pgain 1\nsetp pid.0.Dgain 1\nsetp pid.0.FF1 1\nsetp pid.0.FF2 1\nsetp pid.0.FF3 1\n"

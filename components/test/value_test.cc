@@ -86,7 +86,7 @@ TEST(MuxGeneric, WaitsForAStableSelectionAndConverts) {
     EXPECT_EQ(bench.get("mux-gen.00.out-float"), 1.5);
     bench.set("mux-gen.00.sel-int", 9);
     bench.pass(4);
-    EXPECT_EQ(bench.get("mux-gen.00.out-float"), 4.5) << "beyond the last is the last";
+    EXPECT_EQ(bench.get("mux-gen.00.out-float"), 4.5) << "above the last is the last";
     bench.set("mux-gen.00.suppress-no-input", 1);
     bench.set("mux-gen.00.sel-int", 0);
     bench.pass(4);
@@ -115,16 +115,16 @@ TEST(Conv, ClampsOrWrapsWhatDoesNotFit) {
 TEST(ConvCore, KnowsTheEdgesOfEveryType) {
     using conv::convert;
     EXPECT_EQ(convert<std::int64_t>(9.3e18, true).value, INT64_MAX);
-    EXPECT_TRUE(convert<std::int64_t>(9.3e18, true).isOutOfRange);
+    EXPECT_TRUE(convert<std::int64_t>(9.3e18, true).out_of_range);
     EXPECT_EQ(convert<std::uint64_t>(-1.5, true).value, 0U);
-    EXPECT_FALSE(convert<std::uint64_t>(-0.5, true).isOutOfRange) << "cut to zero first";
+    EXPECT_FALSE(convert<std::uint64_t>(-0.5, true).out_of_range) << "cut to zero first";
     EXPECT_EQ(convert<std::int32_t>(std::nan(""), true).value, 0);
-    EXPECT_TRUE(convert<std::int32_t>(std::nan(""), true).isOutOfRange);
+    EXPECT_TRUE(convert<std::int32_t>(std::nan(""), true).out_of_range);
     EXPECT_EQ(convert<std::int32_t>(std::int64_t{-3000000000}, true).value, INT32_MIN);
     EXPECT_EQ(convert<std::uint32_t>(std::int64_t{-1}, false).value, UINT32_MAX);
-    EXPECT_FALSE(convert<std::int64_t>(std::int32_t{-5}, true).isOutOfRange);
+    EXPECT_FALSE(convert<std::int64_t>(std::int32_t{-5}, true).out_of_range);
     EXPECT_TRUE(convert<bool>(std::uint32_t{2}, true).value);
-    EXPECT_TRUE(convert<bool>(std::uint32_t{2}, true).isOutOfRange);
+    EXPECT_TRUE(convert<bool>(std::uint32_t{2}, true).out_of_range);
     EXPECT_FALSE(convert<bool>(1e-11, true).value);
 }
 

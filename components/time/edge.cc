@@ -16,7 +16,7 @@ struct Edge {
     ParamRw<std::int32_t> out_width_ns;
     ParamRo<std::int32_t> time_left_ns;
     ParamRo<bool> last_in;
-    bool isFirst = true;
+    bool first = true;
 
     void declare(Declare &d) noexcept {
         d.pin(in, "in");
@@ -32,13 +32,13 @@ struct Edge {
 
     void update(long period_ns) noexcept {
         const bool input = in;
-        const bool hasChanged = !isFirst && input != last_in;
-        const bool isWanted = both || (in_edge ? !input : input);
-        isFirst = false;
+        const bool changed = !first && input != last_in;
+        const bool wanted = both || (in_edge ? !input : input);
+        first = false;
         last_in = input;
         const std::int64_t left = std::int64_t{time_left_ns} - period_ns;
         time_left_ns = left > 0 ? static_cast<std::int32_t>(left) : 0;
-        if (hasChanged && isWanted) {
+        if (changed && wanted) {
             const std::int32_t width = out_width_ns;
             time_left_ns = width > 0 ? width : 1;
         }

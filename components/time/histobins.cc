@@ -38,7 +38,7 @@ struct Histobins {
     std::uint32_t used_bins = 0;
     double used_size = 0.0;
     double used_min = 0.0;
-    double deviations = 0.0;  // sum of squares from the mean
+    double deviations = 0.0;  // sum of the squared differences from the mean
     double sum = 0.0;
     double squares = 0.0;
 
@@ -111,9 +111,9 @@ void Histobins::count(double value) noexcept {
     } else {
         ++bins[static_cast<int>(place)];
     }
-    const bool isFirst = nsamples == 0;
-    input_min = isFirst || value < input_min ? value : input_min.get();
-    input_max = isFirst || value > input_max ? value : input_max.get();
+    const bool first = nsamples == 0;
+    input_min = first || value < input_min ? value : input_min.get();
+    input_max = first || value > input_max ? value : input_max.get();
     nsamples = nsamples + 1;
     const double n = nsamples;
     const double before = mean;
@@ -138,8 +138,8 @@ void Histobins::update() noexcept {
         count(value);
     }
     const std::int32_t wanted = index;
-    const bool isBin = wanted >= 0 && wanted < static_cast<std::int32_t>(used_bins);
-    binvalue = isBin ? bins[wanted] : -1.0;
+    const bool is_bin = wanted >= 0 && wanted < static_cast<std::int32_t>(used_bins);
+    binvalue = is_bin ? bins[wanted] : -1.0;
     check = wanted;
 }
 

@@ -4,7 +4,7 @@
 // `latency` (s32) [ns] is the time since the run before less the period, counted in bins of `nsbinsize` (s32)
 // [ns]. `index` (s32) chooses a bin: `pbinvalue` is the count on the late side, `nbinvalue` on the early side
 // (-1 for no such bin; bin 0 is on the late side only), `check` repeats it. `maxbinnumber` (s32, 1000) bins
-// are used; `pextra`, `nextra` count beyond. latency-max, latency-min [ns], `variance` [ns^2],
+// are used; `pextra`, `nextra` count outside. latency-max, latency-min [ns], `variance` [ns^2],
 // `availablebins` (1000). `reset` (bit) clears. With nsbinsize below 1 nothing is counted in bins.
 #include <cmath>
 
@@ -30,7 +30,7 @@ struct Latencybins {
     double runs = 0.0;
     double mean = 0.0;
     double deviations = 0.0;
-    bool isFirst = true;
+    bool first = true;
 
     void declare(Declare &d) noexcept;
     void update(long period_ns) noexcept;
@@ -87,11 +87,11 @@ void Latencybins::count(std::int32_t ns) noexcept {
     if (size < 1) {
         return;
     }
-    const bool isLate = ns >= 0 || -static_cast<std::int64_t>(ns) < size;
+    const bool is_late = ns >= 0 || -static_cast<std::int64_t>(ns) < size;
     const std::int64_t bin = (ns < 0 ? -static_cast<std::int64_t>(ns) : ns) / size;
     if (bin <= last_bin()) {
-        ++(isLate ? late : early)[bin];
-    } else if (isLate) {
+        ++(is_late ? late : early)[bin];
+    } else if (is_late) {
         pextra = next_count(pextra);
     } else {
         nextra = next_count(nextra);
@@ -101,19 +101,19 @@ void Latencybins::count(std::int32_t ns) noexcept {
 void Latencybins::update(long period_ns) noexcept {
     const long long now_ns = rtapi_get_time();
     const long long late_ns = now_ns - last_ns - period_ns;
-    const bool wasFirst = isFirst;
+    const bool was_first = first;
     last_ns = now_ns;
-    isFirst = false;
+    first = false;
     if (reset) {
         clear();
-    } else if (!wasFirst) {
+    } else if (!was_first) {
         latency = conv::convert<std::int32_t>(static_cast<std::int64_t>(late_ns), true).value;
         count(latency);
     }
     const std::int32_t wanted = index;
-    const bool isBin = wanted >= 0 && wanted <= last_bin();
-    pbinvalue = isBin ? late[wanted] : -1;
-    nbinvalue = isBin ? early[wanted] : -1;
+    const bool is_bin = wanted >= 0 && wanted <= last_bin();
+    pbinvalue = is_bin ? late[wanted] : -1;
+    nbinvalue = is_bin ? early[wanted] : -1;
     check = wanted;
 }
 

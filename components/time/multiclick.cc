@@ -17,7 +17,7 @@ constexpr std::int32_t WAITING = 9;
 constexpr const char *CLICK_NAMES[CLICKS] = {"single-click", "double-click", "triple-click",
                                              "quadruple-click"};
 
-/// An output that stays true for a while.
+/// An output that stays true for some time.
 struct Pulse {
     Out<bool> out;
     std::int64_t age_ns = 0;
@@ -74,23 +74,23 @@ void Multiclick::update(long period_ns) noexcept {
         only[i].run(output_hold_ns, period_ns);
     }
     waited_ns += period_ns;
-    const bool isPressed = in != invert_input;
+    const bool pressed = in != invert_input;
     const std::int32_t now = state;
     if (now == WAITING) {
-        if (!isPressed) {
+        if (!pressed) {
             go(0);
         }
         return;
     }
-    const bool isInPress = now % 2 != 0;
-    if (isInPress && !isPressed) {
+    const bool in_press = now % 2 != 0;
+    if (in_press && !pressed) {
         click[now / 2].start();
         go(now + 1);
-    } else if (isInPress && waited_ns > max_hold_ns) {
+    } else if (in_press && waited_ns > max_hold_ns) {
         go(WAITING);
-    } else if (!isInPress && isPressed) {
+    } else if (!in_press && pressed) {
         go(now == 2 * CLICKS ? WAITING : now + 1);
-    } else if (!isInPress && now > 0 && waited_ns > max_space_ns) {
+    } else if (!in_press && now > 0 && waited_ns > max_space_ns) {
         only[now / 2 - 1].start();
         go(0);
     }

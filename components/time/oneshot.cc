@@ -3,7 +3,7 @@
 // opposite.
 //
 // Parameters `rising` (true at start) and `falling` choose the edges; `retriggerable` (true at start) lets an
-// edge during the pulse start it anew. `reset` (bit) ends it. `time-left` is what remains [s].
+// edge during the pulse restart it. `reset` (bit) ends it. `time-left` is what remains [s].
 #include "hal/sdk/component.hh"
 
 namespace mw::components {
@@ -39,11 +39,11 @@ struct Oneshot {
             return;
         }
         const bool input = in;
-        const bool isEdge = input != last_in && (input ? rising : falling);
+        const bool is_edge = input != last_in && (input ? rising : falling);
         last_in = input;
         double left = out ? time_left - static_cast<double>(period_ns) * 1e-9 : 0.0;
         left = left > 0.0 ? left : 0.0;
-        if (isEdge && (retriggerable || left == 0.0)) {
+        if (is_edge && (retriggerable || left == 0.0)) {
             left = width;
         }
         time_left = left;

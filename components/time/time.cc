@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // time: how long `start` (bit) has been true: `hours`, `minutes`, `seconds` (u32).
 //
-// It begins again at zero when start becomes true, and stands still while `pause` (bit) is true. When start
-// becomes false during a pause, as a program's "is running" does, the time goes on after the pause.
+// It begins again at zero when start becomes true, and stops while `pause` (bit) is true. When start
+// becomes false during a pause, as a program's "is running" does, the time continues after the pause.
 #include "hal/sdk/component.hh"
 
 namespace mw::components {
@@ -25,15 +25,15 @@ struct Time {
 
     void update(long period_ns) noexcept {
         constexpr std::int64_t SECOND_NS = 1000000000;
-        const bool isPaused = pause;
-        const bool isOn = start || isPaused;
-        if (isOn && !wasOn) {
+        const bool paused = pause;
+        const bool on = start || paused;
+        if (on && !wasOn) {
             elapsed_ns = 0;
         }
-        if (isOn && !isPaused) {
+        if (on && !paused) {
             elapsed_ns += period_ns;
         }
-        wasOn = isOn;
+        wasOn = on;
         const std::int64_t whole_s = elapsed_ns / SECOND_NS;
         seconds_pin = static_cast<std::uint32_t>(whole_s % 60);
         minutes = static_cast<std::uint32_t>(whole_s / 60 % 60);

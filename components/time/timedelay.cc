@@ -25,13 +25,13 @@ struct Timedelay {
 
     void update(long period_ns) noexcept {
         const bool input = in;
-        const bool hasChanged = input != last_in;
+        const bool changed = input != last_in;
         last_in = input;
         if (input == out.get()) {
             return;
         }
         const double limit = input ? on_delay : off_delay;
-        const double waited = (hasChanged ? 0.0 : elapsed.get()) + static_cast<double>(period_ns) * 1e-9;
+        const double waited = (changed ? 0.0 : elapsed.get()) + static_cast<double>(period_ns) * 1e-9;
         elapsed = waited;
         if (waited >= limit) {
             out = input;

@@ -16,7 +16,7 @@ struct Timedelta {
     long long last_ns = 0;
     std::int64_t sum = 0;
     std::int64_t runs = 0;
-    bool isFirst = true;
+    bool first = true;
 
     void declare(Declare &d) noexcept {
         d.pin(jitter, "jitter");
@@ -34,10 +34,10 @@ struct Timedelta {
     void update(long period_ns) noexcept {
         const long long now_ns = rtapi_get_time();
         const std::int64_t delta = now_ns - last_ns;
-        const bool wasFirst = isFirst;
+        const bool was_first = first;
         last_ns = now_ns;
-        isFirst = false;
-        if (wasFirst) {
+        first = false;
+        if (was_first) {
             return;
         }
         const std::int64_t error = delta - period_ns;

@@ -25,7 +25,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr auto RECONNECT_AFTER = std::chrono::milliseconds(500);
 constexpr auto LOOK_AFTER =
-    std::chrono::milliseconds(20);  ///< how often a thread that waits looks for the end
+    std::chrono::milliseconds(20);  ///< interval at which a waiting thread checks for the end
 constexpr double MIN_REGISTER = -32768, MAX_REGISTER = 65535;
 
 /// The pins of one element.
@@ -35,18 +35,18 @@ struct Element {
     hal_s32_t *whole = nullptr;
 };
 
-/// In the memory of HAL.
+/// Pins in HAL memory.
 struct Pins {
     Element *elements = nullptr;
     hal_u32_t **num_errors = nullptr;
 };
 
-/// The elements of one transaction with their last values, and how its device answers.
+/// The elements of one transaction with their last values, and the state of its device.
 struct Work {
     const Transaction *asked = nullptr;
     Pins pins;
     Clock::time_point due{};
-    bool isFailing = false;
+    bool failing = false;
 };
 
 struct FreeContext {
@@ -96,16 +96,14 @@ Result<Pins> make_pins(int id, const std::string &component, const Transaction &
     return pins;
 }
 
-/// What both pins together ask for, as a register has it: 0 to 65535, negative numbers as those of 16 bits
-/// with a sign.
+/// The register value of both pins: 0 to 65535; negative numbers as signed 16-bit values.
 std::uint16_t register_of(const Element &element) {
     const double sum = *element.number + *element.whole;
     const double limited = std::isnan(sum) ? 0.0 : std::clamp(std::trunc(sum), MIN_REGISTER, MAX_REGISTER);
     return static_cast<std::uint16_t>(static_cast<std::int32_t>(limited));
 }
 
-/// One line of a device's, and the transactions on it: all in one thread, as it is one after the other on the
-/// wire.
+/// One link and its transactions: all in one thread, because they are sequential on the wire.
 class LinkWork {
   public:
     LinkWork(const Link &link, std::string component, double slowdown_s,
@@ -121,8 +119,8 @@ class LinkWork {
                 std::this_thread::sleep_for(std::min<Clock::duration>(next.due - Clock::now(), LOOK_AFTER));
                 continue;
             }
-            const bool isDone = connect(next) && carry_out(next);
-            tell(next, isDone);
+            const bool done = connect(next) && carry_out(next);
+            tell(next, done);
             const double rate = next.asked->max_rate_hz;
             const auto period =
                 rate > 0
@@ -130,7 +128,7 @@ class LinkWork {
                     : std::chrono::milliseconds(1);
             next.due = Clock::now() +
                        (context_ == nullptr ? std::max<Clock::duration>(period, RECONNECT_AFTER) : period);
-            const double rest_s = slowdown_s_ + (link_.isTcp ? 0.0 : next.asked->delay_ms / 1000.0);
+            const double rest_s = slowdown_s_ + (link_.is_tcp ? 0.0 : next.asked->delay_ms / 1000.0);
             std::this_thread::sleep_for(std::chrono::duration<double>(rest_s));
         }
     }
@@ -138,9 +136,9 @@ class LinkWork {
   private:
     bool connect(const Work &work) {
         if (context_ == nullptr) {
-            context_.reset(link_.isTcp ? modbus_new_tcp(link_.address.c_str(), link_.port)
-                                       : modbus_new_rtu(link_.device.c_str(), link_.baud, link_.parity,
-                                                        link_.bits, link_.stop));
+            context_.reset(link_.is_tcp ? modbus_new_tcp(link_.address.c_str(), link_.port)
+                                        : modbus_new_rtu(link_.device.c_str(), link_.baud, link_.parity,
+                                                         link_.bits, link_.stop));
             if (context_ == nullptr) {
                 return false;
             }
@@ -166,18 +164,18 @@ class LinkWork {
     }
 
     bool carry_out(Work &work) {
-        const bool isDone = isRead(work.asked->function) ? read(work) : write(work);
-        // A connection that is gone is made anew; one that answers with a refusal stays.
-        if (!isDone && errno < MODBUS_ENOBASE) {
+        const bool done = isRead(work.asked->function) ? read(work) : write(work);
+        // A lost connection is opened again; one that returned an exception stays open.
+        if (!done && errno < MODBUS_ENOBASE) {
             const int reason = errno;
             context_.reset();
             errno = reason;
-        } else if (!isDone) {
+        } else if (!done) {
             const int reason = errno;
             modbus_flush(context_.get());
             errno = reason;
         }
-        return isDone;
+        return done;
     }
 
     bool read(Work &work) {
@@ -237,20 +235,20 @@ class LinkWork {
         return true;
     }
 
-    void tell(Work &work, bool isDone) {
+    void tell(Work &work, bool done) {
         const Transaction &one = *work.asked;
-        if (!isDone) {
+        if (!done) {
             **work.pins.num_errors = **work.pins.num_errors + 1;
         }
-        if (one.debug >= 1 && work.isFailing == isDone) {
+        if (one.debug >= 1 && work.failing == done) {
             const std::string device =
-                link_.isTcp ? link_.address + ':' + std::to_string(link_.port) : link_.device;
+                link_.is_tcp ? link_.address + ':' + std::to_string(link_.port) : link_.device;
             language::tell(fmt::format("{}: transaction {}, slave {} at {}: {}", component_, one.name,
-                                       one.slave, device, isDone ? "answers again" : modbus_strerror(errno)));
-        } else if (one.debug >= 2 && isDone) {
+                                       one.slave, device, done ? "answers again" : modbus_strerror(errno)));
+        } else if (one.debug >= 2 && done) {
             language::tell(fmt::format("{}: transaction {}: done", component_, one.name));
         }
-        work.isFailing = !isDone;
+        work.failing = !done;
     }
 
     const Link &link_;

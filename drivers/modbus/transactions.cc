@@ -145,12 +145,12 @@ Link read_link(const Section &section, const Link *before) {
         if (word != "tcp" && word != "serial") {
             section.wrong("LINK_TYPE", "tcp or serial");
         }
-        link.isTcp = word == "tcp";
+        link.is_tcp = word == "tcp";
     } else if (before == nullptr) {
         section.missing("LINK_TYPE", "the first transaction says how the device is reached");
         return link;
     }
-    if (!link.isTcp) {
+    if (!link.is_tcp) {
         read_serial(section, link);
         return link;
     }
@@ -219,7 +219,7 @@ void read_function(const Section &section, Transaction &one) {
                   "fnct_15_write_multiple_coils or fnct_16_write_multiple_registers");
 }
 
-/// What is not said is as in the transaction before, but its name, its elements and what it does.
+/// Missing keys have the values of the previous transaction, except name, elements and function.
 Transaction read_transaction(const Section &section, const Transaction *before, int number) {
     Transaction one = before != nullptr ? *before : Transaction{};
     one.name = fmt::format("{:02}", number);

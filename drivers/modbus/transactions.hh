@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What a configuration file of mb2hal asks for: links, and the transactions that are repeated on them. The
+// The contents of a configuration file of mb2hal: links, and the transactions that are repeated on them. The
 // form is that of LinuxCNC's mb2hal (versions 1.0 and 1.1).
 #pragma once
 
@@ -24,12 +24,12 @@ enum class Function {
 };
 
 bool isRead(Function function);
-/// Its elements are bits, not registers of 16 bits.
+/// Its elements are bits, not 16-bit registers.
 bool isOfBits(Function function);
 
 /// A serial line or a connection by TCP, which transactions share.
 struct Link {
-    bool isTcp = false;
+    bool is_tcp = false;
     std::string address;  ///< TCP_IP
     int port = 502;
     std::string device;  ///< SERIAL_PORT
@@ -41,7 +41,7 @@ struct Link {
 
 struct Transaction {
     std::string name;      ///< of its pins: HAL_TX_NAME, or its number
-    std::size_t link = 0;  ///< which of the links
+    std::size_t link = 0;  ///< index of the link
     Function function = Function::READ_COILS;
     int slave = 0;
     int first_element = 0;
@@ -49,7 +49,7 @@ struct Transaction {
     int response_timeout_ms = 500;
     int byte_timeout_ms = 500;
     int delay_ms = 0;        ///< after each, on a serial line
-    double max_rate_hz = 0;  ///< 0: as fast as the link goes
+    double max_rate_hz = 0;  ///< 0: maximum rate of the link
     int debug = 1;           ///< 0 silent, 1 errors, 2 successes too, 3 and 4 all bytes
 };
 
@@ -60,8 +60,7 @@ struct Setup {
     std::vector<Transaction> transactions;
 };
 
-/// The setup of a file. All that is wrong is reported; the setup counts only where the sink has no errors
-/// then.
+/// Reads the setup of a file and reports all errors; the setup is valid only if the sink has no errors then.
 Setup read_setup(const ini::IniFile &file, diagnostics::Sink &sink);
 
 }  // namespace mw::modbus

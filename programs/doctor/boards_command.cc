@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// millwright boards: which Mesa boards answer on the network, what their pins can do, and their firmware as a
-// file.
+// millwright boards: the Mesa boards that answer on the network, the functions of their pins, and their
+// firmware as a file.
 #include <charconv>
 #include <cstdio>
 
@@ -18,7 +18,7 @@
 namespace mw::programs {
 namespace {
 
-/// The addresses that boards have from the factory, by their jumpers.
+/// Factory addresses of boards, by their jumpers.
 constexpr const char *USUAL_ADDRESSES[] = {"192.168.1.121", "10.10.10.10"};
 
 struct BoardsWords {
@@ -76,7 +76,7 @@ Result<FoundBoard> ask(const std::string &address) {
     return found;
 }
 
-/// The place of a pin as the manual of the board has it: a connector and its pin, or a group of terminals.
+/// Position of a pin in the board's manual: a connector and its pin, or a group of terminals.
 std::string place_of(const FoundBoard &board, int number) {
     const auto width = static_cast<int>(board.model.idrom.header.port_width);
     const auto names = board.bus->connectors();
@@ -85,8 +85,8 @@ std::string place_of(const FoundBoard &board, int number) {
     if (name.empty()) {
         return fmt::format("port {}", port);
     }
-    const bool isConnector = name.front() == 'P' || name.front() == 'J';
-    const int pin = isConnector ? mesa::connector_pin(width, number % width) : 0;
+    const bool is_connector = name.front() == 'P' || name.front() == 'J';
+    const int pin = is_connector ? mesa::connector_pin(width, number % width) : 0;
     return pin != 0 ? fmt::format("{} pin {}", name, pin) : name;
 }
 

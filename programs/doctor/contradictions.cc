@@ -26,20 +26,20 @@ std::string axis_section(int axis) {
     return std::string("AXIS_") + geometry::AXIS_LETTERS[axis];
 }
 
-/// Two settings of which the first must not be above the second.
+/// Two settings of which the first must not exceed the second.
 struct Order {
     const char *low, *high;
     const char *consequence;
     diagnostics::Severity severity = diagnostics::Severity::WARNING;
-    bool isZeroNone = false;  ///< the second is no limit when it is 0
+    bool is_zero_none = false;  ///< the second is no limit when it is 0
 };
 
 void examine_order(const IniFile &ini, const std::string &section, const Order &order,
                    diagnostics::Sink &sink) {
     const auto low = number(ini, section, order.low);
     const auto high = number(ini, section, order.high);
-    const bool isUnlimited = order.isZeroNone && high.has_value() && high->value == 0;
-    if (low.has_value() && high.has_value() && low->value > high->value && !isUnlimited) {
+    const bool unlimited = order.is_zero_none && high.has_value() && high->value == 0;
+    if (low.has_value() && high.has_value() && low->value > high->value && !unlimited) {
         sink.report({order.severity,
                      {fmt::format("{} is above {}: {}", low->str(), high->str(), order.consequence),
                       low->place(),
@@ -73,7 +73,7 @@ constexpr std::array TRAJ_ORDERS = {
     Order{"DEFAULT_ANGULAR_ACCELERATION", "MAX_ANGULAR_ACCELERATION", "the latter holds"},
 };
 
-/// What homing refuses, or does otherwise than it looks. Speeds with their signs; 0 is none.
+/// Settings that homing rejects or interprets unexpectedly. Speeds with their signs; 0 is none.
 void examine_homing(const IniFile &ini, const std::string &section, diagnostics::Sink &sink) {
     const auto search = number(ini, section, "HOME_SEARCH_VEL");
     const auto latch = number(ini, section, "HOME_LATCH_VEL");
@@ -83,11 +83,11 @@ void examine_homing(const IniFile &ini, const std::string &section, diagnostics:
     const bool searches = search.has_value() && search->value != 0;
     const bool latches = latch.has_value() && latch->value != 0;
     if (searches && !latches) {
-        sink.error(search->str() + " without HOME_LATCH_VEL: homing refuses to begin", search->place(),
+        sink.error(search->str() + " without HOME_LATCH_VEL: homing does not start", search->place(),
                    "the speed at which the edge of the switch counts");
     }
     if (!searches && latches && !usesIndex) {
-        sink.error(latch->str() + " with neither HOME_SEARCH_VEL nor HOME_USE_INDEX: homing refuses to begin",
+        sink.error(latch->str() + " with neither HOME_SEARCH_VEL nor HOME_USE_INDEX: homing does not start",
                    latch->place());
     }
     if (searches && latches && std::fabs(latch->value) > std::fabs(search->value)) {
@@ -99,7 +99,7 @@ void examine_homing(const IniFile &ini, const std::string &section, diagnostics:
     }
 }
 
-/// Factors by which HAL files multiply or divide.
+/// Factors that HAL files multiply or divide by.
 void examine_scales(const IniFile &ini, const std::string &section, diagnostics::Sink &sink) {
     for (const char *key : {"SCALE", "STEP_SCALE", "INPUT_SCALE", "OUTPUT_SCALE", "ENCODER_SCALE"}) {
         const auto scale = number(ini, section, key);
@@ -110,7 +110,7 @@ void examine_scales(const IniFile &ini, const std::string &section, diagnostics:
     }
 }
 
-/// Sequences run from 0 or 1 upwards, one after the other.
+/// Sequence numbers are consecutive from 0 or 1.
 void examine_home_order(const IniFile &ini, const MachineConfig &machine, diagnostics::Sink &sink) {
     std::set<int> used;
     const ini::IniEntry *highest = nullptr;
@@ -126,16 +126,16 @@ void examine_home_order(const IniFile &ini, const MachineConfig &machine, diagno
         return;
     }
     int expected = *used.begin();
-    const bool isGapless =
+    const bool gapless =
         expected <= 1 && std::ranges::all_of(used, [&expected](int place) { return place == expected++; });
-    if (!isGapless) {
+    if (!gapless) {
         sink.warning(fmt::format("HOME_SEQUENCE has {}: numbers between are left out, begin with 0 or 1",
                                  fmt::join(used, ", ")),
                      highest->place);
     }
 }
 
-/// What an axis allows and its joint does not. Only where joints are axes can they be compared.
+/// Limits of an axis that exceed those of its joint. Comparable only where joints are axes.
 void examine_axis(const IniFile &ini, const MachineConfig &machine, int axis, diagnostics::Sink &sink) {
     const int joint = machine.joint_of_axis[static_cast<std::size_t>(axis)];
     if (!machine.isTrivial || joint < 0) {
@@ -143,14 +143,14 @@ void examine_axis(const IniFile &ini, const MachineConfig &machine, int axis, di
     }
     const std::string its = axis_section(axis);
     const std::string of_joint = joint_section(joint);
-    const auto compare = [&](const char *key, bool isUpper) {
+    const auto compare = [&](const char *key, bool upper) {
         const auto mine = number(ini, its, key);
         const auto theirs = number(ini, of_joint, key);
         if (!mine.has_value() || !theirs.has_value()) {
             return;
         }
         const double tolerance = 1e-2 * std::max(1.0, std::fabs(theirs->value));
-        const double beyond = isUpper ? mine->value - theirs->value : theirs->value - mine->value;
+        const double beyond = upper ? mine->value - theirs->value : theirs->value - mine->value;
         if (beyond > tolerance) {
             sink.warning(mine->str() + " is beyond " + theirs->str() + ": the latter holds", mine->place());
         }
@@ -160,8 +160,8 @@ void examine_axis(const IniFile &ini, const MachineConfig &machine, int axis, di
     compare("MAX_LIMIT", true);
     compare("MIN_LIMIT", false);
     const std::string type = to_upper(text(ini, of_joint, "TYPE"));
-    const bool isMixed = type == (geometry::isAngular(axis) ? "LINEAR" : "ANGULAR");
-    if (isMixed) {
+    const bool mixed = type == (geometry::isAngular(axis) ? "LINEAR" : "ANGULAR");
+    if (mixed) {
         sink.warning(fmt::format("[{}]TYPE = {} moves axis {}, which {}: its unit is wrong", of_joint, type,
                                  geometry::AXIS_LETTERS[axis],
                                  geometry::isAngular(axis) ? "turns" : "is straight"),
@@ -169,25 +169,25 @@ void examine_axis(const IniFile &ini, const MachineConfig &machine, int axis, di
     }
 }
 
-/// Sections of axes that the machine does not have, and axes that no joint moves.
+/// Sections of axes that the machine does not have, and axes without a joint.
 void examine_letters(const IniFile &ini, const MachineConfig &machine, diagnostics::Sink &sink) {
     const auto letters = static_cast<int>(machine.coordinates.size());
     const ini::IniEntry *const joints = ini.find("KINS", "JOINTS");
-    const bool isPlain = machine.isTrivial && machine.kinematics.size() == 1;
-    if (isPlain && joints != nullptr && letters > machine.num_joints) {
+    const bool plain = machine.isTrivial && machine.kinematics.size() == 1;
+    if (plain && joints != nullptr && letters > machine.num_joints) {
         sink.error(fmt::format("[TRAJ]COORDINATES has {} letters, [KINS]JOINTS = {}: axes without a joint",
                                letters, machine.num_joints),
                    joints->place, "as many joints as letters");
     }
     for (int axis = 0; axis < MAX_AXES; ++axis) {
         const std::string section = axis_section(axis);
-        const bool isPart = (machine.axis_mask & (1U << axis)) != 0;
-        if (!isPart && ini.hasSection(section) && machine.axis_mask != 0) {
+        const bool is_part = (machine.axis_mask & (1U << axis)) != 0;
+        if (!is_part && ini.hasSection(section) && machine.axis_mask != 0) {
             sink.warning(
                 fmt::format("section [{}] is of an axis that [TRAJ]COORDINATES does not name", section),
                 ini.place_of_section(section));
         }
-        if (isPart && machine.isTrivial && !isPlain &&
+        if (is_part && machine.isTrivial && !plain &&
             machine.joint_of_axis[static_cast<std::size_t>(axis)] < 0) {
             sink.warning(
                 fmt::format("[TRAJ]COORDINATES names {}, coordinates= of [KINS]KINEMATICS does not: no "
@@ -198,11 +198,11 @@ void examine_letters(const IniFile &ini, const MachineConfig &machine, diagnosti
     }
 }
 
-/// Numbers that are millimetres on a machine that says it has inches.
+/// Values that are probably millimetres on a machine in inches.
 void examine_units(const IniFile &ini, const MachineConfig &machine, diagnostics::Sink &sink) {
     constexpr double FAST_IN_S = 60, LONG_IN = 1000;  // 1.5 m/s and 25 m
     const ini::IniEntry *const units = ini.find("TRAJ", "LINEAR_UNITS");
-    if (machine.isMetric || units == nullptr) {
+    if (machine.metric || units == nullptr) {
         return;
     }
     for (int axis = 0; axis < MAX_AXES; ++axis) {
@@ -213,13 +213,13 @@ void examine_units(const IniFile &ini, const MachineConfig &machine, diagnostics
         const auto speed = number(ini, section, "MAX_VELOCITY");
         const auto low = number(ini, section, "MIN_LIMIT");
         const auto high = number(ini, section, "MAX_LIMIT");
-        const bool isFast = speed.has_value() && speed->value > FAST_IN_S;
-        const bool isLong = low.has_value() && high.has_value() && high->value - low->value > LONG_IN &&
-                            high->value - low->value < 1e6;
-        if (isFast || isLong) {
+        const bool fast = speed.has_value() && speed->value > FAST_IN_S;
+        const bool is_long = low.has_value() && high.has_value() && high->value - low->value > LONG_IN &&
+                             high->value - low->value < 1e6;
+        if (fast || is_long) {
             sink.warning(fmt::format("{} with [TRAJ]LINEAR_UNITS = {}: are these millimetres?",
-                                     isFast ? speed->str() : high->str(), units->value),
-                         isFast ? speed->place() : high->place());
+                                     fast ? speed->str() : high->str(), units->value),
+                         fast ? speed->place() : high->place());
         }
     }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// millwright doctor, linuxcnc_check_ini: what is wrong with a machine before it is started.
+// millwright doctor, linuxcnc_check_ini: finds errors in a machine before it is started.
 #include <unistd.h>
 
 #include <array>
@@ -24,13 +24,13 @@ namespace {
 
 struct DoctorWords {
     doctor::Scope scope;
-    bool isStrict = false;
+    bool strict = false;
     options::Words rest;
 
     options::CommandLine line() {
         options::CommandLine line(
             "millwright doctor MACHINE.ini [options]",
-            "Looks at an INI file, the files that it names, its HAL files and this computer before the "
+            "Checks an INI file, the files that it names, its HAL files and this computer before the "
             "machine "
             "is started,\n"
             "and measures latency. One finding a line: file, line, column, how bad it is, what to do.\n"
@@ -39,10 +39,10 @@ struct DoctorWords {
             "run.\n");
         line.number("--latency", "SECONDS", "so long latency is measured, 0: not at all (10)",
                     scope.latency_s, 0, 86400);
-        line.flag("--no-hal", "the HAL files are not looked at, and so neither are unknown keys",
-                  scope.hasHal, false);
-        line.flag("--no-system", "the computer is not looked at", scope.hasSystem, false);
-        line.flag("--strict", "warnings count as errors", isStrict);
+        line.flag("--no-hal", "the HAL files are not checked, and so neither are unknown keys", scope.has_hal,
+                  false);
+        line.flag("--no-system", "the computer is not checked", scope.has_system, false);
+        line.flag("--strict", "warnings count as errors", strict);
         line.rest(rest);
         line.footer("exit status: 0 the machine can be started, 1 there are errors, 2 wrong usage\n");
         return line;
@@ -58,7 +58,7 @@ struct Counted {
     }
 };
 
-/// As scripts know the lines of linuxcnc_check_ini: "INI: error: text".
+/// In the format of linuxcnc_check_ini's lines: "INI: error: text".
 const char *kind_of(diagnostics::Severity severity) {
     switch (severity) {
     case diagnostics::Severity::ERROR: return "error";
@@ -68,7 +68,7 @@ const char *kind_of(diagnostics::Severity severity) {
     return "info";
 }
 
-/// The settings of our screen, read as the screen reads them; other displays have readers of their own.
+/// The settings of our screen, read as by the screen; other displays have their own readers.
 void examine_screen(const machine::LoadedConfig &loaded, diagnostics::Sink &sink) {
     const std::vector<std::string> words = split_words(loaded.machine.display);
     if (!words.empty() && words[0] == "millwright") {
@@ -95,7 +95,7 @@ int command_doctor(const std::vector<std::string> &arguments) {
     }
     catch_stop_signals();
     Counted counted;
-    // What HAL files print goes nowhere, findings go on.
+    // Discards the output of HAL files; findings are printed.
     const auto close = [](std::FILE *file) { std::fclose(file); };
     const std::unique_ptr<std::FILE, decltype(close)> out(::fdopen(::dup(STDOUT_FILENO), "w"), close);
     diagnostics::Sink sink([&](const diagnostics::Diagnostic &finding) {
@@ -108,29 +108,29 @@ int command_doctor(const std::vector<std::string> &arguments) {
     fmt::print(stderr, "{}",
                language::shown(fmt::format("{}: {} errors, {} warnings\n", words.rest[0], counted.errors,
                                            counted.warnings)));
-    return counted.errors > 0 || (words.isStrict && counted.warnings > 0) ? 1 : 0;
+    return counted.errors > 0 || (words.strict && counted.warnings > 0) ? 1 : 0;
 }
 
 int command_check_ini(const std::vector<std::string> &arguments) {
     constexpr std::array LETTERS{options::KnownLetter{'e'}, options::KnownLetter{'h'}};
     constexpr const char *USAGE = "usage: linuxcnc_check_ini [-e] MACHINE.ini\n"
                                   "\n"
-                                  "Looks at the settings of an INI file and at the files that it names.\n"
+                                  "Checks the settings of an INI file and the files that it names.\n"
                                   "\n"
                                   "  -e  warnings count as errors\n"
                                   "\n"
                                   "exit status: 0 no error, 1 errors, 2 wrong usage or no such file\n";
     const auto read = options::read_letters(arguments, LETTERS, options::EndOfLetters::FIRST_WORD);
-    bool isStrict = false, isHelpAsked = false;
+    bool strict = false, help_asked = false;
     if (read.has_value()) {
         for (const options::Letter &option : read->options) {
-            isStrict |= option.letter == 'e';
-            isHelpAsked |= option.letter == 'h';
+            strict |= option.letter == 'e';
+            help_asked |= option.letter == 'h';
         }
     }
-    if (isHelpAsked || !read.has_value() || read->words.size() != 1) {
-        fmt::print(isHelpAsked ? stdout : stderr, "{}", language::shown(USAGE));
-        return isHelpAsked ? 0 : 2;
+    if (help_asked || !read.has_value() || read->words.size() != 1) {
+        fmt::print(help_asked ? stdout : stderr, "{}", language::shown(USAGE));
+        return help_asked ? 0 : 2;
     }
     const std::string &ini = read->words[0];
     diagnostics::Sink unheard;
@@ -144,9 +144,9 @@ int command_check_ini(const std::vector<std::string> &arguments) {
         fmt::print(stderr, "{}: {}: {}\n", ini, kind_of(finding.severity),
                    language::shown(finding.what.str()));
     });
-    doctor::examine(ini, {.hasHal = false, .hasSystem = false, .latency_s = 0, .display = examine_screen},
+    doctor::examine(ini, {.has_hal = false, .has_system = false, .latency_s = 0, .display = examine_screen},
                     stop_signal, sink);
-    return counted.errors > 0 || (isStrict && counted.warnings > 0) ? 1 : 0;
+    return counted.errors > 0 || (strict && counted.warnings > 0) ? 1 : 0;
 }
 
 }  // namespace mw::programs

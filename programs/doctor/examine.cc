@@ -17,7 +17,7 @@
 namespace mw::doctor {
 namespace {
 
-/// Drivers and threads of a second instance would meet those of the machine.
+/// Drivers and threads of a second instance would conflict with those of the machine.
 bool isMachineUp() {
     const auto viewer = client::Viewer::attach(hal::default_instance());
     return viewer.has_value() && viewer->isMachineAlive();
@@ -50,22 +50,22 @@ void examine(const std::string &ini, const Scope &scope, volatile std::sig_atomi
     if (scope.display) {
         scope.display(loaded, sink);
     }
-    const bool isUp = isMachineUp();
-    if (sink.hasErrors() || !scope.hasHal || isUp) {
-        if (scope.hasHal) {
-            sink.warning(isUp ? "a machine is up: HAL files were not looked at"
-                              : "HAL files were not looked at, as there are errors before them",
+    const bool up = isMachineUp();
+    if (sink.hasErrors() || !scope.has_hal || up) {
+        if (scope.has_hal) {
+            sink.warning(up ? "a machine is running: HAL files were not checked"
+                            : "HAL files were not checked because of the errors above",
                          {ini, 0, 0});
         }
     } else {
         examine_hal_files(loaded.ini, sink);
     }
-    if (scope.hasSystem) {
+    if (scope.has_system) {
         examine_system("", program_folder() + "/millwright-rt", sink);
         examine_boards(sink);
     }
-    if (scope.latency_s > 0 && isUp) {
-        sink.warning("a machine is up: latency was not measured");
+    if (scope.latency_s > 0 && up) {
+        sink.warning("a machine is running: latency was not measured");
     } else if (scope.latency_s > 0) {
         const auto base = number(loaded.ini, "EMCMOT", "BASE_PERIOD");
         examine_latency(loaded.machine.servo_period_ns,

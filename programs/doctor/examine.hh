@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// All that is looked at before a machine is started.
+// All checks before a machine is started.
 #pragma once
 
 #include <csignal>
@@ -12,18 +12,18 @@
 namespace mw::doctor {
 
 struct Scope {
-    bool hasHal = true;     ///< HAL files are carried out, under the virtual clock
-    bool hasSystem = true;  ///< kernel, processors and rights
-    double latency_s = 10;  ///< 0: not measured
-    /// What the machine's display reads of the settings; empty: not examined.
+    bool has_hal = true;     ///< run the HAL files under the virtual clock
+    bool has_system = true;  ///< examine kernel, processors and rights
+    double latency_s = 10;   ///< 0: not measured
+    /// Examines the settings of the machine's display; empty: not examined.
     std::function<void(const machine::LoadedConfig &, diagnostics::Sink &)> display;
 };
 
-/// Tells findings to `sink`, which has errors when the machine would not start or not work.
+/// Reports findings to `sink`, which has errors when the machine would not start or not work.
 void examine(const std::string &ini, const Scope &scope, volatile std::sig_atomic_t &stop,
              diagnostics::Sink &sink);
 
-/// One line: "file:line:column: error: what (what to do)"; findings on the computer begin with "system".
+/// One line: "file:line:column: error: what (what to do)"; findings about the computer begin with "system".
 std::string finding_line(const diagnostics::Diagnostic &finding);
 
 }  // namespace mw::doctor

@@ -17,7 +17,7 @@
 namespace mw::doctor {
 namespace {
 
-/// What commands of HAL files print is no finding.
+/// Output of commands in HAL files is not a finding.
 class NoOutput {
   public:
     NoOutput() {
@@ -39,14 +39,14 @@ class NoOutput {
     int before_ = -1;
 };
 
-/// What stands between the first two quotes of a message.
+/// The text between the first two quotes of a message.
 std::string quoted(const std::string &message) {
     const auto first = message.find('\'');
     const auto end = first == std::string::npos ? first : message.find('\'', first + 1);
     return end == std::string::npos ? std::string() : message.substr(first + 1, end - first - 1);
 }
 
-/// Leaves out that pins and functions are missing of a module that is missing itself or was not loaded.
+/// Filters messages about missing pins and functions of a module that was not loaded.
 class Consequences {
   public:
     bool isOne(const diagnostics::Diagnostic &finding) {
@@ -59,8 +59,8 @@ class Consequences {
             modules_.push_back(module.substr(0, module.find('_')));
             return false;
         }
-        const bool isMissing = finding.what.message.ends_with("does not exist");
-        const bool follows = isMissing && std::ranges::any_of(modules_, [&name](const std::string &module) {
+        const bool missing = finding.what.message.ends_with("does not exist");
+        const bool follows = missing && std::ranges::any_of(modules_, [&name](const std::string &module) {
                                  return name.starts_with(module + '.') || name.starts_with(module + '_');
                              });
         count_ += follows ? 1 : 0;
@@ -80,7 +80,7 @@ void examine_hal_files(ini::IniFile ini, diagnostics::Sink &sink) {
     const std::string path = ini.path();
     Consequences consequences;
     diagnostics::Sink unheard;
-    machine::LoadedConfig loaded(std::move(ini), unheard);  // its own findings have been told
+    machine::LoadedConfig loaded(std::move(ini), unheard);  // its own findings have been reported
     diagnostics::Sink heard([&](const diagnostics::Diagnostic &found) {
         diagnostics::Diagnostic finding = found;
         if (finding.what.place.file.empty()) {
@@ -92,7 +92,7 @@ void examine_hal_files(ini::IniFile ini, diagnostics::Sink &sink) {
     });
     loaded.reader.tell(heard);
     machine::MachineOptions options;
-    options.isKeptGoing = true;
+    options.kept_going = true;
     const auto made =
         machine::make_virtual_machine({loaded.ini, loaded.reader, loaded.machine, heard}, options);
     if (!made.has_value()) {

@@ -36,7 +36,7 @@ std::string label(const IniEntry &entry) {
     return '[' + entry.section + ']' + entry.key;
 }
 
-/// Without a comment behind it.
+/// The value without a comment.
 std::string first_word(const IniEntry &entry) {
     const std::vector<std::string> words = split_words(entry.value);
     return words.empty() ? std::string() : words[0];
@@ -86,7 +86,7 @@ void examine_folders(const IniFile &ini, const Named &named, diagnostics::Sink &
     }
 }
 
-/// Where the HAL files of a machine are looked for.
+/// True for a file in the search folders of HAL files.
 bool isHalFile(const IniFile &ini, const std::string &name) {
     const std::string_view plain = name.starts_with("LIB:") ? std::string_view(name).substr(4) : name;
     if (!name.starts_with("LIB:") && isThere(ini.resolve_path(name))) {
@@ -109,7 +109,7 @@ void examine_hal_names(const IniFile &ini, diagnostics::Sink &sink) {
     }
 }
 
-/// What has written parameters or tools must be able to write them again.
+/// Files of parameters and tools must be writable.
 void examine_writing(const std::string &path, const IniEntry *entry, diagnostics::Sink &sink) {
     if (path.empty() || entry == nullptr) {
         return;
@@ -119,7 +119,7 @@ void examine_writing(const std::string &path, const IniEntry *entry, diagnostics
     if (!isFolder(folder.string())) {
         sink.error(label(*entry) + ": there is no folder '" + folder.string() + '\'', entry->place);
     } else if (::access(folder.c_str(), W_OK) != 0) {
-        // Files are replaced, never overwritten.
+        // Files are replaced, not overwritten.
         sink.error(label(*entry) + ": this user cannot write into '" + folder.string() +
                        "', and nothing is kept after a run",
                    entry->place, "copy the configuration to a folder of your own");
@@ -133,10 +133,10 @@ std::string folder_of(const IniFile &ini) {
     return fs::absolute(ini.folder(), error).string();
 }
 
-/// Names that the launcher itself knows.
+/// Names that the launcher handles itself.
 bool isOwnDisplay(const std::string &name) {
-    const bool isTk = name == "tklinuxcnc" || name == "tkemc";
-    return name == "millwright" || name == "dummy" || (isTk && std::getenv("LINUXCNC_TCL_DIR") != nullptr);
+    const bool is_tk = name == "tklinuxcnc" || name == "tkemc";
+    return name == "millwright" || name == "dummy" || (is_tk && std::getenv("LINUXCNC_TCL_DIR") != nullptr);
 }
 
 void examine_programs(const IniFile &ini, diagnostics::Sink &sink) {
@@ -155,9 +155,9 @@ void examine_programs(const IniFile &ini, diagnostics::Sink &sink) {
         }
     }
     for (const IniEntry &entry : ini.entries()) {
-        const bool isFilter =
+        const bool is_filter =
             entry.section == "FILTER" && entry.key != "PROGRAM_EXTENSION" && entry.key != "FILTER_PROGRESS";
-        const std::string name = isFilter ? first_word(entry) : "";
+        const std::string name = is_filter ? first_word(entry) : "";
         if (!name.empty() && find_program(name, folder_of(ini)).empty()) {
             sink.warning("[FILTER]" + entry.key + ": there is no program '" + name +
                              "': files that end in ." + entry.key + " cannot be opened",
@@ -166,7 +166,7 @@ void examine_programs(const IniFile &ini, diagnostics::Sink &sink) {
     }
 }
 
-/// Subroutines that take the place of codes.
+/// Checks subroutines that replace codes.
 void examine_remaps(const IniFile &ini, diagnostics::Sink &sink) {
     std::vector<std::string> folders{ini.folder()};
     for (const auto &[section, key] :

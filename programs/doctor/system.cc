@@ -34,8 +34,8 @@ std::string line_of(const std::string &path) {
 void examine_kernel(const std::string &root, diagnostics::Sink &sink) {
     utsname kernel{};
     ::uname(&kernel);
-    const bool isRealtime = line_of(root + "/sys/kernel/realtime") == "1";
-    if (isRealtime) {
+    const bool realtime = line_of(root + "/sys/kernel/realtime") == "1";
+    if (realtime) {
         sink.note(fmt::format("kernel {} has PREEMPT_RT", kernel.release));
     } else {
         sink.warning(fmt::format("kernel {} has no PREEMPT_RT: its latency has no bound", kernel.release), {},
@@ -78,7 +78,7 @@ void examine_processors(const std::string &root, diagnostics::Sink &sink) {
     }
 }
 
-/// Capabilities that a file has. Layout: linux/capability.h, vfs_cap_data.
+/// Capabilities of a file. Layout: linux/capability.h, vfs_cap_data.
 std::uint32_t capabilities_of(const std::string &path) {
     std::array<unsigned char, 32> raw{};
     const ssize_t size = ::getxattr(path.c_str(), "security.capability", raw.data(), raw.size());
@@ -101,7 +101,7 @@ void examine_rights(const std::string &program, diagnostics::Sink &sink) {
     constexpr std::uint32_t IPC_LOCK = 1U << CAP_IPC_LOCK, SYS_NICE = 1U << CAP_SYS_NICE,
                             SYS_RESOURCE = 1U << CAP_SYS_RESOURCE;
     constexpr rlim_t PRIORITY = 85, MEMORY = rlim_t{512} << 20U;
-    // Root of a container may lack some.
+    // Root in a container may lack some.
     const std::uint64_t has = ::geteuid() == 0 ? effective_capabilities() : capabilities_of(program);
     const std::string setcap = "sudo setcap cap_sys_nice,cap_ipc_lock,cap_sys_resource+p " + program;
     const std::string remedy = setcap + "; or rtprio and memlock in /etc/security/limits.d";

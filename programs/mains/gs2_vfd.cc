@@ -33,7 +33,7 @@ int main(int argc, char **argv) {
     mw::modbus::drives::Line line{.baud = 38400, .parity = 'O'};
     mw::modbus::drives::Gs2Settings settings;
     std::string name = "gs2_vfd";
-    bool isVerbose = false;
+    bool verbose = false;
     mw::options::CommandLine options("loadusr -Wn NAME gs2_vfd [OPTION ...]",
                                      "An AutomationDirect GS2 drive on a serial line as pins of HAL.");
     constexpr double MAX_S = 600.0;
@@ -49,9 +49,9 @@ int main(int argc, char **argv) {
                    0.1, MAX_S);
     options.number("-D,--decel-seconds", "S", "and back; 0: it coasts (0)", settings.decel_s, 0.0, MAX_S);
     options.flag("-R,--braking-resistor", "there is one: the drive brakes against any voltage",
-                 settings.hasBrakingResistor);
-    options.flag("-g,--debug", "show all bytes", line.isShown);
-    options.flag("-v,--verbose", "say what is opened", isVerbose);
+                 settings.has_braking_resistor);
+    options.flag("-g,--debug", "show all bytes", line.shown);
+    options.flag("-v,--verbose", "say what is opened", verbose);
     const mw::options::Words words(argv + 1, argv + argc);
     if (mw::options::wantsHelp(words)) {
         std::fputs(options.help().c_str(), stdout);
@@ -61,7 +61,7 @@ int main(int argc, char **argv) {
         mw::language::tell("gs2_vfd", parsed.error());
         return 2;
     }
-    if (isVerbose) {
+    if (verbose) {
         mw::language::tell(fmt::format("{}: {}, {} baud, parity {}, {} data bits, {} stop bits, drive {}",
                                        name, line.device, line.baud, line.parity, line.bits, line.stop,
                                        line.slave));

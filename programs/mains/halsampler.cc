@@ -22,7 +22,7 @@ int main(int argc, char **argv) {
                                                               options.channel = static_cast<int>(number);
                                                               break;
                                                           case 'n': options.count = number; break;
-                                                          default: options.isTagged = true; break;
+                                                          default: options.tagged = true; break;
                                                           }
                                                       });
     if (!read.words.has_value()) {

@@ -8,8 +8,8 @@
 
 int main(int argc, char **argv) {
     const mw::ini::ProgramOutput result = mw::ini::run_inivalue({argv + 1, argv + argc});
-    std::fputs(result.err.c_str(), stderr);  // warnings first: they say how to take the value
-    const bool isHelp = argc == 2 && std::string_view(argv[1]) == "--help";
-    std::fputs(isHelp ? mw::language::shown(result.out).c_str() : result.out.c_str(), stdout);
+    std::fputs(result.err.c_str(), stderr);  // warnings first, because they qualify the value
+    const bool is_help = argc == 2 && std::string_view(argv[1]) == "--help";
+    std::fputs(is_help ? mw::language::shown(result.out).c_str() : result.out.c_str(), stdout);
     return result.status;
 }

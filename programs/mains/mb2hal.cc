@@ -25,10 +25,10 @@ constexpr std::string_view CONFIG = "config=";
 int main(int argc, char **argv) {
     mw::tell_when_memory_ends();
     const std::string word = argc == 2 ? argv[1] : "";
-    const bool isHelp = word == "-h" || word == "--help";
-    if (isHelp || !word.starts_with(CONFIG) || word.size() == CONFIG.size()) {
-        std::fputs(mw::language::shown(USAGE).c_str(), isHelp ? stdout : stderr);
-        return isHelp ? 0 : 2;
+    const bool is_help = word == "-h" || word == "--help";
+    if (is_help || !word.starts_with(CONFIG) || word.size() == CONFIG.size()) {
+        std::fputs(mw::language::shown(USAGE).c_str(), is_help ? stdout : stderr);
+        return is_help ? 0 : 2;
     }
     mw::diagnostics::Sink sink(
         [](const mw::diagnostics::Diagnostic &found) { mw::language::tell(found.str()); });

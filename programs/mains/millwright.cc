@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// millwright: the one command that people meet.
+// millwright: the main command.
 #include <cstdio>
 #include <cstring>
 #include <string>
@@ -23,7 +23,7 @@ constexpr const char *USAGE =
     "                                       in virtual time, or with --realtime by the clock\n"
     "  start MACHINE.ini                    keep the machine up for clients, until a signal or its display "
     "ends it\n"
-    "  recover                              go on with the program that a power cut has ended, at its place\n"
+    "  recover                              continue the program that a power cut has ended\n"
     "  ui MACHINE.ini                       serve the operator's screen of the machine that is up, to "
     "browsers\n"
     "  nml FILE.nml                         the NML channels of the machine that is up, also over the "
@@ -40,7 +40,7 @@ constexpr const char *USAGE =
     "  hal watch|capture|graph|latency      look at the running HAL\n"
     "  --help, --version\n"
     "\n"
-    "Each command has a --help of its own.\n"
+    "Each command has its own --help.\n"
     "exit status: 0 done, 1 refused or failed, 2 wrong usage\n";
 
 }  // namespace

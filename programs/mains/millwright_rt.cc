@@ -20,7 +20,7 @@ namespace {
 
 constexpr int MAX_CPU = 4095, MAX_FD = 1 << 20;
 
-/// Tells whoever started us: "ready" or what is wrong.
+/// Reports "ready" or the error to the starter.
 void tell(int fd, const std::string &text) {
     if (fd >= 0) {
         (void)!::write(fd, text.data(), text.size());
@@ -40,7 +40,7 @@ struct Arguments {
         line.text("--instance", "NAME", "default: $MILLWRIGHT_INSTANCE, else 'default'", options.instance);
         line.number("--cpu", "N", "processor of the threads (default: the last isolated one, else the last)",
                     cpu, 0, MAX_CPU);
-        line.flag("--simulation", "ask for no realtime priority", options.realtime.isSimulation);
+        line.flag("--simulation", "use no realtime priority", options.realtime.is_simulation);
         line.number("--ready-fd", "N", "", ready_fd, 0, MAX_FD);
         line.number("--starter-fd", "N", "", options.controller_fd, 0, MAX_FD);
         return line;
@@ -50,10 +50,10 @@ struct Arguments {
 }  // namespace
 
 int main(int argc, char **argv) {
-    std::signal(SIGPIPE, SIG_IGN);  // a starter or terminal that is gone is no reason to end
+    std::signal(SIGPIPE, SIG_IGN);  // the end of its starter or terminal must not end this process
     mw::tell_when_memory_ends();
     mw::use_permitted_capabilities();
-    static_cast<void>(mw::lower_oom_score(-900));  // `millwright doctor` reports where the right is missing
+    static_cast<void>(mw::lower_oom_score(-900));  // `millwright doctor` reports a missing right
     const std::vector<std::string> words(argv + 1, argv + argc);
     Arguments arguments;
     const mw::options::CommandLine line = arguments.line();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// motion-logger [FILE]: stands in for the motion controller and writes what it is asked for (man page
+// motion-logger [FILE]: replaces the motion controller and writes its commands (man page
 // motion-logger).
 #include <time.h>
 
@@ -17,9 +17,8 @@
 namespace {
 
 constexpr const char *NAME = "motion-logger";
-constexpr const char *USAGE =
-    "usage: motion-logger [FILE]\n"
-    "  stands in for motmod and writes what task asks of it; loadusr -W starts it\n";
+constexpr const char *USAGE = "usage: motion-logger [FILE]\n"
+                              "  replaces motmod and writes the commands of task; loadusr -W starts it\n";
 constexpr long PERIOD_NS = 1000000;
 
 struct CloseFile {
@@ -34,15 +33,16 @@ std::int64_t monotonic_ns() {
     return now.tv_sec * NS_PER_S + now.tv_nsec;
 }
 
-/// The log; standard output where no file is named. Each line is written at once: others look meanwhile.
+/// The log; standard output without a file name. Each line is written at once, because other programs read
+/// it.
 class Log {
   public:
-    /// The file is there and empty.
+    /// Creates or empties the file.
     mw::Result<> open(const std::string &path) {
         path_ = path;
         return path_.empty() ? mw::Result<>() : make();
     }
-    /// What was said stays as it is; what comes begins the file anew, which others may have moved by then.
+    /// Closes the file. The next line starts a new file, because others may have moved this one.
     mw::Result<> close() {
         auto made = path_.empty() || file_ != nullptr ? mw::Result<>() : make();
         file_.reset();
@@ -107,7 +107,7 @@ mw::Result<> run(const std::string &path) {
     constexpr timespec PERIOD{0, PERIOD_NS};
     while (stop_signal == 0 && !hal.host_end().has_value()) {
         stand_in.step(monotonic_ns());
-        // Pins may be linked meanwhile: the value is looked for each time.
+        // Pins may be linked meanwhile: reads the value's address each time.
         auto *const isReopening = static_cast<volatile bool *>(**reopen);
         *static_cast<volatile bool *>(**in_position) = stand_in.isInPosition();
         if (*isReopening) {
@@ -127,9 +127,9 @@ mw::Result<> run(const std::string &path) {
 int main(int argc, char **argv) {
     const std::string first = argc > 1 ? argv[1] : "";
     if (argc > 2 || first.starts_with("-")) {
-        const bool isAsked = first == "--help" || first == "-h";
-        std::fputs(mw::language::shown(USAGE).c_str(), isAsked ? stdout : stderr);
-        return isAsked ? 0 : 2;
+        const bool requested = first == "--help" || first == "-h";
+        std::fputs(mw::language::shown(USAGE).c_str(), requested ? stdout : stderr);
+        return requested ? 0 : 2;
     }
     mw::catch_stop_signals();
     const auto ended = run(first);

@@ -14,9 +14,9 @@
 
 int main(int count, char **words) {
     if (count != 2 || words[1][0] == '-') {
-        const bool isHelp = count == 2 && std::string(words[1]) == "--help";
-        std::fputs("usage: reference_pages FOLDER\n", isHelp ? stdout : stderr);
-        return isHelp ? 0 : 2;
+        const bool is_help = count == 2 && std::string(words[1]) == "--help";
+        std::fputs("usage: reference_pages FOLDER\n", is_help ? stdout : stderr);
+        return is_help ? 0 : 2;
     }
     const std::string folder = words[1];
     std::error_code failure;

@@ -57,8 +57,8 @@ int main(int argc, char **argv) {
             options.on_error = static_cast<Options::OnError>(optarg[0] - '0');
             break;
         case 'b': options.isBlockDelete = !options.isBlockDelete; break;
-        case 's': options.isStackShown = !options.isStackShown; break;
-        case 'g': options.isBatch = !options.isBatch; break;
+        case 's': options.stack_shown = !options.stack_shown; break;
+        case 'g': options.is_batch = !options.is_batch; break;
         case 'T':
         case 'l': break;
         case 'h': return usage("", 0);

@@ -21,7 +21,7 @@ namespace {
 using mw::modbus::drives::Line;
 using mw::modbus::drives::VfdbSettings;
 
-/// The keys of the drive's section; each that is wrong is told.
+/// Reads the keys of the drive's section and reports each error.
 class Section {
   public:
     Section(const mw::ini::IniFile &file, std::string name, mw::diagnostics::Sink &sink)
@@ -80,7 +80,7 @@ class Section {
 };
 
 void read_section(const Section &section, Line &line, VfdbSettings &settings) {
-    int shows = line.isShown ? 1 : 0;
+    int shows = line.shown ? 1 : 0;
     section.text("DEVICE", line.device);
     section.number("BAUD", line.baud, 110, 115200);
     section.number("BITS", line.bits, 5, 8);
@@ -91,7 +91,7 @@ void read_section(const Section &section, Line &line, VfdbSettings &settings) {
     section.number("MOTOR_HZ", settings.motor_hz, 1.0, 2000.0);
     section.number("MOTOR_RPM", settings.motor_rpm, 1.0, 1e6);
     section.number("MODBUS_DEBUG", shows, 0, 1000);
-    line.isShown = shows != 0;
+    line.shown = shows != 0;
 }
 
 }  // namespace
@@ -102,15 +102,15 @@ int main(int argc, char **argv) {
     VfdbSettings settings;
     const char *const machine = std::getenv("INI_FILE_NAME");
     std::string name = "vfdb_vfd", ini = machine != nullptr ? machine : "", section = "VFD-B";
-    bool isDebugged = false, isReported = false;
+    bool debugged = false, reported = false;
     mw::options::CommandLine options("loadusr -Wn NAME vfdb_vfd [OPTION ...]",
                                      "A Delta VFD-B drive on a serial line as pins of HAL.");
     options.text("-n,--name", "NAME", "of the component and its pins (vfdb_vfd)", name);
     options.text("-I,--ini", "FILE", "where its settings are (INI_FILE_NAME of the environment)", ini);
     options.text("-S,--section", "NAME", "in this section (VFD-B)", section);
-    options.flag("-m,--modbus-debug", "show all bytes", line.isShown);
-    options.flag("-d,--debug", "say what is opened", isDebugged);
-    options.flag("-r,--report-device", "the same", isReported);
+    options.flag("-m,--modbus-debug", "show all bytes", line.shown);
+    options.flag("-d,--debug", "say what is opened", debugged);
+    options.flag("-r,--report-device", "the same", reported);
     const mw::options::Words words(argv + 1, argv + argc);
     if (mw::options::wantsHelp(words)) {
         std::fputs(options.help().c_str(), stdout);
@@ -133,7 +133,7 @@ int main(int argc, char **argv) {
     if (sink.hasErrors()) {
         return 1;
     }
-    if (isDebugged || isReported) {
+    if (debugged || reported) {
         mw::language::tell(fmt::format("{}: {}, {} baud, parity {}, {} data bits, {} stop bits, drive {}",
                                        name, line.device, line.baud, line.parity, line.bits, line.stop,
                                        line.slave));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// millwright nml: the channels of an NML configuration for a machine that runs.
+// millwright nml: the channels of an NML configuration for a running machine.
 #include <cstdio>
 
 #include <fmt/format.h>
@@ -17,7 +17,7 @@
 namespace mw::programs {
 namespace {
 
-/// Without a new status the channels are looked at so often.
+/// Interval for checking the channels without a new status.
 constexpr double TICK_S = 0.01;
 
 struct NmlWords {
@@ -32,7 +32,7 @@ struct NmlWords {
             "'millwright\n"
             "start' keeps up, and serves them to other programs, over the network where a B line has a port. "
             "It is a\n"
-            "client: the machine goes on without it. Ends with the machine, at SIGINT or SIGTERM.\n");
+            "client: the machine continues without it. Ends with the machine, at SIGINT or SIGTERM.\n");
         line.text("--process", "NAME", "whose P lines say how the machine uses the channels; emc without it",
                   process);
         line.text("--server", "NAME",
@@ -51,12 +51,12 @@ struct NmlWords {
     }
 };
 
-/// Whose address only this computer can reach.
+/// True for an address that only this computer can reach.
 bool isLoopback(const std::string &host) {
     return host == "localhost" || host.starts_with("127.") || host == "::1";
 }
 
-/// Keeps what the server process is the master of.
+/// Creates the buffers of the server process.
 Result<std::vector<std::unique_ptr<nml::Buffer>>> make_buffers(const nml::Connections &connections) {
     std::vector<std::unique_ptr<nml::Buffer>> made;
     for (const nml::BufferSettings &buffer : connections.config.buffers) {
@@ -75,12 +75,12 @@ Result<std::vector<std::unique_ptr<nml::Buffer>>> make_buffers(const nml::Connec
 
 void tell_where(const nml::Config &config, const nml::Server &server, diagnostics::Sink &sink) {
     for (const nml::BufferSettings &buffer : config.buffers) {
-        const bool isServed =
+        const bool served =
             buffer.tcp_port.has_value() || buffer.stcp_port.has_value() || buffer.udp_port.has_value();
-        if (isServed && !isLoopback(buffer.host) && buffer.password_file.empty()) {
-            sink.warning(fmt::format("whoever reaches {} over the network can use buffer '{}'", buffer.host,
-                                     buffer.name),
-                         buffer.place, "ask for a password: passwd=FILE");
+        if (served && !isLoopback(buffer.host) && buffer.password_file.empty()) {
+            sink.warning(fmt::format("anyone who reaches {} over the network can use buffer '{}'",
+                                     buffer.host, buffer.name),
+                         buffer.place, "require a password: passwd=FILE");
         }
     }
     fmt::print("NML channels are up{}{}\n",
@@ -115,7 +115,7 @@ Result<> run_channels(const NmlWords &words, const nml::Config &config, diagnost
         if (!client->isMachineAlive()) {
             return fail("the machine is gone");
         }
-        // Without a newer status within the time, commands are looked for all the same.
+        // Commands are also read without a newer status.
         static_cast<void>(client->wait_status(TICK_S));
         (*bridge)->add((*server)->take_left_jogs());
         const auto stepped = (*bridge)->step();

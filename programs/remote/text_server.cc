@@ -19,20 +19,20 @@ namespace {
 
 using rsh::Dialect;
 
-/// Without new bytes the machine is looked at so often.
+/// Interval for checking the machine without new bytes.
 constexpr double IDLE_S = 0.05;
-/// Until a machine that starts beside this program takes clients. [s]
+/// Maximum wait for a machine that is starting. [s]
 constexpr double PATIENCE_S = 10;
 
-/// A machine that is just coming up is waited for.
+/// Waits for a machine that is starting.
 Result<client::Viewer> attach_patiently(const std::string &instance) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(PATIENCE_S);
     while (true) {
         auto viewer = client::Viewer::attach(instance);
-        const bool isReady =
+        const bool ready =
             viewer.has_value() && !viewer->identity().ini.empty() && viewer->read_status().has_value();
-        if (isReady || stop_signal != 0 || std::chrono::steady_clock::now() > end) {
-            return isReady || !viewer.has_value() ? std::move(viewer) : fail("the machine does not come up");
+        if (ready || stop_signal != 0 || std::chrono::steady_clock::now() > end) {
+            return ready || !viewer.has_value() ? std::move(viewer) : fail("the machine does not come up");
         }
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
@@ -71,12 +71,12 @@ Result<> serve(TextServerWords &words, TextServiceMaking make, diagnostics::Sink
     }
     (*server)->run(
         [&shared, &service] {
-            // A status that cannot be read now is that of a machine which ends.
-            const bool isUp = stop_signal == 0 && shared.isMachineAlive() && shared.read().has_value();
-            if (isUp) {
+            // A status that cannot be read means that the machine is ending.
+            const bool up = stop_signal == 0 && shared.isMachineAlive() && shared.read().has_value();
+            if (up) {
                 service->step(shared.status());
             }
-            return isUp;
+            return up;
         },
         IDLE_S);
     return {};
@@ -95,10 +95,9 @@ options::CommandLine TextServerWords::line() {
     line.text("-d,--path", "FOLDER", "where programs are that are opened; that of the INI file without it",
               settings.program_folder);
     line.text("-b,--bind", "ADDRESS",
-              "listen there, so that other computers can connect; needs passwords of its own",
-              server.address);
+              "listen there, so that other computers can connect; needs its own passwords", server.address);
     line.flag("-4,--ipv4", "this computer by IPv4 alone, not by IPv6", server.isIpv4Only);
-    if (hasDialects) {
+    if (has_dialects) {
         line.text("--dialect", "2.9|2.10", "whose answers are given; 2.10 without it", dialect);
     }
     line.flag("-q,--quiet", "say nothing of connections; it never does", isQuiet);
@@ -127,13 +126,13 @@ Result<> TextServerWords::parse(std::vector<std::string> words) {
     return check_passwords();
 }
 
-/// The passwords that everybody knows protect nothing.
+/// The default passwords are public and protect nothing.
 Result<> TextServerWords::check_passwords() const {
     const rsh::Settings preset;
-    const bool isOpen =
+    const bool open =
         !server.address.empty() && server.address != "::1" && !server.address.starts_with("127.");
-    if (isOpen && (settings.connect_password == preset.connect_password ||
-                   settings.enable_password == preset.enable_password)) {
+    if (open && (settings.connect_password == preset.connect_password ||
+                 settings.enable_password == preset.enable_password)) {
         return fail("--bind lets other computers move this machine: give passwords of your own", {},
                     "--connectpw and --enablepw");
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What linuxcncrsh and schedrmt have in common: the command line, the machine that is found, the port.
+// The common part of linuxcncrsh and schedrmt: the command line, the machine and the port.
 #pragma once
 
 #include <memory>
@@ -16,10 +16,10 @@
 
 namespace mw::programs {
 
-/// The command line of a program that listens for lines of text.
+/// The command line of a program that serves lines of text.
 struct TextServerWords {
     std::string program = {}, what = {};  ///< its name; for --help
-    bool hasDialects = false;             ///< --dialect is known
+    bool has_dialects = false;            ///< --dialect is known
     rsh::Settings settings = {};
     rsh::ServerSettings server = {};
     std::string ini = {}, dialect = "2.10";
@@ -32,16 +32,16 @@ struct TextServerWords {
     Result<> check_passwords() const;
 };
 
-/// What such a program says at its connections.
+/// The protocol of such a program.
 class TextService {
   public:
     virtual ~TextService() = default;
     virtual std::unique_ptr<rsh::Conversation> begin() = 0;
-    /// Before conversations go on.
+    /// Called before conversations continue.
     virtual void step(const messages::MachineStatus &) {}
 };
 
-/// What a service is made of; it outlives the service.
+/// Objects that a service uses; they outlive the service.
 struct TextMachine {
     const rsh::Settings &settings;
     rsh::SharedView &view;
@@ -50,7 +50,7 @@ struct TextMachine {
 
 using TextServiceMaking = std::unique_ptr<TextService> (*)(const TextMachine &);
 
-/// Runs until the machine ends, a signal comes or a client says SHUTDOWN; exit status of the program.
+/// Runs until the machine ends, a signal arrives or a client sends SHUTDOWN; returns the exit status.
 int serve_text(TextServerWords words, const std::vector<std::string> &arguments, TextServiceMaking make);
 
 }  // namespace mw::programs

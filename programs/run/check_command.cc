@@ -22,10 +22,10 @@ namespace {
 
 void print_result(const std::string &program, const machine::MachineConfig &machine,
                   const machine::CheckResult &result) {
-    const char *unit = machine.isMetric ? "mm" : "in";
+    const char *unit = machine.metric ? "mm" : "in";
     fmt::print("{}: {} blocks, {} moves, cutting {:.3f} {}, rapid {:.3f} {}\n", program, result.blocks,
                result.moves, result.cutting_length, unit, result.rapid_length, unit);
-    for (int axis = 0; axis < MAX_AXES && result.hasMoves; ++axis) {
+    for (int axis = 0; axis < MAX_AXES && result.has_moves; ++axis) {
         const auto i = static_cast<std::size_t>(axis);
         if ((machine.axis_mask & (1U << axis)) != 0) {
             fmt::print("  {} from {:.4f} to {:.4f} {} of the machine\n", geometry::AXIS_LETTERS[axis],
@@ -70,10 +70,10 @@ int check_loaded(const CheckWords &words, const machine::LoadedConfig &loaded, g
     const machine::CheckResult result =
         machine::check_program(loaded.machine, words.program, tools, values, sink, check);
     progress.clear();
-    if (result.isCancelled) {
+    if (result.cancelled) {
         sink.error("stopped by " + stop_signal_name());
     }
-    if (!words.plot.empty() && result.hasMoves) {
+    if (!words.plot.empty() && result.has_moves) {
         const auto drawn = plot_path(points.all(), loaded.machine, words.program, words.plot);
         if (!drawn.has_value()) {
             sink.error(drawn.error());

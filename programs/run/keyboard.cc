@@ -24,18 +24,18 @@ Keyboard::Keyboard() {
     keys.c_cc[VMIN] = 0;
     keys.c_cc[VTIME] = 0;
     keys.c_cc[VSUSP] = _POSIX_VDISABLE;
-    isTaken_ = ::tcsetattr(STDIN_FILENO, TCSANOW, &keys) == 0;
+    taken_ = ::tcsetattr(STDIN_FILENO, TCSANOW, &keys) == 0;
 }
 
 Keyboard::~Keyboard() {
-    // A program in the background that sets its terminal is stopped by the kernel.
-    if (isTaken_ && isThere()) {
+    // The kernel stops a program in the background that changes its terminal.
+    if (taken_ && isThere()) {
         ::tcsetattr(STDIN_FILENO, TCSANOW, &before_);
     }
 }
 
 std::optional<char> Keyboard::read() {
-    if (!isTaken_ || !isThere()) {
+    if (!taken_ || !isThere()) {
         return std::nullopt;
     }
     pollfd input{STDIN_FILENO, POLLIN, 0};
@@ -44,7 +44,7 @@ std::optional<char> Keyboard::read() {
         return std::nullopt;
     }
     if (key == ESCAPE) {
-        ::tcflush(STDIN_FILENO, TCIFLUSH);  // the rest of an arrow or function key
+        ::tcflush(STDIN_FILENO, TCIFLUSH);  // discards the rest of an arrow or function key
         return std::nullopt;
     }
     return key;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Single keys of the terminal that the program runs in, without waiting for them.
+// Reads single keys from the terminal of the program, without waiting for them.
 #pragma once
 
 #include <termios.h>
@@ -8,8 +8,8 @@
 
 namespace mw::programs {
 
-/// Takes the terminal's keys one by one while it lives: no echo, no end of line needed, no suspending by
-/// Ctrl-Z (task must not stand still while a machine moves). Restores the terminal at its end.
+/// Reads single keys from the terminal during its lifetime: no echo, no end of line needed, no suspending by
+/// Ctrl-Z (task must not stop while a machine moves). The destructor restores the terminal.
 class Keyboard {
   public:
     /// Standard input is a terminal and this program is in its foreground.
@@ -20,12 +20,12 @@ class Keyboard {
     Keyboard(const Keyboard &) = delete;
     Keyboard &operator=(const Keyboard &) = delete;
 
-    /// The next key; nothing when there is none. Never blocks. Keys that send more than one character
-    /// (arrows) are no keys.
+    /// The next key; nothing when there is none. Does not block. Ignores keys that send more than one
+    /// character (arrows).
     std::optional<char> read();
 
   private:
-    bool isTaken_ = false;
+    bool taken_ = false;
     termios before_{};
 };
 

@@ -12,9 +12,9 @@ namespace mw::programs {
 namespace {
 
 constexpr std::int64_t STOP_TIMEOUT_NS = 30000000000;
-/// A tap or thread is not held before its end.
+/// A tap or thread pauses only at its end; maximum wait.
 constexpr std::int64_t HOLD_TIMEOUT_NS = 1000000000;
-/// A client that stands still for longer loses the right to operate alone.
+/// A client that hangs for longer loses the exclusive right to operate.
 constexpr double LEASE_S = 5.0;
 constexpr std::int64_t RENEW_EVERY_NS = 1000000000;
 /// Task's cycles take milliseconds.
@@ -23,13 +23,13 @@ constexpr double CYCLE_S = 0.1;
 /// HAL files and their programs may take long.
 constexpr auto START_TIME = std::chrono::seconds(30);
 
-/// As its status says now; false when there is none.
+/// From its current status; false when there is none.
 bool isMoving(client::Client &client) {
     return client.read_status().has_value() && client.status().trajectory.isEnabled &&
            !client.status().trajectory.isInPosition;
 }
 
-/// The axes rest within their path: only a resume moves them.
+/// The axes are stopped within their path: only a resume moves them.
 bool isHeldAtRest(client::Client &client) {
     return client.read_status().has_value() && client.status().trajectory.isPaused &&
            client.status().trajectory.current_velocity == 0.0;
@@ -64,9 +64,9 @@ Result<std::unique_ptr<RunningMachine>> RunningMachine::find(const std::string &
         return fail(fmt::format("the machine that starts as instance '{}' does not get ready", instance));
     }
     if (!identity.isLasting) {
-        return fail(fmt::format("instance '{}' runs a program on a machine of its own: {}", instance,
-                                identity.ini.str()),
-                    {}, "wait for its end; 'millwright start' makes a machine that programs share");
+        return fail(
+            fmt::format("instance '{}' runs a program on its own machine: {}", instance, identity.ini.str()),
+            {}, "wait for its end; 'millwright start' makes a machine that programs share");
     }
     if (identity.ini.str() != whole_path(ini)) {
         return fail(fmt::format("the machine that runs as instance '{}' was started from {}, not from {}",
@@ -113,9 +113,9 @@ Result<> RunningMachine::take_over() {
     if (!status.has_value()) {
         return status;
     }
-    isRightOurs_ = true;
+    operate_right_owned_ = true;
     renewed_ns_ = now_ns();
-    status = check_idle();  // someone may have begun between our look and our right
+    status = check_idle();  // another client may have started something before we had the right
     if (!status.has_value()) {
         give_back();
     }
@@ -123,18 +123,18 @@ Result<> RunningMachine::take_over() {
 }
 
 void RunningMachine::give_back() {
-    if (isRightOurs_ && !isGone_) {
+    if (operate_right_owned_ && !gone_) {
         static_cast<void>(ask(messages::ReleaseOperation{}));
     }
-    isRightOurs_ = false;
+    operate_right_owned_ = false;
 }
 
 void RunningMachine::cycle() {
     if (!client_.wait_status(CYCLE_S).has_value()) {
-        isGone_ = !client_.isMachineAlive();
+        gone_ = !client_.isMachineAlive();
     }
     const std::int64_t now = now_ns();
-    if (isRightOurs_ && !isGone_ && now - renewed_ns_ >= RENEW_EVERY_NS) {
+    if (operate_right_owned_ && !gone_ && now - renewed_ns_ >= RENEW_EVERY_NS) {
         renewed_ns_ = now;
         static_cast<void>(client_.post(messages::ClaimOperation{LEASE_S}));
     }
@@ -146,7 +146,7 @@ std::int64_t RunningMachine::now_ns() const {
 }
 
 Result<> RunningMachine::health() const {
-    return isGone_ ? fail("the machine is no longer running: 'millwright start' has ended") : Result<>{};
+    return gone_ ? fail("the machine is no longer running: 'millwright start' has ended") : Result<>{};
 }
 
 void stop_motion(MachineAccess &machine) {
@@ -155,10 +155,10 @@ void stop_motion(MachineAccess &machine) {
 }
 
 void switch_off(MachineAccess &machine) {
-    // An abort switches the spindle off at once: the tool would still move through the part.
-    const bool isRunning = machine.client().read_status().has_value() &&
-                           machine.client().status().task.interp_state != messages::InterpState::IDLE;
-    if (isRunning && machine.client().post(messages::PauseProgram{}).has_value()) {
+    // An abort switches the spindle off at once, while the tool still moves through the part.
+    const bool running = machine.client().read_status().has_value() &&
+                         machine.client().status().task.interp_state != messages::InterpState::IDLE;
+    if (running && machine.client().post(messages::PauseProgram{}).has_value()) {
         wait_for_rest(machine, HOLD_TIMEOUT_NS);
     }
     stop_motion(machine);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The machine as whoever runs a program on it has it: made in this process, or running in another.
+// The machine that runs a program: made in this process, or running in another.
 #pragma once
 
 #include <cstdint>
@@ -19,10 +19,10 @@ class MachineAccess {
     /// Returns after the next task cycle: runs it, or waits for it.
     virtual void cycle() = 0;
     virtual std::int64_t now_ns() const = 0;
-    /// An error once the machine cannot go on. Ask in every cycle.
+    /// An error when the machine cannot continue. Check in every cycle.
     virtual Result<> health() const = 0;
     virtual client::Client &client() = 0;
-    /// Others may operate the machine as well.
+    /// Other clients may operate the machine as well.
     virtual bool isShared() const = 0;
 };
 
@@ -40,17 +40,17 @@ class OwnMachine final : public MachineAccess {
     machine::Machine &machine_;
 };
 
-/// A machine that `millwright start` keeps up. What its client has begun is aborted when the client goes, in
-/// whatever way.
+/// A machine that `millwright start` keeps running. Actions of this client are aborted when the client ends
+/// for any reason.
 class RunningMachine final : public MachineAccess {
   public:
-    /// Null when no machine of that instance runs. An error when one does that is not to be joined: it was
-    /// started from another file than `ini`, or ends with a program of its own.
+    /// Null when no machine of that instance runs. An error when the running one cannot be joined: it was
+    /// started from another file than `ini`, or ends with its own program.
     static Result<std::unique_ptr<RunningMachine>> find(const std::string &instance, const std::string &ini);
     ~RunningMachine() override;
 
-    /// Asks for the right to operate alone and keeps it, renewed in each cycle, until give_back(). Refused
-    /// while something runs or moves, or another client has it.
+    /// Requests the exclusive right to operate and renews it in each cycle, until give_back(). Rejected while
+    /// something runs or moves, or another client has it.
     Result<> take_over();
     void give_back();
 
@@ -66,15 +66,15 @@ class RunningMachine final : public MachineAccess {
     Result<> ask(const messages::Command &command);
 
     client::Client client_;
-    bool isGone_ = false;
-    bool isRightOurs_ = false;
+    bool gone_ = false;
+    bool operate_right_owned_ = false;
     std::int64_t renewed_ns_ = 0;
 };
 
-/// Aborts whatever runs and waits until the machine stands.
+/// Aborts everything and waits until the machine is stopped.
 void stop_motion(MachineAccess &machine);
-/// Holds the program so that the axes stop with the spindle on, then as stop_motion(), then opens the e-stop
-/// chain: spindles, coolant and amplifiers are off.
+/// Pauses the program, so that the axes stop with the spindle on, then stops as stop_motion(), then opens the
+/// e-stop chain: spindles, coolant and amplifiers are off.
 void switch_off(MachineAccess &machine);
 
 }  // namespace mw::programs

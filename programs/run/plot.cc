@@ -41,10 +41,10 @@ struct Window {
     double left, top, width, height;
 };
 
-/// Machine units to the picture's pixels, the same factor in both directions.
+/// Machine units to pixels, with the same factor in both directions.
 struct Scale {
     double factor, dx, dy;
-    Flat low, high;  ///< what the window shows
+    Flat low, high;  ///< visible range
 
     double px(double x) const { return x * factor + dx; }
     double py(double y) const { return dy - y * factor; }
@@ -70,37 +70,37 @@ Scale fit(const std::vector<PathPoint> &points, Projection project, const Window
 }
 
 void draw_moves(const charts::Canvas &canvas, const std::vector<PathPoint> &points, Projection project,
-                const Scale &scale, bool isRapid) {
+                const Scale &scale, bool rapid) {
     cairo_t *cr = canvas.cairo();
-    if (isRapid) {
+    if (rapid) {
         canvas.set_color(0.85, 0.35, 0.2, 0.5);
     } else {
         canvas.set_color(0.1, 0.3, 0.65, 0.9);
     }
-    cairo_set_line_width(cr, isRapid ? 0.6 : 0.9);
+    cairo_set_line_width(cr, rapid ? 0.6 : 0.9);
     Flat last{-1e9, -1e9};
-    bool isDown = false;
+    bool down = false;
     for (std::size_t i = 1; i < points.size(); ++i) {
-        if (points[i].isRapid != isRapid) {
-            isDown = false;
+        if (points[i].isRapid != rapid) {
+            down = false;
             continue;
         }
         const Flat from = scale(project(points[i - 1])), to = scale(project(points[i]));
         // Points nearer than a third of a pixel add nothing to the picture.
-        if (isDown && std::hypot(to.x - last.x, to.y - last.y) < 0.35) {
+        if (down && std::hypot(to.x - last.x, to.y - last.y) < 0.35) {
             continue;
         }
-        if (!isDown) {
+        if (!down) {
             cairo_move_to(cr, from.x, from.y);
         }
         cairo_line_to(cr, to.x, to.y);
         last = to;
-        isDown = true;
+        down = true;
     }
     cairo_stroke(cr);
 }
 
-/// Grid and figures of both axes.
+/// Grid and labels of both axes.
 void draw_axes(const charts::Canvas &canvas, const Scale &scale, const Window &window,
                const std::string &across, const std::string &upwards) {
     constexpr double SMALL = 11;
@@ -124,17 +124,17 @@ void draw_axes(const charts::Canvas &canvas, const Scale &scale, const Window &w
     canvas.text(window.left, window.top - 8, upwards, 13);
 }
 
-/// Where the tool feeds straight down: seen from above that is a point.
+/// Vertical feed moves: a point as seen from above.
 std::vector<Flat> holes(const std::vector<PathPoint> &points) {
     std::vector<Flat> found;
     for (std::size_t i = 1; i < points.size(); ++i) {
         const PathPoint &from = points[i - 1], &to = points[i];
         constexpr float STRAIGHT = 1e-4F;
-        const bool isDown = !to.isRapid && to.z < from.z && std::fabs(to.x - from.x) < STRAIGHT &&
-                            std::fabs(to.y - from.y) < STRAIGHT;
-        const bool isNew = found.empty() || std::fabs(found.back().x - to.x) > STRAIGHT ||
-                           std::fabs(found.back().y - to.y) > STRAIGHT;
-        if (isDown && isNew) {
+        const bool down = !to.isRapid && to.z < from.z && std::fabs(to.x - from.x) < STRAIGHT &&
+                          std::fabs(to.y - from.y) < STRAIGHT;
+        const bool is_new = found.empty() || std::fabs(found.back().x - to.x) > STRAIGHT ||
+                            std::fabs(found.back().y - to.y) > STRAIGHT;
+        if (down && is_new) {
             found.push_back({to.x, to.y});
         }
     }
@@ -165,11 +165,11 @@ void draw_centre_line(const charts::Canvas &canvas, const Scale &scale, const Wi
     cairo_set_dash(canvas.cairo(), nullptr, 0, 0);
 }
 
-void draw_legend(const charts::Canvas &canvas, const std::string &title, bool hasHoles) {
+void draw_legend(const charts::Canvas &canvas, const std::string &title, bool has_holes) {
     canvas.set_color(0.1, 0.1, 0.1);
     canvas.text(MARGIN, 34, title, 18);
     canvas.set_color(0.1, 0.3, 0.65);
-    canvas.text(WIDTH - 260, 34, hasHoles ? "feed, o plunge" : "feed", 13);
+    canvas.text(WIDTH - 260, 34, has_holes ? "feed, o plunge" : "feed", 13);
     canvas.set_color(0.85, 0.35, 0.2);
     canvas.text(WIDTH - 140, 34, "rapid", 13);
 }
@@ -179,9 +179,9 @@ void draw_mill(const charts::Canvas &canvas, const std::vector<PathPoint> &point
     const Window above{MARGIN, TOP, width, height}, angle{2 * MARGIN + width, TOP, width, height};
     const Scale flat = fit(points, from_above, above);
     draw_axes(canvas, flat, above, "X [" + unit + "]", "Y [" + unit + "]");
-    for (const bool isRapid : {true, false}) {
-        draw_moves(canvas, points, from_above, flat, isRapid);
-        draw_moves(canvas, points, from_an_angle, fit(points, from_an_angle, angle), isRapid);
+    for (const bool rapid : {true, false}) {
+        draw_moves(canvas, points, from_above, flat, rapid);
+        draw_moves(canvas, points, from_an_angle, fit(points, from_an_angle, angle), rapid);
     }
     draw_holes(canvas, points, flat);
 }
@@ -191,8 +191,8 @@ void draw_lathe(const charts::Canvas &canvas, const std::vector<PathPoint> &poin
     const Scale scale = fit(points, as_turned, window);
     draw_axes(canvas, scale, window, "Z [" + unit + "]", "X, radius [" + unit + "]");
     draw_centre_line(canvas, scale, window);
-    for (const bool isRapid : {true, false}) {
-        draw_moves(canvas, points, as_turned, scale, isRapid);
+    for (const bool rapid : {true, false}) {
+        draw_moves(canvas, points, as_turned, scale, rapid);
     }
 }
 
@@ -205,10 +205,10 @@ Result<> plot_path(const std::vector<PathPoint> &points, const machine::MachineC
         return std::unexpected(canvas.error());
     }
     constexpr unsigned XZ = 0b101, XYZ = 0b111;
-    const bool isLathe = machine.task.interpreter.isLathe || (machine.axis_mask & XYZ) == XZ;
-    const std::string unit = machine.isMetric ? "mm" : "inch";
-    draw_legend(*canvas, program + " on " + machine.name + ", machine coordinates", !isLathe);
-    if (isLathe) {
+    const bool is_lathe = machine.task.interpreter.is_lathe || (machine.axis_mask & XYZ) == XZ;
+    const std::string unit = machine.metric ? "mm" : "inch";
+    draw_legend(*canvas, program + " on " + machine.name + ", machine coordinates", !is_lathe);
+    if (is_lathe) {
         draw_lathe(*canvas, points, unit);
     } else {
         draw_mill(*canvas, points, unit);

@@ -12,16 +12,16 @@
 
 namespace mw::programs {
 
-ProgressLine::ProgressLine() : isTerminal_(OutputRelay::isTerminal(STDERR_FILENO)) {}
+ProgressLine::ProgressLine() : is_terminal_(OutputRelay::isTerminal(STDERR_FILENO)) {}
 
 void ProgressLine::show(const gcode::PreviewProgress &now) {
     constexpr std::chrono::milliseconds EVERY{500};
     const auto time = std::chrono::steady_clock::now();
-    if (!isTerminal_ || time - last_ < EVERY) {
+    if (!is_terminal_ || time - last_ < EVERY) {
         return;
     }
     last_ = time;
-    isShown_ = true;
+    shown_ = true;
     const double seconds = std::chrono::duration<double>(time - begin_).count();
     const double share = now.bytes_in_all > 0
                              ? 100.0 * static_cast<double>(now.bytes) / static_cast<double>(now.bytes_in_all)
@@ -32,9 +32,9 @@ void ProgressLine::show(const gcode::PreviewProgress &now) {
 }
 
 void ProgressLine::clear() {
-    if (isShown_) {
+    if (shown_) {
         fmt::print(stderr, "\r\033[K");
-        isShown_ = false;
+        shown_ = false;
     }
 }
 

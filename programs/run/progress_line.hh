@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// How far the reading of a program is, on a terminal.
+// Shows the progress of reading a program on a terminal.
 #pragma once
 
 #include <chrono>
@@ -8,7 +8,7 @@
 
 namespace mw::programs {
 
-/// A line of standard error that is written over twice a second; nothing where that is no terminal.
+/// A line of standard error that is updated twice a second; no effect if that is not a terminal.
 class ProgressLine {
   public:
     ProgressLine();
@@ -16,8 +16,8 @@ class ProgressLine {
     void clear();
 
   private:
-    bool isTerminal_;
-    bool isShown_ = false;
+    bool is_terminal_;
+    bool shown_ = false;
     std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now(), last_ = begin_;
 };
 

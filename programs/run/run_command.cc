@@ -28,7 +28,7 @@
 namespace mw::programs {
 namespace {
 
-/// One `millwright run`, from a configuration that is loaded.
+/// One `millwright run` with a loaded configuration.
 class Run {
   public:
     Run(RunWords words, machine::LoadedConfig &loaded, diagnostics::Sink &sink)
@@ -39,7 +39,7 @@ class Run {
             return 1;
         }
         Result<std::unique_ptr<RunningMachine>> running = nullptr;
-        if (words_.isRealtime) {  // a simulation never touches a machine that runs
+        if (words_.realtime) {  // a simulation never uses a running machine
             running = RunningMachine::find(hal::default_instance(), words_.ini);
         }
         if (!running.has_value()) {
@@ -74,17 +74,17 @@ class Run {
             return 1;
         }
         tell_end({words_.program, loaded_.machine, person.figures(), recorder.monitor().figures(),
-                  (*machine)->realtime_figures(), words_.isRealtime, check_});
+                  (*machine)->realtime_figures(), words_.realtime, check_});
         return draw(recorder.monitor().points()) ? 0 : 1;
     }
 
-    /// On a machine that runs already and is not shut down.
+    /// On a running machine, which continues afterwards.
     int run_there(RunningMachine &machine) {
         RunSession person(machine, loaded_.machine, sink_, operator_options());
         if (!isForClients() || !check(person.status().tool.in_spindle)) {
             return 1;
         }
-        words_.program = whole_path(words_.program);  // it is another process that opens it
+        words_.program = whole_path(words_.program);  // another process opens it
         auto status = isStarted(person);
         status = status.has_value() ? machine.take_over() : status;
         if (status.has_value()) {
@@ -98,14 +98,14 @@ class Run {
             sink_.failure(status.error());
             return 1;
         }
-        tell_end({words_.program, loaded_.machine, person.figures(), {}, {}, words_.isRealtime, check_});
+        tell_end({words_.program, loaded_.machine, person.figures(), {}, {}, words_.realtime, check_});
         return 0;
     }
 
     RunSessionOptions operator_options() const {
         RunSessionOptions options;
         options.patience_s = words_.patience_s;
-        options.attendance = !words_.isRealtime    ? Attendance::SIMULATED
+        options.attendance = !words_.realtime      ? Attendance::SIMULATED
                              : Keyboard::isThere() ? Attendance::TERMINAL
                                                    : Attendance::NOBODY;
         return options;
@@ -119,9 +119,9 @@ class Run {
         }
     }
 
-    /// What can be refused before anything is made.
+    /// Checks that need no machine.
     bool isAllowed() {
-        if (words_.isRealtime && !words_.isConfirmed && !Keyboard::isThere()) {
+        if (words_.realtime && !words_.confirmed && !Keyboard::isThere()) {
             sink_.failure(
                 {"--realtime asks a person at the terminal before it switches the machine on, and there is "
                  "none",
@@ -137,17 +137,17 @@ class Run {
         return drawable.has_value();
     }
 
-    /// What needs to be in the machine's process.
+    /// Rejects options that need the machine's process.
     bool isForClients() {
         const char *option = !words_.trace.empty()            ? "--trace"
                              : !words_.plot.empty()           ? "--plot"
-                             : words_.isStrict                ? "--strict"
+                             : words_.strict                  ? "--strict"
                              : !words_.homing_module.empty()  ? "--homemod"
                              : !words_.planner_module.empty() ? "--tpmod"
                                                               : nullptr;
         if (option != nullptr) {
             sink_.error(
-                {fmt::format("{} needs a machine that is made for this program, and one is up already",
+                {fmt::format("{} needs a machine that is made for this program, and one is already running",
                              option),
                  {},
                  "leave it out, or end 'millwright start'; millwright check draws programs"});
@@ -169,11 +169,11 @@ class Run {
         machine::PathPoints points;
         diagnostics::Sink unheard;
         StartCheckOptions options;
-        options.wantsTime = words_.isEstimated;
-        options.isBlockDeleteOn = words_.switches.isBlockDeleteOn;
+        options.wants_time = words_.estimated;
+        options.block_delete_on = words_.switches.block_delete_on;
         options.points = &points;
         check_ = check_before_start(loaded_.machine, words_.program, **tools, values,
-                                    words_.isChecked ? sink_ : unheard, options);
+                                    words_.checked ? sink_ : unheard, options);
         if (stop_signal != 0) {
             sink_.failure({"stopped by " + stop_signal_name() + " before the start"});
             return false;
@@ -181,7 +181,7 @@ class Run {
         if (!check_.isRefused) {
             return true;
         }
-        if (!words_.isChecked) {
+        if (!words_.checked) {
             sink_.warning("the program will stop before its end: it is started because of --no-check");
             return true;
         }
@@ -194,26 +194,26 @@ class Run {
     Result<std::unique_ptr<machine::Machine>> make() {
         const machine::MachineParts parts{loaded_.ini, loaded_.reader, loaded_.machine, sink_};
         machine::MachineOptions options;
-        options.isStrict = words_.isStrict;
+        options.strict = words_.strict;
         options.homing_module = words_.homing_module;
         options.planner_module = words_.planner_module;
-        options.isToolTableTold = true;
-        return words_.isRealtime ? machine::make_realtime_machine(parts, options)
-                                 : machine::make_virtual_machine(parts, options);
+        options.tool_table_reported = true;
+        return words_.realtime ? machine::make_realtime_machine(parts, options)
+                               : machine::make_virtual_machine(parts, options);
     }
 
-    /// A person has agreed where one is asked.
+    /// Starts, after confirmation by a person if one is asked.
     Result<> isStarted(RunSession &person) {
         if (stop_signal != 0) {
             return fail("stopped by " + stop_signal_name() + " before the start");
         }
         const messages::MachineStatus &now = person.status();
-        const bool isReady = now.task.state == messages::State::ON && now.trajectory.isAllHomed;
+        const bool ready = now.task.state == messages::State::ON && now.trajectory.isAllHomed;
         const std::string question =
-            isReady ? fmt::format("run {} on {}?", words_.program, loaded_.machine.name)
-                    : fmt::format("switch {} on, home it and run {}?", loaded_.machine.name, words_.program);
-        const bool isAsked = words_.isRealtime && !words_.isConfirmed;
-        return isAsked && !person.confirm(question) ? fail("not started") : Result<>{};
+            ready ? fmt::format("run {} on {}?", words_.program, loaded_.machine.name)
+                  : fmt::format("switch {} on, home it and run {}?", loaded_.machine.name, words_.program);
+        const bool requested = words_.realtime && !words_.confirmed;
+        return requested && !person.confirm(question) ? fail("not started") : Result<>{};
     }
 
     Result<> go(RunSession &person, Recorder *recorder) {
@@ -271,8 +271,8 @@ int command_run(const std::vector<std::string> &arguments) {
     if (loaded == nullptr) {
         return 1;
     }
-    // Virtual time waits for its reader; a machine does not.
-    const std::string why = words->isRealtime ? OutputRelay::begin() : "";
+    // Virtual time may wait for the reader of the output; a machine must not.
+    const std::string why = words->realtime ? OutputRelay::begin() : "";
     if (!why.empty()) {
         sink.warning("a terminal that is stopped can hold up the machine: " + why);
     }

@@ -26,7 +26,7 @@ RunSession::RunSession(MachineAccess &machine, const machine::MachineConfig &con
 
 void RunSession::cycle() {
     machine_.cycle();
-    // Where task has died within it, health() says so.
+    // If task has died during it, health() reports it.
     static_cast<void>(machine_.client().read_status());
 }
 
@@ -75,9 +75,9 @@ Result<> RunSession::home_all() {
 
 Result<> RunSession::set_switches(const ProgramSwitches &switches) {
     const auto status =
-        ask(messages::SetOptionalStop{switches.isOptionalStopOn}, "setting the optional stop");
+        ask(messages::SetOptionalStop{switches.optional_stop_on}, "setting the optional stop");
     return status.has_value()
-               ? ask(messages::SetBlockDelete{switches.isBlockDeleteOn}, "setting block delete")
+               ? ask(messages::SetBlockDelete{switches.block_delete_on}, "setting block delete")
                : status;
 }
 
@@ -127,11 +127,11 @@ Result<> RunSession::wait_for(const Result<client::Serial> &posted, const std::s
             return {};
         }
         if (outcome.progress != messages::Progress::STARTED) {
-            // As a message to the operator; of a machine that others use as well it may be about their work.
-            const bool isTold = !last_error_.empty() && !machine_.isShared();
+            // As a message to the operator; on a shared machine it may be about the work of others.
+            const bool reported = !last_error_.empty() && !machine_.isShared();
             const std::string &reason = outcome.reason;
             return std::unexpected(
-                Error{what + " failed" + (reason.empty() ? "" : ": " + reason), {}, {}, isTold});
+                Error{what + " failed" + (reason.empty() ? "" : ": " + reason), {}, {}, reported});
         }
         if (stop_signal != 0) {
             return stop_on_signal();
@@ -153,10 +153,10 @@ bool RunSession::hasProgress() {
     for (std::size_t i = 0; i < now.joints.size(); ++i) {
         now.joints[i] = shown.joints[i].pos_cmd;
     }
-    const bool isDwelling = shown.task.waiting.what == messages::WaitFor::DWELL;
-    const bool isChanged = !(now == mark_) || isDwelling;
+    const bool dwelling = shown.task.waiting.what == messages::WaitFor::DWELL;
+    const bool changed = !(now == mark_) || dwelling;
     mark_ = now;
-    return isChanged;
+    return changed;
 }
 
 Result<> RunSession::stop_on_signal() {
@@ -176,7 +176,7 @@ void RunSession::stop() {
 }
 
 void RunSession::switch_off() {
-    if (machine_.health()) {  // else there is nothing left that could be switched
+    if (machine_.health()) {  // otherwise there is nothing left to switch off
         programs::switch_off(machine_);
         show_messages();
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Does what a person at the machine does: switches on, homes, opens and runs a program, watches it. What is
-// on or homed already stays so.
+// Does the work of an operator: switches the machine on, homes it, opens and runs a program and watches it.
+// Leaves the machine switched on and homed if it was so before.
 #pragma once
 
 #include <functional>
@@ -13,7 +13,7 @@
 namespace mw::programs {
 
 struct RunSessionFigures {
-    double cycle_time_s = 0;  ///< of the program, in the machine's time
+    double cycle_time_s = 0;  ///< of the program, in machine time
     double wall_time_s = 0;
     std::uint64_t blocks = 0;
     int stops_passed = 0;  ///< M0, M1 and M60
@@ -21,8 +21,8 @@ struct RunSessionFigures {
 };
 
 struct ProgramSwitches {
-    bool isOptionalStopOn = true;  ///< M1 stops
-    bool isBlockDeleteOn = true;   ///< lines that begin with / are left out
+    bool optional_stop_on = true;  ///< M1 stops
+    bool block_delete_on = true;   ///< lines that begin with / are skipped
 };
 
 struct RunSessionOptions {
@@ -30,23 +30,23 @@ struct RunSessionOptions {
     Attendance attendance = Attendance::SIMULATED;
 };
 
-/// Stop signals (base/stop_signals.hh) end whatever it waits for with a controlled stop.
+/// Stop signals (base/stop_signals.hh) end every wait with a controlled stop.
 class RunSession {
   public:
     RunSession(MachineAccess &machine, const machine::MachineConfig &config, diagnostics::Sink &sink,
                const RunSessionOptions &options);
 
-    /// Asks the person at the terminal; false: no, or there is none.
+    /// Asks the person at the terminal; false: declined, or no person.
     bool confirm(const std::string &question) { return panel_.confirm(question); }
 
     Result<> switch_on();
-    /// Home all by sequence, then whatever has none, one by one.
+    /// Homes all joints in sequence, then those without a sequence one by one.
     Result<> home_all();
     Result<> set_switches(const ProgramSwitches &switches);
     Result<> open_program(const std::string &path);
     /// Runs to the end, from a line (0: the first). `each_cycle` is called after every task cycle.
     Result<> run_program(int from_line, const std::function<void()> &each_cycle);
-    /// Stops whatever moves; the machine stays on.
+    /// Stops all motion; the machine stays on.
     void stop();
     /// Stops all motion and switches the machine off.
     void switch_off();
@@ -58,7 +58,7 @@ class RunSession {
 
   private:
     Result<> ask(const messages::Command &command, const std::string &what);
-    /// Goes on until the request ends. The error says what is waited for.
+    /// Runs cycles until the request ends. The error names what was awaited.
     Result<> wait_for(const Result<client::Serial> &posted, const std::string &what,
                       const std::function<void()> &each_cycle);
     /// One task cycle, and the status after it.

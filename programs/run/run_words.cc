@@ -25,27 +25,27 @@ options::CommandLine run_line(RunWords &run, options::Words &rest) {
         "so. With --realtime a person does, by keys or by HAL pins (halui, hal_manualtoolchange):\n"
         "  y start    h or space hold    r resume    a abort    t the tool is changed\n");
     line.flag("--realtime", "by the clock, in two processes; asks at the terminal before it switches on",
-              run.isRealtime);
+              run.realtime);
     line.flag("--yes", "do not ask before the start, and start without a terminal; confirms nothing else",
-              run.isConfirmed);
+              run.confirmed);
     line.text("--trace", "FILE.csv", "write the commanded positions of every servo cycle", run.trace);
-    line.text("--plot", "FILE", "draw the tool path, as .png or .svg; of a refused program too", run.plot);
+    line.text("--plot", "FILE", "draw the tool path, as .png or .svg; also for a rejected program", run.plot);
     line.number("--from-line", "N",
-                "begin at this line: what comes before is calculated, the way there confirmed by a person",
+                "begin at this line: earlier lines are calculated, and a person confirms the approach",
                 run.from_line, 1, MOST_LINES);
     line.number("--patience", "SECONDS",
-                "give up after so long without progress (default 60, in the machine's time)", run.patience_s,
+                "stop after this time without progress (default 60, in the machine's time)", run.patience_s,
                 0.001, MOST_PATIENCE_S);
-    line.on_or_off("--optional-stop", "M1 stops (on)", run.switches.isOptionalStopOn);
+    line.on_or_off("--optional-stop", "M1 stops (on)", run.switches.optional_stop_on);
     line.on_or_off("--block-delete", "lines that begin with / are left out (on)",
-                   run.switches.isBlockDeleteOn);
-    line.flag("--no-estimate", "do not reckon the time that the planner expects", run.isEstimated, false);
-    line.flag("--no-check", "start even a program that is known to fail", run.isChecked, false);
+                   run.switches.block_delete_on);
+    line.flag("--no-estimate", "do not calculate the time that the planner expects", run.estimated, false);
+    line.flag("--no-check", "start even a program that is known to fail", run.checked, false);
     line.text("--homemod", "NAME", "a homing module and its parameters, instead of [EMCMOT]HOMEMOD",
               run.homing_module);
     line.text("--tpmod", "NAME", "a planner module and its parameters, instead of [TRAJ]TPMOD",
               run.planner_module);
-    line.flag("--strict", "unknown INI keys are errors", run.isStrict);
+    line.flag("--strict", "unknown INI keys are errors", run.strict);
     line.rest(rest);
     line.footer("exit status: 0 the program ran to its end, 1 refused, failed or stopped, 2 wrong usage\n");
     return line;

@@ -11,13 +11,13 @@ namespace mw::programs {
 
 struct RunWords {
     std::string ini, program, trace, plot, homing_module, planner_module;
-    bool isRealtime = false, isStrict = false, isEstimated = true, isChecked = true, isConfirmed = false;
+    bool realtime = false, strict = false, estimated = true, checked = true, confirmed = false;
     ProgramSwitches switches;
     double patience_s = 60.0;
     int from_line = 0;  ///< 0: the first
 };
 
-/// What --help says.
+/// Text of --help.
 std::string run_help();
 Result<RunWords> parse_run(const std::vector<std::string> &words);
 

@@ -10,11 +10,10 @@
 namespace mw::programs {
 namespace {
 
-/// Of the time for the look ahead, the share after which the reckoning of times is given up for reading
-/// further.
+/// Fraction of the checking time after which time calculation is abandoned for reading further.
 constexpr double SHARE_FOR_TIMES = 0.6;
 
-/// Tells errors as errors as long as the program's way is known, as warnings behind.
+/// Reports errors as errors while the course of the program is certain, later as warnings.
 class Judge {
   public:
     explicit Judge(diagnostics::Sink &sink) : sink_(sink) {}
@@ -24,7 +23,7 @@ class Judge {
             one.severity = diagnostics::Severity::WARNING;
             one.what.message += " (if the program comes there)";
         }
-        hasErrors_ = hasErrors_ || one.severity == diagnostics::Severity::ERROR;
+        has_errors_ = has_errors_ || one.severity == diagnostics::Severity::ERROR;
         sink_.report(std::move(one));
     }
     void take_unknown(const SourcePlace &place, std::string_view what) {
@@ -34,12 +33,12 @@ class Judge {
                        place);
         }
     }
-    bool hasErrors() const { return hasErrors_; }
+    bool hasErrors() const { return has_errors_; }
 
   private:
     diagnostics::Sink &sink_;
     std::set<std::string> unknown_;
-    bool hasErrors_ = false;
+    bool has_errors_ = false;
 };
 
 }  // namespace
@@ -54,8 +53,8 @@ StartCheck check_before_start(const machine::MachineConfig &machine, const std::
     ProgressLine progress;
     diagnostics::Sink found([&judge](const diagnostics::Diagnostic &one) { judge.take(one); });
     machine::CheckOptions check;
-    check.statements = 0;  // a program may run for ever: the limits end the look ahead
-    check.isBlockDeleteOn = options.isBlockDeleteOn;
+    check.statements = 0;  // a program may run for ever: other limits end the check
+    check.block_delete_on = options.block_delete_on;
     check.progress = [&](const gcode::PreviewProgress &now) {
         progress.show(now);
         return stop_signal == 0 && now.blocks < options.most_blocks && seconds() < options.most_seconds;
@@ -63,11 +62,13 @@ StartCheck check_before_start(const machine::MachineConfig &machine, const std::
     check.unknown = [&judge](const SourcePlace &place, std::string_view what) {
         judge.take_unknown(place, what);
     };
-    check.wantsTime = [&] { return options.wantsTime && seconds() < SHARE_FOR_TIMES * options.most_seconds; };
+    check.wantsTime = [&] {
+        return options.wants_time && seconds() < SHARE_FOR_TIMES * options.most_seconds;
+    };
     check.points = options.points;
     const machine::CheckResult result = machine::check_program(machine, program, tools, values, found, check);
     progress.clear();
-    return {judge.hasErrors(), !result.isCancelled, result.blocks, result.time};
+    return {judge.hasErrors(), !result.cancelled, result.blocks, result.time};
 }
 
 }  // namespace mw::programs

@@ -22,7 +22,7 @@ void print_axes(const char *label, const Summary &summary, const std::array<doub
         if ((summary.machine.axis_mask & (1U << axis)) == 0) {
             continue;
         }
-        const char *unit = geometry::isAngular(axis) ? "deg" : (summary.machine.isMetric ? "mm" : "in");
+        const char *unit = geometry::isAngular(axis) ? "deg" : (summary.machine.metric ? "mm" : "in");
         text += fmt::format("  {} {:.4g} {}/{}", geometry::AXIS_LETTERS[axis],
                             values[static_cast<std::size_t>(axis)], unit, power);
     }
@@ -52,12 +52,12 @@ void print_peaks(const Summary &summary, const machine::RunFigures &path, const 
 }  // namespace
 
 void print_summary(const Summary &summary) {
-    const char *unit = summary.machine.isMetric ? "mm" : "in";
+    const char *unit = summary.machine.metric ? "mm" : "in";
     fmt::print("program             {} on {}\n", summary.program, summary.machine.name);
-    fmt::print("read beforehand     {}{} blocks\n", summary.check.isWhole ? "all " : "the first ",
+    fmt::print("read beforehand     {}{} blocks\n", summary.check.whole ? "all " : "the first ",
                summary.check.blocks);
     fmt::print("cycle time          {}\n", time_text(summary.run.cycle_time_s));
-    if (!summary.wasRealtime) {
+    if (!summary.was_realtime) {
         fmt::print("simulated in        {:.3f} s, {:.0f} times faster than the clock\n",
                    summary.run.wall_time_s,
                    summary.run.cycle_time_s / std::fmax(summary.run.wall_time_s, 1e-9));
@@ -72,9 +72,9 @@ void print_summary(const Summary &summary) {
     if (summary.run.stops_passed > 0) {
         fmt::print("program stops       {} passed\n", summary.run.stops_passed);
     }
-    if (summary.wasRealtime && summary.realtime.has_value()) {
+    if (summary.was_realtime && summary.realtime.has_value()) {
         fmt::print("realtime            {}\n",
-                   summary.realtime->isRealtime ? "yes" : "no: " + summary.realtime->missing);
+                   summary.realtime->realtime ? "yes" : "no: " + summary.realtime->missing);
         fmt::print("overruns            {}\n", summary.realtime->overruns);
         fmt::print("largest latency     {:.1f} us\n",
                    static_cast<double>(summary.realtime->max_latency_ns) * 1e-3);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What a run says at its end.
+// The summary at the end of a run.
 #pragma once
 
 #include <optional>
@@ -16,14 +16,14 @@ struct Summary {
     const std::string &program;
     const machine::MachineConfig &machine;
     RunSessionFigures run;
-    /// None of a machine in another process.
+    /// Nothing for a machine in another process.
     std::optional<machine::RunFigures> path{};
     std::optional<machine::RealtimeFigures> realtime{};
-    bool wasRealtime;
+    bool was_realtime;
     const StartCheck &check;
 };
 
-/// Prints to standard output, one figure a line.
+/// Prints to standard output, one figure per line.
 void print_summary(const Summary &summary);
 
 }  // namespace mw::programs

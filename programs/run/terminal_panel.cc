@@ -22,7 +22,7 @@ namespace {
 constexpr auto WRITE_EVERY = std::chrono::milliseconds(100);
 constexpr auto KEYS_EVERY = std::chrono::milliseconds(10);
 
-/// Where the tool is in the program's coordinates. [machine units]
+/// Tool position in the program's coordinates. [machine units]
 geometry::Pose program_position(const messages::MachineStatus &status) {
     geometry::Pose p = status.trajectory.position_cmd - status.offsets.tool - status.offsets.g5x;
     const double angle = -status.offsets.rotation_xy_deg * std::numbers::pi / 180.0;
@@ -37,7 +37,7 @@ geometry::Pose program_position(const messages::MachineStatus &status) {
 TerminalPanel::TerminalPanel(MachineAccess &machine, const machine::MachineConfig &config,
                              diagnostics::Sink &sink, Attendance attendance)
     : machine_(machine), config_(config), sink_(sink), attendance_(attendance),
-      hasLine_(OutputRelay::isTerminal(STDERR_FILENO)) {
+      has_line_(OutputRelay::isTerminal(STDERR_FILENO)) {
     if (attendance_ == Attendance::TERMINAL) {
         keyboard_.emplace();
     }
@@ -56,15 +56,15 @@ bool TerminalPanel::confirm(const std::string &question) {
             break;
         }
     }
-    const bool isYes = key == 'y' || key == 'Y';
-    fmt::print(stderr, "{}\n", isYes ? "yes" : "no");
-    return isYes;
+    const bool yes = key == 'y' || key == 'Y';
+    fmt::print(stderr, "{}\n", yes ? "yes" : "no");
+    return yes;
 }
 
 void TerminalPanel::begin_program(int lines) {
     lines_ = lines;
     line_ = 0;
-    isRunning_ = true;
+    running_ = true;
     stops_told_ = status().task.stops;
     if (attendance_ == Attendance::TERMINAL) {
         fmt::print(stderr, "{}",
@@ -74,7 +74,7 @@ void TerminalPanel::begin_program(int lines) {
 
 void TerminalPanel::end_program() {
     clear_line();
-    isRunning_ = false;
+    running_ = false;
 }
 
 void TerminalPanel::step() {
@@ -87,7 +87,7 @@ void TerminalPanel::step() {
     }
     look_at_stop();
     look_at_approach();
-    if (isRunning_ && hasLine_ && now - last_written_ >= WRITE_EVERY) {
+    if (running_ && has_line_ && now - last_written_ >= WRITE_EVERY) {
         last_written_ = now;
         write_line();
     }
@@ -134,15 +134,15 @@ void TerminalPanel::look_at_stop() {
             fmt::format("program stop at line {} passed by the simulated operator", status.task.stop_line));
         post(messages::ResumeProgram{});
     } else if (attendance_ == Attendance::TERMINAL) {
-        sink_.note(fmt::format("program stop at line {}: key r goes on", status.task.stop_line));
+        sink_.note(fmt::format("program stop at line {}: key r continues", status.task.stop_line));
     } else {
         sink_.note(fmt::format("program stop at line {}: waiting for {}", status.task.stop_line,
-                               config_.hasHalui ? "pin halui.program.resume"
-                                                : "a signal, since there is neither a terminal nor halui"));
+                               config_.has_halui ? "pin halui.program.resume"
+                                                 : "a signal, since there is neither a terminal nor halui"));
     }
 }
 
-/// The message that task has posted says where it leads.
+/// Task's message describes the approach.
 void TerminalPanel::look_at_approach() {
     const std::uint64_t proposed = status().approach.number;
     if (proposed == 0 || proposed == approach_told_) {
@@ -156,28 +156,29 @@ void TerminalPanel::look_at_approach() {
     } else if (attendance_ == Attendance::TERMINAL) {
         sink_.note("key r confirms the way, a drops it");
     } else {
-        sink_.note(std::string("the way waits for ") +
-                   (config_.hasHalui ? "pin halui.program.resume" : "a signal, since nobody can confirm it"));
+        sink_.note(std::string("the way waits for ") + (config_.has_halui
+                                                            ? "pin halui.program.resume"
+                                                            : "a signal, because no one can confirm it"));
     }
 }
 
 bool TerminalPanel::isWaitingForPerson() const {
     const messages::MachineStatus &status = this->status();
-    const bool isHeld = status.task.isPaused && attendance_ != Attendance::SIMULATED;
-    return isHeld || status.tool.isPersonAsked;
+    const bool held = status.task.isPaused && attendance_ != Attendance::SIMULATED;
+    return held || status.tool.isPersonAsked;
 }
 
 void TerminalPanel::show(const client::Client::Message &message) {
     clear_line();
-    const bool isError = message.kind == messages::MessageKind::OPERATOR_ERROR;
-    fmt::print(isError ? stderr : stdout, "{}\n", printable(client::shown_message(message)));
+    const bool is_error = message.kind == messages::MessageKind::OPERATOR_ERROR;
+    fmt::print(is_error ? stderr : stdout, "{}\n", printable(client::shown_message(message)));
     if (attendance_ != Attendance::SIMULATED) {
-        std::fflush(stdout);  // someone may be asked for something
+        std::fflush(stdout);  // a person may be asked for input
     }
 }
 
 void TerminalPanel::clear_line() {
-    if (isRunning_ && hasLine_) {
+    if (running_ && has_line_) {
         fmt::print(stderr, "\r\033[K");
     }
 }
@@ -203,8 +204,7 @@ std::string TerminalPanel::position_text() const {
     std::string text;
     for (int axis = 0; axis < MAX_AXES; ++axis) {
         if ((config_.axis_mask & (1U << axis)) != 0) {
-            text +=
-                fmt::format(" {}{:.{}f}", geometry::AXIS_LETTERS[axis], p[axis], config_.isMetric ? 3 : 4);
+            text += fmt::format(" {}{:.{}f}", geometry::AXIS_LETTERS[axis], p[axis], config_.metric ? 3 : 4);
         }
     }
     return text;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What a person at the machine sees while a program runs, and the keys that answer.
+// The display for a person at the machine while a program runs, and its keys.
 #pragma once
 
 #include <chrono>
@@ -11,37 +11,37 @@
 
 namespace mw::programs {
 
-/// Who answers when the program asks for a person.
+/// How a program's requests to a person are answered.
 enum class Attendance : std::uint8_t {
-    SIMULATED,  ///< program stops are passed at once, and said
-    TERMINAL,   ///< a person at this terminal, by keys; HAL pins work as well
-    NOBODY,     ///< only HAL pins: without them a stop holds until a signal comes
+    SIMULATED,  ///< program stops are passed at once, and reported
+    TERMINAL,   ///< by a person at this terminal with keys, or by HAL pins
+    NOBODY,     ///< only by HAL pins: without them a stop lasts until a signal arrives
 };
 
-/// One thread; step() never blocks.
+/// One thread; step() does not block.
 class TerminalPanel {
   public:
     TerminalPanel(MachineAccess &machine, const machine::MachineConfig &config, diagnostics::Sink &sink,
                   Attendance attendance);
 
-    /// Asks for yes or no at the terminal while the machine goes on; false also when a signal comes.
+    /// Asks a yes-or-no question at the terminal while the machine runs; false also on a signal.
     bool confirm(const std::string &question);
 
-    /// From here on a line that is written over shows how far the program is.
+    /// From now on a status line shows the progress of the program.
     void begin_program(int lines);
     void end_program();
 
-    /// Once a task cycle: keys, program stops, the line.
+    /// Once a task cycle: handles keys and program stops, and updates the line.
     void step();
-    /// A message for the operator, above the line.
+    /// Shows a message for the operator above the line.
     void show(const client::Client::Message &message);
 
-    /// Nothing goes on before a person has answered: neither does the time in which progress is expected.
+    /// The program waits for a person, so the timeout for progress is suspended.
     bool isWaitingForPerson() const;
     int stops_passed() const { return stops_passed_; }
 
   private:
-    /// Of the last cycle, as whoever runs the machine has read it.
+    /// Of the last cycle, as read by the machine's owner.
     const messages::MachineStatus &status() const { return machine_.client().status(); }
     void take_key(char key);
     void post(const messages::Command &command);
@@ -58,9 +58,9 @@ class TerminalPanel {
     diagnostics::Sink &sink_;
     Attendance attendance_;
     std::optional<Keyboard> keyboard_;
-    bool hasLine_;  ///< standard error is a terminal
-    bool isRunning_ = false;
-    std::uint64_t stops_told_ = 0;     ///< as Status::stops counts them
+    bool has_line_;  ///< standard error is a terminal
+    bool running_ = false;
+    std::uint64_t stops_told_ = 0;     ///< as counted by Status::stops
     std::uint64_t approach_told_ = 0;  ///< number of the proposal
     int stops_passed_ = 0;
     int lines_ = 0, line_ = 0;

@@ -58,13 +58,13 @@ void TraceWriter::write(const motion::TraceSample &sample) {
         append(row_, sample.joint_pos_cmd[static_cast<std::size_t>(joint)]);
     }
     row_ += '\n';
-    isFailed_ = std::fwrite(row_.data(), 1, row_.size(), file_.get()) != row_.size() || isFailed_;
+    failed_ = std::fwrite(row_.data(), 1, row_.size(), file_.get()) != row_.size() || failed_;
 }
 
 Result<> TraceWriter::close() {
     std::FILE *file = file_.release();
-    const bool isClosed = std::fclose(file) == 0;
-    if (!isClosed || isFailed_) {
+    const bool closed = std::fclose(file) == 0;
+    if (!closed || failed_) {
         return fail("the trace '" + path_ + "' is incomplete: " + std::strerror(errno));
     }
     return {};

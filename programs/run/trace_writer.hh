@@ -31,7 +31,7 @@ class TraceWriter {
     unsigned axis_mask_;
     int num_joints_;
     std::int64_t start_ns_ = -1;
-    bool isFailed_ = false;
+    bool failed_ = false;
 };
 
 }  // namespace mw::programs

@@ -33,13 +33,13 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t MOST_TOLD = 2000;  ///< of what it wrote to stderr [bytes]
+constexpr std::size_t MOST_TOLD = 2000;  ///< of its stderr output [bytes]
 
 std::string last_error() {
     return std::strerror(errno);
 }
 
-/// A program in a group of its own, so that what it starts ends with it.
+/// A program in a separate process group, so that its children end with it.
 class Child {
   public:
     /// Its output goes to `output`.
@@ -68,7 +68,7 @@ class Child {
         std::array<std::string, 5> words{"/bin/sh", "-c", run.command + " \"$1\"", "filter", run.input};
         std::array<char *, 6> argv{};
         std::ranges::transform(words, argv.begin(), [](std::string &word) { return word.data(); });
-        std::string mark = "AXIS_PROGRESS_BAR=1";  // by which filters know that somebody looks
+        std::string mark = "AXIS_PROGRESS_BAR=1";  // shows filters that progress is displayed
         std::vector<char *> environment{mark.data()};
         for (char **one = environ; *one != nullptr; ++one) {
             environment.push_back(*one);
@@ -90,7 +90,7 @@ class Child {
     Child &operator=(const Child &) = delete;
     ~Child() {
         signal_all(SIGKILL);
-        if (pid_ != 0 && !isOver_) {
+        if (pid_ != 0 && !ended_) {
             ::waitpid(pid_, nullptr, 0);
         }
         if (errors_ >= 0) {
@@ -102,7 +102,7 @@ class Child {
             ::kill(-pid_, number);
         }
     }
-    /// What it has written to stderr, after at most 50 ms.
+    /// Its stderr output, after at most 50 ms.
     std::string listen() {
         constexpr int WAIT_MS = 50;
         pollfd look{errors_, POLLIN, 0};
@@ -121,24 +121,24 @@ class Child {
         }
         return {};
     }
-    /// Its status as of waitpid(); nothing while it runs.
+    /// Its status from waitpid(); nothing while it runs.
     std::optional<int> end() {
         int status = 0;
-        if (!isOver_ && ::waitpid(pid_, &status, WNOHANG) == pid_) {
-            isOver_ = true;
+        if (!ended_ && ::waitpid(pid_, &status, WNOHANG) == pid_) {
+            ended_ = true;
             status_ = status;
         }
-        return isOver_ ? std::optional(status_) : std::nullopt;
+        return ended_ ? std::optional(status_) : std::nullopt;
     }
 
   private:
     pid_t pid_ = 0;
     int errors_ = -1;
-    bool isOver_ = false;
+    bool ended_ = false;
     int status_ = 0;
 };
 
-/// Lines of stderr: progress, or what it has to say.
+/// Lines of stderr: progress, or messages.
 class Told {
   public:
     Told(screen::PieceQueue &pieces) : pieces_(pieces) {}
@@ -187,7 +187,7 @@ bool isTooLarge(int output) {
            static_cast<std::uint64_t>(facts.st_size) > screen::ProgramFiles::MOST_BYTES;
 }
 
-/// Into the open file `output`.
+/// Writes into the open file `output`.
 Result<> fill(const FilterRun &run, int output, screen::PieceQueue &pieces) {
     constexpr auto PATIENCE = std::chrono::seconds(1);
     Child child;
@@ -202,7 +202,7 @@ Result<> fill(const FilterRun &run, int output, screen::PieceQueue &pieces) {
         told.take(child.listen());
         status = child.end();
         if (!asked.has_value() && (isTooLarge(output) || pieces.isCancelled())) {
-            child.signal_all(SIGTERM);  // and ended if it does not end
+            child.signal_all(SIGTERM);  // and killed if it does not end
             asked = Clock::now();
         } else if (asked.has_value() && Clock::now() - *asked > PATIENCE) {
             child.signal_all(SIGKILL);
@@ -215,7 +215,7 @@ Result<> fill(const FilterRun &run, int output, screen::PieceQueue &pieces) {
         return fail(isTooLarge(output)
                         ? fmt::format("the filter '{}' was ended: it has made more than a program may have",
                                       run.command)
-                        : fmt::format("the filter '{}' was ended: nobody waits for it", run.command));
+                        : fmt::format("the filter '{}' was ended: nothing waits for it", run.command));
     }
     if (*status != 0) {
         return fail(fmt::format("the filter '{}' {}: {}", run.command, how(*status), printable(told.all())));
@@ -233,9 +233,9 @@ Result<> fill(const FilterRun &run, int output, screen::PieceQueue &pieces) {
 std::map<std::string, std::string> filters_of(const ini::IniFile &ini) {
     std::map<std::string, std::string> filters;
     for (const ini::IniEntry &entry : ini.entries()) {
-        const bool isFilter =
+        const bool is_filter =
             entry.section == "FILTER" && entry.key != "PROGRAM_EXTENSION" && !trim(entry.value).empty();
-        if (isFilter) {
+        if (is_filter) {
             filters.emplace('.' + to_lower(entry.key), entry.value);
         }
     }
@@ -245,9 +245,9 @@ std::map<std::string, std::string> filters_of(const ini::IniFile &ini) {
 std::string filtered_folder(const std::string &instance) {
     const char *cache = std::getenv("XDG_CACHE_HOME");
     const char *home = std::getenv("HOME");
-    const bool hasCache = cache != nullptr && *cache == '/';
+    const bool has_cache = cache != nullptr && *cache == '/';
     const std::string base =
-        hasCache ? std::string(cache)
+        has_cache ? std::string(cache)
         : home != nullptr && *home == '/'
             ? std::string(home) + "/.cache"
             : fmt::format("{}/millwright-{}", fs::temp_directory_path().string(), ::getuid());
@@ -259,7 +259,7 @@ void run_filter(const FilterRun &run, screen::PieceQueue &pieces) {
     std::error_code error;
     const fs::path folder = fs::path(run.output).parent_path();
     fs::create_directories(folder, error);
-    fs::permissions(folder, fs::perms::owner_all, error);  // nobody else puts a program there
+    fs::permissions(folder, fs::perms::owner_all, error);  // no other user may put a program there
     if (error) {
         refuse(fmt::format("cannot keep '{}' to oneself: {}", folder.string(), error.message()));
         return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// millwright ui: serves a machine that is up to browsers.
+// millwright ui: serves a running machine to browsers.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -37,13 +37,13 @@
 namespace mw::programs {
 namespace {
 
-/// Outcomes are looked for so often while a screen is open, and the machine otherwise.
+/// Interval for checking outcomes while a screen is open, and the machine otherwise.
 constexpr auto TICK = std::chrono::milliseconds(10), IDLE_TICK = std::chrono::milliseconds(100);
 
 struct UiWords {
     std::string ini, screen;
     int port = SCREEN_PORT;
-    bool isOpening = false, isDisplay = false;
+    bool opening = false, is_display = false;
     DoorWords door;
     options::Words rest;
 
@@ -56,21 +56,22 @@ struct UiWords {
             "SIGINT or SIGTERM.\n");
         line.number("--port", "N", "listen on 127.0.0.1:N, 0: on a free port; 8850 without it", port, 0,
                     65535);
-        line.flag("--open", "show the screen in the desktop's browser", isOpening);
+        line.flag("--open", "show the screen in the desktop's browser", opening);
         line.flag("--display",
                   "the machine's display: starts the programs of EMBED_TAB_COMMAND, and runs POSTGUI_HALFILE "
                   "and _HALCMD",
-                  isDisplay);
+                  is_display);
         line.text("--screen", "FOLDER", "serve the screen from there", screen);
         line.text("--listen", "ADDRESS[:PORT]",
                   "let other computers in as well, with TLS and a token; 0.0.0.0: at every address; port "
                   "8851 without one",
                   door.listen);
         line.texts("--name", "NAME", "a name by which they call this computer, beside its own", door.names);
-        line.text("--unprotected", "ROLE",
-                  "no TLS and no token: whoever reaches --listen may view, operate or configure; the screen "
-                  "says so",
-                  door.unprotected);
+        line.text(
+            "--unprotected", "ROLE",
+            "no TLS and no token: anyone who reaches --listen may view, operate or configure; the screen "
+            "says so",
+            door.unprotected);
         line.rest(rest);
         line.footer("exit status: 0 ended in order, 1 refused or failed, 2 wrong usage\n");
         return line;
@@ -85,7 +86,7 @@ struct UiWords {
     }
 };
 
-/// A client of the machine that is up, if it is the one of this INI file.
+/// Connects to the running machine, if it uses this INI file.
 Result<client::Client> connect(const std::string &instance, const std::string &ini,
                                client::Places places = client::Places::ORDINARY) {
     auto client = client::Client::connect(instance, client::Role::OPERATOR, places);
@@ -97,10 +98,10 @@ Result<client::Client> connect(const std::string &instance, const std::string &i
         return fail("the machine starts");
     }
     if (!identity.isLasting) {
-        return fail("'millwright run' runs a program on a machine of its own");
+        return fail("'millwright run' runs a program on its own machine");
     }
     if (identity.ini.str() != ini) {
-        return fail("the machine that is up was started from " + identity.ini.str() + ", not from " + ini);
+        return fail("the running machine was started from " + identity.ini.str() + ", not from " + ini);
     }
     return client;
 }
@@ -109,7 +110,7 @@ std::int64_t now_ns() {
     return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
 }
 
-/// What the screens are told, but for the paths of programs.
+/// Data for the screens, except the paths of programs.
 screen::ApiSetup setup_of(const UiWords &words, const machine::LoadedConfig &loaded,
                           diagnostics::Sink &sink) {
     const std::string ini = whole_path(words.ini), instance = hal::default_instance();
@@ -132,19 +133,19 @@ screen::ApiSetup setup_of(const UiWords &words, const machine::LoadedConfig &loa
                                   : std::unexpected(joined.error());
     };
     const auto commands = postgui_commands(loaded.ini, program_folder());
-    if (words.isDisplay && !commands.empty()) {
+    if (words.is_display && !commands.empty()) {
         const std::string folder = std::filesystem::path(ini).parent_path().string();
         setup.begin_hal = [commands, folder] { return run_postgui(commands, folder); };
     }
     return setup;
 }
 
-/// Until a signal comes.
+/// Runs until a signal.
 void run(screen::Server &server, const UiWords &words, const machine::LoadedConfig &loaded,
          screen::ApiSetup setup, diagnostics::Sink &sink) {
     const std::string address = fmt::format("http://127.0.0.1:{}/", server.port());
-    const bool hasScreen = check_screen(setup.screen_folder).has_value();
-    SidePrograms programs(words.isDisplay ? tab_programs(setup.facts.tabs) : std::vector<std::string>{},
+    const bool has_screen = check_screen(setup.screen_folder).has_value();
+    SidePrograms programs(words.is_display ? tab_programs(setup.facts.tabs) : std::vector<std::string>{},
                           setup.facts.ini, 0);
     PathReaders readers(loaded, path_look(setup.facts));
     setup.read_path = [&readers](const std::string &path, const screen::Requester &by) {
@@ -173,7 +174,7 @@ void run(screen::Server &server, const UiWords &words, const machine::LoadedConf
     screen::Worker disk(post), hal_looks(post);
     screen::Api api(server, {disk, hal_looks}, std::move(setup), now_ns);
     Browser browser;
-    if (words.isOpening && hasScreen && std::getenv(BROWSER_WAITS) == nullptr) {
+    if (words.opening && has_screen && std::getenv(BROWSER_WAITS) == nullptr) {
         browser.open(address);
     }
     raise_priority();
@@ -189,7 +190,7 @@ void run(screen::Server &server, const UiWords &words, const machine::LoadedConf
     hal_looks.end();
 }
 
-/// Without a screen the server is of use for programs alone.
+/// Without a screen the server is useful only for programs.
 void print_address(const std::string &machine, int port, const std::string &folder, diagnostics::Sink &sink) {
     if (const auto found = check_screen(folder); !found.has_value()) {
         sink.error(found.error());
@@ -201,7 +202,7 @@ void print_address(const std::string &machine, int port, const std::string &fold
 }
 
 int serve(const UiWords &words, const machine::LoadedConfig &loaded, diagnostics::Sink &sink) {
-    // Its folder is needed only where other computers come in.
+    // Its folder is needed only if other computers may connect.
     const auto folder_of_secrets = secrets_folder();
     if (!words.door.listen.empty() && !folder_of_secrets.has_value()) {
         sink.error(folder_of_secrets.error());

@@ -13,7 +13,7 @@ using ini::IniEntry;
 using screen::DialogFacts;
 using screen::DialogKind;
 
-/// "okdialog status"; nothing where a word is none of them.
+/// Parses "okdialog status"; nothing if a word is unknown.
 std::optional<DialogKind> parse_kind(const std::string &text) {
     DialogKind kind;
     for (const std::string &word : split_words(text)) {
@@ -29,8 +29,8 @@ std::optional<DialogKind> parse_kind(const std::string &text) {
             return std::nullopt;
         }
     }
-    const bool isAny = kind.isOk || kind.isYesNo || kind.isLasting || kind.isStatus;
-    return isAny ? std::optional(kind) : std::nullopt;
+    const bool any = kind.isOk || kind.isYesNo || kind.isLasting || kind.isStatus;
+    return any ? std::optional(kind) : std::nullopt;
 }
 
 bool isPinName(const std::string &name) {
@@ -50,7 +50,7 @@ void set_kind(DialogFacts &facts, const IniEntry &type, diagnostics::Sink &sink)
     facts.kind = kind.value_or(DialogKind{});
 }
 
-/// The entries of one kind stand in the order of the messages.
+/// Entries of one type are in the order of the messages.
 std::vector<DialogFacts> single_messages(const ini::IniFile &ini, diagnostics::Sink &sink) {
     const auto all = [&ini](const char *key) { return ini.find_all("DISPLAY", key); };
     const auto texts = all("MESSAGE_TEXT"), types = all("MESSAGE_TYPE"), pins = all("MESSAGE_PINNAME");
@@ -128,14 +128,14 @@ std::vector<DialogFacts> dialog_facts(const ini::IniFile &ini, diagnostics::Sink
         }
     }
     std::erase_if(all, [&sink, &ini](const DialogFacts &one) {
-        const bool isKind = one.kind.isOk || one.kind.isYesNo || one.kind.isLasting || one.kind.isStatus;
+        const bool is_kind = one.kind.isOk || one.kind.isYesNo || one.kind.isLasting || one.kind.isStatus;
         const IniEntry *const place =
             ini.find("DISPLAY", one.number == 0 ? "MESSAGE_PINNAME" : "MULTIMESSAGE_ID");
         if (!isPinName(one.id)) {
             sink.error("'" + one.id + "' is no name of a pin: letters, digits, -, _ and . make one",
                        place != nullptr ? place->place : SourcePlace{});
         }
-        return !isKind || !isPinName(one.id);
+        return !is_kind || !isPinName(one.id);
     });
     return all;
 }

@@ -30,17 +30,17 @@ struct Place {
 };
 
 Result<Place> parse_place(const std::string &text) {
-    const bool isBracketed = text.starts_with('[');
-    const std::size_t end = isBracketed ? text.find(']') : std::min(text.find(':'), text.size());
-    const bool isPlainV6 = !isBracketed && std::ranges::count(text, ':') > 1;
-    if (isPlainV6) {
+    const bool bracketed = text.starts_with('[');
+    const std::size_t end = bracketed ? text.find(']') : std::min(text.find(':'), text.size());
+    const bool is_plain_v6 = !bracketed && std::ranges::count(text, ':') > 1;
+    if (is_plain_v6) {
         return Place{text};
     }
     if (end == std::string::npos) {
         return fail("--listen: '" + text + "' has no ]");
     }
-    Place place{isBracketed ? text.substr(1, end - 1) : text.substr(0, end)};
-    const std::string rest = text.substr(end + (isBracketed ? 1 : 0));
+    Place place{bracketed ? text.substr(1, end - 1) : text.substr(0, end)};
+    const std::string rest = text.substr(end + (bracketed ? 1 : 0));
     if (rest.empty()) {
         return place;
     }
@@ -53,7 +53,7 @@ Result<Place> parse_place(const std::string &text) {
     return place;
 }
 
-/// As other computers may call this one.
+/// Names by which other computers may address this one.
 std::vector<std::string> own_names() {
     std::array<char, 256> host{};
     if (::gethostname(host.data(), host.size() - 1) != 0 || host[0] == '\0') {
@@ -63,7 +63,7 @@ std::vector<std::string> own_names() {
     return name.find('.') == std::string::npos ? std::vector{name, name + ".local"} : std::vector{name};
 }
 
-/// Of those that are up.
+/// Addresses of active interfaces.
 std::vector<std::string> own_addresses() {
     ifaddrs *first = nullptr;
     if (::getifaddrs(&first) != 0) {
@@ -127,7 +127,7 @@ Result<std::optional<screen::RemoteDoor>> remote_door(const DoorWords &words, co
         return role.has_value()
                    ? Result<std::optional<screen::RemoteDoor>>(screen::RemoteDoor{
                          place->address, place->port, names, Access(Protection::NONE, *role), {}})
-                   : fail("--unprotected: the role of everybody is view, operate or configure");
+                   : fail("--unprotected: the role of all clients is view, operate or configure");
     }
     auto tokens = screen::Tokens::read_or_make(folder + "/tokens");
     if (!tokens.has_value()) {

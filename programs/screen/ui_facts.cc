@@ -20,10 +20,10 @@ using screen::Increment;
 
 constexpr double MM_PER_INCH = 25.4;
 
-/// Whether 0 is a value of a key.
+/// Whether a key may be 0.
 enum class Least : std::uint8_t { ABOVE_0, FROM_0 };
 
-/// A number of the INI file above 0, or from 0; a warning where it is none.
+/// A number of the INI file above 0, or from 0; a warning if it is not valid.
 std::optional<double> number(const ini::IniFile &ini, const char *section, const char *key,
                              diagnostics::Sink &sink, Least least = Least::ABOVE_0) {
     const ini::IniEntry *entry = ini.find(section, key);
@@ -31,8 +31,8 @@ std::optional<double> number(const ini::IniFile &ini, const char *section, const
         return std::nullopt;
     }
     const auto value = parse_double(entry->value);
-    const bool isZero = value.has_value() && *value == 0 && least == Least::FROM_0;
-    if (!value.has_value() || !std::isfinite(*value) || (*value <= 0 && !isZero)) {
+    const bool zero = value.has_value() && *value == 0 && least == Least::FROM_0;
+    if (!value.has_value() || !std::isfinite(*value) || (*value <= 0 && !zero)) {
         sink.warning("[" + entry->section + "]" + entry->key + " is '" + entry->value +
                          "', which is no number above 0: the screen does without it",
                      entry->place);
@@ -55,15 +55,15 @@ std::optional<double> first_of(const ini::IniFile &ini, std::initializer_list<Ke
     return std::nullopt;
 }
 
-/// "1/8" or ".5".
+/// Parses "1/8" or ".5".
 std::optional<double> parse_fraction(std::string_view text) {
     const std::size_t slash = text.find('/');
     if (slash == std::string_view::npos) {
         return parse_double(text);
     }
     const auto above = parse_double(text.substr(0, slash)), below = parse_double(text.substr(slash + 1));
-    const bool isWhole = above.has_value() && below.has_value() && *below != 0;
-    return isWhole ? std::optional(*above / *below) : std::nullopt;
+    const bool whole = above.has_value() && below.has_value() && *below != 0;
+    return whole ? std::optional(*above / *below) : std::nullopt;
 }
 
 std::optional<Increment> parse_increment(std::string_view text, double unit_mm) {
@@ -106,16 +106,16 @@ std::vector<std::string> split_list(std::string_view text) {
     return parts;
 }
 
-std::vector<Increment> increments_of(const machine::LoadedConfig &loaded, bool hasRotary,
+std::vector<Increment> increments_of(const machine::LoadedConfig &loaded, bool has_rotary,
                                      diagnostics::Sink &sink) {
-    const double unit_mm = loaded.machine.isMetric ? 1 : MM_PER_INCH;
+    const double unit_mm = loaded.machine.metric ? 1 : MM_PER_INCH;
     std::vector<std::string> bad;
     const ini::IniEntry *linear = loaded.ini.find("DISPLAY", "INCREMENTS");
     const char *const presets =
-        loaded.machine.isMetric ? "10 mm, 1 mm, 0.1 mm, 0.01 mm" : "1 in, 0.1 in, 0.01 in, 0.001 in";
+        loaded.machine.metric ? "10 mm, 1 mm, 0.1 mm, 0.01 mm" : "1 in, 0.1 in, 0.01 in, 0.001 in";
     std::vector<Increment> all = parse_increments(linear != nullptr ? linear->value : presets, unit_mm, bad);
     const ini::IniEntry *angular = loaded.ini.find("DISPLAY", "ANGULAR_INCREMENTS");
-    if (hasRotary) {
+    if (has_rotary) {
         for (Increment one :
              parse_increments(angular != nullptr ? angular->value : "90, 10, 1, 0.1", 1, bad)) {
             one.isAngular = true;
@@ -138,7 +138,7 @@ std::string program_folder(const machine::LoadedConfig &loaded) {
     return error ? folder : whole.string();
 }
 
-/// Of programs, and of what [FILTER] makes programs from.
+/// Extensions of programs, and of files that [FILTER] converts.
 std::vector<std::string> extensions_of(const ini::IniFile &ini) {
     std::vector<std::string> all{".ngc", ".nc", ".tap", ".cnc", ".gcode"};
     for (const ini::IniEntry *entry : ini.find_all("FILTER", "PROGRAM_EXTENSION")) {
@@ -146,7 +146,7 @@ std::vector<std::string> extensions_of(const ini::IniFile &ini) {
         std::ranges::replace(list, ',', ' ');
         for (const std::string &word : split_words(list)) {
             if (!word.starts_with('.') || word.size() == 1) {
-                break;  // the description
+                break;  // the rest is the description
             }
             if (std::ranges::find(all, to_lower(word)) == all.end()) {
                 all.push_back(to_lower(word));
@@ -156,13 +156,13 @@ std::vector<std::string> extensions_of(const ini::IniFile &ini) {
     return all;
 }
 
-/// The highest speed of any axis of a kind.
-std::optional<double> fastest_axis(const machine::LoadedConfig &loaded, bool isAngular,
+/// Maximum speed of all axes of a type.
+std::optional<double> fastest_axis(const machine::LoadedConfig &loaded, bool is_angular,
                                    diagnostics::Sink &sink) {
     std::optional<double> most;
     for (int axis = 0; axis < geometry::AXIS_COUNT; ++axis) {
         const std::string section = std::string("AXIS_") + geometry::AXIS_LETTERS[axis];
-        if ((loaded.machine.axis_mask >> axis & 1U) != 0 && geometry::isAngular(axis) == isAngular) {
+        if ((loaded.machine.axis_mask >> axis & 1U) != 0 && geometry::isAngular(axis) == is_angular) {
             most = std::max(most, number(loaded.ini, section.c_str(), "MAX_VELOCITY", sink));
         }
     }
@@ -174,13 +174,13 @@ struct JogSpeeds {
     double highest = 1, preset = 1;
 };
 
-/// [DISPLAY] before [TRAJ]. No jog is faster than the fastest axis of its kind.
-JogSpeeds jog_speeds(const machine::LoadedConfig &loaded, bool isAngular, diagnostics::Sink &sink) {
+/// [DISPLAY] before [TRAJ]. Jogs are limited to the maximum speed of axes of their type.
+JogSpeeds jog_speeds(const machine::LoadedConfig &loaded, bool is_angular, diagnostics::Sink &sink) {
     const ini::IniFile &ini = loaded.ini;
-    const char *const highest_key = isAngular ? "MAX_ANGULAR_VELOCITY" : "MAX_LINEAR_VELOCITY";
-    const char *const preset_key = isAngular ? "DEFAULT_ANGULAR_VELOCITY" : "DEFAULT_LINEAR_VELOCITY";
+    const char *const highest_key = is_angular ? "MAX_ANGULAR_VELOCITY" : "MAX_LINEAR_VELOCITY";
+    const char *const preset_key = is_angular ? "DEFAULT_ANGULAR_VELOCITY" : "DEFAULT_LINEAR_VELOCITY";
     constexpr double PRESET_SHARE = 0.25;
-    const auto fastest = fastest_axis(loaded, isAngular, sink);
+    const auto fastest = fastest_axis(loaded, is_angular, sink);
     const auto set = first_of(ini, {{"DISPLAY", highest_key}, {"TRAJ", highest_key}}, sink);
     JogSpeeds speeds;
     speeds.highest = std::min(set.value_or(fastest.value_or(1)), fastest.value_or(set.value_or(1)));
@@ -197,7 +197,7 @@ JogSpeeds jog_speeds(const machine::LoadedConfig &loaded, bool isAngular, diagno
     return speeds;
 }
 
-/// [DISPLAY] keys with the number of the spindle come before those without one.
+/// [DISPLAY] keys with the number of the spindle take precedence over those without.
 screen::SpindleFacts spindle_facts(const machine::LoadedConfig &loaded, int spindle,
                                    diagnostics::Sink &sink) {
     const std::string number = std::to_string(spindle), section = "SPINDLE_" + number;
@@ -270,7 +270,7 @@ std::string geometry_of(const ini::IniFile &ini, const std::string &axes, diagno
     return parsed.has_value() ? entry->value : preset;
 }
 
-/// Where a plane of a foam cutter is drawn.
+/// Height at which a plane of a foam cutter is drawn.
 double foam_height(const ini::IniFile &ini, const char *key, double preset, diagnostics::Sink &sink) {
     const ini::IniEntry *entry = ini.find("DISPLAY", key);
     const auto value = entry == nullptr ? std::optional(preset) : parse_double(entry->value);
@@ -283,10 +283,10 @@ double foam_height(const ini::IniFile &ini, const char *key, double preset, diag
 
 screen::ScreenFiles files_of(const ini::IniFile &ini) {
     const auto path = [&ini](const char *key) {
-        constexpr std::string_view FOLDER = "WORKINGFOLDER/";  // as other screens say it
+        constexpr std::string_view FOLDER = "WORKINGFOLDER/";  // LinuxCNC's name
         const std::string named = text_of(ini, "DISPLAY", key);
-        const bool isHere = named.starts_with(FOLDER);
-        return named.empty() ? named : ini.resolve_path(isHere ? named.substr(FOLDER.size()) : named);
+        const bool here = named.starts_with(FOLDER);
+        return named.empty() ? named : ini.resolve_path(here ? named.substr(FOLDER.size()) : named);
     };
     const std::string parameters = text_of(ini, "RS274NGC", "PARAMETER_FILE");
     return {path("ICON"), path("MDI_HISTORY_FILE"), path("PREFERENCE_FILE_PATH"),
@@ -301,7 +301,7 @@ std::vector<Increment> parse_increments(std::string_view text, double unit_mm,
     for (const std::string &one : split_list(text)) {
         if (auto increment = parse_increment(one, unit_mm)) {
             all.push_back(std::move(*increment));
-        } else if (!equals_ignoring_case(one, "continuous")) {  // which every screen offers
+        } else if (!equals_ignoring_case(one, "continuous")) {  // every screen offers it
             bad.push_back(one);
         }
     }
@@ -322,11 +322,11 @@ screen::MachineFacts machine_facts(const machine::LoadedConfig &loaded, diagnost
     facts.title = text_of(ini, "DISPLAY", "TITLE");
     facts.files = files_of(ini);
     facts.tabs = tabs_of(ini, sink);
-    bool hasRotary = false;
+    bool has_rotary = false;
     for (int axis = 0; axis < geometry::AXIS_COUNT; ++axis) {
         if ((machine.axis_mask >> axis & 1U) != 0) {
             facts.axes += geometry::AXIS_LETTERS[axis];
-            hasRotary = hasRotary || geometry::isAngular(axis);
+            has_rotary = has_rotary || geometry::isAngular(axis);
         }
     }
     constexpr double PLANES_APART_IN = 1.5;
@@ -334,15 +334,15 @@ screen::MachineFacts machine_facts(const machine::LoadedConfig &loaded, diagnost
     facts.look.geometry = geometry_of(ini, facts.axes, sink);
     facts.look.foam_z = foam_height(ini, "FOAM_Z", 0, sink);
     facts.look.foam_w =
-        foam_height(ini, "FOAM_W", PLANES_APART_IN * (machine.isMetric ? MM_PER_INCH : 1), sink);
+        foam_height(ini, "FOAM_W", PLANES_APART_IN * (machine.metric ? MM_PER_INCH : 1), sink);
     facts.joints = machine.num_joints;
     for (int joint = 0; joint < machine.num_joints; ++joint) {
         const ini::IniEntry *kind = ini.find("JOINT_" + std::to_string(joint), "TYPE");
-        const bool isAngular = kind != nullptr && equals_ignoring_case(kind->value, "ANGULAR");
-        facts.joint_kinds.emplace_back(isAngular ? "ANGULAR" : "LINEAR");
+        const bool is_angular = kind != nullptr && equals_ignoring_case(kind->value, "ANGULAR");
+        facts.joint_kinds.emplace_back(is_angular ? "ANGULAR" : "LINEAR");
     }
     facts.isHomingForced = machine.task.isHomingForced;
-    facts.linear_unit = machine.isMetric ? "mm" : "inch";
+    facts.linear_unit = machine.metric ? "mm" : "inch";
     facts.program_prefix = program_folder(loaded);
     const JogSpeeds linear = jog_speeds(loaded, false, sink);
     facts.max_linear_velocity = linear.highest;
@@ -351,8 +351,8 @@ screen::MachineFacts machine_facts(const machine::LoadedConfig &loaded, diagnost
         return first_of(ini, {{"DISPLAY", key}, {"TRAJ", key}}, sink).value_or(0);
     };
     facts.min_linear_velocity = std::min(facts.max_linear_velocity, lowest("MIN_LINEAR_VELOCITY"));
-    facts.min_angular_velocity = hasRotary ? lowest("MIN_ANGULAR_VELOCITY") : 0;
-    if (hasRotary) {
+    facts.min_angular_velocity = has_rotary ? lowest("MIN_ANGULAR_VELOCITY") : 0;
+    if (has_rotary) {
         const JogSpeeds angular = jog_speeds(loaded, true, sink);
         facts.max_angular_velocity = angular.highest;
         facts.default_angular_velocity = angular.preset;
@@ -361,7 +361,7 @@ screen::MachineFacts machine_facts(const machine::LoadedConfig &loaded, diagnost
     for (int spindle = 0; spindle < machine.num_spindles; ++spindle) {
         facts.spindles.push_back(spindle_facts(loaded, spindle, sink));
     }
-    facts.increments = increments_of(loaded, hasRotary, sink);
+    facts.increments = increments_of(loaded, has_rotary, sink);
     for (const ini::IniEntry &entry : ini.entries()) {
         if (entry.section == "MDI_COMMAND_LIST" && entry.key.starts_with("MDI_COMMAND")) {
             facts.mdi_commands.push_back(entry.value);

@@ -26,15 +26,15 @@ namespace {
 constexpr double MM_PER_INCH = 25.4;
 constexpr std::size_t EVENTS_PER_CHECK = 64;
 
-/// A program with its subroutines or a filter can open files without touching the reserve.
+/// A program with subroutines or a filter can open files without using the reserve.
 bool hasDescriptors() {
     constexpr int MOST_OF_A_PROGRAM = 16;
     const int fd = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
-    const bool isFree = fd >= 0 && !screen::isReserved(fd + MOST_OF_A_PROGRAM);
+    const bool free = fd >= 0 && !screen::isReserved(fd + MOST_OF_A_PROGRAM);
     if (fd >= 0) {
         ::close(fd);
     }
-    return isFree;
+    return free;
 }
 
 }  // namespace
@@ -68,8 +68,8 @@ bool PathReaders::isToEnd(Reader &reader) const {
     ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &cpu);
     const double cpu_s = static_cast<double>(cpu.tv_sec) + 1e-9 * static_cast<double>(cpu.tv_nsec);
     const std::chrono::duration<double> time = std::chrono::steady_clock::now() - reader.since;
-    reader.isLate = reader.isLate || cpu_s > limits_.cpu_s || time.count() > limits_.time_s;
-    return reader.isLate || reader.pieces->isCancelled();
+    reader.late = reader.late || cpu_s > limits_.cpu_s || time.count() > limits_.time_s;
+    return reader.late || reader.pieces->isCancelled();
 }
 
 std::string PathReaders::late_text(const std::string &path) const {
@@ -79,17 +79,17 @@ std::string PathReaders::late_text(const std::string &path) const {
 }
 
 Result<> PathReaders::check_count(const screen::Requester &by) const {
-    const bool isViewer = by.role <= screen::Role::VIEW;
+    const bool is_viewer = by.role <= screen::Role::VIEW;
     std::size_t of_client = 0, of_viewers = 0;
     for (const Reader &reader : readers_) {
-        const bool isOfViewer = reader.by.role <= screen::Role::VIEW;
-        of_viewers += isOfViewer ? 1 : 0;
-        of_client += isOfViewer == isViewer && reader.by.address == by.address ? 1 : 0;
+        const bool of_viewer = reader.by.role <= screen::Role::VIEW;
+        of_viewers += of_viewer ? 1 : 0;
+        of_client += of_viewer == is_viewer && reader.by.address == by.address ? 1 : 0;
     }
-    if (!hasDescriptors() || readers_.size() >= MOST || (isViewer && of_viewers >= MOST_OF_VIEWERS)) {
+    if (!hasDescriptors() || readers_.size() >= MOST || (is_viewer && of_viewers >= MOST_OF_VIEWERS)) {
         return fail("as many programs as can be are being read: ask again later");
     }
-    const std::size_t most = isViewer ? MOST_OF_VIEWER : MOST_OF_CLIENT;
+    const std::size_t most = is_viewer ? MOST_OF_VIEWER : MOST_OF_CLIENT;
     return of_client < most
                ? Result<>{}
                : fail(fmt::format("{} programs are being read for this computer: ask again later", most));
@@ -114,16 +114,16 @@ Result<std::shared_ptr<screen::PieceQueue>> PathReaders::begin(std::function<voi
         lower_priority();
         job(reader);
         reader.pieces->end();
-        // Release: whoever sees it may join without waiting.
+        // Release: a thread that sees it may join without waiting.
         reader.isOver.store(true, std::memory_order_release);
     });
     return reader.pieces;
 }
 
 std::uint32_t PathReaders::interpret(Reader &reader, const std::string &path, const Hearer &hearer) const {
-    std::error_code missing;  // which the reading itself tells, with its place
+    std::error_code missing;  // which reading reports itself, with its position
     if (std::filesystem::exists(path, missing) && !std::filesystem::is_regular_file(path, missing)) {
-        hearer.error(path + " is no file");  // a pipe would never end
+        hearer.error(path + " is no file");  // reading a pipe might never end
         return 0;
     }
     diagnostics::Sink unheard;
@@ -148,17 +148,17 @@ std::uint32_t PathReaders::interpret(Reader &reader, const std::string &path, co
     source = &preview;
     diagnostics::Sink errors([&](const diagnostics::Diagnostic &one) {
         if (one.severity == diagnostics::Severity::ERROR) {
-            preview.flush();  // what comes before it
+            preview.flush();  // passes on earlier events
             hearer.error(one.what.str());
         }
     });
-    static_cast<void>(preview.run(path, errors));  // its failures have been told
+    static_cast<void>(preview.run(path, errors));  // its failures have been reported
     return static_cast<std::uint32_t>(std::max(preview.place().line, 0));
 }
 
 void PathReaders::read_all(Reader &reader, const std::string &path) const {
     screen::PathChunks chunks([&reader](std::string piece) { return reader.pieces->push(std::move(piece)); },
-                              loaded_.machine.isMetric ? 1 : MM_PER_INCH, look_);
+                              loaded_.machine.metric ? 1 : MM_PER_INCH, look_);
     const std::uint32_t line =
         interpret(reader, path,
                   {[&](std::span<const gcode::PreviewEvent> events, const gcode::Preview &) {
@@ -167,19 +167,19 @@ void PathReaders::read_all(Reader &reader, const std::string &path) const {
                        }
                    },
                    [&](const std::string &error) { chunks.error(error); }});
-    if (reader.isLate) {
+    if (reader.late) {
         chunks.error(late_text(path));
     }
     chunks.end(line);
 }
 
-/// The same points are counted as those of the path.
+/// Counts the same points as the path.
 void PathReaders::time_all(Reader &reader, const std::string &path,
                            const screen::TimeOverrides &overrides) const {
     constexpr std::size_t SLOWEST = 30;
     screen::TimeChunks chunks([&reader](std::string piece) { return reader.pieces->push(std::move(piece)); });
     screen::PathChunks counted([](const std::string &) { return true; },
-                               loaded_.machine.isMetric ? 1 : MM_PER_INCH, look_);
+                               loaded_.machine.metric ? 1 : MM_PER_INCH, look_);
     machine::TimeEstimate estimate(loaded_.machine, {overrides.feed, overrides.rapid, overrides.max_velocity},
                                    [&](const machine::TimedMove &move) {
                                        chunks.move(static_cast<std::uint32_t>(move.id),
@@ -188,7 +188,7 @@ void PathReaders::time_all(Reader &reader, const std::string &path,
                                    });
     estimate.end_when([this, &reader] { return isToEnd(reader); });
     estimate.start(machine::home_position(loaded_.machine));
-    bool isSound = true;
+    bool sound = true;
     interpret(reader, path,
               {[&](std::span<const gcode::PreviewEvent> events, const gcode::Preview &preview) {
                    for (std::size_t i = 0; i < events.size(); ++i) {
@@ -203,14 +203,14 @@ void PathReaders::time_all(Reader &reader, const std::string &path,
                    }
                },
                [&](const std::string &error) {
-                   isSound = false;
+                   sound = false;
                    chunks.error(error);
                }});
-    if (reader.isLate) {
+    if (reader.late) {
         chunks.error(late_text(path));
     }
-    if (isToEnd(reader) || !isSound) {
-        return;  // of a program with errors nobody knows how it goes on
+    if (isToEnd(reader) || !sound) {
+        return;  // after an error the course of the program is unknown
     }
     const machine::TimeFigures &figures = estimate.finish(SLOWEST);
     if (isToEnd(reader)) {

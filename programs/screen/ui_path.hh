@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Reads programs for the screen's picture of their path, each in a thread of its own.
+// Reads programs for the screen's picture of their path, each in a separate thread.
 #pragma once
 
 #include <atomic>
@@ -20,14 +20,14 @@
 
 namespace mw::programs {
 
-/// Nothing of the shop's own is run: no Python, no HAL values. One thread.
+/// Runs no Python and reads no HAL values. One thread.
 class PathReaders {
   public:
-    /// Programs that are read at a time: in all, of one client, and by the role VIEW of one client and in
-    /// all.
+    /// Maximum number of programs read at a time: total, per client, and for the role VIEW per client and
+    /// total.
     static constexpr std::size_t MOST = 8, MOST_OF_CLIENT = 4, MOST_OF_VIEWER = 2, MOST_OF_VIEWERS = 4;
 
-    /// Of reading one program.
+    /// Limits for reading one program.
     struct Limits {
         double cpu_s = 300, time_s = 900;
     };
@@ -36,24 +36,24 @@ class PathReaders {
         : PathReaders(loaded, std::move(look), Limits{}) {}
     PathReaders(const machine::LoadedConfig &loaded, screen::PathLook look, const Limits &limits)
         : loaded_(loaded), look_(std::move(look)), limits_(limits) {}
-    /// Ends what is read.
+    /// Cancels all readers.
     ~PathReaders();
     PathReaders(const PathReaders &) = delete;
     PathReaders &operator=(const PathReaders &) = delete;
 
-    /// The chunks of docs/reference/api.md, while the program is read; an error when too many are.
+    /// The chunks of docs/reference/api.md, while the program is read; an error when too many are being read.
     Result<std::shared_ptr<screen::PieceQueue>> read(const std::string &path,
                                                      const screen::Requester &by = {});
-    /// Another job that makes pieces, counted as a program that is read.
+    /// Another job that produces pieces, counted as a reader.
     Result<std::shared_ptr<screen::PieceQueue>> run(std::function<void(screen::PieceQueue &)> job,
                                                     const screen::Requester &by = {}) {
         return begin([job = std::move(job)](Reader &reader) { job(*reader.pieces); }, by);
     }
-    /// How long its moves take, by the planner.
+    /// Times of its moves, from the planner.
     Result<std::shared_ptr<screen::PieceQueue>> read_times(const std::string &path,
                                                            const screen::TimeOverrides &overrides,
                                                            const screen::Requester &by = {});
-    /// Ends all that is read, soon.
+    /// Cancels all readers soon.
     void cancel();
 
   private:
@@ -62,13 +62,13 @@ class PathReaders {
         screen::Requester by;
         std::chrono::steady_clock::time_point since = std::chrono::steady_clock::now();
         std::atomic<bool> isOver{false};
-        bool isLate = false;  ///< [its thread] a limit has ended it
+        bool late = false;  ///< [its thread] a limit has ended it
         std::thread thread;
     };
     Result<> check_count(const screen::Requester &by) const;
     Result<std::shared_ptr<screen::PieceQueue>> begin(std::function<void(Reader &)> job,
                                                       const screen::Requester &by);
-    /// Nobody waits for it any more, or a limit is exceeded. [its thread]
+    /// It has no receiver any more, or a limit is exceeded. [its thread]
     bool isToEnd(Reader &reader) const;
     std::string late_text(const std::string &path) const;
     void read_all(Reader &reader, const std::string &path) const;

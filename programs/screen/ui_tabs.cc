@@ -22,14 +22,14 @@ namespace {
 using ini::IniEntry;
 using screen::Tab;
 
-/// The file of "panel FILE".
+/// Prefix of "panel FILE".
 constexpr std::string_view PANEL = "panel ";
 
 bool isAddress(std::string_view command) {
     return command.starts_with("http://") || command.starts_with("https://");
 }
 
-/// Ends when the program does; its exit status, or why there is none.
+/// Waits for the program; returns its exit status, or the reason why it was not run.
 Result<int> run_and_wait(const std::vector<std::string> &words, const std::string &folder) {
     std::vector<std::string> owned = words;
     std::vector<char *> arguments;
@@ -117,10 +117,10 @@ std::vector<std::vector<std::string>> postgui_commands(const ini::IniFile &ini, 
         if (words.empty()) {
             continue;
         }
-        const bool isTcl = words[0].ends_with(".tcl");
+        const bool is_tcl = words[0].ends_with(".tcl");
         auto &command = commands.emplace_back(
-            isTcl ? std::vector<std::string>{programs + "/haltcl", "-i", ini.path()}
-                  : std::vector<std::string>{programs + "/halcmd", "-i", ini.path(), "-f"});
+            is_tcl ? std::vector<std::string>{programs + "/haltcl", "-i", ini.path()}
+                   : std::vector<std::string>{programs + "/halcmd", "-i", ini.path(), "-f"});
         command.insert(command.end(), words.begin(), words.end());
     }
     for (const IniEntry *entry : ini.find_all("HAL", "POSTGUI_HALCMD")) {

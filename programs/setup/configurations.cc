@@ -29,7 +29,7 @@ std::string resource_file() {
     return home_folder() + "/.linuxcncrc";
 }
 
-/// Of this build or installation; empty where there is none.
+/// Samples of this build or installation; empty if there are none.
 std::string sample_folder() {
     for (const char *place : {"/../share/millwright/configs", "/../../../configs"}) {
         const std::string folder = program_folder() + place;
@@ -40,7 +40,7 @@ std::string sample_folder() {
     return {};
 }
 
-/// The machine of an INI file; parts that others include have none.
+/// Reads the machine of an INI file; false for a file that only others include.
 bool read_machine(const std::string &path, Configuration &configuration) {
     diagnostics::Sink ignored;
     const auto file = ini::IniFile::load(path, ignored);
@@ -98,10 +98,10 @@ std::vector<ConfigurationGroup> find_configurations() {
     const char *const more = std::getenv("LINUXCNC_AUX_CONFIGS");
     std::istringstream folders(more != nullptr ? more : "");
     for (std::string folder; std::getline(folders, folder, ':');) {
-        const bool isOfHome = folder.starts_with("~/");
+        const bool of_home = folder.starts_with("~/");
         add_group(
             groups, seen,
-            {"of LINUXCNC_AUX_CONFIGS", isOfHome ? home_folder() + folder.substr(1) : folder, false, {}});
+            {"of LINUXCNC_AUX_CONFIGS", of_home ? home_folder() + folder.substr(1) : folder, false, {}});
     }
     add_group(groups, seen, {"of other packages", AUX_EXAMPLES, true, {}});
     add_group(groups, seen, {"samples", sample_folder(), true, {}});
@@ -149,20 +149,20 @@ std::string last_configuration() {
 
 Result<> remember_configuration(const std::string &ini) {
     std::string text;
-    bool isInside = false, isKept = false;
+    bool inside = false, kept = false;
     const std::string setting = "LAST_CONFIG = " + ini + '\n';
     std::ifstream file(resource_file());
     for (std::string line; std::getline(file, line);) {
         const std::string_view words = trim(line);
         if (words.starts_with('[')) {
-            isInside = words.starts_with("[PICKCONFIG]");
-            text += line + '\n' + (isInside && !isKept ? setting : "");
-            isKept |= isInside;
-        } else if (!isInside || !words.starts_with("LAST_CONFIG")) {
+            inside = words.starts_with("[PICKCONFIG]");
+            text += line + '\n' + (inside && !kept ? setting : "");
+            kept |= inside;
+        } else if (!inside || !words.starts_with("LAST_CONFIG")) {
             text += line + '\n';
         }
     }
-    return write_file_atomically(resource_file(), text + (isKept ? "" : "[PICKCONFIG]\n" + setting));
+    return write_file_atomically(resource_file(), text + (kept ? "" : "[PICKCONFIG]\n" + setting));
 }
 
 }  // namespace mw::programs

@@ -34,7 +34,7 @@ bool isYes(const std::string &value) {
     return small == "1" || small == "yes" || small == "true" || small == "on";
 }
 
-/// Comments in front of the first section, without the line of the licence.
+/// Comments before the first section, without the licence line.
 std::string notes_of(const std::string &path) {
     constexpr std::size_t LONGEST = 600;
     std::string notes;
@@ -53,7 +53,7 @@ std::string notes_of(const std::string &path) {
     return notes.substr(0, LONGEST);
 }
 
-/// Of the same name as the INI file; else what the screen shows when it starts.
+/// The picture with the name of the INI file; otherwise the splash picture of the screen.
 std::string picture_of(const fs::path &ini, const std::string &intro) {
     std::error_code error;
     for (const char *ending : {".png", ".jpg", ".jpeg", ".gif", ".svg"}) {
@@ -98,7 +98,7 @@ std::vector<screen::ChoiceGroup> find_choices() {
     return groups;
 }
 
-/// A copy of a sample; of another one itself.
+/// A copy of a sample; other configurations themselves.
 Result<FirstStepsSetup::Start> prepare(const std::string &ini) {
     std::string path = ini;
     for (const ConfigurationGroup &group : find_configurations()) {
@@ -144,7 +144,7 @@ Result<FirstStepsSetup> make_setup() {
         if (!trial.has_value()) {
             return std::unexpected(trial.error());
         }
-        return trial->isGood ? Result<std::string>(std::move(trial->output)) : fail(trial->output);
+        return trial->good ? Result<std::string>(std::move(trial->output)) : fail(trial->output);
     };
     setup.prepare = prepare;
     setup.proposed_folder = std::string(home != nullptr ? home : "/tmp") + "/millwright/configs";
@@ -182,7 +182,7 @@ int screen_port(const std::string &display) {
     return static_cast<int>(port.value_or(SCREEN_PORT));
 }
 
-Result<std::string> select_in_browser(int port, bool isOpening) {
+Result<std::string> select_in_browser(int port, bool opening) {
     constexpr auto LOOK = std::chrono::milliseconds(50), LAST_ANSWER = std::chrono::milliseconds(500);
     auto setup = make_setup();
     if (!setup.has_value()) {
@@ -201,7 +201,7 @@ Result<std::string> select_in_browser(int port, bool isOpening) {
     screen::Worker disk([&server](std::function<void()> act) { (*server)->post(std::move(act)); });
     screen::FirstSteps page(disk, std::move(*setup));
     Browser browser;
-    if (isOpening) {
+    if (opening) {
         browser.open(address);
     }
     std::int64_t end_ns = 0;

@@ -87,7 +87,7 @@ class Child {
         }
         return {};
     }
-    /// False: it did not end in time, or a stop signal came.
+    /// False: it did not end in time, or a stop signal arrived.
     bool read_to_end(std::string &output) {
         constexpr int LOOK_MS = 100;
         const auto end = std::chrono::steady_clock::now() + LONGEST_TRIAL;
@@ -107,12 +107,12 @@ class Child {
         }
         return false;
     }
-    /// Of a process that has closed its output.
+    /// Result of a process that has closed its output.
     bool hasSucceeded() {
         int status = 0;
-        const bool isEnded = ::waitpid(pid_, &status, 0) == pid_;
+        const bool ended = ::waitpid(pid_, &status, 0) == pid_;
         pid_ = 0;
-        return isEnded && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+        return ended && WIFEXITED(status) && WEXITSTATUS(status) == 0;
     }
 
   private:
@@ -158,8 +158,8 @@ Result<NewMachine> make_machine(const std::string &folder, const setup::Plan &pl
     std::error_code error;
     fs::path to = fs::absolute(folder, error).lexically_normal();
     to = to.has_filename() ? to : to.parent_path();  // "my_mill/"
-    const bool isThere = fs::exists(fs::symlink_status(to, error));
-    if (isThere && !(fs::is_directory(to, error) && fs::is_empty(to, error))) {
+    const bool present = fs::exists(fs::symlink_status(to, error));
+    if (present && !(fs::is_directory(to, error) && fs::is_empty(to, error))) {
         return fail("'" + to.string() + "' is there already, and is not touched", {},
                     "a folder that is empty, or not there yet, becomes that of the machine");
     }
@@ -197,7 +197,7 @@ Result<Trial> try_machine(const NewMachine &machine) {
     if (!child.read_to_end(trial.output)) {
         return fail("the trial of " + machine.ini + " did not come to its end: " + printable(trial.output));
     }
-    trial.isGood = child.hasSucceeded();
+    trial.good = child.hasSucceeded();
     return trial;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A machine that a person has described: its folder is made, and it is tried.
+// A new machine from a person's description: creates its folder and tries it.
 #pragma once
 
 #include <string>
@@ -10,27 +10,27 @@
 
 namespace mw::programs {
 
-/// Lines of "key = value"; empty ones and those that begin with # are left out.
+/// Reads lines of "key = value"; skips empty lines and those that begin with #.
 Result<setup::Answers> read_answers(const std::string &text, const std::string &name);
-/// As read_answers() reads them: all of a machine, also where a preset was taken.
+/// Text for read_answers(): all answers of a machine, including presets.
 std::string answers_text(const setup::Answers &given);
 
 struct NewMachine {
-    std::string ini, program;  ///< whole paths
+    std::string ini, program;  ///< absolute paths
 };
 
-/// Makes the folder with the files of the plan and of the answers, whole or not at all; one that has
-/// something in it is refused.
+/// Creates the folder with the files of the plan and of the answers, completely or not at all; a folder that
+/// is not empty is rejected.
 Result<NewMachine> make_machine(const std::string &folder, const setup::Plan &plan,
                                 const setup::Answers &given);
 
 struct Trial {
-    bool isGood = false;
-    std::string output;  ///< of the program that was run
+    bool good = false;
+    std::string output;  ///< output of the program run
 };
 
-/// Starts the machine in virtual time, homes it and runs the program, in a process of its own. Blocks, for
-/// two minutes at most; a stop signal ends it, too.
+/// Starts the machine in virtual time in a separate process, homes it and runs the program. Blocks for at
+/// most two minutes; a stop signal ends it, too.
 Result<Trial> try_machine(const NewMachine &machine);
 
 }  // namespace mw::programs

@@ -22,7 +22,7 @@
 namespace mw::programs {
 namespace {
 
-/// A configuration with the number under which it is shown.
+/// A configuration and its displayed number.
 struct Choice {
     const ConfigurationGroup *group;
     const Configuration *configuration;
@@ -110,16 +110,16 @@ Result<std::string> select_configuration() {
 }
 
 int command_select(const std::vector<std::string> &arguments) {
-    bool isListed = false, isPrinted = false, isInBrowser = false;
+    bool listed = false, printed = false, in_browser = false;
     int port = SCREEN_PORT;
     options::Words rest;
     options::CommandLine line(
         "millwright select [options]",
         "Shows the configurations of machines that are here, asks for one, and starts it as "
         "`linuxcnc` does.\n");
-    line.flag("--list", "print their paths and ask nothing", isListed);
-    line.flag("--print", "print the path of the chosen one instead of starting it", isPrinted);
-    line.flag("--browser", "show them in a browser, with the wizard for a new machine", isInBrowser);
+    line.flag("--list", "print their paths and ask nothing", listed);
+    line.flag("--print", "print the path of the chosen one instead of starting it", printed);
+    line.flag("--browser", "show them in a browser, with the wizard for a new machine", in_browser);
     line.number("--port", "N", "with --browser: on 127.0.0.1:N, 0: on a free port; 8850 without it", port, 0,
                 65535);
     line.rest(rest);
@@ -137,7 +137,7 @@ int command_select(const std::vector<std::string> &arguments) {
                    parsed.has_value() ? "takes no words" : parsed.error().str());
         return 2;
     }
-    if (isListed) {
+    if (listed) {
         for (const ConfigurationGroup &group : find_configurations()) {
             for (const Configuration &one : group.configurations) {
                 fmt::print("{}\n", one.ini);
@@ -146,7 +146,7 @@ int command_select(const std::vector<std::string> &arguments) {
         return 0;
     }
     catch_stop_signals();
-    const auto ini = isInBrowser ? select_in_browser(port, true) : select_configuration();
+    const auto ini = in_browser ? select_in_browser(port, true) : select_configuration();
     if (!ini.has_value()) {
         fmt::print(stderr, "millwright select: {}\n", language::shown(ini.error().str()));
         return 1;
@@ -154,7 +154,7 @@ int command_select(const std::vector<std::string> &arguments) {
     if (ini->empty()) {
         return 0;
     }
-    if (isPrinted) {
+    if (printed) {
         fmt::print("{}\n", *ini);
         return 0;
     }

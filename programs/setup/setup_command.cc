@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// millwright setup: a new machine from answers.
+// millwright setup: creates a new machine from answers.
 #include <cstdio>
 
 #include <fmt/format.h>
@@ -18,7 +18,7 @@ namespace {
 
 struct SetupWords {
     std::string answers;
-    bool isTried = true, areQuestionsShown = false;
+    bool tried = true, questions_shown = false;
     options::Words rest;
 
     options::CommandLine line() {
@@ -32,10 +32,10 @@ struct SetupWords {
             "stepper.\n");
         line.flag("--questions",
                   "print all keys of such a machine with presets and ranges, and write nothing",
-                  areQuestionsShown);
+                  questions_shown);
         line.text("--answers", "FILE", "lines of 'key = value'; words of the command line go before them",
                   answers);
-        line.flag("--no-check", "do not start the machine", isTried, false);
+        line.flag("--no-check", "do not start the machine", tried, false);
         line.rest(rest);
         line.footer("exit status: 0 the machine is there, and runs, 1 refused or failed, 2 wrong usage\n");
         return line;
@@ -53,7 +53,7 @@ Result<setup::Answers> answers_of(const SetupWords &words) {
         answers = std::move(*read);
     }
     std::string lines;
-    for (std::size_t i = words.areQuestionsShown ? 0 : 1; i < words.rest.size(); ++i) {
+    for (std::size_t i = words.questions_shown ? 0 : 1; i < words.rest.size(); ++i) {
         lines += words.rest[i] + '\n';
     }
     auto given = read_answers(lines, "");
@@ -69,10 +69,10 @@ Result<setup::Answers> answers_of(const SetupWords &words) {
 void show_questions(const setup::Answers &answers) {
     const auto asked = setup::questions(answers);
     for (const setup::Question &question : asked) {
-        const bool isNumber = question.form == setup::Form::NUMBER || question.form == setup::Form::WHOLE;
+        const bool is_number = question.form == setup::Form::NUMBER || question.form == setup::Form::WHOLE;
         fmt::print("{} = {}   # {}", question.key, setup::answer_of(asked, answers, question.key),
                    question.text);
-        if (isNumber) {
+        if (is_number) {
             fmt::print(": {:.7g} to {:.7g}{}{}", question.low, question.high,
                        question.unit.empty() ? "" : " ", question.unit);
         } else if (!question.choices.empty()) {
@@ -88,7 +88,7 @@ Result<> make_and_try(const SetupWords &words, const setup::Answers &answers, co
         return std::unexpected(machine.error());
     }
     fmt::print("{}\n", machine->ini);
-    if (!words.isTried) {
+    if (!words.tried) {
         return {};
     }
     const auto trial = try_machine(*machine);
@@ -96,7 +96,7 @@ Result<> make_and_try(const SetupWords &words, const setup::Answers &answers, co
         return std::unexpected(trial.error());
     }
     fmt::print("{}", printable(trial->output));
-    if (!trial->isGood) {
+    if (!trial->good) {
         return fail("the machine does not run its first program; its files are as they were written");
     }
     fmt::print("It runs in virtual time. At the screen: linuxcnc {}\n", shell_word(machine->ini));
@@ -112,7 +112,7 @@ int command_setup(const std::vector<std::string> &arguments) {
         return 0;
     }
     const auto parsed = words.line().parse(arguments);
-    if (!parsed.has_value() || (words.rest.empty() && !words.areQuestionsShown)) {
+    if (!parsed.has_value() || (words.rest.empty() && !words.questions_shown)) {
         fmt::print(stderr, "millwright setup: {}\n",
                    parsed.has_value() ? "needs a folder: millwright setup FOLDER kind=mill"
                                       : parsed.error().str());
@@ -123,7 +123,7 @@ int command_setup(const std::vector<std::string> &arguments) {
         fmt::print(stderr, "millwright setup: {}\n", language::shown(answers.error().str()));
         return 2;
     }
-    if (words.areQuestionsShown) {
+    if (words.questions_shown) {
         show_questions(*answers);
         return 0;
     }

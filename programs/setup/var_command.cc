@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// linuxcnc_var: where things of this installation are, for scripts.
+// linuxcnc_var: the paths of this installation, for scripts.
 #include <array>
 #include <cstdio>
 #include <string_view>
@@ -43,30 +43,30 @@ constexpr std::array VARIABLES{
 
 int command_var(const std::vector<std::string> &words) {
     if (words.size() != 1 || words[0] == "-h" || words[0] == "--help") {
-        const bool isAsked = words.size() == 1;
+        const bool requested = words.size() == 1;
         fmt::print(
-            isAsked ? stdout : stderr, "{}",
+            requested ? stdout : stderr, "{}",
             language::shown("usage: linuxcnc_var NAME | all\n\nPrints where things of this installation "
                             "are. Names:\n"));
         for (const Variable &variable : VARIABLES) {
-            fmt::print(isAsked ? stdout : stderr, "  {}\n", variable.name);
+            fmt::print(requested ? stdout : stderr, "  {}\n", variable.name);
         }
-        return isAsked ? 0 : 2;
+        return requested ? 0 : 2;
     }
-    const bool isAll = words[0] == "all";
-    bool isFound = isAll;
+    const bool all = words[0] == "all";
+    bool found = all;
     for (const Variable &variable : VARIABLES) {
-        if (isAll) {
+        if (all) {
             fmt::print("{}={}\n", variable.name, variable.value());
         } else if (variable.name == words[0]) {
             fmt::print("{}\n", variable.value());
-            isFound = true;
+            found = true;
         }
     }
-    if (!isFound) {
+    if (!found) {
         fmt::print("UNKNOWN\n");
     }
-    return isFound ? 0 : 1;
+    return found ? 0 : 1;
 }
 
 }  // namespace mw::programs

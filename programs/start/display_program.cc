@@ -73,9 +73,9 @@ Result<std::vector<std::string>> DisplayProgram::words(const std::string &displa
         return fail("[DISPLAY]DISPLAY names '" + words[0] + "', which is no program that can be found",
                     {ini, 0, 0}, instead.empty() ? "--no-display keeps the machine up without one" : instead);
     }
-    const bool isShell = fs::path(words[0]).filename() == "linuxcncrsh";
+    const bool is_shell = fs::path(words[0]).filename() == "linuxcncrsh";
     words[0] = program;
-    if (isShell) {
+    if (is_shell) {
         words.insert(words.end(), {"--", "-ini", ini});
     } else {
         words.insert(words.begin() + 1, {"-ini", ini});
@@ -85,7 +85,7 @@ Result<std::vector<std::string>> DisplayProgram::words(const std::string &displa
 
 Result<DisplayProgram> DisplayProgram::start(const std::vector<std::string> &words, const std::string &ini) {
     const std::string folder = fs::path(ini).parent_path().string();
-    // Everything is made ready before the fork: the child of a process with threads may not allocate.
+    // Everything is prepared before the fork: the child of a process with threads may not allocate memory.
     ::setenv("INI_FILE_NAME", ini.c_str(), 1);
     ::setenv("CONFIG_DIR", folder.c_str(), 1);
     std::vector<std::string> owned = words;

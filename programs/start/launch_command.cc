@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// linuxcnc: the launcher that desktop files, scripts and tests of configurations call.
+// linuxcnc: the launcher for desktop files, scripts and tests of configurations.
 #include <signal.h>
 #include <unistd.h>
 
@@ -38,7 +38,7 @@ constexpr const char *USAGE =
     "\n"
     "  -l, -             the INI file that ~/.linuxcncrc names as the last one\n"
     "  -H FOLDER         HAL files are looked for there first; may come several times\n"
-    "  -k                go on after errors in HAL files\n"
+    "  -k                continue after errors in HAL files\n"
     "  -m \"NAME PARAMS\"  a homing module, instead of [EMCMOT]HOMEMOD\n"
     "  -t \"NAME PARAMS\"  a planner module instead of [TRAJ]TPMOD\n"
     "  -d, -v            say more\n"
@@ -61,7 +61,7 @@ constexpr std::array LETTERS{
 
 struct LaunchWords {
     StartSettings settings;
-    bool isHelpAsked = false, isLastAsked = false, saysMore = false;
+    bool help_asked = false, last_asked = false, saysMore = false;
 
     Result<> parse(const std::vector<std::string> &words) {
         auto read = options::read_letters(words, LETTERS, options::EndOfLetters::FIRST_WORD);
@@ -75,10 +75,10 @@ struct LaunchWords {
         }
         std::vector<std::string> &rest = read->words;
         if (!rest.empty() && rest[0] == "-") {
-            isLastAsked = true;
+            last_asked = true;
             rest.erase(rest.begin());
         }
-        if (!isLastAsked && !rest.empty()) {
+        if (!last_asked && !rest.empty()) {
             settings.ini = rest[0];
             rest.erase(rest.begin());
         }
@@ -89,11 +89,11 @@ struct LaunchWords {
   private:
     Result<> take(const options::Letter &option) {
         switch (option.letter) {
-        case 'h': isHelpAsked = true; break;
-        case 'l': isLastAsked = true; break;
+        case 'h': help_asked = true; break;
+        case 'l': last_asked = true; break;
         case 'd':
         case 'v': saysMore = true; break;
-        case 'k': settings.options.isKeptGoing = true; break;
+        case 'k': settings.options.kept_going = true; break;
         case 'm': settings.options.homing_module = option.value; break;
         case 'H': settings.options.hal_folders.push_back(whole_path(option.value)); break;
         case 't': settings.options.planner_module = option.value; break;
@@ -103,43 +103,43 @@ struct LaunchWords {
     }
 };
 
-/// True: whoever sits at the terminal wants the machine that is up to end.
+/// True: the person at the terminal wants to end the running machine.
 bool isEndWanted(const std::string &ini) {
-    fmt::print("A machine is up already: {}\nEnd it and start anew? [Y/n] ", ini);
+    fmt::print("A machine is already running: {}\nEnd it and start again? [Y/n] ", ini);
     std::fflush(stdout);
     std::array<char, 64> answer{};
-    const bool isAnswered = std::fgets(answer.data(), answer.size(), stdin) != nullptr;
-    return isAnswered && answer[0] != 'n' && answer[0] != 'N';
+    const bool answered = std::fgets(answer.data(), answer.size(), stdin) != nullptr;
+    return answered && answer[0] != 'n' && answer[0] != 'N';
 }
 
-/// Ends the machine of `instance` and waits until it is gone.
+/// Ends the machine of `instance` and waits for its end.
 Result<> end_machine(const std::string &instance) {
     constexpr double PATIENCE_S = 20;
     auto viewer = client::Viewer::attach(instance);
     if (!viewer.has_value()) {
-        return {};  // gone meanwhile
+        return {};  // ended meanwhile
     }
     const int pid = viewer->machine_pid();
     if (pid <= 0 || ::kill(pid, SIGTERM) != 0) {
-        return fail("the machine that is up belongs to somebody else");
+        return fail("the running machine belongs to another user");
     }
     for (double waited_s = 0; viewer->isMachineAlive(); waited_s += 0.05) {
         if (waited_s > PATIENCE_S) {
-            return fail("the machine that is up does not end");
+            return fail("the running machine does not end");
         }
         ::usleep(50000);
     }
     return {};
 }
 
-/// How the launcher goes on beside a machine that is up.
+/// Action of the launcher when a machine is running.
 enum class SecondStart { GOES_ON, IS_LEFT, IS_REFUSED };
 
 SecondStart settle_second_start(diagnostics::Sink &sink) {
     const std::string instance = hal::default_instance();
     const auto other = client::Viewer::attach(instance);
     if (!other.has_value() || !other->isMachineAlive() || ::isatty(STDIN_FILENO) == 0) {
-        return SecondStart::GOES_ON;  // without a person to ask, the start itself says no
+        return SecondStart::GOES_ON;  // without a person to ask, the start itself reports the error
     }
     if (!isEndWanted(other->identity().ini.str())) {
         return SecondStart::IS_LEFT;
@@ -153,7 +153,7 @@ SecondStart settle_second_start(diagnostics::Sink &sink) {
 }
 
 int launch(LaunchWords &words, diagnostics::Sink &sink) {
-    if (words.isLastAsked) {
+    if (words.last_asked) {
         words.settings.ini = last_configuration();
         if (words.settings.ini.empty()) {
             sink.error("~/.linuxcncrc names no last configuration", {}, "name an INI file");
@@ -184,12 +184,12 @@ int launch(LaunchWords &words, diagnostics::Sink &sink) {
 int command_launch(const std::vector<std::string> &arguments) {
     LaunchWords words;
     const auto parsed = words.parse(arguments);
-    if (words.isHelpAsked) {
+    if (words.help_asked) {
         fmt::print("{}", language::shown(USAGE));
         return 0;
     }
-    const bool isNoneNamed = words.settings.ini.empty() && !words.isLastAsked;
-    if (parsed.has_value() && isNoneNamed && ::isatty(STDIN_FILENO) != 0 && ::isatty(STDOUT_FILENO) != 0) {
+    const bool none_named = words.settings.ini.empty() && !words.last_asked;
+    if (parsed.has_value() && none_named && ::isatty(STDIN_FILENO) != 0 && ::isatty(STDOUT_FILENO) != 0) {
         const auto chosen = select_configuration();
         if (!chosen.has_value() || chosen->empty()) {
             fmt::print(stderr, "{}",
@@ -197,7 +197,7 @@ int command_launch(const std::vector<std::string> &arguments) {
             return chosen.has_value() ? 0 : 1;
         }
         words.settings.ini = *chosen;
-    } else if (!parsed.has_value() || isNoneNamed) {
+    } else if (!parsed.has_value() || none_named) {
         const std::string what = parsed.has_value() ? "name the INI file of a machine" : parsed.error().str();
         fmt::print(stderr, "linuxcnc: {}\n{}", language::shown(what), language::shown(USAGE));
         return 2;

@@ -19,7 +19,7 @@ void set(const char *name, const std::string &value) {
     ::setenv(name, value.c_str(), 1);
 }
 
-/// What the user has set already stays.
+/// Sets a variable unless the user has set it.
 void offer(const char *name, const std::string &value) {
     ::setenv(name, value.c_str(), 0);
 }
@@ -29,7 +29,7 @@ std::string old(const char *name) {
     return value != nullptr ? value : "";
 }
 
-/// The first that is a folder; else the first.
+/// The first existing folder; otherwise the first.
 std::string folder_of(std::initializer_list<std::string> candidates) {
     std::error_code ignored;
     for (const std::string &candidate : candidates) {
@@ -86,14 +86,14 @@ void set_launch_environment(const machine::LoadedConfig &loaded, const StartSett
     set("PATH", folder + "/bin:" + program_folder() + ":" + old("HOME") + "/.local/bin:" + old("PATH"));
     set_places(home);
     set_hal_places(settings.options.hal_folders);
-    set("HALCMD", settings.options.isKeptGoing ? "halcmd -k" : "halcmd");
+    set("HALCMD", settings.options.kept_going ? "halcmd -k" : "halcmd");
     set("TRAJ_COORDINATES", first_value(loaded, "TRAJ", "COORDINATES"));
     set("KINS_KINEMATICS", first_value(loaded, "KINS", "KINEMATICS"));
     const std::string platform = old("LINUXCNC_OPENGL_PLATFORM");
     if (platform.empty() || platform == "glx") {
         set("PYOPENGL_PLATFORM", "x11");
     }
-    // Programs test that the file exists; find_machine() and Python's package ignore the name of the INI
+    // Programs check that the file exists; find_machine() and the Python package ignore the name of the INI
     // file.
     const std::string channels = first_value(loaded, "EMC", "NML_FILE");
     const std::string path = (fs::path(folder) / channels).string();

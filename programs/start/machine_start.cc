@@ -21,7 +21,7 @@
 namespace mw::programs {
 namespace {
 
-/// Within so long the programs that were started end by themselves, and so does the file of [HAL]SHUTDOWN.
+/// Maximum time for started programs to end by themselves, and for the file of [HAL]SHUTDOWN.
 constexpr std::int64_t END_NS = 5000000000;
 
 }  // namespace
@@ -46,7 +46,7 @@ int MachineStart::run_machine() {
     if (status.has_value()) {
         status = keep_up();
         if (!status.has_value()) {
-            // Before the end of programs, which may take seconds.
+            // Before ending the programs, which may take seconds.
             machine_->task().post(messages::MessageKind::OPERATOR_ERROR, status.error().str());
             sink_.failure(status.error());
             static_cast<void>(take_down());
@@ -61,14 +61,14 @@ int MachineStart::run_machine() {
     return display_status_.value_or(0);
 }
 
-/// What can be refused before anything is made.
+/// Checks that need no machine.
 Result<> MachineStart::prepare() {
     if (const auto other = client::Client::connect(instance_); other.has_value()) {
-        return fail(fmt::format("a machine is up already as instance '{}': {}", instance_,
+        return fail(fmt::format("a machine is already running as instance '{}': {}", instance_,
                                 other->identity().ini.str()),
                     {}, "end it, or choose another name in MILLWRIGHT_INSTANCE");
     }
-    if (settings_.isDisplayed && !loaded_.machine.display.empty()) {
+    if (settings_.displayed && !loaded_.machine.display.empty()) {
         auto display = DisplayProgram::words(loaded_.machine.display, whole_path(settings_.ini),
                                              settings_.display_words);
         if (!display.has_value()) {
@@ -96,7 +96,7 @@ Result<> MachineStart::make() {
     std::fflush(stdout);
     const auto delay_ns = to_ns(loaded_.machine.applications_delay_s);
     const std::string ini = whole_path(settings_.ini);
-    side_programs_.emplace(settings_.isDisplayed ? loaded_.machine.applications : std::vector<std::string>{},
+    side_programs_.emplace(settings_.displayed ? loaded_.machine.applications : std::vector<std::string>{},
                            ini, access_->now_ns() + delay_ns);
     if (display_words_.empty()) {
         return {};
@@ -110,7 +110,7 @@ Result<> MachineStart::make() {
     return {};
 }
 
-/// Screens read it themselves, from their start.
+/// Screens read the file themselves, from their start.
 void MachineStart::make_parameter_file() {
     const std::string &path = loaded_.machine.task.parameter_file;
     std::error_code ignored;
@@ -162,16 +162,16 @@ Result<> MachineStart::cycle() {
     return access_->health();
 }
 
-/// On every way out: what turns or moves first, the programs last.
+/// On every exit: spindles and axes first, the programs last.
 Result<> MachineStart::take_down() {
-    const bool isHealthy = access_->health().has_value();
-    if (isHealthy) {
+    const bool healthy = access_->health().has_value();
+    if (healthy) {
         switch_off(*access_);
         tell_messages();
     }
     const auto saved = machine_->task().save_parameters();
     end_programs();
-    if (isHealthy) {
+    if (healthy) {
         run_shutdown_file();
     }
     access_.reset();
@@ -192,7 +192,7 @@ void MachineStart::end_programs() {
     };
     const std::int64_t deadline_ns = access_->now_ns() + END_NS;
     while (!haveEnded() && access_->now_ns() < deadline_ns) {
-        access_->cycle();  // what they ask for while they end is answered
+        access_->cycle();  // requests of ending programs are answered
     }
     if (display_.has_value()) {
         display_->kill();
@@ -200,7 +200,7 @@ void MachineStart::end_programs() {
     side_programs_.reset();
 }
 
-/// By halcmd, as the HAL is that of the realtime process; task goes on meanwhile.
+/// By halcmd, because the HAL belongs to the realtime process; task continues meanwhile.
 void MachineStart::run_shutdown_file() {
     const std::string &file = loaded_.machine.shutdown_file;
     if (file.empty()) {
@@ -223,15 +223,15 @@ void MachineStart::run_shutdown_file() {
 }
 
 void MachineStart::tell_messages() {
-    if (const std::string loss = OutputRelay::take_loss(); !loss.empty() && !isLossTold_) {
-        isLossTold_ = true;
+    if (const std::string loss = OutputRelay::take_loss(); !loss.empty() && !loss_reported_) {
+        loss_reported_ = true;
         machine_->task().post(messages::MessageKind::OPERATOR_TEXT, loss);
     }
     using Reading = client::Viewer::Reading;
     while (const auto message = machine_->client().next_message(Reading::LOOKS_ON)) {
-        // What (print,...) says is the program's output, which scripts read.
-        const bool isOutput = message->kind == messages::MessageKind::OPERATOR_TEXT;
-        fmt::print(isOutput ? stdout : stderr, "{}\n", printable(client::shown_message(*message)));
+        // The text of (print,...) is the program's output, which scripts read.
+        const bool is_output = message->kind == messages::MessageKind::OPERATOR_TEXT;
+        fmt::print(is_output ? stdout : stderr, "{}\n", printable(client::shown_message(*message)));
         std::fflush(stdout);
     }
 }

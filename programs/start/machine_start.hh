@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A machine that is kept up with its display and the programs beside it, from the start to the end of all.
+// A running machine with its display and additional programs, from the start to the end of all.
 #pragma once
 
 #include <memory>
@@ -16,17 +16,17 @@ namespace mw::programs {
 
 struct StartSettings {
     std::string ini;
-    bool isDisplayed = true;
-    std::vector<std::string> display_words;  ///< more words for the display
+    bool displayed = true;
+    std::vector<std::string> display_words;  ///< additional arguments for the display
     machine::MachineOptions options;
 };
 
-/// One thread. Whatever it has started is gone when run() returns.
+/// One thread. Everything that it has started has ended when run() returns.
 class MachineStart {
   public:
     MachineStart(StartSettings settings, machine::LoadedConfig &loaded, diagnostics::Sink &sink);
 
-    /// The exit status: that of the display, 0 after a signal, 1 when something was refused or has failed.
+    /// Returns the exit status: that of the display, 0 after a signal, 1 after a rejection or failure.
     int run();
 
   private:
@@ -52,7 +52,7 @@ class MachineStart {
     std::optional<DisplayProgram> display_;
     std::optional<SidePrograms> side_programs_;
     std::optional<int> display_status_;
-    bool isLossTold_ = false;  ///< that the output of this program is lost: once
+    bool loss_reported_ = false;  ///< lost output has been reported
 };
 
 }  // namespace mw::programs

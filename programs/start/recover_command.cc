@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// millwright recover: what a machine that is up offers after a power cut, and going on with it.
+// millwright recover: what a running machine offers after a power cut, and continuing with it.
 #include <unistd.h>
 
 #include <cstdio>
@@ -18,11 +18,11 @@
 namespace mw::programs {
 namespace {
 
-/// Task's cycles take milliseconds; programs are calculated in many of them.
+/// Task's cycles take milliseconds; programs are calculated over many of them.
 constexpr double ANSWER_S = 5.0, CALCULATED_S = 600.0;
 
 struct RecoverWords {
-    bool isForgetting = false, isAgreed = false, isOnlyShown = false;
+    bool forgetting = false, agreed = false, only_shown = false;
     options::Words rest;
 
     options::CommandLine line() {
@@ -32,9 +32,9 @@ struct RecoverWords {
             "where "
             "it goes on;\nasks whether the way there may be made, and goes on. The machine is one that "
             "'millwright start' keeps up, on\nand homed. The program goes on when this command has ended.\n");
-        line.flag("--show", "only show what is offered", isOnlyShown);
-        line.flag("--forget", "drop the offer", isForgetting);
-        line.flag("--yes", "make the way without asking: look that it is free", isAgreed);
+        line.flag("--show", "only show what is offered", only_shown);
+        line.flag("--forget", "drop the offer", forgetting);
+        line.flag("--yes", "make the way without asking: look that it is free", agreed);
         line.rest(rest);
         line.footer("exit status: 0 done or nothing is offered, 1 refused or failed, 2 wrong usage\n");
         return line;
@@ -52,22 +52,22 @@ class Recovering {
         static_cast<void>(client_.read_status());
         const messages::RecoveryStatus &offer = client_.status().recovery;
         if (offer.program.empty()) {
-            fmt::print("{}", language::shown("no program was cut short\n"));
+            fmt::print("{}", language::shown("no program was interrupted\n"));
             return {};
         }
-        fmt::print("{}", language::shown(fmt::format("{} was cut short at line {}\n",
+        fmt::print("{}", language::shown(fmt::format("{} was interrupted at line {}\n",
                                                      printable(offer.program.str()), offer.line)));
         if (!offer.isOffered) {
-            fmt::print("{}", language::shown(fmt::format("it cannot be gone on with there: {}\n",
+            fmt::print("{}", language::shown(fmt::format("it cannot be continued there: {}\n",
                                                          printable(offer.refusal.str()))));
         }
-        if (words.isForgetting) {
+        if (words.forgetting) {
             return ask(messages::ForgetRecovery{});
         }
-        if (words.isOnlyShown) {
+        if (words.only_shown) {
             return {};
         }
-        return go_on(words.isAgreed);
+        return go_on(words.agreed);
     }
 
   private:
@@ -83,8 +83,9 @@ class Recovering {
         return outcome->progress == messages::Progress::DONE ? Result<>{} : fail(outcome->reason);
     }
 
-    Result<> go_on(bool isAgreed) {
-        while (client_.next_message(client::Viewer::Reading::LOOKS_ON).has_value()) {  // what was before
+    Result<> go_on(bool agreed) {
+        while (client_.next_message(client::Viewer::Reading::LOOKS_ON)
+                   .has_value()) {  // discards earlier messages
         }
         if (const auto set = ask(messages::SetMode{messages::Mode::AUTO}); !set.has_value()) {
             return set;
@@ -93,11 +94,11 @@ class Recovering {
         if (!posted.has_value()) {
             return std::unexpected(posted.error());
         }
-        const auto isOver = [&] {
+        const auto ended = [&] {
             return client_.outcome(*posted).progress != messages::Progress::STARTED ||
                    (client_.read_status().has_value() && client_.status().approach.number != 0);
         };
-        if (const auto waited = client_.wait_until(isOver, CALCULATED_S); !waited.has_value()) {
+        if (const auto waited = client_.wait_until(ended, CALCULATED_S); !waited.has_value()) {
             return waited;
         }
         if (client_.outcome(*posted).progress != messages::Progress::STARTED) {
@@ -106,7 +107,7 @@ class Recovering {
         while (const auto message = client_.next_message(client::Viewer::Reading::LOOKS_ON)) {
             fmt::print("{}\n", printable(client::shown_message(*message)));
         }
-        if (!isAgreed && !hasAgreed()) {
+        if (!agreed && !hasAgreed()) {
             const auto dropped = ask(messages::AbortAll{});
             return dropped.has_value() ? fail("not confirmed: nothing has moved, the offer stays") : dropped;
         }
@@ -117,7 +118,7 @@ class Recovering {
         if (::isatty(STDIN_FILENO) == 0) {
             return false;
         }
-        fmt::print("{}", language::shown("make this way and go on? [y/N] "));
+        fmt::print("{}", language::shown("make this move and continue? [y/N] "));
         std::fflush(stdout);
         std::string answer;
         return std::getline(std::cin, answer) && (answer == "y" || answer == "Y");

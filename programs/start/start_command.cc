@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// millwright start: a machine that is up until a signal comes or its display ends; clients run programs on
+// millwright start: a machine that runs until a signal comes or its display ends; clients run programs on
 // it.
 #include <cstdio>
 
@@ -17,7 +17,7 @@ namespace {
 
 struct StartWords {
     std::string ini, homing_module, planner_module;
-    bool isDisplayed = true, isStrict = false;
+    bool displayed = true, strict = false;
     options::Words rest;
 
     options::CommandLine line() {
@@ -31,12 +31,12 @@ struct StartWords {
                                   "along its path, spindles, coolant and the machine go off, parameters are "
                                   "saved. A second SIGINT ends it\n"
                                   "at once.\n");
-        line.flag("--no-display", "start no display: up until a signal comes", isDisplayed, false);
+        line.flag("--no-display", "start no display: up until a signal comes", displayed, false);
         line.text("--homemod", "NAME", "a homing module and its parameters, instead of [EMCMOT]HOMEMOD",
                   homing_module);
         line.text("--tpmod", "NAME", "a planner module and its parameters, instead of [TRAJ]TPMOD",
                   planner_module);
-        line.flag("--strict", "unknown INI keys are errors", isStrict);
+        line.flag("--strict", "unknown INI keys are errors", strict);
         line.rest(rest);
         line.footer(
             "exit status: 0 ended in order, that of the display, 1 refused or failed, 2 wrong usage\n");
@@ -73,8 +73,8 @@ int command_start(const std::vector<std::string> &arguments) {
     }
     StartSettings settings;
     settings.ini = words.ini;
-    settings.isDisplayed = words.isDisplayed;
-    settings.options.isStrict = words.isStrict;
+    settings.displayed = words.displayed;
+    settings.options.strict = words.strict;
     settings.options.homing_module = words.homing_module;
     settings.options.planner_module = words.planner_module;
     return MachineStart(settings, *loaded, sink).run();

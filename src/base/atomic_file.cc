@@ -43,7 +43,7 @@ std::unexpected<Error> not_regular(const std::string &path, mode_t mode) {
     return fail("'" + path + "' is " + kind + ", not a file", {path, 0, 0});
 }
 
-/// An error where `path` is there and no regular file.
+/// An error if `path` exists and is not a regular file.
 Result<> check_regular(const std::string &path) {
     struct stat status{};
     if (::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode)) {
@@ -66,7 +66,7 @@ bool write_all(int fd, std::string_view content) {
     return true;
 }
 
-/// A symbolic link stays one: the file that it points to is replaced.
+/// A symbolic link is kept: the file that it points to is replaced.
 std::string resolve(const std::string &path) {
     char *real = ::realpath(path.c_str(), nullptr);
     std::string out = real != nullptr ? real : path;
@@ -82,8 +82,8 @@ Result<> write_file_atomically(const std::string &path, std::string_view content
         return regular;
     }
     struct stat old{};
-    const bool isReplacing = ::stat(target.c_str(), &old) == 0;
-    const mode_t mode = isReplacing ? (old.st_mode & 07777) : 0644;
+    const bool replacing = ::stat(target.c_str(), &old) == 0;
+    const mode_t mode = replacing ? (old.st_mode & 07777) : 0644;
     auto file = TemporaryFile::create(target);
     if (!file.has_value()) {
         return system_failure("write", path);
@@ -118,8 +118,8 @@ Result<> write_file_with_backup(const std::string &path, std::string_view conten
 
 Result<int> open_regular_file(const std::string &path, int flags) {
     constexpr mode_t MODE = 0666;
-    // The look before is for devices, on which open() itself does something; the flags are for what is
-    // exchanged in between. Files do not care for them.
+    // The check before open() is for devices, on which open() itself has side effects. The flags cover a file
+    // that is replaced between the check and open(). They have no effect on regular files.
     const Result<> before = check_regular(path);
     if (!before.has_value()) {
         return std::unexpected(before.error());
@@ -152,10 +152,10 @@ Result<std::string> read_file(const std::string &path, std::size_t most_bytes) {
         content.reserve(static_cast<std::size_t>(status.st_size) + 1);
     }
     while (true) {
-        constexpr std::size_t STEP = 65536;  // of what does not tell its size
+        constexpr std::size_t STEP = 65536;  // [bytes] for a file that does not report its size
         const std::size_t had = content.size();
         ssize_t n = 0;
-        // Straight into the string: large programs are not copied once more.
+        // Reads into the string directly, without a second copy of a large program.
         content.resize_and_overwrite(had < content.capacity() ? content.capacity() : had + STEP,
                                      [&](char *bytes, std::size_t size) {
                                          n = ::read(file.get(), bytes + had, size - had);
@@ -170,7 +170,7 @@ Result<std::string> read_file(const std::string &path, std::size_t most_bytes) {
         if (n == 0) {
             return content;
         }
-        if (content.size() > most_bytes) {  // it grows while it is read
+        if (content.size() > most_bytes) {  // the file grew while it was read
             return fail(path + " is too large: it has more than " + std::to_string(most_bytes >> 20U) +
                         " MB");
         }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Values as bytes and back, for files that this program alone reads: one list of fields serves both ways.
+// Values as bytes and back, for files that only this program reads: one list of fields serves both
+// directions.
 #pragma once
 
 #include <concepts>
@@ -15,7 +16,7 @@ namespace mw {
 template <class T>
 concept PackedNumber = std::integral<T> || std::floating_point<T>;
 
-/// Appends what it is called with.
+/// Appends each value that it is called with.
 class Packer {
   public:
     template <PackedNumber T>
@@ -28,7 +29,7 @@ class Packer {
         (*this)(static_cast<std::uint64_t>(text.size()));
         bytes_ += text;
     }
-    /// One of the values from 0 to `last`.
+    /// An enumerator from 0 to `last`.
     template <class Enum>
         requires std::is_enum_v<Enum>
     void choice(const Enum &value, Enum) {
@@ -40,19 +41,20 @@ class Packer {
     std::string bytes_;
 };
 
-/// Fills in what it is called with, in the same order; after the first byte that does not fit nothing more.
+/// Fills the values that it is called with, in the order of packing. After the first byte that does not fit
+/// it fills nothing more.
 class Unpacker {
   public:
     explicit Unpacker(std::string_view bytes) : rest_(bytes) {}
 
     template <PackedNumber T>
     void operator()(T &value) {
-        if (!isGood_ || rest_.size() < sizeof(T)) {
-            isGood_ = false;
+        if (!valid_ || rest_.size() < sizeof(T)) {
+            valid_ = false;
             return;
         }
         if constexpr (std::is_same_v<T, bool>) {
-            isGood_ = rest_[0] == 0 || rest_[0] == 1;
+            valid_ = rest_[0] == 0 || rest_[0] == 1;
             value = rest_[0] == 1;
         } else {
             std::memcpy(&value, rest_.data(), sizeof(T));
@@ -62,8 +64,8 @@ class Unpacker {
     void operator()(std::string &text) {
         std::uint64_t size = 0;
         (*this)(size);
-        if (!isGood_ || size > rest_.size()) {
-            isGood_ = false;
+        if (!valid_ || size > rest_.size()) {
+            valid_ = false;
             return;
         }
         text.assign(rest_.substr(0, size));
@@ -74,19 +76,19 @@ class Unpacker {
     void choice(Enum &value, Enum last) {
         std::int32_t number = 0;
         (*this)(number);
-        isGood_ = isGood_ && number >= 0 && number <= static_cast<std::int32_t>(last);
-        value = isGood_ ? static_cast<Enum>(number) : value;
+        valid_ = valid_ && number >= 0 && number <= static_cast<std::int32_t>(last);
+        value = valid_ ? static_cast<Enum>(number) : value;
     }
-    /// Something that was read cannot be.
-    void spoil() { isGood_ = false; }
-    bool isGood() const { return isGood_; }
-    /// All is read, and nothing was wrong.
-    bool isComplete() const { return isGood_ && rest_.empty(); }
+    /// Marks the data as not valid.
+    void spoil() { valid_ = false; }
+    bool isGood() const { return valid_; }
+    /// All bytes are read, and all were valid.
+    bool isComplete() const { return valid_ && rest_.empty(); }
     std::size_t left() const { return rest_.size(); }
 
   private:
     std::string_view rest_;
-    bool isGood_ = true;
+    bool valid_ = true;
 };
 
 }  // namespace mw

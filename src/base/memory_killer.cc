@@ -39,9 +39,9 @@ bool write_score(pid_t process, int score) {
         return false;
     }
     const std::string text = std::to_string(score);
-    const bool isWritten = ::write(file, text.data(), text.size()) == static_cast<ssize_t>(text.size());
+    const bool is_written = ::write(file, text.data(), text.size()) == static_cast<ssize_t>(text.size());
     ::close(file);
-    return isWritten;
+    return is_written;
 }
 
 }  // namespace
@@ -56,10 +56,10 @@ int lower_oom_score(int wanted) {
     if (!read_score(0, score)) {
         return score;
     }
-    // The files in /proc of a process with file capabilities are root's while it is not dumpable.
+    // Files in /proc of a process with file capabilities belong to root while the process is not dumpable.
     const int wasDumpable = ::prctl(PR_GET_DUMPABLE);
     static_cast<void>(::prctl(PR_SET_DUMPABLE, 1));
-    // The kernel permits all values from the lowest permitted one on: bisection finds it.
+    // The kernel permits all values from a minimum up: find it by bisection.
     for (int refused = wanted - 1; score - refused > 1;) {
         const int next = (score + refused) / 2;
         (write_score(0, next) ? score : refused) = next;
@@ -68,7 +68,7 @@ int lower_oom_score(int wanted) {
         static_cast<void>(::prctl(PR_SET_DUMPABLE, 0));
     }
     if (::geteuid() != 0) {
-        give_up_capability(CAP_SYS_RESOURCE);  // it also lifts limits of memory and disks
+        give_up_capability(CAP_SYS_RESOURCE);  // it would also lift limits of memory and disks
     }
     return score;
 }

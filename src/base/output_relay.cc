@@ -29,13 +29,13 @@ constexpr std::size_t MOST_WAITING = 1 << 18;
 constexpr std::size_t PIECE = 1 << 14;
 constexpr std::chrono::milliseconds END_PATIENCE{500};
 
-/// One place that output goes to: both descriptors share it where both point to the same file.
+/// One destination of output; both descriptors share it if they point to the same file.
 struct Place {
-    int target = -1;  ///< where the output went before
+    int target = -1;  ///< original destination
     int pipe_out = -1, pipe_in = -1;
     std::string waiting;
-    std::size_t lost = 0;  ///< bytes since the last that was written
-    bool isWriting = false;
+    std::size_t lost = 0;  ///< bytes lost since the last write
+    bool writing = false;
     std::string error;
 };
 
@@ -43,9 +43,9 @@ struct Relay {
     std::mutex mutex;
     std::condition_variable changed;
     std::vector<std::unique_ptr<Place>> places;
-    std::array<Place *, 2> of_descriptor{};  ///< 1 and 2
+    std::array<Place *, 2> of_descriptor{};  ///< for descriptors 1 and 2
     int wake_out = -1, wake_in = -1;
-    bool isAskedToDrain = false, isDrained = false;
+    bool drain_requested = false, drained = false;
     std::string loss;
 };
 
@@ -53,7 +53,7 @@ struct Relay {
 Relay *relay = nullptr;
 std::array<int, 2> targets{-1, -1};
 
-/// A stop signal belongs to the thread that runs the machine; SIGPIPE is an error of write() here.
+/// The thread that runs the machine handles stop signals; SIGPIPE is an error of write() here.
 void block_signals() {
     sigset_t all;
     sigfillset(&all);
@@ -64,7 +64,7 @@ std::string text_of(int error) {
     return std::error_code(error, std::generic_category()).message();
 }
 
-/// Takes what the pipe holds; false when it is empty.
+/// Reads from the pipe; false when it is empty.
 bool take_piece(Place &place) {
     std::array<char, PIECE> piece;
     const ssize_t count = ::read(place.pipe_out, piece.data(), piece.size());
@@ -106,13 +106,13 @@ void empty_pipes() {
             char byte = 0;
             (void)!::read(relay->wake_out, &byte, 1);
             const std::lock_guard lock(relay->mutex);
-            relay->isDrained = relay->isAskedToDrain;
+            relay->drained = relay->drain_requested;
             relay->changed.notify_all();
         }
     }
 }
 
-/// Writes all of `text`; the error, 0: none. Waits as long as the reader does.
+/// Writes all of `text`; returns errno, or 0. Waits for the reader.
 int write_all(int target, const std::string &text) {
     std::size_t done = 0;
     while (done < text.size()) {
@@ -135,14 +135,14 @@ void write_out(Place &place) {
     while (true) {
         relay->changed.wait(lock, [&] { return !place.waiting.empty(); });
         const std::string text = std::exchange(place.waiting, {});
-        place.isWriting = true;
+        place.writing = true;
         lock.unlock();
         const int error = write_all(place.target, text);
         lock.lock();
-        place.isWriting = false;
+        place.writing = false;
         if (error != 0) {
             relay->loss = text_of(error);
-            // A disk may get room again; a reader that is gone does not come back.
+            // Disk space may become free again; a closed reader does not return.
             place.error = error == ENOSPC ? "" : text_of(error);
         }
         relay->changed.notify_all();
@@ -154,7 +154,7 @@ bool isSameFile(int one, int other) {
     return ::fstat(one, &a) == 0 && ::fstat(other, &b) == 0 && a.st_dev == b.st_dev && a.st_ino == b.st_ino;
 }
 
-/// The pipe of a place; false: errno says why there is none.
+/// Makes the pipe of a destination; on false errno has the reason.
 bool make_place(int descriptor) {
     auto place = std::make_unique<Place>();
     place->target = targets[static_cast<std::size_t>(descriptor - 1)];
@@ -165,7 +165,7 @@ bool make_place(int descriptor) {
     place->pipe_out = ends[0];
     place->pipe_in = ends[1];
     ::fcntl(place->pipe_out, F_SETFL, O_NONBLOCK);
-    ::fcntl(place->pipe_in, F_SETPIPE_SZ, static_cast<int>(MOST_WAITING));  // more than 64 kB where it may be
+    ::fcntl(place->pipe_in, F_SETPIPE_SZ, static_cast<int>(MOST_WAITING));  // more than 64 kB if permitted
     relay->of_descriptor[static_cast<std::size_t>(descriptor - 1)] = place.get();
     relay->places.push_back(std::move(place));
     return true;
@@ -233,18 +233,18 @@ void OutputRelay::end() {
     std::fflush(stdout);
     std::fflush(stderr);
     std::unique_lock lock(relay->mutex);
-    relay->isAskedToDrain = true;
+    relay->drain_requested = true;
     (void)!::write(relay->wake_in, "", 1);
-    const auto isOut = [](const Place &place) { return place.waiting.empty() && !place.isWriting; };
+    const auto isOut = [](const Place &place) { return place.waiting.empty() && !place.writing; };
     relay->changed.wait_for(lock, END_PATIENCE, [&] {
-        return relay->isDrained &&
+        return relay->drained &&
                std::ranges::all_of(relay->places, [&](const auto &one) { return isOut(*one); });
     });
     const int nothing = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
     for (const int descriptor : {STDOUT_FILENO, STDERR_FILENO}) {
         const Place &place = *relay->of_descriptor[static_cast<std::size_t>(descriptor - 1)];
-        const bool isGood = isOut(place) && place.error.empty();
-        ::dup2(isGood ? targets[static_cast<std::size_t>(descriptor - 1)] : nothing, descriptor);
+        const bool good = isOut(place) && place.error.empty();
+        ::dup2(good ? targets[static_cast<std::size_t>(descriptor - 1)] : nothing, descriptor);
     }
     ::close(nothing);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A snapshot in parts: its writer stores the parts that have changed, each reader copies those that are new
-// to it. As base/seqlock.hh otherwise.
+// A snapshot in parts: the writer stores only changed parts, and each reader copies only the parts that
+// changed since its last read. Otherwise as base/seqlock.hh.
 #pragma once
 
 #include <algorithm>
@@ -16,22 +16,20 @@
 
 namespace mw {
 
-/// Where the parts of a structure begin [bytes], in rising order, the first at 0. Each goes on to the next
-/// one.
+/// Start of each part of a structure [bytes], ascending, the first at 0. Each part extends to the next one.
 template <std::size_t N>
 using PartStarts = std::array<std::size_t, N>;
 
 /// Bit per part.
 using PartMask = std::uint64_t;
 
-/// `first` and the parts after it, `count` in all.
+/// The mask of `count` parts from `first` on.
 constexpr PartMask part_range(int first, int count) noexcept {
     return (count < 64 ? (PartMask{1} << count) - 1 : ~PartMask{0}) << first;
 }
 
-/// STARTS is a PartStarts of T; parts begin at whole words of 8 bytes. What a reader has is the structure as
-/// it was at one instant, like that of Seqlock. write(): one thread only, wait-free. read(): any thread;
-/// retries while a write is under way.
+/// STARTS is a PartStarts of T; parts begin at multiples of 8 bytes. A reader gets a consistent copy of one
+/// instant, as with Seqlock. write(): one thread only, wait-free. read(): any thread; retries during a write.
 template <class T, const auto &STARTS>
 class PartedSeqlock {
     static_assert(std::is_trivially_copyable_v<T> && sizeof(T) % 8 == 0);
@@ -44,27 +42,27 @@ class PartedSeqlock {
   public:
     static constexpr PartMask ALL = part_range(0, COUNT);
 
-    /// What a reader has.
+    /// The reader's copy.
     struct Copy {
         T value{};
-        std::uint64_t sequence = 0;  ///< of the write that it was taken from
-        PartMask fresh = 0;          ///< parts that the last read has copied
+        std::uint64_t sequence = 0;  ///< sequence number of the copied write
+        PartMask fresh = 0;          ///< parts that the last read copied
     };
 
-    /// Those of `parts` that are not as they were written last. [writer thread]
+    /// The parts of `parts` that differ from the last write. [writer thread]
     PartMask changed(const T &value, PartMask parts) const noexcept {
         PartMask found = 0;
         for (PartMask rest = parts; rest != 0; rest &= rest - 1) {
             const auto i = static_cast<std::size_t>(std::countr_zero(rest));
-            const bool isSame = std::memcmp(reinterpret_cast<const char *>(&value) + STARTS[i],
-                                            &words_[STARTS[i] / 8], end(i) - STARTS[i]) == 0;
-            found |= isSame ? 0 : PartMask{1} << i;
+            const bool same = std::memcmp(reinterpret_cast<const char *>(&value) + STARTS[i],
+                                          &words_[STARTS[i] / 8], end(i) - STARTS[i]) == 0;
+            found |= same ? 0 : PartMask{1} << i;
         }
         return found;
     }
 
-    /// Publishes `parts` of `value`; what is not among them is as it was. The first write publishes all.
-    /// [writer thread]
+    /// Publishes `parts` of `value`; other parts are not changed. The first write publishes all. [writer
+    /// thread]
     void write(const T &value, PartMask parts = ALL) noexcept {
         const std::uint64_t before = sequence_.load(std::memory_order_relaxed);
         const PartMask written = before == 0 ? ALL : parts & ALL;
@@ -84,9 +82,9 @@ class PartedSeqlock {
         sequence_.store(before + 2, std::memory_order_release);
     }
 
-    /// Brings `copy` up to date, with at most `tries` attempts; before the first write it stays as it is.
-    /// False when the writer died inside a write: then `copy.value` may be a mixture, and the next read that
-    /// succeeds cures it. [any thread]
+    /// Updates `copy`, with at most `tries` attempts; before the first write it is not changed. False when
+    /// the writer died during a write: `copy.value` may be inconsistent then, until the next successful read.
+    /// [any thread]
     bool read(Copy &copy, int tries = 1000000) const noexcept {
         for (int i = 0; i < tries; ++i) {
             const std::uint64_t before = sequence_.load(std::memory_order_acquire);
@@ -108,9 +106,9 @@ class PartedSeqlock {
 
   private:
     using Word = CopyableAtomic<std::uint64_t>;
-    static constexpr std::size_t BLOCK = 8;  ///< words that are copied without a look at their count
+    static constexpr std::size_t BLOCK = 8;  ///< words copied without checking their count
 
-    /// Calls `act` with the first and the last part of each run of neighbours.
+    /// Calls `act` with the first and last part of each run of adjacent parts.
     template <class Act>
     static void for_each_run(PartMask parts, const Act &act) noexcept {
         while (parts != 0) {
@@ -158,15 +156,15 @@ class PartedSeqlock {
         return part + 1 < COUNT ? STARTS[part + 1] : sizeof(T);
     }
 
-    /// Copies what was written after `copy`. A part that a failed attempt has copied has a version after that
-    /// of `copy`, so the next attempt copies it again.
+    /// Copies the parts written after `copy`. A part that a failed attempt has copied has a later version
+    /// than `copy`, so the next attempt copies it again.
     PartMask copy_parts(Copy &copy, std::uint64_t sequence) const noexcept {
         if (sequence == copy.sequence) {
             return 0;
         }
-        const bool isNext = sequence == copy.sequence + 2;
+        const bool is_next = sequence == copy.sequence + 2;
         PartMask fresh =
-            isNext ? newest_.load(std::memory_order_relaxed) & ALL : written_after(copy.sequence);
+            is_next ? newest_.load(std::memory_order_relaxed) & ALL : written_after(copy.sequence);
         for_each_run(fresh, [&](std::size_t first, std::size_t last) {
             load(&words_[STARTS[first] / 8], reinterpret_cast<char *>(&copy.value) + STARTS[first],
                  (end(last) - STARTS[first]) / 8);
@@ -177,8 +175,8 @@ class PartedSeqlock {
     PartMask written_after(std::uint64_t sequence) const noexcept {
         PartMask parts = 0;
         for (std::size_t i = 0; i < COUNT; ++i) {
-            const bool isNew = versions_[i].load(std::memory_order_relaxed) > sequence;
-            parts |= isNew ? PartMask{1} << i : 0;
+            const bool is_new = versions_[i].load(std::memory_order_relaxed) > sequence;
+            parts |= is_new ? PartMask{1} << i : 0;
         }
         return parts;
     }

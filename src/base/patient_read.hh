@@ -7,25 +7,25 @@
 
 namespace mw {
 
-/// Reads `value` from `lock`; a writer that was interrupted within its write gets the processor, as it may be
-/// of this core. False when it has not ended the write within `patience`, and as soon as `isAlive()` says
-/// that it never will. Not for realtime threads: it sleeps.
+/// Reads `value` from `lock`. Sleeps so that a writer that was preempted during its write gets the processor,
+/// which may be this core. False when the write does not end within `patience`, or at once when `isAlive()`
+/// is false. Not for realtime threads.
 template <class Lock, class Value, class IsAlive>
 bool read_patiently(const Lock &lock, Value &value, std::chrono::milliseconds patience,
                     const IsAlive &isAlive) {
     using Clock = std::chrono::steady_clock;
-    constexpr int TRIES = 1000;  // longer than any write takes that is not interrupted
+    constexpr int TRIES = 1000;  // longer than any write that is not preempted
     if (lock.read(value, TRIES)) {
         return true;
     }
     const auto end = Clock::now() + patience;
     while (Clock::now() < end) {
         std::this_thread::sleep_for(std::chrono::microseconds(50));
-        const bool isWriterAlive = isAlive();  // before the read: what it wrote last is seen
+        const bool writer_alive = isAlive();  // checked before the read, so its last write is seen
         if (lock.read(value, TRIES)) {
             return true;
         }
-        if (!isWriterAlive) {
+        if (!writer_alive) {
             return false;
         }
     }

@@ -19,7 +19,7 @@ namespace mw {
 namespace {
 
 constexpr std::string_view MARK = ".millwright-";
-constexpr std::string_view LETTERS = "0123456789abcdefghijklmnopqrstuv";  // 32: each is as probable
+constexpr std::string_view LETTERS = "0123456789abcdefghijklmnopqrstuv";  // 32 letters: all equally probable
 constexpr std::size_t NUM_LETTERS = 10;
 /// The name of the target may be as long as the file system allows.
 constexpr std::size_t MOST_OF_TARGET = 200;
@@ -36,7 +36,7 @@ std::string prefix_of(const std::string &target) {
     return "." + target.substr(0, MOST_OF_TARGET) + std::string(MARK);
 }
 
-/// No prefix: of any target.
+/// An empty prefix matches the files of all targets.
 bool isTemporary(std::string_view name, std::string_view prefix) {
     if (name.size() <= MARK.size() + NUM_LETTERS) {
         return false;
@@ -46,7 +46,7 @@ bool isTemporary(std::string_view name, std::string_view prefix) {
            name.find_first_not_of(LETTERS, before.size()) == std::string_view::npos;
 }
 
-/// The name in the folder is that of the open file.
+/// True if the name in the folder refers to the open file.
 bool isSame(int folder, const char *name, int fd) {
     struct stat named{}, opened{};
     return ::fstatat(folder, name, &named, AT_SYMLINK_NOFOLLOW) == 0 && ::fstat(fd, &opened) == 0 &&
@@ -131,9 +131,9 @@ bool TemporaryFile::make(const std::string &prefix) {
         if (fd_ < 0) {
             continue;
         }
-        // Another process may have taken it for dead before it was locked. Without locks nobody does.
-        const bool isTaken = ::flock(fd_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
-        if (!isTaken && isSame(folder_, name.c_str(), fd_)) {
+        // Another process may have taken it for abandoned before it was locked. Without locks none does.
+        const bool taken = ::flock(fd_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+        if (!taken && isSame(folder_, name.c_str(), fd_)) {
             name_ = std::move(name);
             return true;
         }

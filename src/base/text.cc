@@ -45,8 +45,8 @@ template <class T>
 std::optional<T> parse_whole(std::string_view digits, int base) {
     T value{};
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value, base);
-    const bool isWhole = error == std::errc() && end == digits.data() + digits.size();
-    return isWhole ? std::optional<T>(value) : std::nullopt;
+    const bool whole = error == std::errc() && end == digits.data() + digits.size();
+    return whole ? std::optional<T>(value) : std::nullopt;
 }
 
 /// Two digits for each number below 100.
@@ -63,7 +63,7 @@ bool has_hex_prefix(std::string_view digits) {
     return digits.size() > 2 && digits[0] == '0' && lower(digits[1]) == 'x';
 }
 
-/// A number's text without its sign.
+/// Text of a number without its sign.
 struct Signed {
     bool is_negative = false;
     std::string_view digits;
@@ -79,7 +79,7 @@ struct Signed {
 
 enum class Octal { NO, YES };
 
-/// The size of an integer, without its sign.
+/// Magnitude of an integer, without its sign.
 std::optional<std::uint64_t> magnitude(const Signed &number, Octal octal) {
     if (!number.has_digits()) {
         return std::nullopt;
@@ -106,7 +106,8 @@ std::optional<std::uint64_t> whole_uint(const Signed &number, Octal octal) {
     return is_below_zero ? std::nullopt : size;
 }
 
-/// Whether a number that no double holds is too small rather than too large: by the sign of its exponent.
+/// True if a number outside the range of double is too small rather than too large, by the sign of its
+/// exponent.
 bool is_below_one(std::string_view digits, bool is_hex) {
     const std::size_t exponent = digits.find_first_of(is_hex ? "pP" : "eE");
     return exponent != std::string_view::npos && exponent + 1 < digits.size() && digits[exponent + 1] == '-';
@@ -123,8 +124,8 @@ std::optional<double> parse_double(std::string_view text) {
     }
     double value = 0.0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    const bool isWhole = error == std::errc() && end == text.data() + text.size();
-    return isWhole && std::isfinite(value) ? std::optional<double>(value) : std::nullopt;
+    const bool whole = error == std::errc() && end == text.data() + text.size();
+    return whole && std::isfinite(value) ? std::optional<double>(value) : std::nullopt;
 }
 
 std::optional<double> parse_c_double(std::string_view text) {
@@ -174,15 +175,15 @@ std::string to_text(double value) {
 }
 
 std::size_t write_fixed4(std::span<char, FIXED4_SIZE> out, double value) {
-    // The nearest whole number to the value times 10,000 is right unless a tie is near. The product's
-    // rounding moves it by less than NEAR_TIE, or (from 2^44 on, where products lie further apart than that
-    // and a tie is one of them) by less than their distance from the tie.
+    // The nearest whole number to value * 10,000 is right unless a tie is near. The rounding of the product
+    // is less than NEAR_TIE, or (from 2^44 on, where doubles are further apart and may be a tie) less than
+    // their distance from the tie.
     constexpr double SCALE = 1e4, LARGEST = 1e14, NEAR_TIE = 1e-3;
     const double scaled = std::fabs(value) * SCALE;
-    const bool isSmall = scaled < LARGEST;  // not so for what is not a number
-    const auto whole = static_cast<std::int64_t>(isSmall ? scaled : 0.0);
+    const bool small = scaled < LARGEST;  // false for NaN
+    const auto whole = static_cast<std::int64_t>(small ? scaled : 0.0);
     const double rest = scaled - static_cast<double>(whole);
-    if (!isSmall || std::fabs(rest - 0.5) <= NEAR_TIE) {
+    if (!small || std::fabs(rest - 0.5) <= NEAR_TIE) {
         char *const begin = out.data();
         const auto made = std::to_chars(begin, begin + out.size(), value, std::chars_format::fixed, 4);
         return static_cast<std::size_t>(made.ptr - begin);
@@ -190,7 +191,8 @@ std::size_t write_fixed4(std::span<char, FIXED4_SIZE> out, double value) {
     constexpr std::uint64_t DECIMALS = 10000;
     constexpr std::size_t MOST = 24;  // sign, eleven digits, point and four digits are 17
     const std::uint64_t digits = static_cast<std::uint64_t>(whole) + (rest > 0.5 ? 1 : 0);
-    char buffer[2 * MOST];  // twice, so that MOST characters can be copied from anywhere in the first half
+    char
+        buffer[2 * MOST];  // twice, so that MOST characters can be copied from any position in the first half
     char *at = buffer + MOST;
     const auto put_pair = [&at](std::uint64_t pair) {
         at -= 2;
@@ -296,14 +298,14 @@ std::vector<std::string> split_words(std::string_view text) {
 std::string nearest_name(std::string_view name, const std::vector<std::string> &candidates) {
     std::size_t best = name.size() / 3 + 1;
     std::string found;
-    // A name that goes on, or was cut short, is nearer than one that differs.
+    // A longer or abbreviated name is nearer than one with other letters.
     constexpr std::size_t LEAST_PREFIX = 6;
     for (const std::string &candidate : candidates) {
         const std::size_t common = std::min(name.size(), candidate.size());
-        const bool isCut = common >= LEAST_PREFIX && common != std::max(name.size(), candidate.size()) &&
-                           name.substr(0, common) == candidate.substr(0, common) &&
-                           std::max(name.size(), candidate.size()) <= 2 * common;
-        if (isCut) {
+        const bool is_cut = common >= LEAST_PREFIX && common != std::max(name.size(), candidate.size()) &&
+                            name.substr(0, common) == candidate.substr(0, common) &&
+                            std::max(name.size(), candidate.size()) <= 2 * common;
+        if (is_cut) {
             return candidate;
         }
     }

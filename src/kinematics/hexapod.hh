@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // A hexapod (Stewart platform): joints 0 to 5 are the lengths of six struts between base and platform. A, B
 // and C are roll, pitch and yaw of the platform. The inverse is the length of each strut (Merlet, Parallel
-// Robots, 3.1), the forward side iterates from the last pose (Newton, Merlet 4.4). Struts whose screws are
-// held by cardan joints at both ends turn as the platform tilts, and so grow by their lead: `correction`,
-// while a joint's axes are less than a right angle apart.
+// Robots, 3.1); the forward kinematics iterates from the last pose (Newton, Merlet 4.4). Struts with screws
+// between two cardan joints rotate as the platform tilts, and so grow by their lead: `correction`, while a
+// joint's axes are less than 90 degrees apart.
 #pragma once
 
 #include "kinematics/frame.hh"
@@ -89,7 +89,7 @@ inline constexpr Parameter HEXAPOD_PARAMETERS[] = {
     {"tool-offset", 0, "length", "from the platform's origin to the tip of the tool, along Z"},
     {"screw-lead", 0, "length", "of the struts' screws in a turn, right-handed; 0: no correction"},
     {"convergence-criterion", 1e-9, "length", "what may be wrong with a strut's length in a solution"},
-    {"max-error", 500, "length", "an error of the struts beyond which the iteration has failed"},
+    {"max-error", 500, "length", "an error of the struts above which the iteration has failed"},
     {"limit-iterations", 120, "", "iterations of the forward side, at most", PinKind::U32},
 };
 
@@ -109,13 +109,13 @@ class Hexapod final : public Parametric<HEXAPOD_PARAMETERS> {
         return (strut * GROUPS + group) * 3;
     }
 
-    /// Of the side of the last pose: where the iteration ends on another there is no answer.
+    /// Finds the solution on the side of the last pose; UNREACHABLE if the iteration ends on another side.
     Status forward(const double *joints, Pose &pose) const noexcept override;
-    /// The same, and how many iterations it took.
+    /// As above; also returns the number of iterations.
     Status forward(const double *joints, Pose &pose, int &iterations) const noexcept;
     Status inverse(const Pose &pose, double *joints) const noexcept override;
     int side(const Pose &pose) const noexcept override;
-    /// What the turning of the screws adds to each strut [machine units].
+    /// Length that the rotation of the screws adds to each strut [machine units].
     Row<STRUTS> corrections_at(const Pose &pose) const noexcept;
 
   private:

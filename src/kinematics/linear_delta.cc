@@ -21,11 +21,11 @@ Status LinearDelta::forward(const double *joints, Pose &pose) const noexcept {
     if (!areFinite(joints, geometry::AXIS_COUNT) || !meeting.has_value()) {
         return Status::UNREACHABLE;
     }
-    // The carriages are counted against the clock as seen from above: the effector is on the other side. It
-    // hangs from rods that lean down, which rails far apart in height do not allow.
+    // The carriages are numbered clockwise as seen from above, so the effector is on the other side. It hangs
+    // from rods that lean down, which rails with large height differences do not allow.
     const Vector place = meeting->below;
-    const bool isHanging = place.z <= joints[0] && place.z <= joints[1] && place.z <= joints[2];
-    if (!isHanging) {
+    const bool hanging = place.z <= joints[0] && place.z <= joints[1] && place.z <= joints[2];
+    if (!hanging) {
         return Status::UNREACHABLE;
     }
     std::copy_n(joints, geometry::AXIS_COUNT, pose.c.begin());
@@ -47,8 +47,8 @@ Status LinearDelta::inverse(const Pose &pose, double *joints) const noexcept {
         least = std::min(least, rod.z / get(L));
         rods[static_cast<std::size_t>(i)] = rod;
     }
-    // Carriages so far apart in height that the effector is above their plane: it comes there only through a
-    // place where the rods are in one plane, and forward tells the other side.
+    // With large height differences of the carriages the effector is above their plane. It gets there only
+    // through a singular pose with all rods in one plane, and forward() reports the other side.
     const double spread = spread_of(rods[0], rods[1], rods[2]);
     if (!isFinite(pose) || !(spread >= 0)) {
         return Status::UNREACHABLE;

@@ -14,9 +14,9 @@ using Row = std::array<double, N>;
 template <std::size_t N>
 using Square = std::array<Row<N>, N>;
 
-/// Puts the solution x of m x = right into `right`, and into `turn` the sign of the determinant. The answer
-/// is the smallest pivot over the largest: how far the matrix is from having no inverse; 0, with `turn` 0 and
-/// no solution, where it has none. Gauss with complete pivoting.
+/// Replaces `right` by the solution x of m x = right; `turn` is the sign of the determinant. Returns the
+/// smallest pivot divided by the largest, a measure of the distance from a singular matrix; 0, with `turn` 0
+/// and no solution, if there is none. Gaussian elimination with complete pivoting.
 template <std::size_t N>
 double solve(Square<N> m, Row<N> &right, int &turn) noexcept {
     std::array<std::size_t, N> column{};
@@ -32,9 +32,9 @@ double solve(Square<N> m, Row<N> &right, int &turn) noexcept {
         std::size_t column_at = step;
         for (std::size_t r = step; r < N; ++r) {
             for (std::size_t c = step; c < N; ++c) {
-                const bool isLarger = std::abs(m[r][c]) > std::abs(m[row_at][column_at]);
-                row_at = isLarger ? r : row_at;
-                column_at = isLarger ? c : column_at;
+                const bool larger = std::abs(m[r][c]) > std::abs(m[row_at][column_at]);
+                row_at = larger ? r : row_at;
+                column_at = larger ? c : column_at;
             }
         }
         std::swap(m[step], m[row_at]);
@@ -77,7 +77,7 @@ double solve(const Square<N> &m, Row<N> &right) noexcept {
     return solve(m, right, turn);
 }
 
-/// Below this answer of `solve` a machine stands at a singular pose.
+/// Result of `solve` below which a pose is singular.
 inline constexpr double SINGULAR_PIVOT = 1e-7;
 
 }  // namespace mw::kinematics

@@ -15,7 +15,7 @@ Status Matrix::forward(const double *joints, Pose &pose) const noexcept {
     if (!isSound() || !areFinite(joints, geometry::AXIS_COUNT)) {
         return Status::UNREACHABLE;
     }
-    // Cramer's rule: rows crossed are the columns of the inverse.
+    // Cramer's rule: cross products of rows are the columns of the inverse.
     const Vector yz = cross(row(3), row(6));
     const Vector zx = cross(row(6), row(0));
     const Vector xy = cross(row(0), row(3));
@@ -39,13 +39,13 @@ Status Matrix::inverse(const Pose &pose, double *joints) const noexcept {
 
 LinearJoints Matrix::linear() const noexcept {
     LinearJoints out = joints_like_axes();
-    bool areNumbers = true;
+    bool are_numbers = true;
     for (int j = 0; j < 3; ++j) {
         const Vector c = row(3 * static_cast<std::size_t>(j));
         set_place(out.slope[static_cast<std::size_t>(j)], c);
-        areNumbers = areNumbers && isFinite(c);
+        are_numbers = are_numbers && isFinite(c);
     }
-    return areNumbers ? out : LinearJoints{};
+    return are_numbers ? out : LinearJoints{};
 }
 
 }  // namespace mw::kinematics

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The pose of a platform on struts of given lengths, by Newton's method (Merlet, Parallel Robots, 4.4) in
-// strides that do not lead to another way to put the struts together. Header-only and realtime-safe.
+// The pose of a platform on struts of given lengths, by Newton's method (Merlet, Parallel Robots, 4.4) with
+// steps that do not change the assembly mode. Header-only and realtime-safe.
 #pragma once
 
 #include <algorithm>
@@ -14,24 +14,25 @@ namespace mw::kinematics {
 template <std::size_t N>
 struct StrutLengths {
     Row<N> of{};     ///< [machine units]
-    Square<N> by{};  ///< by the N numbers of a pose; angles times the rim, so that all are lengths
+    Square<N> by{};  ///< derivatives by the N coordinates of a pose; angles are multiplied by the rim, so
+                     ///< that all are lengths
 };
 
 struct NewtonTerms {
-    double criterion = 0;  ///< what may be wrong with a strut in a solution [machine units]
-    double max_error = 0;  ///< beyond it the search has failed [machine units]
-    double limit = 0;      ///< of the iterations
-    double rim = 1;        ///< size of the platform, which turns are measured by [machine units]
+    double criterion = 0;  ///< permitted error of a strut in a solution [machine units]
+    double max_error = 0;  ///< error above which the search fails [machine units]
+    double limit = 0;      ///< maximum number of iterations
+    double rim = 1;        ///< size of the platform, to which rotations are scaled [machine units]
 };
 
-/// `Search` stands at a pose and has a way from there: `lengths_at(share)` gives the StrutLengths<N> so much
-/// of the way ahead, `go(share, step)` stands there and takes `step` as its next way, whose length it gives
-/// [machine units]. OK or SINGULAR: the solution is `share` of the way ahead.
+/// `Search` holds a pose and a step from there. `lengths_at(share)` returns the StrutLengths<N> at this
+/// fraction of the step; `go(share, step)` moves there, sets the next step and returns its length [machine
+/// units]. OK or SINGULAR: the solution is at `share` of the step.
 template <std::size_t N, class Search>
 Status find_platform(const double *joints, const NewtonTerms &terms, Search &search, double &share,
                      int &iterations) noexcept {
     constexpr double MOST_ITERATIONS = 1000;
-    constexpr double STRIDE = 0.05;  // of the rim; a longer one may lead to another way
+    constexpr double STRIDE = 0.05;  // of the rim; a longer step may reach another solution
     constexpr double ROUNDING = 1e-6;
     const int limit = static_cast<int>(std::min(terms.limit, MOST_ITERATIONS));
     double before = 1e300;
@@ -48,19 +49,18 @@ Status find_platform(const double *joints, const NewtonTerms &terms, Search &sea
         int side_here = 0;
         const double pivot = solve(lengths.by, step, side_here);
         side_at_start = iterations == 0 ? side_here : side_at_start;
-        const bool isSameSide = side_here == side_at_start || pivot <= SINGULAR_PIVOT;
-        // One step beyond what is asked for takes the rest of the error, where rounding leaves anything to
-        // take.
-        const bool isSettled =
+        const bool is_same_side = side_here == side_at_start || pivot <= SINGULAR_PIVOT;
+        // One more step than required removes the remaining error, except for rounding.
+        const bool settled =
             miss < terms.criterion && (miss < ROUNDING * terms.criterion || miss >= 0.5 * before);
-        if (isSettled && isSameSide) {
+        if (settled && is_same_side) {
             return pivot > SINGULAR_PIVOT ? Status::OK : Status::SINGULAR;
         }
         if (!(miss <= terms.max_error) || !(pivot > 0)) {
             return Status::UNREACHABLE;
         }
-        if (!isSameSide || miss > before) {
-            share *= 0.5;  // too far
+        if (!is_same_side || miss > before) {
+            share *= 0.5;  // step too long
             continue;
         }
         share = std::min(1.0, STRIDE * terms.rim / std::max(search.go(share, step), 1e-300));

@@ -9,9 +9,9 @@ namespace mw::kinematics {
 
 namespace {
 
-constexpr double NEAR = 1e-7;  ///< of a length or a right angle: solutions meet
+constexpr double NEAR = 1e-7;  ///< fraction of a length, or of a right angle, within which solutions meet
 
-/// The lower arm: joint 0 about Z, joints 1 and 2 about what has become of Y.
+/// Orientation of the lower arm: joint 0 about Z, joints 1 and 2 about the rotated Y.
 Rotation arm_of(const double *joints) noexcept {
     const auto turned = [&](const Vector &v) {
         return turned_z(turned_y(v, joints[1] + joints[2]), joints[0]);
@@ -19,7 +19,7 @@ Rotation arm_of(const double *joints) noexcept {
     return {turned({1, 0, 0}), turned({0, 1, 0}), turned({0, 0, 1})};
 }
 
-/// The hand as the lower arm sees it: about Z, Y and Z again.
+/// Orientation of the hand relative to the lower arm: rotations about Z, Y and Z.
 Rotation hand_of(const double *joints) noexcept {
     const auto turned = [&](const Vector &v) {
         return turned_z(turned_y(turned_z(v, joints[5]), joints[4]), joints[3]);
@@ -27,15 +27,15 @@ Rotation hand_of(const double *joints) noexcept {
     return {turned({1, 0, 0}), turned({0, 1, 0}), turned({0, 0, 1})};
 }
 
-/// Joints 3 to 5. With the hand in line with the arm only the sum or the difference of joints 3 and 5 is
-/// known: joint 3 stays.
+/// Joints 3 to 5. With the hand in line with the arm only the sum or difference of joints 3 and 5 is
+/// determined: joint 3 is kept.
 Status turn_wrist(const Rotation &hand, double side, double *joints) noexcept {
     const double off_line = std::hypot(hand.z.x, hand.z.y);
     if (off_line < NEAR) {
-        const bool isAhead = hand.z.z > 0;
-        joints[4] = isAhead ? 0.0 : side * 180.0;
-        const double turn = isAhead ? arc_tangent(hand.x.y, hand.x.x) - joints[3]
-                                    : joints[3] - arc_tangent(-hand.x.y, -hand.x.x);
+        const bool is_ahead = hand.z.z > 0;
+        joints[4] = is_ahead ? 0.0 : side * 180.0;
+        const double turn = is_ahead ? arc_tangent(hand.x.y, hand.x.x) - joints[3]
+                                     : joints[3] - arc_tangent(-hand.x.y, -hand.x.x);
         joints[5] = nearest_turn(turn, joints[5]);
         return Status::SINGULAR;
     }
@@ -47,7 +47,7 @@ Status turn_wrist(const Rotation &hand, double side, double *joints) noexcept {
 
 }  // namespace
 
-/// How far ahead of axis 0 the wrist is, in the direction in which joint 0 points.
+/// Distance of the wrist from axis 0 in the direction of joint 0.
 double OrthoParallel::ahead_of(const double *joints) const noexcept {
     return get(A1) + get(C2) * sine(joints[1]) + lower() * sine(joints[1] + joints[2] + lower_angle());
 }
@@ -70,7 +70,7 @@ Status OrthoParallel::forward(const double *joints, Pose &pose) const noexcept {
     return Status::OK;
 }
 
-/// Joints 0 to 2, which bring the wrist to its place: joint 0 turns it ahead, where two arms reach it.
+/// Joints 0 to 2 for a position of the wrist: joint 0 points to the wrist, then two arms reach it.
 Status OrthoParallel::place_wrist(const Vector &wrist, const Sides &sides, double *joints) const noexcept {
     const double upper = get(C2);
     const double size = std::abs(upper) + lower();
@@ -90,20 +90,20 @@ Status OrthoParallel::place_wrist(const Vector &wrist, const Sides &sides, doubl
         return Status::UNREACHABLE;
     }
     const double bent = sides.elbow * std::sqrt(std::max(rest, 0.0));
-    const bool isOverAxis = level < square(NEAR * size);
-    if (!isOverAxis) {
+    const bool over_axis = level < square(NEAR * size);
+    if (!over_axis) {
         joints[0] = nearest_turn(arc_tangent(wrist.y, wrist.x) - arc_tangent(get(B), ahead), joints[0]);
     }
     joints[2] = nearest_turn(arc_tangent(bent, bend) - lower_angle(), joints[2]);
     const double along = upper + lower() * bend;
     const double across = lower() * bent;
-    const bool isFolded = std::hypot(along, across) < NEAR * size;
-    if (!isFolded) {
+    const bool folded = std::hypot(along, across) < NEAR * size;
+    if (!folded) {
         joints[1] =
             nearest_turn(arc_tangent(along * out - across * up, along * up + across * out), joints[1]);
     }
-    const bool isAtEdge = ahead_squared < square(NEAR * size) || rest < square(NEAR);
-    return isOverAxis || isFolded || isAtEdge ? Status::SINGULAR : Status::OK;
+    const bool at_edge = ahead_squared < square(NEAR * size) || rest < square(NEAR);
+    return over_axis || folded || at_edge ? Status::SINGULAR : Status::OK;
 }
 
 Status OrthoParallel::inverse(const Pose &pose, double *joints) const noexcept {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // A pentapod (Metrom): five struts hold an effector by rings that swivel about its axis, so that it has a
-// place and a direction, X Y Z A B, and no rotation about it. Joints 0 to 4 are the lengths of the struts.
+// position and a direction, X Y Z A B, and no rotation about it. Joints 0 to 4 are the lengths of the struts.
 // The axis of the effector points along Ry(B) Rx(A) z. The inverse is the distance of each base joint from
-// its ring (Merlet, Parallel Robots, 3.1, with the ring's nearest point as the joint); the forward side
+// its ring (Merlet, Parallel Robots, 3.1, with the ring's nearest point as the joint); the forward kinematics
 // iterates from the last pose (Newton, Merlet 4.4).
 #pragma once
 
@@ -41,7 +41,7 @@ inline constexpr Parameter PENTAPOD_PARAMETERS[] = {
     {"tool-offset", 0, "length", "from the effector's origin to the tip of the tool, along its axis"},
     {"convergence-criterion", 1e-9, "length", "what may be wrong with a strut's length in a solution",
      PinKind::FLOAT_IO},
-    {"max-error", 100, "length", "an error of the struts beyond which the iteration has failed",
+    {"max-error", 100, "length", "an error of the struts above which the iteration has failed",
      PinKind::FLOAT_IO},
     {"limit-iterations", 120, "", "iterations of the forward side, at most", PinKind::U32_IO},
 };
@@ -51,9 +51,9 @@ class Pentapod final : public Parametric<PENTAPOD_PARAMETERS> {
     static constexpr std::size_t STRUTS = 5;
     enum Index : std::size_t { TOOL_OFFSET = STRUTS * 5, CRITERION, MAX_ERROR, LIMIT_ITERATIONS };
 
-    /// Of the side of the last pose: where the iteration ends on another there is no answer.
+    /// Finds the solution on the side of the last pose; UNREACHABLE if the iteration ends on another side.
     Status forward(const double *joints, Pose &pose) const noexcept override;
-    /// The same, and how many iterations it took.
+    /// As above; also returns the number of iterations.
     Status forward(const double *joints, Pose &pose, int &iterations) const noexcept;
     Status inverse(const Pose &pose, double *joints) const noexcept override;
     int side(const Pose &pose) const noexcept override;

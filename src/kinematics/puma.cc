@@ -9,9 +9,9 @@ namespace mw::kinematics {
 
 namespace {
 
-constexpr double NEAR = 1e-7;  ///< of a length or a right angle: solutions meet
+constexpr double NEAR = 1e-7;  ///< fraction of a length, or of a right angle, within which solutions meet
 
-/// Where the frame of joint 2 lies, as seen from the base.
+/// Orientation of the frame of joint 2 relative to the base.
 Rotation arm_of(const double *joints) noexcept {
     const double c = cosine(joints[0]);
     const double s = sine(joints[0]);
@@ -20,7 +20,7 @@ Rotation arm_of(const double *joints) noexcept {
     return {{c * c23, s * c23, -s23}, {-c * s23, -s * s23, -c23}, {-s, c, 0}};
 }
 
-/// The hand in that frame.
+/// Orientation of the hand in that frame.
 Rotation hand_of(const double *joints) noexcept {
     const double c4 = cosine(joints[3]);
     const double s4 = sine(joints[3]);
@@ -33,15 +33,15 @@ Rotation hand_of(const double *joints) noexcept {
             {-c4 * s5, c5, s4 * s5}};
 }
 
-/// Joints 3 to 5 from the hand as seen from the lower arm. With the hand in line with the arm only the sum or
-/// the difference of joints 3 and 5 is known: joint 3 stays.
+/// Joints 3 to 5 from the hand relative to the lower arm. With the hand in line with the arm only the sum or
+/// difference of joints 3 and 5 is determined: joint 3 is kept.
 Status turn_wrist(const Rotation &hand, double side, double *joints) noexcept {
     const double off_line = std::hypot(hand.z.x, hand.z.z);
     if (off_line < NEAR) {
-        const bool isAhead = hand.z.y > 0;
-        joints[4] = isAhead ? 0.0 : side * 180.0;
-        const double turn = isAhead ? arc_tangent(-hand.x.z, hand.x.x) - joints[3]
-                                    : joints[3] - arc_tangent(hand.x.z, -hand.x.x);
+        const bool is_ahead = hand.z.y > 0;
+        joints[4] = is_ahead ? 0.0 : side * 180.0;
+        const double turn = is_ahead ? arc_tangent(-hand.x.z, hand.x.x) - joints[3]
+                                     : joints[3] - arc_tangent(hand.x.z, -hand.x.x);
         joints[5] = nearest_turn(turn, joints[5]);
         return Status::SINGULAR;
     }
@@ -75,7 +75,7 @@ Status Puma::forward(const double *joints, Pose &pose) const noexcept {
     return Status::OK;
 }
 
-/// Joints 0 to 2, which bring the wrist to its place.
+/// Joints 0 to 2 for a position of the wrist.
 Status Puma::place_wrist(const Vector &wrist, const Sides &sides, double *joints) const noexcept {
     const double size = std::abs(get(A2)) + std::hypot(get(A3), get(D4));
     const double level = square(wrist.x) + square(wrist.y);
@@ -90,22 +90,22 @@ Status Puma::place_wrist(const Vector &wrist, const Sides &sides, double *joints
     }
     const double ahead = sides.shoulder * std::sqrt(std::max(ahead_squared, 0.0));
     const double bent = sides.elbow * std::sqrt(std::max(bent_squared, 0.0));
-    const bool isOverAxis = level < square(NEAR * size);
-    if (!isOverAxis) {
+    const bool over_axis = level < square(NEAR * size);
+    if (!over_axis) {
         const double turn = arc_tangent(wrist.y, wrist.x) - arc_tangent(get(D3), ahead);
         joints[0] = nearest_turn(turn, joints[0]);
     }
     joints[2] = nearest_turn(arc_tangent(get(A3), get(D4)) - arc_tangent(k, bent), joints[2]);
     const double m = get(A2) * cosine(joints[2]) + get(A3);
     const double n = get(A2) * sine(joints[2]) - get(D4);
-    const bool isFolded = std::hypot(m, n) < NEAR * size;
-    if (!isFolded) {
+    const bool folded = std::hypot(m, n) < NEAR * size;
+    if (!folded) {
         const double s23 = n * ahead - m * wrist.z;
         const double c23 = m * ahead + n * wrist.z;
         joints[1] = nearest_turn(arc_tangent(s23, c23) - joints[2], joints[1]);
     }
-    const bool isAtEdge = ahead_squared < square(NEAR * size) || bent_squared < square(NEAR * size);
-    return isOverAxis || isFolded || isAtEdge ? Status::SINGULAR : Status::OK;
+    const bool at_edge = ahead_squared < square(NEAR * size) || bent_squared < square(NEAR * size);
+    return over_axis || folded || at_edge ? Status::SINGULAR : Status::OK;
 }
 
 Status Puma::inverse(const Pose &pose, double *joints) const noexcept {

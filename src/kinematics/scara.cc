@@ -10,7 +10,7 @@ namespace mw::kinematics {
 namespace {
 
 constexpr int JOINTS = 6;
-constexpr double STRETCHED = 1e-7;  ///< sine of the elbow below which its two solutions are one
+constexpr double STRETCHED = 1e-7;  ///< sine of the elbow angle below which both solutions coincide
 
 }  // namespace
 
@@ -44,19 +44,19 @@ Status Scara::inverse(const Pose &pose, double *joints) const noexcept {
     const double sine_1 = side * std::sqrt((1.0 - cosine_1) * (1.0 + cosine_1));
     const double along = inner + outer * cosine_1;
     const double across = outer * sine_1;
-    // Folded over its own shoulder an arm with equal halves may point anywhere.
+    // An arm with equal halves folded over its shoulder may point in any direction.
     const double reach = std::hypot(x, y);
-    const bool isFolded = reach < STRETCHED * (std::abs(inner) + std::abs(outer));
+    const bool folded = reach < STRETCHED * (std::abs(inner) + std::abs(outer));
     const double elbow = nearest_turn(arc_tangent(sine_1, cosine_1), joints[1]);
     const double shoulder =
-        isFolded ? joints[0] : nearest_turn(arc_tangent(y, x) - arc_tangent(across, along), joints[0]);
+        folded ? joints[0] : nearest_turn(arc_tangent(y, x) - arc_tangent(across, along), joints[0]);
     joints[0] = shoulder;
     joints[1] = elbow;
     joints[2] = get(D1) + get(D3) - get(D5) - pose[geometry::AXIS_Z];
     joints[3] = c - shoulder - elbow;
     joints[4] = pose[geometry::AXIS_A];
     joints[5] = pose[geometry::AXIS_B];
-    return isFolded || std::abs(sine_1) < STRETCHED ? Status::SINGULAR : Status::OK;
+    return folded || std::abs(sine_1) < STRETCHED ? Status::SINGULAR : Status::OK;
 }
 
 }  // namespace mw::kinematics

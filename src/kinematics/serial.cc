@@ -10,7 +10,7 @@ namespace {
 
 constexpr double NEARLY_SINGULAR = 1e-4;
 
-/// What comes nearest to m x = left with an x that stays small (Wampler's damped least squares, 1986).
+/// The x that minimises the error of m x = left with a small x (Wampler's damped least squares, 1986).
 Row<6> damped_step(const Square<6> &m, const Row<6> &left) noexcept {
     constexpr double DAMPING = 1e-3;
     Square<6> normal{};
@@ -28,7 +28,7 @@ Row<6> damped_step(const Square<6> &m, const Row<6> &left) noexcept {
     return out;
 }
 
-/// The axis and angle [rad] that turn `from` into `to`.
+/// The axis and angle [rad] that rotate `from` to `to`.
 Vector turn_between(const Rotation &from, const Rotation &to) noexcept {
     const Vector twice_sine = cross(from.x, to.x) + cross(from.y, to.y) + cross(from.z, to.z);
     const double cosine_angle = 0.5 * (dot(from.x, to.x) + dot(from.y, to.y) + dot(from.z, to.z) - 1.0);
@@ -39,7 +39,7 @@ Vector turn_between(const Rotation &from, const Rotation &to) noexcept {
     if (cosine_angle > 0) {
         return twice_sine * 0.5;
     }
-    // Half a turn: the axis is what the sum of both leaves in place.
+    // Rotation by 180 degrees: the axis is the vector that the sum of both keeps.
     const Vector sums[] = {from.x + to.x, from.y + to.y, from.z + to.z};
     const Vector *largest =
         std::max_element(std::begin(sums), std::end(sums),
@@ -49,7 +49,7 @@ Vector turn_between(const Rotation &from, const Rotation &to) noexcept {
 
 }  // namespace
 
-/// What the rows of the table turn by, with what the joint before adds [degrees].
+/// Rotation of each row of the table, with the contribution of the joint before it [degrees].
 Row<Serial::JOINTS> Serial::angles_of(const double *joints) const noexcept {
     Row<JOINTS> out{};
     for (std::size_t i = 0; i < JOINTS; ++i) {
@@ -97,8 +97,8 @@ Status Serial::forward(const double *joints, Pose &pose) const noexcept {
     return Status::OK;
 }
 
-/// One step of Newton. `miss` is what was left before it, of the arm's size or in radians; the answer is how
-/// far the equations are from singular.
+/// One Newton step. `miss` is the error before it, relative to the arm's size or in radians. Returns the
+/// distance of the equations from a singularity.
 double Serial::approach(const Place &target, Row<JOINTS> &angles, double &miss) const noexcept {
     const Chain chain = chain_of(angles);
     const double scale = 1.0 / size();
@@ -139,9 +139,9 @@ bool Serial::reach(const Place &target, Row<JOINTS> &angles, int &iterations, do
         double miss = 0;
         const Row<JOINTS> last = angles;
         pivot = approach(target, angles, miss);
-        // Rounding is all that is left once a tiny miss grows no smaller.
-        const bool isSettled = miss < CLOSE || (miss < 1e-10 && miss >= 0.5 * before);
-        if (isSettled) {
+        // Only rounding errors are left when a small error no longer decreases.
+        const bool settled = miss < CLOSE || (miss < 1e-10 && miss >= 0.5 * before);
+        if (settled) {
             angles = last;
             return true;
         }
@@ -166,7 +166,7 @@ Status Serial::inverse(const Pose &pose, double *joints, int &iterations) const 
     const Place end{place_of(pose), rotation_of(pose)};
     const Vector turn = turn_between(start.turn, end.turn);
     const Vector way = end.point - start.point;
-    constexpr double STRIDE = 0.1;  // of the size, or radians
+    constexpr double STRIDE = 0.1;  // fraction of the size, or radians
     constexpr int MAX_STRIDES = 64;
     const double strides = std::ceil(std::max(length(way) / size(), length(turn)) / STRIDE);
     const int count = static_cast<int>(std::clamp(strides, 1.0, static_cast<double>(MAX_STRIDES)));

@@ -5,7 +5,7 @@
 
 namespace mw::kinematics {
 
-/// In the plane of the motors a step up cannot be told from one down.
+/// In the plane of the motors a step up cannot be distinguished from a step down.
 Status Tripod::status_at(double z) const noexcept {
     const double size = std::abs(get(BX)) + std::abs(get(CX)) + std::abs(get(CY));
     return std::abs(z) > FLAT * size ? Status::OK : Status::SINGULAR;
@@ -14,9 +14,9 @@ Status Tripod::status_at(double z) const noexcept {
 Status Tripod::forward(const double *joints, Pose &pose) const noexcept {
     const std::array<Sphere, 3> spheres{Sphere{{}, joints[0]}, Sphere{{get(BX), 0, 0}, joints[1]},
                                         Sphere{{get(CX), get(CY), 0}, joints[2]}};
-    const bool areLengths = joints[0] >= 0 && joints[1] >= 0 && joints[2] >= 0;
+    const bool are_lengths = joints[0] >= 0 && joints[1] >= 0 && joints[2] >= 0;
     const auto meeting = meeting_of(spheres);
-    if (!areFinite(joints, 3) || !areLengths || !meeting.has_value()) {
+    if (!areFinite(joints, 3) || !are_lengths || !meeting.has_value()) {
         return Status::UNREACHABLE;
     }
     Vector place = meeting->above;

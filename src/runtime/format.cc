@@ -33,11 +33,11 @@ struct Output {
 };
 
 struct Spec {
-    bool isLeft = false, hasPlus = false, hasSpace = false, isAlternate = false, hasZeros = false;
+    bool left = false, has_plus = false, has_space = false, alternate = false, has_zeros = false;
     int width = 0;
     int precision = -1;
     int longs = 0;  ///< 0 int, 1 long, 2 long long and the like; -1 short, -2 char
-    bool isLongDouble = false;
+    bool is_long_double = false;
 };
 
 /// va_list may be an array type; inside a struct it passes by reference everywhere.
@@ -62,11 +62,11 @@ int read_number(const char *&at) noexcept {
 
 bool isFlag(char c, Spec &spec) noexcept {
     switch (c) {
-    case '-': return spec.isLeft = true;
-    case '+': return spec.hasPlus = true;
-    case ' ': return spec.hasSpace = true;
-    case '#': return spec.isAlternate = true;
-    case '0': return spec.hasZeros = true;
+    case '-': return spec.left = true;
+    case '+': return spec.has_plus = true;
+    case ' ': return spec.has_space = true;
+    case '#': return spec.alternate = true;
+    case '0': return spec.has_zeros = true;
     default: return false;
     }
 }
@@ -79,7 +79,7 @@ Spec read_spec(const char *&at, Args &args) noexcept {
     if (*at == '*') {
         ++at;
         const int width = va_arg(args.list, int);
-        spec.isLeft = spec.isLeft || width < 0;
+        spec.left = spec.left || width < 0;
         spec.width = clamped(width < 0 ? -static_cast<long>(width) : width);
     } else {
         spec.width = read_number(at);
@@ -102,44 +102,44 @@ Spec read_spec(const char *&at, Args &args) noexcept {
         } else if (*at == 'j' || *at == 'z' || *at == 't') {
             spec.longs = 2;
         } else if (*at == 'L') {
-            spec.isLongDouble = true;
+            spec.is_long_double = true;
         } else {
             return spec;
         }
     }
 }
 
-/// Puts prefix (sign, 0x) and body into the field.
+/// Writes prefix (sign, 0x) and body into the field.
 void put_field(Output &out, const Spec &spec, const char *prefix, const char *body, std::size_t body_length,
-               bool canHaveZeros) noexcept {
+               bool zeros_allowed) noexcept {
     const int prefix_length = static_cast<int>(std::strlen(prefix));
     const int padding = spec.width - prefix_length - static_cast<int>(body_length);
-    const bool hasZeros = canHaveZeros && spec.hasZeros && !spec.isLeft;
-    if (!spec.isLeft && !hasZeros) {
+    const bool has_zeros = zeros_allowed && spec.has_zeros && !spec.left;
+    if (!spec.left && !has_zeros) {
         out.repeat(' ', padding);
     }
     out.put(prefix, static_cast<std::size_t>(prefix_length));
-    if (hasZeros) {
+    if (has_zeros) {
         out.repeat('0', padding);
     }
     out.put(body, body_length);
-    if (spec.isLeft) {
+    if (spec.left) {
         out.repeat(' ', padding);
     }
 }
 
-const char *sign_of(const Spec &spec, bool isNegative) noexcept {
-    return isNegative ? "-" : spec.hasPlus ? "+" : spec.hasSpace ? " " : "";
+const char *sign_of(const Spec &spec, bool negative) noexcept {
+    return negative ? "-" : spec.has_plus ? "+" : spec.has_space ? " " : "";
 }
 
 void put_digits(Output &out, const Spec &spec, const char *prefix, std::uint64_t value, int base,
-                bool isUpper) noexcept {
+                bool upper) noexcept {
     constexpr int SIZE = WIDEST + 32;
     char digits[SIZE];
     int at = SIZE;
     while (value != 0) {
         const int digit = static_cast<int>(value % static_cast<unsigned>(base));
-        digits[--at] = static_cast<char>(digit < 10 ? '0' + digit : (isUpper ? 'A' : 'a') + digit - 10);
+        digits[--at] = static_cast<char>(digit < 10 ? '0' + digit : (upper ? 'A' : 'a') + digit - 10);
         value /= static_cast<unsigned>(base);
     }
     const int wanted = spec.precision < 0 ? 1 : spec.precision;
@@ -167,22 +167,22 @@ void put_unsigned(Output &out, const Spec &spec, Args &args, char conversion) no
     value = spec.longs == -1   ? static_cast<unsigned short>(value)
             : spec.longs <= -2 ? static_cast<unsigned char>(value)
                                : value;
-    const bool isHex = conversion == 'x' || conversion == 'X';
+    const bool is_hex = conversion == 'x' || conversion == 'X';
     const char *prefix = "";
-    if (spec.isAlternate && value != 0) {
+    if (spec.alternate && value != 0) {
         prefix = conversion == 'x' ? "0x" : conversion == 'X' ? "0X" : conversion == 'o' ? "0" : "";
     }
-    put_digits(out, spec, prefix, value, isHex ? 16 : conversion == 'o' ? 8 : 10, conversion == 'X');
+    put_digits(out, spec, prefix, value, is_hex ? 16 : conversion == 'o' ? 8 : 10, conversion == 'X');
 }
 
 void put_double(Output &out, const Spec &spec, double value, char conversion) noexcept {
     char text[WIDEST];
-    const bool isNegative = __builtin_signbit(value) != 0;
-    const double magnitude = isNegative ? -value : value;
+    const bool negative = __builtin_signbit(value) != 0;
+    const double magnitude = negative ? -value : value;
     const char lower = static_cast<char>(conversion | 0x20);
-    const bool isFinite = __builtin_isfinite(value) != 0;
+    const bool finite = __builtin_isfinite(value) != 0;
     std::to_chars_result result{};
-    if (!isFinite) {
+    if (!finite) {
         std::memcpy(text, __builtin_isnan(value) != 0 ? "nan" : "inf", 3);
         result.ptr = text + 3;
     } else if (lower == 'a' && spec.precision < 0) {
@@ -204,12 +204,12 @@ void put_double(Output &out, const Spec &spec, double value, char conversion) no
             text[i] = text[i] >= 'a' && text[i] <= 'z' ? static_cast<char>(text[i] - 32) : text[i];
         }
     }
-    if (lower == 'a' && isFinite) {
-        const char *prefix = isNegative ? "-0x" : spec.hasPlus ? "+0x" : "0x";
+    if (lower == 'a' && finite) {
+        const char *prefix = negative ? "-0x" : spec.has_plus ? "+0x" : "0x";
         put_field(out, spec, prefix, text, length, true);
         return;
     }
-    put_field(out, spec, sign_of(spec, isNegative), text, length, isFinite);
+    put_field(out, spec, sign_of(spec, negative), text, length, finite);
 }
 
 void put_string(Output &out, const Spec &spec, const char *text) noexcept {
@@ -225,7 +225,7 @@ void put_string(Output &out, const Spec &spec, const char *text) noexcept {
     put_field(out, spec, "", text, length, false);
 }
 
-/// One conversion; false when it is none of ours (nothing is put).
+/// Writes one conversion; false, and no output, if it is not supported.
 bool isConverted(Output &out, Spec &spec, Args &args, char conversion) noexcept {
     switch (conversion) {
     case 'd':
@@ -253,8 +253,8 @@ bool isConverted(Output &out, Spec &spec, Args &args, char conversion) noexcept 
     case 'a':
     case 'A':
         put_double(out, spec,
-                   spec.isLongDouble ? static_cast<double>(va_arg(args.list, long double))
-                                     : va_arg(args.list, double),
+                   spec.is_long_double ? static_cast<double>(va_arg(args.list, long double))
+                                       : va_arg(args.list, double),
                    conversion);
         return true;
     default: return false;

@@ -21,7 +21,7 @@ struct Address {
     const sockaddr *get() const { return reinterpret_cast<const sockaddr *>(&name); }
 };
 
-/// "@millwright-NAME"; a longer one ends with its checksum.
+/// "@millwright-NAME"; a name that is too long ends with its checksum.
 Address address_of(const std::string &instance) {
     Address address;
     std::string text = "millwright-" + instance;
@@ -44,17 +44,17 @@ std::string user_name(uid_t uid) {
     return found != nullptr ? found->pw_name : std::to_string(uid);
 }
 
-/// The process that listens, as the kernel tells it: "process 12 (millwright) of user root".
+/// The process that listens, as the kernel reports it: "process 12 (millwright) of user root".
 std::string holder(const Address &address) {
     const int fd = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
     ucred peer{};
     socklen_t size = sizeof peer;
-    const bool isKnown = fd >= 0 && ::connect(fd, address.get(), address.size) == 0 &&
-                         ::getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0;
+    const bool known = fd >= 0 && ::connect(fd, address.get(), address.size) == 0 &&
+                       ::getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0;
     if (fd >= 0) {
         ::close(fd);
     }
-    if (!isKnown) {
+    if (!known) {
         return "another process";
     }
     std::string name;
@@ -72,7 +72,7 @@ InstanceLock::~InstanceLock() {
 }
 
 Result<InstanceLock> InstanceLock::take(const std::string &instance) {
-    constexpr int QUEUE = 16;  // of those who ask for the holder
+    constexpr int QUEUE = 16;  // backlog of processes that query the holder
     const Address address = address_of(instance);
     InstanceLock lock;
     lock.fd_ = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);

@@ -21,29 +21,29 @@ namespace {
 
 struct Seen {
     char state = 'X';
-    std::uint64_t start_time = 0;  ///< 0 when it is gone, or cannot be read
+    std::uint64_t start_time = 0;  ///< 0 when the process has ended or cannot be read
 };
 
-/// The state of a process that exists and whose state cannot be read.
+/// State of a process that exists but cannot be read.
 constexpr char UNKNOWN = '?';
 
 /// Source: man 5 proc, /proc/PID/stat, fields 3 and 22.
 Seen parse(const char *text) {
-    // The name in parentheses may hold anything, so count from the last one.
+    // The name in parentheses may contain any character, so count from the last parenthesis.
     const char *at = std::strrchr(text, ')');
     if (at == nullptr || at[1] == '\0' || at[2] == 'Z' || at[2] == 'X') {
         return {};
     }
     const char state = at[2];
     ++at;
-    constexpr int FIELDS_TO_SKIP = 19;  // 3..21; `at` is at the blank before each
+    constexpr int FIELDS_TO_SKIP = 19;  // fields 3 to 21; `at` points to the blank before each
     for (int i = 0; i < FIELDS_TO_SKIP && at != nullptr; ++i) {
         at = std::strchr(at + 1, ' ');
     }
     return at == nullptr ? Seen{} : Seen{state, std::strtoull(at + 1, nullptr, 10)};
 }
 
-/// Of an open /proc/PID/stat. It stays that of its process when the process id is used again.
+/// Reads an open /proc/PID/stat. The file still refers to its process when the process id is reused.
 Seen read_state(int file) {
     char text[1024];
     const ssize_t length = ::pread(file, text, sizeof text - 1, 0);
@@ -54,7 +54,7 @@ Seen read_state(int file) {
     return parse(text);
 }
 
-/// Below 0: errno.
+/// Returns the descriptor, or -errno.
 int open_state(std::int32_t pid) {
     char path[64];
     std::snprintf(path, sizeof path, "/proc/%d/stat", pid);
@@ -62,14 +62,15 @@ int open_state(std::int32_t pid) {
     return file >= 0 ? file : -errno;
 }
 
-/// Where the file cannot be opened. Without a free descriptor or memory only the kernel's own answer counts.
+/// For a file that cannot be opened. Without a free descriptor or memory only the kernel's own answer is
+/// valid.
 Seen seen_without_file(std::int32_t pid, int error) {
-    const bool isGone = error == ENOENT || error == ESRCH || (::kill(pid, 0) != 0 && errno == ESRCH);
-    return isGone ? Seen{} : Seen{UNKNOWN, 0};
+    const bool gone = error == ENOENT || error == ESRCH || (::kill(pid, 0) != 0 && errno == ESRCH);
+    return gone ? Seen{} : Seen{UNKNOWN, 0};
 }
 
-/// The open files of the processes that a thread asks about again and again. Opening one in each cycle takes
-/// memory of the kernel, for which the thread waits when its cgroup has none left.
+/// Open files of processes that a thread checks repeatedly. Opening one in each cycle allocates kernel
+/// memory, and the thread waits when its cgroup has none left.
 class StateFiles {
   public:
     StateFiles() = default;
@@ -115,7 +116,7 @@ class StateFiles {
         }
     }
 
-    static constexpr std::size_t MOST = 40;  ///< clients of a machine, and its own processes
+    static constexpr std::size_t MOST = 40;  ///< clients of a machine, and processes of the machine
     std::array<Entry, MOST> entries_{};
     std::size_t next_ = 0;
 };
@@ -165,7 +166,8 @@ Result<std::string> runtime_folder() {
         return fail("runtime folder " + folder + ": " + std::strerror(errno));
     }
     if (!S_ISDIR(status.st_mode) || status.st_uid != ::getuid() || (status.st_mode & 077) != 0) {
-        return fail("runtime folder " + folder + " must be a folder of this user that nobody else may enter",
+        return fail("runtime folder " + folder +
+                        " must be a folder of this user that no other user may enter",
                     {}, "remove it, or set XDG_RUNTIME_DIR");
     }
     return folder;

@@ -22,14 +22,14 @@ namespace mw::runtime {
 namespace {
 
 constexpr std::int64_t NS_PER_S = 1'000'000'000;
-/// A sleep lasts at most this long, so that remove() never waits a long period out.
+/// Maximum sleep, so that remove() does not wait for the end of a long period.
 constexpr std::int64_t LONGEST_SLEEP_NS = 20'000'000;
 constexpr std::size_t STACK_SIZE = 1U << 20U;
 constexpr std::size_t STACK_TOUCHED = 256U << 10U;
 constexpr int PRIORITY_FASTEST = 85;
 constexpr int PRIORITY_SLOWEST = 50;
 constexpr int PRIORITY_PLANNER = 20;
-/// Locked memory that a machine needs beyond what the process has at its start.
+/// Memory that a machine locks in addition to the memory of the process at its start.
 constexpr std::size_t LOCK_MARGIN = 512U << 20U;
 
 std::int64_t monotonic_ns() noexcept {
@@ -43,7 +43,7 @@ void sleep_until(std::int64_t time_ns) noexcept {
     ::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
 }
 
-/// Makes the pages of the stack present, so that the first deep call does not fault.
+/// Touches the pages of the stack, so that the first deep call causes no page fault.
 __attribute__((noinline)) void touch_stack() noexcept {
     char pages[STACK_TOUCHED];
     for (std::size_t i = 0; i < STACK_TOUCHED; i += 4096) {
@@ -97,7 +97,7 @@ void *try_realtime(void *result) {
     return nullptr;
 }
 
-/// Tries in a thread of its own, which then goes away.
+/// Tries in a temporary thread.
 int realtime_error() {
     int error = EAGAIN;
     pthread_t thread{};
@@ -107,24 +107,24 @@ int realtime_error() {
     return error;
 }
 
-/// Why memory cannot be locked; empty when it can. Locking future memory with a limit too low would make
-/// later allocations fail, so the limit is looked at first.
+/// Why memory cannot be locked; empty when it can. With a limit that is too low, locking future memory would
+/// make later allocations fail, so the limit is checked first.
 std::string lock_obstacle() {
     rlimit limit{};
     ::getrlimit(RLIMIT_MEMLOCK, &limit);
     constexpr std::size_t PROBE = 4096;
-    const bool isEnough = limit.rlim_cur == RLIM_INFINITY || limit.rlim_cur >= LOCK_MARGIN;
-    // With CAP_IPC_LOCK the limit does not count: then more than the limit can be locked.
-    bool isPrivileged = false;
-    if (!isEnough) {
+    const bool enough = limit.rlim_cur == RLIM_INFINITY || limit.rlim_cur >= LOCK_MARGIN;
+    // CAP_IPC_LOCK overrides the limit.
+    bool privileged = false;
+    if (!enough) {
         const std::size_t size = limit.rlim_cur + PROBE;
         void *memory = ::mmap(nullptr, size, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
         if (memory != MAP_FAILED) {
-            isPrivileged = ::mlock2(memory, size, MLOCK_ONFAULT) == 0;
+            privileged = ::mlock2(memory, size, MLOCK_ONFAULT) == 0;
             ::munmap(memory, size);
         }
     }
-    if (isEnough || isPrivileged) {
+    if (enough || privileged) {
         return {};
     }
     return "the memlock limit is " + std::to_string(limit.rlim_cur / 1024) +
@@ -140,16 +140,16 @@ struct RealtimeScheduler::Impl {
         pthread_t thread{};
         int cpu = -1;
         std::atomic<bool> isStopping{false};
-        // Written by the task's thread only; relaxed, each figure stands for itself.
+        // Written by the task's thread only; relaxed, because the figures are independent.
         std::atomic<std::uint64_t> runs{0};
         std::atomic<std::uint64_t> overruns{0};
         std::atomic<std::int64_t> max_latency_ns{0};
         std::atomic<std::int64_t> max_runtime_ns{0};
-        // The task's thread only.
+        // Used by the task's thread only.
         std::int64_t release_ns = 0;
         std::int64_t correction_ns = 0;
 
-        /// The task whose thread is running.
+        /// The task of the running thread.
         static Task *&current() noexcept {
             thread_local Task *task = nullptr;
             return task;
@@ -174,7 +174,7 @@ struct RealtimeScheduler::Impl {
     int last_id = 0;
 };
 
-/// Sleeps until the release; false when the task shall end.
+/// Sleeps until the release; false when the task must end.
 bool RealtimeScheduler::Impl::Task::isDue(std::int64_t next) noexcept {
     while (!isStopping.load(std::memory_order_acquire)) {
         const std::int64_t now = monotonic_ns();
@@ -203,7 +203,7 @@ void RealtimeScheduler::Impl::Task::loop() noexcept {
             max_runtime_ns.store(end - start, std::memory_order_relaxed);
         }
         runs.fetch_add(1, std::memory_order_relaxed);
-        // Releases that passed meanwhile, by a late wake-up or a long run, are left out; the grid stays.
+        // Skips releases missed by a late wake-up or a long run; the grid is kept.
         const std::int64_t passed = (end - next) / period;
         if (passed > 0) {
             overruns.fetch_add(static_cast<std::uint64_t>(passed), std::memory_order_relaxed);
@@ -259,12 +259,12 @@ void RealtimeScheduler::Impl::set_priorities() {
 
 RealtimeScheduler::RealtimeScheduler(Log &log, const RealtimeOptions &options)
     : impl_(std::make_unique<Impl>()) {
-    if (options.isSimulation) {
+    if (options.is_simulation) {
         impl_->missing = "simulation mode was asked for";
         return;
     }
     const int error = realtime_error();
-    // Both at once: who mends one of them shall not meet the other at the next start.
+    // Reports both at once, so that one correction does not reveal the next error at the next start.
     const std::string obstacle = lock_obstacle();
     if (error != 0) {
         impl_->missing = "a limit 'rtprio' of at least " + std::to_string(PRIORITY_FASTEST) +

@@ -12,11 +12,11 @@
 namespace mw::runtime {
 
 struct RealtimeOptions {
-    /// The processor for Order::THREAD: -1 chooses the last isolated one (else the last), -2 leaves it to the
-    /// system.
+    /// The processor for Order::THREAD: -1 selects the last isolated one (else the last), -2 lets the system
+    /// choose.
     int cpu = -1;
-    /// Never ask for realtime priority or locked memory (tests).
-    bool isSimulation = false;
+    /// Do not request realtime priority or locked memory (tests).
+    bool is_simulation = false;
 };
 
 /// Threads of Order::THREAD have SCHED_FIFO priorities, shorter periods higher; PLANNER lies below them; TASK
@@ -26,7 +26,7 @@ struct RealtimeOptions {
 class RealtimeScheduler final : public Scheduler {
   public:
     explicit RealtimeScheduler(Log &log, const RealtimeOptions &options = {});
-    /// Removes all.
+    /// Removes all periodics.
     ~RealtimeScheduler() override;
 
     std::int64_t now_ns() const noexcept override;
@@ -37,7 +37,7 @@ class RealtimeScheduler final : public Scheduler {
 
     /// False in simulation mode.
     bool isRealtime() const noexcept override;
-    /// Why it is not realtime; empty when it is.
+    /// Why the scheduler is not realtime; empty when it is.
     const std::string &missing() const noexcept;
 
     std::int64_t current_release_ns() const noexcept override;

@@ -23,13 +23,13 @@ std::string why(const std::string &name) {
     return name.empty() ? std::string("private shared memory: ") : "shared memory " + name + ": ";
 }
 
-/// Names the file and its process, or its user, and what to do. `owner_of`: from the file's header.
+/// Names the file and its process, or its user, and the remedy. `owner_of` reads the file's header.
 template <class OwnerOf>
 std::unexpected<Error> in_use(const std::string &name, const OwnerOf &owner_of) {
     const std::string path = SHM_FOLDER + name;
     struct stat status{};
-    const bool isKnown = ::stat(path.c_str(), &status) == 0;
-    if (isKnown && status.st_uid != ::getuid()) {
+    const bool known = ::stat(path.c_str(), &status) == 0;
+    if (known && status.st_uid != ::getuid()) {
         return fail(why(name) + path + " belongs to user " + std::to_string(status.st_uid), {},
                     "remove the file as that user, or set MILLWRIGHT_INSTANCE to another name");
     }
@@ -52,12 +52,12 @@ std::unexpected<Error> in_use(const std::string &name, const OwnerOf &owner_of) 
 }  // namespace
 
 struct SharedMemory::Header {
-    std::atomic<std::uint64_t> magic;  // written last by the creator, so a half-made segment is refused
+    std::atomic<std::uint64_t> magic;  // written last by the creator, so an incomplete segment is rejected
     std::uint32_t abi_version;
     std::uint32_t unused;
     std::uint64_t layout_hash;
-    std::uint64_t reserve;            // bytes of content that may come to exist
-    std::atomic<std::uint64_t> size;  // bytes of content that exist
+    std::uint64_t reserve;            // maximum size of the content [bytes]
+    std::atomic<std::uint64_t> size;  // current size of the content [bytes]
     ProcessId owner;
 };
 
@@ -80,7 +80,7 @@ SharedMemory &SharedMemory::operator=(SharedMemory &&other) noexcept {
     return *this;
 }
 
-/// Only from the process that created it: a forked child keeps out.
+/// Only the process that created it removes it, not a forked child.
 void SharedMemory::remove() noexcept {
     if (!name_.empty() && base_ != nullptr && header()->owner == this_process()) {
         ::shm_unlink(name_.c_str());
@@ -105,14 +105,14 @@ SharedMemory::Header *SharedMemory::header() const noexcept {
     return static_cast<Header *>(base_);
 }
 
-/// Takes over `fd`, an empty file.
+/// Takes ownership of `fd`, an empty file.
 Result<SharedMemory> SharedMemory::initialise(int fd, const std::string &name, std::size_t size,
                                               std::size_t reserve, const SharedLayout &layout) {
     SharedMemory memory;
     memory.fd_ = fd;
     memory.name_ = name;
     const std::size_t first = HEADER_SIZE + size;
-    // Real pages now, so that a full /dev/shm is an error here and no fault later.
+    // Allocates the pages now, so that a full /dev/shm is an error here and not a fault later.
     const int error = ::posix_fallocate(fd, 0, static_cast<off_t>(first));
     if (error != 0) {
         return fail(why(name) + "cannot get " + std::to_string(first) + " bytes: " + std::strerror(error));
@@ -129,7 +129,7 @@ Result<SharedMemory> SharedMemory::initialise(int fd, const std::string &name, s
     header->reserve = std::max(size, reserve);
     header->size.store(size, std::memory_order_relaxed);
     header->owner = this_process();
-    // Release: pairs with attach's acquire; who sees the magic sees the header.
+    // Release: pairs with attach's acquire; a process that sees the magic sees the header.
     header->magic.store(MAGIC, std::memory_order_release);
     return memory;
 }
@@ -191,7 +191,7 @@ Result<SharedMemory> SharedMemory::attach(const std::string &name, const SharedL
                     {}, "all programs must come from the same build");
     }
     const std::size_t whole = HEADER_SIZE + header->reserve;
-    // It grows before it says so, maybe since it was looked at first.
+    // The file grows before its header does; it may have grown since the first check.
     const std::uint64_t size = header->size.load(std::memory_order_acquire);
     if (::fstat(memory.fd_, &status) != 0 ||
         static_cast<std::uint64_t>(status.st_size) < HEADER_SIZE + size) {
@@ -260,21 +260,21 @@ int SharedMemory::remove_stale(const std::string &prefix) {
         }
         const int fd = ::shm_open(('/' + name).c_str(), O_RDONLY | O_CLOEXEC, 0);
         struct stat status{};
-        const bool isMine = fd >= 0 && ::fstat(fd, &status) == 0 && status.st_uid == ::getuid();
-        bool isStale = isMine;
-        if (isMine && status.st_size >= static_cast<off_t>(HEADER_SIZE)) {
+        const bool own = fd >= 0 && ::fstat(fd, &status) == 0 && status.st_uid == ::getuid();
+        bool stale = own;
+        if (own && status.st_size >= static_cast<off_t>(HEADER_SIZE)) {
             void *base = ::mmap(nullptr, HEADER_SIZE, PROT_READ, MAP_SHARED, fd, 0);
             if (base != MAP_FAILED) {
                 const auto *header = static_cast<const Header *>(base);
-                const bool isWhole = header->magic.load(std::memory_order_acquire) == MAGIC;
-                isStale = !isWhole || !isAlive(header->owner);
+                const bool whole = header->magic.load(std::memory_order_acquire) == MAGIC;
+                stale = !whole || !isAlive(header->owner);
                 ::munmap(base, HEADER_SIZE);
             }
         }
         if (fd >= 0) {
             ::close(fd);
         }
-        if (isStale && ::shm_unlink(('/' + name).c_str()) == 0) {
+        if (stale && ::shm_unlink(('/' + name).c_str()) == 0) {
             ++removed;
         }
     }

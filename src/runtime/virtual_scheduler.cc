@@ -17,9 +17,9 @@ Result<PeriodicId> VirtualScheduler::add(const PeriodicSpec &spec) {
     entry.argument = spec.argument;
     entry.order = spec.order;
     entry.id = ++last_id_;
-    (isRunning_ ? added_ : entries_).push_back(entry);
-    isSweepNeeded_ = true;
-    if (!isRunning_) {
+    (running_ ? added_ : entries_).push_back(entry);
+    sweep_needed_ = true;
+    if (!running_) {
         sweep();
     }
     return PeriodicId(entry.id);
@@ -29,12 +29,12 @@ void VirtualScheduler::remove(PeriodicId id) {
     for (std::vector<Entry> *list : {&entries_, &added_}) {
         for (Entry &entry : *list) {
             if (entry.id == id.value) {
-                entry.isRemoved = true;
-                isSweepNeeded_ = true;
+                entry.removed = true;
+                sweep_needed_ = true;
             }
         }
     }
-    if (!isRunning_) {
+    if (!running_) {
         sweep();
     }
 }
@@ -49,15 +49,15 @@ PeriodicStats VirtualScheduler::stats(PeriodicId id) const {
     return stats;
 }
 
-/// Takes in what was added and drops what was removed; never while an entry runs.
+/// Adds new entries and removes ended ones; never while an entry runs.
 void VirtualScheduler::sweep() noexcept {
-    if (!isSweepNeeded_) {
+    if (!sweep_needed_) {
         return;
     }
-    isSweepNeeded_ = false;
+    sweep_needed_ = false;
     entries_.insert(entries_.end(), added_.begin(), added_.end());
     added_.clear();
-    std::erase_if(entries_, [](const Entry &entry) { return entry.isRemoved; });
+    std::erase_if(entries_, [](const Entry &entry) { return entry.removed; });
     std::stable_sort(entries_.begin(), entries_.end(), [](const Entry &a, const Entry &b) {
         if (a.order != b.order) {
             return a.order < b.order;
@@ -67,16 +67,16 @@ void VirtualScheduler::sweep() noexcept {
 }
 
 void VirtualScheduler::run_due() noexcept {
-    isRunning_ = true;
-    // entries_ neither grows nor moves while isRunning_.
+    running_ = true;
+    // entries_ neither grows nor moves while running_ is set.
     for (Entry &entry : entries_) {
-        if (entry.next_ns == now_ns_ && !entry.isRemoved) {
+        if (entry.next_ns == now_ns_ && !entry.removed) {
             entry.next_ns += entry.period_ns;
             ++entry.runs;
             entry.function(entry.argument, entry.period_ns);
         }
     }
-    isRunning_ = false;
+    running_ = false;
     sweep();
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The clock that jumps: everything that is due runs in a fixed order, then time moves to the next deadline.
+// The virtual clock: everything that is due runs in a fixed order, then time jumps to the next deadline.
 #pragma once
 
 #include <cstdint>
@@ -14,13 +14,13 @@ class VirtualScheduler final : public Scheduler {
   public:
     std::int64_t now_ns() const noexcept override { return now_ns_; }
     bool isVirtual() const noexcept override { return true; }
-    /// Periodics may be added and removed while one runs; a new one starts at the next multiple of its
-    /// period.
+    /// Periodics may be added and removed while another one runs; a new one starts at the next multiple of
+    /// its period.
     Result<PeriodicId> add(const PeriodicSpec &spec) override;
     void remove(PeriodicId id) override;
     PeriodicStats stats(PeriodicId id) const override;
 
-    /// Jumps to the next deadline and runs all that is due then. False when nothing is periodic.
+    /// Jumps to the next deadline and runs all periodics due then. False when there are none.
     bool step() noexcept;
     /// Runs every deadline up to and including `time_ns`, then sets the time to it.
     void run_until(std::int64_t time_ns) noexcept;
@@ -36,17 +36,17 @@ class VirtualScheduler final : public Scheduler {
         std::uint64_t runs;
         std::int32_t id;
         Order order;
-        bool isRemoved;
+        bool removed;
     };
     void run_due() noexcept;
     void sweep() noexcept;
 
-    std::vector<Entry> entries_;  ///< in the order of running at equal times
-    std::vector<Entry> added_;    ///< while running
+    std::vector<Entry> entries_;  ///< in execution order at equal times
+    std::vector<Entry> added_;    ///< added while one runs
     std::int64_t now_ns_ = 0;
     std::int32_t last_id_ = 0;
-    bool isRunning_ = false;
-    bool isSweepNeeded_ = false;
+    bool running_ = false;
+    bool sweep_needed_ = false;
 };
 
 }  // namespace mw::runtime

@@ -88,7 +88,7 @@ std::string Rig::start() {
     side_ = std::make_unique<machine::TaskSide>(parts, *host_, mailbox::Memory::in_process(), nullptr);
     const hal::UseInstance use(&host_->hal());
     machine::MachineOptions machine_options;
-    machine_options.isClockVirtual = true;
+    machine_options.clock_virtual = true;
     if (const auto started = side_->start(machine_options); !started) {
         return told(started.error().str());
     }

@@ -104,7 +104,7 @@ def one_after_the_other(bench):
     expect(homing == 'TRUE' and machine.process.poll() is None, 'and leaves it up', machine.text)
 
     again = bench.start('--no-display')
-    expect(again.end() == 1 and 'up already' in again.text and str(bench.ini) in again.text, 'a second start is refused', again.text)
+    expect(again.end() == 1 and 'already running' in again.text and str(bench.ini) in again.text, 'a second start is refused', again.text)
     other = bench.ini.parent / 'gantry_xyyz.ini'
     wrong = bench.run('short3.ngc', ini=other)
     expect(wrong.end() == 1 and 'was started from' in wrong.text, 'another INI is refused', wrong.text)
@@ -176,7 +176,7 @@ def killed_machine(bench):
     other = bench.run('short3.ngc')
     expect(other.end() == 1 and 'a machine of its own' in other.text, 'is shared with nobody', other.text)
     started = bench.start('--no-display')
-    expect(started.end() == 1 and 'up already' in started.text, 'nor is its instance', started.text)
+    expect(started.end() == 1 and 'already running' in started.text, 'nor is its instance', started.text)
     os.kill(alone.process.pid, signal.SIGTERM)
     expect(alone.end() == 1 and bench.is_down(), 'it ends', alone.text)
 

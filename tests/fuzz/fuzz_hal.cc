@@ -173,9 +173,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
     script::MergedLoads loads;
     script::SessionOptions session_options;
     session_options.keepsGoing = true;
-    session_options.hasPlaceholders = (mode & 4U) != 0;
-    session_options.isScript = (mode & 8U) != 0;
-    session_options.hasFiles = false;
+    session_options.has_placeholders = (mode & 4U) != 0;
+    session_options.is_script = (mode & 8U) != 0;
+    session_options.has_files = false;
     session_options.ini = &ini;
     script::Session session(**host, programs, output, session_options);
     if ((mode & 2U) != 0) {

@@ -79,7 +79,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
     setup.command = "/bin/cat " + answers.string();
     setup.folder = folder();
     setup.changer = data[0] % 2 == 0 ? tools::Changer::FIXED : tools::Changer::RANDOM;
-    setup.isWaitedFor = true;
+    setup.awaited = true;
     const auto started = machine::ToolDatabase::start(setup, sink);
     if (!started.has_value()) {
         if (started.error().message.empty()) {

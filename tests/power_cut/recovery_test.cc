@@ -71,7 +71,7 @@ class RecoveryTest : public ::testing::Test {
 
 TEST_F(RecoveryTest, TheProgramIsOfferedWithItsLineAndGoesOnOnceTheWayIsConfirmed) {
     EXPECT_FALSE(offer().isOffered);
-    EXPECT_EQ(rig->recover(), "no program was cut short ");
+    EXPECT_EQ(rig->recover(), "no program was interrupted ");
     run_to(SQUARE, 9);
     cut_and_come_up();
     ASSERT_TRUE(offer().isOffered);
@@ -162,7 +162,7 @@ TEST_F(NewLengthTest, ToolsThatTheProgramMayCallStayWhileItIsLeft) {
     messages::AddTool added;
     added.toolno = 41;
     EXPECT_EQ(rig->ask(added), "");
-    EXPECT_NE(rig->ask(messages::RemoveTool{41}).find("a program is held that may call tool 41"),
+    EXPECT_NE(rig->ask(messages::RemoveTool{41}).find("a paused program may call tool 41"),
               std::string::npos);
     EXPECT_EQ(rig->ask(messages::AbortAll{}), "");
     cycles(500);
@@ -287,19 +287,19 @@ TEST_P(DoubtTest, IsRefusedWithTheReasonAndTheNearestLine) {
 
 INSTANTIATE_TEST_SUITE_P(
     All, DoubtTest,
-    ::testing::Values(
-        Doubtful{"Input", "G21 F600\nG0 Z5\nM66 P0 L0\nG1 X20\nG1 X0\nM2\n", 5,
-                 "what holds at line 5 depends on an input (M66) in line 3; the nearest line "
-                 "before it that can is 3"},
-        Doubtful{"Probe", "G21 F600\nG0 Z5\nG38.3 Z4.5\nG1 X20\nG1 X0\nM2\n", 5,
-                 "what holds at line 5 depends on a probe in line 3; the nearest line before it "
-                 "that can is 3"},
-        Doubtful{"Hal", "G21 F600\nG0 Z5\n#1 = #<_hal[motion.in-position]>\nG1 X20\nG1 X0\nM2\n", 5,
-                 "what holds at line 5 depends on the HAL value motion.in-position in line 3; the "
-                 "nearest line before it that can is 3"},
-        Doubtful{"Table", "G21 F600\nG0 Z5\nG10 L0\nG1 X20\nG1 X0\nM2\n", 5,
-                 "what holds at line 5 depends on a tool table that is read again (G10 L0) in "
-                 "line 3; the nearest line before it that can is 3"}),
+    ::testing::Values(Doubtful{"Input", "G21 F600\nG0 Z5\nM66 P0 L0\nG1 X20\nG1 X0\nM2\n", 5,
+                               "the state at line 5 depends on an input (M66) in line 3; the nearest line "
+                               "before it that can is 3"},
+                      Doubtful{"Probe", "G21 F600\nG0 Z5\nG38.3 Z4.5\nG1 X20\nG1 X0\nM2\n", 5,
+                               "the state at line 5 depends on a probe in line 3; the nearest line before it "
+                               "that can is 3"},
+                      Doubtful{
+                          "Hal", "G21 F600\nG0 Z5\n#1 = #<_hal[motion.in-position]>\nG1 X20\nG1 X0\nM2\n", 5,
+                          "the state at line 5 depends on the HAL value motion.in-position in line 3; the "
+                          "nearest line before it that can is 3"},
+                      Doubtful{"Table", "G21 F600\nG0 Z5\nG10 L0\nG1 X20\nG1 X0\nM2\n", 5,
+                               "the state at line 5 depends on a tool table that is read again (G10 L0) in "
+                               "line 3; the nearest line before it that can is 3"}),
     [](const auto &one) { return one.param.name; });
 
 TEST_F(RecoveryTest, BeforeTheDoubtItIsOffered) {

@@ -22,7 +22,7 @@ std::string bits(const geometry::Pose &pose) {
 
 std::string bits(const motion::MoveTerms &t) {
     return fmt::format(" {} {} {} {} {:a} {:a} {:a} {:a}", t.isRapid, static_cast<int>(t.mode),
-                       static_cast<int>(t.synch_spindle), t.isVelocitySynched, t.feed, t.tolerance,
+                       static_cast<int>(t.synch_spindle), t.velocity_synched, t.feed, t.tolerance,
                        t.naivecam_tolerance, t.feed_per_revolution);
 }
 

@@ -121,14 +121,14 @@ const std::vector<Module> MODULES = {
     {"rosekins", 3, {{"rosekins.revolutions", 0}, {"rosekins.bigtheta_degrees", 0}}},
 };
 
-/// Names with a number are in the page with N.
+/// The page shows names with numbers with N instead.
 std::string as_in_page(const std::string &name) {
     std::string out;
     for (std::size_t i = 0; i < name.size(); ++i) {
-        const bool isNumber = std::isdigit(static_cast<unsigned char>(name[i])) != 0 && i > 0 &&
-                              (name[i - 1] == '.' || name[i - 1] == '-') &&
-                              (i + 1 == name.size() || name[i + 1] == '.');
-        out += isNumber ? 'N' : name[i];
+        const bool is_number = std::isdigit(static_cast<unsigned char>(name[i])) != 0 && i > 0 &&
+                               (name[i - 1] == '.' || name[i - 1] == '-') &&
+                               (i + 1 == name.size() || name[i + 1] == '.');
+        out += is_number ? 'N' : name[i];
     }
     return out;
 }
@@ -159,7 +159,7 @@ TEST(KinematicsModules, EveryPinIsInThePage) {
         const std::string page = page_of(module.name);
         ASSERT_FALSE(page.empty()) << module.name;
         for (const auto &pin : machine.host->hal().pins("*")) {
-            if (pin.name.find(".fdemo.") == std::string::npos) {  // times, which every function has
+            if (pin.name.find(".fdemo.") == std::string::npos) {  // function times, which every function has
                 EXPECT_NE(page.find("*" + as_in_page(pin.name) + "*"), std::string::npos) << pin.name;
             }
         }

@@ -25,13 +25,13 @@ std::vector<PinText> rows() {
     });
 }
 
-/// Each pin of a machine with so many of everything, by name.
+/// Every pin of a machine with these counts, by name.
 std::map<std::string, PinText> expected(const std::map<std::string, int> &counts,
                                         const std::set<int> &unlocked, int first_extra) {
     std::map<std::string, PinText> out;
     for (const PinText &row : rows()) {
         const std::string scope = row.name.substr(0, row.name.find_first_of("NL"));
-        const bool isUnlock = row.name == "joint.N.unlock" || row.name == "joint.N.is-unlocked";
+        const bool is_unlock = row.name == "joint.N.unlock" || row.name == "joint.N.is-unlocked";
         const auto found = counts.find(scope);
         const int count = found == counts.end() ? 1 : found->second;
         for (int i = 0; i < count; ++i) {
@@ -39,9 +39,9 @@ std::map<std::string, PinText> expected(const std::map<std::string, int> &counts
             std::string name = replaced(row.name, "NN", two);
             name = replaced(name, "N", std::to_string(i));
             name = i < MAX_AXES ? replaced(name, "L", std::string(1, geometry::AXIS_LETTERS_LOWER[i])) : name;
-            const bool isOfSwitchable = row.name == "motion.switchkins-type";
-            const bool isOfOthers = row.name == "joint.N.posthome-cmd" && i < first_extra;
-            if ((!isUnlock || unlocked.contains(i)) && !isOfSwitchable && !isOfOthers) {
+            const bool of_switchable = row.name == "motion.switchkins-type";
+            const bool of_others = row.name == "joint.N.posthome-cmd" && i < first_extra;
+            if ((!is_unlock || unlocked.contains(i)) && !of_switchable && !of_others) {
                 out[name] = row;
             }
         }
@@ -116,11 +116,11 @@ TEST(MotmodPins, EveryRowSaysWhatThePinIsFor) {
     std::set<std::string> names;
     for (const PinText &row : rows()) {
         EXPECT_FALSE(row.doc.empty()) << row.name;
-        EXPECT_TRUE(names.insert(row.name).second) << row.name << " stands in the tables twice";
-        const bool isMeasure = row.type == hal::Type::FLOAT && row.dir == hal::Dir::OUT;
-        const bool isPlain = row.doc.find("external offsets") != std::string::npos ||
-                             row.name.find("analog") != std::string::npos;
-        EXPECT_TRUE(!isMeasure || isPlain || !row.unit.empty()) << row.name << " has no unit";
+        EXPECT_TRUE(names.insert(row.name).second) << row.name << " stands twice in the tables";
+        const bool is_measure = row.type == hal::Type::FLOAT && row.dir == hal::Dir::OUT;
+        const bool plain = row.doc.find("external offsets") != std::string::npos ||
+                           row.name.find("analog") != std::string::npos;
+        EXPECT_TRUE(!is_measure || plain || !row.unit.empty()) << row.name << " has no unit";
     }
 }
 

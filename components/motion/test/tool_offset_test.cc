@@ -64,10 +64,10 @@ TEST_F(ToolOffsetPins, AreMadeWithMotmodAndAreZero) {
 TEST_F(ToolOffsetPins, ShowWhatTheIoControllerWritesAndNotWhatMotionIsSent) {
     ASSERT_NO_FATAL_FAILURE(load());
     write(offset);
-    EXPECT_FALSE(io.read().isToolOffsetShown);
+    EXPECT_FALSE(io.read().tool_offset_shown);
     EXPECT_EQ(shown().c, geometry::Pose{}.c) << "they change between two cycles of the servo thread";
     run_cycle();
-    EXPECT_TRUE(io.read().isToolOffsetShown);
+    EXPECT_TRUE(io.read().tool_offset_shown);
     EXPECT_EQ(shown().c, offset.c);
     channels->immediate.push({1, 1, SetToolOffset{{{0, 0, 77}}}});
     run_cycle();
@@ -80,7 +80,7 @@ TEST_F(ToolOffsetPins, KeepTheirValuesWhenTheTaskProcessIsDead) {
     write(offset);
     run_cycle();
     channels->isTaskDead = 1;
-    io.destroy();  // its pins vanish with the process
+    io.destroy();  // its pins disappear with the process
     ASSERT_FALSE(hal().hasPin("iocontrol.0.tool-number"));
     for (int i = 0; i < 1000; ++i) {
         run_cycle();
@@ -95,16 +95,16 @@ TEST_F(ToolOffsetPins, KeepTheirValuesWhenTheTaskProcessDiesWithinAWrite) {
     auto &block = *static_cast<io::ToolOffsetBlock *>(
         *hal().shared_block(io::ToolOffsetBlock::SHMEM_KEY, sizeof(io::ToolOffsetBlock)));
     write({{100, 200, 300}});
-    // The sequence number comes first; an odd one means that a write is under way.
+    // The sequence number comes first; an odd value means that a write is in progress.
     std::atomic_ref(*reinterpret_cast<std::uint32_t *>(&block.latest)).fetch_sub(1);
     for (int i = 0; i < 3; ++i) {
         run_cycle();
         EXPECT_EQ(shown().c, offset.c);
-        EXPECT_FALSE(io.read().isToolOffsetShown);
+        EXPECT_FALSE(io.read().tool_offset_shown);
     }
 }
 
-/// A signal that has a reader keeps its value when a writer joins.
+/// A signal with a reader keeps its value when a writer is linked.
 TEST_F(ToolOffsetPins, AreSeenInTheCycleAfterTheyWereLinked) {
     ASSERT_NO_FATAL_FAILURE(load());
     write(offset);
@@ -118,7 +118,7 @@ TEST_F(ToolOffsetPins, AreSeenInTheCycleAfterTheyWereLinked) {
 TEST_F(ToolOffsetPins, NobodyWaitsForThemWhereMotmodIsNotLoaded) {
     ASSERT_TRUE(io.join_tool_offset().has_value());
     write(offset);
-    EXPECT_TRUE(io.read().isToolOffsetShown) << "motion-logger stands in for motmod";
+    EXPECT_TRUE(io.read().tool_offset_shown) << "motion-logger replaces motmod";
 }
 
 }  // namespace

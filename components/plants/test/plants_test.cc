@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Plants behave as the things that they stand for, by the laws of mechanics and not by what motion expects.
+// Plants behave as the real devices, by the laws of mechanics and not by what motion expects.
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -112,7 +112,7 @@ TEST(SimAxis, TheLoadLagsByHalfTheBacklashOnEitherWay) {
     for (int i = 0; i < 6; ++i) {
         axis.run(command -= 0.05, true, T);
     }
-    EXPECT_EQ(axis.load(), stood) << "within the play the load stands";
+    EXPECT_EQ(axis.load(), stood) << "within the play the load does not move";
     for (int i = 0; i < 300; ++i) {
         axis.run(command -= 0.05, true, T);
     }
@@ -163,7 +163,7 @@ TEST(SimSwitch, ClosesAtItsPlaceAndOpensAHysteresisBack) {
     EXPECT_TRUE(s.run(9.6, T));
     EXPECT_FALSE(s.run(9.4, T));
     EXPECT_FALSE(s.run(9.99, T));
-    BouncingSwitch below({.at = -10, .isAbove = false, .width = 2});
+    BouncingSwitch below({.at = -10, .above = false, .width = 2});
     EXPECT_FALSE(below.run(-9.9, T));
     EXPECT_TRUE(below.run(-11, T));
     EXPECT_FALSE(below.run(-12.1, T)) << "past the cam";
@@ -206,7 +206,7 @@ TEST(SimAmplifier, AFaultTakesThePowerAndStaysUntilItIsResetWhileOff) {
     EXPECT_TRUE(amp.run(true, T));
 }
 
-/// Each plant: 100 cycles, one with what is no number, and again; what it shows then.
+/// For each plant: 100 cycles, then one with values that are not numbers, then 100 more; compares the result.
 template <class Step>
 double after_no_number(Step step, double no_number) {
     double shown = 0;

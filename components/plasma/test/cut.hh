@@ -8,7 +8,7 @@
 
 namespace mw::plasma::test {
 
-/// Material at 2 mm, the torch at 90, 100 V; fast enough that a cut takes a few hundred cycles.
+/// Material at 2 mm, torch at 90, 100 V; fast enough for a cut of a few hundred cycles.
 struct Cut : Table {
     Cut() {
         in.units_per_mm = 1.0;
@@ -40,7 +40,7 @@ struct Cut : Table {
         in.float_switch_travel = 1.0;
         in.feed_override = 1.0;
         in.cornerlock_threshold = 90.0;
-        hasProgram = true;
+        has_program = true;
     }
     void start() {
         in.program_is_idle = false;
@@ -49,7 +49,7 @@ struct Cut : Table {
         cycle();
         in.cutting_start = true;
     }
-    /// Runs until that state; false when it does not come within a second.
+    /// Runs until that state. False when it is not reached within a second.
     bool reaches(State state) {
         constexpr int MOST_CYCLES = 1000;
         for (int i = 0; i < MOST_CYCLES; ++i) {
@@ -65,7 +65,7 @@ struct Cut : Table {
             cycle();
         }
     }
-    /// Cuts at full speed with the height control at work.
+    /// Cuts at full speed with the height control active.
     void cut() {
         start();
         ASSERT_TRUE(reaches(State::CUT_BY_VOLTAGE));

@@ -31,17 +31,17 @@ void apply(test::Table &table, const std::string &pin, double value) {
     } else if (pin == "z0") {
         table.z0_mu = value;
     } else if (pin == "program") {
-        table.hasProgram = true;
+        table.has_program = true;
     } else if (pin == "pause") {
         table.pause();
     } else if (pin == "resume") {
         table.resume();
     } else if (pin == "no-float") {
-        table.hasFloat = false;
+        table.has_float = false;
     } else if (pin == "no-volts") {
-        table.hasVolts = false;
+        table.has_volts = false;
     } else if (pin == "no-sideways") {
-        table.hasSideways = false;
+        table.has_sideways = false;
     } else if (!test::set_input(table.in, pin, value)) {
         std::fprintf(stderr, "no input %s\n", pin.c_str());
     }

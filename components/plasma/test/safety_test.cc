@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Whatever goes wrong: torch off, up, and the program paused. No input, however wild, gets through.
+// Every fault: torch off, up, and the program paused. Invalid inputs have no effect.
 #include <cmath>
 #include <limits>
 #include <random>
@@ -37,7 +37,7 @@ TEST(PlasmaSafety, SensorsInTheCutStopItInTheSameCycle) {
     for (bool Inputs::*sensor : {&Inputs::breakaway, &Inputs::float_switch, &Inputs::ohmic_probe}) {
         Cut table;
         table.cut();
-        table.hasFloat = false;
+        table.has_float = false;
         table.in.ohmic_probe_enable = true;
         table.in.*sensor = true;
         table.cycle();
@@ -97,7 +97,7 @@ TEST(PlasmaSafety, SafeHeightStaysBelowTheEndOfZ) {
 TEST(PlasmaSafety, HeightControlStopsAtTheLowerEnd) {
     Cut table;
     table.cut();
-    table.hasFloat = false;
+    table.has_float = false;
     table.in.axis_z_min_limit = 3.0;
     table.volts = 190.0;
     ASSERT_TRUE(table.reaches(State::MAX_HEIGHT));
@@ -131,14 +131,14 @@ TEST(PlasmaSafety, WhatIsNoNumberTurnsTheTorchOffAndStandsStill) {
                 table.cut();
                 const std::int32_t before = table.out().z_offset_counts;
                 for (int i = 0; i < 20; ++i) {
-                    table.in.areNumbers = true;
+                    table.in.are_numbers = true;
                     row.read(table.in, bad);
                     table.core.step(table.in, PERIOD_S);
                     ASSERT_FALSE(table.out().torch_on) << row.name;
                     ASSERT_EQ(table.out().z_offset_counts, before) << row.name;
                     ASSERT_TRUE(table.out().feed_hold) << row.name;
                 }
-                table.in.areNumbers = true;
+                table.in.are_numbers = true;
                 table.cycle();
                 EXPECT_NE(table.core.state(), State::CUT_BY_VOLTAGE) << row.name;
             }

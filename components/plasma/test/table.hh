@@ -13,20 +13,20 @@ namespace mw::plasma::test {
 
 inline constexpr double PERIOD_S = 0.001;
 
-/// Sets the input of that name; false when there is none.
+/// Sets the input with that name. False when there is none.
 inline bool set_input(Inputs &in, std::string_view name, double value) {
-    bool isKnown = false;
+    bool known = false;
     sdk::for_each_pin(INPUT_PINS, [&](const char *, const auto &row) {
         using Value = typename std::remove_cvref_t<decltype(row)>::Value;
         if (name == row.name) {
-            isKnown = true;
+            known = true;
             row.read(in, static_cast<Value>(value));
         }
     });
-    return isKnown;
+    return known;
 }
 
-/// An input by name, as a number.
+/// The input with that name, as a number.
 inline double input(const Inputs &in, std::string_view name) {
     double found = NAN;
     sdk::for_each_pin(INPUT_PINS, [&](const char *, const auto &row) {
@@ -41,8 +41,8 @@ struct Table {
     Inputs in;
     Core core;
     double material_mu = 2.0, z0_mu = 90.0, volts = 100.0, ohmic_mu = -1e9;
-    bool hasFloat = true, hasVolts = true, hasSideways = true;
-    bool hasProgram = false;  ///< halui answers program-pause and program-resume
+    bool has_float = true, has_volts = true, has_sideways = true;
+    bool has_program = false;  ///< halui answers program-pause and program-resume
 
     Table() {
         sdk::for_each_pin(INPUT_PINS, [&](const char *, const auto &row) { row.read(in, row.start); });
@@ -51,15 +51,15 @@ struct Table {
 
     void move() {
         in.z_offset_current = out().z_offset_counts * out().offset_scale;
-        if (hasSideways) {
+        if (has_sideways) {
             in.x_offset_current = out().x_offset_counts * out().offset_scale;
             in.y_offset_current = out().y_offset_counts * out().offset_scale;
         }
         in.axis_z_position = in.z_offset_current + z0_mu;
-        if (hasFloat) {
+        if (has_float) {
             in.float_switch = in.axis_z_position < material_mu;
         }
-        if (hasVolts) {
+        if (has_volts) {
             in.arc_voltage_in = out().torch_on ? volts : 0.0;
         }
     }
@@ -79,7 +79,7 @@ struct Table {
         }
     }
     void cycle() {
-        if (hasProgram) {
+        if (has_program) {
             answer();
         }
         move();

@@ -195,8 +195,8 @@ bool Board::execute_units(const lbp16::ReceivedCommand &received, Reply &reply) 
         }
         pointer = static_cast<std::uint16_t>(pointer + (command.incrementing ? size : 0));
     }
-    const bool isProtected = command.space == Space::EEPROM || command.space == Space::FLASH;
-    if (command.writes && isProtected) {
+    const bool is_protected = command.space == Space::EEPROM || command.space == Space::FLASH;
+    if (command.writes && is_protected) {
         set_word(memory_of(Space::CONTROL), index_of(ControlAddress::WRITE_KEY), 0);
     }
     if (log_) {
@@ -222,9 +222,9 @@ std::uint64_t Board::read_unit(const Command &command, std::uint32_t address) {
 }
 
 bool Board::mayWrite(const Command &command, std::uint32_t address) const {
-    const bool isFlash =
+    const bool is_flash =
         command.space == Space::FLASH && Flash::isProtected(static_cast<std::uint16_t>(address));
-    if (command.space != Space::EEPROM && !isFlash) {
+    if (command.space != Space::EEPROM && !is_flash) {
         return true;
     }
     return control(ControlAddress::WRITE_KEY) == KEY_BASE + index_of(command.space);
@@ -253,9 +253,9 @@ bool Board::write_unit(const Command &command, std::uint32_t address, std::uint6
 }
 
 void Board::write_control(std::uint32_t address, std::uint16_t value) {
-    const bool isReset =
+    const bool is_reset =
         address == index_of(ControlAddress::RESET) || address == index_of(ControlAddress::RELOAD);
-    if (isReset && value != 0) {
+    if (is_reset && value != 0) {
         restarts_ = true;
         return;
     }

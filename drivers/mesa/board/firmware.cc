@@ -107,9 +107,9 @@ Module *Firmware::add_module(const ModuleDescriptor &descriptor) {
 }
 
 Module *Firmware::add_inputs(const ModuleDescriptor &descriptor, std::uint32_t clock_hz) {
-    const auto count = [&](bool isOutput) {
+    const auto count = [&](bool is_output) {
         return std::ranges::count_if(idrom_.pins, [&](const PinDescriptor &pin) {
-            return pin.secondary == descriptor.gtag && ((pin.secondary_pin & OUTPUT) != 0) == isOutput;
+            return pin.secondary == descriptor.gtag && ((pin.secondary_pin & OUTPUT) != 0) == is_output;
         });
     };
     // InMux reads its inputs one after the other over one pin; its outputs are the address.
@@ -123,15 +123,15 @@ Module *Firmware::add_inputs(const ModuleDescriptor &descriptor, std::uint32_t c
 }
 
 Module *Firmware::add_uart(const ModuleDescriptor &descriptor, std::uint32_t clock_hz) {
-    const bool isPacket = descriptor.gtag == Gtag::PKT_UART_TX || descriptor.gtag == Gtag::PKT_UART_RX;
+    const bool is_packet = descriptor.gtag == Gtag::PKT_UART_TX || descriptor.gtag == Gtag::PKT_UART_RX;
     const bool transmits = descriptor.gtag == Gtag::UART_TX || descriptor.gtag == Gtag::PKT_UART_TX;
-    auto &lines = lines_[isPacket ? Gtag::PKT_UART_TX : Gtag::UART_TX];
+    auto &lines = lines_[is_packet ? Gtag::PKT_UART_TX : Gtag::UART_TX];
     if (lines == nullptr) {
         lines = std::make_shared<SerialLines>();
     }
     lines->resize(std::max<std::size_t>(lines->size(), descriptor.instances));
     const UartRole role = transmits ? UartRole::TRANSMIT : UartRole::RECEIVE;
-    if (isPacket) {
+    if (is_packet) {
         return own<PacketUartModule>(role, lines, clock_hz);
     }
     return own<UartModule>(role, lines, clock_hz);
@@ -175,9 +175,9 @@ void Firmware::map(Module &module, const ModuleDescriptor &descriptor) {
     const std::uint32_t register_stride = idrom_.header.register_strides[descriptor.register_stride];
     const std::uint32_t instance_stride = idrom_.header.instance_strides[descriptor.instance_stride];
     for (unsigned reg = 0; reg < module.registers(); ++reg) {
-        const bool isEach =
+        const bool is_each =
             module.isInEachInstance(reg) || (reg < 32 && ((descriptor.per_instance >> reg) & 1U) != 0);
-        const unsigned instances = isEach ? descriptor.instances : 1U;
+        const unsigned instances = is_each ? descriptor.instances : 1U;
         for (unsigned i = 0; i < instances; ++i) {
             const std::uint64_t address = descriptor.base_address + std::uint64_t{reg} * register_stride +
                                           std::uint64_t{i} * instance_stride;
@@ -315,9 +315,9 @@ bool Firmware::isDriven(Gtag gtag, unsigned unit) const {
     bool has = false;
     for (unsigned pin = 0; pin < idrom_.pins.size(); ++pin) {
         const PinDescriptor &descriptor = idrom_.pins[pin];
-        const bool isOutput =
+        const bool is_output =
             descriptor.secondary_pin == STEP_PIN || descriptor.secondary_pin == STEP_PIN + 1;
-        if (descriptor.secondary == gtag && descriptor.unit == unit && isOutput) {
+        if (descriptor.secondary == gtag && descriptor.unit == unit && is_output) {
             has = true;
             if (!ports_.isDrivenByModule(pin)) {
                 return false;
@@ -345,9 +345,9 @@ bool Firmware::outside_level(unsigned pin) const {
         return *level;
     }
     const PinDescriptor &descriptor = idrom_.pins[pin];
-    const bool isEncoder =
+    const bool is_encoder =
         descriptor.secondary == Gtag::ENCODER || descriptor.secondary == Gtag::MUXED_ENCODER;
-    if (isEncoder && encoder_ != nullptr && descriptor.unit < encoder_->encoders().size() &&
+    if (is_encoder && encoder_ != nullptr && descriptor.unit < encoder_->encoders().size() &&
         physics_.shaft(descriptor.unit).has_value()) {
         return (board::input_levels(encoder_->encoders()[descriptor.unit]) &
                 encoder_bit(descriptor.secondary_pin)) != 0;

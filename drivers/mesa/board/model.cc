@@ -184,16 +184,16 @@ Result<Model> parse_model(std::string_view text, const std::string &file) {
         return std::unexpected(lines.error());
     }
     Model model;
-    bool hasBoard = false;
+    bool has_board = false;
     for (TableLine &line : *lines) {
         const std::string &type = line.type();
-        if (type == "board" ? hasBoard : !hasBoard) {
-            return fail(hasBoard ? "A model has one line 'board'." : "The first line of a model is 'board'.",
+        if (type == "board" ? has_board : !has_board) {
+            return fail(has_board ? "A model has one line 'board'." : "The first line of a model is 'board'.",
                         line.place());
         }
         if (type == "board") {
             read_board(line, model);
-            hasBoard = true;
+            has_board = true;
         } else if (type == "module") {
             read_module(line, model);
         } else if (type == "pin") {
@@ -205,7 +205,7 @@ Result<Model> parse_model(std::string_view text, const std::string &file) {
             return std::unexpected(finished.error());
         }
     }
-    if (!hasBoard) {
+    if (!has_board) {
         return fail("The model is empty: the line 'board' is missing.", {file, 1, 1});
     }
     if (auto checked = check(model, file); !checked.has_value()) {

@@ -10,7 +10,7 @@ namespace mw::mesa::board {
 
 namespace {
 
-/// In one such span a PWM motor is taken as moving evenly.
+/// Time step in which a PWM motor is assumed to move uniformly.
 constexpr std::int64_t SPAN_NS = 100'000;
 /// Bounds the work of a long time without requests.
 constexpr std::int64_t MAX_SPANS = 10'000;
@@ -86,9 +86,9 @@ void Physics::advance(std::int64_t from_ns, std::int64_t to_ns, const DriveInput
         return;
     }
     step(from_ns, to_ns, inputs, on_move, MotorType::STEPPER);
-    const bool hasPwm =
+    const bool has_pwm =
         std::ranges::any_of(plan_.motors, [](const MotorPlan &one) { return one.type == MotorType::PWM; });
-    if (!hasPwm) {
+    if (!has_pwm) {
         return;
     }
     const std::int64_t spans = std::clamp((to_ns - from_ns) / SPAN_NS, std::int64_t{1}, MAX_SPANS);

@@ -54,10 +54,10 @@ std::size_t motor_of(TableLine &line, const PhysicsPlan &plan) {
 
 void read_motor(TableLine &line, PhysicsPlan &plan, const Idrom &idrom) {
     MotorPlan motor{.name = line.name()};
-    const bool isNamed = !motor.name.empty();
-    if (!isNamed || std::ranges::find(plan.motors, motor.name, &MotorPlan::name) != plan.motors.end()) {
-        line.reject("", isNamed ? fmt::format("Motor '{}' is declared twice.", motor.name)
-                                : "A motor needs a name.");
+    const bool named = !motor.name.empty();
+    if (!named || std::ranges::find(plan.motors, motor.name, &MotorPlan::name) != plan.motors.end()) {
+        line.reject("", named ? fmt::format("Motor '{}' is declared twice.", motor.name)
+                              : "A motor needs a name.");
     }
     motor.type = line.has("pwm") ? MotorType::PWM : MotorType::STEPPER;
     if (motor.type == MotorType::PWM) {

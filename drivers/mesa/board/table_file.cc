@@ -46,9 +46,9 @@ bool TableLine::has(std::string_view key) const {
     return std::ranges::find(values_, key, &TableValue::key) != values_.end();
 }
 
-TableValue *TableLine::required(std::string_view key, bool isOptional) {
+TableValue *TableLine::required(std::string_view key, bool optional) {
     TableValue *value = find(key);
-    if (value == nullptr && !isOptional) {
+    if (value == nullptr && !optional) {
         reject(key, fmt::format("'{}' needs {}=VALUE.", type_, key));
     } else if (value != nullptr) {
         value->used = true;

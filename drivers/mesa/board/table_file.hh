@@ -45,12 +45,12 @@ class TableLine {
 
     /// Keeps an error about the value of `key`, or about the line without such a value.
     void reject(std::string_view key, std::string message);
-    /// The first error; an error, too, where a value has not been read by anybody.
+    /// Returns the first error; a value that was not read is an error, too.
     Result<> finish();
 
   private:
     TableValue *find(std::string_view key);
-    TableValue *required(std::string_view key, bool isOptional);
+    TableValue *required(std::string_view key, bool optional);
 
     std::string type_, name_;
     SourcePlace place_;

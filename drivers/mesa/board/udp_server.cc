@@ -24,7 +24,7 @@ namespace {
 constexpr std::size_t MAX_DATAGRAM = 2048;
 /// Replies go to one of the hosts that sent last.
 constexpr std::size_t MAX_HOSTS = 64;
-/// A stop signal is seen after this time at the latest, should it come just before a wait [ns].
+/// Maximum delay of a stop signal that arrives just before a wait [ns].
 constexpr std::int64_t MAX_WAIT_NS = 200'000'000;
 
 class Socket {
@@ -49,7 +49,7 @@ std::int64_t monotonic_ns() {
     return now.tv_sec * NS_IN_S + now.tv_nsec;
 }
 
-/// A request with a read: what makes the virtual time pass.
+/// True for a request with a read, which advances the virtual time.
 bool hasRead(std::span<const std::byte> packet) {
     lbp16::PacketReader reader(packet);
     while (!reader.isAtEnd()) {
@@ -65,10 +65,10 @@ bool hasRead(std::span<const std::byte> packet) {
 class Hosts {
   public:
     int number_of(const sockaddr_in &address) {
-        const auto isSame = [&](const sockaddr_in &one) {
+        const auto same = [&](const sockaddr_in &one) {
             return one.sin_port == address.sin_port && one.sin_addr.s_addr == address.sin_addr.s_addr;
         };
-        const auto known = std::ranges::find_if(addresses_, isSame);
+        const auto known = std::ranges::find_if(addresses_, same);
         if (known != addresses_.end()) {
             return static_cast<int>(known - addresses_.begin());
         }
@@ -113,7 +113,7 @@ class Server {
             if (!settings_.virtual_time) {
                 wait_ns = std::clamp(*next_ns - now_ns(), std::int64_t{0}, MAX_WAIT_NS);
             } else if (*next_ns < request_ns_ + settings_.period_ns) {
-                // What happens before the next request of the host.
+                // Events before the next request of the host.
                 virtual_ns_ = std::max(virtual_ns_, *next_ns);
                 wait_ns = 0;
             }
@@ -133,7 +133,7 @@ class Server {
             if (size < 0 && (errno == EAGAIN || errno == EINTR)) {
                 return {};
             }
-            // A host that is gone: the kernel reports that an earlier reply was not accepted.
+            // A host has closed its port: the kernel reports that an earlier reply was not accepted.
             if (size < 0 && errno == ECONNREFUSED) {
                 continue;
             }

@@ -40,7 +40,7 @@ void count_outcome(const CycleTimes &cycle, CycleFigures &figures) {
 }
 
 bool hasCounters(const CycleTimes &cycle) {
-    // Without the counter it was a comparison of the board after a fault.
+    // Without the counter it was the comparison of the board after a fault.
     return cycle.board_packets != 0 &&
            (cycle.outcome == CycleOutcome::DONE || cycle.outcome == CycleOutcome::WRITE_LOST);
 }
@@ -96,7 +96,7 @@ std::vector<CycleCause> causes_of(const CycleFigures &figures) {
         causes.push_back(
             {fmt::format("The kernel did not send or receive {} packets: {}.",
                          figures.send_failed + figures.receive_failed, std::strerror(figures.error)),
-             "Look at the cable, at the address of the network card and at firewall rules: ip "
+             "Check the cable, the address of the network card and the firewall rules: ip "
              "address, nft list ruleset."});
     }
     if (figures.late_cycles > 0) {
@@ -126,7 +126,7 @@ std::vector<CycleCause> causes_of(const CycleFigures &figures) {
     if (unexplained > 0) {
         causes.push_back({fmt::format("{} answers of the board were lost on their way, or the board was off.",
                                       unexplained),
-                          "Look at the supply of the board, the cable and the connectors."});
+                          "Check the supply of the board, the cable and the connectors."});
     }
     return causes;
 }

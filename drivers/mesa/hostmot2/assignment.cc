@@ -79,8 +79,8 @@ constexpr std::uint8_t ALL_UNITS = 0x80;
 
 /// A stepgen has its step and direction pins, and as many table pins as stepgen_width= allows.
 bool isWithinWidth(const PinDescriptor &pin, const Config &config) noexcept {
-    const bool isTablePin = pin.secondary == Gtag::STEPGEN && (pin.secondary_pin & 0x80U) != 0;
-    return !isTablePin || static_cast<int>(pin.secondary_pin & 0x7FU) <= config.stepgen_width;
+    const bool is_table_pin = pin.secondary == Gtag::STEPGEN && (pin.secondary_pin & 0x80U) != 0;
+    return !is_table_pin || static_cast<int>(pin.secondary_pin & 0x7FU) <= config.stepgen_width;
 }
 
 /// Watchdog and phase-locked loop exist once; lamps are counted by the card.
@@ -91,8 +91,8 @@ int instances_of(const ModuleDescriptor &module, int leds) noexcept {
     if (module.gtag == Gtag::RESOLVER) {
         return module.instances * RESOLVER_CHANNELS;
     }
-    const bool isSingle = module.gtag == Gtag::WATCHDOG || module.gtag == Gtag::DPLL;
-    return isSingle ? 1 : module.instances;
+    const bool single = module.gtag == Gtag::WATCHDOG || module.gtag == Gtag::DPLL;
+    return single ? 1 : module.instances;
 }
 
 bool isUsed(const PinDescriptor &pin, const Assignment &assignment, const Config &config) noexcept {
@@ -106,8 +106,8 @@ bool isUsed(const PinDescriptor &pin, const Assignment &assignment, const Config
         return formats->contains(pin.unit);
     }
     return std::ranges::any_of(assignment.modules, [&](const UsedModule &module) {
-        const bool isOfIt = (pin.unit & ALL_UNITS) != 0 ? module.instances > 0 : pin.unit < module.instances;
-        return module.descriptor.gtag == pin.secondary && isOfIt;
+        const bool of_it = (pin.unit & ALL_UNITS) != 0 ? module.instances > 0 : pin.unit < module.instances;
+        return module.descriptor.gtag == pin.secondary && of_it;
     });
 }
 
@@ -135,15 +135,15 @@ Result<int> used_instances(const ModuleDescriptor &module, const Config &config,
 Result<> check_missing(const Idrom &idrom, const Config &config) {
     for (const auto &[gtag, wanted] : config.wanted) {
         const std::string_view token = token_of(gtag);
-        const bool isThere = std::ranges::any_of(
+        const bool present = std::ranges::any_of(
             idrom.modules, [&](const ModuleDescriptor &module) { return token_of(module.gtag) == token; });
-        if (wanted > 0 && !isThere) {
+        if (wanted > 0 && !present) {
             return fail(fmt::format("config: {}={}, but this firmware has 0.", token, wanted));
         }
     }
     for (const Gtag gtag : {Gtag::SSI, Gtag::BISS, Gtag::FANUC_ABSOLUTE}) {
-        const bool isThere = std::ranges::count(idrom.modules, gtag, &ModuleDescriptor::gtag) > 0;
-        if (!config.formats_of(gtag)->empty() && !isThere) {
+        const bool present = std::ranges::count(idrom.modules, gtag, &ModuleDescriptor::gtag) > 0;
+        if (!config.formats_of(gtag)->empty() && !present) {
             return fail(
                 fmt::format("config: a format of {}, but this firmware has 0 channels.", module_name(gtag)));
         }
@@ -186,17 +186,17 @@ std::string_view module_name(Gtag gtag) noexcept {
 
 Result<Assignment> assign(const Idrom &idrom, const Config &config, int leds) {
     Assignment assignment;
-    if (auto isThere = check_missing(idrom, config); !isThere) {
-        return std::unexpected(isThere.error());
+    if (auto present = check_missing(idrom, config); !present) {
+        return std::unexpected(present.error());
     }
     for (const ModuleDescriptor &module : idrom.modules) {
         const auto instances = used_instances(module, config, leds);
         if (!instances) {
             return std::unexpected(instances.error());
         }
-        const bool isSecond = std::ranges::any_of(
+        const bool is_second = std::ranges::any_of(
             assignment.modules, [&](const UsedModule &used) { return used.descriptor.gtag == module.gtag; });
-        if (isSecond) {
+        if (is_second) {
             assignment.warnings.push_back(fmt::format(
                 "Module {} (gtag {}) at 0x{:04X} is the second of its type and not used. Its pins are GPIO.",
                 module_name(module.gtag), static_cast<int>(module.gtag), module.base_address));

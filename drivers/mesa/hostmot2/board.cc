@@ -34,7 +34,7 @@ Result<std::unique_ptr<Board>> Board::make(RegisterBus &bus, const Idrom &idrom,
     for (const UsedModule &module : board->assignment_.modules) {
         board->add(idrom, config, module);
     }
-    if (config.isRawEnabled) {
+    if (config.raw_enabled) {
         board->modules_.push_back(make_raw());
     }
     for (const auto &module : board->modules_) {
@@ -100,20 +100,20 @@ Ports Board::ports() {
 
 void Board::read(long period_ns, std::int64_t now_ns) noexcept {
     const CycleRead result = bus_.read(registers_.inputs(), period_ns);
-    isFresh_ = result == CycleRead::DONE;
-    isStopped_ = result == CycleRead::STOPPED;
+    fresh_ = result == CycleRead::DONE;
+    stopped_ = result == CycleRead::STOPPED;
     // After a stop the watchdog may have bitten: nothing is written before its status has been read again.
-    isReadOnce_ = isFresh_ || (isReadOnce_ && !isStopped_);
-    isRewriteDue_ = bus_.take_rewrite() || isRewriteDue_;
-    isWriteDoubtful_ = isWriteDoubtful_ || isRewriteDue_ || !isFresh_;
-    if (!isFresh_) {
+    is_read_once_ = fresh_ || (is_read_once_ && !stopped_);
+    rewrite_due_ = bus_.take_rewrite() || rewrite_due_;
+    write_doubtful_ = write_doubtful_ || rewrite_due_ || !fresh_;
+    if (!fresh_) {
         ++failed_reads_;
         return;
     }
     Cycle cycle = cycle_of(period_ns);
-    cycle.isFresh = true;
-    cycle.hasLostWrite = isWriteDoubtful_;
-    isWriteDoubtful_ = false;
+    cycle.fresh = true;
+    cycle.has_lost_write = write_doubtful_;
+    write_doubtful_ = false;
     read_ns_ = now_ns;
     cycle.now_ns = read_ns_;
     for (const auto &module : modules_) {
@@ -121,7 +121,7 @@ void Board::read(long period_ns, std::int64_t now_ns) noexcept {
     }
     if (watchdog_ != nullptr && watchdog_->take_bite()) {
         bus_.note_watchdog_bite();
-        events_.hasBitten = true;
+        events_.bitten = true;
         events_.longest_gap_ns = longest_gap_ns_;
         events_.failed_reads = failed_reads_;
         longest_gap_ns_ = 0;
@@ -131,34 +131,34 @@ void Board::read(long period_ns, std::int64_t now_ns) noexcept {
 
 void Board::write(long period_ns, std::int64_t now_ns) noexcept {
     Cycle cycle = cycle_of(period_ns);
-    cycle.isFresh = isFresh_;
+    cycle.fresh = fresh_;
     cycle.now_ns = now_ns;
-    const bool hasBitten = watchdog_ != nullptr && watchdog_->isBitten();
-    cycle.isWriting = isReadOnce_ && !isStopped_ && !hasBitten;
+    const bool bitten = watchdog_ != nullptr && watchdog_->isBitten();
+    cycle.writing = is_read_once_ && !stopped_ && !bitten;
     for (const auto &module : modules_) {
         module->write(registers_, cycle);
     }
     for (const auto &module : modules_) {
-        events_.isDumpRequested = module->take_dump_request() || events_.isDumpRequested;
+        events_.dump_requested = module->take_dump_request() || events_.dump_requested;
     }
-    isRewriteDue_ = bus_.take_rewrite() || isRewriteDue_;
+    rewrite_due_ = bus_.take_rewrite() || rewrite_due_;
     if (watchdog_ != nullptr) {
-        isRewriteDue_ = isRewriteDue_ || watchdog_->isRewriteWanted();
-        cycle.isWriting = cycle.isWriting && !watchdog_->isBitten();
+        rewrite_due_ = rewrite_due_ || watchdog_->isRewriteWanted();
+        cycle.writing = cycle.writing && !watchdog_->isBitten();
     }
-    isFresh_ = false;  // a cycle without read() has no new inputs
-    if (!cycle.isWriting) {
-        isOutputOn_.store(false,
-                          std::memory_order_relaxed);  // the fast thread needs no other data of this one
-        isRewriteDue_ = true;
+    fresh_ = false;  // a cycle without read() has no new inputs
+    if (!cycle.writing) {
+        output_on_.store(false,
+                         std::memory_order_relaxed);  // the fast thread needs no other data of this one
+        rewrite_due_ = true;
         return;
     }
     note_timeout(period_ns);
-    const bool areAll = isRewriteDue_ && cycle.isFresh && isReadRecent(now_ns);
-    const bool isSent = bus_.write(registers_.list(areAll));
-    isRewriteDue_ = !isSent || (isRewriteDue_ && !areAll);
-    isOutputOn_.store(isSent, std::memory_order_relaxed);
-    if (isSent) {
+    const bool is_all = rewrite_due_ && cycle.fresh && isReadRecent(now_ns);
+    const bool sent = bus_.write(registers_.list(is_all));
+    rewrite_due_ = !sent || (rewrite_due_ && !is_all);
+    output_on_.store(sent, std::memory_order_relaxed);
+    if (sent) {
         note_write(now_ns);
     }
 }
@@ -171,9 +171,9 @@ bool Board::isReadRecent(std::int64_t now_ns) const noexcept {
 }
 
 void Board::note_write(std::int64_t now_ns) noexcept {
-    longest_gap_ns_ = hasWritten_ ? std::max(longest_gap_ns_, now_ns - last_write_ns_) : 0;
+    longest_gap_ns_ = written_ ? std::max(longest_gap_ns_, now_ns - last_write_ns_) : 0;
     last_write_ns_ = now_ns;
-    hasWritten_ = true;
+    written_ = true;
 }
 
 void Board::note_timeout(long period_ns) noexcept {
@@ -183,7 +183,7 @@ void Board::note_timeout(long period_ns) noexcept {
     }
     checked_timeout_ns_ = timeout_ns;
     // A cycle that is half a period late must not be a bite.
-    events_.isTimeoutShort = timeout_ns < period_ns + period_ns / 2;
+    events_.timeout_short = timeout_ns < period_ns + period_ns / 2;
 }
 
 void Board::read_gpio() noexcept {
@@ -193,7 +193,7 @@ void Board::read_gpio() noexcept {
 }
 
 void Board::write_gpio() noexcept {
-    if (hasFastGpio() && isOutputOn_.load(std::memory_order_relaxed)) {
+    if (hasFastGpio() && output_on_.load(std::memory_order_relaxed)) {
         ports_->write_immediately(bus_);
     }
 }
@@ -231,7 +231,7 @@ bool Board::describe(int line, std::span<char> text) const noexcept {
 }
 
 void Board::stop() noexcept {
-    if (watchdog_ == nullptr || !hasWritten_) {
+    if (watchdog_ == nullptr || !written_) {
         return;  // the outputs are off, or another host drives the board
     }
     // The shortest time of the watchdog passes before the next register could be written.

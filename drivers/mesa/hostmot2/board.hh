@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A board with HostMot2 firmware: its modules, its pins, and what a cycle reads and writes.
+// A board with HostMot2 firmware: its modules, its pins, and the registers that a cycle reads and writes.
 #pragma once
 
 #include <atomic>
@@ -12,26 +12,26 @@
 
 namespace mw::mesa {
 
-/// What happened to a board, for messages. Each is true once.
+/// Events of a board, for messages. Each is true once.
 struct BoardEvents {
-    bool hasBitten = false;           ///< the watchdog has turned the outputs off
+    bool bitten = false;              ///< the watchdog has turned the outputs off
     std::int64_t longest_gap_ns = 0;  ///< the longest time between two writes before it
     int failed_reads = 0;             ///< reads in a row that failed before it
-    bool isTimeoutShort = false;      ///< the time of the watchdog is less than 1.5 periods
-    bool isDumpRequested = false;     ///< a user wants describe() in the log
+    bool timeout_short = false;       ///< the time of the watchdog is less than 1.5 periods
+    bool dump_requested = false;      ///< a user requests describe() in the log
 };
 
 class Board {
   public:
-    /// Uses the modules of a firmware as the configuration says, and fixes the lists of the bus. Only smart
-    /// serial is written to, to find its cards. [while loading]
+    /// Uses the modules of a firmware by the configuration, and fixes the lists of the bus. Writes only to
+    /// smart serial, to find its cards. [while loading]
     static Result<std::unique_ptr<Board>> make(RegisterBus &bus, const Idrom &idrom, const Config &config);
 
-    /// Makes all pins and parameters. [while loading]
+    /// Creates all pins and parameters. [while loading]
     void declare(PinSpace &space);
     /// Serial interfaces for other components. [while loading]
     Ports ports();
-    /// Modules that are left out. [while loading]
+    /// Omitted modules. [while loading]
     const std::vector<std::string> &warnings() const noexcept { return assignment_.warnings; }
     const Assignment &assignment() const noexcept { return assignment_; }
 
@@ -50,10 +50,10 @@ class Board {
     /// Reads all registers; after a failure all pins keep their values. `now_ns` of the same clock as in
     /// write(). [servo thread]
     void read(long period_ns, std::int64_t now_ns) noexcept;
-    /// Writes what is due. Nothing is written before a read succeeded, nor while the watchdog has bitten.
-    /// `now_ns` of any clock measures the time between writes. [servo thread]
+    /// Writes the due registers. Nothing is written before a read has succeeded, nor while the watchdog has
+    /// bitten. `now_ns` of any clock measures the time between writes. [servo thread]
     void write(long period_ns, std::int64_t now_ns) noexcept;
-    /// What happened since the last call. [servo thread]
+    /// Events since the last call. [servo thread]
     BoardEvents take_events() noexcept;
     /// A message of a module into `text`: its length, or 0. [servo thread]
     std::size_t take_message(std::span<char> text) noexcept;
@@ -64,8 +64,8 @@ class Board {
 
     std::int64_t timeout_ns() const noexcept { return checked_timeout_ns_; }
 
-    /// Lets the watchdog bite at once, so that all outputs are off; nothing when this driver has written
-    /// nothing, as another host may drive the board. [while unloading]
+    /// Makes the watchdog bite at once, so that all outputs are off; no effect when this driver has written
+    /// nothing, because another host may control the board. [while unloading]
     void stop() noexcept;
 
   private:
@@ -81,11 +81,11 @@ class Board {
     std::vector<std::unique_ptr<Module>> modules_;
     IoPorts *ports_ = nullptr;      ///< in modules_
     Watchdog *watchdog_ = nullptr;  ///< in modules_; null: the firmware has none
-    bool isFresh_ = false, isReadOnce_ = false, isStopped_ = false, isRewriteDue_ = true;
-    bool isWriteDoubtful_ = true;  ///< since the last read that succeeded
+    bool fresh_ = false, is_read_once_ = false, stopped_ = false, rewrite_due_ = true;
+    bool write_doubtful_ = true;  ///< since the last read that succeeded
     std::int64_t last_write_ns_ = 0, read_ns_ = 0, longest_gap_ns_ = 0, checked_timeout_ns_ = 0;
-    bool hasWritten_ = false;
-    std::atomic<bool> isOutputOn_ = false;  ///< the last cycle has written; read by a faster thread
+    bool written_ = false;
+    std::atomic<bool> output_on_ = false;  ///< the last cycle has written; read by a faster thread
     int failed_reads_ = 0;
     BoardEvents events_;
 };

@@ -80,13 +80,13 @@ std::string_view nearest(std::string_view token) {
 std::optional<int> integer(std::string_view text) {
     int number = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    const bool isWhole = error == std::errc{} && end == text.data() + text.size();
-    return isWhole ? std::optional(number) : std::nullopt;
+    const bool whole = error == std::errc{} && end == text.data() + text.size();
+    return whole ? std::optional(number) : std::nullopt;
 }
 
 struct Token {
     std::string_view name, value;
-    bool hasValue = false;
+    bool has_value = false;
 };
 
 Token split(std::string_view text) {
@@ -138,12 +138,12 @@ Result<> read_token(Config &config, const Token &token) {
     if (count != std::end(COUNT_TOKENS)) {
         return read_count(config, *count, token);
     }
-    if (token.name == "firmware" && token.hasValue) {
+    if (token.name == "firmware" && token.has_value) {
         config.firmware = token.value;
         return {};
     }
     if (token.name == "enable_raw") {
-        config.isRawEnabled = !token.hasValue || token.value != "0";
+        config.raw_enabled = !token.has_value || token.value != "0";
         return {};
     }
     if (token.name == "stepgen_width") {

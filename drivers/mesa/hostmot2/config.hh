@@ -13,15 +13,15 @@
 
 namespace mw::mesa {
 
-/// A number of instances that is limited by what the firmware has.
+/// As many instances as the firmware has.
 constexpr int ALL_INSTANCES = -1;
 constexpr int MAX_SMART_SERIAL_PORTS = 4, MAX_CHANNELS = 8;
 
 struct Config {
-    std::string firmware;          ///< file to load into the board; empty: what it has
-    std::map<Gtag, int> wanted{};  ///< instances by module; what is missing uses all
+    std::string firmware;          ///< file to load into the board; empty: keep its firmware
+    std::map<Gtag, int> wanted{};  ///< instances by module; modules not listed use all
     int stepgen_width = 2;         ///< output pins of each stepgen
-    bool isRawEnabled = false;
+    bool raw_enabled = false;
     /// One character for each channel: a mode, or x for a channel that is not used. Channels without one have
     /// mode 0.
     std::array<std::string, MAX_SMART_SERIAL_PORTS> sserial_modes{};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A module of a board: which registers it needs, its pins, and what it does in a cycle.
+// A module of a board: the registers it needs, its pins, and its work in a cycle.
 #pragma once
 
 #include <memory>
@@ -13,27 +13,27 @@
 
 namespace mw::mesa {
 
-/// What all modules know of a cycle.
+/// Data of a cycle for all modules.
 struct Cycle {
     double period_s = 0.001;
-    bool isFresh = false;       ///< the inputs are of this cycle
-    bool hasLostWrite = false;  ///< in read(): a write since the last read() may not have reached the board
-    bool isWriting = false;     ///< in write(): what is requested is sent
-    std::int64_t now_ns = 0;    ///< of any clock
+    bool fresh = false;           ///< the inputs are of this cycle
+    bool has_lost_write = false;  ///< in read(): a write since the last read() may not have reached the board
+    bool writing = false;         ///< in write(): requested registers are sent
+    std::int64_t now_ns = 0;      ///< of any clock
 };
 
 class Module {
   public:
     virtual ~Module() = default;
 
-    /// Reads what it must know before it makes its pins. [while loading]
+    /// Reads data that it needs before it creates its pins. [while loading]
     virtual Result<> prepare(RegisterBus &bus) {
         (void)bus;
         return {};
     }
     /// Names the registers that it reads and writes. [while loading]
     virtual void plan(Registers &registers) = 0;
-    /// Makes its pins. [while loading]
+    /// Creates its pins. [while loading]
     virtual void declare(PinSpace &space) = 0;
     /// Adds its interfaces for other components. [while loading]
     virtual void add_ports(Ports &ports) { (void)ports; }
@@ -43,11 +43,11 @@ class Module {
     virtual void trigger() noexcept {}
     /// True once after a user requested the state of the board for the log. [servo thread]
     virtual bool take_dump_request() noexcept { return false; }
-    /// Takes the registers of this cycle; called when all are new. [servo thread]
+    /// Reads the registers of this cycle; called when all are new. [servo thread]
     virtual void read(const Registers &registers, const Cycle &cycle) noexcept = 0;
     /// Sets the registers to write. After a failed read it is called without read(). [servo thread]
     virtual void write(Registers &registers, const Cycle &cycle) noexcept = 0;
-    /// Writes what happened into `text` and returns its length, once for each event; 0: nothing happened.
+    /// Writes a message about an event into `text` and returns its length, once for each event; 0: no event.
     /// [servo thread]
     virtual std::size_t take_message(std::span<char> text) noexcept {
         (void)text;
@@ -55,7 +55,7 @@ class Module {
     }
 };
 
-/// What a module needs while it is created.
+/// Parameters for creating a module.
 struct ModuleRequest {
     const UsedModule &module;
     const Assignment &assignment;

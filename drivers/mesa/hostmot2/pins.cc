@@ -71,9 +71,9 @@ void PinBinding::store() noexcept {
         if (pin.access == Access::IN) {
             continue;
         }
-        const bool isOurs = pin.access == Access::OUT || pin.access == Access::RO;
+        const bool own = pin.access == Access::OUT || pin.access == Access::RO;
         with_type(pin.type, *pin.slot, pin.field, [&](auto &hal, auto &value) {
-            if (isOurs || bits_of(value) != pin.loaded) {
+            if (own || bits_of(value) != pin.loaded) {
                 hal = value;
             }
         });

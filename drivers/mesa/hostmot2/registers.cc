@@ -46,27 +46,27 @@ bool Registers::redirect(ReadHandle handle, std::uint16_t address) noexcept {
     return bus_->redirect(reads_[static_cast<std::size_t>(handle.index)].position, address);
 }
 
-bool Registers::isDue(const Write &write, bool areAll) noexcept {
+bool Registers::isDue(const Write &write, bool all) noexcept {
     switch (write.send) {
     case Send::ALWAYS: return true;
-    case Send::CHANGED: return areAll || !write.isWritten || write.value != write.written;
-    case Send::AFTER_FAULT: return areAll;
-    case Send::REPEATED: return write.isRequested || (areAll && write.hasBeenRequested);
+    case Send::CHANGED: return all || !write.is_written || write.value != write.written;
+    case Send::AFTER_FAULT: return all;
+    case Send::REPEATED: return write.requested || (all && write.ever_requested);
     case Send::REQUESTED: break;
     }
-    return write.isRequested;
+    return write.requested;
 }
 
-std::span<const RegisterWrite> Registers::list(bool areAll) noexcept {
+std::span<const RegisterWrite> Registers::list(bool all) noexcept {
     list_.clear();
     for (const std::uint16_t i : sequence_) {
         Write &write = writes_[i];
-        if (isDue(write, areAll)) {
+        if (isDue(write, all)) {
             list_.push_back({write.address, write.value});  // within the capacity
             write.written = write.value;
-            write.isWritten = true;
+            write.is_written = true;
         }
-        write.isRequested = false;
+        write.requested = false;
     }
     return list_;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The registers that a cycle reads and writes. While loading, modules say which registers they need; then the
-// lists are fixed. A cycle reads one list, and writes one list: all registers after a failure, else those
-// that are written in each cycle and those whose value changed.
+// The registers that a cycle reads and writes. While loading, modules request their registers; then the lists
+// are fixed. A cycle reads one list and writes one list: all registers after a failure, otherwise those that
+// are written in each cycle and those whose value changed.
 #pragma once
 
 #include <cstdint>
@@ -43,7 +43,7 @@ enum class WriteOrder : std::uint8_t {
     PORT_DIRECTION,
 };
 
-/// When a register is written.
+/// Condition for writing a register.
 enum class Send : std::uint8_t {
     ALWAYS,       ///< in each cycle
     CHANGED,      ///< when its value changed, and after a failure
@@ -65,7 +65,7 @@ class Registers {
     ReadHandle read(RegisterRange range, ReadOrder order);
     /// Writes a register; registers of one order are written in the order of these calls. [while loading]
     WriteHandle write(std::uint16_t address, WriteOrder order, Send send, std::uint32_t value = 0);
-    /// Fixes the lists. An error of the bus says why it cannot carry them. [while loading]
+    /// Fixes the lists. An error of the bus explains why it cannot carry them. [while loading]
     Result<> fix(RegisterBus &bus);
 
     /// The words that a read fills. [servo thread]
@@ -82,12 +82,12 @@ class Registers {
     void request(WriteHandle handle, std::uint32_t value) noexcept {
         Write &write = writes_[static_cast<std::size_t>(handle.index)];
         write.value = value;
-        write.isRequested = true;
-        write.hasBeenRequested = true;
+        write.requested = true;
+        write.ever_requested = true;
     }
     /// A register with Send::REPEATED is not written any more until the next request(). [servo thread]
     void forget(WriteHandle handle) noexcept {
-        writes_[static_cast<std::size_t>(handle.index)].hasBeenRequested = false;
+        writes_[static_cast<std::size_t>(handle.index)].ever_requested = false;
     }
     /// Writes to another register from now on. [servo thread]
     void set_address(WriteHandle handle, std::uint16_t address) noexcept {
@@ -96,7 +96,7 @@ class Registers {
     /// Reads another address; false: the bus cannot. [servo thread]
     bool redirect(ReadHandle handle, std::uint16_t address) noexcept;
     /// The list of this cycle; valid until the next call. Each value in it counts as written. [servo thread]
-    std::span<const RegisterWrite> list(bool areAll) noexcept;
+    std::span<const RegisterWrite> list(bool all) noexcept;
     /// Register number `i` and the value that was written last; nothing: there are fewer. A register that was
     /// never written has the value 0. [any time between cycles]
     std::optional<RegisterWrite> written(int i) const noexcept {
@@ -105,7 +105,7 @@ class Registers {
                                           {writes_[sequence_[n]].address, writes_[sequence_[n]].written})
                                     : std::nullopt;
     }
-    /// As list(), of what is written when all registers are; for tests and messages.
+    /// As list(), for the case that all registers are written; for tests and messages.
     const std::vector<RegisterRange> &ranges() const noexcept { return ranges_; }
 
   private:
@@ -120,9 +120,9 @@ class Registers {
         WriteOrder order = WriteOrder::CONFIGURATION;
         Send send = Send::CHANGED;
         std::uint32_t value = 0, written = 0;
-        bool isWritten = false, isRequested = false, hasBeenRequested = false;
+        bool is_written = false, requested = false, ever_requested = false;
     };
-    static bool isDue(const Write &write, bool areAll) noexcept;
+    static bool isDue(const Write &write, bool all) noexcept;
 
     RegisterBus *bus_ = nullptr;
     std::vector<Read> reads_;

@@ -85,9 +85,9 @@ Result<std::uint32_t> find_idrom(const RegisterReader &read) {
     }
     const std::string name = text_of((*words)[1], (*words)[2]);
     if (name != CONFIG_NAME) {
-        const bool isShown = std::ranges::all_of(name, [](char c) { return c >= ' ' && c <= '~'; });
+        const bool shown = std::ranges::all_of(name, [](char c) { return c >= ' ' && c <= '~'; });
         return fail(fmt::format("invalid config name, got '{}', expected '{}'",
-                                isShown ? name : std::string(NAME_SIZE, '?'), CONFIG_NAME));
+                                shown ? name : std::string(NAME_SIZE, '?'), CONFIG_NAME));
     }
     return (*words)[3];
 }

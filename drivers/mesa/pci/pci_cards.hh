@@ -53,10 +53,10 @@ inline constexpr PciCard PCI_CARDS[] = {
 /// The card with these numbers; nullptr: not known.
 constexpr const PciCard *find_pci_card(const PciIds &ids) noexcept {
     for (const PciCard &card : PCI_CARDS) {
-        const bool isSubsystem =
+        const bool is_subsystem =
             card.ids.vendor == MESA_VENDOR || (card.ids.subsystem_vendor == ids.subsystem_vendor &&
                                                card.ids.subsystem_device == ids.subsystem_device);
-        if (card.ids.vendor == ids.vendor && card.ids.device == ids.device && isSubsystem) {
+        if (card.ids.vendor == ids.vendor && card.ids.device == ids.device && is_subsystem) {
             return &card;
         }
     }

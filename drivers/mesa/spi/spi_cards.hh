@@ -11,11 +11,11 @@
 
 namespace mw::mesa::spi {
 
-/// A card in a row that fails five times is stopped: a single disturbed bit is no fault of the machine.
+/// A card that fails five times in a row is stopped: a single disturbed bit is not a fault of the machine.
 constexpr int MOST_FAILURES = 5;
 
-/// The card of a firmware with this name of 8 characters, such as MESA7I90. An unknown one is named as it
-/// names itself, without MESA, and its firmware describes it.
+/// The card of a firmware with this name of 8 characters, such as MESA7I90. An unknown one has its own name
+/// without MESA, and is described by its firmware.
 inline DirectCard card_of(std::string_view board_name) {
     if (board_name == "MESA7I90") {
         return {.hal_name = "7i90",
@@ -25,8 +25,8 @@ inline DirectCard card_of(std::string_view board_name) {
                 .most_failures = MOST_FAILURES};
     }
     std::string name;
-    const bool isMesa = board_name.starts_with("MESA");
-    for (const char c : isMesa ? board_name.substr(4) : board_name) {
+    const bool is_mesa = board_name.starts_with("MESA");
+    for (const char c : is_mesa ? board_name.substr(4) : board_name) {
         if (std::isalnum(static_cast<unsigned char>(c)) != 0) {
             name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
         }

@@ -185,7 +185,7 @@ TEST_F(MesaSmartSerial, AfterAnyFaultItRunsWithinASecondAndNoOutputReturnsByItse
         const auto happens = [&](double chance) { return std::bernoulli_distribution(chance)(random); };
         set("7i76.0.0.output-03", 1);
         cycle(5);
-        bool isHeld = false;
+        bool held = false;
         int faulty = 0, bursts = 0;
         for (int i = 0; i < 20'000; ++i) {
             if (happens(0.001)) {
@@ -197,22 +197,22 @@ TEST_F(MesaSmartSerial, AfterAnyFaultItRunsWithinASecondAndNoOutputReturnsByItse
             if (get("watchdog.has_bit") != 0 && happens(0.01)) {
                 set("watchdog.has_bit", 0);
             }
-            const bool isToggled = happens(0.0005);
-            if (isToggled) {
+            const bool toggled = happens(0.0005);
+            if (toggled) {
                 set("sserial.port-0.run", 0);
                 cycle(3);
                 set("sserial.port-0.run", 1);
-                isHeld = false;
+                held = false;
             }
-            const bool wasFaulty = get("sserial.port-0.fault") != 0;
+            const bool was_faulty = get("sserial.port-0.fault") != 0;
             cycle(1);
-            const bool isFaulty = get("sserial.port-0.fault") != 0;
-            bursts += isFaulty && !wasFaulty ? 1 : 0;
-            isHeld = isHeld || isFaulty;
-            const bool isBitten = get("watchdog.has_bit") != 0;
-            faulty = isFaulty && !isBitten ? faulty + 1 : 0;
+            const bool is_faulty = get("sserial.port-0.fault") != 0;
+            bursts += is_faulty && !was_faulty ? 1 : 0;
+            held = held || is_faulty;
+            const bool bitten = get("watchdog.has_bit") != 0;
+            faulty = is_faulty && !bitten ? faulty + 1 : 0;
             ASSERT_LT(faulty, 1000) << "seed " << seed << " cycle " << i;
-            if (isHeld && get("sserial.port-0.port_state") == 3) {
+            if (held && get("sserial.port-0.port_state") == 3) {
                 ASSERT_EQ(remote(0).value("Output"), 0U) << "seed " << seed << " cycle " << i;
             }
         }

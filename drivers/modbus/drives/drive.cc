@@ -46,21 +46,21 @@ bool Registers::connect() {
     if (context_ == nullptr) {
         return false;
     }
-    modbus_set_debug(context_.get(), line_.isShown ? 1 : 0);
+    modbus_set_debug(context_.get(), line_.shown ? 1 : 0);
     modbus_set_response_timeout(context_.get(), 0, ANSWER_US);
-    const bool isOpen =
+    const bool open =
         modbus_set_slave(context_.get(), line_.slave) == 0 && modbus_connect(context_.get()) == 0;
-    if (!isOpen) {
+    if (!open) {
         const int reason = errno;
         context_.reset();
         errno = reason;
     }
-    return isOpen;
+    return open;
 }
 
-bool Registers::note(bool isDone) {
+bool Registers::note(bool done) {
     const int reason = errno;
-    if (isDone) {
+    if (done) {
         if (bad_ > 0) {
             language::tell(component_ + ": the drive at " + line_.device + " answers again");
         }

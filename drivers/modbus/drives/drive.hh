@@ -22,10 +22,10 @@ struct Line {
     int baud = 19200, bits = 8, stop = 1;
     char parity = 'E';  ///< N, E, O
     int slave = 1;
-    bool isShown = false;  ///< every message on standard error
+    bool shown = false;  ///< every message on standard error
 };
 
-/// The registers of one drive. What fails is told once, until it works again.
+/// The registers of one drive. A failure is reported once, until the drive works again.
 class Registers {
   public:
     Registers(std::string component, Line line);
@@ -33,18 +33,18 @@ class Registers {
     Registers(const Registers &) = delete;
     Registers &operator=(const Registers &) = delete;
 
-    /// False: no answer, or a refusal. The line is opened anew after an error that is not the drive's.
+    /// False: no answer, or an exception. The line is opened again after an error that is not the drive's.
     bool read(int address, std::span<std::uint16_t> into);
     bool write(int address, std::uint16_t value);
 
     int errors() const { return errors_; }
-    /// Transactions since the last one that failed.
+    /// Number of transactions since the last failed one.
     int good_in_a_row() const { return good_; }
     int bad_in_a_row() const { return bad_; }
 
   private:
     bool connect();
-    bool note(bool isDone);
+    bool note(bool done);
 
     std::string component_;
     Line line_;
@@ -56,7 +56,7 @@ class Registers {
     std::chrono::steady_clock::time_point retry_{};
 };
 
-/// Makes pins and parameters COMPONENT.WHAT; what HAL refused is known at the end.
+/// Creates pins and parameters COMPONENT.NAME; reports errors of HAL at the end.
 class PinMaker {
   public:
     PinMaker(int comp_id, const std::string &component) : id_(comp_id), component_(component) {}
@@ -70,40 +70,40 @@ class PinMaker {
     void setting(hal_float_t &param, const char *what);
     void setting(hal_s32_t &param, const char *what);
 
-    bool isDone() const { return isGood_; }
+    bool isDone() const { return valid_; }
 
   private:
     void make(hal_float_t *&pin, hal_pin_dir_t way, const char *what);
     void make(hal_bit_t *&pin, hal_pin_dir_t way, const char *what);
-    void note(int result) { isGood_ = isGood_ && result == 0; }
+    void note(int result) { valid_ = valid_ && result == 0; }
 
     int id_;
     const std::string &component_;
-    bool isGood_ = true;
+    bool valid_ = true;
 };
 
-/// What the kinds of drives do differently.
+/// Interface of the types of drives.
 class Drive {
   public:
     virtual ~Drive() = default;
-    /// Pins and parameters; false: HAL does not take them.
+    /// Creates pins and parameters; false: HAL has rejected them.
     virtual bool make_pins(int comp_id, const std::string &name) = 0;
     /// One round of reading and writing.
     virtual void step(Registers &registers) = 0;
-    /// The last words to the drive when the component ends.
+    /// The last writes to the drive when the component ends.
     virtual void release(Registers &registers) = 0;
     /// Until the next step [s].
     virtual double pause_s() const = 0;
 };
 
-/// Steps until `stop` is not 0, then lets the drive go: it never runs on without its component.
+/// Steps until `stop` is not 0, then releases the drive: it never runs without its component.
 Result<> run(Drive &drive, const std::string &name, const Line &line, const volatile std::sig_atomic_t &stop);
 
-/// A speed as a register of `unit_hz` steps: 0 for what is no number, never beyond the register.
+/// A speed as a register in steps of `unit_hz`: 0 for NaN, limited to the range of the register.
 std::uint16_t frequency_word(double hz, double unit_hz);
 
-/// Whether `hz` is within `tolerance` (a part of it) of what is wanted; a drive that is to stand is at no
-/// speed.
+/// True if `hz` is within `tolerance` (a fraction) of the requested value; a drive that should be stopped is
+/// never at speed.
 bool isAtSpeed(double wanted_hz, double hz, double tolerance);
 
 }  // namespace mw::modbus::drives

@@ -14,7 +14,7 @@ constexpr int SPEED = 0x091a, RUN = 0x091b, DIRECTION = 0x091c, FAULT_RESET = 0x
 constexpr int STATE = 0x2100;
 constexpr std::size_t STATE_WORDS = 13;
 constexpr double HZ = 0.1, TENTH = 0.1, FALLBACK_DECEL_S = 20.0;
-/// So many transactions without an answer are a drive that was off: its settings are written anew.
+/// After this number of transactions without an answer the drive was off: its settings are written again.
 constexpr int LOST_AFTER = 10;
 
 struct Pins {
@@ -34,7 +34,7 @@ class Gs2 final : public Drive {
     bool make_pins(int id, const std::string &name) override;
     void step(Registers &registers) override;
     void release(Registers &registers) override {
-        if (isBegun_) {
+        if (started_) {
             static_cast<void>(registers.write(RUN, 0));
         }
     }
@@ -49,9 +49,9 @@ class Gs2 final : public Drive {
 
     Gs2Settings settings_;
     Pins *pins_ = nullptr;
-    bool isBegun_ = false;    ///< the drive has its settings and was told to stand
-    bool isRunning_ = false;  ///< it was told to run
-    bool wasOn_ = false, wasReset_ = false, isReverse_ = false;
+    bool started_ = false;  ///< the drive has its settings and a stop command
+    bool running_ = false;  ///< it has a run command
+    bool was_on_ = false, was_reset_ = false, reverse_ = false;
     std::uint16_t speed_ = 0;
     int since_change_ = 0;
 };
@@ -105,19 +105,19 @@ bool Gs2::make_pins(int id, const std::string &name) {
     return make.isDone();
 }
 
-/// Its times, how it stops, and that it stands. A spindle that was on before, or while the drive did not
-/// answer, does not start by itself: it runs when spindle-on comes anew.
+/// Writes its times, its stop mode, and a stop command. A spindle that was on before, or while the drive did
+/// not answer, does not start by itself: it runs at the next rising edge of spindle-on.
 bool Gs2::begin(Registers &registers) {
     const bool coasts = settings_.decel_s <= 0.0;
     const double decel_s = coasts ? FALLBACK_DECEL_S : settings_.decel_s;
-    isBegun_ = registers.write(ACCEL_TIME, frequency_word(settings_.accel_s, TENTH)) &&
+    started_ = registers.write(ACCEL_TIME, frequency_word(settings_.accel_s, TENTH)) &&
                registers.write(STOP_METHOD, coasts ? 1 : 0) &&
                registers.write(DECEL_TIME, frequency_word(decel_s, TENTH)) &&
-               registers.write(STALL_PREVENTION, settings_.hasBrakingResistor ? 1 : 0) &&
+               registers.write(STALL_PREVENTION, settings_.has_braking_resistor ? 1 : 0) &&
                registers.write(SPEED, 0) && registers.write(RUN, 0) && registers.write(FAULT_RESET, 0);
-    isRunning_ = false;
-    wasReset_ = false;
-    return isBegun_;
+    running_ = false;
+    was_reset_ = false;
+    return started_;
 }
 
 bool Gs2::read(Registers &registers) {
@@ -143,38 +143,38 @@ bool Gs2::read(Registers &registers) {
 }
 
 bool Gs2::write_direction(Registers &registers) {
-    const bool isReverse = !*pins_->fwd;
-    if (isRunning_ && isReverse == isReverse_) {
+    const bool reverse = !*pins_->fwd;
+    if (running_ && reverse == reverse_) {
         return true;
     }
-    isReverse_ = isReverse;
-    return registers.write(DIRECTION, isReverse ? 1 : 0);
+    reverse_ = reverse;
+    return registers.write(DIRECTION, reverse ? 1 : 0);
 }
 
 bool Gs2::command(Registers &registers) {
     Pins &p = *pins_;
-    const bool isOn = *p.spindle_on;
+    const bool on = *p.spindle_on;
     const double hz =
         p.nameplate_rpm > 0.0 ? std::abs(*p.speed_command) * p.nameplate_hz / p.nameplate_rpm : 0.0;
     const std::uint16_t speed = frequency_word(hz, HZ);
-    since_change_ = speed == speed_ && isOn == wasOn_ ? since_change_ + 1 : 0;
+    since_change_ = speed == speed_ && on == was_on_ ? since_change_ + 1 : 0;
     speed_ = speed;
-    bool isDone = registers.write(SPEED, speed);
-    if (isDone && isOn && (isRunning_ || !wasOn_)) {
-        isDone = write_direction(registers) && (isRunning_ || registers.write(RUN, 1));
-        isRunning_ = isDone;
-    } else if (isDone && !isOn && isRunning_) {
-        isDone = registers.write(RUN, 0);
-        isRunning_ = !isDone;
+    bool done = registers.write(SPEED, speed);
+    if (done && on && (running_ || !was_on_)) {
+        done = write_direction(registers) && (running_ || registers.write(RUN, 1));
+        running_ = done;
+    } else if (done && !on && running_) {
+        done = registers.write(RUN, 0);
+        running_ = !done;
     }
-    if (isDone) {
-        wasOn_ = isOn;
+    if (done) {
+        was_on_ = on;
     }
-    if (isDone && *p.err_reset != wasReset_) {
-        isDone = registers.write(FAULT_RESET, *p.err_reset ? 1 : 0);
-        wasReset_ = isDone ? static_cast<bool>(*p.err_reset) : wasReset_;
+    if (done && *p.err_reset != was_reset_) {
+        done = registers.write(FAULT_RESET, *p.err_reset ? 1 : 0);
+        was_reset_ = done ? static_cast<bool>(*p.err_reset) : was_reset_;
     }
-    return isDone;
+    return done;
 }
 
 void Gs2::show_lost() {
@@ -184,26 +184,26 @@ void Gs2::show_lost() {
 
 void Gs2::step(Registers &registers) {
     Pins &p = *pins_;
-    bool isDone = true;
+    bool done = true;
     if (!*p.enable) {
-        isDone = !isBegun_ || registers.write(RUN, 0);
-        isBegun_ = !isDone;
-        isRunning_ = false;
-        wasOn_ = *p.spindle_on;
+        done = !started_ || registers.write(RUN, 0);
+        started_ = !done;
+        running_ = false;
+        was_on_ = *p.spindle_on;
         show_lost();
-    } else if (!isBegun_) {
+    } else if (!started_) {
         show_lost();
-        isDone = begin(registers);
-        wasOn_ = isDone ? wasOn_ : static_cast<bool>(*p.spindle_on);
+        done = begin(registers);
+        was_on_ = done ? was_on_ : static_cast<bool>(*p.spindle_on);
     } else {
-        isDone = read(registers) && command(registers);
-        *p.initialized = isDone;
-        *p.at_speed = isDone && isRunning_ && since_change_ > p.ack_delay &&
+        done = read(registers) && command(registers);
+        *p.initialized = done;
+        *p.at_speed = done && running_ && since_change_ > p.ack_delay &&
                       isAtSpeed(speed_ * HZ, *p.freq_out, p.tolerance);
-        isBegun_ = registers.bad_in_a_row() < LOST_AFTER;
+        started_ = registers.bad_in_a_row() < LOST_AFTER;
     }
     p.error_count = registers.errors();
-    p.retval = isDone ? 1 : -1;
+    p.retval = done ? 1 : -1;
 }
 
 }  // namespace

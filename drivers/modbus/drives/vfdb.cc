@@ -32,7 +32,7 @@ class Vfdb final : public Drive {
     bool make_pins(int id, const std::string &name) override;
     void step(Registers &registers) override;
     void release(Registers &registers) override {
-        if (wasReached_) {
+        if (was_reached_) {
             static_cast<void>(registers.write(COMMAND, STOP) && registers.write(COMMAND, RELEASED));
         }
     }
@@ -49,8 +49,8 @@ class Vfdb final : public Drive {
     Pins *pins_ = nullptr;
     int rounds_ = 0;
     double wanted_hz_ = 0.0;
-    bool isRunning_ = false, wasReached_ = false;
-    bool mustBeOff_ = false;  ///< the drive was gone: it does not start by itself when it is back
+    bool running_ = false, was_reached_ = false;
+    bool off_required_ = false;  ///< the drive did not answer: it does not start by itself afterwards
 };
 
 bool Vfdb::make_pins(int id, const std::string &name) {
@@ -134,7 +134,7 @@ bool Vfdb::read_seldom(Registers &registers) {
 bool Vfdb::command(Registers &registers) {
     Pins &p = *pins_;
     if (!*p.enable) {
-        isRunning_ = false;
+        running_ = false;
         wanted_hz_ = 0.0;
         return registers.write(COMMAND, RELEASED);
     }
@@ -143,25 +143,25 @@ bool Vfdb::command(Registers &registers) {
     const double rpm = std::fmin(std::abs(asked), limit);
     wanted_hz_ = p.nameplate_rpm > 0.0 ? rpm * p.nameplate_hz / p.nameplate_rpm : 0.0;
     const std::uint16_t way = asked < 0.0 ? REVERSE : FORWARD;
-    mustBeOff_ = mustBeOff_ && *p.spindle_on;
-    isRunning_ = *p.spindle_on && !mustBeOff_;
-    const std::uint16_t act = !isRunning_ ? STOP : *p.jog ? JOG : RUN;
+    off_required_ = off_required_ && *p.spindle_on;
+    running_ = *p.spindle_on && !off_required_;
+    const std::uint16_t act = !running_ ? STOP : *p.jog ? JOG : RUN;
     *p.freq_cmd = wanted_hz_;
-    // The speed first: a drive that is told to run takes the last one that it has.
+    // The speed first: a drive with a run command uses its last speed.
     return registers.write(SPEED, frequency_word(wanted_hz_, HZ)) &&
-           registers.write(COMMAND, static_cast<std::uint16_t>(act | (isRunning_ ? way : FORWARD)));
+           registers.write(COMMAND, static_cast<std::uint16_t>(act | (running_ ? way : FORWARD)));
 }
 
 void Vfdb::step(Registers &registers) {
     Pins &p = *pins_;
-    const bool isDone = read(registers) && command(registers);
-    wasReached_ = wasReached_ || isDone;
-    *p.at_speed = isDone && isRunning_ && !*p.jog && isAtSpeed(wanted_hz_, *p.freq_out, p.tolerance);
-    *p.modbus_ok = isDone && registers.good_in_a_row() >= GOOD_IN_A_ROW;
+    const bool done = read(registers) && command(registers);
+    was_reached_ = was_reached_ || done;
+    *p.at_speed = done && running_ && !*p.jog && isAtSpeed(wanted_hz_, *p.freq_out, p.tolerance);
+    *p.modbus_ok = done && registers.good_in_a_row() >= GOOD_IN_A_ROW;
     *p.error_count = registers.errors();
     if (registers.bad_in_a_row() >= LOST_AFTER) {
-        *p.freq_limit = 0.0;  // it may be set anew when it is back
-        mustBeOff_ = true;
+        *p.freq_limit = 0.0;  // it may have another limit afterwards
+        off_required_ = true;
     }
 }
 

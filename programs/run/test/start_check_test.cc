@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What is refused before the start, and what is only said (D1).
+// Errors that are rejected before the start, and warnings (D1).
 #include <unistd.h>
 
 #include <filesystem>
@@ -49,7 +49,7 @@ class StartCheckTest : public testing::Test {
 TEST_F(StartCheckTest, AProgramWithoutErrorsStarts) {
     const StartCheck found = check("G21 G90 F600\nG1 X10\nM2\n");
     EXPECT_FALSE(found.isRefused) << said();
-    EXPECT_TRUE(found.isWhole);
+    EXPECT_TRUE(found.whole);
     ASSERT_TRUE(found.time.has_value());
     EXPECT_NEAR(found.time->total_s, 1.0, 0.05);
 }
@@ -62,7 +62,7 @@ TEST_F(StartCheckTest, AnErrorFarAheadRefuses) {
     EXPECT_TRUE(check(program + "G1 X1 X2\nM2\n").isRefused);
     EXPECT_NE(said().find("p.ngc:3002:"), std::string::npos) << said();
     EXPECT_TRUE(check(program + "G1 X1000\nM2\n").isRefused);
-    EXPECT_NE(said().find("beyond the upper limit"), std::string::npos) << said();
+    EXPECT_NE(said().find("outside the upper limit"), std::string::npos) << said();
 }
 
 TEST_F(StartCheckTest, WhatDependsOnTheMachineIsSaidNotRefused) {
@@ -100,7 +100,7 @@ TEST_F(StartCheckTest, ProgramsWithoutEndAreReadUpToTheLimit) {
     options.most_blocks = 20000;
     const StartCheck found = check("G21 G90 F600\no1 while [1]\nG1 X10\nG1 X0\no1 endwhile\nM2\n", options);
     EXPECT_FALSE(found.isRefused) << said();
-    EXPECT_FALSE(found.isWhole);
+    EXPECT_FALSE(found.whole);
     EXPECT_GE(found.blocks, options.most_blocks);
     EXPECT_LT(found.blocks, options.most_blocks + 10000);
 }
@@ -108,7 +108,7 @@ TEST_F(StartCheckTest, ProgramsWithoutEndAreReadUpToTheLimit) {
 TEST_F(StartCheckTest, BlockDeleteIsAsTheRunHasIt) {
     EXPECT_FALSE(check("G21 G90 F600\n/G1 X1000\nM2\n").isRefused);
     StartCheckOptions off;
-    off.isBlockDeleteOn = false;
+    off.block_delete_on = false;
     EXPECT_TRUE(check("G21 G90 F600\n/G1 X1000\nM2\n", off).isRefused);
 }
 
@@ -121,7 +121,7 @@ TEST_F(StartCheckTest, ItBeginsWhereTheMachineStandsAfterHoming) {
     }
     EXPECT_TRUE(check("G21 G91 F600\nG1 X60\nM2\n").isRefused);
     EXPECT_FALSE(check("G21 G91 F600\nG1 X-60\nM2\n").isRefused) << said();
-    // A half circle about X190, which has its centre from where the machine stands.
+    // A half circle about X190, relative to the machine's start position.
     EXPECT_FALSE(check("G21 G90 G17 F600\nG2 X180 Y0 I-10 J0\nM2\n").isRefused) << said();
 }
 

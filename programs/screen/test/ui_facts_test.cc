@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What a screen is told of the machine, from its INI file (J1).
+// The facts about the machine that a screen receives, from its INI file (J1).
 #include <signal.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -58,7 +58,7 @@ class UiMachine : public testing::Test {
     }
     ~UiMachine() override { fs::remove_all(folder_); }
 
-    /// A machine of ours with more lines in sections of its own.
+    /// One of our machines with additional lines in separate sections.
     std::unique_ptr<machine::LoadedConfig> load(const std::string &ini, const std::string &display = "",
                                                 const std::string &more = "") {
         const fs::path path = folder_ / "machine.ini";
@@ -185,10 +185,10 @@ TEST_F(UiMachine, TheKindOfMachineAndItsGeometryAreSaid) {
     EXPECT_FALSE(path_look(facts("mill_xyza", "GEOMETRY = AXYZ\n")).geometry.isPlain());
     EXPECT_EQ(sink_.all().size(), 0U);
     EXPECT_EQ(facts("mill_xyza", "GEOMETRY = AX9\nMACHINE_TYPE_HINT = PRESS\n").look.geometry, "XYZABCUVW");
-    EXPECT_EQ(sink_.all().size(), 2U) << "what is not known is told";
+    EXPECT_EQ(sink_.all().size(), 2U) << "unknown keys are reported";
 }
 
-/// All that is made, until the end.
+/// All pieces until the end.
 std::string all_of(screen::PieceQueue &pieces) {
     std::string bytes, piece;
     while (true) {
@@ -223,7 +223,7 @@ TEST_F(UiMachine, AProgramIsReadAsItsPath) {
     EXPECT_EQ(bytes.size() % 4, 0U);
 }
 
-/// What the stream of times has: seconds of each line, the last point, the text at its end.
+/// Content of the stream of times: seconds of each line, the last point, the text at its end.
 struct Times {
     std::map<std::uint32_t, double> by_line;
     std::map<std::uint32_t, float> speeds;
@@ -297,7 +297,7 @@ TEST_F(UiMachine, AProgramWithErrorsHasNoTime) {
     EXPECT_NE(times.error.find("p.ngc:3"), std::string::npos);
 }
 
-/// What a filter of this shell script tells, and the program it has made.
+/// Output of a filter with this shell script, and the program it has made.
 class Filter : public UiMachine {
   protected:
     std::string run(const std::string &script,
@@ -365,7 +365,7 @@ TEST_F(Filter, EndsWithAllThatItHasStartedWhenNobodyWaits) {
     const int pid = std::stoi(read_file(mark).value_or("0"));
     ASSERT_GT(pid, 0);
     while (::kill(pid, 0) == 0) {
-        std::this_thread::yield();  // until it is gone, or the test's time is over
+        std::this_thread::yield();  // until it has ended, or the test times out
     }
     EXPECT_EQ(made(), "none");
     EXPECT_EQ(files_beside(), 0U);

@@ -36,8 +36,8 @@ Result<Canvas> Canvas::open(const std::string &path, double width, double height
     }
     Canvas canvas;
     canvas.path_ = path;
-    canvas.isPng_ = isPng(path);
-    canvas.surface_.reset(canvas.isPng_
+    canvas.is_png_ = isPng(path);
+    canvas.surface_.reset(canvas.is_png_
                               ? cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(width),
                                                            static_cast<int>(height))
                               : cairo_svg_surface_create(path.c_str(), width, height));
@@ -53,7 +53,7 @@ Result<Canvas> Canvas::open(const std::string &path, double width, double height
 Result<> Canvas::write() {
     context_.reset();
     cairo_status_t status = CAIRO_STATUS_SUCCESS;
-    if (isPng_) {
+    if (is_png_) {
         status = cairo_surface_write_to_png(surface_.get(), path_.c_str());
     } else {
         cairo_surface_finish(surface_.get());

@@ -13,10 +13,11 @@ namespace mw::charts {
 
 class Canvas {
   public:
-    /// A white picture of so many pixels that will be `path`: .png or .svg. An error for any other ending.
+    /// An empty white picture [pixels] for the file `path`: .png or .svg. Any other extension is an error.
     static Result<Canvas> open(const std::string &path, double width, double height);
 
-    /// What open() and write() would refuse: another ending, a folder that is not there or not writable.
+    /// Checks what open() and write() would reject: another extension, a folder that does not exist or is not
+    /// writable.
     static Result<> check(const std::string &path);
 
     cairo_t *cairo() const noexcept { return context_.get(); }
@@ -37,7 +38,7 @@ class Canvas {
         void operator()(cairo_t *context) const { cairo_destroy(context); }
     };
     std::string path_;
-    bool isPng_ = false;
+    bool is_png_ = false;
     std::unique_ptr<cairo_surface_t, FreeSurface> surface_;
     std::unique_ptr<cairo_t, FreeContext> context_;
 };

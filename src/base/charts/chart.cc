@@ -31,7 +31,7 @@ struct Range {
 };
 
 Range range_of(const Curve &curve) {
-    if (curve.isDigital) {
+    if (curve.digital) {
         return {-0.15, 1.15};
     }
     Range range{1e300, -1e300};
@@ -56,12 +56,12 @@ struct Frame {
     double py(double value) const { return top + height - (value - y.low) / (y.high - y.low) * height; }
 };
 
-void draw_grid(const Canvas &canvas, const Frame &frame, bool hasTicks) {
+void draw_grid(const Canvas &canvas, const Frame &frame, bool has_ticks) {
     canvas.set_color(0.88, 0.88, 0.88);
     for (const double x : round_ticks(frame.x.low, frame.x.high, 10)) {
         canvas.line(frame.px(x), frame.top, frame.px(x), frame.top + frame.height, 0.7);
     }
-    if (hasTicks) {
+    if (has_ticks) {
         for (const double y : round_ticks(frame.y.low, frame.y.high, 4)) {
             canvas.set_color(0.88, 0.88, 0.88);
             canvas.line(frame.left, frame.py(y), frame.left + frame.width, frame.py(y), 0.7);
@@ -81,19 +81,19 @@ void draw_curve(const Canvas &canvas, const Frame &frame, const std::vector<doub
     cairo_t *cr = canvas.cairo();
     canvas.set_color(color.red, color.green, color.blue);
     cairo_set_line_width(cr, 1.3);
-    bool isDown = false;
+    bool down = false;
     double last_y = 0;
     for (std::size_t i = 0; i < times.size() && i < curve.values.size(); ++i) {
         if (!std::isfinite(curve.values[i])) {
-            isDown = false;
+            down = false;
             continue;
         }
         const double x = frame.px(times[i]), y = frame.py(curve.values[i]);
-        if (isDown && curve.isDigital) {
+        if (down && curve.digital) {
             cairo_line_to(cr, x, last_y);
         }
-        (isDown ? cairo_line_to : cairo_move_to)(cr, x, y);
-        isDown = true;
+        (down ? cairo_line_to : cairo_move_to)(cr, x, y);
+        down = true;
         last_y = y;
     }
     cairo_stroke(cr);
@@ -170,7 +170,7 @@ std::vector<double> round_ticks(double low, double high, int wanted) {
 Result<> draw_strips(const StripChart &chart, const std::string &path) {
     double height = TOP + BOTTOM;
     for (const Curve &curve : chart.curves) {
-        height += (curve.isDigital ? DIGITAL_STRIP : STRIP) + GAP;
+        height += (curve.digital ? DIGITAL_STRIP : STRIP) + GAP;
     }
     auto canvas = Canvas::open(path, WIDTH, height);
     if (!canvas) {
@@ -188,10 +188,10 @@ Result<> draw_strips(const StripChart &chart, const std::string &path) {
     double top = TOP;
     for (std::size_t i = 0; i < chart.curves.size(); ++i) {
         const Curve &curve = chart.curves[i];
-        const double strip = curve.isDigital ? DIGITAL_STRIP : STRIP;
+        const double strip = curve.digital ? DIGITAL_STRIP : STRIP;
         const Frame frame{LEFT, top, WIDTH - LEFT - RIGHT, strip, times, range_of(curve)};
         const Color color = COLORS[i % COLORS.size()];
-        draw_grid(*canvas, frame, !curve.isDigital);
+        draw_grid(*canvas, frame, !curve.digital);
         if (chart.trigger_s >= times.low && chart.trigger_s <= times.high) {
             canvas->set_color(0.9, 0.1, 0.1, 0.6);
             canvas->line(frame.px(chart.trigger_s), top, frame.px(chart.trigger_s), top + strip, 1.0);

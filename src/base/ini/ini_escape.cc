@@ -41,7 +41,7 @@ void put_utf8(std::uint32_t code, std::string &out) {
     }
 }
 
-/// The length of the UTF-8 character at the start of `text`; 0 when there is no valid one.
+/// Length of the UTF-8 character at the start of `text`; 0 when it is not valid.
 std::size_t utf8_length(std::string_view text) {
     const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
     const unsigned first = byte(0);
@@ -56,11 +56,11 @@ std::size_t utf8_length(std::string_view text) {
         }
         code = (code << 6) | (byte(i) & 0x3FU);
     }
-    const bool isOverlong = (length == 3 && code < 0x800) || (length == 4 && code < 0x10000);
-    return isOverlong || isSurrogate(code) || code >= END_OF_UNICODE ? 0 : length;
+    const bool overlong = (length == 3 && code < 0x800) || (length == 4 && code < 0x10000);
+    return overlong || isSurrogate(code) || code >= END_OF_UNICODE ? 0 : length;
 }
 
-/// Reads a value from its start to its end; the first fault ends it.
+/// Decodes a value from start to end; stops at the first error.
 class Decoder {
   public:
     explicit Decoder(std::string_view text) : rest_(text) {}
@@ -207,11 +207,11 @@ std::string encode_ini_value(std::string_view value) {
     for (std::size_t i = 0; i < value.size(); ++i) {
         const char c = value[i];
         const auto at = NAMED.find(c);
-        const bool isEnd = i == 0 || i + 1 == value.size();
-        const bool isContinuation = c == '\\' && i + 1 == value.size();  // it would be one
-        if (at != NAMED.npos && !isContinuation) {
+        const bool is_end = i == 0 || i + 1 == value.size();
+        const bool is_continuation = c == '\\' && i + 1 == value.size();  // it would be one
+        if (at != NAMED.npos && !is_continuation) {
             out += {'\\', LETTERS[at]};
-        } else if ((c == ' ' && isEnd) || (c >= 0 && c < ' ') || c == '\x7f' || isContinuation) {
+        } else if ((c == ' ' && is_end) || (c >= 0 && c < ' ') || c == '\x7f' || is_continuation) {
             out += fmt::format("\\x{:02x}", static_cast<unsigned>(c));
         } else {
             out += c;

@@ -22,7 +22,7 @@ namespace mw::ini {
 namespace {
 
 constexpr int MAX_INCLUDE_DEPTH = 16;
-constexpr std::size_t LONGEST_LINE = 65536;  // with the lines that continue it [bytes]
+constexpr std::size_t LONGEST_LINE = 65536;  // including its continuation lines [bytes]
 
 std::string folder_of(const std::string &path) {
     const auto slash = path.rfind('/');
@@ -32,16 +32,16 @@ std::string folder_of(const std::string &path) {
     return slash == 0 ? "/" : path.substr(0, slash);
 }
 
-/// A pipe or a device may never end, so only files are read.
+/// Pipes and devices may never end, so only regular files are read.
 Result<std::string> read_settings(const std::string &path) {
     constexpr std::size_t LONGEST = 64U << 20U;
     return read_file(path, LONGEST);
 }
 
-/// Why a file cannot be read, as scripts know it from inivalue.
+/// Why a file cannot be read, in the words of LinuxCNC's inivalue, which scripts compare.
 std::string unreadable(const std::string &path, const Error &error) {
     if (::access(path.c_str(), R_OK) == 0) {
-        return error.message;  // it is there, but no file of settings
+        return error.message;  // the file exists but is not a file of settings
     }
     const int cause = errno;
     return fmt::format("Cannot open ini-file (errno={} ({}))", cause, std::generic_category().message(cause));
@@ -57,17 +57,17 @@ std::string expand_home(std::string_view name) {
 
 }  // namespace
 
-/// Reads lines into an IniFile; one instance for a file and all that it includes.
+/// Reads lines into an IniFile; one instance for a file and its includes.
 class IniParser {
   public:
     IniParser(IniFile &file, diagnostics::Sink &sink, IniSyntax syntax)
-        : file_(file), sink_(sink), isStrict_(syntax == IniSyntax::STRICT), told_(sink.all().size()) {}
+        : file_(file), sink_(sink), strict_(syntax == IniSyntax::STRICT), told_(sink.all().size()) {}
 
     void text(std::string_view text, const std::string &path, int depth) {
         int line = 0;
         text = without_byte_order_mark(text);
         open_.push_back(path);
-        while (!text.empty() && !isStopped_) {
+        while (!text.empty() && !stopped_) {
             ++line;
             const int first_line = line;
             std::string joined = take_line(text);
@@ -92,10 +92,10 @@ class IniParser {
         return line;
     }
 
-    /// The first fault of a strict reading is its last.
+    /// Strict reading ends at the first error.
     void stop(std::string message, const SourcePlace &place) {
         sink_.error(std::move(message), place);
-        isStopped_ = true;
+        stopped_ = true;
     }
 
     void one_line(const std::string &line, SourcePlace place, int depth) {
@@ -112,14 +112,14 @@ class IniParser {
         } else {
             entry(line, body, place);
         }
-        if (!isStopped_ && sink_.all().size() - told_ >= diagnostics::MOST_OF_A_FILE) {
+        if (!stopped_ && sink_.all().size() - told_ >= diagnostics::MOST_OF_A_FILE) {
             stop("too many wrong lines: the rest is not read", place);
         }
     }
 
     void too_long(const SourcePlace &place) {
         const std::string message = fmt::format("a line has more than {} characters", LONGEST_LINE);
-        if (isStrict_) {
+        if (strict_) {
             stop(message, place);
         } else {
             sink_.error(message, place);
@@ -127,31 +127,31 @@ class IniParser {
     }
 
     void section(std::string_view body, const SourcePlace &place) {
-        if (const auto fault = isStrict_ ? fault_of_header(body) : std::nullopt) {
+        if (const auto fault = strict_ ? fault_of_header(body) : std::nullopt) {
             stop(*fault, place);
             return;
         }
         const auto end = body.find(']');
         const std::string_view name = end == std::string_view::npos ? "" : trim(body.substr(1, end - 1));
         const std::string_view rest = end == std::string_view::npos ? "" : trim(body.substr(end + 1));
-        const bool isCommentAfter = rest.empty() || rest[0] == '#' || rest[0] == ';';
-        if (isStrict_) {
-            strict_section(std::string(name), !isCommentAfter, place);
+        const bool is_comment_after = rest.empty() || rest[0] == '#' || rest[0] == ';';
+        if (strict_) {
+            strict_section(std::string(name), !is_comment_after, place);
             return;
         }
-        if (name.empty() || !isCommentAfter) {
+        if (name.empty() || !is_comment_after) {
             sink_.error("malformed section header '" + std::string(body) + "'", place, "expected [SECTION]");
             section_.clear();
-            isInBadSection_ = true;
+            in_bad_section_ = true;
             return;
         }
         section_ = name;
-        isInBadSection_ = false;
+        in_bad_section_ = false;
         file_.add_section(section_, place);
     }
 
-    void strict_section(const std::string &name, bool hasMore, const SourcePlace &place) {
-        if (hasMore) {
+    void strict_section(const std::string &name, bool has_more, const SourcePlace &place) {
+        if (has_more) {
             sink_.warning("Section header has trailing content, ignored", place);
         }
         section_ = name;
@@ -181,19 +181,19 @@ class IniParser {
     }
 
     void entry(const std::string &line, std::string_view body, SourcePlace place) {
-        if (isStrict_ && line.back() == '\\') {
+        if (strict_ && line.back() == '\\') {
             stop("Last line has a continuation", place);
             return;
         }
-        if (isStrict_) {
+        if (strict_) {
             strict_entry(body, place);
             return;
         }
         const auto equals = body.find('=');
         const std::string_view key = equals == std::string_view::npos ? "" : trim(body.substr(0, equals));
-        const bool isOneWord = equals == std::string_view::npos && body.find_first_of(" \t") == body.npos;
-        if (isOneWord) {
-            // A setting needs a value, so nothing that could have been meant is lost with it.
+        const bool is_one_word = equals == std::string_view::npos && body.find_first_of(" \t") == body.npos;
+        if (is_one_word) {
+            // A setting needs a value, so the warning loses nothing.
             sink_.warning("'" + std::string(body) + "' is no setting; the line has no effect", place,
                           "expected KEY = VALUE, [SECTION], or a comment that starts with # or ;");
             return;
@@ -204,11 +204,11 @@ class IniParser {
             return;
         }
         if (section_.empty()) {
-            if (!isInBadSection_ && !file_.early_key_) {
+            if (!in_bad_section_ && !file_.early_key_) {
                 file_.early_key_ = IniEntry{"", std::string(key), "", place};
             }
-            if (!isInBadSection_) {
-                sink_.error("'" + std::string(key) + "' stands before the first [SECTION]", place);
+            if (!in_bad_section_) {
+                sink_.error("'" + std::string(key) + "' is before the first [SECTION]", place);
             }
             return;
         }
@@ -219,7 +219,7 @@ class IniParser {
     }
 
     void include(std::string_view name, const SourcePlace &place, int depth) {
-        if (name.empty() && isStrict_) {
+        if (name.empty() && strict_) {
             stop("Missing filename after #INCLUDE", place);
             return;
         }
@@ -233,16 +233,16 @@ class IniParser {
         }
         std::string path = expand_home(name);
         if (path.front() != '/') {
-            const bool isHere = place.file.find('/') == std::string::npos;
-            const std::string beside = isHere ? path : folder_of(place.file) + '/' + path;
+            const bool here = place.file.find('/') == std::string::npos;
+            const std::string beside = here ? path : folder_of(place.file) + '/' + path;
             path = ::access(beside.c_str(), R_OK) == 0 ? beside : path;
         }
-        if (isStrict_ && isOpen(path)) {
+        if (strict_ && isOpen(path)) {
             stop("Include file recursion on loading '" + path + "'", place);
             return;
         }
         const auto content = read_settings(path);
-        if (!content.has_value() && isStrict_) {
+        if (!content.has_value() && strict_) {
             stop(unreadable(path, content.error()), {path, 0, 0});
             return;
         }
@@ -262,12 +262,12 @@ class IniParser {
 
     IniFile &file_;
     diagnostics::Sink &sink_;
-    bool isStrict_;
-    std::size_t told_;  ///< messages before this file
-    bool isStopped_ = false;
-    std::vector<std::string> open_{};  ///< the file being read, after those that include it
+    bool strict_;
+    std::size_t told_;  ///< messages of earlier files
+    bool stopped_ = false;
+    std::vector<std::string> open_{};  ///< the file being read; before it the files that include it
     std::string section_;
-    bool isInBadSection_ = false;
+    bool in_bad_section_ = false;
 };
 
 Result<IniFile> IniFile::load(const std::string &path, diagnostics::Sink &sink, IniSyntax syntax) {
@@ -332,8 +332,8 @@ bool IniFile::hasSection(std::string_view section) const {
 
 const IniEntry *IniFile::find(std::string_view section, std::string_view key, int number) const {
     const std::vector<std::size_t> *const all = indices(section, key);
-    const bool isThere = all != nullptr && number >= 1 && static_cast<std::size_t>(number) <= all->size();
-    return isThere ? &entries_[(*all)[static_cast<std::size_t>(number - 1)]] : nullptr;
+    const bool present = all != nullptr && number >= 1 && static_cast<std::size_t>(number) <= all->size();
+    return present ? &entries_[(*all)[static_cast<std::size_t>(number - 1)]] : nullptr;
 }
 
 std::vector<const IniEntry *> IniFile::find_all(std::string_view section, std::string_view key) const {

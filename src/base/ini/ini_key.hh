@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A key of an INI file, declared once: reading it, finding unknown ones and the reference page follow from
-// it (docs/reference/ini.md).
+// A key of an INI file, declared once. Reading, the check for unknown keys and the reference page
+// (docs/reference/ini.md) use the declaration.
 #pragma once
 
 #include <cstdint>
@@ -13,25 +13,26 @@ namespace mw::ini {
 enum class IniKind : std::uint8_t { TEXT, LIST, NUMBER, WHOLE, FLAG, CHOICE };
 
 enum class IniEffect : std::uint8_t {
-    EFFECTIVE,  ///< this version acts on it
+    EFFECTIVE,  ///< this version uses it
     ELSEWHERE,  ///< HAL files, displays or other programs read it
-    NONE,       ///< users of such controllers know it, and nothing acts on it: said where it is set
+    NONE,       ///< known from LinuxCNC, without effect here: reported where it is set
 };
 
 struct IniKey {
-    /// "JOINT_*" stands for JOINT_0, JOINT_1 ...; "AXIS_*" for AXIS_X ...; "SPINDLE_*" likewise.
+    /// "JOINT_*" means JOINT_0, JOINT_1 ...; "AXIS_*" means AXIS_X ...; likewise "SPINDLE_*".
     std::string_view section;
     std::string_view name;
     IniKind kind = IniKind::TEXT;
     std::string_view unit{};
     double lowest = -std::numeric_limits<double>::infinity();
     double highest = std::numeric_limits<double>::infinity();
-    double preset = 0;         ///< of a NUMBER, WHOLE or FLAG
-    std::string_view text{};   ///< preset of a TEXT or CHOICE
-    std::string_view words{};  ///< of a CHOICE, separated by blanks; without effect: words that lose nothing
-    bool isRequired = false;
+    double preset = 0;         ///< default of a NUMBER, WHOLE or FLAG
+    std::string_view text{};   ///< default of a TEXT or CHOICE
+    std::string_view words{};  ///< words of a CHOICE, separated by blanks; of a key without effect: values
+                               ///< that need no warning
+    bool required = false;
     IniEffect effect = IniEffect::EFFECTIVE;
-    std::string_view doc{};  ///< what it says; without effect: why it has none
+    std::string_view doc{};  ///< description; for a key without effect: the reason
 };
 
 inline constexpr double INI_UNBOUNDED = std::numeric_limits<double>::infinity();
@@ -40,7 +41,7 @@ constexpr IniKey ini_text(std::string_view section, std::string_view name, std::
                           std::string_view preset = {}) {
     return {.section = section, .name = name, .text = preset, .doc = doc};
 }
-/// May be given several times.
+/// May be set several times.
 constexpr IniKey ini_list(std::string_view section, std::string_view name, std::string_view doc) {
     return {.section = section, .name = name, .kind = IniKind::LIST, .doc = doc};
 }
@@ -81,19 +82,19 @@ constexpr IniKey ini_choice(std::string_view section, std::string_view name, std
             .doc = doc};
 }
 constexpr IniKey ini_required(IniKey key) {
-    key.isRequired = true;
+    key.required = true;
     return key;
 }
 constexpr IniKey ini_elsewhere(std::string_view section, std::string_view name, std::string_view doc) {
     return {.section = section, .name = name, .effect = IniEffect::ELSEWHERE, .doc = doc};
 }
-/// With one of the words `harmless` nothing is lost.
+/// The words in `harmless` need no warning.
 constexpr IniKey ini_without_effect(std::string_view section, std::string_view name, std::string_view why,
                                     std::string_view harmless = {}) {
     return {.section = section, .name = name, .words = harmless, .effect = IniEffect::NONE, .doc = why};
 }
 
-/// The row of a table; does not compile where there is none.
+/// The row of a table; does not compile if there is none.
 template <class Table>
 consteval const IniKey &row_of(const Table &table, std::string_view section, std::string_view name) {
     for (const IniKey &key : table) {

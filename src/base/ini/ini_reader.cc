@@ -15,14 +15,14 @@ std::string label(std::string_view section, std::string_view key) {
 }
 
 std::string describe_number(const IniKey &key) {
-    const bool hasLowest = key.lowest != -INI_UNBOUNDED;
-    const bool hasHighest = key.highest != INI_UNBOUNDED;
+    const bool has_lowest = key.lowest != -INI_UNBOUNDED;
+    const bool has_highest = key.highest != INI_UNBOUNDED;
     std::string text = "a number";
-    if (hasLowest) {
+    if (has_lowest) {
         text += " of at least " + to_text(key.lowest);
     }
-    if (hasHighest) {
-        text += (hasLowest ? " and at most " : " of at most ") + to_text(key.highest);
+    if (has_highest) {
+        text += (has_lowest ? " and at most " : " of at most ") + to_text(key.highest);
     }
     return text;
 }
@@ -35,11 +35,11 @@ std::string_view name_of(const IniKey &key, std::string_view section) {
     return section.empty() ? key.section : section;
 }
 
-/// A value with " #" or " ;" in it: a comment was meant.
+/// A value with " #" or " ;" in it: probably meant as a comment.
 bool hasCommentAfter(std::string_view value) {
     for (std::size_t at = 1; at < value.size(); ++at) {
-        const bool isMark = value[at] == '#' || value[at] == ';';
-        if (isMark && (value[at - 1] == ' ' || value[at - 1] == '\t')) {
+        const bool is_mark = value[at] == '#' || value[at] == ';';
+        if (is_mark && (value[at - 1] == ' ' || value[at - 1] == '\t')) {
             return true;
         }
     }
@@ -57,11 +57,11 @@ diagnostics::Diagnostic IniReader::with_comment_hint(diagnostics::Diagnostic one
             }
         }
     }
-    const bool isInComment = commented_->contains({one.what.place.file, one.what.place.line});
-    if (isInComment) {
+    const bool in_comment = commented_->contains({one.what.place.file, one.what.place.line});
+    if (in_comment) {
         one.what.hint += one.what.hint.empty() ? "" : "; ";
         one.what.hint +=
-            "# and ; begin a comment only at the start of a line: write the comment in a line of its own";
+            "# and ; begin a comment only at the start of a line: write the comment on a separate line";
     }
     return one;
 }
@@ -118,21 +118,21 @@ const IniEntry *IniReader::scalar(const IniKey &key, std::string_view section) {
     const IniEntry *first = file_.find(section, key.name);
     const IniEntry *second = file_.find(section, key.name, 2);
     if (second != nullptr && warned_twice_.insert(label(section, key.name)).second) {
-        sink_.warning(label(section, key.name) + " is given twice; the first one, '" + first->value +
-                          "' in " + first->place.str() + ", is used",
+        sink_.warning(label(section, key.name) + " appears twice; the first one, '" + first->value + "' in " +
+                          first->place.str() + ", is used",
                       second->place);
     }
     return first;
 }
 
 void IniReader::missing(std::string_view section, const IniKey &key, const std::string &expected) {
-    const bool hasSection = file_.hasSection(section);
-    if (!key.isRequired || (!hasSection && !missing_sections_.insert(std::string(section)).second)) {
-        return;  // one message for the whole section
+    const bool has_section = file_.hasSection(section);
+    if (!key.required || (!has_section && !missing_sections_.insert(std::string(section)).second)) {
+        return;  // one message for the section
     }
     const std::string near = nearest_name(key.name, file_.keys(section));
-    sink_.error(hasSection ? label(section, key.name) + " is missing"
-                           : "section [" + std::string(section) + "] is missing",
+    sink_.error(has_section ? label(section, key.name) + " is missing"
+                            : "section [" + std::string(section) + "] is missing",
                 file_.place_of_section(section),
                 "expected " + label(section, key.name) + " = " + expected +
                     (near.empty() ? "" : "; is '" + near + "' a misspelling?"));
@@ -141,8 +141,8 @@ void IniReader::missing(std::string_view section, const IniKey &key, const std::
 std::optional<double> IniReader::number(const IniEntry &entry, const IniKey &key) {
     const std::vector<std::string> words = split_words(entry.value);
     const auto value = words.empty() ? std::nullopt : parse_double(words[0]);
-    const bool isCommentAfter = words.size() > 1 && (words[1][0] == '#' || words[1][0] == ';');
-    if (!value.has_value() || (words.size() > 1 && !isCommentAfter)) {
+    const bool is_comment_after = words.size() > 1 && (words[1][0] == '#' || words[1][0] == ';');
+    if (!value.has_value() || (words.size() > 1 && !is_comment_after)) {
         sink_.error(label(entry.section, entry.key) + " = '" + entry.value + "' is not a number", entry.place,
                     "expected " + describe_number(key) + ", with a decimal point");
         return std::nullopt;
@@ -159,16 +159,16 @@ std::optional<std::int64_t> IniReader::whole(const IniEntry &entry, const IniKey
     const std::vector<std::string> words = split_words(entry.value);
     auto value = words.empty() ? std::nullopt : parse_int(words[0]);
     if (!value.has_value() && !words.empty()) {
-        // "1.0" is a whole number too.
+        // "1.0" is accepted as a whole number.
         const auto real = parse_double(words[0]);
-        // Beyond 2^53 a double no longer says which whole number is meant.
+        // A double holds whole numbers exactly only up to 2^53.
         constexpr double LARGEST = 9007199254740992.0;
         if (real.has_value() && std::fabs(*real) <= LARGEST && *real == std::floor(*real)) {
             value = static_cast<std::int64_t>(*real);
         }
     }
-    const bool isCommentAfter = words.size() > 1 && (words[1][0] == '#' || words[1][0] == ';');
-    if (!value.has_value() || (words.size() > 1 && !isCommentAfter)) {
+    const bool is_comment_after = words.size() > 1 && (words[1][0] == '#' || words[1][0] == ';');
+    if (!value.has_value() || (words.size() > 1 && !is_comment_after)) {
         sink_.error(label(entry.section, entry.key) + " = '" + entry.value + "' is not a whole number",
                     entry.place, "expected " + describe_whole(key));
         return std::nullopt;
@@ -220,7 +220,7 @@ bool IniReader::boolean(const IniKey &key, std::string_view section) {
 
 std::string IniReader::text(const IniKey &key, std::string_view section) {
     const IniEntry *entry = scalar(key, name_of(key, section));
-    if (entry == nullptr || (entry->value.empty() && key.isRequired)) {
+    if (entry == nullptr || (entry->value.empty() && key.required)) {
         missing(name_of(key, section), key, "a text");
         return std::string(key.text);
     }
@@ -255,16 +255,16 @@ std::vector<const IniEntry *> IniReader::list(const IniKey &key, std::string_vie
     return entries;
 }
 
-/// Sections whose name is a misspelling of one that the system reads.
+/// Reports sections whose name is a misspelling of a known one.
 void IniReader::report_sections(diagnostics::Severity severity) {
     std::vector<std::string> names;
     for (const auto &[name, keys] : known_) {
         names.push_back(name);
     }
     for (const std::string &section : file_.sections()) {
-        const bool isMeant =
+        const bool intended =
             known_.count(section) > 0 || open_.count(section) > 0 || used_sections_.count(section) > 0;
-        const std::string near = isMeant ? "" : nearest_name(section, names);
+        const std::string near = intended ? "" : nearest_name(section, names);
         if (!near.empty() && used_sections_.insert(section).second) {
             sink_.report({severity,
                           {"unknown section [" + section + "]; it has no effect",
@@ -273,16 +273,16 @@ void IniReader::report_sections(diagnostics::Severity severity) {
     }
 }
 
-void IniReader::report_unknown(bool isStrict) {
+void IniReader::report_unknown(bool strict) {
     const diagnostics::Severity severity =
-        isStrict ? diagnostics::Severity::ERROR : diagnostics::Severity::WARNING;
+        strict ? diagnostics::Severity::ERROR : diagnostics::Severity::WARNING;
     for (const IniEntry &entry : file_.entries()) {
         SourcePlace place = entry.place;
         place.column = 1;
         const auto why = without_effect_.find(label(entry.section, entry.key));
         if (why != without_effect_.end()) {
             sink_.report({severity, {why->first + " has no effect: " + why->second, place, {}}});
-            without_effect_.erase(why);  // once
+            without_effect_.erase(why);  // reported once
         }
         const auto section = known_.find(entry.section);
         if (section == known_.end() || open_.count(entry.section) > 0 ||

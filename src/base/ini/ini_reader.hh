@@ -17,8 +17,8 @@
 
 namespace mw::ini {
 
-/// Reads keys and remembers which ones the system knows. Every problem is one message to the sink, with file,
-/// line and column; the value returned then is the default, so that reading goes on and reports them all.
+/// Reads keys and records which keys are known. Each problem is one message to the sink, with file, line and
+/// column. The default is returned then, so that reading continues and reports all problems.
 class IniReader {
   public:
     IniReader(const IniFile &file, diagnostics::Sink &sink)
@@ -28,41 +28,43 @@ class IniReader {
     IniReader &operator=(const IniReader &) = delete;
 
     const IniFile &file() const { return file_; }
-    /// For problems of this file: one in a line with a comment after the value gets a hint about it.
+    /// Sink for problems of this file. A problem in a line with a comment after the value gets a hint about
+    /// the comment.
     diagnostics::Sink &sink() { return sink_; }
-    /// From now on problems go there.
+    /// Sends later problems to `sink`.
     void tell(diagnostics::Sink &sink) { target_ = &sink; }
 
-    /// Makes the keys of a table known. Rows of "JOINT_*" and the like count with declare_in().
+    /// Makes the keys of a table known. Rows of "JOINT_*" and similar sections need declare_in().
     void declare(std::span<const IniKey> keys);
-    /// The rows whose section is `pattern`, for one section of its kind: "JOINT_*" for JOINT_0.
+    /// Makes the rows of section `pattern` known for one section: "JOINT_*" for JOINT_0.
     void declare_in(std::string_view section, std::string_view pattern, std::span<const IniKey> keys);
 
-    // `section`: which one of "JOINT_*"; empty: the section of the row. Without the key the row's preset is
-    // returned, or `preset` where that depends on the machine; a required key that is missing is an error.
+    // `section`: the section for a row of "JOINT_*"; empty: the section of the row. If the key is not set,
+    // returns the row's default, or `preset` where that depends on the machine. A required key that is
+    // missing is an error.
     double real(const IniKey &key, std::string_view section = {}, std::optional<double> preset = {});
     std::int64_t integer(const IniKey &key, std::string_view section = {},
                          std::optional<std::int64_t> preset = {});
     bool boolean(const IniKey &key, std::string_view section = {});
     std::string text(const IniKey &key, std::string_view section = {});
-    /// The spelling of the declaration is returned.
+    /// Returns the word in the spelling of the declaration.
     std::string choice(const IniKey &key, std::string_view section = {});
-    /// All entries of a key that may be given several times.
+    /// All entries of a key that may be set several times.
     std::vector<const IniEntry *> list(const IniKey &key, std::string_view section = {});
-    /// Where it is set; null where it is not.
+    /// The entry; null where the key is not set.
     const IniEntry *find(const IniKey &key, std::string_view section = {}) const;
 
-    /// Somebody has used the key; a section that the system does not read stays not ours.
+    /// Marks a key as used by a program. A section that is not known stays unknown.
     void know_if_ours(std::string_view section, std::string_view key);
-    /// A HAL file or script has used this section, whatever it is for.
+    /// Marks the section as used by a HAL file or script.
     void use_section(std::string_view section) { used_sections_.insert(std::string(section)); }
-    /// Says that other programs define keys of this section, so that none of them is unknown.
+    /// Declares that other programs define keys of this section, so that none of them is unknown.
     void leave_open(std::string_view section);
 
-    /// Warns once for each key in a known section that nobody declared, with the nearest known name; an error
-    /// when strict. Keys that HAL files and programs use are known by that: pass them through know_if_ours()
-    /// first. A declared key without effect is said with the reason.
-    void report_unknown(bool isStrict);
+    /// Warns once for each unknown key in a known section and names the nearest known key; an error when
+    /// strict. Pass keys that HAL files and programs use through know_if_ours() first. Reports a declared key
+    /// without effect with the reason.
+    void report_unknown(bool strict);
 
   private:
     void know(std::string_view section, std::string_view key);
@@ -77,15 +79,15 @@ class IniReader {
 
     const IniFile &file_;
     diagnostics::Sink *target_;
-    diagnostics::Sink sink_;  ///< passes on to `target_`
+    diagnostics::Sink sink_;  ///< forwards to `target_`
     std::map<std::string, std::set<std::string>, std::less<>> known_;
     std::set<std::string, std::less<>> open_;
     std::set<std::string, std::less<>> used_sections_;
-    std::map<std::string, std::string> without_effect_;  ///< [SECTION]KEY: why
+    std::map<std::string, std::string> without_effect_;  ///< [SECTION]KEY: reason
     std::set<std::string> warned_twice_;
-    std::set<std::string> reported_;  ///< [SECTION]KEY that is unknown; never suggested for another one
+    std::set<std::string> reported_;  ///< unknown [SECTION]KEY; not suggested for another key
     std::set<std::string> missing_sections_;
-    /// File and line of values with a comment in them; empty until it is needed.
+    /// File and line of values that contain a comment; filled when first needed.
     std::optional<std::set<std::pair<std::string, int>>> commented_;
 };
 

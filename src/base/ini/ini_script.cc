@@ -28,15 +28,15 @@ void warn_of_rest(const IniEntry &entry, const char *type, const char *end, std:
 }
 
 struct Whole {
-    bool isNegative = false;
+    bool negative = false;
     std::uint64_t size = 0;
-    const char *end = nullptr;  ///< what follows the number; null when there is none
+    const char *end = nullptr;  ///< text after the number; null when there is none
 };
 
 Whole read_whole(std::string_view text) {
     Whole out;
     if (!text.empty() && (text[0] == '-' || text[0] == '+')) {
-        out.isNegative = text[0] == '-';
+        out.negative = text[0] == '-';
         text.remove_prefix(1);
     }
     int base = 10;
@@ -67,12 +67,12 @@ std::optional<bool> script_bool(const IniEntry &entry, std::string &messages) {
 std::optional<std::int64_t> script_signed(const IniEntry &entry, std::string &messages) {
     constexpr std::uint64_t LOWEST_SIZE = 1ULL << 63U;
     const Whole whole = read_whole(entry.value);
-    if (whole.end == nullptr || whole.size > LOWEST_SIZE - (whole.isNegative ? 0 : 1)) {
+    if (whole.end == nullptr || whole.size > LOWEST_SIZE - (whole.negative ? 0 : 1)) {
         invalid(entry, "signed integer", messages);
         return std::nullopt;
     }
     warn_of_rest(entry, "signed integer", whole.end, messages);
-    return static_cast<std::int64_t>(whole.isNegative ? 0 - whole.size : whole.size);
+    return static_cast<std::int64_t>(whole.negative ? 0 - whole.size : whole.size);
 }
 
 std::optional<std::uint64_t> script_unsigned(const IniEntry &entry, std::string &messages) {
@@ -81,20 +81,20 @@ std::optional<std::uint64_t> script_unsigned(const IniEntry &entry, std::string 
         invalid(entry, "unsigned integer", messages);
         return std::nullopt;
     }
-    if (whole.isNegative) {
+    if (whole.negative) {
         messages += script_place(entry.place) +
                     "warning: Unsigned integer conversion detected a leading minus sign (-)\n";
     }
     warn_of_rest(entry, "unsigned integer", whole.end, messages);
-    return whole.isNegative ? 0 - whole.size : whole.size;
+    return whole.negative ? 0 - whole.size : whole.size;
 }
 
 std::optional<double> script_real(const IniEntry &entry, std::string &messages) {
     const char *first = entry.value.data();
     const char *const last = first + entry.value.size();
-    const bool hasPlus = entry.value.size() > 1 && entry.value[0] == '+' && entry.value[1] != '-';
+    const bool has_plus = entry.value.size() > 1 && entry.value[0] == '+' && entry.value[1] != '-';
     double value = 0.0;
-    const auto [end, error] = std::from_chars(first + (hasPlus ? 1 : 0), last, value);
+    const auto [end, error] = std::from_chars(first + (has_plus ? 1 : 0), last, value);
     if (error != std::errc() || !std::isfinite(value)) {
         invalid(entry, "floating point", messages);
         return std::nullopt;

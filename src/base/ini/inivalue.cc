@@ -34,33 +34,31 @@ constexpr const char *USAGE =
     "  --content         with their values, as NAME=VALUE\n"
     "  --help            this text\n"
     "\n"
-    "A value for an option may also be the next word. A # or ; inside of a value belongs to it. What is "
-    "wrong\n"
-    "with the file is told as FILE:LINE: error: ... Exit status: 0 printed, 1 not found, not of the type or "
-    "out\n"
-    "of its range, or a fault in the file, 2 wrong usage.\n";
+    "A value for an option may also be the next word. A # or ; inside of a value belongs to it. Errors in "
+    "the\nfile are printed as FILE:LINE: error: ... Exit status: 0 printed, 1 not found, not of the type or "
+    "out\nof its range, or an error in the file, 2 wrong usage.\n";
 
 struct Query {
     std::string file, section, variable;
-    bool hasSection = false, isHomeExpanded = false, isAll = false, isHelp = false;
-    bool isSections = false, isVariables = false, hasContent = false;
+    bool has_section = false, home_expanded = false, all = false, is_help = false;
+    bool is_sections = false, is_variables = false, has_content = false;
     std::int64_t number = 1;
-    char type = 's';   ///< of its name in --type
+    char type = 's';   ///< type letter of --type
     char truth = 't';  ///< 't' true, 'b' 1, 'B' True
     std::optional<std::string> preset, lowest, highest;
 
     std::string label() const { return fmt::format("[{}]{}", section, variable); }
 };
 
-// ---- the words
+// ---- the options
 
 bool read_flag(const std::string &word, Query &query) {
-    bool *const flag = word == "--help"          ? &query.isHelp
-                       : word == "--tildeexpand" ? &query.isHomeExpanded
-                       : word == "--all"         ? &query.isAll
-                       : word == "--sections"    ? &query.isSections
-                       : word == "--variables"   ? &query.isVariables
-                       : word == "--content"     ? &query.hasContent
+    bool *const flag = word == "--help"          ? &query.is_help
+                       : word == "--tildeexpand" ? &query.home_expanded
+                       : word == "--all"         ? &query.all
+                       : word == "--sections"    ? &query.is_sections
+                       : word == "--variables"   ? &query.is_variables
+                       : word == "--content"     ? &query.has_content
                                                  : nullptr;
     if (flag != nullptr) {
         *flag = true;
@@ -80,13 +78,13 @@ std::optional<std::string> read_type(const std::string &value, Query &query) {
     return std::nullopt;
 }
 
-/// An option with its value; a message when one of them is wrong.
+/// Reads an option with its value; returns a message when it is not valid.
 std::optional<std::string> read_option(const std::string &name, const std::string &value, Query &query) {
     if (name == "--var") {
         query.variable = value;
     } else if (name == "--sec") {
         query.section = value;
-        query.hasSection = true;
+        query.has_section = true;
     } else if (name == "--default") {
         query.preset = value;
     } else if (name == "-m") {
@@ -119,11 +117,11 @@ std::optional<std::string> read_words(const std::vector<std::string> &words, Que
             continue;
         }
         if (hasValue(name)) {
-            const bool isNext = equals == std::string::npos;
-            if (isNext && ++i == words.size()) {
+            const bool is_next = equals == std::string::npos;
+            if (is_next && ++i == words.size()) {
                 return name + " needs a value";
             }
-            if (auto problem = read_option(name, isNext ? words[i] : word.substr(equals + 1), query)) {
+            if (auto problem = read_option(name, is_next ? words[i] : word.substr(equals + 1), query)) {
                 return problem;
             }
         } else if (word.starts_with("-")) {
@@ -134,10 +132,10 @@ std::optional<std::string> read_words(const std::vector<std::string> &words, Que
             query.file = word;
         }
     }
-    if (query.isHelp) {
+    if (query.is_help) {
         return std::nullopt;
     }
-    if (query.variable.empty() && !query.isSections && !query.isVariables) {
+    if (query.variable.empty() && !query.is_sections && !query.is_variables) {
         return "--var is missing";
     }
     return query.file.empty() ? std::optional<std::string>("the file is missing") : std::nullopt;
@@ -145,7 +143,7 @@ std::optional<std::string> read_words(const std::vector<std::string> &words, Que
 
 // ---- the values
 
-/// The range that -m and -M leave; nothing, with a message, when they are no numbers or cross.
+/// The range from -m and -M; nothing, with a message, when a limit is not a number or the limits cross.
 template <class T, class Read>
 std::optional<std::pair<T, T>> range_of(const Query &query, const char *type, Read read,
                                         std::string &messages) {
@@ -155,7 +153,7 @@ std::optional<std::pair<T, T>> range_of(const Query &query, const char *type, Re
         if (!texts[i]->has_value()) {
             continue;
         }
-        std::string ignored;  // that a limit of an unsigned one wraps round is how it is written
+        std::string ignored;  // negative limits of an unsigned value wrap without a warning
         const auto limit = read({"", i == 0 ? "-m" : "-M", **texts[i], {}}, ignored);
         if (!limit) {
             messages +=
@@ -179,7 +177,7 @@ std::string shown(T limit) {
     return std::to_string(limit);
 }
 
-/// A number as it is printed; nothing, with a message, when there is none or it is out of its range.
+/// A number as text; nothing, with a message, when it is missing or out of range.
 template <class T, class Read>
 std::optional<std::string> number(const Query &query, const IniEntry &entry, const char *type, Read read,
                                   std::string &messages) {
@@ -201,7 +199,7 @@ std::optional<std::string> number(const Query &query, const IniEntry &entry, con
 }
 
 std::optional<std::string> text_of(const Query &query, const IniEntry &entry, std::string &messages) {
-    if (!query.isHomeExpanded || (entry.value != "~" && !entry.value.starts_with("~/"))) {
+    if (!query.home_expanded || (entry.value != "~" && !entry.value.starts_with("~/"))) {
         return entry.value;
     }
     const char *home = std::getenv("HOME");
@@ -232,7 +230,7 @@ std::optional<std::string> typed(const Query &query, const IniEntry &entry, std:
     }
 }
 
-// ---- what is asked for
+// ---- the queries
 
 void list_sections(const IniFile &file, ProgramOutput &result) {
     for (const std::string &name : file.sections()) {
@@ -241,14 +239,14 @@ void list_sections(const IniFile &file, ProgramOutput &result) {
 }
 
 void list_variables(const Query &query, const IniFile &file, ProgramOutput &result) {
-    if (query.hasSection && !file.hasSection(query.section)) {
+    if (query.has_section && !file.hasSection(query.section)) {
         result.status = 1;
         result.err += fmt::format("error: Cannot find section '{}' in '{}'\n", query.section, query.file);
     }
     for (const IniEntry &entry : file.entries()) {
-        if (!query.hasSection || entry.section == query.section) {
+        if (!query.has_section || entry.section == query.section) {
             result.out +=
-                entry.key + (query.hasContent ? '=' + encode_ini_value(entry.value) : std::string()) + '\n';
+                entry.key + (query.has_content ? '=' + encode_ini_value(entry.value) : std::string()) + '\n';
         }
     }
 }
@@ -257,9 +255,9 @@ void print_values(const Query &query, const IniFile &file, ProgramOutput &result
     std::vector<IniEntry> found;
     std::int64_t number = 0;
     for (const IniEntry &entry : file.entries()) {
-        const bool isWanted =
-            entry.key == query.variable && (!query.hasSection || entry.section == query.section);
-        if (isWanted && ++number >= query.number && (query.isAll || found.empty())) {
+        const bool wanted =
+            entry.key == query.variable && (!query.has_section || entry.section == query.section);
+        if (wanted && ++number >= query.number && (query.all || found.empty())) {
             found.push_back(entry);
         }
     }
@@ -269,9 +267,8 @@ void print_values(const Query &query, const IniFile &file, ProgramOutput &result
     if (found.empty()) {
         result.status = 1;
         result.err +=
-            query.isAll
-                ? fmt::format("error: No instance {} or more of '{}'\n", query.number, query.label())
-                : fmt::format("error: Cannot find instance {} of '{}'\n", query.number, query.label());
+            query.all ? fmt::format("error: No instance {} or more of '{}'\n", query.number, query.label())
+                      : fmt::format("error: Cannot find instance {} of '{}'\n", query.number, query.label());
     }
     for (const IniEntry &entry : found) {
         const auto text = typed(query, entry, result.err);
@@ -290,7 +287,7 @@ ProgramOutput run_inivalue(const std::vector<std::string> &words) {
     if (const auto problem = read_words(words, query)) {
         return {2, "", "inivalue: " + *problem + "; see inivalue --help\n"};
     }
-    if (query.isHelp) {
+    if (query.is_help) {
         return {0, USAGE, ""};
     }
     diagnostics::Sink sink;
@@ -306,9 +303,9 @@ ProgramOutput run_inivalue(const std::vector<std::string> &words) {
     }
     if (sink.hasErrors()) {
         result.status = 1;
-    } else if (query.isSections) {
+    } else if (query.is_sections) {
         list_sections(*file, result);
-    } else if (query.isVariables) {
+    } else if (query.is_variables) {
         list_variables(query, *file, result);
     } else {
         print_values(query, *file, result);

@@ -12,23 +12,23 @@ namespace {
 
 struct Query {
     std::string file, section, variable;
-    bool hasSection = false, isHomeExpanded = false;
+    bool has_section = false, home_expanded = false;
     std::int64_t number = 1;
 };
 
 std::string with_home(const std::string &value) {
     const char *home = std::getenv("HOME");
-    const bool isOfHome = value == "~" || value.substr(0, 2) == "~/";
-    return isOfHome && home != nullptr ? home + value.substr(1) : value;
+    const bool of_home = value == "~" || value.substr(0, 2) == "~/";
+    return of_home && home != nullptr ? home + value.substr(1) : value;
 }
 
-/// The N-th entry of that name in its section, or in any.
+/// The N-th entry of that name in its section, or in all sections.
 const IniEntry *look_up(const IniFile &file, const Query &query) {
     std::int64_t left = std::max<std::int64_t>(1, query.number);
     for (const IniEntry &entry : file.entries()) {
-        const bool isWanted =
-            entry.key == query.variable && (!query.hasSection || entry.section == query.section);
-        if (isWanted && --left == 0) {
+        const bool wanted =
+            entry.key == query.variable && (!query.has_section || entry.section == query.section);
+        if (wanted && --left == 0) {
             return &entry;
         }
     }
@@ -39,12 +39,12 @@ constexpr const char *INIVAR_USAGE =
     "inivar: -var <variable> {-tildeexpand} {-sec <section>} {-ini <INI file>} "
     "[-num <nth item>]\n";
 
-/// Fills the query from the words; a message when they are wrong.
+/// Fills the query from the words; returns a message when they are not valid.
 std::optional<std::string> read_inivar(const std::vector<std::string> &words, Query &query) {
     for (std::size_t i = 0; i < words.size(); ++i) {
         const std::string &word = words[i];
         if (word == "-tildeexpand") {
-            query.isHomeExpanded = true;
+            query.home_expanded = true;
             continue;
         }
         const std::string missing = word == "-var"   ? "variable name"
@@ -65,7 +65,7 @@ std::optional<std::string> read_inivar(const std::vector<std::string> &words, Qu
             query.file = value;
         } else if (word == "-sec") {
             query.section = value;
-            query.hasSection = true;
+            query.has_section = true;
         } else if (const auto number = parse_int(value); number.has_value()) {
             query.number = *number;
         } else {
@@ -86,7 +86,7 @@ ProgramOutput run_inivar(const std::vector<std::string> &words) {
     if (const auto problem = read_inivar(words, query)) {
         return {1, "", *problem};
     }
-    diagnostics::Sink ignored;  // what else is wrong with the file is told by those who run it
+    diagnostics::Sink ignored;  // other errors in the file are reported when the machine starts
     const auto file = IniFile::load(query.file, ignored);
     if (!file) {
         return {255, "", "inivar: can't open " + query.file + "\n"};
@@ -100,11 +100,11 @@ ProgramOutput run_inivar(const std::vector<std::string> &words) {
     }
     if (entry == nullptr) {
         return {1, "",
-                "Can not find -sec " + (query.hasSection ? query.section : "(null)") + " -var " +
+                "Can not find -sec " + (query.has_section ? query.section : "(null)") + " -var " +
                     query.variable + " -num " + std::to_string(std::max<std::int64_t>(1, query.number)) +
                     " \n"};
     }
-    return {0, (query.isHomeExpanded ? with_home(entry->value) : entry->value) + "\n", ""};
+    return {0, (query.home_expanded ? with_home(entry->value) : entry->value) + "\n", ""};
 }
 
 }  // namespace mw::ini

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::string_view HOLE = "{}";
 
-/// A number of a .mo file; nothing beyond its end.
+/// A number of a .mo file; nothing outside the file.
 std::optional<std::size_t> number_at(std::string_view mo, std::size_t at) {
     std::uint32_t number = 0;
     if (at > mo.size() || mo.size() - at < sizeof number) {
@@ -21,7 +21,7 @@ std::optional<std::size_t> number_at(std::string_view mo, std::size_t at) {
     return number;
 }
 
-/// The text that the `i`-th row of the table at `table` names.
+/// The `i`-th text of the table at `table`.
 std::optional<std::string_view> text_at(std::string_view mo, std::size_t table, std::size_t i) {
     const auto length = number_at(mo, table + 8 * i), at = number_at(mo, table + 8 * i + 4);
     if (!length.has_value() || !at.has_value() || *at > mo.size() || mo.size() - *at < *length) {
@@ -40,8 +40,7 @@ std::vector<std::string> pieces_of(std::string_view key) {
     return pieces;
 }
 
-/// What stands between the pieces in `text`; nothing where they do not stand in it, in this order, from end
-/// to end.
+/// The texts between the pieces in `text`; nothing if `text` does not consist of the pieces in this order.
 std::optional<std::vector<std::string_view>> values_between(const std::vector<std::string> &pieces,
                                                             std::string_view text) {
     if (!text.starts_with(pieces.front())) {
@@ -50,11 +49,11 @@ std::optional<std::vector<std::string_view>> values_between(const std::vector<st
     text.remove_prefix(pieces.front().size());
     std::vector<std::string_view> values;
     for (std::size_t i = 1; i < pieces.size(); ++i) {
-        const bool isLast = i + 1 == pieces.size();
+        const bool is_last = i + 1 == pieces.size();
         const std::string &piece = pieces[i];
-        const bool isAtEnd = isLast && text.ends_with(piece);
-        const std::size_t at = isLast ? text.size() - piece.size() : text.find(piece);
-        if (isLast ? !isAtEnd : at == std::string_view::npos) {
+        const bool at_end = is_last && text.ends_with(piece);
+        const std::size_t at = is_last ? text.size() - piece.size() : text.find(piece);
+        if (is_last ? !at_end : at == std::string_view::npos) {
             return std::nullopt;
         }
         values.push_back(text.substr(0, at));
@@ -63,7 +62,7 @@ std::optional<std::vector<std::string_view>> values_between(const std::vector<st
     return values;
 }
 
-/// Words of two letters at least.
+/// Number of words with at least two letters.
 std::size_t count_words(const std::vector<std::string> &pieces) {
     std::size_t words = 0;
     for (const std::string &piece : pieces) {
@@ -76,7 +75,7 @@ std::size_t count_words(const std::vector<std::string> &pieces) {
     return words;
 }
 
-/// A value of one word is a name or a number: a signal may be called "error".
+/// A value of one word is a name or a number: a signal may be named "error".
 bool hasSeveralWords(std::string_view text) {
     return text.find(' ') != std::string_view::npos &&
            std::count_if(text.begin(), text.end(), [](unsigned char c) { return std::isalpha(c) != 0; }) > 2;
@@ -114,7 +113,7 @@ void Catalogue::add(std::string_view key, std::string_view translation) {
     for (const std::string &piece : made.pieces) {
         made.letters += piece.size();
     }
-    made.isName = count_words(made.pieces) < 2;
+    made.is_name = count_words(made.pieces) < 2;
     patterns_.push_back(std::move(made));
 }
 
@@ -139,14 +138,14 @@ std::optional<std::string> Catalogue::find(std::string_view english, Depth depth
     return std::nullopt;
 }
 
-/// What would be a sentence behind "joint" is another text, which has no translation. What begins a text is
-/// no place, kind or sentence with its colon: these are parts of their own.
+/// A sentence in place of a value, such as after "joint", means another text without a translation. The
+/// beginning of a text is not a place, a name or a sentence with a colon: those are separate parts.
 bool Catalogue::isFitting(const Pattern &pattern, const std::vector<std::string_view> &values,
                           Depth depth) const {
     if (pattern.pieces.front().empty() && values.front().find(": ") != std::string_view::npos) {
         return false;
     }
-    return !pattern.isName || std::ranges::all_of(values, [&](std::string_view value) {
+    return !pattern.is_name || std::ranges::all_of(values, [&](std::string_view value) {
         return value.find(' ') == std::string_view::npos ||
                (!depth.isDeepest() && composed(value, depth + 1).has_value());
     });
@@ -158,23 +157,23 @@ std::string Catalogue::filled(const Pattern &pattern, const std::vector<std::str
     std::size_t next = 0;
     const std::string &text = pattern.translation;
     for (std::size_t at = 0; at < text.size(); ++at) {
-        const bool isNumbered = text.compare(at, 1, "{") == 0 && at + 2 < text.size() && text[at + 2] == '}';
-        const bool isNext = text.compare(at, HOLE.size(), HOLE) == 0;
-        if (!isNext && !(isNumbered && text[at + 1] >= '0' && text[at + 1] <= '9')) {
+        const bool numbered = text.compare(at, 1, "{") == 0 && at + 2 < text.size() && text[at + 2] == '}';
+        const bool is_next = text.compare(at, HOLE.size(), HOLE) == 0;
+        if (!is_next && !(numbered && text[at + 1] >= '0' && text[at + 1] <= '9')) {
             out += text[at];
             continue;
         }
-        const std::size_t which = isNext ? next++ : static_cast<std::size_t>(text[at + 1] - '0');
+        const std::size_t which = is_next ? next++ : static_cast<std::size_t>(text[at + 1] - '0');
         const std::string_view value = which < values.size() ? values[which] : std::string_view{};
         out += !depth.isDeepest() && hasSeveralWords(value)
                    ? composed(value, depth).value_or(std::string(value))
                    : std::string(value);
-        at += isNext ? 1 : 2;
+        at += is_next ? 1 : 2;
     }
     return out;
 }
 
-/// "MESSAGE (HINT)".
+/// Translates "MESSAGE (HINT)".
 std::optional<std::string> Catalogue::with_hint(std::string_view english, Depth depth) const {
     if (!english.ends_with(')')) {
         return std::nullopt;
@@ -190,8 +189,7 @@ std::optional<std::string> Catalogue::with_hint(std::string_view english, Depth 
     return std::nullopt;
 }
 
-/// A name with an ending that was put behind it (" needs a value"): the key of the ending begins with a blank
-/// or a colon.
+/// Translates a name with a suffix (" needs a value"): the key of the suffix begins with a blank or a colon.
 std::optional<std::string> Catalogue::with_ending(std::string_view english, Depth depth) const {
     for (std::size_t at = english.find_first_of(" :", 1); at != std::string_view::npos;
          at = english.find_first_of(" :", at + 1)) {
@@ -214,7 +212,7 @@ std::optional<std::string> Catalogue::with_ending(std::string_view english, Dept
     return std::nullopt;
 }
 
-/// "PLACE: MESSAGE", "MESSAGE: MESSAGE", "MESSAGE; MESSAGE".
+/// Translates "PLACE: MESSAGE", "MESSAGE: MESSAGE", "MESSAGE; MESSAGE".
 std::optional<std::string> Catalogue::in_parts(std::string_view english, Depth depth) const {
     for (const std::string_view between : {": ", "; "}) {
         for (std::size_t at = english.find(between); at != std::string_view::npos;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The texts of one language. A message is made and sent in English, by whoever has it to say and with what he
-// puts into it; whoever shows it looks here for the text that it was made from. So nothing marks a text in
-// the sources, and each reader has his own language.
+// The texts of one language. Messages are made and sent in English. The program that shows a message searches
+// this catalogue for its pattern, so texts need no marks in the sources and each reader has their own
+// language.
 #pragma once
 
 #include <optional>
@@ -14,31 +14,30 @@
 
 namespace mw::language {
 
-/// Does not change once it is read; any thread, not realtime.
+/// Immutable after reading. [any thread, not realtime]
 class Catalogue {
   public:
-    /// A compiled catalogue of gettext (.mo), in UTF-8. Keys are English with {} for what is put in;
-    /// translations have {} in the same order, or {0}, {1}. What has no translation is left out.
+    /// Reads a compiled gettext catalogue (.mo) in UTF-8. Keys are English with {} for values; translations
+    /// have {} in the same order, or {0}, {1}. Texts without a translation are omitted.
     static Result<Catalogue> read(std::string_view mo);
 
     bool isEmpty() const { return whole_.empty() && patterns_.empty(); }
-    /// What stands for one English text as a whole: the key with the most letters of its own that it fits to.
-    /// What is put in is looked up again, and stays as it is where it is no text of ours.
+    /// Translation of one complete English text, by the matching key with the most letters. Values are
+    /// translated as well if they are texts of the catalogue.
     std::optional<std::string> find(std::string_view english) const;
-    /// A message as it is printed: "FILE:LINE:COLUMN: error: MESSAGE (HINT)", several lines, several
-    /// sentences. Parts that are not known stay English. Lines of a program (they begin with blanks) stay as
-    /// they are.
+    /// Translates a message as printed: "FILE:LINE:COLUMN: error: MESSAGE (HINT)", several lines, several
+    /// sentences. Unknown parts remain English. Program lines (they begin with blanks) are not changed.
     std::string shown(std::string_view english) const;
 
   private:
     struct Pattern {
-        std::vector<std::string> pieces;  ///< of the key, between what is put in
+        std::vector<std::string> pieces;  ///< pieces of the key between values
         std::size_t letters = 0;          ///< of all pieces
-        bool isName = false;  ///< one word of its own, as "joint {}": what is put in is a name, too
+        bool is_name = false;             ///< a single word, as in "joint {}": the value is a name
         std::string translation;
     };
-    /// How deep a text is in another one, and how many texts may still be looked up for one message: a
-    /// message of unknown words with many colons has too many parts.
+    /// Nesting depth of a text, and the number of look-ups left for one message: a message of unknown words
+    /// with many colons has too many parts.
     struct Depth {
         int level = 0;
         int *left = nullptr;
@@ -58,7 +57,7 @@ class Catalogue {
                        Depth depth) const;
 
     std::unordered_map<std::string, std::string> whole_;
-    std::vector<Pattern> patterns_;  ///< those with more letters come first
+    std::vector<Pattern> patterns_;  ///< sorted by number of letters, descending
 };
 
 }  // namespace mw::language

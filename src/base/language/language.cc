@@ -21,18 +21,17 @@ bool isEnglish(std::string_view locale) {
     return locale == "C" || locale == "POSIX" || locale.starts_with("en");
 }
 
-/// The folder of the file that this code is in: a program, or a module of Python or Tcl. The loader knows a
-/// program only by the name that it was started with, which need not lead to its file; the system knows the
-/// file.
+/// The folder of the file that contains this code: a program, or a module of Python or Tcl. The loader knows
+/// a program only by the name that started it, which may not be its path, so the system is asked.
 std::string own_folder() {
     Dl_info info{};
     void *object = nullptr;
     char path[4096];
-    const bool isKnown =
+    const bool known =
         ::dladdr1(reinterpret_cast<const void *>(&own_folder), &info, &object, RTLD_DL_LINKMAP) != 0;
     const auto *map = static_cast<const link_map *>(object);
-    const bool isProgram = !isKnown || map->l_name == nullptr || map->l_name[0] == '\0';
-    if (::realpath(isProgram ? "/proc/self/exe" : map->l_name, path) == nullptr) {
+    const bool is_program = !known || map->l_name == nullptr || map->l_name[0] == '\0';
+    if (::realpath(is_program ? "/proc/self/exe" : map->l_name, path) == nullptr) {
         return ".";
     }
     const std::string_view file(path);
@@ -89,7 +88,7 @@ std::vector<std::string> wanted(const std::function<const char *(const char *)> 
         const std::string name = without_codeset(rest.substr(0, end));
         rest = end == std::string_view::npos ? std::string_view{} : rest.substr(end + 1);
         if (isEnglish(name)) {
-            break;  // English is what there is without a catalogue
+            break;  // English needs no catalogue
         }
         if (name.empty() || name.find('/') != std::string::npos) {
             continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The only file that includes CLI11: a heavy header.
+// The only file that includes CLI11, a large header.
 #include "base/options/command_line.hh"
 
 #include <CLI/CLI.hpp>
@@ -13,12 +13,12 @@ namespace {
 
 constexpr std::size_t COLUMN = 24, WIDTH = 100;
 
-/// "--plot" of "-o,--plot": what messages call it.
+/// "--plot" of "-o,--plot": the name for messages.
 std::string spoken(const std::string &names) {
     return names.substr(names.rfind(',') + 1);
 }
 
-/// Lines of at most WIDTH, behind the first one indented as the column of texts is.
+/// Breaks text into lines of at most WIDTH; later lines are indented to the text column.
 std::string wrapped(const std::string &text) {
     std::string out;
     std::size_t used = COLUMN;
@@ -33,20 +33,19 @@ std::string wrapped(const std::string &text) {
     return out;
 }
 
-/// Stands before each word that CLI11 must not read anything into: it takes brackets off words, and -.5 for
-/// an option.
+/// Prefix of words that CLI11 must not interpret: it removes brackets, and takes -.5 for an option.
 constexpr char PLAIN = '\1';
 
 std::string without_mark(const std::string &word) {
     return word.starts_with(PLAIN) ? word.substr(1) : word;
 }
 
-/// Carries an error through CLI11.
+/// Passes an error through CLI11.
 struct Refused {
     Error error;
 };
 
-/// As CLI11 says it, in our words.
+/// CLI11's error in our words.
 Error number_of_words(const std::string &names, int words) {
     if (words > 1) {
         return {"option " + spoken(names) + " takes " + std::to_string(words) + " words"};
@@ -119,7 +118,7 @@ Result<std::int64_t> CommandLine::whole_number(const std::string &text, std::int
     return *number;
 }
 
-/// The words of all times that it came.
+/// Passes the words of all occurrences.
 void CommandLine::hand_over(const Option &option, const Words &values) {
     const std::size_t step = option.words == 0 ? 1 : static_cast<std::size_t>(option.words);
     if (values.size() % step != 0) {
@@ -150,11 +149,11 @@ Words CommandLine::names() const {
     return known;
 }
 
-/// Whether CLI11 is to look for an option in it.
+/// True if CLI11 should look for an option in the word.
 bool CommandLine::isForOptions(const std::string &word, const Words &known) const {
-    const bool isOneDash = word.size() > 1 && word[0] == '-' && word[1] != '-';
+    const bool is_one_dash = word.size() > 1 && word[0] == '-' && word[1] != '-';
     return word.starts_with('-') &&
-           (!isOneDash || !isRestText_ || std::ranges::find(known, word.substr(0, 2)) != known.end());
+           (!is_one_dash || !is_rest_text_ || std::ranges::find(known, word.substr(0, 2)) != known.end());
 }
 
 Error CommandLine::unknown(const std::string &word) const {
@@ -166,7 +165,7 @@ Error CommandLine::unknown(const std::string &word) const {
 Result<> CommandLine::parse(const Words &words) const {
     CLI::App app;
     app.set_help_flag();
-    app.allow_extras();  // they are told in our words
+    app.allow_extras();  // they are reported in our words
     Words rest;
     for (const Option &option : options_) {
         const auto taken = [&option](const Words &values) { hand_over(option, values); };
@@ -202,7 +201,7 @@ Result<> CommandLine::parse(const Words &words) const {
         return fail(what);
     }
     for (const std::string &word : app.remaining()) {
-        if (word != "--") {  // the end of options
+        if (word != "--") {  // end of the options
             return std::unexpected(unknown(word));
         }
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The command line of a program of ours: each option declared once, read, and told by --help. Programs whose
-// words another program has settled read them with base/options/letters.hh or by hand
+// The command line of our programs: each option is declared once, for reading and --help. Programs whose
+// options must match another program read them with base/options/letters.hh or by hand
 // (docs/developer/decisions).
 #pragma once
 
@@ -16,17 +16,17 @@ namespace mw::options {
 
 using Words = std::vector<std::string>;
 
-/// Names are long ("--plot"), short ("-o") or both ("-o,--output"). Values are given as "--name value" or
-/// "--name=value"; of an option that comes twice the last one counts, where it is no list. What is bound must
+/// Names are long ("--plot"), short ("-o") or both ("-o,--output"). Values are "--name value" or
+/// "--name=value". If an option occurs twice the last value counts, unless it is a list. Bound variables must
 /// outlive the object.
 class CommandLine {
   public:
-    /// Both as they are printed: "millwright run MACHINE.ini PROGRAM.ngc", and what it does.
+    /// Texts of --help: "millwright run MACHINE.ini PROGRAM.ngc", and what the program does.
     CommandLine(std::string usage, std::string about);
 
     void flag(const std::string &names, const std::string &doc, bool &into, bool value = true);
     void text(const std::string &names, const std::string &what, const std::string &doc, std::string &into);
-    /// May come several times.
+    /// May occur several times.
     void texts(const std::string &names, const std::string &what, const std::string &doc, Words &into);
     /// "on" or "off".
     void on_or_off(const std::string &names, const std::string &doc, bool &into);
@@ -46,22 +46,22 @@ class CommandLine {
             return {};
         });
     }
-    /// So many words go to `taker`, each time it comes. Without `doc` --help does not tell it.
+    /// Each occurrence passes a number of words to `taker`. Without `doc` the option is not listed by --help.
     using Taker = std::function<Result<>(const Words &)>;
     void take(const std::string &names, int words, const std::string &what, const std::string &doc,
               Taker taker);
-    /// The words that belong to no option.
+    /// Words that belong to no option.
     void rest(Words &into) { rest_ = &into; }
-    /// The same where they are a text with numbers: words of one dash (-5, -.5) belong to it, too, unless the
-    /// program has an option of that letter.
+    /// As rest(), for texts with numbers: words with one dash (-5, -.5) belong to the text unless the program
+    /// has an option of that letter.
     void rest_of_text(Words &into) {
         rest_ = &into;
-        isRestText_ = true;
+        is_rest_text_ = true;
     }
-    /// What --help says behind the options.
+    /// Text of --help after the options.
     void footer(std::string text) { footer_ = std::move(text); }
 
-    /// An error names the option, and the nearest one where there is none of that name.
+    /// An error names the option, and for an unknown option the nearest one.
     Result<> parse(const Words &words) const;
     std::string help() const;
 
@@ -81,10 +81,10 @@ class CommandLine {
     std::string usage_, about_, footer_;
     std::vector<Option> options_;
     Words *rest_ = nullptr;
-    bool isRestText_ = false;
+    bool is_rest_text_ = false;
 };
 
-/// One of the words asks for help.
+/// One of the words requests help.
 bool wantsHelp(const Words &words);
 
 }  // namespace mw::options

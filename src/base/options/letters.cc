@@ -32,12 +32,12 @@ Result<Letters> read_letters(const std::vector<std::string> &words, std::span<co
                 read.options.push_back({letter, {}});
                 continue;
             }
-            const bool isAttached = k + 1 < word.size();
-            if (!isAttached && i + 1 >= words.size()) {
+            const bool attached = k + 1 < word.size();
+            if (!attached && i + 1 >= words.size()) {
                 return fail(std::string("option -") + letter + " needs " + found->value);
             }
-            read.options.push_back({letter, isAttached ? word.substr(k + 1) : words[i + 1]});
-            i += isAttached ? 0 : 1;
+            read.options.push_back({letter, attached ? word.substr(k + 1) : words[i + 1]});
+            i += attached ? 0 : 1;
             break;
         }
     }

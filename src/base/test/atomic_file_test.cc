@@ -30,8 +30,8 @@ class AtomicFile : public testing::Test {
     static std::ptrdiff_t count(const fs::path &folder) {
         return std::distance(fs::directory_iterator(folder), fs::directory_iterator());
     }
-    /// True while the folder holds a temporary file with content. Its writer has locked it: an empty one may
-    /// not be locked yet, and another writer may remove it then.
+    /// True while the folder has a temporary file with content, which its writer has locked. An empty file
+    /// may not be locked yet, and another writer may remove it.
     bool hasTemporaryFileWithContent() const {
         return std::ranges::any_of(fs::directory_iterator(folder_), [](const fs::directory_entry &entry) {
             std::error_code gone;  // the writer may have renamed it
@@ -40,18 +40,18 @@ class AtomicFile : public testing::Test {
                    entry.path().filename() != ".a.millwright-notes";
         });
     }
-    /// A process that gets `signal` while it writes content to its temporary file.
-    pid_t interrupted_writer(int signal, bool isEndless) {
+    /// A process that receives `signal` while it writes content to its temporary file.
+    pid_t interrupted_writer(int signal, bool endless) {
         const std::string target = path("a");
         for (int i = 0; i < 200; ++i) {
             const pid_t writer = ::fork();
             if (writer == 0) {
                 const std::string content(std::size_t{32} << 20, 'x');
-                bool isGood = true;
+                bool good = true;
                 do {
-                    isGood = write_file_atomically(target, content).has_value();
-                } while (isEndless);
-                ::_exit(isGood ? 0 : 1);
+                    good = write_file_atomically(target, content).has_value();
+                } while (endless);
+                ::_exit(good ? 0 : 1);
             }
             const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(5);
             while (!hasTemporaryFileWithContent() && std::chrono::steady_clock::now() < end) {
@@ -93,7 +93,7 @@ TEST_F(AtomicFile, TheFileOfALivingWriterStays) {
     ::kill(writer, SIGCONT);
     int status = -1;
     ::waitpid(writer, &status, 0);
-    EXPECT_EQ(status, 0) << "it comes to its end";
+    EXPECT_EQ(status, 0) << "it ends";
     EXPECT_EQ(count(folder_), 1);
     EXPECT_EQ(fs::file_size(path("a")), std::size_t{32} << 20);
 }

@@ -19,11 +19,11 @@ long page_faults() {
     return use.ru_minflt + use.ru_majflt;
 }
 
-/// In a process of its own: the heap of this one stays as it is.
-int faults_of_8_megabytes(bool isReserved) {
+/// Runs in a separate process, so that the heap of this one does not change.
+int faults_of_8_megabytes(bool reserved) {
     const pid_t child = ::fork();
     if (child == 0) {
-        if (isReserved) {
+        if (reserved) {
             reserve_heap(std::size_t{16} << 20);
         }
         const long before = page_faults();

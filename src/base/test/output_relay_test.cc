@@ -14,10 +14,10 @@ namespace mw {
 namespace {
 
 constexpr int LINES = 100'000;
-constexpr int SILENT = 3;  ///< exit status of a child that was not told of a loss
+constexpr int SILENT = 3;  ///< exit status of a child without a reported loss
 
-/// In a child whose output goes to `out` and `err`: writes LINES lines and ends. Its exit status.
-int write_lines(int out, int err, bool isLossTold) {
+/// Writes LINES lines in a child with output `out` and `err`; returns its exit status.
+int write_lines(int out, int err, bool loss_reported) {
     const pid_t child = ::fork();
     if (child == 0) {
         ::dup2(out, STDOUT_FILENO);
@@ -32,7 +32,7 @@ int write_lines(int out, int err, bool isLossTold) {
             }
         }
         OutputRelay::end();
-        ::_exit(isLossTold && OutputRelay::take_loss().empty() ? SILENT : 0);
+        ::_exit(loss_reported && OutputRelay::take_loss().empty() ? SILENT : 0);
     }
     int status = 0;
     ::waitpid(child, &status, 0);

@@ -74,14 +74,14 @@ TEST(PartedSeqlock, AReaderThatHasMissedWritesGetsTheirPartsTogether) {
     }
 }
 
-/// Each write moves one unit from a row to the next, and every few writes tells all: rows that were taken
-/// from different writes do not add up.
+/// Each write moves one unit from a row to the next, and every few writes publish all rows. Rows of different
+/// writes do not add up.
 TEST(PartedSeqlock, ReadersNeverSeePartsOfDifferentWrites) {
     auto lock = std::make_unique<Parted>();
     Picture picture;
     picture.rows[0] = picture.rows[1] = picture.rows[2] = 0;
     lock->write(picture);
-    std::atomic<bool> isDone{false};
+    std::atomic<bool> done{false};
     std::jthread writer([&] {
         for (std::int64_t i = 0; i < 60000; ++i) {
             const auto from = static_cast<int>(i % 3);
@@ -90,15 +90,15 @@ TEST(PartedSeqlock, ReadersNeverSeePartsOfDifferentWrites) {
             ++picture.rows[to];
             lock->write(picture, i % 7 == 0 ? Parted::ALL : bit(ROWS + from) | bit(ROWS + to));
         }
-        isDone = true;
+        done = true;
     });
     Parted::Copy often, seldom;
     std::uint64_t reads = 0;
-    for (bool isLast = false; !isLast; ++reads) {
-        isLast = isDone;
+    for (bool last = false; !last; ++reads) {
+        last = done;
         ASSERT_TRUE(read_patiently(*lock, often, 10s));
         ASSERT_EQ(often.value.rows[0] + often.value.rows[1] + often.value.rows[2], 0);
-        if (reads % 5 == 0 || isLast) {
+        if (reads % 5 == 0 || last) {
             ASSERT_TRUE(read_patiently(*lock, seldom, 10s));
             ASSERT_EQ(seldom.value.rows[0] + seldom.value.rows[1] + seldom.value.rows[2], 0);
         }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A writer in another process that is stopped and goes on at any instant, also within its writes.
+// A writer in another process that is stopped and continued at any instant, also during writes.
 #include <signal.h>
 #include <sys/mman.h>
 #include <sys/wait.h>
@@ -35,7 +35,7 @@ bool isOneWrite(const Large &value) {
                        [&](std::int64_t word) { return word == value.words[0]; });
 }
 
-/// A process that writes without a pause.
+/// A process that writes continuously.
 class InterruptedWriter : public testing::Test {
   protected:
     InterruptedWriter() {
@@ -68,9 +68,9 @@ class InterruptedWriter : public testing::Test {
 };
 
 TEST_F(InterruptedWriter, IsWaitedForAndNeverReadInHalf) {
-    std::atomic<bool> isDone{false};
+    std::atomic<bool> done{false};
     std::jthread interrupter([&] {
-        while (!isDone) {
+        while (!done) {
             kill(writer, SIGSTOP);
             std::this_thread::sleep_for(std::chrono::milliseconds(10));
             kill(writer, SIGCONT);
@@ -88,13 +88,13 @@ TEST_F(InterruptedWriter, IsWaitedForAndNeverReadInHalf) {
         EXPECT_TRUE(read_patiently(shared->parts, copy, PATIENCE));
         EXPECT_TRUE(isOneWrite(copy.value));
     }
-    isDone = true;
+    done = true;
     EXPECT_GT(waits, 0) << "the writer was never found within a write: nothing was tested";
 }
 
 TEST_F(InterruptedWriter, ThatIsDeadWithinAWriteIsGivenUp) {
     Large value;
-    do {  // until it stands within a write
+    do {  // until it is stopped during a write
         kill(writer, SIGCONT);
         std::this_thread::sleep_for(std::chrono::microseconds(100));
         kill(writer, SIGSTOP);

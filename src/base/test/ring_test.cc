@@ -48,17 +48,17 @@ TEST(Seqlock, ReadersNeverSeeAMixture) {
         std::int64_t a[5];
     };
     auto lock = std::make_unique<Seqlock<Snapshot>>();
-    std::atomic<bool> isDone{false};
+    std::atomic<bool> done{false};
     std::jthread writer([&] {
         for (std::int64_t i = 0; i < 50000; ++i) {
             lock->write({{i, i, i, i, i}});
         }
-        isDone = true;
+        done = true;
     });
-    // At least once after the writer's last word, whatever the scheduler does before.
+    // At least one read after the last write, independent of scheduling.
     Snapshot seen{};
-    for (bool isLast = false; !isLast;) {
-        isLast = isDone;
+    for (bool last = false; !last;) {
+        last = done;
         ASSERT_TRUE(read_patiently(*lock, seen, std::chrono::seconds(10)));
         for (const std::int64_t v : seen.a) {
             ASSERT_EQ(v, seen.a[0]);

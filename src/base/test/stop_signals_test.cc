@@ -18,9 +18,9 @@ TEST(StopSignals, APipeWithoutReaderIsAnErrorOfTheWriteAndNotTheEnd) {
             ::_exit(1);
         }
         ::close(ends[0]);
-        const bool isError = ::write(ends[1], "x", 1) < 0 && errno == EPIPE;
+        const bool is_error = ::write(ends[1], "x", 1) < 0 && errno == EPIPE;
         ::raise(SIGPIPE);
-        ::_exit(isError && stop_signal == 0 ? 0 : 2);
+        ::_exit(is_error && stop_signal == 0 ? 0 : 2);
     };
     EXPECT_EXIT(write_without_reader(), ::testing::ExitedWithCode(0), "");
 }

@@ -123,7 +123,7 @@ TEST(Text, FourDecimalsOfAnyValueAreThoseOfPrintf) {
         return std::uniform_real_distribution<double>(low, high)(random);
     };
     const auto check = [](double value) {
-        // EXPECT_EQ on each would take most of the time.
+        // EXPECT_EQ on each value would take most of the time.
         if (fixed4(value) != printf_fixed4(value)) {
             ADD_FAILURE() << "seed " << SEED << ": " << to_text(value) << " is " << fixed4(value);
         }
@@ -131,14 +131,14 @@ TEST(Text, FourDecimalsOfAnyValueAreThoseOfPrintf) {
     for (int i = 0; i < COUNT; ++i) {
         const double size = std::pow(10.0, pick(-6.0, 16.0));
         check(pick(-size, size));
-        check(std::round(pick(-1e6, 1e6)) / 1000.0);  // as programs have them
-        // Ties of the fifth decimal as near as a double comes, and their neighbours on both sides.
+        check(std::round(pick(-1e6, 1e6)) / 1000.0);  // typical values of programs
+        // The doubles nearest to ties of the fifth decimal, and their neighbours on both sides.
         const double tie = (std::floor(pick(0.0, std::fmin(size * 1e4, 4e15))) + 0.5) / 1e4;
         check(tie);
         check(std::nextafter(tie, 0.0));
         check(-std::nextafter(tie, 1e300));
         check(tie + pick(-2e-7, 2e-7));
-        // Exact ties: odd multiples of 1/32 of which four decimals are a half short.
+        // Exact ties: odd multiples of 1/32, which end in 5 at the fifth decimal.
         check(std::floor(pick(-1e9, 1e9)) / 32.0);
         check(std::bit_cast<double>(random()));
     }
@@ -163,13 +163,13 @@ TEST(Text, NearestNameIsOfferedOnlyWhenNear) {
 TEST(Memory, ItsEndIsToldAndNoCrash) {
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-    GTEST_SKIP() << "the sanitizer has a heap of its own, which asks no handler";
+    GTEST_SKIP() << "the sanitizer has a separate heap, which calls no handler";
 #endif
 #endif
     EXPECT_EXIT(
         {
             tell_when_memory_ends();
-            // More than any address space has.
+            // More than any address space.
             volatile std::size_t size = static_cast<std::size_t>(-1) / 4;
             ::operator delete(::operator new(size));
         },

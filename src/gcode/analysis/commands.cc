@@ -17,21 +17,21 @@ namespace {
 enum class FormatMode { PRINT, CHECK, IN_PLACE };
 
 struct FormatWords {
-    bool isCheck = false, isInPlace = false;
+    bool is_check = false, in_place = false;
     options::Words programs;
 
     options::CommandLine line() {
         options::CommandLine line("millwright format [--check | --in-place] PROGRAM.ngc|- ...",
                                   "Writes programs in one form, without a change of meaning; - is standard "
                                   "input.\n");
-        line.flag("--check", "only say which ones would change; status 1 when any would", isCheck);
-        line.flag("--in-place", "write them back", isInPlace);
+        line.flag("--check", "only say which ones would change; status 1 when any would", is_check);
+        line.flag("--in-place", "write them back", in_place);
         line.rest(programs);
         line.footer("exit status: 0 done, 1 failed, 2 wrong usage\n");
         return line;
     }
     FormatMode mode() const {
-        return isCheck ? FormatMode::CHECK : isInPlace ? FormatMode::IN_PLACE : FormatMode::PRINT;
+        return is_check ? FormatMode::CHECK : in_place ? FormatMode::IN_PLACE : FormatMode::PRINT;
     }
 };
 
@@ -63,7 +63,7 @@ Result<std::string> read_program(const std::string &path) {
     return read_file(path);
 }
 
-/// One program; false when it cannot be read or written, or would change under CHECK.
+/// Formats one program; false when it cannot be read or written, or when CHECK finds a difference.
 bool format_one(const std::string &path, FormatMode mode) {
     const Result<std::string> text = read_program(path);
     if (!text) {
@@ -71,31 +71,31 @@ bool format_one(const std::string &path, FormatMode mode) {
         return false;
     }
     const std::string made = format_program(*text);
-    const bool isSame = made == *text;
+    const bool same = made == *text;
     if (mode == FormatMode::PRINT || (mode == FormatMode::IN_PLACE && path == "-")) {
         std::fwrite(made.data(), 1, made.size(), stdout);
         return true;
     }
     if (mode == FormatMode::CHECK) {
-        if (!isSame) {
+        if (!same) {
             std::printf("%s\n", path.c_str());
         }
-        return isSame;
+        return same;
     }
-    const Result<> written = isSame ? Result<>{} : write_file_atomically(path, made);
+    const Result<> written = same ? Result<>{} : write_file_atomically(path, made);
     if (!written) {
         std::fprintf(stderr, "millwright format: %s\n", written.error().str().c_str());
     }
     return written.has_value();
 }
 
-/// Blocks on one line are written "\n" in the shell.
+/// In the shell, blocks on one line are separated by "\n".
 std::string with_newlines(const std::string &text) {
     std::string out;
     for (std::size_t i = 0; i < text.size(); ++i) {
-        const bool isEscape = text[i] == '\\' && i + 1 < text.size() && text[i + 1] == 'n';
-        out += isEscape ? '\n' : text[i];
-        i += isEscape ? 1 : 0;
+        const bool is_escape = text[i] == '\\' && i + 1 < text.size() && text[i + 1] == 'n';
+        out += is_escape ? '\n' : text[i];
+        i += is_escape ? 1 : 0;
     }
     return out;
 }
@@ -111,18 +111,18 @@ int command_format(const std::vector<std::string> &arguments) {
     if (const auto parsed = words.line().parse(arguments); !parsed) {
         return wrong_usage("format", parsed.error().str());
     }
-    if (words.isCheck && words.isInPlace) {
+    if (words.is_check && words.in_place) {
         return wrong_usage("format", "either --check or --in-place");
     }
     if (words.programs.empty()) {
         return wrong_usage("format",
                            "needs a program: millwright format [--check | --in-place] PROGRAM.ngc|- ...");
     }
-    bool isGood = true;
+    bool good = true;
     for (const std::string &program : words.programs) {
-        isGood = format_one(program, words.mode()) && isGood;
+        good = format_one(program, words.mode()) && good;
     }
-    return isGood ? 0 : 1;
+    return good ? 0 : 1;
 }
 
 int command_explain(const std::vector<std::string> &arguments) {

@@ -24,11 +24,11 @@ using namespace gcode;
 
 using detail::OKind;
 
-/// Places in ActiveCodes.
+/// Indices in ActiveCodes.
 enum Place : std::size_t { MOTION = 1, UNITS = 5, DISTANCE = 6, FEED_MODE = 7, SPINDLE_MODE = 13 };
 constexpr int INCHES = 200, INCREMENTAL = 910, INVERSE_TIME = 930, PER_REVOLUTION = 950, SURFACE_SPEED = 960;
 
-/// An interpreter whose machine does nothing.
+/// An interpreter without a machine.
 class Bench {
   public:
     Bench() : interpreter_(canon_, world_, world_, world_, settings()) {
@@ -37,8 +37,8 @@ class Bench {
     }
     /// Runs lines; false after an error.
     bool run(std::string_view lines) {
-        if (!isBegun_) {
-            isBegun_ = interpreter_.begin().has_value();
+        if (!started_) {
+            started_ = interpreter_.begin().has_value();
         }
         while (!lines.empty()) {
             const std::size_t end = std::min(lines.find('\n'), lines.size());
@@ -61,14 +61,14 @@ class Bench {
     static Settings settings() {
         constexpr std::uint64_t BUDGET = 1000000;
         Settings out;
-        out.isUserCodeAssumed = true;
+        out.user_code_assumed = true;
         out.statement_budget = BUDGET;
         return out;
     }
     QuietCanon canon_;
     Standalone world_;
     Interpreter interpreter_;
-    bool isBegun_ = false;
+    bool started_ = false;
 };
 
 std::string code_name(int tenfold) {
@@ -82,7 +82,7 @@ std::string_view oword_text(OKind kind) {
     case OKind::ENDSUB: return "the subroutine ends here; a value in brackets becomes #<_value>";
     case OKind::CALL: return "calls the subroutine; values in brackets become its #1, #2 and so on";
     case OKind::RETURN: return "leaves the subroutine; a value in brackets becomes #<_value>";
-    case OKind::IF: return "goes on behind this line when the value is not 0, else at elseif, else or endif";
+    case OKind::IF: return "continues after this line when the value is not 0, else at elseif, else or endif";
     case OKind::ELSEIF: return "the next condition, when none before was true";
     case OKind::ELSE: return "what runs when no condition was true";
     case OKind::ENDIF: return "the condition ends here";
@@ -92,7 +92,7 @@ std::string_view oword_text(OKind kind) {
     case OKind::REPEAT: return "repeats the lines to endrepeat so many times";
     case OKind::ENDREPEAT: return "the loop ends here";
     case OKind::BREAK: return "leaves the loop";
-    case OKind::CONTINUE: return "goes on with the next turn of the loop";
+    case OKind::CONTINUE: return "continues with the next iteration of the loop";
     case OKind::FANUC:
     case OKind::NONE: break;
     }
@@ -134,8 +134,8 @@ class Explainer {
         }
         block_ = detail::Parser(arena_, names_).parse_line(line_, 1);
         codes_ = bench_.codes();
-        const bool isDone = hasOword() || bench_.run(line_);
-        if (isDone && !hasOword()) {
+        const bool done = hasOword() || bench_.run(line_);
+        if (done && !hasOword()) {
             codes_ = bench_.codes();
         }
         if (block_.error != detail::NO_ID) {
@@ -147,9 +147,10 @@ class Explainer {
         }
         Explanation out;
         out.text =
-            std::string(block_.isPercent ? trim(line_) : detail::Printer(arena_, line_).block(block_)) + "\n";
+            std::string(block_.is_percent ? trim(line_) : detail::Printer(arena_, line_).block(block_)) +
+            "\n";
         out.text += parts();
-        if (!isDone) {
+        if (!done) {
             const Explanation why = refused("", bench_.error());
             return {out.text + why.text, true};
         }
@@ -170,10 +171,10 @@ class Explainer {
 
     std::string parts() {
         std::string out;
-        if (block_.isPercent) {
+        if (block_.is_percent) {
             return row("%", "the program begins or ends here");
         }
-        if (block_.isDeletable) {
+        if (block_.deletable) {
             out += row("/", "left out while block delete is on");
         }
         if (block_.isNumbered) {
@@ -200,7 +201,7 @@ class Explainer {
         return out;
     }
 
-    /// " = 5" for a value that is not a plain number and can be computed.
+    /// " = 5" for a value that is an expression and can be computed.
     std::string computed(const std::string &value) {
         double number = 0;
         return compute(value, number) && !parse_double(value) ? fmt::format(", here {:g}", number)
@@ -209,9 +210,9 @@ class Explainer {
     bool compute(const std::string &value, double &number) {
         constexpr int SCRATCH = 31;
         Bench other;
-        const bool isDone = other.run(std::string(before_) + fmt::format("\n#{}=[{}]", SCRATCH, value));
-        number = isDone ? other.parameter(SCRATCH) : 0;
-        return isDone;
+        const bool done = other.run(std::string(before_) + fmt::format("\n#{}=[{}]", SCRATCH, value));
+        number = done ? other.parameter(SCRATCH) : 0;
+        return done;
     }
 
     std::string describe(const detail::Word &word, const detail::Printer &printer) {
@@ -219,11 +220,11 @@ class Explainer {
         const std::string value = word.expression == detail::NO_ID ? detail::Printer::number(word.value)
                                                                    : printer.value(word.expression);
         double number = word.value;
-        const bool isKnown = word.expression == detail::NO_ID || compute(value, number);
+        const bool known = word.expression == detail::NO_ID || compute(value, number);
         if (letter == 'g' || letter == 'm') {
-            return describe_code(letter, number, isKnown);
+            return describe_code(letter, number, known);
         }
-        const std::string shown = isKnown ? fmt::format("{:g}", number) : value;
+        const std::string shown = known ? fmt::format("{:g}", number) : value;
         if (const std::string meaning = meaning_of(letter); !meaning.empty()) {
             return fmt::format("{}: {}", meaning, shown);
         }
@@ -245,21 +246,21 @@ class Explainer {
         }
     }
 
-    std::string describe_code(char letter, double number, bool isKnown) {
+    std::string describe_code(char letter, double number, bool known) {
         const int code = static_cast<int>(std::lround(letter == 'g' ? number * 10 : number));
-        const CodeText *text = isKnown ? find_code_text(letter, code) : nullptr;
+        const CodeText *text = known ? find_code_text(letter, code) : nullptr;
         if (text != nullptr) {
             return std::string(text->meaning);
         }
         constexpr int FIRST_USER_CODE = 100, LAST_USER_CODE = 199;
-        const bool isUser = letter == 'm' && code >= FIRST_USER_CODE && code <= LAST_USER_CODE;
-        return isUser ? "runs the program of this name, with P and Q" : "no such code";
+        const bool is_user = letter == 'm' && code >= FIRST_USER_CODE && code <= LAST_USER_CODE;
+        return is_user ? "runs the program of this name, with P and Q" : "no such code";
     }
 
-    /// What a letter means for a code of the block, or for the motion mode in force.
+    /// Meaning of a letter for a code of the block, or for the current motion mode.
     std::string meaning_of(char letter) {
         std::string found;
-        bool hasMotion = false;
+        bool has_motion = false;
         for (std::uint32_t i = 0; i < block_.word_count; ++i) {
             const detail::Word &word = arena_.words[block_.first_word + i];
             const char code_letter = static_cast<char>(detail::letter_text(word.letter) | 0x20);
@@ -269,13 +270,13 @@ class Explainer {
             const int number =
                 static_cast<int>(std::lround(code_letter == 'g' ? word.value * 10 : word.value));
             const detail::Code *code = detail::find_code(code_letter, number);
-            hasMotion = hasMotion || (code != nullptr && code->usesAxes);
+            has_motion = has_motion || (code != nullptr && code->usesAxes);
             if (const CodeText *text = find_code_text(code_letter, number);
                 text != nullptr && found.empty()) {
                 found = std::string(word_text(*text, letter));
             }
         }
-        const CodeText *mode = hasMotion ? nullptr : find_code_text('g', codes_.g[MOTION]);
+        const CodeText *mode = has_motion ? nullptr : find_code_text('g', codes_.g[MOTION]);
         return found.empty() && mode != nullptr ? std::string(word_text(*mode, letter)) : found;
     }
 

@@ -21,7 +21,7 @@ class Formatter {
         arena_.clear();
         const detail::Block block = detail::Parser(arena_, names_).parse_line(line, 1);
         const std::string_view bare = line.substr(0, line.find_last_not_of(" \t\r") + 1);
-        if (block.error != detail::NO_ID || block.isPercent) {
+        if (block.error != detail::NO_ID || block.is_percent) {
             return std::string(bare);
         }
         const std::string text = detail::Printer(arena_, line).block(block);
@@ -30,8 +30,8 @@ class Formatter {
         }
         const detail::OWord &oword = arena_.owords[block.oword];
         leave(oword);
-        const bool isBetween = oword.kind == OKind::ELSE || oword.kind == OKind::ELSEIF;
-        const std::string out = indented(text, isBetween && !open_.empty() ? open_.size() - 1 : open_.size());
+        const bool between = oword.kind == OKind::ELSE || oword.kind == OKind::ELSEIF;
+        const std::string out = indented(text, between && !open_.empty() ? open_.size() - 1 : open_.size());
         enter(oword);
         return out;
     }
@@ -45,7 +45,7 @@ class Formatter {
     static std::string indented(const std::string &text, std::size_t level) {
         return text.empty() ? text : std::string(level * INDENT, ' ') + text;
     }
-    /// A while that ends a do closes; any other opens.
+    /// A `while` that ends a `do` closes; any other `while` opens.
     bool endsDo(const detail::OWord &oword) const {
         return oword.kind == OKind::WHILE && !open_.empty() && open_.back().kind == OKind::DO &&
                open_.back().label == oword.label;
@@ -57,8 +57,8 @@ class Formatter {
         case OKind::ENDWHILE:
         case OKind::ENDREPEAT: pop(); break;
         case OKind::WHILE:
-            wasDo_ = endsDo(oword);
-            if (wasDo_) {
+            was_do_ = endsDo(oword);
+            if (was_do_) {
                 pop();
             }
             break;
@@ -72,7 +72,7 @@ class Formatter {
         case OKind::DO:
         case OKind::REPEAT: open_.push_back({oword.kind, oword.label}); break;
         case OKind::WHILE:
-            if (!wasDo_) {
+            if (!was_do_) {
                 open_.push_back({oword.kind, oword.label});
             }
             break;
@@ -88,7 +88,7 @@ class Formatter {
     detail::Names names_;
     detail::Arena arena_;
     std::vector<Open> open_;
-    bool wasDo_ = false;
+    bool was_do_ = false;
 };
 
 }  // namespace

@@ -17,7 +17,7 @@ namespace {
 
 using namespace gcode;
 
-/// Names with numbers, in the order in which they came.
+/// Numbers names in the order of their first use.
 class NameList {
   public:
     std::uint32_t number_of(std::string_view name) {
@@ -41,12 +41,12 @@ class NameList {
     std::uint32_t last_ = 0;
 };
 
-/// What the program has told its spindles, and whether the next cut waits for one, as task lets it.
+/// The programmed state of the spindles, and whether the next cut waits for one, by the rules of task.
 class ProgrammedSpindles {
   public:
     struct Spindle {
         double speed = 0, surface_unit = 0, css_max_rpm = 0;
-        bool isTurning = false, isWaiting = false;
+        bool isTurning = false, waiting = false;
     };
     const Spindle &at(int number) const { return spindles_[static_cast<std::size_t>(number)]; }
 
@@ -54,34 +54,34 @@ class ProgrammedSpindles {
     void take(const UseSpindleSpeed &one) {
         Spindle &spindle = at(one.spindle);
         const double speed = std::abs(one.speed);
-        const bool isNew = spindle.speed != speed || spindle.surface_unit != one.surface_unit;
+        const bool is_new = spindle.speed != speed || spindle.surface_unit != one.surface_unit;
         spindle.speed = speed;
         spindle.surface_unit = one.surface_unit;
-        isCutWaiting_ = isNew && spindle.isTurning ? spindle.isWaiting : isCutWaiting_;
+        cut_waiting_ = is_new && spindle.isTurning ? spindle.waiting : cut_waiting_;
     }
     void take(const StartSpindle &one) {
         at(one.spindle).isTurning = true;
-        at(one.spindle).isWaiting = isCutWaiting_ = one.isWaiting;
+        at(one.spindle).waiting = cut_waiting_ = one.waiting;
     }
     void take(const StopSpindle &one) {
         at(one.spindle).isTurning = false;
-        isCutWaiting_ = isCutWaiting_ && std::ranges::any_of(spindles_, &Spindle::isTurning);
+        cut_waiting_ = cut_waiting_ && std::ranges::any_of(spindles_, &Spindle::isTurning);
     }
-    /// Whether this move waits; a cut takes the wait, so that those behind it do not.
+    /// True if this move waits. A cut takes the wait, so later cuts do not wait.
     bool take_wait(const MoveSettings &move) {
-        const bool isAwaited = isCutWaiting_ && !move.isRapid;
-        isCutWaiting_ = isCutWaiting_ && move.isRapid;
-        return isAwaited;
+        const bool awaited = cut_waiting_ && !move.isRapid;
+        cut_waiting_ = cut_waiting_ && move.isRapid;
+        return awaited;
     }
 
   private:
     Spindle &at(int number) { return spindles_[static_cast<std::size_t>(number)]; }
 
     std::array<Spindle, MAX_SPINDLES> spindles_{};
-    bool isCutWaiting_ = false;
+    bool cut_waiting_ = false;
 };
 
-/// The text after "section," in a comment; nothing when it is another comment.
+/// The text after "section," in a comment; empty for another comment.
 std::string_view section_name(std::string_view comment) {
     constexpr std::string_view KEY = "section,";
     comment = trim(comment);
@@ -91,7 +91,7 @@ std::string_view section_name(std::string_view comment) {
     return trim(comment.substr(KEY.size()));
 }
 
-/// Of an arc in XYZ or UVW that begins at `start`: what is across its normal. [machine units]
+/// Radius of an arc in XYZ or UVW that begins at `start`, normal to its axis. [machine units]
 double arc_radius(const ArcMove &arc, const Pose &start) {
     double longest = 0;
     for (const int first : {geometry::AXIS_X, geometry::AXIS_U}) {
@@ -151,7 +151,7 @@ class Preview::Impl final : public MachineCanon, public World {
     const NameList &files() const { return files_; }
     const NameList &sections() const { return sections_; }
 
-    // MachineCanon
+    // ---- MachineCanon
     void begin_block(const BlockRef &block) override {
         ++progress_.blocks;
         place_.file = files_.number_of(block.file);
@@ -196,7 +196,7 @@ class Preview::Impl final : public MachineCanon, public World {
             call);
     }
 
-    // World: everything is where the program put it, probes trip at their end.
+    // ---- World: every action ends as programmed; probes trip at the end of their move.
     MachineSnapshot snapshot() const override {
         MachineSnapshot s;
         s.position = s.probed_position = position_;
@@ -207,7 +207,7 @@ class Preview::Impl final : public MachineCanon, public World {
     LengthUnits machine_units() const override { return machine_.units; }
     unsigned axis_mask() const override { return machine_.axis_mask; }
     int count_spindles() const override { return machine_.spindles; }
-    bool isBlockDeleteOn() const override { return machine_.isBlockDeleteOn; }
+    bool isBlockDeleteOn() const override { return machine_.block_delete_on; }
     bool isOptionalStopOn() const override { return true; }
 
   private:
@@ -231,9 +231,9 @@ class Preview::Impl final : public MachineCanon, public World {
             MoveSettings rapid;
             rapid.isRapid = true;
             for (const Pose &end : machine_.tool_change_moves(position_)) {
-                place_.isByMachine = true;
+                place_.by_machine = true;
                 add_move(PreviewKind::RAPID, end, rapid);
-                place_.isByMachine = false;
+                place_.by_machine = false;
             }
             frame_.set_position(position_);
         }
@@ -286,7 +286,7 @@ class Preview::Impl final : public MachineCanon, public World {
         return errors > 0 ? PreviewEnd::FAILED : PreviewEnd::DONE;
     }
 
-    /// The way is lost: what cannot be read further down is told all the same.
+    /// After an error that ends the interpretation, reports the remaining syntax errors.
     void report_rest(diagnostics::Sink &sink, int most) {
         const diagnostics::Diagnostic failed = interpreter_.error();
         const SourcePlace &place = failed.called_from.empty() ? failed.what.place : failed.called_from.back();
@@ -327,14 +327,14 @@ class Preview::Impl final : public MachineCanon, public World {
         mark_progress(event.settings, std::max(geometry::norm(end - position_), arc_length));
         event.start = convert(position_);
         event.end = convert(end);
-        event.isSpindleAwaited = spindles_.take_wait(event.settings);
+        event.spindle_awaited = spindles_.take_wait(event.settings);
         if (event.settings.feed_per_revolution > 0) {
             event.spindle_rpm = spindle_rpm(event.settings.synch_spindle, 0.5 * (position_[0] + end[0]));
         }
         position_ = end;
         add(event);
     }
-    /// With the tool at machine X `x`.
+    /// Spindle speed with the tool at machine X `x`.
     double spindle_rpm(int spindle, double x) const {
         const ProgrammedSpindles::Spindle &state = spindles_.at(spindle);
         if (!(state.css_max_rpm > 0)) {
@@ -345,7 +345,7 @@ class Preview::Impl final : public MachineCanon, public World {
         const double factor = surface_speed_factor(state.speed, state.surface_unit);
         return factor < state.css_max_rpm * radius ? factor / radius : state.css_max_rpm;
     }
-    /// How long a move takes at least, so that loops that move without end are found.
+    /// Adds the minimum time of a move, to find endless loops that move.
     void mark_progress(const MoveSettings &settings, double length) {
         constexpr double FASTEST_MM_S = 1000.0;
         const double fastest = FASTEST_MM_S / mm_per_machine_unit();
@@ -360,9 +360,8 @@ class Preview::Impl final : public MachineCanon, public World {
         event.number = number;
         event.value = value;
         event.start = event.end = convert(position_);
-        const bool isWaiting = kind == PreviewKind::STOP || kind == PreviewKind::TOOL_CHANGE;
-        if (const double seconds = kind == PreviewKind::DWELL ? value : (isWaiting ? 1.0 : 0.0);
-            seconds > 0) {
+        const bool waiting = kind == PreviewKind::STOP || kind == PreviewKind::TOOL_CHANGE;
+        if (const double seconds = kind == PreviewKind::DWELL ? value : (waiting ? 1.0 : 0.0); seconds > 0) {
             interpreter_.mark_progress(seconds);
         }
         add(event);
@@ -389,7 +388,7 @@ class Preview::Impl final : public MachineCanon, public World {
     Interpreter interpreter_;
     PreviewProgress progress_;
     std::vector<PreviewEvent> batch_;
-    PreviewEvent place_;  ///< the place of the current block, copied into each event
+    PreviewEvent place_;  ///< position of the current block, copied into each event
     NameList files_, sections_;
     std::uint32_t section_ = sections_.number_of("");
     int tool_, selected_ = -1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What a program would do, without doing it: its moves with their places in the source, as a stream.
+// The moves of a program with their positions in the source, as a stream, without running it.
 #pragma once
 
 #include <cstdint>
@@ -21,22 +21,22 @@ enum class PreviewKind : std::uint8_t {
     ARC,
     PROBE,
     RIGID_TAP,    ///< to `end` and back to `start`
-    DWELL,        ///< `value` [s]
-    TOOL_CHANGE,  ///< tool `number` is in the spindle from here on
-    STOP,         ///< M0, M1 and M60: motion stands
-    PLANNER,      ///< G64 R: from here on planned with jerk limits when `number` is 1, without when 0
+    DWELL,        ///< of `value` [s]
+    TOOL_CHANGE,  ///< tool `number` is in the spindle from now on
+    STOP,         ///< M0, M1 and M60: motion stops
+    PLANNER,      ///< G64 R: from now on planned with jerk limits when `number` is 1, without when 0
 };
 
-/// A move, or what stands between moves. Poses are in the coordinates that were asked for.
+/// A move, or an event between moves. Poses are in the selected coordinates.
 struct PreviewEvent {
     PreviewKind kind = PreviewKind::RAPID;
-    bool isByMachine = false;       ///< a move that the machine makes by itself, at a tool change
-    bool isSpindleAwaited = false;  ///< motion stands before this move until the spindle has its speed
-    geometry::Pose start, end;      ///< the same for what is no move
+    bool by_machine = false;        ///< a move that the machine makes itself for a tool change
+    bool spindle_awaited = false;   ///< motion waits before this move until the spindle is at speed
+    geometry::Pose start, end;      ///< equal when the event is not a move
     geometry::Pose centre, normal;  ///< of an arc, as in ArcMove
     double angle_rad = 0;
     geometry::MoveSettings settings;  ///< of a move [machine units]
-    /// Of the spindle that a move follows, half-way, as programmed (G96 counted). [rev/min]
+    /// Speed of the spindle that a move follows, at its middle, as programmed (with G96). [rev/min]
     double spindle_rpm = 0;
     double value = 0;
     int number = 0;
@@ -47,76 +47,77 @@ struct PreviewEvent {
 
 enum class PreviewCoordinates {
     MACHINE,  ///< machine units; the controlled point of the machine
-    TIP,      ///< the same without the tool offset: where the tool cuts
-    PROGRAM,  ///< program units and coordinates, as written
+    TIP,      ///< as MACHINE without the tool offset: the tool tip
+    PROGRAM,  ///< program units and coordinates, as programmed
 };
 
-/// The machine that a program is interpreted for.
+/// The machine for which a program is interpreted.
 struct PreviewMachine {
     gcode::Settings interpreter;
     gcode::LengthUnits units = gcode::LengthUnits::MM;
     unsigned axis_mask = 0x1ff;
     int spindles = 1;
-    bool isBlockDeleteOn = true;
-    std::string parameter_file;  ///< read and never written; empty: none
-    geometry::Pose position;     ///< where it stands [machine units]
+    bool block_delete_on = true;
+    std::string parameter_file;  ///< only read; empty: none
+    geometry::Pose position;     ///< start position [machine units]
     int tool_in_spindle = 0;
-    /// The moves that it makes for a tool change, from a position; none when not set.
+    /// The machine's own moves for a tool change, from a position; none when not set.
     std::function<std::vector<geometry::Pose>(const geometry::Pose &)> tool_change_moves;
 };
 
 struct PreviewProgress {
     std::uint64_t blocks = 0, events = 0;
-    std::uint64_t bytes = 0, bytes_in_all = 0;  ///< of the main file; loops and calls stand still in it
+    std::uint64_t bytes = 0,
+                  bytes_in_all = 0;  ///< position in the main file; does not change in loops and calls
 };
 
 struct PreviewOptions {
     PreviewCoordinates coordinates = PreviewCoordinates::MACHINE;
-    std::size_t batch = 1024;  ///< most events per call of the listener
-    /// After these a loop, or a call of the main program, counts as endless, which is an error; 0: never. See
-    /// Settings. Statements; statements in a row without any motion, dwell or stop; machine time (motion at
-    /// the programmed feed, rapids at least at the machine's speed).
+    std::size_t batch = 1024;  ///< maximum number of events per call of the listener
+    /// Limits after which a loop, or a call of the main program, counts as endless, which is an error; 0: no
+    /// limit. See Settings. Statements; consecutive statements without motion, dwell or stop; machine time
+    /// (motion at the programmed feed, rapids at the machine's speed or slower).
     std::uint64_t statement_budget = 50000000;
     std::uint64_t idle_budget = 20000000;
     double time_budget_s = 100 * 3600.0;
-    int max_errors = 20;                     ///< interpretation goes on behind a failed block until then
+    int max_errors = 20;  ///< interpretation continues after failed blocks up to this number
     std::uint64_t blocks_per_report = 4096;  ///< between two calls of `progress`
 };
 
 enum class PreviewEnd { DONE, FAILED, CANCELLED };
 
-/// Interprets one program. Memory is bounded by a batch and the interpreter's own (gcode/README.md); the
-/// listener may take as long as it likes. One thread.
+/// Interprets one program. Memory is limited to a batch and the interpreter's own (gcode/README.md); the
+/// listener may be slow. One thread.
 class Preview {
   public:
     struct Listener {
         std::function<void(std::span<const PreviewEvent>)> events;
-        std::function<bool(const PreviewProgress &)> progress;  ///< false cancels; may be empty
-        /// From here on the program's way may depend on what only the running machine knows: the result of a
-        /// probe or of an input. Told after all events before it; may be empty.
+        std::function<bool(const PreviewProgress &)> progress;  ///< returns false to cancel; may be empty
+        /// From now on the program may depend on values known only to the running machine: the result of a
+        /// probe or an input. Called after all events before it; may be empty.
         std::function<void(const SourcePlace &, std::string_view what)> unknown{};
     };
 
-    /// LinuxCNCs must outlive it.
+    /// The arguments must outlive it.
     Preview(PreviewMachine machine, gcode::ToolSource &tools, gcode::ParameterSource &parameters,
             PreviewOptions options, Listener listener);
     ~Preview();
 
-    /// Runs a file to its end. Errors go to `sink` with their places, also when the preview goes on after
-    /// them. Any thread, but one at a time.
+    /// Runs a file to its end. Reports errors with their positions to `sink` and continues where possible.
+    /// Any thread, one at a time.
     PreviewEnd run(const std::string &path, diagnostics::Sink &sink);
-    /// The same for a text; `name` stands for its file.
+    /// Runs a text; `name` replaces the file name.
     PreviewEnd run_text(const std::string &name, std::string text, diagnostics::Sink &sink);
 
     const PreviewProgress &progress() const;
     const std::string &file(std::uint32_t index) const;
-    /// The innermost subroutine, or in the main program what the last comment (section, NAME) said; empty at
-    /// the beginning. Under cutter compensation the last move of a section may count for the next.
+    /// The innermost subroutine, or in the main program the text of the last comment (section, NAME); empty
+    /// at the beginning. Under cutter compensation the last move of a section may be counted in the next one.
     const std::string &section(std::uint32_t index) const;
     std::string line_text(std::uint32_t file, int line) const;
-    /// Of the line that is being read.
+    /// Position of the line that is being read.
     SourcePlace place() const;
-    /// Hands on the events up to now.
+    /// Passes the collected events to the listener.
     void flush();
 
   private:

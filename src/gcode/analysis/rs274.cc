@@ -38,7 +38,7 @@ class Run {
     Result<> read_ini();
     Result<> read_tools();
     void report_failure();
-    /// Plug-ins say all that is to be said themselves.
+    /// Plug-ins make all their calls themselves.
     void reset_canon() {
         if (options_.plugin.empty()) {
             canon_->take(OnReset{});
@@ -103,10 +103,10 @@ Result<> Run::read_tools() {
     return {};
 }
 
-/// Fewer and larger writes than the library would make; but line by line where someone looks on.
+/// Larger writes than the library's default; line by line on a terminal.
 void buffer_output(std::FILE *out) {
     constexpr std::size_t SIZE = 65536;
-    static char buffer[SIZE];  // stdout uses it until the process is over
+    static char buffer[SIZE];  // stdout uses it until the process ends
     if (::isatty(::fileno(out)) == 0) {
         std::setvbuf(out, buffer, _IOFBF, SIZE);
     }
@@ -121,10 +121,10 @@ Result<> Run::prepare() {
     }
     var_file_ = options_.var_file.empty() ? var_file_ : options_.var_file;
     world_.isBlockDelete = options_.isBlockDelete;
-    // The standalone program has always taken the entry of index 1 for the tool that may be in the spindle.
+    // LinuxCNC's standalone program takes the entry of index 1 as the tool in the spindle.
     world_.state.current_pocket = 1;
     settings_.initial_units = LengthUnits::MM;
-    settings_.isTapOrderOfRs274 = true;
+    settings_.tap_order_of_rs274 = true;
     settings_.startup_code.clear();
     settings_.subroutine_path.emplace_back(".");
     if (!options_.output.empty()) {
@@ -152,30 +152,30 @@ Result<> Run::prepare() {
     return {};
 }
 
-/// Errors stand in a stream of their own or on a terminal. In one file with the canon calls they are the two
-/// lines that programs expect there.
+/// True when errors have a separate stream or go to a terminal. In one file with the canon calls they are the
+/// two lines that programs expect there.
 bool isForPeople() {
     struct stat out{}, err{};
-    const bool isKnown = ::fstat(STDOUT_FILENO, &out) == 0 && ::fstat(STDERR_FILENO, &err) == 0;
-    return ::isatty(STDERR_FILENO) == 1 || !isKnown || out.st_dev != err.st_dev || out.st_ino != err.st_ino;
+    const bool known = ::fstat(STDOUT_FILENO, &out) == 0 && ::fstat(STDERR_FILENO, &err) == 0;
+    return ::isatty(STDERR_FILENO) == 1 || !known || out.st_dev != err.st_dev || out.st_ino != err.st_ino;
 }
 
-/// The place, the block with a caret and its callers; then the message and the block, which programs read.
+/// Prints position, block with a caret and callers; then message and block, which programs read.
 void Run::report_failure() {
     std::fflush(out_);
     const diagnostics::Diagnostic &error = interpreter_->error();
-    if (options_.isStackShown || isForPeople()) {
+    if (options_.stack_shown || isForPeople()) {
         const std::string context = error.context();
         fmt::print(stderr, "{}{}{}\n", error.what.place.str(), context.empty() ? "" : "\n", context);
     }
-    // Where scripts read them these two lines are as they are.
-    const bool isTerminal = ::isatty(STDERR_FILENO) == 1;
+    // For scripts these two lines are printed without changes.
+    const bool is_terminal = ::isatty(STDERR_FILENO) == 1;
     const std::string block = short_text(error.line_text);
-    fmt::print(stderr, "{}\n{}\n", isTerminal ? printable(error.what.message) : error.what.message,
-               isTerminal ? printable(block) : block);
+    fmt::print(stderr, "{}\n{}\n", is_terminal ? printable(error.what.message) : error.what.message,
+               is_terminal ? printable(block) : block);
 }
 
-/// The whole file. At its end without M2, M30 or % an error cannot be passed over.
+/// Runs the whole file. A missing M2, M30 or % at its end is always an error.
 int Run::run_file() {
     if (Result<> opened = interpreter_->open(options_.input); !opened) {
         fmt::print(stderr, "{}\n", opened.error().str());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The program rs274: its options and its run.
+// Options and run of the program rs274.
 #pragma once
 
 #include <cstdio>
@@ -13,14 +13,14 @@ struct StandaloneOptions {
     enum class OnError { CONTINUE, MDI, STOP };
     std::string input, output;
     std::string tool_file, var_file, ini_file;
-    std::string plugin;  ///< another interpreter, a shared object
+    std::string plugin;  ///< shared object of another interpreter
     OnError on_error = OnError::STOP;
     bool isBlockDelete = false;
-    bool isStackShown = false;
-    bool isBatch = false;
+    bool stack_shown = false;
+    bool is_batch = false;
 };
 
-/// Runs as the options say; canon calls go to the output, errors to standard error. Returns the exit status.
+/// Runs the program; canon calls go to the output, errors to standard error. Returns the exit status.
 int run_standalone(const StandaloneOptions &options);
 
 }  // namespace mw::gcode

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Canon calls beside motion: spindles, tools, switches, the program's course, texts. canon_calls.hh says what
-// NAME and FIELDS are for.
+// Canon calls except motion: spindles, tools, switches, program flow, texts. canon_calls.hh explains NAME and
+// FIELDS.
 #pragma once
 
 #include <array>
@@ -38,14 +38,14 @@ struct SetSpindleSpeed {
 /// M3, M4.
 struct StartSpindle {
     int spindle = 0;
-    bool isClockwise = true;
-    bool isWaiting = true;  ///< the next cut waits until the spindle has its speed
+    bool clockwise = true;
+    bool waiting = true;  ///< the next cut waits until the spindle is at speed
 
-    int direction() const { return isClockwise ? 1 : -1; }
+    int direction() const { return clockwise ? 1 : -1; }
 
     static constexpr std::array<std::string_view, 2> NAMES{"START_SPINDLE_COUNTERCLOCKWISE",
                                                            "START_SPINDLE_CLOCKWISE"};
-    static constexpr std::tuple CHOICES{&StartSpindle::isClockwise};
+    static constexpr std::tuple CHOICES{&StartSpindle::clockwise};
     static constexpr std::tuple FIELDS{&StartSpindle::spindle};
 };
 
@@ -68,15 +68,15 @@ struct OrientSpindle {
                                        &OrientSpindle::mode};
 };
 
-/// M19 Q: nothing happens until the spindle is oriented.
+/// M19 Q: waits until the spindle is oriented.
 struct WaitOrientComplete {
     int spindle = 0;
-    double timeout_s = 0;  ///< after which it is an error
+    double timeout_s = 0;  ///< after this time it is an error
 
     static constexpr std::string_view NAME = "WAIT_ORIENT_COMPLETE";
 };
 
-/// T: the changer makes this tool ready.
+/// T: prepares this tool in the changer.
 struct SelectTool {
     int toolno = 0;
 
@@ -84,13 +84,13 @@ struct SelectTool {
     static constexpr std::tuple FIELDS{&SelectTool::toolno};
 };
 
-/// M6: the selected tool comes into the spindle.
+/// M6: loads the selected tool into the spindle.
 struct ChangeTool {
     static constexpr std::string_view NAME = "CHANGE_TOOL";
     static constexpr std::tuple<> FIELDS{};
 };
 
-/// M61: this tool is in the spindle, without a change.
+/// M61: sets the tool in the spindle without a change.
 struct ChangeToolNumber {
     int toolno = 0;
 
@@ -98,7 +98,7 @@ struct ChangeToolNumber {
     static constexpr std::tuple FIELDS{&ChangeToolNumber::toolno};
 };
 
-/// G10 L1, L10, L11: an entry of the tool table changes.
+/// G10 L1, L10, L11: changes an entry of the tool table.
 struct SetToolTableEntry {
     int index = 0;    ///< in the tool table
     ToolEntry entry;  ///< [machine units, degrees]
@@ -106,7 +106,7 @@ struct SetToolTableEntry {
     static constexpr std::string_view NAME = "SET_TOOL_TABLE_ENTRY";
 };
 
-/// G10 L0: the tool table is to be read from its file again.
+/// G10 L0: reads the tool table from its file again.
 struct ReloadTools {
     static constexpr std::string_view NAME = "RELOAD_TOOLDATA";
     static constexpr std::tuple<> FIELDS{};
@@ -132,7 +132,7 @@ struct SwitchFlood {
     static constexpr std::tuple<> FIELDS{};
 };
 
-/// M48 to M50: whether the operator's feed override counts.
+/// M48 to M50: enables the operator's feed override.
 struct SwitchFeedOverride {
     bool isOn = true;
 
@@ -141,7 +141,7 @@ struct SwitchFeedOverride {
     static constexpr std::tuple<> FIELDS{};
 };
 
-/// M48, M49, M51: whether the operator's spindle override counts.
+/// M48, M49, M51: enables the operator's spindle override.
 struct SwitchSpeedOverride {
     int spindle = 0;
     bool isOn = true;
@@ -151,7 +151,7 @@ struct SwitchSpeedOverride {
     static constexpr std::tuple FIELDS{&SwitchSpeedOverride::spindle};
 };
 
-/// M53: whether pin motion.feed-hold counts.
+/// M53: enables pin motion.feed-hold.
 struct SwitchFeedHold {
     bool isOn = true;
 
@@ -160,7 +160,7 @@ struct SwitchFeedHold {
     static constexpr std::tuple<> FIELDS{};
 };
 
-/// M52: whether pin motion.adaptive-feed counts.
+/// M52: enables pin motion.adaptive-feed.
 struct SwitchAdaptiveFeed {
     bool isOn = true;
 
@@ -173,11 +173,11 @@ struct SwitchAdaptiveFeed {
 struct SetDigitalOutput {
     int index = 0;
     bool isOn = false;
-    bool isSynched = false;  ///< in step with the next motion (M62, M63), else at once (M64, M65)
+    bool synched = false;  ///< with the next motion (M62, M63), else at once (M64, M65)
 
     static constexpr std::array<std::string_view, 4> NAMES{
         "CLEAR_AUX_OUTPUT_BIT", "SET_AUX_OUTPUT_BIT", "CLEAR_MOTION_OUTPUT_BIT", "SET_MOTION_OUTPUT_BIT"};
-    static constexpr std::tuple CHOICES{&SetDigitalOutput::isOn, &SetDigitalOutput::isSynched};
+    static constexpr std::tuple CHOICES{&SetDigitalOutput::isOn, &SetDigitalOutput::synched};
     static constexpr std::tuple FIELDS{&SetDigitalOutput::index};
 };
 
@@ -185,15 +185,15 @@ struct SetDigitalOutput {
 struct SetAnalogOutput {
     int index = 0;
     double value = 0;
-    bool isSynched = false;  ///< in step with the next motion (M67), else at once (M68)
+    bool synched = false;  ///< with the next motion (M67), else at once (M68)
 
     static constexpr std::array<std::string_view, 2> NAMES{"SET_AUX_OUTPUT_VALUE", "SET_MOTION_OUTPUT_VALUE"};
-    static constexpr std::tuple CHOICES{&SetAnalogOutput::isSynched};
+    static constexpr std::tuple CHOICES{&SetAnalogOutput::synched};
 };
 
 /// M66.
 struct WaitInput {
-    int index = 0;  ///< among the digital inputs, or among the analog ones
+    int index = 0;  ///< of a digital or an analog input
     bool isAnalog = false;
     WaitKind kind = WaitKind::IMMEDIATE;
     double timeout_s = 0;
@@ -201,14 +201,14 @@ struct WaitInput {
     static constexpr std::string_view NAME = "WAIT";
 };
 
-// ---- the program's course ---------------------------------------------------------------------------------
+// ---- program flow -----------------------------------------------------------------------------------------
 
 /// M0, M60; M1.
 struct ProgramStop {
-    bool isOptional = false;  ///< counts only when the operator has asked for optional stops
+    bool optional = false;  ///< stops only if the operator has enabled optional stops
 
     static constexpr std::array<std::string_view, 2> NAMES{"PROGRAM_STOP", "OPTIONAL_PROGRAM_STOP"};
-    static constexpr std::tuple CHOICES{&ProgramStop::isOptional};
+    static constexpr std::tuple CHOICES{&ProgramStop::optional};
     static constexpr std::tuple<> FIELDS{};
 };
 
@@ -218,13 +218,13 @@ struct ProgramEnd {
     static constexpr std::tuple<> FIELDS{};
 };
 
-/// M60 and M30: the pallets change places. The stop of M60 is a call of its own.
+/// M60 and M30: exchanges the pallets. The stop of M60 is a separate call.
 struct PalletShuttle {
     static constexpr std::string_view NAME = "PALLET_SHUTTLE";
     static constexpr std::tuple<> FIELDS{};
 };
 
-/// All motion is to come to its end: the file is over without M2.
+/// All motion ends: the file has ended without M2.
 struct Finish {
     static constexpr std::string_view NAME = "FINISH";
     static constexpr std::tuple<> FIELDS{};
@@ -233,7 +233,7 @@ struct Finish {
 /// A user M code M100 to M199.
 struct UserCode {
     int code = 100;
-    double p = 0, q = 0;  ///< its words; -1 when not given
+    double p = 0, q = 0;  ///< its words; -1 when not programmed
 
     static constexpr std::string_view NAME = "USER_DEFINED_FUNCTION";
     static constexpr std::tuple FIELDS{&UserCode::code, &UserCode::p, &UserCode::q};
@@ -248,7 +248,7 @@ struct ProgramComment {
     static constexpr std::tuple FIELDS{&ProgramComment::text};
 };
 
-/// (msg,...): to the operator.
+/// (msg,...): message to the operator.
 struct OperatorMessage {
     std::string text;
 
@@ -256,7 +256,7 @@ struct OperatorMessage {
     static constexpr std::tuple FIELDS{&OperatorMessage::text};
 };
 
-/// (print,...): to standard output.
+/// (print,...): line on standard output.
 struct PrintLine {
     std::string text;  ///< one line
 
@@ -266,10 +266,10 @@ struct PrintLine {
 /// (logopen,...), (logappend,...).
 struct OpenLog {
     std::string path;
-    bool isAppending = false;
+    bool appending = false;
 
     static constexpr std::array<std::string_view, 2> NAMES{"LOGOPEN", "LOGAPPEND"};
-    static constexpr std::tuple CHOICES{&OpenLog::isAppending};
+    static constexpr std::tuple CHOICES{&OpenLog::appending};
     static constexpr std::tuple FIELDS{&OpenLog::path};
 };
 
@@ -287,15 +287,15 @@ struct CloseLog {
     static constexpr std::tuple<> FIELDS{};
 };
 
-/// (probeopen FILE), (probeclose): each successful probe from here on is written there, nine coordinates a
-/// line.
+/// (probeopen FILE), (probeclose): each successful probe from now on is written to the file, nine coordinates
+/// per line.
 struct LogProbes {
-    std::string path;  ///< empty: no longer
+    std::string path;  ///< empty: stop writing
 
     static constexpr std::string_view NAME = "LOG_PROBES";
 };
 
-/// An error that a canon, or a script that calls one, tells the operator.
+/// An error that a canon, or a script that calls one, reports to the operator.
 struct CanonError {
     std::string text;
 

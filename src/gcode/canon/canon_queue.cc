@@ -8,13 +8,13 @@ namespace mw::gcode::detail {
 void CanonQueue::enter_block(const Program *program, int line, int sequence, bool isNumbered,
                              int call_level) {
     block_ = {program, line, sequence, call_level, isNumbered};
-    isBlockMarked_ = false;
+    block_marked_ = false;
 }
 
 void CanonQueue::mark_block() {
-    if (!isBlockMarked_ && block_.program != nullptr) {
+    if (!block_marked_ && block_.program != nullptr) {
         marks_.push_back({calls_.size(), block_});
-        isBlockMarked_ = true;
+        block_marked_ = true;
     }
 }
 
@@ -30,7 +30,7 @@ void CanonQueue::truncate(std::size_t count) {
     while (!marks_.empty() && marks_.back().call >= count) {
         marks_.pop_back();
     }
-    isBlockMarked_ = false;
+    block_marked_ = false;
 }
 
 void CanonQueue::rollback() {
@@ -87,7 +87,7 @@ void CanonQueue::flush(Canon &target, std::size_t count) {
         kept_ = 0;
         return;
     }
-    announce(count);  // the block of the first call that stays
+    announce(count);  // the block of the first remaining call
     calls_.erase(calls_.begin(), calls_.begin() + static_cast<std::ptrdiff_t>(count));
     marks_.erase(marks_.begin(), mark);
     for (Mark &later : marks_) {

@@ -16,12 +16,12 @@ namespace {
 
 constexpr double MM_PER_INCH = 25.4;
 constexpr double FULL_TURN = 2.0 * std::numbers::pi;
-/// Less than this between start and end of an arc is a full turn [rad].
+/// An angle below this between start and end of an arc means a full circle [rad].
 constexpr double SAME_ANGLE = 1e-10;
 
 struct FeedLength {
     double length = 0;
-    bool isLinear = true;  ///< false: only A, B or C move
+    bool linear = true;  ///< false: only A, B or C move
 };
 
 FeedLength feed_length(const Pose &from, const Pose &to) {
@@ -152,22 +152,22 @@ MoveSettings MachineFrame::rapid_settings() const {
     return out;
 }
 
-MoveSettings MachineFrame::feed_settings(bool isLinear) const {
+MoveSettings MachineFrame::feed_settings(bool linear) const {
     MoveSettings out = rapid_settings();
     out.isRapid = false;
     out.feed_per_revolution = synch_feed_;
     out.synch_spindle = static_cast<std::int8_t>(synch_spindle_);
-    out.isVelocitySynched = isVelocitySynched_;
+    out.velocity_synched = velocity_synched_;
     constexpr double SECONDS_PER_MINUTE = 60.0;
     if (feed_mode_ == FeedMode::UNITS_PER_REVOLUTION && synch_feed_ == 0.0) {
         out.feed_per_revolution = feed_;
-        out.isVelocitySynched = true;
-        // The speed at one revolution per second; the planner takes the spindle's own.
+        out.velocity_synched = true;
+        // The speed at one revolution per second; the planner multiplies by the spindle speed.
         out.feed = feed_;
         return out;
     }
-    // Degrees per minute are not lengths: the unit's factor is taken off again.
-    out.feed = feed_ / SECONDS_PER_MINUTE / (isLinear ? 1.0 : length_factor());
+    // Degrees per minute are not lengths: removes the length factor.
+    out.feed = feed_ / SECONDS_PER_MINUTE / (linear ? 1.0 : length_factor());
     return out;
 }
 
@@ -180,11 +180,11 @@ void MachineFrame::convert(const StraightTraverse &call) {
 void MachineFrame::feed_to(const Pose &end) {
     const Pose to = to_machine(end);
     const FeedLength way = feed_length(position_, to);
-    target_->take(LineMove{to, feed_settings(way.isLinear)});
+    target_->take(LineMove{to, feed_settings(way.linear)});
     position_ = to;
 }
 
-/// Fills centre, normal and the angle.
+/// Sets centre, normal and angle.
 void MachineFrame::turn(ArcMove &move, const ArcFeed &arc) const {
     const detail::PlaneAxes axes = detail::plane_axes(plane_);
     const Pose start = to_program(position_);
@@ -224,7 +224,7 @@ void MachineFrame::convert(const ArcFeed &arc) {
 }
 
 void MachineFrame::convert(const NurbsFeed &nurbs) {
-    // Far below what a machine can resolve.
+    // Far below the resolution of a machine.
     constexpr double TOLERANCE_MM = 0.0002;
     const detail::PlaneAxes axes = detail::plane_axes(plane_);
     const double inches = TOLERANCE_MM / 25.4;
@@ -245,7 +245,7 @@ void MachineFrame::convert(const NurbsFeed &nurbs) {
 void MachineFrame::convert(const StraightProbe &call) {
     const Pose to = to_machine(call.end);
     const FeedLength way = feed_length(position_, to);
-    target_->take(ProbeMove{to, feed_settings(way.isLinear), call.kind});
+    target_->take(ProbeMove{to, feed_settings(way.linear), call.kind});
     position_ = to;
 }
 
@@ -256,8 +256,8 @@ void MachineFrame::convert(const RigidTap &call) {
     end[geometry::AXIS_Z] = call.z;
     const Pose to = to_machine(end);
     const FeedLength way = feed_length(position_, to);
-    target_->take(TapMove{to, feed_settings(way.isLinear), call.scale});
-    // The tool comes back to where it began: the position stays.
+    target_->take(TapMove{to, feed_settings(way.linear), call.scale});
+    // The tool returns to the start: the position does not change.
 }
 
 void MachineFrame::follow(const StartSpeedFeedSynch &call) {
@@ -266,12 +266,12 @@ void MachineFrame::follow(const StartSpeedFeedSynch &call) {
     }
     synch_spindle_ = call.spindle;
     synch_feed_ = call.feed_per_revolution * length_factor();
-    isVelocitySynched_ = call.isVelocityMode;
+    velocity_synched_ = call.isVelocityMode;
 }
 
 void MachineFrame::follow(const StopSpeedFeedSynch &) {
     synch_feed_ = 0.0;
-    isVelocitySynched_ = false;
+    velocity_synched_ = false;
 }
 
 void MachineFrame::convert(const SetSpindleSpeed &call) {
@@ -283,7 +283,7 @@ void MachineFrame::convert(const SetSpindleSpeed &call) {
     target_->take(UseSpindleSpeed{call.spindle, call.speed, length * length_factor()});
 }
 
-/// `frame` is constant on the way out.
+/// `frame` is const when packing.
 template <class Io, class Frame>
 void MachineFrame::fields(Io &io, Frame &frame) {
     io.choice(frame.units_, LengthUnits::MM);
@@ -303,7 +303,7 @@ void MachineFrame::fields(Io &io, Frame &frame) {
     io(frame.corner_scale_);
     io(frame.synch_feed_);
     io(frame.synch_spindle_);
-    io(frame.isVelocitySynched_);
+    io(frame.velocity_synched_);
 }
 
 std::string MachineFrame::pack() const {
@@ -316,8 +316,8 @@ bool MachineFrame::unpack(std::string_view bytes) {
     Unpacker in(bytes);
     MachineFrame frame = *this;
     fields(in, frame);
-    const bool isSpindle = frame.synch_spindle_ >= 0 && frame.synch_spindle_ < MAX_SPINDLES;
-    if (!in.isComplete() || !isSpindle) {
+    const bool is_spindle = frame.synch_spindle_ >= 0 && frame.synch_spindle_ < MAX_SPINDLES;
+    if (!in.isComplete() || !is_spindle) {
         return false;
     }
     *this = frame;

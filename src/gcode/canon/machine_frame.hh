@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// From program coordinates to the machine's: maps each CanonCall to MachineCalls.
+// Converts program coordinates to machine coordinates: maps each CanonCall to MachineCalls.
 #pragma once
 
 #include <string>
@@ -10,21 +10,21 @@
 
 namespace mw::gcode {
 
-/// Resolves program units, coordinate systems, G92, rotation, tool offset, planes and feed modes; moves reach
+/// Applies program units, coordinate systems, G92, rotation, tool offset, planes and feed modes. Moves reach
 /// the MachineCanon with all nine coordinates in machine units. Any thread, one at a time.
 class MachineFrame final : public Canon {
   public:
     MachineFrame(MachineCanon &target, LengthUnits machine_units);
 
-    /// The machine stands at `machine` [machine units, machine coordinates]: after start, stop, abort, probe
-    /// or tool change. Moves start from there.
+    /// Sets the position of the machine [machine units, machine coordinates] after start, stop, abort, probe
+    /// or tool change. The next move starts there.
     void set_position(const Pose &machine) { position_ = machine; }
     const Pose &position() const { return position_; }
     /// A position of the machine in program coordinates and units.
     Pose to_program(const Pose &machine) const;
     Pose to_machine(const Pose &program) const;
 
-    /// All that it knows as bytes, and back; false when they are none.
+    /// The state as bytes, and the inverse; false when the bytes are not valid.
     std::string pack() const;
     bool unpack(std::string_view bytes);
 
@@ -34,7 +34,7 @@ class MachineFrame final : public Canon {
   private:
     template <class Io, class Frame>
     static void fields(Io &io, Frame &frame);
-    /// What the machine need not hear of: it is in the coordinates and the settings of the calls that follow.
+    /// Calls that only change the frame and the settings of later calls.
     void follow(const UseLengthUnits &call) { units_ = call.units; }
     void follow(const SelectPlane &call) { plane_ = call.plane; }
     void follow(const SetFeedRate &call) { feed_ = call.rate * length_factor(); }
@@ -57,13 +57,13 @@ class MachineFrame final : public Canon {
     void convert(const SetSpindleSpeed &call);
 
     void feed_to(const Pose &end);
-    /// Scripts may name any: false with an error when there is none of this number.
+    /// Scripts may name any spindle; false, with an error, when it does not exist.
     bool hasSpindle(int spindle);
     double length_factor() const;  ///< program units to machine units
     Pose to_machine_units(const Pose &program) const;
     void announce_offsets();
-    /// Of a feed move; `isLinear` is false for moves of A, B and C alone, whose feed is in degrees.
-    MoveSettings feed_settings(bool isLinear) const;
+    /// Settings of a feed move; `linear` is false for moves of A, B and C alone, whose feed is in degrees.
+    MoveSettings feed_settings(bool linear) const;
     MoveSettings rapid_settings() const;
     void turn(ArcMove &move, const ArcFeed &arc) const;
 
@@ -82,7 +82,7 @@ class MachineFrame final : public Canon {
     double corner_scale_ = 0;
     double synch_feed_ = 0;  ///< machine units per revolution; 0 off
     int synch_spindle_ = 0;
-    bool isVelocitySynched_ = false;
+    bool velocity_synched_ = false;
 };
 
 }  // namespace mw::gcode

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double TINY = 1e-12;
 constexpr int MOST_HALVINGS = 14;
-constexpr int CHECKS = 8;  ///< places of a piece where its distance from the curve is looked at
+constexpr int CHECKS = 8;  ///< points of a piece where its distance from the curve is checked
 
 struct Vec {
     double x = 0, y = 0;
@@ -73,16 +73,16 @@ class Curve {
         return {end.x / end.w, end.y / end.w};
     }
 
-    /// The direction seen from inside of the span that begins at `span`; zero where the curve stands still.
+    /// The tangent seen from inside the span that begins at `span`; zero at a cusp.
     Vec tangent(double u, int span) const {
         constexpr double STEP = 1e-5;
         const double low = std::max<double>(u - STEP, span), high = std::min<double>(u + STEP, span + 1);
         Vec way = point(high) - point(low);
-        if (low < u && high > u) {  // both sides
+        if (low < u && high > u) {  // central difference
             const double length = norm(way);
             return length > TINY * STEP ? way * (1.0 / length) : Vec{};
         }
-        // One side only: the parabola through three points.
+        // One-sided: the parabola through three points.
         const double side = low < u ? -STEP : STEP;
         way = (point(u + side) * 4.0 - point(u + 2 * side) - point(u) * 3.0) * (side > 0 ? 1.0 : -1.0);
         const double length = norm(way);
@@ -96,13 +96,13 @@ class Curve {
     std::vector<int> knots_;
 };
 
-/// From `from` in direction `tangent` to `to`.
+/// An arc from `from` in direction `tangent` to `to`.
 PlanePiece arc_between(Vec from, Vec tangent, Vec to) {
     const Vec way = to - from;
     const Vec normal{-tangent.y, tangent.x};
     const double bend = 2.0 * dot(normal, way), square = dot(way, way);
     PlanePiece piece{to.x, to.y, 0, 0, 0, std::sqrt(square)};
-    // An arc whose height is lost in the rounding is a line.
+    // An arc whose height is below the rounding error is a line.
     if (std::fabs(bend) <= 1e-9 * std::max(std::sqrt(square), TINY) || square <= TINY * TINY) {
         return piece;
     }
@@ -118,10 +118,10 @@ PlanePiece arc_between(Vec from, Vec tangent, Vec to) {
     return piece;
 }
 
-/// Two arcs with a common tangent where they meet; a line when there are no tangents.
-std::array<PlanePiece, 2> biarc(Vec from, Vec from_tangent, Vec to, Vec to_tangent, bool &isGood) {
+/// Two tangent arcs; a line when there are no tangents.
+std::array<PlanePiece, 2> biarc(Vec from, Vec from_tangent, Vec to, Vec to_tangent, bool &good) {
     const Vec way = to - from, sum = from_tangent + to_tangent;
-    // Handles of equal length d: |way - d (t0 + t1)| = 2 d.
+    // Handles of equal length d: |chord - d (t0 + t1)| = 2 d.
     const double turn = 2.0 * (1.0 - dot(from_tangent, to_tangent)), along = dot(way, sum);
     double d = 0;
     if (turn > 1e-9) {
@@ -129,19 +129,19 @@ std::array<PlanePiece, 2> biarc(Vec from, Vec from_tangent, Vec to, Vec to_tange
     } else if (dot(way, to_tangent) > TINY) {
         d = dot(way, way) / (4.0 * dot(way, to_tangent));
     }
-    isGood = d > TINY && norm(from_tangent) > 0.5 && norm(to_tangent) > 0.5;
+    good = d > TINY && norm(from_tangent) > 0.5 && norm(to_tangent) > 0.5;
     const Vec a = from + from_tangent * d, b = to - to_tangent * d;
     const Vec middle = (a + b) * 0.5;
     const Vec tangent = b - a;
     const double length = norm(tangent);
-    isGood = isGood && length > TINY;
-    if (!isGood) {
+    good = good && length > TINY;
+    if (!good) {
         return {};
     }
     return {arc_between(from, from_tangent, middle), arc_between(middle, tangent * (1.0 / length), to)};
 }
 
-/// Distance of `p` from the piece that begins at `from`, for points beside it.
+/// Distance of `p`, which lies beside it, from the piece that begins at `from`.
 double distance(Vec p, Vec from, const PlanePiece &piece) {
     const Vec to{piece.first_end, piece.second_end};
     if (piece.rotation != 0) {
@@ -160,9 +160,9 @@ class Approximation {
 
     void add(int span, double low, double high, int depth) {
         const Vec from = curve_.point(low), to = curve_.point(high);
-        bool isGood = false;
-        const auto arcs = biarc(from, curve_.tangent(low, span), to, curve_.tangent(high, span), isGood);
-        if (isGood && isNear(low, high, from, arcs)) {
+        bool good = false;
+        const auto arcs = biarc(from, curve_.tangent(low, span), to, curve_.tangent(high, span), good);
+        if (good && isNear(low, high, from, arcs)) {
             pieces.push_back(arcs[0]);
             pieces.push_back(arcs[1]);
         } else if (depth >= MOST_HALVINGS) {
@@ -190,7 +190,7 @@ class Approximation {
             length += norm(p - last);
             last = p;
         }
-        // Arcs that go round the other way have nearly the same distances, but not the length.
+        // Arcs in the opposite direction have nearly the same distances, but a different length.
         return arcs[0].length + arcs[1].length <= 1.2 * length + tolerance_;
     }
 
@@ -204,7 +204,7 @@ std::vector<PlanePiece> approximate(const NurbsFeed &nurbs, double tolerance) {
     const Curve curve(nurbs);
     Approximation approximation(curve, tolerance);
     for (int span = 0; span < curve.spans(); ++span) {
-        // Halves at first, so that a symmetric S is no line.
+        // Starts with two halves, so that a symmetric S does not become a line.
         approximation.add(span, span, span + 0.5, 1);
         approximation.add(span, span + 0.5, span + 1.0, 1);
     }

@@ -19,13 +19,13 @@ constexpr std::string_view NO_NUMBER = "N.....";
 
 }  // namespace
 
-PrintCanon::PrintCanon(std::FILE *out) : out_(out), isTerminal_(::isatty(::fileno(out)) == 1) {
+PrintCanon::PrintCanon(std::FILE *out) : out_(out), is_terminal_(::isatty(::fileno(out)) == 1) {
     head_.fill(' ');
     head_[COUNTER_WIDTH - 1] = '0';
     set_prefix(NO_NUMBER);
 }
 
-/// Adds one to the counter where it stands, in decimal digits.
+/// Increments the decimal digits of the counter in place.
 void PrintCanon::count_line() {
     char *digit = &head_[COUNTER_WIDTH - 1];
     for (; *digit == '9'; --digit) {
@@ -48,8 +48,8 @@ void PrintCanon::begin_line() {
 }
 
 void PrintCanon::end_line() {
-    if (isTerminal_) {
-        line_ = printable(line_);  // texts of a program must not steer a terminal
+    if (is_terminal_) {
+        line_ = printable(line_);  // control characters of a program must not reach a terminal
     }
     line_ += '\n';
     fwrite_unlocked(line_.data(), 1, line_.size(), out_);
@@ -64,10 +64,10 @@ void PrintCanon::put(std::string_view call) {
 void PrintCanon::begin_block(const BlockRef &block) {
     if (block.isNumbered) {
         set_prefix(fmt::format("N{:<5d}", block.sequence));
-        isPrefixNumbered_ = true;
-    } else if (isPrefixNumbered_) {
+        prefix_numbered_ = true;
+    } else if (prefix_numbered_) {
         set_prefix(NO_NUMBER);
-        isPrefixNumbered_ = false;
+        prefix_numbered_ = false;
     }
 }
 
@@ -114,12 +114,11 @@ void PrintCanon::write(const SetPlannerMode &call) {
     put(fmt::format("{}(type={}, peak_scale={:.6f})", call.NAME, call.type, call.peak_scale));
 }
 
-/// All moves of a program pass here: what is known to be short is copied in pieces of a fixed size, which
-/// overlap.
+/// All moves of a program pass here: short texts are copied in overlapping blocks of a fixed size.
 template <class Call>
 void PrintCanon::write_straight(const Call &call) {
-    constexpr std::size_t MOST = 2304;  // head, name, and six coordinates of at most 317 characters
-    constexpr std::size_t SHORT = 24;   // ordinary coordinates
+    constexpr std::size_t MOST = 2304;  // prefix, name, and six coordinates of at most 317 characters
+    constexpr std::size_t SHORT = 24;   // size of an ordinary coordinate
     char text[MOST];
     count_line();
     std::memcpy(text, &head_[head_begin_], MOST_HEAD);
@@ -128,7 +127,7 @@ void PrintCanon::write_straight(const Call &call) {
     at += Call::NAME.size();
     *at++ = '(';
     for (int i = 0; i < geometry::AXIS_U; ++i) {
-        // Most moves change few coordinates: the text of the others is known.
+        // Most moves change few coordinates: the text of the others is reused.
         Coordinate &known = coordinates_[static_cast<std::size_t>(i)];
         const auto bits = std::bit_cast<std::uint64_t>(call.end[i]);
         if (bits != known.bits || known.length == 0) {
@@ -143,7 +142,7 @@ void PrintCanon::write_straight(const Call &call) {
         std::memcpy(at, ", ", 2);
         at += 2;
     }
-    at -= 2;  // no comma after the last
+    at -= 2;  // removes the last comma
     std::memcpy(at, ")\n", 2);
     at += 2;
     fwrite_unlocked(text, 1, static_cast<std::size_t>(at - text), out_);
@@ -201,7 +200,7 @@ void PrintCanon::write(const SetAnalogOutput &call) {
 }
 
 void PrintCanon::write(const PrintLine &call) {
-    fmt::print(out_, "{}\n", isTerminal_ ? printable(call.text) : call.text);
+    fmt::print(out_, "{}\n", is_terminal_ ? printable(call.text) : call.text);
 }
 
 void PrintCanon::write(const CanonError &call) {

@@ -12,8 +12,8 @@
 
 namespace mw::gcode {
 
-/// "%5d N..... CALL(arguments)" per call; (print,...) as it stands. (log...) are calls as well: it writes no
-/// files.
+/// Prints "%5d N..... CALL(arguments)" per call and the text of (print,...). Prints (log...) as calls: it
+/// writes no files.
 class PrintCanon final : public Canon {
   public:
     explicit PrintCanon(std::FILE *out);
@@ -24,7 +24,7 @@ class PrintCanon final : public Canon {
     void take(const CanonCall &call) override;
 
   private:
-    /// A coordinate as it was printed last.
+    /// A coordinate and its printed text.
     struct Coordinate {
         std::uint64_t bits = 0;
         std::size_t length = 0;
@@ -33,10 +33,10 @@ class PrintCanon final : public Canon {
     static constexpr std::size_t COUNTER_WIDTH = 15, MOST_PREFIX = 12;
     static constexpr std::size_t MOST_HEAD = COUNTER_WIDTH + MOST_PREFIX + 2;
 
-    /// By its NAME and FIELDS.
+    /// Prints a call by its NAME and FIELDS.
     template <RegularCall Call>
     void write(const Call &call);
-    // Calls with a form of their own.
+    // Calls with their own format.
     void write(const OnReset &call);
     void write(const Finish &call);
     void write(const StraightTraverse &call) { write_straight(call); }
@@ -55,29 +55,29 @@ class PrintCanon final : public Canon {
     void write(const SetAnalogOutput &call);
     void write(const PrintLine &call);
     void write(const CanonError &call);
-    /// The standalone program has no inputs and no probe: it waits for nothing and says nothing.
+    /// The standalone program has no inputs and no probe: it does not wait.
     void write(const WaitInput &) {}
     void write(const LogProbes &) {}
-    /// Straight moves, which most calls are. [NAME and FIELDS as in write()]
+    /// Straight moves, the most frequent calls. [NAME and FIELDS as in write()]
     template <class Call>
     void write_straight(const Call &call);
 
     void count_line();
     void set_prefix(std::string_view prefix);
     void put(std::string_view call);
-    // In steps: what comes before a call, then the call, added to line_.
+    // Builds line_: first the prefix, then the call.
     void begin_line();
     void end_line();
 
     std::FILE *out_;
-    bool isTerminal_ = false;
-    bool isPrefixNumbered_ = false;
+    bool is_terminal_ = false;
+    bool prefix_numbered_ = false;
     std::string line_;
     std::array<Coordinate, geometry::AXIS_U> coordinates_;
-    /// What the next line begins with: the counter, to the right; the block's number; a blank after each. As
-    /// long again as it may be, so that a piece of a fixed size can be copied from anywhere in the counter.
+    /// Prefix of the next line: the counter, right-aligned; the block number; a blank after each. Twice the
+    /// maximum length, so that a block of a fixed size can be copied from any position of the counter.
     std::array<char, 2 * MOST_HEAD> head_{};
-    std::size_t head_begin_ = COUNTER_WIDTH - 5;  ///< five places at least
+    std::size_t head_begin_ = COUNTER_WIDTH - 5;  ///< at least five digits
     std::size_t head_end_ = 0;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The keys of an INI file that the interpreter and the scripts in it read.
+// The INI keys of the interpreter and its scripts.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ inline constexpr auto INI_KEYS = std::to_array<ini::IniKey>({
     ini::ini_list("RS274NGC", "REMAP", "a code or letter with what takes its place"),
     ini::ini_flag("RS274NGC", "DISABLE_G92_PERSISTENCE", false, "G92 offsets do not outlive a run"),
     ini::ini_flag("RS274NGC", "KEEP_COORDINATE_SYSTEM", false,
-                  "the coordinate system in force stays at the end of a program"),
+                  "the active coordinate system is kept at the end of a program"),
     ini::ini_flag("RS274NGC", "DISABLE_FANUC_STYLE_SUB", false, "M98 and M99 are unknown codes"),
     ini::ini_flag("RS274NGC", "INI_VARS", true, "programs may read #<_ini[section]key>"),
     ini::ini_flag("RS274NGC", "HAL_PIN_VARS", true, "programs may read #<_hal[pin]>"),
@@ -43,14 +43,14 @@ inline constexpr auto INI_KEYS = std::to_array<ini::IniKey>({
     ini::ini_without_effect("RS274NGC", "LOG_FILE", "this version keeps no log of the interpreter"),
     ini::ini_without_effect("RS274NGC", "NO_DOWNCASE_OWORD", "names of O words are the same in any case"),
     ini::ini_without_effect("RS274NGC", "OWORD_WARNONLY", "errors of O words end the program"),
-    ini::ini_without_effect("RS274NGC", "FEATURES", "each feature has a key of its own", "0"),
+    ini::ini_without_effect("RS274NGC", "FEATURES", "each feature has its own key", "0"),
     ini::ini_text("PYTHON", "TOPLEVEL", "the module that brings remaps and oword procedures in Python"),
     ini::ini_list("PYTHON", "PATH_PREPEND", "folder put before Python's search path"),
     ini::ini_list("PYTHON", "PATH_APPEND", "folder put behind Python's search path"),
     ini::ini_whole("PYTHON", "RELOAD_ON_CHANGE", "", 0, {-2147483648.0, 4294967295.0},
                    "1: the module is loaded again when its file has changed"),
     ini::ini_whole("PYTHON", "LOG_LEVEL", "", 0, {-2147483648.0, 4294967295.0},
-                   "how much of the scripts' work is told"),
+                   "level of messages about the scripts"),
     ini::ini_without_effect("PYTHON", "PYTHON_TASK",
                             "task calls no Python functions; remapped codes and O words do (TOPLEVEL)", "0"),
     ini::ini_whole("EMC", "DEBUG", "bits", 0, {-2147483648.0, 4294967295.0}, "told to scripts"),
@@ -63,7 +63,7 @@ inline constexpr auto INI_KEYS = std::to_array<ini::IniKey>({
     ini::ini_flag("DISPLAY", "LATHE", false, "the machine is a lathe: pictures show Z and X"),
 });
 
-/// Does not compile for a key that is not declared above.
+/// Does not compile for a key that is not in the table above.
 consteval const ini::IniKey &ini_key(std::string_view section, std::string_view name) {
     return ini::row_of(INI_KEYS, section, name);
 }

@@ -11,7 +11,7 @@
 namespace mw::gcode {
 namespace {
 
-/// Folders of a list with colons, relative to the INI file.
+/// Adds the folders of a list separated by colons, relative to the INI file.
 void add_folders(ini::IniReader &ini, const ini::IniKey &key, std::vector<std::string> &out) {
     const std::string text = ini.text(key);
     std::string_view rest = text;
@@ -24,7 +24,7 @@ void add_folders(ini::IniReader &ini, const ini::IniKey &key, std::vector<std::s
     }
 }
 
-/// A number of 32 bits with or without a sign.
+/// A signed or unsigned 32-bit number.
 int bits_of(ini::IniReader &ini, const ini::IniKey &key) {
     return static_cast<int>(static_cast<std::uint32_t>(ini.integer(key)));
 }
@@ -41,7 +41,7 @@ RotaryAxes read_rotary(ini::IniReader &ini) {
     return out;
 }
 
-/// [PYTHON], with [EMC]DEBUG and [RS274NGC]LOG_LEVEL, which scripts can ask for.
+/// Reads [PYTHON], and [EMC]DEBUG and [RS274NGC]LOG_LEVEL, which scripts can read.
 void read_scripts(ini::IniReader &ini, Settings &out) {
     ScriptSettings &scripts = out.scripts;
     const ini::IniKey &top_level = ini_key("PYTHON", "TOPLEVEL");
@@ -49,16 +49,16 @@ void read_scripts(ini::IniReader &ini, Settings &out) {
         scripts.top_level = ini.file().resolve_path(ini.text(top_level));
         scripts.place = entry->place;
     }
-    scripts.areLinesRun = !scripts.top_level.empty();
+    scripts.lines_run = !scripts.top_level.empty();
     for (const ini::IniEntry *entry : ini.list(ini_key("PYTHON", "PATH_PREPEND"))) {
         scripts.path_prepend.push_back(ini.file().resolve_path(entry->value));
     }
     for (const ini::IniEntry *entry : ini.list(ini_key("PYTHON", "PATH_APPEND"))) {
         scripts.path_append.push_back(ini.file().resolve_path(entry->value));
     }
-    scripts.isReloading = ini.integer(ini_key("PYTHON", "RELOAD_ON_CHANGE")) != 0;
+    scripts.reloading = ini.integer(ini_key("PYTHON", "RELOAD_ON_CHANGE")) != 0;
     scripts.log_level = bits_of(ini, ini_key("PYTHON", "LOG_LEVEL"));
-    constexpr int ALWAYS = 0x40000000;  // scripts written for LinuxCNC find this bit set
+    constexpr int ALWAYS = 0x40000000;  // scripts for LinuxCNC expect this bit
     out.debug_mask = bits_of(ini, ini_key("EMC", "DEBUG")) | ALWAYS;
     out.logging_level = bits_of(ini, ini_key("RS274NGC", "LOG_LEVEL"));
 }
@@ -72,7 +72,7 @@ Settings settings_from_ini(ini::IniReader &ini) {
     out.subroutine_path.push_back(out.ini_folder);
     add_folders(ini, prefix, out.subroutine_path);
     add_folders(ini, ini_key("RS274NGC", "SUBROUTINE_PATH"), out.subroutine_path);
-    // Probing programs of ours, in a build folder and installed: those of a user go before.
+    // Our probing programs, in the build folder or installed; a user's folders are searched first.
     out.subroutine_path.push_back(program_folder() + "/../share/probing");
     out.subroutine_path.push_back(program_folder() + "/../share/millwright/nc_files/probing");
     add_folders(ini, prefix, out.user_m_path);
@@ -83,17 +83,17 @@ Settings settings_from_ini(ini::IniReader &ini) {
         out.remaps.emplace_back(entry->value, entry->place);
     }
     read_scripts(ini, out);
-    out.isG92PersistenceDisabled = ini.boolean(ini_key("RS274NGC", "DISABLE_G92_PERSISTENCE"));
-    out.isCoordinateSystemKept = ini.boolean(ini_key("RS274NGC", "KEEP_COORDINATE_SYSTEM"));
-    out.isFanucSubDisabled = ini.boolean(ini_key("RS274NGC", "DISABLE_FANUC_STYLE_SUB"));
-    out.isIniReadable = ini.boolean(ini_key("RS274NGC", "INI_VARS"));
-    out.isHalReadable = ini.boolean(ini_key("RS274NGC", "HAL_PIN_VARS"));
-    out.isToolOffsetRetained = ini.boolean(ini_key("RS274NGC", "RETAIN_G43"));
-    out.tool_change.isSpindleLeftOn = ini.boolean(ini_key("EMCIO", "TOOL_CHANGE_WITH_SPINDLE_ON"));
-    out.tool_change.isQuillRaised = ini.boolean(ini_key("EMCIO", "TOOL_CHANGE_QUILL_UP"));
-    out.tool_change.isAtG30 = ini.boolean(ini_key("EMCIO", "TOOL_CHANGE_AT_G30"));
-    out.isArgumentCountNamed = ini.boolean(ini_key("RS274NGC", "OWORD_NARGS"));
-    out.isLathe = ini.boolean(ini_key("DISPLAY", "LATHE"));
+    out.g92_persistence_disabled = ini.boolean(ini_key("RS274NGC", "DISABLE_G92_PERSISTENCE"));
+    out.coordinate_system_kept = ini.boolean(ini_key("RS274NGC", "KEEP_COORDINATE_SYSTEM"));
+    out.fanuc_sub_disabled = ini.boolean(ini_key("RS274NGC", "DISABLE_FANUC_STYLE_SUB"));
+    out.ini_readable = ini.boolean(ini_key("RS274NGC", "INI_VARS"));
+    out.hal_readable = ini.boolean(ini_key("RS274NGC", "HAL_PIN_VARS"));
+    out.tool_offset_retained = ini.boolean(ini_key("RS274NGC", "RETAIN_G43"));
+    out.tool_change.spindle_left_on = ini.boolean(ini_key("EMCIO", "TOOL_CHANGE_WITH_SPINDLE_ON"));
+    out.tool_change.quill_raised = ini.boolean(ini_key("EMCIO", "TOOL_CHANGE_QUILL_UP"));
+    out.tool_change.at_g30 = ini.boolean(ini_key("EMCIO", "TOOL_CHANGE_AT_G30"));
+    out.argument_count_named = ini.boolean(ini_key("RS274NGC", "OWORD_NARGS"));
+    out.is_lathe = ini.boolean(ini_key("DISPLAY", "LATHE"));
     out.rotary = read_rotary(ini);
     out.orient_offset_deg = ini.real(ini_key("RS274NGC", "ORIENT_OFFSET"));
     out.center_arc_tolerance.inch = ini.real(ini_key("RS274NGC", "CENTER_ARC_RADIUS_TOLERANCE_INCH"));

@@ -179,8 +179,8 @@ std::string Interpreter::line_text(const std::string &file, int line) const {
 
 NextLine Interpreter::next_line() const {
     const detail::Levels &levels = impl_->flow.levels();
-    const bool isScript = levels.isInCall() && levels.top().isInScript();
-    return {isScript ? 0 : levels.here().next, levels.main_line(), levels.isInCall(),
+    const bool is_script = levels.isInCall() && levels.top().isInScript();
+    return {is_script ? 0 : levels.here().next, levels.main_line(), levels.isInCall(),
             levels.here().program == levels.main()};
 }
 
@@ -193,9 +193,9 @@ std::string Interpreter::why_no_start() const {
     if (state.spline.order != 0) {
         return "it is in the middle of a NURBS";
     }
-    const bool isCycle =
+    const bool is_cycle =
         state.motion >= FIRST_CYCLE && state.motion <= LAST_CYCLE && state.motion != detail::MOTION_NONE;
-    if (state.cycle.isRunning && isCycle) {
+    if (state.cycle.running && is_cycle) {
         return "it is in the middle of a canned cycle";
     }
     if (isThreading()) {
@@ -251,8 +251,8 @@ ProgramLimits &Interpreter::limits() {
 }
 
 double Interpreter::parameter(int number) const {
-    const bool isInRange = number >= 1 && number < detail::PARAMETER_COUNT;
-    return isInRange ? impl_->executor.evaluator().numbered(number) : 0.0;
+    const bool in_range = number >= 1 && number < detail::PARAMETER_COUNT;
+    return in_range ? impl_->executor.evaluator().numbered(number) : 0.0;
 }
 
 }  // namespace mw::gcode

@@ -23,22 +23,22 @@ namespace mw::gcode {
 
 class ScriptHost;
 
-/// Scripts of the machine: [PYTHON].
+/// Settings of scripts: [PYTHON].
 struct ScriptSettings {
-    std::string top_level;                  ///< file run first; empty: scripts are not set up
+    std::string top_level;                  ///< file to run first; empty: scripts are disabled
     std::vector<std::string> path_prepend;  ///< folders searched before all others
-    std::vector<std::string> path_append;   ///< and after them
-    bool isReloading = false;               ///< run the top-level script again when its file has changed
+    std::vector<std::string> path_append;   ///< folders searched last
+    bool reloading = false;                 ///< run the top-level script again when its file has changed
     int log_level = 0;
-    /// A line that begins with ;py, is run. False: it is an error, as whoever may send a line of G-code would
-    /// have all rights of the machine's user.
-    bool areLinesRun = true;
-    SourcePlace place;  ///< of the section, for errors
+    /// Lines that begin with ;py, are run. False: they are errors, because any client that may send a line of
+    /// G-code would have all rights of the machine's user.
+    bool lines_run = true;
+    SourcePlace place;  ///< position of the section, for errors
 };
-/// Makes a script host; by default the shared object for Python is opened.
+/// Makes a script host; the default opens the shared object for Python.
 using MakeScriptHost = std::function<Result<std::unique_ptr<ScriptHost>>()>;
 
-/// One REMAP line as written and where it stands.
+/// A REMAP line and its position.
 struct RemapLine {
     RemapLine(std::string line, SourcePlace where = {}) : text(std::move(line)), place(std::move(where)) {}
     RemapLine(const char *line) : text(line) {}
@@ -46,14 +46,14 @@ struct RemapLine {
     SourcePlace place;
 };
 
-/// [EMCIO]: what M6 does before the changer begins, in this order.
+/// [EMCIO]: actions of M6 before the changer starts, in this order.
 struct BeforeToolChange {
-    bool isSpindleLeftOn = false;
-    bool isQuillRaised = false;  ///< Z to machine zero
-    bool isAtG30 = false;        ///< all axes to the place of G30
+    bool spindle_left_on = false;
+    bool quill_raised = false;  ///< Z to machine zero
+    bool at_g30 = false;        ///< all axes to the G30 position
 };
 
-/// By how much the radii of both ends of an arc may differ.
+/// Permitted difference of the radii at both ends of an arc.
 struct CenterArcTolerance {
     double mm = 0.00127, inch = 0.00005;
 };
@@ -61,27 +61,28 @@ struct CenterArcTolerance {
 struct Settings {
     std::vector<std::string>
         subroutine_path;  ///< the INI file's folder, [DISPLAY]PROGRAM_PREFIX, [RS274NGC]SUBROUTINE_PATH, ours
-    std::vector<std::string> user_m_path;  ///< [RS274NGC]USER_M_PATH and PROGRAM_PREFIX: where M100..M199 are
-    bool isUserCodeAssumed = false;        ///< M100..M199 need no program: for previews elsewhere
-    std::string startup_code;              ///< [RS274NGC]RS274NGC_STARTUP_CODE
-    std::string on_abort_command;          ///< [RS274NGC]ON_ABORT_COMMAND: task runs it after each abort
-    bool isG92PersistenceDisabled = false;
-    bool isIniReadable = true;  ///< [RS274NGC]INI_VARS: #<_ini[section]key>
-    bool isHalReadable = true;  ///< [RS274NGC]HAL_PIN_VARS: #<_hal[name]>
-    bool isFanucSubDisabled = false;
-    bool isCoordinateSystemKept = false;  ///< M2 and M30 do not go back to G54
-    double max_velocity_mm_s = 0;         ///< threads that need more are refused; 0: not known
+    std::vector<std::string>
+        user_m_path;                 ///< [RS274NGC]USER_M_PATH and PROGRAM_PREFIX: folders of M100..M199
+    bool user_code_assumed = false;  ///< M100..M199 need no program: for previews on another computer
+    std::string startup_code;        ///< [RS274NGC]RS274NGC_STARTUP_CODE
+    std::string on_abort_command;    ///< [RS274NGC]ON_ABORT_COMMAND: task runs it after each abort
+    bool g92_persistence_disabled = false;
+    bool ini_readable = true;  ///< [RS274NGC]INI_VARS: #<_ini[section]key>
+    bool hal_readable = true;  ///< [RS274NGC]HAL_PIN_VARS: #<_hal[name]>
+    bool fanuc_sub_disabled = false;
+    bool coordinate_system_kept = false;  ///< M2 and M30 do not select G54
+    double max_velocity_mm_s = 0;         ///< threads that need more are rejected; 0: unknown
     CenterArcTolerance center_arc_tolerance;
-    /// G64 P before the first G64; 0: as fast as the machine can, however far from the corners.
+    /// G64 P before the first G64; 0: maximum speed at any distance from the corners.
     double start_tolerance_mm = 0;
-    bool isLathe = false;
+    bool is_lathe = false;
     RotaryAxes rotary;
-    bool isTask = false;  ///< #<_task>: a machine runs the program
-    /// G74 and G84 in G18 and G19 print their X Y Z in the order of LinuxCNC's rs274, which is no tool path.
-    bool isTapOrderOfRs274 = false;
-    bool isToolOffsetRetained = false;  ///< [RS274NGC]RETAIN_G43: M6 and M61 apply the new tool's G43
+    bool is_task = false;  ///< #<_task>: a machine runs the program
+    /// G74 and G84 in G18 and G19 print X Y Z in the order of LinuxCNC's rs274, which is not a tool path.
+    bool tap_order_of_rs274 = false;
+    bool tool_offset_retained = false;  ///< [RS274NGC]RETAIN_G43: M6 and M61 apply the new tool's G43
     BeforeToolChange tool_change;
-    bool isArgumentCountNamed = false;  ///< [RS274NGC]OWORD_NARGS: #<n_args> in subroutines
+    bool argument_count_named = false;  ///< [RS274NGC]OWORD_NARGS: #<n_args> in subroutines
     double orient_offset_deg = 0;
     double parameter_g73_peck_clearance_mm = 0.254, parameter_g83_peck_clearance_mm = 0.254;
     std::vector<RemapLine> remaps;  ///< [RS274NGC]REMAP
@@ -90,13 +91,12 @@ struct Settings {
     int debug_mask = 0;     ///< [EMC]DEBUG
     int logging_level = 0;  ///< [RS274NGC]LOG_LEVEL
     std::string ini_folder;
-    std::optional<LengthUnits> initial_units;  ///< G20 or G21 at the start; the machine's when not given
-    /// For checks: what one loop or call of the main program may take before it counts as endless, which is
-    /// an error that names it. Each counts anew whenever the main program comes to a line further down. 0:
-    /// without bound, for all three.
+    std::optional<LengthUnits> initial_units;  ///< G20 or G21 at the start; the machine's units when not set
+    /// For checks: limits of one loop or call of the main program, after which it is reported as endless.
+    /// Each counter restarts when the main program reaches a later line. 0 in all three: no limit.
     std::uint64_t statement_budget = 0;
     std::uint64_t idle_budget = 0;  ///< statements since the last call of mark_progress()
-    double time_budget_s = 0;       ///< of machine time, as mark_progress() tells it
+    double time_budget_s = 0;       ///< machine time, from mark_progress()
 };
 
 /// How far the main program has been read.
@@ -104,42 +104,42 @@ struct FilePlace {
     std::uint64_t bytes = 0, bytes_in_all = 0;
 };
 
-/// What a program may not do.
+/// Restrictions for programs.
 struct ProgramLimits {
-    /// Scripts that a step would run fail instead: what they do is not known.
-    bool areScriptsForbidden = false;
-    /// The program has only the authority to operate: a line that begins with ;py, is an error, and names of
-    /// subroutines find no file outside the folders of subroutines.
-    bool isConfined = false;
+    /// Calls of scripts fail: their effect is not known.
+    bool are_scripts_forbidden = false;
+    /// The program may only operate the machine: a line that begins with ;py, is an error, and names of
+    /// subroutines match no file outside the folders of subroutines.
+    bool confined = false;
 };
 
-/// The line that the next step runs.
+/// The next line to run.
 struct NextLine {
     int line = 0;
-    int main_line = 0;         ///< of the main program: that line, or the one that has called
-    bool isInCall = false;     ///< of a subroutine or a remapped code
-    bool isInMainFile = true;  ///< the line is one of the main program's file
+    int main_line = 0;         ///< in the main program: that line, or the calling line
+    bool in_call = false;      ///< in a subroutine or a remapped code
+    bool in_main_file = true;  ///< the line is one of the main program's file
 };
 
-/// Keeps the state of the block that the machine executes while the interpreter reads later ones. Steps have
-/// numbers that never fall. One thread.
+/// Keeps the state of the block that the machine executes while the interpreter reads later ones. Step
+/// numbers never decrease. One thread.
 class ReadAhead {
   public:
     virtual ~ReadAhead() = default;
-    /// All that was read is executed; what later steps change is recorded.
+    /// Everything read is executed; records the changes of later steps.
     virtual void begin() = 0;
     /// Records nothing until the next begin().
     virtual void stop() = 0;
-    /// The interpreter is as step `number` left it.
+    /// The current state is the state after step `number`.
     virtual void note(std::uint64_t number) = 0;
     /// The machine has reached step `number`.
     virtual void mark_executed(std::uint64_t number) = 0;
-    /// Modes, offsets and parameters become those of the executed step; calls and loops end.
+    /// Restores modes, offsets and parameters of the executed step; calls and loops end.
     virtual void return_to_executed() = 0;
     virtual ActiveCodes executed_codes() const = 0;
-    /// What the parameter file is to have, as of the executed step.
+    /// Content of the parameter file as of the executed step.
     virtual std::string parameter_text() const = 0;
-    /// The line that was read last has no words: it is blank, a comment alone, or skipped.
+    /// The last line has no words: it is blank, only a comment, or skipped.
     virtual bool isLineEmpty() const = 0;
 };
 
@@ -158,7 +158,7 @@ class Interpreter final : public ProgramInterpreter {
     Result<> begin() override;
     /// Syntax errors outside executed blocks are reported when they are reached.
     Result<> open(const std::string &path) override;
-    /// The same for a program in memory; `name` stands for its file in messages.
+    /// Opens a program in memory; `name` replaces its file name in messages.
     void open_text(const std::string &name, std::string text);
     void close() override;
 
@@ -178,44 +178,44 @@ class Interpreter final : public ProgramInterpreter {
     int call_level() const override;
     bool isAtFileEnd() const override;
     bool isMoveHeld() const override;
-    /// After a failure: the block did not decide which one is next, so that checks may go on behind it.
+    /// After a failure: the block did not decide which block is next, so checks may continue after it.
     bool isContinuable() const;
-    /// Syntax errors of the open file behind a line, at most so many: for checks that cannot go on otherwise.
+    /// Syntax errors of the open file after a line, up to a maximum: for checks that cannot continue.
     std::vector<diagnostics::Diagnostic> syntax_errors(int after, int most);
-    /// Tells that the program has made the machine do something, for so long. [s]
+    /// The program has made the machine act for `seconds`.
     void mark_progress(double seconds);
-    /// A budget is used up: no more statement will run.
+    /// A budget is used up: no more statements run.
     bool isBudgetSpent() const;
     FilePlace place_in_file() const;
-    /// The subroutine that runs, without brackets; empty in the main program.
+    /// Name of the current subroutine, without brackets; empty in the main program.
     std::string_view subroutine() const;
-    /// A line of a file that the interpreter has read, empty when it has not.
+    /// A line of a file; empty when the interpreter has not read it.
     std::string line_text(const std::string &file, int line) const;
     double parameter(int number) const override;
 
-    // For starts that are not at the first line (docs/user/run_from_line.md).
+    // For run from line (docs/user/run_from_line.md).
     NextLine next_line() const;
-    /// Why nobody can begin at the next line although all before it is known; empty: one can.
+    /// Why a run cannot start at the next line although all lines before it are known; empty: it can.
     std::string why_no_start() const;
     /// G33 and G33.1 are the motion mode.
     bool isThreading() const;
-    /// Modes and parameters; calls and loops do not belong to it.
+    /// Modes and parameters, without calls and loops.
     struct Snapshot;
     std::shared_ptr<const Snapshot> snapshot() const;
-    /// Makes them what they were. Only at the top level, as after abort().
+    /// Restores the snapshot. Only at the top level, as after abort().
     void restore(const Snapshot &kept);
-    /// Entries of the tool table that will be there by the next synch(): what has been told is on its way.
+    /// Entries of the tool table that the next synch() will have: they have been sent already.
     void know_tools(const std::map<int, ToolEntry> &entries);
-    /// What snapshot() gives as bytes, for another process; an error says what cannot be told so.
+    /// The result of snapshot() as bytes, for another process; an error names a state that cannot be packed.
     Result<std::string> pack_kept() const;
     Result<std::shared_ptr<const Snapshot>> unpack_kept(std::string_view bytes);
-    /// How often Python was asked for something.
+    /// Number of calls of Python.
     std::uint64_t count_script_calls() const;
 
     /// For machines that read ahead of what they execute.
     ReadAhead &read_ahead();
 
-    /// What programs and lines of MDI may do from here on.
+    /// Restrictions for programs and MDI lines from now on.
     ProgramLimits &limits();
 
   private:

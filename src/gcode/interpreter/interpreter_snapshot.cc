@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Modes and parameters of the interpreter as bytes, so that another process can go on with a program.
+// Modes and parameters of the interpreter as bytes, so that another process can continue a program.
 #include "gcode/interpreter/interpreter_snapshot.hh"
 
 #include "base/bytes.hh"
@@ -24,9 +24,9 @@ void spindles(Io &io, Spindles &all) {
     for (auto &spindle : all) {
         io(spindle.speed);
         io(spindle.direction);
-        io(spindle.isConstantSurface);
+        io(spindle.is_constant_surface);
         io(spindle.css_max_rpm);
-        io(spindle.isOverridden);
+        io(spindle.overridden);
     }
 }
 
@@ -50,12 +50,12 @@ void cycle(Io &io, Cycle &words) {
          {&words.bottom, &words.r, &words.p, &words.q, &words.i, &words.j, &words.k, &words.initial}) {
         io(*word);
     }
-    io(words.isRunning);
-    io(words.hasClearance);
+    io(words.running);
+    io(words.has_clearance);
 }
 
-/// `state` is constant on the way out. What the INI file says (rotary axes) is not in it, nor what cannot be
-/// under way: see why_not_packed().
+/// `state` is const when packing. Omits settings of the INI file (rotary axes) and states that
+/// why_not_packed() rejects.
 template <class Io, class AnyState>
 void fields(Io &io, AnyState &state) {
     pose(io, state.position);
@@ -67,10 +67,10 @@ void fields(Io &io, AnyState &state) {
     io(state.motion);
     io.choice(state.plane, Plane::UW);
     io.choice(state.units, LengthUnits::MM);
-    io(state.isIncremental);
-    io(state.isCentreAbsolute);
+    io(state.incremental);
+    io(state.centre_absolute);
     io(state.isDiameter);
-    io(state.isRetractToR);
+    io(state.retract_to_r);
     io.choice(state.feed_mode, FeedMode::UNITS_PER_REVOLUTION);
     io(state.feed);
     io.choice(state.feed_units, LengthUnits::MM);
@@ -81,9 +81,9 @@ void fields(Io &io, AnyState &state) {
     spindles(io, state.spindles);
     io(state.isMist);
     io(state.isFlood);
-    io(state.isFeedOverride);
-    io(state.isFeedHold);
-    io(state.isAdaptive);
+    io(state.is_feed_override);
+    io(state.is_feed_hold);
+    io(state.adaptive);
     tool(io, state.tool);
     cycle(io, state.cycle);
     io(state.spline.out.x);
@@ -131,7 +131,7 @@ void pack_names(Packer &out, const std::vector<std::pair<detail::NameId, double>
     }
 }
 
-void unpack_names(Unpacker &in, bool areGlobal, detail::Parameters &parameters, detail::Names &names) {
+void unpack_names(Unpacker &in, bool global, detail::Parameters &parameters, detail::Names &names) {
     std::uint64_t count = 0;
     in(count);
     for (std::uint64_t i = 0; i < count && in.isGood(); ++i) {
@@ -139,7 +139,7 @@ void unpack_names(Unpacker &in, bool areGlobal, detail::Parameters &parameters, 
         double value = 0;
         in(name);
         in(value);
-        parameters.set_named(names.intern(name), areGlobal, value);
+        parameters.set_named(names.intern(name), global, value);
     }
 }
 
@@ -157,9 +157,9 @@ Result<std::string> pack(const Interpreter::Snapshot &kept, const detail::Names 
     pack_names(out, kept.parameters.globals(), names);
     pack_names(out, kept.parameters.locals(0), names);
     const State *const saved = kept.saved_modes.saved();
-    const bool isSaved = saved != nullptr && why_not_packed(*saved) == nullptr;
-    out(isSaved);
-    if (isSaved) {
+    const bool is_saved = saved != nullptr && why_not_packed(*saved) == nullptr;
+    out(is_saved);
+    if (is_saved) {
         fields(out, *saved);
         out((kept.saved_modes.status(0) & 2) != 0);
     }
@@ -183,13 +183,13 @@ Result<Interpreter::Snapshot> unpack(std::string_view bytes, const Interpreter::
     unpack_names(in, true, kept.parameters, names);
     unpack_names(in, false, kept.parameters, names);
     kept.parameters.commit();
-    bool isSaved = false, isForReturn = false;
-    in(isSaved);
-    if (isSaved) {
+    bool is_saved = false, for_return = false;
+    in(is_saved);
+    if (is_saved) {
         State saved = kept.state;
         fields(in, saved);
-        in(isForReturn);
-        isForReturn ? kept.saved_modes.save_until_return(saved) : kept.saved_modes.save(saved);
+        in(for_return);
+        for_return ? kept.saved_modes.save_until_return(saved) : kept.saved_modes.save(saved);
         kept.saved_modes.commit();
     }
     if (!in.isComplete() || !canBe(kept.state)) {

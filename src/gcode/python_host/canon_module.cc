@@ -23,7 +23,7 @@ geometry::Pose pose_of(double x, double y, double z, double a, double b, double 
     return out;
 }
 
-/// Anything with nine items: EmcPose, tuple, list.
+/// Any object with nine items: EmcPose, tuple, list.
 geometry::Pose pose_from(const py::iterable &items) {
     geometry::Pose out;
     int axis = 0;
@@ -40,7 +40,7 @@ MachineSnapshot machine() {
     return current_view().world().snapshot();
 }
 
-/// Runs `what` with the canon and hands the call on.
+/// Runs `what` with the canon and passes the call on.
 template <class What>
 void with_canon(What what) {
     gcode::InterpreterView &view = current_view();
@@ -57,13 +57,13 @@ void def_fields(py::module_ &m, const char *name, Call preset, std::tuple<Fields
     });
 }
 
-/// A call under its name, with its fields as arguments; what is not among them is as in `preset`.
+/// A call by its name, with its fields as arguments; other fields are those of `preset`.
 template <gcode::RegularCall Call>
 void def(py::module_ &m, const Call &preset = {}) {
     def_fields(m, name_of(preset).data(), preset, Call::FIELDS);
 }
 
-/// The same under a second name.
+/// The same call with a second name.
 template <gcode::RegularCall Call>
 void def_with_twin(py::module_ &m, const Call &preset = {}) {
     def(m, preset);
@@ -102,9 +102,9 @@ void define_moves(py::module_ &m) {
         with_canon([&](Canon &canon) { canon.take(gcode::RigidTap{x, y, z, scale}); });
     });
     def_with_twin<gcode::Dwell>(m);
-    m.def("START_SPEED_FEED_SYNCH", [](int spindle, D feed_per_revolution, bool isVelocityMode) {
+    m.def("START_SPEED_FEED_SYNCH", [](int spindle, D feed_per_revolution, bool is_velocity_mode) {
         with_canon([&](Canon &canon) {
-            canon.take(gcode::StartSpeedFeedSynch{spindle, feed_per_revolution, isVelocityMode});
+            canon.take(gcode::StartSpeedFeedSynch{spindle, feed_per_revolution, is_velocity_mode});
         });
     });
     def<gcode::StopSpeedFeedSynch>(m);
@@ -158,30 +158,29 @@ void define_spindles(py::module_ &m) {
     def_with_twin<gcode::SetSpindleMode>(m);
     def_with_twin<gcode::SetSpindleSpeed>(m);
     for (const char *prefix : {"", "enqueue_"}) {
-        for (const bool isClockwise : {true, false}) {
-            const std::string name = std::string(prefix).append(name_of(gcode::StartSpindle{0, isClockwise}));
+        for (const bool clockwise : {true, false}) {
+            const std::string name = std::string(prefix).append(name_of(gcode::StartSpindle{0, clockwise}));
             m.def(
                 name.c_str(),
-                [isClockwise](int spindle, int wait) {
+                [clockwise](int spindle, int wait) {
                     with_canon([&](Canon &canon) {
-                        canon.take(gcode::StartSpindle{spindle, isClockwise, wait != 0});
+                        canon.take(gcode::StartSpindle{spindle, clockwise, wait != 0});
                     });
                 },
                 py::arg("spindle"), py::arg("wait_for_atspeed") = 1);
         }
     }
     def_with_twin<gcode::StopSpindle>(m);
-    for (const bool isOn : {true, false}) {
-        def_with_twin(m, gcode::SwitchMist{isOn});
-        def_with_twin(m, gcode::SwitchFlood{isOn});
+    for (const bool on : {true, false}) {
+        def_with_twin(m, gcode::SwitchMist{on});
+        def_with_twin(m, gcode::SwitchFlood{on});
     }
     def<gcode::OrientSpindle>(m);
 }
 
 void define_tools(py::module_ &m) {
     def<gcode::SelectTool>(m);
-    // The tool that changes is the one selected; the argument, its place in the table, is taken for
-    // compatibility.
+    // The selected tool is changed; the argument, its pocket, exists for compatibility.
     m.def(
         "CHANGE_TOOL", [](int) { with_canon([](Canon &canon) { canon.take(gcode::ChangeTool{}); }); },
         py::arg("slot") = 0);
@@ -198,23 +197,23 @@ void define_tools(py::module_ &m) {
         with_canon([&](Canon &canon) { canon.take(gcode::SetToolTableEntry{index, entry}); });
     });
     for (const char *name : {"START_CHANGE", "TURN_PROBE_ON", "TURN_PROBE_OFF"}) {
-        m.def(name, [] {});  // CHANGE_TOOL and STRAIGHT_PROBE say all there is
+        m.def(name, [] {});  // CHANGE_TOOL and STRAIGHT_PROBE include it
     }
 }
 
 void define_switches(py::module_ &m) {
-    for (const bool isOn : {true, false}) {
-        def(m, gcode::SwitchFeedOverride{isOn});
-        def(m, gcode::SwitchSpeedOverride{0, isOn});
-        def(m, gcode::SwitchFeedHold{isOn});
-        def(m, gcode::SwitchAdaptiveFeed{isOn});
-        for (const bool isSynched : {true, false}) {
-            def(m, gcode::SetDigitalOutput{0, isOn, isSynched});
+    for (const bool on : {true, false}) {
+        def(m, gcode::SwitchFeedOverride{on});
+        def(m, gcode::SwitchSpeedOverride{0, on});
+        def(m, gcode::SwitchFeedHold{on});
+        def(m, gcode::SwitchAdaptiveFeed{on});
+        for (const bool synched : {true, false}) {
+            def(m, gcode::SetDigitalOutput{0, on, synched});
         }
     }
-    for (const bool isSynched : {true, false}) {
-        m.def(name_of(gcode::SetAnalogOutput{0, 0, isSynched}).data(), [isSynched](int index, double value) {
-            with_canon([&](Canon &canon) { canon.take(gcode::SetAnalogOutput{index, value, isSynched}); });
+    for (const bool synched : {true, false}) {
+        m.def(name_of(gcode::SetAnalogOutput{0, 0, synched}).data(), [synched](int index, double value) {
+            with_canon([&](Canon &canon) { canon.take(gcode::SetAnalogOutput{index, value, synched}); });
         });
     }
     m.def("WAIT", [](int index, int type, int kind, double timeout) {
@@ -276,7 +275,7 @@ void define_rest(py::module_ &m) {
     }
 }
 
-/// Asking the machine: as of the last synchronisation.
+/// Queries of the machine: as of the last synchronisation.
 void define_questions(py::module_ &m) {
     m.def("GET_BLOCK_DELETE", [] { return current_view().world().isBlockDeleteOn(); });
     m.def("GET_OPTIONAL_PROGRAM_STOP", [] { return current_view().world().isOptionalStopOn(); });
@@ -290,7 +289,7 @@ void define_questions(py::module_ &m) {
     }
     m.def("GET_EXTERNAL_PROBE_TRIPPED_VALUE", [] { return machine().isProbeTripped ? 1 : 0; });
     m.def("GET_EXTERNAL_PROBE_VALUE", [] { return machine().isProbeTripped ? 1.0 : 0.0; });
-    // Results of the last input that was waited for; the default when there is none or it timed out.
+    // Result of the last awaited input; the default when there is none or it timed out.
     m.def("GET_EXTERNAL_DIGITAL_INPUT", [](int, int missing) {
         const MachineSnapshot now = machine();
         return now.isInputTimedOut ? missing : (now.input_value != 0.0 ? 1 : 0);
@@ -319,7 +318,7 @@ void define_questions(py::module_ &m) {
     m.def("GET_EXTERNAL_FLOOD", [] { return machine().isFloodOn ? 1 : 0; });
     m.def("GET_EXTERNAL_FEED_OVERRIDE_ENABLE", [] { return machine().isFeedOverrideEnabled ? 1 : 0; });
     m.def("GET_EXTERNAL_SPINDLE_OVERRIDE_ENABLE",
-          [](int) { return machine().isSpeedOverrideEnabled ? 1 : 0; });
+          [](int) { return machine().speed_override_enabled ? 1 : 0; });
     m.def("GET_EXTERNAL_FEED_HOLD_ENABLE", [] { return machine().isFeedHoldEnabled ? 1 : 0; });
     m.def("GET_EXTERNAL_ADAPTIVE_FEED_ENABLE", [] { return machine().isAdaptiveFeedEnabled ? 1 : 0; });
     m.def("GET_EXTERNAL_TC_FAULT", [] { return 0; });

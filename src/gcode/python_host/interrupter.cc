@@ -26,7 +26,7 @@ std::string place_of(unsigned long thread) {
 }  // namespace
 
 py::handle script_ended() {
-    // Not derived from Exception, which scripts catch in good faith.
+    // Not derived from Exception, which scripts often catch.
     static PyObject *const TYPE = PyErr_NewException("millwright.ScriptEnded", PyExc_BaseException, nullptr);
     return TYPE;
 }
@@ -34,7 +34,7 @@ py::handle script_ended() {
 Interrupter::Interrupter(gcode::ScriptStop &stop) : stop_(stop), thread_([this] { work(); }) {}
 
 Interrupter::~Interrupter() {
-    isEnding_ = true;
+    ending_ = true;
     stop_.wake();
     thread_.join();
 }
@@ -50,7 +50,7 @@ void Interrupter::leave() {
 
 void Interrupter::work() {
     std::uint32_t known = stop_.changes();
-    while (!isEnding_) {
+    while (!ending_) {
         if (stop_.isDue()) {
             raise();
             std::this_thread::sleep_for(AGAIN);

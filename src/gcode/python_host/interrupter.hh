@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Ends scripts that run too long for those who wait.
+// Ends scripts that run too long.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -15,18 +15,18 @@ namespace mw::python_host {
 namespace py = pybind11;
 
 /// Follows `stop` in a thread: raises an exception in the script until its call has ended. Python code ends
-/// at its next instruction, a function in C (time.sleep) when it returns.
+/// at its next instruction, a C function (time.sleep) when it returns.
 class Interrupter {
   public:
     explicit Interrupter(gcode::ScriptStop &stop);
-    /// The caller does not hold the GIL.
+    /// The caller must not hold the GIL.
     ~Interrupter();
     Interrupter(const Interrupter &) = delete;
     Interrupter &operator=(const Interrupter &) = delete;
 
-    /// With the GIL: a script runs in this thread from here on.
+    /// With the GIL: a script runs in this thread from now on.
     void enter();
-    /// With the GIL: the outermost script has ended. What was raised and not taken is dropped.
+    /// With the GIL: the outermost script has ended. Drops a pending exception.
     void leave();
 
   private:
@@ -35,7 +35,7 @@ class Interrupter {
 
     gcode::ScriptStop &stop_;
     unsigned long script_thread_ = 0;  ///< under the GIL; 0: none
-    std::atomic<bool> isEnding_{false};
+    std::atomic<bool> ending_{false};
     std::thread thread_;
 };
 

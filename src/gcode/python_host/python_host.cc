@@ -27,7 +27,7 @@ py::dict loaded_modules() {
     return py::module_::import("sys").attr("modules");
 }
 
-/// As Python names the files in it: absolute, without dots.
+/// File name as Python uses it: absolute, without dots.
 std::string full_path(const std::string &folder) {
     std::error_code ignored;
     std::string out = std::filesystem::absolute(folder, ignored).lexically_normal().string();
@@ -37,7 +37,7 @@ std::string full_path(const std::string &folder) {
     return out;
 }
 
-/// sys.path as Python started with it, our own folders at its end.
+/// The initial sys.path of Python, with our own folders at its end.
 py::list base_path() {
     static const py::handle PATH = py::list(py::module_::import("sys").attr("path")).release();
     return py::reinterpret_borrow<py::list>(PATH);
@@ -49,16 +49,16 @@ const PythonHost *PythonHost::active = nullptr;
 int PythonHost::hosts = 0;
 int PythonHost::entries = 0;
 
-/// Around every entry from the interpreter: the GIL, the current view, and this host's modules.
+/// Scope of an entry from the interpreter: the GIL, the current view, and this host's modules.
 class PythonHost::Entry {
   public:
     explicit Entry(const PythonHost &host) : scope_(*host.view_) {
-        const bool isOutermost = entries++ == 0;
-        if (isOutermost && host.interrupter_ != nullptr) {
+        const bool outermost = entries++ == 0;
+        if (outermost && host.interrupter_ != nullptr) {
             interrupter_ = host.interrupter_.get();
             interrupter_->enter();
         }
-        if (isOutermost && isForeignPython()) {
+        if (outermost && isForeignPython()) {
             path_ = py::module_::import("sys").attr("path");
             main_ = loaded_modules()["__main__"];
         }
@@ -83,11 +83,11 @@ class PythonHost::Entry {
     py::object path_, main_;              ///< of the process, when Python is its own
 };
 
-/// A generator at its yield.
+/// A generator suspended at its yield.
 class SuspendedPython final : public gcode::SuspendedScript {
   public:
-    SuspendedPython(PythonHost &host, py::object generator, std::string label, bool isOWord)
-        : host_(host), generator_(std::move(generator)), label_(std::move(label)), isOWord_(isOWord) {}
+    SuspendedPython(PythonHost &host, py::object generator, std::string label, bool is_o_word)
+        : host_(host), generator_(std::move(generator)), label_(std::move(label)), is_o_word_(is_o_word) {}
 
     ~SuspendedPython() override {
         const PythonHost::Entry entry(host_);
@@ -105,14 +105,14 @@ class SuspendedPython final : public gcode::SuspendedScript {
 
     ScriptOutcome resume() override {
         const PythonHost::Entry entry(host_);
-        return generator_.is_none() ? ScriptOutcome{} : host_.advance(generator_, label_, isOWord_);
+        return generator_.is_none() ? ScriptOutcome{} : host_.advance(generator_, label_, is_o_word_);
     }
 
   private:
     PythonHost &host_;
-    py::object generator_;  ///< None: a function that returned INTERP_EXECUTE_FINISH
+    py::object generator_;  ///< None: a function returned INTERP_EXECUTE_FINISH
     std::string label_;
-    bool isOWord_;
+    bool is_o_word_;
 };
 
 PythonHost::PythonHost() {
@@ -176,7 +176,7 @@ bool PythonHost::isOwnModule(const py::handle &module) const {
     return false;
 }
 
-/// Takes this host's modules out of sys.modules, so that another host loads its own of the same names.
+/// Removes this host's modules from sys.modules, so that another host loads its own of the same names.
 void PythonHost::stash() const {
     py::dict loaded = loaded_modules();
     py::dict own = modules_;
@@ -255,7 +255,7 @@ void PythonHost::run_top_level() {
     const py::object code =
         py::module_::import("builtins").attr("compile")(*text, settings_.top_level, "exec");
     py::module_::import("builtins").attr("exec")(code, main_.attr("__dict__"));
-    if (!settings_.isReloading) {
+    if (!settings_.reloading) {
         return;
     }
     std::error_code ignored;
@@ -270,13 +270,13 @@ void PythonHost::run_top_level() {
 }
 
 void PythonHost::reload_if_changed() {
-    bool isChanged = false;
+    bool changed = false;
     for (const auto &[file, time] : times_) {
         std::error_code missing;
         const auto now = std::filesystem::last_write_time(file, missing);
-        isChanged = isChanged || (!missing && now != time);
+        changed = changed || (!missing && now != time);
     }
-    if (isChanged) {
+    if (changed) {
         stash();
         modules_.attr("clear")();
         py::module_::import("importlib").attr("invalidate_caches")();
@@ -305,7 +305,7 @@ Result<> PythonHost::begin() {
 
 // --------------------------------------------------------------------------------------------- calling
 
-/// A callable of a module that the top-level script has imported; nothing when there is none.
+/// A callable of a module that the top-level script has imported; none when it does not exist.
 py::object PythonHost::find_function(const char *module, std::string_view name) const {
     const py::dict names = main_.attr("__dict__");
     const std::string text(name);
@@ -354,42 +354,42 @@ ScriptOutcome PythonHost::call(ScriptModule module, const std::string &name,
     }
 }
 
-ScriptOutcome PythonHost::outcome_of(const py::object &result, const std::string &label, bool isOWord,
+ScriptOutcome PythonHost::outcome_of(const py::object &result, const std::string &label, bool is_o_word,
                                      std::unique_ptr<gcode::SuspendedScript> &rest) {
     ScriptOutcome outcome;
     py::object generator = py::none();
     if (PyGen_Check(result.ptr())) {
         generator = result;
-        outcome = advance(result, label, isOWord);
+        outcome = advance(result, label, is_o_word);
     } else {
-        outcome = number_outcome(result, label, isOWord);
+        outcome = number_outcome(result, label, is_o_word);
     }
     if (outcome.kind == Kind::WAITING) {
-        rest = std::make_unique<SuspendedPython>(*this, std::move(generator), label, isOWord);
+        rest = std::make_unique<SuspendedPython>(*this, std::move(generator), label, is_o_word);
     }
     return outcome;
 }
 
 /// Runs a generator to its next yield or its end.
-ScriptOutcome PythonHost::advance(const py::object &generator, const std::string &label, bool isOWord) {
+ScriptOutcome PythonHost::advance(const py::object &generator, const std::string &label, bool is_o_word) {
     try {
         const py::object yielded = generator.attr("__next__")();
-        const ScriptOutcome outcome = number_outcome(yielded, label, isOWord);
+        const ScriptOutcome outcome = number_outcome(yielded, label, is_o_word);
         if (outcome.kind != Kind::WAITING) {
             generator.attr("close")();
         }
         return outcome;
     } catch (py::error_already_set &error) {
         if (error.matches(PyExc_StopIteration)) {
-            return number_outcome(error.value().attr("value"), label, isOWord);
+            return number_outcome(error.value().attr("value"), label, is_o_word);
         }
         return failed(error_text(error, settings_.log_level));
     }
 }
 
-/// Nothing, an INTERP_ code, a number (an O word's value), or a text (an error).
+/// Nothing, an INTERP_ code, a number (the value of an O word), or a text (an error).
 ScriptOutcome PythonHost::number_outcome(const py::object &result, const std::string &label,
-                                         bool isOWord) const {
+                                         bool is_o_word) const {
     if (result.is_none()) {
         return {};
     }
@@ -397,8 +397,9 @@ ScriptOutcome PythonHost::number_outcome(const py::object &result, const std::st
         return failed(result.cast<std::string>());
     }
     const py::object code_type = py::module_::import("interpreter").attr("InterpReturn");
-    const bool isCode = py::isinstance(result, code_type) || (py::isinstance<py::int_>(result) && !isOWord);
-    if (isCode) {
+    const bool is_code =
+        py::isinstance(result, code_type) || (py::isinstance<py::int_>(result) && !is_o_word);
+    if (is_code) {
         const int code = result.cast<int>();
         if (code >= CODE_MIN_ERROR) {
             const auto set = view_->attribute("errormsg");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Python as the interpreter's script language. One host per interpreter; several share the embedded Python,
-// each with a top-level namespace and user modules of its own.
+// each with its own top-level namespace and user modules.
 #pragma once
 
 #include <filesystem>
@@ -43,25 +43,26 @@ class PythonHost final : public gcode::ScriptHost {
     void reload_if_changed();
     py::object find_function(const char *module, std::string_view name) const;
     Result<> call_hook(const char *name);
-    gcode::ScriptOutcome outcome_of(const py::object &result, const std::string &label, bool isOWord,
+    gcode::ScriptOutcome outcome_of(const py::object &result, const std::string &label, bool is_o_word,
                                     std::unique_ptr<gcode::SuspendedScript> &rest);
-    gcode::ScriptOutcome advance(const py::object &generator, const std::string &label, bool isOWord);
+    gcode::ScriptOutcome advance(const py::object &generator, const std::string &label, bool is_o_word);
     gcode::ScriptOutcome number_outcome(const py::object &result, const std::string &label,
-                                        bool isOWord) const;
+                                        bool is_o_word) const;
     gcode::ScriptOutcome failed(std::string message) const;
 
-    static const PythonHost *active;  ///< whose modules stand in sys.modules
-    static int entries;               ///< calls into Python, one inside the other
+    static const PythonHost *active;  ///< the host whose modules are in sys.modules
+    static int entries;               ///< number of nested calls into Python
     static int hosts;
 
-    std::unique_ptr<Interrupter> interrupter_;  ///< null: nobody ends scripts
+    std::unique_ptr<Interrupter> interrupter_;  ///< null: scripts cannot be ended
     gcode::ScriptSettings settings_;
     gcode::InterpreterView *view_ = nullptr;
     std::shared_ptr<ViewHandle> handle_;
     py::object self_, main_;
     py::object modules_;  ///< dict: own modules while another host is active
     py::object path_;     ///< list: sys.path for this host
-    std::map<std::string, std::filesystem::file_time_type> times_;  ///< of the files that RELOAD watches
+    std::map<std::string, std::filesystem::file_time_type>
+        times_;  ///< times of the files that RELOAD watches
 };
 
 }  // namespace mw::python_host

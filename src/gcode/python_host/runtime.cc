@@ -17,25 +17,26 @@
 namespace mw::python_host {
 namespace {
 
-bool isStarted = false, isForeign = false;
+bool started = false, foreign = false;
 
-/// Python's standard output and error through the C library's, so that their lines and ours keep their order.
+/// Sends Python's standard output and error through the C library's, so that its lines and ours keep their
+/// order.
 class Stream {
   public:
-    explicit Stream(bool isError) : isError_(isError) {}
+    explicit Stream(bool is_error) : is_error_(is_error) {}
 
     std::size_t write(const std::string &text) const {
-        if (isError_) {
+        if (is_error_) {
             std::fflush(stdout);
         }
-        std::fwrite(text.data(), 1, text.size(), isError_ ? stderr : stdout);
+        std::fwrite(text.data(), 1, text.size(), is_error_ ? stderr : stdout);
         return text.size();
     }
-    void flush() const { std::fflush(isError_ ? stderr : stdout); }
-    int fileno() const { return isError_ ? 2 : 1; }
+    void flush() const { std::fflush(is_error_ ? stderr : stdout); }
+    int fileno() const { return is_error_ ? 2 : 1; }
 
   private:
-    bool isError_;
+    bool is_error_;
 };
 
 void redirect_streams() {
@@ -52,7 +53,7 @@ void redirect_streams() {
     sys.attr("stderr") = py::cast(new Stream(true), py::return_value_policy::take_ownership);
 }
 
-/// What ends the process without a word: a script must not end the machine. Its own children may.
+/// Disables functions that end the process at once: a script must not end the machine. Its own children may.
 void keep_machine_up() {
     py::exec(R"(
 import os as _os
@@ -114,7 +115,7 @@ std::vector<std::string> places_of(const py::error_already_set &error) {
         const py::object frame = frames[static_cast<std::size_t>(i)];
         const std::string file = py::str(frame.attr("filename"));
         if (file.ends_with("/scripts/interpreter.py") || file.starts_with("<frozen")) {
-            continue;  // our own glue says nothing about the script
+            continue;  // our own code is irrelevant to the script's author
         }
         const std::string function = py::str(frame.attr("name"));
         out.push_back(fmt::format("{}:{}{}", file, std::string(py::str(frame.attr("lineno"))),
@@ -123,8 +124,8 @@ std::vector<std::string> places_of(const py::error_already_set &error) {
     return out;
 }
 
-/// The program that belongs to the library which is linked here, so that its modules are found whatever
-/// python3 is first on the PATH; a virtual environment that is in force goes before it. Empty: not found.
+/// The Python program of the linked library, so that its modules are found whichever python3 is first in
+/// PATH; an active virtual environment takes precedence. Empty: not found.
 std::string python_program() {
     namespace fs = std::filesystem;
     std::error_code error;
@@ -162,19 +163,19 @@ void initialize() {
 }  // namespace
 
 bool isForeignPython() {
-    return isForeign;
+    return foreign;
 }
 
 void start_python() {
     if (Py_IsInitialized() != 0) {
-        isForeign = !isStarted;
+        foreign = !started;
         return;
     }
-    isStarted = true;
+    started = true;
     initialize();
     redirect_streams();
     keep_machine_up();
-    PyEval_SaveThread();  // from now on every call takes the GIL itself
+    PyEval_SaveThread();  // from now on each call takes the GIL
 }
 
 void add_own_modules() {

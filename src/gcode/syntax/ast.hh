@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The syntax tree of a program: compact nodes in arenas, referred to by index. Every node knows its column.
+// The syntax tree of a program: compact nodes in arenas, referred to by index. Every node has its column.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace mw::gcode::detail {
 
-/// A call with more than 30 arguments makes as many numbers the subroutine's own.
+/// A call with more than 30 arguments makes the parameters from #31 on local to the subroutine.
 inline constexpr std::size_t MAX_CALL_ARGUMENTS = 1000;
 inline constexpr std::size_t MAX_LINE_LENGTH = 1000000;  // characters
 
@@ -63,7 +63,7 @@ constexpr int letter(char c) {
     return c - 'a';
 }
 
-/// A letter with its value; `expression` NO_ID means that `value` is a constant.
+/// A letter with its value; if `expression` is NO_ID, `value` is a constant.
 struct Word {
     std::uint8_t letter = 0;
     std::uint32_t column = 0;
@@ -82,7 +82,7 @@ struct Setting {
 /// A comment's text lies in the line at [begin, end), counted from 0.
 struct Comment {
     std::uint32_t begin = 0, end = 0;
-    bool isScript = false;  ///< the statements of a line that begins with ;py,
+    bool is_script = false;  ///< the statements of a line that begins with ;py,
 };
 
 enum class OKind : std::uint8_t {
@@ -124,8 +124,8 @@ struct Block {
     std::uint32_t line = 0;  ///< from 1
     std::uint32_t first_word = 0, first_setting = 0, first_comment = 0;
     std::uint16_t word_count = 0, setting_count = 0, comment_count = 0;
-    bool isDeletable = false;  ///< begins with a slash
-    bool isPercent = false;
+    bool deletable = false;  ///< begins with a slash
+    bool is_percent = false;
     bool isNumbered = false;
     std::int32_t sequence = 0;    ///< N word
     std::uint32_t oword = NO_ID;  ///< in Arena::owords

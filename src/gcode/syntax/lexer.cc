@@ -31,7 +31,8 @@ std::string Lexer::text_from(std::size_t start) const {
 }
 
 Lexer::Number Lexer::take_number(double &value) {
-    // Digits that a double holds exactly, divided once by an exact power of ten, are correctly rounded.
+    // Numbers with this many digits are exact doubles; one division by an exact power of ten rounds
+    // correctly.
     constexpr std::ptrdiff_t EXACT_DIGITS = 15;
     const char *const begin = line_.data() + pos_;
     const char *const end = line_.data() + line_.size();
@@ -50,8 +51,8 @@ Lexer::Number Lexer::take_number(double &value) {
         return at - first;
     };
     std::ptrdiff_t count = take_digits(EXACT_DIGITS), decimals = 0;
-    const bool isFraction = at != end && *at == '.';
-    if (isFraction) {
+    const bool is_fraction = at != end && *at == '.';
+    if (is_fraction) {
         ++at;
         decimals = take_digits(EXACT_DIGITS - count);
         count += decimals;
@@ -59,8 +60,8 @@ Lexer::Number Lexer::take_number(double &value) {
     while (at != end && isBlank(*at)) {
         ++at;
     }
-    const bool isOver = at == end || !(isDigit(*at) || *at == '.');
-    if (count == 0 || !isOver) {
+    const bool ended = at == end || !(isDigit(*at) || *at == '.');
+    if (count == 0 || !ended) {
         return take_odd_number(value);
     }
     pos_ = static_cast<std::size_t>(at - line_.data());
@@ -68,18 +69,18 @@ Lexer::Number Lexer::take_number(double &value) {
     return Number::OK;
 }
 
-/// Any number: with blanks inside, with many digits, or none at all.
+/// Any number: with blanks, with many digits, or none at all.
 Lexer::Number Lexer::take_odd_number(double &value) {
     std::string text;
-    bool isFraction = false, isNumber = false;
-    for (char c = peek(); isDigit(c) || (c == '.' && !isFraction); c = peek()) {
-        isFraction = isFraction || c == '.';
-        isNumber = isNumber || c != '.';
+    bool is_fraction = false, is_number = false;
+    for (char c = peek(); isDigit(c) || (c == '.' && !is_fraction); c = peek()) {
+        is_fraction = is_fraction || c == '.';
+        is_number = is_number || c != '.';
         text += c;
         take();
     }
-    if (!isNumber) {
-        return isFraction ? Number::BAD : Number::NONE;
+    if (!is_number) {
+        return is_fraction ? Number::BAD : Number::NONE;
     }
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     return error == std::errc() ? Number::OK : Number::BAD;
@@ -99,11 +100,11 @@ std::optional<std::string> Lexer::take_name(char closer) {
 std::string folded_name(std::string_view text) {
     constexpr std::string_view HAL_NAME = "_hal[";
     std::string name;
-    bool isKept = false;
+    bool kept = false;
     for (const char c : text) {
         if (!Lexer::isBlank(c)) {
-            name += isKept ? c : Lexer::lower(c);
-            isKept = isKept || name == HAL_NAME;
+            name += kept ? c : Lexer::lower(c);
+            kept = kept || name == HAL_NAME;
         }
     }
     return name;

@@ -15,7 +15,7 @@ struct Keyword {
     OKind kind;
 };
 
-// Longer words before those that they begin with.
+// Longer words before their prefixes.
 constexpr std::array KEYWORDS{
     Keyword{"sub", OKind::SUB},
     Keyword{"endsub", OKind::ENDSUB},
@@ -63,18 +63,18 @@ Block Parser::parse_line(std::string_view line, std::uint32_t line_number_) {
     depth_ = 0;
     operators_ = 0;
     Lexer in(line);
-    const bool isTooLong = line.size() > MAX_LINE_LENGTH;
-    if (isTooLong) {
+    const bool too_long = line.size() > MAX_LINE_LENGTH;
+    if (too_long) {
         fail(fmt::format("The line is longer than {} characters", MAX_LINE_LENGTH), 1);
     }
-    const bool isRead = !isTooLong && block(in, out);
-    if (!isRead && !isTooLong) {
+    const bool is_read = !too_long && block(in, out);
+    if (!is_read && !too_long) {
         if (const auto odd = find_odd_character(line)) {
             fail(fmt::format("Bad character {} used", odd->name),
                  static_cast<std::uint32_t>(odd->position) + 1);
         }
     }
-    if (!isRead) {
+    if (!is_read) {
         out.error = static_cast<std::uint32_t>(arena_.errors.size());
         arena_.errors.push_back({error_, error_column_});
     }
@@ -95,11 +95,11 @@ NodeId Parser::add(Node node, const Lexer &in) {
 
 bool Parser::block(Lexer &in, Block &out) {
     if (in.accept('/')) {
-        out.isDeletable = true;
+        out.deletable = true;
     }
     char c = in.peek();
-    if (c == '%' && !out.isDeletable && isPercentLine(in.line())) {
-        out.isPercent = true;
+    if (c == '%' && !out.deletable && isPercentLine(in.line())) {
+        out.is_percent = true;
         return true;
     }
     if (c == 'n') {
@@ -128,7 +128,7 @@ bool Parser::line_number(Lexer &in, Block &out) {
     return true;
 }
 
-/// `c` is the character that peek() showed.
+/// `c` is the character that peek() returned.
 bool Parser::item(Lexer &in, Block &out, char c) {
     switch (c) {
     case '(': return comment(in, out);
@@ -143,26 +143,26 @@ bool Parser::item(Lexer &in, Block &out, char c) {
 bool Parser::comment(Lexer &in, Block &out) {
     const std::uint32_t column = in.column();
     const std::string_view line = in.line();
-    const bool isToEnd = in.peek() == ';';
+    const bool ending = in.peek() == ';';
     const std::size_t begin = in.position() + 1;
-    const std::size_t end = isToEnd ? line.size() : line.find(')', begin);
+    const std::size_t end = ending ? line.size() : line.find(')', begin);
     if (end == std::string_view::npos) {
         return fail("Unclosed comment found", column);
     }
     constexpr std::string_view SCRIPT = ";py,";
-    if (isToEnd && line.starts_with(SCRIPT)) {
+    if (ending && line.starts_with(SCRIPT)) {
         arena_.comments.push_back(
             {static_cast<std::uint32_t>(SCRIPT.size()), static_cast<std::uint32_t>(end), true});
         ++out.comment_count;
     }
-    if (!isToEnd) {
+    if (!ending) {
         if (line.substr(begin, end - begin).find('(') != std::string_view::npos) {
             return fail("Nested comment found", column);
         }
         arena_.comments.push_back({static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)});
         ++out.comment_count;
     }
-    in.set_position(isToEnd ? end : end + 1);
+    in.set_position(ending ? end : end + 1);
     return true;
 }
 
@@ -211,17 +211,17 @@ bool Parser::word(Lexer &in, Block &out, char c) {
         return fail("No characters found in reading real value", in.column());
     }
     const std::size_t start = in.position();
-    const bool isNegative = first == '-';
-    if (isNegative) {
+    const bool negative = first == '-';
+    if (negative) {
         in.take();
         first = in.peek();
     }
-    if (Lexer::beginsNumber(first)) {  // as nearly all words have it: no node is needed
+    if (Lexer::beginsNumber(first)) {  // most words: no node is needed
         const std::size_t digits = in.position();
         if (in.take_number(made.value) != Lexer::Number::OK) {
             return bad_number(in, digits);
         }
-        made.value = isNegative ? -made.value : made.value;
+        made.value = negative ? -made.value : made.value;
     } else {
         in.set_position(start);
         const std::size_t nodes = arena_.nodes.size();
@@ -244,8 +244,8 @@ bool Parser::word(Lexer &in, Block &out, char c) {
 bool Parser::oword(Lexer &in, Block &out) {
     OWord made;
     made.column = in.column();
-    const bool isFirst = out.word_count == 0 && out.setting_count == 0;
-    if (!isFirst) {
+    const bool first = out.word_count == 0 && out.setting_count == 0;
+    if (!first) {
         return fail("An O word must be first on its line", made.column);
     }
     in.take();

@@ -9,8 +9,8 @@
 namespace mw::gcode::detail {
 namespace {
 
-constexpr int MAX_DEPTH = 128;  // of brackets, signs and # in one another
-/// 1+1+1... nests as deep as it has operators: what walks through an expression needs stack for each.
+constexpr int MAX_DEPTH = 128;  // maximum nesting of brackets, signs and #
+/// 1+1+1... nests as deep as its number of operators, and evaluation needs stack for each.
 constexpr int MAX_OPERATORS = 1000;
 
 struct FunctionName {
@@ -30,7 +30,7 @@ constexpr std::array FUNCTIONS{
 struct OperatorName {
     std::string_view text;
     Operator op;
-    int level;  ///< higher binds tighter
+    int level;  ///< higher binds stronger
 };
 
 constexpr int LOWEST_LEVEL = 1, HIGHEST_LEVEL = 5;
@@ -84,23 +84,23 @@ bool Parser::real_value(Lexer &in, NodeId &out) {
 
 bool Parser::signed_value(Lexer &in, NodeId &out) {
     const std::uint32_t column = in.column();
-    const bool isNegative = in.peek() == '-';
+    const bool negative = in.peek() == '-';
     in.take();
     NodeId inner = NO_ID;
     if (!real_value(in, inner)) {
         return false;
     }
     out = inner;
-    if (isNegative && arena_.nodes[inner].kind == NodeKind::NUMBER) {
+    if (negative && arena_.nodes[inner].kind == NodeKind::NUMBER) {
         arena_.nodes[inner].value = -arena_.nodes[inner].value;
         arena_.nodes[inner].column = column;
-    } else if (isNegative) {
+    } else if (negative) {
         out = add({.kind = NodeKind::NEGATE, .column = column, .a = inner}, in);
     }
     return true;
 }
 
-/// take_number() has failed, at the position `start` or after blanks there.
+/// take_number() has failed at the position `start` or after blanks there.
 bool Parser::bad_number(const Lexer &in, std::size_t start) {
     return fail(fmt::format("bad number format (conversion failed) parsing '{}'", in.text_from(start)),
                 static_cast<std::uint32_t>(start) + 1);
@@ -135,7 +135,7 @@ bool Parser::parameter(Lexer &in, NodeId &out) {
     return true;
 }
 
-/// The opening bracket is taken; takes the closing one.
+/// The opening bracket has been read; reads the closing one.
 bool Parser::expression(Lexer &in, NodeId &out) {
     if (!binary(in, LOWEST_LEVEL, out)) {
         return false;

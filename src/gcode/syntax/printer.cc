@@ -13,7 +13,7 @@ namespace {
 
 struct OperatorText {
     std::string_view text;
-    int level;  ///< higher binds tighter, as in the parser
+    int level;  ///< higher binds stronger, as in the parser
 };
 /// In the order of Operator.
 constexpr std::array<OperatorText, 15> OPERATORS{{{"**", 5},
@@ -56,7 +56,7 @@ std::string_view Printer::keyword(OKind kind) {
     return KEYWORDS[static_cast<std::size_t>(kind)];
 }
 
-/// The language has no exponents.
+/// G-code has no exponents.
 std::string Printer::number(double value) {
     std::array<char, 400> buffer{};
     const auto end =
@@ -129,7 +129,7 @@ std::string Printer::oword(const OWord &oword) const {
         if (!rest.empty() && rest[0] == '<') {
             out += name_at(oword.column);
         } else {
-            // Everything up to the keyword or the comment is the number, blanks inside of it included.
+            // The number extends to the keyword or the comment, including blanks.
             std::string digits;
             for (const char c : rest) {
                 if ((c >= '0' && c <= '9') || c == '.') {
@@ -153,7 +153,7 @@ std::string Printer::oword(const OWord &oword) const {
     return out;
 }
 
-/// All comments, then the one that goes to the end of the line.
+/// All comments, then the one to the end of the line.
 std::string Printer::comments(const Block &block) const {
     std::string out;
     std::size_t at = 0;
@@ -165,10 +165,10 @@ std::string Printer::comments(const Block &block) const {
             at = comment.end;
         }
     }
-    for (bool isInside = false; at < line_.size(); ++at) {
+    for (bool inside = false; at < line_.size(); ++at) {
         if (line_[at] == '(' || line_[at] == ')') {
-            isInside = line_[at] == '(';
-        } else if (line_[at] == ';' && !isInside) {
+            inside = line_[at] == '(';
+        } else if (line_[at] == ';' && !inside) {
             const std::string_view text = line_.substr(at);
             out += (out.empty() ? "" : " ") + std::string(text.substr(0, text.find_last_not_of(" \t\r") + 1));
             break;
@@ -178,7 +178,7 @@ std::string Printer::comments(const Block &block) const {
 }
 
 std::string Printer::block(const Block &block) const {
-    std::string out = block.isDeletable ? "/" : "";
+    std::string out = block.deletable ? "/" : "";
     const auto add = [&out](const std::string &part) {
         if (!out.empty() && out.back() != '/' && !part.empty()) {
             out += ' ';

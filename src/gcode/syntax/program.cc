@@ -33,12 +33,12 @@ Program::Program(std::string path, ProgramText text, Names &names)
 Result<> Program::prepare() {
     Result<bool> scanned = text_.scan(
         [this](int line, std::string_view content) { return look_at(line, content) || text_.isHeld(); });
-    if (scanned && !*scanned) {  // O words: lines will be asked for in any order
+    if (scanned && !*scanned) {  // O words: lines will be read in any order
         if (Result<> held = text_.hold(); !held) {
             return held;
         }
         first_content_line_ = closing_percent_line_ = 0;
-        isPercentDelimited_ = false;
+        percent_delimited_ = false;
         olines_.clear();
         arena_.clear();
         scanned = text_.scan([this](int line, std::string_view content) {
@@ -62,20 +62,20 @@ bool Program::look_at(int line, std::string_view content) {
     if (first == content.size()) {
         return true;
     }
-    const bool isPercent = isPercentLine(content);
-    const bool isBegun = first_content_line_ != 0;
-    if (!isBegun) {
+    const bool is_percent = isPercentLine(content);
+    const bool started = first_content_line_ != 0;
+    if (!started) {
         first_content_line_ = line;
-        isPercentDelimited_ = isPercent;
+        percent_delimited_ = is_percent;
     }
-    const bool isClosing = isPercent && isBegun && isPercentDelimited_;
-    closing_percent_line_ = isClosing && closing_percent_line_ == 0 ? line : closing_percent_line_;
+    const bool closing = is_percent && started && percent_delimited_;
+    closing_percent_line_ = closing && closing_percent_line_ == 0 ? line : closing_percent_line_;
     if (closing_percent_line_ != 0) {
-        return true;  // nothing behind it counts
+        return true;  // the rest does not count
     }
     const char c = Lexer::lower(content[first]);
-    const bool mayBeginWithO = c == 'o' || c == 'n' || c == '/';
-    if (!mayBeginWithO || !beginsWithO(content)) {
+    const bool may_begin_with_o = c == 'o' || c == 'n' || c == '/';
+    if (!may_begin_with_o || !beginsWithO(content)) {
         return true;
     }
     OLine oline;
@@ -86,7 +86,7 @@ bool Program::look_at(int line, std::string_view content) {
 }
 
 bool Program::hasClosingPercent() const {
-    return !isPercentDelimited_ || closing_percent_line_ != 0;
+    return !percent_delimited_ || closing_percent_line_ != 0;
 }
 
 /// After blanks, a slash and an N word.
@@ -134,8 +134,8 @@ int Program::find_bad_oword(int after, int before) const {
     return found != bad_olines_.end() && *found < before ? *found : 0;
 }
 
-/// A label that is used again inside of what it has begun would end the wrong part: such a line gets an
-/// error, and so do the second definition of a subroutine, and break and continue of a repeat.
+/// A label that is used again inside its own part would end the wrong part: such a line gets an error, and so
+/// do the second definition of a subroutine, and break and continue of a repeat.
 void Program::check_labels() {
     std::unordered_map<NameId, const OLine *> open, subs;
     for (OLine &oline : olines_) {
@@ -148,18 +148,18 @@ void Program::check_labels() {
         }
         auto &found = oword.kind == OKind::SUB ? subs : open;
         const auto earlier = found.find(oword.label);
-        const bool isOpen = earlier != found.end();
-        const bool isEndOfDo = oword.kind == OKind::WHILE && isOpen &&
-                               arena_.owords[earlier->second->block.oword].kind == OKind::DO;
+        const bool is_open = earlier != found.end();
+        const bool is_end_of_do = oword.kind == OKind::WHILE && is_open &&
+                                  arena_.owords[earlier->second->block.oword].kind == OKind::DO;
         switch (oword.kind) {
         case OKind::IF:
         case OKind::DO:
         case OKind::REPEAT:
         case OKind::SUB:
         case OKind::WHILE:
-            if (isEndOfDo) {
+            if (is_end_of_do) {
                 found.erase(earlier);
-            } else if (isOpen) {
+            } else if (is_open) {
                 oline.block.error = static_cast<std::uint32_t>(arena_.errors.size());
                 const char *const what = oword.kind == OKind::SUB
                                              ? "this subroutine is defined already"
@@ -173,7 +173,7 @@ void Program::check_labels() {
             break;
         case OKind::BREAK:
         case OKind::CONTINUE:
-            if (isOpen && arena_.owords[earlier->second->block.oword].kind == OKind::REPEAT) {
+            if (is_open && arena_.owords[earlier->second->block.oword].kind == OKind::REPEAT) {
                 oline.block.error = static_cast<std::uint32_t>(arena_.errors.size());
                 arena_.errors.push_back(
                     {fmt::format("o{}: {} is for while and do loops, line {} is a repeat",
@@ -190,8 +190,8 @@ void Program::check_labels() {
     }
 }
 
-/// Lines that may run more than once are kept parsed: those of loops and subroutines. A Fanuc-style one ends
-/// wherever its M99 stands.
+/// Lines that may run more than once are kept parsed: those of loops and subroutines. A Fanuc-style
+/// subroutine may end at any M99.
 void Program::mark_kept() {
     cached_.assign(olines_.empty() ? 0 : static_cast<std::size_t>(count_lines()) + 1, NOT_KEPT);
     int kept_to = 0;
@@ -229,8 +229,8 @@ const Program::OLine *Program::find_oline(int line) const {
 
 Block Program::parse(int line, Arena &arena) {
     Block block = Parser(arena, names_).parse_line(line_text(line), static_cast<std::uint32_t>(line));
-    if (block.isPercent && !isPercentDelimited_) {
-        block.isPercent = false;
+    if (block.is_percent && !percent_delimited_) {
+        block.is_percent = false;
         block.error = static_cast<std::uint32_t>(arena.errors.size());
         arena.errors.push_back(
             {"Bad character '%' used: % ends a program only when the first line of the file is %", 1});

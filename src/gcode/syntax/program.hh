@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// One file (or one MDI line) of G-code: its text, its lines parsed when first reached, and where its O words
-// lead.
+// One file (or one MDI line) of G-code: its text, its lines parsed on first use, and the targets of its O
+// words.
 #pragma once
 
 #include <deque>
@@ -17,7 +17,7 @@
 
 namespace mw::gcode::detail {
 
-/// A block and the arena that its indices mean. Valid until another line of the same program is asked for.
+/// A block and its arena. Valid until another line of the same program is read.
 struct BlockView {
     const Block *block = nullptr;
     const Arena *arena = nullptr;
@@ -34,11 +34,11 @@ class Program {
     /// `line` from 1, without the newline.
     std::string_view line_text(int line) const { return text_.line(line); }
     /// Lines inside loops and subroutines are parsed once and kept; others are parsed into a scratch arena,
-    /// so that memory is bounded by the text and those. A file without O words is not even held as text when
-    /// it is large.
+    /// so that memory is limited by the text and those lines. The text of a large file without O words is not
+    /// kept in memory.
     BlockView block(int line);
     /// A program that begins with % ends at the next one; in any other file % is an error of its line.
-    bool isPercentDelimited() const { return isPercentDelimited_; }
+    bool isPercentDelimited() const { return percent_delimited_; }
     /// False when the file begins with % and no other line does.
     bool hasClosingPercent() const;
     int first_content_line() const { return first_content_line_; }  ///< the first that is not blank; 0: none
@@ -47,10 +47,10 @@ class Program {
     int next_same(int line) const;
     int previous_same(int line) const;
     const OWord *oword_at(int line) const;
-    /// The line of `O<label> sub`, or of a Fanuc-style `O<label>`; 0: none here.
+    /// Line of `O<label> sub`, or of a Fanuc-style `O<label>`; 0: none here.
     int find_sub(NameId label) const;
     int find_fanuc(NameId label) const;
-    /// The first line between these two with an O word that cannot be read, 0 when there is none.
+    /// The first line between these two with an invalid O word, 0 when there is none.
     int find_bad_oword(int after, int before) const;
     /// The first line after `line` with an O word, 0 when there is none.
     int next_oword(int line) const;
@@ -65,7 +65,7 @@ class Program {
     Program(std::string path, ProgramText text, Names &names);
     Result<> prepare();
     bool look_at(int line, std::string_view content);
-    /// A line that is not an O word line.
+    /// Parses a line without an O word.
     Block parse(int line, Arena &arena);
     void link_owords();
     void check_labels();
@@ -79,11 +79,12 @@ class Program {
     Arena arena_, scratch_;
     Block scratch_block_;
     std::vector<OLine> olines_;
-    std::vector<std::uint32_t> cached_;  ///< by line: index in blocks_, NO_ID: not parsed yet, or NOT_KEPT
+    std::vector<std::uint32_t>
+        cached_;  ///< by line: index in blocks_, or NO_ID (not parsed yet), or NOT_KEPT
     std::deque<Block> blocks_;
     std::unordered_map<NameId, int> subs_, fanuc_;
     std::vector<int> bad_olines_;  ///< in order
-    bool isPercentDelimited_ = false;
+    bool percent_delimited_ = false;
     int first_content_line_ = 0, closing_percent_line_ = 0;
 };
 

@@ -19,7 +19,7 @@ namespace {
 constexpr int WINDOW_LINES = 4096;
 constexpr std::size_t CHUNK_BYTES = 1U << 20U;
 
-/// Without the newline; the first line without a byte order mark.
+/// A line without the newline, and the first line without a byte order mark.
 std::string_view line_content(int number, std::string_view line) {
     while (!line.empty() && (line.back() == '\n' || line.back() == '\r')) {
         line.remove_suffix(1);
@@ -29,7 +29,7 @@ std::string_view line_content(int number, std::string_view line) {
 
 }  // namespace
 
-/// A file on the disk: where every WINDOW_LINES-th line begins, and the two windows used last.
+/// A file on disk: the start of every WINDOW_LINES-th line, and the two windows used last.
 class ProgramText::Reader {
   public:
     Reader(std::string path, int fd, const struct stat &status)
@@ -50,7 +50,7 @@ class ProgramText::Reader {
         chunk_.clear();
         taken_ = read_ = 0;
     }
-    /// The next line with its newline; `begin` is its place.
+    /// The next line with its newline; `begin` is its position.
     bool next(std::string_view &line, std::uint64_t begin, int number) {
         const void *newline = nullptr;
         std::size_t looked = 0;
@@ -103,10 +103,10 @@ class ProgramText::Reader {
     struct Window {
         int number = -1;
         std::string bytes;
-        std::vector<std::size_t> starts;  ///< of each line, and the end
+        std::vector<std::size_t> starts;  ///< start of each line, and the end
     };
 
-    /// Appends to the chunk what comes next; false at the end of the file.
+    /// Appends the next part of the file to the chunk; false at the end of the file.
     bool more() {
         chunk_.erase(0, taken_);
         taken_ = 0;
@@ -144,10 +144,10 @@ class ProgramText::Reader {
         const std::uint64_t end = index + 1 < marks_.size() ? marks_[index + 1] : size();
         w.bytes.resize(end - begin);
         struct stat now{};
-        const bool isSame = ::fstat(fd_, &now) == 0 && now.st_size == status_.st_size &&
-                            now.st_mtim.tv_sec == status_.st_mtim.tv_sec &&
-                            now.st_mtim.tv_nsec == status_.st_mtim.tv_nsec;
-        if (read_at(w.bytes.data(), w.bytes.size(), begin) != w.bytes.size() || !isSame) {
+        const bool same = ::fstat(fd_, &now) == 0 && now.st_size == status_.st_size &&
+                          now.st_mtim.tv_sec == status_.st_mtim.tv_sec &&
+                          now.st_mtim.tv_nsec == status_.st_mtim.tv_nsec;
+        if (read_at(w.bytes.data(), w.bytes.size(), begin) != w.bytes.size() || !same) {
             failure_ =
                 failure_.empty() ? "The file " + path_ + " was changed while it was running" : failure_;
             return false;
@@ -218,7 +218,7 @@ void ProgramText::begin_scan() {
     if (reader_ != nullptr) {
         reader_->begin_scan();
     } else {
-        constexpr std::size_t SHORT_LINE = 16;  // room that is not used costs no memory
+        constexpr std::size_t SHORT_LINE = 16;  // unused capacity uses no memory
         starts_.reserve(text_.size() / SHORT_LINE + 2);
     }
 }

@@ -15,7 +15,7 @@ std::vector<diagnostics::Diagnostic> syntax_errors(Program &program, int after, 
                            {},
                            std::string(program.line_text(line))});
         }
-        if (view.block->isPercent && line > program.first_content_line()) {
+        if (view.block->is_percent && line > program.first_content_line()) {
             break;
         }
     }

@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char *HEAD = "; life of tools: seconds and machine units in cut\n";
 
-/// A number that is not negative; -1 for anything else.
+/// A number that is not negative; -1 for any other text.
 double amount(std::string_view text) {
     const auto value = parse_double(text);
     return value.has_value() && std::isfinite(*value) && *value >= 0 ? *value : -1.0;
@@ -33,9 +33,9 @@ Result<LifeBook> LifeBook::parse(std::string_view text, const std::string &path)
         if (words.empty() || words.front().starts_with(';')) {
             continue;
         }
-        const bool isTool = words.size() == WORDS && words[0].starts_with('T');
-        const double tool = isTool ? amount(std::string_view(words[0]).substr(1)) : -1.0;
-        const CutLife life{isTool ? amount(words[1]) : -1.0, isTool ? amount(words[2]) : -1.0};
+        const bool is_tool = words.size() == WORDS && words[0].starts_with('T');
+        const double tool = is_tool ? amount(std::string_view(words[0]).substr(1)) : -1.0;
+        const CutLife life{is_tool ? amount(words[1]) : -1.0, is_tool ? amount(words[2]) : -1.0};
         if (tool < 0 || tool > MOST || tool != std::floor(tool) || life.time_s < 0 || life.length < 0) {
             return fail("a line of the life of tools is 'T<number> <seconds> <length>'", {path, number, 1});
         }

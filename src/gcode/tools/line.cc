@@ -78,15 +78,15 @@ Result<Word> LineParser::word() {
     return out;
 }
 
-/// "e-3" behind the digits of a number.
+/// True for "e-3" after the digits of a number.
 bool LineParser::isExponent(std::size_t at) const {
-    const bool isMark = text_[at] == 'e' || text_[at] == 'E';
+    const bool is_mark = text_[at] == 'e' || text_[at] == 'E';
     const std::size_t sign = at + 1 < text_.size() && (text_[at + 1] == '-' || text_[at + 1] == '+') ? 1 : 0;
     const std::size_t digit = at + 1 + sign;
-    return isMark && digit < text_.size() && std::isdigit(static_cast<unsigned char>(text_[digit])) != 0;
+    return is_mark && digit < text_.size() && std::isdigit(static_cast<unsigned char>(text_[digit])) != 0;
 }
 
-/// The number that begins there; the place is behind it then.
+/// Reads the number at the position, which moves behind it.
 Result<double> LineParser::number(char letter, std::size_t begin) {
     std::size_t end = begin;
     while (end < text_.size() && (std::isdigit(static_cast<unsigned char>(text_[end])) != 0 ||
@@ -120,7 +120,7 @@ Result<> LineParser::whole(const Word &word, int lowest, int highest, int &out) 
 
 Result<> LineParser::apply(const Word &word) {
     if (seen_.find(word.letter) != std::string::npos) {
-        return error(fmt::format("{} stands twice in this line", word.letter), word.column);
+        return error(fmt::format("{} appears twice in this line", word.letter), word.column);
     }
     seen_ += word.letter;
     switch (word.letter) {
@@ -163,15 +163,15 @@ Result<ToolEntry> LineParser::parse() {
     return entry_;
 }
 
-/// Numbers in the order of the columns, then the remark.
+/// Reads numbers in the order of the columns, then the comment.
 Result<ToolEntry> LineParser::parse(const Columns &columns) {
     std::size_t used = 0;
     for (; used < columns.size(); ++used) {
         while (at_ < text_.size() && isBlank(text_[at_])) {
             ++at_;
         }
-        const bool isRemark = at_ >= text_.size() || text_[at_] == ';';
-        if (isRemark) {
+        const bool is_remark = at_ >= text_.size() || text_[at_] == ';';
+        if (is_remark) {
             break;
         }
         Word word;
@@ -239,9 +239,9 @@ std::optional<Columns> columns_of_header(std::string_view line) {
         }
         columns.push_back(known->letter);
     }
-    const bool hasBoth =
+    const bool has_both =
         std::ranges::find(columns, 'P') != columns.end() && std::ranges::find(columns, 'T') != columns.end();
-    return hasBoth ? std::optional(columns) : std::nullopt;
+    return has_both ? std::optional(columns) : std::nullopt;
 }
 
 Result<ToolEntry> parse_line(std::string_view line, const SourcePlace &place) {

@@ -17,7 +17,7 @@ namespace {
 
 constexpr int NOBODY = -1;
 
-/// The first index of each number.
+/// The first index of each tool number.
 using FirstIndices = std::unordered_map<int, std::size_t>;
 
 /// The lines of a text without their ends.
@@ -34,7 +34,7 @@ std::vector<std::string> lines_of(std::string_view text) {
     return lines;
 }
 
-/// True when both do the same to a machine.
+/// True when both have the same effect on a machine.
 bool isSameTool(const ToolEntry &a, const ToolEntry &b) {
     return a.offset == b.offset && a.diameter == b.diameter && a.frontangle == b.frontangle &&
            a.backangle == b.backangle && a.orientation == b.orientation;
@@ -53,14 +53,14 @@ std::span<const diagnostics::Diagnostic> first_of(const diagnostics::Sink &sink)
 
 }  // namespace
 
-/// A text on its way into a table.
+/// A text while it is read into a table.
 struct Table::Reading {
     std::string path;
     std::vector<ReadTool> tools{};
-    diagnostics::Sink skipped{};  ///< lines that cannot be used
-    diagnostics::Sink doubts{};   ///< what looks wrong
+    diagnostics::Sink skipped{};  ///< lines that are not usable
+    diagnostics::Sink doubts{};   ///< lines that are doubtful
     Columns columns = columns_of_mills();
-    bool isOldFormTold = false;
+    bool old_form_reported = false;
 
     SourcePlace place_of(const ReadTool &tool) const { return {path, static_cast<int>(tool.line) + 1, 1}; }
     int line_of(const ReadTool &tool) const { return static_cast<int>(tool.line) + 1; }
@@ -90,13 +90,13 @@ void Table::take_tool(const Result<ToolEntry> &made, Reading &reading) {
         return;
     }
     ReadTool tool{*made, lines_.size() - 1};
-    const bool hasPocket = tool.entry.pocketno != NO_POCKET;
-    if (!hasPocket && isRandom()) {
+    const bool has_pocket = tool.entry.pocketno != NO_POCKET;
+    if (!has_pocket && isRandom()) {
         reading.skipped.warning(fmt::format("tool {} has no P word (its pocket)", tool.entry.toolno), place,
                                 "a random changer must know where each tool is");
         return;
     }
-    if (!hasPocket) {
+    if (!has_pocket) {
         reading.doubts.warning(fmt::format("tool {} has no P word (its pocket)", tool.entry.toolno), place);
         tool.entry.pocketno = 0;
     }
@@ -118,14 +118,14 @@ void Table::take_text(std::string_view text, Reading &reading) {
         }
         const SourcePlace place{reading.path, static_cast<int>(lines_.size()), 0};
         const auto header = columns_of_header(content);
-        line.isOldForm = header.has_value() || isInColumns(content);
-        if (line.isOldForm && !std::exchange(reading.isOldFormTold, true)) {
+        line.is_old_form = header.has_value() || isInColumns(content);
+        if (line.is_old_form && !std::exchange(reading.old_form_reported, true)) {
             reading.doubts.note(
                 "a table of the older form: it is written in today's form once a tool changes", place);
         }
         if (header.has_value()) {
             reading.columns = *header;
-        } else if (line.isOldForm) {
+        } else if (line.is_old_form) {
             take_tool(parse_columns(content, reading.columns, place), reading);
         } else {
             take_tool(parse_line(content, place), reading);
@@ -133,7 +133,7 @@ void Table::take_text(std::string_view text, Reading &reading) {
     }
 }
 
-/// A tool that is in the table twice; two in one pocket of a random changer.
+/// Rejects a tool that occurs twice, and two tools in one pocket of a random changer.
 void Table::refuse_twice(Reading &reading) const {
     FirstIndices of_tool, of_pocket;
     for (std::size_t i = 0; i < reading.tools.size(); ++i) {
@@ -146,10 +146,10 @@ void Table::refuse_twice(Reading &reading) const {
             continue;
         }
         const ToolEntry &same = reading.tools[first].entry;
-        const bool isTool = same.toolno == tool.toolno;
-        reading.skipped.warning(isTool ? fmt::format("tool {} is in the table twice", tool.toolno)
-                                       : fmt::format("tools {} and {} are in one pocket, P{}", same.toolno,
-                                                     tool.toolno, tool.pocketno),
+        const bool is_tool = same.toolno == tool.toolno;
+        reading.skipped.warning(is_tool ? fmt::format("tool {} is in the table twice", tool.toolno)
+                                        : fmt::format("tools {} and {} are in one pocket, P{}", same.toolno,
+                                                      tool.toolno, tool.pocketno),
                                 reading.place_of(reading.tools[i]));
     }
 }
@@ -190,17 +190,17 @@ Table Table::parse_leniently(std::string_view text, const std::string &path, dia
     return table;
 }
 
-/// Warns of what looks wrong, and marks what must not be used.
+/// Warns of doubtful lines, and marks lines that must not be used.
 void Table::check(Reading &reading) const {
     for (const ReadTool &read : reading.tools) {
         const ToolEntry &tool = read.entry;
         const SourcePlace place = reading.place_of(read);
         if (tool.toolno == 0 && !isRandom()) {
-            reading.doubts.warning("T0 stands for an empty spindle: a program cannot load this tool", place);
+            reading.doubts.warning("T0 means an empty spindle: a program cannot load this tool", place);
         }
         if (tool.pocketno == 0 && !isRandom()) {
             reading.doubts.warning(
-                fmt::format("tool {}: P0 stands for the spindle, not for a pocket", tool.toolno), place);
+                fmt::format("tool {}: P0 means the spindle, not for a pocket", tool.toolno), place);
         }
         if (tool.diameter < 0.0) {
             reading.doubts.warning(fmt::format("tool {}: a diameter of {} is negative: compensation with "
@@ -213,7 +213,7 @@ void Table::check(Reading &reading) const {
     check_numbers(reading);
 }
 
-/// A tool in several lines.
+/// Checks for tools with several lines.
 void Table::check_numbers(Reading &reading) {
     FirstIndices of_tool;
     for (std::size_t i = 0; i < reading.tools.size(); ++i) {
@@ -227,19 +227,19 @@ void Table::check_numbers(Reading &reading) {
             continue;
         }
         ReadTool &earlier = reading.tools[first];
-        const bool isSame = isSameTool(earlier.entry, tool.entry);
+        const bool is_same = isSameTool(earlier.entry, tool.entry);
         reading.doubts.warning(
             fmt::format("tool {} stands in lines {} and {}{}", number, reading.line_of(earlier),
                         reading.line_of(tool),
-                        isSame ? ": the first one counts"
-                               : " with different figures: it cannot be used until one of them goes"),
+                        is_same ? ": the first one counts"
+                                : " with different figures: it cannot be used until one of them goes"),
             reading.place_of(tool));
-        tool.isUsable = false;
-        earlier.isUsable = earlier.isUsable && isSame;
+        tool.usable = false;
+        earlier.usable = earlier.usable && is_same;
     }
 }
 
-/// Different tools in one pocket: each is compared with the first other tool there.
+/// Checks for several tools in one pocket: compares each with the first other tool there.
 void Table::check_pockets(Reading &reading) const {
     struct Pocket {
         std::size_t first;                  ///< index of its first tool
@@ -252,11 +252,11 @@ void Table::check_pockets(Reading &reading) const {
             continue;
         }
         Pocket &pocket = pockets.try_emplace(tool.entry.pocketno, Pocket{later, {}}).first->second;
-        const bool isOther = reading.tools[pocket.first].entry.toolno != tool.entry.toolno;
-        if (!isOther && !pocket.second.has_value()) {
+        const bool other = reading.tools[pocket.first].entry.toolno != tool.entry.toolno;
+        if (!other && !pocket.second.has_value()) {
             continue;
         }
-        ReadTool &earlier = reading.tools[isOther ? pocket.first : *pocket.second];
+        ReadTool &earlier = reading.tools[other ? pocket.first : *pocket.second];
         pocket.second = pocket.second.value_or(later);
         reading.doubts.warning(fmt::format("tools {} (line {}) and {} are in one pocket, P{}{}",
                                            earlier.entry.toolno, reading.line_of(earlier), tool.entry.toolno,
@@ -264,27 +264,27 @@ void Table::check_pockets(Reading &reading) const {
                                            isRandom() ? ": neither can be used until one of them goes" : ""),
                                reading.place_of(tool));
         if (isRandom()) {
-            earlier.isUsable = tool.isUsable = false;
+            earlier.usable = tool.usable = false;
         }
     }
 }
 
-/// Usable tools come to their places; the lines of the others stay text.
+/// Moves usable tools to their indices; other lines remain text.
 void Table::place(const Reading &reading) {
     for (const ReadTool &tool : reading.tools) {
-        if (tool.isUsable) {
+        if (tool.usable) {
             lines_[tool.line].entry = isRandom() ? tool.entry.pocketno : count();
         } else {
             lines_[tool.line].unused = {tool.entry.toolno, tool.entry.pocketno};
         }
-        if (isRandom() && tool.isUsable) {
+        if (isRandom() && tool.usable) {
             for (int pocket = count(); pocket <= tool.entry.pocketno; ++pocket) {
                 entries_.push_back(empty_pocket(pocket));
             }
             entries_[static_cast<std::size_t>(tool.entry.pocketno)] = tool.entry;
         } else if (!isRandom()) {
             entries_.push_back(tool.entry);
-            entries_.back().toolno = tool.isUsable ? tool.entry.toolno : NOBODY;
+            entries_.back().toolno = tool.usable ? tool.entry.toolno : NOBODY;
         }
     }
 }
@@ -312,13 +312,13 @@ void Table::set_entry(int index, const ToolEntry &entry) {
     ToolEntry &mine = entries_[static_cast<std::size_t>(index)];
     const int toolno = mine.toolno, pocketno = mine.pocketno;
     mine = entry;
-    const bool isCopy = index == 0 && !isRandom();
-    if (!isCopy) {
+    const bool is_copy = index == 0 && !isRandom();
+    if (!is_copy) {
         mine.toolno = toolno;
         mine.pocketno = pocketno;
     }
     for (Line &line : lines_) {
-        line.isChanged = line.isChanged || line.entry == index;
+        line.changed = line.changed || line.entry == index;
     }
 }
 
@@ -361,8 +361,8 @@ Result<int> Table::put(ToolEntry entry) {
             "correct them in its file, and read it again");
     }
     if (entry.pocketno == 0) {
-        const bool isOwnFree = entry.toolno <= MAX_POCKET && owner_of(entry.toolno) == NOBODY;
-        int pocket = isOwnFree ? entry.toolno : 1;
+        const bool own_free = entry.toolno <= MAX_POCKET && owner_of(entry.toolno) == NOBODY;
+        int pocket = own_free ? entry.toolno : 1;
         while (pocket <= MAX_POCKET && owner_of(pocket) != NOBODY) {
             ++pocket;
         }
@@ -381,8 +381,8 @@ Result<int> Table::put(ToolEntry entry) {
 
 Result<> Table::remove(int index) {
     const int lowest = isRandom() ? 0 : 1;
-    const bool isThere = index >= lowest && index < count() && entry(index).toolno >= lowest;
-    if (!isThere) {
+    const bool present = index >= lowest && index < count() && entry(index).toolno >= lowest;
+    if (!present) {
         return fail(fmt::format("the tool table has no entry {}", index));
     }
     const int toolno = entry(index).toolno;
@@ -397,15 +397,15 @@ Result<> Table::remove(int index) {
 }
 
 void Table::load_spindle(int index) {
-    const bool isThere = index > 0 && index < count();
+    const bool present = index > 0 && index < count();
     if (!isRandom()) {
-        entries_[0] = isThere ? entry(index) : entries_[0];
-        if (!isThere) {
+        entries_[0] = present ? entry(index) : entries_[0];
+        if (!present) {
             clear_spindle();
         }
         return;
     }
-    if (!isThere) {
+    if (!present) {
         return;
     }
     ToolEntry &pocket = entries_[static_cast<std::size_t>(index)];
@@ -415,20 +415,20 @@ void Table::load_spindle(int index) {
     for (Line &line : lines_) {
         if (line.entry == 0 || line.entry == index) {
             line.entry = line.entry == 0 ? index : 0;
-            line.isChanged = true;
+            line.changed = true;
         }
     }
 }
 
 std::string Table::text() const {
-    const bool isNew = std::ranges::any_of(lines_, [](const Line &line) { return line.isChanged; });
+    const bool is_new = std::ranges::any_of(lines_, [](const Line &line) { return line.changed; });
     std::string out;
     for (const Line &line : lines_) {
-        const bool isTool = line.entry != NO_TOOL;
-        if (isTool && (line.isChanged || (isNew && line.isOldForm))) {
+        const bool is_tool = line.entry != NO_TOOL;
+        if (is_tool && (line.changed || (is_new && line.is_old_form))) {
             out += format_entry(entry(line.entry));
         } else {
-            out += (isNew && line.isOldForm ? "; " : "") + line.text;
+            out += (is_new && line.is_old_form ? "; " : "") + line.text;
         }
         out += '\n';
     }

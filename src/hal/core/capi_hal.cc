@@ -15,7 +15,7 @@ runtime::Log &current_log() noexcept {
     if (hal != nullptr) {
         return hal->log();
     }
-    // For messages before an instance is joined; never destroyed, since threads may print while the process
+    // For messages before an instance is joined; never destroyed, because threads may print while the process
     // ends.
     static auto *process_log = new runtime::Log;
     return *process_log;
@@ -37,7 +37,7 @@ int status_of(const Result<> &result) noexcept {
 
 namespace {
 
-/// The instance that a program without one of its own joined by hal_init.
+/// The instance that hal_init has joined for a program without its own instance.
 struct ProcessAttachment {
     std::mutex mutex;
     std::unique_ptr<Hal> hal;
@@ -50,7 +50,7 @@ ProcessAttachment &attachment() {
     return *the_attachment;
 }
 
-/// The current instance; joins that of the environment if the process has none. Each call needs its leave().
+/// The current instance; joins the one of the environment if the process has none. Each call needs a leave().
 Hal *joined() {
     ProcessAttachment &here = attachment();
     const std::lock_guard lock(here.mutex);
@@ -74,9 +74,9 @@ Hal *joined() {
 void leave(const Hal *hal) {
     ProcessAttachment &here = attachment();
     const std::lock_guard lock(here.mutex);
-    const bool isUser = here.hal.get() == hal && here.users > 0;
-    here.users -= isUser ? 1 : 0;
-    if (isUser && here.users == 0) {
+    const bool is_user = here.hal.get() == hal && here.users > 0;
+    here.users -= is_user ? 1 : 0;
+    if (is_user && here.users == 0) {
         here.hal.reset();
     }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// rtapi_io.h, rtapi_parport.h, and what rtapi.h says of hardware and of root's rights.
+// rtapi_io.h, rtapi_parport.h, and the functions of rtapi.h for hardware and root rights.
 #include <fcntl.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -34,16 +34,16 @@ struct Region {
     std::array<char, 32> owner{};
 };
 
-/// The ports of this process. Permissions belong to threads, so each thread takes them over before its first
+/// I/O ports of this process. Permissions belong to threads, so each thread updates its own before its first
 /// access after a change.
 struct PortMap {
     std::mutex mutex;
     std::array<Region, REGIONS> regions{};
-    // A bit per port that may be touched. Relaxed: `epoch` orders it.
+    // A bit per permitted port. Relaxed: `epoch` orders it.
     std::array<std::atomic<std::uint64_t>, PORTS / 64> allowed{};
-    // Released after a change of `allowed`; acquired by threads that look whether theirs is old.
+    // Released after a change of `allowed`; acquired by threads that compare it with theirs.
     std::atomic<std::uint32_t> epoch{1};
-    std::atomic<bool> hasComplained{false};
+    std::atomic<bool> complained{false};
 
     bool isAllowed(unsigned long port) const noexcept {
         return port < PORTS &&
@@ -56,19 +56,19 @@ PortMap &port_map() {
     return *the_map;
 }
 
-int allow_here(unsigned long from, unsigned long count, bool isOn) noexcept {
+int allow_here(unsigned long from, unsigned long count, bool on) noexcept {
 #if MW_HAS_PORTS
-    return ::ioperm(from, count, isOn ? 1 : 0);
+    return ::ioperm(from, count, on ? 1 : 0);
 #else
     (void)from;
     (void)count;
-    (void)isOn;
+    (void)on;
     errno = ENOSYS;
     return -1;
 #endif
 }
 
-/// Gives this thread the permissions of the process; at most once for each change.
+/// Gives this thread the permissions of the process; at most once per change.
 void take_permissions() noexcept {
     thread_local std::uint32_t seen = 0;
     PortMap &map = port_map();
@@ -87,12 +87,13 @@ void take_permissions() noexcept {
     }
 }
 
-/// Under the virtual clock the computer's ports are not touched: another process may drive a machine by them.
+/// Under the virtual clock the computer's ports are not accessed: another process may control a machine
+/// through them.
 bool isVirtual() noexcept {
     return mw_ext_is_virtual() != 0;
 }
 
-/// True when the access of `bytes` from `port` on is allowed; the first refusal is logged.
+/// True when access to `bytes` from `port` on is permitted; logs the first violation.
 bool isAccessible(unsigned long port, unsigned long bytes) noexcept {
     if (isVirtual()) {
         return false;
@@ -100,7 +101,7 @@ bool isAccessible(unsigned long port, unsigned long bytes) noexcept {
     PortMap &map = port_map();
     for (unsigned long i = 0; i < bytes; ++i) {
         if (!map.isAllowed(port + i)) {
-            if (!map.hasComplained.exchange(true, std::memory_order_relaxed)) {
+            if (!map.complained.exchange(true, std::memory_order_relaxed)) {
                 rtapi_print_msg(RTAPI_MSG_ERR,
                                 "I/O port 0x%lx is not claimed: reads give all ones, writes nothing\n",
                                 port + i);
@@ -112,25 +113,25 @@ bool isAccessible(unsigned long port, unsigned long bytes) noexcept {
     return true;
 }
 
-/// Says what was refused and why; the negated errno.
+/// Logs the rejected range and the reason; returns the negated errno.
 int refuse_ports(unsigned long from, unsigned long count, int code) {
     return complain(
-        code, fmt::format("I/O ports 0x{:x} to 0x{:x} are refused: {}{}", from, from + count - 1,
+        code, fmt::format("I/O ports 0x{:x} to 0x{:x} are rejected: {}{}", from, from + count - 1,
                           std::strerror(code),
                           code == EPERM ? "; the realtime process needs the capability CAP_SYS_RAWIO" : ""));
 }
 
-/// Root's rights for the calling thread while it lives, if the process may take them.
+/// Gives the calling thread root rights during its lifetime, if the process may have them.
 class AsRoot {
   public:
     AsRoot() noexcept {
         uid_t real = 0;
         uid_t saved = 0;
         ::getresuid(&real, &before_, &saved);
-        isRaised_ = before_ != 0 && saved == 0 && ::syscall(SYS_setresuid, -1, 0, -1) == 0;
+        raised_ = before_ != 0 && saved == 0 && ::syscall(SYS_setresuid, -1, 0, -1) == 0;
     }
     ~AsRoot() {
-        if (isRaised_) {
+        if (raised_) {
             const int kept = errno;
             (void)::syscall(SYS_setresuid, -1, before_, -1);
             errno = kept;
@@ -141,7 +142,7 @@ class AsRoot {
 
   private:
     uid_t before_ = 0;
-    bool isRaised_ = false;
+    bool raised_ = false;
 };
 
 int no_interrupts() {
@@ -241,7 +242,7 @@ void *rtapi_request_region(unsigned long base, unsigned long size, const char *n
     }
     if (vacant == nullptr || size == 0) {
         const int code = size == 0 ? EINVAL : ENOSPC;
-        complain(code, "no room for a region of I/O ports");
+        complain(code, "no memory for a region of I/O ports");
         errno = code;
         return nullptr;
     }
@@ -280,11 +281,11 @@ int rtapi_parport_get(const char *mod_name, rtapi_parport_t *port, unsigned shor
         const std::string file = fmt::format("/proc/sys/dev/parport/parport{}/base-addr", base);
         std::FILE *stream = std::fopen(file.c_str(), "re");
         unsigned found_hi = 0;
-        const bool isFound = stream != nullptr && std::fscanf(stream, "%u %u", &address, &found_hi) >= 1;
+        const bool found = stream != nullptr && std::fscanf(stream, "%u %u", &address, &found_hi) >= 1;
         if (stream != nullptr) {
             std::fclose(stream);
         }
-        if (!isFound || address == 0) {
+        if (!found || address == 0) {
             return complain(ENODEV,
                             fmt::format("Linux knows no parallel port {}: {} is not there", base, file));
         }
@@ -300,7 +301,7 @@ int rtapi_parport_get(const char *mod_name, rtapi_parport_t *port, unsigned shor
         return -errno;
     }
     if (address_hi == 0 && base_hi == 0) {
-        address_hi = address + 0x400;  // where ECP registers usually are
+        address_hi = address + 0x400;  // usual address of the ECP registers
     }
     if (address_hi != 0) {
         port->region_hi = rtapi_request_region(address_hi, 3, mod_name);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// kinematics.h: what modules with a coordinates= text share.
+// kinematics.h: shared functions of modules with a coordinates= text.
 #include <array>
 #include <cstring>
 
@@ -12,7 +12,7 @@ constexpr int AXES = 9;
 constexpr int JOINTS = 16;
 constexpr const char *LETTERS = "XYZABCUVW";
 
-/// The mapping made last. The C interface has one for all; modules are set up one after the other.
+/// The last mapping. The C interface has one for all modules, which are set up one after the other.
 struct Mapping {
     std::array<int, JOINTS> axis{};
     bool isMade = false;
@@ -38,7 +38,7 @@ int map_coordinates_to_jnumbers(const char *coordinates, const int max_joints, c
     const char *text = coordinates == nullptr || *coordinates == '\0' ? LETTERS : coordinates;
     Mapping found;
     found.axis.fill(-1);
-    std::array<bool, AXES> isUsed{};
+    std::array<bool, AXES> used{};
     int joint = 0;
     for (; *text != '\0'; ++text) {
         if (*text == ' ' || *text == '\t') {
@@ -51,8 +51,8 @@ int map_coordinates_to_jnumbers(const char *coordinates, const int max_joints, c
             return -1;
         }
         const int axis = static_cast<int>(place - LETTERS);
-        if (isUsed[static_cast<std::size_t>(axis)] && allow_duplicates == 0) {
-            mw::hal::detail::complain(EINVAL, fmt::format("coordinates: {} stands there twice", letter));
+        if (used[static_cast<std::size_t>(axis)] && allow_duplicates == 0) {
+            mw::hal::detail::complain(EINVAL, fmt::format("coordinates: {} appears twice", letter));
             return -1;
         }
         if (joint >= max_joints || joint >= JOINTS) {
@@ -60,7 +60,7 @@ int map_coordinates_to_jnumbers(const char *coordinates, const int max_joints, c
                 EINVAL, fmt::format("coordinates: more letters than the {} joints", max_joints));
             return -1;
         }
-        isUsed[static_cast<std::size_t>(axis)] = true;
+        used[static_cast<std::size_t>(axis)] = true;
         found.axis[static_cast<std::size_t>(joint++)] = axis;
     }
     for (int i = 0; axis_idx_for_jno != nullptr && i < max_joints; ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// rtapi_pci.h, rtapi_device.h, rtapi_firmware.h over the files that Linux shows.
+// rtapi_pci.h, rtapi_device.h, rtapi_firmware.h, implemented with files of Linux.
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
@@ -30,7 +30,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// $MILLWRIGHT_SYSFS stands in for /sys in tests.
+/// $MILLWRIGHT_SYSFS replaces /sys in tests.
 std::string pci_folder() {
     const char *root = std::getenv("MILLWRIGHT_SYSFS");
     return fmt::format("{}/bus/pci/devices", root == nullptr ? "/sys" : root);
@@ -80,11 +80,11 @@ bool isEqual(rtapi_u32 wanted, rtapi_u32 there) {
 
 const rtapi_pci_device_id *find_entry(const rtapi_pci_device_id *table, const rtapi_pci_dev &card) {
     for (; table->vendor != 0 || table->device != 0 || table->subvendor != 0; ++table) {
-        // Zeros in the second half of a short entry ask for nothing.
-        const bool isAnySub = table->subvendor == 0 && table->subdevice == 0;
-        const bool isSub = isAnySub || (isEqual(table->subvendor, card.subsystem_vendor) &&
+        // Zeros in the second half of a short entry match anything.
+        const bool any_sub = table->subvendor == 0 && table->subdevice == 0;
+        const bool is_sub = any_sub || (isEqual(table->subvendor, card.subsystem_vendor) &&
                                         isEqual(table->subdevice, card.subsystem_device));
-        if (isEqual(table->vendor, card.vendor) && isEqual(table->device, card.device) && isSub) {
+        if (isEqual(table->vendor, card.vendor) && isEqual(table->device, card.device) && is_sub) {
             return table;
         }
     }
@@ -110,7 +110,7 @@ void free_card(rtapi_pci_dev *card) {
     std::free(card);
 }
 
-/// Cards that drivers have taken, for rtapi_iounmap, which knows an address only.
+/// Cards claimed by drivers, for rtapi_iounmap, which only receives an address.
 struct Taken {
     std::mutex mutex;
     std::vector<rtapi_pci_dev *> cards;
@@ -124,14 +124,14 @@ Taken &taken() {
 int write_enable(const rtapi_pci_dev &card, char value) {
     const std::string path = file_of(card, "enable");
     const int file = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
-    const bool isDone = file >= 0 && ::write(file, &value, 1) == 1;
-    const int code = isDone ? 0 : errno;
+    const bool done = file >= 0 && ::write(file, &value, 1) == 1;
+    const int code = done ? 0 : errno;
     if (file >= 0) {
         ::close(file);
     }
-    return isDone ? 0
-                  : complain(code, fmt::format("PCI card {}: cannot write {}: {}", card.dev_name, path,
-                                               std::strerror(code)));
+    return done ? 0
+                : complain(code, fmt::format("PCI card {}: cannot write {}: {}", card.dev_name, path,
+                                             std::strerror(code)));
 }
 
 }  // namespace
@@ -147,7 +147,7 @@ int rtapi_pci_register_driver(struct rtapi_pci_driver *driver) {
         return complain(EINVAL, "a PCI driver needs a table of ids and a probe function");
     }
     driver->devices = nullptr;
-    // Another process may drive a machine by the cards of this computer.
+    // Another process may control a machine through the cards of this computer.
     if (mw_ext_is_virtual() != 0 && std::getenv("MILLWRIGHT_SYSFS") == nullptr) {
         rtapi_print_msg(RTAPI_MSG_ERR, "%s: PCI cards are not used under the virtual clock\n",
                         driver->name == nullptr ? "PCI driver" : driver->name);

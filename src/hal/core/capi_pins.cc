@@ -13,15 +13,15 @@ Type type_of(hal_type_t type) {
     return static_cast<Type>(type);
 }
 
-/// A name formatted like printf; empty (and said so) when it is too long.
+/// A name formatted as by printf; empty, and reported, when it is too long.
 struct FormattedName {
     char text[NAME_LENGTH + 1];
-    bool isGood;
+    bool good;
 
     FormattedName(const char *format, std::va_list args) {
         const int length = runtime::format_text(text, sizeof text, format, args);
-        isGood = length > 0 && length <= static_cast<int>(NAME_LENGTH);
-        if (!isGood) {
+        good = length > 0 && length <= static_cast<int>(NAME_LENGTH);
+        if (!good) {
             complain(EINVAL, fmt::format("HAL name '{}...' has {} characters, 1 to {} are allowed", text,
                                          length, NAME_LENGTH));
         }
@@ -49,7 +49,7 @@ int set_param(const char *name, const Value &value) {
     });
 }
 
-/// For LinuxCNCs of the newer interface: a pin's slot, or a parameter with memory of its own.
+/// For the newer interface of LinuxCNC: a pin's slot, or a parameter with its own memory.
 int new_reference(int comp_id, hal_pdir_t dir, void **ref, const Value &start, const char *name) {
     return with_hal([&](Hal &hal) {
         if (hal_pdir_is_pin(dir) == 0) {
@@ -107,7 +107,7 @@ int hal_pin_bit_newf(hal_pin_dir_t dir, hal_bit_t **data_ptr_addr, int comp_id, 
     va_start(args, fmt);
     const FormattedName name(fmt, args);
     va_end(args);
-    return name.isGood ? new_pin(name.text, HAL_BIT, dir, slot_of(data_ptr_addr), comp_id) : -EINVAL;
+    return name.good ? new_pin(name.text, HAL_BIT, dir, slot_of(data_ptr_addr), comp_id) : -EINVAL;
 }
 
 int hal_pin_float_new(const char *name, hal_pin_dir_t dir, hal_float_t **data_ptr_addr, int comp_id) {
@@ -119,7 +119,7 @@ int hal_pin_float_newf(hal_pin_dir_t dir, hal_float_t **data_ptr_addr, int comp_
     va_start(args, fmt);
     const FormattedName name(fmt, args);
     va_end(args);
-    return name.isGood ? new_pin(name.text, HAL_FLOAT, dir, slot_of(data_ptr_addr), comp_id) : -EINVAL;
+    return name.good ? new_pin(name.text, HAL_FLOAT, dir, slot_of(data_ptr_addr), comp_id) : -EINVAL;
 }
 
 int hal_pin_u32_new(const char *name, hal_pin_dir_t dir, hal_u32_t **data_ptr_addr, int comp_id) {
@@ -131,7 +131,7 @@ int hal_pin_u32_newf(hal_pin_dir_t dir, hal_u32_t **data_ptr_addr, int comp_id, 
     va_start(args, fmt);
     const FormattedName name(fmt, args);
     va_end(args);
-    return name.isGood ? new_pin(name.text, HAL_U32, dir, slot_of(data_ptr_addr), comp_id) : -EINVAL;
+    return name.good ? new_pin(name.text, HAL_U32, dir, slot_of(data_ptr_addr), comp_id) : -EINVAL;
 }
 
 int hal_pin_s32_new(const char *name, hal_pin_dir_t dir, hal_s32_t **data_ptr_addr, int comp_id) {
@@ -143,7 +143,7 @@ int hal_pin_s32_newf(hal_pin_dir_t dir, hal_s32_t **data_ptr_addr, int comp_id, 
     va_start(args, fmt);
     const FormattedName name(fmt, args);
     va_end(args);
-    return name.isGood ? new_pin(name.text, HAL_S32, dir, slot_of(data_ptr_addr), comp_id) : -EINVAL;
+    return name.good ? new_pin(name.text, HAL_S32, dir, slot_of(data_ptr_addr), comp_id) : -EINVAL;
 }
 
 int hal_pin_u64_new(const char *name, hal_pin_dir_t dir, hal_u64_t **data_ptr_addr, int comp_id) {
@@ -155,7 +155,7 @@ int hal_pin_u64_newf(hal_pin_dir_t dir, hal_u64_t **data_ptr_addr, int comp_id, 
     va_start(args, fmt);
     const FormattedName name(fmt, args);
     va_end(args);
-    return name.isGood ? new_pin(name.text, HAL_U64, dir, slot_of(data_ptr_addr), comp_id) : -EINVAL;
+    return name.good ? new_pin(name.text, HAL_U64, dir, slot_of(data_ptr_addr), comp_id) : -EINVAL;
 }
 
 int hal_pin_s64_new(const char *name, hal_pin_dir_t dir, hal_s64_t **data_ptr_addr, int comp_id) {
@@ -167,7 +167,7 @@ int hal_pin_s64_newf(hal_pin_dir_t dir, hal_s64_t **data_ptr_addr, int comp_id, 
     va_start(args, fmt);
     const FormattedName name(fmt, args);
     va_end(args);
-    return name.isGood ? new_pin(name.text, HAL_S64, dir, slot_of(data_ptr_addr), comp_id) : -EINVAL;
+    return name.good ? new_pin(name.text, HAL_S64, dir, slot_of(data_ptr_addr), comp_id) : -EINVAL;
 }
 
 int hal_pin_port_new(const char *name, hal_pin_dir_t dir, hal_port_t **data_ptr_addr, int comp_id) {
@@ -179,7 +179,7 @@ int hal_pin_port_newf(hal_pin_dir_t dir, hal_port_t **data_ptr_addr, int comp_id
     va_start(args, fmt);
     const FormattedName name(fmt, args);
     va_end(args);
-    return name.isGood ? new_pin(name.text, HAL_PORT, dir, slot_of(data_ptr_addr), comp_id) : -EINVAL;
+    return name.good ? new_pin(name.text, HAL_PORT, dir, slot_of(data_ptr_addr), comp_id) : -EINVAL;
 }
 
 int hal_param_bit_new(const char *name, hal_param_dir_t dir, hal_bit_t *data_addr, int comp_id) {
@@ -191,7 +191,7 @@ int hal_param_bit_newf(hal_param_dir_t dir, hal_bit_t *data_addr, int comp_id, c
     va_start(args, fmt);
     const FormattedName name(fmt, args);
     va_end(args);
-    return name.isGood ? new_param(name.text, HAL_BIT, dir, data_addr, comp_id) : -EINVAL;
+    return name.good ? new_param(name.text, HAL_BIT, dir, data_addr, comp_id) : -EINVAL;
 }
 
 int hal_param_bit_set(const char *name, int value) {
@@ -207,7 +207,7 @@ int hal_param_float_newf(hal_param_dir_t dir, hal_float_t *data_addr, int comp_i
     va_start(args, fmt);
     const FormattedName name(fmt, args);
     va_end(args);
-    return name.isGood ? new_param(name.text, HAL_FLOAT, dir, data_addr, comp_id) : -EINVAL;
+    return name.good ? new_param(name.text, HAL_FLOAT, dir, data_addr, comp_id) : -EINVAL;
 }
 
 int hal_param_float_set(const char *name, double value) {
@@ -223,7 +223,7 @@ int hal_param_u32_newf(hal_param_dir_t dir, hal_u32_t *data_addr, int comp_id, c
     va_start(args, fmt);
     const FormattedName name(fmt, args);
     va_end(args);
-    return name.isGood ? new_param(name.text, HAL_U32, dir, data_addr, comp_id) : -EINVAL;
+    return name.good ? new_param(name.text, HAL_U32, dir, data_addr, comp_id) : -EINVAL;
 }
 
 int hal_param_u32_set(const char *name, unsigned long value) {
@@ -239,7 +239,7 @@ int hal_param_s32_newf(hal_param_dir_t dir, hal_s32_t *data_addr, int comp_id, c
     va_start(args, fmt);
     const FormattedName name(fmt, args);
     va_end(args);
-    return name.isGood ? new_param(name.text, HAL_S32, dir, data_addr, comp_id) : -EINVAL;
+    return name.good ? new_param(name.text, HAL_S32, dir, data_addr, comp_id) : -EINVAL;
 }
 
 int hal_param_s32_set(const char *name, signed long value) {
@@ -255,7 +255,7 @@ int hal_param_u64_newf(hal_param_dir_t dir, hal_u64_t *data_addr, int comp_id, c
     va_start(args, fmt);
     const FormattedName name(fmt, args);
     va_end(args);
-    return name.isGood ? new_param(name.text, HAL_U64, dir, data_addr, comp_id) : -EINVAL;
+    return name.good ? new_param(name.text, HAL_U64, dir, data_addr, comp_id) : -EINVAL;
 }
 
 int hal_param_u64_set(const char *name, unsigned long value) {
@@ -271,7 +271,7 @@ int hal_param_s64_newf(hal_param_dir_t dir, hal_s64_t *data_addr, int comp_id, c
     va_start(args, fmt);
     const FormattedName name(fmt, args);
     va_end(args);
-    return name.isGood ? new_param(name.text, HAL_S64, dir, data_addr, comp_id) : -EINVAL;
+    return name.good ? new_param(name.text, HAL_S64, dir, data_addr, comp_id) : -EINVAL;
 }
 
 int hal_param_s64_set(const char *name, signed long value) {
@@ -283,7 +283,7 @@ int hal_pin_new_port(int compid, hal_pin_dir_t dir, hal_sint_t *ref, const char 
     va_start(args, fmt);
     const FormattedName name(fmt, args);
     va_end(args);
-    return name.isGood && hal_pdir_is_pin(dir) != 0
+    return name.good && hal_pdir_is_pin(dir) != 0
                ? new_pin(name.text, HAL_PORT, dir, reinterpret_cast<void **>(ref), compid)
                : -EINVAL;
 }
@@ -303,8 +303,8 @@ int hal_pin_new_bool(int compid, hal_pdir_t dir, hal_bool_t *ref, rtapi_bool def
     va_start(args, fmt);
     const FormattedName name(fmt, args);
     va_end(args);
-    const bool isFitting = hal_pdir_is_pin(dir) != 0;
-    return name.isGood && isFitting
+    const bool fitting = hal_pdir_is_pin(dir) != 0;
+    return name.good && fitting
                ? new_reference(compid, dir, reinterpret_cast<void **>(ref), Value::of_bit(def), name.text)
                : -EINVAL;
 }
@@ -314,8 +314,8 @@ int hal_param_new_bool(int compid, hal_pdir_t dir, hal_bool_t *ref, rtapi_bool d
     va_start(args, fmt);
     const FormattedName name(fmt, args);
     va_end(args);
-    const bool isFitting = hal_pdir_is_param(dir) != 0;
-    return name.isGood && isFitting
+    const bool fitting = hal_pdir_is_param(dir) != 0;
+    return name.good && fitting
                ? new_reference(compid, dir, reinterpret_cast<void **>(ref), Value::of_bit(def), name.text)
                : -EINVAL;
 }
@@ -325,8 +325,8 @@ int hal_pin_new_real(int compid, hal_pdir_t dir, hal_real_t *ref, rtapi_real def
     va_start(args, fmt);
     const FormattedName name(fmt, args);
     va_end(args);
-    const bool isFitting = hal_pdir_is_pin(dir) != 0;
-    return name.isGood && isFitting
+    const bool fitting = hal_pdir_is_pin(dir) != 0;
+    return name.good && fitting
                ? new_reference(compid, dir, reinterpret_cast<void **>(ref), Value::of_float(def), name.text)
                : -EINVAL;
 }
@@ -336,8 +336,8 @@ int hal_param_new_real(int compid, hal_pdir_t dir, hal_real_t *ref, rtapi_real d
     va_start(args, fmt);
     const FormattedName name(fmt, args);
     va_end(args);
-    const bool isFitting = hal_pdir_is_param(dir) != 0;
-    return name.isGood && isFitting
+    const bool fitting = hal_pdir_is_param(dir) != 0;
+    return name.good && fitting
                ? new_reference(compid, dir, reinterpret_cast<void **>(ref), Value::of_float(def), name.text)
                : -EINVAL;
 }
@@ -347,8 +347,8 @@ int hal_pin_new_sint(int compid, hal_pdir_t dir, hal_sint_t *ref, rtapi_sint def
     va_start(args, fmt);
     const FormattedName name(fmt, args);
     va_end(args);
-    const bool isFitting = hal_pdir_is_pin(dir) != 0;
-    return name.isGood && isFitting
+    const bool fitting = hal_pdir_is_pin(dir) != 0;
+    return name.good && fitting
                ? new_reference(compid, dir, reinterpret_cast<void **>(ref), Value::of_s64(def), name.text)
                : -EINVAL;
 }
@@ -358,8 +358,8 @@ int hal_param_new_sint(int compid, hal_pdir_t dir, hal_sint_t *ref, rtapi_sint d
     va_start(args, fmt);
     const FormattedName name(fmt, args);
     va_end(args);
-    const bool isFitting = hal_pdir_is_param(dir) != 0;
-    return name.isGood && isFitting
+    const bool fitting = hal_pdir_is_param(dir) != 0;
+    return name.good && fitting
                ? new_reference(compid, dir, reinterpret_cast<void **>(ref), Value::of_s64(def), name.text)
                : -EINVAL;
 }
@@ -369,8 +369,8 @@ int hal_pin_new_uint(int compid, hal_pdir_t dir, hal_uint_t *ref, rtapi_uint def
     va_start(args, fmt);
     const FormattedName name(fmt, args);
     va_end(args);
-    const bool isFitting = hal_pdir_is_pin(dir) != 0;
-    return name.isGood && isFitting
+    const bool fitting = hal_pdir_is_pin(dir) != 0;
+    return name.good && fitting
                ? new_reference(compid, dir, reinterpret_cast<void **>(ref), Value::of_u64(def), name.text)
                : -EINVAL;
 }
@@ -380,8 +380,8 @@ int hal_param_new_uint(int compid, hal_pdir_t dir, hal_uint_t *ref, rtapi_uint d
     va_start(args, fmt);
     const FormattedName name(fmt, args);
     va_end(args);
-    const bool isFitting = hal_pdir_is_param(dir) != 0;
-    return name.isGood && isFitting
+    const bool fitting = hal_pdir_is_param(dir) != 0;
+    return name.good && fitting
                ? new_reference(compid, dir, reinterpret_cast<void **>(ref), Value::of_u64(def), name.text)
                : -EINVAL;
 }
@@ -391,8 +391,8 @@ int hal_pin_new_si32(int compid, hal_pdir_t dir, hal_sint_t *ref, rtapi_s32 def,
     va_start(args, fmt);
     const FormattedName name(fmt, args);
     va_end(args);
-    const bool isFitting = hal_pdir_is_pin(dir) != 0;
-    return name.isGood && isFitting
+    const bool fitting = hal_pdir_is_pin(dir) != 0;
+    return name.good && fitting
                ? new_reference(compid, dir, reinterpret_cast<void **>(ref), Value::of_s32(def), name.text)
                : -EINVAL;
 }
@@ -402,8 +402,8 @@ int hal_param_new_si32(int compid, hal_pdir_t dir, hal_sint_t *ref, rtapi_s32 de
     va_start(args, fmt);
     const FormattedName name(fmt, args);
     va_end(args);
-    const bool isFitting = hal_pdir_is_param(dir) != 0;
-    return name.isGood && isFitting
+    const bool fitting = hal_pdir_is_param(dir) != 0;
+    return name.good && fitting
                ? new_reference(compid, dir, reinterpret_cast<void **>(ref), Value::of_s32(def), name.text)
                : -EINVAL;
 }
@@ -413,8 +413,8 @@ int hal_pin_new_ui32(int compid, hal_pdir_t dir, hal_uint_t *ref, rtapi_u32 def,
     va_start(args, fmt);
     const FormattedName name(fmt, args);
     va_end(args);
-    const bool isFitting = hal_pdir_is_pin(dir) != 0;
-    return name.isGood && isFitting
+    const bool fitting = hal_pdir_is_pin(dir) != 0;
+    return name.good && fitting
                ? new_reference(compid, dir, reinterpret_cast<void **>(ref), Value::of_u32(def), name.text)
                : -EINVAL;
 }
@@ -424,8 +424,8 @@ int hal_param_new_ui32(int compid, hal_pdir_t dir, hal_uint_t *ref, rtapi_u32 de
     va_start(args, fmt);
     const FormattedName name(fmt, args);
     va_end(args);
-    const bool isFitting = hal_pdir_is_param(dir) != 0;
-    return name.isGood && isFitting
+    const bool fitting = hal_pdir_is_param(dir) != 0;
+    return name.good && fitting
                ? new_reference(compid, dir, reinterpret_cast<void **>(ref), Value::of_u32(def), name.text)
                : -EINVAL;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// hal.h: queries, and the instance as a whole.
+// hal.h: queries, and the instance.
 #include <unistd.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ using namespace mw::hal::detail;
 
 namespace {
 
-/// Keeps the texts of this thread's last query.
+/// Holds the texts of this thread's last query.
 class Texts {
   public:
     void clear() { kept_.clear(); }
@@ -98,7 +98,7 @@ void fill(hal_query_t &query, const CompInfo &info) {
     query.comp.type = static_cast<hal_comp_type_t>(info.type);
     query.comp.pid = info.pid;
     query.comp.ready = info.isReady ? 1 : 0;
-    query.comp.insmod = info.isLoadedByLoadrt ? texts().keep(info.insmod_args) : nullptr;
+    query.comp.insmod = info.is_loaded_by_loadrt ? texts().keep(info.insmod_args) : nullptr;
 }
 
 void fill(hal_query_t &query, const FunctInfo &info) {
@@ -108,7 +108,7 @@ void fill(hal_query_t &query, const FunctInfo &info) {
     query.funct.comp_id = info.owner_id;
     query.funct.comp = texts().keep(info.owner);
     query.funct.users = info.users;
-    query.funct.reentrant = info.isReentrant ? 1 : 0;
+    query.funct.reentrant = info.reentrant ? 1 : 0;
 }
 
 void fill(hal_query_t &query, const ThreadInfo &info) {
@@ -121,7 +121,7 @@ void fill(hal_query_t &query, const ThreadInfo &info) {
     query.thread.tmax_nsec = static_cast<long>(info.tmax_ns);
 }
 
-/// The pattern that a list query asks for.
+/// The pattern of a list query.
 std::string pattern_of(const hal_query_t *query) {
     return query == nullptr || query->name == nullptr ? "*" : query->name;
 }
@@ -130,7 +130,7 @@ bool wants(const hal_query_t *query, hal_qtype_t kind) {
     return query == nullptr || query->qtype == HAL_QTYPE_ANY || query->qtype == kind;
 }
 
-/// Calls back with each of `infos`; the first answer other than 0.
+/// Calls back for each of `infos`; returns the first result other than 0.
 template <class Info>
 int call_each(const std::vector<Info> &infos, hal_query_cb cb, void *arg) {
     for (const Info &info : infos) {
@@ -154,20 +154,20 @@ int list(hal_query_cb cb, Work work) {
     });
 }
 
-/// Fills `query` with the pin or parameter of its name; the parameter wins where both have it.
+/// Fills `query` with the pin or parameter of its name; a parameter takes precedence.
 int look_up_p(const Hal &hal, hal_query_t &query) {
     if (query.name == nullptr) {
         return -EINVAL;
     }
     const std::string name = query.name;
-    const bool wantsParam = wants(&query, HAL_QTYPE_PARAM);
-    const bool wantsPin = wants(&query, HAL_QTYPE_PIN);
+    const bool wants_param = wants(&query, HAL_QTYPE_PARAM);
+    const bool wants_pin = wants(&query, HAL_QTYPE_PIN);
     texts().clear();
-    if (const auto param = hal.param(name); wantsParam && param) {
+    if (const auto param = hal.param(name); wants_param && param) {
         fill(query, *param);
         return 0;
     }
-    if (const auto pin = hal.pin(name); wantsPin && pin) {
+    if (const auto pin = hal.pin(name); wants_pin && pin) {
         fill(query, *pin);
         return 0;
     }
@@ -266,21 +266,21 @@ int hal_list_funct(hal_query_t *q, hal_query_cb cb, void *arg) {
 
 int hal_list_thread(hal_query_t *q, hal_query_cb cb, void *arg) {
     const std::string pattern = pattern_of(q);
-    const bool wantsFunctions = q != nullptr && q->qtype == HAL_QTYPE_THREAD_FUNCT;
+    const bool wants_functions = q != nullptr && q->qtype == HAL_QTYPE_THREAD_FUNCT;
     return list(cb, [&](Hal &hal) {
         const std::vector<ThreadInfo> threads = hal.threads(pattern);
-        if (!wantsFunctions) {
+        if (!wants_functions) {
             return call_each(threads, cb, arg);
         }
         int answer = 0;
         for (const ThreadInfo &thread : threads) {
-            const auto call = [&](const std::string &function, int position, bool isInit) {
+            const auto call = [&](const std::string &function, int position, bool is_init) {
                 hal_query_t one{};
                 fill(one, thread);
                 one.qtype = HAL_QTYPE_THREAD_FUNCT;
                 one.thread.funct = texts().keep(function);
                 one.thread.position = position;
-                one.thread.is_init = isInit ? 1 : 0;
+                one.thread.is_init = is_init ? 1 : 0;
                 answer = answer != 0 ? answer : cb(&one, arg);
             };
             int position = 0;
@@ -442,10 +442,10 @@ int hal_comp_invoke_make(const char *compname, const char *newname, const char *
                             fmt::format("component '{}' makes no instances once it is loaded", compname));
         }
         // Pins and functions can only be made while the component is not ready.
-        const bool wasReady = comp->isReady;
+        const bool was_ready = comp->isReady;
         (void)hal.set_ready(comp->id, false);
         const int status = make(newname, arg == nullptr ? "" : arg);
-        (void)hal.set_ready(comp->id, wasReady);
+        (void)hal.set_ready(comp->id, was_ready);
         return status;
     });
 }
@@ -463,12 +463,12 @@ hal_realtime_type_t hal_get_realtime_type(void) {
 }
 
 void hal_enforce_exact_base_period(void) {
-    // Every thread has exactly its period already.
+    // Every thread already has exactly its period.
 }
 
 int hal_mutex_force_release(void) {
     return with_hal([](Hal &hal) {
-        // Taking the lock repairs what a dead holder left; a living one is waited for.
+        // Taking the lock repairs the segment if its holder has died.
         const Guard guard(hal.impl());
         return 0;
     });

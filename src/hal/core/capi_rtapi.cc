@@ -17,14 +17,14 @@ using mw::runtime::LogLevel;
 
 namespace {
 
-// The C API has one handler per process, whatever instance prints.
+// The C API has one handler per process, for all instances.
 std::atomic<rtapi_msg_handler_t> message_handler{nullptr};
 std::atomic<int> last_module_id{0};
 
-void print_message(LogLevel level, bool isAlways, const char *format, std::va_list args) noexcept {
+void print_message(LogLevel level, bool always, const char *format, std::va_list args) noexcept {
     if (rtapi_msg_handler_t handler = message_handler.load(std::memory_order_acquire)) {
         handler(static_cast<msg_level_t>(level), format, args);
-    } else if (isAlways) {
+    } else if (always) {
         current_log().vprint_always(level, format, args);
     } else {
         current_log().vprint(level, format, args);
@@ -181,7 +181,8 @@ int rtapi_shmem_delete(int shmem_id, int /*module_id*/) {
 }
 
 void rtapi_mp_register(const struct rtapi_mp_info *info) {
-    // Programs and libraries that include the macros without being loaded as modules have nobody to tell.
+    // For programs and libraries that include the macros without being loaded as modules there is no
+    // receiver.
     if (auto *parameters = context().parameters) {
         parameters->push_back(info);
     }
@@ -205,7 +206,7 @@ size_t rtapi_strlcat(char *dst, const char *src, size_t size) {
 }
 
 char **rtapi_argv_split(rtapi_gfp_t /*flags*/, const char *argstr, int *argc) {
-    // One block: the vector, then the words that it points to.
+    // One block: the vector, then the words that it refers to.
     const size_t length = std::strlen(argstr);
     const size_t most = length / 2 + 2;
     char **argv = static_cast<char **>(std::malloc(most * sizeof(char *) + length + 1));
@@ -297,8 +298,8 @@ int mw_ext_pin_safe_value(const char *pin_name, const void *value) {
             return complain(info.error());
         }
         Value safe{info->type, 0};
-        const bool isWide = info->type == Type::FLOAT || info->type == Type::S64 || info->type == Type::U64;
-        std::memcpy(&safe.bits, value, info->type == Type::BIT ? 1 : isWide ? 8 : 4);
+        const bool wide = info->type == Type::FLOAT || info->type == Type::S64 || info->type == Type::U64;
+        std::memcpy(&safe.bits, value, info->type == Type::BIT ? 1 : wide ? 8 : 4);
         return status_of(hal.set_safe_value(pin_name, safe));
     });
 }

@@ -19,8 +19,8 @@ constexpr unsigned MOST_RECORDS = 1U << 20U;
 
 }  // namespace
 
-/// Followed by `slots` records: the number of the sample, then a value per field. Positions run from 0 to
-/// slots - 1. One slot stays free, so that equal positions mean empty.
+/// Followed by `slots` records: sample number, then a value per field. Positions are 0 to slots - 1. One slot
+/// stays free, so equal positions mean empty.
 struct hal_stream_fifo {
     std::uint32_t magic;
     std::int32_t creator;
@@ -28,12 +28,13 @@ struct hal_stream_fifo {
     std::uint32_t slots;  // the depth, at least 2
     std::uint32_t fields;
     std::uint8_t types[HAL_STREAM_MAX_PINS];
-    // Writer's: `in` released after the record is filled, acquired by the reader before it reads it.
+    // Written by the writer: `in` is released after the record is filled, and acquired by the reader before
+    // it reads it.
     alignas(64) std::atomic<std::uint32_t> in;
     std::uint32_t sample;
     std::atomic<std::uint32_t> overruns;
-    // Reader's: `out` released after the record has been copied, acquired by the writer before it fills it
-    // anew.
+    // Written by the reader: `out` is released after the record has been copied, and acquired by the writer
+    // before it fills the slot again.
     alignas(64) std::atomic<std::uint32_t> out;
     std::atomic<std::uint32_t> underruns;
     alignas(64) hal_stream_data_u data[1];
@@ -49,7 +50,7 @@ hal_stream_data_u *record_of(hal_stream_fifo &fifo, std::uint32_t position) noex
     return fifo.data + static_cast<std::size_t>(position) * (fifo.fields + 1);
 }
 
-/// Field types of a typestring; their number, or -EINVAL.
+/// Parses the field types of a typestring; returns their number, or -EINVAL.
 int parse_types(const char *typestring, std::uint8_t *types) {
     int count = 0;
     for (const char *at = typestring; *at != '\0'; ++at, ++count) {
@@ -106,7 +107,7 @@ int hal_stream_create(hal_stream_t *stream, int comp, int key, unsigned depth, c
         return complain(
             Error{fmt::format("stream: a depth of {} is outside of 1 to {}", depth, MOST_RECORDS)});
     }
-    // As in LinuxCNC a stream of depth N holds N - 1 records, but one of depth 1 holds a record.
+    // As in LinuxCNC a stream of depth N holds N - 1 records, but one of depth 1 holds one record.
     const unsigned slots = std::max(depth, 2U);
     hal_stream_fifo *fifo = open_fifo(stream, comp, key, fifo_size(slots, static_cast<unsigned>(fields)));
     if (fifo == nullptr) {
@@ -148,10 +149,10 @@ int hal_stream_attach(hal_stream_t *stream, int comp, int key, const char *types
     } else if (typestring != nullptr) {
         std::uint8_t types[HAL_STREAM_MAX_PINS] = {};
         const int fields = parse_types(typestring, types);
-        const bool isSame = fields == static_cast<int>(fifo->fields) &&
-                            std::memcmp(types, fifo->types, static_cast<std::size_t>(fields)) == 0;
+        const bool same = fields == static_cast<int>(fifo->fields) &&
+                          std::memcmp(types, fifo->types, static_cast<std::size_t>(fields)) == 0;
         status =
-            isSame ? 0 : complain(EINVAL, fmt::format("stream {} is not of the types '{}'", key, typestring));
+            same ? 0 : complain(EINVAL, fmt::format("stream {} is not of the types '{}'", key, typestring));
     }
     if (status < 0) {
         close_fifo(stream);
@@ -168,8 +169,8 @@ int hal_stream_element_count(hal_stream_t *stream) {
 }
 
 hal_type_t hal_stream_element_type(hal_stream_t *stream, int idx) {
-    const bool isInside = idx >= 0 && idx < static_cast<int>(stream->fifo->fields);
-    return isInside ? static_cast<hal_type_t>(stream->fifo->types[idx]) : HAL_TYPE_UNSPECIFIED;
+    const bool inside = idx >= 0 && idx < static_cast<int>(stream->fifo->fields);
+    return inside ? static_cast<hal_type_t>(stream->fifo->types[idx]) : HAL_TYPE_UNSPECIFIED;
 }
 
 int hal_stream_write(hal_stream_t *stream, hal_stream_data_u *buf) {

@@ -46,12 +46,12 @@ struct Task {
     std::int64_t period_ns = 0;  ///< 0: free-running
     std::int64_t next_ns = 0;    ///< of the task's thread
     pthread_t thread{};
-    bool isStarted = false;
+    bool started = false;
     std::mutex mutex;
     pthread_cond_t changed = PTHREAD_COND_INITIALIZER;
-    // Released by whoever asks, acquired by the task in rtapi_wait before it acts on it.
+    // Released by the requesting thread, acquired by the task in rtapi_wait before it acts.
     std::atomic<bool> isPaused{false};
-    std::atomic<bool> isEnding{false};
+    std::atomic<bool> ending{false};
 };
 
 Task *&own_task() noexcept {
@@ -59,16 +59,16 @@ Task *&own_task() noexcept {
     return task;
 }
 
-/// What the C API numbers, in this process.
+/// Objects of the C API that have ids, in this process.
 struct Registry {
-    std::mutex mutex;  ///< of making and deleting
+    std::mutex mutex;  ///< guards creating and deleting
     std::map<int, std::unique_ptr<Task>> tasks;
     int last_id = 0;
 };
 
-/// A semaphore in a place of its own, so that give and try find it without a lock.
+/// A semaphore in a fixed slot, so that give and try find it without a lock.
 struct Semaphore {
-    // Released once the rest is filled in; 0: free. An id is its place plus a multiple of SEMAPHORES.
+    // Released after the rest is filled; 0: free. An id is the slot number plus a multiple of SEMAPHORES.
     std::atomic<int> id{0};
     const Hal *hal = nullptr;
     int key = 0;
@@ -124,7 +124,7 @@ int start(Task &task, std::int64_t period_ns) {
     if (error != 0) {
         return complain(error, fmt::format("task {} does not start: {}", task.id, std::strerror(error)));
     }
-    task.isStarted = true;
+    task.started = true;
     if (task.hal->isRealtime()) {
         sched_param param{};
         param.sched_priority = task.priority;
@@ -138,18 +138,18 @@ void wake(Task &task) {
     ::pthread_cond_broadcast(&task.changed);
 }
 
-/// The queue of rtapi_fifo_*, at the start of a block of the instance. Positions run on and wrap at 2^32.
+/// The queue of rtapi_fifo_*, at the start of a block of the instance. Positions wrap at 2^32.
 struct Fifo {
     std::uint32_t size;  ///< a power of two
     // Released by the writer after the bytes are in place, acquired by the reader before it copies them.
     std::atomic<std::uint32_t> in;
-    // Released by the reader after its copy, acquired by the writer before it fills the bytes anew.
+    // Released by the reader after its copy, acquired by the writer before it fills the bytes again.
     std::atomic<std::uint32_t> out;
 
     char *bytes() noexcept { return reinterpret_cast<char *>(this + 1); }
 };
 
-/// Keys of queues must not meet those of rtapi_shmem_new.
+/// Keys of queues must not collide with those of rtapi_shmem_new.
 constexpr int FIFO_KEY = 0x52540000;
 
 Fifo *find_fifo(int id) {
@@ -188,8 +188,7 @@ int rtapi_task_new(void (*taskcode)(void *), void *arg, int prio, int /*owner*/,
             return complain(EINVAL, "a task needs code and a priority of rtapi_prio_*");
         }
         if (hal.isVirtual()) {
-            return complain(ENOSYS,
-                            "tasks of their own need the realtime clock; export a HAL function instead");
+            return complain(ENOSYS, "separate tasks need the realtime clock; export a HAL function instead");
         }
         Registry &all = registry();
         const std::lock_guard lock(all.mutex);
@@ -211,9 +210,9 @@ int rtapi_task_delete(int task_id) {
     if (task == nullptr || task == own_task()) {
         return -EINVAL;
     }
-    task->isEnding.store(true, std::memory_order_release);
+    task->ending.store(true, std::memory_order_release);
     wake(*task);
-    if (task->isStarted) {
+    if (task->started) {
         timespec end{};
         ::clock_gettime(CLOCK_REALTIME, &end);
         end.tv_sec += DELETE_TIMEOUT_S;
@@ -230,7 +229,7 @@ int rtapi_task_delete(int task_id) {
 
 int rtapi_task_start(int task_id, unsigned long int period_nsec) {
     Task *task = find_task(task_id);
-    if (task == nullptr || task->isStarted || period_nsec == 0) {
+    if (task == nullptr || task->started || period_nsec == 0) {
         return -EINVAL;
     }
     return start(*task, static_cast<std::int64_t>(period_nsec));
@@ -241,7 +240,7 @@ int rtapi_task_resume(int task_id) {
     if (task == nullptr) {
         return -EINVAL;
     }
-    if (!task->isStarted) {
+    if (!task->started) {
         return start(*task, 0);
     }
     task->isPaused.store(false, std::memory_order_release);
@@ -251,7 +250,7 @@ int rtapi_task_resume(int task_id) {
 
 int rtapi_task_pause(int task_id) {
     Task *task = find_task(task_id);
-    if (task == nullptr || !task->isStarted) {
+    if (task == nullptr || !task->started) {
         return -EINVAL;
     }
     task->isPaused.store(true, std::memory_order_release);
@@ -270,18 +269,17 @@ int rtapi_wait(void) {
     }
     if (task->period_ns > 0) {
         const timespec until{task->next_ns / NS_PER_S, task->next_ns % NS_PER_S};
-        while (!task->isEnding.load(std::memory_order_acquire) &&
+        while (!task->ending.load(std::memory_order_acquire) &&
                ::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {
         }
         task->next_ns += task->period_ns;
     }
     std::unique_lock lock(task->mutex);
-    while (task->isPaused.load(std::memory_order_acquire) &&
-           !task->isEnding.load(std::memory_order_acquire)) {
+    while (task->isPaused.load(std::memory_order_acquire) && !task->ending.load(std::memory_order_acquire)) {
         ::pthread_cond_wait(&task->changed, task->mutex.native_handle());
     }
     lock.unlock();
-    if (task->isEnding.load(std::memory_order_acquire)) {
+    if (task->ending.load(std::memory_order_acquire)) {
         ::pthread_exit(nullptr);
     }
     return 0;
@@ -303,9 +301,9 @@ long long rtapi_task_pll_get_reference(void) {
 
 int rtapi_task_pll_set_correction(long value) {
     Hal *hal = current();
-    const bool isSet =
+    const bool set =
         hal != nullptr && hal->scheduler() != nullptr && hal->scheduler()->set_correction_ns(value);
-    return isSet ? 0 : -EINVAL;
+    return set ? 0 : -EINVAL;
 }
 
 // ---- semaphores
@@ -356,7 +354,7 @@ int rtapi_sem_give(int sem_id) {
     if (semaphore == nullptr) {
         return -EINVAL;
     }
-    // A semaphore of RTAPI is a lock: given twice it is still free once.
+    // A semaphore of RTAPI is a lock: a second give has no effect.
     int value = 0;
     ::sem_getvalue(&semaphore->sem, &value);
     return value > 0 || ::sem_post(&semaphore->sem) == 0 ? 0 : -errno;
@@ -387,8 +385,8 @@ int rtapi_sem_try(int sem_id) {
 
 int rtapi_fifo_new(int key, int /*module_id*/, unsigned long int size, char mode) {
     return with_hal([&](Hal &hal) {
-        const bool isMode = mode == 'R' || mode == 'r' || mode == 'W' || mode == 'w';
-        if (!isMode || size == 0 || size > (1U << 27U) || key == 0) {
+        const bool is_mode = mode == 'R' || mode == 'r' || mode == 'W' || mode == 'w';
+        if (!is_mode || size == 0 || size > (1U << 27U) || key == 0) {
             return complain(EINVAL, "a queue needs a key, a size above 0 and the mode R or W");
         }
         const auto room = std::bit_ceil(static_cast<std::uint32_t>(size));

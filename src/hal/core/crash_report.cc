@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Everything from on_crash() down is async-signal-safe: no heap, no locks, no stdio.
+// Everything called by on_crash() is async-signal-safe: no heap, no locks, no stdio.
 #include "hal/core/crash_report.hh"
 
 #include <unistd.h>
@@ -33,15 +33,14 @@ constexpr std::array<Fatal, 5> FATAL = {{{SIGSEGV, "SIGSEGV", "access to memory 
                                          {SIGABRT, "SIGABRT", "abort()"}}};
 constexpr std::size_t MOST_LEFTOVERS = 4;
 
-/// What the handler needs; a signal handler has no other way to it than static memory. Set before the
-/// handlers are.
+/// Data for the signal handler, which can only use static memory. Set before the handlers.
 struct Prepared {
     std::array<char, 64> program{};
     std::array<std::array<char, 256>, MOST_LEFTOVERS> leftovers{};
     std::array<struct sigaction, FATAL.size()> before{};
 };
 Prepared prepared;
-std::atomic<bool> isTold{false};
+std::atomic<bool> reported{false};
 
 /// A text of bounded length.
 struct Text {
@@ -57,8 +56,8 @@ struct Text {
 };
 
 void tell_place(Text &text, const ThreadContext &here) noexcept {
-    const bool isInFunction = here.calling != nullptr && here.instance != nullptr;
-    if (isInFunction) {
+    const bool in_function = here.calling != nullptr && here.instance != nullptr;
+    if (in_function) {
         const Segment &segment = here.instance->impl().segment;
         const auto *funct = segment.at<FunctRecord>(here.calling->funct);
         const auto *comp = funct == nullptr ? nullptr : segment.at<CompRecord>(funct->comp);
@@ -79,8 +78,8 @@ void tell_place(Text &text, const ThreadContext &here) noexcept {
 void on_crash(int number, siginfo_t *info, void * /*context*/) {
     const auto fatal =
         std::find_if(FATAL.begin(), FATAL.end(), [number](const Fatal &one) { return one.number == number; });
-    // Of several threads that crash at once the first one speaks.
-    if (fatal != FATAL.end() && !isTold.exchange(true)) {
+    // If several threads crash at once, only the first one reports.
+    if (fatal != FATAL.end() && !reported.exchange(true)) {
         const ThreadContext &here = context();
         Text text;
         tell_place(text, here);
@@ -101,7 +100,7 @@ void on_crash(int number, siginfo_t *info, void * /*context*/) {
     if (fatal != FATAL.end()) {
         ::sigaction(number, &prepared.before[static_cast<std::size_t>(fatal - FATAL.begin())], nullptr);
     }
-    // A fault happens again on return and takes its course; a signal that was sent must be sent again.
+    // A fault occurs again on return and ends the process; a signal that was sent must be sent again.
     if (info->si_code <= 0) {
         ::raise(number);
     }
@@ -109,7 +108,7 @@ void on_crash(int number, siginfo_t *info, void * /*context*/) {
 
 template <std::size_t SIZE>
 void copy(std::array<char, SIZE> &to, std::string_view from) noexcept {
-    // A path that does not fit is left out rather than cut.
+    // A path that does not fit is omitted, not cut.
     const std::size_t length = from.size() < SIZE ? from.size() : 0;
     std::memcpy(to.data(), from.data(), length);
     to[length] = '\0';
@@ -122,7 +121,7 @@ void Hal::Impl::note_end(const char *text) noexcept {
     std::uint32_t nobody = EndRecord::NONE;
     if (end.state.compare_exchange_strong(nobody, EndRecord::BEING_WRITTEN)) {
         std::strncpy(end.text.data(), text, end.text.size() - 1);
-        // Release: pairs with host_end; who sees it whole sees the text.
+        // Release: pairs with host_end; a process that sees WHOLE sees the text.
         end.state.store(EndRecord::WHOLE, std::memory_order_release);
     }
 }
@@ -139,8 +138,8 @@ void report_crashes(const std::string &program, const std::vector<std::string> &
         action.sa_flags = SA_SIGINFO | SA_ONSTACK;
         struct sigaction now{};
         ::sigaction(FATAL[i].number, nullptr, &now);
-        const bool isOurs = (now.sa_flags & SA_SIGINFO) != 0 && now.sa_sigaction == &on_crash;
-        if (!isOurs) {
+        const bool own = (now.sa_flags & SA_SIGINFO) != 0 && now.sa_sigaction == &on_crash;
+        if (!own) {
             ::sigaction(FATAL[i].number, &action, &prepared.before[i]);
         }
     }

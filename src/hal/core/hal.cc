@@ -37,17 +37,17 @@ std::string detail::segment_name(std::string_view instance) {
 
 namespace {
 
-// The C API has no argument for the instance, so a process needs one that is meant.
+// The C API has no argument for the instance, so a process needs a default one.
 std::atomic<Hal *> process_instance{nullptr};
 
 /// Instance names become file names.
 Result<> check_instance(std::string_view instance) {
-    const bool isGood = !instance.empty() && instance.size() <= 64 &&
-                        std::all_of(instance.begin(), instance.end(), [](char c) {
-                            return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
-                                   (c >= '0' && c <= '9') || c == '-' || c == '_';
-                        });
-    if (!isGood) {
+    const bool good = !instance.empty() && instance.size() <= 64 &&
+                      std::all_of(instance.begin(), instance.end(), [](char c) {
+                          return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                                 c == '-' || c == '_';
+                      });
+    if (!good) {
         return refuse(EINVAL,
                       fmt::format("instance name '{}': letters, digits, '-' and '_' are allowed, at most 64",
                                   instance));
@@ -96,9 +96,9 @@ Hal::Hal(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {
 }
 
 Hal::~Hal() {
-    if (impl_->isHost) {
+    if (impl_->is_host) {
         Guard guard(*impl_);
-        impl_->segment.header().isRunning.store(0);
+        impl_->segment.header().running.store(0);
         impl_->segment.each<ThreadRecord>(Kind::THREAD,
                                           [&](ThreadRecord &thread) { (void)impl_->remove_thread(thread); });
         for (const auto &planner : impl_->planners) {
@@ -125,7 +125,7 @@ Result<std::unique_ptr<Hal>> Hal::create(const HalOptions &options) {
     }
     auto impl = std::make_unique<Impl>();
     impl->name = options.name;
-    impl->isHost = true;
+    impl->is_host = true;
     impl->isShared = options.isShared;
     impl->scheduler = options.scheduler;
     impl->log = options.log;
@@ -135,7 +135,7 @@ Result<std::unique_ptr<Hal>> Hal::create(const HalOptions &options) {
     }
     impl->segment = Segment(std::move(*memory));
     impl->segment.initialise(options.scheduler->isVirtual());
-    impl->segment.header().isRealtime = options.scheduler->isRealtime();
+    impl->segment.header().realtime = options.scheduler->isRealtime();
     return std::unique_ptr<Hal>(new Hal(std::move(impl)));
 }
 
@@ -165,13 +165,13 @@ const std::string &Hal::name() const noexcept {
     return impl_->name;
 }
 bool Hal::isHost() const noexcept {
-    return impl_->isHost;
+    return impl_->is_host;
 }
 bool Hal::isVirtual() const noexcept {
-    return impl_->segment.header().isVirtual;
+    return impl_->segment.header().is_virtual;
 }
 bool Hal::isRealtime() const noexcept {
-    return impl_->segment.header().isRealtime;
+    return impl_->segment.header().realtime;
 }
 std::string Hal::realtime_missing() const {
     Guard guard(*impl_);
@@ -188,8 +188,8 @@ std::optional<std::string> Hal::host_end() const {
     if (end.state.load(std::memory_order_acquire) == EndRecord::WHOLE) {
         return end.text.data();
     }
-    const bool isGone = impl_->isShared && !runtime::isAlive(impl_->segment.memory().owner());
-    return isGone ? std::optional<std::string>("it was killed, or ended without a word") : std::nullopt;
+    const bool gone = impl_->isShared && !runtime::isAlive(impl_->segment.memory().owner());
+    return gone ? std::optional<std::string>("it was killed, or ended without a word") : std::nullopt;
 }
 runtime::Log &Hal::log() noexcept {
     return *impl_->log;
@@ -234,10 +234,10 @@ Result<> Hal::Impl::check_name(Kind kind, std::string_view name_wanted) const {
         return refuse(EINVAL, fmt::format("{} name '{}' has {} characters, 1 to {} are allowed",
                                           kind_name(kind), name_wanted, name_wanted.size(), NAME_LENGTH));
     }
-    const bool isTaken = segment.find(kind, name_wanted) != nullptr ||
-                         (kind == Kind::PIN && segment.find(Kind::PIN_ALIAS, name_wanted) != nullptr) ||
-                         (kind == Kind::PARAM && segment.find(Kind::PARAM_ALIAS, name_wanted) != nullptr);
-    if (isTaken) {
+    const bool taken = segment.find(kind, name_wanted) != nullptr ||
+                       (kind == Kind::PIN && segment.find(Kind::PIN_ALIAS, name_wanted) != nullptr) ||
+                       (kind == Kind::PARAM && segment.find(Kind::PARAM_ALIAS, name_wanted) != nullptr);
+    if (taken) {
         return refuse(EEXIST, fmt::format("there is a {} '{}' already", kind_name(kind), name_wanted));
     }
     return {};
@@ -273,14 +273,14 @@ Result<int> Hal::Impl::add_comp(std::string_view name_wanted, CompType type) {
     comp->process = runtime::this_process();
     comp->base = segment.base();
     segment.insert(Kind::COMP, *comp);
-    // Other processes and threads do not write beside what this one does.
+    // Writes of other processes and threads must not share a cache line with this one.
     segment.separate_values();
     return comp->id;
 }
 
-void Hal::Impl::remove_comp(CompRecord &comp, bool isDead) noexcept {
+void Hal::Impl::remove_comp(CompRecord &comp, bool dead) noexcept {
     const Offset owner = segment.offset_of(&comp);
-    if (isDead) {
+    if (dead) {
         note_death(comp);
     }
     segment.each<FunctRecord>(Kind::FUNCT, [&](FunctRecord &funct) {
@@ -290,8 +290,8 @@ void Hal::Impl::remove_comp(CompRecord &comp, bool isDead) noexcept {
     });
     segment.each<PinRecord>(Kind::PIN, [&](PinRecord &pin) {
         if (pin.comp == owner) {
-            if (isDead && pin.dir != Dir::IN) {
-                write(value_of(pin), Value{pin.type, pin.hasSafeValue ? pin.safe_value : 0});
+            if (dead && pin.dir != Dir::IN) {
+                write(value_of(pin), Value{pin.type, pin.has_safe_value ? pin.safe_value : 0});
             }
             remove_pin(pin);
         }
@@ -326,9 +326,9 @@ Result<> Hal::set_ready(int comp_id, bool isReady) {
                                           isReady ? "ready" : "not ready"));
     }
     comp->isReady = isReady;
-    // Release: threads acquire this word every cycle, so they see the component whole, whoever adds its
-    // functions.
-    impl_->segment.header().isRunning.fetch_or(0, std::memory_order_release);
+    // Release: threads acquire this word every cycle, so they see the complete component, whichever process
+    // adds its functions.
+    impl_->segment.header().running.fetch_or(0, std::memory_order_release);
     return {};
 }
 
@@ -349,7 +349,7 @@ Result<> Hal::set_insmod_args(int comp_id, std::string_view args) {
     if (comp == nullptr) {
         return refuse(EINVAL, fmt::format("there is no component with id {}", comp_id));
     }
-    comp->isLoadedByLoadrt = true;
+    comp->is_loaded_by_loadrt = true;
     const Offset text = impl_->segment.allocate(args.size() + 1);
     if (text == 0) {
         return refuse(ENOMEM, "no HAL memory left");
@@ -376,8 +376,8 @@ std::uint8_t Hal::lock() const noexcept {
 Result<BlockRecord *> Hal::Impl::open_block(int key, std::size_t bytes) {
     const std::string block_name = std::to_string(key);
     auto *block = segment.find_as<BlockRecord>(Kind::BLOCK, block_name);
-    const bool isNew = block == nullptr;
-    if (isNew) {
+    const bool is_new = block == nullptr;
+    if (is_new) {
         block = segment.make<BlockRecord>(Kind::BLOCK, block_name);
         if (block == nullptr) {
             return refuse(ENOMEM, fmt::format("shared block {}: no HAL memory left", key));
@@ -391,7 +391,7 @@ Result<BlockRecord *> Hal::Impl::open_block(int key, std::size_t bytes) {
     if (block->room < bytes) {
         const Offset memory = segment.allocate(bytes, 64);
         if (memory == 0) {
-            return refuse(ENOMEM, fmt::format("shared block {}: no room for {} bytes", key, bytes));
+            return refuse(ENOMEM, fmt::format("shared block {}: no memory for {} bytes", key, bytes));
         }
         block->memory = memory;
         block->room = bytes;
@@ -400,7 +400,7 @@ Result<BlockRecord *> Hal::Impl::open_block(int key, std::size_t bytes) {
     }
     block->size = block->users == 0 ? bytes : block->size;
     ++block->users;
-    if (isNew) {
+    if (is_new) {
         segment.insert(Kind::BLOCK, *block);
     }
     return block;

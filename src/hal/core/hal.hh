@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// One HAL instance as this process sees it: pins, signals, parameters, functions, threads and components.
-// Names are unique per kind, at most 127 characters. Methods are not realtime-safe and may be called from any
-// non-realtime thread and process at once, unless they say otherwise; failures also set errno for the C API.
+// One HAL instance as seen by this process: pins, signals, parameters, functions, threads and components.
+// Names are unique per type, at most 127 characters. Methods are not realtime-safe and may be called from any
+// non-realtime thread and process concurrently, unless stated otherwise; failures also set errno for the C
+// API.
 #pragma once
 
 #include <cstddef>
@@ -35,7 +36,7 @@ enum Lock : std::uint8_t {
 enum class CompType : std::int8_t { USER = 0, REALTIME = 1, OTHER = 2 };
 
 struct PinInfo {
-    std::string name;           ///< the alias where there is one
+    std::string name;           ///< the alias if there is one
     std::string original_name;  ///< empty unless there is an alias
     Type type = Type::BIT;
     Dir dir = Dir::IN;
@@ -74,8 +75,8 @@ struct FunctInfo {
     std::string name;
     int owner_id = 0;
     std::string owner;
-    int users = 0;  ///< places in threads that call it
-    bool isReentrant = false;
+    int users = 0;  ///< number of uses in threads
+    bool reentrant = false;
     bool usesFloat = false;
     std::uint64_t address = 0;  ///< in the realtime process
     std::uint64_t argument = 0;
@@ -100,19 +101,19 @@ struct CompInfo {
     bool isReady = false;
     int pid = 0;
     std::string insmod_args;  ///< of loadrt; empty for others
-    bool isLoadedByLoadrt = false;
+    bool is_loaded_by_loadrt = false;
 };
 
-/// A component that went with its process, without leaving HAL.
+/// A component that was removed because its process died without leaving HAL.
 struct DeathInfo {
     std::string name;
     int pid = 0;
-    std::int64_t time_ns = 0;  ///< when it was noticed, as now_ns() of a realtime host
+    std::int64_t time_ns = 0;  ///< time of detection, as now_ns() of a realtime host
 };
 
 struct RecordCount {
     int active = 0;
-    int recycled = 0;  ///< removed, their memory waiting for the next of their kind
+    int recycled = 0;  ///< removed records that will be reused
 };
 
 struct HalStatistics {
@@ -125,15 +126,14 @@ struct HalOptions {
     std::string name = "default";  ///< of the instance
     bool isShared = false;         ///< in shared memory for other processes, or private to this process
     runtime::Scheduler *scheduler = nullptr;  ///< runs the threads; must outlive the instance
-    runtime::Log *log = nullptr;  ///< must outlive the instance; a log of its own to stderr when null
+    runtime::Log *log = nullptr;              ///< must outlive the instance; null: a separate log to stderr
 };
 
 class Hal {
   public:
-    /// Makes the instance and becomes its realtime host. A shared one replaces what a dead host left behind.
+    /// Creates the instance and becomes its realtime host. A shared one replaces the remains of a dead host.
     static Result<std::unique_ptr<Hal>> create(const HalOptions &options);
-    /// Joins a shared instance of this user that a host keeps; an error when there is none or its version
-    /// differs.
+    /// Joins a shared instance of this user; an error when it has no host or another version.
     static Result<std::unique_ptr<Hal>> attach(std::string_view instance);
     ~Hal();
     Hal(const Hal &) = delete;
@@ -144,11 +144,11 @@ class Hal {
     bool isVirtual() const noexcept;
     /// True when the host's threads have realtime priority.
     bool isRealtime() const noexcept;
-    /// Why they have none, as the realtime process said at its start; empty when they have, or in virtual
+    /// Why they do not, as reported by the realtime process at its start; empty when they do, or in virtual
     /// time.
     std::string realtime_missing() const;
     void set_realtime_missing(std::string_view why);
-    /// How the realtime host came to its end, or crashes just now; nothing while it is well.
+    /// Why the realtime host has ended or is crashing; nothing otherwise.
     std::optional<std::string> host_end() const;
     runtime::Log &log() noexcept;
     /// The scheduler of the host; null in an attached process.
@@ -157,32 +157,33 @@ class Hal {
     std::int64_t now_ns() const noexcept;
 
     // ---- components
-    /// A new component of this process; its id.
+    /// Adds a component of this process; returns its id.
     Result<int> new_component(std::string_view name, CompType type = CompType::USER);
     Result<> set_ready(int comp_id, bool isReady = true);
-    /// Ends a component: its functions leave the threads, its pins, parameters and functions vanish.
+    /// Removes a component: its functions leave the threads, and its pins, parameters and functions are
+    /// removed.
     Result<> delete_component(int comp_id);
-    /// Ends components whose process is gone; their outputs take their safe values first. The names of those
-    /// ended. A process with threads counts as gone as soon as its first thread is, before its pidfd says so.
+    /// Removes components whose process has ended, after setting their outputs to safe values. Returns their
+    /// names. A process with threads counts as ended as soon as its first thread has ended, before its pidfd
+    /// reports it.
     std::vector<std::string> reap_dead_components();
-    /// The process of this component is about to be told to end: that it goes is no death.
+    /// The process of this component will be ended on request, which does not count as a death.
     Result<> expect_end(int comp_id);
-    /// The last components (at most 16) whose process died, oldest first; without those that are back.
+    /// The last components (at most 16) whose process died, oldest first; without those that were restarted.
     std::vector<DeathInfo> deaths() const;
     Result<> set_insmod_args(int comp_id, std::string_view args);
 
     // ---- things of components
     /// 8-byte aligned zeroed memory of the instance; null when none is left.
     void *allocate(std::size_t bytes);
-    /// `slot` lies in memory of allocate(); it points at the value from then on.
+    /// `slot` must be in memory of allocate(); it points to the value from then on.
     Result<> new_pin(std::string_view name, Type type, Dir dir, void **slot, int comp_id);
-    /// A pin with a slot of its own, for programs that keep no struct; read and write through the slot
-    /// returned.
+    /// A pin with its own slot, for programs without a struct; read and write through the returned slot.
     Result<void **> new_pin(std::string_view name, Type type, Dir dir, int comp_id);
-    /// `address` lies in memory of allocate().
+    /// `address` must be in memory of allocate().
     Result<> new_param(std::string_view name, Type type, Dir dir, void *address, int comp_id);
     Result<> new_funct(std::string_view name, void (*function)(void *, long), void *argument, int comp_id,
-                       bool isReentrant = false, bool usesFloat = true);
+                       bool reentrant = false, bool usesFloat = true);
     Result<> set_safe_value(std::string_view pin, const Value &value);
 
     // ---- signals and links
@@ -190,27 +191,26 @@ class Hal {
     Result<> delete_signal(std::string_view name);
     Result<> link(std::string_view pin, std::string_view signal);
     Result<> unlink(std::string_view pin);
-    /// The rule of halcmd's net: makes the signal with the first pin's type unless it exists, links every
-    /// pin. All is checked first: on failure nothing has changed.
+    /// As halcmd's net: creates the signal with the first pin's type unless it exists, and links every pin.
+    /// Everything is checked first: a failure changes nothing.
     Result<> net(std::string_view signal, const std::vector<std::string> &pins);
 
     // ---- values
     Result<Value> get_pin(std::string_view name) const;
     Result<Value> get_signal(std::string_view name) const;
     Result<Value> get_param(std::string_view name) const;
-    /// Parameter or pin (parameter first), as getp.
+    /// As getp: parameter or pin (parameter first).
     Result<Value> get(std::string_view name) const;
-    /// As setp: refused for OUT pins, linked pins and RO parameters; parameter before pin of the same name.
+    /// As setp: rejects OUT pins, linked pins and RO parameters; parameter before pin of the same name.
     Result<> set(std::string_view name, const Value &value);
     Result<> set(std::string_view name, std::string_view text);
-    /// As sets: refused while the signal has a writer. A port signal takes the size of its buffer.
+    /// As sets: rejected while the signal has a writer. The value of a port signal is the size of its buffer.
     Result<> set_signal(std::string_view name, const Value &value);
     Result<> set_signal(std::string_view name, std::string_view text);
-    /// Puts a value into an IN or IO pin's place, as if its signal had changed; for tests and simulated
-    /// plants.
+    /// Sets the value of an IN or IO pin as if its signal had changed; for tests and simulations.
     Result<> force(std::string_view pin_or_signal, const Value &value);
-    /// Where the value of a pin, parameter or signal lies now, for programs that look often. A pin's moves
-    /// when it is linked or unlinked: use the slot for your own pins.
+    /// Current address of the value of a pin, parameter or signal, for programs that read often. That of a
+    /// pin changes when it is linked or unlinked: use the slot for your own pins.
     Result<volatile void *> address_of(std::string_view name, Type type);
 
     // ---- aliases; an empty alias removes it
@@ -222,13 +222,13 @@ class Hal {
     Result<> delete_thread(std::string_view name);
     /// Position 1 is the first, -1 the last.
     Result<> add_function(std::string_view function, std::string_view thread, int position = -1);
-    /// The function runs once, in the next period in which threads run, before the others.
+    /// The function runs once, in the next period of running threads, before the others.
     Result<> add_init_function(std::string_view function, std::string_view thread, int position = -1);
     Result<> remove_function(std::string_view function, std::string_view thread);
     Result<> start_threads();
     Result<> stop_threads();
     bool isRunning() const noexcept;
-    /// Lets other processes see the threads' overruns and latencies as they are now. [host]
+    /// Publishes overruns and latencies of the threads for other processes. [host]
     void publish_thread_figures();
 
     Result<> set_lock(std::uint8_t lock);
@@ -239,9 +239,9 @@ class Hal {
     std::vector<ParamInfo> params(std::string_view glob = "*") const;
     std::vector<SignalInfo> signals(std::string_view glob = "*") const;
     std::vector<FunctInfo> functs(std::string_view glob = "*") const;
-    std::vector<ThreadInfo> threads(std::string_view glob = "*") const;  ///< fastest first
+    std::vector<ThreadInfo> threads(std::string_view glob = "*") const;  ///< shortest period first
     std::vector<CompInfo> components(std::string_view glob = "*") const;
-    /// Quick answers by name (or alias); those below explain a failure with the nearest known name.
+    /// Fast queries by name (or alias); those below explain a failure with the nearest known name.
     bool hasPin(std::string_view name) const;
     bool hasParam(std::string_view name) const;
     bool hasSignal(std::string_view name) const;
@@ -254,8 +254,7 @@ class Hal {
     HalStatistics statistics() const;
 
     // ---- shared memory by key (rtapi_shmem_*), for channels between modules and programs
-    /// The zeroed block of this key; the same one for everybody in the instance. Valid until the instance
-    /// ends.
+    /// The zeroed block of this key, the same for all callers in the instance. Valid until the instance ends.
     Result<void *> shared_block(int key, std::size_t bytes);
 
     struct Impl;
@@ -267,13 +266,13 @@ class Hal {
     std::unique_ptr<Impl> impl_;
 };
 
-/// The instance that the C API works on: this thread's override, else the process's, else null. [any thread]
+/// The instance of the C API: this thread's override, else the process's, else null. [any thread]
 Hal *current() noexcept;
 /// Sets the process's instance; null when it ends.
 void set_process_instance(Hal *hal) noexcept;
 
-/// Makes an instance current in this thread while it lives: around module loading, and in tests with two
-/// machines.
+/// Makes an instance the current one of this thread during its lifetime: for loading modules, and for tests
+/// with two machines.
 class UseInstance {
   public:
     explicit UseInstance(Hal *hal) noexcept;

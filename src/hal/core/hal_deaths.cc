@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Components whose process died: their end, and who they were.
+// Removes components of dead processes and records their names.
 #include <time.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace mw::hal {
 using namespace detail;
 
 void Hal::Impl::note_death(const CompRecord &comp) noexcept {
-    if (comp.isAskedToEnd) {
+    if (comp.end_requested) {
         return;
     }
     Header &header = segment.header();
@@ -34,7 +34,7 @@ std::vector<DeathInfo> Hal::deaths() const {
     for (std::uint32_t i = header.death_count - kept; i != header.death_count; ++i) {
         const DeathRecord &death = header.deaths[i % DEATHS];
         const std::string name = death.name.data();
-        // Only the last death of a component counts, and none of one that has been started again.
+        // Only the last death of a component counts, and none of a restarted one.
         std::erase_if(deaths, [&](const DeathInfo &earlier) { return earlier.name == name; });
         if (impl_->segment.find(Kind::COMP, name) == nullptr) {
             deaths.push_back({name, death.pid, death.time_ns});
@@ -49,8 +49,8 @@ std::vector<std::string> Hal::reap_dead_components() {
     const runtime::ProcessId self = runtime::this_process();
     const std::int32_t spared_pid = impl_->segment.header().spared_pid;
     impl_->segment.each<CompRecord>(Kind::COMP, [&](CompRecord &comp) {
-        const bool isSpared = comp.process == self || comp.process.pid == spared_pid;
-        if (!isSpared && !runtime::isAlive(comp.process)) {
+        const bool skipped = comp.process == self || comp.process.pid == spared_pid;
+        if (!skipped && !runtime::isAlive(comp.process)) {
             names.emplace_back(comp.name_view());
             impl_->remove_comp(comp, true);
         }
@@ -68,7 +68,7 @@ void Hal::Impl::rest_process(std::int32_t pid) {
     segment.each<PinRecord>(Kind::PIN, [&](PinRecord &pin) {
         const auto *comp = segment.at<CompRecord>(pin.comp);
         if (comp->process.pid == pid && pin.type == Type::BIT && pin.dir != Dir::IN) {
-            write(value_of(pin), Value{pin.type, pin.hasSafeValue ? pin.safe_value : 0});
+            write(value_of(pin), Value{pin.type, pin.has_safe_value ? pin.safe_value : 0});
         }
     });
 }
@@ -79,7 +79,7 @@ Result<> Hal::expect_end(int comp_id) {
     if (comp == nullptr) {
         return refuse(EINVAL, fmt::format("there is no component with id {}", comp_id));
     }
-    comp->isAskedToEnd = true;
+    comp->end_requested = true;
     return {};
 }
 

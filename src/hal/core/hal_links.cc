@@ -21,7 +21,7 @@ std::int32_t &count_of(SignalRecord &signal, Dir dir) noexcept {
     return dir == Dir::IN ? signal.readers : dir == Dir::OUT ? signal.writers : signal.bidirectionals;
 }
 
-/// A pin that writes the signal, for messages; one that is only about to be linked is not found by name.
+/// Name of a pin that writes the signal, for messages; a pin that is only about to be linked is not found.
 std::string writer_of(const Hal::Impl &hal, const SignalRecord &signal) {
     std::string text = "another pin of the same net";
     const SignalRecord *real = hal.find_signal(signal.name_view());
@@ -143,9 +143,9 @@ Result<> Hal::Impl::check_link(const PinRecord &pin, const SignalRecord &signal)
         return refuse(EINVAL, fmt::format("pin '{}' is of type {}, signal '{}' of type {}", pin.name_view(),
                                           type_name(pin.type), signal.name_view(), type_name(signal.type)));
     }
-    const bool isTaken = (pin.dir == Dir::OUT && signal.writers + signal.bidirectionals > 0) ||
-                         (pin.dir == Dir::IO && signal.writers > 0);
-    if (isTaken) {
+    const bool taken = (pin.dir == Dir::OUT && signal.writers + signal.bidirectionals > 0) ||
+                       (pin.dir == Dir::IO && signal.writers > 0);
+    if (taken) {
         return refuse(EINVAL, fmt::format("signal '{}' cannot have {} pin '{}': {} writes it already",
                                           signal.name_view(), dir_name(pin.dir), pin.name_view(),
                                           writer_of(*this, signal)));
@@ -157,7 +157,7 @@ void Hal::Impl::link_pin(PinRecord &pin, SignalRecord &signal) noexcept {
     if (pin.signal == segment.offset_of(&signal)) {
         return;
     }
-    // A port's queue belongs to the signal.
+    // The queue of a port belongs to the signal.
     if (signal.type != Type::PORT && signal.readers + signal.writers + signal.bidirectionals == 0) {
         write(signal.value, read(pin.type, pin.value));
     }
@@ -193,7 +193,7 @@ Result<> Hal::Impl::make_queue(SignalRecord &signal, std::uint32_t size) {
         return refuse(ENOMEM, fmt::format("port signal '{}': no HAL memory left", signal.name_view()));
     }
     segment.at<PortQueue>(offset)->size = size;
-    // Release: who sees the queue sees its size.
+    // Release: a process that sees the queue sees its size.
     __atomic_store_n(queue, std::uint64_t{offset}, __ATOMIC_RELEASE);
     return {};
 }
@@ -281,7 +281,7 @@ Result<> Hal::net(std::string_view signal_name, const std::vector<std::string> &
         return refuse(EINVAL, fmt::format("'{}' is the name of a pin", signal_name),
                       "the first word after net is the signal's name");
     }
-    // A trial on a copy, so that nothing changes unless everything can be linked.
+    // Tries on a copy, so that nothing changes unless all pins can be linked.
     SignalRecord trial{};
     if (signal != nullptr) {
         trial.type = signal->type;
@@ -297,8 +297,8 @@ Result<> Hal::net(std::string_view signal_name, const std::vector<std::string> &
     std::memcpy(trial.name.data(), signal_name.data(), std::min(signal_name.size(), NAME_LENGTH));
     for (auto at = records.begin(); at != records.end(); ++at) {
         PinRecord *pin = *at;
-        const bool isLinked = signal != nullptr && pin->signal == impl_->segment.offset_of(signal);
-        if (isLinked || std::find(records.begin(), at, pin) != at) {
+        const bool is_linked = signal != nullptr && pin->signal == impl_->segment.offset_of(signal);
+        if (is_linked || std::find(records.begin(), at, pin) != at) {
             continue;
         }
         if (auto checked = impl_->check_link(*pin, trial); !checked) {

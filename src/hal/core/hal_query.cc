@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Lists of what there is.
+// Lists of the objects of an instance.
 #include <fnmatch.h>
 
 #include <algorithm>
@@ -77,7 +77,7 @@ CompInfo info_of(const Hal::Impl &hal, const CompRecord &comp) {
     info.type = comp.type;
     info.isReady = comp.isReady;
     info.pid = comp.process.pid;
-    info.isLoadedByLoadrt = comp.isLoadedByLoadrt;
+    info.is_loaded_by_loadrt = comp.is_loaded_by_loadrt;
     if (const char *args = hal.segment.at<char>(comp.insmod_args)) {
         info.insmod_args = args;
     }
@@ -158,7 +158,7 @@ std::vector<FunctInfo> Hal::functs(std::string_view glob) const {
             info.owner = impl_->comp_name(funct.comp);
             info.owner_id = impl_->comp_id(funct.comp);
             info.users = funct.users;
-            info.isReentrant = funct.isReentrant;
+            info.reentrant = funct.reentrant;
             info.usesFloat = funct.usesFloat;
             info.address = funct.function;
             info.argument = funct.argument;
@@ -193,7 +193,7 @@ std::vector<ThreadInfo> Hal::threads(std::string_view glob) const {
         const auto &functions = *segment.at<FunctionList>(thread.lists[thread.active.load()]);
         for (std::uint32_t i = 0; i < functions.count; ++i) {
             const ListEntry &entry = functions.entries[i];
-            (entry.isInit ? info.init_functions : info.functions)
+            (entry.is_init ? info.init_functions : info.functions)
                 .emplace_back(segment.at<FunctRecord>(entry.funct)->name_view());
         }
         list.push_back(std::move(info));

@@ -30,18 +30,19 @@ Offset Hal::Impl::value_of(const PinRecord &pin) const noexcept {
     return signal != nullptr ? signal->value : pin.value;
 }
 
-/// One aligned store into the owner's mapping: the component sees the old value's place or the new one's.
+/// One aligned store into the owner's mapping: the component sees either the old or the new address.
 void Hal::Impl::point_slot(const PinRecord &pin, Offset value) noexcept {
     const auto *comp = segment.at<CompRecord>(pin.comp);
-    // Release: a thread that follows the new address sees the value that was put there before.
+    // Release: a thread that follows the new address sees the value stored there before.
     __atomic_store_n(segment.at<std::uint64_t>(pin.slot), comp->base + value, __ATOMIC_RELEASE);
-    // Release: who sees the count writes to the new address.
+    // Release: a thread that sees the count writes to the new address.
     segment.header().links.fetch_add(1, std::memory_order_release);
 }
 
 namespace {
 
-/// Pins and parameters may only be made by the process that owns the component: their addresses are its own.
+/// Only the process that owns the component may create pins and parameters: their addresses are in its
+/// memory.
 Result<CompRecord *> comp_for_new(Hal::Impl &hal, int comp_id, std::string_view name, const char *what) {
     CompRecord *comp = hal.find_comp(comp_id);
     if (comp == nullptr) {
@@ -146,7 +147,7 @@ Result<> Hal::new_param(std::string_view name, Type type, Dir dir, void *address
 }
 
 Result<> Hal::new_funct(std::string_view name, void (*function)(void *, long), void *argument, int comp_id,
-                        bool isReentrant, bool usesFloat) {
+                        bool reentrant, bool usesFloat) {
     Guard guard(*impl_);
     auto comp = comp_for_new(*impl_, comp_id, name, "function");
     if (!comp) {
@@ -164,12 +165,12 @@ Result<> Hal::new_funct(std::string_view name, void (*function)(void *, long), v
         return refuse(ENOMEM, fmt::format("function '{}': no HAL memory left", name));
     }
     funct->comp = segment.offset_of(*comp);
-    funct->isReentrant = isReentrant;
+    funct->reentrant = reentrant;
     funct->usesFloat = usesFloat;
     funct->function = reinterpret_cast<std::uint64_t>(function);
     funct->argument = reinterpret_cast<std::uint64_t>(argument);
     segment.insert(Kind::FUNCT, *funct);
-    // Names too long for the three are an error too; what was made so far goes with the component.
+    // Names too long for the three pins are an error too; pins created so far are removed with the component.
     const std::string prefix(name);
     auto made = impl_->add_pin(prefix + ".time", Type::S32, Dir::OUT,
                                reinterpret_cast<void **>(&funct->time_slot), **comp);
@@ -178,7 +179,7 @@ Result<> Hal::new_funct(std::string_view name, void (*function)(void *, long), v
     }
     if (made) {
         made =
-            impl_->add_param(prefix + ".tmax-increased", Type::BIT, Dir::RO, &funct->isTmaxIncreased, **comp);
+            impl_->add_param(prefix + ".tmax-increased", Type::BIT, Dir::RO, &funct->tmax_increased, **comp);
     }
     return made;
 }
@@ -194,7 +195,7 @@ Result<> Hal::set_safe_value(std::string_view name, const Value &value) {
                                           type_name(pin->type), type_name(value.type)));
     }
     pin->safe_value = value.bits;
-    pin->hasSafeValue = true;
+    pin->has_safe_value = true;
     return {};
 }
 
@@ -220,7 +221,7 @@ void Hal::Impl::remove_funct(FunctRecord &funct) noexcept {
 
 namespace {
 
-/// Gives `target` the alias, instead of the one it has; an empty one only removes it.
+/// Sets the alias of `target`; an empty one removes it.
 template <class Target>
 Result<> set_alias(Hal::Impl &hal, Kind kind, Kind alias_kind, Target *target, std::string_view alias) {
     Segment &segment = hal.segment;

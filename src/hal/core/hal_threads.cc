@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Threads and the order in which they call functions. run_thread and what it calls are realtime code.
+// Threads and the order of their functions. run_thread and the functions that it calls are realtime code.
 #include <time.h>
 
 #include <algorithm>
@@ -37,27 +37,27 @@ void put(std::uint64_t &slot, T value) noexcept {
 void record_time(FunctRecord &funct, std::int64_t ns) noexcept {
     const std::int32_t time = clamp_s32(ns);
     put(funct.time_slot, time);
-    const bool isIncreased = time > __atomic_load_n(&funct.tmax, __ATOMIC_RELAXED);
-    if (isIncreased) {
+    const bool increased = time > __atomic_load_n(&funct.tmax, __ATOMIC_RELAXED);
+    if (increased) {
         __atomic_store_n(&funct.tmax, time, __ATOMIC_RELAXED);
     }
-    __atomic_store_n(&funct.isTmaxIncreased, isIncreased, __ATOMIC_RELAXED);
+    __atomic_store_n(&funct.tmax_increased, increased, __ATOMIC_RELAXED);
 }
 
 using Function = void (*)(void *, long);
 
-/// `here.calling` tells a crash report whose function it is.
+/// A crash report reads the function from `here.calling`.
 void call(ThreadContext &here, const ListEntry &entry, std::int64_t period_ns) noexcept {
     here.calling = &entry;
     reinterpret_cast<Function>(entry.function)(reinterpret_cast<void *>(entry.argument), period_ns);
 }
 
-/// Runs the init functions that have not run yet; they come first in a list. The index of the first other
-/// one.
+/// Runs the init functions that have not run yet; they come first in a list. Returns the index of the first
+/// other function.
 std::uint32_t run_init(ThreadContext &here, Segment &segment, const FunctionList &list,
                        std::int64_t period_ns) noexcept {
     std::uint32_t i = 0;
-    for (; i < list.count && list.entries[i].isInit; ++i) {
+    for (; i < list.count && list.entries[i].is_init; ++i) {
         auto *funct = segment.at<FunctRecord>(list.entries[i].funct);
         if (funct->init_runs.load(std::memory_order_relaxed) == 0) {
             funct->init_runs.store(1, std::memory_order_relaxed);
@@ -67,14 +67,14 @@ std::uint32_t run_init(ThreadContext &here, Segment &segment, const FunctionList
     return i;
 }
 
-/// A part of a function list.
+/// A range of a function list.
 struct Part {
     std::uint32_t begin;
     std::uint32_t end;
 };
 
-/// Reading a counter costs more than a short function does. So up to 16 functions of a thread, or a quarter
-/// of those it has, are timed in a period, in turn; the thread as a whole in every one.
+/// Reading a counter takes longer than a short function. So each period times up to 16 functions of a thread,
+/// or a quarter of them, in turn; the whole thread is timed in every period.
 Part part_to_time(ThreadRecord &thread, Part all) noexcept {
     constexpr std::uint32_t AT_LEAST = 16;
     constexpr std::uint32_t SHARE = 4;
@@ -94,7 +94,7 @@ void run_untimed(ThreadContext &here, const FunctionList &list, Part part, std::
 
 }  // namespace
 
-/// Runs the functions from `first` on, and keeps how long they took.
+/// Runs the functions from `first` on, and stores their times.
 void Hal::Impl::run_timed(ThreadRecord &thread, const FunctionList &list, std::uint32_t first) noexcept {
     ThreadContext &here = context();
     const double ns_per_tick = counter.ns_per_tick();
@@ -121,15 +121,15 @@ void Hal::Impl::run_thread(ThreadRecord &thread) noexcept {
     ThreadContext &here = context();
     const ThreadContext before = here;
     here.instance = self;
-    here.isRealtime = true;
+    here.realtime = true;
     here.thread = &thread;
     thread.cycle.fetch_add(1, std::memory_order_seq_cst);
     // Sequentially consistent with stop_threads: it either stops this cycle or waits for it.
-    if (segment.header().isRunning.load(std::memory_order_seq_cst) != 0) {
+    if (segment.header().running.load(std::memory_order_seq_cst) != 0) {
         const std::uint32_t active = thread.active.load(std::memory_order_seq_cst);
         const auto &list = *segment.at<FunctionList>(thread.lists[active]);
         const Part all{run_init(here, segment, list, thread.period_ns), list.count};
-        if (segment.header().isVirtual) {
+        if (segment.header().is_virtual) {
             run_untimed(here, list, all, thread.period_ns);
         } else {
             run_timed(thread, list, all.begin);
@@ -148,7 +148,7 @@ void Hal::Impl::wait_for_cycle(const ThreadRecord &thread) const noexcept {
     if ((cycle & 1U) == 0) {
         return;
     }
-    // A thread that hangs in a function for longer is beyond help; a dead process never ends its cycle.
+    // A thread that hangs longer in a function cannot be helped; a dead process never ends its cycle.
     constexpr int TRIES = 10000;
     constexpr int LOOK_EVERY = 20;
     for (int i = 0; i < TRIES && thread.cycle.load(std::memory_order_seq_cst) == cycle; ++i) {
@@ -160,15 +160,15 @@ void Hal::Impl::wait_for_cycle(const ThreadRecord &thread) const noexcept {
     }
 }
 
-/// Applies `change` to a copy of the thread's list, which the thread takes up with its next period. On return
+/// Applies `change` to a copy of the thread's list, which the thread uses from its next period on. On return
 /// the old list is no longer in use.
 template <class Change>
 Result<> Hal::Impl::change_list(ThreadRecord &thread, Change change) {
-    if (context().isRealtime) {
+    if (context().realtime) {
         return refuse(EDEADLK, "the functions of a thread cannot be changed from inside a thread");
     }
-    // Acquire: the thread has read the spare list in cycles that have ended, which another process may have
-    // waited for.
+    // Acquire: the thread has read the spare list in cycles that have ended, possibly awaited by another
+    // process.
     (void)thread.cycle.load(std::memory_order_acquire);
     const std::uint32_t active = thread.active.load();
     const auto &list = *segment.at<FunctionList>(thread.lists[active]);
@@ -185,18 +185,17 @@ Result<> Hal::Impl::change_list(ThreadRecord &thread, Change change) {
 
 void Hal::Impl::drop_from_lists(Offset funct) noexcept {
     segment.each<ThreadRecord>(Kind::THREAD, [&](ThreadRecord &thread) {
-        // Acquire: what the thread last did with the function comes before the record is used for something
-        // else.
+        // Acquire: the thread's last use of the function precedes the reuse of the record.
         (void)thread.cycle.load(std::memory_order_acquire);
         const auto &list = *segment.at<FunctionList>(thread.lists[thread.active.load()]);
         const auto *end = list.entries.begin() + list.count;
-        const auto isIt = [funct](const ListEntry &entry) { return entry.funct == funct; };
-        if (std::none_of(list.entries.begin(), end, isIt)) {
+        const auto matching = [funct](const ListEntry &entry) { return entry.funct == funct; };
+        if (std::none_of(list.entries.begin(), end, matching)) {
             return;
         }
         (void)change_list(thread, [&](FunctionList &changed) -> Result<> {
             auto *last =
-                std::remove_if(changed.entries.begin(), changed.entries.begin() + changed.count, isIt);
+                std::remove_if(changed.entries.begin(), changed.entries.begin() + changed.count, matching);
             changed.count = static_cast<std::uint32_t>(last - changed.entries.begin());
             return {};
         });
@@ -205,8 +204,8 @@ void Hal::Impl::drop_from_lists(Offset funct) noexcept {
 
 namespace {
 
-/// Where position `wanted` is in [first, first + count]: 1 the first... -1 after the last; -1 when there is
-/// no such.
+/// Index of position `wanted` in [first, first + count]: 1 the first... -1 after the last; -1 when it does
+/// not exist.
 int place_of(int wanted, int first, int count) noexcept {
     const int place = wanted > 0 ? wanted - 1 : count + 1 + wanted;
     return wanted == 0 || place < 0 || place > count ? -1 : first + place;
@@ -215,7 +214,7 @@ int place_of(int wanted, int first, int count) noexcept {
 }  // namespace
 
 Result<> Hal::Impl::add_to_thread(std::string_view function, std::string_view thread_name, int position,
-                                  bool isInit) {
+                                  bool is_init) {
     if (auto checked = check_lock(LOCK_CONFIG, "adding functions to threads"); !checked) {
         return checked;
     }
@@ -227,7 +226,7 @@ Result<> Hal::Impl::add_to_thread(std::string_view function, std::string_view th
     if (thread == nullptr) {
         return no_such(Kind::THREAD, thread_name);
     }
-    if (funct->users > 0 && !funct->isReentrant) {
+    if (funct->users > 0 && !funct->reentrant) {
         return refuse(
             EINVAL, fmt::format("function '{}' is in a thread already and may be called from one place only",
                                 function));
@@ -237,21 +236,21 @@ Result<> Hal::Impl::add_to_thread(std::string_view function, std::string_view th
             return refuse(ENOMEM,
                           fmt::format("thread '{}' has {} functions, no more fit", thread_name, list.count));
         }
-        // Init functions stand before the others.
+        // Init functions precede the others.
         auto *end = list.entries.begin() + list.count;
         const auto inits = static_cast<int>(
-            std::count_if(list.entries.begin(), end, [](const ListEntry &entry) { return entry.isInit; }));
+            std::count_if(list.entries.begin(), end, [](const ListEntry &entry) { return entry.is_init; }));
         const int others = static_cast<int>(list.count) - inits;
-        const int place = isInit ? place_of(position, 0, inits) : place_of(position, inits, others);
+        const int place = is_init ? place_of(position, 0, inits) : place_of(position, inits, others);
         if (place < 0) {
             return refuse(EINVAL,
                           fmt::format("position {} is outside of thread '{}', which has {} functions",
-                                      position, thread_name, isInit ? inits : others),
+                                      position, thread_name, is_init ? inits : others),
                           "1 is the first, -1 the last");
         }
         std::move_backward(list.entries.begin() + place, end, end + 1);
         list.entries[static_cast<std::size_t>(place)] =
-            ListEntry{funct->function, funct->argument, segment.offset_of(funct), isInit};
+            ListEntry{funct->function, funct->argument, segment.offset_of(funct), is_init};
         ++list.count;
         return {};
     });
@@ -310,7 +309,7 @@ void run_entry(void *argument, std::int64_t /*period_ns*/) {
     runner->hal->run_thread(*runner->record);
 }
 
-/// The record with its two lists, its pseudo component and the component's pins.
+/// Creates the record with its two lists, its pseudo component and the component's pins.
 Result<ThreadRecord *> make_thread_record(Hal::Impl &hal, std::string_view name, std::int64_t period_ns) {
     Segment &segment = hal.segment;
     auto comp_id = hal.add_comp(fmt::format("__{}", name), CompType::OTHER);
@@ -352,7 +351,7 @@ Result<ThreadRecord *> make_thread_record(Hal::Impl &hal, std::string_view name,
 
 Result<> Hal::new_thread(std::string_view name, std::int64_t period_ns, bool /*usesFloat*/) {
     Guard guard(*impl_);
-    if (!impl_->isHost) {
+    if (!impl_->is_host) {
         return refuse(EPERM, "threads can only be made in the realtime process", "use loadrt threads");
     }
     if (period_ns < 1000 || period_ns > 10'000'000'000) {
@@ -409,7 +408,7 @@ Result<> Hal::Impl::remove_thread(ThreadRecord &thread) {
 
 Result<> Hal::delete_thread(std::string_view name) {
     Guard guard(*impl_);
-    if (!impl_->isHost || context().isRealtime) {
+    if (!impl_->is_host || context().realtime) {
         return refuse(EPERM, "threads can only be removed in the realtime process, outside of threads");
     }
     auto *thread = impl_->segment.find_as<ThreadRecord>(Kind::THREAD, name);
@@ -424,7 +423,7 @@ Result<> Hal::start_threads() {
     if (auto checked = impl_->check_lock(LOCK_RUN, "starting threads"); !checked) {
         return checked;
     }
-    impl_->segment.header().isRunning.store(1);
+    impl_->segment.header().running.store(1);
     return {};
 }
 
@@ -433,8 +432,8 @@ Result<> Hal::stop_threads() {
     if (auto checked = impl_->check_lock(LOCK_RUN, "stopping threads"); !checked) {
         return checked;
     }
-    impl_->segment.header().isRunning.store(0);
-    if (!context().isRealtime) {
+    impl_->segment.header().running.store(0);
+    if (!context().realtime) {
         impl_->segment.each<ThreadRecord>(Kind::THREAD,
                                           [&](ThreadRecord &thread) { impl_->wait_for_cycle(thread); });
     }
@@ -455,7 +454,7 @@ void Hal::publish_thread_figures() {
 }
 
 bool Hal::isRunning() const noexcept {
-    return impl_->segment.header().isRunning.load() != 0;
+    return impl_->segment.header().running.load() != 0;
 }
 
 }  // namespace mw::hal

@@ -33,15 +33,15 @@ struct Loader::Module {
     std::string file;
     void *handle = nullptr;
     std::vector<const rtapi_mp_info *> parameters;
-    std::deque<std::string> texts;  ///< what string parameters point to
-    std::vector<int> comp_ids;      ///< made by its rtapi_app_main
-    std::vector<int> users;         ///< components that hold its symbols
-    std::vector<std::string> uses;  ///< modules whose symbols it is linked to
+    std::deque<std::string> texts;  ///< storage of string parameters
+    std::vector<int> comp_ids;      ///< components of its rtapi_app_main
+    std::vector<int> users;         ///< components that use its symbols
+    std::vector<std::string> uses;  ///< modules whose symbols it uses
 };
 
 namespace {
 
-/// A parameter as a HAL file has it, its value in quotes where there are blanks in it.
+/// A parameter as in a HAL file, with its value in quotes if it contains blanks.
 std::string quoted(const std::string &arg) {
     const std::size_t equals = arg.find('=');
     if (equals == std::string::npos || arg.find_first_of(" \t") == std::string::npos) {
@@ -50,7 +50,7 @@ std::string quoted(const std::string &arg) {
     return arg.substr(0, equals + 1) + '"' + arg.substr(equals + 1) + '"';
 }
 
-/// Names of the shared objects there are.
+/// Names of existing shared objects.
 std::vector<std::string> modules_in(const std::vector<std::string> &folders) {
     constexpr std::string_view ENDING = ".so";
     std::vector<std::string> names;
@@ -66,7 +66,7 @@ std::vector<std::string> modules_in(const std::vector<std::string> &folders) {
     return names;
 }
 
-/// Errors that a module logs while it is loaded are repeated in the failure.
+/// Repeats errors that a module logs while it is loaded in the failure.
 struct LogTap {
     runtime::Log &log;
     runtime::Log::Sink sink = &LogTap::receive;
@@ -89,13 +89,13 @@ struct LogTap {
 
 Result<> set_number(const rtapi_mp_info &info, int index, std::string_view text) {
     const auto value = parse_c_int(text);
-    const bool isInt = info.mp_type == RTAPI_MP_TYPE_INT;
+    const bool is_int = info.mp_type == RTAPI_MP_TYPE_INT;
     if (!value ||
-        (isInt && (*value < std::numeric_limits<int>::min() || *value > std::numeric_limits<int>::max()))) {
+        (is_int && (*value < std::numeric_limits<int>::min() || *value > std::numeric_limits<int>::max()))) {
         return refuse(EINVAL, fmt::format("parameter '{}': '{}' is not a whole number{}", info.mp_name, text,
-                                          isInt ? " of 32 bits" : ""));
+                                          is_int ? " of 32 bits" : ""));
     }
-    if (isInt) {
+    if (is_int) {
         static_cast<int *>(info.mp_address)[index] = static_cast<int>(*value);
     } else {
         static_cast<long *>(info.mp_address)[index] = *value;
@@ -104,7 +104,7 @@ Result<> set_number(const rtapi_mp_info &info, int index, std::string_view text)
 }
 
 Result<> set_parameter(const rtapi_mp_info &info, std::string_view text, std::deque<std::string> &texts) {
-    const bool isText = info.mp_type == RTAPI_MP_TYPE_STRING;
+    const bool is_text = info.mp_type == RTAPI_MP_TYPE_STRING;
     if (info.mp_count > 1 && text.empty()) {
         return {};
     }
@@ -115,7 +115,7 @@ Result<> set_parameter(const rtapi_mp_info &info, std::string_view text, std::de
         }
         const std::size_t comma = info.mp_count > 1 ? text.find(',') : std::string_view::npos;
         const std::string_view word = text.substr(0, comma);
-        if (isText) {
+        if (is_text) {
             static_cast<char **>(info.mp_address)[index] = texts.emplace_back(word).data();
         } else if (auto set = set_number(info, index, word); !set) {
             return set;
@@ -127,16 +127,16 @@ Result<> set_parameter(const rtapi_mp_info &info, std::string_view text, std::de
     }
 }
 
-/// A copy in memory, which the linker takes for another library: statics of its own.
+/// A copy in memory, which the linker treats as another library, with its own statics.
 int copy_in_memory(const std::string &file) {
     const int from = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
     const int to = ::memfd_create("millwright-module", MFD_CLOEXEC);
     struct stat status{};
-    bool isCopied = from >= 0 && to >= 0 && ::fstat(from, &status) == 0;
-    for (off_t left = isCopied ? status.st_size : 0; left > 0;) {
+    bool copied = from >= 0 && to >= 0 && ::fstat(from, &status) == 0;
+    for (off_t left = copied ? status.st_size : 0; left > 0;) {
         const ssize_t sent = ::sendfile(to, from, nullptr, static_cast<std::size_t>(left));
         if (sent <= 0) {
-            isCopied = false;
+            copied = false;
             break;
         }
         left -= sent;
@@ -144,21 +144,21 @@ int copy_in_memory(const std::string &file) {
     if (from >= 0) {
         ::close(from);
     }
-    if (!isCopied && to >= 0) {
+    if (!copied && to >= 0) {
         ::close(to);
         return -1;
     }
     return to;
 }
 
-/// Where a module begins in memory.
+/// Address of a module in memory.
 const void *module_base(void *handle) {
     Dl_info info{};
     void *main = ::dlsym(handle, "rtapi_app_main");
     return main != nullptr && ::dladdr(main, &info) != 0 ? info.dli_fbase : nullptr;
 }
 
-/// The name in a message of the dynamic linker about an undefined symbol; empty for other messages.
+/// The symbol in the dynamic linker's message about an undefined symbol; empty for other messages.
 std::string missing_symbol(const std::string &message) {
     constexpr std::string_view MARK = "undefined symbol: ";
     const std::size_t at = message.find(MARK);
@@ -224,7 +224,7 @@ std::vector<std::string> Loader::modules() const {
 }
 
 Result<> Loader::open(Module &module) {
-    // dlopen of one file from two threads must not both take it for the first.
+    // Two threads that open one file must not both treat it as the first.
     static std::mutex opening;
     const std::lock_guard lock(opening);
     std::string path = module.file;
@@ -248,8 +248,8 @@ Result<> Loader::open(Module &module) {
     return {};
 }
 
-/// Opens the file. A symbol that it lacks and that a loaded module exports is taken from there: that module's
-/// symbols then become visible to later ones, and it stays loaded while this one uses it. Empty, or why not.
+/// Opens the file. A missing symbol is taken from a loaded module that exports it: that module's symbols
+/// become visible to later ones, and it stays loaded while this one uses it. Empty, or the reason.
 std::string Loader::link(Module &module, const std::string &path) {
     std::string last_missing;
     while (true) {
@@ -387,7 +387,7 @@ Result<> Loader::load(const std::string &name, const std::vector<std::string> &a
     return {};
 }
 
-/// Takes away what the module left, then the module.
+/// Removes the module's remains, then the module.
 void Loader::close(Module &module) {
     for (const int id : module.comp_ids) {
         const auto comp = hal_.component(id);
@@ -435,8 +435,8 @@ Result<> Loader::unload(const std::string &name) {
 Result<> Loader::unload_all() {
     Result<> first_failure;
     (void)hal_.stop_threads();
-    // Users stand after what they use, unless modules were unloaded and loaded again in between; so several
-    // rounds.
+    // Users follow the modules that they use, unless modules were unloaded and loaded again; so several
+    // rounds are needed.
     for (std::size_t rounds = modules_.size(); rounds > 0 && !modules_.empty(); --rounds) {
         for (std::size_t i = modules_.size(); i > 0; --i) {
             const std::string name = modules_[i - 1]->name;
@@ -452,10 +452,10 @@ Loader::Module *Loader::exporter_of(const char *symbol) const {
     for (auto module = modules_.rbegin(); module != modules_.rend(); ++module) {
         if (void *address = ::dlsym((*module)->handle, symbol)) {
             Dl_info info{};
-            // dlsym looks into the libraries that the module needs, too; those are not the module's own.
-            const bool isOwn = ::dladdr(address, &info) != 0 && info.dli_fbase != nullptr &&
-                               info.dli_fbase == module_base((*module)->handle);
-            if (isOwn) {
+            // dlsym also searches the libraries that the module needs; those are not the module's own.
+            const bool own = ::dladdr(address, &info) != 0 && info.dli_fbase != nullptr &&
+                             info.dli_fbase == module_base((*module)->handle);
+            if (own) {
                 return module->get();
             }
         }

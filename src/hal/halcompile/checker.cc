@@ -47,10 +47,10 @@ constexpr std::array<std::string_view, 37> C_WORDS{
 constexpr std::array<std::string_view, 8> RESERVED{"comp_id",        "fperiod",     "rtapi_app_main",
                                                    "rtapi_app_exit", "extra_setup", "extra_cleanup",
                                                    "post_export",    "period"};
-/// Taken only in components whose code sees them.
+/// Reserved only in components whose code can use them.
 constexpr std::array<std::string_view, 2> OF_SETUP{"prefix", "extra_arg"};
 
-constexpr std::size_t LONGEST_NAME = 127;  // of HAL
+constexpr std::size_t LONGEST_NAME = 127;  // limit of HAL
 
 template <class List>
 bool has(const List &list, std::string_view name) {
@@ -88,15 +88,15 @@ class Checker {
             sink_.error("there is no 'component' declaration", {component_.file, 1, 1},
                         fmt::format("start with: component {};", base_name));
         } else if (component_.name != base_name) {
-            sink_.error(fmt::format("component '{}' stands in a file named {}", component_.name, base_name),
+            sink_.error(fmt::format("component '{}' is in a file named {}", component_.name, base_name),
                         component_.place, "the names of component and file must be the same");
         } else if (component_.name.find_first_of("-.#") != std::string::npos) {
             sink_.error(fmt::format("'{}' is no name for a component", component_.name), component_.place,
                         "it takes letters, digits and _");
         }
-        if (!component_.hasCode) {
+        if (!component_.has_code) {
             sink_.error("there is no ;;", {component_.file, 0, 0},
-                        "it stands on a line of its own between declarations and code");
+                        "it must be on a separate line between declarations and code");
         }
         if (!component_.license) {
             sink_.warning("there is no license", component_.place, "for example: license \"GPL\";");
@@ -141,10 +141,10 @@ class Checker {
             sink_.error(fmt::format("'{}' is a word of C", name), place,
                         fmt::format("call the {} {}_; HAL shows it without the trailing _", what, name));
         }
-        const bool isOfSetup =
+        const bool of_setup =
             has(OF_SETUP, name) && (component_.isOn("extra_setup") || component_.isOn("post_export"));
-        const bool isExport = name == "export" && !component_.isOn("rtapi_app", true);
-        if (has(RESERVED, name) || isOfSetup || isExport || name.starts_with("__comp")) {
+        const bool exported = name == "export" && !component_.isOn("rtapi_app", true);
+        if (has(RESERVED, name) || of_setup || exported || name.starts_with("__comp")) {
             sink_.error(fmt::format("the name '{}' is reserved", name), place,
                         fmt::format("call the {} {}_", what, name));
         }
@@ -156,15 +156,15 @@ class Checker {
     void check_item(const Item &item) {
         const char *what = item.isPin ? "pin" : "parameter";
         claim(c_name(item.name), item.place, what);
-        const bool hasHash = item.name.find('#') != std::string::npos;
-        if (hasHash && !item.array) {
+        const bool has_hash = item.name.find('#') != std::string::npos;
+        if (has_hash && !item.array) {
             sink_.error(fmt::format("'{}' has # but no [SIZE]", item.name), item.place);
         }
-        if (!hasHash && item.array) {
+        if (!has_hash && item.array) {
             sink_.error(fmt::format("'{}' has a [SIZE] but no #", item.name), item.place,
-                        fmt::format("the # stand for the number of the element: {}-##", item.name));
+                        fmt::format("the # are replaced by the number of the element: {}-##", item.name));
         }
-        if (hasHash &&
+        if (has_hash &&
             item.name.find('#', item.name.find_first_not_of('#', item.name.find('#'))) != std::string::npos) {
             sink_.error(fmt::format("'{}' has # in two places", item.name), item.place);
         }
@@ -194,25 +194,25 @@ class Checker {
         const auto is_out = [&](double low, double high) {
             return number && (*number < low || *number > high);
         };
-        const bool isFraction =
+        const bool is_fraction =
             number && !integer && *number != static_cast<double>(static_cast<long long>(*number));
         const char *expected = nullptr;
         switch (item.type) {
-        case ValueType::BIT: expected = is_out(0, 1) || isFraction ? "0, 1, TRUE or FALSE" : nullptr; break;
+        case ValueType::BIT: expected = is_out(0, 1) || is_fraction ? "0, 1, TRUE or FALSE" : nullptr; break;
         case ValueType::S32:
             expected =
                 is_out(std::numeric_limits<std::int32_t>::min(), std::numeric_limits<std::uint32_t>::max()) ||
-                        isFraction
+                        is_fraction
                     ? "a whole number of 32 bits"
                     : nullptr;
             break;
         case ValueType::U32:
-            expected = is_out(0, std::numeric_limits<std::uint32_t>::max()) || isFraction
+            expected = is_out(0, std::numeric_limits<std::uint32_t>::max()) || is_fraction
                            ? "a whole number of 32 bits, not negative"
                            : nullptr;
             break;
         case ValueType::S64:
-        case ValueType::U64: expected = isFraction ? "a whole number of 64 bits" : nullptr; break;
+        case ValueType::U64: expected = is_fraction ? "a whole number of 64 bits" : nullptr; break;
         case ValueType::PORT: expected = "nothing: a port has no start value"; break;
         case ValueType::FLOAT: break;
         }
@@ -235,11 +235,11 @@ class Checker {
         }
     }
 
-    /// Each function needs its FUNCTION(name), and the other way round.
+    /// Each function needs its FUNCTION(name), and vice versa.
     void check_functions() {
         if (component_.isUserspace() && !component_.functions.empty()) {
             sink_.error("a userspace component has no functions", component_.functions.front().place,
-                        "its code stands in user_mainloop()");
+                        "its code is in user_mainloop()");
             return;
         }
         const CodeFacts facts = look_at_code(component_.code);
@@ -249,17 +249,17 @@ class Checker {
                 {component_.file, component_.code_line + facts.deep->line, facts.deep->column});
             return;
         }
-        const bool isBody = !facts.hasFunctionWord && component_.functions.size() == 1;
-        if (isBody || component_.isUserspace()) {
+        const bool is_body = !facts.has_function_word && component_.functions.size() == 1;
+        if (is_body || component_.isUserspace()) {
             return;
         }
         std::vector<std::string> declared;
         for (const Function &function : component_.functions) {
             declared.push_back(c_name(function.name));
-            const bool isDefined =
+            const bool defined =
                 std::any_of(facts.functions.begin(), facts.functions.end(),
                             [&](const auto &one) { return c_name(one.name) == declared.back(); });
-            if (!isDefined && !facts.hasQuotedInclude) {
+            if (!defined && !facts.has_quoted_include) {
                 sink_.error(fmt::format("function '{}' is not defined", function.name), function.place,
                             fmt::format("its code starts with FUNCTION({})", declared.back()));
             }
@@ -275,11 +275,11 @@ class Checker {
         }
     }
 
-    /// Options that ask for code need it, and code that an option calls needs the option.
+    /// Options that need code, and code that needs an option.
     void check_code_of_options() {
         struct Pair {
             std::string_view option, word;
-            bool isMacro;
+            bool is_macro;
         };
         static constexpr std::array<Pair, 6> PAIRS{{{"extra_setup", "EXTRA_SETUP", true},
                                                     {"extra_cleanup", "EXTRA_CLEANUP", true},
@@ -288,17 +288,17 @@ class Checker {
                                                     {"userinit", "userinit", false},
                                                     {"userspace", "user_mainloop", false}}};
         const CodeFacts facts = look_at_code(component_.code);
-        if (facts.hasQuotedInclude || !component_.hasCode) {
+        if (facts.has_quoted_include || !component_.has_code) {
             return;
         }
         for (const Pair &pair : PAIRS) {
-            const bool isOn =
+            const bool on =
                 component_.isOn(pair.option) && (pair.option != "userinit" || component_.isUserspace());
-            const bool isThere = facts.words.contains(pair.word);
-            if (isOn && !isThere) {
+            const bool present = facts.words.contains(pair.word);
+            if (on && !present) {
                 sink_.error(fmt::format("option {} is on, but there is no {}", pair.option, pair.word),
                             component_.option(pair.option)->place);
-            } else if (!isOn && isThere && pair.isMacro) {
+            } else if (!on && present && pair.is_macro) {
                 sink_.warning(fmt::format("{} is never called", pair.word), component_.place,
                               fmt::format("it needs: option {};", pair.option));
             }

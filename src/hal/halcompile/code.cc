@@ -8,7 +8,7 @@ bool isWordChar(char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
 }
 
-/// Where the comment or string that starts at `at` ends; `at` when none does.
+/// End of the comment or string that starts at `at`; `at` when there is none.
 std::size_t skip_inert(std::string_view code, std::size_t at) {
     const std::string_view rest = code.substr(at);
     if (rest.starts_with("//")) {
@@ -29,7 +29,7 @@ std::size_t skip_inert(std::string_view code, std::size_t at) {
     return at;
 }
 
-/// The word in brackets behind `at`, if that is what stands there.
+/// The word in brackets at `at`; empty when there is none.
 std::string bracketed_name(std::string_view code, std::size_t at) {
     const auto skip_blank = [&] {
         while (at < code.size() && (code[at] == ' ' || code[at] == '\t')) {
@@ -50,14 +50,14 @@ std::string bracketed_name(std::string_view code, std::size_t at) {
     return at < code.size() && code[at] == ')' ? name : std::string();
 }
 
-/// Follows the nesting of C code, character by character.
+/// Tracks the nesting of C code, character by character.
 class Nesting {
   public:
     /// True when `c` exceeds the limit.
     bool exceeds(char c) {
         depth_ += isOneOf(c, "([{") ? 1 : isOneOf(c, ")]}") && depth_ > 0 ? -1 : 0;
-        const bool isBlank = isOneOf(c, " \t\n\r");
-        signs_ = isOneOf(c, "!~-+*&") ? signs_ + 1 : isBlank ? signs_ : 0;
+        const bool is_blank = isOneOf(c, " \t\n\r");
+        signs_ = isOneOf(c, "!~-+*&") ? signs_ + 1 : is_blank ? signs_ : 0;
         return depth_ > MOST_NESTED || signs_ > MOST_NESTED;
     }
 
@@ -73,7 +73,7 @@ CodeFacts look_at_code(std::string_view code) {
     CodeFacts facts;
     int line = 0;
     std::size_t line_start = 0;
-    bool isDirective = false;
+    bool is_directive = false;
     Nesting nesting;
     for (std::size_t at = 0; at < code.size();) {
         if (const std::size_t end = skip_inert(code, at); end != at) {
@@ -90,19 +90,19 @@ CodeFacts look_at_code(std::string_view code) {
                 CodeFacts::Use{std::string(1, code[at]), line, static_cast<int>(at - line_start) + 1};
         }
         if (code[at] == '\n') {
-            isDirective = isDirective && at > 0 && code[at - 1] == '\\';
+            is_directive = is_directive && at > 0 && code[at - 1] == '\\';
             ++line;
             line_start = ++at;
             continue;
         }
         if (code[at] == '#') {
-            isDirective = true;
+            is_directive = true;
             const std::size_t end = code.find('\n', at);
             const std::string_view directive =
                 code.substr(at, end == std::string_view::npos ? end : end - at);
-            facts.hasQuotedInclude =
-                facts.hasQuotedInclude || (directive.find("include") != std::string_view::npos &&
-                                           directive.find('"') != std::string_view::npos);
+            facts.has_quoted_include =
+                facts.has_quoted_include || (directive.find("include") != std::string_view::npos &&
+                                             directive.find('"') != std::string_view::npos);
         }
         if (!isWordChar(code[at])) {
             ++at;
@@ -114,9 +114,9 @@ CodeFacts look_at_code(std::string_view code) {
         }
         facts.words.emplace(code.substr(start, at - start));
         if (code.substr(start, at - start) == "FUNCTION") {
-            facts.hasFunctionWord = true;
+            facts.has_function_word = true;
             const std::string name = bracketed_name(code, at);
-            if (!name.empty() && !isDirective) {
+            if (!name.empty() && !is_directive) {
                 facts.functions.push_back({name, line, static_cast<int>(start - line_start) + 1});
             }
         }

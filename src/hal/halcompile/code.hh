@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What has to be known of a component's C code before a compiler sees it.
+// Analysis of a component's C code before it is compiled.
 #pragma once
 
 #include <optional>
@@ -10,8 +10,8 @@
 
 namespace mw::halcompile {
 
-/// Brackets in one another, and signs or operators in a row: what walks through an expression, a C compiler
-/// too, needs stack for each.
+/// Maximum nesting of brackets, and of consecutive signs or operators: processing an expression, also in a C
+/// compiler, uses stack for each.
 inline constexpr int MOST_NESTED = 256;
 
 struct CodeFacts {
@@ -20,10 +20,10 @@ struct CodeFacts {
         int line = 0;  ///< from the start of the code, from 0
         int column = 0;
     };
-    bool hasFunctionWord = false;  ///< FUNCTION stands somewhere, comments excepted
-    bool hasQuotedInclude = false;
+    bool has_function_word = false;  ///< FUNCTION occurs outside comments
+    bool has_quoted_include = false;
     std::set<std::string, std::less<>> words;  ///< all of them, outside comments and strings
-    std::optional<Use> deep;                   ///< where MOST_NESTED is exceeded first: what exceeds it
+    std::optional<Use> deep;                   ///< where MOST_NESTED is first exceeded, and by which text
     std::vector<Use> functions;                ///< FUNCTION(name) outside comments, strings and directives
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What a .comp file declares: the tree that the parser makes, the checker looks at and the emitters write
-// from.
+// The declarations of a .comp file: the tree that the parser builds, the checker reads and the emitters
+// write.
 #pragma once
 
 #include <optional>
@@ -17,7 +17,7 @@ enum class Direction { IN, OUT, IO, RO, RW };
 /// [SIZE] or [MAXSIZE : CONDSIZE].
 struct ArraySize {
     std::string size;   ///< a number or a C constant
-    std::string count;  ///< C expression of personality; empty: all of them
+    std::string count;  ///< C expression of personality; empty: all elements
 };
 
 /// A pin or a parameter.
@@ -26,9 +26,9 @@ struct Item {
     bool isPin = true;
     Direction direction = Direction::IN;
     ValueType type = ValueType::BIT;
-    std::string name;  ///< as written, with its dashes, dots and hash marks
+    std::string name;  ///< as in the file, with dashes, dots and hash marks
     std::optional<ArraySize> array;
-    std::string condition;    ///< C expression of personality; empty: always there
+    std::string condition;    ///< C expression of personality; empty: always
     std::string start_value;  ///< C expression; empty: 0
     std::string doc;
 };
@@ -43,7 +43,7 @@ struct Function {
 struct Option {
     SourcePlace place;
     std::string name;
-    std::string value;  ///< "yes" when none is written
+    std::string value;  ///< "yes" when missing
 };
 
 struct Variable {
@@ -64,14 +64,14 @@ struct ModuleParameter {
     std::string doc;
 };
 
-/// A paragraph of the manual page, or an include or a struct: text with its place.
+/// A paragraph of the manual page, an include or a struct: text with its position.
 struct Text {
     SourcePlace place;
     std::string text;
 };
 
 struct Component {
-    std::string file;  ///< as errors name it
+    std::string file;  ///< file name for errors
     SourcePlace place;
     std::string name;
     std::string doc;
@@ -84,26 +84,26 @@ struct Component {
     std::vector<Text> structures;  ///< C type definitions, complete with their semicolon
     std::optional<Text> description, examples, notes, see_also, license;
     std::vector<Text> authors;
-    std::string code;      ///< what follows ;;
-    int code_line = 1;     ///< where it starts
-    bool hasCode = false;  ///< there was a ;;
+    std::string code;       ///< text after ;;
+    int code_line = 1;      ///< where it starts
+    bool has_code = false;  ///< there was a ;;
 
     const Option *option(std::string_view name) const;
     /// The value of a yes/no option.
     bool isOn(std::string_view name, bool otherwise = false) const;
-    /// True when a condition or an array size depends on the personality.
+    /// A condition or an array size depends on the personality.
     bool hasPersonality() const;
     bool isUserspace() const { return isOn("userspace"); }
 };
 
-/// "yes", "true" and other than zero numbers.
+/// "yes", "true" and numbers other than zero.
 std::optional<bool> parse_switch(std::string_view text);
 
-/// The name of an item as C code sees it: x.##.y is x_y, out-# is out.
+/// Name of an item in C code: x.##.y is x_y, out-# is out.
 std::string c_name(std::string_view name);
-/// The name as HAL sees it, hash marks still in it: x_y_ is x-y, _ is empty.
+/// Name in HAL, including hash marks: x_y_ is x-y, _ is empty.
 std::string hal_name(std::string_view name);
-/// The component's name in front of its pins: without a leading hal_, with dashes.
+/// Prefix of the component's pins: its name without a leading hal_, with dashes.
 std::string hal_prefix(const Component &component);
 
 const char *type_word(ValueType type);

@@ -14,7 +14,7 @@
 namespace mw::halcompile {
 namespace {
 
-/// Kernel spellings of integer types that components use for variables.
+/// Kernel names of integer types in variables of components.
 std::string plain_type(const std::string &type) {
     static constexpr std::array<std::string_view, 8> SHORT{"u8",  "s8",  "u16", "s16",
                                                            "u32", "s32", "u64", "s64"};
@@ -69,7 +69,7 @@ class Emitter {
     void put(std::string_view text) { out_ += text; }
     void source_line(const SourcePlace &place) { line("#line {} {}", place.line, c_string(place.file)); }
 
-    /// Back to the lines of the C file itself, after code that #line puts elsewhere.
+    /// Returns to the lines of the C file, after code with another #line.
     void own_line() {
         const auto lines = std::count(out_.begin(), out_.end(), '\n');
         line("#line {} {}", lines + 2, c_string(component_.name + ".c"));
@@ -156,7 +156,7 @@ class Emitter {
         }
     }
 
-    /// The format of an item's or function's HAL name, and whether it takes the number of an element.
+    /// Format of an item's or function's HAL name, and whether it has an element number.
     std::string name_format(std::string_view name) const {
         std::string tail = hal_name(name);
         const std::size_t hash = tail.find('#');
@@ -227,7 +227,7 @@ class Emitter {
         return item.start_value;
     }
 
-    /// Start values of what lies in the instance itself: set before EXTRA_SETUP, so that it may change them.
+    /// Start values of data in the instance: set before EXTRA_SETUP, so that it may change them.
     void start_values() {
         for (const Item &item : component_.items) {
             if (item.isPin || item.start_value.empty()) {
@@ -250,8 +250,8 @@ class Emitter {
     }
 
     void start_variable(const Variable &variable) {
-        const bool isList = variable.start_value.starts_with('{') || variable.start_value.starts_with('"');
-        if (isList) {
+        const bool is_list = variable.start_value.starts_with('{') || variable.start_value.starts_with('"');
+        if (is_list) {
             line("    {{ static const __typeof__(__comp_inst->{}) __comp_start = {}; "
                  "__builtin_memcpy(&__comp_inst->{}, &__comp_start, sizeof __comp_start); }}",
                  variable.name, variable.start_value, variable.name);
@@ -267,15 +267,15 @@ class Emitter {
     }
 
     void export_function() {
-        const bool hasPersonality = component_.hasPersonality();
+        const bool has_personality = component_.hasPersonality();
         line("\nstatic __attribute__((__unused__)) int export(char *prefix, long extra_arg{}) {{",
-             hasPersonality ? ", long __comp_personality" : "");
+             has_personality ? ", long __comp_personality" : "");
         put("    int __comp_r = 0, __comp_i = 0, __comp_n = 0;\n"
             "    struct __comp_state *__comp_inst = hal_malloc(sizeof(struct __comp_state));\n"
             "    (void)__comp_r; (void)__comp_i; (void)__comp_n; (void)prefix; (void)extra_arg;\n"
             "    if (__comp_inst == 0) return -ENOMEM;\n"
             "    __builtin_memset(__comp_inst, 0, sizeof(*__comp_inst));\n");
-        if (hasPersonality) {
+        if (has_personality) {
             put("    __comp_inst->_personality = (int)__comp_personality;\n");
         }
         start_values();
@@ -284,13 +284,13 @@ class Emitter {
                 "    if (__comp_r != 0) return __comp_r;\n");
         }
         own_line();
-        if (hasPersonality) {
+        if (has_personality) {
             put("#define personality (__comp_inst->_personality)\n");
         }
         for (const Item &item : component_.items) {
             export_item(item);
         }
-        if (hasPersonality) {
+        if (has_personality) {
             put("#undef personality\n");
         }
         for (const Function &function : component_.functions) {
@@ -349,7 +349,7 @@ class Emitter {
         if (!item.isPin) {
             line("#define {}{} ({})", name, index, place);
         } else if (item.direction == Direction::IN && item.type != ValueType::PORT) {
-            // Read-only in the component: an assignment is an error that names the pin.
+            // Read-only in the component: the compiler reports an assignment with the name of the pin.
             line("#define {}{} (*(const hal_{}_t *)({}))", name, index, type_word(item.type), place);
         } else {
             line("#define {}{} (*({}))", name, index, place);
@@ -357,8 +357,8 @@ class Emitter {
         }
     }
 
-    /// NAME_set(value) or NAME_set(index, value), unless something of the component has that name.
-    void item_setter(const std::string &name, bool isArray) {
+    /// NAME_set(value) or NAME_set(index, value), unless the component has another object with that name.
+    void item_setter(const std::string &name, bool is_array) {
         const std::string setter = name + "_set";
         for (const Item &other : component_.items) {
             if (c_name(other.name) == setter) {
@@ -370,20 +370,20 @@ class Emitter {
                 return;
             }
         }
-        line("#undef {0}\n#define {0}({1}value) ((void)({2}{3} = (value)))", setter, isArray ? "index, " : "",
-             name, isArray ? "(index)" : "");
+        line("#undef {0}\n#define {0}({1}value) ((void)({2}{3} = (value)))", setter,
+             is_array ? "index, " : "", name, is_array ? "(index)" : "");
     }
 
     void code() {
         const CodeFacts facts = look_at_code(component_.code);
-        const bool isBody = !facts.hasFunctionWord && component_.functions.size() == 1;
+        const bool is_body = !facts.has_function_word && component_.functions.size() == 1;
         put("\n");
-        if (isBody) {
+        if (is_body) {
             line("FUNCTION({}) {{", c_name(component_.functions.front().name));
         }
         line("#line {} {}", component_.code_line, c_string(component_.file));
         put(component_.code);
-        put(isBody ? "\n}\n" : "\n");
+        put(is_body ? "\n}\n" : "\n");
     }
 
     const Component &component_;

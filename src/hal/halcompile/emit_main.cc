@@ -30,8 +30,8 @@ std::string c_type(const ModuleParameter &parameter) {
     return parameter.type == "u32" ? "unsigned " : parameter.type == "s32" ? "int " : parameter.type + " ";
 }
 
-/// The declaration of one that modparam asks for.
-std::string declare(const ModuleParameter &parameter, bool isUserspace) {
+/// The declaration of a modparam.
+std::string declare(const ModuleParameter &parameter, bool userspace) {
     std::string value = isText(parameter) && !parameter.start_value.empty() ? c_string(parameter.start_value)
                                                                             : parameter.start_value;
     if (!parameter.size.empty() && !value.empty() && !value.starts_with('{')) {
@@ -41,7 +41,7 @@ std::string declare(const ModuleParameter &parameter, bool isUserspace) {
                                   c_string(parameter.place.file), c_type(parameter), parameter.name,
                                   parameter.size.empty() ? "" : "[" + parameter.size + "]",
                                   value.empty() ? "" : " = " + value);
-    if (!isUserspace) {
+    if (!userspace) {
         const char *kind = isText(parameter) ? "STRING" : isLong(parameter) ? "LONG" : "INT";
         out += parameter.size.empty()
                    ? fmt::format("RTAPI_MP_{}({}, {});\n", kind, parameter.name, c_string(parameter.doc))
@@ -67,11 +67,11 @@ static __attribute__((__unused__)) int __comp_personality_of(int number) {{
 
 std::string emit_module_parameters(const Component &component, int personalities) {
     std::string out = "\n";
-    const bool isUserspace = component.isUserspace();
+    const bool userspace = component.isUserspace();
     if (isCounted(component)) {
         out += "static int count;\n";
         out += fmt::format("static char *names[{}];\n", MOST_NAMES);
-        if (!isUserspace) {
+        if (!userspace) {
             out += fmt::format("RTAPI_MP_INT(count, \"number of instances\");\n"
                                "RTAPI_MP_ARRAY_STRING(names, {}, \"names of the instances\");\n",
                                MOST_NAMES);
@@ -79,7 +79,7 @@ std::string emit_module_parameters(const Component &component, int personalities
     }
     if (component.hasPersonality() && component.isOn("rtapi_app", true)) {
         out += fmt::format("static int personality[{}] __attribute__((__unused__));\n", personalities);
-        if (!isUserspace) {
+        if (!userspace) {
             out += fmt::format("RTAPI_MP_ARRAY_INT(personality, {}, \"personality of each instance\");\n",
                                personalities);
         }
@@ -87,7 +87,7 @@ std::string emit_module_parameters(const Component &component, int personalities
     }
     for (const ModuleParameter &parameter : component.parameters) {
         if (parameter.type != "dummy") {
-            out += declare(parameter, isUserspace);
+            out += declare(parameter, userspace);
         }
     }
     return out;
@@ -95,7 +95,7 @@ std::string emit_module_parameters(const Component &component, int personalities
 
 namespace {
 
-/// Makes the instances; leaves the status in r.
+/// Creates the instances; r has the status.
 std::string make_instances(const Component &component, const std::string &prefix) {
     const char *personality = component.hasPersonality() ? ", __comp_personality_of(i)" : "";
     if (component.isOn("singleton")) {
@@ -147,7 +147,7 @@ bool isConstructable(const Component &component) {
     return isCounted(component) && !component.isUserspace() && component.isOn("constructable", true);
 }
 
-/// Makes one more instance after the module was loaded; the argument is its personality.
+/// Creates another instance after the module was loaded; the argument is its personality.
 std::string constructor(const Component &component) {
     return fmt::format(R"(
 static int __comp_construct(const char *name, const char *arg) {{
@@ -192,7 +192,7 @@ std::string emit_app(const Component &component, const std::string &prefix) {
 
 namespace {
 
-/// C code that takes one argument of the command line if it is of ours.
+/// C code that reads one of our command line arguments.
 std::string take_arguments(const Component &component) {
     std::string out = R"(
 static __attribute__((__unused__)) int __comp_number(const char *word, const char *text, long *value) {
@@ -210,7 +210,7 @@ static int __comp_argument(char *word) {
     if (value == 0) return 0;
     value++;
 )";
-    const auto list = [&](const std::string &name, bool isOfText, const std::string &size) {
+    const auto list = [&](const std::string &name, bool of_text, const std::string &size) {
         out += fmt::format(R"(    if (strncmp(word, "{0}=", {1}) == 0) {{
         int i = 0;
         char *rest = 0, *one = strtok_r(value, ",", &rest);
@@ -225,16 +225,16 @@ static int __comp_argument(char *word) {
     }}
 )",
                            name, name.size() + 1, size,
-                           isOfText ? fmt::format("{}[i++] = one;", name)
-                                    : fmt::format("if (__comp_number(\"{0}=\", one, &number) < 0) return -1; "
-                                                  "{0}[i++] = number;",
-                                                  name));
+                           of_text ? fmt::format("{}[i++] = one;", name)
+                                   : fmt::format("if (__comp_number(\"{0}=\", one, &number) < 0) return -1; "
+                                                 "{0}[i++] = number;",
+                                                 name));
     };
-    const auto scalar = [&](const std::string &name, bool isOfText) {
+    const auto scalar = [&](const std::string &name, bool of_text) {
         out += fmt::format(
             "    if (strncmp(word, \"{0}=\", {1}) == 0) {{\n        {2}\n        return 1;\n    }}\n", name,
             name.size() + 1,
-            isOfText
+            of_text
                 ? fmt::format("{} = value;", name)
                 : fmt::format("if (__comp_number(word, value, &number) < 0) return -1; {} = number;", name));
     };
@@ -261,8 +261,8 @@ static int __comp_argument(char *word) {
 }  // namespace
 
 std::string emit_main(const Component &component) {
-    const bool hasApp = component.isOn("rtapi_app", true);
-    std::string out = hasApp ? std::string() : "int rtapi_app_main(void);\nvoid rtapi_app_exit(void);\n";
+    const bool has_app = component.isOn("rtapi_app", true);
+    std::string out = has_app ? std::string() : "int rtapi_app_main(void);\nvoid rtapi_app_exit(void);\n";
     out += take_arguments(component);
     const std::string leftover =
         component.isOn("userinit")
@@ -271,7 +271,7 @@ std::string emit_main(const Component &component) {
                   "    for (i = 1; i < kept; i++) fprintf(stderr, \"{}: '%s' means nothing here\\n\", "
                   "argv[i]);\n",
                   component.name);
-    // Before anything of the program runs.
+    // Before any code of the program runs.
     const std::string refusal =
         isCounted(component)
             ? fmt::format(

@@ -8,7 +8,7 @@
 namespace mw::halcompile {
 namespace {
 
-/// Plain text for troff: dashes stay dashes, backslashes are shown, no line becomes a request.
+/// Escapes plain text for troff: dashes and backslashes are printed, and no line becomes a request.
 std::string plain(std::string_view text) {
     std::string out;
     for (const char c : text) {
@@ -26,7 +26,7 @@ std::string plain(std::string_view text) {
     return out;
 }
 
-/// The number of an array's last element with as many digits as the name has hash marks.
+/// The index of an array's last element, with as many digits as the name has hash marks.
 std::string last_index(const ArraySize &array, std::size_t digits) {
     const auto size = parse_int(array.size);
     return size ? fmt::format("{:0{}}", *size - 1, digits) : fmt::format("{}-1", array.size);
@@ -101,8 +101,8 @@ class Page {
             return;
         }
         std::string words;
-        const bool isCounted = !component_.isOn("singleton") && !component_.isOn("count_function");
-        if (isCounted && component_.isOn("rtapi_app", true)) {
+        const bool counted = !component_.isOn("singleton") && !component_.isOn("count_function");
+        if (counted && component_.isOn("rtapi_app", true)) {
             words += " [count=\\fIN\\fB | names=\\fIname1\\fB[,\\fIname2\\fB...]]";
         }
         if (component_.hasPersonality()) {
@@ -138,15 +138,15 @@ class Page {
         }
     }
 
-    void items(const char *title, bool isPin) {
-        bool isFirst = true;
+    void items(const char *title, bool is_pin) {
+        bool first = true;
         for (const Item &item : component_.items) {
-            if (item.isPin != isPin) {
+            if (item.isPin != is_pin) {
                 continue;
             }
-            if (isFirst) {
+            if (first) {
                 section(title);
-                isFirst = false;
+                first = false;
             }
             show(item);
         }

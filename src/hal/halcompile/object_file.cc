@@ -59,16 +59,16 @@ void take_symbols(std::string_view symbols, std::string_view names, ObjectFacts 
 
 Result<ObjectFacts> look_at_object(std::string_view bytes, const std::string &file) {
     const auto header = read_at<Elf64_Ehdr>(bytes, 0);
-    const bool isElf = header && std::memcmp(header->e_ident, ELFMAG, SELFMAG) == 0 &&
-                       header->e_ident[EI_CLASS] == ELFCLASS64 && header->e_shentsize == sizeof(Elf64_Shdr);
-    if (!isElf) {
+    const bool is_elf = header && std::memcmp(header->e_ident, ELFMAG, SELFMAG) == 0 &&
+                        header->e_ident[EI_CLASS] == ELFCLASS64 && header->e_shentsize == sizeof(Elf64_Shdr);
+    if (!is_elf) {
         return fail(fmt::format("{} is no object file of a 64-bit machine", file));
     }
     std::vector<Elf64_Shdr> sections;
     for (unsigned i = 0; i < header->e_shnum; ++i) {
         const auto section = read_at<Elf64_Shdr>(bytes, header->e_shoff + i * sizeof(Elf64_Shdr));
         if (!section) {
-            return fail(fmt::format("{} is cut short", file));
+            return fail(fmt::format("{} is truncated", file));
         }
         sections.push_back(*section);
     }

@@ -72,7 +72,7 @@ Result<> add_words(std::vector<std::string> &to, const std::string &text) {
 Result<> apply(const Known &known, const std::string &value, Options &options) {
     switch (known.what) {
     case What::MODE: options.mode = known.mode; return {};
-    case What::USERSPACE: options.isUserspace = true; return {};
+    case What::USERSPACE: options.userspace = true; return {};
     case What::REQUIRE_LICENSE: options.requiresLicense = true; return {};
     case What::OUTPUT: options.output = value; return {};
     case What::COMPILE_ARGS: return add_words(options.compile_args, value);
@@ -93,21 +93,21 @@ Result<> apply(const Known &known, const std::string &value, Options &options) {
 
 Result<Options> parse_options(const std::vector<std::string> &arguments) {
     Options options;
-    bool isAllFiles = false;
+    bool all_files = false;
     for (std::size_t i = 0; i < arguments.size(); ++i) {
         const std::string &word = arguments[i];
-        if (isAllFiles || word.size() < 2 || word[0] != '-') {
+        if (all_files || word.size() < 2 || word[0] != '-') {
             options.files.push_back(word);
             continue;
         }
         if (word == "--") {
-            isAllFiles = true;
+            all_files = true;
             continue;
         }
-        const bool isLong = word[1] == '-';
-        const std::size_t equals = isLong ? word.find('=') : std::string::npos;
+        const bool is_long = word[1] == '-';
+        const std::size_t equals = is_long ? word.find('=') : std::string::npos;
         std::vector<const Known *> found;
-        if (isLong) {
+        if (is_long) {
             const auto one = find_long(
                 std::string_view(word).substr(2, equals == std::string::npos ? equals : equals - 2));
             if (!one) {

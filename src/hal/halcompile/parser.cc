@@ -99,9 +99,9 @@ class Parser {
             return true;
         }
         for (const Rule &rule : rules()) {
-            const bool isWord = line.starts_with(rule.word) && line.size() > rule.word.size() &&
-                                (line[rule.word.size()] == ' ' || line[rule.word.size()] == '\t');
-            if (isWord) {
+            const bool is_word = line.starts_with(rule.word) && line.size() > rule.word.size() &&
+                                 (line[rule.word.size()] == ' ' || line[rule.word.size()] == '\t');
+            if (is_word) {
                 return true;
             }
         }
@@ -125,15 +125,15 @@ class Parser {
         return fail(word.empty() ? std::string("a declaration is expected here")
                                  : fmt::format("'{}' is no declaration", word),
                     place,
-                    near.empty() ? "the code starts after ;; on a line of its own"
+                    near.empty() ? "the code starts after ;; on a separate line"
                                  : fmt::format("did you mean '{}'?", near));
     }
 
-    /// The end of a declaration.
+    /// Reads the end of a declaration.
     Result<> end() {
         scanner_.skip_blank();
-        const bool isCodeMark = scanner_.isNext(";;") && scanner_.place().column == 1;
-        if (!isCodeMark && scanner_.accept(";")) {
+        const bool is_code_mark = scanner_.isNext(";;") && scanner_.place().column == 1;
+        if (!is_code_mark && scanner_.accept(";")) {
             return {};
         }
         return fail("';' is expected here", scanner_.place(), "it ends the declaration before");
@@ -181,9 +181,9 @@ class Parser {
                                                                                       {"r", Direction::RO},
                                                                                       {"rw", Direction::RW}}};
         for (const auto &[text, direction] : WORDS) {
-            const bool isOfPin =
+            const bool of_pin =
                 direction == Direction::IN || direction == Direction::OUT || direction == Direction::IO;
-            if (text == word && isOfPin == item.isPin) {
+            if (text == word && of_pin == item.isPin) {
                 item.direction = direction;
                 return {};
             }
@@ -230,7 +230,7 @@ class Parser {
         return {};
     }
 
-    /// A condition or a start value. No 'if' can be in it.
+    /// A condition or a start value, without the word 'if'.
     Result<std::string> expression(std::string_view stops) {
         constexpr std::string_view IF = "if";
         auto text = scanner_.take_expression(stops, IF);
@@ -282,9 +282,9 @@ class Parser {
         return value;
     }
 
-    Result<> item(SourcePlace place, bool isPin) {
+    Result<> item(SourcePlace place, bool is_pin) {
         Item item;
-        item.isPin = isPin;
+        item.isPin = is_pin;
         item.place = std::move(place);
         if (auto done = direction(item); !done) {
             return done;
@@ -292,7 +292,7 @@ class Parser {
         if (auto done = type(item); !done) {
             return done;
         }
-        auto word = name(isPin ? "pin" : "parameter");
+        auto word = name(is_pin ? "pin" : "parameter");
         if (!word) {
             return std::unexpected(word.error());
         }
@@ -392,15 +392,15 @@ class Parser {
         parameter.type = head->type + head->stars;
         parameter.name = std::move(head->name);
         parameter.size = std::move(head->size);
-        const bool isString = parameter.type == "string" || parameter.type == "char*";
-        if (isString && scanner_.accept("=")) {
+        const bool is_string = parameter.type == "string" || parameter.type == "char*";
+        if (is_string && scanner_.accept("=")) {
             scanner_.skip_blank();
             auto text = scanner_.take_string();
             if (!text) {
                 return std::unexpected(text.error());
             }
             parameter.start_value = std::move(*text);
-        } else if (!isString) {
+        } else if (!is_string) {
             auto value = start_value();
             if (!value) {
                 return std::unexpected(value.error());
@@ -473,8 +473,8 @@ class Parser {
     }
 
     void take_code() {
-        // What stands behind ;; on its line belongs to the code, so that columns stay right.
-        component_.hasCode = true;
+        // Text after ;; on its line belongs to the code, so that columns are correct.
+        component_.has_code = true;
         component_.code_line = scanner_.line();
         component_.code = std::string(text_.substr(scanner_.offset()));
     }

@@ -41,7 +41,7 @@ constexpr const char *USAGE = R"(halcompile: makes HAL components from .comp, C 
   -o, --outfile=FILE        for one file
 )";
 
-/// The work on one file.
+/// Processes one file.
 class Job {
   public:
     Job(const Options &options, const Places &places, const std::string &file)
@@ -72,7 +72,7 @@ class Job {
         return done.has_value();
     }
 
-    /// Writes a product; of an installation the place is told, since the words do not name it.
+    /// Writes a product; for an installation prints its path, which is not on the command line.
     Result<> put(const std::string &from, const std::string &to, unsigned mode) const {
         auto done = install_file(from, to, mode);
         if (done && (options_.mode == Mode::INSTALL || options_.mode == Mode::INSTALL_DOC)) {
@@ -92,7 +92,7 @@ class Job {
             return report(std::unexpected(text.error()));
         }
         const Component component = parse(*text, file_, sink);
-        // After errors of the grammar most of what the checker says would follow from them.
+        // After syntax errors most errors of the checker would be consequences.
         if (!sink.hasErrors()) {
             check(component, path_.stem(), sink);
         }
@@ -182,7 +182,7 @@ class Job {
             }
         }
         auto made = make(std::move(order), component.name);
-        if (!made && made.error().place.file.empty()) {  // the compiler has died without a line
+        if (!made && made.error().place.file.empty()) {  // the compiler has died without a message
             made.error().place = {component.file, component.code_line, 0};
         }
         return made;
@@ -194,21 +194,21 @@ class Job {
                         "--compile or --install");
         }
         BuildOrder order;
-        order.kind = options_.isUserspace ? Kind::USERSPACE : Kind::REALTIME;
+        order.kind = options_.userspace ? Kind::USERSPACE : Kind::REALTIME;
         order.source = file_;
         order.compile_args = options_.compile_args;
         order.link_args = options_.link_args;
         return make(std::move(order), path_.stem());
     }
 
-    /// Builds into a temporary file, then puts it where it belongs: a failure leaves no half a module.
+    /// Builds into a temporary file, then moves it: a failure leaves no incomplete module.
     Result<> make(BuildOrder order, const std::string &name) {
         const auto folder = TemporaryFolder::make();
         if (!folder) {
             return std::unexpected(folder.error());
         }
-        const bool isRealtime = order.kind == Kind::REALTIME;
-        const std::string product = name + (isRealtime ? ".so" : "");
+        const bool realtime = order.kind == Kind::REALTIME;
+        const std::string product = name + (realtime ? ".so" : "");
         order.source_folder = path_.parent_path();
         order.output = folder->path() + "/" + product;
         const auto slow = build(places_, order);
@@ -223,16 +223,16 @@ class Job {
             language::tell(
                 fmt::format("{}: note: it calls {}, which realtime functions must not", file_, list));
         }
-        const bool isInstalled = options_.mode == Mode::INSTALL;
-        const std::string to = !isInstalled ? beside(product)
-                               : isRealtime ? places_.module_folder + "/" + product
-                                            : places_.program_folder + "/" + product;
-        const bool isExecutable = !isRealtime || !isInstalled;
-        return put(order.output, to, isExecutable ? PROGRAM_MODE : MODULE_MODE);
+        const bool installed = options_.mode == Mode::INSTALL;
+        const std::string to = !installed ? beside(product)
+                               : realtime ? places_.module_folder + "/" + product
+                                          : places_.program_folder + "/" + product;
+        const bool executable = !realtime || !installed;
+        return put(order.output, to, executable ? PROGRAM_MODE : MODULE_MODE);
     }
 
     Result<> run_python() {
-        if (!options_.isUserspace) {
+        if (!options_.userspace) {
             return fail(fmt::format("{}: a Python component is a userspace one", file_), {}, "--userspace");
         }
         if (options_.mode != Mode::COMPILE && options_.mode != Mode::INSTALL) {
@@ -290,11 +290,11 @@ int run(const std::string &program, const std::vector<std::string> &arguments) {
         language::tell("halcompile: -o is for one file");
         return 1;
     }
-    bool isGood = true;
+    bool good = true;
     for (const std::string &file : options->files) {
-        isGood = Job(*options, places, file).run() && isGood;
+        good = Job(*options, places, file).run() && good;
     }
-    return isGood ? 0 : 1;
+    return good ? 0 : 1;
 }
 
 }  // namespace mw::halcompile

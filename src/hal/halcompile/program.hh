@@ -14,7 +14,7 @@ enum class Mode { PREPROCESS, COMPILE, INSTALL, DOCUMENT, INSTALL_DOC, VIEW_DOC,
 
 struct Options {
     Mode mode = Mode::PREPROCESS;
-    bool isUserspace = false;
+    bool userspace = false;
     bool requiresLicense = false;
     int personalities = DEFAULT_PERSONALITIES;
     std::string output;  ///< -o
@@ -22,11 +22,11 @@ struct Options {
     std::vector<std::string> files;
 };
 
-/// Reads the command line without the program's name. Long options may be cut short while they stay clear.
+/// Reads the command line without the program's name. Long options may be abbreviated if they are unique.
 Result<Options> parse_options(const std::vector<std::string> &arguments);
 
-/// The whole program. `program` is its own file, beside which headers and libraries are found. The exit
-/// status: 0, or 1 when any file failed; messages are on stderr.
+/// Runs the program. `program` is the path of its executable, to find headers and libraries. Exit status 0,
+/// or 1 when a file failed; messages are on stderr.
 int run(const std::string &program, const std::vector<std::string> &arguments);
 
 }  // namespace mw::halcompile

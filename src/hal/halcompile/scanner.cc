@@ -108,7 +108,7 @@ void Scanner::take_escape(std::string &out) {
     static constexpr std::string_view MEANT = "\n\t\\\"'\r\a\b\f\v";
     const std::size_t known = NAMES.find(kind);
     if (kind == '\n') {
-        advance();  // a line that goes on
+        advance();  // a continued line
     } else if (kind == 'x' && hex_digit(peek(1)) >= 0 && hex_digit(peek(2)) >= 0) {
         out += static_cast<char>(hex_digit(peek(1)) * 16 + hex_digit(peek(2)));
         advance(3);
@@ -123,15 +123,15 @@ void Scanner::take_escape(std::string &out) {
         out += MEANT[known];
         advance();
     } else {
-        out += '\\';  // not an escape: both characters stand, as in \(bu
+        out += '\\';  // not an escape: both characters are kept, as in \(bu
     }
 }
 
 Result<std::string> Scanner::take_string() {
     const SourcePlace start = place();
-    const bool isRaw = accept("r");
-    const bool isTriple = isNext(R"(""")");
-    const std::string_view quote = isTriple ? R"(""")" : "\"";
+    const bool raw = accept("r");
+    const bool triple = isNext(R"(""")");
+    const std::string_view quote = triple ? R"(""")" : "\"";
     if (!accept(quote)) {
         return fail("a string in double quotes is expected here", start);
     }
@@ -139,16 +139,16 @@ Result<std::string> Scanner::take_string() {
     const std::size_t inside = position_;
     const SourcePlace inside_place = place();
     while (!isNext(quote)) {
-        if (isAtEnd() || (!isTriple && peek() == '\n')) {
-            if (!isTriple) {
+        if (isAtEnd() || (!triple && peek() == '\n')) {
+            if (!triple) {
                 position_ = inside;
                 line_ = inside_place.line;
                 column_ = inside_place.column;
             }
             return fail("this string has no closing quote", start,
-                        isTriple ? "" : R"(a text of several lines stands between """ and """)");
+                        triple ? "" : R"(a text of several lines is between """ and """)");
         }
-        if (peek() == '\\' && !isRaw) {
+        if (peek() == '\\' && !raw) {
             take_escape(text);
         } else if (peek() == '\\') {
             text += peek();
@@ -164,22 +164,22 @@ Result<std::string> Scanner::take_string() {
     return text;
 }
 
-/// Passes a C string or character; false when it has no end.
+/// Skips a C string or character; false when it has no end.
 bool Scanner::skip_quoted() {
     const char quote = peek();
     advance();
     while (!isAtEnd() && peek() != quote && peek() != '\n') {
         advance(peek() == '\\' ? 2 : 1);
     }
-    const bool isClosed = peek() == quote;
+    const bool closed = peek() == quote;
     advance();
-    return isClosed;
+    return closed;
 }
 
 bool Scanner::isWord(std::string_view word) const {
     const auto continues_name = [](char c) { return isNameStart(c) || isDigit(c); };
-    const bool isStart = position_ == 0 || !continues_name(text_[position_ - 1]);
-    return isStart && !word.empty() && isNext(word) && !continues_name(peek(word.size()));
+    const bool is_start = position_ == 0 || !continues_name(text_[position_ - 1]);
+    return is_start && !word.empty() && isNext(word) && !continues_name(peek(word.size()));
 }
 
 Result<std::string> Scanner::take_expression(std::string_view stops, std::string_view stop_word) {
@@ -192,8 +192,8 @@ Result<std::string> Scanner::take_expression(std::string_view stops, std::string
             skip_blank();
             continue;
         }
-        const bool isComparison = peek(1) == '=' && (c == '=' || c == '!' || c == '<' || c == '>');
-        if (isComparison) {
+        const bool is_comparison = peek(1) == '=' && (c == '=' || c == '!' || c == '<' || c == '>');
+        if (is_comparison) {
             advance(2);
             continue;
         }
@@ -268,9 +268,9 @@ std::optional<std::string> Scanner::take_until(char stop) {
     return text;
 }
 
-void Scanner::skip_declaration(bool (*isStart)(std::string_view line)) {
+void Scanner::skip_declaration(bool (*is_start)(std::string_view line)) {
     while (!isAtEnd()) {
-        if (column_ == 1 && isStart(text_.substr(position_))) {
+        if (column_ == 1 && is_start(text_.substr(position_))) {
             return;
         }
         if (isNext("//") || isNext("/*")) {

@@ -27,12 +27,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What the loader and the motion module look up; exported whether EXPORT_SYMBOL names it or not.
+/// Symbols that the loader and the motion module use; exported with or without EXPORT_SYMBOL.
 constexpr std::array<const char *, 8> ENTRY_POINTS{
     "rtapi_app_main", "rtapi_app_exit", "kinematicsForward",    "kinematicsInverse",
     "kinematicsHome", "kinematicsType", "kinematicsSwitchable", "kinematicsSwitch"};
 
-/// What a realtime function must not call; code that runs at loading may.
+/// Functions that a realtime function must not call; code that runs at loading may.
 constexpr std::array<const char *, 33> SLOW_CALLS{"malloc",  "calloc",  "realloc",
                                                   "free",    "printf",  "puts",
                                                   "fprintf", "vprintf", "putchar",
@@ -66,8 +66,7 @@ bool isCxx(const std::string &source) {
     return suffix == ".cc" || suffix == ".cpp" || suffix == ".cxx" || suffix == ".C";
 }
 
-/// The library that userspace components are linked to; with its version when the plain name is not
-/// installed.
+/// The library for userspace components; with its version when the plain name is not installed.
 std::string hal_library(const std::string &folder) {
     for (const char *name : {"libmillwright_hal.so", "libmillwright_hal.so.1"}) {
         if (isThere(fs::path(folder) / name)) {
@@ -79,19 +78,19 @@ std::string hal_library(const std::string &folder) {
 
 std::vector<std::string> compile_words(const Places &places, const BuildOrder &order,
                                        const std::string &object) {
-    const bool isRealtime = order.kind == Kind::REALTIME;
+    const bool realtime = order.kind == Kind::REALTIME;
     const std::string compiler = environment(isCxx(order.source) ? "CXX" : "CC");
     std::vector<std::string> words{compiler.empty() ? (isCxx(order.source) ? "g++" : "gcc") : compiler};
     words.insert(words.end(),
                  {"-c", "-o", object, "-O2", "-g1", "-fPIC", "-fno-strict-aliasing", "-ffp-contract=off",
-                  "-D_GNU_SOURCE", "-DUSPACE", isRealtime ? "-DRTAPI" : "-DULAPI"});
-    if (isRealtime) {
+                  "-D_GNU_SOURCE", "-DUSPACE", realtime ? "-DRTAPI" : "-DULAPI"});
+    if (realtime) {
         words.insert(words.end(), {"-DREALTIME", "-D__MODULE__"});
     }
     if (isCxx(order.source)) {
-        words.emplace_back("-std=gnu++20");  // for <millwright/component.hh>
+        words.emplace_back("-std=gnu++20");  // required by <millwright/component.hh>
     }
-    if (isCxx(order.source) && isRealtime) {
+    if (isCxx(order.source) && realtime) {
         words.insert(words.end(), {"-fno-exceptions", "-fno-rtti"});
         if (compiler.empty() || compiler.find("clang") == std::string::npos) {
             words.emplace_back("-fno-gnu-unique");
@@ -127,7 +126,7 @@ std::vector<std::string> link_words(const Places &places, const BuildOrder &orde
     return words;
 }
 
-/// Only what is meant for others leaves the module.
+/// Exports only the symbols that are intended for others.
 Result<> write_export_list(const ObjectFacts &facts, const std::string &path) {
     std::string text = "{\n  global:\n";
     for (const char *name : ENTRY_POINTS) {
@@ -165,11 +164,11 @@ Places Places::of_program(const std::string &program) {
     }
     places.library_folder = fs::path(first_that_exists(libraries)).parent_path().string();
     const fs::path library(places.library_folder);
-    const bool isBuildFolder = isThere(up / "CMakeCache.txt");
+    const bool is_build_folder = isThere(up / "CMakeCache.txt");
     const std::string modules = environment("RTLIB_DIR");
-    places.module_folder = !modules.empty() ? modules
-                           : isBuildFolder  ? places.library_folder
-                                            : (library / "millwright/modules").string();
+    places.module_folder = !modules.empty()  ? modules
+                           : is_build_folder ? places.library_folder
+                                             : (library / "millwright/modules").string();
     const std::string home = environment("EMC2_HOME");
     const std::string programs = environment("USER_MODULE_DIR");
     places.program_folder = !programs.empty() ? programs : !home.empty() ? home + "/bin" : bin.string();
@@ -218,15 +217,15 @@ Result<std::vector<std::string>> build(const Places &places, const BuildOrder &o
     if (!facts) {
         return std::unexpected(facts.error());
     }
-    const bool isRealtime = order.kind == Kind::REALTIME;
-    if (isRealtime && !has(facts->defined, "rtapi_app_main")) {
+    const bool realtime = order.kind == Kind::REALTIME;
+    if (realtime && !has(facts->defined, "rtapi_app_main")) {
         return fail(fmt::format("{} has no rtapi_app_main", name), {},
                     "a realtime module starts there; a program is compiled with --userspace");
     }
-    if (!isRealtime && !has(facts->defined, "main")) {
+    if (!realtime && !has(facts->defined, "main")) {
         return fail(fmt::format("{} has no main", name), {}, "a userspace component is a program");
     }
-    if (isRealtime) {
+    if (realtime) {
         if (auto done = write_export_list(*facts, script); !done) {
             return std::unexpected(done.error());
         }
@@ -238,7 +237,7 @@ Result<std::vector<std::string>> build(const Places &places, const BuildOrder &o
     }
     std::vector<std::string> slow;
     for (const char *call : SLOW_CALLS) {
-        if (isRealtime && has(facts->undefined, call)) {
+        if (realtime && has(facts->undefined, call)) {
             slow.emplace_back(call);
         }
     }
@@ -264,13 +263,13 @@ Result<> install_file(const std::string &from, const std::string &to, unsigned m
 Result<std::vector<std::string>> split_shell_words(const std::string &text) {
     std::vector<std::string> words;
     std::string word;
-    bool isInWord = false;
+    bool in_word = false;
     char quote = '\0';
     for (std::size_t i = 0; i < text.size(); ++i) {
         const char c = text[i];
         if (c == '\\' && quote != '\'' && i + 1 < text.size()) {
             word += text[++i];
-            isInWord = true;
+            in_word = true;
         } else if (quote != '\0') {
             if (c == quote) {
                 quote = '\0';
@@ -279,22 +278,22 @@ Result<std::vector<std::string>> split_shell_words(const std::string &text) {
             }
         } else if (c == '"' || c == '\'') {
             quote = c;
-            isInWord = true;
+            in_word = true;
         } else if (c == ' ' || c == '\t' || c == '\n') {
-            if (isInWord) {
+            if (in_word) {
                 words.push_back(word);
             }
             word.clear();
-            isInWord = false;
+            in_word = false;
         } else {
             word += c;
-            isInWord = true;
+            in_word = true;
         }
     }
     if (quote != '\0') {
         return fail(fmt::format("a quote in '{}' is not closed", text));
     }
-    if (isInWord) {
+    if (in_word) {
         words.push_back(word);
     }
     return words;

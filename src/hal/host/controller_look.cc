@@ -18,17 +18,17 @@ void ControllerLook::take_priority_of(std::int32_t pid) {
 
 void ControllerLook::step(Hal::Impl &hal, std::int32_t pid) {
     take_priority_of(pid);
-    bool isHung = pid > 0 && !hal.controller_watches.empty();
+    bool hung = pid > 0 && !hal.controller_watches.empty();
     for (const auto &watch : hal.controller_watches) {
         if (watch.looks != nullptr) {
             __atomic_fetch_add(watch.looks, 1U, __ATOMIC_RELAXED);
         }
-        isHung = isHung && __atomic_load_n(watch.is_safe, __ATOMIC_ACQUIRE) != 0;
+        hung = hung && __atomic_load_n(watch.is_safe, __ATOMIC_ACQUIRE) != 0;
     }
-    if (isHung && !isHung_) {
+    if (hung && !hung_) {
         hal.rest_process(pid);
     }
-    isHung_ = isHung;
+    hung_ = hung;
 }
 
 }  // namespace mw::hal

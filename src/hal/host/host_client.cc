@@ -47,7 +47,7 @@ Result<int> connect_to(const std::string &instance) {
     return fd;
 }
 
-/// millwright-rt beside this program or in ../bin; else it is looked for along PATH.
+/// millwright-rt beside this program or in ../bin; otherwise from PATH.
 std::string server_program() {
     const std::string folder = program_folder();
     for (const std::string &candidate : {folder + "/millwright-rt", folder + "/../bin/millwright-rt"}) {
@@ -58,7 +58,7 @@ std::string server_program() {
     return "millwright-rt";
 }
 
-/// In the forked child: becomes the server, a child of nobody here. Only async-signal-safe calls.
+/// In the forked child: becomes the server, detached from this process. Only async-signal-safe calls.
 [[noreturn]] void become_server(char *const argv[], int ready, int starter, int messages) {
     if (::fork() != 0) {
         ::_exit(0);
@@ -69,8 +69,8 @@ std::string server_program() {
     if (messages >= 0) {
         ::dup2(messages, STDERR_FILENO);
     }
-    // rtapi_print writes to the standard output of the starter. A server that outlives it must not keep a
-    // pipe of it open.
+    // rtapi_print writes to the starter's standard output. A server that outlives it must not keep its pipe
+    // open.
     if (messages >= 0 || starter < 0) {
         ::dup2(STDERR_FILENO, STDOUT_FILENO);
     }
@@ -84,7 +84,7 @@ std::string server_program() {
     ::_exit(127);
 }
 
-/// Reads what the new server says: empty when it is ready, else why not.
+/// Reads the new server's report: empty when it is ready, else the reason.
 std::string read_all(int fd) {
     std::string text;
     char bytes[512];
@@ -106,7 +106,7 @@ struct HostClient::Impl {
     std::string instance;
     int fd = -1;
     int pid = 0;
-    int process = -1;  ///< a pidfd of it
+    int process = -1;  ///< pidfd of the process
     std::unique_ptr<Hal> hal;
 
     ~Impl() {
@@ -116,7 +116,7 @@ struct HostClient::Impl {
             }
         }
     }
-    /// True when the process has ended within `timeout_ms`.
+    /// True when the process ends within `timeout_ms`.
     bool hasEnded(int timeout_ms) const {
         pollfd end{process, POLLIN, 0};
         return process < 0 || ::poll(&end, 1, timeout_ms) > 0;
@@ -168,10 +168,10 @@ Result<std::unique_ptr<HostClient>> HostClient::start(const std::string &instanc
                               O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0600);
         }
     }
-    // The kernel tells through this of the end of the starter, whenever it comes.
+    // With this the kernel reports the end of the starter at any time.
     const int starter =
         lifetime == Lifetime::STARTER ? static_cast<int>(::syscall(SYS_pidfd_open, ::getpid(), 0)) : -1;
-    // Everything is made ready before the fork: the child of a process with threads may not allocate.
+    // Everything is prepared before the fork: the child of a process with threads may not allocate memory.
     std::vector<std::string> words = {server_program(), "--instance", instance, "--ready-fd",
                                       std::to_string(ready[1])};
     if (starter >= 0) {
@@ -217,7 +217,7 @@ Result<std::vector<std::string>> HostClient::ask(const std::vector<std::string> 
     auto answer = isSent(impl_->fd, request) ? receive(impl_->fd)
                                              : Result<std::vector<std::string>>(fail("it does not listen"));
     if (!answer) {
-        // Its socket closes a moment before it has ended.
+        // Its socket closes shortly before the process ends.
         static_cast<void>(impl_->hasEnded(CLOSING_MS));
         errno = EPIPE;
         const auto end = impl_->hal == nullptr ? std::nullopt : death();
@@ -275,7 +275,7 @@ Result<> HostClient::control() {
 
 Result<> HostClient::shut_down() {
     if (!impl_->hasEnded(0)) {
-        // It may end by itself meanwhile, which is as good as an answer.
+        // It may end by itself meanwhile, with the same effect.
         static_cast<void>(ask({"end"}));
     }
     if (!impl_->hasEnded(END_TIMEOUT_MS)) {
@@ -286,9 +286,9 @@ Result<> HostClient::shut_down() {
 }
 
 std::optional<Error> HostClient::death() const {
-    const bool hasEnded = impl_->hasEnded(0);
+    const bool ended = impl_->hasEnded(0);
     const auto how = impl_->hal->host_end();
-    if (!hasEnded && !how) {
+    if (!ended && !how) {
         return std::nullopt;
     }
     return Error{fmt::format("the realtime process {} of instance '{}' has ended: {}", impl_->pid,

@@ -30,7 +30,7 @@
 namespace mw::hal {
 namespace {
 
-/// How often processes that have made components are looked for. From then on the kernel tells of their end.
+/// Interval of the search for processes with components. Afterwards the kernel reports their end.
 constexpr int LOOK_MS = 50;
 constexpr int ENDING_MS = 10;
 constexpr std::int64_t LONGEST_BRAKING_NS = 10'000'000'000;
@@ -66,9 +66,9 @@ struct HostServer::Impl {
     int controller = -1;  ///< its pidfd
     ControllerLook controller_look;
     int controller_socket = -1;
-    bool isEnding = false;
-    std::int64_t gone_ns = 0;    ///< when the controlling process died; 0 while it lives
-    std::int64_t looked_ns = 0;  ///< when programs were looked for
+    bool ending = false;
+    std::int64_t gone_ns = 0;    ///< time when the controlling process died; 0 while it lives
+    std::int64_t looked_ns = 0;  ///< time of the last search for programs
     std::vector<Client> clients;
     std::vector<Program> programs;
     std::unique_ptr<runtime::Log> log;
@@ -121,14 +121,14 @@ Result<> HostServer::Impl::listen() {
         return fail("the path of the socket is too long: " + path);
     }
     std::memcpy(address.sun_path, path.data(), path.size());
-    // Ours by the lock, so what lies there is left from a dead one.
+    // We hold the lock, so an existing file belongs to a dead process.
     ::unlink(path.c_str());
     listener = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-    const bool isBound =
+    const bool is_bound =
         listener >= 0 &&
         ::bind(listener, reinterpret_cast<const sockaddr *>(&address), sizeof address) == 0 &&
         ::chmod(path.c_str(), 0600) == 0 && ::listen(listener, 16) == 0;
-    return isBound ? Result<>{} : fail("cannot listen at " + path + ": " + std::strerror(errno));
+    return is_bound ? Result<>{} : fail("cannot listen at " + path + ": " + std::strerror(errno));
 }
 
 Result<> HostServer::Impl::open(const HostServerOptions &options) {
@@ -184,7 +184,7 @@ void HostServer::Impl::accept_client() {
     clients.push_back({fd, {}});
 }
 
-/// Reads what the client sent and answers it; false when it is gone or talks nonsense.
+/// Reads the client's request and answers it; false when it has disconnected or sends invalid data.
 bool HostServer::Impl::isServed(Client &client) {
     char bytes[4096];
     const ssize_t got = ::recv(client.fd, bytes, sizeof bytes, MSG_DONTWAIT);
@@ -197,11 +197,11 @@ bool HostServer::Impl::isServed(Client &client) {
     client.buffer.append(bytes, static_cast<std::size_t>(got));
     Message request;
     while (true) {
-        const auto isWhole = decode(client.buffer, request);
-        if (!isWhole) {
+        const auto whole = decode(client.buffer, request);
+        if (!whole) {
             return false;
         }
-        if (!*isWhole) {
+        if (!*whole) {
             return true;
         }
         if (!isSent(client.fd, answer(client, request))) {
@@ -217,16 +217,16 @@ ucred HostServer::Impl::peer_of(const Client &client) {
     return peer;
 }
 
-/// Ends at once for the controlling process (no `reason`), which has stopped the machine; for others first
-/// the machine brakes.
+/// Ends at once for the controlling process (no `reason`), which has stopped the machine; otherwise the
+/// machine brakes first.
 void HostServer::Impl::end_for(const std::string &reason) {
     if (reason.empty()) {
-        isEnding = true;
+        ending = true;
         return;
     }
     host->hal().impl().note_end(reason.c_str());
     if (host->hal().impl().controller_watches.empty()) {
-        isEnding = true;
+        ending = true;
     } else {
         on_controller_gone();
     }
@@ -278,8 +278,8 @@ Message HostServer::Impl::answer(const Client &client, const Message &request) {
         return answer_of(host->set_log_level(std::min(level, runtime::LogLevel::ALL)));
     }
     if (what == "end") {
-        const bool isByController = client.fd == controller_socket;
-        end_for(isByController ? "" : fmt::format("process {} asked it to end", peer_of(client).pid));
+        const bool by_controller = client.fd == controller_socket;
+        end_for(by_controller ? "" : fmt::format("process {} asked it to end", peer_of(client).pid));
         return {"ok"};
     }
     return {"error", "unknown request '" + what + "'", ""};
@@ -295,7 +295,7 @@ void HostServer::Impl::on_controller_gone() {
     }
 }
 
-/// Opens a pidfd for every process that has components, and closes those of the others.
+/// Opens a pidfd for every process with components, and closes others.
 void HostServer::Impl::look_for_programs() {
     std::vector<runtime::ProcessId> wanted;
     const runtime::ProcessId self = runtime::this_process();
@@ -310,16 +310,16 @@ void HostServer::Impl::look_for_programs() {
             });
     }
     std::erase_if(programs, [&](const Program &program) {
-        const bool isGone = std::find(wanted.begin(), wanted.end(), program.process) == wanted.end();
-        if (isGone) {
+        const bool gone = std::find(wanted.begin(), wanted.end(), program.process) == wanted.end();
+        if (gone) {
             close_fd(program.fd);
         }
-        return isGone;
+        return gone;
     });
     for (const runtime::ProcessId &process : wanted) {
-        const bool isKnown = std::any_of(programs.begin(), programs.end(),
-                                         [&](const Program &program) { return program.process == process; });
-        const int fd = isKnown ? -1 : static_cast<int>(::syscall(SYS_pidfd_open, process.pid, 0));
+        const bool known = std::any_of(programs.begin(), programs.end(),
+                                       [&](const Program &program) { return program.process == process; });
+        const int fd = known ? -1 : static_cast<int>(::syscall(SYS_pidfd_open, process.pid, 0));
         if (fd >= 0) {
             programs.push_back({process, fd});
         }
@@ -329,17 +329,17 @@ void HostServer::Impl::look_for_programs() {
     looked_ns = host->now_ns();
 }
 
-/// Ends the components of processes that are gone, and says whose.
+/// Removes components of ended processes, and reports them.
 void HostServer::Impl::reap() {
     const auto known = host->hal().deaths();
     if (host->hal().reap_dead_components().empty()) {
         return;
     }
     for (const DeathInfo &death : host->hal().deaths()) {
-        const bool isNew = std::none_of(known.begin(), known.end(), [&](const DeathInfo &earlier) {
+        const bool is_new = std::none_of(known.begin(), known.end(), [&](const DeathInfo &earlier) {
             return earlier.name == death.name && earlier.time_ns == death.time_ns;
         });
-        if (isNew) {
+        if (is_new) {
             log->print(
                 runtime::LogLevel::ERR,
                 "component '%s' died: its process %d ended without leaving HAL; its outputs have their safe "
@@ -349,24 +349,24 @@ void HostServer::Impl::reap() {
     }
 }
 
-/// Asks the processes with components to end: there is nothing left that they could be components of.
+/// Requests processes with components to end, because the instance ends.
 void HostServer::Impl::dismiss_programs() const {
     for (const Program &program : programs) {
         (void)::syscall(SYS_pidfd_send_signal, program.fd, SIGTERM, nullptr, 0);
     }
 }
 
-/// True when every module that watches says that the machine stands and is off.
+/// True when every watching module reports that the machine is stopped and off.
 bool HostServer::Impl::isSafeToEnd() {
-    const bool isSafe = std::ranges::all_of(host->hal().impl().controller_watches, [](const auto &watch) {
+    const bool safe = std::ranges::all_of(host->hal().impl().controller_watches, [](const auto &watch) {
         return __atomic_load_n(watch.is_safe, __ATOMIC_ACQUIRE) != 0;
     });
-    return isSafe || !host->hal().isRunning() || host->now_ns() > gone_ns + LONGEST_BRAKING_NS;
+    return safe || !host->hal().isRunning() || host->now_ns() > gone_ns + LONGEST_BRAKING_NS;
 }
 
-/// Outputs of the dead take their safe values, and the threads run on for long enough to hand them to the
-/// hardware. Not before the machine stands: an enable chain through the dead process would cut the braking
-/// short.
+/// Outputs of dead processes take their safe values, and the threads run long enough to pass them to the
+/// hardware. Only after the machine has stopped: an enable chain through the dead process would interrupt the
+/// braking.
 void HostServer::Impl::take_safe_values() {
     host->hal().impl().spare_process(0);
     reap();
@@ -383,7 +383,7 @@ void HostServer::Impl::drop(int fd) {
 }
 
 std::vector<pollfd> HostServer::Impl::watched() const {
-    // A negative descriptor is left out by poll.
+    // poll ignores negative descriptors.
     std::vector<pollfd> fds = {{signals, POLLIN, 0}, {controller, POLLIN, 0}, {listener, POLLIN, 0}};
     for (const Client &client : clients) {
         fds.push_back({client.fd, POLLIN, 0});
@@ -430,9 +430,9 @@ HostServer::~HostServer() {
     }
 }
 
-/// Answers those that `watched` has found something for.
+/// Serves the clients with events in `watched`.
 void HostServer::Impl::serve(const std::vector<pollfd> &fds) {
-    // The controlling process first: its end is the most urgent.
+    // The controlling process first: its end is most urgent.
     if (fds[1].revents != 0) {
         on_controller_gone();
     }
@@ -444,24 +444,24 @@ void HostServer::Impl::serve(const std::vector<pollfd> &fds) {
     if (fds[2].revents != 0) {
         accept_client();
     }
-    bool hasDied = false;
+    bool died = false;
     for (std::size_t i = 3; i < fds.size(); ++i) {
         if (fds[i].revents == 0) {
             continue;
         }
         const auto client = std::find_if(clients.begin(), clients.end(),
                                          [&](const Client &one) { return one.fd == fds[i].fd; });
-        hasDied = hasDied || client == clients.end();
+        died = died || client == clients.end();
         if (client != clients.end() && !isServed(*client)) {
             drop(fds[i].fd);
         }
     }
-    if (hasDied && !isControllerGone()) {
+    if (died && !isControllerGone()) {
         look_for_programs();
     }
 }
 
-/// Asks anew: a process that controls and has components may have died between the looks at its two
+/// Checks again: a process that controls and has components may have died between the checks of its two
 /// descriptors.
 bool HostServer::Impl::isControllerGone() {
     pollfd look{controller, POLLIN, 0};
@@ -473,21 +473,21 @@ bool HostServer::Impl::isControllerGone() {
 
 void HostServer::run() {
     Impl &here = *impl_;
-    while (!here.isEnding) {
+    while (!here.ending) {
         here.controller_look.step(here.host->hal().impl(), here.gone_ns == 0 ? pid_of(here.controller) : 0);
         std::vector<pollfd> fds = here.watched();
-        const bool isBraking = here.gone_ns != 0;
-        const int ready = ::poll(fds.data(), fds.size(), isBraking ? ENDING_MS : LOOK_MS);
+        const bool braking = here.gone_ns != 0;
+        const int ready = ::poll(fds.data(), fds.size(), braking ? ENDING_MS : LOOK_MS);
         if (ready < 0 && errno != EINTR) {
             break;
         }
-        if (isBraking && here.isSafeToEnd()) {
+        if (braking && here.isSafeToEnd()) {
             here.take_safe_values();
             here.look_for_programs();
             here.dismiss_programs();
             break;
         }
-        if (!isBraking && here.host->now_ns() - here.looked_ns >= LOOK_MS * 1'000'000LL &&
+        if (!braking && here.host->now_ns() - here.looked_ns >= LOOK_MS * 1'000'000LL &&
             !here.isControllerGone()) {
             here.look_for_programs();
         }

@@ -87,11 +87,11 @@ Result<Message> receive(int fd) {
     std::string buffer;
     Message message;
     while (true) {
-        auto isWhole = decode(buffer, message);
-        if (!isWhole) {
-            return std::unexpected(isWhole.error());
+        auto whole = decode(buffer, message);
+        if (!whole) {
+            return std::unexpected(whole.error());
         }
-        if (*isWhole) {
+        if (*whole) {
             return message;
         }
         char bytes[4096];
@@ -131,7 +131,7 @@ struct flock whole_file() {
     return whole;
 }
 
-/// True when `path` still names the file that `fd` has open: its last holder may have removed it since.
+/// True when `path` still refers to the file open as `fd`: its last holder may have removed it.
 bool isSameFile(int fd, const std::string &path) {
     struct stat opened{};
     struct stat named{};
@@ -152,7 +152,7 @@ Result<int> take_lock(const std::string &instance) {
         if (fd < 0) {
             return fail("cannot open " + *path + ": " + std::strerror(errno));
         }
-        // Belongs to the open file: it goes with the process, however it ends.
+        // Belongs to the open file: released when the process ends for any reason.
         struct flock whole = whole_file();
         if (::fcntl(fd, F_OFD_SETLK, &whole) != 0) {
             ::close(fd);
@@ -181,9 +181,9 @@ bool isLockTaken(const std::string &instance) {
         return false;
     }
     struct flock whole = whole_file();
-    const bool isLocked = ::fcntl(fd, F_OFD_GETLK, &whole) == 0 && whole.l_type != F_UNLCK;
+    const bool locked = ::fcntl(fd, F_OFD_GETLK, &whole) == 0 && whole.l_type != F_UNLCK;
     ::close(fd);
-    return isLocked;
+    return locked;
 }
 
 void remove_leftovers(const std::string &instance) {

@@ -24,7 +24,7 @@ const std::string *find(const mw::ini::IniFile &file, const char *tag, const cha
     return nullptr;
 }
 
-/// In the whole file, wherever the stream stands.
+/// Searches the whole file, independent of the stream's position.
 const std::string *find(FILE *stream, const char *tag, const char *section) {
     if (stream == nullptr || tag == nullptr || std::fseek(stream, 0, SEEK_SET) != 0) {
         return nullptr;
@@ -34,7 +34,7 @@ const std::string *find(FILE *stream, const char *tag, const char *section) {
     for (std::size_t got = 0; (got = std::fread(block, 1, sizeof block, stream)) > 0;) {
         text.append(block, got);
     }
-    mw::diagnostics::Sink ignored;  // malformed lines are those of the one who loads the configuration
+    mw::diagnostics::Sink ignored;  // the program that loads the configuration reports malformed lines
     return find(mw::ini::IniFile::parse(text, "", ignored), tag, section);
 }
 
@@ -47,7 +47,7 @@ const std::string *find(const char *name, const char *tag, const char *section) 
     return file ? find(*file, tag, section) : nullptr;
 }
 
-/// Hands the number over if it is one.
+/// Stores the number if it is valid.
 template <class T, class Number>
 int hand_over(const Number &number, T *result) {
     if (!number) {
@@ -62,9 +62,9 @@ int to_int(const std::string *value, int *result) {
         return -ENOENT;
     }
     const auto wide = mw::parse_int(*value);
-    const bool isInt =
+    const bool is_int =
         wide && *wide >= std::numeric_limits<int>::min() && *wide <= std::numeric_limits<int>::max();
-    return isInt ? hand_over(wide, result) : -EINVAL;
+    return is_int ? hand_over(wide, result) : -EINVAL;
 }
 
 int to_text(const std::string *value, char *dest, std::size_t n) {

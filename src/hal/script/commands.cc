@@ -88,7 +88,7 @@ constexpr CommandSpec COMMANDS[] = {
     {"exit", 0, 0, false, "", "Ends the input.", run_exit},
     {"quit", 0, 0, false, "", "Ends the input.", run_exit},
     {"setexact_for_test_suite_only", 0, 0, false, "",
-     "Asks for threads with exactly the periods wanted, which they always have here.", run_setexact},
+     "Requests threads with exact periods; here they always have them.", run_setexact},
 };
 
 std::vector<std::string> command_names() {
@@ -128,8 +128,8 @@ namespace {
 
 /// Whole sentences: a translation has other endings for one and for several.
 std::string word_count_text(const CommandSpec &spec, int given) {
-    const bool isOne = spec.min_words == 1;
-    if (spec.max_words == ANY && isOne) {
+    const bool is_one = spec.min_words == 1;
+    if (spec.max_words == ANY && is_one) {
         return fmt::format("{} needs at least 1 argument, {} given", spec.name, given);
     }
     if (spec.max_words == ANY) {
@@ -139,8 +139,8 @@ std::string word_count_text(const CommandSpec &spec, int given) {
         return fmt::format("{} needs {} to {} arguments, {} given", spec.name, spec.min_words, spec.max_words,
                            given);
     }
-    return isOne ? fmt::format("{} needs 1 argument, {} given", spec.name, given)
-                 : fmt::format("{} needs {} arguments, {} given", spec.name, spec.min_words, given);
+    return is_one ? fmt::format("{} needs 1 argument, {} given", spec.name, given)
+                  : fmt::format("{} needs {} arguments, {} given", spec.name, spec.min_words, given);
 }
 
 }  // namespace
@@ -148,13 +148,13 @@ std::string word_count_text(const CommandSpec &spec, int given) {
 Result<> check_words(const Call &call) {
     const int given = static_cast<int>(call.words.size());
     const CommandSpec &spec = call.spec;
-    const bool isTooFew = given < spec.min_words;
-    const bool isTooMany = spec.max_words != ANY && given > spec.max_words;
-    if (!isTooFew && !isTooMany) {
+    const bool is_too_few = given < spec.min_words;
+    const bool is_too_many = spec.max_words != ANY && given > spec.max_words;
+    if (!is_too_few && !is_too_many) {
         return {};
     }
     const SourcePlace &place =
-        isTooMany ? call.place_of(static_cast<std::size_t>(spec.max_words)) : call.place;
+        is_too_many ? call.place_of(static_cast<std::size_t>(spec.max_words)) : call.place;
     return fail(word_count_text(spec, given), place, fmt::format("{} {}", spec.name, spec.synopsis));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Signals, links and second names.
+// Signals, links and aliases.
 #include <fmt/format.h>
 
 #include "hal/script/commands.hh"
@@ -24,10 +24,10 @@ Result<> check_signal(Hal &hal, const Word &word) {
                 suggestion(word.text, signal_names(hal)));
 }
 
-/// Links one pin to a signal that exists, or puts a placeholder in its place.
+/// Links one pin to an existing signal, or a placeholder instead.
 Result<> link(Session &session, const Word &pin, const Word &signal) {
     Hal &hal = session.hal();
-    if (session.options().hasPlaceholders && session.placeholders().covers(pin.text)) {
+    if (session.options().has_placeholders && session.placeholders().covers(pin.text)) {
         return at(session.placeholders().link(pin.text, signal.text), pin.place);
     }
     Result<> result = check_signal(hal, signal);
@@ -55,7 +55,7 @@ Result<Kind> kind_of(const Word &word) {
     return fail(fmt::format("'{}' is neither pin nor param", word.text), word.place);
 }
 
-/// Sets or (empty) removes the alias of the thing that words 0 and 1 name.
+/// Sets or (if empty) removes the alias of the object named by words 0 and 1.
 Result<> set_alias(Session &session, const Call &call, const std::string &alias) {
     const Result<Kind> kind = kind_of(call.words[0]);
     if (!kind) {
@@ -82,7 +82,7 @@ Result<> run_net(Session &session, const Call &call) {
     std::vector<const Word *> placeholders;
     for (std::size_t i = 1; i < call.words.size(); ++i) {
         const Word &pin = call.words[i];
-        if (session.options().hasPlaceholders && session.placeholders().covers(pin.text)) {
+        if (session.options().has_placeholders && session.placeholders().covers(pin.text)) {
             placeholders.push_back(&pin);
             continue;
         }
@@ -122,7 +122,7 @@ Result<> run_linkpp(Session &session, const Call &call) {
     if (!result) {
         return result;
     }
-    // The signal takes the first pin's name and must be new.
+    // The signal is named after the first pin and must be new.
     if (hal.hasSignal(call.text(0))) {
         return fail(fmt::format("there is a signal '{}' already", call.text(0)), call.place_of(0));
     }
@@ -133,7 +133,7 @@ Result<> run_linkpp(Session &session, const Call &call) {
     result = at(hal.link(call.text(0), call.text(0)), call.place_of(0));
     result = result ? at(hal.link(call.text(1), call.text(0)), call.place_of(1)) : result;
     if (!result) {
-        // Nothing half done stays.
+        // Removes a partly linked signal.
         (void)hal.delete_signal(call.text(0));
     }
     return result;
@@ -149,7 +149,7 @@ Result<> run_linksp(Session &session, const Call &call) {
 
 Result<> run_unlinkp(Session &session, const Call &call) {
     Hal &hal = session.hal();
-    if (session.options().hasPlaceholders && session.placeholders().covers(call.text(0))) {
+    if (session.options().has_placeholders && session.placeholders().covers(call.text(0))) {
         return {};
     }
     Result<> result = check_pin(hal, call.words[0]);

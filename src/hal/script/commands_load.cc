@@ -17,7 +17,7 @@ namespace {
 Result<ProgramRequest> parse_loadusr(const Call &call) {
     ProgramRequest request;
     std::size_t i = 0;
-    bool isNamed = false;
+    bool named = false;
     for (; i < call.words.size() && call.text(i).starts_with('-'); ++i) {
         const std::string &word = call.text(i);
         if (word == "-Wn") {
@@ -26,7 +26,7 @@ Result<ProgramRequest> parse_loadusr(const Call &call) {
             }
             request.wait = ProgramRequest::Wait::UNTIL_READY;
             request.component = call.text(++i);
-            isNamed = true;
+            named = true;
             continue;
         }
         for (const char option : word.substr(1)) {
@@ -48,7 +48,7 @@ Result<ProgramRequest> parse_loadusr(const Call &call) {
     if (request.argv.empty()) {
         return fail("loadusr needs the name of a program", call.place);
     }
-    if (!isNamed) {
+    if (!named) {
         const std::string name = base_name(request.argv[0]);
         request.component = name.ends_with(".py") ? name.substr(0, name.size() - 3) : name;
     }
@@ -59,10 +59,10 @@ Result<> unload_module(Session &session, const std::string &name) {
     return session.host().unload_realtime(name);
 }
 
-/// Newest first; the first failure, after trying all.
+/// Newest first; reports the first failure after trying all.
 Result<> unload_all_modules(Session &session) {
     Result<> result;
-    // Threads must not call what is going away.
+    // Threads must not call functions that are being removed.
     if (session.hal().isRunning()) {
         result = session.hal().stop_threads();
     }
@@ -80,8 +80,8 @@ Result<> unload_all_modules(Session &session) {
 std::vector<std::string> component_names(Session &session, CompType type) {
     std::vector<std::string> names;
     for (const CompInfo &component : session.hal().components()) {
-        const bool isOurs = component.type == CompType::USER && component.pid == getpid();
-        if (component.type == type && !isOurs) {
+        const bool own = component.type == CompType::USER && component.pid == getpid();
+        if (component.type == type && !own) {
             names.push_back(component.name);
         }
     }
@@ -93,14 +93,14 @@ std::unexpected<Error> not_loaded(Session &session, const Word &word, CompType t
                 missing_hint(session.hal(), word.text, component_names(session, type)));
 }
 
-/// A program may have ended by itself already, which is what was wanted.
+/// A program that has ended already is not an error.
 Result<> warn_not_loaded(Session &session, const Word &word) {
     const Error error = not_loaded(session, word, CompType::USER).error();
     session.warn(error.place, error.message, error.hint);
     return {};
 }
 
-/// The position of addf and initf: not zero.
+/// The position for addf and initf: not zero.
 Result<int> parse_position(const Call &call) {
     if (call.words.size() < 3) {
         return -1;
@@ -161,9 +161,9 @@ Result<> run_loadusr(Session &session, const Call &call) {
         session.placeholders().add_program(request->component, request->argv);
         return {};
     }
-    const bool hasEnded = request->wait == ProgramRequest::Wait::UNTIL_END;
+    const bool ended = request->wait == ProgramRequest::Wait::UNTIL_END;
     session.info(call.place,
-                 fmt::format("Program '{}' {}", request->argv[0], hasEnded ? "finished" : "started"));
+                 fmt::format("Program '{}' {}", request->argv[0], ended ? "finished" : "started"));
     if (request->wait == ProgramRequest::Wait::UNTIL_READY) {
         session.info(call.place, fmt::format("Component '{}' ready", request->component));
     }
@@ -206,8 +206,8 @@ Result<> run_unloadrt(Session &session, const Call &call) {
     if (call.text(0) == "all") {
         return at(unload_all_modules(session), call.place_of(0));
     }
-    const Result<bool> isLoaded = session.host().isModuleLoaded(call.text(0));
-    if (isLoaded && !*isLoaded) {
+    const Result<bool> is_loaded = session.host().isModuleLoaded(call.text(0));
+    if (is_loaded && !*is_loaded) {
         return not_loaded(session, call.words[0], CompType::REALTIME);
     }
     const Result<> unloaded = at(unload_module(session, call.text(0)), call.place_of(0));
@@ -224,8 +224,8 @@ Result<> run_unload(Session &session, const Call &call) {
         return programs ? modules : programs;
     }
     const Result<CompInfo> component = session.hal().component(call.text(0));
-    const bool isProgram = component && component->type == CompType::USER;
-    return isProgram ? run_unloadusr(session, call) : run_unloadrt(session, call);
+    const bool is_program = component && component->type == CompType::USER;
+    return is_program ? run_unloadusr(session, call) : run_unloadrt(session, call);
 }
 
 Result<> run_addf(Session &session, const Call &call) {

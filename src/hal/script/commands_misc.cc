@@ -58,7 +58,7 @@ std::string memory_status(const HalStatistics &s) {
     return text;
 }
 
-/// Components whose process died: nothing when there are none.
+/// Components whose process died: empty when there are none.
 std::string death_status(Hal &hal) {
     std::string text;
     for (const DeathInfo &death : hal.deaths()) {
@@ -69,7 +69,7 @@ std::string death_status(Hal &hal) {
     return text;
 }
 
-/// The lock of word 0, all without a word; `none` only where it makes sense.
+/// The lock named by word 0, all without a word; `none` only where it is valid.
 Result<std::uint8_t> lock_of(const Call &call, bool allowsNone) {
     if (call.words.empty()) {
         return LOCK_ALL;
@@ -112,18 +112,18 @@ Result<> run_unlock(Session &session, const Call &call) {
 
 Result<> run_status(Session &session, const Call &call) {
     const std::string what = call.words.empty() ? "all" : call.text(0);
-    const bool isAll = what == "all";
-    if (!isAll && what != "lock" && what != "mem") {
+    const bool all = what == "all";
+    if (!all && what != "lock" && what != "mem") {
         return fail(fmt::format("unknown 'status' type '{}'", what), call.place_of(0), "lock, mem or all");
     }
     std::string text;
-    if (isAll || what == "lock") {
+    if (all || what == "lock") {
         text += lock_status(session.hal().lock());
     }
-    if (isAll || what == "mem") {
+    if (all || what == "mem") {
         text += memory_status(session.hal().statistics());
     }
-    session.output().data(isAll ? text + death_status(session.hal()) : text);
+    session.output().data(all ? text + death_status(session.hal()) : text);
     return {};
 }
 

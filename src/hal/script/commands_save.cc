@@ -13,7 +13,7 @@ namespace {
 
 enum class Arrows { NO, YES };
 
-/// A value as a setp line has it: unsigned numbers in hexadecimal.
+/// A value for a setp line: unsigned numbers in hexadecimal.
 std::string saved(const Value &value) {
     switch (value.type) {
     case Type::U32: return fmt::format("0x{:08X}", value.as_u32());
@@ -31,7 +31,7 @@ std::string save_comp(Hal &hal) {
         if (c.type == CompType::USER) {
             continue;
         }
-        if (c.isLoadedByLoadrt) {
+        if (c.is_loaded_by_loadrt) {
             text += fmt::format("loadrt {}{}{}\n", c.name, c.insmod_args.empty() ? "" : " ", c.insmod_args);
         } else {
             text += fmt::format("#loadrt {}  (not loaded by loadrt, no args saved)\n", c.name);
@@ -94,7 +94,7 @@ std::string save_linka(Hal &hal) {
     return links(hal, Arrows::YES);
 }
 
-/// Pins in the order of a net line: the writer, those that do both, the readers.
+/// Pins in the order of a net line: writer, I/O pins, readers.
 std::vector<SignalPin> ordered(const SignalInfo &signal) {
     std::vector<SignalPin> pins = signal.pins;
     const auto rank = [](const SignalPin &pin) {
@@ -134,13 +134,13 @@ std::string net_lines(Hal &hal, Arrows arrows) {
         text += "net " + s.name;
         const char *between = "";
         for (const SignalPin &pin : arrows == Arrows::YES ? ordered(s) : s.pins) {
-            // One arrow where writers end and readers begin.
-            const bool isReader = pin.dir == Dir::IN;
-            if (arrows == Arrows::YES && (isReader || pin.dir == Dir::IO)) {
+            // One arrow between writers and readers.
+            const bool is_reader = pin.dir == Dir::IN;
+            if (arrows == Arrows::YES && (is_reader || pin.dir == Dir::IO)) {
                 text += between;
             }
             text += " " + pin.name;
-            between = isReader ? "" : (pin.dir == Dir::OUT ? " =>" : " <=>");
+            between = is_reader ? "" : (pin.dir == Dir::OUT ? " =>" : " <=>");
         }
         text += '\n';
     }
@@ -229,7 +229,7 @@ Result<> run_save(Session &session, const Call &call) {
             session.output().data(text);
             return {};
         }
-        if (!session.options().hasFiles) {
+        if (!session.options().has_files) {
             return fail("files are out of reach here", call.place_of(1));
         }
         const Result<> written = write_file_atomically(call.text(1), text);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// show and list. The columns are those that scripts of existing installations cut out.
+// show and list. The columns are those that scripts of existing installations parse.
 #include <fnmatch.h>
 
 #include <algorithm>
@@ -14,12 +14,12 @@ namespace mw::hal::script {
 
 namespace {
 
-/// What a listing is about: of one type only, and of names that match one of the patterns (all without any).
+/// Filter of a listing: one type, and names that match one of the patterns (all names without patterns).
 struct Patterns {
     std::optional<Type> type;
     std::vector<std::string> globs;
 
-    /// A pattern matches whole names, or is their beginning.
+    /// A pattern matches a whole name, or its beginning.
     bool isMatch(const std::string &name) const {
         return globs.empty() || std::any_of(globs.begin(), globs.end(), [&](const std::string &glob) {
                    return name.starts_with(glob) || fnmatch(glob.c_str(), name.c_str(), 0) == 0;
@@ -27,7 +27,7 @@ struct Patterns {
     }
 };
 
-/// A value as show prints it: unsigned numbers in hexadecimal.
+/// A value in show's format: unsigned numbers in hexadecimal.
 std::string shown(const Value &value) {
     switch (value.type) {
     case Type::U32: return fmt::format("0x{:08X}", value.as_u32());
@@ -36,7 +36,7 @@ std::string shown(const Value &value) {
     }
 }
 
-/// Those that the patterns want, in order.
+/// The matching items, in order.
 template <class Item>
 std::vector<Item> matching(const Patterns &patterns, std::vector<Item> items) {
     std::erase_if(items, [&](const Item &item) {
@@ -76,13 +76,13 @@ std::vector<CompInfo> components(Hal &hal, const Patterns &patterns) {
 }
 
 const char *type_word(CompType type) {
-    // The pseudo components of threads count as realtime ones.
+    // Pseudo components of threads count as realtime components.
     return type == CompType::USER ? "User" : "RT";
 }
 
 std::string show_comp(Session &session, const Patterns &patterns) {
     std::string text;
-    if (!session.options().isScript) {
+    if (!session.options().is_script) {
         text += "Loaded HAL Components:\n";
         text += "ID      Type  Name                                            PID   State\n";
     }
@@ -100,14 +100,14 @@ std::string arrow_to(const PinInfo &pin) {
 }
 
 std::string show_pin(Session &session, const Patterns &patterns) {
-    const bool isScript = session.options().isScript;
+    const bool is_script = session.options().is_script;
     std::string text;
-    if (!isScript) {
+    if (!is_script) {
         text += "Component Pins:\n";
         text += "Owner   Type  Dir                 Value  Name\n";
     }
     for (const PinInfo &p : pins(session.hal(), patterns)) {
-        if (isScript) {
+        if (is_script) {
             text += fmt::format("{} {:<5} {} {} {}{}\n", p.owner, type_name(p.type), dir_name(p.dir),
                                 p.value.str(), p.name, arrow_to(p));
         } else {
@@ -119,14 +119,14 @@ std::string show_pin(Session &session, const Patterns &patterns) {
 }
 
 std::string show_param(Session &session, const Patterns &patterns) {
-    const bool isScript = session.options().isScript;
+    const bool is_script = session.options().is_script;
     std::string text;
-    if (!isScript) {
+    if (!is_script) {
         text += "Parameters:\n";
         text += "Owner   Type  Dir                 Value  Name\n";
     }
     for (const ParamInfo &p : params(session.hal(), patterns)) {
-        if (isScript) {
+        if (is_script) {
             text += fmt::format("{} {:<5} {} {} {}\n", p.owner, type_name(p.type), dir_name(p.dir),
                                 p.value.str(), p.name);
         } else {
@@ -142,14 +142,14 @@ const char *arrow_of(Dir dir) {
 }
 
 std::string show_sig(Session &session, const Patterns &patterns) {
-    const bool isScript = session.options().isScript;
+    const bool is_script = session.options().is_script;
     std::string text;
-    if (!isScript) {
+    if (!is_script) {
         text += "Signals:\n";
         text += "Type                  Value  Name     (linked to)\n";
     }
     for (const SignalInfo &s : signals(session.hal(), patterns)) {
-        if (isScript) {
+        if (is_script) {
             text += fmt::format("{:<5}  {}  {}", type_name(s.type), s.value.str(), s.name);
             for (const SignalPin &pin : s.pins) {
                 text += fmt::format(" {} {}", arrow_of(pin.dir), pin.name);
@@ -166,15 +166,15 @@ std::string show_sig(Session &session, const Patterns &patterns) {
 }
 
 std::string show_funct(Session &session, const Patterns &patterns) {
-    const bool isScript = session.options().isScript;
+    const bool is_script = session.options().is_script;
     std::string text;
-    if (!isScript) {
+    if (!is_script) {
         text += "Exported Functions:\n";
         text += "Owner   CodeAddr  Arg       FP   Users  Name\n";
     }
     for (const FunctInfo &f : functs(session.hal(), patterns)) {
         const char *fp = f.usesFloat ? "YES" : "NO";
-        if (isScript) {
+        if (is_script) {
             text += fmt::format("{} {:012x} {:012x} {:<3} {:>2} {}\n", f.owner, f.address, f.argument, fp,
                                 f.users, f.name);
         } else {
@@ -186,14 +186,14 @@ std::string show_funct(Session &session, const Patterns &patterns) {
 }
 
 std::string show_thread(Session &session, const Patterns &patterns) {
-    const bool isScript = session.options().isScript;
+    const bool is_script = session.options().is_script;
     std::string text;
-    if (!isScript) {
+    if (!is_script) {
         text += "Realtime Threads:\n";
         text += "     Period  FP     Name               (     Time, Max-Time )\n";
     }
     for (const ThreadInfo &t : threads(session.hal(), patterns)) {
-        if (isScript) {
+        if (is_script) {
             text += fmt::format("{} YES {} {:>8} {}", t.period_ns, t.name, t.time_ns, t.tmax_ns);
             for (const std::string &function : t.functions) {
                 text += " " + function;
@@ -216,17 +216,17 @@ std::string show_thread(Session &session, const Patterns &patterns) {
 
 template <class Item>
 std::string alias_block(Session &session, const char *title, const std::vector<Item> &items) {
-    const bool isScript = session.options().isScript;
+    const bool is_script = session.options().is_script;
     std::string text;
-    if (!isScript) {
+    if (!is_script) {
         text += fmt::format("{}:\n {:<48} {}\n", title, "Alias", "Original Name");
     }
     for (const Item &item : items) {
         if (item.original_name.empty()) {
             continue;
         }
-        text += isScript ? fmt::format(" {}  {}\n", item.name, item.original_name)
-                         : fmt::format(" {:<48} {}\n", item.name, item.original_name);
+        text += is_script ? fmt::format(" {}  {}\n", item.name, item.original_name)
+                          : fmt::format(" {:<48} {}\n", item.name, item.original_name);
     }
     return text + "\n";
 }
@@ -269,7 +269,7 @@ std::string names_of(const std::vector<Item> &items) {
     return text + '\n';
 }
 
-/// The names that list prints; nothing for an unknown kind.
+/// The names that list prints; nothing for an unknown type.
 std::optional<std::string> list_text(Hal &hal, const std::string &kind, const Patterns &patterns) {
     if (kind == "pin") {
         return names_of(pins(hal, patterns));
@@ -292,7 +292,7 @@ std::optional<std::string> list_text(Hal &hal, const std::string &kind, const Pa
     return std::nullopt;
 }
 
-/// Words 1 and on: -tTYPE first, where one type only is wanted, then patterns.
+/// Words from 1 on: optionally -tTYPE, then patterns.
 Result<Patterns> parse_patterns(const Call &call) {
     Patterns patterns;
     for (std::size_t i = 1; i < call.words.size(); ++i) {

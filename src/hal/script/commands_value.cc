@@ -31,7 +31,7 @@ bool hasValue(Hal &hal, const std::string &name) {
 Result<> run_setp(Session &session, const Call &call) {
     Hal &hal = session.hal();
     const std::string &name = call.text(0);
-    if (session.options().hasPlaceholders && session.placeholders().covers(name)) {
+    if (session.options().has_placeholders && session.placeholders().covers(name)) {
         session.placeholders().note(name);
         return {};
     }

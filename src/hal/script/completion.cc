@@ -15,7 +15,7 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-/// A position in a command line: the words before it, and the beginning of the one there.
+/// A position in a command line: the words before it, and the start of the current one.
 struct Place {
     Session &session;
     Words words;  ///< the command and its words so far, without arrows
@@ -62,7 +62,7 @@ Words components(const Place &place) {
     return names(place.hal().components());
 }
 
-/// Parameters and pins that setp can set.
+/// Parameters and pins that setp accepts.
 Words settable(const Place &place) {
     Words words;
     for (const ParamInfo &param : place.hal().params()) {
@@ -78,7 +78,7 @@ Words settable(const Place &place) {
     return words;
 }
 
-/// Pins that can be linked: of the type of the signal that comes first, or of the first pin there.
+/// Pins that can be linked: of the type of the signal, or of the first pin.
 Words pins_to_link(const Place &place) {
     std::optional<Type> type;
     if (place.words.size() > 1 && place.hal().hasSignal(place.words[1])) {
@@ -146,7 +146,7 @@ Words module_parameters(const Place &) {
     return {"count=", "names=", "personality="};
 }
 
-/// Files and folders that begin as typed.
+/// Files and folders that begin with the typed text.
 Words files(const Place &place) {
     const std::size_t slash = place.start.rfind('/');
     const std::string folder = slash == std::string::npos ? "" : place.start.substr(0, slash + 1);
@@ -154,8 +154,8 @@ Words files(const Place &place) {
     std::error_code ignored;
     for (const auto &entry : std::filesystem::directory_iterator(folder.empty() ? "." : folder, ignored)) {
         const std::string name = entry.path().filename().string();
-        const bool isHidden = name.starts_with('.');
-        if (!isHidden) {
+        const bool hidden = name.starts_with('.');
+        if (!hidden) {
             words.push_back(folder + name + (entry.is_directory(ignored) ? "/" : ""));
         }
     }
@@ -176,7 +176,7 @@ Words sources(const Place &place) {
     return words;
 }
 
-/// Options, then what can be run.
+/// Options, then programs.
 Words program(const Place &place) {
     if (place.words.back() == "-Wn") {
         return {};
@@ -221,7 +221,7 @@ Words command_names(const Place &) {
     return words;
 }
 
-/// Things of the kind that the word before says.
+/// Objects of the type named by the previous word.
 Words of_kind(const Place &place) {
     const std::string &kind = place.words[1];
     if (kind == "pin") {
@@ -245,7 +245,7 @@ Words of_kind(const Place &place) {
     return kind == "all" ? values(place) : Words{};
 }
 
-/// What the words of a command are; the last goes on when `repeats` is set.
+/// Words of a command; the last one may repeat when `repeats` is set.
 struct Grammar {
     std::string_view command;
     Candidates words[3];

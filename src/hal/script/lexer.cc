@@ -17,7 +17,7 @@ bool isBlank(char c) {
     return BLANKS.find(c) != std::string_view::npos;
 }
 
-/// The index of the '#' that starts a comment (outside quotes), or the size.
+/// Index of the '#' that starts a comment (outside quotes), or the size.
 std::size_t comment_start(const std::string &text) {
     char quote = 0;
     for (std::size_t i = 0; i < text.size(); ++i) {
@@ -27,7 +27,7 @@ std::size_t comment_start(const std::string &text) {
                 quote = 0;
             }
         } else if (c == '"' || c == '\'') {
-            // A quote that is never closed does not hide a comment; the word splitter reports it.
+            // An unclosed quote does not hide a comment; the word splitter reports it.
             if (text.find(c, i + 1) != std::string::npos) {
                 quote = c;
             }
@@ -48,7 +48,7 @@ std::optional<std::string> process_environment(const std::string &name) {
     return value == nullptr ? std::nullopt : std::optional<std::string>(value);
 }
 
-/// Reads variable names behind '$' or ']' and replaces them.
+/// Finds variable names after '$' or ']' and replaces them.
 class Substituter {
   public:
     Substituter(const PlacedText &line, const std::string &file, const Variables &variables)
@@ -74,7 +74,7 @@ class Substituter {
     }
 
   private:
-    /// Reads "(NAME)" or "NAME" up to a blank or the closing quote; `at_` is behind it afterwards.
+    /// Reads "(NAME)" or "NAME" up to a blank or the closing quote; `at_` is after it on return.
     Result<std::string> read_name(std::size_t start) {
         if (at_ < text_.size() && text_[at_] == '(') {
             const std::size_t close = text_.find(')', at_);

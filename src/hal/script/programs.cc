@@ -28,11 +28,11 @@ namespace mw::hal::script {
 namespace {
 
 constexpr long POLL_NS = 2000000;
-/// How often the realtime process is looked at meanwhile.
+/// Interval for checking the realtime process.
 constexpr long LOOK_NS = 10 * POLL_NS;
-/// A program that is not ready by then is mentioned.
+/// Time after which a program that is not ready is reported.
 constexpr long PATIENCE_NS = 2000 * POLL_NS;
-/// From SIGTERM to SIGKILL: longer than our components in Python need whose loop swallows the interrupt.
+/// From SIGTERM to SIGKILL: longer than our Python components need if their loop ignores the interrupt.
 constexpr long GRACE_NS = 2500 * POLL_NS;
 
 void nap() {
@@ -110,7 +110,7 @@ Result<> SystemProgramHost::wait_until_ready(const ProgramRequest &request, int 
 
 Result<> SystemProgramHost::wait_for_status(const ProgramRequest &request, int pid) {
     constexpr int LOOK_MS = 50;
-    // A stop signal may arrive before the wait begins, so the wait is never longer than this.
+    // A stop signal may arrive before the wait begins, so a wait is limited to this time.
     const int end = static_cast<int>(syscall(SYS_pidfd_open, pid, 0));
     const auto closed = [](const int *file) {
         if (*file >= 0) {
@@ -133,8 +133,8 @@ Result<> SystemProgramHost::wait_for_status(const ProgramRequest &request, int p
             poll(&one, 1, LOOK_MS);
         }
     }
-    const bool isFine = WIFEXITED(status) && WEXITSTATUS(status) == 0;
-    if (!isFine && !request.ignoresStatus) {
+    const bool fine = WIFEXITED(status) && WEXITSTATUS(status) == 0;
+    if (!fine && !request.ignoresStatus) {
         return fail(fmt::format("program '{}' {}", request.argv[0], how_ended(status)));
     }
     return {};
@@ -156,8 +156,8 @@ Result<> SystemProgramHost::stop(const std::string &component) {
 Result<> SystemProgramHost::stop_all() {
     Result<> result;
     for (const CompInfo &component : hal_.components()) {
-        const bool isOurs = component.pid == getpid();
-        if (component.type != CompType::USER || isOurs) {
+        const bool own = component.pid == getpid();
+        if (component.type != CompType::USER || own) {
             continue;
         }
         const Result<> stopped = stop(component.name);
@@ -165,13 +165,12 @@ Result<> SystemProgramHost::stop_all() {
             result = stopped;
         }
     }
-    // Also who is still on the way to a component: it would come up on a HAL that is gone, or on the next
-    // one.
+    // Also programs that have no component yet: they would join a HAL that has ended, or the next one.
     reap();
     for (const int pid : children_) {
         kill(pid, SIGTERM);
     }
-    // The time that an orderly end takes; who has not ended by then is made to.
+    // Time for an orderly end; programs that exceed it are killed.
     await_end(GRACE_NS);
     kill_programs();
     await_end(PATIENCE_NS);
@@ -186,7 +185,7 @@ void SystemProgramHost::await_end(long longest_ns) {
     }
 }
 
-/// A program that does not hear SIGTERM would outlive the machine, with its pins and whatever it drives.
+/// A program that ignores SIGTERM would outlive the machine, with its pins and the hardware that it controls.
 void SystemProgramHost::kill_programs() {
     for (const CompInfo &component : hal_.components()) {
         if (isProgram(component) && kill(component.pid, SIGKILL) == 0) {
@@ -221,8 +220,8 @@ bool SystemProgramHost::isProgramLeft() const {
     return !children_.empty();
 }
 
-/// Processes that have ended look alive to kill() until their parent asks for their status, which the parents
-/// of some components never do.
+/// Ended processes appear alive to kill() until their parent reads their status, which the parents of some
+/// components never do.
 void SystemProgramHost::reap() {
     std::erase_if(children_, [](int pid) { return waitpid(pid, nullptr, WNOHANG) != 0; });
     hal_.reap_dead_components();

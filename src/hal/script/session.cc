@@ -22,7 +22,7 @@ namespace mw::hal::script {
 
 namespace {
 
-/// Pipes included: `halcmd -f <(program)`.
+/// Also reads pipes: `halcmd -f <(program)`.
 Result<std::string> read_anything(const std::string &path) {
     std::ifstream file(path, std::ios::binary);
     if (!file) {
@@ -31,7 +31,7 @@ Result<std::string> read_anything(const std::string &path) {
     return std::string(std::istreambuf_iterator<char>(file), {});
 }
 
-/// HAL files that run each other in a circle end here.
+/// Limit for HAL files that run each other recursively.
 constexpr std::size_t MAX_DEPTH = 32;
 constexpr std::string_view LIBRARY_PREFIX = "LIB:";
 
@@ -73,7 +73,7 @@ void print(std::FILE *file, std::string_view text, bool endsLine) {
     if (endsLine) {
         std::fputc('\n', file);
     }
-    // Programs that loadusr starts write to the same place: keep the order.
+    // Programs started by loadusr write to the same file: keeps the order.
     std::fflush(file);
 }
 
@@ -131,7 +131,7 @@ void Session::report(const Error &error) {
     }
     Error shown = error;
     if (shown.place.file.empty()) {
-        // Typed, or given as words: a number of a line would say nothing.
+        // Typed, or from a command line: a line number would be meaningless.
         shown.place = {};
     }
     output_->error(shown);
@@ -159,15 +159,15 @@ Result<std::string> Session::find_file(const std::string &name) const {
             return path;
         }
     }
-    const bool isInLibrary = name.starts_with(LIBRARY_PREFIX);
+    const bool in_library = name.starts_with(LIBRARY_PREFIX);
     const std::string folders = joined(tried, ", ");
-    const std::string looked = tried.empty() && isInLibrary ? "there is no library folder"
-                               : tried.empty()              ? "looked in the working folder"
-                               : isInLibrary                ? fmt::format("looked in {}", folders)
-                                             : fmt::format("looked in the working folder, {}", folders);
-    tried.push_back(isInLibrary ? "" : ".");
+    const std::string looked = tried.empty() && in_library ? "there is no library folder"
+                               : tried.empty()             ? "looked in the working folder"
+                               : in_library                ? fmt::format("looked in {}", folders)
+                                            : fmt::format("looked in the working folder, {}", folders);
+    tried.push_back(in_library ? "" : ".");
     const std::string near = nearest_name(plain, hal_files_in(tried));
-    const std::string prefix = isInLibrary ? std::string(LIBRARY_PREFIX) : "";
+    const std::string prefix = in_library ? std::string(LIBRARY_PREFIX) : "";
     return fail(fmt::format("HAL file '{}' not found", name), {},
                 near.empty() ? looked : fmt::format("did you mean '{}{}'? {}", prefix, near, looked));
 }
@@ -175,7 +175,7 @@ Result<std::string> Session::find_file(const std::string &name) const {
 Result<> Session::run_script(const std::string &path, const std::vector<std::string> &arguments) {
     const Result<ScriptRunner *> runner = tcl();
     if (!runner) {
-        // Where a command names the file, the command reports.
+        // For a file named in a command, the command reports the error.
         if (running_.empty()) {
             report(runner.error());
         }
@@ -203,7 +203,7 @@ Result<ScriptRunner *> Session::tcl() {
 
 Result<> Session::run_file(const std::string &name, const std::vector<std::string> &arguments) {
     const auto read = [&]() -> Result<std::pair<std::string, std::string>> {
-        if (!options_.hasFiles) {
+        if (!options_.has_files) {
             return fail(fmt::format("HAL file '{}' cannot be run: files are out of reach here", name));
         }
         const Result<std::string> path = find_file(name);
@@ -219,7 +219,7 @@ Result<> Session::run_file(const std::string &name, const std::vector<std::strin
         if (!arguments.empty()) {
             return fail(fmt::format("HAL file '{}' takes no arguments, '{}' is given", name, arguments[0]));
         }
-        auto text = options_.arePipesRead ? read_anything(*path) : read_file(*path);
+        auto text = options_.are_pipes_read ? read_anything(*path) : read_file(*path);
         if (!text) {
             return std::unexpected(text.error());
         }
@@ -227,7 +227,7 @@ Result<> Session::run_file(const std::string &name, const std::vector<std::strin
     };
     const auto file = read();
     if (!file) {
-        // Where a command names the file, the command reports.
+        // For a file named in a command, the command reports the error.
         if (running_.empty()) {
             report(file.error());
         }
@@ -250,7 +250,7 @@ Result<> Session::run_text(std::string_view text, const std::string &name, int f
                 break;
             }
         }
-        if (hasEnded_) {
+        if (ended_) {
             break;
         }
     }
@@ -260,7 +260,7 @@ Result<> Session::run_text(std::string_view text, const std::string &name, int f
 
 Result<> Session::run_line(const LogicalLine &line, const std::string &file) {
     if (options_.stop != nullptr && *options_.stop != 0) {
-        hasEnded_ = true;
+        ended_ = true;
         return fail("stopped", {file, line.first_line, 0});
     }
     if (options_.isEchoing) {
@@ -297,7 +297,7 @@ Result<> Session::run_words(const std::vector<std::string> &words) {
 
 namespace {
 
-/// Keeps the answers; what else is said goes where it always goes.
+/// Keeps the results of commands; other output is passed on.
 class AnswerOutput final : public Output {
   public:
     explicit AnswerOutput(Output &rest) : rest_(rest) {}
@@ -330,20 +330,20 @@ Result<std::string> Session::call(const std::vector<std::string> &words) {
 /// Runs a command whose words have been counted, if it belongs to this pass.
 Result<> Session::run_call(const Call &call) {
     const CommandSpec &spec = call.spec;
-    const bool isLoad = spec.run == script::run_loadrt || spec.run == script::run_loadusr;
-    if (options_.pass == Pass::REST && isLoad) {
+    const bool is_load = spec.run == script::run_loadrt || spec.run == script::run_loadusr;
+    if (options_.pass == Pass::REST && is_load) {
         return {};
     }
     if (options_.pass == Pass::LOADS) {
         if (spec.run == script::run_loadrt) {
             return options_.loads->add(call);
         }
-        if (isLoad) {
+        if (is_load) {
             options_.loads->starting(call);
         }
-        const bool isRun = isLoad || spec.run == script::run_source || spec.run == script::run_list ||
-                           spec.run == script::run_save || spec.run == script::run_exit;
-        if (!isRun) {
+        const bool is_run = is_load || spec.run == script::run_source || spec.run == script::run_list ||
+                            spec.run == script::run_save || spec.run == script::run_exit;
+        if (!is_run) {
             return {};
         }
     }
@@ -361,30 +361,30 @@ Result<> Session::run_command(const std::vector<Word> &words) {
         }
         info(words[0].place, text);
     }
-    // "name = value" is setp.
-    const bool isAssignment = words.size() >= 2 && words[1].raw == "=";
-    const CommandSpec *spec = find_command(isAssignment ? "setp" : words[0].text);
+    // "name = value" means setp.
+    const bool is_assignment = words.size() >= 2 && words[1].raw == "=";
+    const CommandSpec *spec = find_command(is_assignment ? "setp" : words[0].text);
     if (spec == nullptr) {
         const Error error = unknown_command(words[0]);
         report(error);
         return std::unexpected(error);
     }
     Call call{*spec, words[0].place, {}};
-    for (std::size_t i = isAssignment ? 0 : 1; i < words.size(); ++i) {
-        const bool isSkipped = (isAssignment && i == 1) || (spec->ignoresArrows && isArrow(words[i].raw));
-        if (!isSkipped) {
+    for (std::size_t i = is_assignment ? 0 : 1; i < words.size(); ++i) {
+        const bool skipped = (is_assignment && i == 1) || (spec->ignoresArrows && isArrow(words[i].raw));
+        if (!skipped) {
             call.words.push_back(words[i]);
         }
     }
     Result<> result = check_words(call);
     if (result) {
-        const bool isSourcing = spec->run == run_source;
+        const bool sourcing = spec->run == run_source;
         const std::size_t depth = running_.size();
         result = at(run_call(call), call.place);
-        // What a sourced file's commands reported has been told already; that it could not be run has not.
-        const bool wasReported =
-            isSourcing && !result && running_.size() == depth && result.error().place.file != call.place.file;
-        if (wasReported) {
+        // Errors of commands in a sourced file have been reported already; a failure to run the file has not.
+        const bool was_reported =
+            sourcing && !result && running_.size() == depth && result.error().place.file != call.place.file;
+        if (was_reported) {
             return result;
         }
     }

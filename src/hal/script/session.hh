@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Runs HAL commands: files, lines and single commands, in the process of the machine or attached to one.
+// Runs HAL commands: files, lines and single commands, in the machine's process or attached to it.
 #pragma once
 
 #include <csignal>
@@ -18,22 +18,22 @@
 
 namespace mw::hal::script {
 
-/// Where the texts of commands go.
+/// Receiver of the texts of commands.
 class Output {
   public:
     virtual ~Output() = default;
-    /// What a command answers (show, list, getp...); newlines included.
+    /// Result of a command (show, list, getp...), including newlines.
     virtual void data(std::string_view text) = 0;
     /// What a command has done, without newline.
     virtual void info(std::string_view text) = 0;
-    /// Print and echo, without newline.
+    /// Texts of print and echo, without newline.
     virtual void note(std::string_view text) = 0;
     virtual void warning(const Error &warning) = 0;
     virtual void error(const Error &error) = 0;
 };
 
-/// Answers and results to standard output, the rest to standard error. Programs read the former, which is
-/// English; warnings and errors are in the language of the environment.
+/// Results and reports go to standard output, the rest to standard error. Programs read standard output,
+/// which is English; warnings and errors are in the language of the environment.
 class StandardOutput final : public Output {
   public:
     void data(std::string_view text) override;
@@ -43,44 +43,44 @@ class StandardOutput final : public Output {
     void error(const Error &error) override;
 };
 
-/// How much a session says.
+/// Amount of output of a session.
 enum class Verbosity {
-    SILENT,     ///< nothing but answers
+    SILENT,     ///< only results
     ERRORS,     ///< failures and warnings
-    RESULTS,    ///< what each command has done
-    EVERYTHING  ///< each command before it runs
+    RESULTS,    ///< also what each command has done
+    EVERYTHING  ///< also each command before it runs
 };
 
-/// Which commands run, for files that are gone through twice (TwoPass).
+/// Commands that run in each pass (TwoPass).
 enum class Pass {
     ALL,
-    LOADS,  ///< loadusr and list; loadrt is collected; source; no other
-    REST    ///< all but loadrt and loadusr
+    LOADS,  ///< loadusr, list and source; loadrt is collected
+    REST    ///< everything except loadrt and loadusr
 };
 
 struct Call;
 
-/// Takes the loadrt lines of the pass LOADS.
+/// Receives the loadrt lines of the pass LOADS.
 class LoadCollector {
   public:
     virtual ~LoadCollector() = default;
     virtual Result<> add(const Call &loadrt) = 0;
-    /// A program is about to be started.
+    /// A program will be started.
     virtual void starting(const Call &) {}
 };
 
 struct SessionOptions {
     Verbosity verbosity = Verbosity::ERRORS;
-    bool keepsGoing = false;           ///< run on after a failed command
-    bool isScript = false;             ///< answers for programs: no titles, names instead of ids
+    bool keepsGoing = false;           ///< continue after a failed command
+    bool is_script = false;            ///< results for programs: no titles, names instead of ids
     bool isEchoing = false;            ///< repeat each command
-    bool hasPlaceholders = false;      ///< pins of programs that were left out are placeholders
+    bool has_placeholders = false;     ///< pins of omitted programs are placeholders
     const IniLookup *ini = nullptr;    ///< for [SECTION]NAME; must outlive the session
-    std::vector<std::string> folders;  ///< where files are looked for after the working folder
-    const volatile std::sig_atomic_t *stop = nullptr;  ///< not zero: no further command is run
-    std::vector<std::string> library;  ///< folders of the prefix LIB:, and looked through last
-    bool hasFiles = true;              ///< false: commands that read or write files are refused
-    bool arePipesRead = false;         ///< HAL files may be pipes: for a person who can interrupt the wait
+    std::vector<std::string> folders;  ///< folders for files, searched after the working folder
+    const volatile std::sig_atomic_t *stop = nullptr;  ///< not zero: no more commands run
+    std::vector<std::string> library;                  ///< folders of the prefix LIB:, searched last
+    bool has_files = true;        ///< false: commands that read or write files are rejected
+    bool are_pipes_read = false;  ///< HAL files may be pipes: for a person who can interrupt the wait
     Pass pass = Pass::ALL;
     LoadCollector *loads = nullptr;  ///< with Pass::LOADS
 };
@@ -91,27 +91,28 @@ class Session {
     Session(Host &host, ProgramHost &programs, Output &output, SessionOptions options = {});
 
     /// Runs the commands of a file (name: see find_file) up to the first failure, or all with keepsGoing.
-    /// The first failure is the result; all have been told to the output. A file NAME.tcl is run as a Tcl
-    /// script with these arguments; other files have none.
+    /// Returns the first failure; the output has received all. A file NAME.tcl is run as a Tcl script with
+    /// these arguments; other files have none.
     Result<> run_file(const std::string &name, const std::vector<std::string> &arguments = {});
-    /// The same for text; `name` stands for the file in messages, and `first_line` is the number of its first
+    /// Runs a text; `name` replaces the file name in messages, and `first_line` is the number of its first
     /// line.
     Result<> run_text(std::string_view text, const std::string &name, int first_line = 1);
-    /// One command as given by words (of a command line): no comment, no substitution, no splitting.
+    /// Runs one command from separate words (of a command line): no comments, substitution or splitting.
     Result<> run_words(const std::vector<std::string> &words);
 
-    /// One command for a script: its answer. Failures are in the result only; no message is sent.
+    /// Runs one command for a script and returns its result. Failures are only in the result; no message is
+    /// sent.
     Result<std::string> call(const std::vector<std::string> &words);
-    /// The interpreter for Tcl, loaded when it is first asked for.
+    /// The interpreter for Tcl, loaded on first use.
     Result<ScriptRunner *> tcl();
 
-    /// The path of a HAL file: `LIB:x` in the library; x as it is, else beside the file that is running, in
-    /// the folders, in the library.
+    /// The path of a HAL file: `LIB:x` in the library; otherwise x unchanged, beside the running file, in the
+    /// folders, or in the library.
     Result<std::string> find_file(const std::string &name) const;
 
     /// True after exit or quit.
-    bool hasEnded() const { return hasEnded_; }
-    /// Programs that were left out, with the pins that have no effect; empty when there are none.
+    bool hasEnded() const { return ended_; }
+    /// Omitted programs, with their pins without effect; empty when there are none.
     std::vector<std::string> left_out() const { return placeholders_.report(); }
 
     // For the commands.
@@ -121,8 +122,8 @@ class Session {
     Output &output() { return *output_; }
     SessionOptions &options() { return options_; }
     Placeholders &placeholders() { return placeholders_; }
-    void end() { hasEnded_ = true; }
-    /// Says what a command has done, when somebody wants to know.
+    void end() { ended_ = true; }
+    /// Reports what a command has done, at a sufficient verbosity.
     void info(const SourcePlace &place, std::string_view text);
     void warn(const SourcePlace &place, std::string_view text, std::string hint = {});
 
@@ -140,7 +141,7 @@ class Session {
     Placeholders placeholders_;
     std::vector<std::string> running_;  ///< files being run, outermost first
     std::unique_ptr<ScriptRunner> tcl_;
-    bool hasEnded_ = false;
+    bool ended_ = false;
 };
 
 /// The folder of the running program.

@@ -55,7 +55,7 @@ bool isExcluded(const std::string &path) {
     return false;
 }
 
-/// A path as the messages of twopass have it.
+/// A path in the form of twopass messages.
 std::string shown(const std::string &path) {
     return path.find('/') == std::string::npos ? "./" + path : path;
 }
@@ -70,10 +70,10 @@ std::vector<std::string> MergedLoads::Load::words() const {
     if (!count_word.empty()) {
         words.push_back(fmt::format("{}={}", count_word, count));
     }
-    const bool hasPersonality =
+    const bool has_personality =
         std::any_of(personalities.begin(), personalities.end(),
                     [](const std::string &personality) { return !personality.empty(); });
-    if (hasPersonality) {
+    if (has_personality) {
         std::vector<std::string> all = personalities;
         std::replace(all.begin(), all.end(), std::string(), std::string("0"));
         words.push_back("personality=" + joined(all));
@@ -116,7 +116,7 @@ Result<> MergedLoads::add(const Call &loadrt) {
             return added;
         }
     }
-    // Each personality belongs to the instances of its own line.
+    // Personalities belong to the instances of the same line.
     const std::size_t instances = load.names.size() + static_cast<std::size_t>(load.count);
     const std::size_t own = std::max(instances - instances_before, personalities.size());
     personalities.resize(own);
@@ -145,9 +145,8 @@ Result<> MergedLoads::add_names(Load &load, const Parameter &parameter) {
 }
 
 Result<> MergedLoads::add_count(Load &load, const Parameter &parameter) {
-    const bool isMixed =
-        !load.names.empty() || (!load.count_word.empty() && load.count_word != parameter.name);
-    if (isMixed) {
+    const bool mixed = !load.names.empty() || (!load.count_word.empty() && load.count_word != parameter.name);
+    if (mixed) {
         return fail(fmt::format("module '{}' is loaded with {}= elsewhere: it cannot have {}= too",
                                 load.module, load.names.empty() ? load.count_word : "names", parameter.name),
                     parameter.place);
@@ -182,7 +181,7 @@ Result<> MergedLoads::add_other(Load &load, const Parameter &parameter) {
 
 namespace {
 
-/// Does the work of run_two_pass.
+/// Implementation of run_two_pass.
 class TwoPass final : private LoadCollector {
   public:
     TwoPass(Session &session, const std::vector<HalFileEntry> &files, TwoPassReport report)
@@ -206,7 +205,7 @@ class TwoPass final : private LoadCollector {
         session_.options().pass = Pass::REST;
         Result<> first;
         for (const File &file : files_) {
-            if (file.isExcluded) {
+            if (file.excluded) {
                 continue;
             }
             step("sourcing: " + file.shown);
@@ -225,8 +224,8 @@ class TwoPass final : private LoadCollector {
         std::string path;
         std::string shown;
         std::vector<std::string> arguments;
-        bool isExcluded = false;
-        std::size_t modules_before = 0;  ///< modules that files before it load
+        bool excluded = false;
+        std::size_t modules_before = 0;  ///< number of modules that earlier files load
     };
 
     Result<> add(const Call &loadrt) override { return loads_.add(loadrt); }
@@ -267,8 +266,8 @@ class TwoPass final : private LoadCollector {
             if (report_ != TwoPassReport::NOTHING) {
                 say("found " + file.shown);
             }
-            file.isExcluded = !path->ends_with(".tcl") && isExcluded(*path);
-            if (file.isExcluded && report_ != TwoPassReport::NOTHING) {
+            file.excluded = !path->ends_with(".tcl") && isExcluded(*path);
+            if (file.excluded && report_ != TwoPassReport::NOTHING) {
                 say("Sourcing " + file.shown + " WITHOUT twopass processing");
             }
             files_.push_back(std::move(file));
@@ -281,7 +280,7 @@ class TwoPass final : private LoadCollector {
         session_.options().loads = this;
         for (File &file : files_) {
             file.modules_before = loads_.loads().size();
-            if (file.isExcluded) {
+            if (file.excluded) {
                 continue;
             }
             step("sourcing: " + file.shown);
@@ -293,12 +292,12 @@ class TwoPass final : private LoadCollector {
         return {};
     }
 
-    /// Loads the modules in the order of their first lines; excluded files run in between.
+    /// Loads the modules in the order of their first lines; runs excluded files in between.
     Result<> load() {
         session_.options().pass = Pass::ALL;
         std::size_t next = 0;
         for (const File &file : files_) {
-            if (!file.isExcluded) {
+            if (!file.excluded) {
                 continue;
             }
             const Result<> loaded = load_modules(next, file.modules_before);
@@ -331,7 +330,7 @@ class TwoPass final : private LoadCollector {
         return {};
     }
 
-    /// As with the options -k and -v of halcmd; its failures have been told and stop nothing.
+    /// As with the options -k and -v of halcmd; failures have been reported and stop nothing.
     void run_excluded(const File &file) {
         const Verbosity verbosity = session_.options().verbosity;
         const bool keepsGoing = session_.options().keepsGoing;
@@ -355,15 +354,14 @@ class TwoPass final : private LoadCollector {
 Result<> run_two_pass(Session &session, const std::vector<HalFileEntry> &files, const std::string &keywords,
                       TwoPassReport report) {
     const std::string lower = to_lower(keywords);
-    const bool isVerbose = lower.find("verbose") != std::string::npos;
+    const bool verbose = lower.find("verbose") != std::string::npos;
     if (report != TwoPassReport::NOTHING) {
-        // The two words that mean something, without the others.
+        // The two keywords with a meaning, without the others.
         const bool keepsFiles = lower.find("nodelete") != std::string::npos;
-        session.output().data(fmt::format("twopass:invoked with <{}{}{}> options\n",
-                                          isVerbose ? "verbose" : "", isVerbose && keepsFiles ? " " : "",
-                                          keepsFiles ? "nodelete" : ""));
+        session.output().data(fmt::format("twopass:invoked with <{}{}{}> options\n", verbose ? "verbose" : "",
+                                          verbose && keepsFiles ? " " : "", keepsFiles ? "nodelete" : ""));
     }
-    return TwoPass(session, files, isVerbose ? TwoPassReport::VERBOSE : report).run();
+    return TwoPass(session, files, verbose ? TwoPassReport::VERBOSE : report).run();
 }
 
 }  // namespace mw::hal::script

@@ -23,7 +23,7 @@ inline Name numbered(const char *format, int number) noexcept {
     return name;
 }
 
-/// PREFIX and NAME joined, or an error kept in `d`. [while loading]
+/// PREFIX and NAME joined; `d` keeps an error. [while loading]
 inline Name joined(Declare &d, const char *prefix, const char *name) noexcept {
     Name full;
     if (rtapi_snprintf(full.text, sizeof full.text, "%s%s", prefix, name) > HAL_NAME_LEN) {
@@ -34,7 +34,7 @@ inline Name joined(Declare &d, const char *prefix, const char *name) noexcept {
     return full;
 }
 
-/// Names of the pins of a digital input, for drivers whose files use others.
+/// Names of the pins of a digital input, for drivers with other names.
 struct DigitalInNames {
     const char *in = "in";
     const char *in_not = "in-not";
@@ -49,10 +49,10 @@ struct DigitalIn {
         d.pin(in_not, joined(d, prefix, names.in_not).text);
         return d.status();
     }
-    /// Takes the state of the hardware input.
-    void read(bool isHigh) noexcept {
-        in = isHigh;
-        in_not = !isHigh;
+    /// Sets the state of the hardware input.
+    void read(bool is_high) noexcept {
+        in = is_high;
+        in_not = !is_high;
     }
 };
 
@@ -71,7 +71,7 @@ struct DigitalOut {
         d.param(invert, joined(d, prefix, names.invert).text);
         return d.status();
     }
-    /// The state that the hardware output is to have.
+    /// State for the hardware output.
     bool write() const noexcept { return out.get() != invert.get(); }
 };
 
@@ -88,9 +88,10 @@ struct AnalogIn {
         d.param(hw_offset, joined(d, prefix, "hw-offset").text, range.hw_offset);
         return d.status();
     }
-    /// Takes a reading [V]: value = reading * scale - offset. A result that is not finite leaves `value`.
+    /// Sets a reading [V]: value = reading * scale - offset. A result that is not finite leaves `value`
+    /// unchanged.
     void read(double reading) noexcept { set_finite(value, scaled_input(reading, scale, offset)); }
-    /// Takes a code of the converter: reading = code * bit-weight - hw-offset.
+    /// Sets a code of the converter: reading = code * bit-weight - hw-offset.
     void read_code(std::int32_t code) noexcept {
         read(converter_reading(code, {.bit_weight = bit_weight, .hw_offset = hw_offset}));
     }
@@ -117,23 +118,24 @@ struct AnalogOut {
         d.param(hw_offset, joined(d, prefix, "hw-offset").text, range.hw_offset);
         return d.status();
     }
-    /// What the output is to have [V]: scale * value + offset within the limits; 0 while `enable` is FALSE or
-    /// a figure is not finite.
+    /// Output voltage [V]: scale * value + offset within the limits; 0 while `enable` is FALSE or a value is
+    /// not finite.
     double write() const noexcept {
         return enable ? scaled_output(value, {scale, offset, low_limit, high_limit},
                                       {.low = range_low, .high = range_high})
                       : 0.0;
     }
-    /// The same as a code of the converter: (volts - hw-offset) / bit-weight.
+    /// Output as a code of the converter: (volts - hw-offset) / bit-weight.
     std::int32_t write_code() const noexcept {
         return converter_code(write(), {.bit_weight = bit_weight, .hw_offset = hw_offset});
     }
 };
 
-/// What an encoder's hardware can do.
+/// Capabilities of an encoder's hardware.
 struct EncoderHardware {
     int counter_bits = 32;
-    double max_index_vel = 0.0;        ///< the index is exact to one count up to it [counts/s]; 0: not known
+    double max_index_vel =
+        0.0;  ///< maximum speed at which the index is exact to one count [counts/s]; 0: not known
     double velocity_resolution = 0.0;  ///< [counts/s]
 };
 
@@ -163,16 +165,16 @@ struct EncoderIn {
                 hardware.velocity_resolution);
         return d.status();
     }
-    /// Whether the hardware is to latch its counter at the next index.
+    /// True if the hardware must latch its counter at the next index.
     bool isIndexWanted() const noexcept { return index_enable; }
-    /// Takes a reading; velocity is the change over the period.
+    /// Sets a reading; velocity is the change per period.
     void read(const EncoderReading &reading, long period_ns) noexcept {
         const EncoderCount::Result result = take(reading);
         if (period_ns > 0) {
             show_velocity(static_cast<double>(result.change) / seconds(period_ns));
         }
     }
-    /// Takes a reading of hardware that measures the velocity itself [counts/s].
+    /// Sets a reading of hardware that measures the velocity itself [counts/s].
     void read_with_velocity(const EncoderReading &reading, double counts_per_s) noexcept {
         take(reading);
         show_velocity(counts_per_s);
@@ -184,8 +186,8 @@ struct EncoderIn {
         rawcounts = shown_count(result.raw);
         count = shown_count(result.count);
         set_finite(position, static_cast<double>(result.count) / usable_scale(scale));
-        // Last, so that a reader that sees it FALSE has the position from the index.
-        if (result.isIndexTaken) {
+        // Last, so that a reader that sees FALSE has the position from the index.
+        if (result.index_taken) {
             index_enable = false;
         }
         return result;

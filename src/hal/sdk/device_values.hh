@@ -7,22 +7,22 @@
 
 namespace mw::sdk {
 
-/// FALSE for infinite values and for what is not a number.
+/// FALSE for infinite values and NaN.
 constexpr bool isFinite(double value) noexcept {
     return value - value == 0.0;
 }
 
-/// A scale that is 0, infinite or not a number counts as 1, as in LinuxCNC.
+/// A scale that is 0, infinite or NaN counts as 1, as in LinuxCNC.
 constexpr double usable_scale(double scale) noexcept {
     return isFinite(scale) && scale != 0.0 ? scale : 1.0;
 }
 
-/// What a converter does, in its own units [V, or mA]. The user may not exceed `low` and `high`.
+/// Properties of a converter, in its own units [V, or mA]. The output is limited to `low` and `high`.
 struct ConverterRange {
     double low = -10.0;
     double high = 10.0;
     double bit_weight = 1.0;  ///< one least significant bit
-    double hw_offset = 0.0;   ///< input: reading at 0 V; output: what 0 written to the hardware puts out
+    double hw_offset = 0.0;   ///< input: reading at 0 V; output: voltage for code 0
 };
 
 struct OutputScaling {
@@ -32,16 +32,16 @@ struct OutputScaling {
     double high_limit = 0.0;
 };
 
-/// scale * value + offset within the limits and the converter's range [V]. 0 when a figure is not finite or
-/// the limits exclude each other: such an output must not move anything.
+/// scale * value + offset within the limits and the converter's range [V]. 0 when a value is not finite or
+/// the limits exclude each other: such an output must not cause motion.
 constexpr double scaled_output(double value, const OutputScaling &scaling,
                                const ConverterRange &range) noexcept {
     const double low = scaling.low_limit > range.low ? scaling.low_limit : range.low;
     const double high = scaling.high_limit < range.high ? scaling.high_limit : range.high;
     const double wanted = usable_scale(scaling.scale) * value + scaling.offset;
-    const bool isDefined = isFinite(wanted) && isFinite(scaling.scale) && low <= high &&
-                           scaling.low_limit == scaling.low_limit && scaling.high_limit == scaling.high_limit;
-    if (!isDefined) {
+    const bool defined = isFinite(wanted) && isFinite(scaling.scale) && low <= high &&
+                         scaling.low_limit == scaling.low_limit && scaling.high_limit == scaling.high_limit;
+    if (!defined) {
         return 0.0;
     }
     return wanted < low ? low : (wanted > high ? high : wanted);
@@ -52,29 +52,29 @@ constexpr double scaled_input(double reading, double scale, double offset) noexc
     return reading * usable_scale(scale) - offset;
 }
 
-/// Follows a hardware counter of `bits` bits through its overflows. Right while it changes by less than half
-/// of its range between two calls.
+/// Extends a hardware counter of `bits` bits across overflows. Correct while it changes by less than half of
+/// its range between two calls.
 class CounterExtension {
   public:
     explicit constexpr CounterExtension(int bits = 32) noexcept
         : shift_(bits < 1 ? 31 : (bits > 32 ? 0 : 32 - bits)) {}
 
-    /// The total that belongs to `hardware`. The first call sets it to the counter's signed value.
+    /// The total count for `hardware`. The first call sets it to the counter's signed value.
     constexpr std::int64_t follow(std::uint32_t hardware) noexcept {
-        if (!hasStarted_) {
-            hasStarted_ = true;
+        if (!started_) {
+            started_ = true;
             total_ = signed_part(hardware);
         } else {
             total_ = near(hardware);
         }
         return total_;
     }
-    /// The total at which the counter was at `hardware`, a latched value close to the last one.
+    /// The total count at `hardware`, a latched value close to the last one.
     constexpr std::int64_t near(std::uint32_t hardware) const noexcept {
         return total_ + signed_part(hardware - static_cast<std::uint32_t>(total_));
     }
     constexpr std::int64_t total() const noexcept { return total_; }
-    constexpr bool hasStarted() const noexcept { return hasStarted_; }
+    constexpr bool hasStarted() const noexcept { return started_; }
 
   private:
     constexpr std::int64_t signed_part(std::uint32_t value) const noexcept {
@@ -82,14 +82,14 @@ class CounterExtension {
     }
 
     int shift_;
-    bool hasStarted_ = false;
+    bool started_ = false;
     std::int64_t total_ = 0;
 };
 
-/// What an encoder's hardware reports in one read.
+/// Data of one read of an encoder's hardware.
 struct EncoderReading {
     std::uint32_t counter = 0;  ///< of the hardware, modulo its width
-    bool isIndexLatched = false;
+    bool index_latched = false;
     std::uint32_t index_counter = 0;  ///< counter at the index, where isIndexLatched
 };
 
@@ -103,23 +103,23 @@ class EncoderCount {
         bool isIndexEnabled = false;
     };
     struct Result {
-        std::int64_t count = 0;     ///< since reset or index
-        std::int64_t change = 0;    ///< since the last read; reset and index do not affect it
-        std::int64_t raw = 0;       ///< since the load
-        bool isIndexTaken = false;  ///< the count starts at the index now
+        std::int64_t count = 0;    ///< since reset or index
+        std::int64_t change = 0;   ///< since the last read; independent of reset and index
+        std::int64_t raw = 0;      ///< since loading
+        bool index_taken = false;  ///< the count was set to the index by this read
     };
 
-    /// A reading in which the counter starts is count 0. A reset in the same read as an index has priority.
+    /// The reading at which the counter starts is count 0. A reset in the same read as an index has priority.
     constexpr Result read(const EncoderReading &reading, Request request) noexcept {
-        const bool isFirst = !counter_.hasStarted();
+        const bool first = !counter_.hasStarted();
         const std::int64_t before = counter_.total();
         const std::int64_t total = counter_.follow(reading.counter);
-        if (isFirst) {
+        if (first) {
             start_ = zero_ = total;
         }
-        Result result{0, isFirst ? 0 : total - before, total - start_,
-                      request.isIndexEnabled && reading.isIndexLatched};
-        if (result.isIndexTaken) {
+        Result result{0, first ? 0 : total - before, total - start_,
+                      request.isIndexEnabled && reading.index_latched};
+        if (result.index_taken) {
             zero_ = counter_.near(reading.index_counter);
         }
         if (request.isReset) {
@@ -135,7 +135,7 @@ class EncoderCount {
     std::int64_t start_ = 0;
 };
 
-/// `count` modulo 2^32, as pins of type s32 show it.
+/// `count` modulo 2^32, for pins of type s32.
 constexpr std::int32_t shown_count(std::int64_t count) noexcept {
     return static_cast<std::int32_t>(static_cast<std::uint32_t>(static_cast<std::uint64_t>(count)));
 }

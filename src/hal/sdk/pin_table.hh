@@ -13,7 +13,8 @@
 //     pins.read(in);                    // every row that reads
 //     pins.write(out);                  // every row that writes
 //
-// In names # stands for the number of the instance, ## for it with two digits, @ for the letter of an axis.
+// In names # is replaced by the number of the instance, ## for it with two digits, @ for the letter of an
+// axis.
 #pragma once
 
 #include <tuple>
@@ -23,7 +24,7 @@
 
 namespace mw::sdk {
 
-/// Of pins that exist by name alone so far: nobody looks at them, or they keep their first value.
+/// For pins without a function: they exist only by name, or keep their first value.
 struct Unused {};
 
 template <class T, hal_pin_dir_t DIR, class Read, class Write>
@@ -33,8 +34,8 @@ struct PinRow {
     const char *name;
     const char *unit;  ///< "" for none
     const char *doc;
-    Read read;    ///< (In &, T): what the pin says
-    Write write;  ///< (const Out &) -> T: what it is to say
+    Read read;    ///< (In &, T): uses the value of the pin
+    Write write;  ///< (const Out &) -> T: value for the pin
     T start{};
 };
 
@@ -46,7 +47,7 @@ template <class T, class Write>
 constexpr auto out(const char *name, const char *unit, const char *doc, Write write) {
     return PinRow<T, HAL_OUT, Unused, Write>{name, unit, doc, {}, write};
 }
-/// Written only when what it is to say changes: the other side clears it.
+/// Written only when its value changes, because the other side clears it.
 template <class T, class Read, class Write>
 constexpr auto in_out(const char *name, const char *unit, const char *doc, Read read, Write write) {
     return PinRow<T, HAL_IO, Read, Write>{name, unit, doc, read, write};
@@ -54,7 +55,7 @@ constexpr auto in_out(const char *name, const char *unit, const char *doc, Read 
 
 template <class... Rows>
 struct PinTable {
-    const char *scope;  ///< what stands before the first dot, or the last one but one
+    const char *scope;  ///< prefix before the first dot, or before the last but one
     std::tuple<Rows...> rows;
 };
 template <class... Rows>
@@ -68,7 +69,7 @@ void for_each_pin(const Table &table, Show &&show) {
     std::apply([&](const auto &...row) { (show(table.scope, row), ...); }, table.rows);
 }
 
-/// `pattern` with the number in its place. [while loading]
+/// `pattern` with the number inserted. [while loading]
 inline void expand_name(const char *pattern, int number, char (&out)[HAL_NAME_LEN + 1]) noexcept {
     constexpr char LETTERS[] = "xyzabcuvw";
     int n = 0;
@@ -76,9 +77,9 @@ inline void expand_name(const char *pattern, int number, char (&out)[HAL_NAME_LE
         if (*c == '@') {
             out[n++] = LETTERS[number];
         } else if (*c == '#') {
-            const bool areTwo = c[1] == '#';
-            c += areTwo ? 1 : 0;
-            n += rtapi_snprintf(out + n, 4, areTwo ? "%02d" : "%d", number);
+            const bool are_two = c[1] == '#';
+            c += are_two ? 1 : 0;
+            n += rtapi_snprintf(out + n, 4, are_two ? "%02d" : "%d", number);
         } else {
             out[n++] = *c;
         }
@@ -90,7 +91,7 @@ inline void expand_name(const char *pattern, int number, char (&out)[HAL_NAME_LE
 template <const auto &TABLE>
 class PinSet {
   public:
-    /// Of a table whose names have no number; as below. [while loading]
+    /// For a table whose names have no number; as below. [while loading]
     int declare(int comp_id) noexcept { return declare(comp_id, 0); }
     /// 0 or a negated errno. [while loading]
     int declare(int comp_id, int number) noexcept {

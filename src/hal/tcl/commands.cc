@@ -11,9 +11,9 @@ namespace mw::hal::tcl {
 
 namespace {
 
-/// Those whose names mean something else in Tcl: only with `hal` before them.
+/// Commands whose names have another meaning in Tcl: only with the prefix `hal`.
 constexpr std::array<std::string_view, 5> TAKEN = {"gets", "list", "exit", "quit", "source"};
-/// Those whose answer is printed; that of the others is the result, and so is that of `hal show`.
+/// Commands that print their result; that of the others is returned, also that of `hal show`.
 constexpr std::array<std::string_view, 3> PRINTING = {"show", "save", "help"};
 
 template <std::size_t N>
@@ -36,7 +36,7 @@ int failed(Tcl_Interp *interpreter, const Error &error) {
     return TCL_ERROR;
 }
 
-/// The value of an expression, as text; what is no expression stays as it is.
+/// The value of an expression, as text; other texts are returned unchanged.
 std::string evaluated(Tcl_Interp *interpreter, const std::string &text) {
     Tcl_InterpState before = Tcl_SaveInterpState(interpreter, TCL_OK);
     Tcl_Obj *value = nullptr;
@@ -52,7 +52,7 @@ std::string evaluated(Tcl_Interp *interpreter, const std::string &text) {
     return result;
 }
 
-/// The words of an INI value, which is a list of one element for Tcl.
+/// The words of an INI value, which Tcl treats as a list of one element.
 std::vector<std::string> parts_of(const std::string &value) {
     int count = 0;
     const char **elements = nullptr;
@@ -68,33 +68,33 @@ std::vector<std::string> parts_of(const std::string &value) {
     return parts;
 }
 
-/// Who asks for the answer of a command: `hal show ...` has it as its result, `show ...` prints it.
+/// How a command was called: `hal show ...` returns its result, `show ...` prints it.
 enum class Asked { BY_NAME, THROUGH_HAL };
 
 int run(Tcl_Interp *interpreter, script::Session &session, std::vector<std::string> words, Asked asked) {
     if (words[0] == "loadrt" && words.size() > 1) {
-        // $::KINS(KINEMATICS) is one word for Tcl: module and parameters.
+        // $::KINS(KINEMATICS) is one word in Tcl: module and parameters.
         const std::vector<std::string> parts = parts_of(words[1]);
         words.erase(words.begin() + 1);
         words.insert(words.begin() + 1, parts.begin(), parts.end());
     }
-    const bool isSetting = words[0] == "setp" || words[0] == "sets";
-    if (isSetting && words.size() == 3) {
+    const bool setting = words[0] == "setp" || words[0] == "sets";
+    if (setting && words.size() == 3) {
         words[2] = evaluated(interpreter, words[2]);
     }
     Result<std::string> answer = session.call(words);
     if (!answer) {
         return failed(interpreter, answer.error());
     }
-    const bool isResult = asked == Asked::THROUGH_HAL && words[0] == "show";
-    if (isOneOf(PRINTING, words[0]) && !isResult) {
+    const bool is_result = asked == Asked::THROUGH_HAL && words[0] == "show";
+    if (isOneOf(PRINTING, words[0]) && !is_result) {
         session.output().data(*answer);
         answer->clear();
     }
-    if (isResult && answer->ends_with("\n\n")) {
+    if (is_result && answer->ends_with("\n\n")) {
         answer->pop_back();
     }
-    while (!isResult && !answer->empty() && answer->back() == '\n') {
+    while (!is_result && !answer->empty() && answer->back() == '\n') {
         answer->pop_back();
     }
     set_result(interpreter, *answer);
@@ -151,7 +151,7 @@ int run_hal(ClientData data, Tcl_Interp *interpreter, int count, Tcl_Obj *const 
     return run(interpreter, session_of(data), std::move(words), Asked::THROUGH_HAL);
 }
 
-/// A read of $::SECTION(ITEM): the entry counts as used.
+/// A read of $::SECTION(ITEM) marks the entry as used.
 char *note_use(ClientData data, Tcl_Interp *, const char *section, const char *item, int) {
     if (item != nullptr) {
         (void)static_cast<const script::IniLookup *>(data)->find(section, item);
@@ -159,7 +159,7 @@ char *note_use(ClientData data, Tcl_Interp *, const char *section, const char *i
     return nullptr;
 }
 
-/// HAL files can be sourced as Tcl files can.
+/// Lets Tcl source HAL files as well as Tcl files.
 constexpr const char *SOURCE_HAL_FILES = R"(
 rename source ::hal_tcl_source
 proc source {args} {
@@ -171,7 +171,7 @@ proc source {args} {
 }
 )";
 
-/// Scripts see by this namespace that they are gone through twice.
+/// Scripts check for this namespace to detect two passes.
 constexpr const char *TWO_PASSES = "namespace eval ::tp { proc passnumber {} { return [hal --pass] } }";
 
 }  // namespace

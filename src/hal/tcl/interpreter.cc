@@ -19,7 +19,7 @@ std::string text_of(Tcl_Obj *object) {
     return object == nullptr ? "" : Tcl_GetString(object);
 }
 
-/// The line of a file that an error's trace names: of the outermost call in that file.
+/// The line of a file in an error's trace: that of the outermost call in that file.
 int line_of(const std::string &trace, const std::string &path) {
     const std::string mark = fmt::format("(file \"{}\" line ", path);
     const std::size_t at = trace.find(mark);
@@ -31,14 +31,14 @@ int line_of(const std::string &trace, const std::string &path) {
     return line ? static_cast<int>(*line) : 0;
 }
 
-/// The procedure in which it happened, with its line there; empty outside of procedures.
+/// The procedure of the error, with its line; empty outside procedures.
 std::string procedure_of(const std::string &trace) {
     const std::size_t at = trace.find("(procedure \"");
     const std::size_t end = at == std::string::npos ? at : trace.find(')', at);
     return end == std::string::npos ? "" : trace.substr(at + 1, end - at - 1);
 }
 
-/// Ends the script, not this process: a realtime process may have to be ended in order.
+/// Ends the script, not the process: a realtime process may require an orderly end.
 int run_exit(ClientData data, Tcl_Interp *interpreter, int count, Tcl_Obj *const objects[]) {
     int status = 0;
     if (count > 2 || (count == 2 && Tcl_GetIntFromObj(interpreter, objects[1], &status) != TCL_OK)) {
@@ -54,7 +54,7 @@ int run_exit(ClientData data, Tcl_Interp *interpreter, int count, Tcl_Obj *const
 }  // namespace
 
 Interpreter::Interpreter(script::Session &session) : session_(session), interpreter_(Tcl_CreateInterp()) {
-    // Without its library of scripts Tcl still has all built-in commands.
+    // Without its script library Tcl still has all built-in commands.
     if (Tcl_Init(interpreter_) != TCL_OK) {
         session_.warn({}, fmt::format("Tcl: {}", Tcl_GetStringResult(interpreter_)));
     }
@@ -86,7 +86,7 @@ void Interpreter::set_arguments(const std::string &path, const std::vector<std::
 Error Interpreter::error_here(const std::string &path) const {
     const std::string trace = text_of(Tcl_GetVar2Ex(interpreter_, "errorInfo", nullptr, TCL_GLOBAL_ONLY));
     std::string message = Tcl_GetStringResult(interpreter_);
-    // What a HAL file that the script sourced said of its own place comes first.
+    // The position reported by a sourced HAL file comes first.
     Error error{message, SourcePlace{path, line_of(trace, path), 0}, {}};
     if (message.find("\"::tp::") != std::string::npos) {
         error.hint = "the script is written for two passes: [HAL]TWOPASS = on";
@@ -104,10 +104,10 @@ Result<> Interpreter::run_file(const std::string &path, const std::vector<std::s
     }
     set_arguments(path, arguments);
     const int status = Tcl_EvalFile(interpreter_, path.c_str());
-    const bool hasFailed = status != TCL_OK && status != TCL_RETURN;
+    const bool failed = status != TCL_OK && status != TCL_RETURN;
     const Error error = error_here(path);
     (void)Tcl_Eval(interpreter_, "flush stdout");
-    if (!hasFailed) {
+    if (!failed) {
         return {};
     }
     if (session_.hasEnded()) {
@@ -118,14 +118,14 @@ Result<> Interpreter::run_file(const std::string &path, const std::vector<std::s
 }
 
 Result<> Interpreter::run_standard_input() {
-    const bool isTerminal = isatty(STDIN_FILENO) == 1;
-    Tcl_SetVar2Ex(interpreter_, "tcl_interactive", nullptr, Tcl_NewIntObj(isTerminal ? 1 : 0),
+    const bool is_terminal = isatty(STDIN_FILENO) == 1;
+    Tcl_SetVar2Ex(interpreter_, "tcl_interactive", nullptr, Tcl_NewIntObj(is_terminal ? 1 : 0),
                   TCL_GLOBAL_ONLY);
     Result<> first;
     std::string text;
     std::string line;
     while (!session_.hasEnded()) {
-        if (isTerminal) {
+        if (is_terminal) {
             std::fputs(text.empty() ? "haltcl: " : "      > ", stdout);
             std::fflush(stdout);
         }
@@ -147,14 +147,14 @@ Result<> Interpreter::run_standard_input() {
         if (status != TCL_OK) {
             session_.output().error(Error{result, {}, {}});
             first = first ? fail(result) : first;
-            if (!isTerminal && !session_.options().keepsGoing) {
+            if (!is_terminal && !session_.options().keepsGoing) {
                 break;
             }
-        } else if (isTerminal && !result.empty()) {
+        } else if (is_terminal && !result.empty()) {
             fmt::print("{}\n", result);
         }
     }
-    if (isTerminal) {
+    if (is_terminal) {
         std::fputc('\n', stdout);
         return {};
     }

@@ -34,19 +34,19 @@ int run_source(ClientData /*data*/, Tcl_Interp *interpreter, int count, Tcl_Obj 
 }  // namespace
 
 Result<> check_nesting(std::string_view script, const std::string &path) {
-    int commands = 0, names = 0, line = 1;  // open: [, and $name(
-    bool isInName = false;                  // behind $
+    int commands = 0, names = 0, line = 1;  // open brackets: [, and $name(
+    bool in_name = false;                   // behind $
     for (std::size_t at = 0; at < script.size(); ++at) {
         const char c = script[at];
         if (c == '\\' && at + 1 < script.size()) {
             ++at;
-            isInName = false;
+            in_name = false;
             line += script[at] == '\n' ? 1 : 0;
             continue;
         }
         commands += c == '[' ? 1 : c == ']' && commands > 0 ? -1 : 0;
-        names += c == '(' && isInName ? 1 : c == ')' && names > 0 ? -1 : 0;
-        isInName = c == '$' || (isInName && isNameCharacter(c));
+        names += c == '(' && in_name ? 1 : c == ')' && names > 0 ? -1 : 0;
+        in_name = c == '$' || (in_name && isNameCharacter(c));
         line += c == '\n' ? 1 : 0;
         if (commands + names > MOST_NESTED) {
             return fail(fmt::format("more than {} '{}' are open in one another", MOST_NESTED, c),

@@ -32,7 +32,7 @@ constexpr Span TURN{-175, 175};
 constexpr Span TILT{-85, 85};
 constexpr double PI = 3.14159265358979323846;
 
-/// Inside, outside, or so near to the edge that roundings decide.
+/// Inside, outside, or so near the edge that rounding decides.
 Verdict verdict_of(double value, double low, double high, double margin) {
     if (value > low + margin && value < high - margin) {
         return Verdict::REACHABLE;
@@ -50,7 +50,7 @@ std::shared_ptr<Model> with(std::initializer_list<double> values) {
     return model;
 }
 
-/// With every length and angle that it knows.
+/// Sets every length and angle of the head.
 template <class Head>
 std::shared_ptr<Head> head_in(HeadFrame frame) {
     auto head = with<Head>({70, -120, -400, 50, 120, 6, -9, 55, 0.3, 25, -130});
@@ -58,7 +58,7 @@ std::shared_ptr<Head> head_in(HeadFrame frame) {
     return head;
 }
 
-/// Machines in which every pose can be reached.
+/// Machines that reach every pose.
 void add_cartesian(std::vector<ModelCase> &out) {
     const std::vector<Span> nine{MM, MM, MM, TURN, TILT, TURN, MM, MM, MM};
     const auto add = [&](const char *name, std::shared_ptr<const Kinematics> model, const char *axes,
@@ -85,7 +85,7 @@ void add_cartesian(std::vector<ModelCase> &out) {
         nine);
     add("bridge_mill", with<BridgeMill>({250}), "XYZBCW", {MM, MM, MM, TILT, TURN, MM});
     add("bridge_mill_two_y", long_bridge, "XYZBCWYV", {MM, MM, MM, TILT, TURN, MM, MM, MM});
-    out.back().joints.clear();  // drawn joints of one letter would not agree
+    out.back().joints.clear();  // random joints of one letter would disagree
     add("tilting_head", with<TiltingHead>({120}), "XYZABCUVW", nine);
     add("xyzac_table", with<XyzacTable>({10, -20, 30, 4, 5, -6, 70}), "XYZAC", five);
     add("xyzbc_table", with<XyzbcTable>({10, -20, 30, 4, 5, -6, 70}), "XYZBC", five);
@@ -97,7 +97,7 @@ void add_cartesian(std::vector<ModelCase> &out) {
     add("head_over_b_in_plane", head_in<NutatingHeadOverB>(HeadFrame::TOOL), "XYZABC", six);
 }
 
-/// Points held from three places, and the rose engine.
+/// Machines that hold a point by three links, and the rose engine.
 void add_points(std::vector<ModelCase> &out) {
     ModelCase tripod{"tripod",
                      with<Tripod>({400, 150, 350}),
@@ -119,7 +119,7 @@ void add_points(std::vector<ModelCase> &out) {
                      std::vector<double>(9, 0.0),
                      269};
     linear.judge = [](const Pose &p) {
-        // The rods' upper ends, and the side of their plane on which the effector is.
+        // The upper ends of the rods, and the side of their plane on which the effector is.
         double ends[3][3];
         for (int i = 0; i < 3; ++i) {
             const double angle = (90 + 120 * i) * PI / 180;
@@ -136,7 +136,7 @@ void add_points(std::vector<ModelCase> &out) {
             ends[i][1] = y;
             ends[i][2] = std::sqrt(rest);
         }
-        // Where the plane through the ends passes over the effector: the weights of the ends there.
+        // Position of the effector's projection on the plane through the ends, as weights of the ends.
         const auto area = [&](int i, int j) { return ends[i][0] * ends[j][1] - ends[j][0] * ends[i][1]; };
         const double whole = area(0, 1) + area(1, 2) + area(2, 0);
         const double height =
@@ -153,8 +153,7 @@ void add_points(std::vector<ModelCase> &out) {
                      std::vector<double>(9, 0.0),
                      140};
     rotary.judge = [](const Pose &p) {
-        // The knee goes round its circle: does the shin's length lie between the nearest and the farthest
-        // place?
+        // The knee moves on a circle: is the length of the shin between the minimum and maximum distance?
         Verdict verdict = Verdict::UNKNOWN;
         for (int i = 0; i < 3; ++i) {
             const double angle = (270 + 120 * i) * PI / 180;
@@ -167,12 +166,12 @@ void add_points(std::vector<ModelCase> &out) {
                 verdict = Verdict::UNREACHABLE;
             }
         }
-        return verdict;  // which way the legs are put together is not known here
+        return verdict;  // the configuration of the legs is not known here
     };
     out.push_back(std::move(rotary));
 }
 
-/// A wrist's distance from its shoulder, against the lengths of two arms.
+/// Compares the distance of a wrist from its shoulder with the lengths of two arms.
 Verdict arm_verdict(double distance, double one, double other) {
     return verdict_of(distance, std::abs(one - other), one + other, 1e-4 * (one + other));
 }
@@ -192,7 +191,7 @@ Verdict puma_verdict(const Pose &p, double d6) {
     return level < 0 ? Verdict::UNREACHABLE : arm_verdict(std::sqrt(level + z * z), 300, std::hypot(50, 400));
 }
 
-/// Of an arm whose shoulder stays ahead; lengths a1 a2 b c1 c2 c3 c4.
+/// For an arm with the shoulder ahead; lengths a1 a2 b c1 c2 c3 c4.
 Verdict ortho_parallel_verdict(const Pose &p, const std::array<double, 7> &l) {
     const double a = p[3] * PI / 180;
     const double b = p[4] * PI / 180;
@@ -238,7 +237,7 @@ void add_arms(std::vector<ModelCase> &out) {
     const std::vector<Span> six(6, Span{-500, 500});
     ModelCase puma{"puma", with<Puma>({300, 50, 70, 400, 70}), "XYZABC", hand,
                    six,    {0, -45, 10, 20, 30, 40},           820};
-    puma.areAnglesRpy = true;
+    puma.are_angles_rpy = true;
     puma.judge = [](const Pose &p) { return puma_verdict(p, 70); };
     out.push_back(std::move(puma));
 
@@ -250,16 +249,16 @@ void add_arms(std::vector<ModelCase> &out) {
                     six,
                     {0, 30, 60, 20, 30, 40},
                     820};
-    ortho.areAnglesRpy = true;
+    ortho.are_angles_rpy = true;
     ortho.judge = [ARM](const Pose &p) { return ortho_parallel_verdict(p, ARM); };
     out.push_back(std::move(ortho));
 
     ModelCase serial{"serial", std::make_shared<Serial>(), "XYZABC", hand,
                      six,      {0, -45, 10, 20, 30, 40},   820};
-    serial.areAnglesRpy = true;
-    serial.isIterating = true;
+    serial.are_angles_rpy = true;
+    serial.iterating = true;
     serial.judge = [](const Pose &p) {
-        // What it reaches without passing a singular place on the straight way there is not known here.
+        // Which poses it reaches on a straight line without passing a singular pose is not known here.
         return puma_verdict(p, 0) == Verdict::UNREACHABLE ? Verdict::UNREACHABLE : Verdict::UNKNOWN;
     };
     out.push_back(std::move(serial));
@@ -270,8 +269,8 @@ void add_platforms(std::vector<ModelCase> &out) {
                       "XYZABC",  {{-6, 6}, {-6, 6}, {15, 30}, {-15, 15}, {-15, 15}, {-15, 15}},
                       {},        std::vector<double>(6, 30.0),
                       25};
-    hexapod.areAnglesRpy = true;
-    hexapod.isIterating = true;
+    hexapod.are_angles_rpy = true;
+    hexapod.iterating = true;
     ModelCase screwed = hexapod;
     screwed.name = "hexapod_with_screws";
     auto with_screws = std::make_shared<Hexapod>();
@@ -283,7 +282,7 @@ void add_platforms(std::vector<ModelCase> &out) {
                        "XYZAB",    {{-150, 150}, {-150, 150}, {-150, 150}, {-25, 25}, {-25, 25}},
                        {},         std::vector<double>(5, 1000.0),
                        1000};
-    pentapod.isIterating = true;
+    pentapod.iterating = true;
     out.push_back(std::move(hexapod));
     out.push_back(std::move(screwed));
     out.push_back(std::move(pentapod));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Every model with a geometry, where its joints and poses are drawn from, and a judge who knows which poses
-// it reaches by other means than the model. The suite of every_model_test.cc runs over this list.
+// Every model with a geometry, the ranges of its joints and poses, and a judge that determines the reachable
+// poses independently of the model. The suite of every_model_test.cc runs over this list.
 #pragma once
 
 #include <functional>
@@ -22,17 +22,18 @@ enum class Verdict { REACHABLE, UNREACHABLE, UNKNOWN };
 struct ModelCase {
     std::string name;
     std::shared_ptr<const Kinematics> model;
-    std::string axes;           ///< letters that the joints move
-    std::vector<Span> poses;    ///< one for each of them [machine units, degrees]
-    std::vector<Span> joints;   ///< one for each joint; empty where drawn joints fit no pose (closed loops)
-    std::vector<double> home;   ///< joints that poses are first asked from
-    double size = 1;            ///< of the machine, for tolerances [machine units]
-    bool areAnglesRpy = false;  ///< A, B and C are one orientation: other angles may mean the same
-    bool isIterating = false;
+    std::string axes;          ///< letters that the joints move
+    std::vector<Span> poses;   ///< range of each letter [machine units, degrees]
+    std::vector<Span> joints;  ///< range of each joint; empty where random joints fit no pose (closed loops)
+    std::vector<double> home;  ///< joints from which the first pose is calculated
+    double size = 1;           ///< size of the machine, for tolerances [machine units]
+    bool are_angles_rpy =
+        false;  ///< A, B and C are one orientation: different angles may be the same orientation
+    bool iterating = false;
     std::function<Verdict(const Pose &)> judge = [](const Pose &) { return Verdict::REACHABLE; };
 };
 
-/// As tests name it.
+/// Prints the name of the case.
 inline void PrintTo(const ModelCase &one, std::ostream *out) {
     *out << one.name;
 }

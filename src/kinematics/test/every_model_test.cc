@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What every model must keep: forward undoes inverse and inverse undoes forward, on the side where the joints
-// are, without a jump; nothing is answered that is not there, and what is refused is out of reach.
-// MW_KINS_POSES sets how many are drawn (a tenth of it for models that iterate).
+// Properties of every model: forward and inverse kinematics undo each other on the side of the joints,
+// without a discontinuity; solutions exist, and rejected poses are out of reach. MW_KINS_POSES sets the
+// number of random poses (a tenth of it for iterating models).
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -25,7 +25,7 @@ class EveryModel : public testing::TestWithParam<ModelCase> {
     int draws() const {
         const char *wanted = std::getenv("MW_KINS_POSES");
         const int count = wanted != nullptr ? std::atoi(wanted) : 20000;
-        return GetParam().isIterating ? count / 10 : count;
+        return GetParam().iterating ? count / 10 : count;
     }
     double drawn(const Span &span) {
         return std::uniform_real_distribution<double>(span.low, span.high)(random_);
@@ -51,15 +51,14 @@ class EveryModel : public testing::TestWithParam<ModelCase> {
     int axis(std::size_t i) const { return geometry::axis_of_letter(GetParam().axes[i]); }
     const Kinematics &model() const { return *GetParam().model; }
 
-    /// How far apart two poses are: lengths as they are, angles of an orientation as the way at the machine's
-    /// size.
+    /// Distance of two poses: lengths directly, angles of an orientation as arc length at the machine's size.
     double distance(const Pose &p, const Pose &q) const {
         double most = 0;
         for (std::size_t i = 0; i < GetParam().axes.size(); ++i) {
-            const bool isOriented = GetParam().areAnglesRpy && geometry::isAngular(axis(i));
-            most = isOriented ? most : std::max(most, std::abs(p[axis(i)] - q[axis(i)]));
+            const bool oriented = GetParam().are_angles_rpy && geometry::isAngular(axis(i));
+            most = oriented ? most : std::max(most, std::abs(p[axis(i)] - q[axis(i)]));
         }
-        if (GetParam().areAnglesRpy) {
+        if (GetParam().are_angles_rpy) {
             const Rotation one = rotation_of(p);
             const Rotation other = rotation_of(q);
             most = std::max(
@@ -75,7 +74,7 @@ class EveryModel : public testing::TestWithParam<ModelCase> {
         return out;
     }
 
-    /// The largest derivative of a joint [its unit per unit of the axis].
+    /// The maximum derivative of a joint [its unit per unit of the axis].
     static double steepest(const Jacobian &by) {
         double most = 0;
         for (const auto &joint : by.of) {
@@ -85,12 +84,11 @@ class EveryModel : public testing::TestWithParam<ModelCase> {
         }
         return most;
     }
-    /// True when the joints between two poses change without a jump: halves of the way, down to where a step
-    /// of the pose is nothing.
+    /// True when the joints between two poses change continuously. Bisects the step until it is negligible.
     bool isSmooth(const Pose &from, const Joints &at_from, const Pose &to, int depth) const {
         Joints at_to = at_from;
         if (model().inverse(to, at_to.data()) != Status::OK) {
-            return true;  // refused: nothing goes there
+            return true;  // unreachable: no path passes here
         }
         double most = 0;
         for (std::size_t j = 0; j < MAX_JOINTS; ++j) {
@@ -110,7 +108,7 @@ class EveryModel : public testing::TestWithParam<ModelCase> {
         return isSmooth(from, at_from, middle, depth - 1) && isSmooth(middle, at_middle, to, depth - 1);
     }
 
-    /// A pose on the same side, at most `share` of the machine's size away along each axis.
+    /// A pose on the same side, within `share` of the machine's size along each axis.
     Pose beside(const Pose &pose, double share) {
         Pose out = pose;
         for (int tries = 0; tries < 1000; ++tries) {
@@ -138,7 +136,7 @@ TEST_P(EveryModel, UndoesItselfFromAPoseAndRefusesOnlyWhatIsOutOfReach) {
         const Verdict verdict = GetParam().judge(pose);
         if (status == Status::UNREACHABLE) {
             ASSERT_NE(verdict, Verdict::REACHABLE) << text(pose);
-            ASSERT_EQ(joints, home()) << "a refusal changed the joints";
+            ASSERT_EQ(joints, home()) << "a rejected pose changed the joints";
             ++refused;
             unknown += verdict == Verdict::UNKNOWN ? 1 : 0;
             continue;
@@ -147,9 +145,9 @@ TEST_P(EveryModel, UndoesItselfFromAPoseAndRefusesOnlyWhatIsOutOfReach) {
         ASSERT_TRUE(areFinite(joints.data(), MAX_JOINTS)) << text(pose);
         Pose back = beside(pose, 0.01);
         Status returned = model().forward(joints.data(), back);
-        if (returned == Status::UNREACHABLE && GetParam().isIterating) {
-            // A hundredth of the machine away is far for an iteration near a singular place; a servo cycle is
-            // not.
+        if (returned == Status::UNREACHABLE && GetParam().iterating) {
+            // A hundredth of the machine's size is far for an iteration near a singular pose; a servo cycle
+            // is not.
             ++too_far;
             back = beside(pose, 1e-4);
             returned = model().forward(joints.data(), back);
@@ -194,7 +192,7 @@ TEST_P(EveryModel, UndoesItselfFromJointsOnTheirSide) {
             ++singular;
             continue;
         }
-        // Near a singular place roundings of the pose are large ones of the joints: that is asked of the
+        // Near a singular pose small rounding errors of the pose are large ones of the joints: compare the
         // pose.
         Pose again = pose;
         ASSERT_EQ(model().forward(back.data(), again), Status::OK);
@@ -203,12 +201,12 @@ TEST_P(EveryModel, UndoesItselfFromJointsOnTheirSide) {
         for (std::size_t j = 0; j < GetParam().joints.size(); ++j) {
             most = std::max(most, std::abs(back[j] - joints[j]));
         }
-        const bool isNear = most < 1e-3 * std::max(1.0, 0.01 * GetParam().size);
-        if (!isNear) {
+        const bool near = most < 1e-3 * std::max(1.0, 0.01 * GetParam().size);
+        if (!near) {
             Jacobian by;
-            const bool isSteep = joints_by_pose(model(), pose, back.data(), 0x1ff, 1e-6, by) != Status::OK ||
-                                 steepest(by) > 1e3;
-            ASSERT_TRUE(isSteep) << "another side than that of the joints, " << text(pose);
+            const bool steep = joints_by_pose(model(), pose, back.data(), 0x1ff, 1e-6, by) != Status::OK ||
+                               steepest(by) > 1e3;
+            ASSERT_TRUE(steep) << "another side than that of the joints, " << text(pose);
             ++singular;
             continue;
         }
@@ -231,7 +229,7 @@ TEST_P(EveryModel, FollowsALineWithoutAJump) {
         constexpr int STEPS = 200;
         for (int i = 1; i <= STEPS; ++i) {
             const Pose next = from + (to - from) * (1.0 / (STEPS + 1 - i));
-            // Half a millionth of a millionth of the way is no way: what changes by 5 over it has jumped.
+            // At 1e-12 of the step any change of 5 is a discontinuity.
             ASSERT_TRUE(isSmooth(from, joints, next, 30)) << text(from);
             if (model().inverse(next, joints.data()) != Status::OK) {
                 break;
@@ -247,9 +245,9 @@ TEST_P(EveryModel, SidesMeetAtSingularPoses) {
         Pose from = drawn_pose();
         Pose to = drawn_pose();
         Joints joints = home();
-        const bool areReached = model().inverse(from, joints.data()) == Status::OK &&
-                                model().inverse(to, joints.data()) == Status::OK;
-        if (!areReached || model().side(from) == model().side(to)) {
+        const bool reached = model().inverse(from, joints.data()) == Status::OK &&
+                             model().inverse(to, joints.data()) == Status::OK;
+        if (!reached || model().side(from) == model().side(to)) {
             continue;
         }
         ++changes;
@@ -283,11 +281,11 @@ TEST_P(EveryModel, DerivativesOfBothWaysAreInverse) {
         }
         Jacobian by_pose, by_joints;
         constexpr double STEP = 1e-4;
-        const bool isFound = joints_by_pose(model(), at, joints.data(), axes, STEP, by_pose) == Status::OK &&
-                             pose_by_joints(model(), joints.data(), static_cast<int>(GetParam().home.size()),
-                                            at, STEP, by_joints) == Status::OK;
-        if (!isFound || steepest(by_pose) > 30 || steepest(by_joints) > 30) {
-            continue;  // the differences themselves are rough there
+        const bool is_found = joints_by_pose(model(), at, joints.data(), axes, STEP, by_pose) == Status::OK &&
+                              pose_by_joints(model(), joints.data(), static_cast<int>(GetParam().home.size()),
+                                             at, STEP, by_joints) == Status::OK;
+        if (!is_found || steepest(by_pose) > 30 || steepest(by_joints) > 30) {
+            continue;  // the finite differences are inaccurate there
         }
         ++checked;
         for (std::size_t i = 0; i < count; ++i) {
@@ -326,8 +324,7 @@ TEST_P(EveryModel, RefusesWhatIsNoNumber) {
     }
 }
 
-/// Corners, edges and middles of where poses are drawn from: grids have the round numbers that drawn ones
-/// miss.
+/// Corners, edges and centres of the ranges: grids contain round numbers that random poses miss.
 TEST_P(EveryModel, UndoesItselfOnAGrid) {
     const std::size_t count = std::min<std::size_t>(GetParam().axes.size(), 6);
     constexpr int STEPS = 5;
@@ -362,8 +359,7 @@ TEST_P(EveryModel, UndoesItselfOnAGrid) {
 INSTANTIATE_TEST_SUITE_P(Kinematics, EveryModel, testing::ValuesIn(all_models()),
                          [](const auto &one) { return one.param.name; });
 
-/// External offsets rely on it: what they add to these joints is the same everywhere, and they move no
-/// others.
+/// External offsets rely on this: an offset adds the same to these joints at every pose and moves no others.
 TEST_P(EveryModel, WhatItSaysIsLinearIsSo) {
     const LinearJoints linear = model().linear();
     for (int n = 0; n < draws() / 20; ++n) {
@@ -382,14 +378,14 @@ TEST_P(EveryModel, WhatItSaysIsLinearIsSo) {
             Pose other = pose;
             other[i] += 0.5;
             Joints moved = joints;
-            const bool isSaid = (linear.axes >> i & 1U) != 0;
-            if (!isSaid || model().inverse(other, moved.data()) != Status::OK) {
+            const bool reported = (linear.axes >> i & 1U) != 0;
+            if (!reported || model().inverse(other, moved.data()) != Status::OK) {
                 continue;
             }
             for (int j = 0; j < MAX_JOINTS; ++j) {
                 const auto k = static_cast<std::size_t>(j);
-                const bool isLinear = (linear.joints >> j & 1U) != 0;
-                ASSERT_TRUE(isLinear || moved[k] == joints[k]) << "axis " << i << " moves joint " << j;
+                const bool moved_by_axis = (linear.joints >> j & 1U) != 0;
+                ASSERT_TRUE(moved_by_axis || moved[k] == joints[k]) << "axis " << i << " moves joint " << j;
             }
         }
     }

@@ -47,7 +47,7 @@ void PathMonitor::on_move(motion::CommandId id, const motion::PathBody &body) {
     pieces_.push_back({id, PieceShape(piece), length});
 }
 
-/// The kinematics has been switched: the machine stands, in other coordinates.
+/// The kinematics has been switched: the machine is stopped and has other coordinates.
 void PathMonitor::start_anew(const motion::TraceSample &sample) {
     pose_kind_ = sample.pose_kind;
     history_ = {sample.carte_pos_cmd, sample.carte_pos_cmd};
@@ -56,7 +56,7 @@ void PathMonitor::start_anew(const motion::TraceSample &sample) {
     }
     place_ = 0;
     last_end_ = pieces_.empty() ? sample.carte_pos_cmd : last_end_;
-    isInRapid_ = true;
+    in_rapid_ = true;
 }
 
 void PathMonitor::on_sample(const motion::TraceSample &sample) {
@@ -76,13 +76,13 @@ void PathMonitor::on_sample(const motion::TraceSample &sample) {
     history_[0] = p;
     ++figures_.samples;
     follow(sample);
-    points_.add(p, isInRapid_);
+    points_.add(p, in_rapid_);
 }
 
-/// The present place is looked for from the last one on. As long as one near by is no farther off than any
-/// before, nothing beyond is looked at: a path may cross itself. Else it is any up to where the planner's
-/// leader is: it may have joined many lines and be ahead of the commanded mean, and a corner's blend reaches
-/// into the next line by no more than the length of its own.
+/// Searches the current position from the last one on. While a nearby position is not farther off than
+/// previous ones, later pieces are not checked: a path may cross itself. Otherwise searches up to the
+/// planner's reference, which may have joined many lines and be ahead of the commanded position; a blend
+/// reaches into the next line by at most its own length.
 void PathMonitor::follow(const motion::TraceSample &sample) {
     if (sample.path_id > current_id_) {
         group_length_ = 0;
@@ -98,25 +98,25 @@ void PathMonitor::follow(const motion::TraceSample &sample) {
     const double known = std::hypot(figures_.deviation_linear, figures_.deviation_angular) + ROUNDING;
     Nearest best = pieces_[place_].shape.nearest(sample.carte_pos_cmd);
     std::size_t place = place_;
-    double way = 0;  // from the best place on
+    double way = 0;  // distance from the best position
     double beyond = 0;
     for (std::size_t i = place_ + 1; i < pieces_.size(); ++i) {
-        const bool isBeyond = pieces_[i].id > current_id_;
-        if ((best.combined() <= known && way > LOCAL * moved) || (isBeyond && beyond > group_length_)) {
+        const bool exceeded = pieces_[i].id > current_id_;
+        if ((best.combined() <= known && way > LOCAL * moved) || (exceeded && beyond > group_length_)) {
             break;
         }
-        beyond += isBeyond ? pieces_[i].length : 0.0;
+        beyond += exceeded ? pieces_[i].length : 0.0;
         way += pieces_[i].length;
         look_at(i, sample.carte_pos_cmd, best, place);
         way = place == i ? 0.0 : way;
     }
-    // Back, as on a reverse run.
+    // Backwards, as in a reverse run.
     way = 0;
     for (std::size_t i = place_; i > 0 && way <= LOCAL * moved; --i) {
         look_at(i - 1, sample.carte_pos_cmd, best, place);
         way += pieces_[i - 1].length;
     }
-    isInRapid_ = pieces_[place].shape.piece().isRapid;
+    in_rapid_ = pieces_[place].shape.piece().isRapid;
     figures_.deviation_linear = std::max(figures_.deviation_linear, best.linear);
     figures_.deviation_angular = std::max(figures_.deviation_angular, best.angular);
     place_ = place;

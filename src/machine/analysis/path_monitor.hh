@@ -18,13 +18,13 @@ namespace mw::machine {
 
 struct RunFigures {
     double cutting_length = 0, rapid_length = 0;                        ///< [machine units]
-    double cutting_angle_deg = 0, rapid_angle_deg = 0;                  ///< of moves of A, B and C alone
+    double cutting_angle_deg = 0, rapid_angle_deg = 0;                  ///< for moves of A, B and C alone
     std::array<double, MAX_AXES> peak_velocity{}, peak_acceleration{};  ///< [units/s], [units/s2]
-    double deviation_linear = 0, deviation_angular = 0;  ///< largest [machine units], [degrees]
+    double deviation_linear = 0, deviation_angular = 0;  ///< maximum [machine units], [degrees]
     std::uint64_t samples = 0;
 };
 
-/// One thread. Moves come in the order in which they are handed to the planner, samples in the order of time.
+/// One thread. Moves arrive in the order of the planner, samples in the order of time.
 class PathMonitor {
   public:
     explicit PathMonitor(std::int64_t period_ns) : period_s_(static_cast<double>(period_ns) * 1e-9) {}
@@ -49,15 +49,16 @@ class PathMonitor {
         double length;
     };
     static constexpr std::size_t MOST_BEHIND = 4096;
-    static constexpr double LOCAL = 3;  ///< places near by are within so many steps of the last sample
+    static constexpr double LOCAL =
+        3;  ///< nearby positions are within this number of steps of the last sample
     std::deque<NumberedPiece> pieces_;
-    std::size_t place_ = 0;             ///< of the last sample in pieces_
-    motion::CommandId current_id_ = 0;  ///< of the move being executed, which may stand for those before it
-    double group_length_ = 0;           ///< of what it stands for
-    bool isInRapid_ = false;
+    std::size_t place_ = 0;             ///< index of the last sample in pieces_
+    motion::CommandId current_id_ = 0;  ///< the move being executed, which may replace several earlier ones
+    double group_length_ = 0;           ///< length of the moves that it replaces
+    bool in_rapid_ = false;
     geometry::Pose last_end_{};
     std::uint8_t pose_kind_ = 0;
-    std::array<geometry::Pose, 2> history_{};  ///< the two samples before
+    std::array<geometry::Pose, 2> history_{};  ///< the two previous samples
     PathPoints points_;
 };
 

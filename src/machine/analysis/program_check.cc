@@ -15,10 +15,10 @@
 namespace mw::machine {
 namespace {
 
-/// Soft limits are compared with this slack, as rounding of offsets must not refuse a move to the very limit.
+/// Tolerance for soft limits: rounding of offsets must not reject a move to the exact limit.
 constexpr double LIMIT_SLACK = 1e-6;
 
-/// Whether a move beyond a limit is one wherever the machine stands at the start.
+/// True if the move exceeds the limit from any start position of the machine.
 using IsCertain = std::function<bool(const diagnostics::Diagnostic &)>;
 
 /// Checks each move of a preview.
@@ -35,13 +35,13 @@ class Checker {
 
     CheckResult result;
 
-    /// `preview` names the places of the events.
+    /// `preview` gives the positions of the events.
     void take(std::span<const gcode::PreviewEvent> events, const gcode::Preview &preview) {
         preview_ = &preview;
-        isTimed_ = isTimed_ && (!options_.wantsTime || options_.wantsTime());
+        timed_ = timed_ && (!options_.wantsTime || options_.wantsTime());
         for (const gcode::PreviewEvent &event : events) {
             event_ = &event;
-            if (isTimed_) {
+            if (timed_) {
                 estimate_.set_place(preview.file(event.file), event.line, preview.section(event.section));
                 estimate_.take(event);
             }
@@ -49,7 +49,7 @@ class Checker {
         }
     }
     void finish_time() {
-        if (isTimed_) {
+        if (timed_) {
             result.time = estimate_.finish();
         }
     }
@@ -87,7 +87,7 @@ class Checker {
     }
     void take_piece(const ProgrammedPiece &piece) {
         ++result.moves;
-        result.hasMoves = true;
+        result.has_moves = true;
         (piece.isRapid ? result.rapid_length : result.cutting_length) += feed_length(piece);
         check_point(piece.end);
         add_points(piece);
@@ -96,7 +96,8 @@ class Checker {
         if (options_.points == nullptr) {
             return;
         }
-        constexpr double CHORDS = 48, MOST_CHORDS = 100000;  ///< of a full turn, of a piece
+        constexpr double CHORDS = 48,
+                         MOST_CHORDS = 100000;  ///< chords for a full circle; maximum for a piece
         const double turns = std::abs(piece.angle_rad) / (2 * std::numbers::pi);
         const int chords = static_cast<int>(std::clamp(std::ceil(CHORDS * turns), 1.0, MOST_CHORDS));
         const PieceShape shape(piece);
@@ -117,36 +118,36 @@ class Checker {
         const auto i = static_cast<std::size_t>(axis);
         result.lowest[i] = std::min(result.lowest[i], value);
         result.highest[i] = std::max(result.highest[i], value);
-        const bool isLow = value < limits_.low[axis] - LIMIT_SLACK;
-        if (!isLow && value <= limits_.high[axis] + LIMIT_SLACK) {
+        const bool is_low = value < limits_.low[axis] - LIMIT_SLACK;
+        if (!is_low && value <= limits_.high[axis] + LIMIT_SLACK) {
             return;
         }
-        const double limit = isLow ? limits_.low[axis] : limits_.high[axis];
-        report(fmt::format("the move goes to {} = {:.4f}, beyond the {} limit {:g} of axis {}",
-                           geometry::AXIS_LETTERS[i], value, isLow ? "lower" : "upper", limit,
+        const double limit = is_low ? limits_.low[axis] : limits_.high[axis];
+        report(fmt::format("the move goes to {} = {:.4f}, outside the {} limit {:g} of axis {}",
+                           geometry::AXIS_LETTERS[i], value, is_low ? "lower" : "upper", limit,
                            geometry::AXIS_LETTERS[i]),
-               key_of_limit(axis, isLow));
+               key_of_limit(axis, is_low));
     }
 
     /// Of an axis and the joints that move it, the one with the tightest limit.
-    std::string key_of_limit(int axis, bool isLow) const {
-        const double limit = isLow ? limits_.low[axis] : limits_.high[axis];
+    std::string key_of_limit(int axis, bool is_low) const {
+        const double limit = is_low ? limits_.low[axis] : limits_.high[axis];
         std::string section = std::string("AXIS_") + geometry::AXIS_LETTERS[axis];
         for (int joint = 0; joint < machine_.num_joints; ++joint) {
             const auto j = static_cast<std::size_t>(joint);
-            const double own = isLow ? limits_.joints.low[j] : limits_.joints.high[j];
-            const bool isJoint = machine_.axis_map.moves(joint, axis) && own == limit;
+            const double own = is_low ? limits_.joints.low[j] : limits_.joints.high[j];
+            const bool is_joint = machine_.axis_map.moves(joint, axis) && own == limit;
             section =
-                isJoint && limit != axis_limit(axis, isLow) ? "JOINT_" + std::to_string(joint) : section;
+                is_joint && limit != axis_limit(axis, is_low) ? "JOINT_" + std::to_string(joint) : section;
         }
-        return fmt::format("[{}]{}_LIMIT", section, isLow ? "MIN" : "MAX");
+        return fmt::format("[{}]{}_LIMIT", section, is_low ? "MIN" : "MAX");
     }
-    double axis_limit(int axis, bool isLow) const {
+    double axis_limit(int axis, bool is_low) const {
         return motion::settings_of(machine_.parameters)
-            .get(isLow ? motion::Parameter::AXIS_MIN_LIMIT : motion::Parameter::AXIS_MAX_LIMIT, axis);
+            .get(is_low ? motion::Parameter::AXIS_MIN_LIMIT : motion::Parameter::AXIS_MAX_LIMIT, axis);
     }
 
-    /// The quarter points of the circle about each principal axis reach furthest; sixty-four chords bound
+    /// The quadrant points of the circle about each principal axis are extreme; sixty-four chords approximate
     /// them.
     void check_arc(const ProgrammedPiece &piece) {
         constexpr int STEPS = 64;
@@ -154,9 +155,9 @@ class Checker {
         for (int axis = 0; axis < 3; ++axis) {
             const double reach =
                 radius * std::sqrt(std::max(0.0, 1.0 - piece.normal[axis] * piece.normal[axis]));
-            const bool mayReach = piece.centre[axis] - reach < limits_.low[axis] ||
-                                  piece.centre[axis] + reach > limits_.high[axis];
-            if (!mayReach) {
+            const bool may_reach = piece.centre[axis] - reach < limits_.low[axis] ||
+                                   piece.centre[axis] + reach > limits_.high[axis];
+            if (!may_reach) {
                 continue;
             }
             const PieceShape shape(piece);
@@ -177,7 +178,7 @@ class Checker {
         return all - along * along;
     }
 
-    /// One message for each line, not for each axis.
+    /// One message per line, not per axis.
     void report(std::string message, std::string hint, int column = 1) {
         if (event_->line == reported_line_ || sink_.count_errors() >= MAX_CHECK_ERRORS) {
             return;
@@ -197,10 +198,10 @@ class Checker {
     const MachineConfig &machine_;
     diagnostics::Sink &sink_;
     const CheckOptions &options_;
-    IsCertain isCertain_;  ///< empty: all are
+    IsCertain isCertain_;  ///< empty: all are certain
     motion::FoldedLimits limits_;
     TimeEstimate estimate_;
-    bool isTimed_ = true;
+    bool timed_ = true;
     const gcode::Preview *preview_ = nullptr;
     const gcode::PreviewEvent *event_ = nullptr;
     int reported_line_ = -1;
@@ -239,33 +240,33 @@ struct ProgramSources {
     gcode::ParameterSource &parameters;
 };
 
-/// One reading of the program with the machine at `start`.
+/// Interprets the program with the machine at `start`.
 CheckResult check_from(const geometry::Pose &start, const MachineConfig &machine, const std::string &program,
                        const ProgramSources &sources, diagnostics::Sink &sink, const CheckOptions &check,
                        IsCertain is_certain) {
     gcode::Preview *source = nullptr;
     gcode::PreviewMachine stand = preview_stand(machine);
     stand.position = start;
-    stand.isBlockDeleteOn = check.isBlockDeleteOn;
+    stand.block_delete_on = check.block_delete_on;
     const auto tell_unknown = [&](std::string_view what) {
         if (source != nullptr) {
-            source->flush();  // errors before this place are none that might not be
+            source->flush();  // errors before this position are certain
         }
         check.unknown(source != nullptr ? source->place() : SourcePlace{}, what);
     };
-    const bool hasScripts = !stand.interpreter.scripts.top_level.empty();
+    const bool has_scripts = !stand.interpreter.scripts.top_level.empty();
     UnknownHalValues unknown_values(sources.parameters, [&] { tell_unknown("a value of HAL"); });
     if (check.unknown) {
         stand.interpreter.make_script_host = [&]() -> Result<std::unique_ptr<gcode::ScriptHost>> {
             return std::make_unique<UnscriptedHost>([&] { tell_unknown("Python"); });
         };
     }
-    // What scripts define is not known: an error of the interpreter may be none.
+    // Definitions by scripts are unknown, so an error of the interpreter may not be one.
     diagnostics::Sink errors([&](const diagnostics::Diagnostic &one) {
-        if (check.unknown && hasScripts) {
+        if (check.unknown && has_scripts) {
             tell_unknown("Python");
         } else if (source != nullptr) {
-            source->flush();  // findings come in the order of the program
+            source->flush();  // findings are in the order of the program
         }
         sink.report(one);
     });
@@ -278,7 +279,7 @@ CheckResult check_from(const geometry::Pose &start, const MachineConfig &machine
     source = &preview;
     const gcode::PreviewEnd end = preview.run(program, errors);
     checker.result.blocks = preview.progress().blocks;
-    checker.result.isCancelled = end == gcode::PreviewEnd::CANCELLED;
+    checker.result.cancelled = end == gcode::PreviewEnd::CANCELLED;
     if (end == gcode::PreviewEnd::DONE && !sink.hasErrors()) {
         checker.finish_time();
     }
@@ -289,9 +290,9 @@ std::string words_of(const diagnostics::Diagnostic &one) {
     return fmt::format("{}:{}: {}", one.what.place.file, one.what.place.line, one.what.message);
 }
 
-/// Where joints are not axes nobody knows the pose before the start. What is beyond a limit from two poses
-/// that have nothing in common is beyond it from all; the second is asked only when something is found. What
-/// is handed over outlives the answer.
+/// If joints are not axes, the pose before the start is unknown. A move that exceeds a limit from two
+/// unrelated poses exceeds it from all; the second pose is only checked after a finding. The arguments must
+/// outlive the result.
 IsCertain beyond_from_elsewhere(const MachineConfig &machine, const std::string &program,
                                 const ProgramSources &sources, const CheckOptions &check) {
     return [&machine, &program, sources, &check,
@@ -302,7 +303,7 @@ IsCertain beyond_from_elsewhere(const MachineConfig &machine, const std::string 
                 [&found](const diagnostics::Diagnostic &one) { found->insert(words_of(one)); });
             CheckOptions quiet;
             quiet.statements = check.statements;
-            quiet.isBlockDeleteOn = check.isBlockDeleteOn;
+            quiet.block_delete_on = check.block_delete_on;
             quiet.progress = check.progress;
             if (check.unknown) {
                 quiet.unknown = [](const SourcePlace &, std::string_view) {};
@@ -331,8 +332,8 @@ geometry::Pose home_position(const MachineConfig &machine) {
     }
     std::array<double, MAX_JOINTS> home{};
     for (const motion::SetParameter &parameter : machine.parameters) {
-        const bool isHome = parameter.parameter == static_cast<std::uint16_t>(motion::Parameter::JOINT_HOME);
-        if (isHome && parameter.index >= 0 && parameter.index < MAX_JOINTS) {
+        const bool is_home = parameter.parameter == static_cast<std::uint16_t>(motion::Parameter::JOINT_HOME);
+        if (is_home && parameter.index >= 0 && parameter.index < MAX_JOINTS) {
             home[static_cast<std::size_t>(parameter.index)] = parameter.value;
         }
     }

@@ -20,38 +20,39 @@ namespace mw::machine {
 struct CheckResult {
     std::uint64_t blocks = 0, moves = 0;
     double cutting_length = 0, rapid_length = 0;       ///< [machine units]
-    std::array<double, MAX_AXES> lowest{}, highest{};  ///< reached, machine coordinates
-    bool hasMoves = false;
-    bool isCancelled = false;         ///< `progress` has ended it
-    std::optional<TimeFigures> time;  ///< of a whole program without errors
+    std::array<double, MAX_AXES> lowest{}, highest{};  ///< extreme positions, machine coordinates
+    bool has_moves = false;
+    bool cancelled = false;           ///< `progress` has cancelled the check
+    std::optional<TimeFigures> time;  ///< for a whole program without errors
 };
 
 struct CheckOptions {
     std::function<bool(const gcode::PreviewProgress &)> progress;  ///< false ends the check; may be empty
-    /// How many statements a loop may take, 0 for any number; as gcode::PreviewOptions has it when not set.
+    /// Statements that a loop may execute, 0: no limit; default as in gcode::PreviewOptions.
     std::optional<std::int64_t> statements;
-    /// Nothing of the shop's own is run: no Python. Told where the program's way may depend on what only the
-    /// running machine knows (scripts, HAL values, inputs, probes); errors behind may be none. Empty: scripts
-    /// run, HAL values are errors.
+    /// Runs no Python or user programs. Called where the program may depend on values known only to the
+    /// running machine (scripts, HAL values, inputs, probes); later errors may not be errors. Empty: scripts
+    /// run, and HAL values are errors.
     std::function<void(const SourcePlace &, std::string_view what)> unknown;
-    std::function<bool()> wantsTime;  ///< false once: the time is not reckoned on; empty: it is to the end
-    bool isBlockDeleteOn = true;
-    PathPoints *points = nullptr;  ///< gets the path of the controlled point
+    std::function<bool()>
+        wantsTime;  ///< once false, the time is no longer calculated; empty: calculated to the end
+    bool block_delete_on = true;
+    PathPoints *points = nullptr;  ///< receives the path of the controlled point
 };
 
-/// Runs the interpreter over the whole program. Errors (syntax, limits, endless loops) go to `sink` with
-/// their places; at most `MAX_CHECK_ERRORS` of them. Tool table and parameter file are read and never
-/// written. When `progress` answers false the check ends with what it has.
+/// Interprets the whole program. Errors (syntax, limits, endless loops) go to `sink` with their positions, at
+/// most `MAX_CHECK_ERRORS`. Tool table and parameter file are only read. When `progress` returns false the
+/// check ends with the results so far.
 CheckResult check_program(const MachineConfig &machine, const std::string &program, gcode::ToolSource &tools,
                           gcode::ParameterSource &parameters, diagnostics::Sink &sink,
                           const CheckOptions &options = {});
 
 inline constexpr int MAX_CHECK_ERRORS = 20;
 
-/// The machine as a program finds it, homed and without a tool; `machine` must outlive it.
+/// The machine at the start of a program, homed and without a tool; `machine` must outlive it.
 gcode::PreviewMachine preview_stand(const MachineConfig &machine);
 
-/// Where the machine stands when its joints are homed; where joints are not axes, a place within the limits.
+/// Position of the homed machine; where joints are not axes, a position within the limits.
 geometry::Pose home_position(const MachineConfig &machine);
 
 }  // namespace mw::machine

@@ -32,7 +32,7 @@ PieceShape::Vec3 PieceShape::in_plane(const Vec3 &v, const Vec3 &normal) {
 
 PieceShape::PieceShape(const ProgrammedPiece &piece)
     : piece_(piece), along_(piece.end - piece.start), length2_(geometry::dot(along_, along_)),
-      isLineInSpace_(piece.angle_rad == 0 &&
+      line_in_space_(piece.angle_rad == 0 &&
                      std::all_of(along_.c.begin() + 3, along_.c.end(), [](double d) { return d == 0; })) {
     if (piece.angle_rad == 0) {
         return;
@@ -42,7 +42,7 @@ PieceShape::PieceShape(const ProgrammedPiece &piece)
     const Vec3 end_radius = in_plane(to_end, normal_);
     radius_ = in_plane(from_centre, normal_);
     side_ = cross(normal_, radius_);
-    // The radius may differ a little between start and end (rounded programs): it changes evenly.
+    // The radius may change slightly between start and end (rounded programs): it changes linearly.
     const double r0 = std::sqrt(dot(radius_, radius_));
     const double r1 = std::sqrt(dot(end_radius, end_radius));
     growth_ = r0 > 0 ? r1 / r0 - 1.0 : 0.0;
@@ -75,7 +75,7 @@ Nearest PieceShape::nearest(const Pose &p) const {
 }
 
 bool PieceShape::isInSpace(const Pose &p) const {
-    return isLineInSpace_ && std::equal(p.c.begin() + 3, p.c.end(), piece_.start.c.begin() + 3);
+    return line_in_space_ && std::equal(p.c.begin() + 3, p.c.end(), piece_.start.c.begin() + 3);
 }
 
 Nearest PieceShape::distance(const Pose &p, const Pose &at, double fraction) {
@@ -83,7 +83,7 @@ Nearest PieceShape::distance(const Pose &p, const Pose &at, double fraction) {
     return {fraction, geometry::norm_linear(d), geometry::norm_abc(d)};
 }
 
-/// As nearest_on_line(), where all but the first three terms are zero.
+/// As nearest_on_line() when all but the first three components are zero.
 Nearest PieceShape::nearest_in_space(const Pose &p) const {
     const Vec3 along{along_[0], along_[1], along_[2]}, from_start = minus(p, piece_.start);
     const double fraction = length2_ > 0 ? std::clamp(dot(from_start, along) / length2_, 0.0, 1.0) : 1.0;

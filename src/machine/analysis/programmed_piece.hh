@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A programmed move as a curve: points of it, and the nearest one to a place.
+// A programmed move as a curve: points on it, and the nearest one to a place.
 #pragma once
 
 #include <cmath>
@@ -8,7 +8,7 @@
 
 namespace mw::machine {
 
-/// A programmed move with its start.
+/// A programmed move with its start position.
 struct ProgrammedPiece {
     geometry::Pose start, end;
     geometry::Pose centre, normal;  ///< arcs only
@@ -16,7 +16,7 @@ struct ProgrammedPiece {
     bool isRapid = false;
 };
 
-/// The nearest point of a piece: the position along it and the distances of the two groups of coordinates.
+/// The nearest point of a piece: the position along it and the distances in both groups of coordinates.
 struct Nearest {
     double fraction = 0;  ///< 0 start, 1 end
     double linear = 0;    ///< over XYZUVW [machine units]
@@ -27,7 +27,7 @@ struct Nearest {
 /// Length over XYZ, else UVW, else ABC: the feed length.
 double feed_length(const ProgrammedPiece &piece);
 
-/// What points of a piece are computed from, so that many may be asked for.
+/// Precomputed values of a piece, for calculating many points.
 class PieceShape {
   public:
     explicit PieceShape(const ProgrammedPiece &piece);
@@ -45,9 +45,9 @@ class PieceShape {
     static double dot(const Vec3 &a, const Vec3 &b);
     static Vec3 cross(const Vec3 &a, const Vec3 &b);
     static Vec3 in_plane(const Vec3 &v, const Vec3 &normal);
-    /// Of `p` from the point `at`, which lies at `fraction`.
+    /// Distance of `p` from the point `at` at `fraction`.
     static Nearest distance(const geometry::Pose &p, const geometry::Pose &at, double fraction);
-    /// Only X, Y and Z of `p` can be off the piece.
+    /// Only X, Y and Z of `p` can deviate from the piece.
     bool isInSpace(const geometry::Pose &p) const;
     Nearest nearest_in_space(const geometry::Pose &p) const;
     Nearest nearest_on_line(const geometry::Pose &p) const;
@@ -56,8 +56,8 @@ class PieceShape {
     ProgrammedPiece piece_;
     geometry::Pose along_;  ///< end - start
     double length2_ = 0;
-    bool isLineInSpace_ = false;  ///< moves X, Y and Z only
-    // Of an arc: its radius at the start, and that turned by 90 degrees; what the radius grows by and the
+    bool line_in_space_ = false;  ///< moves X, Y and Z only
+    // For an arc: its radius at the start, the same rotated by 90 degrees, the growth of the radius, and the
     // rise.
     Vec3 normal_, radius_, side_;
     double growth_ = 0, first_rise_ = 0, rise_ = 0;

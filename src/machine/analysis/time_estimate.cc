@@ -11,14 +11,15 @@ namespace mw::machine {
 
 namespace {
 
-/// Time lost in places that are kept until the worst are known; beyond that many the least are let go.
+/// Number of positions with lost time that are kept to find the slowest; above it those with the least loss
+/// are dropped.
 constexpr std::size_t MOST_PLACES = 100000;
 
-/// Kinds of moves in their tags.
+/// Types of moves in their tags.
 enum class Shape : std::uint8_t { STRAIGHT, ARC };
 
 std::string name_of(const trajectory::MoveEstimate &move) {
-    const bool isArc = move.tag.type == static_cast<std::uint8_t>(Shape::ARC);
+    const bool is_arc = move.tag.type == static_cast<std::uint8_t>(Shape::ARC);
     const std::string axis = move.axis == trajectory::XYZ_NORM ? "[TRAJ] (X Y Z)"
                              : move.axis >= 0
                                  ? std::string(1, geometry::AXIS_LETTERS[static_cast<std::size_t>(move.axis)])
@@ -27,7 +28,7 @@ std::string name_of(const trajectory::MoveEstimate &move) {
     case trajectory::Binding::FEED: return "feed";
     case trajectory::Binding::VELOCITY: return "velocity of " + axis;
     case trajectory::Binding::ACCELERATION:
-        return isArc ? "curvature: acceleration of " + axis : "acceleration of " + axis;
+        return is_arc ? "curvature: acceleration of " + axis : "acceleration of " + axis;
     case trajectory::Binding::JERK: return "jerk of " + axis;
     case trajectory::Binding::TOLERANCE: return "tolerance or short moves";
     }
@@ -38,10 +39,10 @@ std::string name_of(const trajectory::MoveEstimate &move) {
 
 TimeEstimate::TimeEstimate(const MachineConfig &machine, const Overrides &overrides, Watch watch)
     : watch_(std::move(watch)), settings_(motion::settings_of(machine.parameters)),
-      // An estimate knows no kinematics: each joint is taken for the axis of its letter.
+      // An estimate has no kinematics: each joint is treated as the axis of its letter.
       limits_(motion::fold_limits(settings_, machine.axis_map, motion::ALL_HOMED).path),
       corner_scale_(settings_.get(motion::Parameter::TRAJ_CORNER_SCALE)),
-      isMergeAdded_(settings_.isSet(motion::Parameter::TRAJ_ADDED_TOLERANCES)),
+      merge_added_(settings_.isSet(motion::Parameter::TRAJ_ADDED_TOLERANCES)),
       estimator_(std::make_unique<trajectory::Estimator>(
           limits_, static_cast<double>(machine.servo_period_ns) * 1e-9,
           [this](const trajectory::MoveEstimate &move) { count(move); })) {
@@ -88,7 +89,7 @@ trajectory::MoveRequest TimeEstimate::request_of(const geometry::MoveSettings &s
     r.tag.block = static_cast<std::uint32_t>(section_);
     r.isRapid = settings.isRapid || !(settings.feed > 0);
     r.tolerance = settings.tolerance;
-    r.isMergeAdded = isMergeAdded_;
+    r.isMergeAdded = merge_added_;
     r.set_merge(settings.naivecam_tolerance);
     r.corner_scale = settings.corner_scale > 0 ? settings.corner_scale : corner_scale_;
     r.join = settings.mode;
@@ -97,7 +98,7 @@ trajectory::MoveRequest TimeEstimate::request_of(const geometry::MoveSettings &s
 
 namespace {
 
-/// Moves that follow the spindle are timed at its programmed speed.
+/// Moves that follow the spindle are calculated with its programmed speed.
 geometry::MoveSettings timed(const gcode::PreviewEvent &event) {
     geometry::MoveSettings out = event.settings;
     if (out.feed_per_revolution > 0 && event.spindle_rpm > 0) {
@@ -111,8 +112,8 @@ geometry::MoveSettings timed(const gcode::PreviewEvent &event) {
 void TimeEstimate::take(const gcode::PreviewEvent &event, std::uint64_t id) {
     using Kind = gcode::PreviewKind;
     id_ = id;
-    if (event.isSpindleAwaited) {
-        stop();  // how long it waits nobody knows, but it begins at rest
+    if (event.spindle_awaited) {
+        stop();  // the waiting time is unknown, but the move begins from standstill
     }
     switch (event.kind) {
     case Kind::RAPID: line(event.end, event.settings); break;
@@ -168,9 +169,9 @@ void TimeEstimate::stop() {
     estimator_->begin(position_);
 }
 
-void TimeEstimate::set_smooth(bool isSmooth) {
+void TimeEstimate::set_smooth(bool smooth) {
     stop();
-    limits_.isJerkLimited = isSmooth && settings_.get(motion::Parameter::TRAJ_MAX_JERK) >= motion::LEAST_JERK;
+    limits_.isJerkLimited = smooth && settings_.get(motion::Parameter::TRAJ_MAX_JERK) >= motion::LEAST_JERK;
     estimator_->set_limits(limits_);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Cycle time of a program before it runs: per tool and in all, and where the time is lost.
+// Cycle time of a program before it runs: per tool and in total, and where time is lost.
 #pragma once
 
 #include <functional>
@@ -18,56 +18,56 @@ namespace mw::machine {
 struct SlowPlace {
     std::string file;
     int line = 0;
-    double lost_s = 0;  ///< against the programmed feed
+    double lost_s = 0;  ///< compared with the programmed feed
     std::string limit;  ///< "acceleration of X", "tolerance"...
 };
 
 struct TimeFigures {
     double total_s = 0, cutting_s = 0, rapid_s = 0, dwell_s = 0;
-    bool isComplete = true;  ///< false: the planner could not drive all of it
+    bool isComplete = true;  ///< false: the planner could not complete the moves
     std::map<int, double> by_tool;
-    std::vector<std::pair<std::string, double>> by_section;  ///< in the order in which they begin
-    std::vector<SlowPlace> slowest;                          ///< at most SLOW_PLACES, the worst first
+    std::vector<std::pair<std::string, double>> by_section;  ///< in the order of their start
+    std::vector<SlowPlace> slowest;                          ///< at most SLOW_PLACES, worst first
 };
 inline constexpr std::size_t SLOW_PLACES = 5;
 
-/// A move, or moves that the planner has made one, or a dwell.
+/// A move, several moves combined by the planner, or a dwell.
 struct TimedMove {
-    std::uint64_t id = 0;  ///< of the last event in it, see TimeEstimate::take
-    int line = 0;          ///< of that
+    std::uint64_t id = 0;  ///< id of its last event, see TimeEstimate::take
+    int line = 0;          ///< line of that event
     double seconds = 0;
     double top_velocity = 0;  ///< along the feed length; 0 for a dwell
 };
 
-/// What an operator has set. [1: as programmed]
+/// Overrides set by an operator. [1: as programmed]
 struct Overrides {
     double feed = 1, rapid = 1;
-    double max_velocity = 0;  ///< highest speed along the feed length, 0: none is set
+    double max_velocity = 0;  ///< maximum speed along the feed length, 0: not set
 };
 
-/// Fed with the moves in order; one thread.
+/// Receives the moves in order; one thread.
 class TimeEstimate {
   public:
-    /// `watch` hears of each move in order, when the planner has driven it; may be empty.
+    /// `watch` is called for each move in order, when it is complete; may be empty.
     using Watch = std::function<void(const TimedMove &)>;
     explicit TimeEstimate(const MachineConfig &machine, const Overrides &overrides = {}, Watch watch = {});
 
-    /// See trajectory::Estimator::end_when. The estimate is not complete then.
+    /// See trajectory::Estimator::end_when. The estimate is incomplete then.
     void end_when(std::function<bool()> isToEnd) { estimator_->end_when(std::move(isToEnd)); }
     void start(const geometry::Pose &position);
     /// `section` as Preview::section names it.
     void set_place(const std::string &file, int line, const std::string &section);
-    /// What a preview tells; `id` comes back in TimedMove.
+    /// An event of a preview; `id` is returned in TimedMove.
     void take(const gcode::PreviewEvent &event, std::uint64_t id = 0);
     void line(const geometry::Pose &end, const geometry::MoveSettings &settings);
     void arc(const gcode::ArcMove &move);
     void dwell(double seconds);
-    /// Motion stands here: tool changes, stops, probes.
+    /// Motion stops here: tool changes, stops, probes.
     void stop();
     void set_tool(int tool);
-    /// G64 R: with jerk limits from here on, or without.
-    void set_smooth(bool isSmooth);
-    /// With at most so many slow places.
+    /// G64 R: with or without jerk limits from now on.
+    void set_smooth(bool smooth);
+    /// Limits the number of slow positions.
     const TimeFigures &finish(std::size_t slow_places = SLOW_PLACES);
 
   private:
@@ -78,8 +78,8 @@ class TimeEstimate {
     std::uint64_t id_ = 0;
     motion::Settings settings_;
     trajectory::Limits limits_;
-    double corner_scale_;  ///< of moves that name none
-    bool isMergeAdded_;
+    double corner_scale_;  ///< for moves that set none
+    bool merge_added_;
     TimeFigures figures_;
     int tool_ = 0;
     std::vector<std::string> files_;

@@ -10,7 +10,7 @@
 namespace mw::machine {
 namespace {
 
-/// Task that is not in a call works by itself, and ends soon or begins one.
+/// Outside of long calls task works by itself; it soon ends its cycle or begins a call.
 constexpr std::chrono::milliseconds LOOK_AGAIN{1};
 
 }  // namespace
@@ -22,16 +22,16 @@ CycleThread::~CycleThread() {
     give_back();
     {
         const std::lock_guard lock(mutex_);
-        isEnding_ = true;
+        ending_ = true;
     }
     begun_.notify_one();
     thread_.join();
 }
 
 void CycleThread::give_back() {
-    if (isTaken_) {
-        isTaken_ = false;
-        raise_priority(thread_id_);  // it returns to task
+    if (taken_) {
+        taken_ = false;
+        raise_priority(thread_id_);  // the call returns to task
         call_.give_back();
     }
 }
@@ -39,17 +39,17 @@ void CycleThread::give_back() {
 void CycleThread::run(std::int64_t now_ns) {
     give_back();
     std::unique_lock lock(mutex_);
-    const auto hasEnded = [this] { return !isRunning_; };
+    const auto hasEnded = [this] { return !running_; };
     if (hasEnded()) {
-        isLate_ = false;
+        late_ = false;
         now_ns_ = now_ns;
-        isRunning_ = true;
+        running_ = true;
         begun_.notify_one();
     }
-    auto patience = isLate_ ? std::chrono::nanoseconds(0) : std::chrono::nanoseconds(PATIENCE_NS);
+    auto patience = late_ ? std::chrono::nanoseconds(0) : std::chrono::nanoseconds(PATIENCE_NS);
     while (!ended_.wait_for(lock, patience, hasEnded)) {
         if (call_.take()) {
-            isTaken_ = isLate_ = true;
+            taken_ = late_ = true;
             lock.unlock();
             reset_priority(thread_id_);
             works_.apart(now_ns);
@@ -62,25 +62,24 @@ void CycleThread::run(std::int64_t now_ns) {
 bool CycleThread::end_call(std::int64_t most_ns) {
     give_back();
     std::unique_lock lock(mutex_);
-    const bool hasEnded =
-        ended_.wait_for(lock, std::chrono::nanoseconds(most_ns), [this] { return !isRunning_; });
-    isTaken_ = !hasEnded && call_.take();
-    return hasEnded;
+    const bool ended = ended_.wait_for(lock, std::chrono::nanoseconds(most_ns), [this] { return !running_; });
+    taken_ = !ended && call_.take();
+    return ended;
 }
 
 void CycleThread::work() {
     thread_id_ = ::gettid();
     std::unique_lock lock(mutex_);
     while (true) {
-        begun_.wait(lock, [this] { return isRunning_ || isEnding_; });
-        if (isEnding_) {
+        begun_.wait(lock, [this] { return running_ || ending_; });
+        if (ending_) {
             return;
         }
         const std::int64_t now_ns = now_ns_;
         lock.unlock();
         works_.whole(now_ns);
         lock.lock();
-        isRunning_ = false;
+        running_ = false;
         ended_.notify_one();
     }
 }

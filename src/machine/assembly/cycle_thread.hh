@@ -14,33 +14,33 @@
 
 namespace mw::machine {
 
-/// Used by one thread, which may touch task between run() and give_back().
+/// Used by one thread, which may access task between run() and give_back().
 class CycleThread {
   public:
-    /// Called with the time of the cycle. `whole` runs in the thread, `apart` in that of run() while `whole`
-    /// is in a long call.
+    /// Functions called with the time of the cycle. `whole` runs in the cycle thread, `apart` in the thread
+    /// of run() during a long call of `whole`.
     struct Works {
         std::function<void(std::int64_t now_ns)> whole, apart;
     };
     CycleThread(task::LongCall &call, Works works);
-    /// Only where the cycle has ended.
+    /// Only after the end of the cycle.
     ~CycleThread();
     CycleThread(const CycleThread &) = delete;
     CycleThread &operator=(const CycleThread &) = delete;
 
-    /// A call that has ended meanwhile may return to task.
+    /// Permits a call that has ended to return to task.
     void give_back();
-    /// A thread in a long call has the priority of other programs: a script may calculate for long.
-    /// Begins a cycle unless the last one still runs, and waits for its end; a long call is waited for
-    /// PATIENCE_NS, and no longer as long as it takes. Then `apart` has run.
+    /// Begins a cycle unless the last one is running, and waits for its end; waits PATIENCE_NS for a long
+    /// call, then only briefly in each cycle, and runs `apart`. A thread in a long call has the priority of
+    /// other programs, because a script may calculate for long.
     void run(std::int64_t now_ns);
-    /// Waits for the end of the cycle that still runs; false when it takes longer. Then the call does not
-    /// return to task any more.
+    /// Waits for the end of the running cycle; false when it takes longer. The call does not return to task
+    /// then.
     bool end_call(std::int64_t most_ns);
     /// The last cycle has not ended.
-    bool isApart() const { return isTaken_; }
+    bool isApart() const { return taken_; }
 
-    /// As the kernel names the thread; 0 before its first cycle.
+    /// Thread id of the kernel; 0 before its first cycle.
     int thread_id() const { return thread_id_; }
 
     static constexpr std::int64_t PATIENCE_NS = 20000000;
@@ -50,18 +50,18 @@ class CycleThread {
 
     task::LongCall &call_;
     Works works_;
-    bool isTaken_ = false;
-    bool isLate_ = false;
+    bool taken_ = false;
+    bool late_ = false;
     std::atomic<int> thread_id_ = 0;
 
     std::mutex mutex_;
     std::condition_variable begun_, ended_;
-    // Under the mutex.
-    bool isRunning_ = false;
-    bool isEnding_ = false;
+    // Guarded by the mutex.
+    bool running_ = false;
+    bool ending_ = false;
     std::int64_t now_ns_ = 0;
 
-    std::thread thread_;  ///< last: it uses the rest
+    std::thread thread_;  ///< last member, because it uses the others
 };
 
 }  // namespace mw::machine

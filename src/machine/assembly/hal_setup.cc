@@ -19,7 +19,7 @@ namespace {
 
 namespace script = hal::script;
 
-/// Values for [SECTION]KEY; each key that a HAL file uses counts as known.
+/// Values for [SECTION]KEY; each key that a HAL file uses becomes known.
 class IniValues final : public script::IniLookup {
   public:
     explicit IniValues(ini::IniReader &reader) : reader_(reader) {}
@@ -29,7 +29,7 @@ class IniValues final : public script::IniLookup {
         if (entry == nullptr) {
             return std::nullopt;
         }
-        // Custom sections stay silent: only the key of a section that the system reads needs to become known.
+        // Custom sections cause no warnings: only keys of known sections need to become known.
         reader_.know_if_ours(section, name);
         return entry->value;
     }
@@ -49,7 +49,7 @@ class IniValues final : public script::IniLookup {
     ini::IniReader &reader_;
 };
 
-/// Answers of commands to standard output; errors and warnings to the sink.
+/// Output of commands goes to standard output; errors and warnings go to the sink.
 class SinkOutput final : public script::Output {
   public:
     explicit SinkOutput(diagnostics::Sink &sink) : sink_(sink) {}
@@ -65,15 +65,15 @@ class SinkOutput final : public script::Output {
     diagnostics::Sink &sink_;
 };
 
-/// Parts of this process first, then programs of the system.
+/// Parts of this process take precedence over programs of the system.
 class RealtimePrograms final : public script::ProgramHost {
   public:
     RealtimePrograms(script::InProcessProgramHost &parts, std::set<std::string> names,
                      script::ProgramHost &system)
         : parts_(parts), names_(std::move(names)), system_(system) {}
     Result<script::ProgramStart> start(const script::ProgramRequest &request) override {
-        const bool isPart = !request.argv.empty() && names_.count(script::base_name(request.argv[0])) > 0;
-        return isPart ? parts_.start(request) : system_.start(request);
+        const bool is_part = !request.argv.empty() && names_.count(script::base_name(request.argv[0])) > 0;
+        return is_part ? parts_.start(request) : system_.start(request);
     }
     Result<> stop(const std::string &component) override { return system_.stop(component); }
     Result<> stop_all() override { return system_.stop_all(); }
@@ -85,7 +85,7 @@ class RealtimePrograms final : public script::ProgramHost {
     script::ProgramHost &system_;
 };
 
-/// Loads a module of a user in the place of `ours` (homemod, tpmod), and asks ours whether it is one.
+/// Loads a user's module instead of `ours` (homemod, tpmod), and checks that it is one.
 Result<> load_instead(script::Session &session, const std::string &ours, const HalStep &module) {
     const std::vector<std::string> words = split_words(module.text);
     if (words.empty() || words[0] == ours) {
@@ -110,7 +110,7 @@ Result<> run_file_step(script::Session &session, const HalStep &step) {
     return session.run_file(name, {words.begin() + 1, words.end()});
 }
 
-/// All files in two passes, then the single commands.
+/// Runs all files in two passes, then the single commands.
 Result<> run_two_pass_steps(script::Session &session, const std::vector<HalStep> &steps,
                             const std::string &keywords) {
     std::vector<script::HalFileEntry> files;
@@ -128,7 +128,7 @@ Result<> run_two_pass_steps(script::Session &session, const std::vector<HalStep>
     return done;
 }
 
-/// Where the session keeps going after errors the steps do, too: each failure is told once.
+/// If the session continues after errors, so do the steps: each failure is reported once.
 Result<> run_steps(script::Session &session, const std::vector<HalStep> &steps, diagnostics::Sink &sink) {
     for (const HalStep &step : steps) {
         const int errors_before = sink.count_errors();
@@ -148,8 +148,8 @@ Result<> run_steps(script::Session &session, const std::vector<HalStep> &steps, 
 
 namespace {
 
-/// What scripts of HAL files look for in their environment: this INI file, and the library that they source
-/// other scripts from. A library that the user named there stays.
+/// Sets the environment variables that scripts of HAL files read: this INI file, and the library from which
+/// they source other scripts. A library set by the user is kept.
 void offer_to_scripts(const std::string &ini, const std::vector<std::string> &library) {
     std::error_code ignored;
     const auto whole = std::filesystem::absolute(ini, ignored);
@@ -175,12 +175,12 @@ Result<> HalSetup::run() {
     if (programs_ != nullptr) {
         programs.emplace(parts, std::set<std::string>{"hal_manualtoolchange"}, *programs_);
     }
-    const bool isVirtual = host_.hal().isVirtual();
+    const bool is_virtual = host_.hal().isVirtual();
     script::SessionOptions session_options;
-    session_options.hasPlaceholders = isVirtual;
+    session_options.has_placeholders = is_virtual;
     session_options.ini = &ini;
-    session_options.stop = &stop_signal;  // a program that never becomes ready does not hold a start for ever
-    session_options.keepsGoing = options_.isKeptGoing;
+    session_options.stop = &stop_signal;  // a program that never becomes ready must not block the start
+    session_options.keepsGoing = options_.kept_going;
     session_options.folders = options_.hal_folders;
     session_options.folders.push_back(parts_.ini.folder());
     session_options.library = options_.hal_library;
@@ -207,7 +207,7 @@ Result<> HalSetup::run() {
                    : run_two_pass_steps(session, parts_.config.hal_steps, parts_.config.two_pass);
     }
     if (!done) {
-        // The session tells its own failures, with the line of the HAL file.
+        // The session reports its own failures, with the line of the HAL file.
         Error error = done.error();
         error.isTold = parts_.sink.count_errors() > errors_before;
         return std::unexpected(std::move(error));

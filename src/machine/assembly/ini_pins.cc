@@ -17,7 +17,7 @@ using motion::Parameter;
 
 enum class PinType : std::uint8_t { NUMBER, WHOLE, BIT };
 
-/// One row of the table. `preset` is what a pin that nothing acts on begins with.
+/// One row of the table. `preset` is the initial value of a pin without effect.
 struct IniPin {
     std::string_view name;
     IniPins::Use use;
@@ -67,7 +67,7 @@ constexpr std::array OF_TRAJECTORY = {
     IniPin{"arc-blend-tangent-kink-ratio", NOTHING, PinType::NUMBER, 0.1},
 };
 
-/// The other end of what a joint or axis may travel; COUNT: of no such pair.
+/// The opposite limit of a joint or axis; COUNT: not a limit.
 Parameter other_limit(Parameter parameter) {
     switch (parameter) {
     case Parameter::JOINT_MIN_LIMIT: return Parameter::JOINT_MAX_LIMIT;
@@ -99,7 +99,7 @@ void IniPins::Pin::set(double to) {
     last = value();
 }
 
-/// LinuxCNC's name of it, with underscores, finds it too.
+/// Also accepts LinuxCNC's name, with underscores.
 template <class T>
 void IniPins::make_named(hal::UserPin<T> &pin, const std::string &name, hal::Hal &hal, Result<> &status) {
     std::string legacy = name;
@@ -190,7 +190,7 @@ void IniPins::destroy() {
     }
 }
 
-/// What cannot be is told by the name of its pin.
+/// Reports values that are not accepted, with the name of the pin.
 bool IniPins::isTaken(const Pin &pin, double value, task::Task &task) const {
     const auto refuse = [&](const std::string &why) {
         task.post(messages::MessageKind::OPERATOR_ERROR, fmt::format("{} is {}: {}", pin.name, value, why));
@@ -201,16 +201,16 @@ bool IniPins::isTaken(const Pin &pin, double value, task::Task &task) const {
     }
     const motion::ParameterInfo &info = motion::PARAMETERS[static_cast<std::size_t>(pin.use.parameter)];
     if (!std::isfinite(value)) {
-        return refuse("a finite number is expected, and the old one stays in force");
+        return refuse("a finite number is expected, and the old one stays active");
     }
-    if (value < info.lowest || value > info.highest || (pin.use.isPositive && value <= 0)) {
-        return refuse("it is out of its range, and the old one stays in force");
+    if (value < info.lowest || value > info.highest || (pin.use.positive && value <= 0)) {
+        return refuse("it is out of its range, and the old one stays active");
     }
     const Parameter other = other_limit(pin.use.parameter);
     if (other != Parameter::COUNT) {
         const double end = task.motion_settings().get(other, pin.index);
         if (isLower(pin.use.parameter) ? value >= end : value <= end) {
-            return refuse(fmt::format("the other limit is {}, and the old one stays in force", end));
+            return refuse(fmt::format("the other limit is {}, and the old one stays active", end));
         }
     }
     return true;
@@ -218,26 +218,26 @@ bool IniPins::isTaken(const Pin &pin, double value, task::Task &task) const {
 
 void IniPins::step(Pin &pin, task::Task &task) {
     const double value = pin.value();
-    const bool isChanged = value != pin.last && !(std::isnan(value) && std::isnan(pin.last));
-    if (isChanged) {
+    const bool changed = value != pin.last && !(std::isnan(value) && std::isnan(pin.last));
+    if (changed) {
         pin.last = value;
-        pin.isWaiting = isTaken(pin, value, task);
-        pin.isWaitTold = false;
+        pin.waiting = isTaken(pin, value, task);
+        pin.wait_reported = false;
     }
-    if (!pin.isWaiting) {
+    if (!pin.waiting) {
         return;
     }
     const motion::Status &motion = task.motion_status();
-    const bool isAtRest = motion.mode != motion::Mode::COORD && motion.isInPosition;
-    if (motion.isHoming || (pin.use.isRate && !isAtRest)) {
-        if (!pin.isWaitTold) {
+    const bool at_rest = motion.mode != motion::Mode::COORD && motion.isInPosition;
+    if (motion.isHoming || (pin.use.isRate && !at_rest)) {
+        if (!pin.wait_reported) {
             task.post(messages::MessageKind::OPERATOR_TEXT,
-                      pin.name + " waits until the machine stands in manual mode and no joint homes");
+                      pin.name + " waits until the machine is stopped in manual mode and no joint is homing");
         }
-        pin.isWaitTold = true;
+        pin.wait_reported = true;
         return;
     }
-    pin.isWaiting = false;
+    pin.waiting = false;
     const motion::SetParameter setting{static_cast<std::uint16_t>(pin.use.parameter),
                                        static_cast<std::int16_t>(pin.index), pin.last};
     task.change(setting);
@@ -245,7 +245,7 @@ void IniPins::step(Pin &pin, task::Task &task) {
 
 void IniPins::step(task::Task &task) {
     for (Pin &pin : pins_) {
-        if (pin.isWaiting || pin.value() != pin.last) {
+        if (pin.waiting || pin.value() != pin.last) {
             step(pin, task);
         }
     }

@@ -13,11 +13,11 @@
 
 namespace mw::machine {
 
-/// ini.N.* of joints, ini.L.* of axes, ini.traj-*, by one table in ini_pins.cc. They hold what the INI file
-/// says, 0 where it says nothing. Not realtime; one thread.
+/// ini.N.* of joints, ini.L.* of axes, ini.traj-*, from one table in ini_pins.cc. Their initial values are
+/// those of the INI file, 0 where it has none. Not realtime; one thread.
 class IniPins {
   public:
-    /// [TRAJ]DEFAULT_LINEAR_VELOCITY and DEFAULT_LINEAR_ACCELERATION, which nothing acts on.
+    /// [TRAJ]DEFAULT_LINEAR_VELOCITY and DEFAULT_LINEAR_ACCELERATION, which have no effect.
     struct Defaults {
         double velocity = 0, acceleration = 0;
     };
@@ -25,15 +25,15 @@ class IniPins {
     Result<> create(hal::Hal &hal, const std::vector<motion::SetParameter> &parameters, int num_joints,
                     const Defaults &defaults);
     void destroy();
-    /// Tells task what has changed since the last call. Speeds and accelerations wait until nothing moves in
-    /// a mode of jogs, and nothing changes while joints home.
+    /// Sends changes since the last call to task. Speeds and accelerations wait until nothing moves in a jog
+    /// mode; nothing changes during homing.
     void step(task::Task &task);
 
-    /// What a pin is for.
+    /// Meaning of a pin.
     struct Use {
-        motion::Parameter parameter = motion::Parameter::COUNT;  ///< COUNT: nothing acts on it
-        bool isRate = false;                                     ///< changes at rest only
-        bool isPositive = false;
+        motion::Parameter parameter = motion::Parameter::COUNT;  ///< COUNT: no effect
+        bool isRate = false;                                     ///< changes only at standstill
+        bool positive = false;
     };
 
   private:
@@ -43,7 +43,7 @@ class IniPins {
         Use use;
         int index = 0;
         double last = 0;
-        bool isWaiting = false, isWaitTold = false;
+        bool waiting = false, wait_reported = false;
 
         double value() const noexcept;
         void set(double to);

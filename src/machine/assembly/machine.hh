@@ -17,7 +17,8 @@
 
 namespace mw::machine {
 
-/// What the machine is made from. All must outlive it; `ini` has been read into `config` without errors.
+/// Parts from which a machine is created. All must outlive it; `ini` has been read into `config` without
+/// errors.
 struct MachineParts {
     const ini::IniFile &ini;
     ini::IniReader &reader;
@@ -26,33 +27,32 @@ struct MachineParts {
 };
 
 struct MachineOptions {
-    bool isClockVirtual = false;   ///< set by make_virtual_machine()
-    bool isStrict = false;         ///< unknown INI keys are errors
-    bool isLasting = false;        ///< it stays up for clients when a program has ended
-    std::string homing_module;     ///< instead of [EMCMOT]HOMEMOD
-    std::string planner_module;    ///< instead of [TRAJ]TPMOD
-    bool isToolTableTold = false;  ///< whoever makes the machine has said what is wrong with the tool table
-    std::string instance;          ///< HAL instance of a realtime machine; empty: the user's default
+    bool clock_virtual = false;        ///< set by make_virtual_machine()
+    bool strict = false;               ///< unknown INI keys are errors
+    bool isLasting = false;            ///< it continues for clients when a program has ended
+    std::string homing_module;         ///< instead of [EMCMOT]HOMEMOD
+    std::string planner_module;        ///< instead of [TRAJ]TPMOD
+    bool tool_table_reported = false;  ///< the caller has reported errors in the tool table
+    std::string instance;              ///< HAL instance of a realtime machine; empty: the user's default
     /// Extra folders for HAL library files, before our own.
     std::vector<std::string> hal_library;
-    /// Folders in which HAL files are looked for before that of the INI file.
+    /// Folders in which HAL files are searched before that of the INI file.
     std::vector<std::string> hal_folders;
-    /// Keeps the journal instead of one of the machine's own; it outlives the machine. Without it a machine
-    /// under the virtual clock keeps none.
+    /// Used instead of the machine's own journal; it outlives the machine. Without it a machine under the
+    /// virtual clock keeps none.
     journal::Writer *journal = nullptr;
-    bool isKeptGoing = false;  ///< what fails in a HAL file is told, and the rest of it is run
+    bool kept_going = false;  ///< errors in a HAL file are reported, and its other lines are run
 };
 
 /// Realtime figures of a run; zero under the virtual clock.
 struct RealtimeFigures {
-    bool isRealtime = false;
+    bool realtime = false;
     std::string missing;  ///< why it is not realtime, empty otherwise
     std::uint64_t overruns = 0;
     std::int64_t max_latency_ns = 0;
 };
 
-/// One thread. Everything stops when it is destroyed: motion first, then the parts in reverse order of their
-/// start.
+/// One thread. The destructor stops everything: motion first, then the parts in reverse order of their start.
 class Machine {
   public:
     virtual ~Machine() = default;
@@ -62,25 +62,26 @@ class Machine {
     virtual std::int64_t now_ns() const = 0;
     virtual bool isVirtual() const = 0;
     virtual RealtimeFigures realtime_figures() const = 0;
-    /// An error once the machine cannot go on: its realtime process has ended. Ask in every cycle.
+    /// An error when the machine cannot continue because its realtime process has ended. Check in every
+    /// cycle.
     virtual Result<> health() const { return {}; }
 
-    /// The way into task for whoever runs the machine in this process.
+    /// Client of the code that runs the machine in this process.
     virtual client::Client &client() = 0;
-    /// For further clients in this process.
+    /// For more clients in this process.
     virtual mailbox::Segment &mailbox() = 0;
     virtual task::Task &task() = 0;
     virtual motion::Channels &channels() = 0;
     virtual hal::Hal &hal() = 0;
 };
 
-/// Failures that concern lines of a file have been told to the sink, and say so (Error::isTold).
-/// The machine in this process, under the virtual clock: deterministic, as fast as the processor allows.
+/// Errors in lines of a file have been reported to the sink, and have Error::isTold set. Creates the machine
+/// in this process, under the virtual clock: deterministic, as fast as the processor allows.
 Result<std::unique_ptr<Machine>> make_virtual_machine(const MachineParts &parts,
                                                       const MachineOptions &options);
 
-/// The machine as two processes: this one with task, and the realtime process that it starts and that ends
-/// with it.
+/// Creates the machine as two processes: this one with task, and the realtime process that it starts and that
+/// ends with it.
 Result<std::unique_ptr<Machine>> make_realtime_machine(const MachineParts &parts,
                                                        const MachineOptions &options);
 

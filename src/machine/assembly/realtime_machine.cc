@@ -25,9 +25,9 @@ namespace {
 
 constexpr std::int64_t NS_PER_S = 1000000000;
 constexpr int CONFIGURE_CYCLES = 3000;
-/// Of each thread that runs task. A program that cuts, a stop and their messages need less.
+/// For each thread that runs task. A running program, a stop and their messages need less.
 constexpr std::size_t HEAP_RESERVE = std::size_t{16} << 20;
-/// At the end of the machine a call of the interpreter is waited for.
+/// Maximum wait for a call of the interpreter at the end of the machine.
 constexpr std::int64_t END_OF_CALL_NS = NS_PER_S / 5;
 
 std::int64_t monotonic_ns() {
@@ -37,7 +37,7 @@ std::int64_t monotonic_ns() {
 }
 
 /// After a crash of task its realtime process brakes, switches the amplifiers off and ends: the next start
-/// comes after that.
+/// waits for that.
 void wait_for_end_of(const std::string &instance) {
     constexpr std::int64_t PATIENCE_NS = 5 * NS_PER_S;
     constexpr timespec A_WHILE{0, 20000000};
@@ -62,7 +62,7 @@ class RealtimeMachine final : public Machine {
     Result<> start(const MachineOptions &options) {
         const std::string instance = options.instance.empty() ? hal::default_instance() : options.instance;
         wait_for_end_of(instance);
-        // First of all: another machine of this name refuses the start before any driver is loaded.
+        // First: another machine of this name rejects the start before any driver is loaded.
         auto mailbox = mailbox::Memory::create(instance);
         if (!mailbox.has_value()) {
             return std::unexpected(mailbox.error());
@@ -102,8 +102,8 @@ class RealtimeMachine final : public Machine {
         while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {
         }
         cycles_->run(monotonic_ns());
-        if (!isWatched_) {
-            isWatched_ = true;
+        if (!watched_) {
+            watched_ = true;
             raise_priority();
             raise_priority(cycles_->thread_id());
             lateness_.watch(::gettid());
@@ -121,12 +121,12 @@ class RealtimeMachine final : public Machine {
             return {};
         }
         death->hint =
-            "the drives have lost their commands: the machine is off as far as its hardware makes it so";
+            "the drives have lost their commands: the machine is off only if its hardware switches it off";
         return std::unexpected(*death);
     }
     RealtimeFigures realtime_figures() const override {
         RealtimeFigures figures;
-        figures.isRealtime = host_->hal().isRealtime();
+        figures.realtime = host_->hal().isRealtime();
         figures.missing = host_->hal().realtime_missing();
         for (const hal::ThreadInfo &thread : host_->hal().threads()) {
             figures.overruns += thread.overruns;
@@ -143,22 +143,22 @@ class RealtimeMachine final : public Machine {
   private:
     /// In the thread of the cycles.
     void step_task(std::int64_t now_ns) {
-        if (!isReserved_) {
-            isReserved_ = true;
+        if (!reserved_) {
+            reserved_ = true;
             reserve_heap(HEAP_RESERVE);
         }
         side_->step(now_ns);
     }
     void shut_down() {
         if (host_ != nullptr) {
-            // Programs of loadusr live on the HAL of this machine: they end with it.
+            // Programs of loadusr use the HAL of this machine: they end with it.
             if (programs_) {
                 static_cast<void>(programs_->stop_all());
             }
             static_cast<void>(host_->shut_down());
         }
     }
-    /// A script or a disk that does not come back still uses task, which therefore cannot be destroyed.
+    /// A script or a disk that does not respond still uses task, which therefore cannot be destroyed.
     [[noreturn]] void end_beside_call() {
         parts_.sink.error(
             "the interpreter is still busy (a slow disk, or Python): the machine ends without it");
@@ -175,8 +175,8 @@ class RealtimeMachine final : public Machine {
     std::unique_ptr<TaskSide> side_;
     std::optional<CycleThread> cycles_;
     Lateness lateness_;
-    bool isWatched_ = false;
-    bool isReserved_ = false;  ///< used in the thread of the cycles
+    bool watched_ = false;
+    bool reserved_ = false;  ///< used in the thread of the cycles
     std::int64_t next_ns_;
 };
 

@@ -17,7 +17,7 @@ halui::HaluiSettings halui_settings(const MachineConfig &config) {
     settings.num_joints = config.num_joints;
     settings.num_spindles = config.num_spindles;
     settings.axis_mask = config.axis_mask;
-    settings.units_per_mm = config.isMetric ? 1.0 : 1.0 / MM_PER_INCH;
+    settings.units_per_mm = config.metric ? 1.0 : 1.0 / MM_PER_INCH;
     settings.max_feed_override = config.panel.max_feed_override;
     settings.spindle_override = {config.panel.min_spindle_override, config.panel.max_spindle_override};
     settings.max_velocity = config.panel.max_velocity;
@@ -40,15 +40,14 @@ TaskSide::~TaskSide() {
     io_pins_.destroy();
 }
 
-/// Before anybody else: clients that ask again and again whether the machine is up take all places until task
-/// frees them.
+/// Before other clients: clients that poll for the machine take all slots until task frees them.
 Result<> TaskSide::take_places() {
     auto client = client::Client::join(mailbox_.segment());
     if (!client.has_value()) {
         return std::unexpected(client.error());
     }
     client_.emplace(std::move(*client));
-    return parts_.config.hasHalui ? halui_.join(mailbox_.segment()) : Result<>{};
+    return parts_.config.has_halui ? halui_.join(mailbox_.segment()) : Result<>{};
 }
 
 Result<> TaskSide::start(const MachineOptions &options) {
@@ -56,18 +55,18 @@ Result<> TaskSide::start(const MachineOptions &options) {
         return taken;
     }
     diagnostics::Sink unheard;
-    if (options.journal == nullptr && !options.isClockVirtual) {
+    if (options.journal == nullptr && !options.clock_virtual) {
         journal_ = std::make_unique<journal::Writer>(journal::system_disk(), parts_.config.journal_file,
                                                      journal::Works::ALONE);
     }
     journal::Writer *const journal = options.journal != nullptr ? options.journal : journal_.get();
-    auto tools = open_tools(parts_.config, options.isToolTableTold ? unheard : parts_.sink,
-                            {journal, options.isClockVirtual});
+    auto tools = open_tools(parts_.config, options.tool_table_reported ? unheard : parts_.sink,
+                            {journal, options.clock_virtual});
     if (!tools.has_value()) {
         return std::unexpected(tools.error());
     }
     tools_ = std::move(*tools);
-    isLasting_ = options.isLasting;
+    lasting_ = options.isLasting;
     auto status = make_pins();
     status = status.has_value() ? run_hal_files(options) : status;
     status = status.has_value() ? link_estop_chain() : status;
@@ -77,8 +76,8 @@ Result<> TaskSide::start(const MachineOptions &options) {
         return status;
     }
     task::Settings settings = parts_.config.task;
-    settings.isUserProgramWaitedFor = options.isClockVirtual;
-    settings.sequencer.log_works = options.isClockVirtual ? task::LogWorks::ON_CALL : task::LogWorks::ALONE;
+    settings.user_program_awaited = options.clock_virtual;
+    settings.sequencer.log_works = options.clock_virtual ? task::LogWorks::ON_CALL : task::LogWorks::ALONE;
     task_ = std::make_unique<task::Task>(
         task::Parts{*channels_, *this, *tools_, parameters_, mailbox_.segment(), journal},
         std::move(settings));
@@ -86,13 +85,13 @@ Result<> TaskSide::start(const MachineOptions &options) {
     return {};
 }
 
-/// From here on clients find a machine that is ready for them.
+/// From now on clients find a machine that is ready for them.
 Result<> TaskSide::identify() {
     mailbox::Identity identity;
     if (!identity.ini.assign(whole_path(parts_.ini.path()))) {
         return fail("the path of the INI file is too long", {parts_.ini.path(), 0, 0});
     }
-    identity.isLasting = isLasting_;
+    identity.isLasting = lasting_;
     mailbox_.segment().identity.write(identity);
     return {};
 }
@@ -107,7 +106,7 @@ Result<> TaskSide::make_pins() {
         status = ini_pins_.create(host_.hal(), parts_.config.parameters, parts_.config.num_joints,
                                   {number("DEFAULT_LINEAR_VELOCITY"), number("DEFAULT_LINEAR_ACCELERATION")});
     }
-    if (status.has_value() && parts_.config.hasHalui) {
+    if (status.has_value() && parts_.config.has_halui) {
         status = halui_.create(host_.hal(), halui_settings(parts_.config));
     }
     return status;
@@ -115,24 +114,24 @@ Result<> TaskSide::make_pins() {
 
 Result<> TaskSide::run_hal_files(const MachineOptions &options) {
     HalSetup setup(parts_, host_, programs_, options);
-    const ToolHand hand = options.isClockVirtual ? ToolHand::SIMULATED : ToolHand::PERSON;
+    const ToolHand hand = options.clock_virtual ? ToolHand::SIMULATED : ToolHand::PERSON;
     setup.on_tool_change_program = [this, hand] {
         return tool_change_.create(host_.hal(), hand,
                                    [this, hand](const std::string &text) { tell_tool_change(hand, text); });
     };
     auto status = setup.run();
-    if (!status.has_value() && options.isKeptGoing) {
-        status = {};  // told
+    if (!status.has_value() && options.kept_going) {
+        status = {};  // reported
     }
     if (status.has_value()) {
-        parts_.reader.report_unknown(options.isStrict);
+        parts_.reader.report_unknown(options.strict);
     }
-    return status.has_value() && parts_.sink.hasErrors() && !options.isKeptGoing
+    return status.has_value() && parts_.sink.hasErrors() && !options.kept_going
                ? fail_told("the INI file has errors", {parts_.ini.path(), 0, 0})
                : status;
 }
 
-/// A person may sit at any client.
+/// A person may be at any client.
 void TaskSide::tell_tool_change(ToolHand hand, const std::string &text) {
     if (hand == ToolHand::PERSON) {
         task_->post(messages::MessageKind::OPERATOR_TEXT, text);
@@ -161,19 +160,19 @@ Result<> TaskSide::link_estop_chain() {
     hal::Hal &hal = host_.hal();
     const auto chain = hal.pin(ESTOP_PIN);
     const auto motion_pin = hal.pin(MOTION_ESTOP_PIN);
-    const bool isLinkable =
+    const bool linkable =
         chain.has_value() && !chain->signal.empty() && motion_pin.has_value() && motion_pin->signal.empty();
     if (chain.has_value() && chain->signal.empty()) {
         parts_.sink.warning(std::string("pin ") + ESTOP_PIN +
                                 " is not linked: the machine stays in emergency stop",
                             {parts_.ini.path(), 0, 0});
     }
-    return isLinkable ? hal.link(MOTION_ESTOP_PIN, chain->signal) : Result<>{};
+    return linkable ? hal.link(MOTION_ESTOP_PIN, chain->signal) : Result<>{};
 }
 
 Result<bool> TaskSide::isConfigured() {
-    const auto isDone = task_->isConfigured();
-    return isDone.has_value() ? isDone : fail(isDone.error().message, {parts_.ini.path(), 0, 0});
+    const auto done = task_->isConfigured();
+    return done.has_value() ? done : fail(done.error().message, {parts_.ini.path(), 0, 0});
 }
 
 Result<> TaskSide::finish_start(Machine &machine, int most_cycles) {
@@ -186,11 +185,11 @@ Result<> TaskSide::finish_start(Machine &machine, int most_cycles) {
         if (auto health = machine.health(); !health) {
             return health;
         }
-        const auto isDone = isConfigured();
-        if (!isDone.has_value()) {
-            return std::unexpected(isDone.error());
+        const auto done = isConfigured();
+        if (!done.has_value()) {
+            return std::unexpected(done.error());
         }
-        if (*isDone) {
+        if (*done) {
             machine.cycle();
             const auto started = task_->start();
             return started.has_value() ? identify() : started;
@@ -213,7 +212,7 @@ void TaskSide::step_apart(std::int64_t now_ns) {
 
 void TaskSide::step_hands(std::int64_t now_ns) {
     tool_change_.step(now_ns);
-    if (parts_.config.hasHalui) {
+    if (parts_.config.has_halui) {
         halui_.step();
     }
 }

@@ -22,40 +22,40 @@
 
 namespace mw::machine {
 
-/// One thread. start() leaves a machine whose threads run and whose task takes commands once configure is
-/// done.
+/// One thread. After start() the machine's threads run, and task accepts commands once the configuration is
+/// complete.
 class TaskSide final : private task::IoPins {
   public:
-    /// `programs`: what starts the programs of HAL files, and outlives this; null: none are started.
+    /// `programs`: starts the programs of HAL files, and outlives this; null: none are started.
     TaskSide(const MachineParts &parts, hal::Host &host, mailbox::Memory mailbox,
              hal::script::ProgramHost *programs);
     ~TaskSide() override;
 
-    /// Makes pins, runs the HAL files, starts the threads, makes task and gives it the motion settings.
+    /// Creates pins, runs the HAL files, starts the threads, creates task and sends it the motion settings.
     Result<> start(const MachineOptions &options);
-    /// Runs cycles until motion has taken all settings, then reads the parameter file and announces the state
-    /// to the interpreter. An error names the first setting that was refused.
+    /// Runs cycles until motion has accepted all settings, then reads the parameter file and announces the
+    /// state to the interpreter. An error names the first rejected setting.
     Result<> finish_start(Machine &machine, int most_cycles);
     /// One task cycle.
     void step(std::int64_t now_ns);
-    /// The same while step() is in a long call (task::LongCall).
+    /// A task cycle while step() is in a long call (task::LongCall).
     void step_apart(std::int64_t now_ns);
 
     client::Client &client() { return *client_; }
     mailbox::Segment &mailbox() { return mailbox_.segment(); }
-    /// What waits for the disk is written, at most 0.5 s; nothing is written afterwards.
+    /// Writes pending files, at most 0.5 s; nothing is written afterwards.
     void finish_files() {
         if (journal_ != nullptr) {
             journal_->finish();
         }
     }
-    /// No client finds the machine any more.
+    /// Clients no longer find the machine.
     void remove_mailbox() { mailbox_.remove(); }
     task::Task &task() { return *task_; }
     motion::Channels &channels() { return *channels_; }
 
   private:
-    /// Of those who operate by pins.
+    /// Runs the clients that use HAL pins.
     void step_hands(std::int64_t now_ns);
     io::Inputs read() override { return io_pins_.read(); }
     void write(const io::Outputs &outputs) override { io_pins_.write(outputs); }
@@ -69,7 +69,7 @@ class TaskSide final : private task::IoPins {
     Result<> run_hal_files(const MachineOptions &options);
     void tell_tool_change(ToolHand hand, const std::string &text);
     Result<> join_motion();
-    /// Lets the servo thread itself see the e-stop chain that iocontrol.0.emc-enable-in sees.
+    /// Links the servo thread to the e-stop chain of iocontrol.0.emc-enable-in.
     Result<> link_estop_chain();
 
     MachineParts parts_;
@@ -82,9 +82,9 @@ class TaskSide final : private task::IoPins {
     halui::Halui halui_;
     ManualToolChange tool_change_;
     IniParameters parameters_;
-    std::unique_ptr<journal::Writer> journal_;  ///< outlives all that it keeps things for
+    std::unique_ptr<journal::Writer> journal_;  ///< outlives its users
     std::unique_ptr<task::ToolStore> tools_;
-    bool isLasting_ = false;
+    bool lasting_ = false;
     motion::Channels *channels_ = nullptr;
     std::unique_ptr<task::Task> task_;
 };

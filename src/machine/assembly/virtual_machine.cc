@@ -12,14 +12,14 @@
 namespace mw::machine {
 namespace {
 
-/// Cycles in which the motion controller must have taken its settings.
+/// Maximum number of cycles until the motion controller has accepted its settings.
 constexpr int CONFIGURE_CYCLES = 1000;
 
 class VirtualMachine final : public Machine {
   public:
     explicit VirtualMachine(const MachineParts &parts) : parts_(parts) {}
     ~VirtualMachine() override {
-        // The task side ends first: its pins live in the host's instance, and its periodic runs it.
+        // The task side ends first: its pins are in the host's instance, and its periodic runs it.
         if (periodic_.value != 0) {
             scheduler_.remove(periodic_);
         }
@@ -37,10 +37,10 @@ class VirtualMachine final : public Machine {
         host_ = std::move(*host);
         side_ = std::make_unique<TaskSide>(parts_, *host_, mailbox::Memory::in_process(), nullptr);
         const hal::UseInstance use(&host_->hal());
-        // Components run in this process: their crash is its crash.
+        // Components run in this process: their crash ends it.
         hal::report_crashes("millwright");
         MachineOptions mine = options;
-        mine.isClockVirtual = true;
+        mine.clock_virtual = true;
         const auto started = side_->start(mine);
         if (!started.has_value()) {
             return started;
@@ -88,7 +88,7 @@ class VirtualMachine final : public Machine {
 
 Result<std::unique_ptr<Machine>> make_virtual_machine(const MachineParts &parts,
                                                       const MachineOptions &options) {
-    // Components find the files of a configuration in CONFIG_DIR, as they do when linuxcnc starts a machine.
+    // Components read the folder of a configuration from CONFIG_DIR, as with LinuxCNC.
     std::error_code unknown;
     const auto ini = std::filesystem::absolute(parts.ini.path(), unknown);
     ::setenv("CONFIG_DIR", ini.parent_path().c_str(), 1);

@@ -31,7 +31,7 @@ constexpr std::string_view OF_SCREENS =
     "POSITION_OFFSET PREFERENCE_FILE_PATH PREVIEW_TIMEOUT PYVCP PYVCP_POSITION SPINDLE_INCREMENT TITLE "
     "TKPKG TOOL_EDITOR TTT TTT_PREAMBLE USER_COMMAND_FILE";
 
-/// Of each spindle, with its number in the middle.
+/// For each spindle, with its number in the middle.
 constexpr std::string_view OF_SCREENS_AND_SPINDLES =
     "MIN_SPINDLE_0_SPEED MAX_SPINDLE_0_SPEED DEFAULT_SPINDLE_0_SPEED MIN_SPINDLE_0_OVERRIDE "
     "MAX_SPINDLE_0_OVERRIDE DEFAULT_SPINDLE_0_OVERRIDE MIN_SPINDLE_1_SPEED MAX_SPINDLE_1_SPEED "
@@ -80,7 +80,7 @@ IniKind kind_of(motion::ParameterUnit unit) {
     return IniKind::NUMBER;
 }
 
-/// Names of a constant text, which the views returned point into.
+/// Names in a constant text, to which the returned views refer.
 void add_names(std::vector<IniKey> &keys, std::string_view section, std::string_view names,
                std::string_view doc) {
     for (std::size_t begin = 0; begin < names.size();) {
@@ -103,19 +103,19 @@ std::string kind_text(const IniKey &key) {
     if (!key.unit.empty()) {
         text += fmt::format(" [{}]", key.unit);
     }
-    const bool hasLowest = key.lowest > -ini::INI_UNBOUNDED;
-    const bool hasHighest = key.highest < ini::INI_UNBOUNDED;
-    if (hasLowest && hasHighest) {
+    const bool has_lowest = key.lowest > -ini::INI_UNBOUNDED;
+    const bool has_highest = key.highest < ini::INI_UNBOUNDED;
+    if (has_lowest && has_highest) {
         text += fmt::format(", {} to {}", to_text(key.lowest), to_text(key.highest));
-    } else if (hasLowest) {
+    } else if (has_lowest) {
         text += fmt::format(", at least {}", to_text(key.lowest));
     }
     return text;
 }
 
 std::string preset_text(const IniKey &key) {
-    constexpr double NO_LIMIT = 1e9;  // settings that mean "none" by a large number
-    if (key.isRequired) {
+    constexpr double NO_LIMIT = 1e9;  // settings that use a large number as "none"
+    if (key.required) {
         return "required";
     }
     switch (key.kind) {
@@ -136,7 +136,7 @@ void add_row(std::string &page, const IniKey &key) {
         break;
     case IniEffect::ELSEWHERE: page += fmt::format("| {} | | | for others: {} |\n", key.name, key.doc); break;
     case IniEffect::NONE:
-        page += fmt::format("| {} | | | **no effect**, and said so{}: {} |\n", key.name,
+        page += fmt::format("| {} | | | **no effect**, with a message{}: {} |\n", key.name,
                             key.words.empty()
                                 ? ""
                                 : fmt::format(" unless it is {}", fmt::join(split_words(key.words), " or ")),
@@ -196,7 +196,8 @@ std::string ini_reference() {
         "`src/motion/interface/parameters.hh`; a test keeps it so. Lengths are in the unit of the joint or "
         "axis: "
         "machine units\n"
-        "([TRAJ]LINEAR_UNITS), or degrees where it turns. A key that is not here and in no HAL file is told, "
+        "([TRAJ]LINEAR_UNITS), or degrees where it turns. A key that is not here and in no HAL file is "
+        "reported, "
         "with the nearest\n"
         "name; `--strict` makes that an error.\n";
     std::string_view section;

@@ -14,8 +14,8 @@ namespace mw::machine {
 
 namespace why {
 inline constexpr const char *ARCS = "corners are blended by one planner, whose tolerance G64 P gives";
-inline constexpr const char *DISPLAYS = "displays, which run it when their own pins are there";
-inline constexpr const char *DEFAULTS = "displays, as the speed that they begin with";
+inline constexpr const char *DISPLAYS = "displays, which run it when their pins exist";
+inline constexpr const char *DEFAULTS = "displays, as the initial speed";
 }  // namespace why
 
 inline constexpr auto INI_KEYS = std::to_array<ini::IniKey>({
@@ -38,21 +38,20 @@ inline constexpr auto INI_KEYS = std::to_array<ini::IniKey>({
     ini::ini_number("TRAJ", "MAX_ANGULAR_ACCELERATION", "degrees/s2", ini::INI_UNBOUNDED,
                     {0.0, ini::INI_UNBOUNDED}, "for each axis of rotation"),
     ini::ini_whole("TRAJ", "SPINDLES", "", 1, {1, 8}, "number of spindles"),
-    ini::ini_whole("TRAJ", "SMOOTH_PLANNER", "", 1, {0, 1}, "1: G64 R may ask for jerk limits"),
-    ini::ini_elsewhere("TRAJ", "AXES", "old files; COORDINATES tells it"),
-    ini::ini_elsewhere("TRAJ", "CYCLE_TIME", "planners with a cycle of their own"),
-    ini::ini_text(
-        "TRAJ", "HOME",
-        "where forward kinematics that iterate look first, a number for each of COORDINATES [units, "
-        "degrees]; joints are homed by their own keys"),
+    ini::ini_whole("TRAJ", "SMOOTH_PLANNER", "", 1, {0, 1}, "1: G64 R may select jerk limits"),
+    ini::ini_elsewhere("TRAJ", "AXES", "old files; now from COORDINATES"),
+    ini::ini_elsewhere("TRAJ", "CYCLE_TIME", "planners with a separate cycle"),
+    ini::ini_text("TRAJ", "HOME",
+                  "start pose of iterative forward kinematics, a number for each of COORDINATES [units, "
+                  "degrees]; joints are homed by their own keys"),
     ini::ini_elsewhere("TRAJ", "DEFAULT_LINEAR_VELOCITY", why::DEFAULTS),
     ini::ini_elsewhere("TRAJ", "DEFAULT_LINEAR_ACCELERATION", why::DEFAULTS),
     ini::ini_elsewhere("TRAJ", "DEFAULT_ANGULAR_VELOCITY", why::DEFAULTS),
     ini::ini_elsewhere("TRAJ", "DEFAULT_ANGULAR_ACCELERATION", why::DEFAULTS),
     ini::ini_elsewhere("TRAJ", "DEFAULT_VELOCITY", why::DEFAULTS),
     ini::ini_elsewhere("TRAJ", "DEFAULT_ACCELERATION", why::DEFAULTS),
-    ini::ini_elsewhere("TRAJ", "MAX_VELOCITY", "old files; today MAX_LINEAR_VELOCITY"),
-    ini::ini_elsewhere("TRAJ", "MAX_ACCELERATION", "old files; today MAX_LINEAR_ACCELERATION"),
+    ini::ini_elsewhere("TRAJ", "MAX_VELOCITY", "old files; now MAX_LINEAR_VELOCITY"),
+    ini::ini_elsewhere("TRAJ", "MAX_ACCELERATION", "old files; now MAX_LINEAR_ACCELERATION"),
     ini::ini_text("TRAJ", "TPMOD",
                   "a module that chooses speeds along the path, and its parameters; tpmod: none "
                   "(docs/developer/extending/planner.md)"),
@@ -87,7 +86,7 @@ inline constexpr auto INI_KEYS = std::to_array<ini::IniKey>({
     ini::ini_whole("EMCMOT", "SERVO_PERIOD", "ns", 1000000, {10000, 100000000}, "of the servo thread"),
     ini::ini_elsewhere("EMCMOT", "EMCMOT", "HAL files, as the motion module"),
     ini::ini_elsewhere("EMCMOT", "BASE_PERIOD", "HAL files, as the period of the base thread"),
-    ini::ini_elsewhere("EMCMOT", "TRAJ_PERIOD", "planners in a thread of their own"),
+    ini::ini_elsewhere("EMCMOT", "TRAJ_PERIOD", "planners in a separate thread"),
     ini::ini_elsewhere("EMCMOT", "COMM_TIMEOUT", "message channels of LinuxCNC"),
     ini::ini_elsewhere("EMCMOT", "COMM_WAIT", "message channels of LinuxCNC"),
     ini::ini_elsewhere("EMCMOT", "SHMEM_KEY", "message channels of LinuxCNC"),
@@ -95,55 +94,55 @@ inline constexpr auto INI_KEYS = std::to_array<ini::IniKey>({
                   "a homing module and its parameters, instead of the built-in one (homemod)"),
 
     ini::ini_number("TASK", "CYCLE_TIME", "s", 0.001, {0.0001, 1.0}, "of the task loop"),
-    ini::ini_text("TASK", "INTERPRETER", "a shared object that takes the place of RS-274/NGC"),
-    ini::ini_without_effect("TASK", "TASK",
-                            "task is part of millwright run; no other program takes its place", "milltask"),
+    ini::ini_text("TASK", "INTERPRETER", "a shared object that replaces the RS-274/NGC interpreter"),
+    ini::ini_without_effect("TASK", "TASK", "task is part of millwright; no other program replaces it",
+                            "milltask"),
     ini::ini_text("TASK", "JOURNAL_FILE",
                   "what a program that a power cut ends is gone on with; without it beside the parameter "
                   "file, which gives it its name; none: there is none"),
     ini::ini_whole("TASK", "MDI_QUEUED_COMMANDS", "", 10, {0, 100000},
-                   "lines of MDI that may wait behind the one that runs"),
+                   "number of MDI lines that may wait after the running one"),
 
     ini::ini_required(ini::ini_list("HAL", "HALFILE", "HAL files in their order; .tcl files by haltcl")),
     ini::ini_list("HAL", "HALCMD", "a HAL command, after the files"),
-    ini::ini_text("HAL", "TWOPASS", "not empty: the files are gone through twice"),
-    ini::ini_text("HAL", "HALUI", "not empty: halui takes part"),
+    ini::ini_text("HAL", "TWOPASS", "not empty: the files are read twice"),
+    ini::ini_text("HAL", "HALUI", "not empty: halui is started"),
     ini::ini_list("HALUI", "MDI_COMMAND", "a line for the pin halui.mdi-command-NN, in order"),
     ini::ini_number("DISPLAY", "MIN_SPINDLE_OVERRIDE", "", 0.0, {0.0, ini::INI_UNBOUNDED},
-                    "lowest spindle override that halui asks for"),
+                    "minimum spindle override of halui"),
     ini::ini_number("DISPLAY", "MAX_SPINDLE_OVERRIDE", "", 1.0, {0.0, ini::INI_UNBOUNDED},
-                    "highest spindle override that halui asks for"),
-    ini::ini_text("HAL", "SHUTDOWN", "a HAL file that is run when the machine ends"),
+                    "maximum spindle override of halui"),
+    ini::ini_text("HAL", "SHUTDOWN", "a HAL file to run when the machine ends"),
     ini::ini_elsewhere("HAL", "POSTGUI_HALFILE", why::DISPLAYS),
     ini::ini_elsewhere("HAL", "POSTGUI_HALCMD", why::DISPLAYS),
-    ini::ini_list("APPLICATIONS", "APP", "a program beside the display, with its words"),
+    ini::ini_list("APPLICATIONS", "APP", "an additional program, with its arguments"),
     ini::ini_number("APPLICATIONS", "DELAY", "s", 0.0, {0.0, 3600.0},
-                    "from the start of the machine to that of those programs"),
+                    "delay between the start of the machine and these programs"),
 
     ini::ini_text("EMCIO", "TOOL_TABLE", "file of the tool table"),
     ini::ini_flag("EMCIO", "RANDOM_TOOLCHANGER", false,
-                  "1: the changer puts the tool of the spindle into the pocket that the new one leaves; "
+                  "1: the changer puts the tool from the spindle into the pocket of the new tool; "
                   "T0 is a tool then"),
     ini::ini_text("EMCIO", "TOOL_CHANGE_POSITION", "machine coordinates of M6: 3, 6 or 9 numbers"),
-    ini::ini_elsewhere("EMCIO", "CYCLE_TIME", "I/O controllers that are processes of their own"),
-    ini::ini_text("EMCIO", "EMCIO", "io, or iov2 [-support-start-change]: how the tool changer is spoken to"),
-    ini::ini_number("EMCIO", "PROTOCOL_VERSION", "", 2.0, {1, 2}, "below 2: iov2 speaks as io"),
-    ini::ini_text("TASK", "IO_ERROR", "told for a fault of the changer with a negative reason, %d"),
+    ini::ini_elsewhere("EMCIO", "CYCLE_TIME", "I/O controllers in separate processes"),
+    ini::ini_text("EMCIO", "EMCIO", "io, or iov2 [-support-start-change]: protocol of the tool changer"),
+    ini::ini_number("EMCIO", "PROTOCOL_VERSION", "", 2.0, {1, 2}, "below 2: iov2 uses the protocol of io"),
+    ini::ini_text("TASK", "IO_ERROR", "message for a fault of the changer with a negative reason, %d"),
     ini::ini_text("EMCIO", "DB_PROGRAM",
                   "program that keeps the tools instead of TOOL_TABLE, with its arguments"),
 });
 
-/// Does not compile for a key that is not declared above.
+/// Does not compile for a key that is not in the table above.
 consteval const ini::IniKey &ini_key(std::string_view section, std::string_view name) {
     return ini::row_of(INI_KEYS, section, name);
 }
 
-/// Keys of joints that only HAL files read, and of [DISPLAY] that screens read: one that is not among them is
-/// a typing error.
+/// Keys of joints that only HAL files read, and keys of [DISPLAY] that screens read; other keys of these
+/// sections are reported as unknown.
 std::vector<ini::IniKey> ini_keys_of_others();
-/// A setting of the motion controller as a key.
+/// The INI key of a setting of the motion controller.
 ini::IniKey ini_key(motion::Parameter parameter);
-/// All that any part of the system declares.
+/// All keys that any part of the system declares.
 std::vector<ini::IniKey> all_ini_keys();
 
 /// The reference page docs/reference/ini.md.

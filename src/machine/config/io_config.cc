@@ -12,14 +12,13 @@ using ini::IniReader, motion::Parameter;
 
 namespace {
 
-/// Whether a key of [DISPLAY] is a limit of an override: MAX_FEED_OVERRIDE, MIN_SPINDLE_1_OVERRIDE and the
-/// like.
+/// True for keys of [DISPLAY] that limit an override: MAX_FEED_OVERRIDE, MIN_SPINDLE_1_OVERRIDE and the like.
 bool isOverrideLimit(std::string_view key) {
-    const bool isLimit = key.starts_with("MIN_") || key.starts_with("MAX_") || key.starts_with("DEFAULT_");
-    return isLimit && key.ends_with("_OVERRIDE");
+    const bool is_limit = key.starts_with("MIN_") || key.starts_with("MAX_") || key.starts_with("DEFAULT_");
+    return is_limit && key.ends_with("_OVERRIDE");
 }
 
-/// Override limits are ratios; one that looks like a percentage is 100 times what its author expects.
+/// Override limits are ratios; a value that looks like a percentage is 100 times the intended one.
 void check_override_limits(IniReader &ini) {
     constexpr double MOST_PLAUSIBLE = 10, PERCENT = 100;
     for (const ini::IniEntry &entry : ini.file().entries()) {
@@ -35,7 +34,7 @@ void check_override_limits(IniReader &ini) {
     }
 }
 
-/// The keys of the messages that MULTIMESSAGE_ID names.
+/// Marks the keys of messages named in MULTIMESSAGE_ID as known.
 void know_messages(IniReader &ini) {
     for (const ini::IniEntry *id : ini.file().find_all("DISPLAY", "MULTIMESSAGE_ID")) {
         for (const char *part : {"NUMBER", "TYPE", "TITLE", "TEXT", "DETAILS", "ICON"}) {
@@ -69,13 +68,13 @@ void read_io(IniReader &ini, MachineConfig &machine) {
     machine.tool_table_file = table.empty() ? "" : ini.file().resolve_path(table);
     machine.tool_database = ini.text(ini_key("EMCIO", "DB_PROGRAM"));
     machine.ini_folder = ini.file().folder();
-    machine.isRandomToolchanger = ini.boolean(ini_key("EMCIO", "RANDOM_TOOLCHANGER"));
-    machine.task.sequencer.isToolChangeWithSpindleOn = machine.task.interpreter.tool_change.isSpindleLeftOn;
+    machine.is_random_toolchanger = ini.boolean(ini_key("EMCIO", "RANDOM_TOOLCHANGER"));
+    machine.task.sequencer.tool_change_with_spindle_on = machine.task.interpreter.tool_change.spindle_left_on;
     const std::vector<std::string> program = split_words(ini.text(ini_key("EMCIO", "EMCIO")));
-    const bool isVersion2 =
+    const bool is_version2 =
         !program.empty() && program.front() == "iov2" && ini.real(ini_key("EMCIO", "PROTOCOL_VERSION")) >= 2;
     machine.task.changer_protocol = {
-        isVersion2, isVersion2 && std::ranges::find(program, "-support-start-change") != program.end()};
+        is_version2, is_version2 && std::ranges::find(program, "-support-start-change") != program.end()};
     machine.task.sequencer.changer_error_text = ini.text(ini_key("TASK", "IO_ERROR"));
     task::ToolChangePlace &place = machine.task.tool_change_place;
     const ini::IniEntry *position = ini.find(ini_key("EMCIO", "TOOL_CHANGE_POSITION"));

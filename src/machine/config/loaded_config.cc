@@ -15,13 +15,13 @@ std::unique_ptr<LoadedConfig> LoadedConfig::load(const std::string &path, diagno
     return sink.hasErrors() ? nullptr : std::move(loaded);
 }
 
-/// One word of [KINS]KINEMATICS says it.
+/// From the first word of [KINS]KINEMATICS.
 messages::Kinematics MachineConfig::kinematics_kind() const {
-    bool isIdentity = isTrivial;
+    bool identity = isTrivial;
     for (const std::string &word : kinematics) {
-        isIdentity &= !to_lower(word).starts_with("kinstype=b");
+        identity &= !to_lower(word).starts_with("kinstype=b");
     }
-    return isIdentity ? messages::Kinematics::IDENTITY : messages::Kinematics::BOTH;
+    return identity ? messages::Kinematics::IDENTITY : messages::Kinematics::BOTH;
 }
 
 }  // namespace mw::machine

@@ -28,7 +28,7 @@ using ini::IniKind;
 using ini::IniReader;
 using motion::Parameter;
 
-/// Corners are cut by this much until a program says G64: LinuxCNC's 0.001 inch, as measured.
+/// Tolerance at corners until a program sets G64: LinuxCNC's 0.001 inch.
 constexpr double START_TOLERANCE_MM = 0.0254;
 constexpr double INF = std::numeric_limits<double>::infinity();
 
@@ -77,7 +77,7 @@ void read_first_place(IniReader &ini, MachineConfig &machine) {
     }
 }
 
-/// HAL files load motmod by this line, where there are extra joints.
+/// Number of extra joints on the loadrt line of motmod.
 int count_extra_joints(IniReader &ini, int num_joints) {
     const IniKey &key = ini_key("EMCMOT", "EMCMOT");
     const ini::IniEntry *entry = ini.find(key);
@@ -119,7 +119,7 @@ void read_kinematics(IniReader &ini, MachineConfig &machine) {
     }
 }
 
-/// One setting of the motion controller from its INI key, where it is given or has no other source.
+/// A setting of the motion controller from its INI key, if the key is set or has no other source.
 void read_parameter(IniReader &ini, const std::string &section, const IniKey &key,
                     motion::SetParameter parameter, MachineConfig &machine) {
     if (key.kind != IniKind::CHOICE && ini.find(key, section) == nullptr) {
@@ -148,19 +148,19 @@ void read_parameters(IniReader &ini, const std::string &section, std::string_vie
     }
 }
 
-/// Files written for LinuxCNC leave sections out; what holds then is said.
+/// INI files for LinuxCNC may omit sections; reports the defaults used instead.
 void miss_section(IniReader &ini, const std::string &section, const std::string &instead) {
     if (!ini.file().hasSection(section)) {
         ini.sink().warning("section [" + section + "] is missing: " + instead, {ini.file().path(), 0, 0});
     }
 }
 
-/// Declarations of the keys that joints and axes both have.
+/// Declarations of keys that joints and axes share.
 struct TravelKeys {
     IniKey low, high, home;
 };
 
-/// Limits that nothing can move between, and a HOME that lies beyond them.
+/// Reports limits without travel between them, and a HOME outside the limits.
 void check_travel(IniReader &ini, const std::string &section, const TravelKeys &keys, const char *what) {
     const double low = ini.real(keys.low, section, -INF);
     const double high = ini.real(keys.high, section, INF);
@@ -177,7 +177,7 @@ void check_travel(IniReader &ini, const std::string &section, const TravelKeys &
     }
 }
 
-/// A joint section beyond the last joint is one with a wrong number, so one that is missing is no choice.
+/// A joint section above the last joint has a wrong number, so a missing section is an error.
 bool hasJointBeyond(const IniReader &ini, int num_joints) {
     for (const std::string &section : ini.file().sections()) {
         const auto number = section.starts_with("JOINT_") ? parse_int(section.substr(6)) : std::nullopt;
@@ -190,14 +190,14 @@ bool hasJointBeyond(const IniReader &ini, int num_joints) {
 
 void miss_joint(IniReader &ini, const std::string &section, int num_joints) {
     if (!ini.file().hasSection(section) && hasJointBeyond(ini, num_joints)) {
-        ini.sink().error("section [" + section + "] is missing, and one stands beyond [KINS]JOINTS",
+        ini.sink().error("section [" + section + "] is missing, and there is one above [KINS]JOINTS",
                          {ini.file().path(), 0, 0}, "joints are numbered from 0");
     } else {
         miss_section(ini, section, "the joint is linear and has no limits, with 1 unit/s and 1 unit/s2");
     }
 }
 
-/// A rate without which the joint cannot move.
+/// A speed or acceleration that the joint needs to move.
 void check_rate(IniReader &ini, const std::string &section, const IniKey &key) {
     if (!ini.file().hasSection(section)) {
         return;
@@ -211,7 +211,7 @@ void check_rate(IniReader &ini, const std::string &section, const IniKey &key) {
     }
 }
 
-/// The table of a joint's screw errors, where the file names one.
+/// The table of a joint's screw errors, if the file names one.
 void read_compensation(IniReader &ini, const std::string &section, int joint, MachineConfig &machine) {
     const std::string name = ini.text(ini_key("JOINT_*", "COMP_FILE"), section);
     const std::int64_t type = ini.integer(ini_key("JOINT_*", "COMP_FILE_TYPE"), section);
@@ -249,7 +249,7 @@ void read_joints(IniReader &ini, MachineConfig &machine) {
     }
 }
 
-/// [TRAJ]MAX_ANGULAR_VELOCITY and MAX_ANGULAR_ACCELERATION hold for each axis of rotation.
+/// [TRAJ]MAX_ANGULAR_VELOCITY and MAX_ANGULAR_ACCELERATION apply to each rotary axis.
 void limit_angular(IniReader &ini, int axis, MachineConfig &machine) {
     const motion::FoldedLimits limits = machine.limits();
     const auto limit = [&](const IniKey &key, Parameter parameter, const trajectory::PerLimited &present) {
@@ -264,7 +264,7 @@ void limit_angular(IniReader &ini, int axis, MachineConfig &machine) {
           limits.path.acceleration);
 }
 
-/// A wrapped axis turns on and on in programs, so a limit ends it sooner or later.
+/// A wrapped axis rotates without limit in programs, so a limit stops it sooner or later.
 void check_wrapped(IniReader &ini, const std::string &section, int axis, const TravelKeys &travel) {
     const IniKey &key = gcode::ini_key("AXIS_*", "WRAPPED_ROTARY");
     if (!ini.boolean(key, section)) {
@@ -276,18 +276,17 @@ void check_wrapped(IniReader &ini, const std::string &section, int axis, const T
         return;
     }
     constexpr double ENDLESS = 1e9;
-    const bool isBounded =
+    const bool bounded =
         ini.real(travel.low, section, -INF) > -ENDLESS || ini.real(travel.high, section, INF) < ENDLESS;
-    if (isBounded) {
-        ini.sink().warning(
-            '[' + section +
-                "]WRAPPED_ROTARY: MIN_LIMIT and MAX_LIMIT hold all the same, and keep the axis from "
-                "turning on; leave them out",
-            ini.find(key, section)->place);
+    if (bounded) {
+        ini.sink().warning('[' + section +
+                               "]WRAPPED_ROTARY: MIN_LIMIT and MAX_LIMIT still apply, and keep the axis from "
+                               "turning on; leave them out",
+                           ini.find(key, section)->place);
     }
 }
 
-/// Bits of unlock_joints_mask= of motmod, as HAL files load it.
+/// Bits of unlock_joints_mask= of motmod, from the HAL files' loadrt line.
 std::uint32_t unlock_mask(const IniReader &ini) {
     const ini::IniEntry *entry = ini.find(ini_key("EMCMOT", "EMCMOT"));
     for (const std::string &word : split_words(entry != nullptr ? entry->value : std::string())) {
@@ -299,7 +298,7 @@ std::uint32_t unlock_mask(const IniReader &ini) {
     return 0;
 }
 
-/// The joint whose lock a program opens for G0 of the axis, and what does not go with it.
+/// The joint that a program unlocks for G0 of the axis, and settings that conflict with it.
 void read_indexer(IniReader &ini, const std::string &section, int axis, MachineConfig &machine) {
     const IniKey &key = gcode::ini_key("AXIS_*", "LOCKING_INDEXER_JOINT");
     const int joint = static_cast<int>(ini.integer(key, section));
@@ -312,8 +311,8 @@ void read_indexer(IniReader &ini, const std::string &section, int axis, MachineC
         ini.sink().warning(name + " has no effect: only A, B and C have indexers", entry->place);
         return;
     }
-    const bool isOther = machine.isTrivial && !machine.axis_map.moves(joint, axis);
-    if (joint >= machine.num_joints || isOther) {
+    const bool other = machine.isTrivial && !machine.axis_map.moves(joint, axis);
+    if (joint >= machine.num_joints || other) {
         ini.sink().error(name + ": that joint does not move the axis", entry->place,
                          "the joint of the axis, by the letters of coordinates=");
         return;
@@ -356,7 +355,7 @@ void read_axes(IniReader &ini, MachineConfig &machine) {
     }
 }
 
-/// A number says how many units a millimetre has.
+/// A number is the number of units per millimetre.
 bool read_isMetric(IniReader &ini) {
     const IniKey &key = ini_key("TRAJ", "LINEAR_UNITS");
     const ini::IniEntry *entry = ini.find(key);
@@ -373,7 +372,7 @@ bool read_isMetric(IniReader &ini) {
 }
 
 void read_trajectory(IniReader &ini, MachineConfig &machine) {
-    machine.isMetric = read_isMetric(ini);
+    machine.metric = read_isMetric(ini);
     ini.choice(ini_key("TRAJ", "ANGULAR_UNITS"));
     read_parameters(ini, "TRAJ", "TRAJ", 0, machine);
     read_parameters(ini, "DISPLAY", "DISPLAY", 0, machine);
@@ -390,7 +389,7 @@ void read_trajectory(IniReader &ini, MachineConfig &machine) {
 void read_periods(IniReader &ini, MachineConfig &machine) {
     machine.servo_period_ns = ini.integer(ini_key("EMCMOT", "SERVO_PERIOD"));
     const double cycle_s = ini.real(ini_key("TASK", "CYCLE_TIME"));
-    // A slow task cycle must not look like one that stands still.
+    // A slow task cycle must not be taken for a hang.
     machine.task.watchdog_s = std::max(0.5, 10.0 * cycle_s);
     machine.task_period_ns = to_ns(cycle_s);
     machine.task.mdi_queued_commands = static_cast<int>(ini.integer(ini_key("TASK", "MDI_QUEUED_COMMANDS")));
@@ -418,7 +417,7 @@ void read_hal(IniReader &ini, MachineConfig &machine) {
         machine.applications.push_back(entry->value);
     }
     machine.applications_delay_s = ini.real(ini_key("APPLICATIONS", "DELAY"));
-    machine.hasHalui = !ini.text(ini_key("HAL", "HALUI")).empty();
+    machine.has_halui = !ini.text(ini_key("HAL", "HALUI")).empty();
 }
 
 void read_interpreter(IniReader &ini, MachineConfig &machine) {
@@ -450,7 +449,7 @@ void read_interpreter(IniReader &ini, MachineConfig &machine) {
         if (parameter.parameter == fastest && std::isfinite(parameter.value)) {
             constexpr double MM_PER_INCH = 25.4;
             machine.task.interpreter.max_velocity_mm_s =
-                parameter.value * (machine.isMetric ? 1.0 : MM_PER_INCH);
+                parameter.value * (machine.metric ? 1.0 : MM_PER_INCH);
         }
     }
 }
@@ -481,13 +480,13 @@ MachineConfig read_machine_config(ini::IniReader &reader) {
     read_panel(reader, machine);
     constexpr double MM_PER_INCH = 25.4;
     machine.parameters.push_back(
-        {static_cast<std::uint16_t>(Parameter::TRAJ_MM_PER_UNIT), 0, machine.isMetric ? 1.0 : MM_PER_INCH});
-    machine.task.machine_units = machine.isMetric ? gcode::LengthUnits::MM : gcode::LengthUnits::INCH;
+        {static_cast<std::uint16_t>(Parameter::TRAJ_MM_PER_UNIT), 0, machine.metric ? 1.0 : MM_PER_INCH});
+    machine.task.machine_units = machine.metric ? gcode::LengthUnits::MM : gcode::LengthUnits::INCH;
     machine.task.axis_mask = machine.axis_mask;
     machine.task.num_joints = machine.num_joints;
     machine.task.num_spindles = machine.num_spindles;
     messages::SettingsStatus &shown = machine.task.shown;
-    shown.linear_units = machine.isMetric ? 1.0 : 1.0 / MM_PER_INCH;
+    shown.linear_units = machine.metric ? 1.0 : 1.0 / MM_PER_INCH;
     shown.cycle_time_s = static_cast<double>(machine.servo_period_ns) / 1e9;
     shown.debug = static_cast<std::uint32_t>(reader.integer(ini::row_of(gcode::INI_KEYS, "EMC", "DEBUG")));
     shown.kinematics = machine.kinematics_kind();

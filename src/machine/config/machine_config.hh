@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What an INI file says of a machine, read and checked once.
+// The settings of a machine from an INI file, read and checked once.
 #pragma once
 
 #include <cstdint>
@@ -18,11 +18,11 @@ namespace mw::machine {
 /// A HAL file or command to run, in order.
 struct HalStep {
     enum class Kind : std::uint8_t { FILE, COMMAND } kind = Kind::FILE;
-    std::string text;  ///< the file name as written (it may start with LIB:), or the command
+    std::string text;  ///< the file name (it may start with LIB:), or the command
     SourcePlace place;
 };
 
-/// What pins for an operator need to know.
+/// Settings for the pins of an operator panel.
 struct PanelConfig {
     double max_feed_override = 1;
     double min_spindle_override = 0, max_spindle_override = 1;
@@ -32,49 +32,48 @@ struct PanelConfig {
 
 struct MachineConfig {
     std::string name;
-    std::string coordinates;  ///< upper case letters in the order given, "XYZ", "XYYZ"
+    std::string coordinates;  ///< upper case letters in the order of the file, "XYZ", "XYYZ"
     unsigned axis_mask = 0;
     int num_joints = 0;
     int num_spindles = 1;
-    bool isMetric = true;
+    bool metric = true;
     std::vector<std::string> kinematics;  ///< module and its arguments
     std::int64_t servo_period_ns = 1000000;
     std::int64_t task_period_ns = 1000000;
-    HalStep homing_module;   ///< of a user, with its parameters; empty: ours
+    HalStep homing_module;   ///< a user's module with its parameters; empty: ours
     HalStep planner_module;  ///< the same
     std::vector<HalStep> hal_steps;
-    std::string two_pass;  ///< [HAL]TWOPASS: not empty when files are gone through twice
-    bool hasHalui = false;
+    std::string two_pass;  ///< [HAL]TWOPASS: not empty when files are read twice
+    bool has_halui = false;
     PanelConfig panel;
-    std::string shutdown_file;              ///< a HAL file for the end, not run here
-    std::vector<std::string> applications;  ///< programs beside the display, not started here
+    std::string shutdown_file;              ///< a HAL file for the shutdown, not run here
+    std::vector<std::string> applications;  ///< additional programs, not started here
     double applications_delay_s = 0;
-    std::string display;  ///< the program that the INI names, not started here
+    std::string display;  ///< the display program, not started here
     std::string tool_table_file;
-    std::string
-        tool_database;  ///< the program that keeps the tools, with its arguments; empty: the file does
+    std::string tool_database;  ///< the tool database program with its arguments; empty: the tool table file
     std::string ini_folder;
-    std::string journal_file;  ///< empty: programs are not journalled
-    bool isRandomToolchanger = false;
+    std::string journal_file;  ///< empty: no journal
+    bool is_random_toolchanger = false;
     task::Settings task;
-    /// Every setting of the motion controller that the INI gives or that has a documented default.
+    /// All settings of the motion controller that the INI file sets or that have a documented default.
     std::vector<motion::SetParameter> parameters;
-    /// Of each joint that has one ([JOINT_n]COMP_FILE).
+    /// For each joint that has one ([JOINT_n]COMP_FILE).
     std::vector<std::vector<motion::LoadCompensation>> screw_tables;
-    /// The axis of each joint by the letters of the file: what limits a joint limits it where `isTrivial`.
+    /// The axis of each joint by the letters of the file: limits of a joint apply to its axis if `trivial`.
     motion::AxisMap axis_map;
     bool isTrivial = false;  ///< joints are axes
     /// The joint that moves each axis first (trivial kinematics), -1 for none.
     std::array<int, MAX_AXES> joint_of_axis{};
 
-    /// Once homed, for checks without moving.
+    /// Limits of the homed machine, for checks without motion.
     motion::FoldedLimits limits() const;
-    /// As the module says of itself: trivkins can be told.
+    /// As reported by the module: trivkins is known.
     messages::Kinematics kinematics_kind() const;
 };
 
-/// Reads all sections that the system knows. Problems go to the reader's sink; the result is usable only when
-/// the sink has no errors afterwards. Unknown keys are not reported here: HAL files may still refer to them.
+/// Reads all known sections. Problems go to the reader's sink; the result is usable only when the sink has no
+/// errors afterwards. Unknown keys are not reported here: HAL files may still refer to them.
 MachineConfig read_machine_config(ini::IniReader &reader);
 
 }  // namespace mw::machine

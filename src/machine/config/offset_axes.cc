@@ -19,8 +19,8 @@ kinematics::LinearJoints linear_joints(const std::vector<std::string> &kinematic
 void check_offset(ini::IniReader &ini, const std::string &section, int axis, MachineConfig &machine) {
     using motion::Parameter;
     const ini::IniKey ratio = ini_key(Parameter::AXIS_OFFSET_RATIO);
-    const bool isLinear = (machine.axis_map.linear.axes >> axis & 1U) != 0;
-    if (machine.isTrivial || isLinear || !(ini.real(ratio, section) > 0)) {
+    const bool linear = (machine.axis_map.linear.axes >> axis & 1U) != 0;
+    if (machine.isTrivial || linear || !(ini.real(ratio, section) > 0)) {
         return;
     }
     ini.sink().warning('[' + section +

@@ -7,19 +7,19 @@
 namespace mw::halui {
 
 std::optional<double> Dial::step(const DialInputs &now, double value, const DialRange &range) {
-    // What wheels have turned while they were not enabled does not count.
-    const double turned = isKnown_ ? static_cast<double>(now.counts) - counts_ : 0.0;
-    isKnown_ = true;
+    // Counts of a wheel that is not enabled are ignored.
+    const double turned = known_ ? static_cast<double>(now.counts) - counts_ : 0.0;
+    known_ = true;
     counts_ = now.counts;
     const double base = asked_.value_or(value);
     std::optional<double> wanted;
-    if (turned != 0 && now.isCountEnabled) {
-        wanted = now.isDirect ? now.counts * now.scale : base + turned * now.scale;
+    if (turned != 0 && now.count_enabled) {
+        wanted = now.direct ? now.counts * now.scale : base + turned * now.scale;
     }
-    if (increase_.step(now.isIncrease)) {
+    if (increase_.step(now.is_increase)) {
         wanted = wanted.value_or(base) + now.scale;
     }
-    if (decrease_.step(now.isDecrease)) {
+    if (decrease_.step(now.is_decrease)) {
         wanted = wanted.value_or(base) - now.scale;
     }
     if (reset_.step(now.isReset)) {

@@ -15,14 +15,14 @@ struct DialRange {
 
 class Dial {
   public:
-    /// Once a cycle: the value that is asked for now, within the range; nothing when nobody has touched it.
-    /// `value` is in force.
+    /// Once a cycle: the new requested value, within the range; nothing without input. `value` is the current
+    /// value.
     std::optional<double> step(const DialInputs &now, double value, const DialRange &range);
-    /// What was asked for is in force, or was refused: the next change begins at what is shown.
+    /// The request has been applied or rejected: the next change starts at the current value.
     void settle() { asked_.reset(); }
 
   private:
-    bool isKnown_ = false;
+    bool known_ = false;
     std::int32_t counts_ = 0;
     Edge increase_, decrease_, reset_;
     std::optional<double> asked_;

@@ -4,19 +4,19 @@
 
 namespace mw::halui {
 
-/// TRUE at the start is not an edge that somebody has made.
+/// TRUE at the start is not an edge.
 class Edge {
   public:
-    /// Whether it has risen since the last call.
-    bool step(bool isOn) {
-        const bool isRisen = isKnown_ && isOn && !wasOn_;
-        wasOn_ = isOn;
-        isKnown_ = true;
-        return isRisen;
+    /// True if it has risen since the last call.
+    bool step(bool on) {
+        const bool risen = known_ && on && !was_on_;
+        was_on_ = on;
+        known_ = true;
+        return risen;
     }
 
   private:
-    bool wasOn_ = false, isKnown_ = false;
+    bool was_on_ = false, known_ = false;
 };
 
 }  // namespace mw::halui

@@ -9,8 +9,8 @@ namespace {
 
 bool isStop(const messages::Command &command) {
     const auto *state = std::get_if<messages::SetState>(&command);
-    const bool isOff = state != nullptr && state->state != messages::State::ON;
-    return isOff || std::holds_alternative<messages::AbortAll>(command);
+    const bool off = state != nullptr && state->state != messages::State::ON;
+    return off || std::holds_alternative<messages::AbortAll>(command);
 }
 
 bool isRenewal(const messages::Command &command) {
@@ -114,7 +114,7 @@ Result<> Halui::join(mailbox::Segment &mailbox) {
 client::Serial Halui::ask(const messages::Command &command) {
     const auto posted = client_->post(command);
     if (!posted.has_value()) {
-        isRefused_ = true;
+        rejected_ = true;
         ++refusals_;
         return 0;
     }
@@ -127,12 +127,12 @@ client::Serial Halui::ask(const messages::Command &command) {
 void Halui::note_outcomes() {
     std::erase_if(pending_, [this](client::Serial serial) {
         const messages::Progress progress = client_->outcome(serial).progress;
-        const bool isOver = progress != messages::Progress::STARTED;
-        if (isOver) {
-            isRefused_ = progress != messages::Progress::DONE;
-            refusals_ += isRefused_ ? 1 : 0;
+        const bool ended = progress != messages::Progress::STARTED;
+        if (ended) {
+            rejected_ = progress != messages::Progress::DONE;
+            refusals_ += rejected_ ? 1 : 0;
         }
-        return isOver;
+        return ended;
     });
 }
 
@@ -155,17 +155,17 @@ void Halui::step() {
 
 void Halui::step_buttons() {
     for (HaluiButton &button : buttons_) {
-        const bool isOn = button.pin;
-        const bool isPressed = isOn && !button.wasOn;
-        if (!isPressed) {
-            button.wasOn = isOn;
+        const bool on = button.pin;
+        const bool pressed = on && !button.wasOn;
+        if (!pressed) {
+            button.wasOn = on;
             continue;
         }
         const messages::Command command = button.make(button.number == SELECTED ? joint_ : button.number);
         if (isStop(command)) {
             mdi_.drop();
         }
-        // One that task has no room for is tried again in the next cycle.
+        // A command that task has no space for is tried again in the next cycle.
         const auto posted = client_->post(command);
         button.wasOn = posted.has_value();
         if (posted.has_value()) {
@@ -179,8 +179,8 @@ void Halui::step_selection(std::vector<Set> &sets, int &selected) {
     for (std::size_t i = 0; i < sets.size(); ++i) {
         JogInputs in;
         sets[i].pins.read(in);
-        const bool isThere = sets.size() != MAX_AXES || hasAxis(static_cast<int>(i));
-        if (sets[i].select.step(in.isSelect) && isThere) {
+        const bool present = sets.size() != MAX_AXES || hasAxis(static_cast<int>(i));
+        if (sets[i].select.step(in.is_select) && present) {
             selected = static_cast<int>(i);
         }
     }
@@ -243,37 +243,37 @@ void Halui::step_spindle(int number) {
     SpindleInputs in;
     one.speed.read(in);
     constexpr double SLOWEST_RPM = 1, STEP_RPM = 100;
-    constexpr std::size_t S = 2;  // in the settings of the modal codes
+    constexpr std::size_t S = 2;  // index in the settings of the modal codes
     const double programmed_rpm = std::max(SLOWEST_RPM, std::abs(client_->status().codes.settings[S]));
     const double turning_rpm = now.isOn ? std::abs(now.speed_cmd_rpm) : 0;
-    const auto turn = [this, number](double rpm, bool isReverse) {
-        ask(messages::SpindleOn{number, isReverse ? -rpm : rpm});
+    const auto turn = [this, number](double rpm, bool reverse) {
+        ask(messages::SpindleOn{number, reverse ? -rpm : rpm});
     };
-    const bool isStart = one.edges[0].step(in.isStart), isForward = one.edges[1].step(in.isForward);
-    if (isStart || isForward) {
+    const bool is_start = one.edges[0].step(in.is_start), forward = one.edges[1].step(in.isForward);
+    if (is_start || forward) {
         turn(programmed_rpm, false);
     }
     if (one.edges[2].step(in.isReverse)) {
         turn(programmed_rpm, true);
     }
-    const bool isFaster = one.edges[3].step(in.isIncrease), isSlower = one.edges[4].step(in.isDecrease);
-    if ((isFaster || isSlower) && turning_rpm == 0) {
-        isRefused_ = true;  // it stands: a step of its speed does not start it
+    const bool faster = one.edges[3].step(in.is_increase), slower = one.edges[4].step(in.is_decrease);
+    if ((faster || slower) && turning_rpm == 0) {
+        rejected_ = true;  // a stopped spindle: changing its speed does not start it
         ++refusals_;
-    } else if (isFaster != isSlower) {
-        const double rpm = turning_rpm + (isFaster ? STEP_RPM : -STEP_RPM);
+    } else if (faster != slower) {
+        const double rpm = turning_rpm + (faster ? STEP_RPM : -STEP_RPM);
         turn(std::max(SLOWEST_RPM, rpm), now.direction < 0);
     }
 }
 
 void Halui::step_mdi() {
-    std::vector<bool> areOn;
+    std::vector<bool> on;
     for (const auto &button : mdi_buttons_) {
         MdiInput in;
         button.read(in);
-        areOn.push_back(in.isOn);
+        on.push_back(in.isOn);
     }
-    mdi_.step(areOn, *client_, [this](const messages::Command &command) { return ask(command); });
+    mdi_.step(on, *client_, [this](const messages::Command &command) { return ask(command); });
 }
 
 void Halui::show() {
@@ -282,7 +282,7 @@ void Halui::show() {
     if (tools.has_value() && tools->has_value()) {
         tool_diameter_ = (*tools)->tools.empty() ? 0 : (*tools)->tools[0].diameter;
     }
-    lamps_.write(Shown{status, joint_, axis_, tool_diameter_, settings_.units_per_mm, isRefused_, refusals_});
+    lamps_.write(Shown{status, joint_, axis_, tool_diameter_, settings_.units_per_mm, rejected_, refusals_});
     for (std::size_t i = 0; i < joint_lamps_.size(); ++i) {
         joint_lamps_[i].write(
             JointShown{{status.joints[i], status.settings.joints[i]}, static_cast<int>(i) == joint_});

@@ -18,7 +18,7 @@
 
 namespace mw::halui {
 
-/// What the INI file says about them.
+/// Settings from the INI file.
 struct HaluiSettings {
     int num_joints = 3;
     int num_spindles = 1;
@@ -33,13 +33,13 @@ struct HaluiSettings {
 /// A client of the machine. Buttons act on their rising edge. Not realtime; one thread.
 class Halui {
   public:
-    /// Makes the component "halui" and its pins.
+    /// Creates the component "halui" and its pins.
     Result<> create(hal::Hal &hal, const HaluiSettings &settings);
     void destroy();
 
-    /// Becomes a client of the machine: a panel, which another's right to operate does not lock out.
+    /// Joins as a panel, which works independently of the right to operate of other clients.
     Result<> join(mailbox::Segment &mailbox);
-    /// Turns edges into commands, and states into pins. Once a task cycle, after task's own step.
+    /// Converts edges to commands and states to pins. Once a task cycle, after task's step.
     void step();
 
   private:
@@ -66,7 +66,7 @@ class Halui {
     hal::Hal *hal_ = nullptr;
     std::optional<client::Client> client_;
     int comp_id_ = 0;
-    int joint_ = 0, axis_ = 0;  ///< selected
+    int joint_ = 0, axis_ = 0;  ///< selected joint and axis
     std::vector<HaluiButton> buttons_;
     hal::UserPinSet<pins::LAMPS> lamps_;
     hal::UserPinSet<pins::JOINT_JOG_SETTINGS> joint_jog_settings_;
@@ -85,8 +85,8 @@ class Halui {
     std::vector<hal::UserPinSet<pins::MDI_BUTTONS>> mdi_buttons_;
     MdiPins mdi_;
     double tool_diameter_ = 0;
-    std::vector<client::Serial> pending_;  ///< whose end is not known yet
-    bool isRefused_ = false;
+    std::vector<client::Serial> pending_;  ///< commands whose outcome is pending
+    bool rejected_ = false;
     std::uint32_t refusals_ = 0;
 };
 

@@ -19,36 +19,36 @@ bool isOpposite(double a, double b) {
 }  // namespace
 
 double JogPins::part_of(const JogInputs &now, const JogSettings &settings) {
-    if (now.isPlus != now.isMinus) {
-        return now.isPlus ? 1.0 : -1.0;
+    if (now.is_plus != now.is_minus) {
+        return now.is_plus ? 1.0 : -1.0;
     }
-    const bool isBeyond =
-        !now.isPlus && std::isfinite(now.analog) && std::abs(now.analog) > settings.deadband;
-    return isBeyond ? now.analog : 0.0;
+    const bool exceeded =
+        !now.is_plus && std::isfinite(now.analog) && std::abs(now.analog) > settings.deadband;
+    return exceeded ? now.analog : 0.0;
 }
 
 std::vector<messages::Command> JogPins::step(const JogInputs &now, const JogSettings &settings,
                                              const Target &target, std::int64_t now_ns) {
     std::vector<messages::Command> asked;
     const double part = part_of(now, settings);
-    if (!std::exchange(isKnown_, true)) {
-        isWaiting_ = true;  // what is on at the start was pressed by nobody
+    if (!std::exchange(known_, true)) {
+        waiting_ = true;  // a pin that is TRUE at the start has not been pressed
     }
     if (target.index != target_.index && part_ != 0) {
         asked.emplace_back(messages::JogStop{target_.isJoint, target_.index});
         part_ = 0;
-        isWaiting_ = isRefused_;
+        waiting_ = rejected_;
     }
     target_ = target;
-    isWaiting_ = isWaiting_ && part != 0;
-    if (!isWaiting_) {
+    waiting_ = waiting_ && part != 0;
+    if (!waiting_) {
         step_held(part, legacy::per_second(std::abs(settings.speed_per_min)), now_ns, asked);
     }
-    const bool isForward = plus_.step(now.isIncrementPlus), isBack = minus_.step(now.isIncrementMinus);
-    if (isForward != isBack) {
+    const bool forward = plus_.step(now.is_increment_plus), returned = minus_.step(now.is_increment_minus);
+    if (forward != returned) {
         asked.emplace_back(messages::JogIncrement{target.isJoint, target.index,
                                                   legacy::per_second(std::abs(settings.speed_per_min)),
-                                                  isForward ? now.increment : -now.increment});
+                                                  forward ? now.increment : -now.increment});
     }
     return asked;
 }
@@ -62,15 +62,15 @@ void JogPins::step_held(double part, double speed, std::int64_t now_ns,
     if (part == 0) {
         return;
     }
-    const bool isNew = part_ == 0;
-    if (!isNew && part == part_ && now_ns - renewed_ns_ < RENEWAL_NS) {
+    const bool is_new = part_ == 0;
+    if (!is_new && part == part_ && now_ns - renewed_ns_ < RENEWAL_NS) {
         return;
     }
     part_ = part;
-    isRefused_ = isRefused_ && !isNew;
+    rejected_ = rejected_ && !is_new;
     renewed_ns_ = now_ns;
     asked.emplace_back(
-        messages::JogContinuous{target_.isJoint, target_.index, part * speed, LEASE_MS, !isNew});
+        messages::JogContinuous{target_.isJoint, target_.index, part * speed, LEASE_MS, !is_new});
 }
 
 }  // namespace mw::halui

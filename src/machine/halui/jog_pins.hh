@@ -11,33 +11,33 @@
 
 namespace mw::halui {
 
-/// A jog goes on while its pin says so, by a lease that is renewed: what has been stopped by anything else
-/// does not begin again before the pin has been let go.
+/// A jog continues while its pin is TRUE, by renewing its lease. A jog that was stopped otherwise starts
+/// again only after the pin has been released.
 class JogPins {
   public:
     struct Target {
         bool isJoint = true;
         int index = 0;
     };
-    /// Once a cycle; what is to be asked for. Another target ends the jog of the one before, and begins its
-    /// own while the pins are true, unless something else has ended the jog before.
+    /// Once a cycle; returns the commands. Selecting another target ends the previous jog, and starts its own
+    /// while the pins are TRUE, unless the previous jog was stopped otherwise.
     std::vector<messages::Command> step(const JogInputs &now, const JogSettings &settings,
                                         const Target &target, std::int64_t now_ns);
 
-    /// Task has refused the jog or its renewal.
-    void note_refusal() { isRefused_ = true; }
+    /// Task has rejected the jog or its renewal.
+    void note_refusal() { rejected_ = true; }
 
   private:
-    /// Part of the jog speed, with its sign, that the pins ask for; 0: none.
+    /// Fraction of the jog speed, with sign, from the pins; 0: none.
     static double part_of(const JogInputs &now, const JogSettings &settings);
-    /// @param speed of the whole jog speed [units/s]
+    /// @param speed full jog speed [units/s]
     void step_held(double part, double speed, std::int64_t now_ns, std::vector<messages::Command> &asked);
 
     Target target_;
-    double part_ = 0;         ///< of the jog that was asked for
-    bool isWaiting_ = false;  ///< until all pins are let go
-    bool isRefused_ = false;  ///< the jog that was asked for
-    bool isKnown_ = false;
+    double part_ = 0;        ///< fraction of the jog speed of the current jog
+    bool waiting_ = false;   ///< until all pins are released
+    bool rejected_ = false;  ///< the jog was rejected
+    bool known_ = false;
     std::int64_t renewed_ns_ = 0;
     Edge plus_, minus_;
 };

@@ -8,22 +8,22 @@ namespace mw::halui {
 
 using messages::Mode, messages::Progress;
 
-void MdiPins::step(const std::vector<bool> &areOn, client::Client &client, const Ask &ask) {
+void MdiPins::step(const std::vector<bool> &on, client::Client &client, const Ask &ask) {
     for (std::size_t i = 0; i < buttons_.size(); ++i) {
-        if (buttons_[i].step(areOn[i])) {
+        if (buttons_[i].step(on[i])) {
             waiting_.push_back(i);
         }
     }
-    if (!isActive_ && !waiting_.empty()) {
-        isActive_ = true;
+    if (!active_ && !waiting_.empty()) {
+        active_ = true;
         before_ = client.status().task.mode;
         mode_order_ = before_ == Mode::MDI ? 0 : ask(messages::SetMode{Mode::MDI});
-        const bool isPosted = before_ == Mode::MDI || mode_order_ != 0;
-        if (!isPosted) {
+        const bool posted = before_ == Mode::MDI || mode_order_ != 0;
+        if (!posted) {
             waiting_.clear();
         }
     }
-    if (!isActive_ || !isModeSet(client)) {
+    if (!active_ || !isModeSet(client)) {
         return;
     }
     for (; !waiting_.empty(); waiting_.pop_front()) {
@@ -33,14 +33,14 @@ void MdiPins::step(const std::vector<bool> &areOn, client::Client &client, const
         }
     }
     if (areOver(client)) {
-        isActive_ = false;
+        active_ = false;
         if (before_ != Mode::MDI && client.status().task.mode == Mode::MDI) {
             ask(messages::SetMode{before_});
         }
     }
 }
 
-/// When the mode was refused nothing is run.
+/// If the mode was rejected, no line is run.
 bool MdiPins::isModeSet(client::Client &client) {
     if (mode_order_ == 0) {
         return true;

@@ -14,15 +14,15 @@ namespace mw::halui {
 
 class MdiPins {
   public:
-    /// Posts a command; 0 when it could not be.
+    /// Posts a command; returns 0 when it could not be posted.
     using Ask = std::function<client::Serial(const messages::Command &)>;
 
     explicit MdiPins(std::vector<std::string> lines = {})
         : lines_(std::move(lines)), buttons_(lines_.size()) {}
     std::size_t count() const { return lines_.size(); }
-    /// Once a cycle, for each line whether its pin is on.
-    void step(const std::vector<bool> &areOn, client::Client &client, const Ask &ask);
-    /// An abort: what waits for the mode is not run any more.
+    /// Once a cycle, with the state of each line's pin.
+    void step(const std::vector<bool> &on, client::Client &client, const Ask &ask);
+    /// After an abort: lines that wait for the mode are not run.
     void drop() { waiting_.clear(); }
 
   private:
@@ -34,7 +34,7 @@ class MdiPins {
     std::deque<std::size_t> waiting_;      ///< pressed, not posted yet
     std::vector<client::Serial> running_;  ///< posted
     client::Serial mode_order_ = 0;
-    bool isActive_ = false;
+    bool active_ = false;
     messages::Mode before_ = messages::Mode::MANUAL;
 };
 

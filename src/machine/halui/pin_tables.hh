@@ -9,47 +9,47 @@
 
 namespace mw::halui {
 
-/// What the operator has chosen, and what does not stand in the status.
+/// The operator's selection, and values that are not in the status.
 struct Shown {
     const messages::MachineStatus &status;
     int joint = 0, axis = 0;  ///< selected
     double tool_diameter = 0;
     double units_per_mm = 1;
-    bool isRefused = false;  ///< the last command that has ended was not carried out
+    bool isRefused = false;  ///< the last command did not succeed
     std::uint32_t refusals = 0;
 };
 struct JointShown {
     legacy::Joint joint;
-    bool isSelected = false;
+    bool selected = false;
 };
 struct AxisShown {
     double commanded = 0, feedback = 0, relative = 0;
-    bool isSelected = false;
+    bool selected = false;
 };
 
 /// The inputs that jog a joint or an axis.
 struct JogInputs {
-    bool isSelect = false;
-    bool isPlus = false, isMinus = false;
-    bool isIncrementPlus = false, isIncrementMinus = false;
+    bool is_select = false;
+    bool is_plus = false, is_minus = false;
+    bool is_increment_plus = false, is_increment_minus = false;
     double increment = 0;
     double analog = 0;
 };
-/// Of all joints, or all axes.
+/// For all joints, or all axes.
 struct JogSettings {
     double speed_per_min = 0;
     double deadband = 0;
 };
 /// A wheel and its buttons.
 struct DialInputs {
-    bool isCountEnabled = true, isDirect = false;
-    bool isIncrease = false, isDecrease = false, isReset = false;
+    bool count_enabled = true, direct = false;
+    bool is_increase = false, is_decrease = false, isReset = false;
     std::int32_t counts = 0;
     double scale = 0;
 };
 struct SpindleInputs {
-    bool isStart = false, isForward = false, isReverse = false;
-    bool isIncrease = false, isDecrease = false;
+    bool is_start = false, isForward = false, isReverse = false;
+    bool is_increase = false, is_decrease = false;
 };
 struct MdiInput {
     bool isOn = false;
@@ -62,7 +62,7 @@ namespace mw::halui::pins {
 using sdk::in, sdk::out, sdk::pin_table;
 using namespace messages;
 
-/// An input that gives a command on its rising edge: `command(number)` makes it.
+/// An input that posts a command on its rising edge: `command(number)` makes it.
 template <class Make>
 constexpr auto button(const char *name, const char *doc, Make command) {
     return sdk::PinRow<bool, HAL_IN, Make, sdk::Unused>{name, "", doc, command, {}};
@@ -93,7 +93,7 @@ inline constexpr auto BUTTONS = pin_table("halui",
     button("mode.joint", "jogs move joints", [](int) { return SetTeleop{false}; }),
     button("mode.teleop", "jogs move axes", [](int) { return SetTeleop{true}; }),
     button("home-all", "homes all joints in their sequence", [](int) { return HomeJoint{-1}; }),
-    button("abort", "stops whatever moves, along its path, and spindles and coolant", [](int) { return AbortAll{}; }),
+    button("abort", "stops all motion along its path, spindles and coolant", [](int) { return AbortAll{}; }),
     button("program.run", "runs the open program", [](int) { return RunProgram{}; }),
     button("program.step", "runs one block of it", [](int) { return StepProgram{}; }),
     button("program.pause", "holds it", [](int) { return PauseProgram{}; }),
@@ -101,8 +101,8 @@ inline constexpr auto BUTTONS = pin_table("halui",
     button("program.stop", "as abort", [](int) { return AbortAll{}; }),
     button("program.optional-stop.on", "M1 stops", [](int) { return SetOptionalStop{true}; }),
     button("program.optional-stop.off", "M1 does not", [](int) { return SetOptionalStop{false}; }),
-    button("program.block-delete.on", "lines that begin with / are left out", [](int) { return SetBlockDelete{true}; }),
-    button("program.block-delete.off", "they are not", [](int) { return SetBlockDelete{false}; }),
+    button("program.block-delete.on", "skips lines that begin with /", [](int) { return SetBlockDelete{true}; }),
+    button("program.block-delete.off", "runs lines that begin with /", [](int) { return SetBlockDelete{false}; }),
     button("flood.on", "M8", [](int) { return FloodOn{}; }),
     button("flood.off", "flood off", [](int) { return FloodOff{}; }),
     button("mist.on", "M7", [](int) { return MistOn{}; }),
@@ -112,11 +112,11 @@ inline constexpr auto BUTTONS = pin_table("halui",
 
 inline constexpr auto JOINT_BUTTONS = pin_table("halui.joint.#",
     button("home", "homes the joint", [](int joint) { return HomeJoint{joint}; }),
-    button("unhome", "forgets its homing", [](int joint) { return UnhomeJoint{joint}; }));
+    button("unhome", "marks the joint as not homed", [](int joint) { return UnhomeJoint{joint}; }));
 
 inline constexpr auto SELECTED_BUTTONS = pin_table("halui.joint.selected",
     button("home", "homes the selected joint", [](int joint) { return HomeJoint{joint}; }),
-    button("unhome", "forgets its homing", [](int joint) { return UnhomeJoint{joint}; }));
+    button("unhome", "marks the selected joint as not homed", [](int joint) { return UnhomeJoint{joint}; }));
 
 inline constexpr auto SPINDLE_BUTTONS = pin_table("halui.spindle.#",
     button("stop", "stops the spindle", [](int spindle) { return SpindleOff{spindle}; }),
@@ -124,90 +124,90 @@ inline constexpr auto SPINDLE_BUTTONS = pin_table("halui.spindle.#",
     button("brake-off", "releases its brake", [](int spindle) { return ReleaseBrake{spindle}; }));
 
 inline constexpr auto SPINDLE_SPEED = pin_table("halui.spindle.#",
-    in<bool>("start", "", "starts the spindle clockwise, with the speed that S has set last, else 1 rev/min", [](SpindleInputs &p, bool v) { p.isStart = v; }),
+    in<bool>("start", "", "starts the spindle clockwise, at the last speed set by S, else 1 rev/min", [](SpindleInputs &p, bool v) { p.is_start = v; }),
     in<bool>("forward", "", "as start", [](SpindleInputs &p, bool v) { p.isForward = v; }),
     in<bool>("reverse", "", "starts it counterclockwise", [](SpindleInputs &p, bool v) { p.isReverse = v; }),
-    in<bool>("increase", "", "turns a spindle that turns faster by 100 rev/min", [](SpindleInputs &p, bool v) { p.isIncrease = v; }),
-    in<bool>("decrease", "", "turns it slower by 100 rev/min, not below 1", [](SpindleInputs &p, bool v) { p.isDecrease = v; }));
+    in<bool>("increase", "", "increases the speed of a running spindle by 100 rev/min", [](SpindleInputs &p, bool v) { p.is_increase = v; }),
+    in<bool>("decrease", "", "decreases the speed by 100 rev/min, not below 1", [](SpindleInputs &p, bool v) { p.is_decrease = v; }));
 
 inline constexpr auto JOINT_JOGS = pin_table("halui.joint.#",
-    in<bool>("select", "", "selects the joint", [](JogInputs &p, bool v) { p.isSelect = v; }),
-    in<bool>("plus", "", "jogs the joint in the positive direction while it is TRUE", [](JogInputs &p, bool v) { p.isPlus = v; }),
-    in<bool>("minus", "", "jogs it in the negative direction while it is TRUE", [](JogInputs &p, bool v) { p.isMinus = v; }),
-    in<double>("increment", "unit", "how far the next two move it", [](JogInputs &p, double v) { p.increment = v; }),
-    in<bool>("increment-plus", "", "jogs it by the increment on a rising edge", [](JogInputs &p, bool v) { p.isIncrementPlus = v; }),
-    in<bool>("increment-minus", "", "jogs it back by the increment on a rising edge", [](JogInputs &p, bool v) { p.isIncrementMinus = v; }),
-    in<double>("analog", "", "jogs it by this part of the jog speed, -1 to 1, beyond the deadband", [](JogInputs &p, double v) { p.analog = v; }));
+    in<bool>("select", "", "selects the joint", [](JogInputs &p, bool v) { p.is_select = v; }),
+    in<bool>("plus", "", "jogs the joint in the positive direction while it is TRUE", [](JogInputs &p, bool v) { p.is_plus = v; }),
+    in<bool>("minus", "", "jogs it in the negative direction while it is TRUE", [](JogInputs &p, bool v) { p.is_minus = v; }),
+    in<double>("increment", "unit", "distance of the next two", [](JogInputs &p, double v) { p.increment = v; }),
+    in<bool>("increment-plus", "", "jogs it by the increment on a rising edge", [](JogInputs &p, bool v) { p.is_increment_plus = v; }),
+    in<bool>("increment-minus", "", "jogs it back by the increment on a rising edge", [](JogInputs &p, bool v) { p.is_increment_minus = v; }),
+    in<double>("analog", "", "jogs it at this fraction of the jog speed, -1 to 1, outside the deadband", [](JogInputs &p, double v) { p.analog = v; }));
 
 inline constexpr auto SELECTED_JOINT_JOGS = pin_table("halui.joint.selected",
-    in<bool>("plus", "", "jogs the selected joint in the positive direction while it is TRUE", [](JogInputs &p, bool v) { p.isPlus = v; }),
-    in<bool>("minus", "", "jogs it in the negative direction while it is TRUE", [](JogInputs &p, bool v) { p.isMinus = v; }),
-    in<double>("increment", "unit", "how far the next two move it", [](JogInputs &p, double v) { p.increment = v; }),
-    in<bool>("increment-plus", "", "jogs it by the increment on a rising edge", [](JogInputs &p, bool v) { p.isIncrementPlus = v; }),
-    in<bool>("increment-minus", "", "jogs it back by the increment on a rising edge", [](JogInputs &p, bool v) { p.isIncrementMinus = v; }));
+    in<bool>("plus", "", "jogs the selected joint in the positive direction while it is TRUE", [](JogInputs &p, bool v) { p.is_plus = v; }),
+    in<bool>("minus", "", "jogs it in the negative direction while it is TRUE", [](JogInputs &p, bool v) { p.is_minus = v; }),
+    in<double>("increment", "unit", "distance of the next two", [](JogInputs &p, double v) { p.increment = v; }),
+    in<bool>("increment-plus", "", "jogs it by the increment on a rising edge", [](JogInputs &p, bool v) { p.is_increment_plus = v; }),
+    in<bool>("increment-minus", "", "jogs it back by the increment on a rising edge", [](JogInputs &p, bool v) { p.is_increment_minus = v; }));
 
 inline constexpr auto AXIS_JOGS = pin_table("halui.axis.@",
-    in<bool>("select", "", "selects the axis", [](JogInputs &p, bool v) { p.isSelect = v; }),
-    in<bool>("plus", "", "jogs the axis in the positive direction while it is TRUE", [](JogInputs &p, bool v) { p.isPlus = v; }),
-    in<bool>("minus", "", "jogs it in the negative direction while it is TRUE", [](JogInputs &p, bool v) { p.isMinus = v; }),
-    in<double>("increment", "unit", "how far the next two move it", [](JogInputs &p, double v) { p.increment = v; }),
-    in<bool>("increment-plus", "", "jogs it by the increment on a rising edge", [](JogInputs &p, bool v) { p.isIncrementPlus = v; }),
-    in<bool>("increment-minus", "", "jogs it back by the increment on a rising edge", [](JogInputs &p, bool v) { p.isIncrementMinus = v; }),
-    in<double>("analog", "", "jogs it by this part of the jog speed, -1 to 1, beyond the deadband", [](JogInputs &p, double v) { p.analog = v; }));
+    in<bool>("select", "", "selects the axis", [](JogInputs &p, bool v) { p.is_select = v; }),
+    in<bool>("plus", "", "jogs the axis in the positive direction while it is TRUE", [](JogInputs &p, bool v) { p.is_plus = v; }),
+    in<bool>("minus", "", "jogs it in the negative direction while it is TRUE", [](JogInputs &p, bool v) { p.is_minus = v; }),
+    in<double>("increment", "unit", "distance of the next two", [](JogInputs &p, double v) { p.increment = v; }),
+    in<bool>("increment-plus", "", "jogs it by the increment on a rising edge", [](JogInputs &p, bool v) { p.is_increment_plus = v; }),
+    in<bool>("increment-minus", "", "jogs it back by the increment on a rising edge", [](JogInputs &p, bool v) { p.is_increment_minus = v; }),
+    in<double>("analog", "", "jogs it at this fraction of the jog speed, -1 to 1, outside the deadband", [](JogInputs &p, double v) { p.analog = v; }));
 
 inline constexpr auto SELECTED_AXIS_JOGS = pin_table("halui.axis.selected",
-    in<bool>("plus", "", "jogs the selected axis in the positive direction while it is TRUE", [](JogInputs &p, bool v) { p.isPlus = v; }),
-    in<bool>("minus", "", "jogs it in the negative direction while it is TRUE", [](JogInputs &p, bool v) { p.isMinus = v; }),
-    in<double>("increment", "unit", "how far the next two move it", [](JogInputs &p, double v) { p.increment = v; }),
-    in<bool>("increment-plus", "", "jogs it by the increment on a rising edge", [](JogInputs &p, bool v) { p.isIncrementPlus = v; }),
-    in<bool>("increment-minus", "", "jogs it back by the increment on a rising edge", [](JogInputs &p, bool v) { p.isIncrementMinus = v; }));
+    in<bool>("plus", "", "jogs the selected axis in the positive direction while it is TRUE", [](JogInputs &p, bool v) { p.is_plus = v; }),
+    in<bool>("minus", "", "jogs it in the negative direction while it is TRUE", [](JogInputs &p, bool v) { p.is_minus = v; }),
+    in<double>("increment", "unit", "distance of the next two", [](JogInputs &p, double v) { p.increment = v; }),
+    in<bool>("increment-plus", "", "jogs it by the increment on a rising edge", [](JogInputs &p, bool v) { p.is_increment_plus = v; }),
+    in<bool>("increment-minus", "", "jogs it back by the increment on a rising edge", [](JogInputs &p, bool v) { p.is_increment_minus = v; }));
 
 inline constexpr auto JOINT_JOG_SETTINGS = pin_table("halui.joint",
     in<double>("jog-speed", "unit/min", "of all jogs of joints", [](JogSettings &p, double v) { p.speed_per_min = v; }),
-    in<double>("jog-deadband", "", "analog inputs up to this stand for 0", [](JogSettings &p, double v) { p.deadband = v; }, 0.2));
+    in<double>("jog-deadband", "", "analog inputs up to this value count as 0", [](JogSettings &p, double v) { p.deadband = v; }, 0.2));
 
 inline constexpr auto AXIS_JOG_SETTINGS = pin_table("halui.axis",
     in<double>("jog-speed", "unit/min", "of all jogs of axes", [](JogSettings &p, double v) { p.speed_per_min = v; }),
-    in<double>("jog-deadband", "", "analog inputs up to this stand for 0", [](JogSettings &p, double v) { p.deadband = v; }, 0.2));
+    in<double>("jog-deadband", "", "analog inputs up to this value count as 0", [](JogSettings &p, double v) { p.deadband = v; }, 0.2));
 
 inline constexpr auto FEED_DIAL = pin_table("halui.feed-override",
-    in<bool>("count-enable", "", "counts change the feed override", [](DialInputs &p, bool v) { p.isCountEnabled = v; }, true),
+    in<bool>("count-enable", "", "counts change the feed override", [](DialInputs &p, bool v) { p.count_enabled = v; }, true),
     in<Count>("counts", "", "of a wheel", [](DialInputs &p, Count v) { p.counts = v; }),
     in<double>("scale", "", "of one count, and of increase and decrease", [](DialInputs &p, double v) { p.scale = v; }, 0.1),
-    in<bool>("direct-value", "", "counts times scale is the value; else their change is added to it", [](DialInputs &p, bool v) { p.isDirect = v; }),
-    in<bool>("increase", "", "adds scale on a rising edge", [](DialInputs &p, bool v) { p.isIncrease = v; }),
-    in<bool>("decrease", "", "takes scale off on a rising edge", [](DialInputs &p, bool v) { p.isDecrease = v; }),
+    in<bool>("direct-value", "", "counts times scale is the value; else their change is added to it", [](DialInputs &p, bool v) { p.direct = v; }),
+    in<bool>("increase", "", "adds scale on a rising edge", [](DialInputs &p, bool v) { p.is_increase = v; }),
+    in<bool>("decrease", "", "subtracts scale on a rising edge", [](DialInputs &p, bool v) { p.is_decrease = v; }),
     in<bool>("reset", "", "back to 1 on a rising edge", [](DialInputs &p, bool v) { p.isReset = v; }),
-    out<double>("value", "", "the feed override in force", [](double value) { return value; }));
+    out<double>("value", "", "current feed override", [](double value) { return value; }));
 
 inline constexpr auto RAPID_DIAL = pin_table("halui.rapid-override",
-    in<bool>("count-enable", "", "counts change the rapid override", [](DialInputs &p, bool v) { p.isCountEnabled = v; }, true),
+    in<bool>("count-enable", "", "counts change the rapid override", [](DialInputs &p, bool v) { p.count_enabled = v; }, true),
     in<Count>("counts", "", "of a wheel", [](DialInputs &p, Count v) { p.counts = v; }),
     in<double>("scale", "", "of one count, and of increase and decrease", [](DialInputs &p, double v) { p.scale = v; }, 0.1),
-    in<bool>("direct-value", "", "counts times scale is the value; else their change is added to it", [](DialInputs &p, bool v) { p.isDirect = v; }),
-    in<bool>("increase", "", "adds scale on a rising edge", [](DialInputs &p, bool v) { p.isIncrease = v; }),
-    in<bool>("decrease", "", "takes scale off on a rising edge", [](DialInputs &p, bool v) { p.isDecrease = v; }),
+    in<bool>("direct-value", "", "counts times scale is the value; else their change is added to it", [](DialInputs &p, bool v) { p.direct = v; }),
+    in<bool>("increase", "", "adds scale on a rising edge", [](DialInputs &p, bool v) { p.is_increase = v; }),
+    in<bool>("decrease", "", "subtracts scale on a rising edge", [](DialInputs &p, bool v) { p.is_decrease = v; }),
     in<bool>("reset", "", "back to 1 on a rising edge", [](DialInputs &p, bool v) { p.isReset = v; }),
-    out<double>("value", "", "the rapid override in force", [](double value) { return value; }));
+    out<double>("value", "", "current rapid override", [](double value) { return value; }));
 
 inline constexpr auto VELOCITY_DIAL = pin_table("halui.max-velocity",
-    in<bool>("count-enable", "", "counts change the highest speed", [](DialInputs &p, bool v) { p.isCountEnabled = v; }, true),
+    in<bool>("count-enable", "", "counts change the maximum speed", [](DialInputs &p, bool v) { p.count_enabled = v; }, true),
     in<Count>("counts", "", "of a wheel", [](DialInputs &p, Count v) { p.counts = v; }),
     in<double>("scale", "unit/s", "of one count, and of increase and decrease", [](DialInputs &p, double v) { p.scale = v; }, 0.1),
-    in<bool>("direct-value", "", "counts times scale is the value; else their change is added to it", [](DialInputs &p, bool v) { p.isDirect = v; }),
-    in<bool>("increase", "", "adds scale on a rising edge", [](DialInputs &p, bool v) { p.isIncrease = v; }),
-    in<bool>("decrease", "", "takes scale off on a rising edge", [](DialInputs &p, bool v) { p.isDecrease = v; }),
-    out<double>("value", "unit/s", "the highest speed in force", [](double value) { return value; }));
+    in<bool>("direct-value", "", "counts times scale is the value; else their change is added to it", [](DialInputs &p, bool v) { p.direct = v; }),
+    in<bool>("increase", "", "adds scale on a rising edge", [](DialInputs &p, bool v) { p.is_increase = v; }),
+    in<bool>("decrease", "", "subtracts scale on a rising edge", [](DialInputs &p, bool v) { p.is_decrease = v; }),
+    out<double>("value", "unit/s", "current maximum speed", [](double value) { return value; }));
 
 inline constexpr auto SPINDLE_DIAL = pin_table("halui.spindle.#.override",
-    in<bool>("count-enable", "", "counts change the override of the spindle", [](DialInputs &p, bool v) { p.isCountEnabled = v; }, true),
+    in<bool>("count-enable", "", "counts change the override of the spindle", [](DialInputs &p, bool v) { p.count_enabled = v; }, true),
     in<Count>("counts", "", "of a wheel", [](DialInputs &p, Count v) { p.counts = v; }),
     in<double>("scale", "", "of one count, and of increase and decrease", [](DialInputs &p, double v) { p.scale = v; }, 0.1),
-    in<bool>("direct-value", "", "counts times scale is the value; else their change is added to it", [](DialInputs &p, bool v) { p.isDirect = v; }),
-    in<bool>("increase", "", "adds scale on a rising edge", [](DialInputs &p, bool v) { p.isIncrease = v; }),
-    in<bool>("decrease", "", "takes scale off on a rising edge", [](DialInputs &p, bool v) { p.isDecrease = v; }),
+    in<bool>("direct-value", "", "counts times scale is the value; else their change is added to it", [](DialInputs &p, bool v) { p.direct = v; }),
+    in<bool>("increase", "", "adds scale on a rising edge", [](DialInputs &p, bool v) { p.is_increase = v; }),
+    in<bool>("decrease", "", "subtracts scale on a rising edge", [](DialInputs &p, bool v) { p.is_decrease = v; }),
     in<bool>("reset", "", "back to 1 on a rising edge", [](DialInputs &p, bool v) { p.isReset = v; }),
-    out<double>("value", "", "the override of the spindle in force", [](double value) { return value; }));
+    out<double>("value", "", "current spindle override", [](double value) { return value; }));
 
 inline constexpr auto MDI_BUTTONS = pin_table("halui",
     in<bool>("mdi-command-##", "", "[HALUI]MDI_COMMAND of this number: to MDI mode, the line, and back", [](MdiInput &p, bool v) { p.isOn = v; }));
@@ -221,29 +221,29 @@ inline constexpr auto LAMPS = pin_table("halui",
     out<bool>("mode.is-joint", "", "jogs move joints", [](const Shown &s) { return s.status.trajectory.mode == MotionMode::FREE; }),
     out<bool>("mode.is-teleop", "", "jogs move axes", value<"TELEOP_ENABLE">),
     out<bool>("program.is-idle", "", "no program runs", [](const Shown &s) { return s.status.task.interp_state == InterpState::IDLE; }),
-    out<bool>("program.is-running", "", "a program runs and is not held", [](const Shown &s) { return s.status.task.interp_state != InterpState::IDLE && s.status.task.interp_state != InterpState::PAUSED; }),
-    out<bool>("program.is-paused", "", "a program is held", [](const Shown &s) { return s.status.task.interp_state == InterpState::PAUSED; }),
+    out<bool>("program.is-running", "", "a program runs and is not paused", [](const Shown &s) { return s.status.task.interp_state != InterpState::IDLE && s.status.task.interp_state != InterpState::PAUSED; }),
+    out<bool>("program.is-paused", "", "a program is paused", [](const Shown &s) { return s.status.task.interp_state == InterpState::PAUSED; }),
     out<double>("machine.units-per-mm", "", "[TRAJ]LINEAR_UNITS: 1, or 1/25.4 for inches", [](const Shown &s) { return s.units_per_mm; }),
     out<bool>("program.optional-stop.is-on", "", "M1 stops", value<"optional_stop">),
-    out<bool>("program.block-delete.is-on", "", "lines that begin with / are left out", value<"block_delete">),
+    out<bool>("program.block-delete.is-on", "", "lines that begin with / are skipped", value<"block_delete">),
     out<bool>("flood.is-on", "", "flood is on", value<"flood">),
     out<bool>("mist.is-on", "", "mist is on", value<"mist">),
     out<bool>("lube.is-on", "", "lubrication is on", value<"lube">),
     out<Index>("tool.number", "", "the tool in the spindle, 0 none", value<"tool_in_spindle">),
     out<double>("tool.diameter", "unit", "of the tool in the spindle", [](const Shown &s) { return s.tool_diameter; }),
-    out<double>("tool.length_offset.x", "unit", "tool offset in force", [](const Shown &s) { return s.status.offsets.tool[0]; }),
-    out<double>("tool.length_offset.y", "unit", "tool offset in force", [](const Shown &s) { return s.status.offsets.tool[1]; }),
-    out<double>("tool.length_offset.z", "unit", "tool offset in force", [](const Shown &s) { return s.status.offsets.tool[2]; }),
-    out<double>("tool.length_offset.a", "unit", "tool offset in force", [](const Shown &s) { return s.status.offsets.tool[3]; }),
-    out<double>("tool.length_offset.b", "unit", "tool offset in force", [](const Shown &s) { return s.status.offsets.tool[4]; }),
-    out<double>("tool.length_offset.c", "unit", "tool offset in force", [](const Shown &s) { return s.status.offsets.tool[5]; }),
-    out<double>("tool.length_offset.u", "unit", "tool offset in force", [](const Shown &s) { return s.status.offsets.tool[6]; }),
-    out<double>("tool.length_offset.v", "unit", "tool offset in force", [](const Shown &s) { return s.status.offsets.tool[7]; }),
-    out<double>("tool.length_offset.w", "unit", "tool offset in force", [](const Shown &s) { return s.status.offsets.tool[8]; }),
-    out<Index>("joint.selected", "", "number of the joint that the pins joint.selected.* mean", [](const Shown &s) { return s.joint; }),
-    out<Index>("axis.selected", "", "the axis that the pins axis.selected.* mean: 0 X ... 8 W", [](const Shown &s) { return s.axis; }),
-    out<bool>("outcome.is-refused", "", "the last command of these pins that has ended was refused or has failed", [](const Shown &s) { return s.isRefused; }),
-    out<Index>("outcome.refusals", "", "how many were, since the start", [](const Shown &s) { return s.refusals; }));
+    out<double>("tool.length_offset.x", "unit", "active tool offset", [](const Shown &s) { return s.status.offsets.tool[0]; }),
+    out<double>("tool.length_offset.y", "unit", "active tool offset", [](const Shown &s) { return s.status.offsets.tool[1]; }),
+    out<double>("tool.length_offset.z", "unit", "active tool offset", [](const Shown &s) { return s.status.offsets.tool[2]; }),
+    out<double>("tool.length_offset.a", "unit", "active tool offset", [](const Shown &s) { return s.status.offsets.tool[3]; }),
+    out<double>("tool.length_offset.b", "unit", "active tool offset", [](const Shown &s) { return s.status.offsets.tool[4]; }),
+    out<double>("tool.length_offset.c", "unit", "active tool offset", [](const Shown &s) { return s.status.offsets.tool[5]; }),
+    out<double>("tool.length_offset.u", "unit", "active tool offset", [](const Shown &s) { return s.status.offsets.tool[6]; }),
+    out<double>("tool.length_offset.v", "unit", "active tool offset", [](const Shown &s) { return s.status.offsets.tool[7]; }),
+    out<double>("tool.length_offset.w", "unit", "active tool offset", [](const Shown &s) { return s.status.offsets.tool[8]; }),
+    out<Index>("joint.selected", "", "number of the joint of the pins joint.selected.*", [](const Shown &s) { return s.joint; }),
+    out<Index>("axis.selected", "", "the axis of the pins axis.selected.*: 0 X ... 8 W", [](const Shown &s) { return s.axis; }),
+    out<bool>("outcome.is-refused", "", "the last completed command of these pins was rejected or failed", [](const Shown &s) { return s.isRefused; }),
+    out<Index>("outcome.refusals", "", "number of such commands since the start", [](const Shown &s) { return s.refusals; }));
 
 inline constexpr auto JOINT_LAMPS = pin_table("halui.joint.#",
     out<bool>("is-homed", "", "the joint is homed", value<"homed">),
@@ -253,7 +253,7 @@ inline constexpr auto JOINT_LAMPS = pin_table("halui.joint.#",
     out<bool>("on-hard-max-limit", "", "its upper limit switch is on", value<"max_hard_limit">),
     out<bool>("on-soft-min-limit", "", "it is at its lower soft limit", value<"min_soft_limit">),
     out<bool>("on-soft-max-limit", "", "it is at its upper soft limit", value<"max_soft_limit">),
-    out<bool>("is-selected", "", "it is the selected one", [](const JointShown &s) { return s.isSelected; }));
+    out<bool>("is-selected", "", "it is selected", [](const JointShown &s) { return s.selected; }));
 
 inline constexpr auto SELECTED_LAMPS = pin_table("halui.joint.selected",
     out<bool>("is-homed", "", "the joint is homed", value<"homed">),
@@ -265,13 +265,13 @@ inline constexpr auto SELECTED_LAMPS = pin_table("halui.joint.selected",
     out<bool>("on-soft-max-limit", "", "it is at its upper soft limit", value<"max_soft_limit">));
 
 inline constexpr auto AXIS_LAMPS = pin_table("halui.axis.@",
-    out<bool>("is-selected", "", "it is the selected one", [](const AxisShown &s) { return s.isSelected; }),
+    out<bool>("is-selected", "", "it is selected", [](const AxisShown &s) { return s.selected; }),
     out<double>("pos-commanded", "unit", "commanded position, machine coordinates", [](const AxisShown &s) { return s.commanded; }),
     out<double>("pos-feedback", "unit", "position by feedback, machine coordinates", [](const AxisShown &s) { return s.feedback; }),
     out<double>("pos-relative", "unit", "commanded position in the coordinates of programs", [](const AxisShown &s) { return s.relative; }));
 
 inline constexpr auto SPINDLE_LAMPS = pin_table("halui.spindle.#",
-    out<bool>("is-on", "", "the spindle is to turn", value<"enabled">),
+    out<bool>("is-on", "", "the spindle is switched on", value<"enabled">),
     out<bool>("runs-forward", "", "clockwise", [](const SpindleStatus &s) { return s.isOn && s.direction > 0; }),
     out<bool>("runs-backward", "", "counterclockwise", [](const SpindleStatus &s) { return s.isOn && s.direction < 0; }),
     out<bool>("brake-is-on", "", "its brake is engaged", value<"brake">));

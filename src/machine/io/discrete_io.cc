@@ -9,8 +9,8 @@ namespace mw::io {
 
 ToolEvent DiscreteIo::step(const Inputs &inputs) {
     step_chain(inputs);
-    hasOil_ = inputs.lube_level;
-    isToolOffsetShown_ = inputs.isToolOffsetShown;
+    has_oil_ = inputs.lube_level;
+    tool_offset_shown_ = inputs.tool_offset_shown;
     step_fault(inputs);
     step_abort(inputs);
     outputs.state = action_ == ToolAction::IDLE ? 0 : 1;
@@ -19,11 +19,11 @@ ToolEvent DiscreteIo::step(const Inputs &inputs) {
 }
 
 void DiscreteIo::step_chain(const Inputs &inputs) {
-    isChainClosed_ = inputs.emc_enable_in;
-    outputs.user_request_enable = std::exchange(mustPulseRequest_, false);
-    if (mustLube_ && isChainClosed_) {
+    chain_closed_ = inputs.emc_enable_in;
+    outputs.user_request_enable = std::exchange(request_pulse_due_, false);
+    if (lube_due_ && chain_closed_) {
         outputs.lube = true;
-        mustLube_ = false;
+        lube_due_ = false;
     }
 }
 
@@ -31,19 +31,19 @@ void DiscreteIo::step_fault(const Inputs &inputs) {
     if (inputs.toolchanger_fault) {
         fault_reason_ = inputs.toolchanger_reason;
         outputs.toolchanger_faulted = true;
-    } else if (!protocol_.isVersion2 || inputs.toolchanger_clear_fault) {
+    } else if (!protocol_.is_version2 || inputs.toolchanger_clear_fault) {
         outputs.toolchanger_faulted = false;
     }
     outputs.toolchanger_fault_ack = inputs.toolchanger_fault;
 }
 
 void DiscreteIo::step_abort(const Inputs &inputs) {
-    if (std::exchange(mustPulseAbort_, false)) {
+    if (std::exchange(abort_pulse_due_, false)) {
         outputs.emc_abort = true;
         return;
     }
-    const bool isAnswered = !protocol_.isVersion2 || inputs.emc_abort_ack;
-    if (!outputs.emc_abort || !isAnswered) {
+    const bool answered = !protocol_.is_version2 || inputs.emc_abort_ack;
+    if (!outputs.emc_abort || !answered) {
         return;
     }
     outputs.emc_abort = false;
@@ -52,10 +52,10 @@ void DiscreteIo::step_abort(const Inputs &inputs) {
 }
 
 ToolEvent DiscreteIo::end_by_fault() {
-    const bool isGoingOn = protocol_.isVersion2 && fault_reason_ > 0;
+    const bool continuing = protocol_.is_version2 && fault_reason_ > 0;
     abort(REASON_CHANGER_FAULT);
-    isGivenUp_ = false;  // the changer itself says that it has not changed
-    return isGoingOn ? ToolEvent::FAULT_TOLD : ToolEvent::FAULT;
+    abandoned_ = false;  // the changer reports that nothing is changed
+    return continuing ? ToolEvent::FAULT_TOLD : ToolEvent::FAULT;
 }
 
 ToolEvent DiscreteIo::step_handshake(const Inputs &inputs) {
@@ -72,39 +72,39 @@ ToolEvent DiscreteIo::step_handshake(const Inputs &inputs) {
         }
         return ToolEvent::NONE;
     }
-    const bool isPreparing = action_ == ToolAction::PREPARING;
-    bool &request = isPreparing ? outputs.tool_prepare : outputs.tool_change;
-    const bool isAnswered = isPreparing ? inputs.tool_prepared : inputs.tool_changed;
+    const bool preparing = action_ == ToolAction::PREPARING;
+    bool &request = preparing ? outputs.tool_prepare : outputs.tool_change;
+    const bool answered = preparing ? inputs.tool_prepared : inputs.tool_changed;
     if (!request) {
-        // An answer that is still on belongs to the handshake before.
-        request = !isAnswered;
+        // A pending answer belongs to the previous handshake.
+        request = !answered;
         return ToolEvent::NONE;
     }
-    if (!isAnswered) {
+    if (!answered) {
         return ToolEvent::NONE;
     }
     request = false;
     action_ = ToolAction::IDLE;
-    return isPreparing ? ToolEvent::PREPARED : ToolEvent::CHANGED;
+    return preparing ? ToolEvent::PREPARED : ToolEvent::CHANGED;
 }
 
-/// The changer has gone on after it was told not to: whoever knows the machine must say which tool is in.
+/// The changer completed the change after it was aborted: the operator must enter the loaded tool.
 bool DiscreteIo::isLate(const Inputs &inputs) {
-    return isGivenUp_ && inputs.tool_changed && std::exchange(isGivenUp_, false);
+    return abandoned_ && inputs.tool_changed && std::exchange(abandoned_, false);
 }
 
 void DiscreteIo::enter_estop() {
     outputs.user_enable_out = false;
     outputs.lube = false;
-    mustLube_ = false;
-    mustPulseRequest_ = false;
+    lube_due_ = false;
+    request_pulse_due_ = false;
 }
 
 void DiscreteIo::leave_estop() {
     outputs.user_enable_out = true;
-    outputs.toolchanger_faulted = false;  // until the changer says again that it is
-    mustPulseRequest_ = true;
-    mustLube_ = true;
+    outputs.toolchanger_faulted = false;  // until the changer reports a fault again
+    request_pulse_due_ = true;
+    lube_due_ = true;
 }
 
 void DiscreteIo::start_prepare(int number, int pocket, int index) {
@@ -115,9 +115,9 @@ void DiscreteIo::start_prepare(int number, int pocket, int index) {
 }
 
 void DiscreteIo::start_change() {
-    isGivenUp_ = false;
-    outputs.start_change = protocol_.hasStartChange;
-    action_ = protocol_.hasStartChange ? ToolAction::STARTING : ToolAction::CHANGING;
+    abandoned_ = false;
+    outputs.start_change = protocol_.has_start_change;
+    action_ = protocol_.has_start_change ? ToolAction::STARTING : ToolAction::CHANGING;
 }
 
 void DiscreteIo::clear_prepared() {
@@ -125,17 +125,17 @@ void DiscreteIo::clear_prepared() {
 }
 
 void DiscreteIo::abort(int reason) {
-    const bool isUnderWay = action_ != ToolAction::IDLE;
-    if (action_ == ToolAction::ABORTING || (!isUnderWay && !protocol_.isVersion2)) {
+    const bool active = action_ != ToolAction::IDLE;
+    if (action_ == ToolAction::ABORTING || (!active && !protocol_.is_version2)) {
         return;
     }
-    isGivenUp_ = isGivenUp_ || outputs.tool_change;
-    mustPulseAbort_ = true;
+    abandoned_ = abandoned_ || outputs.tool_change;
+    abort_pulse_due_ = true;
     outputs.emc_reason = reason;
     outputs.tool_prepare = false;
     outputs.tool_change = false;
     outputs.start_change = false;
-    action_ = protocol_.isVersion2 ? ToolAction::ABORTING : ToolAction::IDLE;
+    action_ = protocol_.is_version2 ? ToolAction::ABORTING : ToolAction::IDLE;
 }
 
 messages::WaitFor DiscreteIo::waiting_for() const {
@@ -157,10 +157,10 @@ void DiscreteIo::set_tool_in_spindle(int number, int from_pocket) {
 }
 
 void DiscreteIo::set_tool_offset(const geometry::Pose &offset) {
-    const bool isFinite = std::ranges::all_of(offset.c, [](double length) { return std::isfinite(length); });
-    if (isFinite && offset.c != outputs.tool_offset.c) {
+    const bool finite = std::ranges::all_of(offset.c, [](double length) { return std::isfinite(length); });
+    if (finite && offset.c != outputs.tool_offset.c) {
         outputs.tool_offset = offset;
-        isToolOffsetShown_ = false;
+        tool_offset_shown_ = false;
     }
 }
 

@@ -22,7 +22,7 @@ struct Inputs {
     bool toolchanger_clear_fault = false;
     bool emc_abort_ack = false;
     bool start_change_ack = false;
-    bool isToolOffsetShown = true;  ///< the pins have the tool offset of the last outputs
+    bool tool_offset_shown = true;  ///< the pins show the tool offset of the last outputs
 };
 
 struct Outputs {
@@ -32,31 +32,31 @@ struct Outputs {
     bool tool_prepare = false, tool_change = false;
     bool emc_abort = false, start_change = false;
     bool toolchanger_fault_ack = false, toolchanger_faulted = false;
-    int emc_reason = 0;  ///< why what was asked of the changer is given up
+    int emc_reason = 0;  ///< why a request to the changer is aborted
     int tool_prep_number = 0, tool_prep_pocket = 0, tool_prep_index = 0;
     int tool_number = 0, tool_from_pocket = 0;
     int state = 0;
-    geometry::Pose tool_offset;  ///< [machine units], active
+    geometry::Pose tool_offset;  ///< active tool offset [machine units]
 };
 
-/// How the changer wants to be spoken to ([EMCIO]EMCIO: io, or iov2 and its option).
+/// Protocol of the changer ([EMCIO]EMCIO: io, or iov2 and its option).
 struct Protocol {
-    /// Aborts are answered by emc-abort-ack, a fault stays until it is cleared, and a reason above 0 lets the
-    /// program go on.
-    bool isVersion2 = false;
-    bool hasStartChange = false;  ///< start-change is raised and answered before tool-change
+    /// Aborts are acknowledged by emc-abort-ack, a fault persists until it is cleared, and a reason above 0
+    /// lets the program continue.
+    bool is_version2 = false;
+    bool has_start_change = false;  ///< start-change is raised and acknowledged before tool-change
 };
 
 enum class ToolAction : std::uint8_t { IDLE, PREPARING, STARTING, CHANGING, ABORTING };
 
-/// What a finished handshake means for the tool table.
+/// Meaning of a finished handshake for the tool table.
 enum class ToolEvent : std::uint8_t {
     NONE,
     PREPARED,
     CHANGED,
-    FAULT,         ///< the program must not go on
-    FAULT_TOLD,    ///< nothing has changed; the program goes on and finds out by #5600
-    CHANGED_LATE,  ///< tool-changed has come after the change was given up
+    FAULT,         ///< the program must not continue
+    FAULT_TOLD,    ///< nothing has changed; the program continues and can read #5600
+    CHANGED_LATE,  ///< tool-changed has arrived after the change was aborted
 };
 
 /// EMC_ABORT_BY_TOOLCHANGER_FAULT
@@ -67,39 +67,39 @@ class DiscreteIo {
     explicit DiscreteIo(const Protocol &protocol = {}) : protocol_(protocol) {}
     Outputs outputs{};
 
-    /// One loop: sees the inputs, moves the handshakes on. Returns what has just been completed.
+    /// One cycle: reads the inputs and advances the handshakes. Returns the event that has just occurred.
     ToolEvent step(const Inputs &inputs);
 
-    /// Opens the chain from our side: user-enable-out false, lube off.
+    /// Opens the e-stop chain on this side: user-enable-out false, lube off.
     void enter_estop();
-    /// Closes our side: user-enable-out true and one pulse of user-request-enable; lube on once the chain is
-    /// closed.
+    /// Closes this side of the chain: user-enable-out true and one pulse of user-request-enable; lube on when
+    /// the chain is closed.
     void leave_estop();
-    bool isChainClosed() const { return isChainClosed_; }
+    bool isChainClosed() const { return chain_closed_; }
     bool isEstopRequested() const { return !outputs.user_enable_out; }
 
     /// Starts tool-prepare for tool `number` in `pocket` (table index `index`).
     void start_prepare(int number, int pocket, int index);
     /// Starts tool-change to the prepared tool.
     void start_change();
-    /// The prepared tool is in: there is none any more.
+    /// The prepared tool has been loaded: none is prepared any more.
     void clear_prepared();
-    /// Ends any handshake at once: requests drop; emc-abort rises for one loop, in version 2 until it is
-    /// answered.
+    /// Ends any handshake at once: requests drop; emc-abort rises for one cycle, in version 2 until it is
+    /// acknowledged.
     void abort(int reason);
     ToolAction action() const { return action_; }
-    /// The pin that a handshake waits for.
+    /// The pin for which a handshake waits.
     messages::WaitFor waiting_for() const;
     int fault_reason() const { return fault_reason_; }
 
-    void set_mist(bool isOn) { outputs.coolant_mist = isOn; }
-    void set_flood(bool isOn) { outputs.coolant_flood = isOn; }
-    void set_lube(bool isOn) { outputs.lube = isOn; }
-    bool hasOil() const { return hasOil_; }
+    void set_mist(bool on) { outputs.coolant_mist = on; }
+    void set_flood(bool on) { outputs.coolant_flood = on; }
+    void set_lube(bool on) { outputs.lube = on; }
+    bool hasOil() const { return has_oil_; }
     void set_tool_in_spindle(int number, int from_pocket);
-    /// Ignores values that are not finite: motion rejects the command that comes with them.
+    /// Ignores values that are not finite: motion rejects the command with them.
     void set_tool_offset(const geometry::Pose &offset);
-    bool isToolOffsetShown() const { return isToolOffsetShown_; }
+    bool isToolOffsetShown() const { return tool_offset_shown_; }
 
   private:
     void step_chain(const Inputs &inputs);
@@ -111,14 +111,14 @@ class DiscreteIo {
 
     Protocol protocol_;
     ToolAction action_ = ToolAction::IDLE;
-    bool isChainClosed_ = false;
-    bool mustPulseRequest_ = false;
-    bool mustPulseAbort_ = false;
-    bool mustLube_ = false;  ///< as soon as the chain is closed
-    bool hasOil_ = true;
-    bool isGivenUp_ = false;  ///< a change was given up before its answer
+    bool chain_closed_ = false;
+    bool request_pulse_due_ = false;
+    bool abort_pulse_due_ = false;
+    bool lube_due_ = false;  ///< as soon as the chain is closed
+    bool has_oil_ = true;
+    bool abandoned_ = false;  ///< a change was aborted before its answer
     int fault_reason_ = 0;
-    bool isToolOffsetShown_ = true;
+    bool tool_offset_shown_ = true;
 };
 
 }  // namespace mw::io

@@ -50,7 +50,7 @@ Result<> Pins::join_tool_offset() {
 Inputs Pins::read() {
     PinInputs inputs;
     pins_.read(inputs);
-    inputs.in.isToolOffsetShown =
+    inputs.in.tool_offset_shown =
         block_ == nullptr || block_->shown.load(std::memory_order_acquire) == sent_.number;
     return inputs.in;
 }

@@ -8,9 +8,9 @@
 namespace mw::journal {
 namespace {
 
-/// The last byte is the version of the form.
+/// The last byte is the version of the format.
 constexpr std::string_view MAGIC = "MWJRNL\n\x01";
-/// A longer record is none: a length that was torn.
+/// A longer record is not valid: its length is torn.
 constexpr std::uint32_t MOST_BYTES = 64U << 20U;
 
 enum class Kind : std::uint8_t { START, PROGRESS, DOUBT, END };
@@ -68,7 +68,7 @@ void fields(Io &io, AnyDoubt &doubt, Doubt *) {
     io(doubt.what);
 }
 
-/// Length, checksum, kind, fields; the checksum is of what follows it.
+/// Length, checksum, type, fields; the checksum covers everything after it.
 std::string frame(std::uint64_t key, Kind kind, const std::string &fields) {
     const std::string body = std::string(1, static_cast<char>(kind)) + fields;
     Packer head;
@@ -84,7 +84,7 @@ std::string packed(std::uint64_t key, Kind kind, const T &value) {
     return frame(key, kind, out.bytes());
 }
 
-/// The next record that is whole; nothing at the end and before what is torn.
+/// The next complete record; nothing at the end and before a torn one.
 std::optional<std::string_view> next_record(std::string_view &rest, std::uint64_t key) {
     constexpr std::size_t HEAD = sizeof(std::uint32_t) + sizeof(std::uint64_t);
     std::uint32_t size = 0;
@@ -110,7 +110,7 @@ bool unpack(std::string_view body, T &value) {
     return in.isComplete();
 }
 
-/// False when it is none that this version writes.
+/// False when this version does not write such records.
 bool take(std::string_view body, Run &run) {
     Progress progress;
     Doubt doubt;
@@ -128,7 +128,7 @@ bool take(std::string_view body, Run &run) {
         }
         run.doubt = run.doubt.has_value() ? run.doubt : doubt;
         return true;
-    case Kind::END: run.hasEnded = true; return body.size() == 1;
+    case Kind::END: run.ended = true; return body.size() == 1;
     }
     return false;
 }

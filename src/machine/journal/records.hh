@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The journal of a program that runs, as bytes: records with checksums, appended one after the other. What a
-// power cut leaves at its end is known by its checksum and counts for nothing.
+// The journal of a running program, as bytes: records with checksums, appended one after the other. An
+// incomplete record at the end after a power cut is found by its checksum and ignored.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace mw::journal {
 
-/// A file as it was, so that another one is not taken for it.
+/// Identity of a file, to detect a replaced one.
 struct FileMark {
     std::uint64_t bytes = 0;
     std::uint64_t sum = 0;
@@ -22,49 +22,49 @@ struct FileMark {
 };
 FileMark mark_of(std::string_view content);
 
-/// What a program began with.
+/// State at the start of a program.
 struct Start {
-    std::uint64_t id = 0;  ///< another one for each run
+    std::uint64_t id = 0;  ///< different for each run
     std::string program;   ///< path
     FileMark file;
-    std::string state;  ///< task's own bytes: modes, parameters, tools, what was on
+    std::string state;  ///< task's own bytes: modes, parameters, tools, active outputs
     bool operator==(const Start &) const = default;
 };
 
-/// How far it has come.
+/// Progress of a run.
 struct Progress {
-    std::uint64_t block = 0;  ///< the first one that is not done, counted from 1
+    std::uint64_t block = 0;  ///< the first block that is not done, from 1
     std::int32_t line = 0;
-    std::uint64_t calls = 0;  ///< checksum of all that the program has asked for before that block
+    std::uint64_t calls = 0;  ///< checksum of all canon calls before that block
     geometry::Pose position;  ///< of the machine [machine units]
-    std::int32_t tool = 0;    ///< in the spindle
+    std::int32_t tool = 0;    ///< tool in the spindle
     std::uint64_t tools = 0;  ///< checksum of the tool table
 };
 
-/// From a block on the state depends on what nobody can calculate again.
+/// From this block on the state depends on values that cannot be calculated again.
 struct Doubt {
     std::uint64_t block = 0;
     std::int32_t line = 0;
     std::string what;
 };
 
-/// What a journal says of a run.
+/// Content of a journal.
 struct Run {
     Start start;
     std::optional<Progress> progress;
     std::optional<Doubt> doubt;  ///< the first one
-    bool hasEnded = false;       ///< in order: nothing is to be gone on with
+    bool ended = false;          ///< ended normally: there is nothing to continue
 };
 
-/// The beginning of a journal; records follow.
+/// The start of a journal; records follow.
 std::string begin_bytes(const Start &start);
-/// What the checksums of its records begin with: those of another run count for nothing behind it.
+/// Initial value of the checksums of its records: records of another run after it do not count.
 std::uint64_t key_of(const Start &start);
 std::string record(std::uint64_t key, const Progress &progress);
 std::string record(std::uint64_t key, const Doubt &doubt);
 std::string end_record(std::uint64_t key);
 
-/// Reads as far as records are whole. An error: these bytes are no journal, or its beginning is damaged.
+/// Reads the complete records. An error: the bytes are not a journal, or its start is damaged.
 Result<Run> read_run(std::string_view bytes);
 
 }  // namespace mw::journal

@@ -77,7 +77,7 @@ Result<> Writer::write_file(const std::string &path, const std::string &text, Ol
     job.path = path;
     job.text = text;
     job.old = old;
-    job.isWaitedFor = true;
+    job.awaited = true;
     core_->ask(std::move(job));
     if (!thread_.joinable()) {
         work();
@@ -110,7 +110,7 @@ bool Writer::work() {
 }
 
 void Writer::finish() {
-    if (std::exchange(isFinished_, true)) {
+    if (std::exchange(finished_, true)) {
         return;
     }
     if (!thread_.joinable()) {

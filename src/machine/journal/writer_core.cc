@@ -13,14 +13,14 @@
 namespace mw::journal {
 namespace {
 
-/// Records that a journal gets before it is replaced by a short one.
+/// Size of records after which a journal is replaced by a short one.
 constexpr std::uint64_t MOST_RECORD_BYTES = 1U << 20U;
-/// A disk that takes longer lets the journal fall behind the tool.
+/// With a slower disk the journal lags behind the tool.
 constexpr double SLOW_S = 0.8;
 constexpr std::int64_t NS_PER_S = 1000000000;
 constexpr std::int64_t LATE_NS = NS_PER_S;
 
-constexpr auto isProgress = [](const auto &job) {
+constexpr auto is_progress = [](const auto &job) {
     return job.kind == std::remove_cvref_t<decltype(job)>::Kind::PROGRESS;
 };
 
@@ -29,7 +29,7 @@ std::string whole(const Run &run) {
     std::string bytes = begin_bytes(run.start);
     bytes += run.doubt.has_value() ? record(key, *run.doubt) : "";
     bytes += run.progress.has_value() ? record(key, *run.progress) : "";
-    bytes += run.hasEnded ? end_record(key) : "";
+    bytes += run.ended ? end_record(key) : "";
     return bytes;
 }
 
@@ -54,8 +54,8 @@ void Writer::Core::find() {
     auto run = bytes.has_value() ? read_run(*bytes) : std::unexpected(bytes.error());
     if (!run.has_value()) {
         troubles_.push_back(path_ + ": " + run.error().message +
-                            ": a program that was cut short cannot be continued");
-    } else if (!run->hasEnded && run->progress.has_value()) {
+                            ": an interrupted program cannot be continued");
+    } else if (!run->ended && run->progress.has_value()) {
         found_.refusal = why_not(*disk_, run->start);
         found_.run = std::move(*run);
     }
@@ -65,8 +65,7 @@ void Writer::Core::ask(Job job) {
     {
         const std::lock_guard lock(mutex_);
         job.number = ++last_job_;
-        if (job.kind == Job::Kind::BEGIN ||
-            job.kind == Job::Kind::FORGET) {  // what was before does not matter
+        if (job.kind == Job::Kind::BEGIN || job.kind == Job::Kind::FORGET) {  // earlier jobs do not matter
             std::erase_if(jobs_, [](const Job &one) {
                 return one.kind != Job::Kind::FILE && one.kind != Job::Kind::READ;
             });
@@ -91,13 +90,13 @@ void Writer::Core::ask(Job job) {
 bool Writer::Core::isSettled(const std::string &path) const {
     const std::lock_guard lock(mutex_);
     const auto file = files_.find(path);
-    return isLate_ || file == files_.end() || file->second.done == file->second.asked;
+    return late_ || file == files_.end() || file->second.done == file->second.asked;
 }
 
 Result<> Writer::Core::wait_for(const std::string &path, std::chrono::milliseconds longest) {
     std::unique_lock lock(mutex_);
     const FileState &file = files_[path];
-    done_.wait_for(lock, longest, [&] { return file.done == file.asked || isLate_; });
+    done_.wait_for(lock, longest, [&] { return file.done == file.asked || late_; });
     if (file.done != file.asked) {
         return fail(fmt::format("the disk of {} has not answered for 1 s", path));
     }
@@ -106,9 +105,9 @@ Result<> Writer::Core::wait_for(const std::string &path, std::chrono::millisecon
 
 bool Writer::Core::end_thread(std::chrono::milliseconds longest) {
     std::unique_lock lock(mutex_);
-    isEnding_ = true;
+    ending_ = true;
     asked_.notify_one();
-    return done_.wait_for(lock, longest, [this] { return isOver_; });
+    return done_.wait_for(lock, longest, [this] { return ended_; });
 }
 
 std::vector<std::string> Writer::Core::unwritten() const {
@@ -128,7 +127,7 @@ void Writer::Core::run_thread() {
     while (true) {
         {
             std::unique_lock lock(mutex_);
-            asked_.wait(lock, [this] { return isEnding_ || !jobs_.empty(); });
+            asked_.wait(lock, [this] { return ending_ || !jobs_.empty(); });
             if (jobs_.empty()) {
                 break;
             }
@@ -143,7 +142,7 @@ void Writer::Core::run_thread() {
     }
     write_failed();
     const std::lock_guard lock(mutex_);
-    isOver_ = true;
+    ended_ = true;
     done_.notify_all();
 }
 
@@ -153,15 +152,15 @@ bool Writer::Core::work() {
         const std::lock_guard lock(mutex_);
         jobs.swap(jobs_);
     }
-    hadProgress_ = std::ranges::any_of(jobs, isProgress);
+    hadProgress_ = std::ranges::any_of(jobs, is_progress);
     do_jobs(jobs);
     return !jobs.empty();
 }
 
-/// The last jobs have kept progress of the program from its file.
+/// The last jobs have stored progress of the program.
 bool Writer::Core::isBehind() const {
     const std::lock_guard lock(mutex_);
-    return isJournalled() && (hadProgress_ || std::ranges::any_of(jobs_, isProgress));
+    return isJournalled() && (hadProgress_ || std::ranges::any_of(jobs_, is_progress));
 }
 
 std::optional<std::string> Writer::Core::take_trouble() {
@@ -180,10 +179,10 @@ std::optional<std::string> Writer::Core::take_delay(std::int64_t now_ns) {
         watched_job_ = busy_job_;
         watched_since_ns_ = now_ns;
     }
-    if (watched_job_ == 0 || isLate_ || now_ns - watched_since_ns_ < LATE_NS) {
+    if (watched_job_ == 0 || late_ || now_ns - watched_since_ns_ < LATE_NS) {
         return std::nullopt;
     }
-    isLate_ = true;
+    late_ = true;
     return fmt::format("the disk of {} has not answered for 1 s", busy_path_);
 }
 
@@ -191,10 +190,10 @@ void Writer::Core::set_busy(std::uint64_t number, const std::string &path) {
     const std::lock_guard lock(mutex_);
     busy_job_ = number;
     busy_path_ = path;
-    isLate_ = false;
+    late_ = false;
 }
 
-/// Reports errors; the next job is done also after an error.
+/// Reports errors; continues with the next job after an error.
 void Writer::Core::do_jobs(Jobs &jobs) {
     for (Job &job : jobs) {
         set_busy(job.number, job.path.empty() ? path_ : job.path);
@@ -227,7 +226,7 @@ Result<> Writer::Core::do_job(Job &job) {
         return {};
     case Job::Kind::END:
         if (run_.has_value()) {
-            run_->hasEnded = true;
+            run_->ended = true;
             records_ += end_record(key_);
         }
         return {};
@@ -255,13 +254,13 @@ void Writer::Core::do_file(Job &job) {
     FileState &file = files_[path];
     file.done = job.number;
     file.failure = written.has_value() ? std::nullopt : std::optional(written.error());
-    if (file.failure.has_value() && !job.isWaitedFor && !file.isToldOf) {
+    if (file.failure.has_value() && !job.awaited && !file.reported) {
         troubles_.push_back(
             fmt::format("{}. Its content is kept in memory, and written again with the next change and at "
                         "the end of the machine",
                         file.failure->message));
     }
-    file.isToldOf = file.failure.has_value() && (file.isToldOf || !job.isWaitedFor);
+    file.reported = file.failure.has_value() && (file.reported || !job.awaited);
     if (file.failure.has_value()) {
         failed_.insert_or_assign(path, std::move(job));
     } else {
@@ -280,7 +279,7 @@ void Writer::Core::do_read(const Job &job) {
         failed_.erase(failed);
         const std::lock_guard lock(mutex_);
         files_[job.path].failure.reset();
-        files_[job.path].isToldOf = false;
+        files_[job.path].reported = false;
     }
     job.then(disk_->read(job.path));
 }
@@ -316,31 +315,31 @@ Result<> Writer::Core::rewrite() {
     const std::string bytes = whole(*run_);
     records_.clear();
     const auto replaced = replace_file(*disk_, path_, bytes);
-    isFileSound_ = replaced.has_value();
+    file_sound_ = replaced.has_value();
     bytes_ = 0;
     return replaced;
 }
 
 Result<> Writer::Core::write_records() {
-    if (!isFileSound_ || bytes_ + records_.size() > MOST_RECORD_BYTES) {
+    if (!file_sound_ || bytes_ + records_.size() > MOST_RECORD_BYTES) {
         return rewrite();
     }
-    // Behind a record that is torn no other is found.
-    isFileSound_ = false;
+    // Records after a torn one are not found.
+    file_sound_ = false;
     bytes_ += records_.size();
     auto done = disk_->append(path_, records_);
     records_.clear();
     done = done.has_value() ? disk_->sync(path_) : done;
-    isFileSound_ = done.has_value();
+    file_sound_ = done.has_value();
     return done;
 }
 
 void Writer::Core::tell(const Result<> &result) {
     const std::lock_guard lock(mutex_);
-    if (!result.has_value() && !isTroubleTold_) {
+    if (!result.has_value() && !trouble_reported_) {
         troubles_.push_back("journal: " + result.error().message);
     }
-    isTroubleTold_ = !result.has_value();
+    trouble_reported_ = !result.has_value();
 }
 
 }  // namespace mw::journal

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The HAL files: what is loaded, in which order it runs, how it is wired.
+// The HAL files: loaded components, their order, and the wiring.
 #include <fmt/format.h>
 
 #include "base/text.hh"
@@ -8,7 +8,7 @@
 namespace mw::setup {
 namespace {
 
-/// Of each motor with the number of its joint.
+/// Calls `act` for each motor with its joint number.
 template <class Act>
 void each_motor(const Plan &plan, Act act) {
     int joint = 0;
@@ -22,19 +22,19 @@ void each_motor(const Plan &plan, Act act) {
 constexpr const char *SPDX = "# SPDX-License-Identifier: GPL-2.0-or-later\n";
 
 bool hasEncoder(const Plan &plan) {
-    return !plan.isStepper && plan.kind != "foam" && plan.spindle != Spindle::NONE;
+    return !plan.is_stepper && plan.kind != "foam" && plan.spindle != Spindle::NONE;
 }
 
 std::string tool_change_text(const Plan &plan) {
     std::string text = "\n# Tools: prepared at once";
-    if (plan.isToolChangedByHand) {
-        text += ", changed by the operator, who is asked.\n"
+    if (plan.is_tool_changed_by_hand) {
+        text += ", changed by the operator after a question.\n"
                 "loadusr -W hal_manualtoolchange\n"
                 "net tool-change iocontrol.0.tool-change => hal_manualtoolchange.change\n"
                 "net tool-changed hal_manualtoolchange.changed => iocontrol.0.tool-changed\n"
                 "net tool-number iocontrol.0.tool-prep-number => hal_manualtoolchange.number\n";
     } else {
-        text += " and changed at once: nobody is asked.\n"
+        text += " and changed at once, without a question.\n"
                 "net tool-change iocontrol.0.tool-change => iocontrol.0.tool-changed\n";
     }
     return text + "net tool-prepare iocontrol.0.tool-prepare => iocontrol.0.tool-prepared\n";
@@ -75,20 +75,20 @@ std::string simulated_switches(const Plan &plan) {
                              "setp switch-{0}.hysteresis {2}\n"
                              "net {0}-pos => switch-{0}.cur-pos\n"
                              "net {0}-switch switch-{0}.home-sw => joint.{3}.home-sw-in\n",
-                             motor.name, to_text(plan.millimetres(axis.isHomeAtMax ? 20 : -20)),
+                             motor.name, to_text(plan.millimetres(axis.home_at_max ? 20 : -20)),
                              to_text(plan.millimetres(0.1)), joint);
         if (plan.switches == Switches::HOME_AND_LIMITS) {
             wires += fmt::format("net {0}-switch => joint.{1}.{2}-lim-sw-in\n", motor.name, joint,
-                                 axis.isHomeAtMax ? "pos" : "neg");
+                                 axis.home_at_max ? "pos" : "neg");
         }
     });
-    return fmt::format("\n# Switches, a little beyond the place where each motor stands at the start.\n"
+    return fmt::format("\n# Switches, a little past the start position of each motor.\n"
                        "loadrt sim_home_switch names={}\n{}{}",
                        names, functions, wires);
 }
 
 std::string simulated_text(const Plan &plan) {
-    std::string text = "\n# Each motor is where it was told to be.\n";
+    std::string text = "\n# Each motor is at its commanded position.\n";
     each_motor(plan, [&](const Axis &, const Motor &motor, int joint) {
         text +=
             fmt::format("net {0}-pos joint.{1}.motor-pos-cmd => joint.{1}.motor-pos-fb\n", motor.name, joint);
@@ -105,8 +105,8 @@ std::string out_pin(int pin) {
     return fmt::format("parport.0.pin-{:02d}-out", pin);
 }
 
-std::string in_pin(int pin, bool isInverted = false) {
-    return fmt::format("parport.0.pin-{:02d}-in{}", pin, isInverted ? "-not" : "");
+std::string in_pin(int pin, bool inverted = false) {
+    return fmt::format("parport.0.pin-{:02d}-in{}", pin, inverted ? "-not" : "");
 }
 
 std::string stepper_motor(const Plan &plan, const Motor &motor, int joint) {
@@ -129,7 +129,7 @@ std::string stepper_motor(const Plan &plan, const Motor &motor, int joint) {
                     s.dir_setup_ns, s.dir_hold_ns, out_pin(motor.step_pin), out_pin(motor.dir_pin));
     if (plan.switches != Switches::NONE) {
         text += fmt::format("net {}-switch {} => joint.{}.home-sw-in\n", motor.name,
-                            in_pin(motor.home_pin, s.areContactsClosed), joint);
+                            in_pin(motor.home_pin, s.contacts_closed), joint);
     }
     if (plan.switches == Switches::HOME_AND_LIMITS) {
         text += fmt::format("# The limit switches of both ends are on the same wire.\n"
@@ -175,7 +175,7 @@ std::string outputs_text(const Plan &plan) {
 }
 
 std::string stepper_threads(const Plan &plan) {
-    const bool hasPwm = plan.spindle == Spindle::SPEED;
+    const bool has_pwm = plan.spindle == Spindle::SPEED;
     return fmt::format(
         "# The port is a simulated one. For a real one load its driver instead, with pins of the same "
         "names,\n"
@@ -203,18 +203,19 @@ std::string stepper_threads(const Plan &plan) {
             }
             return types;
         }(),
-        hasPwm ? "loadrt pwmgen output_type=0\n" : "", hasPwm ? "addf pwmgen.make-pulses base-thread\n" : "",
-        hasPwm ? "addf pwmgen.update servo-thread\n" : "");
+        has_pwm ? "loadrt pwmgen output_type=0\n" : "",
+        has_pwm ? "addf pwmgen.make-pulses base-thread\n" : "",
+        has_pwm ? "addf pwmgen.update servo-thread\n" : "");
 }
 
 }  // namespace
 
 std::string hal_text(const Plan &plan) {
     std::string text = SPDX;
-    text += "# What the machine is made of, and how it is wired. `millwright hal watch` looks at it while it "
+    text += "# The parts of the machine and their wiring. `millwright hal watch` shows it while it "
             "runs.\n"
             "loadrt [KINS]KINEMATICS\n";
-    if (plan.isStepper) {
+    if (plan.is_stepper) {
         text += "loadrt [EMCMOT]EMCMOT base_period_nsec=[EMCMOT]BASE_PERIOD "
                 "servo_period_nsec=[EMCMOT]SERVO_PERIOD "
                 "num_joints=[KINS]JOINTS\n";
@@ -234,7 +235,7 @@ std::string hal_text(const Plan &plan) {
 
 std::string wires_text(const Plan &plan) {
     std::string text = SPDX;
-    text += "# Stands in for what is at the port of a real machine: a button that is not pressed, and "
+    text += "# Simulates the inputs of a real machine: a button that is not pressed, and "
             "switches.\n";
     const Stepping &s = plan.stepping;
     if (s.estop_pin != 0) {
@@ -252,9 +253,9 @@ std::string wires_text(const Plan &plan) {
         wires += fmt::format("setp switch-{0}.home-pos {1}\n"
                              "setp switch-{0}.hysteresis {2}\n"
                              "net {0}-pos-fb => switch-{0}.cur-pos\n",
-                             motor.name, to_text(plan.millimetres(axis.isHomeAtMax ? 20 : -20)),
+                             motor.name, to_text(plan.millimetres(axis.home_at_max ? 20 : -20)),
                              to_text(plan.millimetres(0.1)));
-        if (s.areContactsClosed) {
+        if (s.contacts_closed) {
             functions += fmt::format("addf contact-{} servo-thread\n", motor.name);
             wires += fmt::format("net {0}-touched switch-{0}.home-sw => contact-{0}.in\n"
                                  "net {0}-contact contact-{0}.out => {1}-fake\n",
@@ -265,7 +266,7 @@ std::string wires_text(const Plan &plan) {
         }
     });
     return text + fmt::format("loadrt sim_home_switch names={}\n", names) +
-           (s.areContactsClosed ? fmt::format("loadrt not names={}\n", contacts) : "") + functions + wires;
+           (s.contacts_closed ? fmt::format("loadrt not names={}\n", contacts) : "") + functions + wires;
 }
 
 }  // namespace mw::setup

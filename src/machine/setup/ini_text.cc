@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The INI file: every key with its unit, in the order in which people look for them.
+// The INI file: every key with its unit, in a useful order.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -10,13 +10,13 @@
 namespace mw::setup {
 namespace {
 
-/// Numbers as people write them: no more digits than they mean.
+/// Numbers with only the necessary digits.
 std::string short_text(double value) {
     return to_text(parse_double(fmt::format("{:.6g}", value)).value_or(value));
 }
 
 const char *length_unit(const Plan &plan) {
-    return plan.isMetric ? "mm" : "inch";
+    return plan.metric ? "mm" : "inch";
 }
 
 std::string letters(const Plan &plan, const char *between) {
@@ -32,7 +32,7 @@ std::string letters(const Plan &plan, const char *between) {
 
 std::string display_text(const Plan &plan) {
     const char *const increments =
-        plan.isMetric ? "10 mm, 1 mm, 0.1 mm, 0.01 mm" : "1 in, 0.1 in, 0.01 in, 0.001 in";
+        plan.metric ? "10 mm, 1 mm, 0.1 mm, 0.01 mm" : "1 in, 0.1 in, 0.01 in, 0.001 in";
     std::string text = fmt::format("[DISPLAY]\n"
                                    "# The operator's screen, in a browser.\n"
                                    "DISPLAY = millwright\n"
@@ -40,7 +40,7 @@ std::string display_text(const Plan &plan) {
                                    "PROGRAM_PREFIX = nc_files\n"
                                    "# Steps that jogs are offered in.\n"
                                    "INCREMENTS = {}\n"
-                                   "# 1.2: feeds up to 120 % of what programs ask for.\n"
+                                   "# 1.2: feeds up to 120 % of the programmed ones.\n"
                                    "MAX_FEED_OVERRIDE = 1.2\n",
                                    increments);
     if (plan.spindle == Spindle::SPEED) {
@@ -54,7 +54,7 @@ std::string display_text(const Plan &plan) {
                 "LATHE = 1\n";
     }
     if (plan.kind == "foam") {
-        text += fmt::format("# The wire is held by X and Y on one side, by U and V on the other.\n"
+        text += fmt::format("# X and Y move one end of the wire, U and V the other.\n"
                             "FOAM = 1\n"
                             "GEOMETRY = XY;UV\n"
                             "FOAM_Z = 0\n"
@@ -81,7 +81,7 @@ std::string system_text(const Plan &plan) {
                        "COMM_TIMEOUT = 1.0\n"
                        "# Positions are calculated so often [ns].\n"
                        "SERVO_PERIOD = 1000000\n";
-    if (plan.isStepper) {
+    if (plan.is_stepper) {
         text += fmt::format("# Steps are made so often [ns]: the latency of the computer, a step, and the "
                             "work of the thread.\n"
                             "BASE_PERIOD = {}\n",
@@ -91,7 +91,7 @@ std::string system_text(const Plan &plan) {
             "[HAL]\n"
             "# Carried out in this order when the machine starts.\n"
             "HALFILE = machine.hal\n";
-    if (plan.isStepper) {
+    if (plan.is_stepper) {
         text += "# Switches and buttons of a machine that is not there. Take this line away with the "
                 "simulated port.\n"
                 "HALFILE = simulated_wires.hal\n";
@@ -100,7 +100,7 @@ std::string system_text(const Plan &plan) {
 }
 
 std::string whole_text(const Plan &plan) {
-    const bool isGantry = plan.kind == "gantry";
+    const bool is_gantry = plan.kind == "gantry";
     double acceleration = 0;
     for (const Axis &axis : plan.axes) {
         acceleration = std::max(acceleration, axis.acceleration);
@@ -121,20 +121,20 @@ std::string whole_text(const Plan &plan) {
                        "\n",
                        letters(plan, " "), length_unit(plan), length_unit(plan), length_unit(plan),
                        short_text(plan.fastest() / 4), short_text(plan.fastest()), short_text(acceleration),
-                       isGantry ? "# Each motor is a joint; the two of Y move together.\n"
-                                : "# Each motor is a joint.\n",
-                       letters(plan, ""), isGantry ? " kinstype=BOTH" : "", plan.joints());
+                       is_gantry ? "# Each motor is a joint; the two of Y move together.\n"
+                                 : "# Each motor is a joint.\n",
+                       letters(plan, ""), is_gantry ? " kinstype=BOTH" : "", plan.joints());
 }
 
-/// Upper things first, so that nothing is in the way of what moves sideways; motors of one axis together.
+/// Upper axes first, so that nothing obstructs sideways moves; motors of one axis together.
 int home_sequence(const Plan &plan, const Axis &axis) {
-    const bool isFirst = plan.kind == "lathe"  ? axis.letter == 'X'
-                         : plan.kind == "foam" ? axis.letter == 'Y' || axis.letter == 'V'
-                                               : axis.letter == 'Z';
+    const bool first = plan.kind == "lathe"  ? axis.letter == 'X'
+                       : plan.kind == "foam" ? axis.letter == 'Y' || axis.letter == 'V'
+                                             : axis.letter == 'Z';
     if (axis.motors.size() > 1) {
         return -2;
     }
-    return isFirst ? 0 : 1;
+    return first ? 0 : 1;
 }
 
 std::string home_text(const Plan &plan, const Axis &axis) {
@@ -143,7 +143,7 @@ std::string home_text(const Plan &plan, const Axis &axis) {
                                            : "# Order of homing; equal ones together.\n";
     if (plan.switches == Switches::NONE) {
         const std::string place = short_text(std::clamp(0.0, axis.min, axis.max));
-        return fmt::format("# No home switch: homing takes the place where the motor stands for this one.\n"
+        return fmt::format("# No home switch: homing uses the current position of the motor.\n"
                            "HOME = {0}\n"
                            "HOME_OFFSET = {0}\n"
                            "HOME_SEARCH_VEL = 0\n"
@@ -151,7 +151,7 @@ std::string home_text(const Plan &plan, const Axis &axis) {
                            "{1}HOME_SEQUENCE = {2}\n",
                            place, order, sequence);
     }
-    const double sign = axis.isHomeAtMax ? 1 : -1, end = axis.isHomeAtMax ? axis.max : axis.min;
+    const double sign = axis.home_at_max ? 1 : -1, end = axis.home_at_max ? axis.max : axis.min;
     return fmt::format(
         "# The switch is at HOME_OFFSET; after homing the axis goes to HOME.\n"
         "HOME = {}\n"
@@ -183,7 +183,7 @@ std::string joint_text(const Plan &plan, const Axis &axis, const Motor &motor, i
         to_upper(motor.name), joint, short_text(axis.speed), short_text(axis.acceleration),
         short_text(axis.min), short_text(axis.max), short_text(plan.millimetres(1)),
         short_text(plan.millimetres(0.25)));
-    if (plan.isStepper) {
+    if (plan.is_stepper) {
         text += fmt::format("# Steps of one {} of travel; negative: the motor turns the other way round.\n"
                             "STEP_SCALE = {}\n"
                             "# The generator may catch up with what it lags behind.\n"
@@ -206,8 +206,8 @@ std::string ini_text(const Plan &plan) {
                     "VERSION = 1.1\n"
                     "MACHINE = {}\n"
                     "DEBUG = 0\n\n",
-                    plan.name, plan.kind, plan.isMetric ? "metric" : "in inches",
-                    plan.isStepper ? "stepper motors at a parallel port" : "simulated", length_unit(plan),
+                    plan.name, plan.kind, plan.metric ? "metric" : "in inches",
+                    plan.is_stepper ? "stepper motors at a parallel port" : "simulated", length_unit(plan),
                     length_unit(plan), plan.name);
     text += display_text(plan) + system_text(plan) + whole_text(plan);
     int joint = 0;

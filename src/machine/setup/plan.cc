@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t LONGEST_NAME = 60;
 
-/// Whole periods, in steps of a microsecond, with what the thread itself needs.
+/// Whole microseconds, including the run time of the thread.
 int base_period(int latency_ns, int step_length_ns, int step_space_ns) {
     constexpr int WORK_NS = 10000, SHORTEST_NS = 20000, GRAIN_NS = 1000;
     const int wanted = latency_ns + std::max(step_length_ns, step_space_ns) + WORK_NS;
@@ -33,7 +33,7 @@ class Reader {
         if (faults_.empty()) {
             general();
             axes();
-            if (plan_.isStepper) {
+            if (plan_.is_stepper) {
                 stepping();
             }
         }
@@ -85,17 +85,17 @@ void Reader::check(const Question &question) {
         return;
     }
     if (question.form == Form::TEXT) {
-        const bool isPlain =
+        const bool plain =
             std::ranges::all_of(answer, [](unsigned char c) { return c >= 0x20 && c != 0x7f; });
-        if (answer.empty() || answer.size() > LONGEST_NAME || !isPlain ||
+        if (answer.empty() || answer.size() > LONGEST_NAME || !plain ||
             answer.find_first_of("[]#;=\\\"") != std::string::npos) {
             fault(question.key, fmt::format("a name has 1 to {} characters without []#;=\\\"", LONGEST_NAME));
         }
         return;
     }
     const auto value = parse_double(answer);
-    const bool isRound = value.has_value() && std::floor(*value) == *value;
-    if (!value.has_value() || (question.form == Form::WHOLE && !isRound)) {
+    const bool round = value.has_value() && std::floor(*value) == *value;
+    if (!value.has_value() || (question.form == Form::WHOLE && !round)) {
         fault(question.key, fmt::format("'{}' is no {}", printable(answer),
                                         question.form == Form::WHOLE ? "whole number" : "number"));
     } else if (*value < question.low || *value > question.high) {
@@ -107,9 +107,9 @@ void Reader::check(const Question &question) {
 void Reader::general() {
     plan_.kind = text("kind");
     plan_.name = text("name");
-    plan_.isMetric = text("units") == "mm";
-    plan_.isStepper = text("drives") == "stepper";
-    plan_.isToolChangedByHand = text("tool_change") == "by_hand";
+    plan_.metric = text("units") == "mm";
+    plan_.is_stepper = text("drives") == "stepper";
+    plan_.is_tool_changed_by_hand = text("tool_change") == "by_hand";
     const std::string switches = text("switches"), spindle = text("spindle");
     plan_.switches = switches == "none"   ? Switches::NONE
                      : switches == "home" ? Switches::HOME
@@ -130,10 +130,10 @@ void Reader::axes() {
                   .max = number(key + ".max"),
                   .speed = number(key + ".speed"),
                   .acceleration = number(key + ".acceleration"),
-                  .isHomeAtMax = text(key + ".home") == "max",
+                  .home_at_max = text(key + ".home") == "max",
                   .home_speed = number(key + ".home_speed"),
                   .motors = {}};
-        // Shorter ones have no room for the first program.
+        // The first program does not fit into shorter travels.
         const double shortest = plan_.millimetres(10);
         if (axis.max - axis.min < shortest) {
             fault(key + ".max", fmt::format("the travel is {}, and must be {} at least",
@@ -153,7 +153,7 @@ void Reader::axes() {
 
 Motor Reader::motor(const std::string &name) {
     Motor motor{.name = name};
-    if (plan_.isStepper) {
+    if (plan_.is_stepper) {
         const double way = number(name + ".way_per_turn");
         if (way == 0) {
             fault(name + ".way_per_turn", "0 moves nothing");
@@ -180,15 +180,15 @@ void Reader::stepping() {
     s.flood_pin = whole("pin.flood");
     s.estop_pin = whole("pin.estop");
     s.pwm_hz = number("spindle.pwm_hz");
-    s.areContactsClosed = text("switch.contacts") == "closed";
+    s.contacts_closed = text("switch.contacts") == "closed";
     check_rates();
     check_pins();
 }
 
-/// A step is one period high and one low at least.
+/// A step is high for at least one period and low for one.
 void Reader::check_rates() {
     constexpr double NS_PER_S = 1e9;
-    // The generator catches up with what it lags behind, by so much above the speed of the axis.
+    // The generator must catch up with following errors at this factor of the axis speed.
     constexpr double MARGIN = 1.05;
     const double highest = NS_PER_S / (2.0 * plan_.stepping.base_period_ns);
     for (const Axis &axis : plan_.axes) {
@@ -209,7 +209,7 @@ void Reader::check_rates() {
     }
 }
 
-/// Each pin has one use, and is an output or an input as the port has it.
+/// Each pin has one use, in the direction of the port.
 void Reader::check_pins() {
     constexpr std::array OUTPUTS{1, 2, 3, 4, 5, 6, 7, 8, 9, 14, 16, 17};
     constexpr std::array INPUTS{10, 11, 12, 13, 15};
@@ -217,18 +217,18 @@ void Reader::check_pins() {
     std::vector<std::pair<int, std::string>> used;
     for (const Question &question : asked_) {
         const std::string &key = question.key;
-        const bool isPin = key.ends_with("_pin") || key.starts_with("pin.");
-        const int pin = isPin ? whole(key) : UNUSED;
+        const bool is_pin = key.ends_with("_pin") || key.starts_with("pin.");
+        const int pin = is_pin ? whole(key) : UNUSED;
         if (pin == UNUSED) {
             continue;
         }
-        const bool isInput = key.ends_with(".home_pin") || key == "pin.estop";
-        const bool isThere = isInput ? std::ranges::find(INPUTS, pin) != INPUTS.end()
-                                     : std::ranges::find(OUTPUTS, pin) != OUTPUTS.end();
-        if (!isThere) {
+        const bool is_input = key.ends_with(".home_pin") || key == "pin.estop";
+        const bool present = is_input ? std::ranges::find(INPUTS, pin) != INPUTS.end()
+                                      : std::ranges::find(OUTPUTS, pin) != OUTPUTS.end();
+        if (!present) {
             fault(key, fmt::format("pin {} is no {}", pin,
-                                   isInput ? "input: 10, 11, 12, 13 and 15 are"
-                                           : "output: 1 to 9, 14, 16 and 17 are"));
+                                   is_input ? "input: 10, 11, 12, 13 and 15 are"
+                                            : "output: 1 to 9, 14, 16 and 17 are"));
         }
         const auto other = std::ranges::find(used, pin, &std::pair<int, std::string>::first);
         if (other != used.end()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A machine as it is wanted: answers that have been understood.
+// The plan of a machine: the parsed answers.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ struct Axis {
     char letter = 0;
     double min = 0, max = 0;             ///< [units]
     double speed = 0, acceleration = 0;  ///< [units/s], [units/s2]
-    bool isHomeAtMax = false;
+    bool home_at_max = false;
     double home_speed = 0;  ///< [units/s]
     std::vector<Motor> motors;
 };
@@ -35,32 +35,32 @@ struct Stepping {
     int base_period_ns = 0;
     int enable_pin = 0, spindle_on_pin = 0, spindle_pwm_pin = 0, flood_pin = 0, estop_pin = 0;
     double pwm_hz = 0;
-    bool areContactsClosed = false;  ///< of the switches, while nothing touches them
+    bool contacts_closed = false;  ///< contact state of the switches when not actuated
 };
 
 struct Plan {
     std::string kind, name;
-    bool isMetric = true, isStepper = false, isToolChangedByHand = false;
+    bool metric = true, is_stepper = false, is_tool_changed_by_hand = false;
     Switches switches = Switches::NONE;
     Spindle spindle = Spindle::NONE;
-    double spindle_max = 0;  ///< [rev/min]; of a hot wire: S of full heat
+    double spindle_max = 0;  ///< [rev/min]; for a hot wire: S for full heat
     double foam_width = 0;   ///< [units]
     std::vector<Axis> axes;
     Stepping stepping;
 
     int joints() const;
-    double fastest() const;  ///< of all axes [units/s]
-    double millimetres(double mm) const { return isMetric ? mm : mm / 25.4; }
+    double fastest() const;  ///< maximum of all axes [units/s]
+    double millimetres(double mm) const { return metric ? mm : mm / 25.4; }
 };
 
-/// Why an answer cannot be.
+/// Why an answer is not valid.
 struct Fault {
     std::string key, text;
 };
 
 struct Planned {
     Plan plan;
-    std::vector<Fault> faults;  ///< empty: the plan holds
+    std::vector<Fault> faults;  ///< empty: the plan is valid
 };
 
 Planned plan_of(const Answers &given);

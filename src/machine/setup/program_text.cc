@@ -10,7 +10,7 @@
 namespace mw::setup {
 namespace {
 
-/// Places of an axis by parts of its travel.
+/// Positions of an axis as fractions of its travel.
 class Places {
   public:
     explicit Places(const Plan &plan) : plan_(plan) {}
@@ -20,7 +20,7 @@ class Places {
         return letter + number(axis.min + part * (axis.max - axis.min));
     }
     double length(char letter) const { return axis_of(letter).max - axis_of(letter).min; }
-    std::string number(double value) const { return fmt::format("{:.{}f}", value, plan_.isMetric ? 2 : 3); }
+    std::string number(double value) const { return fmt::format("{:.{}f}", value, plan_.metric ? 2 : 3); }
     /// [units/min]
     std::string feed() const {
         constexpr double PART = 0.8, S_PER_MIN = 60;
@@ -61,19 +61,19 @@ std::string foam_moves(const Places &p) {
 
 std::string program_text(const Plan &plan) {
     const Places places(plan);
-    const bool isLathe = plan.kind == "lathe", isFoam = plan.kind == "foam";
+    const bool is_lathe = plan.kind == "lathe", is_foam = plan.kind == "foam";
     std::string text =
         "; SPDX-License-Identifier: GPL-2.0-or-later\n"
         "; A first program: it moves each axis through the middle of its travel, in the air. It counts on\n"
         "; work offsets that are 0.\n";
-    text += fmt::format("{} G90 G94 G40 G49 {} G64 P{}\n", plan.isMetric ? "G21" : "G20",
-                        isLathe ? "G18 G8" : "G17", plan.isMetric ? "0.05" : "0.002");
-    text += isFoam ? "" : "T1 M6\n";
+    text += fmt::format("{} G90 G94 G40 G49 {} G64 P{}\n", plan.metric ? "G21" : "G20",
+                        is_lathe ? "G18 G8" : "G17", plan.metric ? "0.05" : "0.002");
+    text += is_foam ? "" : "T1 M6\n";
     if (plan.spindle != Spindle::NONE) {
         const double speed = plan.spindle == Spindle::SPEED ? plan.spindle_max / 4 : 1000;
         text += fmt::format("M3 S{:.0f}\n", speed);
     }
-    text += isLathe ? lathe_moves(places) : isFoam ? foam_moves(places) : mill_moves(places);
+    text += is_lathe ? lathe_moves(places) : is_foam ? foam_moves(places) : mill_moves(places);
     return text + (plan.spindle != Spindle::NONE ? "M5\n" : "") + "M2\n";
 }
 
@@ -81,7 +81,7 @@ std::string tool_table_text(const Plan &plan) {
     if (plan.kind == "foam") {
         return "; Tools: a hot wire needs none.\n";
     }
-    const std::string diameter = to_text(plan.isMetric ? 6 : 0.25);
+    const std::string diameter = to_text(plan.metric ? 6 : 0.25);
     return fmt::format(
         "; Tools: number, pocket, diameter, length, remark. Measure the length before you cut.\n"
         "T1 P1 D{}{} ;first tool\n",

@@ -10,7 +10,7 @@
 namespace mw::setup {
 namespace {
 
-/// Of an axis, in mm. Machines in inches get a 25th of it, which is a round number, too.
+/// Presets of an axis, in mm. Machines in inches use 1/25 of it, also a round number.
 struct Preset {
     char letter;
     double min, max, speed, acceleration;
@@ -86,8 +86,8 @@ class Asking {
                           static_cast<double>(high),
                           std::move(unit)});
     }
-    double length(double mm) const { return isMetric_ ? mm : mm / MM_PER_UNIT_OF_PRESETS; }
-    std::string unit(const char *more = "") const { return (isMetric_ ? "mm" : "in") + std::string(more); }
+    double length(double mm) const { return metric_ ? mm : mm / MM_PER_UNIT_OF_PRESETS; }
+    std::string unit(const char *more = "") const { return (metric_ ? "mm" : "in") + std::string(more); }
 
     void general();
     void axis(const Preset &preset);
@@ -96,7 +96,7 @@ class Asking {
 
     const Answers &given_;
     const Kind &kind_;
-    bool isMetric_ = true;
+    bool metric_ = true;
     std::vector<Question> asked_;
 };
 
@@ -108,19 +108,19 @@ void Asking::general() {
     asked_.push_back({"kind", "Kind of machine", Form::CHOICE, std::string(kind_.name), std::move(kinds)});
     asked_.push_back({"name", "Name of the machine", Form::TEXT, "My " + std::string(kind_.name)});
     choice("units", "Unit of lengths", {"mm", "inch"});
-    isMetric_ = isChosen("units", "mm");
+    metric_ = isChosen("units", "mm");
     choice("drives", "Motors", {"simulated", "stepper"});
     choice("switches", "Switches", {"none", "home", "home_and_limits"});
-    const bool isFoam = kind_.name == "foam";
-    choice("spindle", isFoam ? "Hot wire" : "Spindle", {"speed", "on_off", "none"});
+    const bool is_foam = kind_.name == "foam";
+    choice("spindle", is_foam ? "Hot wire" : "Spindle", {"speed", "on_off", "none"});
     if (isChosen("spindle", "speed")) {
-        number("spindle.max", isFoam ? "S word of full heat" : "Highest speed of the spindle",
-               isFoam ? 100 : 12000, 1, 1000000, isFoam ? "" : "rev/min");
+        number("spindle.max", is_foam ? "S word of full heat" : "Highest speed of the spindle",
+               is_foam ? 100 : 12000, 1, 1000000, is_foam ? "" : "rev/min");
     }
     choice("tool_change", "Change of tools",
-           isFoam ? std::vector<std::string>{"none", "by_hand"}
-                  : std::vector<std::string>{"by_hand", "none"});
-    if (isFoam) {
+           is_foam ? std::vector<std::string>{"none", "by_hand"}
+                   : std::vector<std::string>{"by_hand", "none"});
+    if (is_foam) {
         number("foam.width", "From the plane of X and Y to that of U and V", length(500), SHORTEST, LONGEST,
                unit());
     }
@@ -134,9 +134,9 @@ void Asking::axis(const Preset &preset) {
     number(key + ".acceleration", letter + ": acceleration", length(preset.acceleration), SHORTEST, LONGEST,
            unit("/s2"));
     if (!isChosen("switches", "none")) {
-        const bool isAtMax = preset.letter == 'Z' || kind_.name == "lathe";
+        const bool at_max = preset.letter == 'Z' || kind_.name == "lathe";
         choice(key + ".home", letter + ": end at which its home switch is",
-               isAtMax ? std::vector<std::string>{"max", "min"} : std::vector<std::string>{"min", "max"});
+               at_max ? std::vector<std::string>{"max", "min"} : std::vector<std::string>{"min", "max"});
         number(key + ".home_speed", letter + ": speed towards the home switch", length(10), SHORTEST, LONGEST,
                unit("/s"));
     }

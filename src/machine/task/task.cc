@@ -21,13 +21,12 @@ Task::Task(const Parts &parts, Settings settings)
       world_({settings_.machine_units, settings_.axis_mask, settings_.num_spindles}),
       reader_({world_, parts.tools, parts.parameters},
               {settings_.machine_units, settings_.tool_change_place, settings_.parameter_file,
-               settings_.sequencer.isToolChangeWithSpindleOn, settings_.interpreter_plugin,
+               settings_.sequencer.tool_change_with_spindle_on, settings_.interpreter_plugin,
                settings_.interpreter}),
       parameter_file_(settings_.parameter_file, reader_, parts.journal), recovery_(parts.journal),
       on_abort_(settings_.interpreter_plugin.empty() ? settings_.interpreter.on_abort_command
                                                      : std::string()),
-      user_program_(settings_.isUserProgramWaitedFor ? UserProgram::Waits::IN_CALL
-                                                     : UserProgram::Waits::NEVER),
+      user_program_(settings_.user_program_awaited ? UserProgram::Waits::IN_CALL : UserProgram::Waits::NEVER),
       sequencer_(reader_.queue(), motion_, io_, parts.tools, make_events(), settings_.sequencer),
       planner_mode_({[this](const motion::SetParameter &p) { return motion_.send(p); },
                      [this](MessageKind kind, const std::string &text) { post(kind, text); }}),
@@ -49,7 +48,7 @@ SequencerEvents Task::make_events() {
     events.planner_mode = [this](const gcode::UsePlanner &item) -> std::optional<motion::CommandId> {
         const int smooth = settings_.sequencer.smooth_planner;
         if (item.isSmooth && smooth == 0) {
-            run_.note_failure("G64 R above 0 asks for the jerk-limited planner, which [TRAJ]SMOOTH_PLANNER = "
+            run_.note_failure("G64 R above 0 needs the jerk-limited planner, which [TRAJ]SMOOTH_PLANNER = "
                               "0 does not allow; use G64 R0 or no R");
             return std::nullopt;
         }
@@ -89,11 +88,11 @@ void Task::configure(const std::vector<motion::SetParameter> &parameters, const 
 }
 
 Result<bool> Task::isConfigured() const {
-    const bool isAnswered = motion_.isAnswered(sent_settings_.last) && motion_.areTablesAnswered();
-    if (isAnswered && !sent_settings_.refused.empty()) {
-        return fail("a setting was refused: " + sent_settings_.refused);
+    const bool answered = motion_.isAnswered(sent_settings_.last) && motion_.areTablesAnswered();
+    if (answered && !sent_settings_.refused.empty()) {
+        return fail("a setting was rejected: " + sent_settings_.refused);
     }
-    return isAnswered;
+    return answered;
 }
 
 Result<> Task::start() {
@@ -148,7 +147,7 @@ void Task::step(std::int64_t now_ns) {
         }
     }
     sequencer_.on_tool_event(io_.step(parts_.io_port.read()));
-    ProgramResume{*this}.watch_hold();  // a tool that has come is known before a command goes on with it
+    ProgramResume{*this}.watch_hold();  // a loaded tool is known before a command continues with it
     update_state();
     carry_out_commands();
     end_requests();
@@ -159,7 +158,7 @@ void Task::step(std::int64_t now_ns) {
     step_clean_up();
     step_run();
     ProgramResume{*this}.watch_hold();
-    // What waits in the queue without a run are settings for displays; they do not move anything.
+    // Calls that wait in the queue without a run are settings for displays; they move nothing.
     planner_mode_.step(!run_.isRunning() && motion_.isPathComplete());
     if (run_.phase() == RunPhase::IDLE && motion_.status().isInPosition) {
         io_.set_tool_offset(reader_.canon().tool_offset().value_or(io_.outputs.tool_offset));
@@ -177,15 +176,15 @@ void Task::step_run() {
         sequencer_.step(now_ns_);
     }
     reader_.follow(sequencer_);
-    // The step that carries out the last block ends the program: nothing is left to pause in front of.
-    const bool isCarriedOut = run_.phase() == RunPhase::FINISHING && sequencer_.isIdle();
-    const bool isWritten = sequencer_.logs().isSettled() && parts_.tools.isSettled();
-    if (isCarriedOut && isWritten && !run_.isHeld() && !run_.hasFailed()) {
+    // The step that executes the last block ends the program: there is no block left to pause before.
+    const bool executed = run_.phase() == RunPhase::FINISHING && sequencer_.isIdle();
+    const bool is_written = sequencer_.logs().isSettled() && parts_.tools.isSettled();
+    if (executed && is_written && !run_.isHeld() && !run_.hasFailed()) {
         finish_run(Progress::DONE, {});
-    } else if (run_.hold() == Hold::STEPPING && sequencer_.isStepDone() && (isWritten || !isCarriedOut)) {
+    } else if (run_.hold() == Hold::STEPPING && sequencer_.isStepDone() && (is_written || !executed)) {
         run_.change(RunEvent::STEP_DONE);
     }
-    while (!run_.isRunning()) {  // lines of MDI follow at once: nothing comes between them
+    while (!run_.isRunning()) {  // MDI lines follow at once: nothing comes between them
         const auto line = mdi_queue_.next();
         if (!line.has_value()) {
             break;
@@ -195,11 +194,11 @@ void Task::step_run() {
     }
 }
 
-/// A run that motion does not let in ends.
+/// Ends a run that motion does not accept.
 void Task::check_run_mode() {
-    const bool isOut =
+    const bool is_out =
         run_.isRunning() && run_.hold() != Hold::AWAY && motion_.status().mode != motion::Mode::COORD;
-    if (mode_.run_watch().step(isOut, now_ns_)) {
+    if (mode_.run_watch().step(is_out, now_ns_)) {
         fail_program(
             {diagnostics::Severity::ERROR, {"motion is not in coordinated mode: set the mode again"}},
             AbortReason::EXECUTION_ERROR);
@@ -207,8 +206,8 @@ void Task::check_run_mode() {
 }
 
 SourcePlace Task::place_of(const motion::SourceTag &source) const {
-    const bool isInFile = run_.isProgram() && source.line > 0;
-    return isInFile ? SourcePlace{file_name(source.file_index), source.line, 1} : SourcePlace{};
+    const bool in_file = run_.isProgram() && source.line > 0;
+    return in_file ? SourcePlace{file_name(source.file_index), source.line, 1} : SourcePlace{};
 }
 
 void Task::take_motion_news() {
@@ -218,12 +217,12 @@ void Task::take_motion_news() {
              "motion (millwright-rt) has given no sign for 0.25 s: stops are not carried out. Use the "
              "emergency stop switch of the machine");
     }
-    const auto fail_or_post = [this](bool isOfRun, const std::string &text, const motion::SourceTag &source,
+    const auto fail_or_post = [this](bool of_run, const std::string &text, const motion::SourceTag &source,
                                      AbortReason reason) {
-        if (isOfRun && run_.isRunning() && apart_.isOn) {
+        if (of_run && run_.isRunning() && apart_.isOn) {
             post(MessageKind::OPERATOR_ERROR, text);
             Meanwhile{*this}.stop_work(text, reason);
-        } else if (isOfRun && run_.isRunning()) {
+        } else if (of_run && run_.isRunning()) {
             fail_program({diagnostics::Severity::ERROR, {text, place_of(source), {}}, {}, {}}, reason);
         } else {
             post(MessageKind::OPERATOR_ERROR, text);
@@ -235,9 +234,9 @@ void Task::take_motion_news() {
         fail_or_post(!motion::isOnlyTold(fault.kind), motion::fault_text(told), fault.source,
                      AbortReason::MOTION_FAULT);
     }
-    for (const auto &[answer, source, isTable] : news.refused) {
+    for (const auto &[answer, source, is_table] : news.refused) {
         if (sent_settings_.refused.empty() && !answer.isPath &&
-            (isTable || answer.id <= sent_settings_.last)) {
+            (is_table || answer.id <= sent_settings_.last)) {
             sent_settings_.refused = motion::reason_text(answer);
         }
         if (answer.reason == motion::Reason::MOVING && mode_.waits_for_rest(answer.id, now_ns_)) {
@@ -293,8 +292,8 @@ void Task::update_state() {
 void Task::step_homing() {
     const auto ended = homing_.step(motion_.isAnswered(homing_.order()), motion_.status());
     tell(ended);
-    const bool hasFailed = ended.has_value() && ended->progress != Progress::DONE;
-    if (hasFailed || state_.state() != State::ON || mode_.mode() != Mode::MANUAL) {
+    const bool failed = ended.has_value() && ended->progress != Progress::DONE;
+    if (failed || state_.state() != State::ON || mode_.mode() != Mode::MANUAL) {
         desk_.refuse(homing_.drop(),
                      "the joint before it was not homed, or the machine is no longer in manual mode");
     }
@@ -318,16 +317,16 @@ void Task::end_requests() {
         mode_.follow(motion.mode);
     }
     step_homing();
-    const auto isAnswered = [this](motion::CommandId order) { return motion_.isAnswered(order); };
-    while (const auto ended = orders_.next(isAnswered, now_ns_)) {
+    const auto answered = [this](motion::CommandId order) { return motion_.isAnswered(order); };
+    while (const auto ended = orders_.next(answered, now_ns_)) {
         if (ended->progress == Progress::FAILED) {
-            post(MessageKind::OPERATOR_ERROR, ended->reason);  // clients of Python see no reason
+            post(MessageKind::OPERATOR_ERROR, ended->reason);  // Python clients do not receive the reason
         }
         tell(ended);
     }
 }
 
-/// What an abort has stopped may still brake: a run begins where the machine is at rest.
+/// After an abort motion may still brake: a run begins at standstill.
 bool Task::begin_run() {
     if (!motion_.status().isInPosition) {
         return false;
@@ -357,7 +356,7 @@ bool Task::begin_run() {
 
 void Task::run_interpreter() {
     if (gcode::Interpreter *const gcode = reader_.gcode(); gcode != nullptr) {
-        gcode->limits().isConfined = senders_.isRunConfined();
+        gcode->limits().confined = senders_.isRunConfined();
     }
     if (run_.phase() == RunPhase::STARTING && !begin_run()) {
         return;
@@ -379,7 +378,7 @@ void Task::run_interpreter() {
             }
             run_.change(RunEvent::SYNCED);
             synch_interpreter();
-            if (!run_.isProgram()) {  // what a program sets is saved at its end
+            if (!run_.isProgram()) {  // values set by a program are saved at its end
                 parameter_file_.keep();
             }
             const std::string probe = sequencer_.take_probe() ? reader_.probe_line() : "";
@@ -411,10 +410,10 @@ void Task::on_step_result(gcode::Step result) {
 }
 
 bool Task::on_stop(const gcode::ProgramStop &stop, int line) {
-    // Behind the last block of an MDI line there is nothing to pause.
-    const bool isLast =
+    // After the last block of an MDI line there is nothing to pause.
+    const bool is_last =
         run_.kind() == RunKind::MDI && run_.phase() == RunPhase::FINISHING && reader_.queue().size() <= 1;
-    if (isLast || (stop.isOptional && !world_.isOptionalStopOn())) {
+    if (is_last || (stop.optional && !world_.isOptionalStopOn())) {
         return false;
     }
     status_.task.stop_line = line;
@@ -435,7 +434,7 @@ void Task::finish_run(Progress progress, const std::string &reason) {
         post(MessageKind::OPERATOR_TEXT,
              "cutter compensation holds this move back until the next one or G40 says where it ends");
     }
-    parameter_file_.keep();  // a touch-off must outlive a crash that follows
+    parameter_file_.keep();  // a touch-off must survive a crash
     sequencer_.set_stepping(false);
     recovery_.end();
     tell(run_.end(progress, reason));

@@ -39,8 +39,8 @@ namespace mw::task {
 /// Why a command that waited was never begun.
 inline constexpr const char *OVERTAKEN = "it came before a stop";
 
-/// The pins of the I/O controller, as task reads and writes them once a cycle, and the person who changes
-/// tools by hand.
+/// The pins of the I/O controller, which task reads and writes once a cycle, and the person who changes tools
+/// by hand.
 class IoPins {
   public:
     virtual ~IoPins() = default;
@@ -53,61 +53,60 @@ class IoPins {
 
 struct Settings {
     gcode::LengthUnits machine_units = gcode::LengthUnits::MM;
-    messages::SettingsStatus shown;  ///< to clients; what motion is told is added by task
+    messages::SettingsStatus shown;  ///< for clients; task adds the settings of motion
     unsigned axis_mask = 7;
     int num_joints = 3;
     int num_spindles = 1;
     bool isHomingForced = true;  ///< programs and MDI need all joints homed
-    std::string parameter_file;  ///< empty: parameters live in memory only
+    std::string parameter_file;  ///< empty: parameters are only in memory
     gcode::Settings interpreter;
     std::string interpreter_plugin;  ///< [TASK]INTERPRETER: a shared object; empty: RS-274/NGC
     SequencerSettings sequencer;
-    Confinement confinement;  ///< of clients that have only the authority to operate
+    Confinement confinement;  ///< for clients that may only operate
     io::Protocol changer_protocol;
     ToolChangePlace tool_change_place;
-    int mdi_queued_commands = 10;  ///< lines of MDI that may wait behind the one that runs
-    /// A program of a user M code is waited for within a cycle: for virtual clocks.
-    bool isUserProgramWaitedFor = false;
-    /// Task's loop standing still for so long stops the machine.
+    int mdi_queued_commands = 10;  ///< number of MDI lines that may wait after the running one
+    /// Waits within a cycle for the program of a user M code: for virtual clocks.
+    bool user_program_awaited = false;
+    /// The machine stops when task's loop hangs for this time.
     double watchdog_s = 0.5;
-    /// Blocks that the interpreter may read in one cycle, and queued items above which it waits.
+    /// Maximum blocks read in one cycle; the interpreter waits while the queue has more items than the limit.
     int blocks_per_cycle = 200;
     std::size_t read_ahead_items = 2000;
-    /// Steps of the interpreter that may be read before the machine reaches them, those that ask for nothing
-    /// included. Far above what motion holds: the limit is for memory and must not shorten the path that
-    /// motion plans over.
+    /// Maximum number of interpreter steps read ahead of the machine, including those without calls. Far
+    /// above the queue of motion: it limits memory and must not shorten the path that motion plans.
     std::size_t read_ahead_steps = 50'000;
 };
 
-/// While another thread has task (LongCall).
+/// State while another thread uses task (LongCall).
 struct Apart {
     bool isOn = false;
-    bool isStopped = false;
-    bool isTold = false;      ///< to the operator
-    bool isWaitTold = false;  ///< that it does not end after a stop
+    bool stopped = false;
+    bool isTold = false;         ///< to the operator
+    bool wait_reported = false;  ///< reported that it does not end after a stop
     std::int64_t stopped_ns = 0;
-    std::int64_t since_ns = 0;  ///< its first cycle
+    std::int64_t since_ns = 0;  ///< time of its first cycle
     std::vector<std::function<void()>> later;
 };
 
-/// What task is built from; all must outlive it.
+/// Objects that task uses; all must outlive it.
 struct Parts {
     motion::Channels &channels;
     IoPins &io_port;
     ToolStore &tools;
     gcode::ParameterSource &parameters;
-    mailbox::Segment &mailbox;  ///< the only way in for commands, out for outcomes, messages and status
+    mailbox::Segment &mailbox;           ///< the only channel for commands, outcomes, messages and status
     journal::Writer *journal = nullptr;  ///< null: programs are not journalled
 };
 
-/// What Task::configure() has sent.
+/// Settings sent by Task::configure().
 struct SentSettings {
     motion::CommandId last = 0;
-    std::string refused;  ///< why the first one was
+    std::string refused;  ///< why the first one was rejected
 };
 
-/// Owns the parts of task, hands each what it needs in its step and passes on what it tells. One thread;
-/// step() never blocks.
+/// Owns the parts of task, calls each in its step and passes on their results. One thread; step() does not
+/// block.
 class Task {
   public:
     Task(const Parts &parts, Settings settings);
@@ -115,52 +114,52 @@ class Task {
     Task &operator=(const Task &) = delete;
 
     using ScrewTables = std::vector<std::vector<motion::LoadCompensation>>;
-    /// Hands settings and tables of screw errors to the motion controller; a refused one comes as a message,
+    /// Sends settings and tables of screw errors to the motion controller; a rejected one becomes a message,
     /// and the first is kept.
     void configure(const std::vector<motion::SetParameter> &parameters, const ScrewTables &tables = {});
-    /// One setting, later on; whoever asks has seen that it is no time at which it cannot be.
+    /// Changes one setting later; the caller has checked that it may change now.
     void change(const motion::SetParameter &parameter) {
         shown_settings_.note(parameter);
         motion_.send(parameter);
     }
-    /// The settings of motion, with all changes.
+    /// The current settings of motion.
     const motion::Settings &motion_settings() const { return shown_settings_.settings(); }
-    /// All settings handed over are answered; an error, once they are, when one or a table was refused.
+    /// All settings have been answered; then an error when one or a table was rejected.
     Result<bool> isConfigured() const;
 
     /// Loads parameters and announces the start state to the interpreter. Errors name file, line and column.
     Result<> start();
-    /// Writes the parameter file and waits for it: at the end of the machine, or for one who is to read it.
+    /// Writes the parameter file and waits for it: at the end of the machine, or for a reader of the file.
     Result<> save_parameters();
 
     /// One task cycle at clock time `now_ns`.
     void step(std::int64_t now_ns);
-    /// A cycle of a thread that has taken task over while step() is in a long call: stops, holds, overrides
-    /// and the status. What needs the interpreter is done when the call has ended; other commands wait.
+    /// A cycle of a thread that uses task while step() is in a long call: stops, pauses, overrides and the
+    /// status. Actions that need the interpreter follow when the call has ended; other commands wait.
     void step_apart(std::int64_t now_ns);
     /// For the thread that calls step_apart().
     LongCall &long_call() { return reader_.call().call; }
 
-    /// A line for the operator, whoever has the right to operate.
+    /// A message for the operator, independent of the right to operate.
     void post(MessageKind kind, const std::string &text) { desk_.post(kind, text); }
 
     const Status &status() const { return status_; }
-    /// The planner in force, and wishes of the operator about it.
+    /// The active planner, and the operator's requests to change it.
     PlannerMode &planner_mode() { return planner_mode_; }
     const motion::Status &motion_status() const { return motion_.status(); }
-    /// The last program error with its place, callers and text; nullptr when the last program ended well.
+    /// The last program error with its position, callers and text; nullptr when the last program succeeded.
     const diagnostics::Diagnostic *program_error() const { return run_.error(); }
     const std::string &file_name(std::uint32_t index) const { return reader_.canon().file_name(index); }
-    /// Is told of each move when it is handed to the planner (for figures and pictures).
+    /// Called for each move that is sent to the planner (for figures and pictures).
     void set_move_listener(MoveListener listener) { sequencer_.set_move_listener(std::move(listener)); }
 
   private:
     struct Handler;
     friend struct Handler;
-    /// Starts elsewhere than at the first line: task_search.cc.
+    /// Starts at other lines than the first: task_search.cc.
     struct ProgramResume;
     friend struct ProgramResume;
-    /// What is done beside a long call: task_apart.cc.
+    /// Work during a long call: task_apart.cc.
     struct Meanwhile;
     friend struct Meanwhile;
     /// The status: task_status.cc.
@@ -184,15 +183,15 @@ class Task {
 
     // task_abort.cc
     void fail_program(diagnostics::Diagnostic what, AbortReason reason);
-    /// `isCutShort`: nobody has wanted its end, so that it may be gone on with.
-    void stop_run(const std::string &reason, bool isCutShort = true);
+    /// `interrupted`: the end was not requested, so the program may be continued.
+    void stop_run(const std::string &reason, bool interrupted = true);
     void abort_work(AbortReason reason);
     void begin_clean_up(AbortReason reason);
     void step_clean_up();
 
     void finish_run(Progress progress, const std::string &reason);
     void tell(const std::optional<Ending> &ending);
-    /// Takes the machine's position and state as the program's.
+    /// Sets the program's position and state to those of the machine.
     void synch_interpreter();
     Result<> check_can_run() const;
 
@@ -216,7 +215,7 @@ class Task {
     ProgramRun run_;
     Recovery recovery_;
     Approach approach_;
-    std::optional<LeftPlace> left_;  ///< while the run is held
+    std::optional<LeftPlace> left_;  ///< while the run is paused
     OnAbort on_abort_;
     UserProgram user_program_;
     Sequencer sequencer_;
@@ -224,7 +223,7 @@ class Task {
 
     ShownTools tools_;
     ShownSettings shown_settings_;
-    mailbox::Serial reload_command_ = 0;  ///< LoadToolTable that has not ended; 0: none
+    mailbox::Serial reload_command_ = 0;  ///< the active LoadToolTable; 0: none
     Status status_;
     std::int64_t now_ns_ = 0;
     Apart apart_;

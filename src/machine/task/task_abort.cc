@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The end of work that cannot go on, and what is done after it.
+// The end of work that cannot continue, and the steps after it.
 #include "machine/task/program_resume.hh"
 #include "machine/task/task_apart.hh"
 
 namespace mw::task {
 
 void Task::fail_program(diagnostics::Diagnostic what, AbortReason reason) {
-    if (run_.phase() == RunPhase::CLEANING) {  // no clean-up of a clean-up
+    if (run_.phase() == RunPhase::CLEANING) {  // no clean-up after a clean-up
         sequencer_.abort(static_cast<int>(AbortReason::EXECUTION_ERROR));
         run_.change(RunEvent::CLEANED);
         post(MessageKind::OPERATOR_ERROR, on_abort_.told(what.str()));
         return;
     }
-    // The operator has just typed a line of MDI: that needs no place, and clients compare its texts.
-    const bool isTyped = run_.kind() == RunKind::MDI;
-    post(MessageKind::OPERATOR_ERROR, isTyped ? what.what.message : what.str());
-    if (isTyped && !what.what.hint.empty()) {
+    // The operator has just typed the MDI line: its error needs no position, and clients compare the texts.
+    const bool typed = run_.kind() == RunKind::MDI;
+    post(MessageKind::OPERATOR_ERROR, typed ? what.what.message : what.str());
+    if (typed && !what.what.hint.empty()) {
         post(MessageKind::OPERATOR_TEXT, what.what.hint);
     }
     if (reason == AbortReason::MOTION_FAULT) {
@@ -27,21 +27,22 @@ void Task::fail_program(diagnostics::Diagnostic what, AbortReason reason) {
     abort_work(reason);
 }
 
-void Task::stop_run(const std::string &reason, bool isCutShort) {
+void Task::stop_run(const std::string &reason, bool interrupted) {
     if (run_.isRunning()) {
-        isCutShort ? recovery_.cut_short() : recovery_.end();
+        interrupted ? recovery_.cut_short() : recovery_.end();
         finish_run(Progress::FAILED, reason);
     }
 }
 
 void Task::abort_work(AbortReason reason) {
-    // A machine that goes off has mostly been stopped for another reason before: that clean-up goes on.
-    const bool isFollowing = reason == AbortReason::STATE_NOT_ON && on_abort_.isCleanedUp();
+    // A machine that is switched off has usually been stopped for another reason before: that clean-up
+    // continues.
+    const bool following = reason == AbortReason::STATE_NOT_ON && on_abort_.isCleanedUp();
     desk_.refuse(mdi_queue_.drop(), OVERTAKEN);
     motion_.abort();
     mode_.note_stop(now_ns_);
     sequencer_.sent().clear_line();
-    if (!isFollowing || run_.phase() != RunPhase::CLEANING) {
+    if (!following || run_.phase() != RunPhase::CLEANING) {
         reader_.follow(sequencer_);
         sequencer_.abort(static_cast<int>(reason));
         user_program_.stop();
@@ -58,13 +59,13 @@ void Task::abort_work(AbortReason reason) {
     desk_.refuse(homing_.drop(), OVERTAKEN);
     tell(mode_.give_up("aborted"));
     synch_interpreter();  // spindles and coolant are off
-    if (!isFollowing) {
+    if (!following) {
         begin_clean_up(reason);
     }
     on_abort_.note_abort();
 }
 
-/// What came before trouble is done all the same.
+/// Calls before the error are still executed.
 void Task::begin_clean_up(AbortReason reason) {
     if (!on_abort_.isAsked() || run_.isRunning()) {
         return;
@@ -83,7 +84,7 @@ void Task::begin_clean_up(AbortReason reason) {
 
 void Task::step_clean_up() {
     if (run_.phase() != RunPhase::CLEANING) {
-        return;  // what a new program found of it is carried out before it
+        return;  // calls of the clean-up are executed before the new program
     }
     const motion::Status &motion = motion_.status();
     if (motion.isInPosition || !motion.isEnabled) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What task does while a call into the interpreter takes long: docs/developer/long_calls.md.
+// The work of task while a call into the interpreter takes long: docs/developer/long_calls.md.
 #include "machine/task/task_apart.hh"
 
 #include <fmt/format.h>
@@ -12,17 +12,17 @@
 namespace mw::task {
 namespace {
 
-/// The operator is told of a call that takes longer.
+/// Time after which a long call is reported to the operator.
 constexpr std::int64_t TOLD_AFTER_NS = 1000000000;
 
-/// Neither the interpreter nor the queue that it fills are needed.
+/// True for commands that need neither the interpreter nor its queue.
 bool isTakenApart(const Command &command) {
-    const bool isOverride = std::visit(
+    const bool is_override = std::visit(
         []<class C>(const C &) {
             return command_lists::CarriedOutByMotion<C> || OneOf<C, SpindleOff, MistOff, FloodOff, LubeOff>;
         },
         command);
-    return isOverride || mailbox::isStop(command);
+    return is_override || mailbox::isStop(command);
 }
 
 }  // namespace
@@ -44,8 +44,8 @@ void Task::Meanwhile::begin() {
                               "Stops work; other commands wait until it has finished",
                               place));
     }
-    if (apart.isStopped && !apart.isWaitTold && task.now_ns_ - apart.stopped_ns >= TOLD_AFTER_NS) {
-        apart.isWaitTold = true;
+    if (apart.stopped && !apart.wait_reported && task.now_ns_ - apart.stopped_ns >= TOLD_AFTER_NS) {
+        apart.wait_reported = true;
         const std::string place = gcode::script_stop().place();
         task.post(MessageKind::OPERATOR_ERROR,
                   fmt::format(
@@ -56,9 +56,9 @@ void Task::Meanwhile::begin() {
     }
 }
 
-void Task::Meanwhile::stop_work(const std::string &why, AbortReason reason, bool isCutShort) {
+void Task::Meanwhile::stop_work(const std::string &why, AbortReason reason, bool interrupted) {
     if (!task.apart_.isOn) {
-        task.stop_run(why, isCutShort);
+        task.stop_run(why, interrupted);
         task.abort_work(reason);
         return;
     }
@@ -68,11 +68,11 @@ void Task::Meanwhile::stop_work(const std::string &why, AbortReason reason, bool
     task.sequencer_.stop_spindles();
     task.io_.set_flood(false);
     task.io_.set_mist(false);
-    task.apart_.isStopped = true;
+    task.apart_.stopped = true;
     task.apart_.stopped_ns = task.now_ns_;
     gcode::script_stop().request();
-    task.apart_.later.emplace_back([&here = task, why, reason, isCutShort] {
-        here.stop_run(why, isCutShort);
+    task.apart_.later.emplace_back([&here = task, why, reason, interrupted] {
+        here.stop_run(why, interrupted);
         here.abort_work(reason);
     });
 }
@@ -93,8 +93,8 @@ void Task::step_apart(std::int64_t now_ns) {
     Meanwhile{*this}.end_left_jogs();
     end_requests();
     sequencer_.sent().follow(motion_.status());
-    const bool isGoing = run_.isRunning() && run_.hold() == Hold::GOING && !apart_.isStopped;
-    if (isGoing && motion_.status().mode == motion::Mode::COORD) {
+    const bool moving = run_.isRunning() && run_.hold() == Hold::GOING && !apart_.stopped;
+    if (moving && motion_.status().mode == motion::Mode::COORD) {
         sequencer_.step(now_ns_, Sequencer::TravelRange::NO_TOOLS);
     }
     if (const auto failure = run_.take_failure()) {
@@ -104,7 +104,7 @@ void Task::step_apart(std::int64_t now_ns) {
     parts_.io_port.write(io_.outputs);
     Show{*this}.states();
     Show{*this}.sequencer();
-    if (apart_.isStopped) {  // the run is over, although the call still has to end
+    if (apart_.stopped) {  // the run has ended, although the call still has to end
         status_.task.interp_state = InterpState::IDLE;
         status_.task.exec_state = ExecState::DONE;
         status_.task.isPaused = status_.task.isStoppedByProgram = false;
@@ -122,17 +122,17 @@ bool Task::Meanwhile::end() {
         work();
     }
     task.reader_.call().fixed_executed.reset();
-    return apart.isStopped;
+    return apart.stopped;
 }
 
 bool Task::Meanwhile::end_step(gcode::Step result) {
-    const bool hasFailed = task.apart_.isStopped && result == gcode::Step::FAILED;
-    const std::string failure = hasFailed ? task.reader_.interpreter().error().what.str() : std::string();
-    const bool isStopped = end();
-    if (hasFailed) {
+    const bool failed = task.apart_.stopped && result == gcode::Step::FAILED;
+    const std::string failure = failed ? task.reader_.interpreter().error().what.str() : std::string();
+    const bool stopped = end();
+    if (failed) {
         task.post(MessageKind::OPERATOR_ERROR, failure);
     }
-    return isStopped;
+    return stopped;
 }
 
 void Task::Meanwhile::end_left_jogs() {
@@ -145,7 +145,7 @@ void Task::Meanwhile::end_left_jogs() {
 }
 
 Result<Progress> Task::Meanwhile::settle(mailbox::Serial command) {
-    // Clients read it within 100 ms, the period of a server between them included.
+    // Clients receive it within 100 ms, including the period of a server between them.
     constexpr std::int64_t ANSWERED_WITHIN_NS = 60000000;
     const motion::CommandId order = task.motion_.open_order();
     if (!task.motion_.watch().isSilent() || order == 0) {

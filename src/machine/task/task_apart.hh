@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What task does beside a long call into the interpreter, and where motion does not run.
+// The work of task during a long call into the interpreter, and while motion does not run.
 #pragma once
 
 #include <string>
@@ -8,19 +8,18 @@
 
 namespace mw::task {
 
-/// Works on task; has nothing of its own.
+/// Works on task; has no state.
 struct Task::Meanwhile {
     Task &task;
 
-    /// In each cycle apart; tells the operator when the call takes very long.
+    /// In each cycle during a long call; notifies the operator of a very long one.
     void begin();
-    /// After each long call: does what another thread has left for its end. True when that was a stop: what
-    /// the call was made for is over.
+    /// After each long call: executes the work that was postponed. True for a stop: the purpose of the call
+    /// no longer exists.
     bool end();
-    /// The same after a step of the interpreter; where a stop has made it fail, the operator reads where it
-    /// was.
+    /// The same after a step of the interpreter; if a stop made it fail, its position is reported.
     bool end_step(gcode::Step result);
-    /// What `call` returns, which may wait for a disk: stops are carried out beside it.
+    /// Result of `call`, which may wait for a disk; stops are executed meanwhile.
     template <class Call>
     auto beside(const Call &call) {
         auto result = [&] {
@@ -30,13 +29,13 @@ struct Task::Meanwhile {
         static_cast<void>(end());
         return result;
     }
-    /// The run ends, and what moves or turns stops. Beside a call the latter at once; the run ends, and modes
-    /// return to those of the executed block, after it.
-    void stop_work(const std::string &why, AbortReason reason, bool isCutShort = true);
-    /// Those of clients that have ended or are suspended.
+    /// Ends the run, and stops axes and spindles. During a call the latter happens at once; the run ends, and
+    /// modes return to those of the executed block, after it.
+    void stop_work(const std::string &why, AbortReason reason, bool interrupted = true);
+    /// Ends jogs of clients that have ended or are suspended.
     void end_left_jogs();
-    /// A stop has been handed to motion, and is done: told once motion has taken it, where it does not run
-    /// now.
+    /// A stop has been sent to motion, and is done; if motion does not run now, it is reported when motion
+    /// has executed it.
     Result<Progress> settle(mailbox::Serial command);
 };
 

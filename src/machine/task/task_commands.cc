@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// States, modes and programs: one handler for each of the operator's commands, done, started, or refused with
-// the reason (C5).
+// States, modes and programs: one handler for each of the operator's commands, done, started, or rejected
+// with the reason (C5).
 #include "machine/task/task_apart.hh"
 #include "machine/task/task_handler.hh"
 
@@ -70,22 +70,23 @@ Outcome Task::Handler::operator()(const SetState &command) {
         task.on_abort_.note_work();
         break;
     }
-    const bool isOff = command.state == State::ESTOP || command.state == State::OFF;
-    return isOff ? Meanwhile{task}.settle(id) : asked.outcome;
+    const bool off = command.state == State::ESTOP || command.state == State::OFF;
+    return off ? Meanwhile{task}.settle(id) : asked.outcome;
 }
 
 Outcome Task::Handler::operator()(const SetMode &command) {
     const motion::Status &motion = task.motion_.status();
-    // By hand axes move once all joints are homed. Where joints move now nothing is changed under them.
+    // In manual mode axes can be jogged when all joints are homed. While joints move the mode does not
+    // change.
     const motion::Mode by_hand = motion.isAllHomed ? motion::Mode::TELEOP : motion::Mode::FREE;
-    const bool isWantedAgain = command.mode == Mode::MANUAL && motion.mode != by_hand &&
-                               motion.isInPosition && !task.homing_.isUnderWay();
+    const bool is_wanted_again = command.mode == Mode::MANUAL && motion.mode != by_hand &&
+                                 motion.isInPosition && !task.homing_.isUnderWay();
     task.sequencer_.sent().clear_line();
-    if (command.mode == task.mode_.mode() && !isWantedAgain) {
+    if (command.mode == task.mode_.mode() && !is_wanted_again) {
         return Progress::DONE;
     }
-    const bool isByHand = command.mode == Mode::MANUAL;
-    change_mode(command.mode, isByHand ? by_hand : motion::Mode::COORD, isByHand);
+    const bool is_by_hand = command.mode == Mode::MANUAL;
+    change_mode(command.mode, is_by_hand ? by_hand : motion::Mode::COORD, is_by_hand);
     return Progress::STARTED;
 }
 
@@ -148,42 +149,41 @@ Outcome Task::Handler::operator()(const RecoverProgram &) {
 }
 
 Outcome Task::Handler::operator()(const StepProgram &) {
-    const bool isFirst = !task.run_.isRunning();
-    if (isFirst) {
+    const bool first = !task.run_.isRunning();
+    if (first) {
         const auto started = (*this)(RunProgram{});
         if (!started.has_value()) {
             return started;
         }
-        static_cast<void>(task.run_.take(RunEvent::PAUSE));  // it begins held, and steps from there
+        static_cast<void>(task.run_.take(RunEvent::PAUSE));  // it begins paused, and steps from there
     }
     if (ProgramResume{task}.isReturnNeeded()) {
-        return fail("spindle, coolant or tool are not as when the program was held", {},
+        return fail("spindle, coolant or tool differ from when the program was paused", {},
                     "resume restores them");
     }
-    if (!isFirst && (task.run_.hold() == Hold::STEPPING || task.motion_.status().isStepping)) {
-        return Progress::DONE;  // the step under way ends first
+    if (!first && (task.run_.hold() == Hold::STEPPING || task.motion_.status().isStepping)) {
+        return Progress::DONE;  // the current step ends first
     }
-    // A program that runs pauses at the end of the move under way, at once where nothing moves.
-    const bool isGoing = !isFirst && task.run_.hold() == Hold::GOING;
-    const bool isMoving = task.motion_.status().queue_depth > 0;
-    const bool isPlannerBusy = (isGoing || task.motion_.status().isPaused) && isMoving;
-    const auto taken = task.run_.take(isPlannerBusy && !isFirst ? RunEvent::STEP_MOVE : RunEvent::STEP);
+    // A running program pauses at the end of the current move, or at once when nothing moves.
+    const bool going = !first && task.run_.hold() == Hold::GOING;
+    const bool moving = task.motion_.status().queue_depth > 0;
+    const bool planner_busy = (going || task.motion_.status().isPaused) && moving;
+    const auto taken = task.run_.take(planner_busy && !first ? RunEvent::STEP_MOVE : RunEvent::STEP);
     if (!taken.has_value()) {
         return std::unexpected(taken.error());
     }
-    if (isGoing) {
+    if (going) {
         task.motion_.send(motion::Pause{});
     }
     if (task.run_.isHeld()) {
-        return isPlannerBusy ? send(motion::StepOnce{}) : Outcome(Progress::DONE);
+        return planner_busy ? send(motion::StepOnce{}) : Outcome(Progress::DONE);
     }
     task.motion_.send(motion::Resume{});
     task.sequencer_.set_stepping(true);
-    return isFirst ? Progress::STARTED : Progress::DONE;
+    return first ? Progress::STARTED : Progress::DONE;
 }
 
-/// Where nothing runs there is nothing to do, as with LinuxCNC: screens and buttons ask without looking
-/// first.
+/// Without a run there is nothing to do, as in LinuxCNC: screens and buttons send it without checking.
 Outcome Task::Handler::operator()(const PauseProgram &) {
     if (!task.run_.isRunning()) {
         return Progress::DONE;
@@ -217,12 +217,12 @@ Outcome Task::Handler::operator()(const ResumeProgram &) {
     return send(motion::Resume{});
 }
 
-/// As M1 here and now.
+/// As M1 at this point.
 Outcome Task::Handler::operator()(const StopOptionally &) {
     if (!task.world_.isOptionalStopOn()) {
         return fail("optional stops are off");
     }
-    task.on_stop({.isOptional = true}, task.motion_.status().source.line);
+    task.on_stop({.optional = true}, task.motion_.status().source.line);
     return hold_motion();
 }
 
@@ -262,7 +262,7 @@ Outcome Task::Handler::operator()(const Mdi &command) {
     return start_run(RunKind::MDI, task.senders_.sender(), command.line);
 }
 
-/// Holds for the taps that clients send, until it is set anew or the work is aborted.
+/// For taps sent by clients, until it is set again or the work is aborted.
 Outcome Task::Handler::operator()(const SetSpindleSync &command) {
     if (task.run_.isRunning()) {
         return fail("a program or MDI line runs already");
@@ -278,7 +278,7 @@ Outcome Task::Handler::operator()(const SetSpindleSync &command) {
     return Progress::DONE;
 }
 
-/// As G33.1 with the pitch of the SetSpindleSync before it: a line of MDI of which the end is known already.
+/// As G33.1 with the pitch of the last SetSpindleSync: an MDI line whose end is already known.
 Outcome Task::Handler::operator()(const RigidTapMove &command) {
     const SetSpindleSync &sync = task.mdi_queue_.sync();
     if (!(sync.feed_per_revolution > 0) || sync.isVelocityOnly) {
@@ -308,8 +308,8 @@ Outcome Task::Handler::operator()(const RigidTapMove &command) {
     return started;
 }
 
-/// Where nothing runs it is also the way into manual mode: screens ask for nothing else when their page of
-/// manual controls is opened.
+/// Without a run it also selects manual mode: screens send nothing else when their page of manual controls
+/// opens.
 Outcome Task::Handler::operator()(const SetTeleop &command) {
     const Mode mode = task.run_.isRunning() ? task.mode_.mode() : Mode::MANUAL;
     change_mode(mode, command.isTeleop ? motion::Mode::TELEOP : motion::Mode::FREE);

@@ -14,12 +14,12 @@
 
 namespace mw::task {
 
-/// Who is to read why a jog was refused: a client that renews it does so many times a second.
+/// Receiver of the reason why a jog was rejected: a client that renews it does so many times a second.
 inline RefusalIsFor reader_of_refusal(const JogContinuous &jog) noexcept {
     return jog.isRenewal ? RefusalIsFor::ITS_CLIENT : RefusalIsFor::EVERYBODY;
 }
 
-/// What a handler says: started and going on, done, or a refusal.
+/// Result of a handler: started, done, or rejected.
 struct Task::Handler {
     Task &task;
     mailbox::Serial id;
@@ -88,9 +88,9 @@ struct Task::Handler {
     Outcome operator()(const C &command) {
         if constexpr (command_lists::JointSetting<C>) {
             const auto changes = joint_settings(command);
-            const bool isHoming = task.homing_.isUnderWay() || task.motion_.status().isHoming;
+            const bool homing = task.homing_.isUnderWay() || task.motion_.status().isHoming;
             const auto checked =
-                check_settings(changes, task.motion_settings(), {task.settings_.num_joints, isHoming});
+                check_settings(changes, task.motion_settings(), {task.settings_.num_joints, homing});
             if (!checked.has_value()) {
                 return std::unexpected(checked.error());
             }
@@ -146,10 +146,10 @@ struct Task::Handler {
         task.motion_.send(body);
         return Progress::DONE;
     }
-    /// On its path; a program that has left its place has none.
+    /// Pauses on its path; a program that has left its path has none.
     Outcome hold_motion() {
-        const bool isOnPath = task.run_.hold() != Hold::AWAY && task.run_.hold() != Hold::PROPOSED;
-        return isOnPath ? send(motion::Pause{}) : Outcome(Progress::DONE);
+        const bool on_path = task.run_.hold() != Hold::AWAY && task.run_.hold() != Hold::PROPOSED;
+        return on_path ? send(motion::Pause{}) : Outcome(Progress::DONE);
     }
     static Outcome done(const Result<> &result) {
         return result.has_value() ? Outcome(Progress::DONE) : std::unexpected(result.error());
@@ -158,7 +158,7 @@ struct Task::Handler {
         task.post(kind, text);
         return Progress::DONE;
     }
-    /// Done when motion has taken it.
+    /// Done when motion has accepted it.
     Outcome order(const motion::CommandBody &body, RefusalIsFor reader = RefusalIsFor::EVERYBODY) {
         task.orders_.begin(id, task.motion_.send(body), reader, task.now_ns_);
         return Progress::STARTED;
@@ -167,10 +167,10 @@ struct Task::Handler {
         return spindle < task.settings_.num_spindles ? Result<>{}
                                                      : fail("there is no spindle " + std::to_string(spindle));
     }
-    /// Done when motion has agreed, to joints where `mayMoveJoints` and it cannot move axes.
-    void change_mode(Mode mode, motion::Mode motion_mode, bool mayMoveJoints = false) {
+    /// Done when motion has changed its mode, to joint mode if `may_move_joints` and axes cannot be moved.
+    void change_mode(Mode mode, motion::Mode motion_mode, bool may_move_joints = false) {
         const motion::CommandId order = task.motion_.send(motion::SetMode{motion_mode});
-        task.mode_.begin(mode, motion_mode, id, order, task.now_ns_, mayMoveJoints);
+        task.mode_.begin(mode, motion_mode, id, order, task.now_ns_, may_move_joints);
     }
     Outcome start_run(RunKind kind, mailbox::Authority rights, const std::string &line = {}) {
         Outcome started = task.run_.start(kind, id, line);

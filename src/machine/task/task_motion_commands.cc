@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Handlers of what the operator asks of joints, axes, spindles and tools (C5).
+// Handlers of the operator's commands for joints, axes, spindles and tools (C5).
 #include <cmath>
 
 #include <fmt/format.h>
@@ -63,7 +63,7 @@ Outcome Task::Handler::operator()(const JogStop &command) {
     return send(motion::JogStop{{command.isJoint, command.index}});
 }
 
-/// Done when the file is read and on its way to motion.
+/// Done when the file has been read and sent to motion.
 Outcome Task::Handler::operator()(const LoadCompensation &command) {
     const auto allowed = Meanwhile{task}.beside([&] { return task.senders_.check_file(command.path); });
     if (!allowed.has_value()) {
@@ -105,7 +105,7 @@ Outcome Task::Handler::operator()(const LoadToolTable &) {
 
 Outcome Task::Handler::operator()(const ConfirmToolChange &) {
     if (!task.parts_.io_port.isPersonAsked()) {
-        return fail("nobody is asked to change a tool");
+        return fail("no tool change was requested");
     }
     task.parts_.io_port.confirm_tool_change();
     return Progress::DONE;

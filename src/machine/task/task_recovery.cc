@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The journal of a program that runs, and going on with one that was cut short (docs/integrator/journal.md).
+// The journal of a running program, and continuing an interrupted one (docs/integrator/journal.md).
 #include <cmath>
 
 #include <fmt/format.h>
@@ -9,13 +9,13 @@
 
 namespace mw::task {
 
-/// A program is to begin; the interpreter has been synched and nothing of it is read.
+/// A program will start; the interpreter has been synched and has read none of it.
 void Task::ProgramResume::prepare_journal() {
     if (!task.recovery_.isOn() || !task.run_.isProgram()) {
         return;
     }
     StartRecord record;
-    record.isConfined = task.senders_.isRunConfined();
+    record.confined = task.senders_.isRunConfined();
     record.machine = task.world_.snapshot();
     record.isBlockDelete = task.world_.isBlockDeleteOn();
     record.isOptionalStop = task.world_.isOptionalStopOn();
@@ -47,11 +47,11 @@ void Task::ProgramResume::show_journal() {
     task.recovery_.show(task.status_.recovery);
 }
 
-/// Once a cycle, after the status: no client that outlives a crash has seen less than the journal says.
+/// Once a cycle, after the status: clients that survive a crash have seen at least the state in the journal.
 void Task::ProgramResume::note_place() {
-    const bool isUnderWay =
+    const bool active =
         task.run_.isProgram() && task.run_.phase() >= RunPhase::READING && task.run_.hold() != Hold::PROPOSED;
-    if (isUnderWay && task.recovery_.isOn()) {
+    if (active && task.recovery_.isOn()) {
         const motion::SourceTag source = task.sequencer_.place().source;
         const geometry::Pose place = motion::programmed_position(task.motion_.status());
         task.recovery_.step(task.now_ns_, {source.block, source.line, place, task.io_.outputs.tool_number},
@@ -67,15 +67,15 @@ void Task::ProgramResume::note_doubt() {
     }
 }
 
-/// What is asked before anything is calculated.
+/// Checks before the calculation.
 Result<> Task::ProgramResume::check_recovery() const {
     const auto offer = task.recovery_.offer();
     if (!offer.has_value()) {
         return std::unexpected(offer.error());
     }
     if ((*offer)->progress->tools != sum_of_tools(task.parts_.tools)) {
-        return fail("the tool table has been changed since the program was cut short", {},
-                    fmt::format("run it from line {}, or the nearest that can: that reckons with the tools "
+        return fail("the tool table has been changed since the program was interrupted", {},
+                    fmt::format("run it from line {}, or the nearest possible: that uses the tools "
                                 "as they are now",
                                 (*offer)->progress->line));
     }
@@ -98,7 +98,7 @@ Result<> Task::ProgramResume::open_recovery() {
     return opened;
 }
 
-/// The program is open, the axes are at rest.
+/// The program is open, the axes are stopped.
 void Task::ProgramResume::begin_recovery() {
     task.run_.change(RunEvent::SEARCH);
     task.synch_interpreter();
@@ -108,7 +108,7 @@ void Task::ProgramResume::begin_recovery() {
         return;
     }
     auto record = StartRecord::unpack((*offer)->start.state);
-    if (record.has_value() && record->isConfined) {
+    if (record.has_value() && record->confined) {
         task.senders_.limit_run();
     }
     begin_block_search(record.has_value() ? Result<StartRecord>(std::move(*record))
@@ -163,7 +163,7 @@ Result<Progress> Task::ProgramResume::calculate_again() {
     return Progress::DONE;
 }
 
-/// It is the program that ran: once more, with the tools as they are now.
+/// The calculated program is the one that ran: calculates it again with the current tools.
 void Task::ProgramResume::begin_with_tools_now() {
     const FoundModes found = task.reader_.search()->found();
     auto record = with_tools_now(task.reader_.recorded(), found, task.parts_.tools);
@@ -179,20 +179,19 @@ void Task::ProgramResume::begin_with_tools_now() {
     begin_block_search(std::move(record), std::nullopt);
 }
 
-/// An offset that the program has not taken from the table stays what it was.
+/// An offset that the program has not taken from the table does not change.
 bool Task::ProgramResume::isOldOffsetKept() const {
     const FoundModes found = task.reader_.search()->found();
     const int index = found.tool > 0 ? task.parts_.tools.index_of_tool(found.tool) : -1;
     const geometry::Pose before = task.status_.offsets.tool;
-    const bool isSame = found.tool_offset.has_value() && found.tool_offset->offset == before;
-    return index >= 0 && isSame && before != geometry::Pose{} &&
+    const bool same = found.tool_offset.has_value() && found.tool_offset->offset == before;
+    return index >= 0 && same && before != geometry::Pose{} &&
            task.parts_.tools.entry(index).offset != before;
 }
 
 void Task::ProgramResume::propose_recovery() {
     if (task.run_.kind() == RunKind::ANEW && isOldOffsetKept()) {
-        give_up(
-            "the tool offset in force is not from the table as it is now: no G43 of the program has set it");
+        give_up("the active tool offset is not from the current table: no G43 of the program has set it");
         return;
     }
     ApproachPlan plan;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A held program whose axes are released, and the way back to its place.
+// A paused program whose axes are released, and the return to its position.
 #include <cmath>
 
 #include <fmt/format.h>
@@ -16,7 +16,7 @@ void note_tools(LeftPlace &left, const ToolStore &tools) {
 
 }  // namespace
 
-/// After each command and each cycle: what an operator changes from here on is restored when it goes on.
+/// After each command and each cycle: later changes by an operator are restored at the resume.
 void Task::ProgramResume::watch_hold() {
     if (!task.run_.isHeld()) {
         task.left_.reset();
@@ -24,10 +24,10 @@ void Task::ProgramResume::watch_hold() {
     }
     const io::Outputs &io = task.io_.outputs;
     if (task.left_.has_value()) {
-        // A change of the tool that the program has asked for goes on in a hold: its tool is the program's.
-        const bool isProgramChanging = task.sequencer_.exec_state() == ExecState::WAITING_FOR_IO;
-        task.left_->tool = isProgramChanging ? io.tool_number : task.left_->tool;
-        if (isProgramChanging && areToolsChanged()) {
+        // A tool change of the program continues during a pause: its tool is the program's.
+        const bool program_changing = task.sequencer_.exec_state() == ExecState::WAITING_FOR_IO;
+        task.left_->tool = program_changing ? io.tool_number : task.left_->tool;
+        if (program_changing && areToolsChanged()) {
             note_tools(*task.left_, task.parts_.tools);
         }
         return;
@@ -47,7 +47,7 @@ bool Task::ProgramResume::areToolsChanged() const {
            sum_of_tools(task.parts_.tools) != task.left_->tools;
 }
 
-/// Spindle or coolant that the program had on are not on any more.
+/// A spindle or coolant that the program had switched on is off.
 bool Task::ProgramResume::isSomethingOff() const {
     const LeftPlace &left = *task.left_;
     const io::Outputs &io = task.io_.outputs;
@@ -55,7 +55,7 @@ bool Task::ProgramResume::isSomethingOff() const {
            (left.isFloodOn && !io.coolant_flood) || left.tool != io.tool_number;
 }
 
-/// What the planner has not done waits in the queue again; motion stands and forgets it.
+/// Moves that the planner has not done return to the queue; motion stops and drops them.
 Result<> Task::ProgramResume::take_path_back() {
     const motion::Status &motion = task.motion_.status();
     if (motion.current_velocity != 0) {
@@ -72,21 +72,21 @@ Result<> Task::ProgramResume::take_path_back() {
 
 Result<Progress> Task::ProgramResume::release(mailbox::Serial command) {
     const Hold hold = task.run_.hold();
-    const bool isAway = hold == Hold::AWAY;
-    if (isAway && task.motion_.status().mode != motion::Mode::COORD) {
+    const bool away = hold == Hold::AWAY;
+    if (away && task.motion_.status().mode != motion::Mode::COORD) {
         return Progress::DONE;
     }
     if (task.run_.phase() < RunPhase::READING) {
         return fail("the program has not begun");
     }
-    if (!isAway && hold != Hold::PROPOSED) {
+    if (!away && hold != Hold::PROPOSED) {
         const auto taken = take_path_back();
         if (!taken.has_value()) {
             return std::unexpected(taken.error());
         }
     }
-    // Away, but motion, which had not come to rest yet, did not let them go: it is asked again.
-    const auto released = isAway ? Result<>{} : task.run_.take(RunEvent::RELEASE);
+    // The axes are released, but motion had not stopped yet and rejected it: tries again.
+    const auto released = away ? Result<>{} : task.run_.take(RunEvent::RELEASE);
     if (!released.has_value()) {
         return std::unexpected(released.error());
     }
@@ -96,17 +96,17 @@ Result<Progress> Task::ProgramResume::release(mailbox::Serial command) {
     return Progress::STARTED;
 }
 
-/// Resume of a program that cannot simply go on: the way back, and what has to be switched on again.
+/// Resumes a program that cannot simply continue: the return path, and outputs to be switched on again.
 Result<Progress> Task::ProgramResume::come_back() {
     const motion::Status &motion = task.motion_.status();
-    const bool isAway = task.run_.hold() == Hold::AWAY;
-    if (isAway && !motion.isInPosition) {
+    const bool away = task.run_.hold() == Hold::AWAY;
+    if (away && !motion.isInPosition) {
         return fail("the machine moves");
     }
     if (areToolsChanged()) {
         return calculate_again();
     }
-    const auto taken = isAway ? Result<>{} : take_path_back();
+    const auto taken = away ? Result<>{} : take_path_back();
     const auto proposed = taken.has_value() ? task.run_.take(RunEvent::PROPOSE) : taken;
     if (!proposed.has_value()) {
         return std::unexpected(proposed.error());

@@ -43,13 +43,13 @@ void Task::ProgramResume::step() {
     }
 }
 
-/// `reason` is a copy: the search that told it ends here.
+/// `reason` is a copy: the search that owns it ends here.
 void Task::ProgramResume::give_up(std::string reason) {
     drop();
     task.post(MessageKind::OPERATOR_ERROR, reason);
     task.run_.set_error({diagnostics::Severity::ERROR, {reason}});
     if (task.run_.isHeld()) {
-        task.motion_.send(motion::Resume{});  // nothing is there to be held any more
+        task.motion_.send(motion::Resume{});  // nothing is paused any more
     }
     task.finish_run(Progress::FAILED, reason);
 }
@@ -61,13 +61,13 @@ void Task::ProgramResume::drop() {
     }
 }
 
-/// As high as Z goes: whatever stands on the table is below.
+/// The maximum Z position, above everything on the table.
 double Task::ProgramResume::safe_height() const {
     constexpr unsigned Z_BIT = 1U << geometry::AXIS_Z;
     constexpr double NO_LIMIT = 1e9;
     const double highest = task.motion_.status().axis[geometry::AXIS_Z].max_limit;
-    const bool isKnown = (task.settings_.axis_mask & Z_BIT) != 0 && std::fabs(highest) < NO_LIMIT;
-    return isKnown ? highest : -NO_LIMIT;
+    const bool known = (task.settings_.axis_mask & Z_BIT) != 0 && std::fabs(highest) < NO_LIMIT;
+    return known ? highest : -NO_LIMIT;
 }
 
 void Task::ProgramResume::complete(ApproachPlan &plan) const {
@@ -80,19 +80,19 @@ void Task::ProgramResume::complete(ApproachPlan &plan) const {
     plan.find_way(safe_height(), find_change_place(at, plan));
 }
 
-/// As M6 does it: the quill, G30, then TOOL_CHANGE_POSITION, which the canon sees to.
+/// As M6: the quill, G30, then TOOL_CHANGE_POSITION, which the canon adds.
 geometry::Pose Task::ProgramResume::find_change_place(geometry::Pose at, ApproachPlan &plan) const {
     constexpr int G30 = 5181;
     const gcode::BeforeToolChange &wanted = task.settings_.interpreter.tool_change;
     plan.change_moves.clear();
-    if (wanted.isQuillRaised) {
+    if (wanted.quill_raised) {
         at[geometry::AXIS_Z] = 0;
         plan.change_moves.push_back(at);
     }
-    if (wanted.isAtG30) {
+    if (wanted.at_g30) {
         for (int axis = 0; axis < geometry::AXIS_COUNT; ++axis) {
-            const bool isThere = (task.settings_.axis_mask >> axis & 1U) != 0;
-            at[axis] = isThere ? task.reader_.interpreter().parameter(G30 + axis) : at[axis];
+            const bool present = (task.settings_.axis_mask >> axis & 1U) != 0;
+            at[axis] = present ? task.reader_.interpreter().parameter(G30 + axis) : at[axis];
         }
         plan.change_moves.push_back(at);
     }
@@ -120,12 +120,12 @@ void Task::ProgramResume::propose(ApproachPlan plan) {
     complete(plan);
     const std::string way = approach_text(plan);
     task.post(MessageKind::OPERATOR_TEXT,
-              fmt::format("to go on at line {}: {}; resume confirms it, abort drops it", plan.line,
+              fmt::format("to continue at line {}: {}; resume confirms it, abort drops it", plan.line,
                           way.empty() ? "nothing has to be brought about" : way));
     task.approach_.propose(std::move(plan), task.now_ns_);
 }
 
-/// Lines that the program has skipped or not before it was cut short are so behind that, too.
+/// Restores block delete and optional stop as they were before the interruption.
 void Task::ProgramResume::restore_switches(const StartRecord &record) {
     if (task.run_.kind() == RunKind::RECOVERY) {
         task.world_.set_block_delete(record.isBlockDelete);
@@ -133,20 +133,20 @@ void Task::ProgramResume::restore_switches(const StartRecord &record) {
     }
 }
 
-/// The calls of the approach come first, then what the program says from the line on.
+/// The calls of the approach come first, then those of the program from the line on.
 void Task::ProgramResume::go_on(const ApproachPlan &plan) {
     auto last = gcode::Step::OK;
     if (task.reader_.search() != nullptr) {
-        const bool isRecovery = task.run_.isRecovery();
-        last = isRecovery ? task.reader_.search()->last_step() : last;
-        if (isRecovery) {
+        const bool is_recovery = task.run_.isRecovery();
+        last = is_recovery ? task.reader_.search()->last_step() : last;
+        if (is_recovery) {
             restore_switches(task.reader_.recorded());
             task.recovery_.begin_again(task.reader_.recorded(), task.reader_.search()->sum().value(),
                                        sum_of_tools(task.parts_.tools));
         }
         task.reader_.accept_search();
         task.reader_.note_codes();
-        if (!isRecovery) {
+        if (!is_recovery) {
             begin_journal(task.reader_.canon().blocks() + 1);
         }
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What task tells at the end of its cycle.
+// The status that task writes at the end of its cycle.
 #include <algorithm>
 #include <cmath>
 
@@ -11,35 +11,34 @@
 namespace mw::task {
 namespace {
 
-/// What the tool in the spindle has cut since that status: the axes fed while a spindle turned.
+/// Cutting time and length of the tool in the spindle since that status: axes at feed while a spindle ran.
 tools::CutLife cut_since(const Status &status, std::int64_t now_ns) {
     constexpr double S_PER_NS = 1e-9;
     const double elapsed_s = static_cast<double>(now_ns - status.time_ns) * S_PER_NS;
     const MoveKind kind = status.trajectory.move_kind;
-    const bool isFeeding = kind == MoveKind::FEED || kind == MoveKind::ARC;
-    const bool isTurning =
+    const bool feeding = kind == MoveKind::FEED || kind == MoveKind::ARC;
+    const bool turning =
         std::ranges::any_of(status.spindles, [](const SpindleStatus &spindle) { return spindle.isOn; });
     const double velocity = std::abs(status.trajectory.current_velocity);
-    const bool isCutting = isFeeding && isTurning && velocity > 0 && status.tool.in_spindle > 0;
-    return isCutting ? tools::CutLife{elapsed_s, velocity * elapsed_s} : tools::CutLife{};
+    const bool cutting = feeding && turning && velocity > 0 && status.tool.in_spindle > 0;
+    return cutting ? tools::CutLife{elapsed_s, velocity * elapsed_s} : tools::CutLife{};
 }
 
-/// Modal codes of the move that runs, which comes from `source`; where nothing runs, those of the
-/// interpreter. `isExecuted`: it is the block that an abort would return to, and no earlier one on a path run
-/// in reverse.
+/// Modal codes of the current move, which comes from `source`; without a run those of the interpreter.
+/// `executed`: it is the block to which an abort would return, not an earlier one of a reverse run.
 gcode::ActiveCodes codes_in_force(const ProgramReader &reader, const ProgramRun &run,
-                                  const motion::SourceTag &source, bool isExecuted) {
+                                  const motion::SourceTag &source, bool executed) {
     const ModalCodeHistory &trail = reader.codes();
-    const bool isReadAhead = run.isRunning() && run.phase() != RunPhase::SEARCHING &&
-                             run.phase() != RunPhase::STARTING && !trail.isEmpty();
+    const bool read_ahead = run.isRunning() && run.phase() != RunPhase::SEARCHING &&
+                            run.phase() != RunPhase::STARTING && !trail.isEmpty();
     const int line = run.isProgram() ? source.line : 0;
-    if (isReadAhead && isExecuted && reader.gcode() != nullptr) {
+    if (read_ahead && executed && reader.gcode() != nullptr) {
         return numbered(reader.executed_codes(), line);
     }
-    if (isReadAhead) {
+    if (read_ahead) {
         return trail.at(source.block, line);
     }
-    // A line of MDI has no number, nor has the start-up code.
+    // An MDI line has no number, nor has the start-up code.
     const gcode::ActiveCodes read = reader.interpreter().active_codes();
     return numbered(read, run.kind() != RunKind::MDI && !trail.isEmpty() ? read.g[0] : 0);
 }
@@ -82,7 +81,7 @@ void Task::Show::states() {
     shown_task.interp_state = task.run_.shown();
     shown_task.isAway = task.run_.hold() == Hold::AWAY;
     shown_task.queued_mdi = task.mdi_queue_.size();
-    constexpr int INTERPRETER_ERROR = 5;  // as clients know it
+    constexpr int INTERPRETER_ERROR = 5;  // LinuxCNC's number
     shown_task.error_code = task.run_.error() != nullptr ? INTERPRETER_ERROR : 0;
     task.status_.settings = task.shown_settings_.shown();
     task.status_.io.coolant.isMistOn = task.io_.outputs.coolant_mist;
@@ -103,7 +102,7 @@ void Task::Show::sequencer() {
     shown_task.waiting = task.homing_.isUnderWay() ? Waiting{WaitFor::HOMING, task.homing_.joint()}
                                                    : task.sequencer_.waiting_for();
     shown_task.delay_left_s = task.sequencer_.dwell_left_s(task.now_ns_);
-    shown_task.isInputTimedOut = task.sequencer_.input().isTimedOut;
+    shown_task.isInputTimedOut = task.sequencer_.input().timed_out;
     shown_task.motion_line = task.sequencer_.sent().line();
 }
 
@@ -119,11 +118,11 @@ void Task::Show::program() {
         show_announced(task.reader_.canon(), task.status_.offsets);
     }
     const motion::Status &motion = task.motion_.status();
-    const bool isMoving = motion.active_path_id != 0;
+    const bool moving = motion.active_path_id != 0;
     const motion::SourceTag under_way = task.sequencer_.place().source;
-    const bool isExecuted = !isMoving || motion.source.block == under_way.block;
+    const bool executed = !moving || motion.source.block == under_way.block;
     task.status_.codes =
-        shown(codes_in_force(task.reader_, task.run_, isMoving ? motion.source : under_way, isExecuted));
+        shown(codes_in_force(task.reader_, task.run_, moving ? motion.source : under_way, executed));
     task.approach_.show(task.status_.approach, task.status_.offsets,
                         shown(task.reader_.interpreter().active_codes()));
 }
@@ -141,13 +140,13 @@ void Task::Show::all() {
     sequencer();
     program();
     tools();
-    // A tool that is being looked for is not ready yet; no tool (T0) is ready at once.
+    // A tool that is being prepared is not ready yet; no tool (T0) is ready at once.
     const int selected = task.sequencer_.selected_tool_index();
-    const bool isNone = selected == 0 && !task.parts_.tools.isRandom();
-    const bool isReady = isNone || task.io_.action() != io::ToolAction::PREPARING;
+    const bool none = selected == 0 && !task.parts_.tools.isRandom();
+    const bool ready = none || task.io_.action() != io::ToolAction::PREPARING;
     task.status_.tool.in_spindle = task.io_.outputs.tool_number;
     task.status_.tool.from_pocket = task.io_.outputs.tool_from_pocket;
-    task.status_.tool.prepared_index = isReady ? selected : task.status_.tool.prepared_index;
+    task.status_.tool.prepared_index = ready ? selected : task.status_.tool.prepared_index;
     task.status_.tool.table_version = task.tools_.version();
     const tools::CutLife life = task.parts_.tools.life(task.io_.outputs.tool_number);
     task.status_.tool.cut_time_s = life.time_s;

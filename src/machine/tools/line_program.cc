@@ -23,7 +23,7 @@ extern char **environ;
 namespace mw::machine {
 namespace {
 
-/// Longest line, and most that waits for a program that does not read. [bytes]
+/// Maximum length of a line, and of the data that waits for a program that does not read. [bytes]
 constexpr std::size_t MOST_BYTES = 65536;
 
 void close_end(int &fd) {
@@ -42,7 +42,7 @@ std::string ending_of(int status) {
 Result<LineProgram> LineProgram::start(const std::vector<std::string> &words, const std::string &folder) {
     LineProgram made;
     made.name_ = words.front();
-    // Sockets, as a pipe whose reader has died would send a signal to us.
+    // Sockets, because a pipe without a reader would send a signal to this process.
     int input[2] = {-1, -1}, output[2] = {-1, -1};
     if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, input) != 0 ||
         ::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, output) != 0) {
@@ -108,7 +108,7 @@ void LineProgram::end() noexcept {
     close_end(in_);
     close_end(out_);
     constexpr int SIGNALS[] = {0, SIGTERM, SIGKILL};
-    constexpr int LOOKS = 50;  // for each
+    constexpr int LOOKS = 50;  // for each stage
     for (const int signal : SIGNALS) {
         if (pid_ != 0 && signal != 0) {
             ::kill(-pid_, signal);
@@ -129,7 +129,7 @@ Result<> LineProgram::write(const std::string &line) {
         return fail(fmt::format("'{}' cannot be asked: {}", name_, *ended));
     }
     if (unsent_.size() + line.size() > MOST_BYTES) {
-        return fail(fmt::format("'{}' does not read what it is told", name_));
+        return fail(fmt::format("'{}' does not read its input", name_));
     }
     unsent_ += line + '\n';
     flush();
@@ -161,8 +161,8 @@ std::optional<std::string> LineProgram::read() {
     flush();
     take_bytes();
     std::size_t end = received_.find('\n');
-    const bool isTooLong = end == std::string::npos && received_.size() >= MOST_BYTES;
-    if (end == std::string::npos && !isTooLong) {
+    const bool too_long = end == std::string::npos && received_.size() >= MOST_BYTES;
+    if (end == std::string::npos && !too_long) {
         return std::nullopt;
     }
     end = std::min(end, received_.size());

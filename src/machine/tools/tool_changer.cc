@@ -50,15 +50,15 @@ void ManualToolChange::step(std::int64_t now_ns) {
     if (!change_) {
         changed_ = false;
         asked_ns_ = -1;
-        isConfirmed_ = false;
+        confirmed_ = false;
         return;
     }
     if (asked_ns_ < 0) {
         asked_ns_ = now_ns;
         notice_(text_of(hand_, number_));
     }
-    const bool isDone = hand_ == ToolHand::SIMULATED ? now_ns - asked_ns_ >= CHANGE_TIME_NS : isConfirmed_;
-    changed_ = isDone || change_button_;
+    const bool done = hand_ == ToolHand::SIMULATED ? now_ns - asked_ns_ >= CHANGE_TIME_NS : confirmed_;
+    changed_ = done || change_button_;
 }
 
 }  // namespace mw::machine

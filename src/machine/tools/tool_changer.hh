@@ -12,13 +12,13 @@
 
 namespace mw::machine {
 
-/// Who puts the tool in.
+/// How a tool is loaded by hand.
 enum class ToolHand : std::uint8_t {
-    SIMULATED,  ///< nobody: a change is confirmed after a short while
+    SIMULATED,  ///< no person: a change is confirmed after a short delay
     PERSON,     ///< confirmed by the pin change_button, or by confirm()
 };
 
-/// Each change is told to `notice`.
+/// Each change is reported to `notice`.
 class ManualToolChange {
   public:
     using Notice = std::function<void(const std::string &)>;
@@ -29,16 +29,16 @@ class ManualToolChange {
 
     /// A person is asked to change the tool.
     bool isAsking() const {
-        return hal_ != nullptr && hand_ == ToolHand::PERSON && asked_ns_ >= 0 && !isConfirmed_;
+        return hal_ != nullptr && hand_ == ToolHand::PERSON && asked_ns_ >= 0 && !confirmed_;
     }
-    /// The person says that it is done; without effect when nobody asks.
-    void confirm() { isConfirmed_ = isConfirmed_ || isAsking(); }
+    /// The person confirms the change; no effect when none is requested.
+    void confirm() { confirmed_ = confirmed_ || isAsking(); }
 
   private:
     hal::Hal *hal_ = nullptr;
     int comp_id_ = 0;
     ToolHand hand_ = ToolHand::SIMULATED;
-    bool isConfirmed_ = false;
+    bool confirmed_ = false;
     Notice notice_;
     hal::UserPin<bool> change_, changed_, change_button_;
     hal::UserPin<std::int32_t> number_;

@@ -63,10 +63,10 @@ void ToolData::note_cut(int toolno, const tools::CutLife &cut) {
 }
 
 Result<> ToolData::set_entry(int index, const gcode::ToolEntry &entry) {
-    const bool isCopy = index == 0 && !isRandom();
-    const bool isThere = index >= 0 && index < count();
-    const bool isSame = isThere && (isCopy || table_.entry(index).toolno == entry.toolno);
-    const int found = isSame ? index : table_.index_of_tool(entry.toolno);
+    const bool is_copy = index == 0 && !isRandom();
+    const bool present = index >= 0 && index < count();
+    const bool same = present && (is_copy || table_.entry(index).toolno == entry.toolno);
+    const int found = same ? index : table_.index_of_tool(entry.toolno);
     if (found < 0) {
         return fail("the tool table has no tool " + std::to_string(entry.toolno));
     }
@@ -110,11 +110,11 @@ namespace {
 
 Result<std::unique_ptr<task::ToolStore>> open_kept(const MachineConfig &machine, diagnostics::Sink &sink,
                                                    const ToolOptions &options) {
-    const auto changer = machine.isRandomToolchanger ? tools::Changer::RANDOM : tools::Changer::FIXED;
-    journal::Writer *const keeper = options.isWaitedFor ? nullptr : options.keeper;
+    const auto changer = machine.is_random_toolchanger ? tools::Changer::RANDOM : tools::Changer::FIXED;
+    journal::Writer *const keeper = options.awaited ? nullptr : options.keeper;
     if (!machine.tool_database.empty()) {
         return ToolDatabase::start(
-            {machine.tool_database, machine.ini_folder, changer, options.isWaitedFor, keeper}, sink);
+            {machine.tool_database, machine.ini_folder, changer, options.awaited, keeper}, sink);
     }
     return ToolFile::load(machine.tool_table_file, sink, changer, keeper);
 }
@@ -124,8 +124,8 @@ Result<std::unique_ptr<task::ToolStore>> open_kept(const MachineConfig &machine,
 Result<std::unique_ptr<task::ToolStore>> open_tools(const MachineConfig &machine, diagnostics::Sink &sink,
                                                     const ToolOptions &options) {
     auto made = open_kept(machine, sink, options);
-    const bool hasPlace = !machine.tool_database.empty() || !machine.tool_table_file.empty();
-    if (made.has_value() && options.keeper != nullptr && hasPlace) {
+    const bool has_place = !machine.tool_database.empty() || !machine.tool_table_file.empty();
+    if (made.has_value() && options.keeper != nullptr && has_place) {
         const std::filesystem::path path = machine.tool_database.empty()
                                                ? std::filesystem::path(machine.tool_table_file + ".life")
                                                : std::filesystem::path(machine.ini_folder) / "tool.life";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The tools of a machine in memory, and where they are kept: a file or a database program.
+// The tools of a machine in memory, and their storage: a file or a database program.
 #pragma once
 
 #include <memory>
@@ -13,7 +13,7 @@
 
 namespace mw::machine {
 
-/// Changes stay in memory: for those who look ahead. Not realtime; one thread.
+/// Changes are kept in memory only: for calculations ahead. Not realtime; one thread.
 class ToolData : public task::ToolStore {
   public:
     explicit ToolData(tools::Table table) : table_(std::move(table)) {}
@@ -33,9 +33,8 @@ class ToolData : public task::ToolStore {
     Result<> reload() override { return {}; }
     std::uint64_t version() const override { return version_; }
 
-    /// Keeps the life of tools in this file from here on; `sink` is warned when it cannot be read. It is
-    /// written at changes of the tool, after each minute in cut, and by save_life(): by `keeper`, who
-    /// outlives this.
+    /// Stores tool life in this file from now on; `sink` receives a warning when it cannot be read. Written
+    /// by `keeper`, which outlives this: at tool changes, after each minute of cutting, and by save_life().
     void keep_life(const std::string &path, journal::Writer &keeper, diagnostics::Sink &sink);
     void save_life();
     void note_cut(int toolno, const tools::CutLife &cut) override;
@@ -44,9 +43,9 @@ class ToolData : public task::ToolStore {
     const tools::Table &table() const { return table_; }
 
   protected:
-    /// Takes the tools that were read; what the spindle of a fixed changer holds stays.
+    /// Uses the tools that were read; the spindle of a fixed changer keeps its tool.
     void replace(tools::Table table);
-    /// As it was before a change that could not be kept.
+    /// Restores the table before a change that could not be stored.
     void restore(tools::Table table) {
         table_ = std::move(table);
         ++version_;
@@ -59,22 +58,23 @@ class ToolData : public task::ToolStore {
     tools::Table table_;
     std::uint64_t version_ = 1;
     tools::LifeBook life_;
-    std::string life_path_;  ///< empty: nowhere
+    std::string life_path_;  ///< empty: not stored
     journal::Writer *keeper_ = nullptr;
     double unsaved_life_s_ = 0;
 };
 
-/// How the tools of a machine are opened.
+/// Options for opening the tools of a machine.
 struct ToolOptions {
-    journal::Writer *keeper = nullptr;  ///< writes files, of a machine that really cuts; outlives the tools
-    /// A database program and the disk of the tool table are waited for within a cycle: for virtual clocks.
-    bool isWaitedFor = false;
+    journal::Writer *keeper =
+        nullptr;  ///< writes the files of a machine that really cuts; outlives the tools
+    /// Waits within a cycle for a database program and the disk of the tool table: for virtual clocks.
+    bool awaited = false;
 };
 
-/// The owner of the machine's tools. `sink` is warned of lines that cannot be used.
+/// The tools of the machine. `sink` receives warnings about lines that are not usable.
 Result<std::unique_ptr<task::ToolStore>> open_tools(const MachineConfig &machine, diagnostics::Sink &sink,
                                                     const ToolOptions &options = {});
-/// The tools as they are now, for who looks ahead: nothing is written.
+/// The current tools for calculations ahead: nothing is written.
 Result<std::unique_ptr<task::ToolStore>> read_tools(const MachineConfig &machine, diagnostics::Sink &sink);
 
 }  // namespace mw::machine

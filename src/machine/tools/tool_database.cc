@@ -24,7 +24,7 @@ std::int64_t now_ns() {
     return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
 }
 
-/// A tool and where it is, as the protocol has them.
+/// A tool and its pocket, in the format of the protocol.
 std::string place_line(char letter, int toolno, int pocketno) {
     return fmt::format("{} T{:<3} P{:<3}", letter, toolno, pocketno);
 }
@@ -77,7 +77,7 @@ Result<> ToolDatabase::ask(Kind kind, const std::string &line) {
         return fail(trouble_);
     }
     awaited_.push_back({kind, line, now_ns() + to_ns(setup_.patience_s)});
-    if (setup_.isWaitedFor) {
+    if (setup_.awaited) {
         wait();
     }
     return {};
@@ -92,8 +92,8 @@ void ToolDatabase::wait() {
 
 void ToolDatabase::give_up(const std::string &why) {
     trouble_ = fmt::format("the tool database {}; changes of tools are not kept", why);
-    const bool isReading = !read_.has_value();
-    if (isReading) {
+    const bool reading = !read_.has_value();
+    if (reading) {
         read_ = fail(trouble_);
     } else {
         warnings_.push_back(trouble_);
@@ -125,7 +125,7 @@ void ToolDatabase::step() {
 
 void ToolDatabase::take_line(const std::string &line) {
     if (awaited_.empty()) {
-        return;  // nobody has asked: the protocol has no such line
+        return;  // no request is pending: the protocol has no such line
     }
     const Awaited awaited = awaited_.front();
     switch (awaited.kind) {
@@ -142,7 +142,7 @@ void ToolDatabase::take_line(const std::string &line) {
         } else if (isRefusal(line) || tools_text_.size() + line.size() > MOST_TOOLS_BYTES) {
             awaited_.pop_front();
             read_ = fail(
-                fmt::format("the tool database '{}' does not tell its tools: {}", program_.name(), line));
+                fmt::format("the tool database '{}' does not report its tools: {}", program_.name(), line));
         } else {
             tools_text_ += line + '\n';
         }
@@ -172,7 +172,7 @@ std::string ToolDatabase::spindle_path() const {
     return (std::filesystem::path(setup_.folder) / "db_spindle.tbl").string();
 }
 
-/// A random changer whose database knows of no tool in the spindle: what we have kept counts.
+/// A random changer whose database reports no tool in the spindle: our stored one counts.
 void ToolDatabase::find_spindle_tool(tools::Table &read) {
     if (!spindle_text_.has_value()) {  // at the start
         spindle_text_ = isRandom() ? read_file(spindle_path()).value_or("") : "";
@@ -219,8 +219,8 @@ Result<> ToolDatabase::load_spindle(int index) {
 
 Result<> ToolDatabase::set_entry(int index, const gcode::ToolEntry &entry) {
     const Result<> done = ToolData::set_entry(index, entry);
-    const bool isCopy = index == 0 && !isRandom();
-    if (!done.has_value() || isCopy) {
+    const bool is_copy = index == 0 && !isRandom();
+    if (!done.has_value() || is_copy) {
         return done;
     }
     gcode::ToolEntry changed = ToolData::entry(index_of_tool(entry.toolno));
@@ -235,10 +235,10 @@ Result<> ToolDatabase::add(const gcode::ToolEntry &entry) {
 }
 
 Result<> ToolDatabase::remove(int index) {
-    const bool isThere = index >= 0 && index < count();
+    const bool present = index >= 0 && index < count();
     return fail(fmt::format(
         "tool {} is removed from the tool database '{}', which keeps the tools; then the table is read again",
-        isThere ? entry(index).toolno : -1, program_.name()));
+        present ? entry(index).toolno : -1, program_.name()));
 }
 
 Result<> ToolDatabase::reload() {

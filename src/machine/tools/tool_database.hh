@@ -8,7 +8,7 @@
 //     l T1   P0            FINI ...     a tool is in the spindle
 //     u T2   P17           FINI ...     a tool is in a pocket (T0 P0: the spindle is empty)
 //
-// NAK in an answer says that it does not agree: that is told, and the work goes on.
+// NAK in an answer means that it does not agree: that is reported, and work continues.
 #pragma once
 
 #include <deque>
@@ -21,14 +21,14 @@
 namespace mw::machine {
 
 /// Not realtime; one thread. Nothing but start() waits, unless asked to. A program that has ended or does not
-/// answer in time is told by name.
+/// answer in time is reported by name.
 class ToolDatabase final : public ToolData {
   public:
     struct Setup {
         std::string command;  ///< program and up to ten arguments
         std::string folder;   ///< where it runs, and where db_spindle.tbl is
         tools::Changer changer = tools::Changer::FIXED;
-        bool isWaitedFor = false;  ///< each answer is waited for where it is asked: for virtual clocks
+        bool awaited = false;  ///< each answer is waited for where it is asked: for virtual clocks
         /// Writes db_spindle.tbl, and outlives this; null: it is written within the call.
         journal::Writer *keeper = nullptr;
         double patience_s = 10;  ///< for its first line, and for each answer
@@ -60,7 +60,7 @@ class ToolDatabase final : public ToolData {
     void take_line(const std::string &line);
     void take_tools();
     void give_up(const std::string &why);
-    /// Until everything asked for is answered or given up.
+    /// Until every request is answered or abandoned.
     void wait();
     std::string spindle_path() const;
     Result<> keep_spindle();

@@ -45,7 +45,7 @@ Result<> ToolFile::reload() {
 }
 
 void ToolFile::ask_for_text() {
-    isReadingOld_ = false;
+    is_reading_old_ = false;
     reading_ = std::make_shared<Reading>();
     keeper_->read_file(
         path_, [reading = reading_, path = path_, changer = changer()](const Result<std::string> &text) {
@@ -68,7 +68,7 @@ void ToolFile::step() {
             return;
         }
     }
-    if (isReadingOld_) {
+    if (is_reading_old_) {
         ask_for_text();
         return;
     }
@@ -120,7 +120,7 @@ Result<> ToolFile::save() {
     if (path_.empty()) {
         return {};
     }
-    isReadingOld_ = true;
+    is_reading_old_ = true;
     return keeper_ != nullptr ? keeper_->write_file(path_, table().text()) : table().save(path_);
 }
 
@@ -128,7 +128,7 @@ Result<> ToolFile::keep() {
     if (keeper_ == nullptr) {
         return save();
     }
-    isReadingOld_ = true;
+    is_reading_old_ = true;
     keeper_->keep_file(path_, table().text());
     return {};
 }
@@ -145,9 +145,9 @@ Result<> ToolFile::save_or_restore(tools::Table before) {
 }
 
 Result<> ToolFile::load_spindle(int index) {
-    const bool isMoved = isRandom() && index != 0;
+    const bool moved = isRandom() && index != 0;
     const Result<> done = ToolData::load_spindle(index);
-    return done.has_value() && isMoved ? keep() : done;
+    return done.has_value() && moved ? keep() : done;
 }
 
 Result<> ToolFile::add(const gcode::ToolEntry &entry) {
@@ -168,9 +168,9 @@ Result<> ToolFile::remove(int index) {
 }
 
 Result<> ToolFile::set_entry(int index, const gcode::ToolEntry &entry) {
-    const bool isCopy = index == 0 && !isRandom();
+    const bool is_copy = index == 0 && !isRandom();
     const Result<> done = ToolData::set_entry(index, entry);
-    return done.has_value() && !isCopy ? keep() : done;
+    return done.has_value() && !is_copy ? keep() : done;
 }
 
 }  // namespace mw::machine

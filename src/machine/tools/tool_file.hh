@@ -50,7 +50,7 @@ class ToolFile final : public ToolData {
     std::string path_;
     journal::Writer *keeper_;
     std::shared_ptr<Reading> reading_;          ///< under way
-    bool isReadingOld_ = false;                 ///< the table has changed since it began
+    bool is_reading_old_ = false;               ///< the table has changed since it began
     std::optional<Result<>> read_{Result<>{}};  ///< how the last one has ended
     std::vector<std::string> warnings_;         ///< of the last reading, not told yet
 };

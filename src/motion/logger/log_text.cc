@@ -300,7 +300,7 @@ Lines LogText::with_synch(const MoveTerms &terms, std::string line) {
     if (terms.feed_per_revolution != synch_feed_) {
         synch_feed_ = terms.feed_per_revolution;
         lines.push_back(fmt::format("SET_SPINDLESYNC sync={:f}, flags=0x{:08x}", synch_feed_,
-                                    terms.isVelocitySynched ? 1U : 0U));
+                                    terms.velocity_synched ? 1U : 0U));
     }
     lines.push_back(std::move(line));
     return lines;

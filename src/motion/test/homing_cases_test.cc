@@ -26,7 +26,7 @@ TEST(HomingCases, AnIndexCountsWithASwitchOrWithoutAndWhetherItResetsTheEncoderO
                        .switch_at = -20,
                        .index_pitch = 5,
                        .index_phase = 1.25,
-                       .isResetByIndex = isReset}});
+                       .is_reset_by_index = isReset}});
             m.set(Parameter::JOINT_HOME_USE_INDEX, 1);
             m.set(Parameter::JOINT_HOME_INDEX_NO_ENCODER_RESET, isReset ? 0 : 1);
             m.set(Parameter::JOINT_HOME_OFFSET, 7);

@@ -67,12 +67,12 @@ struct Plan {
             plants::HomeAxis::Build b;
             b.start = start;
             b.switch_at = start + to_switch + (j == 1 ? between(-0.4, 0.4) * skew : 0.0);
-            b.isClosedAbove = way > 0;
+            b.closed_above = way > 0;
             b.play = play;
             b.lag_s = lag_s;
             b.index_pitch = hasIndex() ? pitch : 0.0;
             b.index_phase = (hasSwitch() ? b.switch_at : start) + part * pitch;
-            b.isResetByIndex = isReset;
+            b.is_reset_by_index = isReset;
             b.bounce_s = bounce_s;
             b.seed = static_cast<std::uint32_t>(random());
             axes.push_back(b);
@@ -151,9 +151,9 @@ struct Judge {
         plants::HomeAxis::Faults &faults = m.axes[static_cast<std::size_t>(plan.broken_joint)].faults;
         switch (plan.broken) {
         case Broken::NOTHING: break;
-        case Broken::SWITCH_OPEN: faults.isSwitchOpen = true; break;
+        case Broken::SWITCH_OPEN: faults.switch_open = true; break;
         case Broken::SWITCH_CLOSED: faults.isSwitchClosed = true; break;
-        case Broken::INDEX: faults.isIndexMissing = true; break;
+        case Broken::INDEX: faults.index_missing = true; break;
         case Broken::LIMIT:
             m.rig.in.joint[static_cast<std::size_t>(plan.broken_joint)].isNegLimitClosed = true;
             break;

@@ -96,7 +96,7 @@ TEST(HomingTeam, ASwitchThatIsNotFoundStopsBothBeforeTheyAreTooFarApart) {
                 g.m.set(Parameter::JOINT_MIN_LIMIT, -300, j);
                 g.m.set(Parameter::JOINT_MAX_LIMIT, 100, j);
             }
-            g.m.axes[static_cast<std::size_t>(dead)].faults.isSwitchOpen = true;
+            g.m.axes[static_cast<std::size_t>(dead)].faults.switch_open = true;
             g.home();
             EXPECT_FALSE(g.m.isHomed(1) || g.m.isHomed(2));
             // What the other side has needed to stop after its switch is not searched again.
@@ -117,7 +117,7 @@ TEST(HomingTeam, TheSmallerSkewOfTheTwoHolds) {
                 g.m.set(Parameter::JOINT_MIN_LIMIT, -300, j);
                 g.m.set(Parameter::JOINT_MAX_LIMIT, 100, j);
             }
-            g.m.axes[static_cast<std::size_t>(dead)].faults.isSwitchOpen = true;
+            g.m.axes[static_cast<std::size_t>(dead)].faults.switch_open = true;
             g.home();
             EXPECT_FALSE(g.m.isHomed(1) || g.m.isHomed(2));
             EXPECT_LE(g.widest, 0.5 + 1e-9) << dead << narrow;

@@ -189,7 +189,7 @@ TEST(Machine, FeedMovesWaitForTheSpindleAndFollowIt) {
     Line line;
     line.end[2] = -20;
     line.terms.feed_per_revolution = 0.5;
-    line.terms.isVelocitySynched = true;
+    line.terms.velocity_synched = true;
     const CommandId id = rig.send_path(line);
     rig.send_path(Flush{});
     rig.step(300);

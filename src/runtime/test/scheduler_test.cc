@@ -176,7 +176,7 @@ TEST(RealtimeScheduler, LateThreadsSkipReleasesAndCountThem) {
 }
 
 TEST(RealtimeScheduler, SaysOnceWhatIsMissing) {
-    // Depends on who runs it: with the privilege there is nothing to say.
+    // Depends on the user: with the privilege nothing is reported.
     std::vector<std::string> lines;
     {
         Log log(
@@ -189,14 +189,14 @@ TEST(RealtimeScheduler, SaysOnceWhatIsMissing) {
         EXPECT_EQ(lines.size(), clock.isRealtime() ? 0U : 1U);
         if (!clock.isRealtime()) {
             EXPECT_NE(lines[0].find("running as simulation"), std::string::npos);
-            const bool isNamed = lines[0].find("CAP_SYS_NICE") != std::string::npos ||
-                                 lines[0].find("memlock limit is") != std::string::npos;
-            EXPECT_TRUE(isNamed) << lines[0];
+            const bool named = lines[0].find("CAP_SYS_NICE") != std::string::npos ||
+                               lines[0].find("memlock limit is") != std::string::npos;
+            EXPECT_TRUE(named) << lines[0];
         }
     }
 }
 
-/// What a process without any privilege is told.
+/// The report for a process without any privilege.
 std::string told_without_privilege() {
     int pipe_ends[2];
     if (::pipe(pipe_ends) != 0) {

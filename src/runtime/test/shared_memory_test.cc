@@ -43,17 +43,17 @@ TEST(SharedMemory, IsSeenByOthersAndGrowsInPlace) {
 TEST(SharedMemory, CanBeJoinedWhileItGrows) {
     auto mine = SharedMemory::create(name_of("join"), 4096, 64'000'000, LAYOUT);
     ASSERT_TRUE(mine) << mine.error().str();
-    std::atomic<bool> isOver{false};
+    std::atomic<bool> ended{false};
     std::thread growing([&] {
         for (std::size_t size = 8192; size < 60'000'000; size += 8192) {
             EXPECT_TRUE(mine->grow(size));
         }
-        isOver = true;
+        ended = true;
     });
-    while (!isOver) {
+    while (!ended) {
         const auto other = SharedMemory::attach(name_of("join"), LAYOUT);
         EXPECT_TRUE(other) << other.error().str();
-        isOver = isOver || !other.has_value();
+        ended = ended || !other.has_value();
     }
     growing.join();
 }

@@ -10,9 +10,8 @@
 
 enum { MILD, FAST, FAR, NOT_A_NUMBER, STUBBORN, GIVING_UP, OWN_PINS, LETTING_GO };
 static int manner = MILD;
-RTAPI_MP_INT(manner,
-             "0 mild, 1 fast, 2 far, 3 not a number, 4 deaf to cancel, 5 gives up, 6 has pins of its own, "
-             "7 lets go half way");
+RTAPI_MP_INT(manner, "0 mild, 1 fast, 2 far, 3 not a number, 4 ignores cancel, 5 stops, 6 has its own pins, "
+                     "7 releases half way");
 
 static int component, joint_count, step[16];
 static bool homed[16];

@@ -20,25 +20,25 @@ std::int64_t floor_divide(std::int64_t value, std::int64_t step) {
 
 /// The count at which the shaft arrives when the index becomes active (or inactive) for the first or for the
 /// last time within a move.
-std::optional<std::int64_t> index_edge(const Encoder &encoder, const ShaftMove &move, bool isFirst) {
+std::optional<std::int64_t> index_edge(const Encoder &encoder, const ShaftMove &move, bool first) {
     const Shaft &shaft = encoder.shaft;
     if (shaft.counts_per_rev == 0 || move.from_count == move.to_count) {
         return {};
     }
-    const bool isUp = move.to_count > move.from_count;
-    const bool isEntered = (encoder.control & Control::INDEX_POLARITY) != 0;
+    const bool up = move.to_count > move.from_count;
+    const bool entered = (encoder.control & Control::INDEX_POLARITY) != 0;
     // Upwards the index begins at its count and ends at the next one; downwards it begins at its count, too,
     // and ends at the one below.
-    const std::int64_t edge = shaft.index_count + (isEntered ? 0 : (isUp ? 1 : -1));
+    const std::int64_t edge = shaft.index_count + (entered ? 0 : (up ? 1 : -1));
     const std::int64_t rev = shaft.counts_per_rev;
     const auto at_or_below = [&](std::int64_t count) { return edge + floor_divide(count - edge, rev) * rev; };
     const auto at_or_above = [&](std::int64_t count) { return edge - floor_divide(edge - count, rev) * rev; };
     std::int64_t found = 0;
-    if (isUp) {
-        found = isFirst ? at_or_above(move.from_count + 1) : at_or_below(move.to_count);
+    if (up) {
+        found = first ? at_or_above(move.from_count + 1) : at_or_below(move.to_count);
         return found > move.from_count && found <= move.to_count ? std::optional(found) : std::nullopt;
     }
-    found = isFirst ? at_or_below(move.from_count - 1) : at_or_above(move.to_count);
+    found = first ? at_or_below(move.from_count - 1) : at_or_above(move.to_count);
     return found < move.from_count && found >= move.to_count ? std::optional(found) : std::nullopt;
 }
 
@@ -74,15 +74,15 @@ void move_shaft(Encoder &encoder, const ShaftMove &move) {
         return;
     }
     const std::uint32_t actions = encoder.control & (Control::LATCH_ON_INDEX | Control::CLEAR_ON_INDEX);
-    const bool isOnce = (encoder.control & Control::ONCE) != 0;
-    if (const auto edge = index_edge(encoder, move, isOnce); actions != 0 && edge.has_value()) {
+    const bool once = (encoder.control & Control::ONCE) != 0;
+    if (const auto edge = index_edge(encoder, move, once); actions != 0 && edge.has_value()) {
         if ((actions & Control::LATCH_ON_INDEX) != 0) {
             encoder.latch = counter_at(encoder, *edge);
         }
         if ((actions & Control::CLEAR_ON_INDEX) != 0) {
             encoder.zero = *edge;
         }
-        if (isOnce) {
+        if (once) {
             encoder.control &= ~actions;
         }
     }
@@ -91,11 +91,11 @@ void move_shaft(Encoder &encoder, const ShaftMove &move) {
 }
 
 void set_probe(Encoder &encoder, bool level) {
-    const bool isRising = level && !encoder.probe;
-    const bool isFalling = !level && encoder.probe;
+    const bool rising = level && !encoder.probe;
+    const bool falling = !level && encoder.probe;
     encoder.probe = level;
-    const bool isEdge = (encoder.control & Control::PROBE_POLARITY) != 0 ? isRising : isFalling;
-    if (isEdge && (encoder.control & Control::LATCH_ON_PROBE) != 0) {
+    const bool is_edge = (encoder.control & Control::PROBE_POLARITY) != 0 ? rising : falling;
+    if (is_edge && (encoder.control & Control::LATCH_ON_PROBE) != 0) {
         encoder.latch = counter_of(encoder);
         if ((encoder.control & Control::ONCE) != 0) {
             encoder.control &= ~Control::LATCH_ON_PROBE;

@@ -19,9 +19,9 @@ std::uint32_t field_of(std::uint32_t value, unsigned shift, unsigned bits) {
 
 std::int64_t filter_ns(const InputSettings &settings, unsigned input, unsigned inputs,
                        std::uint32_t clock_hz) {
-    const bool isSlow = ((settings.slow >> input) & 1U) != 0;
+    const bool is_slow = ((settings.slow >> input) & 1U) != 0;
     const std::int64_t scans =
-        isSlow ? field_of(settings.control, 22, 10) : field_of(settings.control, 16, 6);
+        is_slow ? field_of(settings.control, 22, 10) : field_of(settings.control, 16, 6);
     const std::int64_t ticks = TICKS_IN_SCAN * (std::int64_t{field_of(settings.control, 6, 10)} + 1) * inputs;
     return time_of_tick(scans * ticks, clock_hz);
 }
@@ -34,8 +34,8 @@ void move_mpg(MpgCounter &counter, unsigned from_ab, unsigned to_ab) {
         return;
     }
     // An edge of A while B is low lies between 00 and 01.
-    const bool isCounted = counter.counts_all_edges || ((from_ab | to_ab) & 2U) == 0;
-    if (isCounted) {
+    const bool counted = counter.counts_all_edges || ((from_ab | to_ab) & 2U) == 0;
+    if (counted) {
         counter.count = static_cast<std::uint8_t>(counter.count + (way == 1 ? 1U : 0xFFU));
     }
 }

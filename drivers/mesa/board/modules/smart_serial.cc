@@ -86,17 +86,17 @@ void SmartSerialModule::write(RegisterPlace place, std::uint32_t value) {
     }
 }
 
-bool SmartSerialModule::start(unsigned port, unsigned channel, bool isSetUp) {
+bool SmartSerialModule::start(unsigned port, unsigned channel, bool set_up) {
     Channel &one = ports_[port].channels[channel];
     Remote *card = channel < channels_ ? remote(port, channel) : nullptr;
     one.cs_out = card == nullptr ? NO_ANSWER : 0;
     one.state = card == nullptr ? Channel::State::STOPPED
-                                : (isSetUp ? Channel::State::SET_UP : Channel::State::RUNNING);
+                                : (set_up ? Channel::State::SET_UP : Channel::State::RUNNING);
     if (card == nullptr) {
         return false;
     }
     card->set_mode(static_cast<std::uint8_t>(one.cs_in >> 24U));
-    if (isSetUp) {
+    if (set_up) {
         one.user_out = card->identity();
     }
     return true;
@@ -113,14 +113,14 @@ bool SmartSerialModule::access_memory(Channel &channel, Remote &remote) {
         return true;
     }
     const unsigned bytes = 1U << (command & RemoteCommand::SIZE);
-    const bool isWrite = (command & RemoteCommand::WRITES) != 0;
-    if (!isWrite) {
+    const bool is_write = (command & RemoteCommand::WRITES) != 0;
+    if (!is_write) {
         channel.user_out[0] = channel.user_out[1] = 0;
     }
     for (unsigned i = 0; i < bytes; ++i) {
         const auto at = static_cast<std::uint16_t>(address + i);
         const unsigned shift = 8 * (i % 4);
-        if (isWrite) {
+        if (is_write) {
             remote.write_byte(at, static_cast<std::uint8_t>((channel.user_in[i / 4] >> shift) & 0xFFU));
         } else {
             channel.user_out[i / 4] |= std::uint32_t{remote.read_byte(at)} << shift;
@@ -155,8 +155,8 @@ void SmartSerialModule::execute(unsigned number, std::uint32_t command) {
         // Without a channel nothing is done, and the result of the last command stays.
         std::uint32_t failed = (command & MASK) == 0 ? port.data_out : 0U;
         for (unsigned i = 0; i < SERIAL_CHANNELS; ++i) {
-            const bool isWanted = ((command >> i) & 1U) != 0;
-            failed |= isWanted && !action(i) ? 1U << i : 0U;
+            const bool wanted = ((command >> i) & 1U) != 0;
+            failed |= wanted && !action(i) ? 1U << i : 0U;
         }
         port.data_out = failed;
     };
@@ -171,8 +171,8 @@ void SmartSerialModule::execute(unsigned number, std::uint32_t command) {
         for_channels([&](unsigned i) { return exchange(number, i); });
         port.done_ns = time_ns_ + EXCHANGE_NS;
     } else if ((command & ~MASK) == START_SET_UP || (command & ~MASK) == START_NORMAL) {
-        const bool isSetUp = (command & ~MASK) == START_SET_UP;
-        for_channels([&](unsigned i) { return start(number, i, isSetUp); });
+        const bool set_up = (command & ~MASK) == START_SET_UP;
+        for_channels([&](unsigned i) { return start(number, i, set_up); });
     } else if ((command & ~MASK) == STOP) {
         for_channels([&](unsigned i) {
             port.channels[i].state = Channel::State::STOPPED;

@@ -14,7 +14,7 @@ namespace mw::mesa::board {
 
 constexpr unsigned SERIAL_CHANNELS = 8;
 
-/// One port: what the host reads is not what it has written.
+/// One port: registers have separate values for reading and writing.
 struct SerialPort {
     struct Channel {
         std::uint32_t cs_in = 0, cs_out = 0;  ///< written by the host; read by it
@@ -51,8 +51,8 @@ class SmartSerialModule final : public Module {
 
   private:
     void execute(unsigned port, std::uint32_t command);
-    /// What a command does with one channel; false: the channel failed.
-    bool start(unsigned port, unsigned channel, bool isSetUp);
+    /// Executes a command with one channel; false: the channel failed.
+    bool start(unsigned port, unsigned channel, bool set_up);
     bool exchange(unsigned port, unsigned channel);
     bool access_memory(SerialPort::Channel &channel, Remote &remote);
     std::uint8_t local_byte(std::uint32_t address) const;

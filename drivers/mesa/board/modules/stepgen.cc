@@ -24,7 +24,7 @@ enum : unsigned {
 };
 constexpr std::uint8_t FIRST_OUTPUT = 0x81, LAST_OUTPUT = 0x88;
 constexpr std::uint32_t LATCH_MODES = StepgenMode::LATCH_ON_INDEX | StepgenMode::LATCH_ON_PROBE;
-/// While a latch waits for its edge, the inputs are seen so often: one step at 100,000 steps/s.
+/// Interval for reading the inputs while a latch waits for its edge: one step at 100,000 steps/s.
 constexpr std::int64_t LATCH_SPAN_NS = 10'000;
 /// The position in 16.8 lies above the mode.
 constexpr unsigned LATCH_SHIFT = 24, LATCH_FIELD = 8;
@@ -59,8 +59,8 @@ bool step_level(const Stepgen &stepgen) {
 }
 
 bool step_output(const Stepgen &stepgen, unsigned number) {
-    const bool isSwapped = (stepgen.settings[MODE] & StepgenMode::SWAPPED) != 0 && number < 2;
-    const unsigned output = isSwapped ? 1 - number : number;
+    const bool swapped = (stepgen.settings[MODE] & StepgenMode::SWAPPED) != 0 && number < 2;
+    const unsigned output = swapped ? 1 - number : number;
     switch (static_cast<StepType>(stepgen.settings[MODE] & StepgenMode::TYPE)) {
     case StepType::STEP_DIRECTION: return output == 0 ? step_level(stepgen) : output == 1 && stepgen.rate < 0;
     case StepType::UP_DOWN: return output < 2 && (stepgen.rate < 0) == (output == 1) && step_level(stepgen);
@@ -78,14 +78,14 @@ bool step_output(const Stepgen &stepgen, unsigned number) {
 }
 
 void set_latch_input(Stepgen &stepgen, LatchInput input, bool level) {
-    const bool isIndex = input == LatchInput::INDEX;
-    bool &before = stepgen.latch_levels[isIndex ? 0 : 1];
-    const bool isChanged = before != level;
+    const bool is_index = input == LatchInput::INDEX;
+    bool &before = stepgen.latch_levels[is_index ? 0 : 1];
+    const bool changed = before != level;
     before = level;
     std::uint32_t &mode = stepgen.settings[MODE];
-    const std::uint32_t wanted = isIndex ? StepgenMode::LATCH_ON_INDEX : StepgenMode::LATCH_ON_PROBE;
-    const std::uint32_t polarity = isIndex ? StepgenMode::INDEX_POLARITY : StepgenMode::PROBE_POLARITY;
-    if (isChanged && (mode & wanted) != 0 && level == ((mode & polarity) != 0)) {
+    const std::uint32_t wanted = is_index ? StepgenMode::LATCH_ON_INDEX : StepgenMode::LATCH_ON_PROBE;
+    const std::uint32_t polarity = is_index ? StepgenMode::INDEX_POLARITY : StepgenMode::PROBE_POLARITY;
+    if (changed && (mode & wanted) != 0 && level == ((mode & polarity) != 0)) {
         stepgen.latched_position = static_cast<std::uint32_t>(stepgen.accumulator >> LATCH_SHIFT) & 0xFFFFFFU;
         mode &= ~wanted;
     }

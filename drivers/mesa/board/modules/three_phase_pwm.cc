@@ -26,8 +26,8 @@ double phase_duty(const ThreePhasePwm &pwm, unsigned phase) {
 }
 
 void set_fault_input(ThreePhasePwm &pwm, bool level) {
-    const bool isFault = level == ((pwm.setup & FAULT_IS_HIGH) != 0);
-    pwm.faulted = pwm.faulted || isFault;
+    const bool is_fault = level == ((pwm.setup & FAULT_IS_HIGH) != 0);
+    pwm.faulted = pwm.faulted || is_fault;
 }
 
 std::uint32_t ThreePhasePwmModule::read(RegisterPlace place) {
@@ -78,9 +78,9 @@ bool ThreePhasePwmModule::output(unsigned unit, std::uint8_t function) const {
     }
     const std::int64_t count = multiply_divide(ticks_at(time_ns_, clock_hz_), rate_, 0x10000) % PERIOD_COUNTS;
     const std::int64_t triangle = count <= PHASE_MASK ? count : PERIOD_COUNTS - 1 - count;
-    const bool isInverted = function >= FIRST_INVERTED_PIN;
-    const unsigned phase = function - (isInverted ? FIRST_INVERTED_PIN : FIRST_PHASE_PIN);
-    return phase < PHASES && (triangle < phase_value(pwm, phase)) != isInverted;
+    const bool inverted = function >= FIRST_INVERTED_PIN;
+    const unsigned phase = function - (inverted ? FIRST_INVERTED_PIN : FIRST_PHASE_PIN);
+    return phase < PHASES && (triangle < phase_value(pwm, phase)) != inverted;
 }
 
 }  // namespace mw::mesa::board

@@ -108,8 +108,8 @@ TEST(Board, TheEepromNeedsAKeyForEachWrite) {
 
 TEST(Board, FlashIsErasedAndWrittenWithTheKey) {
     Host host;
-    const auto write = [&](std::uint16_t address, std::uint32_t value, bool hasKey) {
-        if (hasKey) {
+    const auto write = [&](std::uint16_t address, std::uint32_t value, bool has_key) {
+        if (has_key) {
             host.write16(Space::CONTROL, 0x1A, 0x5A03);
         }
         lbp16::PacketWriter packet;

@@ -29,10 +29,10 @@ TEST(BoardModel, EachBuiltInModelMatchesItsCard) {
     for (const BuiltInModel &one : built_in_models()) {
         const auto model = load_model(std::string(one.name));
         ASSERT_TRUE(model.has_value()) << model.error().str();
-        const bool isEthernet = std::ranges::find(OTHER_BUSES, one.name) == std::end(OTHER_BUSES);
+        const bool is_ethernet = std::ranges::find(OTHER_BUSES, one.name) == std::end(OTHER_BUSES);
         const Card *card = find_ethernet_card(model->card_name);
-        ASSERT_EQ(card != nullptr, isEthernet) << model->card_name;
-        if (isEthernet) {
+        ASSERT_EQ(card != nullptr, is_ethernet) << model->card_name;
+        if (is_ethernet) {
             EXPECT_TRUE(one.name == card->hal_name ||
                         one.name.starts_with(std::string(card->hal_name) + '-') ||
                         one.name.starts_with(std::string(card->hal_name) + "hd-"));
@@ -42,8 +42,8 @@ TEST(BoardModel, EachBuiltInModelMatchesItsCard) {
         // No two pins have the same function of the same unit.
         for (std::size_t i = 0; i < model->idrom.pins.size(); ++i) {
             for (std::size_t j = 0; j < i; ++j) {
-                const bool isPlain = model->idrom.pins[i].secondary == Gtag::NONE;
-                EXPECT_TRUE(isPlain || model->idrom.pins[i] != model->idrom.pins[j]) << i << " and " << j;
+                const bool plain = model->idrom.pins[i].secondary == Gtag::NONE;
+                EXPECT_TRUE(plain || model->idrom.pins[i] != model->idrom.pins[j]) << i << " and " << j;
             }
         }
     }

@@ -269,7 +269,7 @@ TEST(BoardEncoder, TheIndexCanClearTheCounter) {
     EXPECT_EQ(host.read(0x3100) & 0x20U, 0U);
 }
 
-// Against a model that goes through every count.
+// Compared with a model that goes through every count.
 TEST(BoardEncoder, TheLatchEqualsThatOfASlowModel) {
     std::mt19937 random(77);
     for (int run = 0; run < 20'000; ++run) {
@@ -277,9 +277,9 @@ TEST(BoardEncoder, TheLatchEqualsThatOfASlowModel) {
         encoder.shaft = {.count = static_cast<std::int64_t>(random() % 2000) - 1000,
                          .index_count = static_cast<std::int64_t>(random() % 50),
                          .counts_per_rev = 4 + static_cast<std::int64_t>(random() % 100)};
-        const bool isOnce = random() % 2 == 0, isActiveHigh = random() % 2 == 0;
-        encoder.control = EncoderControl::LATCH_ON_INDEX | (isOnce ? EncoderControl::ONCE : 0U) |
-                          (isActiveHigh ? EncoderControl::INDEX_POLARITY : 0U);
+        const bool once = random() % 2 == 0, active_high = random() % 2 == 0;
+        encoder.control = EncoderControl::LATCH_ON_INDEX | (once ? EncoderControl::ONCE : 0U) |
+                          (active_high ? EncoderControl::INDEX_POLARITY : 0U);
         const std::int64_t from = encoder.shaft.count;
         const std::int64_t to = from + static_cast<std::int64_t>(random() % 400) - 200;
         std::optional<std::int64_t> latched;
@@ -287,13 +287,13 @@ TEST(BoardEncoder, TheLatchEqualsThatOfASlowModel) {
         for (std::int64_t count = from; count != to; count += way) {
             const bool before = index_level(encoder.shaft, count);
             const bool after = index_level(encoder.shaft, count + way);
-            if (before != after && after == isActiveHigh && !(isOnce && latched.has_value())) {
+            if (before != after && after == active_high && !(once && latched.has_value())) {
                 latched = count + way;
             }
         }
         move_shaft(encoder, {from, to, 0, MS});
         ASSERT_EQ(encoder.latch, static_cast<std::uint16_t>(latched.value_or(0))) << "run " << run;
-        ASSERT_EQ((encoder.control & EncoderControl::LATCH_ON_INDEX) == 0, isOnce && latched.has_value());
+        ASSERT_EQ((encoder.control & EncoderControl::LATCH_ON_INDEX) == 0, once && latched.has_value());
     }
 }
 

@@ -45,14 +45,14 @@ TEST(DirectBus, ABoardWithoutFirmwareIsRejected) {
 TEST(DirectBus, ASingleFailureKeepsPinsAndIsFollowedByAFullWrite) {
     DirectRig rig(plan_of());
     rig.cycle(10);
-    rig.wire.isCut = true;
+    rig.wire.is_cut = true;
     rig.cycle();
     EXPECT_TRUE(rig.bus->isFailed());
     EXPECT_EQ(rig.bus->fault(), DirectFault::NO_COOKIE);
     EXPECT_EQ(rig.bus->cookie(), 0xFFFFFFFFU);
     EXPECT_FALSE(rig.bus->isStopped());
-    rig.wire.isCut = false;
-    rig.simulated.firmware().write(0x2500, 0x123);  // what the board has missed
+    rig.wire.is_cut = false;
+    rig.simulated.firmware().write(0x2500, 0x123);  // a write that the board has missed
     rig.cycle();
     EXPECT_FALSE(rig.bus->isFailed());
     EXPECT_EQ(rig.bus->failed_cycles(), 1U);
@@ -64,10 +64,10 @@ TEST(DirectBus, FailuresInARowStopTheTraffic) {
     DirectRig rig(plan_of());
     rig.cycle(10);
     ASSERT_NE(rig.simulated.firmware().read(0x1108), 0U) << "outputs are on";
-    rig.wire.isCut = true;
+    rig.wire.is_cut = true;
     rig.cycle(5);
     EXPECT_TRUE(rig.bus->isStopped());
-    rig.wire.isCut = false;
+    rig.wire.is_cut = false;
     rig.cycle(20);
     EXPECT_EQ(rig.bus->failed_cycles(), 5U) << "it does not even read";
     EXPECT_EQ(rig.simulated.firmware().read(0x1108), 0U) << "the watchdog has bitten";
@@ -77,9 +77,9 @@ TEST(DirectBus, FailuresInARowStopTheTraffic) {
 TEST(DirectBus, AfterAResetTheSameBoardIsServedAgain) {
     DirectRig rig(plan_of());
     rig.cycle(10);
-    rig.wire.isCut = true;
+    rig.wire.is_cut = true;
     rig.cycle(5);
-    rig.wire.isCut = false;
+    rig.wire.is_cut = false;
     rig.restart_board();
     rig.cycle(10);
     rig.bus->resume();
@@ -97,30 +97,30 @@ TEST(DirectBus, AfterAResetTheSameBoardIsServedAgain) {
 /// A card that was exchanged while the traffic was stopped.
 class OtherBoard final : public RegisterAccess {
   public:
-    OtherBoard(Wire &wire, Wire &other, const bool &isOther)
-        : first_(wire), other_(other), isOther_(isOther) {}
+    OtherBoard(Wire &wire, Wire &other, const bool &is_other)
+        : first_(wire), other_(other), is_other_(is_other) {}
     bool read(std::uint16_t address, std::span<std::uint32_t> values) noexcept override {
-        return (isOther_ ? other_ : first_).read(address, values);
+        return (is_other_ ? other_ : first_).read(address, values);
     }
     bool write(std::uint16_t address, std::span<const std::uint32_t> values) noexcept override {
-        return (isOther_ ? other_ : first_).write(address, values);
+        return (is_other_ ? other_ : first_).write(address, values);
     }
 
   private:
     WiredRegisters first_, other_;
-    const bool &isOther_;
+    const bool &is_other_;
 };
 
 TEST(DirectBus, AnotherBoardIsNeverWritten) {
     board::Board other(*board::load_model("7i90"));
     Wire other_wire{other};
-    bool isOther = false;
+    bool is_other = false;
     auto plan = plan_of();
-    plan.make = [&](Wire &wire) { return std::make_unique<OtherBoard>(wire, other_wire, isOther); };
+    plan.make = [&](Wire &wire) { return std::make_unique<OtherBoard>(wire, other_wire, is_other); };
     DirectRig rig(plan);
     rig.cycle(10);
     rig.bus->stop();
-    isOther = true;
+    is_other = true;
     rig.bus->resume();
     rig.cycle(50);
     EXPECT_TRUE(rig.bus->isStopped());

@@ -16,12 +16,12 @@
 
 namespace mw::mesa::test {
 
-/// What a test breaks between host and board.
+/// Faults that a test causes between host and board.
 struct Wire {
     board::Board &board;
-    bool isCut = false;                   ///< nothing reaches the board, and reads return `floating`
+    bool is_cut = false;                  ///< nothing reaches the board, and reads return `floating`
     std::uint32_t floating = 0xFFFFFFFF;  ///< what an open line reads as
-    int error = 0;                        ///< what the access reports; 0: none
+    int error = 0;                        ///< errno of the access; 0: none
 };
 
 /// Registers of the simulated board without any protocol, as on PCI.
@@ -30,14 +30,14 @@ class WiredRegisters final : public RegisterAccess {
     explicit WiredRegisters(Wire &wire) : wire_(wire) {}
     bool read(std::uint16_t address, std::span<std::uint32_t> values) noexcept override {
         for (std::uint32_t &value : values) {
-            value = wire_.isCut ? wire_.floating : wire_.board.firmware().read(address);
+            value = wire_.is_cut ? wire_.floating : wire_.board.firmware().read(address);
             address = static_cast<std::uint16_t>(address + 4);
         }
         return wire_.error == 0;
     }
     bool write(std::uint16_t address, std::span<const std::uint32_t> values) noexcept override {
         for (const std::uint32_t value : values) {
-            if (!wire_.isCut) {
+            if (!wire_.is_cut) {
                 wire_.board.firmware().write(address, value);
             }
             address = static_cast<std::uint16_t>(address + 4);
@@ -88,7 +88,7 @@ class DirectRig {
             driver->write(PERIOD_NS, now_ns_);
         }
     }
-    /// Time passes without the driver.
+    /// Advances the time without the driver.
     void wait(std::int64_t duration_ns) {
         now_ns_ += duration_ns;
         simulated.advance(now_ns_);
@@ -110,7 +110,7 @@ class DirectRig {
     std::int64_t now_ns_ = 0;
 };
 
-/// Drives the first step generator to 3.5 revolutions; the motor and the encoder have to agree.
+/// Drives the first step generator to 3.5 revolutions; motor and encoder must agree.
 inline void run_stepper(DirectRig &rig) {
     rig.pins.set("stepgen.00.position-scale", 200);
     rig.pins.set("stepgen.00.steplen", 2000);

@@ -47,8 +47,8 @@ struct EppFacts {
     DirectCard card;
 };
 
-/// Names of connectors and lamps as LinuxCNC's drivers have them. The first time-out stops the traffic, as
-/// with them.
+/// Names of connectors and lamps as in LinuxCNC's drivers. The first time-out stops the traffic, as in
+/// LinuxCNC.
 EppFacts facts_of(EppCard card) {
     if (card == EppCard::CARD_7I43) {
         return {"hm2_7i43",
@@ -105,9 +105,9 @@ int load_board(const EppLoad &load, std::size_t i) {
         return status;
     }
     rtapi_parport_ecr_write(&port, epp::ECR_EPP);
-    const bool isWide = i >= load.wide.size() || load.wide[i] != 0;
+    const bool is_wide = i >= load.wide.size() || load.wide[i] != 0;
     auto access = std::make_unique<epp::EppRegisters>(std::make_unique<DirectPort>(port),
-                                                      isWide ? epp::Width::WIDE : epp::Width::BYTES);
+                                                      is_wide ? epp::Width::WIDE : epp::Width::BYTES);
     return add_direct_board({.comp_id = load.comp_id,
                              .module = facts.module,
                              .access = std::move(access),

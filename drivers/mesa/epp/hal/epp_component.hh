@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What hm2_7i43 and hm2_7i90 have in common: their module parameters, and how they load. Each includes it
-// once.
+// The common part of hm2_7i43 and hm2_7i90: their module parameters and how they load. Each includes it once.
 #pragma once
 
 #include "drivers/mesa/direct/hal/direct_boards.hh"
@@ -18,7 +17,7 @@ int epp_wide[MAX_EPP_BOARDS] = {1, 1, 1, 1, 1, 1, 1, 1};
 int debug_epp[MAX_EPP_BOARDS];
 char *config[MAX_EPP_BOARDS];
 RTAPI_MP_ARRAY_INT(ioaddr, MAX_EPP_BOARDS, "addresses of the parallel ports, or their numbers");
-RTAPI_MP_ARRAY_INT(ioaddr_hi, MAX_EPP_BOARDS, "addresses of their ECP registers; 0: found out");
+RTAPI_MP_ARRAY_INT(ioaddr_hi, MAX_EPP_BOARDS, "addresses of their ECP registers; 0: detected");
 RTAPI_MP_ARRAY_INT(epp_wide, MAX_EPP_BOARDS, "0: accesses of 8 bits only");
 RTAPI_MP_ARRAY_INT(debug_epp, MAX_EPP_BOARDS, "accepted for files of LinuxCNC; failures are always counted");
 RTAPI_MP_ARRAY_STRING(config, MAX_EPP_BOARDS, "which modules of each board are used");

@@ -72,12 +72,12 @@ INSTANTIATE_TEST_SUITE_P(All, EppBoards,
 TEST(EppRegisters, ATimeOutStopsTheTrafficUntilAReset) {
     DirectRig rig(plan_of("7i90", Width::WIDE));
     rig.cycle(10);
-    rig.wire.isCut = true;
+    rig.wire.is_cut = true;
     rig.cycle();
     EXPECT_TRUE(rig.bus->isStopped());
     EXPECT_EQ(rig.bus->fault(), DirectFault::ACCESS);
     EXPECT_EQ(rig.bus->last_error(), ETIMEDOUT);
-    rig.wire.isCut = false;
+    rig.wire.is_cut = false;
     rig.cycle(20);
     EXPECT_EQ(rig.bus->failed_cycles(), 1U);
     EXPECT_EQ(rig.simulated.firmware().read(0x0D00), 1U) << "the watchdog has bitten";

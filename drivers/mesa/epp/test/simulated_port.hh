@@ -64,19 +64,19 @@ class SimulatedPort final : public epp::Port {
         }
     }
     bool isAnswered() noexcept {
-        timed_out_ = timed_out_ || wire_.isCut;
-        return !wire_.isCut;
+        timed_out_ = timed_out_ || wire_.is_cut;
+        return !wire_.is_cut;
     }
     void write_address(std::uint8_t value) noexcept {
         if (!isAnswered()) {
             return;
         }
-        address_ = isHighNext_ ? static_cast<std::uint16_t>((address_ & 0xFFU) | (value << 8U)) : value;
-        isHighNext_ = !isHighNext_;
+        address_ = high_next_ ? static_cast<std::uint16_t>((address_ & 0xFFU) | (value << 8U)) : value;
+        high_next_ = !high_next_;
     }
     /// The board counts the address on when bit 15 is set.
     void step() noexcept {
-        isHighNext_ = false;
+        high_next_ = false;
         if ((address_ & 0x8000U) != 0) {
             address_ = static_cast<std::uint16_t>(0x8000U | ((address_ + 1U) & 0x7FFFU));
         }
@@ -109,7 +109,7 @@ class SimulatedPort final : public epp::Port {
     Wire &wire_;
     std::vector<std::string> *log_;
     std::uint16_t address_ = 0;
-    bool isHighNext_ = true;  ///< another program has sent one byte of an address
+    bool high_next_ = true;  ///< another program has sent one byte of an address
     bool timed_out_ = false;
     std::uint32_t latched_ = 0;
     std::array<std::uint8_t, 4> bytes_{};

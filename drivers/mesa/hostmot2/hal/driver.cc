@@ -55,7 +55,7 @@ void report_modules(HalBoard &board) noexcept {
 void report(HalBoard &board) noexcept {
     const BoardEvents events = board.board->take_events();
     const char *name = board.name.c_str();
-    if (events.hasBitten) {
+    if (events.bitten) {
         rtapi_print_msg(
             RTAPI_MSG_ERR,
             "hm2/%s: The watchdog has bitten: all outputs are off. The longest time between two writes "
@@ -63,13 +63,13 @@ void report(HalBoard &board) noexcept {
             name, static_cast<long long>(events.longest_gap_ns) / NS_PER_US,
             static_cast<long long>(board.board->timeout_ns()) / NS_PER_US, events.failed_reads, name);
     }
-    if (events.isTimeoutShort) {
+    if (events.timeout_short) {
         rtapi_print_msg(
             RTAPI_MSG_ERR,
             "hm2/%s: watchdog.timeout_ns is %lld, less than 1.5 periods of the thread. Increase it.", name,
             static_cast<long long>(board.board->timeout_ns()));
     }
-    if (events.isDumpRequested) {
+    if (events.dump_requested) {
         board.dump_line = 0;
     }
 }
@@ -192,12 +192,12 @@ int register_board(const BoardRequest &request) {
 
 void unregister_boards(int comp_id) {
     std::erase_if(boards(), [&](const std::unique_ptr<HalBoard> &board) {
-        const bool isOfIt = board->comp_id == comp_id;
-        if (isOfIt) {
+        const bool of_it = board->comp_id == comp_id;
+        if (of_it) {
             unregister_ports(board->name);
             board->board->stop();
         }
-        return isOfIt;
+        return of_it;
     });
 }
 

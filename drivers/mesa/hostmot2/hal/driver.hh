@@ -19,8 +19,8 @@ namespace mw::mesa {
 
 /// Options of `loadrt hostmot2`.
 struct DriverOptions {
-    bool hasIdromLog = false, hasModuleLog = false, hasPinLog = false, hasUseLog = false;
-    bool isNamedBySerialNumber = false;
+    bool has_idrom_log = false, has_module_log = false, has_pin_log = false, has_use_log = false;
+    bool is_named_by_serial_number = false;
     int sserial_baudrate = -1;  ///< of smart serial ports [bit/s]; -1: that of the firmware
 };
 
@@ -35,10 +35,11 @@ struct BoardRequest {
     std::string config;          ///< part of config= of this board
 };
 
-/// Reads the firmware of a board and makes its pins and functions: 0, or a negated errno with a message in
+/// Reads the firmware of a board and creates its pins and functions: 0, or a negated errno with a message in
 /// the log. [while loading]
 MW_HOSTMOT2_API int register_board(const BoardRequest &request);
-/// Turns the outputs of all boards of a component off and forgets them. No function of theirs may run.
+/// Switches the outputs of all boards of a component off and removes the boards. None of their functions may
+/// run. [while unloading]
 MW_HOSTMOT2_API void unregister_boards(int comp_id);
 
 }  // namespace mw::mesa

@@ -30,7 +30,7 @@ hal_pdir_t hal_direction(Access access) noexcept {
     return HAL_RO;
 }
 
-/// A pin's slot, which HAL keeps pointing at its value, or a parameter with its value.
+/// A pin's slot, which HAL updates, or a parameter with its value.
 struct Cell {
     void *slot;
     std::uint64_t value;
@@ -47,10 +47,10 @@ void *const volatile *HalPins::make(const std::string &name, PinType type, Acces
     cell->value = 0;
     cell->slot = &cell->value;
     const std::string full = prefix_ + "." + name;
-    const bool isParam = access == Access::RW || access == Access::RO;
+    const bool is_param = access == Access::RW || access == Access::RO;
     const int status =
-        isParam ? hal_param_new(full.c_str(), hal_type(type), hal_direction(access), &cell->value, comp_id_)
-                : hal_pin_new(full.c_str(), hal_type(type), hal_direction(access), &cell->slot, comp_id_);
+        is_param ? hal_param_new(full.c_str(), hal_type(type), hal_direction(access), &cell->value, comp_id_)
+                 : hal_pin_new(full.c_str(), hal_type(type), hal_direction(access), &cell->slot, comp_id_);
     keep(status);
     return status < 0 ? nullptr : &cell->slot;
 }

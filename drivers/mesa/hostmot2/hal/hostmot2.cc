@@ -29,11 +29,11 @@ int rtapi_app_main(void) {
         return comp_id;
     }
     mw::mesa::DriverOptions options;
-    options.hasIdromLog = debug_idrom != 0;
-    options.hasModuleLog = debug_module_descriptors != 0;
-    options.hasPinLog = debug_pin_descriptors != 0;
-    options.hasUseLog = debug_modules != 0;
-    options.isNamedBySerialNumber = use_serial_numbers != 0;
+    options.has_idrom_log = debug_idrom != 0;
+    options.has_module_log = debug_module_descriptors != 0;
+    options.has_pin_log = debug_pin_descriptors != 0;
+    options.has_use_log = debug_modules != 0;
+    options.is_named_by_serial_number = use_serial_numbers != 0;
     options.sserial_baudrate = sserial_baudrate;
     mw::mesa::set_driver_options(options);
     if (use_serial_numbers != 0) {

@@ -49,13 +49,13 @@ void log_pins(const std::string &name, const Idrom &idrom) {
 }  // namespace
 
 void log_idrom(const std::string &name, const Idrom &idrom, const DriverOptions &options) {
-    if (options.hasIdromLog) {
+    if (options.has_idrom_log) {
         log_header(name, idrom.header);
     }
-    if (options.hasModuleLog || options.hasUseLog) {
+    if (options.has_module_log || options.has_use_log) {
         log_modules(name, idrom);
     }
-    if (options.hasPinLog) {
+    if (options.has_pin_log) {
         log_pins(name, idrom);
     }
 }

@@ -91,9 +91,9 @@ MW_HOSTMOT2_API int hm2_pktuart_send(const char *name, const unsigned char data[
         while (sent < *num_frames && uart.send({data + bytes, frame_sizes[sent]})) {
             bytes += frame_sizes[sent++];
         }
-        const bool isFull = sent == 0 && *num_frames > 0;
+        const bool full = sent == 0 && *num_frames > 0;
         *num_frames = sent;
-        return isFull ? -ENOSPC : static_cast<int>(bytes);
+        return full ? -ENOSPC : static_cast<int>(bytes);
     });
 }
 
@@ -156,17 +156,17 @@ MW_HOSTMOT2_API int hm2_bspi_setup_chan(const char *name, int chan, int cs, int 
                                         int cpol, int cpha, int noclear, int noecho, int samplelate) {
     return with(spi_of(name), [&](BufferedSpi &spi) {
         constexpr int MOST_SELECT = 15, MOST_BITS = 32;
-        const bool isUsable = cs >= 0 && cs <= MOST_SELECT && bits >= 1 && bits <= MOST_BITS && mhz > 0.0;
+        const bool usable = cs >= 0 && cs <= MOST_SELECT && bits >= 1 && bits <= MOST_BITS && mhz > 0.0;
         const SpiChannel channel{.chip_select = cs,
                                  .bits = bits,
                                  .mhz = mhz,
                                  .delay_ns = delay,
-                                 .isClockHighIdle = cpol != 0,
-                                 .isSecondEdge = cpha != 0,
-                                 .isSampledLate = samplelate != 0,
-                                 .isFrameKept = noclear != 0,
-                                 .isEchoOff = noecho != 0};
-        return isUsable && spi.setup_channel(chan, channel) ? 0 : -EINVAL;
+                                 .clock_high_idle = cpol != 0,
+                                 .is_second_edge = cpha != 0,
+                                 .sampled_late = samplelate != 0,
+                                 .frame_kept = noclear != 0,
+                                 .echo_off = noecho != 0};
+        return usable && spi.setup_channel(chan, channel) ? 0 : -EINVAL;
     });
 }
 

@@ -16,19 +16,19 @@ constexpr std::uint16_t IDROM = 0x0400, MODULES = 0x0040, PINS = 0x0200;
 constexpr std::uint32_t LOW_HZ = 2'000'000, HIGH_HZ = 20'000'000;
 constexpr int WIDTH = 24, ODD_WIDTH = 5, MANY_PORTS = 6;
 
-/// What is wrong with a description. Words are those of the header, in its order.
+/// The fault of a description. Words are those of the header, in its order.
 struct Pattern {
     std::uint32_t cookie = COOKIE;
-    bool hasName = true;
+    bool has_name = true;
     std::uint32_t type = 2, ports = 1, width_of_all = WIDTH, port_width = WIDTH;
     std::uint32_t clock_low = LOW_HZ, clock_high = HIGH_HZ;
-    bool hasPins = true;
+    bool has_pins = true;
     int card_ports = 1, card_width = WIDTH;
 };
 
 constexpr Pattern PATTERNS[] = {
     {.cookie = 0},
-    {.hasName = false},
+    {.has_name = false},
     {.type = 0},
     {.type = 0x1234},
     {.port_width = 0},
@@ -38,26 +38,26 @@ constexpr Pattern PATTERNS[] = {
     {.ports = 2, .width_of_all = 2 * WIDTH},
     {.clock_low = 12345},
     {.clock_high = 0},
-    {.ports = MANY_PORTS, .width_of_all = MANY_PORTS * WIDTH, .hasPins = false, .card_ports = MANY_PORTS},
+    {.ports = MANY_PORTS, .width_of_all = MANY_PORTS * WIDTH, .has_pins = false, .card_ports = MANY_PORTS},
     {},
     {.card_width = ODD_WIDTH},
     {.ports = 0, .width_of_all = 0},
 };
 
-/// A board that only answers while it is loaded.
+/// A board that only works while it is loaded.
 class TestBus final : public RegisterBus {
   public:
     explicit TestBus(const Pattern &pattern) : pattern_(pattern) {
         set(COOKIE_ADDRESS, {pattern.cookie});
         constexpr std::uint32_t HOST = 0x54534F48, MOT2 = 0x32544F4D;  // "HOST", "MOT2"
-        if (pattern.hasName) {
+        if (pattern.has_name) {
             set(CONFIG_NAME_ADDRESS, {HOST, MOT2});
         }
         set(IDROM_OFFSET_ADDRESS, {IDROM});
         set(IDROM, {pattern.type, MODULES, PINS, 0, 0, 0, 0, pattern.ports, pattern.width_of_all,
                     pattern.port_width, pattern.clock_low, pattern.clock_high});
         constexpr std::uint32_t PLAIN_PIN = static_cast<std::uint32_t>(Gtag::IO_PORT) << 24U;
-        for (std::uint32_t i = 0; pattern.hasPins && i < pattern.width_of_all; ++i) {
+        for (std::uint32_t i = 0; pattern.has_pins && i < pattern.width_of_all; ++i) {
             set(static_cast<std::uint16_t>(IDROM + PINS + 4 * i), {PLAIN_PIN});
         }
     }

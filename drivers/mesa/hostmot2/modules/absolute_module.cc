@@ -13,14 +13,14 @@ namespace mw::mesa {
 
 namespace {
 
-/// What differs between the types. Registers are numbered from the base address of the module.
+/// Differences between the types. Registers are numbered from the base address of the module.
 struct Type {
     Gtag gtag;
     const char *name;
     int most_bits;
     double khz;
     int control, setup, start;  ///< registers; the last one is of all channels
-    bool isLifo;                ///< all words are read from the first data register
+    bool lifo;                  ///< all words are read from the first data register
 };
 constexpr Type TYPES[] = {
     {Gtag::SSI, "ssi", 64, 500.0, 2, 2, 3, false},
@@ -34,7 +34,7 @@ constexpr int FANUC_LENGTH = 2;  // register
 /// Values of one field.
 struct FieldPins {
     BitField field, high;  ///< `high`: of an encoder in two parts, else 0 bits
-    bool isSet = false, isNotSet = true;
+    bool set = false, not_set = true;
     double value = 0.0, scale_max = 1.0;
     std::array<bool, MAX_FIELD_BITS> bits{}, bits_not{};
     AbsoluteEncoder encoder;
@@ -57,8 +57,8 @@ void show(FieldPins &pins, std::span<const std::uint32_t> words) noexcept {
     switch (field.type) {
     case BitFieldType::PADDING: break;
     case BitFieldType::BIT:
-        pins.isSet = value != 0;
-        pins.isNotSet = !pins.isSet;
+        pins.set = value != 0;
+        pins.not_set = !pins.set;
         break;
     case BitFieldType::UNSIGNED:
         pins.value = static_cast<double>(value) / full_scale(field.bits) * pins.scale_max;
@@ -75,7 +75,7 @@ void show(FieldPins &pins, std::span<const std::uint32_t> words) noexcept {
         if (pins.high.bits > 0) {
             value |= bits_of(pins.high, words) << static_cast<unsigned>(field.bits);
             whole.bits += pins.high.bits;
-            whole.isMultiTurn = field.isMultiTurn || pins.high.isMultiTurn;
+            whole.multi_turn = field.multi_turn || pins.high.multi_turn;
         }
         absolute_encoder_read(pins.encoder, value, whole);
         break;
@@ -88,7 +88,7 @@ class AbsoluteEncoders final : public Module {
     AbsoluteEncoders(const ModuleRequest &request, const Type &type)
         : module_(request.module), type_(type),
           clocks_{request.idrom.header.clock_low_hz, request.idrom.header.clock_high_hz},
-          formats_(*request.config.formats_of(type.gtag)), hasTimer_(hasDpll(request.assignment)) {}
+          formats_(*request.config.formats_of(type.gtag)), has_timer_(hasDpll(request.assignment)) {}
 
     Result<> prepare(RegisterBus &) override {
         for (const auto &[number, format] : formats_) {
@@ -100,14 +100,14 @@ class AbsoluteEncoders final : public Module {
             Channel &channel = channels_.emplace_back();
             channel.number = number;
             channel.khz = type_.khz;
-            channel.timer = hasTimer_ ? 1 : 0;
+            channel.timer = has_timer_ ? 1 : 0;
             channel.bits = fields->empty() ? 0 : fields->back().field.first + fields->back().field.bits;
             add_fields(channel, *fields);
         }
         return {};
     }
     void plan(Registers &registers) override {
-        // The busy register is read before the data: reading those makes them old.
+        // The busy register is read before the data, because reading these marks them as old.
         busy_ = registers.read({module_.address(type_.start), 1}, ReadOrder::INPUT);
         for (Channel &channel : channels_) {
             const int number = channel.number;
@@ -115,7 +115,7 @@ class AbsoluteEncoders final : public Module {
             // The third word of Fanuc's has the cable error, too.
             channel.words = type_.gtag == Gtag::FANUC_ABSOLUTE ? int{MAX_WORDS} : channel.words;
             for (int i = 0; i < channel.words; ++i) {
-                const std::uint16_t address = module_.address(type_.isLifo ? 0 : i, number);
+                const std::uint16_t address = module_.address(type_.lifo ? 0 : i, number);
                 channel.data[static_cast<std::size_t>(i)] = registers.read({address, 1}, ReadOrder::INPUT);
             }
             const auto add = [&](int reg, Send send) {
@@ -133,8 +133,8 @@ class AbsoluteEncoders final : public Module {
     void declare(PinSpace &space) override {
         for (Channel &channel : channels_) {
             const std::string name = fmt::format("{}.{:02}", type_.name, channel.number);
-            binding_.add(space, name + ".data-invalid", PinType::BIT, Access::OUT, &channel.isInvalid);
-            binding_.add(space, name + ".data-incomplete", PinType::BIT, Access::OUT, &channel.isIncomplete);
+            binding_.add(space, name + ".data-invalid", PinType::BIT, Access::OUT, &channel.invalid);
+            binding_.add(space, name + ".data-incomplete", PinType::BIT, Access::OUT, &channel.incomplete);
             binding_.add(space, name + ".frequency-khz", PinType::FLOAT, Access::RW, &channel.khz);
             binding_.add(space, name + ".timer-number", PinType::U32, Access::RW, &channel.timer);
             if (type_.gtag == Gtag::FANUC_ABSOLUTE) {
@@ -154,10 +154,10 @@ class AbsoluteEncoders final : public Module {
                 words[static_cast<std::size_t>(i)] =
                     registers.value(channel.data[static_cast<std::size_t>(i)]);
             }
-            channel.isIncomplete = ((busy >> static_cast<unsigned>(channel.number)) & 1U) != 0;
-            channel.isInvalid = channel.isIncomplete || hasCableError(words);
+            channel.incomplete = ((busy >> static_cast<unsigned>(channel.number)) & 1U) != 0;
+            channel.invalid = channel.incomplete || hasCableError(words);
             for (auto &[name, pins] : channel.fields) {
-                if (!channel.isInvalid) {
+                if (!channel.invalid) {
                     show(pins, words);
                 }
             }
@@ -169,27 +169,27 @@ class AbsoluteEncoders final : public Module {
         for (Channel &channel : channels_) {
             constexpr std::uint32_t LAST_TIMER = 4;
             channel.timer = std::min(channel.timer, LAST_TIMER);
-            const bool isChanged = channel.khz != channel.sent_khz || channel.timer != channel.sent_timer ||
-                                   channel.filter != channel.sent_filter || !channel.isSent;
-            if (isChanged && cycle.isWriting) {
+            const bool changed = channel.khz != channel.sent_khz || channel.timer != channel.sent_timer ||
+                                 channel.filter != channel.sent_filter || !channel.sent;
+            if (changed && cycle.writing) {
                 send_setup(registers, channel);
             }
         }
-        if (isTriggered_ && cycle.isWriting) {
+        if (triggered_ && cycle.writing) {
             registers.request(start_, 1);
-            isTriggered_ = false;
+            triggered_ = false;
         }
         binding_.store();
     }
-    bool hasTrigger() const noexcept override { return !hasTimer_; }
-    void trigger() noexcept override { isTriggered_ = true; }
+    bool hasTrigger() const noexcept override { return !has_timer_; }
+    void trigger() noexcept override { triggered_ = true; }
 
   private:
     struct Channel {
         int number = 0, bits = 0, words = 0;
         double khz = 0.0, sent_khz = 0.0;
         std::uint32_t timer = 0, filter = 15, sent_timer = 0, sent_filter = 0;
-        bool isSent = false, isIncomplete = false, isInvalid = false;
+        bool sent = false, incomplete = false, invalid = false;
         std::deque<std::pair<std::string, FieldPins>> fields;
         std::array<ReadHandle, MAX_WORDS> data;
         WriteHandle open, length, setup, control;
@@ -217,8 +217,8 @@ class AbsoluteEncoders final : public Module {
         };
         switch (pins.field.type) {
         case BitFieldType::BIT:
-            add(name, PinType::BIT, Access::OUT, &pins.isSet);
-            add(name + "-not", PinType::BIT, Access::OUT, &pins.isNotSet);
+            add(name, PinType::BIT, Access::OUT, &pins.set);
+            add(name + "-not", PinType::BIT, Access::OUT, &pins.not_set);
             break;
         case BitFieldType::UNSIGNED:
         case BitFieldType::SIGNED:
@@ -270,14 +270,14 @@ class AbsoluteEncoders final : public Module {
         channel.sent_khz = channel.khz;
         channel.sent_timer = channel.timer;
         channel.sent_filter = channel.filter;
-        channel.isSent = true;
+        channel.sent = true;
     }
 
     UsedModule module_;
     Type type_;
     Clocks clocks_;
     std::map<int, std::string> formats_;
-    bool hasTimer_, isTriggered_ = false;
+    bool has_timer_, triggered_ = false;
     std::deque<Channel> channels_;  // pins point into it
     PinBinding binding_;
     ReadHandle busy_;

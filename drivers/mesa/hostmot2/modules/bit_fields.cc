@@ -32,7 +32,7 @@ std::uint64_t bits_of(const BitField &field, std::span<const std::uint32_t> word
         done += BITS_PER_WORD - shift;
     }
     value &= mask_of(field.bits);
-    return field.isGray ? from_gray(value) : value;
+    return field.gray ? from_gray(value) : value;
 }
 
 std::int64_t signed_bits(std::uint64_t value, int bits) noexcept {
@@ -43,17 +43,17 @@ std::int64_t signed_bits(std::uint64_t value, int bits) noexcept {
 void absolute_encoder_read(AbsoluteEncoder &encoder, std::uint64_t value, const BitField &field) noexcept {
     const std::int64_t before = encoder.raw;
     const std::uint64_t change = (value - encoder.last) & mask_of(field.bits);
-    if (!encoder.isKnown || field.isMultiTurn) {
+    if (!encoder.known || field.multi_turn) {
         encoder.raw = signed_bits(value, field.bits);
     } else {
         encoder.raw += signed_bits(change, field.bits);
     }
-    const bool hasMoved = encoder.isKnown && encoder.raw != before;
+    const bool moved = encoder.known && encoder.raw != before;
     encoder.last = value;
-    encoder.isKnown = true;
+    encoder.known = true;
     const auto rev = static_cast<std::int64_t>(std::max(encoder.counts_per_rev, 1U));
     const auto turn = [&](std::int64_t raw) { return raw >= 0 ? raw / rev : (raw + 1) / rev - 1; };
-    if (encoder.index_enable && hasMoved && turn(encoder.raw) != turn(before)) {
+    if (encoder.index_enable && moved && turn(encoder.raw) != turn(before)) {
         encoder.zero = (encoder.raw > before ? turn(encoder.raw) : turn(before)) * rev;
         encoder.index_enable = false;
     }
@@ -63,10 +63,10 @@ void absolute_encoder_read(AbsoluteEncoder &encoder, std::uint64_t value, const 
     const auto low = [](std::int64_t n) {
         return static_cast<std::int32_t>(static_cast<std::uint32_t>(static_cast<std::uint64_t>(n)));
     };
-    const bool isScaled = encoder.scale != 0.0 && encoder.scale - encoder.scale == 0.0;
+    const bool scaled = encoder.scale != 0.0 && encoder.scale - encoder.scale == 0.0;
     encoder.rawcounts = low(encoder.raw);
     encoder.count = low(encoder.raw - encoder.zero);
-    encoder.position = static_cast<double>(encoder.raw - encoder.zero) / (isScaled ? encoder.scale : 1.0);
+    encoder.position = static_cast<double>(encoder.raw - encoder.zero) / (scaled ? encoder.scale : 1.0);
 }
 
 }  // namespace mw::mesa

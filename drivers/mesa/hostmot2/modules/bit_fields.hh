@@ -23,15 +23,15 @@ enum class BitFieldType : std::uint8_t {
 struct BitField {
     BitFieldType type = BitFieldType::PADDING;
     int first = 0, bits = 0;
-    bool isGray = false, isMultiTurn = false;
+    bool gray = false, multi_turn = false;
 };
 
 /// The bits of a field in words, the first word with the lowest bits; Gray code is converted.
 std::uint64_t bits_of(const BitField &field, std::span<const std::uint32_t> words) noexcept;
-/// The number that the two's complement of a field means.
+/// The two's complement number of a field.
 std::int64_t signed_bits(std::uint64_t value, int bits) noexcept;
 
-/// An absolute encoder that behaves as one that counts.
+/// An absolute encoder with the behaviour of an incremental one.
 struct AbsoluteEncoder {
     std::int32_t count = 0, rawcounts = 0;
     double position = 0.0;  ///< [position units]
@@ -41,7 +41,7 @@ struct AbsoluteEncoder {
 
     std::int64_t raw = 0, zero = 0;  ///< between cycles
     std::uint64_t last = 0;
-    bool isKnown = false;
+    bool known = false;
 };
 /// Takes the value of a field. The first one is a signed number, as LinuxCNC's driver has it; so is each one
 /// with `isMultiTurn`. Without it a jump of more than half of the range is a wrap. The index is where raw

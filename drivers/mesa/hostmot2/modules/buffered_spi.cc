@@ -12,8 +12,8 @@ bool isChannel(int channel) noexcept {
     return channel >= 0 && channel < static_cast<int>(SPI_CHANNELS);
 }
 
-std::uint32_t flag(bool isSet, unsigned bit) noexcept {
-    return isSet ? 1U << bit : 0U;
+std::uint32_t flag(bool set, unsigned bit) noexcept {
+    return set ? 1U << bit : 0U;
 }
 
 }  // namespace
@@ -30,11 +30,11 @@ std::uint32_t spi_descriptor(const SpiChannel &channel, std::uint32_t clock_hz) 
     const std::uint32_t delay =
         channel.delay_ns <= 0 ? NO_DELAY : static_cast<std::uint32_t>(std::clamp(clocks, 0.0, 15.0));
     const auto bits = std::clamp(static_cast<std::uint32_t>(std::max(channel.bits, 1)), 1U, MOST_BITS);
-    return (bits - 1) | flag(channel.isClockHighIdle, CPOL) | flag(channel.isSecondEdge, CPHA) |
+    return (bits - 1) | flag(channel.clock_high_idle, CPOL) | flag(channel.is_second_edge, CPHA) |
            (static_cast<std::uint32_t>(divider) << DIVIDER) |
            ((static_cast<std::uint32_t>(channel.chip_select) & 0xFU) << CHIP_SELECT) | (delay << DELAY) |
-           flag(channel.isSampledLate, LATE) | flag(channel.isFrameKept, KEEP) |
-           flag(channel.isEchoOff, NO_ECHO);
+           flag(channel.sampled_late, LATE) | flag(channel.frame_kept, KEEP) |
+           flag(channel.echo_off, NO_ECHO);
 }
 
 bool BufferedSpi::setup_channel(int channel, const SpiChannel &settings) noexcept {
@@ -42,7 +42,7 @@ bool BufferedSpi::setup_channel(int channel, const SpiChannel &settings) noexcep
         return false;
     }
     channels_[static_cast<std::size_t>(channel)] = settings;
-    isSetupDue_ = true;
+    setup_due_ = true;
     return true;
 }
 
@@ -63,9 +63,9 @@ BufferedSpi::Frame BufferedSpi::add_frame(int channel) noexcept {
 }
 
 bool BufferedSpi::take_setup() noexcept {
-    const bool isDue = isSetupDue_;
-    isSetupDue_ = false;
-    return isDue;
+    const bool due = setup_due_;
+    setup_due_ = false;
+    return due;
 }
 
 std::span<const BufferedSpi::Word> BufferedSpi::take_words() noexcept {

@@ -17,9 +17,9 @@ struct SpiChannel {
     int chip_select = 0, bits = 8;  ///< 0 to 15, 1 to 32
     double mhz = 1.0;
     int delay_ns = 0;  ///< between chip select and clock
-    bool isClockHighIdle = false, isSecondEdge = false, isSampledLate = false;
-    bool isFrameKept = false;  ///< chip select stays after the word
-    bool isEchoOff = false;    ///< what the device answers is not stored
+    bool clock_high_idle = false, is_second_edge = false, sampled_late = false;
+    bool frame_kept = false;  ///< chip select stays after the word
+    bool echo_off = false;    ///< the answer of the device is not stored
 };
 /// The descriptor of a channel. The clock is the highest that is not above `mhz`.
 std::uint32_t spi_descriptor(const SpiChannel &channel, std::uint32_t clock_hz) noexcept;
@@ -37,7 +37,8 @@ class BufferedSpi {
     bool setup_channel(int channel, const SpiChannel &settings) noexcept;
     /// Queues one word for the next write; false: 16 are queued, or there is no such channel.
     bool write(int channel, std::uint32_t value) noexcept;
-    /// Registers a word of each cycle; its buffers, or a Frame without buffers when there are 16. [loading]
+    /// Registers a word of each cycle and returns its buffers; a Frame without buffers when there are 16
+    /// already. [loading]
     Frame add_frame(int channel) noexcept;
     /// `call` is called after the words of a cycle were received. [loading]
     void set_read(Callback call, void *data) noexcept { on_read_ = {call, data}; }
@@ -50,10 +51,10 @@ class BufferedSpi {
         return spi_descriptor(channels_[channel], clock_hz);
     }
     bool hasEcho(int channel) const noexcept {
-        return !channels_[static_cast<std::size_t>(channel)].isEchoOff;
+        return !channels_[static_cast<std::size_t>(channel)].echo_off;
     }
     std::span<const Frame> frames() const noexcept { return {frames_.data(), frame_count_}; }
-    /// The queued words; they are then forgotten.
+    /// Queued words; removed after they are read.
     struct Word {
         int channel = 0;
         std::uint32_t value = 0;
@@ -73,7 +74,7 @@ class BufferedSpi {
         }
     };
     std::array<SpiChannel, SPI_CHANNELS> channels_{};
-    bool isSetupDue_ = false;
+    bool setup_due_ = false;
     std::array<Frame, SPI_WORDS> frames_{};
     std::array<std::uint32_t, SPI_WORDS> sent_{}, received_{};
     std::size_t frame_count_ = 0;

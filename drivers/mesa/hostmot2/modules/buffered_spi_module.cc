@@ -53,12 +53,12 @@ class BufferedSpis final : public Module {
         int number = 0;
         for (Instance &one : instances_) {
             one.spi.call_write();
-            const bool isUsable = cycle.isFresh && cycle.isWriting;
-            if (!isUsable && one.expected > 0) {
-                one.isClearDue = true;  // what the lost answer had taken is not known
+            const bool usable = cycle.fresh && cycle.writing;
+            if (!usable && one.expected > 0) {
+                one.clear_due = true;  // the words removed with the lost answer are unknown
             }
             one.expected = 0;
-            if (isUsable) {
+            if (usable) {
                 setup(registers, one);
                 send(registers, one, number);
             }
@@ -75,16 +75,16 @@ class BufferedSpis final : public Module {
         std::array<WriteHandle, SPI_WORDS> words;
         WriteHandle clear;
         std::size_t expected = 0;                          ///< words that the devices return after this write
-        std::array<std::uint32_t *, SPI_WORDS> targets{};  ///< where they go; null: nowhere
-        bool isClearDue = true;
+        std::array<std::uint32_t *, SPI_WORDS> targets{};  ///< their destinations; null: none
+        bool clear_due = true;
     };
 
     /// The words of a cycle are taken together: another number than expected empties the FIFOs.
     static void take(const Registers &registers, const Cycle &cycle, Instance &one) noexcept {
         constexpr std::uint32_t RECEIVED_MASK = 0x1F;
         const std::size_t received = registers.value(one.count) & RECEIVED_MASK;
-        if (received != one.expected || (cycle.hasLostWrite && one.expected > 0)) {
-            one.isClearDue = true;
+        if (received != one.expected || (cycle.has_lost_write && one.expected > 0)) {
+            one.clear_due = true;
             return;
         }
         for (std::size_t i = 0; i < one.expected; ++i) {
@@ -100,11 +100,11 @@ class BufferedSpis final : public Module {
                 registers.request(one.descriptors[SPI_CHANNELS - 1 - i],
                                   one.spi.descriptor(i, module_.clock_hz));
             }
-            one.isClearDue = true;
+            one.clear_due = true;
         }
-        if (one.isClearDue) {
+        if (one.clear_due) {
             registers.request(one.clear, 0);
-            one.isClearDue = false;
+            one.clear_due = false;
         }
     }
     void send(Registers &registers, Instance &one, int number) const noexcept {

@@ -35,9 +35,9 @@ void measure_velocity(EncoderState &state, const EncoderPins &pins, const Encode
     const auto now = static_cast<std::uint16_t>(reading.time_now);
     if (change != 0) {
         const double between = state.since_edge_s + reading.elapsed_s;
-        const bool areStampsKnown = state.isMoving && between < TIME_STAMPS * reading.tick_s * 0.9;
+        const bool stamps_known = state.isMoving && between < TIME_STAMPS * reading.tick_s * 0.9;
         const auto ticks = static_cast<std::uint16_t>(edge - state.last_edge);
-        const double time_s = areStampsKnown && ticks > 0 ? ticks * reading.tick_s : between;
+        const double time_s = stamps_known && ticks > 0 ? ticks * reading.tick_s : between;
         state.velocity = static_cast<double>(change) / std::max(time_s, reading.tick_s);
         state.since_edge_s = static_cast<std::uint16_t>(now - edge) * reading.tick_s;
         state.isMoving = true;
@@ -57,10 +57,10 @@ void measure_velocity(EncoderState &state, const EncoderPins &pins, const Encode
 /// its latch enable is clear.
 void take_latch(EncoderState &state, EncoderPins &pins, const EncoderReading &reading) noexcept {
     state.control = reading.control & 0xFFFFU;
-    const bool isReceived = (state.control & ONCE) != 0;
-    const bool isOver = isReceived && (state.control & (LATCH_ON_INDEX | LATCH_ON_PROBE)) == 0;
-    const bool isWanted = pins.index_enable || pins.probe_enable;
-    if (!isOver || !isWanted || !state.isArmSent) {
+    const bool received = (state.control & ONCE) != 0;
+    const bool ended = received && (state.control & (LATCH_ON_INDEX | LATCH_ON_PROBE)) == 0;
+    const bool is_wanted = pins.index_enable || pins.probe_enable;
+    if (!ended || !is_wanted || !state.arm_sent) {
         return;
     }
     const std::int64_t latched =
@@ -73,7 +73,7 @@ void take_latch(EncoderState &state, EncoderPins &pins, const EncoderReading &re
     pins.position_latched = static_cast<double>(latched - state.zero) / usable_scale(pins.scale);
     pins.index_enable = false;
     pins.probe_enable = false;
-    state.isArmSent = false;
+    state.arm_sent = false;
 }
 
 /// The position between two counts, from the velocity and the time since the last edge.
@@ -85,12 +85,12 @@ double interpolated(const EncoderState &state, double count) noexcept {
 
 void encoder_read(EncoderState &state, EncoderPins &pins, const EncoderReading &reading) noexcept {
     const auto count = static_cast<std::uint16_t>(reading.count);
-    const std::int64_t raw = state.isKnown ? extended(state.raw, state.last_count, count) : 0;
+    const std::int64_t raw = state.known ? extended(state.raw, state.last_count, count) : 0;
     const std::int64_t change = raw - state.raw;
     state.raw = raw;
     state.last_count = count;
-    if (!state.isKnown) {
-        state.isKnown = true;
+    if (!state.known) {
+        state.known = true;
         state.last_edge = static_cast<std::uint16_t>(reading.count >> 16U);
     } else {
         measure_velocity(state, pins, reading, change);
@@ -110,8 +110,8 @@ void encoder_read(EncoderState &state, EncoderPins &pins, const EncoderReading &
     pins.input_a = (reading.control & A) != 0;
     pins.input_b = (reading.control & B) != 0;
     pins.input_index = (reading.control & Z) != 0;
-    state.hasQuadError = (reading.control & QUAD_ERROR) != 0;
-    pins.quad_error = pins.quad_error_enable && (pins.quad_error || state.hasQuadError);
+    state.has_quad_error = (reading.control & QUAD_ERROR) != 0;
+    pins.quad_error = pins.quad_error_enable && (pins.quad_error || state.has_quad_error);
 }
 
 EncoderControl encoder_control(EncoderState &state, const EncoderPins &pins) noexcept {
@@ -123,14 +123,14 @@ EncoderControl encoder_control(EncoderState &state, const EncoderPins &pins) noe
                               : pins.probe_enable ? LATCH_ON_PROBE | ONCE
                                                   : 0U;
     const std::uint32_t has = state.control & SET;
-    const bool hasArm = (has & ONCE) != 0;
-    if (arm != 0 && hasArm && state.isArmSent && (has & arm) == arm) {
+    const bool has_arm = (has & ONCE) != 0;
+    if (arm != 0 && has_arm && state.arm_sent && (has & arm) == arm) {
         return {};  // a write now could arm again after an event that is not read yet
     }
     // The arm of an earlier request is removed, and seen to be removed, before the next one.
-    state.isArmSent = arm != 0 && !hasArm;
-    const std::uint32_t wanted = settings | (state.isArmSent ? arm : 0U);
-    const std::uint32_t clear = state.hasQuadError && !pins.quad_error_enable ? QUAD_ERROR : 0U;
+    state.arm_sent = arm != 0 && !has_arm;
+    const std::uint32_t wanted = settings | (state.arm_sent ? arm : 0U);
+    const std::uint32_t clear = state.has_quad_error && !pins.quad_error_enable ? QUAD_ERROR : 0U;
     return {has != wanted || clear != 0, wanted | clear};
 }
 

@@ -19,7 +19,7 @@ constexpr std::uint32_t A = 1U << 0U, B = 1U << 1U, Z = 1U << 2U, INDEX_POLARITY
                         LATCH_ON_INDEX = 1U << 4U, ONCE = 1U << 6U, MASK_POLARITY = 1U << 8U,
                         INDEX_MASK = 1U << 9U, UP_DOWN = 1U << 10U, FILTER = 1U << 11U,
                         PROBE_POLARITY = 1U << 12U, LATCH_ON_PROBE = 1U << 13U, QUAD_ERROR = 1U << 15U;
-/// What the driver sets and reads back.
+/// Bits that the driver sets and reads back.
 constexpr std::uint32_t SET = INDEX_POLARITY | LATCH_ON_INDEX | ONCE | MASK_POLARITY | INDEX_MASK | UP_DOWN |
                               FILTER | PROBE_POLARITY | LATCH_ON_PROBE;
 }  // namespace encoder_bit
@@ -70,7 +70,7 @@ constexpr PinRow<EncoderPins> ENCODER_PROBE_PINS[] = {
     {"probe-invert", Access::RW, &EncoderPins::probe_invert},
 };
 
-/// What the registers say in one cycle.
+/// Values of the registers in one cycle.
 struct EncoderReading {
     std::uint32_t count = 0;     ///< low half count, high half time stamp of the last edge
     std::uint32_t control = 0;   ///< high half latch, low half control
@@ -83,18 +83,18 @@ struct EncoderState {
     std::int64_t raw = 0;   ///< counts since the first reading
     std::int64_t zero = 0;  ///< raw at which the count is 0
     std::uint16_t last_count = 0, last_edge = 0;
-    bool isKnown = false;
+    bool known = false;
     double since_edge_s = 0.0;  ///< time without an edge
     double velocity = 0.0;      ///< [counts/s]
     bool isMoving = false;      ///< last_edge is the time of an edge that was seen
-    bool isArmSent = false;     ///< an arm was written for the present request
+    bool arm_sent = false;      ///< an arm was written for the present request
     std::uint32_t control = 0;  ///< as last read
-    bool hasQuadError = false;
+    bool has_quad_error = false;
 };
 
 /// Takes a reading: counts, velocity, inputs, and a latch that happened.
 void encoder_read(EncoderState &state, EncoderPins &pins, const EncoderReading &reading) noexcept;
-/// Whether the control register has to be written, and with what.
+/// Whether the control register must be written, and its value.
 struct EncoderControl {
     bool isDue = false;
     std::uint32_t value = 0;

@@ -35,15 +35,15 @@ std::uint32_t divider(std::uint32_t clock_hz, std::uint32_t frequency_hz, std::u
     return std::min(ratio < 2 ? 0U : ratio - 2, most);
 }
 
-std::uint32_t filter_word(const BoardPins &pins, bool isMuxed, std::uint32_t clock_hz) noexcept {
+std::uint32_t filter_word(const BoardPins &pins, bool muxed, std::uint32_t clock_hz) noexcept {
     constexpr std::uint32_t FULL_CLOCK = 0xFFF, MOST_DIVIDER = 0xFFE, MOST_SKEW = 0xF;
     constexpr unsigned SKEW_SHIFT = 28;
-    const std::uint32_t frequency = isMuxed ? pins.muxed_sample_frequency : pins.sample_frequency;
+    const std::uint32_t frequency = muxed ? pins.muxed_sample_frequency : pins.sample_frequency;
     if (frequency >= clock_hz) {
         return FULL_CLOCK;
     }
     const double clocks = std::clamp(pins.muxed_skew * clock_hz * 1e-9, 0.0, double{MOST_SKEW});
-    const std::uint32_t skew = isMuxed && clocks - clocks == 0.0 ? static_cast<std::uint32_t>(clocks) : 0U;
+    const std::uint32_t skew = muxed && clocks - clocks == 0.0 ? static_cast<std::uint32_t>(clocks) : 0U;
     return divider(clock_hz, frequency, MOST_DIVIDER) | (skew << SKEW_SHIFT);
 }
 
@@ -51,18 +51,18 @@ class Encoders final : public Module {
   public:
     explicit Encoders(const ModuleRequest &request)
         : module_(request.module), instances_(static_cast<std::size_t>(request.module.instances)),
-          isMuxed_(request.module.descriptor.gtag == Gtag::MUXED_ENCODER) {
+          muxed_(request.module.descriptor.gtag == Gtag::MUXED_ENCODER) {
         const std::uint8_t version = request.module.descriptor.version & VERSION_MASK;
-        hasProbe_ = (request.module.descriptor.version & PROBE_VERSION) != 0;
-        hasSkew_ = isMuxed_ && version >= FIRST_SKEW_VERSION;
+        has_probe_ = (request.module.descriptor.version & PROBE_VERSION) != 0;
+        has_skew_ = muxed_ && version >= FIRST_SKEW_VERSION;
         // The number of the version does not show whether the register exists; others ignore it.
-        hasTimer_ = hasDpll(request.assignment);
-        // A firmware with both types numbers the muxed encoders after the plain ones, which have the pins of
+        has_timer_ = hasDpll(request.assignment);
+        // A firmware with both types numbers the muxed encoders after the plain ones, which use the pins of
         // the board.
         for (const UsedModule &other : request.assignment.modules) {
-            first_ += isMuxed_ && other.descriptor.gtag == Gtag::ENCODER ? other.instances : 0;
+            first_ += muxed_ && other.descriptor.gtag == Gtag::ENCODER ? other.instances : 0;
         }
-        hasTimer_ = hasTimer_ && first_ == 0;
+        has_timer_ = has_timer_ && first_ == 0;
     }
 
     void plan(Registers &registers) override {
@@ -72,7 +72,7 @@ class Encoders final : public Module {
         controls_ = registers.read({module_.address(CONTROL), count}, ReadOrder::ENCODER_CONTROL);
         divider_ = registers.write(module_.address(STAMP_DIVIDER), WriteOrder::CONFIGURATION, Send::CHANGED);
         filter_ = registers.write(module_.address(FILTER_RATE), WriteOrder::CONFIGURATION, Send::CHANGED);
-        if (hasTimer_) {
+        if (has_timer_) {
             timer_ = registers.write(module_.address(TIMER), WriteOrder::CONFIGURATION, Send::CHANGED);
         }
         int number = 0;
@@ -86,11 +86,11 @@ class Encoders final : public Module {
         for (Instance &one : instances_) {
             const std::string name = fmt::format("encoder.{:02}", number++);
             binding_.bind(space, name, ENCODER_PINS, one.pins);
-            if (hasProbe_) {
+            if (has_probe_) {
                 binding_.bind(space, name, ENCODER_PROBE_PINS, one.pins);
             }
         }
-        if (isMuxed_) {
+        if (muxed_) {
             binding_.bind(space, "encoder", MUXED_PINS, board_);
         } else {
             binding_.bind(space, "encoder", PLAIN_PINS, board_);
@@ -98,10 +98,10 @@ class Encoders final : public Module {
         if (first_ == 0) {
             binding_.bind(space, "encoder", STAMP_PINS, board_);
         }
-        if (hasSkew_) {
+        if (has_skew_) {
             binding_.bind(space, "encoder", SKEW_PINS, board_);
         }
-        if (hasTimer_) {
+        if (has_timer_) {
             binding_.bind(space, "encoder", TIMER_PINS, board_);
         }
     }
@@ -124,16 +124,16 @@ class Encoders final : public Module {
     void write(Registers &registers, const Cycle &cycle) noexcept override {
         binding_.load();
         registers.set(divider_, stamp_divider());
-        registers.set(filter_, filter_word(board_, isMuxed_, module_.clock_hz));
-        if (hasTimer_) {
+        registers.set(filter_, filter_word(board_, muxed_, module_.clock_hz));
+        if (has_timer_) {
             registers.set(timer_, dpll_timer_choice(board_.timer_number));
         }
-        if (!cycle.isFresh) {
+        if (!cycle.fresh) {
             elapsed_s_ += cycle.period_s;  // read() was not called
             return;
         }
         for (Instance &one : instances_) {
-            if (!cycle.isWriting) {
+            if (!cycle.writing) {
                 continue;
             }
             if (const EncoderControl control = encoder_control(one.state, one.pins); control.isDue) {
@@ -162,7 +162,7 @@ class Encoders final : public Module {
     WriteHandle divider_, filter_, timer_;
     double elapsed_s_ = 0.0;
     int first_ = 0;
-    bool isMuxed_, hasProbe_ = false, hasSkew_ = false, hasTimer_ = false;
+    bool muxed_, has_probe_ = false, has_skew_ = false, has_timer_ = false;
 };
 
 }  // namespace

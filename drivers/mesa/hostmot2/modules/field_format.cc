@@ -28,11 +28,11 @@ std::unexpected<Error> refuse(std::string_view format, std::size_t at, std::stri
                 std::string(why));
 }
 
-/// The modifiers and the type from `at` on, behind the number of bits.
+/// The modifiers and the type from `at` on, after the number of bits.
 Result<> read_type(BitField &field, std::string_view format, std::size_t &at) {
     for (; at < format.size() && (format[at] == 'g' || format[at] == 'm'); ++at) {
-        field.isGray = field.isGray || format[at] == 'g';
-        field.isMultiTurn = field.isMultiTurn || format[at] == 'm';
+        field.gray = field.gray || format[at] == 'g';
+        field.multi_turn = field.multi_turn || format[at] == 'm';
     }
     const char letter = at < format.size() ? format[at] : '\0';
     const auto *found = std::ranges::find(TYPE_LETTERS, letter, &TypeLetter::letter);
@@ -41,7 +41,7 @@ Result<> read_type(BitField &field, std::string_view format, std::size_t &at) {
         ++at;
         return {};
     }
-    if (at == format.size() && (field.isGray || field.isMultiTurn)) {
+    if (at == format.size() && (field.gray || field.multi_turn)) {
         field.type = BitFieldType::ENCODER;
         return {};
     }

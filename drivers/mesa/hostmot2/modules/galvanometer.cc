@@ -45,17 +45,16 @@ void galvanometer_read(GalvanometerPins &pins, const GalvanometerWords &words,
     pins.vel_fb = number_of(words.velocity) * clock_hz / CLOCKS_OF_POSITION;
 }
 
-std::uint32_t galvanometer_mode(const GalvanometerPins &x, const GalvanometerPins &y,
-                                bool isEnabled) noexcept {
+std::uint32_t galvanometer_mode(const GalvanometerPins &x, const GalvanometerPins &y, bool enabled) noexcept {
     constexpr std::uint32_t CONTROL_MASK = 7, BITS_18_X = 1U << 10U, BITS_18_Y = 1U << 11U,
                             COMMAND_X = 1U << 12U, COMMAND_Y = 1U << 13U;
     constexpr std::uint32_t DATA_X = 1, DATA_Y = 1U << 3U;
-    if (!isEnabled) {
+    if (!enabled) {
         return DATA_X | DATA_Y | OVERFLOW_POS_X | OVERFLOW_POS_Y | OVERFLOW_VEL_X | OVERFLOW_VEL_Y;
     }
     return (x.control & CONTROL_MASK) | ((y.control & CONTROL_MASK) << 3U) | (x.is18Bit ? BITS_18_X : 0U) |
-           (y.is18Bit ? BITS_18_Y : 0U) | (x.isCommandMode ? COMMAND_X : 0U) |
-           (y.isCommandMode ? COMMAND_Y : 0U);
+           (y.is18Bit ? BITS_18_Y : 0U) | (x.is_command_mode ? COMMAND_X : 0U) |
+           (y.is_command_mode ? COMMAND_Y : 0U);
 }
 
 std::uint32_t galvanometer_command(const GalvanometerPins &x, const GalvanometerPins &y) noexcept {

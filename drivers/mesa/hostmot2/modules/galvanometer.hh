@@ -17,7 +17,7 @@ struct GalvanometerPins {
     double scale = 1.0;                                 ///< position at full scale
     bool pos_overflow = false, vel_overflow = false;
     std::uint32_t control = 1, command = 0;
-    bool isCommandMode = false, is18Bit = false;
+    bool is_command_mode = false, is18Bit = false;
 };
 
 /// The registers of an axis.
@@ -33,8 +33,7 @@ void galvanometer_read(GalvanometerPins &pins, const GalvanometerWords &words,
                        std::uint32_t clock_hz) noexcept;
 
 /// The mode register. While the interface is not enabled it sends positions, and clears the overflows.
-std::uint32_t galvanometer_mode(const GalvanometerPins &x, const GalvanometerPins &y,
-                                bool isEnabled) noexcept;
+std::uint32_t galvanometer_mode(const GalvanometerPins &x, const GalvanometerPins &y, bool enabled) noexcept;
 /// The words that are sent in command mode.
 std::uint32_t galvanometer_command(const GalvanometerPins &x, const GalvanometerPins &y) noexcept;
 /// Takes the overflows from the mode register.

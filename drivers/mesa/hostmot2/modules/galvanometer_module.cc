@@ -134,7 +134,7 @@ class Galvanometers final : public Module {
         real("pos{}-scale", Access::IN, pins.scale);
         bit("pos{}-overflow", Access::OUT, pins.pos_overflow);
         bit("vel{}-overflow", Access::OUT, pins.vel_overflow);
-        bit("commandmode{}", Access::IN, pins.isCommandMode);
+        bit("commandmode{}", Access::IN, pins.is_command_mode);
         bit("18bitmode{}", Access::IN, pins.is18Bit);
         binding_.add(space, fmt::format("{}.control{}", name, axis), PinType::U32, Access::IN, &pins.control);
         binding_.add(space, fmt::format("{}.command{}", name, axis), PinType::U32, Access::IN, &pins.command);

@@ -68,13 +68,13 @@ void inputs_count(InputsState &state, InputsPins &pins, std::uint32_t counters) 
         const auto change = static_cast<std::int8_t>(static_cast<std::uint8_t>(now - before));
         if (pins.reset[i]) {
             pins.count[i] = 0;
-        } else if (state.isKnown) {
+        } else if (state.known) {
             pins.count[i] = static_cast<std::int32_t>(static_cast<std::uint32_t>(pins.count[i]) +
                                                       static_cast<std::uint32_t>(change));
         }
     }
     state.counters = counters;
-    state.isKnown = true;
+    state.known = true;
 }
 
 }  // namespace mw::mesa

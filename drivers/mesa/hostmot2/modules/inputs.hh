@@ -32,7 +32,7 @@ constexpr PinRow<InputsPins> INPUTS_PARAMS[] = {
 /// The hand wheels as they were last read.
 struct InputsState {
     std::uint32_t counters = 0;
-    bool isKnown = false;
+    bool known = false;
 };
 
 /// The width that the control register shows, from 1 to 32.

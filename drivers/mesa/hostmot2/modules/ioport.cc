@@ -84,11 +84,11 @@ PortWords port_words(std::span<const UsedPin> used, std::span<const GpioPins> pi
     for (std::size_t i = 0; i < used.size() && i < pins.size(); ++i) {
         const std::uint32_t bit = 1U << i;
         const GpioPins &pin = pins[i];
-        const bool isOutput = used[i].isGeneral() ? pin.is_output : used[i].isOutputOfModule();
+        const bool is_output_flag = used[i].isGeneral() ? pin.is_output : used[i].isOutputOfModule();
         words.source |= used[i].isGeneral() ? 0U : bit;
-        words.direction |= isOutput && !pin.is_opendrain ? bit : 0U;
-        words.open_drain |= isOutput && pin.is_opendrain ? bit : 0U;
-        words.invert |= isOutput && pin.invert_output ? bit : 0U;
+        words.direction |= is_output_flag && !pin.is_opendrain ? bit : 0U;
+        words.open_drain |= is_output_flag && pin.is_opendrain ? bit : 0U;
+        words.invert |= is_output_flag && pin.invert_output ? bit : 0U;
         words.data |= used[i].isGeneral() && pin.out ? bit : 0U;
     }
     return words;
@@ -104,8 +104,8 @@ std::string serial_output_name(const UsedPin &pin) {
 }
 
 std::string output_name(const UsedPin &pin) {
-    const bool isSerial = pin.module == Gtag::SMART_SERIAL || pin.module == Gtag::SMART_SERIAL_B;
-    if (isSerial && pin.isOutputOfModule()) {
+    const bool serial = pin.module == Gtag::SMART_SERIAL || pin.module == Gtag::SMART_SERIAL_B;
+    if (serial && pin.isOutputOfModule()) {
         return serial_output_name(pin);
     }
     for (const OutputName &one : OUTPUT_NAMES) {
@@ -160,10 +160,10 @@ void IoPorts::declare(PinSpace &space) {
             continue;
         }
         // A function on several pins has the number of the pin among them in its names.
-        const auto isSame = [&](const UsedPin &pin) { return output_name(pin) == other; };
-        const auto all = std::ranges::count_if(used_, isSame);
+        const auto same = [&](const UsedPin &pin) { return output_name(pin) == other; };
+        const auto all = std::ranges::count_if(used_, same);
         const auto before =
-            std::count_if(used_.begin(), used_.begin() + static_cast<std::ptrdiff_t>(i), isSame);
+            std::count_if(used_.begin(), used_.begin() + static_cast<std::ptrdiff_t>(i), same);
         const std::size_t dot = other.rfind('.');
         const std::string alias =
             all == 1 ? other : fmt::format("{}.{}{}", other.substr(0, dot), before, other.substr(dot));
@@ -234,8 +234,8 @@ void IoPorts::write_immediately(RegisterBus &bus) noexcept {
                                      {module_.address(DIRECTION, number), words.direction}};
         PortWords only_data = sent_[i];
         only_data.data = words.data;
-        const bool isOnlyData = only_data == words;
-        if (bus.write_immediately(std::span(all).first(isOnlyData ? 1 : std::size(all)))) {
+        const bool data_only = only_data == words;
+        if (bus.write_immediately(std::span(all).first(data_only ? 1 : std::size(all)))) {
             sent_[i] = words;
         }
     }

@@ -14,8 +14,8 @@ std::uint32_t limited(double value, double most) noexcept {
     return value > 0.0 ? static_cast<std::uint32_t>(std::min(value, most)) : 0U;
 }
 
-std::uint32_t flag(bool isSet, unsigned bit) noexcept {
-    return isSet ? 1U << bit : 0U;
+std::uint32_t flag(bool set, unsigned bit) noexcept {
+    return set ? 1U << bit : 0U;
 }
 
 }  // namespace
@@ -46,8 +46,8 @@ std::uint32_t one_shot_control(const OneShotPins &pins) noexcept {
                                  flag(pins.enable2, ENABLE) | flag(pins.reset2, RESET) |
                                  flag(pins.software2, SOFTWARE_BIT);
     constexpr std::int32_t LAST_TIMER = 4;
-    const bool isTimer = pins.dpll_timer_number > 0 && pins.dpll_timer_number <= LAST_TIMER;
-    const std::uint32_t timer = isTimer ? static_cast<std::uint32_t>(pins.dpll_timer_number) << TIMER : 0U;
+    const bool is_timer = pins.dpll_timer_number > 0 && pins.dpll_timer_number <= LAST_TIMER;
+    const std::uint32_t timer = is_timer ? static_cast<std::uint32_t>(pins.dpll_timer_number) << TIMER : 0U;
     return first | timer | (second << SECOND_TIMER);
 }
 

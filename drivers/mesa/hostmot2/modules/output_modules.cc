@@ -17,13 +17,13 @@ constexpr std::uint8_t FIRST_OUTPUT = 0x81, LAST_OUTPUT = 0x9F;
 class OutputWords final : public Module {
   public:
     OutputWords(const ModuleRequest &request, const char *name)
-        : module_(request.module), name_(name), hasRate_(request.module.descriptor.gtag == Gtag::SSR),
+        : module_(request.module), name_(name), has_rate_(request.module.descriptor.gtag == Gtag::SSR),
           instances_(static_cast<std::size_t>(request.module.instances)) {
         for (const UsedPin &pin : request.assignment.pins) {
-            const bool isOutput = pin.module == module_.descriptor.gtag && pin.function >= FIRST_OUTPUT &&
-                                  pin.function <= LAST_OUTPUT &&
-                                  static_cast<std::size_t>(pin.instance) < instances_.size();
-            if (isOutput) {
+            const bool is_output = pin.module == module_.descriptor.gtag && pin.function >= FIRST_OUTPUT &&
+                                   pin.function <= LAST_OUTPUT &&
+                                   static_cast<std::size_t>(pin.instance) < instances_.size();
+            if (is_output) {
                 const auto bit = static_cast<unsigned>(pin.function - FIRST_OUTPUT);
                 instances_[static_cast<std::size_t>(pin.instance)].used |= 1U << bit;
             }
@@ -34,7 +34,7 @@ class OutputWords final : public Module {
         enum OutputRegister { DATA, RATE };
         int number = 0;
         for (Instance &one : instances_) {
-            if (hasRate_) {
+            if (has_rate_) {
                 one.rate_word =
                     registers.write(module_.address(RATE, number), WriteOrder::CONFIGURATION, Send::CHANGED);
             }
@@ -46,7 +46,7 @@ class OutputWords final : public Module {
         int number = 0;
         for (Instance &one : instances_) {
             const std::string name = fmt::format("{}.{:02}", name_, number++);
-            if (hasRate_) {
+            if (has_rate_) {
                 binding_.add(space, name + ".rate", PinType::U32, Access::IN, &one.rate_hz);
             }
             for (std::size_t i = 0; i < MAX_BITS; ++i) {
@@ -68,7 +68,7 @@ class OutputWords final : public Module {
                 word |= one.out[i] != one.invert[i] ? 1U << i : 0U;
             }
             registers.set(one.data, word & one.used);
-            if (hasRate_) {
+            if (has_rate_) {
                 registers.set(one.rate_word, ssr_rate(one.rate_hz, module_.clock_hz));
             }
         }
@@ -82,7 +82,7 @@ class OutputWords final : public Module {
     };
     UsedModule module_;
     const char *name_;
-    bool hasRate_;
+    bool has_rate_;
     std::vector<Instance> instances_;
     PinBinding binding_;
 };

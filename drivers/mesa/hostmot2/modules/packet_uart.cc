@@ -13,34 +13,34 @@ constexpr std::size_t SIZE_BYTES = 2;  // before each frame in the queue
 
 void PacketUart::setup(const Settings &settings) noexcept {
     settings_ = settings;
-    isSetupDue_ = true;
+    setup_due_ = true;
 }
 
 bool PacketUart::take_settings(Settings &settings) noexcept {
-    const bool isDue = isSetupDue_;
-    if (isDue) {
+    const bool due = setup_due_;
+    if (due) {
         settings = settings_;
-        isSetupDue_ = false;
+        setup_due_ = false;
     }
-    return isDue;
+    return due;
 }
 
 void PacketUart::reset() noexcept {
     queued_.clear();
     received_.clear();
     frames_ = size_ = missing_ = 0;
-    isResetDue_ = true;
+    reset_due_ = true;
 }
 
 bool PacketUart::take_reset() noexcept {
-    const bool isDue = isResetDue_;
-    isResetDue_ = false;
-    return isDue;
+    const bool due = reset_due_;
+    reset_due_ = false;
+    return due;
 }
 
 bool PacketUart::send(std::span<const std::uint8_t> frame) noexcept {
-    const bool isUsable = !frame.empty() && frame.size() <= MAX_FRAME_BYTES;
-    if (!isUsable || queued_.space() < frame.size() + SIZE_BYTES) {
+    const bool usable = !frame.empty() && frame.size() <= MAX_FRAME_BYTES;
+    if (!usable || queued_.space() < frame.size() + SIZE_BYTES) {
         return false;
     }
     const auto size = bytes_of(static_cast<std::uint32_t>(frame.size()));

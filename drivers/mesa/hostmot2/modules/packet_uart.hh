@@ -22,11 +22,11 @@ constexpr std::uint32_t CLEAR = 0x80010000, HAS_DATA = 1U << 21U, FRAMES = 0x1FU
 
 class PacketUart {
   public:
-    /// What setup() requires of the registers.
+    /// Register values requested by setup().
     struct Settings {
         std::uint32_t bitrate = 0;
         std::int32_t tx_mode = -1, rx_mode = -1;  ///< negative: unchanged
-        bool isTxCleared = false, isRxCleared = false;
+        bool tx_cleared = false, rx_cleared = false;
     };
     void setup(const Settings &settings) noexcept;
     /// Queues a frame; false: it is empty or too long, or the queue is full.
@@ -72,7 +72,7 @@ class PacketUart {
     static constexpr std::size_t QUEUE_BYTES = 4096;
 
     Settings settings_;
-    bool isSetupDue_ = false, isResetDue_ = false;
+    bool setup_due_ = false, reset_due_ = false;
     std::uint32_t clock_hz_ = 0;
     int version_ = 0;
     ByteQueue<QUEUE_BYTES> queued_, received_;

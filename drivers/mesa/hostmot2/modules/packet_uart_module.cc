@@ -62,27 +62,27 @@ class PacketUarts final : public Module {
             one.uart.show_modes(registers.value(one.tx_state), registers.value(one.rx_state));
             one.frames = (registers.value(one.rx_state) & packet_uart_bit::FRAMES) >> 16U;
             take(registers, one);
-            if (cycle.hasLostWrite && one.isSending) {
+            if (cycle.has_lost_write && one.sending) {
                 // Words of a frame may be missing in the board, which would mix with the next frame.
-                one.isTxClearDue = true;
+                one.tx_clear_due = true;
                 one.frame_left = 0;
                 one.uart.count_failure();
             }
-            one.isSending = one.frame_left > 0;
-            one.isRxClearDue = one.isRxClearDue || (cycle.hasLostWrite && one.isRxClearing);
-            one.isRxClearing = false;
+            one.sending = one.frame_left > 0;
+            one.rx_clear_due = one.rx_clear_due || (cycle.has_lost_write && one.rx_clearing);
+            one.rx_clearing = false;
         }
     }
     void write(Registers &registers, const Cycle &cycle) noexcept override {
         int number = 0;
         for (Instance &one : instances_) {
-            const bool isUsable = cycle.isFresh && cycle.isWriting;
-            if (!isUsable && one.step != Step::NONE) {
-                one.isRxClearDue = true;  // what the lost answer had taken is not known
+            const bool usable = cycle.fresh && cycle.writing;
+            if (!usable && one.step != Step::NONE) {
+                one.rx_clear_due = true;  // the words removed with the lost answer are unknown
                 one.uart.drop_frame();
             }
             one.step = Step::NONE;
-            if (isUsable) {
+            if (usable) {
                 setup(registers, one);
                 send(registers, one);
                 one.step = next_step(one);
@@ -92,7 +92,7 @@ class PacketUarts final : public Module {
     }
 
   private:
-    /// What the present request takes from the receiver.
+    /// What the current request reads from the receiver.
     enum class Step : std::uint8_t { NONE, SIZE, BYTES };
     struct Instance {
         PacketUart uart;
@@ -102,7 +102,7 @@ class PacketUarts final : public Module {
         WriteHandle send_count, clear_tx, clear_rx, tx_rate, rx_rate, tx_mode, rx_mode;
         Step step = Step::NONE;
         std::uint32_t frames = 0;  ///< in the board
-        bool isTxClearDue = false, isRxClearDue = false, isSending = false, isRxClearing = false;
+        bool tx_clear_due = false, rx_clear_due = false, sending = false, rx_clearing = false;
         std::array<std::uint8_t, MAX_FRAME_BYTES + 1> frame{};  ///< being sent
         std::size_t frame_size = 0, frame_left = 0;
     };
@@ -131,8 +131,8 @@ class PacketUarts final : public Module {
     void setup(Registers &registers, Instance &one) const noexcept {
         PacketUart::Settings settings;
         if (one.uart.take_settings(settings)) {
-            one.isTxClearDue = one.isTxClearDue || settings.isTxCleared;
-            one.isRxClearDue = one.isRxClearDue || settings.isRxCleared;
+            one.tx_clear_due = one.tx_clear_due || settings.tx_cleared;
+            one.rx_clear_due = one.rx_clear_due || settings.rx_cleared;
             registers.request(one.tx_rate, uart_rate(settings.bitrate, tx_.clock_hz, RATE_BITS));
             registers.request(one.rx_rate, uart_rate(settings.bitrate, rx_.clock_hz, RATE_BITS));
             if (settings.tx_mode >= 0) {
@@ -143,19 +143,19 @@ class PacketUarts final : public Module {
             }
         }
         if (one.uart.take_reset()) {
-            one.isTxClearDue = one.isRxClearDue = true;
+            one.tx_clear_due = one.rx_clear_due = true;
             one.frame_left = 0;
         }
-        if (one.isTxClearDue) {
+        if (one.tx_clear_due) {
             registers.request(one.clear_tx, packet_uart_bit::CLEAR);
-            one.isSending = true;
+            one.sending = true;
         }
-        if (one.isRxClearDue) {
+        if (one.rx_clear_due) {
             registers.request(one.clear_rx, packet_uart_bit::CLEAR);
             one.frames = 0;
-            one.isRxClearing = true;
+            one.rx_clearing = true;
         }
-        one.isTxClearDue = one.isRxClearDue = false;
+        one.tx_clear_due = one.rx_clear_due = false;
     }
     /// The words of a frame, in as many cycles as they need, and after the last its size, which starts it.
     static void send(Registers &registers, Instance &one) noexcept {
@@ -165,7 +165,7 @@ class PacketUarts final : public Module {
         if (one.frame_left == 0) {
             return;
         }
-        one.isSending = true;
+        one.sending = true;
         for (std::size_t i = 0; i < one.words.size() && one.frame_left > 0; ++i) {
             const std::size_t count = std::min(one.frame_left, BYTES_PER_WORD);
             const auto bytes = std::span(one.frame).subspan(one.frame_size - one.frame_left, count);
@@ -198,8 +198,8 @@ class PacketUarts final : public Module {
 }  // namespace
 
 std::unique_ptr<Module> make_packet_uarts(const ModuleRequest &request) {
-    const bool isPair = find_module(request.assignment, Gtag::PKT_UART_RX) != nullptr;
-    return isPair ? std::make_unique<PacketUarts>(request) : nullptr;
+    const bool is_pair = find_module(request.assignment, Gtag::PKT_UART_RX) != nullptr;
+    return is_pair ? std::make_unique<PacketUarts>(request) : nullptr;
 }
 
 }  // namespace mw::mesa

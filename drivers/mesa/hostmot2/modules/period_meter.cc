@@ -23,12 +23,12 @@ void period_meter_read(PeriodMeterPins &pins, const PeriodReading &reading) noex
     const double averages = ((reading.mode >> 4U) & 0xFFFU) + 1.0;
     const double period = (reading.period + 1.0) / averages, width = (reading.width + 1.0) / averages;
     pins.input_status = (reading.mode & INPUT) != 0;
-    pins.isValid = (reading.mode & VALID) != 0;
+    pins.valid = (reading.mode & VALID) != 0;
     const double tick_us = US_PER_S / std::max(reading.clock_hz, 1U);
-    pins.period_us = pins.isValid ? period * tick_us : 0.0;
-    pins.width_us = pins.isValid ? width * tick_us : 0.0;
-    pins.frequency = pins.isValid ? reading.clock_hz / period : 0.0;
-    const double duty = pins.isValid ? width / period : 0.0;
+    pins.period_us = pins.valid ? period * tick_us : 0.0;
+    pins.width_us = pins.valid ? width * tick_us : 0.0;
+    pins.frequency = pins.valid ? reading.clock_hz / period : 0.0;
+    const double duty = pins.valid ? width / period : 0.0;
     pins.duty_cycle = duty * pins.duty_cycle_scale + pins.duty_cycle_offset;
 }
 
@@ -37,7 +37,7 @@ std::uint32_t period_meter_mode(const PeriodMeterPins &pins, std::uint32_t clock
     const double filter = pins.filter_us / US_PER_S * clock_hz;
     const std::uint32_t clocks =
         filter >= 1.0 ? static_cast<std::uint32_t>(std::min(filter, MOST_FILTER)) : 1U;
-    return (pins.isInverted ? 1U : 0U) | ((averages_of(pins) - 1) << 4U) | (clocks << 16U);
+    return (pins.inverted ? 1U : 0U) | ((averages_of(pins) - 1) << 4U) | (clocks << 16U);
 }
 
 std::uint32_t period_meter_limit(const PeriodMeterPins &pins, std::uint32_t clock_hz) noexcept {

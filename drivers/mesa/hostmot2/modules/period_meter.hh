@@ -16,7 +16,7 @@ struct PeriodMeterPins {
     std::uint32_t averages = 1;      ///< periods that are measured together, 1 to 4096
     double minimum_frequency = 1.0;  ///< [Hz]; a slower signal is not valid
     double filter_us = 0.1;          ///< shorter pulses are ignored
-    bool isValid = false, isInverted = false, input_status = false;
+    bool valid = false, inverted = false, input_status = false;
 };
 
 constexpr PinRow<PeriodMeterPins> PERIOD_METER_PINS[] = {
@@ -29,12 +29,12 @@ constexpr PinRow<PeriodMeterPins> PERIOD_METER_PINS[] = {
     {"averages", Access::IN, &PeriodMeterPins::averages},
     {"minimum_frequency", Access::IN, &PeriodMeterPins::minimum_frequency},
     {"filtertc_us", Access::IN, &PeriodMeterPins::filter_us},
-    {"valid", Access::OUT, &PeriodMeterPins::isValid},
-    {"invert", Access::IN, &PeriodMeterPins::isInverted},
+    {"valid", Access::OUT, &PeriodMeterPins::valid},
+    {"invert", Access::IN, &PeriodMeterPins::inverted},
     {"input_status", Access::OUT, &PeriodMeterPins::input_status},
 };
 
-/// What the registers say in one cycle.
+/// Values of the registers in one cycle.
 struct PeriodReading {
     std::uint32_t mode = 0, period = 0, width = 0;
     std::uint32_t clock_hz = 1;

@@ -53,13 +53,13 @@ std::uint32_t pwm_value(const PwmPins &pins, int bits) noexcept {
     }
     constexpr std::uint32_t NEGATIVE = 1U << 31U;
     double duty = std::clamp(wanted, -1.0, 1.0);
-    const bool isNegative = duty < 0.0 && !pins.offset_mode;
+    const bool negative = duty < 0.0 && !pins.offset_mode;
     duty = pins.offset_mode ? 0.5 + 0.5 * duty : std::abs(duty);
     const double full = std::ldexp(1.0, bits) - 1.0;
     // Without dither the fraction of the value is not used.
     const double value =
         pins.dither ? std::floor(duty * full * RATE_STEPS) : std::floor(duty * full) * RATE_STEPS;
-    return static_cast<std::uint32_t>(value) | (isNegative ? NEGATIVE : 0U);
+    return static_cast<std::uint32_t>(value) | (negative ? NEGATIVE : 0U);
 }
 
 std::uint32_t pwm_mode(const PwmPins &pins, int bits) noexcept {

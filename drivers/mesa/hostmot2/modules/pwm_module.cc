@@ -63,9 +63,9 @@ class PwmGenerators final : public Module {
         std::uint32_t enabled = 0;
         unsigned number = 0;
         for (Instance &one : instances_) {
-            const bool isDensity = one.pins.output_type == PDM_DIRECTION;
+            const bool is_density = one.pins.output_type == PDM_DIRECTION;
             registers.set(one.mode, pwm_mode(one.pins, rate.bits));
-            registers.set(one.value, pwm_value(one.pins, isDensity ? PDM_BITS : rate.bits));
+            registers.set(one.value, pwm_value(one.pins, is_density ? PDM_BITS : rate.bits));
             enabled |= one.pins.enable ? 1U << number : 0U;
             ++number;
         }

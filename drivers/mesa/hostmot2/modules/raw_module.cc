@@ -34,19 +34,19 @@ class Raw final : public Module {
         if (address != address_ && registers.redirect(data_, address)) {
             address_ = address;
         }
-        if (pins_.write_strobe && cycle.isWriting) {
+        if (pins_.write_strobe && cycle.writing) {
             registers.set_address(write_, static_cast<std::uint16_t>(pins_.write_address));
             registers.request(write_, pins_.write_data);
             pins_.write_strobe = false;
         }
-        isDumpRequested_ = isDumpRequested_ || pins_.dump_state;
+        dump_requested_ = dump_requested_ || pins_.dump_state;
         pins_.dump_state = false;
         binding_.store();
     }
     bool take_dump_request() noexcept override {
-        const bool isRequested = isDumpRequested_;
-        isDumpRequested_ = false;
-        return isRequested;
+        const bool requested = dump_requested_;
+        dump_requested_ = false;
+        return requested;
     }
 
   private:
@@ -55,7 +55,7 @@ class Raw final : public Module {
     ReadHandle data_;
     WriteHandle write_;
     std::uint16_t address_ = 0;
-    bool isDumpRequested_ = false;
+    bool dump_requested_ = false;
 };
 
 }  // namespace

@@ -22,7 +22,7 @@ std::int32_t counts_of(std::int64_t units) noexcept {
 
 /// The zero crossing between two positions, in the direction of motion.
 struct Crossing {
-    bool isThere = false;
+    bool present = false;
     std::int64_t at = 0;
 };
 Crossing crossing_of(std::int64_t before, std::int64_t after) noexcept {
@@ -41,12 +41,12 @@ void place(ResolverState &state, const ResolverPins &pins) noexcept {
         std::round(usable(pins.joint_pos_fb) / scale - static_cast<double>(state.total) / UNITS_PER_REV);
     state.zero = -static_cast<std::int64_t>(std::clamp(turns, -MOST_TURNS, MOST_TURNS)) *
                  (std::int64_t{1} << REV_BITS);
-    state.isPlaced = true;
+    state.placed = true;
 }
 
 void take_index(ResolverState &state, ResolverPins &pins, std::int64_t before) noexcept {
     const Crossing crossing = crossing_of(before, state.total);
-    if (!pins.index_enable || !crossing.isThere) {
+    if (!pins.index_enable || !crossing.present) {
         return;
     }
     // With several cycles per revolution of the shaft each pseudo-index is one in `index_divisor`.
@@ -60,12 +60,12 @@ void take_index(ResolverState &state, ResolverPins &pins, std::int64_t before) n
 }  // namespace
 
 void resolver_read(ResolverState &state, ResolverPins &pins, const ResolverReading &reading) noexcept {
-    pins.error = reading.hasError;
-    const std::int64_t before = state.isKnown ? state.total : std::int64_t{reading.position};
-    state.total = state.isKnown ? before + static_cast<std::int32_t>(reading.position - state.last) : before;
+    pins.error = reading.has_error;
+    const std::int64_t before = state.known ? state.total : std::int64_t{reading.position};
+    state.total = state.known ? before + static_cast<std::int32_t>(reading.position - state.last) : before;
     state.last = reading.position;
-    state.isKnown = true;
-    if (pins.use_position_file && !state.isPlaced && pins.joint_pos_fb != 0.0) {
+    state.known = true;
+    if (pins.use_position_file && !state.placed && pins.joint_pos_fb != 0.0) {
         place(state, pins);
     }
     take_index(state, pins, before);

@@ -40,11 +40,11 @@ constexpr PinRow<ResolverPins> RESOLVER_PINS[] = {
     {"use-position-file", Access::RW, &ResolverPins::use_position_file},
 };
 
-/// What the registers say in one cycle.
+/// Values of the registers in one cycle.
 struct ResolverReading {
     std::uint32_t position = 0;  ///< 2^32 in each revolution
     std::uint32_t velocity = 0;  ///< signed: revolutions in each excitation period [1/2^32]
-    bool hasError = false;
+    bool has_error = false;
     double excitation_hz = 1e4;
 };
 
@@ -52,8 +52,8 @@ struct ResolverState {
     std::int64_t total = 0;  ///< [1/2^32 revolution], with the angle at the first reading
     std::int64_t zero = 0;   ///< total at which position and count are 0
     std::uint32_t last = 0;
-    bool isKnown = false;
-    bool isPlaced = false;  ///< the position file has been taken
+    bool known = false;
+    bool placed = false;  ///< the position file has been taken
 };
 
 /// Takes a reading. With an error position and velocity are shown, too, but are not valid: Mesa's register
@@ -62,7 +62,7 @@ void resolver_read(ResolverState &state, ResolverPins &pins, const ResolverReadi
 
 /// The choices of excitation: 10, 5 and 2.5 kHz with a clock of 50 MHz.
 struct Excitation {
-    double khz = -1.0;          ///< what the parameter shows; negative: as the board has it
+    double khz = -1.0;          ///< value of the parameter; negative: that of the board
     std::uint32_t command = 0;  ///< for the command register; 0: none
     std::uint32_t divisor = 5000;
 };

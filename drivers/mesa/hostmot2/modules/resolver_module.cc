@@ -36,7 +36,7 @@ class Resolvers final : public Module {
         reading.excitation_hz = static_cast<double>(module_.clock_hz) / excitation_.divisor;
         int number = 0;
         for (Instance &one : instances_) {
-            reading.hasError = ((errors >> static_cast<unsigned>(number)) & 1U) != 0;
+            reading.has_error = ((errors >> static_cast<unsigned>(number)) & 1U) != 0;
             reading.velocity = registers.value(velocities_, number);
             reading.position = registers.value(positions_, number);
             resolver_read(one.state, one.pins, reading);
@@ -48,7 +48,7 @@ class Resolvers final : public Module {
         binding_.load();
         const Excitation wanted = resolver_excitation(excitation_khz_);
         excitation_khz_ = wanted.khz;
-        if (wanted.command != excitation_.command && wanted.command != 0 && cycle.isWriting) {
+        if (wanted.command != excitation_.command && wanted.command != 0 && cycle.writing) {
             registers.request(data_, 0);
             registers.request(command_, wanted.command);
             excitation_ = wanted;

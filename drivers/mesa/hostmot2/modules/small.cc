@@ -32,8 +32,8 @@ std::uint32_t dpll_base_rate(double base_hz, std::uint32_t prescale, std::uint32
 std::uint32_t dpll_timer(double offset_us, double period_s) noexcept {
     constexpr double STEPS = 65536.0, S_PER_US = 1e-6;
     const double steps = -offset_us * S_PER_US / period_s * STEPS;
-    const bool isUsable = std::abs(steps) < STEPS;
-    return isUsable ? static_cast<std::uint32_t>(static_cast<std::int32_t>(steps)) & 0xFFFFU : 0U;
+    const bool usable = std::abs(steps) < STEPS;
+    return usable ? static_cast<std::uint32_t>(static_cast<std::int32_t>(steps)) & 0xFFFFU : 0U;
 }
 
 double dpll_phase_error_us(std::uint32_t phase_register, double period_s) noexcept {
@@ -44,8 +44,8 @@ double dpll_phase_error_us(std::uint32_t phase_register, double period_s) noexce
 std::uint32_t dpll_timer_choice(std::int32_t timer) noexcept {
     constexpr std::int32_t LAST_TIMER = 4;
     constexpr std::uint32_t ENABLE = 0x8000;
-    const bool isOn = timer >= 0 && timer <= LAST_TIMER;
-    return isOn ? (static_cast<std::uint32_t>(timer) << 12U) | ENABLE : 0U;
+    const bool on = timer >= 0 && timer <= LAST_TIMER;
+    return on ? (static_cast<std::uint32_t>(timer) << 12U) | ENABLE : 0U;
 }
 
 }  // namespace mw::mesa

@@ -37,8 +37,8 @@ std::uint32_t wanted_channels(const Assignment &assignment, const Config &config
             continue;
         }
         const auto number = static_cast<std::size_t>(channel);
-        const bool isLeftOut = number < modes.size() && modes[number] == 'x';
-        mask |= isLeftOut ? 0U : 1U << number;
+        const bool omitted = number < modes.size() && modes[number] == 'x';
+        mask |= omitted ? 0U : 1U << number;
     }
     return mask;
 }
@@ -52,7 +52,7 @@ std::array<std::uint8_t, MAX_CHANNELS> modes_of(const Config &config, int port) 
     return modes;
 }
 
-/// Bytes in which a card keeps a value.
+/// Number of bytes in which a card stores a value.
 int bytes_of(int bits) noexcept {
     constexpr int BITS = 8;
     return static_cast<int>(std::bit_ceil(static_cast<unsigned>((std::max(bits, 1) + BITS - 1) / BITS)));
@@ -135,14 +135,14 @@ class PortDiscovery {
     }
     void check_mode(const SserialCard &card, int channel, int mode, const std::vector<ModeRecord> &modes) {
         std::vector<std::string> software;
-        bool hasMode = false;
+        bool has_mode = false;
         for (const ModeRecord &one : modes) {
-            if (one.isSoftware) {
+            if (one.is_software) {
                 software.push_back(fmt::format("{} ({})", one.index, one.name));
-                hasMode = hasMode || one.index == mode;
+                has_mode = has_mode || one.index == mode;
             }
         }
-        if (!software.empty() && !hasMode) {
+        if (!software.empty() && !has_mode) {
             warnings.push_back(fmt::format("Smart serial card {}.{}.{} has no mode {}. It has {}. Change "
                                            "sserial_port_{} in config=.",
                                            card.name, port_, channel, mode, fmt::join(software, ", "),
@@ -169,9 +169,9 @@ Result<> set_pins(RegisterBus &bus, const Idrom &idrom, const Assignment &assign
         std::uint32_t direction = 0, source = 0;
         for (std::size_t i = 0; i < width && first + i < assignment.pins.size(); ++i) {
             const UsedPin &pin = assignment.pins[first + i];
-            const bool isOurs = use == PinUse::SERIAL && isSerial(pin.module);
-            source |= isOurs ? 1U << i : 0U;
-            direction |= isOurs && pin.isOutputOfModule() ? 1U << i : 0U;
+            const bool own = use == PinUse::SERIAL && isSerial(pin.module);
+            source |= own ? 1U << i : 0U;
+            direction |= own && pin.isOutputOfModule() ? 1U << i : 0U;
         }
         for (const auto &[reg, word] : {std::pair{DIRECTION, direction}, {SOURCE, source}}) {
             if (auto done = bus.write_now(ports->address(reg, port), {&word, 1}); !done) {
@@ -207,11 +207,11 @@ Result<> discover_sserial(RegisterBus &bus, const Idrom &idrom, const Config &co
         return {};
     }
     const int ports = std::min(module->instances, MAX_SMART_SERIAL_PORTS);
-    bool isAnyWanted = false;
+    bool any_wanted = false;
     for (int port = 0; port < ports; ++port) {
-        isAnyWanted = isAnyWanted || wanted_channels(assignment, config, port) != 0;
+        any_wanted = any_wanted || wanted_channels(assignment, config, port) != 0;
     }
-    if (isAnyWanted) {
+    if (any_wanted) {
         if (auto done = set_pins(bus, idrom, assignment, PinUse::SERIAL); !done) {
             return done;
         }
@@ -238,7 +238,7 @@ Result<> discover_sserial(RegisterBus &bus, const Idrom &idrom, const Config &co
             pin.function = 0;
         }
     }
-    return isAnyWanted ? set_pins(bus, idrom, assignment, PinUse::NONE) : Result<>{};
+    return any_wanted ? set_pins(bus, idrom, assignment, PinUse::NONE) : Result<>{};
 }
 
 }  // namespace mw::mesa

@@ -82,8 +82,8 @@ struct SerialPort {
     std::string card_names;  ///< for messages
     SserialPortPins pins;
     SserialPortControl control;
-    SserialWriteStep step;    ///< of the parameter that is written
-    bool isDoubtful = false;  ///< the last command may be lost
+    SserialWriteStep step;  ///< of the parameter that is written
+    bool doubtful = false;  ///< the last command may be lost
     std::vector<SerialCard> cards;
     ReadHandle command_read, data_read, status_read;
     std::array<ReadHandle, MAX_WORDS> user_reads;
@@ -112,7 +112,7 @@ class SmartSerial final : public Module {
                     card.user_writes[static_cast<std::size_t>(i)] = write(USER + i);
                 }
             }
-            // After what it acts on.
+            // After the registers that it uses.
             port.command_write =
                 registers.write(address(port, COMMAND, 0), WriteOrder::SMART_SERIAL, Send::REQUESTED);
         }
@@ -246,7 +246,7 @@ class SmartSerial final : public Module {
         }
     }
     static void read_port(const Registers &registers, SerialPort &port, const Cycle &cycle) noexcept {
-        port.isDoubtful = port.isDoubtful || cycle.hasLostWrite;
+        port.doubtful = port.doubtful || cycle.has_lost_write;
         SserialReading reading;
         reading.command = registers.value(port.command_read);
         reading.failed = registers.value(port.data_read);
@@ -259,8 +259,8 @@ class SmartSerial final : public Module {
             if (isFaulty(status)) {
                 reading.faulty |= 1U << channel;
             }
-            const bool isFailed = ((reading.failed >> channel) & 1U) != 0;
-            card.status = isFailed || isFaulty(status) ? status : card.status;
+            const bool failed = ((reading.failed >> channel) & 1U) != 0;
+            card.status = failed || isFaulty(status) ? status : card.status;
         }
         const std::uint32_t fresh = port.control.read(port.pins, reading);
         for (SerialCard &card : port.cards) {
@@ -275,9 +275,9 @@ class SmartSerial final : public Module {
         }
     }
     static void write_port(Registers &registers, SerialPort &port, const Cycle &cycle) noexcept {
-        const SserialCommand command = port.control.write(
-            port.pins, {cycle.now_ns, cycle.period_s, cycle.isWriting, hasParameters(port)});
-        if (command.isSetupStep) {
+        const SserialCommand command =
+            port.control.write(port.pins, {cycle.now_ns, cycle.period_s, cycle.writing, hasParameters(port)});
+        if (command.is_setup_step) {
             write_parameters(registers, port);
             return;
         }
@@ -290,17 +290,18 @@ class SmartSerial final : public Module {
             }
             std::array<std::uint32_t, MAX_WORDS> words{};
             sserial_write(card.values, words);
-            for (std::size_t i = 0; command.hasData && i < static_cast<std::size_t>(card.output_words); ++i) {
+            for (std::size_t i = 0; command.has_data && i < static_cast<std::size_t>(card.output_words);
+                 ++i) {
                 registers.request(card.user_writes[i], words[i]);
             }
-            if (command.hasModes) {
+            if (command.has_modes) {
                 registers.request(card.mode_write, std::uint32_t{card.mode} << MODE_SHIFT);
             }
         }
         if (command.isDue) {
             registers.request(port.command_write, command.command);
             port.step = {};
-            port.isDoubtful = false;
+            port.doubtful = false;
         }
     }
 
@@ -309,10 +310,10 @@ class SmartSerial final : public Module {
             return std::ranges::any_of(card.parameters, &SserialParameter::isChanged);
         });
     }
-    /// One step of a parameter in each cycle. What may be lost is repeated.
+    /// One step of a parameter in each cycle. Steps that may be lost are repeated.
     static void write_parameters(Registers &registers, SerialPort &port) noexcept {
-        const bool isFirst = port.step.number == 0;
-        if (isFirst && port.isDoubtful) {
+        const bool first = port.step.number == 0;
+        if (first && port.doubtful) {
             port.control.repeat_setup(port.pins);
             return;
         }
@@ -328,8 +329,8 @@ class SmartSerial final : public Module {
     static void write_parameter(Registers &registers, SerialPort &port, SerialCard &card,
                                 SserialParameter &parameter) noexcept {
         constexpr std::uint32_t FAULTS = 0xFF00;
-        const bool isFirst = port.step.number == 0;
-        if (!isFirst && !port.isDoubtful && (card.status_now & FAULTS) != 0) {
+        const bool first = port.step.number == 0;
+        if (!first && !port.doubtful && (card.status_now & FAULTS) != 0) {
             card.status = card.status_now;
             parameter.known = port.step.value;  // not tried again until it changes
             port.step = {};
@@ -337,7 +338,7 @@ class SmartSerial final : public Module {
             return;
         }
         const SserialWriteStep last = port.step;
-        port.step = port.isDoubtful ? last : next_step(parameter, last);
+        port.step = port.doubtful ? last : next_step(parameter, last);
         if (port.step.number == 0) {
             parameter.known = last.value;  // the next cycle takes the next parameter
             return;
@@ -347,7 +348,7 @@ class SmartSerial final : public Module {
             registers.request(card.user_writes[i], port.step.words[i]);
         }
         registers.request(port.command_write, port.control.setup_step(card.channel).command);
-        port.isDoubtful = false;
+        port.doubtful = false;
     }
 
     static std::size_t message(const SerialPort &port, const SserialEvents &event,

@@ -47,8 +47,8 @@ std::optional<SserialParameter> make_parameter(const FoundParameter &found) {
     parameter.access = record.direction == FieldDirection::INPUT ? Access::RO : Access::RW;
     parameter.bits = record.bits;
     parameter.address = record.value_address;
-    parameter.isNonVolatile = record.type == FieldType::NV_UNSIGNED || record.type == FieldType::NV_SIGNED ||
-                              record.type == FieldType::NV_FLOAT;
+    parameter.non_volatile = record.type == FieldType::NV_UNSIGNED || record.type == FieldType::NV_SIGNED ||
+                             record.type == FieldType::NV_FLOAT;
     switch (record.type) {
     case FieldType::UNSIGNED:
     case FieldType::NV_UNSIGNED:
@@ -84,7 +84,7 @@ SserialWriteStep next_step(const SserialParameter &parameter, const SserialWrite
     const std::uint64_t value = last.number == NONE ? parameter.wanted() : last.value;
     switch (last.number) {
     case NONE:
-        if (parameter.isNonVolatile) {
+        if (parameter.non_volatile) {
             return {.number = OPENED, .value = value, .status = ACCESS_NONVOLATILE, .words = {OPEN, 0}};
         }
         [[fallthrough]];
@@ -94,7 +94,7 @@ SserialWriteStep next_step(const SserialParameter &parameter, const SserialWrite
                 .status = WRITE | (size << SIZE_SHIFT) | parameter.address,
                 .words = {static_cast<std::uint32_t>(value), static_cast<std::uint32_t>(value >> WORD_BITS)}};
     case WRITTEN:
-        if (parameter.isNonVolatile) {
+        if (parameter.non_volatile) {
             return {.number = FINISHED, .value = value, .status = ACCESS_NONVOLATILE, .words = {CLOSED, 0}};
         }
         break;

@@ -11,7 +11,7 @@
 
 namespace mw::mesa {
 
-/// A parameter, the value of its pin, and the bits that the card has.
+/// A parameter, the value of its pin, and the bits in the card.
 struct SserialParameter {
     std::string name;  ///< in lower case
     PinType type = PinType::U32;
@@ -20,9 +20,9 @@ struct SserialParameter {
     std::int32_t s32 = 0;
     double real = 0.0;
     int bits = 0;
-    bool isNonVolatile = false;
+    bool non_volatile = false;
     std::uint16_t address = 0;
-    std::uint64_t known = 0;  ///< bits that the card has
+    std::uint64_t known = 0;  ///< current bits in the card
 
     /// The field of the pin.
     void *field() noexcept;
@@ -34,11 +34,11 @@ struct SserialParameter {
 /// The parameter of a card; empty: its type has no pin. [while loading]
 std::optional<SserialParameter> make_parameter(const FoundParameter &found);
 
-/// One exchange in set-up: what the status and user registers of the channel hold.
+/// One exchange in set-up: values of the status and user registers of the channel.
 struct SserialWriteStep {
     static constexpr int WORDS = 2;
     int number = 0;           ///< 0: none
-    std::uint64_t value = 0;  ///< that is written
+    std::uint64_t value = 0;  ///< value being written
     std::uint32_t status = 0;
     std::array<std::uint32_t, WORDS> words{};
 };

@@ -11,7 +11,7 @@ constexpr std::uint32_t DO_IT = 0x1000, STOP = 0x800, START_NORMAL = 0x900, STAR
                         CHANNELS = 0xFF;
 /// Bit 31 of the command register has another use.
 constexpr std::uint32_t COMMAND_MASK = 0x7FFFFFFF;
-/// A card turns its outputs off when it hears nothing for some 10 ms.
+/// A card switches its outputs off when it receives nothing for about 10 ms.
 constexpr double OUTPUTS_OFF_S = 0.1;
 /// The longest time for a start, and between two attempts.
 constexpr double START_LIMIT_S = 0.25, RETRY_S = 0.25;
@@ -31,14 +31,14 @@ constexpr double QUIET_S = 10.0;
 void SserialPortControl::enter(SserialPortPins &pins, SserialState state) noexcept {
     state_ = state;
     in_state_s_ = 0.0;
-    isStopSent_ = false;
+    stop_sent_ = false;
     pins.port_state = static_cast<std::uint32_t>(state);
 }
 
 SserialCommand SserialPortControl::send(std::uint32_t command) noexcept {
     last_command_ = command;
-    isClear_ = false;
-    isAnswered_ = false;
+    clear_ = false;
+    answered_ = false;
     return {.isDue = true, .command = command};
 }
 
@@ -49,23 +49,23 @@ SserialCommand SserialPortControl::start(SserialPortPins &pins) noexcept {
     late_streak_ = late_reads_ = 0;
     pins.fault_count = 0;
     SserialCommand command = send(START_NORMAL | channels_);
-    command.hasModes = true;
-    command.hasData = true;
+    command.has_modes = true;
+    command.has_data = true;
     return command;
 }
 
 void SserialPortControl::stop_by_faults(SserialPortPins &pins, SserialEvents::Type type,
                                         std::uint32_t channels) noexcept {
     // One message for each burst: attempts that fail belong to the same one.
-    if (!isRecovering_) {
+    if (!recovering_) {
         event_ = {.type = type, .channels = channels, .shortest_ns = late_shortest_ns_};
         stopped_s_ = 0.0;
     }
-    isRecovering_ = true;
+    recovering_ = true;
     pins.fault = true;
     outputs_ = SserialOutputs::HELD;
-    const bool isStart = type == SserialEvents::Type::NO_START;
-    enter(pins, isStart ? SserialState::FAULTED : SserialState::STOPPING);
+    const bool is_start = type == SserialEvents::Type::NO_START;
+    enter(pins, is_start ? SserialState::FAULTED : SserialState::STOPPING);
 }
 
 void SserialPortControl::note_fault(SserialPortPins &pins, std::uint32_t channels) noexcept {
@@ -99,13 +99,13 @@ void SserialPortControl::note_in_time(const SserialReading &reading) noexcept {
     if (late_shortest_ns_ == 0) {
         return;
     }
-    if (!isLateReported_ && event_.type == SserialEvents::Type::NONE) {
+    if (!late_reported_ && event_.type == SserialEvents::Type::NONE) {
         event_ = {.type = SserialEvents::Type::LATE,
                   .shortest_ns = late_shortest_ns_,
                   .longest_ns = reading.now_ns - sent_ns_,
                   .period_ns = static_cast<std::int64_t>(reading.period_s * 1e9)};
     }
-    isLateReported_ = true;
+    late_reported_ = true;
     quiet_s_ = 0.0;
     late_shortest_ns_ = 0;
 }
@@ -119,39 +119,39 @@ void SserialPortControl::evaluate_start(SserialPortPins &pins, const SserialRead
 }
 
 std::uint32_t SserialPortControl::read(SserialPortPins &pins, const SserialReading &reading) noexcept {
-    isClear_ = (reading.command & COMMAND_MASK) == 0;
-    const bool isExchange = (last_command_ & DO_IT) != 0;
-    if (!isClear_) {
-        if (isExchange && state_ == SserialState::RUNNING) {
+    clear_ = (reading.command & COMMAND_MASK) == 0;
+    const bool is_exchange = (last_command_ & DO_IT) != 0;
+    if (!clear_) {
+        if (is_exchange && state_ == SserialState::RUNNING) {
             note_late(pins, reading);
         }
         return 0;
     }
-    if (isAnswered_) {
+    if (answered_) {
         return 0;
     }
-    isAnswered_ = true;
+    answered_ = true;
     if (state_ == SserialState::STARTING) {
         evaluate_start(pins, reading);
         return 0;
     }
-    if (state_ != SserialState::RUNNING || !isExchange) {
+    if (state_ != SserialState::RUNNING || !is_exchange) {
         return 0;
     }
     note_in_time(reading);
     const std::uint32_t failed = (reading.failed | reading.faulty) & channels_;
-    const bool isFirst = exchanges_ < FIRST_EXCHANGES;
-    exchanges_ += isFirst ? 1 : 0;
-    if (failed != 0 && isFirst && silent_starts_ < MOST_SILENT_STARTS) {
+    const bool first = exchanges_ < FIRST_EXCHANGES;
+    exchanges_ += first ? 1 : 0;
+    if (failed != 0 && first && silent_starts_ < MOST_SILENT_STARTS) {
         ++silent_starts_;
         enter(pins, SserialState::IDLE);
     } else if (failed != 0) {
         note_fault(pins, failed);
     } else {
         pins.fault_count -= std::min(pins.fault_count, pins.fault_dec);
-        silent_starts_ = isFirst ? silent_starts_ : 0;
-        if (isRecovering_ && !isFirst) {
-            isRecovering_ = false;
+        silent_starts_ = first ? silent_starts_ : 0;
+        if (recovering_ && !first) {
+            recovering_ = false;
             pins.fault = false;
             event_ = {.type = SserialEvents::Type::RECOVERED,
                       .stopped_ns = static_cast<std::int64_t>(stopped_s_ * 1e9)};
@@ -163,9 +163,9 @@ std::uint32_t SserialPortControl::read(SserialPortPins &pins, const SserialReadi
 /// Stops the cards for a while, then starts them.
 SserialCommand SserialPortControl::write_stopping(SserialPortPins &pins, double period_s) noexcept {
     in_state_s_ += period_s;
-    if (!isStopSent_) {
+    if (!stop_sent_) {
         // A processor that is still busy may hang: it is stopped, too.
-        isStopSent_ = true;
+        stop_sent_ = true;
         return send(STOP | CHANNELS);
     }
     const double pause_s = state_ == SserialState::FAULTED ? RETRY_S : OUTPUTS_OFF_S;
@@ -175,21 +175,21 @@ SserialCommand SserialPortControl::write_stopping(SserialPortPins &pins, double 
 SserialCommand SserialPortControl::write_idle(SserialPortPins &pins, const Moment &moment) noexcept {
     in_state_s_ += moment.period_s;
     // Cards may run, from before a fault of the bus or of another program.
-    if (!isStopSent_) {
-        isStopSent_ = true;
+    if (!stop_sent_) {
+        stop_sent_ = true;
         return send(STOP | CHANNELS);
     }
-    if (!isClear_ || in_state_s_ < SETTLE_S) {
+    if (!clear_ || in_state_s_ < SETTLE_S) {
         return {};
     }
-    const bool isSetupDue = moment.hasParameters && !isSetupDone_;
-    isSetupDone_ = false;
-    if (!isSetupDue) {
+    const bool setup_due = moment.has_parameters && !setup_done_;
+    setup_done_ = false;
+    if (!setup_due) {
         return start(pins);
     }
     enter(pins, SserialState::SETUP);
     SserialCommand command = send(START_SETUP | channels_);
-    command.hasModes = true;
+    command.has_modes = true;
     return command;
 }
 
@@ -199,7 +199,7 @@ SserialCommand SserialPortControl::write_setup(SserialPortPins &pins, double per
         finish_setup(pins, channels_);
         return {};
     }
-    return {.isSetupStep = isClear_};
+    return {.is_setup_step = clear_};
 }
 
 SserialCommand SserialPortControl::setup_step(int channel) noexcept {
@@ -209,34 +209,34 @@ SserialCommand SserialPortControl::setup_step(int channel) noexcept {
 
 void SserialPortControl::finish_setup(SserialPortPins &pins, std::uint32_t failed) noexcept {
     enter(pins, SserialState::IDLE);
-    isSetupDone_ = true;
+    setup_done_ = true;
     if (failed != 0) {
         event_ = {.type = SserialEvents::Type::NO_SETUP, .channels = failed};
     }
 }
 
 SserialCommand SserialPortControl::write(SserialPortPins &pins, const Moment &moment) noexcept {
-    stopped_s_ += isRecovering_ ? moment.period_s : 0.0;
+    stopped_s_ += recovering_ ? moment.period_s : 0.0;
     quiet_s_ += moment.period_s;
-    isLateReported_ = isLateReported_ && quiet_s_ < QUIET_S;
-    if (!moment.isWriting) {
+    late_reported_ = late_reported_ && quiet_s_ < QUIET_S;
+    if (!moment.writing) {
         gap_s_ += moment.period_s;
         return {};
     }
-    const bool hasGap = gap_s_ > LONGEST_GAP_S;
+    const bool has_gap = gap_s_ > LONGEST_GAP_S;
     gap_s_ = 0.0;
-    if (hasGap && state_ != SserialState::IDLE && !isRecovering_) {
+    if (has_gap && state_ != SserialState::IDLE && !recovering_) {
         enter(pins, SserialState::IDLE);
     }
     if (!pins.run) {
-        const bool isStopDue = state_ != SserialState::IDLE || !isStopSent_;
-        if (!isStopDue) {
+        const bool stop_due = state_ != SserialState::IDLE || !stop_sent_;
+        if (!stop_due) {
             return {};
         }
         // The operator stops the port: this ends a fault, and outputs follow their pins after the next start.
         enter(pins, SserialState::IDLE);
-        isStopSent_ = true;
-        isRecovering_ = pins.fault = false;
+        stop_sent_ = true;
+        recovering_ = pins.fault = false;
         pins.fault_count = 0;
         silent_starts_ = 0;
         outputs_ = SserialOutputs::RELEASED;
@@ -255,11 +255,11 @@ SserialCommand SserialPortControl::write(SserialPortPins &pins, const Moment &mo
         return {};
     case SserialState::RUNNING: break;
     }
-    if (!isClear_) {
+    if (!clear_) {
         return {};
     }
     SserialCommand command = send(DO_IT | channels_);
-    command.hasData = true;
+    command.has_data = true;
     sent_ns_ = moment.now_ns;
     return command;
 }

@@ -38,7 +38,7 @@ constexpr PinRow<SserialPortPins> SSERIAL_PORT_PINS[] = {
     {"fault-lim", Access::RW, &SserialPortPins::fault_lim},
 };
 
-/// What the registers of a port read.
+/// Values read from the registers of a port.
 struct SserialReading {
     std::uint32_t command = 0;  ///< 0: the last command is done
     std::uint32_t failed = 0;   ///< bits of channels of the data register
@@ -47,7 +47,7 @@ struct SserialReading {
     double period_s = 0.001;
 };
 
-/// What happened to a port, for one message for each burst.
+/// Events of a port; one message for each burst.
 struct SserialEvents {
     enum class Type : std::uint8_t {
         NONE,
@@ -63,16 +63,16 @@ struct SserialEvents {
     std::int64_t period_ns = 0;
 };
 
-/// What a port writes in this cycle.
+/// Registers that a port writes in this cycle.
 struct SserialCommand {
     bool isDue = false;
     std::uint32_t command = 0;
-    bool isSetupStep = false;  ///< the cards are in set-up: setup_step() or finish_setup() must follow
-    bool hasModes = false;     ///< with the modes of the cards
-    bool hasData = false;      ///< with their outputs
+    bool is_setup_step = false;  ///< the cards are in set-up: setup_step() or finish_setup() must follow
+    bool has_modes = false;      ///< with the modes of the cards
+    bool has_data = false;       ///< with their outputs
 };
 
-/// What becomes of the outputs with the next command.
+/// State of the outputs with the next command.
 enum class SserialOutputs : std::uint8_t { KEPT, HELD, RELEASED };
 
 class SserialPortControl {
@@ -81,12 +81,12 @@ class SserialPortControl {
 
     /// Evaluates a fresh read; the mask of channels whose words are new. [servo thread]
     std::uint32_t read(SserialPortPins &pins, const SserialReading &reading) noexcept;
-    /// Chooses the command of this cycle. `isWriting` false: nothing can be sent. [servo thread]
+    /// Selects the command of this cycle. `writing` false: nothing can be sent. [servo thread]
     struct Moment {
         std::int64_t now_ns = 0;
         double period_s = 0.001;
-        bool isWriting = false;
-        bool hasParameters = false;  ///< parameters differ from those of the cards
+        bool writing = false;
+        bool has_parameters = false;  ///< parameters differ from those of the cards
     };
     SserialCommand write(SserialPortPins &pins, const Moment &moment) noexcept;
     /// One exchange in set-up with a channel. [servo thread]
@@ -95,7 +95,7 @@ class SserialPortControl {
     void finish_setup(SserialPortPins &pins, std::uint32_t failed) noexcept;
     /// The start of the set-up may be lost. [servo thread]
     void repeat_setup(SserialPortPins &pins) noexcept { enter(pins, SserialState::IDLE); }
-    /// What happened since the last call, once. [servo thread]
+    /// Events since the last call, once. [servo thread]
     SserialEvents take_event() noexcept;
     SserialOutputs take_outputs() noexcept;
 
@@ -116,9 +116,9 @@ class SserialPortControl {
     SserialState state_ = SserialState::IDLE;
     double in_state_s_ = 0.0, gap_s_ = 0.0, stopped_s_ = 0.0, quiet_s_ = 0.0;
     std::uint32_t last_command_ = 0;
-    bool isClear_ = false;    ///< the last read saw no command in work
-    bool isAnswered_ = true;  ///< the last command has been evaluated
-    bool isStopSent_ = false, isSetupDone_ = false, isRecovering_ = false, isLateReported_ = false;
+    bool clear_ = false;    ///< the last read saw no command in work
+    bool answered_ = true;  ///< the last command has been evaluated
+    bool stop_sent_ = false, setup_done_ = false, recovering_ = false, late_reported_ = false;
     int exchanges_ = 0;  ///< since the start of the cards, up to a few
     int silent_starts_ = 0;
     int late_streak_ = 0;  ///< exchanges in a row that a read saw in work

@@ -29,7 +29,7 @@ Result<std::vector<std::uint8_t>> read_bytes(const ReadCardByte &read, std::uint
     return bytes;
 }
 
-/// A text that ends with 0; `address` moves behind it.
+/// Reads a text that ends with 0; `address` moves behind it.
 Result<std::string> read_text(const ReadCardByte &read, std::uint16_t &address) {
     const std::uint16_t start = address;
     std::string text;
@@ -212,8 +212,8 @@ void set_field_bits(std::span<std::uint32_t> words, int first, int bits, std::ui
         const auto word = static_cast<std::size_t>(at / WORD_BITS);
         if (word < words.size()) {
             const std::uint32_t bit = 1U << static_cast<unsigned>(at % WORD_BITS);
-            const bool isSet = ((value >> static_cast<unsigned>(i)) & 1U) != 0;
-            words[word] = isSet ? words[word] | bit : words[word] & ~bit;
+            const bool set = ((value >> static_cast<unsigned>(i)) & 1U) != 0;
+            words[word] = set ? words[word] | bit : words[word] & ~bit;
         }
     }
 }

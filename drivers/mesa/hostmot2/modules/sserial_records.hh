@@ -31,7 +31,7 @@ enum class FieldType : std::uint8_t {
     ENCODER_HIGH = 0x18,
     ENCODER_LOW = 0x28,
 };
-/// Seen from the host: an input is data that the card sends.
+/// As seen by the host: an input is data that the card sends.
 enum class FieldDirection : std::uint8_t { INPUT = 0, BOTH = 0x40, OUTPUT = 0x80 };
 
 /// A field of process data, or a parameter.
@@ -41,7 +41,7 @@ struct DataRecord {
     FieldDirection direction = FieldDirection::INPUT;
     float min = 0.0F, max = 0.0F;
     std::uint16_t value_address = 0;
-    std::string unit, name;     ///< as the card has them
+    std::string unit, name;     ///< as in the card
     std::uint16_t address = 0;  ///< of the record
 
     bool operator==(const DataRecord &) const = default;
@@ -49,7 +49,7 @@ struct DataRecord {
 /// A set of process data that the card offers.
 struct ModeRecord {
     int index = 0;
-    bool isSoftware = false;
+    bool is_software = false;
     std::string name;
 
     bool operator==(const ModeRecord &) const = default;

@@ -120,9 +120,9 @@ Result<std::uint32_t> SserialSetup::start(std::uint32_t command_bits, std::uint3
 Result<> SserialSetup::write_modes(std::uint32_t mask, std::span<const std::uint8_t> modes) {
     for (int channel = 0; channel < MAX_CHANNELS; ++channel) {
         const auto number = static_cast<std::size_t>(channel);
-        const bool isWanted = ((mask >> number) & 1U) != 0;
+        const bool wanted = ((mask >> number) & 1U) != 0;
         const std::uint32_t mode = number < modes.size() ? modes[number] : 0U;
-        if (!isWanted) {
+        if (!wanted) {
             continue;
         }
         if (auto written = write(status_address(channel), mode << MODE_SHIFT); !written) {
@@ -155,8 +155,8 @@ Result<SserialCard> SserialSetup::card(int channel) {
     card.serial_number = words[0];
     for (unsigned i = 0; i < 4; ++i) {
         const auto c = static_cast<char>((words[1] >> (8 * i)) & 0xFFU);
-        const bool isCapital = c >= 'A' && c <= 'Z';
-        card.name += isCapital ? static_cast<char>(c - 'A' + 'a') : c;
+        const bool is_capital = c >= 'A' && c <= 'Z';
+        card.name += is_capital ? static_cast<char>(c - 'A' + 'a') : c;
     }
     card.ptoc = static_cast<std::uint16_t>(words[2]);
     card.gtoc = static_cast<std::uint16_t>(words[2] >> 16U);

@@ -21,7 +21,7 @@ std::int64_t sign_extended(std::uint64_t raw, int bits) noexcept {
     return static_cast<std::int64_t>(raw << shift) >> shift;
 }
 
-/// 0 instead of a value that is not finite, such as with a wrong scale.
+/// 0 for a value that is not finite, for example with a wrong scale.
 double finite(double value) noexcept {
     return std::isfinite(value) ? value : 0.0;
 }
@@ -62,7 +62,7 @@ std::uint64_t requested_bits(const SserialCardValues &card, const SserialField &
     return 0;
 }
 
-/// Whether one number, whose bits are released together.
+/// True for a single number, whose bits are released together.
 bool isOneValue(FieldPins pins) noexcept {
     return pins != FieldPins::BITS;
 }
@@ -70,9 +70,9 @@ bool isOneValue(FieldPins pins) noexcept {
 void read_field(SserialCardValues &card, const SserialField &field,
                 std::span<const std::uint32_t> words) noexcept {
     const std::uint64_t raw = field_bits(words, field.input, field.bits);
-    const auto set = [](SserialBit &bit, bool isOn) {
-        bit.value = isOn;
-        bit.inverse = !isOn;
+    const auto set = [](SserialBit &bit, bool on) {
+        bit.value = on;
+        bit.inverse = !on;
     };
     switch (field.pins) {
     case FieldPins::BITS:
@@ -132,7 +132,7 @@ FieldPins pins_of(const DataRecord &record) noexcept {
     return FieldPins::NONE;
 }
 
-/// Where the values of a field are; makes them.
+/// Creates the values of a field; returns the index of the first.
 std::size_t add_values(SserialCardValues &card, const SserialField &field) {
     const double max = field.max == 0.0F ? 1.0 : field.max;
     switch (field.pins) {
@@ -152,10 +152,10 @@ std::size_t add_values(SserialCardValues &card, const SserialField &field) {
 void join_halves(SserialCardValues &card, const std::vector<DataRecord> &process) {
     for (std::size_t i = 0; i < process.size(); ++i) {
         for (std::size_t j = 0; j < process.size(); ++j) {
-            const bool isPair =
+            const bool is_pair =
                 process[i].type == FieldType::ENCODER_HIGH && process[j].type == FieldType::ENCODER_LOW &&
                 process[i].name == process[j].name && process[i].bits + process[j].bits <= MAX_COUNTER_BITS;
-            if (isPair && card.fields[i].hasInput() && card.fields[j].hasInput()) {
+            if (is_pair && card.fields[i].hasInput() && card.fields[j].hasInput()) {
                 card.fields[i].input_low = card.fields[j].input;
                 card.fields[i].low_bits = card.fields[j].bits;
                 card.fields[j].pins = FieldPins::NONE;
@@ -216,8 +216,8 @@ void sserial_write(SserialCardValues &card, std::span<std::uint32_t> words) noex
             continue;
         }
         const std::uint64_t requested = requested_bits(card, field);
-        const bool isOff = requested == 0;
-        field.held = isOneValue(field.pins) ? (isOff ? 0 : field.held) : field.held & requested;
+        const bool off = requested == 0;
+        field.held = isOneValue(field.pins) ? (off ? 0 : field.held) : field.held & requested;
         set_field_bits(words, field.output, field.bits, requested & ~field.held);
     }
 }
@@ -274,8 +274,8 @@ void count_encoder(SserialCounter &counter, std::uint64_t raw, int bits) noexcep
         };
         // The last index on the way: at or before the count upwards, at or after it downwards.
         const std::int64_t index = (change > 0 ? floor_rev(counter.total) : -floor_rev(-counter.total)) * rev;
-        const bool isPassed = change > 0 ? index > before : index < before;
-        if (isPassed) {
+        const bool passed = change > 0 ? index > before : index < before;
+        if (passed) {
             counter.zero = index;
             counter.index_enable = false;
         }

@@ -50,12 +50,13 @@ void show_debug(StepgenPins &pins, const StepgenState &state, const Motion &moti
     pins.err_at_match = pins.pos_minus_prev_cmd + 0.5 * pins.vel_error * pins.s_to_match;
 }
 
-/// The velocity of the command, and what removes the position error as fast as the acceleration permits.
+/// The velocity of the command, plus a correction that removes the position error as fast as the acceleration
+/// permits.
 double position_control(StepgenState &state, StepgenPins &pins, const Motion &motion) noexcept {
     const double cmd = isFinite(pins.position_cmd) ? pins.position_cmd : state.previous_cmd;
-    if (!state.hasPreviousCmd) {
+    if (!state.has_previous_cmd) {
         state.previous_cmd = cmd;
-        state.hasPreviousCmd = true;
+        state.has_previous_cmd = true;
     }
     const double ff_vel = (cmd - state.previous_cmd) / motion.period_s;
     const double error = motion.position - state.previous_cmd;
@@ -93,16 +94,16 @@ double stepgen_velocity_limit(const StepgenPins &pins) noexcept {
     const double scale = std::abs(usable_scale(pins.position_scale));
     const double step_ns = static_cast<double>(pins.steplen) + static_cast<double>(pins.stepspace);
     const double physical = 1e9 / std::max(step_ns, 1.0) / scale;
-    const bool isLimited = isFinite(pins.maxvel) && pins.maxvel != 0.0;
-    return isLimited ? std::min(std::abs(pins.maxvel), physical) : physical;
+    const bool is_limited = isFinite(pins.maxvel) && pins.maxvel != 0.0;
+    return is_limited ? std::min(std::abs(pins.maxvel), physical) : physical;
 }
 
 void stepgen_read(StepgenState &state, StepgenPins &pins, std::uint32_t accumulator) noexcept {
-    if (state.isKnown) {
+    if (state.known) {
         state.total += static_cast<std::int32_t>(accumulator - state.accumulator);
     }
     state.accumulator = accumulator;
-    state.isKnown = true;
+    state.known = true;
     state.moved = 0.0;
     if (pins.position_reset) {
         state.zero = state.total;
@@ -112,10 +113,10 @@ void stepgen_read(StepgenState &state, StepgenPins &pins, std::uint32_t accumula
     pins.position_fb = static_cast<double>(position) / UNITS_PER_STEP / usable_scale(pins.position_scale);
 }
 
-std::int32_t stepgen_rate(StepgenState &state, StepgenPins &pins, double period_s, bool isFresh,
+std::int32_t stepgen_rate(StepgenState &state, StepgenPins &pins, double period_s, bool fresh,
                           std::uint32_t clock_hz) noexcept {
     const double scale = usable_scale(pins.position_scale);
-    if (!isFresh) {
+    if (!fresh) {
         state.moved +=
             static_cast<double>(pins.step_rate) * static_cast<double>(clock_hz) / RATE_UNITS * period_s;
     }
@@ -123,22 +124,22 @@ std::int32_t stepgen_rate(StepgenState &state, StepgenPins &pins, double period_
     const Motion motion{(at_read + state.moved) / scale, period_s,
                         isFinite(pins.maxaccel) ? std::abs(pins.maxaccel) : 0.0};
     // A step generator whose position is not known has no position error to correct.
-    if (!pins.enable || !state.isKnown) {
+    if (!pins.enable || !state.known) {
         state.velocity = 0.0;
-        state.hasPreviousCmd = false;
+        state.has_previous_cmd = false;
         if (isFinite(pins.position_cmd)) {
             state.previous_cmd = pins.position_cmd;
-            state.hasPreviousCmd = true;
+            state.has_previous_cmd = true;
         }
         pins.velocity_fb = 0.0;
         pins.step_rate = 0;
         return 0;
     }
-    const double wanted = pins.isVelocityControl ? (isFinite(pins.velocity_cmd) ? pins.velocity_cmd : 0.0)
-                                                 : position_control(state, pins, motion);
-    if (pins.isVelocityControl && isFinite(pins.position_cmd)) {
+    const double wanted = pins.is_velocity_control ? (isFinite(pins.velocity_cmd) ? pins.velocity_cmd : 0.0)
+                                                   : position_control(state, pins, motion);
+    if (pins.is_velocity_control && isFinite(pins.position_cmd)) {
         state.previous_cmd = pins.position_cmd;
-        state.hasPreviousCmd = true;
+        state.has_previous_cmd = true;
     }
     double velocity = limited(wanted, stepgen_velocity_limit(pins));
     if (motion.accel > 0.0) {
@@ -172,14 +173,14 @@ void stepgen_take_latch(StepgenLatch &latch, StepgenState &state, StepgenPins &p
                         const StepgenModeReading &reading) noexcept {
     latch.mode = reading.value;
     const std::uint32_t arm = pins.index_enable ? LATCH_ON_INDEX : LATCH_ON_PROBE;
-    const bool isArmed = (reading.value & arm) != 0;
-    if (!latch.isSent || !(pins.index_enable || pins.probe_enable)) {
+    const bool armed = (reading.value & arm) != 0;
+    if (!latch.sent || !(pins.index_enable || pins.probe_enable)) {
         return;
     }
     // When it is not known whether the arm was received, an event shows by another position.
-    latch.isConfirmed =
-        latch.isConfirmed || isArmed || !reading.hasLostWrite || (reading.value & LATCHED) != latch.before;
-    if (isArmed || !latch.isConfirmed) {
+    latch.confirmed =
+        latch.confirmed || armed || !reading.has_lost_write || (reading.value & LATCHED) != latch.before;
+    if (armed || !latch.confirmed) {
         return;
     }
     const auto change = static_cast<std::int32_t>((reading.value & LATCHED) - state.accumulator);
@@ -189,13 +190,13 @@ void stepgen_take_latch(StepgenLatch &latch, StepgenState &state, StepgenPins &p
         const std::int64_t position = state.total - state.zero;
         pins.counts = static_cast<std::int32_t>(position >> 16);
         pins.position_fb = static_cast<double>(position) / UNITS_PER_STEP / usable_scale(pins.position_scale);
-        state.hasPreviousCmd = false;
+        state.has_previous_cmd = false;
     }
     pins.position_latch =
         static_cast<double>(latched - state.zero) / UNITS_PER_STEP / usable_scale(pins.position_scale);
     pins.index_enable = false;
     pins.probe_enable = false;
-    latch.isSent = latch.isConfirmed = false;
+    latch.sent = latch.confirmed = false;
 }
 
 StepgenModeWrite stepgen_latch_mode(StepgenLatch &latch, StepgenPins &pins) noexcept {
@@ -203,14 +204,14 @@ StepgenModeWrite stepgen_latch_mode(StepgenLatch &latch, StepgenPins &pins) noex
                                    (pins.probe_invert ? PROBE_POLARITY : 0U);
     const std::uint32_t arm = pins.index_enable ? LATCH_ON_INDEX : pins.probe_enable ? LATCH_ON_PROBE : 0U;
     const std::uint32_t has = latch.mode & SETTINGS;
-    if (arm != 0 && latch.isConfirmed && (has & arm) != 0) {
+    if (arm != 0 && latch.confirmed && (has & arm) != 0) {
         return {};  // a write now could arm again after an event that is not read yet
     }
     if (arm == 0) {
-        latch.isSent = latch.isConfirmed = false;
-    } else if (!latch.isSent) {
+        latch.sent = latch.confirmed = false;
+    } else if (!latch.sent) {
         latch.before = latch.mode & LATCHED;
-        latch.isSent = true;
+        latch.sent = true;
     }
     return {has != (settings | arm), settings | arm};
 }

@@ -18,7 +18,7 @@ struct StepgenPins {
     double position_cmd = 0.0, velocity_cmd = 0.0;  ///< [position units, units/s]
     double velocity_fb = 0.0, position_fb = 0.0;
     std::int32_t counts = 0;
-    bool enable = false, isVelocityControl = false, position_reset = false;
+    bool enable = false, is_velocity_control = false, position_reset = false;
     double ff_vel = 0.0, vel_error = 0.0, s_to_match = 0.0, err_at_match = 0.0, pos_minus_prev_cmd = 0.0;
     std::int32_t step_rate = 0;
     double position_scale = 1.0, maxvel = 0.0, maxaccel = 1.0;
@@ -40,7 +40,7 @@ constexpr PinRow<StepgenPins> STEPGEN_PINS[] = {
     {"position-fb", Access::OUT, &StepgenPins::position_fb},
     {"counts", Access::OUT, &StepgenPins::counts},
     {"enable", Access::IN, &StepgenPins::enable},
-    {"control-type", Access::IN, &StepgenPins::isVelocityControl},
+    {"control-type", Access::IN, &StepgenPins::is_velocity_control},
     {"position-reset", Access::IN, &StepgenPins::position_reset},
     {"dbg_ff_vel", Access::OUT, &StepgenPins::ff_vel},
     {"dbg_vel_error", Access::OUT, &StepgenPins::vel_error},
@@ -77,16 +77,16 @@ constexpr PinRow<StepTablePins> STEPGEN_TABLE_PINS[] = {
     {"table-data-3", Access::RW, &StepTablePins::data_3},
 };
 
-/// What the driver knows of a step generator between cycles.
+/// State of a step generator between cycles.
 struct StepgenState {
     std::int64_t total = 0;  ///< steps of the board since the first read [1/65536 step]
     std::int64_t zero = 0;   ///< total at which counts are 0
     std::uint32_t accumulator = 0;
-    bool isKnown = false;       ///< the accumulator has been read
+    bool known = false;         ///< the accumulator has been read
     double moved = 0.0;         ///< estimated motion since the last read that succeeded [steps]
     double velocity = 0.0;      ///< commanded [position units/s]
     double previous_cmd = 0.0;  ///< [position units]
-    bool hasPreviousCmd = false;
+    bool has_previous_cmd = false;
 };
 
 /// Whole clocks of at least `ns`, limited to what the register holds.
@@ -102,7 +102,7 @@ double stepgen_velocity_limit(const StepgenPins &pins) noexcept;
 void stepgen_read(StepgenState &state, StepgenPins &pins, std::uint32_t accumulator) noexcept;
 /// The rate register of this cycle. A step generator that is not enabled has the rate 0 at once.
 /// `isFresh`: stepgen_read() was called in this cycle; else the position is estimated from the rate.
-std::int32_t stepgen_rate(StepgenState &state, StepgenPins &pins, double period_s, bool isFresh,
+std::int32_t stepgen_rate(StepgenState &state, StepgenPins &pins, double period_s, bool fresh,
                           std::uint32_t clock_hz) noexcept;
 /// The mode register without the latches. A step_type from 3 on is a table of so many steps, at most 16.
 std::uint32_t stepgen_mode(StepgenPins &pins) noexcept;
@@ -117,24 +117,24 @@ struct StepTable {
 StepTable step_table(std::uint32_t step_type, const StepTablePins &pins) noexcept;
 
 /// The latch of a step generator. The mode register shows whether it is armed, and the latched position. As
-/// with encoders it is written only when it is known what the board has: a lost packet never arms twice.
+/// with encoders it is written only when the state of the board is known: a lost packet never arms twice.
 struct StepgenLatch {
-    bool isSent = false;       ///< an arm was written for the present request
-    bool isConfirmed = false;  ///< the board has received it
+    bool sent = false;         ///< an arm was written for the present request
+    bool confirmed = false;    ///< the board has received it
     std::uint32_t before = 0;  ///< latched position when the arm was written
     std::uint32_t mode = 0;    ///< as last read
 };
 /// The mode register in one cycle.
 struct StepgenModeReading {
     std::uint32_t value = 0;
-    bool hasLostWrite = false;  ///< the last write may not have reached the board
+    bool has_lost_write = false;  ///< the last write may not have reached the board
 };
 /// Takes the mode register, after stepgen_read(): a latch that happened clears index-enable or probe-enable.
 /// An index makes the latched position the new zero.
 void stepgen_take_latch(StepgenLatch &latch, StepgenState &state, StepgenPins &pins,
                         const StepgenModeReading &reading) noexcept;
-/// Whether the mode register has to be written, and with what. Only in a cycle with a reading; when the
-/// result is due it must be written.
+/// Whether the mode register must be written, and its value. Only in a cycle with a reading; when the result
+/// is due it must be written.
 struct StepgenModeWrite {
     bool isDue = false;
     std::uint32_t value = 0;

@@ -46,10 +46,10 @@ class Stepgens final : public Module {
   public:
     explicit Stepgens(const ModuleRequest &request)
         : module_(request.module), instances_(static_cast<std::size_t>(request.module.instances)),
-          hasTimer_(hasDpll(request.assignment) &&
-                    (request.module.descriptor.version & VERSION_MASK) >= FIRST_TIMER_VERSION),
-          hasLatch_((request.module.descriptor.version & LATCH_VERSION) != 0),
-          hasTables_(hasTablePins(request.idrom)) {
+          has_timer_(hasDpll(request.assignment) &&
+                     (request.module.descriptor.version & VERSION_MASK) >= FIRST_TIMER_VERSION),
+          has_latch_((request.module.descriptor.version & LATCH_VERSION) != 0),
+          has_tables_(hasTablePins(request.idrom)) {
         const std::uint32_t longest = longest_step_time(module_.clock_hz);
         for (Instance &one : instances_) {
             one.pins.steplen = one.pins.stepspace = longest;
@@ -61,13 +61,13 @@ class Stepgens final : public Module {
         accumulators_ =
             registers.read({module_.address(ACCUMULATOR), static_cast<std::uint16_t>(instances_.size())},
                            ReadOrder::STEP_ACCUMULATOR);
-        if (hasLatch_) {
+        if (has_latch_) {
             modes_ = registers.read({module_.address(MODE), static_cast<std::uint16_t>(instances_.size())},
                                     ReadOrder::STEP_ACCUMULATOR);
         }
         registers.write(module_.address(MASTER_RATE), WriteOrder::CONFIGURATION, Send::AFTER_FAULT,
                         FULL_RATE);
-        if (hasTimer_) {
+        if (has_timer_) {
             timer_ = registers.write(module_.address(TIMER), WriteOrder::CONFIGURATION, Send::CHANGED);
         }
         int number = 0;
@@ -77,8 +77,8 @@ class Stepgens final : public Module {
                                        Send::CHANGED);
             };
             one.mode = registers.write(module_.address(MODE, number), WriteOrder::CONFIGURATION,
-                                       hasLatch_ ? Send::REQUESTED : Send::CHANGED);
-            if (hasTables_) {
+                                       has_latch_ ? Send::REQUESTED : Send::CHANGED);
+            if (has_tables_) {
                 one.length = add(TABLE_LENGTH);
                 for (WriteHandle &step : one.steps) {
                     step = registers.write(module_.address(TABLE_DATA, number), WriteOrder::CONFIGURATION,
@@ -101,13 +101,13 @@ class Stepgens final : public Module {
             if ((module_.descriptor.version & SWAP_VERSION) != 0) {
                 binding_.bind(space, name, STEPGEN_SWAP_PINS, one.pins);
             }
-            if (hasLatch_) {
+            if (has_latch_) {
                 binding_.bind(space, name, STEPGEN_LATCH_PINS, one.pins);
             }
             // LinuxCNC has them with every firmware; without table pins they have no effect.
             binding_.bind(space, name, STEPGEN_TABLE_PINS, one.table_pins);
         }
-        if (hasTimer_) {
+        if (has_timer_) {
             binding_.bind(space, "stepgen", TIMER_PINS, timer_pins_);
         }
     }
@@ -116,9 +116,9 @@ class Stepgens final : public Module {
         int number = 0;
         for (Instance &one : instances_) {
             stepgen_read(one.state, one.pins, registers.value(accumulators_, number));
-            if (hasLatch_) {
+            if (has_latch_) {
                 stepgen_take_latch(one.latch, one.state, one.pins,
-                                   {registers.value(modes_, number), cycle.hasLostWrite});
+                                   {registers.value(modes_, number), cycle.has_lost_write});
             }
             ++number;
         }
@@ -128,7 +128,7 @@ class Stepgens final : public Module {
         binding_.load();
         const std::uint32_t clock = module_.clock_hz;
         for (Instance &one : instances_) {
-            const std::int32_t rate = stepgen_rate(one.state, one.pins, cycle.period_s, cycle.isFresh, clock);
+            const std::int32_t rate = stepgen_rate(one.state, one.pins, cycle.period_s, cycle.fresh, clock);
             registers.set(one.rate, static_cast<std::uint32_t>(rate));
             write_mode(registers, cycle, one);
             write_table(registers, cycle, one);
@@ -137,7 +137,7 @@ class Stepgens final : public Module {
             registers.set(one.width, step_clocks(one.pins.steplen, clock));
             registers.set(one.space, step_clocks(one.pins.stepspace, clock));
         }
-        if (hasTimer_) {
+        if (has_timer_) {
             registers.set(timer_, dpll_timer_choice(timer_pins_.timer_number));
         }
         binding_.store();
@@ -155,9 +155,9 @@ class Stepgens final : public Module {
     };
 
     void write_mode(Registers &registers, const Cycle &cycle, Instance &one) const noexcept {
-        if (!hasLatch_) {
+        if (!has_latch_) {
             registers.set(one.mode, stepgen_mode(one.pins));
-        } else if (cycle.isFresh && cycle.isWriting) {
+        } else if (cycle.fresh && cycle.writing) {
             if (const StepgenModeWrite mode = stepgen_latch_mode(one.latch, one.pins); mode.isDue) {
                 registers.request(one.mode, mode.value);
             }
@@ -166,7 +166,7 @@ class Stepgens final : public Module {
     /// The board takes the steps of a table from the last to the first, always all of them.
     void write_table(Registers &registers, const Cycle &cycle, Instance &one) const noexcept {
         const StepTable table = step_table(one.pins.step_type, one.table_pins);
-        if (!hasTables_ || !cycle.isWriting || table == one.table) {
+        if (!has_tables_ || !cycle.writing || table == one.table) {
             return;
         }
         one.table = table;
@@ -185,7 +185,7 @@ class Stepgens final : public Module {
     PinBinding binding_;
     ReadHandle accumulators_, modes_;
     WriteHandle timer_;
-    bool hasTimer_, hasLatch_, hasTables_;
+    bool has_timer_, has_latch_, has_tables_;
 };
 
 }  // namespace

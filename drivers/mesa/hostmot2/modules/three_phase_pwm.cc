@@ -63,18 +63,17 @@ std::uint32_t three_phase_setup(ThreePhasePins &pins, double pwm_clock_hz) noexc
 }
 
 void three_phase_read(ThreePhaseState &state, ThreePhasePins &pins, std::uint32_t enable_register) noexcept {
-    const bool hasFault = (enable_register & FAULT) != 0;
-    const bool isEnabled = (enable_register & ENABLED) != 0;
-    if (state.phase == Phase::STARTING && state.isSent) {
-        state.phase = hasFault ? Phase::TRIPPED : (isEnabled ? Phase::RUNNING : Phase::STARTING);
-    } else if (state.phase == Phase::RUNNING && (hasFault || !isEnabled)) {
+    const bool has_fault = (enable_register & FAULT) != 0;
+    const bool enabled = (enable_register & ENABLED) != 0;
+    if (state.phase == Phase::STARTING && state.sent) {
+        state.phase = has_fault ? Phase::TRIPPED : (enabled ? Phase::RUNNING : Phase::STARTING);
+    } else if (state.phase == Phase::RUNNING && (has_fault || !enabled)) {
         state.phase = Phase::TRIPPED;
     }
-    pins.fault = hasFault || state.phase == Phase::TRIPPED;
+    pins.fault = has_fault || state.phase == Phase::TRIPPED;
 }
 
-ThreePhaseEnable three_phase_enable(ThreePhaseState &state, const ThreePhasePins &pins,
-                                    bool isFresh) noexcept {
+ThreePhaseEnable three_phase_enable(ThreePhaseState &state, const ThreePhasePins &pins, bool fresh) noexcept {
     if (!pins.enable) {
         state = {};
     } else if (state.phase == Phase::OFF) {
@@ -86,8 +85,8 @@ ThreePhaseEnable three_phase_enable(ThreePhaseState &state, const ThreePhasePins
     case Phase::RUNNING: return {false, ENABLED};
     case Phase::STARTING: break;
     }
-    state.isSent = state.isSent || isFresh;
-    return {isFresh, ENABLED};
+    state.sent = state.sent || fresh;
+    return {fresh, ENABLED};
 }
 
 }  // namespace mw::mesa

@@ -34,7 +34,7 @@ constexpr PinRow<ThreePhasePins> THREE_PHASE_PINS[] = {
     {"fault-invert", Access::RW, &ThreePhasePins::fault_invert},
 };
 
-/// Rate register and frequency that results.
+/// Rate register and the resulting frequency.
 struct ThreePhaseRate {
     std::uint32_t rate = 0;          ///< 16 bit: PWM clock = clock * rate / 65536
     std::uint32_t frequency_hz = 0;  ///< PWM clock / 2048
@@ -49,21 +49,20 @@ std::uint32_t three_phase_values(const ThreePhasePins &pins) noexcept;
 /// is not a number is the longest dead time.
 std::uint32_t three_phase_setup(ThreePhasePins &pins, double pwm_clock_hz) noexcept;
 
-/// What the driver knows of a generator between cycles.
+/// State of a generator between cycles.
 struct ThreePhaseState {
     enum class Phase : std::uint8_t { OFF, STARTING, RUNNING, TRIPPED } phase = Phase::OFF;
-    bool isSent = false;  ///< the enable bit has been written since the rising edge
+    bool sent = false;  ///< the enable bit has been written since the rising edge
 };
 
 /// Takes the enable register: bit 0 enabled, bit 1 fault.
 void three_phase_read(ThreePhaseState &state, ThreePhasePins &pins, std::uint32_t enable_register) noexcept;
-/// What to write to the enable register. An enable of 0 is due in each cycle.
+/// Value for the enable register. An enable of 0 is due in each cycle.
 struct ThreePhaseEnable {
     bool isDue = false;
     std::uint32_t value = 0;
 };
 /// `isFresh`: three_phase_read() was called in this cycle. When the result is due it must be written.
-ThreePhaseEnable three_phase_enable(ThreePhaseState &state, const ThreePhasePins &pins,
-                                    bool isFresh) noexcept;
+ThreePhaseEnable three_phase_enable(ThreePhaseState &state, const ThreePhasePins &pins, bool fresh) noexcept;
 
 }  // namespace mw::mesa

@@ -56,8 +56,8 @@ class ThreePhaseGenerators final : public Module {
         for (Instance &one : instances_) {
             registers.set(one.setup, three_phase_setup(one.pins, rate.pwm_clock_hz));
             registers.set(one.value, three_phase_values(one.pins));
-            const bool isSending = cycle.isWriting && cycle.isFresh;
-            if (const auto enable = three_phase_enable(one.state, one.pins, isSending); enable.isDue) {
+            const bool sending = cycle.writing && cycle.fresh;
+            if (const auto enable = three_phase_enable(one.state, one.pins, sending); enable.isDue) {
                 registers.request(one.enable, enable.value);
             }
         }

@@ -13,7 +13,7 @@ std::uint32_t uart_rate(std::uint32_t bitrate, std::uint32_t clock_hz, int bits)
 
 void Uart::setup(const Settings &settings) noexcept {
     settings_ = settings;
-    isSetupDue_ = true;
+    setup_due_ = true;
 }
 
 std::size_t Uart::send(std::span<const std::uint8_t> bytes) noexcept {
@@ -21,12 +21,12 @@ std::size_t Uart::send(std::span<const std::uint8_t> bytes) noexcept {
 }
 
 bool Uart::take_settings(Settings &settings) noexcept {
-    const bool isDue = isSetupDue_;
-    if (isDue) {
+    const bool due = setup_due_;
+    if (due) {
         settings = settings_;
-        isSetupDue_ = false;
+        setup_due_ = false;
     }
-    return isDue;
+    return due;
 }
 
 std::size_t Uart::wanted(std::size_t available) const noexcept {

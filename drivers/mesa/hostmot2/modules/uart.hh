@@ -18,16 +18,16 @@ std::uint32_t uart_rate(std::uint32_t bitrate, std::uint32_t clock_hz, int bits)
 
 class Uart {
   public:
-    /// What setup() requires of the registers.
+    /// Register values requested by setup().
     struct Settings {
         std::uint32_t bitrate = 0;
         std::int32_t tx_mode = -1, rx_mode = -1;  ///< negative: unchanged
     };
     /// Applies settings with the next write. [any time]
     void setup(const Settings &settings) noexcept;
-    /// Queues bytes: all, or none when the queue is full. The number of bytes that were taken.
+    /// Queues all bytes, or none when the queue is full. Returns the number of queued bytes.
     std::size_t send(std::span<const std::uint8_t> bytes) noexcept;
-    /// Takes received bytes; their number.
+    /// Removes received bytes; returns their number.
     std::size_t receive(std::span<std::uint8_t> bytes) noexcept { return received_.pop(bytes); }
 
     /// For the module of the board:
@@ -43,7 +43,7 @@ class Uart {
     static constexpr std::size_t QUEUE_BYTES = 1024;
 
     Settings settings_;
-    bool isSetupDue_ = false;
+    bool setup_due_ = false;
     ByteQueue<QUEUE_BYTES> queued_, received_;
 };
 

@@ -66,12 +66,12 @@ class Uarts final : public Module {
     void write(Registers &registers, const Cycle &cycle) noexcept override {
         int number = 0;
         for (Instance &one : instances_) {
-            const bool isUsable = cycle.isFresh && cycle.isWriting;
-            if (isUsable) {
+            const bool usable = cycle.fresh && cycle.writing;
+            if (usable) {
                 setup(registers, one);
                 send(registers, one, number);
             }
-            schedule(registers, one, isUsable ? one.uart.wanted(one.available) : 0, number);
+            schedule(registers, one, usable ? one.uart.wanted(one.available) : 0, number);
             ++number;
         }
     }
@@ -85,7 +85,7 @@ class Uarts final : public Module {
         WriteHandle clear_tx, clear_rx, tx_rate, rx_rate, tx_mode, rx_mode;
         std::size_t sending = 0;    ///< words in the transmit FIFO
         std::size_t available = 0;  ///< bytes in the receive FIFO
-        std::size_t scheduled = 0;  ///< bytes that the present request takes from it
+        std::size_t scheduled = 0;  ///< number of bytes that the current request reads from it
     };
 
     static void take(const Registers &registers, Instance &one) noexcept {
@@ -111,7 +111,7 @@ class Uarts final : public Module {
             registers.request(one.rx_mode, static_cast<std::uint32_t>(settings.rx_mode));
         }
     }
-    /// The address of the data register says how many bytes a word has.
+    /// The address of the data register determines the number of bytes in a word.
     void send(Registers &registers, Instance &one, int number) const noexcept {
         const std::size_t space = UART_TX_WORDS - std::min(one.sending, UART_TX_WORDS);
         for (std::size_t i = 0; i < space && one.uart.hasQueued(); ++i) {
@@ -145,8 +145,8 @@ class Uarts final : public Module {
 
 std::unique_ptr<Module> make_uarts(const ModuleRequest &request) {
     // Transmitters and receivers are two modules of the firmware.
-    const bool isPair = find_module(request.assignment, Gtag::UART_RX) != nullptr;
-    return isPair ? std::make_unique<Uarts>(request) : nullptr;
+    const bool is_pair = find_module(request.assignment, Gtag::UART_RX) != nullptr;
+    return is_pair ? std::make_unique<Uarts>(request) : nullptr;
 }
 
 }  // namespace mw::mesa

@@ -38,14 +38,14 @@ void Watchdog::declare(PinSpace &space) {
 
 void Watchdog::read(const Registers &registers, const Cycle &) noexcept {
     binding_.load();
-    const bool isBitten = (registers.value(status_) & 1U) != 0;
-    if (!isBitten) {
-        isArmed_ = !pins_.has_bit;
+    const bool bitten = (registers.value(status_) & 1U) != 0;
+    if (!bitten) {
+        armed_ = !pins_.has_bit;
         attempts_ = 0;
-    } else if (!pins_.has_bit && (isArmed_ || attempts_ >= MOST_ATTEMPTS)) {
+    } else if (!pins_.has_bit && (armed_ || attempts_ >= MOST_ATTEMPTS)) {
         pins_.has_bit = true;
-        isBiteNew_ = true;
-        isArmed_ = false;
+        bite_new_ = true;
+        armed_ = false;
         attempts_ = 0;
     }
     binding_.store();
@@ -53,11 +53,11 @@ void Watchdog::read(const Registers &registers, const Cycle &) noexcept {
 
 void Watchdog::write(Registers &registers, const Cycle &cycle) noexcept {
     binding_.load();
-    if (pins_.has_bit || hasBitBefore_) {
-        isArmed_ = false;  // a user set it, or cleared it
+    if (pins_.has_bit || has_bit_before_) {
+        armed_ = false;  // a user set it, or cleared it
     }
-    hasBitBefore_ = pins_.has_bit;
-    if (!pins_.has_bit && !isArmed_ && cycle.isFresh) {
+    has_bit_before_ = pins_.has_bit;
+    if (!pins_.has_bit && !armed_ && cycle.fresh) {
         ++attempts_;
         registers.request(clear_, 0);  // at the start, and when an operator has cleared has_bit
     }
@@ -65,9 +65,9 @@ void Watchdog::write(Registers &registers, const Cycle &cycle) noexcept {
 }
 
 bool Watchdog::take_bite() noexcept {
-    const bool isNew = isBiteNew_;
-    isBiteNew_ = false;
-    return isNew;
+    const bool is_new = bite_new_;
+    bite_new_ = false;
+    return is_new;
 }
 
 }  // namespace mw::mesa

@@ -29,15 +29,15 @@ class Watchdog final : public Module {
     bool isBitten() const noexcept { return pins_.has_bit; }
     /// The next write must hold all registers: the operator cleared has_bit, or the board does not yet
     /// confirm that it is armed. [servo thread]
-    bool isRewriteWanted() const noexcept { return !isArmed_; }
+    bool isRewriteWanted() const noexcept { return !armed_; }
     /// True once after a bite was found. [servo thread]
     bool take_bite() noexcept;
     std::uint32_t timeout_ns() const noexcept { return pins_.timeout_ns; }
     std::uint16_t timer_address() const noexcept { return module_.address(0); }
 
   private:
-    /// Reads with status 1 after which a watchdog that was cleared counts as bitten again. A lost write
-    /// costs one or two.
+    /// Number of reads with status 1 after which a watchdog that was cleared counts as bitten again. A lost
+    /// write causes one or two.
     static constexpr int MOST_ATTEMPTS = 10;
 
     UsedModule module_;
@@ -45,7 +45,7 @@ class Watchdog final : public Module {
     PinBinding binding_;
     ReadHandle status_;
     WriteHandle timer_, clear_, reset_;
-    bool isArmed_ = false, hasBitBefore_ = false, isBiteNew_ = false;
+    bool armed_ = false, has_bit_before_ = false, bite_new_ = false;
     int attempts_ = 0;
 };
 

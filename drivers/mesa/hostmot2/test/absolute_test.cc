@@ -105,7 +105,7 @@ TEST_F(AbsoluteOfBoard, FanucIsSetUpWhileItsRegistersAreOpen) {
                                               {FANUC + 0x300, 0x1200}};
     EXPECT_EQ(seen, expected) << "1.024 MHz";
     seen.clear();
-    bus.isNextWriteLost = true;
+    bus.next_write_lost = true;
     cycle();
     seen.clear();
     cycle();

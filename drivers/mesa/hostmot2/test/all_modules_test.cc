@@ -59,12 +59,12 @@ TEST_F(AllModulesOfBoard, NoCycleAllocates) {
         }
     }
     pins.set("stepgen.00.step_type", 9);
-    bus.isRecording = false;
+    bus.recording = false;
     const std::uint8_t frame[] = {1, 2, 3, 4, 5};
     mw::testing::AllocationGuard guard;
     for (int i = 0; i < 200; ++i) {
         bus.next_read = i % 7 == 0 ? CycleRead::FAILED : CycleRead::DONE;
-        bus.isNextWriteLost = i % 11 == 0;
+        bus.next_write_lost = i % 11 == 0;
         (void)ports.packet_uarts[0].port->send(frame);
         cycle();
     }
@@ -82,7 +82,7 @@ TEST_F(AllModulesOfBoard, IsOffUntilAUserEnablesIt) {
     }
     for (int i = 0; i < 50; ++i) {
         bus.next_read = random() % 4 == 0 ? CycleRead::FAILED : CycleRead::DONE;
-        bus.isNextWriteLost = random() % 4 == 0;
+        bus.next_write_lost = random() % 4 == 0;
         cycle();
         for (const int off : {0x2000, 0x200C, 0x4100, 0x4700, 0x4704, 0x9200, 0x9400, 0x9600}) {
             ASSERT_EQ(bus.registers[static_cast<std::uint16_t>(off)], 0U) << off;

@@ -16,9 +16,9 @@ TEST(FieldFormats, NameFieldsFromTheLowestBitOn) {
     EXPECT_EQ((*fields)[1].field.first, 1);
     EXPECT_EQ((*fields)[1].field.bits, 24);
     EXPECT_EQ((*fields)[1].field.type, BitFieldType::ENCODER);
-    EXPECT_TRUE((*fields)[1].field.isGray);
+    EXPECT_TRUE((*fields)[1].field.gray);
     EXPECT_EQ((*fields)[3].field.first, 27);
-    EXPECT_TRUE((*fields)[3].field.isMultiTurn);
+    EXPECT_TRUE((*fields)[3].field.multi_turn);
     EXPECT_EQ((*fields)[3].field.type, BitFieldType::SIGNED);
 }
 
@@ -70,7 +70,7 @@ TEST(BitFields, AreTakenAtEveryPosition) {
 TEST(BitFields, GrayCodeIsConverted) {
     BitField field;
     field.bits = 24;
-    field.isGray = true;
+    field.gray = true;
     for (std::uint32_t n = 0; n < 0xFFFFFF; n += 977) {
         const std::uint32_t words[] = {n ^ (n >> 1U)};
         ASSERT_EQ(bits_of(field, words), n);
@@ -98,7 +98,7 @@ TEST(AbsoluteEncoders, CountEveryTurn) {
 TEST(AbsoluteEncoders, AMultiTurnEncoderNeverWraps) {
     BitField field;
     field.bits = 12;
-    field.isMultiTurn = true;
+    field.multi_turn = true;
     AbsoluteEncoder encoder;
     absolute_encoder_read(encoder, 10, field);
     absolute_encoder_read(encoder, 4090, field);

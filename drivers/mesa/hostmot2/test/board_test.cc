@@ -71,7 +71,7 @@ TEST_F(CycleOfBoard, LaterWritesOnlyWhatChanges) {
 TEST_F(CycleOfBoard, WritesAllAfterAFailure) {
     cycle(3);
     const std::size_t few = bus.written.back().size();
-    bus.isNextWriteLost = true;
+    bus.next_write_lost = true;
     cycle(2);
     EXPECT_GT(bus.written.back().size(), few);
     EXPECT_GE(position(DIRECTION), 0);
@@ -97,7 +97,7 @@ TEST_F(CycleOfBoard, WritesNoConfigurationInACycleWhoseReadFailed) {
 TEST_F(CycleOfBoard, WritesNoConfigurationWhenItWasSuspendedAfterTheRead) {
     cycle(3);
     const std::size_t few = bus.written.back().size();
-    bus.isNextWriteLost = true;
+    bus.next_write_lost = true;
     cycle();
     board->read(PERIOD_NS, now_ns + PERIOD_NS);
     now_ns += 100 * PERIOD_NS;
@@ -120,7 +120,7 @@ TEST_F(CycleOfBoard, WritesAllInTheFirstCycleThatIsReadAfterAFailure) {
 TEST_F(CycleOfBoard, WritesAllAfterAWriteThatCouldNotBeSent) {
     cycle(3);
     pins.set("gpio.017.is_output", 1);
-    bus.isNextWriteRefused = true;
+    bus.next_write_rejected = true;
     cycle(2);
     EXPECT_EQ(bus.last(DIRECTION + 4), 1);
     EXPECT_GE(position(DIRECTION), 0);
@@ -162,10 +162,10 @@ TEST_F(CycleOfBoard, TellsABiteOnceWithItsCause) {
     bus.registers[STATUS] = 1;
     read();
     const BoardEvents events = board->take_events();
-    EXPECT_TRUE(events.hasBitten);
+    EXPECT_TRUE(events.bitten);
     EXPECT_EQ(events.longest_gap_ns, 7 * PERIOD_NS);
     cycle(5);
-    EXPECT_FALSE(board->take_events().hasBitten);
+    EXPECT_FALSE(board->take_events().bitten);
 }
 
 TEST_F(CycleOfBoard, APowerUpStatusIsNoBite) {
@@ -175,7 +175,7 @@ TEST_F(CycleOfBoard, APowerUpStatusIsNoBite) {
 }
 
 TEST_F(CycleOfBoard, ALostFirstWriteIsRepeated) {
-    bus.isNextWriteLost = true;
+    bus.next_write_lost = true;
     cycle(3);
     EXPECT_EQ(pins.get("watchdog.has_bit"), 0.0);
     EXPECT_EQ(bus.registers[DIRECTION], 0x3FFU);
@@ -264,7 +264,7 @@ TEST_F(CycleOfBoard, PhaseLockedLoopHasTheRateOfTheThread) {
 
 TEST_F(CycleOfBoard, ACycleDoesNotAllocate) {
     cycle(3);
-    bus.isRecording = false;
+    bus.recording = false;
     pins.set("stepgen.00.enable", 1);
     pins.set("encoder.00.index-enable", 1);
     mw::testing::AllocationGuard guard;
@@ -285,7 +285,7 @@ TEST(FastGpioOfBoard, NeedsABusWithImmediateAccess) {
 class FastGpio : public BoardTest {
   protected:
     void SetUp() override {
-        bus.isImmediate = true;
+        bus.immediate = true;
         load(firmware());
         pins.set("gpio.020.is_output", 1);
     }

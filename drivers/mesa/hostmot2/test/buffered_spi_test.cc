@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::uint16_t FIFO = 0x5500, DESCRIPTOR = 0x5600, COUNT = 0x5700;
 
-/// Plays devices that return what they get plus 1, before the next read.
+/// Simulates devices that return the received word plus 1, before the next read.
 class SpiOfBoard : public BoardTest {
   protected:
     void SetUp() override {
@@ -64,7 +64,7 @@ TEST_F(SpiOfBoard, ExchangesItsFramesInEachCycle) {
     for (std::uint32_t i = 0; i < 100; ++i) {
         *first.sent = i;
         *second.sent = 1000 + i;
-        bus.isNextWriteLost = i % 13 == 12;
+        bus.next_write_lost = i % 13 == 12;
         bus.next_read = i % 17 == 16 ? CycleRead::FAILED : CycleRead::DONE;
         cycle();
         const std::uint32_t echo = *first.received;

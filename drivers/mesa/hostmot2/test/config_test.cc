@@ -19,14 +19,14 @@ TEST(ConfigString, HasCountsModesAndSwitches) {
     EXPECT_EQ(config->wanted_of(Gtag::PWM), ALL_INSTANCES);
     EXPECT_EQ(config->sserial_modes[0], "01xx");
     EXPECT_EQ(config->firmware, "hm2/5i20/SVST8_4.BIT");
-    EXPECT_TRUE(config->isRawEnabled);
+    EXPECT_TRUE(config->raw_enabled);
 }
 
 TEST(ConfigString, MayBeEmpty) {
     const auto config = parse_config("");
     ASSERT_TRUE(config.has_value());
     EXPECT_EQ(config->wanted_of(Gtag::STEPGEN), ALL_INSTANCES);
-    EXPECT_FALSE(config->isRawEnabled);
+    EXPECT_FALSE(config->raw_enabled);
 }
 
 TEST(ConfigString, NamesAnUnknownTokenAndTheNearestOne) {

@@ -10,7 +10,7 @@ namespace {
 constexpr std::uint16_t COUNT = 0x3000, CONTROL = 0x3100, STAMP = 0x3300;
 constexpr std::uint32_t LATCH = 1U << 4U, ONCE = 1U << 6U;
 
-/// Plays a counter of the board with an index every `per_rev` counts.
+/// Simulates a counter of the board with an index every `per_rev` counts.
 struct Counter {
     std::int64_t count = 0;
     std::int64_t per_rev = 4000;
@@ -73,11 +73,11 @@ class EncoderOfBoard : public BoardTest {
 TEST_F(EncoderOfBoard, CountsExactlyOverManyWrapsAndLostCycles) {
     std::mt19937 random(3);
     for (int i = 0; i < 20'000; ++i) {
-        const bool isLost = i % 3 != 0 && random() % 3 == 0;
-        const int most = isLost ? 5000 : 10'000;
-        bus.next_read = isLost ? CycleRead::FAILED : CycleRead::DONE;
+        const bool lost = i % 3 != 0 && random() % 3 == 0;
+        const int most = lost ? 5000 : 10'000;
+        bus.next_read = lost ? CycleRead::FAILED : CycleRead::DONE;
         pass(std::uniform_int_distribution<int>(-most, most + most / 2)(random));
-        if (!isLost) {
+        if (!lost) {
             ASSERT_EQ(static_cast<std::int64_t>(pins.get(name + "rawcounts")),
                       static_cast<std::int32_t>(counter.count))
                 << i;
@@ -127,11 +127,11 @@ TEST_F(EncoderOfBoard, NoArmIsLostOrDoubledWhenPacketsAreLost) {
             counter.events = 0;
         }
         bus.next_read = random() % 5 == 0 ? CycleRead::FAILED : CycleRead::DONE;
-        bus.isNextWriteLost = random() % 5 == 0;
-        const bool wasWanted = pins.get(name + "index-enable") != 0.0;
+        bus.next_write_lost = random() % 5 == 0;
+        const bool was_wanted = pins.get(name + "index-enable") != 0.0;
         pass(std::uniform_int_distribution<int>(-300, 900)(random));
         ASSERT_LE(counter.events, 1) << "one event for each request, cycle " << i;
-        if (wasWanted && pins.get(name + "index-enable") == 0.0) {
+        if (was_wanted && pins.get(name + "index-enable") == 0.0) {
             ASSERT_EQ(counter.events, 1) << "no event without an index, cycle " << i;
             ASSERT_EQ(static_cast<std::int64_t>(pins.get(name + "rawlatch")),
                       static_cast<std::int32_t>(counter.last_index))

@@ -34,12 +34,12 @@ TEST_F(InputsOfBoard, ShowFilteredAndRawLevels) {
     bus.registers[RAW] = 0x42;
     cycle();
     for (unsigned i = 0; i < 8; ++i) {
-        const bool isFiltered = ((0x81U >> i) & 1U) != 0, isRaw = ((0x42U >> i) & 1U) != 0;
+        const bool filtered = ((0x81U >> i) & 1U) != 0, raw = ((0x42U >> i) & 1U) != 0;
         const std::string n = "0" + std::to_string(i);
-        EXPECT_EQ(pins.get("inm.00.input-" + n), isFiltered) << i;
-        EXPECT_EQ(pins.get("inm.00.input-" + n + "-not"), !isFiltered) << i;
-        EXPECT_EQ(pins.get("inm.00.raw-input-" + n), isRaw) << i;
-        EXPECT_EQ(pins.get("inm.00.raw-input-" + n + "-not"), !isRaw) << i;
+        EXPECT_EQ(pins.get("inm.00.input-" + n), filtered) << i;
+        EXPECT_EQ(pins.get("inm.00.input-" + n + "-not"), !filtered) << i;
+        EXPECT_EQ(pins.get("inm.00.raw-input-" + n), raw) << i;
+        EXPECT_EQ(pins.get("inm.00.raw-input-" + n + "-not"), !raw) << i;
     }
     bus.registers[FILTERED] = 0;
     bus.next_read = CycleRead::FAILED;
@@ -111,7 +111,7 @@ TEST(InputsWheels, CountOverEveryWrap) {
 }
 
 TEST_F(InputsOfBoard, CannotBeLoadedWithoutAnAnswer) {
-    bus.isReadRefused = true;
+    bus.read_rejected = true;
     const auto made = Board::make(bus, with_module(module_of(Gtag::IN_M, 1, CONTROL)), *parse_config(""));
     EXPECT_FALSE(made.has_value());
 }

@@ -17,20 +17,20 @@ class MemoryBus final : public RegisterBus {
     std::string name = "test";
     std::vector<std::string> connector_names{"P1"};
     std::map<std::uint16_t, std::uint32_t> registers;
-    /// Called after each write of a register, so that a test plays a module.
+    /// Called after each write of a register, so that a test can simulate a module.
     std::function<void(RegisterWrite)> on_write;
     /// Called instead of a write while loading.
     std::function<void(RegisterWrite)> on_load_write;
-    /// Plays registers whose reads have an effect, such as FIFOs; nothing: the map has the value.
+    /// Simulates registers whose reads have an effect, such as FIFOs; nothing: the map has the value.
     std::function<std::optional<std::uint32_t>(std::uint16_t)> on_read_register;
     /// Called before each read of a cycle.
     std::function<void()> on_read;
-    /// What the next read gives; the next write is lost, so that the bus requires all registers afterwards.
+    /// Result of the next read; the next write is lost, so that the bus requires all registers afterwards.
     CycleRead next_read = CycleRead::DONE;
-    bool isNextWriteLost = false;
-    bool isNextWriteRefused = false;  ///< it cannot be sent
-    bool isReadRefused = false;       ///< while loading
-    bool isRewriteWanted = false;
+    bool next_write_lost = false;
+    bool next_write_rejected = false;  ///< it cannot be sent
+    bool read_rejected = false;        ///< while loading
+    bool rewrite_wanted = false;
     int reads = 0;
 
     std::vector<RegisterRange> ranges;
@@ -57,7 +57,7 @@ class MemoryBus final : public RegisterBus {
     int port_width() const override { return width; }
     std::vector<std::string> connectors() const override { return connector_names; }
     Result<std::vector<std::uint32_t>> read_now(RegisterRange range) override {
-        if (isReadRefused) {
+        if (read_rejected) {
             return fail("The board does not answer.");
         }
         std::vector<std::uint32_t> values;
@@ -97,7 +97,7 @@ class MemoryBus final : public RegisterBus {
         const CycleRead result = next_read;
         next_read = CycleRead::DONE;
         if (result != CycleRead::DONE) {
-            isRewriteWanted = true;
+            rewrite_wanted = true;
             return result;
         }
         std::size_t n = 0;
@@ -119,20 +119,20 @@ class MemoryBus final : public RegisterBus {
         return true;
     }
     bool write(std::span<const RegisterWrite> writes) noexcept override {
-        if (isNextWriteRefused) {
-            isNextWriteRefused = false;
+        if (next_write_rejected) {
+            next_write_rejected = false;
             return false;
         }
-        if (isRecording) {
+        if (recording) {
             written.emplace_back(writes.begin(), writes.end());
         }
-        if (isNextWriteLost) {
-            isNextWriteLost = false;
-            isRewriteWanted = true;
+        if (next_write_lost) {
+            next_write_lost = false;
+            rewrite_wanted = true;
             return true;
         }
         for (const RegisterWrite &write : writes) {
-            if (isRecording || registers.contains(write.address)) {
+            if (recording || registers.contains(write.address)) {
                 registers[write.address] = write.value;
             }
             if (on_write) {
@@ -141,9 +141,9 @@ class MemoryBus final : public RegisterBus {
         }
         return true;
     }
-    bool isImmediate = false;
+    bool immediate = false;
     std::vector<RegisterWrite> immediate_writes;
-    bool hasImmediateAccess() const noexcept override { return isImmediate; }
+    bool hasImmediateAccess() const noexcept override { return immediate; }
     bool read_immediately(std::uint16_t address, std::span<std::uint32_t> values) noexcept override {
         for (std::uint32_t &value : values) {
             const auto found = registers.find(address);
@@ -160,11 +160,11 @@ class MemoryBus final : public RegisterBus {
         return true;
     }
     bool take_rewrite() noexcept override {
-        const bool isWanted = isRewriteWanted;
-        isRewriteWanted = false;
-        return isWanted;
+        const bool wanted = rewrite_wanted;
+        rewrite_wanted = false;
+        return wanted;
     }
-    bool isRecording = true;  ///< the record allocates
+    bool recording = true;  ///< the record allocates
 };
 
 }  // namespace mw::mesa::test

@@ -61,12 +61,12 @@ TEST_F(OutputsOfBoard, RawAccessReadsAndWritesAnyRegister) {
 TEST_F(OutputsOfBoard, StateOfTheBoardIsDescribedOnRequest) {
     load(with_outputs(), "enable_raw");
     cycle();
-    EXPECT_FALSE(board->take_events().isDumpRequested);
+    EXPECT_FALSE(board->take_events().dump_requested);
     pins.set("raw.dump_state", 1);
     cycle();
     EXPECT_EQ(pins.get("raw.dump_state"), 0.0);
-    EXPECT_TRUE(board->take_events().isDumpRequested);
-    EXPECT_FALSE(board->take_events().isDumpRequested) << "once";
+    EXPECT_TRUE(board->take_events().dump_requested);
+    EXPECT_FALSE(board->take_events().dump_requested) << "once";
     std::string all;
     char text[128];
     for (int line = 0; board->describe(line, text); ++line) {

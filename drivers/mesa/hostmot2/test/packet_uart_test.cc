@@ -20,7 +20,7 @@ Frame random_frame(std::mt19937 &random, std::size_t most) {
     return frame;
 }
 
-/// Plays a packet UART.
+/// Simulates a packet UART.
 class PacketUartOfBoard : public BoardTest {
   protected:
     void SetUp() override {
@@ -143,7 +143,7 @@ TEST_F(PacketUartOfBoard, ALostPacketNeverMixesFrames) {
     std::mt19937 random(3);
     std::vector<Frame> sent;
     for (int i = 0; i < 3000; ++i) {
-        bus.isNextWriteLost = random() % 20 == 0;
+        bus.next_write_lost = random() % 20 == 0;
         const Frame frame = random_frame(random, 100);
         if (random() % 4 == 0 && uart->send(frame)) {
             sent.push_back(frame);

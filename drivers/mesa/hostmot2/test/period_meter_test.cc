@@ -12,7 +12,7 @@ constexpr std::uint16_t MODE = 0xB700, PERIOD = 0xB800, WIDTH = 0xB900, LIMIT = 
 class PeriodMeterOfBoard : public BoardTest {
   protected:
     void SetUp() override {
-        // The mode register shows what was written, and the level and validity of the input.
+        // The mode register reads the written value, and the level and validity of the input.
         bus.on_read_register = [&](std::uint16_t address) -> std::optional<std::uint32_t> {
             return address == MODE ? std::optional((bus.registers[MODE] & ~6U) | status) : std::nullopt;
         };
@@ -67,7 +67,7 @@ TEST_F(PeriodMeterOfBoard, SetsFilterPolarityAndLimit) {
     EXPECT_EQ(bus.registers[LIMIT], 0xFFFFFFFFU);
     pins.set(name + "averages", 10);
     pins.set(name + "minimum_frequency", 1000);
-    bus.isNextWriteLost = true;
+    bus.next_write_lost = true;
     cycle(2);
     EXPECT_EQ(bus.registers[LIMIT], 10U * CLOCK_LOW / 1000U) << "again after a lost packet";
 }

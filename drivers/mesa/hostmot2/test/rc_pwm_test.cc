@@ -39,7 +39,7 @@ TEST_F(RcPwmOfBoard, HasTheRegistersOfLinuxCnc) {
 
 TEST_F(RcPwmOfBoard, WritesAgainAfterALostPacket) {
     pins.set("rcpwmgen.01.offset", 1.5);
-    bus.isNextWriteLost = true;
+    bus.next_write_lost = true;
     cycle();
     EXPECT_EQ(bus.registers[0x9D04], 0xFFFFFFFFU);
     cycle();

@@ -24,7 +24,7 @@ class ResolverOfBoard : public BoardTest {
     const std::string name = "resolver.00.";
 };
 
-/// What LinuxCNC's driver shows of the same registers with a clock of 100 MHz.
+/// Values that LinuxCNC's driver shows for the same registers with a clock of 100 MHz.
 TEST_F(ResolverOfBoard, ShowsWhatLinuxCncShows) {
     EXPECT_TRUE(pins.pins.contains("resolver.05.angle"));
     EXPECT_FALSE(pins.pins.contains("resolver.06.angle"));
@@ -81,7 +81,7 @@ TEST_F(ResolverOfBoard, SetsTheNearestExcitation) {
         cycle();
         EXPECT_EQ(bus.last(COMMAND), -1) << "once";
     }
-    bus.isNextWriteLost = true;
+    bus.next_write_lost = true;
     cycle(2);
     EXPECT_EQ(bus.last(COMMAND), 0x803) << "again after a lost packet";
 }

@@ -75,8 +75,8 @@ class ModuleOfSmartSerial : public ::testing::Test {
     }
     void step() noexcept {
         Cycle now;
-        now.isFresh = now.isWriting = true;
-        now.hasLostWrite = isWriteLost;
+        now.fresh = now.writing = true;
+        now.has_lost_write = write_lost;
         now.now_ns = time_ns += PERIOD_NS;
         serial->read(registers, now);
         now.now_ns += PERIOD_NS / 10;
@@ -92,7 +92,7 @@ class ModuleOfSmartSerial : public ::testing::Test {
     PinMap pins;
     std::unique_ptr<Module> serial;
     std::int64_t time_ns = 0;
-    bool isWriteLost = false;
+    bool write_lost = false;
 };
 
 TEST_F(ModuleOfSmartSerial, ReadsEachRegisterOfAllChannelsAtOnce) {
@@ -203,13 +203,13 @@ TEST_F(ModuleOfSmartSerial, WritesParametersThatDifferBeforeItStartsTheCards) {
 TEST_F(ModuleOfSmartSerial, RepeatsAStepThatMayBeLost) {
     pins.set("7i99.0.0.offset", 7);
     std::vector<std::vector<RegisterWrite>> lists;
-    bool isLost = false;
+    bool lost = false;
     for (int i = 0; i < 80; ++i) {
-        isWriteLost = isLost;
+        write_lost = lost;
         lists.push_back(cycle());
-        const bool isStep = !lists.back().empty() && lists.back().back() == RegisterWrite{BASE, 0x1001};
-        const bool isSetup = !lists.back().empty() && lists.back().back() == RegisterWrite{BASE, 0xF05};
-        isLost = (isStep || isSetup) && i < 40;
+        const bool is_step = !lists.back().empty() && lists.back().back() == RegisterWrite{BASE, 0x1001};
+        const bool is_setup = !lists.back().empty() && lists.back().back() == RegisterWrite{BASE, 0xF05};
+        lost = (is_step || is_setup) && i < 40;
     }
     const auto steps = setup_of(lists);
     ASSERT_GE(steps.size(), 1U);
@@ -246,8 +246,8 @@ TEST_F(ModuleOfSmartSerial, AnyRegistersAndPinsNeverAllocateNorGiveInvalidNumber
     std::mt19937 random(11);
     std::vector<PinMap::Pin *> inputs, numbers;
     for (auto &[name, pin] : pins.pins) {
-        const bool isSet = pin.access == Access::IN || pin.access == Access::IO || pin.access == Access::RW;
-        if (isSet && name != "sserial.port-0.run") {
+        const bool set = pin.access == Access::IN || pin.access == Access::IO || pin.access == Access::RW;
+        if (set && name != "sserial.port-0.run") {
             inputs.push_back(&pin);
         }
         if (pin.access == Access::OUT && pin.type == PinType::FLOAT) {

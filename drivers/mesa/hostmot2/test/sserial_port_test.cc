@@ -19,22 +19,22 @@ class PortOfSmartSerial : public ::testing::Test {
         now_ns += PERIOD_NS - WRITE_NS;
         SserialReading reading;
         reading.command = done_ns > now_ns ? command : 0;
-        const bool isExchange = (command & 0x1000U) != 0;
-        reading.failed = isExchange && !isStarted ? command & 0xFFU : failed;
+        const bool is_exchange = (command & 0x1000U) != 0;
+        reading.failed = is_exchange && !started ? command & 0xFFU : failed;
         reading.now_ns = now_ns;
         fresh = port.read(pins, reading);
     }
-    void write(bool isWriting = true) {
+    void write(bool writing = true) {
         now_ns += WRITE_NS;
-        const SserialCommand sent = port.write(pins, {now_ns, 1e-3, isWriting});
+        const SserialCommand sent = port.write(pins, {now_ns, 1e-3, writing});
         outputs = port.take_outputs();
-        if (sent.isDue && !isNextLost) {
+        if (sent.isDue && !next_lost) {
             command = sent.command;
             done_ns = now_ns + exchange_ns;
-            isStarted = (command & 0xF00U) == 0x900U || (isStarted && command != 0x8FFU);
+            started = (command & 0xF00U) == 0x900U || (started && command != 0x8FFU);
             sent_commands.push_back(command);
         }
-        isNextLost = isNextLost && !sent.isDue;
+        next_lost = next_lost && !sent.isDue;
         const SserialEvents event = port.take_event();
         if (event.type != SserialEvents::Type::NONE) {
             events.push_back(event);
@@ -56,7 +56,7 @@ class PortOfSmartSerial : public ::testing::Test {
     SserialPortControl port{0b11};
     std::int64_t now_ns = 0, done_ns = 0, exchange_ns = 150'000;
     std::uint32_t command = 0, failed = 0, fresh = 0;
-    bool isStarted = false, isNextLost = false;
+    bool started = false, next_lost = false;
     SserialOutputs outputs = SserialOutputs::KEPT;
     std::vector<std::uint32_t> sent_commands;
     std::vector<SserialEvents> events;
@@ -130,10 +130,10 @@ TEST_F(PortOfSmartSerial, ACardThatStaysAwayGivesOneMessage) {
 }
 
 TEST_F(PortOfSmartSerial, ALostStartIsRepeatedWithoutAFault) {
-    isNextLost = true;
+    next_lost = true;
     cycle(100);
     EXPECT_EQ(pins.port_state, 3U);
-    EXPECT_TRUE(isStarted);
+    EXPECT_TRUE(started);
     EXPECT_EQ(pins.fault_count, 0U);
     EXPECT_TRUE(events.empty());
 }

@@ -7,14 +7,15 @@ namespace {
 
 constexpr std::uint16_t BASE = 0x5A00;
 
-/// Plays the processor of a port with a card at channel 1. What the host writes is not what it reads.
+/// Simulates the processor of a port with a card at channel 1. Registers have separate values for reading and
+/// writing.
 class Processor {
   public:
     explicit Processor(MemoryBus &bus) : bus_(bus) {
         bus_.on_load_write = [this](RegisterWrite write) { take(write); };
     }
-    int slowness = 0;  ///< looks until a command is done
-    bool isDead = false, isCardDead = false;
+    int slowness = 0;  ///< number of reads until a command is done
+    bool isDead = false, card_dead = false;
     std::uint8_t minor = 43;
     std::map<std::uint16_t, std::uint8_t> memory;
     std::map<std::uint16_t, std::uint32_t> host;
@@ -50,7 +51,7 @@ class Processor {
             bus_.registers[BASE + 0x100] = 0;
         } else if ((command & 0xF000U) == 0x1000U) {
             const std::uint32_t request = host[BASE + 0x204];
-            bus_.registers[BASE + 0x204] = isCardDead ? 0x2000U : 0U;
+            bus_.registers[BASE + 0x204] = card_dead ? 0x2000U : 0U;
             bus_.registers[BASE + 0x304] = memory[static_cast<std::uint16_t>(request)];
         }
     }
@@ -124,7 +125,7 @@ TEST_F(SetupOfSmartSerial, NamesAPortThatDoesNotAnswer) {
 }
 
 TEST_F(SetupOfSmartSerial, NamesACardThatDoesNotAnswer) {
-    processor.isCardDead = true;
+    processor.card_dead = true;
     const auto byte = setup.read_card_byte(1, 0);
     ASSERT_FALSE(byte.has_value());
     EXPECT_NE(byte.error().message.find("channel 0.1 does not answer (status 0x00002000)"),

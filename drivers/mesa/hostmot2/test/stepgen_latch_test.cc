@@ -12,7 +12,7 @@ namespace {
 constexpr std::uint16_t ACCUMULATOR = 0x2100, MODE = 0x2200, TABLE = 0x2700, LENGTH = 0x2800;
 constexpr std::uint32_t INDEX = 0x10, PROBE = 0x40;
 
-/// Plays the latches of the board: the position at an event stays in the high 24 bits of the mode register.
+/// Simulates the latches of the board: the position at an event is in the high 24 bits of the mode register.
 class LatchOfBoard : public BoardTest {
   protected:
     void SetUp() override {
@@ -100,12 +100,12 @@ TEST_F(LatchOfBoard, NeitherLosesNorRepeatsAnEventWhenPacketsAreLost) {
         double at = 0.0;
         for (int i = 0; pins.get(name + "index-enable") != 0.0; ++i) {
             ASSERT_LT(i, 20'000) << "lost in round " << round;
-            bus.isNextWriteLost = random() % 7 == 0;
+            bus.next_write_lost = random() % 7 == 0;
             bus.next_read = random() % 5 == 0 ? CycleRead::FAILED : CycleRead::DONE;
             const double next = position + velocity;
             const double mark = velocity > 0 ? std::floor(next / REV) * REV : std::ceil(next / REV) * REV;
-            const bool isPassed = velocity > 0 ? mark > position : mark < position;
-            if (isPassed && events == before) {
+            const bool passed = velocity > 0 ? mark > position : mark < position;
+            if (passed && events == before) {
                 at = mark + (round % 50) / 256.0;
                 event(INDEX, at);
             }
@@ -115,7 +115,7 @@ TEST_F(LatchOfBoard, NeitherLosesNorRepeatsAnEventWhenPacketsAreLost) {
         }
         ASSERT_EQ(events, before + 1) << round;
         ASSERT_NEAR(pins.get(name + "position-fb"), position - at, 0.01) << round;
-        // An arm of an event that is over is gone before the next request.
+        // The arm of a past event is removed before the next request.
         for (int i = 0; i < 3; ++i) {
             cycle();
         }
@@ -134,7 +134,7 @@ TEST_F(LatchOfBoard, TablesAreWrittenFromTheLastStepOn) {
     EXPECT_EQ(bus.registers[MODE] & 7U, 3U);
     table.clear();
     pins.set(name + "step_type", 4);
-    bus.isNextWriteLost = true;
+    bus.next_write_lost = true;
     cycle(3);
     EXPECT_EQ(table, (std::vector<std::uint32_t>{4, 3, 2, 1})) << "whole again after a lost packet";
     pins.set(name + "step_type", 99);

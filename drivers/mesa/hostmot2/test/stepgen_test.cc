@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint16_t RATE = 0x2000, ACCUMULATOR = 0x2100;
 
-/// Plays a step generator of the board: 48 bit, of which the driver sees the lower 32 of the upper 48 - 16.
+/// Simulates a step generator of the board: 48 bit, of which the driver reads bits 16 to 47.
 struct Motor {
     std::int64_t position = 0;  ///< [1/65536 step]
     double rest = 0.0;
@@ -55,10 +55,10 @@ TEST_F(StepgenOfBoard, CountsEveryStepOverManyWrapsAndLostCycles) {
         const std::int32_t moved = change(random) / ((i % 1000 < 500) ? 4 : 100);
         position += moved;
         bus.registers[ACCUMULATOR] = start + static_cast<std::uint32_t>(position);
-        const bool isLost = random() % 5 == 0 && std::abs(moved) < 30'000'000;
-        bus.next_read = isLost ? CycleRead::FAILED : CycleRead::DONE;
+        const bool lost = random() % 5 == 0 && std::abs(moved) < 30'000'000;
+        bus.next_read = lost ? CycleRead::FAILED : CycleRead::DONE;
         cycle();
-        if (!isLost) {
+        if (!lost) {
             ASSERT_EQ(static_cast<std::int32_t>(pins.get(name + "counts")),
                       static_cast<std::int32_t>(position >> 16))
                 << i;
@@ -122,7 +122,7 @@ TEST_F(StepgenOfBoard, FollowsATrajectoryWithLostCyclesWithinOneCycleOfVelocity)
         position += velocity * PERIOD_S;
         pins.set(name + "position-cmd", position);
         bus.next_read = random() % 50 == 0 ? CycleRead::FAILED : CycleRead::DONE;
-        bus.isNextWriteLost = random() % 50 == 0;
+        bus.next_write_lost = random() % 50 == 0;
         pass();
         // The motor is where the command was one cycle ago.
         worst = std::max(worst, std::abs(motor.steps() / 400 - (position - 2 * velocity * PERIOD_S)));

@@ -9,7 +9,7 @@
 namespace mw::mesa::test {
 namespace {
 
-/// Plays the board: a fault clears the enable bit and sets the fault bit until the enable bit is written.
+/// Simulates the board: a fault clears the enable bit and sets the fault bit until the enable bit is written.
 class ThreePhaseOfBoard : public BoardTest {
   protected:
     static constexpr std::uint16_t VALUE = 0x4600, ENABLE = 0x4700, SETUP = 0x4800, RATE = 0x4900;
@@ -21,19 +21,19 @@ class ThreePhaseOfBoard : public BoardTest {
         bus.on_write = [&](RegisterWrite write) {
             if (write.address == ENABLE) {
                 enable_writes += write.value;
-                bus.registers[ENABLE] = hasFaultInput && write.value == 1 ? 2U : write.value;
+                bus.registers[ENABLE] = has_fault_input && write.value == 1 ? 2U : write.value;
             }
         };
         cycle();
     }
     void fault() {
         bus.registers[ENABLE] = 2;
-        hasFaultInput = true;
+        has_fault_input = true;
     }
     bool isEnabled() { return (bus.registers[ENABLE] & 1U) != 0; }
 
     const std::string name = "3pwmgen.00.";
-    bool hasFaultInput = false;
+    bool has_fault_input = false;
     std::uint32_t enable_writes = 0;
 };
 
@@ -78,10 +78,10 @@ TEST_F(ThreePhaseOfBoard, StaysOffAfterAFaultUntilTheNextEdge) {
     fault();
     cycle();
     EXPECT_EQ(pins.get(name + "fault"), 1.0);
-    hasFaultInput = false;
+    has_fault_input = false;
     enable_writes = 0;
     for (int i = 0; i < 20; ++i) {
-        bus.isNextWriteLost = i % 3 == 0;  // the next write holds all registers
+        bus.next_write_lost = i % 3 == 0;  // the next write holds all registers
         bus.next_read = i % 5 == 4 ? CycleRead::FAILED : CycleRead::DONE;
         cycle();
     }
@@ -97,7 +97,7 @@ TEST_F(ThreePhaseOfBoard, StaysOffAfterAFaultUntilTheNextEdge) {
 
 TEST_F(ThreePhaseOfBoard, RepeatsAnEnableThatWasLost) {
     pins.set(name + "enable", 1);
-    bus.isNextWriteLost = true;
+    bus.next_write_lost = true;
     cycle();
     EXPECT_FALSE(isEnabled());
     cycle();

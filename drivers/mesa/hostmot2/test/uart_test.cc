@@ -11,7 +11,7 @@ namespace {
 constexpr std::uint16_t TX = 0x6100, TX_COUNT = 0x6200, TX_RATE = 0x6300, TX_MODE = 0x6400, RX = 0x6500,
                         RX_COUNT = 0x6600, RX_RATE = 0x6700, RX_MODE = 0x6800, STRIDE = 0x10;
 
-/// Plays the second of two UARTs: FIFOs of 16 words and 16 bytes.
+/// Simulates the second of two UARTs: FIFOs of 16 words and 16 bytes.
 class UartOfBoard : public BoardTest {
   protected:
     void SetUp() override {
@@ -77,7 +77,7 @@ TEST_F(UartOfBoard, WritesNothingBeforeItsSetup) {
     EXPECT_EQ(bus.registers[RX_RATE + STRIDE], bus.registers[TX_RATE + STRIDE]);
     EXPECT_EQ(bus.registers[TX_MODE + STRIDE], 0x20U);
     EXPECT_EQ(bus.registers[RX_MODE + STRIDE], 4U);
-    bus.isNextWriteLost = true;
+    bus.next_write_lost = true;
     cycle();
     bus.registers[TX_MODE + STRIDE] = 0;
     cycle();
@@ -113,7 +113,7 @@ TEST_F(UartOfBoard, ReceivesEveryByteInOrder) {
             sent.push_back(static_cast<std::uint8_t>(random()));
             fifo.push_back(sent.back());
         }
-        bus.isNextWriteLost = random() % 9 == 0;
+        bus.next_write_lost = random() % 9 == 0;
         cycle();
         std::uint8_t bytes[16];
         const std::size_t count = uart->receive(bytes);

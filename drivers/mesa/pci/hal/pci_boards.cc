@@ -24,7 +24,7 @@ namespace mw::mesa {
 
 namespace {
 
-/// What is loaded now: rtapi calls functions without a context.
+/// State of the load: rtapi calls functions without a context.
 struct Load {
     int comp_id = 0;
     std::span<char *const> configs;
@@ -41,11 +41,11 @@ std::array<rtapi_pci_device_id, std::size(PCI_CARDS) + 1> id_table() {
     std::array<rtapi_pci_device_id, std::size(PCI_CARDS) + 1> table{};
     for (std::size_t i = 0; i < std::size(PCI_CARDS); ++i) {
         const PciIds &ids = PCI_CARDS[i].ids;
-        const bool isMesa = ids.vendor == MESA_VENDOR;
+        const bool is_mesa = ids.vendor == MESA_VENDOR;
         table[i].vendor = ids.vendor;
         table[i].device = ids.device;
-        table[i].subvendor = isMesa ? RTAPI_PCI_ANY_ID : ids.subsystem_vendor;
-        table[i].subdevice = isMesa ? RTAPI_PCI_ANY_ID : ids.subsystem_device;
+        table[i].subvendor = is_mesa ? RTAPI_PCI_ANY_ID : ids.subsystem_vendor;
+        table[i].subdevice = is_mesa ? RTAPI_PCI_ANY_ID : ids.subsystem_device;
     }
     return table;
 }
@@ -54,7 +54,7 @@ std::array<rtapi_pci_device_id, std::size(PCI_CARDS) + 1> id_table() {
 void prepare_bridge(rtapi_pci_dev &device) {
     volatile void *const mapped = rtapi_pci_ioremap_bar(&device, 0);
     if (mapped == nullptr) {
-        return;  // reported; where the bridge is not ready, the card has no cookie
+        return;  // reported; if the bridge is not ready, the card has no cookie
     }
     auto *const registers = static_cast<volatile std::uint32_t *>(mapped);
     for (const std::uint16_t offset : Plx9030::DESCRIPTORS) {
@@ -122,7 +122,7 @@ int probe(rtapi_pci_dev *device, const rtapi_pci_device_id * /*entry*/) {
     }
     load.status = load_card(*device, *card);
     ++load.found;
-    return 0;  // also after an error: the memory stays mapped until all boards are forgotten
+    return 0;  // also after an error: the memory stays mapped until all boards are removed
 }
 
 void remove(rtapi_pci_dev *device) {

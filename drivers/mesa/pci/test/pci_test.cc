@@ -37,9 +37,9 @@ TEST(PciCards, AreKnownByTheirNumbers) {
 
 TEST(PciRegisters, AreWordsInMemory) {
     std::vector<std::uint32_t> memory(PCI_REGISTER_BYTES / 4);
-    bool isReleased = false;
+    bool released = false;
     {
-        PciRegisters registers(memory.data(), [&] { isReleased = true; });
+        PciRegisters registers(memory.data(), [&] { released = true; });
         const std::uint32_t written[] = {1, 2};
         EXPECT_TRUE(registers.write(0x1000, written));
         EXPECT_EQ(memory[0x400], 1U);
@@ -49,7 +49,7 @@ TEST(PciRegisters, AreWordsInMemory) {
         EXPECT_TRUE(registers.read(0xFFFC, read));
         EXPECT_EQ(read[1], 7U) << "addresses wrap";
     }
-    EXPECT_TRUE(isReleased);
+    EXPECT_TRUE(released);
 }
 
 /// A folder that replaces /sys, with cards whose registers are files.
@@ -81,9 +81,9 @@ class PciMachine : public ::testing::Test {
         write(card / "enable", "0");
         std::string resources;
         for (int i = 0; i < 6; ++i) {
-            const bool isSmall = i == 0 && plan.region != 0;
+            const bool small = i == 0 && plan.region != 0;
             resources += i == plan.region ? "0xf0000000 0xf000ffff 0x200\n"
-                         : isSmall        ? "0xe0000000 0xe00000ff 0x200\n"
+                         : small          ? "0xe0000000 0xe00000ff 0x200\n"
                                           : "0x0 0x0 0x0\n";
         }
         write(card / "resource", resources);
@@ -152,7 +152,7 @@ TEST_F(PciMachine, ACycleReadsAndWritesAndAFaultStopsIt) {
     run(4);
     EXPECT_EQ(word("0000:02:00.0/resource0", 0x0E00), 0x5A000000U) << "the watchdog is reset";
     EXPECT_EQ(machine.value("hm2_6i25.0.bus-error").as_number(), 0.0);
-    // The card is gone: everything reads as ones.
+    // The card is removed: everything reads as ones.
     const fs::path file = root / "bus/pci/devices/0000:02:00.0/resource0";
     std::fstream out(file, std::ios::in | std::ios::out | std::ios::binary);
     out.write(std::string(PCI_REGISTER_BYTES, '\xFF').data(), PCI_REGISTER_BYTES);

@@ -28,14 +28,14 @@ class SimulatedDevice final : public spi::Device {
         std::uint16_t address = 0;
         for (std::uint32_t &word : words) {
             const std::uint32_t sent = word;
-            word = wire_.isCut ? wire_.floating : 0;
+            word = wire_.is_cut ? wire_.floating : 0;
             if (left == 0) {
                 command = sent;
                 left = (command >> 4U) & 0x7FU;
                 address = static_cast<std::uint16_t>(command >> 16U);
                 continue;
             }
-            if (!wire_.isCut) {
+            if (!wire_.is_cut) {
                 exchange(command, address, sent, word);
             }
             address = static_cast<std::uint16_t>(address + ((command & 0x800U) != 0 ? 4 : 0));

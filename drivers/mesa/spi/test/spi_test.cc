@@ -81,18 +81,18 @@ TEST(SpiRegisters, LongReadsAndWritesAreSplitIntoCommands) {
 
 class SpiWires : public ::testing::TestWithParam<std::uint32_t> {};
 
-// A wire that is open reads as zeros or as ones; neither is taken for data.
+// An open wire reads as zeros or as ones; neither is taken for data.
 TEST_P(SpiWires, AnOpenWireIsAFailureAndThenStops) {
     DirectRig rig(plan_of());
     rig.cycle(10);
-    rig.wire.isCut = true;
+    rig.wire.is_cut = true;
     rig.wire.floating = GetParam();
     rig.cycle();
     EXPECT_EQ(rig.bus->fault(), DirectFault::NO_COOKIE);
     EXPECT_FALSE(rig.bus->isStopped());
     rig.cycle(4);
     EXPECT_TRUE(rig.bus->isStopped());
-    rig.wire.isCut = false;
+    rig.wire.is_cut = false;
     rig.cycle(20);
     EXPECT_EQ(rig.simulated.firmware().read(0x0D00), 1U) << "the watchdog has bitten";
     rig.bus->resume();
@@ -130,7 +130,7 @@ TEST(Spidev, ProbesNameDevices) {
               "SPI device /nonexistent/spidev9.9: cannot open it: No such file or directory.");
 }
 
-/// A bus that answers nothing, for what the registers themselves do.
+/// A bus without answers, for testing the registers alone.
 class EmptyDevice final : public spi::Device {
   public:
     int transfer(std::span<std::uint32_t>, spi::Direction) noexcept override { return 0; }

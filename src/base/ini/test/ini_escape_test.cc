@@ -12,7 +12,7 @@ TEST(IniEscape, EachEscapeIsItsCharacter) {
     EXPECT_EQ(decode_ini_value(R"(a\tb\\c\101\x42\u00e9\U0001F600)").value(), "a\tb\\cAB\u00e9\U0001F600");
     EXPECT_EQ(decode_ini_value(R"(\ud83d\ude00)").value(), "\U0001F600");
     EXPECT_EQ(decode_ini_value(R"(\xf0\x9f\x98\x80)").value(), "\U0001F600");
-    EXPECT_EQ(decode_ini_value(R"(C:\d\)").value(), R"(C:\d\)") << "no escape: as it stands";
+    EXPECT_EQ(decode_ini_value(R"(C:\d\)").value(), R"(C:\d\)") << "no escape: unchanged";
 }
 
 TEST(IniEscape, WhatIsNoCharacterIsAnError) {

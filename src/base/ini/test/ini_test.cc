@@ -50,7 +50,7 @@ TEST(Ini, EveryMalformedLineIsReported) {
 }
 
 TEST(Ini, AProblemOfAValueWithACommentBehindItSaysThatACommentNeedsItsOwnLine) {
-    const std::string own_line = "write the comment in a line of its own";
+    const std::string own_line = "write the comment on a separate line";
     const auto units = ini_choice("T", "UNITS", "mm", "mm inch", "");
     Read choice("[T]\nUNITS = mm   # metric\n");
     choice.reader.choice(units);
@@ -64,7 +64,7 @@ TEST(Ini, AProblemOfAValueWithACommentBehindItSaysThatACommentNeedsItsOwnLine) {
     EXPECT_EQ(elsewhere.first_message().find(own_line), std::string::npos) << elsewhere.first_message();
     elsewhere.reader.sink().error("the letter '#'", elsewhere.file.find("J", "K")->place);
     EXPECT_NE(elsewhere.sink.all()[1].what.str().find(own_line), std::string::npos)
-        << "whoever reads the value";
+        << "the reader of the value";
     Read sign("[T]\nUNITS = mm#\n");
     sign.reader.choice(units);
     EXPECT_EQ(sign.first_message().find(own_line), std::string::npos) << "no comment was meant";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The catalogues that are built, read as gettext would and asked for texts as the machine makes them.
+// The built catalogues, read as by gettext and queried for texts that the machine makes.
 #include <chrono>
 #include <cstdint>
 #include <fstream>
@@ -27,7 +27,7 @@ Catalogue of(const std::string &language) {
     return read.value_or(Catalogue{});
 }
 
-/// A catalogue of gettext with these texts.
+/// A gettext catalogue of these texts.
 Catalogue made_of(const std::map<std::string, std::string> &texts) {
     std::string head, strings;
     const auto number = [](std::size_t value) {
@@ -86,7 +86,7 @@ TEST(Catalogue, ProgramNameAndNewlineStay) {
               "millwright run: unbekannte Option --plto (war --plot gemeint?)\n");
 }
 
-/// `text` with the values in place of {} and {0}, {1}; written anew, not as the catalogue does it.
+/// `text` with the values inserted for {} and {0}, {1}. Implemented independently of the catalogue.
 std::string put_in(std::string text, const std::vector<std::string> &values) {
     std::size_t next = 0;
     for (std::size_t at = text.find('{'); at != std::string::npos; at = text.find('{', at)) {
@@ -103,7 +103,7 @@ std::string put_in(std::string text, const std::vector<std::string> &values) {
     return text;
 }
 
-/// key, translation of a catalogue whose strings stand in one line each.
+/// Keys and translations of a catalogue with one string per line.
 std::vector<std::pair<std::string, std::string>> texts_of(const std::string &language) {
     std::ifstream file(std::string(MW_PO) + "/" + language + ".po");
     std::vector<std::pair<std::string, std::string>> texts;
@@ -137,7 +137,7 @@ TEST(Catalogue, EachTextIsFoundAgainWithWhateverIsPutIntoIt) {
             ASSERT_TRUE(found.has_value()) << key;
             others += *found != put_in(translation, values)
                           ? 1
-                          : 0;  // another text with as many letters is no error
+                          : 0;  // another text with as many letters also matches
         }
         EXPECT_LT(others, 8) << language;
     }

@@ -7,7 +7,7 @@ namespace mw::options {
 namespace {
 
 struct Read {
-    bool isStrict = false, isChecked = true, isOn = true;
+    bool strict = false, checked = true, isOn = true;
     std::string plot;
     Words outputs, trigger, rest;
     double patience_s = 60;
@@ -17,8 +17,8 @@ struct Read {
 class CommandLineTest : public ::testing::Test {
   protected:
     CommandLineTest() {
-        line.flag("--strict", "unknown keys are errors", read.isStrict);
-        line.flag("--no-check", "start anyhow", read.isChecked, false);
+        line.flag("--strict", "unknown keys are errors", read.strict);
+        line.flag("--no-check", "start anyhow", read.checked, false);
         line.text("--plot", "FILE", "draw", read.plot);
         line.texts("-o,--output", "FILE", "write", read.outputs);
         line.on_or_off("--optional-stop", "M1 stops", read.isOn);
@@ -43,8 +43,8 @@ TEST_F(CommandLineTest, ReadsFlagsValuesAndTheOtherWordsInAnyOrder) {
     EXPECT_EQ(error({"a.ini", "--strict", "--plot", "p.png", "b.ngc", "--no-check", "--patience=2.5",
                      "--count", "9", "--optional-stop=off", "-o", "x.csv", "--output=y.csv", "-oz.csv"}),
               "");
-    EXPECT_TRUE(read.isStrict);
-    EXPECT_FALSE(read.isChecked);
+    EXPECT_TRUE(read.strict);
+    EXPECT_FALSE(read.checked);
     EXPECT_FALSE(read.isOn);
     EXPECT_EQ(read.plot, "p.png");
     EXPECT_EQ(read.patience_s, 2.5);
@@ -55,7 +55,7 @@ TEST_F(CommandLineTest, ReadsFlagsValuesAndTheOtherWordsInAnyOrder) {
 
 TEST_F(CommandLineTest, WhatIsNotGivenStaysAsItIs) {
     EXPECT_EQ(error({}), "");
-    EXPECT_TRUE(!read.isStrict && read.isChecked && read.isOn);
+    EXPECT_TRUE(!read.strict && read.checked && read.isOn);
     EXPECT_EQ(read.patience_s, 60);
     EXPECT_TRUE(read.rest.empty());
 }
@@ -65,7 +65,7 @@ TEST_F(CommandLineTest, AnOptionTakesExactlyItsWordsWhateverTheyLookLike) {
     EXPECT_EQ(read.trigger, Words({"joint.0.f-error", "above", "-0.5"}));
     EXPECT_EQ(read.rest, Words({"name"}));
     EXPECT_EQ(read.plot, "--strict");
-    EXPECT_FALSE(read.isStrict);
+    EXPECT_FALSE(read.strict);
 }
 
 TEST_F(CommandLineTest, OfAnOptionThatComesTwiceTheLastOneCounts) {
@@ -77,7 +77,7 @@ TEST_F(CommandLineTest, OfAnOptionThatComesTwiceTheLastOneCounts) {
 TEST_F(CommandLineTest, WordsBehindTwoDashesAndASingleDashAreNoOptions) {
     EXPECT_EQ(error({"-", "--", "--strict", "-x"}), "");
     EXPECT_EQ(read.rest, Words({"-", "--strict", "-x"}));
-    EXPECT_FALSE(read.isStrict);
+    EXPECT_FALSE(read.strict);
 }
 
 TEST_F(CommandLineTest, WordsAreHandedOverAsTheyAre) {
@@ -125,7 +125,7 @@ TEST_F(CommandLineTest, HelpTellsEachOptionAndWrapsItsText) {
         long_doc += "word ";
     }
     line.text("--a-name-that-is-too-long", "FOR-THE-COLUMN", long_doc, read.plot);
-    line.flag("--hidden", "", read.isStrict);
+    line.flag("--hidden", "", read.strict);
     line.footer("exit status: 0\n");
     const std::string help = line.help();
     EXPECT_TRUE(help.starts_with("usage: prog WORD... [options]\n\nDoes it.\n\n"

@@ -94,7 +94,7 @@ class Parse {
             };
         }
         settings.startup_code.clear();  // the canon's owner says what to begin with
-        settings.isUserCodeAssumed = true;
+        settings.user_code_assumed = true;
         settings.initial_units = gcode::LengthUnits::INCH;
         // Preview programs count a machine's length in millimetres per unit the other way round: 1 is mm.
         constexpr double BETWEEN_UNITS = 0.5;

@@ -50,7 +50,7 @@ py::dict dict_of(const hal::CompInfo &comp) {
 py::dict dict_of(const hal::FunctInfo &funct) {
     return py::dict(py::arg("name") = funct.name, py::arg("comp") = funct.owner,
                     py::arg("comp_id") = funct.owner_id, py::arg("users") = funct.users,
-                    py::arg("reentrant") = funct.isReentrant);
+                    py::arg("reentrant") = funct.reentrant);
 }
 
 py::dict dict_of(const hal::ThreadInfo &thread) {

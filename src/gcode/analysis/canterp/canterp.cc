@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// canterp: an interpreter that is a plug-in. It reads canon calls as rs274 prints them, one a line: a counter
-// and a block number, which mean nothing here, then NAME(arguments).
+// canterp: an interpreter plug-in. It reads canon calls as rs274 prints them, one per line: a counter and a
+// block number, which are ignored, then NAME(arguments).
 #include <fmt/format.h>
 
 #include "base/atomic_file.hh"
@@ -73,8 +73,8 @@ class Canterp final : public ProgramInterpreter {
         if (const Result<> made = make_call(call, canon_, plane_); !made) {
             return failed(made.error(), line);
         }
-        const bool isChange = call.name == "CHANGE_TOOL";
-        return call.name == "PROGRAM_END" ? Step::PROGRAM_END : (isChange ? Step::SYNC : Step::OK);
+        const bool is_change = call.name == "CHANGE_TOOL";
+        return call.name == "PROGRAM_END" ? Step::PROGRAM_END : (is_change ? Step::SYNC : Step::OK);
     }
 
     Step failed(Error what, std::string_view line) {

@@ -52,8 +52,8 @@ TEST(Explain, HasWordsForEachCodeAndItsWords) {
             }
             ASSERT_NE(text, nullptr) << letter << number;
             for (const char word : std::string_view("abcdefhijklpqrstuvwxyz$")) {
-                const bool isTaken = (code->words & detail::letters({&word, 1})) != 0;
-                EXPECT_TRUE(!isTaken || !word_text(*text, word).empty()) << letter << number << " " << word;
+                const bool taken = (code->words & detail::letters({&word, 1})) != 0;
+                EXPECT_TRUE(!taken || !word_text(*text, word).empty()) << letter << number << " " << word;
             }
         }
     }

@@ -104,7 +104,7 @@ TEST_F(PreviewRun, AddsTheMovesOfTheMachineAtAToolChange) {
     ASSERT_EQ(events.size(), 4U);
     EXPECT_EQ(events[1].kind, PreviewKind::TOOL_CHANGE);
     EXPECT_EQ(events[1].number, 2);
-    EXPECT_TRUE(events[2].isByMachine);
+    EXPECT_TRUE(events[2].by_machine);
     EXPECT_DOUBLE_EQ(events[3].end.z(), 100.0);
     EXPECT_DOUBLE_EQ(events[3].end.x(), 4.0);
 }
@@ -133,7 +133,7 @@ TEST_F(PreviewRun, TellsWhichMovesWaitForTheSpindle) {
               PreviewEnd::DONE);
     std::vector<double> waiting;
     for (const PreviewEvent &event : events) {
-        if (event.isSpindleAwaited) {
+        if (event.spindle_awaited) {
             waiting.push_back(event.end.x());
         }
     }
@@ -175,7 +175,7 @@ TEST_F(PreviewRun, EndsEndlessLoopsWithAnError) {
     EXPECT_NE(sink.all()[0].what.message.find("loop without end"), std::string::npos);
 }
 
-/// Such loops are found at once, however they move: nothing changes from pass to pass.
+/// Such loops are found at once, with or without motion: nothing changes between passes.
 TEST_F(PreviewRun, FindsLoopsThatRepeatThemselves) {
     const struct {
         const char *program;
@@ -205,7 +205,8 @@ TEST_F(PreviewRun, FindsLoopsThatRepeatThemselves) {
         << sink.all().back().str();
 }
 
-/// Which loop it is: not an inner one that ends, not one before it, and in a subroutine with its callers.
+/// Names the endless loop: not an inner one that ends, not an earlier one, and in a subroutine with the
+/// callers.
 TEST_F(PreviewRun, NamesTheLoopThatDoesNotEnd) {
     const struct {
         const char *program;
@@ -295,7 +296,7 @@ TEST_F(PreviewRun, CanBeCancelledAndSaysHowFarItIs) {
     EXPECT_EQ(largest_batch, 16U);
 }
 
-/// The process's memory that is in use now. [bytes]
+/// Resident memory of the process [bytes].
 std::size_t resident_bytes() {
     std::ifstream statm("/proc/self/statm");
     std::size_t all = 0, resident = 0;

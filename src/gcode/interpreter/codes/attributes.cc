@@ -27,12 +27,12 @@ std::int64_t whole(int value) {
     return value;
 }
 
-/// Units and planes as scripts number them.
+/// Units in the numbering of scripts.
 int unit_number(LengthUnits units) {
     return units == LengthUnits::INCH ? 1 : 2;
 }
 
-/// As scripts number the planes.
+/// Planes in the numbering of scripts.
 int plane_number(Plane plane) {
     switch (plane) {
     case Plane::XY: return 1;
@@ -71,14 +71,14 @@ constexpr Row MODES[] = {
     {"cutter_comp_radius", [](const Sources &e) -> ScriptValue { return e.state.comp.radius(); }},
     {"cutter_comp_side",
      [](const Sources &e) -> ScriptValue { return whole(side_number(e.state.comp.side())); }},
-    {"distance_mode", [](const Sources &e) -> ScriptValue { return whole(e.state.isIncremental ? 1 : 0); },
-     [](const Sources &e, double v) { e.state.isIncremental = v != 0; }},
+    {"distance_mode", [](const Sources &e) -> ScriptValue { return whole(e.state.incremental ? 1 : 0); },
+     [](const Sources &e, double v) { e.state.incremental = v != 0; }},
     {"feed_mode", [](const Sources &e) -> ScriptValue { return whole(static_cast<int>(e.state.feed_mode)); },
      [](const Sources &e, double v) {
          e.state.feed_mode = static_cast<FeedMode>(std::clamp(to_whole(v), 0, 2));
      }},
-    {"feed_override", [](const Sources &e) -> ScriptValue { return e.state.isFeedOverride; },
-     [](const Sources &e, double v) { e.state.isFeedOverride = v != 0; }},
+    {"feed_override", [](const Sources &e) -> ScriptValue { return e.state.is_feed_override; },
+     [](const Sources &e, double v) { e.state.is_feed_override = v != 0; }},
     {"feed_rate", [](const Sources &e) -> ScriptValue { return e.state.feed; },
      [](const Sources &e, double v) {
          e.state.feed = v;
@@ -87,8 +87,8 @@ constexpr Row MODES[] = {
     {"flood", [](const Sources &e) -> ScriptValue { return e.state.isFlood; },
      [](const Sources &e, double v) { e.state.isFlood = v != 0; }},
     {"ijk_distance_mode",
-     [](const Sources &e) -> ScriptValue { return whole(e.state.isCentreAbsolute ? 0 : 1); },
-     [](const Sources &e, double v) { e.state.isCentreAbsolute = v == 0; }},
+     [](const Sources &e) -> ScriptValue { return whole(e.state.centre_absolute ? 0 : 1); },
+     [](const Sources &e, double v) { e.state.centre_absolute = v == 0; }},
     {"length_units", [](const Sources &e) -> ScriptValue { return whole(unit_number(e.state.units)); }},
     {"mist", [](const Sources &e) -> ScriptValue { return e.state.isMist; },
      [](const Sources &e, double v) { e.state.isMist = v != 0; }},
@@ -96,14 +96,14 @@ constexpr Row MODES[] = {
      [](const Sources &e, double v) { e.state.motion = to_whole(v); }},
     {"origin_index", [](const Sources &e) -> ScriptValue { return whole(e.state.g5x_index); }},
     {"plane", [](const Sources &e) -> ScriptValue { return whole(plane_number(e.state.plane)); }},
-    {"retract_mode", [](const Sources &e) -> ScriptValue { return whole(e.state.isRetractToR ? 0 : 1); },
-     [](const Sources &e, double v) { e.state.isRetractToR = v == 0; }},
+    {"retract_mode", [](const Sources &e) -> ScriptValue { return whole(e.state.retract_to_r ? 0 : 1); },
+     [](const Sources &e, double v) { e.state.retract_to_r = v == 0; }},
     {"rotation_xy", [](const Sources &e) -> ScriptValue { return e.state.frame.rotation_deg; }},
     {"speed_feed_mode", [](const Sources &) -> ScriptValue { return whole(2); }},
-    {"speed_override", [](const Sources &e) -> ScriptValue { return spindle(e).isOverridden; },
-     [](const Sources &e, double v) { spindle(e).isOverridden = v != 0; }},
+    {"speed_override", [](const Sources &e) -> ScriptValue { return spindle(e).overridden; },
+     [](const Sources &e, double v) { spindle(e).overridden = v != 0; }},
     {"spindle_mode",
-     [](const Sources &e) -> ScriptValue { return whole(spindle(e).isConstantSurface ? 1 : 0); }},
+     [](const Sources &e) -> ScriptValue { return whole(spindle(e).is_constant_surface ? 1 : 0); }},
     {"spindle_turning",
      [](const Sources &e) -> ScriptValue {
          constexpr std::array<int, 3> NUMBERS{3, 1, 2};  // counterclockwise, stopped, clockwise
@@ -119,8 +119,8 @@ constexpr Row CYCLES[] = {
      [](const Sources &e, double v) { e.state.cycle.i = v; }},
     {"cycle_il", [](const Sources &e) -> ScriptValue { return e.state.cycle.initial; },
      [](const Sources &e, double v) { e.state.cycle.initial = v; }},
-    {"cycle_il_flag", [](const Sources &e) -> ScriptValue { return whole(e.state.cycle.isRunning ? 1 : 0); },
-     [](const Sources &e, double v) { e.state.cycle.isRunning = v != 0; }},
+    {"cycle_il_flag", [](const Sources &e) -> ScriptValue { return whole(e.state.cycle.running ? 1 : 0); },
+     [](const Sources &e, double v) { e.state.cycle.running = v != 0; }},
     {"cycle_j", [](const Sources &e) -> ScriptValue { return e.state.cycle.j; },
      [](const Sources &e, double v) { e.state.cycle.j = v; }},
     {"cycle_k", [](const Sources &e) -> ScriptValue { return e.state.cycle.k; },
@@ -147,8 +147,8 @@ constexpr Row TOOLS[] = {
     {"tool_change_at_g30", [](const Sources &) -> ScriptValue { return whole(0); }},
     {"tool_change_quill_up", [](const Sources &) -> ScriptValue { return whole(0); }},
     {"tool_change_with_spindle_on", [](const Sources &) -> ScriptValue { return whole(0); }},
-    {"toolchange_flag", [](const Sources &e) -> ScriptValue { return e.awaited.isToolChange; },
-     [](const Sources &e, double v) { e.awaited.isToolChange = v != 0; }},
+    {"toolchange_flag", [](const Sources &e) -> ScriptValue { return e.awaited.is_tool_change; },
+     [](const Sources &e, double v) { e.awaited.is_tool_change = v != 0; }},
 };
 
 constexpr Row REST[] = {
@@ -173,8 +173,8 @@ constexpr Row REST[] = {
     {"debugmask", [](const Sources &e) -> ScriptValue { return whole(e.script_levels.debug_mask); },
      [](const Sources &e, double v) { e.script_levels.debug_mask = to_whole(v); }},
     {"input_digital", [](const Sources &) -> ScriptValue { return false; }},
-    {"input_flag", [](const Sources &e) -> ScriptValue { return e.awaited.isInput; },
-     [](const Sources &e, double v) { e.awaited.isInput = v != 0; }},
+    {"input_flag", [](const Sources &e) -> ScriptValue { return e.awaited.is_input; },
+     [](const Sources &e, double v) { e.awaited.is_input = v != 0; }},
     {"input_index", [](const Sources &) -> ScriptValue { return whole(-1); }},
     {"loggingLevel", [](const Sources &e) -> ScriptValue { return whole(e.script_levels.logging_level); },
      [](const Sources &e, double v) { e.script_levels.logging_level = to_whole(v); }},
@@ -186,9 +186,9 @@ constexpr Row REST[] = {
     {"return_value", [](const Sources &e) -> ScriptValue { return e.returned.value; },
      [](const Sources &e, double v) { e.returned.value = v; }},
     {"sequence_number", [](const Sources &e) -> ScriptValue { return whole(e.place.line); }},
-    {"task", [](const Sources &e) -> ScriptValue { return whole(e.isTask ? 1 : 0); }},
-    {"value_returned", [](const Sources &e) -> ScriptValue { return whole(e.returned.isSet ? 1 : 0); },
-     [](const Sources &e, double v) { e.returned.isSet = v != 0; }},
+    {"task", [](const Sources &e) -> ScriptValue { return whole(e.is_task ? 1 : 0); }},
+    {"value_returned", [](const Sources &e) -> ScriptValue { return whole(e.returned.set ? 1 : 0); },
+     [](const Sources &e, double v) { e.returned.set = v != 0; }},
 };
 
 /// Nine axes each: the tool's position, and the offsets of the coordinate system and of G92.
@@ -263,9 +263,9 @@ std::optional<ScriptValue> attribute(std::string_view name, const AttributeSourc
 Result<> set_attribute(std::string_view name, const ScriptValue &value, const AttributeSources &sources) {
     const Row *row = find_row(name);
     const AxisPlace place = find_axis(name);
-    const bool isWritable =
+    const bool writable =
         row != nullptr ? row->write != nullptr : place.row != nullptr && place.row->write != nullptr;
-    if (!isWritable) {
+    if (!writable) {
         return fail(fmt::format("{} cannot be set", name));
     }
     const std::optional<double> number = number_of(value);

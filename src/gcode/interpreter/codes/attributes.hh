@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The state by the names that scripts use. Lengths in program units, angles in degrees.
+// The state by the attribute names of scripts. Lengths in program units, angles in degrees.
 #pragma once
 
 #include <optional>
@@ -15,7 +15,7 @@
 
 namespace mw::gcode::detail {
 
-/// What the names read and change.
+/// Objects that attributes read and change.
 struct AttributeSources {
     State &state;
     ReturnValue &returned;
@@ -25,12 +25,12 @@ struct AttributeSources {
     const World &world;
     const ToolTable &tools;
     int running_remaps = 0;
-    bool isTask = false;
+    bool is_task = false;
 };
 
 /// Nothing when there is no such name.
 std::optional<ScriptValue> attribute(std::string_view name, const AttributeSources &sources);
-/// An error when the name cannot be set, or the value is no finite number.
+/// An error when the attribute is read-only, or the value is not finite.
 Result<> set_attribute(std::string_view name, const ScriptValue &value, const AttributeSources &sources);
 std::vector<std::string_view> attribute_names();
 

@@ -16,20 +16,20 @@ namespace {
 constexpr char LETTERS[] = "abcdefghijklmnopqrstuvwxyz@^$";
 constexpr double CODE_TOLERANCE = 1e-4;
 
-/// A code's row: a remap, unless its own procedure runs, else the table's.
+/// The row of a code: a remap, unless its own procedure runs, else the table row.
 const Code *lookup(char letter_char, int number, const Remaps &remaps) {
     if (const Code *const remapped = remaps.find(letter_char, number); remapped != nullptr) {
         return remapped;
     }
-    const bool isWord = letter_char != 'g' && letter_char != 'm';
-    return isWord ? find_word_code(letter_char) : find_code(letter_char, number);
+    const bool is_word = letter_char != 'g' && letter_char != 'm';
+    return is_word ? find_word_code(letter_char) : find_code(letter_char, number);
 }
 
-/// Keeps the codes in their order of execution; refuses two of one group.
+/// Inserts the code in the order of execution; rejects two of one group.
 bool insert_code(const Code &code, std::uint32_t column, BlockValues &values, Fault &fault) {
     const std::uint32_t bit = 1u << static_cast<unsigned>(code.group);
     if (code.group == Group::MOTION && values.motion != nullptr) {
-        // G80 beside another motion code says nothing that this one does not say.
+        // G80 beside another motion code is redundant.
         if (code.number == MOTION_NONE) {
             return true;
         }
@@ -89,7 +89,7 @@ bool add_code(char letter_char, double number, std::uint32_t column, const Remap
             column);
     }
     if (letter_char == 'g' && whole == 530) {
-        values.isMachineCoordinates = true;
+        values.is_machine_coordinates = true;
     }
     return insert_code(*code, column, values, fault);
 }
@@ -125,8 +125,8 @@ bool read_words(const BlockView &view, const BlockSources &sources, BlockValues 
 }
 
 bool choose_motion(BlockValues &values, int motion, const Remaps &remaps, Fault &fault) {
-    const bool isCancelling = values.motion != nullptr && values.motion->number == MOTION_NONE;
-    if ((values.motion != nullptr && !isCancelling) || !values.hasAxes()) {
+    const bool cancelling = values.motion != nullptr && values.motion->number == MOTION_NONE;
+    if ((values.motion != nullptr && !cancelling) || !values.hasAxes()) {
         return true;
     }
     for (const ActiveCode &active : values.codes) {
@@ -134,27 +134,27 @@ bool choose_motion(BlockValues &values, int motion, const Remaps &remaps, Fault 
             return true;
         }
     }
-    if (isCancelling) {
+    if (cancelling) {
         return fault.set("Cannot use axis values with g80");
     }
     if (motion == MOTION_NONE) {
         return fault.set("Cannot use axis values without a g code that uses them");
     }
-    values.isMotionImplied = true;
+    values.motion_implied = true;
     return insert_code(*lookup('g', motion, remaps), 0, values, fault);
 }
 
 bool check_machine_coordinates(const BlockValues &values, Fault &fault) {
     constexpr int G0 = 0, G1 = 10;
     const int motion = values.motion != nullptr ? values.motion->number : MOTION_NONE;
-    return !values.isMachineCoordinates || motion == G0 || motion == G1 ||
+    return !values.is_machine_coordinates || motion == G0 || motion == G1 ||
            fault.set("Must use g0 or g1 with g53");
 }
 
 bool check_words(const BlockValues &values, Fault &fault) {
     constexpr std::uint32_t ALWAYS = letters("fstn");
     std::uint32_t allowed = ALWAYS;
-    bool isAxisUser = false;
+    bool is_axis_user = false;
     for (const ActiveCode &active : values.codes) {
         const Code &code = *active.code;
         allowed |= code.words | (code.usesAxes ? AXES : 0);
@@ -165,10 +165,10 @@ bool check_words(const BlockValues &values, Fault &fault) {
                              active.column);
         }
         if (code.usesAxes && values.hasAxes()) {
-            if (isAxisUser) {
+            if (is_axis_user) {
                 return fault.set("Cannot use two g codes that both use axis values", active.column);
             }
-            isAxisUser = true;
+            is_axis_user = true;
         }
     }
     const std::uint32_t unused = values.present & ~allowed;
@@ -186,8 +186,8 @@ bool AxisCheck::check(const BlockValues &values, unsigned mask, Fault &fault) {
         mask_ = mask;
         absent_ = 0;
         for (int axis = 0; axis < geometry::AXIS_COUNT; ++axis) {
-            const bool isThere = (mask & (1U << static_cast<unsigned>(axis))) != 0;
-            absent_ |= isThere ? 0U : bit_of(letter(geometry::AXIS_LETTERS_LOWER[axis]));
+            const bool present = (mask & (1U << static_cast<unsigned>(axis))) != 0;
+            absent_ |= present ? 0U : bit_of(letter(geometry::AXIS_LETTERS_LOWER[axis]));
         }
     }
     const std::uint32_t absent = values.present & absent_;

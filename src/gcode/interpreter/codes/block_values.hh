@@ -10,30 +10,30 @@
 
 namespace mw::gcode::detail {
 
-/// A code of the block and where it stands.
+/// A code of the block and its column.
 struct ActiveCode {
     const Code *code = nullptr;
     std::uint32_t column = 0;
 };
 
 struct BlockValues {
-    BlockValues() {}  // the arrays stay unset
-    /// As made new, without the cost of setting all that is not looked at.
+    BlockValues() {}  // leaves the arrays uninitialised
+    /// As a new object, without the cost of setting fields that are not read.
     void clear() {
         present = groups = 0;
         codes.clear();
         motion = nullptr;
-        isMotionImplied = isMachineCoordinates = false;
+        motion_implied = is_machine_coordinates = false;
     }
 
-    std::uint32_t present = 0;               ///< bit per letter, G and M left out
-    std::array<double, LETTER_COUNT> value;  ///< only those present
+    std::uint32_t present = 0;               ///< bit per letter, without G and M
+    std::array<double, LETTER_COUNT> value;  ///< valid only for letters present
     std::array<std::uint32_t, LETTER_COUNT> column;
     StaticVector<ActiveCode, 32> codes;  ///< in the order of execution
-    std::uint32_t groups = 0;            ///< bit per Group present
-    const Code *motion = nullptr;        ///< stated or implied
-    bool isMotionImplied = false;
-    bool isMachineCoordinates = false;  ///< G53
+    std::uint32_t groups = 0;            ///< bit per Group that has a code
+    const Code *motion = nullptr;        ///< programmed or implied
+    bool motion_implied = false;
+    bool is_machine_coordinates = false;  ///< G53
 
     bool has(char c) const { return (present & bit_of(index(c))) != 0; }
     double at(char c) const { return value[static_cast<std::size_t>(index(c))]; }

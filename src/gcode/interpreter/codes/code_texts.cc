@@ -47,7 +47,7 @@ constexpr CodeText TEXTS[] = {
     {'g', 100, "set offsets, coordinate systems and the tool table",
      "l=1 tool table, 2 coordinate system, 10 and 11 tool table from the position, 20 coordinate system from "
      "the "
-     "position|p=tool, or coordinate system from 1, 0 the one in force|r=tool radius, or rotation "
+     "position|p=tool, or coordinate system from 1, 0 the active one|r=tool radius, or rotation "
      "[deg]|i=front angle of "
      "a lathe tool [deg]|j=back angle of a lathe tool [deg]|q=orientation of a lathe tool, 0 to 9"},
     {'g', 170, "plane XY", ""},
@@ -58,9 +58,9 @@ constexpr CodeText TEXTS[] = {
     {'g', 191, "plane VW", ""},
     {'g', 200, "inches", ""},
     {'g', 210, "millimetres", ""},
-    {'g', 280, "go to the first stored position, by way of the one given", ""},
+    {'g', 280, "go to the first stored position through the given one", ""},
     {'g', 281, "store the machine's position as the first one (G28)", ""},
-    {'g', 300, "go to the second stored position, by way of the one given", ""},
+    {'g', 300, "go to the second stored position through the given one", ""},
     {'g', 301, "store the machine's position as the second one (G30)", ""},
     {'g', 330, "straight move in step with the spindle", THREAD},
     {'g', 331, "rigid tapping: in step with the spindle, there and back",
@@ -94,7 +94,7 @@ constexpr CodeText TEXTS[] = {
     {'g', 592, "coordinate system 8", ""},
     {'g', 593, "coordinate system 9", ""},
     {'g', 610, "exact path: no corner is rounded", ""},
-    {'g', 611, "exact stop: stand still after each move", ""},
+    {'g', 611, "exact stop: stop after each move", ""},
     {'g', 640, "continuous path: corners may be rounded",
      "p=how far the path may leave the programmed one|q=how far points of small moves may be left "
      "out|r=planner: 0 "

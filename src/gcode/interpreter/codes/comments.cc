@@ -14,17 +14,18 @@ namespace mw::gcode::detail {
 namespace {
 
 struct Active {
-    std::string keyword;    ///< lower case, without blanks; empty when the comment is plain
-    std::string_view text;  ///< what follows the comma
+    std::string keyword;    ///< lower case, without blanks; empty for a plain comment
+    std::string_view text;  ///< text after the comma
 };
 
-/// "keyword," or a keyword alone, at the beginning.
+/// Splits "keyword," or a keyword alone at the beginning.
 Active split_comment(std::string_view comment) {
     static constexpr std::string_view KEYWORDS[] = {"msg",       "debug",    "print", "log",       "logopen",
                                                     "logappend", "logclose", "abort", "probeclose"};
     static constexpr std::string_view PROBE_OPEN = "probeopen";
     const std::string_view trimmed = trim(comment);
-    if (equals_ignoring_case(trimmed.substr(0, PROBE_OPEN.size()), PROBE_OPEN)) {  // its file follows a blank
+    if (equals_ignoring_case(trimmed.substr(0, PROBE_OPEN.size()),
+                             PROBE_OPEN)) {  // a blank precedes the file name
         const std::string_view rest = trimmed.substr(PROBE_OPEN.size());
         if (rest.empty() || rest[0] == ' ' || rest[0] == '\t' || rest[0] == ',') {
             return {std::string(PROBE_OPEN), rest.substr(!rest.empty() && rest[0] == ',' ? 1 : 0)};
@@ -41,25 +42,25 @@ Active split_comment(std::string_view comment) {
     const std::string_view text =
         comma == std::string_view::npos ? std::string_view{} : comment.substr(comma + 1);
     for (const std::string_view keyword : KEYWORDS) {
-        const bool isAlone = keyword == "logclose" || keyword == "probeclose";
-        if (head == keyword && (comma != std::string_view::npos || isAlone)) {
+        const bool alone = keyword == "logclose" || keyword == "probeclose";
+        if (head == keyword && (comma != std::string_view::npos || alone)) {
             return {head, text};
         }
     }
     return {};
 }
 
-/// How numbers are written: %d, %f or %.Nf as last seen in the comment; six decimals before that.
+/// Format of numbers: the last %d, %f or %.Nf in the comment; before that six decimals.
 struct NumberFormat {
-    bool isInteger = false;
+    bool integer = false;
     int decimals = 6;
 
     std::string str(double value) const {
-        return isInteger ? fmt::format("{:.0f}", value) : fmt::format("{:.{}f}", value, decimals);
+        return integer ? fmt::format("{:.0f}", value) : fmt::format("{:.{}f}", value, decimals);
     }
 };
 
-/// Takes a format at the beginning of `text`; the number of characters taken, 0 when there is none.
+/// Reads a format at the beginning of `text`; returns its length, 0 when there is none.
 std::size_t take_format(std::string_view text, NumberFormat &format) {
     constexpr int SHORT_DECIMALS = 4, MAX_DECIMALS = 15;
     if (text.starts_with("%d")) {
@@ -82,7 +83,7 @@ std::size_t take_format(std::string_view text, NumberFormat &format) {
     return 0;
 }
 
-/// The value of the parameter named at the beginning of `text` (after #), and how long its name is.
+/// Value of the parameter named at the beginning of `text` (after #), and the length of its name.
 std::optional<double> comment_parameter(std::string_view text, const ShownValues &shown, std::size_t &taken) {
     if (!text.empty() && text[0] == '<') {
         const std::size_t close = text.find('>');
@@ -116,9 +117,9 @@ std::string substituted(std::string_view text, const ShownValues &shown) {
                 continue;
             }
         }
-        const bool isParameter = text[i] == '#' && i + 1 < text.size() &&
-                                 (text[i + 1] == '<' || (text[i + 1] >= '0' && text[i + 1] <= '9'));
-        if (!isParameter) {
+        const bool is_parameter = text[i] == '#' && i + 1 < text.size() &&
+                                  (text[i + 1] == '<' || (text[i + 1] >= '0' && text[i + 1] <= '9'));
+        if (!is_parameter) {
             out += text[i];
             ++i;
             continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What programs and scripts read of the executor, and scripts change.
+// State of the executor that programs and scripts read or change.
 #include "gcode/interpreter/codes/executor.hh"
 
 namespace mw::gcode::detail {
@@ -24,7 +24,7 @@ AttributeSources Executor::attribute_sources() {
             machine_.world,
             tools,
             remaps.count_running(),
-            machine_.settings.isTask};
+            machine_.settings.is_task};
 }
 
 KeptSources Executor::kept_sources() const {
@@ -35,7 +35,7 @@ KeptSources Executor::kept_sources() const {
             machine_.world,
             state.comp.compensated(state.position, state.plane),
             remaps.count_running(),
-            machine_.settings.isTask,
+            machine_.settings.is_task,
             &tools};
 }
 
@@ -52,7 +52,7 @@ std::optional<double> Executor::built_in(std::string_view name) const {
     }
     if (isIniName(name)) {
         const std::size_t close = name.find(']');
-        if (close == std::string_view::npos || !machine_.settings.isIniReadable) {
+        if (close == std::string_view::npos || !machine_.settings.ini_readable) {
             return std::nullopt;
         }
         const auto value = source_.ini_value(name.substr(5, close - 5), name.substr(close + 1));
@@ -62,7 +62,7 @@ std::optional<double> Executor::built_in(std::string_view name) const {
         return value;
     }
     if (isHalName(name)) {
-        if (!machine_.settings.isHalReadable) {
+        if (!machine_.settings.hal_readable) {
             return std::nullopt;
         }
         return source_.hal_value(name.substr(5, name.find(']') - 5));

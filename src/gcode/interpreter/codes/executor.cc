@@ -17,7 +17,7 @@ BlockCodes codes_of(const BlockValues &values) {
     for (const ActiveCode &active : values.codes) {
         switch (active.code->group) {
         case Group::NON_MODAL:
-            // LinuxCNC shows G92.1 to G92.3 by what they leave in force alone.
+            // LinuxCNC shows G92.1 to G92.3 only by their effect.
             out.non_modal =
                 active.code->number > G92 && active.code->number <= G92_3 ? -1 : active.code->number;
             break;
@@ -29,12 +29,12 @@ BlockCodes codes_of(const BlockValues &values) {
     return out;
 }
 
-/// Nothing, or a straight move alone, which fails before it changes anything.
+/// True for a block that is empty or only a straight move, which fails before it changes anything.
 bool isStateSafe(const BlockValues &values, const State &state) {
     constexpr int G1 = 10;
-    const bool isStraight = values.codes.size() == 1 && values.motion != nullptr &&
-                            values.motion->number <= G1 && !state.comp.isOn();
-    return values.codes.empty() || isStraight;
+    const bool straight = values.codes.size() == 1 && values.motion != nullptr &&
+                          values.motion->number <= G1 && !state.comp.isOn();
+    return values.codes.empty() || straight;
 }
 
 }  // namespace
@@ -67,7 +67,7 @@ bool Executor::run(const BlockView &view, std::string_view line_text) {
         return false;
     }
     if (view.block->word_count == 0) {
-        return true;  // settings and comments alone: lines of loops are mostly that
+        return true;  // only settings and comments, as most lines of loops
     }
     if (!choose_motion(values, state.motion, remaps, fault) || !check_machine_coordinates(values, fault) ||
         !check_open_nurbs(values, state, fault) ||
@@ -83,7 +83,7 @@ bool Executor::run(const BlockView &view, std::string_view line_text) {
 bool Executor::run_last_comment(const BlockView &view, std::string_view line_text) {
     const Comment &last = view.arena->comments[view.block->first_comment + view.block->comment_count - 1u];
     const std::string_view comment = line_text.substr(last.begin, last.end - last.begin);
-    if (last.isScript) {
+    if (last.is_script) {
         block_.script_text = comment;
         outcome = Outcome::SCRIPT;
         return true;
@@ -94,8 +94,7 @@ bool Executor::run_last_comment(const BlockView &view, std::string_view line_tex
     return run_comment(comment, last.begin + 1, {evaluator_, names_}, canon, fault);
 }
 
-/// The codes from `first` on; a remapped one interrupts the block, and keeps the rest for after the
-/// procedure.
+/// Runs the codes from `first` on. A remapped code interrupts the block; the rest runs after its procedure.
 bool Executor::run_codes(const BlockValues &values, std::size_t first) {
     if (!isStateSafe(values, state)) {
         keep_state();
@@ -121,7 +120,7 @@ bool Executor::run_codes(const BlockValues &values, std::size_t first) {
     return true;
 }
 
-/// Hands a code the parts that its kind asks for.
+/// Calls the handler of a code with the objects of its type.
 bool Executor::run_code(const Code &code, const BlockValues &values) {
     return std::visit(
         Overloaded{
@@ -167,17 +166,17 @@ void Executor::begin_block() {
 }
 
 void Executor::begin_light_block() {
-    isStateKept_ = false;
+    state_kept_ = false;
     codes_before_ = block_codes;
     canon.begin_undo();
     outcome = Outcome::OK;
 }
 
-/// The state is large: blocks that leave it alone are spared the copy.
+/// The state is large, so blocks that do not change it are not copied.
 void Executor::keep_state() {
-    if (!isStateKept_) {
+    if (!state_kept_) {
         before_ = state;
-        isStateKept_ = true;
+        state_kept_ = true;
     }
 }
 
@@ -189,7 +188,7 @@ void Executor::commit() {
 }
 
 void Executor::rollback() {
-    if (isStateKept_) {
+    if (state_kept_) {
         state = before_;
     }
     block_codes = codes_before_;
@@ -214,9 +213,9 @@ void Executor::flush(Canon &target) {
 void Executor::abort_block() {
     remaps.drop_interrupted();
     outcome = Outcome::OK;
-    awaited.isProbe = awaited.isInput = false;
+    awaited.isProbe = awaited.is_input = false;
     state.spline.order = 0;
-    isStateKept_ = false;
+    state_kept_ = false;
     canon.clear();
     state.comp.forget_move();
     lathe.forget_roughing();
@@ -229,10 +228,10 @@ void Executor::push_call() {
     saved_modes.push_call();
 }
 
-/// Fanuc-style calls have no arguments: #1 to #30 are the caller's own.
-bool Executor::pop_call(bool isFanuc) {
+/// Fanuc-style calls have no arguments: #1 to #30 belong to the caller.
+bool Executor::pop_call(bool is_fanuc) {
     const std::optional<State> modes = saved_modes.pop_call();
-    parameters.pop_call(isFanuc);
+    parameters.pop_call(is_fanuc);
     remaps.end_above(saved_modes.depth());
     if (!modes) {
         return true;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Runs parsed blocks: owns the parts that codes work on, and hands them to the codes. Knows no code.
+// Runs parsed blocks: owns the objects that codes use and passes them to the codes. Independent of individual
+// codes.
 #pragma once
 
 #include <optional>
@@ -34,10 +35,10 @@ class ScriptNames {
     virtual std::optional<double> value_of(std::string_view name) = 0;
 };
 
-/// What is known of the block that runs.
+/// Data of the current block.
 struct RunningBlock {
     BlockValues values;
-    std::string comment;      ///< kept while there are remaps
+    std::string comment;      ///< kept only if there are remaps
     std::string script_text;  ///< the statements of its ;py, line
     int number = -1;          ///< its N word
 };
@@ -47,13 +48,13 @@ class Executor : public BuiltIns {
     Executor(World &world, ToolSource &tool_source, ParameterSource &source, const Settings &settings,
              Names &names);
 
-    /// Words, settings and comments of a block; then its codes. False after setting the fault. `line_text` is
-    /// looked at when the block has comments.
+    /// Runs words, settings and comments of a block; then its codes. False after setting the fault.
+    /// `line_text` is read if the block has comments.
     bool run(const BlockView &view, std::string_view line_text);
-    /// The rest of a block that a remapped code has interrupted.
+    /// Runs the rest of a block that a remapped code has interrupted.
     bool resume(const PendingBlock &pending);
 
-    // The parts. Each takes back what a block that fails has done to it; the state by a copy.
+    // The parts. Each can undo the changes of a failed block; the state by a copy.
     State state;
     Parameters parameters;
     ToolTable tools;
@@ -61,10 +62,10 @@ class Executor : public BuiltIns {
     SavedModes saved_modes;
     Remaps remaps;
     LatheCycles lathe;
-    // What a block leaves to who runs the program.
+    // Results of a block for the caller.
     Fault fault;
     Outcome outcome = Outcome::OK;
-    FanucCall fanuc_call;  ///< of the M98 that the outcome is about
+    FanucCall fanuc_call;  ///< the M98 of the outcome
     Awaited awaited;
     BlockPlace block_place;
     ReturnValue returned;
@@ -73,42 +74,42 @@ class Executor : public BuiltIns {
 
     Evaluator &evaluator() { return evaluator_; }
     const World &world() const { return machine_.world; }
-    /// The statements of the ;py, line that the outcome is about.
+    /// Statements of the ;py, line of the outcome.
     const std::string &script_text() const { return block_.script_text; }
 
-    /// Remembers state and queue, so that rollback() can undo the block; commit() keeps what it did.
+    /// Saves state and queue, so that rollback() can undo the block; commit() keeps its changes.
     void begin_block();
-    /// The same for a block that may change no state: whoever changes it calls keep_state() before.
+    /// As begin_block() for a block that may change no state: code that changes it calls keep_state() first.
     void begin_light_block();
     void keep_state();
     void commit();
     void rollback();
     /// Replays the queued calls that no later block can change.
     void flush(Canon &target);
-    /// After an abort: nothing waits any more.
+    /// After an abort: clears everything that waits.
     void abort_block();
 
-    /// New local names and modes of its own for a subroutine; back to the caller's. pop_call() restores the
-    /// modes that M73 saved.
+    /// New local names and modes for a subroutine; pop_call() returns to the caller's and restores the modes
+    /// that M73 saved.
     void push_call();
-    bool pop_call(bool isFanuc);
-    /// Back to `depth` calls, without restoring what M73 saved.
+    bool pop_call(bool is_fanuc);
+    /// Returns to `depth` calls, without restoring the modes that M73 saved.
     void drop_calls(std::size_t depth = 0);
 
     /// Announces the state to the canon, as at the start of a program.
     void announce();
-    /// Offsets, spindles' speeds and switches once more: the canon has lost some of them.
+    /// Announces offsets, spindle speeds and switches again: the canon may have lost some of them.
     void announce_modes();
-    /// Takes positions, tools and switches from the machine.
+    /// Reads positions, tools and switches from the machine.
     void synch();
     ActiveCodes active_codes() const {
         return detail::active_codes(state, parameters, block_codes, block_place.sequence);
     }
 
-    // exec_outside.cc: what programs and scripts read.
+    // exec_outside.cc: values that programs and scripts read.
     AttributeSources attribute_sources();
     void set_script_names(ScriptNames *names) { script_names_ = names; }
-    /// INI values that the program has asked for, as names of parameters.
+    /// INI values that the program has read, as names of parameters.
     const std::set<std::string, std::less<>> &ini_names_read() const { return ini_names_read_; }
     bool isBuiltInName(std::string_view name) const override;
     std::optional<double> built_in(std::string_view name) const override;
@@ -127,10 +128,10 @@ class Executor : public BuiltIns {
     RunningBlock block_;
     BlockSettings settings_;
     AxisCheck axis_check_;
-    std::vector<NurbsPoint> control_points_;  ///< of the NURBS that is open
+    std::vector<NurbsPoint> control_points_;  ///< control points of the open NURBS
     BlockCodes codes_before_;
-    State before_;  ///< as the block found it, once keep_state() was called for it
-    bool isStateKept_ = false;
+    State before_;  ///< state before the block, saved by keep_state()
+    bool state_kept_ = false;
     ScriptNames *script_names_ = nullptr;
     mutable std::set<std::string, std::less<>> ini_names_read_;
 };

@@ -17,19 +17,18 @@ constexpr int AXES_OF_POSE = geometry::AXIS_COUNT;
 using Sources = KeptSources;
 using Reader = double (*)(const Sources &sources);
 
-double flag(bool isSet) {
-    return isSet ? 1.0 : 0.0;
+double flag(bool set) {
+    return set ? 1.0 : 0.0;
 }
 
-/// The number of the pocket in which the entry at `index` is kept, -1 for none; 0 is the spindle of a random
-/// changer.
+/// Pocket number of the entry at `index`, -1 for none; 0 is the spindle of a random changer.
 double pocket_at(const Sources &e, int index) {
     if (e.tools == nullptr || index < 0 || index >= e.tools->count()) {
         return index;
     }
     const ToolEntry entry = e.tools->entry(index);
-    const bool isSpindle = index == 0;
-    return isSpindle ? (e.tools->isRandom() && entry.toolno >= 0 ? 0 : -1) : entry.pocketno;
+    const bool is_spindle = index == 0;
+    return is_spindle ? (e.tools->isRandom() && entry.toolno >= 0 ? 0 : -1) : entry.pocketno;
 }
 
 struct Row {
@@ -41,9 +40,9 @@ const SpindleState &spindle(const Sources &e) {
     return e.state.spindles[static_cast<std::size_t>(e.state.active_spindle)];
 }
 
-constexpr double VERSION_MAJOR = 2.9, VERSION_MINOR = 0.0;  // of the dialect
+constexpr double VERSION_MAJOR = 2.9, VERSION_MINOR = 0.0;  // version of the dialect
 
-// Name and where its value is.
+// Name and location of the value.
 constexpr Row ROWS[] = {
     {"_vmajor", [](const Sources &) { return VERSION_MAJOR; }},
     {"_vminor", [](const Sources &) { return VERSION_MINOR; }},
@@ -54,8 +53,8 @@ constexpr Row ROWS[] = {
     {"_metric", [](const Sources &e) { return flag(e.state.units == LengthUnits::MM); }},
     {"_metric_machine", [](const Sources &e) { return flag(e.world.machine_units() == LengthUnits::MM); }},
     {"_imperial", [](const Sources &e) { return flag(e.state.units == LengthUnits::INCH); }},
-    {"_absolute", [](const Sources &e) { return flag(!e.state.isIncremental); }},
-    {"_incremental", [](const Sources &e) { return flag(e.state.isIncremental); }},
+    {"_absolute", [](const Sources &e) { return flag(!e.state.incremental); }},
+    {"_incremental", [](const Sources &e) { return flag(e.state.incremental); }},
     {"_inverse_time", [](const Sources &e) { return flag(e.state.feed_mode == FeedMode::INVERSE_TIME); }},
     {"_units_per_minute",
      [](const Sources &e) { return flag(e.state.feed_mode == FeedMode::UNITS_PER_MINUTE); }},
@@ -64,21 +63,21 @@ constexpr Row ROWS[] = {
     {"_coord_system",
      [](const Sources &e) { return static_cast<double>(coordinate_system_code(e.state.g5x_index)); }},
     {"_tool_offset", [](const Sources &e) { return flag(e.state.tool.offset_code != 490); }},
-    {"_retract_r_plane", [](const Sources &e) { return flag(e.state.isRetractToR); }},
-    {"_retract_old_z", [](const Sources &e) { return flag(!e.state.isRetractToR); }},
-    {"_spindle_rpm_mode", [](const Sources &e) { return flag(!spindle(e).isConstantSurface); }},
-    {"_spindle_css_mode", [](const Sources &e) { return flag(spindle(e).isConstantSurface); }},
-    {"_ijk_absolute_mode", [](const Sources &e) { return flag(e.state.isCentreAbsolute); }},
+    {"_retract_r_plane", [](const Sources &e) { return flag(e.state.retract_to_r); }},
+    {"_retract_old_z", [](const Sources &e) { return flag(!e.state.retract_to_r); }},
+    {"_spindle_rpm_mode", [](const Sources &e) { return flag(!spindle(e).is_constant_surface); }},
+    {"_spindle_css_mode", [](const Sources &e) { return flag(spindle(e).is_constant_surface); }},
+    {"_ijk_absolute_mode", [](const Sources &e) { return flag(e.state.centre_absolute); }},
     {"_lathe_diameter_mode", [](const Sources &e) { return flag(e.state.isDiameter); }},
     {"_lathe_radius_mode", [](const Sources &e) { return flag(!e.state.isDiameter); }},
     {"_spindle_on", [](const Sources &e) { return flag(spindle(e).direction != 0); }},
     {"_spindle_cw", [](const Sources &e) { return flag(spindle(e).direction > 0); }},
     {"_mist", [](const Sources &e) { return flag(e.state.isMist); }},
     {"_flood", [](const Sources &e) { return flag(e.state.isFlood); }},
-    {"_speed_override", [](const Sources &e) { return flag(spindle(e).isOverridden); }},
-    {"_feed_override", [](const Sources &e) { return flag(e.state.isFeedOverride); }},
-    {"_adaptive_feed", [](const Sources &e) { return flag(e.state.isAdaptive); }},
-    {"_feed_hold", [](const Sources &e) { return flag(e.state.isFeedHold); }},
+    {"_speed_override", [](const Sources &e) { return flag(spindle(e).overridden); }},
+    {"_feed_override", [](const Sources &e) { return flag(e.state.is_feed_override); }},
+    {"_adaptive_feed", [](const Sources &e) { return flag(e.state.adaptive); }},
+    {"_feed_hold", [](const Sources &e) { return flag(e.state.is_feed_hold); }},
     {"_feed", [](const Sources &e) { return e.state.feed; }},
     {"_rpm", [](const Sources &e) { return spindle(e).speed; }},
     {"_current_tool", [](const Sources &e) { return static_cast<double>(e.state.tool.in_spindle); }},
@@ -86,8 +85,8 @@ constexpr Row ROWS[] = {
     {"_selected_tool", [](const Sources &e) { return static_cast<double>(e.state.tool.selected); }},
     {"_selected_pocket", [](const Sources &e) { return pocket_at(e, e.state.tool.selected_index); }},
     {"_value", [](const Sources &e) { return e.returned.value; }},
-    {"_value_returned", [](const Sources &e) { return flag(e.returned.isSet); }},
-    {"_task", [](const Sources &e) { return flag(e.isTask); }},
+    {"_value_returned", [](const Sources &e) { return flag(e.returned.set); }},
+    {"_task", [](const Sources &e) { return flag(e.is_task); }},
     {"_call_level", [](const Sources &e) { return static_cast<double>(e.place.call_level); }},
     {"_remap_level", [](const Sources &e) { return static_cast<double>(e.running_remaps); }},
 };
@@ -103,13 +102,13 @@ const Row *find_row(std::string_view name) {
 
 /// "_x" to "_w": 0 to 8; "_abs_x" to "_abs_w": 9 to 17; -1 otherwise.
 int position_index(std::string_view name) {
-    const bool isMachine = name.starts_with("_abs_");
-    const std::string_view axis = name.substr(isMachine ? 5 : 1);
+    const bool is_machine = name.starts_with("_abs_");
+    const std::string_view axis = name.substr(is_machine ? 5 : 1);
     if (axis.size() != 1) {
         return -1;
     }
     const int index = geometry::axis_of_letter(axis[0]);
-    return index < 0 ? -1 : index + (isMachine ? AXES_OF_POSE : 0);
+    return index < 0 ? -1 : index + (is_machine ? AXES_OF_POSE : 0);
 }
 
 Pose on_machine(const Sources &sources) {

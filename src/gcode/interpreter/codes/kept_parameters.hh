@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Parameters that the interpreter keeps itself: #<_name>, #5021 to #5029 and #5400 to #5428.
+// Parameters that the interpreter computes itself: #<_name>, #5021 to #5029 and #5400 to #5428.
 #pragma once
 
 #include <optional>
@@ -15,28 +15,28 @@
 
 namespace mw::gcode::detail {
 
-/// What they read.
+/// Objects that the values are read from.
 struct KeptSources {
     const State &state;
     const ReturnValue &returned;
     const BlockPlace &place;
-    const Parameters &parameters;  ///< has what the state does not tell
+    const Parameters &parameters;  ///< values that are not in the state
     const World &world;
-    Pose position;  ///< of the tool, compensation included [program units, degrees]
+    Pose position;  ///< tool position including compensation [program units, degrees]
     int running_remaps = 0;
-    bool isTask = false;
-    const ToolTable *tools = nullptr;  ///< without it pockets are told as places in the table
+    bool is_task = false;
+    const ToolTable *tools = nullptr;  ///< without it pockets are reported as indices in the table
 };
 
 bool isKeptName(std::string_view name);
 /// Nothing when there is no such name.
 std::optional<double> kept_value(std::string_view name, const KeptSources &sources);
-/// `number` as isBuiltInNumber() has it.
+/// `number` must satisfy isBuiltInNumber().
 double kept_value(int number, const KeptSources &sources);
 /// All names, sorted.
 std::vector<std::string> kept_names();
 
-/// Ten times the G code of a coordinate system (from 1).
+/// Ten times the G code number of a coordinate system (from 1).
 constexpr int coordinate_system_code(int index) {
     constexpr int LAST_WHOLE = 6, G53 = 530, BEFORE_G59_1 = 584;
     return index <= LAST_WHOLE ? G53 + 10 * index : BEFORE_G59_1 + index;

@@ -19,7 +19,7 @@ struct GroupNumber {
     Phase phase;
 };
 
-/// Modal groups that a remapped code may have, by the numbers of the manual.
+/// Modal groups that a remapped code may have, in the manual's numbering.
 constexpr GroupNumber GROUPS[] = {
     {'g', 1, Group::MOTION, Phase::MOTION},
     {'m', 4, Group::STOP, Phase::STOP},
@@ -32,14 +32,14 @@ constexpr GroupNumber GROUPS[] = {
 };
 constexpr int DEFAULT_G_GROUP = 1, DEFAULT_M_GROUP = 10;
 
-/// Codes of the dialect that may be given another meaning.
+/// Codes of the dialect that may be remapped.
 constexpr int REMAPPABLE_M[] = {0, 1, 6, 7, 8, 9, 60, 61, 62, 63, 64, 65, 66, 67, 68};
 
 bool isWordCode(char letter) {
     return letter == 't' || letter == 's' || letter == 'f';
 }
 
-/// Reads the parts of one line; errors point into it.
+/// Reads the parts of one line; errors have its columns.
 class Reader {
   public:
     explicit Reader(const RemapLine &line) : line_(line) {}
@@ -61,7 +61,7 @@ class Reader {
 
     const RemapLine &line_;
     std::size_t position_ = 0;
-    bool hasGroup_ = false;
+    bool has_group_ = false;
     Remap out_;
 };
 
@@ -89,8 +89,8 @@ Result<> Reader::read_code(std::string_view word) {
         return {};
     }
     const auto number = word.empty() ? std::nullopt : parse_double(word.substr(1));
-    const bool isCode = (out_.letter == 'g' || out_.letter == 'm') && number && *number >= 0.0;
-    if (!isCode) {
+    const bool is_code = (out_.letter == 'g' || out_.letter == 'm') && number && *number >= 0.0;
+    if (!is_code) {
         return error("a code such as M400, G88.1, T, S or F must come first", offset_of(word));
     }
     const double scaled = *number * (out_.letter == 'g' ? 10.0 : 1.0);
@@ -99,11 +99,11 @@ Result<> Reader::read_code(std::string_view word) {
         return error("the number must be below 1000 for M, below 100 and with one decimal for G",
                      offset_of(word));
     }
-    const bool isUser = out_.letter == 'm' && out_.number >= 100;
-    const bool isAllowed =
-        isUser || find_code(out_.letter, out_.number) == nullptr ||
+    const bool is_user = out_.letter == 'm' && out_.number >= 100;
+    const bool allowed =
+        is_user || find_code(out_.letter, out_.number) == nullptr ||
         (out_.letter == 'm' && std::ranges::find(REMAPPABLE_M, out_.number) != std::end(REMAPPABLE_M));
-    if (!isAllowed) {
+    if (!allowed) {
         out_.refusal =
             fmt::format("{}: REMAP={}: {} has a meaning that cannot be changed; the line has no effect",
                         line_.place.str(), line_.text, out_.name);
@@ -117,21 +117,21 @@ Result<> Reader::read_argspec(std::string_view text, std::size_t offset) {
         const char c = text[i];
         const char lower = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
         if (c == '@') {
-            out_.isPositional = true;
+            out_.positional = true;
         } else if (c == '^') {
-            out_.needsSpeed = true;
+            out_.needs_speed = true;
         } else if (c == '>') {
-            out_.needsFeed = true;
+            out_.needs_feed = true;
         } else if (lower == 'n') {
-            out_.wantsLine = true;
+            out_.wants_line = true;
         } else if (lower >= 'a' && lower <= 'z' && lower != 'g' && lower != 'm' && lower != 'o') {
-            const auto isSame = [lower](const RemapWord &word) { return word.letter == lower; };
-            if (std::ranges::any_of(out_.words, isSame)) {
+            const auto same = [lower](const RemapWord &word) { return word.letter == lower; };
+            if (std::ranges::any_of(out_.words, same)) {
                 return error(fmt::format("argspec names the word {} twice", c), offset + i);
             }
             out_.words.push_back({lower, c != lower});
         } else {
-            return error(fmt::format("'{}' cannot stand in an argspec", c), offset + i,
+            return error(fmt::format("'{}' is not allowed in an argspec", c), offset + i,
                          "letters of words (upper case: required), @ ^ > and n can");
         }
     }
@@ -144,7 +144,7 @@ Result<> Reader::set_group(int number, std::size_t offset) {
             out_.code.group = row.group;
             out_.code.phase = row.phase;
             out_.modal_group = number;
-            hasGroup_ = true;
+            has_group_ = true;
             return {};
         }
     }
@@ -158,7 +158,7 @@ Result<> Reader::read_group(std::string_view text, std::size_t offset) {
         return error(fmt::format("modalgroup needs a number, not '{}'", text), offset);
     }
     if (isWordCode(out_.letter)) {
-        return {};  // T, S and F have a place of their own
+        return {};  // T, S and F have their own phase
     }
     return set_group(static_cast<int>(*number), offset);
 }
@@ -198,17 +198,17 @@ Result<> Reader::finish() {
     }
     const Code *existing =
         isWordCode(out_.letter) ? find_word_code(out_.letter) : find_code(out_.letter, out_.number);
-    if (!hasGroup_ && existing != nullptr) {
+    if (!has_group_ && existing != nullptr) {
         out_.code.group = existing->group;
         out_.code.phase = existing->phase;
-    } else if (!hasGroup_) {
+    } else if (!has_group_) {
         if (auto done = set_group(out_.letter == 'g' ? DEFAULT_G_GROUP : DEFAULT_M_GROUP, 0); !done) {
             return done;
         }
     }
     out_.code.letter = out_.letter;
     out_.code.number = out_.number;
-    // A script reads the words of its block itself, so any may stand there; axis words only beside a G code.
+    // A script reads the words of its block itself, so any word is permitted; axis words only with a G code.
     out_.code.words = (bit_of(LETTER_COUNT) - 1) & ~AXES;
     out_.code.usesAxes = out_.letter == 'g';
     return {};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Codes whose meaning a subroutine or a script gives: [RS274NGC]REMAP.
+// Codes that are remapped to a subroutine or a script: [RS274NGC]REMAP.
 #pragma once
 
 #include <string>
@@ -13,41 +13,41 @@
 
 namespace mw::gcode::detail {
 
-/// A word that the argspec names.
+/// A word of the argspec.
 struct RemapWord {
     char letter = 'p';  ///< lower case
-    bool isRequired = false;
+    bool required = false;
 };
 
 struct Remap {
     char letter = 'g';
     int number = 0;    ///< ten times the number for G
     std::string name;  ///< in upper case: "M400", "G88.1"
-    Code code;         ///< its row
+    Code code;         ///< row in the table of codes
     int modal_group = 0;
     std::string ngc;               ///< name of the subroutine; or
-    std::string function;          ///< of the script's function (py=, python=)
+    std::string function;          ///< or the script's function (py=, python=)
     std::string prolog, epilog;    ///< script functions around the subroutine
     std::string argspec;           ///< as written
     std::vector<RemapWord> words;  ///< in the order of the argspec
-    bool isPositional = false;     ///< @: words become #1, #2, ...
-    bool needsFeed = false;        ///< >
-    bool needsSpeed = false;       ///< ^
-    bool wantsLine = false;        ///< n: the number of the line becomes #<n>
+    bool positional = false;       ///< @: words become #1, #2, ...
+    bool needs_feed = false;       ///< >
+    bool needs_speed = false;      ///< ^
+    bool wants_line = false;       ///< n: the line number becomes #<n>
     SourcePlace place;
     std::string refusal;  ///< why the line has no effect
 
     bool needsScripts() const { return !function.empty() || !prolog.empty() || !epilog.empty(); }
-    /// What stands in messages as the block that failed.
+    /// Name of the procedure in messages.
     const std::string &target() const { return ngc.empty() ? function : ngc; }
     ScriptRemap described() const;
 };
 
 /// A block that waits for the subroutine of one of its codes.
 struct PendingBlock {
-    const Remap *remap = nullptr;  ///< of that code
+    const Remap *remap = nullptr;  ///< remap of that code
     BlockValues values;
-    std::size_t next = 0;  ///< the code to go on with
+    std::size_t next = 0;  ///< index of the code to continue with
     std::string comment;
     int line = 0, sequence = -1;
 };

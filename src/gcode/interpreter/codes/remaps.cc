@@ -65,7 +65,7 @@ std::string Remaps::recursion_text(char letter, int number) const {
     for (const Running &running : running_) {
         const Remap &remap = *running.remap;
         if (remap.letter == letter && remap.number == number) {
-            return fmt::format("{} stands in its own procedure: it has no meaning but the remapped one",
+            return fmt::format("{} is used in its own procedure, but it only has the remapped meaning",
                                remap.name);
         }
     }
@@ -85,21 +85,21 @@ std::string missing_words(const PendingBlock &block, const State &state) {
         missing += what;
     };
     for (const RemapWord &word : block.remap->words) {
-        if (word.isRequired && !block.values.has(word.letter)) {
+        if (word.required && !block.values.has(word.letter)) {
             const char upper = static_cast<char>(std::toupper(word.letter));
             add({&upper, 1});
         }
     }
-    if (block.remap->needsFeed && state.feed <= 0.0) {
+    if (block.remap->needs_feed && state.feed <= 0.0) {
         add("F>0");
     }
-    if (block.remap->needsSpeed && state.spindles[0].speed <= 0.0) {
+    if (block.remap->needs_speed && state.spindles[0].speed <= 0.0) {
         add("S>0");
     }
     return missing;
 }
 
-void pass_words(const PendingBlock &block, bool isCountNamed, Parameters &parameters, Names &names) {
+void pass_words(const PendingBlock &block, bool count_named, Parameters &parameters, Names &names) {
     const Remap &remap = *block.remap;
     for (int i = 1; i <= ARGUMENT_COUNT; ++i) {
         parameters.set(i, 0.0);
@@ -110,16 +110,16 @@ void pass_words(const PendingBlock &block, bool isCountNamed, Parameters &parame
             continue;
         }
         const double value = block.values.at(word.letter);
-        if (remap.isPositional) {
+        if (remap.positional) {
             parameters.set(++position, value);
         } else {
             parameters.set_named(names.intern(std::string(1, word.letter)), false, value);
         }
     }
-    if (remap.wantsLine) {
+    if (remap.wants_line) {
         parameters.set_named(names.intern("n"), false, block.line);
     }
-    if (isCountNamed && remap.isPositional) {
+    if (count_named && remap.positional) {
         parameters.set_named(names.intern("n_args"), false, position);
     }
     parameters.commit();

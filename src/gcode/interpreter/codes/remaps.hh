@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Remapped codes while programs run: the REMAP lines, the procedures that run, and the block that one has
+// Remapped codes while programs run: the REMAP lines, the running procedures, and the block that one has
 // interrupted.
 #pragma once
 
@@ -29,25 +29,25 @@ class Remaps {
     const std::vector<Remap> &all() const { return all_; }
     /// Why lines have no effect.
     const std::vector<std::string> &refused() const { return refused_; }
-    /// The row of a remapped code; null for any other, and while the code's own procedure runs.
+    /// The row of a remapped code; null for any other code, and while the code's own procedure runs.
     const Code *find(char letter, int number) const;
 
-    /// The procedure of `remap` begins at a level of call (from 1).
+    /// The procedure of `remap` begins at a call level (from 1).
     void begin(const Remap &remap, std::size_t level) { running_.push_back({&remap, level, 0}); }
-    /// Ends those that began above a level of call.
+    /// Ends the procedures above a call level.
     void end_above(std::size_t level);
     bool isAnyRunning() const { return !running_.empty(); }
     int count_running() const { return static_cast<int>(running_.size()); }
-    /// A code is executed with its own meaning: counted for the procedures that give it another.
+    /// Counts a code that is executed with its built-in meaning, for the procedures that remap it.
     void count_builtin(const Code &code);
-    /// How often the procedure of the `nth` running remap (from 1) has used its code's own meaning.
+    /// How often the procedure of the `nth` running remap (from 1) has used the built-in meaning of its code.
     int builtin_uses(int nth) const { return running_[static_cast<std::size_t>(nth) - 1].builtins; }
-    /// Why a code means nothing although it is remapped; empty when that is not the reason.
+    /// Why a remapped code has no meaning here; empty when that is not the reason.
     std::string recursion_text(char letter, int number) const;
 
-    /// A block has come to a remapped code.
+    /// A block has reached a remapped code.
     void interrupt(PendingBlock block) { interrupted_ = std::move(block); }
-    /// That block, to be run on after the procedure.
+    /// That block, to continue after the procedure.
     PendingBlock take_interrupted();
     void drop_interrupted() { interrupted_.reset(); }
 
@@ -65,10 +65,9 @@ class Remaps {
     std::optional<PendingBlock> interrupted_;
 };
 
-/// What the argspec of the remapped code requires and the block lacks, with commas; empty when nothing is
-/// missing.
+/// Words that the argspec requires and the block lacks, separated by commas; empty when none is missing.
 std::string missing_words(const PendingBlock &block, const State &state);
-/// Words of the block become local names of the procedure, or #1, #2, ... in the order of the argspec.
-void pass_words(const PendingBlock &block, bool isCountNamed, Parameters &parameters, Names &names);
+/// Passes words of the block as local names of the procedure, or as #1, #2, ... in the order of the argspec.
+void pass_words(const PendingBlock &block, bool count_named, Parameters &parameters, Names &names);
 
 }  // namespace mw::gcode::detail

@@ -8,7 +8,7 @@ namespace mw::gcode::detail {
 std::optional<State> SavedModes::pop_call() {
     std::optional<State> out;
     const Level &level = levels_.back();
-    if (level.modes && level.isForReturn) {
+    if (level.modes && level.for_return) {
         out = level.modes;
     }
     levels_.pop_back();
@@ -45,7 +45,7 @@ void SavedModes::rollback() {
 int SavedModes::status(std::size_t level) const {
     constexpr int SAVED = 1, FOR_RETURN = 2;
     const Level &at = levels_[level];
-    return (at.modes ? SAVED : 0) | (at.isForReturn ? FOR_RETURN : 0);
+    return (at.modes ? SAVED : 0) | (at.for_return ? FOR_RETURN : 0);
 }
 
 }  // namespace mw::gcode::detail

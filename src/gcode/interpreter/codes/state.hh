@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// All that a program's next block depends on, but parameters and calls. Copied before each block, so that a
-// block that fails can be taken back.
+// Everything that the next block of a program depends on, except parameters and calls. Copied before each
+// block, so that a failed block can be undone.
 #pragma once
 
 #include <array>
@@ -19,43 +19,43 @@ inline constexpr int MOTION_NONE = 800;  // G80
 struct SpindleState {
     double speed = 0;   ///< [rev/min, or surface feet or metres per minute under G96]
     int direction = 0;  ///< +1 clockwise, -1 counterclockwise, 0 stopped
-    bool isConstantSurface = false;
+    bool is_constant_surface = false;
     double css_max_rpm = 0;
-    bool isOverridden = true;
+    bool overridden = true;
 
     bool operator==(const SpindleState &) const = default;
 };
 
-/// What canned cycles remember from one block to the next.
+/// Values that canned cycles keep between blocks.
 struct CycleWords {
     double bottom = 0, r = 0, p = 0, q = 0, i = 0, j = 0, k = 0;
-    double initial = 0;         ///< along the tool axis, where the first cycle began
-    bool isRunning = false;     ///< the block before was the same cycle
-    bool hasClearance = false;  ///< P of G73 and G83: how far above the hole's bottom a peck begins
+    double initial = 0;          ///< position along the tool axis where the first cycle began
+    bool running = false;        ///< the previous block was the same cycle
+    bool has_clearance = false;  ///< P of G73 and G83: distance from the hole's bottom at which a peck begins
 
     bool operator==(const CycleWords &) const = default;
 };
 
-/// The tools that the program has chosen and loaded.
+/// The selected tool and the loaded tool.
 struct ToolModes {
     int selected = 0;         ///< the last T
-    int selected_index = -1;  ///< its place in the tool table; -1 none selected
+    int selected_index = -1;  ///< index in the tool table; -1 none selected
     int in_spindle = 0;
-    int index = 0;        ///< its place in the tool table
+    int index = 0;        ///< index in the tool table
     Pose offset;          ///< of the tool in the spindle [machine units]
     double diameter = 0;  ///< [machine units]
     double frontangle = 0, backangle = 0;
     int orientation = 0;
-    int offset_code = 490;  ///< ten times the G code that set the offset in force
+    int offset_code = 490;  ///< ten times the G code that set the active offset
 
     bool operator==(const ToolModes &) const = default;
 };
 
-/// What splines remember from one block to the next.
+/// Values that splines keep between blocks.
 struct SplineModes {
-    Point out;              ///< where a G5 without I and J leaves its start to [program units]
-    int order = 0;          ///< of the NURBS between G5.2 and G5.3; 0: none is open
-    std::size_t count = 0;  ///< its control points so far
+    Point out;      ///< first control point of a G5 without I and J, relative to its start [program units]
+    int order = 0;  ///< order of the NURBS between G5.2 and G5.3; 0: none is open
+    std::size_t count = 0;  ///< number of its control points so far
     Pose end;               ///< the last of them [program units]
 
     bool operator==(const SplineModes &) const = default;
@@ -69,26 +69,26 @@ struct State {
     int motion = MOTION_NONE;  ///< ten times the G code
     Plane plane = Plane::XY;
     LengthUnits units = LengthUnits::MM;
-    bool isIncremental = false;
-    bool isCentreAbsolute = false;  ///< G90.1
-    bool isDiameter = false;        ///< G7
-    bool isRetractToR = true;       ///< G99
+    bool incremental = false;
+    bool centre_absolute = false;  ///< G90.1
+    bool isDiameter = false;       ///< G7
+    bool retract_to_r = true;      ///< G99
     FeedMode feed_mode = FeedMode::UNITS_PER_MINUTE;
-    double feed = 0;                           ///< as F gave it [feed_units/min, 1/min, feed_units/rev]
-    LengthUnits feed_units = LengthUnits::MM;  ///< those that were active when F was given
+    double feed = 0;                           ///< as programmed [feed_units/min, 1/min, feed_units/rev]
+    LengthUnits feed_units = LengthUnits::MM;  ///< units that were active when F was programmed
     geometry::PathMode control = geometry::PathMode::BLEND;
     double tolerance = 0, naivecam = 0;  ///< G64 P and Q [program units]
     int active_spindle = 0;
     std::array<SpindleState, MAX_SPINDLES> spindles{};
     bool isMist = false, isFlood = false;
-    bool isFeedOverride = true, isFeedHold = false, isAdaptive = false;
+    bool is_feed_override = true, is_feed_hold = false, adaptive = false;
     ToolModes tool;
     Compensation comp;
     CycleWords cycle;
     SplineModes spline;
     Pose probed;  ///< [program units]
 
-    /// F in the units that are active: the speed of a move stays when G20 or G21 changes them.
+    /// F in the active units: the speed of a move does not change with G20 or G21.
     double feed_in_units() const {
         constexpr double MM_PER_INCH = 25.4;
         if (feed_units == units || feed_mode == FeedMode::INVERSE_TIME) {

@@ -7,12 +7,12 @@
 namespace mw::gcode::detail {
 namespace {
 
-/// The tool in the spindle, by its place in the table.
+/// Sets the tool in the spindle by its index in the table.
 void synch_tool(const MachineSnapshot &snapshot, const ToolTable &tools, ToolModes &tool) {
-    const bool isInTable = snapshot.current_pocket > 0 && snapshot.current_pocket < tools.count();
-    const bool isLoaded = snapshot.tool_in_spindle > 0;
-    const int found = isLoaded && !isInTable ? tools.index_of_tool(snapshot.tool_in_spindle) : -1;
-    if (isLoaded && isInTable) {
+    const bool in_table = snapshot.current_pocket > 0 && snapshot.current_pocket < tools.count();
+    const bool loaded = snapshot.tool_in_spindle > 0;
+    const int found = loaded && !in_table ? tools.index_of_tool(snapshot.tool_in_spindle) : -1;
+    if (loaded && in_table) {
         load_tool(tools, tool, snapshot.current_pocket);
     } else if (found > 0) {
         load_tool(tools, tool, found);
@@ -31,7 +31,7 @@ void announce(const Machine &machine, Parameters &parameters, State &state, Cano
     const int first = P_G5X + 20 * (state.g5x_index - 1);
     state.frame.g5x = parameter_pose(parameters, first, to_program);
     state.frame.rotation_deg = parameters.get(first + 9);
-    if (parameters.get(P_G92_APPLIED) != 0.0 && machine.settings.isG92PersistenceDisabled) {
+    if (parameters.get(P_G92_APPLIED) != 0.0 && machine.settings.g92_persistence_disabled) {
         parameters.set(P_G92_APPLIED, 0.0);
         set_parameter_pose(parameters, P_G92, {}, to_program);
     }
@@ -50,9 +50,9 @@ void announce_modes(const Machine &machine, const State &state, CanonQueue &cano
     canon.take(UseToolLengthOffset{state.frame.tool});
     for (int i = 0; i < machine.count_spindles(); ++i) {
         const SpindleState &spindle = state.spindles[static_cast<std::size_t>(i)];
-        canon.take(SetSpindleMode{i, spindle.isConstantSurface ? spindle.css_max_rpm : 0.0});
+        canon.take(SetSpindleMode{i, spindle.is_constant_surface ? spindle.css_max_rpm : 0.0});
         canon.take(SetSpindleSpeed{i, spindle.speed});
-        canon.take(SwitchSpeedOverride{i, spindle.isOverridden});
+        canon.take(SwitchSpeedOverride{i, spindle.overridden});
     }
 }
 
@@ -71,18 +71,18 @@ void synchronise(const Machine &machine, ToolTable &tools, Parameters &parameter
         parameters.set(P_PROBE_SUCCESS, snapshot.isProbeTripped ? 1.0 : 0.0);
         awaited.isProbe = false;
     }
-    if (awaited.isInput) {
+    if (awaited.is_input) {
         parameters.set(P_INPUT_RESULT, snapshot.isInputTimedOut ? -1.0 : snapshot.input_value);
-        awaited.isInput = false;
+        awaited.is_input = false;
     }
-    parameters.set(P_TOOL_FAULT, snapshot.isToolFaulted ? 1.0 : 0.0);
+    parameters.set(P_TOOL_FAULT, snapshot.tool_faulted ? 1.0 : 0.0);
     parameters.set(P_TOOL_FAULT_REASON, snapshot.tool_fault_reason);
     parameters.commit();
     state.isMist = snapshot.isMistOn;
     state.isFlood = snapshot.isFloodOn;
-    state.isFeedOverride = snapshot.isFeedOverrideEnabled;
-    state.isFeedHold = snapshot.isFeedHoldEnabled;
-    state.isAdaptive = snapshot.isAdaptiveFeedEnabled;
+    state.is_feed_override = snapshot.isFeedOverrideEnabled;
+    state.is_feed_hold = snapshot.isFeedHoldEnabled;
+    state.adaptive = snapshot.isAdaptiveFeedEnabled;
     for (int i = 0; i < machine.count_spindles(); ++i) {
         SpindleState &spindle = state.spindles[static_cast<std::size_t>(i)];
         spindle.direction = snapshot.spindle_direction[static_cast<std::size_t>(i)];

@@ -10,11 +10,11 @@ namespace mw::gcode::detail {
 namespace {
 
 constexpr long double DEGREE = std::numbers::pi_v<long double> / 180.0L;
-constexpr double LARGEST_REDUCED = 1e6;   // degrees; whole turns are taken off without rounding
-constexpr long double NEAR_ZERO = 1e-3L;  // where the rounding of the angle itself shows
+constexpr double LARGEST_REDUCED = 1e6;   // degrees; full revolutions are removed without rounding
+constexpr long double NEAR_ZERO = 1e-3L;  // where the rounding of the angle matters
 constexpr std::size_t TERMS = 10;         // up to 45 degrees the next one is below 1e-20
 
-/// Of the Taylor series in x^2: 1/first!, -1/(first + 2)!, ...
+/// Coefficients of the Taylor series in x^2: 1/first!, -1/(first + 2)!, ...
 constexpr std::array<long double, TERMS> taylor(int first) {
     std::array<long double, TERMS> out{};
     long double term = 1.0L;
@@ -26,7 +26,7 @@ constexpr std::array<long double, TERMS> taylor(int first) {
     return out;
 }
 
-/// Even and odd factors apart: neither has to wait for the other.
+/// Even and odd terms separately, so that they do not depend on each other.
 long double sum(const std::array<long double, TERMS> &factors, long double square) {
     static_assert(TERMS % 2 == 0);
     const long double fourth = square * square;
@@ -38,11 +38,12 @@ long double sum(const std::array<long double, TERMS> &factors, long double squar
     return even + odd * square;
 }
 
-/// The sine of the angle and so many right angles more.
+/// Sine of the angle plus `right_angles` * 90 degrees.
 long double sine(double degrees, int right_angles) {
     static constexpr auto SINE = taylor(1), COSINE = taylor(0);
     constexpr double RIGHT_ANGLE = 90.0;
-    constexpr double ROUNDER = 0x1.8p52;  // where doubles lie one apart: a sum with it is rounded to a whole
+    constexpr double ROUNDER =
+        0x1.8p52;  // doubles of this size are whole numbers, so a sum with it is rounded
     const double turns = (degrees / RIGHT_ANGLE + ROUNDER) - ROUNDER;
     const long double x = (degrees - turns * RIGHT_ANGLE) * DEGREE;
     const int quadrant = (static_cast<int>(turns) + right_angles) & 3;
@@ -69,8 +70,8 @@ double cosine_of_degrees(double degrees) {
 double tangent_of_degrees(double degrees) {
     const long double s = isReducible(degrees) ? sine(degrees, 0) : 0.0L;
     const long double c = isReducible(degrees) ? sine(degrees, 1) : 0.0L;
-    const bool isNear = std::fabs(s) < NEAR_ZERO || std::fabs(c) < NEAR_ZERO;
-    return static_cast<double>(isNear ? std::tan(degrees * DEGREE) : s / c);
+    const bool near = std::fabs(s) < NEAR_ZERO || std::fabs(c) < NEAR_ZERO;
+    return static_cast<double>(near ? std::tan(degrees * DEGREE) : s / c);
 }
 
 }  // namespace mw::gcode::detail

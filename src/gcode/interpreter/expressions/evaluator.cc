@@ -14,7 +14,7 @@ namespace {
 constexpr double DEGREE = std::numbers::pi / 180.0;
 
 constexpr double WHOLE_TOLERANCE = 1e-4;
-constexpr double EQUAL_TOLERANCE = 1e-4;  // of EQ and NE
+constexpr double EQUAL_TOLERANCE = 1e-4;  // for EQ and NE
 
 double modulo(double a, double b) {
     const double rest = std::fmod(a, b);
@@ -24,8 +24,8 @@ double modulo(double a, double b) {
 }  // namespace
 
 bool Evaluator::round_number(double index, int &number) {
-    const bool isInRange = index >= 1.0 - WHOLE_TOLERANCE && index < PARAMETER_COUNT - 0.5;
-    if (!isInRange || std::fabs(index - std::round(index)) > WHOLE_TOLERANCE) {
+    const bool in_range = index >= 1.0 - WHOLE_TOLERANCE && index < PARAMETER_COUNT - 0.5;
+    if (!in_range || std::fabs(index - std::round(index)) > WHOLE_TOLERANCE) {
         return false;
     }
     number = static_cast<int>(std::lround(index));
@@ -39,8 +39,8 @@ Evaluator::NameClass Evaluator::classify(NameId name) const {
     NameClass &known = classes_[name];
     if (known == NameClass::UNKNOWN) {
         const std::string &text = names_.text(name);
-        const bool isShared = !text.empty() && text[0] == '_';
-        known = !isShared                        ? NameClass::LOCAL
+        const bool shared = !text.empty() && text[0] == '_';
+        known = !shared                          ? NameClass::LOCAL
                 : built_ins_.isBuiltInName(text) ? NameClass::BUILT_IN
                                                  : NameClass::GLOBAL;
     }
@@ -85,7 +85,7 @@ bool Evaluator::value(const Arena &arena, NodeId id, double &out) const {
     case NodeKind::NAMED: {
         const std::optional<double> found = named(node.a);
         if (!found && !fault_.message.empty()) {
-            fault_.column = node.column;  // a script that gives the value has failed
+            fault_.column = node.column;  // a script that computes the value has failed
             return false;
         }
         if (!found) {
@@ -93,7 +93,7 @@ bool Evaluator::value(const Arena &arena, NodeId id, double &out) const {
             return fault_.set(fmt::format("Named parameter #<{}> not defined", name), node.column,
                               name.starts_with("_hal[")
                                   ? "there is no such pin, signal or parameter; checks and "
-                                    "rs274 run without HAL, EXISTS asks for it"
+                                    "rs274 run without HAL, EXISTS checks for it"
                                   : "");
         }
         out = *found;

@@ -23,8 +23,8 @@ void Parameters::set(int number, double value) {
     slot = value;
 }
 
-std::optional<double> Parameters::named(NameId id, bool isGlobal) const {
-    if (isGlobal) {
+std::optional<double> Parameters::named(NameId id, bool global) const {
+    if (global) {
         return id < globals_.size() ? globals_[id] : std::nullopt;
     }
     for (const Named &local : frames_[depth_ - 1].locals) {
@@ -35,9 +35,9 @@ std::optional<double> Parameters::named(NameId id, bool isGlobal) const {
     return std::nullopt;
 }
 
-void Parameters::set_named(NameId id, bool isGlobal, double value) {
-    record({isGlobal ? Kind::GLOBAL : Kind::LOCAL, 0, id, value});
-    if (isGlobal) {
+void Parameters::set_named(NameId id, bool global, double value) {
+    record({global ? Kind::GLOBAL : Kind::LOCAL, 0, id, value});
+    if (global) {
         if (id >= globals_.size()) {
             globals_.resize(id + 1);
         }
@@ -88,11 +88,11 @@ void Parameters::keep_aside(std::size_t count) {
     frames_[depth_ - 1].more.assign(first, first + static_cast<std::ptrdiff_t>(count) - ARGUMENT_COUNT);
 }
 
-void Parameters::pop_call(bool isSharing) {
-    record({isSharing ? Kind::POP_SHARING_CALL : Kind::POP_CALL});
+void Parameters::pop_call(bool sharing) {
+    record({sharing ? Kind::POP_SHARING_CALL : Kind::POP_CALL});
     const Frame &frame = frames_[--depth_];
     std::ranges::copy(frame.more, values_.begin() + 1 + ARGUMENT_COUNT);
-    if (!isSharing) {
+    if (!sharing) {
         std::copy_n(frame.arguments, ARGUMENT_COUNT, values_.begin() + 1);
     }
 }

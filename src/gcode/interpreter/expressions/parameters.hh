@@ -27,32 +27,32 @@ enum ParameterNumber : int {
     P_G92_APPLIED = 5210,
     P_G92 = 5211,
     P_COORDINATE_SYSTEM = 5220,
-    P_G5X = 5221,  // nine axes and the rotation, twenty apart, nine systems
+    P_G5X = 5221,  // nine systems, twenty apart: nine axes and the rotation
     P_INPUT_RESULT = 5399,
     P_TOOL_NUMBER = 5400,
     P_MACHINE_POSITION = 5021,  // nine, program units, read only
-    P_TOOL_OFFSET = 5401,       // nine, of the loaded tool in the table
+    P_TOOL_OFFSET = 5401,       // nine, of the loaded tool's table entry
     P_TOOL_DIAMETER = 5410,
     P_TOOL_FRONTANGLE = 5411,
     P_TOOL_BACKANGLE = 5412,
     P_TOOL_ORIENTATION = 5413,
     P_POSITION = 5420,     // nine, program units
-    P_BUILD_FIRST = 5400,  // from here to 5428 read only
+    P_BUILD_FIRST = 5400,  // 5400 to 5428 are read only
     P_BUILD_LAST = 5428,
-    P_DEBUG_SHOWN = 5599,        // 0: (debug,...) says nothing
+    P_DEBUG_SHOWN = 5599,        // 0: (debug,...) prints nothing
     P_TOOL_FAULT = 5600,         // 1 after the changer has reported a fault
     P_TOOL_FAULT_REASON = 5601,  // its pin toolchanger-reason
     P_VAR_FIRST = 31,            // kept in the parameter file
 };
 
-/// Numbers whose values the interpreter keeps itself.
+/// Parameters that the interpreter itself computes.
 constexpr bool isBuiltInNumber(int number) {
     constexpr int AXIS_NUMBERS = 9;
     return (number >= P_BUILD_FIRST && number <= P_BUILD_LAST) ||
            (number >= P_MACHINE_POSITION && number < P_MACHINE_POSITION + AXIS_NUMBERS);
 }
 
-/// One change of parameters, so that another set of them can follow. What is changed back is a change, too.
+/// One change of parameters, for repeating it on another set. An undo is also a change.
 struct ParameterChange {
     enum class Kind : std::uint8_t {
         NUMBER,         ///< `number` becomes `value`
@@ -83,7 +83,7 @@ class Parameters {
   public:
     Parameters();
 
-    /// All that the subroutine that runs can see.
+    /// Everything that the current subroutine can read.
     struct Values {
         std::vector<double> numbers;
         std::vector<std::optional<double>> globals;
@@ -96,47 +96,47 @@ class Parameters {
     }
 
     double get(int number) const { return values_[static_cast<std::size_t>(number)]; }
-    /// Sets and remembers the old value until commit().
+    /// Sets the value; keeps the old one until commit().
     void set(int number, double value);
 
     /// Named parameters: global (first character _) or of the innermost call.
-    std::optional<double> named(NameId id, bool isGlobal) const;
-    void set_named(NameId id, bool isGlobal, double value);
+    std::optional<double> named(NameId id, bool global) const;
+    void set_named(NameId id, bool global, double value);
 
-    /// Globals and names of the main program are not there any more.
+    /// Removes global names and names of the main program.
     void forget_names();
 
-    void push_call();  ///< new local names; #1 to #30 are kept aside
-    /// #1 and on of the call just made, for good: rollback() leaves them.
+    void push_call();  ///< new local names; saves #1 to #30
+    /// Sets #1 and following of the new call; rollback() does not undo it.
     void set_arguments(std::span<const double> given);
-    /// For the call just made: #31 to #count are kept aside, too.
+    /// For the new call: also saves #31 to #count.
     void keep_aside(std::size_t count);
-    /// Back to the caller's; #1 to #30 too unless `isSharing` them.
-    void pop_call(bool isSharing);
+    /// Returns to the caller's values, #1 to #30 too unless they are `sharing`.
+    void pop_call(bool sharing);
     int depth() const { return static_cast<int>(depth_); }
-    /// Names and values of a level of call (0: the main program), and of all globals.
+    /// Names and values of a call level (0: the main program), and of all globals.
     std::vector<std::pair<NameId, double>> locals(int level) const;
     std::vector<std::pair<NameId, double>> globals() const;
-    /// #1 to #30 as the caller of that level had them.
+    /// #1 to #30 of the caller of that level.
     std::array<double, ARGUMENT_COUNT> saved_arguments(int level) const;
 
     void commit() { log_.clear(); }
     void rollback();
 
-    /// Remembers changes from here on, for take_changes().
-    void record_changes(bool isRecorded) {
-        isRecorded_ = isRecorded;
+    /// Records changes from now on, for take_changes().
+    void record_changes(bool recorded) {
+        recorded_ = recorded;
         changes_.clear();
     }
-    /// The changes since the last call are added to `changes`, in their order.
+    /// Appends the changes since the last call to `changes`, in order.
     void take_changes(std::vector<ParameterChange> &changes);
-    /// Makes a change that another set of parameters has made. Not to be rolled back.
+    /// Applies a change of another set of parameters. Cannot be rolled back.
     void apply(const ParameterChange &change);
 
     Result<> load(const std::string &path);
-    /// The same for text in memory; `path` names it in errors. On an error nothing is changed.
+    /// Parses a text in memory; `path` names it in errors. An error changes nothing.
     Result<> parse(std::string_view text, const std::string &path);
-    /// As the file has it: the numbers that it had, and those that must be there.
+    /// Text of the parameter file: the numbers that it had, and the required ones.
     std::string text() const;
     Result<> save(const std::string &path) const;
 
@@ -144,7 +144,7 @@ class Parameters {
     struct Frame {
         std::vector<Named> locals;
         double arguments[ARGUMENT_COUNT] = {};
-        std::vector<double> more;  ///< the caller's #31 and on, for calls with more arguments
+        std::vector<double> more;  ///< the caller's #31 and following, for calls with more arguments
     };
     struct Undo {
         enum class Kind { NUMBER, GLOBAL, LOCAL } kind = Kind::NUMBER;
@@ -155,17 +155,17 @@ class Parameters {
 
     std::vector<double> values_;
     std::vector<std::optional<double>> globals_;  ///< by NameId
-    std::vector<Frame> frames_;  ///< those above depth_ wait for the next call, with their room
+    std::vector<Frame> frames_;                   ///< frames above depth_ keep their memory for the next call
     std::size_t depth_ = 1;
     void record(const ParameterChange &change) {
-        if (isRecorded_) {
+        if (recorded_) {
             changes_.push_back(change);
         }
     }
     void forget_local(NameId id);
 
     std::vector<Undo> log_;
-    bool isRecorded_ = false;
+    bool recorded_ = false;
     std::vector<ParameterChange> changes_;
     std::vector<int> file_numbers_;  ///< numbers that the parameter file had
 };

@@ -59,8 +59,8 @@ bool pass_definition(const OWord &oword, const FlowParts &parts) {
 
 bool pass_fanuc_label(const OWord &oword, const FlowParts &parts) {
     const Levels &levels = parts.levels;
-    const bool isInOther = levels.isInCall() && !levels.isIn(CallKind::FANUC) && !levels.isIn(CallKind::TEXT);
-    if (oword.kind == OKind::FANUC && isInOther) {
+    const bool in_other = levels.isInCall() && !levels.isIn(CallKind::FANUC) && !levels.isIn(CallKind::TEXT);
+    if (oword.kind == OKind::FANUC && in_other) {
         return parts.executor.fault.set(FANUC_TEXT, oword.column,
                                         called_from(levels.top().label, levels, parts.names));
     }
@@ -114,7 +114,7 @@ bool call_sub(const CallRequest &request, const FlowParts &parts) {
         executor.parameters.keep_aside(request.count);
     }
     executor.parameters.set_arguments(request.arguments());
-    if (parts.settings.isArgumentCountNamed) {
+    if (parts.settings.argument_count_named) {
         executor.parameters.set_named(parts.names.intern("n_args"), false, request.count);
     }
     executor.parameters.commit();
@@ -138,15 +138,15 @@ bool compute_return(const BlockView &view, const OWord &oword, const FlowParts &
                                      parts.names.text(call.label)),
                          oword.column);
     }
-    out.isSet = oword.value != NO_ID;
-    return !out.isSet || parts.executor.evaluator().value(*view.arena, oword.value, out.value);
+    out.set = oword.value != NO_ID;
+    return !out.set || parts.executor.evaluator().value(*view.arena, oword.value, out.value);
 }
 
 bool leave_call(const ReturnValue &value, const FlowParts &parts) {
     Executor &executor = parts.executor;
     Levels &levels = parts.levels;
     const Call call = levels.leave();
-    executor.returned = {value.isSet ? value.value : 0.0, value.isSet};
+    executor.returned = {value.set ? value.value : 0.0, value.set};
     if (!executor.pop_call(call.kind == CallKind::FANUC)) {
         return false;
     }
@@ -189,7 +189,7 @@ bool return_fanuc(const FlowParts &parts, LoopTurn &turn) {
     Levels &levels = parts.levels;
     Fault &fault = parts.executor.fault;
     if (levels.isIn(CallKind::TEXT)) {
-        return fault.set("M99 must stand in a subroutine, not in a block that a script executes");
+        return fault.set("M99 must be in a subroutine, not in a block that a script executes");
     }
     Call &call = levels.top();
     if (call.kind != CallKind::FANUC) {

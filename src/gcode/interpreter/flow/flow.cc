@@ -11,7 +11,7 @@
 namespace mw::gcode::detail {
 namespace {
 
-/// A line that begins with an O word, well-formed or not.
+/// A line that begins with an O word, valid or not.
 bool mentionsOWord(std::string_view line) {
     const std::size_t first = line.find_first_not_of(" \t/nN0123456789.");
     return first != std::string_view::npos && (line[first] == 'o' || line[first] == 'O');
@@ -83,7 +83,7 @@ Step Flow::step() {
         script_calls_.expect_sync(false);
     }
     if (levels_.isInCall() && levels_.top().isInScript()) {
-        isLineEmpty_ = false;
+        line_empty_ = false;
         return script_calls_.go_on(parts_) ? after_block() : fail_block();
     }
     const Place &here = levels_.here();
@@ -118,7 +118,7 @@ Step Flow::finish_mdi() {
 
 Step Flow::end_of_lines() {
     if (levels_.isIn(CallKind::TEXT)) {
-        levels_.leave();  // back to where the script was called
+        levels_.leave();  // returns to the line that called the script
         return Step::OK;
     }
     if (levels_.isMdi() && !levels_.isInCall()) {
@@ -130,7 +130,7 @@ Step Flow::end_of_lines() {
                                         : "File ended with no percent sign or program end");
 }
 
-/// The first % opens a program that begins with it, the second ends it. Any other is an error of its line.
+/// The first % opens a program that begins with it, the second ends it. Any other % is an error of its line.
 Step Flow::percent() {
     const Place &here = levels_.here();
     if (here.line == here.program->first_content_line()) {
@@ -158,12 +158,12 @@ Step Flow::run_line() {
     ++here.next;
     here.after = here.next;
     const Block &block = *view.block;
-    isLineEmpty_ = block.isPercent || (block.isDeletable && executor_.world().isBlockDeleteOn()) ||
-                   (block.word_count == 0 && block.setting_count == 0 && block.oword == NO_ID);
-    if (block.isPercent) {
+    line_empty_ = block.is_percent || (block.deletable && executor_.world().isBlockDeleteOn()) ||
+                  (block.word_count == 0 && block.setting_count == 0 && block.oword == NO_ID);
+    if (block.is_percent) {
         return percent();
     }
-    if (block.isDeletable && executor_.world().isBlockDeleteOn()) {
+    if (block.deletable && executor_.world().isBlockDeleteOn()) {
         return Step::OK;
     }
     return run_block(view);
@@ -173,35 +173,35 @@ Step Flow::run_block(const BlockView &view) {
     const Block &block = *view.block;
     const Place &here = levels_.here();
     executor_.fault.clear();
-    isContinuable_ = block.oword == NO_ID;
+    continuable_ = block.oword == NO_ID;
     const int sequence = block.isNumbered ? block.sequence : here.line;
     const int call_level = levels_.call_level();
     executor_.block_place = {levels_.isIn(CallKind::TEXT) ? levels_.top().reported_line : here.line, sequence,
                              call_level};
     executor_.begin_light_block();
     if (scripts_.isOpen()) {
-        executor_.keep_state();  // scripts change what they like
+        executor_.keep_state();  // scripts may change any state
     }
     if (block.error != NO_ID) {
         const SyntaxError &error = view.arena->errors[view.block->error];
-        isContinuable_ = isContinuable_ && !mentionsOWord(here.program->line_text(here.line));
+        continuable_ = continuable_ && !mentionsOWord(here.program->line_text(here.line));
         executor_.fault.set(error.message, error.column);
         return fail_block();
     }
     executor_.canon.enter_block(here.program, here.line, sequence, block.isNumbered, call_level);
     const std::string_view text = block.comment_count > 0 ? here.program->line_text(here.line) : "";
-    const bool isDone = block.oword != NO_ID ? run_oword(view) : executor_.run(view, text);
-    return isDone ? after_block() : fail_block();
+    const bool done = block.oword != NO_ID ? run_oword(view) : executor_.run(view, text);
+    return done ? after_block() : fail_block();
 }
 
-/// Keeps what the block did, then calls or ends what it asked for.
+/// Commits the block, then makes or ends the call that it requires.
 Step Flow::after_block() {
-    bool isDone = true;
-    while (isDone) {
+    bool done = true;
+    while (done) {
         const Outcome outcome = executor_.outcome;
         executor_.outcome = Outcome::OK;
         if (outcome != Outcome::CALL_FANUC && outcome != Outcome::PROFILE) {
-            parts_.commit();  // those two may still fail
+            parts_.commit();  // both may still fail
         }
         if (script_calls_.isEndDue() && scripts_.depth() == 0) {  // a script has ended the program
             script_calls_.expect_end(false);
@@ -215,11 +215,11 @@ Step Flow::after_block() {
             end_program();
             script_calls_.expect_end(scripts_.depth() > 0);
             return Step::PROGRAM_END;
-        case Outcome::SCRIPT: isDone = script_calls_.run_text_line(parts_, *view_); break;
-        case Outcome::CALL_FANUC: isDone = call_fanuc(parts_); break;
-        case Outcome::RETURN_FANUC: isDone = return_fanuc(); break;
-        case Outcome::REMAP: isDone = script_calls_.call_remap(parts_); break;
-        case Outcome::PROFILE: isDone = call_profile(parts_); break;
+        case Outcome::SCRIPT: done = script_calls_.run_text_line(parts_, *view_); break;
+        case Outcome::CALL_FANUC: done = call_fanuc(parts_); break;
+        case Outcome::RETURN_FANUC: done = return_fanuc(); break;
+        case Outcome::REMAP: done = script_calls_.call_remap(parts_); break;
+        case Outcome::PROFILE: done = call_profile(parts_); break;
         case Outcome::RESTART: levels_.here().next = 1; break;
         }
     }
@@ -240,8 +240,8 @@ void Flow::end_program() {
 
 bool Flow::run_oword(const BlockView &view) {
     const OWord &oword = view.arena->owords[view.block->oword];
-    const bool isStatic = oword.kind == OKind::CALL || oword.kind == OKind::RETURN || oword.label != NO_ID;
-    if (!isStatic) {
+    const bool is_static = oword.kind == OKind::CALL || oword.kind == OKind::RETURN || oword.label != NO_ID;
+    if (!is_static) {
         return executor_.fault.set("Only the label of a call can be computed", oword.column);
     }
     Place &here = levels_.here();
@@ -289,9 +289,9 @@ bool Flow::note_turn(const LoopTurn &turn) {
     if (budget_.isWatching()) {
         budget_.note_pass(pass);
     }
-    // Scripts and changed tool tables have states that are not seen here.
-    const bool isAllSeen = turn.isConditional && !scripts_.isOpen() && !executor_.tools.hasChanges();
-    if (!isAllSeen || !budget_.isRepeating(pass, executor_.state, executor_.parameters)) {
+    // Scripts and changed tool tables have state that is not compared here.
+    const bool all_seen = turn.conditional && !scripts_.isOpen() && !executor_.tools.hasChanges();
+    if (!all_seen || !budget_.isRepeating(pass, executor_.state, executor_.parameters)) {
         return true;
     }
     executor_.fault.line = turn.first;
@@ -307,11 +307,11 @@ Step Flow::fail_here(std::string message) {
     executor_.begin_block();
     executor_.fault = {};
     executor_.fault.set(std::move(message));
-    isContinuable_ = false;
+    continuable_ = false;
     return fail_block();
 }
 
-/// The outermost loop that has lately begun again is the one that does not end.
+/// The outermost loop that has recently restarted is the endless one.
 Step Flow::fail_budget() {
     Place &here = levels_.here();
     here.line = here.next;
@@ -319,9 +319,9 @@ Step Flow::fail_budget() {
     const std::span<const Call> calls = levels_.calls();
     std::optional<LoopPass> loop;
     for (std::size_t depth = 0; depth <= calls.size() && !loop; ++depth) {
-        const bool isInnermost = depth == calls.size();
-        loop = budget_.loop_around(isInnermost ? here.program : calls[depth].program, depth,
-                                   isInnermost ? here.next : calls[depth].line);
+        const bool innermost = depth == calls.size();
+        loop = budget_.loop_around(innermost ? here.program : calls[depth].program, depth,
+                                   innermost ? here.next : calls[depth].line);
     }
     const std::string taken = budget_.spend();
     if (loop && loop->depth < levels_.size()) {
@@ -337,7 +337,7 @@ Step Flow::fail_budget() {
     executor_.fault.hint =
         "correct the condition that ends it; if it is right, allow more statements (millwright check "
         "--statements N, 0 for any number)";
-    isContinuable_ = false;
+    continuable_ = false;
     executor_.fault.line = loop ? loop->first : 0;
     return fail_block();
 }
@@ -345,7 +345,7 @@ Step Flow::fail_budget() {
 Step Flow::fail_block() {
     executor_.rollback();
     const Fault &fault = executor_.fault;
-    if (fault.isProgramOver) {
+    if (fault.program_ended) {
         executor_.canon.take(Finish{});
         parts_.commit();
     }
@@ -361,7 +361,7 @@ Step Flow::fail_block() {
         error_.line_text = std::string(here.program->line_text(line));
     }
     error_.called_from = levels_.callers();
-    here.next = levels_.isInCall() ? here.next : here.after;  // a jump that failed half way is none
+    here.next = levels_.isInCall() ? here.next : here.after;  // ignores a jump that failed half-way
     unwind(script_calls_.nested_base());
     return Step::FAILED;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Which block is next: runs lines, and what their blocks ask for, on the levels of call.
+// Selects the next block: runs lines and the calls that their blocks require, on the call levels.
 #pragma once
 
 #include <memory>
@@ -25,19 +25,19 @@ class Flow {
     /// One line of the open file, or of a call made by MDI.
     Step step();
     Step execute(std::string_view text);
-    /// Back to the top level: the line after the outermost call is next.
+    /// Returns to the top level: the line after the outermost call is next.
     void abort();
 
     const diagnostics::Diagnostic &error() const { return error_; }
-    /// The block that failed did not decide which one is next: later ones can still be looked at.
-    bool isContinuable() const { return isContinuable_; }
+    /// The failed block did not decide which block is next, so later blocks can still be checked.
+    bool isContinuable() const { return continuable_; }
     const Levels &levels() const { return levels_; }
     const ProgramFiles &files() const { return files_; }
     const Scripts &scripts() const { return scripts_; }
     Scripts &scripts() { return scripts_; }
     LoopBudget &budget() { return budget_; }
-    /// The line that was read last has no words and no script.
-    bool isLineEmpty() const { return isLineEmpty_; }
+    /// The last line has no words and no script.
+    bool isLineEmpty() const { return line_empty_; }
 
     /// Opens the script host if it is needed; see Scripts::load().
     Result<> load_scripts();
@@ -54,18 +54,17 @@ class Flow {
     Step percent();
     Step finish_mdi();
     void end_program();
-    /// Drops all calls above `depth` without running what they would restore; suspended scripts among them
-    /// end.
+    /// Drops all calls above `depth` without restoring their modes; their suspended scripts end.
     void unwind(std::size_t depth = 0);
 
     bool run_oword(const BlockView &view);
     bool run_call(const BlockView &view, const OWord &oword);
     bool run_return(const BlockView &view, const OWord &oword);
     bool return_fanuc();
-    /// False when a loop begins again that will never end.
+    /// False when an endless loop restarts.
     bool note_turn(const LoopTurn &turn);
 
-    /// Runs a text and what it calls, on a level of its own. False: a waiting point is due.
+    /// Runs a text and its calls on a separate level. False: a waiting point is due.
     std::expected<bool, ScriptFault> execute_for_script(std::string_view text, int line);
     std::expected<bool, ScriptFault> run_nested(std::size_t base);
 
@@ -78,8 +77,8 @@ class Flow {
     LoopBudget budget_;
     const FlowParts parts_;
     std::unique_ptr<InterpreterView> view_;
-    bool isContinuable_ = false;
-    bool isLineEmpty_ = false;
+    bool continuable_ = false;
+    bool line_empty_ = false;
     diagnostics::Diagnostic error_;
 };
 

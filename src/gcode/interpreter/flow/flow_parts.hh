@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What a step of the flow works on.
+// Objects that a step of the flow uses.
 #pragma once
 
 #include "gcode/interpreter/codes/executor.hh"
@@ -23,9 +23,9 @@ struct FlowParts {
 
     JumpValues jump_values() const { return {executor.evaluator(), names, executor.fault}; }
     SubSearch search() const {
-        return {levels, files, names, settings.subroutine_path, executor.fault, scripts.limits().isConfined};
+        return {levels, files, names, settings.subroutine_path, executor.fault, scripts.limits().confined};
     }
-    /// Keeps what the block did and hands on its calls.
+    /// Commits the block and passes on its calls.
     void commit() const {
         executor.commit();
         executor.flush(target);

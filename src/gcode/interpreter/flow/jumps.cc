@@ -15,7 +15,7 @@ bool isOneOf(OKind kind, std::initializer_list<OKind> kinds) {
     return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
 }
 
-/// The line `line` holds an O word that cannot be read.
+/// Reports that `line` has an invalid O word.
 bool fail_bad_oword(Program &program, int line, Fault &fault) {
     const BlockView view = program.block(line);
     const SyntaxError &error = view.arena->errors[view.block->error];
@@ -23,12 +23,12 @@ bool fail_bad_oword(Program &program, int line, Fault &fault) {
     return fault.set(error.message, error.column);
 }
 
-bool condition(const BlockView &view, const OWord &oword, const JumpValues &values, bool &isTrue) {
+bool condition(const BlockView &view, const OWord &oword, const JumpValues &values, bool &is_true) {
     double value = 0;
     if (!values.evaluator.value(*view.arena, oword.value, value)) {
         return false;
     }
-    isTrue = value != 0.0;
+    is_true = value != 0.0;
     return true;
 }
 
@@ -37,18 +37,18 @@ bool run_if(const BlockView &view, const OWord &oword, Place &here, const JumpVa
     if (oword.kind == OKind::ENDIF) {
         return find_before(program, here.line, {OKind::IF}) != 0 || fail_unmatched(oword, "if", here, values);
     }
-    if (oword.kind != OKind::IF) {  // reached from above: a branch before this one was taken
+    if (oword.kind != OKind::IF) {  // reached from above: an earlier branch was taken
         const int end = find_after(program, here.line, {OKind::ENDIF});
         here.next = end + 1;
         return (end != 0 && find_before(program, here.line, {OKind::IF}) != 0) ||
                fail_unmatched(oword, end == 0 ? "endif" : "if", here, values);
     }
-    bool isTrue = false;
-    if (!condition(view, oword, values, isTrue)) {
+    bool is_true = false;
+    if (!condition(view, oword, values, is_true)) {
         return false;
     }
     int at = here.line;
-    while (!isTrue) {
+    while (!is_true) {
         at = find_after(program, at, IF_PARTS);
         if (at == 0) {
             return fail_unmatched(oword, "endif", here, values);
@@ -59,7 +59,7 @@ bool run_if(const BlockView &view, const OWord &oword, Place &here, const JumpVa
         }
         const BlockView part_view = program.block(at);
         here.line = at;
-        if (!condition(part_view, part, values, isTrue)) {
+        if (!condition(part_view, part, values, is_true)) {
             return false;
         }
     }
@@ -67,17 +67,17 @@ bool run_if(const BlockView &view, const OWord &oword, Place &here, const JumpVa
     return true;
 }
 
-/// At the top of a while loop, or at the bottom of a do loop.
+/// At the start of a while loop, or at the end of a do loop.
 bool run_while(const BlockView &view, const OWord &oword, Place &here, const JumpValues &values,
                LoopTurn &turn) {
-    bool isTrue = false;
-    if (!condition(view, oword, values, isTrue)) {
+    bool is_true = false;
+    if (!condition(view, oword, values, is_true)) {
         return false;
     }
     const Program &program = *here.program;
     const int opener = find_before(program, here.line, {OKind::DO, OKind::WHILE, OKind::ENDWHILE});
     if (opener != 0 && program.oword_at(opener)->kind == OKind::DO) {
-        if (isTrue) {
+        if (is_true) {
             here.next = opener + 1;
             turn = {opener, here.line, true};
         }
@@ -87,7 +87,7 @@ bool run_while(const BlockView &view, const OWord &oword, Place &here, const Jum
     if (end == 0) {
         return fail_unmatched(oword, "endwhile", here, values);
     }
-    here.next = isTrue ? here.next : end + 1;
+    here.next = is_true ? here.next : end + 1;
     return true;
 }
 
@@ -116,7 +116,7 @@ bool run_repeat(const BlockView &view, const OWord &oword, Place &here, const Ju
         return true;
     }
     const auto stale = std::ranges::find(here.repeats, here.line, &Repeat::line);
-    here.repeats.erase(stale, here.repeats.end());  // left by break or continue of an outer loop
+    here.repeats.erase(stale, here.repeats.end());  // ended by break or continue of an outer loop
     here.repeats.push_back({here.line, static_cast<int>(std::lround(count))});
     return true;
 }
@@ -125,7 +125,7 @@ bool run_end_repeat(const OWord &oword, Place &here, const JumpValues &values, L
     const int begin = find_before(*here.program, here.line, {OKind::REPEAT});
     std::vector<Repeat> &repeats = here.repeats;
     while (!repeats.empty() && repeats.back().line != begin) {
-        repeats.pop_back();  // left by break of an outer loop
+        repeats.pop_back();  // ended by break of an outer loop
     }
     if (begin == 0 || repeats.empty()) {
         return fail_unmatched(oword, "repeat", here, values);
@@ -139,7 +139,7 @@ bool run_end_repeat(const OWord &oword, Place &here, const JumpValues &values, L
     return true;
 }
 
-/// break and continue: of a loop with a condition.
+/// break and continue of a loop with a condition.
 bool run_leave(const OWord &oword, Place &here, const JumpValues &values) {
     const Program &program = *here.program;
     const int opener = find_before(program, here.line, {OKind::WHILE, OKind::DO});
@@ -181,11 +181,11 @@ int find_before(const Program &program, int line, std::initializer_list<OKind> k
 
 bool fail_unmatched(const OWord &oword, std::string_view missing, const Place &here,
                     const JumpValues &values) {
-    // One that cannot be read is the likely reason.
+    // An invalid O word is the likely reason.
     Program &program = *here.program;
-    const bool isAfter = missing.starts_with("end") || oword.kind == OKind::DO;
-    const int bad = isAfter ? program.find_bad_oword(here.line, program.count_lines() + 1)
-                            : program.find_bad_oword(0, here.line);
+    const bool after = missing.starts_with("end") || oword.kind == OKind::DO;
+    const int bad = after ? program.find_bad_oword(here.line, program.count_lines() + 1)
+                          : program.find_bad_oword(0, here.line);
     if (bad != 0) {
         return fail_bad_oword(program, bad, values.fault);
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// O words that decide which line is next: conditions and loops. Those of one label are linked in the order of
-// the file, so a jump is a walk along that chain.
+// O words that select the next line: conditions and loops. Those of one label are linked in the order of the
+// file, so a jump follows that chain.
 #pragma once
 
 #include <initializer_list>
@@ -12,30 +12,30 @@
 
 namespace mw::gcode::detail {
 
-/// What conditions and counts are computed with.
+/// Objects that compute conditions and counts.
 struct JumpValues {
     const Evaluator &evaluator;
     const Names &names;
     Fault &fault;
 };
 
-/// The lines of a loop that begins again.
+/// The lines of a restarted loop.
 struct LoopTurn {
-    int first = 0, last = 0;     ///< 0: none does
-    bool isConditional = false;  ///< nothing but its condition ends it
+    int first = 0, last = 0;   ///< 0: no loop restarts
+    bool conditional = false;  ///< only its condition ends it
 };
 
-/// Carries out if, while, do, repeat and their parts, break and continue: the place stands where it leads.
-/// False after setting the fault.
+/// Executes if, while, do, repeat and their parts, break and continue, and sets the position of the next
+/// line. False after setting the fault.
 bool run_jump(const BlockView &view, const OWord &oword, Place &here, const JumpValues &values,
               LoopTurn &turn);
-/// A jump over an O word that cannot be read may have missed its end: false when this one did.
+/// A jump across an invalid O word may have missed its end: false when this one did.
 bool check_jumped_over(int from, const Place &here, Fault &fault);
 
-/// The next (the last) O word of one of these kinds with the label of the one in `line`; 0: none.
+/// The next (or last) O word of one of these types with the label of the one in `line`; 0: none.
 int find_after(const Program &program, int line, std::initializer_list<OKind> kinds);
 int find_before(const Program &program, int line, std::initializer_list<OKind> kinds);
-/// The fault when one of them is missing.
+/// Sets the fault for a missing counterpart.
 bool fail_unmatched(const OWord &oword, std::string_view missing, const Place &here,
                     const JumpValues &values);
 std::string_view label_text(const OWord &oword, const Names &names);

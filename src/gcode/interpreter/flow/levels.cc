@@ -21,8 +21,8 @@ const std::string &Levels::file() const {
 
 std::string Levels::line_text() const {
     const Program *const program = here_.program;
-    const bool isThere = program != nullptr && here_.line >= 1 && here_.line <= program->count_lines();
-    return isThere ? std::string(program->line_text(here_.line)) : std::string();
+    const bool present = program != nullptr && here_.line >= 1 && here_.line <= program->count_lines();
+    return present ? std::string(program->line_text(here_.line)) : std::string();
 }
 
 NameId Levels::subroutine() const {
@@ -99,7 +99,7 @@ void Levels::end_top() {
 }
 
 void Levels::begin_mdi(Program *line) {
-    isMdi_ = true;
+    is_mdi_ = true;
     outer_program_ = here_.program;
     outer_next_ = here_.next;
     here_.program = line;
@@ -107,10 +107,10 @@ void Levels::begin_mdi(Program *line) {
 }
 
 void Levels::end_mdi() {
-    if (!isMdi_) {
+    if (!is_mdi_) {
         return;
     }
-    isMdi_ = false;
+    is_mdi_ = false;
     here_.program = outer_program_;
     here_.next = outer_next_;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Where programs stand: the line that runs, the calls that lead there, and MDI above the open file.
+// Execution positions of programs: the current line, the calls that lead to it, and MDI above the open file.
 #pragma once
 
 #include <cstddef>
@@ -17,18 +17,18 @@
 
 namespace mw::gcode::detail {
 
-/// A repeat loop that runs.
+/// A running repeat loop.
 struct Repeat {
-    int line = 0;  ///< of the O- repeat
+    int line = 0;  ///< line of the O- repeat
     int left = 0;
 };
 
-/// Where one level stands.
+/// Execution position of one level.
 struct Place {
     Program *program = nullptr;
-    int next = 1;   ///< the line to run next
-    int after = 1;  ///< follows the line that was read
-    int line = 0;   ///< the line that was read
+    int next = 1;   ///< next line to run
+    int after = 1;  ///< line after the last one read
+    int line = 0;   ///< last line read
     std::vector<Repeat> repeats;
 
     bool isAtEnd() const { return program == nullptr || next > program->count_lines(); }
@@ -36,95 +36,95 @@ struct Place {
 
 enum class CallKind { OWORD, FANUC, REMAP, SCRIPT, TEXT, PROFILE };
 
-/// How far a remapped code or an O word in a script is.
+/// Stage of a remapped code or an O word in a script.
 enum class Stage { PROLOG, PROCEDURE, FUNCTION, EPILOG };
 
-/// What the call of a remapped code or of a script's function keeps.
+/// Data of a call of a remapped code or script function.
 struct ScriptCall {
     Stage stage = Stage::FUNCTION;
     std::optional<PendingBlock> pending;       ///< the rest of the block with the remapped code
-    std::vector<double> arguments;             ///< of an O word
-    std::unique_ptr<SuspendedScript> waiting;  ///< for the machine
-    bool isDone = false;                       ///< the function has come back
-    int line = 0;                              ///< where it was called
+    std::vector<double> arguments;             ///< arguments of an O word
+    std::unique_ptr<SuspendedScript> waiting;  ///< suspended until the machine is ready
+    bool isDone = false;                       ///< the function has returned
+    int line = 0;                              ///< line of the call
     ScriptOutcome outcome;
 
     bool isFunctionRunning() const { return stage != Stage::PROCEDURE; }
 };
 
-/// One level of call: what it is, and where the level below goes on after it.
+/// One call level: what it runs, and where its caller continues.
 struct Call {
     CallKind kind = CallKind::OWORD;
     NameId label = NO_ID;
-    Program *program = nullptr;  ///< that has called
-    int line = 0;                ///< of the call
-    int next = 0;                ///< where to go on
+    Program *program = nullptr;  ///< program of the caller
+    int line = 0;                ///< line of the call
+    int next = 0;                ///< line to continue with
     std::vector<Repeat> repeats;
     int sub_line = 0;
-    int again = 0;                       ///< M98 L: calls still to come
-    int reported_line = 0;               ///< TEXT: the line that the script gave
-    std::unique_ptr<ScriptCall> script;  ///< of REMAP and SCRIPT
+    int again = 0;                       ///< M98 L: number of remaining calls
+    int reported_line = 0;               ///< TEXT: line number from the script
+    std::unique_ptr<ScriptCall> script;  ///< for REMAP and SCRIPT
 
     bool isInScript() const { return script != nullptr && script->isFunctionRunning(); }
-    /// The subroutine of a remapped code runs, and a function comes after it.
+    /// The subroutine of a remapped code runs, and a function follows it.
     bool isEpilogDue() const;
 };
 
-/// What messages and scripts call it.
+/// Name for messages and scripts.
 std::string call_name(const Call &call, const Names &names);
 
 class Levels {
   public:
-    /// The level that runs.
+    /// The position of the current level.
     Place &here() { return here_; }
     const Place &here() const { return here_; }
     const std::string &file() const;
-    /// The line that was read last; empty when there is none.
+    /// The last line read; empty when there is none.
     std::string line_text() const;
-    /// The program below all calls, null when none is open; the line of it that runs next or has called.
+    /// The main program, null when none is open; its next line or the line of its call.
     Program *main() const { return calls_.empty() ? here_.program : calls_.front().program; }
     int main_line() const { return calls_.empty() ? here_.next : calls_.front().line; }
 
     bool isInCall() const { return !calls_.empty(); }
     bool isIn(CallKind kind) const { return !calls_.empty() && calls_.back().kind == kind; }
     std::size_t size() const { return calls_.size(); }
-    /// As programs count: the text of a script is no level of its own.
+    /// Level as programs count it: the text of a script is not a separate level.
     int call_level() const { return static_cast<int>(calls_.size()) - texts_; }
     bool isTextRunning() const { return texts_ > 0; }
     Call &top() { return calls_.back(); }
     const Call &top() const { return calls_.back(); }
     Call &call(std::size_t index) { return calls_[index]; }
-    /// From the outermost to the innermost.
+    /// From the outermost to the innermost call.
     std::span<const Call> calls() const { return calls_; }
     /// Label of the innermost subroutine, NO_ID in the main program.
     NameId subroutine() const;
     std::vector<SourcePlace> callers() const;  ///< the innermost first
 
-    /// Opens a program at its first line, null: none.
+    /// Opens a program at its first line; null: closes.
     void open(Program *program);
-    /// A call from the line that was read: where it goes on is kept; the level itself runs nothing yet.
+    /// Enters a call from the last line read, where the caller continues after it. The new level has no
+    /// program yet.
     void enter(Call &&call);
-    /// The same for the text of a script, from whatever runs: `reported_line` names its line, 0: none.
+    /// Enters the text of a script from any level: `reported_line` is its line, 0: none.
     void enter_text(Program *text, int reported_line);
-    /// Ends the innermost call; the level below goes on.
+    /// Ends the innermost call and continues its caller.
     Call leave();
-    /// Drops all calls above `depth`. Those that were dropped, suspended scripts among them, from the
-    /// outermost on.
+    /// Drops all calls above `depth` and returns them with their suspended scripts, outermost first.
     std::vector<Call> unwind(std::size_t depth);
-    /// The level below all calls forgets its loops, and MDI ends.
+    /// Ends all loops of the top level, and MDI.
     void end_top();
 
-    bool isMdi() const { return isMdi_; }
-    /// Runs a line of MDI above the open file; then back to that.
+    bool isMdi() const { return is_mdi_; }
+    /// Runs a line of MDI, then returns to the open file.
     void begin_mdi(Program *line);
     void end_mdi();
 
   private:
     Place here_;
     std::vector<Call> calls_;
-    int texts_ = 0;  ///< TEXT among calls_
-    bool isMdi_ = false;
-    Program *outer_program_ = nullptr;  ///< the open file while MDI runs
+    int texts_ = 0;  ///< number of TEXT levels in calls_
+    bool is_mdi_ = false;
+    Program *outer_program_ = nullptr;  ///< the open file during MDI
     int outer_next_ = 1;
 };
 

@@ -9,7 +9,7 @@ namespace mw::gcode::detail {
 
 void LoopBudget::restart() {
     begin_stretch(0);
-    isSpent_ = false;
+    spent_ = false;
 }
 
 void LoopBudget::begin_stretch(int main_line) {
@@ -50,10 +50,10 @@ bool LoopBudget::isRepeating(const LoopPass &pass, const State &state, const Par
 std::optional<LoopPass> LoopBudget::loop_around(const Program *program, std::size_t depth, int line) const {
     std::optional<LoopPass> found;
     for (const auto &[pass, count] : passes_) {
-        const bool isAround =
+        const bool around =
             pass.program == program && pass.depth == depth && pass.first <= line && line <= pass.last;
-        const bool isLonger = !found || pass.last - pass.first > found->last - found->first;
-        if (isAround && isLonger) {
+        const bool longer = !found || pass.last - pass.first > found->last - found->first;
+        if (around && longer) {
             found = pass;
         }
     }
@@ -62,7 +62,7 @@ std::optional<LoopPass> LoopBudget::loop_around(const Program *program, std::siz
 
 std::string LoopBudget::spend() {
     constexpr double S_PER_HOUR = 3600.0;
-    isSpent_ = true;
+    spent_ = true;
     if (idle_ > 0 && taken_idle_ > idle_) {
         return fmt::format("{} statements without making the machine do anything", idle_);
     }

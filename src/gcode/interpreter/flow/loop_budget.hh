@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// How long one loop or call of a program may go on, for checks: counts from each line of the main program
-// that is further down than all before.
+// Limits for one loop or call of a program in checks. Counting restarts when the main program reaches a line
+// below all previous ones.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@ namespace mw::gcode::detail {
 
 class Program;
 
-/// A loop that has begun again: its lines in a program, at a level of call.
+/// A restarted loop: its lines in a program, at a call level.
 struct LoopPass {
     const Program *program = nullptr;
     std::size_t depth = 0;
@@ -32,7 +32,7 @@ struct LoopPass {
     }
 };
 
-/// What a loop's next pass depends on.
+/// State that determines the next pass of a loop.
 struct LoopSnapshot {
     State state;
     Parameters::Values values;
@@ -47,7 +47,7 @@ class LoopBudget {
     bool isBounded() const { return statements_ > 0 || idle_ > 0 || seconds_ > 0; }
     void restart();
     /// Counts a statement; `main_line`: its line in the main program, 0 in a subroutine. False when a budget
-    /// is used up, from then on until restart().
+    /// is used up, until restart().
     bool take_statement(int main_line) {
         if (main_line > furthest_line_) {
             begin_stretch(main_line);
@@ -57,26 +57,26 @@ class LoopBudget {
         return !isSpent();
     }
     void mark_progress(double seconds) {
-        taken_idle_ = isSpent_ ? taken_idle_ : 0;
+        taken_idle_ = spent_ ? taken_idle_ : 0;
         taken_seconds_ += seconds;
     }
     bool isSpent() const {
-        return isSpent_ || (statements_ > 0 && taken_ > statements_) || (idle_ > 0 && taken_idle_ > idle_) ||
+        return spent_ || (statements_ > 0 && taken_ > statements_) || (idle_ > 0 && taken_idle_ > idle_) ||
                (seconds_ > 0 && taken_seconds_ > seconds_);
     }
-    /// Loops are noted in the last part of each budget only: those then running are the endless ones.
+    /// Loops are recorded only in the last part of each budget: those running then are the endless ones.
     bool isWatching() const {
         return isBounded() && (isLate(taken_, statements_) || isLate(taken_idle_, idle_) ||
                                (seconds_ > 0 && taken_seconds_ > seconds_ / 2));
     }
     void note_pass(const LoopPass &pass) { ++passes_[pass]; }
-    /// For loops that only a condition ends: whether two passes in a row began with the same values and
-    /// modes, so that no pass will ever differ. Looks at few passes, ever fewer.
+    /// For loops that only a condition ends: true if two consecutive passes began with the same values and
+    /// modes, so that all further passes are equal. Compares ever fewer passes.
     bool isRepeating(const LoopPass &pass, const State &state, const Parameters &parameters);
-    /// The longest loop around `line` that was noted.
+    /// The longest recorded loop around `line`.
     std::optional<LoopPass> loop_around(const Program *program, std::size_t depth, int line) const;
     int furthest_line() const { return furthest_line_; }
-    /// Which budget is used up, in words; nothing more is allowed until restart().
+    /// Text that names the used-up budget; nothing more is permitted until restart().
     std::string spend();
 
   private:
@@ -88,7 +88,7 @@ class LoopBudget {
     std::uint64_t taken_ = 0, taken_idle_ = 0;
     double taken_seconds_ = 0;
     int furthest_line_ = 0;
-    bool isSpent_ = false;
+    bool spent_ = false;
     std::map<LoopPass, std::uint64_t> passes_;
     struct Watched {
         LoopPass pass;
@@ -96,7 +96,7 @@ class LoopBudget {
         std::unique_ptr<LoopSnapshot> last;
     };
     std::vector<Watched> watched_;
-    std::size_t latest_ = 0;  ///< of watched_
+    std::size_t latest_ = 0;  ///< index in watched_
 };
 
 }  // namespace mw::gcode::detail

@@ -14,7 +14,7 @@ Program *ProgramFiles::keep(std::unique_ptr<Program> program) {
 
 Program *ProgramFiles::find_subroutine(std::string_view name, std::span<const std::string> folders,
                                        Names &names) {
-    // A name that begins with a slash is below the folder, too.
+    // A name that begins with a slash is also relative to the folder.
     name.remove_prefix(std::min(name.find_first_not_of('/'), name.size()));
     const std::string file = std::string(name) + ".ngc";
     for (const std::string &folder : folders) {
@@ -35,8 +35,8 @@ Program *ProgramFiles::find_subroutine(std::string_view name, std::span<const st
 
 std::string ProgramFiles::line_text(const std::string &file, int line) const {
     const auto found = files_.find(file);
-    const bool isThere = found != files_.end() && line >= 1 && line <= found->second->count_lines();
-    return isThere ? std::string(found->second->line_text(line)) : std::string();
+    const bool present = found != files_.end() && line >= 1 && line <= found->second->count_lines();
+    return present ? std::string(found->second->line_text(line)) : std::string();
 }
 
 Program *ProgramFiles::keep_mdi(std::string_view line, Names &names) {

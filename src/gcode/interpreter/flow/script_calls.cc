@@ -8,7 +8,7 @@ namespace {
 
 constexpr int MAX_SCRIPT_DEPTH = 40;
 
-/// What a function gets: words of the block that the argspec names.
+/// Arguments of a function: the words of the block that the argspec names.
 ScriptArguments arguments_of(const PendingBlock &pending) {
     ScriptArguments out;
     for (const RemapWord &word : pending.remap->words) {
@@ -16,19 +16,19 @@ ScriptArguments arguments_of(const PendingBlock &pending) {
             continue;
         }
         const double value = pending.values.at(word.letter);
-        if (pending.remap->isPositional) {
+        if (pending.remap->positional) {
             out.positional.push_back(value);
         } else {
             out.words.emplace_back(std::string(1, word.letter), value);
         }
     }
-    if (pending.remap->wantsLine) {
+    if (pending.remap->wants_line) {
         out.words.emplace_back("n", pending.line);
     }
     return out;
 }
 
-/// What messages show as the block that has failed.
+/// Text of the failed block in messages.
 std::string call_text(const Remap &remap) {
     return fmt::format("O <{}> call ", remap.target());
 }
@@ -49,7 +49,7 @@ void settle_script(const FlowParts &parts) {
     parts.executor.outcome = outcome;
 }
 
-/// Calls a function for the call on top.
+/// Calls a function for the innermost call.
 bool ScriptCalls::call_handler(ScriptModule module, const std::string &name, const FlowParts &parts) {
     Levels &levels = parts.levels;
     Executor &executor = parts.executor;
@@ -78,17 +78,17 @@ bool ScriptCalls::call_handler(ScriptModule module, const std::string &name, con
     return take_outcome(index, std::move(outcome), parts);
 }
 
-/// What scripts have done is a waiting point of the step.
+/// Turns actions of scripts into a waiting point of the step.
 bool ScriptCalls::take_waiting_point(Executor &executor) const {
-    if (!isSyncDue_ && !executor.awaited.isToolChange) {
+    if (!sync_due_ && !executor.awaited.is_tool_change) {
         return false;
     }
-    executor.awaited.isToolChange = false;
+    executor.awaited.is_tool_change = false;
     executor.outcome = Outcome::SYNC;
     return true;
 }
 
-/// The script of the call at `index` has come back.
+/// The script of the call at `index` has returned.
 bool ScriptCalls::take_outcome(std::size_t index, ScriptOutcome outcome, const FlowParts &parts) {
     Executor &executor = parts.executor;
     executor.outcome = Outcome::OK;
@@ -100,24 +100,24 @@ bool ScriptCalls::take_outcome(std::size_t index, ScriptOutcome outcome, const F
     if (outcome.kind == ScriptOutcome::Kind::FAILED) {
         return executor.fault.set(outcome.message);
     }
-    const bool isWaiting = outcome.kind == ScriptOutcome::Kind::WAITING;
-    call.isDone = !isWaiting;
-    if (isEndDue_ || outcome.kind == ScriptOutcome::Kind::EXIT) {
-        isEndDue_ = true;
+    const bool waiting = outcome.kind == ScriptOutcome::Kind::WAITING;
+    call.isDone = !waiting;
+    if (end_due_ || outcome.kind == ScriptOutcome::Kind::EXIT) {
+        end_due_ = true;
         return true;
     }
     if (take_waiting_point(executor)) {
         return true;
     }
-    if (isWaiting) {
+    if (waiting) {
         executor.outcome = Outcome::SYNC;
         return true;
     }
-    const bool isNested = parts.levels.size() - 1 > index;
-    return isNested || advance(parts);
+    const bool nested = parts.levels.size() - 1 > index;
+    return nested || advance(parts);
 }
 
-/// The script on top has done its part.
+/// The innermost script has finished its stage.
 bool ScriptCalls::advance(const FlowParts &parts) {
     const Call &level = parts.levels.top();
     const ScriptOutcome &outcome = level.script->outcome;
@@ -149,7 +149,7 @@ bool ScriptCalls::start_stage(Stage stage, const FlowParts &parts) {
     return true;
 }
 
-/// Looked up not before the prolog has said yes.
+/// Searched only after the prolog has succeeded.
 bool ScriptCalls::start_procedure(const FlowParts &parts) {
     Sub sub;
     if (!find_sub(parts.levels.top().label, 0, parts.search(), sub)) {
@@ -181,15 +181,15 @@ bool ScriptCalls::call_remap(const FlowParts &parts) {
         return false;
     }
     executor.remaps.begin(remap, executor.saved_modes.depth());
-    pass_words(*parts.levels.top().script->pending, parts.settings.isArgumentCountNamed, executor.parameters,
+    pass_words(*parts.levels.top().script->pending, parts.settings.argument_count_named, executor.parameters,
                parts.names);
     const Stage first = first_stage(remap);
     if (start_stage(first, parts)) {
         return true;
     }
-    const bool isAtFirst = parts.levels.isInCall() && parts.levels.top().script != nullptr &&
-                           parts.levels.top().script->stage == first;
-    if (executor.fault.block_text.empty() && isAtFirst) {
+    const bool at_first = parts.levels.isInCall() && parts.levels.top().script != nullptr &&
+                          parts.levels.top().script->stage == first;
+    if (executor.fault.block_text.empty() && at_first) {
         executor.fault.block_text = call_text(remap);
     }
     return false;
@@ -219,7 +219,7 @@ bool ScriptCalls::leave(const ReturnValue &value, const FlowParts &parts) {
     if (!parts.levels.top().isEpilogDue()) {
         return leave_call(value, parts);
     }
-    parts.executor.returned = {value.isSet ? value.value : 0.0, value.isSet};
+    parts.executor.returned = {value.set ? value.value : 0.0, value.set};
     return start_stage(Stage::EPILOG, parts);
 }
 
@@ -228,11 +228,11 @@ bool ScriptCalls::run_text_line(const FlowParts &parts, InterpreterView &view) {
     Levels &levels = parts.levels;
     const std::string text = executor.script_text();
     const int line = levels.here().line;
-    if (parts.scripts.limits().isConfined) {
+    if (parts.scripts.limits().confined) {
         return executor.fault.set("Lines that begin with ;py, are not run for a client of role operate.", 1,
                                   "Run the program at the machine, or as a client of role configure.");
     }
-    if (!parts.settings.scripts.areLinesRun) {
+    if (!parts.settings.scripts.lines_run) {
         return executor.fault.set("lines that begin with ;py, are not run on this machine", 1,
                                   "[PYTHON]TOPLEVEL of the INI file allows them: it names a Python file");
     }
@@ -278,10 +278,10 @@ std::optional<std::string> ScriptCalls::refusal(const Scripts &scripts) const {
     if (scripts.depth() == 0) {
         return "nothing can be executed now: the program was ended";
     }
-    if (isEndDue_) {
+    if (end_due_) {
         return "the program has ended: a block executed before was M2 or M30";
     }
-    if (isSyncDue_) {
+    if (sync_due_) {
         return "a waiting point is due (probe, tool change or input): "
                "'yield INTERP_EXECUTE_FINISH' must come before the next execute()";
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Remapped codes and scripts as levels of call. What a script has executed runs nested above its level; a
-// waiting point (probe, tool change, yield) ends the step, and the next step goes on with what is on top:
-// nested blocks first, then the suspended script.
+// Remapped codes and scripts as call levels. Blocks that a script executes run nested above its level. A
+// waiting point (probe, tool change, yield) ends the step, and the next step continues the innermost level:
+// first nested blocks, then the suspended script.
 #pragma once
 
 #include <cstddef>
@@ -15,30 +15,31 @@ namespace mw::gcode::detail {
 class ScriptCalls {
   public:
     // All of these return false after setting the fault.
-    /// The block has come to a remapped code: its prolog, subroutine and epilog, or its function, run before
+    /// The block has reached a remapped code: runs its prolog, subroutine and epilog, or its function, before
     /// the rest.
     bool call_remap(const FlowParts &parts);
-    /// An O- call whose subroutine is a script's function.
+    /// An O- call of a script function.
     bool call_oword(const CallRequest &request, const FlowParts &parts);
     /// A line that begins with ;py,
     bool run_text_line(const FlowParts &parts, InterpreterView &view);
-    /// The level on top is a script's: it goes on after a waiting point, or what it had executed is over.
+    /// The innermost level is a script: continues it after a waiting point, or after the blocks that it
+    /// executed.
     bool go_on(const FlowParts &parts);
-    /// The level on top is left with a value: the epilog of a remapped code comes first.
+    /// Leaves the innermost level with a value, after the epilog of a remapped code.
     bool leave(const ReturnValue &value, const FlowParts &parts);
 
-    /// Why a script cannot have a block executed now; nothing when it can.
+    /// Why a script cannot execute a block now; nothing when it can.
     std::optional<std::string> refusal(const Scripts &scripts) const;
-    /// Begins a level with the text of a script; gives what end_text() needs.
+    /// Begins a level with the text of a script; returns the argument of end_text().
     std::size_t begin_text(std::string_view text, int line, const FlowParts &parts);
     void end_text(std::size_t outer_base) { nested_base_ = outer_base; }
-    /// Levels below it belong to scripts that run now.
+    /// Levels below it belong to running scripts.
     std::size_t nested_base() const { return nested_base_; }
 
-    /// A block that a script had executed has come to a waiting point, or to the end of the program.
-    void expect_sync(bool isDue) { isSyncDue_ = isDue; }
-    void expect_end(bool isDue) { isEndDue_ = isDue; }
-    bool isEndDue() const { return isEndDue_; }
+    /// A block of a script has reached a waiting point, or the end of the program.
+    void expect_sync(bool due) { sync_due_ = due; }
+    void expect_end(bool due) { end_due_ = due; }
+    bool isEndDue() const { return end_due_; }
 
   private:
     bool call_handler(ScriptModule module, const std::string &name, const FlowParts &parts);
@@ -49,10 +50,10 @@ class ScriptCalls {
     bool take_waiting_point(Executor &executor) const;
 
     std::size_t nested_base_ = 0;
-    bool isSyncDue_ = false, isEndDue_ = false;
+    bool sync_due_ = false, end_due_ = false;
 };
 
-/// Keeps what a script did; a later failure takes back no more than what comes after it.
+/// Commits the script's changes; a later failure undoes only later changes.
 void settle_script(const FlowParts &parts);
 
 }  // namespace mw::gcode::detail

@@ -12,7 +12,7 @@
 namespace mw::gcode::detail {
 namespace {
 
-/// Modal groups by the numbers of the manual; -1 for those that have none.
+/// Modal groups in the manual's numbering; -1 for groups without a number.
 int group_number(Group group) {
     switch (group) {
     case Group::NON_MODAL: return 0;
@@ -44,7 +44,7 @@ int group_number(Group group) {
     return -1;
 }
 
-/// The name as the language folds it: no case, no blanks, but INI and HAL names keep theirs.
+/// The name in lower case without blanks; INI and HAL names keep theirs.
 std::string folded(std::string_view name) {
     return name.find('[') == std::string_view::npos ? to_lower(name) : std::string(name);
 }
@@ -117,7 +117,7 @@ std::vector<std::string> ScriptView::script_names() const {
     return parts_.scripts.names();
 }
 
-/// With those of the main program and the INI values that were read.
+/// Including those of the main program and the INI values that were read.
 std::vector<std::string> ScriptView::global_names() const {
     std::vector<std::string> out = predefined_names();
     for (const auto &[id, value] : executor_.parameters.globals()) {
@@ -172,7 +172,7 @@ std::vector<std::string_view> ScriptView::attribute_names() const {
     return out;
 }
 
-/// The entry at 0 is the tool in the spindle, number -1 when there is none.
+/// The entry at 0 is the tool in the spindle, number -1 when empty.
 ToolEntry ScriptView::tool(int index) const {
     if (index != 0 || executor_.tools.isRandom()) {
         return executor_.tools.entry(index);
@@ -226,7 +226,7 @@ ScriptBlock ScriptView::remap_block(const ScriptCall &call, int level) const {
     }
     for (const ActiveCode &active : pending.values.codes) {
         const int group = group_number(active.code->group);
-        if (group < 0 || (pending.values.isMotionImplied && active.code == pending.values.motion)) {
+        if (group < 0 || (pending.values.motion_implied && active.code == pending.values.motion)) {
             continue;
         }
         if (active.code->letter == 'g') {
@@ -273,17 +273,17 @@ ScriptBlock ScriptView::block(int level) const {
 std::vector<ScriptContext> ScriptView::contexts() const {
     std::vector<ScriptContext> out(1);
     const auto fill = [this](ScriptContext &context, std::size_t level) {
-        const bool isMain = level == 0;
+        const bool is_main = level == 0;
         for (const auto &[id, value] : executor_.parameters.locals(static_cast<int>(level))) {
             context.named.emplace_back(parts_.names.text(id), value);
         }
         context.status = executor_.saved_modes.status(level);
         context.arguments = executor_.parameters.saved_arguments(static_cast<int>(level));
         context.saved = executor_.active_codes();
-        if (isMain) {
+        if (is_main) {
             for (std::string &name : global_names()) {
                 if (!name.starts_with('_')) {
-                    continue;  // one of its own, which is there already
+                    continue;  // a global of a script, already in the list
                 }
                 const auto value = executor_.evaluator().named(parts_.names.intern(name));
                 context.named.emplace_back(std::move(name), value.value_or(0.0));
@@ -299,8 +299,8 @@ std::vector<ScriptContext> ScriptView::contexts() const {
         }
         ScriptContext &context = out.emplace_back();
         constexpr int PROCEDURE = 1, FANUC = 2, SCRIPT = 3, REMAP = 4, REMAP_STATUS = 4;
-        const bool isRemap = call.kind == CallKind::REMAP;
-        context.kind = isRemap                         ? REMAP
+        const bool is_remap = call.kind == CallKind::REMAP;
+        context.kind = is_remap                        ? REMAP
                        : call.kind == CallKind::SCRIPT ? SCRIPT
                        : call.kind == CallKind::FANUC  ? FANUC
                                                        : PROCEDURE;
@@ -308,7 +308,7 @@ std::vector<ScriptContext> ScriptView::contexts() const {
         context.file = call.program != nullptr ? call.program->path() : std::string();
         context.line = call.line;
         fill(context, out.size() - 1);
-        context.status |= isRemap ? REMAP_STATUS : 0;
+        context.status |= is_remap ? REMAP_STATUS : 0;
     }
     return out;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What scripts see of the interpreter: its state, parameters, blocks and levels of call.
+// The scripts' view of the interpreter: state, parameters, blocks and call levels.
 #pragma once
 
 #include <expected>
@@ -25,7 +25,7 @@ class ScriptView final : public InterpreterView {
     std::expected<bool, ScriptFault> execute(std::string_view text, int line) override;
     Canon &canon() override;
     void deliver() override;
-    void expect_input() override { executor_.awaited.isInput = true; }
+    void expect_input() override { executor_.awaited.is_input = true; }
     void expect_probe() override { executor_.awaited.isProbe = true; }
 
     double parameter(int number) const override;

@@ -23,7 +23,7 @@ ScriptOutcome forbidden() {
 
 Result<> Scripts::need(const std::string &what, const SourcePlace &place, const Settings &settings,
                        InterpreterView &view) {
-    if (limits_.areScriptsForbidden) {
+    if (limits_.are_scripts_forbidden) {
         return fail(FORBIDDEN, place);
     }
     if (host_ != nullptr) {
@@ -103,7 +103,7 @@ Result<> Scripts::begin() {
 
 ScriptOutcome Scripts::call(ScriptModule module, const std::string &name, const ScriptArguments &arguments,
                             std::unique_ptr<SuspendedScript> &rest) {
-    if (limits_.areScriptsForbidden) {
+    if (limits_.are_scripts_forbidden) {
         return forbidden();
     }
     error_text.clear();
@@ -123,7 +123,7 @@ ScriptOutcome Scripts::resume(SuspendedScript &script) {
 }
 
 ScriptOutcome Scripts::run_text(std::string_view text) {
-    if (limits_.areScriptsForbidden) {
+    if (limits_.are_scripts_forbidden) {
         return forbidden();
     }
     ++depth_;
@@ -138,15 +138,15 @@ bool Scripts::hasName(std::string_view name) const {
 }
 
 std::optional<double> Scripts::value_of(std::string_view name) {
-    if (limits_.areScriptsForbidden) {
+    if (limits_.are_scripts_forbidden) {
         fault_.set(FORBIDDEN);
         return std::nullopt;
     }
-    const bool wasReading = isReadingName_;
-    isReadingName_ = true;
+    const bool was_reading = is_reading_name_;
+    is_reading_name_ = true;
     ++calls_;
     const Result<double> value = host_->named_parameter(std::string(name));
-    isReadingName_ = wasReading;
+    is_reading_name_ = was_reading;
     if (!value) {
         fault_.set(value.error().message);
         return std::nullopt;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The script language while programs run: its host, the names that scripts define, and the scripts that run.
+// The script language while programs run: its host, the names that scripts define, and the running scripts.
 #pragma once
 
 #include <cstdint>
@@ -16,14 +16,14 @@ namespace mw::gcode::detail {
 
 class Scripts final : public ScriptNames {
   public:
-    /// `fault` takes what goes wrong with a named parameter.
+    /// `fault` receives errors of named parameters.
     explicit Scripts(Fault &fault) : fault_(fault) {}
 
     /// Opens the host when the settings or a remap need one, runs the top-level script, and checks that all
-    /// that the remaps name exists. Errors name the place in the INI file. `view` must outlive the host.
+    /// names in the remaps exist. Errors name the position in the INI file. `view` must outlive the host.
     Result<> load(const Settings &settings, const Remaps &remaps, const BuiltIns &built_ins,
                   InterpreterView &view);
-    /// Opens the host if it is not open: `what`, at `place`, needs it.
+    /// Opens the host if it is not open: `what`, at `place`, requires it.
     Result<> need(const std::string &what, const SourcePlace &place, const Settings &settings,
                   InterpreterView &view);
     Result<> begin();
@@ -40,20 +40,20 @@ class Scripts final : public ScriptNames {
                        std::unique_ptr<SuspendedScript> &rest);
     ScriptOutcome resume(SuspendedScript &script);
     ScriptOutcome run_text(std::string_view text);
-    /// Scripts run now, one inside of the other: that many.
+    /// Number of nested running scripts.
     int depth() const { return depth_; }
-    /// How often they were called, resumed or asked.
+    /// Number of calls, resumes and queries.
     std::uint64_t count_calls() const { return calls_; }
-    /// A named parameter's script runs: it may only look.
-    bool isReadingName() const { return isReadingName_; }
+    /// The script of a named parameter runs: it may only read.
+    bool isReadingName() const { return is_reading_name_; }
 
     bool hasName(std::string_view name) const override;
     std::optional<double> value_of(std::string_view name) override;
-    /// Of named parameters that scripts compute.
+    /// Named parameters that scripts compute.
     const std::vector<std::string> &names() const { return names_; }
     const std::vector<std::string> &warnings() const { return warnings_; }
 
-    std::string error_text;  ///< as a script has set it
+    std::string error_text;  ///< set by a script
 
   private:
     Result<> check(const Remap &remap) const;
@@ -63,7 +63,7 @@ class Scripts final : public ScriptNames {
     std::vector<std::string> names_, warnings_;
     int depth_ = 0;
     std::uint64_t calls_ = 0;
-    bool isReadingName_ = false;
+    bool is_reading_name_ = false;
     ProgramLimits limits_;
 };
 

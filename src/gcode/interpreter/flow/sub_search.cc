@@ -9,14 +9,14 @@
 namespace mw::gcode::detail {
 namespace {
 
-/// The name leads out of the folder that it is looked up in.
+/// The path of the name leads outside the folder.
 bool leadsOut(std::string_view name) {
     const std::filesystem::path path(name);
     return std::find(path.begin(), path.end(), "..") != path.end();
 }
 
 Program *load_file(NameId label, const SubSearch &search) {
-    if (search.isConfined && leadsOut(search.names.text(label))) {
+    if (search.confined && leadsOut(search.names.text(label))) {
         return nullptr;
     }
     std::vector<std::string> folders = search.folders;
@@ -29,21 +29,21 @@ Program *load_file(NameId label, const SubSearch &search) {
 
 using FindLine = int (Program::*)(NameId label) const;
 
-/// In the file that runs, in its callers from the innermost, then in a file of its own.
+/// Searches the current file, its callers from the innermost, then a separate file.
 bool look_up(NameId label, FindLine find_line, const SubSearch &search, Sub &sub) {
     const auto look_in = [&](Program *program) {
         sub = {program, program == nullptr ? 0 : (program->*find_line)(label)};
         return sub.line != 0;
     };
-    bool isFound = look_in(search.levels.here().program);
+    bool found = look_in(search.levels.here().program);
     const std::span<const Call> calls = search.levels.calls();
-    for (auto call = calls.rbegin(); call != calls.rend() && !isFound; ++call) {
-        isFound = look_in(call->program);
+    for (auto call = calls.rbegin(); call != calls.rend() && !found; ++call) {
+        found = look_in(call->program);
     }
-    return isFound || look_in(load_file(label, search));
+    return found || look_in(load_file(label, search));
 }
 
-/// The main program has been searched to its end: when that is a closing percent sign, it ends there.
+/// True when the main program has been searched to its end and ends with a percent sign there.
 bool isEndReached(const Levels &levels) {
     const Program *const main = levels.main();
     return !levels.isMdi() && main->isPercentDelimited() && main->hasClosingPercent();
@@ -65,7 +65,7 @@ bool find_sub(NameId label, std::uint32_t column, const SubSearch &search, Sub &
         fault.line = fanuc.program == search.levels.here().program ? fanuc.line : 0;
         return fault.set(FANUC_TEXT, 0, called_from(label, search.levels, search.names));
     }
-    fault.isProgramOver = isEndReached(search.levels);
+    fault.program_ended = isEndReached(search.levels);
     return fault.set(
         fmt::format(
             "There is no subroutine o<{0}>: neither in this file nor as {0}.ngc in the subroutine path",
@@ -82,7 +82,7 @@ bool find_fanuc_sub(NameId label, const SubSearch &search, Sub &sub) {
         fault.line = other;
         return fault.set(OWORD_TEXT, 0, called_from(label, search.levels, search.names));
     }
-    fault.isProgramOver = isEndReached(search.levels);
+    fault.program_ended = isEndReached(search.levels);
     return fault.set(fmt::format("There is no subroutine O{} for this M98", search.names.text(label)));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Where subroutines are: in the file that runs, in those that have called it, or in a file of their own.
+// Search for subroutines: in the current file, in its callers, or in a separate file.
 #pragma once
 
 #include <string>
@@ -21,19 +21,20 @@ struct SubSearch {
     const Levels &levels;
     ProgramFiles &files;
     Names &names;
-    const std::vector<std::string> &folders;  ///< for files of their own, after that of the main program
+    const std::vector<std::string>
+        &folders;  ///< folders of separate files, after the folder of the main program
     Fault &fault;
-    bool isConfined = false;  ///< names with '..' find no file
+    bool confined = false;  ///< names with '..' match no file
 };
 
 /// `O<label> sub`. False after setting the fault; `column` of the call.
 bool find_sub(NameId label, std::uint32_t column, const SubSearch &search, Sub &sub);
-/// The label alone, as M98 calls it.
+/// A label without `sub`, for M98.
 bool find_fanuc_sub(NameId label, const SubSearch &search, Sub &sub);
-/// Advice for errors that are about a subroutine: which, and where it was called.
+/// Hint for errors in a subroutine: its name, and where it was called.
 std::string called_from(NameId label, const Levels &levels, const Names &names);
 
-// Scripts compare these texts, dots and all.
+// Scripts compare these texts, including dots.
 inline constexpr char FANUC_TEXT[] = "Fanuc 'O....' subroutine must be called with 'M98'";
 inline constexpr char FANUC_END_TEXT[] = "Fanuc 'O....' subroutine definition must end with 'M99'";
 inline constexpr char OWORD_TEXT[] = "'O.... sub' subroutine must be called with 'O.... call'";

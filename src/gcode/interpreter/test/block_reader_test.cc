@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// From a parsed block to its values, without anything being executed.
+// Values of parsed blocks, without execution.
 #include <memory>
 
 #include <gtest/gtest.h>
@@ -73,7 +73,7 @@ TEST_F(BlockReaderTest, AxisWordsAloneMeanTheMotionInForce) {
     ASSERT_TRUE(read("X1"));
     EXPECT_FALSE(choose_motion(values, MOTION_NONE, remaps, fault));
     ASSERT_TRUE(choose_motion(values, 10, remaps, fault));
-    EXPECT_TRUE(values.isMotionImplied);
+    EXPECT_TRUE(values.motion_implied);
     EXPECT_EQ(numbers(), (std::vector<int>{10}));
 }
 

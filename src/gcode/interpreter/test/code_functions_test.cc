@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The functions of codes, each alone: a block and a state in; a state, canon calls or a fault out.
+// The functions of codes in isolation: block and state in; state, canon calls or fault out.
 #include <algorithm>
 
 #include <gtest/gtest.h>
@@ -93,7 +93,7 @@ TEST(MoveCodes, AxisWordsLeadToATargetInEitherDistanceMode) {
     CodeParts p;
     p.state.position = at(1, 2, 3);
     EXPECT_EQ(target(block({{'x', 10}}), p.state), at(10, 2, 3));
-    p.state.isIncremental = true;
+    p.state.incremental = true;
     EXPECT_EQ(target(block({{'x', 10}}), p.state), at(11, 2, 3));
     p.state.isDiameter = true;
     EXPECT_EQ(target(block({{'x', 10}}), p.state), at(6, 2, 3));
@@ -170,7 +170,7 @@ TEST(MoveCodes, AThreadNeedsATurningSpindleAndASpeedThatTheMachineHas) {
     EXPECT_FALSE(move_with_spindle(code('g', 330), words, p.machine, p.state, p.canon, p.fault));
     EXPECT_EQ(p.fault.message, "Spindle not turning in g33");
     p.state.spindles[0] = {1200, 1};
-    p.settings.max_velocity_mm_s = 30;  // 2 mm at 20 turns a second: 40
+    p.settings.max_velocity_mm_s = 30;  // 2 mm at 20 revolutions per second: 40
     EXPECT_FALSE(move_with_spindle(code('g', 330), words, p.machine, p.state, p.canon, p.fault));
     p.settings.max_velocity_mm_s = 50;
     EXPECT_TRUE(move_with_spindle(code('g', 330), words, p.machine, p.state, p.canon, p.fault));
@@ -217,7 +217,7 @@ TEST(CycleCodes, DrillingGoesOverTheHoleDownAndBack) {
                                 "STRAIGHT_TRAVERSE(5.0000, 0.0000, 2.0000, 0.0000, 0.0000, 0.0000)",
                                 "STRAIGHT_FEED(5.0000, 0.0000, -3.0000, 0.0000, 0.0000, 0.0000)",
                                 "STRAIGHT_TRAVERSE(5.0000, 0.0000, 2.0000, 0.0000, 0.0000, 0.0000)"}));
-    EXPECT_TRUE(p.state.cycle.isRunning);
+    EXPECT_TRUE(p.state.cycle.running);
 }
 
 TEST(CycleCodes, WordsNotGivenAreThoseOfTheCycleBefore) {
@@ -355,10 +355,10 @@ TEST(SwitchCodes, WaitingForAnInputIsAWaitingPoint) {
     EXPECT_FALSE(wait_for_input(code('m', 66), block({{'p', 1}, {'l', 3}}), p.parameters, p.awaited, p.state,
                                 p.canon, p.fault, p.outcome));
     EXPECT_EQ(p.fault.message, "M66 that waits needs a timeout Q above 0 seconds");
-    EXPECT_FALSE(p.awaited.isInput);
+    EXPECT_FALSE(p.awaited.is_input);
     ASSERT_TRUE(wait_for_input(code('m', 66), block({{'p', 1}, {'l', 3}, {'q', 2}}), p.parameters, p.awaited,
                                p.state, p.canon, p.fault, p.outcome));
-    EXPECT_TRUE(p.awaited.isInput);
+    EXPECT_TRUE(p.awaited.is_input);
     EXPECT_EQ(p.outcome, Outcome::SYNC);
 }
 
@@ -375,7 +375,7 @@ TEST(SwitchCodes, ASpindleTurnsAndStops) {
 TEST(SwitchCodes, TheEndOfAProgramPutsModesBack) {
     CodeParts p;
     p.state.plane = Plane::XZ;
-    p.state.isIncremental = true;
+    p.state.incremental = true;
     p.state.isFlood = true;
     p.state.feed = 100;
     p.state.spindles[0] = {500, 1};
@@ -384,7 +384,7 @@ TEST(SwitchCodes, TheEndOfAProgramPutsModesBack) {
         end_program(code('m', 2), block({}), p.machine, p.parameters, p.state, p.canon, p.fault, p.outcome));
     EXPECT_EQ(p.outcome, Outcome::PROGRAM_END);
     EXPECT_EQ(p.state.plane, Plane::XY);
-    EXPECT_FALSE(p.state.isIncremental || p.state.isFlood || p.state.comp.isOn() || p.state.comp.isExit());
+    EXPECT_FALSE(p.state.incremental || p.state.isFlood || p.state.comp.isOn() || p.state.comp.isExit());
     EXPECT_EQ(p.state.feed, 0);
     EXPECT_EQ(p.state.spindles[0].direction, 0);
     EXPECT_EQ(p.state.spindles[0].speed, 500);

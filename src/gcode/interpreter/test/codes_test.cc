@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Each code once as it should be and once as it should not: canon calls in the standalone format.
+// Each code once accepted and once rejected: canon calls in the standalone format.
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
@@ -27,7 +27,7 @@ struct Outcome {
     int error_line = 0, error_column = 0;
 };
 
-/// Canon calls of a program that starts in millimetres on a metric machine; those of the start are left out.
+/// Canon calls of a program that starts in millimetres on a metric machine, without the calls of the start.
 Outcome run(const std::string &program, Settings settings = {}) {
     Outcome out;
     std::FILE *file = std::tmpfile();
@@ -76,9 +76,9 @@ class GoodCode : public testing::TestWithParam<GoodCase> {};
 TEST_P(GoodCode, CallsTheCanon) {
     const Outcome out = run(std::string("%\n") + GetParam().program + "\n%\n");
     std::vector<std::string> want = GetParam().calls;
-    const bool isEnded = std::ranges::count(want, "PROGRAM_END()") > 0;
-    EXPECT_EQ(out.step, isEnded ? Step::PROGRAM_END : Step::FILE_END) << out.error;
-    if (!isEnded) {
+    const bool ended = std::ranges::count(want, "PROGRAM_END()") > 0;
+    EXPECT_EQ(out.step, ended ? Step::PROGRAM_END : Step::FILE_END) << out.error;
+    if (!ended) {
         want.emplace_back("FINISH()");
     }
     EXPECT_EQ(joined(out.calls), joined(want));
@@ -288,16 +288,16 @@ const BadCase BAD[] = {
 INSTANTIATE_TEST_SUITE_P(Codes, BadCode, testing::ValuesIn(BAD));
 INSTANTIATE_TEST_SUITE_P(MoreCodes, BadCode, testing::ValuesIn(MORE_BAD));
 
-/// "g38.2" and the like in a program, comments left out.
+/// Codes such as "g38.2" in a program, without comments.
 std::set<std::string> codes_in(const std::string &program) {
     std::set<std::string> found;
-    bool isComment = false;
+    bool is_comment = false;
     for (std::size_t i = 0; i < program.size(); ++i) {
-        isComment = program[i] == '(' || (isComment && program[i] != ')');
+        is_comment = program[i] == '(' || (is_comment && program[i] != ')');
         const char letter = static_cast<char>(std::tolower(program[i]));
-        const bool isCode = !isComment && (letter == 'g' || letter == 'm') && i + 1 < program.size() &&
-                            std::isdigit(program[i + 1]) != 0;
-        if (!isCode) {
+        const bool is_code = !is_comment && (letter == 'g' || letter == 'm') && i + 1 < program.size() &&
+                             std::isdigit(program[i + 1]) != 0;
+        if (!is_code) {
             continue;
         }
         std::string code(1, letter);
@@ -309,7 +309,7 @@ std::set<std::string> codes_in(const std::string &program) {
     return found;
 }
 
-/// Each code of the table stands in a program above that works, and in one that is refused.
+/// Each code of the table occurs in a program above that works, and in one that is rejected.
 TEST(CodesTable, EveryCodeHasAGoodAndABadCase) {
     std::set<std::string> good, bad;
     for (const std::span<const GoodCase> cases :
@@ -334,7 +334,7 @@ TEST(CodesTable, EveryCodeHasAGoodAndABadCase) {
     }
 }
 
-/// The feeds along Z of a canned cycle.
+/// The feed moves along Z of a canned cycle.
 std::vector<std::string> feeds_of(const std::string &cycle) {
     std::vector<std::string> found;
     const Outcome outcome = run("F100\n" + cycle + "\nM2\n");
@@ -367,7 +367,7 @@ TEST(Codes, TapsAlongTheNormalOfThePlane) {
                                          "STRAIGHT_FEED(1.0000, 4.0000, 2.0000, 0.0000, 0.0000, 0.0000)"};
     EXPECT_EQ(feeds(run(program)), along);
     Settings printed;
-    printed.isTapOrderOfRs274 = true;
+    printed.tap_order_of_rs274 = true;
     EXPECT_EQ(feeds(run(program, printed)).front(),
               "STRAIGHT_FEED(-3.0000, 2.0000, 1.0000, 0.0000, 0.0000, 0.0000)");
 }

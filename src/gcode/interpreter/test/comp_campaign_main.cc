@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // A campaign of random contours under cutter compensation, judged by the disc that the tool sweeps.
 // comp_campaign [--kind pockets] --first N --count M --log FILE [--print SEED]: one line per seed in the log;
-// seeds that it has are not run again. Ends with 1 when a contour was gouged, left standing, or refused
-// without a reason.
+// seeds in the log are not run again. Status 1 when a contour was gouged, not fully cut, or rejected without
+// a reason.
 #include <cstdint>
 #include <cstdio>
 #include <fstream>
@@ -45,7 +45,7 @@ std::set<std::string> seeds_in(const std::string &name) {
     return seeds;
 }
 
-int run(unsigned first, unsigned count_of, const std::string &log, bool isPockets) {
+int run(unsigned first, unsigned count_of, const std::string &log, bool is_pockets) {
     const std::set<std::string> done = seeds_in(log);
     std::ofstream out(log, std::ios::app);
     Totals totals;
@@ -54,7 +54,7 @@ int run(unsigned first, unsigned count_of, const std::string &log, bool isPocket
             continue;
         }
         const CompVerdict v =
-            isPockets ? judge_pocket(PocketMaker(seed).make()) : judge_contour(ContourMaker(seed).make());
+            is_pockets ? judge_pocket(PocketMaker(seed).make()) : judge_contour(ContourMaker(seed).make());
         count(v, totals);
         out << seed << ' ' << v.corners << ' '
             << (!v.fault.empty()     ? "FAILED " + v.fault
@@ -63,7 +63,7 @@ int run(unsigned first, unsigned count_of, const std::string &log, bool isPocket
             << '\n';
     }
     fmt::print("{} {}, {} corners: {} failed, {} refused ({:.2f} %), {:.6f} of what is reachable cut\n",
-               totals.contours, isPockets ? "pockets" : "contours", totals.corners, totals.failed,
+               totals.contours, is_pockets ? "pockets" : "contours", totals.corners, totals.failed,
                totals.refused,
                100.0 * static_cast<double>(totals.refused) /
                    static_cast<double>(std::max<std::size_t>(1, totals.contours)),
@@ -76,18 +76,19 @@ int run(unsigned first, unsigned count_of, const std::string &log, bool isPocket
 
 }  // namespace
 
-/// The program, and at each corner its angle and the share of each side that the tool cannot reach.
+/// Prints the program, and for each corner its angle and the fraction of each side that the tool cannot
+/// reach.
 void print_contour(unsigned seed) {
     const CompContour c = ContourMaker(seed).make();
-    fmt::print("(tool radius {:.9f}{}{})\n", c.radius, c.isCrossing ? ", leads over itself" : "",
-               c.isTight ? ", tight" : "");
+    fmt::print("(tool radius {:.9f}{}{})\n", c.radius, c.crossing ? ", leads over itself" : "",
+               c.tight ? ", tight" : "");
     for (std::size_t k = 0; k < c.pieces.size(); ++k) {
         const FlatPiece &before = k == 0 ? c.entry : c.pieces[k - 1];
         const Junction met =
             junction(before, c.pieces[k], c.side * c.radius, tip_tolerance(c), ends_apart(c));
         fmt::print("(line {}: {:.4f} degrees, {:.4f} and {:.4f} taken{})\n", FIRST_LINE + static_cast<int>(k),
                    corner_angle(before, c.pieces[k]) * 180.0 / PI, met.before.share, met.behind.share,
-                   met.isCrossing ? ", crossing" : "");
+                   met.crossing ? ", crossing" : "");
     }
     fmt::print("{}M2\n", program_of(c));
 }
@@ -102,15 +103,15 @@ int main(int argc, char **argv) {
     std::string log;
     unsigned first = 1, count = 1000;
     std::int64_t printed = -1;
-    bool isPockets = false;
+    bool is_pockets = false;
     mw::options::CommandLine line(
         "comp_campaign [--kind pockets] --first N --count M --log FILE\n"
         "       comp_campaign [--kind pockets] --print SEED",
         "One line for each seed in the log; seeds that it has are not run again.\n");
     line.take("--kind", 1, "pockets", "random pockets; without it random contours",
-              [&isPockets](const mw::options::Words &words) -> mw::Result<> {
-                  isPockets = words[0] == "pockets";
-                  return isPockets ? mw::Result<>{} : mw::fail("'" + words[0] + "' is no kind");
+              [&is_pockets](const mw::options::Words &words) -> mw::Result<> {
+                  is_pockets = words[0] == "pockets";
+                  return is_pockets ? mw::Result<>{} : mw::fail("'" + words[0] + "' is no kind");
               });
     line.number("--first", "N", "seed to begin with (default 1)", first, 0, UINT32_MAX - 1);
     line.number("--count", "M", "so many seeds (default 1000)", count, 0, UINT32_MAX - 1);
@@ -124,8 +125,8 @@ int main(int argc, char **argv) {
     }
     if (printed >= 0) {
         const auto seed = static_cast<unsigned>(printed);
-        isPockets ? mw::gcode::test::print_pocket(seed) : mw::gcode::test::print_contour(seed);
+        is_pockets ? mw::gcode::test::print_pocket(seed) : mw::gcode::test::print_contour(seed);
         return 0;
     }
-    return mw::gcode::test::run(first, count, log, isPockets);
+    return mw::gcode::test::run(first, count, log, is_pockets);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Random contours for cutter compensation: lines and arcs that meet at every angle, with a tool that fits
-// along most of them; and the program that cuts each.
+// Random contours for cutter compensation: lines and arcs that meet at any angle, with a tool that fits along
+// most of them; and the program for each.
 #pragma once
 
 #include <array>
@@ -40,14 +40,14 @@ class Dice {
 struct CompContour {
     int side = 1;  ///< +1: left
     double radius = 1;
-    bool isInch = false, isXz = false, isTabled = false;
+    bool isInch = false, is_xz = false, tabled = false;
     int decimals = 9;
     FlatPiece entry;
     FlatPath pieces;
-    std::array<double, 16> heights{};  ///< of the piece's end along the plane's normal
+    std::array<double, 16> heights{};  ///< heights of the piece ends along the plane's normal
     FlatPoint exit;
-    bool isCrossing = false;  ///< leads back over itself behind a tip by more than may be cut away
-    bool isTight = false;     ///< the tool reaches a seventh of one of the pieces at most
+    bool crossing = false;  ///< reverses at a tip and loses more than permitted there
+    bool tight = false;     ///< the tool reaches at most a seventh of one of the pieces
 
     double mm() const { return isInch ? 25.4 : 1.0; }
 };
@@ -57,20 +57,20 @@ inline double corner_angle(const FlatPiece &a, const FlatPiece &b) {
     return std::atan2(std::sin(turn), std::cos(turn));
 }
 
-/// Where the tool beside `piece` would touch `other`, seen from their common corner on.
+/// Where the tool beside `piece` would touch `other`, from their common corner on.
 struct Contact {
-    double share = 0;    ///< of the piece that the first stretch takes
-    double deepest = 0;  ///< in the first stretch
-    double apart = 0;    ///< how deep, in a second stretch
-    FlatPoint free;      ///< where the first stretch ends
+    double share = 0;    ///< fraction of the piece in the first stretch
+    double deepest = 0;  ///< depth in the first stretch
+    double apart = 0;    ///< depth in a second stretch
+    FlatPoint free;      ///< end of the first stretch
 };
 
 /// A wedge between the two that closes again within `tolerance` belongs to the first stretch.
 inline Contact contact(const FlatPiece &piece, const FlatPiece &other, double reach, double tolerance,
-                       bool isFromEnd) {
+                       bool from_end) {
     constexpr int SAMPLES = 240;
     constexpr double FREE = 1e-7;
-    const auto tool = [&](double share) { return piece.beside(isFromEnd ? 1.0 - share : share, reach); };
+    const auto tool = [&](double share) { return piece.beside(from_end ? 1.0 - share : share, reach); };
     const auto depth = [&](double share) { return std::fabs(reach) - other.distance_to(tool(share)); };
     const auto share_of = [](int i) {
         const double root = static_cast<double>(i) / SAMPLES;
@@ -78,7 +78,7 @@ inline Contact contact(const FlatPiece &piece, const FlatPiece &other, double re
     };
     Contact out;
     const auto isClosed = [&](double share) {
-        return other.distance_to(piece.at(isFromEnd ? 1.0 - share : share)) < tolerance;
+        return other.distance_to(piece.at(from_end ? 1.0 - share : share)) < tolerance;
     };
     int i = 0;
     while (i < SAMPLES && isClosed(share_of(i)) && depth(share_of(i)) <= FREE) {
@@ -101,25 +101,25 @@ inline Contact contact(const FlatPiece &piece, const FlatPiece &other, double re
     return out;
 }
 
-/// How two pieces meet, by the places where the tool touches one while it cuts the other.
+/// Junction of two pieces, by the points where the tool touches one while it cuts the other.
 struct Junction {
     Contact before, behind;
-    bool isCrossing = false;  ///< the stretches cannot be left out: they lead to different places
+    bool crossing = false;  ///< the stretches cannot be omitted: they end at different points
 };
 
-/// `rounding` is how far rounded coordinates may put the two ends of the stretches apart.
+/// `rounding`: distance that rounded coordinates may put between the ends of the stretches.
 inline Junction junction(const FlatPiece &before, const FlatPiece &behind, double reach, double tolerance,
                          double rounding) {
     Junction out{contact(before, behind, reach, tolerance, true),
                  contact(behind, before, reach, tolerance, false)};
     const double radius = std::fabs(reach);
-    const bool hasSecond = std::max(out.before.apart, out.behind.apart) > tolerance;
-    const bool isTouching = std::max(out.before.deepest, out.behind.deepest) > tolerance;
+    const bool has_second = std::max(out.before.apart, out.behind.apart) > tolerance;
+    const bool touching = std::max(out.before.deepest, out.behind.deepest) > tolerance;
     const double gap = flat_distance(out.before.free, out.behind.free);
-    out.isCrossing = hasSecond || (isTouching && gap > rounding);
+    out.crossing = has_second || (touching && gap > rounding);
     const double turn = corner_angle(before, behind);
-    const bool isReversal = std::fabs(turn) > PI - 0.31;
-    if (!isTouching && (turn * reach < 0.0 || isReversal)) {
+    const bool is_reversal = std::fabs(turn) > PI - 0.31;
+    if (!touching && (turn * reach < 0.0 || is_reversal)) {
         constexpr int SAMPLES = 60;
         for (int i = 0; i <= SAMPLES; ++i) {
             const double angle = before.heading(1) + std::copysign(PI / 2.0, reach) +
@@ -127,13 +127,13 @@ inline Junction junction(const FlatPiece &before, const FlatPiece &behind, doubl
             const FlatPoint around{before.end.x + radius * std::cos(angle),
                                    before.end.y + radius * std::sin(angle)};
             const double depth = radius - std::min(before.distance_to(around), behind.distance_to(around));
-            out.isCrossing = out.isCrossing || depth > tolerance;
+            out.crossing = out.crossing || depth > tolerance;
         }
     }
     return out;
 }
 
-/// What may be lost of a contour that leads back over itself.
+/// Permitted loss of a contour that reverses.
 inline double tip_tolerance(const CompContour &c) {
     constexpr double MM = 0.0045;
     return MM / c.mm();
@@ -151,8 +151,8 @@ class ContourMaker {
         contour_ = {};
         contour_.side = dice_.sign();
         contour_.isInch = dice_.chance(0.15);
-        contour_.isXz = dice_.chance(0.15);
-        contour_.isTabled = dice_.chance(0.3);
+        contour_.is_xz = dice_.chance(0.15);
+        contour_.tabled = dice_.chance(0.3);
         contour_.decimals = dice_.chance(0.25) ? 4 : 9;
         contour_.radius = round(dice_.log_between(0.2, 8.0) / contour_.mm());
         const FlatPoint origin{round(dice_.between(-20, 20)), round(dice_.between(-20, 20))};
@@ -191,7 +191,7 @@ class ContourMaker {
                                                to.y - back * std::sin(heading) + beside * std::cos(heading)});
     }
 
-    /// Every angle, most often next to 0 and to 180 degrees.
+    /// All angles, most often near 0 and 180 degrees.
     double turn() {
         const double near = dice_.log_between(1e-7, 0.09);
         switch (dice_.up_to(9)) {
@@ -217,8 +217,8 @@ class ContourMaker {
             return piece;
         }
         const int rotation = dice_.sign();
-        const bool isInside = rotation == contour_.side;
-        const double radius = r * (isInside ? dice_.log_between(1.05, 40.0) : dice_.log_between(0.2, 40.0));
+        const bool inside = rotation == contour_.side;
+        const double radius = r * (inside ? dice_.log_between(1.05, 40.0) : dice_.log_between(0.2, 40.0));
         const double across = heading + rotation * PI / 2.0;
         piece.isArc = true;
         piece.centre =
@@ -238,31 +238,32 @@ class ContourMaker {
         return piece;
     }
 
-    /// Where the tool's centre goes around the corner behind `before`, if it is convex.
+    /// Path of the tool centre around the corner after `before`, if it is convex.
     FlatPoint around(const FlatPiece &before, const FlatPiece &behind, double share) const {
         const double turn = corner_angle(before, behind), reach = contour_.side * contour_.radius;
-        const bool isConvex = turn * reach < 0.0 || std::fabs(turn) > PI - 0.31;
+        const bool convex = turn * reach < 0.0 || std::fabs(turn) > PI - 0.31;
         const double angle = before.heading(1) + std::copysign(PI / 2.0, reach) +
-                             (isConvex ? std::copysign(turn, -reach) * share : 0.0);
+                             (convex ? std::copysign(turn, -reach) * share : 0.0);
         return {before.end.x + contour_.radius * std::cos(angle),
                 before.end.y + contour_.radius * std::sin(angle)};
     }
 
-    /// Whether the tool along `piece` keeps off all pieces but the one before, and along these off `piece`.
+    /// True if the tool along `piece` touches only the previous piece, and the tool along the others does not
+    /// touch `piece`.
     bool isApart(const FlatPiece &piece) const {
         constexpr int SAMPLES = 120;
         const double r = contour_.radius, reach = contour_.side * r;
         for (std::size_t k = 0; k < contour_.pieces.size(); ++k) {
-            const bool isLast = k + 1 == contour_.pieces.size();
-            const FlatPiece &behind = isLast ? piece : contour_.pieces[k + 1];
+            const bool is_last = k + 1 == contour_.pieces.size();
+            const FlatPiece &behind = is_last ? piece : contour_.pieces[k + 1];
             for (int i = 0; i <= SAMPLES / 4; ++i) {
                 const FlatPoint tool = around(contour_.pieces[k], behind, 4.0 * i / SAMPLES);
-                for (std::size_t m = 0; isLast && m < k; ++m) {
+                for (std::size_t m = 0; is_last && m < k; ++m) {
                     if (contour_.pieces[m].distance_to(tool) < 1.02 * r) {
                         return false;
                     }
                 }
-                if (!isLast && piece.distance_to(tool) < 1.02 * r) {
+                if (!is_last && piece.distance_to(tool) < 1.02 * r) {
                     return false;
                 }
             }
@@ -280,7 +281,7 @@ class ContourMaker {
         return true;
     }
 
-    /// Longer than the rounding of its ends can turn it.
+    /// Long enough that rounding of its ends does not change its direction.
     bool isSound(const FlatPiece &piece) const {
         const double least = contour_.decimals == 4 ? 0.05 : 1e-4;
         return piece.length() > least &&
@@ -288,17 +289,17 @@ class ContourMaker {
                (!piece.isArc || piece.radius() > least);
     }
 
-    /// What meets at a corner may touch the tool in one stretch from the corner on, no more.
-    bool isFair(const FlatPiece &piece, bool &isCrossing, bool &isTight) {
+    /// Neighbours at a corner may touch the tool only in one stretch from the corner on.
+    bool isFair(const FlatPiece &piece, bool &crossing, bool &tight) {
         const double reach = contour_.side * contour_.radius;
         const FlatPiece &before = contour_.pieces.empty() ? contour_.entry : contour_.pieces.back();
         const Junction met = junction(before, piece, reach, tip_tolerance(contour_), ends_apart(contour_));
-        isCrossing = met.isCrossing;
-        if (isCrossing && !dice_.chance(0.002)) {
+        crossing = met.crossing;
+        if (crossing && !dice_.chance(0.002)) {
             return false;
         }
-        isTight = met.before.share + taken_ >= 0.85 || met.behind.share > 0.85;
-        if (isTight && !dice_.chance(0.002)) {
+        tight = met.before.share + taken_ >= 0.85 || met.behind.share > 0.85;
+        if (tight && !dice_.chance(0.002)) {
             return false;
         }
         made_ = met.behind.share;
@@ -308,16 +309,16 @@ class ContourMaker {
     bool add_piece(double first_heading) {
         constexpr int TRIES = 40;
         for (int i = 0; i < TRIES; ++i) {
-            const bool isFirst = contour_.pieces.empty();
-            const double heading = isFirst ? first_heading : contour_.pieces.back().heading(1) + turn();
+            const bool first = contour_.pieces.empty();
+            const double heading = first ? first_heading : contour_.pieces.back().heading(1) + turn();
             const FlatPiece piece = candidate(heading);
-            bool isCrossing = false, isTight = false;
-            if (!isSound(piece) || !isApart(piece) || !isFair(piece, isCrossing, isTight)) {
+            bool crossing = false, tight = false;
+            if (!isSound(piece) || !isApart(piece) || !isFair(piece, crossing, tight)) {
                 continue;
             }
             taken_ = made_;
-            contour_.isCrossing = contour_.isCrossing || isCrossing;
-            contour_.isTight = contour_.isTight || isTight;
+            contour_.crossing = contour_.crossing || crossing;
+            contour_.tight = contour_.tight || tight;
             contour_.pieces.push_back(piece);
             return true;
         }
@@ -326,23 +327,23 @@ class ContourMaker {
 
     Dice dice_;
     CompContour contour_;
-    double taken_ = 0, made_ = 0;  ///< share of the last piece that its first corner takes
+    double taken_ = 0, made_ = 0;  ///< fraction of the last piece that its first corner uses
 };
 
 /// Line 1 of the contour is line `FIRST_LINE` of the program.
 constexpr int FIRST_LINE = 6;
 
 inline std::string program_of(const CompContour &c) {
-    const char a = c.isXz ? 'Z' : 'X', b = c.isXz ? 'X' : 'Y', n = c.isXz ? 'Y' : 'Z';
-    const char i = c.isXz ? 'K' : 'I', j = c.isXz ? 'I' : 'J';
+    const char a = c.is_xz ? 'Z' : 'X', b = c.is_xz ? 'X' : 'Y', n = c.is_xz ? 'Y' : 'Z';
+    const char i = c.is_xz ? 'K' : 'I', j = c.is_xz ? 'I' : 'J';
     const auto place = [&](FlatPoint p) {
         return fmt::format("{}{:.{}f} {}{:.{}f}", a, p.x, c.decimals, b, p.y, c.decimals);
     };
-    std::string text = fmt::format("{} {} G90 G94 F100\n", c.isInch ? "G20" : "G21", c.isXz ? "G18" : "G17");
+    std::string text = fmt::format("{} {} G90 G94 F100\n", c.isInch ? "G20" : "G21", c.is_xz ? "G18" : "G17");
     text += fmt::format("G0 {}0\nG0 {}\n", n, place(c.entry.start));
     const int code = c.side > 0 ? 41 : 42;
-    text += c.isTabled ? fmt::format("G{} D7\n", code)
-                       : fmt::format("G{}.1 D{:.{}f}\n", code, 2.0 * c.radius, c.decimals);
+    text += c.tabled ? fmt::format("G{} D7\n", code)
+                     : fmt::format("G{}.1 D{:.{}f}\n", code, 2.0 * c.radius, c.decimals);
     text += fmt::format("G1 {}\n", place(c.entry.end));
     for (std::size_t k = 0; k < c.pieces.size(); ++k) {
         const FlatPiece &p = c.pieces[k];

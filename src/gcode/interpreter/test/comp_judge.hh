@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Cuts a random contour and judges it: nothing gouged, all of it cut that the tool can reach, and a refusal
-// only for a reason that the contour shows.
+// Cuts a random contour and judges it: no gouges, everything cut that the tool can reach, and rejections only
+// for a reason in the contour.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace mw::gcode::test {
 
-/// Moves with the lines that they belong to, in the plane of the contour.
+/// Moves and their lines, in the plane of the contour.
 class PlaneRecorder : public Recorder {
   public:
     explicit PlaneRecorder(const CompContour &contour) : contour_(contour) {}
@@ -38,8 +38,8 @@ class PlaneRecorder : public Recorder {
   private:
     FlatPoint flat(const Pose &p) const {
         const double mm = contour_.mm();
-        return contour_.isXz ? FlatPoint{p[geometry::AXIS_Z] / mm, p[geometry::AXIS_X] / mm}
-                             : FlatPoint{p[geometry::AXIS_X] / mm, p[geometry::AXIS_Y] / mm};
+        return contour_.is_xz ? FlatPoint{p[geometry::AXIS_Z] / mm, p[geometry::AXIS_X] / mm}
+                              : FlatPoint{p[geometry::AXIS_X] / mm, p[geometry::AXIS_Y] / mm};
     }
     void add(FlatPiece piece) {
         piece.start = at_;
@@ -53,8 +53,8 @@ class PlaneRecorder : public Recorder {
 
 struct CompVerdict {
     std::size_t corners = 0;
-    std::string fault;    ///< empty: sound
-    std::string refused;  ///< the reason, when the program was refused
+    std::string fault;    ///< empty: no fault
+    std::string refused;  ///< the reason when the program was rejected
     double wanted = 0, reached = 0;
 };
 
@@ -70,8 +70,8 @@ inline Step run_text(Interpreter &interpreter, const std::string &text) {
     return step;
 }
 
-/// What the tool may be nearer to the contour than its radius: a corner passed as if straight, a contour that
-/// leads back over itself at a tip, rounded coordinates [program units].
+/// How much nearer to the contour than its radius the tool may be: a nearly straight corner, a reversal at a
+/// tip, rounded coordinates [program units].
 inline double allowed_gouge(const CompContour &c) {
     constexpr double STRAIGHT = 0.05 * 0.05 / 2.0, TIP_MM = 0.005;
     return 1.02 * STRAIGHT * c.radius + TIP_MM / c.mm() + (c.decimals == 4 ? 4e-4 : 1e-6);
@@ -79,16 +79,16 @@ inline double allowed_gouge(const CompContour &c) {
 
 inline void weigh(const CompContour &c, const PlaneRecorder &recorder, CompVerdict &out) {
     FlatPath cut;
-    bool hasEntry = false;
+    bool has_entry = false;
     for (std::size_t i = 0; i < recorder.path.size(); ++i) {
         const int line = recorder.line_of[i];
-        const bool isContour = line >= FIRST_LINE && line < FIRST_LINE + static_cast<int>(c.pieces.size());
-        hasEntry = hasEntry || line == FIRST_LINE - 1;
-        if (isContour) {
+        const bool is_contour = line >= FIRST_LINE && line < FIRST_LINE + static_cast<int>(c.pieces.size());
+        has_entry = has_entry || line == FIRST_LINE - 1;
+        if (is_contour) {
             cut.push_back(recorder.path[i]);
         }
     }
-    if (cut.empty() || !hasEntry) {
+    if (cut.empty() || !has_entry) {
         out.fault = "nothing cut";
         return;
     }
@@ -97,7 +97,7 @@ inline void weigh(const CompContour &c, const PlaneRecorder &recorder, CompVerdi
         out.fault = fmt::format("gouge {:.5f} at {:.4f} {:.4f}", gouge.depth, gouge.place.x, gouge.place.y);
         return;
     }
-    if (c.isCrossing) {
+    if (c.crossing) {
         return;
     }
     FlatPath walls = c.pieces;
@@ -123,7 +123,7 @@ inline void weigh(const CompContour &c, const PlaneRecorder &recorder, CompVerdi
     }
 }
 
-/// The share of a piece that the tool can cut without touching the others.
+/// Fraction of a piece that the tool can cut without touching the others.
 inline double free_share(const FlatPiece &piece, const std::vector<FlatPiece> &others, double reach) {
     constexpr int SAMPLES = 4000;
     int count = 0;
@@ -134,11 +134,11 @@ inline double free_share(const FlatPiece &piece, const std::vector<FlatPiece> &o
     return static_cast<double>(count) / SAMPLES;
 }
 
-/// Whether the contour shows why it was refused at `line`.
+/// Checks that the contour explains the rejection at `line`.
 inline void explain(const CompContour &c, int line, const std::string &error, CompVerdict &out) {
     const int at = line - FIRST_LINE;
-    const bool isConcave = error.find("in concave corner") != std::string::npos;
-    if (!isConcave || at < 0 || at >= static_cast<int>(c.pieces.size())) {
+    const bool concave = error.find("in concave corner") != std::string::npos;
+    if (!concave || at < 0 || at >= static_cast<int>(c.pieces.size())) {
         out.fault = "refused: " + error.substr(0, error.find('\n'));
         return;
     }
@@ -154,7 +154,7 @@ inline void explain(const CompContour &c, int line, const std::string &error, Co
     const Junction met = junction(before, piece, reach, tip_tolerance(c), ends_apart(c));
     if (last < LITTLE || next < LITTLE) {
         out.refused = "a move beside the corner of which the tool reaches a seventh at most";
-    } else if (met.isCrossing) {
+    } else if (met.crossing) {
         out.refused = "a contour that leads back over itself";
     } else {
         out.fault = fmt::format("refused without a reason: {:.4f} and {:.4f} of the moves are free; {}", last,

@@ -11,12 +11,12 @@
 
 namespace mw::gcode::test {
 
-/// The wall goes around the origin, counterclockwise; the tool is inside.
+/// The wall surrounds the origin counterclockwise; the tool is inside.
 struct Pocket {
     FlatPath wall;
     double radius = 1, layer = 1, helix = 1;
     int layers = 1;
-    bool isClockwise = false;  ///< cut the other way round, the tool on its right
+    bool clockwise = false;  ///< cut clockwise, with the tool on its right
 
     double floor() const { return -layer * layers; }
 };
@@ -43,7 +43,7 @@ class PocketMaker {
         out.helix = 0.8 * out.radius;
         out.layer = dice_.between(0.3, 2.0);
         out.layers = 1 + dice_.up_to(2);
-        out.isClockwise = dice_.chance(0.4);
+        out.clockwise = dice_.chance(0.4);
         const int corners = 4 + dice_.up_to(4);
         std::vector<FlatPoint> places;
         for (int i = 0; i < corners; ++i) {
@@ -51,7 +51,7 @@ class PocketMaker {
             const double far = dice_.between(11.0, 20.0);
             places.push_back({far * std::cos(angle), far * std::sin(angle)});
         }
-        // The first side is begun in its middle, where the tool comes in and goes out.
+        // The first side begins in its middle, where the tool enters and leaves.
         const FlatPoint middle{(places[0].x + places[1].x) / 2.0, (places[0].y + places[1].y) / 2.0};
         out.wall.push_back(line(middle, places[1]));
         for (int i = 1; i < corners; ++i) {
@@ -79,7 +79,7 @@ class PocketMaker {
                         (from.y + to.y) / 2.0 + far * std::sin(heading)};
         return piece;
     }
-    /// The tool beside each side touches its neighbours only, from the corner on; and fits beside the middle.
+    /// The tool beside each side touches only the neighbours, from the corner on, and fits beside the middle.
     static bool isFair(const Pocket &pocket) {
         const double r = pocket.radius;
         const std::size_t count = pocket.wall.size();
@@ -92,14 +92,14 @@ class PocketMaker {
             if (piece.isArc && piece.sweep_rad > 0 && piece.radius() < 1.1 * r) {
                 return false;
             }
-            const bool isSplit = k + 1 == count;  // the two halves of the first side
-            const Junction met = isSplit ? Junction{} : junction(piece, next, r, 0.0045, 2e-4);
-            if (met.isCrossing || met.before.share > 0.45 || met.behind.share > 0.45) {
+            const bool split = k + 1 == count;  // the two halves of the first side
+            const Junction met = split ? Junction{} : junction(piece, next, r, 0.0045, 2e-4);
+            if (met.crossing || met.before.share > 0.45 || met.behind.share > 0.45) {
                 return false;
             }
             for (std::size_t m = 0; m < count; ++m) {
-                const bool isNear = m == k || m == (k + 1) % count || (m + 1) % count == k;
-                for (int i = 0; !isNear && i <= 60; ++i) {
+                const bool is_near = m == k || m == (k + 1) % count || (m + 1) % count == k;
+                for (int i = 0; !is_near && i <= 60; ++i) {
                     if (pocket.wall[m].distance_to(piece.beside(i / 60.0, r)) < 1.02 * r) {
                         return false;
                     }
@@ -116,17 +116,17 @@ inline std::string program_of(const Pocket &pocket) {
     const auto place = [](FlatPoint p) { return fmt::format("X{:.6f} Y{:.6f}", p.x, p.y); };
     const double lead = 1.5 * pocket.radius;
     FlatPath wall = pocket.wall;
-    if (pocket.isClockwise) {
+    if (pocket.clockwise) {
         std::reverse(wall.begin(), wall.end());
         for (FlatPiece &piece : wall) {
             std::swap(piece.start, piece.end);
             piece.sweep_rad = -piece.sweep_rad;
         }
     }
-    const double side = pocket.isClockwise ? -1.0 : 1.0, heading = wall.front().heading(0);
+    const double side = pocket.clockwise ? -1.0 : 1.0, heading = wall.front().heading(0);
     const FlatPoint touch = wall.front().start, centre = wall.front().beside(0, side * lead);
     const FlatPoint along{lead * std::cos(heading), lead * std::sin(heading)};
-    const int arc = pocket.isClockwise ? 2 : 3, comp = pocket.isClockwise ? 42 : 41;
+    const int arc = pocket.clockwise ? 2 : 3, comp = pocket.clockwise ? 42 : 41;
     std::string text = "G21 G17 G90 G94 F300\nG0 Z5\n";
     for (int i = 1; i <= pocket.layers; ++i) {
         const double z = -pocket.layer * i;
@@ -149,7 +149,7 @@ inline std::string program_of(const Pocket &pocket) {
     return text;
 }
 
-/// Cuts the stock as the moves come; keeps the first thing that must not be.
+/// Cuts the stock move by move; keeps the first fault.
 class StockRecorder : public Recorder {
   public:
     StockRecorder(const Pocket &pocket, testing::MillStock &stock) : pocket_(pocket), stock_(stock) {}
@@ -176,10 +176,10 @@ class StockRecorder : public Recorder {
     }
 
   private:
-    void go(testing::StockPoint to, bool isRapid) {
+    void go(testing::StockPoint to, bool rapid) {
         const testing::MillStock::Cut cut = stock_.cut(at_, to, pocket_.radius);
         constexpr double ROUNDING = 2e-6;
-        if (fault.empty() && isRapid && cut.deepest > ROUNDING) {
+        if (fault.empty() && rapid && cut.deepest > ROUNDING) {
             fault = fmt::format("line {}: rapid {:.4f} deep in the stock", line_, cut.deepest);
         } else if (fault.empty() && cut.deepest > pocket_.layer + ROUNDING) {
             fault =
@@ -193,7 +193,7 @@ class StockRecorder : public Recorder {
     int line_ = 0;
 };
 
-/// Whether the wall goes around the point.
+/// True if the wall surrounds the point.
 inline bool isInside(const FlatPath &wall, FlatPoint p) {
     double turned = 0;
     for (const FlatPiece &piece : wall) {
@@ -215,8 +215,8 @@ inline std::string weigh_stock(const Pocket &pocket, const testing::MillStock &s
             if (p.z < pocket.floor() - 1e-5) {
                 return fmt::format("too deep at {:.3f} {:.3f}: {:.4f}", p.x, p.y, p.z);
             }
-            const bool isCut = p.z < stock.top() - 1e-9;
-            if (isCut && !isInside(pocket.wall, {p.x, p.y}) &&
+            const bool is_cut = p.z < stock.top() - 1e-9;
+            if (is_cut && !isInside(pocket.wall, {p.x, p.y}) &&
                 testing::path_distance(pocket.wall, {p.x, p.y}) > 0.1 * stock.cell()) {
                 return fmt::format("gouge at {:.3f} {:.3f}", p.x, p.y);
             }
@@ -226,8 +226,8 @@ inline std::string weigh_stock(const Pocket &pocket, const testing::MillStock &s
         for (int i = 0; i <= 200; ++i) {
             const FlatPoint tool = piece.beside(i / 200.0, pocket.radius);
             const FlatPoint beside = piece.beside(i / 200.0, near);
-            const bool isReached = testing::path_distance(pocket.wall, tool) >= pocket.radius - 1e-6;
-            if (isReached && stock.height_at(beside.x, beside.y) > pocket.floor() + 1e-5) {
+            const bool reached = testing::path_distance(pocket.wall, tool) >= pocket.radius - 1e-6;
+            if (reached && stock.height_at(beside.x, beside.y) > pocket.floor() + 1e-5) {
                 return fmt::format("left standing at {:.3f} {:.3f}", beside.x, beside.y);
             }
         }

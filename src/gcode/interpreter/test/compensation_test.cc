@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Cutter compensation alone: moves in, moves of the tool's centre out.
+// Cutter compensation in isolation: moves in, moves of the tool centre out.
 #include <numbers>
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace mw::gcode::detail {
 namespace {
 
-/// Moves from place to place in the plane XY.
+/// Moves between points in the plane XY.
 class Path {
   public:
     explicit Path(CompSide side, double radius) { comp.turn_on(side, 411, radius, 0); }
@@ -21,10 +21,10 @@ class Path {
         Pose end = position;
         end[geometry::AXIS_X] = x;
         end[geometry::AXIS_Y] = y;
-        const bool isDone = comp.move_along_arc({position, Plane::XY, LengthUnits::MM},
-                                                {end, centre_x, centre_y, rotation}, canon, fault);
+        const bool done = comp.move_along_arc({position, Plane::XY, LengthUnits::MM},
+                                              {end, centre_x, centre_y, rotation}, canon, fault);
         position = end;
-        return isDone;
+        return done;
     }
     /// Ends of all moves, in the plane.
     std::vector<Point> ends() {
@@ -53,14 +53,14 @@ class Path {
     Pose position;
 
   private:
-    bool go(double x, double y, bool isRapid) {
+    bool go(double x, double y, bool rapid) {
         Pose end = position;
         end[geometry::AXIS_X] = x;
         end[geometry::AXIS_Y] = y;
-        const bool isDone =
-            comp.move_straight({position, Plane::XY, LengthUnits::MM}, isRapid, end, canon, fault);
+        const bool done =
+            comp.move_straight({position, Plane::XY, LengthUnits::MM}, rapid, end, canon, fault);
         position = end;
-        return isDone;
+        return done;
     }
 };
 
@@ -149,7 +149,7 @@ TEST(CompensationAlone, ACopyTakesABlockBack) {
     EXPECT_NE(path.comp, before);
     path.comp = before;
     path.canon.rollback();
-    expect_ends(path, {{10, 1}});  // not shortened by the corner that was taken back
+    expect_ends(path, {{10, 1}});  // not shortened by the corner that was undone
 }
 
 TEST(CompensationAlone, HoldsTheLastMoveUntilItIsOff) {
@@ -189,7 +189,7 @@ TEST(CompensationAlone, ALatheToolIsLedByItsControlledPoint) {
 
 CompElement straight(Point from, Point to, const CornerTool &tool) {
     CompElement one;
-    one.isSet = true;
+    one.set = true;
     one.from = from;
     one.to = to;
     one.start_direction = one.end_direction = unit(from, to);

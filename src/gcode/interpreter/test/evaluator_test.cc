@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Values of expressions, alone. The figures are those that the reference prints for the same expressions.
+// Values of expressions. The expected numbers are those that LinuxCNC prints for the same expressions.
 #include <cmath>
 #include <map>
 #include <string>
@@ -13,7 +13,7 @@
 namespace mw::gcode::detail {
 namespace {
 
-/// Keeps #<_mode>, and #<_gone> that has no value; #5420 is 42.
+/// Has #<_mode>, and #<_gone> without a value; #5420 is 42.
 class Kept final : public BuiltIns {
   public:
     bool isBuiltInName(std::string_view name) const override { return name == "_mode" || name == "_gone"; }
@@ -27,7 +27,7 @@ class Kept final : public BuiltIns {
 
 class Evaluation : public ::testing::Test {
   protected:
-    /// The value of an expression, or its error: "column: message", the column in the expression.
+    /// The value of an expression, or its error as "column: message".
     std::string value_of(const std::string &expression) {
         Arena arena;
         const std::string before = "#1=[";
@@ -138,7 +138,7 @@ TEST_F(Evaluation, NumbersNameParametersDirectlyAndThroughOthers) {
     EXPECT_EQ(value_of("#2"), "3");
     EXPECT_EQ(value_of("##2"), "30");
     EXPECT_EQ(value_of("#[1 + 2]"), "30");
-    EXPECT_EQ(value_of("#2.00005"), "3") << "as whole as the language asks for";
+    EXPECT_EQ(value_of("#2.00005"), "3") << "as whole as the language requires";
     EXPECT_EQ(value_of("#5602"), "0");
     EXPECT_EQ(value_of("#5420"), "42");
     EXPECT_EQ(value_of("-#2 + 1"), "-2");

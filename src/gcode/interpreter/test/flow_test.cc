@@ -107,7 +107,7 @@ TEST(Flow, EndlessLoopEndsByTheBudget) {
     EXPECT_EQ(machine.run("o1 while [1]\no1 endwhile\n"), Step::FAILED);
 }
 
-/// Where the structure of O words is broken, and not where that is noticed.
+/// Errors name the line that breaks the structure of O words, not the line where it is detected.
 TEST(Flow, BrokenOWordsAreNamedWhereTheyStand) {
     const struct {
         const char *program, *error;
@@ -156,25 +156,25 @@ TEST(Flow, NamesOfIniAndHalCanBeSwitchedOff) {
         std::optional<double> ini_value(std::string_view, std::string_view) const override { return 4; }
         std::optional<double> hal_value(std::string_view) const override { return 5; }
     } source;
-    for (const bool isOn : {true, false}) {
+    for (const bool on : {true, false}) {
         Settings settings;
-        settings.isIniReadable = settings.isHalReadable = isOn;
+        settings.ini_readable = settings.hal_readable = on;
         test::Recorder record;
         MachineFrame frame(record, source.units);
         Interpreter interpreter(frame, source, source, source, settings);
         ASSERT_TRUE(interpreter.begin());
         for (const char *line : {"G0 X#<_ini[a]b>", "G0 X#<_hal[c.d]>"}) {
-            EXPECT_EQ(interpreter.execute(line), isOn ? Step::FILE_END : Step::FAILED) << line;
+            EXPECT_EQ(interpreter.execute(line), on ? Step::FILE_END : Step::FAILED) << line;
         }
         EXPECT_EQ(interpreter.execute("#1=[exists[#<_hal[c.d]>]] G0 Y#1"), Step::FILE_END);
-        EXPECT_EQ(interpreter.parameter(1), isOn ? 1.0 : 0.0);
+        EXPECT_EQ(interpreter.parameter(1), on ? 1.0 : 0.0);
     }
 }
 
 TEST(Flow, AToolOffsetThatIsRetainedFollowsTheTool) {
-    for (const bool isRetained : {true, false}) {
+    for (const bool retained : {true, false}) {
         Settings settings;
-        settings.isToolOffsetRetained = isRetained;
+        settings.tool_offset_retained = retained;
         Machine machine(settings);
         for (const double z : {10.0, 20.0}) {
             ToolEntry tool;
@@ -197,7 +197,7 @@ TEST(Flow, AToolOffsetThatIsRetainedFollowsTheTool) {
         }
         const Calls followed = {"print0 0", "print-5 1", "print5 1", "print15 0", "print15 0", "print0 1"};
         const Calls kept = {"print0 0", "print5 1", "print5 1", "print5 1", "print5 1", "print1 1"};
-        EXPECT_EQ(prints, isRetained ? followed : kept);
+        EXPECT_EQ(prints, retained ? followed : kept);
     }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What files that nobody here wrote contain: odd characters, text behind the end, texts that scripts compare.
+// Contents of files from other sources: odd characters, text after the end, texts that scripts compare.
 #include <gtest/gtest.h>
 
 #include "gcode/interpreter/test/recorder.hh"
@@ -83,7 +83,7 @@ TEST(ForeignFiles, NothingBehindTheClosingPercentSignCounts) {
     Machine machine;
     EXPECT_EQ(machine.run(behind), Step::FAILED);
     EXPECT_EQ(machine.record.lines.size(), 1U);
-    EXPECT_EQ(machine.record.calls.back(), "finish") << "the search has come to the end of the program";
+    EXPECT_EQ(machine.record.calls.back(), "finish") << "the search has reached the end of the program";
     Machine before;
     EXPECT_EQ(before.run("%\nG0 X1\no100 call\nM2\no100 sub\nG0 X5\no100 endsub\n%\n"), Step::PROGRAM_END);
     EXPECT_EQ(before.record.lines.size(), 2U);

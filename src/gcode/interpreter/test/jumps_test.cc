@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Conditions and loops alone: a program of O words and settings, without an executor.
+// Conditions and loops in isolation: a program of O words and settings, without an executor.
 #include <string>
 
 #include <gtest/gtest.h>
@@ -16,12 +16,12 @@ class NothingKept final : public BuiltIns {
     double built_in(int) const override { return 0; }
 };
 
-/// Runs a program, settings and jumps only, and writes down each G1 that it comes to.
+/// Runs a program of settings and jumps, and records each G1 that it reaches.
 class JumpRun {
   public:
     explicit JumpRun(const std::string &text) : program_("test", text, names_) { here.program = &program_; }
 
-    /// The lines with G1 in the order in which they are run; an error with its line at the end.
+    /// The lines with G1 in execution order; at the end an error with its line.
     std::string trace(int most = 1000) {
         std::string out;
         for (int steps = 0; here.next <= program_.count_lines(); ++steps) {
@@ -63,13 +63,13 @@ class JumpRun {
         }
         const int line = here.line;
         LoopTurn turn;
-        const bool isDone =
+        const bool done =
             run_jump(view, view.arena->owords[view.block->oword], here, {evaluator_, names_, fault}, turn) &&
             check_jumped_over(line, here, fault);
         if (turn.first != 0) {
             turns.push_back(turn);
         }
-        return isDone;
+        return done;
     }
 
     Names names_;
@@ -101,7 +101,7 @@ TEST(Jumps, WhileLooksFirstAndDoAfterwards) {
     ASSERT_EQ(loop.turns.size(), 2u);
     EXPECT_EQ(loop.turns[0].first, 2);
     EXPECT_EQ(loop.turns[0].last, 5);
-    EXPECT_TRUE(loop.turns[0].isConditional);
+    EXPECT_TRUE(loop.turns[0].conditional);
     EXPECT_EQ(JumpRun("o1 while [0]\nG1\no1 endwhile\nG1\n").trace(), "4 ");
     EXPECT_EQ(JumpRun("o1 do\nG1\no1 while [0]\nG1\n").trace(), "2 4 ");
     EXPECT_EQ(JumpRun("#1=3\no1 do\nG1\n#1=[#1-1]\no1 while [#1 gt 0]\n").trace(), "3 3 3 ");
@@ -117,7 +117,7 @@ TEST(Jumps, RepeatCountsAndRounds) {
     JumpRun run("o1 repeat [2]\nG1\no1 endrepeat\n");
     EXPECT_EQ(run.trace(), "2 2 ");
     ASSERT_EQ(run.turns.size(), 1u);
-    EXPECT_FALSE(run.turns[0].isConditional);
+    EXPECT_FALSE(run.turns[0].conditional);
     EXPECT_TRUE(run.here.repeats.empty());
 }
 

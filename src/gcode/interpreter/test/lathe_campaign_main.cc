@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A campaign of random turning jobs on simulated stock.
-// lathe_campaign --first N --count M --log FILE [--processes P] [--commit HASH]: one line per seed in the
-// log; seeds that it has are not run again. Prints what was refused, by reason, and what failed. Ends with 1
-// when something failed. `--seed N` prints one job's program and verdict.
+// A campaign of random turning jobs on simulated stock. lathe_campaign --first N --count M --log FILE
+// [--processes P] [--commit HASH]: one line per seed in the log; seeds in the log are not run again. Prints
+// the rejected jobs by reason, and the failed ones. Status 1 when a job failed. `--seed N` prints the program
+// and result of one job.
 #include <fcntl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -73,7 +73,7 @@ bool work(const Task &task, unsigned part, const std::set<unsigned> &done) {
     return ::close(file) == 0;
 }
 
-/// The lines of a log by seed.
+/// The lines of a log, by seed.
 std::map<unsigned, std::string> read_log(const std::string &name) {
     std::map<unsigned, std::string> lines;
     std::ifstream file(name);
@@ -85,7 +85,7 @@ std::map<unsigned, std::string> read_log(const std::string &name) {
     return lines;
 }
 
-/// Prints the figures of the seeds asked for; false when one failed.
+/// Prints the results of the seeds; false when one failed.
 bool summarise(const Task &task) {
     std::map<std::string, unsigned> refusals;
     unsigned jobs = 0, refused = 0, failed = 0, monotonic_refused = 0, monotonic = 0;
@@ -96,11 +96,11 @@ bool summarise(const Task &task) {
         ++jobs;
         const std::string result = line.substr(line.find(" | ") + 3);
         const std::size_t d = line.find(" D");
-        const bool isEasy = line.contains(" monotonic") && std::stod(line.substr(d + 2)) <= 0.5;
-        monotonic += isEasy ? 1 : 0;
+        const bool easy = line.contains(" monotonic") && std::stod(line.substr(d + 2)) <= 0.5;
+        monotonic += easy ? 1 : 0;
         if (result.starts_with("refused ")) {
             ++refused;
-            monotonic_refused += isEasy ? 1 : 0;
+            monotonic_refused += easy ? 1 : 0;
             ++refusals[result.substr(8)];
         } else if (result != "ok") {
             ++failed;
@@ -143,13 +143,13 @@ int run(const Task &task) {
         }
         children.push_back(child);
     }
-    bool isSound = true;
+    bool sound = true;
     for (const pid_t child : children) {
         int status = 0;
-        isSound =
-            ::waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0 && isSound;
+        sound =
+            ::waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0 && sound;
     }
-    return summarise(task) && isSound ? 0 : 1;
+    return summarise(task) && sound ? 0 : 1;
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A slice of the campaign of random turning jobs; the whole of it is a program of its own.
+// A part of the campaign of random turning jobs; lathe_campaign runs the whole.
 #include <fstream>
 #include <sstream>
 
@@ -17,16 +17,16 @@ TEST(LatheCampaign, CutsNothingButTheStockAboveTheAllowanceAndAllOfThat) {
         const testing::LatheJob job = testing::make_lathe_job(seed);
         const LatheVerdict verdict = run_lathe_job(job);
         EXPECT_EQ(verdict.fault, "") << "seed " << seed << '\n' << job.program;
-        const bool isEasy = job.isMonotonic && job.largest_allowance() <= 0.5;
-        EXPECT_TRUE(verdict.refusal.empty() || !isEasy) << "seed " << seed << ": " << verdict.refusal << '\n'
-                                                        << job.program;
+        const bool easy = job.isMonotonic && job.largest_allowance() <= 0.5;
+        EXPECT_TRUE(verdict.refusal.empty() || !easy) << "seed " << seed << ": " << verdict.refusal << '\n'
+                                                      << job.program;
         refused += verdict.refusal.empty() ? 0 : 1;
     }
-    EXPECT_LE(refused * 50, COUNT) << "more than 2 percent refused";
+    EXPECT_LE(refused * 50, COUNT) << "more than 2 percent rejected";
 }
 
-/// An arc that ends upright and a wall down from there: rounded numbers turn the fold a little to the wrong
-/// side.
+/// An arc that ends vertically and a wall down from there: rounded numbers shift the fold slightly to the
+/// wrong side.
 TEST(LatheCampaign, APeakOfAnArcAndAWallKeepsItsAllowanceAllAround) {
     const testing::LatheJob job = testing::make_lathe_job(19588);
     const LatheVerdict verdict = run_lathe_job(job);
@@ -34,7 +34,7 @@ TEST(LatheCampaign, APeakOfAnArcAndAWallKeepsItsAllowanceAllAround) {
     EXPECT_EQ(verdict.fault, "") << job.program;
 }
 
-/// The program that comes with the lathe of configs/sim makes the part that its comments promise.
+/// The lathe program in configs/sim makes the part that its comments describe.
 TEST(LatheProgram, LathePartIsRoughedInLayersFinishedAndParted) {
     std::ifstream file(MW_SOURCE_DIR "/nc_files/lathe_part.ngc");
     std::ostringstream text;

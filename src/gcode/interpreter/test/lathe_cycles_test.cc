@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The lathe cycles' part alone: blocks of a profile in, moves of a whole cycle out.
+// Lathe cycles in isolation: blocks of a profile in, moves of a cycle out.
 #include <algorithm>
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ using test::block;
 using test::code;
 using test::CodeParts;
 
-/// A block whose motion is stated.
+/// A block with a programmed motion code.
 BlockValues moving(int motion, std::initializer_list<std::pair<char, double>> words) {
     BlockValues values = block(words);
     values.motion = &code('g', motion);
@@ -112,7 +112,7 @@ TEST_F(LatheCyclesAlone, RoughingGoesDownInLayersNoDeeperThanTheIncrement) {
 }
 
 TEST_F(LatheCyclesAlone, FinishingTakesTheSideOfTheLastRoughingUntilTheProgramEnds) {
-    // A bore that widens inwards: one of G71 or of G72; a distance lies on opposite sides then.
+    // A bore that widens inwards, for G71 or G72; a distance lies on opposite sides then.
     const auto profile = [&] {
         ASSERT_TRUE(record(moving(10, {{'x', 20}, {'z', 0}})));
         ASSERT_TRUE(record(block({{'x', 30}, {'z', -10}})));
@@ -128,12 +128,12 @@ TEST_F(LatheCyclesAlone, FinishingTakesTheSideOfTheLastRoughingUntilTheProgramEn
     profile();
     ASSERT_TRUE(finish()) << parts.fault.message;
     finishing();
-    const bool isDoneAfterRoughing = finish();
-    EXPECT_TRUE(isDoneAfterRoughing) << parts.fault.message;
+    const bool done_after_roughing = finish();
+    EXPECT_TRUE(done_after_roughing) << parts.fault.message;
     lathe.forget_roughing();
     finishing();
-    const bool isDoneAlone = finish();
-    EXPECT_FALSE(isDoneAlone);
+    const bool done_alone = finish();
+    EXPECT_FALSE(done_alone);
     EXPECT_NE(parts.fault.message.find("rough it in this program"), std::string::npos);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Profiles at a distance, and the side on which their material is.
+// Offset profiles, and the side of their material.
 #include <random>
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ ProfileSegment line(Point from, Point to) {
     return one;
 }
 
-/// From (-1, 30) to the first point and along the others.
+/// From (-1, 30) to the first point and through the others.
 Profile through(const std::vector<Point> &points) {
     Profile profile{line({-1, 30}, points.front())};
     for (std::size_t i = 1; i < points.size(); ++i) {
@@ -90,9 +90,9 @@ TEST(LatheOffset, IsAsFarFromAnyProfileAsItHasToBeAndNoFurther) {
         for (std::size_t i = 1; i < edge.size(); ++i) {
             EXPECT_LT(distance(edge[i].start, before), 1e-6) << "round " << round << " piece " << i;
             before = edge[i].end;
-            const bool isInside = edge[i].start.x > 0.0 && edge[i].end.x < points.back().x;
+            const bool inside = edge[i].start.x > 0.0 && edge[i].end.x < points.back().x;
             const double off = contour.distance({edge[i].end.x, edge[i].end.y});
-            if (isInside) {
+            if (inside) {
                 EXPECT_GT(off, by - 1e-6) << "round " << round << " piece " << i;
                 EXPECT_LT(off, by + TOLERANCE) << "round " << round << " piece " << i;
             }
@@ -106,7 +106,7 @@ TEST(LatheFrame, MaterialIsOnTheSideWhereTheStartIsNot) {
         Profile profile = through(points);
         profile.front().start = start;
         const CutFrame frame = frame_of(profile, false);
-        return frame.isSideClear ? frame.across : 0.0;
+        return frame.side_clear ? frame.across : 0.0;
     };
     EXPECT_EQ(across({2, 20}, {{0, 10}, {-10, 10}, {-12, 5}}), 1.0);
     EXPECT_EQ(across({2, 2}, {{0, 10}, {-10, 10}, {-12, 15}}), -1.0);
@@ -119,7 +119,7 @@ TEST(LatheProfile, ArcsOfRoundedNumbersMayTouchAShoulder) {
     ProfileSegment arc;
     arc.isArc = true;
     arc.start = {0, 5};
-    arc.centre = {2, 5.0002};  // begins by going back 1e-8
+    arc.centre = {2, 5.0002};  // starts by going back 1e-8
     arc.end = {4, 5.0002};
     arc.turn = -1;
     Profile profile{line({-1, 30}, {0, 5}), arc};

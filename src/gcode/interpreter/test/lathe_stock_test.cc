@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The judge of turned stock finds what is wrong, and is content with what is right.
+// The judge of turned stock finds faults and accepts correct parts.
 #include <gtest/gtest.h>
 
 #include "tests/support/stock/lathe_stock.hh"
@@ -16,13 +16,13 @@ Contour step() {
     return contour;
 }
 
-StockMove line(bool isRapid, Place from, Place to) {
-    return {isRapid, {from, to, false, {}, false}};
+StockMove line(bool rapid, Place from, Place to) {
+    return {rapid, {from, to, false, {}, false}};
 }
 
 class LatheStockTest : public ::testing::Test {
   protected:
-    /// All above the allowance of 0.5 but the flat behind the step.
+    /// Cuts everything above the allowance of 0.5 except the flat after the step.
     void turn_step() {
         for (const double h : {10.0, 8.0, 6.0, 5.5}) {
             EXPECT_EQ(stock.cut(line(false, {-1, h}, {h > 9.6 ? 21.0 : 9.5, h}), rules), "") << h;
@@ -80,7 +80,7 @@ TEST_F(LatheStockTest, ArcsAreCutWhereTheyAre) {
     rules.step = 3.5;
     EXPECT_EQ(stock.cut(arc, rules), "");
     EXPECT_NEAR(stock.surface_at(1.0), 9.0, 0.001);
-    EXPECT_NEAR(stock.surface_at(2.0), 11.0 - std::sqrt(3.0), 0.02);  // a column is as wide
+    EXPECT_NEAR(stock.surface_at(2.0), 11.0 - std::sqrt(3.0), 0.02);  // the width of a column
 }
 
 TEST(Contour, DistancesAndHeightsAreThoseOfLinesAndArcs) {

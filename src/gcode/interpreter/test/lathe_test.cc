@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// G70 to G72: what they cut, what they refuse, and that they always end.
+// G70 to G72: their cuts, their rejections, and that they always end.
 #include <cmath>
 #include <string>
 
@@ -62,7 +62,7 @@ TEST(LatheCycle, DLeavesADistanceToTheProfile) {
 
 TEST(LatheCycle, G71CutsPocketsToo) {
     const std::string moves = moves_of(GROOVE, "G71 Q100 I8 R1");
-    // Levels 20 and 12 on the way down, 4 is below the groove: it is followed at once.
+    // Levels 20 and 12 on the descent; 4 is below the groove, which is followed at once.
     EXPECT_NE(moves.find("f10.000,-10.000 f6.000,-12.000 f6.000,-20.000 f10.000,-22.000"), std::string::npos)
         << moves;
     const std::string deep = moves_of(GROOVE, "G71 Q100 I6 R1");
@@ -148,7 +148,7 @@ TEST(LatheCycle, RefusesWhatCannotBeCut) {
               std::string::npos);
 }
 
-/// A profile that ends lower than it begins: a groove whose far wall it leaves out.
+/// A profile that ends lower than it begins: a groove without its far wall.
 constexpr const char *LOW_END = "O100 sub\n"
                                 "G0 X10\n"
                                 "G1 Z-10\n"
@@ -162,7 +162,7 @@ TEST(LatheCycle, AProfileThatEndsLowerIsCutInLayersFromTheStart) {
               "r19.000,1.000 r18.000,2.000 r14.000,2.000 f14.000,-20.000 r15.000,-19.000 r15.000,1.000 "
               "r14.000,2.000 r10.000,2.000 f10.000,-10.000 f10.000,-20.000 r11.000,-19.000 r11.000,-11.000 "
               "f10.000,-10.000 f6.000,-10.000 f6.000,-20.000 f18.000,-20.000 ");
-    // Pockets left out: straight over the groove.
+    // Pockets skipped: straight across the groove.
     const std::string skipping = moves_of(LOW_END, "G71.1 Q100 X18 I4 R1");
     EXPECT_EQ(skipping.find("f6.000"), std::string::npos) << skipping;
     EXPECT_NE(skipping.find("f10.000,-20.000 f18.000,-20.000"), std::string::npos) << skipping;
@@ -260,7 +260,7 @@ TEST(LatheCycle, G70LeavesAHumpAboveItsStartAloneBetweenPasses) {
 }
 
 TEST(LatheCycle, G70TakesTheSideOfTheRoughingBeforeIt) {
-    // A dish: falling along X as well as along Z. Turned, D lies at its other side.
+    // A dish that falls along X and Z. Rotated, D lies on its other side.
     const std::string dish = "O100 sub\nG0 X20 Z0\nG1 X10 Z-5\nG1 X2 Z-6\nO100 endsub\n";
     EXPECT_NE(error_of(dish, "G70 Q100 X22 Z2 D0.5").find("opposite sides"), std::string::npos);
     EXPECT_FALSE(moves_of(dish, "G70 Q100 X22 Z2").empty());
@@ -291,7 +291,7 @@ TEST(LatheCycle, G712CutsWhatFallsFromTheFirstPointInLayersToo) {
     }
 }
 
-/// The controlled point of a lathe tool lies beside the centre of its nose, by the tool's orientation.
+/// The controlled point of a lathe tool is beside the centre of its nose, by the tool's orientation.
 TEST(LatheCompensation, OrientationMovesThePath) {
     const double shifts[][2] = {{0, 0}, {-1, 1}, {-1, -1}, {1, -1}, {1, 1},
                                 {0, 1}, {-1, 0}, {0, -1},  {1, 0},  {0, 0}};
@@ -341,20 +341,20 @@ TEST(LatheCompensation, AnOrientedToolOfTheTableNeedsG18) {
         tool.diameter = 1;
         tool.orientation = orientation;
         machine.mill.tools.push_back(tool);
-        const bool isNose = orientation != 0 && orientation != 9;
+        const bool is_nose = orientation != 0 && orientation != 9;
         for (const std::string code : {"G41", "G42"}) {
             const Step step = machine.run("G17 G21 F100\nG0 X0 Y0\n" + code + " D1\nG40\n");
-            EXPECT_EQ(step, isNose ? Step::FAILED : Step::PROGRAM_END) << code << " L" << orientation;
+            EXPECT_EQ(step, is_nose ? Step::FAILED : Step::PROGRAM_END) << code << " L" << orientation;
             EXPECT_EQ(machine.run("G18 G21 F100\nG0 X0 Z0\n" + code + " D1\nG40\n"), Step::PROGRAM_END);
         }
-        if (isNose) {
+        if (is_nose) {
             EXPECT_EQ(machine.run("T1 M6\nG17\nG42\n"), Step::FAILED) << "the tool in the spindle as well";
             EXPECT_EQ(machine.interpreter->error().what.message, "G42 with lathe tool, but plane is not G18");
         }
     }
 }
 
-/// The depths of the passes of a G76 in radius that begins at X10.
+/// Depths of the passes of a G76 in radius that begins at X10.
 std::vector<double> depths_of(const std::string &words) {
     Machine machine;
     EXPECT_EQ(machine.run("G18 G21 G8 F100 S100 M3\nG0 X10 Z0\nG76 P1 Z-9 I-1 " + words + "\n"),
@@ -375,7 +375,7 @@ TEST(Thread, PassesAreCountedOnceAndTheLastOneIsAtK) {
     EXPECT_EQ(depths_of("J0.5 K0.7 R1 H2").size(), 4U) << "and two spring passes";
     int whole = 0;
     for (int passes = 2; passes <= 40; ++passes) {
-        for (int j = 1; j <= 9; ++j) {  // K is J times the number of passes, both as they are written
+        for (int j = 1; j <= 9; ++j) {  // K is J times the number of passes, both as programmed
             const std::string words = fmt::format("J0.0{} K{:.2f} R1", j, passes * j * 0.01);
             const std::vector<double> depths = depths_of(words);
             EXPECT_EQ(depths.size(), static_cast<std::size_t>(passes)) << words;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Levels of call, the programs that they run, and the search for subroutines; without an executor.
+// Call levels, their programs, and the search for subroutines; without an executor.
 #include <unistd.h>
 
 #include <filesystem>
@@ -49,7 +49,7 @@ TEST_F(LevelsTest, ACallComesBackToTheLineBehindIt) {
     levels.open(main);
     Place &here = levels.here();
     here.line = 2;
-    here.next = 9;  // wherever the block would have led
+    here.next = 9;  // any target of the block
     here.repeats = {{1, 5}};
     levels.enter(call(CallKind::OWORD, "sub"));
     EXPECT_TRUE(here.repeats.empty()) << "the caller's loops are not the subroutine's";
@@ -72,7 +72,7 @@ TEST_F(LevelsTest, TheTextOfAScriptIsNoLevelOfItsOwn) {
     Program *const main = program("main.ngc", "1\n2\n3\n");
     levels.open(main);
     levels.here().line = 1;
-    levels.here().next = 3;  // a script may run where a jump has led
+    levels.here().next = 3;  // a script may run after a jump
     levels.enter_text(files.keep_script_text("G0 X1", names), 12);
     EXPECT_EQ(levels.size(), 1u);
     EXPECT_EQ(levels.call_level(), 0);
@@ -167,7 +167,7 @@ TEST_F(LevelsTest, FilesOfTheirOwnStandBesideTheMainProgramThenInThePath) {
     EXPECT_EQ(files.line_text(first->path(), 1), "o<tool> sub");
     EXPECT_EQ(files.line_text(first->path(), 9), "");
     EXPECT_EQ(files.line_text("elsewhere", 1), "");
-    // A line of MDI stands in no folder.
+    // A line of MDI has no folder.
     write("mine.ngc", "o<mine> sub\no<mine> endsub\n");
     levels.begin_mdi(files.keep_mdi("o<mine> call", names));
     EXPECT_FALSE(find_sub(names.intern("mine"), 1, search(), sub));
@@ -179,11 +179,11 @@ TEST_F(LevelsTest, ASubroutineThatIsNotThereIsNamedAndMayEndTheProgram) {
     EXPECT_FALSE(find_sub(names.intern("gone"), 7, search(), sub));
     EXPECT_NE(fault.message.find("o<gone>"), std::string::npos);
     EXPECT_EQ(fault.column, 7u);
-    EXPECT_TRUE(fault.isProgramOver) << "the search has come to the closing percent sign";
+    EXPECT_TRUE(fault.program_ended) << "the search has come to the closing percent sign";
     fault.clear();
     levels.open(program("open.ngc", "G0\n"));
     EXPECT_FALSE(find_sub(names.intern("gone"), 7, search(), sub));
-    EXPECT_FALSE(fault.isProgramOver);
+    EXPECT_FALSE(fault.program_ended);
 }
 
 TEST_F(LevelsTest, EachKindOfSubroutineHasItsOwnCall) {

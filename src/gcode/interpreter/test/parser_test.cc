@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// One line of text to its tree, alone: what binds to what, where errors are.
+// The tree of one line of text: precedence, and positions of errors.
 #include <string>
 
 #include <fmt/format.h>
@@ -10,7 +10,7 @@
 namespace mw::gcode::detail {
 namespace {
 
-/// Trees as text in brackets, the operator first: written here, so that it shares nothing with the printer.
+/// Trees as text in brackets, operator first: implemented here, so that nothing is shared with the printer.
 class Trees {
   public:
     Trees(const Arena &arena, const Names &names) : arena_(arena), names_(names) {}
@@ -163,11 +163,11 @@ TEST(Parser, ParametersMayNameParameters) {
 TEST(Parser, NestingIsBounded) {
     constexpr int MOST = 128;
     for (const char *opener : {"[", "-", "#"}) {
-        const bool isBracket = opener[0] == '[';
+        const bool is_bracket = opener[0] == '[';
         const auto nested = [&](int depth) {
-            return "#1=" + repeated(opener, depth) + "1" + (isBracket ? repeated("]", depth) : "");
+            return "#1=" + repeated(opener, depth) + "1" + (is_bracket ? repeated("]", depth) : "");
         };
-        // The innermost number is a value of its own.
+        // The innermost number is also a value.
         EXPECT_TRUE(Line(nested(MOST - 1)).isRead()) << opener;
         const Line deep(nested(MOST));
         ASSERT_FALSE(deep.isRead()) << opener;
@@ -178,7 +178,7 @@ TEST(Parser, NestingIsBounded) {
     Names names;
     Parser parser(arena, names);
     parser.parse_line("#1=" + repeated("[", 300) + "1", 1);
-    EXPECT_EQ(parser.parse_line("#1=[[1]]", 2).error, NO_ID) << "depth is counted anew for each line";
+    EXPECT_EQ(parser.parse_line("#1=[[1]]", 2).error, NO_ID) << "depth is counted separately for each line";
 }
 
 TEST(Parser, ALineHasAMostOfOperators) {
@@ -228,7 +228,7 @@ TEST(Parser, ErrorsNameTheirColumn) {
 TEST(Parser, ALineHasWordsSettingsAndComments) {
     const Line line("/N12 G1 X-2.5 Y[1+1] #3=4 (one) #<a>=5 Z#3 (two)");
     ASSERT_TRUE(line.isRead());
-    EXPECT_TRUE(line.block.isDeletable);
+    EXPECT_TRUE(line.block.deletable);
     EXPECT_TRUE(line.block.isNumbered);
     EXPECT_EQ(line.block.sequence, 12);
     ASSERT_EQ(line.block.word_count, 4);
@@ -243,7 +243,7 @@ TEST(Parser, ALineHasWordsSettingsAndComments) {
     EXPECT_EQ(line.tree(line.arena.settings[0].index), "3");
     EXPECT_EQ(line.names.text(line.arena.settings[1].name), "a");
     ASSERT_EQ(line.block.comment_count, 2);
-    EXPECT_TRUE(Line("%").block.isPercent);
+    EXPECT_TRUE(Line("%").block.is_percent);
     EXPECT_EQ(Line("").block.word_count, 0);
 }
 
@@ -298,7 +298,7 @@ TEST(Names, ATextHasOneNumberThatStays) {
     EXPECT_EQ(names.intern("x0"), first);
     EXPECT_EQ(names.text(first), "x0");
     EXPECT_EQ(names.size(), 1000u);
-    EXPECT_NE(names.intern("X0"), first) << "case is folded by who reads, not here";
+    EXPECT_NE(names.intern("X0"), first) << "case is folded by the reader, not here";
 }
 
 }  // namespace

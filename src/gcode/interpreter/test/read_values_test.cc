@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What programs and scripts read, and what comments say, over parts without an executor.
+// Values that programs and scripts read, and texts of comments, without an executor.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -70,8 +70,8 @@ TEST(Attributes, WhatIsSetIsReadBackAndNothingElseChanges) {
             continue;
         }
         ++writable;
-        const bool isBounded = name == "active_spindle";  // the mill has one, number 0
-        EXPECT_EQ(number(values.get(name)), isBounded ? 0 : 1) << name;
+        const bool bounded = name == "active_spindle";  // the mill has one, number 0
+        EXPECT_EQ(number(values.get(name)), bounded ? 0 : 1) << name;
         for (const std::string_view other : attribute_names()) {
             if (other != name && !other.starts_with("program_")) {
                 EXPECT_EQ(number(values.get(other)), number(untouched.get(other))) << name << " " << other;
@@ -190,7 +190,7 @@ class NothingKept final : public BuiltIns {
     double built_in(int) const override { return 0; }
 };
 
-/// What comes of a comment, as words; "error: ..." when it fails.
+/// Result of a comment as text; "error: ..." when it fails.
 class Comments final : public Canon {
   public:
     std::string of(std::string_view comment) {
@@ -213,7 +213,7 @@ class Comments final : public Canon {
         } else if (const auto *log = std::get_if<LogLine>(&call)) {
             said += "log " + log->text + ";";
         } else if (const auto *open = std::get_if<OpenLog>(&call)) {
-            said += "open " + open->path + (open->isAppending ? " append;" : ";");
+            said += "open " + open->path + (open->appending ? " append;" : ";");
         } else if (std::holds_alternative<CloseLog>(call)) {
             said += "close;";
         } else if (const auto *probes = std::get_if<LogProbes>(&call)) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A machine for tests: remembers what a program requests.
+// A machine for tests that records the calls of a program.
 #pragma once
 
 #include <unistd.h>
@@ -18,7 +18,7 @@
 
 namespace mw::gcode::test {
 
-/// Keeps moves; everything else as words in `calls`.
+/// Records moves; everything else as text in `calls`.
 class Recorder : public MachineCanon {
   public:
     std::vector<LineMove> lines;
@@ -45,7 +45,7 @@ class Recorder : public MachineCanon {
     void note(const OneOf<UseOffsets, UsePlanner, LogProbes, ReloadTools, ProgramComment> auto &) {}
     void note(const SetSpindleMode &) { say("spindle_mode"); }
     void note(const UseSpindleSpeed &) { say("spindle_speed"); }
-    void note(const StartSpindle &call) { say(call.isClockwise ? "spindle_cw" : "spindle_ccw"); }
+    void note(const StartSpindle &call) { say(call.clockwise ? "spindle_cw" : "spindle_ccw"); }
     void note(const StopSpindle &) { say("spindle_off"); }
     void note(const OrientSpindle &) { say("orient"); }
     void note(const WaitOrientComplete &) { say("wait_orient"); }
@@ -70,13 +70,13 @@ class Recorder : public MachineCanon {
     void note(const SwitchAdaptiveFeed &call) { say(call.isOn ? "adaptive_on" : "adaptive_off"); }
     void note(const SetDigitalOutput &call) {
         say("dout " + std::to_string(call.index) + (call.isOn ? " on" : " off") +
-            (call.isSynched ? " synched" : ""));
+            (call.synched ? " synched" : ""));
     }
     void note(const SetAnalogOutput &call) {
-        say("aout " + std::to_string(call.index) + (call.isSynched ? " synched" : ""));
+        say("aout " + std::to_string(call.index) + (call.synched ? " synched" : ""));
     }
     void note(const WaitInput &call) { say("wait " + std::to_string(call.index)); }
-    void note(const ProgramStop &call) { say(call.isOptional ? "optional_stop" : "stop"); }
+    void note(const ProgramStop &call) { say(call.optional ? "optional_stop" : "stop"); }
     void note(const ProgramEnd &) { say("end"); }
     void note(const PalletShuttle &) { say("pallet"); }
     void note(const Finish &) { say("finish"); }

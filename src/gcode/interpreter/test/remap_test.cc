@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Remapped codes without scripts: the REMAP line, argspec, order, recursion, and what is said when the script
-// language is missing.
+// Remapped codes without scripts: the REMAP line, argspec, order, recursion, and the error without a script
+// language.
 #include <gtest/gtest.h>
 
 #include "gcode/interpreter/ini_settings.hh"
@@ -10,7 +10,7 @@
 namespace mw::gcode::test {
 namespace {
 
-/// A machine whose REMAP lines stand in lines 10, 11, ... of test.ini, column 7.
+/// A machine with REMAP lines in lines 10, 11, ... of test.ini, column 7.
 Settings with_remaps(std::vector<std::string> lines) {
     Settings settings;
     int line = 10;
@@ -20,7 +20,7 @@ Settings with_remaps(std::vector<std::string> lines) {
     return settings;
 }
 
-/// Runs a program; what it prints or asks for.
+/// Runs a program; returns its output and calls.
 std::vector<std::string> calls_of(Machine &machine, const std::string &program) {
     machine.record.calls.clear();
     EXPECT_EQ(machine.run(program), Step::PROGRAM_END) << machine.error();
@@ -45,7 +45,7 @@ TEST(Remap, ArgspecGivesWordsByNameAndChecksWhatIsRequired) {
 
 TEST(Remap, PositionalWordsStandInTheOrderOfTheArgspec) {
     Settings settings = with_remaps({"G88.1 modalgroup=1 argspec=@xYpQ ngc=cycle"});
-    settings.isArgumentCountNamed = true;
+    settings.argument_count_named = true;
     Machine machine(settings);
     machine.write("cycle.ngc", "o<cycle> sub\n(print,%d#1 #2 #3 #4 n #<n_args>)\no<cycle> endsub\n");
     EXPECT_EQ(calls_of(machine, "G88.1 X1 Y2 P3 Q4\n")[0], "print1 2 3 4 n 4");
@@ -101,7 +101,8 @@ TEST(Remap, NewCodeCannotStandInItsOwnProcedure) {
     machine.write("rm400.ngc", "o<rm400> sub\nM401\no<rm400> endsub\n");
     machine.write("rm401.ngc", "o<rm401> sub\nM400\no<rm401> endsub\n");
     EXPECT_EQ(machine.run("M400\n"), Step::FAILED);
-    EXPECT_NE(machine.error().find("M400 stands in its own procedure"), std::string::npos) << machine.error();
+    EXPECT_NE(machine.error().find("M400 is used in its own procedure"), std::string::npos)
+        << machine.error();
     EXPECT_EQ(machine.interpreter->error().called_from.size(), 2u);
     EXPECT_EQ(machine.run("G0 X1\n"), Step::PROGRAM_END);
 }
@@ -174,25 +175,25 @@ TEST(Remap, MissingPythonIsOneClearErrorAndOnlyWhereItIsNeeded) {
 }
 
 TEST(ScriptLines, AMachineWithoutPythonInItsIniFileDoesNotRunThem) {
-    for (const bool isConfigured : {false, true}) {
+    for (const bool configured : {false, true}) {
         diagnostics::Sink sink;
-        const std::string text = isConfigured ? "[PYTHON]\nTOPLEVEL = top.py\n" : "[PYTHON]\nLOG_LEVEL = 0\n";
+        const std::string text = configured ? "[PYTHON]\nTOPLEVEL = top.py\n" : "[PYTHON]\nLOG_LEVEL = 0\n";
         const auto ini = ini::IniFile::parse(text, "m.ini", sink);
         ini::IniReader reader(ini, sink);
-        EXPECT_EQ(settings_from_ini(reader).scripts.areLinesRun, isConfigured);
+        EXPECT_EQ(settings_from_ini(reader).scripts.lines_run, configured);
     }
     Settings settings;
-    settings.scripts.areLinesRun = false;
-    bool isMade = false;
-    settings.make_script_host = [&isMade]() -> Result<std::unique_ptr<ScriptHost>> {
-        isMade = true;
+    settings.scripts.lines_run = false;
+    bool made = false;
+    settings.make_script_host = [&made]() -> Result<std::unique_ptr<ScriptHost>> {
+        made = true;
         return fail("no host");
     };
     Machine machine(settings);
     EXPECT_EQ(machine.run("G0 X1\n;py,print(1)\n"), Step::FAILED);
     EXPECT_NE(machine.error().find("are not run on this machine"), std::string::npos) << machine.error();
     EXPECT_EQ(machine.interpreter->error().what.place.line, 2);
-    EXPECT_FALSE(isMade);
+    EXPECT_FALSE(made);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Scripts as levels of call, with a script host that is a few functions of C++.
+// Scripts as call levels, with a script host of a few C++ functions.
 #include <functional>
 #include <map>
 
@@ -21,17 +21,17 @@ ScriptOutcome failed(std::string message) {
     return {ScriptOutcome::Kind::FAILED, 0, std::move(message)};
 }
 
-/// What the test and the host share: the host itself is made by the interpreter.
+/// Shared by the test and the host, which the interpreter creates.
 struct Scripted {
-    std::map<std::string, Function> functions;  ///< by name, of both modules
+    std::map<std::string, Function> functions;  ///< functions of both modules by name
     std::map<std::string, std::function<Result<double>()>> parameters;
-    std::function<ScriptOutcome()> text;  ///< of ;py, lines
-    Function rest;                        ///< what a function that waits does when it goes on
+    std::function<ScriptOutcome()> text;  ///< for ;py, lines
+    Function rest;                        ///< continuation of a function that waits
     InterpreterView *view = nullptr;
-    int ended_waiting = 0;  ///< suspended scripts that were ended without going on
-    bool isOpenFailing = false;
+    int ended_waiting = 0;  ///< number of suspended scripts that were ended
+    bool open_failing = false;
 
-    /// The message when the block failed, else whether it came to a waiting point.
+    /// The message when the block failed, else whether it reached a waiting point.
     std::string execute(std::string_view block) {
         const auto done = view->execute(block, 7);
         return !done ? done.error().message : *done ? "done" : "waiting";
@@ -41,15 +41,15 @@ struct Scripted {
 class Suspended final : public SuspendedScript {
   public:
     explicit Suspended(Scripted &scripted) : scripted_(scripted) {}
-    ~Suspended() override { scripted_.ended_waiting += isResumed_ ? 0 : 1; }
+    ~Suspended() override { scripted_.ended_waiting += resumed_ ? 0 : 1; }
     ScriptOutcome resume() override {
-        isResumed_ = true;
+        resumed_ = true;
         return scripted_.rest({});
     }
 
   private:
     Scripted &scripted_;
-    bool isResumed_ = false;
+    bool resumed_ = false;
 };
 
 class Host final : public ScriptHost {
@@ -58,7 +58,7 @@ class Host final : public ScriptHost {
 
     Result<> load(const ScriptSettings &, InterpreterView &view) override {
         scripted_.view = &view;
-        return scripted_.isOpenFailing ? fail("the top-level script is broken") : Result<>();
+        return scripted_.open_failing ? fail("the top-level script is broken") : Result<>();
     }
     Result<> begin() override { return {}; }
     bool hasFunction(ScriptModule, std::string_view name) const override {
@@ -298,7 +298,7 @@ TEST(ScriptCalls, ALabelAloneInAScriptsBlockIsPassed) {
 
 TEST(ScriptCalls, AHostThatCannotBeLoadedIsTold) {
     Scripted scripted;
-    scripted.isOpenFailing = true;
+    scripted.open_failing = true;
     Settings settings = with_scripts(scripted);
     settings.scripts.place = {"machine.ini", 12, 1};
     Machine machine(settings);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // An interpreter with Python and a machine that waits: canon calls as text, "SYNC" where the machine must
-// come to rest.
+// stop.
 #pragma once
 
 #include <unistd.h>
@@ -69,7 +69,7 @@ class Scripted {
         settings.remaps.emplace_back(
             line, SourcePlace{"test.ini", 10 + static_cast<int>(settings.remaps.size()), 7});
     }
-    /// Handlers in the module remap, after the usual imports.
+    /// Adds handlers to the module remap, after the usual imports.
     void handlers(const std::string &content) const {
         write("remap.py",
               "import emccanon, interpreter\nfrom interpreter import *\nfrom stdglue import *\n" + content);
@@ -96,14 +96,14 @@ class Scripted {
         std::vector<std::string> calls;
         for (std::string line; std::getline(lines, line);) {
             const std::size_t name = line.find_first_not_of(" 0123456789");
-            const bool isCall =
+            const bool is_call =
                 name != std::string::npos && line[name] == 'N' && line.find(' ', name) != std::string::npos;
-            calls.emplace_back(isCall ? trim(std::string_view(line).substr(line.find(' ', name))) : line);
+            calls.emplace_back(is_call ? trim(std::string_view(line).substr(line.find(' ', name))) : line);
         }
         return calls;
     }
 
-    /// Runs a program with M2 after it; calls in order, and "SYNC" where the interpreter waits.
+    /// Runs a program with M2 appended; records calls in order, and "SYNC" where the interpreter waits.
     Step run(const std::string &program) {
         if (interpreter == nullptr) {
             const Result<> begun = begin();
@@ -137,7 +137,7 @@ class Scripted {
             events.push_back(std::move(call));
         }
     }
-    /// Events up to M2's, the usual ones left out.
+    /// Events up to M2's, without the usual ones.
     std::vector<std::string> story() const {
         std::vector<std::string> out_events;
         for (const std::string &event : events) {

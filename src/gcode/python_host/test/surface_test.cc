@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What scripts see of the interpreter: parameters, attributes, blocks, levels of call, tools, named
-// parameters.
+// The scripts' view of the interpreter: parameters, attributes, blocks, call levels, tools, named parameters.
 #include <algorithm>
 
 #include "scripted.hh"
@@ -10,8 +9,7 @@ namespace {
 
 using Events = std::vector<std::string>;
 
-/// Runs Python statements (indented by the helper) as an O word; each failed check is an error of the
-/// program.
+/// Runs Python statements (indented here) as an O word; each failed check is an error of the program.
 void check(Scripted &it, const std::string &program, const std::string &body) {
     it.owords("import emccanon, interpreter\ndef check(self, *args):\n" + body);
     EXPECT_EQ(it.run(program), Step::PROGRAM_END) << it.error();
@@ -231,7 +229,7 @@ TEST(PythonSurface, HooksRunAtTheStartAndAtTheEnd) {
 
 TEST(PythonSurface, ChangedScriptsAreLoadedAgainWhenAsked) {
     Scripted it;
-    it.settings.scripts.isReloading = true;
+    it.settings.scripts.reloading = true;
     it.owords("def value(self):\n    return 1\n");
     ASSERT_EQ(it.run("o<value> call\n(debug,%d#<_value>)\n"), Step::PROGRAM_END) << it.error();
     EXPECT_EQ(it.story()[0], "MESSAGE(\"1\")");

@@ -35,7 +35,7 @@ TEST(ToolTable, BadLinesAreNamedWithTheirPlace) {
     }
 }
 
-/// What a lenient reading warns of, one text per line.
+/// Warnings of a lenient reading, one text per line.
 std::string warnings_of(const std::string &text, Table *table = nullptr) {
     diagnostics::Sink sink;
     Table read = Table::parse_leniently(text, "tool.tbl", sink);
@@ -57,11 +57,11 @@ TEST(ToolTable, EveryBadLineIsToldAndSkipped) {
     EXPECT_NE(told.find("tool.tbl:2:16"), std::string::npos) << told;
     EXPECT_NE(told.find("tool.tbl:4:8"), std::string::npos) << told;
     EXPECT_GT(table.index_of_tool(2), 0);
-    EXPECT_EQ(table.index_of_tool(1), -1) << "a program that asks for it is refused";
+    EXPECT_EQ(table.index_of_tool(1), -1) << "a program that uses it is rejected";
     EXPECT_EQ(table.index_of_tool(3), -1);
 }
 
-/// What it reads of a table, with the notes and warnings.
+/// Result of reading a table, with notes and warnings.
 struct Read {
     Table table;
     std::string told;
@@ -190,7 +190,7 @@ TEST(ToolTable, AToolTwiceCountsOnceOrNotAtAll) {
 
 TEST(ToolTable, WhatLooksWrongIsToldWithItsLine) {
     EXPECT_EQ(warnings_of("T0 P4\n").substr(0, 14), "tool.tbl:1:1 T");
-    EXPECT_NE(warnings_of("T1 P0\n").find("P0 stands for the spindle"), std::string::npos);
+    EXPECT_NE(warnings_of("T1 P0\n").find("P0 means the spindle"), std::string::npos);
     EXPECT_NE(warnings_of("T1 P5\nT2 P5\n").find("tools 1 (line 1) and 2 are in one pocket, P5"),
               std::string::npos);
     EXPECT_NE(warnings_of("T1 P1 D-6\n").find("a diameter of -6 is negative"), std::string::npos);
@@ -227,7 +227,7 @@ TEST(ToolTable, TheSpindleIsEntryZero) {
     EXPECT_EQ(table->index_of_pocket(1), 1);
 }
 
-/// Comparing each tool with each other takes longer than the timeout of the test.
+/// Comparing all pairs of tools would exceed the timeout of the test.
 TEST(ToolTable, ThreeHundredThousandToolsAreReadWithoutComparingAll) {
     constexpr int MANY = 300000;
     std::string different, in_one_pocket;

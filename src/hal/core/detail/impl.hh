@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The inside of Hal, shared by its source files only.
+// Internals of Hal, shared by its source files only.
 #pragma once
 
 #include <map>
@@ -22,7 +22,7 @@ class Loader;
 
 namespace detail {
 
-/// Calls a planner of mw_ext_planner_new with its instance current.
+/// Calls a planner of mw_ext_planner_new, with its instance as the current one.
 struct PlannerRunner {
     Hal *hal = nullptr;
     void (*function)(void *, long long) = nullptr;
@@ -31,22 +31,22 @@ struct PlannerRunner {
     runtime::PeriodicId periodic;
 };
 
-/// A module that wants to know of the end of the controlling process, and says when the machine stands.
+/// A module that must know of the end of the controlling process, and reports when the machine is stopped.
 struct ControllerWatch {
     std::uint32_t *is_gone;
     const std::uint32_t *is_safe;
     int comp_id;
-    std::uint32_t *looks = nullptr;  ///< null: it does not want to know
+    std::uint32_t *looks = nullptr;  ///< null: not requested
 };
 
-/// What runs one HAL thread in the host.
+/// Runs one HAL thread in the host.
 struct ThreadRunner {
     Hal::Impl *hal = nullptr;
     ThreadRecord *record = nullptr;
     runtime::PeriodicId periodic;
 };
 
-/// A failure whose code the C API hands on.
+/// A failure with the code that the C API returns.
 std::unexpected<Error> refuse(int code, std::string message, std::string hint = {});
 
 }  // namespace detail
@@ -54,19 +54,19 @@ std::unexpected<Error> refuse(int code, std::string message, std::string hint = 
 struct Hal::Impl {
     std::string name;
     Hal *self = nullptr;
-    bool isHost = false;
+    bool is_host = false;
     bool isShared = false;
     runtime::Scheduler *scheduler = nullptr;
     runtime::Log *log = nullptr;
     std::unique_ptr<runtime::Log> own_log;
     detail::Segment segment;
-    Loader *loader = nullptr;                                      ///< of the host, while there is one
+    Loader *loader = nullptr;                                      ///< the host's loader, if there is one
     std::vector<std::unique_ptr<detail::ThreadRunner>> runners;    ///< under the segment's lock
     std::vector<std::unique_ptr<detail::PlannerRunner>> planners;  ///< under the segment's lock
     int last_planner_id = 0;
     detail::TickCounter counter;                              ///< times the functions of threads
     std::vector<detail::ControllerWatch> controller_watches;  ///< in the host's thread
-    /// Makers of instances, by component id, of components of this process; under the segment's lock.
+    /// Constructors of instances, by component id, for components of this process; under the segment's lock.
     std::map<int, int (*)(const char *, const char *)> constructors;
 
     // With the lock held:
@@ -88,30 +88,30 @@ struct Hal::Impl {
     void remove_pin(detail::PinRecord &pin) noexcept;
     void remove_param(detail::ParamRecord &param) noexcept;
     void remove_funct(detail::FunctRecord &funct) noexcept;
-    void remove_comp(detail::CompRecord &comp, bool isDead) noexcept;
+    void remove_comp(detail::CompRecord &comp, bool dead) noexcept;
     void note_death(const detail::CompRecord &comp) noexcept;
-    /// Nobody ends the components of this process before spare_process(0), whoever reaps: the machine that it
-    /// controlled brakes through their outputs.
+    /// Keeps the components of this process until spare_process(0), also against reaping: the machine brakes
+    /// through their outputs.
     void spare_process(std::int32_t pid);
-    /// Its process is stopped or hangs: its bit outputs take their safe values until it writes them again.
+    /// The process is stopped or hangs: its bit outputs take their safe values until it writes them again.
     void rest_process(std::int32_t pid);
     void point_slot(const detail::PinRecord &pin, detail::Offset value) noexcept;
     detail::Offset value_of(const detail::PinRecord &pin) const noexcept;
     template <class Change>
     Result<> change_list(detail::ThreadRecord &thread, Change change);
     void drop_from_lists(detail::Offset funct) noexcept;
-    Result<> add_to_thread(std::string_view function, std::string_view thread, int position, bool isInit);
+    Result<> add_to_thread(std::string_view function, std::string_view thread, int position, bool is_init);
     Result<> remove_thread(detail::ThreadRecord &thread);
-    /// Waits until the functions that ran when it was called have ended.
+    /// Waits until the functions of the current cycle have ended.
     void wait_for_cycle(const detail::ThreadRecord &thread) const noexcept;
     Value read(Type type, detail::Offset value) const noexcept;
     void write(detail::Offset value, const Value &from) noexcept;
     std::string comp_name(detail::Offset comp) const;
     int comp_id(detail::Offset comp) const noexcept;
-    /// The block of this key with one more user; zeroed when it had none.
+    /// The block of this key with one more user; zeroed for the first one.
     Result<detail::BlockRecord *> open_block(int key, std::size_t bytes);
     void publish_figures() const;
-    /// Notes how this host ends; the first text stays. [any thread, async-signal-safe]
+    /// Stores why this host ends; the first text is kept. [any thread, async-signal-safe]
     void note_end(const char *text) noexcept;
     void run_thread(detail::ThreadRecord &thread) noexcept;
     void run_timed(detail::ThreadRecord &thread, const detail::FunctionList &list,
@@ -123,7 +123,7 @@ namespace detail {
 /// The name of an instance's shared memory.
 std::string segment_name(std::string_view instance);
 
-/// The lock of an instance while it lives. Reading needs it too.
+/// Locks an instance during its lifetime. Reading needs the lock too.
 class Guard {
   public:
     explicit Guard(const Hal::Impl &hal) noexcept : segment_(const_cast<Segment &>(hal.segment)) {
@@ -137,16 +137,17 @@ class Guard {
     Segment &segment_;
 };
 
-/// What this thread is doing, for the C API. No heap, so that a realtime thread may use it at once.
+/// State of this thread for the C API. No heap, so that a realtime thread may use it at once.
 struct ThreadContext {
-    Hal *instance = nullptr;                                   ///< override of the process's
-    bool isRealtime = false;                                   ///< inside a HAL thread
-    const char *loading = nullptr;                             ///< name of the module being loaded
-    const char *unloading = nullptr;                           ///< name of the module being unloaded
-    const char *doing = nullptr;                               ///< what else runs here, for a crash report
-    const ThreadRecord *thread = nullptr;                      ///< the HAL thread that runs here
-    const ListEntry *calling = nullptr;                        ///< its function that runs
-    std::vector<const rtapi_mp_info *> *parameters = nullptr;  ///< collects those of the module being loaded
+    Hal *instance = nullptr;               ///< overrides the process's instance
+    bool realtime = false;                 ///< inside a HAL thread
+    const char *loading = nullptr;         ///< name of the module being loaded
+    const char *unloading = nullptr;       ///< name of the module being unloaded
+    const char *doing = nullptr;           ///< other activity, for a crash report
+    const ThreadRecord *thread = nullptr;  ///< current HAL thread
+    const ListEntry *calling = nullptr;    ///< its current function
+    std::vector<const rtapi_mp_info *> *parameters =
+        nullptr;  ///< collects parameters of the module being loaded
 };
 ThreadContext &context() noexcept;
 

@@ -21,7 +21,7 @@ std::uint32_t hash_of(std::string_view name) noexcept {
 
 Segment::Segment(runtime::SharedMemory memory) noexcept : memory_(std::move(memory)), data_(memory_.data()) {}
 
-void Segment::initialise(bool isVirtual) noexcept {
+void Segment::initialise(bool is_virtual) noexcept {
     auto *fresh = new (data_) Header{};
     pthread_mutexattr_t attributes;
     ::pthread_mutexattr_init(&attributes);
@@ -29,8 +29,8 @@ void Segment::initialise(bool isVirtual) noexcept {
     ::pthread_mutexattr_setrobust(&attributes, PTHREAD_MUTEX_ROBUST);
     ::pthread_mutex_init(&fresh->mutex, &attributes);
     ::pthread_mutexattr_destroy(&attributes);
-    fresh->isVirtual = isVirtual;
-    // Three apart, as numbers of LinuxCNC's owners are.
+    fresh->is_virtual = is_virtual;
+    // Ids are three apart, as LinuxCNC's are.
     fresh->next_comp_id = 4;
     fresh->top = static_cast<Offset>((sizeof(Header) + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE);
 }
@@ -64,7 +64,7 @@ Offset Segment::allocate(std::size_t bytes, std::size_t alignment) noexcept {
         }
     }
     header().top = static_cast<Offset>(end);
-    // Fresh pages are zero, and pages are never handed out twice from here.
+    // New pages are zero, and no part is allocated twice here.
     return static_cast<Offset>(start);
 }
 
@@ -102,7 +102,7 @@ Record *Segment::find(Kind kind, std::string_view name) const noexcept {
 
 Record *Segment::make_raw(Kind kind, std::string_view name, std::size_t size) noexcept {
     Table &of = table(kind);
-    const bool hasValue = kind == Kind::PIN || kind == Kind::SIGNAL;
+    const bool has_value = kind == Kind::PIN || kind == Kind::SIGNAL;
     Record *record = at<Record>(of.free);
     if (record != nullptr) {
         of.free = record->next;
@@ -110,14 +110,14 @@ Record *Segment::make_raw(Kind kind, std::string_view name, std::size_t size) no
         std::memset(static_cast<void *>(record), 0, size);
         record->value = value;
     } else {
-        const Offset value = hasValue ? allocate_value() : 0;
-        record = hasValue && value == 0 ? nullptr : at<Record>(allocate(size, CACHE_LINE));
+        const Offset value = has_value ? allocate_value() : 0;
+        record = has_value && value == 0 ? nullptr : at<Record>(allocate(size, CACHE_LINE));
         if (record == nullptr) {
             return nullptr;
         }
         record->value = value;
     }
-    if (hasValue) {
+    if (has_value) {
         *at<std::uint64_t>(record->value) = 0;
     }
     record->hash = hash_of(name);
@@ -163,14 +163,14 @@ void Segment::remove(Kind kind, Record &record) noexcept {
     of.free = offset;
 }
 
-/// Rebuilds from the lists what follows from them: hash chains, counts, links of signals.
+/// Rebuilds derived data from the lists: hash chains, counts, links of signals.
 void Segment::repair() noexcept {
     for (std::size_t k = 0; k < static_cast<std::size_t>(Kind::COUNT); ++k) {
         const Kind kind = static_cast<Kind>(k);
         Table &of = table(kind);
         of.buckets.fill(0);
         of.count = 0;
-        // A block that was being freed is lost, which does no harm.
+        // A block that was being freed is lost, without harm.
         of.free = 0;
         each<Record>(kind, [&](Record &record) {
             Offset &bucket = of.buckets[record.hash % BUCKETS];
@@ -203,7 +203,7 @@ void Segment::repair() noexcept {
                       [&](AliasRecord &alias) { at<PinRecord>(alias.target)->alias = offset_of(&alias); });
     each<AliasRecord>(Kind::PARAM_ALIAS,
                       [&](AliasRecord &alias) { at<ParamRecord>(alias.target)->alias = offset_of(&alias); });
-    // Functions of a component that is half removed: the lists still name them, which reaping puts right.
+    // Functions of a partly removed component: the lists still contain them, until reaping removes them.
 }
 
 }  // namespace mw::hal::detail

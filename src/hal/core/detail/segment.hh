@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What lies in the HAL segment. Records refer to each other by offset, so that every process may map it
-// anywhere; only pin slots hold addresses, each in the mapping of the pin's owner. All but the fields marked
-// realtime is changed under the segment's lock only.
+// Content of the HAL segment. Records refer to each other by offset, so that each process may map it at any
+// address; only pin slots hold addresses, each in the mapping of the pin's owner. All fields except those
+// marked realtime change only under the segment's lock.
 #pragma once
 
 #include <pthread.h>
@@ -43,15 +43,15 @@ enum class Kind : std::uint8_t {
     COUNT
 };
 
-/// Begins every record. The list is the truth; the hash chains are rebuilt from it when a process died in
-/// between.
+/// Start of every record. The list is authoritative; the hash chains are rebuilt from it when a process died
+/// during a change.
 struct Record {
     Offset next;       ///< in the table's list, newest first; in its free list once removed
     Offset hash_next;  ///< in the bucket
     std::uint32_t hash;
-    /// Of pins and signals: 8 bytes in a block of values, which stay with the record when it is used again. A
-    /// component's values lie side by side: the servo thread reads and writes hundreds of them in a cycle. A
-    /// pin's is in use while it is not linked. What it holds: realtime
+    /// For pins and signals: 8 bytes in a block of values, which stay with the record when it is reused. The
+    /// values of a component are adjacent, because the servo thread accesses hundreds of them in a cycle. A
+    /// pin's is used while it is not linked. Its content: realtime
     Offset value;
     std::array<char, NAME_LENGTH + 1> name;
 
@@ -62,20 +62,20 @@ struct CompRecord : Record {
     std::int32_t id;
     CompType type;
     bool isReady;
-    bool isLoadedByLoadrt;
-    bool isAskedToEnd;  ///< its end is no accident
+    bool is_loaded_by_loadrt;
+    bool end_requested;  ///< its end was requested
     runtime::ProcessId process;
-    std::uint64_t base;  ///< where the owner has mapped the content
+    std::uint64_t base;  ///< address of the content in the owner's process
     Offset insmod_args;  ///< a text
 };
 
 struct PinRecord : Record {
     Type type;
     Dir dir;
-    bool hasSafeValue;
+    bool has_safe_value;
     Offset comp;
     Offset signal;
-    Offset slot;  ///< the pointer that the component reads through
+    Offset slot;  ///< the pointer that the component reads
     Offset alias;
     std::uint64_t safe_value;
 };
@@ -84,7 +84,7 @@ struct ParamRecord : Record {
     Type type;
     Dir dir;
     Offset comp;
-    Offset address;  ///< of its value, in memory of the component. realtime
+    Offset address;  ///< address of the value in memory of the component. realtime
     Offset alias;
 };
 
@@ -95,22 +95,22 @@ struct SignalRecord : Record {
 
 struct FunctRecord : Record {
     Offset comp;
-    bool isReentrant;
+    bool reentrant;
     bool usesFloat;
     std::int32_t users;
     std::uint64_t function;  ///< addresses in the owner's process
     std::uint64_t argument;
     std::uint64_t time_slot;               ///< pin slot of .time. realtime
     alignas(8) std::int32_t tmax;          ///< realtime
-    alignas(8) bool isTmaxIncreased;       ///< realtime
-    std::atomic<std::uint32_t> init_runs;  ///< times it ran as an init function. realtime
+    alignas(8) bool tmax_increased;        ///< realtime
+    std::atomic<std::uint32_t> init_runs;  ///< number of runs as an init function. realtime
 };
 
 struct ListEntry {
     std::uint64_t function;
     std::uint64_t argument;
     Offset funct;
-    bool isInit;
+    bool is_init;
 };
 
 struct FunctionList {
@@ -122,12 +122,12 @@ struct ThreadRecord : Record {
     std::int64_t period_ns;
     Offset comp;
     std::array<Offset, 2> lists;
-    /// Which of the lists the thread takes next. Sequentially consistent with `cycle`: either the thread's
-    /// next load sees a new list, or the one who changed it sees the thread running and waits for the cycle
-    /// to end. realtime
+    /// Index of the list for the next cycle. Sequentially consistent with `cycle`: either the thread's next
+    /// load sees the new list, or the process that changed it sees the running thread and waits for the end
+    /// of the cycle. realtime
     std::atomic<std::uint32_t> active;
     std::atomic<std::uint32_t> cycle;  ///< odd while the functions run. realtime
-                                       // As last told by the host (publish_thread_figures).
+                                       // As last published by the host (publish_thread_figures).
     std::atomic<std::uint64_t> overruns;
     std::atomic<std::int64_t> max_latency_ns;
     std::uint64_t time_slot;  ///< pin slots of .time and .threadbeat. realtime
@@ -140,7 +140,7 @@ struct AliasRecord : Record {
     Offset target;
 };
 
-/// A block of rtapi_shmem_*; its name is its key.
+/// A block of rtapi_shmem_*; its key is its name.
 struct BlockRecord : Record {
     std::int32_t key;
     std::int32_t users;
@@ -149,27 +149,26 @@ struct BlockRecord : Record {
     Offset memory;
 };
 
-/// The queue of a port signal, followed by `size` bytes. Positions run from 0 to size - 1 with a byte kept
-/// free.
+/// The queue of a port signal, followed by `size` bytes. Positions are 0 to size - 1; one byte stays free.
 struct PortQueue {
     std::uint32_t size;
     // Released by its writer after the bytes are in place, acquired by the reader before it copies them.
     // realtime
     std::atomic<std::uint32_t> in;
-    // Released by the reader after its copy, acquired by the writer before it fills the bytes anew. realtime
+    // Released by the reader after its copy, acquired by the writer before it fills the bytes again.
     std::atomic<std::uint32_t> out;
 };
 
-/// A component whose process died with it.
+/// A component that was removed because its process died.
 struct DeathRecord {
     std::array<char, NAME_LENGTH + 1> name;
     std::int32_t pid;
-    std::int64_t time_ns;  ///< of the monotonic clock
+    std::int64_t time_ns;  ///< monotonic clock
 };
 
 inline constexpr std::size_t DEATHS = 16;
 
-/// How the host came to its end, as far as it could say.
+/// Why the host ended, if it could be stored.
 struct EndRecord {
     static constexpr std::uint32_t NONE = 0;
     static constexpr std::uint32_t BEING_WRITTEN = 1;
@@ -187,20 +186,20 @@ struct Table {
 };
 
 struct Header {
-    pthread_mutex_t mutex;                 ///< robust and shared between processes
-    std::atomic<std::uint32_t> isRunning;  ///< threads are started. realtime
-    std::atomic<std::uint32_t> links;      ///< counts how often a pin was pointed at a value. realtime
+    pthread_mutex_t mutex;               ///< robust and shared between processes
+    std::atomic<std::uint32_t> running;  ///< threads are started. realtime
+    std::atomic<std::uint32_t> links;    ///< number of changes of pin slots. realtime
     std::atomic<std::uint8_t> lock;
-    bool isVirtual;
-    bool isRealtime;                         ///< threads have realtime priority
-    std::array<char, 512> realtime_missing;  ///< why threads have none
+    bool is_virtual;
+    bool realtime;                           ///< threads have realtime priority
+    std::array<char, 512> realtime_missing;  ///< why they do not
     std::int32_t next_comp_id;
-    std::int32_t spared_pid;    ///< its components outlive it while the machine brakes; 0: none
-    std::uint32_t death_count;  ///< since the start; the last DEATHS of them are kept
+    std::int32_t spared_pid;    ///< process whose components remain while the machine brakes; 0: none
+    std::uint32_t death_count;  ///< since the start; the last DEATHS of them are stored
     std::array<DeathRecord, DEATHS> deaths;
     EndRecord end;
-    Offset top;                        ///< first byte never handed out
-    Offset next_value, end_of_values;  ///< what is left of the newest block of values
+    Offset top;                        ///< first byte not allocated yet
+    Offset next_value, end_of_values;  ///< the rest of the newest block of values
     std::array<Table, static_cast<std::size_t>(Kind::COUNT)> tables;
 };
 
@@ -217,20 +216,20 @@ consteval std::uint64_t layout_hash() {
 
 inline constexpr runtime::SharedLayout LAYOUT{ABI_VERSION, layout_hash()};
 
-/// The segment as mapped here. All methods but lock() and at() need the lock held.
+/// The segment as mapped in this process. All methods except lock() and at() need the lock.
 class Segment {
   public:
     Segment() = default;
     explicit Segment(runtime::SharedMemory memory) noexcept;
-    /// Sets the header up; once, by the creator.
-    void initialise(bool isVirtual) noexcept;
+    /// Initialises the header; once, by the creator.
+    void initialise(bool is_virtual) noexcept;
 
     Header &header() const noexcept { return *static_cast<Header *>(data_); }
     char *data() const noexcept { return static_cast<char *>(data_); }
     std::uint64_t base() const noexcept { return reinterpret_cast<std::uint64_t>(data_); }
     const runtime::SharedMemory &memory() const noexcept { return memory_; }
 
-    /// Waits for the lock; repairs what a process that died with it left half done.
+    /// Waits for the lock; repairs changes that a dead holder left incomplete.
     void lock() noexcept;
     void unlock() noexcept;
 
@@ -241,7 +240,7 @@ class Segment {
     Offset offset_of(const void *pointer) const noexcept {
         return static_cast<Offset>(static_cast<const char *>(pointer) - data());
     }
-    /// True when `bytes` from `pointer` on lie in memory handed out.
+    /// True when `bytes` from `pointer` on are in allocated memory.
     bool contains(const void *pointer, std::size_t bytes) const noexcept;
 
     /// Zeroed memory; 0 when none is left.
@@ -253,18 +252,18 @@ class Segment {
     T *find_as(Kind kind, std::string_view name) const noexcept {
         return static_cast<T *>(find(kind, name));
     }
-    /// A zeroed record with its name, not in the table yet; null when memory is short.
+    /// A zeroed record with its name, not in the table yet; null without memory.
     template <class T>
     T *make(Kind kind, std::string_view name) noexcept {
         return static_cast<T *>(make_raw(kind, name, sizeof(T)));
     }
-    /// The next value lies in another cache line than those before.
+    /// Starts a new cache line for the next value.
     void separate_values() noexcept;
     /// Puts a filled record into its table.
     void insert(Kind kind, Record &record) noexcept;
     void remove(Kind kind, Record &record) noexcept;
 
-    /// Calls visit(T &) for every record, newest first; the visitor may remove the one it is given.
+    /// Calls visit(T &) for every record, newest first; the visitor may remove the current one.
     template <class T, class Visitor>
     void each(Kind kind, Visitor visit) const {
         for (Offset at_offset = table(kind).first; at_offset != 0;) {

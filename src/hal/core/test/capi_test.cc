@@ -21,7 +21,7 @@
 namespace mw::hal {
 namespace {
 
-/// An instance with a component that has one of each.
+/// An instance and a component with one object of each type.
 struct CInterface : ::testing::Test {
     TestMachine machine;
     UseInstance use{machine.host.get() == nullptr ? nullptr : &machine.hal()};
@@ -202,7 +202,7 @@ TEST_F(CInterface, SharesSemaphoresByKey) {
     EXPECT_EQ(rtapi_sem_take(first), 0);
     EXPECT_EQ(rtapi_sem_try(first), -EBUSY);
     EXPECT_EQ(rtapi_sem_give(first), 0);
-    EXPECT_EQ(rtapi_sem_give(first), 0) << "given twice it is free once";
+    EXPECT_EQ(rtapi_sem_give(first), 0) << "with two gives it is free once";
     EXPECT_EQ(rtapi_sem_try(first), 0);
     EXPECT_EQ(rtapi_sem_try(first), -EBUSY);
     EXPECT_EQ(rtapi_sem_delete(first, 1), 0);
@@ -223,14 +223,14 @@ TEST_F(CInterface, SaysWhyHardwareIsOutOfReach) {
     EXPECT_GT(rtapi_prio_next_higher(rtapi_prio_lowest()), 0);
 }
 
-// A second process, such as doctor, must not touch what moves a machine.
+// A second process, such as doctor, must not access hardware that moves a machine.
 TEST_F(CInterface, TouchesNoPortUnderTheVirtualClock) {
     constexpr unsigned short DATA = 0x378;
     void *const region = rtapi_request_region(DATA, 3, "c");
     ASSERT_NE(region, nullptr) << "also without CAP_SYS_RAWIO";
     rtapi_outb(0x55, DATA);
     EXPECT_EQ(rtapi_inb(DATA), 0xff);
-    EXPECT_EQ(rtapi_request_region(DATA + 1, 1, "other"), nullptr) << "regions have an owner all the same";
+    EXPECT_EQ(rtapi_request_region(DATA + 1, 1, "other"), nullptr) << "regions have an owner anyway";
     rtapi_release_region(DATA, 3);
     ::unsetenv("MILLWRIGHT_SYSFS");
     static const rtapi_pci_device_id table[] = {{0x2718, 0x5125, 0, 0, 0, 0, 42}, {}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What HAL does inside a thread touches neither heap nor locks.
+// HAL functions in a thread use neither heap nor locks.
 #include <gtest/gtest.h>
 
 #include "hal/core/test/machine.hh"
@@ -13,7 +13,7 @@ TEST(AllocationGuard, CountsWhatThisThreadDoes) {
     mw::testing::AllocationGuard guard;
     EXPECT_EQ(guard.calls(), 0U);
     int *memory = new int(1);
-    __asm__ volatile("" : : "r"(memory) : "memory");  // the compiler may leave out a pair that nobody sees
+    __asm__ volatile("" : : "r"(memory) : "memory");  // the compiler may remove an unused pair
     delete memory;
     EXPECT_EQ(guard.calls(), 2U);
 }
@@ -36,7 +36,7 @@ TEST(RealtimeCode, ThreadsRunWithoutTheHeap) {
     EXPECT_EQ(machine.value("sdk-sum.3.runs"), Value::of_s32(1000));
 }
 
-/// Calls what a realtime function may call.
+/// Calls every function that is permitted in realtime functions.
 struct Talker {
     hal_stream_t stream{};
     int runs = 0;
@@ -135,11 +135,11 @@ TEST(CApi, ReferencesReadAndWritePins) {
     EXPECT_EQ(machine.hal().pin("refs.wide")->type, Type::S64);
     hal_type_t type = HAL_TYPE_UNSPECIFIED;
     hal_data_u *data = nullptr;
-    bool isConnected = true;
-    ASSERT_EQ(hal_get_pin_value_by_name("refs.0.real", &type, &data, &isConnected), 0);
+    bool connected = true;
+    ASSERT_EQ(hal_get_pin_value_by_name("refs.0.real", &type, &data, &connected), 0);
     EXPECT_EQ(type, HAL_FLOAT);
     EXPECT_EQ(data->f, 2.5);
-    EXPECT_FALSE(isConnected);
+    EXPECT_FALSE(connected);
     EXPECT_EQ(hal_ready(comp), 0);
     EXPECT_EQ(hal_exit(comp), 0);
     EXPECT_EQ(hal_exit(comp), -EINVAL);

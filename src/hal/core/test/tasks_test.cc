@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Tasks of a module's own under the realtime clock; these tests wait for threads, with a limit.
+// Tasks created by a module under the realtime clock; these tests wait for threads, with a limit.
 #include <atomic>
 #include <chrono>
 #include <functional>
@@ -30,7 +30,7 @@ bool isSoon(const std::function<bool()> &condition) {
 /// A private instance under the realtime clock, without realtime priority.
 struct RealtimeTasks : ::testing::Test {
     Messages messages;
-    runtime::RealtimeScheduler clock{messages.log, {.cpu = -2, .isSimulation = true}};
+    runtime::RealtimeScheduler clock{messages.log, {.cpu = -2, .is_simulation = true}};
     std::unique_ptr<Hal> hal;
 
     RealtimeTasks() {
@@ -95,7 +95,7 @@ TEST_F(RealtimeTasks, RefuseWhatIsWrong) {
     EXPECT_GT(rtapi_prio_highest(), rtapi_prio_next_lower(rtapi_prio_highest()));
 }
 
-/// What a HAL function sees of the clock of its thread.
+/// The clock of its thread as seen by a HAL function.
 struct Follower {
     std::atomic<long long> first{0}, reference{0};
     std::atomic<int> runs{0};
@@ -107,7 +107,7 @@ struct Follower {
             follower->first = rtapi_task_pll_get_reference();
         }
         follower->reference = rtapi_task_pll_get_reference();
-        follower->status = rtapi_task_pll_set_correction(period);  // far more than one percent
+        follower->status = rtapi_task_pll_set_correction(period);  // far above one percent
         ++follower->runs;
     }
 };

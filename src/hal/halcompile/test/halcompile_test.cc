@@ -152,7 +152,7 @@ TEST(HalcompileParser, RejectsConditionsInTheWrongOrder) {
 }
 
 TEST(HalcompileChecker, FindsWhatCannotWork) {
-    EXPECT_EQ(errors_of("component y;" + TAIL), (Texts{"1:1 component 'y' stands in a file named x"}));
+    EXPECT_EQ(errors_of("component y;" + TAIL), (Texts{"1:1 component 'y' is in a file named x"}));
     EXPECT_EQ(errors_of("component x;\npin in bit a;\npin out bit a;" + TAIL),
               (Texts{"3:1 the name 'a' is taken already"}));
     EXPECT_EQ(errors_of("component x;\npin in bit if;" + TAIL), (Texts{"2:1 'if' is a word of C"}));
@@ -200,8 +200,8 @@ TEST(HalcompileCode, SeesFunctionsOnlyInCode) {
     ASSERT_EQ(facts.functions.size(), 1U);
     EXPECT_EQ(facts.functions[0].name, "c");
     EXPECT_EQ(facts.functions[0].line, 1);
-    EXPECT_TRUE(facts.hasQuotedInclude);
-    EXPECT_FALSE(look_at_code("/* FUNCTION(_) */").hasFunctionWord);
+    EXPECT_TRUE(facts.has_quoted_include);
+    EXPECT_FALSE(look_at_code("/* FUNCTION(_) */").has_function_word);
 }
 
 TEST(HalcompileCode, FindsWhereTheNestingIsDeeperThanCompilersTake) {
@@ -245,7 +245,7 @@ TEST(HalcompileOptions, TakeTheManualsForms) {
     EXPECT_FALSE(parse_options({"--p"})) << "ambiguous";
     EXPECT_FALSE(parse_options({"--e=1"})) << "ambiguous";
     EXPECT_EQ(parse_options({"--install", "a.c"})->mode, Mode::INSTALL);
-    EXPECT_EQ(parse_options({"-cu", "a.c"})->isUserspace, true);
+    EXPECT_EQ(parse_options({"-cu", "a.c"})->userspace, true);
 }
 
 TEST(HalcompileObject, RefusesOtherFiles) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The realtime process, and what happens when processes die. These tests wait for other processes, so their
-// time is the clock's; every wait has a limit.
+// The realtime process, and the death of processes. These tests wait for other processes in real time; every
+// wait has a limit.
 #include <signal.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
@@ -35,7 +35,7 @@ bool isSoon(const std::function<bool()> &condition) {
     return true;
 }
 
-/// Runs `work` in a child, which then waits for its end; returns when the work is done. 0 when it failed.
+/// Runs `work` in a child, which then waits to be ended; returns when the work is done. 0 when it failed.
 pid_t run_in_child(const std::function<bool()> &work) {
     int ready[2];
     if (::pipe(ready) != 0) {
@@ -52,13 +52,13 @@ pid_t run_in_child(const std::function<bool()> &work) {
     }
     ::close(ready[1]);
     char done = '0';
-    const bool isDone = ::read(ready[0], &done, 1) == 1 && done == '1';
+    const bool is_done = ::read(ready[0], &done, 1) == 1 && done == '1';
     ::close(ready[0]);
-    if (!isDone) {
+    if (!is_done) {
         ::kill(child, SIGKILL);
         ::waitpid(child, nullptr, 0);
     }
-    return isDone ? child : 0;
+    return is_done ? child : 0;
 }
 
 /// True when `watcher` holds a pidfd of `process`.
@@ -191,8 +191,8 @@ TEST_F(HostTest, BrakesAndEndsWhenTheControllingProcessDies) {
     EXPECT_EQ(*left, 0) << "it braked to the end";
 }
 
-/// Task has threads, and the kernel ends them one after the other: the first one is gone before the process
-/// is. An enable chain through its pins must not cut the braking short then.
+/// Task has threads, which the kernel ends one after the other: the first one ends before the process does.
+/// An enable chain through its pins must not interrupt the braking then.
 TEST_F(HostTest, OutputsOfTheControllingProcessStayUntilTheMachineStands) {
     auto client = start();
     ASSERT_NE(client, nullptr);
@@ -203,16 +203,16 @@ TEST_F(HostTest, OutputsOfTheControllingProcessStayUntilTheMachineStands) {
         const int id = *own->hal().new_component("chain");
         void **enable = *own->hal().new_pin("chain.enable", Type::BIT, Dir::OUT, id);
         **reinterpret_cast<bool **>(enable) = true;
-        const bool isReady = own->hal().set_ready(id).has_value() && own->control().has_value();
+        const bool ready = own->hal().set_ready(id).has_value() && own->control().has_value();
         std::thread([] {
             ::usleep(50'000);
-            (void)::syscall(SYS_tgkill, ::getpid(), ::getpid(), SIGUSR1);  // out of its pause
+            (void)::syscall(SYS_tgkill, ::getpid(), ::getpid(), SIGUSR1);  // ends its pause
             while (true) {
                 ::pause();
             }
         }).detach();
         ::signal(SIGUSR1, [](int) { (void)::syscall(SYS_exit, 0); });
-        return isReady;
+        return ready;
     });
     ASSERT_NE(controller, 0);
     const std::string status = "/proc/" + std::to_string(controller) + "/stat";
@@ -223,7 +223,7 @@ TEST_F(HostTest, OutputsOfTheControllingProcessStayUntilTheMachineStands) {
         return text.find(") Z") != std::string::npos;
     }));
     EXPECT_TRUE(hal.reap_dead_components().empty()) << "nor does any other program";
-    std::this_thread::sleep_for(std::chrono::milliseconds(300));  // the realtime process looks every 50
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));  // the realtime process checks every 50 ms
     const auto enable = hal.get("chain.enable");
     EXPECT_TRUE(enable.has_value() && enable->as_bit());
     kill_now(controller);
@@ -287,7 +287,7 @@ TEST_F(HostTest, ADeathIsNoticedAtOnceAndNamed) {
     ASSERT_TRUE(hal.expect_end(hal.component("dismissed")->id));
     kill_now(dismissed);
     EXPECT_TRUE(isSoon([&] { return !hal.hasComponent("dismissed"); }));
-    EXPECT_EQ(hal.deaths().size(), 1U) << "it was told to";
+    EXPECT_EQ(hal.deaths().size(), 1U) << "it was asked to";
     ASSERT_TRUE(hal.new_component("victim"));
     EXPECT_TRUE(hal.deaths().empty()) << "it is back";
 }
@@ -299,7 +299,7 @@ TEST_F(HostTest, EndsWithItsStarterFromTheFirstMomentOn) {
         ::raise(SIGKILL);
     }
     ::waitpid(starter, nullptr, 0);
-    EXPECT_TRUE(isSoon([&] { return !isHostAlive(instance); })) << "nobody took control";
+    EXPECT_TRUE(isSoon([&] { return !isHostAlive(instance); })) << "no client took control";
 }
 
 TEST_F(HostTest, TheLogLevelReachesTheRealtimeProcess) {
@@ -325,7 +325,7 @@ TEST_F(HostTest, ALockHeldByAKilledProcessIsRecovered) {
             (void)own->link("holder.pin", "s");
             detail::Segment &segment = own->impl().segment;
             segment.lock();
-            // In the middle of making a record, at different places.
+            // During the creation of a record, at different points.
             auto *pin = segment.make<detail::PinRecord>(detail::Kind::PIN, "holder.half");
             detail::Table &table = segment.table(detail::Kind::PIN);
             if (round % 3 > 0) {

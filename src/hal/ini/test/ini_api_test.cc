@@ -62,9 +62,9 @@ TEST_F(IniApi, ValuesByNameAreTyped) {
     rtapi_uint positive = 0;
     EXPECT_EQ(iniFindUInt(name.c_str(), "LEVEL", "A", &positive), 0);
     EXPECT_EQ(positive, 17U);
-    bool isOn = false;
-    EXPECT_EQ(iniFindBool(name.c_str(), "ON", "A", &isOn), 0);
-    EXPECT_TRUE(isOn);
+    bool on = false;
+    EXPECT_EQ(iniFindBool(name.c_str(), "ON", "A", &on), 0);
+    EXPECT_TRUE(on);
     double real = 0.0;
     EXPECT_EQ(iniFindDouble(name.c_str(), "REAL", "A", &real), 0);
     EXPECT_EQ(real, 2.5);

@@ -79,7 +79,7 @@ TEST_F(SessionTest, ShowHasTheColumnsThatScriptsCut) {
               "Component Pins:\nOwner   Type  Dir                 Value  Name\n");
     EXPECT_NE(output.answers.find("float IN                    2.5  board.value\n"), std::string::npos);
     EXPECT_NE(output.answers.find("u32   IN             0x0000000A  board.word\n"), std::string::npos);
-    options.isScript = true;
+    options.is_script = true;
     EXPECT_EQ(run("show pin board.v* board.w*"),
               "board float IN 2.5 board.value\nboard u32   IN 10 board.word\n\n");
     EXPECT_EQ(run("show param"), "board float RW 0 board.gain\n\n");
@@ -138,7 +138,7 @@ TEST_F(SessionTest, SourceFindsFilesBesideTheCallerAndInTheLibrary) {
 }
 
 TEST_F(SessionTest, LeftOutProgramsGetPlaceholders) {
-    options.hasPlaceholders = true;
+    options.has_placeholders = true;
     std::string started;
     programs.add_part("known", [&](const ProgramRequest &request) {
         started = request.component;
@@ -153,7 +153,7 @@ TEST_F(SessionTest, LeftOutProgramsGetPlaceholders) {
     ASSERT_EQ(left_out.size(), 1U);
     EXPECT_EQ(left_out[0],
               "not started: pyvcp -c panel file.xml; without effect: panel.button, panel.lamp, panel.level");
-    EXPECT_NE(run("net b other.pin"), "") << "unknown pins of nobody stay errors";
+    EXPECT_NE(run("net b other.pin"), "") << "unknown pins of no component stay errors";
 }
 
 TEST_F(SessionTest, UnderTheVirtualClockNoProgramIsStarted) {
@@ -209,7 +209,7 @@ TEST_F(SessionTest, PrintAndEchoGoToTheNotes) {
     EXPECT_EQ(output.notes, "test.hal:1: HALCMD MSG: \"hello there\"\n(3)<echo>: unecho\n");
 }
 
-// The signal arrived before the wait began.
+// The signal arrived before the wait.
 TEST_F(SessionTest, AStopIsSeenAlsoByAWaitThatBeginsAfterIt) {
     const volatile std::sig_atomic_t stop = SIGINT;
     SystemProgramHost system(host->hal(), &stop);

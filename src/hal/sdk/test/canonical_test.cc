@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The canonical devices as pins and parameters, by the example driver examples/driver/loop_board.cc.
+// Pins and parameters of the canonical devices, in the example driver examples/driver/loop_board.cc.
 #include <limits>
 #include <map>
 
@@ -148,7 +148,7 @@ TEST_F(CanonicalDevices, NeitherAllocateNorWait) {
     mw::testing::AllocationGuard guard;
     machine.clock.run_until(machine.clock.now_ns() + 20'000 * PERIOD_NS);
     EXPECT_EQ(guard.calls(), 0U);
-    EXPECT_GT(get("encoder-00.position"), 65536.0) << "beyond the range of the 16-bit counter";
+    EXPECT_GT(get("encoder-00.position"), 65536.0) << "outside the range of the 16-bit counter";
 }
 
 TEST(CanonicalNames, OverlongNameEndsTheLoad) {

@@ -34,7 +34,7 @@ TEST(DeviceValues, CodeIsWithinHalfABitOfTheVoltage) {
         in{.bit_weight = 20.0 / 4096, .hw_offset = 10};
     for (int i = 0; i < ROUNDS; ++i) {
         const double wanted = volts(random);
-        // Half a bit, and what rounding of the figures adds.
+        // Half a bit plus rounding errors.
         EXPECT_NEAR(converter_reading(converter_code(wanted, out), in), wanted, out.bit_weight / 2 + 1e-12);
     }
     EXPECT_EQ(converter_code(1e300, {.bit_weight = 1e-3}), 2147483647);
@@ -95,9 +95,9 @@ TEST_P(EncoderCountTest, FollowsAnyPathThroughOverflows) {
         EncoderReading reading{at(shaft), random() % 4 == 0, at(shaft - back)};
         const EncoderCount::Request request{random() % 8 == 0, random() % 2 == 0};
         const EncoderCount::Result result = encoder.read(reading, request);
-        const bool isTaken = reading.isIndexLatched && request.isIndexEnabled;
-        zero = request.isReset ? shaft : (isTaken ? shaft - back : zero);
-        ASSERT_EQ(result.isIndexTaken, isTaken) << "seed " << SEED << " round " << i;
+        const bool taken = reading.index_latched && request.isIndexEnabled;
+        zero = request.isReset ? shaft : (taken ? shaft - back : zero);
+        ASSERT_EQ(result.index_taken, taken) << "seed " << SEED << " round " << i;
         ASSERT_EQ(result.count, shaft - zero) << "seed " << SEED << " round " << i;
         ASSERT_EQ(result.change, shaft - before) << "reset and index are no movement";
         ASSERT_EQ(result.raw, shaft - start);

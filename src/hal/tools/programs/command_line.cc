@@ -19,20 +19,22 @@ namespace {
 void apply(CommandLine &line, const options::Letter &option) {
     script::SessionOptions &session = line.session;
     switch (option.letter) {
-    case 'f': line.readsInput = session.arePipesRead = true; break;
+    case 'f': line.readsInput = session.are_pipes_read = true; break;
     case 'k': session.keepsGoing = true; break;
     case 'q': session.verbosity = script::Verbosity::ERRORS; break;
     case 'Q': session.verbosity = script::Verbosity::SILENT; break;
-    case 's': session.isScript = true; break;
+    case 's': session.is_script = true; break;
     case 'v': session.verbosity = script::Verbosity::RESULTS; break;
     case 'V': session.verbosity = script::Verbosity::EVERYTHING; break;
     case 'e': session.isEchoing = true; break;
-    case 'h': line.wantsHelp = true; break;
-    case 'I': line.isInteractive = true; break;
-    case 'U': line.isKilling = true; break;
-    case 'T': line.wantsTcl = true; break;
+    case 'h': line.wants_help = true; break;
+    case 'I': line.interactive = true; break;
+    case 'U': line.killing = true; break;
+    case 'T': line.wants_tcl = true; break;
     case 'i': line.ini_path = option.value; break;
-    default: break;  // R: the lock of the HAL segment is robust, it frees itself when its holder dies
+    default:
+        break;  // R: without effect, because the lock of the HAL segment is robust and frees itself when its
+                // holder dies
     }
 }
 
@@ -73,11 +75,11 @@ Result<> IniOption::load(const std::string &path) {
 
 namespace {
 
-/// Gives the lines of standard input: from an editor at a terminal, else as they come.
+/// Reads lines of standard input: with an editor at a terminal.
 class InputLines {
   public:
-    explicit InputLines(script::Session &session) : isTerminal_(isatty(STDIN_FILENO) == 1) {
-        if (isTerminal_) {
+    explicit InputLines(script::Session &session) : is_terminal_(isatty(STDIN_FILENO) == 1) {
+        if (is_terminal_) {
             LineEditorOptions options;
             options.history_file = history_file("halcmd");
             options.complete = [&session](const std::string &line) {
@@ -87,18 +89,18 @@ class InputLines {
             editor_ = std::make_unique<LineEditor>(std::move(options));
         }
     }
-    bool isTerminal() const { return isTerminal_; }
-    /// The next line; `isContinued`: it goes on with the one before.
-    std::optional<std::string> next(bool isContinued) {
+    bool isTerminal() const { return is_terminal_; }
+    /// The next line; `continued`: it continues the previous one.
+    std::optional<std::string> next(bool continued) {
         if (editor_ != nullptr) {
-            return editor_->read(isContinued ? "      > " : "halcmd: ");
+            return editor_->read(continued ? "      > " : "halcmd: ");
         }
         std::string line;
         return std::getline(std::cin, line) ? std::optional(line) : std::nullopt;
     }
 
   private:
-    bool isTerminal_;
+    bool is_terminal_;
     std::unique_ptr<LineEditor> editor_;
 };
 
@@ -108,8 +110,8 @@ Result<> run_standard_input(script::Session &session) {
     InputLines lines(session);
     Result<> first;
     std::string text;
-    int number = 0;      // lines read
-    int first_line = 1;  // of the command being read
+    int number = 0;      // number of lines read
+    int first_line = 1;  // first line of the current command
     while (!session.hasEnded()) {
         const std::optional<std::string> line = lines.next(!text.empty());
         if (!line) {

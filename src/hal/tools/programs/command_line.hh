@@ -19,20 +19,20 @@ struct CommandLine {
     script::SessionOptions session;
     std::string ini_path;            ///< -i
     bool readsInput = false;         ///< -f: from a file, or standard input without a name
-    std::vector<std::string> words;  ///< what follows the options: files with -f (or halrun), else a command
-    bool wantsHelp = false;          ///< -h
-    bool isInteractive = false;      ///< halrun -I
-    bool isKilling = false;          ///< halrun -U
-    bool wantsTcl = false;           ///< halrun -T
+    std::vector<std::string> words;  ///< words after the options: files with -f (or halrun), else a command
+    bool wants_help = false;         ///< -h
+    bool interactive = false;        ///< halrun -I
+    bool killing = false;            ///< halrun -U
+    bool wants_tcl = false;          ///< halrun -T
 };
 
-/// Reads the options of both programs; single letters, several behind one dash.
+/// Reads the options of both programs: single letters, which may share a dash.
 Result<CommandLine> parse_command_line(const std::vector<std::string> &arguments);
 
-/// The INI file of -i while a session uses it.
+/// The INI file of -i, used by a session.
 class IniOption {
   public:
-    /// Nothing to do without a path.
+    /// No effect without a path.
     Result<> load(const std::string &path);
     const script::IniLookup *lookup() const { return lookup_.get(); }
     /// Null without a path.
@@ -44,8 +44,8 @@ class IniOption {
     std::unique_ptr<script::IniFileLookup> lookup_;
 };
 
-/// Reads commands from standard input until its end or exit, with a prompt on a terminal.
-/// The first failure, unless it is a person who types.
+/// Runs commands from standard input until its end or exit, with a prompt on a terminal. Returns the first
+/// failure, except for typed commands.
 Result<> run_standard_input(script::Session &session);
 
 /// Runs the HAL files of an INI file in two passes; an error unless it has [HAL]TWOPASS.
@@ -54,18 +54,18 @@ Result<> run_two_pass_ini(script::Session &session, const ini::IniFile &ini);
 /// Joins the running realtime process, or starts one, which then stays.
 Result<std::unique_ptr<HostClient>> join_or_start();
 
-/// `halcmd`: attached to the running instance. The exit status.
+/// `halcmd`: attached to the running instance. Returns the exit status.
 int halcmd(const std::vector<std::string> &arguments);
-/// `halcmd_twopass`: attached to the running instance, or starting one. The exit status.
+/// `halcmd_twopass`: attached to the running instance, or starts one. Returns the exit status.
 int halcmd_twopass(const std::vector<std::string> &arguments);
-/// `haltcl`: a Tcl script or session, attached as halcmd is. The exit status.
+/// `haltcl`: a Tcl script or session, attached as halcmd is. Returns the exit status.
 int haltcl(const std::vector<std::string> &arguments);
-/// `realtime start|stop|restart|status`: a realtime process that stays. The exit status; of `status` 1 when
-/// none runs.
+/// `realtime start|stop|restart|status`: a persistent realtime process. Returns the exit status; for `status`
+/// 1 when none runs.
 int realtime(const std::vector<std::string> &arguments);
-/// Ends the realtime process of the instance and the programs on it, if there is one: `halrun -U`.
+/// `halrun -U`: ends the realtime process of the instance and its programs.
 int end_running(const char *program);
-/// `halrun`: with a realtime process of its own around the commands. The exit status.
+/// `halrun`: runs commands with its own realtime process. Returns the exit status.
 int halrun(const std::vector<std::string> &arguments);
 
 }  // namespace mw::hal::tools

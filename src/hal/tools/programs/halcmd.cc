@@ -51,15 +51,15 @@ int show_help(const CommandLine &line) {
     return 0;
 }
 
-/// Joins the running realtime process; a command that loads something may start one, which then stays.
+/// Joins the running realtime process; a command that loads something may start a persistent one.
 Result<std::unique_ptr<HostClient>> join(const CommandLine &line) {
     const std::string instance = default_instance();
     if (isHostAlive(instance)) {
         return HostClient::connect(instance);
     }
-    const bool mayLoad = line.readsInput || line.words.empty() || line.words[0].starts_with("load") ||
-                         line.words[0] == "source";
-    if (!mayLoad) {
+    const bool may_load = line.readsInput || line.words.empty() || line.words[0].starts_with("load") ||
+                          line.words[0] == "source";
+    if (!may_load) {
         return fail(fmt::format("no realtime process is running (instance '{}')", instance), {},
                     "halrun starts one, and so does halcmd loadrt");
     }
@@ -90,10 +90,10 @@ int halcmd(const std::vector<std::string> &arguments) {
         std::fputs(language::shown(USAGE).c_str(), stderr);
         return fail_with(line.error());
     }
-    if (line->wantsHelp) {
+    if (line->wants_help) {
         return show_help(*line);
     }
-    if (line->isInteractive || line->isKilling || line->wantsTcl) {
+    if (line->interactive || line->killing || line->wants_tcl) {
         return fail_with(Error{"options -I, -U and -T are those of halrun", {}, {}});
     }
     IniOption ini;
@@ -109,7 +109,7 @@ int halcmd(const std::vector<std::string> &arguments) {
     script::StandardOutput output;
     script::SystemProgramHost programs((*host)->hal());
     script::Session session(**host, programs, output, line->session);
-    // Nothing is left to do then, whatever this command waits for.
+    // Nothing is left to do then, independent of what this command waits for.
     const HostWatch watch(**host, [&host] {
         (void)fail_with(*(*host)->death());
         std::fflush(stdout);

@@ -46,7 +46,7 @@ void handle_signals() {
     }
 }
 
-/// Files in turn; what follows a Tcl file are its arguments.
+/// Runs files in order; the words after a Tcl file are its arguments.
 Result<> run_files(const CommandLine &line, script::Session &session) {
     Result<> first;
     for (std::size_t i = 0; i < line.words.size(); ++i) {
@@ -79,16 +79,16 @@ Result<> run(const CommandLine &line, script::Session &session, const ini::IniFi
     } else {
         first = run_files(line, session);
     }
-    // After a failure too: to see what is there.
-    const bool readsInput = line.words.empty() || line.isInteractive || line.wantsTcl;
+    // Also after a failure: to inspect the state.
+    const bool readsInput = line.words.empty() || line.interactive || line.wants_tcl;
     if (!readsInput || session.hasEnded() || stop_requested != 0) {
         return first;
     }
-    const Result<> input = line.wantsTcl ? run_tcl_input(session) : run_standard_input(session);
+    const Result<> input = line.wants_tcl ? run_tcl_input(session) : run_standard_input(session);
     return first ? input : first;
 }
 
-/// Ends programs, threads, modules and the realtime process, whatever state they are in.
+/// Ends programs, threads, modules and the realtime process in any state.
 Result<> tear_down(script::ProgramHost &programs, HostClient &host) {
     Result<> first = programs.stop_all();
     const Result<> ended = host.shut_down();
@@ -126,21 +126,21 @@ int halrun(const std::vector<std::string> &arguments) {
         std::fputs(language::shown(USAGE).c_str(), stderr);
         return fail_with(line.error());
     }
-    if (line->wantsHelp) {
+    if (line->wants_help) {
         std::fputs(language::shown(USAGE).c_str(), stdout);
         return 0;
     }
-    if (line->isKilling) {
+    if (line->killing) {
         return end_running("halrun");
     }
-    // The file itself may be an INI file: then its HAL files run, in two passes.
-    const bool isTwoPass = line->words.size() == 1 && line->words[0].ends_with(".ini");
+    // The file itself may be an INI file: runs its HAL files in two passes.
+    const bool is_two_pass = line->words.size() == 1 && line->words[0].ends_with(".ini");
     IniOption ini;
-    const Result<> loaded = ini.load(isTwoPass ? line->words[0] : line->ini_path);
+    const Result<> loaded = ini.load(is_two_pass ? line->words[0] : line->ini_path);
     if (!loaded) {
         return fail_with(loaded.error());
     }
-    if (isTwoPass && ini.file()->find("HAL", "TWOPASS") == nullptr) {
+    if (is_two_pass && ini.file()->find("HAL", "TWOPASS") == nullptr) {
         return fail_with(Error{"an INI file can only be run when it has [HAL]TWOPASS",
                                ini.file()->place_of_section("HAL"),
                                "millwright run starts a whole machine from it"});
@@ -168,7 +168,7 @@ int halrun(const std::vector<std::string> &arguments) {
     {
         const HostWatch watch(**host, [] { stop_requested = 1; });
         script::Session session(**host, programs, output, line->session);
-        result = run(*line, session, isTwoPass ? ini.file() : nullptr);
+        result = run(*line, session, is_two_pass ? ini.file() : nullptr);
     }
     if (const auto death = (*host)->death()) {
         result = tell(*death);

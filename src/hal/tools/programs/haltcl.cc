@@ -25,15 +25,15 @@ int fail_with(const Error &error) {
 int haltcl(const std::vector<std::string> &given) {
     std::vector<std::string> arguments = given;
     std::string ini_path;
-    const bool hasIni = arguments.size() >= 2 && (arguments[0] == "-i" || arguments[0] == "-ini");
-    if (hasIni) {
+    const bool has_ini = arguments.size() >= 2 && (arguments[0] == "-i" || arguments[0] == "-ini");
+    if (has_ini) {
         ini_path = arguments[1];
         arguments.erase(arguments.begin(), arguments.begin() + 2);
     }
     if (!arguments.empty() && arguments[0].starts_with('-')) {
-        const bool isHelp = arguments[0] == "-h" || arguments[0] == "--help";
-        std::fputs(language::shown(USAGE).c_str(), isHelp ? stdout : stderr);
-        return isHelp ? 0 : 1;
+        const bool is_help = arguments[0] == "-h" || arguments[0] == "--help";
+        std::fputs(language::shown(USAGE).c_str(), is_help ? stdout : stderr);
+        return is_help ? 0 : 1;
     }
     IniOption ini;
     if (const Result<> loaded = ini.load(ini_path); !loaded) {

@@ -51,7 +51,7 @@ struct LineEditor::Impl {
 
     bool isStopped() const { return options.stop != nullptr && *options.stop != 0; }
 
-    /// One byte becomes one character: names in HAL are ASCII.
+    /// One byte is one character: HAL names are ASCII.
     static int get_character(EditLine *editor, wchar_t *character) {
         const Impl &here = of(editor);
         while (!here.isStopped()) {
@@ -64,7 +64,7 @@ struct LineEditor::Impl {
             if (ready <= 0 || ::read(STDIN_FILENO, &byte, 1) != 1) {
                 return 0;
             }
-            // An end of input typed before the editor took the terminal over comes as 0 (Linux, n_tty).
+            // An end of input typed before the editor has set up the terminal arrives as 0 (Linux, n_tty).
             constexpr unsigned char END_OF_INPUT = 4;
             *character = byte == 0 ? END_OF_INPUT : byte;
             return 1;
@@ -84,8 +84,8 @@ struct LineEditor::Impl {
         const std::size_t typed = blank == std::string::npos ? line.size() : line.size() - blank - 1;
         const std::string common = script::common_beginning(words);
         std::string rest = common.substr(std::min(typed, common.size()));
-        const bool isWhole = words.size() == 1 && !common.ends_with('/') && !common.ends_with('=');
-        rest += isWhole ? " " : "";
+        const bool whole = words.size() == 1 && !common.ends_with('/') && !common.ends_with('=');
+        rest += whole ? " " : "";
         if (!rest.empty()) {
             return el_insertstr(editor, rest.c_str()) == 0 ? CC_REFRESH : CC_REFRESH_BEEP;
         }

@@ -34,13 +34,13 @@ int start() {
 
 int status() {
     const std::string instance = default_instance();
-    const bool isAlive = isHostAlive(instance);
+    const bool alive = isHostAlive(instance);
     std::printf("the realtime process of instance '%s' %s\n", instance.c_str(),
-                isAlive ? "is running" : "is not running");
-    return isAlive ? 0 : 1;
+                alive ? "is running" : "is not running");
+    return alive ? 0 : 1;
 }
 
-/// In an instance of its own: a machine that is up is not touched.
+/// In a separate instance: does not affect a running machine.
 int verify() {
     auto host = HostClient::start("verify-" + std::to_string(::getpid()));
     Result<> done = host ? (*host)->control() : std::unexpected(host.error());
@@ -76,9 +76,9 @@ int realtime(const std::vector<std::string> &arguments) {
     if (what == "verify") {
         return verify();
     }
-    const bool isHelp = what == "-h" || what == "--help";
-    std::fputs(language::shown(USAGE).c_str(), isHelp ? stdout : stderr);
-    return isHelp ? 0 : 2;
+    const bool is_help = what == "-h" || what == "--help";
+    std::fputs(language::shown(USAGE).c_str(), is_help ? stdout : stderr);
+    return is_help ? 0 : 2;
 }
 
 }  // namespace mw::hal::tools

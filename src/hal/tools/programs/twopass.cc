@@ -54,7 +54,7 @@ Result<> run_two_pass_ini(script::Session &session, const ini::IniFile &ini) {
 
 int halcmd_twopass(const std::vector<std::string> &arguments) {
     Result<CommandLine> line = parse_command_line(arguments);
-    if (line && line->wantsHelp) {
+    if (line && line->wants_help) {
         std::fputs(language::shown(USAGE).c_str(), stdout);
         return 0;
     }

@@ -31,7 +31,7 @@ void nap() {
 class Attachment {
   public:
     ~Attachment() {
-        if (isAttached_) {
+        if (attached_) {
             hal_stream_detach(&stream);
         }
         if (comp_id_ > 0) {
@@ -54,7 +54,7 @@ class Attachment {
             return fail(fmt::format("no stream for channel {}{}", channel, why), {},
                         "load the realtime component first");
         }
-        isAttached_ = true;
+        attached_ = true;
         for (int i = 0; i < hal_stream_element_count(&stream); ++i) {
             types.push_back(hal_stream_element_type(&stream, i));
         }
@@ -67,7 +67,7 @@ class Attachment {
 
   private:
     int comp_id_ = 0;
-    bool isAttached_ = false;
+    bool attached_ = false;
 };
 
 struct CloseFile {
@@ -103,13 +103,13 @@ Result<> run_sampler(const SamplerOptions &options, volatile std::sig_atomic_t &
             nap();
             continue;
         }
-        const bool isGap = done > 0 && number != expected;
+        const bool is_gap = done > 0 && number != expected;
         expected = number + 1;
         // The stream counts from 1, the text from 0.
-        const std::string tag = options.isTagged ? fmt::format("{} ", number - 1) : "";
+        const std::string tag = options.tagged ? fmt::format("{} ", number - 1) : "";
         const std::string line = format_record(attachment.types, record);
         const int written =
-            std::fprintf(out.get(), "%s%s%s\n", isGap ? "overrun\n" : "", tag.c_str(), line.c_str());
+            std::fprintf(out.get(), "%s%s%s\n", is_gap ? "overrun\n" : "", tag.c_str(), line.c_str());
         if (written < 0) {
             return fail(fmt::format("cannot write samples: {}", std::strerror(errno)));
         }
@@ -137,7 +137,7 @@ Result<> run_streamer(const StreamerOptions &options, volatile std::sig_atomic_t
         if (isSkipped(line)) {
             continue;
         }
-        // A last line without its end may have been cut off.
+        // The last line may be truncated if it has no newline.
         Result<std::vector<hal_stream_data_u>> record =
             in.eof() ? fail("the line has no end") : parse_record(attachment.types, line);
         if (!record) {
@@ -145,7 +145,7 @@ Result<> run_streamer(const StreamerOptions &options, volatile std::sig_atomic_t
             language::tell(fmt::format("halstreamer: {}; line skipped", record.error().str()));
             continue;
         }
-        // Looked at first: a failed write would count as an overrun.
+        // Checked first: a failed write would count as an overrun.
         while (!hal_stream_writable(&attachment.stream)) {
             if (stop != 0) {
                 return fail("stopped before the end of the input");

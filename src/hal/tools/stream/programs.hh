@@ -11,9 +11,9 @@ namespace mw::hal::stream_tools {
 
 struct SamplerOptions {
     int channel = 0;
-    long count = -1;        ///< samples to read; below 0: until stopped
-    bool isTagged = false;  ///< the sample's number first
-    std::string file;       ///< empty: standard output
+    long count = -1;      ///< samples to read; below 0: until stopped
+    bool tagged = false;  ///< the sample's number first
+    std::string file;     ///< empty: standard output
 };
 
 struct StreamerOptions {
@@ -21,12 +21,12 @@ struct StreamerOptions {
     std::string file;  ///< empty: standard input
 };
 
-/// Copies samples to text until `count` are read; a gap in their numbers is a line "overrun". Ends early (an
-/// error) when *stop is not zero. Uses the current instance.
+/// Copies samples to text until `count` are read; a gap in their numbers is a line "overrun". Ends early,
+/// with an error, when *stop is not zero. Uses the current instance.
 Result<> run_sampler(const SamplerOptions &options, volatile std::sig_atomic_t &stop);
 
-/// Copies records to the stream until the end of the input. A malformed line is told on standard error and
-/// skipped.
+/// Copies records to the stream until the end of the input. Reports malformed lines on standard error and
+/// skips them.
 Result<> run_streamer(const StreamerOptions &options, volatile std::sig_atomic_t &stop);
 
 }  // namespace mw::hal::stream_tools

@@ -26,7 +26,7 @@ bool isAlive(int pid) {
     return pid != 0 && (::kill(pid, 0) == 0 || errno == EPERM);
 }
 
-/// Puts the function into a thread unless one has it; the thread, when it was put there.
+/// Adds the function to a thread unless one has it; returns the thread to which it was added.
 Result<std::string> enter_thread(Hal &hal, const std::string &wanted) {
     const std::vector<ThreadInfo> threads = hal.threads();
     std::string chosen = wanted;
@@ -63,11 +63,11 @@ double number_of(Type type, std::uint64_t bits) {
 }  // namespace
 
 Result<Capture> Capture::open(Host &host, const std::string &thread) {
-    const auto isLoaded = host.isModuleLoaded("capture");
-    if (!isLoaded) {
-        return std::unexpected(isLoaded.error());
+    const auto is_loaded = host.isModuleLoaded("capture");
+    if (!is_loaded) {
+        return std::unexpected(is_loaded.error());
     }
-    if (!*isLoaded) {
+    if (!*is_loaded) {
         const Result<> loaded = host.load_realtime("capture", {});
         if (!loaded) {
             return std::unexpected(loaded.error());
@@ -109,7 +109,7 @@ Capture::~Capture() {
     }
     cancel();
     if (!added_to_.empty()) {
-        // When the thread is gone, so is the function in it.
+        // If the thread no longer exists, neither does the function in it.
         (void)hal_->remove_function(FUNCTION, added_to_);
     }
     block_->client.store(0);
@@ -142,8 +142,8 @@ Result<CaptureChannel> Capture::channel_of(const std::string &name) const {
 
 Result<> Capture::begin(const CaptureRequest &request) {
     names_ = request.names;
-    const bool hasTrigger = request.trigger != TriggerKind::NONE;
-    if (hasTrigger && std::find(names_.begin(), names_.end(), request.trigger_name) == names_.end()) {
+    const bool has_trigger = request.trigger != TriggerKind::NONE;
+    if (has_trigger && std::find(names_.begin(), names_.end(), request.trigger_name) == names_.end()) {
         names_.push_back(request.trigger_name);
     }
     if (names_.empty() || names_.size() > CAPTURE_CHANNELS) {
@@ -161,7 +161,7 @@ Result<> Capture::begin(const CaptureRequest &request) {
             return std::unexpected(channel.error());
         }
         settings_.channel[i] = *channel;
-        if (hasTrigger && names_[i] == request.trigger_name) {
+        if (has_trigger && names_[i] == request.trigger_name) {
             settings_.trigger_channel = static_cast<std::uint32_t>(i);
         }
     }

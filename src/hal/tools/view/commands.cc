@@ -33,7 +33,7 @@ constexpr const char *USAGE =
     "  graph                   draws components and signals\n"
     "  latency                 latency of threads in a realtime process of its own\n"
     "\n"
-    "Each command has a --help of its own.\n";
+    "Each command has its own --help.\n";
 
 using options::CommandLine, options::Words;
 
@@ -51,7 +51,7 @@ void nap(double seconds) {
     nanosleep(&pause, nullptr);
 }
 
-/// A period: 25us, 1ms, or nanoseconds.
+/// Parses a period: 25us, 1ms, or nanoseconds.
 void take_period(CommandLine &line, const std::string &names, const std::string &doc, std::int64_t &into) {
     line.take(names, 1, "PERIOD", doc, [&into](const Words &words) -> Result<> {
         const auto period = parse_period(words[0]);
@@ -67,7 +67,7 @@ void take_period(CommandLine &line, const std::string &names, const std::string 
 
 Result<> watch_lines(Hal &hal, const Words &names, double every_s, long count,
                      volatile std::sig_atomic_t &stop) {
-    // Values stand below their names.
+    // Values are printed below their names.
     const auto add_column = [](std::string &line, const std::string &text, const std::string &name) {
         constexpr std::size_t LEAST = 12;
         line += (line.empty() ? "" : " ") + fmt::format("{:>{}}", text, std::max(LEAST, name.size()));
@@ -162,7 +162,7 @@ struct CaptureCommand {
     std::string thread;
     double timeout_s = 10.0;
     double pre_percent = -1.0;
-    bool isForced = false;
+    bool forced = false;
 
     CommandLine line() {
         CommandLine line(
@@ -178,39 +178,39 @@ struct CaptureCommand {
         line.number("--pre", "PERCENT", "part of the record before the trigger (default 10)", pre_percent, 0,
                     99.9);
         line.number("--timeout", "S", "give up after so long (default 10)", timeout_s, 0, 1e6);
-        line.flag("--force", "record what is there instead of giving up", isForced);
+        line.flag("--force", "record what is there instead of giving up", forced);
         line.rest(request.names);
         return line;
     }
     void finish() {
-        const bool hasTrigger = request.trigger != TriggerKind::NONE;
-        request.pretrigger = (pre_percent >= 0 ? pre_percent : hasTrigger ? 10.0 : 0.0) / 100.0;
+        const bool has_trigger = request.trigger != TriggerKind::NONE;
+        request.pretrigger = (pre_percent >= 0 ? pre_percent : has_trigger ? 10.0 : 0.0) / 100.0;
     }
 };
 
-/// Waits for the end of the record; after the timeout it is forced, or given up.
+/// Waits for the end of the record; after the timeout it is forced or abandoned.
 Result<> wait_for_record(const Hal &hal, Capture &capture, const CaptureCommand &command,
                          volatile std::sig_atomic_t &stop) {
     constexpr double STEP_S = 0.01;
     double waited_s = 0;
-    bool isForced = false;
+    bool forced = false;
     while (capture.state() != CaptureState::DONE) {
         if (stop != 0) {
             return fail("stopped before the record was complete");
         }
         if (capture.state() == CaptureState::REFUSED) {
-            return fail("the module capture refused the settings");
+            return fail("the module capture rejected the settings");
         }
         if (waited_s > command.timeout_s && !hal.isRunning()) {
             return fail("the threads are stopped", {}, "halcmd start starts them");
         }
         if (waited_s > command.timeout_s && capture.state() != CaptureState::TRIGGERED) {
-            if (!command.isForced || isForced) {
+            if (!command.forced || forced) {
                 return fail(fmt::format("no trigger within {} s", command.timeout_s), {},
-                            isForced ? "is the thread running (halcmd start)?" : "--force records anyway");
+                            forced ? "is the thread running (halcmd start)?" : "--force records anyway");
             }
             capture.force();
-            isForced = true;
+            forced = true;
             waited_s = 0;
         }
         nap(STEP_S);
@@ -285,7 +285,7 @@ Result<> graph(const GraphCommand &command) {
     return write_netlist((*host)->hal(), command.options, command.path);
 }
 
-/// Threads of the two periods; a base period of 0 leaves that thread out.
+/// Threads with the two periods; a base period of 0 omits that thread.
 std::vector<LatencyThread> threads_of(std::int64_t base_ns, std::int64_t servo_ns) {
     std::vector<LatencyThread> threads;
     if (base_ns > 0) {
@@ -316,7 +316,7 @@ Result<> latency(LatencyCommand command, volatile std::sig_atomic_t &stop) {
     LatencyOptions &options = command.options;
     options.threads = threads_of(command.base_ns, command.servo_ns);
     options.showsBars = true;
-    options.isLive = ::isatty(STDOUT_FILENO) != 0;
+    options.live = ::isatty(STDOUT_FILENO) != 0;
     (command.path.ends_with(".csv") ? options.csv_path : options.picture_path) = command.path;
     return run_latency(options, stop);
 }
@@ -336,7 +336,7 @@ Result<> live(const Words &names, volatile std::sig_atomic_t &stop) {
     return run_terminal(model, stop);
 }
 
-/// A command from its words to the exit status.
+/// Runs a command from its words; returns the exit status.
 template <class Command, class Run>
 int carry_out(const Words &words, const Run &run) {
     Command command;
@@ -407,7 +407,7 @@ int latency_test(const Words &words, volatile std::sig_atomic_t &stop) {
     }
     if (done) {
         options.threads = threads_of(periods[0], periods[1]);
-        options.isLive = ::isatty(STDOUT_FILENO) != 0;
+        options.live = ::isatty(STDOUT_FILENO) != 0;
         done = run_latency(options, stop);
     }
     return report(done, "latency-test");
@@ -420,14 +420,14 @@ struct HistogramCommand {
     std::int64_t base_ns = 25'000, servo_ns = 1'000'000;
     int base_bin_ns = 100, servo_bin_ns = 100;
     double without_effect = 0;
-    bool hasNoBase = false, isIgnored = false, wantsHelp = false;
+    bool has_no_base = false, ignored = false, wants_help = false;
 
     CommandLine line() {
         CommandLine line("latency-histogram [options]",
                          "Prints histograms at the end (Ctrl-C, or after S seconds).\n");
         take_period(line, "--base", "of the base thread [ns] (default 25000)", base_ns);
         take_period(line, "--servo", "of the servo thread [ns] (default 1000000)", servo_ns);
-        line.flag("--nobase", "servo thread only", hasNoBase);
+        line.flag("--nobase", "servo thread only", has_no_base);
         line.number("--bbinsize", "NS", "bins of the base thread (default 100)", base_bin_ns, 1, 1000000);
         line.number("--sbinsize", "NS", "bins of the servo thread (default 100)", servo_bin_ns, 1, 1000000);
         line.text("--text", "NOTE", "stands in the picture", options.note);
@@ -437,10 +437,10 @@ struct HistogramCommand {
         line.number("--bbins", "N", "", without_effect, 1, 1e6);
         line.number("--sbins", "N", "", without_effect, 1, 1e6);
         line.number("--logscale", "N", "", without_effect, 0, 1);
-        line.flag("--show", "", isIgnored);
-        line.flag("--verbose", "", isIgnored);
-        line.flag("--nox", "", isIgnored);
-        line.flag("-?", "", wantsHelp);
+        line.flag("--show", "", ignored);
+        line.flag("--verbose", "", ignored);
+        line.flag("--nox", "", ignored);
+        line.flag("-?", "", wants_help);
         line.footer("--bbins, --sbins, --logscale, --show, --verbose and --nox are taken and have no effect: "
                     "all bins "
                     "are\ncounted and shown.\n");
@@ -454,24 +454,24 @@ int latency_histogram(const Words &words, volatile std::sig_atomic_t &stop) {
     HistogramCommand command;
     const CommandLine line = command.line();
     Result<> done = line.parse(words);
-    if (options::wantsHelp(words) || (done && command.wantsHelp)) {
+    if (options::wantsHelp(words) || (done && command.wants_help)) {
         std::fputs(line.help().c_str(), stdout);
         return 0;
     }
     LatencyOptions &options = command.options;
     if (done) {
-        if (command.isIgnored || command.without_effect > 0) {
+        if (command.ignored || command.without_effect > 0) {
             language::tell(
                 "latency-histogram: --bbins, --sbins, --logscale, --show, --verbose and --nox have no "
                 "effect: all bins are counted and shown");
         }
-        options.threads = threads_of(command.hasNoBase ? 0 : command.base_ns, command.servo_ns);
+        options.threads = threads_of(command.has_no_base ? 0 : command.base_ns, command.servo_ns);
         options.threads.back().bin_ns = command.servo_bin_ns;
-        if (!command.hasNoBase) {
+        if (!command.has_no_base) {
             options.threads.front().bin_ns = command.base_bin_ns;
         }
         options.showsBars = true;
-        options.isLive = ::isatty(STDOUT_FILENO) != 0;
+        options.live = ::isatty(STDOUT_FILENO) != 0;
         done = run_latency(options, stop);
     }
     return report(done, "latency-histogram");

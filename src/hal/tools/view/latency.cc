@@ -52,14 +52,14 @@ struct Span {
     std::size_t first, last;
 };
 
-/// The bins that were met; the middle ones when none was.
+/// The range of bins with counts; the middle ones when there are none.
 Span met(const LatencyFigures &f) {
     Span span{f.bins.size() / 2, f.bins.size() / 2};
-    bool isFirst = true;
+    bool first = true;
     for (std::size_t i = 0; i < f.bins.size(); ++i) {
         if (f.bins[i] > 0) {
-            span = {isFirst ? i : span.first, i};
-            isFirst = false;
+            span = {first ? i : span.first, i};
+            first = false;
         }
     }
     return span;
@@ -82,11 +82,11 @@ Result<> write_csv(const std::vector<LatencyFigures> &figures, const std::string
     return write_file_atomically(path, text);
 }
 
-/// Shows the table each second until the time is over or a signal comes.
+/// Shows the table each second until the time is over or a signal arrives.
 Result<std::vector<LatencyFigures>> watch(Hal &hal, const LatencyOptions &options,
                                           volatile std::sig_atomic_t &stop) {
     const double step_s = options.seconds > 0 ? std::min(1.0, options.seconds) : 1.0;
-    bool isShown = false;
+    bool shown = false;
     for (double passed = 0; stop == 0 && (options.seconds <= 0 || passed < options.seconds);
          passed += step_s) {
         nap(step_s);
@@ -94,20 +94,20 @@ Result<std::vector<LatencyFigures>> watch(Hal &hal, const LatencyOptions &option
         if (!figures) {
             return figures;
         }
-        if (options.isLive) {
-            if (isShown) {
+        if (options.live) {
+            if (shown) {
                 std::printf("\033[%zuA", figures->size() + 1);
             }
             std::fputs(latency_table(*figures).c_str(), stdout);
             std::fflush(stdout);
-            isShown = true;
+            shown = true;
         }
     }
     return read_latency(hal, options.threads);
 }
 
 Result<> report(const std::vector<LatencyFigures> &figures, const LatencyOptions &options) {
-    if (!options.isLive) {
+    if (!options.live) {
         std::fputs(latency_table(figures).c_str(), stdout);
     }
     for (const LatencyFigures &f : figures) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The shared block between the realtime module `latency` and who reads its histograms. One writer (the thread
-// of the slot); readers see each number as it is, not all of one moment.
+// The shared block between the realtime module `latency` and the readers of its histograms. One writer (the
+// thread of the slot); numbers are read individually and may belong to different moments.
 #pragma once
 
 #include <atomic>
@@ -13,7 +13,7 @@ inline constexpr std::uint32_t LATENCY_MAGIC = 0x4d576c61;
 inline constexpr int LATENCY_THREADS = 4;
 inline constexpr int LATENCY_BINS = 2000;
 
-/// Deviations of the intervals between two calls from the period, [-BINS/2, BINS/2) times the width of a bin.
+/// Deviations of the intervals between two calls from the period, [-BINS/2, BINS/2) times the bin width.
 struct LatencySlot {
     std::atomic<std::int64_t> period_ns, bin_ns;
     std::atomic<std::uint64_t> intervals;
@@ -33,18 +33,18 @@ inline void count_interval(LatencySlot &slot, std::int64_t interval_ns) noexcept
     constexpr auto RELAXED = std::memory_order_relaxed;
     const std::int64_t deviation = interval_ns - slot.period_ns.load(RELAXED);
     const std::int64_t bin_ns = slot.bin_ns.load(RELAXED);
-    const bool isFirst = slot.intervals.load(RELAXED) == 0;
+    const bool first = slot.intervals.load(RELAXED) == 0;
     slot.last_ns.store(interval_ns, RELAXED);
-    if (isFirst || interval_ns < slot.min_ns.load(RELAXED)) {
+    if (first || interval_ns < slot.min_ns.load(RELAXED)) {
         slot.min_ns.store(interval_ns, RELAXED);
     }
-    if (isFirst || interval_ns > slot.max_ns.load(RELAXED)) {
+    if (first || interval_ns > slot.max_ns.load(RELAXED)) {
         slot.max_ns.store(interval_ns, RELAXED);
     }
     const auto d = static_cast<double>(deviation);
     slot.sum_ns.store(slot.sum_ns.load(RELAXED) + d, RELAXED);
     slot.sum_squares_ns2.store(slot.sum_squares_ns2.load(RELAXED) + d * d, RELAXED);
-    // Rounds down for negative deviations, too.
+    // Rounds down also for negative deviations.
     const std::int64_t shifted = deviation + LATENCY_BINS / 2 * bin_ns;
     if (shifted < 0) {
         slot.below.store(slot.below.load(RELAXED) + 1, RELAXED);

@@ -11,27 +11,27 @@
 
 namespace mw::hal::view {
 
-std::vector<std::string> meter_words(const std::vector<std::string> &words, bool isTerminal, bool &isWrong) {
+std::vector<std::string> meter_words(const std::vector<std::string> &words, bool is_terminal, bool &wrong) {
     std::vector<std::string> names;
-    isWrong = false;
-    for (std::size_t i = 0; i < words.size() && !isWrong; ++i) {
+    wrong = false;
+    for (std::size_t i = 0; i < words.size() && !wrong; ++i) {
         const std::string &word = words[i];
-        const bool hasNext = i + 1 < words.size();
+        const bool has_next = i + 1 < words.size();
         if (word == "-s") {
-            continue;  // a small window
+            continue;  // a small window: no effect
         }
-        if (word == "-g") {  // its place on a screen
+        if (word == "-g") {  // position on the screen: no effect
             while (i + 1 < words.size() && parse_int(words[i + 1]).has_value()) {
                 ++i;
             }
         } else if (word == "pin" || word == "sig" || word == "signal" || word == "param" || word == "par") {
-            isWrong = !hasNext;
-            names.push_back(hasNext ? words[++i] : "");
+            wrong = !has_next;
+            names.push_back(has_next ? words[++i] : "");
         } else {
-            isWrong = true;
+            wrong = true;
         }
     }
-    if (!isTerminal) {
+    if (!is_terminal) {
         names.insert(names.begin(), "watch");
     }
     return names;
@@ -55,9 +55,9 @@ bool wantsHelp(const std::vector<std::string> &words) {
 }  // namespace
 
 int halmeter(const std::vector<std::string> &words, volatile std::sig_atomic_t &stop) {
-    bool isWrong = false;
-    const std::vector<std::string> wanted = meter_words(words, ::isatty(STDOUT_FILENO) != 0, isWrong);
-    if (isWrong) {
+    bool wrong = false;
+    const std::vector<std::string> wanted = meter_words(words, ::isatty(STDOUT_FILENO) != 0, wrong);
+    if (wrong) {
         std::fputs(language::shown(METER_USAGE).c_str(), wantsHelp(words) ? stdout : stderr);
         return wantsHelp(words) ? 0 : 2;
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The names of older programs that show HAL: what menus and scripts start.
+// LinuxCNC's program names for showing HAL, as used by menus and scripts.
 #pragma once
 
 #include <csignal>
@@ -8,14 +8,14 @@
 
 namespace mw::hal::view {
 
-/// The words of `millwright hal` for those of `halmeter [-s] [pin|sig|param NAME] [-g X Y [WIDTH]]`; nothing
-/// when they are wrong. `isTerminal`: the values can be shown live, else they come as lines.
-std::vector<std::string> meter_words(const std::vector<std::string> &words, bool isTerminal, bool &isWrong);
+/// Words of `millwright hal` that correspond to `halmeter [-s] [pin|sig|param NAME] [-g X Y [WIDTH]]`;
+/// nothing when they are not valid. `isTerminal`: values are shown live, otherwise as lines.
+std::vector<std::string> meter_words(const std::vector<std::string> &words, bool is_terminal, bool &wrong);
 
 /// `halmeter`, on a terminal or as lines of text.
 int halmeter(const std::vector<std::string> &words, volatile std::sig_atomic_t &stop);
 
-/// `halscope`: says what records instead.
+/// `halscope`: names the replacement.
 int halscope(const std::vector<std::string> &words);
 
 }  // namespace mw::hal::view

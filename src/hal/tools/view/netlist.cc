@@ -24,7 +24,7 @@ struct Box {
     std::vector<PinInfo> inputs, outputs;
 };
 
-/// "and2.0.in0" -> "and2.0"; a name without a dot is its component's.
+/// "and2.0.in0" -> "and2.0"; a name without a dot belongs to its component.
 std::string instance_of(const PinInfo &pin) {
     const std::string &name = pin.original_name.empty() ? pin.name : pin.original_name;
     const std::size_t dot = name.rfind('.');
@@ -124,15 +124,15 @@ std::string signal_text(const SignalInfo &signal, const std::map<std::string, st
     return text;
 }
 
-/// Runs dot with the text as its input, in memory, so that nothing can block and no other file is touched.
+/// Runs dot with the text as its input, in memory, so that nothing can block and no other file is written.
 Result<> run_dot(const std::string &text, const std::string &format, const std::string &path) {
     const int input = ::memfd_create("netlist", MFD_CLOEXEC);
-    const bool isWritten = input >= 0 &&
-                           ::write(input, text.data(), text.size()) == static_cast<ssize_t>(text.size()) &&
-                           ::lseek(input, 0, SEEK_SET) == 0;
-    int error = isWritten ? 0 : errno;
+    const bool is_written = input >= 0 &&
+                            ::write(input, text.data(), text.size()) == static_cast<ssize_t>(text.size()) &&
+                            ::lseek(input, 0, SEEK_SET) == 0;
+    int error = is_written ? 0 : errno;
     pid_t pid = 0;
-    if (isWritten) {
+    if (is_written) {
         posix_spawn_file_actions_t actions;
         ::posix_spawn_file_actions_init(&actions);
         ::posix_spawn_file_actions_adddup2(&actions, input, STDIN_FILENO);
@@ -144,7 +144,7 @@ Result<> run_dot(const std::string &text, const std::string &format, const std::
     if (input >= 0) {
         ::close(input);
     }
-    if (error != 0 || !isWritten) {
+    if (error != 0 || !is_written) {
         return fail(fmt::format("cannot run Graphviz' program dot: {}", std::strerror(error)), {},
                     "install the package graphviz, or write a .dot file");
     }
@@ -171,9 +171,9 @@ std::string netlist_dot(const Hal &hal, const NetlistOptions &options) {
     }
     for (const PinInfo &pin : hal.pins()) {
         const std::string instance = instance_of(pin);
-        const bool isShown = isWanted.contains(instance) ? !pin.signal.empty() || options.showsUnlinked
-                                                         : isWanted.contains("\n" + pin.signal);
-        if (isShown) {
+        const bool shown = isWanted.contains(instance) ? !pin.signal.empty() || options.showsUnlinked
+                                                       : isWanted.contains("\n" + pin.signal);
+        if (shown) {
             Box &box = boxes[instance];
             (pin.dir == Dir::OUT ? box.outputs : box.inputs).push_back(pin);
             instance_by_pin[pin.name] = instance;

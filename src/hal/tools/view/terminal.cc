@@ -14,7 +14,7 @@ namespace {
 
 constexpr int REFRESH_MS = 100;
 
-/// The screen, given back at the end.
+/// The screen, restored at the end.
 class Screen {
   public:
     Screen() {
@@ -102,9 +102,9 @@ void draw(const WatchModel &model, int height, int width) {
     put_line(0, head, width, A_BOLD);
     for (int y = 1; y < height - 1; ++y) {
         const std::size_t i = model.top() + static_cast<std::size_t>(y - 1);
-        const bool isThere = i < model.rows().size();
-        put_line(y, isThere ? row_text(model.rows()[i], static_cast<std::size_t>(width)) : "", width,
-                 isThere && i == model.cursor() ? A_REVERSE : A_NORMAL);
+        const bool present = i < model.rows().size();
+        put_line(y, present ? row_text(model.rows()[i], static_cast<std::size_t>(width)) : "", width,
+                 present && i == model.cursor() ? A_REVERSE : A_NORMAL);
     }
     put_line(height - 1, model.status(), width - 1, A_BOLD);
     refresh();

@@ -91,15 +91,15 @@ void WatchModel::clamp() {
 }
 
 void WatchModel::add_tree(const std::vector<WatchRow> &leaves) {
-    std::vector<std::string> path;  // branches that are open above the next leaf
+    std::vector<std::string> path;  // open branches above the next leaf
     for (const WatchRow &leaf : leaves) {
-        // Branches: every part of the name but the last.
+        // Branches: all parts of the name except the last.
         std::size_t level = 0, begin = 0;
-        bool isVisible = true;
-        for (std::size_t dot = leaf.name.find('.'); dot != std::string::npos && isVisible;
+        bool visible = true;
+        for (std::size_t dot = leaf.name.find('.'); dot != std::string::npos && visible;
              dot = leaf.name.find('.', begin)) {
             const std::string branch = leaf.name.substr(0, dot);
-            // A filter opens everything that it finds.
+            // A filter opens all matching branches.
             const bool isOpen = !filter_.empty() || open_.contains(branch);
             if (level >= path.size() || path[level] != branch) {
                 path.resize(level);
@@ -107,11 +107,11 @@ void WatchModel::add_tree(const std::vector<WatchRow> &leaves) {
                 rows_.push_back({static_cast<int>(level), leaf.name.substr(begin, dot - begin), branch, true,
                                  isOpen, "", "", ""});
             }
-            isVisible = isOpen;
+            visible = isOpen;
             begin = dot + 1;
             ++level;
         }
-        if (isVisible) {
+        if (visible) {
             path.resize(level);
             rows_.push_back(leaf);
             rows_.back().depth = static_cast<int>(level);
@@ -129,7 +129,7 @@ void WatchModel::show_pins() {
         leaves.push_back(row_of(param));
     }
     std::erase_if(leaves, [&](const WatchRow &row) { return !hasText(row, filter_); });
-    // By parts of the names, so that what belongs to a branch stays together.
+    // Sorted by parts of the names, so that the members of a branch are adjacent.
     std::stable_sort(leaves.begin(), leaves.end(), [](const WatchRow &a, const WatchRow &b) {
         return std::lexicographical_compare(
             a.name.begin(), a.name.end(), b.name.begin(), b.name.end(),
@@ -199,19 +199,19 @@ void WatchModel::open_page(Page page) {
     cursor_ = top_ = 0;
 }
 
-void WatchModel::toggle(bool wantsOpen, bool wantsClosed) {
+void WatchModel::toggle(bool wants_open, bool wants_closed) {
     if (rows_.empty()) {
         return;
     }
     const WatchRow &row = rows_[cursor_];
-    if (row.isBranch && page_ == Page::PINS) {
-        if (!row.isOpen && wantsOpen) {
+    if (row.is_branch && page_ == Page::PINS) {
+        if (!row.isOpen && wants_open) {
             open_.insert(row.name);
-        } else if (row.isOpen && wantsClosed) {
+        } else if (row.isOpen && wants_closed) {
             open_.erase(row.name);
         }
-    } else if (!wantsOpen && row.depth > 0) {
-        // Left on a leaf: to its branch.
+    } else if (!wants_open && row.depth > 0) {
+        // Left on a leaf: moves to its branch.
         while (cursor_ > 0 && rows_[cursor_].depth >= row.depth) {
             --cursor_;
         }
@@ -223,7 +223,7 @@ void WatchModel::press(Key key) {
         if (key == Key::ENTER || key == Key::OPEN) {
             finish_text();
         } else if (key == Key::ESCAPE) {
-            isTypingFilter_ = isTypingValue_ = false;
+            is_typing_filter_ = is_typing_value_ = false;
         } else if (key == Key::ERASE && !text_.empty()) {
             text_.pop_back();
         }
@@ -244,20 +244,20 @@ void WatchModel::press(Key key) {
     case Key::TOGGLE: toggle(true, true); break;
     case Key::NEXT_PAGE: open_page(static_cast<Page>((static_cast<int>(page_) + 1) % 4)); break;
     case Key::WATCH:
-        if (!rows_.empty() && !rows_[cursor_].isBranch) {
+        if (!rows_.empty() && !rows_[cursor_].is_branch) {
             watch(rows_[cursor_].name);
         }
         break;
     case Key::FILTER:
-        isTypingFilter_ = true;
+        is_typing_filter_ = true;
         text_ = filter_;
         break;
     case Key::SET:
-        isTypingValue_ = !rows_.empty() && !rows_[cursor_].isBranch && page_ != Page::THREADS;
+        is_typing_value_ = !rows_.empty() && !rows_[cursor_].is_branch && page_ != Page::THREADS;
         text_.clear();
         break;
     case Key::ESCAPE: filter_.clear(); break;
-    case Key::QUIT: isDone_ = true; break;
+    case Key::QUIT: done_ = true; break;
     case Key::ERASE:
     case Key::NONE: break;
     }
@@ -270,7 +270,7 @@ void WatchModel::type(const std::string &text) {
 }
 
 void WatchModel::finish_text() {
-    if (isTypingFilter_) {
+    if (is_typing_filter_) {
         filter_ = text_;
         cursor_ = top_ = 0;
     } else if (!rows_.empty()) {
@@ -278,7 +278,7 @@ void WatchModel::finish_text() {
         const Result<> done = assign(name, text_);
         message_ = done ? fmt::format("{} = {}", name, text_) : done.error().str();
     }
-    isTypingFilter_ = isTypingValue_ = false;
+    is_typing_filter_ = is_typing_value_ = false;
 }
 
 Result<> WatchModel::assign(const std::string &name, const std::string &text) {
@@ -287,10 +287,10 @@ Result<> WatchModel::assign(const std::string &name, const std::string &text) {
 }
 
 std::string WatchModel::status() const {
-    if (isTypingFilter_) {
+    if (is_typing_filter_) {
         return "filter: " + text_ + "_";
     }
-    if (isTypingValue_) {
+    if (is_typing_value_) {
         return fmt::format("{} = {}_", rows_.empty() ? "" : rows_[cursor_].name, text_);
     }
     if (!message_.empty()) {
@@ -300,7 +300,7 @@ std::string WatchModel::status() const {
 }
 
 std::string row_text(const WatchRow &row, std::size_t width) {
-    const std::string mark = row.isBranch ? (row.isOpen ? "- " : "+ ") : "  ";
+    const std::string mark = row.is_branch ? (row.isOpen ? "- " : "+ ") : "  ";
     const std::string label = std::string(static_cast<std::size_t>(row.depth) * 2, ' ') + mark + row.label;
     std::string text = fmt::format("{:<40} {:>14}  {:<9} {}", label, row.value, row.type, row.extra);
     if (text.size() > width) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What `millwright hal` shows and how keys change it, without a terminal. [one thread]
+// Content of `millwright hal` and the effect of keys, without a terminal. [one thread]
 #pragma once
 
 #include <set>
@@ -36,9 +36,9 @@ enum class Key {
 
 struct WatchRow {
     int depth = 0;
-    std::string label;  ///< last part of the name on the page of pins, else the name
-    std::string name;   ///< of what it shows; of a branch what the names below begin with
-    bool isBranch = false;
+    std::string label;  ///< last part of the name on the pin page, otherwise the name
+    std::string name;   ///< name of the object; for a branch the common prefix of the names below
+    bool is_branch = false;
     bool isOpen = false;
     std::string type;  ///< "float IN", "s32 RW", "bit"
     std::string value;
@@ -49,9 +49,9 @@ class WatchModel {
   public:
     explicit WatchModel(Hal &hal) : hal_(&hal) {}
 
-    /// Reads everything anew.
+    /// Reads all values again.
     void refresh();
-    /// A key; letters of a text that is being typed come by type().
+    /// Handles a key; type() handles letters of a text.
     void press(Key key);
     void type(const std::string &text);
     /// Rows that fit on the screen, for the page keys and for scrolling.
@@ -60,13 +60,13 @@ class WatchModel {
     Page page() const noexcept { return page_; }
     const std::vector<WatchRow> &rows() const noexcept { return rows_; }
     std::size_t cursor() const noexcept { return cursor_; }
-    /// First row to show, so that the cursor is on the screen.
+    /// First visible row that keeps the cursor on the screen.
     std::size_t top() const noexcept { return top_; }
     const std::string &filter() const noexcept { return filter_; }
-    /// The line at the bottom: what is typed, what failed, or which keys there are.
+    /// The status line: the typed text, an error, or the keys.
     std::string status() const;
-    bool isTyping() const noexcept { return isTypingFilter_ || isTypingValue_; }
-    bool isDone() const noexcept { return isDone_; }
+    bool isTyping() const noexcept { return is_typing_filter_ || is_typing_value_; }
+    bool isDone() const noexcept { return done_; }
     void watch(const std::string &name);
     void open_page(Page page);
 
@@ -77,7 +77,7 @@ class WatchModel {
     void show_threads();
     void show_watched();
     void clamp();
-    void toggle(bool wantsOpen, bool wantsClosed);
+    void toggle(bool wants_open, bool wants_closed);
     void finish_text();
     Result<> assign(const std::string &name, const std::string &text);
 
@@ -88,7 +88,7 @@ class WatchModel {
     std::set<std::string> open_;
     std::vector<std::string> watched_;
     std::string filter_, text_, message_;
-    bool isTypingFilter_ = false, isTypingValue_ = false, isDone_ = false;
+    bool is_typing_filter_ = false, is_typing_value_ = false, done_ = false;
 };
 
 /// One line of a row, cut to `width` columns.

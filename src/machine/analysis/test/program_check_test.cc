@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What a check finds in a program before a machine moves.
+// Errors that a check finds in a program before a machine moves.
 #include <unistd.h>
 
 #include <cmath>
@@ -74,7 +74,7 @@ TEST_F(ProgramCheck, WhereKinematicsAreBetweenOnlyMovesThatAreBeyondFromAnywhere
     ASSERT_NE(config_, nullptr);
     config_->machine.isTrivial = false;
     check("G21 G90 G17\nG92 X200\nG0 X-10\nG92.1\nG0 X9999\nM2\n");
-    ASSERT_EQ(sink_.count_errors(), 1) << "nobody knows where X-10 is";
+    ASSERT_EQ(sink_.count_errors(), 1) << "the position of X-10 is unknown";
     EXPECT_EQ(sink_.all()[0].what.place.line, 5);
     config_->machine.isTrivial = true;
     check("G21 G90 G17\nG92 X400\nG0 X-10\nG92.1\nM2\n");

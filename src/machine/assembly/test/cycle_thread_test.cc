@@ -12,12 +12,12 @@ namespace {
 TEST(CycleThread, RunsACycleToItsEnd) {
     task::LongCall call;
     std::int64_t cycled_ns = 0;
-    bool isApartRun = false;
-    CycleThread thread(
-        call, {[&](std::int64_t now_ns) { cycled_ns = now_ns; }, [&](std::int64_t) { isApartRun = true; }});
+    bool run_separately = false;
+    CycleThread thread(call, {[&](std::int64_t now_ns) { cycled_ns = now_ns; },
+                              [&](std::int64_t) { run_separately = true; }});
     thread.run(7);
     EXPECT_EQ(cycled_ns, 7);
-    EXPECT_FALSE(isApartRun);
+    EXPECT_FALSE(run_separately);
     EXPECT_FALSE(thread.isApart());
 }
 
@@ -39,7 +39,7 @@ TEST(CycleThread, DoesNotWaitForALongCall) {
     }
     EXPECT_EQ(apart, 3);
     EXPECT_EQ(whole, 1);
-    may_end.release();  // it cannot end before it is given back
+    may_end.release();  // it cannot end before give_back()
     thread.give_back();
     while (thread.run(3), thread.isApart()) {
         thread.give_back();

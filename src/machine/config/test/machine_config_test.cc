@@ -102,7 +102,7 @@ TEST(MachineConfig, AxesAndJointsAreDifferentThings) {
     EXPECT_EQ(c.machine.num_joints, 2);
     EXPECT_EQ(c.machine.joint_of_axis[2], 1);
     EXPECT_EQ(c.machine.joint_of_axis[1], -1);
-    EXPECT_FALSE(c.machine.isMetric);
+    EXPECT_FALSE(c.machine.metric);
     EXPECT_EQ(c.parameter(motion::Parameter::AXIS_MAX_LIMIT, 0), 2.0);
     EXPECT_EQ(c.parameter(motion::Parameter::JOINT_MAX_ACCELERATION, 1), 10.0);
 }
@@ -163,7 +163,7 @@ TEST(MachineConfig, ProbesInJogsAndExternalOffsetsAreSettingsOfMotion) {
 }
 
 TEST(MachineConfig, SpeedOfRotaryAxesIsLimitedWhateverTheSpeedOfTheFirstJoint) {
-    // Where kinematics are between, no joint is the axis: slow joints are no reason to forget the limit.
+    // With non-trivial kinematics no joint is the axis: slow joints must not remove the limit.
     const Config c("[TRAJ]\nCOORDINATES = X Y Z A C\nMAX_ANGULAR_VELOCITY = 5\n[KINS]\n"
                    "KINEMATICS = tablekins\nJOINTS = 5\n[HAL]\nHALFILE = LIB:core_sim.hal\n"
                    "[JOINT_0]\nMAX_VELOCITY = 1\n[JOINT_3]\nMAX_VELOCITY = 4\n[JOINT_4]\nMAX_VELOCITY = 4\n");
@@ -261,7 +261,7 @@ TEST(MachineConfig, AFileOfAnOlderFormNamesUpdateIni) {
     EXPECT_TRUE(axes.says("update_ini"));
 }
 
-/// What a new key takes: one row in a table (docs/developer/extending/ini_key.md).
+/// A new key is one row in a table (docs/developer/extending/ini_key.md).
 TEST(IniKeys, EachIsDeclaredOnceWithItsMeaning) {
     std::set<std::pair<std::string_view, std::string_view>> seen;
     for (const ini::IniKey &key : all_ini_keys()) {
@@ -272,7 +272,7 @@ TEST(IniKeys, EachIsDeclaredOnceWithItsMeaning) {
             const std::vector<std::string> words = split_words(key.words);
             EXPECT_NE(std::ranges::find(words, key.text), words.end()) << key.name << ": its default";
         }
-        if (!key.isRequired && key.kind == ini::IniKind::WHOLE) {
+        if (!key.required && key.kind == ini::IniKind::WHOLE) {
             EXPECT_GE(key.preset, key.lowest) << key.name;
             EXPECT_LE(key.preset, key.highest) << key.name;
         }
@@ -315,7 +315,7 @@ TEST(MachineConfig, TravelsThatCannotWorkAreSaidWithTheirPlace) {
 TEST(MachineConfig, UnitsMayBeANumberPerMillimetre) {
     const Config metric(replaced(GOOD, "LINEAR_UNITS = inch", "LINEAR_UNITS = 1.0"));
     EXPECT_FALSE(metric.sink.hasErrors());
-    EXPECT_TRUE(metric.machine.isMetric);
+    EXPECT_TRUE(metric.machine.metric);
     EXPECT_TRUE(metric.says("is taken as mm"));
     const Config odd(replaced(GOOD, "LINEAR_UNITS = inch", "LINEAR_UNITS = 2"));
     EXPECT_TRUE(odd.sink.hasErrors());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// halui with HAL and a task that takes what it asks for.
+// halui with HAL and a task that receives its commands.
 #pragma once
 
 #include <memory>
@@ -38,23 +38,23 @@ class HaluiRig : public ::testing::Test {
     }
     ~HaluiRig() override { halui.destroy(); }
     hal::Hal &hal() { return host->hal(); }
-    void set(const std::string &name, bool isOn) {
-        EXPECT_TRUE(hal().set("halui." + name, isOn ? "1" : "0").has_value()) << name;
+    void set(const std::string &name, bool on) {
+        EXPECT_TRUE(hal().set("halui." + name, on ? "1" : "0").has_value()) << name;
     }
     void set_value(const std::string &name, const std::string &value) {
         EXPECT_TRUE(hal().set("halui." + name, value).has_value()) << name;
     }
     bool lamp(const std::string &name) { return hal().get("halui." + name)->as_bit(); }
     double value(const std::string &name) { return hal().get("halui." + name)->as_number(); }
-    /// Pressed and let go: what it asks for.
+    /// Presses and releases a button; returns its command.
     std::string press(const std::string &name) {
         set(name, true);
         const std::string all = cycle();
         set(name, false);
-        EXPECT_EQ(cycle(), "") << name << " is let go";
+        EXPECT_EQ(cycle(), "") << name << " is released";
         return all;
     }
-    /// A cycle of task; what it was asked for, as text.
+    /// A cycle of task; returns the commands as text.
     std::string cycle() {
         std::string all;
         halui.step();

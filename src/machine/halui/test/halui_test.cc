@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// halui's pins in HAL, what they ask of task and show of it, and their manual page.
+// halui's pins in HAL, the commands they send, the states they show, and their manual page.
 #include <map>
 
 #include <gtest/gtest.h>
@@ -58,15 +58,15 @@ TEST_F(HaluiTest, EachButtonGivesItsCommandOnceOnItsRisingEdge) {
     for (const auto &[name, command] : BUTTONS) {
         set(name, true);
         EXPECT_EQ(cycle(), asked(command)) << name;
-        EXPECT_EQ(cycle(), "") << name << " is held down";
+        EXPECT_EQ(cycle(), "") << name << " is pressed";
         set(name, false);
-        EXPECT_EQ(cycle(), "") << name << " is let go";
+        EXPECT_EQ(cycle(), "") << name << " is released";
     }
 }
 
 TEST_F(HaluiTest, ButtonsThatTaskHasNoRoomForAreTriedAgain) {
     cycle();
-    for (int i = 0; i < 20; ++i) {  // more presses than the place of a client has room for
+    for (int i = 0; i < 20; ++i) {  // more presses than fit into the slot of a client
         set("program.step", true);
         halui.step();
         if (i < 19) {
@@ -138,7 +138,7 @@ TEST_F(HaluiTest, TheLampsOfAJointAreItsOwnAndThoseOfTheSelectedOne) {
         EXPECT_TRUE(lamp("joint.1." + name));
         EXPECT_FALSE(lamp("joint.0." + name));
         EXPECT_FALSE(lamp("joint.selected." + name)) << "joint 0 is selected";
-        EXPECT_EQ(press("joint.1.select"), "") << "choosing asks for nothing";
+        EXPECT_EQ(press("joint.1.select"), "") << "choosing sends no command";
         halui.step();
         EXPECT_TRUE(lamp("joint.selected." + name));
         press("joint.0.select");
@@ -209,13 +209,14 @@ TEST_F(HaluiTest, EveryRowIsAPinAndEveryPinIsARow) {
         EXPECT_FALSE(row.doc.empty()) << row.name;
         for (int i = 0; i < 9; ++i) {
             const std::string number = std::to_string(i);
-            const bool isLamp = row.dir == hal::Dir::OUT;
-            const bool isJoint = row.name.find("joint.N") != std::string::npos && i < JOINTS;
-            const bool isAxis = row.name.find("axis.L") != std::string::npos && (!isLamp || i == 0 || i == 2);
-            const bool isMdi = row.name.find("-NN") != std::string::npos && i < 2;
-            const bool isSpindle = row.name.find("spindle.N") != std::string::npos && i == 0;
-            const bool isOne = row.name.find_first_of("NL") == std::string::npos;
-            if (isJoint || isAxis || isMdi || isSpindle || isOne) {
+            const bool is_lamp = row.dir == hal::Dir::OUT;
+            const bool is_joint = row.name.find("joint.N") != std::string::npos && i < JOINTS;
+            const bool is_axis =
+                row.name.find("axis.L") != std::string::npos && (!is_lamp || i == 0 || i == 2);
+            const bool is_mdi = row.name.find("-NN") != std::string::npos && i < 2;
+            const bool is_spindle = row.name.find("spindle.N") != std::string::npos && i == 0;
+            const bool is_one = row.name.find_first_of("NL") == std::string::npos;
+            if (is_joint || is_axis || is_mdi || is_spindle || is_one) {
                 std::string name = testing::replaced(row.name, "NN", "0" + number);
                 name = testing::replaced(name, ".N", '.' + number);
                 wanted[testing::replaced(name, ".L", std::string(".") + geometry::AXIS_LETTERS_LOWER[i])] =

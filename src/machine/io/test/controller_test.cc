@@ -142,14 +142,14 @@ TEST(IoController, AFaultIsAcknowledgedAndStaysUntilItIsCleared) {
 }
 
 TEST(IoController, AReasonAboveZeroLetsTheProgramGoOnInVersionTwoOnly) {
-    for (const bool isVersion2 : {false, true}) {
-        DiscreteIo io({isVersion2, false});
+    for (const bool is_version2 : {false, true}) {
+        DiscreteIo io({is_version2, false});
         Inputs in;
         io.start_change();
         io.step(in);
         in.toolchanger_fault = true;
         in.toolchanger_reason = 4;
-        EXPECT_EQ(io.step(in), isVersion2 ? ToolEvent::FAULT_TOLD : ToolEvent::FAULT);
+        EXPECT_EQ(io.step(in), is_version2 ? ToolEvent::FAULT_TOLD : ToolEvent::FAULT);
         EXPECT_EQ(io.outputs.emc_reason, REASON_CHANGER_FAULT);
     }
 }
@@ -175,10 +175,10 @@ TEST(IoController, ANewToolOffsetIsAwaitedUntilItsPinsShowIt) {
     io.set_tool_offset(offset);
     EXPECT_EQ(io.outputs.tool_offset.c, offset.c);
     EXPECT_FALSE(io.isToolOffsetShown());
-    in.isToolOffsetShown = false;
+    in.tool_offset_shown = false;
     io.step(in);
     EXPECT_FALSE(io.isToolOffsetShown());
-    in.isToolOffsetShown = true;
+    in.tool_offset_shown = true;
     io.step(in);
     EXPECT_TRUE(io.isToolOffsetShown());
     io.set_tool_offset(offset);

@@ -64,12 +64,12 @@ TEST_F(IoPins, EachInputIsReadFromItsPinAlone) {
                                  "emc-abort-ack",
                                  "start-change-ack"};
     for (std::size_t i = 0; i < std::size(NAMES); ++i) {
-        const bool isLube = NAMES[i] == std::string("lube_level");
-        set(NAMES[i], isLube ? "0" : "1");
+        const bool is_lube = NAMES[i] == std::string("lube_level");
+        set(NAMES[i], is_lube ? "0" : "1");
         std::vector<int> wanted(9, 0);
         wanted[i] = 1;
         EXPECT_EQ(inputs(), wanted) << NAMES[i];
-        set(NAMES[i], isLube ? "1" : "0");
+        set(NAMES[i], is_lube ? "1" : "0");
     }
 }
 
@@ -107,7 +107,7 @@ TEST_F(IoPins, EveryRowIsAPinAndEveryPinIsARow) {
     std::map<std::string, PinText> wanted;
     for (const PinText &row : rows()) {
         EXPECT_FALSE(row.doc.empty()) << row.name;
-        EXPECT_TRUE(wanted.emplace(row.name, row).second) << row.name << " stands in the table twice";
+        EXPECT_TRUE(wanted.emplace(row.name, row).second) << row.name << " is in the table twice";
     }
     std::size_t found = 0;
     for (const hal::PinInfo &pin : hal().pins("*")) {

@@ -33,8 +33,8 @@ TEST(JournalRecords, ReadAsTheyWereWritten) {
     EXPECT_EQ(read->progress->position[2], -1.5);
     EXPECT_EQ(read->progress->tool, 4);
     EXPECT_EQ(read->doubt->what, "a probe");
-    EXPECT_FALSE(read->hasEnded);
-    EXPECT_TRUE(read_run(begin_bytes(made_start()) + end_record(KEY))->hasEnded);
+    EXPECT_FALSE(read->ended);
+    EXPECT_TRUE(read_run(begin_bytes(made_start()) + end_record(KEY))->ended);
 }
 
 TEST(JournalRecords, RecordsOfAnotherRunCountForNothing) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A disk in memory whose power can be cut: what was not synced is lost as a real one loses it.
+// A disk in memory whose power can be cut: unsynced data is lost in the same way as on a real disk.
 #pragma once
 
 #include <algorithm>
@@ -12,8 +12,8 @@
 
 namespace mw::journal::test {
 
-/// What survives. Names and contents are apart: a rename that was not synced may be undone, a file that was
-/// not synced may have any beginning of what was written since, and rubbish in its last sector.
+/// The surviving state. Names and contents are separate: a rename that was not synced may be undone, and a
+/// file that was not synced may have any prefix of later writes, with random bytes in its last sector.
 class TornDisk {
   public:
     static constexpr std::size_t SECTOR = 512;
@@ -25,11 +25,11 @@ class TornDisk {
     std::map<Id, File> files;
     std::map<std::string, Id> names, synced_names;
     Id last = 0;
-    /// Steps until the power is cut; negative: it is not.
+    /// Steps until the power fails; negative: it does not.
     long steps_left = -1;
     bool isDead = false;
 
-    /// Counts a step; true: the power is gone, nothing happens any more.
+    /// Counts a step; true: the power has failed, and later steps have no effect.
     bool tick() {
         isDead = isDead || steps_left == 0;
         steps_left -= steps_left > 0 ? 1 : 0;
@@ -65,17 +65,17 @@ class TornDisk {
 
   private:
     static std::string torn(const File &file, std::mt19937_64 &random) {
-        const bool isAppended = file.now.starts_with(file.synced);
-        const std::size_t sure = isAppended ? file.synced.size() : 0;
+        const bool appended = file.now.starts_with(file.synced);
+        const std::size_t sure = appended ? file.synced.size() : 0;
         if (file.now == file.synced) {
             return file.now;
         }
-        if (!isAppended && random() % 2 == 0) {
+        if (!appended && random() % 2 == 0) {
             return file.synced;
         }
         const std::size_t kept = sure + random() % (file.now.size() - sure + 1);
         std::string content = file.now.substr(0, kept);
-        // Of the sector that was being written the rest is what lay there.
+        // The rest of the sector being written keeps its old bytes.
         const std::size_t end = std::min(file.now.size(), (kept + SECTOR - 1) / SECTOR * SECTOR);
         if (random() % 2 == 0) {
             while (content.size() < end) {

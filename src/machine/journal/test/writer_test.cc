@@ -80,9 +80,8 @@ TEST_F(JournalWriter, AFileThatIsNoJournalIsTold) {
     disk.write_outside(PATH, "rubbish");
     const auto trouble = open()->take_trouble();
     ASSERT_TRUE(trouble.has_value());
-    EXPECT_EQ(*trouble,
-              "/m/sim.var.journal: this is no journal, or one of another version: a program that was "
-              "cut short cannot be continued");
+    EXPECT_EQ(*trouble, "/m/sim.var.journal: this is no journal, or one of another version: an "
+                        "interrupted program cannot be continued");
 }
 
 TEST_F(JournalWriter, AFileThatIsWaitedForIsNewerThanWhatWasAskedBefore) {
@@ -109,8 +108,8 @@ TEST_F(JournalWriter, ItDoesNotGrowWithoutEnd) {
     EXPECT_EQ(open()->found().run->progress->block, 29999U);
 }
 
-/// At each step of a disk that loses what was not synced: what was worked off before is there, files are old
-/// or new.
+/// Power fails at each step of a disk that loses unsynced data: completed work survives, files are old or
+/// new.
 TEST_F(JournalWriter, WhateverThePowerCutTakesWhatWasWorkedOffIsThere) {
     for (unsigned seed = 0; seed < 3000; ++seed) {
         SCOPED_TRACE(seed);
@@ -147,7 +146,7 @@ TEST_F(JournalWriter, WhateverThePowerCutTakesWhatWasWorkedOffIsThere) {
     }
 }
 
-/// Texts of rising numbers: a power cut at any step leaves a whole file, and beside it a whole one before it.
+/// Texts with increasing numbers: a power failure at any step leaves a complete file and a complete backup.
 TEST_F(JournalWriter, WhateverThePowerCutTakesNeitherFileNorBackupIsLostOrHalf) {
     const auto text_of = [](int number) { return std::string(1500, static_cast<char>('a' + number)); };
     const auto number_in = [](const std::string &text) {
@@ -208,7 +207,7 @@ TEST(JournalWriterThread, ADiskThatDoesNotAnswerHoldsUpNobodyForLong) {
     }
     EXPECT_EQ(testing::internal::GetCapturedStderr(), path + " is not written: its disk does not answer\n");
     calls->isReleased.count_down();
-    while (content(path) != "two") {  // else this test times out
+    while (content(path) != "two") {  // otherwise this test times out
         std::this_thread::yield();
     }
     fs::remove_all(folder);
@@ -238,7 +237,7 @@ TEST(JournalWriterThread, WritesToARealDiskBesideWhoAsks) {
     EXPECT_EQ(content(folder / "life"), "T1 1 1\n");
     {
         Writer writer(system_disk(), "", Works::ALONE);
-        for (int i = 0; i < 200; ++i) {  // whatever the thread has taken already does not come over it
+        for (int i = 0; i < 200; ++i) {  // an earlier text that the thread has taken does not overwrite it
             writer.keep_file(folder / "p.var", "older");
             ASSERT_TRUE(writer.write_file(folder / "p.var", std::to_string(i)).has_value());
             EXPECT_EQ(content(folder / "p.var"), std::to_string(i));

@@ -56,14 +56,14 @@ Result<> edit_tools(const messages::SetToolEntry &order, const ToolUse &, ToolSt
     entry.backangle = order.backangle_deg;
     entry.orientation = order.orientation;
     const Result<> set = tools.set_entry(index, entry);
-    const bool hasCopy = !tools.isRandom() && tools.entry(0).toolno == order.toolno;
-    const Result<> copied = set.has_value() && hasCopy ? tools.set_entry(0, entry) : set;
+    const bool has_copy = !tools.isRandom() && tools.entry(0).toolno == order.toolno;
+    const Result<> copied = set.has_value() && has_copy ? tools.set_entry(0, entry) : set;
     return copied.has_value() ? tools.save() : copied;
 }
 
 Result<> edit_tools(const messages::AddTool &order, const ToolUse &, ToolStore &tools) {
-    const auto isControl = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
-    if (std::ranges::any_of(order.comment, isControl)) {
+    const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
+    if (std::ranges::any_of(order.comment, is_control)) {
         return fail("the comment of a tool is one line of text");
     }
     gcode::ToolEntry entry;
@@ -83,8 +83,8 @@ Result<> edit_tools(const messages::RemoveTool &order, const ToolUse &use, ToolS
     if (index < 0) {
         return fail(fmt::format("tool {} is not in the tool table", order.toolno));
     }
-    if (use.isProgramHeld) {
-        return fail(fmt::format("a program is held that may call tool {}: it is removed when that has ended",
+    if (use.program_paused) {
+        return fail(fmt::format("a paused program may call tool {}: it is removed when that has ended",
                                 order.toolno));
     }
     if (index == use.prepared_index && tools.entry(0).toolno != order.toolno) {

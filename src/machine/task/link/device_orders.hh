@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What an operator asks of coolant, lubrication and the tool data, outside programs.
+// The operator's commands for coolant, lubrication and the tool data, outside programs.
 #pragma once
 
 #include "base/result.hh"
@@ -13,22 +13,22 @@ Result<> switch_device(const messages::MistOn &, io::DiscreteIo &io);
 Result<> switch_device(const messages::MistOff &, io::DiscreteIo &io);
 Result<> switch_device(const messages::FloodOn &, io::DiscreteIo &io);
 Result<> switch_device(const messages::FloodOff &, io::DiscreteIo &io);
-/// Refused in emergency stop.
+/// Rejected in emergency stop.
 Result<> switch_device(const messages::LubeOn &, io::DiscreteIo &io);
 Result<> switch_device(const messages::LubeOff &, io::DiscreteIo &io);
 
-/// What of the tool data stays as it is for now.
+/// Tool data that must not change now.
 struct ToolUse {
-    int prepared_index = 0;  ///< of the tool that T has prepared; 0 (of a fixed changer) and -1: none
-    bool isProgramHeld = false;
+    int prepared_index = 0;  ///< the tool that T has prepared; 0 (of a fixed changer) and -1: none
+    bool program_paused = false;
 };
-/// Data of a tool that is in the table, and of its copy in the spindle; the changer alone moves tools.
+/// Changes the data of a tool in the table, and of its copy in the spindle; only the changer moves tools.
 Result<> edit_tools(const messages::SetToolEntry &order, const ToolUse &use, ToolStore &tools);
 Result<> edit_tools(const messages::AddTool &order, const ToolUse &use, ToolStore &tools);
-/// Refused for tools in use: in the spindle, prepared, or any while a program is held that may call it.
+/// Rejected for tools in use: in the spindle, prepared, or any tool while a paused program may call it.
 Result<> edit_tools(const messages::RemoveTool &order, const ToolUse &use, ToolStore &tools);
 
-// What is added to the speed of a spindle that turns.
+// Change of speed for a running spindle.
 constexpr double speed_step_rpm(const messages::SpindleIncrease &) {
     return 100;
 }

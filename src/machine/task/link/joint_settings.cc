@@ -16,8 +16,8 @@ SetParameter set(Parameter parameter, int joint, double value) {
     return {static_cast<std::uint16_t>(parameter), static_cast<std::int16_t>(joint), value};
 }
 
-double flag(bool isSet) {
-    return isSet ? 1 : 0;
+double flag(bool set) {
+    return set ? 1 : 0;
 }
 
 }  // namespace
@@ -59,7 +59,7 @@ Settings joint_settings(const messages::SetJointHoming &c) {
 }
 
 Result<> check_settings(const Settings &changes, const motion::Settings &current, const JointsNow &joints) {
-    if (joints.areHoming) {
+    if (joints.homing) {
         return fail("not while joints home");
     }
     motion::Settings after = current;

@@ -19,10 +19,10 @@ std::vector<motion::SetParameter> joint_settings(const messages::SetJointHoming 
 
 struct JointsNow {
     int count = 0;
-    bool areHoming = false;
+    bool homing = false;
 };
 
-/// Whether motion accepts all of `changes`, and the limits of each joint leave it a range. Checked before the
+/// True if motion accepts all of `changes`, and the limits of each joint leave it a range. Checked before the
 /// first one is sent, so that a command changes all of its settings or none.
 Result<> check_settings(const std::vector<motion::SetParameter> &changes, const motion::Settings &current,
                         const JointsNow &joints);

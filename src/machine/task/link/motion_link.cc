@@ -9,19 +9,19 @@
 namespace mw::task {
 namespace {
 
-/// Moves handed over and not complete; the planner looks ahead over at most this many.
+/// Maximum number of moves sent and not complete, for the planner's look-ahead.
 constexpr std::uint32_t PATH_WINDOW = 3000;
-/// A servo thread that lies interrupted within a write for longer has died; others tell of its death.
+/// A servo thread that is interrupted within a write for longer has died; its death is reported elsewhere.
 constexpr std::chrono::milliseconds PATIENCE{20};
-/// Servo cycles from an output to an input that is linked to it, through a component or two in between.
+/// Servo cycles from an output to a linked input, through one or two components.
 constexpr std::uint64_t ROUND_TRIP_CYCLES = 4;
-/// Points of tables on their way; the channel keeps room for everything else.
+/// Table points in transit; the rest of the channel is for everything else.
 constexpr std::size_t TABLE_WINDOW = 256;
 
 }  // namespace
 
 MotionLink::MotionLink(motion::Channels &channels) : channels_(channels) {
-    copy_.value.isInPosition = false;  // before motion has said so
+    copy_.value.isInPosition = false;  // until motion reports it
     if (read_patiently(channels_.status, copy_, PATIENCE)) {
         epoch_ = copy_.value.epoch;
     }
@@ -29,7 +29,7 @@ MotionLink::MotionLink(motion::Channels &channels) : channels_(channels) {
 
 MotionLink::News MotionLink::update() {
     News news;
-    // Of a realtime side that has died while writing nothing more is told.
+    // A realtime side that has died during a write publishes nothing more.
     fresh_ = read_patiently(channels_.status, copy_, PATIENCE) ? copy_.fresh : 0;
     channels_.task_loops.fetch_add(1, std::memory_order_relaxed);
     take_answers(news);
@@ -50,10 +50,10 @@ void MotionLink::take_answers(News &news) {
     motion::Answer answer;
     while (channels_.servo_answers.pop(answer)) {
         pending_.erase(std::remove(pending_.begin(), pending_.end(), answer.id), pending_.end());
-        const bool isTable =
+        const bool is_table =
             std::find(table_pending_.begin(), table_pending_.end(), answer.id) != table_pending_.end();
         if (isToldRefusal(answer)) {
-            news.refused.push_back({answer, {}, isTable});
+            news.refused.push_back({answer, {}, is_table});
         }
     }
     while (channels_.planner_answers.pop(answer)) {
@@ -80,15 +80,15 @@ void MotionLink::follow_outputs() {
     }
 }
 
-/// A refusal, and of a table the first.
+/// The first rejection of a table, or any other rejection.
 bool MotionLink::isToldRefusal(const motion::Answer &answer) {
-    const bool isRefused = answer.kind == motion::AnswerKind::REFUSED;
+    const bool rejected = answer.kind == motion::AnswerKind::REFUSED;
     const auto point = std::find(table_pending_.begin(), table_pending_.end(), answer.id);
     if (point == table_pending_.end()) {
-        return isRefused;
+        return rejected;
     }
     table_pending_.erase(point);
-    if (!isRefused || refused_table_ == answer.index) {
+    if (!rejected || refused_table_ == answer.index) {
         return false;
     }
     refused_table_ = answer.index;
@@ -167,7 +167,7 @@ bool MotionLink::isPathComplete() const {
 void MotionLink::abort() {
     ++epoch_;
     send(motion::Abort{epoch_});
-    // Whatever was handed over is stale now: its answers are not waited for.
+    // All earlier commands are stale: their answers are not awaited.
     aborted_id_ = last_path_id_;
     sources_.clear();
     completed_id_ = std::max(completed_id_, last_path_id_);

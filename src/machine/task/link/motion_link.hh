@@ -11,57 +11,58 @@
 
 namespace mw::task {
 
-/// One thread. Everything refused or failed comes out of update() exactly once.
+/// One thread. update() reports every rejection and failure exactly once.
 class MotionLink {
   public:
     explicit MotionLink(motion::Channels &channels);
 
     struct Refusal {
         motion::Answer answer;
-        motion::SourceTag source;  ///< of a path command; line 0 when it is none
-        bool isTable = false;      ///< of a point of a screw table
+        motion::SourceTag source;  ///< of a path command; line 0 for other commands
+        bool is_table = false;     ///< a point of a screw table
     };
     struct News {
-        std::vector<Refusal> refused;  ///< REFUSED only; STALE ones belong to work that was aborted
+        std::vector<Refusal> refused;  ///< only REFUSED; STALE commands belong to aborted work
         std::vector<motion::Fault> faults;
     };
-    /// Takes status, answers and faults, and tells the realtime side that task is alive. Once a task cycle.
+    /// Reads status, answers and faults, and signals to the realtime side that task is alive. Once a task
+    /// cycle.
     News update();
 
     const motion::Status &status() const { return copy_.value; }
-    /// Parts of the status (motion::status_part) that came with the last update.
+    /// Parts of the status (motion::status_part) that the last update has received.
     PartMask fresh_parts() const { return fresh_; }
 
-    /// Queues an immediate command; they are handed over in order as the channel has room.
+    /// Queues an immediate command; they are sent in order as the channel has space.
     motion::CommandId send(motion::CommandBody body);
-    /// Queues points of tables, which many are: everything else goes first, and a refusal of one ends its
-    /// table and is told once.
+    /// Queues the points of tables: all other commands go first. The first rejected point ends its table and
+    /// is reported once.
     void send_table(const std::vector<motion::LoadCompensation> &points);
     bool areTablesAnswered() const { return table_.empty() && table_pending_.empty(); }
-    /// Hands a path command over; false when the channel is full (nothing happens then).
+    /// Sends a path command; false, and no effect, when the channel is full.
     bool push_path(const motion::PathBody &body, const motion::SourceTag &source = {});
-    /// True while another move may be handed over without filling the planner's queue.
+    /// True while another move may be sent without filling the planner's queue.
     bool hasPathRoom() const;
 
-    /// Asks the planner to run to the end of everything handed over.
+    /// Tells the planner to run to the end of all moves sent.
     void flush();
-    /// Nothing handed over is still to be executed and the machine is at rest at the end of it.
+    /// All moves sent are complete and the machine is stopped at their end.
     bool isPathComplete() const;
-    /// What digital and analog outputs do to pins of motion has been seen: the machine may have another pose
-    /// since (motion.switchkins-type), and inputs that are linked to outputs follow them.
+    /// The effect of digital and analog outputs on pins of motion has been received: the machine may have
+    /// another pose (motion.switchkins-type), and linked inputs have followed.
     bool areOutputsSettled() const { return last_output_id_ == 0; }
     motion::CommandId last_path_id() const { return last_path_id_; }
     bool hasUnflushedPath() const { return last_path_id_ > flushed_id_; }
 
-    /// Stops all motion along the path and makes everything handed over before it stale.
+    /// Stops all motion along the path and makes everything sent before it stale.
     void abort();
     MotionWatch &watch() { return watch_; }
-    /// The newest order of send() that motion has not answered; 0: none.
+    /// The last command of send() that motion has not answered; 0: none.
     motion::CommandId open_order() const { return pending_.empty() ? 0 : pending_.back(); }
     motion::Epoch epoch() const { return epoch_; }
 
-    /// An immediate command has been answered (done or refused), and status() is of a time after it. In
-    /// another process the answer comes before the snapshot of its cycle.
+    /// An immediate command has been answered (done or rejected), and status() is later than that. In another
+    /// process the answer arrives before the snapshot of its cycle.
     bool isAnswered(motion::CommandId id) const {
         return (pending_.empty() || id < pending_.front()) && id <= copy_.value.last_immediate_id;
     }
@@ -79,19 +80,20 @@ class MotionLink {
     motion::PublishedStatus::Copy copy_;
     PartMask fresh_ = 0;
     std::vector<motion::Command> backlog_;
-    /// Where the moves handed over and not answered come from, oldest first.
+    /// Source positions of moves sent and not answered, oldest first.
     std::deque<std::pair<motion::CommandId, motion::SourceTag>> sources_;
-    std::vector<motion::CommandId> pending_;        ///< immediate commands not yet answered, in order
-    std::deque<motion::LoadCompensation> table_;    ///< points that are not handed over yet
-    std::vector<motion::CommandId> table_pending_;  ///< that are, and are not answered
-    int refused_table_ = -1;                        ///< its joint
+    std::vector<motion::CommandId> pending_;        ///< unanswered immediate commands, in order
+    std::deque<motion::LoadCompensation> table_;    ///< points not sent yet
+    std::vector<motion::CommandId> table_pending_;  ///< points sent and not answered
+    int refused_table_ = -1;                        ///< joint of the rejected table
     motion::CommandId next_id_ = 1;
-    motion::CommandId last_path_id_ = 0;    ///< handed over
-    motion::CommandId flushed_id_ = 0;      ///< the last Flush
-    motion::CommandId completed_id_ = 0;    ///< the last path command answered
-    motion::CommandId last_output_id_ = 0;  ///< whose effect may not have been seen, 0: none
-    std::uint64_t output_cycle_ = 0;        ///< of the first status after it was answered, 0: none yet
-    motion::CommandId aborted_id_ = 0;      ///< path commands up to this one belong to aborted work
+    motion::CommandId last_path_id_ = 0;  ///< last path command sent
+    motion::CommandId flushed_id_ = 0;    ///< the last Flush
+    motion::CommandId completed_id_ = 0;  ///< the last path command answered
+    motion::CommandId last_output_id_ =
+        0;                              ///< output command whose effect may not have been received, 0: none
+    std::uint64_t output_cycle_ = 0;    ///< cycle of the first status after its answer, 0: none yet
+    motion::CommandId aborted_id_ = 0;  ///< path commands up to this one belong to aborted work
     motion::Epoch epoch_ = 0;
     std::uint32_t path_outstanding_ = 0;
 };

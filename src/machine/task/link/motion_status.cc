@@ -31,7 +31,8 @@ void tell_trajectory(const motion::Status &motion, unsigned axis_mask, messages:
     t.queue_depth = motion.queue_depth;
     t.isQueueFull = motion.isQueueFull;
     t.active_move = motion.active_path_id;
-    t.move_kind = static_cast<messages::MoveKind>(motion.motion_type);  // the same numbers
+    t.move_kind =
+        static_cast<messages::MoveKind>(motion.motion_type);  // both enumerations have the same numbers
     t.current_velocity = motion.current_velocity;
     t.requested_velocity = motion.requested_velocity;
     t.distance_to_go = motion.distance_to_go;
@@ -90,19 +91,19 @@ void tell(const motion::AxisStatus &axis, messages::AxisStatus &a) {
     a.max_limit = axis.max_limit;
 }
 
-/// A row that the machine has not is emptied when it ceases to be there. True: it is other than before.
+/// Clears the row of an object that no longer exists. True: the row has changed.
 template <class From, class To>
-bool tell_row(const From &from, bool isPresent, To &to) {
-    const bool wasPresent = to.isPresent;
-    if (isPresent) {
+bool tell_row(const From &from, bool present, To &to) {
+    const bool was_present = to.isPresent;
+    if (present) {
         tell(from, to);
-    } else if (wasPresent) {
+    } else if (was_present) {
         to = {};
     }
-    return isPresent || wasPresent;
+    return present || was_present;
 }
 
-/// The rows that are other than before; `fresh` has a bit per row.
+/// The changed rows; `fresh` has a bit per row.
 template <class From, class To>
 PartMask tell_rows(const From &from, PartMask fresh, int count, To &to) {
     PartMask told = 0;
@@ -138,9 +139,9 @@ PartMask tell_motion(const motion::Status &motion, PartMask fresh, unsigned axis
     namespace from = motion::status_part;
     namespace to = messages::status_part;
     const messages::TrajectoryStatus &before = status.trajectory;
-    const bool isSameMachine = before.num_joints == motion.num_joints && before.axis_mask == axis_mask &&
-                               before.num_spindles == motion.num_spindles;
-    fresh = isSameMachine ? fresh : motion::PublishedStatus::ALL;
+    const bool is_same_machine = before.num_joints == motion.num_joints && before.axis_mask == axis_mask &&
+                                 before.num_spindles == motion.num_spindles;
+    fresh = is_same_machine ? fresh : motion::PublishedStatus::ALL;
     const auto isFresh = [fresh](int part) { return (fresh & part_range(part, 1)) != 0; };
     const auto rows = [fresh](int first, int count) { return fresh >> first & part_range(0, count); };
     PartMask told = 0;

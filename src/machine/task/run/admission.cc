@@ -23,7 +23,7 @@ constexpr Cell NO_PAUSE = "nothing runs that could be paused", NO_RESUME = "noth
                NO_STEP = "single step needs a program", NO_TURN = "no program runs";
 constexpr Cell NO_WAY = "no way is proposed", CONFIRM = "the way that is proposed waits for its confirmation",
                IS_AWAY = "the tool is away from the program: resume it first";
-constexpr Cell NOT_HELD = "the axes are released only from a program that is held",
+constexpr Cell NOT_HELD = "the axes can only be released while a program is paused",
                NOT_LINES = "the axes of a line of MDI are not released: abort it";
 constexpr Cell ON = "only while the machine is off";
 

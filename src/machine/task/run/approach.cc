@@ -9,9 +9,9 @@
 namespace mw::task {
 namespace {
 
-/// Nearer than this the machine stands where it is to be. [machine units, degrees]
+/// Positions closer than this are equal. [machine units, degrees]
 constexpr double NEAR = 1e-7;
-/// A proposal that a person has seen. [ns]
+/// Time after which a person has seen a proposal. [ns]
 constexpr std::int64_t SEEN_NS = 500000000;
 
 bool isSame(const geometry::Pose &a, const geometry::Pose &b) {
@@ -36,14 +36,14 @@ std::vector<ApproachMove> approach_moves(const geometry::Pose &from, const geome
     above[geometry::AXIS_Z] = height;
     geometry::Pose over = from;
     over[geometry::AXIS_Z] = to[geometry::AXIS_Z];
-    const bool isOverPlace = isSame(over, to) && from[geometry::AXIS_Z] >= to[geometry::AXIS_Z];
-    const auto go = [&](const geometry::Pose &end, bool isRapid) {
+    const bool over_place = isSame(over, to) && from[geometry::AXIS_Z] >= to[geometry::AXIS_Z];
+    const auto go = [&](const geometry::Pose &end, bool rapid) {
         if (!isSame(at, end)) {
-            moves.push_back({end, isRapid});
+            moves.push_back({end, rapid});
             at = end;
         }
     };
-    if (!isOverPlace) {
+    if (!over_place) {
         geometry::Pose up = from;
         up[geometry::AXIS_Z] = height;
         go(up, true);
@@ -124,7 +124,7 @@ Result<> Approach::check(std::uint64_t number, std::int64_t now_ns) const {
         return fail(fmt::format("the way that is proposed now is number {}", number_));
     }
     if (number == 0 && now_ns - since_ns_ < SEEN_NS) {
-        return fail("the way has only just been proposed", {}, "look at it, then confirm it");
+        return fail("the path has only just been proposed", {}, "check it, then confirm it");
     }
     return {};
 }
@@ -167,9 +167,9 @@ std::string approach_text(const ApproachPlan &plan) {
     for (const ApproachMove &move : plan.moves) {
         std::string words;
         for (int axis = 0; axis < geometry::AXIS_COUNT; ++axis) {
-            const bool isTold = before.has_value() ? std::fabs(move.end[axis] - (*before)[axis]) > NEAR
-                                                   : axis == geometry::AXIS_Z;
-            words += isTold ? fmt::format(" {}{:.3f}", AXES[axis], move.end[axis]) : "";
+            const bool reported = before.has_value() ? std::fabs(move.end[axis] - (*before)[axis]) > NEAR
+                                                     : axis == geometry::AXIS_Z;
+            words += reported ? fmt::format(" {}{:.3f}", AXES[axis], move.end[axis]) : "";
         }
         words = words.empty() ? fmt::format(" Z{:.3f}", move.end[geometry::AXIS_Z]) : words;
         add(fmt::format("{} to machine{}", move.isRapid ? "rapid" : "feed", words));

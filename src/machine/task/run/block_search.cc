@@ -11,7 +11,7 @@ BlockSearch::BlockSearch(gcode::Interpreter &interpreter, CanonSwitch &machine,
                          const SearchMachine::Real &real, int line)
     : interpreter_(interpreter), switch_(machine), machine_(real), line_(line) {
     switch_.set_search(&machine_);
-    interpreter_.limits().areScriptsForbidden = true;
+    interpreter_.limits().are_scripts_forbidden = true;
 }
 
 BlockSearch::BlockSearch(gcode::Interpreter &interpreter, CanonSwitch &machine,
@@ -19,12 +19,12 @@ BlockSearch::BlockSearch(gcode::Interpreter &interpreter, CanonSwitch &machine,
     : interpreter_(interpreter), switch_(machine), machine_(real), calls_(block.calls) {
     machine_.set_up(block.set_up);
     switch_.set_search(&machine_, block.number);
-    interpreter_.limits().areScriptsForbidden = true;
+    interpreter_.limits().are_scripts_forbidden = true;
 }
 
 BlockSearch::~BlockSearch() {
     switch_.set_search(nullptr);
-    interpreter_.limits().areScriptsForbidden = false;
+    interpreter_.limits().are_scripts_forbidden = false;
 }
 
 BlockSearch::Outcome BlockSearch::step(int lines) {
@@ -49,28 +49,28 @@ BlockSearch::Outcome BlockSearch::refuse_before(const std::string &why) {
 /// Before the line is run.
 BlockSearch::Outcome BlockSearch::look_at_line() {
     const gcode::NextLine next = interpreter_.next_line();
-    const bool isIt = line_ > 0 && next.line == line_ && next.isInMainFile;
-    if (next.isInCall) {
-        return isIt ? refuse_before(
-                          fmt::format("line {} is in subroutine o<{}>, which line {} is the first to call",
-                                      line_, interpreter_.subroutine(), next.main_line))
-                    : Outcome::GOING;
+    const bool matching = line_ > 0 && next.line == line_ && next.in_main_file;
+    if (next.in_call) {
+        return matching ? refuse_before(fmt::format(
+                              "line {} is in subroutine o<{}>, which line {} is the first to call", line_,
+                              interpreter_.subroutine(), next.main_line))
+                        : Outcome::GOING;
     }
     const std::string why = interpreter_.why_no_start();
-    wasThreading_ = interpreter_.isThreading();
-    if (isIt) {
+    was_threading_ = interpreter_.isThreading();
+    if (matching) {
         return !doubt_.empty()
-                   ? refuse_before(fmt::format("what holds at line {} depends on {}", line_, doubt_))
-               : !why.empty() ? refuse_before(fmt::format("nobody can begin at line {}: {}", line_, why))
+                   ? refuse_before(fmt::format("the state at line {} depends on {}", line_, doubt_))
+               : !why.empty() ? refuse_before(fmt::format("no program can start at line {}: {}", line_, why))
                               : Outcome::FOUND;
     }
     last_possible_ = why.empty() && doubt_.empty() ? next.line : last_possible_;
     return Outcome::GOING;
 }
 
-/// What was calculated is what the machine has done.
+/// Checks that the calculated calls are those that the machine has executed.
 BlockSearch::Outcome BlockSearch::check_calls() {
-    if (wasThreading_ && interpreter_.isThreading()) {
+    if (was_threading_ && interpreter_.isThreading()) {
         return refuse_before("it is in the middle of moves that follow the spindle");
     }
     return !calls_.has_value() || machine_.sum().value() == *calls_
@@ -88,7 +88,7 @@ BlockSearch::Outcome BlockSearch::run_line() {
     last_step_ = step;
     if (switch_.isPassing()) {
         return doubt_.empty() ? check_calls()
-                              : refuse_before("what holds where the program was left depends on " + doubt_);
+                              : refuse_before("the state where the program was left depends on " + doubt_);
     }
     switch (step) {
     case gcode::Step::OK: break;
@@ -104,7 +104,7 @@ BlockSearch::Outcome BlockSearch::run_line() {
                                  : refuse_before(fmt::format("line {} is never reached", line_));
     }
     const gcode::NextLine next = interpreter_.next_line();
-    if (!next.isInCall && next.line > line_ && line_ > 0) {
+    if (!next.in_call && next.line > line_ && line_ > 0) {
         first_behind_ = first_behind_ == 0 ? next.line : std::min(first_behind_, next.line);
     }
     return Outcome::GOING;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Goes through a program to the place where it is to begin, without moving anything.
+// Calculates a program up to the place where it starts, without moving anything.
 #pragma once
 
 #include <cstdint>
@@ -12,22 +12,22 @@
 
 namespace mw::task {
 
-/// One thread; step() is bounded by its argument.
+/// One thread; the argument of step() limits its work.
 class BlockSearch {
   public:
     enum class Outcome : std::uint8_t {
         GOING,
         FOUND,    ///< the next step of the interpreter runs the line
-        REFUSED,  ///< refusal() says why, and which line can
+        REFUSED,  ///< refusal() has the reason, and a line that is possible
     };
-    /// A line of the main program, from 1 on.
+    /// `line` of the main program, from 1.
     BlockSearch(gcode::Interpreter &interpreter, CanonSwitch &machine, const SearchMachine::Real &real,
                 int line);
-    /// A block, as TaskCanon counts them, from 1 on: calls from it on have reached the machine's queue. The
-    /// program finds what `set_up` has brought about.
+    /// Searches a block by its number in TaskCanon, from 1: calls from there on have reached the machine's
+    /// queue. The program starts with the state after `set_up`.
     struct Block {
         std::uint32_t number = 0;
-        /// Checksum of all that must have been asked for before it; nothing: whatever it is.
+        /// Expected checksum of all calls before it; nothing: not compared.
         std::optional<std::uint64_t> calls;
         std::vector<gcode::MachineCall> set_up;
     };
@@ -37,16 +37,16 @@ class BlockSearch {
     BlockSearch(const BlockSearch &) = delete;
     BlockSearch &operator=(const BlockSearch &) = delete;
 
-    /// Runs so many lines at most.
+    /// Runs at most this number of lines.
     Outcome step(int lines);
     const std::string &refusal() const { return refusal_; }
-    /// As of the place that was found.
+    /// State at the position that was found.
     FoundModes found() const { return machine_.found(); }
     const std::map<int, gcode::ToolEntry> &tool_entries() const { return machine_.tool_entries(); }
-    /// That come before it.
+    /// Number of blocks before it.
     std::uint32_t blocks_before() const { return machine_.blocks(); }
     const ProgramChecksum &sum() const { return machine_.sum(); }
-    /// How the step ended that has come there; what it asks for is still to be done.
+    /// Result of the step that reached it; the machine must still execute its calls.
     gcode::Step last_step() const { return last_step_; }
 
   private:
@@ -59,13 +59,13 @@ class BlockSearch {
     gcode::Interpreter &interpreter_;
     CanonSwitch &switch_;
     SearchMachine machine_;
-    int line_ = 0;  ///< 0: a block is looked for
+    int line_ = 0;  ///< 0: searching a block
     std::optional<std::uint64_t> calls_;
     gcode::Step last_step_ = gcode::Step::OK;
-    bool wasThreading_ = false;  ///< before that step
-    int last_possible_ = 0;      ///< a start there would have been possible, 0: none yet
-    int first_behind_ = 0;       ///< the first line behind the wanted one that is reached, 0: none
-    std::string doubt_;          ///< with its line
+    bool was_threading_ = false;  ///< threading before that step
+    int last_possible_ = 0;       ///< last line where a start would have been possible, 0: none yet
+    int first_behind_ = 0;        ///< the first line after the target that is reached, 0: none
+    std::string doubt_;           ///< including its line
     std::string refusal_;
 };
 

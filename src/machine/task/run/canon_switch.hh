@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the interpreter works with: the machine, or for a while one that is only reckoned with.
+// The canon of the interpreter: the machine, or temporarily one that is only calculated.
 #pragma once
 
 #include <functional>
@@ -23,28 +23,28 @@ class CanonSwitch final : public gcode::MachineCanon,
         gcode::World &world;
         gcode::ToolSource &tools;
         gcode::ParameterSource &parameters;
-        /// What was searched is reached: calls come to `canon` from here on.
+        /// The search has reached its target: calls go to `canon` from now on.
         std::function<void(const SearchMachine &)> begin_passing;
     };
     explicit CanonSwitch(Real real) : real_(std::move(real)) {}
 
-    /// Everything goes to `search`, null: to the machine again. From block `first` of the program on (counted
-    /// from 1; 0: none) calls reach the machine's canon all the same.
+    /// Sends all calls to `search`; null: to the machine again. From block `first` of the program on (from 1;
+    /// 0: none) calls also reach the machine's canon.
     void set_search(SearchMachine *search, std::uint32_t first = 0) {
         search_ = search;
         first_ = first;
-        isPassing_ = false;
+        passing_ = false;
     }
-    /// That block has begun.
-    bool isPassing() const { return isPassing_; }
-    /// What the program has learnt from the running machine since forget_doubt(), and cannot be calculated
-    /// again; empty: nothing.
+    /// That block has been reached.
+    bool isPassing() const { return passing_; }
+    /// A value that the program has read from the running machine since forget_doubt(), and that cannot be
+    /// calculated again; empty: none.
     const std::string &doubt() const { return doubt_; }
     void forget_doubt() { doubt_.clear(); }
 
     void begin_block(const gcode::BlockRef &block) override {
-        if (!isPassing_ && search_ != nullptr && first_ > 0 && search_->blocks() + 1 >= first_) {
-            isPassing_ = true;
+        if (!passing_ && search_ != nullptr && first_ > 0 && search_->blocks() + 1 >= first_) {
+            passing_ = true;
             real_.begin_passing(*search_);
         }
         (isSearching() ? static_cast<gcode::MachineCanon &>(*search_) : real_.canon).begin_block(block);
@@ -79,7 +79,7 @@ class CanonSwitch final : public gcode::MachineCanon,
     }
 
   private:
-    bool isSearching() const { return search_ != nullptr && !isPassing_; }
+    bool isSearching() const { return search_ != nullptr && !passing_; }
     void note_doubt(const gcode::MachineCall &call) {
         if (std::holds_alternative<gcode::ProbeMove>(call)) {
             doubt_ = "a probe";
@@ -102,7 +102,7 @@ class CanonSwitch final : public gcode::MachineCanon,
     Real real_;
     SearchMachine *search_ = nullptr;
     std::uint32_t first_ = 0;
-    bool isPassing_ = false;
+    bool passing_ = false;
     mutable std::string doubt_;
 };
 

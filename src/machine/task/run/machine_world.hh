@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The machine as programs see it.
+// The machine from the view of programs.
 #pragma once
 
 #include "gcode/interpreter/world.hh"
@@ -9,7 +9,7 @@
 
 namespace mw::task {
 
-/// Shows the interpreter what it was shown last. One thread.
+/// Gives the interpreter the last snapshot. One thread.
 class MachineWorld final : public gcode::World {
   public:
     struct Machine {
@@ -20,23 +20,23 @@ class MachineWorld final : public gcode::World {
     explicit MachineWorld(const Machine &machine) : machine_(machine) {}
 
     void show(const gcode::MachineSnapshot &snapshot) { snapshot_ = snapshot; }
-    void set_block_delete(bool isOn) { isBlockDelete_ = isOn; }
-    void set_optional_stop(bool isOn) { isOptionalStop_ = isOn; }
+    void set_block_delete(bool on) { is_block_delete_ = on; }
+    void set_optional_stop(bool on) { is_optional_stop_ = on; }
 
     gcode::MachineSnapshot snapshot() const override { return snapshot_; }
     gcode::LengthUnits machine_units() const override { return machine_.units; }
     unsigned axis_mask() const override { return machine_.axis_mask; }
     int count_spindles() const override { return machine_.num_spindles; }
-    bool isBlockDeleteOn() const override { return isBlockDelete_; }
-    bool isOptionalStopOn() const override { return isOptionalStop_; }
+    bool isBlockDeleteOn() const override { return is_block_delete_; }
+    bool isOptionalStopOn() const override { return is_optional_stop_; }
 
   private:
     Machine machine_;
     gcode::MachineSnapshot snapshot_;
-    bool isBlockDelete_ = true, isOptionalStop_ = true;
+    bool is_block_delete_ = true, is_optional_stop_ = true;
 };
 
-/// The state of the machine now.
+/// The current state of the machine.
 gcode::MachineSnapshot snapshot_of(const motion::Status &motion, const io::Outputs &io,
                                    const Sequencer &sequencer);
 

@@ -18,8 +18,8 @@ bool areSameModes(const gcode::ActiveCodes &a, const gcode::ActiveCodes &b) {
 }  // namespace
 
 void ModalCodeHistory::note(std::uint32_t block, const gcode::ActiveCodes &codes) {
-    const bool isKnown = !entries_.empty() && block <= newest_;
-    if (isKnown || (!entries_.empty() && areSameModes(entries_.back().codes, codes))) {
+    const bool known = !entries_.empty() && block <= newest_;
+    if (known || (!entries_.empty() && areSameModes(entries_.back().codes, codes))) {
         newest_ = std::max(newest_, block);
         return;
     }

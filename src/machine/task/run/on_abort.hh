@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// [RS274NGC]ON_ABORT_COMMAND: what puts the machine in order after an abort.
+// [RS274NGC]ON_ABORT_COMMAND: runs after an abort to restore the machine.
 #pragma once
 
 #include <string>
@@ -12,28 +12,28 @@ namespace mw::task {
 /// One thread.
 class OnAbort {
   public:
-    /// Empty: nothing is done after an abort.
+    /// Empty: no command after an abort.
     explicit OnAbort(std::string command) : command_(std::move(command)) {}
 
     bool isAsked() const { return !command_.empty(); }
-    /// Reads the command to its end into the reader's queue; what it asks for is done when the machine
-    /// stands. The reader has been synched. In trouble, which the error tells, what came before it stays in
-    /// the queue.
+    /// Reads the command to its end into the reader's queue; its calls are executed when the machine is
+    /// stopped. The reader must have been synched. On an error, which is returned, earlier calls stay in the
+    /// queue.
     Result<> read(ProgramReader &reader, AbortReason reason) const;
-    /// How trouble with it is told to the operator.
+    /// Message for the operator about an error in the command.
     std::string told(const std::string &trouble) const;
 
     /// Nothing has run since the last abort.
-    bool isCleanedUp() const { return isCleanedUp_; }
-    void note_abort() { isCleanedUp_ = true; }
-    void note_work() { isCleanedUp_ = false; }
+    bool isCleanedUp() const { return cleaned_up_; }
+    void note_abort() { cleaned_up_ = true; }
+    void note_work() { cleaned_up_ = false; }
 
   private:
     std::string command_;
-    bool isCleanedUp_ = false;
+    bool cleaned_up_ = false;
 };
 
-/// What must not happen after an abort: anything that moves, starts or waits for a person.
+/// True for calls that are not permitted after an abort: all that move, start, or wait for a person.
 bool isForbiddenAfterAbort(const gcode::MachineCall &call);
 
 }  // namespace mw::task

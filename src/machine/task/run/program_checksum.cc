@@ -8,7 +8,7 @@
 namespace mw::task {
 
 void ProgramChecksum::mix(std::uint64_t word) {
-    constexpr std::uint64_t FACTOR = 0x9E3779B97F4A7C15;  // 2^64 over the golden ratio
+    constexpr std::uint64_t FACTOR = 0x9E3779B97F4A7C15;  // 2^64 divided by the golden ratio
     constexpr unsigned HALF = 32;
     value_ = (value_ ^ word) * FACTOR;
     value_ ^= value_ >> HALF;
@@ -26,7 +26,7 @@ void ProgramChecksum::mix(const geometry::Pose &pose) {
 
 void ProgramChecksum::mix(const geometry::MoveSettings &s) {
     constexpr unsigned MODE = 8, SPINDLE = 16;
-    mix(static_cast<std::uint64_t>(s.isRapid) | static_cast<std::uint64_t>(s.isVelocitySynched) << 1U |
+    mix(static_cast<std::uint64_t>(s.isRapid) | static_cast<std::uint64_t>(s.velocity_synched) << 1U |
         static_cast<std::uint64_t>(s.mode) << MODE |
         static_cast<std::uint64_t>(static_cast<std::uint8_t>(s.synch_spindle)) << SPINDLE);
     mix(s.feed);
@@ -85,14 +85,14 @@ void ProgramChecksum::add(const gcode::MachineCall &call) {
             },
             [&](const gcode::StartSpindle &start) {
                 whole(start.spindle);
-                whole(start.isClockwise ? 1 : 0);
+                whole(start.clockwise ? 1 : 0);
             },
             [&](const gcode::StopSpindle &stop) { whole(stop.spindle); },
             [&](const OneOf<gcode::SwitchMist, gcode::SwitchFlood, gcode::SwitchFeedOverride,
                             gcode::SwitchFeedHold, gcode::SwitchAdaptiveFeed> auto &device) {
                 whole(device.isOn ? 1 : 0);
             },
-            // That they are made says enough of these.
+            // Only the type of these calls counts.
             [](const OneOf<gcode::UsePlanner, gcode::SetSpindleMode, gcode::OrientSpindle,
                            gcode::WaitOrientComplete, gcode::ChangeTool, gcode::ReloadTools,
                            gcode::SwitchSpeedOverride, gcode::WaitInput, gcode::ProgramStop,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A checksum of what a program asks for: two runs that agree in it have asked for the same.
+// A checksum of the commands of a program: two runs with the same checksum have sent the same commands.
 #pragma once
 
 #include <cstdint>
@@ -25,41 +25,41 @@ class ProgramChecksum {
     std::uint64_t value_ = 0;
 };
 
-/// The sums at the beginnings of the blocks that are read and not done. One thread.
+/// Checksums at the starts of blocks that are read and not done. One thread.
 class ChecksumMarks {
   public:
-    /// `before`: of all that came before the blocks that come now.
+    /// `before`: checksum of all earlier calls.
     void begin(ProgramChecksum before) {
         sum_ = before;
         marks_.clear();
-        isOn_ = true;
+        on_ = true;
     }
     void end() {
-        isOn_ = false;
+        on_ = false;
         marks_.clear();
     }
-    bool isOn() const { return isOn_; }
+    bool isOn() const { return on_; }
     void begin_block(std::uint32_t block) {
-        if (isOn_) {
+        if (on_) {
             marks_.emplace_back(block, sum_.value());
         }
     }
     void add(const gcode::MachineCall &call) {
-        if (isOn_) {
+        if (on_) {
             sum_.add(call);
         }
     }
-    /// Of all calls before `block`; those before it are forgotten. Nothing where it has not begun.
+    /// Checksum of all calls before `block`; drops older ones. Nothing before begin().
     std::optional<std::uint64_t> before(std::uint32_t block) {
         while (!marks_.empty() && marks_.front().first < block) {
             marks_.pop_front();
         }
-        const bool isThere = !marks_.empty() && marks_.front().first == block;
-        return isThere ? std::optional(marks_.front().second) : std::nullopt;
+        const bool present = !marks_.empty() && marks_.front().first == block;
+        return present ? std::optional(marks_.front().second) : std::nullopt;
     }
 
   private:
-    bool isOn_ = false;
+    bool on_ = false;
     ProgramChecksum sum_;
     std::deque<std::pair<std::uint32_t, std::uint64_t>> marks_;
 };

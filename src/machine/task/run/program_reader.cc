@@ -13,7 +13,7 @@
 namespace mw::task {
 namespace {
 
-/// A long call into the interpreter.
+/// Scope of a long call into the interpreter.
 class Call {
   public:
     enum class Reads : std::uint8_t { NOTHING, A_STEP };
@@ -53,9 +53,8 @@ ProgramReader::ProgramReader(const Sources &sources, Setup setup)
                    canon_.marks().begin(search.sum());
                }}),
       frame_(switch_, setup_.units), executed_frame_(frame_) {
-    // A machine runs its programs: #<_task>, self.task of scripts, and M99 in the main program begins it
-    // again.
-    setup_.interpreter.isTask = true;
+    // On a machine #<_task> and self.task of scripts are set, and M99 in the main program restarts it.
+    setup_.interpreter.is_task = true;
     auto rs274 = std::make_unique<gcode::Interpreter>(frame_, switch_, switch_, switch_, setup_.interpreter);
     rs274_ = rs274.get();
     interp_ = std::move(rs274);
@@ -83,7 +82,7 @@ std::string ProgramReader::parameter_text() const {
     return rs274_ != nullptr ? rs274_->read_ahead().parameter_text() : std::string();
 }
 
-/// What the machine says is no block that could be read ahead.
+/// Calls that report the machine's state are not part of a block read ahead.
 void ProgramReader::synch(const geometry::Pose &position) {
     canon_.set_position(position);
     frame_.set_position(position);
@@ -130,16 +129,16 @@ gcode::Step ProgramReader::execute(std::string_view line) {
     return result;
 }
 
-/// A block that asks the machine for nothing is executed in its turn, too.
+/// A block without calls also keeps its place in the order of execution.
 void ProgramReader::keep_place(const gcode::BlockRef &block) {
-    const bool isSilent = !canon_.isAsking() && !interp_->isMoveHeld();
-    if (isSilent && rs274_ != nullptr && search_ == nullptr && !rs274_->read_ahead().isLineEmpty()) {
+    const bool silent = !canon_.isAsking() && !interp_->isMoveHeld();
+    if (silent && rs274_ != nullptr && search_ == nullptr && !rs274_->read_ahead().isLineEmpty()) {
         canon_.pass_block(block);
     }
 }
 
-/// A move that cutter compensation holds back is executed with the step that lets it go: what this step has
-/// changed counts from there on.
+/// A move delayed by cutter compensation is executed with the step that releases it: the changes of this step
+/// count from there on.
 void ProgramReader::note_read() {
     if (rs274_ == nullptr || search_ != nullptr) {
         return;
@@ -201,14 +200,14 @@ Result<> ProgramReader::begin_search(int line) {
     kept_.frame = frame_;
     rs274_->read_ahead().stop();
     const SearchMachine::Real real{sources_.world, sources_.tools, sources_.parameters,
-                                   setup_.tool_change_place, setup_.isToolChangeWithSpindleOn};
+                                   setup_.tool_change_place, setup_.tool_change_with_spindle_on};
     search_ = std::make_unique<BlockSearch>(*rs274_, switch_, real, line);
     return {};
 }
 
 Result<> ProgramReader::begin_recovery(StartRecord record, const LostPlace &place) {
     if (rs274_ == nullptr) {
-        return fail("only programs in G-code (RS-274/NGC) can be gone on with", {},
+        return fail("only programs in G-code (RS-274/NGC) can be continued", {},
                     "[TASK]INTERPRETER names another language");
     }
     const auto modes = rs274_->unpack_kept(record.interpreter);
@@ -225,7 +224,7 @@ Result<> ProgramReader::begin_recovery(StartRecord record, const LostPlace &plac
     }
     recorded_.emplace(RecordedWorld::Real{sources_.world, sources_.tools}, std::move(record));
     const SearchMachine::Real real{*recorded_, *recorded_, sources_.parameters, setup_.tool_change_place,
-                                   setup_.isToolChangeWithSpindleOn};
+                                   setup_.tool_change_with_spindle_on};
     search_ = std::make_unique<BlockSearch>(
         *rs274_, switch_, real, BlockSearch::Block{place.block, place.calls, recorded_->record().calls()});
     return {};
@@ -252,8 +251,8 @@ void ProgramReader::begin_marks() {
 }
 
 int ProgramReader::main_line() const {
-    const bool isInCall = rs274_ != nullptr && interp_->call_level() > 0;
-    return isInCall ? rs274_->next_line().main_line : interp_->line();
+    const bool in_call = rs274_ != nullptr && interp_->call_level() > 0;
+    return in_call ? rs274_->next_line().main_line : interp_->line();
 }
 
 std::string ProgramReader::take_doubt() {

@@ -26,19 +26,19 @@ struct KeptState {
     std::optional<gcode::MachineFrame> frame;
 };
 
-/// One thread. step(), execute(), open() and step_search() take as long as files and scripts do: meanwhile
-/// another thread may have task (LongCall), which uses call() alone.
+/// One thread. step(), execute(), open() and step_search() may wait for files and scripts: meanwhile another
+/// thread may use task (LongCall), and uses only call().
 class ProgramReader {
   public:
     struct Setup {
         gcode::LengthUnits units = gcode::LengthUnits::MM;
         ToolChangePlace tool_change_place;
-        std::string parameter_file;  ///< empty: parameters live in memory only
-        bool isToolChangeWithSpindleOn = false;
+        std::string parameter_file;  ///< empty: parameters are only in memory
+        bool tool_change_with_spindle_on = false;
         std::string plugin;  ///< [TASK]INTERPRETER: a shared object; empty: RS-274/NGC
         gcode::Settings interpreter;
     };
-    /// What a program may ask; all must outlive the reader.
+    /// Data sources of programs; all must outlive the reader.
     struct Sources {
         gcode::World &world;
         gcode::ToolSource &tools;
@@ -49,65 +49,66 @@ class ProgramReader {
     /// Opens the plug-in and reads the parameter file. Errors name file, line and column.
     Result<> load();
     Result<> save_parameters() const;
-    /// What the parameter file is to have; empty where a plug-in reads programs.
+    /// Content of the parameter file; empty with a plug-in.
     std::string parameter_text() const;
-    /// Null where a plug-in reads programs.
+    /// Null with a plug-in.
     gcode::Interpreter *gcode() const { return rs274_; }
-    /// The world shows the machine as it is now; the position is the program's from here.
+    /// Updates the world with the machine's state; `position` becomes the program's position.
     void synch(const geometry::Pose &position);
-    /// Reads the program from its first line on. An error says what is wrong with the file.
+    /// Opens a program at its first line. An error describes the problem with the file.
     Result<> open(const std::string &path);
     // One step of the interpreter: the next line of the program, or a line of MDI.
     gcode::Step step();
     gcode::Step execute(std::string_view line);
-    /// All that was read is executed; from here on the machine may read ahead.
+    /// Everything read is executed; from now on the machine may read ahead.
     void begin_history();
-    /// The machine has reached what step `read` of the interpreter asked for (Item::read).
+    /// The machine has reached the calls of step `read` of the interpreter (Item::read).
     void mark_executed(std::uint64_t read);
-    /// Once a cycle: what the sequencer has come to is executed; where nothing waits, all is.
+    /// Once a cycle: the steps that the sequencer has reached are executed; all of them when nothing waits.
     void follow(const Sequencer &sequencer);
-    /// The one under way, for the thread that has task meanwhile.
+    /// The current call, for the thread that uses task meanwhile.
     ReaderCall &call() { return call_; }
-    /// Steps that are read and not executed, those that ask the machine for nothing included.
+    /// Steps that are read and not executed, including those without calls.
     std::size_t count_ahead() const { return frames_ahead_.size(); }
     std::uint64_t executed() const { return executed_; }
-    /// Modal codes as of there.
+    /// Modal codes of the executed step.
     gcode::ActiveCodes executed_codes() const;
-    /// Forgets what was read ahead: modes, offsets and parameters are those of the block that is executed.
+    /// Discards the blocks read ahead: modes, offsets and parameters become those of the executed block.
     void return_to_executed();
-    /// Announces the modes and offsets again: displays and motion follow them.
+    /// Announces the modes and offsets again, for displays and motion.
     void announce() { interp_->announce(); }
-    /// The result of a probe, as a line of the file of (probeopen); empty when it has not tripped.
+    /// The result of a probe, as a line of the (probeopen) file; empty when it has not tripped.
     std::string probe_line() const;
 
-    // A start elsewhere than at the first line of the program that is open (docs/user/run_from_line.md). The
-    // machine has been synched.
+    // Starts a search for a line of the open program (docs/user/run_from_line.md). The reader must have been
+    // synched.
     Result<> begin_search(int line);
-    /// The same at a block of a program that has begun as `record` says, on a machine that has come up since.
+    /// The same for a block of a program that began with `record`, on a machine that was restarted since.
     struct LostPlace {
         std::uint32_t block = 0;
-        std::optional<std::uint64_t> calls;  ///< checksum; nothing: it is not compared
+        std::optional<std::uint64_t> calls;  ///< checksum; nothing: not compared
     };
     Result<> begin_recovery(StartRecord record, const LostPlace &place);
-    /// Modes and parameters as they are, for begin_recovery(); an error says why they cannot be told.
+    /// Stores the current modes and parameters for begin_recovery(); an error names a state that cannot be
+    /// stored.
     Result<> keep_start(StartRecord &record) const;
-    /// What the program has asked for is counted from here on.
+    /// Starts the checksums of the program's calls.
     void begin_marks();
-    /// Since then: what cannot be calculated again, empty for nothing.
+    /// A value read since then that cannot be calculated again; empty for none.
     std::string take_doubt();
-    /// Of the main program: that was read last, or that has called.
+    /// Last line read in the main program, or its line of the current call.
     int main_line() const;
     BlockSearch::Outcome step_search(int lines);
-    /// nullptr: there is none.
+    /// nullptr: no search
     const BlockSearch *search() const { return search_.get(); }
-    /// What a recovery calculates with.
+    /// State used by a recovery.
     const StartRecord &recorded() const { return recorded_->record(); }
-    /// The program goes on from the place that was found.
+    /// The program continues from the position that was found.
     void accept_search();
-    /// Modes, parameters and offsets are what they were before it.
+    /// Restores modes, parameters and offsets from before the search.
     void cancel_search();
 
-    /// The codes of the block that was read last, and of those before it since begin_codes().
+    /// Notes the codes of the last block, and of earlier ones since begin_codes().
     void note_codes() { codes_.note(canon_.blocks(), interp_->active_codes()); }
     void begin_codes() { codes_.clear(); }
     const ModalCodeHistory &codes() const { return codes_; }
@@ -134,12 +135,12 @@ class ProgramReader {
     CanonSwitch switch_;
     gcode::MachineFrame frame_;
     std::unique_ptr<gcode::ProgramInterpreter> interp_;
-    gcode::Interpreter *rs274_ = nullptr;    ///< the same; null: a plug-in
-    std::optional<RecordedWorld> recorded_;  ///< what a recovery calculates with
+    gcode::Interpreter *rs274_ = nullptr;    ///< the same object; null: a plug-in
+    std::optional<RecordedWorld> recorded_;  ///< world used by a recovery
     std::unique_ptr<BlockSearch> search_;
-    std::uint64_t script_calls_ = 0;  ///< that are known
-    KeptState kept_;                  ///< as before the search
-    // What an abort returns to; the interpreter has the rest of it.
+    std::uint64_t script_calls_ = 0;  ///< number of known script calls
+    KeptState kept_;                  ///< state before the search
+    // State to which an abort returns; the interpreter has the rest.
     gcode::MachineFrame executed_frame_;
     std::deque<FrameAfter> frames_ahead_;
     std::uint64_t executed_ = 0;

@@ -8,7 +8,7 @@
 namespace mw::task {
 namespace {
 
-/// How often a new place is told: with the disk's time well within a second.
+/// Interval of progress records: with the disk's time well below a second.
 constexpr std::int64_t EVERY_NS = 200000000;
 
 }  // namespace
@@ -17,7 +17,7 @@ std::string refusal_of(const journal::Run &run) {
     if (!run.doubt.has_value() || run.progress->block <= run.doubt->block) {
         return {};
     }
-    return fmt::format("what holds at line {} depends on {} in line {}; the nearest line before it that can "
+    return fmt::format("the state at line {} depends on {} in line {}; the nearest line before it that can "
                        "is {}",
                        run.progress->line, run.doubt->what, run.doubt->line, std::max(1, run.doubt->line));
 }
@@ -34,10 +34,10 @@ std::string Recovery::find() {
     offer_run(*writer_->found().run);
     refusal_ = writer_->found().refusal.empty() ? refusal_ : writer_->found().refusal;
     const std::string what =
-        fmt::format("{} was cut short at line {}", offer_->start.program, offer_->progress->line);
+        fmt::format("{} was interrupted at line {}", offer_->start.program, offer_->progress->line);
     return refusal_.empty()
                ? what + ": RecoverProgram ('millwright recover') goes on with it once the machine is homed"
-               : what + " and cannot be gone on with there: " + refusal_;
+               : what + " and cannot be continued there: " + refusal_;
 }
 
 void Recovery::prepare(const std::string &program, const StartRecord &record, const std::string &why_not) {
@@ -104,10 +104,10 @@ void Recovery::step(std::int64_t now_ns, const RunPlace &place, ChecksumMarks &m
     if (!run_.has_value()) {
         return;
     }
-    const bool isFirst = !run_->progress.has_value();
-    const bool isElsewhere = !isFirst && std::max(first_, place.block) != run_->progress->block;
-    const bool isDue = now_ns - noted_ns_ >= EVERY_NS;
-    if (place.block > 0 && (isFirst || (isElsewhere && isDue))) {
+    const bool first = !run_->progress.has_value();
+    const bool elsewhere = !first && std::max(first_, place.block) != run_->progress->block;
+    const bool due = now_ns - noted_ns_ >= EVERY_NS;
+    if (place.block > 0 && (first || (elsewhere && due))) {
         noted_ns_ = now_ns;
         note(place, marks, tools);
     }
@@ -117,7 +117,7 @@ void Recovery::note(const RunPlace &place, ChecksumMarks &marks, const ToolStore
     const std::uint32_t block = std::max(first_, place.block);
     const auto calls = marks.before(block);
     if (!calls.has_value()) {
-        return;  // it has not begun
+        return;  // not started
     }
     if (summed_version_ != tools.version()) {
         summed_version_ = tools.version();
@@ -161,7 +161,7 @@ std::optional<std::string> Recovery::take_delay(std::int64_t now_ns) {
 
 Result<const journal::Run *> Recovery::offer() const {
     if (!offer_.has_value()) {
-        return fail("no program was cut short");
+        return fail("no program was interrupted");
     }
     return refusal_.empty() ? Result<const journal::Run *>(&*offer_) : fail(refusal_);
 }

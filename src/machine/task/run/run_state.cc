@@ -35,7 +35,7 @@ constexpr auto NO_SYNC = no_phase("the interpreter does not wait");
 constexpr auto NO_PAUSE = no_phase("nothing runs that could be paused");
 constexpr auto NO_RESUME = no_phase("nothing is paused");
 constexpr auto NO_STEP = no_phase("nothing runs that could be stepped");
-constexpr auto NO_RELEASE = no_phase("nothing is held whose axes could be released");
+constexpr auto NO_RELEASE = no_phase("no paused program has axes that could be released");
 constexpr auto NO_PLACE = no_phase("no way is proposed");
 constexpr auto NO_STOP = no_phase("nothing runs that could be stopped");
 
@@ -66,7 +66,7 @@ constexpr auto GOING = hold(Hold::GOING), STEPPING = hold(Hold::STEPPING), HELD 
 constexpr auto NOT_HELD = no_hold("nothing is paused");
 constexpr auto NOT_STEPPING = no_hold("no step is under way");
 constexpr auto NO_WAY = no_hold("no way is proposed");
-constexpr auto NOT_RELEASABLE = no_hold("the axes are released only from a program that is held");
+constexpr auto NOT_RELEASABLE = no_hold("the axes can only be released while a program is paused");
 constexpr auto RETURN_FIRST = no_hold("the tool is away from the program: resume it first");
 constexpr auto CONFIRM_FIRST = no_hold("the way that is proposed waits for its confirmation");
 constexpr auto NOT_STANDING = no_hold("the program is not stopped where it can continue");

@@ -23,7 +23,7 @@ void SearchMachine::take(const gcode::MachineCall &call) {
                 move_to(move.end, move.settings);
             },
             [this](const gcode::ProbeMove &) { doubt("a probe"); },
-            [](const gcode::TapMove &) {},  // ends where it begins
+            [](const gcode::TapMove &) {},  // ends at its start
             [this](const gcode::UseOffsets &one) { offsets_ = one; },
             [this](const gcode::UseToolOffset &one) { tool_offset_ = one; },
             [this](const gcode::UsePlanner &one) { planner_ = one; },
@@ -51,8 +51,8 @@ void SearchMachine::take(const gcode::MachineCall &call) {
             },
             [this](const gcode::SwitchSpeedOverride &one) {
                 spindle(one.spindle).overriding = one;
-                machine_.isSpeedOverrideEnabled =
-                    one.spindle == 0 ? one.isOn : machine_.isSpeedOverrideEnabled;
+                machine_.speed_override_enabled =
+                    one.spindle == 0 ? one.isOn : machine_.speed_override_enabled;
             },
             [this](const gcode::SwitchFeedHold &one) {
                 feed_hold_ = one;
@@ -66,7 +66,7 @@ void SearchMachine::take(const gcode::MachineCall &call) {
             [this](const gcode::SetAnalogOutput &one) { analog_[one.index] = one.value; },
             [this](const gcode::WaitInput &) { doubt("an input (M66)"); },
             [this](const gcode::UserCode &one) { user_codes_.push_back(one.code); },
-            // Nothing of these is left behind.
+            // These have no lasting effect.
             [](const OneOf<gcode::Dwell, gcode::WaitOrientComplete, gcode::ProgramStop, gcode::ProgramEnd,
                            gcode::PalletShuttle, gcode::Finish, gcode::ProgramComment, gcode::OperatorMessage,
                            gcode::PrintLine, gcode::OpenLog, gcode::LogLine, gcode::CloseLog,
@@ -86,7 +86,7 @@ void SearchMachine::stop(int number) {
     machine_.spindle_direction[static_cast<std::size_t>(number)] = 0;
 }
 
-/// As the sequencer does it.
+/// As in the sequencer.
 void SearchMachine::change_tool() {
     for (const geometry::Pose &end : tool_change_moves(real_.tool_change_place, machine_.position)) {
         machine_.position = end;
@@ -97,7 +97,7 @@ void SearchMachine::change_tool() {
     if (isRandom()) {
         doubt("where a changer that swaps tools has put them (M6)");
     }
-    if (!real_.isToolChangeWithSpindleOn) {
+    if (!real_.tool_change_with_spindle_on) {
         for (int i = 0; i < count_spindles(); ++i) {
             stop(i);
         }
@@ -110,8 +110,8 @@ void SearchMachine::change_tool() {
 
 /// M61.
 void SearchMachine::set_tool_number(int toolno) {
-    const bool isThere = isRandom() && entry(0).toolno == toolno;
-    if (isThere) {
+    const bool present = isRandom() && entry(0).toolno == toolno;
+    if (present) {
         return;
     }
     if (isRandom()) {
@@ -154,7 +154,7 @@ FoundModes SearchMachine::found() const {
         }
     };
     for (const auto &[index, entry] : entries_) {
-        if (index > 0 || isRandom()) {  // of a fixed changer the copy of a tool that has a place of its own
+        if (index > 0 || isRandom()) {  // of a fixed changer: the copy of a tool that has its own entry
             found.settings.emplace_back(gcode::SetToolTableEntry{index, entry});
         }
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The machine as a program finds it that is interpreted without moving anything: everything is where the
-// program has put it.
+// The machine for a program that is interpreted without moving anything: every position is the one that the
+// program has set.
 #pragma once
 
 #include <array>
@@ -18,50 +18,50 @@
 
 namespace mw::task {
 
-/// What is in force at the place where a search has ended.
+/// State at the position where a search has ended.
 struct FoundModes {
-    geometry::Pose position;  ///< of the machine, where the next move begins
-    int tool = 0;             ///< in the spindle
-    int selected_tool = -1;   ///< by T and not yet changed to, -1: none
+    geometry::Pose position;  ///< of the machine, at the start of the next move
+    int tool = 0;             ///< tool in the spindle
+    int selected_tool = -1;   ///< selected by T and not loaded yet, -1: none
     bool isMistOn = false, isFloodOn = false;
-    std::array<double, MAX_SPINDLES> speeds_rpm{};  ///< signed; 0: stands
+    std::array<double, MAX_SPINDLES> speeds_rpm{};  ///< signed; 0: stopped
     std::optional<gcode::UseOffsets> offsets;
     std::optional<gcode::UseToolOffset> tool_offset;
-    double feed = 0;  ///< of the last move at feed [machine units/s], 0: none was made
-    /// Settings, outputs and tool data that the program has changed, as calls that bring them about.
+    double feed = 0;  ///< of the last feed move [machine units/s], 0: none
+    /// Calls that restore the settings, outputs and tool data of the program.
     std::vector<gcode::MachineCall> settings;
-    /// Starts the spindles that turn.
+    /// Calls that start the running spindles.
     std::vector<gcode::MachineCall> spindles;
     std::vector<int> user_codes;  ///< M100 to M199 that were passed and not run
 };
 
-/// Takes the calls of a search and answers for the machine. Values that only the running machine knows are
-/// doubts: what comes behind them is not known. One thread.
+/// Receives the calls of a search and answers for the machine. A value known only to the running machine
+/// makes everything after it unknown (a doubt). One thread.
 class SearchMachine final : public gcode::MachineCanon,
                             public gcode::World,
                             public gcode::ToolSource,
                             public gcode::ParameterSource {
   public:
-    /// The real ones; all must outlive it.
+    /// The real objects; all must outlive it.
     struct Real {
         const gcode::World &world;
         const gcode::ToolSource &tools;
         const gcode::ParameterSource &parameters;
         const ToolChangePlace &tool_change_place;
-        bool isToolChangeWithSpindleOn = false;
+        bool tool_change_with_spindle_on = false;
     };
-    /// The search begins with the machine as it is.
+    /// The search begins with the current state of the machine.
     explicit SearchMachine(const Real &real);
 
-    /// What holds before the program begins.
+    /// Applies calls before the program begins.
     void set_up(const std::vector<gcode::MachineCall> &calls);
     std::uint32_t blocks() const { return blocks_; }
-    /// Of all calls of the program so far.
+    /// Checksum of all calls of the program so far.
     const ProgramChecksum &sum() const { return sum_; }
     FoundModes found() const;
-    /// Of the tool table, what the program has changed; 0: what is in the spindle.
+    /// Changes of the program to the tool table; 0: the tool in the spindle.
     const std::map<int, gcode::ToolEntry> &tool_entries() const { return entries_; }
-    /// What has made the rest unknown; empty: nothing.
+    /// Reason why the rest is unknown; empty: none.
     const std::string &doubt() const { return doubt_; }
 
     void begin_block(const gcode::BlockRef &) override { ++blocks_; }
@@ -106,7 +106,7 @@ class SearchMachine final : public gcode::MachineCanon,
     ProgramChecksum sum_;
     mutable std::string doubt_;
     std::array<Spindle, MAX_SPINDLES> spindles_{};
-    std::map<int, gcode::ToolEntry> entries_;  ///< that the program has changed; 0: the spindle's
+    std::map<int, gcode::ToolEntry> entries_;  ///< entries that the program has changed; 0: the spindle
     int selected_tool_ = -1;
     double feed_ = 0;
     std::optional<gcode::UseOffsets> offsets_;

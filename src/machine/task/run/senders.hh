@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Who has sent a command, and what that allows the run that it begins (docs/integrator/security.md).
+// The sender of a command, and the rights of the run that it starts (docs/integrator/security.md).
 #pragma once
 
 #include <algorithm>
@@ -27,8 +27,7 @@ class Senders {
     Senders(const Senders &) = delete;
     Senders &operator=(const Senders &) = delete;
 
-    /// The command that is carried out while this lives. They nest: a stop beside a long call of another
-    /// command.
+    /// Scope of executing a command. Scopes nest: a stop during a long call of another command.
     class Sending {
       public:
         Sending(Senders &senders, const mailbox::CommandServer::Delivery &delivery)
@@ -42,33 +41,33 @@ class Senders {
         Authority before_;
     };
     Authority sender() const { return sender_; }
-    /// Whether its sender may have task open this file.
+    /// True if task may open this file for the sender.
     Result<> check_file(const std::string &path) const {
         return sender_ == Authority::CONFIGURE ? Result<>{} : check_program(confinement_, path);
     }
     void note_opened() { opener_ = sender_; }
-    /// Of a run of the open program: the least of who opened and who starts it.
+    /// Authority for a run of the open program: the lower one of those who opened and started it.
     Authority of_program() const { return std::min(sender_, opener_); }
 
     void begin_run(Authority authority) { run_ = authority; }
-    /// A run goes on that had less.
+    /// A run with lower authority continues.
     void limit_run() { run_ = opener_ = Authority::OPERATE; }
     bool isRunConfined() const { return run_ != Authority::CONFIGURE; }
-    /// Of the run, and of the clean-up after it; null: any file.
+    /// Restrictions of the run, and of the clean-up after it; null: any file.
     const Confinement *confinement() const { return isRunConfined() ? &confinement_ : nullptr; }
 
-    /// The command was taken. Jogs of panels and of this process need no guard.
+    /// The command was accepted. Jogs of panels and of this process need no guard.
     void note_taken(const mailbox::CommandServer::Delivery &delivery) {
-        const bool isGuarded = !delivery.isPanel && delivery.owner != own_process_;
-        jogs_.note(delivery.command, isGuarded ? delivery.owner : 0);
+        const bool guarded = !delivery.isPanel && delivery.owner != own_process_;
+        jogs_.note(delivery.command, guarded ? delivery.owner : 0);
     }
     std::vector<JogGuard::Left> left_jogs(const motion::Status &motion) { return jogs_.step(motion); }
 
   private:
     const Confinement &confinement_;
     Authority sender_ = Authority::CONFIGURE;
-    Authority opener_ = Authority::CONFIGURE;  ///< of the program that is open
-    Authority run_ = Authority::CONFIGURE;     ///< of the run, or of the last one
+    Authority opener_ = Authority::CONFIGURE;  ///< of the client that opened the program
+    Authority run_ = Authority::CONFIGURE;     ///< of the current or last run
     const std::uint64_t own_process_ = mailbox::owner_word();
     mailbox::ProcessWatch processes_;
     JogGuard jogs_;

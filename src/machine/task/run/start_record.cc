@@ -13,7 +13,7 @@
 namespace mw::task {
 namespace {
 
-/// Of what follows; another one is not read.
+/// Version of the format; others are not read.
 constexpr std::uint32_t FORM = 2;
 
 template <class Io, class Pose>
@@ -33,7 +33,7 @@ void snapshot(Io &io, Snapshot &s) {
     io(s.isMistOn);
     io(s.isFloodOn);
     io(s.isFeedOverrideEnabled);
-    io(s.isSpeedOverrideEnabled);
+    io(s.speed_override_enabled);
     io(s.isFeedHoldEnabled);
     io(s.isAdaptiveFeedEnabled);
     io(s.feed_rate);
@@ -42,7 +42,7 @@ void snapshot(Io &io, Snapshot &s) {
         io(s.spindle_direction[i]);
     }
     io(s.tool_in_spindle);
-    io(s.isToolFaulted);
+    io(s.tool_faulted);
     io(s.tool_fault_reason);
     io(s.selected_pocket);
     io(s.current_pocket);
@@ -60,7 +60,7 @@ void tool(Io &io, Tool &entry) {
     io(entry.comment);
 }
 
-/// Each element takes a byte at least: a count above what is left is none.
+/// Each element takes at least one byte: a count above the remaining bytes is not valid.
 template <class One, class Fields>
 void list(Packer &out, const std::vector<One> &all, const Fields &fields) {
     out(static_cast<std::uint64_t>(all.size()));
@@ -90,7 +90,7 @@ void fields(Io &io, Record &record) {
     snapshot(io, record.machine);
     io(record.isBlockDelete);
     io(record.isOptionalStop);
-    io(record.isConfined);
+    io(record.confined);
     list(io, record.tools, [&](auto &one) { tool(io, one); });
     io(record.offsets.g5x_index);
     pose(io, record.offsets.g5x);
@@ -108,8 +108,8 @@ void fields(Io &io, Record &record) {
     });
     list(io, record.spindle_starts, [&](auto &one) {
         io(one.spindle);
-        io(one.isClockwise);
-        io(one.isWaiting);
+        io(one.clockwise);
+        io(one.waiting);
     });
     io(record.digital_out);
     list(io, record.analog_out, [&](auto &value) { io(value); });
@@ -119,7 +119,7 @@ bool isSpindle(int number) {
     return number >= 0 && number < MAX_SPINDLES;
 }
 
-/// Numbers that are used as places in tables.
+/// Checks numbers that are used as indices of tables.
 bool canBe(const StartRecord &record) {
     const int tools = static_cast<int>(record.tools.size());
     return tools > 0 && record.machine.selected_pocket >= -1 && record.machine.selected_pocket < tools &&
@@ -173,7 +173,7 @@ std::vector<gcode::MachineCall> StartRecord::calls() const {
     all.emplace_back(gcode::SwitchFeedOverride{machine.isFeedOverrideEnabled});
     all.emplace_back(gcode::SwitchFeedHold{machine.isFeedHoldEnabled});
     all.emplace_back(gcode::SwitchAdaptiveFeed{machine.isAdaptiveFeedEnabled});
-    all.emplace_back(gcode::SwitchSpeedOverride{0, machine.isSpeedOverrideEnabled});
+    all.emplace_back(gcode::SwitchSpeedOverride{0, machine.speed_override_enabled});
     all.insert(all.end(), spindle_modes.begin(), spindle_modes.end());
     all.insert(all.end(), spindle_speeds.begin(), spindle_speeds.end());
     all.insert(all.end(), spindle_starts.begin(), spindle_starts.end());
@@ -209,7 +209,7 @@ bool isSame(const gcode::ToolEntry &a, const gcode::ToolEntry &b) {
     return packed_a.bytes() == packed_b.bytes();
 }
 
-/// What the program has set a tool's data to; null: it has not.
+/// Tool data that the program has set; null: none.
 const gcode::ToolEntry *set_by_program(const FoundModes &found, int index) {
     const gcode::ToolEntry *last = nullptr;
     for (const gcode::MachineCall &call : found.settings) {
@@ -241,7 +241,7 @@ Result<StartRecord> with_tools_now(StartRecord record, const FoundModes &found,
                 fmt::format("the program itself sets the data of tool {}, which were changed", now.toolno));
         }
         gcode::ToolEntry &spindle = record.tools[0];
-        if (i > 0 && spindle.toolno == now.toolno) {  // the copy of a fixed changer
+        if (i > 0 && spindle.toolno == now.toolno) {  // copy of a fixed changer
             const int pocket = spindle.pocketno;
             spindle = now;
             spindle.pocketno = pocket;

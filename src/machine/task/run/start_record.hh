@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// All that a program finds when it begins, kept so that it can be calculated again after a power cut.
+// The complete state at the start of a program, stored so that it can be calculated again after a power cut.
 #pragma once
 
 #include <cstdint>
@@ -20,26 +20,26 @@ struct StartRecord {
     std::string frame;        ///< MachineFrame::pack()
     gcode::MachineSnapshot machine;
     bool isBlockDelete = true, isOptionalStop = true;
-    bool isConfined = false;  ///< the run had only the authority to operate
+    bool confined = false;  ///< the run had only the authority to operate
     std::vector<gcode::ToolEntry> tools;
     gcode::UseOffsets offsets;
     gcode::UseToolOffset tool_offset;
-    std::vector<gcode::SetSpindleMode> spindle_modes;  ///< of those that turn, and so on
+    std::vector<gcode::SetSpindleMode> spindle_modes;  ///< of running spindles, and so on
     std::vector<gcode::UseSpindleSpeed> spindle_speeds;
     std::vector<gcode::StartSpindle> spindle_starts;
     std::uint64_t digital_out = 0;
     std::vector<double> analog_out;
 
-    /// Spindles that turn, as ProgramSpindles::starts() tells them.
+    /// Adds running spindles, from ProgramSpindles::starts().
     void add_spindles(const std::vector<gcode::MachineCall> &starts);
-    /// What makes a machine that has just come up the one that it was.
+    /// Calls that restore the recorded state on a machine that was just started.
     std::vector<gcode::MachineCall> calls() const;
 
     std::string pack() const;
     static std::optional<StartRecord> unpack(std::string_view bytes);
 };
 
-/// The machine as a program has found it, on a machine that has come up since.
+/// The machine as it was at the start of a program, on a machine that was restarted since.
 class RecordedWorld final : public gcode::World, public gcode::ToolSource {
   public:
     struct Real {
@@ -69,13 +69,12 @@ class RecordedWorld final : public gcode::World, public gcode::ToolSource {
     StartRecord record_;
 };
 
-/// The same start with the tools as they are now in `tools`. `found`: what the program has brought about up
-/// to where it is to go on. Refused where other tools are in the table, or the program itself has set what
-/// was changed since.
+/// The same start with the current tools in `tools`. `found`: state at the position where the program
+/// continues. Rejected when other tools are in the table, or the program itself has set changed data.
 Result<StartRecord> with_tools_now(StartRecord record, const FoundModes &found,
                                    const gcode::ToolSource &tools);
 
-/// Of all entries but the copy of what is in the spindle.
+/// Checksum of all entries except the copy of the tool in the spindle.
 std::uint64_t sum_of_tools(const gcode::ToolSource &tools);
 
 }  // namespace mw::task

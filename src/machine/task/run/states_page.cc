@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// docs/reference/states.md, from the tables that task goes by.
+// docs/reference/states.md, made from the tables that task uses.
 #include <array>
 #include <map>
 #include <vector>
@@ -22,22 +22,22 @@ constexpr std::array<Named, static_cast<std::size_t>(Situation::COUNT)> SITUATIO
     {"manual", "on, in manual mode"},
     {"auto", "on, in auto mode; nothing runs"},
     {"running", "a program is read, cut or stepped, waits, or its start is calculated"},
-    {"held", "a program is held by the operator, M0, M1 or M60"},
+    {"held", "a program is paused by the operator, M0, M1 or M60"},
     {"proposed", "an approach is proposed and waits for its confirmation"},
     {"away", "the axes of a held program are released"},
     {"mdi", "on, in MDI mode; nothing runs"},
     {"line", "a line of MDI runs"},
-    {"line held", "a line of MDI is held"},
+    {"line held", "a line of MDI is paused"},
 }};
 
 constexpr std::array<Named, static_cast<std::size_t>(CommandClass::COUNT)> CLASSES{{
     {"at any time", "stops, messages, overrides, what ends something"},
-    {"mode", "changes the mode (the one that is in force is always taken)"},
+    {"mode", "changes the mode (the active one is always accepted)"},
     {"program file", "which program is open, and what the interpreter is set to"},
     {"run", "begins a program"},
     {"step", "one block"},
     {"pause", "holds what runs"},
-    {"resume", "goes on after a hold; where an approach is proposed it confirms it"},
+    {"resume", "continues after a pause; when an approach is proposed it confirms it"},
     {"turn", "backwards along the path, and forwards again"},
     {"line", "one line of MDI; while one runs it waits behind it"},
     {"jog", "moves by hand"},
@@ -52,7 +52,7 @@ constexpr std::array<Named, static_cast<std::size_t>(CommandClass::COUNT)> CLASS
     {"of the mailbox", "the right to operate, which the mailbox keeps"},
 }};
 
-/// Refusals as numbers, in the order in which they come.
+/// Numbers the reasons of rejections in the order of their first use.
 class Notes {
   public:
     std::string mark(const char *refusal) {
@@ -144,10 +144,10 @@ std::string states_page() {
         "# What task takes, and when\n\n"
         "Generated from the tables in `src/machine/task/run/admission.cc` and "
         "`src/machine/task/run/run_state.cc`.\n\n"
-        "A command is looked up here first: *yes* hands it to its handler, which may still refuse it for "
+        "A command is looked up here first: *yes* passes it to its handler, which may still reject it for "
         "what "
         "the table does not\nknow (no such spindle, joints that are not homed, a limit); a number is the "
-        "reason of the refusal.\n\n## Situations\n\n| situation | the machine |\n|---|---|\n";
+        "reason of the rejection.\n\n## Situations\n\n| situation | the machine |\n|---|---|\n";
     for (const Named &situation : SITUATIONS) {
         text += fmt::format("| {} | {} |\n", situation.name, situation.doc);
     }

@@ -14,8 +14,8 @@ void TaskCanon::reset() {
 }
 
 void TaskCanon::enter_line(const gcode::BlockRef &block) {
-    const bool isSameFile = tag_.file_index < files_.size() && files_[tag_.file_index] == block.file;
-    if (!isSameFile) {
+    const bool is_same_file = tag_.file_index < files_.size() && files_[tag_.file_index] == block.file;
+    if (!is_same_file) {
         std::uint32_t index = 0;
         while (index < files_.size() && files_[index] != block.file) {
             ++index;
@@ -61,7 +61,7 @@ void TaskCanon::put(const gcode::MachineCall &call) {
                 tool_offset_ = offset.offset;
                 add(offset);
             },
-            // Comments are for canons that print; this machine has no shuttle to move.
+            // Comments are for printing canons; this machine has no pallet shuttle.
             [](const OneOf<gcode::ProgramComment, gcode::PalletShuttle> auto &) {},
             [this](const OneOf<gcode::TapMove, gcode::Dwell, gcode::UsePlanner, gcode::SetSpindleMode,
                                gcode::UseSpindleSpeed, gcode::StartSpindle, gcode::StopSpindle,
@@ -107,7 +107,7 @@ void TaskCanon::insert_first(const std::vector<gcode::MachineCall> &calls, const
     const motion::SourceTag tag = tag_;
     const std::uint64_t last_read = std::exchange(read_, read);
     last_end_ = position;
-    // They belong to what is done next, not to what was read last: nothing before that is done.
+    // The inserted calls precede the next item; all items before it are done.
     tag_ = behind.empty() ? tag_ : behind.front().source;
     tag_.line = line;
     for (const gcode::MachineCall &call : calls) {
@@ -116,7 +116,7 @@ void TaskCanon::insert_first(const std::vector<gcode::MachineCall> &calls, const
     last_end_ = end;
     tag_ = tag;
     read_ = last_read;
-    for (const Item &item : behind) {  // announced before, in force after it
+    for (const Item &item : behind) {  // announced before, active after it
         if (const auto *offsets = std::get_if<gcode::UseOffsets>(&item.call)) {
             offsets_ = *offsets;
         } else if (const auto *offset = std::get_if<gcode::UseToolOffset>(&item.call)) {

@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What a file may be called so that no program of this computer takes it for more than text.
+/// Extensions of log files, which no program of this computer treats as anything but text.
 constexpr std::array<std::string_view, 6> LOG_EXTENSIONS{".txt", ".log", ".csv", ".dat", ".xyz", ".asc"};
 
 class Descriptor {
@@ -46,7 +46,8 @@ class Descriptor {
     int fd_;
 };
 
-/// The path below `folder`, or nothing. Both with their links resolved; what is not there is kept as written.
+/// The path below `folder`, or nothing. Links in both are resolved; paths that do not exist are used as
+/// written.
 std::optional<fs::path> below(const std::string &folder, const fs::path &path) {
     std::error_code error;
     const fs::path root = fs::weakly_canonical(folder, error);
@@ -81,7 +82,7 @@ bool isSameFile(const struct stat &status, const std::string &path) {
            other.st_ino == status.st_ino;
 }
 
-/// Why an open file is no log that a program may write; empty where it is one.
+/// Why an open file is not a log that a program may write; empty if it is.
 std::string fault_of(const struct stat &status, const Confinement &confinement) {
     constexpr mode_t PROGRAM_BITS = S_IXUSR | S_IXGRP | S_IXOTH;
     if (!S_ISREG(status.st_mode)) {
@@ -90,19 +91,19 @@ std::string fault_of(const struct stat &status, const Confinement &confinement) 
     if (status.st_nlink > 1 || (status.st_mode & PROGRAM_BITS) != 0) {
         return "it is a program, or has a second name";
     }
-    const bool isKept = std::ranges::any_of(
-        confinement.kept_files, [&](const std::string &path) { return isSameFile(status, path); });
-    return isKept ? "it is a file of the machine" : "";
+    const bool kept = std::ranges::any_of(confinement.kept_files,
+                                          [&](const std::string &path) { return isSameFile(status, path); });
+    return kept ? "it is a file of the machine" : "";
 }
 
-/// Opens `relative` below `folder` step by step: no part of it may be a link.
+/// Opens `relative` below `folder` component by component: none may be a link.
 Descriptor open_below(const std::string &folder, const fs::path &relative, int flags) {
     constexpr mode_t MODE = 0666;
     constexpr int STEP = O_PATH | O_DIRECTORY | O_CLOEXEC;
     Descriptor at(::open(folder.c_str(), STEP));
     for (auto part = relative.begin(); at.get() >= 0 && part != relative.end(); ++part) {
-        const bool isLast = std::next(part) == relative.end();
-        const int how = isLast ? flags | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC : STEP | O_NOFOLLOW;
+        const bool last = std::next(part) == relative.end();
+        const int how = last ? flags | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC : STEP | O_NOFOLLOW;
         at = Descriptor(::openat(at.get(), part->c_str(), how, MODE));
     }
     return at;
@@ -124,7 +125,7 @@ Result<> check_program(const Confinement &confinement, const std::string &path) 
         "Copy the program into the program folder, or open it at the machine.");
 }
 
-Result<int> open_log(const Confinement &confinement, const std::string &path, bool isAppending) {
+Result<int> open_log(const Confinement &confinement, const std::string &path, bool appending) {
     if (confinement.program_folders.empty()) {
         return refused(path, "the machine has no program folder");
     }
@@ -134,16 +135,16 @@ Result<int> open_log(const Confinement &confinement, const std::string &path, bo
         return refused(path, fmt::format("logs are written into the program folder '{}'", folder));
     }
     const std::string extension = to_lower(relative->extension().string());
-    const bool isLog = std::ranges::find(LOG_EXTENSIONS, extension) != LOG_EXTENSIONS.end();
-    const bool isProgram =
+    const bool is_log = std::ranges::find(LOG_EXTENSIONS, extension) != LOG_EXTENSIONS.end();
+    const bool is_program =
         std::ranges::find(confinement.program_extensions, extension) != confinement.program_extensions.end();
-    if (!isLog || isProgram) {
+    if (!is_log || is_program) {
         return refused(path,
                        fmt::format("the name of a log ends in one of {}", fmt::join(LOG_EXTENSIONS, " ")));
     }
     std::error_code error;
     const std::string root = fs::weakly_canonical(folder, error).string();
-    Descriptor file = open_below(root, *relative, O_WRONLY | O_CREAT | (isAppending ? O_APPEND : 0));
+    Descriptor file = open_below(root, *relative, O_WRONLY | O_CREAT | (appending ? O_APPEND : 0));
     struct stat status{};
     if (file.get() < 0 || ::fstat(file.get(), &status) != 0) {
         return refused(path, errno == ELOOP ? "it is a link" : std::strerror(errno));
@@ -152,7 +153,7 @@ Result<int> open_log(const Confinement &confinement, const std::string &path, bo
     if (!fault.empty()) {
         return refused(path, fault);
     }
-    if (!isAppending && ::ftruncate(file.get(), 0) != 0) {  // only now: a file that is refused stays whole
+    if (!appending && ::ftruncate(file.get(), 0) != 0) {  // only now: a rejected file is not changed
         return refused(path, std::strerror(errno));
     }
     return file.release();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Which files of this computer the authority to operate reaches (docs/integrator/security.md).
+// The files of this computer that the authority to operate allows (docs/integrator/security.md).
 #pragma once
 
 #include <string>
@@ -10,20 +10,19 @@
 namespace mw::task {
 
 struct Confinement {
-    /// [DISPLAY]PROGRAM_PREFIX and the folder of programs that filters have made; logs are written into the
-    /// first.
+    /// [DISPLAY]PROGRAM_PREFIX and the folder of programs made by filters; logs are written into the first.
     std::vector<std::string> program_folders;
     std::vector<std::string> program_extensions;  ///< in lower case, with the dot; [FILTER] included
-    std::vector<std::string> kept_files;          ///< INI, HAL, tool table, ...: no program writes them
+    std::vector<std::string> kept_files;          ///< INI, HAL, tool table, ...: programs may not write them
 };
 
-/// An error where `path`, with its links resolved, is not below one of the program folders, or has a name
-/// that begins with a dot there. Nothing of the file is read.
+/// An error if `path`, with links resolved, is not below a program folder, or has a hidden component there.
+/// Does not read the file.
 Result<> check_program(const Confinement &confinement, const std::string &path);
 
 /// Opens the file of (logopen,...), (logappend,...) or (probeopen ...) for writing; the caller closes the
-/// descriptor. A relative path begins in the first program folder. Only regular files below that folder, with
-/// an extension of a log, neither links nor files of the machine; no link is followed on the way.
-Result<int> open_log(const Confinement &confinement, const std::string &path, bool isAppending);
+/// descriptor. A relative path starts in the first program folder. Only regular files below that folder with
+/// a log extension; no links, no files of the machine.
+Result<int> open_log(const Confinement &confinement, const std::string &path, bool appending);
 
 }  // namespace mw::task

@@ -60,7 +60,7 @@ void PlannerMode::wish(int type) {
         return;
     }
     wish_ = type;
-    isWaitAnnounced_ = false;
+    wait_announced_ = false;
 }
 
 void PlannerMode::set_corner_scale(double scale) {
@@ -74,9 +74,9 @@ void PlannerMode::set_corner_scale(double scale) {
         corner_scale_ = std::clamp(scale, LOWEST_SCALE, HIGHEST_SCALE);
         hooks_.send({static_cast<std::uint16_t>(Parameter::TRAJ_CORNER_SCALE), 0, corner_scale_});
     }
-    const bool isNew = fault != told_fault_;
+    const bool is_new = fault != told_fault_;
     told_fault_ = fault;
-    if (isNew && fault != ScaleFault::NONE) {
+    if (is_new && fault != ScaleFault::NONE) {
         hooks_.post(MessageKind::OPERATOR_ERROR,
                     fmt::format("ini.traj-scurve-peak-scale is {}: a number from {} to {} expected; {} is in "
                                 "force",
@@ -84,14 +84,14 @@ void PlannerMode::set_corner_scale(double scale) {
     }
 }
 
-void PlannerMode::step(bool isIdle) {
+void PlannerMode::step(bool idle) {
     if (wish_ == type_) {
         return;
     }
-    if (isIdle) {
+    if (idle) {
         set(wish_);
-    } else if (!isWaitAnnounced_) {
-        isWaitAnnounced_ = true;
+    } else if (!wait_announced_) {
+        wait_announced_ = true;
         hooks_.post(MessageKind::OPERATOR_TEXT, "the change of the planner waits until motion is idle");
     }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Which planner is in force: as the INI file says, as a program asks (G64 R), as pin ini.traj-planner-type
+// The active planner: from the INI file, from a program (G64 R), from pin ini.traj-planner-type
 // asks.
 #pragma once
 
@@ -14,7 +14,8 @@
 
 namespace mw::task {
 
-/// One thread. Changes reach motion only at rest; what cannot be done, or not yet, is said once.
+/// One thread. Motion is changed only at standstill; a change that is delayed or not possible is reported
+/// once.
 class PlannerMode {
   public:
     struct Hooks {
@@ -23,30 +24,30 @@ class PlannerMode {
     };
     explicit PlannerMode(Hooks hooks) : hooks_(std::move(hooks)) {}
 
-    /// Learns the settings that the machine starts with.
+    /// Reads the initial settings of the machine.
     void configure(const std::vector<motion::SetParameter> &parameters);
-    /// Says it when jerk limits are asked for and there are none.
+    /// Reports when jerk limits are selected and not configured.
     void announce();
-    /// Motion is at rest. The command whose answer is to be awaited, 0 when nothing changes.
+    /// Motion is stopped. Returns the command whose answer is awaited, 0 when nothing changes.
     motion::CommandId set(int type);
-    /// An operator's wish (a pin), granted as soon as `step` is told that all is idle.
+    /// A change requested by an operator (a pin), applied when `step` finds everything idle.
     void wish(int type);
-    /// Part of the reachable speed in corners of moves that name none, 0.1 to 1; at once. A number outside
-    /// gives the nearest that may be, what is no number changes nothing; both are told, and again only after
-    /// another fault or a good value.
+    /// Fraction of the reachable speed in corners for moves that set none, 0.1 to 1; takes effect at once. A
+    /// value out of range is limited, NaN is ignored; both are reported, and again only after another fault
+    /// or a valid value.
     void set_corner_scale(double scale);
-    void step(bool isIdle);
+    void step(bool idle);
     int type() const { return type_; }
     double corner_scale() const { return corner_scale_; }
 
   private:
-    /// What was wrong with the wish for corners.
+    /// The fault of the last corner scale.
     enum class ScaleFault : std::uint8_t { NONE, NO_NUMBER, TOO_LOW, TOO_HIGH };
     bool isJerkOff() const;
 
     Hooks hooks_;
     int type_ = 0, wish_ = 0;
-    bool isWaitAnnounced_ = false;
+    bool wait_announced_ = false;
     ScaleFault told_fault_ = ScaleFault::NONE;
     double linear_jerk_ = motion::NO_JERK_LIMIT, least_jerk_ = motion::NO_JERK_LIMIT, corner_scale_ = 1;
 };

@@ -30,9 +30,9 @@ constexpr std::chrono::milliseconds LONGEST_END{500};
 
 }  // namespace
 
-Result<int> LogDisk::open(const std::string &path, bool isAppending, const Confinement *confinement) {
-    const int how = O_WRONLY | O_CREAT | (isAppending ? O_APPEND : O_TRUNC);
-    return confinement != nullptr ? open_log(*confinement, path, isAppending) : open_regular_file(path, how);
+Result<int> LogDisk::open(const std::string &path, bool appending, const Confinement *confinement) {
+    const int how = O_WRONLY | O_CREAT | (appending ? O_APPEND : O_TRUNC);
+    return confinement != nullptr ? open_log(*confinement, path, appending) : open_regular_file(path, how);
 }
 
 Result<> LogDisk::write(int file, std::string_view text) {
@@ -54,7 +54,7 @@ struct ProgramLog::Job {
     enum class Kind : std::uint8_t { OPEN, LINE, CLOSE };
     Kind kind = Kind::CLOSE;
     std::string text;  ///< a line, or a path
-    bool isAppending = false;
+    bool appending = false;
     std::optional<Confinement> confinement{};
     std::size_t size() const { return text.size() + sizeof(Job); }
 };
@@ -64,14 +64,14 @@ struct ProgramLog::Shared {
 
     mutable std::mutex mutex;
     std::condition_variable asked, done;
-    // Under the mutex, which nobody holds while he uses the disk.
+    // Guarded by the mutex, which is not held during disk access.
     std::deque<Job> jobs;
-    std::size_t bytes = 0;           ///< of all that is not done
-    Clock::time_point busy_since{};  ///< of what the disk does
-    bool isBusy = false, isEnding = false, isOver = false, isLateTold = false;
-    std::optional<Result<>> opened;  ///< how the last open ended
+    std::size_t bytes = 0;           ///< total of pending jobs
+    Clock::time_point busy_since{};  ///< start of the current disk access
+    bool isBusy = false, ending = false, isOver = false, late_reported = false;
+    std::optional<Result<>> opened;  ///< result of the last open
     std::optional<Error> failure;
-    // Of the thread that works.
+    // Used by the working thread.
     std::shared_ptr<LogDisk> disk;
     std::string path;
     int file = -1;
@@ -91,7 +91,7 @@ struct ProgramLog::Shared {
         close_file();
         path = job.text;
         const auto result =
-            disk->open(path, job.isAppending, job.confinement.has_value() ? &*job.confinement : nullptr);
+            disk->open(path, job.appending, job.confinement.has_value() ? &*job.confinement : nullptr);
         file = result.value_or(-1);
         const std::lock_guard lock(mutex);
         opened = result.has_value() ? Result<>{} : std::unexpected(result.error());
@@ -118,7 +118,7 @@ ProgramLog::~ProgramLog() {
         return;
     }
     std::unique_lock lock(shared_->mutex);
-    shared_->isEnding = true;
+    shared_->ending = true;
     shared_->asked.notify_one();
     if (shared_->done.wait_for(lock, LONGEST_END, [this] { return shared_->isOver; })) {
         lock.unlock();
@@ -126,11 +126,11 @@ ProgramLog::~ProgramLog() {
         return;
     }
     lock.unlock();
-    thread_.detach();  // it has its part of what is shared
+    thread_.detach();  // it shares ownership of its data
     std::fputs(fmt::format("{} is not whole: its disk does not answer\n", path_).c_str(), stderr);
 }
 
-/// Does all that was asked. Lines that wait behind one another are written at once.
+/// Executes the jobs. Consecutive lines are written together.
 void ProgramLog::work(Shared &shared) {
     std::unique_lock lock(shared.mutex);
     while (!shared.jobs.empty()) {
@@ -153,22 +153,22 @@ void ProgramLog::work(Shared &shared) {
         case Job::Kind::CLOSE: shared.close_file(); break;
         }
         lock.lock();
-        shared.isBusy = shared.isLateTold = false;
+        shared.isBusy = shared.late_reported = false;
         shared.bytes -= size;
     }
 }
 
 void ProgramLog::run_thread(const std::shared_ptr<Shared> &shared) {
-    raise_priority();  // the program waits for what opening a file says
+    raise_priority();  // the program waits for the result of opening a file
     while (true) {
         work(*shared);
         std::unique_lock lock(shared->mutex);
-        if (shared->jobs.empty() && shared->isEnding) {
+        if (shared->jobs.empty() && shared->ending) {
             shared->isOver = true;
             shared->done.notify_all();
             return;
         }
-        shared->asked.wait(lock, [&shared] { return !shared->jobs.empty() || shared->isEnding; });
+        shared->asked.wait(lock, [&shared] { return !shared->jobs.empty() || shared->ending; });
     }
 }
 
@@ -188,11 +188,11 @@ void ProgramLog::ask(Job job) {
     shared_->asked.notify_one();
 }
 
-void ProgramLog::open(const std::string &path, bool isAppending, const Confinement *confinement) {
+void ProgramLog::open(const std::string &path, bool appending, const Confinement *confinement) {
     close();
     path_ = path;
-    isOpen_ = true;
-    Job job{Job::Kind::OPEN, path, isAppending};
+    open_ = true;
+    Job job{Job::Kind::OPEN, path, appending};
     if (confinement != nullptr) {
         job.confinement = *confinement;
     }
@@ -213,14 +213,14 @@ std::optional<Result<>> ProgramLog::opened() const {
 }
 
 Result<> ProgramLog::write(const std::string &line) {
-    if (!isOpen_) {
+    if (!open_) {
         return {};
     }
     {
         const std::lock_guard lock(shared_->mutex);
-        isOpen_ = shared_->bytes + line.size() <= MOST_WAITING;
+        open_ = shared_->bytes + line.size() <= MOST_WAITING;
     }
-    if (!isOpen_) {
+    if (!open_) {
         ask({Job::Kind::CLOSE, ""});
         return fail(fmt::format("cannot write {}: the disk is too slow, or does not answer", path_));
     }
@@ -229,7 +229,7 @@ Result<> ProgramLog::write(const std::string &line) {
 }
 
 void ProgramLog::close() {
-    if (!std::exchange(isOpen_, false)) {
+    if (!std::exchange(open_, false)) {
         return;
     }
     {
@@ -251,7 +251,7 @@ std::optional<Error> ProgramLog::take_failure() {
 
 std::optional<std::string> ProgramLog::take_delay() {
     const std::lock_guard lock(shared_->mutex);
-    if (!shared_->isLate() || std::exchange(shared_->isLateTold, true)) {
+    if (!shared_->isLate() || std::exchange(shared_->late_reported, true)) {
         return std::nullopt;
     }
     return fmt::format("the disk of {} has not answered for 1 s", path_);

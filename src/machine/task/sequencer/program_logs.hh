@@ -12,25 +12,25 @@
 
 namespace mw::task {
 
-/// Of (log,...) and of (probeopen ...). One thread, which never waits for a disk.
+/// Files of (log,...) and of (probeopen ...). One thread, which does not wait for a disk.
 class ProgramLogs {
   public:
     ProgramLogs(LogWorks works, const std::shared_ptr<LogDisk> &disk)
         : lines_(works, disk), probes_(works, disk) {}
 
-    /// Answered by opened().
+    /// opened() has the result.
     void open(const gcode::OpenLog &call, const Confinement *confinement) {
         last_opened_ = &lines_;
-        lines_.open(call.path, call.isAppending, confinement);
+        lines_.open(call.path, call.appending, confinement);
     }
     void open(const gcode::LogProbes &call, const Confinement *confinement) {
         last_opened_ = &probes_;
         probes_.open(call.path, false, confinement);
     }
-    /// Of the last open().
+    /// Result of the last open().
     std::optional<Result<>> opened() const { return last_opened_->opened(); }
     Result<> write(const gcode::LogLine &call) { return lines_.write(call.text); }
-    /// Without a file for probes nothing happens. A failure is that of take_failure().
+    /// No effect without a file for probes. take_failure() reports failures.
     void write_probe(const std::string &line) {
         if (const auto written = probes_.write(line); !written.has_value()) {
             probe_failure_ = written.error();
@@ -43,7 +43,7 @@ class ProgramLogs {
         probes_.close();
     }
 
-    /// As those of ProgramLog.
+    /// As in ProgramLog.
     std::optional<Error> take_failure() {
         for (ProgramLog *const log : {&lines_, &probes_}) {
             if (auto failure = log->take_failure()) {

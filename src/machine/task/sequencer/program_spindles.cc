@@ -15,9 +15,9 @@ void ProgramSpindles::send(int spindle, MotionLink &motion) {
     motion::SpindleOn on;
     on.spindle = spindle;
     on.css_max_rpm = state.css_max_rpm;
-    on.isWaitingForSpeed = state.isWaiting;
+    on.isWaitingForSpeed = state.waiting;
     if (state.css_max_rpm > 0) {
-        // Constant surface speed: the controller divides by the radius.
+        // Constant surface speed: the motion controller divides by the radius.
         on.css_factor = state.direction * gcode::surface_speed_factor(state.speed, state.surface_unit);
         on.css_x_offset = centre_line_x_;
         on.speed_rpm = state.direction * state.css_max_rpm;
@@ -25,12 +25,12 @@ void ProgramSpindles::send(int spindle, MotionLink &motion) {
         on.speed_rpm = state.direction * state.speed;
     }
     motion.send(on);
-    set_awaited(spindle, state.isWaiting);
+    set_awaited(spindle, state.waiting);
 }
 
-void ProgramSpindles::set_awaited(int spindle, bool isAwaited) {
+void ProgramSpindles::set_awaited(int spindle, bool awaited) {
     const std::uint32_t bit = 1U << spindle;
-    awaited_ = isAwaited ? awaited_ | bit : awaited_ & ~bit;
+    awaited_ = awaited ? awaited_ | bit : awaited_ & ~bit;
 }
 
 void ProgramSpindles::set_mode(const gcode::SetSpindleMode &mode) {
@@ -39,10 +39,10 @@ void ProgramSpindles::set_mode(const gcode::SetSpindleMode &mode) {
 
 void ProgramSpindles::set_speed(const gcode::UseSpindleSpeed &speed, MotionLink &motion) {
     Spindle &state = at(speed.spindle);
-    const bool isNew = state.speed != speed.speed || state.surface_unit != speed.surface_unit;
+    const bool is_new = state.speed != speed.speed || state.surface_unit != speed.surface_unit;
     state.speed = speed.speed;
     state.surface_unit = speed.surface_unit;
-    if (isNew && state.direction != 0) {
+    if (is_new && state.direction != 0) {
         send(speed.spindle, motion);
     }
 }
@@ -50,7 +50,7 @@ void ProgramSpindles::set_speed(const gcode::UseSpindleSpeed &speed, MotionLink 
 void ProgramSpindles::start(const gcode::StartSpindle &start, MotionLink &motion) {
     Spindle &state = at(start.spindle);
     state.direction = start.direction();
-    state.isWaiting = start.isWaiting;
+    state.waiting = start.waiting;
     send(start.spindle, motion);
 }
 
@@ -60,11 +60,11 @@ void ProgramSpindles::stop(const gcode::StopSpindle &stop, MotionLink &motion) {
     motion.send(motion::SpindleOff{stop.spindle});
 }
 
-void ProgramSpindles::command(int spindle, double signed_rpm, bool isWaiting, MotionLink &motion) {
+void ProgramSpindles::command(int spindle, double signed_rpm, bool waiting, MotionLink &motion) {
     Spindle &state = at(spindle);
     state.css_max_rpm = 0;
     state.direction = signed_rpm > 0 ? 1 : (signed_rpm < 0 ? -1 : 0);
-    state.isWaiting = isWaiting;
+    state.waiting = waiting;
     if (state.direction == 0) {
         stop({spindle}, motion);
         return;

@@ -13,33 +13,32 @@
 
 namespace mw::task {
 
-/// Remembers what motion was told, for calls that change a part of it. One thread.
+/// Keeps the commands sent to motion, for calls that change a part of them. One thread.
 class ProgramSpindles {
   public:
     void set_mode(const gcode::SetSpindleMode &mode);
     void set_speed(const gcode::UseSpindleSpeed &speed, MotionLink &motion);
     void start(const gcode::StartSpindle &start, MotionLink &motion);
     void stop(const gcode::StopSpindle &stop, MotionLink &motion);
-    /// The operator's command, at once; 0 stops.
-    void command(int spindle, double signed_rpm, bool isWaiting, MotionLink &motion);
-    /// [rev/min, with its sense] What a spindle that turns would turn at: a step of its speed starts none,
-    /// and stops none.
+    /// The operator's command, executed at once; 0 stops.
+    void command(int spindle, double signed_rpm, bool waiting, MotionLink &motion);
+    /// New signed speed of a running spindle [rev/min]: a step neither starts nor stops a spindle.
     Result<double> stepped_rpm(int spindle, double step_rpm) const;
     void stop_all(MotionLink &motion);
-    // Spindles with constant surface speed are told where their centre line is now.
+    // Updates the centre line of spindles with constant surface speed.
     void use(const gcode::UseOffsets &offsets, MotionLink &motion);
     void use(const gcode::UseToolOffset &offset, MotionLink &motion);
 
-    /// The calls that make all that turn turn as they do.
+    /// Calls that start the running spindles with their current settings.
     std::vector<gcode::MachineCall> starts() const;
-    /// All that turn here turn the same way and speed there.
+    /// True if all spindles that run here have the same direction and speed there.
     bool isKeptBy(const ProgramSpindles &other) const;
 
     /// As programmed, unscaled. [rev/min or surface units/min]
     double speed(int spindle) const { return spindles_[static_cast<std::size_t>(spindle)].speed; }
     int direction(int spindle) const { return spindles_[static_cast<std::size_t>(spindle)].direction; }
-    /// The next cut waits until spindles have the speed that they were told since the last one; nobody waits
-    /// for one that was stopped.
+    /// The next cut waits until spindles have reached the speeds commanded since the last cut; a stopped
+    /// spindle is not awaited.
     bool isNextCutWaiting() const { return awaited_ != 0; }
     void end_wait() { awaited_ = 0; }
 
@@ -49,7 +48,7 @@ class ProgramSpindles {
         double surface_unit = 0;
         double css_max_rpm = 0;
         int direction = 0;
-        bool isWaiting = false;
+        bool waiting = false;
 
         bool isKeptBy(const Spindle &other) const {
             return direction == 0 || (direction == other.direction && speed == other.speed &&
@@ -58,13 +57,13 @@ class ProgramSpindles {
     };
     Spindle &at(int spindle) { return spindles_[static_cast<std::size_t>(spindle)]; }
     void send(int spindle, MotionLink &motion);
-    void set_awaited(int spindle, bool isAwaited);
+    void set_awaited(int spindle, bool awaited);
     void follow_offsets(MotionLink &motion);
 
     std::array<Spindle, MAX_SPINDLES> spindles_{};
     gcode::UseOffsets offsets_;
     gcode::UseToolOffset tool_offset_;
-    double centre_line_x_ = 0;   ///< machine X of the program's X0 [machine units]
+    double centre_line_x_ = 0;   ///< machine X of program X0 [machine units]
     std::uint32_t awaited_ = 0;  ///< bit per spindle
 };
 

@@ -11,9 +11,9 @@ namespace {
 
 using Vector = std::array<double, 3>;
 constexpr double TURN = 2 * std::numbers::pi;
-/// Nearer than this a place lies on the arc. [machine units]
+/// Maximum distance of a point on the arc. [machine units]
 constexpr double ON_ARC = 1e-6;
-/// Nearer than this it stands between two moves. [machine units, degrees]
+/// Maximum distance of a position between two moves. [machine units, degrees]
 constexpr double AT_END = 1e-6;
 
 Vector part(const geometry::Pose &pose, int first) {
@@ -72,14 +72,14 @@ void SentMoves::follow(const motion::Status &status) {
         }
     };
     while (!sent_.empty() && sent_.front().id <= status.last_path_id) {
-        show(sent_.front().item);  // it may be shorter than a cycle of task and never be seen under way
+        show(sent_.front().item);  // a move may be shorter than a cycle of task and never be seen as current
         sent_.pop_front();
     }
     if (status.queue_depth == 0 || sent_.empty()) {
         return;
     }
     if (status.active_path_id != 0) {
-        line_ = status.source.line;  // in reverse it is one that was done before
+        line_ = status.source.line;  // in reverse it is an earlier move
     } else {
         show(sent_.front().item);
     }
@@ -98,11 +98,11 @@ std::deque<SentMoves::Sent>::const_iterator SentMoves::under_way(const motion::S
 
 std::string SentMoves::why_not(const motion::Status &status, const geometry::Pose &place) const {
     const auto first = under_way(status);
-    // Where it has gone back, it stands in a move that counts as done.
-    const bool isKnown =
+    // After a reverse run the position is in a move that counts as done.
+    const bool known =
         status.active_path_id == 0 || (first != sent_.end() && first->id == status.active_path_id);
     if (status.isReverse ||
-        (!isKnown && distance(place, first == sent_.end() ? end_ : first->start) > AT_END)) {
+        (!known && distance(place, first == sent_.end() ? end_ : first->start) > AT_END)) {
         return "it has gone back along its path";
     }
     if (first == sent_.end()) {
@@ -111,22 +111,22 @@ std::string SentMoves::why_not(const motion::Status &status, const geometry::Pos
     const gcode::MachineCall &call = first->item.call;
     const auto *line = std::get_if<gcode::LineMove>(&call);
     const auto *arc = std::get_if<gcode::ArcMove>(&call);
-    const bool isThread = (line != nullptr && line->settings.feed_per_revolution > 0) ||
-                          (arc != nullptr && arc->settings.feed_per_revolution > 0);
-    if (isThread) {
+    const bool is_thread = (line != nullptr && line->settings.feed_per_revolution > 0) ||
+                           (arc != nullptr && arc->settings.feed_per_revolution > 0);
+    if (is_thread) {
         return "the move follows the spindle";
     }
-    const bool isPlain = isMove(call) || std::holds_alternative<gcode::SetDigitalOutput>(call) ||
-                         std::holds_alternative<gcode::SetAnalogOutput>(call);
-    return isPlain ? "" : "a probe move or a tap is under way";
+    const bool plain = isMove(call) || std::holds_alternative<gcode::SetDigitalOutput>(call) ||
+                       std::holds_alternative<gcode::SetAnalogOutput>(call);
+    return plain ? "" : "a probe move or a tap is under way";
 }
 
 std::vector<Item> SentMoves::rest(const motion::Status &status, const geometry::Pose &place) const {
     std::vector<Item> all;
-    bool isFirstMove = true;
+    bool is_first_move = true;
     for (auto at = under_way(status); at != sent_.end(); ++at) {
         const auto *arc = std::get_if<gcode::ArcMove>(&at->item.call);
-        if (isFirstMove && arc != nullptr) {
+        if (is_first_move && arc != nullptr) {
             for (const gcode::MachineCall &call :
                  rest_of_arc(*arc, at->start, place, status.distance_to_go)) {
                 all.push_back({at->item.source, call, at->item.read});
@@ -134,15 +134,15 @@ std::vector<Item> SentMoves::rest(const motion::Status &status, const geometry::
         } else {
             all.push_back(at->item);
         }
-        isFirstMove = isFirstMove && !isMove(at->item.call);
+        is_first_move = is_first_move && !isMove(at->item.call);
     }
     return all;
 }
 
 std::vector<gcode::MachineCall> rest_of_arc(const gcode::ArcMove &arc, const geometry::Pose &start,
                                             const geometry::Pose &place, double to_go) {
-    const bool isInUvw = length(part(arc.normal, geometry::AXIS_X)) == 0;
-    const int first = isInUvw ? geometry::AXIS_U : geometry::AXIS_X;
+    const bool in_uvw = length(part(arc.normal, geometry::AXIS_X)) == 0;
+    const int first = in_uvw ? geometry::AXIS_U : geometry::AXIS_X;
     const Vector normal = part(arc.normal, first), centre = part(arc.centre, first);
     const auto radius_at = [&](const geometry::Pose &pose) {
         const Vector p = part(pose, first);
@@ -156,7 +156,7 @@ std::vector<gcode::MachineCall> rest_of_arc(const gcode::ArcMove &arc, const geo
     const double sense = arc.angle_rad > 0 ? 1 : -1, whole = std::fabs(arc.angle_rad);
     double left = sense * std::atan2(dot(cross(here, to), normal), dot(here, to));
     left = left < 0 ? left + TURN : left;
-    // Of several turns: as many as are to go.
+    // Of several revolutions: as many as remain.
     const double along = dot(part(arc.end, first), normal) - dot(part(start, first), normal);
     const double expected = std::min(whole, to_go / std::hypot(radius, along / whole));
     const double turns = std::max(0.0, std::round((expected - left) / TURN));

@@ -9,17 +9,17 @@
 namespace mw::task {
 namespace {
 
-/// Items issued in one task cycle at most, so that the cycle stays short.
+/// Maximum number of items started in one task cycle, to keep the cycle short.
 constexpr int ITEMS_PER_CYCLE = 500;
 
 struct MoveSource {
     const motion::SourceTag &tag;
-    bool isHolding;  ///< a cut waits until the spindle has its speed
+    bool isHolding;  ///< a cut waits until the spindle is at speed
 };
 
 motion::MoveTerms terms_of(const geometry::MoveSettings &settings, const MoveSource &source) {
-    const bool isWaiting = source.isHolding && !settings.isRapid;
-    return {settings, true, isWaiting, source.tag};
+    const bool waiting = source.isHolding && !settings.isRapid;
+    return {settings, true, waiting, source.tag};
 }
 
 motion::PathBody path_body(const gcode::LineMove &line, const MoveSource &source) {
@@ -37,16 +37,16 @@ motion::PathBody path_body(const gcode::ArcMove &arc, const MoveSource &source) 
 
 motion::PathBody path_body(const gcode::ProbeMove &probe, const MoveSource &source) {
     using gcode::ProbeKind;
-    const bool isAway = probe.kind == ProbeKind::AWAY || probe.kind == ProbeKind::AWAY_ERROR;
-    const bool mustTrip = probe.kind == ProbeKind::TOWARD_ERROR || probe.kind == ProbeKind::AWAY_ERROR;
-    return motion::Probe{probe.end, isAway, mustTrip, terms_of(probe.settings, source)};
+    const bool away = probe.kind == ProbeKind::AWAY || probe.kind == ProbeKind::AWAY_ERROR;
+    const bool trip_due = probe.kind == ProbeKind::TOWARD_ERROR || probe.kind == ProbeKind::AWAY_ERROR;
+    return motion::Probe{probe.end, away, trip_due, terms_of(probe.settings, source)};
 }
 
 motion::PathBody path_body(const gcode::TapMove &tap, const MoveSource &source) {
     return motion::RigidTap{tap.end, tap.scale, terms_of(tap.settings, source)};
 }
 
-/// Whether the visitor is done with the call; one that answers nothing always is.
+/// True if the visitor is done with the call; a visitor without a result always is.
 template <class Visitor>
 bool carry_out(const Visitor &visitor, const gcode::MachineCall &item) {
     return std::visit(
@@ -61,7 +61,7 @@ bool carry_out(const Visitor &visitor, const gcode::MachineCall &item) {
         item);
 }
 
-/// What must be done before a call is begun.
+/// Condition for starting a call.
 enum class Need : std::uint8_t { NOTHING, IO, MOTION, OUTPUTS, MOTION_AND_IO };
 
 Need need_of(const gcode::MachineCall &call) {
@@ -72,7 +72,7 @@ Need need_of(const gcode::MachineCall &call) {
                            gcode::LogProbes, gcode::CanonError, gcode::ProgramComment,
                            gcode::PalletShuttle> auto &) { return Need::NOTHING; },
             [](const OneOf<gcode::SetDigitalOutput, gcode::SetAnalogOutput> auto &output) {
-                return output.isSynched ? Need::NOTHING : Need::MOTION;
+                return output.synched ? Need::NOTHING : Need::MOTION;
             },
             [](const OneOf<gcode::ProbeMove, gcode::TapMove, gcode::Dwell, gcode::UseToolOffset,
                            gcode::UseOffsets, gcode::UsePlanner, gcode::UseSpindleSpeed, gcode::StartSpindle,
@@ -82,7 +82,7 @@ Need need_of(const gcode::MachineCall &call) {
                            gcode::SwitchFeedHold, gcode::SwitchAdaptiveFeed, gcode::UserCode> auto &) {
                 return Need::MOTION;
             },
-            [](const gcode::SelectTool &) { return Need::IO; },  // the changer does one thing at a time
+            [](const gcode::SelectTool &) { return Need::IO; },  // the changer executes one request at a time
             [](const gcode::WaitInput &) { return Need::OUTPUTS; },
             [](const OneOf<gcode::ChangeTool, gcode::ChangeToolNumber, gcode::ProgramStop, gcode::ProgramEnd,
                            gcode::Finish> auto &) { return Need::MOTION_AND_IO; },
@@ -90,7 +90,7 @@ Need need_of(const gcode::MachineCall &call) {
         call);
 }
 
-/// It reads or changes the tool data.
+/// The call reads or changes tool data.
 bool isOfTools(const gcode::MachineCall &call) {
     return std::visit(
         []<class C>(const C &) {
@@ -113,15 +113,15 @@ Sequencer::Sequencer(ItemQueue &queue, MotionLink &motion, io::DiscreteIo &io, T
       logs_(settings_.log_works, settings_.log_disk) {}
 
 void Sequencer::step(std::int64_t now_ns, TravelRange reach) {
-    isHeld_ = false;
+    held_ = false;
     blocked_ = ExecState::DONE;
-    for (int i = 0; i < ITEMS_PER_CYCLE && !isHeld_; ++i) {
-        if (hasFailed_ || !isWaitOver(now_ns) || isStepDone_) {
+    for (int i = 0; i < ITEMS_PER_CYCLE && !held_; ++i) {
+        if (failed_ || !isWaitOver(now_ns) || step_done_) {
             return;
         }
         if (queue_.empty()) {
             motion_.flush();
-            isStepDone_ = isStepping_ && step_read_ != 0 && isIdle();
+            step_done_ = stepping_ && step_read_ != 0 && isIdle();
             return;
         }
         const Item &item = queue_.front();
@@ -151,13 +151,13 @@ void Sequencer::step(std::int64_t now_ns, TravelRange reach) {
 
 void Sequencer::check(const Result<> &result) {
     if (!result.has_value()) {
-        hasFailed_ = true;
+        failed_ = true;
         events_.fail(result.error().str());
     }
 }
 
 bool Sequencer::isStepBoundary(const Item &item) {
-    if (!isStepping_) {
+    if (!stepping_) {
         return false;
     }
     if (step_read_ == 0) {
@@ -167,7 +167,7 @@ bool Sequencer::isStepBoundary(const Item &item) {
         return false;
     }
     motion_.flush();
-    isStepDone_ = motion_.isPathComplete() && io_.action() == io::ToolAction::IDLE;
+    step_done_ = motion_.isPathComplete() && io_.action() == io::ToolAction::IDLE;
     return true;
 }
 
@@ -176,61 +176,61 @@ ItemPlace Sequencer::place() const {
     if (sent != nullptr) {
         return {sent->source, sent->read};
     }
-    // What was taken back waits in front again.
-    const bool isBack = !queue_.empty() && queue_.front().source.block < last_begun_.source.block;
-    return isBack ? ItemPlace{queue_.front().source, queue_.front().read} : last_begun_;
+    // Items that were taken back are at the front again.
+    const bool returned = !queue_.empty() && queue_.front().source.block < last_begun_.source.block;
+    return returned ? ItemPlace{queue_.front().source, queue_.front().read} : last_begun_;
 }
 
-void Sequencer::set_stepping(bool isSingle) {
-    isStepping_ = isSingle;
-    isStepDone_ = false;
+void Sequencer::set_stepping(bool single) {
+    stepping_ = single;
+    step_done_ = false;
     step_read_ = 0;
 }
 
 bool Sequencer::isReady(const Item &item) {
     const Need need = need_of(item.call);
-    const bool isIoIdle = io_.action() == io::ToolAction::IDLE;
+    const bool io_idle = io_.action() == io::ToolAction::IDLE;
     if (need == Need::NOTHING || need == Need::IO) {
-        return need == Need::NOTHING || isIoIdle;
+        return need == Need::NOTHING || io_idle;
     }
     motion_.flush();
-    const bool isToolTableDue =
+    const bool tool_table_due =
         std::holds_alternative<gcode::UserCode>(item.call);  // its program may read it
-    if (isToolTableDue && !tools_.isSettled()) {
+    if (tool_table_due && !tools_.isSettled()) {
         return false;
     }
-    const bool isMotionDone =
+    const bool motion_done =
         motion_.isPathComplete() && (need != Need::OUTPUTS || motion_.areOutputsSettled());
-    return isMotionDone && (need != Need::MOTION_AND_IO || isIoIdle);
+    return motion_done && (need != Need::MOTION_AND_IO || io_idle);
 }
 
 bool Sequencer::execute(const Item &item, std::int64_t now_ns) {
-    const auto turn = [this](motion::Switch what, int spindle, bool isOn) {
-        motion_.send(motion::SetSwitch{what, spindle, isOn});
+    const auto turn = [this](motion::Switch what, int spindle, bool on) {
+        motion_.send(motion::SetSwitch{what, spindle, on});
     };
     const MoveSource source{item.source, spindles_.isNextCutWaiting()};
-    // A handler that answers false is asked again next cycle.
+    // A handler that returns false is called again in the next cycle.
     const auto visitor = Overloaded{
         [&](const OneOf<gcode::LineMove, gcode::ArcMove, gcode::TapMove> auto &move) {
             return push_move(path_body(move, source), move.settings, item);
         },
         [&](const gcode::ProbeMove &move) {
-            isProbeMade_ = push_move(path_body(move, source), move.settings, item);
-            return isProbeMade_;
+            probe_made_ = push_move(path_body(move, source), move.settings, item);
+            return probe_made_;
         },
         [&](const OneOf<gcode::SetDigitalOutput, gcode::SetAnalogOutput> auto &output) {
-            const bool isTaken = push_output(output);
-            if (isTaken && output.isSynched) {
+            const bool taken = push_output(output);
+            if (taken && output.synched) {
                 sent_.note(motion_.last_path_id(), item, motion::programmed_position(motion_.status()));
             }
-            return isTaken;
+            return taken;
         },
         [&](const gcode::UsePlanner &planner) { return begin(planner); },
         [&](const OneOf<gcode::Dwell, gcode::WaitInput, gcode::WaitOrientComplete> auto &wait) {
             perform(wait, now_ns);
         },
         [&](const OneOf<gcode::UserCode, gcode::ChangeTool> auto &call) { perform(call); },
-        [&](const gcode::ProgramStop &stop) { isHeld_ = events_.stop(stop, item.source.line); },
+        [&](const gcode::ProgramStop &stop) { held_ = events_.stop(stop, item.source.line); },
         [&](const OneOf<gcode::ProgramEnd, gcode::Finish> auto &) {
             logs_.close();
             events_.end();
@@ -243,7 +243,7 @@ bool Sequencer::execute(const Item &item, std::int64_t now_ns) {
         [&](const gcode::LogLine &call) { check(logs_.write(call)); },
         [&](const gcode::CloseLog &) { logs_.close_lines(); },
         [&](const OneOf<gcode::OpenLog, gcode::LogProbes> auto &call) {
-            if (call.path.empty()) {  // (probeclose)
+            if (call.path.empty()) {  // for (probeclose)
                 logs_.close_probes();
                 return;
             }
@@ -301,7 +301,7 @@ bool Sequencer::push_move(const motion::PathBody &move, const geometry::MoveSett
 }
 
 bool Sequencer::push_output(const gcode::SetDigitalOutput &output) {
-    if (output.isSynched) {
+    if (output.synched) {
         return motion_.push_path(motion::SynchedDigitalOutput{output.index, output.isOn});
     }
     wait_for_setting(motion_.send(motion::SetDigitalOutput{output.index, output.isOn}));
@@ -309,7 +309,7 @@ bool Sequencer::push_output(const gcode::SetDigitalOutput &output) {
 }
 
 bool Sequencer::push_output(const gcode::SetAnalogOutput &output) {
-    if (output.isSynched) {
+    if (output.synched) {
         return motion_.push_path(motion::SynchedAnalogOutput{output.index, output.value});
     }
     wait_for_setting(motion_.send(motion::SetAnalogOutput{output.index, output.value}));
@@ -326,7 +326,7 @@ void Sequencer::perform(const gcode::WaitInput &input, std::int64_t now_ns) {
     wait_ = Wait::INPUT;
     deadline_ns_ = now_ns + to_ns(input.timeout_s);
     last_input_ = std::nan("");
-    isInputTimedOut_ = false;
+    is_input_timed_out_ = false;
 }
 
 void Sequencer::perform(const gcode::WaitOrientComplete &orient, std::int64_t now_ns) {
@@ -351,9 +351,9 @@ void Sequencer::perform(const gcode::UserCode &code) {
 
 void Sequencer::perform(const gcode::ChangeTool &) {
     if (!tool_change_.isSelected()) {
-        return;  // M6 without T since the last change: the tool in the spindle stays
+        return;  // M6 without T since the last change: keeps the tool in the spindle
     }
-    if (!settings_.isToolChangeWithSpindleOn) {
+    if (!settings_.tool_change_with_spindle_on) {
         stop_spindles();
     }
     if (tool_change_.start(tools_, io_)) {
@@ -372,15 +372,16 @@ Result<> Sequencer::take_back(const geometry::Pose &place) {
     const std::vector<Item> rest = sent_.rest(motion_.status(), place);
     queue_.insert(queue_.begin(), rest.begin(), rest.end());
     sent_.clear();
-    isStepping_ = isStepDone_ = false;
+    stepping_ = step_done_ = false;
     return {};
 }
 
 void Sequencer::on_tool_event(io::ToolEvent event) {
     if (event == io::ToolEvent::CHANGED_LATE) {
-        events_.message(MessageKind::OPERATOR_ERROR,
-                        "the changer says iocontrol.0.tool-changed after the change was given up: look which "
-                        "tool is in the spindle, and say it with M61 Q<number>");
+        events_.message(
+            MessageKind::OPERATOR_ERROR,
+            "the changer reports iocontrol.0.tool-changed after the change was aborted: look which "
+            "tool is in the spindle, and say it with M61 Q<number>");
         return;
     }
     if (event == io::ToolEvent::FAULT_TOLD) {
@@ -401,9 +402,9 @@ void Sequencer::abort(int reason) {
     wait_ = Wait::NONE;
     tool_change_.abort(io_);
     spindles_.end_wait();
-    isStepping_ = false;
-    isStepDone_ = false;
-    hasFailed_ = false;
+    stepping_ = false;
+    step_done_ = false;
+    failed_ = false;
     io_.abort(reason);
 }
 

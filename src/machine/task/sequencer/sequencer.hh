@@ -22,47 +22,47 @@
 
 namespace mw::task {
 
-/// What the sequencer tells task that happened, in program order.
+/// Events that the sequencer reports to task, in program order.
 struct SequencerEvents {
     std::function<void(MessageKind, const std::string &)> message;
     std::function<void(const std::string &)> print;
-    /// M0, M1, M60 are reached; true: the program is held there, nothing behind it may begin
+    /// M0, M1, M60 are reached; true: the program pauses there, and no later item may start
     std::function<bool(const gcode::ProgramStop &, int line)> stop;
-    std::function<void()> end;                      ///< the program is over
-    std::function<void(const std::string &)> fail;  ///< something cannot be done; task aborts
+    std::function<void()> end;                      ///< the program has ended
+    std::function<void(const std::string &)> fail;  ///< an action failed; task aborts
     std::function<void(const gcode::UseOffsets &)> offsets;
     std::function<motion::CommandId(const gcode::UseToolOffset &)> tool_offset;
-    /// Changes the planner at rest; the command whose answer is to be awaited, 0: nothing to wait for;
-    /// nothing when it cannot be, and task aborts.
+    /// Changes the planner at standstill. Returns the command whose answer is awaited, 0: none; nothing when
+    /// the change is not possible, and task aborts.
     std::function<std::optional<motion::CommandId>(const gcode::UsePlanner &)> planner_mode;
-    /// Which files the run may write; null, or no function: any.
+    /// The files that the run may write; null, or no function: any.
     std::function<const Confinement *()> confinement;
     /// Starts the program of a user M code.
     std::function<void(const gcode::UserCode &)> start_user_code;
-    /// Nothing while the program of a user M code is started and runs, then how that ended.
+    /// Nothing while the program of a user M code starts and runs, then its result.
     std::function<std::optional<Result<>>()> user_code_result;
 };
 
-/// Is told of each move when it is handed to the planner.
+/// Called for each move that is sent to the planner.
 using MoveListener = std::function<void(motion::CommandId id, const motion::PathBody &move)>;
 
 struct SequencerSettings {
-    std::string changer_error_text{};        ///< [TASK]IO_ERROR
-    bool isToolChangeWithSpindleOn = false;  ///< [EMCIO]TOOL_CHANGE_WITH_SPINDLE_ON
-    int smooth_planner = 1;  ///< [TRAJ]SMOOTH_PLANNER: what G64 R above 0 means; 0: it is refused
+    std::string changer_error_text{};          ///< [TASK]IO_ERROR
+    bool tool_change_with_spindle_on = false;  ///< [EMCIO]TOOL_CHANGE_WITH_SPINDLE_ON
+    int smooth_planner = 1;  ///< [TRAJ]SMOOTH_PLANNER: effect of G64 R above 0; 0: it is rejected
     LogWorks log_works = LogWorks::ON_CALL;
     std::shared_ptr<LogDisk> log_disk = std::make_shared<LogDisk>();
 };
 
-/// The spindle that M19 is to bring to its angle.
+/// The spindle that M19 orients.
 struct AwaitedOrient {
     int spindle = 0;
-    motion::CommandId command = 0;  ///< the last M19
-    bool isTold = false;            ///< status is of a time after it
+    motion::CommandId command = 0;  ///< command of the last M19
+    bool isTold = false;            ///< the status is newer than the command
     double timeout_s = 0;
 };
 
-/// One thread; step() once a task cycle, never blocks.
+/// One thread; step() once a task cycle, does not block.
 class Sequencer {
   public:
     Sequencer(ItemQueue &queue, MotionLink &motion, io::DiscreteIo &io, ToolStore &tools,
@@ -70,54 +70,54 @@ class Sequencer {
 
     enum class TravelRange : std::uint8_t {
         ALL,
-        NO_TOOLS,  ///< up to the next item that uses the tool data: others read them now
+        NO_TOOLS,  ///< up to the next item that uses tool data, which another call reads now
     };
-    /// Issues what may be issued now. `now_ns` is the clock of the scheduler.
+    /// Starts items that may start now. `now_ns` is the clock of the scheduler.
     void step(std::int64_t now_ns, TravelRange reach = TravelRange::ALL);
-    /// Drops everything that waits, also handshakes; the changer is told why.
+    /// Drops all waiting items and handshakes; the changer receives the reason.
     void abort(int reason);
-    /// Nothing queued, nothing waited for, motion complete, no handshake.
+    /// Nothing queued, nothing awaited, motion complete, no handshake.
     bool isIdle() const;
-    /// Carries out one block and no more: isStepDone() is true once the next one could begin and the axes are
-    /// stopped. Without `isSingle` it carries out all of them.
-    void set_stepping(bool isSingle);
-    bool isStepDone() const { return isStepDone_; }
+    /// Executes only one block: isStepDone() is true when the next one could start and the axes are stopped.
+    /// Without `single` it executes all of them.
+    void set_stepping(bool single);
+    bool isStepDone() const { return step_done_; }
 
     void on_tool_event(io::ToolEvent event);
-    /// What is being waited for: a pin or a state.
+    /// The pin or state that is awaited.
     Waiting waiting_for() const;
-    /// The same in the words of older clients.
+    /// The same as LinuxCNC's exec_state.
     ExecState exec_state() const;
-    /// [s] of a dwell; 0 when there is none.
+    /// Remaining time of a dwell [s]; 0 when there is none.
     double dwell_left_s(std::int64_t now_ns) const;
 
     /// The result of M66.
     struct InputResult {
         double value = 0;
-        bool isTimedOut = false;
+        bool timed_out = false;
     };
-    InputResult input() const { return {input_value_, isInputTimedOut_}; }
-    /// Of the first block that is not done; number 0 before the first.
+    InputResult input() const { return {input_value_, is_input_timed_out_}; }
+    /// Position of the first block that is not done; number 0 before the first.
     ItemPlace place() const;
-    /// Another program begins.
+    /// Another program starts.
     void forget_place() { last_begun_ = {}; }
-    /// Task lets it follow motion once a cycle, before anything that may end a program.
+    /// Task updates it from motion once a cycle, before anything that may end a program.
     SentMoves &sent() { return sent_; }
     /// Starts or stops a spindle at once (operator's command).
-    void command_spindle(int spindle, double signed_rpm, bool isWaiting) {
-        spindles_.command(spindle, signed_rpm, isWaiting, motion_);
+    void command_spindle(int spindle, double signed_rpm, bool waiting) {
+        spindles_.command(spindle, signed_rpm, waiting, motion_);
     }
     /// As programmed (unscaled).
     const ProgramSpindles &spindles() const { return spindles_; }
-    /// Of a program that is held: all that the planner has not done comes back into the queue; the caller
-    /// stops motion. An error says why it cannot be begun again from `place`.
+    /// For a paused program: puts all moves that the planner has not done back into the queue; the caller
+    /// stops motion. An error explains why the program cannot continue from `place`.
     Result<> take_back(const geometry::Pose &place);
     void stop_spindles() { spindles_.stop_all(motion_); }
-    /// Whether a probe was made since the last call.
-    bool take_probe() { return std::exchange(isProbeMade_, false); }
+    /// True if a probe was made since the last call.
+    bool take_probe() { return std::exchange(probe_made_, false); }
     ProgramLogs &logs() { return logs_; }
     const ToolChange &tool_change() const { return tool_change_; }
-    /// Of the tool that is ready, in the table; -1: none.
+    /// Table index of the prepared tool; -1: none.
     int selected_tool_index() const { return tool_change_.selected_index(tools_); }
     void set_move_listener(MoveListener listener) { move_listener_ = std::move(listener); }
 
@@ -128,7 +128,7 @@ class Sequencer {
     bool isOrientWaitOver(std::int64_t now_ns);
     bool isReady(const Item &item);
     bool isStepBoundary(const Item &item);
-    /// Tells a failure and begins nothing after it.
+    /// Reports a failure; nothing starts after it.
     void check(const Result<> &result);
     /// False when the item must be tried again next cycle.
     bool execute(const Item &item, std::int64_t now_ns);
@@ -136,13 +136,13 @@ class Sequencer {
     bool push_output(const gcode::SetDigitalOutput &output);
     bool push_output(const gcode::SetAnalogOutput &output);
     bool begin(const gcode::UsePlanner &planner);
-    // What is done in no time; some of it is waited for afterwards.
+    // Actions without duration; some are awaited afterwards.
     void perform(const gcode::Dwell &dwell, std::int64_t now_ns);
     void perform(const gcode::WaitInput &input, std::int64_t now_ns);
     void perform(const gcode::WaitOrientComplete &orient, std::int64_t now_ns);
     void perform(const gcode::UserCode &code);
     void perform(const gcode::ChangeTool &change);
-    /// Done once motion has it, so that pins show it when the block is over.
+    /// Waits until motion has executed the setting, so that pins show it at the end of the block.
     void wait_for_setting(motion::CommandId setting) {
         awaited_setting_ = setting;
         wait_ = Wait::SETTING;
@@ -157,23 +157,23 @@ class Sequencer {
     MoveListener move_listener_;
 
     Wait wait_ = Wait::NONE;
-    ExecState blocked_ = ExecState::DONE;  ///< what the item in front has waited for in the last step
-    std::int64_t deadline_ns_ = 0;         ///< of a dwell or a time limit; 0: none
+    ExecState blocked_ = ExecState::DONE;  ///< what the front item has waited for in the last step
+    std::int64_t deadline_ns_ = 0;         ///< of a dwell or a timeout; 0: none
     gcode::WaitInput awaited_input_{};
     double input_value_ = 0, last_input_ = 0;
-    bool isInputTimedOut_ = false;
+    bool is_input_timed_out_ = false;
     AwaitedOrient orient_;
     motion::CommandId awaited_setting_ = 0;
     SentMoves sent_;
     ToolChange tool_change_;
     ProgramSpindles spindles_;
-    bool isStepping_ = false, isStepDone_ = false;
-    bool isHeld_ = false;          ///< by the stop that was executed last, for the rest of the cycle
-    bool hasFailed_ = false;       ///< nothing more is begun until abort()
-    std::uint64_t step_read_ = 0;  ///< what the single step carries out; 0: nothing yet
-    ItemPlace last_begun_;         ///< of the last item that was begun
+    bool stepping_ = false, step_done_ = false;
+    bool held_ = false;            ///< paused by the last stop, for the rest of the cycle
+    bool failed_ = false;          ///< nothing starts until abort()
+    std::uint64_t step_read_ = 0;  ///< step to be executed by single step; 0: none yet
+    ItemPlace last_begun_;         ///< of the last item started
     ProgramLogs logs_;
-    bool isProbeMade_ = false;
+    bool probe_made_ = false;
 };
 
 }  // namespace mw::task

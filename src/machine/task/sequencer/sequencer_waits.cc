@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the sequencer waits for: dwells, inputs, handshakes.
+// The waits of the sequencer: dwells, inputs, handshakes.
 #include <cmath>
 
 #include <fmt/format.h>
@@ -9,46 +9,46 @@
 namespace mw::task {
 
 bool Sequencer::isWaitOver(std::int64_t now_ns) {
-    bool isOver = true;
+    bool ended = true;
     switch (wait_) {
     case Wait::NONE: break;
-    case Wait::DWELL: isOver = now_ns >= deadline_ns_; break;
-    case Wait::INPUT: isOver = isInputWaitOver(now_ns); break;
-    case Wait::TOOL: isOver = io_.action() == io::ToolAction::IDLE; break;
+    case Wait::DWELL: ended = now_ns >= deadline_ns_; break;
+    case Wait::INPUT: ended = isInputWaitOver(now_ns); break;
+    case Wait::TOOL: ended = io_.action() == io::ToolAction::IDLE; break;
     case Wait::TOOL_DATA: {
         const std::optional<Result<>> result = tools_.reload_result();
-        isOver = result.has_value();
+        ended = result.has_value();
         check(result.value_or(Result<>{}));
         break;
     }
     case Wait::LOG: {
         const std::optional<Result<>> result = logs_.opened();
-        isOver = result.has_value();
+        ended = result.has_value();
         check(result.value_or(Result<>{}));
         break;
     }
-    case Wait::ORIENT: isOver = isOrientWaitOver(now_ns); break;
-    case Wait::SETTING: isOver = motion_.isAnswered(awaited_setting_) && io_.isToolOffsetShown(); break;
+    case Wait::ORIENT: ended = isOrientWaitOver(now_ns); break;
+    case Wait::SETTING: ended = motion_.isAnswered(awaited_setting_) && io_.isToolOffsetShown(); break;
     case Wait::USER_CODE: {
         const std::optional<Result<>> result = events_.user_code_result();
-        isOver = result.has_value();
-        if (isOver && !result->has_value()) {
+        ended = result.has_value();
+        if (ended && !result->has_value()) {
             check(fail(result->error().str()));
         }
         break;
     }
     }
-    if (isOver) {
+    if (ended) {
         wait_ = Wait::NONE;
     }
-    return isOver && !hasFailed_;
+    return ended && !failed_;
 }
 
 bool Sequencer::isOrientWaitOver(std::int64_t now_ns) {
     constexpr int IN_PROGRESS = 1;
-    const bool isTold = orient_.isTold;
+    const bool reported = orient_.isTold;
     orient_.isTold = orient_.command == 0 || motion_.isAnswered(orient_.command);
-    if (!isTold) {  // what status says may still be about an earlier one
+    if (!reported) {  // the status may still be about an earlier command
         return false;
     }
     const motion::SpindleStatus &spindle =
@@ -71,27 +71,27 @@ bool Sequencer::isInputWaitOver(std::int64_t now_ns) {
     const auto index = static_cast<std::size_t>(awaited_input_.index);
     const double value = awaited_input_.isAnalog ? status.analog_in[index]
                                                  : static_cast<double>((status.digital_in >> index) & 1U);
-    const bool isFirst = std::isnan(last_input_);
-    bool isMet = false;
+    const bool first = std::isnan(last_input_);
+    bool met = false;
     switch (awaited_input_.kind) {
-    case gcode::WaitKind::IMMEDIATE: isMet = true; break;
-    case gcode::WaitKind::RISE: isMet = !isFirst && last_input_ == 0 && value != 0; break;
-    case gcode::WaitKind::FALL: isMet = !isFirst && last_input_ != 0 && value == 0; break;
-    case gcode::WaitKind::HIGH: isMet = value != 0; break;
-    case gcode::WaitKind::LOW: isMet = value == 0; break;
+    case gcode::WaitKind::IMMEDIATE: met = true; break;
+    case gcode::WaitKind::RISE: met = !first && last_input_ == 0 && value != 0; break;
+    case gcode::WaitKind::FALL: met = !first && last_input_ != 0 && value == 0; break;
+    case gcode::WaitKind::HIGH: met = value != 0; break;
+    case gcode::WaitKind::LOW: met = value == 0; break;
     }
     last_input_ = value;
-    isInputTimedOut_ = !isMet && now_ns >= deadline_ns_;
-    if (isMet || isInputTimedOut_) {
-        input_value_ = isInputTimedOut_ ? -1.0 : value;
+    is_input_timed_out_ = !met && now_ns >= deadline_ns_;
+    if (met || is_input_timed_out_) {
+        input_value_ = is_input_timed_out_ ? -1.0 : value;
     }
-    return isMet || isInputTimedOut_;
+    return met || is_input_timed_out_;
 }
 
 double Sequencer::dwell_left_s(std::int64_t now_ns) const {
     constexpr double NS_PER_S = 1e9;
-    const bool isDwelling = wait_ == Wait::DWELL && deadline_ns_ > now_ns;
-    return isDwelling ? static_cast<double>(deadline_ns_ - now_ns) / NS_PER_S : 0.0;
+    const bool dwelling = wait_ == Wait::DWELL && deadline_ns_ > now_ns;
+    return dwelling ? static_cast<double>(deadline_ns_ - now_ns) / NS_PER_S : 0.0;
 }
 
 ExecState Sequencer::exec_state() const {

@@ -9,7 +9,7 @@
 namespace mw::task {
 namespace {
 
-/// The place of a tool; 0 for "no tool" of a fixed changer, -1 when the table has none of this number.
+/// Index of a tool; 0 for "no tool" of a fixed changer, -1 when the table does not have it.
 int index_of(int toolno, const ToolStore &tools) {
     return toolno == 0 && !tools.isRandom() ? 0 : tools.index_of_tool(toolno);
 }
@@ -38,10 +38,10 @@ Result<> ToolChange::select(const gcode::SelectTool &call, const ToolStore &tool
 }
 
 bool ToolChange::start(const ToolStore &tools, io::DiscreteIo &io) {
-    // An empty spindle is emptied again: after a start nobody knows whether it is.
-    const bool isTool = *selected_ > 0 || tools.isRandom();
-    const bool isThere = isTool && tools.entry(0).toolno == *selected_;
-    if (isThere) {
+    // Unloads an empty spindle again: after a start its state is unknown.
+    const bool is_tool = *selected_ > 0 || tools.isRandom();
+    const bool present = is_tool && tools.entry(0).toolno == *selected_;
+    if (present) {
         return false;
     }
     changing_ = selected_;
@@ -54,7 +54,8 @@ Result<> ToolChange::set_number(const gcode::ChangeToolNumber &call, ToolStore &
     if (index < 0) {
         return not_there(call.toolno);
     }
-    // No changer took the tool out of a pocket, so the pocket of the last tool stays, as in LinuxCNC.
+    // No changer took the tool out of a pocket, so the pocket number of the last tool is kept, as in
+    // LinuxCNC.
     Result<> loaded = tools.load_spindle(index);
     io.set_tool_in_spindle(call.toolno, call.toolno == 0 ? 0 : io.outputs.tool_from_pocket);
     return loaded;
@@ -78,8 +79,8 @@ Result<> ToolChange::on_event(io::ToolEvent event, ToolStore &tools, io::Discret
     const int toolno = *std::exchange(changing_, std::nullopt);
     selected_.reset();
     const int index = index_of(toolno, tools);
-    const bool isTool = index >= 0 && toolno > 0;  // T0 is an empty spindle, also in a random changer
-    const int pocket = isTool ? tool_at(tools, index).pocketno : 0;
+    const bool is_tool = index >= 0 && toolno > 0;  // T0 is an empty spindle, also with a random changer
+    const int pocket = is_tool ? tool_at(tools, index).pocketno : 0;
     Result<> loaded = index < 0 ? not_there(toolno) : tools.load_spindle(index);
     io.set_tool_in_spindle(toolno, pocket);
     io.clear_prepared();

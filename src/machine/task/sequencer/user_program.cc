@@ -31,7 +31,7 @@ Result<> result_of(const std::string &path, int status) {
                : fail(fmt::format("user M code {} ended with status {}", path, WEXITSTATUS(status)));
 }
 
-/// The process of the program.
+/// Starts the process of the program.
 Result<int> spawn(const std::string &path, double p, double q) {
     std::string words[] = {path, fmt::format("{:.6f}", p), fmt::format("{:.6f}", q)};
     char *argv[] = {words[0].data(), words[1].data(), words[2].data(), nullptr};
@@ -53,7 +53,7 @@ Result<int> spawn(const std::string &path, double p, double q) {
     return pid;
 }
 
-/// Of a program and all that it has started.
+/// Kills a program and everything it has started.
 void kill_group(int pid) {
     kill(-pid, SIGKILL);
 }
@@ -69,14 +69,14 @@ int wait_for(int pid, int *status, int options) {
 
 }  // namespace
 
-/// One start of a program.
+/// Starting one program.
 struct UserProgram::Start {
     Find find;
     double p = 0, q = 0;
 
     std::mutex mutex;
-    // Under the mutex, which nobody holds while he uses the disk.
-    bool isDropped = false;
+    // Guarded by the mutex, which is not held during disk access.
+    bool dropped = false;
     std::string path;
     std::optional<Result<int>> process;
 
@@ -85,14 +85,14 @@ struct UserProgram::Start {
         const Result<std::string> found = find();
         {
             const std::lock_guard lock(mutex);
-            if (isDropped) {
+            if (dropped) {
                 return;
             }
         }
         Result<int> started = found.has_value() ? spawn(*found, p, q) : std::unexpected(found.error());
         {
             const std::lock_guard lock(mutex);
-            if (!isDropped) {
+            if (!dropped) {
                 path = found.value_or("");
                 process = started;
                 return;
@@ -121,7 +121,7 @@ void UserProgram::start(const std::string &name, Find find, double p, double q) 
     std::thread([start = start_] { start->run(); }).detach();
 }
 
-/// The process of a start that is done.
+/// Takes the process of a completed start.
 void UserProgram::take_start() {
     if (start_ == nullptr) {
         return;
@@ -166,7 +166,7 @@ void UserProgram::stop() {
     if (start_ != nullptr) {
         const std::shared_ptr<Start> start = std::exchange(start_, nullptr);
         const std::lock_guard lock(start->mutex);
-        start->isDropped = true;
+        start->dropped = true;
         if (start->process.has_value()) {
             pid_ = start->process->value_or(0);
         }
@@ -178,7 +178,7 @@ void UserProgram::stop() {
     reap();
 }
 
-/// The kernel ends a process whose disk does not answer later.
+/// The kernel ends a process later if its disk does not answer.
 void UserProgram::reap() {
     std::erase_if(ended_, [](int pid) { return wait_for(pid, nullptr, WNOHANG) != 0; });
 }
@@ -188,14 +188,14 @@ std::optional<std::string> UserProgram::take_delay(std::int64_t now_ns) {
     reap();
     take_start();
     if (start_ == nullptr || !start_since_ns_.has_value()) {
-        isDelayTold_ = false;
+        delay_reported_ = false;
         start_since_ns_ = start_ == nullptr ? std::nullopt : std::optional(now_ns);
         return std::nullopt;
     }
-    if (isDelayTold_ || now_ns - *start_since_ns_ < LATE_NS) {
+    if (delay_reported_ || now_ns - *start_since_ns_ < LATE_NS) {
         return std::nullopt;
     }
-    isDelayTold_ = true;
+    delay_reported_ = true;
     return fmt::format("the disk of {} has not answered for 1 s", name_);
 }
 

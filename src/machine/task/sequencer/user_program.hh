@@ -14,7 +14,7 @@
 namespace mw::task {
 
 /// Runs one program at a time, in a separate process group. One thread calls the methods. They block only
-/// where their comments say it.
+/// where their comments mention it.
 class UserProgram {
   public:
     enum class Waits : std::uint8_t {
@@ -30,16 +30,16 @@ class UserProgram {
 
     /// The path of a program. May block, and is not called by task's thread with Waits::NEVER.
     using Find = std::function<Result<std::string>()>;
-    /// Runs the program that `find` returns with the words P and Q as its two arguments, -1 for one that was
-    /// not set. What fails is a result of the program. `name`: for messages.
+    /// Runs the program that `find` returns with P and Q as its two arguments, -1 for a missing one. A
+    /// failure is reported as the result of the program. `name`: for messages.
     void start(const std::string &name, Find find, double p, double q);
     bool isRunning();
-    /// How the last program ended, once: an error when it did not end with status 0.
+    /// Result of the last program, once: an error when its status was not 0.
     Result<> take_result();
-    /// Ends it, and what it has started, at once. A program that is not started yet does not start, or is
+    /// Ends the program and its children at once. A program that has not started yet is not started, or is
     /// ended by the thread that starts it.
     void stop();
-    /// That the program has not been started in 1 s, once. Called in each cycle at clock time `now_ns`.
+    /// Message that the program has not started within 1 s, once. Call in each cycle at clock time `now_ns`.
     std::optional<std::string> take_delay(std::int64_t now_ns);
 
   private:
@@ -49,11 +49,11 @@ class UserProgram {
 
     Waits waits_;
     std::string name_;
-    std::shared_ptr<Start> start_;  ///< under way; also of its thread
+    std::shared_ptr<Start> start_;  ///< current start, shared with its thread
     std::optional<std::int64_t> start_since_ns_;
-    bool isDelayTold_ = false;
+    bool delay_reported_ = false;
     int pid_ = 0;             ///< 0: none
-    std::vector<int> ended_;  ///< processes that were killed and that the kernel has not ended yet
+    std::vector<int> ended_;  ///< killed processes that the kernel has not ended yet
     std::string path_;
     Result<> result_;
 };

@@ -10,11 +10,11 @@ void HomingRequest::begin(int joint, mailbox::Serial command, motion::CommandId 
 }
 
 Result<Progress> HomingRequest::wait(int joint, mailbox::Serial command) {
-    bool isFree = joint >= 0 && joint_ >= 0 && joint != joint_;
+    bool free = joint >= 0 && joint_ >= 0 && joint != joint_;
     for (const Turn &turn : waiting_) {
-        isFree &= turn.joint != joint;
+        free &= turn.joint != joint;
     }
-    if (!isFree) {
+    if (!free) {
         return fail("homing is under way already");
     }
     waiting_.push_back({joint, command});
@@ -39,13 +39,13 @@ std::vector<mailbox::Serial> HomingRequest::drop() {
     return dropped;
 }
 
-std::optional<Ending> HomingRequest::step(bool isAnswered, const motion::Status &motion) {
-    if (!isUnderWay() || !isAnswered || motion.isHoming) {
+std::optional<Ending> HomingRequest::step(bool answered, const motion::Status &motion) {
+    if (!isUnderWay() || !answered || motion.isHoming) {
         return std::nullopt;
     }
-    const bool isHomed =
+    const bool homed =
         joint_ < 0 ? motion.isAllHomed : motion.joint[static_cast<std::size_t>(joint_)].isHomed;
-    return request_.end(isHomed ? Progress::DONE : Progress::FAILED, isHomed ? "" : "homing did not finish");
+    return request_.end(homed ? Progress::DONE : Progress::FAILED, homed ? "" : "homing did not finish");
 }
 
 }  // namespace mw::task

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Homing as the operator has asked for it: of one joint or of all.
+// Homing as requested by the operator: of one joint or of all.
 #pragma once
 
 #include <deque>
@@ -13,24 +13,24 @@ namespace mw::task {
 /// One thread.
 class HomingRequest {
   public:
-    /// `joint` -1: all, in their order. An earlier one must have ended.
+    /// `joint` -1: all, in sequence. An earlier request must have ended.
     void begin(int joint, mailbox::Serial command, motion::CommandId order);
-    /// Of one joint while another is being homed: its turn comes when that one is homed. Refused for a joint
-    /// that is being homed or waits already, and where all are being homed.
+    /// Queues one joint while another is being homed. Rejected for a joint that is being homed or waits
+    /// already, and while all are being homed.
     Result<Progress> wait(int joint, mailbox::Serial command);
     struct Turn {
         int joint = -1;
         mailbox::Serial command = 0;
     };
-    /// The one whose turn it is, once nothing is under way.
+    /// The next joint, when no homing is active.
     std::optional<Turn> take_turn();
-    /// Nobody's turn comes any more; the commands that waited.
+    /// Clears the queue; returns the commands that waited.
     std::vector<mailbox::Serial> drop();
     bool isUnderWay() const { return request_.isUnderWay(); }
     motion::CommandId order() const { return request_.order(); }
     int joint() const { return joint_; }
-    /// Once a cycle. `isAnswered`: motion has answered the order.
-    std::optional<Ending> step(bool isAnswered, const motion::Status &motion);
+    /// Once a cycle. `answered`: motion has answered the command.
+    std::optional<Ending> step(bool answered, const motion::Status &motion);
     std::optional<Ending> refuse(motion::CommandId order, const std::string &reason) {
         return request_.refuse(order, reason);
     }

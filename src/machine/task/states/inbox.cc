@@ -9,23 +9,23 @@
 namespace mw::task {
 namespace {
 
-/// Held, the program waits either way: while the mode changes nothing runs, and what waits to run comes
-/// before its hold.
+/// A pause of a paused program: while the mode changes nothing runs, and waiting commands execute before the
+/// pause.
 bool isHold(const messages::Command &command) {
     return std::holds_alternative<messages::PauseProgram>(command);
 }
 
-/// On, off and emergency stop: the change of mode must not keep anybody from them, in either direction.
+/// On, off and emergency stop: a change of mode must not delay them.
 bool isOfMachineState(const messages::Command &command) {
     return std::holds_alternative<messages::SetState>(command);
 }
 
-/// What does not wait for a change of mode or state.
+/// Commands that do not wait for a change of mode or state.
 bool isUrgent(const messages::Command &command) {
     return (mailbox::isStop(command) && !isHold(command)) || isOfMachineState(command);
 }
 
-/// A jog of the joint or axis that `stop` stops.
+/// A jog of the joint or axis of `stop`.
 bool isJogOf(const messages::JogStop &stop, const messages::Command &command) {
     return std::visit(
         [&]<class C>(const C &jog) {
@@ -46,8 +46,8 @@ void Inbox::add(std::vector<mailbox::CommandServer::Delivery> deliveries) {
     std::move(deliveries.begin(), deliveries.end(), std::back_inserter(waiting_));
 }
 
-std::optional<mailbox::CommandServer::Delivery> Inbox::next(bool isChanging) {
-    return next_of([&](const messages::Command &command) { return !isChanging || isUrgent(command); });
+std::optional<mailbox::CommandServer::Delivery> Inbox::next(bool changing) {
+    return next_of([&](const messages::Command &command) { return !changing || isUrgent(command); });
 }
 
 std::optional<mailbox::CommandServer::Delivery>
@@ -66,23 +66,23 @@ template <class Predicate>
 std::vector<mailbox::Serial> Inbox::drop(const Predicate &isOver) {
     std::vector<mailbox::Serial> dropped;
     std::erase_if(waiting_, [&](const mailbox::CommandServer::Delivery &delivery) {
-        const bool isDropped = isOver(delivery);
-        if (isDropped) {
+        const bool over = isOver(delivery);
+        if (over) {
             dropped.push_back(delivery.serial);
         }
-        return isDropped;
+        return over;
     });
     return dropped;
 }
 
 std::vector<mailbox::Serial> Inbox::drop_before(mailbox::Serial stop) {
     return drop([&](const mailbox::CommandServer::Delivery &delivery) {
-        const bool isLine = std::visit(
+        const bool is_line = std::visit(
             []<class C>(const C &) {
                 return OneOf<C, messages::OperatorError, messages::OperatorText, messages::OperatorDisplay>;
             },
             delivery.command);
-        return delivery.serial < stop && !isLine;
+        return delivery.serial < stop && !is_line;
     });
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Commands that were delivered and are not carried out yet.
+// Commands that were delivered but are not yet carried out.
 #pragma once
 
 #include <deque>
@@ -11,19 +11,19 @@
 
 namespace mw::task {
 
-/// In their order; while mode or state change only what stops, and what changes the machine's state, goes
-/// first. One thread.
+/// Commands in order. While mode or state change, stops and changes of the machine's state go first. One
+/// thread.
 class Inbox {
   public:
     void add(std::vector<mailbox::CommandServer::Delivery> deliveries);
-    std::optional<mailbox::CommandServer::Delivery> next(bool isChanging);
-    /// The first for which `isWanted`.
+    std::optional<mailbox::CommandServer::Delivery> next(bool changing);
+    /// The first command for which `isWanted` is true.
     std::optional<mailbox::CommandServer::Delivery>
     next_of(const std::function<bool(const messages::Command &)> &isWanted);
-    /// Takes out what was asked for before the stop `stop` and still waits: it would begin after it. Lines
-    /// for the operator stay. The numbers of what was taken out.
+    /// Removes waiting commands that came before the stop `stop`, because they would start after it. Lines
+    /// for the operator stay. Returns the numbers of the removed commands.
     std::vector<mailbox::Serial> drop_before(mailbox::Serial stop);
-    /// The same of jogs of the joint or axis that the command `stop` stops.
+    /// The same for jogs of the joint or axis of the command `stop`.
     std::vector<mailbox::Serial> drop_jogs_before(mailbox::Serial stop, const messages::JogStop &command);
 
   private:

@@ -93,13 +93,13 @@ std::vector<JogGuard::Left> JogGuard::step(const motion::Status &motion) {
     std::vector<Left> left;
     std::vector<Target> over;
     for (auto &[target, jog] : jogs_) {
-        const bool isMoving = moves(motion, target);
-        jog.hasMoved = jog.hasMoved || isMoving;
+        const bool moving = moves(motion, target);
+        jog.moved = jog.moved || moving;
         const State state = watch_.state_of(jog.owner);
         if (state != State::RUNNING) {
-            left.push_back({stop_of(target), isMoving ? text_of(target, jog.owner, state) : ""});
+            left.push_back({stop_of(target), moving ? text_of(target, jog.owner, state) : ""});
             over.push_back(target);
-        } else if (jog.hasMoved && !isMoving) {  // at a limit
+        } else if (jog.moved && !moving) {  // at a limit
             over.push_back(target);
         }
     }

@@ -15,11 +15,11 @@
 
 namespace mw::task {
 
-/// One thread; never blocks.
+/// One thread; does not block.
 class JogGuard {
   public:
     using State = mailbox::ProcessWatch::State;
-    /// `state_of` and `forget` of the process of a client (mailbox::ProcessWatch).
+    /// `state_of` and `forget` for the process of a client (mailbox::ProcessWatch).
     struct Watch {
         std::function<State(std::uint64_t owner)> state_of;
         std::function<void(std::uint64_t owner)> forget;
@@ -30,10 +30,10 @@ class JogGuard {
     };
     explicit JogGuard(Watch watch) : watch_(std::move(watch)) {}
 
-    /// A command that is carried out. `owner`: the client's process; 0 for one whose jogs are not guarded, as
-    /// task's own process and halui's pins.
+    /// Notes an executed command. `owner`: the client's process; 0 if its jogs are not guarded, as for task's
+    /// own process and halui's pins.
     void note(const Command &command, std::uint64_t owner);
-    /// Once a cycle. Jogs to be stopped.
+    /// Once a cycle. Returns jogs to be stopped.
     std::vector<Left> step(const motion::Status &motion);
 
   private:
@@ -41,7 +41,7 @@ class JogGuard {
     using Target = std::optional<std::pair<bool, int>>;
     struct Jog {
         std::uint64_t owner = 0;
-        bool hasMoved = false;
+        bool moved = false;
     };
     void begin(const Target &target, std::uint64_t owner);
     void end(const Target &target);

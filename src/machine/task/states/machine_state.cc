@@ -5,8 +5,8 @@ namespace mw::task {
 
 MachineState::News MachineState::step(const Seen &seen) {
     News news;
-    const bool isLeavingEstop = request_.isUnderWay() && wanted_ == State::ESTOP_RESET;
-    if (!seen.isChainClosed && state_ != State::ESTOP && !isLeavingEstop) {
+    const bool is_leaving_estop = request_.isUnderWay() && wanted_ == State::ESTOP_RESET;
+    if (!seen.isChainClosed && state_ != State::ESTOP && !is_leaving_estop) {
         state_ = State::ESTOP;
         return {Event::CHAIN_OPENED, request_.end(Progress::FAILED, "the e-stop chain opened")};
     }
@@ -51,10 +51,10 @@ std::optional<Ending> MachineState::end_request(std::int64_t now_ns) {
         return request_.end(Progress::DONE);
     }
     if (request_.isLate(now_ns)) {
-        const bool isChain = wanted_ == State::ESTOP_RESET;
+        const bool is_chain = wanted_ == State::ESTOP_RESET;
         return request_.end(Progress::FAILED,
-                            isChain ? "pin iocontrol.0.emc-enable-in stays FALSE: the e-stop chain is open"
-                                    : "the motion controller does not enable: is pin motion.enable TRUE?");
+                            is_chain ? "pin iocontrol.0.emc-enable-in stays FALSE: the e-stop chain is open"
+                                     : "the motion controller does not enable: is pin motion.enable TRUE?");
     }
     return std::nullopt;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Commands that end with what motion answers to them.
+// Commands that end with the answer of motion.
 #pragma once
 
 #include <cstdint>
@@ -12,17 +12,17 @@
 
 namespace mw::task {
 
-/// Who reads why motion has refused a command.
+/// Receiver of the reason why motion has rejected a command.
 enum class RefusalIsFor : std::uint8_t { EVERYBODY, ITS_CLIENT };
 
-/// Any number of them, in the order in which they were given. One thread.
+/// Any number of commands, in the order in which they were sent. One thread.
 class MotionOrders {
   public:
     void begin(mailbox::Serial command, motion::CommandId order, RefusalIsFor reader, std::int64_t now_ns,
                std::int64_t timeout_ns = CHANGE_TIMEOUT_NS) {
         waiting_.push_back({command, order, reader, now_ns + timeout_ns});
     }
-    /// Motion has refused `order`; nothing when it is none of these.
+    /// Motion has rejected `order`; nothing when it is not one of these.
     struct Refused {
         Ending ending;
         RefusalIsFor reader = RefusalIsFor::EVERYBODY;
@@ -37,18 +37,18 @@ class MotionOrders {
         }
         return std::nullopt;
     }
-    /// The oldest that motion has done, or not answered for too long; called until there is none.
-    /// `isAnswered` tells it of an order.
+    /// The oldest command that motion has done, or has not answered in time; call until there is none.
+    /// `isAnswered` returns whether a command has been answered.
     template <class Predicate>
     std::optional<Ending> next(const Predicate &isAnswered, std::int64_t now_ns) {
         for (auto at = waiting_.begin(); at != waiting_.end(); ++at) {
-            const bool isDone = isAnswered(at->order);
-            if (isDone || now_ns > at->deadline_ns) {
+            const bool is_done = isAnswered(at->order);
+            if (is_done || now_ns > at->deadline_ns) {
                 const Ending done{at->command, Progress::DONE, {}};
                 const Ending late{at->command, Progress::FAILED,
                                   "the motion controller does not answer: does millwright-rt run?"};
                 waiting_.erase(at);
-                return isDone ? done : late;
+                return is_done ? done : late;
             }
         }
         return std::nullopt;

@@ -4,21 +4,21 @@
 namespace mw::task {
 
 void OperatingMode::begin(Mode mode, motion::Mode motion_mode, mailbox::Serial command,
-                          motion::CommandId order, std::int64_t now_ns, bool mayMoveJoints) {
+                          motion::CommandId order, std::int64_t now_ns, bool may_move_joints) {
     wanted_ = mode;
     wanted_motion_mode_ = motion_mode;
     request_.begin(command, now_ns + CHANGE_TIMEOUT_NS);
     request_.set_order(order);
-    isWaitingForRest_ = false;
-    mayMoveJoints_ = mayMoveJoints;
+    is_waiting_for_rest_ = false;
+    may_move_joints_ = may_move_joints;
 }
 
 bool OperatingMode::isBraking(std::int64_t now_ns) const {
     return braked_ns_.has_value() && now_ns - *braked_ns_ <= CHANGE_TIMEOUT_NS;
 }
 
-void OperatingMode::watch_rest(bool isMoving, std::int64_t now_ns) {
-    if (isMoving && isBraking(now_ns)) {
+void OperatingMode::watch_rest(bool moving, std::int64_t now_ns) {
+    if (moving && isBraking(now_ns)) {
         braked_ns_ = now_ns;
     }
 }
@@ -27,18 +27,18 @@ bool OperatingMode::waits_for_rest(motion::CommandId order, std::int64_t now_ns)
     if (!isChanging() || order != request_.order() || !isBraking(now_ns)) {
         return false;
     }
-    isWaitingForRest_ = true;
+    is_waiting_for_rest_ = true;
     return true;
 }
 
 void OperatingMode::ask_again(motion::CommandId order, std::int64_t now_ns) {
     request_.set_order(order);
     request_.set_deadline(now_ns + CHANGE_TIMEOUT_NS);
-    isWaitingForRest_ = false;
+    is_waiting_for_rest_ = false;
 }
 
-std::optional<Ending> OperatingMode::step(bool isAnswered, motion::Mode motion_mode, std::int64_t now_ns) {
-    if (isChanging() && !isWaitingForRest_ && isAnswered && motion_mode == wanted_motion_mode_) {
+std::optional<Ending> OperatingMode::step(bool answered, motion::Mode motion_mode, std::int64_t now_ns) {
+    if (isChanging() && !is_waiting_for_rest_ && answered && motion_mode == wanted_motion_mode_) {
         mode_ = wanted_;
         return request_.end(Progress::DONE);
     }
@@ -57,10 +57,10 @@ void OperatingMode::follow(motion::Mode motion_mode) {
     }
 }
 
-bool OutOfModeWatch::step(bool isOut, std::int64_t now_ns) {
+bool OutOfModeWatch::step(bool is_out, std::int64_t now_ns) {
     constexpr std::int64_t LONGEST_NS = 1000000000;
-    since_ns_ = isOut ? std::optional(since_ns_.value_or(now_ns)) : std::nullopt;
-    return isOut && now_ns - *since_ns_ > LONGEST_NS;
+    since_ns_ = is_out ? std::optional(since_ns_.value_or(now_ns)) : std::nullopt;
+    return is_out && now_ns - *since_ns_ > LONGEST_NS;
 }
 
 }  // namespace mw::task

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Manual, auto or MDI: changed together with motion's mode.
+// Manual, auto or MDI: changed together with the mode of motion.
 #pragma once
 
 #include "machine/task/states/request.hh"
@@ -7,29 +7,29 @@
 
 namespace mw::task {
 
-/// A run goes on in coordinated mode only. One thread.
+/// A run continues only in coordinated mode. One thread.
 class OutOfModeWatch {
   public:
-    /// Once a cycle; true: motion has been out of that mode for too long.
-    bool step(bool isOut, std::int64_t now_ns);
+    /// Once a cycle; true: motion has not been in that mode for too long.
+    bool step(bool is_out, std::int64_t now_ns);
 
   private:
     std::optional<std::int64_t> since_ns_;
 };
 
-/// A change is done when motion has made it. One thread.
+/// A change is complete when motion has made it. One thread.
 class OperatingMode {
   public:
-    /// `motion_mode` was ordered by `order`; an earlier change must have ended. `mayMoveJoints`: manual mode
-    /// it is also where joints can be moved and axes cannot.
+    /// `order` has requested `motion_mode`; an earlier change must have ended. `may_move_joints`: manual mode
+    /// is also possible with joint jogging only.
     void begin(Mode mode, motion::Mode motion_mode, mailbox::Serial command, motion::CommandId order,
-               std::int64_t now_ns, bool mayMoveJoints = false);
+               std::int64_t now_ns, bool may_move_joints = false);
     bool isChanging() const { return request_.isUnderWay(); }
     motion::CommandId order() const { return request_.order(); }
-    /// Once a cycle. `isAnswered`: motion has answered the order.
-    std::optional<Ending> step(bool isAnswered, motion::Mode motion_mode, std::int64_t now_ns);
-    /// Once a cycle, as nothing runs: a motion controller that has left the coordinated mode by itself (homes
-    /// lost, sides of a gantry apart) takes no path. Whoever wants one asks for the mode again.
+    /// Once a cycle. `answered`: motion has answered the command.
+    std::optional<Ending> step(bool answered, motion::Mode motion_mode, std::int64_t now_ns);
+    /// Once a cycle while nothing runs: a motion controller that has left coordinated mode by itself (lost
+    /// homes, misaligned gantry) accepts no path. The mode must be selected again.
     void follow(motion::Mode motion_mode);
     std::optional<Ending> refuse(motion::CommandId order, const std::string &reason) {
         return request_.refuse(order, reason);
@@ -39,32 +39,32 @@ class OperatingMode {
     }
     Mode mode() const { return mode_; }
 
-    /// A stop was asked for, of a run or a jog.
+    /// A stop of a run or jog was requested.
     void note_stop(std::int64_t now_ns) { braked_ns_ = now_ns; }
-    /// A jog was asked for: what moves from now on is more than braking.
+    /// A jog was requested: later motion is more than braking.
     void note_jog() { braked_ns_.reset(); }
-    /// Once a cycle. Braking lasts as long as `isMoving` after a stop: a heavy axis brakes for seconds.
-    void watch_rest(bool isMoving, std::int64_t now_ns);
-    /// Motion has refused `order` because the machine moves. True: it brakes after a stop, and the change
-    /// waits until it stands.
+    /// Once a cycle. Braking lasts as long as `moving` after a stop: a heavy axis brakes for seconds.
+    void watch_rest(bool moving, std::int64_t now_ns);
+    /// Motion has rejected `order` because the machine moves. True: it brakes after a stop, and the change
+    /// waits for standstill.
     bool waits_for_rest(motion::CommandId order, std::int64_t now_ns);
-    bool isWaitingForRest() const { return isChanging() && isWaitingForRest_; }
-    /// It stands: `order` asks for the mode again.
+    bool isWaitingForRest() const { return isChanging() && is_waiting_for_rest_; }
+    /// It is stopped: `order` requests the mode again.
     void ask_again(motion::CommandId order, std::int64_t now_ns);
     motion::Mode wanted_motion_mode() const { return wanted_motion_mode_; }
 
-    /// Motion has refused `order`, axes, where joints will do.
+    /// Motion has rejected `order` for axes, and joints are sufficient.
     bool isForJointsToo(motion::CommandId order) const {
-        return isChanging() && order == request_.order() && mayMoveJoints_ &&
+        return isChanging() && order == request_.order() && may_move_joints_ &&
                wanted_motion_mode_ == motion::Mode::TELEOP;
     }
-    /// `order` asks for joint mode instead.
+    /// `order` requests joint mode instead.
     void fall_back(motion::CommandId order) {
         wanted_motion_mode_ = motion::Mode::FREE;
         request_.set_order(order);
     }
 
-    /// Of runs: they need coordinated mode.
+    /// For runs: they need coordinated mode.
     OutOfModeWatch &run_watch() { return run_watch_; }
 
   private:
@@ -73,8 +73,8 @@ class OperatingMode {
     OutOfModeWatch run_watch_;
     Mode mode_ = Mode::MANUAL, wanted_ = Mode::MANUAL;
     motion::Mode wanted_motion_mode_ = motion::Mode::FREE;
-    std::optional<std::int64_t> braked_ns_;  ///< of the last cycle in which it braked after a stop
-    bool isWaitingForRest_ = false, mayMoveJoints_ = false;
+    std::optional<std::int64_t> braked_ns_;  ///< time of the last cycle in which it braked after a stop
+    bool is_waiting_for_rest_ = false, may_move_joints_ = false;
     Request request_;
 };
 

@@ -20,7 +20,7 @@ class SituationsTest : public TaskTest {
   protected:
     static constexpr const char *PROGRAM = "G21 F600\nG1 X1\nM0\nG1 X2\nM2\n";
 
-    /// From whatever is: everything ended, then into the situation.
+    /// From any situation: ends everything, then enters the situation.
     void enter(Situation situation) {
         motion.isHolding = false;
         ask(AbortAll{});
@@ -84,7 +84,7 @@ TEST_F(SituationsTest, EveryCommandInEverySituationIsTakenOrRefusedAsTheTableSay
             SCOPED_TRACE(std::string(declaration->name) + " in " + std::to_string(at));
             const Command command = sound(declaration->number);
             if (class_of(command, Mode::MANUAL) == CommandClass::OF_THE_MAILBOX) {
-                continue;  // they do not come as far as task
+                continue;  // they do not reach task
             }
             enter(situation);
             const char *const refusal = refusal_of(class_of(command, task.status().task.mode), situation);
@@ -95,7 +95,7 @@ TEST_F(SituationsTest, EveryCommandInEverySituationIsTakenOrRefusedAsTheTableSay
                 ++refused;
                 EXPECT_EQ(progress(id), Progress::REFUSED);
                 EXPECT_EQ(reason(id), refusal);
-                EXPECT_EQ(joined(), "") << "a command that is refused does nothing";
+                EXPECT_EQ(joined(), "") << "a rejected command does nothing";
             } else {
                 ++taken;
                 EXPECT_TRUE(progress(id) != Progress::REFUSED || !reason(id).empty());
@@ -106,13 +106,13 @@ TEST_F(SituationsTest, EveryCommandInEverySituationIsTakenOrRefusedAsTheTableSay
     EXPECT_GT(refused, 200);
 }
 
-/// What an operator would say about the machine, without tables.
+/// An operator's view of the machine, without tables.
 struct Model {
     enum class Run { NONE, GOING, HELD };
     State state = State::ON;
     Mode mode = Mode::MANUAL;
     Run run = Run::NONE;
-    bool isOpen = false, isStopPassed = false;
+    bool isOpen = false, stop_passed = false;
     int queued = 0;
     static constexpr int MOST_QUEUED = 10;
 
@@ -138,15 +138,15 @@ struct Model {
         return true;
     }
     bool take(const SetMode &c) {
-        const bool isAllowed = c.mode == mode || run == Run::NONE;
-        mode = isAllowed ? c.mode : mode;
-        return isAllowed;
+        const bool allowed = c.mode == mode || run == Run::NONE;
+        mode = allowed ? c.mode : mode;
+        return allowed;
     }
     bool take(const RunProgram &) {
-        const bool isAllowed = isOn() && mode == Mode::AUTO && run == Run::NONE && isOpen;
-        run = isAllowed ? Run::GOING : run;
-        isStopPassed = isAllowed ? false : isStopPassed;
-        return isAllowed;
+        const bool allowed = isOn() && mode == Mode::AUTO && run == Run::NONE && isOpen;
+        run = allowed ? Run::GOING : run;
+        stop_passed = allowed ? false : stop_passed;
+        return allowed;
     }
     bool take(const Mdi &) {
         if (!isOn() || mode != Mode::MDI || (run != Run::NONE && queued >= MOST_QUEUED)) {
@@ -170,14 +170,14 @@ struct Model {
     }
     bool take(const FloodOn &) { return isOn(); }
     bool take(const JogContinuous &) { return isOn() && mode == Mode::MANUAL; }
-    /// Motion gets time to end all that it may.
+    /// Gives motion time to end everything.
     void let_go() {
         if (run != Run::GOING) {
             return;
         }
-        if (mode == Mode::AUTO && !isStopPassed) {
+        if (mode == Mode::AUTO && !stop_passed) {
             run = Run::HELD;
-            isStopPassed = true;
+            stop_passed = true;
         } else {
             stop();
         }
@@ -188,13 +188,13 @@ class ModelTest : public SituationsTest {
   protected:
     template <class C>
     void give(const C &command, const char *name) {
-        const bool isExpected = model.take(command);
+        const bool expected = model.take(command);
         story += std::string(" ") + name;
         const auto id = post(command);
         cycles(8);
-        ++(isExpected ? taken : refused);
-        EXPECT_EQ(progress(id) != Progress::REFUSED, isExpected) << name << ": " << reason(id);
-        EXPECT_EQ(reason(id).empty(), isExpected) << name;
+        ++(expected ? taken : refused);
+        EXPECT_EQ(progress(id) != Progress::REFUSED, expected) << name << ": " << reason(id);
+        EXPECT_EQ(reason(id).empty(), expected) << name;
     }
     void one(int choice) {
         switch (choice) {
@@ -221,7 +221,7 @@ class ModelTest : public SituationsTest {
         case 20: give(JogContinuous{true, 0, 1}, "jog"); break;
         default:
             story += " let_go";
-            motion.isHolding = model.run == Model::Run::HELD;  // as motion that is paused
+            motion.isHolding = model.run == Model::Run::HELD;  // as a paused motion controller
             model.let_go();
             cycles(200);
             motion.isHolding = true;
@@ -237,7 +237,7 @@ class ModelTest : public SituationsTest {
     }
     Model model;
     int taken = 0, refused = 0;
-    std::string story;  ///< since the seed
+    std::string story;  ///< commands since the seed
 };
 
 TEST_F(ModelTest, RandomCommandsDoWhatASmallModelSays) {

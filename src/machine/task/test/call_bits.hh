@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A call of the machine's canon as text in which every bit of its numbers shows.
+// A canon call as text that shows every bit of its numbers.
 #pragma once
 
 #include <string>
@@ -21,7 +21,7 @@ inline std::string bits(const geometry::Pose &pose) {
 
 inline std::string bits(const geometry::MoveSettings &s) {
     return fmt::format(" {} {} {} {} {:a} {:a} {:a} {:a} {:a}", s.isRapid, static_cast<int>(s.mode),
-                       static_cast<int>(s.synch_spindle), s.isVelocitySynched, s.feed, s.tolerance,
+                       static_cast<int>(s.synch_spindle), s.velocity_synched, s.feed, s.tolerance,
                        s.naivecam_tolerance, s.corner_scale, s.feed_per_revolution);
 }
 
@@ -49,7 +49,7 @@ inline std::string bits(const MachineCall &call) {
                        return fmt::format(" {} {:a} {:a}", c.spindle, c.speed, c.surface_unit);
                    },
                    [](const SetSpindleMode &c) { return fmt::format(" {} {:a}", c.spindle, c.css_max_rpm); },
-                   [](const StartSpindle &c) { return fmt::format(" {} {}", c.spindle, c.isClockwise); },
+                   [](const StartSpindle &c) { return fmt::format(" {} {}", c.spindle, c.clockwise); },
                    [](const StopSpindle &c) { return fmt::format(" {}", c.spindle); },
                    [](const SelectTool &c) { return fmt::format(" {}", c.toolno); },
                    [](const ChangeToolNumber &c) { return fmt::format(" {}", c.toolno); },
@@ -61,7 +61,7 @@ inline std::string bits(const MachineCall &call) {
                                   SwitchAdaptiveFeed> auto &c) { return fmt::format(" {}", c.isOn); },
                    [](const SwitchSpeedOverride &c) { return fmt::format(" {} {}", c.spindle, c.isOn); },
                    [](const SetDigitalOutput &c) {
-                       return fmt::format(" {} {} {}", c.index, c.isOn, c.isSynched);
+                       return fmt::format(" {} {} {}", c.index, c.isOn, c.synched);
                    },
                    [](const SetAnalogOutput &c) { return fmt::format(" {} {:a}", c.index, c.value); },
                    [](const UserCode &c) { return fmt::format(" {} {:a} {:a}", c.code, c.p, c.q); },

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The realtime side as task sees it, without planner and joints.
+// A model of the realtime side for task, without planner and joints.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace mw::task::test {
 
-/// A motion controller that takes each move in one cycle and writes down what it was asked.
+/// A motion controller that completes each move in one cycle and records its commands.
 class FakeMotion {
   public:
     explicit FakeMotion(motion::Channels &channels) : channels_(channels) {
@@ -36,16 +36,16 @@ class FakeMotion {
     motion::Status status;
     std::vector<std::string> log;
     bool isHolding = false;
-    bool isRefusingMoves = false;
-    bool isModeStuck = false;
-    motion::Reason teleop_refusal = motion::Reason::NONE;  ///< of each change to axes
-    motion::Reason jog_refusal = motion::Reason::NONE;     ///< of each continuous jog
+    bool rejecting_moves = false;
+    bool mode_stuck = false;
+    motion::Reason teleop_refusal = motion::Reason::NONE;  ///< for each change to axes
+    motion::Reason jog_refusal = motion::Reason::NONE;     ///< for each continuous jog
     motion::Reason setting_refusal = motion::Reason::NONE;
     motion::JogContinuous last_jog;
-    motion::CommandBody last;  ///< of all immediate ones
+    motion::CommandBody last;  ///< last immediate command
     motion::RigidTap last_tap;
     double corner_scale = -1;  ///< of the last move
-    double tolerance = -1;     ///< the same
+    double tolerance = -1;     ///< of the last move
 
   private:
     void take(const motion::Command &command) {
@@ -66,7 +66,7 @@ class FakeMotion {
                 answer.kind = motion::AnswerKind::REFUSED;
                 answer.reason = teleop_refusal;
             } else {
-                status.mode = isModeStuck ? status.mode : mode->mode;
+                status.mode = mode_stuck ? status.mode : mode->mode;
             }
         } else if (std::holds_alternative<motion::JogStop>(command.body)) {
             log.emplace_back("jog stop");
@@ -81,8 +81,8 @@ class FakeMotion {
         } else if (std::holds_alternative<motion::SpindleOff>(command.body)) {
             log.emplace_back("spindle off");
         } else if (const auto *p = std::get_if<motion::SetParameter>(&command.body)) {
-            const bool isType = p->parameter == static_cast<int>(motion::Parameter::TRAJ_PLANNER_TYPE);
-            log.push_back((isType ? "planner " : "setting ") + std::to_string(static_cast<int>(p->value)));
+            const bool is_type = p->parameter == static_cast<int>(motion::Parameter::TRAJ_PLANNER_TYPE);
+            log.push_back((is_type ? "planner " : "setting ") + std::to_string(static_cast<int>(p->value)));
             answer.reason = setting_refusal;
             answer.kind = setting_refusal == motion::Reason::NONE ? motion::AnswerKind::DONE
                                                                   : motion::AnswerKind::REFUSED;
@@ -94,25 +94,25 @@ class FakeMotion {
     void take_path() {
         motion::PathCommand command;
         while (channels_.path.pop(command)) {
-            const bool isStale = command.epoch != status.epoch;
-            motion::Answer answer{command.id, isStale ? motion::AnswerKind::STALE : motion::AnswerKind::DONE};
+            const bool stale = command.epoch != status.epoch;
+            motion::Answer answer{command.id, stale ? motion::AnswerKind::STALE : motion::AnswerKind::DONE};
             answer.isPath = true;
             const auto *line = std::get_if<motion::Line>(&command.body);
-            if (!isStale && line != nullptr && isRefusingMoves) {
+            if (!stale && line != nullptr && rejecting_moves) {
                 answer.kind = motion::AnswerKind::REFUSED;
                 answer.reason = motion::Reason::BEYOND_SOFT_LIMIT;
                 answer.index = 0;
-            } else if (!isStale && line != nullptr) {
+            } else if (!stale && line != nullptr) {
                 corner_scale = line->terms.corner_scale;
                 tolerance = line->terms.tolerance;
                 status.carte_pos_cmd = line->end;
                 log.push_back("line " + std::to_string(static_cast<int>(line->end.x())));
             }
-            if (const auto *tap = std::get_if<motion::RigidTap>(&command.body); !isStale && tap != nullptr) {
+            if (const auto *tap = std::get_if<motion::RigidTap>(&command.body); !stale && tap != nullptr) {
                 last_tap = *tap;
                 log.push_back("tap " + std::to_string(static_cast<int>(tap->end.z())));
             }
-            status.last_path_id = isStale ? status.last_path_id : command.id;
+            status.last_path_id = stale ? status.last_path_id : command.id;
             channels_.planner_answers.push(answer);
         }
     }

@@ -11,9 +11,9 @@ namespace mw::task::test {
 /// A disk that hangs until the test lets it work.
 class HungDisk final : public LogDisk {
   public:
-    Result<int> open(const std::string &path, bool isAppending, const Confinement *confinement) override {
+    Result<int> open(const std::string &path, bool appending, const Confinement *confinement) override {
         wait();
-        return LogDisk::open(path, isAppending, confinement);
+        return LogDisk::open(path, appending, confinement);
     }
     Result<> write(int file, std::string_view text) override {
         wait();

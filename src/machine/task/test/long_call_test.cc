@@ -8,7 +8,7 @@
 namespace mw::task {
 namespace {
 
-/// #<_hal[slow]> takes as long as the test says.
+/// The test controls how long #<_hal[slow]> takes.
 class LongCallTest : public TaskTest {
   protected:
     LongCallTest() {
@@ -21,7 +21,7 @@ class LongCallTest : public TaskTest {
     /// Runs cycles until one is in the call.
     void enter() {
         stepping = std::thread([this] {
-            while (!isLeft) {
+            while (!left) {
                 cycle();
             }
         });
@@ -29,7 +29,7 @@ class LongCallTest : public TaskTest {
         ASSERT_TRUE(task.long_call().take());
     }
     void leave() {
-        isLeft = true;
+        left = true;
         task.long_call().give_back();
         may_end.release();
         stepping.join();
@@ -42,7 +42,7 @@ class LongCallTest : public TaskTest {
 
     std::binary_semaphore inside{0}, may_end{0};
     std::thread stepping;
-    std::atomic<bool> isLeft = false;
+    std::atomic<bool> left = false;
 };
 
 constexpr const char *PROGRAM = "G21 F600\nG1 X1\nG10 L2 P1 X[#<_hal[slow]>]\nG1 X2\nM2\n";

@@ -94,7 +94,7 @@ TEST_F(MdiQueueTest, TheStatusTellsWhatTaskWaitsForInTheWordsOfOlderClients) {
     cycles(10);
     EXPECT_EQ(task.status().task.exec_state, messages::ExecState::WAITING_FOR_DELAY);
     cycles(200);
-    io.isChangerWorking = false;
+    io.changer_working = false;
     post(Mdi{"T5 M6"});
     cycles(20);
     EXPECT_EQ(task.status().task.exec_state, messages::ExecState::WAITING_FOR_IO);
@@ -108,7 +108,7 @@ TEST_F(MdiQueueTest, TheStatusTellsWhatTaskWaitsForInTheWordsOfOlderClients) {
     EXPECT_EQ(task.status().task.exec_state, messages::ExecState::DONE);
 }
 
-/// A tap from a client: the interpreter sends the same to motion for G33.1.
+/// A tap from a client sends motion the same command as G33.1.
 TEST_F(MdiQueueTest, ATapOfAClientIsThatOfG33_1) {
     geometry::Pose end = task.status().trajectory.position_cmd;
     end[geometry::AXIS_Z] -= 10;
@@ -133,7 +133,7 @@ TEST_F(MdiQueueTest, ATapOfAClientIsThatOfG33_1) {
     EXPECT_EQ(motion.last_tap.end, sent.end);
     EXPECT_EQ(motion.last_tap.pitch_scale, sent.pitch_scale);
     EXPECT_EQ(motion.last_tap.terms.feed_per_revolution, sent.terms.feed_per_revolution);
-    EXPECT_EQ(motion.last_tap.terms.isVelocitySynched, sent.terms.isVelocitySynched);
+    EXPECT_EQ(motion.last_tap.terms.velocity_synched, sent.terms.velocity_synched);
 }
 
 TEST_F(MdiQueueTest, ATapOfAClientWaitsForItsTurnAndWantsMdiModeAndItsPitchAgainAfterAnAbort) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Changes of mode, and what waits for them.
+// Changes of mode, and commands that wait for them.
 #include "machine/task/test/task_rig.hh"
 
 namespace mw::task {
@@ -17,7 +17,7 @@ TEST_F(TaskTest, ManualModeIsThatOfJointsWhereAxesCannotBeMoved) {
 }
 
 TEST_F(TaskTest, AStopDoesNotWaitForTheModeToChange) {
-    motion.isModeStuck = true;
+    motion.mode_stuck = true;
     const auto mode = post(SetMode{Mode::AUTO});
     cycles(3);
     const auto jog = post(JogContinuous{true, 0, 5}), other = post(JogContinuous{true, 1, 5});
@@ -38,7 +38,7 @@ TEST_F(TaskTest, AStopDoesNotWaitForTheModeToChange) {
 TEST_F(TaskTest, AHoldOfARunThatWaitsForTheModeHoldsIt) {
     open("G21 F600\nG1 X7\nM2\n");
     ASSERT_EQ(ask(SetMode{Mode::MANUAL}), Progress::DONE);
-    motion.isModeStuck = true;
+    motion.mode_stuck = true;
     post(SetMode{Mode::AUTO});
     const auto run = post(RunProgram{}), hold = post(PauseProgram{});
     cycles(3);
@@ -59,7 +59,7 @@ TEST_F(TaskTest, AStopAlsoEndsOlderCommandsThatStillWaitForTheMode) {
          {Command{AbortAll{}}, Command{SetState{State::OFF}}, Command{SetState{State::ESTOP}}}) {
         ASSERT_EQ(ask(SetMode{Mode::MDI}), Progress::DONE);
         post(SetMode{Mode::AUTO});
-        const auto waiting = post(Mdi{"G21 G1 X7 F600"}), text = post(OperatorText{"told all the same"});
+        const auto waiting = post(Mdi{"G21 G1 X7 F600"}), text = post(OperatorText{"reported anyway"});
         ASSERT_EQ(ask(stop), Progress::DONE);
         EXPECT_EQ(reason(waiting), "it came before a stop");
         EXPECT_EQ(progress(text), Progress::DONE);
@@ -71,7 +71,7 @@ TEST_F(TaskTest, AStopAlsoEndsOlderCommandsThatStillWaitForTheMode) {
 }
 
 TEST_F(TaskTest, AChangeOfModeAfterAStopWaitsUntilTheMachineStands) {
-    motion.status.isInPosition = false;  // a jog goes on
+    motion.status.isInPosition = false;  // a jog continues
     EXPECT_EQ(ask(SetMode{Mode::AUTO}), Progress::REFUSED);
     for (const Command &stop : {Command{JogStop{false, 0}}, Command{AbortAll{}}}) {
         motion.status.isInPosition = false;

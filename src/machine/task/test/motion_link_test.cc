@@ -10,8 +10,8 @@
 namespace mw::task {
 namespace {
 
-/// In another process the servo thread answers within its cycle and publishes its snapshot at the end of it:
-/// task may see the answer with the snapshot of before.
+/// In another process the servo thread answers in its cycle and publishes the snapshot at the end of it: task
+/// may see the answer with the previous snapshot.
 TEST(MotionLink, AnAnswerCountsFromASnapshotThatKnowsOfIt) {
     auto channels = std::make_unique_for_overwrite<motion::Channels>();
     motion::Status status;
@@ -22,7 +22,7 @@ TEST(MotionLink, AnAnswerCountsFromASnapshotThatKnowsOfIt) {
     link.update();
     EXPECT_FALSE(link.isAnswered(id));
 
-    channels->servo_answers.push({id});  // cycle 11 is under way
+    channels->servo_answers.push({id});  // during cycle 11
     link.update();
     EXPECT_FALSE(link.isAnswered(id)) << "the snapshot is still that of cycle 10";
     EXPECT_EQ(link.status().cycle, 10U);
@@ -49,18 +49,18 @@ TEST(MotionLink, ASnapshotAloneIsNoAnswer) {
     EXPECT_FALSE(link.isAnswered(second));
 }
 
-/// What a realtime side answers to all that is there: `refuse` of these.
+/// Answers of the realtime side to all pending commands; `refuse` of them are rejections.
 int answer_all(motion::Channels &channels, motion::Status &status,
                const std::function<bool(const motion::Command &)> &refuse) {
     int count = 0;
     motion::Command command;
     while (channels.immediate.pop(command)) {
         const auto *point = std::get_if<motion::LoadCompensation>(&command.body);
-        const bool isRefused = refuse(command);
+        const bool rejected = refuse(command);
         channels.servo_answers.push(
             {.id = command.id,
-             .kind = isRefused ? motion::AnswerKind::REFUSED : motion::AnswerKind::DONE,
-             .reason = isRefused ? motion::Reason::SWITCHED_ON : motion::Reason::NONE,
+             .kind = rejected ? motion::AnswerKind::REFUSED : motion::AnswerKind::DONE,
+             .reason = rejected ? motion::Reason::SWITCHED_ON : motion::Reason::NONE,
              .index = static_cast<std::int16_t>(point != nullptr ? point->joint : 0)});
         status.last_immediate_id = command.id;
         count += point != nullptr ? 1 : 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Operators' commands that motion carries out by itself: they end with what it answers.
+// Operators' commands that motion carries out by itself: they end with its answer.
 #include "machine/task/test/task_rig.hh"
 
 namespace mw::task {
@@ -79,7 +79,7 @@ TEST_F(TaskTest, ARefusedRenewalIsToldToItsClientAlone) {
     EXPECT_NE(reason(request), "");
     EXPECT_EQ(messages(), "");
     EXPECT_EQ(ask(JogContinuous{true, 0, 5, 100}), Progress::REFUSED);
-    EXPECT_NE(messages(), "") << "what begins a jog is told to all";
+    EXPECT_NE(messages(), "") << "the start of a jog is reported to all";
     EXPECT_EQ(joined(), "");
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What is set by a line of MDI is on the disk soon after it.
+// A parameter set by an MDI line is on the disk soon afterwards.
 #include "machine/journal/test/hung_disk.hh"
 #include "machine/journal/test/torn_disk.hh"
 #include "machine/task/test/task_rig.hh"
@@ -24,7 +24,7 @@ class ParameterFileTest : private KeptOnDisk, public TaskTest {
   protected:
     ParameterFileTest() : TaskTest(with_parameter_file(), &writer) {}
 
-    /// The value that a machine finds which comes up after a power cut; none: there is no file.
+    /// The value after a restart that follows a power failure; none: there is no file.
     std::optional<double> value_after_power_cut(int number) {
         std::mt19937_64 random(1);
         journal::test::TornDisk after = disk;
@@ -73,7 +73,7 @@ TEST_F(ParameterFileTest, ALineThatSetsNothingWritesNothing) {
     EXPECT_FALSE(disk.names.contains(FILE_NAME));
 }
 
-/// What a line has set before it came to grief is in force, and so it is kept.
+/// Values that a line set before its error are active, and therefore kept.
 TEST_F(ParameterFileTest, AStopAndAnErrorKeepWhatIsInForce) {
     ASSERT_EQ(mdi("G10 L2 P2 X1"), Progress::DONE);
     EXPECT_EQ(mdi("#5241 = 2 G1 X5 F0"), Progress::FAILED);
@@ -88,7 +88,7 @@ TEST_F(ParameterFileTest, AStopAndAnErrorKeepWhatIsInForce) {
     EXPECT_EQ(value_after_power_cut(5242), 4.0);
 }
 
-/// The write that is waited for is newer than what waited for the writer.
+/// The awaited write is newer than the text that waited for the writer.
 TEST_F(ParameterFileTest, AnOlderTextNeverComesOverANewerOne) {
     ASSERT_EQ(mdi("G10 L2 P1 X1"), Progress::DONE);
     ASSERT_EQ(mdi("G10 L2 P1 X2"), Progress::DONE);
@@ -155,14 +155,14 @@ TEST_F(HungDiskTest, TheOperatorReadsWhichFileAfter1sAndStopsWork) {
 
 TEST_F(TaskTest, ProgramsAndLinesOfMdiEndWhenTheToolTableIsWritten) {
     ASSERT_EQ(ask(SetMode{Mode::MDI}), Progress::DONE);
-    tools.isWritten = false;
+    tools.is_written = false;
     EXPECT_EQ(ask(Mdi{"G10 L1 P5 Z1"}, 100), Progress::STARTED)
         << "a client that reads the file then sees it";
-    tools.isWritten = true;
+    tools.is_written = true;
     cycles(2);
     EXPECT_EQ(progress(request), Progress::DONE) << reason(request);
     open("G21\nG10 L1 P5 Z2\nM2\n");
-    tools.isWritten = false;
+    tools.is_written = false;
     EXPECT_EQ(ask(RunProgram{}, 100), Progress::STARTED);
     EXPECT_EQ(ask(AbortAll{}, 5), Progress::DONE);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A held program whose operator stops the spindle, jogs away and comes back.
+// A paused program whose operator stops the spindle, jogs away and comes back.
 #include "machine/task/test/task_rig.hh"
 
 namespace mw::task {
@@ -7,7 +7,7 @@ namespace {
 
 class ReturnTest : public TaskTest {
   protected:
-    /// Held in the middle: X 7 is under way, Z 0 and X 8 wait.
+    /// Pauses in the middle: X 7 is active, Z 0 and X 8 wait.
     client::Serial hold() {
         motion.status.axis[geometry::AXIS_Z].max_limit = 40;
         open("G21 F600 G90 G61\nS500 M3 M8\nG1 X3\nM0\nG1 X7 F300\nG1 X8\nM2\n");
@@ -74,16 +74,16 @@ TEST_F(ReturnTest, ItComesBackByTheWayThatIsConfirmedAndGoesOn) {
     EXPECT_EQ(joined(), "line 20, spindle 500, line 3, line 3, line 7, line 8, spindle off");
 }
 
-/// The tool that came was taken for one that the operator had put in, and could not be put back either:
-/// nothing but an abort was left.
+/// The loaded tool must not be taken for one that the operator loaded, which could not be changed back: only
+/// an abort would be possible.
 TEST_F(ReturnTest, AProgramThatIsHeldInAToolChangeGoesOnWithItsTool) {
     open("G21 F600\nT5 M6\nG1 X3\nM2\n");
-    io.isChangerWorking = false;
+    io.changer_working = false;
     const client::Serial run = post(RunProgram{});
     cycles(30);
     ASSERT_TRUE(io.outputs.tool_change);
     ASSERT_EQ(ask(PauseProgram{}), Progress::DONE);
-    io.isChangerWorking = true;
+    io.changer_working = true;
     cycles(30);
     ASSERT_EQ(task.status().tool.in_spindle, 5);
     ASSERT_EQ(ask(ResumeProgram{}), Progress::DONE) << reason(request);
@@ -91,16 +91,16 @@ TEST_F(ReturnTest, AProgramThatIsHeldInAToolChangeGoesOnWithItsTool) {
     EXPECT_EQ(progress(run), Progress::DONE) << reason(run);
 }
 
-/// The tool may come in the very cycle in which the program goes on.
+/// The tool may be loaded in the cycle in which the program resumes.
 TEST_F(ReturnTest, AProgramThatIsHeldInAToolChangeGoesOnInWhateverCycleTheToolComes) {
     for (int wait = 0; wait < 6; ++wait) {
         open("G21 F600\nT5 M6\nG1 X3\nT0 M6\nM2\n");
-        io.isChangerWorking = false;
+        io.changer_working = false;
         const client::Serial run = post(RunProgram{});
         cycles(30);
         ASSERT_TRUE(io.outputs.tool_change);
         ASSERT_EQ(ask(PauseProgram{}), Progress::DONE);
-        io.isChangerWorking = true;
+        io.changer_working = true;
         cycles(wait);
         ASSERT_EQ(ask(ResumeProgram{}), Progress::DONE) << reason(request);
         cycles(200);
@@ -116,7 +116,7 @@ TEST_F(ReturnTest, ASpindleThatWasStoppedInAHoldIsNotForgotten) {
     ASSERT_EQ(ask(ResumeProgram{}), Progress::DONE) << reason(request);
     motion.isHolding = false;
     cycles(20);
-    EXPECT_EQ(joined(), "abort") << "no cut with a spindle that stands";
+    EXPECT_EQ(joined(), "abort") << "no cut with a stopped spindle";
     EXPECT_EQ(task.status().task.interp_state, InterpState::PAUSED);
     ASSERT_EQ(ask(ConfirmApproach{approach().number}), Progress::DONE) << reason(request);
     cycles(100);
@@ -134,12 +134,12 @@ TEST_F(ReturnTest, ResumeWhereNothingWasTouchedGoesOnAtOnce) {
 }
 
 TEST_F(ReturnTest, AnAbortWhileAwayLeavesNothingThatGoesOn) {
-    for (const bool isProposed : {false, true}) {
+    for (const bool proposed : {false, true}) {
         const auto run = hold();
         ASSERT_EQ(ask(ReleaseAxes{}), Progress::DONE);
         stand_at(20, 10);
         motion.isHolding = false;
-        if (isProposed) {
+        if (proposed) {
             ASSERT_EQ(ask(ResumeProgram{}), Progress::DONE);
         }
         const std::uint64_t number = approach().number;
@@ -165,7 +165,7 @@ TEST_F(ReturnTest, FromAProposedWayTheAxesCanBeReleasedAgain) {
     stand_at(3, 10);
     ASSERT_EQ(ask(ResumeProgram{}), Progress::DONE) << reason(request);
     EXPECT_EQ(ask(ConfirmApproach{first}), Progress::REFUSED) << "that way began elsewhere";
-    EXPECT_EQ(approach().num_moves, 1U) << "it stands over the place: down";
+    EXPECT_EQ(approach().num_moves, 1U) << "it is over the place: down";
     ASSERT_EQ(ask(ConfirmApproach{approach().number}), Progress::DONE) << reason(request);
     cycles(100);
     EXPECT_EQ(progress(run), Progress::DONE);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What clients with the authority to operate reach of the computer's files, and jogs of clients that end.
+// The files that clients with the authority to operate may use, and jogs of clients that end.
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -26,7 +26,7 @@ std::string text_of(const fs::path &path) {
     return text.str();
 }
 
-/// A program folder, and a file of the machine and a secret outside of it.
+/// A program folder, and a machine file and a secret file outside it.
 class ConfinementTest : public testing::Test {
   protected:
     ConfinementTest() {
@@ -38,9 +38,9 @@ class ConfinementTest : public testing::Test {
         confinement.program_extensions = {".ngc", ".py"};
     }
     ~ConfinementTest() override { fs::remove_all(root); }
-    /// The reason why a log cannot be opened; empty where it can.
-    std::string refusal(const std::string &path, bool isAppending = false) const {
-        const auto opened = open_log(confinement, path, isAppending);
+    /// Why a log cannot be opened; empty if it can.
+    std::string refusal(const std::string &path, bool appending = false) const {
+        const auto opened = open_log(confinement, path, appending);
         if (opened.has_value()) {
             ::close(*opened);
         }
@@ -78,7 +78,7 @@ TEST_F(ConfinementTest, ALogIsNoProgramNoHiddenFileAndNoFileOfTheMachine) {
     EXPECT_EQ(text_of(programs / "part.ngc"), "M2\n");
     EXPECT_EQ(text_of(programs / "history.txt"), "kept");
     EXPECT_EQ(text_of(programs / "run.txt"), "kept");
-    confinement.program_extensions.emplace_back(".txt");  // [FILTER]: a text file that is run
+    confinement.program_extensions.emplace_back(".txt");  // [FILTER]: a text file that is executed
     EXPECT_NE(refusal("probe.txt"), "");
 }
 
@@ -110,7 +110,7 @@ TEST_F(ConfinementTest, ProgramsAreThoseOfTheProgramFolder) {
     EXPECT_FALSE(check_program(confinement, (programs / "part.ngc").string()).has_value());
 }
 
-/// A second client that has only the authority to operate.
+/// A second client that may only operate.
 class RightsTest : public TaskTest {
   protected:
     RightsTest() : TaskTest(confined()) {
@@ -241,12 +241,12 @@ TEST_F(RightsTest, APlaceThatIsUsedAgainDoesNotKeepItsRights) {
         << "authority is never given back";
 }
 
-/// Jogs of processes that the test lets run, stop and end.
+/// Jogs of processes that the test runs, stops and ends.
 class JogGuardTest : public testing::Test {
   protected:
     using State = JogGuard::State;
     static constexpr std::uint64_t OWNER = std::uint64_t{77} << 42;
-    void move(bool isMoving) { motion.joint[1].vel_cmd = isMoving ? 2.0 : 0.0; }
+    void move(bool moving) { motion.joint[1].vel_cmd = moving ? 2.0 : 0.0; }
     std::string stopped() {
         std::string all;
         for (const JogGuard::Left &left : guard.step(motion)) {

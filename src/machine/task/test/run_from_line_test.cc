@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// RunProgram from a line: what a client sees, confirms, and what moves when.
+// RunProgram from a line: what a client sees and confirms, and the moves that follow.
 #include "machine/task/test/task_rig.hh"
 
 namespace mw::task {
@@ -9,7 +9,7 @@ class RunFromLineTest : public TaskTest {
   protected:
     static constexpr const char *PROGRAM =
         "G21 F600\nT5 M6\nS800 M3 M8\nG0 X10 Z5\nG1 Z-1\nG1 X20\nG1 X30\nM2\n";
-    /// Begun and calculated.
+    /// Starts and calculates.
     client::Serial from(const std::string &text, int line) {
         motion.status.axis[geometry::AXIS_Z].max_limit = 40;
         open(text);
@@ -45,7 +45,7 @@ TEST_F(RunFromLineTest, NothingMovesOrTurnsBeforeAPersonConfirms) {
 
 TEST_F(RunFromLineTest, ResumeOfAnOlderClientConfirmsWhatHasBeenSeen) {
     const auto run = from(PROGRAM, 7);
-    EXPECT_EQ(ask(ResumeProgram{}), Progress::REFUSED) << "nobody can have seen it yet";
+    EXPECT_EQ(ask(ResumeProgram{}), Progress::REFUSED) << "no one can have seen it yet";
     EXPECT_EQ(joined(), "");
     cycles(600);
     EXPECT_EQ(ask(ResumeProgram{}), Progress::DONE);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The parts of a run, each alone: the run, the reader, what is done after an abort, what programs see.
+// The parts of a run, each tested alone: the run, the reader, the actions after an abort, the view of
+// programs.
 #include <gtest/gtest.h>
 
 #include "gcode/interpreter/test/mill.hh"
@@ -18,7 +19,7 @@ TEST(ProgramRun, EndsItsCommandAndKeepsTheErrorUntilTheNextStart) {
     EXPECT_EQ(run.line(), "G0 X1");
     EXPECT_FALSE(run.isProgram());
     EXPECT_EQ(run.start(RunKind::PROGRAM, 4).error().message, "a program or MDI line runs already");
-    EXPECT_EQ(run.kind(), RunKind::MDI) << "the refused one changes nothing";
+    EXPECT_EQ(run.kind(), RunKind::MDI) << "the rejected one changes nothing";
     run.set_error({diagnostics::Severity::ERROR, {"beyond a limit"}});
     const auto ended = run.end(Progress::FAILED, "beyond a limit");
     ASSERT_TRUE(ended.has_value());
@@ -69,7 +70,7 @@ TEST(ModalCodeHistory, TellsWhatHoldsInTheBlockUnderWay) {
     trail.note(0, with_feed(100, 0));
     trail.note(3, with_feed(100, 3));
     trail.note(4, with_feed(200, 4));
-    trail.note(4, with_feed(300, 4));  // waits for the machine and is told again
+    trail.note(4, with_feed(300, 4));  // waits for the machine and is noted again
     trail.note(7, with_feed(400, 9));
     EXPECT_EQ(trail.at(0, 1).settings[1], 100);
     EXPECT_EQ(trail.at(3, 3).settings[1], 100);
@@ -175,7 +176,7 @@ TEST_F(ReaderTest, TheOnAbortCommandIsReadAtOnceWithTheReasonAsItsArgument) {
     const OnAbort none(""), digital("M65 P0");
     EXPECT_FALSE(none.isAsked());
     EXPECT_TRUE(digital.isAsked());
-    // Without a program of its own the reason stands where no word may be: it is told, nothing is queued.
+    // Without its own program a reason that is not a word is reported, and nothing is queued.
     const auto read = digital.read(reader, AbortReason::ABORT);
     ASSERT_FALSE(read.has_value());
     EXPECT_EQ(count<gcode::LineMove>(), 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Every event in every state. The expectations are rules about a run, not the table again.
+// Every event in every state. The expectations are rules about a run, not a copy of the table.
 #include <string>
 #include <vector>
 
@@ -21,7 +21,7 @@ std::vector<E> all() {
     return values;
 }
 
-/// Events on the way to each phase and hold.
+/// Events that lead to each phase and hold.
 RunState in(RunPhase phase, Hold hold) {
     RunState run;
     std::vector<RunEvent> way;
@@ -35,7 +35,7 @@ RunState in(RunPhase phase, Hold hold) {
     case RunPhase::SYNCHING: way = {START, BEGUN, SYNC}; break;
     case RunPhase::FINISHING: way = {START, BEGUN, READ}; break;
     }
-    // In the phase before a program begins nothing can be released: it is proposed, then read.
+    // Before a program begins nothing can be released: it is proposed, then read.
     const std::vector<RunEvent> held = hold == Hold::HELD       ? std::vector{PAUSE}
                                        : hold == Hold::STOPPED  ? std::vector{PROGRAM_STOP}
                                        : hold == Hold::STEPPING ? std::vector{PAUSE, STEP}
@@ -56,11 +56,11 @@ std::vector<RunState> all_states() {
     for (const RunPhase phase : {RunPhase::STARTING, RunPhase::SEARCHING, RunPhase::READING,
                                  RunPhase::SYNCHING, RunPhase::FINISHING}) {
         for (const Hold hold : all<Hold>()) {
-            const bool isBegun = phase >= RunPhase::READING;
-            const bool canBe = hold == Hold::AWAY       ? isBegun
-                               : hold == Hold::PROPOSED ? isBegun || phase == RunPhase::SEARCHING
-                                                        : true;
-            if (canBe) {
+            const bool started = phase >= RunPhase::READING;
+            const bool possible = hold == Hold::AWAY       ? started
+                                  : hold == Hold::PROPOSED ? started || phase == RunPhase::SEARCHING
+                                                           : true;
+            if (possible) {
                 states.push_back(in(phase, hold));
             }
         }
@@ -100,79 +100,79 @@ TEST(RunState, WhatEachEventDoesInEveryState) {
     for (const RunState &before : all_states()) {
         for (const RunEvent event : all<RunEvent>()) {
             RunState run = before;
-            const bool isTaken = run.take(event).has_value();
-            const bool isRunning = before.isRunning(), isAway = before.hold() == Hold::AWAY;
-            const bool isStanding = before.hold() == Hold::HELD || before.hold() == Hold::STOPPED;
-            const bool isStepping = before.hold() == Hold::STEPPING;
+            const bool is_taken = run.take(event).has_value();
+            const bool running = before.isRunning(), away = before.hold() == Hold::AWAY;
+            const bool stopped = before.hold() == Hold::HELD || before.hold() == Hold::STOPPED;
+            const bool stepping = before.hold() == Hold::STEPPING;
             const RunPhase phase = before.phase();
             const std::string where = what(before, event);
             switch (event) {
             case START:
-                EXPECT_EQ(isTaken, !isRunning) << where;
+                EXPECT_EQ(is_taken, !running) << where;
                 EXPECT_EQ(run.isHeld(), before.isHeld()) << where;
                 break;
             case BEGUN:
-                EXPECT_EQ(isTaken, phase == RunPhase::STARTING || phase == RunPhase::SEARCHING) << where;
+                EXPECT_EQ(is_taken, phase == RunPhase::STARTING || phase == RunPhase::SEARCHING) << where;
                 EXPECT_EQ(run.hold(), before.hold()) << where;
                 break;
-            case SEARCH: EXPECT_EQ(isTaken, before.phase() == RunPhase::STARTING) << where; break;
-            case SYNC: EXPECT_EQ(isTaken, before.phase() == RunPhase::READING) << where; break;
-            case SYNCED: EXPECT_EQ(isTaken, before.phase() == RunPhase::SYNCHING) << where; break;
-            case READ: EXPECT_EQ(isTaken, before.phase() >= RunPhase::READING) << where; break;
+            case SEARCH: EXPECT_EQ(is_taken, before.phase() == RunPhase::STARTING) << where; break;
+            case SYNC: EXPECT_EQ(is_taken, before.phase() == RunPhase::READING) << where; break;
+            case SYNCED: EXPECT_EQ(is_taken, before.phase() == RunPhase::SYNCHING) << where; break;
+            case READ: EXPECT_EQ(is_taken, before.phase() >= RunPhase::READING) << where; break;
             case END:
-                EXPECT_TRUE(isTaken && !run.isRunning() && run.hold() == Hold::GOING) << where;
+                EXPECT_TRUE(is_taken && !run.isRunning() && run.hold() == Hold::GOING) << where;
                 EXPECT_EQ(run.phase() == RunPhase::CLEANING, before.phase() == RunPhase::CLEANING) << where;
                 break;
-            case CLEAN: EXPECT_EQ(isTaken, !isRunning) << where; break;
+            case CLEAN: EXPECT_EQ(is_taken, !running) << where; break;
             case CLEANED:
-                EXPECT_TRUE(isTaken && run.phase() != RunPhase::CLEANING) << where;
-                EXPECT_EQ(run.isRunning(), isRunning) << where;
+                EXPECT_TRUE(is_taken && run.phase() != RunPhase::CLEANING) << where;
+                EXPECT_EQ(run.isRunning(), running) << where;
                 break;
             case PAUSE:
-                EXPECT_EQ(isTaken, isRunning) << where;
-                EXPECT_EQ(run.isHeld(), isRunning) << where;
+                EXPECT_EQ(is_taken, running) << where;
+                EXPECT_EQ(run.isHeld(), running) << where;
                 EXPECT_TRUE(!before.isHeld() || run.hold() == before.hold()) << where;
                 break;
             case RESUME:
-                EXPECT_EQ(isTaken, before.isHeld() && !isAway) << where;
-                EXPECT_EQ(run.isHeld(), isAway) << where;
+                EXPECT_EQ(is_taken, before.isHeld() && !away) << where;
+                EXPECT_EQ(run.isHeld(), away) << where;
                 break;
             case STEP:
-                EXPECT_EQ(isTaken, may_step(before)) << where;
-                EXPECT_EQ(run.hold() == Hold::STEPPING, isStanding || isStepping) << where;
-                EXPECT_EQ(run.hold() == Hold::HELD, isTaken && before.hold() == Hold::GOING) << where;
+                EXPECT_EQ(is_taken, may_step(before)) << where;
+                EXPECT_EQ(run.hold() == Hold::STEPPING, stopped || stepping) << where;
+                EXPECT_EQ(run.hold() == Hold::HELD, is_taken && before.hold() == Hold::GOING) << where;
                 break;
             case STEP_MOVE:
-                EXPECT_EQ(isTaken, may_step(before)) << where;
-                EXPECT_EQ(run.isHeld(), before.isHeld() || (isTaken && !isStepping)) << where;
+                EXPECT_EQ(is_taken, may_step(before)) << where;
+                EXPECT_EQ(run.isHeld(), before.isHeld() || (is_taken && !stepping)) << where;
                 break;
             case STEP_DONE:
-                EXPECT_EQ(isTaken, before.hold() == Hold::STEPPING) << where;
-                EXPECT_TRUE(!isTaken || run.hold() == Hold::HELD) << where;
+                EXPECT_EQ(is_taken, before.hold() == Hold::STEPPING) << where;
+                EXPECT_TRUE(!is_taken || run.hold() == Hold::HELD) << where;
                 break;
             case PROGRAM_STOP:
-                EXPECT_EQ(isTaken, isRunning) << where;
-                EXPECT_TRUE(!isTaken || run.isHeld()) << where;
-                EXPECT_TRUE(!before.isHeld() || isStanding || run.hold() == before.hold()) << where;
+                EXPECT_EQ(is_taken, running) << where;
+                EXPECT_TRUE(!is_taken || run.isHeld()) << where;
+                EXPECT_TRUE(!before.isHeld() || stopped || run.hold() == before.hold()) << where;
                 break;
             case RELEASE:
-                EXPECT_EQ(isTaken, before.isHeld() && before.phase() >= RunPhase::READING) << where;
-                EXPECT_EQ(run.hold() == Hold::AWAY, isTaken || isAway) << where;
+                EXPECT_EQ(is_taken, before.isHeld() && before.phase() >= RunPhase::READING) << where;
+                EXPECT_EQ(run.hold() == Hold::AWAY, is_taken || away) << where;
                 break;
             case PROPOSE:
-                EXPECT_TRUE(!isTaken || run.hold() == Hold::PROPOSED) << where;
-                EXPECT_TRUE(isTaken || !isAway) << where;
-                EXPECT_TRUE(isTaken || !isStanding || before.phase() < RunPhase::SEARCHING) << where;
+                EXPECT_TRUE(!is_taken || run.hold() == Hold::PROPOSED) << where;
+                EXPECT_TRUE(is_taken || !away) << where;
+                EXPECT_TRUE(is_taken || !stopped || before.phase() < RunPhase::SEARCHING) << where;
                 break;
             case CONFIRM:
-                EXPECT_EQ(isTaken, before.hold() == Hold::PROPOSED) << where;
-                EXPECT_TRUE(!isTaken || run.hold() == Hold::GOING) << where;
-                EXPECT_TRUE(!isTaken || run.phase() >= RunPhase::READING) << where;
+                EXPECT_EQ(is_taken, before.hold() == Hold::PROPOSED) << where;
+                EXPECT_TRUE(!is_taken || run.hold() == Hold::GOING) << where;
+                EXPECT_TRUE(!is_taken || run.phase() >= RunPhase::READING) << where;
                 break;
             case COUNT: break;
             }
-            const bool isAboutHold = event >= PAUSE && event != CONFIRM;
-            EXPECT_TRUE(!isAboutHold || run.phase() == before.phase()) << where;
+            const bool hold_changed = event >= PAUSE && event != CONFIRM;
+            EXPECT_TRUE(!hold_changed || run.phase() == before.phase()) << where;
         }
     }
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Starts from a line. The judge: from the line on, a program that was calculated up to it says the same, bit
-// by bit, as one that has run from its beginning on a machine that is written here anew.
+// Starts from a line. A program that was calculated up to a line must make the same calls from there, bit by
+// bit, as one that has run from its start on a separate machine written for this test.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -20,7 +20,7 @@ namespace {
 
 namespace files = std::filesystem;
 
-/// Does what a queue says at once.
+/// A machine that executes the queue at once.
 struct ObedientMill : gcode::test::Mill {
     void obey(const ItemQueue &queue) {
         for (; done < queue.size(); ++done) {
@@ -43,7 +43,7 @@ struct ObedientMill : gcode::test::Mill {
         } else if (const auto *number = std::get_if<gcode::ChangeToolNumber>(&call)) {
             state.tool_in_spindle = number->toolno;
         } else if (const auto *start = std::get_if<gcode::StartSpindle>(&call)) {
-            state.spindle_direction[static_cast<std::size_t>(start->spindle)] = start->isClockwise ? 1 : -1;
+            state.spindle_direction[static_cast<std::size_t>(start->spindle)] = start->clockwise ? 1 : -1;
         } else if (const auto *stop = std::get_if<gcode::StopSpindle>(&call)) {
             state.spindle_direction[static_cast<std::size_t>(stop->spindle)] = 0;
         } else if (const auto *mist = std::get_if<gcode::SwitchMist>(&call)) {
@@ -64,10 +64,10 @@ struct ObedientMill : gcode::test::Mill {
     int wanted = -1;
 };
 
-/// Longer programs are compared as far as this.
+/// Longer programs are compared only up to this line.
 constexpr int MOST_LINES = 4000;
 
-/// One program on one mill.
+/// One program on one machine.
 struct Shop {
     explicit Shop(const std::string &path) {
         for (int number = 1; number <= 12; ++number) {
@@ -85,7 +85,7 @@ struct Shop {
         reader.queue().clear();
     }
     gcode::Interpreter &interpreter() { return dynamic_cast<gcode::Interpreter &>(reader.interpreter()); }
-    /// One line; false at the end of the program.
+    /// Runs one line; false at the end of the program.
     bool step() {
         const gcode::Step step = reader.interpreter().step();
         if (step == gcode::Step::SYNC) {
@@ -98,7 +98,7 @@ struct Shop {
         }
         return step == gcode::Step::OK || step == gcode::Step::SYNC;
     }
-    /// True when it has come to its end.
+    /// True when it has reached its end.
     bool run() {
         int lines = 0;
         while (lines < MOST_LINES && step()) {
@@ -115,11 +115,11 @@ struct Shop {
         return all;
     }
     ObedientMill mill;
-    std::vector<gcode::MachineCall> ahead;  ///< of the queue: done when the interpreter waits for it
+    std::vector<gcode::MachineCall> ahead;  ///< queued calls: executed when the interpreter waits for them
     static gcode::Settings settings() {
         gcode::Settings s;
         s.subroutine_path = {MW_SOURCE_DIR "/nc_files/lib"};
-        s.isUserCodeAssumed = true;
+        s.user_code_assumed = true;
         return s;
     }
     static ProgramReader::Setup setup() {
@@ -146,24 +146,24 @@ std::string kind_of(const std::string &refusal) {
     return "the program fails: " + refusal.substr(0, 40);
 }
 
-/// Every line of the main program, or each `stride`th of a long one.
+/// Checks every line of the main program, or each `stride`th of a long one.
 void judge(const std::string &path, Count &count) {
     SCOPED_TRACE(path);
     Shop whole(path);
     if (!whole.isOpen) {
         return;
     }
-    std::map<int, std::size_t> first_at;  // calls that come before the first time of each line
+    std::map<int, std::size_t> first_at;  // number of calls before the first time of each line
     int last = 0;
-    bool isWholeEnded = false;
+    bool whole_ended = false;
     for (int lines = 0; lines < MOST_LINES; ++lines) {
         const gcode::NextLine next = whole.interpreter().next_line();
-        if (!next.isInCall) {
+        if (!next.in_call) {
             first_at.try_emplace(next.line, whole.reader.queue().size());
             last = std::max(last, next.line);
         }
         if (!whole.step()) {
-            isWholeEnded = true;
+            whole_ended = true;
             break;
         }
     }
@@ -190,7 +190,7 @@ void judge(const std::string &path, Count &count) {
         ASSERT_TRUE(first_at.contains(line));
         const FoundModes found = shop.reader.search()->found();
         shop.reader.accept_search();
-        // The approach brings the machine there, while the interpreter reads ahead.
+        // The approach restores the state while the interpreter reads ahead.
         shop.ahead = found.settings;
         shop.ahead.insert(shop.ahead.end(), found.spindles.begin(), found.spindles.end());
         shop.mill.state.position = found.position;
@@ -200,9 +200,9 @@ void judge(const std::string &path, Count &count) {
         shop.mill.wanted = found.selected_tool;
         shop.mill.state.selected_pocket =
             found.selected_tool >= 0 ? shop.mill.index_of_tool(found.selected_tool) : -1;
-        const bool isEnded = shop.run();
+        const bool ended = shop.run();
         auto calls = shop.calls(0), expected = whole.calls(first_at[line]);
-        if (isEnded && isWholeEnded) {
+        if (ended && whole_ended) {
             ASSERT_EQ(shop.reader.queue().size(), all_calls - first_at[line]);
         } else {
             const std::size_t both = std::min(calls.size(), expected.size());
@@ -248,7 +248,7 @@ class SearchTest : public testing::Test {
     static std::string path() {
         return (files::temp_directory_path() / ("mw_search_" + std::to_string(::getpid()) + ".ngc")).string();
     }
-    /// The refusal, empty when a start is possible.
+    /// The rejection, empty when a start is possible.
     std::string refusal(const std::string &text, int line) {
         std::ofstream(path()) << text;
         Shop shop(path());
@@ -267,21 +267,20 @@ class SearchTest : public testing::Test {
 
 TEST_F(SearchTest, RefusalsNameTheNearestLineThatCan) {
     const std::string comp = "G21 F600\nG0 X0 Y0 Z5\nG41.1 D2 G1 X5\nY10\nX20\nG40 Y20\nG0 X30\nM2\n";
-    EXPECT_EQ(
-        refusal(comp, 5),
-        "nobody can begin at line 5: cutter compensation is on there; the nearest line before it that can "
-        "is 3");
+    EXPECT_EQ(refusal(comp, 5), "no program can start at line 5: cutter compensation is on there; the "
+                                "nearest line before it that can "
+                                "is 3");
     EXPECT_EQ(refusal(comp, 3), "");
     EXPECT_EQ(refusal(comp, 8), "");
-    EXPECT_EQ(
-        refusal("G21 F600\nG0 Z5\nG81 X1 Z-1 R1\nX2\nX3\nG80\nG0 X9\nM2\n", 5),
-        "nobody can begin at line 5: it is in the middle of a canned cycle; the nearest line before it that "
-        "can is 3");
+    EXPECT_EQ(refusal("G21 F600\nG0 Z5\nG81 X1 Z-1 R1\nX2\nX3\nG80\nG0 X9\nM2\n", 5),
+              "no program can start at line 5: it is in the middle of a canned cycle; the nearest line "
+              "before it that "
+              "can is 3");
     EXPECT_EQ(
         refusal("G21 F600\nM66 P0 L3 Q1\nG0 X#5399\nG0 X2\nM2\n", 4),
-        "what holds at line 4 depends on an input (M66) in line 2; the nearest line before it that can is 2");
+        "the state at line 4 depends on an input (M66) in line 2; the nearest line before it that can is 2");
     EXPECT_EQ(refusal("G21 F600\nG38.3 Z-5\nG0 X2\nM2\n", 3),
-              "what holds at line 3 depends on a probe in line 2; the nearest line before it that can is 2");
+              "the state at line 3 depends on a probe in line 2; the nearest line before it that can is 2");
     EXPECT_EQ(
         refusal("o1 sub\nG0 X1\no1 endsub\nG21 F600\no1 call\nM2\n", 2),
         "line 2 is in subroutine o<1>, which line 5 is the first to call; the nearest line before it that "
@@ -354,7 +353,7 @@ TEST(ApproachMoves, GoUpFirstThenOverThePlaceThenDownAtFeed) {
     EXPECT_TRUE(approach_moves(to, to, 25).empty());
     geometry::Pose over = to;
     over[geometry::AXIS_Z] = 3;
-    ASSERT_EQ(approach_moves(over, to, 25).size(), 1U) << "it stands over the place: down";
+    ASSERT_EQ(approach_moves(over, to, 25).size(), 1U) << "it is over the place: down";
     EXPECT_FALSE(approach_moves(over, to, 25)[0].isRapid);
     EXPECT_EQ(approach_moves(to, over, 25).size(), 2U) << "never up at feed";
 }

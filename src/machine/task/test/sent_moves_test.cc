@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What is left of moves that were taken back in their middle.
+// The rest of moves that were taken back in the middle.
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -11,7 +11,7 @@
 namespace mw::task {
 namespace {
 
-/// A helix about Z as a curve, written down without the one under test.
+/// A helix about Z as a curve, independent of the code under test.
 struct Helix {
     double x = 0, y = 0, radius = 1, begin_rad = 0, angle_rad = 1, z = 0, rise = 0;
 
@@ -95,7 +95,7 @@ TEST_F(SentMovesTest, WhatIsDoneStaysDoneAndTheRestComesBackInItsOrder) {
     EXPECT_TRUE(std::holds_alternative<gcode::SetDigitalOutput>(rest[2].call));
     EXPECT_EQ(sent.why_not(status, place), "");
     status.active_path_id = 1;
-    EXPECT_NE(sent.why_not(status, place), "") << "it stands in a move that is done";
+    EXPECT_NE(sent.why_not(status, place), "") << "it is in a move that is done";
     place[geometry::AXIS_X] = 1;
     EXPECT_EQ(sent.why_not(status, place), "") << "at the end of it";
     status.isReverse = true;

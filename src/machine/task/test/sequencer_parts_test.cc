@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The parts of the sequencer, each alone.
+// The parts of the sequencer, each tested alone.
 #include <unistd.h>
 
 #include <filesystem>
@@ -27,7 +27,7 @@ using test::text_of;
 
 class ProgramSpindlesTest : public testing::Test {
   protected:
-    /// The commands that motion has got since the last call.
+    /// The commands that motion has received since the last call.
     std::vector<motion::CommandBody> sent() {
         std::vector<motion::CommandBody> all;
         motion::Command command;
@@ -71,7 +71,7 @@ TEST_F(ProgramSpindlesTest, StartWithTheSpeedThatWasSetAndFollowANewOne) {
     EXPECT_EQ(spindles.speed(0), 700);
 }
 
-/// A move that waits begins at rest: after G97 S300 and M5 nobody is to stop in a corner for nothing.
+/// A move that waits begins from standstill: after G97 S300 and M5 a stop in a corner would be unnecessary.
 TEST_F(ProgramSpindlesTest, NobodyWaitsForOneThatWasStopped) {
     spindles.set_speed({0, 300, 0}, link);
     spindles.start({0, true, true}, link);
@@ -130,7 +130,7 @@ TEST_F(ProgramSpindlesTest, TheOperatorsSpeedIsAtOnceAndZeroStops) {
 
 class ToolChangeTest : public testing::Test {
   protected:
-    /// The changer answers what it is asked until it is idle; what it has told on the way.
+    /// The changer answers its requests until it is idle; returns the events.
     Result<> work() {
         Result<> result;
         for (int i = 0; i < 10 && result.has_value() && io.action() != io::ToolAction::IDLE; ++i) {
@@ -184,7 +184,7 @@ TEST_F(ToolChangeTest, AFaultOfTheChangerIsToldWithItsReasonUntilItWorksAgain) {
     change.abort(io);
     io.abort(8);
     isFaulted = false;
-    EXPECT_EQ(change.fault_reason(), 17) << "an abort does not mend the changer";
+    EXPECT_EQ(change.fault_reason(), 17) << "an abort does not repair the changer";
     ASSERT_TRUE(change.select({5}, tools, io).has_value());
     ASSERT_TRUE(work().has_value());
     EXPECT_FALSE(change.fault_reason().has_value());
@@ -202,7 +202,7 @@ TEST_F(ToolChangeTest, TheToolThatIsInIsNotChangedForItself) {
 TEST_F(ToolChangeTest, AnAbortKeepsAToolThatIsReadyAndForgetsOneOnItsWay) {
     ASSERT_TRUE(change.select({5}, tools, io).has_value());
     change.abort(io);
-    EXPECT_FALSE(change.isSelected()) << "nobody knows what the changer has got ready";
+    EXPECT_FALSE(change.isSelected()) << "it is unknown which tool the changer has prepared";
     io.abort(8);
     ASSERT_TRUE(change.select({5}, tools, io).has_value());
     ASSERT_TRUE(work().has_value());
@@ -278,7 +278,7 @@ TEST(UserProgram, IsEndedWithAllThatItStarted) {
     const std::string path = folder.program("long", "sleep 1000 & echo $! > \"${0%/*}/child\"; sleep 1000\n");
     UserProgram program(UserProgram::Waits::NEVER);
     program.start("M101", path_of(path), 1, 2);
-    while (text_of(folder / "child").find('\n') == std::string::npos) {  // else this test times out
+    while (text_of(folder / "child").find('\n') == std::string::npos) {  // otherwise this test times out
         ASSERT_TRUE(program.isRunning());
     }
     program.stop();
@@ -289,7 +289,7 @@ TEST(UserProgram, IsEndedWithAllThatItStarted) {
     }
 }
 
-/// A look-up that waits until the test ends that.
+/// A look-up that waits until the test releases it.
 struct HungLookUp {
     std::latch isCalled{1}, isReleased{1};
 };
@@ -339,7 +339,7 @@ TEST(UserProgram, AStopBeforeTheDiskAnswersIsFollowedByNoStart) {
     }
     hung->isReleased.count_down();
     const std::weak_ptr<HungLookUp> thread = std::exchange(hung, nullptr);
-    while (!thread.expired()) {  // else this test times out
+    while (!thread.expired()) {  // otherwise this test times out
         std::this_thread::yield();
     }
     EXPECT_FALSE(std::filesystem::exists(folder / "said"));
@@ -409,19 +409,19 @@ TEST_F(PlannerModeTest, SaysOnceWhatIsWrongWithTheCornerScaleAndWhatIsInForce) {
     EXPECT_EQ(posted[0],
               "ini.traj-scurve-peak-scale is nan: a number from 0.1 to 1 expected; 0.5 is in force");
     for (int cycle = 0; cycle < 100; ++cycle) {
-        mode.set_corner_scale(7 + cycle);  // a signal that moves
+        mode.set_corner_scale(7 + cycle);  // a signal that changes
     }
     ASSERT_EQ(posted.size(), 2U);
     EXPECT_EQ(posted[1], "ini.traj-scurve-peak-scale is 7: a number from 0.1 to 1 expected; 1 is in force");
     mode.set_corner_scale(-2);
-    ASSERT_EQ(posted.size(), 3U) << "another value is in force now";
+    ASSERT_EQ(posted.size(), 3U) << "another value is active now";
     EXPECT_EQ(posted[2],
               "ini.traj-scurve-peak-scale is -2: a number from 0.1 to 1 expected; 0.1 is in force");
     mode.set_corner_scale(0.1);
     mode.set_corner_scale(1);
     EXPECT_EQ(posted.size(), 3U) << "the ends of the range belong to it";
     mode.set_corner_scale(7);
-    EXPECT_EQ(posted.size(), 4U) << "wrong once more, said once more";
+    EXPECT_EQ(posted.size(), 4U) << "wrong again, reported again";
 }
 
 TEST(ShownTools, GiveTheTableAgainAfterEachChange) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The sequencer alone: a queue before it, motion's channels and the I/O controller behind it.
+// The sequencer alone, with a queue, the channels of motion and the I/O controller.
 #include <unistd.h>
 
 #include <chrono>
@@ -31,8 +31,8 @@ class SequencerTest : public testing::Test {
         line.end[geometry::AXIS_X] = x;
         add(line, block);
     }
-    /// A task cycle. Motion answers what it was handed, moves only when it may.
-    void cycle(bool isMoving = true) {
+    /// A task cycle. Motion answers its commands, and moves only if permitted.
+    void cycle(bool moving = true) {
         now_ns += MS;
         motion::Command command;
         while (channels->immediate.pop(command)) {
@@ -41,7 +41,7 @@ class SequencerTest : public testing::Test {
             channels->servo_answers.push({command.id});
         }
         motion::PathCommand move;
-        while (isMoving && channels->path.pop(move)) {
+        while (moving && channels->path.pop(move)) {
             moves += std::holds_alternative<motion::Line>(move.body) ? 1 : 0;
             motion::Answer answer{move.id, motion::AnswerKind::DONE};
             answer.isPath = true;
@@ -108,7 +108,7 @@ TEST_F(SequencerTest, MovesGoOnAtOnceAndASpindleWaitsUntilTheyAreDone) {
     add(gcode::StartSpindle{});
     add_line(3);
     cycle();
-    EXPECT_EQ(queue.size(), 2U) << "the spindle stands at the front";
+    EXPECT_EQ(queue.size(), 2U) << "the spindle is at the front";
     cycle(false);
     cycle(false);
     EXPECT_EQ(count<motion::SpindleOn>(), 0);
@@ -120,7 +120,7 @@ TEST_F(SequencerTest, MovesGoOnAtOnceAndASpindleWaitsUntilTheyAreDone) {
     EXPECT_TRUE(failures.empty());
 }
 
-/// Kinematics may read the pins: no move begins with those of the block before it.
+/// Kinematics may read the pins: no move begins with those of the previous block.
 TEST_F(SequencerTest, AMoveBehindAToolOffsetWaitsUntilThePinsShowIt) {
     add_line(1);
     add(gcode::UseToolOffset{{{0, 0, 5}}});
@@ -131,14 +131,14 @@ TEST_F(SequencerTest, AMoveBehindAToolOffsetWaitsUntilThePinsShowIt) {
     cycles(2);
     EXPECT_EQ(io.outputs.tool_offset.z(), 5);
     io::Inputs inputs;
-    inputs.isToolOffsetShown = false;
+    inputs.tool_offset_shown = false;
     for (int i = 0; i < 5; ++i) {
         io.step(inputs);
         cycle();
         EXPECT_EQ(sequencer.waiting_for().what, WaitFor::SETTING);
     }
     EXPECT_EQ(moves, 1);
-    inputs.isToolOffsetShown = true;
+    inputs.tool_offset_shown = true;
     io.step(inputs);
     cycles(2);
     EXPECT_EQ(moves, 2);
@@ -168,10 +168,10 @@ TEST_F(SequencerTest, AnInputIsWaitedForUntilItRisesOrItsTimeIsOver) {
     status.digital_in = 1U << 3;
     cycles(2);
     EXPECT_EQ(sequencer.input().value, 1);
-    EXPECT_FALSE(sequencer.input().isTimedOut);
+    EXPECT_FALSE(sequencer.input().timed_out);
     add(rise);
     cycles(1005);
-    EXPECT_TRUE(sequencer.input().isTimedOut) << "it was high all the time";
+    EXPECT_TRUE(sequencer.input().timed_out) << "it was high all the time";
     EXPECT_EQ(sequencer.input().value, -1);
 }
 
@@ -182,7 +182,7 @@ TEST_F(SequencerTest, NothingBehindAStopBeginsInItsCycle) {
     EXPECT_EQ(stop_line, 4);
     EXPECT_TRUE(texts.empty());
     cycle();
-    EXPECT_EQ(texts, std::vector<std::string>{"behind"}) << "whether it goes on is its owner's matter";
+    EXPECT_EQ(texts, std::vector<std::string>{"behind"}) << "its owner decides whether it continues";
 }
 
 TEST_F(SequencerTest, AStepEndsAtTheNextBlockWithMotionAtRest) {
@@ -248,17 +248,17 @@ TEST_F(SequencerTest, AUserCodeIsWaitedForAndItsFailureTold) {
 }
 
 TEST_F(SequencerTest, AUserCodeBeginsWhenTheToolTableIsWritten) {
-    tools.isWritten = false;
+    tools.is_written = false;
     add(gcode::UserCode{101, 1, 2});
     cycles(5);
     EXPECT_EQ(user_codes, 0) << "its program may read the file";
-    tools.isWritten = true;
+    tools.is_written = true;
     cycle();
     EXPECT_EQ(user_codes, 1);
 }
 
 TEST_F(SequencerTest, AnAbortDropsAReadingOfTheToolTable) {
-    tools.isRead = false;
+    tools.is_read = false;
     add(gcode::ReloadTools{});
     add_line(1);
     cycles(5);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the status says of a program that runs.
+// The status of a running program.
 #include "machine/task/test/task_rig.hh"
 
 namespace mw::task {
 namespace {
 
-/// Modal codes are those of the move under way, however far the program is read ahead.
+/// Modal codes are those of the current move, however far the program is read ahead.
 TEST_F(TaskTest, ShowsTheModesOfTheMoveUnderWay) {
     open("G21 G61\nG1 X1 F100\nG64 P0.5 Q0.1\nG91 G1 X1 F200\nM2\n");
     motion.isHolding = true;
@@ -15,7 +15,7 @@ TEST_F(TaskTest, ShowsTheModesOfTheMoveUnderWay) {
         EXPECT_TRUE(client.read_status().has_value());
         return client.status();
     };
-    EXPECT_EQ(shown().codes.g[11], 610) << "G64 is read, and not in force yet";
+    EXPECT_EQ(shown().codes.g[11], 610) << "G64 is read, but not yet active";
     EXPECT_EQ(shown().codes.g[6], 900);
     EXPECT_EQ(shown().codes.settings[1], 100);
     EXPECT_EQ(shown().codes.g[0], 2);

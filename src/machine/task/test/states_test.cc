@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// States, modes, homing and waiting commands, each part alone.
+// States, modes, homing and waiting commands, each part tested alone.
 #include <gtest/gtest.h>
 
 #include "machine/task/states/homing_request.hh"
@@ -234,7 +234,7 @@ TEST(Inbox, KeepsTheOrderAndLetsStopsPassWhileTheModeChanges) {
     EXPECT_FALSE(inbox.next(false).has_value());
 }
 
-/// Whether it is handed out while the mode changes.
+/// True if it is returned while the mode changes.
 bool isTakenWhileTheModeChanges(const Command &command) {
     Inbox inbox;
     inbox.add({{1, 1, command}});
@@ -245,9 +245,9 @@ TEST(Inbox, EveryStopButAHoldPassesWhileTheModeChanges) {
     int held = 0;
     for (int place = 0; place < mailbox::STOP_PLACES; ++place) {
         const Command stop = mailbox::stop_at(place);
-        const bool isHold = std::holds_alternative<PauseProgram>(stop);
-        held += isHold ? 1 : 0;
-        EXPECT_EQ(isTakenWhileTheModeChanges(stop), !isHold) << messages::to_text(stop);
+        const bool is_hold = std::holds_alternative<PauseProgram>(stop);
+        held += is_hold ? 1 : 0;
+        EXPECT_EQ(isTakenWhileTheModeChanges(stop), !is_hold) << messages::to_text(stop);
     }
     EXPECT_EQ(held, 1);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Task with a motion controller that answers at once and one client, switched on, in virtual time.
+// Task with one client and a motion controller that answers at once, switched on, in virtual time.
 #pragma once
 
 #include <unistd.h>
@@ -21,7 +21,7 @@ namespace mw::task {
 
 namespace fs = std::filesystem;
 
-/// None, but pins that a test makes.
+/// Only pins that a test creates.
 class TestParameters final : public gcode::ParameterSource {
   public:
     std::function<double()> on_hal_value;
@@ -39,7 +39,7 @@ class LoopedIo final : public IoPins {
         io::Inputs in;
         in.emc_enable_in = outputs.user_enable_out && isChainClosed;
         in.tool_prepared = outputs.tool_prepare;
-        in.tool_changed = outputs.tool_change && isChangerWorking;
+        in.tool_changed = outputs.tool_change && changer_working;
         return in;
     }
     void write(const io::Outputs &o) override { outputs = o; }
@@ -48,7 +48,7 @@ class LoopedIo final : public IoPins {
     io::Outputs outputs;
     bool isAsking = false;
     bool isChainClosed = true;
-    bool isChangerWorking = true;
+    bool changer_working = true;
 };
 
 class TaskTest : public testing::Test {
@@ -71,7 +71,7 @@ class TaskTest : public testing::Test {
     static Settings settings_for(const fs::path &folder, Settings settings) {
         settings.interpreter.user_m_path = {folder.string()};
         settings.interpreter.subroutine_path = {folder.string()};
-        settings.isUserProgramWaitedFor = true;
+        settings.user_program_awaited = true;
         return settings;
     }
     void make_program(const std::string &name, const std::string &script) const {

@@ -36,7 +36,7 @@ TEST_F(TaskTest, AUserCodeThatFailsStopsTheProgram) {
     EXPECT_EQ(joined().find("77"), std::string::npos);
 }
 
-/// The mark of a step that was done held back all that came behind it, later programs too.
+/// The mark of a completed step must not block later steps and programs.
 TEST_F(TaskTest, AResumeAfterAStepThatIsDoneGoesOn) {
     open("G21 F600\nG1 X1\nG1 X2\nG1 X3\nM2\n");
     const client::Serial run = post(StepProgram{});
@@ -52,7 +52,7 @@ TEST_F(TaskTest, AResumeAfterAStepThatIsDoneGoesOn) {
     EXPECT_EQ(ask(Mdi{"G0 X5"}), Progress::DONE) << reason(request);
 }
 
-/// Reading ahead is bounded in each cycle, so that task hears the operator.
+/// Reading ahead is limited in each cycle, so that task receives commands.
 TEST_F(TaskTest, AnEndlessLoopEndsWithAnAbort) {
     open("o1 while [1]\n#1=[#1+1]\no1 endwhile\nM2\n");
     const client::Serial run = post(RunProgram{});
@@ -94,7 +94,7 @@ TEST_F(TaskTest, HomingOfAnotherJointWaitsForTheFirst) {
     cycles(3);
     const auto second = post(HomeJoint{1});
     cycles(3);
-    for (const int joint : {0, 1, -1}) {  // under way, waiting, all
+    for (const int joint : {0, 1, -1}) {  // active, waiting, all
         EXPECT_EQ(ask(HomeJoint{joint}, 3), Progress::REFUSED);
         EXPECT_NE(reason(request).find("homing"), std::string::npos);
     }
@@ -116,14 +116,14 @@ TEST_F(TaskTest, HomingOfAnotherJointWaitsForTheFirst) {
 }
 
 TEST_F(TaskTest, AJointThatWaitsToBeHomedIsNotAfterAStop) {
-    for (const bool isAborted : {true, false}) {
+    for (const bool aborted : {true, false}) {
         motion.status.isHoming = true;
         const auto first = post(HomeJoint{0});
         cycles(3);
         const auto second = post(HomeJoint{1});
         cycles(3);
         EXPECT_EQ(progress(second), Progress::STARTED);
-        if (isAborted) {
+        if (aborted) {
             EXPECT_EQ(ask(AbortAll{}), Progress::DONE);
         }
         motion.status.isHoming = false;  // the first joint is not homed
@@ -150,7 +150,7 @@ TEST_F(TaskTest, AxesAreMovedByHandOnceAllJointsAreHomed) {
     EXPECT_EQ(ask(SetMode{Mode::MDI}), Progress::DONE);
     EXPECT_EQ(ask(SetMode{Mode::MANUAL}), Progress::DONE);
     EXPECT_EQ(motion.status.mode, MotionMode::TELEOP);
-    // Asked for again it is the same mode; but nothing is changed under what moves.
+    // Requested again it is the same mode, but nothing changes during motion.
     EXPECT_EQ(ask(SetTeleop{false}), Progress::DONE);
     motion.status.isInPosition = false;
     EXPECT_EQ(ask(SetMode{Mode::MANUAL}), Progress::DONE);
@@ -330,7 +330,7 @@ TEST_F(TaskTest, ATableOfScrewErrorsIsReadWhileTheMachineIsOff) {
     EXPECT_TRUE(task.isConfigured().value_or(false));
 }
 
-/// Clients may be there before a machine has come up: what they are refused does not end its start.
+/// Clients may exist before a machine has started: their rejected commands do not end its start.
 TEST_F(TaskTest, WhyASettingWasRefusedIsToldApartFromWhatClientsAre) {
     task.configure({});
     ask(SetState{State::ESTOP});
@@ -344,13 +344,13 @@ TEST_F(TaskTest, WhyASettingWasRefusedIsToldApartFromWhatClientsAre) {
     motion::Answer answer;
     answer.reason = motion::Reason::OUT_OF_RANGE;
     ASSERT_FALSE(task.isConfigured().has_value());
-    EXPECT_EQ(task.isConfigured().error().message, "a setting was refused: " + motion::reason_text(answer));
+    EXPECT_EQ(task.isConfigured().error().message, "a setting was rejected: " + motion::reason_text(answer));
 }
 
 TEST_F(TaskTest, EveryCommandOfTheVocabularyIsAnsweredAndARefusalSaysWhy) {
     for (const messages::Declaration *declaration : messages::command_declarations()) {
         Command command = *messages::make_command(declaration->number);
-        if (!messages::check(command).has_value()) {  // those with a text that must not be empty
+        if (!messages::check(command).has_value()) {  // commands with a text that must not be empty
             for (const messages::Field &field : declaration->fields) {
                 if (field.type.kind == messages::Kind::TEXT) {
                     *static_cast<std::string *>(field.at(messages::object(command).data)) = "text";
@@ -430,7 +430,7 @@ TEST_F(TaskTest, NothingQueuedBeforeAnAbortMovesAfterwards) {
 
 TEST_F(TaskTest, ARefusedMoveEndsTheProgram) {
     open("G21 F600\nG1 X1\nG1 X2\nM2\n");
-    motion.isRefusingMoves = true;
+    motion.rejecting_moves = true;
     EXPECT_EQ(ask(RunProgram{}), Progress::FAILED);
     EXPECT_NE(messages().find("p.ngc:2:1: error: the move goes beyond the soft limit of axis X"),
               std::string::npos);

@@ -23,15 +23,15 @@ class OneTool final : public ToolStore {
         return {};
     }
     Result<> set_entry(int, const gcode::ToolEntry &) override { return {}; }
-    bool isSettled() const override { return isWritten; }
+    bool isSettled() const override { return is_written; }
     Result<> reload() override { return {}; }
     std::optional<Result<>> reload_result() override {
-        return isRead ? std::optional(Result<>{}) : std::nullopt;
+        return is_read ? std::optional(Result<>{}) : std::nullopt;
     }
     void drop_reload() override { ++reloads_dropped; }
     std::uint64_t version() const override { return version_now; }
 
-    bool isWritten = true, isRead = true;  ///< the disk answers
+    bool is_written = true, is_read = true;  ///< the disk answers
     int reloads_dropped = 0;
     int in_spindle = 0;
     std::uint64_t version_now = 1;

@@ -30,19 +30,19 @@ class ToolDataTest : public ::testing::Test {
     std::string path(const std::string &name) const { return (folder_ / name).string(); }
     void write(const std::string &name, const std::string &text) { std::ofstream(path(name)) << text; }
     std::string text(const std::string &name) const { return read_file(path(name)).value_or("none"); }
-    /// A file with these lines.
-    task::ToolStore &open_file(const std::string &lines, bool isRandom = false) {
+    /// Opens a file with these lines.
+    task::ToolStore &open_file(const std::string &lines, bool random = false) {
         write("tool.tbl", lines);
         config_.tool_table_file = path("tool.tbl");
-        config_.isRandomToolchanger = isRandom;
+        config_.is_random_toolchanger = random;
         return open();
     }
-    /// A database program of this shell script, which logs its input.
-    task::ToolStore &open_database(const std::string &script, bool isRandom = false) {
+    /// Opens a database program with this shell script, which logs its input.
+    task::ToolStore &open_database(const std::string &script, bool random = false) {
         write("db", "#!/bin/sh\n" + script);
         std::filesystem::permissions(path("db"), std::filesystem::perms::owner_all);
         config_.tool_database = "./db one two";
-        config_.isRandomToolchanger = isRandom;
+        config_.is_random_toolchanger = random;
         return open();
     }
     task::ToolStore &open() {
@@ -70,7 +70,7 @@ class ToolDataTest : public ::testing::Test {
     std::string error_;
 };
 
-/// Answers g with two tools, everything else with FINI, and keeps a log.
+/// Answers g with two tools, everything else with FINI, and writes a log.
 constexpr const char *GOOD = R"sh(echo v2.1
 echo "$1 $2" > log
 while read -r line; do
@@ -157,7 +157,7 @@ TEST_F(ToolDataTest, ToolsAreAddedAndRemovedAndTheRestOfTheFileStays) {
     ASSERT_TRUE(tools.remove(tools.index_of_tool(1)).has_value());
     EXPECT_EQ(text("tool.tbl"), "; our tools\n\nT2 P2 D6 ;mill\nT5 P5 Z12.5 D8 ;new one\n");
     EXPECT_EQ(tools.index_of_tool(1), -1);
-    EXPECT_EQ(tools.index_of_tool(2), 2) << "who has an index keeps it";
+    EXPECT_EQ(tools.index_of_tool(2), 2) << "a tool with an index keeps it";
     EXPECT_EQ(tools.index_of_tool(5), 3);
     task::ToolStore &again = open();
     EXPECT_EQ(again.entry(again.index_of_tool(5)).diameter, 8);
@@ -217,7 +217,7 @@ TEST_F(ToolDataTest, LinesThatContradictEachOtherAreNotAddedToNorLeftBehind) {
 
 TEST_F(ToolDataTest, AChangeThatCannotBeKeptHasNotHappened) {
     task::ToolStore &tools = open_file("T1 P1\nT2 P2\n");
-    std::filesystem::remove_all(folder_);  // nothing can be written there
+    std::filesystem::remove_all(folder_);  // it is not writable
     EXPECT_FALSE(tools.add(tool_of(3, 3)).has_value());
     EXPECT_EQ(tools.index_of_tool(3), -1);
     EXPECT_FALSE(tools.remove(1).has_value());
@@ -227,13 +227,13 @@ TEST_F(ToolDataTest, AChangeThatCannotBeKeptHasNotHappened) {
     EXPECT_EQ(text("tool.tbl"), "T2 P2\n");
 }
 
-/// Tools whose changes a thread writes, on a disk that does not answer before release().
+/// Tools with a writing thread, on a disk that does not answer before release().
 class HungToolDiskTest : public ToolDataTest {
   protected:
-    task::ToolStore &open_hung(const std::string &lines, bool isRandom = false) {
+    task::ToolStore &open_hung(const std::string &lines, bool random = false) {
         write("tool.tbl", lines);
         config_.tool_table_file = path("tool.tbl");
-        config_.isRandomToolchanger = isRandom;
+        config_.is_random_toolchanger = random;
         tools_ = *open_tools(config_, sink_, {writer_.get(), false});
         return *tools_;
     }
@@ -243,10 +243,10 @@ class HungToolDiskTest : public ToolDataTest {
         }
         writer_->finish();
     }
-    /// Cycles until the reading of the table has ended.
+    /// Runs cycles until the table has been read.
     Result<> end_reading() {
         std::optional<Result<>> result;
-        while (!(result = tools_->reload_result()).has_value()) {  // else the test times out
+        while (!(result = tools_->reload_result()).has_value()) {  // otherwise the test times out
             tools_->step();
         }
         return *result;
@@ -321,14 +321,14 @@ TEST_F(ToolDataTest, AFailedWriteIsReportedAndWrittenAgain) {
     std::filesystem::create_directory(path("m"));
     write("m/tool.tbl", "T1 P1 Z1\n");
     config_.tool_table_file = path("m/tool.tbl");
-    for (const bool isChangedAgain : {true, false}) {
+    for (const bool is_changed_again : {true, false}) {
         journal::Writer writer(journal::system_disk(), "", journal::Works::ALONE);
         tools_ = *open_tools(config_, sink_, {&writer, false});
-        std::filesystem::rename(path("m"), away);  // nothing can be written there
+        std::filesystem::rename(path("m"), away);  // it is not writable
         gcode::ToolEntry entry = tools_->entry(1);
         entry.offset[geometry::AXIS_Z] = 2;
         EXPECT_TRUE(tools_->set_entry(1, entry).has_value()) << "the program continues";
-        while (!tools_->isSettled()) {  // else this test times out
+        while (!tools_->isSettled()) {  // otherwise this test times out
             std::this_thread::yield();
         }
         const std::string trouble = writer.take_trouble().value_or("");
@@ -342,7 +342,7 @@ TEST_F(ToolDataTest, AFailedWriteIsReportedAndWrittenAgain) {
         EXPECT_FALSE(tools_->reload_result()->has_value()) << "reading would lose the change";
         EXPECT_EQ(tools_->entry(1).offset[geometry::AXIS_Z], 2);
         std::filesystem::rename(away, path("m"));
-        if (isChangedAgain) {
+        if (is_changed_again) {
             entry.offset[geometry::AXIS_X] = 7;
             ASSERT_TRUE(tools_->set_entry(1, entry).has_value());
         }
@@ -366,7 +366,7 @@ TEST_F(ToolDataTest, TheLifeOfToolsIsKeptBesideTheirTable) {
     keeper_.work();
     EXPECT_EQ(text("tool.tbl.life"), "none") << "not yet a minute";
     tools.note_cut(5, {31, 100});
-    EXPECT_EQ(text("tool.tbl.life"), "none") << "whoever cuts does not wait for the disk";
+    EXPECT_EQ(text("tool.tbl.life"), "none") << "cutting does not wait for the disk";
     keeper_.work();
     EXPECT_NE(text("tool.tbl.life").find("T5 61.000 200.0000\n"), std::string::npos);
     tools.note_cut(6, {1, 2});
@@ -417,7 +417,7 @@ TEST_F(ToolDataTest, ADatabaseThatDoesNotAgreeIsHeard) {
     task::ToolStore &tools = open_database("echo v2.1\nread -r x\necho T1 P1\necho FINI\n"
                                            "while read -r x; do echo \"NAK no such tool\"; done\n");
     ASSERT_EQ(error_, "");
-    EXPECT_TRUE(tools.load_spindle(1).has_value()) << "the tool is in, whatever the database says";
+    EXPECT_TRUE(tools.load_spindle(1).has_value()) << "the tool is loaded, independent of the database";
     EXPECT_NE(told().find("does not agree to 'l T1   P0  ': NAK no such tool"), std::string::npos);
 }
 
@@ -437,7 +437,7 @@ TEST_F(ToolDataTest, ADatabaseThatCannotWorkStopsTheStartByName) {
         error_of("echo v2.1\nread x\necho T1 P1\nsleep 9\n").find("does not answer to 'g' within 0.3 s"),
         std::string::npos);
     EXPECT_NE(
-        error_of("echo v2.1\nread x\necho NAK busy\nsleep 9\n").find("does not tell its tools: NAK busy"),
+        error_of("echo v2.1\nread x\necho NAK busy\nsleep 9\n").find("does not report its tools: NAK busy"),
         std::string::npos);
     config_.tool_database = "/no/such/program";
     EXPECT_FALSE(open_tools(config_, sink_, {nullptr, true}).has_value());

@@ -27,10 +27,10 @@ bool set_compensation(const Code &code, const BlockValues &values, const Machine
     if (state.plane != Plane::XY && state.plane != Plane::XZ) {
         return fault.set("Cutter radius compensation allowed only in XY, XZ planes");
     }
-    const bool isDynamic = code.number % 10 == 1;
+    const bool dynamic = code.number % 10 == 1;
     double diameter = state.tool.diameter * machine.to_program(state.units);
     int orientation = state.tool.orientation;
-    if (isDynamic) {
+    if (dynamic) {
         if (values.has('l') && !whole_word(values, 'l', orientation, fault)) {
             return false;
         }
@@ -62,18 +62,18 @@ bool set_compensation(const Code &code, const BlockValues &values, const Machine
     if (orientation < 0 || orientation > HIGHEST_ORIENTATION) {
         return fault.set("The orientation of a lathe tool must be 0 to 9", values.column_of('l'));
     }
-    const bool isNose = orientation > 0 && orientation < CENTRE;
-    if (isNose && state.plane != Plane::XZ) {
+    const bool is_nose = orientation > 0 && orientation < CENTRE;
+    if (is_nose && state.plane != Plane::XZ) {
         return fault.set(fmt::format("G{} with lathe tool, but plane is not G18", code.number / 10), 0,
                          fmt::format("the tool has orientation {}: program G18 first, or use a tool with "
                                      "orientation 0 or 9",
                                      orientation));
     }
-    const bool isLeft = (code.number < 420) == (diameter >= 0.0);
-    state.comp.turn_on(isLeft ? CompSide::LEFT : CompSide::RIGHT, code.number, std::fabs(diameter) / 2.0,
+    const bool left = (code.number < 420) == (diameter >= 0.0);
+    state.comp.turn_on(left ? CompSide::LEFT : CompSide::RIGHT, code.number, std::fabs(diameter) / 2.0,
                        orientation);
-    canon.take(ProgramComment{isLeft ? "interpreter: cutter radius compensation on left"
-                                     : "interpreter: cutter radius compensation on right"});
+    canon.take(ProgramComment{left ? "interpreter: cutter radius compensation on left"
+                                   : "interpreter: cutter radius compensation on right"});
     return true;
 }
 

@@ -11,13 +11,13 @@ namespace {
 
 constexpr double PI = std::numbers::pi;
 constexpr double TINY = 1e-10;
-/// Corners turning by less than this are passed as if straight: the tool comes nearer by 1/800 of its radius.
-/// So near to a reversal it is the curvature of arcs that says on which side the contour goes on. [rad]
+/// Corners with a smaller angle are treated as straight: the tool comes nearer by 1/800 of its radius. This
+/// near to a reversal the curvature of arcs decides on which side the contour continues. [rad]
 constexpr double STRAIGHT_ANGLE = 0.05;
 constexpr double STRAIGHT_ERROR = STRAIGHT_ANGLE * STRAIGHT_ANGLE / 2.0;
-/// A notch between a move and an arc that is wider than this closes far from the corner [rad].
+/// A wider notch between a move and an arc closes far from the corner [rad].
 constexpr double CLOSING_ANGLE = 0.3;
-/// Corners and arcs that turn by more than this in all may lead back across the move before [rad].
+/// Corners and arcs with a larger total angle may lead back across the previous move [rad].
 constexpr double TIP_ANGLE = PI / 2.0;
 
 Crossings cross_lines(const CompElement &a, const CompElement &b) {
@@ -43,13 +43,13 @@ Crossings crossings(const CompElement &a, const CompElement &b) {
     return cross_lines(a, b);
 }
 
-/// Whether begin and end are the same place and the arc a whole circle.
+/// True if start and end are equal and the arc is a full circle.
 bool isCircle(const CompElement &element) {
     return element.isArc && distance(element.from, element.to) < TINY;
 }
 
-/// Whether the element, ended or begun elsewhere, still runs forwards from `start` to `end`. What is left of
-/// an arc must be long enough not to be taken for a whole circle.
+/// True if the element still runs forward from `start` to `end`. The remaining arc must be long enough not to
+/// be taken for a full circle.
 bool isForward(const CompElement &element, Point start, Point end, double slack) {
     if (!element.isArc) {
         return dot({end.x - start.x, end.y - start.y}, element.start_direction) > -TINY;
@@ -60,8 +60,8 @@ bool isForward(const CompElement &element, Point start, Point end, double slack)
                                                              std::fmin(0.05, slack / element.radius));
 }
 
-/// Whether a move from `from` to `to` goes along the element, on an arc by half a turn at most; back by
-/// `slack` at most, as rounded coordinates may have it.
+/// True if a move from `from` to `to` follows the element, on an arc by at most 180 degrees. It may go back
+/// by `slack`, for rounded coordinates.
 bool isAlong(const CompElement &element, Point from, Point to, double slack) {
     if (!element.isArc) {
         return dot({to.x - from.x, to.y - from.y}, element.start_direction) > -slack;
@@ -70,10 +70,10 @@ bool isAlong(const CompElement &element, Point from, Point to, double slack) {
     return sweep <= PI || (2.0 * PI - sweep) * element.radius < slack;
 }
 
-/// The crossing nearest to the programmed corner that shortens both elements and leaves something of them.
+/// The crossing nearest to the programmed corner that shortens both elements without removing one.
 std::optional<Point> cut_corner(const CompElement &last, const CompElement &next, Point corner,
                                 const CornerTool &tool) {
-    // Rounded coordinates move a crossing at a flat angle by many times their rounding.
+    // Rounded coordinates shift a crossing at a small angle by many times the rounding error.
     const double slack = std::fmin(0.5 * tool.radius, 0.1 * tool.radius + 20.0 * tool.rounding);
     const Crossings found = crossings(last, next);
     std::optional<Point> best;
@@ -81,10 +81,10 @@ std::optional<Point> cut_corner(const CompElement &last, const CompElement &next
     for (int i = 0; i < found.count; ++i) {
         const Point point = found.points[i];
         const double far = distance(point, corner);
-        const bool isUsable =
+        const bool usable =
             isAlong(last, point, last.end, slack) && isAlong(next, next.start, point, slack) &&
             isForward(last, last.start, point, slack) && isForward(next, point, next.end, slack);
-        if (isUsable && (!best || far < least)) {
+        if (usable && (!best || far < least)) {
             best = point;
             least = far;
         }
@@ -97,14 +97,14 @@ double programmed_curvature(const CompElement &element) {
     return element.isArc ? std::copysign(1.0 / distance(element.centre, element.to), element.rotation) : 0.0;
 }
 
-/// From `point` to where the tool's centre goes along the element.
+/// Distance of `point` from the path of the tool centre along the element.
 double distance_to(const CompElement &element, Point start, Point point) {
     const double ends = std::fmin(distance(point, start), distance(point, element.end));
     if (element.isArc) {
-        const bool isBeside = isCircle(element) || comp_sweep(element, start, point) <=
-                                                       comp_sweep(element, start, element.end) + TINY;
+        const bool beside = isCircle(element) || comp_sweep(element, start, point) <=
+                                                     comp_sweep(element, start, element.end) + TINY;
         const double off = std::fabs(distance(element.centre, point) - element.radius);
-        return isBeside ? std::fmin(ends, off) : ends;
+        return beside ? std::fmin(ends, off) : ends;
     }
     const double length = distance(start, element.end);
     if (length < TINY) {
@@ -116,13 +116,13 @@ double distance_to(const CompElement &element, Point start, Point point) {
     return at > 0.0 && at < length ? std::fmin(ends, std::fabs(cross(along, gap))) : ends;
 }
 
-/// How much nearer the end of an arc is to its centre than its beginning.
+/// How much nearer to the centre the end of an arc is than its start.
 double radius_error(const CompElement &element) {
     return element.isArc ? distance(element.centre, element.from) - distance(element.centre, element.to)
                          : 0.0;
 }
 
-/// How far the programmed move turns, in either direction [rad].
+/// Angle of the programmed move, in either direction [rad].
 double programmed_sweep(const CompElement &element) {
     if (!element.isArc) {
         return 0.0;
@@ -130,7 +130,7 @@ double programmed_sweep(const CompElement &element) {
     return isCircle(element) ? 2.0 * PI : comp_sweep(element, element.from, element.to);
 }
 
-/// A place of the programmed move: 0 at its begin, 1 at its end.
+/// A point of the programmed move: 0 at its start, 1 at its end.
 Point programmed_at(const CompElement &element, double share) {
     if (!element.isArc) {
         return {element.from.x + (element.to.x - element.from.x) * share,
@@ -142,7 +142,7 @@ Point programmed_at(const CompElement &element, double share) {
     return {element.centre.x + arm.x * c - arm.y * s, element.centre.y + arm.x * s + arm.y * c};
 }
 
-/// The element as it is programmed, in the place of the tool's path.
+/// The element with the programmed path instead of the tool path.
 CompElement programmed(const CompElement &element) {
     CompElement out = element;
     out.start = element.from;
@@ -151,7 +151,7 @@ CompElement programmed(const CompElement &element) {
     return out;
 }
 
-/// Where the tool's centre is beside the beginning of the programmed move.
+/// Tool centre at the start of the programmed move.
 Point offset_start(const CompElement &element, const CornerTool &tool) {
     if (element.isArc) {
         return sum(element.centre, unit(element.centre, element.from), element.radius);
@@ -159,20 +159,20 @@ Point offset_start(const CompElement &element, const CornerTool &tool) {
     return sum(element.from, side_normal(tool.side, element.start_direction), tool.radius);
 }
 
-/// Whether the tool on its way along one of the two moves, or around the corner between them, cuts into the
-/// other one.
+/// True if the tool cuts into one of the two moves on its path along the other, or around the corner between
+/// them.
 bool isTouching(const CompElement &last, const CompElement &next, const CornerTool &tool) {
-    const bool hasArc = last.isArc || next.isArc;
+    const bool has_arc = last.isArc || next.isArc;
     const double off = std::fabs(radius_error(last)) + std::fabs(radius_error(next));
-    const double least = tool.radius - (hasArc ? tool.tolerance : tool.rounding) - off;
+    const double least = tool.radius - (has_arc ? tool.tolerance : tool.rounding) - off;
     const CompElement contours[] = {programmed(last), programmed(next)};
-    // A start that a nearly straight corner has shifted says nothing of this one.
+    // A start that a nearly straight corner has shifted is not used here.
     const Point begun = offset_start(last, tool);
     const Point start = distance(begun, last.start) < 1.2 * STRAIGHT_ANGLE * tool.radius ? begun : last.start;
     const Point a = unit(next.from, last.end), b = unit(next.from, next.start);
     const double turn =
         std::copysign(std::atan2(cross(a, b), dot(a, b)), tool.side == CompSide::LEFT ? -1.0 : 1.0);
-    constexpr int SAMPLES = 64;  // denser towards the corner
+    constexpr int SAMPLES = 64;  // denser near the corner
     for (int i = 1; i <= SAMPLES; ++i) {
         const double ratio = static_cast<double>(i) / SAMPLES, share = ratio * ratio;
         const double c = std::cos(turn * ratio), s = std::sin(turn * ratio);
@@ -187,7 +187,7 @@ bool isTouching(const CompElement &last, const CompElement &next, const CornerTo
     return false;
 }
 
-/// Whether the corner turns so little that the next move may begin where the last one ends.
+/// True if the corner angle is so small that the next move may begin at the end of the last one.
 bool isNearlyStraight(const CompElement &last, const CompElement &next, double turn, double radius) {
     if (std::fabs(turn) > STRAIGHT_ANGLE) {
         return false;
@@ -195,7 +195,7 @@ bool isNearlyStraight(const CompElement &last, const CompElement &next, double t
     if (!next.isArc) {
         return dot({next.end.x - last.end.x, next.end.y - last.end.y}, next.start_direction) > -TINY;
     }
-    // The start may be as far off the arc as rounded coordinates put it, and hardly more.
+    // The start may be off the arc by little more than the rounding of coordinates.
     const double off = distance(next.centre, last.end) - next.radius - radius_error(next);
     if (std::fabs(off) > STRAIGHT_ERROR * radius + TINY) {
         return false;
@@ -223,28 +223,28 @@ Corner decide_corner(const CompElement &last, const CompElement &next, Point cor
         return {};
     }
     const double from_reversal = PI - std::fabs(angle);
-    const bool hasArc = last.isArc || next.isArc;
+    const bool has_arc = last.isArc || next.isArc;
     double bend = programmed_curvature(last) + programmed_curvature(next);
-    bend = tool.side == CompSide::LEFT ? -bend : bend;  // > 0: the way back bends towards the tool
+    bend = tool.side == CompSide::LEFT ? -bend : bend;  // > 0: the return path curves towards the tool
     constexpr double EXACT = 1e-6;
-    const bool isBent = hasArc && std::fabs(bend) > TINY && from_reversal < STRAIGHT_ANGLE;
-    const bool isRetraced = !isBent && from_reversal < EXACT;
-    const bool isConcave = isBent ? bend > 0.0 : !isRetraced && turn > 0.0;
-    const bool mayGoAround = !isConcave || turn <= 0.0;
+    const bool bent = has_arc && std::fabs(bend) > TINY && from_reversal < STRAIGHT_ANGLE;
+    const bool retraced = !bent && from_reversal < EXACT;
+    const bool concave = bent ? bend > 0.0 : !retraced && turn > 0.0;
+    const bool may_go_around = !concave || turn <= 0.0;
     const double turned = std::fabs(turn) + programmed_sweep(last) + programmed_sweep(next);
-    const bool isSharp = hasArc && !last.isEntry && (turned > TIP_ANGLE || isBent);
+    const bool sharp = has_arc && !last.is_entry && (turned > TIP_ANGLE || bent);
 
-    std::optional<Point> cut = isConcave ? cut_corner(last, next, corner, tool) : std::nullopt;
-    if (!cut && mayGoAround && !(isSharp && isTouching(last, next, tool))) {
+    std::optional<Point> cut = concave ? cut_corner(last, next, corner, tool) : std::nullopt;
+    if (!cut && may_go_around && !(sharp && isTouching(last, next, tool))) {
         return {CornerKind::AROUND, {}};
     }
     const double notch = from_reversal * from_reversal / (2.0 * bend);
-    const bool isNotchSmall = bend > TINY && from_reversal < CLOSING_ANGLE && notch < tool.tolerance;
-    if (!cut && (turn > 0.0 || (hasArc && isNotchSmall))) {
+    const bool notch_small = bend > TINY && from_reversal < CLOSING_ANGLE && notch < tool.tolerance;
+    if (!cut && (turn > 0.0 || (has_arc && notch_small))) {
         cut = cut_corner(last, next, corner, tool);
-        // The notch between the two may be one that closes before it is worth anything.
-        const bool mayClose = (!hasArc || bend < 0.0) && from_reversal < CLOSING_ANGLE && !last.isEntry;
-        if (!cut && turn > 0.0 && mayClose && !isBent && !isTouching(last, next, tool)) {
+        // A notch between the two may close before it matters.
+        const bool may_close = (!has_arc || bend < 0.0) && from_reversal < CLOSING_ANGLE && !last.is_entry;
+        if (!cut && turn > 0.0 && may_close && !bent && !isTouching(last, next, tool)) {
             return {CornerKind::AROUND, {}};
         }
     }

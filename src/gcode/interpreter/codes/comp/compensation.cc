@@ -13,11 +13,11 @@ namespace mw::gcode::detail {
 namespace {
 
 constexpr double TINY = 1e-10;
-/// What a contour that leads back over itself at a tip may lose there.
+/// Permitted cut into a contour that reverses at a tip.
 constexpr double TIP_TOLERANCE_MM = 0.005, MM_PER_INCH = 25.4;
-/// What coordinates with four decimals leave open.
+/// Rounding of coordinates with four decimals.
 constexpr double ROUNDING_MM = 0.0005, ROUNDING_INCH = 0.0001;
-/// A rapid move around a corner is made of tangents to the circle about it, each turning by this at most.
+/// A rapid move around a corner consists of tangents to the circle about it; maximum angle of each.
 constexpr double RAPID_TURN = std::numbers::pi / 3.0;
 
 }  // namespace
@@ -26,12 +26,12 @@ constexpr double RAPID_TURN = std::numbers::pi / 3.0;
 Point Compensation::shift(Plane plane) const {
     static constexpr Point SHIFTS[] = {{0, 0}, {1, -1}, {-1, -1}, {-1, 1}, {1, 1},
                                        {1, 0}, {0, -1}, {-1, 0},  {0, 1},  {0, 0}};  // Z, X
-    const bool isLathe = isOn() && plane == Plane::XZ;
-    const Point way = SHIFTS[isLathe ? orientation_ : 0];
+    const bool is_lathe = isOn() && plane == Plane::XZ;
+    const Point way = SHIFTS[is_lathe ? orientation_ : 0];
     return {way.x * radius_, way.y * radius_};
 }
 
-/// The pose at which the tool's centre is at `point`.
+/// The pose with the tool centre at `point`.
 Pose Compensation::in_plane(Pose pose, Point point, Plane plane) const {
     const PlaneAxes axes = plane_axes(plane);
     const Point nose = shift(plane);
@@ -40,7 +40,7 @@ Pose Compensation::in_plane(Pose pose, Point point, Plane plane) const {
     return pose;
 }
 
-/// An arc of the tool's centre, with the end's other axes as in `end`.
+/// Sends an arc of the tool centre; the other axes end as in `end`.
 void Compensation::send_arc(Point to, Point centre, int rotation, const Pose &end, Plane plane,
                             CanonQueue &canon) const {
     const PlaneAxes axes = plane_axes(plane);
@@ -59,7 +59,7 @@ void Compensation::turn_on(CompSide side, int code, double radius, int orientati
 }
 
 void Compensation::turn_off() {
-    isExit_ = isHolding();
+    is_exit_ = isHolding();
     side_ = CompSide::OFF;
     code_ = 400;
     last_ = {};
@@ -69,7 +69,7 @@ Pose Compensation::compensated(const Pose &position, Plane plane) const {
     return isHolding() ? in_plane(position, last_.end, plane) : position;
 }
 
-/// The last move ends at `end` instead, and so do moves after it that left the plane alone.
+/// Moves the end of the last move to `end`, also for later moves outside the plane.
 void Compensation::end_last_at(Point end, Plane plane, CanonQueue &canon) {
     const PlaneAxes axes = plane_axes(plane);
     const Pose place = in_plane({}, end, plane);
@@ -77,7 +77,7 @@ void Compensation::end_last_at(Point end, Plane plane, CanonQueue &canon) {
     last_.end = end;
 }
 
-/// The rapid way around a convex corner, which never comes nearer to it than the tool's radius.
+/// The rapid path around a convex corner, at the tool radius or more from it.
 void Compensation::send_rapid_around(const CompPlace &place, Point to, Point corner,
                                      CanonQueue &canon) const {
     const Point a = unit(corner, last_.end), b = unit(corner, to);
@@ -95,24 +95,25 @@ void Compensation::send_rapid_around(const CompPlace &place, Point to, Point cor
     canon.take(StraightTraverse{in_plane(place.position, to, place.plane)});
 }
 
-/// Joins the last element to `next`; sets where `next` starts. `what` names the move in errors.
-bool Compensation::join(const CompPlace &place, CompElement &next, bool isRapid, std::string_view what,
+/// Joins the last element to `next`; sets the start of `next`. `what` names the move in errors.
+bool Compensation::join(const CompPlace &place, CompElement &next, bool rapid, std::string_view what,
                         CanonQueue &canon, Fault &fault) {
     const Point corner = next.from;
-    const bool isMm = place.units == LengthUnits::MM;
-    const CornerTool tool{side_, radius_, isMm ? TIP_TOLERANCE_MM : TIP_TOLERANCE_MM / MM_PER_INCH,
-                          isMm ? ROUNDING_MM : ROUNDING_INCH};
+    const bool is_mm = place.units == LengthUnits::MM;
+    const CornerTool tool{side_, radius_, is_mm ? TIP_TOLERANCE_MM : TIP_TOLERANCE_MM / MM_PER_INCH,
+                          is_mm ? ROUNDING_MM : ROUNDING_INCH};
     const Corner passed = decide_corner(last_, next, corner, tool);
     switch (passed.kind) {
     case CornerKind::STRAIGHT:
         next.start = last_.end;
         if (next.isArc && distance(next.from, next.to) < TINY) {
-            next.end = next.start;  // else a whole circle that begins beside its end would be a short arc
+            next.end =
+                next.start;  // otherwise a full circle that begins beside its end would become a short arc
         }
         return true;
     case CornerKind::AROUND:
         next.start = sum(corner, side_normal(side_, next.start_direction), radius_);
-        if (isRapid) {
+        if (rapid) {
             send_rapid_around(place, next.start, corner, canon);
         } else {
             send_arc(next.start, corner, side_ == CompSide::LEFT ? -1 : 1, place.position, place.plane,
@@ -130,7 +131,7 @@ bool Compensation::join(const CompPlace &place, CompElement &next, bool isRapid,
                      "the moves at the corner are too short or too near to each other for this tool radius");
 }
 
-bool Compensation::move_straight(const CompPlace &place, bool isRapid, const Pose &end, CanonQueue &canon,
+bool Compensation::move_straight(const CompPlace &place, bool rapid, const Pose &end, CanonQueue &canon,
                                  Fault &fault) {
     const PlaneAxes axes = plane_axes(place.plane);
     const Point from{place.position[axes.first], place.position[axes.second]};
@@ -143,23 +144,22 @@ bool Compensation::move_straight(const CompPlace &place, bool isRapid, const Pos
         next.start_direction = next.end_direction = unit(from, to);
         next.start = sum(from, side_normal(side_, next.start_direction), radius_);
         next.end = sum(to, side_normal(side_, next.start_direction), radius_);
-        next.isSet = true;
-        if (!last_.isSet) {
-            next.isEntry = true;
+        next.set = true;
+        if (!last_.set) {
+            next.is_entry = true;
             if (length < radius_ - TINY) {
                 return fault.set(
                     "Length of cutter compensation entry move is not greater than the tool radius");
             }
             next.start = sum(from, shift(place.plane), -1.0);
-        } else if (!join(place, next, isRapid, isRapid ? "Straight traverse" : "Straight feed", canon,
-                         fault)) {
+        } else if (!join(place, next, rapid, rapid ? "Straight traverse" : "Straight feed", canon, fault)) {
             return false;
         }
     }
     const Point centre =
-        length > TINY ? next.end : (last_.isSet ? last_.end : sum(to, shift(place.plane), -1.0));
+        length > TINY ? next.end : (last_.set ? last_.end : sum(to, shift(place.plane), -1.0));
     const Pose tool = in_plane(end, centre, place.plane);
-    if (isRapid) {
+    if (rapid) {
         canon.take(StraightTraverse{tool});
     } else {
         canon.take(StraightFeed{tool});
@@ -171,8 +171,7 @@ bool Compensation::move_straight(const CompPlace &place, bool isRapid, const Pos
     return true;
 }
 
-/// The first move under compensation as an arc: from where the tool stands, tangent to the offset path at its
-/// end.
+/// The first compensated move as an arc: from the current position, tangent to the offset path at its end.
 bool Compensation::enter_by_arc(const CompPlace &place, const ArcPlan &arc, CompElement &next,
                                 Fault &fault) const {
     const PlaneAxes axes = plane_axes(place.plane);
@@ -181,10 +180,10 @@ bool Compensation::enter_by_arc(const CompPlace &place, const ArcPlan &arc, Comp
     const Point normal = side_normal(side_, next.end_direction);
     const Point chord{from.x - next.end.x, from.y - next.end.y};
     const double along = dot(chord, normal);
-    // The centre lies on the normal at the end, as far from the start as from the end.
-    const bool isInside = (arc.rotation > 0) == (side_ == CompSide::LEFT);
-    const bool isSameSide = (along > TINY) == isInside && std::fabs(along) > TINY;
-    if (!isSameSide) {
+    // The centre lies on the normal at the end, at equal distances from start and end.
+    const bool inside = (arc.rotation > 0) == (side_ == CompSide::LEFT);
+    const bool is_same_side = (along > TINY) == inside && std::fabs(along) > TINY;
+    if (!is_same_side) {
         return fault.set(
             "This arc cannot be the entry to cutter radius compensation: the tool is too large for it");
     }
@@ -201,7 +200,7 @@ bool Compensation::move_along_arc(const CompPlace &place, const ArcPlan &arc, Ca
     const Point to{arc.end[axes.first], arc.end[axes.second]};
     const double turn = arc.rotation > 0 ? 1.0 : -1.0;
     CompElement next;
-    next.isArc = next.isSet = true;
+    next.isArc = next.set = true;
     next.from = from;
     next.to = to;
     next.rotation = arc.rotation;
@@ -209,16 +208,16 @@ bool Compensation::move_along_arc(const CompPlace &place, const ArcPlan &arc, Ca
     const Point out0 = unit(next.centre, from), out1 = unit(next.centre, to);
     next.start_direction = {-out0.y * turn, out0.x * turn};
     next.end_direction = {-out1.y * turn, out1.x * turn};
-    const bool isInside = (arc.rotation > 0) == (side_ == CompSide::LEFT);
+    const bool inside = (arc.rotation > 0) == (side_ == CompSide::LEFT);
     const double radius = distance(next.centre, to);
-    if (isInside && radius <= radius_ + TINY) {
+    if (inside && radius <= radius_ + TINY) {
         return fault.set("Tool radius not less than arc radius with comp");
     }
-    next.radius = radius + (isInside ? -radius_ : radius_);
+    next.radius = radius + (inside ? -radius_ : radius_);
     next.end = sum(next.centre, out1, next.radius);
     next.start = sum(next.centre, out0, next.radius);
-    if (!last_.isSet) {
-        next.isEntry = true;
+    if (!last_.set) {
+        next.is_entry = true;
         if (!enter_by_arc(place, arc, next, fault)) {
             return false;
         }

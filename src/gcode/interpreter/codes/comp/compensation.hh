@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Cutter radius compensation: the path moved by the tool's radius to its left or right in the selected plane.
+// Cutter radius compensation: offsets the path by the tool's radius to the left or right in the selected
+// plane.
 #pragma once
 
 #include <string_view>
@@ -11,46 +12,45 @@
 
 namespace mw::gcode::detail {
 
-/// Where a move begins, and what its figures mean.
+/// Start of a move, and the meaning of its values.
 struct CompPlace {
     const Pose &position;  ///< as programmed [program units]
     Plane plane = Plane::XY;
     LengthUnits units = LengthUnits::MM;
 };
 
-/// The end of a move is not final before the next one is known: in a concave corner both offset paths are cut
+/// The end of a move is final only when the next one is known: in a concave corner both offset paths are cut
 /// at their intersection, around a convex one an arc is inserted. The last move therefore stays in the queue.
-/// A plain value: who copies it can take a block back; calls that were changed are the queue's to take back.
+/// A plain value: a copy can undo a block; the queue undoes changed calls.
 class Compensation {
   public:
     /// G41 and G42; `code`: ten times the G code. [program units]
     void turn_on(CompSide side, int code, double radius, int orientation);
-    /// G40. A move after it must be straight when the tool stands beside the contour.
+    /// G40. The next move must be straight if the tool is offset from the contour.
     void turn_off();
-    /// The next move is the first one again.
+    /// The next move is treated as the first one.
     void forget_move() { last_ = {}; }
 
     /// A straight move; false after setting the fault.
-    bool move_straight(const CompPlace &place, bool isRapid, const Pose &end, CanonQueue &canon,
-                       Fault &fault);
+    bool move_straight(const CompPlace &place, bool rapid, const Pose &end, CanonQueue &canon, Fault &fault);
     bool move_along_arc(const CompPlace &place, const ArcPlan &arc, CanonQueue &canon, Fault &fault);
 
     bool isOn() const { return side_ != CompSide::OFF; }
-    /// There was a move since it came on.
-    bool hasMoved() const { return last_.isSet; }
+    /// There was a move since it was switched on.
+    bool hasMoved() const { return last_.set; }
     CompSide side() const { return side_; }
     int code() const { return code_; }
     double radius() const { return radius_; }
     int orientation() const { return orientation_; }
-    /// It was on: the next move must be straight.
-    bool isExit() const { return isExit_; }
-    void set_exit(bool isExit) { isExit_ = isExit; }
-    /// Where the tool is when the programmed place is `position`.
+    /// Compensation has been switched off: the next move must be straight.
+    bool isExit() const { return is_exit_; }
+    void set_exit(bool is_exit) { is_exit_ = is_exit; }
+    /// Position of the tool for the programmed `position`.
     Pose compensated(const Pose &position, Plane plane) const;
 
-    /// The call from which on the queue must be held, because its end may change yet.
+    /// The first call that must stay in the queue, because its end may change.
     std::size_t held_call() const { return last_.record; }
-    bool isHolding() const { return isOn() && last_.isSet; }
+    bool isHolding() const { return isOn() && last_.set; }
     void set_held_call(std::size_t call) { last_.record = call; }
 
     bool operator==(const Compensation &) const = default;
@@ -62,8 +62,8 @@ class Compensation {
                   CanonQueue &canon) const;
     void send_rapid_around(const CompPlace &place, Point to, Point corner, CanonQueue &canon) const;
     void end_last_at(Point end, Plane plane, CanonQueue &canon);
-    bool join(const CompPlace &place, CompElement &next, bool isRapid, std::string_view what,
-              CanonQueue &canon, Fault &fault);
+    bool join(const CompPlace &place, CompElement &next, bool rapid, std::string_view what, CanonQueue &canon,
+              Fault &fault);
     bool enter_by_arc(const CompPlace &place, const ArcPlan &arc, CompElement &next, Fault &fault) const;
 
     CompSide side_ = CompSide::OFF;
@@ -71,7 +71,7 @@ class Compensation {
     double radius_ = 0;  ///< [program units]
     int orientation_ = 0;
     CompElement last_;
-    bool isExit_ = false;
+    bool is_exit_ = false;
 };
 
 }  // namespace mw::gcode::detail

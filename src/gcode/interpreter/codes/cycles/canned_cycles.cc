@@ -32,15 +32,15 @@ bool needsSpindle(int code) {
     return code == 740 || code == 840 || code == 860 || code == 870 || code == 880;
 }
 
-/// Words not given keep the values of the cycle before; the first of its kind must have them.
+/// Missing words keep the values of the previous cycle; the first cycle of its type needs all of them.
 bool take_cycle_words(const Code &code, const BlockValues &values, State &state, Fault &fault) {
-    const bool isFirst = state.motion != code.number;
+    const bool first = state.motion != code.number;
     const char depth = geometry::AXIS_LETTERS_LOWER[plane_axes(state.plane).normal];
     const std::string name = code_name(code);
     CycleWords &cycle = state.cycle;
     struct Need {
         char word;
-        bool isNeeded;
+        bool needed;
         const char *text;
         double &value;
     };
@@ -55,16 +55,16 @@ bool take_cycle_words(const Code &code, const BlockValues &values, State &state,
     };
     for (const Need &need : needs) {
         if (values.has(need.word)) {
-            const bool isHalved = need.word == 'x' && state.isDiameter;
-            need.value = values.at(need.word) * (isHalved ? 0.5 : 1.0);
-        } else if (isFirst && need.isNeeded) {
+            const bool halved = need.word == 'x' && state.isDiameter;
+            need.value = values.at(need.word) * (halved ? 0.5 : 1.0);
+        } else if (first && need.needed) {
             return fault.set(fmt::format("{} needs {}{}", name, need.text,
                                          need.word == depth
                                              ? fmt::format(" {}", static_cast<char>(std::toupper(depth)))
                                              : std::string()));
         }
     }
-    cycle.hasClearance = needsPeck(code.number) && (values.has('p') || (cycle.hasClearance && !isFirst));
+    cycle.has_clearance = needsPeck(code.number) && (values.has('p') || (cycle.has_clearance && !first));
     if (needsPeck(code.number) && cycle.q <= 0.0) {
         return fault.set(fmt::format("The peck depth Q of {} must be above 0", name), values.column_of('q'));
     }
@@ -131,26 +131,26 @@ bool check_cycle(const Code &code, const BlockValues &values, const Machine &mac
     return true;
 }
 
-/// One cycle with its heights resolved, program coordinates along the plane's normal.
+/// One cycle with absolute heights, program coordinates along the plane's normal.
 struct CyclePlan {
     int code = 0;
     double r = 0, bottom = 0, clear = 0;
 };
 
-/// Pecks of G73 and G83 from R to the bottom, at least one.
+/// Number of pecks of G73 and G83 from R to the bottom, at least one.
 double count_pecks(const CyclePlan &plan, double peck) {
     const double error = FIGURE_ERROR * (std::fabs(plan.r) + std::fabs(plan.bottom)) / peck;
     const double pecks = (plan.r - plan.bottom) / peck;
     return std::fmax(1.0, count_steps(pecks, error + FIGURE_ERROR * pecks));
 }
 
-/// What the cycles do at one hole.
+/// Moves of the cycles at one hole.
 struct CycleMoves {
     const Settings &settings;
     State &state;
     CanonQueue &canon;
 
-    void cycle_move(bool isRapid, int axis, double value);
+    void cycle_move(bool rapid, int axis, double value);
     void start_spindle(int direction);
     void tap_move(double height);
     void run_cycle(const CyclePlan &plan);
@@ -160,9 +160,9 @@ struct CycleMoves {
 };
 
 /// Moves one axis to `value`.
-void CycleMoves::cycle_move(bool isRapid, int axis, double value) {
+void CycleMoves::cycle_move(bool rapid, int axis, double value) {
     state.position[axis] = value;
-    if (isRapid) {
+    if (rapid) {
         canon.take(StraightTraverse{state.position});
     } else {
         canon.take(StraightFeed{state.position});
@@ -174,7 +174,7 @@ void CycleMoves::start_spindle(int direction) {
     canon.take(StartSpindle{spindle, direction > 0, true});
 }
 
-/// From the clearance plane down and back to plan.clear.
+/// From the clearance plane to the bottom and back to plan.clear.
 void CycleMoves::run_cycle(const CyclePlan &plan) {
     const int normal = plane_axes(state.plane).normal;
     const int direction = state.spindles[static_cast<std::size_t>(state.active_spindle)].direction;
@@ -200,7 +200,7 @@ void CycleMoves::run_cycle(const CyclePlan &plan) {
         cycle_move(true, normal, plan.clear);
         start_spindle(direction);
         break;
-    case 880:  // the operator retracts by hand, to the clear height
+    case 880:  // the operator retracts by hand to the clear height
         canon.take(StopSpindle{state.active_spindle});
         canon.take(ProgramStop{});
         start_spindle(direction);
@@ -211,19 +211,19 @@ void CycleMoves::run_cycle(const CyclePlan &plan) {
     }
 }
 
-/// G73 breaks chips, G83 goes back to R each time.
+/// G73 breaks chips, G83 retracts to R each time.
 void CycleMoves::run_peck(const CyclePlan &plan) {
     const int normal = plane_axes(state.plane).normal;
-    const bool isDeep = plan.code == 830;
+    const bool deep = plan.code == 830;
     const double clearance_mm =
-        isDeep ? settings.parameter_g83_peck_clearance_mm : settings.parameter_g73_peck_clearance_mm;
+        deep ? settings.parameter_g83_peck_clearance_mm : settings.parameter_g73_peck_clearance_mm;
     const double configured = clearance_mm / (state.units == LengthUnits::MM ? 1.0 : MM_PER_INCH);
-    const double clearance = state.cycle.hasClearance ? state.cycle.p : configured;
+    const double clearance = state.cycle.has_clearance ? state.cycle.p : configured;
     const double pecks = count_pecks(plan, state.cycle.q);
     for (int peck = 1; peck < static_cast<int>(pecks); ++peck) {
         const double depth = plan.r - peck * state.cycle.q;
         cycle_move(false, normal, depth);
-        if (isDeep) {
+        if (deep) {
             cycle_move(true, normal, plan.r);
         }
         cycle_move(true, normal, depth + clearance);
@@ -232,26 +232,26 @@ void CycleMoves::run_peck(const CyclePlan &plan) {
     cycle_move(true, normal, plan.clear);
 }
 
-/// The two feeds of a tap, along the plane's normal. LinuxCNC's rs274 turns plane coordinates into machine
-/// ones twice in G18 and G19: moved like that the tap would be dragged through the part, so only what is
-/// printed and never moved follows it.
+/// The two feed moves of a tap, along the plane's normal. LinuxCNC's rs274 converts plane coordinates to
+/// machine coordinates twice in G18 and G19: such a move would drag the tap through the part, so only the
+/// printed output follows it.
 void CycleMoves::tap_move(double height) {
     const int normal = plane_axes(state.plane).normal;
     state.position[normal] = height;
     const Pose &place = state.position;
     Pose sent = place;
-    const bool isTurnedTwice = settings.isTapOrderOfRs274 && normal != geometry::AXIS_Z;
-    for (int axis = geometry::AXIS_X; axis <= geometry::AXIS_Z && isTurnedTwice; ++axis) {
+    const bool turned_twice = settings.tap_order_of_rs274 && normal != geometry::AXIS_Z;
+    for (int axis = geometry::AXIS_X; axis <= geometry::AXIS_Z && turned_twice; ++axis) {
         constexpr int LENGTHS = 3;
         sent[axis] = place[(axis + (normal == geometry::AXIS_Y ? 1 : 2)) % LENGTHS];
     }
     canon.take(StraightFeed{sent});
 }
 
-/// Tapping with a floating chuck: the spindle turns back at the bottom.
+/// Tapping with a floating chuck: the spindle reverses at the bottom.
 void CycleMoves::run_tap(const CyclePlan &plan, int direction) {
     const int spindle = state.active_spindle;
-    const bool isSpeedOverride = state.spindles[static_cast<std::size_t>(spindle)].isOverridden;
+    const bool is_speed_override = state.spindles[static_cast<std::size_t>(spindle)].overridden;
     canon.take(SwitchFeedOverride{false});
     canon.take(SwitchSpeedOverride{spindle, false});
     tap_move(plan.bottom);
@@ -261,15 +261,15 @@ void CycleMoves::run_tap(const CyclePlan &plan, int direction) {
     tap_move(plan.clear);
     canon.take(StopSpindle{spindle});
     start_spindle(direction);
-    if (state.isFeedOverride) {
+    if (state.is_feed_override) {
         canon.take(SwitchFeedOverride{true});
     }
-    if (isSpeedOverride) {
+    if (is_speed_override) {
         canon.take(SwitchSpeedOverride{spindle, true});
     }
 }
 
-/// G87: through the hole beside its axis with the tool turned aside, then cutting from below up to K.
+/// G87: with the oriented tool through the hole beside its axis, then cuts from below up to K.
 void CycleMoves::run_back_bore(const CyclePlan &plan, int direction) {
     const PlaneAxes axes = plane_axes(state.plane);
     const int spindle = state.active_spindle;
@@ -277,22 +277,22 @@ void CycleMoves::run_back_bore(const CyclePlan &plan, int direction) {
     const Pose on_axis = state.position;
     const double along_first = axes.normal == geometry::AXIS_X ? state.cycle.j : state.cycle.i;
     const double along_second = axes.normal == geometry::AXIS_Z ? state.cycle.j : state.cycle.k;
-    const auto shift = [&](bool isBeside) {
+    const auto shift = [&](bool beside) {
         const int a = axes.normal == geometry::AXIS_Y ? geometry::AXIS_X : axes.first;
         const int b = axes.normal == geometry::AXIS_Y ? geometry::AXIS_Z : axes.second;
-        state.position[a] = on_axis[a] + (isBeside ? along_first : 0.0);
-        state.position[b] = on_axis[b] + (isBeside ? along_second : 0.0);
+        state.position[a] = on_axis[a] + (beside ? along_first : 0.0);
+        state.position[b] = on_axis[b] + (beside ? along_second : 0.0);
         canon.take(StraightTraverse{state.position});
     };
     const double up = axes.normal == geometry::AXIS_Z
                           ? state.cycle.k
                           : (axes.normal == geometry::AXIS_Y ? state.cycle.j : state.cycle.i);
-    const double top = up + (state.isIncremental ? plan.bottom : 0.0);
+    const double top = up + (state.incremental ? plan.bottom : 0.0);
     const auto orient = [&] {
         constexpr double PATIENCE_S = 60.0;
         canon.take(StopSpindle{spindle});
         canon.take(OrientSpindle{spindle, 0.0, COUNTERCLOCKWISE});
-        if (settings.isTask) {  // LinuxCNC's rs274 prints no waiting
+        if (settings.is_task) {  // LinuxCNC's rs274 prints no wait
             canon.take(WaitOrientComplete{spindle, PATIENCE_S});
         }
     };
@@ -315,7 +315,7 @@ void CycleMoves::run_back_bore(const CyclePlan &plan, int direction) {
 bool run_canned_cycle(const Code &code, const BlockValues &values, const Machine &machine, State &state,
                       CanonQueue &canon, Fault &fault) {
     int repeats = 1;
-    if (!values.hasAxes() && values.isMotionImplied) {
+    if (!values.hasAxes() && values.motion_implied) {
         return true;
     }
     if (!check_cycle(code, values, machine, state, repeats, fault) ||
@@ -324,20 +324,20 @@ bool run_canned_cycle(const Code &code, const BlockValues &values, const Machine
     }
     const PlaneAxes axes = plane_axes(state.plane);
     const char normal_name = geometry::AXIS_LETTERS_LOWER[axes.normal];
-    if (!isCycle(state.motion) || !state.cycle.isRunning) {
+    if (!isCycle(state.motion) || !state.cycle.running) {
         state.cycle.initial = state.position[axes.normal];
     }
     CycleMoves moves{machine.settings, state, canon};
     CyclePlan plan;
     plan.code = code.number;
-    // Incremental R counts from where the sequence of cycles began, so that all holes are alike.
-    plan.r = state.cycle.r + (state.isIncremental ? state.cycle.initial : 0.0);
-    plan.bottom = state.cycle.bottom + (state.isIncremental ? plan.r : 0.0);
+    // Incremental R is relative to the start of the sequence of cycles, so that all holes are equal.
+    plan.r = state.cycle.r + (state.incremental ? state.cycle.initial : 0.0);
+    plan.bottom = state.cycle.bottom + (state.incremental ? plan.r : 0.0);
     if (plan.r < plan.bottom) {
         return fault.set(fmt::format("R value less than {} value in cycle", normal_name),
                          values.column_of('r'));
     }
-    constexpr double MOST_MOVES = 1e6;  // a slip of the keyboard, not a program
+    constexpr double MOST_MOVES = 1e6;  // probably a typing error
     const double pecks = needsPeck(code.number) ? count_pecks(plan, state.cycle.q) : 1.0;
     if (pecks * repeats > MOST_MOVES) {
         return fault.set(
@@ -345,13 +345,13 @@ bool run_canned_cycle(const Code &code, const BlockValues &values, const Machine
             values.column_of(pecks > repeats ? 'q' : 'l'));
     }
     state.motion = code.number;
-    state.cycle.isRunning = true;
+    state.cycle.running = true;
     Pose goal = target(values, state);
     if (!polar_target(values, state, goal, fault)) {
         return false;
     }
     const geometry::PathMode control = state.control;
-    // In a sequence that began below R every cycle makes this move, though without length but for the first.
+    // In a sequence that began below R every cycle makes this move; it has length only in the first one.
     const double height = state.position[axes.normal];
     if (height < plan.r || (height == plan.r && state.cycle.initial < plan.r)) {
         moves.cycle_move(true, axes.normal, plan.r);
@@ -360,8 +360,8 @@ bool run_canned_cycle(const Code &code, const BlockValues &values, const Machine
         canon.take(SetMotionControlMode{geometry::PathMode::EXACT_PATH, 0.0});
     }
     for (int i = 0; i < repeats; ++i) {
-        plan.clear = state.isRetractToR ? plan.r : std::fmax(state.cycle.initial, plan.r);
-        if (state.isIncremental && i > 0) {  // each repeat goes on from the last hole, polar words too
+        plan.clear = state.retract_to_r ? plan.r : std::fmax(state.cycle.initial, plan.r);
+        if (state.incremental && i > 0) {  // each repeat continues from the last hole, also with polar words
             goal = target(values, state);
             if (!polar_target(values, state, goal, fault)) {
                 return false;

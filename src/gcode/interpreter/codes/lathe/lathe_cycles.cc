@@ -17,8 +17,8 @@ namespace {
 
 constexpr int Z = geometry::AXIS_Z, X = geometry::AXIS_X;
 
-/// How far an arc of a profile may go back before it counts as not monotonic: the arcs of rounded numbers
-/// that touch a shoulder do.
+/// How far an arc of a profile may go back before the profile counts as not monotonic: arcs with rounded
+/// numbers that touch a shoulder go back a little.
 constexpr double TOLERANCE_MM = 0.001, TOLERANCE_INCH = TOLERANCE_MM / 25.4;
 
 /// A profile in the frame of its cut.
@@ -27,33 +27,33 @@ struct FramedProfile {
     Profile profile;
 };
 
-/// Whether the profile is one for cuts along X. G70 follows what the last roughing with the same subroutine
-/// has cut; without one a profile for both is one for cuts along Z, if that puts the distance D on the same
-/// side. The text after "The profile of Gxx " when that cannot be told.
+/// True if the profile is for cuts along X. G70 follows the last roughing with the same subroutine; without
+/// one, a profile for both directions is for cuts along Z, if that puts the distance D on the same side. If
+/// undecided, the text after "The profile of Gxx ".
 std::expected<bool, std::string> choose_facing(const LatheRequest &request, std::optional<bool> roughed,
                                                double tolerance) {
     if (request.code != 700) {
         return request.code >= 720;
     }
     const CutFrame turned = frame_of(request.profile, false), faced = frame_of(request.profile, true);
-    const bool isTurnable = isMonotonic(in_frame(request.profile, turned), tolerance);
-    const bool isFaceable = isMonotonic(in_frame(request.profile, faced), tolerance);
-    if (!isTurnable && !isFaceable) {
+    const bool turnable = isMonotonic(in_frame(request.profile, turned), tolerance);
+    const bool faceable = isMonotonic(in_frame(request.profile, faced), tolerance);
+    if (!turnable && !faceable) {
         return std::unexpected("is not monotonic: it goes back along both Z and X");
     }
-    if (!isTurnable || !isFaceable) {
-        return !isTurnable;
+    if (!turnable || !faceable) {
+        return !turnable;
     }
-    const bool isDistanceUsed = request.distance > 0.0 || request.end_distance > 0.0;
-    if (!roughed && isDistanceUsed && turned.turn(1) != faced.turn(1)) {
+    const bool distance_used = request.distance > 0.0 || request.end_distance > 0.0;
+    if (!roughed && distance_used && turned.turn(1) != faced.turn(1)) {
         return std::unexpected("could be one of G71 or of G72, which puts the distance D on opposite sides: "
                                "rough it in this program, or give no D and E");
     }
     return roughed.value_or(false);
 }
 
-/// The profile in the frame of its cut, with its corners. The text after "The profile of Gxx " when it cannot
-/// be cut.
+/// The profile with its corners in the frame of its cut. If it cannot be cut, the text after "The profile of
+/// Gxx ".
 std::expected<FramedProfile, std::string> framed_profile(const Profile &raw, bool isFacing,
                                                          double tolerance) {
     FramedProfile framed;
@@ -69,10 +69,10 @@ std::expected<FramedProfile, std::string> framed_profile(const Profile &raw, boo
     return framed;
 }
 
-/// The contour of one pass: without arcs that go back, where more than following it is asked for.
-Profile contour_of(const Profile &profile, bool isFollowed, double tolerance) {
+/// The contour of one pass; without arcs that go back, if it is used for more than following.
+Profile contour_of(const Profile &profile, bool followed, double tolerance) {
     Profile contour = profile;
-    if (!isFollowed) {
+    if (!followed) {
         straighten(contour);
         drop_short(contour, tolerance / 10.0);
     }
@@ -86,7 +86,7 @@ bool isEndingAbove(const Profile &profile) {
     return profile.back().end.y > profile.front().end.y;
 }
 
-/// From the end of what is cut across to `height`, at feed: the material may stand there.
+/// Adds a move from the end of the cut across to `height`, at feed: there may be material.
 void add_way_out(Profile &cut, double height) {
     const Point end = cut.back().end;
     if (end.y < height) {
@@ -98,7 +98,7 @@ void add_way_out(Profile &cut, double height) {
     }
 }
 
-/// The start's height, or the contour's where that is higher.
+/// Height of the start, or of the contour if that is higher.
 double clear_height(const Profile &cut) {
     double height = cut.front().start.y;
     for (const ProfileSegment &segment : cut) {
@@ -107,9 +107,8 @@ double clear_height(const Profile &cut) {
     return height;
 }
 
-/// The start of the cycle is between the ends of the profile's range in X (facing: Z), so that no side is the
-/// one without material.
-bool refuse_side(const LatheRequest &request, const CutFrame &cut, std::string_view name, bool isDiameter,
+/// The start of the cycle is inside the profile's range in X (facing: Z), so no side is free of material.
+bool refuse_side(const LatheRequest &request, const CutFrame &cut, std::string_view name, bool is_diameter,
                  Fault &fault) {
     const auto highest = [&](double across) {
         const CutFrame frame{.isFacing = cut.isFacing, .across = across};
@@ -121,7 +120,7 @@ bool refuse_side(const LatheRequest &request, const CutFrame &cut, std::string_v
         return top;
     };
     const char axis = cut.isFacing ? 'Z' : 'X';
-    const double scale = isDiameter && !cut.isFacing ? 2.0 : 1.0;
+    const double scale = is_diameter && !cut.isFacing ? 2.0 : 1.0;
     const double low = -highest(-1) * scale, high = highest(1) * scale;
     const double start = request.start[cut.isFacing ? Z : X] * scale;
     return fault.set(
@@ -138,25 +137,25 @@ bool refuse_side(const LatheRequest &request, const CutFrame &cut, std::string_v
                           high, low));
 }
 
-/// A move of the cycle, compensated when G41 or G42 is on.
+/// Sends a move of the cycle, compensated when G41 or G42 is on.
 bool send_profile_move(const ProfileMove &move, const CutFrame &frame, State &state, CanonQueue &canon,
                        Fault &fault) {
     Pose end = state.position;
     const Point machine = frame.from(move.end), centre = frame.from(move.centre);
     end[Z] = machine.x;
     end[X] = machine.y;
-    const bool isCompensated = state.comp.isOn();
+    const bool compensated = state.comp.isOn();
     const CompPlace place{state.position, state.plane, state.units};
     if (move.isArc) {
         const int rotation = frame.turn(move.turn);
-        if (isCompensated) {
+        if (compensated) {
             if (!state.comp.move_along_arc(place, {end, centre.x, centre.y, rotation}, canon, fault)) {
                 return false;
             }
         } else {
             canon.take(ArcFeed{end[Z], end[X], centre.x, centre.y, rotation, end[geometry::AXIS_Y], end});
         }
-    } else if (isCompensated) {
+    } else if (compensated) {
         if (!state.comp.move_straight(place, move.isRapid, end, canon, fault)) {
             return false;
         }
@@ -188,11 +187,11 @@ bool begin_lathe_cycle(const Code &code, const BlockValues &values, const Machin
     request.end_distance = values.at('e', 0.0);
     request.roughing.increment = values.at('i', request.roughing.increment);
     request.roughing.retract = values.at('r', request.roughing.retract);
-    request.roughing.isVisitingStarts = request.distance != 0.0;
+    request.roughing.is_visiting_starts = request.distance != 0.0;
     request.roughing.pockets = static_cast<RoughingPlan::Pockets>(code.number % 10);
     constexpr int MAX_PASSES = 10000;
     struct Check {
-        bool isBad;
+        bool bad;
         char word;
         const char *text;
     };
@@ -208,7 +207,7 @@ bool begin_lathe_cycle(const Code &code, const BlockValues &values, const Machin
         {request.passes < 1 || request.passes > MAX_PASSES, 'p', "needs a number of passes P of 1 to 10000"},
     };
     for (const Check &check : checks) {
-        if (check.isBad) {
+        if (check.bad) {
             return fault.set(fmt::format("{} {}", name, check.text), values.column_of(check.word));
         }
     }
@@ -221,7 +220,7 @@ bool begin_lathe_cycle(const Code &code, const BlockValues &values, const Machin
     return true;
 }
 
-/// A block of the profile's subroutine: its move, if it has one.
+/// Records the move of a block of the profile's subroutine, if it has one.
 bool LatheCycles::record(const BlockValues &values, const Settings &settings, const State &state,
                          Fault &fault) {
     LatheRequest &request = *request_;
@@ -229,11 +228,11 @@ bool LatheCycles::record(const BlockValues &values, const Settings &settings, co
         return motion == 0 || motion == 10 || motion == 20 || motion == 30;
     };
     for (const ActiveCode &active : values.codes) {
-        const bool isMotion = active.code->group == Group::MOTION;
-        if (isMotion && isMove(active.code->number)) {
+        const bool is_motion = active.code->group == Group::MOTION;
+        if (is_motion && isMove(active.code->number)) {
             request.motion = active.code->number;
         } else if (active.code->usesAxes) {
-            return true;  // the axis words are not for a move
+            return true;  // the axis words do not belong to a move
         }
     }
     const std::uint32_t used = letters("xzuw");
@@ -241,34 +240,34 @@ bool LatheCycles::record(const BlockValues &values, const Settings &settings, co
         return true;
     }
     const Pose from = request.position;
-    // The words U and W are steps along X and Z, whatever the distance mode.
+    // The words U and W are increments along X and Z in every distance mode.
     Pose end = from;
     for (const auto &[name, step, axis] : {std::tuple{'x', 'u', X}, std::tuple{'z', 'w', Z}}) {
         const double scale = axis == X && state.isDiameter ? 0.5 : 1.0;
         if (values.has(name)) {
-            end[axis] = values.at(name) * scale + (state.isIncremental ? end[axis] : 0.0);
+            end[axis] = values.at(name) * scale + (state.incremental ? end[axis] : 0.0);
         }
         if (values.has(step)) {
             end[axis] += values.at(step) * scale;
         }
     }
     request.position = end;
-    bool isDone = true;
+    bool done = true;
     ProfileSegment line;
     line.start = {from[Z], from[X]};
     line.end = {end[Z], end[X]};
-    const bool isFirst = request.profile.empty();
-    const bool isMoving = from[X] != end[X] || from[Z] != end[Z];
+    const bool first = request.profile.empty();
+    const bool moving = from[X] != end[X] || from[Z] != end[Z];
     if (request.motion >= 20) {
-        if (isFirst) {  // the contour begins where the cycle does
+        if (first) {  // the contour begins at the start of the cycle
             line.end = line.start;
             request.profile.push_back(line);
         }
-        isDone = record_arc(values, settings, state, from, end, fault);
-    } else if (isFirst || isMoving) {  // the first move leads to the contour, however far that is
+        done = record_arc(values, settings, state, from, end, fault);
+    } else if (first || moving) {  // the first move goes to the contour, at any distance
         request.profile.push_back(line);
     }
-    return isDone && take_corner_word(values, fault);
+    return done && take_corner_word(values, fault);
 }
 
 bool LatheCycles::record_arc(const BlockValues &values, const Settings &settings, const State &state,
@@ -278,7 +277,7 @@ bool LatheCycles::record_arc(const BlockValues &values, const Settings &settings
     BlockValues words = values;
     words.present &= ~(letters("xzacuvwpby"));
     for (const auto &[name, axis] : {std::pair{'x', X}, std::pair{'z', Z}}) {
-        const double relative = state.isIncremental ? end[axis] - begin.position[axis] : end[axis];
+        const double relative = state.incremental ? end[axis] - begin.position[axis] : end[axis];
         words.present |= bit_of(BlockValues::index(name));
         words.value[static_cast<std::size_t>(BlockValues::index(name))] =
             axis == X && state.isDiameter ? 2.0 * relative : relative;
@@ -297,7 +296,7 @@ bool LatheCycles::record_arc(const BlockValues &values, const Settings &settings
     return true;
 }
 
-/// A: a fillet at the end of this move, C: a chamfer.
+/// A: a fillet at the end of this move; C: a chamfer.
 bool LatheCycles::take_corner_word(const BlockValues &values, Fault &fault) {
     if (!values.has('a') && !values.has('c')) {
         return true;
@@ -313,7 +312,7 @@ bool LatheCycles::take_corner_word(const BlockValues &values, Fault &fault) {
     }
     if (!request_->profile.empty()) {
         request_->profile.back().fillet = values.at(name);
-        request_->profile.back().isChamfer = name == 'c';
+        request_->profile.back().is_chamfer = name == 'c';
     }
     return true;
 }
@@ -326,28 +325,28 @@ bool LatheCycles::finish(State &state, CanonQueue &canon, Fault &fault) {
 
 bool LatheCycles::cut(const LatheRequest &request, State &state, CanonQueue &canon, Fault &fault) {
     const std::string name = code_name(*find_code('g', request.code));
-    const bool isFinishing = request.code == 700;
+    const bool finishing = request.code == 700;
     state.motion = 10;
-    state.cycle.isRunning = false;
+    state.cycle.running = false;
     state.comp.set_exit(false);
     const auto rapid = [](Point to) { return ProfileMove{true, false, to, {}, 1, -1}; };
     if (!send_profile_move(rapid({request.start[Z], request.start[X]}), {}, state, canon, fault)) {
         return false;
     }
-    if (request.profile.size() < 2) {  // no more than the way to its beginning
+    if (request.profile.size() < 2) {  // only the move to its start
         return true;
     }
     const double tolerance = state.units == LengthUnits::MM ? TOLERANCE_MM : TOLERANCE_INCH;
-    const bool isRoughed = roughed_ && roughed_->label == request.label;
+    const bool is_roughed = roughed_ && roughed_->label == request.label;
     const std::expected<bool, std::string> isFacing =
-        choose_facing(request, isRoughed ? std::optional(roughed_->isFacing) : std::nullopt, tolerance);
+        choose_facing(request, is_roughed ? std::optional(roughed_->isFacing) : std::nullopt, tolerance);
     std::expected<FramedProfile, std::string> framed =
         isFacing ? framed_profile(request.profile, *isFacing, tolerance) : std::unexpected(isFacing.error());
     if (!framed) {
         return fault.set(fmt::format("The profile of {} {}", name, framed.error()));
     }
-    const bool isSideNeeded = !isFinishing || request.distance > 0.0 || request.end_distance > 0.0;
-    if (isSideNeeded && !framed->frame.isSideClear) {
+    const bool side_needed = !finishing || request.distance > 0.0 || request.end_distance > 0.0;
+    if (side_needed && !framed->frame.side_clear) {
         return refuse_side(request, framed->frame, name, state.isDiameter, fault);
     }
     ProfileSegment &entry = framed->profile.front();
@@ -360,24 +359,24 @@ bool LatheCycles::cut(const LatheRequest &request, State &state, CanonQueue &can
     roughing.narrowest = 20.0 * tolerance;
     for (int pass = request.passes - 1; pass >= 0; --pass) {
         const double ahead = (request.distance - request.end_distance) * pass / request.passes;
-        const double distance = isFinishing ? request.end_distance + ahead : request.distance;
-        const bool isLeavingCut = !isFinishing || pass > 0;
-        Profile cut = contour_of(framed->profile, isFinishing && distance == 0.0, tolerance);
-        if (isLeavingCut && !isEndingAbove(cut)) {  // a profile without a shoulder ends at one
+        const double distance = finishing ? request.end_distance + ahead : request.distance;
+        const bool is_leaving_cut = !finishing || pass > 0;
+        Profile cut = contour_of(framed->profile, finishing && distance == 0.0, tolerance);
+        if (is_leaving_cut && !isEndingAbove(cut)) {  // a profile without a shoulder ends at a layer
             add_way_out(cut, cut.front().start.y);
         }
         cut = offset_profile(cut, distance, tolerance);
-        const Point begin = entry.start, back{begin.x, isFinishing ? clear_height(cut) : begin.y};
-        if (isLeavingCut) {
+        const Point begin = entry.start, back{begin.x, finishing ? clear_height(cut) : begin.y};
+        if (is_leaving_cut) {
             add_way_out(cut, back.y);
         }
         std::optional<std::vector<ProfileMove>> moves =
-            isFinishing ? finish_moves(cut) : rough_moves(cut, roughing);
+            finishing ? finish_moves(cut) : rough_moves(cut, roughing);
         if (!moves) {
             return fault.set(fmt::format("{} would make more than a million moves: is I too small?", name));
         }
-        if (isFinishing && pass > 0) {
-            if (back.y > begin.y) {  // above the contour first
+        if (finishing && pass > 0) {
+            if (back.y > begin.y) {  // moves above the contour first
                 moves->push_back(rapid(back));
             }
             moves->push_back(to_begin);
@@ -388,7 +387,7 @@ bool LatheCycles::cut(const LatheRequest &request, State &state, CanonQueue &can
             }
         }
     }
-    if (!isFinishing) {
+    if (!finishing) {
         roughed_ = {request.label, *isFacing};
     }
     return true;

@@ -8,9 +8,9 @@ namespace mw::gcode::detail {
 namespace {
 
 constexpr double TINY = 1e-9;
-constexpr std::size_t MOST_MOVES = 1000000;  // of one cycle
+constexpr std::size_t MOST_MOVES = 1000000;  // maximum for one cycle
 
-/// Where a segment without extremes is at height `y`, which lies between its ends.
+/// Point of a segment without extremes at height `y`, which lies between its ends.
 Point at_height(const ProfileSegment &segment, double y) {
     if (std::fabs(y - segment.start.y) < TINY || std::fabs(y - segment.end.y) < TINY) {
         return std::fabs(y - segment.start.y) < TINY ? segment.start : segment.end;
@@ -51,18 +51,18 @@ class Rougher {
     const Profile &profile_;
     const RoughingPlan &plan_;
     std::vector<ProfileMove> moves_;
-    double surface_ = 0;   ///< of the material: the height of the cycle's start
-    double top_ = 0;       ///< of the layers
-    long long layer_ = 0;  ///< the next one, from the top
-    double rim_ = 0;       ///< of the pocket that it is in
-    bool isInPocket_ = false, isTooLong_ = false;
+    double surface_ = 0;   ///< height of the material: the height of the cycle's start
+    double top_ = 0;       ///< height of the first layer
+    long long layer_ = 0;  ///< next layer, from the top
+    double rim_ = 0;       ///< height of the pocket's rim
+    bool in_pocket_ = false, too_long_ = false;
 };
 
 void add_move(std::vector<ProfileMove> &moves, const ProfileSegment &segment, Point end, bool isRapid) {
     const bool isArc = segment.isArc && !isRapid;
-    const bool isGoingOn = isArc && !moves.empty() && moves.back().isArc &&
-                           moves.back().source == segment.source && moves.back().centre == segment.centre;
-    if (isGoingOn) {
+    const bool continuing = isArc && !moves.empty() && moves.back().isArc &&
+                            moves.back().source == segment.source && moves.back().centre == segment.centre;
+    if (continuing) {
         moves.back().end = end;
         return;
     }
@@ -73,7 +73,7 @@ void Rougher::move_to(const ProfileSegment &segment, Point end, bool isRapid) {
     add_move(moves_, segment, end, isRapid);
 }
 
-/// The next place at which the profile comes up through `level`.
+/// The next position where the profile rises through `level`.
 std::optional<Rougher::Crossing> Rougher::rise_through(std::size_t after, double level) const {
     for (std::size_t i = after + 1; i < profile_.size(); ++i) {
         const ProfileSegment &segment = profile_[i];
@@ -88,7 +88,7 @@ bool Rougher::isUnderTool(Point at) const {
     return !moves_.empty() && distance(moves_.back().end, at) < TINY;
 }
 
-/// Across at one level, aside and back to where it began.
+/// Cuts across at one level, moves aside and returns to the start.
 void Rougher::cut(Point from, Point to, bool isRapid) {
     if (to.x - from.x < plan_.narrowest) {
         moves_.push_back({false, false, to, {}, 1, -1});
@@ -105,59 +105,59 @@ void Rougher::cut(Point from, Point to, bool isRapid) {
 
 void Rougher::descend(std::size_t index) {
     const ProfileSegment &segment = profile_[index];
-    const bool isEntry = index == 0;
-    bool isCut = false;
-    const bool isForPocketsOnly = plan_.pockets == RoughingPlan::Pockets::ONLY;
-    if (isForPocketsOnly && !isInPocket_) {
+    const bool is_entry = index == 0;
+    bool is_cut = false;
+    const bool for_pockets_only = plan_.pockets == RoughingPlan::Pockets::ONLY;
+    if (for_pockets_only && !in_pocket_) {
         rim_ = segment.start.y;
         top_ = std::fmin(rim_, surface_);
         layer_ = 0;
-        isInPocket_ = true;
+        in_pocket_ = true;
     }
-    while (!isTooLong_ && level() <= segment.start.y + TINY && level() > segment.end.y + TINY) {
+    while (!too_long_ && level() <= segment.start.y + TINY && level() > segment.end.y + TINY) {
         const std::optional<Crossing> other = rise_through(index, level());
         if (!other) {
             break;
         }
         const Point from = at_height(segment, level());
-        if (!isUnderTool(from) || isEntry) {
-            move_to(segment, from, isEntry);
+        if (!isUnderTool(from) || is_entry) {
+            move_to(segment, from, is_entry);
         }
         if (other->point.x - from.x > TINY) {
-            cut(from, other->point, isEntry);
+            cut(from, other->point, is_entry);
         }
-        isTooLong_ = isTooLong_ || moves_.size() > MOST_MOVES;
+        too_long_ = too_long_ || moves_.size() > MOST_MOVES;
         ++layer_;
-        isCut = true;
+        is_cut = true;
     }
-    move_to(segment, segment.end, isEntry && isCut);
+    move_to(segment, segment.end, is_entry && is_cut);
 }
 
 void Rougher::rise(const ProfileSegment &segment) {
     move_to(segment, segment.end, false);
     const double steps = std::floor((segment.end.y - level() + TINY) / plan_.increment);
     layer_ = std::max(0LL, layer_ - static_cast<long long>(std::clamp(steps, 0.0, 1e9)));
-    isInPocket_ = isInPocket_ && segment.end.y < rim_ - TINY;
+    in_pocket_ = in_pocket_ && segment.end.y < rim_ - TINY;
 }
 
-/// G71.1: straight over the pockets.
+/// G71.1: straight across the pockets.
 void Rougher::follow_envelope(std::size_t first) {
     Point at = profile_[first].start;
-    bool isNew = true;
+    bool is_new = true;
     for (std::size_t i = first; i < profile_.size();) {
         ProfileSegment segment = profile_[i];
         segment.start = at;
-        const bool isSameArc = i > first && segment.isArc && segment.source == profile_[i - 1].source &&
-                               segment.centre == profile_[i - 1].centre;
-        const bool isVisited = plan_.isVisitingStarts || i == first || i + 1 == profile_.size() ||
-                               (!moves_.empty() && moves_.back().isArc);
-        if (isNew && isVisited && !isSameArc) {
+        const bool is_same_arc = i > first && segment.isArc && segment.source == profile_[i - 1].source &&
+                                 segment.centre == profile_[i - 1].centre;
+        const bool visited = plan_.is_visiting_starts || i == first || i + 1 == profile_.size() ||
+                             (!moves_.empty() && moves_.back().isArc);
+        if (is_new && visited && !is_same_arc) {
             moves_.push_back({false, false, at, {}, 1, -1});
         }
         std::optional<Crossing> other = isDescending(segment) ? rise_through(i, at.y) : std::nullopt;
-        const bool isFromAbove =
+        const bool from_above =
             !other && isDescending(segment) && at.y > surface_ + TINY && segment.end.y < surface_ - TINY;
-        if (isFromAbove) {  // the pocket begins where the material does
+        if (from_above) {  // the pocket begins at the surface of the material
             at = at_height(segment, surface_);
             move_to(segment, at, false);
             other = rise_through(i, surface_);
@@ -168,20 +168,20 @@ void Rougher::follow_envelope(std::size_t first) {
         } else {
             move_to(segment, at, false);
         }
-        isNew = !other || distance(at, profile_[other->index].end) < TINY;
-        i = other ? other->index + (isNew ? 1 : 0) : i + 1;
+        is_new = !other || distance(at, profile_[other->index].end) < TINY;
+        i = other ? other->index + (is_new ? 1 : 0) : i + 1;
     }
 }
 
 std::optional<std::vector<ProfileMove>> Rougher::run() {
     using Pockets = RoughingPlan::Pockets;
-    const bool isFalling = isDescending(profile_.front());
+    const bool falling = isDescending(profile_.front());
     std::size_t first = 0;
     surface_ = top_ = profile_.front().start.y;
-    if (plan_.pockets == Pockets::ONLY && isFalling) {
+    if (plan_.pockets == Pockets::ONLY && falling) {
         move_to(profile_.front(), profile_.front().end, true);
         first = 1;
-    } else if (plan_.pockets != Pockets::ONLY && isFalling) {
+    } else if (plan_.pockets != Pockets::ONLY && falling) {
         descend(0);
         first = 1;
     }
@@ -196,7 +196,7 @@ std::optional<std::vector<ProfileMove>> Rougher::run() {
     for (std::size_t i = first; i < profile_.size(); ++i) {
         isDescending(profile_[i]) ? descend(i) : rise(profile_[i]);
     }
-    return isTooLong_ ? std::optional<std::vector<ProfileMove>>() : std::move(moves_);
+    return too_long_ ? std::optional<std::vector<ProfileMove>>() : std::move(moves_);
 }
 
 }  // namespace

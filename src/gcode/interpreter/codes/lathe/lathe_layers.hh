@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// How a profile is cut: in one pass along it, or in layers from the start of the cycle down to it.
+// Cutting a profile: in one pass along it, or in layers from the start of the cycle down to it.
 #pragma once
 
 #include "gcode/interpreter/codes/lathe/lathe_profile.hh"
@@ -14,36 +14,36 @@ struct ProfileMove {
     Point end;
     Point centre;
     int turn = 1;
-    int source = -1;  ///< of the segment that it follows
+    int source = -1;  ///< source of the segment that it follows
 };
 
-/// How deep G71 and G72 cut, and what of the profile.
+/// Depth of cut of G71 and G72, and the part of the profile to cut.
 struct RoughingPlan {
     enum class Pockets { ALL, SKIP, ONLY };  ///< G71, G71.1, G71.2
     Pockets pockets = Pockets::ALL;
     double increment = 1, retract = 0.5;
-    double narrowest = 0;           ///< a layer shorter than this is cut there and back: no place to retract
-    bool isVisitingStarts = false;  ///< G71.1: a move without length to where each segment begins, as
-                                    ///< LinuxCNC prints it
+    double narrowest = 0;  ///< a shorter layer is cut in both directions: it has no space to retract
+    bool is_visiting_starts = false;  ///< G71.1: a move without length to where each segment begins, as
+                                      ///< LinuxCNC prints it
 };
 
 /// A cycle whose profile is being read from its subroutine.
 struct LatheRequest {
     int code = 0;   ///< ten times the G code
     int label = 0;  ///< Q: the subroutine
-    Pose start;     ///< where the cycle begins
+    Pose start;     ///< start of the cycle
     RoughingPlan roughing;
     double distance = 0, end_distance = 0;  ///< D, and E of G70
     int passes = 1;                         ///< P of G70
-    int motion = 10;                        ///< the G code in force in the profile: G1 when it gives none
-    Pose position;                          ///< its end so far
+    int motion = 10;                        ///< G code of the profile's moves: G1 when it has none
+    Pose position;                          ///< end of the profile so far
     Profile profile;                        ///< x along Z, y along X
 };
 
-/// The moves of one finishing pass, beginning with a rapid move to the end of the first segment.
+/// The moves of one finishing pass; the first is a rapid move to the end of the first segment.
 std::vector<ProfileMove> finish_moves(const Profile &profile);
 /// The moves of G71 and G72; none when there would be more than a million. No layer is deeper than the
-/// increment, and no rapid move leaves what the layers before it have cleared: the material begins at the
+/// increment, and rapid moves stay in the area that earlier layers have cleared: the material begins at the
 /// profile's first point and at the height of the cycle's start.
 std::optional<std::vector<ProfileMove>> rough_moves(const Profile &profile, const RoughingPlan &plan);
 

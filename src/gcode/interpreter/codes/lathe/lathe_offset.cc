@@ -6,8 +6,8 @@
 namespace mw::gcode::detail {
 namespace {
 
-constexpr double SAME_X = 1e-10;      ///< places along the cut that are one
-constexpr double SAME_HEIGHT = 1e-9;  ///< heights that are one
+constexpr double SAME_X = 1e-10;      ///< positions along the cut closer than this are equal
+constexpr double SAME_HEIGHT = 1e-9;  ///< heights closer than this are equal
 
 double height_at(const ProfileSegment &piece, double x) {
     if (piece.isArc) {
@@ -18,7 +18,7 @@ double height_at(const ProfileSegment &piece, double x) {
     return piece.start.y + part * (piece.end.y - piece.start.y);
 }
 
-/// Where a piece begins or ends, exactly; else the place on it.
+/// The exact start or end of a piece; otherwise the point on it.
 Point point_at(const ProfileSegment &piece, double x) {
     if (std::fabs(x - piece.start.x) < SAME_X) {
         return piece.start;
@@ -37,8 +37,8 @@ ProfileSegment line(Point from, Point to) {
     return one;
 }
 
-/// The arc through its own ends: the rounded numbers of a programmed arc may give two radii, and one of them
-/// alone would miss an end by their difference.
+/// The arc through its own end points: rounded numbers of a programmed arc may give two radii, and a single
+/// one would miss an end by their difference.
 ProfileSegment with_one_radius(const ProfileSegment &segment) {
     ProfileSegment out = segment;
     if (segment.isArc && distance(segment.start, segment.end) > SAME_X) {
@@ -61,8 +61,8 @@ ProfileSegment around(Point corner, Point from, Point to, double by) {
     return arc;
 }
 
-/// Where the moved neighbours of a nearly straight corner meet, prolonged if need be. None when that is not
-/// next to where they end.
+/// Intersection of the offset neighbours of a nearly straight corner, extended if necessary. None if it is
+/// not near their ends.
 std::optional<Point> meeting_point(const ProfileSegment &before, const ProfileSegment &after, Point corner,
                                    double by, double tolerance) {
     const double near = 100.0 * tolerance;
@@ -77,18 +77,18 @@ std::optional<Point> meeting_point(const ProfileSegment &before, const ProfileSe
     std::optional<Point> best;
     for (int i = 0; i < found.count; ++i) {
         const Point point = found.points[i];
-        const bool isBetween = point.x > before.start.x + SAME_X && point.x < after.end.x - SAME_X;
-        const bool isNear = distance(point, before.end) < near && distance(point, after.start) < near &&
-                            distance(point, corner) > by - SAME_HEIGHT &&
-                            distance(point, corner) < by + tolerance;
-        if (isBetween && isNear && (!best || point.x < best->x)) {
+        const bool between = point.x > before.start.x + SAME_X && point.x < after.end.x - SAME_X;
+        const bool is_near = distance(point, before.end) < near && distance(point, after.start) < near &&
+                             distance(point, corner) > by - SAME_HEIGHT &&
+                             distance(point, corner) < by + tolerance;
+        if (between && is_near && (!best || point.x < best->x)) {
             best = point;
         }
     }
     return best;
 }
 
-/// Appends a piece, and a line to it over the gap that the rounded numbers of an arc leave before it.
+/// Appends a piece, and a line to it across the gap that rounded numbers of an arc leave.
 void append_piece(Profile &chain, const ProfileSegment &piece) {
     if (!chain.empty() && piece.start.x > chain.back().end.x) {
         chain.push_back(line(chain.back().end, piece.start));
@@ -96,18 +96,18 @@ void append_piece(Profile &chain, const ProfileSegment &piece) {
     chain.push_back(piece);
 }
 
-/// What the moved path needs at the corner before `next`: an arc when it is convex, or no more than another
-/// common point when it is nearly straight.
+/// Connects the offset path at the corner before `next`: an arc when it is convex, or only a common point
+/// when it is nearly straight.
 void join(Profile &chain, const ProfileSegment &before, const ProfileSegment &after, double by,
           double tolerance, std::optional<ProfileSegment> &next) {
     const Point corner = after.start;
     const Point from = direction(before, before.end), to = direction(after, corner);
     constexpr double STRAIGHT = 1e-9;
     const double shortest_arc = 10.0 * tolerance;
-    const bool isBeforeThere = moved(before, by).has_value();
+    const bool before_present = moved(before, by).has_value();
     const double bend = cross(from, to);
-    const bool isNearlyStraight = by * distance(from, to) < shortest_arc && dot(from, to) > 0.0;
-    if (isNearlyStraight && next && isBeforeThere && !isUpright(chain.back()) && !isUpright(*next)) {
+    const bool nearly_straight = by * distance(from, to) < shortest_arc && dot(from, to) > 0.0;
+    if (nearly_straight && next && before_present && !isUpright(chain.back()) && !isUpright(*next)) {
         if (distance(chain.back().end, next->start) < SAME_HEIGHT) {
             return;
         }
@@ -116,14 +116,15 @@ void join(Profile &chain, const ProfileSegment &before, const ProfileSegment &af
             return;
         }
     }
-    // Up and down again is a peak, down and up a slit, whichever way rounded numbers turn the two directions.
-    const bool isFolded = dot(from, to) < 0.0 && from.y * to.y < 0.0;
-    if (isFolded ? from.y > 0.0 : bend < -STRAIGHT) {
+    // Up and down is a peak, down and up a slit, independent of the direction in which rounding turns the
+    // two.
+    const bool folded = dot(from, to) < 0.0 && from.y * to.y < 0.0;
+    if (folded ? from.y > 0.0 : bend < -STRAIGHT) {
         append_piece(chain, around(corner, from, to, by));
     }
 }
 
-/// The moved segments and the arcs around convex corners, in order; they may cross each other.
+/// The offset segments and the arcs around convex corners, in order; they may cross each other.
 Profile chain_of(const Profile &profile, double by, double tolerance) {
     Profile chain;
     for (std::size_t i = 1; i < profile.size(); ++i) {
@@ -141,13 +142,13 @@ Profile chain_of(const Profile &profile, double by, double tolerance) {
     return chain;
 }
 
-/// A part of a piece along x.
+/// An interval of a piece along x.
 struct Run {
     std::size_t piece;
     double from, to;
 };
 
-/// All places along x where another piece may become the highest.
+/// All x positions where another piece may become the highest.
 std::vector<double> break_points(const Profile &pieces) {
     std::vector<double> places;
     std::vector<std::size_t> order(pieces.size()), active;
@@ -203,10 +204,10 @@ std::vector<Run> highest_runs(const Profile &pieces) {
         }
         const auto height = [&](std::size_t k) { return height_at(pieces[k], middle); };
         std::size_t best = *std::ranges::max_element(active, {}, height);
-        const bool isGoingOn = !runs.empty() &&
-                               std::ranges::find(active, runs.back().piece) != active.end() &&
-                               height(runs.back().piece) > height(best) - SAME_HEIGHT;
-        best = isGoingOn ? runs.back().piece : best;
+        const bool continuing = !runs.empty() &&
+                                std::ranges::find(active, runs.back().piece) != active.end() &&
+                                height(runs.back().piece) > height(best) - SAME_HEIGHT;
+        best = continuing ? runs.back().piece : best;
         if (!runs.empty() && runs.back().piece == best && runs.back().to > from - SAME_X) {
             runs.back().to = to;
         } else {
@@ -217,19 +218,19 @@ std::vector<Run> highest_runs(const Profile &pieces) {
 }
 
 void append(Profile &out, const ProfileSegment &piece) {
-    const bool isGap = !out.empty() && distance(out.back().end, piece.start) > 0.0;
-    if (isGap && distance(out.back().end, piece.start) < SAME_HEIGHT) {
+    const bool is_gap = !out.empty() && distance(out.back().end, piece.start) > 0.0;
+    if (is_gap && distance(out.back().end, piece.start) < SAME_HEIGHT) {
         out.push_back(piece);
         out.back().start = out[out.size() - 2].end;
         return;
     }
-    if (isGap) {
+    if (is_gap) {
         out.push_back(line(out.back().end, piece.start));
     }
     out.push_back(piece);
 }
 
-/// The runs as segments, with straight lines where one ends lower or higher than the next begins.
+/// The runs as segments, connected by straight lines at steps.
 Profile edge_of(const Profile &pieces, const std::vector<Run> &runs) {
     Profile out;
     for (const Run &run : runs) {
@@ -253,40 +254,40 @@ Profile offset_profile(const Profile &programmed, double by, double tolerance) {
     const ProfileSegment &last = profile.back();
     const Point heading = direction(last, last.end);
     const Point end = sum(last.end, {-heading.y, heading.x}, by);
-    const bool isRisingAtEnd = heading.y > SAME_HEIGHT;
+    const bool is_rising_at_end = heading.y > SAME_HEIGHT;
     Profile all = chain;
-    if (isRisingAtEnd) {  // its own end shadows what lies behind it
+    if (is_rising_at_end) {  // its own end covers the profile behind it
         append_piece(all, around(last.end, heading, {1.0, 0.0}, by));
     }
     Profile pieces;
     std::ranges::copy_if(all, std::back_inserter(pieces),
                          [](const ProfileSegment &piece) { return !isUpright(piece); });
     std::vector<Run> runs = highest_runs(pieces);
-    if (isRisingAtEnd) {
+    if (is_rising_at_end) {
         const auto cap = std::ranges::find_if(runs, [&](const Run &run) {
             return run.piece + 1 == pieces.size() && std::fabs(run.from - end.x) < SAME_HEIGHT;
         });
         runs.erase(cap, runs.end());
     }
-    const double limit = isRisingAtEnd ? last.end.x : end.x;
+    const double limit = is_rising_at_end ? last.end.x : end.x;
     std::erase_if(runs, [&](const Run &run) { return run.from > limit - SAME_X; });
     if (!runs.empty()) {
         runs.back().to = std::fmin(runs.back().to, limit);
     }
     const Profile edge = edge_of(pieces, runs);
-    const bool isEndReached =
+    const bool end_reached =
         edge.empty() || (std::fabs(edge.back().end.x - end.x) < SAME_HEIGHT &&
-                         (isRisingAtEnd || (!chain.empty() && isUpright(chain.back()))));
+                         (is_rising_at_end || (!chain.empty() && isUpright(chain.back()))));
     Profile out{profile.front()};
     const Point begin = chain.empty() ? end : chain.front().start;
-    const bool isWallFirst = !chain.empty() && isUpright(chain.front());
-    const bool isWallKept =
-        isWallFirst && !edge.empty() && std::fabs(begin.x - edge.front().start.x) < SAME_HEIGHT;
-    if (isWallKept && distance(begin, edge.front().start) > SAME_HEIGHT) {
+    const bool wall_first = !chain.empty() && isUpright(chain.front());
+    const bool wall_kept =
+        wall_first && !edge.empty() && std::fabs(begin.x - edge.front().start.x) < SAME_HEIGHT;
+    if (wall_kept && distance(begin, edge.front().start) > SAME_HEIGHT) {
         out.push_back(line(begin, edge.front().start));
     }
     out.insert(out.end(), edge.begin(), edge.end());
-    if (isEndReached && distance(out.back().end, end) > SAME_HEIGHT) {
+    if (end_reached && distance(out.back().end, end) > SAME_HEIGHT) {
         out.push_back(line(out.size() > 1 ? out.back().end : begin, end));
     }
     out.front().end = out.size() > 1 ? out[1].start : end;

@@ -21,7 +21,7 @@ bool isOn(const ProfileSegment &segment, Point point) {
            sweep(segment, segment.start, point) < sweep(segment, segment.start, segment.end) + TINY;
 }
 
-/// The crossing of both segments that lies next to `corner`.
+/// The crossing of both segments that is nearest to `corner`.
 std::optional<Point> common_point(const ProfileSegment &a, const ProfileSegment &b, Point corner) {
     const Crossings found = crossings(a, b);
     std::optional<Point> best;
@@ -35,13 +35,13 @@ std::optional<Point> common_point(const ProfileSegment &a, const ProfileSegment 
     return best;
 }
 
-/// The fillet between a segment and the next, which it shortens. False when it does not fit.
+/// The fillet between a segment and the next; shortens both. False when it does not fit.
 bool make_fillet(ProfileSegment &a, ProfileSegment &b, ProfileSegment &fillet) {
     const Point out = direction(a, a.end), in = direction(b, b.start);
     const double bend = cross(out, in);
     const double radius = a.fillet;
     fillet = {};
-    fillet.isArc = !a.isChamfer;
+    fillet.isArc = !a.is_chamfer;
     fillet.turn = bend > 0.0 ? 1 : -1;
     const std::optional<ProfileSegment> ma = moved(a, radius * fillet.turn),
                                         mb = moved(b, radius * fillet.turn);
@@ -107,7 +107,7 @@ CutFrame frame_of(const Profile &profile, bool isFacing) {
     if (isBelowStart(frame)) {
         return frame;
     }
-    mirrored.isSideClear = isBelowStart(mirrored);
+    mirrored.side_clear = isBelowStart(mirrored);
     return mirrored;
 }
 
@@ -159,7 +159,7 @@ std::optional<ProfileSegment> moved(const ProfileSegment &segment, double by) {
     if (radius < TINY) {
         return std::nullopt;
     }
-    // One radius, though the numbers of a programmed arc may give two.
+    // One radius, although the numbers of a programmed arc may give two.
     out.start = sum(segment.centre, unit(segment.centre, segment.start), radius);
     out.end = sum(segment.centre, unit(segment.centre, segment.end), radius);
     return out;
@@ -171,9 +171,9 @@ Profile split_arcs(const Profile &profile) {
         const Point top = segment.isArc
                               ? Point{segment.centre.x, segment.centre.y - segment.turn * radius_of(segment)}
                               : Point{};
-        const bool isSplit = segment.isArc && top.x > segment.start.x + TINY && top.x < segment.end.x - TINY;
+        const bool split = segment.isArc && top.x > segment.start.x + TINY && top.x < segment.end.x - TINY;
         out.push_back(segment);
-        if (isSplit) {
+        if (split) {
             out.back().end = top;
             out.push_back(segment);
             out.back().start = top;
@@ -188,20 +188,20 @@ bool isDescending(const ProfileSegment &segment) {
 
 double top_of(const ProfileSegment &segment) {
     const double ends = std::fmax(segment.start.y, segment.end.y);
-    const bool isOverCentre = segment.isArc && segment.turn < 0 && segment.start.x < segment.centre.x &&
-                              segment.end.x > segment.centre.x;
-    return isOverCentre ? std::fmax(ends, segment.centre.y + radius_of(segment)) : ends;
+    const bool over_centre = segment.isArc && segment.turn < 0 && segment.start.x < segment.centre.x &&
+                             segment.end.x > segment.centre.x;
+    return over_centre ? std::fmax(ends, segment.centre.y + radius_of(segment)) : ends;
 }
 
 bool round_corners(Profile &profile) {
     Profile out;
     for (std::size_t i = 0; i < profile.size(); ++i) {
         ProfileSegment segment = profile[i];
-        const bool isCorner =
+        const bool is_corner =
             segment.fillet > 0.0 && i + 1 < profile.size() && distance(segment.start, segment.end) > TINY;
         constexpr double TANGENT = 1e-6;
-        if (!isCorner || std::fabs(cross(direction(segment, segment.end),
-                                         direction(profile[i + 1], profile[i + 1].start))) < TANGENT) {
+        if (!is_corner || std::fabs(cross(direction(segment, segment.end),
+                                          direction(profile[i + 1], profile[i + 1].start))) < TANGENT) {
             out.push_back(segment);
             continue;
         }
@@ -226,11 +226,11 @@ bool isMonotonic(const Profile &profile, double tolerance) {
             continue;
         }
         const double spare = std::acos(std::fmax(-1.0, 1.0 - tolerance / radius_of(segment)));
-        const bool isForward =
+        const bool forward =
             sweep(segment, segment.start, segment.end) < std::numbers::pi + 2.0 * spare + TINY &&
             distance(segment.start, segment.end) > TINY && setback(segment, segment.start) <= tolerance &&
             setback(segment, segment.end) <= tolerance;
-        if (!isForward) {
+        if (!forward) {
             return false;
         }
     }
@@ -243,10 +243,10 @@ void drop_short(Profile &profile, double length) {
         if (distance(from, to) >= length) {
             continue;
         }
-        const bool isLast = i + 1 == profile.size();
-        const Point middle = isLast ? to : Point{(from.x + to.x) / 2.0, (from.y + to.y) / 2.0};
+        const bool is_last = i + 1 == profile.size();
+        const Point middle = is_last ? to : Point{(from.x + to.x) / 2.0, (from.y + to.y) / 2.0};
         profile[i - 1].end = middle;
-        if (!isLast) {
+        if (!is_last) {
             profile[i + 1].start = middle;
         }
         profile.erase(profile.begin() + static_cast<std::ptrdiff_t>(i));
@@ -269,16 +269,16 @@ void straighten(Profile &profile) {
         }
         const auto mirrored = [&](Point at) { return Point{at.x, 2.0 * segment.centre.y - at.y}; };
         const Point begin = segment.start, end = segment.end;
-        const bool isBackAtStart = setback(segment, begin) > 0.0, isBackAtEnd = setback(segment, end) > 0.0;
-        if (isBackAtStart) {
+        const bool back_at_start = setback(segment, begin) > 0.0, back_at_end = setback(segment, end) > 0.0;
+        if (back_at_start) {
             segment.start = mirrored(begin);
             out.push_back(line(begin, segment.start));
         }
-        segment.end = isBackAtEnd ? mirrored(end) : end;
+        segment.end = back_at_end ? mirrored(end) : end;
         if (segment.end.x > segment.start.x) {
             out.push_back(segment);
         }
-        if (isBackAtEnd) {
+        if (back_at_end) {
             out.push_back(line(segment.end, end));
         }
     }

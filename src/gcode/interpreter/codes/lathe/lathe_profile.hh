@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The contour that the lathe cycles G70 to G72 follow: lines and arcs in a frame of its own, where the cut
-// runs towards larger x and the material lies below the tool, towards smaller y. Pure geometry; lengths in
-// program units.
+// The contour of the lathe cycles G70 to G72: lines and arcs in a separate frame, in which the cut runs
+// towards larger x and the material lies below the tool, towards smaller y. Pure geometry; lengths in program
+// units.
 #pragma once
 
 #include <optional>
@@ -11,24 +11,24 @@
 
 namespace mw::gcode::detail {
 
-/// A line, or an arc that does not turn back along x.
+/// A line, or an arc that is monotonic along x.
 struct ProfileSegment {
     Point start, end;
     bool isArc = false;
     Point centre;
-    int turn = 1;            ///< +1 counterclockwise
-    double fillet = 0;       ///< of the corner at the end: radius of the word A or C
-    bool isChamfer = false;  ///< the corner is cut by a line between the fillet's ends
-    int source = 0;          ///< pieces of one arc have the same
+    int turn = 1;             ///< +1 counterclockwise
+    double fillet = 0;        ///< corner at the end: radius of the word A or C
+    bool is_chamfer = false;  ///< the corner is cut by a line between the fillet's ends
+    int source = 0;           ///< equal for all pieces of one arc
 };
 
-/// The first segment is the way from the cycle's start to the first point of the contour.
+/// The first segment leads from the cycle's start to the first point of the contour.
 using Profile = std::vector<ProfileSegment>;
 
 /// From (Z, X) to the frame of a cut, and back.
 struct CutFrame {
-    bool isFacing = false;    ///< the cut runs along X
-    bool isSideClear = true;  ///< the start tells on which side of the profile the material is
+    bool isFacing = false;   ///< the cut runs along X
+    bool side_clear = true;  ///< the start determines on which side of the profile the material is
     double along = 1, across = 1;
 
     Point to(Point p) const {
@@ -42,33 +42,34 @@ struct CutFrame {
 };
 
 Profile in_frame(const Profile &profile, const CutFrame &frame);
-/// The cut runs to where the profile ends. The material lies on that side of the cycle's start where the
-/// profile begins; when both are at one height, where all of the profile lies.
+/// The cut runs towards the end of the profile. The material is on the side of the cycle's start where the
+/// profile begins; if both have the same height, on the side of the whole profile.
 CutFrame frame_of(const Profile &profile, bool isFacing);
 
 double radius_of(const ProfileSegment &arc);
-/// The direction of travel at `at`, which lies on the segment.
+/// Direction of travel at `at`, which lies on the segment.
 Point direction(const ProfileSegment &segment, Point at);
-/// How far an arc turns from `from` to `to`, 0 to a full turn [rad].
+/// Angle of an arc from `from` to `to`, 0 to a full circle [rad].
 double sweep(const ProfileSegment &arc, Point from, Point to);
-/// Crossings of the whole lines or circles that two segments lie on.
+/// Crossings of the infinite lines or full circles of two segments.
 Crossings crossings(const ProfileSegment &a, const ProfileSegment &b);
-/// The segment moved to its left by `by`. None when an arc vanishes.
+/// The segment offset to its left by `by`. None when an arc vanishes.
 std::optional<ProfileSegment> moved(const ProfileSegment &segment, double by);
-/// Arcs cut at their highest or lowest point: every piece only rises or only falls.
+/// Splits arcs at their highest or lowest point: each piece is monotonic in height.
 Profile split_arcs(const Profile &profile);
 bool isDescending(const ProfileSegment &segment);
-/// The highest that a segment comes.
+/// Maximum height of a segment.
 double top_of(const ProfileSegment &segment);
 
-/// Puts fillets and chamfers into the corners. False where one does not fit.
+/// Inserts fillets and chamfers. False where one does not fit.
 bool round_corners(Profile &profile);
-/// No segment after the first goes back by more than `tolerance`, as arcs of rounded numbers do that touch a
-/// shoulder.
+/// True if no segment after the first goes back by more than `tolerance`, as arcs with rounded numbers at a
+/// shoulder do.
 bool isMonotonic(const Profile &profile, double tolerance);
-/// Segments below `length` go; their neighbours meet in the middle.
+/// Removes segments shorter than `length`; their neighbours meet in the middle.
 void drop_short(Profile &profile, double length);
-/// Arcs that go back, by no more than isMonotonic() has allowed, begin or end with a straight line across.
+/// Replaces the part of an arc that goes back (by no more than isMonotonic() permits) by a straight line
+/// across.
 void straighten(Profile &profile);
 
 }  // namespace mw::gcode::detail

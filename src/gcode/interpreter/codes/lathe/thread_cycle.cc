@@ -21,11 +21,11 @@ constexpr double DEGREE = std::numbers::pi / 180.0;
 struct ThreadPlan {
     int spindle = 0, springs = 0;
     double pitch = 0, first_cut = 0, full_depth = 0, degression = 1, taper_length = 0;
-    double tangent = 0;  ///< of the infeed angle
+    double tangent = 0;  ///< tangent of the infeed angle
     double start_x = 0, start_z = 0, end_z = 0, peak_x = 0;
     double inward = 1;  ///< +1: cuts towards larger X
-    double along = 1;   ///< sign of the cut in Z
-    bool hasEntryTaper = false, hasExitTaper = false;
+    double along = 1;   ///< sign of the cutting direction in Z
+    bool has_entry_taper = false, has_exit_taper = false;
 };
 
 bool check_thread_cycle(const BlockValues &values, const Machine &machine, const State &state,
@@ -43,11 +43,11 @@ bool check_thread_cycle(const BlockValues &values, const Machine &machine, const
     plan.full_depth = values.at('k');
     plan.degression = values.at('r', 1.0);
     plan.taper_length = values.at('e', 0.0);
-    plan.hasEntryTaper = (taper & 1) != 0;
-    plan.hasExitTaper = (taper & 2) != 0;
+    plan.has_entry_taper = (taper & 1) != 0;
+    plan.has_exit_taper = (taper & 2) != 0;
     plan.tangent = std::tan(values.at('q', 0.0) * DEGREE);
     struct Check {
-        bool isBad;
+        bool bad;
         char word;
         const char *text;
     };
@@ -74,15 +74,15 @@ bool check_thread_cycle(const BlockValues &values, const Machine &machine, const
          "Spindle not turning in G76"},
     };
     for (const Check &check : checks) {
-        if (check.isBad) {
+        if (check.bad) {
             return fault.set(check.text, values.column_of(check.word));
         }
     }
     return check_pitch(machine, state, fault, plan.spindle, plan.pitch, values.column_of('p'));
 }
 
-/// Passes without springs: the first n whose depth J * n^(1/R) reaches K, so n = (K / J)^R rounded up. The
-/// error is that of J, K and R carried through the power.
+/// Number of passes without spring passes: the first n whose depth J * n^(1/R) reaches K, so n = (K / J)^R
+/// rounded up. The tolerance is the rounding error of J, K and R carried through the power.
 double count_passes(const ThreadPlan &plan) {
     const double ratio = plan.full_depth / plan.first_cut;
     const double passes = std::pow(ratio, plan.degression);
@@ -101,13 +101,13 @@ void thread_pass(const ThreadPlan &plan, double depth, State &state, CanonQueue 
         plan.taper_length > 0.0
             ? plan.pitch * std::hypot(plan.full_depth, plan.taper_length) / plan.taper_length
             : plan.pitch;
-    const auto go = [&](bool isRapid, double x, double z) {
+    const auto go = [&](bool rapid, double x, double z) {
         state.position[geometry::AXIS_X] = x;
         state.position[geometry::AXIS_Z] = z;
-        isRapid ? canon.take(StraightTraverse{state.position}) : canon.take(StraightFeed{state.position});
+        rapid ? canon.take(StraightTraverse{state.position}) : canon.take(StraightFeed{state.position});
     };
     go(true, safe_x, from_z);
-    if (plan.hasEntryTaper) {
+    if (plan.has_entry_taper) {
         canon.take(SwitchFeedOverride{false});
         canon.take(StartSpeedFeedSynch{plan.spindle, taper_pitch, false});
         go(false, taper_x, from_z);
@@ -118,7 +118,7 @@ void thread_pass(const ThreadPlan &plan, double depth, State &state, CanonQueue 
         canon.take(SwitchFeedOverride{false});
         canon.take(StartSpeedFeedSynch{plan.spindle, plan.pitch, false});
     }
-    if (plan.hasExitTaper) {
+    if (plan.has_exit_taper) {
         go(false, cut_x, to_z - plan.along * plan.taper_length);
         canon.take(StartSpeedFeedSynch{plan.spindle, taper_pitch, false});
         go(false, taper_x, to_z);
@@ -127,7 +127,7 @@ void thread_pass(const ThreadPlan &plan, double depth, State &state, CanonQueue 
     }
     canon.take(StopSpeedFeedSynch{});
     go(true, safe_x, to_z);
-    if (state.isFeedOverride) {
+    if (state.is_feed_override) {
         canon.take(SwitchFeedOverride{true});
     }
 }
@@ -153,7 +153,7 @@ bool cut_thread(const Code &code, const BlockValues &values, const Machine &mach
     plan.full_depth *= scale;
     plan.inward = values.at('i') < 0.0 ? -1.0 : 1.0;
     plan.along = plan.end_z < plan.start_z ? -1.0 : 1.0;
-    const int tapers = (plan.hasEntryTaper ? 1 : 0) + (plan.hasExitTaper ? 1 : 0);
+    const int tapers = (plan.has_entry_taper ? 1 : 0) + (plan.has_exit_taper ? 1 : 0);
     if (tapers * plan.taper_length > std::fabs(plan.end_z - plan.start_z)) {
         return fault.set("The tapers of G76 are longer than the thread", values.column_of('e'));
     }
@@ -163,7 +163,7 @@ bool cut_thread(const Code &code, const BlockValues &values, const Machine &mach
                          values.column_of('j'));
     }
     state.motion = code.number;
-    state.cycle.isRunning = false;
+    state.cycle.running = false;
     state.comp.set_exit(false);
     for (int pass = 1; pass < static_cast<int>(passes); ++pass) {
         thread_pass(plan, plan.first_cut * std::pow(pass, 1.0 / plan.degression), state, canon);

@@ -22,7 +22,7 @@ bool set_feed(const Code &, const BlockValues &values, State &state, CanonQueue 
     }
     state.feed = feed;
     state.feed_units = state.units;
-    if (state.feed_mode != FeedMode::INVERSE_TIME) {  // there each move has a rate of its own
+    if (state.feed_mode != FeedMode::INVERSE_TIME) {  // in inverse time mode each move has its own rate
         canon.take(SetFeedRate{feed});
     }
     return true;
@@ -65,32 +65,32 @@ bool select_plane(const Code &code, const BlockValues &, State &state, CanonQueu
 }
 
 bool set_distance_mode(const Code &code, const BlockValues &, State &state, CanonQueue &canon, Fault &) {
-    const bool isIncremental = code.number == 910;
-    if (isIncremental != state.isIncremental) {
-        canon.take(ProgramComment{isIncremental ? "interpreter: distance mode changed to incremental"
-                                                : "interpreter: distance mode changed to absolute"});
-        state.isIncremental = isIncremental;
+    const bool incremental = code.number == 910;
+    if (incremental != state.incremental) {
+        canon.take(ProgramComment{incremental ? "interpreter: distance mode changed to incremental"
+                                              : "interpreter: distance mode changed to absolute"});
+        state.incremental = incremental;
     }
     return true;
 }
 
 bool set_centre_distance_mode(const Code &code, const BlockValues &, State &state, CanonQueue &canon,
                               Fault &) {
-    const bool isAbsolute = code.number == 901;
-    if (isAbsolute != state.isCentreAbsolute) {
-        canon.take(ProgramComment{isAbsolute ? "interpreter: IJK distance mode changed to absolute"
-                                             : "interpreter: IJK distance mode changed to incremental"});
-        state.isCentreAbsolute = isAbsolute;
+    const bool absolute = code.number == 901;
+    if (absolute != state.centre_absolute) {
+        canon.take(ProgramComment{absolute ? "interpreter: IJK distance mode changed to absolute"
+                                           : "interpreter: IJK distance mode changed to incremental"});
+        state.centre_absolute = absolute;
     }
     return true;
 }
 
 bool set_diameter_mode(const Code &code, const BlockValues &, State &state, CanonQueue &canon, Fault &) {
-    const bool isDiameter = code.number == 70;
-    if (isDiameter != state.isDiameter) {
-        canon.take(ProgramComment{isDiameter ? "interpreter: Lathe diameter mode changed to diameter"
-                                             : "interpreter: Lathe diameter mode changed to radius"});
-        state.isDiameter = isDiameter;
+    const bool is_diameter = code.number == 70;
+    if (is_diameter != state.isDiameter) {
+        canon.take(ProgramComment{is_diameter ? "interpreter: Lathe diameter mode changed to diameter"
+                                              : "interpreter: Lathe diameter mode changed to radius"});
+        state.isDiameter = is_diameter;
     }
     return true;
 }
@@ -124,8 +124,8 @@ bool set_feed_mode(const Code &code, const BlockValues &values, const Machine &m
 }
 
 bool set_retract_mode(const Code &code, const BlockValues &, State &state, CanonQueue &canon, Fault &) {
-    state.isRetractToR = code.number == 990;
-    canon.take(ProgramComment{state.isRetractToR ? "interpreter: retract mode set to r_plane"
+    state.retract_to_r = code.number == 990;
+    canon.take(ProgramComment{state.retract_to_r ? "interpreter: retract mode set to r_plane"
                                                  : "interpreter: retract mode set to old_z"});
     return true;
 }
@@ -152,14 +152,14 @@ bool set_path_control(const Code &code, const BlockValues &values, State &state,
         return fault.set("R word is ambiguous on a line with both G64 and M19 - use separate lines",
                          values.column_of('r'));
     }
-    const bool isMotionsWord = values.motion != nullptr && (values.motion->words & letters("r")) != 0;
-    if (values.has('r') && !isMotionsWord) {
+    const bool is_motions_word = values.motion != nullptr && (values.motion->words & letters("r")) != 0;
+    if (values.has('r') && !is_motions_word) {
         constexpr double LOWEST_SCALE = 0.1, HIGHEST_SCALE = 1.0, KEPT = -1.0;
         const double r = values.at('r');
-        const bool isJerkLimited = r > 0.0;
+        const bool jerk_limited = r > 0.0;
         canon.take(
-            SetPlannerMode{isJerkLimited ? 1 : 0,
-                           isJerkLimited ? std::fmin(std::fmax(r, LOWEST_SCALE), HIGHEST_SCALE) : KEPT});
+            SetPlannerMode{jerk_limited ? 1 : 0,
+                           jerk_limited ? std::fmin(std::fmax(r, LOWEST_SCALE), HIGHEST_SCALE) : KEPT});
     }
     canon.take(SetMotionControlMode{state.control, state.tolerance});
     canon.take(SetNaivecamTolerance{state.naivecam});

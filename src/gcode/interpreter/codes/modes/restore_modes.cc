@@ -11,7 +11,7 @@
 namespace mw::gcode::detail {
 namespace {
 
-/// Codes that lead from the modes in force to others.
+/// Codes that change the current modes to the saved ones.
 struct Restoring {
     const Machine &machine;
     Parameters &parameters;
@@ -34,16 +34,16 @@ struct Restoring {
     bool restore(const State &saved);
 };
 
-/// Those of motion and geometry, in the order of execution.
+/// Restores modes of motion and geometry, in the order of execution.
 bool Restoring::restore_geometry(const State &saved) {
-    bool isDone = true;
+    bool done = true;
     const BlockValues none;
     if (saved.plane != state.plane) {
         state.plane = saved.plane;
         canon.take(SelectPlane{state.plane});
     }
     if (saved.isDiameter != state.isDiameter) {
-        isDone = run(set_diameter_mode, 'g', saved.isDiameter ? 70 : 80, none);
+        done = run(set_diameter_mode, 'g', saved.isDiameter ? 70 : 80, none);
     }
     if (!saved.comp.isOn() && state.comp.isOn()) {
         end_compensation(state, canon);
@@ -56,7 +56,7 @@ bool Restoring::restore_geometry(const State &saved) {
     }
     state.tool.offset_code = saved.tool.offset_code;
     if (saved.g5x_index != state.g5x_index) {
-        isDone = isDone && run(use_coordinates, 'g', coordinate_system_code(saved.g5x_index), none);
+        done = done && run(use_coordinates, 'g', coordinate_system_code(saved.g5x_index), none);
     }
     BlockValues control;
     if (saved.control == geometry::PathMode::BLEND) {
@@ -67,21 +67,21 @@ bool Restoring::restore_geometry(const State &saved) {
     const int control_code = saved.control == geometry::PathMode::BLEND        ? 640
                              : saved.control == geometry::PathMode::EXACT_PATH ? 610
                                                                                : 611;
-    isDone = isDone && run(set_path_control, 'g', control_code, control);
-    isDone = isDone && run(set_distance_mode, 'g', saved.isIncremental ? 910 : 900, none);
-    isDone = isDone && run(set_centre_distance_mode, 'g', saved.isCentreAbsolute ? 901 : 911, none);
-    if (saved.isRetractToR != state.isRetractToR) {
-        isDone = isDone && run(set_retract_mode, 'g', saved.isRetractToR ? 990 : 980, none);
+    done = done && run(set_path_control, 'g', control_code, control);
+    done = done && run(set_distance_mode, 'g', saved.incremental ? 910 : 900, none);
+    done = done && run(set_centre_distance_mode, 'g', saved.centre_absolute ? 901 : 911, none);
+    if (saved.retract_to_r != state.retract_to_r) {
+        done = done && run(set_retract_mode, 'g', saved.retract_to_r ? 990 : 980, none);
     }
-    return isDone;
+    return done;
 }
 
 bool Restoring::restore_spindles(const State &saved) {
     for (int i = 0; i < machine.count_spindles(); ++i) {
         const SpindleState &want = saved.spindles[static_cast<std::size_t>(i)];
         SpindleState &have = state.spindles[static_cast<std::size_t>(i)];
-        if (want.isConstantSurface != have.isConstantSurface || want.css_max_rpm != have.css_max_rpm) {
-            have.isConstantSurface = want.isConstantSurface;
+        if (want.is_constant_surface != have.is_constant_surface || want.css_max_rpm != have.css_max_rpm) {
+            have.is_constant_surface = want.is_constant_surface;
             have.css_max_rpm = want.css_max_rpm;
             canon.take(SetSpindleMode{i, want.css_max_rpm});
         }
@@ -100,7 +100,7 @@ bool Restoring::restore_spindles(const State &saved) {
     state.active_spindle = saved.active_spindle;
     state.feed = saved.feed;
     state.feed_units = saved.feed_units;
-    if (state.feed_mode != FeedMode::INVERSE_TIME) {  // there each move has a rate of its own
+    if (state.feed_mode != FeedMode::INVERSE_TIME) {  // in inverse time mode each move has its own rate
         canon.take(SetFeedRate{state.feed_in_units()});
     }
     for (int i = 0; i < machine.count_spindles(); ++i) {
@@ -121,29 +121,29 @@ bool Restoring::restore_spindles(const State &saved) {
 }
 
 void Restoring::restore_overrides(const State &saved) {
-    if (saved.isFeedOverride != state.isFeedOverride) {
-        canon.take(SwitchFeedOverride{saved.isFeedOverride});
+    if (saved.is_feed_override != state.is_feed_override) {
+        canon.take(SwitchFeedOverride{saved.is_feed_override});
     }
     for (int i = 0; i < machine.count_spindles(); ++i) {
         const SpindleState &want = saved.spindles[static_cast<std::size_t>(i)];
         SpindleState &have = state.spindles[static_cast<std::size_t>(i)];
-        if (want.isOverridden != have.isOverridden) {
-            have.isOverridden = want.isOverridden;
-            canon.take(SwitchSpeedOverride{i, want.isOverridden});
+        if (want.overridden != have.overridden) {
+            have.overridden = want.overridden;
+            canon.take(SwitchSpeedOverride{i, want.overridden});
         }
     }
-    if (saved.isAdaptive != state.isAdaptive) {
-        canon.take(SwitchAdaptiveFeed{saved.isAdaptive});
+    if (saved.adaptive != state.adaptive) {
+        canon.take(SwitchAdaptiveFeed{saved.adaptive});
     }
-    if (saved.isFeedHold != state.isFeedHold) {
-        canon.take(SwitchFeedHold{saved.isFeedHold});
+    if (saved.is_feed_hold != state.is_feed_hold) {
+        canon.take(SwitchFeedHold{saved.is_feed_hold});
     }
-    state.isFeedOverride = saved.isFeedOverride;
-    state.isAdaptive = saved.isAdaptive;
-    state.isFeedHold = saved.isFeedHold;
+    state.is_feed_override = saved.is_feed_override;
+    state.adaptive = saved.adaptive;
+    state.is_feed_hold = saved.is_feed_hold;
 }
 
-/// Positions, motion mode, tool and offsets of coordinate systems stay what they are.
+/// Does not change positions, motion mode, tool and offsets of coordinate systems.
 bool Restoring::restore(const State &saved) {
     if (saved.units != state.units &&
         !run(set_units, 'g', saved.units == LengthUnits::INCH ? 200 : 210, {})) {

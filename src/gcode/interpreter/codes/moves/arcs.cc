@@ -12,9 +12,9 @@
 namespace mw::gcode::detail {
 namespace {
 
-/// What the radii at the start and at the end of an arc may differ by: coordinates rounded to 0.01 mm or
-/// 0.001 inch at both ends, in both axes. A hundred times that at most for arcs so large that it is below
-/// RELATIVE_TOLERANCE.
+/// Permitted difference of the radii at the start and end of an arc: coordinates rounded to 0.01 mm or 0.001
+/// inch at both ends, in both axes. For arcs so large that this is below RELATIVE_TOLERANCE, up to a hundred
+/// times as much.
 constexpr double TOLERANCE_MM = 0.02 * std::numbers::sqrt2, TOLERANCE_INCH = 0.002 * std::numbers::sqrt2;
 constexpr double LARGE_FACTOR = 100.0;
 constexpr double RELATIVE_TOLERANCE = 0.001;
@@ -38,7 +38,7 @@ bool plan_centre_arc(const BlockValues &values, const State &state, ArcPlan &arc
     const PlaneAxes axes = plane_axes(state.plane);
     const char first = centre_letter(axes.first), second = centre_letter(axes.second);
     const double x0 = state.position[axes.first], y0 = state.position[axes.second];
-    if (state.isCentreAbsolute) {
+    if (state.centre_absolute) {
         for (const char c : {first, second}) {
             if (!values.has(c)) {
                 return fault.set(
@@ -72,7 +72,7 @@ bool plan_centre_arc(const BlockValues &values, const State &state, ArcPlan &arc
     return true;
 }
 
-/// R > 0: the arc of at most half a turn; R < 0: the other one.
+/// R > 0: the arc of at most 180 degrees; R < 0: the other one.
 bool plan_radius_arc(double radius, const Settings &settings, const State &state, ArcPlan &arc,
                      Fault &fault) {
     const PlaneAxes axes = plane_axes(state.plane);
@@ -89,8 +89,8 @@ bool plan_radius_arc(double radius, const Settings &settings, const State &state
         return fault.set("Arc radius too small to reach end point");
     }
     const double rise = size > half ? std::sqrt(size * size - half * half) : 0.0;
-    const bool isLeft = (arc.rotation > 0) == (radius > 0.0);  // of the chord
-    const double side = (isLeft ? rise : -rise) / (2.0 * half);
+    const bool left = (arc.rotation > 0) == (radius > 0.0);  // of the chord
+    const double side = (left ? rise : -rise) / (2.0 * half);
     arc.first_centre = x0 + dx / 2.0 - dy * side;
     arc.second_centre = y0 + dy / 2.0 + dx * side;
     return true;
@@ -142,7 +142,7 @@ bool move_along_arc(const Code &code, const BlockValues &values, const Machine &
         return false;
     }
     state.motion = code.number;
-    state.cycle.isRunning = false;
+    state.cycle.running = false;
     if (state.comp.isOn()) {
         const PlaneAxes axes = plane_axes(state.plane);
         if (state.feed_mode == FeedMode::INVERSE_TIME) {
@@ -164,12 +164,12 @@ bool move_along_arc(const Code &code, const BlockValues &values, const Machine &
     return true;
 }
 
-/// The arc that the words describe from where the machine stands.
-bool plan_arc(bool isCounterclockwise, const BlockValues &values, const Settings &settings,
-              const State &state, ArcPlan &arc, Fault &fault) {
+/// The programmed arc from the current position.
+bool plan_arc(bool counterclockwise, const BlockValues &values, const Settings &settings, const State &state,
+              ArcPlan &arc, Fault &fault) {
     const PlaneAxes axes = plane_axes(state.plane);
     const char first = centre_letter(axes.first), second = centre_letter(axes.second);
-    const bool hasCentre = values.has(first) || values.has(second);
+    const bool has_centre = values.has(first) || values.has(second);
     arc.end = target(values, state);
     if (!polar_target(values, state, arc.end, fault)) {
         return false;
@@ -183,7 +183,7 @@ bool plan_arc(bool isCounterclockwise, const BlockValues &values, const Settings
             return fault.set("P value should be 1 or greater with G2 or G3", values.column_of('p'));
         }
     }
-    arc.rotation = isCounterclockwise ? turns : -turns;
+    arc.rotation = counterclockwise ? turns : -turns;
     for (const char c : {'i', 'j', 'k'}) {
         if (values.has(c) && c != first && c != second) {
             return fault.set(fmt::format("{} word given for arc in {} plane",
@@ -192,12 +192,12 @@ bool plan_arc(bool isCounterclockwise, const BlockValues &values, const Settings
         }
     }
     if (values.has('r')) {
-        if (hasCentre) {
+        if (has_centre) {
             return fault.set("Mixed radius ijk format for arc", values.column_of('r'));
         }
         return plan_radius_arc(values.at('r'), settings, state, arc, fault);
     }
-    if (!hasCentre) {
+    if (!has_centre) {
         return fault.set("R i j k words all missing for arc");
     }
     return plan_centre_arc(values, state, arc, fault);

@@ -14,8 +14,8 @@ namespace mw::gcode::detail {
 bool move_along_arc(const Code &code, const BlockValues &values, const Machine &machine, State &state,
                     CanonQueue &canon, Fault &fault);
 
-/// The arc that the words describe from where the machine stands. False after setting the fault.
-bool plan_arc(bool isCounterclockwise, const BlockValues &values, const Settings &settings,
-              const State &state, ArcPlan &arc, Fault &fault);
+/// The programmed arc from the current position. False after setting the fault.
+bool plan_arc(bool counterclockwise, const BlockValues &values, const Settings &settings, const State &state,
+              ArcPlan &arc, Fault &fault);
 
 }  // namespace mw::gcode::detail

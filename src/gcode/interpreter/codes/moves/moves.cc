@@ -7,7 +7,7 @@
 namespace mw::gcode::detail {
 namespace {
 
-/// A word of an indexer, which check_rotary() has seen to be the only one.
+/// True for a word of an indexer; check_rotary() ensures that it is the only one.
 bool isIndexing(const BlockValues &values, const State &state) {
     for (int axis = RotaryAxes::FIRST; axis <= RotaryAxes::LAST; ++axis) {
         if (state.rotary.isIndexer(axis) && values.has(geometry::AXIS_LETTERS_LOWER[axis])) {
@@ -28,20 +28,20 @@ bool move_straight(const Code &code, const BlockValues &values, State &state, Ca
     if (values.hasAxes() && !straight_target(values, state, end, fault)) {
         return false;
     }
-    // Without compensation nothing fails from here on: see isStateSafe().
+    // Without compensation nothing fails after this: see isStateSafe().
     state.motion = code.number;
-    state.cycle.isRunning = false;
+    state.cycle.running = false;
     if (!values.hasAxes()) {
         return true;
     }
     state.comp.set_exit(false);
     if (state.comp.isOn()) {
-        const bool isRapid = code.number == 0;
-        if (!isRapid && state.feed_mode == FeedMode::INVERSE_TIME) {
+        const bool rapid = code.number == 0;
+        if (!rapid && state.feed_mode == FeedMode::INVERSE_TIME) {
             send_inverse_time(state, canon, straight_length(end - state.position));
         }
         const CompPlace place{state.position, state.plane, state.units};
-        if (!state.comp.move_straight(place, isRapid, end, canon, fault)) {
+        if (!state.comp.move_straight(place, rapid, end, canon, fault)) {
             return false;
         }
         state.position = end;
@@ -62,7 +62,7 @@ bool move_straight(const Code &code, const BlockValues &values, State &state, Ca
 bool cancel_motion(const Code &, const BlockValues &, State &state, CanonQueue &canon, Fault &) {
     canon.take(ProgramComment{"interpreter: motion mode set to none"});
     state.motion = MOTION_NONE;
-    state.cycle.isRunning = false;
+    state.cycle.running = false;
     return true;
 }
 

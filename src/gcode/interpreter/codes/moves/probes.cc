@@ -31,11 +31,11 @@ bool move_probe(const Code &code, const BlockValues &values, Parameters &paramet
         return fault.set("Start point too close to probe point");
     }
     state.motion = code.number;
-    state.cycle.isRunning = false;
+    state.cycle.running = false;
     state.comp.set_exit(false);
     canon.take(StraightProbe{end, static_cast<ProbeKind>(code.number - 382)});
     state.position = end;
-    // Until the machine tells, as if it had got there without contact.
+    // Until the machine reports the result, assumes the end position without contact.
     for (int axis = 0; axis < geometry::AXIS_COUNT; ++axis) {
         parameters.set(P_PROBE_RESULT + axis, end[axis]);
     }

@@ -9,12 +9,12 @@ namespace mw::gcode::detail {
 namespace {
 
 constexpr double TURN = 360;
-/// Nearer to its angle than this the axis stands there: sums of angles are rounded. [degrees]
+/// Angles closer than this are equal: sums of angles are rounded. [degrees]
 constexpr double SAME_ANGLE = 1e-6;
 
-/// G90 and G91 hold from the block on that has them.
+/// G90 and G91 apply from their own block on.
 bool isIncremental(const BlockValues &values, const State &state) {
-    bool is = state.isIncremental;
+    bool is = state.incremental;
     for (const ActiveCode &active : values.codes) {
         const int number = active.code->letter == 'g' ? active.code->number : 0;
         is = number == 910 || (is && number != 900);
@@ -22,7 +22,7 @@ bool isIncremental(const BlockValues &values, const State &state) {
     return is;
 }
 
-/// Words that say where to: those of moves, and the way to G28 and G30.
+/// True for axis words that are positions: those of moves, and of the path to G28 and G30.
 bool areAxesPlaces(const BlockValues &values) {
     bool are = values.motion != nullptr;
     for (const ActiveCode &active : values.codes) {
@@ -34,8 +34,8 @@ bool areAxesPlaces(const BlockValues &values) {
 
 bool check_indexer(const BlockValues &values, int axis, Fault &fault) {
     const char name = geometry::AXIS_LETTERS_LOWER[axis];
-    const bool isPlaced = values.has(name) && values.motion != nullptr;
-    if (!isPlaced) {
+    const bool placed = values.has(name) && values.motion != nullptr;
+    if (!placed) {
         return true;
     }
     if (values.motion->number != 0) {
@@ -43,11 +43,11 @@ bool check_indexer(const BlockValues &values, int axis, Fault &fault) {
             fmt::format("Indexing axis {} can only be moved with G0", geometry::AXIS_LETTERS[axis]),
             values.column_of(name));
     }
-    bool isAlone = !values.has('@') && !values.has('^');
+    bool alone = !values.has('@') && !values.has('^');
     for (int other = 0; other < geometry::AXIS_COUNT; ++other) {
-        isAlone = isAlone && (other == axis || !values.has(geometry::AXIS_LETTERS_LOWER[other]));
+        alone = alone && (other == axis || !values.has(geometry::AXIS_LETTERS_LOWER[other]));
     }
-    return isAlone ||
+    return alone ||
            fault.set(fmt::format("Indexing axis {} can only be moved alone", geometry::AXIS_LETTERS[axis]),
                      values.column_of(name));
 }
@@ -58,11 +58,11 @@ bool check_rotary(const BlockValues &values, const State &state, Fault &fault) {
     if (!state.rotary.hasAny() || !values.hasAxes() || !areAxesPlaces(values)) {
         return true;
     }
-    const bool isAbsolute = !isIncremental(values, state);
+    const bool absolute = !isIncremental(values, state);
     for (int axis = RotaryAxes::FIRST; axis <= RotaryAxes::LAST; ++axis) {
         const char name = geometry::AXIS_LETTERS_LOWER[axis];
-        const bool isWrapped = isAbsolute && state.rotary.isWrapped(axis) && values.has(name);
-        if (isWrapped && !(std::fabs(values.at(name)) < TURN)) {
+        const bool wrapped = absolute && state.rotary.isWrapped(axis) && values.has(name);
+        if (wrapped && !(std::fabs(values.at(name)) < TURN)) {
             return fault.set(
                 fmt::format("Invalid absolute position {:.2f} for wrapped rotary axis {}: it must be "
                             "between -360 and 360, and its sign is the direction",
@@ -90,12 +90,12 @@ double unwrapped_place(double place, double here) {
 
 void take_indexing(const Pose &end, const State &state, CanonQueue &canon) {
     const geometry::PathMode control = state.control;
-    const bool isChanging = control != geometry::PathMode::EXACT_PATH;
-    if (isChanging) {
+    const bool changing = control != geometry::PathMode::EXACT_PATH;
+    if (changing) {
         canon.take(SetMotionControlMode{geometry::PathMode::EXACT_PATH, 0.0});
     }
     canon.take(StraightTraverse{end});
-    if (isChanging) {
+    if (changing) {
         canon.take(
             SetMotionControlMode{control, control == geometry::PathMode::BLEND ? state.tolerance : 0.0});
         canon.take(SetNaivecamTolerance{state.naivecam});

@@ -14,7 +14,7 @@ namespace mw::gcode::detail {
 bool check_pitch(const Machine &machine, const State &state, Fault &fault, int spindle, double pitch,
                  std::uint32_t column) {
     const SpindleState &turning = state.spindles[static_cast<std::size_t>(spindle)];
-    if (machine.settings.max_velocity_mm_s <= 0.0 || turning.isConstantSurface) {
+    if (machine.settings.max_velocity_mm_s <= 0.0 || turning.is_constant_surface) {
         return true;
     }
     constexpr double MM_PER_INCH = 25.4, SECONDS_PER_MINUTE = 60.0;
@@ -68,7 +68,7 @@ bool move_with_spindle(const Code &code, const BlockValues &values, const Machin
         return false;
     }
     state.motion = code.number;
-    state.cycle.isRunning = false;
+    state.cycle.running = false;
     state.comp.set_exit(false);
     canon.take(StartSpeedFeedSynch{spindle, values.at('k'), false});
     if (code.number == 330) {

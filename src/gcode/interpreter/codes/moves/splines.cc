@@ -14,13 +14,13 @@ namespace {
 constexpr int MOTION_CUBIC = 50, MOTION_NURBS = 52;
 constexpr std::size_t MOST_POINTS = 100'000;
 
-/// What all splines ask for; `isPlaneFree` when they may lie in any plane.
-bool check_spline(const BlockValues &values, std::string_view code, bool isPlaneFree, const State &state,
+/// Checks common to all splines; `plane_free` when any plane is permitted.
+bool check_spline(const BlockValues &values, std::string_view code, bool plane_free, const State &state,
                   Fault &fault) {
     if (!check_feed(values, code, state, fault)) {
         return false;
     }
-    if (!isPlaneFree && state.plane != Plane::XY) {
+    if (!plane_free && state.plane != Plane::XY) {
         return fault.set(fmt::format("{} needs the XY plane: G17 first", code));
     }
     if (state.comp.isOn()) {
@@ -53,7 +53,7 @@ bool send_nurbs(NurbsFeed nurbs, State &state, CanonQueue &canon) {
     return true;
 }
 
-/// Points behind the count are left over from blocks that failed.
+/// Points after the count are left over from failed blocks.
 void keep_control_point(const NurbsPoint &point, std::vector<NurbsPoint> &points, State &state) {
     points.resize(state.spline.count);
     points.push_back(point);
@@ -67,15 +67,15 @@ bool move_along_cubic(const Code &code, const BlockValues &values, State &state,
     if (!check_spline(values, "G5", false, state, fault)) {
         return false;
     }
-    const bool isFirst = state.motion != MOTION_CUBIC;
+    const bool first = state.motion != MOTION_CUBIC;
     if (!values.hasAxes()) {
         return fault.set("G5 needs X or Y, the end of the spline");
     }
     if (values.has('i') != values.has('j')) {
-        return fault.set("G5 needs both I and J, or neither to go on in the direction of the G5 before",
+        return fault.set("G5 needs both I and J, or neither to continue in the direction of the previous G5",
                          values.column_of(values.has('i') ? 'i' : 'j'));
     }
-    if (isFirst && !values.has('i')) {
+    if (first && !values.has('i')) {
         return fault.set("The first G5 of a series needs I and J: where it leaves its start to");
     }
     const Pose end = target(values, state);
@@ -83,7 +83,7 @@ bool move_along_cubic(const Code &code, const BlockValues &values, State &state,
     const Point out = values.has('i') ? Point{values.at('i'), values.at('j')} : state.spline.out;
     const double p = values.at('p'), q = values.at('q');
     state.motion = code.number;
-    state.cycle.isRunning = false;
+    state.cycle.running = false;
     state.spline.out = {-p, -q};
     return send_nurbs({{{x, y, 1},
                         {x + out.x, y + out.y, 1},
@@ -109,7 +109,7 @@ bool move_along_quadratic(const Code &code, const BlockValues &values, State &st
     const Pose end = target(values, state);
     const double x = state.position[geometry::AXIS_X], y = state.position[geometry::AXIS_Y];
     state.motion = code.number;
-    state.cycle.isRunning = false;
+    state.cycle.running = false;
     return send_nurbs(
         {{{x, y, 1}, {x + i, y + j, 1}, {end[geometry::AXIS_X], end[geometry::AXIS_Y], 1}}, 3, end}, state,
         canon);
@@ -125,24 +125,24 @@ bool add_nurbs_point(const Code &code, const BlockValues &values, std::vector<Nu
     if (!(weight > 0.0)) {
         return fault.set("The weight P of a control point must be above 0", values.column_of('p'));
     }
-    const bool isOpening = state.spline.order == 0;
+    const bool opening = state.spline.order == 0;
     if (values.has('l')) {
         int order = 0;
         if (!whole_word(values, 'l', order, fault)) {
             return false;
         }
-        if (!isOpening || order < 2 || order > MAX_NURBS_ORDER) {
-            return fault.set(isOpening ? fmt::format("The order L of a NURBS is 2 to {}", MAX_NURBS_ORDER)
-                                       : "The order L is said once, with the G5.2 that opens the block",
+        if (!opening || order < 2 || order > MAX_NURBS_ORDER) {
+            return fault.set(opening ? fmt::format("The order L of a NURBS is 2 to {}", MAX_NURBS_ORDER)
+                                     : "The order L is said once, with the G5.2 that opens the block",
                              values.column_of('l'));
         }
         state.spline.order = order;
     }
-    if (isOpening) {
+    if (opening) {
         constexpr int USUAL_ORDER = 3;
         state.spline.order = values.has('l') ? state.spline.order : USUAL_ORDER;
         state.motion = code.number;
-        state.cycle.isRunning = false;
+        state.cycle.running = false;
         state.spline.count = 0;
         state.spline.end = state.position;
         const double first_weight = values.hasAxes() ? 1.0 : weight;
@@ -150,7 +150,7 @@ bool add_nurbs_point(const Code &code, const BlockValues &values, std::vector<Nu
                            state);
     }
     if (!values.hasAxes()) {
-        return isOpening || fault.set("A control point needs both axes of the plane");
+        return opening || fault.set("A control point needs both axes of the plane");
     }
     const char first = geometry::AXIS_LETTERS_LOWER[axes.first],
                second = geometry::AXIS_LETTERS_LOWER[axes.second];
@@ -160,7 +160,7 @@ bool add_nurbs_point(const Code &code, const BlockValues &values, std::vector<Nu
     if (state.spline.count >= MOST_POINTS) {
         return fault.set(fmt::format("A NURBS has at most {} control points", MOST_POINTS));
     }
-    state.spline.end = target(values, state);  // incremental points count from the start
+    state.spline.end = target(values, state);  // incremental points are relative to the start
     keep_control_point({state.spline.end[axes.first], state.spline.end[axes.second], weight}, points, state);
     return true;
 }
@@ -189,12 +189,12 @@ bool check_open_nurbs(const BlockValues &values, const State &state, Fault &faul
     }
     for (const ActiveCode &active : values.codes) {
         const Code &code = *active.code;
-        const bool isOfNurbs =
+        const bool of_nurbs =
             code.letter == 'g' && (code.number == MOTION_NURBS || code.number == MOTION_NURBS + 1);
-        const bool isOther = code.group == Group::MOTION || code.group == Group::STOP ||
-                             code.group == Group::PLANE || code.group == Group::UNITS ||
-                             (code.usesAxes && values.hasAxes());
-        if (isOther && !isOfNurbs) {
+        const bool other = code.group == Group::MOTION || code.group == Group::STOP ||
+                           code.group == Group::PLANE || code.group == Group::UNITS ||
+                           (code.usesAxes && values.hasAxes());
+        if (other && !of_nurbs) {
             return fault.set(fmt::format("{} inside of a NURBS: G5.3 ends it", code_name(code)),
                              active.column);
         }

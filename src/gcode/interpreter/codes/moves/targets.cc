@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::uint32_t AXIS_LETTERS = letters(geometry::AXIS_LETTERS_LOWER);
 
-/// By the index of the letter.
+/// Indexed by letter.
 constexpr std::array<int, LETTER_COUNT> AXIS_OF_LETTER = [] {
     std::array<int, LETTER_COUNT> axes{};
     for (int axis = 0; axis < geometry::AXIS_COUNT; ++axis) {
@@ -32,9 +32,9 @@ Pose target(const BlockValues &values, const State &state) {
     for (std::uint32_t left = values.present & AXIS_LETTERS; left != 0; left &= left - 1) {
         const auto index = static_cast<std::size_t>(std::countr_zero(left));
         const int axis = AXIS_OF_LETTER[index];
-        const bool isHalved = axis == geometry::AXIS_X && state.isDiameter;
-        const double given = values.value[index] * (isHalved ? 0.5 : 1.0);
-        if (state.isIncremental) {
+        const bool halved = axis == geometry::AXIS_X && state.isDiameter;
+        const double given = values.value[index] * (halved ? 0.5 : 1.0);
+        if (state.incremental) {
             end[axis] += given;
         } else {
             end[axis] = state.rotary.isWrapped(axis) ? unwrapped(given, end[axis]) : given;
@@ -58,19 +58,19 @@ bool polar_target(const BlockValues &values, const State &state, Pose &end, Faul
         return fault.set("Polar words @ and ^ cannot be combined with the axis words of their plane", column);
     }
     const double x = state.position[axes.first], y = state.position[axes.second];
-    const bool isAtOrigin = x == 0.0 && y == 0.0;
-    if (isAtOrigin && (!values.has('^') || state.isIncremental)) {
+    const bool at_origin = x == 0.0 && y == 0.0;
+    if (at_origin && (!values.has('^') || state.incremental)) {
         return fault.set(
-            "There is no angle at the origin to go on from: polar words need ^ in absolute mode here",
+            "There is no angle at the origin to continue from: polar words need ^ in absolute mode here",
             column);
     }
     constexpr double DEGREE = std::numbers::pi / 180.0;
     double radius = std::hypot(x, y), angle = std::atan2(y, x);
     if (values.has('@')) {
-        radius = values.at('@') + (state.isIncremental ? radius : 0.0);
+        radius = values.at('@') + (state.incremental ? radius : 0.0);
     }
     if (values.has('^')) {
-        angle = values.at('^') * DEGREE + (state.isIncremental ? angle : 0.0);
+        angle = values.at('^') * DEGREE + (state.incremental ? angle : 0.0);
     }
     end[axes.first] = radius * std::cos(angle);
     end[axes.second] = radius * std::sin(angle);
@@ -78,11 +78,11 @@ bool polar_target(const BlockValues &values, const State &state, Pose &end, Faul
 }
 
 bool straight_target(const BlockValues &values, const State &state, Pose &end, Fault &fault) {
-    if (!values.isMachineCoordinates) {
+    if (!values.is_machine_coordinates) {
         end = target(values, state);
         return polar_target(values, state, end, fault);
     }
-    if (state.isIncremental) {
+    if (state.incremental) {
         return fault.set("Cannot use g53 incremental");
     }
     if (state.comp.isOn()) {
@@ -95,9 +95,9 @@ bool straight_target(const BlockValues &values, const State &state, Pose &end, F
     for (int axis = 0; axis < geometry::AXIS_COUNT; ++axis) {
         const char name = geometry::AXIS_LETTERS_LOWER[axis];
         if (values.has(name)) {
-            const bool isHalved = axis == geometry::AXIS_X && state.isDiameter;
+            const bool halved = axis == geometry::AXIS_X && state.isDiameter;
             machine[axis] = state.rotary.isWrapped(axis) ? unwrapped(values.at(name), machine[axis])
-                                                         : values.at(name) * (isHalved ? 0.5 : 1.0);
+                                                         : values.at(name) * (halved ? 0.5 : 1.0);
         }
     }
     end = state.frame.to_program(machine);

@@ -11,12 +11,12 @@ namespace mw::gcode::detail {
 bool call_or_return(const Code &code, const BlockValues &values, const Machine &machine,
                     const BlockPlace &place, FanucCall &call, Parameters &parameters, State &state,
                     CanonQueue &canon, Fault &fault, Outcome &outcome) {
-    if (machine.settings.isFanucSubDisabled) {
+    if (machine.settings.fanuc_sub_disabled) {
         return fault.set(fmt::format("DISABLE_FANUC_STYLE_SUB set in INI file, but found m{}", code.number));
     }
     if (code.number == 99) {
         if (place.call_level == 0) {
-            if (!machine.settings.isTask) {
+            if (!machine.settings.is_task) {
                 return end_program(*find_code('m', 2), values, machine, parameters, state, canon, fault,
                                    outcome);
             }

@@ -6,13 +6,13 @@
 namespace mw::gcode::detail {
 namespace {
 
-/// What M2 and M30 put back: facts of the manual's "Program Stop and Program End".
+/// Modes that M2 and M30 reset: LinuxCNC manual, "Program Stop and Program End".
 void put_modes_back(const Machine &machine, Parameters &parameters, State &state, CanonQueue &canon) {
     state.comp.turn_off();
     state.comp.set_exit(false);
     const double to_program = machine.to_program(state.units);
     Frame made = state.frame;
-    if (!machine.settings.isCoordinateSystemKept) {
+    if (!machine.settings.coordinate_system_kept) {
         made.g5x = parameter_pose(parameters, P_G5X, to_program);
         made.rotation_deg = parameters.get(P_G5X + 9);
         change_frame(state, made);
@@ -24,18 +24,18 @@ void put_modes_back(const Machine &machine, Parameters &parameters, State &state
         state.plane = Plane::XY;
         canon.take(SelectPlane{state.plane});
     }
-    state.isIncremental = false;
+    state.incremental = false;
     state.feed_mode = FeedMode::UNITS_PER_MINUTE;
     canon.take(SetFeedMode{0, state.feed_mode});
     state.feed = 0.0;
     canon.take(SetFeedRate{0.0});
-    if (!state.isFeedOverride) {
-        state.isFeedOverride = true;
+    if (!state.is_feed_override) {
+        state.is_feed_override = true;
         canon.take(SwitchFeedOverride{true});
     }
     for (int i = 0; i < machine.count_spindles(); ++i) {
         SpindleState &spindle = state.spindles[static_cast<std::size_t>(i)];
-        if (!spindle.isOverridden) {
+        if (!spindle.overridden) {
             canon.take(SwitchSpeedOverride{i, true});
         }
         const double speed = spindle.speed;
@@ -45,7 +45,7 @@ void put_modes_back(const Machine &machine, Parameters &parameters, State &state
         canon.take(SetSpindleMode{i, 0.0});
     }
     state.motion = 10;
-    if (machine.settings.isG92PersistenceDisabled) {
+    if (machine.settings.g92_persistence_disabled) {
         made = state.frame;
         made.g92 = {};
         change_frame(state, made);

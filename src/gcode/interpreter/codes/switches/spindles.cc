@@ -10,7 +10,7 @@
 namespace mw::gcode::detail {
 namespace {
 
-/// G96 without D: no limit worth the name [rev/min].
+/// G96 without D: practically no limit [rev/min].
 constexpr double UNLIMITED_RPM = 1e30;
 
 }  // namespace
@@ -44,12 +44,12 @@ bool set_spindle_mode(const Code &code, const BlockValues &values, const Machine
         return fault.set(fmt::format("{} is for one spindle: $ must not be negative", code_name(code)),
                          values.column_of('$'));
     }
-    const bool isConstantSurface = code.number == 960;
+    const bool is_constant_surface = code.number == 960;
     const double limit = values.has('d') ? std::fabs(values.at('d')) : UNLIMITED_RPM;
-    state.active_spindle = spindle;  // what canned cycles and G95 go by
+    state.active_spindle = spindle;  // the spindle of canned cycles and G95
     SpindleState &one = state.spindles[static_cast<std::size_t>(spindle)];
-    one.isConstantSurface = isConstantSurface;
-    one.css_max_rpm = isConstantSurface ? limit : 0.0;
+    one.is_constant_surface = is_constant_surface;
+    one.css_max_rpm = is_constant_surface ? limit : 0.0;
     canon.take(SetSpindleMode{spindle, one.css_max_rpm});
     return true;
 }
@@ -60,9 +60,9 @@ bool turn_spindle(const Code &code, const BlockValues &values, const Machine &ma
     if (!spindle_of(values, machine.count_spindles(), spindle, fault)) {
         return false;
     }
-    const bool isAll = spindle == ALL_SPINDLES;
+    const bool all = spindle == ALL_SPINDLES;
     for (int i = 0; i < machine.count_spindles(); ++i) {
-        if (spindle != i && !isAll) {
+        if (spindle != i && !all) {
             continue;
         }
         state.spindles[static_cast<std::size_t>(i)].direction =

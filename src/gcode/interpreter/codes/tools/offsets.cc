@@ -17,8 +17,8 @@ void shift_to_words(const BlockValues &values, State &state) {
     for (int axis = 0; axis < geometry::AXIS_COUNT; ++axis) {
         const char name = geometry::AXIS_LETTERS_LOWER[axis];
         if (values.has(name)) {
-            const bool isHalved = axis == geometry::AXIS_X && state.isDiameter;
-            made.g92[axis] = place[axis] - values.at(name) * (isHalved ? 0.5 : 1.0);
+            const bool halved = axis == geometry::AXIS_X && state.isDiameter;
+            made.g92[axis] = place[axis] - values.at(name) * (halved ? 0.5 : 1.0);
         }
     }
     change_frame(state, made);
@@ -95,16 +95,16 @@ bool shift_axes(const Code &code, const BlockValues &values, const Machine &mach
         return fault.set("Cannot change axis offsets while cutter radius compensation is on");
     }
     Frame made = state.frame;
-    const bool isSetting = code.number == 920 || code.number == 520;
-    if (isSetting && !values.hasAxes()) {
+    const bool setting = code.number == 920 || code.number == 520;
+    if (setting && !values.hasAxes()) {
         return fault.set("All axes missing with g92 or g52: at least one axis word is needed");
     }
     if (code.number == 520) {
         for (int axis = 0; axis < geometry::AXIS_COUNT; ++axis) {
             const char name = geometry::AXIS_LETTERS_LOWER[axis];
             if (values.has(name)) {
-                const bool isHalved = axis == geometry::AXIS_X && state.isDiameter;
-                made.g92[axis] = values.at(name) * (isHalved ? 0.5 : 1.0);
+                const bool halved = axis == geometry::AXIS_X && state.isDiameter;
+                made.g92[axis] = values.at(name) * (halved ? 0.5 : 1.0);
             }
         }
         change_frame(state, made);
@@ -114,12 +114,12 @@ bool shift_axes(const Code &code, const BlockValues &values, const Machine &mach
         made.g92 = code.number == 923 ? parameter_pose(parameters, P_G92, to_program) : Pose{};
         change_frame(state, made);
     }
-    if (isSetting) {
+    if (setting) {
         set_parameter_pose(parameters, P_G92, state.frame.g92, to_program);
     } else if (code.number == 921) {
         set_parameter_pose(parameters, P_G92, {}, to_program);
     }
-    parameters.set(P_G92_APPLIED, isSetting || code.number == 923 ? 1.0 : 0.0);
+    parameters.set(P_G92_APPLIED, setting || code.number == 923 ? 1.0 : 0.0);
     canon.take(SetG92Offset{state.frame.g92});
     return true;
 }

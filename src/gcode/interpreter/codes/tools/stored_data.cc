@@ -15,7 +15,7 @@ void put_tool_entry(ToolTable &tools, CanonQueue &canon, int index, const ToolEn
     canon.take(SetToolTableEntry{index, entry});
 }
 
-/// The offset that makes the place where the tool is read as the programmed words.
+/// Sets the offset with which the current tool position equals the programmed words.
 void set_tool_axes(int l, const BlockValues &values, const Machine &machine, const Parameters &parameters,
                    const State &state, Pose &offset) {
     const double factor = machine.to_program(state.units);
@@ -29,15 +29,15 @@ void set_tool_axes(int l, const BlockValues &values, const Machine &machine, con
     const Pose in_machine = state.frame.to_machine(state.position);
     Frame bare = plain;
     bare.tool = {};
-    // Where the axes not named would be read with the offset that the table has now.
+    // Position of the other axes with the table's current offset.
     Frame tabled = plain;
     tabled.tool = scale_lengths(offset, factor);
     Pose wanted = tabled.to_program(in_machine);
     for (int axis = 0; axis < geometry::AXIS_COUNT; ++axis) {
         const char name = geometry::AXIS_LETTERS_LOWER[axis];
         if (values.has(name)) {
-            const bool isHalved = axis == geometry::AXIS_X && state.isDiameter;
-            wanted[axis] = values.at(name) * (isHalved ? 0.5 : 1.0);
+            const bool halved = axis == geometry::AXIS_X && state.isDiameter;
+            wanted[axis] = values.at(name) * (halved ? 0.5 : 1.0);
         }
     }
     offset = scale_lengths(in_machine - bare.to_machine(wanted), 1.0 / factor);
@@ -52,15 +52,15 @@ bool set_tool_data(int l, const BlockValues &values, const Machine &machine, Too
     if (!whole_word(values, 'p', toolno, fault)) {
         return false;
     }
-    if (toolno < 1) {  // T0 of a random changer marks an empty pocket
+    if (toolno < 1) {  // T0 of a random changer means an empty pocket
         return fault.set(fmt::format("P value out of range with G10 L{}", l), values.column_of('p'));
     }
     if (!find_tool(tools, toolno, values.column_of('p'), index, fault)) {
         return false;
     }
-    const bool hasData =
+    const bool has_data =
         values.hasAxes() || values.has('r') || values.has('i') || values.has('j') || values.has('q');
-    if (!hasData) {
+    if (!has_data) {
         return fault.set(fmt::format("G10 L{} needs what it is to set: axis words, R, I, J or Q", l));
     }
     const double to_machine = 1.0 / machine.to_program(state.units);
@@ -69,9 +69,9 @@ bool set_tool_data(int l, const BlockValues &values, const Machine &machine, Too
         for (int axis = 0; axis < geometry::AXIS_COUNT; ++axis) {
             const char name = geometry::AXIS_LETTERS_LOWER[axis];
             if (values.has(name)) {
-                const bool isHalved = axis == geometry::AXIS_X && state.isDiameter;
+                const bool halved = axis == geometry::AXIS_X && state.isDiameter;
                 const double scale = geometry::isAngular(axis) ? 1.0 : to_machine;
-                entry.offset[axis] = values.at(name) * scale * (isHalved ? 0.5 : 1.0);
+                entry.offset[axis] = values.at(name) * scale * (halved ? 0.5 : 1.0);
             }
         }
     } else if (values.hasAxes()) {
@@ -90,7 +90,7 @@ bool set_tool_data(int l, const BlockValues &values, const Machine &machine, Too
     }
     put_tool_entry(tools, canon, index, entry);
     if (index == state.tool.index) {
-        if (!tools.isRandom()) {  // whose spindle holds the tool itself, no copy
+        if (!tools.isRandom()) {  // its spindle entry is the tool itself, not a copy
             put_tool_entry(tools, canon, 0, entry);
         }
         const int was = state.tool.in_spindle;
@@ -110,7 +110,7 @@ bool reload_tools(const State &state, CanonQueue &canon, Fault &fault, Outcome &
     return true;
 }
 
-/// G10 L2 (the origin's place in the in_machine) and L20 (what the present place is to be called).
+/// G10 L2 (origin of the system in machine coordinates) and L20 (new value of the current position).
 bool set_coordinate_system(int l, const BlockValues &values, const Machine &machine, Parameters &parameters,
                            State &state, CanonQueue &canon, Fault &fault) {
     const double to_program = machine.to_program(state.units);
@@ -132,8 +132,8 @@ bool set_coordinate_system(int l, const BlockValues &values, const Machine &mach
         return fault.set(fmt::format("P value out of range (0-9) with G10 L{}", l), values.column_of('p'));
     }
     index = index == 0 ? state.g5x_index : index;
-    const bool isActive = index == state.g5x_index;
-    if (isActive && state.comp.isOn()) {
+    const bool active = index == state.g5x_index;
+    if (active && state.comp.isOn()) {
         return fault.set("Cannot change the active coordinate system while cutter radius compensation is on");
     }
     const int first = P_G5X + 20 * (index - 1);
@@ -147,8 +147,8 @@ bool set_coordinate_system(int l, const BlockValues &values, const Machine &mach
         if (!values.has(name)) {
             continue;
         }
-        const bool isHalved = axis == geometry::AXIS_X && state.isDiameter;
-        const double given = values.at(name) * (isHalved ? 0.5 : 1.0);
+        const bool halved = axis == geometry::AXIS_X && state.isDiameter;
+        const double given = values.at(name) * (halved ? 0.5 : 1.0);
         (l == 2 ? made.g5x : wanted)[axis] = given;
     }
     if (l == 20) {
@@ -157,7 +157,7 @@ bool set_coordinate_system(int l, const BlockValues &values, const Machine &mach
     }
     set_parameter_pose(parameters, first, made.g5x, to_program);
     parameters.set(first + 9, made.rotation_deg);
-    if (!isActive) {
+    if (!active) {
         canon.take(ProgramComment{"interpreter: setting coordinate system origin"});
         return true;
     }

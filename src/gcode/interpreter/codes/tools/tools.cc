@@ -17,36 +17,36 @@ void stop_spindles(const Machine &machine, State &state, CanonQueue &canon) {
     }
 }
 
-/// A rapid that screens need not draw.
+/// A rapid move that screens need not draw.
 void take_hidden_rapid(const Pose &end, State &state, CanonQueue &canon) {
     canon.take(ProgramComment{"AXIS,hide"});
     take_rapid(end, state, canon);
     canon.take(ProgramComment{"AXIS,show"});
 }
 
-/// To where tools are changed: up first, then across.
+/// Moves to the tool change position: first up, then across.
 void go_to_change(const Machine &machine, const Parameters &parameters, State &state, CanonQueue &canon) {
-    if (machine.settings.tool_change.isQuillRaised) {
+    if (machine.settings.tool_change.quill_raised) {
         Pose up = state.frame.to_machine(state.position);
         up[geometry::AXIS_Z] = 0;
         take_hidden_rapid(state.frame.to_program(up), state, canon);
     }
-    if (machine.settings.tool_change.isAtG30) {
+    if (machine.settings.tool_change.at_g30) {
         const Pose before = state.frame.to_machine(state.position);
         take_hidden_rapid(stored_place(P_G30, before, machine, parameters, state), state, canon);
     }
 }
 
-/// RETAIN_G43: an offset that is in force follows the tool in the spindle and ends with the last one.
+/// RETAIN_G43: an active offset follows the tool in the spindle and ends with the last one.
 void retain_tool_offset(const Machine &machine, State &state, CanonQueue &canon) {
     constexpr int G43 = 430, G49 = 490;
-    if (!machine.settings.isToolOffsetRetained || state.tool.offset_code == G49) {
+    if (!machine.settings.tool_offset_retained || state.tool.offset_code == G49) {
         return;
     }
-    const bool isNone = state.tool.in_spindle == 0;
+    const bool none = state.tool.in_spindle == 0;
     apply_tool_offset(state, canon,
-                      isNone ? Pose{} : scale_lengths(state.tool.offset, machine.to_program(state.units)),
-                      isNone ? G49 : G43);
+                      none ? Pose{} : scale_lengths(state.tool.offset, machine.to_program(state.units)),
+                      none ? G49 : G43);
 }
 
 }  // namespace
@@ -62,7 +62,7 @@ bool find_tool(const ToolTable &tools, int toolno, std::uint32_t column, int &in
 void load_tool(const ToolTable &tools, ToolModes &tool, int index) {
     const ToolEntry entry = index == 0 && !tools.isRandom() ? ToolEntry{} : tools.entry(index);
     tool.index = index;
-    tool.in_spindle = entry.toolno > 0 || tools.isRandom() ? entry.toolno : 0;  // random: -1 empty
+    tool.in_spindle = entry.toolno > 0 || tools.isRandom() ? entry.toolno : 0;  // random changer: -1 is empty
     tool.offset = entry.offset;
     tool.diameter = entry.diameter;
     tool.frontangle = entry.frontangle;
@@ -71,8 +71,8 @@ void load_tool(const ToolTable &tools, ToolModes &tool, int index) {
 }
 
 void load_tool_at_index(const ToolTable &tools, ToolModes &tool) {
-    const bool isInTable = tool.index >= 0 && tool.index < tools.count();
-    load_tool(tools, tool, isInTable ? tool.index : 0);
+    const bool in_table = tool.index >= 0 && tool.index < tools.count();
+    load_tool(tools, tool, in_table ? tool.index : 0);
 }
 
 void move_by_tool_offset(State &state, const Pose &offset) {
@@ -96,8 +96,8 @@ bool select_tool(const Code &, const BlockValues &values, const Machine &, ToolT
     if (toolno < 0) {
         return fault.set("Negative tool number: T must be 0 or more", values.column_of('t'));
     }
-    const bool isNone = toolno == 0 && !tools.isRandom();
-    if (!isNone && !find_tool(tools, toolno, values.column_of('t'), index, fault)) {
+    const bool none = toolno == 0 && !tools.isRandom();
+    if (!none && !find_tool(tools, toolno, values.column_of('t'), index, fault)) {
         return false;
     }
     state.tool.selected = toolno;
@@ -114,7 +114,7 @@ bool change_tool(const Code &, const BlockValues &, const Machine &machine, Tool
     if (state.tool.selected_index < 0) {
         return fault.set("M6 needs a tool: there was no T word before");
     }
-    if (!machine.settings.tool_change.isSpindleLeftOn) {
+    if (!machine.settings.tool_change.spindle_left_on) {
         stop_spindles(machine, state, canon);
     }
     go_to_change(machine, parameters, state, canon);
@@ -134,14 +134,14 @@ bool set_tool_number(const Code &, const BlockValues &values, const Machine &mac
     if (toolno < 0) {
         return fault.set("Need non-negative Q-word to specify tool number with M61", values.column_of('q'));
     }
-    const bool isNone = toolno == 0 && !tools.isRandom();
-    if (!isNone && !find_tool(tools, toolno, values.column_of('q'), index, fault)) {
+    const bool none = toolno == 0 && !tools.isRandom();
+    if (!none && !find_tool(tools, toolno, values.column_of('q'), index, fault)) {
         return false;
     }
     canon.take(ChangeToolNumber{toolno});
     load_tool(tools, state.tool, index);
     retain_tool_offset(machine, state, canon);
-    outcome = tools.isRandom() ? Outcome::SYNC : outcome;  // tools have changed their places
+    outcome = tools.isRandom() ? Outcome::SYNC : outcome;  // tools have changed their positions
     return true;
 }
 
@@ -159,8 +159,8 @@ bool set_tool_offset(const Code &code, const BlockValues &values, const Machine 
         for (int axis = 0; axis < geometry::AXIS_COUNT; ++axis) {
             const char name = geometry::AXIS_LETTERS_LOWER[axis];
             if (values.has(name)) {
-                const bool isHalved = axis == geometry::AXIS_X && state.isDiameter;
-                const double given = values.at(name) * (isHalved ? 0.5 : 1.0);
+                const bool halved = axis == geometry::AXIS_X && state.isDiameter;
+                const double given = values.at(name) * (halved ? 0.5 : 1.0);
                 offset[axis] = code.number == 432 ? offset[axis] + given : given;
             }
         }
@@ -183,7 +183,7 @@ bool set_tool_offset(const Code &code, const BlockValues &values, const Machine 
         if (toolno < 0) {
             return fault.set("Negative tool number: H must be 0 or more", values.column_of('h'));
         }
-        if (toolno == 0 && code.number == 430 && !tools.isRandom()) {  // there T0 is a tool
+        if (toolno == 0 && code.number == 430 && !tools.isRandom()) {  // with a random changer T0 is a tool
             table = state.tool.offset;
         } else if (!find_tool(tools, toolno, values.column_of('h'), index, fault)) {
             return false;

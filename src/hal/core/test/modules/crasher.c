@@ -11,7 +11,7 @@
 MODULE_LICENSE("GPL");
 
 static char *how = "null";
-RTAPI_MP_STRING(how, "the way to crash");
+RTAPI_MP_STRING(how, "how to crash");
 
 static int comp_id;
 static hal_bit_t **now;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The realtime process crashes or is killed under halrun and halcmd: told at once, by name, nothing left.
+// The realtime process crashes or is killed under halrun and halcmd: reported at once by name, with nothing
+// left behind.
 #include <algorithm>
 #include <chrono>
 
@@ -17,7 +18,7 @@ class Death : public Programs {
     Death() { setenv("MILLWRIGHT_MODULE_PATH", MW_TEST_MODULES, 1); }
     ~Death() override { unsetenv("MILLWRIGHT_MODULE_PATH"); }
 
-    /// Files of the instance that still lie around.
+    /// Remaining files of the instance.
     std::vector<std::string> leftovers() const {
         std::vector<std::string> left;
         const std::string runtime = *runtime::runtime_folder() + "/" + instance;
@@ -32,7 +33,7 @@ class Death : public Programs {
     }
     std::string errors() const { return read_file((folder / "err").string()).value_or(""); }
 
-    /// Waits until `text` is there; the seconds that it took. Negative when it never came.
+    /// Waits for `text`; returns the seconds that it took, negative when it did not appear.
     double wait_for_error(const std::string &text, Clock::time_point since) const {
         while (Clock::now() < since + std::chrono::seconds(20)) {
             if (errors().find(text) != std::string::npos) {
@@ -64,7 +65,7 @@ TEST_F(Death, ACrashOfAComponentIsToldWithItsFunctionAndEndsHalrun) {
                   std::string::npos)
             << ended.err;
         EXPECT_NE(ended.err.find(signal), std::string::npos) << ended.err;
-        EXPECT_LT(Clock::now() - begin, std::chrono::seconds(30)) << "the wait for 'sleep' went on";
+        EXPECT_LT(Clock::now() - begin, std::chrono::seconds(30)) << "the wait for 'sleep' continued";
         EXPECT_EQ(leftovers(), std::vector<std::string>{}) << how;
     }
 }
@@ -77,7 +78,7 @@ TEST_F(Death, ACrashWhileAModuleIsLoadedNamesTheModule) {
 }
 
 TEST_F(Death, AKilledRealtimeProcessIsNoticedWithin50ms) {
-    // Only kills count during which the machine gave its processors to this test.
+    // Only kills during which this test had the processors count.
     constexpr int MAX_KILLS = 20;
     constexpr std::size_t ENOUGH = 5;
     std::vector<double> seconds;
@@ -160,9 +161,9 @@ TEST_F(Death, RealtimeStartsStopsAndTellsWhatRuns) {
     EXPECT_EQ(run({"realtime", "status"}).status, 1);
     EXPECT_EQ(run({"realtime", "begin"}).status, 2);
     const Ended verified = run({"realtime", "verify"});
-    const bool isRealtime = verified.out == "realtime priority and locked memory\n";
-    EXPECT_EQ(verified.status, isRealtime ? 0 : 1) << verified.out << verified.err;
-    EXPECT_TRUE(isRealtime || verified.out.starts_with("no realtime: ")) << verified.out;
+    const bool realtime = verified.out == "realtime priority and locked memory\n";
+    EXPECT_EQ(verified.status, realtime ? 0 : 1) << verified.out << verified.err;
+    EXPECT_TRUE(realtime || verified.out.starts_with("no realtime: ")) << verified.out;
     EXPECT_EQ(leftovers(), std::vector<std::string>{});
 }
 

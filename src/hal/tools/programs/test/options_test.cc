@@ -180,8 +180,7 @@ TEST_F(Options, AfterAFailedFileInputIsReadWhenAskedFor) {
     EXPECT_EQ(ended.out, "a \n");
     EXPECT_EQ(ended.status, 1);
     EXPECT_EQ(run({"sh", "-c", "halrun < in.txt"}).status, 0);
-    EXPECT_EQ(run({"sh", "-c", "halcmd -f < in.txt; halrun -U"}).out, "\n")
-        << "a realtime process of its own";
+    EXPECT_EQ(run({"sh", "-c", "halcmd -f < in.txt; halrun -U"}).out, "\n") << "a separate realtime process";
 }
 
 TEST_F(Options, WhatWasLeftRunningIsEnded) {
@@ -206,7 +205,7 @@ class Prompt : public Programs {
         }
         await("halcmd: ");
     }
-    /// Reads until `text` has come, and forgets all up to its end.
+    /// Reads until `text` arrives, and discards everything up to its end.
     void await(const std::string &text) {
         pollfd input{terminal, POLLIN, 0};
         while (seen.find(text) == std::string::npos && ::poll(&input, 1, 10000) > 0) {
@@ -224,7 +223,7 @@ class Prompt : public Programs {
     void type(const std::string &keys) {
         ASSERT_EQ(::write(terminal, keys.data(), keys.size()), static_cast<ssize_t>(keys.size()));
     }
-    /// The status of halrun, which must be about to end.
+    /// Exit status of halrun, which must be ending.
     int close_terminal() {
         int status = -1;
         for (int i = 0; i < 1000 && waitpid(pid, &status, WNOHANG) == 0; ++i) {

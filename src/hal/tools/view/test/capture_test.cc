@@ -50,9 +50,9 @@ TEST(Capture, TriggersAtTheEdgeWithWhatWasBefore) {
         ASSERT_EQ(record.columns.size(), 1U);
         const std::vector<double> &wave = record.columns[0];
         EXPECT_EQ(record.times_s[10], 0.0);
-        const bool isRising = kind == TriggerKind::RISING;
-        EXPECT_EQ(wave[9] > 0.5, !isRising);
-        EXPECT_EQ(wave[10] > 0.5, isRising);
+        const bool rising = kind == TriggerKind::RISING;
+        EXPECT_EQ(wave[9] > 0.5, !rising);
+        EXPECT_EQ(wave[10] > 0.5, rising);
         EXPECT_NEAR(record.times_s[0], -0.010, 1e-12);
     }
 }

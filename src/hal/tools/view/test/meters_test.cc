@@ -8,10 +8,10 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-Words asked(const Words &words, bool isTerminal = false) {
-    bool isWrong = false;
-    const Words out = meter_words(words, isTerminal, isWrong);
-    return isWrong ? Words{"wrong"} : out;
+Words asked(const Words &words, bool is_terminal = false) {
+    bool wrong = false;
+    const Words out = meter_words(words, is_terminal, wrong);
+    return wrong ? Words{"wrong"} : out;
 }
 
 TEST(Meters, TakeTheWordsThatMenusAndScriptsUse) {

@@ -61,7 +61,7 @@ class ProgramsTest(unittest.TestCase):
         self.assertEqual(len(lines), 4)
         self.assertEqual(lines[0].split(), ["siggen.0.frequency", "gate"])
         self.assertEqual(lines[1].split()[0], "10")
-        self.assertEqual({len(line) for line in lines}, {len(lines[0])}, "values stand below their names")
+        self.assertEqual({len(line) for line in lines}, {len(lines[0])}, "values are below their names")
 
     def test_capture_writes_csv_and_pictures(self):
         status, out, err = self.run_program("millwright", "hal", "capture", "wave", "gate", "--samples", "200",

@@ -42,7 +42,7 @@ TEST(WatchModel, PinsAreATreeByDots) {
     Bench bench(MACHINE);
     Viewer viewer(bench);
     for (const WatchRow &row : viewer.model.rows()) {
-        EXPECT_TRUE(row.isBranch) << row.name;
+        EXPECT_TRUE(row.is_branch) << row.name;
         EXPECT_EQ(row.depth, 0);
     }
     viewer.go_to("and2");
