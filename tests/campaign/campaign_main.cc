@@ -146,7 +146,7 @@ int main(int argc, char **argv) {
         "it has are not run again. Ends with 1 when something was broken.\n");
     order.add_to(line);
     line.number("--plan", "N",
-                "what a seed stands for: 1, sessions of a minute, 3 (default), 4, further kinematics, or "
+                "version of the plans: 1, sessions of a minute, 3 (default), 4, further kinematics, or "
                 "5, the planner is lost at every stop",
                 campaign.plan_version, 1, mw::campaign::LAST_PLAN);
     line.text("--trace", "FILE", "with --tell: commands of joints and axes at every cycle", campaign.trace);

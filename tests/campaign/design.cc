@@ -56,7 +56,7 @@ AxisDesign axis_of(int axis, const JointDesign &j) {
 
 namespace {
 
-/// Switches of the ends of travel are so far beyond the soft limits, home switches a part of it.
+/// Distance of the limit switches outside the soft limits; home switches are at a fraction of it.
 constexpr double TO_HOME_SWITCH = 1;
 
 void make_homing(plants::Random &random, JointDesign &j) {
@@ -68,7 +68,7 @@ void make_homing(plants::Random &random, JointDesign &j) {
         j.home_offset = j.home;
         return;
     }
-    // Fast enough to find it soon, slow enough to stop within what is there beyond the switch.
+    // Fast enough to find it soon, slow enough to stop within the overtravel behind the switch.
     constexpr double ROOM = 2.5;
     const double stoppable = 0.7 * std::sqrt(2 * ROOM * j.acceleration);
     j.search = -rounded(std::min({0.9 * j.velocity, stoppable, j.jerk > 0 ? 15.0 : 1e9}), 0.1);
@@ -77,14 +77,14 @@ void make_homing(plants::Random &random, JointDesign &j) {
     j.home_switch_at = j.low - TO_HOME_SWITCH;
     j.home_offset = j.home_switch_at;
     if (j.home_kind == HomeKind::SWITCH_AND_INDEX) {
-        // Far enough from the switch's edge that it is always the same mark, on the way of the slow move.
+        // Far enough from the switch edge that the slow move always finds the same mark.
         j.index_spacing = 5;
         j.index_at = rounded(j.home_switch_at + std::copysign(random.real(0.5, 1.5), j.latch), 0.01);
         j.home_offset = j.index_at;
     }
 }
 
-/// The joints move the axes of the letters.
+/// Joints that move the axes of the letters.
 void make_trivial(plants::Random &random, Design &d, const std::string &letters) {
     d.coordinates = letters;
     d.kinematics = "trivkins coordinates=" + letters;
@@ -93,7 +93,7 @@ void make_trivial(plants::Random &random, Design &d, const std::string &letters)
         const int axis = geometry::axis_of_letter(letters[i]);
         const std::size_t first = letters.find(letters[i]);
         if (first != i) {
-            // The other leg of a gantry.
+            // The second joint of a gantry.
             JointDesign twin = d.joints[first];
             twin.shaft_offset = rounded(random.real(-30, 30), 0.001);
             d.joints.push_back(twin);
@@ -107,7 +107,7 @@ void make_trivial(plants::Random &random, Design &d, const std::string &letters)
         d.joints.push_back(j);
         d.axes.push_back(axis_of(axis, j));
     }
-    // Sequences begin at 0 or 1 and have no holes.
+    // Home sequences begin at 0 or 1 and have no gaps.
     bool hasFirst = false;
     for (JointDesign &j : d.joints) {
         j.sequence = !isSequenced && j.sequence > 0 ? 1 : j.sequence;
@@ -126,7 +126,7 @@ void make_trivial(plants::Random &random, Design &d, const std::string &letters)
     }
 }
 
-/// X and Y by two belts.
+/// CoreXY: X and Y by two belts.
 void make_corexy(plants::Random &random, Design &d) {
     d.coordinates = "XYZ";
     d.kinematics = "corexykins";
@@ -140,7 +140,7 @@ void make_corexy(plants::Random &random, Design &d) {
     }
 }
 
-/// A trunnion under the tool.
+/// A tilting rotary table (trunnion).
 void make_trunnion(plants::Random &random, Design &d) {
     d.coordinates = "XYZAC";
     d.kinematics = "xyzac-trt-kins";
@@ -158,7 +158,7 @@ void make_trunnion(plants::Random &random, Design &d) {
                               random.whole(0, 60), random.whole(0, 20));
 }
 
-/// A head that tilts, with a quill.
+/// A tilting head with a quill.
 void make_head(plants::Random &random, Design &d) {
     d.name = "head";
     d.coordinates = "XYZBCW";
@@ -175,7 +175,7 @@ void make_head(plants::Random &random, Design &d) {
     }
 }
 
-/// Three carriages on columns.
+/// A linear delta: three carriages on columns.
 void make_delta(plants::Random &random, Design &d) {
     d.name = "delta";
     d.coordinates = "XYZ";
@@ -230,7 +230,7 @@ Design make_design(plants::Random &random) {
 namespace {
 
 void hasten_homing(plants::Random &random, JointDesign &j) {
-    constexpr double ROOM = 2.5;                                             // for the stop beyond the switch
+    constexpr double ROOM = 2.5;                                             // for the stop behind the switch
     const double jerk_way = j.jerk > 0 ? 0.5 * j.acceleration / j.jerk : 0;  // for each unit/s
     // v (v / 2a + w) = ROOM
     const double w = j.acceleration * jerk_way;
@@ -241,7 +241,7 @@ void hasten_homing(plants::Random &random, JointDesign &j) {
     j.home = rounded(random.real(0.5 * j.low, 0.2 * j.high), 0.1);
 }
 
-/// The other leg of a gantry.
+/// The second joint of a gantry.
 void make_twin(JointDesign &j, const JointDesign &first) {
     const double shaft_offset = j.shaft_offset;
     j = first;
@@ -307,16 +307,16 @@ void wear(plants::Random &random, Design &design) {
         if (hasPlay && random.chance(0.7)) {
             j.play = j.backlash = rounded(random.real(0.03, 0.3), 0.001);
         }
-        // Without a switch nobody knows where on its screw a slide stands.
+        // Without a switch the position of the slide on its screw is unknown.
         if (hasScrews && j.home_kind != HomeKind::IMMEDIATE && random.chance(0.8)) {
             j.screw_error = rounded(random.real(0.02, 0.12), 0.001);
             j.screw_wave = random.real(80, 300);
             j.screw_phase = random.real(0, 6.28);
             j.screw_type = random.whole(0, 1);
-            j.backlash = 0;  // the table has it
+            j.backlash = 0;  // the table contains the backlash
         }
         if (j.home_kind == HomeKind::SWITCH_AND_INDEX) {
-            // The mark is on the motor: BACKLASH is symmetrical to it, a table knows where the slide is.
+            // The index mark is on the motor: BACKLASH is symmetrical to it; a table refers to the slide.
             const double lag = j.screw_type >= 0 ? std::copysign(0.5 * j.play, j.latch) : 0;
             j.home_offset = j.slide_at(j.index_at - lag);
         }
@@ -406,7 +406,7 @@ std::string section_of(std::size_t n, const JointDesign &j) {
     return out + (j.backlash > 0 ? fmt::format("BACKLASH = {}\n", j.backlash) : std::string());
 }
 
-/// Type 0: where the slide is when the screw has been turned to a place; type 1: what is to be added.
+/// Type 0: slide position at a screw position; type 1: correction to add.
 void write_screw(const std::filesystem::path &file, const JointDesign &j) {
     std::ofstream out(file);
     const double half = 0.5 * j.play;

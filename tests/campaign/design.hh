@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A random machine: what its INI and HAL files say, and what its plants are like. The judge reads limits from
-// here, as they are written into the files, and never from what the product makes of them.
+// A random machine: the contents of its INI and HAL files, and its plant models. The judge reads limits from
+// this structure, as they are written to the files, and never from the product.
 #pragma once
 
 #include <filesystem>
@@ -27,10 +27,10 @@ struct JointDesign {
     double home = 0, home_offset = 0, search = 0, latch = 0;
     int sequence = 0;
     // --- the plant
-    double play = 0;                                            ///< between motor and slide
+    double play = 0;                                            ///< backlash between motor and slide
     double screw_error = 0, screw_wave = 100, screw_phase = 0;  ///< a sine [units, units, rad]
-    double shaft_offset = 0;  ///< of the motor's shaft where the joint is at 0
-    double start = 0;         ///< where the joint stands when the machine is made
+    double shaft_offset = 0;  ///< shaft position of the motor at joint position 0
+    double start = 0;         ///< joint position at the start
     double counts_per_unit = 1e4;
     double index_spacing = 0;
     double index_at = 0;                     ///< position of the joint at one of the marks
@@ -39,14 +39,14 @@ struct JointDesign {
     plants::AxisSettings drive;
 
     bool isCorrected() const { return backlash > 0 || screw_type >= 0; }
-    /// A table goes so far beyond the soft limits; farther out nobody knows the screw.
+    /// Overlap of a screw table outside the soft limits; farther out the screw error is unknown.
     static constexpr double TABLE_BEYOND = 6, TABLE_STEP = 1;
     bool isInTable(double x) const {
         return screw_type < 0 || (x >= low - TABLE_BEYOND && x <= high + TABLE_BEYOND - TABLE_STEP);
     }
-    /// How much farther than the slide the screw has turned where the slide is at `x`, without play.
+    /// Screw position minus slide position at slide position `x`, without backlash.
     double screw_error_at(double x) const;
-    /// Where the slide is when the nut's place, by turns of the screw, is `turned`.
+    /// Slide position at the nut position `turned`, which follows from the revolutions of the screw.
     double slide_at(double turned) const;
 };
 
@@ -56,12 +56,12 @@ struct AxisDesign {
     double low = -100, high = 100;
     double offset_ratio = 0;  ///< [AXIS_l]OFFSET_AV_RATIO; 0: no external offsets
 
-    /// What external offsets leave for paths and their stops.
+    /// Fraction of the limits that external offsets leave for paths and stops.
     double acceleration_of_path() const { return (1 - offset_ratio) * acceleration; }
 };
 
 struct Design {
-    std::string name;  ///< of the kind, for the log
+    std::string name;  ///< of the machine type, for the log
     std::string coordinates, kinematics;
     bool isTrivial = true;                       ///< joints are axes
     bool isFurther = false;                      ///< of make_further_design()
@@ -71,34 +71,34 @@ struct Design {
     std::vector<JointDesign> joints;
     std::vector<AxisDesign> axes;
     std::string hal_lines;
-    bool hasSpindlePlant = false;  ///< else one that follows a ramp exactly
+    bool hasSpindlePlant = false;  ///< false: the spindle follows a ramp exactly
     plants::SpindleTraits spindle;
 
     bool hasOffsets() const;
-    /// What acceleration takes to rise, of the slowest [s]; 0: no jerk limits.
+    /// Maximum time in which the acceleration rises [s]; 0: no jerk limits.
     double rise_s() const;
-    /// The longest mean that any linear axis or joint asks for (docs/developer/planner.md, "Choice of tau")
+    /// The longest jerk filter that a linear axis or joint needs (docs/developer/planner.md, "Choice of tau")
     /// [s].
     double longest_mean_s() const;
-    /// What motion may take for the ramp of its spindle, whose drive is late and lags, as it has started to a
-    /// speed [turns/s] and not turned back yet [turns/s^2].
+    /// Ramp that motion may assume for the spindle, whose drive has delay and lag, after it has started to a
+    /// speed [rev/s] and before it reverses [rev/s^2].
     double gentlest_ramp(double turns_s) const;
-    /// Writes campaign.ini and campaign.hal; the path of the INI file.
+    /// Writes campaign.ini and campaign.hal; returns the path of the INI file.
     std::string write(const std::filesystem::path &folder) const;
 };
 
 Design make_design(plants::Random &random);
-/// Of kinematics that the first plan does not have.
+/// A machine with a kinematics module that plan 1 does not use.
 Design make_other_design(plants::Random &random);
-/// Of kinematics that no plan before the fourth has.
+/// A machine with a kinematics module that plans before 4 do not use.
 Design make_further_design(plants::Random &random);
-/// Play and screws that are not even, and what the INI file says about them.
+/// Adds backlash and screw errors with their INI settings.
 void wear(plants::Random &random, Design &design);
-/// Axes that HAL pins may offset; those of machines whose joints are axes and do not wear.
+/// Adds external offsets to axes of machines with trivial kinematics and without screw errors.
 void allow_offsets(plants::Random &random, Design &design);
-/// A spindle with a drive and an encoder.
+/// Adds a spindle with a drive and an encoder.
 void equip_spindle(plants::Random &random, Design &design);
-/// Ways become shorter and homing quicker, so that a session has time for more.
+/// Shortens the travel and speeds up homing, so that a session has time for more acts.
 void shorten(plants::Random &random, Design &design);
 
 }  // namespace mw::campaign

@@ -17,7 +17,7 @@ struct Span {
     double low = 0, high = 0;
 };
 
-/// Where a joint may go and where it stands at the start.
+/// Travel of a joint and its position at the start.
 struct Travel {
     bool isAngular = false;
     double low = 0, high = 0, start = 0;
@@ -112,7 +112,7 @@ void make_pentapod(plants::Random &random, Design &d) {
            {geometry::AXIS_A, -6, 6},
            {geometry::AXIS_B, -6, 6}},
           struts);
-    d.hal_lines = "setp pentakins.max-error 500\n";  // the forward side begins to look at Z0
+    d.hal_lines = "setp pentakins.max-error 500\n";  // forward kinematics starts its search at Z0
 }
 
 void make_rose(plants::Random &random, Design &d) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What random machines are made of.
+// Building blocks of random machines.
 #pragma once
 
 #include "campaign/design.hh"
@@ -10,7 +10,7 @@ double rounded(double x, double step);
 /// Ten to the power of something between.
 double power(plants::Random &random, double low, double high);
 JointDesign make_joint(plants::Random &random, bool isAngular, bool isJerkLimited);
-/// Of a machine whose joints are not axes: from -reach to reach, homed where it stands.
+/// A joint of a machine whose joints are not axes: travel from -reach to reach, homed at its position.
 JointDesign make_plain(plants::Random &random, bool isAngular, double reach, bool isJerkLimited);
 AxisDesign axis_of(int axis, const JointDesign &j);
 

@@ -10,17 +10,17 @@
 namespace mw::campaign {
 namespace {
 
-/// What rounding may make of positions and of differences of them [units, relative].
+/// Rounding errors of positions and of their differences [units, relative].
 constexpr double PLACE_ROUNDING = 2e-6, RATE_ROUNDING = 1e-5;
-/// Corrections of the motor's place come on top of the joint's motion.
+/// Corrections of the motor position are added to the motion of the joint.
 constexpr double WITH_BACKLASH = 1.5;
-/// What a stop may take of the least, and on top of it for commands on their way.
+/// Permitted duration of a stop: a factor of the minimum, plus the transfer time of commands.
 constexpr double STOP_FACTOR = 2.2, STOP_SLACK_S = 0.02;
-/// For so long a planner that is away may still come (docs/developer/planner.md).
+/// Time in which a planner that does not run may return (docs/developer/planner.md).
 constexpr double WAIT_FOR_PLANNER_S = 0.02;
-/// How often a stop under way is judged [cycles].
+/// Interval of the checks during a stop [cycles].
 constexpr int LOOK_EVERY = 16;
-/// Until commands that were on their way when the machine was stopped have been dropped [cycles].
+/// Time until commands in transfer at the stop are discarded [cycles].
 constexpr int IN_FLIGHT = 6;
 constexpr double MOVED = 1e-9;
 constexpr double COUNTS_AT_INDEX = 2.1;
@@ -36,7 +36,7 @@ testing::LimitChecker checker_of(const JointDesign &j, bool isJerk, double perio
     return {{limit}, period_s, RATE_ROUNDING};
 }
 
-/// Of an axis: what it is jogged or programmed to and its external offset take it there together.
+/// Position of an axis: the jogged or programmed position plus its external offset.
 double axis_place(const Sample &s, int axis) {
     return s.axes[axis] + s.offsets[axis];
 }
@@ -85,7 +85,7 @@ void Judge::stop(Stop how, int delay) {
     allowed_.isSwitchingOn = allowed_.isMotion = allowed_.isWork = false;
 }
 
-/// The path begins with the samples that tell the speed.
+/// The path begins with the samples that define the initial speed.
 void Judge::begin_stop() {
     constexpr std::size_t KEPT = 3;
     AwaitedStop::Path &path = stop_.path;
@@ -100,7 +100,7 @@ void Judge::begin_stop() {
     path.areAxesKnown = last_.areAxesKnown;
 }
 
-/// What corrections take to come to rest, of which the motion on top of which they come knows nothing.
+/// Time in which corrections stop. They are independent of the motion to which they are added.
 double Judge::time_to_correct() const {
     double most = 0;
     for (const JointDesign &d : design_.joints) {
@@ -131,8 +131,8 @@ double Judge::time_to_be_sure() const {
     return mean_s + (design_.hasOffsets() ? time_to_brake() : 0);
 }
 
-/// By the accelerations of joints and axes along the path that was taken since, and what building them up
-/// takes where jerk is limited.
+/// Minimum stopping time from the accelerations of joints and axes along the path since the stop, plus the
+/// time to build up the accelerations if jerk is limited.
 LeastStop Judge::time_to_stop() const {
     std::vector<StoppingGroup> groups;
     for (std::size_t j = 0; j < joints_.size(); ++j) {
@@ -164,8 +164,8 @@ LeastStop Judge::time_to_stop() const {
     return stop;
 }
 
-/// Of all that is linear, the longest time in which an acceleration is built up. Angular axes get no longer:
-/// docs/developer/planner.md, "Known limits".
+/// The longest time in which a linear axis or joint builds up its acceleration. It also applies to angular
+/// axes: docs/developer/planner.md, "Known limits".
 double Judge::build_up_s() const {
     double most = 0;
     const auto look = [&](bool isAngular, double acceleration, double jerk) {
@@ -185,8 +185,8 @@ double Judge::built_up(bool isAngular, double acceleration, double jerk) const {
     return isShort ? std::min(acceleration, jerk * build_up_s_) : acceleration;
 }
 
-/// What building up accelerations takes of those who move as a stop begins, or as the command for it is on
-/// its way.
+/// Time to build up the acceleration of the axes and joints that move when a stop begins or while its command
+/// is in transfer.
 double Judge::time_of_jerk() const {
     constexpr double UP_AND_DOWN = 2.5;
     double most = 0;
@@ -200,12 +200,12 @@ double Judge::time_of_jerk() const {
         }
         double a = d.acceleration;
         double jerk = d.jerk;
-        // One that moves alone builds up its own.
+        // A single joint that moves alone uses its own limits.
         const double least =
             !d.isAngular && design_.jerk > 0 && (jerk <= 0 || design_.jerk < jerk) ? design_.jerk : jerk;
         most = least > 0 ? std::max(most, built_up(d.isAngular, a, least) / least) : most;
         for (const AxisDesign &x : design_.axes) {
-            // Who limits an axis may limit any joint.
+            // The limit of an axis may limit any joint.
             a = std::min(a, x.acceleration);
             jerk = x.jerk > 0 ? (jerk > 0 ? std::min(jerk, x.jerk) : x.jerk) : jerk;
         }
@@ -234,7 +234,7 @@ void Judge::sample(const Sample &s) {
     last_ = s;
 }
 
-/// Until a stop begins, the last samples alone.
+/// Keeps only the last samples until a stop begins.
 void Judge::take_for_stop(const Sample &s) {
     stop_.path.axes.push_back(s.axes);
     stop_.path.areAxesKnown = stop_.path.areAxesKnown && s.areAxesKnown;
@@ -274,7 +274,8 @@ void Judge::check_amplifiers(const Sample &s) {
         }
         const double lag = std::abs(q.pos_cmd - q.pos_fb);
         const double v = std::max(std::abs(q.pos_cmd - before.pos_cmd) / period_, std::abs(before_[j]));
-        // Motion sees the feedback before it makes the next command, a cycle's way farther on.
+        // Motion reads the feedback before it calculates the next command, which is one cycle of travel
+        // ahead.
         const double most = std::max(d.ferror * v / d.velocity, d.min_ferror) + v * period_;
         if (q.isAmpOn && before.isAmpOn && !q.isHoming && lag > 1.01 * most + PLACE_ROUNDING) {
             fail("amp", fmt::format("joint {} is on with a following error of {:.6g}, {:.6g} allowed", j, lag,
@@ -288,7 +289,8 @@ void Judge::check_amplifiers(const Sample &s) {
         if (isRise && !allowed_.isSwitchingOn) {
             fail("energise", fmt::format("amplifier of joint {} comes on by itself", j));
         }
-        // One that moves by itself is taken where motion has seen it, a cycle ago.
+        // For a joint that is moved from outside, the feedback of the previous cycle counts, which motion has
+        // read.
         const double step =
             std::min(std::abs(q.motor_cmd - q.motor_fb), std::abs(q.motor_cmd - before.motor_fb));
         if (isRise && step > d.velocity * period_ + PLACE_ROUNDING) {
@@ -317,11 +319,11 @@ void Judge::check_limits(const Sample &s) {
                            : 0;
         const bool isIndex = q.resets != last_.joints[j].resets && last_.joints[j].isAmpOn;
         if (isIndex) {
-            // The command goes on as well as counts tell where the shaft is.
+            // The command continues with the accuracy of the encoder counts.
             const double counts = COUNTS_AT_INDEX / design_.joints[j].counts_per_unit;
             const double most = counts + design_.joints[j].acceleration * period_ * period_;
             const double step = (velocity_[j] - before_[j]) * period_;
-            // After its counts have lied the slide may be anywhere within the cycle.
+            // After wrong encoder counts the slide may be at any position within the travel of a cycle.
             if (last_.joints[j].isTruthKnown && std::abs(step) > most) {
                 fail("step", fmt::format("joint {} is led by {:.6g} off its way at the index", j, step));
             }
@@ -330,7 +332,7 @@ void Judge::check_limits(const Sample &s) {
         }
         before_[j] = velocity_[j];
         judge.speed.sample(&place);
-        // What homing has begun may stop without a jerk limit, also when it is given up.
+        // Moves of homing may stop without a jerk limit, also when homing is aborted.
         const bool isHoming = q.isHoming || last_.joints[j].isHoming;
         judge.isUnjerked = isHoming || (judge.isUnjerked && std::abs(velocity_[j]) > MOVED);
         if (judge.isUnjerked) {
@@ -349,7 +351,7 @@ void Judge::check_limits(const Sample &s) {
     }
 }
 
-/// Soft limits: what is within stays within, what is beyond goes no farther.
+/// Soft limits: a joint within the limits stays within them; a joint outside them does not move farther out.
 void Judge::check_room(const Sample &s) {
     const auto leaves = [](double before, double now, double low, double high) {
         return (now > high + PLACE_ROUNDING && now > before + MOVED) ||
@@ -364,7 +366,7 @@ void Judge::check_room(const Sample &s) {
         double low = std::min(d.low, back);
         double high = std::max(d.high, back);
         for (std::size_t k = 0; design_.isTrivial && k < joints_.size(); ++k) {
-            // Sides of a gantry that have run out beyond a limit are led together where one of them stands.
+            // Gantry sides that coasted outside a limit align at the position of one of them.
             const bool isSide = design_.coordinates[k] == design_.coordinates[j];
             low = isSide ? std::min(low, last_.joints[k].pos_cmd) : low;
             high = isSide ? std::max(high, last_.joints[k].pos_cmd) : high;
@@ -423,7 +425,7 @@ void Judge::check_rest(const Sample &s) {
 void Judge::watch_stop(bool isMoving, bool isOn) {
     ++stop_.since;
     if (stop_.since <= stop_.delay) {
-        begin_stop();  // it does not know yet
+        begin_stop();  // motion has not received the stop
         return;
     }
     const int cycles = stop_.since - stop_.delay;
@@ -441,9 +443,9 @@ void Judge::watch_stop(bool isMoving, bool isOn) {
     if (isStanding || !isOn) {
         const int off_within = 10 + static_cast<int>(time_to_be_sure() / period_);
         const bool mustBeOff = stop_.how == Stop::ALONG_THEN_OFF;
-        const int since = std::min(standing_, cycles);  // it may have stood long before
+        const int since = std::min(standing_, cycles);  // it may have stopped long before
         if (mustBeOff && isOn && since > off_within) {
-            fail("stop", "it stands, and its amplifiers stay on");
+            fail("stop", "the machine is stopped, and its amplifiers stay on");
         }
         stop_.isAwaited = mustBeOff && isOn && since <= off_within;
     }
@@ -452,10 +454,10 @@ void Judge::watch_stop(bool isMoving, bool isOn) {
 void Judge::check_stop(bool isMoving, double took_s) {
     const LeastStop least = time_to_stop();
     if (isMoving && !least.isOver) {
-        return;  // nobody could have stopped on what there is of the path yet
+        return;  // the path since the stop is too short for any stop
     }
     const double corrections_s = time_to_correct() + stops_later_s;
-    // All axes have one mean, also where the one that needs it stands.
+    // All axes use the same jerk filter, also while the axis that needs it is stopped.
     const double mean_s = std::max(0.0, design_.longest_mean_s() - time_of_jerk());
     const double waited_s = stop_.wasPlannerAway ? WAIT_FOR_PLANNER_S : 0.0;
     if (took_s > STOP_FACTOR * least.seconds + STOP_SLACK_S + waited_s + corrections_s + mean_s) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What must hold at every servo sample of a machine, whatever happens. Fed with what can be measured at its
-// pins and plants and with what its operator does; knows the limits from the machine's files only.
+// Rules that hold at every servo sample of a machine. The judge reads measurements at pins and plants and the
+// actions of the operator. It reads the limits from the files of the machine only.
 #pragma once
 
 #include <array>
@@ -20,30 +20,29 @@ namespace mw::campaign {
 
 struct JointSample {
     double pos_cmd = 0, pos_fb = 0, motor_cmd = 0;
-    double motor_fb = 0;       ///< as the servo cycle has read it
-    double turned = 0;         ///< by how much index marks have moved the encoder's zero so far
-    int resets = 0;            ///< how often they have set it
-    double position = 0;       ///< of the joint in truth, by the plant
-    bool isTruthKnown = true;  ///< false once the encoder has lied
-    double offset = 0;         ///< external, of its axis; part of the commands
+    double motor_fb = 0;       ///< value that the servo cycle read
+    double turned = 0;         ///< sum of the changes of the encoder zero by index marks
+    int resets = 0;            ///< number of these changes
+    double position = 0;       ///< true position of the joint, from the plant
+    bool isTruthKnown = true;  ///< false after a fault of the encoder
+    double offset = 0;         ///< external offset of its axis, part of the commands
     bool isAmpOn = false, isHomed = false, isHoming = false;
     bool isAmpFaulted = false;
-    /// Of the motor, without the external offset: that has been asked for by HAL pins and goes on as long as
-    /// it is.
+    /// Motor position without the external offset, which HAL pins command and which also moves after a stop.
     double motor_place() const { return motor_cmd + turned - offset; }
 };
 
 struct Sample {
     std::uint64_t cycle = 0;
     bool isChainClosed = true, isEnableOn = true;  ///< as the servo cycle has read them
-    bool isPlannerAway = false;                    ///< it has no chance to answer
+    bool isPlannerAway = false;                    ///< the planner does not run
     bool isSpindleOn = false;
     double spindle_rpm = 0;     ///< commanded
-    double spindle_turns = 0;   ///< in truth
-    std::uint32_t outputs = 0;  ///< bit per output that can do work: digital outputs, flood, mist
+    double spindle_turns = 0;   ///< true revolutions
+    std::uint32_t outputs = 0;  ///< one bit for each digital output, flood and mist
     bool areAxesKnown = false;  ///< all homed, teleop or coord
     geometry::Pose axes;        ///< commanded, without external offsets
-    geometry::Pose offsets;     ///< external ones, which come on top
+    geometry::Pose offsets;     ///< external offsets, which are added
     std::vector<JointSample> joints;
 };
 
@@ -58,8 +57,8 @@ struct AwaitedStop {
     bool isAwaited = false;
     Stop how = Stop::ALONG_THE_PATH;
     int delay = 0, since = 0;     ///< cycles
-    bool wasPlannerAway = false;  ///< at some time since
-    /// Commanded since, with the samples that tell the speed as it began.
+    bool wasPlannerAway = false;  ///< at any time since the stop
+    /// Commanded positions since the stop, with the samples before it that define the initial speed.
     struct Path {
         std::vector<std::vector<double>> motors;  ///< by joint, sample
         std::vector<geometry::Pose> axes;
@@ -68,10 +67,10 @@ struct AwaitedStop {
     Path path;
 };
 
-/// What an operator's fresh command allows until the next stop.
+/// Actions that a new command of the operator permits until the next stop.
 enum class Leave { SWITCH_ON, MOVE, WORK };
 
-/// Since the last stop.
+/// Actions permitted since the last stop.
 struct Allowed {
     bool isSwitchingOn = false, isMotion = false, isWork = false;
 };
@@ -81,45 +80,45 @@ class Judge {
     Judge(const Design &design, double period_s);
 
     void allow(Leave leave);
-    /// A stop has been asked for, or something that must stop the machine has happened, after the last
-    /// sample; it may take `delay` cycles until motion hears of it.
+    /// A stop was requested after the last sample, by a command or a fault. Motion may receive it up to
+    /// `delay` cycles later.
     void stop(Stop how, int delay);
     void sample(const Sample &s);
-    /// Stops may take so much longer: what is in step with a spindle stands when that does, and wheels may
-    /// have a part of the acceleration only.
+    /// Additional time for stops: a synchronized move stops with the spindle, and a jog wheel may use only a
+    /// part of the acceleration.
     double stops_later_s = 0;
-    /// Where a path began that may be gone back along: who came from beyond a soft limit may get there again.
+    /// Start of a path that reverse run may follow. If it is outside a soft limit, the axis may return there.
     std::optional<Sample> back_to;
 
     bool isSound() const { return report_.empty(); }
-    /// What was broken first: rule, cycle, figures.
+    /// First violation: rule, cycle, figures.
     const std::string &report() const { return report_; }
-    /// Rules that are known to be broken: they are counted, and end nothing.
+    /// Rules with known violations: they are counted and do not end the session.
     std::set<std::string> known;
     const std::map<std::string, int> &broken_known() const { return broken_known_; }
-    /// What the slowest joint needs from its highest speed [s].
+    /// Braking time of the slowest joint from its maximum speed [s].
     double time_to_brake() const;
-    /// The mean that keeps the jerk, 2 A / J of a joint or that of the path, may stand before it is sure of
-    /// it, and offsets brake on their own: for so long motion may say that it moves, though it stands [s].
+    /// Time for which motion may report a move after the axes have stopped [s]: the jerk filter (2 A / J of a
+    /// joint or of the path) has not settled, or external offsets brake separately.
     double time_to_be_sure() const;
     /// Nothing moves and no stop is awaited.
     bool isAtRest() const { return standing_ >= 3 && !stop_.isAwaited; }
-    /// It stands, or does in the next cycle.
+    /// The machine is stopped, or will be in the next cycle.
     bool mayBeAtRest() const;
     bool areOffsetsAtRest() const { return offsets_standing_ >= 3; }
-    /// The time that stops took over what the limits need, the largest.
+    /// Maximum of the duration of a stop divided by the duration that the limits permit.
     double slowest_stop() const { return slowest_stop_; }
     std::uint64_t samples() const { return count_; }
-    /// What has been judged that not every session has, and how often.
+    /// Number of checks of the optional features of a session.
     const std::map<std::string, int> &judged() const { return judged_; }
 
   private:
     struct JointJudge {
         testing::LimitChecker speed, jerk;
         double reference = 0;  ///< of homing without a switch
-        double held = 0;       ///< where the motor was at rest
+        double held = 0;       ///< motor position at standstill
         double travel = 0;     ///< since it was switched on
-        double place = 0;      ///< of the slide, off its command, when it stood before
+        double place = 0;      ///< deviation of the slide from its command at the last standstill
         bool wasHomed = false, isUnjerked = false, isPlaceKnown = false;
     };
     void check_numbers(const Sample &s);
@@ -151,9 +150,9 @@ class Judge {
     Allowed allowed_;
     AwaitedStop stop_;
     double build_up_s_ = 0;
-    int standing_ = 0, offsets_standing_ = 0;  ///< for so many cycles
-    int held_cycles_ = 0;                      ///< since nothing may move; 0: it may
-    int restless_ = 0;  ///< cycles left in which commands of before a stop may still arrive
+    int standing_ = 0, offsets_standing_ = 0;  ///< number of cycles at standstill
+    int held_cycles_ = 0;                      ///< cycles since motion was forbidden; 0: it is permitted
+    int restless_ = 0;  ///< cycles left in which commands from before a stop may arrive
     double slowest_stop_ = 0;
     std::string report_;
     std::map<std::string, int> broken_known_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Whether slides are where joints say that they are, and stay where they rest.
+// Checks that slides are at the reported joint positions and do not move at standstill.
 #include <algorithm>
 #include <cmath>
 
@@ -10,11 +10,11 @@
 namespace mw::campaign {
 namespace {
 
-constexpr double HELD_ROUNDING = 2e-6;  ///< of what rests [units]
-/// What a motion may have left to go in the mean where it seems to stand [units].
+constexpr double HELD_ROUNDING = 2e-6;  ///< at standstill [units]
+/// Remaining travel in the jerk filter of a motion that seems to have stopped [units].
 constexpr double IN_THE_MEAN = 1e-3;
 
-/// How exactly homing knows where a slide is.
+/// Accuracy of the slide position after homing.
 double found_within(const JointDesign &d, double period_s) {
     const bool hasIndex = d.home_kind == HomeKind::SWITCH_AND_INDEX;
     const bool hasSwitch = d.home_kind == HomeKind::SWITCH;
@@ -24,9 +24,9 @@ double found_within(const JointDesign &d, double period_s) {
 
 }  // namespace
 
-/// What has come to rest stays there, but for rounding, until somebody asks for a motion. A command that came
-/// with the stop may still be in the mean that keeps the jerk: too slow to see at first, and what play there
-/// is is made up where it turns about.
+/// A stopped motor keeps its position, within rounding, until a client commands a motion. A command that
+/// arrived with the stop may still be in the jerk filter. Its motion is below the threshold at first, and a
+/// reversal in it moves the motor by the backlash.
 void Judge::check_stale(const Sample &s, bool wasAtRest) {
     const bool wasHeld = held_cycles_ > 0;
     const bool isHeld = !allowed_.isMotion && restless_ == 0 && (wasAtRest || wasHeld);
@@ -43,12 +43,12 @@ void Judge::check_stale(const Sample &s, bool wasAtRest) {
         joints_[j].held = q.isAmpOn && before.isAmpOn ? held : place;
         const double mean_part = held_cycles_ <= settling ? IN_THE_MEAN + std::max(d.backlash, d.play) : 0.0;
         if (isHeld && q.isAmpOn && before.isAmpOn && std::abs(place - held) > HELD_ROUNDING + mean_part) {
-            fail("stale", fmt::format("joint {} moves, and nobody has asked for it since the last stop", j));
+            fail("stale", fmt::format("joint {} moves without a command since the last stop", j));
         }
     }
 }
 
-/// A joint that says that it is homed is where it says that it is.
+/// The reported position of a homed joint is its true position.
 void Judge::check_homes(const Sample &s) {
     for (std::size_t j = 0; j < joints_.size(); ++j) {
         const JointSample &q = s.joints[j];
@@ -63,7 +63,7 @@ void Judge::check_homes(const Sample &s) {
             continue;
         }
         const double off = q.pos_fb - q.position - judge.reference;
-        // In motion corrections may be late, and play is on either side.
+        // In motion, corrections may be late and the backlash may be on either side.
         const double allowed = found_within(d, period_) + 2 * d.play + 2 * d.screw_error;
         if (!(std::abs(off) <= allowed)) {
             fail("homed", fmt::format("joint {} says {:.6g} and is at {:.6g}", j, q.pos_fb,
@@ -72,10 +72,10 @@ void Judge::check_homes(const Sample &s) {
     }
 }
 
-/// At rest a slide is where it is commanded: corrections have taken up play and what the screw is off.
+/// At standstill a slide is at its commanded position: backlash and screw errors are corrected.
 void Judge::check_places(const Sample &s) {
     constexpr int RESTED = 60;           // the drive has settled
-    constexpr double DRIVE = 3e-3;       // friction holds it so near
+    constexpr double DRIVE = 3e-3;       // deviation that friction causes
     constexpr double OVERSHOOT = 0.012;  // of the motor, which takes the slide with it one way only
     for (std::size_t j = 0; j < joints_.size(); ++j) {
         const JointSample &q = s.joints[j];
@@ -85,7 +85,7 @@ void Judge::check_places(const Sample &s) {
             q.isAmpOn && last_.joints[j].isAmpOn && q.isHomed && q.isTruthKnown && !q.isHoming;
         judge.travel = isKnown ? judge.travel + std::abs(q.pos_cmd - last_.joints[j].pos_cmd) : 0;
         judge.isPlaceKnown = judge.isPlaceKnown && q.isHomed && q.isTruthKnown;
-        // Until it has moved farther than the play nobody knows at which end of it the slide is.
+        // Before a travel longer than the backlash, the side of the backlash is unknown.
         const bool isJudged =
             d.isCorrected() && standing_ == RESTED && judge.travel > 1 + 4 * d.play && d.isInTable(q.pos_cmd);
         if (!isJudged) {
@@ -100,7 +100,7 @@ void Judge::check_places(const Sample &s) {
             fail("place", fmt::format("joint {} stands {:.6g} off, where it stood {:.6g} off before", j, off,
                                       judge.place));
         }
-        // Where the switch is met soon after a reversal play was not all taken up yet.
+        // If the switch closes soon after a reversal, the backlash is only partly taken up.
         const double late = d.play + (design_.isJerkLimited ? d.screw_error : 0);
         const bool isMeasured = d.home_kind != HomeKind::IMMEDIATE;
         if (isMeasured && std::abs(off) > allowed + late + found_within(d, period_)) {
@@ -109,14 +109,14 @@ void Judge::check_places(const Sample &s) {
     }
 }
 
-/// In the cycle that looks at a pin next: two cycles of braking are left at most.
+/// In the next cycle that reads a pin, at most two cycles of braking are left.
 bool Judge::mayBeAtRest() const {
     constexpr double CYCLES = 2;
     bool isSlow = true;
     for (std::size_t j = 0; j < velocity_.size(); ++j) {
         isSlow = isSlow && std::abs(velocity_[j]) <= CYCLES * design_.joints[j].acceleration * period_;
     }
-    // A play may still be taken up where the path stands.
+    // The backlash correction may still move while the path is stopped.
     const std::vector<geometry::Pose> &path = stop_.path.axes;
     bool isPathSlow = last_.areAxesKnown && path.size() > 1;
     for (const AxisDesign &a : design_.axes) {

@@ -230,7 +230,7 @@ void Rig::set_contacts(const std::vector<Contact> &contacts) {
     areWallsUp_ = false;
     for (const Contact &c : contacts) {
         const std::size_t joint = design_.coordinates.find(geometry::AXIS_LETTERS[c.axis]);
-        // What machine and plant call a place differs where joints are homed as they stand.
+        // Positions of machine and plant differ for joints that are homed at their position.
         const double by = plants_[joint].slide - sample_.joints[joint].pos_cmd;
         walls_.push_back({joint, {c.axis, c.low + by, c.high + by}});
     }

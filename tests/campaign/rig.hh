@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A whole machine in virtual time, task and motion as they are, with plants at the pins of its HAL in place
-// of motors, encoders and switches. Its task may be held or dead, its planner late.
+// A complete machine in virtual time: task and motion unmodified, and plant models at the HAL pins in place
+// of motors, encoders and switches. Its task may hang or be dead, its planner late.
 #pragma once
 
 #include <memory>
@@ -24,7 +24,7 @@
 
 namespace mw::campaign {
 
-/// The virtual clock, under which the planner may miss periods.
+/// The virtual clock with a planner that can miss periods.
 class LateScheduler final : public runtime::Scheduler {
   public:
     std::int64_t now_ns() const noexcept override { return clock_.now_ns(); }
@@ -47,7 +47,7 @@ struct JointFaults {
     bool isOnLimit = false, isEncoderNan = false;
 };
 
-/// What is wrong with the rest of the machine.
+/// Faults of the rest of the machine.
 struct MachineFaults {
     bool isChainOpen = false, isDisabled = false, isProbeClosed = false, isFeedInhibited = false;
     double adaptive_feed = 1;
@@ -55,14 +55,14 @@ struct MachineFaults {
     bool isTaskHeld = false, isTaskDead = false;
 };
 
-/// A joint's motor with what is around it.
+/// Model of the motor, amplifier, encoder and slide of a joint.
 struct Plant {
     plants::Axis axis;
     plants::Encoder encoder;
     plants::BouncingSwitch home_switch;
     plants::Amplifier amplifier;
-    double slide = 0;   ///< where it is
-    double turned = 0;  ///< by how much index marks have moved the encoder's zero
+    double slide = 0;   ///< position
+    double turned = 0;  ///< sum of the changes of the encoder zero by index marks
     int resets = 0;
     bool isTruthKnown = true, wasPowered = false;
 };
@@ -71,10 +71,10 @@ class Rig final : public machine::Machine {
   public:
     Rig(const Design &design, std::uint64_t seed, std::string ini);
     ~Rig() override;
-    /// An error in words; empty when the machine runs.
+    /// Returns an error text; empty when the machine runs.
     std::string start();
 
-    /// One servo cycle, with task's where it is due.
+    /// Runs one servo cycle, and the cycle of task when it is due.
     void cycle() override;
     std::int64_t now_ns() const override { return scheduler_.now_ns(); }
     bool isVirtual() const override { return true; }
@@ -90,32 +90,33 @@ class Rig final : public machine::Machine {
     bool isInPosition() const { return *pins_.in_position; }
     bool isSwitchedOn() const;
 
-    /// Where the probe has contact, in machine coordinates as they are now, once it has come into the room.
+    /// Sets the contacts in current machine coordinates. They are active once the probe is inside their
+    /// range.
     void set_contacts(const std::vector<Contact> &contacts);
-    /// How far the probe is beyond the walls of its room along an axis; below 0: within.
+    /// Distance of the probe outside its walls along an axis; below 0: inside.
     double beyond_walls(int axis) const;
 
-    /// Asks for another external offset of the axis; that of all to be cleared.
+    /// Requests another external offset of the axis; the next method clears all offsets.
     void add_offset(int axis, double by);
     void clear_offsets(bool isWanted);
     bool hasOffset() const;
-    /// Every offset is what is asked for, or a limit keeps it from that.
+    /// Each offset has its requested value, or a limit prevents it.
     bool areOffsetsThere() const;
 
-    /// Links a wheel; nullptr: none moves anything.
+    /// Links a jog wheel; nullptr: unlinks it.
     void link_wheel(const Turning *turning, int target);
     void turn_wheel(int counts);
 
     void lose_encoder(int joint, bool isLost);
     void jump_encoder(int joint, double by);
     void trip_amplifier(int joint) { plants_[static_cast<std::size_t>(joint)].amplifier.trip(); }
-    /// The machine as an operator finds it who has looked for what was wrong.
+    /// Removes all faults, as an operator does before switching on.
     void repair();
-    /// Sides of a gantry do not stand together.
+    /// The sides of a gantry are not aligned.
     bool isAskew() const;
-    /// Switched off: they are turned together by hand, as motion jogs none alone.
+    /// Aligns the sides by hand while the machine is off, as motion does not jog one side alone.
     void straighten();
-    /// After homing: what encoders say is true again.
+    /// Encoder positions are true again after homing.
     void trust_encoders();
 
     MachineFaults faults;

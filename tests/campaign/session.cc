@@ -13,7 +13,7 @@ namespace {
 
 constexpr double PERIOD_S = 1e-3;
 
-/// A reason without its figures, so that like ones are counted together.
+/// A reason without its figures, so that equal reasons are counted together.
 std::string kind_of(const std::string &reason) {
     std::string out;
     const std::size_t place = reason.find(".ngc:");
@@ -129,7 +129,7 @@ Session::End Session::ask(const messages::Command &command, double most_s) {
     return wait(post(command), most_s);
 }
 
-/// Until nothing moves any more, and a little longer.
+/// Runs until nothing moves, and a short time longer.
 void Session::settle(double most_s) {
     double t = 0;
     for (int calm = 0; calm < 20 && t < most_s && !isOver(); t += PERIOD_S) {
@@ -157,8 +157,8 @@ bool Session::set_mode(messages::Mode mode) {
     return end == End::DONE;
 }
 
-/// Switched off at speed they run out. Switched on meanwhile they may trip their following errors: no drive
-/// stops them at once.
+/// Motors that are switched off at speed coast. Switching on while they coast may cause following errors: no
+/// drive stops them immediately.
 void Session::await_slides() {
     constexpr double STANDING = 1e-3, MOST_S = 20;  // a count, as motion has read it
     int calm = 0;
@@ -198,7 +198,7 @@ bool Session::home() {
     judge_.allow(Leave::MOVE);
     ask(messages::UnhomeJoint{-1});
     if (isStopped_) {
-        return false;  // whoever stops the machine does not home it at once
+        return false;  // an operator who stops the machine does not home it at once
     }
     const End end = ask(messages::HomeJoint{-1}, 120);
     settle(5);
@@ -208,7 +208,7 @@ bool Session::home() {
     return !isOver() && end == End::DONE;
 }
 
-/// An operator who wants to work without them. An offset stays as long as the axis would be beyond its limits
+/// Clears the external offsets. An offset stays active as long as the axis would be outside its limits
 /// without it.
 bool Session::clear_offsets() {
     if (!set_mode(messages::Mode::MANUAL) || ask(messages::SetTeleop{true}) != End::DONE) {
@@ -234,12 +234,12 @@ bool Session::clear_offsets() {
     rig_->clear_offsets(false);
     cycle();
     if (!judge_.isAtRest()) {
-        settle(10);  // of the jogs: who comes from far beyond a limit takes longer than the offset
+        settle(10);  // an axis far outside a limit needs longer than the offset
     }
     return !isOver();
 }
 
-/// Everything repaired, on and homed: what stops the next act is its own trouble.
+/// Repairs, switches on and homes the machine, so that only its own faults stop the next act.
 bool Session::prepare() {
     act_ = nullptr;
     going_.clear();
@@ -329,7 +329,7 @@ void Session::perform(const Act &act) {
         home();
         break;
     }
-    // What goes wrong when the work is over goes wrong as well.
+    // Faults that are due after the end of the work occur, too.
     for (int i = 0; i < 100 && !isOver(); ++i) {
         step_troubles();
         cycle();

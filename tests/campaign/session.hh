@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Runs a plan: an operator who does the acts, the troubles at their instants, and the judge at every sample.
+// Runs a plan: the acts of the operator, the faults at their times, and the judge at every sample.
 #pragma once
 
 #include <filesystem>
@@ -14,35 +14,35 @@
 
 namespace mw::campaign {
 
-/// Something that not every session has.
+/// Counts of an optional feature of a session.
 struct Extension {
     int ran = 0, judged = 0;
 };
 
 struct Verdict {
-    std::string fault;  ///< "rule: what"; empty: all held
+    std::string fault;  ///< "rule: text"; empty: no violation
     double seconds = 0;
     int stops = 0;  ///< aborts, exits and faults
     int programs = 0, ended = 0, timed = 0;
     int commands = 0, refused = 0;
-    std::map<std::string, int> known;     ///< how often rules were broken that are known to be
+    std::map<std::string, int> known;     ///< violations of known rules
     std::map<std::string, int> refusals;  ///< by reason, figures replaced
-    /// Also the stops, by what; judged: those that came while something moved.
+    /// Includes the stops by cause; judged: stops during a motion.
     std::map<std::string, Extension> extensions;
     double slowest_stop = 0, worst_time = 0;
-    std::uint64_t hash = 0;  ///< of all that was commanded
+    std::uint64_t hash = 0;  ///< of all commanded positions
 };
 
-/// A jog, or an external offset that is begun just before, takes no longer to come to rest.
+/// Maximum time until a jog, or an external offset that has just started, stops.
 inline constexpr double LONGEST_CALM_S = 10;
 
 struct Telling {
-    std::FILE *stream = nullptr;  ///< what happens
-    std::string trace;            ///< file of what is commanded; empty: none
-    std::set<std::string> known;  ///< rules that are known to be broken
+    std::FILE *stream = nullptr;  ///< output of the events
+    std::string trace;            ///< file of the commanded positions; empty: none
+    std::set<std::string> known;  ///< rules with known violations
 };
 
-/// In a folder of its own, for the files of the machine.
+/// Runs in a separate folder, which contains the files of the machine.
 class Session {
   public:
     Session(const Plan &plan, std::filesystem::path folder, const Telling &telling);
@@ -100,7 +100,7 @@ class Session {
     Verdict verdict_;
     bool isTaskGone_ = false;
     bool areEncodersTrue_ = true;
-    // --- of the act under way
+    // --- of the current act
     const Act *act_ = nullptr;
     std::uint64_t began_ = 0;
     std::size_t next_trouble_ = 0;
@@ -113,11 +113,11 @@ class Session {
     bool isStopped_ = false, isDisturbed_ = false, isReversed_ = false;
     bool isRecording_ = false;
     std::vector<geometry::Pose> path_;
-    std::vector<JointSample> led_;  ///< the joints where path_ ends
-    double led_s_ = 0;  ///< time in which joints were led to where the axes stood before the first move
-    std::vector<double> turns_, rpm_;     ///< of the spindle, with path_
-    std::vector<std::string> told_;       ///< by the program
-    std::map<int, double> beyond_walls_;  ///< how far the probe has been, by axis
+    std::vector<JointSample> led_;     ///< joints at the end of path_
+    double led_s_ = 0;                 ///< time in which joints aligned with the axes before the first move
+    std::vector<double> turns_, rpm_;  ///< of the spindle, with path_
+    std::vector<std::string> told_;    ///< by the program
+    std::map<int, double> beyond_walls_;  ///< maximum travel of the probe past its walls, by axis
 };
 
 }  // namespace mw::campaign

@@ -27,7 +27,7 @@ double Session::place_of(const Act &act, bool isJoint) const {
                    : rig_->sample().axes[act.target];
 }
 
-/// Sides of a gantry that have sagged: whoever asks for motion has them led together first.
+/// Gantry sides that have sagged align before any commanded motion.
 bool Session::areSidesApart() const {
     const Design &d = plan_.design;
     const Sample s = rig_->sample();
@@ -108,12 +108,13 @@ void Session::jog(const Act &act) {
     if (isStopped_ || isDisturbed_ || isOver() || !plan_.design.isTrivial) {
         return;
     }
-    // One that would end beyond a limit is refused. An e-stop may have let it run out beyond them before.
+    // A jog that would end outside a limit is rejected. The joint may have coasted outside the limits after
+    // an e-stop.
     const auto [low, high] = range_of(act, isJoint);
     const double wanted = from + act.distance;
     const bool fits = wanted >= low && wanted <= high && from > low && from < high;
     if (end != End::DONE && fits) {
-        fail("work", fmt::format("a jog from {:.6g} by {:.6g} is refused", from, act.distance));
+        fail("work", fmt::format("a jog from {:.6g} by {:.6g} is rejected", from, act.distance));
     } else if (isIncrement && end == End::DONE && std::abs(place_of(act, isJoint) - wanted) > 1e-6) {
         fail("work", fmt::format("a jog from {:.6g} by {:.6g} ends at {:.6g}", from, act.distance,
                                  place_of(act, isJoint)));
@@ -170,7 +171,8 @@ void Session::turn(const Act &act) {
     ++count.judged;
     const bool isBeyond = (at - wanted) * (wanted - from) > 1e-6;
     if (t.isVelocityMode ? isBeyond || (at == from && !isLedFirst) : std::abs(at - wanted) > 1e-6) {
-        fail("work", fmt::format("a wheel turned from {:.6g} to {:.6g} has led to {:.6g}", from, wanted, at));
+        fail("work", fmt::format("a wheel turned from {:.6g} to {:.6g} has moved the joint to {:.6g}", from,
+                                 wanted, at));
     }
 }
 

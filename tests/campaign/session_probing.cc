@@ -12,7 +12,7 @@ namespace {
 
 constexpr double PERIOD_S = 1e-3;
 
-/// How far a probe that is so fast may go on when it has found something.
+/// Maximum overtravel of a probe at this speed after the contact.
 double way_to_stop(const Design &design, const JointDesign &joint, int axis, double speed) {
     constexpr double FACTOR = 2.2, SLACK_S = 0.02;  // as for any stop
     double a = std::min(joint.acceleration, design.acceleration);
@@ -86,13 +86,13 @@ void Session::check_probing(const Act &act, End end) {
                                       probe.isMet ? "it is" : "none is on the way", probe.wall));
         }
     }
-    // The one that must end the program tells nothing.
+    // The probing move that must end the program prints nothing.
     if (found.size() != moves - (act.isToFail ? 1 : 0)) {
         fail("work", fmt::format("{} of {} probing moves have told what they found", found.size(), moves));
     }
     for (const auto &[axis, most] : farthest) {
         if (beyond_walls_[axis] > most) {
-            fail("probe", fmt::format("it goes {:.4g} beyond a wall of {}, {:.4g} allowed",
+            fail("probe", fmt::format("overtravel {:.4g} past a wall of {}, {:.4g} allowed",
                                       beyond_walls_[axis], geometry::AXIS_LETTERS[axis], most));
         }
     }

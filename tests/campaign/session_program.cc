@@ -130,7 +130,7 @@ void Session::run_program(const Act &act) {
     } else if (end != End::DONE && !isStopped_ && !mayFail) {
         fail("work", "the program ends badly with nothing wrong");
     } else if (end == End::DONE && !isStopped_ && act.isToFail && !mayMiss) {
-        fail("work", "the program must not come to its end, and does");
+        fail("work", "the program must fail, and ends");
     } else if (act.work == Work::PROBE) {
         check_probing(act, end);
     } else if (act.work == Work::SPINDLE) {

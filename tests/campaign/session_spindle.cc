@@ -10,7 +10,7 @@
 namespace mw::campaign {
 namespace {
 
-/// Samples in which only Z moves, and towards the end of the wish.
+/// Samples in which only Z moves, towards the end of the synchronized move.
 struct Pass {
     std::size_t first = 0, last = 0;
     double length = 0;

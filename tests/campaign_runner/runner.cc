@@ -61,7 +61,7 @@ bool read_line(int in, double patience_s, std::string &line) {
     return true;
 }
 
-/// In a process of its own; one line.
+/// Runs the seed in a separate process; returns one line.
 std::string drive(Campaign &campaign, const Order &order, unsigned seed, const std::string &kept) {
     int ends[2];
     if (::pipe(ends) != 0) {
@@ -166,7 +166,7 @@ bool isLogOfThisPlan(const Campaign &campaign, const Order &order) {
     for (const unsigned plan : plans_in(order.log)) {
         if (plan != campaign.plan()) {
             std::fprintf(stderr,
-                         "%s has seeds of plan %u, which stand for other sessions than those of plan %u: "
+                         "%s has seeds of plan %u, which are other sessions than those of plan %u: "
                          "begin another log, or this one with --anew\n",
                          order.log.c_str(), plan, campaign.plan());
             return false;
@@ -189,8 +189,8 @@ void Order::add_to(options::CommandLine &line) {
     line.number("--processes", "P", "at a time (default 2)", processes, 1, 1024);
     line.text("--commit", "ID", "what was built, for the log", commit);
     line.text("--kept", "PARTS", "runs only these parts of the first seed", kept);
-    line.flag("--tell", "runs the first seed and tells what happens", isTold);
-    line.flag("--anew", "begins the log anew", isAnew);
+    line.flag("--tell", "runs the first seed and prints the events", isTold);
+    line.flag("--anew", "starts a new log", isAnew);
     line.flag("--no-shrink", "does not look for a shorter run that fails too", isShrunk, false);
     line.number("--patience", "S", "for one run [s] (default 120)", patience_s, 1, 1e6);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Runs campaigns of random sessions: every seed in a process of its own, so that nothing is carried over and
-// a crash or a hang is a verdict; a log that a campaign goes on with; shorter sessions that fail too.
+// Runs campaigns of random sessions. Each seed runs in a separate process, so that sessions are independent
+// and a crash or a hang is a verdict. A campaign continues from its log. The runner shortens sessions that
+// fail.
 #pragma once
 
 #include <filesystem>
@@ -13,21 +14,21 @@
 
 namespace mw::campaign_runner {
 
-/// What a kind of campaign is. The runner asks it in its own process, but for run().
+/// Interface of a campaign. The runner calls all methods in its own process, except run().
 class Campaign {
   public:
     virtual ~Campaign() = default;
-    /// As behind `script/campaign`.
+    /// Name on the command line of `script/campaign`.
     virtual std::string name() const = 0;
-    /// What a seed stands for, by number: logs name it, and seeds of another plan are other sessions.
+    /// Number of the plan, which is part of the log: the same seed is another session in another plan.
     virtual unsigned plan() const = 0;
     virtual bool isPlanTheUsualOne() const { return true; }
-    /// In a process of its own with a folder of its own. The verdict in one line: figures, then "ok" or
-    /// "FAILED rule: what". `kept`: the parts that are run (kept.hh), empty for all.
+    /// Called in a separate process with a separate folder. Returns the verdict in one line: figures, then
+    /// "ok" or "FAILED rule: what". `kept`: the parts to run (kept.hh), empty for all.
     virtual std::string run(unsigned seed, const std::string &kept, const std::filesystem::path &folder,
                             bool isTold) = 0;
     virtual std::vector<ActSize> acts_of(unsigned seed) const = 0;
-    /// Of all lines of a log.
+    /// Prints the sum of all lines of a log.
     virtual void print_sum(std::istream &log) const = 0;
 };
 
@@ -39,14 +40,14 @@ struct Order {
     double patience_s = 120;  ///< for one session
 
     void add_to(options::CommandLine &line);
-    /// Something that is missing or does not fit, empty: nothing.
+    /// Error text of missing or inconsistent options; empty if there is none.
     std::string trouble() const;
 };
 
-/// The status that the program ends with: 1 when something was broken.
+/// Runs the campaign. Returns the exit status: 1 if a rule was violated.
 int run(Campaign &campaign, const Order &order);
 
-/// "limit" of "... FAILED limit: joint 0 ..."; empty when all held.
+/// "limit" of "... FAILED limit: joint 0 ..."; empty if no rule was violated.
 std::string rule_of(const std::string &verdict);
 
 }  // namespace mw::campaign_runner

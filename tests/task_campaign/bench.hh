@@ -42,7 +42,7 @@ class Bench {
     std::int64_t now_ms() const { return now_ms_; }
 
     client::Client &client(int number) { return *clients_[static_cast<std::size_t>(number)]; }
-    /// As by kill -9; somebody else takes its place.
+    /// Ends the client as kill -9 does; another client replaces it.
     void lose_client(int number);
     const messages::MachineStatus &status() const { return machine_->task().status(); }
     machine::Machine &machine() { return *machine_; }

@@ -115,7 +115,7 @@ bool apply_device(const Line &line, World &w) {
             d.direction = 0;
             d.turning_rpm = 0;
         }
-        // An empty spindle is emptied again: nobody knows whether it is.
+        // An empty spindle is emptied again, because it may contain a tool.
         if (isTool && (d.in_spindle != line.number || line.number == 0)) {
             d.load(line.number);
         }

@@ -29,7 +29,7 @@ struct Modes {
     bool isAbsolute = true, isInch = false;
     int system = 1;                        ///< G54 is 1
     std::array<Place, SYSTEMS> systems{};  ///< G5x
-    Place g92{}, kept_g92{};               ///< in force; as in #5211 and on
+    Place g92{}, kept_g92{};               ///< active; stored in #5211 to #5219
     bool isG92On = false;
     double tool_z = 0;  ///< G43
     Place g28{}, g30{};

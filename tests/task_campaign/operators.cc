@@ -11,7 +11,7 @@ namespace {
 /// Of a session, in which nothing takes long.
 constexpr std::int64_t MOST_MS = 600000;
 
-/// Figures are replaced, so that refusals can be counted by reason.
+/// Replaces figures, so that rejections can be counted by reason.
 std::string kind_of(const std::string &reason) {
     std::string out;
     for (const char c : reason) {
@@ -132,7 +132,7 @@ void Operators::note_end(const Order &order, const client::Outcome &outcome) {
         ++verdict_.refused;
         ++verdict_.refusals[kind_of(outcome.reason)];
         if (outcome.reason.empty()) {
-            fail("reason", order.name + " is refused without one");
+            fail("reason", order.name + " is rejected without one");
         }
     }
     if (order.expected == Expected::TAKEN && isRefused) {

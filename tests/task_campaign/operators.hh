@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The people at the machine: post commands and see to it that each has an end, go on after holds.
+// The operators of the machine: they post commands, check that each command ends, and resume after pauses.
 #pragma once
 
 #include <cstdio>
@@ -15,10 +15,10 @@
 namespace mw::task_campaign {
 
 struct Verdict {
-    std::string fault;  ///< "rule: what"; empty: all held
+    std::string fault;  ///< "rule: text"; empty: no violation
     double seconds = 0;
     int acts = 0, commands = 0, refused = 0, runs = 0, ended = 0, stopped = 0, crashes = 0, recovered = 0;
-    std::map<std::string, int> counts;    ///< how often troubles came while something ran, and so on
+    std::map<std::string, int> counts;    ///< events, for instance faults during a run
     std::map<std::string, int> refusals;  ///< by reason, figures replaced
 };
 
@@ -50,13 +50,13 @@ class Operators {
     messages::Progress ask(int client, const messages::Command &command, Expected expected = Expected::ANY);
     messages::Progress progress_of(Serial serial) const;
     bool isWaited(Serial serial) const;
-    /// Nobody waits for what this client has posted; -1: for anything.
+    /// Commands of this client are not waited for; -1: of no client.
     void forget_orders(int client);
     const messages::MachineStatus &status() const { return bench_.status(); }
     bool isRunning() const { return status().task.interp_state != messages::InterpState::IDLE; }
-    /// The operator: resumes after holds, confirms what is proposed.
+    /// Acts as the operator: resumes after pauses, confirms proposals.
     void nurse();
-    /// Until nothing runs, moves, waits or is to be written.
+    /// Waits until nothing runs, moves, waits or is to be written.
     void settle();
 
     Bench bench_;
@@ -66,7 +66,7 @@ class Operators {
     /// Was being set when all was stopped, or that of jogs when what was left for them came to its end: it
     /// may be in force or not.
     std::optional<messages::Mode> mode_under_way_;
-    bool isHeldByUs_ = false;  ///< nobody is to resume
+    bool isHeldByUs_ = false;  ///< no operator resumes
 
   private:
     void look_at_orders();

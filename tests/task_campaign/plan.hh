@@ -29,7 +29,7 @@ enum class Work {
 };
 
 enum class Upset {
-    // --- the work goes on after these
+    // --- the work continues after these
     PAUSE,
     STEP,
     LEAVE,

@@ -10,7 +10,7 @@
 
 namespace mw::task_campaign {
 
-/// In a folder of its own, for the files of the machine.
+/// Runs in a separate folder, which contains the files of the machine.
 class Session : private Operators {
   public:
     Session(const Plan &plan, const std::filesystem::path &folder, std::FILE *tell);

@@ -96,7 +96,7 @@ std::vector<World> Session::after_line(const Line &line, const Typed &typed,
             }
             const bool isFailure = progress == messages::Progress::FAILED && isRight && !isStopped_;
             if (isFailure && before.size() == 1) {
-                fail("work", "a line that nobody has stopped fails: " + line.text());
+                fail("work", "a line without a stop fails: " + line.text());
             }
         }
     }

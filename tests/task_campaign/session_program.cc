@@ -98,14 +98,14 @@ void Session::end_program_of(const Act &act, End end) {
     if (end == End::DONE) {
         ++verdict_.ended;
         if (whole.empty()) {
-            fail("work", "a program that must fail has come to its end");
+            fail("work", "a program that must fail has ended normally");
         }
         beliefs_.worlds = std::move(whole);
     } else if (end == End::FAILED) {
         ++verdict_.stopped;
         const bool mayFail = isStopped_ || whole.size() < beliefs_.worlds.size();
         if (!mayFail && act.work != Work::FROM_LINE) {
-            fail("work", "a program that nobody has stopped does not come to its end");
+            fail("work", "a program without a stop does not end");
         }
         // A step that came too late has begun it again.
         const std::uint64_t runs = status().task.programs_ended - ended_before_;
@@ -115,7 +115,7 @@ void Session::end_program_of(const Act &act, End end) {
         beliefs_.worlds = std::move(stopped);
     }
     if (end == End::REFUSED && !isStopped_ && act.work != Work::FROM_LINE) {
-        fail("refusal", "a program that may run is refused");
+        fail("refusal", "a program that may run is rejected");
     }
     note_stop();
     if (end == End::FAILED) {
@@ -150,7 +150,7 @@ void Session::end_by_crash(const Act &act) {
     }
 }
 
-/// The program that the crash has cut short, where it is offered.
+/// The program that the crash interrupted, if it is offered.
 void Session::recover(const Act &act, const World &before, bool isBlockDelete) {
     const bool isOffered = status().recovery.isOffered;
     ++verdict_.counts[isOffered ? "offered after a crash" : "not offered after a crash"];
@@ -188,7 +188,7 @@ void Session::recover(const Act &act, const World &before, bool isBlockDelete) {
     if (progress_of(run) == messages::Progress::DONE) {
         ++verdict_.recovered;
         if (!whole.has_value()) {
-            fail("work", "a program that must fail has come to its end after a crash");
+            fail("work", "a program that must fail has ended normally after a crash");
             return;
         }
         beliefs_.worlds = {*whole};

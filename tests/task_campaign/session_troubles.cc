@@ -13,7 +13,7 @@ void Session::begin_troubles(const Act &act) {
     isStopped_ = areDevicesOff_ = isCrashed_ = isHeldByUs_ = false;
 }
 
-/// What a trouble has led to, once the machine is at rest.
+/// Result of a fault, after the machine has stopped.
 void Session::note_stop() {
     settle();
     if (!areDevicesOff_ || isCrashed_) {
