@@ -89,7 +89,7 @@ def main():
     parser.add_argument('--ten', action='store_true', help='10 million lines, too')
     parser.add_argument('names', nargs='*', help='programs (default: all)')
     options = parser.parse_args()
-    # LinuxCNC refuses to run as root.
+    # LinuxCNC does not run as root.
     options.account = pwd.getpwnam('nobody') if os.getuid() == 0 else None
     reference = REFERENCE if pathlib.Path(REFERENCE).exists() else None
     folder = pathlib.Path(tempfile.mkdtemp(prefix='bench-interp-'))

@@ -115,7 +115,7 @@ function(mw_test name)
   endif()
   list(TRANSFORM A_ROWS PREPEND row-)
   list(APPEND A_LABELS ${A_ROWS})
-  # Kill tests look at the clock of a realtime process: nothing else may run beside them.
+  # Kill tests measure the timing of a realtime process: no other test may run at the same time.
   set(serial FALSE)
   if("kill" IN_LIST A_LABELS)
     set(serial TRUE)

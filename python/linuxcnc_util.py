@@ -77,17 +77,17 @@ class LinuxCNC:
                 since[:] = [place, now]
             return now - since[1] >= _STILL_S
 
-        self._wait(has_stopped, f"axis {axis_letter} stands", timeout)
+        self._wait(has_stopped, f"axis {axis_letter} is stopped", timeout)
 
     def wait_for_axis_to_stop_at(self, axis_letter, target, timeout=_TIMEOUT_S, tolerance=1e-4):
-        """Until the axis stands at the place."""
+        """Waits until the axis is stopped at the position."""
         index = _LETTERS.index(axis_letter.lower())
         self._wait(lambda status: abs(status.position[index] - target) < tolerance,
                    f"axis {axis_letter} is at {target}", timeout)
         self.wait_for_axis_to_stop(axis_letter, timeout)
 
     def jog_axis(self, axis_letter, target, timeout=_TIMEOUT_S, velocity=None):
-        """Jogs an axis to the place and waits until it stands there. The machine is in teleop mode."""
+        """Jogs an axis to the position and waits until it is stopped there. The machine is in teleop mode."""
         index = _LETTERS.index(axis_letter.lower())
         self.status.poll()
         distance = target - self.status.position[index]

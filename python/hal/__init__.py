@@ -76,13 +76,13 @@ _components = _weakref.WeakSet()
 
 #: In the loops of these an interrupt is printed and forgotten.
 _TOOLKITS = ("gi.repository.Gtk", "PyQt5.QtWidgets", "PyQt6.QtWidgets", "PySide2.QtWidgets", "PySide6.QtWidgets")
-#: A program that swallows the interrupt ends so long after it all the same.
+#: Time after which a program that ignores the interrupt is ended.
 _GRACE_S = 2.0
 
 
 @_atexit.register
 def _leave():
-    """A program that comes to its end in order leaves HAL, also when it has not asked for it."""
+    """Removes the components of a program from HAL at its normal exit, also without a call of exit()."""
     for one in list(_components):
         try:
             one.exit()

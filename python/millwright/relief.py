@@ -20,7 +20,7 @@ def tool_rise(kind, radius, distance):
 
 
 def allowed(np, heights, row, pixel, kind, radius, reach_rows=0.0):
-    """Lowest tip at places (column * PARTS + part) along a row. reach_rows: pixels by which the tool may stand beside it."""
+    """Lowest tip at positions (column * PARTS + part) along a row. reach_rows: offset of the tool from the row, in pixels."""
     rows, columns = heights.shape
     reach = radius / pixel
     lowest = np.full((PARTS, columns), -np.inf)
@@ -48,7 +48,7 @@ def straight(points, tolerance):
     or falling: the deviation is measured in z, so that it is no less than the distance."""
     kept, start = [points[0]], 0
     while start < len(points) - 1:
-        # The cone of slopes in which all points so far are near enough; only a slope that leads to a point itself is taken.
+        # The range of slopes that keep all points so far within the tolerance; only a slope through a point is used.
         x0, z0 = points[start]
         low, high, best, at = -math.inf, math.inf, start + 1, start + 1
         while at < len(points):

@@ -61,7 +61,7 @@ def table_written(machine, found):
         found.expect(is_reported(machine, 'mill_mm.tbl'), 'a message names the file', *machine.messages)
         before = machine.stat.tool_table[1].zoffset
         found.expect(machine.cuts_on(2), 'the machine cuts on', *machine.messages)
-        found.expect(machine.stat.tool_table[1].zoffset > before, 'changes are in force')
+        found.expect(machine.stat.tool_table[1].zoffset > before, 'changes are active')
         stays_on_and_stops(machine, found, 'mill_mm.tbl')
         last = machine.stat.tool_table[1].zoffset
     written = machine.until(lambda: f'Z{last:g}' in table.read_text().split('T2')[0].replace('+', ''), 3)

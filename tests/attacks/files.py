@@ -23,20 +23,20 @@ expect = FOUND.expect
 
 
 def programs_and_logs(machine):
-    """While the machine is up: what is no file is refused, and an abort is answered."""
+    """While the machine runs: a path that is not a file is rejected, and an abort is answered."""
     os.mkfifo(machine.folder / 'pipe.ngc')
     for path in ('/dev/zero', '/dev/ptmx', '/dev/stdin', machine.folder / 'pipe.ngc', machine.folder):
         begin = time.monotonic()
         answer = machine.open(path)
         machine.until(lambda: False, 0.1)
-        expect(answer == machine.linuxcnc.RCS_ERROR and time.monotonic() - begin < 1, f'{path} is refused at once: {answer}', *machine.messages[-1:])
-        expect(any('not a file' in text for text in machine.messages), f'a message says why {path} is refused', *machine.messages[-2:])
+        expect(answer == machine.linuxcnc.RCS_ERROR and time.monotonic() - begin < 1, f'{path} is rejected at once: {answer}', *machine.messages[-1:])
+        expect(any('not a file' in text for text in machine.messages), f'a message has the reason why {path} is rejected', *machine.messages[-2:])
         machine.messages.clear()
     subroutine = machine.folder / 'configs/sim/endless.ngc'
     os.mkfifo(subroutine)
     pipe = machine.folder / 'pipe.ngc'
     for line in (f'(LOGOPEN,{pipe})', '(LOGAPPEND,/dev/ptmx)', f'(PROBEOPEN {pipe})', 'o<endless> call'):
-        expect(machine.run(f'G21 G90 G61 F600\nG1 X5\n{line}\nG1 X0\nM2\n'), f'{line} comes to an end')
+        expect(machine.run(f'G21 G90 G61 F600\nG1 X5\n{line}\nG1 X0\nM2\n'), f'{line} ends')
         expect(machine.stat.task_state == machine.linuxcnc.STATE_ON and machine.messages, f'{line}: the machine stays on, with a message', *machine.messages)
     took = machine.abort_s()
     expect(took < ABORT_S, f'an abort is answered in {took:.3f} s')

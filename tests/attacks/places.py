@@ -28,7 +28,7 @@ def main():
         for name in ('.var', '.tbl'):
             expected = [text for text in machine.messages if 'are not saved' in text and name in text]
             found.expect(expected, f'a message says that {name} is not saved', *machine.messages)
-            found.expect(f'{name} are not saved' in machine.text(), f'the terminal says so of {name}', machine.text()[-300:])
+            found.expect(f'{name} are not saved' in machine.text(), f'the terminal reports it for {name}', machine.text()[-300:])
         machine.process.terminate()
         machine.process.wait(5)
     finally:

@@ -118,7 +118,7 @@ def check_help(programs, folder):
         if words[0] in ('halcmd', 'halcompile', 'hal_input'):
             for name, ways in (('German', GERMAN), ('Spanish', SPANISH), ('English', ENGLISH)):
                 said = {run(words, way, folder, programs)[::2] for way in ways}
-                expect(len(said) == 1, f'{words} has the same help by each variable that asks for {name}', *said)
+                expect(len(said) == 1, f'{words} has the same help by each variable that selects {name}', *said)
 
 
 def check_hal_errors(programs, folder):

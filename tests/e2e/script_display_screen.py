@@ -95,7 +95,7 @@ def status():
     limits = [joint['max_position_limit'] for joint in s.joint[:4]]
     assert limits == [251.0, 201.0, 101.0, 1.0], limits
     assert s.ini_filename == os.environ['INI_FILE_NAME'] and os.path.isdir(os.environ['CONFIG_DIR'])
-    assert s.g5x_index == 1 and s.g5x_offset[0] == 0.5, 'what is in force before anything has run'
+    assert s.g5x_index == 1 and s.g5x_offset[0] == 0.5, 'the active offset before any program has run'
     tool = s.tool_table[1]
     assert tool.id == tool[0] and len(tool) == 14 and tool.diameter == s.toolinfo(tool.id)['diameter']
     for number in (0, 98765):
@@ -165,9 +165,9 @@ def commands():
     c.home(0)
     assert c.wait_complete() == linuxcnc.RCS_ERROR, 'off'
     s.poll()
-    assert s.state == linuxcnc.RCS_ERROR and e.poll() is not None, 'a refusal is told'
+    assert s.state == linuxcnc.RCS_ERROR and e.poll() is not None, 'a rejection is reported'
     ready()
-    c.teleop_enable(0)  # homed it stands in world mode
+    c.teleop_enable(0)  # a homed machine is in teleop mode
     c.wait_complete()
     c.jog(linuxcnc.JOG_INCREMENT, 1, 0, 50, 2)
     assert c.serial > 0

@@ -78,7 +78,7 @@ def machine_time():
 
 
 def at_once(read, clock=machine_time):
-    """(time, value) of one instant: read again where the time went on by more than 4 ms in between."""
+    """(time, value) of one instant: read again if more than 4 ms passed in between."""
     for _ in range(1000):
         before = clock()
         value = read()

@@ -74,7 +74,7 @@ net change iocontrol.0.tool-change => iocontrol.0.tool-changed
 MACHINES = {
     'mill': ('X Y Z', (0, 1, 2), ('KINEMATICS = trivkins', 'JOINTS = 3', '[JOINT_2]', '[AXIS_Y]')),
     'lathe': ('X Z', (0, 2), ('KINEMATICS = trivkins coordinates=XZ', 'JOINTS = 2', '[JOINT_1]', '[AXIS_Z]')),
-    'lathe with a Y of its own': ('X Z', (0, 1, 2), ('KINEMATICS = trivkins coordinates=XYZ', 'JOINTS = 3', '[JOINT_2]', '[AXIS_Z]')),
+    'lathe with a separate Y': ('X Z', (0, 1, 2), ('KINEMATICS = trivkins coordinates=XYZ', 'JOINTS = 3', '[JOINT_2]', '[AXIS_Z]')),
 }
 NEW_HAL = ('loadrt [KINS]KINEMATICS', 'num_joints=[KINS]JOINTS', 'joint.0.motor-pos-cmd => joint.0.motor-pos-fb # of X, axis.0', 'axis.x.jog-enable',
            'setp axis.z.jog-scale 0.01', 'spindle.0.speed-out', 'spindle.0.on', 'halui.joint.jog-speed', 'halui.spindle.0.forward')
@@ -107,7 +107,7 @@ def main():
                 first = (stopped.stderr if words[0] == 'linuxcnc' else stopped.stdout).splitlines()[:1]
                 expect(stopped.returncode == 1 and first and 'update_ini' in first[0], f'{name}: {words[0]} names update_ini: {stopped}')
             refused = run(['update_ini', '-d', 'old.ini'], folder, 'n\n')
-            expect(refused.returncode == 42 and ini.read_text() == before['old.ini'], f'{name}: a person says no: {refused}')
+            expect(refused.returncode == 42 and ini.read_text() == before['old.ini'], f'{name}: the user answers no: {refused}')
             done = run(['update_ini', 'old.ini'], folder)
             expect(done.returncode == 0, f'{name}: {done}')
             for text in (*expected, *NEW_INI):

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Whole programs: nothing may crash, hang or leave the bounds of memory, whatever the text.
+// Complete programs: no text may cause a crash, a hang or an access outside memory bounds.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

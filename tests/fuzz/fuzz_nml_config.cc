@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// NML configuration files: whatever they say, what is taken can be used.
+// NML configuration files: any accepted file can be used.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

@@ -33,7 +33,7 @@ void check_written(const Table &table, Changer changer) {
     }
 }
 
-/// Nothing is lost by changes, whatever the lines that cannot be used.
+/// Changes lose no entry, also in files with invalid lines.
 void check_swaps(std::string_view text) {
     mw::diagnostics::Sink sink;
     Table table = Table::parse_leniently(text, "fuzz.tbl", sink, Changer::RANDOM);

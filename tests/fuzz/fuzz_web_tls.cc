@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What arrives at the port for other computers: a client of TLS whose records the bytes spoil, cut, mix with
-// others and fill. Meanwhile a screen of this computer is answered in each turn, and afterwards somebody in
-// order finds a place.
+// Input at the port for other computers: a TLS client whose records the bytes corrupt, cut, mix with
+// others and fill. Meanwhile the server answers a screen of this computer in each turn, and afterwards a
+// correct client gets a slot.
 #include <openssl/rand.h>
 
 #include <cstdint>
@@ -106,7 +106,7 @@ struct Rig {
         }
         return isDone();
     }
-    /// Somebody in order finds a place; those of who was cut may be taken until their time is over.
+    /// A correct client gets a slot; slots of interrupted clients may be in use until their timeout.
     void require_place() {
         for (int i = 0; i < PATIENCE; ++i) {
             TlsPeer peer(server->remote_port(), {});
@@ -117,7 +117,7 @@ struct Rig {
                 }
             }
         }
-        require(false, "somebody in order finds no place");
+        require(false, "a correct client gets no slot");
     }
 
     fuzz::WebRig web;
@@ -155,7 +155,7 @@ void change_keys(TlsPeer &peer, unsigned count) {
     }
 }
 
-/// One thing that a client may do, whatever it makes of the connection.
+/// One action of a client, with any effect on the connection.
 void act(Rig &rig, TlsPeer &peer, Script &script) {
     const unsigned what = script.next(), size = script.next();
     switch (what % 11) {

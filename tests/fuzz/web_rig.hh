@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The web interface of a machine whose task answers every other command; programs in a folder of its own.
+// The web interface of a machine whose task answers every other command; programs are in a separate folder.
 #pragma once
 
 #include <unistd.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A client is killed with kill -9 while its program cuts: the cut goes on, and its right to operate ends.
+// A client is killed with kill -9 while its program cuts: the cut continues, and its right to operate ends.
 #include <iostream>
 
 #include "kill/started_machine.hh"
@@ -9,7 +9,8 @@ namespace {
 
 class ClientDeath : public StartedMachine {
   protected:
-    /// A process that operates alone and has begun the program; it says so through the pipe, and waits.
+    /// A process that has the exclusive right to operate and has started the program. It reports this through
+    /// the pipe and waits.
     pid_t start_operator(int said, bool mustRun) const {
         const pid_t process = ::fork();
         if (process != 0) {
@@ -68,7 +69,7 @@ TEST_F(ClientDeath, TheCutGoesOnAndItsRightToOperateEnds) {
         slowest_s = std::max(slowest_s, std::chrono::duration<double>(Clock::now() - killed).count());
         const auto goes_on = client->wait_until([&] { return line_now() > line + 3 || !isCutting(); }, 30);
         ASSERT_TRUE(goes_on.has_value()) << "the cut is stopped";
-        // A short one may have come to its end meanwhile.
+        // A short program may have ended meanwhile.
         EXPECT_TRUE(isCutting() || client->status().task.programs_ended > 0);
         EXPECT_EQ(client->status().task.state, messages::State::ON);
         ASSERT_NO_FATAL_FAILURE(ask(messages::SetOptionalStop{true}));
@@ -77,7 +78,7 @@ TEST_F(ClientDeath, TheCutGoesOnAndItsRightToOperateEnds) {
               << " ms after the kill at the latest\n";
 }
 
-/// A touch-off is on the disk half a second later, whatever becomes of the machine.
+/// A touch-off is on the disk half a second later, also if the machine is killed.
 TEST_F(ClientDeath, ATouchOffOutlivesTheMachine) {
     for (int i = 0; i < count_kills(); ++i) {
         SCOPED_TRACE(i);

@@ -120,7 +120,7 @@ struct Observer {
     }
 };
 
-/// What has stopped the machine, as task would be told.
+/// Cause of the stop as motion reports it to task.
 std::string told(SpscRing<motion::Fault, 256> &faults) {
     std::string text;
     for (motion::Fault fault; faults.pop(fault);) {

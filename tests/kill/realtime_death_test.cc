@@ -35,7 +35,7 @@ std::string content(const fs::path &path) {
     return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// A mill with the component 'crasher' in its servo thread, in a folder of its own.
+/// A mill with the component 'crasher' in its servo thread, in a separate folder.
 class RealtimeDeath : public ::testing::Test {
   protected:
     RealtimeDeath() {
@@ -180,7 +180,7 @@ TEST_F(RealtimeDeath, ACrashInRealtimeNamesTheFunctionAndItsComponent) {
         0.0)
         << log();
     const int status = wait_for_end(task);
-    // Also when its thread stands in the middle of a cycle for ever.
+    // Also when its thread hangs in the middle of a cycle.
     EXPECT_LT(Clock::now() - begin, std::chrono::seconds(5)) << "the run hung";
     EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 1) << status << log();
     expect_nothing_left();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// 'millwright start' as a process of its own, on a mill of its own, with a program that cuts for minutes.
+// 'millwright start' as a separate process, on a separate mill, with a program that cuts for minutes.
 #pragma once
 
 #include <fcntl.h>
@@ -44,7 +44,7 @@ class StartedMachine : public ::testing::Test {
     StartedMachine() {
         files::remove_all(folder);
         files::copy(MW_SOURCE_DIR "/configs/sim", folder);
-        // Homed where it stands: each start takes seconds otherwise.
+        // Homed at its position, as homing to switches would take seconds in each start.
         std::string ini = content(folder / "mill_mm.ini");
         ini = std::regex_replace(ini, std::regex("(HOME_SEARCH_VEL|HOME_LATCH_VEL) *=.*"), "$1 = 0");
         std::ofstream(folder / "mill.ini") << ini;

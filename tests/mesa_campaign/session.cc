@@ -24,7 +24,7 @@ constexpr std::int64_t STEPS_PER_REV = 200, COUNTS_PER_STEP = 20;
 constexpr std::int64_t INDEX_STEPS = STEPS_PER_REV / 4;
 constexpr const char *PHYSICS =
     "motor x stepgen=0 steps_per_rev=200\nencoder 0 motor=x counts_per_rev=4000 index_rev=0.25\n";
-/// Part of the way of failed cycles that a step generator has caught up after a cycle.
+/// Fraction of the travel of failed cycles that a step generator makes up in a cycle.
 constexpr double CATCHING_UP = 0.002;
 
 /// Accelerates at random within limits; stop() brings it to rest.

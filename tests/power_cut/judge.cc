@@ -16,7 +16,7 @@ namespace files = std::filesystem;
 
 constexpr std::size_t MOST_CYCLES = 400000;
 constexpr std::size_t A_SECOND = 1000;  ///< of task's cycles
-/// Moves of the way to the place, those of a tool change included.
+/// Moves of the approach, including those of a tool change.
 constexpr std::size_t MOST_APPROACH_MOVES = 8;
 
 /// The whole program without a power cut.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Power cuts by seed, as many as wanted; goes on with its log.
+// Runs power cuts by seed and continues from its log.
 #include <unistd.h>
 
 #include <cstdio>
@@ -26,7 +26,7 @@ struct Words {
                                       "time, and judges what it offers then.\n");
         line.number("--first", "SEED", "1 without it", first, 0, INT32_MAX);
         line.number("--count", "N", "seeds; 100 without it", count, 1, INT32_MAX);
-        line.text("--log", "FILE", "seeds that stand there are not run again", log);
+        line.text("--log", "FILE", "seeds in this log are not run again", log);
         line.rest(rest);
         return line;
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Random programs of a few seconds with what programs are made of.
+// Random programs of a few seconds with typical blocks.
 #pragma once
 
 #include <random>

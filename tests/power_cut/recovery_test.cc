@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What is offered after a power cut and what is refused, on a whole mill in virtual time.
+// Offers and rejections of recovery after a power cut, on a complete mill in virtual time.
 #include <unistd.h>
 
 #include <fstream>
@@ -104,7 +104,7 @@ TEST_F(RecoveryTest, NothingMovesOrTurnsBeforeThatAndTheProposalMayBeDropped) {
     EXPECT_EQ(rig->recover(), "");
     cycles(50);
     cut_and_come_up();
-    EXPECT_EQ(offer().line, 9) << "on the way there";
+    EXPECT_EQ(offer().line, 9) << "during the approach";
     EXPECT_EQ(rig->ask(messages::ForgetRecovery{}), "");
     EXPECT_FALSE(offer().isOffered);
     cycles(5);
@@ -200,7 +200,7 @@ TEST_F(NewLengthTest, ItGoesOnAtTheBlockUnderWayWithTheNewLength) {
     EXPECT_FALSE(offer().isOffered);
 }
 
-/// The way back belongs to the block that is not done, not to what was read ahead.
+/// The return path belongs to the unfinished block, not to the blocks that were read ahead.
 TEST_F(NewLengthTest, APowerCutOnTheWayBackOffersTheBlockUnderWay) {
     leave(SQUARE, 9);
     ASSERT_TRUE(resume()) << rig->outcome();

@@ -28,7 +28,7 @@ struct Call {
 /// How a run went.
 struct Recording {
     std::vector<Call> calls;
-    /// Of each millisecond: the block of the move under the tool, 0 for none, as motion tells it.
+    /// For each millisecond: the block of the current move as motion reports it, 0 for none.
     std::vector<std::uint32_t> under_tool;
     std::string parameters;  ///< the parameter file after it
     bool isDone = false;
@@ -53,7 +53,8 @@ class Rig {
     bool hasEnded() const;
     std::string outcome();
     const messages::MachineStatus &status();
-    /// Asks for what was cut short, confirms the way. Empty, or the refusal.
+    /// Requests the interrupted program and confirms the approach. Returns an empty text, or the reason of
+    /// the rejection.
     std::string recover();
 
     /// Done, or why not.
@@ -68,7 +69,7 @@ class Rig {
     int most_late_ms = 300;
 
   private:
-    /// What is on is told with a move when motion has come to it.
+    /// Motion reports the active devices with each move when it starts the move.
     void tell_what_is_on();
     void listen();
     void find_parameters();

@@ -17,7 +17,7 @@ struct SimJoint {
     double velocity = 200, acceleration = 1500;  ///< of the joint [units/s, units/s^2]
     double low = -1000, high = 1000;
     double jerk = 0;  ///< 0: none
-    double home = 0;  ///< where it stands when it is homed
+    double home = 0;  ///< position after homing
 };
 
 struct SimMachine {

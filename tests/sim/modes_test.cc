@@ -15,7 +15,7 @@ class ModesTest : public VirtualMachineTest {
   protected:
     void SetUp() override { switch_on(); }
     void jog_x(double velocity) {
-        ask(task::SetTeleop{false});  // homed it stands in world mode
+        ask(task::SetTeleop{false});  // a homed machine is in teleop mode
         cycles(10);
         ask(task::JogContinuous{true, 0, velocity});
         cycles(300);
@@ -128,7 +128,7 @@ TEST_F(ModesTest, AJogThatItsClientDoesNotRenewIsStoppedByMotion) {
 }
 
 TEST_F(ModesTest, HomingDuringAJogStopsTheJogAndHomes) {
-    switch_on_config(SimMachine{}.write(folder_));  // joints that home where they stand
+    switch_on_config(SimMachine{}.write(folder_));  // joints that home at their position
     ask(task::SetMode{task::Mode::MANUAL});
     jog_x(50);
     ASSERT_GT(joint_speed(0), 20);
@@ -140,7 +140,7 @@ TEST_F(ModesTest, HomingDuringAJogStopsTheJogAndHomes) {
     EXPECT_EQ(progress(id), task::Progress::DONE) << messages();
     EXPECT_NE(progress(jog), task::Progress::STARTED);
     EXPECT_TRUE(motion().joint[0].isHomed);
-    EXPECT_NEAR(motion().joint[0].pos_cmd, 0, 1e-9) << "stood when it homed";
+    EXPECT_NEAR(motion().joint[0].pos_cmd, 0, 1e-9) << "was stopped while it homed";
     EXPECT_EQ(joint_speed(0), 0);
 }
 

@@ -200,7 +200,7 @@ TEST(NmlMachine, EachCommandIsEchoedWithItsSerialNumberAndEndsWithItsStateAndRea
     EXPECT_EQ(head.state, CommandState::ERROR);
     EXPECT_EQ(head.command_type, 509);
     EXPECT_FALSE(head.reason.empty());
-    EXPECT_NE(machine.error_line(), "none") << "the operator is told too";
+    EXPECT_NE(machine.error_line(), "none") << "the operator gets a message, too";
     expect_done(machine.done(SetState{State::ESTOP_RESET}));
     EXPECT_TRUE(machine.status().head.reason.empty());
 }
@@ -318,7 +318,7 @@ std::vector<messages::Command> all_commands() {
     return all;
 }
 
-/// How a command stands after CYCLES_EACH, and the machine then.
+/// Progress of a command after CYCLES_EACH, and the state of the machine.
 struct Seen {
     CommandState state;
     std::string reason, status;

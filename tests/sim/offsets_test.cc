@@ -46,9 +46,9 @@ TEST_F(OffsetMachine, ProgramsKnowNothingOfAnExternalOffset) {
     ask(task::AbortAll{});
     cycles(50);
     ASSERT_EQ(mdi("G91 G0 X1"), task::Progress::DONE) << messages();
-    EXPECT_NEAR(number("axis.x.pos-cmd"), 12, 1e-9) << "it goes on from where the program is";
+    EXPECT_NEAR(number("axis.x.pos-cmd"), 12, 1e-9) << "it continues from the position of the program";
     EXPECT_NEAR(number("joint.0.motor-pos-cmd"), 14, 1e-9);
-    EXPECT_EQ(mdi("G90 G0 X99"), task::Progress::FAILED) << "with the offset it is beyond the soft limit";
+    EXPECT_EQ(mdi("G90 G0 X99"), task::Progress::FAILED) << "with the offset it is outside the soft limit";
     EXPECT_LT(number("joint.0.motor-pos-cmd"), 100);
 }
 

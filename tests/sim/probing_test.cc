@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The programs of nc_files/probing on a whole machine in virtual time. The world is a model of its own:
+// The programs of nc_files/probing on a complete machine in virtual time. The part is an independent model:
 // solids, and a ball whose distance from them says whether the probe touches; what is found is compared with
 // how the solids were made (I1).
 #include <algorithm>

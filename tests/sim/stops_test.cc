@@ -149,7 +149,7 @@ TEST_F(StopsTest, CutterCompensationEndsWithTheStop) {
     settle();
     EXPECT_EQ(machine_->task().status().codes.g[4], 400);
     EXPECT_EQ(mdi("G0 X1 Y0"), task::Progress::DONE) << messages();
-    EXPECT_DOUBLE_EQ(x(), 1.0) << "G90 is active, and no move is held back";
+    EXPECT_DOUBLE_EQ(x(), 1.0) << "G90 is active, and no move waits";
     EXPECT_DOUBLE_EQ(motion().carte_pos_cmd.y(), 0.0);
 }
 

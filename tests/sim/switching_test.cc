@@ -84,7 +84,7 @@ class Switching : public VirtualMachineTest, public ::testing::WithParamInterfac
         ASSERT_EQ(mdi("G90"), task::Progress::DONE);
         expect_joints(from);
     }
-    /// A move and back again in the model, wherever it stands.
+    /// A move of 2 units in X and back in the active model, from any position.
     void expect_model() {
         const std::vector<double> from = joints();
         const double x = motion().carte_pos_cmd[0];

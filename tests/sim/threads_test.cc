@@ -72,7 +72,8 @@ class ThreadsTest : public VirtualMachineTest {
         const geometry::Pose p = motion().carte_pos_cmd;
         trace_.push_back({p.x(), p.z(), machine_->hal().get("spindle.0.revs")->as_number()});
     }
-    /// The passes at the depth `x`: from where Z leaves `from` until it stands at the end or X has left.
+    /// The passes at the depth `x`: from the sample in which Z leaves `from` until Z is stopped at the end or
+    /// X has retracted.
     std::vector<Pass> passes_at(double x, double from) const {
         std::vector<Pass> out;
         for (std::size_t i = 1; i < trace_.size(); ++i) {
@@ -163,7 +164,7 @@ TEST_P(ThreadModes, G33KeepsDepthAndLeadToItsEnd) {
                 EXPECT_LE(j.run_in, allowed(GetParam(), shortest_way(v)));
                 EXPECT_LE(j.stop, allowed(GetParam(), shortest_way(v)));
                 EXPECT_NEAR(j.length, 25, 1e-9) << "depth is kept to the programmed end";
-                // The same thread whatever the speed, but for what the encoder shows a cycle late.
+                // The same thread at any speed, except for the delay of the encoder by one cycle.
                 const double here = j.phase - std::floor(j.phase);
                 phase = std::isnan(phase) ? here : phase;
                 EXPECT_LE(std::abs(std::remainder(here - phase, 1.0)), 5e-3);
@@ -210,7 +211,7 @@ TEST_P(ThreadModes, G76KeepsDepthAndLeadToItsEnd) {
 
 TEST_P(ThreadModes, ThePullOutOfG76BeginsWhereItIsProgrammed) {
     make(GetParam());
-    // With jerk limits X needs 50 ms to gain its speed, which the taper has to have room for.
+    // With jerk limits X needs 50 ms to reach its speed; the taper must be long enough.
     const double rpm = GetParam() ? 300 : 600;
     const double v = 1.5 * rpm / 60;
     for (const char *mode : MODES) {
@@ -222,7 +223,7 @@ TEST_P(ThreadModes, ThePullOutOfG76BeginsWhereItIsProgrammed) {
         const auto passes = passes_at(10.1, 5);
         ASSERT_EQ(passes.size(), 1U);
         const Judged j = judge(passes[0], 1.5);
-        EXPECT_GE(j.length, 24.2 - v * T) << "full depth up to the pull-out, but for the last cycle";
+        EXPECT_GE(j.length, 24.2 - v * T) << "full depth up to the pull-out, except in the last cycle";
         EXPECT_LE(j.length, 24.7) << "and not much farther";
         EXPECT_LE(j.stop, 2 * v * T) << "the lead is kept up to there";
         EXPECT_LE(j.run_in, allowed(GetParam(), 2 * shortest_way(v)));
@@ -251,7 +252,7 @@ TEST_P(ThreadModes, G95KeepsItsLead) {
                             GetParam() ? " jerk" : "", j.run_in, j.stop, shortest_way(v));
                 EXPECT_LE(j.run_in, allowed(GetParam(), shortest_way(v)));
                 EXPECT_LE(j.stop, allowed(GetParam(), shortest_way(v)));
-                // In the cycle in which Z comes to a stand X may begin.
+                // In the cycle in which Z stops, X may start.
                 EXPECT_NEAR(j.length, 25, 0.5 * ACCELERATION * T * T)
                     << "depth is kept to the programmed end";
             }

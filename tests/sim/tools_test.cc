@@ -21,7 +21,7 @@
 namespace mw::machine {
 namespace {
 
-/// What stands in the magazine and in the spindle, as a person would write it on paper.
+/// Model of the tools in the magazine and in the spindle.
 struct Paper {
     struct Tool {
         int pocket = 0;
@@ -31,7 +31,7 @@ struct Paper {
     std::map<int, Tool> tools;  ///< by number
     int spindle = 0;            ///< -1: empty, of a random changer
     int from = 0;               ///< pocket
-    double offset_z = 0;        ///< in force
+    double offset_z = 0;        ///< active
 
     bool has(int number) const { return tools.contains(number); }
     int in_pocket(int pocket) const {
@@ -54,7 +54,7 @@ struct Paper {
         spindle = number;
     }
     double z() const { return has(spindle) && (spindle > 0 || isRandom) ? tools.at(spindle).z : 0; }
-    /// Where a new tool comes without a place of its own.
+    /// Pocket of a new tool for which no pocket is set.
     int free_pocket(int number) const {
         int pocket = number;
         for (int next = 1; in_pocket(pocket) >= 0; ++next) {
@@ -252,7 +252,7 @@ class ToolJudge : public ::testing::Test {
         case 0:
             isDone = run(fmt::format("G10 L1 P{} Z{} R{}", number, z, radius)) == messages::Progress::DONE;
             break;
-        case 1:  // the machine stands at Z0: with the new offset it is to be read as -z
+        case 1:  // the machine is at Z0: with the new offset the position is -z
             isDone = run(fmt::format("G10 L10 P{} Z{} R{}", number, -z, radius)) == messages::Progress::DONE;
             break;
         default: {
@@ -264,7 +264,7 @@ class ToolJudge : public ::testing::Test {
             break;
         }
         }
-        const bool isAllowed = number > 0 || way == 2;  // G10 refuses T0, also that of a random changer
+        const bool isAllowed = number > 0 || way == 2;  // G10 rejects T0, also on a random tool changer
         EXPECT_EQ(isDone, isAllowed && paper_.has(number)) << number;
         if (isDone) {
             paper_.tools[number].z = z;
@@ -342,12 +342,12 @@ class ToolJudge : public ::testing::Test {
         EXPECT_EQ(shown.in_spindle, std::max(0, paper_.spindle));
         EXPECT_EQ(shown.from_pocket, paper_.from);
         EXPECT_EQ(machine_->hal().get("iocontrol.0.tool-number")->as_number(), std::max(0, paper_.spindle));
-        EXPECT_FALSE(pin("iocontrol.0.tool-change")) << "nothing goes on by itself";
+        EXPECT_FALSE(pin("iocontrol.0.tool-change")) << "nothing continues by itself";
         EXPECT_FALSE(pin("iocontrol.0.tool-prepare"));
         compare_file();
         compare_parameters();
     }
-    /// By a reader of its own.
+    /// Read by an independent parser.
     void compare_file() {
         std::istringstream lines(read("sim.tbl"));
         std::map<int, Paper::Tool> found;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Machines whose joints go in proportion to axes, with external offsets, for tests: what motors are told is
-// judged by formulas of their own, as joints and as axes.
+// Machines whose joints are linear functions of the axes, with external offsets, for tests. Motor commands
+// are checked as joints and as axes by independent formulas.
 #pragma once
 
 #include <array>
@@ -48,7 +48,7 @@ inline LinearMachine corexy() {
     return m;
 }
 
-/// Solved by Gauss with pivots, whatever the model does.
+/// Solves by Gaussian elimination with pivots, independently of the model.
 inline geometry::Pose solved(std::array<std::array<double, 4>, 3> rows) {
     for (std::size_t i = 0; i < 3; ++i) {
         for (std::size_t k = i + 1; k < 3; ++k) {
@@ -95,7 +95,7 @@ inline LinearMachine turned_table() {
     return m;
 }
 
-/// Every sample of it is judged.
+/// Checks every sample.
 class LinearRig {
   public:
     static constexpr double T = MotionRig::T;
@@ -148,7 +148,7 @@ class LinearRig {
         }
         return machine.pose_of(q);
     }
-    /// What the program has come to.
+    /// Result of the program.
     geometry::Pose programmed() const {
         geometry::Pose p = pose();
         for (int i = 0; i < machine.num_joints; ++i) {
@@ -164,7 +164,7 @@ class LinearRig {
         }
     }
     motion::CommandId line(const geometry::Pose &end, double feed) { return rig->line(end, feed); }
-    /// True once all that was sent is driven.
+    /// True when all queued moves are done.
     bool finish(int most_s = 20) {
         const motion::CommandId id = rig->send_path(motion::Flush{});
         for (int n = 0; n < 1000 * most_s && !rig->isDone(id); ++n) {
@@ -184,7 +184,7 @@ class LinearRig {
     std::unique_ptr<MotionRig> rig;
     std::unique_ptr<LimitChecker> joints, axes;
     std::string places;
-    double worst_outside = -1e300;  ///< beyond soft limits
+    double worst_outside = -1e300;  ///< distance outside soft limits
     bool isJudged = true;
 
   private:

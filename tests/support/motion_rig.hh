@@ -17,9 +17,9 @@
 
 namespace mw::testing {
 
-/// Drives follow the command one cycle later. Every test may look at and change all of it between steps. On
-/// machines whose joints are not axes every sample is judged by the joints' limits; who ends with a rig that
-/// has left them ends the test program.
+/// Drives follow the command one cycle later. A test may read and change all parts between steps. On
+/// machines whose joints are not axes, every sample is checked against the joint limits; a rig that exceeded
+/// them ends the test program in its destructor.
 struct MotionRig {
     static constexpr double T = 1e-3;
     static constexpr int PLANNER_PERIOD = 5;
@@ -52,7 +52,7 @@ struct MotionRig {
         kinematics.configure(coordinates);
         start(kinematics, kinematics.identity()->num_joints, velocity, acceleration);
     }
-    /// The last `extra` joints are extra ones, which no pose moves.
+    /// The last `extra` joints are extra joints, which are not part of the kinematics.
     MotionRig(const char *coordinates, int extra) : num_extra_(extra) {
         kinematics.configure(coordinates);
         start(kinematics, kinematics.identity()->num_joints + extra, 100, 1000);
@@ -154,12 +154,12 @@ struct MotionRig {
         const motion::Answer *a = answer_to(id);
         return a != nullptr && a->kind == motion::AnswerKind::DONE;
     }
-    /// The reason of a refusal; NONE when done, stale or not answered.
+    /// The reason of a rejection; NONE when done, stale or not answered.
     motion::Reason refusal(motion::CommandId id) const {
         const motion::Answer *a = answer_to(id);
         return a != nullptr && a->kind == motion::AnswerKind::REFUSED ? a->reason : motion::Reason::NONE;
     }
-    /// Machine on, homed where it stands, in `mode`.
+    /// Machine on, homed at its position, in `mode`.
     void ready(motion::Mode mode = motion::Mode::COORD) {
         send(motion::Enable{});
         step(2);
@@ -171,9 +171,9 @@ struct MotionRig {
     }
     const motion::Status &status() const { return out->status; }
 
-    /// What the joints have done beyond their limits; empty: nothing.
+    /// Violations of joint limits; empty: none.
     std::string joint_report() const { return places_ + (checker_ ? checker_->report() : std::string()); }
-    /// After a test has said so itself.
+    /// Clears the violations after a test has checked them.
     void forgive_joints() {
         places_.clear();
         checker_.reset();
@@ -191,7 +191,7 @@ struct MotionRig {
         }
         keep_report();
     }
-    /// Settings change between moves, so what was judged before is kept and the judge begins anew.
+    /// Settings change between moves, so the judge keeps its result and starts again with the new limits.
     void keep_report() {
         places_ = joint_report();
         checker_.reset();

@@ -116,7 +116,7 @@ def replaced_state(scene, rng):
 
 @attack('files.program_changed', causes=r'cut\.ngc|changed|program')
 def program_changed(scene, rng):
-    """The program that is cut is removed, cut short, or becomes a pipe."""
+    """The running program is removed, truncated, or replaced by a pipe."""
     path = scene.nc / 'cut.ngc'
     kind = rng.randrange(3)
     if kind == 0:

@@ -131,7 +131,7 @@ bool Maker::add_arc(double du, double dh) {
     return true;
 }
 
-/// An arc that goes on in the direction in which the contour ends: a quarter, or less.
+/// An arc of up to 90 degrees that is tangent to the end of the contour.
 bool Maker::add_tangent_arc() {
     const Stroke &last = job_.contour.strokes.back();
     const Place before = last.at(1.0 - 1e-6), from = last.to;
@@ -273,7 +273,7 @@ std::string Maker::arc_words(const Stroke &arc, std::size_t number) {
         return fmt::format("{}{} R{:.6f}", code, words_to(arc.to, arc.from, true),
                            to_program(radius->second));
     }
-    // Exact in the unit of the program, whatever the mode of X.
+    // Exact in the unit of the program, in diameter and in radius mode.
     return fmt::format("{}{} I{:.6f} K{:.6f}", code, words_to(arc.to, arc.from, true), to_program(cx - x),
                        to_program(cz - z));
 }

@@ -28,7 +28,7 @@ double LatheStock::surface_at(double u) const {
     return isBeside ? (index < 0.0 ? -1e9 : surface_) : columns_[static_cast<std::size_t>(index)];
 }
 
-/// A tool that touches a face stands between two columns.
+/// A tool that touches a face is between two columns.
 double LatheStock::lowest_near(double u) const {
     double lowest = surface_at(u);
     for (const double aside : {-NEAR, -COLUMN, COLUMN, NEAR}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A block of material as a height map, cut by a flat-ended tool that stands along Z.
+// A block of material as a height map, cut by a flat-ended tool parallel to Z.
 #pragma once
 
 #include <algorithm>
