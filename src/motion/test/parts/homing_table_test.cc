@@ -75,16 +75,16 @@ std::string word(Action action) {
     switch (action) {
     case Action::NOTHING: return "";
     case Action::STOP: return "stops";
-    case Action::UNLOCK: return "asks to unlock";
-    case Action::SET_PLACE: return "takes its place as HOME_OFFSET";
-    case Action::SET_PLACE_STOP: return "takes its place as HOME_OFFSET, stops";
+    case Action::UNLOCK: return "requests unlocking";
+    case Action::SET_PLACE: return "sets its position to HOME_OFFSET";
+    case Action::SET_PLACE_STOP: return "sets its position to HOME_OFFSET, stops";
     case Action::SEARCH: return "moves at HOME_SEARCH_VEL";
-    case Action::BACK_OFF: return "moves at HOME_SEARCH_VEL the other way";
+    case Action::BACK_OFF: return "moves at HOME_SEARCH_VEL in reverse";
     case Action::LATCH: return "moves at HOME_LATCH_VEL";
-    case Action::ASK_INDEX: return "asks for the index";
-    case Action::LATCH_ASK_INDEX: return "asks for the index, moves at HOME_LATCH_VEL";
-    case Action::TAKE_INDEX: return "takes the index as HOME_OFFSET";
-    case Action::TAKE_INDEX_STOP: return "takes the index as HOME_OFFSET, stops";
+    case Action::ASK_INDEX: return "requests the index";
+    case Action::LATCH_ASK_INDEX: return "requests the index, moves at HOME_LATCH_VEL";
+    case Action::TAKE_INDEX: return "sets the index position to HOME_OFFSET";
+    case Action::TAKE_INDEX_STOP: return "sets the index position to HOME_OFFSET, stops";
     case Action::GO_HOME: return "moves to HOME at HOME_FINAL_VEL";
     }
     return "?";
@@ -93,22 +93,22 @@ std::string word(Action action) {
 using Words = std::vector<std::pair<std::uint32_t, const char *>>;
 
 const Words EVENTS = {
-    {event::BEGIN, "it is to home"},
-    {event::TEAM_SETTLED, "it and its team stand and have settled"},
-    {event::TEAM_AT_REST, "it and its team stand"},
-    {event::AT_REST, "it stands"},
+    {event::BEGIN, "homing requested"},
+    {event::TEAM_SETTLED, "joint and team stopped and settled"},
+    {event::TEAM_AT_REST, "joint and team stopped"},
+    {event::AT_REST, "joint stopped"},
     {event::SWITCH_CLOSED, "switch closed"},
     {event::SWITCH_OPEN, "switch open"},
     {event::TEAM_CLOSED, "a switch of the team closed"},
     {event::TEAM_OPEN, "all switches of the team open"},
     {event::INDEX, "index pulse"},
-    {event::TEAM_LATCHED, "the team has its places"},
+    {event::TEAM_LATCHED, "the team has latched"},
     {event::GROUP_READY, "the group is ready"},
     {event::TEAM_UNLOCKED, "the team is unlocked"},
     {event::LOCKED, "locked"},
     {event::OVERDUE, "after 30 s"},
-    {event::TEAM_DIFFERS, "the team homes in another way"},
-    {event::TEAM_SKEWED, "the team would get too far apart"},
+    {event::TEAM_DIFFERS, "the team has other homing settings"},
+    {event::TEAM_SKEWED, "the skew of the team would exceed its limit"},
     {event::LIMIT, "limit switch"},
     {event::ABORT, "abort"},
     {event::OFF, "machine off"},
@@ -136,7 +136,7 @@ std::string listed(std::uint32_t bits, const Words &words, const std::string &be
 }
 
 std::string made_table() {
-    std::string out = "| in | when | with | it | and is in |\n|---|---|---|---|---|\n";
+    std::string out = "| state | event | setting | action | next state |\n|---|---|---|---|---|\n";
     for (const homing::Transition &row : homing::TRANSITIONS) {
         const std::string with = listed(row.when, SETTINGS);
         const std::string without = listed(row.unless, SETTINGS, "no ");
@@ -266,7 +266,7 @@ const std::vector<WalkedEvent> WALKED = {
          w.inputs[0].isIndexEnabled = false;
          w.step_as_is();
      }},
-    {"stands",
+    {"stopped",
      [](Walk &w) {
          w.inputs[0].isAtRest = true;
          w.inputs[0].isIndexEnabled = w.drive.own.isIndexWanted(0);
@@ -345,7 +345,7 @@ std::string outcome(State from, const WalkedEvent &what) {
 }
 
 std::string made_matrix() {
-    std::string out = "| in |";
+    std::string out = "| state |";
     std::string line = "|---|";
     for (const WalkedEvent &e : WALKED) {
         out += std::string(" ") + e.name + " |";
