@@ -265,7 +265,7 @@ def programs(port, screen, bench):
     run = screen.ask('RunProgram')
     screen.until(lambda: screen.joint()['vel_cmd'] != 0)
     expect(screen.do('AbortAll') == 'DONE', 'abort')
-    expect(screen.until(lambda: screen.joint()['vel_cmd'] == 0), 'stands')
+    expect(screen.until(lambda: screen.joint()['vel_cmd'] == 0), 'stopped')
     expect(screen.do('SetMode', mode='MDI') == 'DONE' and screen.do('Mdi', line='G0 X') in ('FAILED', 'REFUSED'), 'a bad line fails')
     expect(screen.until(lambda: screen.messages), 'with a message')
 

@@ -47,7 +47,7 @@ it('shows how far the filter is, and ends it when it is told to', async () => {
   await judgeByAxe(page, 'a filter runs');
   await page.getByTestId('filter-cancel').click();
   await until(async () => !(await page.getByTestId('filter-dialog').isVisible()), 'no dialog');
-  await until(async () => (await page.getByText(/The filter of a part\.depth was ended/).count()) > 0, 'that it is said');
+  await until(async () => (await page.getByText(/The filter of a part\.depth was stopped/).count()) > 0, 'that it is said');
   await untilText(page, 'program', 'plain.ngc');
 });
 

@@ -87,7 +87,7 @@ it('makes a machine from answers, tells what cannot be, and tries it', async () 
 });
 
 it('starts the chosen machine, whose screen takes its place', async () => {
-  const group = page.getByRole('region', { name: 'Of LINUXCNC_AUX_CONFIGS' });
+  const group = page.getByRole('region', { name: 'From LINUXCNC_AUX_CONFIGS' });
   await group.getByTestId('start-sim/mill_mm.ini').click();
   await untilText(page, 'state', 'Emergency stop', 40_000);
   expect(readFileSync(join(home, '.linuxcncrc'), 'utf8')).toContain(`LAST_CONFIG = ${rig.ini}`);

@@ -80,7 +80,7 @@ describe('the oscilloscope', () => {
     await page.getByTestId('scope-level').fill('5');
     await page.getByTestId('scope-samples').fill('400');
     await page.getByTestId('scope-start').click();
-    await untilText(page, 'scope-state', 'Waits for the trigger');
+    await untilText(page, 'scope-state', 'Waiting for the trigger');
     await page.getByTestId('mdi-line').fill('G0 X10');
     await page.getByTestId('mdi-send').click();
     await untilText(page, 'scope-state', 'Recorded');

@@ -63,7 +63,7 @@ afterAll(async () => {
 
 describe('before the machine is on', () => {
   it('says that no machine is up, then that it is in emergency stop', async () => {
-    await untilText(page, 'connection', /No machine is up/);
+    await untilText(page, 'connection', /No machine is running/);
     await rig.startMachine();
     await untilText(page, 'state', 'Emergency stop');
     expect(await page.getByTestId('connection').count()).toBe(0);
@@ -249,7 +249,7 @@ describe('spindle, coolant, overrides', () => {
     await until(() => Number(rig.pin('spindle.0.speed-out')) === -250.5, 'reverse');
     await page.getByTestId('spindle-stop-0').click();
     await until(() => rig.pin('spindle.0.on') === 'FALSE', 'a stop');
-    await untilText(page, 'spindle-state-0', 'stands');
+    await untilText(page, 'spindle-state-0', 'stopped');
   });
 
   it('switches coolant', async () => {
@@ -317,7 +317,7 @@ describe('programs', () => {
     await untilText(page, 'run-state', 'Running');
     await untilText(page, 'line', /Line [2-9]/);
     await page.getByTestId('hold').click();
-    await untilText(page, 'run-state', 'Held');
+    await untilText(page, 'run-state', 'Paused');
     await stands(0);
     const held = rig.position(0);
     await sleep(300);

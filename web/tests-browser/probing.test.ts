@@ -30,7 +30,7 @@ async function touchByHand(): Promise<void> {
   await untilText(page, 'probe-contact', 'open');
   rig.setPin('touched.in1', '1');
   await untilText(page, 'probe-contact', 'contact');
-  await untilText(page, 'probe-seen', 'contact seen');
+  await untilText(page, 'probe-seen', 'contact detected');
   rig.setPin('touched.in1', '0');
   await untilText(page, 'probe-contact', 'open');
 }
@@ -54,7 +54,7 @@ it('asks for the probe again after a change of tool and when the spindle has tur
   await page.getByTestId('mdi-line').fill('T3 M6');
   await page.getByTestId('mdi-send').click();
   await untilText(page, 'probe-in-spindle', /T3 drill/);
-  await untilText(page, 'probe-seen', 'contact not seen yet');
+  await untilText(page, 'probe-seen', 'no contact yet');
   expect(await isGated()).toBe(true);
   await touchByHand();
   expect(await isGated()).toBe(false);
@@ -62,7 +62,7 @@ it('asks for the probe again after a change of tool and when the spindle has tur
   await page.getByTestId('spindle-forward-0').click();
   await untilText(page, 'probe-hint', /spindle is turning/);
   await page.getByTestId('spindle-stop-0').click();
-  await untilText(page, 'probe-seen', 'contact not seen yet');
+  await untilText(page, 'probe-seen', 'no contact yet');
   await touchByHand();
 });
 

@@ -69,7 +69,7 @@ it('counts down to the end', async () => {
 it('colours the path by the speed reached', async () => {
   await page.getByTestId('tab-path').click();
   await page.getByTestId('color-by').selectOption('speed');
-  await untilText(page, 'legend', /Speed reached \d+.*mm\/min/);
+  await untilText(page, 'legend', /Planned speed \d+.*mm\/min/);
   const legend = await text(page, 'legend');
   const top = Number(/(\d+) mm\/min$/.exec(legend)?.[1]);
   expect(top).toBeGreaterThanOrEqual(1200);

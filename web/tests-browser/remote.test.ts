@@ -147,7 +147,7 @@ describe('without protection, by an explicit word', () => {
       await other.startServer(0, ['--listen', '127.0.0.1:0', '--unprotected', 'view']);
       expect(other.remoteAddress).toMatch(/^http:/);
       const page = await other.page({}, other.remoteAddress);
-      await untilText(page, 'unprotected', /without protection.*look and stop/);
+      await untilText(page, 'unprotected', /unprotected.*view and stop/);
       await page.getByTestId('tab-messages').click();
       await page.getByTestId('unprotected').waitFor();
       expect(await ask(other.remoteAddress, 'PUT', '/api/files/x.ngc', {}, 'M2\n')).toBe(403);

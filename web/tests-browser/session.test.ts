@@ -177,7 +177,7 @@ describe('the text of a program', () => {
     await page.getByTestId('run-from-line').click();
     await untilText(page, 'approach', /line 8/);
     await untilText(page, 'approach', /Spindle 0 turns at 1000/);
-    await untilText(page, 'approach', /Tool 1 goes into the spindle/);
+    await untilText(page, 'approach', /Load tool 1/);
     expect(rig.position(0)).toBe(before);
     expect(rig.pin('spindle.0.on')).toBe('FALSE');
     await page.getByTestId('approach-confirm').click();
@@ -195,7 +195,7 @@ describe('a held program', () => {
     await page.getByTestId('run').click();
     await untilText(page, 'line', /Line (7|8)/, 20_000);
     await page.getByTestId('hold').click();
-    await untilText(page, 'run-state', 'Held');
+    await untilText(page, 'run-state', 'Paused');
     await page.getByTestId('release').click();
     await untilText(page, 'run-state', 'Axes released');
     await page.getByTestId('increment-10').click();
@@ -216,7 +216,7 @@ describe('who comes and goes', () => {
     const { port } = rig;
     server.kill('SIGKILL');
     await untilText(page, 'connection', /No connection.*emergency stop at the machine/s);
-    await untilText(page, 'state', 'Not known');
+    await untilText(page, 'state', 'Unknown');
     expect(await page.getByTestId('run').getAttribute('aria-disabled')).toBe('true');
     server = await rig.startServer(port);
     await untilText(page, 'state', 'On', 20_000);

@@ -28,7 +28,7 @@ function toMode(mode: Mode): Command[] {
   return machine.status?.task.mode === mode ? [] : [{ message: 'SetMode', mode }];
 }
 
-// Stops: one command each, sent in the event that asks for them.
+// Stops: one command each, sent in the event handler itself.
 
 export function emergencyStop(): void {
   jogger.releaseAll();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What may be done now, and if not, why and what opens it. The machine judges again, and its judgement counts;
-// these keep a person from asking for what it would refuse. No stop has a gate.
+// Which commands are possible now; if not, the reason and the remedy. The machine checks again and decides;
+// gates disable buttons whose commands it would reject. No stop has a gate.
 import type { TextKey } from './i18n/en';
 import type { Values } from './i18n/text';
 import type { MachineFacts, MachineStatus } from './status';

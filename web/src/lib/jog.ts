@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Jogs as leases: motion itself ends a continuous jog that is not renewed, so that no frozen page, cut cable or
-// killed server can let an axis run on. Whatever ends the touch ends the jog; nothing here begins one again.
+// Jogs as leases: motion itself ends a continuous jog that is not renewed, so that an axis stops after a frozen page, a cut cable or
+// a killed server. The end of the touch ends the jog for any reason; nothing here starts one again.
 import type { Command, Outcome } from './link';
 
 export const LEASE_MS = 100;
@@ -53,10 +53,10 @@ export class Jogger {
       return;
     }
     if (this.held.get(key) !== held) {
-      return; // let go while the mode was changing
+      return; // released while the mode was changing
     }
     if (jog.increment !== null) {
-      this.drop(key, held); // ends by itself, and letting go does not stop it
+      this.drop(key, held); // ends by itself; a release does not stop it
       await this.step(jog, jog.increment);
       return;
     }

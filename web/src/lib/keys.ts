@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Keys as in AXIS. Escape and F1 always; the others where nobody types.
+// Keys as in AXIS. Escape and F1 always; the others except in text fields.
 
 export interface KeyActions {
   emergencyStop(): void;

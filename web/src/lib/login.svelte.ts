@@ -43,7 +43,7 @@ export async function checkLogin(): Promise<void> {
   try {
     login.isNeeded = (await ask('GET')).role === '';
   } catch {
-    // No server answers: the connection tells that.
+    // No server answers: the connection state shows this.
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The gamepad of this computer, looked at while the view of jogs is shown.
+// The gamepad of this computer, polled while the jog view is shown.
 import { jogger, whenJogsEnd } from './actions';
 import { canJog } from './gates';
 import { t } from './i18n/index.svelte';
@@ -33,7 +33,7 @@ const pads = new PadJogger({
     if (target !== undefined) {
       jogger.release(target.isJoint, target.index);
     } else {
-      jogger.releaseAll(); // what it was is no more: nothing goes on
+      jogger.releaseAll(); // the target no longer exists: end all jogs
     }
   },
   isOpen: () => canJog(view()) === null && document.hasFocus() && !document.hidden && document.querySelector('[role="dialog"]') === null,

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Jogs by a gamepad. An axis moves only while a button is held that is there for nothing else, and a stick that stands in its
-// middle when the button is pressed is moved out of it. Whatever ends that ends the jog, and both are asked for anew.
+// Jogs by a gamepad. An axis moves only while its enable button is pressed and a stick is moved out of its centre after the button was
+// pressed. The jog ends when either is released; to start again, both must be operated again.
 
-/** What a browser tells of a pad. */
+/** State of a pad as the browser reports it. */
 export interface Pad {
   index: number;
   connected: boolean;

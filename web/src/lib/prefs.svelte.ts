@@ -91,6 +91,6 @@ export function keepPreferences(): void {
   try {
     localStorage.setItem(KEY, JSON.stringify(prefs));
   } catch {
-    // A browser without storage forgets them, and says so itself.
+    // A browser without storage does not keep them.
   }
 }

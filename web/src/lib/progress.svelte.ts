@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// How long the open program takes and what is left of it, as the planner reckons at the present overrides.
+// Total and remaining time of the open program, calculated by the planner for the current overrides.
 import { machine } from './machine.svelte';
 import { Ranges } from './path/shades';
 import { Follower, Times, type TimeSum } from './path/times';

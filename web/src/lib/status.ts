@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The status as the server tells it: messages.md, MachineStatus. Lengths in machine units, angles in degrees.
+// The status as the server sends it: messages.md, MachineStatus. Lengths in machine units, angles in degrees.
 
 export type State = 'ESTOP' | 'ESTOP_RESET' | 'OFF' | 'ON';
 export type Mode = 'MANUAL' | 'AUTO' | 'MDI';

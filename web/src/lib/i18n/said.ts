@@ -3,9 +3,9 @@
 // from. The same as src/language/catalogue does in programs; po/cases.json holds both to the same answers.
 
 interface Pattern {
-  pieces: string[]; // of the key, between what is put in
+  pieces: string[]; // of the key, between the values
   letters: number; // of all pieces
-  isName: boolean; // one word of its own ("joint {}"): what is put in is a name, too
+  isName: boolean; // one separate word ("joint {}"): the value is a name, too
   translation: string;
 }
 
@@ -88,7 +88,7 @@ export class Texts {
 
   private isFitting(pattern: Pattern, values: string[], depth: number): boolean {
     if (pattern.pieces[0] === '' && values[0]?.includes(': ')) {
-      return false; // what begins a text is no place, kind or sentence with its colon: these are parts of their own
+      return false; // a value at the beginning is no position, type or sentence with a colon: these are separate parts
     }
     return !pattern.isName || values.every((value) => !value.includes(' ') || (depth < MAX_DEPTH && this.composed(value, depth + 1) !== null));
   }

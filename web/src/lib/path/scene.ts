@@ -416,7 +416,7 @@ export class PathScene {
 
   private draw(): void {
     this.stopReadingTimer();
-    this.refined = null; // what was refined is drawn anew
+    this.refined = null; // draws the refined part again
     this.ask();
   }
 

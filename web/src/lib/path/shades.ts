@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Colours of a path by feed, tool or the speed reached: a byte for each point, from what holds from a point on.
+// Colours of a path by feed, tool or planned speed: one byte for each point, from ranges that begin at a point.
 import type { Moves } from './chunks';
 
 export type ColorBy = 'kind' | 'feed' | 'tool' | 'speed';

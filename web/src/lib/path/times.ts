@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// How long a program takes, move by move, as the planner reckons it, and where in it a machine is.
+// Time of each move of a program, calculated by the planner, and the progress of the machine in it.
 
 export interface SlowSpot {
   file: string;

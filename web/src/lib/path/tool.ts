@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What stands for the tool: a cone on its point, the tip of a lathe tool, the wire of a foam cutter.
+// Model of the tool: a cone on its point, the tip of a lathe tool, or the wire of a foam cutter.
 import { BufferAttribute, BufferGeometry, ConeGeometry, DoubleSide, Line, LineBasicMaterial, Mesh, MeshBasicMaterial, Shape, ShapeGeometry } from 'three';
 
 export interface LatheTip {

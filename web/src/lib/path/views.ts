@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// From where a path is looked at.
+// Camera views of a path.
 import { Vector3, type Box3, type Matrix4 } from 'three';
 import type { Spot } from './geometry';
 
