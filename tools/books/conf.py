@@ -22,6 +22,7 @@ html_theme = 'basic' if os.environ.get('MW_BOOKS_FOR') == 'pdf' else 'sphinx_rtd
 html_title = f'Millwright {version}'
 html_static_path = ['static']
 html_css_files = ['paper.css' if html_theme == 'basic' else 'screen.css']
+html_js_files = [] if html_theme == 'basic' else ['screen.js']
 html_copy_source = False
 html_show_sourcelink = False
 html_show_sphinx = False

@@ -340,6 +340,7 @@ export const de: Catalogue = {
   'gate.setter_unseen': 'Den Werkzeugtaster mit der Hand drücken, bis der Kontakt angezeigt wird.',
 
   'settings.title': 'Einstellungen',
+  'settings.help': 'Hilfe',
   'settings.theme': 'Aussehen',
   'settings.theme_auto': 'Wie das System',
   'settings.theme_dark': 'Dunkel',

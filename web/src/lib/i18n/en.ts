@@ -340,6 +340,7 @@ export const en = {
   'gate.setter_unseen': 'Press the setter by hand until the contact is shown.',
 
   'settings.title': 'Settings',
+  'settings.help': 'Help',
   'settings.theme': 'Appearance',
   'settings.theme_auto': 'Same as system',
   'settings.theme_dark': 'Dark',

@@ -340,6 +340,7 @@ export const es: Catalogue = {
   'gate.setter_unseen': 'Pulse el medidor de herramientas con la mano hasta que se muestre el contacto.',
 
   'settings.title': 'Opciones',
+  'settings.help': 'Ayuda',
   'settings.theme': 'Aspecto',
   'settings.theme_auto': 'Como el sistema',
   'settings.theme_dark': 'Oscuro',
