@@ -47,7 +47,7 @@ def clock_mhz():
 
 
 def thread_time():
-    """Median of what the thread says of its own run time, over some hundred periods."""
+    """Median run time of the thread over some hundred periods."""
     pathlib.Path('times.hal').write_text('getp t.time\n' * 100)
     times = []
     for _ in range(8):
@@ -103,7 +103,7 @@ def measure(path, user, counts_ticks):
         command += ['--ticks'] if counts_ticks else []
         shutil.copy(__file__, os.path.join(folder, 'hal.py'))
         if user:
-            # A name space of its own: LinuxCNC has one realtime process and one shared memory per machine.
+            # A separate name space: LinuxCNC has one realtime process and one shared memory per machine.
             command = ['unshare', '--ipc', '--pid', '--fork', '--mount-proc', '--kill-child', 'runuser', '-u', user,
                        '--', *command]
         done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=120)

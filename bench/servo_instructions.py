@@ -28,7 +28,7 @@ LIMITS = {"max_velocity": [200] * 9, "max_acceleration": [1000] * 9, "max_jerk":
 PERIOD_NS = 1000000
 REALTIME = pathlib.Path("/usr/bin/rtapi_app")  # of LinuxCNC
 MOST = 0.7  # of what LinuxCNC takes
-# Functions of ours that the servo thread calls, and nobody else.
+# Functions of Millwright that only the servo thread calls.
 OURS = re.compile(r"^\(anonymous namespace\)::(handle_commands|control)\(")
 
 # LinuxCNC's screen: homes, runs the program, looks twice while it runs.
@@ -140,7 +140,7 @@ def ours(folder, letters, cycles):
 
 
 def reference(folder, letters, cycles):
-    """LinuxCNC's realtime program is started by its full name: in a name space of its own callgrind stands in its place."""
+    """LinuxCNC's realtime program is started by its full name: in a separate name space callgrind replaces it."""
     prepare(folder, letters, 60.0 + 20 * cycles * PERIOD_NS * 1e-9)
     homed = compare_traj.DRIVER.replace("homed[:5]", f"homed[:{len(letters)}]").split("with open")[0]
     look = LOOK.replace("LOOK_S", f"{3 * cycles * PERIOD_NS * 1e-9:.3f}")
@@ -178,7 +178,7 @@ def main():
     if shutil.which("valgrind") is None:
         sys.exit("servo_instructions: valgrind is missing; script/bootstrap --all installs it")
     if os.geteuid() != 0:
-        sys.exit("servo_instructions: root makes the name spaces in which callgrind stands for the realtime programs")
+        sys.exit("servo_instructions: only root can create the name spaces in which callgrind replaces the realtime programs")
     has_reference = REALTIME.exists()
     made = tempfile.TemporaryDirectory()
     work = pathlib.Path(options.keep or made.name)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What a preview has to run before a program, so that it begins as the machine would."""
 
-# Places in stat.gcodes of modes that stay in force from one program to the next: plane, compensation (only off),
+# Positions in stat.gcodes of modes that stay active from one program to the next: plane, compensation (only off),
 # distance, feed mode, coordinate system, tool length, retract, diameter, arc distance. Motion does not belong here.
 _MODES = (3, 4, 6, 7, 8, 9, 10, 13, 14)
-# Codes that say nothing without words of their own, or that begin something.
+# Codes that need words, or that begin a cycle or a block.
 _LEFT_OUT = {410, 411, 420, 421, 431, 432}
 _METRIC_FROM = 0.5
 _LETTERS = 'XYZABCUVW'
@@ -17,7 +17,7 @@ def _word(code):
 
 
 def _place(stat):
-    """The block that leads to where the machine stands; nothing where that is not known."""
+    """The block that ends at the machine position; None if it is not known."""
     position = getattr(stat, "position", ())
     mask = getattr(stat, "axis_mask", 0)
     words = ["%s%.6f" % (letter, position[i]) for i, letter in enumerate(_LETTERS)

@@ -138,13 +138,13 @@ class component:
 
 
 def sigNew(name, type):
-    """A new signal; hal.error when HAL refuses it."""
+    """A new signal; hal.error if HAL rejects it."""
     if not hal.new_sig(name, int(type)):
         raise hal.error(f"no new signal '{name}'")
     return name
 
 
 def sigLink(pin_name, signal_name):
-    """Links a pin to a signal; hal.error when HAL refuses it."""
+    """Links a pin to a signal; hal.error if HAL rejects it."""
     if not hal.connect(getattr(pin_name, "name", pin_name), signal_name):
         raise hal.error(f"no link of '{pin_name}' to '{signal_name}'")

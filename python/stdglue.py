@@ -25,7 +25,7 @@ def _refusal(self, name):
 
 
 def _changer_fault(self, name):
-    """A hard fault of the changer as a text; a soft one is shown, and the change goes on."""
+    """The text of a hard fault of the changer; a soft fault is shown, and the change continues."""
     if self.params[_FAULT] <= 0.0:
         return None
     code = self.params[_FAULT_CODE]

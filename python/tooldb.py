@@ -69,6 +69,6 @@ def tooldb_loop():
         command = line.strip()
         try:
             _answer(command)
-        except Exception as error:  # whatever the functions of the user raise is an answer
+        except Exception as error:  # any exception of the user's functions becomes an answer
             text = ' '.join(str(error).split())
             _say(f'NAK cmd={command[:1]}: {type(error).__name__}:{text} <{command}>')

@@ -25,14 +25,14 @@ class Program:
         self.isLeadingZero = self.chance(0.3)
         self.lines, self.number_of_line = [], 0
         self.position, self.mode = {}, None
-        self.offset_tool = 0  # whose offset is in force
+        self.offset_tool = 0  # whose offset is active
         self.write()
 
     def chance(self, part):
         return self.random.random() < part
 
     def mm(self, low, high):
-        """A length that stands for so many mm, in the program's unit."""
+        """A length in mm, converted to the program's unit."""
         return self.random.uniform(low, high) / (25.4 if self.is_inch else 1.0)
 
     def rounded(self, value):

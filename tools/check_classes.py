@@ -14,7 +14,7 @@ import sys
 FUNCTION_LIMIT = 40
 DATA_LIMIT = 30
 # Classes over the limits: the functions and data members that each may have, and why. One that has become small enough
-# must not stand here.
+# must not be here.
 OVERLOADS = 'one overload for each alternative of a closed variant'
 PINS = 'the pins of a module, one member each'
 SETTINGS = 'plain values without behaviour, one for each key or field'

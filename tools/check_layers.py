@@ -83,7 +83,7 @@ def problem_of_order(source, target):
 
 
 def are_parts_mixed(source, target):
-    """Parts of the motion controller are folders of their own and know no other."""
+    """Parts of the motion controller are separate folders that do not include each other."""
     parts = [path.split('/') for path in (source, target)]
     are_parts = all(len(part) > 3 and part[:2] == ['motion', 'servo'] for part in parts)
     return are_parts and parts[0][2] != parts[1][2]

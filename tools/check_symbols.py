@@ -46,7 +46,7 @@ def main():
     defined, wanted = set(), {}
     for name in sys.argv[2:]:
         for member, kind, symbol in symbols_of(pathlib.Path(name)):
-            # Weak undefined symbols (w, v) may stay absent, but whoever calls them links them.
+            # Weak undefined symbols (w, v) may stay absent; a caller links them.
             if kind in 'Uwv' and any(fnmatch.fnmatchcase(symbol, one) for one in of_file.get(member.split(':')[0], ())):
                 continue
             if kind in 'Uwv':

@@ -80,7 +80,7 @@ def number(text, otherwise):
 
 
 def program_for(sections):
-    """Moves of a twentieth of each axis's room, at most 2, around where it stands after homing."""
+    """Moves of a twentieth of each axis's travel, at most 2, around its position after homing."""
     traj = sections["TRAJ"]
     letters = [c for c in "XYZABCUVW" if c in re.sub(r"[\s,]", "", traj.get("COORDINATES", "XYZ").upper())]
     inch = traj.get("LINEAR_UNITS", "mm").lower() in ("inch", "in", "imperial", "1.0")

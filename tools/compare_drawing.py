@@ -46,7 +46,7 @@ def make_context():
 
 
 def lines_of(gl, draw):
-    """{line as text}: what arrives, whatever the order and however often."""
+    """{line as text}: received lines, in any order and number."""
     buffer = (ctypes.c_float * 200000)()
     gl.glFeedbackBuffer(len(buffer), FEEDBACK_3D_COLOR, buffer)
     gl.glColor4f(*[ctypes.c_float(1)] * 4)

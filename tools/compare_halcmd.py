@@ -484,7 +484,7 @@ DIFFERENCES = [
 ]
 
 
-# Commands that LinuxCNC accepts without a word, and ours refuses.
+# Commands that LinuxCNC accepts silently and Millwright rejects.
 REFUSED_BY_US = [
     r'^delsig ', r'^(un)?lock (bogus|none|x)', r'^unalias (bogus|x)', r'^list \w+ -tbogus', r'^loadusr nosuchprogram', r'^loadusr$', r'^unloadusr nosuch', r'^debug x', r'^help nosuch',
     r'^setp \S+ (nan|inf|1e400|99999999999|4294967296|2147483648|4000000000|-\d+)$',
@@ -543,7 +543,7 @@ class Side:
                        'MY_PIN': 'and2.0.in0', 'MY_NUMBER': '0', 'MILLWRIGHT_INSTANCE': 'compare'}
         command = [f'{self.path}/halrun', *options]
         if self.user:
-            # A name space of its own: LinuxCNC has one shared memory for the machine.
+            # A separate name space: LinuxCNC has one shared memory for the machine.
             command = ['unshare', '--ipc', '--pid', '--fork', '--mount-proc', '--kill-child', 'runuser', '-u', self.user, '--', 'env', f'HOME={folder}', *command]
         done = subprocess.run(command, cwd=folder, env=environment, stdin=subprocess.DEVNULL, capture_output=True,
                               text=True, errors='replace', timeout=timeout)

@@ -87,7 +87,7 @@ net e iocontrol.0.user-enable-out => iocontrol.0.emc-enable-in
 net p iocontrol.0.tool-prepare => iocontrol.0.tool-prepared
 net t iocontrol.0.tool-change => iocontrol.0.tool-changed
 """
-# A number is a pause in seconds; what stands behind # belongs to REASONS.
+# A number is a pause in seconds; the word after # is a key of REASONS.
 LINES = """get plat;set echo on;hello BAD x 1;hello;hello EMC x 1.0;get echo;set echo off;get enable;set mode mdi;set verbose on
 set mode mdi;set enable WRONG;set enable EMCTOO;get bogus;set bogus 1;set mode bogus;set mode;bogus;get;set;help;help get
 get debug;get ini DISPLAY DISPLAY;get set_wait;get timeout;get set_timeout;get update;get error;get operator_display

@@ -5,7 +5,7 @@ import random
 
 
 def bits(change=0.5):
-    """A bit that is drawn anew with this probability."""
+    """A bit that changes to a random value with this probability."""
     return lambda r, last: last if last is not None and r.random() > change else r.randint(0, 1)
 
 

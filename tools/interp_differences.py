@@ -195,7 +195,7 @@ def name_of(one):
 
 
 def peck_at_the_bottom(pair):
-    """G73 and G83 whose last peck ends at the bottom: rounding makes LinuxCNC come back to it once more."""
+    """G73 and G83 whose last peck ends at the bottom: rounding makes LinuxCNC repeat the last peck."""
     if not pair.has(r'g[78]3'):
         return
     out = []
@@ -292,7 +292,7 @@ def rapid_corners(pair):
 
 
 def end_of(call):
-    """X Y Z of a move; None for other calls. Arcs are told in the plane XY or XZ by what they print."""
+    """X Y Z of a move; None for other calls. Arcs are in the plane XY or XZ, as printed."""
     return numbers(call)[:3] if call.startswith(('STRAIGHT_FEED(', 'STRAIGHT_TRAVERSE(')) else None
 
 
@@ -328,7 +328,7 @@ def cycle_with_another_height(pair):
 
 
 def thread_passes(pair):
-    """G76 whose last calculated depth is K but for rounding: LinuxCNC cuts at K once more; here the passes are counted."""
+    """G76 whose last calculated depth differs from K only by rounding: LinuxCNC cuts at K again; Millwright counts the passes."""
     if not pair.has('g76'):
         return
     at = next((i for i, (a, b) in enumerate(zip(pair.reference, pair.ours)) if not isSameCall(a, b)), len(pair.ours))
@@ -354,7 +354,7 @@ CLASSES = (speed_override_at_end, order_under_compensation, cycle_with_another_h
            threading_enables_override, lathe_pieces, way_out_of_finishing, narrow_layers, peck_at_the_bottom, long_numbers,
            small_numbers, angles_of_home, orientation_of_back_boring, tolerance_after_units, rapid_corners, thread_passes)
 
-# What ours refuses and LinuxCNC does not, and what it refuses it with. What was done before must be equal.
+# Blocks that only Millwright rejects, with its messages. The calls before must be equal.
 STRICTER = {
     'in concave corner cannot be reached': 'a corner of nearly 180 degrees towards the tool',
     'Concave corner cannot be reached': 'a corner of nearly 180 degrees towards the tool',

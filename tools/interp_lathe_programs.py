@@ -28,7 +28,7 @@ def profile_points(random):
 
 
 def lathe_cycle(random, label):
-    """The lines of a subroutine and of a cycle with it. G18, G90 and a feed must be in force."""
+    """The lines of a subroutine and of a cycle with it. G18, G90 and a feed must be active."""
     is_facing = random.random() < 0.4
     sign = random.choice((-1, -1, 1))
     is_final = random.random() < 0.3

@@ -34,7 +34,7 @@ class Program:
         self.labels = 100
         self.motion = 'G80'  # what axis words alone mean
         self.has_break = False
-        self.is_numbered = False  # M61: the tool's data are not those in force
+        self.is_numbered = False  # M61: the tool's data are not the active ones
         self.spindles = 3 if seed % 2 == 1 else 1
         count = self.random.randint(5, 40)
         self.header()
@@ -386,7 +386,7 @@ class Program:
         self.add(f'F{self.value(1, 900)}')
 
     def nonsense(self):
-        """Lines that should be refused."""
+        """Lines that should be rejected."""
         if self.chance(0.5):
             return
         self.add(self.random.choice(('G1 X', 'G1 X1 X2', 'G2 X1 Y1', 'G0 G1 X1', 'G43.1', 'M66', 'G10 L2', 'G81 X1', 'T-1 M6', 'S-1', 'G2 X1 Y1 R0.01',

@@ -26,7 +26,7 @@ WAYS = {
     'virtual': ('end', 'TERM', 'INT', 'KILL', 'refused', 'full_disk'),
     'realtime': ('end', 'TERM', 'INT', 'KILL', 'kill_realtime', 'kill_display', 'kill_program', 'full_disk', 'display_fails', 'refused'),
 }
-# What becomes of the exit status: 0, another number, or whatever it is.
+# The expected exit status: 0, another number, or any.
 STATUS = {'end': 0, 'refused': 1, 'display_fails': 7}
 PATIENCE_S = 40
 PROGRAM = 'G21 G90 G17\nM3 S500\nG1 X5 Y5 F3000\nG2 X10 Y0 I2.5 J-2.5\nG0 X0 Y0\nM5\nM2\n'

@@ -29,7 +29,7 @@ TABLES = re.compile(r'HAL_LOCK_|^active/recycled|^HAL (memory|locking) status|^H
                     r'|Aliases$|^Original Name$|^(\{\})?# (param|pin|real|unconn)|^#loadrt |^alias (pin|param) |^twopass:|^pass0:|^Sourcing |^found \{\}$|^loadusr \{\}$|^  \{\} \(process|^  \{\} (->|\[)|^digraph |^signal \{\}$|^HAL capture, '
                     r'|^(jitter|last|max|min|period|sdev) ns$|^outside of the bins|intervals by deviation|^\{\}: period|^deviation from the period|^no realtime: |^realtime priority and locked|^is (not )?running$|^the realtime process of instance .%s'
                     r'|^(comp|pin)\||^\[(\w+\|){2}|^SIGNAL bit|^(latency-|millwright-rt |millwright hal \w+ ).*\[options\]$|^millwright hal ?$|^millwright-rt: \{\}$|^loadusr -W|^\.comp, |^import ast|^( (?!and |of )[\w.-]+)+ $|^fnct_01|^. (of component|crashed)|^Complete names|%s|^NML channels are up|^millwright (nml|format|explain) (FILE|\[)|^millwright nml: ')
-# Manual pages, reference pages and `explain` are made from these; and what programs print for other programs.
+# Texts of manual pages, reference pages and `explain`, and output that other programs read.
 NOT_SHOWN = re.compile(r'/(test|bench|logger|canon)/|keys\.hh$|pin_tables\.hh$|motion/interface/parameters\.hh$|states_page\.cc$'
                        r'|codes/code_texts\.cc$|programs/run/summary\.cc$|programs/run/time_report\.cc$|programs/run/recorder\.cc$|programs/run/plot\.cc$'
                        r'|base/ini/ini(value|var|_strict|_escape|_script)\.cc$|programs/setup/var_command\.cc$|command_classes\.hh$|/kinematics/\w+\.hh$|machine/config/ini_keys\.cc$'
@@ -190,7 +190,7 @@ def quote(text):
 
 
 def read_po(path):
-    """{key: translation} of a catalogue whose strings stand in one line each or go on in the next ones."""
+    """{key: translation} of a catalogue whose strings have one line each or continue in the next ones."""
     entries, key, into = {}, None, None
     for line in path.read_text().splitlines() if path.exists() else ():
         word = re.match(r'(msgid|msgstr)?\s*"(.*)"$', line)

@@ -74,7 +74,7 @@ double time_of(const std::vector<Pose> &p, const Path &path, const Program &prog
         most[i] = path.isStop[i] ? 0.0 : v * v;
     }
     for (std::size_t i = n - 1; i-- > 1;) {
-        // The highest b from which some allowed a leads to what can be kept next.
+        // The maximum b from which an allowed a reaches the feasible range of the next point.
         double low_b = 0;
         double high_b = most[i];
         for (int k = 0; k < 50 && high_b > 0; ++k) {

@@ -278,7 +278,7 @@ class Pass : protected Laying {
         return false;
     }
 
-    /// Goes along the step as far as there is something to gain; the part of it, 0: nothing.
+    /// Line search along the step; returns the accepted part of it, 0: no improvement.
     double search(const std::vector<double> &step, double mu, double trust) {
         const std::size_t width = 1 + sides_;
         double gain = 0;
@@ -307,7 +307,7 @@ class Pass : protected Laying {
         return 0;
     }
 
-    /// False when the nodes leave no room whatever the speed.
+    /// False when no speed is feasible at the nodes.
     bool solve(double mu, double trust) {
         // From inside: slower until every slack is there.
         double slower = 1;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // How fast a program could be driven with limits of velocity, acceleration and jerk within P, by numbers and
 // without src/trajectory: smooth curves inside the tolerance, and on each a time-optimal pass by an
-// interior-point method. What it returns is a trajectory, so whoever wants can check it.
+// interior-point method. The result is a trajectory that can be checked.
 #pragma once
 
 #include <vector>

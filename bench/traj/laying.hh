@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Nodes along a path that are even in time, and how they are laid anew when time has changed.
+// Nodes along a path at equal time intervals, and their redistribution when the timing has changed.
 #pragma once
 
 #include <algorithm>
@@ -14,9 +14,8 @@ inline constexpr int MOST_AXES = 9;
 inline constexpr std::size_t PAD = 8;  ///< nodes at each end where nothing moves
 inline constexpr double REACH = 3;     ///< nodes that a blended value depends on, each way
 inline constexpr double ROOM = 1.0 - 2e-7;
-inline constexpr double
-    TUBE = 0.95,
-    MOST = 1.02;  ///< part of P that is used, and how much more where laying anew has taken it
+inline constexpr double TUBE = 0.95,
+                        MOST = 1.02;  ///< used part of P, and the increase caused by redistribution
 inline constexpr double PERIOD = 1e-3, FINE_PERIOD = 0.25e-3;
 
 using Row = std::array<double, MOST_AXES>;
@@ -109,7 +108,7 @@ class Laying {
         find_sides();
     }
 
-    /// Laying nodes anew may bring some out of the tube by a little.
+    /// Redistribution may move some nodes slightly out of the tube.
     void pull_in(std::size_t i) {
         const auto outside = off(n_, i);
         for (std::size_t k = 0; k < axes_; ++k) {

@@ -13,7 +13,7 @@ struct Path {
     std::vector<bool> isFixed;  ///< exact path: not to be smoothed
 };
 
-/// The programmed path cut finely, with stops where the mode or a reversal asks for them.
+/// The programmed path in short pieces, with stops where the mode or a reversal requires them.
 Path cut_path(const Program &program);
 
 /// As G64 P measures: lengths and degrees apart.

@@ -88,7 +88,7 @@ struct Run {
     bool isFinished = false;
 };
 
-/// The whole program is offered at once, as far as the planner has room.
+/// The planner receives as much of the program as its queue can hold.
 Run drive(const Program &program, bool isJerkLimited, bool isMerging) {
     Run run;
     auto store = std::make_unique<trajectory::PathStore>();

@@ -82,7 +82,7 @@ _GRACE_S = 2.0
 
 @_atexit.register
 def _leave():
-    """Removes the components of a program from HAL at its normal exit, also without a call of exit()."""
+    """A program that ends normally leaves HAL, also without a call of exit()."""
     for one in list(_components):
         try:
             one.exit()

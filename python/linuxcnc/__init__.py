@@ -21,7 +21,7 @@ import os as _os
 
 
 class error(RuntimeError):
-    """What this module refuses."""
+    """A call that this module rejects."""
 
 
 tool = _collections.namedtuple("tool", "id xoffset yoffset zoffset aoffset boffset coffset uoffset voffset woffset "

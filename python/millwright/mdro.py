@@ -227,7 +227,7 @@ def join_hal(options):
         return indexes[n].value
 
     def leave():
-        """No encoder waits for an index that was asked for here, and that nobody asks for any more."""
+        """Cancels all index searches that were requested here."""
         for n in asked:
             indexes[n].value = False
     readout = Readout(options.axes, options.mm, options.offsets, lambda n: scales[n].value, index)

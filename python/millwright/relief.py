@@ -20,7 +20,7 @@ def tool_rise(kind, radius, distance):
 
 
 def allowed(np, heights, row, pixel, kind, radius, reach_rows=0.0):
-    """Lowest tip at positions (column * PARTS + part) along a row. reach_rows: offset of the tool from the row, in pixels."""
+    """Lowest tip at places (column * PARTS + part) along a row. reach_rows: pixels by which the tool may be beside it."""
     rows, columns = heights.shape
     reach = radius / pixel
     lowest = np.full((PARTS, columns), -np.inf)

@@ -150,7 +150,7 @@ def read_heights(np, settings):
 
 
 class Program:
-    """Lines of G-code; words that stand already are left out."""
+    """Lines of G-code; unchanged words are left out."""
 
     def __init__(self, settings):
         self.set, self.lines, self.digits = settings, [], 5 if settings.units == 'in' else 4
@@ -227,7 +227,7 @@ def mill(np, heights, settings, border, progress):
     program.begin()
     for floor, raised in levels(settings):
         for order, axis in enumerate(relief.passes()):
-            last = None  # row and place at which the tool stands in the stock
+            last = None  # row and position of the tool in the stock
             for row, points in relief.cuts(order, axis, floor, raised):
                 if raised and all(z >= 0 for _, z in points):
                     continue  # above the stock

@@ -112,7 +112,7 @@ def main(arguments, programs):
     """`programs`: the folder of halrun and the others that tests call; they are found there first."""
     parser = Parser(prog='runtests', description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('folders', nargs='*', default=['.'], help='looked through for tests; default: where you are')
-    parser.add_argument('-n', action='store_true', help='only tell which would be run')
+    parser.add_argument('-n', action='store_true', help='only list the tests that would run')
     parser.add_argument('-s', action='store_true', help='stop at the first that fails')
     parser.add_argument('-v', action='store_true', help='show output and errors of those that fail')
     parser.add_argument('--patience', type=float, default=120, metavar='S', help='so long each may take (120)')

@@ -55,7 +55,7 @@ class Setting:
 
 
 def sections_of(lines):
-    """[(name or None, [line, ...])]: what stands before the first section has no name."""
+    """[(name or None, [line, ...])]: lines before the first section have no name."""
     sections = [(None, [])]
     for line in lines:
         head = re.match(r'\s*\[(\w+)\]', line)
@@ -95,7 +95,7 @@ class Machine:
         words = loaded[2].split() if loaded else []
         letters = next((word.split('=', 1)[1].upper() for word in words if word.lower().startswith('coordinates=')), '')
         if self.kinematics not in PLAIN_KINEMATICS:
-            # Of a robot nobody but its maker knows which joint does what: numbers stay.
+            # The axes of a robot's joints are not known: numbers stay.
             self.joint_of = {number: number for number in self.numbers}
             self.letter_of = {number: LETTERS[number] for number in self.numbers if LETTERS[number] in coordinates}
             self.words = ' '.join([self.kinematics, *words])
@@ -161,7 +161,7 @@ def new_traj(body):
 
 
 def plain(line):
-    """A comment behind a number gets a line of its own."""
+    """A comment after a number gets a separate line."""
     setting = Setting(line)
     parts = re.split(r'\s*([#;].*)', setting.value or '', maxsplit=1)
     if len(parts) < 3 or setting.number() is None:
@@ -225,7 +225,7 @@ def new_hal_line(line, machine):
 
 
 def hal_files(ini, values, advice):
-    """HAL files of the configuration's own folder; what cannot be changed by a program is told."""
+    """HAL files of the configuration's own folder; lines that cannot be converted are reported."""
     files = []
     for key in ('HALFILE', 'POSTGUI_HALFILE', 'SHUTDOWN'):
         for value in values.get(('HAL', key), []):

@@ -29,7 +29,7 @@ def is_same(path, fd):
 
 
 def remove_dead(path):
-    """Removes what killed processes have left for this file: temporary files that nobody has locked."""
+    """Removes temporary files of this file that killed processes have left: those without a lock."""
     pattern = re.compile(re.escape(prefix_of(path)) + f'[{LETTERS}]{{{NUM_LETTERS}}}')
     for name in os.listdir(path.parent):
         if not pattern.fullmatch(name):
@@ -60,7 +60,7 @@ def create(path):
             os.close(fd)
             continue
         except OSError:
-            return temporary, fd  # without locks nobody removes it
+            return temporary, fd  # not removed without locks
         if is_same(temporary, fd):
             return temporary, fd
         os.close(fd)

@@ -60,7 +60,7 @@ it('has the title and the picture of the file', async () => {
   expect(await page.evaluate(async () => (await fetch('/api/icon')).headers.get('content-type'))).toBe('image/svg+xml');
 });
 
-it('runs what waits for its pins, and tells what fails', async () => {
+it('runs programs that wait for its pins, and reports failures', async () => {
   await until(() => rig.signal('door-open') === 'FALSE', 'the link of post.hal');
   expect(rig.signal('from-command')).toBe('FALSE');
   await page.getByTestId('tab-messages').click();
@@ -83,7 +83,7 @@ it('keeps preferences at the machine, for every browser', async () => {
   await page.getByTestId('language').selectOption('en');
 });
 
-it('changes the spindle by the increment of the file, and not beyond its highest speed', async () => {
+it('changes the spindle by the increment of the INI file, up to its maximum speed', async () => {
   await page.getByTestId('spindle-forward-0').click();
   await untilText(page, 'spindle-state-0', /400/);
   await page.getByTestId('spindle-faster-0').click();
@@ -107,7 +107,7 @@ it('shows a panel of the shop, bound to HAL both ways', async () => {
   await until(() => Number(rig.signal('own-number')) === 2.5, 'the number');
 });
 
-it('starts a program with a window of its own beside it', async () => {
+it('starts a program with its own window', async () => {
   await until(() => existsSync(join(folder, 'side.txt')) && readFileSync(join(folder, 'side.txt'), 'utf8').includes('mill_mm.ini'), 'the program');
   await page.getByTestId('tab-embedded-1').click();
   expect(await text(page, 'embedded')).toContain('window of its own');

@@ -6,7 +6,7 @@ import { afterAll, beforeAll, expect, it } from 'vitest';
 import type { Page } from 'playwright-core';
 import { errorsOf, judgeByAxe, Rig, text, until, untilText } from './rig';
 
-// Goes on when the file GO is there; a depth of 0 is refused.
+// Continues when the file GO exists; rejects a depth of 0.
 const FILTER = `#!/bin/sh
 depth=$(cat "$1")
 echo FILTER_PROGRESS=25 >&2
@@ -40,7 +40,7 @@ afterAll(async () => {
   await rig.end();
 });
 
-it('shows how far the filter is, and ends it when it is told to', async () => {
+it('shows the progress of the filter, and ends it by its button', async () => {
   await page.getByTestId('tab-programs').click();
   await page.getByTestId('open-a part.depth').click();
   await untilText(page, 'filter-progress', '25 % done');
@@ -62,7 +62,7 @@ it('opens the program that it makes, with its path and text', async () => {
   expect(await text(page, 'text-made')).toContain('a part.depth');
 });
 
-it('tells what is wrong, and leaves open what was open', async () => {
+it('reports the fault, and keeps the previous program open', async () => {
   await page.getByTestId('tab-programs').click();
   await page.getByTestId('open-flat.depth').click();
   await until(async () => (await page.getByText(/has ended with status 1: the depth is 0/).count()) > 0, 'the error');

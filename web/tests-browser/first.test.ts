@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Before a machine is up: the selector with search and pictures, and the wizard, against `millwright select --browser` (J1, A7).
+// Without a running machine: the selector with search and pictures, and the wizard, against `millwright select --browser` (J1, A7).
 import { copyFileSync, existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
@@ -41,7 +41,7 @@ afterAll(async () => {
   await rig.end();
 });
 
-it('shows nothing to whoever has not the key', async () => {
+it('shows nothing without the key', async () => {
   const answer = await page.request.get(`http://127.0.0.1:${port}/api/first_steps`);
   expect(answer.status()).toBe(401);
   expect((await page.request.post(`http://127.0.0.1:${port}/api/first_steps/start?key=0`, { data: '{}' })).status()).toBe(401);
@@ -60,7 +60,7 @@ it('finds machines by words, and shows their pictures', async () => {
   await look('selector');
 });
 
-it('makes a machine from answers, tells what cannot be, and tries it', async () => {
+it('creates a machine from answers, reports invalid ones, and tests it', async () => {
   await page.getByTestId('new-machine').click();
   await page.getByTestId('ask-kind').selectOption('gantry');
   await page.getByTestId('ask-drives').selectOption('stepper');

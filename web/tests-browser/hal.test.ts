@@ -55,7 +55,7 @@ describe('names and values', () => {
     expect(before).not.toBe('3.25');
   });
 
-  it('sets what HAL lets a person set, warns, and tells why it does not', async () => {
+  it('sets pins that HAL allows to set, warns, and reports the reason of a rejection', async () => {
     await page.getByTestId('hal-find').fill('halui.machine.off');
     await page.getByTestId('watch-halui.machine.off').check();
     await page.getByTestId('set-halui.machine.off').click();

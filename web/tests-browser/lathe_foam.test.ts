@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A lathe and a foam cutter as they are looked at; colours of a path (J1, J3).
+// Views of a lathe and a foam cutter; colours of a path.
 import { afterAll, describe, expect, it } from 'vitest';
 import type { Page } from 'playwright-core';
 import { errorsOf, judgeByAxe, Rig, sleep, text, until, untilText } from './rig';

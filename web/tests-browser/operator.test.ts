@@ -62,7 +62,7 @@ afterAll(async () => {
 });
 
 describe('before the machine is on', () => {
-  it('says that no machine is up, then that it is in emergency stop', async () => {
+  it('reports that no machine is running, then its emergency stop', async () => {
     await untilText(page, 'connection', /No machine is running/);
     await rig.startMachine();
     await untilText(page, 'state', 'Emergency stop');
@@ -96,7 +96,7 @@ describe('before the machine is on', () => {
 });
 
 describe('by hand', () => {
-  it('jogs joints before homing, shows them, and refuses programs', async () => {
+  it('jogs joints before homing, shows them, and rejects programs', async () => {
     await page.getByTestId('increment-1').click();
     await hold('jog-J1+', 50);
     await until(() => rig.position(1) === 1, 'the step');
@@ -185,7 +185,7 @@ describe('by hand', () => {
     expect(await page.getByTestId('touch-off').count()).toBe(0);
   });
 
-  it('does not jog by keys where somebody types', async () => {
+  it('does not jog by keys in text fields', async () => {
     const before = rig.position(0);
     await page.getByTestId('mdi-line').focus();
     await page.keyboard.down('ArrowRight');

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Jogs by a gamepad that the page is told of (J3).
+// Jogs by a simulated gamepad.
 import { afterAll, beforeAll, expect, it } from 'vitest';
 import type { Page } from 'playwright-core';
 import { bringUp, errorsOf, Rig, sleep, text, until, untilText } from './rig';
@@ -43,7 +43,7 @@ afterAll(async () => {
   await rig.end();
 });
 
-it('moves while button and stick are held, and stops when either is let go', async () => {
+it('moves while button and stick are held, and stops when either is released', async () => {
   await set(false, [1, 0, 0, 0]);
   expect(await stands()).toBe(true);
   await set(false, [0, 0, 0, 0]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Probing by the view: a switch that closes where a face stands at X 12 of the machine, seen by a ball of 4 mm (I1, J1).
+// Probing by the view: a switch that closes at a face at X 12 of the machine, seen by a ball of 4 mm (I1, J1).
 import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import type { Page } from 'playwright-core';
@@ -50,7 +50,7 @@ it('is gated until all is homed and the contact was seen', async () => {
   expect(await isGated()).toBe(false);
 });
 
-it('asks for the probe again after a change of tool and when the spindle has turned', async () => {
+it('requires a check of the probe after a tool change and after the spindle has turned', async () => {
   await page.getByTestId('mdi-line').fill('T3 M6');
   await page.getByTestId('mdi-send').click();
   await untilText(page, 'probe-in-spindle', /T3 drill/);
@@ -88,7 +88,7 @@ it('asks with which tool length a zero of Z is set', async () => {
   await page.getByTestId('probe-system').selectOption({ index: 0 });
 });
 
-it('finds a face, tells where it is, and sets the zero there', async () => {
+it('finds an edge, reports its position, and sets the zero there', async () => {
   await page.getByTestId('probe-travel').fill('20');
   await page.getByTestId('probe-fast').fill('600');
   await page.getByTestId('probe-system').selectOption('G54');
@@ -100,7 +100,7 @@ it('finds a face, tells where it is, and sets the zero there', async () => {
   await until(async () => Math.abs(Number(await text(page, 'work-X')) - (before - 12)) < 0.004, 'the zero at the face');
 });
 
-it('tells what is not there, and is back where it began', async () => {
+it('reports a missing edge, and returns to the start position', async () => {
   const before = rig.position(1);
   await page.getByTestId('find-Y+').click();
   await untilText(page, 'probe-result', /nothing is there within 20/, 20_000);
@@ -108,7 +108,7 @@ it('tells what is not there, and is back where it began', async () => {
   expect(rig.position(1)).toBeCloseTo(before, 6);
 });
 
-it('refuses what is no number, and what cannot be', async () => {
+it('rejects values that are not numbers or not valid', async () => {
   await page.getByTestId('probe-tip').fill('4.5.6');
   expect(await page.getByTestId('find-X+').getAttribute('aria-disabled')).toBe('true');
   await page.getByTestId('probe-tip').fill('4');

@@ -29,7 +29,7 @@ function seconds(shown: string): number {
   return Number(min) * 60 + Number(s);
 }
 
-it('is reckoned when the program is opened, and anew at another override', async () => {
+it('is calculated when the program is opened, and again at another override', async () => {
   await untilText(page, 'path-time', /≈ 0:\d\d/);
   const whole = seconds(await text(page, 'path-time'));
   expect(whole).toBeGreaterThan(14);
@@ -43,7 +43,7 @@ it('is reckoned when the program is opened, and anew at another override', async
   expect(errorsOf(page)).toEqual([]);
 });
 
-it('tells where time is lost and why, and jumps there', async () => {
+it('shows where time is lost and why, and jumps there', async () => {
   await page.getByTestId('tab-text').click();
   await page.getByTestId('slow-places').locator('summary').click();
   const worst = await text(page, 'slow-0');

@@ -94,7 +94,7 @@ describe('with a token and TLS', () => {
     expect(await ask(at, 'GET', '/api/machine', { ...shown, 'Sec-Fetch-Site': 'cross-site' })).toBe(403);
   });
 
-  it('a browser asks for the token, says that one is wrong, and takes the right one', async () => {
+  it('a browser requires the token, reports a wrong one, and accepts the right one', async () => {
     const page = await rig.page({ ignoreHTTPSErrors: true }, rig.remoteAddress);
     await page.getByTestId('login').waitFor();
     await page.getByTestId('login-token').fill('guess');
@@ -116,7 +116,7 @@ describe('with a token and TLS', () => {
     await page.context().close();
   });
 
-  it('who may only look is told so, and stops all the same', async () => {
+  it('a role that may only view is shown, and can still stop', async () => {
     const page = await rig.page({ ignoreHTTPSErrors: true }, `${rig.remoteAddress}#token=${rig.token('view')}`);
     await untilText(page, 'state', 'Off');
     expect(page.url()).toBe(rig.remoteAddress); // the token is out of sight
@@ -141,7 +141,7 @@ describe('with a token and TLS', () => {
 });
 
 describe('without protection, by an explicit word', () => {
-  it('the screen says so in every view, and everybody has the role that was chosen', async () => {
+  it('the screen shows this in every view, and all clients have the chosen role', async () => {
     const other = new Rig();
     try {
       await other.startServer(0, ['--listen', '127.0.0.1:0', '--unprotected', 'view']);

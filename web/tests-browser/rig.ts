@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A simulated mill by the clock, its server, and a browser: an instance, folders and ports of their own for each file.
+// A simulated mill in real time, its server, and a browser: separate instance, folders and ports for each file.
 import { createRequire } from 'node:module';
 import { createServer } from 'node:net';
 import { execFileSync, spawn, type ChildProcess } from 'node:child_process';

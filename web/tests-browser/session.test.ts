@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // What a longer session needs: tools, offsets, the text of programs, starts at a line, a held program that is left,
-// and who comes and goes meanwhile (G1, D3, J1, J3).
+// and clients that connect and disconnect meanwhile (G1, D3, J1, J3).
 import { readFileSync } from 'node:fs';
 import type { ChildProcess } from 'node:child_process';
 import type { Page } from 'playwright-core';
@@ -61,7 +61,7 @@ describe('tools', () => {
     expect(await page.getByTestId('tool-change').count()).toBe(0);
   });
 
-  it('ask for an empty spindle with T0', async () => {
+  it('request an empty spindle with T0', async () => {
     await give('T0 M6');
     await untilText(page, 'tool-change', /empty spindle/);
     await page.getByTestId('tool-change-done').click();
@@ -124,7 +124,7 @@ describe('offsets', () => {
     await page.getByTestId('touch-off-set').click();
     await untilText(page, 'g5x-Y', '3.000');
     await untilText(page, 'work-Y', '-3.000');
-    // Those of another system are changed where they stand.
+    // Offsets of another system are changed in place.
     await page.getByTestId('offsets-all').locator('summary').click();
     await page.getByTestId('all-G57-X').click();
     await page.getByTestId('offset-value').fill('12,5');
@@ -211,8 +211,8 @@ describe('a held program', () => {
   });
 });
 
-describe('who comes and goes', () => {
-  it('a server that is killed is told at once, and nothing is shown as current; it goes on after that', async () => {
+describe('clients that connect and disconnect', () => {
+  it('a killed server is reported at once, nothing is shown as current, and the page continues when it is back', async () => {
     const { port } = rig;
     server.kill('SIGKILL');
     await untilText(page, 'connection', /No connection.*emergency stop at the machine/s);
@@ -239,7 +239,7 @@ describe('who comes and goes', () => {
     expect(rig.position(0)).toBe(there);
   });
 
-  it('a jog ends when the page freezes, though its button is held', async () => {
+  it('a jog ends when the page freezes while its button is pressed', async () => {
     await page.getByTestId('increment-continuous').click();
     const box = await page.getByTestId('jog-X-').boundingBox();
     await page.mouse.move((box?.x ?? 0) + 20, (box?.y ?? 0) + 20);

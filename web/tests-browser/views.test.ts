@@ -140,7 +140,7 @@ describe('when it is on', () => {
     await page.getByTestId('language').selectOption('en');
   }, 120_000);
 
-  it('a dialog, a question and a refusal', async () => {
+  it('a dialog, a question and a rejection', async () => {
     await page.emulateMedia({ colorScheme: 'dark' });
     for (const [width, height] of SIZES) {
       await page.setViewportSize({ width, height });

@@ -20,7 +20,7 @@ it('counts a contact that begins while it is asked for', () => {
 
 it.each([
   ['a contact from the start', [[CONTACT, 'probe']]],
-  ['a contact that nobody asked for', [[OPEN, null], [CONTACT, null], [CONTACT, 'probe']]],
+  ['a contact that was not requested', [[OPEN, null], [CONTACT, null], [CONTACT, 'probe']]],
   ['a contact as the view opens', [[OPEN, null], [CONTACT, 'probe']]],
   ['a contact in a program', [[OPEN, 'probe'], [{ ...CONTACT, isIdle: false }, 'probe']]],
   ['a contact while the machine is off', [[{ ...OPEN, isMachineOn: false }, 'probe'], [{ ...CONTACT, isMachineOn: false }, 'probe']]],

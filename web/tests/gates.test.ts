@@ -77,7 +77,7 @@ describe.each([
     const mayTask = (ANY_MODE[name] ?? [name]).some((one) => table.get(row)?.get(one) === true);
     const isOpen = gate(view(situation)) === null;
     if (isOpen) {
-      expect(mayTask, 'the screen offers what task refuses').toBe(true);
+      expect(mayTask, 'the screen offers a command that task rejects').toBe(true);
     } else if (mayTask) {
       // Task would take it, and the screen is more careful: these, and no others.
       expect([
@@ -101,7 +101,7 @@ describe('what every command needs', () => {
       expect(gate(one)?.key).toBe(key);
     }
   });
-  it('the right to operate, where somebody has it', () => {
+  it('the right to operate of another client', () => {
     const status = structuredClone(open.status) as MachineStatus;
     status.operation.holder = 3;
     expect(gates.canJog({ ...open, status })).toEqual({ key: 'gate.holder', values: { client: 3 } });

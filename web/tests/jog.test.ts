@@ -38,7 +38,7 @@ function makeRig() {
 const names = (posted: Command[]): string[] => posted.map((one) => `${one.message}${one['is_renewal'] === true ? ' again' : ''}`);
 
 describe('Jogger', () => {
-  it('renews well within the lease, and stops when let go', async () => {
+  it('renews well within the lease, and stops on release', async () => {
     expect(RENEWAL_MS * 3).toBeLessThan(LEASE_MS);
     const { jogger, posted, tick, count } = makeRig();
     await jogger.press(X);
@@ -52,7 +52,7 @@ describe('Jogger', () => {
     expect(count()).toBe(0);
   });
 
-  it('does not begin when it was let go while the mode was changing', async () => {
+  it('does not begin after a release while the mode was changing', async () => {
     const { jogger, posted, state } = makeRig();
     state.isPrepared = false;
     let go = (_ok: boolean): void => undefined;
@@ -73,7 +73,7 @@ describe('Jogger', () => {
     expect(jogger.isJogging).toBe(false);
   });
 
-  it('says so once when a renewal is refused, and asks no more', async () => {
+  it('reports a rejected renewal once, and stops renewing', async () => {
     const { jogger, posted, ended, state, tick, count } = makeRig();
     await jogger.press(X);
     state.answer = () => Promise.resolve({ progress: 'REFUSED', reason: 'it has ended' });

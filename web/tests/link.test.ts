@@ -94,7 +94,7 @@ describe('Link', () => {
     expect(await first).toEqual({ progress: 'DONE', reason: '' });
   });
 
-  it('tells that task is silent and that it is back', () => {
+  it('reports that task does not respond, and that it responds again', () => {
     const { sockets, told } = makeRig();
     const socket = sockets[0] as FakeSocket;
     socket.begin();
@@ -151,7 +151,7 @@ describe('Link', () => {
     old.tell({ machine: 'up', client: 9 });
     expect(told).toEqual(['closed']);
   });
-  it('tells how old the messages of before are', () => {
+  it('shows the age of earlier messages', () => {
     const { sockets, told } = makeRig();
     sockets[0]?.begin();
     sockets[0]?.tell({ message: { number: 1, kind: 'OPERATOR_ERROR', text: 'old' }, age_ms: 90000 });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Jogs by a gamepad: only while its button is held, from the middle of a stick on, and never by themselves again (J3).
+// Jogs by a gamepad: only while its button is pressed, starting with a centred stick, and never restarting by themselves.
 import { beforeEach, expect, it } from 'vitest';
 import { DEAD_ZONE, PadJogger, shareOf, STILL_MS, sticksOf, type Pad } from '../src/lib/pad';
 
@@ -39,7 +39,7 @@ it('moves nothing without the button, and each axis its way with it', () => {
   expect(look(pad(false, [0, 0, -1, 0]))).toEqual(['release A']);
 });
 
-it('begins only with a stick that stood in its middle when the button was pressed', () => {
+it('begins only with a stick that was centred when the button was pressed', () => {
   expect(look(pad(true, [1, 0, 0, 0]))).toEqual([]);
   expect(look(pad(true, [1, 0, 0, 0]))).toEqual([]);
   expect(look(pad(true, [0, 0, 0, 0]))).toEqual([]);
@@ -63,7 +63,7 @@ it('has a dead zone, and speeds from its edge on', () => {
   expect(look(pad(true, [-0.8, 0, 0, 0]))).toEqual(['press X -0.75']);
 });
 
-it('ends with the pad, with the attention, and with what stands against it, and is asked for anew', () => {
+it('ends when the pad disconnects, the page loses focus, or a gate closes, and must then be started again', () => {
   look(pad(true, [0, 0, 0, 0]));
   look(pad(true, [1, 0, 0, 0]));
   expect(look(null)).toEqual(['release X', 'lost']);

@@ -20,7 +20,7 @@ describe('numbers (A8)', () => {
   ])('reads %s', (text, value) => expect(parseNumber(text)).toBe(value));
   it.each(['', '1.2.3', '1,000.5', '1 00', '1 0000', '10 00', '1  000', '1 000 00', '1.5 000', '1 - 1', 'x', '1e5', '-', '.', 'Infinity', '0x10', '1..'])('refuses %s', (text) => expect(parseNumber(text)).toBeNull());
   it.each([['1', 1], [' 77 ', 77], ['99999', 99999], ['007', 7], ['1 000', 1000], ['\u00a012\u202f345', 12345]])('reads %s as the number of a tool', (text, value) => expect(parseWhole(text, 1, 99999)).toBe(value));
-  it.each(['', '0', '100000', '-1', '+1', '1.0', '1,5', '1e3', 'x', '9999999999'])('refuses %s as the number of a tool', (text) => expect(parseWhole(text, 1, 99999)).toBeNull());
+  it.each(['', '0', '100000', '-1', '+1', '1.0', '1,5', '1e3', 'x', '9999999999'])('rejects %s as a tool number', (text) => expect(parseWhole(text, 1, 99999)).toBeNull());
   it('shows no minus before a zero, and a dash where there is no number', () => {
     expect(formatNumber(-0.0001, 3)).toBe('0.000');
     expect(formatNumber(-0.0006, 3)).toBe('-0.001');
@@ -63,7 +63,7 @@ describe('catalogues (A8)', () => {
       expect(catalogue[key].trim(), key).not.toBe('');
     }
   });
-  it('fills places, and shows one that nobody fills', () => {
+  it('fills placeholders, and shows one without a value', () => {
     expect(fill('{a} of {b}', { a: 1 })).toBe('1 of {b}');
   });
 });
@@ -166,13 +166,13 @@ describe('path', () => {
     expect(await kindsOf(type, whole, size)).toEqual(['3 moves to 4,5,6', 'error', 'bounds', 'end']);
   });
 
-  it.each(['bytes', undefined] as const)('that ends in the middle of a chunk is told (%s)', async (type) => {
+  it.each(['bytes', undefined] as const)('that ends in the middle of a chunk is reported (%s)', async (type) => {
     await expect(kindsOf(type, whole.slice(0, -3), 7)).rejects.toThrow(/in the middle/);
     await expect(kindsOf(type, whole.slice(0, -9), 7)).rejects.toThrow(/in the middle/);
     await expect(kindsOf(type, whole.slice(0, 5), 7)).rejects.toThrow(/in the middle/);
   });
 
-  it('refuses what is no path', () => {
+  it('rejects data that are not a path', () => {
     expect(() => new ChunkReader().take(chunk(77, new Uint8Array(4)))).toThrow(/unknown kind 77/);
     expect(() => new ChunkReader().take(chunk(1, new Uint8Array(new Uint32Array([1000]).buffer)))).toThrow(/shorter/);
   });

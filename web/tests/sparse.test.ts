@@ -34,7 +34,7 @@ it('draws a place once, however often the path passes it, and leaves no side out
   expect([...sides].sort()).toEqual(['back', 'front', 'left', 'right']);
 });
 
-it('goes on from chunk to chunk', () => {
+it('continues from chunk to chunk', () => {
   const seen = new Set<number>();
   sparse(square(1), 2, seen);
   expect(sparse(square(1), 2, seen).count).toBe(0);
