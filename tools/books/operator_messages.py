@@ -32,8 +32,24 @@ NOT_TRANSLATED = ('joint … on limit switch error',)
 
 def shown(text):
     """A key of the catalogue as people see it, with the mark for each value; as a cell of a table."""
-    text = re.sub(r'(\{\})+', HOLE, text.replace('\n', ' ')).strip()
-    return re.sub(r'([|<>*_\[\]`\\])', r'\\\1', text)
+    return re.sub(r'([|<>*_\[\]`\\])', r'\\\1', plain(text))
+
+
+def plain(text):
+    """A key of the catalogue in one line, with the mark for each value."""
+    return re.sub(r'(\{\})+', HOLE, text.replace('\n', ' ')).strip()
+
+
+def remedies_of(text):
+    """{message: (cause, remedy)} of the tables of PAGE. "As above" becomes the text of the row before."""
+    found = {}
+    before = ('', '')
+    for line in text.splitlines():
+        cells = [cell.strip() for cell in line.strip('| ').split(' | ')]
+        if line.startswith('| ') and len(cells) == 3 and cells[0] not in ('message', 'symptom'):
+            before = tuple(old if cell == 'as above' else cell for cell, old in zip(cells[1:], before))
+            found[cells[0]] = before
+    return found
 
 
 def messages_of(root, folders):
@@ -46,15 +62,20 @@ def page(root):
     german, spanish = (texts.read_po(root / 'po' / f'{language}.po') for language in ('de', 'es'))
     lines = ['# Operator messages', '', f'Generated from the sources and from `po/`. `{HOLE}` is a number, name or letter. Messages say what happened and what to do;',
              '[When something goes wrong](../user/when_something_goes_wrong.md) has more about the common ones. Some texts are parts of a longer message.']
+    remedies = remedies_of((root / PAGE).read_text(encoding='utf-8'))
     for title, folders in AREAS:
-        lines += ['', f'## {title}', '', '| message | Deutsch | español |', '|---|---|---|']
+        lines += ['', f'## {title}', '']
+        explained = [(shown(key), *remedies[plain(key)]) for key in messages_of(root, folders) if plain(key) in remedies]
+        if explained:
+            lines += ['| message | cause | remedy |', '|---|---|---|', *(f'| {" | ".join(row)} |' for row in explained), '']
+        lines += ['| message | Deutsch | español |', '|---|---|---|']
         lines += [f'| {shown(key)} | {shown(german.get(key, ""))} | {shown(spanish.get(key, ""))} |' for key in messages_of(root, folders)]
     return '\n'.join(lines) + '\n'
 
 
 def check(root):
     """Messages in the first column of PAGE that are no texts of the sources, each with the nearest one."""
-    known = {re.sub(r'(\{\})+', HOLE, key.replace('\n', ' ')).strip() for key in texts.texts(root)}
+    known = {plain(key) for key in texts.texts(root)}
     known.update(NOT_TRANSLATED)
     wrong = 0
     is_message = False
@@ -62,7 +83,7 @@ def check(root):
         cells = line.split(' | ')
         if line.startswith('| '):
             first = cells[0][2:]
-            if first in ('message', 'what'):
+            if first in ('message', 'symptom'):
                 is_message = first == 'message'
             elif is_message and first not in known:
                 wrong += 1
