@@ -23,14 +23,14 @@ expect = FOUND.expect
 
 
 def programs_and_logs(machine):
-    """While the machine runs: a path that is not a file is rejected, and an abort is answered."""
+    """While the machine is running: paths that are not files are rejected, and an abort is answered."""
     os.mkfifo(machine.folder / 'pipe.ngc')
     for path in ('/dev/zero', '/dev/ptmx', '/dev/stdin', machine.folder / 'pipe.ngc', machine.folder):
         begin = time.monotonic()
         answer = machine.open(path)
         machine.until(lambda: False, 0.1)
         expect(answer == machine.linuxcnc.RCS_ERROR and time.monotonic() - begin < 1, f'{path} is rejected at once: {answer}', *machine.messages[-1:])
-        expect(any('not a file' in text for text in machine.messages), f'a message has the reason why {path} is rejected', *machine.messages[-2:])
+        expect(any('not a file' in text for text in machine.messages), f'a message says why {path} is refused', *machine.messages[-2:])
         machine.messages.clear()
     subroutine = machine.folder / 'configs/sim/endless.ngc'
     os.mkfifo(subroutine)

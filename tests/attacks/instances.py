@@ -39,7 +39,7 @@ def second_start(machine, user):
     process, text = begun(machine, 'second.txt', **user)
     process.kill()
     process.wait()
-    expect('is up' not in text.replace('is already running', '') and 'MILLWRIGHT_INSTANCE' in text, 'a second start is refused and names the remedy', text)
+    expect('is up' not in text.replace('is up already', '') and 'MILLWRIGHT_INSTANCE' in text, 'a second start is rejected and names the remedy', text)
     if user:
         expect(f'process {machine.process.pid}' in text and 'of user' in text, 'and the process and its user', text)
 
@@ -89,7 +89,7 @@ def main():
             machine.start()
             after_kill(machine, nobody, 'another user')
         else:
-            print('not tested: another user: needs root, and programs that everybody may read')
+            print('not tested: another user: needs root, and programs that all users may read')
         for path in pathlib.Path('/dev/shm').glob(f"*{machine.env['MILLWRIGHT_INSTANCE']}*"):
             path.unlink()
     finally:

@@ -105,7 +105,7 @@ def other_takes_over(machine):
     machine.command.wait_complete()
     process.kill()
     process.wait()
-    expect(not machine.until(lambda: not isMoving(machine), 1), 'a jog that a living client has taken over goes on')
+    expect(not machine.until(lambda: not isMoving(machine), 1), 'a jog that a living client has taken over continues')
     machine.command.jog(machine.linuxcnc.JOG_STOP, 0, 0)
     machine.command.wait_complete()
 

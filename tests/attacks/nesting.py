@@ -24,7 +24,7 @@ LINE = 900_000              # below the longest line of G-code, so that the expr
 
 
 def counted(line, count):
-    """Each line with a number of its own."""
+    """Each line with a different number."""
     return ''.join(line.replace('@', str(i)) for i in range(1, count))
 
 

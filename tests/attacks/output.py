@@ -22,7 +22,7 @@ MANY = f'G21 G90 G61 F600\nM3 S500\no1 repeat [3000]\n{MESSAGE}M66 P0 L0\no1 end
 
 
 def places(kind):
-    """What the output goes to, and what happens to it once the machine is up."""
+    """The target of the output, and the attack on it after the start of the machine."""
     if kind == 'full':
         return os.open('/dev/full', os.O_WRONLY), lambda: None
     if kind == 'stopped':

@@ -213,7 +213,7 @@ class Bench:
         self.count = 0
 
     def begin(self, what, *words, program=None):
-        """What a program has printed once it is up."""
+        """The output of a program after its start."""
         out = self.machine.folder / f'{len(self.started)}.out'
         with out.open('w') as file:
             process = subprocess.Popen([program or self.machine.programs / 'millwright', *(words if program is None else words[1:])],
@@ -364,7 +364,7 @@ def check_table(bench, root):
     isRoot = os.geteuid() == 0
     for column, make in COLUMNS.items():
         if column == 'other local user' and (not isRoot or bench.as_nobody([PYTHON, '-c', 'import linuxcnc']).returncode != 0):
-            print(f'not tested: {column}: needs root, and programs that everybody may read')
+            print(f'not tested: {column}: needs root, and programs that all users may read')
             continue
         client = make(bench)
         for row, can in ROWS.items():
@@ -377,7 +377,7 @@ def check_table(bench, root):
 
 
 def check_no_overwriting(bench):
-    """Files of the machine stay as they are, whatever role operate calls its logs."""
+    """The role operate cannot overwrite files of the machine by names of logs."""
     machine = bench.machine
     web = Web(bench, 'operate')
     bench.mode(machine.linuxcnc.MODE_MDI)
@@ -393,7 +393,7 @@ def check_no_overwriting(bench):
             machine.messages.clear()
             web.mdi(f'({word}{name})')
             machine.until(lambda: machine.messages, 2)
-            expect(any('operate' in text for text in machine.messages), f'({word}{name}) is refused with a message', *machine.messages)
+            expect(any('operate' in text for text in machine.messages), f'({word}{name}) is rejected with a message', *machine.messages)
     expect(all(path.read_bytes() == text for path, text in before.items()), 'files of the machine are as they were')
     expect(not (programs / '.profile').exists(), 'no hidden file')
 

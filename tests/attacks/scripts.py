@@ -52,7 +52,7 @@ def estop(machine, found):
 
 def end(machine, found):
     cut_then(machine, 'while True: pass')
-    found.expect(machine.until(lambda: any('the interpreter has been busy' in text for text in machine.messages), 10), 'the operator is told', machine.messages)
+    found.expect(machine.until(lambda: any('the interpreter has been busy' in text for text in machine.messages), 10), 'the operator gets a message', machine.messages)
     took = machine.end_s()
     found.expect(took < END_S, f'SIGTERM ends a machine with an endless script in {took:.1f} s', machine.text())
 

@@ -39,8 +39,8 @@ def realtime(machine, found):
         machine.command.abort()
         answer = machine.command.wait_complete(2)
         took = time.monotonic() - begin
-        found.expect(answer == machine.linuxcnc.RCS_ERROR and took < ABORT_S, f'an abort that nobody carries out: answer {answer} after {took:.3f} s')
-        found.expect(machine.until(lambda: any('does not answer' in text for text in machine.messages), 0.5), 'a message says that nobody carries it out', machine.messages)
+        found.expect(answer == machine.linuxcnc.RCS_ERROR and took < ABORT_S, f'an abort that is not executed: answer {answer} after {took:.3f} s')
+        found.expect(machine.until(lambda: any('does not answer' in text for text in machine.messages), 0.5), 'a message reports that it is not executed', machine.messages)
     finally:
         os.kill(process, signal.SIGCONT)
     found.expect(machine.until(lambda: any('did not run for' in text and ', while axes moved' in text for text in machine.messages), 2), 'motion reports its gap', machine.messages)

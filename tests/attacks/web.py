@@ -119,7 +119,7 @@ def endless_work(screen, programs):
     begin = time.monotonic()
     status, body = screen.ask('/api/times?file=slip.ngc')
     expect(status != 429, 'clients that have hung up leave no work behind')
-    expect(status == 200 and time.monotonic() - begin < 10, f'the slip alone comes to an end: {status} after {time.monotonic() - begin:.1f} s', body[-200:])
+    expect(status == 200 and time.monotonic() - begin < 10, f'the slip alone ends: {status} after {time.monotonic() - begin:.1f} s', body[-200:])
     peers = [screen.send(target) for target in attacks]
     time.sleep(1)
     took = screen.end_s()

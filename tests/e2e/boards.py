@@ -62,5 +62,5 @@ with tempfile.TemporaryDirectory() as name:
     ini.write_text(ini.read_text().replace('num_stepgens=3', 'num_stepgens=9'))
     wrong = run(*words, env=env)
     check(wrong.returncode == 1 and 'num_stepgens=9, but this firmware has 5' in wrong.stdout, wrong.stdout + wrong.stderr)
-    check(' 1 errors' in wrong.stderr, 'pins that are missing because of it are no errors of their own: ' + wrong.stdout)
+    check(' 1 errors' in wrong.stderr, 'pins that are missing because of it are not separate errors: ' + wrong.stdout)
 print('ok')

@@ -31,7 +31,7 @@ FOUND = Findings()
 
 
 def jogger(port, sign, pipe, style):
-    """A process of its own: renews until it is told how to end, and tells when it has sent its last renewal."""
+    """A separate process: renews until it gets the command how to end, and reports the time of its last renewal."""
     screen = Screen(port)
     screen.until(lambda: 'joints' in screen.status)
     fields = {'is_joint': False, 'index': 0, 'velocity': sign * SPEED, 'lease_ms': LEASE_MS}
@@ -42,7 +42,7 @@ def jogger(port, sign, pipe, style):
         screen.ask('JogContinuous', is_renewal=True, **fields)
         last = time.monotonic()
     end = pipe.recv()
-    if style == 'silent':  # it can wait to be told that its last renewal was taken: the lease counts from there
+    if style == 'silent':  # it can wait for the answer to its last renewal: the lease counts from there
         number = screen.last_id
         screen.until(lambda: number in screen.outcomes, 0.09)
         last = time.monotonic()
@@ -73,7 +73,7 @@ def one_cut(watch, port, chance, number, slack):
     last = mine.recv()[1] if mine.poll(5) else None
     if style == 'killed':
         os.kill(process.pid, signal.SIGKILL)
-    FOUND.expect(last is not None, f'cut {number}: the client tells its last renewal')
+    FOUND.expect(last is not None, f'cut {number}: the client reports its last renewal')
     time.sleep(0.35)
     samples = watch.since(begun)
     process.kill()
@@ -86,7 +86,7 @@ def one_cut(watch, port, chance, number, slack):
     FOUND.expect(braking - last <= BOUND_S + slack, f'cut {number} ({style}): decelerates {1000 * (braking - last):.1f} ms after the last renewal')
     FOUND.expect(end <= last + BOUND_S + 0.05 + slack, f'cut {number} ({style}): runs on until {1000 * (end - last):.1f} ms')
     still = stands_still(samples, begun + 0.08, last - 0.01)
-    FOUND.expect(still < STUTTER_S + slack, f'cut {number} ({style}): stands still for {1000 * still:.0f} ms in the middle of the jog')
+    FOUND.expect(still < STUTTER_S + slack, f'cut {number} ({style}): does not move for {1000 * still:.0f} ms in the middle of the jog')
     return style, braking - last
 
 

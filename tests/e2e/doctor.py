@@ -64,7 +64,7 @@ class Files:
         self.write(lines, at, name)
 
 
-# What is done, and what must be found. JOINT and AXIS stand for one that the seed chooses.
+# The change, and the expected finding. The seed chooses JOINT and AXIS.
 SETTINGS = [
     ('JOINT', 'MIN_LIMIT', '900', 'above'), ('JOINT', 'HOME', '9999', 'outside'), ('JOINT', 'MAX_VELOCITY', '0', 'above 0'),
     ('JOINT', 'MAX_VELOCITY', 'fast', 'not a number'), ('JOINT', 'MAX_ACCELERATION', '1,5', 'not a number'),

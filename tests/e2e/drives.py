@@ -118,7 +118,7 @@ def check_gs2(programs, folder):
     drive = Gs2()
     with Hal(programs, folder, drive, 'gs2_vfd', '-d DEVICE -p none -r 9600 -A 20 -D 5 -R') as hal:
         hal.until('it is found', lambda: hal.get('initialized') == ['TRUE'])
-        # What LinuxCNC's program writes first, and that the spindle stands.
+        # The first writes of LinuxCNC's program; the spindle is stopped.
         expect(drive.told[:7] == [(0x101, 200), (0x100, 0), (0x102, 50), (0x605, 1), (0x91a, 0), (0x91b, 0), (0x91e, 0)], 'its settings', drive.told)
         values = hal.get('status-1', 'status-2', 'output-current', 'DC-bus-volts', 'output-voltage', 'motor-RPM', 'scale-frequency', 'power-factor', 'load-percentage',
                          'firmware-revision', 'is-stopped', 'at-speed')
@@ -153,7 +153,7 @@ def check_gs2(programs, folder):
         hal.set(spindle_on=0)
         time.sleep(0.1)
         hal.set(spindle_on=1)
-        hal.until('it starts anew', hal.is_at_speed)
+        hal.until('it starts again', hal.is_at_speed)
         drive.is_silent = True
         hal.until('no answer is no speed, and counted', lambda: not hal.is_at_speed() and int(hal.get('error-count')[0]) > 0)
         hal.until('it is lost', lambda: int(hal.get('error-count')[0]) > 12)
@@ -161,12 +161,12 @@ def check_gs2(programs, folder):
         hal.until('it is back', lambda: hal.get('initialized') == ['TRUE'])
         time.sleep(0.2)
         expect((0x91b, 1) not in drive.told[told:], 'a drive that was off does not start by itself')
-        expect(hal.said().count('Connection timed out') == 1 and hal.said().count('answers again') == 1, 'it is told once', hal.said())
+        expect(hal.said().count('Connection timed out') == 1 and hal.said().count('answers again') == 1, 'it is reported once', hal.said())
         hal.set(spindle_on=0)
         time.sleep(0.1)
         hal.set(spindle_on=1)
         hal.until('it runs', lambda: drive.registers[0x91b] == 1)
-    expect(drive.registers[0x91b] == 0, 'it stands when the component is gone')
+    expect(drive.registers[0x91b] == 0, 'it is stopped when the component has ended')
 
 
 def check_vfdb(programs, folder):
@@ -178,7 +178,7 @@ def check_vfdb(programs, folder):
         expect(values == ['4', '11', '80', '2256', '120', '2', '4.1', '6.1', '111', 'TRUE', '1410', '50'], 'its state', values)
         expect(drive.registers[0x2000] == 0, 'it is not taken before enable')
         hal.set(enable=1, speed_command=705)
-        hal.until('it is taken, and stands', lambda: drive.registers[0x2000] == 17 and drive.registers[0x2001] == 2500)
+        hal.until('it is used, and is stopped', lambda: drive.registers[0x2000] == 17 and drive.registers[0x2001] == 2500)
         for command, speed, word, hz in ((705, 0, 18, 2500), (-705, 0, 34, 2500), (99999, 0, 18, 5000)):
             hal.set(spindle_on=1, speed_command=command)
             hal.until(f'{command} rpm', lambda w=word, h=hz: drive.registers[0x2000] == w and drive.registers[0x2001] == h and hal.is_at_speed())
@@ -197,10 +197,10 @@ def check_vfdb(programs, folder):
         hal.set(spindle_on=1)
         hal.until('it runs again', hal.is_at_speed)
         hal.set(enable=0)
-        hal.until('it is let go', lambda: drive.registers[0x2000] == 0)
+        hal.until('it is released', lambda: drive.registers[0x2000] == 0)
         hal.set(enable=1)
         hal.until('and taken', hal.is_at_speed)
-    expect(drive.registers[0x2000] == 0 and drive.told[-2:] == [(0x2000, 1), (0x2000, 0)], 'it is stopped and let go when the component is gone', drive.told[-3:])
+    expect(drive.registers[0x2000] == 0 and drive.told[-2:] == [(0x2000, 1), (0x2000, 0)], 'it is stopped and released when the component has ended', drive.told[-3:])
 
 
 def check_wrong_words(programs, folder):

@@ -94,7 +94,7 @@ def check_machine(bench, kind, drives, units, switches):
     axes = KINDS[kind]
     bench.expect(ini['KINS']['JOINTS'] == str(len(axes)) and ini['TRAJ']['COORDINATES'].replace(' ', '') == axes, f'{what}: joints')
     bench.expect(ini['TRAJ']['LINEAR_UNITS'] == units, f'{what}: unit')
-    # A motor that is homed where it stands has counted nothing before; one with a switch has gone to it.
+    # A motor that homes without moving has counted nothing; one with a switch has moved to it.
     is_counted = drives == 'stepper' and switches == 'none'
     if is_counted:
         names = ['x', 'y', 'y2', 'z'] if kind == 'gantry' else list(axes.lower())
@@ -118,7 +118,7 @@ def check_refusals(bench):
                  'a folder with something in it is not touched', done.stderr)
     done = bench.run('setup', bench.folder / 'none', 'drives=stepper', 'x.microsteps=64', 'y.step_pin=2')
     bench.expect(done.returncode == 1 and 'x.speed: motor X would need' in done.stderr and 'y.step_pin: pin 2 is used' in done.stderr
-                 and not (bench.folder / 'none').exists(), 'each fault is told, and nothing is written', done.stderr)
+                 and not (bench.folder / 'none').exists(), 'each fault is reported, and nothing is written', done.stderr)
     for word, place in (('bare', 'bare'), ('closed/', 'closed'), ('my first mill', 'my first mill'), ('./a/b/c', 'a/b/c')):
         done = bench.run('setup', word, '--no-check')
         bench.expect(done.returncode == 0 and (bench.folder / place / 'machine.ini').is_file(), f'setup {word}', done.stderr)
@@ -130,7 +130,7 @@ def check_refusals(bench):
 
 
 def check_by_command(bench):
-    """With the trial of its own; again from the answers that were kept."""
+    """With its test run; again from the saved answers."""
     first = bench.folder / 'deep/shop/first'
     done = bench.run('setup', first, 'kind=router', 'drives=stepper', 'switches=home', 'switch.contacts=closed', 'x.max=500',
                      'y.way_per_turn=-10', 'name=Fräse 1')

@@ -84,7 +84,7 @@ class Library:
             print(f'FAIL {what}: status {done.returncode}, no "{expected}" in\n{found}')
 
 
-# (DEBUG, ...) of a program is what is looked at.
+# The test checks (DEBUG, ...) of a program.
 MOVE = 'G21 G90\nG1 F3000 X20 Y10 Z5\nG0 X0 Y0 Z0'
 
 

@@ -13,7 +13,7 @@ import sys
 import tempfile
 
 PROGRAM = 'G21 G90 G0 X10 Y5\nG1 X20 F600\nM2\n'
-# The slide of joint 0 stands against its stop where the motor is at -12.
+# The slide of joint 0 is at its hard stop when the motor is at -12.
 STOP = ('loadrt comp names=stop\naddf stop servo-thread\nsetp stop.in1 -12\n'
         'net Xpos => stop.in0\nnet x-blocked stop.out => stallhome.0.blocked\n')
 
@@ -70,7 +70,7 @@ def main():
         run('the example homes', 'stallhome', 0, ['cycle time'])
         run('by the command line', '', 0, ['cycle time'], ['--homemod', 'stallhome'])
         run('the command line goes before the file', 'nosuch', 0, ['cycle time'], ['--homemod', 'stallhome'])
-        run('one that asks for too much is kept within the limits', 'wildhome', 0,
+        run('excessive requests are limited', 'wildhome', 0,
             ['the homing module asked for more than joint 0 can do', 'cycle time'])
         run('one that asks for what is no number', 'nanhome', 1, ['no finite number'])
         run('one that cannot start', 'stillhome', 1, ['homing_init answers -1'])

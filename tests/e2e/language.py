@@ -62,7 +62,7 @@ def check_programs(programs, root, folder):
 
 
 def check_names_in_path(programs, folder):
-    """A program that is started by its name finds its catalogue, wherever it is started and whatever PATH has before it."""
+    """A program that is started by its name finds its catalogue, from any folder and with any other entries in PATH."""
     (folder / 'elsewhere').mkdir()
     links = folder / 'links'
     links.mkdir()
@@ -110,7 +110,7 @@ def check_clients(programs, root, folder):
         finally:
             machine.terminate()
             told = machine.communicate(timeout=STEP_S)[0]
-    expect('the machine is in emergency stop' in told, 'the machine tells its own terminal in English', told)
+    expect('the machine is in emergency stop' in told, 'the machine writes English to its own terminal', told)
 
 
 def main():

@@ -169,11 +169,11 @@ def check(programs, folder, program, link, device, seed):
         hal.until('it is read again when it answers', lambda: hal.get('given.speed.int') == ['4711'])
         device.refuses = 3
         counted = int(hal.get('one.num_errors')[0])
-        hal.until('a refusal is counted', lambda: int(hal.get('one.num_errors')[0]) > counted)
+        hal.until('an error answer is counted', lambda: int(hal.get('one.num_errors')[0]) > counted)
         device.refuses = 0
         hal.set(**{'one.00.int': 99})
         hal.until('it is written again', lambda: device.holding[23] == 99)
-        expect(sum('slave 7' in line for line in hal.said().splitlines()) < 60, 'an error that stays is told once', hal.said())
+        expect(sum('slave 7' in line for line in hal.said().splitlines()) < 60, 'a lasting error is reported once', hal.said())
 
 
 def check_wrong_files(programs, folder):

@@ -17,7 +17,7 @@ net by-hand-number iocontrol.0.tool-prep-number => hal_manualtoolchange.number
 
 
 class Mill:
-    """A copy of configs/sim/mill_mm.ini with halui, without the parameters of others, as an instance of its own."""
+    """A copy of configs/sim/mill_mm.ini with halui, without the parameter file of others, as a separate instance."""
 
     def __init__(self, millwright, halcmd, root, folder, name):
         self.millwright, self.halcmd, self.folder = millwright, halcmd, folder

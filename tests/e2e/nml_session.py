@@ -92,7 +92,7 @@ class Bench(Mill):
         self.started = []
 
     def begin(self, what, *words):
-        """When it says that it is up."""
+        """Until it reports that it is running."""
         path = self.folder / f'{len(self.started)}.out'
         with path.open('w', encoding='utf-8') as file:
             process = subprocess.Popen([self.millwright, *words], env=self.env, stdin=subprocess.DEVNULL, stdout=file,
@@ -133,11 +133,11 @@ def operate(client):
 
 def refusals(client):
     state, reason = client.do('EMC_JOG_STOP_TYPE', 136, is_joint=1, index=99)
-    expect(state == 'ERROR' and 'index is 99' in reason, 'a value out of range is refused with its reason', reason)
+    expect(state == 'ERROR' and 'index is 99' in reason, 'a value out of range is rejected with its reason', reason)
     status, _, text, _ = client.ask(READ, ERRORS)
-    expect(status == DONE and 'index is 99' in text, 'and the operator is told', text)
+    expect(status == DONE and 'index is 99' in text, 'and the operator gets a message', text)
     status, _, text, _ = client.ask(WRITE, COMMAND, b'EMC_NO_SUCH_TYPE 4711\n')
-    expect(status == REFUSED and '4711' in text, 'what is no message is refused', text)
+    expect(status == REFUSED and '4711' in text, 'bytes that are not a message are rejected', text)
     status, _, text, _ = client.ask(PEEK, COMMAND)
     expect(status == REFUSED and 'may not read' in text, 'emcsvr may only write commands', text)
 
@@ -145,10 +145,10 @@ def refusals(client):
 def deaths(bench, client, channels, machine):
     with socket.create_connection(('127.0.0.1', bench.port), STEP_S) as other:
         other.sendall(b'GET / HTTP/1.1\r\nHost: x\r\n\r\n' * 4)
-    expect(client.do('EMC_NULL_TYPE', 21) == ('DONE', '""'), 'rubbish of others harms nobody')
+    expect(client.do('EMC_NULL_TYPE', 21) == ('DONE', '""'), 'invalid data of one client do not affect others')
     os.kill(channels.pid, signal.SIGKILL)
     channels.wait()
-    expect(machine.poll() is None and bench.position() == 7.5, 'the machine goes on without its channels')
+    expect(machine.poll() is None and bench.position() == 7.5, 'the machine continues without its channels')
     again = bench.begin('are up', 'nml', str(bench.folder / 'm.nml'))
     second = Client(bench.port)
     expect(second.do('EMC_TASK_PLAN_EXECUTE_TYPE', 509, line='"G53 G0 X1"') == ('DONE', '""'), 'and takes new ones')

@@ -23,7 +23,7 @@ FOUND = Findings()
 
 
 class Terminal:
-    """millwright run on a pseudo terminal of its own."""
+    """millwright run on a separate pseudo terminal."""
 
     def __init__(self, command, env):
         self.pid, self.fd = pty.fork()
@@ -104,11 +104,11 @@ def main():
         expect(one.stays_without('program stop', 1.0, here), 'waits for the person with the tool', one)
         one.key('t')
         expect(one.wait_for('program stop at line 4'), 'M0 stops', one)
-        expect(abs(position() - 2.0) < 1e-6, 'stands where M0 is')
+        expect(abs(position() - 2.0) < 1e-6, 'stops at M0')
         here = len(one.text)
         expect(one.stays_without('cycle time', 1.0, here) and abs(position() - 2.0) < 1e-6, 'M0 holds', one)
         one.key('r')
-        expect(one.end() == 0 and 'cycle time' in one.text, 'r goes on to the end', one)
+        expect(one.end() == 0 and 'cycle time' in one.text, 'r continues to the end', one)
 
         one = start('long.ngc', '--yes')
         expect(one.wait_for(r'line 2 of 4 \(50 %\)  X[1-9]'), 'shows line, share and position', one)
@@ -117,7 +117,7 @@ def main():
         time.sleep(0.3)
         before = position()
         time.sleep(0.5)
-        expect(position() == before, 'what is held is stopped')
+        expect(position() == before, 'a paused program is stopped')
         here = len(one.text)
         one.key('r')
         expect(one.wait_for('runs', here), 'r goes on', one)
@@ -130,7 +130,7 @@ def main():
             os.kill(one.pid, number)
             expect(one.end() == 1 and f'stopped by {number.name}' in one.text, f'{number.name} stops in order', one)
 
-        # While the program is looked at before the start, which takes up to 5 s.
+        # While the program is checked before the start, which takes up to 5 s.
         mill.write('endless.ngc', 'G21 G90 F600\no1 while [1]\nG1 X10\nG1 X0\no1 endwhile\nM2\n')
         for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT, signal.SIGINT):
             one = start('endless.ngc', '--yes')
@@ -140,18 +140,18 @@ def main():
 
         alone = subprocess.run([millwright, 'run', ini, str(folder / 'long.ngc'), '--realtime'], env=env, text=True,
                                stdin=subprocess.DEVNULL, capture_output=True, check=False, timeout=STEP_S)
-        expect(alone.returncode == 1 and '--yes' in alone.stderr, f'refused without a terminal: {alone.stderr}')
+        expect(alone.returncode == 1 and '--yes' in alone.stderr, f'rejected without a terminal: {alone.stderr}')
 
         held = subprocess.Popen([millwright, 'run', ini, str(folder / 'tools.ngc'), '--realtime', '--yes', '--patience', '1'],
                                 env=env, text=True, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         time.sleep(3.0)
-        expect(held.poll() is None, 'without a terminal a tool change waits for its pin, whatever the patience')
+        expect(held.poll() is None, 'without a terminal a tool change waits for its pin without a time limit')
         expect(mill.set_pin('hal_manualtoolchange.change_button', '1'), 'the button is there')
         time.sleep(2.0)
         expect(held.poll() is None and abs(position() - 2.0) < 1e-6, 'and M0 for halui.program.resume')
         expect(mill.set_pin('halui.program.resume', '1'), 'the pin of halui is there')
         said, _ = held.communicate(timeout=STEP_S)
-        expect(held.returncode == 0 and 'halui.program.resume' in said, f'the pin goes on: {said}')
+        expect(held.returncode == 0 and 'halui.program.resume' in said, f'the pin continues: {said}')
     return FOUND.status()
 
 

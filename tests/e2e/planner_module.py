@@ -16,7 +16,7 @@ import tempfile
 
 PROGRAM = 'G21 G90 G64 P0.05\nG1 X40 F3000\nY30\nX0\nG2 X10 Y20 I10 J0\nG1 X0 Y0\nM2\n'
 PERIOD_S = 0.001
-# What wrong modules do, and what is told of them.
+# Faulty modules, and their error messages.
 WRONG = {
     'fasttp': ('phases[1].speed = phases[0].speed;', 'phases[1].speed = phases[0].speed = 2 * s->speed_cap;', 'of the highest speed'),
     'hardtp': ('    up = up < s->length', '    up = 1e-6;\n    up = up < s->length', 'of the highest acceleration'),

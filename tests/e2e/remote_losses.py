@@ -116,7 +116,7 @@ def wait_stopped(pid):
 
 
 def silence(bench, path, server):
-    """A server that does not answer; a command that a client has given up is not executed when the server is back."""
+    """A server that does not answer; a command that a client has abandoned is not executed when the server is back."""
     before = bench.position()
     with bench.client(LOSE, path) as client:
         expect(client.stdout.readline() == 'polls\n', 'it polls')
@@ -135,7 +135,7 @@ def silence(bench, path, server):
         tell(client)
         again = client.stdout.readline().split()
         expect(again[:2] == ['again', '1'], 'it works again when its server answers', again)
-    expect(bench.position() == before, 'a command whose client had given up is not executed later', before, bench.position())
+    expect(bench.position() == before, 'a command that its client has abandoned is not executed later', before, bench.position())
 
 
 def restart(bench, path, machine, server):

@@ -56,7 +56,7 @@ def wait_until(condition):
 
 
 class Bench(Mill):
-    """The mill with programs, and `millwright` as whatever is asked of it."""
+    """The mill with programs, and calls of `millwright`."""
 
     def __init__(self, millwright, halcmd, root, folder):
         super().__init__(millwright, halcmd, root, folder, 'running')
@@ -104,18 +104,18 @@ def one_after_the_other(bench):
     expect(homing == 'TRUE' and machine.process.poll() is None, 'and leaves it up', machine.text)
 
     again = bench.start('--no-display')
-    expect(again.end() == 1 and 'already running' in again.text and str(bench.ini) in again.text, 'a second start is refused', again.text)
+    expect(again.end() == 1 and 'up already' in again.text and str(bench.ini) in again.text, 'a second start is rejected', again.text)
     other = bench.ini.parent / 'gantry_xyyz.ini'
     wrong = bench.run('short3.ngc', ini=other)
     expect(wrong.end() == 1 and 'was started from' in wrong.text, 'another INI is refused', wrong.text)
     trace = bench.run('short3.ngc', '--trace', str(bench.folder / 't.csv'))
-    expect(trace.end() == 1 and '--trace needs' in trace.text, 'what only a machine of its own has is refused', trace.text)
+    expect(trace.end() == 1 and '--trace needs' in trace.text, 'options that need a separate machine are rejected', trace.text)
     simulated = subprocess.run([bench.millwright, 'run', str(bench.ini), str(bench.folder / 'short3.ngc')], env=bench.env,
                                capture_output=True, text=True, check=False, timeout=STEP_S)
     expect(simulated.returncode == 0 and abs(bench.position() - 5) < 1e-6, 'a simulation leaves it alone', simulated.stderr)
 
     tools = bench.run('tools.ngc')
-    expect(tools.wait_for('put tool 1 in'), 'the client is told of the tool', tools.text)
+    expect(tools.wait_for('put tool 1 in'), 'the client receives the tool number', tools.text)
     time.sleep(0.5)
     expect(tools.process.poll() is None, 'and waits')
     bench.set_pin('hal_manualtoolchange.change_button', '1')
@@ -128,11 +128,11 @@ def clients_and_signals(bench, machine):
     running = bench.run('long.ngc')
     expect(wait_until(lambda: bench.pin('spindle.0.on') == 'TRUE'), 'the long program runs', running.text)
     second = bench.run('short3.ngc')
-    expect(second.end() == 1 and 'runs a program' in second.text, 'a second client is refused meanwhile', second.text)
-    expect(running.process.poll() is None and bench.pin('spindle.0.on') == 'TRUE', 'and the first goes on')
+    expect(second.end() == 1 and 'runs a program' in second.text, 'a second client is rejected meanwhile', second.text)
+    expect(running.process.poll() is None and bench.pin('spindle.0.on') == 'TRUE', 'and the first continues')
     os.kill(running.process.pid, signal.SIGTERM)
     expect(running.end() == 1 and 'stopped by SIGTERM' in running.text, 'a stop of the client ends its program', running.text)
-    expect(bench.stands() and bench.pin('motion.motion-enabled') == 'TRUE', 'the machine stands, and stays on')
+    expect(bench.stands() and bench.pin('motion.motion-enabled') == 'TRUE', 'the machine is stopped, and stays on')
     expect(machine.process.poll() is None, 'and up', machine.text)
 
     running = bench.run('long.ngc')
@@ -196,7 +196,7 @@ def displays(bench):
     show('no-such-display')
     missing = bench.start()
     expect(missing.end() == 1 and 'no-such-display' in missing.text and '--no-display' in missing.text,
-           'a display that is not there is refused', missing.text)
+           'a missing display is rejected', missing.text)
     show('show.sh one two')
     for status in ('0', '3'):
         machine = bench.start()
@@ -204,7 +204,7 @@ def displays(bench):
         expect(wait_until(lambda: said.exists() and said.read_text()), 'the display runs')
         expect(said.read_text() == f'{display} -ini {bench.ini} one two; {bench.ini}; {display.parent}; {display.parent}\n',
                'with its words and environment', said.read_text())
-        expect(machine.process.poll() is None and bench.pin('motion.motion-enabled') == 'FALSE', 'the machine is up while it runs')
+        expect(machine.process.poll() is None and bench.pin('motion.motion-enabled') == 'FALSE', 'the machine runs while the display runs')
         (bench.ini.parent / 'wish').write_text(status + '\n')
         expect(machine.end() == int(status), f'and ends with it and its status ({status})', machine.text)
         expect(bench.is_down(), 'nothing is left')

@@ -23,7 +23,7 @@ def expect(condition, what, detail=''):
 
 
 class Installed:
-    """A copy of the program in a folder of its own, with or without a screen."""
+    """A copy of the program in a separate folder, with or without a screen."""
 
     def __init__(self, millwright, place):
         self.place = pathlib.Path(place)
@@ -71,7 +71,7 @@ def check_programs(millwright, root, place):
 
 
 def check_script_run(root, place):
-    """script/run with stand-ins for what it calls, which write down their names."""
+    """script/run with replacements of its programs, which log their names."""
     script = pathlib.Path(place) / 'script'
     tools = pathlib.Path(place) / 'tools'
     log = pathlib.Path(place) / 'called'

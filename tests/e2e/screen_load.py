@@ -24,7 +24,7 @@ PIECE = 1 << 20
 
 
 class Listener(threading.Thread):
-    """A screen that notes when it is told a value."""
+    """A screen that logs when it receives a value."""
 
     def __init__(self, port):
         super().__init__(daemon=True)
@@ -45,10 +45,10 @@ def cpu_s(pid):
 
 
 def latency(port, server, program, seconds):
-    """From the sending of a command that changes the status to its arrival: more than the way of the status alone."""
+    """From the command that changes the status to the arrival of the status: more than the delay of the status alone."""
     listeners = [Listener(port) for _ in range(SCREENS)]
     asker = Screen(port)
-    expect(asker.until(lambda: 'overrides' in asker.status), 'the sixth is told the status')
+    expect(asker.until(lambda: 'overrides' in asker.status), 'the sixth receives the status')
     expect(asker.do('SetMode', mode='AUTO') == 'DONE' and asker.do('OpenProgram', path=str(program)) == 'DONE', 'a program is open')
     asker.ask('RunProgram')
     used, begin, took = cpu_s(server.pid), time.monotonic(), []
@@ -73,7 +73,7 @@ def latency(port, server, program, seconds):
 
 
 class Jog(threading.Thread):
-    """A held button: renewals every 30 ms, and how long each was on its way."""
+    """A pressed button: renewals every 30 ms, and the delay of each."""
 
     def __init__(self, port):
         super().__init__(daemon=True)
@@ -202,10 +202,10 @@ def among_strangers(port, remote_port, server, seconds):
     before, used, greetings = memory_mb(server.pid), cpu_s(server.pid), []
     jog, took = jog_during(port, lambda: greetings.append(strangers_come(remote_port, seconds)))
     share = (cpu_s(server.pid) - used) / took
-    print(f'renewals among strangers, {greetings[0]} of them greeted in {took:.1f} s: {figures(jog.waits)}; {jog.stops} looks at a joint that stood; '
+    print(f'renewals among strangers, {greetings[0]} of them greeted in {took:.1f} s: {figures(jog.waits)}; {jog.stops} samples of a stopped joint; '
           f'the server has {100 * share:.1f} % of a core, {before:.1f} MB before and {memory_mb(server.pid):.1f} MB after')
     expect(greetings[0] > 0, 'strangers are heard')
-    expect(not jog.refused, 'the jog goes on among strangers', jog.refused[:2])
+    expect(not jog.refused, 'the jog continues among strangers', jog.refused[:2])
     expect(memory_mb(server.pid) < before + 20, 'what strangers bring is not kept', before, memory_mb(server.pid))
 
 
@@ -227,11 +227,11 @@ def main():
             program.write_text('G21 G90 G64 F2000\no1 repeat [100000]\nG1 X20 Y0\nX20 Y20 Z5\nX0 Y0 Z0\no1 endrepeat\nM2\n')
             latency(port, server, program, seconds)
             alone, _ = jog_during(port, lambda: time.sleep(seconds))
-            print(f'renewals of a jog, nothing else: {figures(alone.waits)}; {alone.stops} looks at a joint that stood')
+            print(f'renewals of a jog, nothing else: {figures(alone.waits)}; {alone.stops} samples of a stopped joint')
             for size in (20, megabytes):
                 jog, took = jog_during(port, lambda size=size: upload(port, size))
-                print(f'renewals during an upload of {size} MB in {took:.1f} s: {figures(jog.waits)}; {jog.stops} looks at a joint that stood')
-                expect(not jog.refused, 'the jog goes on during the upload', size, jog.refused[:2])
+                print(f'renewals during an upload of {size} MB in {took:.1f} s: {figures(jog.waits)}; {jog.stops} samples of a stopped joint')
+                expect(not jog.refused, 'the jog continues during the upload', size, jog.refused[:2])
             among_strangers(port, remote_port, server, 2 * seconds)
         finally:
             bench.end_all()

@@ -47,7 +47,7 @@ class Bench:
                               text=True, check=False, timeout=60)
 
     def at_terminal(self, words, answers):
-        """(status, output) of a program at a terminal of its own."""
+        """(status, output) of a program at a separate terminal."""
         child, terminal = pty.fork()
         if child == 0:
             os.chdir(self.home)
@@ -87,7 +87,7 @@ def check_selector(bench, root):
     left = bench.run(['millwright', 'select', '--print'], 'q\n')
     bench.expect(left.returncode == 0 and '.ini\n' not in left.stdout.splitlines()[-1], f'left: {left}')
     # The launcher asks at a terminal only.
-    bench.expect(bench.run(['linuxcnc']).returncode == 2, 'without a terminal nobody is asked')
+    bench.expect(bench.run(['linuxcnc']).returncode == 2, 'no question without a terminal')
     status, output = bench.at_terminal(['linuxcnc'], 'shop/mill_mm\n')
     ini = bench.mine / 'shop/mill_mm.ini'
     bench.expect(status == 7 and f'the screen of {ini}' in output, f'started: {status}\n{output}')

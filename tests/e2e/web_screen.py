@@ -189,17 +189,17 @@ def http_ask(port, method, path, body=None, headers=None):
 
 def before_the_machine(port):
     screen = Screen(port)
-    expect(screen.until(lambda: screen.machine == 'gone'), 'a screen without a machine is told so')
-    expect(screen.do('SetState', state='ON') == 'REFUSED', 'and its commands are refused')
+    expect(screen.until(lambda: screen.machine == 'gone'), 'a screen without a machine gets a message')
+    expect(screen.do('SetState', state='ON') == 'REFUSED', 'and its commands are rejected')
     return screen
 
 
 def switch_on_and_home(screen):
-    expect(screen.until(lambda: screen.machine == 'up' and 'task' in screen.status), 'the machine is told when it comes up')
+    expect(screen.until(lambda: screen.machine == 'up' and 'task' in screen.status), 'the start of the machine is reported')
     expect(screen.status['task']['state'] == 'ESTOP', 'it is in e-stop')
     expect(screen.do('SetState', state='ESTOP_RESET') == 'DONE', 'e-stop reset')
     expect(screen.do('SetState', state='ON') == 'DONE', 'on')
-    expect(screen.until(lambda: screen.status['task']['state'] == 'ON'), 'and the status says so')
+    expect(screen.until(lambda: screen.status['task']['state'] == 'ON'), 'and the status shows it')
     expect(screen.do('HomeJoint', joint=-1) == 'DONE', 'homing ends', screen.outcomes, screen.messages)
     expect(screen.until(lambda: screen.status['trajectory']['all_homed']), 'all are homed')
 
@@ -216,13 +216,13 @@ def jog_and_cut(port, screen, has_lease):
     begin = screen.joint()['pos_cmd']
     endless = screen.ask('JogContinuous', is_joint=True, index=0, velocity=10.0)
     expect(screen.outcome(endless) == 'REFUSED' and 'lease' in screen.outcomes[endless].get('reason', ''),
-           'a jog that nothing would end is refused', screen.outcomes.get(endless))
+           'a jog without a lease is rejected', screen.outcomes.get(endless))
     screen.until(lambda: False, 0.2)
     expect(screen.joint()['pos_cmd'] == begin, 'and nothing moves')
     number = jog(screen, 10.0, has_lease)
     expect(screen.until(lambda: screen.joint()['pos_cmd'] > begin + 0.5), 'a jog moves', screen.outcomes.get(number))
     expect(screen.do('JogStop', is_joint=True, index=0) == 'DONE', 'a stop stops')
-    expect(screen.until(lambda: screen.joint()['vel_cmd'] == 0), 'and it stands')
+    expect(screen.until(lambda: screen.joint()['vel_cmd'] == 0), 'and it is stopped')
     expect(screen.joint()['pos_cmd'] < begin + 190, 'where it was stopped', screen.joint())
 
     other = Screen(port)
@@ -253,13 +253,13 @@ def programs(port, screen, bench):
         kinds.append(kind)
         counts = struct.unpack_from('<II', body, at + 8) if kind == 3 else counts
         at += 8 + size
-    expect(status == 200 and kinds == [5, 1, 2, 3] and counts[1] > 10, 'its path is told', kinds, counts)
+    expect(status == 200 and kinds == [5, 1, 2, 3] and counts[1] > 10, 'its path is reported', kinds, counts)
 
     expect(screen.do('SetMode', mode='AUTO') == 'DONE', 'auto')
     expect(screen.do('OpenProgram', path=str(bench.programs / 'part.ngc')) == 'DONE', 'opens', screen.outcomes)
     run = screen.ask('RunProgram')
-    expect(screen.until(lambda: screen.outcomes.get(run, {}).get('progress') == 'STARTED', 5), 'a run is told as started')
-    expect(screen.until(lambda: screen.status['task']['motion_line'] >= 2), 'the line is told')
+    expect(screen.until(lambda: screen.outcomes.get(run, {}).get('progress') == 'STARTED', 5), 'a run is reported as started')
+    expect(screen.until(lambda: screen.status['task']['motion_line'] >= 2), 'the line is reported')
     expect(screen.outcome(run) == 'DONE', 'and its end', screen.outcomes.get(run))
     expect(screen.until(lambda: abs(screen.joint()['pos_cmd'] - 15) < 1e-6, 2), 'at its place', screen.joint()['pos_cmd'])
     run = screen.ask('RunProgram')
@@ -297,20 +297,20 @@ def who_is_killed(bench, screen, server, port):
     server, port = bench.server()
     again = Screen(port)
     expect(again.until(lambda: 'joints' in again.status) and again.status['task']['state'] == 'ON',
-           'the machine goes on without the server')
+           'the machine continues without the server')
     expect(abs(again.joint()['pos_cmd'] - begin) < 50, 'where it was')
     return again, server, port
 
 
 def strangers(port):
     status, _ = http_ask(port, 'GET', '/api/machine', headers={'Host': 'evil.example'})
-    expect(status == 403, 'another name is refused')
+    expect(status == 403, 'another name is rejected')
     status, _ = http_ask(port, 'GET', '/api/machine', headers={'Origin': 'http://evil.example'})
-    expect(status == 403, 'another page is refused')
+    expect(status == 403, 'another page is rejected')
     expect(not Screen(port, 'http://evil.example').is_open, 'its socket too')
     status, body = http_ask(port, 'GET', '/api/machine')
     facts = json.loads(body)
-    expect(status == 200 and facts['axes'] == 'XYZ' and facts['joints'] == 3, 'the machine is told', body)
+    expect(status == 200 and facts['axes'] == 'XYZ' and facts['joints'] == 3, 'the machine is reported', body)
     status, body = http_ask(port, 'GET', '/metrics')
     expect(status == 200 and b'millwright_machine_up 1' in body, 'and figures', body)
 
@@ -329,7 +329,7 @@ def check(bench):
     screen, server, port = who_is_killed(bench, screen, server, port)
     screen, server, port = end_while_jogging(bench, server, port, has_lease)
     machine.terminate()
-    expect(screen.until(lambda: screen.machine == 'gone', 5), 'a screen is told that the machine is gone')
+    expect(screen.until(lambda: screen.machine == 'gone', 5), 'a screen gets a message that the machine has ended')
     second = bench.machine()
     expect(screen.until(lambda: screen.machine == 'up'), 'and that it is back')
     expect(screen.until(lambda: screen.status.get('task', {}).get('state') == 'ESTOP'), 'in e-stop')

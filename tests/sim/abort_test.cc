@@ -41,7 +41,7 @@ TEST_F(AbortTest, TheOnAbortCommandRunsWhenTheMachineStands) {
     EXPECT_EQ(machine_->task().status().task.interp_state, task::InterpState::IDLE);
     const double rest = x();
     EXPECT_EQ(mdi("X5 G0"), task::Progress::DONE) << messages();
-    EXPECT_DOUBLE_EQ(x(), 5.0) << "G90 of the procedure is in force";
+    EXPECT_DOUBLE_EQ(x(), 5.0) << "G90 of the procedure is active";
     EXPECT_GT(rest, 5.0);
 }
 
@@ -77,7 +77,7 @@ TEST_F(AbortTest, TheOnAbortCommandIsToldWhy) {
     EXPECT_EQ(all.find("because 7\n"), std::string::npos) << all;
 }
 
-/// Nothing starts or moves without a fresh command, whatever a procedure says.
+/// Nothing starts or moves without a new command, also if a procedure commands it.
 TEST_F(AbortTest, TheOnAbortCommandCannotMoveOrStartAnything) {
     for (const char *bad :
          {"G0 X50", "G53 G0 Z0", "M3 S1000", "M8", "T1 M6", "G38.3 X9 F10", "M0", "M66 P0 L3 Q9"}) {

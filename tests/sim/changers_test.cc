@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Tool changes on a whole machine as its INI file asks for them, faults that are acknowledged, lubrication.
-// What a person would see who stands beside the machine with a lamp at each pin.
+// Tool changes on a whole machine as configured in its INI file, faults that are acknowledged, lubrication.
+// The judge sees only the pins.
 #include "sim/machine_file.hh"
 #include "sim/virtual_machine.hh"
 
@@ -9,7 +9,7 @@ namespace {
 
 class ChangerTest : public VirtualMachineTest {
   protected:
-    /// A mill with these lines in [EMCIO], at whose changer this test stands.
+    /// A mill with these lines in [EMCIO]; the test is its changer.
     void begin(const std::string &emcio, const std::string &tools = "T1 P1 Z0\nT2 P2 Z3\nT3 P3 Z4\n") {
         SimMachine file;
         file.axis_range = 200;
@@ -135,7 +135,7 @@ TEST_F(ChangerTest, TOOL_CHANGE_WITH_SPINDLE_ONLeavesItTurning) {
     }
     set("tool-changed", true);
     cycles(20);
-    EXPECT_TRUE(VirtualMachineTest::pin("spindle.0.on")) << "and so does the program go on";
+    EXPECT_TRUE(VirtualMachineTest::pin("spindle.0.on")) << "and the program continues";
     set("tool-changed", false);
     EXPECT_EQ(finish(), task::Progress::DONE) << messages();
     cycles(5);
@@ -226,7 +226,7 @@ TEST_F(ChangerTest, LubricationFollowsTheEmergencyStopAndItsCommands) {
     EXPECT_FALSE(pin("lube")) << "the chain";
 }
 
-/// Where tools stand in the table of a changer that swaps them.
+/// Tool positions in the table of a random changer.
 TEST_F(ChangerTest, AStartAtALineOfARandomChangerSetsTheToolInTheSpindleToo) {
     begin("RANDOM_TOOLCHANGER = 1\n", "T1 P0 Z1.5\nT2 P11 Z2.5\n");
     write("p.ngc", "G10 L1 P1 Z4\nG10 L1 P2 Z5\nG43\nM61 Q1\nG0 X1\nM2\n");
@@ -244,7 +244,7 @@ TEST_F(ChangerTest, AStartAtALineOfARandomChangerSetsTheToolInTheSpindleToo) {
     EXPECT_NE(read("sim.tbl").find("T1 P0 Z4"), std::string::npos) << read("sim.tbl");
     EXPECT_NE(read("sim.tbl").find("T2 P11 Z5"), std::string::npos) << read("sim.tbl");
     EXPECT_EQ(machine_->task().status().offsets.tool[2], 4);
-    // Where M61 puts another tool into the spindle nobody knows where the first one is then.
+    // After M61 sets another tool, the position of the first one is unknown.
     write("p.ngc", "G10 L1 P2 Z6\nM61 Q2\nG0 X2\nM2\n");
     ask(task::OpenProgram{(folder_ / "p.ngc").string()});
     run_ = post(task::RunProgram{3});

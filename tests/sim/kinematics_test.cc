@@ -32,7 +32,7 @@ class KinematicsTest : public VirtualMachineTest {
         arm.joints[1].home = elbow;
         switch_on_config(arm.write(folder_));
     }
-    /// A work turned under a tool that stands at X10.
+    /// A part that rotates under a tool at X10.
     void make_rose() {
         SimMachine rose;
         rose.axis_range = 1000;
@@ -110,7 +110,7 @@ TEST_F(KinematicsTest, AStretchedArmIsJoggedOffByAJoint) {
     make_scara(0, 0);
     EXPECT_NE(mdi("G21 G90 G1 X500 F6000"), task::Progress::DONE);
     EXPECT_NE(messages().find("singular"), std::string::npos) << messages();
-    EXPECT_TRUE(motion().isEnabled) << "it may stand there";
+    EXPECT_TRUE(motion().isEnabled) << "it may be there";
     ask(task::SetMode{task::Mode::MANUAL});
     ask(task::SetTeleop{false});
     cycles(20);
@@ -134,8 +134,7 @@ TEST_F(KinematicsTest, APointOnThreeLegsIsNotLedThroughTheirPlane) {
     switch_on_config(tripod.write(folder_));
     const double z = motion().carte_pos_cmd[geometry::AXIS_Z];
     ASSERT_GT(z, 100) << "above the motors";
-    EXPECT_NE(mdi("G21 G90 G1 Z-37 F6000"), task::Progress::DONE)
-        << "no place that is looked at is in the plane";
+    EXPECT_NE(mdi("G21 G90 G1 Z-37 F6000"), task::Progress::DONE) << "no checked point is in the plane";
     EXPECT_NE(messages().find("singular"), std::string::npos) << messages();
     EXPECT_EQ(motion().carte_pos_cmd[geometry::AXIS_Z], z);
     EXPECT_EQ(mdi("G1 X150 Y80 Z20 F6000"), task::Progress::DONE) << messages();
@@ -179,7 +178,7 @@ TEST_F(KinematicsTest, AfterAnAbortTurnsAreCountedFromWhereItStands) {
     ASSERT_LT(motion().joint[2].pos_cmd, 1800);
     EXPECT_EQ(mdi("G1 X10 Y0 F6000"), task::Progress::DONE) << messages();
     EXPECT_EQ(mdi("G3 X10 Y0 I-10 J0 P5 F6000"), task::Progress::DONE)
-        << "from 9 turns on it would be beyond the limit: " << messages();
+        << "from 9 revolutions it would be outside the limit: " << messages();
 }
 
 TEST_F(KinematicsTest, APlatformMovesOnceItsPoseIsKnown) {
@@ -189,7 +188,7 @@ TEST_F(KinematicsTest, APlatformMovesOnceItsPoseIsKnown) {
     hexapod.kinematics = "genhexkins";
     hexapod.joints = std::vector<SimJoint>(6, SimJoint{false, 200, 1500, 1, 1000, 0, 29.7467});
     switch_on_config(hexapod.write(folder_));
-    EXPECT_NE(mdi("G21 G90 G1 X1 F600"), task::Progress::DONE) << "the struts' lengths alone tell no pose";
+    EXPECT_NE(mdi("G21 G90 G1 X1 F600"), task::Progress::DONE) << "the strut lengths alone define no pose";
     EXPECT_NE(messages().find("has no pose"), std::string::npos) << messages();
     EXPECT_NEAR(motion().joint[0].pos_cmd, 29.7467, 1e-9);
     hexapod.hal_lines = "setp genhexkins.z 18\n";
@@ -198,7 +197,7 @@ TEST_F(KinematicsTest, APlatformMovesOnceItsPoseIsKnown) {
     EXPECT_EQ(mdi("G21 G90 G1 X3 Y-2 Z25 A5 B-4 C6 F600"), task::Progress::DONE) << messages();
     EXPECT_NEAR(motion().carte_pos_fb[geometry::AXIS_B], -4, 1e-6);
     hexapod.hal_lines.clear();
-    hexapod.traj = "HOME = 0 0 20 0 0 0\n";  // as the INI files of LinuxCNC tell it
+    hexapod.traj = "HOME = 0 0 20 0 0 0\n";  // as in the INI files of LinuxCNC
     switch_on_config(hexapod.write(folder_));
     EXPECT_EQ(mdi("G21 G90 G1 X3 Y-2 Z25 A5 B-4 C6 F600"), task::Progress::DONE) << messages();
     EXPECT_NEAR(motion().carte_pos_fb[geometry::AXIS_Z], 25, 1e-6);

@@ -84,7 +84,7 @@ TEST_F(PanelTest, AButtonThatIsHeldDownActsOnce) {
     EXPECT_EQ(task().mode, task::Mode::MANUAL);
     set_pin("halui.mode.auto", "0");
     cycles(5);
-    EXPECT_EQ(task().mode, task::Mode::MANUAL) << "nothing happens when it is let go";
+    EXPECT_EQ(task().mode, task::Mode::MANUAL) << "nothing happens on release";
 }
 
 TEST_F(PanelTest, ButtonsOfJointsHomeAndUnhomeThem) {
@@ -127,7 +127,7 @@ TEST_F(PanelTest, ButtonsOfTheProgramRunHoldAndEndIt) {
     EXPECT_FALSE(lamp("program.is-running"));
     const double held = x();
     cycles(500);
-    EXPECT_EQ(x(), held) << "a pause holds until somebody resumes";
+    EXPECT_EQ(x(), held) << "a pause lasts until resume";
     press("program.resume");
     cycles(200);
     EXPECT_GT(x(), held);

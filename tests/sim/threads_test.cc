@@ -164,7 +164,7 @@ TEST_P(ThreadModes, G33KeepsDepthAndLeadToItsEnd) {
                 EXPECT_LE(j.run_in, allowed(GetParam(), shortest_way(v)));
                 EXPECT_LE(j.stop, allowed(GetParam(), shortest_way(v)));
                 EXPECT_NEAR(j.length, 25, 1e-9) << "depth is kept to the programmed end";
-                // The same thread at any speed, except for the delay of the encoder by one cycle.
+                // The same thread at any speed, except the delay of one encoder cycle.
                 const double here = j.phase - std::floor(j.phase);
                 phase = std::isnan(phase) ? here : phase;
                 EXPECT_LE(std::abs(std::remainder(here - phase, 1.0)), 5e-3);
@@ -223,7 +223,7 @@ TEST_P(ThreadModes, ThePullOutOfG76BeginsWhereItIsProgrammed) {
         const auto passes = passes_at(10.1, 5);
         ASSERT_EQ(passes.size(), 1U);
         const Judged j = judge(passes[0], 1.5);
-        EXPECT_GE(j.length, 24.2 - v * T) << "full depth up to the pull-out, except in the last cycle";
+        EXPECT_GE(j.length, 24.2 - v * T) << "full depth up to the pull-out, except the last cycle";
         EXPECT_LE(j.length, 24.7) << "and not much farther";
         EXPECT_LE(j.stop, 2 * v * T) << "the lead is kept up to there";
         EXPECT_LE(j.run_in, allowed(GetParam(), 2 * shortest_way(v)));
@@ -252,7 +252,7 @@ TEST_P(ThreadModes, G95KeepsItsLead) {
                             GetParam() ? " jerk" : "", j.run_in, j.stop, shortest_way(v));
                 EXPECT_LE(j.run_in, allowed(GetParam(), shortest_way(v)));
                 EXPECT_LE(j.stop, allowed(GetParam(), shortest_way(v)));
-                // In the cycle in which Z stops, X may start.
+                // X may begin in the cycle in which Z stops.
                 EXPECT_NEAR(j.length, 25, 0.5 * ACCELERATION * T * T)
                     << "depth is kept to the programmed end";
             }

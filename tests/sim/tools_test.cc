@@ -21,7 +21,7 @@
 namespace mw::machine {
 namespace {
 
-/// Model of the tools in the magazine and in the spindle.
+/// Expected content of the magazine and the spindle.
 struct Paper {
     struct Tool {
         int pocket = 0;
@@ -54,7 +54,7 @@ struct Paper {
         spindle = number;
     }
     double z() const { return has(spindle) && (spindle > 0 || isRandom) ? tools.at(spindle).z : 0; }
-    /// Pocket of a new tool for which no pocket is set.
+    /// Pocket of a new tool without a pocket.
     int free_pocket(int number) const {
         int pocket = number;
         for (int next = 1; in_pocket(pocket) >= 0; ++next) {
@@ -347,7 +347,7 @@ class ToolJudge : public ::testing::Test {
         compare_file();
         compare_parameters();
     }
-    /// Read by an independent parser.
+    /// By a separate reader.
     void compare_file() {
         std::istringstream lines(read("sim.tbl"));
         std::map<int, Paper::Tool> found;

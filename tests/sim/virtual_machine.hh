@@ -21,7 +21,7 @@
 
 namespace mw::machine {
 
-/// The mill configs/sim/mill_mm.ini with a folder of its own.
+/// The mill configs/sim/mill_mm.ini with a separate folder.
 class VirtualMachineTest : public ::testing::Test {
   protected:
     VirtualMachineTest() {
@@ -29,7 +29,7 @@ class VirtualMachineTest : public ::testing::Test {
         std::filesystem::create_directory(folder_);
     }
     ~VirtualMachineTest() override {
-        EXPECT_EQ(judge_.report(), "") << "joints beyond their limits";
+        EXPECT_EQ(judge_.report(), "") << "joints outside their limits";
         machine_.reset();
         std::filesystem::remove_all(folder_);
     }

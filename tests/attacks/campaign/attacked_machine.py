@@ -35,7 +35,7 @@ addf sampler.0 servo-thread
 
 
 def edit(text):
-    """Homes at once; programs have a folder of their own."""
+    """Homes at once; programs have a separate folder."""
     text = text.replace('HALFILE = spindle_sim.hal\n', 'HALFILE = spindle_sim.hal\nHALFILE = sampler.hal\n')
     text = text.replace('HOME_SEARCH_VEL = 50', 'HOME_SEARCH_VEL = 0').replace('HOME_LATCH_VEL = 5', 'HOME_LATCH_VEL = 0')
     text = text.replace('SUBROUTINE_PATH = ../../nc_files/lib', 'SUBROUTINE_PATH = ../../nc')

@@ -80,7 +80,7 @@ def web_rubbish(scene, rng):
 
 @attack('web.unread')
 def web_unread(scene, rng):
-    """Large files that nobody reads."""
+    """Large files whose answers are not read."""
     count = become_other_user(rng)
     peers = []
     for _ in range(count):

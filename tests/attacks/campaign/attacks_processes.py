@@ -54,7 +54,7 @@ for _server in ('web', 'rsh', 'nml'):
 
 @attack('signal.harmless')
 def harmless(scene, rng):
-    """Signals that ask for nothing."""
+    """Signals without an effect."""
     while scene.wait(0.02):
         name = rng.choice(list(scene.processes))
         with contextlib.suppress(ProcessLookupError):
@@ -134,7 +134,7 @@ def terminal_unread(scene, rng):
 
 @attack('terminal.closed', isHere=True, isLast=True, weight=0.3)
 def terminal_closed(scene, _rng):
-    """The window is closed: nobody reads the output any more."""
+    """The window is closed: the output is no longer read."""
     scene.terminal.close()
 
 

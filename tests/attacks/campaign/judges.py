@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What must hold in every run, whatever the attacks are. Each judge takes the record of a run and returns sentences: what is wrong."""
+"""Rules for every run, with any attacks. Each judge takes the record of a run and returns a list of violations."""
 import dataclasses
 import math
 import re
@@ -24,7 +24,7 @@ class Event:
 
     @property
     def latest(self):
-        """When it may stop the machine at the latest, but for STOP_S: a stopped process at its begin."""
+        """Latest time of the stop, without STOP_S; for a stopped process, the time at which it was stopped."""
         return self.begin if self.name.startswith('signal.stop_') else self.end
 
 

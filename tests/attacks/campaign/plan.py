@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a seed stands for: a program, one to four attacks and their instants, an abort by one of four clients. Nothing else decides."""
+"""The plan of a seed: a program, one to four attacks and their times, an abort by one of four clients."""
 import dataclasses
 import random
 
@@ -21,7 +21,7 @@ class Plan:
     corners: tuple     # of the closed path
     blend: str         # G61, or G64 with its tolerance
     feed: int          # mm/min
-    attacks: tuple     # (name, seconds after the begin, seed of its own)
+    attacks: tuple     # (name, seconds after the start, separate seed)
     abort: tuple       # (client, seconds after the begin)
     offset: float      # written to G59 and to the diameter of T5
 

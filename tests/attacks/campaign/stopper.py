@@ -125,7 +125,7 @@ def main():
         begin = time.monotonic()
         try:
             sent, result, answered = CLIENTS[request](ports)
-        except Exception as error:  # pylint: disable=broad-exception-caught  # whatever fails is the judge's business
+        except Exception as error:  # pylint: disable=broad-exception-caught  # the judge reports any failure
             sent, result, answered = begin, f'{type(error).__name__}: {error}', time.monotonic()
         print(json.dumps({'kind': request, 'begin': begin, 'sent': sent, 'answered': answered, 'result': result}), flush=True)
 
