@@ -82,7 +82,7 @@ def one_run(folder, options, isOurs):
 
 
 def runs(work, options, has_reference):
-    """Figures of ours and of the reference's of each pair, one after the other or both at once."""
+    """Figures of Millwright and LinuxCNC for each pair, one after the other or at the same time."""
     with concurrent.futures.ThreadPoolExecutor(2 if options.together else 1) as pool:
         for run in range(options.runs):
             ours = pool.submit(one_run, work / f"ours-{run}", options, True)

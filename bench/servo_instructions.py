@@ -121,7 +121,7 @@ def valgrind(out):
 
 
 def count_run(folder, letters, seconds):
-    """Cycles and instructions of a whole run of ours."""
+    """Cycles and instructions of a whole run of Millwright."""
     prepare(folder, letters, seconds)
     command = [*valgrind("callgrind.out"), compare_traj.RELEASE / "bench" / "servo_run", "compare.ini", "program.ngc"]
     done = subprocess.run(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 import { defineConfig } from 'vitest/config';
 
-// One machine and one browser after the other: two cores, and a machine by the clock.
+// One machine and one browser at a time: two cores, and a machine in real time.
 export default defineConfig({
   test: {
     include: ['tests-browser/**/*.test.ts'],

@@ -24,9 +24,9 @@ double found_within(const JointDesign &d, double period_s) {
 
 }  // namespace
 
-/// A stopped motor keeps its position, within rounding, until a client commands a motion. A command that
-/// arrived with the stop may still be in the jerk filter. Its motion is below the threshold at first, and a
-/// reversal in it moves the motor by the backlash.
+/// A stopped axis stays at its position, except rounding, until a motion is commanded. A command that came
+/// with the stop may still be in the mean that keeps the jerk: too slow to see at first, and what play there
+/// is is made up where it turns about.
 void Judge::check_stale(const Sample &s, bool wasAtRest) {
     const bool wasHeld = held_cycles_ > 0;
     const bool isHeld = !allowed_.isMotion && restless_ == 0 && (wasAtRest || wasHeld);

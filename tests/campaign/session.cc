@@ -137,7 +137,7 @@ void Session::settle(double most_s) {
         calm = judge_.isAtRest() && judge_.areOffsetsAtRest() ? calm + 1 : 0;
     }
     if (t >= most_s) {
-        fail("work", "it does not come to rest");
+        fail("work", "it does not stop");
     }
 }
 

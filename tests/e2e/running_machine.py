@@ -79,7 +79,7 @@ class Bench(Mill):
                        '--realtime', '--yes', *more)
 
     def stands(self):
-        """It comes to rest, spindle and coolant off."""
+        """It stops, spindle and coolant off."""
         rest = wait_until(lambda: self.pin('spindle.0.on') == 'FALSE' and self.pin('iocontrol.0.coolant-flood') == 'FALSE')
         time.sleep(0.4)
         here = self.position()

@@ -21,7 +21,7 @@ import tempfile
 from mill_by_hand import Findings
 
 LIMIT_S = 240
-TOLERANCE = 0.05  # what is measured by the clock of a busy computer
+TOLERANCE = 0.05  # measured in real time on a busy computer
 MM = 1 / 25.4     # of the machine's unit, the inch
 UNITS = {
     'speed': {'unit/s': 1, 'unit/min': 1 / 60, 'mm/s': MM, 'mm/min': MM / 60, 'inch/s': 1, 'inch/min': 1 / 60},

@@ -70,7 +70,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
         session.output().clear();
     }
     session.end_input();
-    // Whatever was asked for, it comes to an end: each wait has its time.
+    // Every session ends: each wait has a time limit.
     for (int i = 0; i < 200000 && !session.isOver(); ++i) {
         rig.step(true);
         if (!rig.shared->read().has_value()) {

@@ -141,7 +141,7 @@ TEST_F(AbortTest, AFaultOfTheToolChangerIsInTheParameters) {
     EXPECT_EQ(messages(), "0 0\n");
 }
 
-/// The axes still brake when the next line comes: it begins where they come to rest.
+/// The axes still brake when the next line comes: it begins where they stop.
 TEST_F(AbortTest, WorkRightAfterAnAbortBeginsWhereTheMachineComesToRest) {
     switch_on();
     start("G21 G90 F6000\nG1 X100\nM2\n");

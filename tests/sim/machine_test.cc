@@ -12,7 +12,7 @@ constexpr double PERIOD_S = 1e-3;
 class MachineTest : public VirtualMachineTest {
   protected:
     void SetUp() override { switch_on(); }
-    /// Largest acceleration of X and Y over the samples. [mm/s2]
+    /// Maximum acceleration of X and Y over the samples. [mm/s2]
     double peak_acceleration() const {
         double peak = 0;
         for (std::size_t i = 2; i < samples_.size(); ++i) {

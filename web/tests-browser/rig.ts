@@ -37,7 +37,7 @@ export async function until(isTrue: () => boolean | Promise<boolean>, what: stri
   const deadline = Date.now() + ms;
   while (!(await isTrue())) {
     if (Date.now() > deadline) {
-      throw new Error(`waited in vain for: ${what}`);
+      throw new Error(`timeout while waiting for: ${what}`);
     }
     await sleep(20);
   }
