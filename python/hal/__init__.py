@@ -82,7 +82,7 @@ _GRACE_S = 2.0
 
 @_atexit.register
 def _leave():
-    """A program that ends normally leaves HAL, also without a call of exit()."""
+    """A program that ends normally leaves HAL, also without a request."""
     for one in list(_components):
         try:
             one.exit()

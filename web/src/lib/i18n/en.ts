@@ -408,7 +408,7 @@ export const en = {
   'first.aux': 'From LINUXCNC_AUX_CONFIGS',
   'first.packages': 'From other packages',
   'first.samples': 'Samples',
-  'first.copied': '(starts a copy in your folder)',
+  'first.copied': '(starts your copy)',
   'first.last': 'last started',
   'first.start': 'Start',
   'first.none': 'No machine matches.',
