@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A whole machine in virtual time that nobody records: `servo_run MACHINE.ini PROGRAM.ngc`. What
-// bench/servo_instructions.py counts.
+// Runs a complete machine in virtual time without a trace: `servo_run MACHINE.ini PROGRAM.ngc`.
+// bench/servo_instructions.py counts its instructions.
 #include <cstdio>
 #include <cstdlib>
 

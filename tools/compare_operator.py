@@ -132,7 +132,7 @@ def rows_of(folder):
 
 
 def run_both(name, first, count, options):
-    """Rows of both systems, or a text that tells why there are none."""
+    """Rows of both systems, or a text with the reason why there are none."""
     session = hashlib.sha256((ROOT / 'tools/operator_session.py').read_bytes()).hexdigest()[:8]
     key = pathlib.Path(options.cache) / f'{name}_{first}_{count}_{session}.jsonl' if options.cache and not options.acts else None
     with tempfile.TemporaryDirectory(dir='/var/tmp', prefix='operator') as temporary:

@@ -26,7 +26,7 @@ import trajcheck
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 RELEASE = ROOT / "build" / "release"
 LETTERS = "XYZAB"
-REST_SAMPLES = 200  # a rest of this many cycles parts the way to the start from the program
+REST_SAMPLES = 200  # a standstill of this many cycles separates the approach from the program
 PRINTED = 1e-6  # halsampler prints six decimals
 
 # A machine of `letters` whose motors follow at once; `lines` go in after the motion functions.

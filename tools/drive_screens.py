@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Screens of an installed LinuxCNC, unmodified, on this machine controller: each is started under Xvfb with a sample
-configuration, and a second client homes, runs, aborts and looks. Not part of the tests, which need no such installation.
+"""Runs the unmodified screens of an installed LinuxCNC with Millwright. Each screen is started under Xvfb with a sample
+configuration, and a second client homes, runs and aborts programs and checks the result. The tests do not use this program.
 
 usage: script/screens --check [SCREEN ...] [--pictures DIR]
 """
@@ -15,7 +15,7 @@ import sys
 import tempfile
 import time
 
-#: Screen: (sample configuration, seconds until its picture stands)
+#: Screen: (sample configuration, seconds until its picture is complete)
 SCREENS = {
     "axis": ("sim/axis/axis_mm.ini", 4),
     "tklinuxcnc": ("sim/tklinuxcnc/tklinuxcnc.ini", 3),
@@ -36,9 +36,9 @@ G1 X0
 G1 Y0
 M2
 """
-#: A screen that cannot go on says one of these.
-#: Errors of theirs that have nothing to do with the machine.
+#: Errors of the screens that are independent of the machine.
 OWN = {"gscreen": "'Statusbar' object has no attribute 'remove_message'"}
+#: Output of a screen that has failed contains one of these.
 BAD = ("Traceback (most recent call last)", "Segmentation fault", "terminate called", "died: its process")
 
 
@@ -110,7 +110,7 @@ class Machine:
         until("the line of MDI has moved it", lambda: abs(self.see().position[0]) > 0.5)
         self.run(program)
         until("the program has ended", self.isIdle, 60)
-        until("it stands at the end", lambda: max(map(abs, self.see().position[:3])) < 1e-3)
+        until("it is stopped at the end", lambda: max(map(abs, self.see().position[:3])) < 1e-3)
         time.sleep(1)
         look()
         self.run(program)
@@ -162,7 +162,7 @@ def drive_axis(machine, place):
     subprocess.run(["xdotool", "keydown", "Left"], check=True)
     time.sleep(0.4)
     subprocess.run(["xdotool", "keyup", "Left"], check=True)
-    until("a jog after a program stands", lambda: see().inpos)
+    until("a jog after a program has stopped", lambda: see().inpos)
     if see().task_mode != lc.MODE_MANUAL:
         raise Failed("the page of manual controls leads into manual mode")
     keys("F1")
@@ -228,12 +228,12 @@ def check(name, configs, place, pictures):
         machine = Machine()
         def isUp():
             if process.poll() is not None:
-                raise Failed("the screen goes on")
+                raise Failed("the screen keeps running")
             try:
                 return machine.see().joints > 0
             except machine.lc.error:
                 return False
-        until("the machine is up", isUp, 30)
+        until("the machine runs", isUp, 30)
         time.sleep(patience)
         isUp()
         picture(pictures / (name + ".png"))
@@ -244,7 +244,7 @@ def check(name, configs, place, pictures):
         machine.drive(str(program), lambda: picture(pictures / (name + ".png")))
         isUp()
         close(name, process)
-        # What a signal does to a toolkit's loop is not looked at.
+        # The reaction of the toolkit's event loop to a signal is not checked.
         text = said.read_text(errors="replace").split("note: stopped by")[0]
         if name in OWN:
             text = re.sub(r"Traceback \(most recent call last\):(?:\n[ ]+.*)+\n.*%s.*" % re.escape(OWN[name]), "", text)

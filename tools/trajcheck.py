@@ -215,7 +215,7 @@ def cycle_time_s(rows, period):
 
 
 def judge(geometry, period, rows, rounding=0.0, with_jerk=False):
-    """All figures of one trace, as a dictionary; "ok" when nothing is beyond."""
+    """All figures of one trace, as a dictionary; "ok" if no limit is exceeded."""
     tolerance = max(float(geometry["tolerance"]), EXACT_TOLERANCE)
     # Between samples the path bends by at most a T^2/8 from the chord; that is not a deviation.
     bend = math.sqrt(3) * max(geometry["max_acceleration"][:3]) * period ** 2 / 8 + rounding

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Headers of the standard library that most sources include, parsed once (cmake/Precompiled.cmake). Sources
-// include what they use all the same: the preset dev has no precompiled headers.
+// still include all headers that they use, because the preset dev has no precompiled headers.
 #include <algorithm>
 #include <array>
 #include <atomic>

@@ -325,7 +325,7 @@ void Judge::check_limits(const Sample &s) {
             const double step = (velocity_[j] - before_[j]) * period_;
             // After wrong encoder counts the slide may be at any position within the travel of a cycle.
             if (last_.joints[j].isTruthKnown && std::abs(step) > most) {
-                fail("step", fmt::format("joint {} is led by {:.6g} off its way at the index", j, step));
+                fail("step", fmt::format("joint {} deviates by {:.6g} from its path at the index", j, step));
             }
             judge.speed.restart();
             velocity_[j] = before_[j];

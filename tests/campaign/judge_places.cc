@@ -97,14 +97,14 @@ void Judge::check_places(const Sample &s) {
         ++judged_[d.screw_type >= 0 ? "screw" : "backlash"];
         const double allowed = DRIVE + 3 / d.counts_per_unit + (d.play > 0 ? OVERSHOOT : 0);
         if (std::abs(off - judge.place) > allowed) {
-            fail("place", fmt::format("joint {} stands {:.6g} off, where it stood {:.6g} off before", j, off,
-                                      judge.place));
+            fail("place",
+                 fmt::format("joint {} is {:.6g} off, and was {:.6g} off before", j, off, judge.place));
         }
         // If the switch closes soon after a reversal, the backlash is only partly taken up.
         const double late = d.play + (design_.isJerkLimited ? d.screw_error : 0);
         const bool isMeasured = d.home_kind != HomeKind::IMMEDIATE;
         if (isMeasured && std::abs(off) > allowed + late + found_within(d, period_)) {
-            fail("place", fmt::format("joint {} stands {:.6g} off where it was homed to be", j, off));
+            fail("place", fmt::format("joint {} is {:.6g} off its homed position", j, off));
         }
     }
 }

@@ -41,7 +41,7 @@ Act make_jog(plants::Random &random, const Design &design) {
     return act;
 }
 
-/// A jog by wheel, on the way of one by command.
+/// Replaces a jog by command with a jog by wheel over the same distance.
 void turn_wheel(plants::Random &random, Act &act) {
     Turning &t = act.turning;
     t.isJoint = act.work == Work::JOG_JOINT;
@@ -147,12 +147,12 @@ void make_troubles(plants::Random &random, const Design &design, Act &act) {
     }
     if (random.chance(0.7)) {
         act.troubles.push_back(make_trouble(random, design, false, span_ms));
-        // Who is dead does nothing any more: only the last act's task may die.
+        // After the death of task no act can follow: task may die in the last act only.
         Trouble &last = act.troubles.back();
         last.what = last.what == Upset::TASK_DEAD ? Upset::ABORT : last.what;
     }
     for (Trouble &t : act.troubles) {
-        // Who is in step needs what it measures.
+        // A synchronized motion needs the measured speed.
         t.what = t.what == Upset::SPINDLE_NAN && act.work == Work::SPINDLE ? Upset::PAUSE : t.what;
     }
     std::ranges::sort(act.troubles, {}, &Trouble::at_ms);

@@ -48,7 +48,7 @@ Act Writer::write_probing() {
     set_mode();
     move_to_start();
     for (const AxisDesign &a : design_.axes) {
-        // With room for a stop between the walls and the soft limits.
+        // The probe can stop between the walls and the soft limits.
         act.contacts.push_back(
             {a.axis, to_grid(at_[a.axis] - random_.real(2, 8)), to_grid(at_[a.axis] + random_.real(2, 8))});
     }

@@ -100,8 +100,8 @@ void Writer::write_surface(SyncWish &sync) {
     say("G97 S300");
 }
 
-/// How far the mean of a tool is off the helix while the spindle turns back [turns]; measured, and written in
-/// docs/integrator/spindles.md.
+/// Deviation of the tool from the helix by the jerk filter while the spindle reverses [rev]; an empirical
+/// formula, see docs/integrator/spindles.md.
 double Writer::off_helix(double lead, double ramp, double mean_s) const {
     const double a = 0.49 * std::min(z_with_joints().acceleration, design_.acceleration);
     const double use = std::min(0.99, lead * ramp / a);
@@ -119,7 +119,7 @@ Act Writer::write_in_step() {
     int kind = random_.whole(0, 4);
     kind = kind == 2 && z.offset_ratio > 0 ? 0 : kind;
     kind = design_.isTrivial ? kind : 2;
-    // Others tilt, or have curves along Z, which ask for more than Z itself.
+    // On other machines a Z move tilts the tool or needs curved joint moves, which need more than Z itself.
     const bool isPlainZ = design_.isTrivial || design_.name == "corexy" || design_.name == "delta" ||
                           design_.name == "scarakins" || design_.name == "rosekins";
     if (kind == 4) {
@@ -136,7 +136,8 @@ Act Writer::write_in_step() {
             const double a = 0.4 * std::min(z.acceleration, design_.acceleration);
             sync.lead = to_grid(std::min(sync.lead, a / design_.spindle.ramp));
             if (design_.isJerkLimited) {
-                // A tap that would be off its thread is refused; between the two either is right.
+                // A tap that would leave its thread is rejected; between the two bounds both results are
+                // correct.
                 constexpr double LONGEST_MEAN = 1.25, WELL = 0.08, BADLY = 0.25;
                 const double mean_s = std::max(design_.rise_s(), design_.longest_mean_s());
                 isSudden = off_helix(sync.lead, design_.gentlest_ramp(turns_s), mean_s) > BADLY;
@@ -151,7 +152,7 @@ Act Writer::write_in_step() {
         const double v = sync.lead * std::abs(sync.rpm) / 60;
         const double overrun = isTap ? sync.lead * turns_s * (turns_s / design_.spindle.ramp + 0.04) : 0;
         const double length = 3 * way_to_speed(v) + 3 * overrun + random_.real(4, 12) * sync.lead + 0.2 * v;
-        // From the middle, where there is room for it.
+        // Starts from the middle if the travel is sufficient.
         const double side = random_.chance(0.5) ? 1 : -1;
         const double middle = z.low > 0 || z.high < 0 ? to_grid(0.5 * (z.low + z.high)) : 0;
         sync.from = to_grid(middle - side * 0.4 * length);
@@ -162,8 +163,8 @@ Act Writer::write_in_step() {
         const double far = middle - side * std::min(std::abs(sync.from - middle), 0.9 * room);
         sync.from = fits ? sync.from : to_grid(far);
         sync.to = fits ? sync.to : to_grid(sync.from + side * 0.1);
-        // Too short for the speed, or for the spindle; a feed by turns may be short.
-        // In a small room what does not fit may be slow enough all the same.
+        // Too short for the speed or for the spindle; a feed per revolution may be short. With little travel,
+        // a move that is too short may still be slow enough.
         act.isToFail = !fits && kind != 3 && design_.isTrivial;
         act.mayFail = isSudden || !isPlainZ || (!fits && !design_.isTrivial);
         sync.isShort = !fits;

@@ -44,9 +44,8 @@ std::vector<Found> read_found(const std::vector<std::string> &told) {
 
 }  // namespace
 
-/// An offset moves the probe: it may miss the wall, and the next move begins without contact. Where the path
-/// is gone back along (M52 of a program that was aborted is still in force) it meets the wall that it came
-/// through.
+/// An offset moves the probe: it may miss the wall, and the next move begins without contact. In reverse run
+/// (M52 of an aborted program is still active) it may touch the wall through which it came.
 bool Session::isProbeMoved(const Act &act) const {
     const bool isGoneBack = isReversed_ && rig_->client().status().overrides.isAdaptiveFeedEnabled;
     return act.work == Work::PROBE && (hasTrouble(act, Upset::OFFSET) || isGoneBack);

@@ -60,8 +60,7 @@ double offset_of(const Trouble &t) {
     return MOST * (2 * t.value - 1);
 }
 
-/// A move that is read when the offset is there already may be refused: together they are beyond a soft
-/// limit.
+/// A move that is read while the offset is active may be rejected, because their sum is outside a soft limit.
 bool isRoomShort(const Design &design, const Act &act, const geometry::Pose &from) {
     constexpr double STEP = 0.5, SLACK = 0.1;
     const std::vector<geometry::Pose> path = programmed_path(act, from, STEP);

@@ -26,8 +26,8 @@ std::vector<Pass> passes_of(const std::vector<geometry::Pose> &path, const SyncW
         if (!isAlone || !(z * sense > 1e-12)) {
             continue;
         }
-        // Z may wait for the spindle as it begins, and with few counts stand again until it has gone a part
-        // of a turn; a move the same way may end where it begins.
+        // Z may wait for the spindle at the start. With few encoder counts it may stop again within the first
+        // part of a revolution. A move in the same direction may end at the start position.
         constexpr std::size_t WAIT = 3;
         constexpr double BEGUN = 1e-3;
         const auto isAtStart = [&](std::size_t n) {
@@ -91,8 +91,8 @@ void Session::check_helix(const SyncWish &sync) {
         return;
     }
     const double rough = 2.0 / d.spindle.counts_per_turn;
-    // A tap is refused if motion expects it farther off than 0.1 turns, of what it knows of the ramp; it is
-    // right within a half.
+    // Motion rejects a tap if the expected deviation exceeds 0.1 rev. It knows the ramp with an accuracy of
+    // one half.
     const double worst = 0.1 * 1.5 * d.spindle.ramp / d.gentlest_ramp(std::abs(sync.rpm) / 60);
     const double mean_s = 2 * std::max(d.rise_s(), d.longest_mean_s());
     const double late = sync.kind == Sync::TAP ? std::min(d.spindle.ramp * mean_s * mean_s / 4, worst) : 0;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The least time in which a machine could have stopped along the path that it took. Whoever may drive a path
-// may drive it slower, so braking as hard at every place as all accelerations leave is the fastest stop
-// (Bobrow, Dubowsky, Gibson 1985). Knows samples and limits, no planner.
+// The minimum time in which a machine could have stopped along its path. A path that is within the limits is
+// also within them at a lower speed, so the fastest stop brakes at every point with the maximum deceleration
+// that the acceleration limits permit (Bobrow, Dubowsky, Gibson 1985). The calculation uses samples and
+// limits only.
 #pragma once
 
 #include <vector>

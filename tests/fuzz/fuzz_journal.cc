@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Journals: any bytes as a file, as what stands behind a whole beginning, and as the state that a record with
-// a right checksum holds. What is read must be written so that it reads the same.
+// Journals: any bytes as a file, after a valid beginning, and as the state in a record with a valid checksum.
+// A state that was read and written must read the same.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

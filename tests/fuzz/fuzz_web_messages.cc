@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What browsers say to the web interface behind HTTP: texts of a socket and requests, a line each. A line
-// that begins with '/' is a request: method (first letter of the next word), path, body; any other one is a
-// text. The first byte is the role of who asks.
+// Input of browsers to the web interface behind HTTP: texts of a web socket and requests, one on each line. A
+// line that begins with '/' is a request: method (first letter of the next word), path, body. Any other line
+// is a text. The first byte is the role of the client.
 #include <cstdint>
 #include <string_view>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Bytes that arrive at the web server's port. The first byte says what they are: a request of its own, bytes
-// behind the handshake of a socket as they are, or frames of a socket whose kinds and sizes the bytes say.
+// Bytes at the port of the web server. The first byte selects the form: a request, raw bytes after the
+// handshake of a web socket, or frames of a web socket whose types and sizes the bytes define.
 #include <arpa/inet.h>
 #include <fcntl.h>
 #include <netinet/in.h>
@@ -113,7 +113,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
     const int port = rig.server->port();
     switch (data[0] % 4) {
     case 0: talk(rig, bytes); break;
-    case 1: {  // behind a first line and a host that are let in
+    case 1: {  // after a first line and a host that are accepted
         std::string request(bytes);
         const std::size_t end = request.find("\r\n");
         request.insert(end == std::string::npos ? request.size() : end + 2, host(port));

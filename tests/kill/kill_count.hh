@@ -10,8 +10,8 @@
 
 namespace mw::testing {
 
-/// `preset`, or MILLWRIGHT_KILLS. A value that is no number above 0 is a failure: a test that kills nobody
-/// must not pass.
+/// Number of kills: `preset`, or MILLWRIGHT_KILLS. A value that is not a number above 0 is a failure, so that
+/// a test without a kill does not pass.
 inline int count_kills(int preset) {
     const char *text = std::getenv("MILLWRIGHT_KILLS");
     if (text == nullptr) {

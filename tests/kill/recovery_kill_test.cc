@@ -97,7 +97,8 @@ TEST_F(KillRecovery, TheProgramGoesOnAtTheRightLineAndNothingHasToBeCleaned) {
     }
     EXPECT_LE(stopped, count_kills() / 4) << "hardly anything was cut";
     std::cout << count_kills() << " kills, " << stopped << " of them before it cut, " << resumed
-              << " went on from the one before; at most " << latest << " lines before that under the tool\n";
+              << " continued after the previous kill; at most " << latest
+              << " lines before the executed line\n";
 }
 
 /// The kinematics may read the pin while the machine brakes.

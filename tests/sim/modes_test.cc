@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A whole machine in virtual time: modes of task and motion agree, requests end, jogs and homing follow the
-// override, and what a program asks for is done when it is said to be.
+// A complete machine in virtual time: modes of task and motion agree, requests end, jogs and homing follow
+// the override, and requests of a program are done when they are reported as done.
 #include <cmath>
 
 #include <fmt/format.h>

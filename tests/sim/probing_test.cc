@@ -209,8 +209,8 @@ TEST_F(ProbingTest, SomethingInTheWayStopsTheProbe) {
 }
 
 TEST_F(ProbingTest, AToolIsMeasuredAtTheSetter) {
-    // Tool 1 of the mill is 40 mm long, the setter 12.5 mm high: the controlled point stands that much above
-    // the setter's top.
+    // Tool 1 of the mill is 40 mm long, the setter 12.5 mm high: at contact the controlled point is that much
+    // above the setter.
     const Solid setter = [](const Point &p) { return std::max(p.z - (12.5 + 33.25), 0.0); };
     EXPECT_EQ(probe("G21 G90 G94\nT1 M6\nG0 Z60\no<probe_tool_length> call [0] [12.5] [30] [300] [60]\nM2\n",
                     setter, 0),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A whole machine in virtual time: programs that begin at a line, and programs that are left and come back
-// to. The judge knows the programmed path and looks at every commanded sample.
+// A complete machine in virtual time: start from line, and leaving a paused program and returning to it. The
+// judge knows the programmed path and checks every commanded sample.
 #include <cmath>
 
 #include <fmt/format.h>

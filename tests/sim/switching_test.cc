@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Every switchable kinematics as a loaded module: to each of its types and back by M68 and M66, with moves in
-// each. Joints stand while the type changes (the judge of every VirtualMachineTest sees steps), identity
-// shows them as axes, and the pin of the type tells.
+// each. Joints are stopped while the type changes (the judge of every VirtualMachineTest detects steps).
+// Identity kinematics shows joints as axes. The pin shows the type.
 #include <cmath>
 
 #include "sim/machine_file.hh"

@@ -21,7 +21,7 @@ extern "C" {
 
 #ifdef MW_SANITIZER_HOOKS
 
-// The sanitizers own malloc, but tell of every call.
+// The sanitizers replace malloc, but call a hook for every call.
 int __sanitizer_install_malloc_and_free_hooks(void (*on_malloc)(const volatile void *, std::size_t),
                                               void (*on_free)(const volatile void *));
 

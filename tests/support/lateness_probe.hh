@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Whether this machine gave its processors away while a test looked at the clock: other work on it, or a host
-// that has others to serve. A time that was measured meanwhile says nothing about the program under test.
+// Detects that the processors were busy with other work during a time measurement, of this computer or of the
+// host of a virtual machine. Such a measurement is not valid for the program under test.
 #pragma once
 
 #include <algorithm>

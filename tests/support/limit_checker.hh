@@ -19,8 +19,8 @@ struct AxisLimit {
     double jerk = 1e300;
 };
 
-/// Feed one row of positions per period; `worst` and `report` tell how near or how far over the limits it
-/// came.
+/// Reads one row of positions per period; `worst` and `report` give the largest ratio to the limits and the
+/// violations.
 class LimitChecker {
   public:
     LimitChecker(std::vector<AxisLimit> limits, double period_s, double relative = 1e-6)

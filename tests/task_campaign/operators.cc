@@ -81,8 +81,8 @@ Operators::Serial Operators::post(int client, const messages::Command &command, 
     return *posted;
 }
 
-/// Of what ends in one cycle nobody knows the order: a mode may have been set before the run ended that left
-/// another.
+/// The order of commands that end in the same cycle is unknown: a mode may have been set before the end of
+/// the run that set another mode.
 void Operators::look_at_orders() {
     std::vector<std::pair<Order, client::Outcome>> ended;
     std::erase_if(orders_, [&](const Order &order) {

@@ -63,8 +63,8 @@ class Operators {
     std::FILE *tell_;
     Verdict verdict_;
     messages::Mode mode_ = messages::Mode::MANUAL;  ///< that was set last
-    /// Was being set when all was stopped, or that of jogs when what was left for them came to its end: it
-    /// may be in force or not.
+    /// Mode that was being set at a stop, or the jog mode at the end of a released program. It may be active
+    /// or not.
     std::optional<messages::Mode> mode_under_way_;
     bool isHeldByUs_ = false;  ///< no operator resumes
 

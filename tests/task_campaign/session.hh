@@ -61,12 +61,12 @@ class Session : private Operators {
 
     const Plan &plan_;
     Beliefs beliefs_;
-    // --- of the act under way
+    // --- of the current act
     const Act *act_ = nullptr;
     std::int64_t began_ms_ = 0;
     std::uint64_t ended_before_ = 0;  ///< programs
     std::size_t next_trouble_ = 0;
-    bool isStopped_ = false;      ///< by a trouble: whatever becomes of it
+    bool isStopped_ = false;      ///< by a fault: any result is permitted
     bool areDevicesOff_ = false;  ///< by a stop of the operator
     bool isCrashed_ = false;
     bool wasRunning_ = false;  ///< at the crash

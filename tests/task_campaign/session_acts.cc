@@ -168,7 +168,7 @@ void Session::try_odd(int client, std::uint64_t seed, bool isAtRest) {
     };
     std::size_t choice = seed % std::size(all);
     if (!isAtRest) {
-        // What would end or change the run is a trouble of its own.
+        // Commands that end or change the run are separate events.
         const bool isOther = std::holds_alternative<messages::AbortAll>(all[choice].command) ||
                              std::holds_alternative<messages::Mdi>(all[choice].command) ||
                              std::holds_alternative<messages::StepProgram>(all[choice].command);
@@ -195,7 +195,8 @@ void Session::try_odd(int client, std::uint64_t seed, bool isAtRest) {
     }
 }
 
-/// Others are refused but for stops; the right ends with its client, by its word or by its time.
+/// Commands of other clients are rejected, except stops. The right ends with its client, on its request, or
+/// by timeout.
 void Session::operate_alone(const Act &act) {
     const int holder = act.client, other = (act.client + 1) % CLIENTS, third = (act.client + 2) % CLIENTS;
     ask(holder, messages::ClaimOperation{0.5}, Expected::TAKEN);

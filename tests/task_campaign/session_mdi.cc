@@ -90,8 +90,7 @@ std::vector<World> Session::after_line(const Line &line, const Typed &typed,
             for (const World &one : with_or_without(line, world)) {
                 add(all, one);
             }
-            if (progress ==
-                messages::Progress::STARTED) {  // its client is gone: nobody was told that it is done
+            if (progress == messages::Progress::STARTED) {  // its client has ended: the end was not reported
                 add(all, after);
             }
             const bool isFailure = progress == messages::Progress::FAILED && isRight && !isStopped_;

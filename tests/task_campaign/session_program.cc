@@ -68,7 +68,7 @@ void Session::run_program(const Act &act) {
 
 Session::End Session::end_of(Serial run, std::uint64_t ended_before) const {
     const messages::Progress progress = progress_of(run);
-    if (progress == messages::Progress::STARTED) {  // its client is gone: nobody was told
+    if (progress == messages::Progress::STARTED) {  // its client has ended: the end was not reported
         const bool isError = status().task.error_code != 0 || isStopped_;
         return isError || status().task.programs_ended == ended_before ? End::FAILED : End::DONE;
     }

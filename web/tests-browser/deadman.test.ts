@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Jogs whose page freezes, is hidden or is closed at moments drawn by a seed: by the servo's own time the joint decelerates within
-// 110 ms of the last renewal that the page has sent, and stands (J3). MW_SCREEN_CUTS=100 is the campaign; MW_SCREEN_SEED,
-// MW_SCREEN_SLACK_MS (of a computer that does other things).
+// Jogs whose page freezes, is hidden or is closed at random times: by the time of the servo thread the joint decelerates within
+// 110 ms of the last renewal that the page sent, and stops (J3). MW_SCREEN_CUTS=100 runs the campaign; MW_SCREEN_SEED sets the
+// seed, MW_SCREEN_SLACK_MS an additional time for a busy computer.
 import { appendFileSync } from 'node:fs';
 import { createInterface } from 'node:readline';
 import type { ChildProcess } from 'node:child_process';
