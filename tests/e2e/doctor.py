@@ -84,7 +84,7 @@ ADDED = [
     ('DISPLAY', 'MIN_SPINDLE_OVERRIDE = 3', 'is above'), ('DISPLAY', 'MAX_SPINDLE_0_OVERRIDE = 150', 'may reach 15000 %'),
     ('DISPLAY', 'DEFAULT_LINEAR_VELOCITY = 3000', 'exceeds the maximum jog speed'), ('APPLICATIONS', 'APP = ./nothing -x', 'no program'), ('HAL', 'POSTGUI_HALFILE = gone.hal', 'not found'),
     ('HAL', 'HALFILE = gone.hal', 'not found'), ('HAL', 'HALFILE', 'no setting'), ('JOINT', 'SCALE = 0', 'no unit'),
-    ('JOINT', 'STEPGEN_MAXACCEL = 10', None), ('RS274NGC', 'REMAP = M400 modalgroup=10 ngc=gone', 'no file'), ('AXIS_X', 'MIN_LIMIT = 5', 'given twice'),
+    ('JOINT', 'STEPGEN_MAXACCEL = 10', None), ('RS274NGC', 'REMAP = M400 modalgroup=10 ngc=gone', 'no file'), ('AXIS_X', 'MIN_LIMIT = 5', 'appears twice'),
     ('SPINDLE_0', 'MIN_FORWARD_VELOCITY = 90', None), ('AXIS_A', 'MAX_VELOCITY = 9', 'does not name'), ('DISPLAY', 'OPEN_FILE = gone.ngc', 'no file'),
 ]
 # In spindle_sim.hal.

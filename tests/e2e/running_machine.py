@@ -174,7 +174,7 @@ def killed_machine(bench):
     alone = bench.run('long.ngc')
     expect(wait_until(lambda: bench.pin('spindle.0.on') == 'TRUE'), 'a machine for one program', alone.text)
     other = bench.run('short3.ngc')
-    expect(other.end() == 1 and 'a machine of its own' in other.text, 'is shared with nobody', other.text)
+    expect(other.end() == 1 and 'its own machine' in other.text, 'is shared with nobody', other.text)
     started = bench.start('--no-display')
     expect(started.end() == 1 and 'already running' in started.text, 'nor is its instance', started.text)
     os.kill(alone.process.pid, signal.SIGTERM)
