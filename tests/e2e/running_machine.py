@@ -104,7 +104,7 @@ def one_after_the_other(bench):
     expect(homing == 'TRUE' and machine.process.poll() is None, 'and leaves it up', machine.text)
 
     again = bench.start('--no-display')
-    expect(again.end() == 1 and 'up already' in again.text and str(bench.ini) in again.text, 'a second start is rejected', again.text)
+    expect(again.end() == 1 and 'already running' in again.text and str(bench.ini) in again.text, 'a second start is rejected', again.text)
     other = bench.ini.parent / 'gantry_xyyz.ini'
     wrong = bench.run('short3.ngc', ini=other)
     expect(wrong.end() == 1 and 'was started from' in wrong.text, 'another INI is refused', wrong.text)

@@ -93,7 +93,7 @@ def check_second(mill):
         while not (mill.ini.parent / 'waiting.txt').exists() and time.monotonic() < end:
             time.sleep(0.05)
         status, output = mill.launch('status')
-        expect(status == 1 and 'is up already' in output, 'a second start is rejected', status, output)
+        expect(status == 1 and 'already running' in output, 'a second start is rejected', status, output)
         first.terminate()
         expect(first.wait(STEP_S) == 0, 'the first one continues, and ends by a signal', first.stdout.read())
 

@@ -110,7 +110,7 @@ it('shows a panel of the shop, bound to HAL both ways', async () => {
 it('starts a program with its own window', async () => {
   await until(() => existsSync(join(folder, 'side.txt')) && readFileSync(join(folder, 'side.txt'), 'utf8').includes('mill_mm.ini'), 'the program');
   await page.getByTestId('tab-embedded-1').click();
-  expect(await text(page, 'embedded')).toContain('window of its own');
+  expect(await text(page, 'embedded')).toContain('opens in its own window');
 });
 
 it('shows the offsets of all systems as the machine has them', async () => {
