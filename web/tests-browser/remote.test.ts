@@ -121,7 +121,7 @@ describe('with a token and TLS', () => {
     await untilText(page, 'state', 'Off');
     expect(page.url()).toBe(rig.remoteAddress); // the token is out of sight
     await page.getByTestId('on').click({ force: true });
-    await untilText(page, 'why', /may look only/);
+    await untilText(page, 'why', /may only view/);
     expect(await command(page, { message: 'SetState', state: 'ON' })).toMatchObject({ progress: 'REFUSED' });
     expect(await command(page, { message: 'Mdi', line: 'G0 X1' })).toMatchObject({ progress: 'REFUSED' });
     expect(await command(page, { message: 'JogContinuous', is_joint: true, index: 0, velocity: 1, lease_ms: 100 })).toMatchObject({ progress: 'REFUSED' });
