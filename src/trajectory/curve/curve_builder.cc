@@ -18,7 +18,7 @@ constexpr double MEAN_WIDTH = 1.5;
 constexpr int MAX_ROUNDS = 60;
 /// Part of the tolerance by which the bound of the deviation may exceed the deviation.
 constexpr double BOUND_SLACK = 0.02;
-constexpr int MAX_PARTS = 16;
+constexpr double MAX_PARTS = 16;
 /// A corner gets a knot of its own where the last one is this many spacings away.
 constexpr double APART = 3.0;
 /// Knots before the first open span that its control points depend on, and behind it that those of the last
@@ -240,8 +240,8 @@ void CurveBuilder::check_span(const Span &span, std::size_t &move) {
                               : 0.0;
         const double step = end - s;
         const double straight = step * step * (bend + curvature) / 8;
-        const int parts = std::clamp(
-            static_cast<int>(std::ceil(std::sqrt(straight / (BOUND_SLACK * m.tolerance)))), 1, MAX_PARTS);
+        const double wanted = std::ceil(std::sqrt(straight / (BOUND_SLACK * m.tolerance)));
+        const int parts = static_cast<int>(std::clamp(wanted, 1.0, MAX_PARTS));
         for (int i = 0; i <= parts; ++i) {
             const double at = s + step * i / parts;
             const double deviation =
