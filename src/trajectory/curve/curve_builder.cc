@@ -8,23 +8,21 @@ namespace mw::trajectory::curve {
 
 namespace {
 
-/// Change of the knot spacing per length.
-constexpr double GROWTH = 0.25;
 /// Deviation of a curve at a corner over the change of the tangent times the knot spacing, for even knots.
 /// Only the first guess: what is too wide is narrowed.
 constexpr double CORNER_DEVIATION = 28.0 / 120.0;
-/// Length over which a control point takes the mean of the path, over the knot spacing.
+/// Length over which a control point averages the path, divided by the knot spacing.
 constexpr double MEAN_WIDTH = 1.5;
 constexpr int MAX_ROUNDS = 60;
 /// Part of the tolerance by which the bound of the deviation may exceed the deviation.
 constexpr double BOUND_SLACK = 0.02;
 constexpr double MAX_PARTS = 16;
-/// A corner gets a knot of its own where the last one is this many spacings away.
+/// A corner gets a knot at its vertex if the last such knot is this many spacings away.
 constexpr double APART = 3.0;
 /// Knots before the first open span that its control points depend on, and behind it that those of the last
 /// final span do: a control point depends on its neighbours, whose means reach to theirs.
 constexpr std::size_t KNOTS_BEFORE = DEGREE + 1, KNOTS_BEHIND = DEGREE + 2;
-/// Least spacing [units]: keeps the number of knots bounded whatever the tolerance.
+/// Least spacing [units]: bounds the number of knots for every tolerance.
 constexpr double LEAST_SPACING = 1e-6;
 
 double larger_norm(const Pose &p) noexcept {
@@ -48,7 +46,10 @@ void CurveBuilder::begin() noexcept {
     rounds_ = 0;
 }
 
-void CurveBuilder::add(const Primitive &primitive, double tolerance) {
+bool CurveBuilder::add(const Primitive &primitive, double tolerance) {
+    if (!(tolerance > 0) || !(primitive.length > 0)) {
+        return false;
+    }
     if (!path_.moves().empty()) {
         const ProgrammedMove &last = path_.moves().back();
         const Pose step = derivative_at(primitive, 0) - derivative_at(last.primitive, last.primitive.length);
@@ -59,6 +60,7 @@ void CurveBuilder::add(const Primitive &primitive, double tolerance) {
         }
     }
     path_.add(primitive, tolerance);
+    return true;
 }
 
 void CurveBuilder::extend(bool complete) {
@@ -82,11 +84,13 @@ void CurveBuilder::extend(bool complete) {
 void CurveBuilder::spread_caps() {
     envelope_.resize(caps_.size());
     for (std::size_t i = 0; i < caps_.size(); ++i) {
-        const double reach = i == 0 ? widest_ : envelope_[i - 1] + GROWTH * (caps_[i].s - caps_[i - 1].s);
+        const double reach =
+            i == 0 ? widest_ : envelope_[i - 1] + SPACING_GROWTH * (caps_[i].s - caps_[i - 1].s);
         envelope_[i] = std::min(reach, caps_[i].spacing);
     }
     for (std::size_t i = caps_.size(); i-- > 1;) {
-        envelope_[i - 1] = std::min(envelope_[i - 1], envelope_[i] + GROWTH * (caps_[i].s - caps_[i - 1].s));
+        envelope_[i - 1] =
+            std::min(envelope_[i - 1], envelope_[i] + SPACING_GROWTH * (caps_[i].s - caps_[i - 1].s));
     }
 }
 
@@ -95,8 +99,8 @@ double CurveBuilder::spacing_at(double s, std::size_t &cap) const noexcept {
         ++cap;
     }
     const double behind =
-        cap + 1 < caps_.size() ? envelope_[cap + 1] + GROWTH * (caps_[cap + 1].s - s) : widest_;
-    return std::min({widest_, envelope_[cap] + GROWTH * std::abs(s - caps_[cap].s), behind});
+        cap + 1 < caps_.size() ? envelope_[cap + 1] + SPACING_GROWTH * (caps_[cap + 1].s - s) : widest_;
+    return std::min({widest_, envelope_[cap] + SPACING_GROWTH * std::abs(s - caps_[cap].s), behind});
 }
 
 void CurveBuilder::lay_between(double from, double to, std::size_t cap) {
@@ -273,7 +277,7 @@ bool CurveBuilder::check() {
 
 void CurveBuilder::keep_final(bool complete) {
     // A corner behind the end may narrow knots as far back as this.
-    const double end = complete ? path_.length() : path_.length() - widest_ / GROWTH;
+    const double end = complete ? path_.length() : path_.length() - widest_ / SPACING_GROWTH;
     std::size_t final = 0;
     while (final < open_.size() && open_[final].end_s() <= end &&
            (complete || first_open_ + final + 1 + KNOTS_BEHIND < knots_.size())) {

@@ -14,6 +14,9 @@
 
 namespace mw::trajectory::curve {
 
+/// Change of the knot spacing per length of the path.
+inline constexpr double SPACING_GROWTH = 0.25;
+
 /// Planner thread. Memory: the moves and knots of the part that is not yet final, and the spans until they
 /// are dropped.
 class CurveBuilder {
@@ -23,10 +26,11 @@ class CurveBuilder {
 
     /// A curve begins at the start of the next move.
     void begin() noexcept;
-    /// `tolerance`: largest distance of the curve from the move, lengths and angles apart; above 0.
-    void add(const Primitive &primitive, double tolerance);
+    /// `tolerance`: largest distance of the curve from the move, lengths and angles apart.
+    /// Adds nothing and returns false if the tolerance or the length of the move is not above 0.
+    bool add(const Primitive &primitive, double tolerance);
     /// Makes spans of what has been added; `complete`: nothing follows, so all of it. Otherwise the end stays
-    /// open, as far as a next move can change it.
+    /// open where a next move can change it.
     void extend(bool complete);
 
     /// Length of the programmed path.

@@ -22,7 +22,7 @@ class ProgrammedPath {
   public:
     void clear() noexcept { moves_.clear(); }
     void add(const Primitive &primitive, double tolerance);
-    /// Forgets moves that end before `s`, but for the last ones.
+    /// Removes the moves that end before `s`, except the last one.
     void drop_before(double s) noexcept;
     const std::vector<ProgrammedMove> &moves() const noexcept { return moves_; }
     double length() const noexcept { return moves_.empty() ? 0.0 : moves_.back().end_s(); }

@@ -5,6 +5,8 @@
 #include <bit>
 #include <cmath>
 
+#include "trajectory/curve/curve_builder.hh"
+
 namespace mw::trajectory::profile {
 
 namespace {
@@ -84,7 +86,8 @@ const std::vector<double> &RoughProfile::lay(const Run &run, const Stretch &stre
     return knots_;
 }
 
-/// Nodes as far as the speed without what comes behind takes a good deal more than the horizon; then braking.
+/// Lays nodes until the motion without braking takes 1.5 times the horizon, then limits their speeds by
+/// braking.
 void RoughProfile::lay_nodes(const Run &run, const Stretch &stretch) {
     constexpr double FARTHER = 1.5;
     nodes_.clear();
@@ -152,8 +155,7 @@ void RoughProfile::lay_knots(const Stretch &stretch) {
 
 namespace {
 
-/// Change of the scale per length: what a control spline changes by.
-constexpr double GROWTH = 0.25;
+using curve::SPACING_GROWTH;
 
 Bounds least_of(const CurveLimits &limits) noexcept {
     Bounds least = limits.xyz;
@@ -188,8 +190,8 @@ class Scales {
             while (feed + 1 < run_.feeds->size() && map.at(knots[k + 1]).s >= (*run_.feeds)[feed].end_s) {
                 v = std::min(v, (*run_.feeds)[++feed].velocity);
             }
-            const double before_stop =
-                RestMap::scale_of(end_ramp) + GROWTH * std::max(0.0, spans.back().end_s() - end_ramp - s);
+            const double before_stop = RestMap::scale_of(end_ramp) +
+                                       SPACING_GROWTH * std::max(0.0, spans.back().end_s() - end_ramp - s);
             scale_[k] = std::min({spans[span].length, map.scale_at(middle), before_stop, scale_of_speed(v)});
         }
         look_ahead(s, span, feed);
@@ -198,25 +200,28 @@ class Scales {
     }
 
   private:
-    /// A speed limit counts as the scale at which jerk leads to it.
+    /// The scale at which the jerk limit gives this speed.
     double scale_of_speed(double v) const noexcept { return std::sqrt(v * v * v / least_.jerk); }
 
-    /// What comes behind the last cell, as far as it can be in its reach.
+    /// Reduces the scale of the last cell for smaller scales of the path and of the feeds behind it.
     void look_ahead(double s, std::size_t span, std::size_t feed) {
         double &last = scale_.back();
         const auto &spans = *run_.spans;
-        for (std::size_t j = span + 1; j < spans.size() && GROWTH * (spans[j].start_s - s) < last; ++j) {
-            last = std::min(last, spans[j].length + GROWTH * std::max(0.0, spans[j].start_s - s));
+        for (std::size_t j = span + 1; j < spans.size() && SPACING_GROWTH * (spans[j].start_s - s) < last;
+             ++j) {
+            last = std::min(last, spans[j].length + SPACING_GROWTH * std::max(0.0, spans[j].start_s - s));
         }
         for (std::size_t j = feed + 1;
-             j < run_.feeds->size() && GROWTH * ((*run_.feeds)[j - 1].end_s - s) < last; ++j) {
+             j < run_.feeds->size() && SPACING_GROWTH * ((*run_.feeds)[j - 1].end_s - s) < last; ++j) {
             last = std::min(last, scale_of_speed((*run_.feeds)[j].velocity) +
-                                      GROWTH * std::max(0.0, (*run_.feeds)[j - 1].end_s - s));
+                                      SPACING_GROWTH * std::max(0.0, (*run_.feeds)[j - 1].end_s - s));
         }
     }
 
     void spread(const std::vector<double> &knots) {
-        const auto apart = [&](std::size_t k) { return GROWTH * 0.5 * (knots[k + 1] - knots[k - 1]); };
+        const auto apart = [&](std::size_t k) {
+            return SPACING_GROWTH * 0.5 * (knots[k + 1] - knots[k - 1]);
+        };
         for (std::size_t k = 1; k < scale_.size(); ++k) {
             scale_[k] = std::min(scale_[k], scale_[k - 1] + apart(k));
         }

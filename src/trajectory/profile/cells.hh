@@ -26,7 +26,7 @@ struct CurveLimits {
     Bounds xyz;  ///< of the norm over X Y Z
 };
 
-/// Highest speed of a move, up to `end_s` of the programmed path.
+/// Maximum speed of a move, up to `end_s` of the programmed path.
 struct FeedLimit {
     enum class Along : std::uint8_t {
         XYZ,

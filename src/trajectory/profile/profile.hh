@@ -55,7 +55,7 @@ class Profile {
     double cell_s_ = 0;
     RestMap map_;
     RoughProfile rough_;
-    Run run_;  ///< with the limits that the rows are made of
+    Run run_;  ///< its limits with the margins
     Rows rows_;
     TimeLaw law_;
     std::vector<double> knots_, c_;  ///< of the cells that have not been passed on

@@ -25,7 +25,7 @@ constexpr double weight_2(double x) noexcept {
     return x * x;
 }
 constexpr std::array<double, PLACES> SIMPSON{1.0 / 6, 4.0 / 6, 1.0 / 6};
-/// Part of the way to the nearest row that a step goes at most.
+/// A step covers at most this part of the distance to the nearest row.
 constexpr double KEEP = 0.9;
 /// Part of its diagonal that a pivot has at least: less is what rounding leaves where a row is all but
 /// reached.
@@ -312,7 +312,7 @@ double TimeLaw::newton(double mu, std::size_t first, std::size_t last) {
     assemble(mu);
     factorise(first, last);
     if (!std::isfinite(decrement_)) {
-        return 0;  // rounding has left nothing to go on with: the coefficients stay
+        return 0;  // the factorisation failed by rounding: the coefficients stay
     }
     const double t = std::min(1.0, KEEP * longest_step());
     for (std::size_t i = first; i < last; ++i) {

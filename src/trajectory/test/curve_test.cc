@@ -148,6 +148,16 @@ TEST(Curve, MakesOneCircleOfRoundedChords) {
     }
 }
 
+TEST(Curve, RejectsMovesWithoutLengthOrTolerance) {
+    CurveBuilder builder(WIDEST);
+    const Primitive line = make_line(xyz(0, 0), xyz(1, 0));
+    EXPECT_FALSE(builder.add(line, 0));
+    EXPECT_FALSE(builder.add(line, std::nan("")));
+    EXPECT_FALSE(builder.add(make_line(xyz(0, 0), xyz(0, 0)), 0.01));
+    EXPECT_EQ(builder.programmed_length(), 0);
+    EXPECT_TRUE(builder.add(line, 0.01));
+}
+
 TEST(Curve, KeepsTheToleranceOfRandomPathsInNineCoordinates) {
     std::mt19937 random(3);
     std::uniform_real_distribution<double> part(-1, 1);

@@ -138,7 +138,8 @@ TEST(Profile, PassesACornerFasterThanTheFullStopsOfItsLines) {
     EXPECT_LE(out.worst_deviation, 1);
 }
 
-/// Largest velocity, acceleration and jerk of the XYZ norm over their limits, by differences of the samples.
+/// Worst ratio of velocity, acceleration and jerk of the XYZ norm to their limits, by differences of the
+/// samples.
 double worst_norm(const std::vector<Pose> &samples, const Limits &limits) {
     double worst = 0;
     for (std::size_t i = 3; i < samples.size(); ++i) {
