@@ -116,7 +116,7 @@ TEST(MotmodPins, EveryRowSaysWhatThePinIsFor) {
     std::set<std::string> names;
     for (const PinText &row : rows()) {
         EXPECT_FALSE(row.doc.empty()) << row.name;
-        EXPECT_TRUE(names.insert(row.name).second) << row.name << " stands twice in the tables";
+        EXPECT_TRUE(names.insert(row.name).second) << row.name << " is in the tables twice";
         const bool is_measure = row.type == hal::Type::FLOAT && row.dir == hal::Dir::OUT;
         const bool plain = row.doc.find("external offsets") != std::string::npos ||
                            row.name.find("analog") != std::string::npos;

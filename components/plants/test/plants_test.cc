@@ -108,11 +108,11 @@ TEST(SimAxis, TheLoadLagsByHalfTheBacklashOnEitherWay) {
         axis.run(command += 0.05, true, T);
     }
     EXPECT_NEAR(axis.motor() - axis.load(), 0.2, 1e-12);
-    const double stood = axis.load();
+    const double before_reversal = axis.load();
     for (int i = 0; i < 6; ++i) {
         axis.run(command -= 0.05, true, T);
     }
-    EXPECT_EQ(axis.load(), stood) << "within the play the load does not move";
+    EXPECT_EQ(axis.load(), before_reversal) << "the load does not move within the backlash";
     for (int i = 0; i < 300; ++i) {
         axis.run(command -= 0.05, true, T);
     }

@@ -156,7 +156,7 @@ Result<Progress> Task::ProgramResume::calculate_again() {
     if (task.motion_.status().mode != motion::Mode::COORD) {
         task.motion_.send(motion::SetMode{motion::Mode::COORD});
     }
-    task.run_.begin_again();
+    task.run_.recalculate();
     task.reader_.canon().reset();
     task.sequencer_.forget_place();
     task.reader_.begin_codes();
@@ -168,7 +168,7 @@ void Task::ProgramResume::begin_with_tools_now() {
     const FoundModes found = task.reader_.search()->found();
     auto record = with_tools_now(task.reader_.recorded(), found, task.parts_.tools);
     task.reader_.cancel_search();
-    task.run_.go_on_anew();
+    task.run_.continue_with_current_tools();
     const Result<> opened = task.reader_.open((*task.recovery_.offer())->start.program);
     if (Meanwhile{task}.end()) {
         return;
@@ -190,7 +190,7 @@ bool Task::ProgramResume::isOldOffsetKept() const {
 }
 
 void Task::ProgramResume::propose_recovery() {
-    if (task.run_.kind() == RunKind::ANEW && isOldOffsetKept()) {
+    if (task.run_.kind() == RunKind::WITH_CURRENT_TOOLS && isOldOffsetKept()) {
         give_up("the active tool offset is not from the current table: no G43 of the program has set it");
         return;
     }

@@ -30,9 +30,9 @@ void Task::ProgramResume::step() {
     switch (outcome) {
     case BlockSearch::Outcome::GOING: break;
     case BlockSearch::Outcome::FOUND:
-        task.run_.kind() == RunKind::AGAIN ? begin_with_tools_now()
-        : task.run_.isRecovery()           ? propose_recovery()
-                                           : propose_line();
+        task.run_.kind() == RunKind::RECALCULATION ? begin_with_tools_now()
+        : task.run_.isRecovery()                   ? propose_recovery()
+                                                   : propose_line();
         break;
     case BlockSearch::Outcome::REFUSED:
         if (task.run_.isRecovery()) {

@@ -18,10 +18,10 @@ Result<Progress> ProgramRun::start(RunKind kind, mailbox::Serial command, const 
     return Progress::STARTED;
 }
 
-void ProgramRun::begin_again() {
+void ProgramRun::recalculate() {
     change(RunEvent::END);
     change(RunEvent::START);
-    kind_ = RunKind::AGAIN;
+    kind_ = RunKind::RECALCULATION;
     from_line_ = 0;
 }
 

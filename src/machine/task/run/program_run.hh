@@ -14,9 +14,9 @@ namespace mw::task {
 enum class RunKind : std::uint8_t {
     PROGRAM,
     MDI,
-    RECOVERY,  ///< continues a program that was interrupted
-    AGAIN,     ///< repeats the calculation of a program whose tools changed while it was paused
-    ANEW,      ///< continues it with the current tools
+    RECOVERY,            ///< continues a program that was interrupted
+    RECALCULATION,       ///< repeats the calculation of a program whose tools changed while it was paused
+    WITH_CURRENT_TOOLS,  ///< continues it with the current tools
 };
 
 /// One thread.
@@ -28,9 +28,9 @@ class ProgramRun {
     int from_line() const { return from_line_; }
     void set_from_line(int line) { from_line_ = line; }
     bool isRecovery() const { return kind_ >= RunKind::RECOVERY; }
-    /// The same command continues at a position of the program, AGAIN and then ANEW.
-    void begin_again();
-    void go_on_anew() { kind_ = RunKind::ANEW; }
+    /// The same command calculates the program again and then continues it with the current tools.
+    void recalculate();
+    void continue_with_current_tools() { kind_ = RunKind::WITH_CURRENT_TOOLS; }
     /// An event that is not possible in this state changes nothing and returns the reason.
     Result<> take(RunEvent event) { return state_.take(event); }
     /// For events from the run's own parts: one that comes too late changes nothing.
