@@ -137,6 +137,7 @@ profile::Run run_of(const Program &program, const std::vector<curve::Span> &span
 /// The whole program on one curve, planned in windows of 0.5 s every 50 ms; the time of both counts.
 Run drive_third_order(const Program &program) {
     constexpr double WIDEST = 3.0, OPEN = 30.0, COMMIT_S = 0.05;
+    constexpr std::size_t LEAST_CELLS = 8;  // behind what is passed on
     Run out;
     const auto begin = std::chrono::steady_clock::now();
     curve::CurveBuilder builder(WIDEST);
@@ -155,15 +156,25 @@ Run drive_third_order(const Program &program) {
     }
     builder.extend(true);
     profile::Profile profile({});
-    profile.begin();
+    profile.begin(0);
     std::vector<profile::TimeCell> cells;
-    const profile::Run run = run_of(program, builder.spans(), feeds);
-    for (int n = 0; n < 100000 && !profile.isDone(); ++n) {
-        profile.plan(run, true);
-        profile.commit(COMMIT_S, cells);
+    profile::Run run = run_of(program, builder.spans(), feeds);
+    run.end_s = builder.final_s();
+    run.has_stop = true;
+    bool is_done = false;
+    for (int n = 0; n < 100000 && !is_done; ++n) {
+        profile.plan(run, 0);
+        const std::size_t last = profile.isComplete() ? profile.cells() : profile.cells() - LEAST_CELLS;
+        std::size_t k = 0;
+        for (double t = 0; k < last && t < COMMIT_S; ++k) {
+            cells.push_back(profile.cell(k));
+            t += profile.cell(k).duration;
+        }
+        is_done = profile.isComplete() && k == profile.cells();
+        profile.drop(k);
     }
     out.planning_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    out.isFinished = profile.isDone();
+    out.isFinished = is_done;
     out.samples.push_back(program.start);
     std::size_t span = 0;
     double cell_start = 0;

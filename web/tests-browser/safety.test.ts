@@ -308,10 +308,10 @@ describe('the layout at 1280 by 800 and 1920 by 1080', () => {
     await page.getByTestId('run').waitFor();
     const before = await places();
     await page.getByTestId('run').click();
-    await untilText(page, 'jog-gate', /program runs/);
+    await untilText(page, 'jog-gate', /program is running/);
     expect(await places()).toEqual(before);
     await page.getByTestId('hold').click();
-    await untilText(page, 'jog-gate', /held/);
+    await untilText(page, 'jog-gate', /is paused/);
     expect(await places()).toEqual(before);
     await page.getByTestId('stop').click();
     await untilText(page, 'run-state', 'Idle');

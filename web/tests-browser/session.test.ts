@@ -203,7 +203,7 @@ describe('a held program', () => {
     await page.getByTestId('jog-Z+').click();
     await until(() => Math.abs(rig.position(2) - before - 10) < 1e-6, 'a step up');
     await page.getByTestId('resume').click();
-    await untilText(page, 'approach', /where it was left/);
+    await untilText(page, 'approach', /where the axes were released/);
     await page.getByTestId('approach-confirm').click();
     await untilText(page, 'run-state', 'Running');
     await untilText(page, 'run-state', 'Idle', 30_000);

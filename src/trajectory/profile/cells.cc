@@ -99,9 +99,9 @@ void RoughProfile::lay_nodes(const Run &run, const Stretch &stretch) {
         nodes_.back().v = 0;
     }
     double t = 0;
-    for (; k < spans.size() && t < FARTHER * stretch.horizon_s; ++k) {
+    for (; k < spans.size() && spans[k].start_s < run.end_s && t < FARTHER * stretch.horizon_s; ++k) {
         for (int n = 1; n <= NODES_PER_SPAN; ++n) {
-            const double s = spans[k].start_s + spans[k].length * n / NODES_PER_SPAN;
+            const double s = std::min(run.end_s, spans[k].start_s + spans[k].length * n / NODES_PER_SPAN);
             const Node last = nodes_.back();
             if (s <= last.s + 1e-12) {
                 continue;
@@ -112,8 +112,8 @@ void RoughProfile::lay_nodes(const Run &run, const Stretch &stretch) {
             nodes_.push_back(node);
         }
     }
-    reaches_end_ = k == spans.size();
-    if (reaches_end_ && stretch.to_rest) {
+    reaches_end_ = nodes_.back().s >= run.end_s;
+    if (reaches_end_ && run.has_stop) {
         nodes_.back().v = 0;
     }
     for (std::size_t i = nodes_.size() - 1; i-- > 0;) {
@@ -190,8 +190,8 @@ class Scales {
             while (feed + 1 < run_.feeds->size() && map.at(knots[k + 1]).s >= (*run_.feeds)[feed].end_s) {
                 v = std::min(v, (*run_.feeds)[++feed].velocity);
             }
-            const double before_stop = RestMap::scale_of(end_ramp) +
-                                       SPACING_GROWTH * std::max(0.0, spans.back().end_s() - end_ramp - s);
+            const double before_stop =
+                RestMap::scale_of(end_ramp) + SPACING_GROWTH * std::max(0.0, run_.end_s - end_ramp - s);
             scale_[k] = std::min({spans[span].length, map.scale_at(middle), before_stop, scale_of_speed(v)});
         }
         look_ahead(s, span, feed);

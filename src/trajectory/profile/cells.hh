@@ -40,11 +40,13 @@ struct FeedLimit {
     double share(const Pose &first) const noexcept;
 };
 
-/// A curve from stop to stop.
+/// The known part of a curve from stop to stop.
 struct Run {
     const std::vector<Span> *spans = nullptr;
-    const std::vector<FeedLimit> *feeds = nullptr;  ///< in order, up to the end of the spans at least
+    const std::vector<FeedLimit> *feeds = nullptr;  ///< in order, up to `end_s` at least
     CurveLimits limits;
+    double end_s = 0;       ///< end of what may be driven, within the spans
+    bool has_stop = false;  ///< the motion stops there; otherwise more will follow
     /// Index of the limit at s.
     std::size_t feed_at(double s) const noexcept;
 };
@@ -55,9 +57,9 @@ class RoughProfile {
     /// Where a profile begins and how far it reaches.
     struct Stretch {
         double from_s = 0;
-        bool from_rest = false, to_rest = false;  ///< the latter at the end of the spans
-        double horizon_s = 0;                     ///< time of what is laid
-        double cell_s = 0;                        ///< time of a cell
+        bool from_rest = false;
+        double horizon_s = 0;  ///< time of what is laid
+        double cell_s = 0;     ///< time of a cell
     };
     /// Ends of cells of about equal time along the curve, after the start.
     const std::vector<double> &lay(const Run &run, const Stretch &stretch);
@@ -81,7 +83,7 @@ class RoughProfile {
 std::size_t span_at(const std::vector<Span> &spans, double s) noexcept;
 void make_rows(const Run &run, const RestMap &map, const double *knots, std::size_t cells, Rows &rows);
 /// Adds the coefficients of cells that have none: slow enough to keep every row by far. `end_ramp`: length
-/// before the end of the spans over which the map may come to be blended into a stop.
+/// before the end of the run over which the map may come to be blended into a stop.
 void creep(const Run &run, const RestMap &map, const std::vector<double> &knots, double end_ramp,
            std::vector<double> &c);
 

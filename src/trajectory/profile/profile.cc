@@ -8,8 +8,6 @@ namespace mw::trajectory::profile {
 
 namespace {
 
-/// Cells that a window needs behind what is passed on.
-constexpr std::size_t LEAST_CELLS = 8;
 /// Cells in the time in which the jerk limit builds up an acceleration, and the least length of one [s].
 constexpr double CELLS_PER_RAMP = 20;
 constexpr double LEAST_CELL_S = 5e-4;
@@ -38,20 +36,21 @@ TimeCell cell_of(const Motion &from, const Motion &to, double duration) noexcept
 
 }  // namespace
 
-void Profile::begin() noexcept {
+void Profile::begin(double s) noexcept {
     map_ = RestMap();
     knots_.clear();
     c_.clear();
+    time_cells_.clear();
+    start_s_ = s;
     before_ = 0;
     has_end_ = false;
     end_s_ = 0;
-    is_done_ = false;
     worst_start_ = 0;
     steps_ = 0;
 }
 
 double Profile::planned_s() const noexcept {
-    return knots_.empty() ? 0.0 : map_.at(knots_.back()).s;
+    return knots_.empty() ? start_s_ : map_.at(knots_.back()).s;
 }
 
 void Profile::take_limits(const Run &run) {
@@ -68,37 +67,37 @@ void Profile::take_limits(const Run &run) {
     cell_s_ = std::clamp(ramp_s / CELLS_PER_RAMP, LEAST_CELL_S, settings_.cell_s);
 }
 
-void Profile::lay_cells(bool complete) {
+void Profile::lay_cells(std::size_t fixed) {
     const Run &run = run_;
-    const double length = run.spans->back().end_s();
-    const double planned = cell_s_ * static_cast<double>(cells());
+    const double planned = cell_s_ * static_cast<double>(cells() - fixed);
     if (has_end_ || planned >= settings_.window_s) {
         return;
     }
     const bool is_first = knots_.empty();
     const double from = planned_s();
-    const auto &laid = rough_.lay(run, {from, is_first, complete, settings_.window_s - planned, cell_s_});
+    const auto &laid = rough_.lay(run, {from, is_first, settings_.window_s - planned, cell_s_});
     if (laid.empty()) {
         return;
     }
     if (is_first) {
-        map_.set_start(std::min(RoughProfile::ramp_at(run, 0), MAX_RAMP * length));
+        map_.set_start(start_s_,
+                       std::min(RoughProfile::ramp_at(run, start_s_), MAX_RAMP * (run.end_s - start_s_)));
         knots_.push_back(0);
     }
     // The creep that was laid before counts on the ramp before the end as long as the curve ends there.
-    if (length != end_s_) {
-        end_s_ = length;
-        end_ramp_ = std::min(RoughProfile::ramp_at(run, length), MAX_RAMP * (length - from));
+    if (run.end_s != end_s_) {
+        end_s_ = run.end_s;
+        end_ramp_ = std::min(RoughProfile::ramp_at(run, run.end_s), MAX_RAMP * (run.end_s - from));
     }
     const double ramp = end_ramp_;
-    const bool is_end = complete && laid.back() >= length;
+    const bool is_end = run.has_stop && laid.back() >= run.end_s;
     if (is_end) {
-        map_.set_end(length, ramp);
+        map_.set_end(run.end_s, ramp);
         has_end_ = true;
     }
     for (const double s : laid) {
         // A stop at the end of what is known must still be possible.
-        if (!is_end && s > length - ramp) {
+        if (!is_end && s > run.end_s - ramp) {
             break;
         }
         knots_.push_back(is_end && s == laid.back() ? map_.end() : map_.parameter_at(s));
@@ -106,44 +105,49 @@ void Profile::lay_cells(bool complete) {
     creep(run, map_, knots_, ramp, c_);
 }
 
-void Profile::plan(const Run &run, bool complete) {
+void Profile::plan(const Run &run, std::size_t fixed) {
     take_limits(run);
-    lay_cells(complete);
-    const std::size_t n = cells();
+    lay_cells(fixed);
+    const std::size_t n = cells() - fixed;
     if (n == 0) {
         return;
     }
-    make_rows(run_, map_, knots_.data(), n, rows_);
-    law_.begin(rows_, before_ > 0 ? before_ : knots_[1] - knots_[0], knots_[n] - knots_[n - 1]);
-    std::copy(c_.begin(), c_.end(), law_.coefficients().begin());
+    const double *knots = &knots_[fixed];
+    make_rows(run_, map_, knots, n, rows_);
+    const double before = fixed > 0 ? knots[0] - knots[-1] : before_ > 0 ? before_ : knots[1] - knots[0];
+    law_.begin(rows_, before, knots[n] - knots[n - 1]);
+    const auto c = c_.begin() + static_cast<long>(fixed);
+    std::copy(c, c_.end(), law_.coefficients().begin());
     worst_start_ = std::max(worst_start_, law_.worst());
     SolveSettings settings;
     settings.cell_s = cell_s_;
-    steps_ += law_.solve(before_ > 0 ? 2 : 0, has_end_ ? 0 : 2, settings);
-    std::copy_n(law_.coefficients().begin(), c_.size(), c_.begin());
+    const bool is_moving = fixed > 0 || before_ > 0;
+    steps_ += law_.solve(is_moving ? 2 : 0, has_end_ ? 0 : 2, settings);
+    std::copy_n(law_.coefficients().begin(), n + 2, c);
+    make_time_cells(fixed);
 }
 
-void Profile::commit(double seconds, std::vector<TimeCell> &out) {
-    double t = 0;
-    std::size_t k = 0;
+void Profile::make_time_cells(std::size_t fixed) {
+    time_cells_.resize(cells());
     const auto motion_at = [&](std::size_t cell, double x) {
-        const LawState state = law_.state(cell, x);
+        const LawState state = law_.state(cell - fixed, x);
         const MapPoint m = map_.at(knots_[cell] + x * (knots_[cell + 1] - knots_[cell]));
         return Motion{m.s, m.first * std::sqrt(state.b), m.second * state.b + m.first * state.a};
     };
-    const std::size_t last = has_end_ ? cells() : cells() > LEAST_CELLS ? cells() - LEAST_CELLS : 0;
-    for (; k < last && t < seconds; ++k) {
-        const double duration = law_.time_of(k);
-        out.push_back(cell_of(motion_at(k, 0), motion_at(k, 1), duration));
-        t += duration;
+    for (std::size_t k = fixed; k < cells(); ++k) {
+        time_cells_[k] = cell_of(motion_at(k, 0), motion_at(k, 1), law_.time_of(k - fixed));
     }
-    if (k == 0) {
+}
+
+void Profile::drop(std::size_t count) {
+    if (count == 0) {
         return;
     }
-    is_done_ = has_end_ && k == cells();
-    before_ = knots_[k] - knots_[k - 1];
-    knots_.erase(knots_.begin(), knots_.begin() + static_cast<long>(k));
-    c_.erase(c_.begin(), c_.begin() + static_cast<long>(k));
+    before_ = knots_[count] - knots_[count - 1];
+    const auto n = static_cast<long>(count);
+    knots_.erase(knots_.begin(), knots_.begin() + n);
+    c_.erase(c_.begin(), c_.begin() + n);
+    time_cells_.erase(time_cells_.begin(), time_cells_.begin() + n);
 }
 
 }  // namespace mw::trajectory::profile

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The timing of a curve from stop to stop, planned in windows while the curve still grows.
 //
-// A window begins with the state at the end of what was passed on and ends in a creep. The last plan,
+// A window begins with the state at the end of the cells that stay and ends in a creep. The last plan,
 // followed by a creep over what is new, keeps every limit: each plan starts from it, so a plan that is late
 // or stopped early can be driven.
 #pragma once
@@ -28,27 +28,33 @@ struct ProfileSettings {
     double window_s = 0.5;  ///< planned at once
 };
 
+/// Planner thread. Cells that were planned stay in it until they are dropped, so that another motion can
+/// begin at the start of each.
 class Profile {
   public:
     explicit Profile(const ProfileSettings &settings) : settings_(settings) {}
 
-    /// A curve begins, at rest at s = 0.
-    void begin() noexcept;
-    /// Plans the next window of the curve; `complete`: its spans end in the stop.
-    void plan(const Run &run, bool complete);
-    /// Passes on the plan's next cells, of `seconds` at least, all of a window that reaches the stop if
-    /// `seconds` do.
-    void commit(double seconds, std::vector<TimeCell> &out);
-    bool isDone() const noexcept { return is_done_; }
+    /// A run begins, at rest at `s`.
+    void begin(double s) noexcept;
+    /// Plans a window of the run behind the first `fixed` cells, which stay. The limits are those of the last
+    /// plan or higher, the end of the run the same or farther away.
+    void plan(const Run &run, std::size_t fixed);
+    /// Cells that are planned and not dropped.
+    std::size_t cells() const noexcept { return knots_.empty() ? 0 : knots_.size() - 1; }
+    const TimeCell &cell(std::size_t k) const noexcept { return time_cells_[k]; }
+    /// The last cell ends in the stop of the run.
+    bool isComplete() const noexcept { return has_end_; }
+    /// The first `count` cells are driven.
+    void drop(std::size_t count);
+
     /// Largest row over its limit of the plan that the last one started from.
     double worst_start() const noexcept { return worst_start_; }
     int steps() const noexcept { return steps_; }
-    /// Cells that are planned and not passed on.
-    std::size_t cells() const noexcept { return knots_.empty() ? 0 : knots_.size() - 1; }
 
   private:
     void take_limits(const Run &run);
-    void lay_cells(bool complete);
+    void lay_cells(std::size_t fixed);
+    void make_time_cells(std::size_t fixed);
     double planned_s() const noexcept;
 
     ProfileSettings settings_;
@@ -58,13 +64,14 @@ class Profile {
     Run run_;  ///< its limits with the margins
     Rows rows_;
     TimeLaw law_;
-    std::vector<double> knots_, c_;  ///< of the cells that have not been passed on
-    double before_ = 0;              ///< length of the cell before them; 0: there is none
+    std::vector<double> knots_, c_;  ///< of the cells that have not been dropped
+    std::vector<TimeCell> time_cells_;
+    double start_s_ = 0;
+    double before_ = 0;  ///< length of the cell before them; 0: there is none
     double end_s_ = 0,
            end_ramp_ =
                0;  ///< end of the curve as it is known, and the length over which a stop there is blended
     bool has_end_ = false;  ///< the last cell ends in the stop
-    bool is_done_ = false;
     double worst_start_ = 0;
     int steps_ = 0;
 };

@@ -29,26 +29,29 @@ double inverse_ramp(double s, double l) noexcept {
 
 }  // namespace
 
-void RestMap::set_start(double ramp) noexcept {
+void RestMap::set_start(double s, double ramp) noexcept {
+    start_s_ = s;
     start_ = ramp / RAMP_LENGTH;
 }
 
-void RestMap::set_end(double length, double ramp) noexcept {
-    length_ = length;
+void RestMap::set_end(double s, double ramp) noexcept {
+    end_s_ = s;
     stop_ = ramp / RAMP_LENGTH;
-    end_ = length + (1 - RAMP_LENGTH) * (start_ + stop_);
+    end_ = s - start_s_ + (1 - RAMP_LENGTH) * (start_ + stop_);
 }
 
 MapPoint RestMap::at(double p) const noexcept {
     if (p < start_) {
-        return ramp(p, start_);
+        MapPoint m = ramp(p, start_);
+        m.s += start_s_;
+        return m;
     }
     const double left = end_ - p;
     if (left < stop_) {
         const MapPoint m = ramp(std::max(left, 0.0), stop_);
-        return {length_ - m.s, m.first, -m.second, m.third};
+        return {end_s_ - m.s, m.first, -m.second, m.third};
     }
-    return {p - (1 - RAMP_LENGTH) * start_, 1, 0, 0};
+    return {start_s_ + p - (1 - RAMP_LENGTH) * start_, 1, 0, 0};
 }
 
 double RestMap::scale_of(double ramp) noexcept {
@@ -63,13 +66,13 @@ double RestMap::scale_at(double p) const noexcept {
 }
 
 double RestMap::parameter_at(double s) const noexcept {
-    if (s < RAMP_LENGTH * start_) {
-        return inverse_ramp(s, start_);
+    if (s - start_s_ < RAMP_LENGTH * start_) {
+        return inverse_ramp(std::max(s - start_s_, 0.0), start_);
     }
-    if (length_ - s < RAMP_LENGTH * stop_) {
-        return end_ - inverse_ramp(std::max(length_ - s, 0.0), stop_);
+    if (end_s_ - s < RAMP_LENGTH * stop_) {
+        return end_ - inverse_ramp(std::max(end_s_ - s, 0.0), stop_);
     }
-    return s + (1 - RAMP_LENGTH) * start_;
+    return s - start_s_ + (1 - RAMP_LENGTH) * start_;
 }
 
 }  // namespace mw::trajectory::profile

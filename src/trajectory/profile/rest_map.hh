@@ -12,11 +12,10 @@ struct MapPoint {
 
 class RestMap {
   public:
-    /// `ramp`: length of the path over which the two are blended behind the stop at its start; 0: no stop
-    /// there.
-    void set_start(double ramp) noexcept;
-    /// The path ends with a stop at `length`, the ramp before it.
-    void set_end(double length, double ramp) noexcept;
+    /// The parameter 0 is a stop at `s`. `ramp`: length of the path behind it over which the two are blended.
+    void set_start(double s, double ramp) noexcept;
+    /// The path ends with a stop at `s`, the ramp before it.
+    void set_end(double s, double ramp) noexcept;
     /// Parameter of the end.
     double end() const noexcept { return end_; }
     MapPoint at(double p) const noexcept;
@@ -27,7 +26,7 @@ class RestMap {
     double parameter_at(double s) const noexcept;
 
   private:
-    double length_ = 1e300, start_ = 0, stop_ = 0, end_ = 1e300;
+    double start_s_ = 0, end_s_ = 1e300, start_ = 0, stop_ = 0, end_ = 1e300;
 };
 
 }  // namespace mw::trajectory::profile

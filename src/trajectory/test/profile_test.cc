@@ -30,6 +30,22 @@ struct Driven {
     bool is_done = false;
 };
 
+/// Cells that a window keeps behind what is driven.
+constexpr std::size_t LEAST_CELLS = 8;
+
+/// Drives some cells, of `seconds`; true at the end of the run.
+bool take(Profile &profile, double seconds, std::vector<TimeCell> &out) {
+    const std::size_t cells = profile.cells();
+    const std::size_t last = profile.isComplete() ? cells : cells - std::min(cells, LEAST_CELLS);
+    std::size_t k = 0;
+    for (double t = 0; k < last && t < seconds; ++k) {
+        out.push_back(profile.cell(k));
+        t += profile.cell(k).duration;
+    }
+    profile.drop(k);
+    return profile.isComplete() && k == cells;
+}
+
 /// The whole program on one curve, the curve streamed, planned in windows.
 Driven drive(const std::vector<Primitive> &moves, const std::vector<double> &velocity,
              const CurveLimits &limits, double tolerance) {
@@ -46,15 +62,14 @@ Driven drive(const std::vector<Primitive> &moves, const std::vector<double> &vel
     }
     builder.extend(true);
     Profile profile({2e-3, 0.5});
-    profile.begin();
+    profile.begin(0);
     std::vector<TimeCell> cells;
     Driven out;
-    const Run run{&builder.spans(), &feeds, limits};
-    for (int n = 0; n < 4000 && !profile.isDone(); ++n) {
-        profile.plan(run, true);
-        profile.commit(0.05, cells);
+    const Run run{&builder.spans(), &feeds, limits, builder.final_s(), true};
+    for (int n = 0; n < 4000 && !out.is_done; ++n) {
+        profile.plan(run, 0);
+        out.is_done = take(profile, 0.05, cells);
     }
-    out.is_done = profile.isDone();
     out.worst_start = profile.worst_start();
     out.worst_deviation = builder.worst_deviation();
     out.samples.push_back(moves.front().start);
@@ -89,8 +104,8 @@ Pose xyz(double x, double y) {
 
 TEST(RestMap, HasTheDerivativesThatItTells) {
     RestMap map;
-    map.set_start(0.5);
-    map.set_end(10, 0.2);
+    map.set_start(1, 0.5);
+    map.set_end(11, 0.2);
     constexpr double D = 1e-5;
     for (double p = 0.01; p < map.end() - 0.01; p += 0.037) {
         const MapPoint m = map.at(p);
@@ -98,8 +113,8 @@ TEST(RestMap, HasTheDerivativesThatItTells) {
         EXPECT_NEAR(m.second, (map.at(p + D).first - map.at(p - D).first) / (2 * D), 1e-6);
         EXPECT_NEAR(map.parameter_at(m.s), p, 1e-9);
     }
-    EXPECT_EQ(map.at(0).s, 0);
-    EXPECT_EQ(map.at(map.end()).s, 10);
+    EXPECT_EQ(map.at(0).s, 1);
+    EXPECT_EQ(map.at(map.end()).s, 11);
     EXPECT_EQ(map.at(0).second, 0);
 }
 
