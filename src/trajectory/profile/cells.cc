@@ -172,7 +172,9 @@ class Scales {
   public:
     Scales(const Run &run, const Bounds &least) : run_(run), least_(least) {}
 
-    const std::vector<double> &find(const RestMap &map, const std::vector<double> &knots, double end_ramp) {
+    /// `laid`, `last`: cells that have coefficients, and the scale of the last of them.
+    const std::vector<double> &find(const RestMap &map, const std::vector<double> &knots, double end_ramp,
+                                    std::size_t laid, double last) {
         const auto &spans = *run_.spans;
         const std::size_t cells = knots.size() - 1;
         scale_.resize(cells);
@@ -182,17 +184,22 @@ class Scales {
         for (std::size_t k = 0; k < cells; ++k) {
             const double middle = 0.5 * (knots[k] + knots[k + 1]);
             s = map.at(middle).s;
-            while (span + 1 < spans.size() && s >= spans[span].end_s()) {
-                ++span;
+            // All spans and moves in the cell: a short one may lie between the places where limits are
+            // checked.
+            double length = spans[span].length;
+            while (span + 1 < spans.size() && map.at(knots[k + 1]).s >= spans[span].end_s()) {
+                length = std::min(length, spans[++span].length);
             }
-            // All moves in the cell: a short one may lie between the places where limits are checked.
             double v = std::min(least_.velocity, (*run_.feeds)[feed].velocity);
             while (feed + 1 < run_.feeds->size() && map.at(knots[k + 1]).s >= (*run_.feeds)[feed].end_s) {
                 v = std::min(v, (*run_.feeds)[++feed].velocity);
             }
             const double before_stop =
                 RestMap::scale_of(end_ramp) + SPACING_GROWTH * std::max(0.0, run_.end_s - end_ramp - s);
-            scale_[k] = std::min({spans[span].length, map.scale_at(middle), before_stop, scale_of_speed(v)});
+            scale_[k] = std::min({length, map.scale_at(middle), before_stop, scale_of_speed(v)});
+        }
+        if (laid > 0) {
+            scale_[laid - 1] = std::min(scale_[laid - 1], last);
         }
         look_ahead(s, span, feed);
         spread(knots);
@@ -238,19 +245,21 @@ class Scales {
 }  // namespace
 
 void creep(const Run &run, const RestMap &map, const std::vector<double> &knots, double end_ramp,
-           std::vector<double> &c) {
+           std::vector<double> &c, double &last_scale) {
     // Times the speed at which the path alone takes all of the jerk or of the acceleration.
     constexpr double SHARE = 0.15;
     const Bounds least = least_of(run.limits);
     Scales scales(run, least);
-    const std::vector<double> &scale = scales.find(map, knots, end_ramp);
     // Coefficient k belongs to the middle of cell k - 1.
+    const std::size_t laid = c.size() > 2 ? c.size() - 2 : 0;
+    const std::vector<double> &scale = scales.find(map, knots, end_ramp, laid, last_scale);
     const std::size_t cells = scale.size();
     for (std::size_t k = c.size(); k < cells + 2; ++k) {
         const double d = scale[std::clamp<std::size_t>(k, 1, cells) - 1];
         c.push_back(
             square(SHARE * std::min(std::cbrt(least.jerk * d * d), std::sqrt(least.acceleration * d))));
     }
+    last_scale = scale.back();
 }
 
 std::size_t span_at(const std::vector<Span> &spans, double s) noexcept {

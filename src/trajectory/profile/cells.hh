@@ -36,6 +36,7 @@ struct FeedLimit {
     double end_s = 0;
     double velocity = 1e300;
     Along along = Along::XYZ;
+    double limit_share = 1;  ///< part of the axes' velocity limits that the move may use (rapid override)
     /// Square of the derivative of that length by s, over the squared velocity.
     double share(const Pose &first) const noexcept;
 };
@@ -85,6 +86,6 @@ void make_rows(const Run &run, const RestMap &map, const double *knots, std::siz
 /// Adds the coefficients of cells that have none: slow enough to keep every row by far. `end_ramp`: length
 /// before the end of the run over which the map may come to be blended into a stop.
 void creep(const Run &run, const RestMap &map, const std::vector<double> &knots, double end_ramp,
-           std::vector<double> &c);
+           std::vector<double> &c, double &last_scale);
 
 }  // namespace mw::trajectory::profile

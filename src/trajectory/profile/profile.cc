@@ -102,7 +102,7 @@ void Profile::lay_cells(std::size_t fixed) {
         }
         knots_.push_back(is_end && s == laid.back() ? map_.end() : map_.parameter_at(s));
     }
-    creep(run, map_, knots_, ramp, c_);
+    creep(run, map_, knots_, ramp, c_, creep_scale_);
 }
 
 void Profile::plan(const Run &run, std::size_t fixed) {

@@ -67,7 +67,8 @@ class Profile {
     std::vector<double> knots_, c_;  ///< of the cells that have not been dropped
     std::vector<TimeCell> time_cells_;
     double start_s_ = 0;
-    double before_ = 0;  ///< length of the cell before them; 0: there is none
+    double creep_scale_ = 0;  ///< of the last cell of the creep
+    double before_ = 0;       ///< length of the cell before them; 0: there is none
     double end_s_ = 0,
            end_ramp_ =
                0;  ///< end of the curve as it is known, and the length over which a stop there is blended
