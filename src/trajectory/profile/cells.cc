@@ -52,11 +52,12 @@ double RoughProfile::ramp_at(const Run &run, double s) noexcept {
 RoughProfile::Node RoughProfile::node_at(const Run &run, std::size_t span, double s, double cell_s) noexcept {
     const CurvePoint p = curve::point_at((*run.spans)[span], s);
     Node node{s, 1e300, 1e300, 1e300, 0};
+    const FeedLimit &feed = (*run.feeds)[run.feed_at(s)];
     double direction = 0, bend = 0;
     for (std::size_t i = 0; i < geometry::AXIS_COUNT; ++i) {
         const Bounds &b = run.limits.axes[i];
         const double q1 = std::max(std::abs(p.first.c[i]), 1e-30);
-        node.v = std::min({node.v, b.velocity / q1,
+        node.v = std::min({node.v, feed.limit_share * b.velocity / q1,
                            std::sqrt(b.acceleration / std::max(std::abs(p.second.c[i]), 1e-30)),
                            std::cbrt(b.jerk / std::max(std::abs(p.third.c[i]), 1e-30))});
         node.acceleration = std::min(node.acceleration, b.acceleration / q1);
@@ -66,12 +67,12 @@ RoughProfile::Node RoughProfile::node_at(const Run &run, std::size_t span, doubl
     }
     const Bounds &b = run.limits.xyz;
     const double n1 = std::max(geometry::norm_xyz(p.first), 1e-30);
-    node.v = std::min({node.v, b.velocity / n1,
+    node.v = std::min({node.v, feed.limit_share * b.velocity / n1,
                        std::sqrt(b.acceleration / std::max(geometry::norm_xyz(p.second), 1e-30)),
                        std::cbrt(b.jerk / std::max(geometry::norm_xyz(p.third), 1e-30))});
     node.acceleration = std::min(node.acceleration, b.acceleration / n1);
     node.jerk = std::min(node.jerk, b.jerk / n1);
-    node.v = std::min(node.v, 1 / std::sqrt(std::max((*run.feeds)[run.feed_at(s)].share(p.first), 1e-30)));
+    node.v = std::min(node.v, 1 / std::sqrt(std::max(feed.share(p.first), 1e-30)));
     node.v = std::min(node.v,
                       TURN_PER_CELL / cell_s * std::sqrt(std::max(direction, 1e-4) / std::max(bend, 1e-30)));
     return node;
@@ -190,9 +191,9 @@ class Scales {
             while (span + 1 < spans.size() && map.at(knots[k + 1]).s >= spans[span].end_s()) {
                 length = std::min(length, spans[++span].length);
             }
-            double v = std::min(least_.velocity, (*run_.feeds)[feed].velocity);
+            double v = speed_of((*run_.feeds)[feed]);
             while (feed + 1 < run_.feeds->size() && map.at(knots[k + 1]).s >= (*run_.feeds)[feed].end_s) {
-                v = std::min(v, (*run_.feeds)[++feed].velocity);
+                v = std::min(v, speed_of((*run_.feeds)[++feed]));
             }
             const double before_stop =
                 RestMap::scale_of(end_ramp) + SPACING_GROWTH * std::max(0.0, run_.end_s - end_ramp - s);
@@ -207,6 +208,9 @@ class Scales {
     }
 
   private:
+    double speed_of(const FeedLimit &feed) const noexcept {
+        return std::min(feed.limit_share * least_.velocity, feed.velocity);
+    }
     /// The scale at which the jerk limit gives this speed.
     double scale_of_speed(double v) const noexcept { return std::sqrt(v * v * v / least_.jerk); }
 
@@ -220,7 +224,7 @@ class Scales {
         }
         for (std::size_t j = feed + 1;
              j < run_.feeds->size() && SPACING_GROWTH * ((*run_.feeds)[j - 1].end_s - s) < last; ++j) {
-            last = std::min(last, scale_of_speed((*run_.feeds)[j].velocity) +
+            last = std::min(last, scale_of_speed(speed_of((*run_.feeds)[j])) +
                                       SPACING_GROWTH * std::max(0.0, (*run_.feeds)[j - 1].end_s - s));
         }
     }
@@ -296,10 +300,11 @@ NormRow norm_row(const ParameterPoint &point, const Bounds &l) noexcept {
             j * dot(0, 2), 9 * j * dot(1, 1), 3 * j * dot(1, 2), j * dot(2, 2)};
 }
 
-/// Coordinates that move on the spans, as bits.
-unsigned moving_coordinates(const std::vector<Span> &spans) noexcept {
+/// Coordinates that move on the spans of a stretch, as bits.
+unsigned moving_coordinates(const std::vector<Span> &spans, double from_s, double to_s) noexcept {
     unsigned moving = 0;
-    for (const Span &span : spans) {
+    for (std::size_t k = span_at(spans, from_s); k < spans.size() && spans[k].start_s <= to_s; ++k) {
+        const Span &span = spans[k];
         for (std::size_t i = 0; i < geometry::AXIS_COUNT; ++i) {
             moving |= span.c[1].c[i] != 0 || span.c[2].c[i] != 0 || span.c[3].c[i] != 0 ? 1U << i : 0U;
         }
@@ -309,9 +314,18 @@ unsigned moving_coordinates(const std::vector<Span> &spans) noexcept {
 
 }  // namespace
 
+double speed_share(const Run &run, const CurvePoint &point, std::size_t feed) noexcept {
+    const FeedLimit &limit = (*run.feeds)[feed];
+    double most = geometry::norm_xyz(point.first) / run.limits.xyz.velocity;
+    for (std::size_t i = 0; i < geometry::AXIS_COUNT; ++i) {
+        most = std::max(most, std::abs(point.first.c[i]) / run.limits.axes[i].velocity);
+    }
+    return std::max(most / limit.limit_share, std::sqrt(limit.share(point.first)));
+}
+
 void make_rows(const Run &run, const RestMap &map, const double *knots, std::size_t cells, Rows &rows) {
     const auto &spans = *run.spans;
-    const unsigned moving = moving_coordinates(spans);
+    const unsigned moving = moving_coordinates(spans, map.at(knots[0]).s, map.at(knots[cells]).s);
     const Bounds &xyz = run.limits.xyz;
     rows.begin(static_cast<std::size_t>(std::popcount(moving)),
                xyz.acceleration < UNLIMITED_BOUND || xyz.jerk < UNLIMITED_BOUND);
@@ -330,8 +344,6 @@ void make_rows(const Run &run, const RestMap &map, const double *knots, std::siz
             }
             const CurvePoint c = curve::point_at(spans[span], m.s);
             const ParameterPoint point = by_parameter(c, m);
-            double v2 = (*run.feeds)[feed].share(c.first) * m.first * m.first;
-            v2 = std::max(v2, square(geometry::norm_xyz(c.first) * m.first / xyz.velocity));
             std::size_t n = 0;
             for (std::size_t i = 0; i < geometry::AXIS_COUNT; ++i) {
                 if ((moving >> i & 1U) == 0) {
@@ -339,7 +351,6 @@ void make_rows(const Run &run, const RestMap &map, const double *knots, std::siz
                 }
                 const Bounds &l = run.limits.axes[i];
                 const double q1 = point.q[0][i], q2 = point.q[1][i], q3 = point.q[2][i];
-                v2 = std::max(v2, square(q1 / l.velocity));
                 rows.set(
                     p, n++,
                     {q1 / l.acceleration, q2 / l.acceleration, q1 / l.jerk, 3 * q2 / l.jerk, q3 / l.jerk});
@@ -347,7 +358,7 @@ void make_rows(const Run &run, const RestMap &map, const double *knots, std::siz
             if (rows.hasNorm()) {
                 rows.set_norm(p, norm_row(point, xyz));
             }
-            rows.set_velocity(p, v2);
+            rows.set_velocity(p, square(m.first * speed_share(run, c, feed)));
         }
     }
 }

@@ -14,25 +14,12 @@ constexpr double LEAST_CELL_S = 5e-4;
 /// Parts of the limits that are planned with: a limit is kept at three places of a cell, and nearly so
 /// between them.
 constexpr double VELOCITY_SHARE = 0.9995, ACCELERATION_SHARE = 0.998, JERK_SHARE = 0.99;
+/// Part of these margins that a direct stop keeps where it is checked.
+constexpr double CHECKED_PART = 0.8;
 /// The least time of a full acceleration [s]: of axes without a jerk limit, too.
 constexpr double LEAST_RAMP_S = 2e-3;
 /// Largest part of the path over which a start or a stop is blended.
 constexpr double MAX_RAMP = 0.3;
-
-struct Motion {
-    double s = 0, v = 0, a = 0;
-};
-
-TimeCell cell_of(const Motion &from, const Motion &to, double duration) noexcept {
-    const double t = duration;
-    const double ds = to.s - from.s - t * (from.v + 0.5 * t * from.a);
-    const double dv = (to.v - from.v - t * from.a) * t;
-    const double da = (to.a - from.a) * t * t;
-    const double t3 = t * t * t;
-    return {duration,
-            {from.s, from.v, 0.5 * from.a, (10 * ds - 4 * dv + 0.5 * da) / t3,
-             (-15 * ds + 7 * dv - da) / (t3 * t), (6 * ds - 3 * dv + 0.5 * da) / (t3 * t * t)}};
-}
 
 }  // namespace
 
@@ -40,6 +27,7 @@ void Profile::begin(double s) noexcept {
     map_ = RestMap();
     knots_.clear();
     c_.clear();
+    eased_.clear();
     time_cells_.clear();
     start_s_ = s;
     before_ = 0;
@@ -55,15 +43,20 @@ double Profile::planned_s() const noexcept {
 
 void Profile::take_limits(const Run &run) {
     run_ = run;
+    checked_ = run;
     double ramp_s = 1e300;
-    const auto share = [&](Bounds &b) {
-        b.velocity *= VELOCITY_SHARE;
-        b.acceleration *= ACCELERATION_SHARE;
-        b.jerk = std::min(b.jerk * JERK_SHARE, b.acceleration / LEAST_RAMP_S);
-        ramp_s = std::min(ramp_s, b.acceleration / b.jerk);
+    const auto share = [&](const Bounds &b, double part) {
+        const double acceleration = b.acceleration * std::pow(ACCELERATION_SHARE, part);
+        const double jerk = std::min(b.jerk * std::pow(JERK_SHARE, part), acceleration / LEAST_RAMP_S);
+        ramp_s = std::min(ramp_s, acceleration / jerk);
+        return Bounds{b.velocity * std::pow(VELOCITY_SHARE, part), acceleration, jerk};
     };
-    std::for_each(run_.limits.axes.begin(), run_.limits.axes.end(), share);
-    share(run_.limits.xyz);
+    for (std::size_t i = 0; i < geometry::AXIS_COUNT; ++i) {
+        run_.limits.axes[i] = share(run.limits.axes[i], 1);
+        checked_.limits.axes[i] = share(run.limits.axes[i], CHECKED_PART);
+    }
+    run_.limits.xyz = share(run.limits.xyz, 1);
+    checked_.limits.xyz = share(run.limits.xyz, CHECKED_PART);
     cell_s_ = std::clamp(ramp_s / CELLS_PER_RAMP, LEAST_CELL_S, settings_.cell_s);
 }
 
@@ -103,6 +96,20 @@ void Profile::lay_cells(std::size_t fixed) {
         knots_.push_back(is_end && s == laid.back() ? map_.end() : map_.parameter_at(s));
     }
     creep(run, map_, knots_, ramp, c_, creep_scale_);
+    eased_.resize(cells());
+}
+
+/// Rows of the cells behind the fixed ones, and the plan as their first coefficients.
+void Profile::prepare(std::size_t fixed) {
+    const std::size_t n = cells() - fixed;
+    make_rows(run_, map_, &knots_[fixed], n, rows_);
+    const Course course = course_from(fixed, &c_[fixed]);
+    law_.begin(rows_, course.before, knots_[fixed + n] - knots_[fixed + n - 1]);
+    std::copy(c_.begin() + static_cast<long>(fixed), c_.end(), law_.coefficients().begin());
+}
+
+void Profile::store(std::size_t fixed) {
+    std::copy_n(law_.coefficients().begin(), cells() - fixed + 2, c_.begin() + static_cast<long>(fixed));
 }
 
 void Profile::plan(const Run &run, std::size_t fixed) {
@@ -112,30 +119,26 @@ void Profile::plan(const Run &run, std::size_t fixed) {
     if (n == 0) {
         return;
     }
-    const double *knots = &knots_[fixed];
-    make_rows(run_, map_, knots, n, rows_);
-    const double before = fixed > 0 ? knots[0] - knots[-1] : before_ > 0 ? before_ : knots[1] - knots[0];
-    law_.begin(rows_, before, knots[n] - knots[n - 1]);
-    const auto c = c_.begin() + static_cast<long>(fixed);
-    std::copy(c, c_.end(), law_.coefficients().begin());
+    prepare(fixed);
+    for (std::size_t k = 0; k < n; ++k) {
+        for (std::size_t p = 0; p < PLACES; ++p) {
+            rows_.allow(k, p, eased_[fixed + k][p]);
+        }
+    }
     worst_start_ = std::max(worst_start_, law_.worst());
     SolveSettings settings;
     settings.cell_s = cell_s_;
     const bool is_moving = fixed > 0 || before_ > 0;
     steps_ += law_.solve(is_moving ? 2 : 0, has_end_ ? 0 : 2, settings);
-    std::copy_n(law_.coefficients().begin(), n + 2, c);
+    store(fixed);
     make_time_cells(fixed);
 }
 
 void Profile::make_time_cells(std::size_t fixed) {
     time_cells_.resize(cells());
-    const auto motion_at = [&](std::size_t cell, double x) {
-        const LawState state = law_.state(cell - fixed, x);
-        const MapPoint m = map_.at(knots_[cell] + x * (knots_[cell + 1] - knots_[cell]));
-        return Motion{m.s, m.first * std::sqrt(state.b), m.second * state.b + m.first * state.a};
-    };
-    for (std::size_t k = fixed; k < cells(); ++k) {
-        time_cells_[k] = cell_of(motion_at(k, 0), motion_at(k, 1), law_.time_of(k - fixed));
+    const Course course = course_from(fixed, law_.coefficients().data());
+    for (std::size_t k = 0; k < course.cells; ++k) {
+        time_cells_[fixed + k] = cell_of(motion_at(course, k, 0), motion_at(course, k, 1), law_.time_of(k));
     }
 }
 
@@ -147,6 +150,7 @@ void Profile::drop(std::size_t count) {
     const auto n = static_cast<long>(count);
     knots_.erase(knots_.begin(), knots_.begin() + n);
     c_.erase(c_.begin(), c_.begin() + n);
+    eased_.erase(eased_.begin(), eased_.begin() + n);
     time_cells_.erase(time_cells_.begin(), time_cells_.begin() + n);
 }
 

@@ -9,23 +9,36 @@
 #include <vector>
 
 #include "trajectory/profile/cells.hh"
+#include "trajectory/profile/stop_law.hh"
 #include "trajectory/profile/time_law.hh"
 
 namespace mw::trajectory::profile {
-
-/// s(t) of a cell: a polynomial of degree five from its start, t in [0, duration].
-struct TimeCell {
-    double duration = 0;
-    std::array<double, 6> c{};
-    double s_at(double t) const noexcept {
-        return c[0] + t * (c[1] + t * (c[2] + t * (c[3] + t * (c[4] + t * c[5]))));
-    }
-};
 
 struct ProfileSettings {
     double cell_s =
         2e-3;  ///< length of a cell in time; with high jerk limits a part of the time of a full acceleration
     double window_s = 0.5;  ///< planned at once
+};
+
+/// A stop: the first `kept` cells of the plan, then these cells.
+struct Stop {
+    std::size_t kept = 0;
+    std::vector<TimeCell> cells;
+    double end_s = 0;
+};
+
+enum class StopEffort : std::uint8_t {
+    QUICK,   ///< for the end of every plan: the first place from which a direct stop keeps all limits
+    SOONEST  ///< the plan, too, slows down: for an operator's stop
+};
+
+/// The coefficients of a plan from one of its cells on.
+struct Course {
+    const double *knots = nullptr, *c = nullptr;
+    std::size_t cells = 0;
+    double before = 0;  ///< length of the cell before the first one
+    /// At the part x in [0, 1] of a cell.
+    LawState state(std::size_t cell, double x) const noexcept;
 };
 
 /// Planner thread. Cells that were planned stay in it until they are dropped, so that another motion can
@@ -39,6 +52,12 @@ class Profile {
     /// Plans a window of the run behind the first `fixed` cells, which stay. The limits are those of the last
     /// plan or higher, the end of the run the same or farther away.
     void plan(const Run &run, std::size_t fixed);
+    /// The soonest stop that keeps every limit of `run`, not before the start of cell `fixed`. The plan stays
+    /// as it is.
+    Stop stop(const Run &run, std::size_t fixed, StopEffort effort);
+    /// As plan(), after limits of speed were lowered. The speed may be above a lowered limit as long as the
+    /// soonest braking needs; acceleration and jerk never.
+    void replan(const Run &run, std::size_t fixed);
     /// Cells that are planned and not dropped.
     std::size_t cells() const noexcept { return knots_.empty() ? 0 : knots_.size() - 1; }
     const TimeCell &cell(std::size_t k) const noexcept { return time_cells_[k]; }
@@ -52,20 +71,33 @@ class Profile {
     int steps() const noexcept { return steps_; }
 
   private:
+    /// How dense the places are at which limits of a direct stop are checked.
+    enum class Density : std::uint8_t { COARSE, EVERY_SPAN };
     void take_limits(const Run &run);
     void lay_cells(std::size_t fixed);
+    void prepare(std::size_t fixed);
+    void store(std::size_t fixed);
+    void slow_down(std::size_t fixed);
     void make_time_cells(std::size_t fixed);
+    Course course_from(std::size_t fixed, const double *c) const noexcept;
+    Motion motion_at(const Course &course, std::size_t cell, double x) const noexcept;
+    bool find_tail(const Run &run, const Course &course, std::size_t cell, DirectStop &tail) const;
+    bool keepsLimits(const Run &run, const Course &course, std::size_t cell, const DirectStop &tail,
+                     Density density, Rates &least) const;
     double planned_s() const noexcept;
 
     ProfileSettings settings_;
     double cell_s_ = 0;
     RestMap map_;
     RoughProfile rough_;
-    Run run_;  ///< its limits with the margins
+    Run run_;      ///< its limits with the margins
+    Run checked_;  ///< with a little less
     Rows rows_;
     TimeLaw law_;
     std::vector<double> knots_, c_;  ///< of the cells that have not been dropped
     std::vector<TimeCell> time_cells_;
+    /// What b may be at the places of each cell, above the limits of the speed; 0: nothing.
+    std::vector<std::array<double, PLACES>> eased_;
     double start_s_ = 0;
     double creep_scale_ = 0;  ///< of the last cell of the creep
     double before_ = 0;       ///< length of the cell before them; 0: there is none

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "trajectory/profile/rows.hh"
 
+#include <algorithm>
+
 namespace mw::trajectory::profile {
 
 void Rows::begin(std::size_t coordinates, bool has_norm) {
@@ -26,6 +28,11 @@ void Rows::add_cell(double h) {
 void Rows::set_velocity(std::size_t place, double v2) noexcept {
     const std::size_t cell = cells_ - 1;
     velocity_[cell / LANES * PLACES + place].v2[cell % LANES] = v2;
+}
+
+void Rows::allow(std::size_t cell, std::size_t place, double b) noexcept {
+    double &v2 = velocity_[cell / LANES * PLACES + place].v2[cell % LANES];
+    v2 = b > 0 ? std::min(v2, 1 / b) : v2;
 }
 
 double Rows::velocity(std::size_t cell, std::size_t place) const noexcept {

@@ -53,6 +53,8 @@ class Rows {
     void set(std::size_t place, std::size_t coordinate, const Row &row) noexcept;
 
     void set_norm(std::size_t place, const NormRow &row) noexcept;
+    /// Raises the velocity limit at a place to what allows b.
+    void allow(std::size_t cell, std::size_t place, double b) noexcept;
 
     std::size_t cells() const noexcept { return cells_; }
     std::size_t blocks() const noexcept { return (cells_ + LANES - 1) / LANES; }

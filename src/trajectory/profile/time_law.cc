@@ -182,6 +182,7 @@ void TimeLaw::begin(const Rows &rows, double before, double behind) {
         alpha_[k] = 1 / (h_[k - 1] + h_[k]);
     }
     c_.assign(padded + 2, 1.0);
+    floors_.assign(padded + 2, 0.0);
 }
 
 /// Objective over mu and the barriers of all rows: gradient and Hessian in the coefficients.
@@ -193,8 +194,9 @@ MW_WIDE void TimeLaw::assemble(double mu) {
     }
     // Coefficients above 0 keep b above 0 everywhere, between the places too.
     for (std::size_t i = 0; i < cells() + 2; ++i) {
-        gradient_[i] = -1 / c_[i];
-        diagonal_[0][i] = gradient_[i] * gradient_[i];
+        const double per_slack = 1 / (c_[i] - floors_[i]);
+        gradient_[i] = weights_[i] / mu - per_slack;
+        diagonal_[0][i] = per_slack * per_slack;
     }
     for (std::size_t block = 0; block < rows_->blocks(); ++block) {
         const std::size_t k = block * LANES;
@@ -207,7 +209,7 @@ MW_WIDE void TimeLaw::assemble(double mu) {
             const State s = state_of(y, PLACE_PART[p]);
             const Lanes rb = 1.0 / root(s.b), per_b = rb * rb;
             const Lanes slope = -0.5 * rb * per_b;
-            const Lanes weight = (SIMPSON[p] / mu) * h * m.real;
+            const Lanes weight = (SIMPSON[p] / mu) * h * m.real * time_weight_;
             Slopes d;
             d.g0 = weight * slope;
             d.h00 = 0.75 * weight * rb * per_b * per_b;
@@ -300,7 +302,7 @@ MW_WIDE double TimeLaw::longest_step() const {
     }
     double most = 1e-300;
     for (std::size_t i = 0; i < cells() + 2; ++i) {
-        most = std::max(most, -step_[i] / c_[i]);
+        most = std::max(most, -step_[i] / (c_[i] - floors_[i]));
     }
     for (std::size_t i = 0; i < LANES; ++i) {
         most = std::max(most, worst[i]);
@@ -323,10 +325,16 @@ double TimeLaw::newton(double mu, std::size_t first, std::size_t last) {
 
 int TimeLaw::solve(std::size_t fixed_start, std::size_t fixed_end, const SolveSettings &settings) {
     const std::size_t last = cells() + 2 - fixed_end;
+    const bool is_time = settings.objective == Objective::TIME;
+    time_weight_ = Lanes{} + (is_time ? 1 / settings.cell_s : 0.0);
+    weights_.assign(c_.size(), 0.0);
+    for (std::size_t i = 0; i < c_.size() && !is_time; ++i) {
+        weights_[i] = 1 / c_[i];
+    }
     int steps = 0;
     for (double mu = settings.first_mu;; mu = std::max(mu * settings.factor, settings.last_mu)) {
         for (int i = 0; i < settings.steps_per_mu; ++i) {
-            const double t = newton(mu * settings.cell_s, fixed_start, last);
+            const double t = newton(mu, fixed_start, last);
             ++steps;
             if (t == 0) {
                 return steps;

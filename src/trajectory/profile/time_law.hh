@@ -10,6 +10,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "trajectory/profile/rows.hh"
@@ -21,7 +22,12 @@ struct LawState {
     double b = 0, a = 0, w = 0;
 };
 
+/// What is made least: the time, or the speed everywhere, by the sum of the coefficients over those of the
+/// start.
+enum class Objective : std::uint8_t { TIME, SPEED };
+
 struct SolveSettings {
+    Objective objective = Objective::TIME;
     double cell_s = 1e-3;  ///< time that counts as 1 in the objective
     double first_mu = 1, last_mu = 1e-3, factor = 0.2;
     int steps_per_mu = 8;
@@ -35,6 +41,8 @@ class TimeLaw {
     std::size_t cells() const noexcept { return rows_->cells(); }
     /// One more and one less than the cells have ends.
     std::vector<double> &coefficients() noexcept { return c_; }
+    /// Least values of the coefficients; `begin` sets 0. The present coefficients are above them.
+    std::vector<double> &floors() noexcept { return floors_; }
     /// From the present coefficients, which keep every row. The first `fixed_start` and the last `fixed_end`
     /// of them stay. Returns the steps of Newton's method.
     int solve(std::size_t fixed_start, std::size_t fixed_end, const SolveSettings &settings);
@@ -55,7 +63,9 @@ class TimeLaw {
     double longest_step() const;
 
     const Rows *rows_ = nullptr;
-    std::vector<double> c_, step_, gradient_;
+    std::vector<double> c_, step_, gradient_, floors_;
+    std::vector<double> weights_;    ///< of the coefficients in the objective
+    Lanes time_weight_{};            ///< of the time
     std::vector<double> h_, alpha_;  ///< padded: lengths of the cells; 1/(h of a cell + h of the one before)
     std::array<std::vector<double>, 3> diagonal_;  ///< of the Hessian: on the diagonal, one and two beside it
     double decrement_ = 0;

@@ -9,20 +9,10 @@
 #include "trajectory/curve/curve_builder.hh"
 #include "trajectory/profile/profile.hh"
 #include "trajectory/test/campaign.hh"
+#include "trajectory/test/profile_rig.hh"
 
 namespace mw::trajectory::profile {
 namespace {
-
-constexpr double T = 1e-3;
-
-CurveLimits limits_of(const Limits &limits) {
-    CurveLimits out;
-    for (std::size_t i = 0; i < geometry::AXIS_COUNT; ++i) {
-        out.axes[i] = {limits.velocity[i], limits.acceleration[i], limits.jerk[i]};
-    }
-    out.xyz = {limits.velocity[XYZ_NORM], limits.acceleration[XYZ_NORM], limits.jerk[XYZ_NORM]};
-    return out;
-}
 
 struct Driven {
     std::vector<Pose> samples;

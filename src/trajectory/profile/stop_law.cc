@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "trajectory/profile/stop_law.hh"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mw::trajectory::profile {
+
+namespace {
+
+struct Phase {
+    double duration = 0, jerk = 0;
+};
+
+Motion after(const Motion &m, double jerk, double t) noexcept {
+    return {m.s + t * (m.v + t * (0.5 * m.a + t * jerk / 6)), m.v + t * (m.a + 0.5 * t * jerk),
+            m.a + t * jerk};
+}
+
+/// The middle and the half width of the x with |p + x q| <= limit; a width below 0: none.
+struct Range {
+    double middle = 0, half = 0;
+};
+Range range_along(double qq, double pq, double pp, double limit) noexcept {
+    const double per = 1 / std::max(qq, 1e-60);
+    const double root = pq * pq + qq * (limit * limit - pp);
+    return {-pq * per, root < 0 ? -1.0 : std::sqrt(root) * per};
+}
+
+double dot_xyz(const Pose &x, const Pose &y) noexcept {
+    return x.c[0] * y.c[0] + x.c[1] * y.c[1] + x.c[2] * y.c[2];
+}
+
+}  // namespace
+
+TimeCell cell_of(const Motion &from, const Motion &to, double duration) noexcept {
+    const double t = duration;
+    const double ds = to.s - from.s - t * (from.v + 0.5 * t * from.a);
+    const double dv = (to.v - from.v - t * from.a) * t;
+    const double da = (to.a - from.a) * t * t;
+    const double t3 = t * t * t;
+    return {duration,
+            {from.s, from.v, 0.5 * from.a, (10 * ds - 4 * dv + 0.5 * da) / t3,
+             (-15 * ds + 7 * dv - da) / (t3 * t), (6 * ds - 3 * dv + 0.5 * da) / (t3 * t * t)}};
+}
+
+bool make_direct_stop(const Motion &from, const Rates &rates, DirectStop &stop) noexcept {
+    const double jerk = rates.jerk;
+    const double fall = from.v + 0.5 * from.a * from.a / jerk;  // as if the acceleration began at 0
+    const double highest = std::sqrt(jerk * fall);
+    double peak = std::min(highest, std::max(rates.acceleration, -from.a));
+    if (!(peak >= -from.a) || !(peak > 0)) {
+        return false;
+    }
+    const double hold = std::max(0.0, (fall - peak * peak / jerk) / peak);
+    const std::array<Phase, DirectStop::PHASES> phases{Phase{(peak + from.a) / jerk, -jerk}, Phase{hold, 0},
+                                                       Phase{peak / jerk, jerk}};
+    Motion m = from;
+    for (std::size_t i = 0; i < phases.size(); ++i) {
+        const Phase &p = phases[i];
+        stop.cells[i] = {p.duration, {m.s, m.v, 0.5 * m.a, p.jerk / 6, 0, 0}};
+        m = after(m, p.jerk, p.duration);
+    }
+    stop.end_s = m.s;
+    return true;
+}
+
+Motion DirectStop::at(double t) const noexcept {
+    std::size_t i = 0;
+    while (i + 1 < PHASES && t > cells[i].duration) {
+        t -= cells[i++].duration;
+    }
+    const auto &c = cells[i].c;
+    return after({c[0], c[1], 2 * c[2]}, 6 * c[3], t);
+}
+
+double DirectStop::jerk_at(double t) const noexcept {
+    std::size_t i = 0;
+    while (i + 1 < PHASES && t > cells[i].duration) {
+        t -= cells[i++].duration;
+    }
+    return 6 * cells[i].c[3];
+}
+
+Rates rates_at(const Run &run, const CurvePoint &point, const Motion &at) noexcept {
+    constexpr double LEAST_SLOPE = 1e-30;
+    Rates rates{-1e300, 1e300, 1e300};
+    const double v2 = at.v * at.v;
+    const Pose bend = point.second * v2;
+    const Pose drift = point.second * (3 * at.v * at.a) + point.third * (v2 * at.v);
+    for (std::size_t i = 0; i < geometry::AXIS_COUNT; ++i) {
+        const Bounds &b = run.limits.axes[i];
+        const double per = 1 / std::max(std::abs(point.first.c[i]), LEAST_SLOPE);
+        const double along = point.first.c[i] < 0 ? -bend.c[i] : bend.c[i];
+        rates.least = std::max(rates.least, (along - b.acceleration) * per);
+        rates.acceleration = std::min(rates.acceleration, (along + b.acceleration) * per);
+        rates.jerk = std::min(rates.jerk, (b.jerk - std::abs(drift.c[i])) * per);
+    }
+    const Bounds &b = run.limits.xyz;
+    const double qq = dot_xyz(point.first, point.first);
+    const Range a = range_along(qq, -dot_xyz(point.first, bend), dot_xyz(bend, bend), b.acceleration);
+    const Range j = range_along(qq, std::abs(dot_xyz(point.first, drift)), dot_xyz(drift, drift), b.jerk);
+    rates.least = std::max(rates.least, a.middle - a.half);
+    rates.acceleration = std::min(rates.acceleration, a.middle + a.half);
+    rates.jerk = std::min(rates.jerk, j.middle + j.half);
+    return rates;
+}
+
+}  // namespace mw::trajectory::profile

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The direct stop: least time from a speed and an acceleration along a curve to rest, with one limit of
+// acceleration and one of jerk that all rows allow on the whole way.
+#pragma once
+
+#include <array>
+
+#include "trajectory/profile/cells.hh"
+
+namespace mw::trajectory::profile {
+
+/// s(t) of a cell: a polynomial of degree five from its start, t in [0, duration].
+struct TimeCell {
+    double duration = 0;
+    std::array<double, 6> c{};
+    double s_at(double t) const noexcept {
+        return c[0] + t * (c[1] + t * (c[2] + t * (c[3] + t * (c[4] + t * c[5]))));
+    }
+};
+
+/// A place on the curve with the speed and the acceleration along it.
+struct Motion {
+    double s = 0, v = 0, a = 0;
+};
+
+/// Quintic between two motions.
+TimeCell cell_of(const Motion &from, const Motion &to, double duration) noexcept;
+
+/// Limits of braking along the curve.
+struct Rates {
+    double least = 0;  ///< braking below it leaves a limit
+    double acceleration = 0, jerk = 0;
+};
+
+/// Jerk -J, then none, then J: by which the acceleration goes to -peak, stays, and ends.
+struct DirectStop {
+    static constexpr std::size_t PHASES = 3;
+    double end_s = 0;
+    std::array<TimeCell, PHASES> cells{};
+    double duration() const noexcept { return cells[0].duration + cells[1].duration + cells[2].duration; }
+    Motion at(double t) const noexcept;
+    double jerk_at(double t) const noexcept;
+};
+
+/// False if the motion would go back.
+bool make_direct_stop(const Motion &from, const Rates &rates, DirectStop &stop) noexcept;
+
+/// What the limits of the run leave along the curve at a place with the speed and the acceleration of `at`:
+/// braking between `least` and `acceleration`, and this jerk, if it is not below 0.
+Rates rates_at(const Run &run, const CurvePoint &point, const Motion &at) noexcept;
+
+}  // namespace mw::trajectory::profile
