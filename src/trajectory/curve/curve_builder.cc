@@ -35,10 +35,23 @@ CurveBuilder::CurveBuilder(double widest) : widest_(widest) {
     begin();
 }
 
-void CurveBuilder::begin() noexcept {
-    path_.clear();
-    caps_.assign(1, {0, widest_, true});
-    knots_.assign(1, 0.0);
+CurveBuilder::Room CurveBuilder::endless() noexcept {
+    Room room;
+    room.low.c.fill(-1e300);
+    room.high.c.fill(1e300);
+    return room;
+}
+
+void CurveBuilder::set_room(const Pose &low, const Pose &high) noexcept {
+    next_room_ = {low, high};
+}
+
+void CurveBuilder::begin(double s) noexcept {
+    start_s_ = s;
+    room_ = next_room_;
+    path_.clear(s);
+    caps_.assign(1, {s, widest_, true});
+    knots_.assign(1, s);
     spans_.clear();
     fixed_ = 1;
     first_open_ = 0;
@@ -172,13 +185,26 @@ void CurveBuilder::place_controls() {
                 ((means_[i + 1] - means_[i]) * (1 / behind) - (means_[i] - means_[i - 1]) * (1 / before)) *
                 (2 / (before + behind));
             const double w = width(i);
-            controls_[i] = controls_[i] + second * (0.5 * (row.curvature_shift(i) - w * w / 12));
+            const Pose control = means_[i] + second * (0.5 * (row.curvature_shift(i) - w * w / 12));
+            controls_[i] = kept_in_room(control, means_[i]);
         }
     }
     open_.clear();
     for (std::size_t k = first_open_; k < row.spans(); ++k) {
         open_.push_back(span_of(k));
     }
+}
+
+/// The weights of a B-spline are 0 or above and add up to 1, so each coordinate of the curve lies between
+/// the least and the largest of its control points. An average of the path is within the room where the path
+/// is.
+Pose CurveBuilder::kept_in_room(const Pose &control, const Pose &mean) const noexcept {
+    Pose kept;
+    for (std::size_t i = 0; i < geometry::AXIS_COUNT; ++i) {
+        kept.c[i] = std::clamp(control.c[i], std::min(room_.low.c[i], mean.c[i]),
+                               std::max(room_.high.c[i], mean.c[i]));
+    }
+    return kept;
 }
 
 Span CurveBuilder::span_of(std::size_t k) const noexcept {

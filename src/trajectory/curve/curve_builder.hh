@@ -24,8 +24,11 @@ class CurveBuilder {
     /// `widest`: largest knot spacing [units].
     explicit CurveBuilder(double widest);
 
-    /// A curve begins at the start of the next move.
-    void begin() noexcept;
+    /// Soft limits, from the next begin() on: the curve stays within them where the programmed path does, and
+    /// leaves them no farther than the path elsewhere. None at first.
+    void set_room(const Pose &low, const Pose &high) noexcept;
+    /// A curve begins at the start of the next move, whose place is `s`.
+    void begin(double s = 0) noexcept;
     /// `tolerance`: largest distance of the curve from the move, lengths and angles apart.
     /// Adds nothing and returns false if the tolerance or the length of the move is not above 0.
     bool add(const Primitive &primitive, double tolerance);
@@ -33,11 +36,11 @@ class CurveBuilder {
     /// open where a next move can change it.
     void extend(bool complete);
 
-    /// Length of the programmed path.
+    /// Place of the end of the programmed path: its length if the curve begins at 0.
     double programmed_length() const noexcept { return path_.length(); }
     /// Spans that do not change any more.
     const std::vector<Span> &spans() const noexcept { return spans_; }
-    double final_s() const noexcept { return spans_.empty() ? 0.0 : spans_.back().end_s(); }
+    double final_s() const noexcept { return spans_.empty() ? start_s_ : spans_.back().end_s(); }
     /// Largest deviation so far over the tolerance there: a bound of it, not a sample.
     double worst_deviation() const noexcept { return final_worst_; }
     /// Fits of the open part until it was within the tolerance.
@@ -54,13 +57,21 @@ class CurveBuilder {
     void lay_between(double from, double to, std::size_t cap);
     double spacing_at(double s, std::size_t &cap) const noexcept;
     void place_controls();
+    Pose kept_in_room(const Pose &control, const Pose &mean) const noexcept;
     Span span_of(std::size_t k) const noexcept;
     bool check();
     void check_span(const Span &span, std::size_t &move);
     void narrow(double s, double excess, double length);
     void keep_final(bool complete);
 
+    struct Room {
+        Pose low, high;
+    };
+    static Room endless() noexcept;
+
     double widest_;
+    double start_s_ = 0;
+    Room next_room_ = endless(), room_ = endless();
     ProgrammedPath path_;
     std::vector<Cap> caps_, found_;
     bool is_narrowed_ = false;

@@ -20,12 +20,17 @@ struct ProgrammedMove {
 /// Moves one after the other, the end of each the start of the next.
 class ProgrammedPath {
   public:
-    void clear() noexcept { moves_.clear(); }
+    /// The next move starts at `s`.
+    void clear(double s = 0) noexcept {
+        moves_.clear();
+        start_s_ = s;
+    }
     void add(const Primitive &primitive, double tolerance);
     /// Removes the moves that end before `s`, except the last one.
     void drop_before(double s) noexcept;
     const std::vector<ProgrammedMove> &moves() const noexcept { return moves_; }
-    double length() const noexcept { return moves_.empty() ? 0.0 : moves_.back().end_s(); }
+    /// Place of its end.
+    double length() const noexcept { return moves_.empty() ? start_s_ : moves_.back().end_s(); }
     /// Index of the move at `s`, searched from the move `near` on.
     std::size_t move_at(double s, std::size_t near) const noexcept;
     /// On the move `index`.
@@ -35,6 +40,7 @@ class ProgrammedPath {
 
   private:
     std::vector<ProgrammedMove> moves_;
+    double start_s_ = 0;
 };
 
 }  // namespace mw::trajectory::curve

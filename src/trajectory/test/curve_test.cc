@@ -148,6 +148,103 @@ TEST(Curve, MakesOneCircleOfRoundedChords) {
     }
 }
 
+/// How far a curve leaves the box of the programmed path, over the size of the box.
+double worst_excursion(const std::vector<Span> &spans, const Pose &low, const Pose &high) {
+    double worst = 0;
+    for (const Span &span : spans) {
+        for (int n = 0; n <= 40; ++n) {
+            const Pose p = position_at(span, span.start_s + span.length * n / 40);
+            for (int i = 0; i < geometry::AXIS_COUNT; ++i) {
+                worst = std::max({worst, low[i] - p[i], p[i] - high[i]});
+            }
+        }
+    }
+    return worst / std::max(1.0, geometry::norm(high - low));
+}
+
+struct Fit {
+    double excursion = 0, deviation = 0;
+};
+
+/// With the box of the path as soft limits.
+Fit fitted_in_box(const std::vector<Primitive> &moves, double tolerance) {
+    Pose low = moves.front().start, high = low;
+    for (const Primitive &p : moves) {
+        Pose from, to;
+        extent(p, from, to);
+        for (int i = 0; i < geometry::AXIS_COUNT; ++i) {
+            low[i] = std::min(low[i], from[i]);
+            high[i] = std::max(high[i], to[i]);
+        }
+    }
+    CurveBuilder builder(WIDEST);
+    builder.set_room(low, high);
+    fitted(moves, tolerance, builder);
+    return {worst_excursion(builder.spans(), low, high), builder.worst_deviation()};
+}
+
+TEST(Curve, StaysWithinSoftLimitsThatThePathRunsAlongAndTouches) {
+    constexpr double ROUNDING = 1e-14;
+    const auto square = lines({xyz(0, 0), xyz(20, 0), xyz(20, 5), xyz(0, 5), xyz(0, 0)});
+    const auto peaks = lines({xyz(0, 0), xyz(5, 10), xyz(6, 0), xyz(7, 10), xyz(7, 0), xyz(7, 10)});
+    ArcShape shape;
+    shape.centre = xyz(8, 0);
+    shape.normal[2] = 1;
+    shape.angle_rad = 4 * std::numbers::pi;
+    Primitive circle;
+    ASSERT_EQ(make_arc(xyz(0, 0), xyz(0, 0, 3), shape, circle), ArcFault::NONE);
+    for (const auto &moves : {square, peaks, lines(rounded_circle(400)), std::vector<Primitive>{circle}}) {
+        for (const double tolerance : {0.001, 0.02, 0.3}) {
+            const Fit fit = fitted_in_box(moves, tolerance);
+            EXPECT_LE(fit.excursion, ROUNDING);
+            EXPECT_LE(fit.deviation, 1);
+        }
+    }
+    // Without limits the curve leaves the box at corners: this test can fail.
+    CurveBuilder builder(WIDEST);
+    EXPECT_GT(worst_excursion(fitted(peaks, 0.3, builder), xyz(0, 0), xyz(7, 10)), 1e-6);
+}
+
+TEST(Curve, StaysWithinSoftLimitsOnRandomPaths) {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> part(-1, 1);
+    for (int n = 0; n < 300; ++n) {
+        std::vector<Pose> points(1);
+        for (int i = 0; i < 30; ++i) {
+            const double size = std::pow(10.0, 1.5 * part(random));
+            points.push_back(points.back() + xyz(size * part(random), size * part(random)));
+        }
+        const Fit fit = fitted_in_box(lines(points), std::pow(10.0, -2 + part(random)));
+        EXPECT_LE(fit.excursion, 1e-14) << n;
+        EXPECT_LE(fit.deviation, 1) << n;
+    }
+}
+
+TEST(Curve, LeavesSoftLimitsNoFartherThanThePath) {
+    const auto moves = lines({xyz(0, 0), xyz(10, 6), xyz(20, 0)});
+    CurveBuilder builder(WIDEST);
+    builder.set_room(xyz(-1, -1, -1), xyz(21, 5, 1));
+    EXPECT_EQ(worst_excursion(fitted(moves, 0.1, builder), xyz(0, 0), xyz(20, 6)), 0);
+    EXPECT_LE(deviation(builder.spans(), moves), 0.1);
+}
+
+TEST(Curve, BeginsAtAPlace) {
+    const auto moves = lines({xyz(0, 0), xyz(10, 6), xyz(20, 0)});
+    CurveBuilder builder(WIDEST);
+    const std::vector<Span> from_0 = fitted(moves, 0.1, builder);
+    builder.begin(128);
+    EXPECT_EQ(builder.final_s(), 128);
+    for (const Primitive &p : moves) {
+        builder.add(p, 0.1);
+    }
+    builder.extend(true);
+    ASSERT_EQ(builder.spans().size(), from_0.size());
+    for (std::size_t k = 0; k < from_0.size(); ++k) {
+        EXPECT_NEAR(builder.spans()[k].start_s, 128 + from_0[k].start_s, 1e-9);
+        EXPECT_LT(geometry::norm(builder.spans()[k].c[0] - from_0[k].c[0]), 1e-9);
+    }
+}
+
 TEST(Curve, RejectsMovesWithoutLengthOrTolerance) {
     CurveBuilder builder(WIDEST);
     const Primitive line = make_line(xyz(0, 0), xyz(1, 0));
