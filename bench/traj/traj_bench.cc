@@ -12,6 +12,7 @@
 #include "traj/jerk_bound.hh"
 #include "traj/kinds.hh"
 #include "trajectory/curve/curve_builder.hh"
+#include "trajectory/curve/exact_builder.hh"
 #include "trajectory/follow/executor.hh"
 #include "trajectory/planner.hh"
 #include "trajectory/profile/profile.hh"
@@ -38,8 +39,7 @@ struct Options {
                                   "Drives each kind of program with the planner in virtual time.\n");
         line.flag("--jerk", "with jerk limits", isJerkLimited);
         line.flag("--fast", "leave the deviation out", isFast);
-        line.flag("--third-order",
-                  "with the third-order profile instead of the planner (kinds with G64 only)", third_order);
+        line.flag("--third-order", "with the third-order profile instead of the planner", third_order);
         line.flag("--bound", "the bound beside each", isBound);
         line.flag("--rate", "planning alone, merging off, on 0.01 mm blocks in nine coordinates", isRate);
         line.text("--trace", "FOLDER", "write the samples of each kind there", trace);
@@ -124,43 +124,79 @@ Run drive(const Program &program, bool isJerkLimited, bool isMerging) {
     return run;
 }
 
-profile::Run run_of(const Program &program, const std::vector<curve::Span> &spans,
-                    const std::vector<profile::FeedLimit> &feeds) {
-    profile::Run run{&spans, &feeds, {}};
+profile::CurveLimits curve_limits_of(const Program &program) {
+    profile::CurveLimits limits;
     for (int i = 0; i < geometry::AXIS_COUNT; ++i) {
-        run.limits.axes[static_cast<std::size_t>(i)] = {program.max_velocity[i], program.max_acceleration[i],
-                                                        program.max_jerk[i]};
+        limits.axes[static_cast<std::size_t>(i)] = {program.max_velocity[i], program.max_acceleration[i],
+                                                    program.max_jerk[i]};
     }
-    return run;
+    return limits;
 }
 
-/// The whole program on one curve, planned in windows of 0.5 s every 50 ms; the time of both counts.
-Run drive_third_order(const Program &program) {
-    constexpr double WIDEST = 3.0, OPEN = 30.0, COMMIT_S = 0.05;
-    constexpr std::size_t LEAST_CELLS = 8;  // behind what is passed on
-    Run out;
-    const auto begin = std::chrono::steady_clock::now();
-    curve::CurveBuilder builder(WIDEST);
+constexpr double WIDEST = 3.0;
+
+/// A curve, its limits, and the places of its stops.
+struct Laid {
+    std::vector<curve::Span> spans;
     std::vector<profile::FeedLimit> feeds;
+    std::vector<profile::SpeedCap> caps;
+    std::vector<double> stops;
+};
+
+/// The whole program on one curve.
+Laid lay_blend(const Program &program) {
+    constexpr double OPEN = 30.0;
+    Laid out;
+    curve::CurveBuilder builder(WIDEST);
     Pose from = program.start;
     double length = 0;
     for (const Move &m : program.moves) {
         const trajectory::Primitive p = primitive_of(from, m);
         builder.add(p, program.tolerance);
         length += p.length;
-        feeds.push_back({length, m.feed > 0 ? m.feed : 1e300});
+        out.feeds.push_back({length, m.feed > 0 ? m.feed : 1e300});
         from = m.end;
         if (builder.programmed_length() - builder.final_s() > OPEN) {
             builder.extend(false);
         }
     }
     builder.extend(true);
+    out.spans = builder.spans();
+    out.stops.push_back(builder.final_s());
+    return out;
+}
+
+/// The programmed path, with stops where its tangent jumps, or at the end of each move.
+Laid lay_exact(const Program &program) {
+    Laid out;
+    curve::ExactBuilder builder(WIDEST);
+    Pose from = program.start;
+    for (const Move &m : program.moves) {
+        builder.add(primitive_of(from, m));
+        out.feeds.push_back({builder.final_s(), m.feed > 0 ? m.feed : 1e300});
+        from = m.end;
+    }
+    const profile::CurveLimits limits = curve_limits_of(program);
+    const bool is_stop = program.moves[0].control == geometry::PathMode::EXACT_STOP;
+    for (const curve::Seam &seam : builder.seams()) {
+        const profile::SpeedCap cap = profile::cap_of(seam, limits, T);
+        if (is_stop || cap.is_stop) {
+            out.stops.push_back(cap.s);
+        } else if (isNeeded(cap, limits)) {
+            out.caps.push_back(cap);
+        }
+    }
+    out.spans = builder.spans();
+    out.stops.push_back(builder.final_s());
+    return out;
+}
+
+/// Planned in windows of 0.5 s every 50 ms. False if the end was not reached.
+bool drive_run(const profile::Run &run, double from_s, std::vector<profile::TimeCell> &cells) {
+    constexpr double COMMIT_S = 0.05;
+    constexpr std::size_t LEAST_CELLS = 8;  // behind what is passed on
     profile::Profile profile({});
-    profile.begin(0);
-    std::vector<profile::TimeCell> cells;
-    profile::Run run = run_of(program, builder.spans(), feeds);
-    run.end_s = builder.final_s();
-    run.has_stop = true;
+    profile.begin(from_s);
     bool is_done = false;
     for (int n = 0; n < 100000 && !is_done; ++n) {
         profile.plan(run, 0);
@@ -173,8 +209,27 @@ Run drive_third_order(const Program &program) {
         is_done = profile.isComplete() && k == profile.cells();
         profile.drop(k);
     }
+    return is_done;
+}
+
+/// The time of fitting and planning counts.
+Run drive_third_order(const Program &program) {
+    Run out;
+    const auto begin = std::chrono::steady_clock::now();
+    const bool is_blend = program.moves[0].control == geometry::PathMode::BLEND;
+    const Laid laid = is_blend ? lay_blend(program) : lay_exact(program);
+    profile::Run run{&laid.spans, &laid.feeds, curve_limits_of(program)};
+    run.caps = &laid.caps;
+    run.has_stop = true;
+    out.isFinished = true;
+    std::vector<profile::TimeCell> cells;
+    double from_s = 0;
+    for (const double stop : laid.stops) {
+        run.end_s = stop;
+        out.isFinished = drive_run(run, from_s, cells) && out.isFinished;
+        from_s = stop;
+    }
     out.planning_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    out.isFinished = is_done;
     out.samples.push_back(program.start);
     std::size_t span = 0;
     double cell_start = 0;
@@ -182,10 +237,10 @@ Run drive_third_order(const Program &program) {
         for (double t = T * static_cast<double>(out.samples.size()) - cell_start; t <= cell.duration;
              t += T) {
             const double s = cell.s_at(t);
-            while (span + 1 < builder.spans().size() && s >= builder.spans()[span].end_s()) {
+            while (span + 1 < laid.spans.size() && s >= laid.spans[span].end_s()) {
                 ++span;
             }
-            out.samples.push_back(curve::position_at(builder.spans()[span], s));
+            out.samples.push_back(curve::position_at(laid.spans[span], s));
         }
         cell_start += cell.duration;
     }
@@ -307,8 +362,7 @@ int main(int argc, char **argv) {
     }
     for (mw::bench::Program program : mw::bench::all_kinds()) {
         program.max_jerk = program.max_jerk * options.jerk_share;
-        const bool is_blend = program.moves[0].control == mw::geometry::PathMode::BLEND;
-        if (program.name.find(options.only) != std::string::npos && (is_blend || !options.third_order)) {
+        if (program.name.find(options.only) != std::string::npos) {
             isOk = mw::bench::measure(options, program) && isOk;
         }
     }

@@ -49,6 +49,18 @@ double RoughProfile::ramp_at(const Run &run, double s) noexcept {
     return node.jerk * t * t * t / 6;
 }
 
+/// Whether a cap is at the node, whose speed it limits.
+bool RoughProfile::apply_caps(const Run &run, Node &node, double tolerance) noexcept {
+    bool is_cap = false;
+    run.each_cap(node.s, node.s, [&](const SpeedCap &cap) {
+        if (std::abs(cap.s - node.s) < tolerance) {
+            node.v = std::min(node.v, cap.v);
+            is_cap = true;
+        }
+    });
+    return is_cap;
+}
+
 RoughProfile::Node RoughProfile::node_at(const Run &run, std::size_t span, double s, double cell_s) noexcept {
     const CurvePoint p = curve::point_at((*run.spans)[span], s);
     Node node{s, 1e300, 1e300, 1e300, 0};
@@ -82,15 +94,20 @@ const std::vector<double> &RoughProfile::lay(const Run &run, const Stretch &stre
     knots_.clear();
     lay_nodes(run, stretch);
     if (nodes_.size() > 1) {
-        lay_knots(stretch);
+        lay_knots(run, stretch);
     }
     return knots_;
+}
+
+bool RoughProfile::isInEnd(const Run &run, const Stretch &stretch, double s) noexcept {
+    return run.has_stop && s > run.end_s - stretch.end_ramp;
 }
 
 /// Lays nodes until the motion without braking takes 1.5 times the horizon, then limits their speeds by
 /// braking.
 void RoughProfile::lay_nodes(const Run &run, const Stretch &stretch) {
     constexpr double FARTHER = 1.5;
+    constexpr double LEAST_STEP = 1e-12;  // nodes closer than rounding count as one
     nodes_.clear();
     reaches_end_ = false;
     const auto &spans = *run.spans;
@@ -100,22 +117,32 @@ void RoughProfile::lay_nodes(const Run &run, const Stretch &stretch) {
         nodes_.back().v = 0;
     }
     double t = 0;
-    for (; k < spans.size() && spans[k].start_s < run.end_s && t < FARTHER * stretch.horizon_s; ++k) {
+    for (; k < spans.size() && spans[k].start_s < run.end_s &&
+           (t < FARTHER * stretch.horizon_s || isInEnd(run, stretch, nodes_.back().s));
+         ++k) {
         for (int n = 1; n <= NODES_PER_SPAN; ++n) {
             const double s = std::min(run.end_s, spans[k].start_s + spans[k].length * n / NODES_PER_SPAN);
             const Node last = nodes_.back();
-            if (s <= last.s + 1e-12) {
+            if (s <= last.s + LEAST_STEP) {
                 continue;
             }
             Node node = node_at(run, k, s, stretch.cell_s);
+            node.is_cap = apply_caps(run, node, 1e-6 * spans[k].length + 1e-15 * std::abs(s));
+            if (node.is_cap && k + 1 < spans.size()) {
+                const Node behind = node_at(run, k + 1, s, stretch.cell_s);
+                node.v = std::min(node.v, behind.v);
+                node.acceleration = std::min(node.acceleration, behind.acceleration);
+                node.jerk = std::min(node.jerk, behind.jerk);
+            }
             node.v = std::min(node.v, faster(last.v, s - last.s, node.acceleration, node.jerk));
             t += 2 * (s - last.s) / (last.v + node.v);
             nodes_.push_back(node);
         }
     }
-    reaches_end_ = nodes_.back().s >= run.end_s;
-    if (reaches_end_ && run.has_stop) {
-        nodes_.back().v = 0;
+    reaches_end_ = nodes_.back().s >= run.end_s - 2 * LEAST_STEP;
+    if (reaches_end_) {
+        nodes_.back().s = run.end_s;
+        nodes_.back().v = run.has_stop ? 0 : nodes_.back().v;
     }
     for (std::size_t i = nodes_.size() - 1; i-- > 0;) {
         Node &n = nodes_[i];
@@ -124,20 +151,41 @@ void RoughProfile::lay_nodes(const Run &run, const Stretch &stretch) {
     }
 }
 
-void RoughProfile::lay_knots(const Stretch &stretch) {
+void RoughProfile::lay_knots(const Run &run, const Stretch &stretch) {
     for (std::size_t i = 1; i < nodes_.size(); ++i) {
         const Node &a = nodes_[i - 1];
         Node &b = nodes_[i];
         b.t = a.t + (std::min(a.v, b.v) == 0 ? 3.0 : 2.0) * (b.s - a.s) / (a.v + b.v);
     }
     const double whole = nodes_.back().t;
-    const bool is_all = reaches_end_ && whole <= stretch.horizon_s + stretch.cell_s;
+    const auto last = std::find_if(nodes_.begin(), nodes_.end(),
+                                   [&](const Node &n) { return n.t >= stretch.horizon_s + stretch.cell_s; });
+    const bool is_all = reaches_end_ && (last == nodes_.end() || isInEnd(run, stretch, last->s));
     const double time = is_all ? whole : std::min(whole, stretch.horizon_s);
-    const auto cells = static_cast<std::size_t>(std::max(1.0, std::ceil(time / stretch.cell_s)));
-    const double h = time / static_cast<double>(cells);
+    // A cell ends at each cap.
+    double from = 0;
     std::size_t node = 1;
+    for (std::size_t i = 1; i < nodes_.size() && nodes_[i].t < time; ++i) {
+        if (nodes_[i].is_cap) {
+            lay_between(from, nodes_[i].t, stretch.cell_s, node);
+            knots_.back() = nodes_[i].s;
+            from = nodes_[i].t;
+        }
+    }
+    if (is_all || time - from > 0.5 * stretch.cell_s) {
+        lay_between(from, time, stretch.cell_s, node);
+    }
+    if (is_all) {
+        knots_.back() = nodes_.back().s;
+    }
+}
+
+/// Cells about as long as `cell_s` between two times; `node`: one at or before the first of them.
+void RoughProfile::lay_between(double from_t, double to_t, double cell_s, std::size_t &node) {
+    const auto cells = static_cast<std::size_t>(std::max(1.0, std::ceil((to_t - from_t) / cell_s)));
+    const double h = (to_t - from_t) / static_cast<double>(cells);
     for (std::size_t k = 1; k <= cells; ++k) {
-        const double t = h * static_cast<double>(k);
+        const double t = from_t + h * static_cast<double>(k);
         while (node + 1 < nodes_.size() && nodes_[node].t < t) {
             ++node;
         }
@@ -148,9 +196,6 @@ void RoughProfile::lay_knots(const Stretch &stretch) {
         knots_.push_back(a.v == 0   ? a.s + (b.s - a.s) * x * x * x
                          : b.v == 0 ? b.s - (b.s - a.s) * y * y * y
                                     : a.s + x * (b.t - a.t) * (a.v + 0.5 * (b.v - a.v) * x));
-    }
-    if (is_all) {
-        knots_.back() = nodes_.back().s;
     }
 }
 
@@ -197,6 +242,8 @@ class Scales {
             }
             const double before_stop =
                 RestMap::scale_of(end_ramp) + SPACING_GROWTH * std::max(0.0, run_.end_s - end_ramp - s);
+            run_.each_cap(map.at(knots[k]).s, map.at(knots[k + 1]).s,
+                          [&](const SpeedCap &cap) { v = std::min(v, cap.v); });
             scale_[k] = std::min({length, map.scale_at(middle), before_stop, scale_of_speed(v)});
         }
         if (laid > 0) {
@@ -227,6 +274,10 @@ class Scales {
             last = std::min(last, scale_of_speed(speed_of((*run_.feeds)[j])) +
                                       SPACING_GROWTH * std::max(0.0, (*run_.feeds)[j - 1].end_s - s));
         }
+        run_.each_cap(s, s + last / SPACING_GROWTH, [&](const SpeedCap &cap) {
+            last =
+                std::min(last, scale_of_speed(cap.v) + SPACING_GROWTH * std::max(0.0, cap.s - cap.reach - s));
+        });
     }
 
     void spread(const std::vector<double> &knots) {
@@ -290,14 +341,63 @@ ParameterPoint by_parameter(const CurvePoint &p, const MapPoint &m) noexcept {
     return out;
 }
 
-NormRow norm_row(const ParameterPoint &point, const Bounds &l) noexcept {
+/// What the caps around a cell leave of the limits: jumps of the tangent a part, those of the curvature one
+/// that falls with the square of the speed.
+struct Rest {
+    double v2 = 0;  ///< 1 over the square of the maximum speed
+    PerLimited bend{}, jerk_part, acceleration_part;
+
+    Rest() noexcept {
+        jerk_part.fill(1);
+        acceleration_part.fill(1);
+    }
+};
+
+const Bounds &bounds_of(const CurveLimits &limits, std::size_t i) noexcept {
+    return i == XYZ_NORM ? limits.xyz : limits.axes[i];
+}
+
+Rest rest_of(const Run &run, double from, double to) noexcept {
+    Rest rest;
+    PerLimited turn{}, used{};
+    double slowest = 0;
+    run.each_cap(from, to, [&](const SpeedCap &cap) {
+        for (std::size_t i = 0; i < LIMITED_COUNT; ++i) {
+            turn[i] += cap.turn[i];
+            rest.bend[i] += cap.bend[i];
+            slowest = std::max(slowest, turn[i] / (TURN_SHARE * bounds_of(run.limits, i).jerk));
+        }
+    });
+    // Caps closer together than their reach share what jumps of the tangent may take.
+    rest.v2 = square(slowest);
+    run.each_cap(from, to, [&](const SpeedCap &cap) {
+        const double near = 1e-3 * (to - from);
+        const bool is_here = cap.s > from - near && cap.s < to + near;
+        rest.v2 = is_here ? std::max(rest.v2, 1 / square(cap.v)) : rest.v2;
+        const double v = slowest > 0 ? std::min(cap.v, 1 / slowest) : cap.v;
+        for (std::size_t i = 0; i < LIMITED_COUNT; ++i) {
+            const Bounds &b = bounds_of(run.limits, i);
+            used[i] += v * cap.turn[i];
+            rest.jerk_part[i] = 1 - used[i] / b.jerk;
+            rest.acceleration_part[i] = 1 - used[i] * cap.period_s / b.acceleration;
+        }
+    });
+    return rest;
+}
+
+/// The limits at a place of a cell.
+Bounds left_of(const Bounds &b, const Rest &rest, std::size_t i) noexcept {
+    return {b.velocity, b.acceleration * rest.acceleration_part[i], b.jerk * rest.jerk_part[i]};
+}
+
+NormRow norm_row(const ParameterPoint &point, const Bounds &l, double bend) noexcept {
     const auto dot = [&](std::size_t i, std::size_t j) {
         const auto &x = point.q[i], &y = point.q[j];
         return x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
     };
     const double a = 1 / (l.acceleration * l.acceleration), j = 1 / (l.jerk * l.jerk);
     return {a * dot(0, 0), a * dot(0, 1),     a * dot(1, 1),     j * dot(0, 0), 3 * j * dot(0, 1),
-            j * dot(0, 2), 9 * j * dot(1, 1), 3 * j * dot(1, 2), j * dot(2, 2)};
+            j * dot(0, 2), 9 * j * dot(1, 1), 3 * j * dot(1, 2), j * dot(2, 2), bend / l.jerk};
 }
 
 /// Coordinates that move on the spans of a stretch, as bits.
@@ -311,6 +411,9 @@ unsigned moving_coordinates(const std::vector<Span> &spans, double from_s, doubl
     }
     return moving;
 }
+
+/// How far inside of a cell the span for its end is searched, as a part of half of the cell.
+constexpr double INSIDE = 1e-3;
 
 }  // namespace
 
@@ -334,9 +437,13 @@ void make_rows(const Run &run, const RestMap &map, const double *knots, std::siz
     for (std::size_t k = 0; k < cells; ++k) {
         const double h = knots[k + 1] - knots[k];
         rows.add_cell(h);
+        const double from = map.at(knots[k]).s, to = map.at(knots[k + 1]).s;
+        const Rest rest = rest_of(run, from, to);
         for (std::size_t p = 0; p < PLACES; ++p) {
             const MapPoint m = map.at(knots[k] + h * PLACE_PART[p]);
-            while (span + 1 < spans.size() && m.s >= spans[span].end_s()) {
+            // At the ends of a cell the curve on the side of the cell: derivatives may jump there.
+            const double inside = m.s + INSIDE * (0.5 * (from + to) - m.s);
+            while (span + 1 < spans.size() && inside >= spans[span].end_s()) {
                 ++span;
             }
             while (feed + 1 < run.feeds->size() && m.s > (*run.feeds)[feed].end_s) {
@@ -349,16 +456,17 @@ void make_rows(const Run &run, const RestMap &map, const double *knots, std::siz
                 if ((moving >> i & 1U) == 0) {
                     continue;
                 }
-                const Bounds &l = run.limits.axes[i];
+                const Bounds l = left_of(run.limits.axes[i], rest, i);
                 const double q1 = point.q[0][i], q2 = point.q[1][i], q3 = point.q[2][i];
-                rows.set(
-                    p, n++,
-                    {q1 / l.acceleration, q2 / l.acceleration, q1 / l.jerk, 3 * q2 / l.jerk, q3 / l.jerk});
+                rows.set(p, n++,
+                         {q1 / l.acceleration, q2 / l.acceleration, q1 / l.jerk, 3 * q2 / l.jerk, q3 / l.jerk,
+                          rest.bend[i] * m.first * m.first / l.jerk});
             }
             if (rows.hasNorm()) {
-                rows.set_norm(p, norm_row(point, xyz));
+                rows.set_norm(p, norm_row(point, left_of(xyz, rest, XYZ_NORM),
+                                          rest.bend[XYZ_NORM] * m.first * m.first));
             }
-            rows.set_velocity(p, square(m.first * speed_share(run, c, feed)));
+            rows.set_velocity(p, (square(speed_share(run, c, feed)) + rest.v2) * m.first * m.first);
         }
     }
 }

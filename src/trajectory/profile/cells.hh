@@ -2,29 +2,23 @@
 // Cells of the timing problem along a curve, about equal in time, and their rows.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
 
 #include "trajectory/curve/spline.hh"
 #include "trajectory/path/primitive.hh"
+#include "trajectory/profile/curve_limits.hh"
 #include "trajectory/profile/rest_map.hh"
 #include "trajectory/profile/rows.hh"
+#include "trajectory/profile/speed_cap.hh"
 
 namespace mw::trajectory::profile {
 
 using curve::CurvePoint;
 using curve::Span;
 using geometry::Pose;
-
-/// Limits of one coordinate.
-struct Bounds {
-    double velocity = 1e300, acceleration = 1e300, jerk = 1e300;
-};
-struct CurveLimits {
-    std::array<Bounds, geometry::AXIS_COUNT> axes;
-    Bounds xyz;  ///< of the norm over X Y Z
-};
 
 /// Maximum speed of a move, up to `end_s` of the programmed path.
 struct FeedLimit {
@@ -48,6 +42,23 @@ struct Run {
     CurveLimits limits;
     double end_s = 0;       ///< end of what may be driven, within the spans
     bool has_stop = false;  ///< the motion stops there; otherwise more will follow
+    /// In order, those with a stop left out: the run ends there. Null: none.
+    const std::vector<SpeedCap> *caps = nullptr;
+    double cap_reach = 0;  ///< the largest reach of a cap; set by Profile
+    /// Calls `take` with each cap whose reach touches [from, to].
+    template <typename Take>
+    void each_cap(double from, double to, const Take &take) const {
+        if (caps == nullptr) {
+            return;
+        }
+        auto cap = std::partition_point(caps->begin(), caps->end(),
+                                        [&](const SpeedCap &c) { return c.s + cap_reach < from; });
+        for (; cap != caps->end() && cap->s - cap_reach <= to; ++cap) {
+            if (cap->s + cap->reach >= from && cap->s - cap->reach <= to) {
+                take(*cap);
+            }
+        }
+    }
     /// Index of the limit at s.
     std::size_t feed_at(double s) const noexcept;
 };
@@ -61,6 +72,7 @@ class RoughProfile {
         bool from_rest = false;
         double horizon_s = 0;  ///< time of what is laid
         double cell_s = 0;     ///< time of a cell
+        double end_ramp = 0;   ///< before the end of the run: cells reach there only together with the stop
     };
     /// Ends of cells of about equal time along the curve, after the start.
     const std::vector<double> &lay(const Run &run, const Stretch &stretch);
@@ -71,10 +83,14 @@ class RoughProfile {
   private:
     struct Node {
         double s = 0, v = 0, acceleration = 0, jerk = 0, t = 0;
+        bool is_cap = false;  ///< a cell ends there
     };
     static Node node_at(const Run &run, std::size_t span, double s, double cell_s) noexcept;
     void lay_nodes(const Run &run, const Stretch &stretch);
-    void lay_knots(const Stretch &stretch);
+    void lay_knots(const Run &run, const Stretch &stretch);
+    static bool isInEnd(const Run &run, const Stretch &stretch, double s) noexcept;
+    void lay_between(double from_t, double to_t, double cell_s, std::size_t &node);
+    static bool apply_caps(const Run &run, Node &node, double tolerance) noexcept;
     std::vector<Node> nodes_;
     std::vector<double> knots_;
     bool reaches_end_ = false;

@@ -16,8 +16,6 @@ constexpr double LEAST_CELL_S = 5e-4;
 constexpr double VELOCITY_SHARE = 0.9995, ACCELERATION_SHARE = 0.998, JERK_SHARE = 0.99;
 /// Part of these margins that a direct stop keeps where it is checked.
 constexpr double CHECKED_PART = 0.8;
-/// The least time of a full acceleration [s]: of axes without a jerk limit, too.
-constexpr double LEAST_RAMP_S = 2e-3;
 /// Largest part of the path over which a start or a stop is blended.
 constexpr double MAX_RAMP = 0.3;
 
@@ -51,6 +49,13 @@ void Profile::take_limits(const Run &run) {
         ramp_s = std::min(ramp_s, acceleration / jerk);
         return Bounds{b.velocity * std::pow(VELOCITY_SHARE, part), acceleration, jerk};
     };
+    run_.cap_reach = 0;
+    for (std::size_t k = 0; run.caps != nullptr && k < run.caps->size(); ++k) {
+        run_.cap_reach = std::max(run_.cap_reach, (*run.caps)[k].reach);
+    }
+    const auto &spans = *run.spans;
+    const curve::CurvePoint end = curve::point_at(spans[span_at(spans, run.end_s)], run.end_s);
+    reach_ = largest_reach(end, run.limits, settings_.period_s);
     for (std::size_t i = 0; i < geometry::AXIS_COUNT; ++i) {
         run_.limits.axes[i] = share(run.limits.axes[i], 1);
         checked_.limits.axes[i] = share(run.limits.axes[i], CHECKED_PART);
@@ -68,7 +73,12 @@ void Profile::lay_cells(std::size_t fixed) {
     }
     const bool is_first = knots_.empty();
     const double from = planned_s();
-    const auto &laid = rough_.lay(run, {from, is_first, settings_.window_s - planned, cell_s_});
+    // The creep that was laid before counts on the ramp before the end as long as the curve ends there.
+    if (run.end_s != end_s_) {
+        end_s_ = run.end_s;
+        end_ramp_ = std::min(RoughProfile::ramp_at(run, run.end_s), MAX_RAMP * (run.end_s - from));
+    }
+    const auto &laid = rough_.lay(run, {from, is_first, settings_.window_s - planned, cell_s_, end_ramp_});
     if (laid.empty()) {
         return;
     }
@@ -77,11 +87,6 @@ void Profile::lay_cells(std::size_t fixed) {
                        std::min(RoughProfile::ramp_at(run, start_s_), MAX_RAMP * (run.end_s - start_s_)));
         knots_.push_back(0);
     }
-    // The creep that was laid before counts on the ramp before the end as long as the curve ends there.
-    if (run.end_s != end_s_) {
-        end_s_ = run.end_s;
-        end_ramp_ = std::min(RoughProfile::ramp_at(run, run.end_s), MAX_RAMP * (run.end_s - from));
-    }
     const double ramp = end_ramp_;
     const bool is_end = run.has_stop && laid.back() >= run.end_s;
     if (is_end) {
@@ -89,13 +94,17 @@ void Profile::lay_cells(std::size_t fixed) {
         has_end_ = true;
     }
     for (const double s : laid) {
-        // A stop at the end of what is known must still be possible.
-        if (!is_end && s > run.end_s - ramp) {
+        // A stop at the end of what is known must still be possible, and what follows must not lower limits.
+        if (!is_end && s > run.end_s - std::max(ramp, run.has_stop ? 0.0 : reach_)) {
             break;
         }
         knots_.push_back(is_end && s == laid.back() ? map_.end() : map_.parameter_at(s));
     }
-    creep(run, map_, knots_, ramp, c_, creep_scale_);
+    if (knots_.size() > 1) {
+        creep(run, map_, knots_, ramp, c_, creep_scale_);
+    } else {
+        knots_.clear();  // too little of the curve is known
+    }
     eased_.resize(cells());
 }
 
@@ -115,7 +124,7 @@ void Profile::store(std::size_t fixed) {
 void Profile::plan(const Run &run, std::size_t fixed) {
     take_limits(run);
     lay_cells(fixed);
-    const std::size_t n = cells() - fixed;
+    const std::size_t n = cells() - std::min(fixed, cells());
     if (n == 0) {
         return;
     }

@@ -17,7 +17,8 @@ namespace mw::trajectory::profile {
 struct ProfileSettings {
     double cell_s =
         2e-3;  ///< length of a cell in time; with high jerk limits a part of the time of a full acceleration
-    double window_s = 0.5;  ///< planned at once
+    double window_s = 0.5;   ///< planned at once
+    double period_s = 1e-3;  ///< of the servo thread: limits hold for samples so far apart
 };
 
 /// A stop: the first `kept` cells of the plan, then these cells.
@@ -100,7 +101,8 @@ class Profile {
     std::vector<std::array<double, PLACES>> eased_;
     double start_s_ = 0;
     double creep_scale_ = 0;  ///< of the last cell of the creep
-    double before_ = 0;       ///< length of the cell before them; 0: there is none
+    double before_ = 0;  ///< length of the cell before them; 0: there is none
+    double reach_ = 0;   ///< before the end of what is known: a seam there may lower limits so far
     double end_s_ = 0,
            end_ramp_ =
                0;  ///< end of the curve as it is known, and the length over which a stop there is blended

@@ -50,6 +50,7 @@ void Rows::set(std::size_t place, std::size_t coordinate, const Row &row) noexce
     r.j1[lane] = row.j1 * per_h * per_h;
     r.j2[lane] = row.j2 * per_h;
     r.j3[lane] = row.j3;
+    r.k[lane] = row.k;
 }
 
 void Rows::set_norm(std::size_t place, const NormRow &row) noexcept {
@@ -66,21 +67,22 @@ void Rows::set_norm(std::size_t place, const NormRow &row) noexcept {
     n.jaa[i] = row.jaa * p2;
     n.jab[i] = row.jab * p1;
     n.jbb[i] = row.jbb;
+    n.k[i] = row.k;
 }
 
 NormRow Rows::get_norm(std::size_t cell, std::size_t place) const noexcept {
     const std::size_t i = cell % LANES;
     const double h = lengths_[cell], h2 = h * h;
     const NormLanes &n = norms_[cell / LANES * PLACES + place];
-    return {n.aa[i] * h2,  n.ab[i] * h,  n.bb[i], n.jww[i] * h2 * h2, n.jwa[i] * h2 * h, n.jwb[i] * h2,
-            n.jaa[i] * h2, n.jab[i] * h, n.jbb[i]};
+    return {n.aa[i] * h2,  n.ab[i] * h,   n.bb[i],      n.jww[i] * h2 * h2, n.jwa[i] * h2 * h,
+            n.jwb[i] * h2, n.jaa[i] * h2, n.jab[i] * h, n.jbb[i],           n.k[i]};
 }
 
 Row Rows::get(std::size_t cell, std::size_t place, std::size_t coordinate) const noexcept {
     const std::size_t lane = cell % LANES;
     const double h = lengths_[cell];
     const RowLanes &r = rows_[(cell / LANES * PLACES + place) * coordinates_ + coordinate];
-    return {r.a1[lane] * h, r.a2[lane], r.j1[lane] * h * h, r.j2[lane] * h, r.j3[lane]};
+    return {r.a1[lane] * h, r.a2[lane], r.j1[lane] * h * h, r.j2[lane] * h, r.j3[lane], r.k[lane]};
 }
 
 }  // namespace mw::trajectory::profile

@@ -15,29 +15,32 @@ inline constexpr std::size_t PLACES = 3;
 inline constexpr std::array<double, PLACES> PLACE_PART{0, 0.5, 1};
 
 /// A coordinate at a place, derivatives by the parameter: over its limits
-///   |q' a + q'' b| <= 1 and |q' w + 3 q'' a + q''' b| sqrt(b) <= 1.
+///   |q' a + q'' b| <= 1 and |q' w + 3 q'' a + q''' b| sqrt(b) + k b <= 1.
+/// k: of a jump of the curvature (see speed_cap.hh).
 struct Row {
     double a1 = 0, a2 = 0;
     double j1 = 0, j2 = 0, j3 = 0;
+    double k = 0;
 };
 
 /// LANES cells: what the solver reads, scaled by the lengths of the cells (see time_law.cc).
 struct alignas(Lanes) RowLanes {
-    Lanes a1{}, a2{}, j1{}, j2{}, j3{};
+    Lanes a1{}, a2{}, j1{}, j2{}, j3{}, k{};
 };
 
 /// A norm over some coordinates at a place, over its limits. With the derivatives as vectors its square is a
-/// quadratic form: acceleration aa a^2 + 2 ab a b + bb b^2 <= 1, jerk the same of (w, a, b) <= 1/b.
+/// quadratic form: acceleration aa a^2 + 2 ab a b + bb b^2 <= 1, jerk the same of (w, a, b) <= (1 - k b)^2/b.
 struct NormRow {
     double aa = 0, ab = 0, bb = 0;
     double jww = 0, jwa = 0, jwb = 0, jaa = 0, jab = 0, jbb = 0;
+    double k = 0;
 };
 struct alignas(Lanes) VelocityLanes {
     Lanes v2{};
 };
 struct alignas(Lanes) NormLanes {
     Lanes aa{}, ab{}, bb{};
-    Lanes jww{}, jwa{}, jwb{}, jaa{}, jab{}, jbb{};
+    Lanes jww{}, jwa{}, jwb{}, jaa{}, jab{}, jbb{}, k{};
 };
 
 /// The rows of all cells. Every cell has the same number of coordinates.

@@ -68,10 +68,23 @@ struct Slopes {
     d.h00 += g * g;
 }
 
-/// -log(1 - u^2) with u the acceleration; -log of the slacks 1/sqrt(b) + z and 1/sqrt(b) - z with z the jerk
-/// and the tangent of 1/sqrt(b), whose slope is `slope`.
-[[gnu::always_inline]] inline void add_row(const State &s, const RowLanes &r, const Lanes &rb,
-                                           const Lanes &slope, Slopes &d) noexcept {
+/// 1/sqrt(b) - k sqrt(b), which the jerk may take, and its slope; `of_root`: those of 1/sqrt(b). Both parts
+/// are convex, so the tangent is a safe bound.
+struct JerkBound {
+    Lanes value, slope;
+};
+
+[[gnu::always_inline]] inline JerkBound jerk_bound(const State &s, const JerkBound &of_root,
+                                                   const Lanes &k) noexcept {
+    const Lanes kb = k * s.b;
+    return {of_root.value * (1.0 - kb), of_root.slope * (1.0 + kb)};
+}
+
+/// -log(1 - u^2) with u the acceleration; -log of the slacks bound + z and bound - z with z the jerk and the
+/// tangent of its bound.
+[[gnu::always_inline]] inline void add_row(const State &s, const RowLanes &r, const JerkBound &of_root,
+                                           Slopes &d) noexcept {
+    const auto [rb, slope] = jerk_bound(s, of_root, r.k);
     const Lanes u = r.a1 * s.a + r.a2 * s.b;
     const Lanes t = 1.0 / (1.0 - u * u);
     const Lanes g = 2.0 * u * t;
@@ -105,13 +118,21 @@ struct NormState {
             n.jwa * s.w + n.jaa * s.a + n.jab * s.b, n.jwb * s.w + n.jab * s.a + n.jbb * s.b};
 }
 
-/// -log(1 - acceleration^2) and -log(1/b - jerk^2), with the tangent of 1/b.
+/// (1 - k b)^2/b, which the square of the jerk may take, and minus its slope. Convex, too.
+[[gnu::always_inline]] inline JerkBound norm_bound(const State &s, const Lanes &per_b,
+                                                   const Lanes &k) noexcept {
+    const Lanes left = 1.0 - k * s.b;
+    return {per_b * left * left, per_b * per_b - k * k};
+}
+
+/// -log(1 - acceleration^2) and -log(bound - jerk^2), with the tangent of the bound.
 [[gnu::always_inline]] inline void add_norm(const State &s, const NormLanes &n, const Lanes &per_b,
                                             Slopes &d) noexcept {
     const NormState m = norm_of(n, s);
     const Lanes t = 1.0 / (1.0 - m.qa * s.a - m.qb * s.b), t4 = 4.0 * t * t;
-    const Lanes r = 1.0 / (per_b - m.zw * s.w - m.za * s.a - m.zb * s.b), r2 = r * r;
-    const Lanes eb = 2.0 * m.zb + per_b * per_b, ea = 2.0 * m.za, ew = 2.0 * m.zw;
+    const JerkBound bound = norm_bound(s, per_b, n.k);
+    const Lanes r = 1.0 / (bound.value - m.zw * s.w - m.za * s.a - m.zb * s.b), r2 = r * r;
+    const Lanes eb = 2.0 * m.zb + bound.slope, ea = 2.0 * m.za, ew = 2.0 * m.zw;
     d.g0 += 2.0 * m.qb * t + eb * r;
     d.g1 += 2.0 * m.qa * t + ea * r;
     d.g2 += ew * r;
@@ -142,7 +163,9 @@ struct NormState {
 
 /// Largest step over 1 that a pair of slacks allows, whose values are 1 - u and 1 + u.
 [[gnu::always_inline]] inline Lanes inverse_step(const State &s, const State &ds, const RowLanes &r,
-                                                 const Lanes &rb, const Lanes &slope) noexcept {
+                                                 const JerkBound &of_root) noexcept {
+    const JerkBound bound = jerk_bound(s, of_root, r.k);
+    const Lanes rb = bound.value, slope = bound.slope * ds.b;
     const Lanes u = r.a1 * s.a + r.a2 * s.b, du = r.a1 * ds.a + r.a2 * ds.b;
     const Lanes t = 1.0 / (1.0 - u * u);
     const Lanes z = r.j1 * s.w + r.j2 * s.a + r.j3 * s.b, dz = r.j1 * ds.w + r.j2 * ds.a + r.j3 * ds.b;
@@ -161,8 +184,9 @@ struct NormState {
     const NormState m = norm_of(n, s), d = norm_of(n, ds);
     const Lanes acceleration = inverse_root(1.0 - m.qa * s.a - m.qb * s.b, 2.0 * (m.qa * ds.a + m.qb * ds.b),
                                             d.qa * ds.a + d.qb * ds.b);
-    const Lanes jerk = inverse_root(per_b - m.zw * s.w - m.za * s.a - m.zb * s.b,
-                                    2.0 * (m.zw * ds.w + m.za * ds.a + m.zb * ds.b) + per_b * per_b * ds.b,
+    const JerkBound bound = norm_bound(s, per_b, n.k);
+    const Lanes jerk = inverse_root(bound.value - m.zw * s.w - m.za * s.a - m.zb * s.b,
+                                    2.0 * (m.zw * ds.w + m.za * ds.a + m.zb * ds.b) + bound.slope * ds.b,
                                     d.zw * ds.w + d.za * ds.a + d.zb * ds.b);
     return larger(acceleration, jerk);
 }
@@ -216,7 +240,7 @@ MW_WIDE void TimeLaw::assemble(double mu) {
             add_velocity(s, rows_->velocity_lanes(block, p), d);
             const RowLanes *row = rows_->row_lanes(block, p);
             for (std::size_t i = 0; i < rows_->coordinates(); ++i) {
-                add_row(s, row[i], rb, slope, d);
+                add_row(s, row[i], {rb, slope}, d);
             }
             if (rows_->hasNorm()) {
                 add_norm(s, rows_->norm_lanes(block, p), per_b, d);
@@ -288,12 +312,12 @@ MW_WIDE double TimeLaw::longest_step() const {
         for (std::size_t p = 0; p < PLACES; ++p) {
             const State s = state_of(y, PLACE_PART[p]), ds = state_of(dy, PLACE_PART[p]);
             const Lanes rb = 1.0 / root(s.b), per_b = rb * rb;
-            const Lanes slope = -0.5 * rb * per_b * ds.b;
+            const Lanes slope = -0.5 * rb * per_b;
             const Lanes v2 = rows_->velocity_lanes(block, p);
             worst = larger(worst, v2 * ds.b / (1.0 - s.b * v2));
             const RowLanes *row = rows_->row_lanes(block, p);
             for (std::size_t i = 0; i < rows_->coordinates(); ++i) {
-                worst = larger(worst, inverse_step(s, ds, row[i], rb, slope));
+                worst = larger(worst, inverse_step(s, ds, row[i], {rb, slope}));
             }
             if (rows_->hasNorm()) {
                 worst = larger(worst, inverse_step(s, ds, rows_->norm_lanes(block, p), per_b));
@@ -385,14 +409,14 @@ double TimeLaw::worst_at(std::size_t cell, std::size_t place) const noexcept {
     for (std::size_t i = 0; i < rows_->coordinates(); ++i) {
         const Row r = rows_->get(cell, place, i);
         worst = std::max({worst, std::abs(r.a1 * s.a + r.a2 * s.b),
-                          std::abs(r.j1 * s.w + r.j2 * s.a + r.j3 * s.b) * std::sqrt(s.b)});
+                          std::abs(r.j1 * s.w + r.j2 * s.a + r.j3 * s.b) * std::sqrt(s.b) + r.k * s.b});
     }
     if (rows_->hasNorm()) {
         const NormRow n = rows_->get_norm(cell, place);
         const double q = n.aa * s.a * s.a + 2 * n.ab * s.a * s.b + n.bb * s.b * s.b;
         const double z = n.jww * s.w * s.w + n.jaa * s.a * s.a + n.jbb * s.b * s.b +
                          2 * (n.jwa * s.w * s.a + n.jwb * s.w * s.b + n.jab * s.a * s.b);
-        worst = std::max({worst, std::sqrt(std::max(q, 0.0)), std::sqrt(std::max(z * s.b, 0.0))});
+        worst = std::max({worst, std::sqrt(std::max(q, 0.0)), std::sqrt(std::max(z * s.b, 0.0)) + n.k * s.b});
     }
     return worst;
 }
