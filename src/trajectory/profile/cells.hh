@@ -98,7 +98,7 @@ class RoughProfile {
 
 /// The span at s.
 std::size_t span_at(const std::vector<Span> &spans, double s) noexcept;
-/// Inverse of the largest speed along the curve that the limits of speed allow at a point.
+/// Inverse of the maximum speed along the curve that the limits of speed allow at a point.
 double speed_share(const Run &run, const CurvePoint &point, std::size_t feed) noexcept;
 void make_rows(const Run &run, const RestMap &map, const double *knots, std::size_t cells, Rows &rows);
 /// Adds the coefficients of cells that have none: slow enough to keep every row by far. `end_ramp`: length

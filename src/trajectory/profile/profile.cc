@@ -14,8 +14,6 @@ constexpr double LEAST_CELL_S = 5e-4;
 /// Parts of the limits that are planned with: a limit is kept at three places of a cell, and nearly so
 /// between them.
 constexpr double VELOCITY_SHARE = 0.9995, ACCELERATION_SHARE = 0.998, JERK_SHARE = 0.99;
-/// Part of these margins that a direct stop keeps where it is checked.
-constexpr double CHECKED_PART = 0.8;
 /// Largest part of the path over which a start or a stop is blended.
 constexpr double MAX_RAMP = 0.3;
 
@@ -41,13 +39,12 @@ double Profile::planned_s() const noexcept {
 
 void Profile::take_limits(const Run &run) {
     run_ = run;
-    checked_ = run;
     double ramp_s = 1e300;
-    const auto share = [&](const Bounds &b, double part) {
-        const double acceleration = b.acceleration * std::pow(ACCELERATION_SHARE, part);
-        const double jerk = std::min(b.jerk * std::pow(JERK_SHARE, part), acceleration / LEAST_RAMP_S);
-        ramp_s = std::min(ramp_s, acceleration / jerk);
-        return Bounds{b.velocity * std::pow(VELOCITY_SHARE, part), acceleration, jerk};
+    const auto share = [&](Bounds &b) {
+        b.velocity *= VELOCITY_SHARE;
+        b.acceleration *= ACCELERATION_SHARE;
+        b.jerk = std::min(b.jerk * JERK_SHARE, b.acceleration / LEAST_RAMP_S);
+        ramp_s = std::min(ramp_s, b.acceleration / b.jerk);
     };
     run_.cap_reach = 0;
     for (std::size_t k = 0; run.caps != nullptr && k < run.caps->size(); ++k) {
@@ -56,12 +53,8 @@ void Profile::take_limits(const Run &run) {
     const auto &spans = *run.spans;
     const curve::CurvePoint end = curve::point_at(spans[span_at(spans, run.end_s)], run.end_s);
     reach_ = largest_reach(end, run.limits, settings_.period_s);
-    for (std::size_t i = 0; i < geometry::AXIS_COUNT; ++i) {
-        run_.limits.axes[i] = share(run.limits.axes[i], 1);
-        checked_.limits.axes[i] = share(run.limits.axes[i], CHECKED_PART);
-    }
-    run_.limits.xyz = share(run.limits.xyz, 1);
-    checked_.limits.xyz = share(run.limits.xyz, CHECKED_PART);
+    std::for_each(run_.limits.axes.begin(), run_.limits.axes.end(), share);
+    share(run_.limits.xyz);
     cell_s_ = std::clamp(ramp_s / CELLS_PER_RAMP, LEAST_CELL_S, settings_.cell_s);
 }
 
@@ -108,13 +101,13 @@ void Profile::lay_cells(std::size_t fixed) {
     eased_.resize(cells());
 }
 
-/// Rows of the cells behind the fixed ones, and the plan as their first coefficients.
-void Profile::prepare(std::size_t fixed) {
-    const std::size_t n = cells() - fixed;
+/// Rows of `n` cells behind the fixed ones, and the plan as their first coefficients.
+void Profile::prepare(std::size_t fixed, std::size_t n) {
     make_rows(run_, map_, &knots_[fixed], n, rows_);
     const Course course = course_from(fixed, &c_[fixed]);
-    law_.begin(rows_, course.before, knots_[fixed + n] - knots_[fixed + n - 1]);
-    std::copy(c_.begin() + static_cast<long>(fixed), c_.end(), law_.coefficients().begin());
+    const std::size_t behind = fixed + n < cells() ? fixed + n : fixed + n - 1;
+    law_.begin(rows_, course.before, knots_[behind + 1] - knots_[behind]);
+    std::copy_n(c_.begin() + static_cast<long>(fixed), n + 2, law_.coefficients().begin());
 }
 
 void Profile::store(std::size_t fixed) {
@@ -128,7 +121,7 @@ void Profile::plan(const Run &run, std::size_t fixed) {
     if (n == 0) {
         return;
     }
-    prepare(fixed);
+    prepare(fixed, n);
     for (std::size_t k = 0; k < n; ++k) {
         for (std::size_t p = 0; p < PLACES; ++p) {
             rows_.allow(k, p, eased_[fixed + k][p]);

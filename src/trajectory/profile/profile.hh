@@ -76,13 +76,18 @@ class Profile {
     enum class Density : std::uint8_t { COARSE, EVERY_SPAN };
     void take_limits(const Run &run);
     void lay_cells(std::size_t fixed);
-    void prepare(std::size_t fixed);
+    void prepare(std::size_t fixed, std::size_t n);
     void store(std::size_t fixed);
+    void make_slowest(std::size_t fixed, std::size_t n, double last_mu);
     void slow_down(std::size_t fixed);
+    std::size_t first_tail(const Run &run, const Course &course, DirectStop &tail) const;
+    void stop_sooner(const Run &run, std::size_t fixed, Stop &out);
     void make_time_cells(std::size_t fixed);
     Course course_from(std::size_t fixed, const double *c) const noexcept;
     Motion motion_at(const Course &course, std::size_t cell, double x) const noexcept;
-    bool find_tail(const Run &run, const Course &course, std::size_t cell, DirectStop &tail) const;
+    bool find_tail(const Run &run, const Course &course, std::size_t cell, double most_s,
+                   DirectStop &tail) const;
+    std::size_t cells_of_stop(const Run &run, const Course &course) const;
     bool keepsLimits(const Run &run, const Course &course, std::size_t cell, const DirectStop &tail,
                      Density density, Rates &least) const;
     double planned_s() const noexcept;
@@ -91,8 +96,7 @@ class Profile {
     double cell_s_ = 0;
     RestMap map_;
     RoughProfile rough_;
-    Run run_;      ///< its limits with the margins
-    Run checked_;  ///< with a little less
+    Run run_;  ///< its limits with the margins
     Rows rows_;
     TimeLaw law_;
     std::vector<double> knots_, c_;  ///< of the cells that have not been dropped

@@ -65,11 +65,11 @@ bool Profile::keepsLimits(const Run &run, const Course &course, std::size_t cell
         }
         const CurvePoint point = curve::point_at(spans[span], m.s);
         const Rates left = rates_at(run_, point, m);
-        const Rates most = rates_at(checked_, point, m);
         least.acceleration = std::min(least.acceleration, left.acceleration);
         least.jerk = std::min(least.jerk, left.jerk);
-        keeps = keeps && -m.a >= most.least && -m.a <= most.acceleration &&
-                std::abs(tail.jerk_at(t)) <= most.jerk;
+        keeps = keeps && -m.a >= left.least - left.spare_acceleration &&
+                -m.a <= left.acceleration + left.spare_acceleration &&
+                std::abs(tail.jerk_at(t)) <= left.jerk + left.spare_jerk;
         // Above the limit of the speed it may be where the plan is.
         if (speed_share(run, point, feed) * m.v > 1) {
             const double p = map_.parameter_at(m.s);
@@ -96,15 +96,17 @@ bool Profile::keepsLimits(const Run &run, const Course &course, std::size_t cell
     }
 }
 
-/// A direct stop from the start of a cell.
-bool Profile::find_tail(const Run &run, const Course &course, std::size_t cell, DirectStop &tail) const {
+/// A direct stop from the start of a cell, of less than `most_s`.
+bool Profile::find_tail(const Run &run, const Course &course, std::size_t cell, double most_s,
+                        DirectStop &tail) const {
     const bool is_last = cell == course.cells;
     const std::size_t in = is_last ? cell - 1 : cell;
     const Motion from = motion_at(course, in, is_last ? 1 : 0);
     const std::size_t span = span_at(*run.spans, from.s);
     Rates rates = rates_at(run_, curve::point_at((*run.spans)[span], from.s), from);
     for (int round = 0; round < TAIL_ROUNDS; ++round) {
-        if (!(rates.acceleration > 0) || !(rates.jerk > 0) || !make_direct_stop(from, rates, tail)) {
+        if (!(rates.acceleration > 0) || !(rates.jerk > 0) || !make_direct_stop(from, rates, tail) ||
+            !(tail.duration() < most_s)) {
             return false;
         }
         if (keepsLimits(run, course, in, tail, Density::COARSE, rates) &&
@@ -115,24 +117,15 @@ bool Profile::find_tail(const Run &run, const Course &course, std::size_t cell, 
     return false;
 }
 
-Stop Profile::stop(const Run &run, std::size_t fixed, StopEffort effort) {
-    take_limits(run);
-    Stop out;
-    out.kept = cells();
-    out.end_s = planned_s();
-    const std::size_t n = cells() - fixed;
-    if (n == 0) {
-        return out;
-    }
-    const Course course = course_from(fixed, &c_[fixed]);
-    // Further and further ahead until one passes, then between it and the last that does not.
+/// The first cell from whose start a direct stop passes; cells + 1: none. Looks further and further ahead,
+/// then between that and the last that does not pass.
+std::size_t Profile::first_tail(const Run &run, const Course &course, DirectStop &tail) const {
+    const std::size_t n = course.cells;
     std::size_t fails = 0, passes = n + 1;
     for (std::size_t k = 0, step = 1; passes > 0 && passes > fails + 1 + passes / 8 && k <= n;) {
-        DirectStop tail;
-        if (find_tail(run, course, k, tail)) {
-            out.kept = fixed + k;
-            out.cells.assign(tail.cells.begin(), tail.cells.end());
-            out.end_s = tail.end_s;
+        DirectStop found;
+        if (find_tail(run, course, k, 1e300, found)) {
+            tail = found;
             passes = k;
         } else {
             fails = k;
@@ -144,24 +137,106 @@ Stop Profile::stop(const Run &run, std::size_t fixed, StopEffort effort) {
             step *= 2;
         }
     }
-    static_cast<void>(effort);
+    return passes;
+}
+
+Stop Profile::stop(const Run &run, std::size_t fixed, StopEffort effort) {
+    take_limits(run);
+    Stop out{cells(), {}, planned_s()};
+    if (cells() == fixed) {
+        return out;
+    }
+    const Course course = course_from(fixed, &c_[fixed]);
+    DirectStop tail;
+    const std::size_t first = first_tail(run, course, tail);
+    if (first <= course.cells) {
+        out = {fixed + first, {tail.cells.begin(), tail.cells.end()}, tail.end_s};
+    }
+    if (effort == StopEffort::SOONEST) {
+        stop_sooner(run, fixed, out);
+    }
     return out;
 }
 
-/// Makes the speed behind the fixed cells least, and eases limits of the speed that are lower.
-void Profile::slow_down(std::size_t fixed) {
-    prepare(fixed);
+/// Cells behind the fixed ones in which a stop is looked for first: some more than a direct stop takes on a
+/// straight line.
+std::size_t Profile::cells_of_stop(const Run &run, const Course &course) const {
+    const Motion from = motion_at(course, 0, 0);
+    const CurvePoint point = curve::point_at((*run.spans)[span_at(*run.spans, from.s)], from.s);
+    const Rates rates = rates_at(run_, point, {from.s, 0, 0});
+    const double reached = from.v + 0.5 * from.a * std::abs(from.a) / rates.jerk;
+    const double ramp =
+        std::max(rates.acceleration / rates.jerk, std::sqrt(std::max(reached, 0.0) / rates.jerk));
+    const double length = from.v * (from.v / rates.acceleration + ramp);
+    std::size_t n = 1;
+    while (n < course.cells && map_.at(course.knots[n]).s < from.s + length) {
+        ++n;
+    }
+    return n;
+}
+
+/// From the motion with the least speed, where that is sooner.
+void Profile::stop_sooner(const Run &run, std::size_t fixed, Stop &out) {
+    const Course plan = course_from(fixed, &c_[fixed]);
+    double least = 0;
+    for (std::size_t k = fixed; k < out.kept; ++k) {
+        least += time_cells_[k].duration;
+    }
+    for (const TimeCell &cell : out.cells) {
+        least += cell.duration;
+    }
+    for (std::size_t n = cells_of_stop(run, plan);; n = std::min(2 * n, plan.cells)) {
+        make_slowest(fixed, n, LAST_MU);
+        Course course = course_from(fixed, law_.coefficients().data());
+        course.cells = n;
+        DirectStop tail;
+        std::size_t kept = n + 1;
+        double before = 0;
+        double next = 0;
+        for (std::size_t k = 0; k <= n && before < least; ++k) {
+            DirectStop found;
+            if ((before >= next || k == n) && find_tail(run, course, k, least - before, found)) {
+                least = before + found.duration();
+                kept = k;
+                tail = found;
+            }
+            next = before >= next ? before + settings_.cell_s : next;
+            before += k < n ? law_.time_of(k) : 0.0;
+        }
+        if (kept <= n) {
+            out = {fixed, {}, tail.end_s};
+            for (std::size_t i = 0; i < kept; ++i) {
+                out.cells.push_back(
+                    cell_of(motion_at(course, i, 0), motion_at(course, i, 1), law_.time_of(i)));
+            }
+            out.cells.insert(out.cells.end(), tail.cells.begin(), tail.cells.end());
+        }
+        if (kept <= n || n == plan.cells || before >= least) {
+            return;
+        }
+    }
+}
+
+/// The speed in `n` cells behind the fixed ones as small as the limits of acceleration and jerk allow.
+void Profile::make_slowest(std::size_t fixed, std::size_t n, double last_mu) {
+    prepare(fixed, n);
     const Course course = course_from(fixed, &c_[fixed]);
-    for (std::size_t k = 0; k < course.cells; ++k) {
+    for (std::size_t k = 0; k < n; ++k) {
         for (std::size_t p = 0; p < PLACES; ++p) {
             rows_.allow(k, p, course.state(k, PLACE_PART[p]).b * (1 + ABOVE_LOWEST));
         }
     }
     SolveSettings settings;
     settings.objective = Objective::SPEED;
-    settings.last_mu = LAST_MU;
-    steps_ += law_.solve(2, has_end_ ? 0 : 2, settings);
+    settings.last_mu = last_mu;
+    steps_ += law_.solve(fixed > 0 || before_ > 0 ? 2 : 0, 0, settings);
+}
+
+/// Makes the speed behind the fixed cells least, and eases limits of the speed that are lower.
+void Profile::slow_down(std::size_t fixed) {
+    make_slowest(fixed, cells() - fixed, LAST_MU);
     store(fixed);
+    const Course course = course_from(fixed, &c_[fixed]);
     for (std::size_t k = 0; k < course.cells; ++k) {
         for (std::size_t p = 0; p < PLACES; ++p) {
             eased_[fixed + k][p] = course.state(k, PLACE_PART[p]).b * (1 + ABOVE_LOWEST);

@@ -8,6 +8,10 @@ namespace mw::trajectory::profile {
 
 namespace {
 
+/// Parts of the limits by which a direct stop may exceed them where they are checked: a fifth of the margins
+/// with which limits are planned.
+constexpr double SPARE_ACCELERATION = 4e-4, SPARE_JERK = 2e-3;
+
 struct Phase {
     double duration = 0, jerk = 0;
 };
@@ -84,17 +88,23 @@ double DirectStop::jerk_at(double t) const noexcept {
 
 Rates rates_at(const Run &run, const CurvePoint &point, const Motion &at) noexcept {
     constexpr double LEAST_SLOPE = 1e-30;
-    Rates rates{-1e300, 1e300, 1e300};
+    Rates rates{-1e300, 1e300, 1e300, 1e300, 1e300};
     const double v2 = at.v * at.v;
     const Pose bend = point.second * v2;
     const Pose drift = point.second * (3 * at.v * at.a) + point.third * (v2 * at.v);
     for (std::size_t i = 0; i < geometry::AXIS_COUNT; ++i) {
+        if (point.first.c[i] == 0 && point.second.c[i] == 0 && point.third.c[i] == 0) {
+            continue;
+        }
         const Bounds &b = run.limits.axes[i];
         const double per = 1 / std::max(std::abs(point.first.c[i]), LEAST_SLOPE);
         const double along = point.first.c[i] < 0 ? -bend.c[i] : bend.c[i];
         rates.least = std::max(rates.least, (along - b.acceleration) * per);
         rates.acceleration = std::min(rates.acceleration, (along + b.acceleration) * per);
         rates.jerk = std::min(rates.jerk, (b.jerk - std::abs(drift.c[i])) * per);
+        rates.spare_acceleration =
+            std::min(rates.spare_acceleration, SPARE_ACCELERATION * b.acceleration * per);
+        rates.spare_jerk = std::min(rates.spare_jerk, SPARE_JERK * b.jerk * per);
     }
     const Bounds &b = run.limits.xyz;
     const double qq = dot_xyz(point.first, point.first);
@@ -103,6 +113,9 @@ Rates rates_at(const Run &run, const CurvePoint &point, const Motion &at) noexce
     rates.least = std::max(rates.least, a.middle - a.half);
     rates.acceleration = std::min(rates.acceleration, a.middle + a.half);
     rates.jerk = std::min(rates.jerk, j.middle + j.half);
+    const double per = 1 / std::max(std::sqrt(qq), LEAST_SLOPE);
+    rates.spare_acceleration = std::min(rates.spare_acceleration, SPARE_ACCELERATION * b.acceleration * per);
+    rates.spare_jerk = std::min(rates.spare_jerk, SPARE_JERK * b.jerk * per);
     return rates;
 }
 

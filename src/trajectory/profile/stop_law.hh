@@ -30,6 +30,7 @@ TimeCell cell_of(const Motion &from, const Motion &to, double duration) noexcept
 struct Rates {
     double least = 0;  ///< braking below it leaves a limit
     double acceleration = 0, jerk = 0;
+    double spare_acceleration = 0, spare_jerk = 0;  ///< what may be used beyond them where limits are checked
 };
 
 /// Jerk -J, then none, then J: by which the acceleration goes to -peak, stays, and ends.
