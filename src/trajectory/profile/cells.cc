@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "trajectory/curve/curve_builder.hh"
+#include "trajectory/profile/cap_rows.hh"
 
 namespace mw::trajectory::profile {
 
@@ -87,7 +88,31 @@ RoughProfile::Node RoughProfile::node_at(const Run &run, std::size_t span, doubl
     node.v = std::min(node.v, 1 / std::sqrt(std::max(feed.share(p.first), 1e-30)));
     node.v = std::min(node.v,
                       TURN_PER_CELL / cell_s * std::sqrt(std::max(direction, 1e-4) / std::max(bend, 1e-30)));
+    apply_joints(run, node, s + 1e-6 * ((*run.spans)[span].start_s + 0.5 * (*run.spans)[span].length - s),
+                 cell_s);
     return node;
+}
+
+/// `inside`: a place on the side of the node whose curve counts.
+void RoughProfile::apply_joints(const Run &run, Node &node, double inside, double cell_s) noexcept {
+    if (run.joint_curve == nullptr) {
+        return;
+    }
+    const curve::JointPoint p = run.joint_curve->point_at(run.joint_curve->part_at(inside), node.s);
+    double direction = 0, bend = 0;
+    for (std::size_t j = 0; j < run.joint_curve->joints(); ++j) {
+        const Bounds b = bounds_of(run.joints, j);
+        const double q1 = std::max(std::abs(p.first[j]), 1e-30);
+        node.v = std::min({node.v, b.velocity / q1,
+                           std::sqrt(b.acceleration / std::max(std::abs(p.second[j]), 1e-30)),
+                           std::cbrt(b.jerk / std::max(std::abs(p.third[j]), 1e-30))});
+        node.acceleration = std::min(node.acceleration, b.acceleration / q1);
+        node.jerk = std::min(node.jerk, b.jerk / q1);
+        direction += p.first[j] * p.first[j];
+        bend += p.second[j] * p.second[j];
+    }
+    node.v = std::min(node.v,
+                      TURN_PER_CELL / cell_s * std::sqrt(std::max(direction, 1e-4) / std::max(bend, 1e-30)));
 }
 
 const std::vector<double> &RoughProfile::lay(const Run &run, const Stretch &stretch) {
@@ -103,19 +128,29 @@ bool RoughProfile::isInEnd(const Run &run, const Stretch &stretch, double s) noe
     return run.has_stop && s > run.end_s - stretch.end_ramp;
 }
 
+/// The speed of the last rough profile, which reached this place.
+double RoughProfile::speed_at(double s) const noexcept {
+    const auto behind =
+        std::partition_point(nodes_.begin(), nodes_.end(), [&](const Node &n) { return n.s < s; });
+    if (behind == nodes_.begin() || behind == nodes_.end()) {
+        return 1e300;
+    }
+    const Node &b = *behind, &a = *(behind - 1);
+    return a.v + (b.v - a.v) * (s - a.s) / (b.s - a.s);
+}
+
 /// Lays nodes until the motion without braking takes 1.5 times the horizon, then limits their speeds by
 /// braking.
 void RoughProfile::lay_nodes(const Run &run, const Stretch &stretch) {
     constexpr double FARTHER = 1.5;
     constexpr double LEAST_STEP = 1e-12;  // nodes closer than rounding count as one
+    const double reached = stretch.from_rest ? 0.0 : speed_at(stretch.from_s);
     nodes_.clear();
     reaches_end_ = false;
     const auto &spans = *run.spans;
     std::size_t k = span_at(spans, stretch.from_s);
     nodes_.push_back(node_at(run, k, stretch.from_s, stretch.cell_s));
-    if (stretch.from_rest) {
-        nodes_.back().v = 0;
-    }
+    nodes_.back().v = std::min(nodes_.back().v, reached);
     double t = 0;
     for (; k < spans.size() && spans[k].start_s < run.end_s &&
            (t < FARTHER * stretch.horizon_s || isInEnd(run, stretch, nodes_.back().s));
@@ -218,9 +253,13 @@ class Scales {
   public:
     Scales(const Run &run, const Bounds &least) : run_(run), least_(least) {}
 
-    /// `laid`, `last`: cells that have coefficients, and the scale of the last of them.
+    /// The scale that a cell has already.
+    struct Known {
+        std::size_t cell = 0;
+        double scale = 1e300;
+    };
     const std::vector<double> &find(const RestMap &map, const std::vector<double> &knots, double end_ramp,
-                                    std::size_t laid, double last) {
+                                    const Known &known) {
         const auto &spans = *run_.spans;
         const std::size_t cells = knots.size() - 1;
         scale_.resize(cells);
@@ -244,12 +283,11 @@ class Scales {
                 RestMap::scale_of(end_ramp) + SPACING_GROWTH * std::max(0.0, run_.end_s - end_ramp - s);
             run_.each_cap(map.at(knots[k]).s, map.at(knots[k + 1]).s,
                           [&](const SpeedCap &cap) { v = std::min(v, cap.v); });
+            v = std::min(v, joint_speed(map.at(knots[k]).s, map.at(knots[k + 1]).s));
             scale_[k] = std::min({length, map.scale_at(middle), before_stop, scale_of_speed(v)});
         }
-        if (laid > 0) {
-            scale_[laid - 1] = std::min(scale_[laid - 1], last);
-        }
         look_ahead(s, span, feed);
+        scale_[known.cell] = std::min(scale_[known.cell], known.scale);
         spread(knots);
         return scale_;
     }
@@ -260,6 +298,19 @@ class Scales {
     }
     /// The scale at which the jerk limit gives this speed.
     double scale_of_speed(double v) const noexcept { return std::sqrt(v * v * v / least_.jerk); }
+
+    /// The least speed of the parts of the joints in [from, to].
+    double joint_speed(double from, double to) const noexcept {
+        double v = 1e300;
+        if (run_.joint_curve != nullptr) {
+            const auto &parts = run_.joint_curve->parts();
+            for (std::size_t k = run_.joint_curve->part_at(from); k < parts.size() && parts[k].start_s <= to;
+                 ++k) {
+                v = std::min(v, parts[k].speed);
+            }
+        }
+        return v;
+    }
 
     /// Reduces the scale of the last cell for smaller scales of the path and of the feeds behind it.
     void look_ahead(double s, std::size_t span, std::size_t feed) {
@@ -273,6 +324,14 @@ class Scales {
              j < run_.feeds->size() && SPACING_GROWTH * ((*run_.feeds)[j - 1].end_s - s) < last; ++j) {
             last = std::min(last, scale_of_speed(speed_of((*run_.feeds)[j])) +
                                       SPACING_GROWTH * std::max(0.0, (*run_.feeds)[j - 1].end_s - s));
+        }
+        if (run_.joint_curve != nullptr) {
+            const auto &parts = run_.joint_curve->parts();
+            for (std::size_t j = run_.joint_curve->part_at(s);
+                 j < parts.size() && SPACING_GROWTH * (parts[j].start_s - s) < last; ++j) {
+                last = std::min(last, scale_of_speed(parts[j].speed) +
+                                          SPACING_GROWTH * std::max(0.0, parts[j].start_s - s));
+            }
         }
         run_.each_cap(s, s + last / SPACING_GROWTH, [&](const SpeedCap &cap) {
             last =
@@ -300,21 +359,26 @@ class Scales {
 }  // namespace
 
 void creep(const Run &run, const RestMap &map, const std::vector<double> &knots, double end_ramp,
-           std::vector<double> &c, double &last_scale) {
+           std::vector<double> &c) {
     // Times the speed at which the path alone takes all of the jerk or of the acceleration.
     constexpr double SHARE = 0.15;
     const Bounds least = least_of(run.limits);
     Scales scales(run, least);
     // Coefficient k belongs to the middle of cell k - 1.
-    const std::size_t laid = c.size() > 2 ? c.size() - 2 : 0;
-    const std::vector<double> &scale = scales.find(map, knots, end_ramp, laid, last_scale);
-    const std::size_t cells = scale.size();
+    const std::size_t cells = knots.size() - 1;
+    const auto cell_of = [&](std::size_t k) { return std::clamp<std::size_t>(k, 1, cells) - 1; };
+    Scales::Known known;
+    if (!c.empty()) {
+        const double v = std::sqrt(c.back()) / SHARE;
+        known = {cell_of(c.size() - 1),
+                 std::max(std::sqrt(v * v * v / least.jerk), v * v / least.acceleration)};
+    }
+    const std::vector<double> &scale = scales.find(map, knots, end_ramp, known);
     for (std::size_t k = c.size(); k < cells + 2; ++k) {
-        const double d = scale[std::clamp<std::size_t>(k, 1, cells) - 1];
+        const double d = scale[cell_of(k)];
         c.push_back(
             square(SHARE * std::min(std::cbrt(least.jerk * d * d), std::sqrt(least.acceleration * d))));
     }
-    last_scale = scale.back();
 }
 
 std::size_t span_at(const std::vector<Span> &spans, double s) noexcept {
@@ -339,55 +403,6 @@ ParameterPoint by_parameter(const CurvePoint &p, const MapPoint &m) noexcept {
                       p.first.c[i] * m.third;
     }
     return out;
-}
-
-/// What the caps around a cell leave of the limits: jumps of the tangent a part, those of the curvature one
-/// that falls with the square of the speed.
-struct Rest {
-    double v2 = 0;  ///< 1 over the square of the maximum speed
-    PerLimited bend{}, jerk_part, acceleration_part;
-
-    Rest() noexcept {
-        jerk_part.fill(1);
-        acceleration_part.fill(1);
-    }
-};
-
-const Bounds &bounds_of(const CurveLimits &limits, std::size_t i) noexcept {
-    return i == XYZ_NORM ? limits.xyz : limits.axes[i];
-}
-
-Rest rest_of(const Run &run, double from, double to) noexcept {
-    Rest rest;
-    PerLimited turn{}, used{};
-    double slowest = 0;
-    run.each_cap(from, to, [&](const SpeedCap &cap) {
-        for (std::size_t i = 0; i < LIMITED_COUNT; ++i) {
-            turn[i] += cap.turn[i];
-            rest.bend[i] += cap.bend[i];
-            slowest = std::max(slowest, turn[i] / (TURN_SHARE * bounds_of(run.limits, i).jerk));
-        }
-    });
-    // Caps closer together than their reach share what jumps of the tangent may take.
-    rest.v2 = square(slowest);
-    run.each_cap(from, to, [&](const SpeedCap &cap) {
-        const double near = 1e-3 * (to - from);
-        const bool is_here = cap.s > from - near && cap.s < to + near;
-        rest.v2 = is_here ? std::max(rest.v2, 1 / square(cap.v)) : rest.v2;
-        const double v = slowest > 0 ? std::min(cap.v, 1 / slowest) : cap.v;
-        for (std::size_t i = 0; i < LIMITED_COUNT; ++i) {
-            const Bounds &b = bounds_of(run.limits, i);
-            used[i] += v * cap.turn[i];
-            rest.jerk_part[i] = 1 - used[i] / b.jerk;
-            rest.acceleration_part[i] = 1 - used[i] * cap.period_s / b.acceleration;
-        }
-    });
-    return rest;
-}
-
-/// The limits at a place of a cell.
-Bounds left_of(const Bounds &b, const Rest &rest, std::size_t i) noexcept {
-    return {b.velocity, b.acceleration * rest.acceleration_part[i], b.jerk * rest.jerk_part[i]};
 }
 
 NormRow norm_row(const ParameterPoint &point, const Bounds &l, double bend) noexcept {
@@ -430,7 +445,9 @@ void make_rows(const Run &run, const RestMap &map, const double *knots, std::siz
     const auto &spans = *run.spans;
     const unsigned moving = moving_coordinates(spans, map.at(knots[0]).s, map.at(knots[cells]).s);
     const Bounds &xyz = run.limits.xyz;
-    rows.begin(static_cast<std::size_t>(std::popcount(moving)),
+    const curve::JointCurve *joints = run.joint_curve;
+    const std::size_t joint_count = joints == nullptr ? 0 : joints->joints();
+    rows.begin(static_cast<std::size_t>(std::popcount(moving)) + joint_count,
                xyz.acceleration < UNLIMITED_BOUND || xyz.jerk < UNLIMITED_BOUND);
     std::size_t span = span_at(spans, map.at(knots[0]).s);
     std::size_t feed = run.feed_at(map.at(knots[0]).s);
@@ -438,7 +455,7 @@ void make_rows(const Run &run, const RestMap &map, const double *knots, std::siz
         const double h = knots[k + 1] - knots[k];
         rows.add_cell(h);
         const double from = map.at(knots[k]).s, to = map.at(knots[k + 1]).s;
-        const Rest rest = rest_of(run, from, to);
+        const CapRest rest = rest_of(run, from, to);
         for (std::size_t p = 0; p < PLACES; ++p) {
             const MapPoint m = map.at(knots[k] + h * PLACE_PART[p]);
             // At the ends of a cell the curve on the side of the cell: derivatives may jump there.
@@ -451,6 +468,7 @@ void make_rows(const Run &run, const RestMap &map, const double *knots, std::siz
             }
             const CurvePoint c = curve::point_at(spans[span], m.s);
             const ParameterPoint point = by_parameter(c, m);
+            double joint_v2 = 0;
             std::size_t n = 0;
             for (std::size_t i = 0; i < geometry::AXIS_COUNT; ++i) {
                 if ((moving >> i & 1U) == 0) {
@@ -458,15 +476,18 @@ void make_rows(const Run &run, const RestMap &map, const double *knots, std::siz
                 }
                 const Bounds l = left_of(run.limits.axes[i], rest, i);
                 const double q1 = point.q[0][i], q2 = point.q[1][i], q3 = point.q[2][i];
-                rows.set(p, n++,
-                         {q1 / l.acceleration, q2 / l.acceleration, q1 / l.jerk, 3 * q2 / l.jerk, q3 / l.jerk,
-                          rest.bend[i] * m.first * m.first / l.jerk});
+                rows.set(p, n++, row_of(q1, q2, q3, l, rest.bend[i] * m.first * m.first));
+            }
+            if (joint_count > 0) {
+                const curve::JointPoint point_j = joints->point_at(joints->part_at(inside), m.s);
+                joint_v2 = set_joint_rows(run, point_j, m, rest, {rows, p, n});
             }
             if (rows.hasNorm()) {
                 rows.set_norm(p, norm_row(point, left_of(xyz, rest, XYZ_NORM),
                                           rest.bend[XYZ_NORM] * m.first * m.first));
             }
-            rows.set_velocity(p, (square(speed_share(run, c, feed)) + rest.v2) * m.first * m.first);
+            const double v2 = (square(speed_share(run, c, feed)) + rest.v2) * m.first * m.first;
+            rows.set_velocity(p, std::max(v2, joint_v2));
         }
     }
 }

@@ -44,7 +44,11 @@ struct Run {
     bool has_stop = false;  ///< the motion stops there; otherwise more will follow
     /// In order, those with a stop left out: the run ends there. Null: none.
     const std::vector<SpeedCap> *caps = nullptr;
-    double cap_reach = 0;  ///< the largest reach of a cap; set by Profile
+    /// Joints that are not axes. Null: the axes' limits are all there are.
+    const JointMap *map = nullptr;
+    JointLimits joints{};
+    double cap_reach = 0;                            ///< the largest reach of a cap; set by Profile
+    const curve::JointCurve *joint_curve = nullptr;  ///< of what is known, with a map; set by Profile
     /// Calls `take` with each cap whose reach touches [from, to].
     template <typename Take>
     void each_cap(double from, double to, const Take &take) const {
@@ -88,6 +92,8 @@ class RoughProfile {
     static Node node_at(const Run &run, std::size_t span, double s, double cell_s) noexcept;
     void lay_nodes(const Run &run, const Stretch &stretch);
     void lay_knots(const Run &run, const Stretch &stretch);
+    static void apply_joints(const Run &run, Node &node, double inside, double cell_s) noexcept;
+    double speed_at(double s) const noexcept;
     static bool isInEnd(const Run &run, const Stretch &stretch, double s) noexcept;
     void lay_between(double from_t, double to_t, double cell_s, std::size_t &node);
     static bool apply_caps(const Run &run, Node &node, double tolerance) noexcept;
@@ -104,6 +110,6 @@ void make_rows(const Run &run, const RestMap &map, const double *knots, std::siz
 /// Adds the coefficients of cells that have none: slow enough to keep every row by far. `end_ramp`: length
 /// before the end of the run over which the map may come to be blended into a stop.
 void creep(const Run &run, const RestMap &map, const std::vector<double> &knots, double end_ramp,
-           std::vector<double> &c, double &last_scale);
+           std::vector<double> &c);
 
 }  // namespace mw::trajectory::profile

@@ -4,7 +4,8 @@
 
 #include <array>
 
-#include "base/geometry/pose.hh"
+#include "trajectory/path/joint_map.hh"
+#include "trajectory/path/primitive.hh"
 
 namespace mw::trajectory::profile {
 
@@ -16,6 +17,17 @@ struct CurveLimits {
     std::array<Bounds, geometry::AXIS_COUNT> axes;
     Bounds xyz;  ///< of the norm over X Y Z
 };
+
+/// Axes, the norm over X Y Z and joints, in this order.
+inline constexpr std::size_t JOINTS_AT = LIMITED_COUNT;
+using PerBounds = std::array<double, JOINTS_AT + MAX_JOINTS>;
+
+inline const Bounds &bounds_of(const CurveLimits &limits, std::size_t i) noexcept {
+    return i == XYZ_NORM ? limits.xyz : limits.axes[i];
+}
+inline Bounds bounds_of(const JointLimits &joints, std::size_t j) noexcept {
+    return {joints.velocity[j], joints.acceleration[j], joints.jerk[j]};
+}
 
 /// The least time of a full acceleration [s]: of axes without a jerk limit, too.
 inline constexpr double LEAST_RAMP_S = 2e-3;

@@ -31,6 +31,7 @@ void Profile::begin(double s) noexcept {
     end_s_ = 0;
     worst_start_ = 0;
     steps_ = 0;
+    joint_curve_.begin(nullptr, {});
 }
 
 double Profile::planned_s() const noexcept {
@@ -53,9 +54,34 @@ void Profile::take_limits(const Run &run) {
     const auto &spans = *run.spans;
     const curve::CurvePoint end = curve::point_at(spans[span_at(spans, run.end_s)], run.end_s);
     reach_ = largest_reach(end, run.limits, settings_.period_s);
+    take_joints(run);
+    for (std::size_t j = 0; j < joint_curve_.joints(); ++j) {
+        Bounds b = bounds_of(run.joints, j);
+        share(b);
+        run_.joints.velocity[j] = b.velocity;
+        run_.joints.acceleration[j] = b.acceleration;
+        run_.joints.jerk[j] = b.jerk;
+    }
     std::for_each(run_.limits.axes.begin(), run_.limits.axes.end(), share);
     share(run_.limits.xyz);
     cell_s_ = std::clamp(ramp_s / CELLS_PER_RAMP, LEAST_CELL_S, settings_.cell_s);
+}
+
+/// Computes the joints along what is known. Where there are none the run ends before.
+void Profile::take_joints(const Run &run) {
+    if (run.map == nullptr || run.joints.count == 0) {
+        return;
+    }
+    if (joint_curve_.joints() == 0) {
+        joint_curve_.begin(run.map, run.joints);
+    }
+    joint_curve_.cover(*run.spans);
+    joint_curve_.drop_before(knots_.empty() ? start_s_ : map_.at(knots_[0]).s);
+    run_.joint_curve = &joint_curve_;
+    if (joint_curve_.drivable_s() < run_.end_s) {
+        run_.end_s = joint_curve_.drivable_s();
+        run_.has_stop = true;
+    }
 }
 
 void Profile::lay_cells(std::size_t fixed) {
@@ -86,6 +112,7 @@ void Profile::lay_cells(std::size_t fixed) {
         map_.set_end(run.end_s, ramp);
         has_end_ = true;
     }
+    const std::size_t before = cells();
     for (const double s : laid) {
         // A stop at the end of what is known must still be possible, and what follows must not lower limits.
         if (!is_end && s > run.end_s - std::max(ramp, run.has_stop ? 0.0 : reach_)) {
@@ -93,8 +120,13 @@ void Profile::lay_cells(std::size_t fixed) {
         }
         knots_.push_back(is_end && s == laid.back() ? map_.end() : map_.parameter_at(s));
     }
+    if (before > 0 && cells() > before) {
+        // The slope of b at the end of the last cell stays, though the cell behind it has its own length now.
+        const double last = knots_[before] - knots_[before - 1], next = knots_[before + 1] - knots_[before];
+        c_[before + 1] = c_[before] + (c_[before + 1] - c_[before]) * (last + next) / (2 * last);
+    }
     if (knots_.size() > 1) {
-        creep(run, map_, knots_, ramp, c_, creep_scale_);
+        creep(run, map_, knots_, ramp, c_);
     } else {
         knots_.clear();  // too little of the curve is known
     }

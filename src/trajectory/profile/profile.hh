@@ -67,6 +67,9 @@ class Profile {
     /// The first `count` cells are driven.
     void drop(std::size_t count);
 
+    /// From here on there are poses without joints, or joints that jump: the motion stops before. 1e300: not
+    /// on the known curve.
+    double drivable_s() const noexcept { return joint_curve_.drivable_s(); }
     /// Largest row over its limit of the plan that the last one started from.
     double worst_start() const noexcept { return worst_start_; }
     int steps() const noexcept { return steps_; }
@@ -75,6 +78,7 @@ class Profile {
     /// How dense the places are at which limits of a direct stop are checked.
     enum class Density : std::uint8_t { COARSE, EVERY_SPAN };
     void take_limits(const Run &run);
+    void take_joints(const Run &run);
     void lay_cells(std::size_t fixed);
     void prepare(std::size_t fixed, std::size_t n);
     void store(std::size_t fixed);
@@ -97,6 +101,7 @@ class Profile {
     RestMap map_;
     RoughProfile rough_;
     Run run_;  ///< its limits with the margins
+    curve::JointCurve joint_curve_;
     Rows rows_;
     TimeLaw law_;
     std::vector<double> knots_, c_;  ///< of the cells that have not been dropped
@@ -104,7 +109,6 @@ class Profile {
     /// What b may be at the places of each cell, above the limits of the speed; 0: nothing.
     std::vector<std::array<double, PLACES>> eased_;
     double start_s_ = 0;
-    double creep_scale_ = 0;  ///< of the last cell of the creep
     double before_ = 0;  ///< length of the cell before them; 0: there is none
     double reach_ = 0;   ///< before the end of what is known: a seam there may lower limits so far
     double end_s_ = 0,

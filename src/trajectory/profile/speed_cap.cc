@@ -27,23 +27,24 @@ PerLimited sizes_of(const Pose &p) noexcept {
     return out;
 }
 
-const Bounds &bounds_of(const CurveLimits &limits, std::size_t i) noexcept {
-    return i == XYZ_NORM ? limits.xyz : limits.axes[i];
-}
-
 double jerk_of(const Bounds &b, double period_s) noexcept {
     return std::min(b.jerk, b.acceleration / std::max(LEAST_RAMP_S, 2 * period_s));
 }
 
+/// Lowers limits along the path to those of something that has this derivative.
+void lower(Bounds &along, const Bounds &b, double first, double period_s) noexcept {
+    const double q1 = std::max(first, LEAST);
+    along.velocity = std::min(along.velocity, b.velocity / q1);
+    along.acceleration = std::min(along.acceleration, b.acceleration / q1);
+    along.jerk = std::min(along.jerk, jerk_of(b, period_s) / q1);
+}
+
 /// Limits along a path with the tangent `first`.
-Bounds along(const PerLimited &first, const CurveLimits &limits, double period_s) noexcept {
+Bounds along(const Pose &first, const CurveLimits &limits, double period_s) noexcept {
     Bounds out;
+    const PerLimited sizes = sizes_of(first);
     for (std::size_t i = 0; i < LIMITED_COUNT; ++i) {
-        const Bounds &b = bounds_of(limits, i);
-        const double q1 = std::max(first[i], LEAST);
-        out.velocity = std::min(out.velocity, b.velocity / q1);
-        out.acceleration = std::min(out.acceleration, b.acceleration / q1);
-        out.jerk = std::min(out.jerk, jerk_of(b, period_s) / q1);
+        lower(out, bounds_of(limits, i), sizes[i], period_s);
     }
     return out;
 }
@@ -53,40 +54,72 @@ double reach_of(double v, double acceleration, double period_s) noexcept {
     return near_s * (v + 0.5 * near_s * acceleration);
 }
 
+/// Takes one more limit and the jumps of what it limits.
+void take(SpeedCap &cap, std::size_t i, const Bounds &b, double turn, double bend) noexcept {
+    const double jerk = jerk_of(b, cap.period_s);
+    cap.turn[i] = turn / (cap.period_s * cap.period_s);
+    cap.bend[i] = 0.75 * bend / cap.period_s;
+    cap.v = std::min({cap.v, TURN_SHARE * jerk / std::max(cap.turn[i], LEAST),
+                      std::sqrt(jerk / std::max(cap.bend[i], LEAST))});
+}
+
+bool isTaken(const SpeedCap &cap, std::size_t i, const Bounds &b) noexcept {
+    return cap.v * (cap.turn[i] + cap.bend[i] * cap.v) > NEGLIGIBLE * jerk_of(b, cap.period_s);
+}
+
 }  // namespace
 
 double largest_reach(const curve::CurvePoint &end, const CurveLimits &limits, double period_s) noexcept {
-    const Bounds bounds = along(sizes_of(end.first), limits, period_s);
+    const Bounds bounds = along(end.first, limits, period_s);
     return reach_of(bounds.velocity, bounds.acceleration, period_s);
 }
 
 SpeedCap cap_of(const curve::Seam &seam, const CurveLimits &limits, double period_s) noexcept {
+    return cap_of(seam, limits, nullptr, {}, period_s);
+}
+
+SpeedCap cap_of(const curve::Seam &seam, const CurveLimits &limits, const JointMap *map,
+                const JointLimits &joints, double period_s) noexcept {
     const PerLimited turn = sizes_of(seam.after.first - seam.before.first),
                      bend = sizes_of(seam.after.second - seam.before.second);
-    const Bounds before = along(sizes_of(seam.before.first), limits, period_s),
-                 after = along(sizes_of(seam.after.first), limits, period_s);
+    Bounds before = along(seam.before.first, limits, period_s),
+           after = along(seam.after.first, limits, period_s);
     SpeedCap cap;
     cap.s = seam.s;
     cap.period_s = period_s;
-    cap.v = std::min(before.velocity, after.velocity);
     for (std::size_t i = 0; i < LIMITED_COUNT; ++i) {
-        const double jerk = jerk_of(bounds_of(limits, i), period_s);
-        cap.turn[i] = turn[i] / (period_s * period_s);
-        cap.bend[i] = 0.75 * bend[i] / period_s;
-        cap.v = std::min({cap.v, TURN_SHARE * jerk / std::max(cap.turn[i], LEAST),
-                          std::sqrt(jerk / std::max(cap.bend[i], LEAST))});
+        take(cap, i, bounds_of(limits, i), turn[i], bend[i]);
     }
-    const double stop_s = STOP_PERIODS * period_s;
+    if (map != nullptr) {
+        const curve::JointJump jump = curve::joint_jump(seam.before, seam.after, *map);
+        for (std::size_t j = 0; j < static_cast<std::size_t>(joints.count); ++j) {
+            const Bounds b = bounds_of(joints, j);
+            take(cap, JOINTS_AT + j, b, jump.first[j], jump.second[j]);
+            lower(before, b, jump.before[j], period_s);
+            lower(after, b, jump.after[j], period_s);
+        }
+        cap.is_stop = !jump.exists;
+    }
+    cap.v = std::min({cap.v, before.velocity, after.velocity});
     cap.reach = reach_of(cap.v, before.acceleration, period_s);
-    cap.is_stop = cap.v < stop_s * std::min(0.5 * stop_s * std::max(before.jerk, after.jerk),
-                                            std::max(before.acceleration, after.acceleration));
+    const double stop_s = STOP_PERIODS * period_s;
+    cap.is_stop = cap.is_stop || cap.v < stop_s * std::min(0.5 * stop_s * std::max(before.jerk, after.jerk),
+                                                           std::max(before.acceleration, after.acceleration));
     return cap;
 }
 
 bool isNeeded(const SpeedCap &cap, const CurveLimits &limits) noexcept {
+    return isNeeded(cap, limits, {});
+}
+
+bool isNeeded(const SpeedCap &cap, const CurveLimits &limits, const JointLimits &joints) noexcept {
     for (std::size_t i = 0; i < LIMITED_COUNT; ++i) {
-        const double jerk = jerk_of(bounds_of(limits, i), cap.period_s);
-        if (cap.v * (cap.turn[i] + cap.bend[i] * cap.v) > NEGLIGIBLE * jerk) {
+        if (isTaken(cap, i, bounds_of(limits, i))) {
+            return true;
+        }
+    }
+    for (std::size_t j = 0; j < static_cast<std::size_t>(joints.count); ++j) {
+        if (isTaken(cap, JOINTS_AT + j, bounds_of(joints, j))) {
             return true;
         }
     }

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "trajectory/curve/exact_builder.hh"
+#include "trajectory/curve/joint_curve.hh"
 #include "trajectory/profile/curve_limits.hh"
 
 namespace mw::trajectory::profile {
@@ -23,8 +24,8 @@ struct SpeedCap {
     bool is_stop = false;  ///< a stop is needed: the run ends here
     double reach = 0;      ///< length on both sides within which the smooth part takes the rest of the limits
     double period_s = 1e-3;
-    PerLimited turn{};  ///< jerk over v: |dq'|/T^2
-    PerLimited bend{};  ///< jerk over v^2: 3/4 |dq''|/T
+    PerBounds turn{};  ///< jerk over v: |dq'|/T^2
+    PerBounds bend{};  ///< jerk over v^2: 3/4 |dq''|/T
 };
 
 /// Part of the jerk limit that a jump of the tangent may take.
@@ -32,11 +33,15 @@ inline constexpr double TURN_SHARE = 0.5;
 
 /// The cap at a seam for samples `period_s` apart.
 SpeedCap cap_of(const curve::Seam &seam, const CurveLimits &limits, double period_s) noexcept;
+/// The same on a machine whose joints are not axes; `map` may be null.
+SpeedCap cap_of(const curve::Seam &seam, const CurveLimits &limits, const JointMap *map,
+                const JointLimits &joints, double period_s) noexcept;
 
 /// Bound of the reach of a cap at the end of a curve, for every curve that may follow.
 double largest_reach(const curve::CurvePoint &end, const CurveLimits &limits, double period_s) noexcept;
 
 /// False for rounding: at every speed that the axes can have, the jumps take a negligible part of the limits.
 bool isNeeded(const SpeedCap &cap, const CurveLimits &limits) noexcept;
+bool isNeeded(const SpeedCap &cap, const CurveLimits &limits, const JointLimits &joints) noexcept;
 
 }  // namespace mw::trajectory::profile

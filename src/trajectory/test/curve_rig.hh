@@ -36,8 +36,10 @@ struct LaidCurve {
 
 class CurveLayer {
   public:
-    CurveLayer(const Program &program, const profile::CurveLimits &limits)
-        : program_(program), limits_(limits) {}
+    /// `map` may be null.
+    CurveLayer(const Program &program, const profile::CurveLimits &limits, const JointMap *map = nullptr,
+               const JointLimits &joints = {})
+        : program_(program), limits_(limits), map_(map), joints_(joints) {}
 
     LaidCurve lay() {
         const std::size_t n = program_.primitives.size();
@@ -110,16 +112,18 @@ class CurveLayer {
     }
 
     void take_seam(const curve::Seam &seam, bool is_stop) {
-        const profile::SpeedCap cap = profile::cap_of(seam, limits_, CURVE_PERIOD_S);
+        const profile::SpeedCap cap = profile::cap_of(seam, limits_, map_, joints_, CURVE_PERIOD_S);
         if (cap.is_stop || is_stop) {
             out_.stops.push_back(cap.s);
-        } else if (isNeeded(cap, limits_)) {
+        } else if (isNeeded(cap, limits_, joints_)) {
             out_.caps.push_back(cap);
         }
     }
 
     const Program &program_;
     const profile::CurveLimits &limits_;
+    const JointMap *map_;
+    JointLimits joints_;
     LaidCurve out_;
     double next_s_ = 0;
 };

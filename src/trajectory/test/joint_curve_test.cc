@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Joints that are not axes: their derivatives along curves, limits at every servo sample, poses without
+// joints.
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/campaign_seeds.hh"
+#include "trajectory/test/curve_rig.hh"
+#include "trajectory/test/turning_table.hh"
+
+namespace mw::trajectory::test {
+namespace {
+
+using curve::JointCurve;
+using curve::PerJoint;
+using profile::CurveLimits;
+
+Pose pose(double x, double y, double c) {
+    Pose p;
+    p[0] = x;
+    p[1] = y;
+    p[geometry::AXIS_C] = c;
+    return p;
+}
+
+JointLimits joint_limits(double velocity, double acceleration, double jerk) {
+    JointLimits limits;
+    limits.count = 4;
+    limits.velocity.fill(velocity);
+    limits.acceleration.fill(acceleration);
+    limits.jerk.fill(jerk);
+    return limits;
+}
+
+std::vector<curve::Span> spans_of(const std::vector<Primitive> &moves) {
+    curve::ExactBuilder builder(3.0);
+    for (const Primitive &p : moves) {
+        builder.add(p);
+    }
+    return builder.spans();
+}
+
+TEST(JointCurve, HasTheDerivativesOfTheMap) {
+    const TurningTable table(150);
+    JointCurve joints;
+    joints.begin(&table, joint_limits(300, 3000, 30000));
+    const auto spans = spans_of({make_line(pose(10, -20, 0), pose(60, 15, 200))});
+    joints.cover(spans);
+    EXPECT_EQ(joints.drivable_s(), 1e300);
+    // Along the line x, y and c are linear in s: derivatives of the products in closed form.
+    const Pose step = spans[0].c[1] * (1 / spans[0].length), start = spans[0].c[0];
+    const double w = step[geometry::AXIS_C] * std::numbers::pi / 180;
+    for (double s = 0.05; s < spans.back().end_s(); s += 0.37) {
+        const curve::JointPoint p = joints.point_at(joints.part_at(s), s);
+        const double c = w * s, x = start[0] + 150 + step[0] * s, y = start[1] + step[1] * s;
+        const double cs = std::cos(c), sn = std::sin(c);
+        // j0 = x cos c - y sin c, j1 = x sin c + y cos c
+        const double j0 = x * cs - y * sn, j1 = x * sn + y * cs, u = step[0] * cs - step[1] * sn,
+                     v = step[0] * sn + step[1] * cs;
+        EXPECT_NEAR(p.first[0], u - w * j1, 1e-8);
+        EXPECT_NEAR(p.second[0], -2 * w * v - w * w * j0, 1e-6);
+        EXPECT_NEAR(p.third[0], -3 * w * w * u + w * w * w * j1, 1e-4);
+        EXPECT_NEAR(p.first[3], step[geometry::AXIS_C], 1e-9);
+    }
+}
+
+TEST(JointCurve, IsComputedOnceWhileTheCurveGrows) {
+    class Counting final : public JointMap {
+      public:
+        bool joints_at(const Pose &p, double *joints) const noexcept override {
+            ++calls;
+            return table.joints_at(p, joints);
+        }
+        TurningTable table{100};
+        mutable int calls = 0;
+    } map;
+    auto spans =
+        spans_of({make_line(pose(0, 0, 0), pose(60, 0, 90)), make_line(pose(60, 0, 90), pose(0, 9, 0))});
+    const auto all = spans;
+    JointCurve grown, whole;
+    whole.begin(&map, joint_limits(300, 3000, 30000));
+    whole.cover(all);
+    const int once = map.calls;
+    map.calls = 0;
+    grown.begin(&map, joint_limits(300, 3000, 30000));
+    spans.clear();
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        spans.push_back(all[k]);
+        grown.cover(spans);
+        if (spans.size() > 5) {
+            grown.drop_before(spans[2].start_s);
+            spans.erase(spans.begin());
+        }
+    }
+    EXPECT_EQ(map.calls, once);
+    ASSERT_FALSE(grown.parts().empty());
+    EXPECT_EQ(grown.parts().back().start_s, whole.parts().back().start_s);
+    EXPECT_LT(grown.parts().size(), whole.parts().size());
+}
+
+/// Joints behind x = 40 do not exist, or jump there.
+class Broken final : public JointMap {
+  public:
+    explicit Broken(bool jumps) noexcept : jumps_(jumps) {}
+    bool joints_at(const Pose &p, double *joints) const noexcept override {
+        joints[0] = p[0] + (jumps_ && p[0] > 40 ? 360 : 0);
+        joints[1] = p[1];
+        joints[2] = p[2];
+        joints[3] = p[geometry::AXIS_C];
+        return jumps_ || p[0] <= 40;
+    }
+
+  private:
+    bool jumps_;
+};
+
+TEST(JointProfile, StopsBeforePosesWithoutJoints) {
+    for (const bool jumps : {false, true}) {
+        const Broken map(jumps);
+        const auto spans = spans_of({make_line(pose(0, 0, 0), pose(100, 0, 0))});
+        std::vector<profile::FeedLimit> feeds{{100, 1e300}};
+        CurveLimits limits;
+        limits.axes.fill({100, 1000, 20000});
+        profile::Run run{&spans, &feeds, limits};
+        run.end_s = 100;
+        run.has_stop = true;
+        run.map = &map;
+        run.joints = joint_limits(1000, 10000, 1e6);
+        profile::Profile profile({});
+        profile.begin(0);
+        double end = 0;
+        for (int n = 0; n < 1000 && !(profile.isComplete() && profile.cells() == 0); ++n) {
+            profile.plan(run, 0);
+            const std::size_t cells = std::min<std::size_t>(profile.cells(), 25);
+            for (std::size_t k = 0; k < cells; ++k) {
+                end = profile.cell(k).s_at(profile.cell(k).duration);
+            }
+            profile.drop(cells);
+        }
+        EXPECT_LE(profile.drivable_s(), 40);
+        EXPECT_GT(profile.drivable_s(), 39.9);
+        EXPECT_NEAR(end, profile.drivable_s(), 1e-9);
+    }
+}
+
+/// The joints at each sample against their limits.
+void expect_joint_limits(const DrivenCurve &out, const JointMap &map, const JointLimits &limits) {
+    std::vector<testing::AxisLimit> each;
+    for (std::size_t j = 0; j < static_cast<std::size_t>(limits.count); ++j) {
+        each.push_back({limits.velocity[j], limits.acceleration[j], limits.jerk[j]});
+    }
+    testing::LimitChecker checker(each, CURVE_PERIOD_S);
+    for (const Pose &sample : out.samples) {
+        PerJoint joints{};
+        ASSERT_TRUE(map.joints_at(sample, joints.data()));
+        checker.sample(joints.data());
+    }
+    EXPECT_TRUE(checker.isWithin()) << checker.report();
+    EXPECT_GT(std::max({checker.worst_velocity(), checker.worst_acceleration(), checker.worst_jerk()}), 0.3);
+}
+
+/// An arc moved to `from` that turns the table, too.
+Primitive turned_arc(const Primitive &p, const Pose &from, const Pose &to) {
+    ArcShape shape;
+    shape.isInUvw = p.space == geometry::AXIS_U;
+    for (int i = 0; i < 3; ++i) {
+        const auto k = static_cast<std::size_t>(i), a = static_cast<std::size_t>((i + 1) % 3),
+                   b = static_cast<std::size_t>((i + 2) % 3);
+        shape.centre[p.space + i] = from[p.space + i] - p.radius * p.u[k];
+        shape.normal[p.space + i] = p.u[a] * p.v[b] - p.u[b] * p.v[a];
+    }
+    shape.angle_rad = p.omega * p.length;
+    Primitive out;
+    EXPECT_EQ(make_arc(from, to, shape, out), ArcFault::NONE);
+    return out;
+}
+
+/// Lines, arcs and curves over X Y Z and C, exact or not.
+Program table_program(Maker &maker, unsigned seed) {
+    Program program = maker.make_long(seed % 4 == 1, 2.0);
+    constexpr std::size_t MOST = 60;
+    program.primitives.resize(std::min(program.primitives.size(), MOST));
+    program.requests.resize(program.primitives.size());
+    const bool is_exact = seed % 3 == 0;
+    double turned = 0;
+    Pose from = program.primitives.front().start, was = from;
+    for (std::size_t k = 0; k < program.primitives.size(); ++k) {
+        Primitive &p = program.primitives[k];
+        const double turn = maker.chance(0.7) ? p.length * maker.real(-4, 4) : 0.0;
+        turned = std::clamp(turned + turn, -2000.0, 2000.0);
+        Pose to = from + (p.end - was);
+        was = p.end;
+        to[geometry::AXIS_C] = turned;
+        p = p.isArc ? turned_arc(p, from, to) : make_line(from, to);
+        from = to;
+        MoveRequest &r = program.requests[k];
+        r.tolerance = std::max(r.tolerance, 1e-3);
+        r.join = is_exact ? geometry::PathMode::EXACT_PATH : geometry::PathMode::BLEND;
+        r.tolerance = is_exact ? 0.0 : r.tolerance;
+    }
+    return program;
+}
+
+TEST(JointProfile, KeepsTheLimitsOfJointsAtEverySample) {
+    const auto [first, count] = testing::campaign_seeds(6);
+    for (int i = 0; i < count; ++i) {
+        const auto seed = static_cast<unsigned>(first + i);
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        Maker maker(seed, true);
+        const Program program = table_program(maker, seed);
+        const CurveLimits limits = curve_limits_of(program.limits);
+        const TurningTable table(maker.real(0, 200));
+        JointLimits joints = joint_limits(0, 0, 0);
+        for (std::size_t j = 0; j < 4; ++j) {
+            joints.velocity[j] = std::pow(10.0, maker.real(1, 2.7));
+            joints.acceleration[j] = std::pow(10.0, maker.real(2, 4));
+            joints.jerk[j] = joints.acceleration[j] * std::pow(10.0, maker.real(0.9, 2.5));
+        }
+        const LaidCurve laid = CurveLayer(program, limits, &table, joints).lay();
+        CurveDriver driver(laid, limits);
+        driver.run().map = &table;
+        driver.run().joints = joints;
+        const DrivenCurve out = driver.drive();
+        ASSERT_TRUE(out.is_done);
+        EXPECT_LE(out.worst_start, 1 + 1e-3) << "a plan began from one that leaves a limit";
+        expect_joint_limits(out, table, joints);
+        auto checker = make_checker(program.limits, CURVE_PERIOD_S);
+        for (const Pose &sample : out.samples) {
+            checker.sample(sample.c.data());
+        }
+        EXPECT_TRUE(checker.isWithin()) << checker.report();
+    }
+}
+
+}  // namespace
+}  // namespace mw::trajectory::test
