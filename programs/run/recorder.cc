@@ -6,9 +6,12 @@
 namespace mw::programs {
 
 Recorder::Recorder(machine::Machine &machine, const machine::MachineConfig &config)
-    : machine_(machine), monitor_(config.servo_period_ns) {
-    machine_.task().set_move_listener(
-        [this](motion::CommandId id, const motion::PathBody &body) { monitor_.on_move(id, body); });
+    : machine_(machine), monitor_(config.servo_period_ns),
+      certificate_(machine::certificate_settings(config)) {
+    machine_.task().set_move_listener([this](const task::SentMove &move) {
+        monitor_.on_move(move.start, move.body);
+        certificate_.on_move(move);
+    });
 }
 
 Result<> Recorder::open_trace(const std::string &path, const machine::MachineConfig &config) {
@@ -21,6 +24,7 @@ Result<> Recorder::open_trace(const std::string &path, const machine::MachineCon
 }
 
 void Recorder::start() {
+    started_ = true;
     monitor_.start(machine_.task().motion_status().carte_pos_cmd);
     machine_.channels().isTracing.store(1);
 }
@@ -28,15 +32,17 @@ void Recorder::start() {
 void Recorder::drain() {
     motion::TraceSample sample;
     while (machine_.channels().trace.pop(sample)) {
-        monitor_.on_sample(sample);
+        certificate_.on_sample(sample);
+        monitor_.on_sample(sample, certificate_.isRapid());
         if (trace_.has_value()) {
             trace_->write(sample);
         }
     }
 }
 
-Result<> Recorder::finish() {
+Result<> Recorder::finish(machine::ProgramEnd end) {
     drain();
+    certificate_.finish(end);
     machine_.channels().isTracing.store(0);
     machine_.task().set_move_listener({});
     const std::uint64_t lost = machine_.channels().trace_lost.load();

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Keeps trace, figures and picture while a program runs on a machine of this process.
+// Records trace, figures, certificate of motion and picture while a program runs on a machine of this
+// process.
 #pragma once
 
 #include <optional>
 #include <string>
 
+#include "machine/analysis/motion_certificate.hh"
 #include "machine/analysis/path_monitor.hh"
 #include "machine/assembly/machine.hh"
 #include "programs/run/trace_writer.hh"
@@ -21,13 +23,17 @@ class Recorder {
     /// Once a task cycle.
     void drain();
     /// An error when the trace is incomplete.
-    Result<> finish();
+    Result<> finish(machine::ProgramEnd end);
+    bool hasStarted() const { return started_; }
     const machine::PathMonitor &monitor() const { return monitor_; }
+    machine::Certificate certificate() const { return certificate_.result(); }
 
   private:
     machine::Machine &machine_;
     machine::PathMonitor monitor_;
+    machine::MotionCertificate certificate_;
     std::optional<TraceWriter> trace_;
+    bool started_ = false;
 };
 
 }  // namespace mw::programs

@@ -16,6 +16,7 @@
 #include "machine/config/loaded_config.hh"
 #include "machine/tools/tool_data.hh"
 #include "programs/commands.hh"
+#include "programs/run/certificate_report.hh"
 #include "programs/run/machine_access.hh"
 #include "programs/run/plot.hh"
 #include "programs/run/recorder.hh"
@@ -69,13 +70,35 @@ class Run {
         if (status.has_value()) {
             status = (*machine)->task().save_parameters();
         }
+        const CertificateReport certificate = certificate_of(**machine, person, recorder, status.has_value());
+        const bool isWritten = !recorder.hasStarted() || write(certificate);
         if (!status.has_value()) {
             sink_.failure(status.error());
             return 1;
         }
         tell_end({words_.program, loaded_.machine, person.figures(), recorder.monitor().figures(),
-                  (*machine)->realtime_figures(), words_.realtime, check_});
-        return draw(recorder.monitor().points()) ? 0 : 1;
+                  certificate_table(certificate), (*machine)->realtime_figures(), words_.realtime, check_});
+        return draw(recorder.monitor().points()) && isWritten ? 0 : 1;
+    }
+
+    CertificateReport certificate_of(machine::Machine &machine, const RunSession &person,
+                                     const Recorder &recorder, bool wasFinished) const {
+        return {.program = words_.program,
+                .machine = loaded_.machine,
+                .certificate = recorder.certificate(),
+                .cycle_time_s = person.figures().cycle_time_s,
+                .wasFinished = wasFinished,
+                .was_realtime = words_.realtime,
+                .file_name = [&machine](std::uint32_t index) { return machine.task().file_name(index); }};
+    }
+
+    bool write(const CertificateReport &certificate) {
+        const auto written =
+            words_.certificate.empty() ? Result<>{} : write_certificate(certificate, words_.certificate);
+        if (!written.has_value()) {
+            sink_.failure(written.error());
+        }
+        return written.has_value();
     }
 
     /// On a running machine, which continues afterwards.
@@ -98,7 +121,7 @@ class Run {
             sink_.failure(status.error());
             return 1;
         }
-        tell_end({words_.program, loaded_.machine, person.figures(), {}, {}, words_.realtime, check_});
+        tell_end({words_.program, loaded_.machine, person.figures(), {}, {}, {}, words_.realtime, check_});
         return 0;
     }
 
@@ -140,6 +163,7 @@ class Run {
     /// Rejects options that need the machine's process.
     bool isForClients() {
         const char *option = !words_.trace.empty()            ? "--trace"
+                             : !words_.certificate.empty()    ? "--certificate"
                              : !words_.plot.empty()           ? "--plot"
                              : words_.strict                  ? "--strict"
                              : !words_.homing_module.empty()  ? "--homemod"
@@ -229,7 +253,8 @@ class Run {
         }
         recorder->start();
         status = person.run_program(words_.from_line, [recorder] { recorder->drain(); });
-        const auto finished = recorder->finish();
+        const auto finished = recorder->finish(status.has_value() ? machine::ProgramEnd::COMPLETE
+                                                                  : machine::ProgramEnd::STOPPED);
         return status.has_value() ? finished : status;
     }
 

@@ -29,6 +29,9 @@ options::CommandLine run_line(RunWords &run, options::Words &rest) {
     line.flag("--yes", "do not ask before the start, and start without a terminal; confirms nothing else",
               run.confirmed);
     line.text("--trace", "FILE.csv", "write the commanded positions of every servo cycle", run.trace);
+    line.text("--certificate", "FILE.json",
+              "write the largest use of each limit and the path deviation, with their lines",
+              run.certificate);
     line.text("--plot", "FILE", "draw the tool path, as .png or .svg; also for a rejected program", run.plot);
     line.number("--from-line", "N",
                 "begin at this line: earlier lines are calculated, and a person confirms the approach",

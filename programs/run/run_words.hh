@@ -10,7 +10,7 @@
 namespace mw::programs {
 
 struct RunWords {
-    std::string ini, program, trace, plot, homing_module, planner_module;
+    std::string ini, program, trace, plot, certificate, homing_module, planner_module;
     bool realtime = false, strict = false, estimated = true, checked = true, confirmed = false;
     ProgramSwitches switches;
     double patience_s = 60.0;

@@ -38,15 +38,10 @@ void print_lengths(const machine::RunFigures &path, const char *unit) {
     fmt::print("rapid               {:.3f} {}{}\n", path.rapid_length, unit, turned(path.rapid_angle_deg));
 }
 
-void print_peaks(const Summary &summary, const machine::RunFigures &path, const char *unit) {
+void print_peaks(const Summary &summary, const machine::RunFigures &path) {
     print_axes("peak velocity", summary, path.peak_velocity, "s");
     print_axes("peak acceleration", summary, path.peak_acceleration, "s2");
-    fmt::print("path deviation      {:.5f} {}", path.deviation_linear, unit);
-    constexpr unsigned ANGULAR_MASK = 0x38;
-    if ((summary.machine.axis_mask & ANGULAR_MASK) != 0) {
-        fmt::print(", {:.5f} deg", path.deviation_angular);
-    }
-    fmt::print("\n");
+    fmt::print("{}", summary.certificate);
 }
 
 }  // namespace
@@ -67,7 +62,7 @@ void print_summary(const Summary &summary) {
     }
     fmt::print("blocks              {}\n", summary.run.blocks);
     if (summary.path.has_value()) {
-        print_peaks(summary, *summary.path, unit);
+        print_peaks(summary, *summary.path);
     }
     if (summary.run.stops_passed > 0) {
         fmt::print("program stops       {} passed\n", summary.run.stops_passed);

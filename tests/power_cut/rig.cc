@@ -115,9 +115,9 @@ void Rig::find_parameters() {
 void Rig::listen() {
     recording = {};
     told_ = 0;
-    machine_->task().set_move_listener([this](motion::CommandId id, const motion::PathBody &move) {
-        const Told one = std::visit([](const auto &body) { return told(body); }, move);
-        recording.calls.push_back({id, one.block, one.text});
+    machine_->task().set_move_listener([this](const task::SentMove &move) {
+        const Told one = std::visit([](const auto &body) { return told(body); }, move.body);
+        recording.calls.push_back({move.id, one.block, one.text});
     });
 }
 

@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "machine/analysis/path_monitor.hh"
+#include "machine/analysis/programmed_piece.hh"
 #include "machine/config/unscripted.hh"
 
 namespace mw::machine {

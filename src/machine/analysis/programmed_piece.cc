@@ -1,21 +1,30 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "machine/analysis/programmed_piece.hh"
 
-#include <algorithm>
-#include <numbers>
+#include <cmath>
+#include <cstdlib>
+
+#include "base/overloaded.hh"
 
 namespace mw::machine {
 namespace {
 
 using geometry::Pose;
 
-constexpr double TURN = 2.0 * std::numbers::pi;
+constexpr int REFINEMENTS = 4;      ///< of the nearest point on a helix: each squares the error
+constexpr int HALVINGS = 40;        ///< of the interval between the nearest points in lengths and in angles
+constexpr double CONVERGED = 1e-9;  ///< fraction of a piece: the error is of second order
+constexpr double FLAT = 1e-12;      ///< relative growth and rise below which an arc is a circle
+
+double linear_dot(const Pose &a, const Pose &b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[6] * b[6] + a[7] * b[7] + a[8] * b[8];
+}
+
+double angular_dot(const Pose &a, const Pose &b) {
+    return a[3] * b[3] + a[4] * b[4] + a[5] * b[5];
+}
 
 }  // namespace
-
-PieceShape::Vec3 PieceShape::minus(const Pose &a, const Pose &b) {
-    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
 
 double PieceShape::dot(const Vec3 &a, const Vec3 &b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
@@ -30,104 +39,165 @@ PieceShape::Vec3 PieceShape::in_plane(const Vec3 &v, const Vec3 &normal) {
     return {v.x - k * normal.x, v.y - k * normal.y, v.z - k * normal.z};
 }
 
-PieceShape::PieceShape(const ProgrammedPiece &piece)
-    : piece_(piece), along_(piece.end - piece.start), length2_(geometry::dot(along_, along_)),
-      line_in_space_(piece.angle_rad == 0 &&
-                     std::all_of(along_.c.begin() + 3, along_.c.end(), [](double d) { return d == 0; })) {
-    if (piece.angle_rad == 0) {
-        return;
+PieceShape::Vec3 PieceShape::arc_axes(const Pose &p) const {
+    const int first = piece_.isInUvw ? geometry::AXIS_U : geometry::AXIS_X;
+    return {p[first], p[first + 1], p[first + 2]};
+}
+
+void PieceShape::add_to_arc_axes(Pose &p, double along_radius, double along_side) const {
+    const int first = piece_.isInUvw ? geometry::AXIS_U : geometry::AXIS_X;
+    p[first] += along_radius * radius_.x + along_side * side_.x;
+    p[first + 1] += along_radius * radius_.y + along_side * side_.y;
+    p[first + 2] += along_radius * radius_.z + along_side * side_.z;
+}
+
+PieceShape::PieceShape(const ProgrammedPiece &piece) : piece_(piece), along_(piece.end - piece.start) {
+    if (piece.angle_rad != 0) {
+        normal_ = arc_axes(piece.normal);
+        const double length = std::sqrt(dot(normal_, normal_));
+        normal_ = {normal_.x / length, normal_.y / length, normal_.z / length};
+        const Vec3 end_radius = in_plane(arc_axes(piece.end - piece.centre), normal_);
+        radius_ = in_plane(arc_axes(piece.start - piece.centre), normal_);
+        side_ = cross(normal_, radius_);
+        // The radius may change slightly between start and end (rounded programs): it changes linearly, as
+        // does what then is left to the end.
+        const double r0 = std::sqrt(dot(radius_, radius_)), r1 = std::sqrt(dot(end_radius, end_radius));
+        growth_ = r0 > 0 ? r1 / r0 - 1.0 : 0.0;
+        const double scale = 1.0 + growth_;
+        add_to_arc_axes(along_, 1.0 - scale * std::cos(piece.angle_rad), -scale * std::sin(piece.angle_rad));
+        isCircle_ = std::abs(growth_) < FLAT && linear_dot(along_, along_) < FLAT * FLAT * r0 * r0;
     }
-    normal_ = {piece.normal[0], piece.normal[1], piece.normal[2]};
-    const Vec3 from_centre = minus(piece.start, piece.centre), to_end = minus(piece.end, piece.centre);
-    const Vec3 end_radius = in_plane(to_end, normal_);
-    radius_ = in_plane(from_centre, normal_);
-    side_ = cross(normal_, radius_);
-    // The radius may change slightly between start and end (rounded programs): it changes linearly.
-    const double r0 = std::sqrt(dot(radius_, radius_));
-    const double r1 = std::sqrt(dot(end_radius, end_radius));
-    growth_ = r0 > 0 ? r1 / r0 - 1.0 : 0.0;
-    first_rise_ = dot(from_centre, normal_);
-    rise_ = dot(to_end, normal_) - first_rise_;
-    first_ = point_at(0);
-    last_ = point_at(1);
+    linear_length2_ = linear_dot(along_, along_);
+    angular_length2_ = angular_dot(along_, along_);
 }
 
 Pose PieceShape::point_at(double fraction) const {
     Pose p = piece_.start + along_ * fraction;
-    if (piece_.angle_rad == 0) {
-        return p;
+    if (piece_.angle_rad != 0) {
+        const double scale = 1.0 + fraction * growth_, angle = piece_.angle_rad * fraction;
+        add_to_arc_axes(p, scale * std::cos(angle) - 1.0, scale * std::sin(angle));
     }
-    const double scale = 1.0 + fraction * growth_;
-    const double angle = piece_.angle_rad * fraction;
-    const double c = std::cos(angle) * scale, s = std::sin(angle) * scale;
-    const double rise = first_rise_ + fraction * rise_;
-    p[0] = piece_.centre[0] + c * radius_.x + s * side_.x + rise * normal_.x;
-    p[1] = piece_.centre[1] + c * radius_.y + s * side_.y + rise * normal_.y;
-    p[2] = piece_.centre[2] + c * radius_.z + s * side_.z + rise * normal_.z;
     return p;
 }
 
-Nearest PieceShape::nearest(const Pose &p) const {
-    if (piece_.angle_rad != 0) {
-        return nearest_on_arc(p);
-    }
-    return isInSpace(p) ? nearest_in_space(p) : nearest_on_line(p);
+Pose PieceShape::derivative_at(double fraction) const {
+    Pose d = along_;
+    const double scale = 1.0 + fraction * growth_, angle = piece_.angle_rad * fraction;
+    const double c = std::cos(angle), s = std::sin(angle);
+    add_to_arc_axes(d, growth_ * c - scale * piece_.angle_rad * s,
+                    growth_ * s + scale * piece_.angle_rad * c);
+    return d;
 }
 
-bool PieceShape::isInSpace(const Pose &p) const {
-    return line_in_space_ && std::equal(p.c.begin() + 3, p.c.end(), piece_.start.c.begin() + 3);
+ProgrammedPiece PieceShape::part_of(int index, int count) const {
+    ProgrammedPiece part = piece_;
+    part.start = index == 0 ? piece_.start : point_at(static_cast<double>(index) / count);
+    part.end = index + 1 == count ? piece_.end : point_at(static_cast<double>(index + 1) / count);
+    part.angle_rad = piece_.angle_rad / count;
+    return part;
 }
 
-Nearest PieceShape::distance(const Pose &p, const Pose &at, double fraction) {
-    const Pose d = p - at;
-    return {fraction, geometry::norm_linear(d), geometry::norm_abc(d)};
+Nearest PieceShape::at(const Pose &p, double fraction, const Slack &slack) const {
+    const Pose d = p - point_at(fraction);
+    return {fraction, std::max(0.0, std::sqrt(linear_dot(d, d)) - slack.linear),
+            std::max(0.0, std::sqrt(angular_dot(d, d)) - slack.angular)};
 }
 
-/// As nearest_on_line() when all but the first three components are zero.
-Nearest PieceShape::nearest_in_space(const Pose &p) const {
-    const Vec3 along{along_[0], along_[1], along_[2]}, from_start = minus(p, piece_.start);
-    const double fraction = length2_ > 0 ? std::clamp(dot(from_start, along) / length2_, 0.0, 1.0) : 1.0;
-    const Vec3 d{p[0] - (piece_.start[0] + along.x * fraction), p[1] - (piece_.start[1] + along.y * fraction),
-                 p[2] - (piece_.start[2] + along.z * fraction)};
-    return {fraction, std::sqrt(dot(d, d)), 0};
-}
-
-Nearest PieceShape::nearest_on_line(const Pose &p) const {
-    const double fraction = length2_ > 0 ? geometry::dot(p - piece_.start, along_) / length2_ : 1.0;
-    const double inside = std::clamp(fraction, 0.0, 1.0);
-    return distance(p, point_at(inside), inside);
-}
-
-Nearest PieceShape::nearest_on_arc(const Pose &p) const {
-    const Vec3 here = in_plane(minus(p, piece_.centre), normal_);
-    double angle = std::atan2(dot(cross(radius_, here), normal_), dot(radius_, here));
-    const double sweep = std::fabs(piece_.angle_rad);
-    angle = piece_.angle_rad < 0 ? -angle : angle;
-    Nearest best = distance(p, first_, 0.0);
-    const Nearest at_end = distance(p, last_, 1.0);
-    best = at_end.combined() < best.combined() ? at_end : best;
-    for (double a = angle - TURN; a <= sweep; a += TURN) {
-        if (a > 0) {
-            const Nearest candidate = distance(p, point_at(a / sweep), a / sweep);
-            best = candidate.combined() < best.combined() ? candidate : best;
+double PieceShape::arc_fraction(const Pose &p) const {
+    const Vec3 here = in_plane(arc_axes(p - piece_.centre), normal_);
+    double fraction = std::atan2(dot(cross(radius_, here), normal_), dot(radius_, here)) / piece_.angle_rad;
+    for (int i = 0; i < REFINEMENTS && !isCircle_; ++i) {
+        const double inside = std::clamp(fraction, 0.0, 1.0);
+        const Pose d = derivative_at(inside);
+        const double step = linear_dot(p - point_at(inside), d) / linear_dot(d, d);
+        fraction = inside + step;
+        if (std::abs(step) < CONVERGED) {
+            break;
         }
     }
+    return fraction;
+}
+
+double PieceShape::linear_fraction(const Pose &p) const {
+    if (piece_.angle_rad != 0) {
+        return arc_fraction(p);
+    }
+    return linear_dot(p - piece_.start, along_) / linear_length2_;
+}
+
+double PieceShape::angular_fraction(const Pose &p) const {
+    return angular_dot(p - piece_.start, along_) / angular_length2_;
+}
+
+Nearest PieceShape::nearest(const Pose &p, double from, const Slack &slack) const {
+    const bool hasLength = linear_length2_ > 0 || piece_.angle_rad != 0;
+    if (!hasLength && angular_length2_ == 0) {
+        return at(p, from, slack);
+    }
+    double low = std::clamp(hasLength ? linear_fraction(p) : angular_fraction(p), from, 1.0);
+    const Nearest in_lengths = at(p, low, slack);
+    if (!hasLength || angular_length2_ == 0 || in_lengths.linear >= in_lengths.angular) {
+        return in_lengths;
+    }
+    double high = std::clamp(angular_fraction(p), from, 1.0);
+    const Nearest in_angles = at(p, high, slack);
+    if (in_angles.angular >= in_angles.linear) {
+        return in_angles;
+    }
+    // Between the two, the length grows and the angle falls: the larger is least where they are equal.
+    Nearest best = in_angles;
+    for (int i = 0; i < HALVINGS && low != high; ++i) {
+        best = at(p, 0.5 * (low + high), slack);
+        (best.linear < best.angular ? low : high) = best.fraction;
+    }
     return best;
+}
+
+std::optional<ProgrammedPiece> programmed_piece(const Pose &start, const motion::PathBody &body) {
+    ProgrammedPiece piece;
+    piece.start = start;
+    const auto read = Overloaded{
+        [&](const motion::Line &line) {
+            piece.end = line.end;
+            piece.isRapid = line.terms.isRapid;
+            return true;
+        },
+        [&](const motion::Arc &arc) {
+            piece.end = arc.end;
+            piece.centre = arc.centre;
+            piece.normal = arc.normal;
+            piece.angle_rad = arc.angle_rad;
+            piece.isInUvw = arc.isInUvw;
+            return true;
+        },
+        [&](const motion::Probe &probe) {
+            piece.end = probe.end;
+            return true;
+        },
+        [&](const motion::RigidTap &) {
+            piece.end = start;
+            return true;
+        },
+        [](const auto &) { return false; },
+    };
+    return std::visit(read, body) ? std::optional(piece) : std::nullopt;
 }
 
 double feed_length(const ProgrammedPiece &piece) {
     const Pose d = piece.end - piece.start;
     if (piece.angle_rad != 0) {
+        const int first = piece.isInUvw ? geometry::AXIS_U : geometry::AXIS_X;
         double along_normal = 0, rise = 0;
-        for (int axis = 0; axis < 3; ++axis) {
+        for (int axis = first; axis < first + 3; ++axis) {
             along_normal += (piece.start[axis] - piece.centre[axis]) * piece.normal[axis];
             rise += d[axis] * piece.normal[axis];
         }
-        Pose radius;
-        for (int axis = 0; axis < 3; ++axis) {
-            radius[axis] = piece.start[axis] - piece.centre[axis] - along_normal * piece.normal[axis];
+        double radius2 = 0;
+        for (int axis = first; axis < first + 3; ++axis) {
+            const double r = piece.start[axis] - piece.centre[axis] - along_normal * piece.normal[axis];
+            radius2 += r * r;
         }
-        return std::hypot(std::fabs(piece.angle_rad) * geometry::norm_xyz(radius), rise);
+        return std::hypot(std::abs(piece.angle_rad) * std::sqrt(radius2), rise);
     }
     const double linear = geometry::norm_xyz(d);
     if (linear > 0) {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A programmed move as a curve: points on it, and the nearest one to a place.
+// A programmed move as a curve: points on it, and the nearest one to a position.
 #pragma once
 
-#include <cmath>
+#include <algorithm>
+#include <optional>
 
 #include "base/geometry/pose.hh"
+#include "motion/interface/path_command.hh"
 
 namespace mw::machine {
 
@@ -14,20 +16,32 @@ struct ProgrammedPiece {
     geometry::Pose centre, normal;  ///< arcs only
     double angle_rad = 0;           ///< 0: a line
     bool isRapid = false;
+    bool isInUvw = false;  ///< the arc is in U, V and W
 };
+
+/// The move of a path command that begins at `start`; nothing for commands that are no moves. Rigid tapping
+/// returns to its start.
+std::optional<ProgrammedPiece> programmed_piece(const geometry::Pose &start, const motion::PathBody &body);
 
 /// The nearest point of a piece: the position along it and the distances in both groups of coordinates.
 struct Nearest {
     double fraction = 0;  ///< 0 start, 1 end
     double linear = 0;    ///< over XYZUVW [machine units]
     double angular = 0;   ///< over ABC [degrees]
-    double combined() const { return angular == 0 ? linear : std::hypot(linear, angular); }
+    /// G64 P limits lengths and degrees separately by the same number.
+    double distance() const { return std::max(linear, angular); }
+};
+
+/// What is not known of distances.
+struct Slack {
+    double linear = 0, angular = 0;
 };
 
 /// Length over XYZ, else UVW, else ABC: the feed length.
 double feed_length(const ProgrammedPiece &piece);
 
-/// Precomputed values of a piece, for calculating many points.
+/// Precomputed values of a piece, for calculating many points. An arc is at most half a revolution long;
+/// longer ones are divided (part_of()).
 class PieceShape {
   public:
     explicit PieceShape(const ProgrammedPiece &piece);
@@ -35,33 +49,37 @@ class PieceShape {
     const ProgrammedPiece &piece() const { return piece_; }
     /// The pose at a fraction of the piece.
     geometry::Pose point_at(double fraction) const;
-    Nearest nearest(const geometry::Pose &p) const;
+    /// The point with the smallest distance() to `p` among the fractions from `from` to 1; distances are less
+    /// `slack`, and never negative.
+    Nearest nearest(const geometry::Pose &p, double from = 0, const Slack &slack = {}) const;
+    /// Part `index` of `count` parts with equal length.
+    ProgrammedPiece part_of(int index, int count) const;
 
   private:
     struct Vec3 {
         double x = 0, y = 0, z = 0;
     };
-    static Vec3 minus(const geometry::Pose &a, const geometry::Pose &b);
     static double dot(const Vec3 &a, const Vec3 &b);
     static Vec3 cross(const Vec3 &a, const Vec3 &b);
     static Vec3 in_plane(const Vec3 &v, const Vec3 &normal);
-    /// Distance of `p` from the point `at` at `fraction`.
-    static Nearest distance(const geometry::Pose &p, const geometry::Pose &at, double fraction);
-    /// Only X, Y and Z of `p` can deviate from the piece.
-    bool isInSpace(const geometry::Pose &p) const;
-    Nearest nearest_in_space(const geometry::Pose &p) const;
-    Nearest nearest_on_line(const geometry::Pose &p) const;
-    Nearest nearest_on_arc(const geometry::Pose &p) const;
+    /// The three coordinates of the arc.
+    Vec3 arc_axes(const geometry::Pose &p) const;
+    void add_to_arc_axes(geometry::Pose &p, double along_radius, double along_side) const;
+    geometry::Pose derivative_at(double fraction) const;
+    Nearest at(const geometry::Pose &p, double fraction, const Slack &slack) const;
+    /// The fraction nearest in the lengths alone, and in the angles alone; may be outside of the piece.
+    double linear_fraction(const geometry::Pose &p) const;
+    double angular_fraction(const geometry::Pose &p) const;
+    double arc_fraction(const geometry::Pose &p) const;
 
     ProgrammedPiece piece_;
-    geometry::Pose along_;  ///< end - start
-    double length2_ = 0;
-    bool line_in_space_ = false;  ///< moves X, Y and Z only
-    // For an arc: its radius at the start, the same rotated by 90 degrees, the growth of the radius, and the
-    // rise.
+    geometry::Pose along_;       ///< end - start, without the share of the circle
+    double linear_length2_ = 0;  ///< of along_
+    double angular_length2_ = 0;
+    // Of an arc: the radius at the start, the same rotated by 90 degrees, the growth of the radius.
     Vec3 normal_, radius_, side_;
-    double growth_ = 0, first_rise_ = 0, rise_ = 0;
-    geometry::Pose first_, last_;  ///< point_at(0), point_at(1)
+    double growth_ = 0;
+    bool isCircle_ = false;  ///< an arc that is neither a helix nor a spiral and moves no other length
 };
 
 }  // namespace mw::machine

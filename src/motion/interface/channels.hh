@@ -25,8 +25,10 @@ struct TraceSample {
     std::uint8_t isInMotion = 0;
     /// Counts, round and round, the switches of the kinematics: the same joints have another pose from there.
     std::uint8_t pose_kind = 0;
+    std::uint8_t isRetracing = 0;  ///< on the path that was commanded before (reverse run)
     Epoch epoch = 0;
     geometry::Pose carte_pos_cmd;
+    geometry::Pose programmed_pos_cmd;  ///< carte_pos_cmd without external offsets
     std::array<double, MAX_JOINTS> joint_pos_cmd{};
 };
 

@@ -31,18 +31,11 @@ void fill_unused(const JointInputs &in, int j, Outputs &out) noexcept {
     out.joint[n].motor_pos_cmd = in.motor_pos_fb;
 }
 
-void trace(Channels &channels, const Inputs &in, const Status &s, const Joints &joints,
-           std::uint8_t pose_kind, bool isMoving) noexcept {
-    if (channels.isTracing.load(std::memory_order_relaxed) == 0) [[likely]] {
-        return;
-    }
-    TraceSample sample;
-    sample.time_ns = in.time_ns;
+/// `sample` has what the status does not contain.
+void trace(Channels &channels, const Status &s, const Joints &joints, TraceSample &sample) noexcept {
     sample.cycle = s.cycle;
     sample.path_id = s.active_path_id;
     sample.line = s.source.line;
-    sample.isInMotion = isMoving ? 1 : 0;
-    sample.pose_kind = pose_kind;
     sample.epoch = s.epoch;
     sample.carte_pos_cmd = s.carte_pos_cmd;
     sample.joint_pos_cmd = commanded(joints);
@@ -134,7 +127,15 @@ void Controller::publish(const Inputs &in, Outputs &out) noexcept {
     out.isCoordError = isCoordError_;
     publish_view(in, programmed);
     channels_->status.write(s, new_parts(channels_->status, out));
-    trace(*channels_, in, s, joints_, types_.switches, isAnythingMoving());
+    if (channels_->isTracing.load(std::memory_order_relaxed) != 0) [[unlikely]] {
+        TraceSample sample;
+        sample.time_ns = in.time_ns;
+        sample.isInMotion = isAnythingMoving() ? 1 : 0;
+        sample.pose_kind = types_.switches;
+        sample.isRetracing = retracing_.retrace.isAway() ? 1 : 0;
+        sample.programmed_pos_cmd = programmed;
+        trace(*channels_, s, joints_, sample);
+    }
 }
 
 /// What is being executed, and what is left of the path. `programmed`: the place without external offsets.

@@ -58,11 +58,12 @@ const geometry::Pose *end_of(const gcode::MachineCall &call) {
 
 }  // namespace
 
-void SentMoves::note(motion::CommandId id, const Item &item, const geometry::Pose &position) {
+geometry::Pose SentMoves::note(motion::CommandId id, const Item &item, const geometry::Pose &position) {
     const geometry::Pose start = sent_.empty() ? position : end_;
     sent_.push_back({id, item, start});
     const geometry::Pose *const end = end_of(item.call);
     end_ = end != nullptr ? *end : start;
+    return start;
 }
 
 void SentMoves::follow(const motion::Status &status) {

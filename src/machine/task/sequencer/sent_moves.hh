@@ -16,8 +16,9 @@ namespace mw::task {
 /// One thread.
 class SentMoves {
   public:
-    /// `item` was sent as path command `id`; `position` is that of the machine if no move is active.
-    void note(motion::CommandId id, const Item &item, const geometry::Pose &position);
+    /// `item` was sent as path command `id`; `position` is that of the machine if no move is active. Returns
+    /// the position where the item begins.
+    geometry::Pose note(motion::CommandId id, const Item &item, const geometry::Pose &position);
     /// Drops completed moves.
     void follow(const motion::Status &status);
     /// Source line of the current move, or of the last one; 0 for none since clear_line().

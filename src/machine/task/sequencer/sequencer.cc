@@ -290,9 +290,10 @@ bool Sequencer::push_move(const motion::PathBody &move, const geometry::MoveSett
     if (!motion_.hasPathRoom() || !motion_.push_path(move, item.source)) {
         return false;
     }
-    sent_.note(motion_.last_path_id(), item, motion::programmed_position(motion_.status()));
+    const geometry::Pose start =
+        sent_.note(motion_.last_path_id(), item, motion::programmed_position(motion_.status()));
     if (move_listener_) {
-        move_listener_(motion_.last_path_id(), move);
+        move_listener_({motion_.last_path_id(), start, move});
     }
     if (!settings.isRapid) {
         spindles_.end_wait();

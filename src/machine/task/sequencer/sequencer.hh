@@ -43,8 +43,14 @@ struct SequencerEvents {
     std::function<std::optional<Result<>>()> user_code_result;
 };
 
+/// A move that was sent to the planner.
+struct SentMove {
+    motion::CommandId id = 0;
+    geometry::Pose start;  ///< programmed position where it begins
+    const motion::PathBody &body;
+};
 /// Called for each move that is sent to the planner.
-using MoveListener = std::function<void(motion::CommandId id, const motion::PathBody &move)>;
+using MoveListener = std::function<void(const SentMove &move)>;
 
 struct SequencerSettings {
     std::string changer_error_text{};          ///< [TASK]IO_ERROR

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The certificate of motion: how far the commanded positions of a program used the limits of the machine, and
+// how far they were from the programmed path. It is calculated from the moves that were sent to motion, the
+// samples of the servo thread and the limits in the INI file, without anything that the planner calculated.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "machine/analysis/limit_use.hh"
+#include "machine/analysis/path_deviation.hh"
+#include "machine/config/machine_config.hh"
+#include "machine/task/sequencer/sequencer.hh"
+#include "motion/interface/channels.hh"
+
+namespace mw::machine {
+
+struct CertificateSettings {
+    std::vector<LimitedCoordinate> coordinates;
+    double period_s = 0.001;
+    /// [TRAJ]ADDED_TOLERANCES: joined lines may deviate by G64 Q (or P) in addition to P.
+    bool areTolerancesAdded = false;
+};
+
+/// Axes, joints that a pose moves, and the norm over X, Y and Z, with the limits of the INI file. Limits of
+/// jerk only where motion keeps to them ([TRAJ]PLANNER_TYPE).
+CertificateSettings certificate_settings(const MachineConfig &machine);
+
+struct Certificate {
+    std::vector<CoordinateUse> uses;
+    Deviations deviations;
+    std::uint64_t samples = 0;       ///< of program motion
+    std::uint64_t lost_samples = 0;  ///< servo cycles that are not in the samples: the figures are incomplete
+
+    bool isWithinLimits() const;
+    bool isWithinTolerance() const;
+};
+
+enum class ProgramEnd : std::uint8_t {
+    COMPLETE,  ///< the program ran to its end
+    STOPPED,   ///< what is left of the path was not executed
+};
+
+/// Of one program. One thread: samples of the servo thread arrive through the trace ring (motion::Channels).
+class MotionCertificate {
+  public:
+    explicit MotionCertificate(const CertificateSettings &settings);
+
+    /// In the order of the program, each before its first sample.
+    void on_move(const task::SentMove &move);
+    void on_sample(const motion::TraceSample &sample);
+    void finish(ProgramEnd end);
+
+    Certificate result() const;
+    /// The move at the last sample is a rapid.
+    bool isRapid() const { return path_.isRapid(); }
+
+  private:
+    /// Positions of a sample whose place on the path is known with the next sample.
+    struct HeldUse {
+        LimitUse::Sample sample;
+        bool isMeasured = false, isRestart = false;
+    };
+
+    /// Counts lost cycles; false when the positions do not continue those of the last sample.
+    bool isContinuous(const motion::TraceSample &sample);
+    void take_held();
+
+    CertificateSettings settings_;
+    LimitUse limits_;
+    PathDeviation path_;
+    std::uint64_t samples_ = 0, lost_ = 0;
+    std::int64_t start_ns_ = 0;
+    std::uint64_t last_cycle_ = 0;
+    std::uint8_t pose_kind_ = 0;
+    bool isFirst_ = true;
+    std::optional<HeldUse> held_;
+    int settling_ = 0;  ///< samples after program motion whose differences still contain it
+};
+
+}  // namespace mw::machine
