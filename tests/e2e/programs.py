@@ -5,8 +5,9 @@
 usage: programs.py MILLWRIGHT INI PROGRAM
 
 Checks: exit status 0, a summary with the figures people look for, a picture, a trace with the documented header and one
-row per servo cycle, and that the second run gives the same bytes.
+row per servo cycle, a certificate of motion within limits and tolerances, and that the second run gives the same bytes.
 """
+import json
 import pathlib
 import re
 import shutil
@@ -17,8 +18,8 @@ import tempfile
 
 def run(millwright, ini, program, folder, name):
     trace, plot = folder / f'{name}.csv', folder / f'{name}.png'
-    done = subprocess.run([millwright, 'run', str(ini), program, '--strict', '--trace', str(trace), '--plot', str(plot)],
-                          capture_output=True, text=True, check=False)
+    done = subprocess.run([millwright, 'run', str(ini), program, '--strict', '--trace', str(trace), '--plot', str(plot),
+                           '--certificate', str(folder / f'{name}.json')], capture_output=True, text=True, check=False)
     return done, trace, plot
 
 
@@ -42,6 +43,9 @@ def main():
         for word in ('cycle time', 'cutting', 'rapid', 'blocks', 'peak velocity', 'peak acceleration', 'path deviation',
                      'warnings            0'):
             expect(word in first.stdout, f'the summary has no "{word}"')
+        certificate = json.loads((folder / 'first.json').read_text())
+        expect(certificate['within_limits'] and certificate['lost_samples'] == 0, 'the motion is within the limits')
+        expect(certificate['within_tolerance'], 'the motion is within the tolerances')
         expect(plot.read_bytes()[:8] == b'\x89PNG\r\n\x1a\n', 'the picture is a PNG')
         with trace.open() as lines:
             header = lines.readline().strip()
