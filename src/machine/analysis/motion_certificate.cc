@@ -135,16 +135,17 @@ void MotionCertificate::take_held() {
 void MotionCertificate::on_sample(const motion::TraceSample &sample) {
     constexpr int SETTLING = DERIVATIVES;
     const bool isRestart = !isContinuous(sample);
-    const bool isProgram = sample.path_id != 0;
-    settling_ = isProgram ? SETTLING : std::max(0, settling_ - 1);
-    const bool isFirstAfter = !isProgram && settling_ == SETTLING - 1;
+    // With jerk limits the commanded position arrives after the last move has ended.
+    isProgram_ = sample.path_id != 0 || (isProgram_ && sample.isInMotion != 0);
+    settling_ = isProgram_ ? SETTLING : std::max(0, settling_ - 1);
+    const bool isFirstAfter = !isProgram_ && settling_ == SETTLING - 1;
     const std::int64_t time_ns = sample.time_ns - start_ns_;
-    if ((isProgram || isFirstAfter) && sample.isRetracing == 0) {
+    if ((isProgram_ || isFirstAfter) && sample.isRetracing == 0) {
         path_.on_sample(sample.programmed_pos_cmd, sample.path_id, time_ns);
     }
     take_held();
     held_ = HeldUse{{sample.carte_pos_cmd, sample.joint_pos_cmd, time_ns, {}}, settling_ > 0, isRestart};
-    samples_ += isProgram ? 1 : 0;
+    samples_ += isProgram_ ? 1 : 0;
 }
 
 void MotionCertificate::finish(ProgramEnd end) {

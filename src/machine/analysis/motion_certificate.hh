@@ -75,6 +75,7 @@ class MotionCertificate {
     std::uint64_t last_cycle_ = 0;
     std::uint8_t pose_kind_ = 0;
     bool isFirst_ = true;
+    bool isProgram_ = false;  ///< the last sample is of program motion
     std::optional<HeldUse> held_;
     int settling_ = 0;  ///< samples after program motion whose differences still contain it
 };

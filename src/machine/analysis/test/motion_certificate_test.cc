@@ -111,6 +111,20 @@ TEST_F(MotionCertificateTest, MotionOutsideOfTheProgramDoesNotCount) {
     EXPECT_LT(found.deviations.largest.distance(), 1e-12);
 }
 
+TEST_F(MotionCertificateTest, MotionAfterTheLastMoveHasEndedCounts) {
+    send(0, 1);
+    drive(0, 0.8);
+    for (int i = 1; i <= 100; ++i) {  // the mean of the reference arrives, twice as fast
+        motion::TraceSample s = sample(0.8 + 0.002 * i);
+        s.path_id = 0;
+        s.isInMotion = i < 100 ? 1 : 0;
+        certificate().on_sample(s);
+    }
+    const Certificate found = result();
+    EXPECT_NEAR(found.uses[1].ratio(0), 2, 1e-9);
+    EXPECT_LT(found.deviations.largest.distance(), 1e-12);
+}
+
 TEST_F(MotionCertificateTest, ExternalOffsetsAreMotionAndNoDeviation) {
     send(0, 1);
     for (int i = 0; i <= 1000; ++i) {
