@@ -219,4 +219,26 @@ std::string certificate_table(const CertificateReport &report) {
     return text + exceeded;
 }
 
+std::string certificate_line(const CertificateReport &report) {
+    const CoordinateUse *most = nullptr;
+    std::size_t derivative = 0;
+    for (const CoordinateUse &use : report.certificate.uses) {
+        for (std::size_t i = 0; i < machine::DERIVATIVES; ++i) {
+            if (use.hasLimit(i) && (most == nullptr || use.ratio(i) > most->ratio(derivative))) {
+                most = &use;
+                derivative = i;
+            }
+        }
+    }
+    std::string text = fmt::format("{}: motion certified", report.program);
+    if (most != nullptr) {
+        text += fmt::format(", at most {:.3f} % of {} of {} ({})", 100 * most->ratio(derivative),
+                            DERIVATIVE_TEXTS[derivative].name, title_of(most->coordinate),
+                            place_text(report, most->largest[derivative].source));
+    }
+    const Deviation &largest = report.certificate.deviations.largest;
+    return text + fmt::format(", path deviation {:.6f} {} ({})", largest.linear, length_unit(report),
+                              place_text(report, largest.source));
+}
+
 }  // namespace mw::programs

@@ -29,5 +29,7 @@ std::string certificate_json(const CertificateReport &report);
 Result<> write_certificate(const CertificateReport &report, const std::string &path);
 /// A line for each axis, joint and norm with limits, for the path, and for each limit that is exceeded.
 std::string certificate_table(const CertificateReport &report);
+/// The largest use of any limit, and the path deviation, in one line.
+std::string certificate_line(const CertificateReport &report);
 
 }  // namespace mw::programs

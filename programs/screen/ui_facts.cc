@@ -12,6 +12,7 @@
 #include "base/text.hh"
 #include "programs/run/ui_filter.hh"
 #include "programs/screen/ui_tabs.hh"
+#include "programs/start/program_certifier.hh"
 
 namespace mw::programs {
 namespace {
@@ -321,6 +322,7 @@ screen::MachineFacts machine_facts(const machine::LoadedConfig &loaded, diagnost
     facts.name = machine.name;
     facts.title = text_of(ini, "DISPLAY", "TITLE");
     facts.files = files_of(ini);
+    facts.files.certificate = last_certificate_file(machine);
     facts.tabs = tabs_of(ini, sink);
     bool has_rotary = false;
     for (int axis = 0; axis < geometry::AXIS_COUNT; ++axis) {

@@ -89,6 +89,7 @@ Result<> MachineStart::make() {
     }
     machine_ = std::move(*made);
     access_.emplace(*machine_);
+    certifier_.emplace(*machine_, loaded_.machine);
     tell_messages();
     make_parameter_file();
     check_places();
@@ -158,6 +159,8 @@ Result<> MachineStart::keep_up() {
 
 Result<> MachineStart::cycle() {
     access_->cycle();
+    certifier_->step();
+    tell_certificates();
     tell_messages();
     return access_->health();
 }
@@ -174,6 +177,7 @@ Result<> MachineStart::take_down() {
     if (healthy) {
         run_shutdown_file();
     }
+    certifier_.reset();
     access_.reset();
     machine_.reset();
     return saved;
@@ -219,6 +223,17 @@ void MachineStart::run_shutdown_file() {
     if (run->end().value_or(1) != 0) {
         sink_.error(run->end().has_value() ? "[HAL]SHUTDOWN = " + file + " has failed"
                                            : "[HAL]SHUTDOWN = " + file + " does not come to its end");
+    }
+}
+
+/// Faults to operators, each result to the terminal.
+void MachineStart::tell_certificates() {
+    while (const auto finding = certifier_->take_finding()) {
+        if (finding->isFault) {
+            machine_->task().post(messages::MessageKind::OPERATOR_ERROR, finding->text);
+        } else {
+            fmt::print(stderr, "{}\n", printable(finding->text));
+        }
     }
 }
 

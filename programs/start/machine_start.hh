@@ -10,6 +10,7 @@
 #include "machine/config/loaded_config.hh"
 #include "programs/run/machine_access.hh"
 #include "programs/start/display_program.hh"
+#include "programs/start/program_certifier.hh"
 #include "programs/start/side_programs.hh"
 
 namespace mw::programs {
@@ -41,6 +42,7 @@ class MachineStart {
     void end_programs();
     void run_shutdown_file();
     void tell_messages();
+    void tell_certificates();
 
     StartSettings settings_;
     machine::LoadedConfig &loaded_;
@@ -49,6 +51,7 @@ class MachineStart {
     std::vector<std::string> display_words_;
     std::unique_ptr<machine::Machine> machine_;
     std::optional<OwnMachine> access_;
+    std::optional<ProgramCertifier> certifier_;
     std::optional<DisplayProgram> display_;
     std::optional<SidePrograms> side_programs_;
     std::optional<int> display_status_;

@@ -6,6 +6,7 @@ Whoever is killed or stopped, each check asks both halves: is the machine safe, 
 
 usage: running_machine.py MILLWRIGHT HALCMD ROOT
 """
+import json
 import os
 import pathlib
 import signal
@@ -92,12 +93,28 @@ class Bench(Mill):
                                                  check=False).returncode != 0)
 
 
+def certified(bench, machine, program):
+    """The certificate of motion of the last program, as soon as it is that of this one."""
+    file = bench.ini.parent / 'mill_mm.var.certificate.json'
+
+    def read():
+        found = json.loads(file.read_text()) if file.exists() else {}
+        return found if found.get('program', '').endswith(program) else None
+    expect(wait_until(lambda: read() is not None), f'{program} is certified', machine.text)
+    return read() or {}
+
+
 def one_after_the_other(bench):
     machine = bench.up()
     expect(bench.pin('motion.motion-enabled') == 'FALSE', 'comes up in emergency stop')
     first = bench.run('short3.ngc')
     expect(first.end() == 0 and 'cycle time' in first.text, 'the first program runs', first.text)
     expect(abs(bench.position() - 3) < 1e-6 and bench.pin('motion.motion-enabled') == 'TRUE', 'the machine stays on, where it is')
+    found = certified(bench, machine, 'short3.ngc')
+    expect(found['finished'] and found['clock'] == 'realtime' and found['within_limits'] and found['within_tolerance'], 'its motion is certified', found)
+    moved = next(one for one in found['limits'] if one['name'] == 'X')['velocity']
+    expect(found['lost_samples'] == 0 and abs(moved['largest_per_s'] - 50) < 1 and moved['line'] == 2, 'with its feed and line', found)
+    expect(wait_until(lambda: 'short3.ngc: motion certified' in machine.text), 'and the terminal has a line of it', machine.text)
     homing = bench.pin('joint.0.homed')
     second = bench.run('short5.ngc')
     expect(second.end() == 0 and abs(bench.position() - 5) < 1e-6, 'the second runs on the same machine', second.text)
@@ -133,6 +150,8 @@ def clients_and_signals(bench, machine):
     os.kill(running.process.pid, signal.SIGTERM)
     expect(running.end() == 1 and 'stopped by SIGTERM' in running.text, 'a stop of the client ends its program', running.text)
     expect(bench.stands() and bench.pin('motion.motion-enabled') == 'TRUE', 'the machine is stopped, and stays on')
+    found = certified(bench, machine, 'long.ngc')
+    expect(found['finished'] is False and found['within_tolerance'], 'its motion is certified up to the stop', found)
     expect(machine.process.poll() is None, 'and up', machine.text)
 
     running = bench.run('long.ngc')

@@ -97,13 +97,14 @@ Role Api::needed_role(const Request &request) const {
 
 bool Api::isKeepsake(const Request &request, Reply &reply) {
     using Read = Response (*)(const UserFiles &, const Request &);
-    static constexpr std::array<std::pair<std::string_view, Read>, 4> ROUTES{
+    static constexpr std::array<std::pair<std::string_view, Read>, 5> ROUTES{
         {{"/api/mdi_history",
           [](const UserFiles &keep, const Request &asked) { return keep.mdi_history(asked); }},
          {"/api/preferences",
           [](const UserFiles &keep, const Request &asked) { return keep.preferences(asked); }},
          {"/api/icon", [](const UserFiles &keep, const Request &) { return keep.icon(); }},
-         {"/api/offsets", [](const UserFiles &keep, const Request &) { return keep.offsets(); }}}};
+         {"/api/offsets", [](const UserFiles &keep, const Request &) { return keep.offsets(); }},
+         {"/api/certificate", [](const UserFiles &keep, const Request &) { return keep.certificate(); }}}};
     const auto *const found =
         std::ranges::find(ROUTES, request.path, &std::pair<std::string_view, Read>::first);
     if (found == ROUTES.end()) {

@@ -32,8 +32,9 @@ struct ScreenFiles {
     std::string icon;  ///< a picture
     /// Lines of MDI, and how operators like their screens: without a file each browser keeps its own.
     std::string mdi_history, preferences;
-    std::string parameters;  ///< of the interpreter
-    std::string log;         ///< what operators have been told
+    std::string parameters;     ///< of the interpreter
+    std::string log;            ///< what operators have been told
+    std::string certificate{};  ///< of the motion of the last program
 };
 
 /// View of a machine.

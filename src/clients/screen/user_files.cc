@@ -115,6 +115,17 @@ Response UserFiles::icon() const {
     return response;
 }
 
+Response UserFiles::certificate() const {
+    auto text = read_file(facts_.files.certificate);
+    if (!text.has_value()) {
+        return error_response(404, "no program has been certified: " + text.error().str());
+    }
+    Response response;
+    response.type = "application/json";
+    response.body = std::move(*text);
+    return response;
+}
+
 Response UserFiles::offsets() const {
     const auto text = content(facts_.files.parameters);
     if (!text.has_value()) {

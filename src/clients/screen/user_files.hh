@@ -28,6 +28,8 @@ class UserFiles {
     /// {"systems": [{"offset": [X, Y, Z, A, B, C, U, V, W], "rotation_deg": 0}, ...]} of G54 to G59.3 as the
     /// parameter file has them.
     Response offsets() const;
+    /// The certificate of motion of the last program, as the machine wrote it.
+    Response certificate() const;
 
   private:
     MachineFacts facts_;

@@ -147,8 +147,8 @@ class Task {
     /// The active planner, and the operator's requests to change it.
     PlannerMode &planner_mode() { return planner_mode_; }
     const motion::Status &motion_status() const { return motion_.status(); }
-    /// The last program error with its position, callers and text; nullptr when the last program succeeded.
-    const diagnostics::Diagnostic *program_error() const { return run_.error(); }
+    /// The current or last program or MDI line.
+    const ProgramRun &run() const { return run_; }
     const std::string &file_name(std::uint32_t index) const { return reader_.canon().file_name(index); }
     /// Called for each move that is sent to the planner (for figures and pictures).
     void set_move_listener(MoveListener listener) { sequencer_.set_move_listener(std::move(listener)); }

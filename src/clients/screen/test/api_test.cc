@@ -228,6 +228,7 @@ TEST_F(ApiTest, EachRequestNeedsTheRoleOfTheTable) {
         {"GET", "/api/path?file=a.ngc", "", Role::VIEW},
         {"GET", "/api/times?file=a.ngc", "", Role::VIEW},
         {"GET", "/api/offsets", "", Role::VIEW},
+        {"GET", "/api/certificate", "", Role::VIEW},
         {"GET", "/api/preferences", "", Role::VIEW},
         {"GET", "/api/mdi_history", "", Role::VIEW},
         {"GET", "/api/icon", "", Role::STATUS},

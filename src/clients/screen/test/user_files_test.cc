@@ -27,6 +27,7 @@ class KeepsakesTest : public testing::Test {
         facts.files.mdi_history = (folder / "mdi").string();
         facts.files.preferences = (folder / "preferences").string();
         facts.files.parameters = (folder / "machine.var").string();
+        facts.files.certificate = (folder / "certificate").string();
     }
     ~KeepsakesTest() override { fs::remove_all(folder); }
     static Request request(const std::string &method, const std::string &body = "") {
@@ -40,6 +41,14 @@ class KeepsakesTest : public testing::Test {
     fs::path folder;
     MachineFacts facts;
 };
+
+TEST_F(KeepsakesTest, TheCertificateIsThatOfTheMachine) {
+    const UserFiles keep(facts);
+    EXPECT_EQ(keep.certificate().status, 404);
+    std::ofstream(facts.files.certificate) << R"({"finished":true})";
+    EXPECT_EQ(keep.certificate().status, 200);
+    EXPECT_EQ(body(keep.certificate())["finished"], true);
+}
 
 TEST_F(KeepsakesTest, LinesOfMdiAreKeptAsTextThatOtherScreensRead) {
     const UserFiles keep(facts);

@@ -27,6 +27,7 @@ void ProgramRun::recalculate() {
 
 std::optional<Ending> ProgramRun::end(Progress progress, const std::string &reason) {
     change(RunEvent::END);
+    isDone_ = progress == Progress::DONE;
     return request_.end(progress, reason);
 }
 

@@ -43,6 +43,8 @@ class ProgramRun {
     Hold hold() const { return state_.hold(); }
     bool isRunning() const { return state_.isRunning(); }
     bool isHeld() const { return state_.isHeld(); }
+    /// The last run ended as programmed, without error or abort.
+    bool isDone() const { return isDone_; }
     bool isProgram() const { return isRunning() && kind_ != RunKind::MDI; }
     /// Idle, reading, waiting or paused.
     InterpState shown() const;
@@ -65,6 +67,7 @@ class ProgramRun {
     RunKind kind_ = RunKind::PROGRAM;
     std::string line_;
     int from_line_ = 0;
+    bool isDone_ = false;
     Request request_;
     std::optional<std::string> failure_;
     std::optional<diagnostics::Diagnostic> error_;

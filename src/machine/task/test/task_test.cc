@@ -190,6 +190,7 @@ TEST_F(TaskTest, AProgramRunsToItsEnd) {
     EXPECT_EQ(joined().substr(0, 14), "line 1, line 2");
     EXPECT_EQ(task.status().task.interp_state, InterpState::IDLE);
     EXPECT_EQ(task.status().task.programs_ended, 1U);
+    EXPECT_TRUE(task.run().isDone());
 }
 
 TEST_F(TaskTest, AProgramChoosesThePlannerInItsPlace) {
@@ -409,8 +410,9 @@ TEST_F(TaskTest, AnErrorInTheProgramStopsItWithItsPlace) {
     EXPECT_EQ(ask(RunProgram{}), Progress::FAILED);
     EXPECT_NE(messages().find("p.ngc:3:"), std::string::npos);
     EXPECT_EQ(joined().find("line 4"), std::string::npos);
-    ASSERT_NE(task.program_error(), nullptr);
-    EXPECT_EQ(task.program_error()->what.place.line, 3);
+    ASSERT_NE(task.run().error(), nullptr);
+    EXPECT_EQ(task.run().error()->what.place.line, 3);
+    EXPECT_FALSE(task.run().isDone());
 }
 
 TEST_F(TaskTest, NothingQueuedBeforeAnAbortMovesAfterwards) {
