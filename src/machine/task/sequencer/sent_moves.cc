@@ -59,7 +59,8 @@ const geometry::Pose *end_of(const gcode::MachineCall &call) {
 }  // namespace
 
 geometry::Pose SentMoves::note(motion::CommandId id, const Item &item, const geometry::Pose &position) {
-    const geometry::Pose start = sent_.empty() ? position : end_;
+    const geometry::Pose start = sent_.empty() || isEndUnknown_ ? position : end_;
+    isEndUnknown_ = std::holds_alternative<gcode::ProbeMove>(item.call);
     sent_.push_back({id, item, start});
     const geometry::Pose *const end = end_of(item.call);
     end_ = end != nullptr ? *end : start;

@@ -16,8 +16,8 @@ namespace mw::task {
 /// One thread.
 class SentMoves {
   public:
-    /// `item` was sent as path command `id`; `position` is that of the machine if no move is active. Returns
-    /// the position where the item begins.
+    /// `item` was sent as path command `id`; `position` is that of the machine, for a move that begins there.
+    /// Returns the position where the item begins.
     geometry::Pose note(motion::CommandId id, const Item &item, const geometry::Pose &position);
     /// Drops completed moves.
     void follow(const motion::Status &status);
@@ -42,7 +42,8 @@ class SentMoves {
     std::deque<Sent>::const_iterator under_way(const motion::Status &status) const;
 
     std::deque<Sent> sent_;
-    geometry::Pose end_;  ///< end of the last move
+    geometry::Pose end_;         ///< end of the last move
+    bool isEndUnknown_ = false;  ///< it is a probe: what follows it waits for it
     int line_ = 0;
 };
 

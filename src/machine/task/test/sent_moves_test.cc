@@ -127,6 +127,15 @@ TEST_F(SentMovesTest, TheLineIsOfTheMoveUnderWayAndThenOfTheLastOne) {
     EXPECT_EQ(sent.line(), 0);
 }
 
+TEST_F(SentMovesTest, AMoveAfterAProbeBeginsWhereTheMachineIs) {
+    geometry::Pose tripped{};
+    tripped[geometry::AXIS_Z] = -4;
+    EXPECT_EQ(sent.note(1, line(3), {}), geometry::Pose{});
+    EXPECT_EQ(sent.note(2, {{}, gcode::ProbeMove{}}, {}).x(), 3);
+    EXPECT_EQ(sent.note(3, line(4), tripped), tripped);
+    EXPECT_EQ(sent.note(4, line(5), {}).x(), 4);
+}
+
 TEST_F(SentMovesTest, ThreadsAndProbesAreNotBegunInTheirMiddle) {
     Item thread = line(3);
     std::get<gcode::LineMove>(thread.call).settings.feed_per_revolution = 1;
