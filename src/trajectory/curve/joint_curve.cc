@@ -10,8 +10,10 @@ namespace mw::trajectory::curve {
 namespace {
 
 constexpr std::size_t NODES = JointCurve::NODES;
-/// A span is cut into at most 2^MAX_DEPTH parts.
-constexpr int MAX_DEPTH = 6;
+/// A part is not halved when it takes less time: samples do not show what happens in it.
+constexpr double LEAST_PART_S = 1e-4;
+/// Halvings until a joint jumps, if it does.
+constexpr int MAX_DEPTH = 16;
 /// Part of the jerk limit that the error of the interpolation may make: within the margin of the profile.
 constexpr double ERROR_SHARE = 3e-3;
 /// Relative rounding of the inverse kinematics.
@@ -192,7 +194,9 @@ void JointCurve::lay(const Span &span, double from, double length, int depth) {
     double jump = 1e300;
     const bool exists = interpolate(span, part);
     const double error = exists ? error_of(span, part, jump) : 1e300;
-    if (error > 1 && depth < MAX_DEPTH) {
+    const double fastest =
+        exists ? std::max({speed_at(part, 0), speed_at(part, 0.5), speed_at(part, 1)}) : 0.0;
+    if (error > 1 && depth < MAX_DEPTH && length > LEAST_PART_S * fastest) {
         lay(span, from, 0.5 * length, depth + 1);
         lay(span, from + 0.5 * length, 0.5 * length, depth + 1);
         return;

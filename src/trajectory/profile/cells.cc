@@ -7,6 +7,7 @@
 
 #include "trajectory/curve/curve_builder.hh"
 #include "trajectory/profile/cap_rows.hh"
+#include "trajectory/profile/joint_speeds.hh"
 
 namespace mw::trajectory::profile {
 
@@ -20,8 +21,15 @@ double square(double x) noexcept {
     return x * x;
 }
 
+/// Nodes closer together count as one: rounding.
+constexpr double LEAST_STEP = 1e-12;
+
 /// Largest change of direction in a cell [rad].
 constexpr double TURN_PER_CELL = 0.2;
+
+bool isAlike(const FeedLimit &a, const FeedLimit &b) noexcept {
+    return a.velocity == b.velocity && a.along == b.along;
+}
 
 /// Speed after the way ds from v with a^2 <= 2 J v (a start from rest with constant jerk) and a <= A.
 double faster(double v, double ds, double acceleration, double jerk) noexcept {
@@ -85,7 +93,10 @@ RoughProfile::Node RoughProfile::node_at(const Run &run, std::size_t span, doubl
                        std::cbrt(b.jerk / std::max(geometry::norm_xyz(p.third), 1e-30))});
     node.acceleration = std::min(node.acceleration, b.acceleration / n1);
     node.jerk = std::min(node.jerk, b.jerk / n1);
-    node.v = std::min(node.v, 1 / std::sqrt(std::max(feed.share(p.first), 1e-30)));
+    // Where the feed changes both count.
+    for (const std::size_t feed : {run.feed_at(s), run.feed_at(s + 2 * LEAST_STEP)}) {
+        node.v = std::min(node.v, 1 / std::sqrt(std::max((*run.feeds)[feed].share(p.first), 1e-30)));
+    }
     node.v = std::min(node.v,
                       TURN_PER_CELL / cell_s * std::sqrt(std::max(direction, 1e-4) / std::max(bend, 1e-30)));
     apply_joints(run, node, s + 1e-6 * ((*run.spans)[span].start_s + 0.5 * (*run.spans)[span].length - s),
@@ -128,6 +139,28 @@ bool RoughProfile::isInEnd(const Run &run, const Stretch &stretch, double s) noe
     return run.has_stop && s > run.end_s - stretch.end_ramp;
 }
 
+/// The next node behind `s`: thirds of spans, halves of the parts of the joints, places where the feed
+/// changes.
+double RoughProfile::next_place(const Run &run, const Span &span, double s) noexcept {
+    double next = span.end_s();
+    for (int n = NODES_PER_SPAN - 1; n > 0; --n) {
+        const double third = span.start_s + span.length * n / NODES_PER_SPAN;
+        next = third > s + LEAST_STEP ? third : next;
+    }
+    const auto &feeds = *run.feeds;
+    for (std::size_t k = run.feed_at(s + LEAST_STEP); k + 1 < feeds.size() && feeds[k].end_s < next; ++k) {
+        next = isAlike(feeds[k], feeds[k + 1]) ? next : feeds[k].end_s;
+    }
+    if (run.joint_curve != nullptr) {
+        const curve::JointCurve::Part &part =
+            run.joint_curve->parts()[run.joint_curve->part_at(s + LEAST_STEP)];
+        for (const double half : {part.end_s(), part.start_s + 0.5 * part.length}) {
+            next = half > s + LEAST_STEP ? std::min(next, half) : next;
+        }
+    }
+    return next;
+}
+
 /// The speed of the last rough profile, which reached this place.
 double RoughProfile::speed_at(double s) const noexcept {
     const auto behind =
@@ -143,7 +176,6 @@ double RoughProfile::speed_at(double s) const noexcept {
 /// braking.
 void RoughProfile::lay_nodes(const Run &run, const Stretch &stretch) {
     constexpr double FARTHER = 1.5;
-    constexpr double LEAST_STEP = 1e-12;  // nodes closer than rounding count as one
     const double reached = stretch.from_rest ? 0.0 : speed_at(stretch.from_s);
     nodes_.clear();
     reaches_end_ = false;
@@ -155,12 +187,10 @@ void RoughProfile::lay_nodes(const Run &run, const Stretch &stretch) {
     for (; k < spans.size() && spans[k].start_s < run.end_s &&
            (t < FARTHER * stretch.horizon_s || isInEnd(run, stretch, nodes_.back().s));
          ++k) {
-        for (int n = 1; n <= NODES_PER_SPAN; ++n) {
-            const double s = std::min(run.end_s, spans[k].start_s + spans[k].length * n / NODES_PER_SPAN);
+        const double end = std::min(run.end_s, spans[k].end_s());
+        while (nodes_.back().s + LEAST_STEP < end) {
             const Node last = nodes_.back();
-            if (s <= last.s + LEAST_STEP) {
-                continue;
-            }
+            const double s = std::min(end, next_place(run, spans[k], last.s));
             Node node = node_at(run, k, s, stretch.cell_s);
             node.is_cap = apply_caps(run, node, 1e-6 * spans[k].length + 1e-15 * std::abs(s));
             if (node.is_cap && k + 1 < spans.size()) {
@@ -256,7 +286,7 @@ class Scales {
     /// The scale that a cell has already.
     struct Known {
         std::size_t cell = 0;
-        double scale = 1e300;
+        double scale = 1e300, speed = 1e300;
     };
     const std::vector<double> &find(const RestMap &map, const std::vector<double> &knots, double end_ramp,
                                     const Known &known) {
@@ -283,11 +313,17 @@ class Scales {
                 RestMap::scale_of(end_ramp) + SPACING_GROWTH * std::max(0.0, run_.end_s - end_ramp - s);
             run_.each_cap(map.at(knots[k]).s, map.at(knots[k + 1]).s,
                           [&](const SpeedCap &cap) { v = std::min(v, cap.v); });
-            v = std::min(v, joint_speed(map.at(knots[k]).s, map.at(knots[k + 1]).s));
             scale_[k] = std::min({length, map.scale_at(middle), before_stop, scale_of_speed(v)});
         }
         look_ahead(s, span, feed);
         scale_[known.cell] = std::min(scale_[known.cell], known.scale);
+        if (run_.joint_curve != nullptr) {
+            const std::vector<double> &speed =
+                joint_speeds_.find(*run_.joint_curve, map, knots, {known.cell, known.speed});
+            for (std::size_t k = 0; k < cells; ++k) {
+                scale_[k] = std::min(scale_[k], scale_of_speed(speed[k]));
+            }
+        }
         spread(knots);
         return scale_;
     }
@@ -298,19 +334,6 @@ class Scales {
     }
     /// The scale at which the jerk limit gives this speed.
     double scale_of_speed(double v) const noexcept { return std::sqrt(v * v * v / least_.jerk); }
-
-    /// The least speed of the parts of the joints in [from, to].
-    double joint_speed(double from, double to) const noexcept {
-        double v = 1e300;
-        if (run_.joint_curve != nullptr) {
-            const auto &parts = run_.joint_curve->parts();
-            for (std::size_t k = run_.joint_curve->part_at(from); k < parts.size() && parts[k].start_s <= to;
-                 ++k) {
-                v = std::min(v, parts[k].speed);
-            }
-        }
-        return v;
-    }
 
     /// Reduces the scale of the last cell for smaller scales of the path and of the feeds behind it.
     void look_ahead(double s, std::size_t span, std::size_t feed) {
@@ -324,14 +347,6 @@ class Scales {
              j < run_.feeds->size() && SPACING_GROWTH * ((*run_.feeds)[j - 1].end_s - s) < last; ++j) {
             last = std::min(last, scale_of_speed(speed_of((*run_.feeds)[j])) +
                                       SPACING_GROWTH * std::max(0.0, (*run_.feeds)[j - 1].end_s - s));
-        }
-        if (run_.joint_curve != nullptr) {
-            const auto &parts = run_.joint_curve->parts();
-            for (std::size_t j = run_.joint_curve->part_at(s);
-                 j < parts.size() && SPACING_GROWTH * (parts[j].start_s - s) < last; ++j) {
-                last = std::min(last, scale_of_speed(parts[j].speed) +
-                                          SPACING_GROWTH * std::max(0.0, parts[j].start_s - s));
-            }
         }
         run_.each_cap(s, s + last / SPACING_GROWTH, [&](const SpeedCap &cap) {
             last =
@@ -354,6 +369,7 @@ class Scales {
     const Run &run_;
     const Bounds &least_;
     std::vector<double> scale_;
+    JointSpeeds joint_speeds_;
 };
 
 }  // namespace
@@ -371,7 +387,7 @@ void creep(const Run &run, const RestMap &map, const std::vector<double> &knots,
     if (!c.empty()) {
         const double v = std::sqrt(c.back()) / SHARE;
         known = {cell_of(c.size() - 1),
-                 std::max(std::sqrt(v * v * v / least.jerk), v * v / least.acceleration)};
+                 std::max(std::sqrt(v * v * v / least.jerk), v * v / least.acceleration), v};
     }
     const std::vector<double> &scale = scales.find(map, knots, end_ramp, known);
     for (std::size_t k = c.size(); k < cells + 2; ++k) {

@@ -234,5 +234,41 @@ TEST(JointProfile, KeepsTheLimitsOfJointsAtEverySample) {
     }
 }
 
+/// A turning arm that reaches out: a singular pose at X0 Y0.
+class Polar final : public JointMap {
+  public:
+    bool joints_at(const Pose &p, double *joints) const noexcept override {
+        joints[0] = std::hypot(p[0], p[1]);
+        joints[1] = std::atan2(p[1], p[0]) * 180 / std::numbers::pi;
+        joints[2] = p[2];
+        joints[3] = p[geometry::AXIS_C];
+        return joints[0] > 1e-4;
+    }
+};
+
+TEST(JointProfile, SlowsDownBesideASingularPose) {
+    const Polar map;
+    const JointLimits joints = joint_limits(90, 1000, 20000);
+    for (const double distance : {10.0, 1.0, 0.1, 0.01}) {
+        SCOPED_TRACE(distance);
+        Program program;
+        program.primitives = {make_line(pose(distance, -40, 0), pose(distance, 40, 0))};
+        program.requests.resize(1);
+        program.requests[0].isRapid = true;
+        CurveLimits limits;
+        limits.axes.fill({200, 2000, 40000});
+        const LaidCurve laid = CurveLayer(program, limits, &map, joints).lay();
+        CurveDriver driver(laid, limits);
+        driver.run().map = &map;
+        driver.run().joints = joints;
+        const DrivenCurve out = driver.drive();
+        ASSERT_TRUE(out.is_done);
+        EXPECT_LE(out.worst_start, 1 + 1e-3);
+        expect_joint_limits(out, map, joints);
+        // The arm turns by 180 degrees in 2 s and reaches 40 units out and in.
+        EXPECT_LT(out.time_s, 4.0);
+    }
+}
+
 }  // namespace
 }  // namespace mw::trajectory::test
