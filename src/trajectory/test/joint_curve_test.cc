@@ -145,8 +145,8 @@ TEST(JointProfile, StopsBeforePosesWithoutJoints) {
     }
 }
 
-/// The joints at each sample against their limits.
-void expect_joint_limits(const DrivenCurve &out, const JointMap &map, const JointLimits &limits) {
+/// The joints at each sample against their limits. Returns the largest part that they take of one.
+double expect_joint_limits(const DrivenCurve &out, const JointMap &map, const JointLimits &limits) {
     std::vector<testing::AxisLimit> each;
     for (std::size_t j = 0; j < static_cast<std::size_t>(limits.count); ++j) {
         each.push_back({limits.velocity[j], limits.acceleration[j], limits.jerk[j]});
@@ -154,11 +154,11 @@ void expect_joint_limits(const DrivenCurve &out, const JointMap &map, const Join
     testing::LimitChecker checker(each, CURVE_PERIOD_S);
     for (const Pose &sample : out.samples) {
         PerJoint joints{};
-        ASSERT_TRUE(map.joints_at(sample, joints.data()));
+        EXPECT_TRUE(map.joints_at(sample, joints.data()));
         checker.sample(joints.data());
     }
     EXPECT_TRUE(checker.isWithin()) << checker.report();
-    EXPECT_GT(std::max({checker.worst_velocity(), checker.worst_acceleration(), checker.worst_jerk()}), 0.3);
+    return std::max({checker.worst_velocity(), checker.worst_acceleration(), checker.worst_jerk()});
 }
 
 /// An arc moved to `from` that turns the table, too.
@@ -205,6 +205,7 @@ Program table_program(Maker &maker, unsigned seed) {
 
 TEST(JointProfile, KeepsTheLimitsOfJointsAtEverySample) {
     const auto [first, count] = testing::campaign_seeds(6);
+    int limited = 0;
     for (int i = 0; i < count; ++i) {
         const auto seed = static_cast<unsigned>(first + i);
         SCOPED_TRACE("seed " + std::to_string(seed));
@@ -225,13 +226,14 @@ TEST(JointProfile, KeepsTheLimitsOfJointsAtEverySample) {
         const DrivenCurve out = driver.drive();
         ASSERT_TRUE(out.is_done);
         EXPECT_LE(out.worst_start, 1 + 1e-3) << "a plan began from one that leaves a limit";
-        expect_joint_limits(out, table, joints);
+        limited += expect_joint_limits(out, table, joints) > 0.9 ? 1 : 0;
         auto checker = make_checker(program.limits, CURVE_PERIOD_S);
         for (const Pose &sample : out.samples) {
             checker.sample(sample.c.data());
         }
         EXPECT_TRUE(checker.isWithin()) << checker.report();
     }
+    EXPECT_GE(2 * limited, count) << "joints limit the motion";
 }
 
 /// A turning arm that reaches out: a singular pose at X0 Y0.
@@ -264,7 +266,7 @@ TEST(JointProfile, SlowsDownBesideASingularPose) {
         const DrivenCurve out = driver.drive();
         ASSERT_TRUE(out.is_done);
         EXPECT_LE(out.worst_start, 1 + 1e-3);
-        expect_joint_limits(out, map, joints);
+        EXPECT_GT(expect_joint_limits(out, map, joints), 0.9);
         // The arm turns by 180 degrees in 2 s and reaches 40 units out and in.
         EXPECT_LT(out.time_s, 4.0);
     }
