@@ -51,11 +51,6 @@ Bounds left_of(const Bounds &b, const CapRest &rest, std::size_t i) noexcept {
     return {b.velocity, b.acceleration * rest.acceleration_part[i], b.jerk * rest.jerk_part[i]};
 }
 
-Row row_of(double q1, double q2, double q3, const Bounds &l, double bend) noexcept {
-    return {q1 / l.acceleration, q2 / l.acceleration, q1 / l.jerk,
-            3 * q2 / l.jerk,     q3 / l.jerk,         bend / l.jerk};
-}
-
 double set_joint_rows(const Run &run, const curve::JointPoint &point, const MapPoint &m, const CapRest &rest,
                       const RowPlace &to) noexcept {
     double v2 = 0;

@@ -24,7 +24,10 @@ CapRest rest_of(const Run &run, double from, double to) noexcept;
 Bounds left_of(const Bounds &b, const CapRest &rest, std::size_t i) noexcept;
 
 /// The row of a coordinate with these derivatives by the parameter. `bend`: jerk over b of jumps.
-Row row_of(double q1, double q2, double q3, const Bounds &l, double bend) noexcept;
+inline Row row_of(double q1, double q2, double q3, const Bounds &l, double bend) noexcept {
+    const double a = 1 / l.acceleration, j = 1 / l.jerk;
+    return {a * q1, a * q2, j * q1, 3 * j * q2, j * q3, j * bend};
+}
 
 /// Where rows of joints are set: a place of the newest cell, the number of the first of them.
 struct RowPlace {
