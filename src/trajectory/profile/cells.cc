@@ -53,7 +53,7 @@ std::size_t Run::feed_at(double s) const noexcept {
 }
 
 double RoughProfile::ramp_at(const Run &run, double s) noexcept {
-    const Node node = node_at(run, span_at(*run.spans, s), s, 1e-9);
+    const Node node = node_at(run, span_at(*run.spans, s), s, s, 1e-9);
     const double t = std::min(node.acceleration / node.jerk, std::sqrt(node.v / node.jerk));
     return node.jerk * t * t * t / 6;
 }
@@ -70,15 +70,25 @@ bool RoughProfile::apply_caps(const Run &run, Node &node, double tolerance) noex
     return is_cap;
 }
 
-RoughProfile::Node RoughProfile::node_at(const Run &run, std::size_t span, double s, double cell_s) noexcept {
+/// `from_s`: end of the stretch before it; the node has the least speed of the moves in it.
+RoughProfile::Node RoughProfile::node_at(const Run &run, std::size_t span, double from_s, double s,
+                                         double cell_s) noexcept {
     const CurvePoint p = curve::point_at((*run.spans)[span], s);
     Node node{s, 1e300, 1e300, 1e300, 0};
-    const FeedLimit &feed = (*run.feeds)[run.feed_at(s)];
+    double fastest = 1;
+    for (std::size_t k = run.feed_at(from_s);; ++k) {
+        const FeedLimit &feed = (*run.feeds)[k];
+        node.v = std::min(node.v, 1 / std::sqrt(std::max(feed.share(p.first), 1e-30)));
+        fastest = std::min(fastest, feed.limit_share);
+        if (k + 1 == run.feeds->size() || feed.end_s >= s) {
+            break;
+        }
+    }
     double direction = 0, bend = 0;
     for (std::size_t i = 0; i < geometry::AXIS_COUNT; ++i) {
         const Bounds &b = run.limits.axes[i];
         const double q1 = std::max(std::abs(p.first.c[i]), 1e-30);
-        node.v = std::min({node.v, feed.limit_share * b.velocity / q1,
+        node.v = std::min({node.v, fastest * b.velocity / q1,
                            std::sqrt(b.acceleration / std::max(std::abs(p.second.c[i]), 1e-30)),
                            std::cbrt(b.jerk / std::max(std::abs(p.third.c[i]), 1e-30))});
         node.acceleration = std::min(node.acceleration, b.acceleration / q1);
@@ -88,7 +98,7 @@ RoughProfile::Node RoughProfile::node_at(const Run &run, std::size_t span, doubl
     }
     const Bounds &b = run.limits.xyz;
     const double n1 = std::max(geometry::norm_xyz(p.first), 1e-30);
-    node.v = std::min({node.v, feed.limit_share * b.velocity / n1,
+    node.v = std::min({node.v, fastest * b.velocity / n1,
                        std::sqrt(b.acceleration / std::max(geometry::norm_xyz(p.second), 1e-30)),
                        std::cbrt(b.jerk / std::max(geometry::norm_xyz(p.third), 1e-30))});
     node.acceleration = std::min(node.acceleration, b.acceleration / n1);
@@ -181,7 +191,7 @@ void RoughProfile::lay_nodes(const Run &run, const Stretch &stretch) {
     reaches_end_ = false;
     const auto &spans = *run.spans;
     std::size_t k = span_at(spans, stretch.from_s);
-    nodes_.push_back(node_at(run, k, stretch.from_s, stretch.cell_s));
+    nodes_.push_back(node_at(run, k, stretch.from_s, stretch.from_s, stretch.cell_s));
     nodes_.back().v = std::min(nodes_.back().v, reached);
     double t = 0;
     for (; k < spans.size() && spans[k].start_s < run.end_s &&
@@ -191,10 +201,10 @@ void RoughProfile::lay_nodes(const Run &run, const Stretch &stretch) {
         while (nodes_.back().s + LEAST_STEP < end) {
             const Node last = nodes_.back();
             const double s = std::min(end, next_place(run, spans[k], last.s));
-            Node node = node_at(run, k, s, stretch.cell_s);
+            Node node = node_at(run, k, last.s, s, stretch.cell_s);
             node.is_cap = apply_caps(run, node, 1e-6 * spans[k].length + 1e-15 * std::abs(s));
             if (node.is_cap && k + 1 < spans.size()) {
-                const Node behind = node_at(run, k + 1, s, stretch.cell_s);
+                const Node behind = node_at(run, k + 1, s, s, stretch.cell_s);
                 node.v = std::min(node.v, behind.v);
                 node.acceleration = std::min(node.acceleration, behind.acceleration);
                 node.jerk = std::min(node.jerk, behind.jerk);
@@ -293,6 +303,7 @@ class Scales {
         const auto &spans = *run_.spans;
         const std::size_t cells = knots.size() - 1;
         scale_.resize(cells);
+        by_speed_.resize(cells + 2);
         std::size_t span = span_at(spans, map.at(knots[0]).s);
         std::size_t feed = run_.feed_at(map.at(knots[0]).s);
         double s = 0;
@@ -313,9 +324,15 @@ class Scales {
                 RestMap::scale_of(end_ramp) + SPACING_GROWTH * std::max(0.0, run_.end_s - end_ramp - s);
             run_.each_cap(map.at(knots[k]).s, map.at(knots[k + 1]).s,
                           [&](const SpeedCap &cap) { v = std::min(v, cap.v); });
-            scale_[k] = std::min({length, map.scale_at(middle), before_stop, scale_of_speed(v)});
+            scale_[k] = std::min({length, map.scale_at(middle), before_stop});
+            by_speed_[k + 1] = scale_of_speed(v);
         }
-        look_ahead(s, span, feed);
+        look_ahead(s, map.at(knots[cells]).s - map.at(knots[cells - 1]).s, span, feed);
+        // The speed in a cell depends on the coefficients of its neighbours, too.
+        by_speed_[0] = by_speed_[cells + 1] = 1e300;
+        for (std::size_t k = 0; k < cells; ++k) {
+            scale_[k] = std::min({scale_[k], by_speed_[k], by_speed_[k + 1], by_speed_[k + 2]});
+        }
         scale_[known.cell] = std::min(scale_[known.cell], known.scale);
         if (run_.joint_curve != nullptr) {
             const std::vector<double> &speed =
@@ -335,18 +352,20 @@ class Scales {
     /// The scale at which the jerk limit gives this speed.
     double scale_of_speed(double v) const noexcept { return std::sqrt(v * v * v / least_.jerk); }
 
-    /// Reduces the scale of the last cell for smaller scales of the path and of the feeds behind it.
-    void look_ahead(double s, std::size_t span, std::size_t feed) {
+    /// Reduces the scale of the last cell, of this length, for smaller scales of the path and of the feeds
+    /// behind it.
+    void look_ahead(double s, double cell, std::size_t span, std::size_t feed) {
         double &last = scale_.back();
         const auto &spans = *run_.spans;
         for (std::size_t j = span + 1; j < spans.size() && SPACING_GROWTH * (spans[j].start_s - s) < last;
              ++j) {
             last = std::min(last, spans[j].length + SPACING_GROWTH * std::max(0.0, spans[j].start_s - s));
         }
-        for (std::size_t j = feed + 1;
-             j < run_.feeds->size() && SPACING_GROWTH * ((*run_.feeds)[j - 1].end_s - s) < last; ++j) {
+        // The cell in which a slower move begins has the slower speed at its start.
+        const auto apart = [&](std::size_t j) { return (*run_.feeds)[j - 1].end_s - s - 2 * cell; };
+        for (std::size_t j = feed + 1; j < run_.feeds->size() && SPACING_GROWTH * apart(j) < last; ++j) {
             last = std::min(last, scale_of_speed(speed_of((*run_.feeds)[j])) +
-                                      SPACING_GROWTH * std::max(0.0, (*run_.feeds)[j - 1].end_s - s));
+                                      SPACING_GROWTH * std::max(0.0, apart(j)));
         }
         run_.each_cap(s, s + last / SPACING_GROWTH, [&](const SpeedCap &cap) {
             last =
@@ -368,30 +387,53 @@ class Scales {
 
     const Run &run_;
     const Bounds &least_;
-    std::vector<double> scale_;
+    std::vector<double> scale_, by_speed_;
     JointSpeeds joint_speeds_;
 };
 
 }  // namespace
 
+namespace {
+
+/// Speed of a creep over that at which the path alone takes all of the jerk or of the acceleration.
+constexpr double SHARE = 0.15;
+
+/// The scale of the path that a creep belongs to.
+double scale_of_creep(const Bounds &least, double c) noexcept {
+    const double v = std::sqrt(c) / SHARE;
+    return std::max(std::sqrt(v * v * v / least.jerk), v * v / least.acceleration);
+}
+
+}  // namespace
+
+bool isSteady(const Run &run, double c, double next, double apart) noexcept {
+    const Bounds least = least_of(run.limits);
+    return std::abs(scale_of_creep(least, next) - scale_of_creep(least, c)) <= SPACING_GROWTH * apart;
+}
+
 void creep(const Run &run, const RestMap &map, const std::vector<double> &knots, double end_ramp,
            std::vector<double> &c) {
-    // Times the speed at which the path alone takes all of the jerk or of the acceleration.
-    constexpr double SHARE = 0.15;
     const Bounds least = least_of(run.limits);
     Scales scales(run, least);
     // Coefficient k belongs to the middle of cell k - 1.
     const std::size_t cells = knots.size() - 1;
     const auto cell_of = [&](std::size_t k) { return std::clamp<std::size_t>(k, 1, cells) - 1; };
     Scales::Known known;
-    if (!c.empty()) {
-        const double v = std::sqrt(c.back()) / SHARE;
-        known = {cell_of(c.size() - 1),
-                 std::max(std::sqrt(v * v * v / least.jerk), v * v / least.acceleration), v};
+    const std::size_t old = c.size();
+    const double from = old == 0 ? 0 : scale_of_creep(least, c.back());
+    if (old > 0) {
+        known = {cell_of(old - 1), from, std::sqrt(c.back()) / SHARE};
     }
     const std::vector<double> &scale = scales.find(map, knots, end_ramp, known);
-    for (std::size_t k = c.size(); k < cells + 2; ++k) {
-        const double d = scale[cell_of(k)];
+    const auto middle = [&](std::size_t k) { return 0.5 * (knots[cell_of(k)] + knots[cell_of(k) + 1]); };
+    // The scale that the last coefficient belongs to changes into the present one.
+    for (std::size_t k = old; k < cells + 2; ++k) {
+        double d = scale[cell_of(k)];
+        if (old > 0) {
+            // Down at a slope of 1: slow moves that lie within a cell are not seen as far ahead.
+            const double way = middle(k) - middle(old - 1);
+            d = std::clamp(d, from - way, from + SPACING_GROWTH * way);
+        }
         c.push_back(
             square(SHARE * std::min(std::cbrt(least.jerk * d * d), std::sqrt(least.acceleration * d))));
     }
@@ -479,9 +521,6 @@ void make_rows(const Run &run, const RestMap &map, const double *knots, std::siz
             while (span + 1 < spans.size() && inside >= spans[span].end_s()) {
                 ++span;
             }
-            while (feed + 1 < run.feeds->size() && m.s > (*run.feeds)[feed].end_s) {
-                ++feed;
-            }
             const CurvePoint c = curve::point_at(spans[span], m.s);
             const ParameterPoint point = by_parameter(c, m);
             double joint_v2 = 0;
@@ -502,8 +541,23 @@ void make_rows(const Run &run, const RestMap &map, const double *knots, std::siz
                 rows.set_norm(p, norm_row(point, left_of(xyz, rest, XYZ_NORM),
                                           rest.bend[XYZ_NORM] * m.first * m.first));
             }
-            const double v2 = (square(speed_share(run, c, feed)) + rest.v2) * m.first * m.first;
+            // All moves from the place before to that behind, in the cell.
+            const auto move_to = [&](std::size_t from, std::size_t place) {
+                const double s = map.at(knots[k] + h * PLACE_PART[place]).s;
+                while (from + 1 < run.feeds->size() && s > (*run.feeds)[from].end_s) {
+                    ++from;
+                }
+                return from;
+            };
+            const std::size_t last = move_to(feed, std::min(p + 1, PLACES - 1));
+            feed = p == 0 ? move_to(feed, p) : feed;
+            double share = 0;
+            for (std::size_t j = feed; j <= last; ++j) {
+                share = std::max(share, speed_share(run, c, j));
+            }
+            const double v2 = (square(share) + rest.v2) * m.first * m.first;
             rows.set_velocity(p, std::max(v2, joint_v2));
+            feed = move_to(feed, p);
         }
     }
 }

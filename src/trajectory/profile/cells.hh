@@ -89,7 +89,7 @@ class RoughProfile {
         double s = 0, v = 0, acceleration = 0, jerk = 0, t = 0;
         bool is_cap = false;  ///< a cell ends there
     };
-    static Node node_at(const Run &run, std::size_t span, double s, double cell_s) noexcept;
+    static Node node_at(const Run &run, std::size_t span, double from_s, double s, double cell_s) noexcept;
     void lay_nodes(const Run &run, const Stretch &stretch);
     void lay_knots(const Run &run, const Stretch &stretch);
     static void apply_joints(const Run &run, Node &node, double inside, double cell_s) noexcept;
@@ -108,6 +108,8 @@ std::size_t span_at(const std::vector<Span> &spans, double s) noexcept;
 /// Inverse of the maximum speed along the curve that the limits of speed allow at a point.
 double speed_share(const Run &run, const CurvePoint &point, std::size_t feed) noexcept;
 void make_rows(const Run &run, const RestMap &map, const double *knots, std::size_t cells, Rows &rows);
+/// True if the speed changes slowly enough between two coefficients for a creep.
+bool isSteady(const Run &run, double c, double next, double apart) noexcept;
 /// Adds the coefficients of cells that have none: slow enough to keep every row by far. `end_ramp`: length
 /// before the end of the run over which the map may come to be blended into a stop.
 void creep(const Run &run, const RestMap &map, const std::vector<double> &knots, double end_ramp,

@@ -14,23 +14,30 @@ constexpr double LEAST_CELL_S = 5e-4;
 /// Parts of the limits that are planned with: a limit is kept at three places of a cell, and nearly so
 /// between them.
 constexpr double VELOCITY_SHARE = 0.9995, ACCELERATION_SHARE = 0.998, JERK_SHARE = 0.99;
+/// Part of a limit that a plan leaves to the next one.
+constexpr double LEAST_ROOM = 1e-6;
 /// Largest part of the path over which a start or a stop is blended.
 constexpr double MAX_RAMP = 0.3;
 
 }  // namespace
 
 void Profile::begin(double s) noexcept {
+    start_s_ = s;
+    restart();
+    worst_start_ = 0;
+    steps_ = 0;
+}
+
+/// Nothing is planned, at rest at the start.
+void Profile::restart() noexcept {
     map_ = RestMap();
     knots_.clear();
     c_.clear();
     eased_.clear();
     time_cells_.clear();
-    start_s_ = s;
     before_ = 0;
     has_end_ = false;
     end_s_ = 0;
-    worst_start_ = 0;
-    steps_ = 0;
     joint_curve_.begin(nullptr, {});
 }
 
@@ -112,18 +119,26 @@ void Profile::lay_cells(std::size_t fixed) {
         map_.set_end(run.end_s, ramp);
         has_end_ = true;
     }
-    const std::size_t before = cells();
+    const std::size_t old = cells();
     for (const double s : laid) {
         // A stop at the end of what is known must still be possible, and what follows must not lower limits.
         if (!is_end && s > run.end_s - std::max(ramp, run.has_stop ? 0.0 : reach_)) {
             break;
         }
-        knots_.push_back(is_end && s == laid.back() ? map_.end() : map_.parameter_at(s));
+        const double p = is_end && s == laid.back() ? map_.end() : map_.parameter_at(s);
+        // The cell behind the old end is not longer than that before it.
+        const double next = old > 0 && cells() == old ? 2 * knots_[old] - knots_[old - 1] : p;
+        const double left = p - next;
+        if (left > 0 && (left > 0.5 * (next - knots_[old]) || !(is_end && s == laid.back()))) {
+            knots_.push_back(next);
+        }
+        if (!(left > 0) || left > 0.5 * (next - knots_[old]) || (is_end && s == laid.back())) {
+            knots_.push_back(p);
+        }
     }
-    if (before > 0 && cells() > before) {
-        // The slope of b at the end of the last cell stays, though the cell behind it has its own length now.
-        const double last = knots_[before] - knots_[before - 1], next = knots_[before + 1] - knots_[before];
-        c_[before + 1] = c_[before] + (c_[before + 1] - c_[before]) * (last + next) / (2 * last);
+    if (old > 0 && cells() > old) {
+        const double h = knots_[old] - knots_[old - 1];
+        change_behind(h, knots_[old + 1] - knots_[old]);
     }
     if (knots_.size() > 1) {
         creep(run, map_, knots_, ramp, c_);
@@ -133,6 +148,13 @@ void Profile::lay_cells(std::size_t fixed) {
     eased_.resize(cells());
 }
 
+/// The last coefficient for another length of the cell behind the plan: the motion stays the same.
+void Profile::change_behind(double from, double to) noexcept {
+    const std::size_t n = c_.size() - 2;
+    const double last = knots_[n] - knots_[n - 1];
+    c_[n + 1] = c_[n] + (c_[n + 1] - c_[n]) * (last + to) / (last + from);
+}
+
 /// Rows of `n` cells behind the fixed ones, and the plan as their first coefficients.
 void Profile::prepare(std::size_t fixed, std::size_t n) {
     make_rows(run_, map_, &knots_[fixed], n, rows_);
@@ -140,6 +162,23 @@ void Profile::prepare(std::size_t fixed, std::size_t n) {
     const std::size_t behind = fixed + n < cells() ? fixed + n : fixed + n - 1;
     law_.begin(rows_, course.before, knots_[behind + 1] - knots_[behind]);
     std::copy_n(c_.begin() + static_cast<long>(fixed), n + 2, law_.coefficients().begin());
+}
+
+/// The rows keep a little room for the present coefficients where these all but reach them. Returns the
+/// largest row.
+double Profile::make_room() {
+    double worst = 0;
+    for (std::size_t k = 0; k < rows_.cells(); ++k) {
+        for (std::size_t p = 0; p < PLACES; ++p) {
+            const double row = law_.worst_at(k, p);
+            worst = std::max(worst, row);
+            if (row * (1 + LEAST_ROOM) > 1) {
+                rows_.relax(k, p, row * (1 + LEAST_ROOM));
+                rows_.allow(k, p, law_.state(k, PLACE_PART[p]).b * (1 + LEAST_ROOM));
+            }
+        }
+    }
+    return worst;
 }
 
 void Profile::store(std::size_t fixed) {
@@ -159,7 +198,7 @@ void Profile::plan(const Run &run, std::size_t fixed) {
             rows_.allow(k, p, eased_[fixed + k][p]);
         }
     }
-    worst_start_ = std::max(worst_start_, law_.worst());
+    worst_start_ = std::max(worst_start_, make_room());
     SolveSettings settings;
     settings.cell_s = cell_s_;
     const bool is_moving = fixed > 0 || before_ > 0;

@@ -82,8 +82,13 @@ class Profile {
     void lay_cells(std::size_t fixed);
     void prepare(std::size_t fixed, std::size_t n);
     void store(std::size_t fixed);
-    void make_slowest(std::size_t fixed, std::size_t n, double last_mu);
-    void slow_down(std::size_t fixed);
+    double make_room();
+    void make_slowest(std::size_t fixed, std::size_t n, const std::vector<double> &floors);
+    void cut(std::size_t kept);
+    void change_behind(double from, double to) noexcept;
+    void restart() noexcept;
+    std::size_t split(const Run &run, std::size_t fixed, std::size_t n);
+    void slow_down(const Run &run, std::size_t fixed);
     std::size_t first_tail(const Run &run, const Course &course, DirectStop &tail) const;
     void stop_sooner(const Run &run, std::size_t fixed, Stop &out);
     void make_time_cells(std::size_t fixed);
@@ -108,6 +113,10 @@ class Profile {
     std::vector<TimeCell> time_cells_;
     /// What b may be at the places of each cell, above the limits of the speed; 0: nothing.
     std::vector<std::array<double, PLACES>> eased_;
+    std::vector<double> creep_, floors_;
+    struct {
+        std::vector<double> knots, c;
+    } split_;
     double start_s_ = 0;
     double before_ = 0;  ///< length of the cell before them; 0: there is none
     double reach_ = 0;   ///< before the end of what is known: a seam there may lower limits so far

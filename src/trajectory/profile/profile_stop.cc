@@ -15,6 +15,10 @@ constexpr double SPAN_PLACES = 12;
 constexpr int TAIL_ROUNDS = 4;
 /// Part by which the speed may exceed that of the soonest braking, squared.
 constexpr double ABOVE_LOWEST = 1e-3;
+/// Parts of the plan and of the creep: a floor is below the plan, and what is near the floor creeps.
+constexpr double BELOW_PLAN = 0.9, NEAR_CREEP = 1.02;
+/// Parts of a cell at most.
+constexpr double MOST_PARTS = 8;
 /// Part of the coefficients of the start below which speed is not reduced.
 constexpr double LAST_MU = 1e-2;
 
@@ -186,7 +190,7 @@ void Profile::stop_sooner(const Run &run, std::size_t fixed, Stop &out) {
         least += cell.duration;
     }
     for (std::size_t n = cells_of_stop(run, plan);; n = std::min(2 * n, plan.cells)) {
-        make_slowest(fixed, n, LAST_MU);
+        make_slowest(fixed, n, {});
         Course course = course_from(fixed, law_.coefficients().data());
         course.cells = n;
         DirectStop tail;
@@ -217,8 +221,9 @@ void Profile::stop_sooner(const Run &run, std::size_t fixed, Stop &out) {
     }
 }
 
-/// The speed in `n` cells behind the fixed ones as small as the limits of acceleration and jerk allow.
-void Profile::make_slowest(std::size_t fixed, std::size_t n, double last_mu) {
+/// The speed in `n` cells behind the fixed ones as small as the limits of acceleration and jerk allow, down
+/// to `floors` (none: 0).
+void Profile::make_slowest(std::size_t fixed, std::size_t n, const std::vector<double> &floors) {
     prepare(fixed, n);
     const Course course = course_from(fixed, &c_[fixed]);
     for (std::size_t k = 0; k < n; ++k) {
@@ -226,28 +231,124 @@ void Profile::make_slowest(std::size_t fixed, std::size_t n, double last_mu) {
             rows_.allow(k, p, course.state(k, PLACE_PART[p]).b * (1 + ABOVE_LOWEST));
         }
     }
+    make_room();
+    const std::size_t start = fixed > 0 || before_ > 0 ? 2 : 0;
     SolveSettings settings;
     settings.objective = Objective::SPEED;
-    settings.last_mu = last_mu;
-    steps_ += law_.solve(fixed > 0 || before_ > 0 ? 2 : 0, 0, settings);
+    settings.last_mu = LAST_MU;
+    for (std::size_t i = 0; i < std::min(floors.size(), n + 2); ++i) {
+        law_.floors()[i] = floors[i];
+        settings.first_mu =
+            i < start ? settings.first_mu : std::max(settings.first_mu, course.c[i] / floors[i]);
+    }
+    steps_ += law_.solve(start, 0, settings);
 }
 
-/// Makes the speed behind the fixed cells least, and eases limits of the speed that are lower.
-void Profile::slow_down(std::size_t fixed) {
-    make_slowest(fixed, cells() - fixed, LAST_MU);
-    store(fixed);
+/// Splits the first `n` cells behind the fixed ones where the speed will be lower; they are the same motion.
+/// Returns how many there are then.
+std::size_t Profile::split(const Run &run, std::size_t fixed, std::size_t n) {
     const Course course = course_from(fixed, &c_[fixed]);
+    const Motion from = motion_at(course, 0, 0);
+    const double length = map_.at(course.knots[n]).s - from.s;
+    split_.knots.assign(knots_.begin(), knots_.begin() + static_cast<long>(fixed) + 1);
+    split_.c.assign(c_.begin(), c_.begin() + static_cast<long>(fixed) + 1);
+    for (std::size_t k = 0; k < course.cells; ++k) {
+        const double h = course.knots[k + 1] - course.knots[k];
+        const Motion m = motion_at(course, k, 0.5);
+        const std::size_t span = span_at(*run.spans, m.s);
+        const double limit = 1 / speed_share(run, curve::point_at((*run.spans)[span], m.s), run.feed_at(m.s));
+        const double braked = from.v * std::sqrt(std::max(1 - (m.s - from.s) / (0.5 * length), 0.0));
+        const double lowest = std::max({limit, braked, m.v / MOST_PARTS});
+        const auto parts =
+            k + 1 < course.cells && k < n ? static_cast<int>(std::ceil(std::max(m.v / lowest, 1.0))) : 1;
+        if (parts == 1) {
+            split_.knots.push_back(course.knots[k + 1]);
+            split_.c.push_back(course.c[k + 1]);
+            continue;
+        }
+        // The coefficient of a part from x to y is b + a (x + y) + w x y, with those of the start of the
+        // cell.
+        const LawState start = course.state(k, 0);
+        for (int i = 0; i < parts; ++i) {
+            const double x = h * i / parts, y = h * (i + 1) / parts;
+            split_.knots.push_back(i + 1 == parts ? course.knots[k + 1] : course.knots[k] + y);
+            split_.c.push_back(start.b + start.a * (x + y) + start.w * x * y);
+        }
+    }
+    split_.c.push_back(course.c[course.cells + 1]);
+    const double end = course.knots[n];
+    knots_.swap(split_.knots);
+    c_.swap(split_.c);
+    eased_.resize(cells());
+    const auto last = std::lower_bound(knots_.begin(), knots_.end(), end);
+    return static_cast<std::size_t>(last - knots_.begin()) - fixed;
+}
+
+/// The speed behind the fixed cells is reduced as soon as limits allow, then the plan ends in a creep. What
+/// is above lowered limits of the speed is allowed from now on.
+void Profile::slow_down(const Run &run, std::size_t fixed) {
+    std::size_t n = cells_of_stop(run, course_from(fixed, &c_[fixed]));
+    n = split(run, fixed, n);
+    creep_.clear();
+    creep(run_, map_, knots_, end_ramp_, creep_);
+    creep_.erase(creep_.begin(), creep_.begin() + static_cast<long>(fixed));
+    floors_ = creep_;
+    for (std::size_t i = 0; i < floors_.size(); ++i) {
+        floors_[i] = std::min(creep_[i], BELOW_PLAN * c_[fixed + i]);
+    }
+    std::size_t kept = 0;
+    for (;; n = std::min(2 * n, cells() - fixed)) {
+        make_slowest(fixed, n, floors_);
+        const std::vector<double> &c = law_.coefficients();
+        const auto creeps = [&](std::size_t k) {
+            const auto is_near = [&](std::size_t i) { return c[i] <= creep_[i] * NEAR_CREEP; };
+            const double *p = &knots_[fixed + k];
+            return is_near(k - 1) && is_near(k) && is_near(k + 1) &&
+                   isSteady(run_, c[k - 1], c[k], p[0] - p[-1]) &&
+                   isSteady(run_, c[k], c[k + 1], p[0] - p[-1]);
+        };
+        kept = 2;
+        while (kept < n && !creeps(kept)) {
+            ++kept;
+        }
+        kept = std::min(kept, n);
+        // A ramp before the end stays.
+        kept = has_end_ && knots_[fixed + kept] > map_.end_ramp() ? n : kept;
+        if (kept < n || n == cells() - fixed) {
+            break;
+        }
+    }
+    std::copy_n(law_.coefficients().begin(), kept + 2, c_.begin() + static_cast<long>(fixed));
+    if (fixed + kept < cells()) {
+        cut(fixed + kept);
+    }
+    const Course course = course_from(0, c_.data());
     for (std::size_t k = 0; k < course.cells; ++k) {
         for (std::size_t p = 0; p < PLACES; ++p) {
-            eased_[fixed + k][p] = course.state(k, PLACE_PART[p]).b * (1 + ABOVE_LOWEST);
+            eased_[k][p] = course.state(k, PLACE_PART[p]).b * (1 + ABOVE_LOWEST);
         }
+    }
+}
+
+/// Drops the cells of the plan behind the first `kept`.
+void Profile::cut(std::size_t kept) {
+    const double behind = knots_[kept + 1] - knots_[kept];
+    knots_.resize(kept + 1);
+    c_.resize(kept + 2);
+    eased_.resize(kept);
+    change_behind(behind, knots_[kept] - knots_[kept - 1]);
+    if (has_end_) {
+        has_end_ = false;
+        map_.take_end_away();
     }
 }
 
 void Profile::replan(const Run &run, std::size_t fixed) {
     take_limits(run);
-    if (cells() > fixed && (fixed > 0 || before_ > 0)) {
-        slow_down(fixed);
+    if (fixed == 0 && before_ == 0) {
+        restart();
+    } else if (cells() > fixed) {
+        slow_down(run, fixed);
     }
     plan(run, fixed);
 }

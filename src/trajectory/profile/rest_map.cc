@@ -40,6 +40,11 @@ void RestMap::set_end(double s, double ramp) noexcept {
     end_ = s - start_s_ + (1 - RAMP_LENGTH) * (start_ + stop_);
 }
 
+void RestMap::take_end_away() noexcept {
+    end_s_ = end_ = 1e300;
+    stop_ = 0;
+}
+
 MapPoint RestMap::at(double p) const noexcept {
     if (p < start_) {
         MapPoint m = ramp(p, start_);

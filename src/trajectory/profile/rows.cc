@@ -30,6 +30,24 @@ void Rows::set_velocity(std::size_t place, double v2) noexcept {
     velocity_[cell / LANES * PLACES + place].v2[cell % LANES] = v2;
 }
 
+void Rows::relax(std::size_t cell, std::size_t place, double factor) noexcept {
+    const std::size_t i = cell % LANES;
+    const std::size_t at = cell / LANES * PLACES + place;
+    const double f = 1 / factor, f2 = f * f;
+    for (std::size_t k = 0; k < coordinates_; ++k) {
+        RowLanes &r = rows_[at * coordinates_ + k];
+        for (Lanes *x : {&r.a1, &r.a2, &r.j1, &r.j2, &r.j3}) {
+            (*x)[i] *= f;
+        }
+    }
+    if (has_norm_) {
+        NormLanes &n = norms_[at];
+        for (Lanes *x : {&n.aa, &n.ab, &n.bb, &n.jww, &n.jwa, &n.jwb, &n.jaa, &n.jab, &n.jbb}) {
+            (*x)[i] *= f2;
+        }
+    }
+}
+
 void Rows::allow(std::size_t cell, std::size_t place, double b) noexcept {
     double &v2 = velocity_[cell / LANES * PLACES + place].v2[cell % LANES];
     v2 = b > 0 ? std::min(v2, 1 / b) : v2;

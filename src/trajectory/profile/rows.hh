@@ -56,6 +56,8 @@ class Rows {
     void set(std::size_t place, std::size_t coordinate, const Row &row) noexcept;
 
     void set_norm(std::size_t place, const NormRow &row) noexcept;
+    /// Raises the limits of acceleration and jerk at a place.
+    void relax(std::size_t cell, std::size_t place, double factor) noexcept;
     /// Raises the velocity limit at a place to what allows b.
     void allow(std::size_t cell, std::size_t place, double b) noexcept;
 

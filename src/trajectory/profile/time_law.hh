@@ -22,8 +22,8 @@ struct LawState {
     double b = 0, a = 0, w = 0;
 };
 
-/// What is made least: the time, or the speed everywhere, by the sum of the coefficients over those of the
-/// start.
+/// What is made least: the time, or the speed everywhere, by the sum of the coefficients over their
+/// floors, or over those of the start.
 enum class Objective : std::uint8_t { TIME, SPEED };
 
 struct SolveSettings {
@@ -54,9 +54,10 @@ class TimeLaw {
     double time() const noexcept;
     /// The largest row over its limit; above 1 one is not kept.
     double worst() const noexcept;
+    /// The largest row at a place; over its limit.
+    double worst_at(std::size_t cell, std::size_t place) const noexcept;
 
   private:
-    double worst_at(std::size_t cell, std::size_t place) const noexcept;
     double newton(double mu, std::size_t first, std::size_t last);
     void assemble(double mu);
     void factorise(std::size_t first, std::size_t last);
