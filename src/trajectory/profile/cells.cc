@@ -214,6 +214,14 @@ void RoughProfile::lay_nodes(const Run &run, const Stretch &stretch) {
             nodes_.push_back(node);
         }
     }
+    if (nodes_.size() == 2) {
+        // A start and a stop have a place between them that moves.
+        const Node &first = nodes_.front(), &last = nodes_.back();
+        const double way = 0.5 * (last.s - first.s), s = first.s + way;
+        Node node = node_at(run, span_at(spans, s), first.s, s, stretch.cell_s);
+        node.v = std::min(node.v, faster(first.v, way, node.acceleration, node.jerk));
+        nodes_.insert(nodes_.begin() + 1, node);
+    }
     reaches_end_ = nodes_.back().s >= run.end_s - 2 * LEAST_STEP;
     if (reaches_end_) {
         nodes_.back().s = run.end_s;
@@ -406,9 +414,12 @@ double scale_of_creep(const Bounds &least, double c) noexcept {
 
 }  // namespace
 
+double creep_scale(const Run &run, double c) noexcept {
+    return scale_of_creep(least_of(run.limits), c);
+}
+
 bool isSteady(const Run &run, double c, double next, double apart) noexcept {
-    const Bounds least = least_of(run.limits);
-    return std::abs(scale_of_creep(least, next) - scale_of_creep(least, c)) <= SPACING_GROWTH * apart;
+    return std::abs(creep_scale(run, next) - creep_scale(run, c)) <= SPACING_GROWTH * apart;
 }
 
 void creep(const Run &run, const RestMap &map, const std::vector<double> &knots, double end_ramp,
@@ -542,12 +553,12 @@ void make_rows(const Run &run, const RestMap &map, const double *knots, std::siz
                                           rest.bend[XYZ_NORM] * m.first * m.first));
             }
             // All moves from the place before to that behind, in the cell.
-            const auto move_to = [&](std::size_t from, std::size_t place) {
+            const auto move_to = [&](std::size_t move, std::size_t place) {
                 const double s = map.at(knots[k] + h * PLACE_PART[place]).s;
-                while (from + 1 < run.feeds->size() && s > (*run.feeds)[from].end_s) {
-                    ++from;
+                while (move + 1 < run.feeds->size() && s > (*run.feeds)[move].end_s) {
+                    ++move;
                 }
-                return from;
+                return move;
             };
             const std::size_t last = move_to(feed, std::min(p + 1, PLACES - 1));
             feed = p == 0 ? move_to(feed, p) : feed;

@@ -108,6 +108,10 @@ std::size_t span_at(const std::vector<Span> &spans, double s) noexcept;
 /// Inverse of the maximum speed along the curve that the limits of speed allow at a point.
 double speed_share(const Run &run, const CurvePoint &point, std::size_t feed) noexcept;
 void make_rows(const Run &run, const RestMap &map, const double *knots, std::size_t cells, Rows &rows);
+/// Largest part of the path over which a start or a stop is blended.
+inline constexpr double MAX_RAMP = 0.3;
+/// The scale of the path that a creep with this coefficient belongs to.
+double creep_scale(const Run &run, double c) noexcept;
 /// True if the speed changes slowly enough between two coefficients for a creep.
 bool isSteady(const Run &run, double c, double next, double apart) noexcept;
 /// Adds the coefficients of cells that have none: slow enough to keep every row by far. `end_ramp`: length

@@ -16,8 +16,6 @@ constexpr double LEAST_CELL_S = 5e-4;
 constexpr double VELOCITY_SHARE = 0.9995, ACCELERATION_SHARE = 0.998, JERK_SHARE = 0.99;
 /// Part of a limit that a plan leaves to the next one.
 constexpr double LEAST_ROOM = 1e-6;
-/// Largest part of the path over which a start or a stop is blended.
-constexpr double MAX_RAMP = 0.3;
 
 }  // namespace
 
@@ -36,7 +34,7 @@ void Profile::restart() noexcept {
     eased_.clear();
     time_cells_.clear();
     before_ = 0;
-    has_end_ = false;
+    has_end_ = ends_early_ = false;
     end_s_ = 0;
     joint_curve_.begin(nullptr, {});
 }
@@ -93,7 +91,7 @@ void Profile::take_joints(const Run &run) {
 
 void Profile::lay_cells(std::size_t fixed) {
     const Run &run = run_;
-    const double planned = cell_s_ * static_cast<double>(cells() - fixed);
+    const double planned = cell_s_ * static_cast<double>(laid() - fixed);
     if (has_end_ || planned >= settings_.window_s) {
         return;
     }
@@ -104,8 +102,8 @@ void Profile::lay_cells(std::size_t fixed) {
         end_s_ = run.end_s;
         end_ramp_ = std::min(RoughProfile::ramp_at(run, run.end_s), MAX_RAMP * (run.end_s - from));
     }
-    const auto &laid = rough_.lay(run, {from, is_first, settings_.window_s - planned, cell_s_, end_ramp_});
-    if (laid.empty()) {
+    const auto &ends = rough_.lay(run, {from, is_first, settings_.window_s - planned, cell_s_, end_ramp_});
+    if (ends.empty()) {
         return;
     }
     if (is_first) {
@@ -114,29 +112,29 @@ void Profile::lay_cells(std::size_t fixed) {
         knots_.push_back(0);
     }
     const double ramp = end_ramp_;
-    const bool is_end = run.has_stop && laid.back() >= run.end_s;
+    const bool is_end = run.has_stop && ends.back() >= run.end_s;
     if (is_end) {
         map_.set_end(run.end_s, ramp);
         has_end_ = true;
     }
-    const std::size_t old = cells();
-    for (const double s : laid) {
+    const std::size_t old = laid();
+    for (const double s : ends) {
         // A stop at the end of what is known must still be possible, and what follows must not lower limits.
         if (!is_end && s > run.end_s - std::max(ramp, run.has_stop ? 0.0 : reach_)) {
             break;
         }
-        const double p = is_end && s == laid.back() ? map_.end() : map_.parameter_at(s);
+        const double p = is_end && s == ends.back() ? map_.end() : map_.parameter_at(s);
         // The cell behind the old end is not longer than that before it.
-        const double next = old > 0 && cells() == old ? 2 * knots_[old] - knots_[old - 1] : p;
+        const double next = old > 0 && laid() == old ? 2 * knots_[old] - knots_[old - 1] : p;
         const double left = p - next;
-        if (left > 0 && (left > 0.5 * (next - knots_[old]) || !(is_end && s == laid.back()))) {
+        if (left > 0 && (left > 0.5 * (next - knots_[old]) || !(is_end && s == ends.back()))) {
             knots_.push_back(next);
         }
-        if (!(left > 0) || left > 0.5 * (next - knots_[old]) || (is_end && s == laid.back())) {
+        if (!(left > 0) || left > 0.5 * (next - knots_[old]) || (is_end && s == ends.back())) {
             knots_.push_back(p);
         }
     }
-    if (old > 0 && cells() > old) {
+    if (old > 0 && laid() > old) {
         const double h = knots_[old] - knots_[old - 1];
         change_behind(h, knots_[old + 1] - knots_[old]);
     }
@@ -145,7 +143,7 @@ void Profile::lay_cells(std::size_t fixed) {
     } else {
         knots_.clear();  // too little of the curve is known
     }
-    eased_.resize(cells());
+    eased_.resize(laid());
 }
 
 /// The last coefficient for another length of the cell behind the plan: the motion stays the same.
@@ -159,12 +157,12 @@ void Profile::change_behind(double from, double to) noexcept {
 void Profile::prepare(std::size_t fixed, std::size_t n) {
     make_rows(run_, map_, &knots_[fixed], n, rows_);
     const Course course = course_from(fixed, &c_[fixed]);
-    const std::size_t behind = fixed + n < cells() ? fixed + n : fixed + n - 1;
+    const std::size_t behind = fixed + n < laid() ? fixed + n : fixed + n - 1;
     law_.begin(rows_, course.before, knots_[behind + 1] - knots_[behind]);
     std::copy_n(c_.begin() + static_cast<long>(fixed), n + 2, law_.coefficients().begin());
 }
 
-/// The rows keep a little room for the present coefficients where these all but reach them. Returns the
+/// Raises rows a little where the present coefficients reach them. Returns the
 /// largest row.
 double Profile::make_room() {
     double worst = 0;
@@ -182,13 +180,18 @@ double Profile::make_room() {
 }
 
 void Profile::store(std::size_t fixed) {
-    std::copy_n(law_.coefficients().begin(), cells() - fixed + 2, c_.begin() + static_cast<long>(fixed));
+    std::copy_n(law_.coefficients().begin(), laid() - fixed + 2, c_.begin() + static_cast<long>(fixed));
 }
 
 void Profile::plan(const Run &run, std::size_t fixed) {
+    const bool is_same = run.has_stop && run.end_s <= ending_s_;
+    if (ends_early_ && (is_same || isInEnding() || fixed > ending_at_)) {
+        return;
+    }
+    ends_early_ = false;
     take_limits(run);
     lay_cells(fixed);
-    const std::size_t n = cells() - std::min(fixed, cells());
+    const std::size_t n = laid() - std::min(fixed, laid());
     if (n == 0) {
         return;
     }
@@ -208,7 +211,7 @@ void Profile::plan(const Run &run, std::size_t fixed) {
 }
 
 void Profile::make_time_cells(std::size_t fixed) {
-    time_cells_.resize(cells());
+    time_cells_.resize(laid());
     const Course course = course_from(fixed, law_.coefficients().data());
     for (std::size_t k = 0; k < course.cells; ++k) {
         time_cells_[fixed + k] = cell_of(motion_at(course, k, 0), motion_at(course, k, 1), law_.time_of(k));
@@ -219,8 +222,16 @@ void Profile::drop(std::size_t count) {
     if (count == 0) {
         return;
     }
-    before_ = knots_[count] - knots_[count - 1];
-    const auto n = static_cast<long>(count);
+    const std::size_t laid = ends_early_ ? std::min(count, ending_at_) : count;
+    if (ends_early_) {
+        ending_.erase(ending_.begin(), ending_.begin() + static_cast<long>(count - laid));
+        ending_at_ -= laid;
+    }
+    if (laid == 0) {
+        return;
+    }
+    before_ = knots_[laid] - knots_[laid - 1];
+    const auto n = static_cast<long>(laid);
     knots_.erase(knots_.begin(), knots_.begin() + n);
     c_.erase(c_.begin(), c_.begin() + n);
     eased_.erase(eased_.begin(), eased_.begin() + n);

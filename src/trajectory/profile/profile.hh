@@ -56,14 +56,20 @@ class Profile {
     /// The soonest stop that keeps every limit of `run`, not before the start of cell `fixed`. The plan stays
     /// as it is.
     Stop stop(const Run &run, std::size_t fixed, StopEffort effort);
-    /// As plan(), after limits of speed were lowered. The speed may be above a lowered limit as long as the
-    /// soonest braking needs; acceleration and jerk never.
+    /// As plan(), after limits of speed were lowered, or the end of the run came nearer (not nearer than the
+    /// soonest stop), or was taken away. The speed may be above a lowered limit as long as the soonest
+    /// braking needs; acceleration and jerk never. An end that is so near that the plan brakes for it stays:
+    /// the run resumes with begin().
     void replan(const Run &run, std::size_t fixed);
     /// Cells that are planned and not dropped.
-    std::size_t cells() const noexcept { return knots_.empty() ? 0 : knots_.size() - 1; }
-    const TimeCell &cell(std::size_t k) const noexcept { return time_cells_[k]; }
-    /// The last cell ends in the stop of the run.
-    bool isComplete() const noexcept { return has_end_; }
+    std::size_t cells() const noexcept { return ends_early_ ? ending_at_ + ending_.size() : laid(); }
+    const TimeCell &cell(std::size_t k) const noexcept {
+        return ends_early_ && k >= ending_at_ ? ending_[k - ending_at_] : time_cells_[k];
+    }
+    /// The last cell ends in a stop, at `end_s`: that of the run, or one that was
+    /// planned before and is too near to be changed.
+    bool isComplete() const noexcept { return has_end_ || ends_early_; }
+    double end_s() const noexcept { return ends_early_ ? ending_s_ : planned_s(); }
     /// The first `count` cells are driven.
     void drop(std::size_t count);
 
@@ -75,6 +81,10 @@ class Profile {
     int steps() const noexcept { return steps_; }
 
   private:
+    /// A direct stop in less time that ends there; by default anywhere.
+    struct Goal {
+        double most_s = 1e300, end_s = 1e300;
+    };
     /// How dense the places are at which limits of a direct stop are checked.
     enum class Density : std::uint8_t { COARSE, EVERY_SPAN };
     void take_limits(const Run &run);
@@ -94,8 +104,13 @@ class Profile {
     void make_time_cells(std::size_t fixed);
     Course course_from(std::size_t fixed, const double *c) const noexcept;
     Motion motion_at(const Course &course, std::size_t cell, double x) const noexcept;
-    bool find_tail(const Run &run, const Course &course, std::size_t cell, double most_s,
+    bool find_tail(const Run &run, const Course &course, std::size_t cell, const Goal &goal,
                    DirectStop &tail) const;
+    bool endsNear(const Run &run) const noexcept;
+    bool end_early(const Run &run, std::size_t fixed);
+    /// Cells of the spline.
+    std::size_t laid() const noexcept { return knots_.empty() ? 0 : knots_.size() - 1; }
+    bool isInEnding() const noexcept { return ends_early_ && ending_.size() < ending_cells_; }
     std::size_t cells_of_stop(const Run &run, const Course &course) const;
     bool keepsLimits(const Run &run, const Course &course, std::size_t cell, const DirectStop &tail,
                      Density density, Rates &least) const;
@@ -124,6 +139,11 @@ class Profile {
            end_ramp_ =
                0;  ///< end of the curve as it is known, and the length over which a stop there is blended
     bool has_end_ = false;  ///< the last cell ends in the stop
+    // A direct stop before the end of the cells, from the start of one of them on.
+    bool ends_early_ = false;
+    std::size_t ending_at_ = 0, ending_cells_ = 0;
+    double ending_s_ = 0;
+    std::vector<TimeCell> ending_;
     double worst_start_ = 0;
     int steps_ = 0;
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "trajectory/curve/curve_builder.hh"
 #include "trajectory/profile/profile.hh"
 
 namespace mw::trajectory::profile {
@@ -15,6 +16,7 @@ constexpr double SPAN_PLACES = 12;
 constexpr int TAIL_ROUNDS = 4;
 /// Part by which the speed may exceed that of the soonest braking, squared.
 constexpr double ABOVE_LOWEST = 1e-3;
+constexpr double ANYWHERE = 1e300;
 /// Parts of the plan and of the creep: a floor is below the plan, and what is near the floor creeps.
 constexpr double BELOW_PLAN = 0.9, NEAR_CREEP = 1.02;
 /// Parts of a cell at most.
@@ -27,7 +29,7 @@ constexpr double LAST_MU = 1e-2;
 Course Profile::course_from(std::size_t fixed, const double *c) const noexcept {
     const double *knots = &knots_[fixed];
     const double before = fixed > 0 ? knots[0] - knots[-1] : before_ > 0 ? before_ : knots[1] - knots[0];
-    return {knots, c, cells() - fixed, before};
+    return {knots, c, laid() - fixed, before};
 }
 
 LawState Course::state(std::size_t k, double x) const noexcept {
@@ -100,8 +102,8 @@ bool Profile::keepsLimits(const Run &run, const Course &course, std::size_t cell
     }
 }
 
-/// A direct stop from the start of a cell, of less than `most_s`.
-bool Profile::find_tail(const Run &run, const Course &course, std::size_t cell, double most_s,
+/// A direct stop from the start of a cell.
+bool Profile::find_tail(const Run &run, const Course &course, std::size_t cell, const Goal &goal,
                         DirectStop &tail) const {
     const bool is_last = cell == course.cells;
     const std::size_t in = is_last ? cell - 1 : cell;
@@ -109,8 +111,10 @@ bool Profile::find_tail(const Run &run, const Course &course, std::size_t cell, 
     const std::size_t span = span_at(*run.spans, from.s);
     Rates rates = rates_at(run_, curve::point_at((*run.spans)[span], from.s), from);
     for (int round = 0; round < TAIL_ROUNDS; ++round) {
-        if (!(rates.acceleration > 0) || !(rates.jerk > 0) || !make_direct_stop(from, rates, tail) ||
-            !(tail.duration() < most_s)) {
+        const bool is_made = rates.acceleration > 0 && rates.jerk > 0 &&
+                             (goal.end_s < ANYWHERE ? make_direct_stop_at(from, rates, goal.end_s, tail)
+                                                    : make_direct_stop(from, rates, tail));
+        if (!is_made || !(tail.duration() < goal.most_s)) {
             return false;
         }
         if (keepsLimits(run, course, in, tail, Density::COARSE, rates) &&
@@ -128,7 +132,7 @@ std::size_t Profile::first_tail(const Run &run, const Course &course, DirectStop
     std::size_t fails = 0, passes = n + 1;
     for (std::size_t k = 0, step = 1; passes > 0 && passes > fails + 1 + passes / 8 && k <= n;) {
         DirectStop found;
-        if (find_tail(run, course, k, 1e300, found)) {
+        if (find_tail(run, course, k, {}, found)) {
             tail = found;
             passes = k;
         } else {
@@ -146,13 +150,16 @@ std::size_t Profile::first_tail(const Run &run, const Course &course, DirectStop
 
 Stop Profile::stop(const Run &run, std::size_t fixed, StopEffort effort) {
     take_limits(run);
-    Stop out{cells(), {}, planned_s()};
-    if (cells() == fixed) {
+    Stop out{cells(), {}, end_s()};
+    if (fixed == 0 && before_ == 0) {
+        return {0, {}, start_s_};
+    }
+    if (fixed >= (ends_early_ ? ending_at_ : laid()) || isInEnding()) {
         return out;
     }
     const Course course = course_from(fixed, &c_[fixed]);
     DirectStop tail;
-    const std::size_t first = first_tail(run, course, tail);
+    const std::size_t first = ends_early_ ? course.cells + 1 : first_tail(run, course, tail);
     if (first <= course.cells) {
         out = {fixed + first, {tail.cells.begin(), tail.cells.end()}, tail.end_s};
     }
@@ -184,7 +191,7 @@ void Profile::stop_sooner(const Run &run, std::size_t fixed, Stop &out) {
     const Course plan = course_from(fixed, &c_[fixed]);
     double least = 0;
     for (std::size_t k = fixed; k < out.kept; ++k) {
-        least += time_cells_[k].duration;
+        least += cell(k).duration;
     }
     for (const TimeCell &cell : out.cells) {
         least += cell.duration;
@@ -199,7 +206,7 @@ void Profile::stop_sooner(const Run &run, std::size_t fixed, Stop &out) {
         double next = 0;
         for (std::size_t k = 0; k <= n && before < least; ++k) {
             DirectStop found;
-            if ((before >= next || k == n) && find_tail(run, course, k, least - before, found)) {
+            if ((before >= next || k == n) && find_tail(run, course, k, {least - before, ANYWHERE}, found)) {
                 least = before + found.duration();
                 kept = k;
                 tail = found;
@@ -279,7 +286,7 @@ std::size_t Profile::split(const Run &run, std::size_t fixed, std::size_t n) {
     const double end = course.knots[n];
     knots_.swap(split_.knots);
     c_.swap(split_.c);
-    eased_.resize(cells());
+    eased_.resize(laid());
     const auto last = std::lower_bound(knots_.begin(), knots_.end(), end);
     return static_cast<std::size_t>(last - knots_.begin()) - fixed;
 }
@@ -297,7 +304,7 @@ void Profile::slow_down(const Run &run, std::size_t fixed) {
         floors_[i] = std::min(creep_[i], BELOW_PLAN * c_[fixed + i]);
     }
     std::size_t kept = 0;
-    for (;; n = std::min(2 * n, cells() - fixed)) {
+    for (;; n = std::min(2 * n, laid() - fixed)) {
         make_slowest(fixed, n, floors_);
         const std::vector<double> &c = law_.coefficients();
         const auto creeps = [&](std::size_t k) {
@@ -314,12 +321,12 @@ void Profile::slow_down(const Run &run, std::size_t fixed) {
         kept = std::min(kept, n);
         // A ramp before the end stays.
         kept = has_end_ && knots_[fixed + kept] > map_.end_ramp() ? n : kept;
-        if (kept < n || n == cells() - fixed) {
+        if (kept < n || n == laid() - fixed) {
             break;
         }
     }
     std::copy_n(law_.coefficients().begin(), kept + 2, c_.begin() + static_cast<long>(fixed));
-    if (fixed + kept < cells()) {
+    if (fixed + kept < laid()) {
         cut(fixed + kept);
     }
     const Course course = course_from(0, c_.data());
@@ -343,14 +350,88 @@ void Profile::cut(std::size_t kept) {
     }
 }
 
+/// True if the run ends so near that what is planned does not count on it.
+bool Profile::endsNear(const Run &run) const noexcept {
+    if (!run.has_stop || run.end_s >= end_s_) {
+        return false;
+    }
+    const double left = run.end_s - planned_s();
+    const double ramp = std::min(RoughProfile::ramp_at(run_, run.end_s), MAX_RAMP * left);
+    return left <= 0 ||
+           creep_scale(run_, c_.back()) > RestMap::scale_of(ramp) + curve::SPACING_GROWTH * (left - ramp);
+}
+
+/// Ends the plan with a direct stop at the end of the run. False if none keeps the limits.
+bool Profile::end_early(const Run &run, std::size_t fixed) {
+    take_limits(run);
+    const Course course = course_from(fixed, &c_[fixed]);
+    DirectStop tail;
+    double before = 0, next = 0, least = ANYWHERE;
+    for (std::size_t k = 0; k < course.cells && before < least; ++k) {
+        DirectStop found;
+        if (before >= next && find_tail(run, course, k, {least - before, run.end_s}, found)) {
+            least = before + found.duration();
+            tail = found;
+            ending_at_ = fixed + k;
+        }
+        next = before >= next ? before + settings_.cell_s : next;
+        before += time_cells_[fixed + k].duration;
+    }
+    ends_early_ = least < ANYWHERE;
+    if (ends_early_) {
+        ending_.assign(tail.cells.begin(), tail.cells.end());
+        ending_cells_ = ending_.size();
+        ending_s_ = run.end_s;
+    }
+    return ends_early_;
+}
+
 void Profile::replan(const Run &run, std::size_t fixed) {
+    if (isInEnding() || (ends_early_ && fixed > ending_at_)) {
+        return;
+    }
+    ends_early_ = false;
     take_limits(run);
     if (fixed == 0 && before_ == 0) {
         restart();
-    } else if (cells() > fixed) {
-        slow_down(run, fixed);
+        plan(run, fixed);
+        return;
     }
-    plan(run, fixed);
+    if (laid() <= fixed) {
+        plan(run, fixed);
+        return;
+    }
+    Run whole = run;
+    Stop soonest;
+    const bool is_near = endsNear(run);
+    if (is_near) {
+        whole.end_s = end_s_;
+        whole.has_stop = has_end_;
+        soonest = stop(run, fixed, StopEffort::SOONEST);
+        for (std::size_t k = soonest.kept; k-- > fixed;) {
+            soonest.cells.insert(soonest.cells.begin(), cell(k));
+        }
+        take_limits(whole);
+    }
+    slow_down(whole, fixed);
+    plan(whole, fixed);
+    if (!is_near || end_early(run, fixed)) {
+        return;
+    }
+    // From the motion with the least speed and its creep.
+    take_limits(whole);
+    slow_down(whole, fixed);
+    lay_cells(fixed);
+    prepare(fixed, laid() - fixed);
+    make_time_cells(fixed);
+    if (!end_early(run, fixed)) {
+        // The soonest stop, before the end of the run.
+        ends_early_ = true;
+        ending_at_ = fixed;
+        ending_ = soonest.cells;
+        ending_cells_ = ending_.size();
+        ending_s_ = soonest.end_s;
+    }
 }
 
 }  // namespace mw::trajectory::profile

@@ -16,7 +16,7 @@ class RestMap {
     void set_start(double s, double ramp) noexcept;
     /// The path ends with a stop at `s`, the ramp before it.
     void set_end(double s, double ramp) noexcept;
-    /// The path goes on at its end; parameters before the ramp stay.
+    /// There is no end any more; parameters before the ramp stay.
     void take_end_away() noexcept;
     /// Parameter at which the ramp before the end begins.
     double end_ramp() const noexcept { return end_ - stop_; }

@@ -69,6 +69,25 @@ bool make_direct_stop(const Motion &from, const Rates &rates, DirectStop &stop) 
     return true;
 }
 
+bool make_direct_stop_at(const Motion &from, const Rates &rates, double end_s, DirectStop &stop) noexcept {
+    // The length falls with the part of the limits that is used; below the least part the motion would go
+    // back.
+    constexpr int HALVINGS = 100;
+    double low = from.a < 0 ? 0.5 * from.a * from.a / (from.v * rates.jerk) : 0.0, high = 1;
+    const auto make = [&](double part) {
+        return make_direct_stop(from, {rates.least, part * rates.acceleration, part * rates.jerk}, stop);
+    };
+    if (!make(high) || stop.end_s > end_s) {
+        return false;
+    }
+    for (int i = 0; i < HALVINGS && stop.end_s != end_s; ++i) {
+        const double part = 0.5 * (low + high);
+        (make(part) && stop.end_s <= end_s ? high : low) = part;
+    }
+    constexpr double NEAR = 1e-13;
+    return make(high) && end_s - stop.end_s <= NEAR * std::max(1.0, end_s);
+}
+
 Motion DirectStop::at(double t) const noexcept {
     std::size_t i = 0;
     while (i + 1 < PHASES && t > cells[i].duration) {

@@ -30,7 +30,8 @@ TimeCell cell_of(const Motion &from, const Motion &to, double duration) noexcept
 struct Rates {
     double least = 0;  ///< braking below it leaves a limit
     double acceleration = 0, jerk = 0;
-    double spare_acceleration = 0, spare_jerk = 0;  ///< what may be used beyond them where limits are checked
+    double spare_acceleration = 0,
+           spare_jerk = 0;  ///< by which they may be exceeded where limits are checked
 };
 
 /// Jerk -J, then none, then J: by which the acceleration goes to -peak, stays, and ends.
@@ -45,6 +46,8 @@ struct DirectStop {
 
 /// False if the motion would go back.
 bool make_direct_stop(const Motion &from, const Rates &rates, DirectStop &stop) noexcept;
+/// A direct stop that ends at `end_s`, with lower limits than `rates`. False if there is none.
+bool make_direct_stop_at(const Motion &from, const Rates &rates, double end_s, DirectStop &stop) noexcept;
 
 /// What the limits of the run leave along the curve at a place with the speed and the acceleration of `at`:
 /// braking between `least` and `acceleration`, and this jerk, if it is not below 0.

@@ -53,7 +53,7 @@ struct Part {
         const std::size_t span = span_at(builder.spans(), s);
         return curve::point_at(builder.spans()[span], s);
     }
-    /// The largest speed along the curve by the limits of speed.
+    /// The maximum speed along the curve by the limits of speed.
     double limit_at(double s) const {
         const CurvePoint p = point(s);
         // At the joint of two moves either one's.
@@ -150,7 +150,7 @@ void bands_at(const Part &part, const Reading &at, double a, Band &acceleration,
     jerk.meet(0, n, b.jerk + drift);
 }
 
-/// True if the norm over XYZ keeps its limits, but for a little.
+/// True if the norm over XYZ nearly keeps its limits.
 bool keepsNorm(const Part &part, const Reading &at, double a, double j) {
     constexpr double ROOM = 1.02;
     const CurvePoint p = part.point(at.s);
@@ -227,7 +227,8 @@ struct Ride {
     std::vector<Reading> allowed;  ///< the plan when limits were lowered
     double feed = 1, rapid = 1;
     int replans = 0;
-    bool is_done = false;
+    bool is_done = false, is_at_end = false;
+    double stopped_s = 0;
 
     explicit Ride(const test::Program &program) : part(program) { profile.begin(0); }
     std::vector<TimeCell> with_plan(std::size_t cells) const {
@@ -246,7 +247,14 @@ struct Ride {
             driven.push_back(profile.cell(k));
             t += profile.cell(k).duration;
         }
-        is_done = profile.isComplete() && k == cells;
+        is_at_end = profile.isComplete() && k == cells;
+        if (is_at_end) {
+            const TimeCell &end = driven.back();
+            EXPECT_NEAR(end.s_at(end.duration), profile.end_s(), 1e-12 * std::max(1.0, part.run.end_s));
+            stopped_s = profile.end_s();
+            EXPECT_LE(stopped_s, part.run.end_s);
+        }
+        is_done = is_at_end && stopped_s > part.builder.final_s() - 1e-9;
         profile.drop(k);
     }
     /// From the start of the cell `fixed` to the end of a stop.
@@ -354,7 +362,7 @@ TEST(Stop, StopsAnywhereWithinTheLimitsAndSoon) {
 }
 
 TEST(Stop, ReachesLowerFeedsWithinTheLimits) {
-    drive_seeds(12, [](Ride &ride, test::Maker &maker) {
+    drive_seeds(5, [](Ride &ride, test::Maker &maker) {
         const std::size_t fixed = some_cells(ride, maker);
         const double change = std::pow(10.0, maker.real(-2, 0)), other = std::pow(10.0, maker.real(-2, 0));
         if (maker.chance(0.2) && ride.replans < 40) {
@@ -363,6 +371,28 @@ TEST(Stop, ReachesLowerFeedsWithinTheLimits) {
             if (maker.chance(0.25)) {
                 ride.raise(1 / change, 1 / other);
             }
+            ride.profile.plan(ride.part.run, fixed);
+        }
+    });
+}
+
+TEST(Stop, EndsNearerAndGoesOnAgain) {
+    drive_seeds(5, [](Ride &ride, test::Maker &maker) {
+        const std::size_t fixed = some_cells(ride, maker);
+        const double whole = ride.part.builder.final_s();
+        if (ride.is_at_end) {
+            ride.part.run.end_s = whole;
+            ride.profile.begin(ride.stopped_s);
+            ride.profile.plan(ride.part.run, 0);
+        } else if (ride.part.run.end_s < whole && maker.chance(0.3)) {
+            ride.part.run.end_s = whole;
+            ride.profile.replan(ride.part.run, fixed);
+        } else if (maker.chance(0.3) && ride.profile.cells() > 0 && ride.part.run.end_s == whole) {
+            const Stop soonest = ride.profile.stop(ride.part.run, fixed, StopEffort::SOONEST);
+            const double way = maker.chance(0.3) ? 0.0 : std::pow(10.0, maker.real(-4, 1));
+            ride.part.run.end_s = std::min(whole, soonest.end_s + way);
+            ride.profile.replan(ride.part.run, fixed);
+        } else {
             ride.profile.plan(ride.part.run, fixed);
         }
     });
