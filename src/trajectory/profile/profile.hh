@@ -129,6 +129,7 @@ class Profile {
     /// What b may be at the places of each cell, above the limits of the speed; 0: nothing.
     std::vector<std::array<double, PLACES>> eased_;
     std::vector<double> creep_, floors_;
+    mutable std::size_t places_ = 0;  ///< at which direct stops were checked
     struct {
         std::vector<double> knots, c;
     } split_;

@@ -49,8 +49,9 @@ void Rows::relax(std::size_t cell, std::size_t place, double factor) noexcept {
 }
 
 void Rows::allow(std::size_t cell, std::size_t place, double b) noexcept {
-    double &v2 = velocity_[cell / LANES * PLACES + place].v2[cell % LANES];
-    v2 = b > 0 ? std::min(v2, 1 / b) : v2;
+    Lanes &v2 = velocity_[cell / LANES * PLACES + place].v2;
+    const double lane = v2[cell % LANES];
+    v2[cell % LANES] = b > 0 ? std::min(lane, 1 / b) : lane;
 }
 
 double Rows::velocity(std::size_t cell, std::size_t place) const noexcept {
