@@ -2,7 +2,6 @@
 #include "trajectory/profile/cells.hh"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "trajectory/curve/curve_builder.hh"
@@ -14,13 +13,6 @@ namespace mw::trajectory::profile {
 namespace {
 
 constexpr int NODES_PER_SPAN = 3;
-/// A limit above it is none.
-constexpr double UNLIMITED_BOUND = 1e100;
-
-double square(double x) noexcept {
-    return x * x;
-}
-
 /// Nodes closer together count as one: rounding.
 constexpr double LEAST_STEP = 1e-12;
 
@@ -28,7 +20,7 @@ constexpr double LEAST_STEP = 1e-12;
 constexpr double TURN_PER_CELL = 0.2;
 
 bool isAlike(const FeedLimit &a, const FeedLimit &b) noexcept {
-    return a.velocity == b.velocity && a.along == b.along;
+    return a.velocity == b.velocity && a.along == b.along && a.limit_share == b.limit_share;
 }
 
 /// Speed after the way ds from v with a^2 <= 2 J v (a start from rest with constant jerk) and a <= A.
@@ -282,295 +274,10 @@ void RoughProfile::lay_between(double from_t, double to_t, double cell_s, std::s
     }
 }
 
-namespace {
-
-using curve::SPACING_GROWTH;
-
-Bounds least_of(const CurveLimits &limits) noexcept {
-    Bounds least = limits.xyz;
-    for (const Bounds &b : limits.axes) {
-        least.velocity = std::min(least.velocity, b.velocity);
-        least.acceleration = std::min(least.acceleration, b.acceleration);
-        least.jerk = std::min(least.jerk, b.jerk);
-    }
-    return least;
-}
-
-/// Lengths over which the path, its map and its speed limits change, at the middle of each cell.
-class Scales {
-  public:
-    Scales(const Run &run, const Bounds &least) : run_(run), least_(least) {}
-
-    /// The scale that a cell has already.
-    struct Known {
-        std::size_t cell = 0;
-        double scale = 1e300, speed = 1e300;
-    };
-    const std::vector<double> &find(const RestMap &map, const std::vector<double> &knots, double end_ramp,
-                                    const Known &known) {
-        const auto &spans = *run_.spans;
-        const std::size_t cells = knots.size() - 1;
-        scale_.resize(cells);
-        by_speed_.resize(cells + 2);
-        std::size_t span = span_at(spans, map.at(knots[0]).s);
-        std::size_t feed = run_.feed_at(map.at(knots[0]).s);
-        double s = 0;
-        for (std::size_t k = 0; k < cells; ++k) {
-            const double middle = 0.5 * (knots[k] + knots[k + 1]);
-            s = map.at(middle).s;
-            // All spans and moves in the cell: a short one may lie between the places where limits are
-            // checked.
-            double length = spans[span].length;
-            while (span + 1 < spans.size() && map.at(knots[k + 1]).s >= spans[span].end_s()) {
-                length = std::min(length, spans[++span].length);
-            }
-            double v = speed_of((*run_.feeds)[feed]);
-            while (feed + 1 < run_.feeds->size() && map.at(knots[k + 1]).s >= (*run_.feeds)[feed].end_s) {
-                v = std::min(v, speed_of((*run_.feeds)[++feed]));
-            }
-            const double before_stop =
-                RestMap::scale_of(end_ramp) + SPACING_GROWTH * std::max(0.0, run_.end_s - end_ramp - s);
-            run_.each_cap(map.at(knots[k]).s, map.at(knots[k + 1]).s,
-                          [&](const SpeedCap &cap) { v = std::min(v, cap.v); });
-            scale_[k] = std::min({length, map.scale_at(middle), before_stop});
-            by_speed_[k + 1] = scale_of_speed(v);
-        }
-        look_ahead(s, map.at(knots[cells]).s - map.at(knots[cells - 1]).s, span, feed);
-        // The speed in a cell depends on the coefficients of its neighbours, too.
-        by_speed_[0] = by_speed_[cells + 1] = 1e300;
-        for (std::size_t k = 0; k < cells; ++k) {
-            scale_[k] = std::min({scale_[k], by_speed_[k], by_speed_[k + 1], by_speed_[k + 2]});
-        }
-        scale_[known.cell] = std::min(scale_[known.cell], known.scale);
-        if (run_.joint_curve != nullptr) {
-            const std::vector<double> &speed =
-                joint_speeds_.find(*run_.joint_curve, map, knots, {known.cell, known.speed});
-            for (std::size_t k = 0; k < cells; ++k) {
-                scale_[k] = std::min(scale_[k], scale_of_speed(speed[k]));
-            }
-        }
-        spread(knots);
-        return scale_;
-    }
-
-  private:
-    double speed_of(const FeedLimit &feed) const noexcept {
-        return std::min(feed.limit_share * least_.velocity, feed.velocity);
-    }
-    /// The scale at which the jerk limit gives this speed.
-    double scale_of_speed(double v) const noexcept { return std::sqrt(v * v * v / least_.jerk); }
-
-    /// Reduces the scale of the last cell, of this length, for smaller scales of the path and of the feeds
-    /// behind it.
-    void look_ahead(double s, double cell, std::size_t span, std::size_t feed) {
-        double &last = scale_.back();
-        const auto &spans = *run_.spans;
-        for (std::size_t j = span + 1; j < spans.size() && SPACING_GROWTH * (spans[j].start_s - s) < last;
-             ++j) {
-            last = std::min(last, spans[j].length + SPACING_GROWTH * std::max(0.0, spans[j].start_s - s));
-        }
-        // The cell in which a slower move begins has the slower speed at its start.
-        const auto apart = [&](std::size_t j) { return (*run_.feeds)[j - 1].end_s - s - 2 * cell; };
-        for (std::size_t j = feed + 1; j < run_.feeds->size() && SPACING_GROWTH * apart(j) < last; ++j) {
-            last = std::min(last, scale_of_speed(speed_of((*run_.feeds)[j])) +
-                                      SPACING_GROWTH * std::max(0.0, apart(j)));
-        }
-        run_.each_cap(s, s + last / SPACING_GROWTH, [&](const SpeedCap &cap) {
-            last =
-                std::min(last, scale_of_speed(cap.v) + SPACING_GROWTH * std::max(0.0, cap.s - cap.reach - s));
-        });
-    }
-
-    void spread(const std::vector<double> &knots) {
-        const auto apart = [&](std::size_t k) {
-            return SPACING_GROWTH * 0.5 * (knots[k + 1] - knots[k - 1]);
-        };
-        for (std::size_t k = 1; k < scale_.size(); ++k) {
-            scale_[k] = std::min(scale_[k], scale_[k - 1] + apart(k));
-        }
-        for (std::size_t k = scale_.size() - 1; k > 0; --k) {
-            scale_[k - 1] = std::min(scale_[k - 1], scale_[k] + apart(k));
-        }
-    }
-
-    const Run &run_;
-    const Bounds &least_;
-    std::vector<double> scale_, by_speed_;
-    JointSpeeds joint_speeds_;
-};
-
-}  // namespace
-
-namespace {
-
-/// Speed of a creep over that at which the path alone takes all of the jerk or of the acceleration.
-constexpr double SHARE = 0.15;
-
-/// The scale of the path that a creep belongs to.
-double scale_of_creep(const Bounds &least, double c) noexcept {
-    const double v = std::sqrt(c) / SHARE;
-    return std::max(std::sqrt(v * v * v / least.jerk), v * v / least.acceleration);
-}
-
-}  // namespace
-
-double creep_scale(const Run &run, double c) noexcept {
-    return scale_of_creep(least_of(run.limits), c);
-}
-
-bool isSteady(const Run &run, double c, double next, double apart) noexcept {
-    return std::abs(creep_scale(run, next) - creep_scale(run, c)) <= SPACING_GROWTH * apart;
-}
-
-void creep(const Run &run, const RestMap &map, const std::vector<double> &knots, double end_ramp,
-           std::vector<double> &c) {
-    const Bounds least = least_of(run.limits);
-    Scales scales(run, least);
-    // Coefficient k belongs to the middle of cell k - 1.
-    const std::size_t cells = knots.size() - 1;
-    const auto cell_of = [&](std::size_t k) { return std::clamp<std::size_t>(k, 1, cells) - 1; };
-    Scales::Known known;
-    const std::size_t old = c.size();
-    const double from = old == 0 ? 0 : scale_of_creep(least, c.back());
-    if (old > 0) {
-        known = {cell_of(old - 1), from, std::sqrt(c.back()) / SHARE};
-    }
-    const std::vector<double> &scale = scales.find(map, knots, end_ramp, known);
-    const auto middle = [&](std::size_t k) { return 0.5 * (knots[cell_of(k)] + knots[cell_of(k) + 1]); };
-    // The scale that the last coefficient belongs to changes into the present one.
-    for (std::size_t k = old; k < cells + 2; ++k) {
-        double d = scale[cell_of(k)];
-        if (old > 0) {
-            // Down at a slope of 1: slow moves that lie within a cell are not seen as far ahead.
-            const double way = middle(k) - middle(old - 1);
-            d = std::clamp(d, from - way, from + SPACING_GROWTH * way);
-        }
-        c.push_back(
-            square(SHARE * std::min(std::cbrt(least.jerk * d * d), std::sqrt(least.acceleration * d))));
-    }
-}
-
 std::size_t span_at(const std::vector<Span> &spans, double s) noexcept {
     const auto behind = std::upper_bound(spans.begin(), spans.end(), s,
                                          [](double x, const Span &span) { return x < span.start_s; });
     return static_cast<std::size_t>(std::max<long>(0, behind - spans.begin() - 1));
-}
-
-namespace {
-
-/// A point of the curve, its derivatives by the parameter.
-struct ParameterPoint {
-    std::array<std::array<double, geometry::AXIS_COUNT>, 3> q{};
-};
-
-ParameterPoint by_parameter(const CurvePoint &p, const MapPoint &m) noexcept {
-    ParameterPoint out;
-    for (std::size_t i = 0; i < geometry::AXIS_COUNT; ++i) {
-        out.q[0][i] = p.first.c[i] * m.first;
-        out.q[1][i] = p.second.c[i] * m.first * m.first + p.first.c[i] * m.second;
-        out.q[2][i] = p.third.c[i] * m.first * m.first * m.first + 3 * p.second.c[i] * m.first * m.second +
-                      p.first.c[i] * m.third;
-    }
-    return out;
-}
-
-NormRow norm_row(const ParameterPoint &point, const Bounds &l, double bend) noexcept {
-    const auto dot = [&](std::size_t i, std::size_t j) {
-        const auto &x = point.q[i], &y = point.q[j];
-        return x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
-    };
-    const double a = 1 / (l.acceleration * l.acceleration), j = 1 / (l.jerk * l.jerk);
-    return {a * dot(0, 0), a * dot(0, 1),     a * dot(1, 1),     j * dot(0, 0), 3 * j * dot(0, 1),
-            j * dot(0, 2), 9 * j * dot(1, 1), 3 * j * dot(1, 2), j * dot(2, 2), bend / l.jerk};
-}
-
-/// Coordinates that move on the spans of a stretch, as bits.
-unsigned moving_coordinates(const std::vector<Span> &spans, double from_s, double to_s) noexcept {
-    unsigned moving = 0;
-    for (std::size_t k = span_at(spans, from_s); k < spans.size() && spans[k].start_s <= to_s; ++k) {
-        const Span &span = spans[k];
-        for (std::size_t i = 0; i < geometry::AXIS_COUNT; ++i) {
-            moving |= span.c[1].c[i] != 0 || span.c[2].c[i] != 0 || span.c[3].c[i] != 0 ? 1U << i : 0U;
-        }
-    }
-    return moving;
-}
-
-/// How far inside of a cell the span for its end is searched, as a part of half of the cell.
-constexpr double INSIDE = 1e-3;
-
-}  // namespace
-
-double speed_share(const Run &run, const CurvePoint &point, std::size_t feed) noexcept {
-    const FeedLimit &limit = (*run.feeds)[feed];
-    double most = geometry::norm_xyz(point.first) / run.limits.xyz.velocity;
-    for (std::size_t i = 0; i < geometry::AXIS_COUNT; ++i) {
-        most = std::max(most, std::abs(point.first.c[i]) / run.limits.axes[i].velocity);
-    }
-    return std::max(most / limit.limit_share, std::sqrt(limit.share(point.first)));
-}
-
-void make_rows(const Run &run, const RestMap &map, const double *knots, std::size_t cells, Rows &rows) {
-    const auto &spans = *run.spans;
-    const unsigned moving = moving_coordinates(spans, map.at(knots[0]).s, map.at(knots[cells]).s);
-    const Bounds &xyz = run.limits.xyz;
-    const curve::JointCurve *joints = run.joint_curve;
-    const std::size_t joint_count = joints == nullptr ? 0 : joints->joints();
-    rows.begin(static_cast<std::size_t>(std::popcount(moving)) + joint_count,
-               xyz.acceleration < UNLIMITED_BOUND || xyz.jerk < UNLIMITED_BOUND);
-    std::size_t span = span_at(spans, map.at(knots[0]).s);
-    std::size_t feed = run.feed_at(map.at(knots[0]).s);
-    for (std::size_t k = 0; k < cells; ++k) {
-        const double h = knots[k + 1] - knots[k];
-        rows.add_cell(h);
-        const double from = map.at(knots[k]).s, to = map.at(knots[k + 1]).s;
-        const CapRest rest = rest_of(run, from, to);
-        for (std::size_t p = 0; p < PLACES; ++p) {
-            const MapPoint m = map.at(knots[k] + h * PLACE_PART[p]);
-            // At the ends of a cell the curve on the side of the cell: derivatives may jump there.
-            const double inside = m.s + INSIDE * (0.5 * (from + to) - m.s);
-            while (span + 1 < spans.size() && inside >= spans[span].end_s()) {
-                ++span;
-            }
-            const CurvePoint c = curve::point_at(spans[span], m.s);
-            const ParameterPoint point = by_parameter(c, m);
-            double joint_v2 = 0;
-            std::size_t n = 0;
-            for (std::size_t i = 0; i < geometry::AXIS_COUNT; ++i) {
-                if ((moving >> i & 1U) == 0) {
-                    continue;
-                }
-                const Bounds l = left_of(run.limits.axes[i], rest, i);
-                const double q1 = point.q[0][i], q2 = point.q[1][i], q3 = point.q[2][i];
-                rows.set(p, n++, row_of(q1, q2, q3, l, rest.bend[i] * m.first * m.first));
-            }
-            if (joint_count > 0) {
-                const curve::JointPoint point_j = joints->point_at(joints->part_at(inside), m.s);
-                joint_v2 = set_joint_rows(run, point_j, m, rest, {rows, p, n});
-            }
-            if (rows.hasNorm()) {
-                rows.set_norm(p, norm_row(point, left_of(xyz, rest, XYZ_NORM),
-                                          rest.bend[XYZ_NORM] * m.first * m.first));
-            }
-            // All moves from the place before to that behind, in the cell.
-            const auto move_to = [&](std::size_t move, std::size_t place) {
-                const double s = map.at(knots[k] + h * PLACE_PART[place]).s;
-                while (move + 1 < run.feeds->size() && s > (*run.feeds)[move].end_s) {
-                    ++move;
-                }
-                return move;
-            };
-            const std::size_t last = move_to(feed, std::min(p + 1, PLACES - 1));
-            feed = p == 0 ? move_to(feed, p) : feed;
-            double share = 0;
-            for (std::size_t j = feed; j <= last; ++j) {
-                share = std::max(share, speed_share(run, c, j));
-            }
-            const double v2 = (square(share) + rest.v2) * m.first * m.first;
-            rows.set_velocity(p, std::max(v2, joint_v2));
-            feed = move_to(feed, p);
-        }
-    }
 }
 
 }  // namespace mw::trajectory::profile
