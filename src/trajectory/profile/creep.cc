@@ -23,6 +23,14 @@ Bounds least_of(const CurveLimits &limits) noexcept {
     return least;
 }
 
+/// Speed of a creep over that at which the path alone takes all of the jerk or of the acceleration.
+constexpr double SHARE = 0.15;
+
+/// The scale of the path at which it alone takes a limit at the speed v.
+double scale_of_creep(const Bounds &least, double v) noexcept {
+    return std::max(std::sqrt(v * v * v / least.jerk), v * v / least.acceleration);
+}
+
 /// Lengths over which the path, its map and its speed limits change, at the middle of each cell.
 class Scales {
   public:
@@ -73,7 +81,7 @@ class Scales {
             const std::vector<double> &speed =
                 joint_speeds_.find(*run_.joint_curve, map, knots, {known.cell, known.speed});
             for (std::size_t k = 0; k < cells; ++k) {
-                scale_[k] = std::min(scale_[k], scale_of_speed(speed[k]));
+                scale_[k] = std::min(scale_[k], scale_of_creep(least_, speed[k]));
             }
         }
         spread(knots);
@@ -102,6 +110,15 @@ class Scales {
             last = std::min(last, scale_of_speed(speed_of((*run_.feeds)[j])) +
                                       SPACING_GROWTH * std::max(0.0, apart(j)));
         }
+        for (std::size_t j = run_.joint_curve == nullptr ? 0 : run_.joint_curve->part_at(s);
+             run_.joint_curve != nullptr && j < run_.joint_curve->parts().size(); ++j) {
+            const curve::JointCurve::Part &part = run_.joint_curve->parts()[j];
+            const double way = std::max(0.0, part.start_s - s);
+            if (SPACING_GROWTH * way >= last) {
+                break;
+            }
+            last = std::min(last, scale_of_creep(least_, part.speed) + SPACING_GROWTH * way);
+        }
         run_.each_cap(s, s + last / SPACING_GROWTH, [&](const SpeedCap &cap) {
             last =
                 std::min(last, scale_of_speed(cap.v) + SPACING_GROWTH * std::max(0.0, cap.s - cap.reach - s));
@@ -126,19 +143,10 @@ class Scales {
     JointSpeeds joint_speeds_;
 };
 
-/// Speed of a creep over that at which the path alone takes all of the jerk or of the acceleration.
-constexpr double SHARE = 0.15;
-
-/// The scale of the path that a creep belongs to.
-double scale_of_creep(const Bounds &least, double c) noexcept {
-    const double v = std::sqrt(c) / SHARE;
-    return std::max(std::sqrt(v * v * v / least.jerk), v * v / least.acceleration);
-}
-
 }  // namespace
 
 double creep_scale(const Run &run, double c) noexcept {
-    return scale_of_creep(least_of(run.limits), c);
+    return scale_of_creep(least_of(run.limits), std::sqrt(c) / SHARE);
 }
 
 bool isSteady(const Run &run, double c, double next, double apart) noexcept {
@@ -154,7 +162,7 @@ void creep(const Run &run, const RestMap &map, const std::vector<double> &knots,
     const auto cell_of = [&](std::size_t k) { return std::clamp<std::size_t>(k, 1, cells) - 1; };
     Scales::Known known;
     const std::size_t old = c.size();
-    const double from = old == 0 ? 0 : scale_of_creep(least, c.back());
+    const double from = old == 0 ? 0 : scale_of_creep(least, std::sqrt(c.back()) / SHARE);
     if (old > 0) {
         known = {cell_of(old - 1), from, std::sqrt(c.back()) / SHARE};
     }

@@ -80,7 +80,7 @@ bool Profile::keepsLimits(const Run &run, const Course &course, std::size_t cell
                 -m.a <= left.acceleration + left.spare_acceleration &&
                 std::abs(tail.jerk_at(t)) <= left.jerk + left.spare_jerk;
         // Above the limit of the speed it may be where the plan is.
-        if (speed_share(run, point, feed) * m.v > 1) {
+        if (std::max(speed_share(run, point, feed), left.speed_share) * m.v > 1) {
             const double p = map_.parameter_at(m.s);
             while (cell + 1 < course.cells && course.knots[cell + 1] <= p) {
                 ++cell;

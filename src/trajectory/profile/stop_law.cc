@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "trajectory/profile/cap_rows.hh"
+
 namespace mw::trajectory::profile {
 
 namespace {
@@ -33,6 +35,31 @@ Range range_along(double qq, double pq, double pp, double limit) noexcept {
 
 double dot_xyz(const Pose &x, const Pose &y) noexcept {
     return x.c[0] * y.c[0] + x.c[1] * y.c[1] + x.c[2] * y.c[2];
+}
+
+/// The limits of one coordinate or joint with these derivatives by s.
+struct Slopes {
+    double first = 0, second = 0, third = 0;
+};
+
+void take(Rates &rates, const Slopes &q, const Bounds &b, const Motion &at) noexcept {
+    constexpr double LEAST_SLOPE = 1e-30;
+    const double v2 = at.v * at.v;
+    const double bend = q.second * v2, drift = q.second * (3 * at.v * at.a) + q.third * (v2 * at.v);
+    const double per = 1 / std::max(std::abs(q.first), LEAST_SLOPE);
+    const double along = q.first < 0 ? -bend : bend;
+    rates.least = std::max(rates.least, (along - b.acceleration) * per);
+    rates.acceleration = std::min(rates.acceleration, (along + b.acceleration) * per);
+    rates.jerk = std::min(rates.jerk, (b.jerk - std::abs(drift)) * per);
+    rates.spare_acceleration = std::min(rates.spare_acceleration, SPARE_ACCELERATION * b.acceleration * per);
+    rates.spare_jerk = std::min(rates.spare_jerk, SPARE_JERK * b.jerk * per);
+}
+
+/// What the caps around leave of a limit at this speed.
+Bounds left_at(const Bounds &b, const CapRest &rest, std::size_t i, double v) noexcept {
+    Bounds left = left_of(b, rest, i);
+    left.jerk -= rest.bend[i] * v * v;
+    return left;
 }
 
 }  // namespace
@@ -107,7 +134,9 @@ double DirectStop::jerk_at(double t) const noexcept {
 
 Rates rates_at(const Run &run, const CurvePoint &point, const Motion &at) noexcept {
     constexpr double LEAST_SLOPE = 1e-30;
-    Rates rates{-1e300, 1e300, 1e300, 1e300, 1e300};
+    Rates rates{-1e300, 1e300, 1e300, 1e300, 1e300, 0};
+    const CapRest rest = rest_of(run, at.s, at.s);
+    rates.speed_share = std::sqrt(rest.v2);
     const double v2 = at.v * at.v;
     const Pose bend = point.second * v2;
     const Pose drift = point.second * (3 * at.v * at.a) + point.third * (v2 * at.v);
@@ -115,17 +144,22 @@ Rates rates_at(const Run &run, const CurvePoint &point, const Motion &at) noexce
         if (point.first.c[i] == 0 && point.second.c[i] == 0 && point.third.c[i] == 0) {
             continue;
         }
-        const Bounds &b = run.limits.axes[i];
-        const double per = 1 / std::max(std::abs(point.first.c[i]), LEAST_SLOPE);
-        const double along = point.first.c[i] < 0 ? -bend.c[i] : bend.c[i];
-        rates.least = std::max(rates.least, (along - b.acceleration) * per);
-        rates.acceleration = std::min(rates.acceleration, (along + b.acceleration) * per);
-        rates.jerk = std::min(rates.jerk, (b.jerk - std::abs(drift.c[i])) * per);
-        rates.spare_acceleration =
-            std::min(rates.spare_acceleration, SPARE_ACCELERATION * b.acceleration * per);
-        rates.spare_jerk = std::min(rates.spare_jerk, SPARE_JERK * b.jerk * per);
+        take(rates, {point.first.c[i], point.second.c[i], point.third.c[i]},
+             left_at(run.limits.axes[i], rest, i, at.v), at);
     }
-    const Bounds &b = run.limits.xyz;
+    if (run.joint_curve != nullptr) {
+        const curve::JointPoint joints = run.joint_curve->point_at(run.joint_curve->part_at(at.s), at.s);
+        for (std::size_t j = 0; j < run.joint_curve->joints(); ++j) {
+            const Bounds b = left_at(bounds_of(run.joints, j), rest, JOINTS_AT + j, at.v);
+            take(rates, {joints.first[j], joints.second[j], joints.third[j]}, b, at);
+            rates.speed_share = std::max(rates.speed_share, std::abs(joints.first[j]) / b.velocity);
+        }
+    }
+    const Bounds b = left_at(run.limits.xyz, rest, XYZ_NORM, at.v);
+    if (!(b.jerk > 0)) {
+        rates.jerk = std::min(rates.jerk, b.jerk);
+        return rates;
+    }
     const double qq = dot_xyz(point.first, point.first);
     const Range a = range_along(qq, -dot_xyz(point.first, bend), dot_xyz(bend, bend), b.acceleration);
     const Range j = range_along(qq, std::abs(dot_xyz(point.first, drift)), dot_xyz(drift, drift), b.jerk);

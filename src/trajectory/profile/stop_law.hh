@@ -30,8 +30,8 @@ TimeCell cell_of(const Motion &from, const Motion &to, double duration) noexcept
 struct Rates {
     double least = 0;  ///< braking below it leaves a limit
     double acceleration = 0, jerk = 0;
-    double spare_acceleration = 0,
-           spare_jerk = 0;  ///< by which they may be exceeded where limits are checked
+    double spare_acceleration = 0, spare_jerk = 0;  ///< by which a check may exceed them
+    double speed_share = 0;                         ///< inverse of the maximum speed near caps and of joints
 };
 
 /// Jerk -J, then none, then J: by which the acceleration goes to -peak, stays, and ends.

@@ -145,15 +145,18 @@ class CurveDriver {
         run_.caps = &caps_;
     }
     profile::Run &run() { return run_; }
+    /// A stop after so many plans, instead of the rest of the program.
+    void stop_after(int plans, profile::StopEffort effort) {
+        plans_left_ = plans;
+        effort_ = effort;
+    }
 
     DrivenCurve drive() {
         out_.is_done = true;
-        double from = 0;
-        for (const double stop : laid_.stops) {
-            out_.is_done = drive_to(from, stop) && out_.is_done;
-            from = stop;
+        for (std::size_t k = 0; k < laid_.stops.size() && plans_left_ > 0; ++k) {
+            out_.is_done = drive_to(end_s_, laid_.stops[k]) && out_.is_done;
         }
-        out_.places.insert(out_.places.end(), 3, from);
+        out_.places.insert(out_.places.end(), 3, end_s_);
         for (const double s : out_.places) {
             out_.samples.push_back(curve::position_at(laid_.spans[profile::span_at(laid_.spans, s)], s));
         }
@@ -184,6 +187,10 @@ class CurveDriver {
         for (int n = 0; n < 20000; ++n) {
             show(stop, 7);
             profile.plan(run_, 0);
+            if (--plans_left_ == 0) {
+                take_stop(profile);
+                return true;
+            }
             const std::size_t cells = profile.cells();
             const std::size_t last = profile.isComplete() ? cells : cells - std::min(cells, LEAST_CELLS);
             std::size_t k = 0;
@@ -194,10 +201,20 @@ class CurveDriver {
             profile.drop(k);
             out_.worst_start = std::max(out_.worst_start, profile.worst_start());
             if (profile.isComplete() && k == cells) {
+                end_s_ = stop;
                 return true;
             }
         }
         return false;
+    }
+
+    void take_stop(profile::Profile &profile) {
+        const profile::Stop stop = profile.stop(run_, 0, effort_);
+        for (std::size_t k = 0; k < stop.kept; ++k) {
+            take(profile.cell(k));
+        }
+        std::for_each(stop.cells.begin(), stop.cells.end(), [&](const profile::TimeCell &c) { take(c); });
+        end_s_ = stop.end_s;
     }
 
     void take(const profile::TimeCell &cell) {
@@ -212,6 +229,9 @@ class CurveDriver {
     std::vector<curve::Span> spans_;
     std::vector<profile::SpeedCap> caps_;
     std::size_t shown_ = 0, cap_ = 0;
+    int plans_left_ = 1 << 30;
+    profile::StopEffort effort_ = profile::StopEffort::QUICK;
+    double end_s_ = 0;
     profile::Run run_;
     DrivenCurve out_;
 };

@@ -264,6 +264,11 @@ TEST(ExactProfile, RandomProgramsKeepLimitsAtEverySample) {
         EXPECT_LE(laid.worst_deviation, 1);
         expect_exact(program, laid);
         expect_limits(program, CurveDriver(laid, limits).drive());
+        for (const profile::StopEffort effort : {profile::StopEffort::QUICK, profile::StopEffort::SOONEST}) {
+            CurveDriver stopped(laid, limits);
+            stopped.stop_after(1 + static_cast<int>(seed % 23), effort);
+            expect_limits(program, stopped.drive());
+        }
         passed += laid.caps.empty() ? 0 : 1;
     }
     EXPECT_GE(5 * passed, count) << "seams that are passed are tried";

@@ -232,6 +232,13 @@ TEST(JointProfile, KeepsTheLimitsOfJointsAtEverySample) {
             checker.sample(sample.c.data());
         }
         EXPECT_TRUE(checker.isWithin()) << checker.report();
+        for (const profile::StopEffort effort : {profile::StopEffort::QUICK, profile::StopEffort::SOONEST}) {
+            CurveDriver stopped(laid, limits);
+            stopped.run().map = &table;
+            stopped.run().joints = joints;
+            stopped.stop_after(1 + static_cast<int>(seed % 23), effort);
+            expect_joint_limits(stopped.drive(), table, joints);
+        }
     }
     EXPECT_GE(2 * limited, count) << "joints limit the motion";
 }
