@@ -178,7 +178,9 @@ std::optional<ProgrammedPiece> programmed_piece(const Pose &start, const motion:
             piece.end = start;
             return true;
         },
-        [](const auto &) { return false; },
+        [](const motion::Flush &) { return false; },
+        [](const motion::SynchedDigitalOutput &) { return false; },
+        [](const motion::SynchedAnalogOutput &) { return false; },
     };
     return std::visit(read, body) ? std::optional(piece) : std::nullopt;
 }
