@@ -15,6 +15,7 @@
 #include "base/text.hh"
 #include "base/whole_path.hh"
 #include "hal/core/hal.hh"
+#include "machine/journal/writer.hh"
 #include "messages/client/shown_message.hh"
 #include "programs/run/ui_filter.hh"
 
@@ -177,6 +178,7 @@ Result<> MachineStart::take_down() {
     if (healthy) {
         run_shutdown_file();
     }
+    tell_certificates();
     certifier_.reset();
     access_.reset();
     machine_.reset();
@@ -228,7 +230,11 @@ void MachineStart::run_shutdown_file() {
 
 /// Faults to operators, each result to the terminal.
 void MachineStart::tell_certificates() {
-    while (const auto finding = certifier_->take_finding()) {
+    const std::string file = last_certificate_file(loaded_.machine);
+    while (auto finding = certifier_->take_finding()) {
+        if (!finding->json.empty() && !file.empty()) {
+            machine_->journal()->keep_file(file, std::move(finding->json));
+        }
         if (finding->isFault) {
             machine_->task().post(messages::MessageKind::OPERATOR_ERROR, finding->text);
         } else {

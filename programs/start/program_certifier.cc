@@ -181,20 +181,16 @@ void ProgramCertifier::finish(const End &end) {
         .file_name = [this](std::uint32_t index) { return files_[index]; },
     };
     program_.reset();
-    if (!file_.empty()) {
-        if (const auto written = write_certificate(report, file_); !written.has_value()) {
-            add({"The certificate of motion was not written: " + written.error().str(), true});
-        }
-    }
     const machine::Certificate &found = report.certificate;
     if (!found.isWithinLimits() || !found.isWithinTolerance()) {
         add({fmt::format(
                  "The commanded motion of {} exceeded a limit or a tolerance. The certificate has line and "
                  "value: {}",
                  report.program, file_),
-             true});
+             true,
+             {}});
     }
-    add({certificate_line(report), false});
+    add({certificate_line(report), false, certificate_json(report)});
 }
 
 }  // namespace mw::programs

@@ -23,8 +23,9 @@ namespace mw::programs {
 std::string last_certificate_file(const machine::MachineConfig &machine);
 
 /// Task's thread only passes moves and the begin and end of programs on; a thread of this class reads the
-/// samples of the servo thread, calculates, and writes the file. During its lifetime it is the only listener
-/// of the machine's moves and the only reader of its samples.
+/// samples of the servo thread and calculates. Task's thread passes the result to the journal's writer,
+/// because a disk that does not answer must not stop the end of the machine. During its lifetime it is the
+/// only listener of the machine's moves and the only reader of its samples.
 class ProgramCertifier {
   public:
     ProgramCertifier(machine::Machine &machine, const machine::MachineConfig &config);
@@ -38,7 +39,8 @@ class ProgramCertifier {
     /// What a person has to know of a program that has ended.
     struct Finding {
         std::string text;
-        bool isFault = false;  ///< a limit or a tolerance was exceeded, or the file was not written
+        bool isFault = false;  ///< a limit or a tolerance was exceeded
+        std::string json;      ///< the certificate, for the file; empty: already passed on
     };
     /// The next finding; empty: none. [task's thread]
     std::optional<Finding> take_finding();

@@ -73,6 +73,8 @@ class Machine {
     virtual task::Task &task() = 0;
     virtual motion::Channels &channels() = 0;
     virtual hal::Hal &hal() = 0;
+    /// Stores small files without waiting for the disk; null under the virtual clock. [task's thread]
+    virtual journal::Writer *journal() { return nullptr; }
 };
 
 /// Errors in lines of a file have been reported to the sink, and have Error::isTold set. Creates the machine

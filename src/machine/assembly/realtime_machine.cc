@@ -137,6 +137,7 @@ class RealtimeMachine final : public Machine {
     client::Client &client() override { return side_->client(); }
     mailbox::Segment &mailbox() override { return side_->mailbox(); }
     task::Task &task() override { return side_->task(); }
+    journal::Writer *journal() override { return side_->journal(); }
     motion::Channels &channels() override { return side_->channels(); }
     hal::Hal &hal() override { return host_->hal(); }
 

@@ -52,6 +52,8 @@ class TaskSide final : private task::IoPins {
     /// Clients no longer find the machine.
     void remove_mailbox() { mailbox_.remove(); }
     task::Task &task() { return *task_; }
+    /// Null under the virtual clock, and if the options give one.
+    journal::Writer *journal() { return journal_.get(); }
     motion::Channels &channels() { return *channels_; }
 
   private:

@@ -23,7 +23,7 @@ from attack_types import TABLE, Child, carry_out
 from attacked_machine import MEMORY, AttackedMachine, temporary_names
 
 AFTER_ATTACKS_S = 0.2  # for messages about the last one
-EXPECTED = re.compile(r'^(configs/.*\.(ini|inc|hal|tbl|var|bak|journal|tcl|ngc|py|md|png|xml|ui|txt)|configs/.*/[A-Z]*|config/.*|nc/(cut|pipe|loop|large|slow|slip)\.ngc|'
+EXPECTED = re.compile(r'^(configs/.*\.(ini|inc|hal|tbl|var|var\.certificate\.json|bak|journal|tcl|ngc|py|md|png|xml|ui|txt)|configs/.*/[A-Z]*|config/.*|nc/(cut|pipe|loop|large|slow|slip)\.ngc|'
                       r'(out|web|rsh|nml)\.txt|m\.nml|[^/]*\.history)$')
 
 
@@ -288,7 +288,7 @@ class Session:
         left += [str(path.relative_to(machine.folder)) for path in machine.folder.rglob('*')
                  if not path.is_dir() and not EXPECTED.match(str(path.relative_to(machine.folder)))]
         if self.wasFolderAway:  # a file that was written meanwhile cannot be removed under its name
-            left = [name for name in left if not re.search(r'\.(var|tbl|bak|journal)\.\w{6}$', name)]
+            left = [name for name in left if not re.search(r'\.(var|tbl|bak|journal|json)\.\w{6}$', name)]
         left += [str(path) for path in machine.temporary.iterdir()]
         if machine.hasGroup and (MEMORY / machine.cgroup / 'cgroup.procs').read_text().split():
             left.append('processes of the cgroup')
