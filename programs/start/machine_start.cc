@@ -230,8 +230,8 @@ void MachineStart::run_shutdown_file() {
 
 /// Faults to operators, each result to the terminal.
 void MachineStart::tell_certificates() {
-    const std::string file = last_certificate_file(loaded_.machine);
     while (auto finding = certifier_->take_finding()) {
+        const std::string file = last_certificate_file(loaded_.machine);
         if (!finding->json.empty() && !file.empty()) {
             machine_->journal()->keep_file(file, std::move(finding->json));
         }

@@ -39,7 +39,7 @@ def second_start(machine, user):
     process, text = begun(machine, 'second.txt', **user)
     process.kill()
     process.wait()
-    expect('is up' not in text and 'MILLWRIGHT_INSTANCE' in text, 'a second start is rejected and names the remedy', text)
+    expect('is up' not in text and 'MILLWRIGHT_INSTANCE' in text, 'a second start is rejected, and the message says what to do', text)
     if user:
         expect(f'process {machine.process.pid}' in text and 'of user' in text, 'and the process and its user', text)
 

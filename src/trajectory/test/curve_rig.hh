@@ -9,19 +9,11 @@
 #include "trajectory/curve/curve_builder.hh"
 #include "trajectory/profile/profile.hh"
 #include "trajectory/test/campaign.hh"
+#include "trajectory/test/profile_rig.hh"
 
 namespace mw::trajectory::test {
 
-inline constexpr double CURVE_PERIOD_S = 1e-3;
-
-inline profile::CurveLimits curve_limits_of(const Limits &limits) {
-    profile::CurveLimits out;
-    for (std::size_t i = 0; i < geometry::AXIS_COUNT; ++i) {
-        out.axes[i] = {limits.velocity[i], limits.acceleration[i], limits.jerk[i]};
-    }
-    out.xyz = {limits.velocity[XYZ_NORM], limits.acceleration[XYZ_NORM], limits.jerk[XYZ_NORM]};
-    return out;
-}
+inline constexpr double CURVE_PERIOD_S = profile::T;
 
 /// A curve with its feeds, caps and the places of its stops.
 struct LaidCurve {

@@ -143,7 +143,7 @@ TEST(ExactProfile, PassesFromLinesToArcsWithoutAStop) {
                                        arc(at(10, 0), at(14, 4), at(10, 4), std::numbers::pi / 2),
                                        make_line(at(14, 4), at(14, 14))};
     const Program program = exact_program(moves, even_limits(200, 1000, 50000));
-    const CurveLimits limits = curve_limits_of(program.limits);
+    const CurveLimits limits = profile::limits_of(program.limits);
     const LaidCurve laid = CurveLayer(program, limits).lay();
     EXPECT_EQ(laid.stops.size(), 1U);
     ASSERT_EQ(laid.caps.size(), 2U);
@@ -160,19 +160,6 @@ TEST(ExactProfile, PassesFromLinesToArcsWithoutAStop) {
     EXPECT_TRUE(checker.isWithin()) << checker.report();
     EXPECT_GT(at_seam, 0.9 * laid.caps[0].v);
     EXPECT_LE(at_seam, 1.2 * laid.caps[0].v);
-}
-
-/// Worst ratio of the XYZ norm's velocity, acceleration and jerk to their limits.
-double worst_norm_of(const std::vector<Pose> &samples, const Limits &limits) {
-    double worst = 0;
-    for (std::size_t i = 3; i < samples.size(); ++i) {
-        const Pose d1 = samples[i] - samples[i - 1], d2 = samples[i - 1] - samples[i - 2],
-                   d3 = samples[i - 2] - samples[i - 3];
-        worst = std::max({worst, geometry::norm_xyz(d1) / (T * limits.velocity[XYZ_NORM]),
-                          geometry::norm_xyz(d1 - d2) / (T * T * limits.acceleration[XYZ_NORM]),
-                          geometry::norm_xyz(d1 - d2 * 2 + d3) / (T * T * T * limits.jerk[XYZ_NORM])});
-    }
-    return worst;
 }
 
 /// Lines and arcs of any size and chords of curves with G61 and G61.1, alone and among moves with G64.
@@ -248,7 +235,7 @@ void expect_limits(const Program &program, const DrivenCurve &out) {
         checker.sample(sample.c.data());
     }
     EXPECT_TRUE(checker.isWithin()) << checker.report();
-    EXPECT_LE(worst_norm_of(out.samples, program.limits), 1 + 1e-4);
+    EXPECT_LE(profile::worst_norm(out.samples, program.limits), 1 + 1e-4);
     EXPECT_TRUE(std::is_sorted(out.places.begin(), out.places.end()));
 }
 
@@ -259,7 +246,7 @@ TEST(ExactProfile, RandomProgramsKeepLimitsAtEverySample) {
         const auto seed = static_cast<unsigned>(first + i);
         SCOPED_TRACE("seed " + std::to_string(seed));
         const Program program = seed % 3 == 0 ? smooth_program(seed) : mixed_program(seed);
-        const CurveLimits limits = curve_limits_of(program.limits);
+        const CurveLimits limits = profile::limits_of(program.limits);
         const LaidCurve laid = CurveLayer(program, limits).lay();
         EXPECT_LE(laid.worst_deviation, 1);
         expect_exact(program, laid);

@@ -211,7 +211,7 @@ TEST(JointProfile, KeepsTheLimitsOfJointsAtEverySample) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         Maker maker(seed, true);
         const Program program = table_program(maker, seed);
-        const CurveLimits limits = curve_limits_of(program.limits);
+        const CurveLimits limits = profile::limits_of(program.limits);
         const TurningTable table(maker.real(0, 200));
         JointLimits joints = joint_limits(0, 0, 0);
         for (std::size_t j = 0; j < 4; ++j) {

@@ -143,20 +143,6 @@ TEST(Profile, PassesACornerFasterThanTheFullStopsOfItsLines) {
     EXPECT_LE(out.worst_deviation, 1);
 }
 
-/// Worst ratio of velocity, acceleration and jerk of the XYZ norm to their limits, by differences of the
-/// samples.
-double worst_norm(const std::vector<Pose> &samples, const Limits &limits) {
-    double worst = 0;
-    for (std::size_t i = 3; i < samples.size(); ++i) {
-        const Pose d1 = samples[i] - samples[i - 1], d2 = samples[i - 1] - samples[i - 2],
-                   d3 = samples[i - 2] - samples[i - 3];
-        worst = std::max({worst, geometry::norm_xyz(d1) / (T * limits.velocity[XYZ_NORM]),
-                          geometry::norm_xyz(d1 - d2) / (T * T * limits.acceleration[XYZ_NORM]),
-                          geometry::norm_xyz(d1 - d2 * 2 + d3) / (T * T * T * limits.jerk[XYZ_NORM])});
-    }
-    return worst;
-}
-
 TEST(Profile, RandomProgramsKeepLimitsAndTolerance) {
     const auto [first, count] = testing::campaign_seeds(12);
     int driven = 0;
