@@ -36,6 +36,14 @@ function(mw_realtime_library name)
   set_property(GLOBAL APPEND PROPERTY MW_REALTIME_TARGETS mw_${name})
 endfunction()
 
+# mw_planner_library(NAME ...): as mw_library, for code of the planner, which is part of a realtime component but does not
+# run in the servo thread: no exceptions, no RTTI; it may allocate until its tables have the size of its windows.
+function(mw_planner_library name)
+  mw_library(${name} REALTIME ${ARGN})
+  target_compile_options(mw_${name} PRIVATE ${MW_REALTIME_FLAGS})
+  mw_use_precompiled(mw_${name} realtime)
+endfunction()
+
 # mw_component(NAME SOURCES ... [DEPENDS ...]): a realtime HAL component, lib/NAME.so, loaded by `loadrt NAME`.
 function(mw_component name)
   cmake_parse_arguments(A "" "" "SOURCES;DEPENDS" ${ARGN})

@@ -28,7 +28,7 @@ ORDER = {
     'messages': ('declarations', 'legacy', 'mailbox', 'client'),
     'hal': ('include', 'sdk', 'core', 'host', 'ini', 'halcompile', 'script', 'tcl', 'tools'),
     'hal/tools': ('stream', 'view', 'programs'),
-    'trajectory': ('path', 'curve', 'profile', 'follow', 'timing', 'trial'),
+    'trajectory': ('path', 'curve', 'profile', 'follow', 'plan', 'timing', 'trial'),
     'gcode': ('syntax', 'tools', 'canon', 'interpreter', 'python_host', 'analysis'),
     'gcode/interpreter': ('expressions', 'scripts', 'codes', 'flow'),
     'motion': ('homing', 'interface', 'planner', 'servo', 'hal'),

@@ -11,6 +11,7 @@
 #include "base/copyable_atomic.hh"
 #include "base/raw_array.hh"
 #include "base/spsc_ring.hh"
+#include "trajectory/curve/span.hh"
 #include "trajectory/path/primitive.hh"
 
 namespace mw::trajectory {
@@ -29,6 +30,7 @@ struct MoveTag {
     bool isProbeAway = false;       ///< trips when contact is lost
     double requested_velocity = 0;  ///< along the feed length; 0: as fast as the limits allow
     double feed_ratio = 1;          ///< s per feed length
+    double end_s = 0;               ///< where it ends on the programmed path
     Pose end;
 };
 
@@ -169,6 +171,26 @@ struct Commit {
     Pass pass;                    ///< instead of phases
 };
 
+/// A motion along the curve, in cells of time, with its stops: each begins behind a cell of the motion and
+/// ends at rest. The last one begins behind the last cell, so the executor needs no planner to stop.
+struct CurvePlan {
+    struct Stop {
+        Sequence behind = 0;          ///< the cell of the motion that is left
+        Sequence begin = 0, end = 0;  ///< cells of the stop; none where the motion itself ends at rest
+    };
+    static constexpr std::size_t MOST_STOPS = 64;
+
+    std::uint64_t plan = 0;       ///< increasing
+    Sequence behind = 0;          ///< continues the present plan behind this cell; 0: begins at rest
+    Sequence begin = 0, end = 0;  ///< cells
+    std::uint64_t brakes = 0;  ///< Snapshot::brakes that a start at rest was made for; another value voids it
+    Sequence span = 0, move = 0;            ///< at the start, from rest
+    Sequence last_span = 0, last_move = 0;  ///< that are known
+    bool is_stop = false;                   ///< no motion: the present plan takes its next stop
+    std::size_t stop_count = 0;
+    std::array<Stop, MOST_STOPS> stops{};
+};
+
 /// Poses and places of the leader, by tick; written by the executor, read by the planner.
 struct LeaderSample {
     Pose pose;
@@ -181,7 +203,7 @@ inline constexpr std::uint64_t HISTORY_CAPACITY = 1024;
 inline constexpr std::uint64_t MAX_FILTER = 400;
 using LeaderHistory = std::array<LeaderSample, HISTORY_CAPACITY>;
 
-enum class Motion : std::uint8_t { REST, FOLLOW, BRAKE, LOCKED };
+enum class Motion : std::uint8_t { REST, FOLLOW, BRAKE, LOCKED, CURVE };
 
 /// Time since the path speed last rose or fell, valid for the later of the two; far past for the other.
 struct Coasting {
@@ -235,7 +257,8 @@ struct Snapshot {
     bool isHeld = false;
     Sequence phase = 0;  ///< FOLLOW: the phase and the time in it
     double time_in_phase = 0;
-    Sequence piece = 0;  ///< where on the path; 0: no path
+    bool isOnCurve = false;  ///< the path is a curve: `x` is the place on it, `phase` the cell
+    Sequence piece = 0;      ///< where on the path; 0: no path, or a curve
     double x = 0, v = 0;
     Sequence done_move = 0;  ///< moves completed by what is commanded
 };
@@ -243,6 +266,8 @@ struct Snapshot {
 inline constexpr std::size_t PRIMITIVE_CAPACITY = 4096;
 inline constexpr std::size_t PIECE_CAPACITY = 16384;
 inline constexpr std::size_t PHASE_CAPACITY = 65536;
+inline constexpr std::size_t SPAN_CAPACITY = 16384;
+inline constexpr std::size_t CELL_CAPACITY = 16384;
 
 /// An output change at a place of the path.
 struct PathEvent {
@@ -259,12 +284,17 @@ struct PathStore {
     RawArray<MoveTag, PRIMITIVE_CAPACITY> moves;
     RawArray<Piece, PIECE_CAPACITY> pieces;
     RawArray<Phase, PHASE_CAPACITY> phases;
+    RawArray<curve::Span, SPAN_CAPACITY> spans;
+    RawArray<curve::TimeCell, CELL_CAPACITY> cells;
     LeaderHistory history{};  ///< executor -> planner; the last samples are read long before they are reused
-    SpscRing<PathEvent, 1024> events;  ///< planner -> executor
-    SpscRing<Commit, 64> commits;      ///< planner -> executor
+    SpscRing<PathEvent, 1024> events;     ///< planner -> executor
+    SpscRing<Commit, 64> commits;         ///< planner -> executor
+    SpscRing<CurvePlan, 16> curve_plans;  ///< planner -> executor
     /// Pieces up to here may be read by the executor. Release by the planner after filling, acquire by the
     /// executor.
     CopyableAtomic<Sequence> last_piece{0};
+    /// The last move of a curve that is known.
+    CopyableAtomic<Sequence> last_move{0};
     CopyableAtomic<std::uint32_t> updates{0};  ///< of the planner, for who waits for it
 
     Primitive &primitive(Sequence n) noexcept { return primitives[n % PRIMITIVE_CAPACITY]; }
@@ -273,6 +303,10 @@ struct PathStore {
     const MoveTag &move(Sequence n) const noexcept { return moves[n % PRIMITIVE_CAPACITY]; }
     Piece &piece(Sequence n) noexcept { return pieces[n % PIECE_CAPACITY]; }
     const Piece &piece(Sequence n) const noexcept { return pieces[n % PIECE_CAPACITY]; }
+    curve::Span &span(Sequence n) noexcept { return spans[n % SPAN_CAPACITY]; }
+    const curve::Span &span(Sequence n) const noexcept { return spans[n % SPAN_CAPACITY]; }
+    curve::TimeCell &cell(Sequence n) noexcept { return cells[n % CELL_CAPACITY]; }
+    const curve::TimeCell &cell(Sequence n) const noexcept { return cells[n % CELL_CAPACITY]; }
     Phase &phase(Sequence n) noexcept { return phases[n % PHASE_CAPACITY]; }
     const Phase &phase(Sequence n) const noexcept { return phases[n % PHASE_CAPACITY]; }
 };

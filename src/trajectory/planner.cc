@@ -76,7 +76,8 @@ bool StopSearch::draft_soonest() noexcept {
 }  // namespace
 
 Planner::Planner(PathStore &store, const PlannerSettings &settings) noexcept
-    : settings_(settings), conditions_(settings.period_s), path_(store), timing_(settings) {
+    : settings_(settings), conditions_(settings.period_s), path_(store), timing_(settings),
+      curve_(store, path_, settings.period_s, settings.third_order) {
     conditions_.chooser = settings.chooser;
 }
 
@@ -94,6 +95,7 @@ void Planner::set_room(const Pose &low, const Pose &high, const JointRoom &joint
 void Planner::begin(const Pose &start, const Snapshot &now, const PathDemand &demand) noexcept {
     conditions_.limits.begin(demand);
     path_.begin();
+    curve_.begin(start, now, demand, conditions_);
     builder_.begin(start);
     timing_.begin(now);
     drops_ = now.drops;
@@ -102,7 +104,19 @@ void Planner::begin(const Pose &start, const Snapshot &now, const PathDemand &de
 }
 
 Sequence Planner::add(const Primitive &primitive, const MoveRequest &request) noexcept {
+    if (curve_.isActive()) {
+        return curve_.path().add(conditions_, primitive, request);
+    }
     return builder_.add(path_, conditions_, primitive, request, settings_.isMerging);
+}
+
+void Planner::release_end() noexcept {
+    if (curve_.isActive()) {
+        curve_.path().release_end(conditions_);
+        curve_.renew();
+    } else {
+        builder_.release_end(path_, conditions_);
+    }
 }
 
 bool Planner::add_event(PathEvent event) noexcept {
@@ -113,6 +127,11 @@ bool Planner::add_event(PathEvent event) noexcept {
 }
 
 void Planner::set_scales(const Scales &scales) noexcept {
+    if (curve_.isActive()) {
+        conditions_.scales = scales;
+        curve_.set_scales(conditions_);
+        return;
+    }
     // Spindle speeds never stand still; they matter only where something follows them.
     const Sequence synched = builder_.last_synched();
     const bool isFollowed =
@@ -128,6 +147,12 @@ void Planner::set_scales(const Scales &scales) noexcept {
 }
 
 void Planner::open_gate(Sequence move, double delay_s) noexcept {
+    if (curve_.isActive()) {
+        curve_.delay_start(delay_s);
+        path_.move(move).request.isGated = false;
+        curve_.renew();
+        return;
+    }
     timing_.delay_start(delay_s);
     path_.move(move).request.isGated = false;
     timing_.renew_all(view());
@@ -137,11 +162,15 @@ void Planner::set_step(bool isStepping, std::uint32_t block) noexcept {
     SingleBlocks &blocks = conditions_.blocks;
     if (isStepping != blocks.isOn || block != blocks.block) {
         blocks = {isStepping, block};
+        curve_.renew();
         timing_.renew_all(view());
     }
 }
 
 Sequence Planner::standing_before(const Snapshot &now) const noexcept {
+    if (curve_.isActive()) {
+        return curve_.standing_before(now);
+    }
     if (now.motion != Motion::REST) {
         return 0;
     }
@@ -160,11 +189,17 @@ bool Planner::isAtStepStop(const Snapshot &now) const noexcept {
 }
 
 bool Planner::hasNext(const Snapshot &now) const noexcept {
+    if (curve_.isActive()) {
+        return now.motion != Motion::REST || curve_.move_of(now) <= path_.last_move();
+    }
     return now.motion != Motion::REST || builder_.hasOpenEnd() || start_state(path_, now).has_value();
 }
 
 std::uint32_t Planner::next_block(const Snapshot &now) const noexcept {
     const PathStore &store = path_.store();
+    if (curve_.isActive()) {
+        return store.move(std::min(curve_.move_of(now), path_.last_move())).block;
+    }
     if (now.motion != Motion::REST && now.piece >= path_.first_piece()) {
         const Piece &p = path_.piece(now.piece);
         const bool isSecond = p.blend_d > 0 && p.offset + now.x >= p.blend_d;
@@ -200,6 +235,10 @@ void Planner::start_pass(const Snapshot &now, const LeaderState &from) noexcept 
 
 void Planner::update(const Snapshot &now) noexcept {
     path_.store().updates.fetch_add(1, std::memory_order_relaxed);
+    if (curve_.isActive()) {
+        curve_.update(now, conditions_);
+        return;
+    }
     if (conditions_.isTried()) {
         plan_tried(now);
         return;
@@ -317,6 +356,7 @@ bool Planner::ease(const LeaderState &from, const Verdict &verdict, const Cause 
 
 Trouble Planner::take_trouble() noexcept {
     Trouble trouble;
+    refusals_ = curve_.isActive() ? std::min(refusals_, curve_.failures()) : refusals_;
     trouble.isStuck = refusals_ == TimingTuning::MOST_REFUSALS;
     refusals_ += trouble.isStuck ? 1 : 0;
     if (!isOverreachTold_) {

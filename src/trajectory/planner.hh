@@ -3,6 +3,7 @@
 #pragma once
 
 #include "trajectory/path/path_builder.hh"
+#include "trajectory/plan/curve_planner.hh"
 #include "trajectory/timing/locked_pass.hh"
 #include "trajectory/timing/tap_plan.hh"
 #include "trajectory/timing/timing_plan.hh"
@@ -30,15 +31,21 @@ class Planner {
     void set_limits(const Limits &limits) noexcept { conditions_.limits.set(limits); }
     /// The path that begins now with such a move would be made as the present one.
     bool isFilterCurrent(const PathDemand &demand) const noexcept {
-        return conditions_.limits.isCurrent(demand);
+        return curve_.suits(demand, conditions_) &&
+               (curve_.isActive() || conditions_.limits.isCurrent(demand));
     }
     /// What a path that begins with such a move, from `start` to `end`, is made for.
     PathDemand demand_of(const MoveRequest &request, const Pose &start, const Pose &end) const noexcept {
-        return conditions_.limits.demand_of(request, start, end);
+        PathDemand demand = conditions_.limits.demand_of(request, start, end);
+        demand.drive =
+            conditions_.isLocked(request) ? PathDemand::Drive::BY_ANGLE : PathDemand::Drive::BY_TIME;
+        return demand;
     }
     /// With jerk limits a path is made for what it began with; a much smaller tolerance, or rotary axes that
     /// it began without, ask for another path, from a stop.
-    bool suits(const PathDemand &demand) const noexcept { return conditions_.limits.suits(demand); }
+    bool suits(const PathDemand &demand) const noexcept {
+        return curve_.suits(demand, conditions_) && (curve_.isActive() || conditions_.limits.suits(demand));
+    }
 
     /// For machines whose joints are not axes; `map` stays valid. Null: the axes' limits are all there are.
     void set_joints(const JointMap *map, const JointLimits &limits) noexcept;
@@ -54,18 +61,19 @@ class Planner {
 
     /// There is room for one more move.
     bool hasRoom(const Snapshot &now) const noexcept {
-        return PathBuilder::hasRoom(path_, conditions_.limits, now);
+        return curve_.isActive() ? curve_.path().hasRoom()
+                                 : PathBuilder::hasRoom(path_, conditions_.limits, now);
     }
     /// Appends a move that starts at `end()`; its length must be greater than 0. Returns its number.
     Sequence add(const Primitive &primitive, const MoveRequest &request) noexcept;
     /// Where the next move starts.
-    const Pose &end() const noexcept { return builder_.end(); }
+    const Pose &end() const noexcept { return curve_.isActive() ? curve_.path().end() : builder_.end(); }
     /// Of this path, 0 as long as it has none.
     Sequence last_move() const noexcept { return path_.end_move(); }
     /// An output change when what has been added so far is complete; false when there is no room.
     bool add_event(PathEvent event) noexcept;
     /// Nothing follows for now: the last move is planned to its very end.
-    void release_end() noexcept { builder_.release_end(path_, conditions_); }
+    void release_end() noexcept;
 
     void set_scales(const Scales &scales) noexcept;
     /// The gate before gated moves; open it once the executor waits there.
@@ -104,7 +112,8 @@ class Planner {
 
     /// The committed plan runs to the end of the known path and there is an open end that could be released.
     bool isStarving() const noexcept {
-        return builder_.hasOpenEnd() && (timing_.isAtEndOf(path_) || path_.isAllDriven());
+        return curve_.isActive() ? curve_.isStarving()
+                                 : builder_.hasOpenEnd() && (timing_.isAtEndOf(path_) || path_.isAllDriven());
     }
     /// Why the path does not go on; each once.
     Trouble take_trouble() noexcept;
@@ -126,6 +135,7 @@ class Planner {
     TimingPlan timing_;
     Trial trial_;
     Easing easing_;
+    plan::CurvePlanner curve_;
     std::uint64_t drops_ = 0;  ///< Snapshot::drops of this path
     bool isOverreachTold_ = false;
     int refusals_ = 0;  ///< planning at rest, one after the other, for which no plan passed

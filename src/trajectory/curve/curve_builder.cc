@@ -290,6 +290,12 @@ void CurveBuilder::check_span(const Span &span, std::size_t &move) {
     }
 }
 
+void CurveBuilder::move_spans(std::vector<Span> &spans) {
+    start_s_ = final_s();
+    spans.insert(spans.end(), spans_.begin(), spans_.end());
+    spans_.clear();
+}
+
 bool CurveBuilder::check() {
     found_.clear();
     is_narrowed_ = false;

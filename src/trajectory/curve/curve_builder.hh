@@ -40,6 +40,8 @@ class CurveBuilder {
     double programmed_length() const noexcept { return path_.length(); }
     /// Spans that do not change any more.
     const std::vector<Span> &spans() const noexcept { return spans_; }
+    /// Appends the final spans to `spans`; the builder forgets them.
+    void move_spans(std::vector<Span> &spans);
     double final_s() const noexcept { return spans_.empty() ? start_s_ : spans_.back().end_s(); }
     /// Largest deviation so far over the tolerance there: a bound of it, not a sample.
     double worst_deviation() const noexcept { return final_worst_; }
@@ -70,7 +72,7 @@ class CurveBuilder {
     static Room endless() noexcept;
 
     double widest_;
-    double start_s_ = 0;
+    double start_s_ = 0;  ///< of the curve; later, end of the spans that were moved out
     Room next_room_ = endless(), room_ = endless();
     ProgrammedPath path_;
     std::vector<Cap> caps_, found_;

@@ -62,10 +62,18 @@ bool ExactBuilder::add(const Primitive &primitive) {
         add_line(primitive, parts);
     }
     if (!is_first_) {
-        seams_.push_back(seam_between(spans_[first - 1], spans_[first]));
+        seams_.push_back(seam_between(last_, spans_[first]));
     }
     is_first_ = false;
+    last_ = spans_.back();
     return true;
+}
+
+void ExactBuilder::move_spans(std::vector<Span> &spans, std::vector<Seam> &seams) {
+    spans.insert(spans.end(), spans_.begin(), spans_.end());
+    seams.insert(seams.end(), seams_.begin(), seams_.end());
+    spans_.clear();
+    seams_.clear();
 }
 
 void ExactBuilder::add_line(const Primitive &line, int parts) {

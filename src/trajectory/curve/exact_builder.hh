@@ -33,6 +33,8 @@ class ExactBuilder {
     /// Adds nothing and returns false if the length of the move is not above 0.
     bool add(const Primitive &primitive);
 
+    /// Appends what there is to `spans` and `seams`; the builder forgets it.
+    void move_spans(std::vector<Span> &spans, std::vector<Seam> &seams);
     const std::vector<Span> &spans() const noexcept { return spans_; }
     /// One for each two moves that meet, in order.
     const std::vector<Seam> &seams() const noexcept { return seams_; }
@@ -48,6 +50,7 @@ class ExactBuilder {
     double widest_;
     double final_s_ = 0;
     bool is_first_ = true;
+    Span last_;  ///< before the next move
     std::vector<Span> spans_;
     std::vector<Seam> seams_;
 };

@@ -7,31 +7,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "base/geometry/pose.hh"
+#include "trajectory/curve/span.hh"
 
 namespace mw::trajectory::curve {
-
-using geometry::Pose;
-
-inline constexpr int DEGREE = 5;
-inline constexpr std::size_t COEFFICIENTS = DEGREE + 1;
-
-/// A stretch between two knots: q(s) is the sum of c[k] u^k, u = (s - start_s)/length in [0, 1].
-struct Span {
-    double start_s = 0, length = 0;
-    std::array<Pose, COEFFICIENTS> c{};
-    double end_s() const noexcept { return start_s + length; }
-};
-
-/// A point of the curve and its derivatives by s.
-struct CurvePoint {
-    Pose position, first, second, third;
-};
-
-/// [servo, planner] Position at `s` of a span.
-Pose position_at(const Span &span, double s) noexcept;
-/// [planner] Position and derivatives at `s` of a span.
-CurvePoint point_at(const Span &span, double s) noexcept;
 
 /// Knots of a run from stop to stop: the first and the last one count DEGREE + 1 times.
 /// Control point i belongs to the place `greville(i)`: a straight line is reproduced with s as its length.

@@ -48,6 +48,10 @@ bool isGuarded(const PathStore &store, const Snapshot &now, const StopLimits *li
 }  // namespace
 
 void Executor::take_commits() noexcept {
+    while (const CurvePlan *plan = store_.curve_plans.front()) [[unlikely]] {
+        curve_.take(*plan);
+        store_.curve_plans.drop();
+    }
     while (const Commit *c = store_.commits.front()) [[unlikely]] {
         if (c->pass.first != 0) {
             take_pass(*c);
@@ -80,6 +84,8 @@ const ExecutorOutput &Executor::step(std::uint64_t cycle) noexcept {
     }
     if (state_.motion == Motion::LOCKED) [[unlikely]] {
         step_locked();
+    } else if (state_.motion == Motion::CURVE || curve_.isWaiting()) {
+        curve_.step(store_, period_, state_);
     } else {
         advance(period_);
     }
@@ -96,6 +102,7 @@ const ExecutorOutput &Executor::step(std::uint64_t cycle) noexcept {
             }
             silence_.isStopping = next_switch_.isStop;
             state_.motion = Motion::FOLLOW;
+            state_.isOnCurve = false;
             state_.plan = next_switch_.plan;
             state_.phase = next_switch_.begin;
             state_.time_in_phase = 0;
@@ -319,7 +326,9 @@ void Executor::finish_drop() noexcept {
     ++state_.brakes;
     state_.piece = 0;
     state_.x = 0;
+    state_.isOnCurve = false;
     next_switch_.plan = 0;
+    curve_.clear();
 }
 
 void Executor::hold(bool isHeld) noexcept {
@@ -391,6 +400,15 @@ void Executor::locate() noexcept {
     out_.velocity = std::abs(state_.v);
     const bool isMoving = state_.motion != Motion::REST;
     out_.isOnProbe = false;
+    if (state_.isOnCurve) {
+        const CurveFollower::Place at = curve_.place(store_, !isMoving);
+        leader_ = at.pose;
+        leader_done_ = std::max(leader_done_, at.is_complete ? at.move : at.move - 1);
+        out_.isOnProbe = store_.move(at.move).isProbe && !(at.is_complete && isAtRest());
+        out_.move = at.is_complete && !isMoving && !out_.isOnProbe ? 0 : at.move;
+        out_.distance_to_go = at.left;
+        return;
+    }
     if (state_.piece == 0) [[unlikely]] {
         out_.move = 0;
         out_.distance_to_go = 0;
@@ -428,6 +446,9 @@ const PathEvent *Executor::due_event() noexcept {
 }
 
 bool Executor::isEmpty() const noexcept {
+    if (state_.isOnCurve) {
+        return isAtRest() && state_.done_move >= store_.last_move.load(std::memory_order_acquire);
+    }
     if (state_.piece == 0) {
         return true;
     }

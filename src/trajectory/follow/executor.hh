@@ -7,6 +7,7 @@
 
 #include "base/limits.hh"
 #include "trajectory/follow/arc_mean.hh"
+#include "trajectory/follow/curve_follower.hh"
 #include "trajectory/follow/locked_state.hh"
 #include "trajectory/follow/lone_brake.hh"
 #include "trajectory/follow/mean_filter.hh"
@@ -76,6 +77,7 @@ class ExecutorState {
     std::array<FollowedSpindle, MAX_SPINDLES> spindles_{};
     LockedState lock_;
     TapFollower tap_;
+    CurveFollower curve_;
 };
 
 /// All methods: servo thread only; bounded, no allocation.
@@ -85,6 +87,8 @@ class ExecutorState {
 /// With jerk limits (Commit::filter above 1) a leader does this and its mean is commanded; the planner then
 /// ends every plan with a stop, and answers `hold` and `drop` with a plan. A planner that is away, or
 /// finds none, leaves a `drop` to the leader's own brake.
+/// Along a curve (Motion::CURVE) every plan has its stops: `hold`, `drop` and a planner that is away take the
+/// next one.
 /// Passes that are locked to a spindle's angle (Motion::LOCKED) it drives by itself, from rest to rest;
 /// `hold` waits for their end, since a thread that was held is scrap; `drop` brakes at once. In a tap it
 /// switches the spindle off and follows it to its stand.

@@ -49,6 +49,7 @@ bool Executor::take_pass(const Commit &commit) noexcept {
         mean_.reset(leader_, state_.filter, state_.tick);
     }
     state_.motion = Motion::LOCKED;
+    state_.isOnCurve = false;
     state_.piece = commit.pass.first;
     state_.x = 0;
     state_.v = 0;

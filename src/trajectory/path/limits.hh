@@ -29,6 +29,13 @@ inline constexpr double UNLIMITED = 1e300;
 struct PathDemand {
     double tolerance = 0;    ///< 0: none is kept
     bool isTurning = false;  ///< rotary axes move
+    /// What drives it; by default either.
+    enum class Drive : std::uint8_t {
+        EITHER,
+        BY_TIME,
+        BY_ANGLE  ///< of a spindle: threads and taps
+    };
+    Drive drive = Drive::EITHER;
 };
 
 /// The time in which an acceleration is built up within a jerk limit, or the acceleration with which the

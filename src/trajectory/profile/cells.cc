@@ -174,6 +174,21 @@ double RoughProfile::speed_at(double s) const noexcept {
     return a.v + (b.v - a.v) * (s - a.s) / (b.s - a.s);
 }
 
+/// True if the motion is much faster in the middle between two nodes than the rough profile takes it to be.
+bool RoughProfile::isFasterBetween(const Run &run, std::size_t span, const Node &a, const Node &b,
+                                   double cell_s) noexcept {
+    constexpr double FASTER = 1.25;
+    // In the middle of a way from or to rest with constant jerk: 0.5^(2/3).
+    constexpr double MIDDLE_OF_CUBE = 0.63;
+    const double half = 0.5 * (b.s - a.s);
+    const double middle = std::min(a.v, b.v) > 0 ? std::sqrt(0.5 * (a.v * a.v + b.v * b.v))
+                                                 : MIDDLE_OF_CUBE * std::max(a.v, b.v);
+    const double ends = FASTER * middle;
+    const double reached =
+        std::min(faster(a.v, half, b.acceleration, b.jerk), faster(b.v, half, b.acceleration, b.jerk));
+    return reached > ends && half > LEAST_STEP && node_at(run, span, a.s, a.s + half, cell_s).v > ends;
+}
+
 /// Lays nodes until the motion without braking takes 1.5 times the horizon, then limits their speeds by
 /// braking.
 void RoughProfile::lay_nodes(const Run &run, const Stretch &stretch) {
@@ -192,8 +207,17 @@ void RoughProfile::lay_nodes(const Run &run, const Stretch &stretch) {
         const double end = std::min(run.end_s, spans[k].end_s());
         while (nodes_.back().s + LEAST_STEP < end) {
             const Node last = nodes_.back();
-            const double s = std::min(end, next_place(run, spans[k], last.s));
+            double s = std::min(end, next_place(run, spans[k], last.s));
             Node node = node_at(run, k, last.s, s, stretch.cell_s);
+            const auto is_coarse = [&] {
+                Node to = node;
+                to.v = run.has_stop && s >= run.end_s - 2 * LEAST_STEP ? 0 : node.v;
+                return isFasterBetween(run, k, last, to, stretch.cell_s);
+            };
+            while (is_coarse()) {
+                s = last.s + 0.5 * (s - last.s);
+                node = node_at(run, k, last.s, s, stretch.cell_s);
+            }
             node.is_cap = apply_caps(run, node, 1e-6 * spans[k].length + 1e-15 * std::abs(s));
             if (node.is_cap && k + 1 < spans.size()) {
                 const Node behind = node_at(run, k + 1, s, s, stretch.cell_s);

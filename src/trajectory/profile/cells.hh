@@ -93,6 +93,8 @@ class RoughProfile {
     void lay_nodes(const Run &run, const Stretch &stretch);
     void lay_knots(const Run &run, const Stretch &stretch);
     static void apply_joints(const Run &run, Node &node, double inside, double cell_s) noexcept;
+    static bool isFasterBetween(const Run &run, std::size_t span, const Node &a, const Node &b,
+                                double cell_s) noexcept;
     static double next_place(const Run &run, const Span &span, double s) noexcept;
     double speed_at(double s) const noexcept;
     static bool isInEnd(const Run &run, const Stretch &stretch, double s) noexcept;

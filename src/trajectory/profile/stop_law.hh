@@ -9,14 +9,7 @@
 
 namespace mw::trajectory::profile {
 
-/// s(t) of a cell: a polynomial of degree five from its start, t in [0, duration].
-struct TimeCell {
-    double duration = 0;
-    std::array<double, 6> c{};
-    double s_at(double t) const noexcept {
-        return c[0] + t * (c[1] + t * (c[2] + t * (c[3] + t * (c[4] + t * c[5]))));
-    }
-};
+using curve::TimeCell;
 
 /// A place on the curve with the speed and the acceleration along it.
 struct Motion {

@@ -26,7 +26,8 @@ struct Rig {
     bool isPlannerAlive = true;
 
     explicit Rig(const Pose &start, SpeedChooser *chooser = nullptr)
-        : planner(*store, PlannerSettings{T, 3, 0.1, true, chooser}) {
+        : Rig(start, PlannerSettings{.chooser = chooser}) {}
+    Rig(const Pose &start, const PlannerSettings &settings) : planner(*store, settings) {
         executor.set_position(start);
         executor.step(cycle);
         planner.begin(start, executor.snapshot());

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// A stretch of a curve in nine coordinates, and a cell of the motion along it: what the executor evaluates.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "base/geometry/pose.hh"
+
+namespace mw::trajectory::curve {
+
+using geometry::Pose;
+
+inline constexpr int DEGREE = 5;
+inline constexpr std::size_t COEFFICIENTS = DEGREE + 1;
+
+/// A stretch between two knots: q(s) is the sum of c[k] u^k, u = (s - start_s)/length in [0, 1].
+struct Span {
+    double start_s = 0, length = 0;
+    std::array<Pose, COEFFICIENTS> c{};
+    double end_s() const noexcept { return start_s + length; }
+};
+
+/// A point of the curve and its derivatives by s.
+struct CurvePoint {
+    Pose position, first, second, third;
+};
+
+/// [servo, planner] Position at `s` of a span.
+Pose position_at(const Span &span, double s) noexcept;
+/// [planner] Position and derivatives at `s` of a span.
+CurvePoint point_at(const Span &span, double s) noexcept;
+
+/// The place on the curve over the time: s(t) is a polynomial of degree five, t in [0, duration].
+struct TimeCell {
+    double duration = 0;
+    std::array<double, COEFFICIENTS> c{};
+    double s_at(double t) const noexcept {
+        return c[0] + t * (c[1] + t * (c[2] + t * (c[3] + t * (c[4] + t * c[5]))));
+    }
+    double v_at(double t) const noexcept {
+        return c[1] + t * (2 * c[2] + t * (3 * c[3] + t * (4 * c[4] + t * 5 * c[5])));
+    }
+};
+
+}  // namespace mw::trajectory::curve

@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "trajectory/plan/curve_path.hh"
+
+#include <algorithm>
+#include <cmath>
+
+#include "trajectory/path/stretch.hh"
+
+namespace mw::trajectory::plan {
+
+namespace {
+
+/// Largest knot spacing and span [machine units]: where the tolerance allows more, nothing is gained.
+constexpr double WIDEST = 3.0;
+/// Places this close are one [units].
+constexpr double SAME_PLACE = 1e-9;
+/// Spans and moves that are known and not driven, at most: memory.
+constexpr std::size_t MOST_SPANS = SPAN_CAPACITY / 2;
+constexpr Sequence MOST_MOVES = PRIMITIVE_CAPACITY - 64;
+
+profile::CurveLimits curve_limits(const Limits &limits) noexcept {
+    profile::CurveLimits out;
+    for (std::size_t i = 0; i < geometry::AXIS_COUNT; ++i) {
+        out.axes[i] = {limits.velocity[i], limits.acceleration[i], limits.jerk[i]};
+    }
+    out.xyz = {limits.velocity[XYZ_NORM], limits.acceleration[XYZ_NORM], limits.jerk[XYZ_NORM]};
+    return out;
+}
+
+profile::FeedLimit::Along along_of(const Primitive &p) noexcept {
+    const auto moves = [&](int first) {
+        const bool is_arc = p.isArc && p.space == first;
+        return is_arc || p.lin[first] != 0 || p.lin[first + 1] != 0 || p.lin[first + 2] != 0;
+    };
+    using Along = profile::FeedLimit::Along;
+    return moves(geometry::AXIS_X) ? Along::XYZ : moves(geometry::AXIS_U) ? Along::UVW : Along::LENGTH;
+}
+
+}  // namespace
+
+CurvePath::CurvePath(PathStore &store, PlannedPath &moves)
+    : store_(store), moves_(moves), fitted_(WIDEST), exact_(WIDEST) {}
+
+void CurvePath::begin(const Pose &start, const Conditions &conditions) {
+    limits_ = curve_limits(conditions.limits.wanted());
+    end_ = start;
+    programmed_s_ = 0;
+    is_open_ = false;
+    first_move_ = moves_.first_move();
+    first_span_ += spans_.size();
+    spans_.clear();
+    coming_.clear();
+    caps_.clear();
+    feeds_.clear();
+    stops_.clear();
+}
+
+bool CurvePath::isMadeFor(const Limits &limits) const noexcept {
+    const auto is_same = [&](const profile::Bounds &b, std::size_t i) {
+        return b.velocity == limits.velocity[i] && b.acceleration == limits.acceleration[i] &&
+               b.jerk == limits.jerk[i];
+    };
+    bool is_made = limits.isJerkLimited && is_same(limits_.xyz, XYZ_NORM);
+    for (std::size_t i = 0; i < geometry::AXIS_COUNT; ++i) {
+        is_made = is_made && is_same(limits_.axes[i], i);
+    }
+    return is_made;
+}
+
+double CurvePath::tolerance_of(const Conditions &conditions, const Primitive &primitive,
+                               const MoveRequest &request) const noexcept {
+    if (request.join != geometry::PathMode::BLEND) {
+        return 0;
+    }
+    return request.tolerance > 0 ? request.tolerance : conditions.limits.free_tolerance(primitive);
+}
+
+Sequence CurvePath::add(const Conditions &conditions, const Primitive &primitive,
+                        const MoveRequest &request) {
+    const Sequence before = moves_.end_move();
+    const Sequence n = moves_.append_move();
+    PlannedMove &m = moves_.move(n);
+    m = {};
+    m.start_s = programmed_s_;
+    m.request = request;
+    const FeedLength feed = feed_length(primitive);
+    m.request.isAngular = feed.isAngular;
+    m.request.tag.feed_ratio = primitive.length / feed.length;
+    m.request.tag.end = primitive.end;
+    m.request.tag.end_s = programmed_s_ + primitive.length;
+    m.feed = request.tag.requested_velocity * m.request.tag.feed_ratio;
+    store_.primitive(n) = primitive;
+    store_.move(n) = m.request.tag;
+
+    const double tolerance = tolerance_of(conditions, primitive, request);
+    const Rule rule = tolerance > 0 ? Rule::FITTED : Rule::EXACT;
+    const PlannedMove *last = before != 0 ? &moves_.move(before) : nullptr;
+    const bool is_stop =
+        last != nullptr && (request.isGated || last->request.join == geometry::PathMode::EXACT_STOP ||
+                            (conditions.blocks.isOn && last->request.tag.block != request.tag.block));
+    if (is_open_ && (is_stop || rule != rule_)) {
+        finish_part(conditions);
+    }
+    if (is_stop) {
+        add_stop(programmed_s_);
+    }
+    if (!is_open_) {
+        rule_ = rule;
+        is_open_ = true;
+        is_part_seamed_ = before == 0;
+        rule == Rule::FITTED ? fitted_.begin(programmed_s_) : exact_.begin(programmed_s_);
+    }
+    rule == Rule::FITTED ? fitted_.add(primitive, tolerance) : exact_.add(primitive);
+    programmed_s_ += primitive.length;
+    end_ = primitive.end;
+    feeds_.push_back(feed_of(conditions, n));
+    store_.last_move.store(n, std::memory_order_release);
+    return n;
+}
+
+void CurvePath::finish_part(const Conditions &conditions) {
+    if (rule_ == Rule::FITTED) {
+        fitted_.extend(true);
+    }
+    take_spans(conditions);
+    is_open_ = false;
+}
+
+void CurvePath::release_end(const Conditions &conditions) {
+    if (is_open_) {
+        finish_part(conditions);
+    }
+}
+
+void CurvePath::extend(const Conditions &conditions) {
+    if (!is_open_) {
+        publish();
+        return;
+    }
+    if (rule_ == Rule::FITTED) {
+        fitted_.set_room(conditions.workspace.low, conditions.workspace.high);
+        fitted_.extend(false);
+    }
+    take_spans(conditions);
+}
+
+void CurvePath::take_spans(const Conditions &conditions) {
+    const std::size_t old = coming_.size();
+    rule_ == Rule::FITTED ? fitted_.move_spans(coming_) : exact_.move_spans(coming_, seams_);
+    if (coming_.size() > old) {
+        if (!is_part_seamed_) {
+            take_seam(conditions, curve::seam_between(newest_, coming_[old]));
+        }
+        is_part_seamed_ = true;
+        newest_ = coming_.back();
+    }
+    for (const curve::Seam &seam : seams_) {
+        take_seam(conditions, seam);
+    }
+    seams_.clear();
+    publish();
+}
+
+/// Spans that have not been driven are not overwritten.
+void CurvePath::publish() {
+    const std::size_t count = std::min(coming_.size(), SPAN_CAPACITY - 1 - spans_.size());
+    for (std::size_t k = 0; k < count; ++k) {
+        store_.span(first_span_ + spans_.size()) = coming_[k];
+        spans_.push_back(coming_[k]);
+    }
+    coming_.erase(coming_.begin(), coming_.begin() + static_cast<long>(count));
+}
+
+void CurvePath::take_seam(const Conditions &conditions, const curve::Seam &seam) {
+    const JointMap *map = conditions.workspace.map;
+    const profile::SpeedCap cap =
+        profile::cap_of(seam, limits_, map, conditions.workspace.joints, conditions.limits.period_s());
+    const bool is_needed = map != nullptr ? profile::isNeeded(cap, limits_, conditions.workspace.joints)
+                                          : profile::isNeeded(cap, limits_);
+    if (cap.is_stop) {
+        add_stop(cap.s);
+    } else if (is_needed && !std::binary_search(stops_.begin(), stops_.end(), cap.s)) {
+        caps_.push_back(cap);
+    }
+}
+
+void CurvePath::add_stop(double s) {
+    const auto at = std::lower_bound(stops_.begin(), stops_.end(), s - SAME_PLACE);
+    if (at == stops_.end() || *at > s + SAME_PLACE) {
+        stops_.insert(at, s);
+    }
+    std::erase_if(caps_, [&](const profile::SpeedCap &cap) { return std::abs(cap.s - s) <= SAME_PLACE; });
+}
+
+void CurvePath::drop_before(double s) {
+    const auto count = static_cast<long>(
+        std::partition_point(spans_.begin(), spans_.end(), [&](const auto &x) { return x.end_s() < s; }) -
+        spans_.begin());
+    // Rarely, as all that stay are moved; the last one stays for the seam behind it.
+    if (count < 64 || 2 * count < static_cast<long>(spans_.size())) {
+        return;
+    }
+    const long spans = std::min(count, static_cast<long>(spans_.size()) - 1);
+    spans_.erase(spans_.begin(), spans_.begin() + spans);
+    first_span_ += static_cast<Sequence>(spans);
+    const double from = spans_.front().start_s;
+    const Sequence move = move_at(from);
+    feeds_.erase(feeds_.begin(), feeds_.begin() + static_cast<long>(move - first_move_));
+    first_move_ = move;
+    std::erase_if(caps_, [&](const profile::SpeedCap &cap) { return cap.s + cap.reach < from; });
+    while (!stops_.empty() && stops_.front() < from) {
+        stops_.pop_front();
+    }
+}
+
+bool CurvePath::hasRoom() const noexcept {
+    return spans_.size() < MOST_SPANS && feeds_.size() < MOST_MOVES;
+}
+
+double CurvePath::stop_behind(double s) const noexcept {
+    const auto at = std::upper_bound(stops_.begin(), stops_.end(), s + SAME_PLACE);
+    return at != stops_.end() ? *at : 1e300;
+}
+
+Sequence CurvePath::move_at(double s) const noexcept {
+    const auto at = std::partition_point(feeds_.begin(), feeds_.end(), [&](const profile::FeedLimit &feed) {
+        return feed.end_s <= s + SAME_PLACE;
+    });
+    return first_move_ + static_cast<Sequence>(at - feeds_.begin());
+}
+
+Sequence CurvePath::span_at(double s) const noexcept {
+    return first_span_ + profile::span_at(spans_, s);
+}
+
+double CurvePath::on_span_end(double s) const noexcept {
+    if (spans_.empty()) {
+        return s;
+    }
+    const curve::Span &span = spans_[profile::span_at(spans_, s + SAME_PLACE)];
+    return std::abs(span.start_s - s) <= SAME_PLACE   ? span.start_s
+           : std::abs(span.end_s() - s) <= SAME_PLACE ? span.end_s()
+                                                      : s;
+}
+
+profile::FeedLimit CurvePath::feed_of(const Conditions &conditions, Sequence n) const noexcept {
+    const PlannedMove &m = moves_.move(n);
+    const Scales &scales = conditions.scales;
+    profile::FeedLimit feed;
+    feed.end_s = m.request.tag.end_s;
+    feed.along = along_of(moves_.primitive(n));
+    const double ratio = feed.along == profile::FeedLimit::Along::LENGTH ? m.request.tag.feed_ratio : 1.0;
+    double v = UNLIMITED;
+    if (m.request.isRapid) {
+        feed.limit_share = scales.rapid;
+    } else if (m.request.isSynched()) {
+        v = turning_speed(m.request, scales) / m.request.tag.feed_ratio;
+    } else if (m.request.tag.requested_velocity > 0) {
+        v = m.request.tag.requested_velocity * (m.request.isOverridable ? scales.feed : 1.0);
+    }
+    v = m.request.isAngular ? v : std::min(v, scales.max_velocity);
+    feed.velocity = v < UNLIMITED ? v * ratio : UNLIMITED;
+    return feed;
+}
+
+bool CurvePath::update_feeds(const Conditions &conditions) {
+    // What rounding may make of a speed that a spindle gives.
+    constexpr double LOWER = 1 - 1e-9;
+    bool is_lower = false;
+    for (std::size_t k = 0; k < feeds_.size(); ++k) {
+        const profile::FeedLimit feed = feed_of(conditions, first_move_ + k);
+        is_lower = is_lower || feed.velocity < LOWER * feeds_[k].velocity ||
+                   feed.limit_share < LOWER * feeds_[k].limit_share;
+        feeds_[k] = feed;
+    }
+    return is_lower;
+}
+
+}  // namespace mw::trajectory::plan

@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "trajectory/plan/curve_planner.hh"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mw::trajectory::plan {
+
+namespace {
+
+/// Places this close are one [units].
+constexpr double SAME_PLACE = 1e-9;
+/// After so many cycles a plan that begins at rest was taken, or never will be.
+constexpr std::uint64_t TAKEN_CYCLES = 20;
+
+}  // namespace
+
+CurvePlanner::CurvePlanner(PathStore &store, PlannedPath &moves, double period_s, bool enabled)
+    : store_(store), moves_(moves), period_s_(period_s), is_enabled_(enabled), path_(store, moves),
+      profile_({.window_s = WINDOW_S, .period_s = period_s}) {}
+
+/// Machines whose joints are not axes, planner modules and passes with a spindle take the other planner.
+bool CurvePlanner::isFor(const PathDemand &demand, const Conditions &conditions) const noexcept {
+    return is_enabled_ && conditions.limits.wanted().isJerkLimited && !conditions.workspace.isMapped() &&
+           conditions.chooser == nullptr && demand.drive != PathDemand::Drive::BY_ANGLE;
+}
+
+bool CurvePlanner::suits(const PathDemand &demand, const Conditions &conditions) const noexcept {
+    const bool is_same = demand.drive == PathDemand::Drive::EITHER || isFor(demand, conditions) == is_active_;
+    return is_same && (!is_active_ || path_.isMadeFor(conditions.limits.wanted()));
+}
+
+void CurvePlanner::begin(const Pose &start, const Snapshot &now, const PathDemand &demand,
+                         const Conditions &conditions) {
+    is_active_ = isFor(demand, conditions);
+    if (!is_active_) {
+        return;
+    }
+    path_.begin(start, conditions);
+    numbers_.clear();
+    plan_ = std::max(plan_, now.plan);
+    first_plan_ = plan_ + 1;
+    drops_ = now.drops;
+    is_running_ = is_abandoned_ = is_changed_ = is_lower_ = is_window_full_ = false;
+    delay_s_ = 0;
+    start_cycle_ = 0;
+    failures_ = 0;
+}
+
+void CurvePlanner::set_scales(const Conditions &conditions) {
+    is_lower_ = path_.update_feeds(conditions) || is_lower_;
+    is_changed_ = true;
+}
+
+double CurvePlanner::place_of(const Snapshot &now) const noexcept {
+    return now.isOnCurve && now.plan >= first_plan_ ? now.x : 0.0;
+}
+
+Sequence CurvePlanner::standing_before(const Snapshot &now) const noexcept {
+    const Sequence move = move_of(now);
+    const bool is_there = now.motion == Motion::REST && move <= moves_.last_move() &&
+                          std::abs(place_of(now) - moves_.move(move).start_s) <= SAME_PLACE;
+    return is_there ? move : 0;
+}
+
+bool CurvePlanner::hasSpeed(Sequence move) const noexcept {
+    const profile::FeedLimit &feed = path_.feeds()[static_cast<std::size_t>(move - path_.first_move())];
+    return feed.velocity > 0 && feed.limit_share > 0;
+}
+
+/// What may be driven from `s` on. Single blocks and moves without speed stop the motion at `least_end` at
+/// the soonest.
+profile::Run CurvePlanner::run_from(double s, double least_end, const Conditions &conditions) const {
+    double stop = path_.stop_behind(s);
+    if (!path_.hasOpenEnd()) {
+        stop = std::min(stop, path_.programmed_s());
+    }
+    const double known = path_.known_s();
+    for (Sequence n = path_.move_at(s) + 1; n <= moves_.last_move(); ++n) {
+        const PlannedMove &m = moves_.move(n);
+        if (m.start_s >= std::min(stop, known)) {
+            break;
+        }
+        const bool is_stop = conditions.blocks.isStopBefore(m.request.tag) || !hasSpeed(n);
+        if (is_stop && m.start_s >= least_end) {
+            stop = m.start_s;
+        }
+    }
+    profile::Run run;
+    run.spans = &path_.spans();
+    run.feeds = &path_.feeds();
+    run.caps = &path_.caps();
+    run.limits = path_.limits();
+    run.has_stop = stop <= known + SAME_PLACE;
+    run.end_s = path_.on_span_end(std::min(stop, known));
+    return run;
+}
+
+/// Drops the cells that the executor has left.
+void CurvePlanner::follow(const Snapshot &now) {
+    if (now.motion != Motion::CURVE) {
+        const bool is_taken = now.plan == plan_ || now.cycle > planned_cycle_ + TAKEN_CYCLES;
+        is_running_ = is_running_ && !(now.motion == Motion::REST && is_taken);
+        is_abandoned_ = is_abandoned_ && is_running_;
+        return;
+    }
+    const auto at = std::lower_bound(numbers_.begin(), numbers_.end(), now.phase);
+    if (at == numbers_.end() || *at != now.phase) {
+        is_abandoned_ = true;
+        return;
+    }
+    const auto driven = static_cast<std::size_t>(at - numbers_.begin());
+    profile_.drop(driven);
+    numbers_.erase(numbers_.begin(), at);
+    path_.drop_before(std::min(now.x, profile_.cell(0).c[0]));
+}
+
+void CurvePlanner::update(const Snapshot &now, const Conditions &conditions) {
+    if (now.drops != drops_ || now.isDropping) {
+        return;
+    }
+    if (is_running_) {
+        follow(now);
+    }
+    if (!is_running_) {
+        start(now, conditions);
+    } else if (!is_abandoned_ && now.plan == plan_ && !now.isHeld) {
+        continue_plan(now, conditions);
+    }
+}
+
+void CurvePlanner::start(const Snapshot &now, const Conditions &conditions) {
+    if (now.motion != Motion::REST || !now.isSettled || now.isHeld) {
+        return;
+    }
+    const double s = place_of(now);
+    const Sequence move = path_.move_at(s);
+    if (move > moves_.last_move() || !hasSpeed(move)) {
+        return;
+    }
+    const MoveRequest &request = moves_.move(move).request;
+    const bool is_before = standing_before(now) == move;
+    if (is_before && (request.isGated || conditions.blocks.isStopBefore(request.tag))) {
+        return;
+    }
+    if (delay_s_ > 0) {
+        start_cycle_ = now.cycle + static_cast<std::uint64_t>(delay_s_ / period_s_);
+        delay_s_ = 0;
+    }
+    if (now.cycle < start_cycle_) {
+        return;
+    }
+    path_.extend(conditions);
+    run_ = run_from(s, s, conditions);
+    if (path_.spans().empty() || !(run_.end_s > s)) {
+        return;
+    }
+    profile_.begin(path_.on_span_end(s));
+    numbers_.clear();
+    profile_.plan(run_, 0);
+    is_changed_ = is_lower_ = false;
+    const bool is_made = profile_.cells() > 0 && commit(now, 0);
+    failures_ = is_made ? 0 : failures_ + 1;
+    is_running_ = is_made;
+}
+
+/// The first cell that another plan may change.
+std::size_t CurvePlanner::first_free_cell(const Snapshot &now) const noexcept {
+    double left = -now.time_in_phase;
+    std::size_t k = 0;
+    while (k < numbers_.size() && left < PLANNING_S) {
+        left += profile_.cell(k++).duration;
+    }
+    return k;
+}
+
+void CurvePlanner::continue_plan(const Snapshot &now, const Conditions &conditions) {
+    const bool is_due = static_cast<double>(now.cycle - planned_cycle_) * period_s_ >= RENEWAL_S;
+    if (!is_due && !is_changed_) {
+        return;
+    }
+    const std::size_t fixed = first_free_cell(now);
+    if (fixed >= numbers_.size()) {
+        return;  // too late: the plan ends in its last stop
+    }
+    path_.extend(conditions);
+    const double from = profile_.cell(fixed).c[0];
+    const double old_end = run_.end_s;
+    const bool was_stop = run_.has_stop;
+    if (!hasSpeed(path_.move_at(from))) {
+        CurvePlan stop;
+        stop.is_stop = true;
+        is_abandoned_ = store_.curve_plans.push(stop);
+        return;
+    }
+    profile::Run run = run_from(now.x, now.x, conditions);
+    if (is_changed_ && run.end_s < old_end) {
+        const double soonest = profile_.stop(run_, fixed, profile::StopEffort::QUICK).end_s;
+        run = run_from(now.x, soonest, conditions);
+    }
+    const bool is_same = run.end_s == old_end && run.has_stop == was_stop;
+    if (profile_.isComplete() && is_same && !is_changed_ && numbers_.size() == profile_.cells()) {
+        planned_cycle_ = now.cycle;
+        return;
+    }
+    const bool is_nearer = run.end_s < old_end - SAME_PLACE;
+    const bool is_taken_away = profile_.isComplete() && was_stop && !is_same;
+    run_ = run;
+    if (is_lower_ || is_nearer || is_taken_away) {
+        profile_.replan(run_, fixed);
+    } else {
+        profile_.plan(run_, fixed);
+    }
+    is_changed_ = is_lower_ = false;
+    numbers_.resize(fixed);
+    if (profile_.cells() <= fixed || !commit(now, fixed)) {
+        is_abandoned_ = true;
+    }
+}
+
+Sequence CurvePlanner::write(const profile::TimeCell &cell) noexcept {
+    store_.cell(next_cell_) = cell;
+    return next_cell_++;
+}
+
+/// Commits the profile behind its first `fixed` cells. False if it has no stop.
+bool CurvePlanner::commit(const Snapshot &now, std::size_t fixed) {
+    CurvePlan plan;
+    const std::size_t cells = profile_.cells();
+    double planned = 0;
+    for (std::size_t k = fixed; k < cells; ++k) {
+        planned += profile_.cell(k).duration;
+    }
+    is_window_full_ = profile_.isComplete() || planned > 0.5 * WINDOW_S;
+    // The rest of the window is for the stop.
+    const double committed =
+        profile_.isComplete() ? RENEWAL_S + RESERVE_S : std::min(RENEWAL_S + RESERVE_S, 0.5 * planned);
+    std::size_t last = fixed;
+    double ahead = 0;
+    while (last < cells && ahead < committed) {
+        ahead += profile_.cell(last++).duration;
+    }
+    profile::Stop end{cells, {}, 0};
+    if (last < cells || !profile_.isComplete()) {
+        end = profile_.stop(run_, last, profile::StopEffort::QUICK);
+        if (end.cells.empty() && !profile_.isComplete()) {
+            return false;
+        }
+    }
+    last = end.kept;
+    plan.plan = plan_ + 1;
+    plan.behind = fixed > 0 ? numbers_[fixed - 1] : 0;
+    plan.begin = next_cell_;
+    for (std::size_t k = fixed; k < last; ++k) {
+        numbers_.push_back(write(profile_.cell(k)));
+    }
+    plan.end = next_cell_;
+    plan.brakes = now.brakes;
+    const double from = profile_.cell(fixed).c[0];
+    plan.span = path_.span_at(from);
+    plan.move = path_.move_at(from);
+    plan.last_span = path_.last_span();
+    plan.last_move = moves_.last_move();
+    add_stops(plan, fixed, last);
+    const auto add = [&](const profile::Stop &stop) {
+        const Sequence begin = next_cell_;
+        for (const profile::TimeCell &cell : stop.cells) {
+            write(cell);
+        }
+        plan.stops[plan.stop_count++] = {numbers_[stop.kept - 1], begin, next_cell_};
+    };
+    add(end);
+    if (!store_.curve_plans.push(plan)) {
+        return false;
+    }
+    plan_ = plan.plan;
+    planned_cycle_ = now.cycle;
+    return true;
+}
+
+/// Stops behind cells of the plan, STOP_APART_S apart.
+void CurvePlanner::add_stops(CurvePlan &plan, std::size_t fixed, std::size_t last) {
+    double since = 0;
+    for (std::size_t k = fixed; k + 1 < last && plan.stop_count + 1 < CurvePlan::MOST_STOPS; ++k) {
+        since += profile_.cell(k).duration;
+        if (since < STOP_APART_S) {
+            continue;
+        }
+        since = 0;
+        const profile::Stop stop = profile_.stop(run_, k + 1, profile::StopEffort::QUICK);
+        if (stop.cells.empty() || stop.kept >= last) {
+            return;
+        }
+        const Sequence begin = next_cell_;
+        for (const profile::TimeCell &cell : stop.cells) {
+            write(cell);
+        }
+        plan.stops[plan.stop_count++] = {numbers_[stop.kept - 1], begin, next_cell_};
+        k = std::max(k, stop.kept - 1);
+    }
+}
+
+}  // namespace mw::trajectory::plan

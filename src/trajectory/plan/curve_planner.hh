@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Plans the motion along a curve in windows, and commits each plan with its stops.
+#pragma once
+
+#include <vector>
+
+#include "trajectory/plan/curve_path.hh"
+#include "trajectory/profile/profile.hh"
+
+namespace mw::trajectory::plan {
+
+/// Planner thread.
+///
+/// A plan continues the motion behind a cell that the executor has not reached yet. The cells before stay. It
+/// reaches RENEWAL_S + RESERVE_S ahead; the next one is made after RENEWAL_S. A plan that comes too late is
+/// not taken: the executor takes the last stop of the plan before, and the next plan begins at rest.
+class CurvePlanner {
+  public:
+    /// `enabled`: paths with jerk limits are driven along curves.
+    CurvePlanner(PathStore &store, PlannedPath &moves, double period_s, bool enabled);
+
+    /// A path begins at `start`, where the executor is at rest.
+    void begin(const Pose &start, const Snapshot &now, const PathDemand &demand,
+               const Conditions &conditions);
+    /// The present path is driven along a curve.
+    bool isActive() const noexcept { return is_active_; }
+    /// A path that begins with such a move would be driven by the same planner, with the same limits.
+    bool suits(const PathDemand &demand, const Conditions &conditions) const noexcept;
+    CurvePath &path() noexcept { return path_; }
+    const CurvePath &path() const noexcept { return path_; }
+    /// Overrides have changed.
+    void set_scales(const Conditions &conditions);
+    /// Gates or single blocks have changed.
+    void renew() noexcept { is_changed_ = true; }
+    /// The next start is so much later than possible.
+    void delay_start(double delay_s) noexcept { delay_s_ = delay_s; }
+    /// Commits what the executor needs next.
+    void update(const Snapshot &now, const Conditions &conditions);
+
+    /// The plan covers all of the curve that is known, and there is more of it that could be released.
+    bool isStarving() const noexcept { return path_.hasOpenEnd() && (!is_running_ || !is_window_full_); }
+    /// The move that the executor is in, or before which it is at rest.
+    Sequence move_of(const Snapshot &now) const noexcept { return path_.move_at(place_of(now)); }
+    /// It is at rest exactly at the start of this move; 0: it is not.
+    Sequence standing_before(const Snapshot &now) const noexcept;
+    /// Plans without success at rest, one after the other.
+    int failures() const noexcept { return failures_; }
+
+    static constexpr double RENEWAL_S = 0.1;      ///< from one plan to the next
+    static constexpr double RESERVE_S = 0.15;     ///< by which a plan may be late
+    static constexpr double WINDOW_S = 0.6;       ///< planned at once
+    static constexpr double STOP_APART_S = 0.01;  ///< between the places where stops begin
+    static constexpr double PLANNING_S = 0.01;    ///< from the making of a plan to its first cell
+
+  private:
+    bool isFor(const PathDemand &demand, const Conditions &conditions) const noexcept;
+    double place_of(const Snapshot &now) const noexcept;
+    void follow(const Snapshot &now);
+    void start(const Snapshot &now, const Conditions &conditions);
+    void continue_plan(const Snapshot &now, const Conditions &conditions);
+    profile::Run run_from(double s, double least_end, const Conditions &conditions) const;
+    bool hasSpeed(Sequence move) const noexcept;
+    std::size_t first_free_cell(const Snapshot &now) const noexcept;
+    bool commit(const Snapshot &now, std::size_t fixed);
+    void add_stops(CurvePlan &plan, std::size_t fixed, std::size_t last);
+    Sequence write(const profile::TimeCell &cell) noexcept;
+
+    PathStore &store_;
+    PlannedPath &moves_;
+    double period_s_;
+    bool is_enabled_, is_active_ = false;
+    CurvePath path_;
+    profile::Profile profile_;
+    profile::Run run_;
+    std::vector<Sequence> numbers_;  ///< of the cells of the profile that are committed
+    Sequence next_cell_ = 1;
+    std::uint64_t plan_ = 0, first_plan_ = 0;
+    std::uint64_t planned_cycle_ = 0;
+    std::uint64_t drops_ = 0;
+    bool is_running_ = false;    ///< a plan was committed and has not ended
+    bool is_abandoned_ = false;  ///< the executor is in a stop
+    bool is_changed_ = false, is_lower_ = false;
+    bool is_window_full_ = false;
+    double delay_s_ = 0;
+    std::uint64_t start_cycle_ = 0;
+    int failures_ = 0;
+};
+
+}  // namespace mw::trajectory::plan
