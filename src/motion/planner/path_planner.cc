@@ -230,6 +230,9 @@ bool PathPlanner::isWaiting(const PathCommand &c) noexcept {
 trajectory::PathDemand PathPlanner::demand_of(const PathCommand &c) const noexcept {
     const auto *line = std::get_if<Line>(&c.body);
     const auto *arc = std::get_if<Arc>(&c.body);
+    if (std::holds_alternative<RigidTap>(c.body)) {
+        return {.drive = trajectory::PathDemand::Drive::BY_ANGLE};
+    }
     if (line == nullptr && arc == nullptr) {
         return {};
     }

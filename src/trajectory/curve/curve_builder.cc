@@ -213,10 +213,13 @@ Span CurveBuilder::span_of(std::size_t k) const noexcept {
     span.length = knots_[k + 1] - knots_[k];
     KnotRow::Weights w;
     KnotRow(knots_).weights(k, w);
+    // From differences: a coordinate that does not move is constant to the last digit.
+    const Pose &base = controls_[k];
+    span.c[0] = base;
     for (std::size_t n = 0; n < COEFFICIENTS; ++n) {
         for (std::size_t j = 0; j < COEFFICIENTS; ++j) {
             for (std::size_t i = 0; i < geometry::AXIS_COUNT; ++i) {
-                span.c[n].c[i] += w[n][j] * controls_[k + j].c[i];
+                span.c[n].c[i] += w[n][j] * (controls_[k + j].c[i] - base.c[i]);
             }
         }
     }
