@@ -50,16 +50,15 @@ double RoughProfile::ramp_at(const Run &run, double s) noexcept {
     return node.jerk * t * t * t / 6;
 }
 
-/// Whether a cap is at the node, whose speed it limits.
-bool RoughProfile::apply_caps(const Run &run, Node &node, double tolerance) noexcept {
-    bool is_cap = false;
-    run.each_cap(node.s, node.s, [&](const SpeedCap &cap) {
-        if (std::abs(cap.s - node.s) < tolerance) {
+/// A cap at the node, on a span of this length, limits its speed.
+void RoughProfile::apply_caps(const Run &run, Node &node, double length) noexcept {
+    const double rounding = 1e-6 * length + 1e-15 * std::abs(node.s);
+    run.each_cap(node.s - rounding, node.s + rounding, [&](const SpeedCap &cap) {
+        if (std::abs(cap.s - node.s) < rounding) {
             node.v = std::min(node.v, cap.v);
-            is_cap = true;
+            node.cap_s = cap.s;
         }
     });
-    return is_cap;
 }
 
 /// `from_s`: end of the stretch before it; the node has the least speed of the moves in it.
@@ -200,6 +199,7 @@ void RoughProfile::lay_nodes(const Run &run, const Stretch &stretch) {
     std::size_t k = span_at(spans, stretch.from_s);
     nodes_.push_back(node_at(run, k, stretch.from_s, stretch.from_s, stretch.cell_s));
     nodes_.back().v = std::min(nodes_.back().v, reached);
+    apply_caps(run, nodes_.back(), spans[k].length);
     double t = 0;
     for (; k < spans.size() && spans[k].start_s < run.end_s &&
            (t < FARTHER * stretch.horizon_s || isInEnd(run, stretch, nodes_.back().s));
@@ -218,8 +218,8 @@ void RoughProfile::lay_nodes(const Run &run, const Stretch &stretch) {
                 s = last.s + 0.5 * (s - last.s);
                 node = node_at(run, k, last.s, s, stretch.cell_s);
             }
-            node.is_cap = apply_caps(run, node, 1e-6 * spans[k].length + 1e-15 * std::abs(s));
-            if (node.is_cap && k + 1 < spans.size()) {
+            apply_caps(run, node, spans[k].length);
+            if (node.cap_s > NOWHERE && k + 1 < spans.size()) {
                 const Node behind = node_at(run, k + 1, s, s, stretch.cell_s);
                 node.v = std::min(node.v, behind.v);
                 node.acceleration = std::min(node.acceleration, behind.acceleration);
@@ -261,11 +261,12 @@ void RoughProfile::lay_knots(const Run &run, const Stretch &stretch) {
                                    [&](const Node &n) { return n.t >= stretch.horizon_s + stretch.cell_s; });
     const bool is_all = reaches_end_ && (last == nodes_.end() || isInEnd(run, stretch, last->s));
     const double time = is_all ? whole : std::min(whole, stretch.horizon_s);
-    // A cell ends at each cap.
-    double from = 0;
+    // A cell ends at each cap: at the first node there, as rounding may leave more of them.
+    double from = 0, last_cap = nodes_[0].cap_s;
     std::size_t node = 1;
     for (std::size_t i = 1; i < nodes_.size() && nodes_[i].t < time; ++i) {
-        if (nodes_[i].is_cap) {
+        if (nodes_[i].cap_s > NOWHERE && nodes_[i].cap_s != last_cap) {
+            last_cap = nodes_[i].cap_s;
             lay_between(from, nodes_[i].t, stretch.cell_s, node);
             knots_.back() = nodes_[i].s;
             from = nodes_[i].t;

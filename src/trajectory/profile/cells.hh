@@ -85,9 +85,10 @@ class RoughProfile {
     static double ramp_at(const Run &run, double s) noexcept;
 
   private:
+    static constexpr double NOWHERE = -1e300;
     struct Node {
         double s = 0, v = 0, acceleration = 0, jerk = 0, t = 0;
-        bool is_cap = false;  ///< a cell ends there
+        double cap_s = NOWHERE;  ///< place of the cap that is there
     };
     static Node node_at(const Run &run, std::size_t span, double from_s, double s, double cell_s) noexcept;
     void lay_nodes(const Run &run, const Stretch &stretch);
@@ -99,7 +100,7 @@ class RoughProfile {
     double speed_at(double s) const noexcept;
     static bool isInEnd(const Run &run, const Stretch &stretch, double s) noexcept;
     void lay_between(double from_t, double to_t, double cell_s, std::size_t &node);
-    static bool apply_caps(const Run &run, Node &node, double tolerance) noexcept;
+    static void apply_caps(const Run &run, Node &node, double length) noexcept;
     std::vector<Node> nodes_;
     std::vector<double> knots_;
     bool reaches_end_ = false;
@@ -117,8 +118,9 @@ double creep_scale(const Run &run, double c) noexcept;
 /// True if the speed changes slowly enough between two coefficients for a creep.
 bool isSteady(const Run &run, double c, double next, double apart) noexcept;
 /// Adds the coefficients of cells that have none: slow enough to keep every row by far. `end_ramp`: length
-/// before the end of the run over which the map may come to be blended into a stop.
-void creep(const Run &run, const RestMap &map, const std::vector<double> &knots, double end_ramp,
+/// before the end of the run over which the map may come to be blended into a stop. False if the last one is
+/// still above the scale there.
+bool creep(const Run &run, const RestMap &map, const std::vector<double> &knots, double end_ramp,
            std::vector<double> &c);
 
 }  // namespace mw::trajectory::profile

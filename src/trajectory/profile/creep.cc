@@ -6,6 +6,7 @@
 #include "trajectory/curve/curve_builder.hh"
 #include "trajectory/profile/cells.hh"
 #include "trajectory/profile/joint_speeds.hh"
+#include "trajectory/profile/rows.hh"
 
 namespace mw::trajectory::profile {
 
@@ -31,7 +32,15 @@ double scale_of_creep(const Bounds &least, double v) noexcept {
     return std::max(std::sqrt(v * v * v / least.jerk), v * v / least.acceleration);
 }
 
-/// Lengths over which the path, its map and its speed limits change, at the middle of each cell.
+/// Cells behind the last one that the last coefficient may come to reach.
+constexpr std::size_t CELLS_BEHIND = 2;
+/// Parts of the scale that a stretch of a creep has at least: the slope of the speed changes over a stretch,
+/// so shorter ones would take more of the jerk.
+constexpr double STRETCHES = 50;
+
+/// The scale of the path, of its map and of its speed limits as a function of the place: the least one over
+/// all places, each with what the scale grows on the way from there. Cells only sample it, so it is the same
+/// for every division into cells, and where more becomes known it only grows.
 class Scales {
   public:
     Scales(const Run &run, const Bounds &least) : run_(run), least_(least) {}
@@ -41,51 +50,29 @@ class Scales {
         std::size_t cell = 0;
         double scale = 1e300, speed = 1e300;
     };
-    const std::vector<double> &find(const RestMap &map, const std::vector<double> &knots, double end_ramp,
-                                    const Known &known) {
-        const auto &spans = *run_.spans;
-        const std::size_t cells = knots.size() - 1;
-        scale_.resize(cells);
-        by_speed_.resize(cells + 2);
-        std::size_t span = span_at(spans, map.at(knots[0]).s);
-        std::size_t feed = run_.feed_at(map.at(knots[0]).s);
-        double s = 0;
-        for (std::size_t k = 0; k < cells; ++k) {
-            const double middle = 0.5 * (knots[k] + knots[k + 1]);
-            s = map.at(middle).s;
-            // All spans and moves in the cell: a short one may lie between the places where limits are
-            // checked.
-            double length = spans[span].length;
-            while (span + 1 < spans.size() && map.at(knots[k + 1]).s >= spans[span].end_s()) {
-                length = std::min(length, spans[++span].length);
-            }
-            double v = speed_of((*run_.feeds)[feed]);
-            while (feed + 1 < run_.feeds->size() && map.at(knots[k + 1]).s >= (*run_.feeds)[feed].end_s) {
-                v = std::min(v, speed_of((*run_.feeds)[++feed]));
-            }
-            const double before_stop =
-                RestMap::scale_of(end_ramp) + SPACING_GROWTH * std::max(0.0, run_.end_s - end_ramp - s);
-            run_.each_cap(map.at(knots[k]).s, map.at(knots[k + 1]).s,
-                          [&](const SpeedCap &cap) { v = std::min(v, cap.v); });
-            scale_[k] = std::min({length, map.scale_at(middle), before_stop});
-            by_speed_[k + 1] = scale_of_speed(v);
+    void find(const RestMap &map, const std::vector<double> &knots, double end_ramp, const Known &known) {
+        knots_ = knots;
+        const double h = knots.back() - knots[knots.size() - 2];
+        for (std::size_t i = 0; i < CELLS_BEHIND; ++i) {
+            knots_.push_back(knots_.back() + h);
         }
-        look_ahead(s, map.at(knots[cells]).s - map.at(knots[cells - 1]).s, span, feed);
-        // The speed in a cell depends on the coefficients of its neighbours, too.
-        by_speed_[0] = by_speed_[cells + 1] = 1e300;
-        for (std::size_t k = 0; k < cells; ++k) {
-            scale_[k] = std::min({scale_[k], by_speed_[k], by_speed_[k + 1], by_speed_[k + 2]});
-        }
-        scale_[known.cell] = std::min(scale_[known.cell], known.scale);
+        take_cells(map, end_ramp);
+        cells_[known.cell] = std::min(cells_[known.cell], known.scale);
         if (run_.joint_curve != nullptr) {
             const std::vector<double> &speed =
-                joint_speeds_.find(*run_.joint_curve, map, knots, {known.cell, known.speed});
-            for (std::size_t k = 0; k < cells; ++k) {
-                scale_[k] = std::min(scale_[k], scale_of_creep(least_, speed[k]));
+                joint_speeds_.find(*run_.joint_curve, map, knots_, {known.cell, known.speed});
+            for (std::size_t k = 0; k < cells_.size(); ++k) {
+                cells_[k] = std::min(cells_[k], scale_of_creep(least_, speed[k]));
             }
         }
-        spread(knots);
-        return scale_;
+        spread();
+    }
+    /// The scale at the end of a cell.
+    double at(std::size_t knot) const noexcept { return at_[knot]; }
+    /// The least scale between two ends of cells.
+    double least_between(std::size_t from, std::size_t to) const noexcept {
+        return *std::min_element(at_.begin() + static_cast<long>(from),
+                                 at_.begin() + static_cast<long>(std::min(to, at_.size() - 1)) + 1);
     }
 
   private:
@@ -95,17 +82,42 @@ class Scales {
     /// The scale at which the jerk limit gives this speed.
     double scale_of_speed(double v) const noexcept { return std::sqrt(v * v * v / least_.jerk); }
 
-    /// Reduces the scale of the last cell, of this length, for smaller scales of the path and of the feeds
-    /// behind it.
-    void look_ahead(double s, double cell, std::size_t span, std::size_t feed) {
-        double &last = scale_.back();
+    /// The least scale of all that lies in each cell: a short span or move may lie between the places where
+    /// limits are checked.
+    void take_cells(const RestMap &map, double end_ramp) {
+        const auto &spans = *run_.spans;
+        cells_.resize(knots_.size() - 1);
+        double s = map.at(knots_[0]).s;
+        std::size_t span = span_at(spans, s), feed = run_.feed_at(s);
+        for (std::size_t k = 0; k < cells_.size(); ++k) {
+            const double from = s;
+            s = map.at(knots_[k + 1]).s;
+            double length = spans[span].length;
+            while (span + 1 < spans.size() && s >= spans[span].end_s()) {
+                length = std::min(length, spans[++span].length);
+            }
+            double v = speed_of((*run_.feeds)[feed]);
+            while (feed + 1 < run_.feeds->size() && s >= (*run_.feeds)[feed].end_s) {
+                v = std::min(v, speed_of((*run_.feeds)[++feed]));
+            }
+            run_.each_cap(from, s, [&](const SpeedCap &cap) { v = std::min(v, cap.v); });
+            const double before_stop =
+                RestMap::scale_of(end_ramp) + SPACING_GROWTH * std::max(0.0, run_.end_s - end_ramp - s);
+            cells_[k] = std::min({length, map.scale_at(knots_[k]), map.scale_at(knots_[k + 1]), before_stop,
+                                  scale_of_speed(v)});
+        }
+        look_ahead(s, span, feed);
+    }
+
+    /// Reduces the scale of the last cell, which ends at s, for smaller scales behind it.
+    void look_ahead(double s, std::size_t span, std::size_t feed) {
+        double &last = cells_.back();
         const auto &spans = *run_.spans;
         for (std::size_t j = span + 1; j < spans.size() && SPACING_GROWTH * (spans[j].start_s - s) < last;
              ++j) {
             last = std::min(last, spans[j].length + SPACING_GROWTH * std::max(0.0, spans[j].start_s - s));
         }
-        // The cell in which a slower move begins has the slower speed at its start.
-        const auto apart = [&](std::size_t j) { return (*run_.feeds)[j - 1].end_s - s - 2 * cell; };
+        const auto apart = [&](std::size_t j) { return (*run_.feeds)[j - 1].end_s - s; };
         for (std::size_t j = feed + 1; j < run_.feeds->size() && SPACING_GROWTH * apart(j) < last; ++j) {
             last = std::min(last, scale_of_speed(speed_of((*run_.feeds)[j])) +
                                       SPACING_GROWTH * std::max(0.0, apart(j)));
@@ -125,22 +137,106 @@ class Scales {
         });
     }
 
-    void spread(const std::vector<double> &knots) {
-        const auto apart = [&](std::size_t k) {
-            return SPACING_GROWTH * 0.5 * (knots[k + 1] - knots[k - 1]);
-        };
-        for (std::size_t k = 1; k < scale_.size(); ++k) {
-            scale_[k] = std::min(scale_[k], scale_[k - 1] + apart(k));
+    /// The scale at the ends of the cells.
+    void spread() {
+        at_.assign(knots_.size(), 1e300);
+        for (std::size_t k = 0; k < cells_.size(); ++k) {
+            at_[k] = std::min(at_[k], cells_[k]);
+            at_[k + 1] = std::min(cells_[k], at_[k] + SPACING_GROWTH * (knots_[k + 1] - knots_[k]));
         }
-        for (std::size_t k = scale_.size() - 1; k > 0; --k) {
-            scale_[k - 1] = std::min(scale_[k - 1], scale_[k] + apart(k));
+        for (std::size_t k = cells_.size(); k-- > 0;) {
+            at_[k] = std::min(at_[k], at_[k + 1] + SPACING_GROWTH * (knots_[k + 1] - knots_[k]));
         }
     }
 
     const Run &run_;
     const Bounds &least_;
-    std::vector<double> scale_, by_speed_;
+    std::vector<double> knots_, cells_, at_;
     JointSpeeds joint_speeds_;
+};
+
+/// A creep from a place on: a spline on stretches of cells, whose coefficients belong to the least scale of
+/// the stretches around them. The cells are parts of it, so the motion does not depend on how fine they are.
+class CreepSpline {
+  public:
+    CreepSpline(const std::vector<double> &knots, const Scales &scales, const Bounds &least)
+        : knots_(knots), scales_(scales), least_(least) {}
+
+    /// With the speed that it has at a knot already, if there is one. False if the end is still above the
+    /// scale there.
+    bool lay(std::size_t from, const LawState *start) {
+        cut(from);
+        const double h = length(0);
+        std::size_t k = 0;
+        if (start != nullptr) {
+            c_ = {start->b - start->a * h, start->b + start->a * h};
+            k = 2;
+        } else {
+            c_.clear();
+        }
+        const double known = k > 0 ? scale_of_creep(least_, std::sqrt(c_[1]) / SHARE) : 0;
+        bool is_reached = true;
+        for (; k < ends_.size() + 1; ++k) {
+            const std::size_t before = ends_[std::max<std::size_t>(k, 2) - 2];
+            const std::size_t behind = k + 1 < ends_.size() ? ends_[k + 1] : ends_.back() + CELLS_BEHIND;
+            double d = scales_.least_between(before, behind);
+            if (start != nullptr) {
+                // Down at a slope of 1, as lowered limits need it.
+                const double way = middle(k) - middle(1);
+                is_reached = d >= known - way;
+                d = std::clamp(d, known - way, known + SPACING_GROWTH * way);
+            }
+            const double v =
+                SHARE * std::min(std::cbrt(least_.jerk * d * d), std::sqrt(least_.acceleration * d));
+            c_.push_back(v * v);
+        }
+        return is_reached;
+    }
+    /// The coefficient of a cell between two places in stretch k, or beside it.
+    double coefficient(std::size_t k, double x, double y) const noexcept {
+        const double a = slope(k), w = (slope(k + 1) - a) / length(k);
+        const double before = length(k > 0 ? k - 1 : 0), h = length(k), p = knots_[ends_[k]];
+        const double b = (h * c_[k] + before * c_[k + 1]) / (before + h);
+        return b + a * (x - p + y - p) + w * (x - p) * (y - p);
+    }
+    std::size_t stretches() const noexcept { return ends_.size() - 1; }
+    /// The cell at which a stretch ends.
+    std::size_t end_of(std::size_t k) const noexcept { return ends_[k + 1]; }
+
+  private:
+    /// Stretches of whole cells.
+    void cut(std::size_t from) {
+        const std::size_t last = knots_.size() - 1;
+        ends_.assign(1, from);
+        for (std::size_t k = from; k < last;) {
+            const double least = scales_.at(k) / STRETCHES;
+            std::size_t end = k + 1;
+            while (end < last && knots_[end] - knots_[k] < least) {
+                ++end;
+            }
+            // What is left is a stretch, too, or belongs to this one.
+            k = knots_[last] - knots_[end] < least ? last : end;
+            ends_.push_back(k);
+        }
+    }
+    double length(std::size_t k) const noexcept {
+        const std::size_t in = std::min(k, stretches() - 1);
+        return knots_[ends_[in + 1]] - knots_[ends_[in]];
+    }
+    double slope(std::size_t k) const noexcept {
+        return (c_[k + 1] - c_[k]) / (length(k > 0 ? k - 1 : 0) + length(k));
+    }
+    /// The middle of the stretch that coefficient k belongs to.
+    double middle(std::size_t k) const noexcept {
+        const std::size_t in = std::clamp<std::size_t>(k, 1, stretches()) - 1;
+        return 0.5 * (knots_[ends_[in]] + knots_[ends_[in + 1]]);
+    }
+
+    const std::vector<double> &knots_;
+    const Scales &scales_;
+    const Bounds &least_;
+    std::vector<std::size_t> ends_;  ///< knots
+    std::vector<double> c_;
 };
 
 }  // namespace
@@ -153,32 +249,36 @@ bool isSteady(const Run &run, double c, double next, double apart) noexcept {
     return std::abs(creep_scale(run, next) - creep_scale(run, c)) <= SPACING_GROWTH * apart;
 }
 
-void creep(const Run &run, const RestMap &map, const std::vector<double> &knots, double end_ramp,
+bool creep(const Run &run, const RestMap &map, const std::vector<double> &knots, double end_ramp,
            std::vector<double> &c) {
     const Bounds least = least_of(run.limits);
     Scales scales(run, least);
-    // Coefficient k belongs to the middle of cell k - 1.
     const std::size_t cells = knots.size() - 1;
-    const auto cell_of = [&](std::size_t k) { return std::clamp<std::size_t>(k, 1, cells) - 1; };
+    const std::size_t from = c.empty() ? 0 : c.size() - 2;
+    const auto length = [&](std::size_t k) { return knots[k + 1] - knots[k]; };
+    LawState start;
     Scales::Known known;
-    const std::size_t old = c.size();
-    const double from = old == 0 ? 0 : scale_of_creep(least, std::sqrt(c.back()) / SHARE);
-    if (old > 0) {
-        known = {cell_of(old - 1), from, std::sqrt(c.back()) / SHARE};
+    if (!c.empty()) {
+        const double before = length(from - 1), behind = length(from), last = c[from], next = c[from + 1];
+        start.a = (next - last) / (before + behind);
+        start.b = last + start.a * before;
+        const double v = std::sqrt(next) / SHARE;
+        known = {from, scale_of_creep(least, v), v};
     }
-    const std::vector<double> &scale = scales.find(map, knots, end_ramp, known);
-    const auto middle = [&](std::size_t k) { return 0.5 * (knots[cell_of(k)] + knots[cell_of(k) + 1]); };
-    // The scale that the last coefficient belongs to changes into the present one.
-    for (std::size_t k = old; k < cells + 2; ++k) {
-        double d = scale[cell_of(k)];
-        if (old > 0) {
-            // Down at a slope of 1: slow moves that lie within a cell are not seen as far ahead.
-            const double way = middle(k) - middle(old - 1);
-            d = std::clamp(d, from - way, from + SPACING_GROWTH * way);
+    scales.find(map, knots, end_ramp, known);
+    CreepSpline spline(knots, scales, least);
+    const bool is_reached = spline.lay(from, c.empty() ? nullptr : &start);
+    if (c.empty()) {
+        c.push_back(spline.coefficient(0, knots[0] - length(0), knots[0]));
+    }
+    for (std::size_t k = 0, cell = c.size() - 1; k < spline.stretches(); ++k) {
+        for (; cell < spline.end_of(k); ++cell) {
+            c.push_back(spline.coefficient(k, knots[cell], knots[cell + 1]));
         }
-        const double v = SHARE * std::min(std::cbrt(least.jerk * d * d), std::sqrt(least.acceleration * d));
-        c.push_back(v * v);
     }
+    // The last one belongs to a cell of the same length behind the end.
+    c.push_back(2 * spline.coefficient(spline.stretches() - 1, knots[cells], knots[cells]) - c[cells]);
+    return is_reached;
 }
 
 }  // namespace mw::trajectory::profile

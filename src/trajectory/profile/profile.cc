@@ -14,33 +14,26 @@ constexpr double LEAST_CELL_S = 5e-4;
 /// Parts of the limits that are planned with: a limit is kept at three places of a cell, and nearly so
 /// between them.
 constexpr double VELOCITY_SHARE = 0.9995, ACCELERATION_SHARE = 0.998, JERK_SHARE = 0.99;
-/// Part of a limit that a plan leaves to the next one.
-constexpr double LEAST_ROOM = 1e-6;
+/// Parts of the limits by which rows are raised where a start reaches them.
+constexpr double ROOM = 5e-7, LEAST_ROOM = 1e-9;
 
 }  // namespace
 
 void Profile::begin(double s) noexcept {
     start_s_ = s;
     restart();
-    worst_start_ = 0;
-    steps_ = 0;
+    worst_start_ = worst_rejected_ = 0;
+    steps_ = rejected_ = 0;
 }
 
 /// Nothing is planned, at rest at the start.
 void Profile::restart() noexcept {
-    map_ = RestMap();
-    knots_.clear();
-    c_.clear();
-    eased_.clear();
-    time_cells_.clear();
-    before_ = 0;
-    has_end_ = ends_early_ = false;
-    end_s_ = 0;
+    plan_ = SpeedPlan();
     joint_curve_.begin(nullptr, {});
 }
 
 double Profile::planned_s() const noexcept {
-    return knots_.empty() ? start_s_ : map_.at(knots_.back()).s;
+    return plan_.knots.empty() ? start_s_ : plan_.map.at(plan_.knots.back()).s;
 }
 
 void Profile::take_limits(const Run &run) {
@@ -81,7 +74,7 @@ void Profile::take_joints(const Run &run) {
         joint_curve_.begin(run.map, run.joints);
     }
     joint_curve_.cover(*run.spans);
-    joint_curve_.drop_before(knots_.empty() ? start_s_ : map_.at(knots_[0]).s);
+    joint_curve_.drop_before(plan_.knots.empty() ? start_s_ : plan_.map.at(plan_.knots[0]).s);
     run_.joint_curve = &joint_curve_;
     if (joint_curve_.drivable_s() < run_.end_s) {
         run_.end_s = joint_curve_.drivable_s();
@@ -91,130 +84,151 @@ void Profile::take_joints(const Run &run) {
 
 void Profile::lay_cells(std::size_t fixed) {
     const Run &run = run_;
-    const double planned = cell_s_ * static_cast<double>(laid() - fixed);
-    if (has_end_ || planned >= settings_.window_s) {
+    const double planned = cell_s_ * static_cast<double>(plan_.laid() - fixed);
+    if (plan_.has_end || planned >= settings_.window_s) {
         return;
     }
-    const bool is_first = knots_.empty();
+    const bool is_first = plan_.knots.empty();
     const double from = planned_s();
     // The creep that was laid before counts on the ramp before the end as long as the curve ends there.
-    if (run.end_s != end_s_) {
-        end_s_ = run.end_s;
-        end_ramp_ = std::min(RoughProfile::ramp_at(run, run.end_s), MAX_RAMP * (run.end_s - from));
+    if (run.end_s != plan_.end_s) {
+        plan_.end_s = run.end_s;
+        plan_.end_ramp = std::min(RoughProfile::ramp_at(run, run.end_s), MAX_RAMP * (run.end_s - from));
     }
-    const auto &ends = rough_.lay(run, {from, is_first, settings_.window_s - planned, cell_s_, end_ramp_});
+    const auto &ends =
+        rough_.lay(run, {from, is_first, settings_.window_s - planned, cell_s_, plan_.end_ramp});
     if (ends.empty()) {
         return;
     }
     if (is_first) {
-        map_.set_start(start_s_,
-                       std::min(RoughProfile::ramp_at(run, start_s_), MAX_RAMP * (run.end_s - start_s_)));
-        knots_.push_back(0);
+        plan_.map.set_start(
+            start_s_, std::min(RoughProfile::ramp_at(run, start_s_), MAX_RAMP * (run.end_s - start_s_)));
+        plan_.knots.push_back(0);
     }
-    const double ramp = end_ramp_;
+    const double ramp = plan_.end_ramp;
     const bool is_end = run.has_stop && ends.back() >= run.end_s;
     if (is_end) {
-        map_.set_end(run.end_s, ramp);
-        has_end_ = true;
+        plan_.map.set_end(run.end_s, ramp);
+        plan_.has_end = true;
     }
-    const std::size_t old = laid();
+    const std::size_t old = plan_.laid();
     for (const double s : ends) {
         // A stop at the end of what is known must still be possible, and what follows must not lower limits.
         if (!is_end && s > run.end_s - std::max(ramp, run.has_stop ? 0.0 : reach_)) {
             break;
         }
-        const double p = is_end && s == ends.back() ? map_.end() : map_.parameter_at(s);
-        // The cell behind the old end is not longer than that before it.
-        const double next = old > 0 && laid() == old ? 2 * knots_[old] - knots_[old - 1] : p;
-        const double left = p - next;
-        if (left > 0 && (left > 0.5 * (next - knots_[old]) || !(is_end && s == ends.back()))) {
-            knots_.push_back(next);
-        }
-        if (!(left > 0) || left > 0.5 * (next - knots_[old]) || (is_end && s == ends.back())) {
-            knots_.push_back(p);
+        const double p = is_end && s == ends.back() ? plan_.map.end() : plan_.map.parameter_at(s);
+        if (old > 0 && plan_.laid() == old) {
+            plan_.lay_first(p);
+        } else {
+            plan_.knots.push_back(p);
         }
     }
-    if (old > 0 && laid() > old) {
-        const double h = knots_[old] - knots_[old - 1];
-        change_behind(h, knots_[old + 1] - knots_[old]);
+    if (plan_.laid() == old) {
+        // Too little of the curve is known.
+        if (is_first) {
+            plan_.knots.clear();
+        }
+        return;
     }
-    if (knots_.size() > 1) {
-        creep(run, map_, knots_, ramp, c_);
-    } else {
-        knots_.clear();  // too little of the curve is known
+    if (old > 0) {
+        plan_.change_behind(plan_.knots[old] - plan_.knots[old - 1], plan_.knots[old + 1] - plan_.knots[old]);
     }
-    eased_.resize(laid());
-}
-
-/// The last coefficient for another length of the cell behind the plan: the motion stays the same.
-void Profile::change_behind(double from, double to) noexcept {
-    const std::size_t n = c_.size() - 2;
-    const double last = knots_[n] - knots_[n - 1];
-    c_[n + 1] = c_[n] + (c_[n + 1] - c_[n]) * (last + to) / (last + from);
+    plan_.lowers = !creep(run, plan_.map, plan_.knots, ramp, plan_.c) && plan_.lowers;
+    plan_.eased.resize(plan_.laid());
 }
 
 /// Rows of `n` cells behind the fixed ones, and the plan as their first coefficients.
 void Profile::prepare(std::size_t fixed, std::size_t n) {
-    make_rows(run_, map_, &knots_[fixed], n, rows_);
-    const Course course = course_from(fixed, &c_[fixed]);
-    const std::size_t behind = fixed + n < laid() ? fixed + n : fixed + n - 1;
-    law_.begin(rows_, course.before, knots_[behind + 1] - knots_[behind]);
-    std::copy_n(c_.begin() + static_cast<long>(fixed), n + 2, law_.coefficients().begin());
+    make_rows(run_, plan_.map, &plan_.knots[fixed], n, rows_);
+    const Course course = plan_.course_from(fixed, &plan_.c[fixed]);
+    const std::size_t behind = fixed + n < plan_.laid() ? fixed + n : fixed + n - 1;
+    law_.begin(rows_, course.before, plan_.knots[behind + 1] - plan_.knots[behind]);
+    std::copy_n(plan_.c.begin() + static_cast<long>(fixed), n + 2, law_.coefficients().begin());
 }
 
-/// Raises rows a little where the present coefficients reach them. Returns the
-/// largest row.
+/// Raises rows by no more than rounding, where the present coefficients reach them: the steps need room.
+/// Returns the largest row before.
 double Profile::make_room() {
     double worst = 0;
     for (std::size_t k = 0; k < rows_.cells(); ++k) {
         for (std::size_t p = 0; p < PLACES; ++p) {
             const double row = law_.worst_at(k, p);
             worst = std::max(worst, row);
-            if (row * (1 + LEAST_ROOM) > 1) {
-                rows_.relax(k, p, row * (1 + LEAST_ROOM));
-                rows_.allow(k, p, law_.state(k, PLACE_PART[p]).b * (1 + LEAST_ROOM));
+            if (row > 1 - ROOM) {
+                const double most = std::max(1 + ROOM, row * (1 + LEAST_ROOM));
+                rows_.relax(k, p, most);
+                rows_.allow(k, p, most * most / rows_.velocity(k, p));
             }
         }
     }
     return worst;
 }
 
-void Profile::store(std::size_t fixed) {
-    std::copy_n(law_.coefficients().begin(), laid() - fixed + 2, c_.begin() + static_cast<long>(fixed));
+/// False for a start that leaves a limit: it is not driven.
+bool Profile::isStart(double worst) noexcept {
+    if (worst > 1 + ROUNDING) {
+        worst_rejected_ = std::max(worst_rejected_, worst);
+        return false;
+    }
+    worst_start_ = std::max(worst_start_, worst);
+    return true;
 }
 
-void Profile::plan(const Run &run, std::size_t fixed) {
+/// The plan that was kept stays. Returns false.
+bool Profile::restore() noexcept {
+    std::swap(plan_, kept_);
+    ++rejected_;
+    return false;
+}
+
+bool Profile::plan(const Run &run, std::size_t fixed) {
     const bool is_same = run.has_stop && run.end_s <= ending_s_;
-    if (ends_early_ && (is_same || isInEnding() || fixed > ending_at_)) {
-        return;
+    if (plan_.ends_early && (is_same || isInEnding() || fixed > ending_at_)) {
+        return true;
     }
-    ends_early_ = false;
+    kept_ = plan_;
+    return extend(run, fixed) || restore();
+}
+
+/// False if the plan from which this one starts leaves a limit.
+bool Profile::extend(const Run &run, std::size_t fixed) {
+    plan_.ends_early = false;
     take_limits(run);
+    const std::size_t old = plan_.laid();
+    const bool lowers = plan_.lowers;
     lay_cells(fixed);
-    const std::size_t n = laid() - std::min(fixed, laid());
+    const std::size_t n = plan_.laid() - std::min(fixed, plan_.laid());
     if (n == 0) {
-        return;
+        return true;
+    }
+    if (lowers) {
+        plan_.ease(std::max(old, fixed), plan_.laid());
     }
     prepare(fixed, n);
     for (std::size_t k = 0; k < n; ++k) {
         for (std::size_t p = 0; p < PLACES; ++p) {
-            rows_.allow(k, p, eased_[fixed + k][p]);
+            rows_.allow(k, p, plan_.eased[fixed + k][p]);
         }
     }
-    worst_start_ = std::max(worst_start_, make_room());
+    if (!isStart(make_room())) {
+        return false;
+    }
     SolveSettings settings;
     settings.cell_s = cell_s_;
-    const bool is_moving = fixed > 0 || before_ > 0;
-    steps_ += law_.solve(is_moving ? 2 : 0, has_end_ ? 0 : 2, settings);
-    store(fixed);
+    const bool is_moving = fixed > 0 || plan_.before > 0;
+    steps_ += law_.solve(is_moving ? 2 : 0, plan_.has_end ? 0 : 2, settings);
+    std::copy_n(law_.coefficients().begin(), n + 2, plan_.c.begin() + static_cast<long>(fixed));
     make_time_cells(fixed);
+    return true;
 }
 
 void Profile::make_time_cells(std::size_t fixed) {
-    time_cells_.resize(laid());
-    const Course course = course_from(fixed, law_.coefficients().data());
+    plan_.time_cells.resize(plan_.laid());
+    const Course course = plan_.course_from(fixed, law_.coefficients().data());
     for (std::size_t k = 0; k < course.cells; ++k) {
-        time_cells_[fixed + k] = cell_of(motion_at(course, k, 0), motion_at(course, k, 1), law_.time_of(k));
+        plan_.time_cells[fixed + k] =
+            cell_of(plan_.motion_at(course, k, 0), plan_.motion_at(course, k, 1), law_.time_of(k));
     }
 }
 
@@ -222,20 +236,15 @@ void Profile::drop(std::size_t count) {
     if (count == 0) {
         return;
     }
-    const std::size_t laid = ends_early_ ? std::min(count, ending_at_) : count;
-    if (ends_early_) {
+    const std::size_t laid = plan_.ends_early ? std::min(count, ending_at_) : count;
+    if (plan_.ends_early) {
         ending_.erase(ending_.begin(), ending_.begin() + static_cast<long>(count - laid));
         ending_at_ -= laid;
     }
     if (laid == 0) {
         return;
     }
-    before_ = knots_[laid] - knots_[laid - 1];
-    const auto n = static_cast<long>(laid);
-    knots_.erase(knots_.begin(), knots_.begin() + n);
-    c_.erase(c_.begin(), c_.begin() + n);
-    eased_.erase(eased_.begin(), eased_.begin() + n);
-    time_cells_.erase(time_cells_.begin(), time_cells_.begin() + n);
+    plan_.drop(laid);
 }
 
 }  // namespace mw::trajectory::profile

@@ -8,8 +8,7 @@
 
 #include <vector>
 
-#include "trajectory/profile/cells.hh"
-#include "trajectory/profile/stop_law.hh"
+#include "trajectory/profile/speed_plan.hh"
 #include "trajectory/profile/time_law.hh"
 
 namespace mw::trajectory::profile {
@@ -33,15 +32,6 @@ enum class StopEffort : std::uint8_t {
     SOONEST  ///< the plan, too, slows down: for an operator's stop
 };
 
-/// The coefficients of a plan from one of its cells on.
-struct Course {
-    const double *knots = nullptr, *c = nullptr;
-    std::size_t cells = 0;
-    double before = 0;  ///< length of the cell before the first one
-    /// At the part x in [0, 1] of a cell.
-    LawState state(std::size_t cell, double x) const noexcept;
-};
-
 /// Planner thread. Cells that were planned stay in it until they are dropped, so that another motion can
 /// begin at the start of each.
 class Profile {
@@ -51,25 +41,29 @@ class Profile {
     /// A run begins, at rest at `s`.
     void begin(double s) noexcept;
     /// Plans a window of the run behind the first `fixed` cells, which stay. The limits are those of the last
-    /// plan or higher, the end of the run the same or farther away.
-    void plan(const Run &run, std::size_t fixed);
+    /// plan or higher, the end of the run the same or farther away. False if it is rejected: the plan that it
+    /// would start from leaves a limit by more than rounding. Then the plan before stays, with its creep and
+    /// its stops, and more of the curve or another place to start may help.
+    bool plan(const Run &run, std::size_t fixed);
     /// The soonest stop that keeps every limit of `run`, not before the start of cell `fixed`. The plan stays
     /// as it is.
     Stop stop(const Run &run, std::size_t fixed, StopEffort effort);
     /// As plan(), after limits of speed were lowered, or the end of the run came nearer (not nearer than the
     /// soonest stop), or was taken away. The speed may be above a lowered limit as long as the soonest
     /// braking needs; acceleration and jerk never. An end that is so near that the plan brakes for it stays:
-    /// the run resumes with begin().
-    void replan(const Run &run, std::size_t fixed);
+    /// the run resumes with begin(). False if it is rejected as in plan(): the speed stays as it was.
+    bool replan(const Run &run, std::size_t fixed);
     /// Cells that are planned and not dropped.
-    std::size_t cells() const noexcept { return ends_early_ ? ending_at_ + ending_.size() : laid(); }
+    std::size_t cells() const noexcept {
+        return plan_.ends_early ? ending_at_ + ending_.size() : plan_.laid();
+    }
     const TimeCell &cell(std::size_t k) const noexcept {
-        return ends_early_ && k >= ending_at_ ? ending_[k - ending_at_] : time_cells_[k];
+        return plan_.ends_early && k >= ending_at_ ? ending_[k - ending_at_] : plan_.time_cells[k];
     }
     /// The last cell ends in a stop, at `end_s`: that of the run, or one that was
     /// planned before and is too near to be changed.
-    bool isComplete() const noexcept { return has_end_ || ends_early_; }
-    double end_s() const noexcept { return ends_early_ ? ending_s_ : planned_s(); }
+    bool isComplete() const noexcept { return plan_.has_end || plan_.ends_early; }
+    double end_s() const noexcept { return plan_.ends_early ? ending_s_ : planned_s(); }
     /// The first `count` cells are driven.
     void drop(std::size_t count);
 
@@ -78,9 +72,14 @@ class Profile {
     double drivable_s() const noexcept { return joint_curve_.drivable_s(); }
     /// Largest row over its limit of the plan that the last one started from.
     double worst_start() const noexcept { return worst_start_; }
+    /// Plans that were rejected, and the largest row over its limit that they would have started from.
+    int rejected() const noexcept { return rejected_; }
+    double worst_rejected() const noexcept { return worst_rejected_; }
     int steps() const noexcept { return steps_; }
 
   private:
+    /// Part of a limit by which rounding may leave it.
+    static constexpr double ROUNDING = 1e-6;
     /// A direct stop in less time that ends there; by default anywhere.
     struct Goal {
         double most_s = 1e300, end_s = 1e300;
@@ -91,26 +90,25 @@ class Profile {
     void take_joints(const Run &run);
     void lay_cells(std::size_t fixed);
     void prepare(std::size_t fixed, std::size_t n);
-    void store(std::size_t fixed);
     double make_room();
-    void make_slowest(std::size_t fixed, std::size_t n, const std::vector<double> &floors);
-    void cut(std::size_t kept);
-    void change_behind(double from, double to) noexcept;
+    bool isStart(double worst) noexcept;
+    bool restore() noexcept;
+    bool extend(const Run &run, std::size_t fixed);
+    bool change(const Run &run, std::size_t fixed);
+    bool make_slowest(std::size_t fixed, std::size_t n, const std::vector<double> &floors);
     void restart() noexcept;
     std::size_t split(const Run &run, std::size_t fixed, std::size_t n);
-    void slow_down(const Run &run, std::size_t fixed);
+    int parts_of(const Run &run, const Course &course, std::size_t cell, double length) const;
+    bool keepsRows(const Course &course, std::size_t cell, int parts);
+    bool slow_down(const Run &run, std::size_t fixed);
     std::size_t first_tail(const Run &run, const Course &course, DirectStop &tail) const;
     void stop_sooner(const Run &run, std::size_t fixed, Stop &out);
     void make_time_cells(std::size_t fixed);
-    Course course_from(std::size_t fixed, const double *c) const noexcept;
-    Motion motion_at(const Course &course, std::size_t cell, double x) const noexcept;
     bool find_tail(const Run &run, const Course &course, std::size_t cell, const Goal &goal,
                    DirectStop &tail) const;
     bool endsNear(const Run &run) const noexcept;
     bool end_early(const Run &run, std::size_t fixed);
-    /// Cells of the spline.
-    std::size_t laid() const noexcept { return knots_.empty() ? 0 : knots_.size() - 1; }
-    bool isInEnding() const noexcept { return ends_early_ && ending_.size() < ending_cells_; }
+    bool isInEnding() const noexcept { return plan_.ends_early && ending_.size() < ending_cells_; }
     std::size_t cells_of_stop(const Run &run, const Course &course) const;
     bool keepsLimits(const Run &run, const Course &course, std::size_t cell, const DirectStop &tail,
                      Density density, Rates &least) const;
@@ -118,35 +116,25 @@ class Profile {
 
     ProfileSettings settings_;
     double cell_s_ = 0;
-    RestMap map_;
     RoughProfile rough_;
     Run run_;  ///< its limits with the margins
     curve::JointCurve joint_curve_;
     Rows rows_;
     TimeLaw law_;
-    std::vector<double> knots_, c_;  ///< of the cells that have not been dropped
-    std::vector<TimeCell> time_cells_;
-    /// What b may be at the places of each cell, above the limits of the speed; 0: nothing.
-    std::vector<std::array<double, PLACES>> eased_;
-    std::vector<double> creep_, floors_;
+    SpeedPlan plan_, kept_;  ///< what is planned, and the plan before while another one is made
+    std::vector<double> creep_, floors_, part_knots_;
     mutable std::size_t places_ = 0;  ///< at which direct stops were checked
     struct {
         std::vector<double> knots, c;
     } split_;
     double start_s_ = 0;
-    double before_ = 0;  ///< length of the cell before them; 0: there is none
-    double reach_ = 0;   ///< before the end of what is known: a seam there may lower limits so far
-    double end_s_ = 0,
-           end_ramp_ =
-               0;  ///< end of the curve as it is known, and the length over which a stop there is blended
-    bool has_end_ = false;  ///< the last cell ends in the stop
+    double reach_ = 0;  ///< before the end of what is known: a seam there may lower limits so far
     // A direct stop before the end of the cells, from the start of one of them on.
-    bool ends_early_ = false;
     std::size_t ending_at_ = 0, ending_cells_ = 0;
     double ending_s_ = 0;
     std::vector<TimeCell> ending_;
-    double worst_start_ = 0;
-    int steps_ = 0;
+    double worst_start_ = 0, worst_rejected_ = 0;
+    int steps_ = 0, rejected_ = 0;
 };
 
 }  // namespace mw::trajectory::profile

@@ -14,8 +14,6 @@ namespace {
 constexpr int TAIL_PLACES = 16;
 constexpr double SPAN_PLACES = 12;
 constexpr int TAIL_ROUNDS = 4;
-/// Part by which the speed may exceed that of the soonest braking, squared.
-constexpr double ABOVE_LOWEST = 1e-3;
 constexpr double ANYWHERE = 1e300;
 /// Places that are checked for a quick stop, about: 0.2 ms.
 constexpr std::size_t QUICK_PLACES = 400;
@@ -27,28 +25,6 @@ constexpr double MOST_PARTS = 8;
 constexpr double LAST_MU = 1e-2;
 
 }  // namespace
-
-Course Profile::course_from(std::size_t fixed, const double *c) const noexcept {
-    const double *knots = &knots_[fixed];
-    const double before = fixed > 0 ? knots[0] - knots[-1] : before_ > 0 ? before_ : knots[1] - knots[0];
-    return {knots, c, laid() - fixed, before};
-}
-
-LawState Course::state(std::size_t k, double x) const noexcept {
-    const double h = knots[k + 1] - knots[k];
-    const double h_before = k > 0 ? knots[k] - knots[k - 1] : before;
-    const double h_behind = k + 1 < cells ? knots[k + 2] - knots[k + 1] : h;
-    const double slope = (c[k + 1] - c[k]) / (h_before + h);
-    const double next = (c[k + 2] - c[k + 1]) / (h + h_behind);
-    return {c[k + 1] - h * slope + h * ((2 * x - x * x) * slope + x * x * next), (1 - x) * slope + x * next,
-            (next - slope) / h};
-}
-
-Motion Profile::motion_at(const Course &course, std::size_t cell, double x) const noexcept {
-    const LawState state = course.state(cell, x);
-    const MapPoint m = map_.at(course.knots[cell] + x * (course.knots[cell + 1] - course.knots[cell]));
-    return {m.s, m.first * std::sqrt(state.b), m.second * state.b + m.first * state.a};
-}
 
 /// Also reduces `least` to what limits leave.
 bool Profile::keepsLimits(const Run &run, const Course &course, std::size_t cell, const DirectStop &tail,
@@ -81,12 +57,12 @@ bool Profile::keepsLimits(const Run &run, const Course &course, std::size_t cell
                 std::abs(tail.jerk_at(t)) <= left.jerk + left.spare_jerk;
         // Above the limit of the speed it may be where the plan is.
         if (std::max(speed_share(run, point, feed), left.speed_share) * m.v > 1) {
-            const double p = map_.parameter_at(m.s);
+            const double p = plan_.map.parameter_at(m.s);
             while (cell + 1 < course.cells && course.knots[cell + 1] <= p) {
                 ++cell;
             }
             const double x = (p - course.knots[cell]) / (course.knots[cell + 1] - course.knots[cell]);
-            keeps = keeps && x <= 1 && m.v <= motion_at(course, cell, x).v * (1 + 1e-9);
+            keeps = keeps && x <= 1 && m.v <= plan_.motion_at(course, cell, x).v * (1 + 1e-9);
         }
         if (!(least.acceleration > 0) || !(least.jerk > 0)) {
             return false;
@@ -110,7 +86,7 @@ bool Profile::find_tail(const Run &run, const Course &course, std::size_t cell, 
                         DirectStop &tail) const {
     const bool is_last = cell == course.cells;
     const std::size_t in = is_last ? cell - 1 : cell;
-    const Motion from = motion_at(course, in, is_last ? 1 : 0);
+    const Motion from = plan_.motion_at(course, in, is_last ? 1 : 0);
     const std::size_t span = span_at(*run.spans, from.s);
     Rates rates = rates_at(run_, curve::point_at((*run.spans)[span], from.s), from);
     for (int round = 0; round < TAIL_ROUNDS; ++round) {
@@ -161,15 +137,15 @@ std::size_t Profile::first_tail(const Run &run, const Course &course, DirectStop
 Stop Profile::stop(const Run &run, std::size_t fixed, StopEffort effort) {
     take_limits(run);
     Stop out{cells(), {}, end_s()};
-    if (fixed == 0 && before_ == 0) {
+    if (fixed == 0 && plan_.before == 0) {
         return {0, {}, start_s_};
     }
-    if (fixed >= (ends_early_ ? ending_at_ : laid()) || isInEnding()) {
+    if (fixed >= (plan_.ends_early ? ending_at_ : plan_.laid()) || isInEnding()) {
         return out;
     }
-    const Course course = course_from(fixed, &c_[fixed]);
+    const Course course = plan_.course_from(fixed, &plan_.c[fixed]);
     DirectStop tail;
-    const std::size_t first = ends_early_ ? course.cells + 1 : first_tail(run, course, tail);
+    const std::size_t first = plan_.ends_early ? course.cells + 1 : first_tail(run, course, tail);
     if (first <= course.cells) {
         out = {fixed + first, {tail.cells.begin(), tail.cells.end()}, tail.end_s};
     }
@@ -182,7 +158,7 @@ Stop Profile::stop(const Run &run, std::size_t fixed, StopEffort effort) {
 /// Cells behind the fixed ones in which a stop is looked for first: some more than a direct stop takes on a
 /// straight line.
 std::size_t Profile::cells_of_stop(const Run &run, const Course &course) const {
-    const Motion from = motion_at(course, 0, 0);
+    const Motion from = plan_.motion_at(course, 0, 0);
     const CurvePoint point = curve::point_at((*run.spans)[span_at(*run.spans, from.s)], from.s);
     const Rates rates = rates_at(run_, point, {from.s, 0, 0});
     const double reached = from.v + 0.5 * from.a * std::abs(from.a) / rates.jerk;
@@ -190,7 +166,7 @@ std::size_t Profile::cells_of_stop(const Run &run, const Course &course) const {
         std::max(rates.acceleration / rates.jerk, std::sqrt(std::max(reached, 0.0) / rates.jerk));
     const double length = from.v * (from.v / rates.acceleration + ramp);
     std::size_t n = 1;
-    while (n < course.cells && map_.at(course.knots[n]).s < from.s + length) {
+    while (n < course.cells && plan_.map.at(course.knots[n]).s < from.s + length) {
         ++n;
     }
     return n;
@@ -198,7 +174,7 @@ std::size_t Profile::cells_of_stop(const Run &run, const Course &course) const {
 
 /// From the motion with the least speed, where that is sooner.
 void Profile::stop_sooner(const Run &run, std::size_t fixed, Stop &out) {
-    const Course plan = course_from(fixed, &c_[fixed]);
+    const Course plan = plan_.course_from(fixed, &plan_.c[fixed]);
     double least = 0;
     for (std::size_t k = fixed; k < out.kept; ++k) {
         least += cell(k).duration;
@@ -207,8 +183,10 @@ void Profile::stop_sooner(const Run &run, std::size_t fixed, Stop &out) {
         least += cell.duration;
     }
     for (std::size_t n = cells_of_stop(run, plan);; n = std::min(2 * n, plan.cells)) {
-        make_slowest(fixed, n, {});
-        Course course = course_from(fixed, law_.coefficients().data());
+        if (!make_slowest(fixed, n, {})) {
+            return;
+        }
+        Course course = plan_.course_from(fixed, law_.coefficients().data());
         course.cells = n;
         DirectStop tail;
         std::size_t kept = n + 1;
@@ -228,7 +206,7 @@ void Profile::stop_sooner(const Run &run, std::size_t fixed, Stop &out) {
             out = {fixed, {}, tail.end_s};
             for (std::size_t i = 0; i < kept; ++i) {
                 out.cells.push_back(
-                    cell_of(motion_at(course, i, 0), motion_at(course, i, 1), law_.time_of(i)));
+                    cell_of(plan_.motion_at(course, i, 0), plan_.motion_at(course, i, 1), law_.time_of(i)));
             }
             out.cells.insert(out.cells.end(), tail.cells.begin(), tail.cells.end());
         }
@@ -239,17 +217,19 @@ void Profile::stop_sooner(const Run &run, std::size_t fixed, Stop &out) {
 }
 
 /// The speed in `n` cells behind the fixed ones as small as the limits of acceleration and jerk allow, down
-/// to `floors` (none: 0).
-void Profile::make_slowest(std::size_t fixed, std::size_t n, const std::vector<double> &floors) {
+/// to `floors` (none: 0). False if the plan leaves a limit.
+bool Profile::make_slowest(std::size_t fixed, std::size_t n, const std::vector<double> &floors) {
     prepare(fixed, n);
-    const Course course = course_from(fixed, &c_[fixed]);
+    const Course course = plan_.course_from(fixed, &plan_.c[fixed]);
     for (std::size_t k = 0; k < n; ++k) {
         for (std::size_t p = 0; p < PLACES; ++p) {
             rows_.allow(k, p, course.state(k, PLACE_PART[p]).b * (1 + ABOVE_LOWEST));
         }
     }
-    make_room();
-    const std::size_t start = fixed > 0 || before_ > 0 ? 2 : 0;
+    if (!isStart(make_room())) {
+        return false;
+    }
+    const std::size_t start = fixed > 0 || plan_.before > 0 ? 2 : 0;
     SolveSettings settings;
     settings.objective = Objective::SPEED;
     settings.last_mu = LAST_MU;
@@ -259,26 +239,50 @@ void Profile::make_slowest(std::size_t fixed, std::size_t n, const std::vector<d
             i < start ? settings.first_mu : std::max(settings.first_mu, course.c[i] / floors[i]);
     }
     steps_ += law_.solve(start, 0, settings);
+    return true;
 }
 
-/// Splits the first `n` cells behind the fixed ones where the speed will be lower; they are the same motion.
-/// Returns how many there are then.
+/// Parts of a cell within `length` of the start in which the speed will be lower.
+int Profile::parts_of(const Run &run, const Course &course, std::size_t k, double length) const {
+    const Motion from = plan_.motion_at(course, 0, 0), m = plan_.motion_at(course, k, 0.5);
+    const std::size_t span = span_at(*run.spans, m.s);
+    const double limit = 1 / speed_share(run, curve::point_at((*run.spans)[span], m.s), run.feed_at(m.s));
+    const double braked = from.v * std::sqrt(std::max(1 - (m.s - from.s) / (0.5 * length), 0.0));
+    const double lowest = std::max({limit, braked, m.v / MOST_PARTS});
+    return static_cast<int>(std::ceil(std::max(m.v / lowest, 1.0)));
+}
+
+/// True if the motion in a cell keeps limits of acceleration and jerk at the places of its parts, too: they
+/// may show what lies between the places of the cell.
+bool Profile::keepsRows(const Course &course, std::size_t k, int parts) {
+    const double from = course.knots[k], h = course.knots[k + 1] - from;
+    part_knots_.clear();
+    for (int i = 0; i <= parts; ++i) {
+        part_knots_.push_back(i == parts ? course.knots[k + 1] : from + h * i / parts);
+    }
+    make_rows(run_, plan_.map, part_knots_.data(), static_cast<std::size_t>(parts), rows_);
+    for (std::size_t i = 0; i < rows_.cells(); ++i) {
+        for (std::size_t p = 0; p < PLACES; ++p) {
+            const double x = (static_cast<double>(i) + PLACE_PART[p]) / parts;
+            if (rows_.worst(i, p, course.state(k, x)) > 1 + ROUNDING) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+/// Splits the first `n` cells behind the fixed ones where the speed will be lower and the parts keep every
+/// row; they are the same motion. Returns how many there are then.
 std::size_t Profile::split(const Run &run, std::size_t fixed, std::size_t n) {
-    const Course course = course_from(fixed, &c_[fixed]);
-    const Motion from = motion_at(course, 0, 0);
-    const double length = map_.at(course.knots[n]).s - from.s;
-    split_.knots.assign(knots_.begin(), knots_.begin() + static_cast<long>(fixed) + 1);
-    split_.c.assign(c_.begin(), c_.begin() + static_cast<long>(fixed) + 1);
+    const Course course = plan_.course_from(fixed, &plan_.c[fixed]);
+    const double length = plan_.map.at(course.knots[n]).s - plan_.map.at(course.knots[0]).s;
+    split_.knots.assign(plan_.knots.begin(), plan_.knots.begin() + static_cast<long>(fixed) + 1);
+    split_.c.assign(plan_.c.begin(), plan_.c.begin() + static_cast<long>(fixed) + 1);
     for (std::size_t k = 0; k < course.cells; ++k) {
         const double h = course.knots[k + 1] - course.knots[k];
-        const Motion m = motion_at(course, k, 0.5);
-        const std::size_t span = span_at(*run.spans, m.s);
-        const double limit = 1 / speed_share(run, curve::point_at((*run.spans)[span], m.s), run.feed_at(m.s));
-        const double braked = from.v * std::sqrt(std::max(1 - (m.s - from.s) / (0.5 * length), 0.0));
-        const double lowest = std::max({limit, braked, m.v / MOST_PARTS});
-        const auto parts =
-            k + 1 < course.cells && k < n ? static_cast<int>(std::ceil(std::max(m.v / lowest, 1.0))) : 1;
-        if (parts == 1) {
+        const int parts = k + 1 < course.cells && k < n ? parts_of(run, course, k, length) : 1;
+        if (parts == 1 || !keepsRows(course, k, parts)) {
             split_.knots.push_back(course.knots[k + 1]);
             split_.c.push_back(course.c[k + 1]);
             continue;
@@ -294,32 +298,34 @@ std::size_t Profile::split(const Run &run, std::size_t fixed, std::size_t n) {
     }
     split_.c.push_back(course.c[course.cells + 1]);
     const double end = course.knots[n];
-    knots_.swap(split_.knots);
-    c_.swap(split_.c);
-    eased_.resize(laid());
-    const auto last = std::lower_bound(knots_.begin(), knots_.end(), end);
-    return static_cast<std::size_t>(last - knots_.begin()) - fixed;
+    plan_.knots.swap(split_.knots);
+    plan_.c.swap(split_.c);
+    plan_.eased.resize(plan_.laid());
+    const auto last = std::lower_bound(plan_.knots.begin(), plan_.knots.end(), end);
+    return static_cast<std::size_t>(last - plan_.knots.begin()) - fixed;
 }
 
 /// The speed behind the fixed cells is reduced as soon as limits allow, then the plan ends in a creep. What
-/// is above lowered limits of the speed is allowed from now on.
-void Profile::slow_down(const Run &run, std::size_t fixed) {
-    std::size_t n = cells_of_stop(run, course_from(fixed, &c_[fixed]));
+/// is above lowered limits of the speed is allowed from now on. False if the plan leaves a limit.
+bool Profile::slow_down(const Run &run, std::size_t fixed) {
+    std::size_t n = cells_of_stop(run, plan_.course_from(fixed, &plan_.c[fixed]));
     n = split(run, fixed, n);
     creep_.clear();
-    creep(run_, map_, knots_, end_ramp_, creep_);
+    creep(run_, plan_.map, plan_.knots, plan_.end_ramp, creep_);
     creep_.erase(creep_.begin(), creep_.begin() + static_cast<long>(fixed));
     floors_ = creep_;
     for (std::size_t i = 0; i < floors_.size(); ++i) {
-        floors_[i] = std::min(creep_[i], BELOW_PLAN * c_[fixed + i]);
+        floors_[i] = std::min(creep_[i], BELOW_PLAN * plan_.c[fixed + i]);
     }
     std::size_t kept = 0;
-    for (;; n = std::min(2 * n, laid() - fixed)) {
-        make_slowest(fixed, n, floors_);
+    for (;; n = std::min(2 * n, plan_.laid() - fixed)) {
+        if (!make_slowest(fixed, n, floors_)) {
+            return false;
+        }
         const std::vector<double> &c = law_.coefficients();
         const auto creeps = [&](std::size_t k) {
             const auto is_near = [&](std::size_t i) { return c[i] <= creep_[i] * NEAR_CREEP; };
-            const double *p = &knots_[fixed + k];
+            const double *p = &plan_.knots[fixed + k];
             return is_near(k - 1) && is_near(k) && is_near(k + 1) &&
                    isSteady(run_, c[k - 1], c[k], p[0] - p[-1]) &&
                    isSteady(run_, c[k], c[k + 1], p[0] - p[-1]);
@@ -330,51 +336,35 @@ void Profile::slow_down(const Run &run, std::size_t fixed) {
         }
         kept = std::min(kept, n);
         // A ramp before the end stays.
-        kept = has_end_ && knots_[fixed + kept] > map_.end_ramp() ? n : kept;
-        if (kept < n || n == laid() - fixed) {
+        kept = plan_.has_end && plan_.knots[fixed + kept] > plan_.map.end_ramp() ? n : kept;
+        if (kept < n || n == plan_.laid() - fixed) {
             break;
         }
     }
-    std::copy_n(law_.coefficients().begin(), kept + 2, c_.begin() + static_cast<long>(fixed));
-    if (fixed + kept < laid()) {
-        cut(fixed + kept);
+    std::copy_n(law_.coefficients().begin(), kept + 2, plan_.c.begin() + static_cast<long>(fixed));
+    if (fixed + kept < plan_.laid()) {
+        plan_.cut(fixed + kept);
     }
-    const Course course = course_from(0, c_.data());
-    for (std::size_t k = 0; k < course.cells; ++k) {
-        for (std::size_t p = 0; p < PLACES; ++p) {
-            eased_[k][p] = course.state(k, PLACE_PART[p]).b * (1 + ABOVE_LOWEST);
-        }
-    }
-}
-
-/// Drops the cells of the plan behind the first `kept`.
-void Profile::cut(std::size_t kept) {
-    const double behind = knots_[kept + 1] - knots_[kept];
-    knots_.resize(kept + 1);
-    c_.resize(kept + 2);
-    eased_.resize(kept);
-    change_behind(behind, knots_[kept] - knots_[kept - 1]);
-    if (has_end_) {
-        has_end_ = false;
-        map_.take_end_away();
-    }
+    plan_.lowers = true;
+    plan_.ease(0, plan_.laid());
+    return true;
 }
 
 /// True if the run ends so near that what is planned does not count on it.
 bool Profile::endsNear(const Run &run) const noexcept {
-    if (!run.has_stop || run.end_s >= end_s_) {
+    if (!run.has_stop || run.end_s >= plan_.end_s) {
         return false;
     }
     const double left = run.end_s - planned_s();
     const double ramp = std::min(RoughProfile::ramp_at(run_, run.end_s), MAX_RAMP * left);
-    return left <= 0 ||
-           creep_scale(run_, c_.back()) > RestMap::scale_of(ramp) + curve::SPACING_GROWTH * (left - ramp);
+    return left <= 0 || creep_scale(run_, plan_.c.back()) >
+                            RestMap::scale_of(ramp) + curve::SPACING_GROWTH * (left - ramp);
 }
 
 /// Ends the plan with a direct stop at the end of the run. False if none keeps the limits.
 bool Profile::end_early(const Run &run, std::size_t fixed) {
     take_limits(run);
-    const Course course = course_from(fixed, &c_[fixed]);
+    const Course course = plan_.course_from(fixed, &plan_.c[fixed]);
     DirectStop tail;
     double before = 0, next = 0, least = ANYWHERE;
     for (std::size_t k = 0; k < course.cells && before < least; ++k) {
@@ -385,63 +375,72 @@ bool Profile::end_early(const Run &run, std::size_t fixed) {
             ending_at_ = fixed + k;
         }
         next = before >= next ? before + settings_.cell_s : next;
-        before += time_cells_[fixed + k].duration;
+        before += plan_.time_cells[fixed + k].duration;
     }
-    ends_early_ = least < ANYWHERE;
-    if (ends_early_) {
+    plan_.ends_early = least < ANYWHERE;
+    if (plan_.ends_early) {
         ending_.assign(tail.cells.begin(), tail.cells.end());
         ending_cells_ = ending_.size();
         ending_s_ = run.end_s;
     }
-    return ends_early_;
+    return plan_.ends_early;
 }
 
-void Profile::replan(const Run &run, std::size_t fixed) {
-    if (isInEnding() || (ends_early_ && fixed > ending_at_)) {
-        return;
+bool Profile::replan(const Run &run, std::size_t fixed) {
+    if (isInEnding() || (plan_.ends_early && fixed > ending_at_)) {
+        return true;
     }
-    ends_early_ = false;
+    kept_ = plan_;
+    return change(run, fixed) || restore();
+}
+
+/// False if a plan that this begins with leaves a limit.
+bool Profile::change(const Run &run, std::size_t fixed) {
+    plan_.ends_early = false;
     take_limits(run);
-    if (fixed == 0 && before_ == 0) {
+    if (fixed == 0 && plan_.before == 0) {
         restart();
-        plan(run, fixed);
-        return;
+        return extend(run, fixed);
     }
-    if (laid() <= fixed) {
-        plan(run, fixed);
-        return;
+    if (plan_.laid() <= fixed) {
+        return extend(run, fixed);
     }
     Run whole = run;
     Stop soonest;
     const bool is_near = endsNear(run);
     if (is_near) {
-        whole.end_s = end_s_;
-        whole.has_stop = has_end_;
+        whole.end_s = plan_.end_s;
+        whole.has_stop = plan_.has_end;
         soonest = stop(run, fixed, StopEffort::SOONEST);
         for (std::size_t k = soonest.kept; k-- > fixed;) {
             soonest.cells.insert(soonest.cells.begin(), cell(k));
         }
         take_limits(whole);
     }
-    slow_down(whole, fixed);
-    plan(whole, fixed);
+    if (!slow_down(whole, fixed) || !extend(whole, fixed)) {
+        return false;
+    }
     if (!is_near || end_early(run, fixed)) {
-        return;
+        return true;
     }
     // From the motion with the least speed and its creep.
     take_limits(whole);
-    slow_down(whole, fixed);
+    if (!slow_down(whole, fixed)) {
+        return false;
+    }
     lay_cells(fixed);
-    prepare(fixed, laid() - fixed);
+    plan_.ease(fixed, plan_.laid());
+    prepare(fixed, plan_.laid() - fixed);
     make_time_cells(fixed);
     if (!end_early(run, fixed)) {
         // The soonest stop, before the end of the run.
-        ends_early_ = true;
+        plan_.ends_early = true;
         ending_at_ = fixed;
         ending_ = soonest.cells;
         ending_cells_ = ending_.size();
         ending_s_ = soonest.end_s;
     }
+    return true;
 }
 
 }  // namespace mw::trajectory::profile

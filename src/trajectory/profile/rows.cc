@@ -2,6 +2,7 @@
 #include "trajectory/profile/rows.hh"
 
 #include <algorithm>
+#include <cmath>
 
 namespace mw::trajectory::profile {
 
@@ -56,6 +57,23 @@ void Rows::allow(std::size_t cell, std::size_t place, double b) noexcept {
 
 double Rows::velocity(std::size_t cell, std::size_t place) const noexcept {
     return velocity_[cell / LANES * PLACES + place].v2[cell % LANES];
+}
+
+double Rows::worst(std::size_t cell, std::size_t place, const LawState &s) const noexcept {
+    double worst = 0;
+    for (std::size_t i = 0; i < coordinates_; ++i) {
+        const Row r = get(cell, place, i);
+        worst = std::max({worst, std::abs(r.a1 * s.a + r.a2 * s.b),
+                          std::abs(r.j1 * s.w + r.j2 * s.a + r.j3 * s.b) * std::sqrt(s.b) + r.k * s.b});
+    }
+    if (has_norm_) {
+        const NormRow n = get_norm(cell, place);
+        const double q = n.aa * s.a * s.a + 2 * n.ab * s.a * s.b + n.bb * s.b * s.b;
+        const double z = n.jww * s.w * s.w + n.jaa * s.a * s.a + n.jbb * s.b * s.b +
+                         2 * (n.jwa * s.w * s.a + n.jwb * s.w * s.b + n.jab * s.a * s.b);
+        worst = std::max({worst, std::sqrt(std::max(q, 0.0)), std::sqrt(std::max(z * s.b, 0.0)) + n.k * s.b});
+    }
+    return worst;
 }
 
 // The solver's unknowns in a cell are b, h a and h^2 w: the rows are scaled by 1, 1/h and 1/h^2.

@@ -14,6 +14,11 @@ namespace mw::trajectory::profile {
 inline constexpr std::size_t PLACES = 3;
 inline constexpr std::array<double, PLACES> PLACE_PART{0, 0.5, 1};
 
+/// b, a = b'/2 and w = b''/2 at a place.
+struct LawState {
+    double b = 0, a = 0, w = 0;
+};
+
 /// A coordinate at a place, derivatives by the parameter: over its limits
 ///   |q' a + q'' b| <= 1 and |q' w + 3 q'' a + q''' b| sqrt(b) + k b <= 1.
 /// k: of a jump of the curvature (see speed_cap.hh).
@@ -67,6 +72,8 @@ class Rows {
     double length(std::size_t cell) const noexcept { return lengths_[cell]; }
     Row get(std::size_t cell, std::size_t place, std::size_t coordinate) const noexcept;
     double velocity(std::size_t cell, std::size_t place) const noexcept;
+    /// The largest row of acceleration or jerk over its limit, of a motion at a place.
+    double worst(std::size_t cell, std::size_t place, const LawState &state) const noexcept;
     const Lanes &velocity_lanes(std::size_t block, std::size_t place) const noexcept {
         return velocity_[block * PLACES + place].v2;
     }

@@ -406,20 +406,8 @@ double TimeLaw::time() const noexcept {
 
 double TimeLaw::worst_at(std::size_t cell, std::size_t place) const noexcept {
     const LawState s = state(cell, PLACE_PART[place]);
-    double worst = std::sqrt(std::max(0.0, s.b * rows_->velocity(cell, place)));
-    for (std::size_t i = 0; i < rows_->coordinates(); ++i) {
-        const Row r = rows_->get(cell, place, i);
-        worst = std::max({worst, std::abs(r.a1 * s.a + r.a2 * s.b),
-                          std::abs(r.j1 * s.w + r.j2 * s.a + r.j3 * s.b) * std::sqrt(s.b) + r.k * s.b});
-    }
-    if (rows_->hasNorm()) {
-        const NormRow n = rows_->get_norm(cell, place);
-        const double q = n.aa * s.a * s.a + 2 * n.ab * s.a * s.b + n.bb * s.b * s.b;
-        const double z = n.jww * s.w * s.w + n.jaa * s.a * s.a + n.jbb * s.b * s.b +
-                         2 * (n.jwa * s.w * s.a + n.jwb * s.w * s.b + n.jab * s.a * s.b);
-        worst = std::max({worst, std::sqrt(std::max(q, 0.0)), std::sqrt(std::max(z * s.b, 0.0)) + n.k * s.b});
-    }
-    return worst;
+    return std::max(std::sqrt(std::max(0.0, s.b * rows_->velocity(cell, place))),
+                    rows_->worst(cell, place, s));
 }
 
 double TimeLaw::worst() const noexcept {

@@ -17,11 +17,6 @@
 
 namespace mw::trajectory::profile {
 
-/// b, a = b'/2 and w = b''/2 at a place.
-struct LawState {
-    double b = 0, a = 0, w = 0;
-};
-
 /// What is made least: the time, or the speed everywhere, by the sum of the coefficients over their
 /// floors, or over those of the start.
 enum class Objective : std::uint8_t { TIME, SPEED };

@@ -123,7 +123,7 @@ class CurveLayer {
 struct DrivenCurve {
     std::vector<double> places;  ///< s of each sample
     std::vector<Pose> samples;
-    double time_s = 0, worst_start = 0;
+    double time_s = 0, worst_start = 0, shortest_cell_s = 1e300;
     bool is_done = false;
 };
 
@@ -191,7 +191,7 @@ class CurveDriver {
                 t += profile.cell(k).duration;
             }
             profile.drop(k);
-            out_.worst_start = std::max(out_.worst_start, profile.worst_start());
+            out_.worst_start = std::max({out_.worst_start, profile.worst_start(), profile.worst_rejected()});
             if (profile.isComplete() && k == cells) {
                 end_s_ = stop;
                 return true;
@@ -215,6 +215,7 @@ class CurveDriver {
             out_.places.push_back(cell.s_at(std::max(t, 0.0)));
         }
         out_.time_s += cell.duration;
+        out_.shortest_cell_s = std::min(out_.shortest_cell_s, cell.duration);
     }
 
     const LaidCurve &laid_;

@@ -225,7 +225,7 @@ TEST(JointProfile, KeepsTheLimitsOfJointsAtEverySample) {
         driver.run().joints = joints;
         const DrivenCurve out = driver.drive();
         ASSERT_TRUE(out.is_done);
-        EXPECT_LE(out.worst_start, 1 + 1e-3) << "a plan began from one that leaves a limit";
+        EXPECT_LE(out.worst_start, 1 + 1e-6) << "a plan began from one that leaves a limit";
         limited += expect_joint_limits(out, table, joints) > 0.9 ? 1 : 0;
         auto checker = make_checker(program.limits, CURVE_PERIOD_S);
         for (const Pose &sample : out.samples) {
@@ -272,7 +272,7 @@ TEST(JointProfile, SlowsDownBesideASingularPose) {
         driver.run().joints = joints;
         const DrivenCurve out = driver.drive();
         ASSERT_TRUE(out.is_done);
-        EXPECT_LE(out.worst_start, 1 + 1e-3);
+        EXPECT_LE(out.worst_start, 1 + 1e-6);
         EXPECT_GT(expect_joint_limits(out, map, joints), 0.9);
         // The arm turns by 180 degrees in 2 s and reaches 40 units out and in.
         EXPECT_LT(out.time_s, 4.0);

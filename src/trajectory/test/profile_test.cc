@@ -7,6 +7,7 @@
 
 #include "tests/support/campaign_seeds.hh"
 #include "trajectory/curve/curve_builder.hh"
+#include "trajectory/curve/exact_builder.hh"
 #include "trajectory/profile/profile.hh"
 #include "trajectory/test/campaign.hh"
 #include "trajectory/test/profile_rig.hh"
@@ -60,7 +61,7 @@ Driven drive(const std::vector<Primitive> &moves, const std::vector<double> &vel
         profile.plan(run, 0);
         out.is_done = take(profile, 0.05, cells);
     }
-    out.worst_start = profile.worst_start();
+    out.worst_start = std::max(profile.worst_start(), profile.worst_rejected());
     out.worst_deviation = builder.worst_deviation();
     out.samples.push_back(moves.front().start);
     std::size_t span = 0;
@@ -143,6 +144,71 @@ TEST(Profile, PassesACornerFasterThanTheFullStopsOfItsLines) {
     EXPECT_LE(out.worst_deviation, 1);
 }
 
+/// A line of this length, and its plan at the start.
+struct LinePlan {
+    curve::ExactBuilder builder{3.0};
+    std::vector<FeedLimit> feeds;
+    Run run;
+    Profile profile{{2e-3, 0.5}};
+
+    LinePlan(double length, std::vector<FeedLimit> limits) : feeds(std::move(limits)) {
+        builder.add(make_line(Pose{}, xyz(length, 0)));
+        run = {&builder.spans(), &feeds, even_limits(100, 1000, 50000), length, true};
+        profile.begin(0);
+    }
+};
+
+TEST(Profile, RejectsAPlanThatStartsOutsideOfALimit) {
+    LinePlan line(200, {{200, 1e300}});
+    ASSERT_TRUE(line.profile.plan(line.run, 0));
+    line.profile.drop(20);
+    std::vector<TimeCell> before;
+    for (std::size_t k = 0; k < line.profile.cells(); ++k) {
+        before.push_back(line.profile.cell(k));
+    }
+    const CurveLimits limits = line.run.limits;
+    line.run.limits = even_limits(100, 500, 50000);
+    EXPECT_FALSE(line.profile.plan(line.run, 0)) << "the plan before accelerates by more";
+    EXPECT_FALSE(line.profile.replan(line.run, 0));
+    EXPECT_EQ(line.profile.rejected(), 2);
+    EXPECT_GT(line.profile.worst_rejected(), 1.5);
+    EXPECT_LE(line.profile.worst_start(), 1 + 1e-6);
+    ASSERT_EQ(line.profile.cells(), before.size());
+    for (std::size_t k = 0; k < before.size(); ++k) {
+        EXPECT_EQ(line.profile.cell(k).c, before[k].c);
+    }
+    line.run.limits = limits;
+    EXPECT_TRUE(line.profile.plan(line.run, 0));
+    EXPECT_EQ(line.profile.rejected(), 2);
+}
+
+/// A creep over cells of any length keeps every row by far: it is a function of the path.
+TEST(Profile, CreepsAlikeOverCellsOfAnyLength) {
+    LinePlan line(20, {{7, 1e300}, {7.2, 0.5}, {20, 50}});
+    RestMap map;
+    map.set_start(0, 0.1);
+    double at_7 = 0;
+    for (const double part : {1e-1, 1e-2, 1e-3}) {
+        std::vector<double> knots{0};
+        for (int n = 0; knots.back() < 12; ++n) {
+            knots.push_back(knots.back() + part * (n % 7 == 3 ? 1e-6 : 1.0));
+        }
+        std::vector<double> c;
+        EXPECT_TRUE(creep(line.run, map, knots, 0.1, c));
+        Rows rows;
+        make_rows(line.run, map, knots.data(), knots.size() - 1, rows);
+        TimeLaw law;
+        law.begin(rows, knots[1] - knots[0], knots[knots.size() - 1] - knots[knots.size() - 2]);
+        ASSERT_EQ(c.size(), law.cells() + 2);
+        std::copy(c.begin(), c.end(), law.coefficients().begin());
+        EXPECT_LE(law.worst(), 0.6) << "cells of " << part;
+        const auto cell = std::upper_bound(knots.begin(), knots.end(), 7) - knots.begin() - 1;
+        const double b = law.state(static_cast<std::size_t>(cell), 0).b;
+        EXPECT_LE(at_7, b * 1.1) << "finer cells are not slower";
+        at_7 = b;
+    }
+}
+
 TEST(Profile, RandomProgramsKeepLimitsAndTolerance) {
     const auto [first, count] = testing::campaign_seeds(12);
     int driven = 0;
@@ -166,7 +232,7 @@ TEST(Profile, RandomProgramsKeepLimitsAndTolerance) {
         const double tolerance = program.tolerance > 0 ? program.tolerance : 1e-3;
         const Driven out = drive(program.primitives, velocity, limits_of(program.limits), tolerance);
         ASSERT_TRUE(out.is_done);
-        EXPECT_LE(out.worst_start, 1 + 1e-3) << "a plan began from one that leaves a limit";
+        EXPECT_LE(out.worst_start, 1 + 1e-6) << "a plan began from one that leaves a limit";
         EXPECT_LE(out.worst_deviation, 1);
         auto checker = test::make_checker(program.limits, T);
         for (const Pose &sample : out.samples) {

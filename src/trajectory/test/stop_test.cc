@@ -326,7 +326,8 @@ int drive_seeds(int preset, const Act &act) {
             ride.check_driven();
         }
         EXPECT_TRUE(ride.is_done);
-        EXPECT_LE(ride.profile.worst_start(), 1 + 1e-3) << "a plan began from one that leaves a limit";
+        EXPECT_LE(ride.profile.worst_start(), 1 + 1e-6) << "a plan began from one that leaves a limit";
+        EXPECT_EQ(ride.profile.rejected(), 0) << "largest row " << ride.profile.worst_rejected();
         ++driven;
     }
     return driven;
