@@ -161,6 +161,9 @@ Rates rates_at(const Run &run, const CurvePoint &point, const Motion &at) noexce
         return rates;
     }
     const double qq = dot_xyz(point.first, point.first);
+    if (qq == 0 && dot_xyz(point.second, point.second) == 0 && dot_xyz(point.third, point.third) == 0) {
+        return rates;
+    }
     const Range a = range_along(qq, -dot_xyz(point.first, bend), dot_xyz(bend, bend), b.acceleration);
     const Range j = range_along(qq, std::abs(dot_xyz(point.first, drift)), dot_xyz(drift, drift), b.jerk);
     rates.least = std::max(rates.least, a.middle - a.half);
