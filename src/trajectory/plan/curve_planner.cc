@@ -175,7 +175,8 @@ std::size_t CurvePlanner::first_free_cell(const Snapshot &now) const noexcept {
 }
 
 void CurvePlanner::continue_plan(const Snapshot &now, const Conditions &conditions) {
-    const bool is_due = static_cast<double>(now.cycle - planned_cycle_) * period_s_ >= RENEWAL_S;
+    const double since = static_cast<double>(now.cycle - planned_cycle_) * period_s_;
+    const bool is_due = since >= PLANNING_S && committed_s_ - since < RESERVE_S;
     if (!is_due && !is_changed_) {
         return;
     }
@@ -273,6 +274,7 @@ bool CurvePlanner::commit(const Snapshot &now, std::size_t fixed) {
     if (!store_.curve_plans.push(plan)) {
         return false;
     }
+    committed_s_ = PLANNING_S + ahead;
     plan_ = plan.plan;
     planned_cycle_ = now.cycle;
     return true;
