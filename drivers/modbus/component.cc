@@ -72,7 +72,7 @@ Result<> make_element(int id, const std::string &prefix, const Transaction &one,
         done = hal_pin_float_newf(way, &into.number, id, "%s.float", prefix.c_str());
         done = done == 0 ? hal_pin_s32_newf(way, &into.whole, id, "%s.int", prefix.c_str()) : done;
     }
-    return done == 0 ? Result<>{} : fail("HAL does not take the pins " + prefix + ".*");
+    return done == 0 ? Result<>{} : fail("HAL does not accept the pins " + prefix + ".*");
 }
 
 Result<Pins> make_pins(int id, const std::string &component, const Transaction &one) {
@@ -91,7 +91,7 @@ Result<Pins> make_pins(int id, const std::string &component, const Transaction &
         }
     }
     if (hal_pin_u32_newf(HAL_OUT, pins.num_errors, id, "%s.num_errors", prefix.c_str()) != 0) {
-        return fail("HAL does not take the pin " + prefix + ".num_errors");
+        return fail("HAL does not accept the pin " + prefix + ".num_errors");
     }
     return pins;
 }
@@ -266,8 +266,8 @@ class LinkWork {
 Result<> run(const Setup &setup, const volatile std::sig_atomic_t &stop) {
     const int id = hal_init(setup.component.c_str());
     if (id < 0) {
-        return fail("HAL does not take a component " + setup.component, {},
-                    "is there one of this name already?");
+        return fail("HAL does not accept component " + setup.component, {},
+                    "does one with this name exist already?");
     }
     std::vector<LinkWork> links;
     links.reserve(setup.links.size());

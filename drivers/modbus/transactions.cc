@@ -147,7 +147,7 @@ Link read_link(const Section &section, const Link *before) {
         }
         link.is_tcp = word == "tcp";
     } else if (before == nullptr) {
-        section.missing("LINK_TYPE", "the first transaction says how the device is reached");
+        section.missing("LINK_TYPE", "the first transaction sets the connection to the device");
         return link;
     }
     if (!link.is_tcp) {
@@ -183,7 +183,7 @@ void read_elements(const Section &section, Transaction &one) {
             rest.remove_prefix(comma + 1);
         }
     } else if (!section.has("NELEMENTS")) {
-        section.missing("NELEMENTS", "it, or PIN_NAMES, says how many elements there are");
+        section.missing("NELEMENTS", "this key or PIN_NAMES sets the number of elements");
     } else {
         int count = 0;
         section.number("NELEMENTS", count, 1, isOfBits(one.function) ? MAX_BITS : MAX_REGISTERS);
@@ -204,7 +204,7 @@ void read_elements(const Section &section, Transaction &one) {
 void read_function(const Section &section, Transaction &one) {
     const auto *code = section.find("MB_TX_CODE");
     if (code == nullptr) {
-        section.missing("MB_TX_CODE", "it says what is read or written");
+        section.missing("MB_TX_CODE", "it sets what is read or written");
         return;
     }
     for (const auto &[name, function] : FUNCTIONS) {

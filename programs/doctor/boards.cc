@@ -14,8 +14,8 @@ namespace {
 std::string text_of(mesa::BoardFault fault) {
     switch (fault) {
     case mesa::BoardFault::STOPPED: return "too many cycles failed, and the traffic was stopped";
-    case mesa::BoardFault::OTHER_BOARD: return "another board answered at its address";
-    case mesa::BoardFault::WATCHDOG: return "its watchdog has bitten";
+    case mesa::BoardFault::OTHER_BOARD: return "another board answers at this address";
+    case mesa::BoardFault::WATCHDOG: return "its watchdog has tripped";
     case mesa::BoardFault::NONE: break;
     }
     return "no fault";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A report from the recorded cycles of Ethernet boards: the cause of late packets, and how to fix it.
+// Report from the recorded cycles of Ethernet boards: the cause of late packets, and the remedy.
 #pragma once
 
 #include <cstdint>

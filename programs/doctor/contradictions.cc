@@ -51,7 +51,7 @@ constexpr Order JOINT_TRAVEL = {"MIN_LIMIT", "MAX_LIMIT", "the joint cannot move
                                 diagnostics::Severity::ERROR};
 constexpr const char *NO_FOLLOWING = "steps cannot follow, and the joint fails with a following error";
 constexpr std::array JOINT_ORDERS = {
-    Order{"MIN_FERROR", "FERROR", "more is allowed at rest than at full speed"},
+    Order{"MIN_FERROR", "FERROR", "the limit at standstill is larger than at full speed"},
     Order{"MAX_VELOCITY", "STEPGEN_MAXVEL", NO_FOLLOWING, diagnostics::Severity::WARNING, true},
     Order{"MAX_ACCELERATION", "STEPGEN_MAXACCEL", NO_FOLLOWING, diagnostics::Severity::WARNING, true},
 };
@@ -67,10 +67,10 @@ constexpr std::array DISPLAY_ORDERS = {
     Order{"DEFAULT_ANGULAR_VELOCITY", "MAX_ANGULAR_VELOCITY", "jogs begin with the latter"},
 };
 constexpr std::array TRAJ_ORDERS = {
-    Order{"DEFAULT_LINEAR_VELOCITY", "MAX_LINEAR_VELOCITY", "the latter holds"},
-    Order{"DEFAULT_LINEAR_ACCELERATION", "MAX_LINEAR_ACCELERATION", "the latter holds"},
-    Order{"DEFAULT_ANGULAR_VELOCITY", "MAX_ANGULAR_VELOCITY", "the latter holds"},
-    Order{"DEFAULT_ANGULAR_ACCELERATION", "MAX_ANGULAR_ACCELERATION", "the latter holds"},
+    Order{"DEFAULT_LINEAR_VELOCITY", "MAX_LINEAR_VELOCITY", "the latter is used"},
+    Order{"DEFAULT_LINEAR_ACCELERATION", "MAX_LINEAR_ACCELERATION", "the latter is used"},
+    Order{"DEFAULT_ANGULAR_VELOCITY", "MAX_ANGULAR_VELOCITY", "the latter is used"},
+    Order{"DEFAULT_ANGULAR_ACCELERATION", "MAX_ANGULAR_ACCELERATION", "the latter is used"},
 };
 
 /// Settings that homing rejects or interprets unexpectedly. Speeds with their signs; 0 is none.
@@ -95,7 +95,7 @@ void examine_homing(const IniFile &ini, const std::string &section, diagnostics:
                      latch->place());
     }
     if (searches && fastest.has_value() && std::fabs(search->value) > fastest->value) {
-        sink.note(search->str() + " is above " + fastest->str() + ": the latter holds", search->place());
+        sink.note(search->str() + " is above " + fastest->str() + ": the latter is used", search->place());
     }
 }
 
@@ -152,7 +152,7 @@ void examine_axis(const IniFile &ini, const MachineConfig &machine, int axis, di
         const double tolerance = 1e-2 * std::max(1.0, std::fabs(theirs->value));
         const double beyond = upper ? mine->value - theirs->value : theirs->value - mine->value;
         if (beyond > tolerance) {
-            sink.warning(mine->str() + " is beyond " + theirs->str() + ": the latter holds", mine->place());
+            sink.warning(mine->str() + " exceeds " + theirs->str() + ": the latter is used", mine->place());
         }
     };
     compare("MAX_VELOCITY", true);
@@ -184,7 +184,7 @@ void examine_letters(const IniFile &ini, const MachineConfig &machine, diagnosti
         const bool is_part = (machine.axis_mask & (1U << axis)) != 0;
         if (!is_part && ini.hasSection(section) && machine.axis_mask != 0) {
             sink.warning(
-                fmt::format("section [{}] is of an axis that [TRAJ]COORDINATES does not name", section),
+                fmt::format("section [{}] belongs to an axis that is not in [TRAJ]COORDINATES", section),
                 ini.place_of_section(section));
         }
         if (is_part && machine.isTrivial && !plain &&

@@ -37,7 +37,7 @@ struct DoctorWords {
             "HAL files are carried out under the virtual clock, without the programs of loadusr; Tcl files "
             "are "
             "run.\n");
-        line.number("--latency", "SECONDS", "so long latency is measured, 0: not at all (10)",
+        line.number("--latency", "SECONDS", "duration of the latency measurement, 0: none (10)",
                     scope.latency_s, 0, 86400);
         line.flag("--no-hal", "the HAL files are not checked, and so neither are unknown keys", scope.has_hal,
                   false);

@@ -62,7 +62,7 @@ void judge_latency(const hal::view::LatencyFigures &figures, diagnostics::Sink &
         sink.note(what);
         return;
     }
-    const std::string way = part >= 1 ? "it misses its turn" : "steps and positions come unevenly";
+    const std::string way = part >= 1 ? "it misses its period" : "steps and positions come unevenly";
     constexpr double STEP_NS = 1e5, LONGEST_NS = 5e6;
     const double longer_ns =
         std::max(1.0, std::ceil(static_cast<double>(jitter_ns) / TOLERABLE / STEP_NS)) * STEP_NS;

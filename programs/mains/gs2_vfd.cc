@@ -45,13 +45,13 @@ int main(int argc, char **argv) {
                  [&](const mw::options::Words &words) { return read_parity(words, line.parity); });
     options.number("-t,--target", "N", "the drive's number on it (1)", line.slave, 1, 254);
     options.text("-n,--name", "NAME", "of the component and its pins (gs2_vfd)", name);
-    options.number("-A,--accel-seconds", "S", "from standing to its highest speed (10)", settings.accel_s,
-                   0.1, MAX_S);
+    options.number("-A,--accel-seconds", "S", "from standstill to maximum speed (10)", settings.accel_s, 0.1,
+                   MAX_S);
     options.number("-D,--decel-seconds", "S", "and back; 0: it coasts (0)", settings.decel_s, 0.0, MAX_S);
-    options.flag("-R,--braking-resistor", "there is one: the drive brakes against any voltage",
+    options.flag("-R,--braking-resistor", "there is one: the drive brakes at any voltage",
                  settings.has_braking_resistor);
     options.flag("-g,--debug", "show all bytes", line.shown);
-    options.flag("-v,--verbose", "say what is opened", verbose);
+    options.flag("-v,--verbose", "report what is opened", verbose);
     const mw::options::Words words(argv + 1, argv + argc);
     if (mw::options::wantsHelp(words)) {
         std::fputs(options.help().c_str(), stdout);

@@ -20,13 +20,13 @@ constexpr const char *USAGE =
     "\n"
     "  run MACHINE.ini PROGRAM.ngc          start the machine that the INI file describes, home it, run the "
     "program;\n"
-    "                                       in virtual time, or with --realtime by the clock\n"
+    "                                       in virtual time, or with --realtime in real time\n"
     "  start MACHINE.ini                    keep the machine up for clients, until a signal or its display "
     "ends it\n"
     "  recover                              continue the program that a power cut has ended\n"
-    "  ui MACHINE.ini                       serve the operator's screen of the machine that is up, to "
+    "  ui MACHINE.ini                       serve the operator's screen of the running machine, to "
     "browsers\n"
-    "  nml FILE.nml                         the NML channels of the machine that is up, also over the "
+    "  nml FILE.nml                         the NML channels of the running machine, also over the "
     "network\n"
     "  doctor MACHINE.ini                   what is wrong with a machine's files and this computer, before "
     "the "
@@ -37,11 +37,11 @@ constexpr const char *USAGE =
     "  check PROGRAM.ngc --ini MACHINE.ini  a program against a machine's limits, and the time it takes\n"
     "  format PROGRAM.ngc ...               write programs in one form, without a change of meaning\n"
     "  explain LINE                         say in words what a line of G-code does\n"
-    "  hal watch|capture|graph|latency      look at the running HAL\n"
+    "  hal watch|capture|graph|latency      show the running HAL\n"
     "  --help, --version\n"
     "\n"
     "Each command has its own --help.\n"
-    "exit status: 0 done, 1 refused or failed, 2 wrong usage\n";
+    "exit status: 0 done, 1 rejected or failed, 2 wrong usage\n";
 
 }  // namespace
 

@@ -34,8 +34,8 @@ struct Arguments {
 
     mw::options::CommandLine line() {
         mw::options::CommandLine line("millwright-rt [options]",
-                                      "Owns the HAL of an instance and runs its realtime threads until it is "
-                                      "told to end.\n");
+                                      "Owns the HAL of an instance and runs its realtime threads until it "
+                                      "receives the command to end.\n");
         options.instance = mw::hal::default_instance();
         line.text("--instance", "NAME", "default: $MILLWRIGHT_INSTANCE, else 'default'", options.instance);
         line.number("--cpu", "N", "processor of the threads (default: the last isolated one, else the last)",

@@ -109,7 +109,7 @@ int main(int argc, char **argv) {
     options.text("-I,--ini", "FILE", "where its settings are (INI_FILE_NAME of the environment)", ini);
     options.text("-S,--section", "NAME", "in this section (VFD-B)", section);
     options.flag("-m,--modbus-debug", "show all bytes", line.shown);
-    options.flag("-d,--debug", "say what is opened", debugged);
+    options.flag("-d,--debug", "report what is opened", debugged);
     options.flag("-r,--report-device", "the same", reported);
     const mw::options::Words words(argv + 1, argv + argc);
     if (mw::options::wantsHelp(words)) {

@@ -38,7 +38,7 @@ struct NmlWords {
         line.text("--server", "NAME",
                   "whose P lines say which buffers are made and served; emcsvr without it", server);
         line.rest(rest);
-        line.footer("exit status: 0 ended in order, 1 refused or failed, 2 wrong usage\n");
+        line.footer("exit status: 0 ended in order, 1 rejected or failed, 2 wrong usage\n");
         return line;
     }
     Result<> parse(const std::vector<std::string> &words) {
@@ -113,7 +113,7 @@ Result<> run_channels(const NmlWords &words, const nml::Config &config, diagnost
     std::string last_trouble;
     while (stop_signal == 0) {
         if (!client->isMachineAlive()) {
-            return fail("the machine is gone");
+            return fail("the machine has ended");
         }
         // Commands are also read without a newer status.
         static_cast<void>(client->wait_status(TICK_S));

@@ -24,9 +24,8 @@ class RshService final : public TextService {
 int command_rsh(const std::vector<std::string> &arguments) {
     TextServerWords words{
         "linuxcncrsh",
-        "Lets other programs command the machine that is up by lines of text over TCP (man page "
-        "linuxcncrsh). Ends with the\n"
-        "machine, by SHUTDOWN of a client, at SIGINT or SIGTERM.\n",
+        "Lets other programs command the running machine by lines of text over TCP (man page linuxcncrsh). "
+        "Ends with the\nmachine, by SHUTDOWN of a client, at SIGINT or SIGTERM.\n",
         true};
     return serve_text(std::move(words), arguments, [](const TextMachine &machine) {
         return std::unique_ptr<TextService>(std::make_unique<RshService>(machine));

@@ -32,7 +32,7 @@ Result<client::Viewer> attach_patiently(const std::string &instance) {
         const bool ready =
             viewer.has_value() && !viewer->identity().ini.empty() && viewer->read_status().has_value();
         if (ready || stop_signal != 0 || std::chrono::steady_clock::now() > end) {
-            return ready || !viewer.has_value() ? std::move(viewer) : fail("the machine does not come up");
+            return ready || !viewer.has_value() ? std::move(viewer) : fail("the machine does not start");
         }
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
@@ -96,12 +96,12 @@ options::CommandLine TextServerWords::line() {
               settings.program_folder);
     line.text("-b,--bind", "ADDRESS",
               "listen there, so that other computers can connect; needs its own passwords", server.address);
-    line.flag("-4,--ipv4", "this computer by IPv4 alone, not by IPv6", server.isIpv4Only);
+    line.flag("-4,--ipv4", "this computer by IPv4 only, not by IPv6", server.isIpv4Only);
     if (has_dialects) {
         line.text("--dialect", "2.9|2.10", "whose answers are given; 2.10 without it", dialect);
     }
-    line.flag("-q,--quiet", "say nothing of connections; it never does", isQuiet);
-    line.footer("exit status: 0 ended in order, 1 refused or failed, 2 wrong usage\n");
+    line.flag("-q,--quiet", "no effect: connections are never reported", isQuiet);
+    line.footer("exit status: 0 ended in order, 1 rejected or failed, 2 wrong usage\n");
     return line;
 }
 

@@ -61,12 +61,12 @@ Result<std::unique_ptr<RunningMachine>> RunningMachine::find(const std::string &
         identity = client->identity();
     }
     if (identity.ini.empty()) {
-        return fail(fmt::format("the machine that starts as instance '{}' does not get ready", instance));
+        return fail(fmt::format("the machine of instance '{}' does not become ready", instance));
     }
     if (!identity.isLasting) {
         return fail(
             fmt::format("instance '{}' runs a program on its own machine: {}", instance, identity.ini.str()),
-            {}, "wait for its end; 'millwright start' makes a machine that programs share");
+            {}, "wait for its end; 'millwright start' runs a machine that programs share");
     }
     if (identity.ini.str() != whole_path(ini)) {
         return fail(fmt::format("the machine that runs as instance '{}' was started from {}, not from {}",
@@ -86,11 +86,11 @@ Result<> RunningMachine::check_idle() {
     }
     const messages::MachineStatus &status = client_.status();
     if (status.task.interp_state != messages::InterpState::IDLE) {
-        return fail("the machine runs a program or an MDI line already", {},
+        return fail("the machine is already running a program or an MDI line", {},
                     status.task.program.empty() ? "" : "open is " + status.task.program.str());
     }
     if (status.trajectory.isEnabled && (status.trajectory.isHoming || !status.trajectory.isInPosition)) {
-        return fail("the machine moves: someone jogs or homes it");
+        return fail("the machine is moving: a jog or homing is active");
     }
     return {};
 }

@@ -145,12 +145,10 @@ class Run {
     /// Checks that need no machine.
     bool isAllowed() {
         if (words_.realtime && !words_.confirmed && !Keyboard::isThere()) {
-            sink_.failure(
-                {"--realtime asks a person at the terminal before it switches the machine on, and there is "
-                 "none",
-                 {},
-                 "--yes starts unasked; stops and tool changes then wait for HAL pins (halui.program.resume, "
-                 "hal_manualtoolchange.change_button)"});
+            sink_.failure({"--realtime needs a terminal to confirm that the machine may be switched on",
+                           {},
+                           "--yes starts without confirmation; stops and tool changes then wait for HAL pins "
+                           "(halui.program.resume, hal_manualtoolchange.change_button)"});
             return false;
         }
         const auto drawable = words_.plot.empty() ? Result<>{} : check_picture(words_.plot);
@@ -171,7 +169,7 @@ class Run {
                                                               : nullptr;
         if (option != nullptr) {
             sink_.error(
-                {fmt::format("{} needs a machine that is made for this program, and one is already running",
+                {fmt::format("{} needs a separate machine for this program, but a machine is already running",
                              option),
                  {},
                  "leave it out, or end 'millwright start'; millwright check draws programs"});
@@ -209,7 +207,7 @@ class Run {
             sink_.warning("the program will stop before its end: it is started because of --no-check");
             return true;
         }
-        fmt::print(stderr, "{} is not started, since it would stop there; nothing has moved\n",
+        fmt::print(stderr, "{} is not started because it would stop there; nothing has moved\n",
                    words_.program);
         draw(points.all());
         return false;
@@ -299,7 +297,7 @@ int command_run(const std::vector<std::string> &arguments) {
     // Virtual time may wait for the reader of the output; a machine must not.
     const std::string why = words->realtime ? OutputRelay::begin() : "";
     if (!why.empty()) {
-        sink.warning("a terminal that is stopped can hold up the machine: " + why);
+        sink.warning("a stopped terminal can delay the machine: " + why);
     }
     const int status = Run(*words, *loaded, sink).run();
     OutputRelay::end();

@@ -12,19 +12,14 @@ constexpr int MOST_LINES = 1000000000;
 options::CommandLine run_line(RunWords &run, options::Words &rest) {
     options::CommandLine line(
         "millwright run MACHINE.ini PROGRAM.ngc [options]",
-        "Starts the machine that the INI file describes, homes it and runs the program. Before anything "
-        "moves the\n"
-        "program is interpreted, for at most 5 s: one that is known to stop in the middle of a cut is "
-        "refused.\n"
-        "Displays that the INI file names are not started. With --realtime, where 'millwright start' keeps "
-        "the machine\n"
-        "up, the program runs there, and the machine stays on and homed.\n"
-        "\n"
-        "In virtual time (the default) a simulated operator confirms tool changes and passes program stops, "
-        "and says\n"
-        "so. With --realtime a person does, by keys or by HAL pins (halui, hal_manualtoolchange):\n"
-        "  y start    h or space hold    r resume    a abort    t the tool is changed\n");
-    line.flag("--realtime", "by the clock, in two processes; asks at the terminal before it switches on",
+        "Starts the machine that the INI file describes, homes it and runs the program. The program is "
+        "interpreted before\nthe first move, for at most 5 s, and rejected if it would stop in the middle of "
+        "a cut. Displays of the INI file\nare not started. With --realtime and a machine that 'millwright "
+        "start' runs, the program runs on that machine,\nwhich stays on and homed.\n\nIn virtual time (the "
+        "default) a simulated operator confirms tool changes and program stops, and prints each.\nWith "
+        "--realtime a person confirms them, by keys or by HAL pins (halui, hal_manualtoolchange):\n  y start "
+        "   h or space hold    r resume    a abort    t the tool is changed\n");
+    line.flag("--realtime", "in real time, in two processes; asks at the terminal before it switches on",
               run.realtime);
     line.flag("--yes", "do not ask before the start, and start without a terminal; confirms nothing else",
               run.confirmed);
@@ -50,7 +45,7 @@ options::CommandLine run_line(RunWords &run, options::Words &rest) {
               run.planner_module);
     line.flag("--strict", "unknown INI keys are errors", run.strict);
     line.rest(rest);
-    line.footer("exit status: 0 the program ran to its end, 1 refused, failed or stopped, 2 wrong usage\n");
+    line.footer("exit status: 0 the program ran to its end, 1 rejected, failed or stopped, 2 wrong usage\n");
     return line;
 }
 

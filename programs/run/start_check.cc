@@ -21,15 +21,15 @@ class Judge {
     void take(diagnostics::Diagnostic one) {
         if (!unknown_.empty() && one.severity == diagnostics::Severity::ERROR) {
             one.severity = diagnostics::Severity::WARNING;
-            one.what.message += " (if the program comes there)";
+            one.what.message += " (if the program reaches this line)";
         }
         has_errors_ = has_errors_ || one.severity == diagnostics::Severity::ERROR;
         sink_.report(std::move(one));
     }
     void take_unknown(const SourcePlace &place, std::string_view what) {
         if (unknown_.insert(std::string(what)).second) {
-            sink_.note("what follows depends on " + std::string(what) +
-                           ": errors behind it cannot be known before the start",
+            sink_.note("the rest of the program depends on " + std::string(what) +
+                           ": errors after it cannot be found before the start",
                        place);
         }
     }

@@ -151,14 +151,14 @@ void TerminalPanel::look_at_approach() {
     approach_told_ = proposed;
     clear_line();
     if (attendance_ == Attendance::SIMULATED) {
-        sink_.note("the way is confirmed by the simulated operator");
+        sink_.note("the simulated operator confirmed the approach");
         post(messages::ConfirmApproach{proposed});
     } else if (attendance_ == Attendance::TERMINAL) {
-        sink_.note("key r confirms the way, a drops it");
+        sink_.note("key r confirms the approach, a cancels it");
     } else {
-        sink_.note(std::string("the way waits for ") + (config_.has_halui
-                                                            ? "pin halui.program.resume"
-                                                            : "a signal, because no one can confirm it"));
+        sink_.note(
+            std::string("the approach waits for ") +
+            (config_.has_halui ? "pin halui.program.resume" : "a signal, because no one can confirm it"));
     }
 }
 

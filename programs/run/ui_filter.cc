@@ -212,10 +212,11 @@ Result<> fill(const FilterRun &run, int output, screen::PieceQueue &pieces) {
         told.take(more);
     }
     if (asked.has_value()) {
-        return fail(isTooLarge(output)
-                        ? fmt::format("the filter '{}' was ended: it has made more than a program may have",
-                                      run.command)
-                        : fmt::format("the filter '{}' was ended: nothing waits for it", run.command));
+        return fail(
+            isTooLarge(output)
+                ? fmt::format("the filter '{}' was ended: its output exceeds the maximum size of a program",
+                              run.command)
+                : fmt::format("the filter '{}' was ended: its output is no longer needed", run.command));
     }
     if (*status != 0) {
         return fail(fmt::format("the filter '{}' {}: {}", run.command, how(*status), printable(told.all())));
@@ -223,7 +224,7 @@ Result<> fill(const FilterRun &run, int output, screen::PieceQueue &pieces) {
     struct stat facts{};
     if (::fstat(output, &facts) != 0 || facts.st_size == 0) {
         return fail(
-            fmt::format("the filter '{}' has made no program: {}", run.command, printable(told.all())));
+            fmt::format("the filter '{}' produced no program: {}", run.command, printable(told.all())));
     }
     return {};
 }
@@ -261,7 +262,7 @@ void run_filter(const FilterRun &run, screen::PieceQueue &pieces) {
     fs::create_directories(folder, error);
     fs::permissions(folder, fs::perms::owner_all, error);  // no other user may put a program there
     if (error) {
-        refuse(fmt::format("cannot keep '{}' to oneself: {}", folder.string(), error.message()));
+        refuse(fmt::format("cannot make '{}' private: {}", folder.string(), error.message()));
         return;
     }
     auto output = TemporaryFile::create(run.output);

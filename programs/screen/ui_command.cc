@@ -50,10 +50,9 @@ struct UiWords {
     options::CommandLine line() {
         options::CommandLine line(
             "millwright ui MACHINE.ini [options]",
-            "Serves the operator's screen of a machine that 'millwright start' keeps up, to browsers on this "
-            "computer, and with\n--listen on others. It is a client: the machine goes on without it, and it "
-            "waits for a machine that is not up yet. Ends at "
-            "SIGINT or SIGTERM.\n");
+            "Serves the operator's screen of a machine that 'millwright start' runs, to browsers on this "
+            "computer, and with\n--listen on others. It is a client: the machine runs without it, and it "
+            "waits for a machine that is not running yet. Ends at SIGINT or SIGTERM.\n");
         line.number("--port", "N", "listen on 127.0.0.1:N, 0: on a free port; 8850 without it", port, 0,
                     65535);
         line.flag("--open", "show the screen in the desktop's browser", opening);
@@ -63,17 +62,16 @@ struct UiWords {
                   is_display);
         line.text("--screen", "FOLDER", "serve the screen from there", screen);
         line.text("--listen", "ADDRESS[:PORT]",
-                  "let other computers in as well, with TLS and a token; 0.0.0.0: at every address; port "
-                  "8851 without one",
+                  "accept other computers as well, with TLS and a token; 0.0.0.0: at every address; default "
+                  "port 8851",
                   door.listen);
         line.texts("--name", "NAME", "a name by which they call this computer, beside its own", door.names);
-        line.text(
-            "--unprotected", "ROLE",
-            "no TLS and no token: anyone who reaches --listen may view, operate or configure; the screen "
-            "says so",
-            door.unprotected);
+        line.text("--unprotected", "ROLE",
+                  "no TLS and no token: anyone who reaches --listen may view, operate or configure; the "
+                  "screen shows a warning",
+                  door.unprotected);
         line.rest(rest);
-        line.footer("exit status: 0 ended in order, 1 refused or failed, 2 wrong usage\n");
+        line.footer("exit status: 0 ended in order, 1 rejected or failed, 2 wrong usage\n");
         return line;
     }
     Result<> parse(const std::vector<std::string> &words) {

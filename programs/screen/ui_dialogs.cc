@@ -92,14 +92,14 @@ std::vector<DialogFacts> numbered_messages(const ini::IniFile &ini, const std::s
             const auto number = parse_int(entry.value);
             if (!number.has_value() || *number == 0 || *number < -MOST || *number > MOST) {
                 sink.error("[DISPLAY]" + entry.key + " is '" + entry.value +
-                               "', which is no whole number but 0",
+                               "': a whole number other than 0 is expected",
                            entry.place);
             }
             messages.push_back({id, static_cast<std::int32_t>(number.value_or(0)), {}, "", "", "", ""});
             continue;
         }
         if (messages.empty()) {
-            sink.error("[DISPLAY]" + entry.key + " stands before the " + prefix + "NUMBER that it belongs to",
+            sink.error("[DISPLAY]" + entry.key + " must follow the " + prefix + "NUMBER that it belongs to",
                        entry.place);
             return {};
         }
@@ -132,7 +132,7 @@ std::vector<DialogFacts> dialog_facts(const ini::IniFile &ini, diagnostics::Sink
         const IniEntry *const place =
             ini.find("DISPLAY", one.number == 0 ? "MESSAGE_PINNAME" : "MULTIMESSAGE_ID");
         if (!isPinName(one.id)) {
-            sink.error("'" + one.id + "' is no name of a pin: letters, digits, -, _ and . make one",
+            sink.error("'" + one.id + "' is not a pin name: use letters, digits, -, _ and .",
                        place != nullptr ? place->place : SourcePlace{});
         }
         return !is_kind || !isPinName(one.id);

@@ -190,8 +190,8 @@ std::string door_text(const screen::RemoteDoor &door, int port, const std::strin
     if (!door.tls.has_value()) {
         return fmt::format("for other computers, WITHOUT PROTECTION: http://{}:{}/\n", host, port);
     }
-    return fmt::format("for other computers: https://{}:{}/ with a token of {}/tokens\n"
-                       "certificate of its own, SHA-256 {}\n",
+    return fmt::format("for other computers: https://{}:{}/ with a token of {}/tokens\nself-signed "
+                       "certificate, SHA-256 {}\n",
                        host, port, folder, door.tls->fingerprint);
 }
 

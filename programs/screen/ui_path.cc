@@ -87,12 +87,12 @@ Result<> PathReaders::check_count(const screen::Requester &by) const {
         of_client += of_viewer == is_viewer && reader.by.address == by.address ? 1 : 0;
     }
     if (!hasDescriptors() || readers_.size() >= MOST || (is_viewer && of_viewers >= MOST_OF_VIEWERS)) {
-        return fail("as many programs as can be are being read: ask again later");
+        return fail("too many programs are being read: try again later");
     }
     const std::size_t most = is_viewer ? MOST_OF_VIEWER : MOST_OF_CLIENT;
     return of_client < most
                ? Result<>{}
-               : fail(fmt::format("{} programs are being read for this computer: ask again later", most));
+               : fail(fmt::format("{} programs are being read for this computer: try again later", most));
 }
 
 Result<std::shared_ptr<screen::PieceQueue>> PathReaders::begin(std::function<void(Reader &)> job,

@@ -137,7 +137,7 @@ Result<setup::Answers> read_answers(const std::string &text, const std::string &
             return fail("an answer is 'key = value'", {name, number, 1});
         }
         if (!answers.emplace(key, trim(words.substr(equals + 1))).second) {
-            return fail("'" + printable(key) + "' is answered twice", {name, number, 1});
+            return fail("'" + printable(key) + "' has two values", {name, number, 1});
         }
     }
     return answers;
@@ -160,8 +160,8 @@ Result<NewMachine> make_machine(const std::string &folder, const setup::Plan &pl
     to = to.has_filename() ? to : to.parent_path();  // "my_mill/"
     const bool present = fs::exists(fs::symlink_status(to, error));
     if (present && !(fs::is_directory(to, error) && fs::is_empty(to, error))) {
-        return fail("'" + to.string() + "' is there already, and is not touched", {},
-                    "a folder that is empty, or not there yet, becomes that of the machine");
+        return fail("'" + to.string() + "' exists already and is not changed", {},
+                    "the folder of the machine must be empty or new");
     }
     fs::create_directories(to.parent_path(), error);
     if (error) {
@@ -195,7 +195,7 @@ Result<Trial> try_machine(const NewMachine &machine) {
     }
     Trial trial;
     if (!child.read_to_end(trial.output)) {
-        return fail("the trial of " + machine.ini + " did not come to its end: " + printable(trial.output));
+        return fail("the test run of " + machine.ini + " did not end: " + printable(trial.output));
     }
     trial.good = child.hasSucceeded();
     return trial;

@@ -77,7 +77,7 @@ std::optional<Choice> ask(const std::vector<Choice> &choices, const std::string 
         if (found.size() == 1) {
             return found[0];
         }
-        fmt::print("{}\n", language::shown(found.empty() ? "there is no such one"
+        fmt::print("{}\n", language::shown(found.empty() ? "there is no such configuration"
                                                          : "several have that in their name:"));
         for (const Choice &choice : found) {
             fmt::print("  {}\n", printable(choice.configuration->name));
@@ -113,10 +113,9 @@ int command_select(const std::vector<std::string> &arguments) {
     bool listed = false, printed = false, in_browser = false;
     int port = SCREEN_PORT;
     options::Words rest;
-    options::CommandLine line(
-        "millwright select [options]",
-        "Shows the configurations of machines that are here, asks for one, and starts it as "
-        "`linuxcnc` does.\n");
+    options::CommandLine line("millwright select [options]",
+                              "Lists the machine configurations on this computer, lets you select one, and "
+                              "starts it as `linuxcnc` does.\n");
     line.flag("--list", "print their paths and ask nothing", listed);
     line.flag("--print", "print the path of the chosen one instead of starting it", printed);
     line.flag("--browser", "show them in a browser, with the wizard for a new machine", in_browser);

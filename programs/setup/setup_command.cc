@@ -37,7 +37,8 @@ struct SetupWords {
                   answers);
         line.flag("--no-check", "do not start the machine", tried, false);
         line.rest(rest);
-        line.footer("exit status: 0 the machine is there, and runs, 1 refused or failed, 2 wrong usage\n");
+        line.footer(
+            "exit status: 0 the configuration was written and runs, 1 rejected or failed, 2 wrong usage\n");
         return line;
     }
 };
@@ -97,7 +98,7 @@ Result<> make_and_try(const SetupWords &words, const setup::Answers &answers, co
     }
     fmt::print("{}", printable(trial->output));
     if (!trial->good) {
-        return fail("the machine does not run its first program; its files are as they were written");
+        return fail("the machine does not run its first program; its files are unchanged");
     }
     fmt::print("It runs in virtual time. At the screen: linuxcnc {}\n", shell_word(machine->ini));
     return {};

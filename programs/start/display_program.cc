@@ -70,8 +70,8 @@ Result<std::vector<std::string>> DisplayProgram::words(const std::string &displa
     const std::string program = find_program(words[0], fs::path(ini).parent_path().string());
     if (program.empty()) {
         const std::string instead = hal::hint_for_absent(fs::path(words[0]).filename().string());
-        return fail("[DISPLAY]DISPLAY names '" + words[0] + "', which is no program that can be found",
-                    {ini, 0, 0}, instead.empty() ? "--no-display keeps the machine up without one" : instead);
+        return fail("[DISPLAY]DISPLAY names '" + words[0] + "': program not found", {ini, 0, 0},
+                    instead.empty() ? "--no-display runs the machine without a display" : instead);
     }
     const bool is_shell = fs::path(words[0]).filename() == "linuxcncrsh";
     words[0] = program;

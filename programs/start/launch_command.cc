@@ -32,7 +32,7 @@ namespace fs = std::filesystem;
 constexpr const char *USAGE =
     "usage: linuxcnc [options] [MACHINE.ini [words for the display]]\n"
     "\n"
-    "Brings the machine up with the display that [DISPLAY]DISPLAY names, and takes everything down when that "
+    "Starts the machine with the display that [DISPLAY]DISPLAY names, and shuts both down when that "
     "ends.\n"
     "Without an INI file a person at a terminal is asked which machine (millwright select).\n"
     "\n"
@@ -45,7 +45,7 @@ constexpr const char *USAGE =
     "  -r                taken for scripts: output is never redirected\n"
     "  -h                this text\n"
     "\n"
-    "exit status: that of the display; 0 after a signal; 1 refused or failed; 2 wrong usage\n";
+    "exit status: that of the display; 0 after a signal; 1 rejected or failed; 2 wrong usage\n";
 
 constexpr std::array LETTERS{
     options::KnownLetter{'d'},

@@ -32,7 +32,7 @@ MachineStart::MachineStart(StartSettings settings, machine::LoadedConfig &loaded
 
 int MachineStart::run() {
     if (const std::string why = OutputRelay::begin(); !why.empty()) {
-        sink_.warning("a terminal that is stopped can hold up the machine: " + why);
+        sink_.warning("a stopped terminal can delay the machine: " + why);
     }
     const int status = run_machine();
     OutputRelay::end();
@@ -224,7 +224,7 @@ void MachineStart::run_shutdown_file() {
     }
     if (run->end().value_or(1) != 0) {
         sink_.error(run->end().has_value() ? "[HAL]SHUTDOWN = " + file + " has failed"
-                                           : "[HAL]SHUTDOWN = " + file + " does not come to its end");
+                                           : "[HAL]SHUTDOWN = " + file + " did not end in time");
     }
 }
 

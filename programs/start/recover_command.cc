@@ -28,15 +28,15 @@ struct RecoverWords {
     options::CommandLine line() {
         options::CommandLine line(
             "millwright recover [options]",
-            "Shows the program that a power cut, a crash or an emergency stop has ended, with the place "
-            "where "
-            "it goes on;\nasks whether the way there may be made, and goes on. The machine is one that "
-            "'millwright start' keeps up, on\nand homed. The program goes on when this command has ended.\n");
+            "Shows the program that a power cut, a crash or an emergency stop has interrupted, and the line "
+            "where it can continue.\nAsks for confirmation of the approach, then continues the program. The "
+            "machine must run ('millwright start'), be on\nand homed. The program continues after this "
+            "command has ended.\n");
         line.flag("--show", "only show what is offered", only_shown);
         line.flag("--forget", "drop the offer", forgetting);
-        line.flag("--yes", "make the way without asking: look that it is free", agreed);
+        line.flag("--yes", "move along the approach without asking: make sure that it is clear", agreed);
         line.rest(rest);
-        line.footer("exit status: 0 done or nothing is offered, 1 refused or failed, 2 wrong usage\n");
+        line.footer("exit status: 0 done or nothing is offered, 1 rejected or failed, 2 wrong usage\n");
         return line;
     }
 };

@@ -22,7 +22,7 @@ struct StartWords {
 
     options::CommandLine line() {
         options::CommandLine line("millwright start MACHINE.ini [options]",
-                                  "Brings the machine up by the clock, in emergency stop, and keeps it up "
+                                  "Starts the machine in real time, in emergency stop, and keeps it running "
                                   "for its clients: 'millwright run\n"
                                   "MACHINE.ini PROGRAM.ngc --realtime' then runs programs on it, one after "
                                   "the other. It ends when the\n"
@@ -31,7 +31,7 @@ struct StartWords {
                                   "along its path, spindles, coolant and the machine go off, parameters are "
                                   "saved. A second SIGINT ends it\n"
                                   "at once.\n");
-        line.flag("--no-display", "start no display: up until a signal comes", displayed, false);
+        line.flag("--no-display", "start no display: run until a signal ends it", displayed, false);
         line.text("--homemod", "NAME", "a homing module and its parameters, instead of [EMCMOT]HOMEMOD",
                   homing_module);
         line.text("--tpmod", "NAME", "a planner module and its parameters, instead of [TRAJ]TPMOD",
@@ -39,7 +39,7 @@ struct StartWords {
         line.flag("--strict", "unknown INI keys are errors", strict);
         line.rest(rest);
         line.footer(
-            "exit status: 0 ended in order, that of the display, 1 refused or failed, 2 wrong usage\n");
+            "exit status: 0 ended in order, that of the display, 1 rejected or failed, 2 wrong usage\n");
         return line;
     }
     Result<> parse(const std::vector<std::string> &words) {

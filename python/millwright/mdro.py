@@ -105,7 +105,7 @@ class Readout:
             raise Refused('machine coordinates cannot be changed: choose G54 to G57')
         now = self.value(axis)
         if now is None:
-            raise Refused(f'the scale of {self.axes[axis]} does not tell a number')
+            raise Refused(f'the scale of {self.axes[axis]} is not a number')
         wanted = {'zero': 0.0, 'half': now / 2}.get(what, request.get('value'))
         if isinstance(wanted, bool) or not isinstance(wanted, (int, float)) or not math.isfinite(wanted):
             raise Refused(f'{wanted} is no number')
@@ -176,7 +176,7 @@ def settings(words, doc):
     """Options, with those of an INI file where one is named."""
     parser = Parser(prog=NAME, usage=doc.split('usage: ')[1].split('\n')[0],
                     description='A digital read-out for machines that are moved by hand: where the scales are, in a browser of this computer.')
-    parser.add_argument('-v', action='count', default=0, dest='verbose', help='say what is done; twice: all requests')
+    parser.add_argument('-v', action='count', default=0, dest='verbose', help='report what is done; twice: all requests')
     parser.add_argument('-p', type=size_of, default=None, dest='point_size', metavar='POINT_SIZE', help='size of the text (20)')
     parser.add_argument('-m', action='store_true', dest='mm', help='the scales count mm, not inches')
     parser.add_argument('-l', dest='var', metavar='FILE.var', help='offsets of G54 to G57 at the start')

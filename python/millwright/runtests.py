@@ -115,7 +115,7 @@ def main(arguments, programs):
     parser.add_argument('-n', action='store_true', help='only list the tests that would run')
     parser.add_argument('-s', action='store_true', help='stop at the first that fails')
     parser.add_argument('-v', action='store_true', help='show output and errors of those that fail')
-    parser.add_argument('--patience', type=float, default=120, metavar='S', help='so long each may take (120)')
+    parser.add_argument('--patience', type=float, default=120, metavar='S', help='time limit for each test (120)')
     options = parser.parse_args(arguments)
     environment = dict(os.environ, PATH=f'{programs}:{os.environ.get("PATH", os.defpath)}')
     environment.setdefault('MILLWRIGHT_INSTANCE', f'runtests-{os.getpid()}')

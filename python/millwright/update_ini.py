@@ -99,7 +99,7 @@ class Machine:
             self.joint_of = {number: number for number in self.numbers}
             self.letter_of = {number: LETTERS[number] for number in self.numbers if LETTERS[number] in coordinates}
             self.words = ' '.join([self.kinematics, *words])
-            self.advice.append(f'{self.kinematics}: look at the limits of [AXIS_*], which are now those of the world')
+            self.advice.append(f'{self.kinematics}: check the limits of [AXIS_*]: they are limits of the axes now, not of the joints')
         elif letters:
             self.joint_of = {number: number for number in self.numbers}
             self.letter_of = {number: letters[number] for number in self.numbers if number < len(letters)}
@@ -277,7 +277,7 @@ def update(ini, isKept):
         write_whole(path, text, 'surrogateescape')
         print(f'changed: {path}')
     for text in [*advice, *machine.advice]:
-        print(f'look at it: {text}')
+        print(f'check: {text}')
 
 
 def main(words):

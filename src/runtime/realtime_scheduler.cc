@@ -260,7 +260,7 @@ void RealtimeScheduler::Impl::set_priorities() {
 RealtimeScheduler::RealtimeScheduler(Log &log, const RealtimeOptions &options)
     : impl_(std::make_unique<Impl>()) {
     if (options.is_simulation) {
-        impl_->missing = "simulation mode was asked for";
+        impl_->missing = "simulation mode was requested";
         return;
     }
     const int error = realtime_error();

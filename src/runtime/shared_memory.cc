@@ -195,7 +195,7 @@ Result<SharedMemory> SharedMemory::attach(const std::string &name, const SharedL
     const std::uint64_t size = header->size.load(std::memory_order_acquire);
     if (::fstat(memory.fd_, &status) != 0 ||
         static_cast<std::uint64_t>(status.st_size) < HEADER_SIZE + size) {
-        return fail(why(name) + "is shorter than it says");
+        return fail(why(name) + "is shorter than its header states");
     }
     ::munmap(memory.base_, memory.mapped_);
     memory.base_ = nullptr;
@@ -225,8 +225,8 @@ Result<> SharedMemory::grow(std::size_t wanted) {
         return {};
     }
     if (wanted > reserve()) {
-        return fail(why(name_) + std::to_string(wanted) + " bytes are more than the " +
-                    std::to_string(reserve()) + " that it may have");
+        return fail(why(name_) + std::to_string(wanted) + " bytes exceed the maximum of " +
+                    std::to_string(reserve()));
     }
     const int error = ::posix_fallocate(fd_, 0, static_cast<off_t>(HEADER_SIZE + wanted));
     if (error != 0) {

@@ -30,7 +30,7 @@ def programs_and_logs(machine):
         answer = machine.open(path)
         machine.until(lambda: False, 0.1)
         expect(answer == machine.linuxcnc.RCS_ERROR and time.monotonic() - begin < 1, f'{path} is rejected at once: {answer}', *machine.messages[-1:])
-        expect(any('not a file' in text for text in machine.messages), f'a message says why {path} is refused', *machine.messages[-2:])
+        expect(any('not a file' in text for text in machine.messages), f'a message has the reason for rejecting {path}', *machine.messages[-2:])
         machine.messages.clear()
     subroutine = machine.folder / 'configs/sim/endless.ngc'
     os.mkfifo(subroutine)

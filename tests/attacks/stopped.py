@@ -33,7 +33,7 @@ def realtime(machine, found):
     process = realtime_process(machine)
     os.kill(process, signal.SIGSTOP)
     try:
-        told = machine.until(lambda: any('has given no sign' in text for text in machine.messages), 1)
+        told = machine.until(lambda: any('has not responded' in text for text in machine.messages), 1)
         found.expect(told, 'task reports that motion does not run', machine.messages)
         begin = time.monotonic()
         machine.command.abort()

@@ -462,7 +462,7 @@ void Judge::check_stop(bool isMoving, double took_s) {
     const double waited_s = stop_.wasPlannerAway ? WAIT_FOR_PLANNER_S : 0.0;
     if (took_s > STOP_FACTOR * least.seconds + STOP_SLACK_S + waited_s + corrections_s + mean_s) {
         fail("stop", fmt::format("{} {:.3f} s after the stop; its limits need {:.3f} s",
-                                 isMoving ? "still moves" : "comes to rest", took_s, least.seconds));
+                                 isMoving ? "still moves" : "stops", took_s, least.seconds));
         stop_.isAwaited = false;
     }
     constexpr double WORTH_A_LOOK_S = 0.05;

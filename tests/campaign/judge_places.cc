@@ -24,9 +24,9 @@ double found_within(const JointDesign &d, double period_s) {
 
 }  // namespace
 
-/// A stopped axis stays at its position, except rounding, until a motion is commanded. A command that came
-/// with the stop may still be in the mean that keeps the jerk: too slow to see at first, and what play there
-/// is is made up where it turns about.
+/// A stopped axis stays at its position, except rounding, until a motion is commanded. A command that
+/// arrived with the stop may still be in the moving average that limits the jerk: too slow to see at first,
+/// and backlash is compensated where it reverses.
 void Judge::check_stale(const Sample &s, bool wasAtRest) {
     const bool wasHeld = held_cycles_ > 0;
     const bool isHeld = !allowed_.isMotion && restless_ == 0 && (wasAtRest || wasHeld);

@@ -75,7 +75,7 @@ SETTINGS = [
     ('AXIS', 'MAX_LIMIT', '-900', 'MIN_LIMIT is above MAX_LIMIT'), ('TRAJ', 'COORDINATES', 'X Y Z A', None), ('TRAJ', 'COORDINATES', 'X Y Q', 'letter'),
     ('TRAJ', 'LINEAR_UNITS', 'inch', None), ('TRAJ', 'LINEAR_UNITS', 'cm', 'not known'), ('TRAJ', 'DEFAULT_LINEAR_VELOCITY', '900', 'is above'),
     ('KINS', 'JOINTS', '2', None), ('KINS', 'JOINTS', '40', 'out of range'), ('KINS', 'KINEMATICS', 'trivkin', None),
-    ('EMC', 'VERSION', '1.0', 'older form'), ('EMCMOT', 'SERVO_PERIOD', '1', 'out of range'), ('EMCMOT', 'BASE_PERIOD', '2000000', 'longer than'),
+    ('EMC', 'VERSION', '1.0', 'older format'), ('EMCMOT', 'SERVO_PERIOD', '1', 'out of range'), ('EMCMOT', 'BASE_PERIOD', '2000000', 'longer than'),
     ('EMCIO', 'TOOL_TABLE', 'no/tools.tbl', 'no folder'), ('RS274NGC', 'PARAMETER_FILE', 'no/mill.var', 'no folder'),
     ('RS274NGC', 'SUBROUTINE_PATH', '../../nc_files/lip', 'no folder'), ('DISPLAY', 'PROGRAM_PREFIX', '../../nc_file', 'no folder'),
     ('DISPLAY', 'DISPLAY', 'axsi', 'no program'), ('TASK', 'CYCLE_TIME', '0', 'out of range'),
@@ -85,7 +85,7 @@ ADDED = [
     ('DISPLAY', 'DEFAULT_LINEAR_VELOCITY = 3000', 'exceeds the maximum jog speed'), ('APPLICATIONS', 'APP = ./nothing -x', 'no program'), ('HAL', 'POSTGUI_HALFILE = gone.hal', 'not found'),
     ('HAL', 'HALFILE = gone.hal', 'not found'), ('HAL', 'HALFILE', 'no setting'), ('JOINT', 'SCALE = 0', 'no unit'),
     ('JOINT', 'STEPGEN_MAXACCEL = 10', None), ('RS274NGC', 'REMAP = M400 modalgroup=10 ngc=gone', 'no file'), ('AXIS_X', 'MIN_LIMIT = 5', 'appears twice'),
-    ('SPINDLE_0', 'MIN_FORWARD_VELOCITY = 90', None), ('AXIS_A', 'MAX_VELOCITY = 9', 'does not name'), ('DISPLAY', 'OPEN_FILE = gone.ngc', 'no file'),
+    ('SPINDLE_0', 'MIN_FORWARD_VELOCITY = 90', None), ('AXIS_A', 'MAX_VELOCITY = 9', 'belongs to an axis'), ('DISPLAY', 'OPEN_FILE = gone.ngc', 'no file'),
 ]
 # In spindle_sim.hal.
 HAL = [('loadrt near', 'loadrt nearr', 'no module'), ('spindle-inertia.gain', 'spindle-inertia.gian', 'did you mean'),

@@ -114,7 +114,7 @@ def check_refusals(bench):
     folder.mkdir()
     (folder / 'mine.txt').write_text('mine')
     done = bench.run('setup', folder)
-    bench.expect(done.returncode == 1 and 'is there already' in done.stderr and [p.name for p in folder.iterdir()] == ['mine.txt'],
+    bench.expect(done.returncode == 1 and 'exists already' in done.stderr and [p.name for p in folder.iterdir()] == ['mine.txt'],
                  'a folder with something in it is not touched', done.stderr)
     done = bench.run('setup', bench.folder / 'none', 'drives=stepper', 'x.microsteps=64', 'y.step_pin=2')
     bench.expect(done.returncode == 1 and 'x.speed: motor X would need' in done.stderr and 'y.step_pin: pin 2 is used' in done.stderr

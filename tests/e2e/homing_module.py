@@ -71,8 +71,8 @@ def main():
         run('by the command line', '', 0, ['cycle time'], ['--homemod', 'stallhome'])
         run('the command line goes before the file', 'nosuch', 0, ['cycle time'], ['--homemod', 'stallhome'])
         run('excessive requests are limited', 'wildhome', 0,
-            ['the homing module asked for more than joint 0 can do', 'cycle time'])
-        run('one that asks for what is no number', 'nanhome', 1, ['no finite number'])
+            ['the homing module commanded more than the limits of joint 0 allow', 'cycle time'])
+        run('one that commands a value that is no number', 'nanhome', 1, ['not a finite number'])
         run('one that cannot start', 'stillhome', 1, ['homing_init answers -1'])
         run('one that lacks a function', 'halfhome', 1,
             ['case.ini:', 'halfhome is no homing module, it lacks do_homing'], hal='')

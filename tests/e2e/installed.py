@@ -56,7 +56,7 @@ def main():
         part.write_text('G21 G90 F1200\nG1 X5 Y5\nM2\n')
         ini = str(share / 'configs/sim/mill_mm.ini')
         run('run in virtual time', ['millwright', 'run', ini, str(share / 'nc_files/drilling.ngc')], 'cycle time')
-        run('run by the clock', ['millwright', 'run', ini, str(part), '--realtime', '--yes'], 'cycle time')
+        run('run in real time', ['millwright', 'run', ini, str(part), '--realtime', '--yes'], 'cycle time')
         run('check', ['millwright', 'check', str(share / 'nc_files/lathe_part.ngc'), '--ini', str(share / 'configs/sim/lathe.ini')],
             'of the machine')
         run('halcompile', ['halcompile', '--install', 'twice.comp'], 'installed ')

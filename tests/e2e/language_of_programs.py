@@ -72,7 +72,7 @@ OTHER_ERRORS = (
     ('latency-test 1', "'1' is no period", "'1' ist keine Periode", "'1' no es un periodo"),
     ('halcompile --nosuch', 'there is no option --nosuch (--help lists them)', 'es gibt keine Option --nosuch (--help zeigt alle)', 'no hay ninguna opción --nosuch (--help las muestra todas)'),
     ('halcompile -o', '--outfile needs a value', '--outfile braucht einen Wert', '--outfile necesita un valor'),
-    ('halcompile a.xy', "the suffix '.xy' is none that halcompile knows", "halcompile kennt die Endung '.xy' nicht", "halcompile no conoce la extensión '.xy'"),
+    ('halcompile a.xy', "halcompile does not support the suffix '.xy'", "halcompile kennt die Endung '.xy' nicht", "halcompile no conoce la extensión '.xy'"),
     ('halcompile syntax.comp', "syntax.comp:3:1: error: ';' is expected here", "syntax.comp:3:1: Fehler: hier wird ';' erwartet", "syntax.comp:3:1: error: aquí se espera ';'"),
     ('halcompile names.comp', "names.comp:2:2: error: 'int' is a word of C (call the pin int_", "names.comp:2:2: Fehler: 'int' ist ein Schlüsselwort von C (Name für pin: int_",
      "names.comp:2:2: error: 'int' es una palabra reservada de C (llame a pin int_"),

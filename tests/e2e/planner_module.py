@@ -18,16 +18,16 @@ PROGRAM = 'G21 G90 G64 P0.05\nG1 X40 F3000\nY30\nX0\nG2 X10 Y20 I10 J0\nG1 X0 Y0
 PERIOD_S = 0.001
 # Faulty modules, and their error messages.
 WRONG = {
-    'fasttp': ('phases[1].speed = phases[0].speed;', 'phases[1].speed = phases[0].speed = 2 * s->speed_cap;', 'of the highest speed'),
-    'hardtp': ('    up = up < s->length', '    up = 1e-6;\n    up = up < s->length', 'of the highest acceleration'),
-    'shorttp': ('phases[1].length = s->length - up - down;', 'phases[1].length = 0;', 'does not come to the end'),
-    'nantp': ('phases[2].speed = sqrt(end2);', 'phases[2].speed = 0.0 / (end2 - end2);', 'no numbers'),
-    'nonetp': ('return 3;', 'return 0;', 'gives no speeds'),
+    'fasttp': ('phases[1].speed = phases[0].speed;', 'phases[1].speed = phases[0].speed = 2 * s->speed_cap;', 'times the maximum speed'),
+    'hardtp': ('    up = up < s->length', '    up = 1e-6;\n    up = up < s->length', 'times the maximum acceleration'),
+    'shorttp': ('phases[1].length = s->length - up - down;', 'phases[1].length = 0;', 'does not reach the end'),
+    'nantp': ('phases[2].speed = sqrt(end2);', 'phases[2].speed = 0.0 / (end2 - end2);', 'not a number'),
+    'nonetp': ('return 3;', 'return 0;', 'returned no speed'),
 }
 
 
 def speeds(trace):
-    """Highest speed and acceleration of X and Y, and how many cycles."""
+    """Maximum speed and acceleration of X and Y, and the number of cycles."""
     with open(trace, encoding='utf-8') as file:
         rows = [(float(row['axis.x']), float(row['axis.y'])) for row in csv.DictReader(file)]
     steps = [(b[0] - a[0], b[1] - a[1]) for a, b in zip(rows, rows[1:])]

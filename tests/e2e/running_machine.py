@@ -124,7 +124,7 @@ def one_after_the_other(bench):
     expect(again.end() == 1 and 'already running' in again.text and str(bench.ini) in again.text, 'a second start is rejected', again.text)
     other = bench.ini.parent / 'gantry_xyyz.ini'
     wrong = bench.run('short3.ngc', ini=other)
-    expect(wrong.end() == 1 and 'was started from' in wrong.text, 'another INI is refused', wrong.text)
+    expect(wrong.end() == 1 and 'was started from' in wrong.text, 'another INI is rejected', wrong.text)
     trace = bench.run('short3.ngc', '--trace', str(bench.folder / 't.csv'))
     expect(trace.end() == 1 and '--trace needs' in trace.text, 'options that need a separate machine are rejected', trace.text)
     simulated = subprocess.run([bench.millwright, 'run', str(bench.ini), str(bench.folder / 'short3.ngc')], env=bench.env,
@@ -182,7 +182,7 @@ def killed_machine(bench):
     expect(wait_until(lambda: bench.pin('spindle.0.on') == 'TRUE'), 'runs', running.text)
     machine.process.kill()
     machine.process.wait()
-    expect(running.end() == 1 and 'no longer running' in running.text, 'its client says that the machine is gone', running.text)
+    expect(running.end() == 1 and 'no longer running' in running.text, 'its client says that the machine has ended', running.text)
     expect(bench.is_down(), 'the realtime process has ended')
     machine = bench.up()
     after = bench.run('short3.ngc')
@@ -193,7 +193,7 @@ def killed_machine(bench):
     alone = bench.run('long.ngc')
     expect(wait_until(lambda: bench.pin('spindle.0.on') == 'TRUE'), 'a machine for one program', alone.text)
     other = bench.run('short3.ngc')
-    expect(other.end() == 1 and 'its own machine' in other.text, 'is shared with nobody', other.text)
+    expect(other.end() == 1 and 'its own machine' in other.text, 'is not shared', other.text)
     started = bench.start('--no-display')
     expect(started.end() == 1 and 'already running' in started.text, 'nor is its instance', started.text)
     os.kill(alone.process.pid, signal.SIGTERM)

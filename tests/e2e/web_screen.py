@@ -283,7 +283,7 @@ def end_while_jogging(bench, server, port, has_lease):
     server, port = bench.server()
     screen = Screen(port)
     expect(screen.until(lambda: 'joints' in screen.status and screen.joint()['vel_cmd'] == 0, 3), 'its jog has ended', screen.status.get('joints'))
-    expect(screen.joint()['pos_cmd'] > begin - 150, 'on its way', screen.joint())
+    expect(screen.joint()['pos_cmd'] > begin - 150, 'during the move', screen.joint())
     return screen, server, port
 
 

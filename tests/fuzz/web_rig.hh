@@ -51,7 +51,9 @@ struct WebRig {
             pieces->end();
             return Result<std::shared_ptr<screen::PieceQueue>>(std::move(pieces));
         };
-        setup.connect_hal = []() -> Result<std::unique_ptr<hal::Host>> { return fail("no machine is up"); };
+        setup.connect_hal = []() -> Result<std::unique_ptr<hal::Host>> {
+            return fail("no machine is running");
+        };
         return std::make_unique<screen::Api>(sockets, screen::Threads{here, here}, std::move(setup),
                                              [this] { return now_ns; });
     }

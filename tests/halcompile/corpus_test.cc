@@ -61,9 +61,9 @@ TEST_F(Corpus, ArraysOfFixedAndDependentSize) {
 }
 
 TEST_F(Corpus, APersonalityThatAsksTooMuchIsRefused) {
-    EXPECT_NE(load("gate.comp", {"personality=0x520"})
-                  .find("personality asks for 5 of weight-#, 0 to 4 are possible"),
-              std::string::npos);
+    EXPECT_NE(
+        load("gate.comp", {"personality=0x520"}).find("personality sets 5 of weight-#, 0 to 4 are possible"),
+        std::string::npos);
     EXPECT_EQ(load_only("gate", {"personality=0x420"}), "ok");
     EXPECT_EQ(number("gate.0.weight-3"), 1.5);
 }

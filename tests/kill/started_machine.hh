@@ -82,7 +82,7 @@ class StartedMachine : public ::testing::Test {
             }
             std::this_thread::sleep_for(std::chrono::milliseconds(10));
         }
-        FAIL() << "the machine does not come up:\n" << content(folder / "log");
+        FAIL() << "the machine does not start:\n" << content(folder / "log");
     }
     void ask(const messages::Command &command) {
         const auto posted = client->post(command);

@@ -97,7 +97,7 @@ Verdict judge_power_cut(std::uint64_t seed, const files::path &folder) {
     Verdict verdict;
     files::remove_all(folder);
     const Recording whole = run_undisturbed(job, folder, verdict.trouble);
-    if (verdict.trouble.contains("goes beyond the soft limit")) {  // offsets by chance: no program to judge
+    if (verdict.trouble.contains("exceeds the soft limit")) {  // offsets by chance: no program to judge
         return {"no program", "", 0};
     }
     if (!verdict.trouble.empty()) {

@@ -10,7 +10,7 @@
 namespace mw::power_cut {
 
 struct Verdict {
-    std::string kind;     ///< result: offered, refused, ended before
+    std::string kind;     ///< result: offered, rejected, ended before
     std::string trouble;  ///< what must not be; empty: nothing
     int late_ms = 0;      ///< by how much cutting the offered place lies before the tool
 };

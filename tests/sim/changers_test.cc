@@ -34,7 +34,7 @@ class ChangerTest : public VirtualMachineTest {
     }
     void set(const std::string &name, bool isOn) { set_pin("iocontrol.0." + name, isOn ? "1" : "0"); }
     geometry::Pose place() const { return motion().carte_pos_cmd; }
-    /// Answers as a changer does, but for `request`, which it comes to with the pin on; false when it never
+    /// Answers like a changer until the pin `request` is on, which it leaves unanswered; false when it never
     /// is.
     bool run_until(const std::string &request) {
         for (int i = 0; i < 20000 && !pin(request); ++i) {
@@ -46,7 +46,7 @@ class ChangerTest : public VirtualMachineTest {
         }
         return pin(request);
     }
-    /// Of the change that is asked for: the machine stands there until it is answered, and then.
+    /// The machine is stopped there from the request of the change until after the answer.
     void expect_change_at(double x, double y, double z) {
         ASSERT_TRUE(run_until("tool-change")) << messages();
         const geometry::Pose there = place();

@@ -76,13 +76,13 @@ TEST_F(OffsetMachine, SettingsOfTheIniFileMayBeTurnedByPins) {
     set_pin("ini.x.max-limit", "-200");
     cycles(5);
     EXPECT_NE(messages().find("ini.x.max-limit is -200: the other limit is -100"), std::string::npos);
-    EXPECT_EQ(motion().axis[0].max_limit, 20) << "the old one stays";
+    EXPECT_EQ(motion().axis[0].max_limit, 20) << "the old value stays";
     set_pin("ini.0.max-velocity", "0");
     cycles(5);
-    EXPECT_NE(messages().find("ini.0.max-velocity is 0: it is out of its range"), std::string::npos);
+    EXPECT_NE(messages().find("ini.0.max-velocity is 0: the value is out of range"), std::string::npos);
     set_pin("ini.traj-arc-blend-enable", "0");
     cycles(5);
-    EXPECT_NE(messages().find("nothing acts on this setting"), std::string::npos);
+    EXPECT_NE(messages().find("this setting has no effect"), std::string::npos);
 }
 
 TEST_F(OffsetMachine, ASpeedTurnedByAPinWaitsUntilNothingMovesInManualMode) {
@@ -145,7 +145,7 @@ TEST_F(BeltMachine, BeltsEndWhereProgramAndOffsetTakeThemTogether) {
     EXPECT_NEAR(number("axis.y.eoffset"), 20, 1e-6) << "joint 0 is X + Y, and ends at 150";
     EXPECT_TRUE(pin("motion.eoffset-limited"));
     EXPECT_EQ(mdi("X91"), task::Progress::FAILED);
-    EXPECT_NE(messages().find("takes a joint beyond its soft limit"), std::string::npos);
+    EXPECT_NE(messages().find("exceeds the soft limit of a joint"), std::string::npos);
     ASSERT_EQ(mdi("G0 X50"), task::Progress::DONE) << messages();
     cycles(2000);
     EXPECT_NEAR(number("axis.y.eoffset"), 30, 1e-9);

@@ -301,8 +301,8 @@ TEST_P(ThreadModes, AnAbortBrakesInTheThreadWithinTheLimits) {
     EXPECT_EQ(mdi("G0 X14 Z5"), task::Progress::DONE) << messages();
 }
 
-/// The mean of this machine is as long as its speed needs, sqrt(2 V / J): not all of its acceleration can be
-/// turned about within it. An abort comes while the tool gains its speed.
+/// The averaging time of this machine follows from its speed, sqrt(2 V / J): full acceleration cannot be
+/// reversed within it. An abort comes while the tool accelerates.
 TEST_P(ThreadModes, AnAbortWhileTheToolGainsSpeedKeepsTheLimits) {
     make(GetParam(), 40);
     for (const int later : {2, 6, 12, 20, 30, 40}) {

@@ -43,7 +43,7 @@ struct MotionRig {
     MotionRig &operator=(const MotionRig &) = delete;
     ~MotionRig() {
         if (const std::string report = joint_report(); !report.empty()) {
-            std::fprintf(stderr, "joints beyond their limits:\n%s", report.c_str());
+            std::fprintf(stderr, "joints outside their limits:\n%s", report.c_str());
             std::abort();
         }
     }

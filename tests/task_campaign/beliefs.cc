@@ -73,7 +73,7 @@ std::string state_trouble(const messages::MachineStatus &status, messages::Mode 
     }
     if (task.isPaused || task.queued_mdi != 0 || task.interp_state != messages::InterpState::IDLE ||
         status.approach.number != 0 || status.trajectory.queue_depth != 0) {
-        return "something is held, waits or is proposed";
+        return "a program is paused, waits or is proposed";
     }
     if (task.isOptionalStop != beliefs.isOptionalStop || task.isBlockDelete != beliefs.isBlockDelete) {
         return "optional stop or block delete is not as it was set";

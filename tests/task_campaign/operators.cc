@@ -207,7 +207,7 @@ void Operators::settle() {
         }
     }
     if (!isOver()) {
-        fail("rest", "the machine does not come to rest: " + what_it_waits_for());
+        fail("rest", "the machine does not stop: " + what_it_waits_for());
     }
 }
 

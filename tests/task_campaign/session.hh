@@ -69,9 +69,8 @@ class Session : private Operators {
     bool isStopped_ = false;      ///< by a fault: any result is permitted
     bool areDevicesOff_ = false;  ///< by a stop of the operator
     bool isCrashed_ = false;
-    bool wasRunning_ = false;  ///< at the crash
-    std::uint64_t runs_before_crash_ =
-        0;  ///< of the program, that had ended before the one that was cut short
+    bool wasRunning_ = false;              ///< at the crash
+    std::uint64_t runs_before_crash_ = 0;  ///< runs of the program that had ended before the interrupted one
     bool wasBlockDelete_ = true, wasOptionalStop_ = true;
 };
 

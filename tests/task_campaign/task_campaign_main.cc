@@ -47,9 +47,8 @@ class TaskCampaign final : public campaign_runner::Campaign {
 };
 
 void TaskCampaign::print_sum(std::istream &log) const {
-    static constexpr const char *NAMES[] = {
-        "acts",  "commands", "refused or failed", "runs",
-        "ended", "stopped",  "crashes",           "gone on with after a crash"};
+    static constexpr const char *NAMES[] = {"acts",    "commands", "rejected or failed",     "runs", "ended",
+                                            "stopped", "crashes",  "continued after a crash"};
     std::uint64_t sessions = 0, failed = 0, sums[std::size(NAMES)] = {};
     double seconds = 0;
     std::map<std::string, std::uint64_t> counts;

@@ -115,8 +115,8 @@ TEST_F(HomingModule, IsKeptWithinSpeedAccelerationAndRangeAndThatIsTold) {
         run(30);
         EXPECT_TRUE(isHomed());
         EXPECT_GE(lowest, -2 * RANGE - 1e-9);
-        EXPECT_EQ(faults(),
-                  "the homing module asked for more than joint 0 can do: it moves within its limits\n");
+        EXPECT_EQ(faults(), "the homing module commanded more than the limits of joint 0 allow: the joint "
+                            "moves within its limits\n");
         EXPECT_TRUE(checker.isWithin()) << checker.report();
         checker.restart();
         host.reset();
@@ -128,7 +128,7 @@ TEST_F(HomingModule, WhatIsNoNumberEndsHoming) {
     run(2);
     EXPECT_FALSE(isHomed());
     EXPECT_EQ(motor(), 0);
-    EXPECT_NE(faults().find("no finite number"), std::string::npos);
+    EXPECT_NE(faults().find("not a finite number"), std::string::npos);
 }
 
 TEST_F(HomingModule, AnAbortStopsItWhetherItHearsOrNot) {
@@ -159,7 +159,8 @@ TEST_F(HomingModule, OneThatGivesUpIsToldOf) {
     ASSERT_NO_FATAL_FAILURE(start(Manner::GIVING_UP));
     run(5);
     EXPECT_FALSE(isHomed());
-    EXPECT_EQ(faults(), "homing of joint 0 failed: the homing module gave up; it may have said why\n");
+    EXPECT_EQ(faults(),
+              "homing of joint 0 failed: the homing module reported a failure; check its messages\n");
 }
 
 TEST_F(HomingModule, MayHaveTheHomingPinsItself) {

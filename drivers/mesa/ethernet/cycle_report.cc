@@ -124,9 +124,9 @@ std::vector<CycleCause> causes_of(const CycleFigures &figures) {
     const auto unexplained = static_cast<std::int64_t>(figures.no_answer + figures.short_answer) -
                              static_cast<std::int64_t>(figures.late_answers) - figures.lost_to_board;
     if (unexplained > 0) {
-        causes.push_back({fmt::format("{} answers of the board were lost on their way, or the board was off.",
-                                      unexplained),
-                          "Check the supply of the board, the cable and the connectors."});
+        causes.push_back(
+            {fmt::format("{} replies of the board were lost, or the board was off.", unexplained),
+             "Check the supply of the board, the cable and the connectors."});
     }
     return causes;
 }

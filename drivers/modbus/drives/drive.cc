@@ -116,11 +116,11 @@ Result<> run(Drive &drive, const std::string &name, const Line &line,
              const volatile std::sig_atomic_t &stop) {
     const int id = hal_init(name.c_str());
     if (id < 0) {
-        return fail("HAL does not take a component " + name, {}, "is there one of this name already?");
+        return fail("HAL does not accept component " + name, {}, "does one with this name exist already?");
     }
     if (!drive.make_pins(id, name)) {
         hal_exit(id);
-        return fail("HAL does not take the pins " + name + ".*");
+        return fail("HAL does not accept the pins " + name + ".*");
     }
     hal_ready(id);
     Registers registers(name, line);

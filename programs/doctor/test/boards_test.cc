@@ -51,7 +51,7 @@ TEST(Boards, AFaultIsNamedWithItsCauseAndWhatToChange) {
     cycles.at_fault = good_cycles(500);
     cycles.at_fault.back().begin_ns += 20 * MS;
     const std::string text = findings(cycles);
-    EXPECT_NE(text.find("its watchdog has bitten, 12 s ago"), std::string::npos) << text;
+    EXPECT_NE(text.find("its watchdog has tripped, 12 s ago"), std::string::npos) << text;
     EXPECT_NE(text.find("The thread began 1 cycles more than half a period late, the worst by 20000 us."),
               std::string::npos)
         << text;

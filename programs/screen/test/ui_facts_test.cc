@@ -282,7 +282,7 @@ TEST_F(UiMachine, TheTimeOfEachMoveIsThePlanners) {
     EXPECT_NEAR(half.by_line.at(2), 20, 0.1);
     EXPECT_NEAR(half.by_line.at(5), plain.by_line.at(5), 0.01) << "a rapid move has no feed";
     const Times slow(all_of(**readers.read_times(path, {.rapid = 0.1, .max_velocity = 5})));
-    EXPECT_NEAR(slow.by_line.at(2), 20, 0.1) << "the highest speed holds for all";
+    EXPECT_NEAR(slow.by_line.at(2), 20, 0.1) << "the maximum speed limits all moves";
     EXPECT_GT(slow.by_line.at(5), 2 * plain.by_line.at(5));
 }
 
@@ -344,7 +344,7 @@ TEST_F(Filter, WhatGoesWrongIsToldAndLeavesTheProgramOfBefore) {
          {std::pair{"echo half; echo no depth in it >&2; exit 3\n",
                     "has ended with status 3: no depth in it"},
           std::pair{"kill -9 $$\n", "has ended with status 137"},
-          std::pair{"echo nothing to cut >&2\n", "has made no program: nothing to cut"}}) {
+          std::pair{"echo nothing to cut >&2\n", "produced no program: nothing to cut"}}) {
         const std::string told = run(script);
         EXPECT_NE(told.find("\"error\":\"the filter './filter -x' "), std::string::npos) << told;
         EXPECT_NE(told.find(why), std::string::npos) << told;

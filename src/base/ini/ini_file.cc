@@ -113,7 +113,7 @@ class IniParser {
             entry(line, body, place);
         }
         if (!stopped_ && sink_.all().size() - told_ >= diagnostics::MOST_OF_A_FILE) {
-            stop("too many wrong lines: the rest is not read", place);
+            stop("too many errors: the rest of the file is not read", place);
         }
     }
 

@@ -30,7 +30,7 @@ const char *const Browser::ONLY_STOPS =
 
 void Browser::leave() {
     for (const Followed &one : std::exchange(followed_, {})) {
-        send_(outcome_text(one.id, {messages::Progress::FAILED, "the machine is gone"}));
+        send_(outcome_text(one.id, {messages::Progress::FAILED, "the machine has ended"}));
     }
     client_.reset();
     shared_ = nullptr;

@@ -46,7 +46,7 @@ struct ExplainWords {
                   "lines to run first, one after the other with \\n between (default: 'F100 S1000 M3')",
                   before);
         line.rest_of_text(line_words);
-        line.footer("exit status: 0 done, 1 refused, 2 wrong usage\n");
+        line.footer("exit status: 0 done, 1 rejected, 2 wrong usage\n");
         return line;
     }
 };

@@ -120,8 +120,9 @@ void Table::take_text(std::string_view text, Reading &reading) {
         const auto header = columns_of_header(content);
         line.is_old_form = header.has_value() || isInColumns(content);
         if (line.is_old_form && !std::exchange(reading.old_form_reported, true)) {
-            reading.doubts.note(
-                "a table of the older form: it is written in today's form once a tool changes", place);
+            reading.doubts.note("the tool table has an older format: it is written in the current format at "
+                                "the next tool change",
+                                place);
         }
         if (header.has_value()) {
             reading.columns = *header;
@@ -203,10 +204,10 @@ void Table::check(Reading &reading) const {
                 fmt::format("tool {}: P0 means the spindle, not for a pocket", tool.toolno), place);
         }
         if (tool.diameter < 0.0) {
-            reading.doubts.warning(fmt::format("tool {}: a diameter of {} is negative: compensation with "
-                                               "it goes to the other side",
-                                               tool.toolno, tool.diameter),
-                                   place);
+            reading.doubts.warning(
+                fmt::format("tool {}: the diameter {} is negative: cutter compensation is on the other side",
+                            tool.toolno, tool.diameter),
+                place);
         }
     }
     check_pockets(reading);
@@ -229,10 +230,11 @@ void Table::check_numbers(Reading &reading) {
         ReadTool &earlier = reading.tools[first];
         const bool is_same = isSameTool(earlier.entry, tool.entry);
         reading.doubts.warning(
-            fmt::format("tool {} stands in lines {} and {}{}", number, reading.line_of(earlier),
-                        reading.line_of(tool),
-                        is_same ? ": the first one counts"
-                                : " with different figures: it cannot be used until one of them goes"),
+            fmt::format(
+                "tool {} is defined in lines {} and {}{}", number, reading.line_of(earlier),
+                reading.line_of(tool),
+                is_same ? ": the first line is used"
+                        : " with different data: the tool cannot be used until one of the lines is deleted"),
             reading.place_of(tool));
         tool.usable = false;
         earlier.usable = earlier.usable && is_same;
@@ -258,11 +260,11 @@ void Table::check_pockets(Reading &reading) const {
         }
         ReadTool &earlier = reading.tools[other ? pocket.first : *pocket.second];
         pocket.second = pocket.second.value_or(later);
-        reading.doubts.warning(fmt::format("tools {} (line {}) and {} are in one pocket, P{}{}",
-                                           earlier.entry.toolno, reading.line_of(earlier), tool.entry.toolno,
-                                           tool.entry.pocketno,
-                                           isRandom() ? ": neither can be used until one of them goes" : ""),
-                               reading.place_of(tool));
+        reading.doubts.warning(
+            fmt::format("tools {} (line {}) and {} are in one pocket, P{}{}", earlier.entry.toolno,
+                        reading.line_of(earlier), tool.entry.toolno, tool.entry.pocketno,
+                        isRandom() ? ": neither can be used until one of the lines is deleted" : ""),
+            reading.place_of(tool));
         if (isRandom()) {
             earlier.usable = tool.usable = false;
         }
@@ -387,7 +389,8 @@ Result<> Table::remove(int index) {
     }
     const int toolno = entry(index).toolno;
     if (toolno == entry(0).toolno) {
-        return fail(fmt::format("tool {} is in the spindle: it is removed when it is not", toolno));
+        return fail(
+            fmt::format("tool {} is in the spindle: it is removed after the next tool change", toolno));
     }
     entries_[static_cast<std::size_t>(index)] = empty_pocket(isRandom() ? index : 0);
     std::erase_if(lines_, [index, toolno](const Line &line) {

@@ -50,7 +50,7 @@ constexpr Absent ABSENT[] = {
     {" stepconf pncconf linuxcncmkdesktop ", "it writes configurations, which run here, but is a program of "
                                              "LinuxCNC's package; 'millwright select' has samples"},
     {" io iov2 milltask halui linuxcncsvr rtapi_app linuxcnc_module_helper tpmod homemod inihal ",
-     "it is a part of the machine here and not started by itself: 'millwright start MACHINE.ini' has it all"},
+     "it is a part of the machine and is not started separately: use 'millwright start MACHINE.ini'"},
     {" halrmt linuxcnclcd ", "it is not there; linuxcncrsh, halcmd and the Python modules linuxcnc and hal "
                              "drive a machine from other programs"},
     {" classicladder classicladder_rt ", "there are no ladders yet; the components of logic (and2, or2, "

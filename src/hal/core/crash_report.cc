@@ -26,10 +26,10 @@ struct Fatal {
     const char *meaning;
 };
 
-constexpr std::array<Fatal, 5> FATAL = {{{SIGSEGV, "SIGSEGV", "access to memory that is not there"},
-                                         {SIGBUS, "SIGBUS", "access to memory that is not there"},
+constexpr std::array<Fatal, 5> FATAL = {{{SIGSEGV, "SIGSEGV", "access to an invalid memory address"},
+                                         {SIGBUS, "SIGBUS", "access to an invalid memory address"},
                                          {SIGFPE, "SIGFPE", "division of an integer by zero"},
-                                         {SIGILL, "SIGILL", "an instruction that does not exist"},
+                                         {SIGILL, "SIGILL", "an invalid instruction"},
                                          {SIGABRT, "SIGABRT", "abort()"}}};
 constexpr std::size_t MOST_LEFTOVERS = 4;
 

@@ -189,7 +189,7 @@ std::optional<std::string> Hal::host_end() const {
         return end.text.data();
     }
     const bool gone = impl_->isShared && !runtime::isAlive(impl_->segment.memory().owner());
-    return gone ? std::optional<std::string>("it was killed, or ended without a word") : std::nullopt;
+    return gone ? std::optional<std::string>("it was killed, or ended without a message") : std::nullopt;
 }
 runtime::Log &Hal::log() noexcept {
     return *impl_->log;
@@ -386,7 +386,7 @@ Result<BlockRecord *> Hal::Impl::open_block(int key, std::size_t bytes) {
     }
     if (bytes == 0 || (block->users > 0 && block->size < bytes)) {
         return refuse(EINVAL,
-                      fmt::format("shared block {} has {} bytes, {} are wanted", key, block->size, bytes));
+                      fmt::format("shared block {} has {} bytes, expected {}", key, block->size, bytes));
     }
     if (block->room < bytes) {
         const Offset memory = segment.allocate(bytes, 64);

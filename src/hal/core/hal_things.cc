@@ -73,12 +73,11 @@ Result<> Hal::Impl::add_pin(std::string_view wanted, Type type, Dir dir, void **
         return checked;
     }
     if (!isType(type) || (dir != Dir::IN && dir != Dir::OUT && dir != Dir::IO)) {
-        return refuse(EINVAL, fmt::format("pin '{}': type {} or direction {} is none of a pin", wanted,
+        return refuse(EINVAL, fmt::format("pin '{}': type {} or direction {} is not valid for a pin", wanted,
                                           static_cast<int>(type), static_cast<int>(dir)));
     }
     if (!segment.contains(slot, sizeof *slot) || reinterpret_cast<std::uintptr_t>(slot) % sizeof *slot != 0) {
-        return refuse(EINVAL,
-                      fmt::format("pin '{}': its pointer does not lie in memory of hal_malloc", wanted));
+        return refuse(EINVAL, fmt::format("pin '{}': its pointer is not in memory of hal_malloc", wanted));
     }
     auto *pin = segment.make<PinRecord>(Kind::PIN, wanted);
     if (pin == nullptr) {
@@ -118,12 +117,13 @@ Result<> Hal::Impl::add_param(std::string_view wanted, Type type, Dir dir, void 
         return checked;
     }
     if (!isType(type) || type == Type::PORT || (dir != Dir::RO && dir != Dir::RW)) {
-        return refuse(EINVAL, fmt::format("parameter '{}': type {} or direction {} is none of a parameter",
-                                          wanted, static_cast<int>(type), static_cast<int>(dir)));
+        return refuse(EINVAL,
+                      fmt::format("parameter '{}': type {} or direction {} is not valid for a parameter",
+                                  wanted, static_cast<int>(type), static_cast<int>(dir)));
     }
     if (!segment.contains(address, type == Type::BIT ? 1 : 4)) {
         return refuse(EINVAL,
-                      fmt::format("parameter '{}': its value does not lie in memory of hal_malloc", wanted));
+                      fmt::format("parameter '{}': its value is not in memory of hal_malloc", wanted));
     }
     auto *param = segment.make<ParamRecord>(Kind::PARAM, wanted);
     if (param == nullptr) {

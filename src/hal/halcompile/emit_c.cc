@@ -201,7 +201,7 @@ class Emitter {
         if (!item.array->count.empty()) {
             line("{}__comp_n = ({});", indent, item.array->count);
             line("{}if (__comp_n < 0 || __comp_n > ({})) {{", indent, item.array->size);
-            line("{}    rtapi_print_msg(RTAPI_MSG_ERR, \"%s: personality asks for %d of {}, 0 to %d are "
+            line("{}    rtapi_print_msg(RTAPI_MSG_ERR, \"%s: personality sets %d of {}, 0 to %d are "
                  "possible\\n\", "
                  "prefix, __comp_n, (int)({}));",
                  indent, item.name, item.array->size);

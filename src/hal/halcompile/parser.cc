@@ -322,7 +322,7 @@ class Parser {
         const std::string kind = scanner_.isAtString() ? std::string() : scanner_.take_name();
         if (!kind.empty() && kind != "fp" && kind != "nofp") {
             return fail(fmt::format("';' is expected before '{}'", kind), kind_place,
-                        "behind the name of a function come fp or nofp, a text, and ;");
+                        "after the function name: fp or nofp, a text, and ;");
         }
         function.usesFloat = kind != "nofp";
         auto doc = optional_doc();

@@ -58,7 +58,7 @@ class Job {
         } else if (suffix == ".py") {
             done = run_python();
         } else {
-            done = fail(fmt::format("{}: the suffix '{}' is none that halcompile knows", file_, suffix), {},
+            done = fail(fmt::format("{}: halcompile does not support the suffix '{}'", file_, suffix), {},
                         ".comp, .c, .cc, .cpp, .py");
         }
         return report(done);

@@ -292,7 +292,7 @@ std::optional<Error> HostClient::death() const {
         return std::nullopt;
     }
     return Error{fmt::format("the realtime process {} of instance '{}' has ended: {}", impl_->pid,
-                             impl_->instance, how.value_or("it was killed, or ended without a word")),
+                             impl_->instance, how.value_or("it was killed, or ended without a message")),
                  {},
                  {}};
 }

@@ -168,7 +168,7 @@ std::string help_overview() {
         const std::string help = language::shown(spec.help);
         text += fmt::format("  {:<10}  {}\n", spec.name, help.substr(0, help.find('\n')));
     }
-    return text + language::shown("'help COMMAND' tells more.\n");
+    return text + language::shown("'help COMMAND' describes a command.\n");
 }
 
 Result<> at(Result<> result, const SourcePlace &place, const std::string &hint) {

@@ -79,7 +79,7 @@ Result<std::uint8_t> lock_of(const Call &call, bool allowsNone) {
             return lock.lock;
         }
     }
-    return fail(fmt::format("unknown kind of lock '{}'", call.text(0)), call.place_of(0),
+    return fail(fmt::format("unknown lock type '{}'", call.text(0)), call.place_of(0),
                 allowsNone ? "none, tune or all" : "tune or all");
 }
 

@@ -230,7 +230,7 @@ Result<> run_save(Session &session, const Call &call) {
             return {};
         }
         if (!session.options().has_files) {
-            return fail("files are out of reach here", call.place_of(1));
+            return fail("files cannot be read here", call.place_of(1));
         }
         const Result<> written = write_file_atomically(call.text(1), text);
         return written ? written : fail(written.error().message, call.place_of(1), written.error().hint);

@@ -79,7 +79,7 @@ class Substituter {
         if (at_ < text_.size() && text_[at_] == '(') {
             const std::size_t close = text_.find(')', at_);
             if (close == std::string::npos) {
-                return fail("missing ')' behind a variable name", place_of(line_, at_, file_));
+                return fail("missing ')' after a variable name", place_of(line_, at_, file_));
             }
             std::string name = text_.substr(at_ + 1, close - at_ - 1);
             at_ = close + 1;
@@ -122,7 +122,7 @@ class Substituter {
         const std::size_t start = at_;
         const std::size_t close = text_.find(']', at_);
         if (close == std::string::npos) {
-            return fail("missing ']' behind an INI section name", place_of(line_, start, file_));
+            return fail("missing ']' after an INI section name", place_of(line_, start, file_));
         }
         const std::string section = text_.substr(at_ + 1, close - at_ - 1);
         at_ = close + 1;

@@ -122,7 +122,8 @@ Result<> SystemProgramHost::wait_for_status(const ProgramRequest &request, int p
     for (pid_t found = 0; found != pid;) {
         found = waitpid(pid, &status, WNOHANG);
         if (found < 0) {
-            return fail(fmt::format("lost sight of program '{}': {}", request.argv[0], std::strerror(errno)));
+            return fail(
+                fmt::format("program '{}' cannot be monitored: {}", request.argv[0], std::strerror(errno)));
         }
         if (found == 0 && isStopped()) {
             kill(pid, SIGTERM);

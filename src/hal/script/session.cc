@@ -204,7 +204,7 @@ Result<ScriptRunner *> Session::tcl() {
 Result<> Session::run_file(const std::string &name, const std::vector<std::string> &arguments) {
     const auto read = [&]() -> Result<std::pair<std::string, std::string>> {
         if (!options_.has_files) {
-            return fail(fmt::format("HAL file '{}' cannot be run: files are out of reach here", name));
+            return fail(fmt::format("HAL file '{}' cannot be run: files cannot be read here", name));
         }
         const Result<std::string> path = find_file(name);
         if (!path) {

@@ -197,20 +197,20 @@ bool IniPins::isTaken(const Pin &pin, double value, task::Task &task) const {
         return false;
     };
     if (pin.use.parameter == Parameter::COUNT) {
-        return refuse("nothing acts on this setting");
+        return refuse("this setting has no effect");
     }
     const motion::ParameterInfo &info = motion::PARAMETERS[static_cast<std::size_t>(pin.use.parameter)];
     if (!std::isfinite(value)) {
-        return refuse("a finite number is expected, and the old one stays active");
+        return refuse("a finite number is expected; the old value stays active");
     }
     if (value < info.lowest || value > info.highest || (pin.use.positive && value <= 0)) {
-        return refuse("it is out of its range, and the old one stays active");
+        return refuse("the value is out of range; the old value stays active");
     }
     const Parameter other = other_limit(pin.use.parameter);
     if (other != Parameter::COUNT) {
         const double end = task.motion_settings().get(other, pin.index);
         if (isLower(pin.use.parameter) ? value >= end : value <= end) {
-            return refuse(fmt::format("the other limit is {}, and the old one stays active", end));
+            return refuse(fmt::format("the other limit is {}; the old value stays active", end));
         }
     }
     return true;

@@ -97,9 +97,10 @@ inline constexpr auto INI_KEYS = std::to_array<ini::IniKey>({
     ini::ini_text("TASK", "INTERPRETER", "a shared object that replaces the RS-274/NGC interpreter"),
     ini::ini_without_effect("TASK", "TASK", "task is part of millwright; no other program replaces it",
                             "milltask"),
-    ini::ini_text("TASK", "JOURNAL_FILE",
-                  "what a program that a power cut ends is gone on with; without it beside the parameter "
-                  "file, which gives it its name; none: there is none"),
+    ini::ini_text(
+        "TASK", "JOURNAL_FILE",
+        "file that continues a program after a power cut; without this key it lies beside the parameter "
+        "file and has its name; none: no such file"),
     ini::ini_whole("TASK", "MDI_QUEUED_COMMANDS", "", 10, {0, 100000},
                    "number of MDI lines that may wait after the running one"),
 

@@ -221,8 +221,7 @@ void read_compensation(IniReader &ini, const std::string &section, int joint, Ma
     const ini::IniEntry *entry = ini.find(ini_key("JOINT_*", "COMP_FILE"), section);
     if (ini.find(ini_key("JOINT_*", "COMP_FILE_TYPE"), section) == nullptr) {
         ini.sink().warning('[' + section +
-                               "]COMP_FILE_TYPE is missing: 0 is used, positions and where the "
-                               "joint really is",
+                               "]COMP_FILE_TYPE is missing: 0 is used (nominal and measured positions)",
                            entry->place);
     }
     auto points = motion::read_screw_file(ini.file().resolve_path(name), joint,
@@ -271,7 +270,7 @@ void check_wrapped(IniReader &ini, const std::string &section, int axis, const T
         return;
     }
     if (!geometry::isAngular(axis)) {
-        ini.sink().warning('[' + section + "]WRAPPED_ROTARY has no effect: only A, B and C turn",
+        ini.sink().warning('[' + section + "]WRAPPED_ROTARY has no effect: only A, B and C are rotary axes",
                            ini.find(key, section)->place);
         return;
     }
@@ -280,8 +279,7 @@ void check_wrapped(IniReader &ini, const std::string &section, int axis, const T
         ini.real(travel.low, section, -INF) > -ENDLESS || ini.real(travel.high, section, INF) < ENDLESS;
     if (bounded) {
         ini.sink().warning('[' + section +
-                               "]WRAPPED_ROTARY: MIN_LIMIT and MAX_LIMIT still apply, and keep the axis from "
-                               "turning on; leave them out",
+                               "]WRAPPED_ROTARY: MIN_LIMIT and MAX_LIMIT still limit the axis; delete them",
                            ini.find(key, section)->place);
     }
 }
@@ -362,7 +360,7 @@ bool read_isMetric(IniReader &ini) {
     const auto per_mm = entry == nullptr ? std::nullopt : parse_double(entry->value);
     constexpr double INCHES_PER_MM = 1.0 / 25.4;
     if (per_mm.has_value() && (*per_mm == 1.0 || std::fabs(*per_mm - INCHES_PER_MM) < 1e-6)) {
-        ini.sink().warning("[TRAJ]LINEAR_UNITS = " + entry->value + " is taken as " +
+        ini.sink().warning("[TRAJ]LINEAR_UNITS = " + entry->value + " is interpreted as " +
                                (*per_mm == 1.0 ? "mm" : "inch"),
                            entry->place);
         return *per_mm == 1.0;

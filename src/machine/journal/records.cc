@@ -163,7 +163,7 @@ std::string end_record(std::uint64_t key) {
 
 Result<Run> read_run(std::string_view bytes) {
     if (!bytes.starts_with(MAGIC)) {
-        return fail("this is no journal, or one of another version");
+        return fail("the file is not a journal, or has another version");
     }
     bytes.remove_prefix(MAGIC.size());
     Run run;

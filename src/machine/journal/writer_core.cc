@@ -35,7 +35,7 @@ std::string whole(const Run &run) {
 
 std::string why_not(Disk &disk, const Start &start) {
     if (!disk.exists(start.program)) {
-        return "its file is gone";
+        return "its file no longer exists";
     }
     const auto content = disk.read(start.program);
     if (!content.has_value()) {

@@ -140,7 +140,7 @@ void Reader::axes() {
                                             to_text(axis.max - axis.min), to_text(shortest)));
         }
         if (plan_.switches != Switches::NONE && axis.home_speed > axis.speed) {
-            fault(key + ".home_speed", "is above the highest speed of the axis");
+            fault(key + ".home_speed", "exceeds the maximum speed of the axis");
         }
         for (const std::string &name : motors) {
             if (name.starts_with(key)) {

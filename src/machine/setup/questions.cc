@@ -105,19 +105,19 @@ void Asking::general() {
     for (const Kind &kind : ALL) {
         kinds.emplace_back(kind.name);
     }
-    asked_.push_back({"kind", "Kind of machine", Form::CHOICE, std::string(kind_.name), std::move(kinds)});
-    asked_.push_back({"name", "Name of the machine", Form::TEXT, "My " + std::string(kind_.name)});
-    choice("units", "Unit of lengths", {"mm", "inch"});
+    asked_.push_back({"kind", "Machine type", Form::CHOICE, std::string(kind_.name), std::move(kinds)});
+    asked_.push_back({"name", "Machine name", Form::TEXT, "My " + std::string(kind_.name)});
+    choice("units", "Length unit", {"mm", "inch"});
     metric_ = isChosen("units", "mm");
     choice("drives", "Motors", {"simulated", "stepper"});
     choice("switches", "Switches", {"none", "home", "home_and_limits"});
     const bool is_foam = kind_.name == "foam";
     choice("spindle", is_foam ? "Hot wire" : "Spindle", {"speed", "on_off", "none"});
     if (isChosen("spindle", "speed")) {
-        number("spindle.max", is_foam ? "S word of full heat" : "Highest speed of the spindle",
+        number("spindle.max", is_foam ? "S word of full heat" : "Maximum spindle speed",
                is_foam ? 100 : 12000, 1, 1000000, is_foam ? "" : "rev/min");
     }
-    choice("tool_change", "Change of tools",
+    choice("tool_change", "Tool change",
            is_foam ? std::vector<std::string>{"none", "by_hand"}
                    : std::vector<std::string>{"by_hand", "none"});
     if (is_foam) {
@@ -128,14 +128,14 @@ void Asking::general() {
 
 void Asking::axis(const Preset &preset) {
     const std::string letter(1, preset.letter), key = to_lower(letter);
-    number(key + ".min", letter + ": lowest place", length(preset.min), -LONGEST, LONGEST, unit());
-    number(key + ".max", letter + ": highest place", length(preset.max), -LONGEST, LONGEST, unit());
-    number(key + ".speed", letter + ": highest speed", length(preset.speed), SHORTEST, LONGEST, unit("/s"));
+    number(key + ".min", letter + ": lower limit", length(preset.min), -LONGEST, LONGEST, unit());
+    number(key + ".max", letter + ": upper limit", length(preset.max), -LONGEST, LONGEST, unit());
+    number(key + ".speed", letter + ": maximum speed", length(preset.speed), SHORTEST, LONGEST, unit("/s"));
     number(key + ".acceleration", letter + ": acceleration", length(preset.acceleration), SHORTEST, LONGEST,
            unit("/s2"));
     if (!isChosen("switches", "none")) {
         const bool at_max = preset.letter == 'Z' || kind_.name == "lathe";
-        choice(key + ".home", letter + ": end at which its home switch is",
+        choice(key + ".home", letter + ": end with the home switch",
                at_max ? std::vector<std::string>{"max", "min"} : std::vector<std::string>{"min", "max"});
         number(key + ".home_speed", letter + ": speed towards the home switch", length(10), SHORTEST, LONGEST,
                unit("/s"));
@@ -144,42 +144,42 @@ void Asking::axis(const Preset &preset) {
 
 void Asking::stepper() {
     constexpr int MOST_NS = 1000000;
-    whole("step.length", "Length of a step pulse", 5000, 100, MOST_NS, "ns");
-    whole("step.space", "Pause between step pulses", 5000, 100, MOST_NS, "ns");
-    whole("step.dir_setup", "From a change of direction to a step", 20000, 0, MOST_NS, "ns");
-    whole("step.dir_hold", "From a step to a change of direction", 20000, 0, MOST_NS, "ns");
-    whole("latency", "Latency of this computer, as latency-test shows it", 15000, 1000, MOST_NS, "ns");
+    whole("step.length", "Step pulse width", 5000, 100, MOST_NS, "ns");
+    whole("step.space", "Step pulse spacing", 5000, 100, MOST_NS, "ns");
+    whole("step.dir_setup", "Direction setup time", 20000, 0, MOST_NS, "ns");
+    whole("step.dir_hold", "Direction hold time", 20000, 0, MOST_NS, "ns");
+    whole("latency", "Latency of this computer (latency-test)", 15000, 1000, MOST_NS, "ns");
     int next_output = 2, next_input = 11;
     for (const std::string &name : motors_of(kind_.name)) {
         motor(name, next_output, next_input);
     }
-    whole("pin.enable", "Pin that switches the drives on, 0: none", 17, 0, 17);
+    whole("pin.enable", "Drive enable pin, 0: none", 17, 0, 17);
     if (!isChosen("spindle", "none")) {
-        whole("pin.spindle_on", "Pin that switches the spindle or wire on, 0: none", 14, 0, 17);
+        whole("pin.spindle_on", "Spindle or hot wire pin, 0: none", 14, 0, 17);
     }
     if (isChosen("spindle", "speed")) {
-        whole("pin.spindle_pwm", "Pin of its speed, by pulse width", 16, 1, 17);
-        number("spindle.pwm_hz", "Frequency of the pulses", 100, 1, 5000, "Hz");
+        whole("pin.spindle_pwm", "Spindle speed pin (PWM)", 16, 1, 17);
+        number("spindle.pwm_hz", "PWM frequency", 100, 1, 5000, "Hz");
     }
-    whole("pin.flood", "Pin of coolant, 0: none", kind_.name == "foam" ? 0 : 1, 0, 17);
-    whole("pin.estop", "Pin of the emergency stop, high while it is not pressed, 0: none", 10, 0, 15);
+    whole("pin.flood", "Coolant pin, 0: none", kind_.name == "foam" ? 0 : 1, 0, 17);
+    whole("pin.estop", "Emergency stop pin, high while the button is released, 0: none", 10, 0, 15);
     if (!isChosen("switches", "none")) {
-        choice("switch.contacts", "Contacts of the switches", {"open", "closed"});
+        choice("switch.contacts", "Switch contacts", {"open", "closed"});
     }
 }
 
 void Asking::motor(const std::string &name, int &next_output, int &next_input) {
     const std::string motor = "Motor " + to_upper(name) + ": ";
-    number(name + ".steps_per_turn", motor + "full steps of a turn", 200, 1, 100000);
-    number(name + ".microsteps", motor + "microsteps of a full step", 4, 1, 1024);
-    number(name + ".way_per_turn", motor + "way of a turn; negative: the other way round",
+    number(name + ".steps_per_turn", motor + "full steps per revolution", 200, 1, 100000);
+    number(name + ".microsteps", motor + "microsteps per full step", 4, 1, 1024);
+    number(name + ".way_per_turn", motor + "travel per revolution (negative reverses)",
            length(kind_.way_per_turn), -LONGEST, LONGEST, unit());
-    whole(name + ".step_pin", motor + "pin of steps", next_output, 1, 17);
-    whole(name + ".dir_pin", motor + "pin of direction", next_output + 1, 1, 17);
+    whole(name + ".step_pin", motor + "step pin", next_output, 1, 17);
+    whole(name + ".dir_pin", motor + "direction pin", next_output + 1, 1, 17);
     next_output += 2;
     if (!isChosen("switches", "none")) {
         constexpr int BEHIND_13 = 15;
-        whole(name + ".home_pin", motor + "pin of its switch", next_input, 10, 15);
+        whole(name + ".home_pin", motor + "home switch pin", next_input, 10, 15);
         next_input = next_input == 13 ? BEHIND_13 : next_input + 1;
     }
 }

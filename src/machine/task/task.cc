@@ -60,8 +60,9 @@ SequencerEvents Task::make_events() {
         const auto find = [folders = settings_.interpreter.user_m_path,
                            code = item.code]() -> Result<std::string> {
             const std::string path = gcode::find_user_program(folders, code);
-            return path.empty() ? Result<std::string>(fail(fmt::format("M{}: its program is gone", code)))
-                                : path;
+            return path.empty()
+                       ? Result<std::string>(fail(fmt::format("M{}: its program no longer exists", code)))
+                       : path;
         };
         user_program_.start(name, find, item.p, item.q);
     };
@@ -213,9 +214,8 @@ SourcePlace Task::place_of(const motion::SourceTag &source) const {
 void Task::take_motion_news() {
     const MotionLink::News news = motion_.update();
     if (motion_.watch().step(motion_.status().cycle, now_ns_)) {
-        post(MessageKind::OPERATOR_ERROR,
-             "motion (millwright-rt) has given no sign for 0.25 s: stops are not carried out. Use the "
-             "emergency stop switch of the machine");
+        post(MessageKind::OPERATOR_ERROR, "motion (millwright-rt) has not responded for 0.25 s: stops are "
+                                          "not executed. Use the emergency stop switch of the machine");
     }
     const auto fail_or_post = [this](bool of_run, const std::string &text, const motion::SourceTag &source,
                                      AbortReason reason) {
@@ -284,7 +284,7 @@ void Task::update_state() {
         }
         break;
     case MachineState::Event::WENT_OFF:
-        Meanwhile{*this}.stop_work("the machine went off", AbortReason::STATE_NOT_ON);
+        Meanwhile{*this}.stop_work("the machine was switched off", AbortReason::STATE_NOT_ON);
         break;
     }
 }
@@ -432,7 +432,7 @@ void Task::finish_run(Progress progress, const std::string &reason) {
         ++status_.task.programs_ended;
     } else if (run_.isRunning() && progress == Progress::DONE && reader_.interpreter().isMoveHeld()) {
         post(MessageKind::OPERATOR_TEXT,
-             "cutter compensation holds this move back until the next one or G40 says where it ends");
+             "cutter compensation delays this move until the next move or G40 sets its end");
     }
     parameter_file_.keep();  // a touch-off must survive a crash
     sequencer_.set_stepping(false);

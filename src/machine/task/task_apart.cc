@@ -38,7 +38,7 @@ void Task::Meanwhile::begin() {
         const TaskStatus &shown = task.status_.task;
         const std::string place = task.run_.isProgram()
                                       ? fmt::format("{}:{}", shown.program.str(), shown.read_line)
-                                      : std::string("what was asked last");
+                                      : std::string("the last request");
         task.post(MessageKind::OPERATOR_TEXT,
                   fmt::format("the interpreter has been busy for 1 s at or after {}: a slow disk, or Python. "
                               "Stops work; other commands wait until it has finished",

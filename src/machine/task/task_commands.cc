@@ -116,7 +116,7 @@ Result<> Task::check_can_run() const {
 
 Outcome Task::Handler::operator()(const RunProgram &command) {
     if (command.from_line < 0) {
-        return fail("a program is not only read by a machine", {}, "millwright check looks through it");
+        return fail("a machine cannot only read a program", {}, "use millwright check to check it");
     }
     if (task.status_.task.program.empty()) {
         return fail("no program is open");
@@ -158,7 +158,7 @@ Outcome Task::Handler::operator()(const StepProgram &) {
         static_cast<void>(task.run_.take(RunEvent::PAUSE));  // it begins paused, and steps from there
     }
     if (ProgramResume{task}.isReturnNeeded()) {
-        return fail("spindle, coolant or tool differ from when the program was paused", {},
+        return fail("spindle, coolant or tool were changed after the program was paused", {},
                     "resume restores them");
     }
     if (!first && (task.run_.hold() == Hold::STEPPING || task.motion_.status().isStepping)) {
@@ -265,14 +265,14 @@ Outcome Task::Handler::operator()(const Mdi &command) {
 /// For taps sent by clients, until it is set again or the work is aborted.
 Outcome Task::Handler::operator()(const SetSpindleSync &command) {
     if (task.run_.isRunning()) {
-        return fail("a program or MDI line runs already");
+        return fail("a program or MDI line is already running");
     }
     const auto allowed = need_spindle(command.spindle);
     if (!allowed.has_value()) {
         return std::unexpected(allowed.error());
     }
     if (!(command.feed_per_revolution >= 0)) {
-        return fail("the way in a turn of the spindle is not below 0");
+        return fail("the distance per spindle revolution must be 0 or more");
     }
     task.mdi_queue_.set_sync(command);
     return Progress::DONE;
@@ -282,7 +282,7 @@ Outcome Task::Handler::operator()(const SetSpindleSync &command) {
 Outcome Task::Handler::operator()(const RigidTapMove &command) {
     const SetSpindleSync &sync = task.mdi_queue_.sync();
     if (!(sync.feed_per_revolution > 0) || sync.isVelocityOnly) {
-        return fail("a tap keeps to the angle of a spindle", {}, "SetSpindleSync says with which pitch");
+        return fail("a tap needs a spindle with an encoder", {}, "set the pitch with SetSpindleSync");
     }
     if (task.run_.isRunning()) {
         return task.mdi_queue_.add({id, {}, command, task.senders_.sender()});

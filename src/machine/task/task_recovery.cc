@@ -129,9 +129,8 @@ void Task::ProgramResume::begin_block_search(Result<StartRecord> record, std::op
 
 Result<Progress> Task::ProgramResume::calculate_again() {
     const auto refused = [](const Error &why) {
-        return fail("the tool table has changed, and moves that were read ahead have the old one: " +
-                        why.str(),
-                    {}, "abort, and run from the line");
+        return fail("the tool table has changed after moves were read ahead: " + why.str(), {},
+                    "abort, and run from the line");
     };
     const motion::SourceTag source = task.sequencer_.place().source;
     const std::string program = task.status_.task.program.str();

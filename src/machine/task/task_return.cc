@@ -59,7 +59,7 @@ bool Task::ProgramResume::isSomethingOff() const {
 Result<> Task::ProgramResume::take_path_back() {
     const motion::Status &motion = task.motion_.status();
     if (motion.current_velocity != 0) {
-        return fail("the machine still brakes");
+        return fail("the machine is still decelerating");
     }
     const geometry::Pose place = motion::programmed_position(motion);
     const auto taken = task.sequencer_.take_back(place);
@@ -101,7 +101,7 @@ Result<Progress> Task::ProgramResume::come_back() {
     const motion::Status &motion = task.motion_.status();
     const bool away = task.run_.hold() == Hold::AWAY;
     if (away && !motion.isInPosition) {
-        return fail("the machine moves");
+        return fail("the machine is moving");
     }
     if (areToolsChanged()) {
         return calculate_again();

@@ -121,7 +121,7 @@ void Task::ProgramResume::propose(ApproachPlan plan) {
     const std::string way = approach_text(plan);
     task.post(MessageKind::OPERATOR_TEXT,
               fmt::format("to continue at line {}: {}; resume confirms it, abort drops it", plan.line,
-                          way.empty() ? "nothing has to be brought about" : way));
+                          way.empty() ? "nothing has to be changed" : way));
     task.approach_.propose(std::move(plan), task.now_ns_);
 }
 
@@ -158,7 +158,7 @@ void Task::ProgramResume::go_on(const ApproachPlan &plan) {
 Result<Progress> Task::ProgramResume::confirm(std::uint64_t number) {
     auto allowed = task.approach_.check(number, task.now_ns_);
     if (allowed.has_value() && !task.motion_.status().isInPosition) {
-        allowed = fail("the machine moves");
+        allowed = fail("the machine is moving");
     }
     if (allowed.has_value() && task.motion_.status().mode != motion::Mode::COORD) {
         allowed = fail("motion is not in coordinated mode");

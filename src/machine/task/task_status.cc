@@ -91,7 +91,7 @@ void Task::Show::states() {
     task.status_.tool.isFaulted = task.io_.outputs.toolchanger_faulted;
     if (task.status_.io.lube.hasOil && !task.io_.hasOil()) {
         task.post(MessageKind::OPERATOR_ERROR,
-                  "the lubrication wants oil: pin iocontrol.0.lube_level is FALSE");
+                  "lubricant level is low: pin iocontrol.0.lube_level is FALSE. Refill the lubricant");
     }
     task.status_.io.lube = {task.io_.outputs.lube, task.io_.hasOil()};
 }

@@ -126,7 +126,7 @@ void LineProgram::end() noexcept {
 
 Result<> LineProgram::write(const std::string &line) {
     if (const auto ended = ending()) {
-        return fail(fmt::format("'{}' cannot be asked: {}", name_, *ended));
+        return fail(fmt::format("'{}' cannot be queried: {}", name_, *ended));
     }
     if (unsent_.size() + line.size() > MOST_BYTES) {
         return fail(fmt::format("'{}' does not read its input", name_));

@@ -114,10 +114,10 @@ void ToolDatabase::step() {
         return;
     }
     if (const auto ended = program_.ending()) {
-        give_up(fmt::format("'{}' cannot be asked: {}", program_.name(), *ended));
+        give_up(fmt::format("'{}' cannot be queried: {}", program_.name(), *ended));
     } else if (now_ns() > awaited_.front().deadline_ns) {
         const std::string asked = awaited_.front().kind == Kind::VERSION
-                                      ? std::string("does not say its version")
+                                      ? std::string("does not report its version")
                                       : "does not answer to '" + awaited_.front().line + "'";
         give_up(fmt::format("'{}' {} within {:g} s", program_.name(), asked, setup_.patience_s));
     }
@@ -132,7 +132,7 @@ void ToolDatabase::take_line(const std::string &line) {
     case Kind::VERSION:
         awaited_.pop_front();
         if (trim(line) != VERSION) {
-            give_up(fmt::format("'{}' speaks version '{}', not {}", program_.name(), line, VERSION));
+            give_up(fmt::format("'{}' has protocol version '{}', not {}", program_.name(), line, VERSION));
         }
         return;
     case Kind::TOOLS:

@@ -69,8 +69,7 @@ Result<Client> Client::join(Viewer viewer, Role role, Places places) {
         slot.client.store(id, std::memory_order_release);
         return Client(std::move(viewer), i, id);
     }
-    return fail(fmt::format("the machine has {} clients, which is as many as it can have",
-                            mailbox::MAX_CLIENTS - first));
+    return fail(fmt::format("the machine has {} clients, the maximum", mailbox::MAX_CLIENTS - first));
 }
 
 Result<Client> Client::connect(const std::string &instance, Role role, Places places) {
@@ -167,10 +166,9 @@ Outcome Client::outcome(Serial serial) {
             return found_.outcome;
         }
     }
-    return {messages::Progress::REFUSED,
-            fmt::format(
-                "command {} is no longer remembered: this client has given {} later ones, or task has died",
-                serial, mailbox::MAX_OUTCOMES)};
+    return {messages::Progress::REFUSED, fmt::format("the result of command {} is no longer stored: this "
+                                                     "client has sent {} later commands, or task has ended",
+                                                     serial, mailbox::MAX_OUTCOMES)};
 }
 
 Result<Outcome> Client::wait(Serial serial, double timeout_s) {

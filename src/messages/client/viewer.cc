@@ -84,7 +84,7 @@ std::int64_t Viewer::end_of(double timeout_s) {
 Result<> Viewer::sleep(std::uint32_t heard, std::int64_t end_ns) const {
     const std::int64_t left_ns = end_ns - monotonic_ns();
     if (left_ns <= 0) {
-        return fail("the time to wait is over");
+        return fail("the wait has timed out");
     }
     const bool rung = mailbox::Memory::wait(*segment_, heard, std::min(left_ns, LONGEST_SLEEP_NS));
     return rung ? Result<>{} : check_machine();
@@ -109,7 +109,7 @@ mailbox::Identity Viewer::identity() const {
 
 Result<> Viewer::read_status() {
     if (segment_->cycles.load(std::memory_order_acquire) == 0) {
-        return fail("the machine has not begun yet");
+        return fail("the machine has not started yet");
     }
     return read_whole(segment_->status, *status_) ? Result<>{} : fail("task died while it wrote its status");
 }

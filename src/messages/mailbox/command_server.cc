@@ -65,7 +65,7 @@ std::vector<CommandServer::Delivery> CommandServer::take(std::int64_t now_ns) {
     ++cycles_;
     if (right_.step(now_ns)) {
         post(messages::MessageKind::OPERATOR_TEXT,
-             "the right to operate alone has run out: all clients operate again");
+             "the right to operate alone has expired: all clients can operate again");
     }
     std::vector<Delivery> taken;
     // A client gets its number, then the first free place behind the reserved ones: no more of these are in
@@ -157,7 +157,8 @@ void CommandServer::stop_unattended(int index, std::vector<Delivery> &out) {
     }
     const ClientId client = segment_.slots[static_cast<std::size_t>(index)].client.load();
     post(messages::MessageKind::OPERATOR_ERROR,
-         "client " + std::to_string(client) + ", which watched over what it had begun, is gone: aborted");
+         "client " + std::to_string(client) +
+             ", which monitored its commands, has disconnected: its work was aborted");
     const Serial serial = segment_.serials.fetch_add(1, std::memory_order_relaxed) + 1;
     out.push_back({serial, client, messages::AbortAll{}, true, Authority::OPERATE, 0});
 }
@@ -174,7 +175,7 @@ void CommandServer::check_owner(int index, std::vector<Delivery> &out) {
     if (hadRight) {
         post(messages::MessageKind::OPERATOR_TEXT,
              "client " + std::to_string(client) +
-                 ", which operated alone, is gone: all clients operate again");
+                 ", which operated alone, has disconnected: all clients can operate again");
     }
     if (isOf(slot, Role::ATTENDED)) {
         stop_unattended(index, out);
@@ -237,7 +238,7 @@ void CommandServer::accept(int index, Serial serial, Result<messages::Command> c
         // answered.
         post(messages::MessageKind::OPERATOR_ERROR,
              "client " + std::to_string(client) +
-                 (is_new ? " has too many commands under way: one was dropped"
+                 (is_new ? " has too many pending commands: one was dropped"
                          : " sent a command with a wrong number"));
         if (is_new) {
             note(serial, Progress::REFUSED);

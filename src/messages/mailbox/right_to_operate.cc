@@ -25,7 +25,7 @@ void RightToOperate::give(ClientId client, std::int64_t now_ns) {
 
 Result<> RightToOperate::claim(ClientId client, double lease_s, std::int64_t now_ns) {
     if (holder_ != 0 && holder_ != client) {
-        return fail(fmt::format("client {} operates the machine", holder_), {}, "it can hand the right over");
+        return fail(fmt::format("client {} operates the machine", holder_), {}, "it can transfer the right");
     }
     lease_ns_ = to_ns(lease_s);
     give(client, now_ns);
@@ -34,7 +34,7 @@ Result<> RightToOperate::claim(ClientId client, double lease_s, std::int64_t now
 
 Result<> RightToOperate::hand_over(ClientId from, ClientId to, std::int64_t now_ns) {
     if (holder_ != from) {
-        return fail("only the client that operates the machine can hand the right over");
+        return fail("only the client that operates the machine can transfer the right");
     }
     give(to, now_ns);
     return {};
@@ -68,7 +68,7 @@ Result<> RightToOperate::check(ClientId client, const Command &command) const {
         return {};
     }
     return fail(fmt::format("client {} operates the machine alone", holder_), {},
-                "stops are taken from everyone");
+                "stops are accepted from all clients");
 }
 
 OperationStatus RightToOperate::status(std::int64_t now_ns) const {

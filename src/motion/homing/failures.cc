@@ -12,7 +12,7 @@ const char *failure_text(Failure failure) noexcept {
         return "HOME_LATCH_VEL is set without HOME_SEARCH_VEL, and HOME_USE_INDEX is NO; there is nothing to "
                "latch on";
     case Failure::INDEX_WITHOUT_LATCH:
-        return "HOME_USE_INDEX is set but HOME_LATCH_VEL is 0; set the speed to look for the index with";
+        return "HOME_USE_INDEX is set but HOME_LATCH_VEL is 0; set the speed of the search for the index";
     case Failure::SHARED_SWITCH_CLOSED:
         return "the shared home switch is already closed; jog the joint that closes it off the switch";
     case Failure::SWITCH_NOT_FOUND:
@@ -29,22 +29,21 @@ const char *failure_text(Failure failure) noexcept {
         return "a limit switch closed; if it is also the home switch, set HOME_IGNORE_LIMITS";
     case Failure::ABORTED: return "aborted";
     case Failure::TEAM_DIFFERS:
-        return "it drives one axis with joints that are homed in another way; give them the same signs of "
-               "HOME_SEARCH_VEL and HOME_LATCH_VEL, HOME_USE_INDEX, HOME_ABSOLUTE_ENCODER and "
-               "LOCKING_INDEXER, as the axis "
-               "would be pushed askew";
+        return "other joints of its axis have different homing settings, which would rack the axis; set the "
+               "same signs of HOME_SEARCH_VEL and HOME_LATCH_VEL, and the same HOME_USE_INDEX, "
+               "HOME_ABSOLUTE_ENCODER and LOCKING_INDEXER";
     case Failure::TEAM_SKEWED:
-        return "the axis would have been pushed askew: it and another joint of the axis get farther apart "
-               "than HOME_MAX_SKEW; check the home switches of both, and HOME_OFFSET";
+        return "the axis would be racked: the joint and another joint of the axis differ by more than "
+               "HOME_MAX_SKEW; check the home switches of both, and HOME_OFFSET";
     case Failure::NOT_UNLOCKED:
         return "the indexer did not unlock in time; check the pin joint.N.is-unlocked, which joints in "
                "motmod's "
                "unlock_joints_mask have";
     case Failure::NOT_LOCKED: return "the indexer did not lock in time; check the pin joint.N.is-unlocked";
     case Failure::INHIBITED: return "homing is inhibited: pin motion.homing-inhibit is TRUE";
-    case Failure::MODULE_FAILED: return "the homing module gave up; it may have said why";
+    case Failure::MODULE_FAILED: return "the homing module reported a failure; check its messages";
     case Failure::MODULE_NONSENSE:
-        return "the homing module asked for a place, speed or offset that is no finite number";
+        return "the homing module commanded a position, speed or offset that is not a finite number";
     }
     return "unknown failure";
 }

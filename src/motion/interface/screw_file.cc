@@ -37,9 +37,9 @@ Result<std::optional<ScrewLine>> parse_line(std::string_view line, SourcePlace p
         }
         const auto value = parse_double(word);
         if (!value.has_value()) {
-            return fail(fmt::format("'{}' is not a number", printable(word.substr(0, 40))), place,
-                        "a line has three numbers: position, then a value for the way up and one for the "
-                        "way down");
+            return fail(
+                fmt::format("'{}' is not a number", printable(word.substr(0, 40))), place,
+                "a line has three numbers: position, value for forward travel, value for reverse travel");
         }
         out.value[count] = *value;
         out.column[count] = place.column;
@@ -63,7 +63,7 @@ Result<> check_step(const LoadCompensation &last, const LoadCompensation &next, 
     if (!(way > 0)) {
         return fail(fmt::format("the position {} is not above {} of the point before it",
                                 to_text(next.nominal), to_text(last.nominal)),
-                    place, "points stand in increasing order");
+                    place, "list the points in increasing order");
     }
     const double rises[] = {next.forward - last.forward, next.reverse - last.reverse};
     for (std::size_t i = 0; i < 2; ++i) {
@@ -72,7 +72,7 @@ Result<> check_step(const LoadCompensation &last, const LoadCompensation &next, 
             return fail(fmt::format("the correction changes by {:.6g} over {:.6g} units: more than the {} of "
                                     "the joint's speed that corrections have",
                                     rises[i], way, to_text(STEEPEST_SCREW)),
-                        place, "type 0 has positions there, type 1 what is to be added: see COMP_FILE_TYPE");
+                        place, "type 0 has positions, type 1 has corrections: see COMP_FILE_TYPE");
         }
     }
     return {};
@@ -132,7 +132,7 @@ Result<std::vector<LoadCompensation>> read_screw_file(const std::string &path, i
     std::error_code error;
     const bool isFile = std::filesystem::is_regular_file(path, error);
     if (std::filesystem::exists(path, error) && !isFile) {
-        return fail("a table of screw errors is to be a file, and this is none", {path, 0, 0});
+        return fail("the table of screw errors must be a file", {path, 0, 0});
     }
     if (isFile && std::filesystem::file_size(path, error) > MOST_BYTES) {
         return fail(fmt::format("a table of screw errors has at most {} bytes", MOST_BYTES), {path, 0, 0});

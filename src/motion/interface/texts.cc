@@ -29,19 +29,20 @@ std::string place_name(const Answer &a) {
 
 std::string kinematics_reason(const Answer &answer) {
     switch (answer.reason) {
-    case Reason::JOINT_BEYOND_LIMIT: return "the move takes a joint beyond its soft limit";
+    case Reason::JOINT_BEYOND_LIMIT:
+        return "the move exceeds the soft limit of a joint: change the program, the part zero or the tool "
+               "offset";
     case Reason::UNREACHABLE: return "the kinematics cannot reach the move";
     case Reason::SINGULAR:
-        return "the move leads through a singular pose of the kinematics or close by, or begins at one: go "
-               "around it, or jog a joint off it";
+        return "the move begins at a singular pose of the kinematics, or passes through or near one: program "
+               "a path around it, or jog a joint away from it";
     case Reason::POSE_UNKNOWN:
-        return "the kinematics has no pose for where the joints stand: jog the joints, or see what its "
-               "module starts looking from";
+        return "forward kinematics found no pose for the current joint positions: jog single joints, or set "
+               "the start pose of the kinematics module";
     case Reason::SIDE_APART:
-        return fmt::format(
-            "joint {} stands apart from the other joint of its axis by more than its MIN_FERROR: bring it "
-            "there, or home, in joint mode",
-            answer.index);
+        return fmt::format("joint {} differs from the other joint of its axis by more than its MIN_FERROR: "
+                           "jog it to the position of the other joint, or home, in joint mode",
+                           answer.index);
     case Reason::TOO_FEW_JOINTS:
         return fmt::format(
             "the kinematics moves {} joints: see [KINS]JOINTS and coordinates= of the kinematics",
@@ -52,37 +53,35 @@ std::string kinematics_reason(const Answer &answer) {
 
 std::string indexer_reason(const Answer &answer) {
     return answer.reason == Reason::INDEXER_OPEN
-               ? "a locking indexer has not locked: jog it, or switch the machine off, and see its pin "
+               ? "a locking indexer is not locked: jog it, or switch the machine off, and check its pin "
                  "joint.N.is-unlocked"
-               : fmt::format("{} is a locking indexer, or one is unlocked: it moves alone, in programs with "
-                             "G0, and nothing else moves until it has locked",
+               : fmt::format("{} is a locking indexer, or an indexer is unlocked: program the indexer alone "
+                             "in a G0 block; other moves wait until it is locked",
                              place_name(answer));
 }
 
 std::string tap_reason(const Answer &answer) {
     switch (answer.reason) {
     case Reason::RIGID_TAPPING:
-        return "G33.1: rigid tapping wants kinematics that can be asked before a move whether the joints can "
-               "follow (mw_kinematics_is_pure); tap with a floating holder (G84, G74)";
+        return "rigid tapping (G33.1) needs a kinematics module that the planner may call "
+               "(mw_kinematics_is_pure): tap with a floating holder (G84, G74)";
     case Reason::TAP_OFFSET:
-        return fmt::format(
-            "{}, or another axis that moves its joints, may have an external offset (OFFSET_AV_RATIO): rigid "
-            "tapping along it is not possible",
-            place_name(answer));
+        return fmt::format("rigid tapping along {} is not possible: OFFSET_AV_RATIO allows external offsets "
+                           "of this axis or of an axis that shares its joints",
+                           place_name(answer));
     case Reason::TAP_JOINT_ROOM:
         if (answer.index < 0) {
-            return "the tap begins or ends too near to where the kinematics reaches no farther: the tool "
-                   "goes "
-                   "on by up to a turn of the spindle while it turns back";
+            return "the tap begins or ends too near to the end of the reach of the kinematics: the tool "
+                   "overruns by up to one spindle revolution at the reversal";
         }
         [[fallthrough]];
     case Reason::TAP_ROOM:
-        return fmt::format(
-            "the tap begins or ends too near to the soft limit of {}: the tool goes on by up to "
-            "a turn of the spindle while it turns back",
-            answer.reason == Reason::TAP_JOINT_ROOM ? joint_name(answer.index) : place_name(answer));
+        return fmt::format("the tap begins or ends too near to the soft limit of {}: the tool overruns by up "
+                           "to one spindle revolution at the reversal",
+                           answer.reason == Reason::TAP_JOINT_ROOM ? joint_name(answer.index)
+                                                                   : place_name(answer));
     case Reason::ONE_WAY_SPINDLE:
-        return "rigid tapping turns the spindle back, but its range in one direction is 0: see "
+        return "rigid tapping reverses the spindle, but its range in one direction is 0: see "
                "MAX_FORWARD_VELOCITY and MAX_REVERSE_VELOCITY";
     default: return "refused";
     }
@@ -103,7 +102,7 @@ std::string reason_text(const Answer &answer) {
     case Reason::COUNT: return {};
     case Reason::NOT_ENABLED: return "the machine is off: turn it on first";
     case Reason::WRONG_MODE: return mode_reason(answer.isPath);
-    case Reason::MOVING: return "the machine is moving: wait until it stands, or stop it";
+    case Reason::MOVING: return "the machine is moving: wait until it has stopped, or stop it";
     case Reason::NOT_HOMED: return "home all joints first";
     case Reason::HOMING: return "joints are being homed: wait, or abort homing";
     case Reason::NO_SUCH_JOINT: return fmt::format("there is no joint {}", i);
@@ -117,13 +116,13 @@ std::string reason_text(const Answer &answer) {
     case Reason::NO_SUCH_PARAMETER: return "there is no such motion parameter";
     case Reason::OUT_OF_RANGE: return "a value is out of its range";
     case Reason::BEYOND_SOFT_LIMIT:
-        return fmt::format("the move goes beyond the soft limit of {}: see MIN_LIMIT and MAX_LIMIT",
+        return fmt::format("the move exceeds the soft limit of {}: see MIN_LIMIT and MAX_LIMIT",
                            place_name(answer));
     case Reason::ON_HARD_LIMIT:
         return fmt::format("{} is on a limit switch: jog off it (override limits to turn the machine on)",
                            joint_name(i));
     case Reason::NO_FEEDBACK:
-        return fmt::format("the feedback of {} is not a number: see what its pin motor-pos-fb is linked to",
+        return fmt::format("the feedback of {} is not a number: check the signal of its pin motor-pos-fb",
                            joint_name(i));
     case Reason::AMP_FAULT: return fmt::format("the amplifier of {} reports a fault", joint_name(i));
     case Reason::EXTERNAL_ENABLE_OFF:
@@ -138,7 +137,7 @@ std::string reason_text(const Answer &answer) {
                "contact first";
     case Reason::NOT_A_NUMBER: return "a value is not a finite number";
     case Reason::NO_WAY_BACK:
-        return "there is no way back: nothing is remembered of the path (docs/developer/motion_commands.md)";
+        return "reverse run is not possible: the path is not recorded (docs/developer/motion_commands.md)";
     case Reason::BAD_ARC: return "the arc's centre, normal and end do not make a helix";
     case Reason::JOG_INHIBITED:
         return "jogging is inhibited: pin motion.jog-inhibit, motion.jog-stop or motion.jog-stop-immediate "
@@ -156,7 +155,7 @@ std::string reason_text(const Answer &answer) {
     case Reason::INDEXER_OPEN: return indexer_reason(answer);
     case Reason::SWITCHED_ON: return "the machine is on: switch it off first";
     case Reason::NO_JOG_TO_RENEW:
-        return fmt::format("there is no jog of {} to renew: it has ended or was stopped; begin it again",
+        return fmt::format("there is no jog of {} to renew: it has ended or was stopped; start it again",
                            place_name(answer));
     case Reason::JOINT_BEYOND_LIMIT:
     case Reason::UNREACHABLE:
@@ -178,49 +177,49 @@ namespace {
 std::string planner_module_fault(const Fault &fault) {
     const char *what = "";
     switch (static_cast<PlannerModuleFault>(fault.detail)) {
-    case PlannerModuleFault::NO_ANSWER: what = "gives no speeds, or what are no numbers"; break;
-    case PlannerModuleFault::NOT_THERE: what = "does not come to the end of a stretch"; break;
-    case PlannerModuleFault::TOO_FAST: what = "asks for {:.3g} of the highest speed"; break;
-    case PlannerModuleFault::TOO_HARD: what = "asks for {:.3g} of the highest acceleration"; break;
+    case PlannerModuleFault::NO_ANSWER: what = "returned no speed, or a speed that is not a number"; break;
+    case PlannerModuleFault::NOT_THERE: what = "does not reach the end of a segment"; break;
+    case PlannerModuleFault::TOO_FAST: what = "requests {:.3g} times the maximum speed"; break;
+    case PlannerModuleFault::TOO_HARD: what = "requests {:.3g} times the maximum acceleration"; break;
     case PlannerModuleFault::TOO_LATE:
-        what = "comes to the end of a stretch with {:.3g} of the speed that can be kept behind it";
+        what = "ends a segment with {:.3g} times the maximum entry speed of the next segment";
         break;
     }
     return "the planner module of [TRAJ]TPMOD " + fmt::format(fmt::runtime(what), fault.value) +
-           ": the path was stopped within its limits";
+           ": motion was stopped within the limits. Correct the module";
 }
 
 std::string kinematics_fault(const Fault &fault) {
     const int i = fault.index;
     switch (fault.kind) {
     case FaultKind::JOINT_TOO_FAST:
-        return fmt::format("joint {} had to move at {:.2f} times its limit of speed or acceleration: these "
-                           "kinematics cannot be planned with, so lower the feed or the limits of the axes",
-                           i, fault.value);
-    case FaultKind::JOINT_LEFT_RANGE:
         return fmt::format(
-            "the path leads joint {} beyond its soft limit: these kinematics cannot be planned "
-            "with",
-            i);
+            "joint {} would have to move at {:.2f} times its velocity or acceleration limit: the planner "
+            "cannot call this kinematics module. Lower the feed or the limits of the axes",
+            i, fault.value);
+    case FaultKind::JOINT_LEFT_RANGE:
+        return fmt::format("the path exceeds the soft limit of joint {}: the planner cannot call this "
+                           "kinematics module to check it before. Change the program or the part zero",
+                           i);
     case FaultKind::KINEMATICS_FAILED: return "the kinematics could not reach the commanded pose";
     case FaultKind::KINEMATICS_JUMP:
         return fmt::format(
-            "joint {} would have stepped by {:.6g}: was a pin of the kinematics changed away from where it "
-            "makes no difference?",
+            "the position of joint {} would jump by {:.6g}: a pin of the kinematics changed where this moves "
+            "the joints. Change such pins only at poses where they have no effect",
             i, fault.value);
     case FaultKind::NO_KINEMATICS_TYPE:
-        return fmt::format("motion.switchkins-type: the kinematics has no type {:g}; the one in force stays",
+        return fmt::format("motion.switchkins-type: the kinematics has no type {:g}; the active type stays",
                            fault.value);
     case FaultKind::KINEMATICS_SWITCHED_ON_PATH:
-        return fmt::format(
-            "motion.switchkins-type was changed to {:g} while a path was driven: it was stopped. "
-            "Programs change it with M68 and wait with M66 E0 L0 before they go on",
-            fault.value);
-    case FaultKind::KINEMATICS_TYPE_WITHOUT_POSE:
-        return fmt::format("motion.switchkins-type: type {:g} of the kinematics has no pose where the joints "
-                           "stand; the one in force stays",
+        return fmt::format("motion.switchkins-type changed to {:g} during a path: motion was stopped. In "
+                           "programs, change it with M68, then wait with M66 E0 L0",
                            fault.value);
-    case FaultKind::JOG_UNREACHABLE: return "the jog was stopped: the kinematics do not reach where it leads";
+    case FaultKind::KINEMATICS_TYPE_WITHOUT_POSE:
+        return fmt::format("motion.switchkins-type: type {:g} of the kinematics has no pose for the current "
+                           "joint positions; the active type stays",
+                           fault.value);
+    case FaultKind::JOG_UNREACHABLE:
+        return "the jog was stopped: the kinematics cannot reach its target. Jog in the other direction";
     default: return "unknown motion fault";
     }
 }
@@ -238,25 +237,22 @@ std::string spindle_fault(const Fault &fault) {
                            "allows at the present speed of spindle {}: use a lower speed or a finer pitch",
                            fault.value, i);
     case FaultKind::TAP_TOO_ABRUPT:
-        return fmt::format(
-            "spindle {} turns back so fast that the tap needs {:.2f} times the acceleration that "
-            "the machine allows: lengthen the ramp of its drive, or use a finer pitch",
-            i, fault.value);
+        return fmt::format("spindle {} reverses so fast that the tap needs {:.2f} times the acceleration "
+                           "that the machine allows: lengthen the ramp of its drive, or use a finer pitch",
+                           i, fault.value);
     case FaultKind::TAP_TOO_SUDDEN:
         return fmt::format(
-            "spindle {} turns back so suddenly that a tool within its jerk limits would leave the thread by "
-            "{:.2f} turns: lengthen the ramp of its drive, raise the jerk limits, or use a finer pitch",
+            "spindle {} reverses so suddenly that a tool within the jerk limits would leave the thread by "
+            "{:.2f} revolutions: lengthen the ramp of its drive, raise the jerk limits, or use a finer pitch",
             i, fault.value);
     case FaultKind::TAP_TOO_SHALLOW:
-        return fmt::format(
-            "the hole is too shallow for the present speed of spindle {}: gaining speed and turning "
-            "back take {:.2f} times its depth; use a lower speed",
-            i, fault.value);
+        return fmt::format("the hole is too shallow for the present speed of spindle {}: acceleration and "
+                           "reversal take {:.2f} times its depth; use a lower speed",
+                           i, fault.value);
     case FaultKind::TAP_LOST:
-        return fmt::format(
-            "the tool could not keep to spindle {} in a rigid tap: it did not turn back in time, or "
-            "its encoder jumped; the tap may be stuck in the hole",
-            i);
+        return fmt::format("the tool lost synchronization with spindle {} in a rigid tap: the spindle did "
+                           "not reverse in time, or its encoder jumped. The tap may be stuck in the hole",
+                           i);
     case FaultKind::SPINDLE_LOST:
         return fmt::format("spindle {} feedback is not a number while a move is in step with it", i);
     case FaultKind::SPINDLE_FAULT:
@@ -296,15 +292,13 @@ std::string what_failed(const Fault &fault) {
         return fmt::format("the locking indexer of joint {0} did not lock in time: see joint.{0}.is-unlocked",
                            i);
     case FaultKind::INDEXER_LOCKED_IN_MOVE:
-        return fmt::format(
-            "the locking indexer of joint {0} locked while it was to move: see joint.{0}.is-unlocked", i);
+        return fmt::format("the indexer of joint {0} locked during its move: check joint.{0}.is-unlocked", i);
     case FaultKind::EXTRA_JOINT_LOST:
-        return fmt::format("joint.{}.posthome-cmd is not a number: see what the pin is linked to", i);
+        return fmt::format("joint.{}.posthome-cmd is not a number: check the signal of the pin", i);
     case FaultKind::EXTRA_JOINT_LIMIT:
-        return fmt::format(
-            "joint.{0}.posthome-cmd asks for {1:.6g}, beyond the soft limits of joint {0}: it goes no "
-            "farther than those",
-            i, fault.value);
+        return fmt::format("joint.{0}.posthome-cmd is {1:.6g}, outside the soft limits of joint {0}: the "
+                           "joint stops at its limit",
+                           i, fault.value);
     case FaultKind::AMP_FAULT: return fmt::format("joint {} amplifier fault", i);
     case FaultKind::HARD_LIMIT: return fmt::format("joint {} on limit switch error", i);
     case FaultKind::SOFT_LIMIT: return fmt::format("{} exceeded its soft limit", axis_name(i));
@@ -315,8 +309,9 @@ std::string what_failed(const Fault &fault) {
         return fmt::format("homing{} failed: {}", i >= 0 ? fmt::format(" of joint {}", i) : "",
                            homing::failure_text(static_cast<homing::Failure>(fault.detail)));
     case FaultKind::HOMING_CLAMPED:
-        return fmt::format(
-            "the homing module asked for more than joint {} can do: it moves within its limits", i);
+        return fmt::format("the homing module commanded more than the limits of joint {} allow: the joint "
+                           "moves within its limits",
+                           i);
     case FaultKind::PROBE_NOT_TRIPPED:
         return fault.detail == 0 ? "G38.2 move finished without making contact."
                                  : "G38.4 move finished without breaking contact.";
@@ -326,7 +321,8 @@ std::string what_failed(const Fault &fault) {
                                    "[TRAJ]NO_PROBE_JOG_ERROR and NO_PROBE_HOME_ERROR";
     case FaultKind::PLANNER_MODULE: return planner_module_fault(fault);
     case FaultKind::NO_WAY_ON:
-        return "the planner finds no motion on from here that keeps all limits and the tolerance of the path";
+        return "the planner found no motion from here that keeps all limits and the path tolerance (G64 P): "
+               "raise the tolerance or lower the feed";
     case FaultKind::JOG_JOINT_LIMIT:
         return fmt::format("the jog was stopped: joint {} would leave its soft limits", i);
     case FaultKind::JOG_LEASE_ENDED:
@@ -334,13 +330,13 @@ std::string what_failed(const Fault &fault) {
                            fault.detail != 0 ? joint_name(i) : axis_name(i), fault.value * 1e3);
     case FaultKind::SIDE_APART:
         return fmt::format(
-            "{} stands apart from the other joint of its axis by more than its MIN_FERROR: the machine is on "
-            "in joint mode; home, or bring it there, before axes move",
+            "{} differs from the other joint of its axis by more than its MIN_FERROR: the machine is on in "
+            "joint mode. Home, or jog the joint to the position of the other, before axes move",
             joint_name(i));
     case FaultKind::POSE_UNKNOWN:
-        return "the kinematics has no pose for where the joints stand: the machine is on in joint mode; "
-               "home, or jog the joints to where it has one, before axes move";
-    case FaultKind::PATH_LIMIT: return "the path left its limits";
+        return "forward kinematics found no pose for the current joint positions: the machine is on in joint "
+               "mode. Home, or jog single joints to other positions, before axes move";
+    case FaultKind::PATH_LIMIT: return "the path exceeded its limits";
     case FaultKind::MISC_ERROR: return "an error input of motion is on: see pins motion.misc-error-NN";
     case FaultKind::JOINT_TOO_FAST:
     case FaultKind::JOINT_LEFT_RANGE:

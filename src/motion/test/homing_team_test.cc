@@ -15,7 +15,7 @@ using homing::State;
 using ::mw::testing::HomingRig;
 using ::mw::testing::MotionRig;
 
-/// Joints 1 and 2 are the sides of Y. `skew` is how far the slides are apart from how they stood at first.
+/// Joints 1 and 2 are the sides of Y. `skew`: change of the difference between the slides since the start.
 struct Gantry {
     HomingRig m{"XYYZ"};
     double widest = 0;       ///< skew so far
@@ -103,7 +103,7 @@ TEST(HomingTeam, ASwitchThatIsNotFoundStopsBothBeforeTheyAreTooFarApart) {
             const double stated = most > 0 ? most : 4.0;
             EXPECT_LE(g.widest, stated + 1e-9);
             EXPECT_GT(g.widest, stated - 0.2);
-            EXPECT_NE(g.m.fault().find("pushed askew"), std::string::npos) << g.m.fault();
+            EXPECT_NE(g.m.fault().find("racked"), std::string::npos) << g.m.fault();
         }
     }
 }
@@ -121,7 +121,7 @@ TEST(HomingTeam, TheSmallerSkewOfTheTwoHolds) {
             g.home();
             EXPECT_FALSE(g.m.isHomed(1) || g.m.isHomed(2));
             EXPECT_LE(g.widest, 0.5 + 1e-9) << dead << narrow;
-            EXPECT_NE(g.m.fault().find("pushed askew"), std::string::npos) << g.m.fault();
+            EXPECT_NE(g.m.fault().find("racked"), std::string::npos) << g.m.fault();
         }
     }
 }
@@ -147,14 +147,14 @@ TEST(HomingTeam, WhatDiffersOrLeadsApartIsRefusedBeforeItMoves) {
     g.home();
     EXPECT_FALSE(g.m.isHomed(1) || g.m.isHomed(2));
     EXPECT_EQ(g.widest, 0);
-    EXPECT_NE(g.m.fault().find("homed in another way"), std::string::npos) << g.m.fault();
+    EXPECT_NE(g.m.fault().find("different homing settings"), std::string::npos) << g.m.fault();
     g.m.rig.faults.clear();
     g.m.set_switch(2, -20, 2);
     g.m.set(Parameter::JOINT_HOME_OFFSET, 3.5, 2);
     g.home();
     EXPECT_FALSE(g.m.isHomed(1) || g.m.isHomed(2));
     EXPECT_LT(g.widest, 1e-9) << "the final move does not begin";
-    EXPECT_NE(g.m.fault().find("pushed askew"), std::string::npos) << g.m.fault();
+    EXPECT_NE(g.m.fault().find("racked"), std::string::npos) << g.m.fault();
 }
 
 TEST(HomingTeam, AnAbortAtAnyInstantStopsBothTogether) {

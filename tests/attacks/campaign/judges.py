@@ -157,7 +157,7 @@ def ends(record):
                         f'an ordinary process waited {late:.2f} s meanwhile{coincides}')
     for where in ('python', 'web'):
         if not record.gone.get(where):
-            failures.append(f'message: clients ({where}) do not learn that the machine is gone')
+            failures.append(f'message: clients ({where}) do not learn that the machine has ended')
     isTerminalOpen = not any(one.name.startswith('terminal.') for one in record.events)
     if isTerminalOpen and event.causes and not re.search(event.causes, record.gone.get('terminal', '')):
         failures.append(f'message: the terminal does not name {event.name}: {record.gone.get("terminal", "")[-200:]!r}')

@@ -28,7 +28,7 @@ double limited(double value, double limit) noexcept {
     return std::clamp(value, -limit, limit);
 }
 
-/// The largest velocity towards a target `distance` away from which deceleration steps of `accel` stop at
+/// The maximum velocity towards a target at `distance` from which deceleration steps of `accel` stop at
 /// the target: with n steps of accel * period, n (n + 1) / 2 * accel * period^2 = distance.
 double approach_velocity(double distance, double accel, double period_s) noexcept {
     const double step = accel * period_s * period_s;

@@ -68,7 +68,7 @@ TEST(Sink, TellsAFailureOnceOnlyWhoeverFoundIt) {
     };
     sink.failure(find().error());
     EXPECT_EQ(sink.count_errors(), 1);
-    EXPECT_EQ(find().error().str(), "a.hal has errors") << "it says what it is about all the same";
+    EXPECT_EQ(find().error().str(), "a.hal has errors") << "the summary still names the file";
     sink.failure(Error{"not told"});
     EXPECT_EQ(sink.all().back().what.str(), "not told");
     EXPECT_EQ(sink.count_errors(), 3);

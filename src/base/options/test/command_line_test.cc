@@ -22,7 +22,7 @@ class CommandLineTest : public ::testing::Test {
         line.text("--plot", "FILE", "draw", read.plot);
         line.texts("-o,--output", "FILE", "write", read.outputs);
         line.on_or_off("--optional-stop", "M1 stops", read.isOn);
-        line.number("--patience", "SECONDS", "give up after so long", read.patience_s, 0.001, 600);
+        line.number("--patience", "SECONDS", "timeout", read.patience_s, 0.001, 600);
         line.number("--count", "N", "so many", read.count, 1, 100);
         line.take("--trigger", 3, "NAME KIND LEVEL", "when to begin", [this](const Words &words) -> Result<> {
             read.trigger = words;

@@ -140,7 +140,7 @@ class MdroTest(unittest.TestCase):
         readout = mdro.Readout('XY', True, mdro.offsets_of(os.devnull, 'XY'), [float('nan'), 3.0].__getitem__, lambda *_: False)
         self.assertEqual([one['value'] for one in readout.state()['axes']], [None, 3])
         for what in ('zero', 'half', 'set'):
-            with self.assertRaisesRegex(mdro.Refused, 'does not tell a number'):
+            with self.assertRaisesRegex(mdro.Refused, 'is not a number'):
                 readout.do({'do': what, 'axis': 0, 'value': 1})
 
     def test_command_lines_that_are_wrong(self):

@@ -231,7 +231,7 @@ TEST_F(PreviewRun, NamesTheLoopThatDoesNotEnd) {
         EXPECT_EQ(check.run_text("part.ngc", one.program, errors), PreviewEnd::FAILED);
         ASSERT_EQ(errors.count_errors(), 1) << one.program;
         const diagnostics::Diagnostic &error = errors.all()[0];
-        EXPECT_NE(error.what.message.find("5000 statements without making the machine do anything"),
+        EXPECT_NE(error.what.message.find("5000 statements without an action of the machine"),
                   std::string::npos)
             << error.str();
         EXPECT_EQ(error.what.place.line, one.line) << error.str();

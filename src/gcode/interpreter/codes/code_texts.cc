@@ -10,7 +10,7 @@ namespace {
 constexpr std::string_view ARC =
     "i=centre, along X|j=centre, along Y|k=centre, along Z|r=radius; negative for more than "
     "half a turn|p=turns, from 1";
-constexpr std::string_view THREAD = "k=way per revolution of the spindle|$=spindle";
+constexpr std::string_view THREAD = "k=distance per spindle revolution|$=spindle";
 constexpr std::string_view CYCLE = "r=height to which it retracts and from which it feeds|l=repeats";
 constexpr std::string_view DWELL_CYCLE =
     "r=height to which it retracts and from which it feeds|l=repeats|p=time to wait at the "
@@ -64,7 +64,7 @@ constexpr CodeText TEXTS[] = {
     {'g', 301, "store the machine's position as the second one (G30)", ""},
     {'g', 330, "straight move in step with the spindle", THREAD},
     {'g', 331, "rigid tapping: in step with the spindle, there and back",
-     "k=way per revolution of the spindle|i=factor of the spindle speed on the way back|$=spindle"},
+     "k=distance per spindle revolution|i=factor of the spindle speed for the retract|$=spindle"},
     {'g', 382, "probe towards the work piece until contact; none is an error", ""},
     {'g', 383, "probe towards the work piece until contact", ""},
     {'g', 384, "probe away from the work piece until contact is lost; none lost is an error", ""},
@@ -109,7 +109,7 @@ constexpr CodeText TEXTS[] = {
     {'g', 730, "drilling that breaks the chip", PECK_CYCLE},
     {'g', 740, "left-hand tapping with a floating chuck", SPINDLE_CYCLE},
     {'g', 760, "lathe threading in several cuts",
-     "p=way per revolution of the spindle|i=height of the thread's crest from the drive line|j=depth of the "
+     "p=distance per spindle revolution|i=height of the thread's crest from the drive line|j=depth of the "
      "first cut|k=depth of the "
      "thread|r=how the depth of cuts decreases|q=angle of the compound slide [deg]|h=spring passes|e=length "
      "of the "
@@ -138,7 +138,7 @@ constexpr CodeText TEXTS[] = {
     {'g', 930, "inverse time: F is one over the minutes of the move", ""},
     {'g', 940, "F in units per minute", ""},
     {'g', 950, "F in units per revolution", "$=spindle"},
-    {'g', 960, "constant surface speed", "d=highest speed of the spindle [rev/min]|$=spindle"},
+    {'g', 960, "constant surface speed", "d=maximum spindle speed [rev/min]|$=spindle"},
     {'g', 970, "constant speed of the spindle", "$=spindle"},
     {'g', 980, "cycles retract to where the first one began", ""},
     {'g', 990, "cycles retract to R", ""},

@@ -33,7 +33,7 @@ ToolEntry tool(int number) {
     out.toolno = number;
     out.offset = pose(0, 0, 7);
     out.orientation = 2;
-    out.comment = "a comment long enough to stand outside of the entry";
+    out.comment = "a comment long enough to be stored outside of the entry";
     return out;
 }
 
@@ -126,7 +126,7 @@ std::vector<Printed> action_calls() {
         {PalletShuttle{}, "PALLET_SHUTTLE()"},
         {Finish{}, "FINISH()"},
         {UserCode{101, 1, -1}, "USER_DEFINED_FUNCTION(101, 1.0000, -1.0000)"},
-        {ProgramComment{"as it stands"}, "COMMENT(\"as it stands\")"},
+        {ProgramComment{"as written"}, "COMMENT(\"as written\")"},
         {OperatorMessage{"for people"}, "MESSAGE(\"for people\")"},
         {PrintLine{"for scripts"}, "for scripts"},
         {OpenLog{"a.log", false}, "LOGOPEN(\"a.log\")"},

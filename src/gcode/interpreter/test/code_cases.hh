@@ -203,8 +203,8 @@ inline const BadCase MORE_BAD[] = {
     {"G64 M19 R5", "ambiguous"},
     {"M98 P1 L-1", "must not be negative"},
     {"G43.2 X1 H1", "both H and axis words"},
-    {"G10 L1 P1", "G10 L1 needs what it is to set"},
-    {"G10 L10 P1", "G10 L10 needs what it is to set"},
+    {"G10 L1 P1", "G10 L1 needs a value to set"},
+    {"G10 L10 P1", "G10 L10 needs a value to set"},
     {"(probeopen)", "needs the name of a file"},
     {"#5021=1", "readonly"},
 };

@@ -62,7 +62,7 @@ int run(unsigned first, unsigned count_of, const std::string &log, bool is_pocke
                                      : std::string("ok"))
             << '\n';
     }
-    fmt::print("{} {}, {} corners: {} failed, {} refused ({:.2f} %), {:.6f} of what is reachable cut\n",
+    fmt::print("{} {}, {} corners: {} failed, {} rejected ({:.2f} %), {:.6f} of what is reachable cut\n",
                totals.contours, is_pockets ? "pockets" : "contours", totals.corners, totals.failed,
                totals.refused,
                100.0 * static_cast<double>(totals.refused) /

@@ -157,8 +157,8 @@ inline void explain(const CompContour &c, int line, const std::string &error, Co
     } else if (met.crossing) {
         out.refused = "a contour that leads back over itself";
     } else {
-        out.fault = fmt::format("refused without a reason: {:.4f} and {:.4f} of the moves are free; {}", last,
-                                next, error.substr(0, error.find('\n')));
+        out.fault = fmt::format("rejected without a reason: {:.4f} and {:.4f} of the moves are free; {}",
+                                last, next, error.substr(0, error.find('\n')));
     }
 }
 

@@ -180,7 +180,7 @@ TEST(PythonSurface, CanonCallsStandInProgramOrder) {
           "    emccanon.SET_MOTION_OUTPUT_BIT(1)\n    emccanon.CLEAR_AUX_OUTPUT_BIT(2)\n"
           "    emccanon.DWELL(2)\n    emccanon.COMMENT('c')\n    emccanon.CANON_ERROR('oops')\n"
           "    emccanon.SELECT_PLANE(emccanon.CANON_PLANE_XY)\n"
-          "    try:\n        emccanon.SPINDLE_RETRACT()\n        raise ValueError('refused')\n"
+          "    try:\n        emccanon.SPINDLE_RETRACT()\n        raise ValueError('accepted')\n"
           "    except NotImplementedError:\n        pass\n");
     EXPECT_EQ(it.story(),
               (Events{"STRAIGHT_TRAVERSE(1.0000, 0.0000, 0.0000, 0.0000, 0.0000, 0.0000)",

@@ -79,7 +79,7 @@ TEST(ToolTable, OlderTablesOfMillsAreReadByTheirHeader) {
     const Read read = read_leniently("TOOLNO POCKET   LENGTH    DIAMETER  COMMENT\n\n"
                                      "     1      4    +0.511000    0.125000  1/8 end mill\n"
                                      " 99999  99999    +0.100000    0.000000  big tool number\n");
-    EXPECT_EQ(read.told.find("tool.tbl:1 a table of the older form"), 0U) << read.told;
+    EXPECT_EQ(read.told.find("tool.tbl:1 the tool table has an older format"), 0U) << read.told;
     ASSERT_EQ(read.table.count(), 3);
     const ToolEntry first = read.table.entry(1);
     EXPECT_EQ(first.toolno, 1);
@@ -177,12 +177,11 @@ TEST(ToolTable, TwoToolsInOnePocketOfARandomChangerAreNotUsed) {
 TEST(ToolTable, AToolTwiceCountsOnceOrNotAtAll) {
     Table table;
     EXPECT_EQ(warnings_of("T1 P1 Z1\nT1 P2 Z1\n", &table),
-              "tool.tbl:2:1 tool 1 stands in lines 1 and 2: the first one counts\n");
+              "tool.tbl:2:1 tool 1 is defined in lines 1 and 2: the first line is used\n");
     EXPECT_EQ(table.entry(table.index_of_tool(1)).pocketno, 1);
-    EXPECT_EQ(
-        warnings_of("T2 P2\nT1 P1 D1\nT1 P3 D3\n", &table),
-        "tool.tbl:3:1 tool 1 stands in lines 2 and 3 with different figures: it cannot be used until one "
-        "of them goes\n");
+    EXPECT_EQ(warnings_of("T2 P2\nT1 P1 D1\nT1 P3 D3\n", &table),
+              "tool.tbl:3:1 tool 1 is defined in lines 2 and 3 with different data: the tool cannot be used "
+              "until one of the lines is deleted\n");
     EXPECT_EQ(table.index_of_tool(1), -1);
     EXPECT_GT(table.index_of_tool(2), 0);
     EXPECT_EQ(table.text(), "T2 P2\nT1 P1 D1\nT1 P3 D3\n") << "the file stays as it is";
@@ -193,7 +192,7 @@ TEST(ToolTable, WhatLooksWrongIsToldWithItsLine) {
     EXPECT_NE(warnings_of("T1 P0\n").find("P0 means the spindle"), std::string::npos);
     EXPECT_NE(warnings_of("T1 P5\nT2 P5\n").find("tools 1 (line 1) and 2 are in one pocket, P5"),
               std::string::npos);
-    EXPECT_NE(warnings_of("T1 P1 D-6\n").find("a diameter of -6 is negative"), std::string::npos);
+    EXPECT_NE(warnings_of("T1 P1 D-6\n").find("the diameter -6 is negative"), std::string::npos);
     EXPECT_EQ(warnings_of("T1 P1 D6\nT2 P2\n"), "");
 }
 

@@ -79,7 +79,7 @@ TEST(HalLexer, QuotesGroupAndAreRemoved) {
 TEST(HalLexer, SubstitutesEnvironment) {
     EXPECT_EQ(words_of("x $FOO x$(FOO).y"), "x|bar|xbar.y|");
     EXPECT_EQ(words_of("x $NO"), "f.hal:1:3: environment variable 'NO' is not set");
-    EXPECT_EQ(words_of("x $(FOO"), "f.hal:1:4: missing ')' behind a variable name");
+    EXPECT_EQ(words_of("x $(FOO"), "f.hal:1:4: missing ')' after a variable name");
 }
 
 TEST(HalLexer, SubstitutesIniEntriesAlsoInsideWordsAndQuotes) {
@@ -91,7 +91,7 @@ TEST(HalLexer, SubstitutesIniEntriesAlsoInsideWordsAndQuotes) {
 TEST(HalLexer, UnknownIniEntryNamesTheNearest) {
     EXPECT_EQ(words_of("x\ny [KINS]JOINT"),
               "f.hal:2:3: INI entry '[KINS]JOINT' not found (did you mean '[KINS]JOINTS'?)");
-    EXPECT_EQ(words_of("x [KINS"), "f.hal:1:3: missing ']' behind an INI section name");
+    EXPECT_EQ(words_of("x [KINS"), "f.hal:1:3: missing ']' after an INI section name");
     EXPECT_EQ(words_of("x [KINS] "), "f.hal:1:3: empty variable name");
 }
 

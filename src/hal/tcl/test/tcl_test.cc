@@ -115,7 +115,7 @@ TEST_F(TclTest, IniEntriesAreArraysOfLists) {
 }
 
 TEST_F(TclTest, ErrorsNameTheLineAndCanBeCaught) {
-    EXPECT_EQ(run("if {![catch {setp nosuch 1} text]} { error \"not refused\" }\n\n"
+    EXPECT_EQ(run("if {![catch {setp nosuch 1} text]} { error \"accepted\" }\n\n"
                   "setp bord.in0 1\n"
                   "setp board.in1 7\n"),
               (folder / "test.tcl").string() +

@@ -61,7 +61,7 @@ Result<std::unique_ptr<HostClient>> join(const CommandLine &line) {
                           line.words[0] == "source";
     if (!may_load) {
         return fail(fmt::format("no realtime process is running (instance '{}')", instance), {},
-                    "halrun starts one, and so does halcmd loadrt");
+                    "start one with halrun or halcmd loadrt");
     }
     return join_or_start();
 }

@@ -13,11 +13,11 @@ namespace {
 
 constexpr const char *USAGE = R"(usage: realtime start|stop|restart|status|verify
 
-  start    starts a realtime process that stays until it is told to end
+  start    starts a realtime process that runs until stop
   stop     ends it, and the programs that have components in it
   restart  both
   status   says whether it runs; the exit status is 0 when it does
-  verify   starts one of its own and says whether its threads have realtime priority and locked memory; 0 when they have
+  verify   starts a separate one and reports whether its threads have realtime priority and locked memory; 0 when they have
 )";
 
 int start() {

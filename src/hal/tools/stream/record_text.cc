@@ -91,7 +91,7 @@ Result<std::vector<hal_stream_data_u>> parse_record(const std::vector<hal_type_t
     std::vector<hal_stream_data_u> values(types.size());
     for (std::size_t i = 0; i < types.size(); ++i) {
         if (i >= words.size()) {
-            return fail(fmt::format("{} fields wanted, {} found", types.size(), words.size()));
+            return fail(fmt::format("expected {} fields, found {}", types.size(), words.size()));
         }
         if (!parse_value(types[i], words[i], values[i])) {
             return fail(fmt::format("field {}: '{}' is not {}", i + 1, words[i], expected(types[i])));

@@ -87,7 +87,7 @@ Result<Capture> Capture::open(Host &host, const std::string &thread) {
         return fail(fmt::format("process {} is recording already", client));
     }
     if (!block->client.compare_exchange_strong(client, ::getpid())) {
-        return fail("another program begins to record at this moment");
+        return fail("another program is starting a recording");
     }
     Capture capture(host.hal(), *block);
     auto entered = enter_thread(host.hal(), thread);
@@ -148,7 +148,7 @@ Result<> Capture::begin(const CaptureRequest &request) {
     }
     if (names_.empty() || names_.size() > CAPTURE_CHANNELS) {
         return fail(
-            fmt::format("{} channels were asked for, 1 to {} are possible", names_.size(), CAPTURE_CHANNELS));
+            fmt::format("{} channels requested, 1 to {} are possible", names_.size(), CAPTURE_CHANNELS));
     }
     if (!(request.pretrigger >= 0.0 && request.pretrigger < 1.0)) {
         return fail("the part before the trigger is 0 to below 1 of the record");

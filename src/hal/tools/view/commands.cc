@@ -25,13 +25,13 @@ namespace mw::hal::view {
 namespace {
 
 constexpr const char *USAGE =
-    "usage: millwright hal [COMMAND ...]      looks at the running HAL\n"
+    "usage: millwright hal [COMMAND ...]      show the running HAL\n"
     "\n"
     "  (no command) [NAME...]  pins, signals and threads live on the terminal; NAMEs are watched\n"
     "  watch NAME...           a line of values again and again\n"
     "  capture NAME...         records up to 16 pins, signals or parameters in realtime\n"
     "  graph                   draws components and signals\n"
-    "  latency                 latency of threads in a realtime process of its own\n"
+    "  latency                 latency of threads in a separate realtime process\n"
     "\n"
     "Each command has its own --help.\n";
 
@@ -137,7 +137,7 @@ Result<TriggerKind> trigger_kind(const std::string &word) {
             return kind;
         }
     }
-    return fail(fmt::format("'{}' is no kind of trigger", word), {},
+    return fail(fmt::format("unknown trigger type '{}'", word), {},
                 "rising, falling, either, above and below are");
 }
 
@@ -173,12 +173,12 @@ struct CaptureCommand {
         line.number("--every", "N", "one in N periods (default 1)", request.every, 1, 1000000);
         line.text("--thread", "NAME", "in this thread", thread);
         line.take("--trigger", 3, "NAME KIND LEVEL",
-                  "begin when NAME does so; KIND: rising, falling, either, above or below",
+                  "trigger on NAME; KIND: rising, falling, either, above or below",
                   [this](const Words &words) { return take_trigger(request, words); });
         line.number("--pre", "PERCENT", "part of the record before the trigger (default 10)", pre_percent, 0,
                     99.9);
-        line.number("--timeout", "S", "give up after so long (default 10)", timeout_s, 0, 1e6);
-        line.flag("--force", "record what is there instead of giving up", forced);
+        line.number("--timeout", "S", "timeout (default 10)", timeout_s, 0, 1e6);
+        line.flag("--force", "keep the incomplete record at the timeout", forced);
         line.rest(request.names);
         return line;
     }
@@ -302,12 +302,12 @@ struct LatencyCommand {
 
     CommandLine line() {
         CommandLine line("millwright hal latency [options]",
-                         "Measures the latency of threads in a realtime process of its own.\n");
+                         "Measures the latency of threads in a separate realtime process.\n");
         take_period(line, "--base", "of a base thread: 25us, 1ms or nanoseconds (default: none)", base_ns);
         take_period(line, "--servo", "of the servo thread (default 1ms)", servo_ns);
         line.number("--seconds", "S", "so long (default: until stopped)", options.seconds, 0.01, 1e7);
         line.text("-o", "FILE", "write .png, .svg or .csv", path);
-        line.text("--text", "NOTE", "stands in the picture", options.note);
+        line.text("--text", "NOTE", "text in the image", options.note);
         return line;
     }
 };
@@ -430,7 +430,7 @@ struct HistogramCommand {
         line.flag("--nobase", "servo thread only", has_no_base);
         line.number("--bbinsize", "NS", "bins of the base thread (default 100)", base_bin_ns, 1, 1000000);
         line.number("--sbinsize", "NS", "bins of the servo thread (default 100)", servo_bin_ns, 1, 1000000);
-        line.text("--text", "NOTE", "stands in the picture", options.note);
+        line.text("--text", "NOTE", "text in the image", options.note);
         line.number("--seconds", "S", "so long (default: until stopped)", options.seconds, 0.01, 1e7);
         line.text("-o", "FILE", "write .png or .svg", options.picture_path);
         line.text("--csv", "FILE", "write the counts", options.csv_path);

@@ -118,7 +118,7 @@ Result<> run_terminal(WatchModel &model, volatile std::sig_atomic_t &stop) {
     }
     const Screen screen;
     if (!screen.isOpen()) {
-        return fail("the terminal is of no known kind", {}, "set TERM");
+        return fail("unknown terminal type", {}, "set TERM");
     }
     while (!model.isDone() && stop == 0) {
         int height = 0, width = 0;

@@ -87,7 +87,7 @@ TEST(MachineConfig, WrappedAxesAndIndexersAreReadAndWhatDoesNotFitIsSaid) {
     EXPECT_EQ(c.machine.limits().indexer[geometry::AXIS_A], 1);
     EXPECT_TRUE(c.machine.task.interpreter.rotary.isWrapped(geometry::AXIS_A));
     EXPECT_EQ(c.machine.task.interpreter.rotary.indexer_joint(geometry::AXIS_A), 1);
-    EXPECT_TRUE(Config(std::string(TURNING) + "MAX_LIMIT = 400\n").says("keep the axis from turning on"));
+    EXPECT_TRUE(Config(std::string(TURNING) + "MAX_LIMIT = 400\n").says("still limit the axis"));
     EXPECT_TRUE(Config(replaced(TURNING, "mask=0x2", "mask=0x1")).says("the axis never unlocks"));
     EXPECT_TRUE(Config(replaced(TURNING, "INDEXER_JOINT = 1", "INDEXER_JOINT = 0")).sink.hasErrors());
     EXPECT_TRUE(Config(replaced(TURNING, "INDEXER_JOINT = 1", "INDEXER_JOINT = 7")).sink.hasErrors());
@@ -253,11 +253,11 @@ TEST(MachineConfig, AnOverrideLimitThatLooksLikeAPercentageIsReported) {
 
 TEST(MachineConfig, AFileOfAnOlderFormNamesUpdateIni) {
     Config version(std::string(GOOD) + "[EMC]\nVERSION = 1.0\n");
-    EXPECT_TRUE(version.says("[EMC]VERSION = 1.0 is of an older form"));
+    EXPECT_TRUE(version.says("[EMC]VERSION = 1.0 is an older format"));
     EXPECT_TRUE(version.says("update_ini"));
     Config axes(std::string(GOOD) + "[AXIS_0]\nMAX_VELOCITY = 1\n");
     EXPECT_TRUE(axes.sink.hasErrors());
-    EXPECT_TRUE(axes.says("section [AXIS_0] is of the form before LinuxCNC 2.8"));
+    EXPECT_TRUE(axes.says("section [AXIS_0] has the format before LinuxCNC 2.8"));
     EXPECT_TRUE(axes.says("update_ini"));
 }
 

@@ -88,7 +88,7 @@ TEST_F(HaluiInputs, TheSpindleTurnsAsProgrammedAndStepsFromThere) {
     halui.step();
     EXPECT_EQ(press("spindle.0.forward"), asked(SpindleOn{0, 500}));
     EXPECT_EQ(press("spindle.0.reverse"), asked(SpindleOn{0, -500}));
-    EXPECT_EQ(press("spindle.0.increase"), "") << "it stands";
+    EXPECT_EQ(press("spindle.0.increase"), "") << "it is stopped";
     halui.step();
     EXPECT_TRUE(lamp("outcome.is-refused"));
     status->spindles[0].isOn = true;

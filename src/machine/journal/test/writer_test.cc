@@ -56,7 +56,7 @@ TEST_F(JournalWriter, ARunThatHasNotEndedIsFound) {
     disk.write_outside(PROGRAM, "G0 X2\n");
     EXPECT_EQ(open()->found().refusal, "its file has been changed since");
     disk.names.erase(PROGRAM);
-    EXPECT_EQ(open()->found().refusal, "its file is gone");
+    EXPECT_EQ(open()->found().refusal, "its file no longer exists");
 }
 
 TEST_F(JournalWriter, ARunThatHasEndedOrIsForgottenIsNot) {
@@ -80,7 +80,7 @@ TEST_F(JournalWriter, AFileThatIsNoJournalIsTold) {
     disk.write_outside(PATH, "rubbish");
     const auto trouble = open()->take_trouble();
     ASSERT_TRUE(trouble.has_value());
-    EXPECT_EQ(*trouble, "/m/sim.var.journal: this is no journal, or one of another version: an "
+    EXPECT_EQ(*trouble, "/m/sim.var.journal: the file is not a journal, or has another version: an "
                         "interrupted program cannot be continued");
 }
 

@@ -68,7 +68,7 @@ TEST(Setup, EachWrongAnswerIsTold) {
         {{{"name", "a#b"}}, "name: a name has 1 to 60 characters without []#;=\\\"\n"},
         {{{"name", "a\nb"}}, "name: a name has 1 to 60 characters without []#;=\\\"\n"},
         {{{"switches", "home"}, {"x.home_speed", "50"}},
-         "x.home_speed: is above the highest speed of the axis\n"},
+         "x.home_speed: exceeds the maximum speed of the axis\n"},
         {{{"drives", "stepper"}, {"x.way_per_turn", "0"}}, "x.way_per_turn: 0 moves nothing\n"},
         {{{"drives", "stepper"}, {"x.step_pin", "2.5"}}, "x.step_pin: '2.5' is no whole number\n"},
         {{{"drives", "stepper"}, {"x.step_pin", "4"}}, "y.step_pin: pin 4 is used by x.step_pin already\n"},

@@ -84,12 +84,13 @@ Result<> edit_tools(const messages::RemoveTool &order, const ToolUse &use, ToolS
         return fail(fmt::format("tool {} is not in the tool table", order.toolno));
     }
     if (use.program_paused) {
-        return fail(fmt::format("a paused program may call tool {}: it is removed when that has ended",
-                                order.toolno));
+        return fail(
+            fmt::format("a paused program may call tool {}: it is removed after the program", order.toolno));
     }
     if (index == use.prepared_index && tools.entry(0).toolno != order.toolno) {
-        return fail(fmt::format("tool {} is prepared for the next change: it is removed when another one is",
-                                order.toolno));
+        return fail(fmt::format(
+            "tool {} is prepared for the next change: it is removed when another tool is prepared",
+            order.toolno));
     }
     return tools.remove(index);
 }

@@ -13,18 +13,18 @@ using Row = std::array<Cell, SITUATIONS>;
 
 constexpr Cell TAKEN = nullptr;
 constexpr Cell ESTOP = "the machine is in emergency stop", OFF = "the machine is not on";
-constexpr Cell RUNS = "a program or MDI line runs already",
+constexpr Cell RUNS = "a program or MDI line is already running",
                NOT_WHILE = "not while a program or MDI line runs";
 constexpr Cell NEEDS_AUTO = "running a program needs auto mode",
                NEEDS_MDI = "Must be in MDI mode to issue MDI command",
                NEEDS_MANUAL = "this needs manual mode",
-               HELD_AXES = "release the axes of the held program first";
-constexpr Cell NO_PAUSE = "nothing runs that could be paused", NO_RESUME = "nothing is paused",
+               HELD_AXES = "release the axes of the paused program first";
+constexpr Cell NO_PAUSE = "no program runs that could be paused", NO_RESUME = "nothing is paused",
                NO_STEP = "single step needs a program", NO_TURN = "no program runs";
-constexpr Cell NO_WAY = "no way is proposed", CONFIRM = "the way that is proposed waits for its confirmation",
+constexpr Cell NO_WAY = "no approach is proposed", CONFIRM = "the proposed approach waits for confirmation",
                IS_AWAY = "the tool is away from the program: resume it first";
 constexpr Cell NOT_HELD = "the axes can only be released while a program is paused",
-               NOT_LINES = "the axes of a line of MDI are not released: abort it";
+               NOT_LINES = "the axes of an MDI line cannot be released: abort the line";
 constexpr Cell ON = "only while the machine is off";
 
 constexpr Row all(Cell cell) {

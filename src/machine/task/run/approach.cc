@@ -118,13 +118,13 @@ void Approach::propose(ApproachPlan plan, std::int64_t now_ns) {
 
 Result<> Approach::check(std::uint64_t number, std::int64_t now_ns) const {
     if (!isOpen()) {
-        return fail("no way is proposed");
+        return fail("no approach is proposed");
     }
     if (number != 0 && number != number_) {
-        return fail(fmt::format("the way that is proposed now is number {}", number_));
+        return fail(fmt::format("the proposed approach is number {}", number_));
     }
     if (number == 0 && now_ns - since_ns_ < SEEN_NS) {
-        return fail("the path has only just been proposed", {}, "check it, then confirm it");
+        return fail("the approach was proposed a moment ago", {}, "check it, then confirm it");
     }
     return {};
 }

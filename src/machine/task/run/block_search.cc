@@ -75,9 +75,8 @@ BlockSearch::Outcome BlockSearch::check_calls() {
     }
     return !calls_.has_value() || machine_.sum().value() == *calls_
                ? Outcome::FOUND
-               : refuse(
-                     "what the program says up to there is not what it said when it ran: a subroutine, the "
-                     "INI file or what it reads has changed since");
+               : refuse("the program differs from the interrupted run: a subroutine, the INI file or an "
+                        "input has changed since. Run it from a line");
 }
 
 BlockSearch::Outcome BlockSearch::run_line() {
@@ -88,7 +87,7 @@ BlockSearch::Outcome BlockSearch::run_line() {
     last_step_ = step;
     if (switch_.isPassing()) {
         return doubt_.empty() ? check_calls()
-                              : refuse_before("the state where the program was left depends on " + doubt_);
+                              : refuse_before("the state at the interrupted line depends on " + doubt_);
     }
     switch (step) {
     case gcode::Step::OK: break;
@@ -97,11 +96,12 @@ BlockSearch::Outcome BlockSearch::run_line() {
     case gcode::Step::PROGRAM_END:
     case gcode::Step::FILE_END:
         if (line_ == 0) {
-            return refuse("the program ends before the place where it was left");
+            return refuse("the program ends before the line where it was interrupted");
         }
-        return first_behind_ > 0 ? refuse(fmt::format("line {} is never reached; the next line that is is {}",
-                                                      line_, first_behind_))
-                                 : refuse_before(fmt::format("line {} is never reached", line_));
+        return first_behind_ > 0
+                   ? refuse(fmt::format("line {} is never reached; the next line that is reached is {}",
+                                        line_, first_behind_))
+                   : refuse_before(fmt::format("line {} is never reached", line_));
     }
     const gcode::NextLine next = interpreter_.next_line();
     if (!next.in_call && next.line > line_ && line_ > 0) {

@@ -261,7 +261,7 @@ std::string ProgramReader::take_doubt() {
     const std::uint64_t calls = rs274_ != nullptr ? rs274_->count_script_calls() : 0;
     if (calls != script_calls_) {
         script_calls_ = calls;
-        doubt = "what Python has done";
+        doubt = "actions of Python code";
     }
     return doubt;
 }

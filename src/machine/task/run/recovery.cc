@@ -35,9 +35,9 @@ std::string Recovery::find() {
     refusal_ = writer_->found().refusal.empty() ? refusal_ : writer_->found().refusal;
     const std::string what =
         fmt::format("{} was interrupted at line {}", offer_->start.program, offer_->progress->line);
-    return refusal_.empty()
-               ? what + ": RecoverProgram ('millwright recover') goes on with it once the machine is homed"
-               : what + " and cannot be continued there: " + refusal_;
+    return refusal_.empty() ? what + ": home the machine, then continue the program with 'millwright "
+                                     "recover' (RecoverProgram)"
+                            : what + " and cannot be continued there: " + refusal_;
 }
 
 void Recovery::prepare(const std::string &program, const StartRecord &record, const std::string &why_not) {
@@ -54,7 +54,7 @@ std::string Recovery::begin(std::uint32_t first) {
     }
     std::string dropped =
         offer_.has_value()
-            ? fmt::format("{} is no longer offered from line {} on: another start takes its place",
+            ? fmt::format("{} can no longer be continued from line {}: another program was started",
                           offer_->start.program, offer_->progress->line)
             : "";
     offer_.reset();

@@ -161,7 +161,7 @@ std::string states_page() {
         "\n## Phases of a run\n\nRows are events, columns the phase before; - changes nothing, a number is "
         "the reason why the event cannot be.\n\n" +
         transitions<RunPhase>();
-    return text + "\n## Holds of a run\n\nThe same for whether it is held.\n\n" + transitions<Hold>();
+    return text + "\n## Pauses of a run\n\nThe same for pauses.\n\n" + transitions<Hold>();
 }
 
 }  // namespace mw::task

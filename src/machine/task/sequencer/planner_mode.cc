@@ -77,10 +77,10 @@ void PlannerMode::set_corner_scale(double scale) {
     const bool is_new = fault != told_fault_;
     told_fault_ = fault;
     if (is_new && fault != ScaleFault::NONE) {
-        hooks_.post(MessageKind::OPERATOR_ERROR,
-                    fmt::format("ini.traj-scurve-peak-scale is {}: a number from {} to {} expected; {} is in "
-                                "force",
-                                scale, LOWEST_SCALE, HIGHEST_SCALE, corner_scale_));
+        hooks_.post(
+            MessageKind::OPERATOR_ERROR,
+            fmt::format("ini.traj-scurve-peak-scale is {}: a number from {} to {} expected; {} is used",
+                        scale, LOWEST_SCALE, HIGHEST_SCALE, corner_scale_));
     }
 }
 

@@ -127,7 +127,7 @@ ProgramLog::~ProgramLog() {
     }
     lock.unlock();
     thread_.detach();  // it shares ownership of its data
-    std::fputs(fmt::format("{} is not whole: its disk does not answer\n", path_).c_str(), stderr);
+    std::fputs(fmt::format("{} is incomplete: its disk does not respond\n", path_).c_str(), stderr);
 }
 
 /// Executes the jobs. Consecutive lines are written together.

@@ -77,7 +77,7 @@ Result<double> ProgramSpindles::stepped_rpm(int spindle, double step_rpm) const 
     constexpr double SLOWEST_RPM = 1;
     const Spindle &state = spindles_[static_cast<std::size_t>(spindle)];
     if (state.direction == 0) {
-        return fail(fmt::format("spindle {} stands", spindle));
+        return fail(fmt::format("spindle {} is stopped", spindle));
     }
     if (state.css_max_rpm > 0) {
         return fail(fmt::format("spindle {} keeps a constant surface speed", spindle));

@@ -105,7 +105,7 @@ std::string SentMoves::why_not(const motion::Status &status, const geometry::Pos
         status.active_path_id == 0 || (first != sent_.end() && first->id == status.active_path_id);
     if (status.isReverse ||
         (!known && distance(place, first == sent_.end() ? end_ : first->start) > AT_END)) {
-        return "it has gone back along its path";
+        return "it has run in reverse along its path";
     }
     if (first == sent_.end()) {
         return {};
@@ -120,7 +120,7 @@ std::string SentMoves::why_not(const motion::Status &status, const geometry::Pos
     }
     const bool plain = isMove(call) || std::holds_alternative<gcode::SetDigitalOutput>(call) ||
                        std::holds_alternative<gcode::SetAnalogOutput>(call);
-    return plain ? "" : "a probe move or a tap is under way";
+    return plain ? "" : "a probe move or a tap is active";
 }
 
 std::vector<Item> SentMoves::rest(const motion::Status &status, const geometry::Pose &place) const {

@@ -379,10 +379,9 @@ Result<> Sequencer::take_back(const geometry::Pose &place) {
 
 void Sequencer::on_tool_event(io::ToolEvent event) {
     if (event == io::ToolEvent::CHANGED_LATE) {
-        events_.message(
-            MessageKind::OPERATOR_ERROR,
-            "the changer reports iocontrol.0.tool-changed after the change was aborted: look which "
-            "tool is in the spindle, and say it with M61 Q<number>");
+        events_.message(MessageKind::OPERATOR_ERROR,
+                        "the changer reports iocontrol.0.tool-changed after the change was aborted: check "
+                        "which tool is in the spindle, and set it with M61 Q<number>");
         return;
     }
     if (event == io::ToolEvent::FAULT_TOLD) {

@@ -152,7 +152,7 @@ bool UserProgram::isRunning() {
     }
     result_ = ended == pid_
                   ? result_of(path_, status)
-                  : fail(fmt::format("lost sight of user M code {}: {}", path_, std::strerror(errno)));
+                  : fail(fmt::format("user M code {} cannot be monitored: {}", path_, std::strerror(errno)));
     pid_ = 0;
     return false;
 }

@@ -15,7 +15,7 @@ Result<Progress> HomingRequest::wait(int joint, mailbox::Serial command) {
         free &= turn.joint != joint;
     }
     if (!free) {
-        return fail("homing is under way already");
+        return fail("homing is already active");
     }
     waiting_.push_back({joint, command});
     return Progress::STARTED;

@@ -24,7 +24,7 @@ MachineState::News MachineState::step(const Seen &seen) {
 }
 
 MachineState::Asked MachineState::ask(State wanted, mailbox::Serial command, std::int64_t now_ns) {
-    Asked asked{Progress::DONE, request_.end(Progress::FAILED, "another state was asked for")};
+    Asked asked{Progress::DONE, request_.end(Progress::FAILED, "another state was requested")};
     wanted_ = wanted;
     switch (wanted) {
     case State::ESTOP: state_ = State::ESTOP; return asked;

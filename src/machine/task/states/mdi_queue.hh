@@ -29,9 +29,9 @@ class MdiQueue {
     /// Rejected when the queue is full.
     Result<Progress> add(Line line) {
         if (size() >= most_) {
-            return fail(most_ == 0 ? "a line of MDI runs already"
-                                   : std::to_string(most_) + " lines of MDI wait already",
-                        {}, "[TASK]MDI_QUEUED_COMMANDS says how many may");
+            return fail(most_ == 0 ? "an MDI line is already running"
+                                   : std::to_string(most_) + " MDI lines are already waiting",
+                        {}, "[TASK]MDI_QUEUED_COMMANDS is the maximum");
         }
         waiting_.push_back(std::move(line));
         return Progress::STARTED;

@@ -11,7 +11,7 @@ TEST_F(TaskTest, ManualModeIsThatOfJointsWhereAxesCannotBeMoved) {
     EXPECT_EQ(ask(SetMode{Mode::MANUAL}), Progress::DONE)
         << "home or bring the sides together, in manual mode";
     EXPECT_EQ(motion.status.mode, motion::Mode::FREE);
-    EXPECT_NE(messages().find("stands apart"), std::string::npos);
+    EXPECT_NE(messages().find("differs from the other joint"), std::string::npos);
     EXPECT_NE(ask(SetTeleop{true}), Progress::DONE) << "axes were asked for";
     EXPECT_EQ(task.status().task.mode, Mode::MANUAL);
 }

@@ -18,7 +18,7 @@ TEST(ProgramRun, EndsItsCommandAndKeepsTheErrorUntilTheNextStart) {
     ASSERT_EQ(run.start(RunKind::MDI, 3, "G0 X1"), Progress::STARTED);
     EXPECT_EQ(run.line(), "G0 X1");
     EXPECT_FALSE(run.isProgram());
-    EXPECT_EQ(run.start(RunKind::PROGRAM, 4).error().message, "a program or MDI line runs already");
+    EXPECT_EQ(run.start(RunKind::PROGRAM, 4).error().message, "a program or MDI line is already running");
     EXPECT_EQ(run.kind(), RunKind::MDI) << "the rejected one changes nothing";
     run.set_error({diagnostics::Severity::ERROR, {"beyond a limit"}});
     const auto ended = run.end(Progress::FAILED, "beyond a limit");

@@ -286,7 +286,7 @@ TEST_F(SearchTest, RefusalsNameTheNearestLineThatCan) {
         "line 2 is in subroutine o<1>, which line 5 is the first to call; the nearest line before it that "
         "can is 5");
     EXPECT_EQ(refusal("G21\no1 if [0]\nG0 X1\no1 endif\nG0 X2\nM2\n", 3),
-              "line 3 is never reached; the next line that is is 5");
+              "line 3 is never reached; the next line that is reached is 5");
     EXPECT_NE(refusal("G21\nG1 X1 X2\nG0 X2\nM2\n", 3).find(":2:"), std::string::npos);
 }
 
@@ -326,7 +326,7 @@ TEST_F(SearchTest, ASearchThatIsDroppedLeavesModesAndParametersAsTheyWere) {
     EXPECT_NE(shop.interpreter().active_codes().g, before.g);
     shop.reader.cancel_search();
     const auto after = shop.interpreter().active_codes();
-    EXPECT_TRUE(std::equal(after.g.begin() + 1, after.g.end(), before.g.begin() + 1)) << "but for the line";
+    EXPECT_TRUE(std::equal(after.g.begin() + 1, after.g.end(), before.g.begin() + 1)) << "except the line";
     EXPECT_EQ(after.settings[1], before.settings[1]);
     EXPECT_EQ(shop.interpreter().parameter(100), 0);
     EXPECT_EQ(shop.interpreter().parameter(5221), 0);

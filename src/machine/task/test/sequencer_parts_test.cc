@@ -67,7 +67,7 @@ TEST_F(ProgramSpindlesTest, StartWithTheSpeedThatWasSetAndFollowANewOne) {
     spindles.stop({0}, link);
     ASSERT_EQ(sent().size(), 1U);
     spindles.set_speed({0, 700, 0}, link);
-    EXPECT_TRUE(sent().empty()) << "it stands";
+    EXPECT_TRUE(sent().empty()) << "it is stopped";
     EXPECT_EQ(spindles.speed(0), 700);
 }
 
@@ -268,9 +268,9 @@ TEST(UserProgram, TellsHowItEnded) {
     program.start("M101", path_of(folder / "none"), 1, 2);
     EXPECT_FALSE(program.isRunning());
     EXPECT_NE(program.take_result().error().message.find("cannot start user M code"), std::string::npos);
-    program.start("M101", [] { return Result<std::string>(fail("its program is gone")); }, 1, 2);
+    program.start("M101", [] { return Result<std::string>(fail("its program no longer exists")); }, 1, 2);
     EXPECT_FALSE(program.isRunning());
-    EXPECT_EQ(program.take_result().error().message, "its program is gone");
+    EXPECT_EQ(program.take_result().error().message, "its program no longer exists");
 }
 
 TEST(UserProgram, IsEndedWithAllThatItStarted) {
@@ -406,17 +406,15 @@ TEST_F(PlannerModeTest, SaysOnceWhatIsWrongWithTheCornerScaleAndWhatIsInForce) {
         mode.set_corner_scale(std::nan(""));
     }
     ASSERT_EQ(posted.size(), 1U);
-    EXPECT_EQ(posted[0],
-              "ini.traj-scurve-peak-scale is nan: a number from 0.1 to 1 expected; 0.5 is in force");
+    EXPECT_EQ(posted[0], "ini.traj-scurve-peak-scale is nan: a number from 0.1 to 1 expected; 0.5 is used");
     for (int cycle = 0; cycle < 100; ++cycle) {
         mode.set_corner_scale(7 + cycle);  // a signal that changes
     }
     ASSERT_EQ(posted.size(), 2U);
-    EXPECT_EQ(posted[1], "ini.traj-scurve-peak-scale is 7: a number from 0.1 to 1 expected; 1 is in force");
+    EXPECT_EQ(posted[1], "ini.traj-scurve-peak-scale is 7: a number from 0.1 to 1 expected; 1 is used");
     mode.set_corner_scale(-2);
     ASSERT_EQ(posted.size(), 3U) << "another value is active now";
-    EXPECT_EQ(posted[2],
-              "ini.traj-scurve-peak-scale is -2: a number from 0.1 to 1 expected; 0.1 is in force");
+    EXPECT_EQ(posted[2], "ini.traj-scurve-peak-scale is -2: a number from 0.1 to 1 expected; 0.1 is used");
     mode.set_corner_scale(0.1);
     mode.set_corner_scale(1);
     EXPECT_EQ(posted.size(), 3U) << "the ends of the range belong to it";

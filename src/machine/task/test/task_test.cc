@@ -72,10 +72,10 @@ TEST_F(TaskTest, AUserCodeNeedsAnExecutableFile) {
 TEST_F(TaskTest, AMoveThatCompensationHoldsBackIsTold) {
     ASSERT_EQ(ask(SetMode{Mode::MDI}), Progress::DONE);
     EXPECT_EQ(ask(Mdi{"G21 F600 G41.1 D1"}), Progress::DONE) << reason(request);
-    EXPECT_EQ(messages().find("holds this move back"), std::string::npos);
+    EXPECT_EQ(messages().find("delays this move"), std::string::npos);
     motion.log.clear();
     EXPECT_EQ(ask(Mdi{"G1 X10 Y10"}), Progress::DONE) << reason(request);
-    EXPECT_NE(messages().find("holds this move back"), std::string::npos);
+    EXPECT_NE(messages().find("delays this move"), std::string::npos);
     EXPECT_EQ(joined().find("line"), std::string::npos);
     EXPECT_EQ(ask(Mdi{"G40"}), Progress::DONE);
     EXPECT_EQ(joined().substr(0, 4), "line");
@@ -283,7 +283,7 @@ TEST_F(TaskTest, AScreenThatStartsInEmergencyStopChoosesJointsAndForgetsHoming) 
 
 TEST_F(TaskTest, ATurningSpindleChangesItsSpeedInStepsAndNeverItsSense) {
     EXPECT_EQ(ask(SpindleIncrease{0}), Progress::REFUSED);
-    EXPECT_EQ(reason(request), "spindle 0 stands");
+    EXPECT_EQ(reason(request), "spindle 0 is stopped");
     EXPECT_EQ(ask(SpindleIncrease{7}), Progress::REFUSED);
     EXPECT_EQ(reason(request), "there is no spindle 7");
     motion.log.clear();
@@ -434,7 +434,7 @@ TEST_F(TaskTest, ARefusedMoveEndsTheProgram) {
     open("G21 F600\nG1 X1\nG1 X2\nM2\n");
     motion.rejecting_moves = true;
     EXPECT_EQ(ask(RunProgram{}), Progress::FAILED);
-    EXPECT_NE(messages().find("p.ngc:2:1: error: the move goes beyond the soft limit of axis X"),
+    EXPECT_NE(messages().find("p.ngc:2:1: error: the move exceeds the soft limit of axis X"),
               std::string::npos);
 }
 

@@ -173,7 +173,8 @@ TEST_F(ToolDataTest, WhatCannotBeAddedOrRemovedIsRefusedAndTheFileStays) {
     EXPECT_FALSE(tools.add(tool_of(0, 9)).has_value());
     EXPECT_FALSE(tools.add(tool_of(3, 1001)).has_value());
     ASSERT_TRUE(tools.load_spindle(1).has_value());
-    EXPECT_EQ(tools.remove(1).error().message, "tool 1 is in the spindle: it is removed when it is not");
+    EXPECT_EQ(tools.remove(1).error().message,
+              "tool 1 is in the spindle: it is removed after the next tool change");
     EXPECT_FALSE(tools.remove(0).has_value());
     EXPECT_FALSE(tools.remove(9).has_value());
     EXPECT_EQ(text("tool.tbl"), before);
@@ -187,7 +188,8 @@ TEST_F(ToolDataTest, WhatCannotBeAddedOrRemovedIsRefusedAndTheFileStays) {
 TEST_F(ToolDataTest, ARandomChangersPocketsAreOneToolEach) {
     task::ToolStore &tools = open_file("T1 P0\nT2 P1\nT3 P2\n", true);
     EXPECT_EQ(tools.add(tool_of(9, 2)).error().message, "pocket 2 is taken by tool 3");
-    EXPECT_EQ(tools.remove(0).error().message, "tool 1 is in the spindle: it is removed when it is not");
+    EXPECT_EQ(tools.remove(0).error().message,
+              "tool 1 is in the spindle: it is removed after the next tool change");
     ASSERT_TRUE(tools.remove(tools.index_of_tool(2)).has_value());
     ASSERT_TRUE(tools.add(tool_of(9, 0)).has_value());
     EXPECT_EQ(tools.entry(9).toolno, 9) << "the pocket of its number";
@@ -429,9 +431,9 @@ TEST_F(ToolDataTest, ADatabaseThatCannotWorkStopsTheStartByName) {
         const auto made = ToolDatabase::start(setup, sink_);
         return made.has_value() ? std::string() : made.error().message;
     };
-    EXPECT_NE(error_of("exit 3\n").find("'./db' cannot be asked: it has ended with status 3"),
+    EXPECT_NE(error_of("exit 3\n").find("'./db' cannot be queried: it has ended with status 3"),
               std::string::npos);
-    EXPECT_NE(error_of("sleep 9\n").find("does not say its version within 0.3 s"), std::string::npos);
+    EXPECT_NE(error_of("sleep 9\n").find("does not report its version within 0.3 s"), std::string::npos);
     EXPECT_NE(error_of("echo v1.0\nsleep 9\n").find("speaks version 'v1.0', not v2.1"), std::string::npos);
     EXPECT_NE(
         error_of("echo v2.1\nread x\necho T1 P1\nsleep 9\n").find("does not answer to 'g' within 0.3 s"),

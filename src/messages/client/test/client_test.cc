@@ -62,10 +62,10 @@ TEST_F(ClientTest, EachCommandEndsWithItsOutcomeAndReason) {
     EXPECT_EQ(a.outcome(first).progress, Progress::STARTED) << "not taken yet";
     cycle();
     EXPECT_EQ(a.outcome(first).progress, Progress::STARTED);
-    desk.tell(second, Progress::REFUSED, "nothing runs");
+    desk.tell(second, Progress::REFUSED, "no program runs");
     EXPECT_EQ(a.outcome(first).progress, Progress::STARTED);
     EXPECT_EQ(a.outcome(second).progress, Progress::REFUSED);
-    EXPECT_EQ(a.outcome(second).reason, "nothing runs");
+    EXPECT_EQ(a.outcome(second).reason, "no program runs");
     desk.tell(first, Progress::FAILED, "emergency stop");
     desk.tell(first, Progress::DONE, "");
     EXPECT_EQ(a.outcome(first).progress, Progress::FAILED) << "an end is final";
@@ -132,7 +132,7 @@ TEST_F(ClientTest, ACommandUnderWayIsRememberedHoweverManyComeAfterIt) {
     desk.tell(run, Progress::DONE, "");
     EXPECT_EQ(a.outcome(run).progress, Progress::DONE);
     EXPECT_EQ(a.outcome(early).progress, Progress::REFUSED);
-    EXPECT_NE(a.outcome(early).reason.find("no longer remembered"), std::string::npos);
+    EXPECT_NE(a.outcome(early).reason.find("no longer stored"), std::string::npos);
 }
 
 TEST_F(ClientTest, AStopIsTakenHoweverManyCommandsAreUnderWay) {

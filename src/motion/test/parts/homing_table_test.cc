@@ -65,7 +65,7 @@ std::string word(Failure failure) {
     case Failure::NOT_UNLOCKED: return "not unlocked";
     case Failure::NOT_LOCKED: return "not locked";
     case Failure::INHIBITED: return "inhibited";
-    case Failure::MODULE_FAILED: return "module gave up";
+    case Failure::MODULE_FAILED: return "module failed";
     case Failure::MODULE_NONSENSE: return "module nonsense";
     }
     return "?";
@@ -198,7 +198,7 @@ struct Walk {
                              state == State::WAIT_FOR_GROUP;
         inputs[0].isUnlocked = state != State::IDLE && state != State::UNLOCK;
         inputs[1].isUnlocked = inputs[0].isUnlocked;
-        // The other one searches, or does all the same up to the latch.
+        // The other one searches, or does the same up to the latch.
         if (drive.own.parameters(1).axis == 0 && state != State::INDEX && state != State::LATCHED) {
             inputs[1] = inputs[0];
         }

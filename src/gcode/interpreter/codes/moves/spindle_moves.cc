@@ -27,7 +27,7 @@ bool check_pitch(const Machine &machine, const State &state, Fault &fault, int s
         fmt::format("A pitch of {:g} at {:g} turns a minute needs {:.4g} mm/s; the machine's limit is "
                     "{:.4g} mm/s",
                     pitch, turning.speed, needed, machine.settings.max_velocity_mm_s),
-        column, "turn the spindle more slowly");
+        column, "use a lower spindle speed");
 }
 
 bool move_with_spindle(const Code &code, const BlockValues &values, const Machine &machine, State &state,
@@ -51,9 +51,8 @@ bool move_with_spindle(const Code &code, const BlockValues &values, const Machin
         return fault.set(fmt::format("Spindle not turning in {}", name));
     }
     if (!(values.at('k') > 0.0)) {
-        return fault.set(
-            fmt::format("The pitch K of {} must be greater than 0", name), values.column_of('k'),
-            "the end point and the spindle's direction say whether the thread is a left-hand one");
+        return fault.set(fmt::format("The pitch K of {} must be greater than 0", name), values.column_of('k'),
+                         "the end point and the spindle direction make a right-hand or a left-hand thread");
     }
     constexpr double SAME_SPEED = 1.0;
     const double scale = values.at('i', SAME_SPEED);

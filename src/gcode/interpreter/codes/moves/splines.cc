@@ -76,7 +76,8 @@ bool move_along_cubic(const Code &code, const BlockValues &values, State &state,
                          values.column_of(values.has('i') ? 'i' : 'j'));
     }
     if (first && !values.has('i')) {
-        return fault.set("The first G5 of a series needs I and J: where it leaves its start to");
+        return fault.set(
+            "The first G5 of a series needs I and J: the offset from the start to the first control point");
     }
     const Pose end = target(values, state);
     const double x = state.position[geometry::AXIS_X], y = state.position[geometry::AXIS_Y];
@@ -133,7 +134,7 @@ bool add_nurbs_point(const Code &code, const BlockValues &values, std::vector<Nu
         }
         if (!opening || order < 2 || order > MAX_NURBS_ORDER) {
             return fault.set(opening ? fmt::format("The order L of a NURBS is 2 to {}", MAX_NURBS_ORDER)
-                                     : "The order L is said once, with the G5.2 that opens the block",
+                                     : "Program the order L once, in the G5.2 that opens the block",
                              values.column_of('l'));
         }
         state.spline.order = order;

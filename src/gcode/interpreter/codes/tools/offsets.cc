@@ -130,7 +130,7 @@ bool go_to_reference(const Code &code, const BlockValues &values, const Machine 
     const int first = code.number < 300 ? P_G28 : P_G30;
     if (code.number % 10 == 1) {
         if (values.hasAxes()) {
-            return fault.set("G28.1 and G30.1 store the present place: axis words are not allowed");
+            return fault.set("G28.1 and G30.1 store the current position: axis words are not allowed");
         }
         set_parameter_pose(parameters, first, state.frame.to_machine(state.position), to_program);
         return true;

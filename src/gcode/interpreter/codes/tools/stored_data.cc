@@ -61,7 +61,7 @@ bool set_tool_data(int l, const BlockValues &values, const Machine &machine, Too
     const bool has_data =
         values.hasAxes() || values.has('r') || values.has('i') || values.has('j') || values.has('q');
     if (!has_data) {
-        return fault.set(fmt::format("G10 L{} needs what it is to set: axis words, R, I, J or Q", l));
+        return fault.set(fmt::format("G10 L{} needs a value to set: axis words, R, I, J or Q", l));
     }
     const double to_machine = 1.0 / machine.to_program(state.units);
     ToolEntry entry = tools.entry(index);

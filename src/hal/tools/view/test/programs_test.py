@@ -90,7 +90,7 @@ class ProgramsTest(unittest.TestCase):
     def test_wrong_words_are_told(self):
         for words, text in ((("hal", "capture", "wavee"), "did you mean 'wave'"),
                             (("hal", "capture", "wave", "--sample", "3"), "did you mean --samples"),
-                            (("hal", "capture", "wave", "--trigger", "wave", "up", "1"), "no kind of trigger"),
+                            (("hal", "capture", "wave", "--trigger", "wave", "up", "1"), "unknown trigger type"),
                             (("hal", "watch"), "needs the name"), (("hal", "watch", "no.such"), "no.such"),
                             (("hal", "graph", "-o", "a.gif"), "a.gif")):
             status, _, err = self.run_program("millwright", *words)
@@ -161,7 +161,7 @@ class ProgramsTest(unittest.TestCase):
         self.assertEqual(status, 0)
         self.assertIn("intervals by deviation", out)
         with open(os.path.join(self.folder.name, "l.csv"), encoding="utf-8") as text:
-            # Of a thousand periods: this is a look at the clock of a machine that may have other work.
+            # Of a thousand periods: the machine may be busy, so most may be missing.
             self.assertGreater(sum(int(row["count"]) for row in csv.DictReader(text)), 20)
         self.assertEqual(self.run_program("latency-test", "3x")[0], 1)
 
