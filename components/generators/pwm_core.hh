@@ -10,8 +10,8 @@ namespace mw::pwm {
 class Generator {
   public:
     /// `duty` is 0 to 1. `period_ticks` is the period of the pulses; 0 spreads the pulses (pulse density).
-    /// With `dithered` the mean over many periods is exact; otherwise each period is the nearest possible
-    /// one.
+    /// With `dithered` the average over many periods is exact; otherwise each period has the nearest possible
+    /// width.
     void plan(double duty, long period_ticks, bool dithered) noexcept {
         duty_ = duty;
         period_ticks_ = period_ticks;

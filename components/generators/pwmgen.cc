@@ -6,9 +6,9 @@
 // Function pwmgen.update: the duty cycle `curr-dc` is `value` / `scale` + `offset` (-1 to 1), its size held
 // between `min-dc` and `max-dc`; no pulse width when value is not a number. pwmgen.make-pulses, in a fast
 // thread, makes the pulses. `pwm-freq` [Hz]: at most half the rate of make-pulses and a whole part of it (it
-// is set to what it is); 0 makes pulse density modulation. `dither-pwm` (bit): pwm-freq stays, and the mean
-// over many periods is exact. While `enable` (bit) is false all bits are low. Others float; scale, offset,
-// min-dc, max-dc, pwm-freq and dither-pwm are I/O pins.
+// is set to what it is); 0 makes pulse density modulation. `dither-pwm` (bit): pwm-freq stays, and the
+// average over many periods is exact. While `enable` (bit) is false all bits are low. Others float; scale,
+// offset, min-dc, max-dc, pwm-freq and dither-pwm are I/O pins.
 #include <cmath>
 
 #include "components/generators/pwm_core.hh"

@@ -12,7 +12,7 @@ inline double between(double value, double low, double high) noexcept {
     return at_least > high ? high : at_least;
 }
 
-/// The largest speed for this period from which braking by `accel * dt` in every later period stops within
+/// The maximum speed for this period from which braking by `accel * dt` in every later period stops within
 /// `distance`. Exact for motion in steps of `dt`: with the speeds w, w-1, w-2... (in units of accel*dt) the
 /// distance is (n+1)w - n(n+1)/2 with n = floor(w); this is solved for w. Without acceleration nothing can
 /// stop.
@@ -27,7 +27,7 @@ inline double stoppable_speed(double distance, double accel, double dt) noexcept
 }
 
 /// Keeps position, velocity and acceleration within limits, and follows the input without lag where the
-/// limits allow it. Every period uses the full acceleration, up or down, except at the largest speed and at
+/// limits allow it. Every period uses the full acceleration, up or down, except at the maximum speed and at
 /// the end of a movement: within END_PART of the input, of min or of max, or within END_UNITS of the change
 /// that one period can make.
 struct Limit3 {

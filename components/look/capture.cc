@@ -3,7 +3,7 @@
 //
 // `depth=` words of memory (default 1048576): a sample of N channels takes N + 1. Function capture.sample;
 // parameters none. Pins: state (u32, out: 0 idle, 1 filling, 2 waiting for the trigger, 3 triggered, 4 done,
-// 5 refused) and recorded (u32, out: samples so far).
+// 5 rejected) and recorded (u32, out: samples so far).
 #include <cstring>
 
 #include "components/look/capture_core.hh"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// raster: the power of a laser from lines of pixels, as a position passes over them. The manual page tells
+// raster: the power of a laser from lines of pixels, as a position passes over them. The manual page has
 // the format of the lines.
 #include <cmath>
 

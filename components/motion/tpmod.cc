@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Represents motmod's built-in trajectory planner (src/trajectory), which existing start files load as a
-// module of its own; and says whether the module that is to choose speeds in its place is one.
+// Existing start files load the trajectory planner as a separate module. This module represents the planner
+// that motmod contains (src/trajectory), and reports whether a module that replaces it is a planner.
 #include "hal/include/hal.h"
 #include "hal/include/millwright_ext.h"
 #include "hal/include/rtapi_app.h"

@@ -3,8 +3,8 @@
 //
 // Function N.read: `pin-NN-in` is `pin-NN-in-fake` and `pin-NN-in-not` its inverse. N.write:
 // `pin-NN-out-fake` is `pin-NN-out`, inverted while the parameter `pin-NN-out-invert` is true. N.reset,
-// `reset-time` and `pin-NN-out-reset` have no effect. All pins of inputs and outputs are there, whatever the
-// direction of the port. All bit but reset-time.
+// `reset-time` and `pin-NN-out-reset` have no effect. The pins of all inputs and outputs exist
+// in both directions of the port. All are bit except reset-time.
 #include "hal/sdk/canonical.hh"
 
 namespace mw::components {

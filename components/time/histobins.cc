@@ -38,7 +38,7 @@ struct Histobins {
     std::uint32_t used_bins = 0;
     double used_size = 0.0;
     double used_min = 0.0;
-    double deviations = 0.0;  // sum of the squared differences from the mean
+    double deviations = 0.0;  // sum of the squared differences from the average
     double sum = 0.0;
     double squares = 0.0;
 

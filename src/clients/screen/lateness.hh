@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// How late a text has come, by the clock of who sent it.
+// Delay of a text, in the time of its sender.
 #pragma once
 
 #include <array>

@@ -18,8 +18,7 @@ std::string random_name() {
     return fmt::format("{:08x}{:08x}", random(), random());
 }
 
-/// The text of a message or note with its age, so that a screen shows when it came, by the clock of that
-/// screen.
+/// The text of a message or note with its age. A screen shows its time of arrival by its own clock.
 std::string aged(const std::string &text, std::int64_t age_ns) {
     constexpr std::int64_t NS_PER_MS = 1000000;
     return text.substr(0, text.size() - 1) + ",\"age_ms\":" + std::to_string(age_ns / NS_PER_MS) + '}';

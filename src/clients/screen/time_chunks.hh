@@ -19,7 +19,7 @@ struct SlowSpot {
     std::string reason;
 };
 
-/// What an operator has set: 1 is as programmed; the highest speed in machine units per second, 0: none.
+/// Overrides of the operator: 1 is as programmed; max_velocity in machine units per second, 0: none.
 struct TimeOverrides {
     double feed = 1, rapid = 1, max_velocity = 0;
 };

@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: GPL-2.0-or-later */
-/* The hardware abstraction layer as components see it. A component calls hal_init, makes pins, parameters and
- * functions, then hal_ready; names are unique per kind within an instance. Functions answer 0 (or an id) for
- * success and a negated errno for failure, with a message in the log that says what was wrong: -EINVAL wrong
- * argument, overlong name     -EEXIST the name is taken      -ENOENT no such thing -EPERM  locked, not
- * allowed here          -ENOMEM no memory left         -EBUSY  in use Nothing here is realtime-safe unless it
- * says so. */
+/* The hardware abstraction layer for components. A component calls hal_init, makes pins, parameters and
+ * functions, then calls hal_ready. Names are unique per type within an instance. Functions return 0 (or an
+ * id) for success and a negated errno for failure, with the reason in the log: -EINVAL invalid argument or
+ * name too long, -EEXIST the name is in use, -ENOENT no such object, -EPERM locked or not allowed here,
+ * -ENOMEM out of memory, -EBUSY in use. Functions are not realtime-safe unless their comment states it. */
 #ifndef HAL_H
 #define HAL_H
 

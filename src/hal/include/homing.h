@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-2.0-or-later */
-/* What a homing module exports: docs/developer/extending/homing.md says what it may assume, and what becomes
- * of what it asks for. Positions are in joint units, speeds in joint units per second. */
+/* Functions that a homing module exports. docs/developer/extending/homing.md describes what it may assume and
+ * how motion treats its requests. Positions are in joint units, speeds in joint units per second. */
 #ifndef HOMING_H
 #define HOMING_H
 

@@ -46,9 +46,9 @@ extern long long mw_ext_thread_period(const char *name);
 extern void *mw_ext_memory_new(unsigned long bytes);
 extern void mw_ext_memory_delete(void *memory, unsigned long bytes);
 
-/* Counts the links of pins that are made and undone in this instance: who writes a pin only when its value
- * changes writes it anew when this has. Read it as an atomic; it stays while the module is loaded, and may be
- * read in realtime. NULL where there is no instance. */
+/* Counts the links of pins that are made and removed in this instance. A component that writes a pin only
+ * when its value changes writes it again when this count has changed. Read it as an atomic, also in realtime.
+ * The address is valid while the module is loaded. NULL where there is no instance. */
 extern const rtapi_u32 *mw_ext_links(void);
 
 /* 1 under the virtual clock. */

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-2.0-or-later */
 /* I/O ports of PC-style hardware. The process needs the capability CAP_SYS_RAWIO. Without it, and for ports
- * that were not claimed by rtapi_request_region or rtapi_ioperm, reads give all ones and writes do nothing;
- * the first one says so in the log. Realtime-safe once the calling thread has done it once. */
+ * that were not claimed by rtapi_request_region or rtapi_ioperm, reads return all ones and writes do nothing;
+ * the first access writes a message to the log. Realtime-safe after the first access of the calling thread.
+ */
 #ifndef RTAPI_IO_H
 #define RTAPI_IO_H
 

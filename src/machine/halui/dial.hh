@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A wheel with buttons that sets a value: an override or the highest speed.
+// A wheel with buttons that sets a value: an override or the maximum velocity.
 #pragma once
 
 #include <optional>

@@ -6,6 +6,6 @@
 
 namespace mw::task {
 
-using namespace messages;  // NOLINT(google-build-using-namespace): task has no words of its own for these
+using namespace messages;  // NOLINT(google-build-using-namespace): task uses the names of messages
 
 }  // namespace mw::task

@@ -53,7 +53,7 @@ class Client {
     /// STARTED also while it waits for task. A command that task no longer remembers is rejected, and the
     /// reason states it.
     Outcome outcome(Serial serial);
-    /// Sleeps until the command ends; an error when the time is over or the machine is gone.
+    /// Sleeps until the command ends; an error when the time is over or the machine has ended.
     Result<Outcome> wait(Serial serial, double timeout_s);
 
     /// Sleeps until task has taken the command, before its outcome.

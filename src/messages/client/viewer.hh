@@ -69,7 +69,7 @@ class Viewer {
     bool claim_log(std::uint64_t number) const;
 
     /// Sleeps at the bell until `isOver()`, which is evaluated after each cycle of task; an error when the
-    /// time is over or the machine is gone.
+    /// time is over or the machine has ended.
     template <class IsOver>
     Result<> wait_until(const IsOver &isOver, double timeout_s);
     /// False when task died within writing it.

@@ -16,7 +16,7 @@ class View {
   public:
     /// Joins the machine where it has not; throws linuxcnc.error when there is none, or when it is gone.
     client::Viewer &viewer();
-    /// Throws linuxcnc.error when the machine is gone. Checks rarely while the status does not change, and
+    /// Throws linuxcnc.error when the machine has ended. Checks rarely while the status does not change, and
     /// never while it changes.
     void check_alive();
     bool isJoined() const { return viewer_.has_value(); }

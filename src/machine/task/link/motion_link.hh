@@ -22,7 +22,7 @@ class MotionLink {
         bool is_table = false;     ///< a point of a screw table
     };
     struct News {
-        std::vector<Refusal> refused;  ///< only REFUSED; STALE commands belong to aborted work
+        std::vector<Refusal> refused;  ///< rejected commands; STALE ones belong to aborted work
         std::vector<motion::Fault> faults;
     };
     /// Reads status, answers and faults, and signals to the realtime side that task is alive. Once a task

@@ -18,7 +18,7 @@ class BlockSearch {
     enum class Outcome : std::uint8_t {
         GOING,
         FOUND,    ///< the next step of the interpreter runs the line
-        REFUSED,  ///< refusal() has the reason, and a line that is possible
+        REFUSED,  ///< `refusal` has the reason and a line that is possible
     };
     /// `line` of the main program, from 1.
     BlockSearch(gcode::Interpreter &interpreter, CanonSwitch &machine, const SearchMachine::Real &real,

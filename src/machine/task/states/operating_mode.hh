@@ -45,8 +45,8 @@ class OperatingMode {
     void note_jog() { braked_ns_.reset(); }
     /// Once a cycle. Braking lasts as long as `moving` after a stop: a heavy axis brakes for seconds.
     void watch_rest(bool moving, std::int64_t now_ns);
-    /// Motion has rejected `order` because the machine moves. True: it brakes after a stop, and the change
-    /// waits for standstill.
+    /// Motion has rejected `order` because the machine is moving. True: it brakes after a stop, and the
+    /// change waits for standstill.
     bool waits_for_rest(motion::CommandId order, std::int64_t now_ns);
     bool isWaitingForRest() const { return isChanging() && is_waiting_for_rest_; }
     /// It is stopped: `order` requests the mode again.

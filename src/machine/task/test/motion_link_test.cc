@@ -49,7 +49,7 @@ TEST(MotionLink, ASnapshotAloneIsNoAnswer) {
     EXPECT_FALSE(link.isAnswered(second));
 }
 
-/// Answers of the realtime side to all pending commands; `refuse` of them are rejections.
+/// Answers of the realtime side to all pending commands: a rejection for each that the predicate selects.
 int answer_all(motion::Channels &channels, motion::Status &status,
                const std::function<bool(const motion::Command &)> &refuse) {
     int count = 0;

@@ -58,7 +58,7 @@ const std::vector<std::string> &telling_ones() {
                                     : ::testing::AssertionFailure() << bytes.substr(0, 60);
 }
 
-/// A process of ours, which never outlives its test.
+/// A child process, which never outlives its test.
 class Child {
   public:
     template <class Work>
