@@ -31,7 +31,7 @@ def difference(folder, number):
     ref_calls, ref_err, ref_status = compare_interp.read(folder, number, 'ref')
     our_calls, our_err, our_status = compare_interp.read(folder, number, 'our')
     if ref_status or our_status:
-        return f'refused: reference {compare_interp.error_of(ref_err)!r}, ours {compare_interp.error_of(our_err)!r}'
+        return f'rejected: reference {compare_interp.error_of(ref_err)!r}, ours {compare_interp.error_of(our_err)!r}'
     theirs, ours = moves_of(ref_calls), moves_of(our_calls)
     for i, (a, b) in enumerate(zip(theirs, ours)):
         if not interp_differences.isSameCall(a, b):

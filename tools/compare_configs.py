@@ -266,7 +266,7 @@ def has(folder, mark):
     try:
         return folder.name != str(os.getpid()) and mark in (folder / "environ").read_bytes().split(b"\0")
     except OSError:
-        return False  # it has ended, or belongs to somebody else
+        return False  # it has ended, or belongs to another user
 
 
 def main():

@@ -579,7 +579,7 @@ def compare(name, text, sides, options, verbose, arguments=('-i', 'case.ini', '-
         who = 'only LinuxCNC' if number in theirs else 'only ours'
         line = text.splitlines()[number - 1]
         if not any(re.search(d, line) for d in REFUSED_BY_US if number in ours):
-            problems.append(f'{who} refuses: {line}\n    ' + '\n    '.join(theirs.get(number, []) + ours.get(number, [])))
+            problems.append(f'{who} rejects: {line}\n    ' + '\n    '.join(theirs.get(number, []) + ours.get(number, [])))
     diff = list(difflib.unified_diff(normalised(out, script), normalised(our_out, script), 'reference', 'ours',
                                      lineterm='', n=1))
     if diff:

@@ -91,7 +91,7 @@ def compare(folder, number, program):
         names.append('a lathe cycle that is rejected has made no move')
         ref_calls = ref_calls[:len(our_calls)]
     elif 'G7X error' in error_of(ref_err) and len(our_calls) > len(ref_calls):
-        names.append('a lathe profile that only LinuxCNC refuses')
+        names.append('a lathe profile that only LinuxCNC rejects')
         our_calls, our_status, our_err = our_calls[:len(ref_calls)], ref_status, ref_err
     if ref_status and interp_differences.isOtherSpindle(program, error_of(ref_err)) and len(ref_calls) < len(our_calls):
         names.append('G33 and G76 without $ after G96 or G97 $n')
@@ -130,7 +130,7 @@ def report(folder, seeds):
         print(f'{count:6d}  explained: {name}')
     for shown in unexplained:
         print(f'unexplained: {shown}')
-    print(f'{len(seeds)} programs, seeds {seeds.start} to {seeds.stop - 1} ({failed} refused by LinuxCNC): '
+    print(f'{len(seeds)} programs, seeds {seeds.start} to {seeds.stop - 1} ({failed} rejected by LinuxCNC): '
           f'{different} differ, {len(unexplained)} unexplained')
     return 1 if unexplained else 0
 

@@ -172,7 +172,7 @@ def compare_exports(theirs, ours):
 def compare_calls(model, theirs, ours, calls):
     """What differs, and the counts of what was asked."""
     tolerance = model.get("tolerance", 1e-6) * model["size"]
-    count = {"same": 0, "refused by both": 0, "no solution of theirs": 0, "refused by ours": 0}
+    count = {"same": 0, "rejected by both": 0, "no solution of theirs": 0, "rejected by ours": 0}
     wrong = []
     for call, their, our in zip(calls, theirs, ours):
         if call[0] == "joints" and distance(their["pose"], our["pose"], model) > tolerance:
@@ -181,12 +181,12 @@ def compare_calls(model, theirs, ours, calls):
         is_solved = their["back"][0] and (model.get("is_inverse_only") or their["again"][0] and
                                           distance(their["again"][1], their["pose"], model) < tolerance)
         if not is_solved:
-            count["no solution of theirs" if their["back"][0] else "refused by both"] += 1
+            count["no solution of theirs" if their["back"][0] else "rejected by both"] += 1
             if our["back"][0] and distance(our["again"][1], our["pose"], model) > tolerance:
                 wrong.append(f"inverse {our['pose']}: ours is no solution, {our['back'][1]}")
             continue
         if not our["back"][0]:
-            count["refused by ours"] += 1
+            count["rejected by ours"] += 1
             continue
         size = max(abs(x - y) for x, y in zip(their["back"][1], our["back"][1]))
         if size > tolerance:

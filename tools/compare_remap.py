@@ -63,7 +63,7 @@ FILES = {
                        'def _feed_twice(self):\n    return 2 * self.feed_rate\n'),
     'oword.py': ('from emccanon import MESSAGE\n\n\ndef shows(self, *values):\n'
                  '    print("shows", values, self.call_level, self.remap_level)\n\n\n'
-                 'def product(self, a, b):\n    return a * b\n\n\ndef refuses(self):\n    return "refused"\n\n\n'
+                 'def product(self, a, b):\n    return a * b\n\n\ndef refuses(self):\n    return "rejected"\n\n\n'
                  'def speaks(self):\n    MESSAGE("from an O word")\n    return 1.5\n'),
     'remap.py': '''import emccanon
 from emccanon import MESSAGE

@@ -27,10 +27,10 @@ REASONS = [  # (pattern of the line, why ours answers otherwise)
     (r'get comm_prot|set comm_prot', 'the manual takes every version up to 1.1'),
     (r'get teleop_enable # after jog', 'the reference stays in joint mode where a jog was asked for in MDI mode, and only there'),
     (r'get time$', 'the time'),
-    (r'get program_codes', 'without a parameter file the reference tells G92.2 where 2.10 and ours tell nothing'),
-    (r'get lube', 'the reference tells lubrication before anything has asked for it'),
-    (r'get error # unhomed', 'a refusal of ours says what to do'),
-    (r'get joint_pos # jog', 'where a jog stands depends on the time'),
+    (r'get program_codes', 'without a parameter file LinuxCNC reports G92.2; 2.10 and Millwright report nothing'),
+    (r'get lube', 'LinuxCNC reports lubrication before it is switched on'),
+    (r'get error # unhomed', 'the message of a rejected command has the remedy'),
+    (r'get joint_pos # jog', 'the position of a jog depends on the time'),
 ]
 INI = """[EMC]
 VERSION = 1.1

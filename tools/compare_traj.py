@@ -237,7 +237,7 @@ def row_text(result):
     ref, mine, jerk = result["reference"], result["ours"], result["jerk"]
     return (f"| {result['kind']} | {ref['time_s']:.3f} | {ref['v']:.2f} {ref['a']:.2f} | {ref['deviation']:.4f} | "
             f"{mine['time_s']:.3f} | {mine['v']:.2f} {mine['a']:.2f} | {mine['deviation']:.4f} | "
-            f"{ref['time_s'] / mine['time_s']:.3f} | {jerk['time_s']:.3f} {'' if jerk['ok'] else 'BEYOND'} |")
+            f"{ref['time_s'] / mine['time_s']:.3f} | {jerk['time_s']:.3f} {'' if jerk['ok'] else 'OVER LIMIT'} |")
 
 
 def main():
@@ -270,7 +270,7 @@ def main():
     (work / "results.json").write_text(json.dumps(results, indent=1))
     bad = [r["kind"] for r in results if not r["ours"]["ok"] or not r["jerk"]["ok"]]
     slower = [r["kind"] for r in results if r["ours"]["time_s"] > r["reference"]["time_s"] + 0.0015]
-    print(f"\nours beyond a limit: {', '.join(bad) or 'none'}; longer than LinuxCNC: {', '.join(slower) or 'none'}")
+    print(f"\nours over a limit: {', '.join(bad) or 'none'}; longer than LinuxCNC: {', '.join(slower) or 'none'}")
     return 1 if failed or bad or slower else 0
 
 

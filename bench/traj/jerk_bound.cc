@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Nodes p_i lie along the path, near to even in time; the unknown b_i = (du/dt)^2 says how much faster than
-// one node per period the place i is passed. Then
+// Nodes p_i lie along the path, about evenly in time. The unknown b_i = (du/dt)^2 is how much faster than
+// one node per period the path passes point i. Then
 //   a_i = (p_{i+1} - 2 p_i + p_{i-1}) b_i + (p_{i+1} - p_{i-1}) (b_{i+1} - b_{i-1})/8,
 //   j_{i+1/2} = sqrt(b_{i+1/2}) (a_{i+1} - a_i):
-// at b = 1 just what a checker of samples computes. The sum of 1/sqrt(b) is made least by an interior-point
-// method, first with p fixed, then with p free across the path within P; after each time the nodes are laid
-// anew, even in the time found.
+// at b = 1 just what a checker of samples computes. An interior-point method minimizes the sum of 1/sqrt(b),
+// first with p fixed, then with p free across the path within P. After each pass the nodes are distributed
+// again, evenly in the resulting time.
 #include "traj/jerk_bound.hh"
 
 #include <algorithm>

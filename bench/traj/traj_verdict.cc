@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The tests' own judgement of a trace (tests/support/limit_checker.hh, tests/support/deviation.hh), to
 // compare with that of tools/trajcheck.py: traj_verdict KIND TRACE.csv [--jerk]. Prints the worst velocity,
-// acceleration and jerk over their limits, the deviation, and ok or beyond.
+// acceleration and jerk over their limits, the deviation, and the verdict.
 #include <cstdio>
 #include <vector>
 

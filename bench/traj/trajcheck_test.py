@@ -58,7 +58,7 @@ def differences(kind, how, verdict, words):
 
 def main():
     programs = pathlib.Path(sys.argv[1])
-    wrong, count, beyond = [], 0, 0
+    wrong, count, over_limit = [], 0, 0
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         subprocess.run([programs / "traj_programs", folder], check=True)
@@ -79,8 +79,8 @@ def main():
                 if verdict["ok"] != (how == "as driven"):
                     wrong.append(f"{kind}, {how}: judged {verdict}")
                 count += 1
-                beyond += not verdict["ok"]
-    print(f"{count} traces, {beyond} beyond, {len(wrong)} differences")
+                over_limit += not verdict["ok"]
+    print(f"{count} traces, {over_limit} over a limit, {len(wrong)} differences")
     print("\n".join(wrong))
     return 1 if wrong else 0
 

@@ -95,7 +95,7 @@ describe('Jogger', () => {
     const { jogger, posted } = makeRig();
     await jogger.press(X);
     await jogger.press({ ...X, index: 2 });
-    await jogger.press({ ...X, index: 2, velocity: -3 }); // is held already
+    await jogger.press({ ...X, index: 2, velocity: -3 }); // is pressed already
     jogger.releaseAll();
     expect(names(posted)).toEqual(['JogContinuous', 'JogContinuous', 'JogStop', 'JogStop']);
     expect(jogger.isJogging).toBe(false);

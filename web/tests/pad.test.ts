@@ -43,7 +43,7 @@ it('begins only with a stick that was centred when the button was pressed', () =
   expect(look(pad(true, [1, 0, 0, 0]))).toEqual([]);
   expect(look(pad(true, [1, 0, 0, 0]))).toEqual([]);
   expect(look(pad(true, [0, 0, 0, 0]))).toEqual([]);
-  expect(look(pad(true, [1, 0, 0, 0]))).toEqual([]); // the button has not been pressed anew
+  expect(look(pad(true, [1, 0, 0, 0]))).toEqual([]); // the button has not been pressed again
   look(pad(false, [0, 0, 0, 0]));
   look(pad(true, [0, 0, 0, 0]));
   expect(look(pad(true, [1, 0, 0, 0]))).toEqual(['press X 1']);
@@ -85,7 +85,7 @@ it('ends when the pad disconnects, the page loses focus, or a gate closes, and m
   look(pad(false, [0, 0, 0, 0]));
   look(pad(true, [0, 0, 0, 0]));
   look(pad(true, [1, 0, 0, 0]));
-  pads.noteEnd(); // the machine has refused
+  pads.noteEnd(); // the machine has rejected it
   expect(look(pad(true, [1, 0, 0, 0]))).toEqual([]);
 });
 

@@ -15,7 +15,7 @@ it('colours each point by the range it lies in, from chunk to chunk', () => {
   for (const [first, value] of [[0, 100], [5, 300], [7, 300], [12, 200]] as const) {
     ranges.add(first, value);
   }
-  expect(ranges.count).toBe(3); // 300 goes on at 7
+  expect(ranges.count).toBe(3); // 300 continues at 7
   expect(ranges.extent()).toEqual({ low: 100, high: 300 });
   const [one, two] = [points(9), points(9)];
   shade(one, 0, ranges, gradient(ranges.extent()));
