@@ -80,7 +80,7 @@ void ModuleHoming::set_unlock(int joint, bool isWanted) noexcept {
     }
 }
 
-/// What may change while the machine runs has a function of its own.
+/// Parameters that may change while the machine runs have a separate function in the module.
 void ModuleHoming::configure(int joint, const homing::Parameters &p) noexcept {
     homing::Parameters &known = parameters_[at(joint)];
     const bool isSame = known.search_vel == p.search_vel && known.latch_vel == p.latch_vel &&
@@ -114,7 +114,7 @@ void ModuleHoming::unhome(int joint) noexcept {
     functions_.set_unhomed(joint, EMCMOT_MOTION_FREE);
 }
 
-/// Of another's module nobody learns why it has failed, only that it has.
+/// A module without failure codes reports only that homing failed, not why.
 int ModuleHoming::take_failure(homing::Failure &why) noexcept {
     why = homing::Failure::NONE;
     return -1;
@@ -215,7 +215,7 @@ void ModuleHoming::take_move(int joint, const homing::JointInput &in, homing::Jo
     const homing::Parameters &p = parameters_[at(joint)];
     const std::uint32_t bit = 1U << joint;
     if (tp.enable == 0 || tp.max_vel <= 0 || !isHoming(joint)) {
-        out.move = homing::Move::STOP;  // one that stands, or is told again, goes where it goes anyway
+        out.move = homing::Move::STOP;  // no effect on a joint that is stopped; the next command replaces it
         driven_ &= ~bit;
         return;
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Homing by a loaded module of a user, through the C functions of homing.h. It says where the joints are to
-// go; what would take one beyond its limits is cut down to them here, whatever the module asks for.
+// Homing by a user's module, through the C functions of homing.h. The module commands the joints; this class
+// clamps its commands to the limits of each joint.
 #pragma once
 
 #include <array>
@@ -88,7 +88,7 @@ class ModuleHoming final : public homing::Module {
     std::uint32_t clamped_ = 0, told_ = 0;
     std::uint32_t begun_ = 0;  ///< bit per joint of which `origin_` says where it has begun
     std::array<double, MAX_JOINTS> origin_{};
-    bool isCancelled_ = true;  ///< what it asks for counts for nothing until homing is started
+    bool isCancelled_ = true;  ///< the module's commands have no effect until homing starts
 };
 
 }  // namespace mw::motion

@@ -54,7 +54,8 @@ const char *ModuleKinematics::find(int num_joints) noexcept {
     if (is_switchable != nullptr && is_switchable() != 0) {
         types_.switch_it = find_function<decltype(&kinematicsSwitch)>("kinematicsSwitch");
     }
-    // Only who says so has joints that are axes: a table whose axes cross looks so at every single one.
+    // Only a module that declares the identity has joints that are axes: crossed axes look the same at single
+    // joints.
     const auto is_identity = find_function<int (*)()>("mw_kinematics_is_identity");
     const bool isSaid = kind_ == kinematics::Kind::IDENTITY || (is_identity != nullptr && is_identity() != 0);
     if (isSaid) {
@@ -67,8 +68,8 @@ int ModuleKinematics::hold(int comp_id) const noexcept {
     return mw_ext_use_module("kinematicsInverse", comp_id);
 }
 
-/// Finds which axis each joint follows: the inverse of unit poses gives it away; anything else than 0 and 1
-/// is no identity, whatever the module says.
+/// Finds the axis of each joint from the inverse of unit poses. Values other than 0 and 1 are no identity,
+/// even if the module declares one.
 void ModuleKinematics::find_axes(int num_joints) noexcept {
     double zero[MAX_JOINTS];
     for (double &x : zero) {

@@ -35,7 +35,7 @@ class ModuleKinematics final : public kinematics::Kinematics {
     kinematics::TypeSwitch *type_switch() const noexcept override {
         return types_.switch_it != nullptr ? &types_ : nullptr;
     }
-    /// Modules that export mw_kinematics_is_pure say so themselves.
+    /// Modules declare it by exporting mw_kinematics_is_pure.
     bool isShareable() const noexcept override { return isIdentity_ || isPure_; }
 
   private:
@@ -43,9 +43,10 @@ class ModuleKinematics final : public kinematics::Kinematics {
 
     decltype(&kinematicsForward) forward_ = nullptr;
     decltype(&kinematicsInverse) inverse_ = nullptr;
-    int (*inverse_with_status_)(const EmcPose *, double *) = nullptr;  ///< of our own modules: tells SINGULAR
-    int (*side_)(const EmcPose *) = nullptr;                           ///< the same
-    unsigned (*linear_)(double *, unsigned *) = nullptr;               ///< the same
+    int (*inverse_with_status_)(const EmcPose *,
+                                double *) = nullptr;      ///< only Millwright's modules: can return SINGULAR
+    int (*side_)(const EmcPose *) = nullptr;              ///< the same
+    unsigned (*linear_)(double *, unsigned *) = nullptr;  ///< the same
     mutable ModuleTypes types_;
     int num_joints_ = MAX_JOINTS;
     kinematics::Kind kind_ = kinematics::Kind::IDENTITY;

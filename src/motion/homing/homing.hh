@@ -43,7 +43,7 @@ class Homing final : public Module {
         bool isQuiet = true;      ///< nothing is asked of any joint and no step shown
         std::uint32_t homed = 0;  ///< bit per joint
     };
-    /// Of all joints; made anew after any of them may have changed.
+    /// Of all joints; calculated again when any joint may have changed.
     const Summary &summary() const noexcept {
         if (!summary_.isCurrent) [[unlikely]] {
             summarise();
@@ -73,7 +73,7 @@ class Homing final : public Module {
         bool isIndexReleased =
             false;              ///< in this cycle, by a failure: the encoder may just have reset itself
         int wait = 0;           ///< cycles in this state
-        double way = 0;         ///< commanded since homing began, whatever became of its zero
+        double way = 0;         ///< travel commanded since homing began; setting the zero does not change it
         double closed_way = 0;  ///< `way` where its switch was closed last
         double team_acceleration = 0;  ///< 0: its own
     };

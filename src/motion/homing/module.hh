@@ -81,11 +81,11 @@ class Module {
     virtual bool isHoming(int joint) const noexcept = 0;
     virtual bool isHomed(int joint) const noexcept = 0;
     virtual bool isActive() const noexcept = 0;
-    /// `step` has something to do: it is active, or a joint is still to be told to stop.
+    /// True if `step` has work: homing is active, or a joint still has to be stopped.
     virtual bool hasWork() const noexcept = 0;
     /// For people who look for faults: 0 is none.
     virtual int step_number(int joint) const noexcept = 0;
-    /// The index-enable pin; and whether the joint is on its way to the pulse.
+    /// The index-enable pin; and whether the joint is moving towards the index pulse.
     virtual bool isIndexWanted(int joint) const noexcept = 0;
     virtual bool isAtIndex(int joint) const noexcept = 0;
     virtual bool isUnlockWanted(int joint) const noexcept = 0;

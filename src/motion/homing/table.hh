@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Homing of a joint as one table: what each event leads to in each state. docs/integrator/homing.md shows it.
+// Homing of a joint as one table: the next state for each event in each state. docs/integrator/homing.md
+// shows it.
 #pragma once
 
 #include <cstdint>
@@ -46,11 +47,11 @@ enum class Failure : std::uint8_t {
     NOT_UNLOCKED,
     NOT_LOCKED,
     INHIBITED,        ///< between the command and its begin
-    MODULE_FAILED,    ///< a module of a user has given up
-    MODULE_NONSENSE,  ///< it has asked for something that is no finite number
+    MODULE_FAILED,    ///< a user's module has reported a failure
+    MODULE_NONSENSE,  ///< it commanded a value that is not a finite number
 };
 
-/// What is so in a cycle, as bits. A joint without a team is a team of its own.
+/// Events of a cycle, as bits. A joint without a team is a team by itself.
 namespace event {
 enum Event : std::uint32_t {
     BEGIN = 1U << 0,
@@ -60,7 +61,7 @@ enum Event : std::uint32_t {
     TEAM_OPEN = 1U << 4,    ///< all of its switches are open
     INDEX = 1U << 5,
     AT_REST = 1U << 6,
-    TEAM_AT_REST = 1U << 7,  ///< all of it stand, in one state
+    TEAM_AT_REST = 1U << 7,  ///< all of its joints are stopped, in one state
     TEAM_LATCHED = 1U << 8,
     GROUP_READY = 1U << 9,     ///< all that end together have their zero
     TEAM_UNLOCKED = 1U << 10,  ///< all of its indexers are
@@ -95,7 +96,7 @@ enum class Action : std::uint8_t {
     NOTHING,
     STOP,
     UNLOCK,
-    SET_PLACE,       ///< where it stands is HOME_OFFSET
+    SET_PLACE,       ///< the current position is HOME_OFFSET
     SET_PLACE_STOP,  ///< and it stops
     SEARCH,
     BACK_OFF,

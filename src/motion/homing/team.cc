@@ -17,7 +17,7 @@ namespace {
 constexpr double SKEW_SHARE = 0.01;
 /// `travel` is twice that range.
 constexpr double TRAVEL_PER_RANGE = 2;
-/// What rounding of positions may add to the way of a joint.
+/// Rounding error of a joint's travel.
 constexpr double ROUNDING = 1e-9;
 
 double skew_of(const Parameters &p) noexcept {
@@ -95,7 +95,7 @@ std::uint32_t Homing::team_events(int joint, const JointInput *inputs) const noe
     return out;
 }
 
-/// The two have got too far apart, or would before they stand.
+/// The difference between two joints of a team exceeds its maximum, or would exceed it before they stop.
 bool Homing::isSkewed(int a, int b, const JointInput *inputs) const noexcept {
     const Parameters &p = at(a).parameters;
     const Parameters &q = at(b).parameters;
@@ -118,7 +118,7 @@ bool Homing::isSkewed(int a, int b, const JointInput *inputs) const noexcept {
     if (!(acceleration > 0) || (v == 0 && w == 0)) {
         return false;
     }
-    // Where each would stand when it brakes one cycle later than now, having gained speed until then.
+    // Travel of each when it brakes one cycle later than now, after one more cycle of acceleration.
     const auto rest = [&](double way, double speed) {
         const double gain = speed == 0 ? 0.0 : std::copysign(acceleration * period_s_ * period_s_, speed);
         return way + 2 * speed * period_s_ + gain + speed * std::abs(speed) / (2 * acceleration);
@@ -144,7 +144,7 @@ bool Homing::isGroupReady(int joint) const noexcept {
     return !isSynchronised || isReady;
 }
 
-/// A signed move at a signed speed, as far as the travel goes; of a team all alike.
+/// A signed move at a signed speed, limited to the travel; the same for all joints of a team.
 void Homing::go(int joint, double Parameters::*velocity, double sign, const JointInput *inputs,
                 JointCommand &out) noexcept {
     Joint &j = at(joint);

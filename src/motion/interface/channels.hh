@@ -48,8 +48,8 @@ struct Channels {
 
     /// Counts the loops of the task process; standing still for the watchdog's time means that it hangs.
     std::atomic<std::uint64_t> task_loops{0};
-    /// Counts the looks of the realtime host's ordinary thread: while it stands still, too, the computer is
-    /// too busy for either.
+    /// Counts cycles of the ordinary thread of the realtime host. If this count stops too, the computer is
+    /// too busy for both.
     std::atomic<std::uint32_t> host_looks{0};
     /// Set by the realtime host when the kernel says that the task process is gone (pidfd, closed socket).
     std::atomic<std::uint32_t> isTaskDead{0};
@@ -57,7 +57,7 @@ struct Channels {
     /// Filled by the servo thread while `isTracing`; a full ring counts in `trace_lost`.
     std::atomic<std::uint32_t> isTracing{0};
     std::atomic<std::uint64_t> trace_lost{0};
-    SpscRing<TraceSample, 8192> trace;  ///< servo -> whoever traces
+    SpscRing<TraceSample, 8192> trace;  ///< servo -> client that records a trace
 
     /// The servo thread has something to answer.
     bool hasCommands() const noexcept { return immediate.front() != nullptr; }

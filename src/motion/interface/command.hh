@@ -84,14 +84,14 @@ struct JogTarget {
     bool isJoint = true;
     int index = 0;
 };
-/// A lease that is not renewed ends the jog, whatever has become of who asked for it. The same command again
-/// renews it, with a velocity and a lease that may be others.
+/// A lease that is not renewed ends the jog, even if task and the client have ended. The same command renews
+/// it and may change velocity and lease.
 inline constexpr double SHORTEST_JOG_LEASE_S = 0.02, LONGEST_JOG_LEASE_S = 10;
 struct JogContinuous {
     JogTarget target;
     double velocity = 0;     ///< signed
-    double lease_s = 0;      ///< 0: it goes on until it is stopped
-    bool isRenewal = false;  ///< goes on with a jog that has a lease, never begins one
+    double lease_s = 0;      ///< 0: runs until it is stopped
+    bool isRenewal = false;  ///< continues a jog that has a lease, never begins one
 };
 struct JogIncremental {
     JogTarget target;

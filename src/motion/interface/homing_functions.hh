@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What a homing module exports: all of these (hal/include/homing.h declares them). One that lacks some is
-// refused.
+// Functions that a homing module exports (hal/include/homing.h declares them). A module that lacks one is not
+// accepted.
 #pragma once
 
 namespace mw::motion {

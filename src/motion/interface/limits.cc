@@ -157,7 +157,7 @@ void limit_offsets(const Settings &s, const AxisMap &map, int j, FoldedLimits &o
     }
 }
 
-/// What offsets cannot take of a joint, by whatever limits them, is of paths and jogs.
+/// Limits of a joint for paths and jogs: its limits minus the share of external offsets.
 void leave_to_paths(const AxisMap &map, int j, FoldedLimits &out) noexcept {
     trajectory::JointLimits &left = out.path_joints;
     for (int axis = 0; axis < MAX_AXES; ++axis) {

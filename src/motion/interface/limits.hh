@@ -21,7 +21,7 @@ namespace mw::motion {
 /// A limit of the path's jerk below this turns jerk-limited planning off [machine units/s^3].
 inline constexpr double LEAST_JERK = 1;
 
-/// Which axis each joint moves, and who knows what joints do where there is more to it.
+/// Which axis each joint moves, and which thread may call the kinematics where joints are not axes.
 struct AxisMap {
     enum class Kind : std::uint8_t {
         JOINTS_ARE_AXES,  ///< what limits a joint limits its axis
@@ -41,7 +41,7 @@ struct AxisMap {
     void set_linear(const kinematics::LinearJoints &all) noexcept;
     /// False when a parameter of the kinematics has been changed that says how joints are linear.
     bool isAsIn(const kinematics::Kinematics &kinematics) const noexcept;
-    /// Whatever the axis adds to what a jog or a path does is known to its joints.
+    /// The axis may have an offset that adds to a jog or path and moves its joints.
     bool mayHaveOffset(int axis) const noexcept;
     bool areJointsAxes() const noexcept { return kind == Kind::JOINTS_ARE_AXES; }
     bool moves(int joint, int axis) const noexcept {

@@ -50,7 +50,7 @@ inline constexpr double NO_JERK_LIMIT = 1e9;
     X(TRAJ_NO_FORCE_HOMING, MACHINE, "TRAJ", "NO_FORCE_HOMING", FLAG, 0, 1, 0,                               \
       "programs and MDI are taken before the joints are homed")                                              \
     X(MAX_FEED_SCALE, MACHINE, "DISPLAY", "MAX_FEED_OVERRIDE", NONE, 0, 1000, 1,                             \
-      "highest feed override; 1 is 100 %")                                                                   \
+      "maximum feed override; 1 is 100 %")                                                                   \
     X(JOINT_MIN_LIMIT, JOINT, "JOINT_*", "MIN_LIMIT", LENGTH, -UNBOUNDED, UNBOUNDED, -1e99,                  \
       "lower soft limit")                                                                                    \
     X(JOINT_MAX_LIMIT, JOINT, "JOINT_*", "MAX_LIMIT", LENGTH, -UNBOUNDED, UNBOUNDED, 1e99,                   \
@@ -82,7 +82,7 @@ inline constexpr double NO_JERK_LIMIT = 1e9;
     X(JOINT_HOME_USE_INDEX, JOINT, "JOINT_*", "HOME_USE_INDEX", FLAG, 0, 1, 0,                               \
       "the index pulse of the encoder counts")                                                               \
     X(JOINT_HOME_INDEX_NO_ENCODER_RESET, JOINT, "JOINT_*", "HOME_INDEX_NO_ENCODER_RESET", FLAG, 0, 1, 0,     \
-      "the encoder goes on counting at the index")                                                           \
+      "the encoder keeps its count at the index")                                                            \
     X(JOINT_HOME_IS_SHARED, JOINT, "JOINT_*", "HOME_IS_SHARED", FLAG, 0, 1, 0,                               \
       "joints share the home switch")                                                                        \
     X(JOINT_HOME_ABSOLUTE_ENCODER, JOINT, "JOINT_*", "HOME_ABSOLUTE_ENCODER", COUNT, 0, 2, 0,                \
@@ -121,8 +121,8 @@ inline constexpr double NO_JERK_LIMIT = 1e9;
     X(SPINDLE_MIN_REVERSE, SPINDLE, "SPINDLE_*", "MIN_REVERSE_VELOCITY", RPM, 0, UNBOUNDED, 0,               \
       "minimum speed of M4; that of M3 where it is not set")                                                 \
     X(SPINDLE_RAMP, SPINDLE, "SPINDLE_*", "RAMP", NONE, 0, UNBOUNDED, 0,                                     \
-      "change of speed [rev/min each second] with which the spindle turns back: rigid tapping tells it so "  \
-      "much ahead; 0: learned from what the spindle does")
+      "change of speed [rev/min each second] at which the spindle reverses; rigid tapping uses it; "         \
+      "0: measured at each reversal")
 
 enum class Parameter : std::uint16_t {
 #define MW_X(name, scope, section, key, unit, low, high, preset, doc) name,
@@ -135,7 +135,7 @@ struct ParameterInfo {
     Parameter parameter;
     std::string_view name;
     ParameterScope scope;
-    std::string_view ini_section;  ///< "JOINT_*" for JOINT_0 and so on; empty: no key of its own
+    std::string_view ini_section;  ///< "JOINT_*" for JOINT_0 and so on; empty: no key
     std::string_view ini_key;
     ParameterUnit unit;
     double lowest, highest, preset;

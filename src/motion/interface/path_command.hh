@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The path channel: moves, and whatever is to happen in step with them, in program order. Drained by the
+// The path channel: moves, and the commands that are synchronized with them, in program order. Read by the
 // planner. Machine coordinates; lengths in machine units, angles in degrees.
 #pragma once
 
@@ -30,7 +30,7 @@ struct SourceTag {
     std::uint32_t block = 0;       ///< counts executed blocks; single-block stops are at its changes
 };
 
-/// What holds for one move: what the program settles, and what task adds.
+/// Conditions of one move: those of the program and those that task adds.
 struct MoveTerms : geometry::MoveSettings {
     bool isFeedOverridable = true;
     bool isWaitingForSpindleSpeed = false;  ///< hold before this move until spindle.N.at-speed

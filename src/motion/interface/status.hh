@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the motion controller tells: one snapshot a servo cycle, answers to commands, error texts.
+// Reports of the motion controller: one snapshot per servo cycle, answers to commands, error texts.
 #pragma once
 
 #include <array>
@@ -82,7 +82,7 @@ inline geometry::Pose programmed_position(const Status &status) noexcept {
     return pose;
 }
 
-/// The parts of `Status` in which it is published: who reads it often copies only what has changed.
+/// `Status` is published in these parts: a client that reads often copies only the parts that changed.
 namespace status_part {
 inline constexpr int WHOLE_MACHINE = 0, JOINTS = 1, AXES = JOINTS + MAX_JOINTS, SPINDLES = AXES + 1,
                      ANALOG_IN = SPINDLES + MAX_SPINDLES, ANALOG_OUT = ANALOG_IN + 1, COUNT = ANALOG_OUT + 1;
@@ -105,7 +105,7 @@ using PublishedStatus = PartedSeqlock<Status, status_part::STARTS>;
 
 enum class AnswerKind : std::uint8_t { DONE, REFUSED, STALE };
 
-/// Why a command was refused; the text for the operator is made outside realtime by `reason_text`.
+/// Reason for rejecting a command; `reason_text` makes the text for the operator outside realtime.
 enum class Reason : std::uint16_t {
     NONE,
     NOT_ENABLED,
@@ -144,8 +144,8 @@ enum class Reason : std::uint16_t {
     SWITCHED_ON,     ///< the machine is to be off
     TOO_FEW_JOINTS,  ///< index: those that the kinematics moves
     SINGULAR,        ///< through a pose of which the kinematics has many answers
-    POSE_UNKNOWN,    ///< the kinematics has no pose that leads to where the joints stand
-    SIDE_APART,      ///< index: the joint that stands apart from the place that the pose has for it
+    POSE_UNKNOWN,    ///< the kinematics has no pose for the joint positions
+    SIDE_APART,      ///< index: the joint that differs from its position in the pose
     NO_FEEDBACK,     ///< a joint's feedback is not a number
     DRIVEN_BY_PIN,   ///< an extra joint that is homed
     INDEXER_ALONE,   ///< a locking indexer moves alone, in programs with G0; others while it is locked
@@ -178,7 +178,7 @@ enum class FaultKind : std::uint16_t {
     PATH_LIMIT,
     SPINDLE_FAULT,
     MISC_ERROR,
-    NO_WAY_ON,        ///< the planner stands and finds no plan
+    NO_WAY_ON,        ///< the planner has stopped and finds no plan
     JOG_JOINT_LIMIT,  ///< an axis jog was stopped before a joint's soft limit
     JOG_UNREACHABLE,  ///< an axis jog was stopped before a pose that the kinematics do not reach
     JOINT_TOO_FAST,   ///< value: over what is allowed; kinematics that cannot be planned with
@@ -188,7 +188,7 @@ enum class FaultKind : std::uint16_t {
     KINEMATICS_JUMP,  ///< index: the joint that would have stepped; value: by how much
     NO_KINEMATICS_TYPE,            ///< value: the type asked for
     KINEMATICS_SWITCHED_ON_PATH,   ///< the same; the path was stopped
-    KINEMATICS_TYPE_WITHOUT_POSE,  ///< the same; it has no pose for where the joints stand
+    KINEMATICS_TYPE_WITHOUT_POSE,  ///< the same; it has no pose for the joint positions
     HOMING_CLAMPED,                ///< a homing module has asked joint `index` for more than its limits allow
     FEEDBACK_LOST,                 ///< index: the joint whose feedback is not a number
     TAP_TOO_FAST,                  ///< index: spindle; value: needed speed over the possible one
@@ -200,10 +200,10 @@ enum class FaultKind : std::uint16_t {
     INDEXER_NOT_LOCKED,    ///< the same
     INDEXER_LOCKED_IN_MOVE,  ///< index: the joint whose pin is-unlocked has fallen meanwhile
     EXTRA_JOINT_LOST,        ///< index: the joint whose pin posthome-cmd is not a number
-    EXTRA_JOINT_LIMIT,       ///< index: the joint whose pin posthome-cmd asks for what lies beyond its range
+    EXTRA_JOINT_LIMIT,       ///< index: the joint whose pin posthome-cmd is outside its range
     SIDE_APART,              ///< index: joint; switched on in free mode
-    POSE_UNKNOWN,            ///< the kinematics has none for where the joints stand; the same
-    PLANNER_MODULE,          ///< detail: PlannerModuleFault; value: what it asks for over what is possible
+    POSE_UNKNOWN,            ///< the kinematics has no pose for the joint positions; the same
+    PLANNER_MODULE,          ///< detail: PlannerModuleFault; value: requested over possible
     SPINDLE_LOST,  ///< index: spindle whose feedback is not a number while a move is in step with it
     COUNT,
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the operator reads when a command is refused or something goes wrong. Not realtime.
+// Texts for the operator when a command is rejected or a fault occurs. Not realtime.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace mw::motion {
 
-/// Why a command was refused, as a sentence with what to do about it. Empty for Reason::NONE.
+/// Reason for rejecting a command, as a sentence with the remedy. Empty for Reason::NONE.
 std::string reason_text(const Answer &answer);
 
 /// What went wrong. Texts that existing screens look for are kept ("joint 0 on limit switch error").

@@ -13,7 +13,7 @@ namespace {
 
 using Lines = LogText::Lines;
 
-/// LinuxCNC's stand-in for no limit.
+/// LinuxCNC's number for no limit.
 double finite(double value) {
     constexpr double NO_LIMIT = 1e99;
     return std::isinf(value) ? std::copysign(NO_LIMIT, value) : value;
@@ -294,7 +294,7 @@ std::string LogText::move_words(const geometry::Pose &end, const MoveTerms &term
                        terms.source.line, static_cast<int>(type), speed, fastest, acceleration);
 }
 
-/// In step with a spindle or not is a part of each move here, and a command of its own there.
+/// Synchronization with a spindle is a part of each move in Millwright, and a separate command in the log.
 Lines LogText::with_synch(const MoveTerms &terms, std::string line) {
     Lines lines;
     if (terms.feed_per_revolution != synch_feed_) {

@@ -13,8 +13,8 @@
 
 namespace mw::motion {
 
-/// One thread. Settings come as a list at the start, and are told once it is whole (SetNumJoints), in the
-/// order and under the names that tests of LinuxCNC know; each one that comes later is told at once.
+/// One thread. Settings come as a list at the start and are logged when it is complete (SetNumJoints), in the
+/// order and with the names of LinuxCNC's tests. Later settings are logged at once.
 class LogText {
   public:
     using Lines = std::vector<std::string>;

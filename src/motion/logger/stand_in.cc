@@ -48,7 +48,7 @@ void follow(const CommandBody &body, Status &status) {
                 status.digital_out = c.isOn ? status.digital_out | bit : status.digital_out & ~bit;
             },
             [&](const SetAnalogOutput &c) { status.analog_out[static_cast<std::size_t>(c.index)] = c.value; },
-            // What shows nowhere, or asks for a movement that nothing makes.
+            // Commands without an entry in the log, and requests for moves that the logger does not make.
             [](const OneOf<Abort, SetAmplifier, SetJointActive, OverrideLimits, SetWatchdog, Heartbeat,
                            StepOnce, SetReverse, SetScale, SetSwitch, SetMaxVelocity, JogContinuous,
                            JogIncremental, JogAbsolute, JogStop, SetTeleopVector, SpindleOrient, SpindleBrake,

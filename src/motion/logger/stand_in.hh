@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Stands in for the motion controller at the channels: carries everything out at once, moves nothing, and
-// says what it was asked for.
+// A motion controller for tests of task: executes every command at once without motion, and logs it.
 #pragma once
 
 #include <functional>

@@ -27,13 +27,13 @@ struct PathLimits {
     std::array<std::int8_t, MAX_AXES> indexer = NO_INDEXERS;  ///< as in FoldedLimits
     trajectory::JointLimits joints;                           ///< where joints are not axes
     SharedJoints shared;                                      ///< with external offsets
-    /// Where the joints stood before the path: elbows and wrists are on the side of theirs
+    /// Joint positions before the path: they select the configuration of elbows and wrists
     std::array<double, MAX_JOINTS> standing{};
-    int side = 0;              ///< of that place (kinematics::Kinematics)
-    std::uint32_t stands = 0;  ///< counts how often the joints stood anew
+    int side = 0;              ///< of that configuration (kinematics::Kinematics)
+    std::uint32_t stands = 0;  ///< counts the changes of these positions
 };
 
-/// Where the path may lead, as far as it is planned and not driven.
+/// Range of the path that is planned and not yet driven.
 struct PathExtent {
     TravelRange range;
     bool isEmpty = true;
@@ -60,8 +60,8 @@ struct PathView {
     bool isStepping = false;
     /// Locking indexers, bit per joint: may move, wait or move, have not locked in time.
     std::uint32_t indexers_unlocked = 0, indexers_busy = 0, indexers_stuck = 0;
-    std::uint32_t type_asks = 0;  ///< counts asks for another type of the kinematics
-    bool isTypePending = false;   ///< paths wait until it is in force
+    std::uint32_t type_asks = 0;  ///< counts requests for another type of the kinematics
+    bool isTypePending = false;   ///< paths wait until it is active
 };
 
 /// Copied only while neither side runs, for a controller that is saved or cloned.

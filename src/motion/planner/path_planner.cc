@@ -157,7 +157,7 @@ void PathPlanner::complete_moves() noexcept {
     }
 }
 
-/// Takes what there is room for; true when something was taken.
+/// Takes as many commands as fit; true when one was taken.
 bool PathPlanner::take_commands() noexcept {
     bool isAny = false;
     isQueueFull_ = false;
@@ -247,8 +247,7 @@ bool PathPlanner::isIdle() const noexcept {
     return pending_.isEmpty() && e.isSettled && e.done_move >= planner_.last_move();
 }
 
-/// Begins a path if there is none. Jerk limits, and what is made for a tolerance, change only while
-/// everything stands.
+/// Begins a path if there is none. Jerk limits and the tolerance of a path change only at standstill.
 void PathPlanner::begin_path(const PathCommand &c) noexcept {
     const bool isOutput = std::holds_alternative<SynchedDigitalOutput>(c.body) ||
                           std::holds_alternative<SynchedAnalogOutput>(c.body);
@@ -469,7 +468,7 @@ void PathPlanner::answer(CommandId id, AnswerKind kind, Reason reason) noexcept 
     a.reason = reason;
     a.index = kind == AnswerKind::REFUSED ? refused_index_ : static_cast<std::int16_t>(-1);
     a.isPath = true;
-    channels_.planner_answers.push(a);  // take_commands leaves room for every answer that is owed
+    channels_.planner_answers.push(a);  // take_commands reserves space for all pending answers
 }
 
 }  // namespace mw::motion

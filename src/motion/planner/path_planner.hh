@@ -24,8 +24,8 @@ struct PathPlannerConfig {
     trajectory::SpeedChooser *chooser = nullptr;  ///< a planner module of a user
 };
 
-/// The inverse of pure kinematics, for the planner. Of several answers it gives the one on the side of what
-/// it was told last, or has given last.
+/// The inverse of pure kinematics, for the planner. Of several solutions it returns the one on the side of
+/// its last joint positions.
 class KinematicsMap final : public trajectory::JointMap {
   public:
     using Joints = std::array<double, MAX_JOINTS>;
@@ -35,8 +35,8 @@ class KinematicsMap final : public trajectory::JointMap {
         near_ = joints;
         side_ = side;
     }
-    /// The joints at a pose, beside those that `joints` holds; SINGULAR also of a pose that only a singular
-    /// one leads to.
+    /// The joints at a pose, nearest to those in `joints`; SINGULAR also for a pose that can only be reached
+    /// through a singular one.
     kinematics::Status find(const geometry::Pose &pose, double *joints) const noexcept {
         const bool isBeyond = side_ != 0 && kinematics_.side(pose) != side_;
         const kinematics::Status status = kinematics_.inverse(pose, joints);
@@ -57,14 +57,14 @@ class KinematicsMap final : public trajectory::JointMap {
     int side_ = 0;
 };
 
-/// How far a line may go on.
+/// Remaining travel of a line to the nearest limit.
 struct TravelToLimit {
     double way = trajectory::UNLIMITED;  ///< [machine units, degrees]
     int axis = -1, joint = -1;           ///< whose limit it is; joint MAX_JOINTS: that of the kinematics
 };
 
-/// After a refusal or a stop the rest of the same epoch's path commands is answered STALE, until a new epoch
-/// or Enable: a path with a hole in it is never driven.
+/// After a rejection or a stop, the remaining path commands of the same epoch are answered STALE until a new
+/// epoch or Enable. A path with a gap is never driven.
 class PathPlanner {
   public:
     PathPlanner(const PathPlannerConfig &config, const kinematics::Kinematics &kinematics, Channels &channels,

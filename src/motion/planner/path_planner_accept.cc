@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Checks of path commands, and what the planner is told of those that are taken.
+// Checks path commands, and passes accepted ones to the planner.
 #include <algorithm>
 #include <atomic>
 #include <bit>
@@ -13,7 +13,7 @@ namespace mw::motion {
 namespace {
 
 constexpr double SOFT_LIMIT_ROUNDING = 1e-6;
-/// An axis that moves by less stands [machine units, degrees].
+/// An axis that moves by less is treated as stopped [machine units, degrees].
 constexpr double LEAST_WAY = 1e-9;
 
 bool isFinite(const geometry::Pose &p) noexcept {
@@ -43,7 +43,7 @@ MotionType type_of(const PathBody &body, const MoveTerms &terms) noexcept {
     return std::holds_alternative<Arc>(body) ? MotionType::ARC : MotionType::FEED;
 }
 
-/// How far a line may go on behind its end, or before its start with the sense -1, to a soft limit.
+/// Remaining travel of a line from its end, or from its start with the sense -1, to a soft limit.
 TravelToLimit room_behind(const trajectory::Primitive &line, double sense,
                           const PathLimits &limits) noexcept {
     const geometry::Pose &end = sense > 0 ? line.end : line.start;
@@ -62,7 +62,7 @@ TravelToLimit room_behind(const trajectory::Primitive &line, double sense,
     return room;
 }
 
-/// How far joints that external offsets move as well go on a move; 0 of others.
+/// Travel on a move of joints that external offsets move as well; 0 for other joints.
 JointRange shared_extent(const trajectory::Primitive &p, const SharedJoints &shared) noexcept {
     JointRange out;
     for (std::uint32_t left = shared.joints; left != 0; left &= left - 1) {
@@ -93,7 +93,7 @@ trajectory::MoveRequest PathPlanner::request_for(const PathCommand &c,
     r.isOverridable = terms.isFeedOverridable;
     r.feed_per_revolution = terms.feed_per_revolution;
     r.spindle = terms.synch_spindle;
-    // A thread begins with the spindle at speed; feed per revolution follows whatever it does.
+    // A thread begins with the spindle at speed; feed per revolution follows the current speed.
     r.isLocked = terms.isThread();
     const bool isChainStart = r.isLocked && !wasLocked_;
     r.isPhased = isChainStart;
@@ -110,8 +110,8 @@ void PathPlanner::add_pending(const PathCommand &c, const SourceTag &source) noe
     pending_.add(p);
 }
 
-/// Soft limits, less where external offsets are or may come to. The move is told first: offsets grow no
-/// farther than it lets them from here on.
+/// Soft limits minus the range of external offsets. The move is published first, so that offsets do not grow
+/// further than it allows.
 TravelRange PathPlanner::available_travel(const TravelRange &move) noexcept {
     TravelRange room{{limits_.low, limits_.high}, {limits_.joints.low, limits_.joints.high}};
     if (limits_.offset_axes == 0) {
@@ -159,7 +159,7 @@ Reason PathPlanner::check_reach(const trajectory::Primitive &p, int indexer) noe
         if (isMoving && lock >= 0 && lock != indexer) {
             return Reason::INDEXER_ALONE;
         }
-        // A move that leads back in from outside is welcome as far as its end is inside.
+        // A move from outside back inside is accepted if its end is inside.
         const double from = p.start[i];
         const bool isLow = low[i] < std::min(room.low[i], from) - SOFT_LIMIT_ROUNDING ||
                            p.end[i] < room.low[i] - SOFT_LIMIT_ROUNDING;
@@ -175,7 +175,7 @@ Reason PathPlanner::check_reach(const trajectory::Primitive &p, int indexer) noe
     return reason == Reason::NONE ? check_shared(p, joints, reach.joints) : reason;
 }
 
-/// Between the places that check_joints() looks at a joint on an arc goes farther; these are known exactly.
+/// On an arc a joint can exceed the positions that check_joints() samples. Shared joints are checked exactly.
 Reason PathPlanner::check_shared(const trajectory::Primitive &p, const JointRange &move,
                                  const JointRange &room) noexcept {
     const JointRange start = limits_.shared.at(p.start);
@@ -252,7 +252,8 @@ Reason PathPlanner::check_joints(const trajectory::Primitive &p, const JointRang
         const bool isOnTheWay = n < samples;
         for (int j = 0; j < config_.num_joints; ++j) {
             const auto i = static_cast<std::size_t>(j);
-            // A joint that stands beyond its limit, as after a coast, comes back into it, and no farther out.
+            // A joint outside its limit, for instance after its drive was off, may come back but not go
+            // further out.
             const double low = isOnTheWay ? std::min(room.low[i], begin[i]) : room.low[i];
             const double high = isOnTheWay ? std::max(room.high[i], begin[i]) : room.high[i];
             if (here.joints[i] < low - SOFT_LIMIT_ROUNDING || here.joints[i] > high + SOFT_LIMIT_ROUNDING) {
@@ -266,8 +267,8 @@ Reason PathPlanner::check_joints(const trajectory::Primitive &p, const JointRang
     return Reason::NONE;
 }
 
-/// How much of the room beyond an end of a line joints can follow, which stand at `joints` there; `turn`: way
-/// in a turn of the spindle.
+/// The part of the travel past an end of a line that the joints can follow. They are at `joints` there;
+/// `turn`: travel per spindle revolution.
 TravelToLimit PathPlanner::room_for_joints(const trajectory::Primitive &line, double sense,
                                            const TravelToLimit &axes, std::array<double, MAX_JOINTS> joints,
                                            double turn) const noexcept {
@@ -297,7 +298,7 @@ TravelToLimit PathPlanner::room_for_joints(const trajectory::Primitive &line, do
     return room;
 }
 
-/// The joint whose lock is opened for a rapid move of its axis alone; -1: none, whatever else the body is.
+/// The joint whose lock opens for a rapid move of its axis alone; -1: none.
 int PathPlanner::indexer_of(const PathBody &body) const noexcept {
     const auto *line = std::get_if<Line>(&body);
     if (line == nullptr || !line->terms.isRapid) {
@@ -378,12 +379,12 @@ Reason PathPlanner::accept_tap(const PathCommand &c, const RigidTap &tap) noexce
         return reason;
     }
     if (kinematics_.identity() == nullptr && !kinematics_.isShareable()) {
-        return Reason::RIGID_TAPPING;  // nobody can tell in time what the joints would do
+        return Reason::RIGID_TAPPING;  // the joints' motion cannot be predicted in time
     }
     const trajectory::Primitive in = trajectory::make_line(planner_.end(), tap.end);
     const bool isLine = in.length > 1e-12 * (1.0 + geometry::norm(tap.end));
     for (int i = 0; i < geometry::AXIS_COUNT; ++i) {
-        // The room for turning back beyond both ends would have to be kept free of offsets.
+        // Both ends would need clearance for the reversal that offsets never use.
         if (in.lin[i] != 0 && ((limits_.offset_axes | limits_.shared.axes) >> i & 1U) != 0) {
             refused_index_ = static_cast<std::int16_t>(i);
             return Reason::TAP_OFFSET;

@@ -20,7 +20,7 @@ struct PendingCommand {
     bool isIndexed = false;  ///< its move is complete, and it is to lock
 };
 
-/// Planner thread only. Who adds looks at size() first.
+/// Planner thread only. The caller checks size() before it adds.
 class PendingCommands {
   public:
     static constexpr std::uint32_t CAPACITY = 8192;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What a part says to a command.
+// Result of a command to a part of the controller.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +10,10 @@ namespace mw::motion {
 
 struct CommandResult {
     Reason reason = Reason::NONE;
-    std::int16_t index = -1;  ///< the joint or axis meant, -1: none
+    std::int16_t index = -1;  ///< joint or axis of the reason, -1: none
 };
 
-/// Of one joint, axis or spindle, done or refused.
+/// Result of a command to one joint, axis or spindle.
 constexpr CommandResult result_of(int index, Reason reason) noexcept {
     return {reason, static_cast<std::int16_t>(index)};
 }

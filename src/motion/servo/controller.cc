@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // A servo cycle from feedback to motor commands; faults and stops. [[likely]] and [[unlikely]] here and in
-// the parts mark the way through a cycle in which nothing happens: between two cycles the processor forgets
-// its jumps, and each one that is taken costs as much as a dozen instructions
-// (docs/developer/performance.md). Functions of that path are marked hot, those of events cold. The linker
-// groups each type, so that a cycle touches fewer pages and lines of the module.
+// the parts mark the path of an idle cycle: between two cycles the processor loses its branch predictions,
+// and each branch that is taken costs as much as a dozen instructions (docs/developer/performance.md).
+// Functions of that path are hot, those of events cold. The linker groups each type, so that a cycle touches
+// fewer pages and cache lines of the module.
 #include "motion/servo/controller.hh"
 
 #include <algorithm>
@@ -60,11 +60,11 @@ Controller::Controller(const ControllerConfig &config, const kinematics::Kinemat
     const kinematics::IdentityMap *identity = kinematics.identity();
     const int led = config.num_led_joints();
     for (int j = identity != nullptr ? identity->num_joints : led; j < led; ++j) {
-        joints_[j].isActive = false;  // drives nothing until somebody activates it
+        joints_[j].isActive = false;  // drives nothing until it is activated
     }
 }
 
-/// All that knows how many joints there are.
+/// Passes the number of joints to the parts that depend on it.
 void Controller::use_joints(int count) noexcept {
     const kinematics::IdentityMap *identity = kinematics_.identity();
     config_.num_joints = count;
@@ -119,7 +119,7 @@ void Controller::step(const Inputs &in, Outputs &out) noexcept {
         stop_category_1(FaultKind::TASK_LOST, signs.isDead ? 1 : 0,
                         watchdog_.standing_s + watchdog_.starved_s);
     }
-    // Drives and step generators have held their last command meanwhile: to continue from there is a jump.
+    // Drives and step generators have kept their last command: continuing from there would be a jump.
     if (const double missed_s = gap_s(watchdog_, in.time_ns); missed_s > 0 && power_.isEnabled) [[unlikely]] {
         isAnythingMoving() ? stop_category_0(FaultKind::MOTION_STOOD, 1, missed_s)
                            : raise(FaultKind::MOTION_STOOD, 0, missed_s);
@@ -176,10 +176,10 @@ void Controller::raise(FaultKind kind, int index, double value, std::uint16_t de
     if (const trajectory::MoveTag *tag = active_move(executor_, link_->store, power_.mode)) {
         fault.source = {tag->line, tag->file_index, tag->block};
     }
-    channels_->servo_faults.push(fault);  // a full ring: the first faults are the ones that matter
+    channels_->servo_faults.push(fault);  // a full ring: the first faults are the important ones
 }
 
-/// Amplifiers off in this cycle.
+/// Switches the amplifiers off in this cycle.
 void Controller::stop_category_0(FaultKind kind, int index, double value) noexcept {
     if (power_.isEnabled) {
         raise(kind, index, value);
@@ -187,7 +187,7 @@ void Controller::stop_category_0(FaultKind kind, int index, double value) noexce
     disable();
 }
 
-/// Everything brakes within its limits; amplifiers off in the cycle after it stands.
+/// Brakes everything within its limits; the amplifiers go off in the cycle after standstill.
 void Controller::stop_category_1(FaultKind kind, int index, double value) noexcept {
     if (!begin_stop(power_)) {
         return;
@@ -277,14 +277,15 @@ void Controller::step_homing(const Inputs &in) noexcept {
     }
     const bool isOtherMap = offsets_.shared.joints != 0 && !map_.isAsIn(kinematics_);
     if (limits_.homed.joints != homed_mask(homing_) || isOtherMap) [[unlikely]] {
-        if (power_.mode == Mode::FREE && isAllHomed(homing_)) {  // elsewhere the pose leads
+        if (power_.mode == Mode::FREE &&
+            isAllHomed(homing_)) {  // in other modes the pose commands the joints
             find_again(place_, kinematics_, commanded(joints_).data(), first_place(settings_));
         }
         publish_limits();
     }
 }
 
-/// One cycle of the joints that home.
+/// One cycle of the joints that are being homed.
 void Controller::drive_homing(const Inputs &in) noexcept {
     homing::JointInput inputs[MAX_JOINTS];
     homing::JointCommand commands[MAX_JOINTS];
@@ -313,7 +314,7 @@ void Controller::drive_homing(const Inputs &in) noexcept {
     }
 }
 
-/// Jogs that nobody renews stop here, whatever has become of task and client; wheels turn others.
+/// Jogs whose lease is not renewed stop here, also if task and client have ended; wheels move other jogs.
 void Controller::step_jogs(const Inputs &in) noexcept {
     for (JogTarget over = end_lease(jogs_, in.time_ns); over.index >= 0;
          over = end_lease(jogs_, in.time_ns)) {
@@ -339,7 +340,7 @@ void Controller::step_jogs(const Inputs &in) noexcept {
     settle(jogs_, in);
 }
 
-/// Whoever is to move an indexer waits here for its lock.
+/// A jog or move of an indexer waits here for its lock.
 void Controller::step_indexers(const Inputs &in) noexcept {
     IndexerInputs now;
     now.period_s = config_.period_s;
@@ -356,7 +357,7 @@ void Controller::step_indexers(const Inputs &in) noexcept {
         const JogTarget axis{false, std::countr_zero(left)};
         now.wanted |= jogs_.at(axis).planner.isAtRest() ? 0U : limits_.locks_of(axis);
     }
-    // What the planner wants of a path that was dropped counts no more.
+    // Requests of the planner for a path that was dropped are ignored.
     const std::uint64_t wish = link_->indexers_wanted.load(std::memory_order_acquire);
     const bool isOfPath =
         static_cast<std::uint32_t>(wish >> 32) == static_cast<std::uint32_t>(executor_.snapshot().drops);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The motion controller: takes commands and says every servo cycle where each joint is to be. Pure: no HAL,
-// no clock, no allocation. Everything here runs in the servo thread.
+// The motion controller: takes commands and calculates the position of each joint every servo cycle. Pure: no
+// HAL, no clock, no allocation. All of it runs in the servo thread.
 #pragma once
 
 #include <cstdint>
@@ -41,24 +41,24 @@ struct ControllerConfig {
     int num_aio = 4;
     double period_s = 1e-3;
     int num_extra_joints = 0;          ///< the last joints, which no pose moves
-    homing::Module *homing = nullptr;  ///< takes the place of ours; outlives the controller
+    homing::Module *homing = nullptr;  ///< replaces Millwright's homing; outlives the controller
 
     int num_led_joints() const noexcept { return num_joints - num_extra_joints; }
 };
 
-/// Of the commands.
+/// State of the command channels.
 struct Received {
-    Epoch epoch = 0;        ///< what is older is stale
-    CommandId last_id = 0;  ///< of those that are answered at once
+    Epoch epoch = 0;        ///< older commands are stale
+    CommandId last_id = 0;  ///< of the immediate commands
 };
 
-/// Owns the parts of the machine and hands each, every cycle, what it needs of the others. Some megabytes, so
-/// never on a stack.
+/// Owns the parts of the machine and passes to each, every cycle, what it needs of the others. Some
+/// megabytes, so never on a stack.
 class Controller {
   public:
     Controller(const ControllerConfig &config, const kinematics::Kinematics &kinematics, Channels &channels,
                PathLink &link) noexcept;
-    /// Goes on where `other` is, on channels of its own; `link` is a copy of the other's.
+    /// Continues the state of `other` on separate channels; `link` is a copy of the other's.
     Controller(const Controller &other, Channels &channels, PathLink &link) noexcept;
     Controller &operator=(const Controller &) = delete;
 
@@ -71,7 +71,7 @@ class Controller {
     static constexpr int MAX_COMMANDS_PER_CYCLE = 64;
 
   private:
-    /// On the same channels and link, so only to build a clone upon.
+    /// Copies channels and link as well, so only for making a clone.
     Controller(const Controller &other) noexcept = default;
 
     // --- controller_commands.cc
@@ -163,7 +163,7 @@ inline ExtraJointInputs extra_inputs(const Inputs &in, const Joints &joints, con
     return {in.joint, commanded(joints), limits, limits.homed.joints & ~inactive_joints(joints), period_s};
 }
 
-/// Where jogs or the path may lead to without external offsets.
+/// Range that jogs or the path may reach without external offsets.
 TravelRange programmed_range(const Jogs &jogs, const PathLink &link, Mode mode, const geometry::Pose &pose,
                              const SharedJoints &shared) noexcept;
 

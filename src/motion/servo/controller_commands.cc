@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Immediate commands: each is answered, done or refused with a reason.
+// Immediate commands: each is answered with done, or rejected with a reason.
 #include <algorithm>
 #include <cmath>
 
@@ -15,7 +15,7 @@ bool isPlaceKnown(const kinematics::Kinematics &kinematics, const geometry::Pose
            isWithinOneStep(kinematics, pose, commanded(joints), stride);
 }
 
-/// An indexer is jogged while nothing else moves, and nothing else while one is under way.
+/// An indexer is jogged only while nothing else moves, and nothing else moves meanwhile.
 bool isBesideIndexer(const Jogs &jogs, const FoldedLimits &limits, const Indexers &indexers,
                      const JogTarget &target) noexcept {
     const std::uint32_t own = limits.locks_of(target);
@@ -30,7 +30,7 @@ bool isBesideIndexer(const Jogs &jogs, const FoldedLimits &limits, const Indexer
     return is;
 }
 
-/// Where a jog of `target` may go.
+/// Range of a jog of `target`.
 JogRange range_of(const FoldedLimits &limits, const AxisMap &map, const ExternalOffsets &offsets,
                   const Joints &joints, const JogTarget &target) noexcept {
     JogRange range = jog_range(limits, map, target, commanded(joints).data());
@@ -40,7 +40,7 @@ JogRange range_of(const FoldedLimits &limits, const AxisMap &map, const External
     return range;
 }
 
-/// Nobody goes back to before a stop, or to before the spindle turned, stopped or had another tool.
+/// Reverse run ends at a stop, and where the spindle changed its direction, stopped or got another tool.
 void forget_way(Retracing &retracing, const CommandBody &body) noexcept {
     const bool isChange =
         std::holds_alternative<SpindleOn>(body) || std::holds_alternative<SpindleOff>(body) ||
@@ -61,7 +61,7 @@ CommandResult check(const SetToolOffset &command) noexcept {
 void Controller::handle_commands(const Inputs &in) noexcept {
     auto &answers = channels_->servo_answers;
     for (int n = 0; n < MAX_COMMANDS_PER_CYCLE; ++n) {
-        // A command is taken only when there is room for its answer.
+        // A command is taken only when its answer fits into the queue.
         const bool isRoom = answers.size() < answers.capacity();
         const Command *c = isRoom ? channels_->immediate.front() : nullptr;
         if (c == nullptr) {
@@ -69,7 +69,7 @@ void Controller::handle_commands(const Inputs &in) noexcept {
         }
         Answer answer;
         answer.id = c->id;
-        // Epochs are compared across their wrap.
+        // Epochs are compared across their overflow.
         const bool isStale = static_cast<std::int32_t>(c->epoch - received_.epoch) < 0;
         if (isStale && !std::holds_alternative<Abort>(c->body)) {
             answer.kind = AnswerKind::STALE;
@@ -86,7 +86,7 @@ void Controller::handle_commands(const Inputs &in) noexcept {
     }
 }
 
-/// Every command has its handler here; one that is forgotten does not compile.
+/// Every command has a handler here; a missing one does not compile.
 CommandResult Controller::take(const Inputs &in, const CommandBody &body) noexcept {
     const Overloaded handlers{
         [&](const Abort &c) { return abort_all(c); },
@@ -105,7 +105,7 @@ CommandResult Controller::take(const Inputs &in, const CommandBody &body) noexce
             const bool areAlone = !power_.isEnabled || power_.mode == Mode::FREE;
             const CommandResult verdict =
                 motion::take(joints_, c, {isAnythingMoving(), homing_.isUnderWay(), areAlone});
-            if (areAlone) {  // the pose is that of all joints from here, also for the command that follows
+            if (areAlone) {  // the pose is that of all joints from here, also for the next command
                 const bool isKnown = kinematics_.kind() == kinematics::Kind::BOTH && isAllHomed(homing_);
                 follow_joints(place_, kinematics_, commanded(joints_).data(), isKnown);
             }
@@ -160,7 +160,7 @@ CommandResult Controller::take(const Inputs &in, const CommandBody &body) noexce
         },
         [&](const OneOf<SpindleOff, SpindleBrake> auto &c) { return motion::take(spindles_, c); },
         [&](const OneOf<SetDigitalOutput, SetAnalogOutput> auto &c) { return motion::take(outputs_, c); },
-        [](const SetToolOffset &c) { return check(c); },  // forget_way() does what it asks for
+        [](const SetToolOffset &c) { return check(c); },  // forget_way() does its work
         [&](const ClearProbeFlag &c) { return motion::take(probe_, c); },
     };
     return std::visit(handlers, body);
@@ -196,7 +196,7 @@ CommandResult Controller::enable(const Inputs &in) noexcept {
         if (led.reason != Reason::NONE) {
             const bool isSideApart = led.reason == Reason::SIDE_APART;
             raise(isSideApart ? FaultKind::SIDE_APART : FaultKind::POSE_UNKNOWN, led.index);
-            power_.mode = Mode::FREE;  // each joint stands for itself
+            power_.mode = Mode::FREE;  // each joint moves by itself
         }
     }
     switch_on(power_);
@@ -228,7 +228,8 @@ void Controller::disable() noexcept {
     leave_lost_mode();
 }
 
-/// Off, joints have lost their homes that the kinematics needs: nobody knows where a pose would take them.
+/// While off, joints that the kinematics needs have lost their homes: the joint positions of a pose are
+/// unknown.
 void Controller::leave_lost_mode() noexcept {
     const bool isKnown = kinematics_.kind() == kinematics::Kind::IDENTITY || isAllHomed(homing_);
     if (!power_.isEnabled && !isKnown) {
@@ -236,7 +237,8 @@ void Controller::leave_lost_mode() noexcept {
     }
 }
 
-/// In Cartesian modes the pose commands the joints: to where they stand, but for a little that they are led.
+/// In Cartesian modes the pose commands the joints. They must be at its joint positions, except for a small
+/// difference that the alignment removes.
 CommandResult Controller::lead_joints() noexcept {
     const bool isPlaced =
         map_.areJointsAxes() || isPlaceKnown(kinematics_, place_.cmd, joints_, stride_of(limits_, config_));
@@ -283,7 +285,8 @@ CommandResult Controller::set_mode(Mode mode) noexcept {
     return {};
 }
 
-/// A joint that is no longer there is not homed when it comes back, and then is where its motor is.
+/// A joint that is taken out of use is not homed when it is used again; its position is then that of its
+/// motor.
 CommandResult Controller::set_num_joints(const Inputs &in, int count) noexcept {
     const kinematics::IdentityMap *identity = kinematics_.identity();
     const int least = identity != nullptr ? std::min(identity->num_joints, joints_.loaded) : 1;
@@ -337,7 +340,7 @@ CommandResult Controller::set_parameter(const SetParameter &command) noexcept {
     return {};
 }
 
-/// What holds for a jog of `target`; the rest is of no interest where there is no such target.
+/// Conditions for a jog of `target`; without such a target the other fields have no meaning.
 JogSituation Controller::situation_of(const Inputs &in, const JogTarget &target) const noexcept {
     JogSituation s;
     if (!hasTarget(jogs_, target)) {
@@ -365,7 +368,7 @@ JogSituation Controller::situation_of(const Inputs &in, const JogTarget &target)
     return s;
 }
 
-/// Where the joints stand decides on which side of elbows and wrists paths are driven.
+/// The joint positions decide the side of elbows and wrists on which paths are driven.
 void Controller::publish_joint_start() noexcept {
     if (map_.areJointsAxes()) {
         return;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The motion of a cycle: joints by themselves (free), axes (teleop) or the path (coord) through the
-// kinematics.
+// The motion of a cycle: single joints (free), axes (teleop) or the path (coord) through the kinematics.
 #include <bit>
 
 #include "motion/servo/controller.hh"
@@ -9,7 +8,7 @@
 namespace mw::motion {
 namespace {
 
-/// To come back to when the path is gone back.
+/// Records the path for reverse run.
 void record_way(Retracing &retracing, const geometry::Pose &pose, const Joints &joints,
                 const RetraceLimits &limits) noexcept {
     const double t = limits.period_s;
@@ -19,7 +18,7 @@ void record_way(Retracing &retracing, const geometry::Pose &pose, const Joints &
     record(retracing, pose, limits);
 }
 
-/// While it is gone back.
+/// Follows the joints during reverse run.
 void follow_way(Retracing &retracing, const Joints &joints, const RetraceLimits &limits) noexcept {
     const double t = limits.period_s;
     for (int j = 0; j < limits.joints && retracing.retrace.isMoving(); ++j) {
@@ -46,7 +45,7 @@ TravelRange programmed_range(const Jogs &jogs, const PathLink &link, Mode mode, 
         PoseRange stops{pose, pose};
         for (int i = 0; i < MAX_AXES; ++i) {
             jogs.at({false, i}).planner.add_reach(out.axes.low[i], out.axes.high[i]);
-            // Before joints' limits jogs stop with a margin: nothing takes that from one under way.
+            // Jogs stop before joint limits with a margin: offsets must leave this margin to an active jog.
             stops.low[i] += TELEOP_BRAKE_MARGIN * (out.axes.low[i] - pose[i]);
             stops.high[i] += TELEOP_BRAKE_MARGIN * (out.axes.high[i] - pose[i]);
         }
@@ -84,7 +83,7 @@ void Controller::move_axes(const Inputs &in) noexcept {
         const bool isWanted = link_->queue_depth.load(std::memory_order_relaxed) != 0 ||
                               !areAxesAtRest(jogs_) || areAsked(offsets_, in.axis_offset);
         if (motion::step(alignment_, joints_, isWanted, config_.period_s) == AlignmentStep::STOPPED) {
-            power_.mode = Mode::FREE;  // each joint stands for itself
+            power_.mode = Mode::FREE;  // each joint moves by itself
             rest_at(jogs_, commanded(joints_).data(), without(offsets_, place_.cmd));
         }
         return;
@@ -110,8 +109,8 @@ void Controller::move_axes(const Inputs &in) noexcept {
         if (!map_.areJointsAxes() && hasDropped(standing_, executor_.snapshot())) [[unlikely]] {
             publish_joint_start();
         }
-        // Kinematics that only this thread may call cannot be planned with: the machine stops where a joint
-        // has to do more than it can.
+        // The planner cannot call this kinematics module, so joint limits are checked here and a violation
+        // stops the machine.
         const bool isPlanned = map_.kind != AxisMap::Kind::UNKNOWN;
         const Overrun overrun = isPlanned || !power_.isReady() ? Overrun{} : find_overrun(joints_, limits_);
         if (overrun.joint >= 0) [[unlikely]] {
@@ -119,11 +118,10 @@ void Controller::move_axes(const Inputs &in) noexcept {
                             overrun.joint, overrun.use);
         }
         if (!retracing_.retrace.isAway()) {
-            // Nobody goes back through a hole that was tapped, or along a thread, without the spindle in
-            // step, nor behind a lock.
+            // Reverse run does not pass a tapped hole or a thread without the spindle in step, nor a lock.
             const bool isOneWay = executor_.output().tap.spindle >= 0 || executor_.locked_spindle() >= 0 ||
                                   busy(indexers_) != 0;
-            // External offsets keep out of what is remembered: that is worth it where it is asked for.
+            // External offsets are not part of the recorded path, so it is recorded only where it is needed.
             const bool isWanted = holds_.isAdaptiveFeedEnabled || offsets_.axes == 0;
             if (isWanted && !isOneWay) {
                 record_way(retracing_, pose, joints_, way_limits(limits_, map_, config_));
@@ -143,7 +141,7 @@ void Controller::move_axes(const Inputs &in) noexcept {
     }
 }
 
-/// In every mode: those that are homed go where their pins say.
+/// In every mode: homed extra joints follow their pins.
 void Controller::move_extra_joints(const Inputs &in) noexcept {
     const ExtraJointEvents events =
         motion::step(extra_, extra_inputs(in, joints_, limits_, config_.period_s));
@@ -200,14 +198,14 @@ geometry::Pose Controller::teleop_pose() noexcept {
     return pose;
 }
 
-/// Of the path, or behind it while it is gone back.
+/// The pose of the path, or behind it in reverse run.
 geometry::Pose Controller::path_pose() noexcept {
     const trajectory::ExecutorOutput &path = executor_.step(cycle_);
     geometry::Pose pose = path.position;
     if (path.tap.isLost) [[unlikely]] {
         stop_category_1(FaultKind::TAP_LOST, path.tap.spindle);
     }
-    // Who has done all that was commanded stays: a program that waits knows that place as its own.
+    // A path that has ended keeps its position: a program that waits relies on it.
     const bool isPathHeld = executor_.isAtRest() && !executor_.isEmpty();
     const RetraceInputs in{executor_.snapshot().drops,
                            holds_.isReverseWanted,
@@ -227,7 +225,7 @@ void Controller::move_to(const geometry::Pose &pose) noexcept {
     const PerJoint here = commanded(joints_);
     PerJoint positions = here;
     if (!isAnswered(kinematics_.inverse(pose, positions.data()))) [[unlikely]] {
-        // The planner keeps off such poses; were one to come, nothing sensible can be commanded any more.
+        // The planner avoids such poses; if one comes, no valid command is possible.
         stop_category_0(FaultKind::KINEMATICS_FAILED, -1);
         return;
     }
@@ -246,7 +244,7 @@ void Controller::move_to(const geometry::Pose &pose) noexcept {
     }
 }
 
-/// The type that the pin wants, once nothing moves and no path waits.
+/// Activates the type of the pin once nothing moves and no path waits.
 void Controller::step_kinematics(const Inputs &in) noexcept {
     kinematics::TypeSwitch *types = kinematics_.type_switch();
     if (types == nullptr) [[likely]] {
@@ -271,7 +269,8 @@ void Controller::step_kinematics(const Inputs &in) noexcept {
     }
 }
 
-/// Joints stand, and have the pose of the new type from here. Where that has none for them the old one stays.
+/// The joints are stopped and get the pose of the new type. If the type has no pose for them, the old one
+/// stays.
 void Controller::switch_kinematics(kinematics::TypeSwitch &types) noexcept {
     geometry::Pose pose = place_.cmd;
     bool isSwitched = types.switch_to(types_.wanted);

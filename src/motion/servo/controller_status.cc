@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The snapshot that everybody else sees: each part fills in what it owns.
+// The status snapshot for all clients: each part writes its own fields.
 #include <algorithm>
 #include <atomic>
 
@@ -8,8 +8,8 @@
 namespace mw::motion {
 namespace {
 
-/// Parts that may be other than in the last cycle; what seldom changes is compared where somebody has touched
-/// it.
+/// Parts that may differ from the last cycle. Values that seldom change are compared only where they may have
+/// been changed.
 PartMask new_parts(const PublishedStatus &published, Outputs &out) noexcept {
     const Status &s = out.status;
     PartMask seldom = 0;
@@ -21,17 +21,17 @@ PartMask new_parts(const PublishedStatus &published, Outputs &out) noexcept {
            part_range(status_part::SPINDLES, s.num_spindles) | seldom;
 }
 
-/// A joint that was loaded and is not in use: it asks nothing of its drive.
+/// A joint that was loaded and is not in use: it commands nothing to its drive.
 void fill_unused(const JointInputs &in, int j, Outputs &out) noexcept {
     const auto n = static_cast<std::size_t>(j);
     out.status.joint[n] = {};
-    out.settings_version = 0;  // its limits are due again once it is in use
+    out.settings_version = 0;  // its limits are published again when it is used
     out.status.joint[n].motor_pos_fb = in.motor_pos_fb;
     out.joint[n] = {};
     out.joint[n].motor_pos_cmd = in.motor_pos_fb;
 }
 
-/// `sample` has what the status does not contain.
+/// `sample` gets the values that the status does not contain.
 void trace(Channels &channels, const Status &s, const Joints &joints, TraceSample &sample) noexcept {
     sample.cycle = s.cycle;
     sample.path_id = s.active_path_id;
@@ -49,7 +49,7 @@ void trace(Channels &channels, const Status &s, const Joints &joints, TraceSampl
     }
 }
 
-/// What the settings say themselves.
+/// Values of the settings.
 void fill_settings(const Settings &settings, Outputs &out) noexcept {
     Status &s = out.status;
     for (int j = 0; j < s.num_joints; ++j) {
@@ -69,7 +69,7 @@ void fill_settings(const Settings &settings, Outputs &out) noexcept {
     out.settings_version = settings.version();
 }
 
-/// Directions stay where nothing moves.
+/// Directions keep their values without motion.
 void fill_heading(const trajectory::PathStore &store, std::uint64_t move, const geometry::Pose &place,
                   Outputs &out) noexcept {
     const Status &s = out.status;
@@ -117,7 +117,7 @@ void Controller::publish(const Inputs &in, Outputs &out) noexcept {
         fill(offsets_, out);
     }
     fill(extra_, limits_.homed.joints, out);
-    out.isHomingQuiet = out.isHomingQuiet && indexers_.mask == 0;  // they add to what it shows
+    out.isHomingQuiet = out.isHomingQuiet && indexers_.mask == 0;  // they add to its outputs
     fill(homing_, out);
     fill(indexers_, out);
     fill(spindles_, in, power_.isEnabled, out);
@@ -138,7 +138,7 @@ void Controller::publish(const Inputs &in, Outputs &out) noexcept {
     }
 }
 
-/// What is being executed, and what is left of the path. `programmed`: the place without external offsets.
+/// The executed move and the rest of the path. `programmed`: the position without external offsets.
 void Controller::fill_path(Status &s, const geometry::Pose &programmed) const noexcept {
     s.queue_depth = link_->queue_depth.load(std::memory_order_relaxed);
     s.isQueueFull = link_->isQueueFull.load(std::memory_order_relaxed) != 0;
@@ -168,7 +168,7 @@ void Controller::fill_path(Status &s, const geometry::Pose &programmed) const no
     s.isProbing = e.isOnProbe;
 }
 
-/// What the path planner sees.
+/// The controller's state for the path planner.
 void Controller::publish_view(const Inputs &in, const geometry::Pose &programmed) noexcept {
     PathView &v = link_->newest;
     v.executor = executor_.snapshot();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the controller reads and writes each servo cycle; the HAL adapter and the tests fill and take it.
+// Inputs and outputs of the controller in each servo cycle; the HAL adapter and the tests write and read
+// them.
 #pragma once
 
 #include <array>
@@ -15,7 +16,7 @@ namespace mw::motion {
 struct WheelInput {
     std::int32_t counts = 0;
     double scale = 0;           ///< [unit per count]
-    double accel_fraction = 1;  ///< of the highest acceleration; outside (0, 1]: 1
+    double accel_fraction = 1;  ///< part of the acceleration limit; outside (0, 1]: 1
     bool isEnabled = false;
     bool isVelocityMode = false;
 };
@@ -62,7 +63,7 @@ struct Inputs {
     std::array<SpindleInputs, MAX_SPINDLES> spindle{};
 };
 
-/// What seldom changes of what pins show of a joint: it is compared before it is written.
+/// Pin values of a joint that seldom change: they are compared before they are written.
 struct SeldomJointOutputs {
     double backlash_raw = 0, backlash_filtered = 0, backlash_velocity = 0;
     double motor_offset = 0;
@@ -73,7 +74,7 @@ struct SeldomJointOutputs {
     int home_state = 0;
 };
 
-/// Beside `Status`, which holds most of what the pins show.
+/// Pin values that are not in `Status`.
 struct JointOutputs : SeldomJointOutputs {
     double motor_pos_cmd = 0;
     double coarse_pos = 0, acc_cmd = 0;
@@ -109,8 +110,8 @@ inline constexpr PartMask SELDOM_PARTS = part_range(status_part::AXES, 1) |
 
 struct Outputs {
     Status status;
-    PartMask touched = SELDOM_PARTS;  ///< of these, what may be other than it was published last
-    std::uint32_t axes = ALL_AXES;    ///< bit per axis that the machine may have: of others no pin is read
+    PartMask touched = SELDOM_PARTS;  ///< of these, parts that may differ from the last publication
+    std::uint32_t axes = ALL_AXES;    ///< bit per axis that the machine may have: pins of others are not read
     std::array<JointOutputs, MAX_JOINTS> joint{};
     std::array<AxisOutputs, MAX_AXES> axis{};
     std::array<SpindleOutputs, MAX_SPINDLES> spindle{};
@@ -118,9 +119,9 @@ struct Outputs {
     bool isJogging = false;
     bool isCoordError = false, isOnSoftLimit = false;
     double mm_per_unit = 1;
-    bool isHomingQuiet = true;           ///< what homing shows is as when nothing homes
-    bool areJogsQuiet = false;           ///< what jogs show is as when nobody jogs
-    bool areOffsetsQuiet = false;        ///< no axis has an external offset, and all are shown so
+    bool isHomingQuiet = true;           ///< the homing outputs have their values without homing
+    bool areJogsQuiet = false;           ///< the jog outputs have their values without a jog
+    bool areOffsetsQuiet = false;        ///< no axis has an external offset, and the outputs show it
     std::uint32_t settings_version = 0;  ///< Settings::version() that `status` and mm_per_unit follow
     bool isOffsetActive = false, isOffsetLimited = false;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What a path keeps that the servo thread stops by itself.
+// Limits of a path that the servo thread stops by itself.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace mw::motion {
 
-/// The joints at a pose, of several answers the one beside what is commanded now. [servo]
+/// The joints at a pose; of several solutions the one nearest to the command. [servo]
 class CommandedJoints final : public trajectory::JointMap {
   public:
     CommandedJoints(const kinematics::Kinematics &kinematics, const Joints &joints) noexcept
@@ -27,8 +27,8 @@ class CommandedJoints final : public trajectory::JointMap {
     const Joints &joints_;
 };
 
-/// The limits with the joints that they are of. Of a copied controller it is made anew, as it knows that
-/// controller's joints.
+/// The limits with the joints that they belong to. A copied controller makes its own, because these refer to
+/// the joints of the original.
 class PathStopLimits {
   public:
     PathStopLimits(const kinematics::Kinematics &kinematics, const Joints &joints) noexcept

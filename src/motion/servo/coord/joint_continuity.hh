@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Where a pose leads the joints: to where they stand, or with a step.
+// Checks whether the joint positions of a pose agree with the current ones, or the joints would jump.
 #pragma once
 
 #include <array>
@@ -10,32 +10,32 @@
 
 namespace mw::motion {
 
-/// Of each joint.
+/// One value per joint.
 using JointValues = std::array<double, MAX_JOINTS>;
 
-/// What joints can do in a servo cycle.
+/// Limits of the joints in a servo cycle.
 struct JointStepLimit {
     const double *velocity = nullptr;  ///< limits, per joint [machine units or degrees/s]
     double period_s = 0;
     int num_joints = 0;
 };
 
-/// In Cartesian modes the pose commands the joints: true when it leads to where they stand, with no step that
-/// they cannot take in a cycle.
+/// In Cartesian modes the pose commands the joints: true when the step to the joint positions of the pose is
+/// possible in one cycle.
 bool isWithinOneStep(const kinematics::Kinematics &kinematics, const geometry::Pose &pose,
                      const JointValues &here, const JointStepLimit &stride) noexcept;
-/// What the planner has seen keeps the limits of the joints; a step beyond them comes from a pin of the
-/// kinematics that was changed. The joint that would make one, -1 for none.
+/// The planner has checked the joint limits of its moves, so a larger step comes from a change of a pin of
+/// the kinematics. Returns the joint that would jump, -1 for none.
 int joint_that_jumps(const JointValues &positions, const JointValues &here,
                      const JointStepLimit &stride) noexcept;
 
-/// Where the joints stood when a path was begun.
+/// Joint positions at the start of a path.
 struct JointStart {
     JointValues joints{};
-    std::uint32_t count = 0;  ///< of the times that they were told
-    std::uint64_t drops = 0;  ///< of paths, as seen
+    std::uint32_t count = 0;  ///< counts how often they were published
+    std::uint64_t drops = 0;  ///< of paths, until now
 };
-/// A path was dropped and the joints stand elsewhere than at its end: true once for each.
+/// True once for each path that was dropped while the joints were not at its end.
 bool hasDropped(JointStart &standing, const trajectory::Snapshot &now) noexcept;
 
 }  // namespace mw::motion

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Kinematics of several types: which is in force, and when it may be another (motion.switchkins-type). The
-// joints stand while it changes; the pose is the one that the new type has for them.
+// Kinematics of several types: the active type, and when it may change (motion.switchkins-type). The joints
+// are stopped during a change; the pose is the one that the new type has for them.
 #pragma once
 
 #include <cstdint>
@@ -8,20 +8,20 @@
 namespace mw::motion {
 
 struct KinematicsTypes {
-    int type = 0;               ///< in force
-    int wanted = 0;             ///< of the pin
+    int type = 0;               ///< active
+    int wanted = 0;             ///< value of the pin
     std::uint32_t asks = 0;     ///< counts changes of the pin
-    std::uint8_t switches = 0;  ///< counts them, round and round
-    bool isPending = false;     ///< the type wanted is not in force yet
-    bool isTold = false;        ///< that it cannot be
+    std::uint8_t switches = 0;  ///< counts changes of the type, with overflow
+    bool isPending = false;     ///< the type of the pin is not active yet
+    bool isTold = false;        ///< a message has reported that the type is not possible
 };
 
 struct TypeInputs {
     double pin = 0;
     bool isOnPath = false;  ///< a path is driven or waits
     bool isMoving = false;  ///< joints or axes are jogged or homed
-    /// The count of asks that the path planner has seen while it had nothing: it takes no path until the new
-    /// type is in force.
+    /// The count of requests that the path planner has seen while it was empty: it takes no path until the
+    /// new type is active.
     std::uint32_t seen = 0;
 };
 
@@ -30,13 +30,12 @@ enum class TypeStep : std::uint8_t {
     WAIT,
     SWITCH,        ///< to `wanted`, now
     NO_SUCH_TYPE,  ///< the pin is no whole number of 0 or more
-    ON_PATH,       ///< asked for while a path is driven: the path is to be stopped. Told once
+    ON_PATH,       ///< requested while a path is driven: the path is to be stopped. Reported once
 };
 
 /// One cycle.
 TypeStep step(KinematicsTypes &types, const TypeInputs &in) noexcept;
-/// What came of SWITCH: when there is no such type, or no pose of it, the one in force stays until the pin
-/// changes.
+/// Result of SWITCH: if the type does not exist or has no pose, the active type stays until the pin changes.
 void settle(KinematicsTypes &types, bool isSwitched) noexcept;
 
 }  // namespace mw::motion

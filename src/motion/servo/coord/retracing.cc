@@ -18,7 +18,7 @@ double square_xyz(const std::array<double, Changes::PADDED> &p) noexcept {
            p[geometry::AXIS_Z] * p[geometry::AXIS_Z];
 }
 
-/// A path that is dropped while it is gone back ends where that comes to a stand.
+/// A path that is dropped during reverse run ends at the current position.
 void follow_drops(Retracing &r, std::uint64_t drops) noexcept {
     if (drops == r.drops_seen) [[likely]] {
         return;
@@ -31,7 +31,7 @@ void follow_drops(Retracing &r, std::uint64_t drops) noexcept {
     }
 }
 
-/// How much of the limits the largest changes use.
+/// Use of the limits by the largest changes.
 trajectory::Retrace::Use use_of(const Changes &changes, const RetraceLimits &in) noexcept {
     trajectory::Retrace::Use use;
     const double per_s = 1.0 / in.period_s;
@@ -58,16 +58,16 @@ trajectory::Retrace::Use use_of(const Changes &changes, const RetraceLimits &in)
     return use;
 }
 
-/// What has been recorded since the last time, weighed against the limits: takes longer than recording.
+/// Compares the changes recorded since the last call with the limits; this takes longer than recording.
 void weigh(Retracing &r, const RetraceLimits &limits) noexcept {
     r.retrace.include(use_of(r.changes, limits));
     r.changes = {};
 }
 
-/// Where the way back goes so slowly that standing at once is within all limits: the path came to rest there,
-/// and what it was recorded with is gone back with.
+/// True where reverse run is so slow that an immediate stop is within all limits: the path stopped there, and
+/// reverse run has the recorded speeds.
 bool mayStandAtOnce(const Changes &last, const RetraceLimits &limits) noexcept {
-    // A step that ends asks for the jerk of twice itself, and of its bend.
+    // The stop of a step requires the jerk of twice the step and of its second difference.
     constexpr double STEP_SHARE = 0.25, BEND_SHARE = 0.5;
     const double t = limits.period_s;
     const trajectory::Retrace::Use use = use_of(last, limits);
@@ -103,7 +103,7 @@ bool step(Retracing &r, geometry::Pose &pose, const RetraceInputs &in, const Ret
         r.wasStill = false;
     }
     const bool isStill = in.isStandingWanted || r.isPathLeft || in.isStopping;
-    // Braked as all else it would be led where the path was faster: seen to go off after the stop.
+    // With ordinary braking it would move at the recorded speed of the path, visibly after the stop.
     if (isStill && !r.wasStill && retrace.isMoving() && mayStandAtOnce(r.last, limits)) {
         retrace.stand();
     }

@@ -11,7 +11,7 @@ trajectory::FollowLimits limits_of(const FoldedLimits &limits, std::size_t n) no
     return {most.velocity, most.acceleration, most.jerk, limits.joints.low[n], limits.joints.high[n]};
 }
 
-/// `isChanged`: the pin, since the last cycle.
+/// `isChanged`: the pin has changed since the last cycle.
 Following next(const ExtraJoint &joint, bool isChanged, double period_s) noexcept {
     switch (joint.state) {
     case Following::NONE: return Following::PIN;
@@ -46,7 +46,7 @@ ExtraJointEvents step(ExtraJoints &extra, const ExtraJointInputs &in) noexcept {
         events.lost |= isNumber ? 0U : bit;
         const bool isTakenOver = joint.state == Following::NONE;
         joint.state = next(joint, isChanged, in.period_s);
-        if (isTakenOver) {  // the planner before may have come to its end within this cycle: one of rest
+        if (isTakenOver) {  // the move before may have ended within this cycle
             joint.planner.reset(in.positions[n], limits, in.period_s);
             joint.isLimitTold = false;
             continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Extra joints: homed like any other, moved by no pose; once homed they go where their pin says, within their
+// Extra joints: homed like other joints, moved by no pose. Once homed they follow their pin within their
 // limits.
 #pragma once
 
@@ -15,9 +15,9 @@ namespace mw::motion {
 
 enum class Following : std::uint8_t {
     NONE,   ///< not homed: jogs and homing move it
-    HELD,   ///< stopped: it brakes, and stands until the pin has settled
-    READY,  ///< it stands until the pin changes
-    PIN,    ///< it goes where the pin says
+    HELD,   ///< stopped: brakes, then waits until the pin has settled
+    READY,  ///< waits until the pin changes
+    PIN,    ///< follows the pin
 };
 
 struct ExtraJoint {
@@ -37,26 +37,26 @@ struct ExtraJoints {
     std::uint32_t mask() const noexcept { return ((1U << count) - 1U) << first; }
 };
 
-/// For how long a pin has stood still when it has settled [s].
+/// Time without a change after which a pin has settled [s].
 inline constexpr double SETTLED_PIN_S = 0.1;
 
 struct ExtraJointInputs {
     const std::array<JointInputs, MAX_JOINTS> &pins;
     std::array<double, MAX_JOINTS> positions{};  ///< commanded
     const FoldedLimits &limits;
-    std::uint32_t homed = 0;  ///< bit per joint that is homed and not left out
+    std::uint32_t homed = 0;  ///< bit per joint that is homed and active
     double period_s = 1e-3;
 };
 struct ExtraJointEvents {
-    std::uint32_t lost = 0;    ///< bit per joint whose pin is no number any more
-    std::uint32_t beyond = 0;  ///< bit per joint whose pin has begun to ask for what lies beyond its range
+    std::uint32_t lost = 0;    ///< bit per joint whose pin is no longer a number
+    std::uint32_t beyond = 0;  ///< bit per joint whose pin has just left its range
 };
-/// A cycle of those that are homed; the others are not touched.
+/// A cycle of the homed ones; the others are not changed.
 ExtraJointEvents step(ExtraJoints &extra, const ExtraJointInputs &in) noexcept;
 
 /// Switched on: no motion until a pin changes.
 void switch_on(ExtraJoints &extra, const ExtraJointInputs &in) noexcept;
-/// They brake; a pin that goes on changing does not move them.
+/// The joints brake. A pin that keeps changing does not move them.
 void hold(ExtraJoints &extra) noexcept;
 bool areAtRest(const ExtraJoints &extra) noexcept;
 void fill(const ExtraJoints &extra, std::uint32_t homed, Outputs &out) noexcept;

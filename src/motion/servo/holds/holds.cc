@@ -10,18 +10,18 @@ namespace mw::motion {
 
 namespace {
 
-/// What rounding may make of a scale that is just allowed.
+/// Rounding of a scale at its limit.
 constexpr double SCALE_ROUNDING = 1e-9;
 
 }  // namespace
 
 void step(Holds &holds, const HoldInputs &in) noexcept {
-    // What is not a number stands for no feed: a broken sensor must not let the machine run.
+    // A value that is not a number is a feed of 0: a broken sensor must not let the machine run.
     const double wanted = std::isfinite(in.adaptive_feed) ? std::clamp(in.adaptive_feed, -1.0, 1.0) : 0.0;
     const double adaptive = holds.isAdaptiveFeedEnabled ? wanted : 1.0;
     holds.isReverseWanted = (adaptive < 0) != holds.isReverse;
     holds.reverse_rate = trajectory::Retrace::HIGHEST_RATE * std::abs(adaptive);
-    // What waits for its turn while going back keeps its speed.
+    // Commands that wait during reverse run keep their speed.
     holds.net_feed_scale = holds.jog_scale() * std::abs(adaptive);
     const bool isFeedHeld = (holds.isFeedHoldEnabled && in.isFeedHeld) || in.isFeedInhibited;
     holds.isStandingWanted = holds.isPaused || isFeedHeld;

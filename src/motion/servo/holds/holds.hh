@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What keeps the path from going on, and how fast it goes: pause, step, feed hold, reverse run, overrides.
+// Pauses and speed of the path: pause, step, feed hold, reverse run, overrides.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ struct Holds {
 
     // As of the last cycle.
     bool isReverseWanted = false;   ///< by command, or by adaptive feed below 0
-    bool isStandingWanted = false;  ///< paused or held
+    bool isStandingWanted = false;  ///< paused or feed hold
     double reverse_rate = 0;        ///< of the commanded speed, without its sign
     double net_feed_scale = 1;
 
@@ -38,13 +38,13 @@ void step(Holds &holds, const HoldInputs &in) noexcept;
 CommandResult take(Holds &holds, const Pause &command) noexcept;
 CommandResult take(Holds &holds, const Resume &command) noexcept;
 CommandResult take(Holds &holds, const StepOnce &command) noexcept;
-/// `isWayKnown`: there is a path to go back along.
+/// `isWayKnown`: a recorded path for reverse run exists.
 CommandResult take(Holds &holds, const SetReverse &command, bool isWayKnown) noexcept;
 CommandResult take(Holds &holds, const SetMaxVelocity &command) noexcept;
-/// Of feed and rapids; `max_feed_scale` is the machine's highest.
+/// Of feed and rapids; `max_feed_scale` is the machine's maximum.
 CommandResult take(Holds &holds, const SetScale &command, double max_feed_scale) noexcept;
 CommandResult take(Holds &holds, const SetSwitch &command) noexcept;
-/// Motion has been stopped: nothing is left to go on with.
+/// Motion has been stopped: no path remains to continue.
 void release(Holds &holds) noexcept;
 void fill(const Holds &holds, Status &status) noexcept;
 

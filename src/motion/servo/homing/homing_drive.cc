@@ -11,7 +11,7 @@ namespace {
 
 constexpr int ALL = -1, VOLATILE_ONES = -2;
 
-/// Ours is called directly: this is asked in every cycle.
+/// Millwright's homing is called directly: every cycle calls it.
 template <class Function>
 auto with_module(const HomingDrive &drive, const Function &function) noexcept {
     return drive.foreign != nullptr ? function(*drive.foreign) : function(drive.own);
@@ -73,7 +73,7 @@ CommandResult take(HomingDrive &drive, const Unhome &command, const HomeConditio
         return result_of(j, Reason::MOVING);
     }
     if (conditions.isReady && conditions.mode != Mode::FREE) {
-        return result_of(j, Reason::WRONG_MODE);  // a pose stands on the homes
+        return result_of(j, Reason::WRONG_MODE);  // the pose depends on the homes
     }
     std::uint32_t meant = 0;
     for (int k = 0; k < drive.num_joints; ++k) {
@@ -91,8 +91,8 @@ CommandResult take(HomingDrive &drive, const Unhome &command, const HomeConditio
 
 namespace {
 
-/// The way at the latch velocity in which play is taken up, with the half of the joint's limits that
-/// corrections have: as far from the switch the slow move may begin.
+/// Travel at the latch velocity in which backlash is compensated, with the half of the joint's limits that
+/// corrections have. The slow move may begin at this distance from the switch.
 double way_of_play(const Settings &settings, int j) noexcept {
     const auto get = [&](Parameter p) { return settings.get(p, j); };
     const double play = get(Parameter::JOINT_BACKLASH);
@@ -179,7 +179,8 @@ homing::Failure begin_due(HomingDrive &drive, const HomeConditions &conditions) 
 
 namespace {
 
-/// A foreign module does not say why it ends: a joint that homed and is not homed now has failed.
+/// A user's module does not report why homing ends: a joint that was being homed and is not homed now has
+/// failed.
 int joint_given_up(HomingDrive &drive) noexcept {
     std::uint32_t homing = 0;
     for (int j = 0; j < drive.num_joints; ++j) {

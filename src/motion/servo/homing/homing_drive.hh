@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Homing as a command: it begins when the jogs that it has stopped are at rest, and tells once what has
-// failed.
+// Homing as a command: it begins when the jogs that it has stopped have ended, and reports each failure once.
 #pragma once
 
 #include <array>
@@ -17,13 +16,13 @@ namespace mw::motion {
 
 struct HomingDrive {
     homing::Homing own;
-    homing::Module *foreign = nullptr;  ///< takes its place
+    homing::Module *foreign = nullptr;  ///< replaces it
     int num_joints = 0;                 ///< of the machine
-    int num_to_home = 0;                ///< of the kinematics: the machine is homed when these are
+    int num_to_home = 0;                ///< joints of the kinematics: the machine is homed when these are
     bool isDue = false;
     int due = -1;             ///< the joint, -1: all
-    std::uint32_t known = 0;  ///< homing in the last cycle, bit per joint; of a foreign module
-    bool isEndAsked = false;  ///< it ends because it was told to
+    std::uint32_t known = 0;  ///< homed in the last cycle, bit per joint; of a user's module
+    bool isEndAsked = false;  ///< it ends by a command
 
     homing::Module &module() noexcept {
         return foreign != nullptr ? *foreign : static_cast<homing::Module &>(own);
@@ -31,7 +30,7 @@ struct HomingDrive {
     const homing::Module &module() const noexcept {
         return foreign != nullptr ? *foreign : static_cast<const homing::Module &>(own);
     }
-    // What every cycle asks, of ours without the look-up that module() costs.
+    // Called in every cycle; for Millwright's homing without the look-up of module().
     bool isActive() const noexcept {
         if (foreign != nullptr) [[unlikely]] {
             return foreign->isActive();
@@ -50,50 +49,50 @@ struct HomingDrive {
         }
         return own.take_clamped();
     }
-    /// Or about to begin.
+    /// Active, or about to begin.
     bool isUnderWay() const noexcept { return isActive() || isDue; }
     bool isIgnoringLimits(int joint) const noexcept {
         return module().isHoming(joint) && own.parameters(joint).isIgnoringLimits;
     }
 };
 
-/// Bit per homed joint: soft limits hold from there on.
+/// Bit per homed joint: soft limits apply from there on.
 [[gnu::hot]] std::uint32_t homed_mask(const HomingDrive &drive) noexcept;
 bool isAllHomed(const HomingDrive &drive) noexcept;
 
 struct HomeConditions {
-    bool isReady = false;  ///< machine on, no stop under way
+    bool isReady = false;  ///< machine on and not stopping
     Mode mode = Mode::FREE;
     bool isInhibited = false, isMoving = false;
-    std::uint32_t inactive = 0;       ///< bit per joint that is left out
+    std::uint32_t inactive = 0;       ///< bit per inactive joint
     std::uint32_t kept_while_on = 0;  ///< bit per joint that may not lose its home now
 };
-/// Done means asked for: whatever is jogged is to be brought to rest.
+/// Accepted means requested: all jogs are stopped first.
 CommandResult take(HomingDrive &drive, const Home &command, const HomeConditions &conditions) noexcept;
 CommandResult take(HomingDrive &drive, const Unhome &command, const HomeConditions &conditions,
                    const Settings &settings) noexcept;
 
 /// Takes the settings of joint j.
 void configure(HomingDrive &drive, int j, const Settings &settings) noexcept;
-/// How far to back off for play; `configure` does it too.
+/// Sets the distance to back off for backlash; `configure` does it too.
 void note_play(HomingDrive &drive, int j, const Settings &settings) noexcept;
-/// The axis that joint j moves, -1: none; joints of one axis that end homing together keep together.
+/// The axis that joint j moves, -1: none; joints of one axis that end homing together stay aligned.
 void set_axis(HomingDrive &drive, int j, int axis) noexcept;
-/// `joint`: the one that `why` has happened to, -1: none.
+/// `joint`: the joint that caused `why`, -1: none.
 void abort(HomingDrive &drive, homing::event::Event why, int joint = -1) noexcept;
 /// Switched off: joints with a volatile home lose it.
 void switch_off(HomingDrive &drive, const Settings &settings) noexcept;
 
-/// A cycle before the joints move: homing that is due begins when nothing moves; the failure of one that may
-/// not.
+/// A cycle before the joints move: homing that is due begins when nothing moves. Returns the failure of
+/// homing that may not begin.
 homing::Failure begin_due(HomingDrive &drive, const HomeConditions &conditions) noexcept;
 struct HomingFailure {
     int joint = -1;  ///< -1: none
     homing::Failure why = homing::Failure::NONE;
 };
-/// What has failed in this cycle by itself; not what was aborted.
+/// Failures of this cycle, without aborted joints.
 HomingFailure take_failure(HomingDrive &drive) noexcept;
-/// Whether each command of a foreign module is one that a joint can be given; ends homing where one is not.
+/// True if all commands of a user's module are finite numbers; otherwise homing ends.
 bool areFinite(const HomingDrive &drive, const homing::JointCommand *commands) noexcept;
 
 void fill(const HomingDrive &drive, Outputs &out) noexcept;

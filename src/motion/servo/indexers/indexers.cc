@@ -32,7 +32,7 @@ LockStep next(LockState state, const LockSituation &s) noexcept {
         }
         return {s.isWanted || s.isMoving ? LockState::UNLOCKED : LockState::LOCKING};
     case LockState::LOCKING:
-        // Not unlocked anew before it has locked: is-unlocked may still be that of the time before.
+        // Not unlocked again before it has locked: is-unlocked may still have its old value.
         if (!s.isUnlocked) {
             return {LockState::LOCKED};
         }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Locking indexers: joints that a lock holds but for their own moves. Before a jog or a G0 of theirs they are
-// asked to unlock and waited for, after it to lock; homing asks by itself. None moves unless it is unlocked.
+// Locking indexers: joints that are locked except during their own moves. Before a jog or G0 of such a joint
+// it is unlocked, and locked after it; homing does this by itself. A joint moves only while it is unlocked.
 #pragma once
 
 #include <array>
@@ -13,28 +13,28 @@ namespace mw::motion {
 
 enum class LockState : std::uint8_t {
     LOCKED,
-    UNLOCKING,  ///< asked, and not yet unlocked
+    UNLOCKING,  ///< requested, not yet unlocked
     UNLOCKED,   ///< it may move
-    LOCKING,    ///< asked, and not yet locked
+    LOCKING,    ///< requested, not yet locked
     STUCK,      ///< it has not locked in time
 };
 
 struct Indexers {
     std::uint32_t mask = 0;    ///< bit per joint that has a lock
-    std::uint32_t homing = 0;  ///< those that homing has now
+    std::uint32_t homing = 0;  ///< joints that are being homed
     std::array<LockState, MAX_JOINTS> state{};
     std::array<int, MAX_JOINTS> wait{};  ///< cycles in this state
 };
 
-/// How long a lock may take [s].
+/// Maximum time of locking or unlocking [s].
 inline constexpr double LONGEST_LOCK_S = 30;
 
 /// Bits per joint.
 struct IndexerInputs {
-    std::uint32_t wanted = 0;    ///< something is to move it
+    std::uint32_t wanted = 0;    ///< a move of it is requested
     std::uint32_t moving = 0;    ///< it moves
-    std::uint32_t unlocked = 0;  ///< so says its pin
-    std::uint32_t homing = 0;    ///< homing has it
+    std::uint32_t unlocked = 0;  ///< by its pin
+    std::uint32_t homing = 0;    ///< it is being homed
     double period_s = 1e-3;
 };
 enum class LockFault : std::uint8_t { NONE, NOT_UNLOCKED, NOT_LOCKED, LOCKED_IN_MOVE };
@@ -47,7 +47,7 @@ IndexerEvent step(Indexers &indexers, const IndexerInputs &in) noexcept;
 
 /// All lock at once: the machine goes off.
 void switch_off(Indexers &indexers) noexcept;
-/// Switched on: what the pins say of them.
+/// Switched on: state from the pins.
 void switch_on(Indexers &indexers, const IndexerInputs &in) noexcept;
 
 /// Joints that may not be moved now.

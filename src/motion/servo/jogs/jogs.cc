@@ -11,7 +11,7 @@ namespace mw::motion {
 
 namespace {
 
-/// What rounding may make of a place that is just within the range.
+/// Rounding of a position at the end of the range.
 constexpr double RANGE_ROUNDING = 1e-9;
 
 std::size_t at(int i) noexcept {
@@ -31,15 +31,15 @@ JogTarget target_of_bit(int bit) noexcept {
     return {bit < MAX_JOINTS, bit < MAX_JOINTS ? bit : bit - MAX_JOINTS};
 }
 
-/// No longer than what brings a joint or axis to its highest speed soonest: V / a + 2 a / J is least at
-/// sqrt(2 V / J).
+/// At most the time in which a joint or axis reaches its maximum speed soonest: V / a + 2 a / J has its
+/// minimum at sqrt(2 V / J).
 double mean_for(const JogLimits &most) noexcept {
     return most.jerk > 0
                ? std::min(2.0 * most.acceleration, std::sqrt(2.0 * most.velocity * most.jerk)) / most.jerk
                : 0.0;
 }
 
-/// A jog at rest is over.
+/// False once the jog has stopped.
 bool isJogged(Jog &jog) noexcept {
     if (jog.source == JogSource::NONE) [[likely]] {
         return false;
@@ -55,7 +55,7 @@ struct JogMove {
     JogSource source = JogSource::NONE;
 };
 
-/// A stop takes all the acceleration that there is.
+/// A stop uses the full acceleration.
 void brake(Jog &jog) noexcept {
     if (jog.brake_acceleration > jog.wanted_acceleration) {
         jog.wanted_acceleration = jog.brake_acceleration;
@@ -64,14 +64,14 @@ void brake(Jog &jog) noexcept {
     jog.planner.stop();
 }
 
-/// Sets the planner of a jog that has been checked.
+/// Sets the planner of a checked jog.
 Reason start(Jogs &jogs, const JogTarget &target, const JogMove &move, const JogSituation &s) noexcept {
     if (!std::isfinite(move.position) || !std::isfinite(move.velocity)) {
         return Reason::NOT_A_NUMBER;
     }
     Jog &jog = jogs.at(target);
     trajectory::AxisTrajectory &p = jog.planner;
-    // From outside the limits every move back in is welcome, none further out.
+    // From outside the limits a move may go back in, but not further out.
     const double low = std::min(s.range.low, p.position);
     const double high = std::max(s.range.high, p.position);
     if (move.position < low - RANGE_ROUNDING || move.position > high + RANGE_ROUNDING) {
@@ -93,7 +93,7 @@ Reason start(Jogs &jogs, const JogTarget &target, const JogMove &move, const Jog
     return Reason::NONE;
 }
 
-/// To the end of the range.
+/// Jogs to the end of the range.
 Reason start_continuous(Jogs &jogs, const JogTarget &target, double velocity,
                         const JogSituation &s) noexcept {
     const double end = velocity > 0 ? s.range.high : s.range.low;
@@ -113,7 +113,7 @@ bool isRenewable(const Jogs &jogs, const JogContinuous &command) noexcept {
     return isLive && jogs.at(command.target).lease.isForward == (command.velocity > 0);
 }
 
-/// The jog keeps where it goes to, so what has stood still at a limit stays there.
+/// The jog keeps its target, so a jog that is stopped at a limit stays there.
 void renew(Jogs &jogs, const JogContinuous &command, const JogSituation &s) noexcept {
     Jog &jog = jogs.at(command.target);
     trajectory::AxisTrajectory &p = jog.planner;
@@ -381,7 +381,7 @@ bool areAxesAtRest(const Jogs &jogs) noexcept {
 }
 
 double turned(Jog &jog, const WheelInput &wheel) noexcept {
-    // Unsigned difference: counters wrap.
+    // Unsigned difference: counters overflow.
     const auto delta = static_cast<std::int32_t>(static_cast<std::uint32_t>(wheel.counts) -
                                                  static_cast<std::uint32_t>(jog.wheel_counts));
     const double distance = delta * wheel.scale;
@@ -411,7 +411,8 @@ void jog_by_wheel(Jogs &jogs, const JogTarget &target, double distance, const Wh
         const bool isFraction = wheel.accel_fraction > 0 && wheel.accel_fraction <= 1;
         p.max_acceleration *= isFraction ? wheel.accel_fraction : 1.0;
         jog.wanted_acceleration = p.max_acceleration;
-        // What joints leave of an axis changes on its way: there a stop keeps to what it has.
+        // The limits that joints leave to an axis change along its path: a stop keeps the limits at its
+        // start.
         jog.brake_acceleration = situation.isShared ? p.max_acceleration : jog.brake_acceleration;
     }
 }
@@ -449,7 +450,7 @@ void home_joint(Jog &jog, const homing::JointCommand &command, const JogLimits &
         return wanted > 0 ? std::min(wanted, highest) : highest;
     };
     p.max_acceleration = of(command.acceleration, most.acceleration);
-    // What stops where a switch says brakes as hard as the joint can.
+    // A stop at a switch uses the full deceleration of the joint.
     p.max_jerk = command.isSmooth && most.jerk > 0 ? of(command.jerk, most.jerk) : 0.0;
     p.mean_s = mean_for({most.velocity, p.max_acceleration, p.max_jerk});
     if (command.move == homing::Move::STOP) {

@@ -16,40 +16,41 @@
 
 namespace mw::motion {
 
-/// What a jog is driven by.
+/// Source of a jog.
 enum class JogSource : std::uint8_t { NONE, KEYBOARD, WHEEL };
 
-/// How long a continuous jog goes on without being renewed.
+/// Time after which a continuous jog ends if it is not renewed.
 struct JogLease {
     std::int64_t length_ns = 0, end_ns = 0;
     bool isForward = true;  ///< of the jog that it belongs to
 };
 
-/// What each cycle looks at of a jog that stands comes first and fills two lines of the cache: behind it are
-/// the samples of its planner.
+/// Members that every cycle reads of a stopped jog come first and fill two cache lines; the samples of its
+/// planner follow.
 struct alignas(64) Jog {
     JogSource source = JogSource::NONE;
     std::int32_t wheel_counts = 0;
-    double wanted_velocity = 0, wanted_acceleration = 0;  ///< before the override and joints limit them
-    double most_velocity = UNBOUNDED;                     ///< that the override may make of it
-    double brake_acceleration = 0;                        ///< what a stop takes: no wheel makes it gentler
+    double wanted_velocity = 0, wanted_acceleration = 0;  ///< before the override and the joints limit them
+    double most_velocity = UNBOUNDED;                     ///< limit of the override
+    double brake_acceleration = 0;  ///< deceleration of a stop: a wheel cannot reduce it
     JogLease lease;
     trajectory::AxisTrajectory planner;
 };
 
-/// Of axes on machines whose joints are not axes, with jerk limits.
+/// For axes on machines whose joints are not axes, with jerk limits.
 struct TeleopShares {
-    std::uint32_t axes = 0;  ///< bit per axis that has a share of what the joints can do
-    double calm_s = 0;       ///< for so long none of them has been faster than when all of `room` have one
-    std::uint32_t room = 0;  ///< bit per axis: they do no more than when all of these have a share; 0: any
+    std::uint32_t axes = 0;  ///< bit per axis that has a share of the joints' limits
+    double calm_s = 0;       ///< time in which none of them was faster than if all of `room` had a share
+    std::uint32_t room =
+        0;  ///< bit per axis: they are limited as if all of these had a share; 0: not limited
 };
 
 struct Jogs {
     int num_joints = 0;
-    bool areLimitsOverridden = false;  ///< limit switches are, until the next jog has ended
+    bool areLimitsOverridden = false;  ///< until the next jog has ended
     bool isOverrideInJog = false;      ///< that jog has begun
     bool isAnyJogged = false;          ///< by command or wheel, as of this cycle
-    bool isTeleopStopped = false;      ///< by a joint's limit, and said
+    bool isTeleopStopped = false;      ///< by a joint's limit, and reported
     std::uint32_t axes = ALL_AXES;     ///< bit per axis that the machine may have
     std::uint32_t leased = 0;          ///< bit per joint, then per axis, whose lease has not ended
     TeleopShares shares;
@@ -66,12 +67,12 @@ struct Jogs {
     }
 };
 
-/// There is such a joint or axis to jog.
+/// True if the joint or axis exists and can be jogged.
 bool hasTarget(const Jogs &jogs, const JogTarget &target) noexcept;
 
-/// What allows and bounds a jog of one joint or axis.
+/// Conditions and limits of a jog of one joint or axis.
 struct JogSituation {
-    bool isReady = false;  ///< machine on, no stop under way
+    bool isReady = false;  ///< machine on and not stopping
     Mode mode = Mode::FREE;
     bool isHoming = false, isInhibited = false;
     bool isMovable = false;        ///< the joint is active; a joint moves the axis
@@ -79,7 +80,7 @@ struct JogSituation {
     bool isDriven = false;         ///< by a pin
     bool isLocked = false;         ///< a lock is opened for the jog
     bool isShared = false;         ///< an axis of a machine whose joints are not axes
-    bool isBesideIndexer = false;  ///< something else moves, or one of the two is held by a lock
+    bool isBesideIndexer = false;  ///< something else moves, or one of the two is locked
     bool isOnPosLimit = false, isOnNegLimit = false;
     JogLimits most;
     JogRange range;
@@ -98,48 +99,48 @@ CommandResult take(Jogs &jogs, const OverrideLimits &command) noexcept;
 /// One axis of SetTeleopVector, after all of them were checked: at 0 it stops.
 Reason check_axis_jog(const Jogs &jogs, int axis, double velocity, const JogSituation &situation) noexcept;
 void jog_axis(Jogs &jogs, int axis, double velocity, const JogSituation &situation) noexcept;
-/// Every axis at its own speed, those at 0 stop; none of them where one is refused. `situations` has one for
-/// each axis.
+/// Jogs every axis at its own speed, and stops those at 0. If one is rejected, none moves. `situations` has
+/// one for each axis.
 CommandResult take(Jogs &jogs, const SetTeleopVector &command, const JogSituation *situations) noexcept;
 
-/// Ends one lease that was not renewed in time, and its jog brakes: the joint or axis of which that is to be
-/// told, index -1 when there is none any more. Called until then, in each cycle before the jogs move.
+/// Ends one lease that was not renewed in time, and its jog brakes. Returns the joint or axis to report,
+/// index -1 when there is none left. Called in each cycle, before the jogs move, until it returns -1.
 [[gnu::hot]] JogTarget end_lease(Jogs &jogs, std::int64_t time_ns) noexcept;
 
-/// After a change of the limits: a jog ends at the edge of its range, and one that leads away from it brakes.
+/// After a change of the limits: a jog ends at the end of its range; one that moves away from the range
+/// brakes.
 void keep_within(Jog &jog, const JogRange &range) noexcept;
 /// Every jog brakes.
 void stop(Jogs &jogs) noexcept;
-/// Every jog stands in this cycle, whatever that asks of the drives.
+/// Stops every jog in this cycle, without the limits of the drives.
 void stop_at_once(Jogs &jogs) noexcept;
-/// Nothing drives any jog any more.
+/// Removes the sources of all jogs.
 void forget_sources(Jogs &jogs) noexcept;
-/// Axes stand where the machine is.
+/// Sets the axes, stopped, to the position of the machine.
 void reset_axes(Jogs &jogs, const geometry::Pose &pose) noexcept;
-/// All of them do, and nothing drives them. `joint_positions` has MAX_JOINTS elements.
+/// Sets joints and axes, stopped, and removes the sources. `joint_positions` has MAX_JOINTS elements.
 void rest_at(Jogs &jogs, const double *joint_positions, const geometry::Pose &pose) noexcept;
-/// The same when the machine is switched on: turns of wheels count from here.
+/// The same when the machine is switched on: counts of wheels start here.
 void start_at(Jogs &jogs, const double *joint_positions, const geometry::Pose &pose,
               const Inputs &in) noexcept;
 bool areJointsAtRest(const Jogs &jogs) noexcept;
 bool areAxesAtRest(const Jogs &jogs) noexcept;
 
-/// How far the wheel has been turned since the last cycle, as far as that is to move something; 0: not at
-/// all.
+/// Counts of the wheel since the last cycle that are to move something; 0 for none.
 double turned(Jog &jog, const WheelInput &wheel) noexcept;
-/// A wheel that asks for what is not possible is ignored: it is no command.
+/// A wheel that requests an impossible move is ignored: it is no command.
 void jog_by_wheel(Jogs &jogs, const JogTarget &target, double distance, const WheelInput &wheel,
                   const JogSituation &situation) noexcept;
-/// After wheels and commands of a cycle: counts are kept, jogs at rest have ended.
+/// After wheels and commands of a cycle: keeps the counts, and ends jogs that have stopped.
 void settle(Jogs &jogs, const Inputs &in) noexcept;
 
-/// The positions of a joint get other numbers; what is left of its move gets `shift` longer.
+/// Changes the position of a joint without motion; the rest of its move becomes longer by `shift`.
 void renumber(Jog &jog, double position, double shift) noexcept;
-/// What homing wants of a joint in this cycle.
+/// Command of homing to a joint in this cycle.
 void home_joint(Jog &jog, const homing::JointCommand &command, const JogLimits &most) noexcept;
-/// The override acts on an axis that moves; on machines whose joints are axes.
+/// The override applies to an axis that moves; on machines whose joints are axes.
 void limit_axis(Jog &jog, double max_velocity, double scale) noexcept;
-/// Goes on with the move of a joint for one period.
+/// Continues the move of a joint for one period.
 void step_joint(Jog &jog, double max_velocity, double scale, double period_s) noexcept;
 
 void fill(const Jogs &jogs, Mode mode, const geometry::Pose &pose, Outputs &out) noexcept;

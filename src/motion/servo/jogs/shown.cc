@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What pins and status show of jogs.
+// Pins and status of jogs.
 #include <bit>
 
 #include "motion/servo/jogs/jogs.hh"
@@ -11,7 +11,7 @@ std::size_t at(int i) noexcept {
     return static_cast<std::size_t>(i);
 }
 
-/// What changes while axes follow a path: the speeds of their jogs do not.
+/// Values that change while axes follow a path: the speeds of their jogs do not.
 void fill_places(const Jogs &jogs, const geometry::Pose &pose, Outputs &out) noexcept {
     for (int j = 0; j < jogs.num_joints; ++j) {
         const Jog &from = jogs.joint[at(j)];

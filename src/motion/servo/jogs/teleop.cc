@@ -11,9 +11,9 @@ namespace mw::motion {
 
 namespace {
 
-/// Farther ahead than the jogs would come to rest, at least this [machine units, degrees].
+/// Minimum distance past the stop of the jogs at which the kinematics is checked [machine units, degrees].
 constexpr double LEAST_WINDOW = 0.5;
-/// What rounding of positions may make of a joint's soft limit.
+/// Rounding of a position at a joint's soft limit.
 constexpr double POSITION_ROUNDING = 1e-9;
 constexpr int MOST_CORNER_AXES = 5;
 
@@ -21,7 +21,7 @@ std::size_t at(int i) noexcept {
     return static_cast<std::size_t>(i);
 }
 
-/// What `n` axes that share the joints evenly may accelerate with when they turn with these speeds.
+/// Accelerations of `n` axes that share the joints evenly, on curves at these speeds.
 AxisValues accelerations(const TeleopMachine &m, const TeleopLoad &load, const Jogs &jogs, double n,
                          const AxisValues &speed) noexcept {
     AxisValues out{};
@@ -45,7 +45,7 @@ AxisValues accelerations(const TeleopMachine &m, const TeleopLoad &load, const J
     return out;
 }
 
-/// One that moves would go beyond where it is sent if all had their share and came to the speeds of that.
+/// True when an axis could not stop at its target if all axes had their share and reached its speeds.
 bool isAnyHeld(const TeleopMachine &m, const TeleopLoad &load, const Jogs &jogs,
                const AxisValues &now) noexcept {
     AxisValues speed = shared_speeds(m, load, jogs, load.count);
@@ -60,8 +60,8 @@ bool isAnyHeld(const TeleopMachine &m, const TeleopLoad &load, const Jogs &jogs,
     return isHeld;
 }
 
-/// Shares what each joint can do evenly among the axes that move it. As long as one needs what it has to stop
-/// where it is sent, none begins beside it, and none gets faster.
+/// Shares the limits of each joint evenly among the axes that move it. While an axis needs all that it has to
+/// stop at its target, no other axis begins or accelerates.
 void apply_load(const TeleopMachine &m, const TeleopLoad &load, Jogs &jogs, bool isWhole) noexcept {
     AxisValues speed{};
     int moving = 0;
@@ -72,7 +72,8 @@ void apply_load(const TeleopMachine &m, const TeleopLoad &load, Jogs &jogs, bool
     const bool isHeld = load.count > 1 && moving > 0 && isAnyHeld(m, load, jogs, speed);
     const double n = isHeld ? moving : load.count;
     AxisValues v = shared_speeds(m, load, jogs, n);
-    // While one is still faster than its share the others do not take theirs, and it turns with its speed.
+    // While one axis is faster than its share, the others keep their speed; the curve counts at its actual
+    // speed.
     constexpr double ROUNDING = 1e-9;
     bool isOver = isHeld;
     for (int i = 0; i < load.count; ++i) {
@@ -80,8 +81,8 @@ void apply_load(const TeleopMachine &m, const TeleopLoad &load, Jogs &jogs, bool
     }
     for (int i = 0; i < load.count; ++i) {
         v[at(i)] = isOver ? std::min(v[at(i)], speed[at(i)]) : v[at(i)];
-        // What turning takes goes with the speed that it may have in this cycle, and not with the one that it
-        // may come to have: while it brakes more is left from cycle to cycle, never less.
+        // The centripetal part depends on the speed possible in this cycle, not on the target speed: while an
+        // axis brakes, the remainder grows from cycle to cycle and never falls.
         const double soon = speed[at(i)] + jogs.axis[at(load.axes[at(i)])].wanted_acceleration * m.period_s;
         speed[at(i)] = std::max(std::min(v[at(i)], soon), speed[at(i)]);
     }
@@ -100,12 +101,12 @@ double speed_of(const trajectory::AxisTrajectory &p) noexcept {
     return std::max(std::abs(p.velocity), std::abs(p.leader().velocity));
 }
 
-/// Of the axis that takes longest.
+/// Longest time of any axis to stop.
 double time_to_stop(const TeleopLoad &load, const Jogs &jogs, double period_s) noexcept {
     double most_s = 0;
     for (int i = 0; i < load.count; ++i) {
         const trajectory::AxisTrajectory &p = jogs.axis[at(load.axes[at(i)])].planner;
-        // With what it had in the last cycle: that has looked as far ahead.
+        // With the acceleration of the last cycle, whose samples reached as far.
         const double had = p.leader().max_acceleration;
         const double a = had > 0 ? std::min(had, p.max_acceleration) : p.max_acceleration;
         most_s = std::max(most_s, (a > 0 ? speed_of(p) / a : 0.0) + p.mean_in_force_s(period_s));
@@ -113,7 +114,7 @@ double time_to_stop(const TeleopLoad &load, const Jogs &jogs, double period_s) n
     return most_s;
 }
 
-/// The homed joint that this pose takes beyond its soft limits, farther than it is; -1 for none.
+/// The homed joint that this pose moves outside its soft limits, further than it is now; -1 for none.
 int joint_left_by(const TeleopMachine &m, const geometry::Pose &pose) noexcept {
     JointsAt q{};
     if (!find_joints(m, pose, q)) {
@@ -130,14 +131,14 @@ int joint_left_by(const TeleopMachine &m, const geometry::Pose &pose) noexcept {
     return -1;
 }
 
-/// What axes ask of the joints at the places of this cycle.
+/// Load of the axes on the joints at the samples of this cycle.
 struct Look {
     TeleopLoad load;
-    geometry::Pose stop;  ///< where they come to rest when they brake a cycle from now
+    geometry::Pose stop;  ///< stop position if they brake from the next cycle on
     bool isFound = true;
 };
 
-/// Where it stands first: a jog that begins has no acceleration yet that the joints could bear.
+/// First at the current pose: a jog that begins has no acceleration yet that the joints can follow.
 void look_here(const TeleopMachine &m, const geometry::Pose &here, Jogs &jogs, Look &look) noexcept {
     TeleopLoad &load = look.load;
     look.isFound = add_load(m, here, load);
@@ -150,7 +151,7 @@ void look_here(const TeleopMachine &m, const geometry::Pose &here, Jogs &jogs, L
     load.isSmooth ? apply_smoothly(m, load, jogs, false) : apply_load(m, load, jogs, false);
 }
 
-/// Then as far ahead as they may come while they brake.
+/// Then at the farthest positions that they may reach while they brake.
 void look_ahead(const TeleopMachine &m, const geometry::Pose &here, const Jogs &jogs, Look &look) noexcept {
     TeleopLoad &load = look.load;
     const double longest_s = load.count > 1 ? time_to_stop(load, jogs, m.period_s) : 0.0;
@@ -163,11 +164,11 @@ void look_ahead(const TeleopMachine &m, const geometry::Pose &here, const Jogs &
         const double way = p.rest_after(m.period_s) - here[axis];
         look.stop[axis] += TELEOP_BRAKE_MARGIN * way;
         const double sign = p.target >= here[axis] ? 1.0 : -1.0;
-        // Not behind what it may come to at all: else more would be taken off while it brakes.
+        // Not past the reachable range: otherwise the acceleration would be reduced while it brakes.
         double low = here[axis];
         double high = here[axis];
         p.add_reach(low, high);
-        // While another brakes this one goes on, and turns what the joints do for the other.
+        // While another axis brakes, this one continues and changes the joint motion of the other.
         const double on = std::max(2.0 * std::abs(way), TELEOP_BRAKE_MARGIN * speed_of(p) * longest_s);
         far[axis] = std::clamp(here[axis] + std::copysign(on, way), low, high) + LEAST_WINDOW * sign;
     }
@@ -183,7 +184,7 @@ void look_ahead(const TeleopMachine &m, const geometry::Pose &here, const Jogs &
     }
 }
 
-/// The axes of a look without those that wait: these stand, so that nothing of what they would ask is asked.
+/// The axes of `all` without those that wait: these are stopped and need nothing of the joints.
 Look without_waiting(const Look &all, std::uint32_t counted, Jogs &jogs) noexcept {
     Look some;
     some.load.isSmooth = true;
@@ -200,7 +201,7 @@ Look without_waiting(const Look &all, std::uint32_t counted, Jogs &jogs) noexcep
     return some;
 }
 
-/// Sets what the axes may do; what all of them ask.
+/// Sets the limits of the axes; returns the load of all of them.
 Look limit_axes(const TeleopMachine &m, const geometry::Pose &here, Jogs &jogs) noexcept {
     Look all;
     all.load.isSmooth = m.limits.path.isJerkLimited;
@@ -244,7 +245,7 @@ TeleopStop limit_teleop(Jogs &jogs, const TeleopMachine &m) noexcept {
     if (load.count == 0) {
         return {};
     }
-    // The axes stop one after the other: every corner of the box that they stop in counts.
+    // The axes stop one after the other: each corner of the box of their stop positions is checked.
     int left = look.isFound ? -1 : m.num_joints;
     const int corners = 1 << std::min(load.count, MOST_CORNER_AXES);
     for (int n = 1; n < corners && left < 0; ++n) {

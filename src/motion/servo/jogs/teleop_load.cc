@@ -8,17 +8,17 @@ namespace mw::motion {
 
 namespace {
 
-/// Over which derivatives are taken, and third ones [machine units, degrees].
+/// Distances for derivatives and third derivatives [machine units, degrees].
 constexpr double STEP = 1e-3, SMOOTH_STEP = 0.1;
-/// Between the places that are looked at, derivatives may be larger by this much; where a joint follows the
-/// axes that move on straight lines, by rounding.
+/// Between the sampled positions derivatives may be larger by this factor; where a joint follows the moving
+/// axes along straight lines, by rounding.
 constexpr double MARGIN = 1.05, STRAIGHT_MARGIN = 1.0 + 1e-6;
 
 std::size_t at(int i) noexcept {
     return static_cast<std::size_t>(i);
 }
 
-/// Third differences along one axis; the joints a step `after` and `before` are known.
+/// Third differences along one axis; the joint positions one step `after` and `before` are known.
 bool add_third(const TeleopMachine &m, const geometry::Pose &pose, int i, const JointsAt &after,
                const JointsAt &before, TeleopLoad &load) noexcept {
     const int axis = load.axes[at(i)];
@@ -37,7 +37,7 @@ bool add_third(const TeleopMachine &m, const geometry::Pose &pose, int i, const 
     return isFound;
 }
 
-/// How second derivatives change from the first place to one that is displaced along one axis.
+/// Change of second derivatives from the first sample to one that is displaced along one axis.
 void add_turn(const TeleopMachine &m, const TeleopLoad &first, const double *q2, int i, int k, Displaced from,
               TeleopLoad &load) noexcept {
     const bool isAlone = i == from.index && k == from.index;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What jogs of axes ask of joints that are not axes: derivatives of the joints by the axes that move, at the
-// places that the jogs may come to, and the speeds that they leave.
+// Load of axis jogs on joints that are not axes: derivatives of the joints by the moving axes, at the
+// positions that the jogs may reach, and the remaining speeds.
 #pragma once
 
 #include <array>
@@ -24,55 +24,56 @@ struct TeleopLoad {
     // With jerk limits only.
     bool isSmooth = false;
     std::array<JointsAt, MAX_AXES> q3{};  ///< by one axis alone
-    /// By an axis of what the curves of the others, and theirs with it, ask at `speed`.
+    /// Per axis: load of the other axes' curves, and of its curves with them, at `speed`.
     std::array<JointsAt, MAX_AXES> turn{};
     AxisValues speed{};
-    std::array<std::array<JointsAt, MAX_AXES>, MAX_AXES> q2_here{};  ///< at the first place, with sign
-    bool isBegun = false;                                            ///< that is known
-    /// Of an axis that begins, where it is sent or nearest to that: its mean is to serve it there as well.
+    std::array<std::array<JointsAt, MAX_AXES>, MAX_AXES> q2_here{};  ///< at the first sample, with sign
+    bool isBegun = false;                                            ///< q2_here is known
+    /// Of an axis that begins, at its target or nearest to it: its averaging time has to serve there as well.
     std::array<JointsAt, MAX_AXES> q1_sent{};
 };
 
-/// Part of a joint's acceleration that curves may take at the highest speed.
+/// Part of a joint's acceleration that curves may take at maximum speed.
 inline constexpr double CURVE_SHARE = 0.5;
-/// Of what is left now, while it brakes: derivatives have a margin of 1.05.
+/// Of the remaining acceleration while it brakes: derivatives have a margin of 1.05.
 inline constexpr double KEPT_ALONE = 1.02;
 /// A second difference below this is rounding.
 inline constexpr double LEAST_CURVE = 1e-6;
 
-/// Beside where they stand. False also where only a singular pose leads.
+/// The joint positions nearest to the current ones. False also where a pose can only be reached through a
+/// singular one.
 bool find_joints(const TeleopMachine &m, const geometry::Pose &pose, JointsAt &joints) noexcept;
 
-/// A place that is `way` along one of the axes that move from the first place; -1: any other.
+/// A sample at distance `way` from the first along the moving axis `index`; -1: any other sample.
 struct Displaced {
     int index = -1;
     double way = 0;
 };
-/// Takes the derivatives at one place into account; false when the kinematics has no answer there.
+/// Adds the derivatives at one sample; false when the kinematics has no solution there.
 bool add_load(const TeleopMachine &m, const geometry::Pose &pose, TeleopLoad &load,
               Displaced from = {}) noexcept;
 
-/// Looks where an axis that begins is sent: there, else half of the way there, and so on, a few times;
-/// nowhere else does a place without joints matter to it.
+/// Samples the target of an axis that begins, else half of the distance, and so on, a few times. A pose
+/// without joint positions matters only there.
 void add_sent(const TeleopMachine &m, const geometry::Pose &here, int i, double target,
               TeleopLoad &load) noexcept;
 
-/// What joints leave of the speeds that are wanted when each is shared evenly among `n` axes.
+/// Speeds that the joints allow when each joint is shared evenly among `n` axes.
 AxisValues shared_speeds(const TeleopMachine &m, const TeleopLoad &load, const Jogs &jogs, double n) noexcept;
 
-/// What an axis takes of the acceleration that it may have. Where several axes move joints along curves it
-/// keeps a part for its stop: what others do meanwhile may leave it less than now.
+/// Part of the available acceleration that an axis uses. Where several axes move joints along curves it keeps
+/// a part for its stop: the other axes may reduce its share meanwhile.
 double with_reserve(const TeleopLoad &load, const trajectory::AxisTrajectory &p,
                     double acceleration) noexcept;
 
-/// It has nearly as little way left to where it is sent as this acceleration needs for its stop.
+/// True when the distance to its target is about its stopping distance with this acceleration.
 bool mustBrake(const trajectory::AxisTrajectory &p, double acceleration) noexcept;
 
-/// Who brakes keeps the acceleration of the last cycle where the places that are looked at, which move with
-/// it, show less than before by no more than `share`: else it would go beyond where it is sent.
+/// An axis that brakes keeps the acceleration of the last cycle if the samples, which move with it, show less
+/// than before by no more than `share`. Otherwise it would pass its target.
 double kept(double had, double acceleration, double share, bool isBraking) noexcept;
 
-/// It can come to rest where it is sent, or before, with less acceleration from the next cycle on.
+/// True if it can stop at or before its target with less acceleration from the next cycle on.
 bool canTake(const trajectory::AxisTrajectory &p, double acceleration, double period_s) noexcept;
 
 }  // namespace mw::motion

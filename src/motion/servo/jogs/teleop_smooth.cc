@@ -9,14 +9,14 @@ namespace mw::motion {
 
 namespace {
 
-/// Parts of a joint's jerk that curves may take at the highest speed: by accelerations on them, by their own
-/// change.
+/// Parts of a joint's jerk that curves may take at maximum speed: by accelerations along them, and by the
+/// change of their curvature.
 constexpr double SWING_SHARE = 0.25, TURN_SHARE = 0.25;
-/// An axis keeps this part of the acceleration that speeds and accelerations of joints leave it, whatever
-/// their jerk does: it must be able to brake.
+/// An axis keeps at least this part of the acceleration that the joints leave it, regardless of their jerk:
+/// it must be able to brake.
 constexpr double LEAST_SHARE = 0.02;
-/// All of the margin that derivatives have where another axis is there that waits: by then the joints may
-/// have followed straight lines, without that margin.
+/// The whole margin of the derivatives where another axis waits: by then the joints may have followed
+/// straight lines, without that margin.
 constexpr double KEPT_BESIDE = 1.05001;
 constexpr double ROUNDING = 1e-9;
 constexpr double NONE = std::numeric_limits<double>::infinity();
@@ -37,7 +37,7 @@ int count_of(std::uint32_t axes) noexcept {
     return count;
 }
 
-/// What the axes that share the joints may do; nothing where they have no share.
+/// Limits of the axes that share the joints; 0 without a share.
 struct Allowed {
     AxisValues velocity{}, acceleration{}, mean_s{};
 };
@@ -47,7 +47,7 @@ struct Sharing {
     const TeleopLoad &load;
     const Jogs &jogs;
     std::uint32_t axes = 0;  ///< bit per axis that has a share
-    double n = 1;            ///< of them
+    double n = 1;            ///< number of them
 
     const Jog &jog(int i) const noexcept { return jogs.axis[at(load.axes[at(i)])]; }
     bool has(int i) const noexcept { return (axes & bit_of(load, i)) != 0; }
@@ -57,7 +57,7 @@ struct Sharing {
     }
 };
 
-/// What joints that move so much with it leave of the acceleration and jerk of an axis on a straight way.
+/// Acceleration and jerk that joints with these derivatives leave to an axis on a straight line.
 struct Straight {
     double acceleration = 0, jerk = NONE;
 };
@@ -74,9 +74,9 @@ Straight straight(const Sharing &s, int i, const JointsAt &q1) noexcept {
     return out;
 }
 
-/// The mean of an axis that begins: no longer than 2 A / J, nor than what brings it to its highest speed
-/// soonest, sqrt(2 V / J): V / a + 2 a / J is least there. It keeps its mean until it stands: where it is
-/// sent joints may have to do more for it than where it begins.
+/// Averaging time of an axis that begins: at most 2 A / J, and at most the time in which it reaches its
+/// maximum speed soonest, sqrt(2 V / J), the minimum of V / a + 2 a / J. It stays until the axis stops: at
+/// the target the joints may need more than at the start.
 double mean_for(const Sharing &s, int i) noexcept {
     JointsAt q1 = s.load.q1[at(i)];
     double v = s.m.limits.axis_jog[at(s.load.axes[at(i)])].velocity;
@@ -89,7 +89,7 @@ double mean_for(const Sharing &s, int i) noexcept {
                              : std::min(2.0 * most.acceleration / most.jerk, std::sqrt(2.0 * v / most.jerk));
 }
 
-/// Means, and the accelerations that they and the joints allow on straight ways.
+/// Averaging times, and the accelerations that they and the joints allow on straight lines.
 void share_straight(const Sharing &s, Allowed &out) noexcept {
     for (int i = 0; i < s.load.count; ++i) {
         if (!s.has(i)) {
@@ -103,7 +103,7 @@ void share_straight(const Sharing &s, Allowed &out) noexcept {
     }
 }
 
-/// What accelerating at these speeds asks of a joint's jerk on curves, and what the speeds alone ask.
+/// Load of accelerations at these speeds on a joint's jerk on curves, and load of the speeds alone.
 double swing_of(const Sharing &s, const AxisValues &v, const AxisValues &a, int i, int j) noexcept {
     double sum = 0;
     for (int k = 0; k < s.load.count; ++k) {
@@ -140,7 +140,7 @@ void slow_on_curves(const Sharing &s, Allowed &out) noexcept {
     }
 }
 
-/// What curves at these speeds leave of the joints.
+/// Acceleration that curves at these speeds leave.
 void leave_for_curves(const Sharing &s, const AxisValues &speed, Allowed &out) noexcept {
     const AxisValues straight = out.acceleration;
     for (int j = 0; j < s.m.num_joints; ++j) {
@@ -172,14 +172,14 @@ void leave_for_curves(const Sharing &s, const AxisValues &speed, Allowed &out) n
     }
 }
 
-/// What is commanded follows its leader by half a mean, so that who creeps behind a wheel may brake at any
-/// speed.
+/// The command follows its reference by half an averaging time, so an axis that follows a slow wheel may
+/// brake at any speed.
 bool isBraking(const trajectory::AxisTrajectory &p, double acceleration) noexcept {
     return std::abs(p.leader().velocity) < std::abs(p.velocity) || mustBrake(p, acceleration);
 }
 
-/// The speed that an axis may come to have within its mean: what turning takes goes with that. Who brakes
-/// gains none, so that its acceleration does not become less on the way to its stop.
+/// The speed that an axis may reach within its averaging time: centripetal acceleration depends on it. An
+/// axis that brakes gains none, so its acceleration does not fall before its stop.
 double soon(const Sharing &s, int i, double speed, const Allowed &allowed) noexcept {
     const trajectory::AxisTrajectory &p = s.jog(i).planner;
     return isBraking(p, s.load.had[at(i)])
@@ -187,7 +187,8 @@ double soon(const Sharing &s, int i, double speed, const Allowed &allowed) noexc
                : speed + allowed.acceleration[at(i)] * std::max(allowed.mean_s[at(i)], s.m.period_s);
 }
 
-/// One would go beyond where it is sent if all came to their speeds: curves would leave it too little.
+/// True when an axis could not stop at its target if all reached their speeds: curves would leave it too
+/// little.
 bool isAnyHeld(const Sharing &s, const Allowed &allowed) noexcept {
     Allowed worst = allowed;
     leave_for_curves(s, worst.velocity, worst);
@@ -199,7 +200,7 @@ bool isAnyHeld(const Sharing &s, const Allowed &allowed) noexcept {
     return isHeld;
 }
 
-/// Shared evenly among the axes of `axes`.
+/// Limits shared evenly among the axes of `axes`.
 Allowed share(const TeleopMachine &m, const TeleopLoad &load, const Jogs &jogs, std::uint32_t axes,
               int count) noexcept {
     const Sharing s{m, load, jogs, axes, static_cast<double>(count)};
@@ -213,7 +214,7 @@ Allowed share(const TeleopMachine &m, const TeleopLoad &load, const Jogs &jogs, 
     }
     share_straight(s, out);
     slow_on_curves(s, out);
-    // While one is still faster than its share the others do not take theirs.
+    // While one axis is faster than its share, the others keep their speed.
     bool isOver = isAnyHeld(s, out);
     for (int i = 0; i < load.count; ++i) {
         isOver = isOver || speed[at(i)] > out.velocity[at(i)] * (1.0 + ROUNDING);
@@ -235,7 +236,7 @@ std::uint32_t all_of(const TeleopLoad &load) noexcept {
     return all;
 }
 
-/// Who has come to rest is neither waited for nor has a share.
+/// Removes axes that have stopped from the shares and from those that wait.
 void forget_resting(TeleopShares &shares, std::uint32_t moving) noexcept {
     shares.axes &= moving;
     shares.axes = shares.axes == 0 ? moving : shares.axes;

@@ -10,23 +10,23 @@ namespace mw::motion {
 
 namespace {
 
-/// Part of the joint's own speed, acceleration and jerk with which corrections are made on top of its motion.
+/// Part of the joint's speed, acceleration and jerk that corrections may use in addition to its motion.
 constexpr double SHARE = 0.5;
 static_assert(STEEPEST_SCREW < SHARE);
-/// By so much a change of the mode may move a joint (`sides`): it is no move that somebody has asked for.
+/// A change of the mode may move a joint by this much (`sides`); it is not a commanded move.
 constexpr double MODE_ROUNDING = 2e-6;
 
 std::size_t at(int i) noexcept {
     return static_cast<std::size_t>(i);
 }
 
-/// Where play leaves the slide when the motor goes to `motor`.
+/// Position of the slide within the backlash when the motor moves to `motor`.
 double pushed_slide(const Correction &c, double motor, double backlash) noexcept {
     return std::clamp(c.slide, motor - 0.5 * backlash, motor + 0.5 * backlash);
 }
 
-/// The motor pushes the slide to where it is to be. That is the direction of travel, but not where the joint
-/// turns back before play was taken up: then the slide has stayed behind.
+/// The motor pushes the slide to its position, in the direction of travel. Where the joint reverses before
+/// the backlash is compensated, the slide has stayed behind.
 void choose_side(Correction &c, double position, double backlash) noexcept {
     const double missing = position - pushed_slide(c, position + c.position, backlash);
     if (std::abs(missing) > TURN_ROUNDING * (1.0 + std::abs(position))) {
@@ -34,14 +34,15 @@ void choose_side(Correction &c, double position, double backlash) noexcept {
     }
 }
 
-/// What corrections are made with.
+/// Acceleration and averaging time of corrections.
 struct Means {
     double acceleration = 0;
-    std::uint32_t samples = 1;  ///< of the mean that keeps the jerk; 1: no limit
+    std::uint32_t samples = 1;  ///< samples of the moving average that limits the jerk; 1: no limit
 };
 
-/// The mean that makes up a way of `d` soonest, or a change of speed by `dv`, with the jerk j: the leader
-/// gets the acceleration j tau / 2 and takes 2 sqrt(2 d / (j tau)) or 2 dv / (j tau), and the mean tau more.
+/// The averaging time that covers a distance `d`, or a speed change `dv`, soonest with the jerk j: the
+/// reference gets the acceleration j tau / 2 and takes 2 sqrt(2 d / (j tau)) or 2 dv / (j tau); the average
+/// adds tau.
 double mean_for(double d, double dv, double jerk) noexcept {
     return std::max(std::cbrt(2.0 * d / jerk), std::sqrt(2.0 * dv / jerk));
 }
@@ -67,8 +68,7 @@ Means means_of(const Correction &c, const Settings &settings, int joint, double 
     return means;
 }
 
-/// What the table says changes with the joint; what is missing of it is made up within the limits that are
-/// left.
+/// The correction of the table changes with the joint; the missing part is added within the remaining limits.
 void follow_table(Correction &c, double position, double period_s) noexcept {
     const double before = look_up(c.table, c.side, c.last_position);
     c.raw = look_up(c.table, c.side, position);
@@ -141,7 +141,7 @@ double look_up(const ScrewTable &table, int side, double position) noexcept {
     return curve[above - 1] + part * (curve[above] - curve[above - 1]);
 }
 
-/// Adds without losing what a double cannot hold (two-sum).
+/// Adds without loss of the digits that a double cannot hold (two-sum).
 void MovingMean::add(double x) noexcept {
     const double s = sum_ + x;
     const double back = s - sum_;
@@ -232,7 +232,7 @@ double renumber(Correction &c, double position) noexcept {
 void follow(Correction &c, double position) noexcept {
     renumber(c, position);
     c.isHeld = true;
-    if (!c.isAtRest()) {  // it stands where it is, and goes on from there with the joint's next move
+    if (!c.isAtRest()) {  // it stops here, and continues with the joint's next move
         c.followed = c.position;
         c.follower.position = c.table.count > 0 ? c.position - c.raw : c.position;
         c.follower.velocity = 0;

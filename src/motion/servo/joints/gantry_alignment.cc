@@ -9,7 +9,7 @@ namespace mw::motion {
 
 namespace {
 
-/// What rounding makes of a place [machine units, degrees].
+/// Rounding of a position [machine units, degrees].
 constexpr double ROUNDING = 1e-6;
 
 bool isApart(const Joint &joint, double led, double most) noexcept {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Joints stand a little off the place that the pose has for them: sides of a gantry that sagged while the
-// machine was off. In Cartesian modes the pose commands them, so they are led there within their limits, as
-// the first motion that somebody asks for begins.
+// Joints may differ a little from their positions in the pose: sides of a gantry that sagged while the
+// machine was off. In Cartesian modes the pose commands them, so they are aligned within their limits when
+// the first motion begins.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@
 namespace mw::motion {
 
 struct GantryAlignment {
-    std::uint32_t joints = 0;  ///< bit per joint that is off its place
+    std::uint32_t joints = 0;  ///< bit per misaligned joint
     bool isActive = false, isStopping = false;
     std::array<trajectory::AxisTrajectory, MAX_JOINTS> planner{};
 
@@ -24,23 +24,23 @@ struct GantryAlignment {
     bool areUnderWay() const noexcept { return isActive && isMisaligned(); }
 };
 
-/// Of a joint that is led by the pose: off its place by more than [JOINT_n]MIN_FERROR allows it at rest, -1
-/// for none. Joints that are left out are led nowhere. `led` is where the pose has them.
+/// A joint that differs from its position in the pose by more than its [JOINT_n]MIN_FERROR, -1 for none.
+/// Inactive joints are not aligned. `led` has the joint positions of the pose.
 int find_misaligned_joint(const Joints &joints, const PerJoint &led, const Settings &settings) noexcept;
 
-/// Those that are off are to be led to `led`; nothing to do where all are there but for rounding.
+/// Begins to align joints to `led`; nothing to do if all differ by rounding only.
 void begin(GantryAlignment &sides, const Joints &joints, const PerJoint &led,
            const FoldedLimits &limits) noexcept;
-/// They brake and stay where that leads.
+/// The joints brake and keep the position where they stop.
 void stop(GantryAlignment &sides) noexcept;
-/// The machine is off: nothing is led.
+/// The machine is off: no alignment.
 void forget(GantryAlignment &sides) noexcept;
 
 enum class AlignmentStep : bool {
     GOES_ON,
-    STOPPED,  ///< on the way: the pose does not lead to where they stand
+    STOPPED,  ///< during alignment: the joint positions of the pose do not agree with the joints
 };
-/// One cycle of those that are apart; they are led from where `isMotionWanted`.
+/// One cycle of the misaligned joints; they are aligned once `isMotionWanted`.
 AlignmentStep step(GantryAlignment &sides, Joints &joints, bool isMotionWanted, double period_s) noexcept;
 
 }  // namespace mw::motion

@@ -8,7 +8,7 @@ namespace mw::motion {
 
 namespace {
 
-/// What rounding of positions may make of differences of samples.
+/// Rounding of position differences between samples.
 constexpr double STEP_ROUNDING = 1e-6;
 
 std::size_t at(int i) noexcept {
@@ -19,7 +19,7 @@ bool hasJoint(const Joints &joints, int j) noexcept {
     return j >= 0 && j < joints.count;
 }
 
-/// Off: the command follows the feedback, so that switching on does not move anything.
+/// Off: the command follows the feedback, so that switching on causes no motion.
 void follow_feedback(Joint &s) noexcept {
     s.pos_cmd = s.pos_fb;
     s.coarse_pos = s.pos_fb;
@@ -30,7 +30,7 @@ void follow_feedback(Joint &s) noexcept {
     s.motor_pos_cmd = s.motor_pos_fb;
 }
 
-/// Left out while its amplifier is on: the motor stays where it was told to be last.
+/// Inactive while its amplifier is on: the motor keeps its last command.
 void hold(Joint &s) noexcept {
     s.vel_cmd = 0;
     s.acc_cmd = 0;

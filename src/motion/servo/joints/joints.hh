@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Joints: feedback, faults, following error, corrections and offsets, and the way to motor positions (C3).
+// Joints: feedback, faults, following error, corrections, offsets and motor positions.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ struct Joint {
     bool isActive = true;
     bool isAmpWanted = false;  ///< amplifier enable while the machine is on
     bool isFaulted = false, isFerrorTripped = false;
-    bool isFeedbackLost = false;  ///< the pin shows no number; the feedback is the last that was one
+    bool isFeedbackLost = false;  ///< the pin has no number; the feedback is the last valid one
     bool isOnPosHardLimit = false, isOnNegHardLimit = false;
     double pos_cmd = 0, pos_fb = 0, vel_cmd = 0, acc_cmd = 0;
     double coarse_pos = 0;
@@ -33,7 +33,7 @@ using PerJoint = std::array<double, MAX_JOINTS>;
 
 struct Joints {
     int count = 0;
-    int loaded = 0;  ///< that may be in use
+    int loaded = 0;  ///< number of joints that may be used
     std::array<Joint, MAX_JOINTS> joint;
 
     Joint &operator[](int j) noexcept { return joint[static_cast<std::size_t>(j)]; }
@@ -44,35 +44,35 @@ CommandResult take(Joints &joints, const SetAmplifier &command, bool isEnabled) 
 CommandResult take(Joints &joints, const LoadCompensation &command, bool isEnabled) noexcept;
 struct ActivationConditions {
     bool isMoving = false, isHoming = false;
-    bool areJointsAlone = true;  ///< off, or in free mode: no pose says where joints are to be
+    bool areJointsAlone = true;  ///< off, or in free mode: no pose commands the joints
 };
 CommandResult take(Joints &joints, const SetJointActive &command,
                    const ActivationConditions &conditions) noexcept;
 
-/// Why the machine may not be switched on now, NONE when it may.
+/// Reason why the machine may not be switched on now, NONE when it may.
 CommandResult check_start(const Joints &joints, const Inputs &in, bool areLimitsOverridden) noexcept;
 /// Switched on: the command is taken from the feedback.
 void switch_on(Joints &joints) noexcept;
 void switch_off(Joints &joints) noexcept;
 
-/// Gives the measured positions.
+/// Returns the measured positions.
 [[gnu::hot]] PerJoint read_feedback(Joints &joints, const Inputs &in) noexcept;
 PerJoint commanded(const Joints &joints) noexcept;
-/// Bit per joint that is left out.
+/// Bit per inactive joint.
 std::uint32_t inactive_joints(const Joints &joints) noexcept;
 
 enum class JointFault : std::uint8_t { NONE, FEEDBACK_LOST, AMP_FAULT, FOLLOWING_ERROR, HARD_LIMIT };
 struct JointCheck {
-    /// Bit per joint whose encoder is reset now: command and feedback are of two different zeros.
+    /// Bit per joint whose encoder is reset now: command and feedback have different zeros.
     std::uint32_t at_index = 0;
     std::uint32_t limits_ignored = 0;    ///< bit per joint
     std::uint32_t feedback_ignored = 0;  ///< the same
 };
 /// Following error, amplifier and limit switches of the active joints from `joint` on, up to the first fault;
-/// `joint` is the one that has it.
+/// `joint` is set to its joint.
 JointFault find_fault(Joints &joints, int &joint, const Settings &settings, const JointCheck &how) noexcept;
 
-/// The joint is told to be at `position` at the end of this cycle; one that is left out is told nothing.
+/// Commands the joint to `position` at the end of this cycle; inactive joints get no command.
 inline void follow(Joint &joint, double position, double period_s) noexcept {
     if (!joint.isActive) {
         return;
@@ -84,21 +84,21 @@ inline void follow(Joint &joint, double position, double period_s) noexcept {
     joint.coarse_pos = position;
 }
 
-/// Homing has found the zero: positions move by `shift`, the motor stays.
+/// Homing has found the zero: positions change by `shift`, the motor stays.
 void shift(Joint &joint, double shift) noexcept;
 /// The encoder has just been reset: motor position 0 is joint position `zero`.
 void set_zero(Joint &joint, double zero) noexcept;
 
-/// Motor positions: with corrections and offset while on, what the motors say while off. Bit per joint that
-/// is off.
+/// Motor positions: with corrections and offset while on, the feedback while off. Returns a bit per joint
+/// that is off.
 [[gnu::hot]] std::uint32_t output(Joints &joints, const Settings &settings, bool isEnabled,
                                   double period_s) noexcept;
 
-/// The joint that does more than it can or leaves its soft limits, -1: none.
+/// The joint that exceeds its limits or leaves its soft limits, -1: none.
 struct Overrun {
     int joint = -1;
     bool isOutside = false;
-    double use = 0;  ///< speed or acceleration over the highest
+    double use = 0;  ///< speed or acceleration over the limit
 };
 Overrun find_overrun(const Joints &joints, const FoldedLimits &limits) noexcept;
 
@@ -106,7 +106,7 @@ struct JointSituation {
     bool isEnabled = false, areLimitsOverridden = false;
     std::uint32_t homed = 0;
 };
-/// Limits are those that `out` has already.
+/// The limits are already in `out`.
 void fill(const Joints &joints, const JointSituation &situation, Outputs &out) noexcept;
 
 }  // namespace mw::motion

@@ -17,16 +17,16 @@ bool hasOffset(const ExternalOffsets &offsets, int axis) noexcept {
     return (offsets.axes >> axis & 1U) != 0;
 }
 
-/// Where it may be until it has come to rest.
+/// Range that it can reach until it stops.
 JogRange reach_of(const ExternalOffset &offset) noexcept {
     JogRange out{offset.next, offset.next};
     offset.planner.add_reach(out.low, out.high);
     return out;
 }
 
-/// Counts since the last cycle become distance; what is no number counts for nothing.
+/// Turns counts since the last cycle into a distance; a value that is no number has no effect.
 void take_counts(ExternalOffset &offset, const OffsetInput &pins, bool isHonoured) noexcept {
-    // Unsigned difference: counters wrap.
+    // Unsigned difference: counters overflow.
     const auto turned = static_cast<std::int32_t>(static_cast<std::uint32_t>(pins.counts) -
                                                   static_cast<std::uint32_t>(offset.counts));
     offset.counts = pins.counts;
@@ -39,7 +39,7 @@ void take_counts(ExternalOffset &offset, const OffsetInput &pins, bool isHonoure
     }
 }
 
-/// `to`, or as far as soft limits let it; what is beyond them already does not go farther.
+/// `to`, limited by the soft limits; an offset outside them does not move further out.
 double allowed(const ExternalOffset &offset, double to, const JogRange &room) noexcept {
     const double rest = offset.planner.rest_after(0);
     return std::clamp(to, std::min(room.low, rest), std::max(room.high, rest));
@@ -49,7 +49,7 @@ JogRange both(const JogRange &a, const JogRange &b) noexcept {
     return {std::max(a.low, b.low), std::min(a.high, b.high)};
 }
 
-/// What soft limits of shared joints leave this axis beside what is programmed and what the others may take.
+/// Range for this axis within the soft limits of shared joints, besides the program and the other offsets.
 JogRange room_of_joints(const ExternalOffsets &offsets, const OffsetInputs &in, PoseRange others,
                         int axis) noexcept {
     JogRange room{-UNBOUNDED, UNBOUNDED};
@@ -113,7 +113,7 @@ void configure(ExternalOffsets &offsets, const FoldedLimits &limits, const AxisM
     const std::uint32_t had = offsets.axes;
     offsets.axes = 0;
     for (int i = 0; i < MAX_AXES; ++i) {
-        // One that is there stays, also when there are to be none any more.
+        // An existing offset stays, also if no offset is possible any more.
         const bool isThere = offsets.pose[i] != 0.0 || !offsets.axis[at(i)].planner.isAtRest();
         offsets.axes |= limits.offset[at(i)].velocity > 0 || isThere ? 1U << i : 0U;
     }

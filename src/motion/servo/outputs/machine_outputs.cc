@@ -14,7 +14,7 @@ void set_digital(MachineOutputs &outputs, int index, bool isOn) noexcept {
     outputs.digital = isOn ? outputs.digital | bit : outputs.digital & ~bit;
 }
 
-/// Puts `value` in the place of another; whether it is another.
+/// Sets `place` to `value`; true if it changes.
 bool replace(double &place, double value) noexcept {
     const bool isOther = std::bit_cast<std::uint64_t>(place) != std::bit_cast<std::uint64_t>(value);
     place = value;

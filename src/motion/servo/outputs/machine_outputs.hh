@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Digital and analog outputs, set at once by command or in step with the path.
+// Digital and analog outputs, set at once by command or synchronized with the path.
 #pragma once
 
 #include <array>
@@ -22,10 +22,11 @@ struct MachineOutputs {
 
 CommandResult take(MachineOutputs &outputs, const SetDigitalOutput &command) noexcept;
 CommandResult take(MachineOutputs &outputs, const SetAnalogOutput &command) noexcept;
-/// A change whose place on the path has been passed; the path planner has checked its index. While a stop
-/// brakes along the path nothing is switched on and no value grows: only what ends something is done.
+/// An output change whose position on the path has been passed; the path planner has checked its index. While
+/// a stop brakes along the path, nothing is switched on and no value grows: only changes that switch
+/// something off are done.
 void fire(MachineOutputs &outputs, const trajectory::PathEvent &event, bool isStopping) noexcept;
-/// What is set, and what the inputs say beside it.
+/// Outputs, and the values of the inputs.
 void fill(const MachineOutputs &outputs, const Inputs &in, Outputs &out) noexcept;
 
 }  // namespace mw::motion

@@ -13,20 +13,20 @@ namespace mw::motion {
 struct Power {
     Mode mode = Mode::FREE;
     bool isEnabled = false;
-    bool isStopping = false;    ///< category 1: everything brakes, off when it stands
+    bool isStopping = false;    ///< category 1: everything brakes, off at standstill
     std::uint32_t enables = 0;  ///< counts how often it was switched on
 
-    /// Takes commands that move something.
+    /// Accepts commands that move something.
     bool isReady() const noexcept { return isEnabled && !isStopping; }
 };
 
-/// What a change of the mode depends on.
+/// Conditions for a change of the mode.
 struct ModeConditions {
     bool isHoming = false, isMoving = false;
     bool needsHome = false;  ///< Cartesian modes need a known pose
     bool areAllHomed = false;
 };
-/// Modes change only at rest; NONE when there is nothing in the way, or nothing to change.
+/// Modes change only at standstill; NONE when the change is possible, or not needed.
 Reason check_mode(const Power &power, Mode mode, const ModeConditions &conditions) noexcept;
 
 /// True when the stop begins with this call.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The probe: ends probing moves where it trips; touched in any other motion it is a fault.
+// The probe: ends probing moves where it trips; a contact in any other motion is a fault.
 #pragma once
 
 #include <cstdint>
@@ -14,23 +14,23 @@ namespace mw::motion {
 
 struct TouchProbe {
     bool isTripped = false, wasClosed = false;
-    trajectory::Sequence move = 0;  ///< whose start has cleared `isTripped`
+    trajectory::Sequence move = 0;  ///< move whose start has cleared `isTripped`
     std::uint32_t trips = 0;        ///< counts probing moves that were tripped
-    geometry::Pose position;        ///< where it tripped last
+    geometry::Pose position;        ///< position at the last contact
 };
 
 struct ProbeInputs {
     bool isClosed = false;
-    trajectory::Sequence probing_move = 0;  ///< the probing move under way, 0: none
-    bool isAway = false;                    ///< that move looks for the loss of contact
-    bool isMoving = false;                  ///< anything moves, and no stop is under way
-    bool isDropping = false;                ///< the path brakes and what is left will be dropped
+    trajectory::Sequence probing_move = 0;  ///< the active probing move, 0: none
+    bool isAway = false;                    ///< that move probes for the loss of contact
+    bool isMoving = false;                  ///< anything moves, and no stop is active
+    bool isDropping = false;                ///< the path brakes and the rest will be dropped
 };
 
 enum class ProbeEvent : std::uint8_t {
     NONE,
-    FOUND,    ///< the probing move is to end; `position` is where the machine is
-    TOUCHED,  ///< in a move that does not probe
+    FOUND,    ///< the probing move is to end; `position` is the position of the machine
+    TOUCHED,  ///< in a move that is no probing move
 };
 ProbeEvent step(TouchProbe &probe, const ProbeInputs &in, const geometry::Pose &position) noexcept;
 

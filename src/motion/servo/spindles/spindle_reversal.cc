@@ -8,13 +8,14 @@ namespace mw::motion {
 
 namespace {
 
-/// A spindle that has come back by this much has turned; slower than this it counts as standing.
+/// A spindle that has run back by this much has reversed; below the next speed it counts as stopped.
 constexpr double TURNED = 0.02;  // [turns]
 constexpr double STANDING_RPS = 0.05;
-constexpr double STANDING_TURNS = 1e-3;  // in a cycle: an encoder that stands may still step to and fro
-/// Nobody waits longer for a spindle to turn back, or to gain its speed.
+constexpr double STANDING_TURNS =
+    1e-3;  // in a cycle: the encoder of a stopped spindle may still count to and fro
+/// Maximum time to wait for a spindle to reverse or reach its speed.
 constexpr double LONGEST_S = 60;
-/// At least, so that a spindle that turns back within a cycle has a figure.
+/// Minimum, so that a spindle that reverses within a cycle has a ramp.
 constexpr double LEAST_TURNS = 1e-4;
 
 void begin(SpindleReversal &t, const SpindleMotion &now, double counted_rps) noexcept {
@@ -30,7 +31,7 @@ void begin(SpindleReversal &t, const SpindleMotion &now, double counted_rps) noe
         t.watching = SpindleReversal::Watching::START;
         t.speed = 0.5 * std::abs(now.wanted);
     } else if (now.wanted != t.wanted) {
-        t.watching = SpindleReversal::Watching::NOTHING;  // what is seen from here is of several commands
+        t.watching = SpindleReversal::Watching::NOTHING;  // data from here belong to several commands
     }
     t.seconds = isReversal || isStart ? 0.0 : t.seconds;
 }

@@ -41,7 +41,7 @@ double within_range(const Settings &settings, int n, double rpm) noexcept {
     return isForward ? size : -size;
 }
 
-/// Goes on with an orientation; true when it fails.
+/// Continues an orientation; true when it fails.
 bool hasOrientFailed(Spindle &s, const SpindleInputs &pins) noexcept {
     if (!s.isOrienting || s.orient_state != Spindles::ORIENT_IN_PROGRESS) [[likely]] {
         return false;
@@ -71,7 +71,7 @@ double scale_of(const Spindle &s) noexcept {
     return s.isOverrideEnabled ? s.scale : 1.0;
 }
 
-/// A tap keeps the override that it began with. One that has been stopped leaves the spindle off.
+/// A tap keeps the override at its start. A tap that was stopped leaves the spindle off.
 void follow_tap(Spindle &s, int n, const TapTurning &tap) noexcept {
     const bool isTapping = tap.spindle == n;
     s.tap_scale = isTapping && !s.isTapping ? scale_of(s) : s.tap_scale;
@@ -242,7 +242,7 @@ void fill(const Spindles &spindles, const Inputs &in, bool isEnabled, Outputs &o
         const SpindleInputs &pins = in.spindle[at(n)];
         SpindleOutputs &o = out.spindle[at(n)];
         o.speed_rpm = s.out_rpm;
-        // A drive that has these pins only stops at S0, inhibit and an override of 0.
+        // A drive with only these pins stops at S0, inhibit and an override of 0.
         o.isForward = isEnabled && s.out_rpm > 0;
         o.isReverse = isEnabled && s.out_rpm < 0;
         o.isOn = o.isForward || o.isReverse;

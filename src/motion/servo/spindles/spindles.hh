@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Spindles: speed with override and limits, constant surface speed, brake, orientation, turning back for a
-// tap.
+// Spindles: speed with override and limits, constant surface speed, brake, orientation, reversal for a tap.
 #pragma once
 
 #include <array>
@@ -20,22 +19,23 @@ struct Spindle {
     double scale = 1;
     double out_rpm = 0;
     double commanded_rpm = 0;  ///< within the limits of the spindle, before the override
-    double turns = 0;          ///< the last ones counted that were a number
-    double speed_rps = 0;      ///< measured; 0 while that is no number
+    double turns = 0;          ///< last valid count
+    double speed_rps = 0;      ///< measured; 0 while it is no number
     bool isOn = false, isOverrideEnabled = true, isBrakeOn = true;
     bool isOrienting = false, isLocked = false;
     double orient_angle = 0;
     int orient_mode = 0, orient_state = 0, orient_fault = 0;
-    double tap_factor = 1;  ///< of the speed, while a tap is under way
-    double tap_scale = 1;   ///< the override that the tap began with
+    double tap_factor = 1;  ///< factor of the speed during a tap
+    double tap_scale = 1;   ///< override at the start of the tap
     bool isTapping = false;
     SpindleReversal turn_back;
 };
 
-/// What a tap under way wants of its spindle.
+/// Request of an active tap to its spindle.
 struct TapTurning {
-    int spindle = -1;   ///< -1: none is under way
-    double factor = 1;  ///< of the speed that the spindle was started with; 0: off, and not on by itself
+    int spindle = -1;  ///< -1: no tap is active
+    double factor =
+        1;  ///< factor of the speed at which the spindle was started; 0: off, and not switched on by itself
 };
 
 struct Spindles {
@@ -58,7 +58,7 @@ CommandResult take(Spindles &spindles, const SetSwitch &command) noexcept;
 /// The machine goes off.
 void switch_off(Spindles &spindles) noexcept;
 
-/// What the pins say of the spindles. Bit per spindle of which they say no number.
+/// Values of the pins of the spindles. Returns a bit per spindle whose feedback is no number.
 std::uint32_t measure(Spindles &spindles, const Inputs &in) noexcept;
 
 struct SpindleCycle {
@@ -66,13 +66,13 @@ struct SpindleCycle {
     TapTurning tap;
     double period_s = 1e-3;
 };
-/// One cycle. Bit per spindle whose orientation has failed in it: `orient_fault` says with what.
+/// One cycle. Returns a bit per spindle whose orientation has failed in it; `orient_fault` has the code.
 std::uint32_t step(Spindles &spindles, const Inputs &in, const Settings &settings,
                    const SpindleCycle &cycle) noexcept;
 
-/// How fast a spindle turns back, from turning on with its counts and against them [turns/s^2]; 0: not known.
+/// How fast a spindle reverses, from running with its counts and against them [turns/s^2]; 0: not known.
 std::array<double, 2> ramps_of(const Spindles &spindles, int n, const Settings &settings) noexcept;
-/// It may turn in both directions.
+/// It may run in both directions.
 bool isReversible(const Settings &settings, int n) noexcept;
 
 /// Off, or at speed.

@@ -21,7 +21,7 @@ CommandResult take(Watchdog &watchdog, const Heartbeat &) noexcept {
 }
 
 bool step(Watchdog &watchdog, const TaskSigns &signs, double period_s) noexcept {
-    constexpr double LOOK_S = 0.1;  // twice what lies between two looks
+    constexpr double LOOK_S = 0.1;  // twice the time between two looks
     constexpr double SHARE_OF_STARVED = 0.25;
     watchdog.unseen_s = signs.looks != watchdog.last.looks ? 0 : watchdog.unseen_s + period_s;
     if (signs.loops != watchdog.last.loops) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Whether the task process is alive: the kernel's word, and its count of loops. And whether the servo thread
-// ran.
+// Checks whether the task process is alive, by the kernel and by its count of loops, and whether the servo
+// thread ran.
 #pragma once
 
 #include <cstdint>
@@ -10,23 +10,23 @@
 
 namespace mw::motion {
 
-/// What there is to see of the task process.
+/// Signs of life of the task process.
 struct TaskSigns {
     std::uint64_t loops = 0;  ///< of task
-    /// Of the host of the realtime process, every 50 ms: a thread of the priority of task. 0: it does not
-    /// look.
+    /// Count of the host of the realtime process, every 50 ms: a thread with the priority of task. 0: it does
+    /// not count.
     std::uint64_t looks = 0;
     bool isDead = false;
 };
 
-/// Task that does not loop hangs, is stopped, or gets no processor. In the last case other threads of its
-/// priority do not get one either: that time counts a quarter.
+/// A task that does not loop hangs, is stopped, or gets no processor. In the last case other threads of its
+/// priority get none either: that time counts a quarter.
 struct Watchdog {
     bool isOn = false, isLost = false;
     double timeout_s = 0.5;
-    double standing_s = 0;  ///< since the count has moved or a Heartbeat came, while the host looked
-    double starved_s = 0;   ///< while it did not
-    double unseen_s = 0;    ///< since the host has looked
+    double standing_s = 0;  ///< since the count changed or a Heartbeat came, while the host counted
+    double starved_s = 0;   ///< while the host did not count
+    double unseen_s = 0;    ///< since the host has counted
     TaskSigns last;
     std::int64_t last_step_ns = 0;
 };
@@ -34,10 +34,10 @@ struct Watchdog {
 CommandResult take(Watchdog &watchdog, const SetWatchdog &command) noexcept;
 CommandResult take(Watchdog &watchdog, const Heartbeat &command) noexcept;
 
-/// One cycle; true in the one in which the task process is found lost.
+/// One cycle; true in the cycle in which the task process is found lost.
 bool step(Watchdog &watchdog, const TaskSigns &signs, double period_s) noexcept;
 
-/// One cycle of the servo thread itself: [s] since the last one, when that is far too long; else 0.
+/// One cycle of the servo thread itself: time since the last one [s] if it is far too long; else 0.
 double gap_s(Watchdog &watchdog, std::int64_t time_ns) noexcept;
 
 }  // namespace mw::motion
