@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A controller that is saved in the middle of what it does goes on as if nothing had been.
+// A controller that is saved in the middle of a move continues without a difference.
 #include <gtest/gtest.h>
 
 #include "tests/support/motion_rig.hh"
@@ -9,7 +9,7 @@ namespace {
 
 using testing::MotionRig;
 
-/// A copy on channels of its own, with drives that follow as those of the rig do. Nobody plans for it.
+/// A copy on separate channels, with drives that follow as those of the rig do. It has no planner.
 struct Clone {
     std::unique_ptr<Channels> channels = std::make_unique_for_overwrite<Channels>();
     std::unique_ptr<PathLink> link;
@@ -70,7 +70,7 @@ void judge(Mode mode, double jerk, const std::function<void(MotionRig &)> &begin
         clone.step(rig.in.time_ns);
         ASSERT_NO_FATAL_FAILURE(expect_same(*rig.out, *clone.out)) << "cycle " << n;
     }
-    EXPECT_GT(geometry::norm(rig.status().carte_pos_cmd - here), 0.5) << "it did go on";
+    EXPECT_GT(geometry::norm(rig.status().carte_pos_cmd - here), 0.5) << "it moved";
 }
 
 void path(MotionRig &rig) {

@@ -47,7 +47,7 @@ const char *word_for(Reason reason) {
     case Reason::PROBE_ALREADY_TRIPPED: return "probe tripped";
     case Reason::PROBE_ALREADY_OPEN: return "probe open";
     case Reason::NOT_A_NUMBER: return "no number";
-    case Reason::NO_WAY_BACK: return "no way back";
+    case Reason::NO_WAY_BACK: return "no reverse run";
     case Reason::BAD_ARC: return "bad arc";
     case Reason::RIGID_TAPPING: return "not supported";
     case Reason::TAP_OFFSET: return "offsets";
@@ -258,7 +258,7 @@ std::string result_of(const Case &c, Situation situation) {
     if (isRefused && isAtRest(situation)) {
         rig.step(50);
         const Status &after = rig.status();
-        EXPECT_EQ(after.carte_pos_cmd, before.carte_pos_cmd) << "a refusal moves nothing";
+        EXPECT_EQ(after.carte_pos_cmd, before.carte_pos_cmd) << "a rejected command moves nothing";
         EXPECT_EQ(after.isEnabled, before.isEnabled);
         EXPECT_EQ(after.mode, before.mode);
         EXPECT_EQ(after.isAllHomed, before.isAllHomed);
@@ -293,7 +293,7 @@ TEST(Commands, AreTakenOrRefusedAsThePageSays) {
                                                     << made;
 }
 
-/// Whatever else is right, a value that is no number is refused, and what moves goes on or stays.
+/// A value that is no number is rejected even if all else is valid; the current motion is unchanged.
 TEST(Commands, AValueThatIsNoNumberIsRefused) {
     const double nan = std::nan("");
     const geometry::Pose far = at(1, nan);
@@ -374,7 +374,7 @@ TEST(Commands, AValueThatIsNoNumberIsRefused) {
     }
 }
 
-/// One that is not finite is no number either, whatever a check of its sign says.
+/// A value that is not finite is no number either, with either sign.
 TEST(Commands, APitchScaleThatIsNoNumberIsToldAsSuch) {
     for (const double scale : {std::nan(""), std::numeric_limits<double>::infinity()}) {
         EXPECT_EQ(

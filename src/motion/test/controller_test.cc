@@ -291,7 +291,7 @@ TEST(Controller, EachOfThePinsAgainstJogsRefusesThem) {
             EXPECT_EQ(rig.out->joint[1].motor_pos_cmd, 0.0);
             rig.in.*pin = false;
             rig.step(50);
-            EXPECT_EQ(rig.out->joint[1].motor_pos_cmd, 0.0) << "what was refused stays refused";
+            EXPECT_EQ(rig.out->joint[1].motor_pos_cmd, 0.0) << "a rejected command has no later effect";
             rig.send(JogContinuous{{isJoint, 1}, 20});
             rig.step(50);
             EXPECT_GT(rig.out->joint[1].motor_pos_cmd, 0.1);
@@ -416,7 +416,7 @@ TEST(Controller, AProbeThatTripsWhileItBrakesToItsEndHasTripped) {
             EXPECT_TRUE(rig.faults.empty());
             const CommandId after = rig.line({}, 0);
             ASSERT_TRUE(rig.run_until([&] { return rig.answer_to(after) != nullptr; }));
-            EXPECT_TRUE(rig.isDone(after)) << "the path goes on";
+            EXPECT_TRUE(rig.isDone(after)) << "the path continues";
         }
     }
 }
@@ -434,7 +434,7 @@ TEST(Controller, ProbeThatMustTripAndDoesNotIsAFault) {
         ASSERT_TRUE(rig.run_until([&] { return rig.isDone(id); }, 10));
         ASSERT_EQ(rig.faults.size(), 1U);
         EXPECT_EQ(rig.faults[0].kind, FaultKind::PROBE_NOT_TRIPPED);
-        EXPECT_EQ(rig.faults[0].detail, isAway ? 1 : 0) << "which of making and breaking contact is told";
+        EXPECT_EQ(rig.faults[0].detail, isAway ? 1 : 0) << "the fault names which contact was expected";
         EXPECT_FALSE(rig.status().isProbeTripped);
     }
 }

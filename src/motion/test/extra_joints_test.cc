@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Extra joints (motmod num_extrajoints=): homed like others, then moved by joint.N.posthome-cmd. Judged by
-// what the motor is told.
+// the motor commands.
 #include <cmath>
 #include <limits>
 #include <random>
@@ -73,7 +73,7 @@ TEST(ExtraJoints, ThePinMovesAJointFromHomingOnAndNotBefore) {
     }
     EXPECT_LT(in_position, 100) << "where it turns back alone";
     r.step(500);
-    EXPECT_TRUE(r.rig.status().joint[EXTRA].isInPosition) << "the pin stands";
+    EXPECT_TRUE(r.rig.status().joint[EXTRA].isInPosition) << "the pin does not change";
     r.check();
 }
 
@@ -147,7 +147,7 @@ TEST(ExtraJoints, APinThatAsksForTooMuchWhenItTakesOverIsTold) {
     r.step(5);
     r.rig.send(SetJointActive{EXTRA, true});
     r.step(500);
-    EXPECT_EQ(r.rig.faults.size(), 2u) << "and again when it takes over once more";
+    EXPECT_EQ(r.rig.faults.size(), 2u) << "and again at the next takeover";
     EXPECT_EQ(r.motor(), 20);
     r.check();
 }
@@ -180,7 +180,7 @@ TEST(ExtraJoints, AfterAnAbortNothingMovesUntilThePinHasSettledAndChanges) {
     r.rig.send(Abort{++r.rig.epoch});
     double place = 0;
     for (int n = 0; n < 1200; ++n) {
-        r.pin() += 0.01 * ((n / 50) % 2 == 0 ? 1 : -1);  // whoever moves the pin goes on
+        r.pin() += 0.01 * ((n / 50) % 2 == 0 ? 1 : -1);  // the pin keeps changing
         r.step();
         place = n == 200 ? r.motor() : place;
         ASSERT_TRUE(n <= 200 || r.motor() == place) << n;
@@ -188,10 +188,10 @@ TEST(ExtraJoints, AfterAnAbortNothingMovesUntilThePinHasSettledAndChanges) {
     EXPECT_LT(place, 10) << "it brakes at once";
     EXPECT_EQ(r.speed(), 0);
     r.step(500);
-    EXPECT_EQ(r.motor(), place) << "a pin that stands moves nothing";
+    EXPECT_EQ(r.motor(), place) << "a pin that does not change moves nothing";
     r.pin() = 2;
     r.step(2000);
-    EXPECT_EQ(r.motor(), 2) << "a fresh wish does";
+    EXPECT_EQ(r.motor(), 2) << "a new value does";
     r.check();
 }
 
@@ -210,7 +210,7 @@ TEST(ExtraJoints, SwitchingOnMovesNothingUntilThePinChanges) {
     const double place = r.motor();
     r.step(1000);
     EXPECT_TRUE(r.rig.status().joint[EXTRA].isHomed);
-    EXPECT_EQ(r.motor(), place) << "the pin has stood at 10 all the time";
+    EXPECT_EQ(r.motor(), place) << "the pin was at 10 all the time";
     r.pin() = 9;
     r.step(1000);
     EXPECT_EQ(r.motor(), 9);
@@ -237,7 +237,7 @@ TEST(ExtraJoints, PushedByHandWhileOffItStaysWhereItWasPushedTo) {
     r.check();
 }
 
-/// joint.N.vel-cmd and acc-cmd are those of what the motor is told.
+/// joint.N.vel-cmd and acc-cmd are the derivatives of the motor command.
 TEST(ExtraJoints, ItsCommandedAccelerationIsThatOfItsMotion) {
     for (const Mode mode : {Mode::FREE, Mode::TELEOP}) {
         ExtraRig r;
@@ -375,7 +375,7 @@ TEST(ExtraJoints, TheyAreTheLastOnesAndStayInUse) {
     EXPECT_TRUE(r.rig.isDone(same));
 }
 
-/// One joint too many would be one of nobody, or beyond them all.
+/// A joint too many would be one that does not exist.
 TEST(ExtraJoints, SwitchingOnReadiesThemAndNoneBeside) {
     ExtraJoints extra;
     extra.first = 2;

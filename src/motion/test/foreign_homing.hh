@@ -6,7 +6,7 @@
 
 namespace mw::motion {
 
-/// Its joint homes until it is told to end or gives up; it says when it has something to do.
+/// Its joint homes until it is ended or fails; the module reports whether it has work.
 struct ForeignModule final : homing::Module {
     bool isBusy = false, areHomed = false;
     int steps = 0;  ///< cycles in which it was asked for moves

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The sides of a gantry do not always stand together when the machine is switched on. No joint steps, none
-// does more than it can, and nobody moves axes as long as they are apart.
+// The sides of a gantry may differ when the machine is switched on. No joint jumps, none exceeds its limits,
+// and axes do not move until the sides are aligned.
 #include <algorithm>
 #include <vector>
 
@@ -15,7 +15,7 @@ namespace {
 constexpr double SIDE_VELOCITY = 100, SIDE_ACCELERATION = 1000;
 constexpr double TOLERATED = 0.5;  ///< MIN_FERROR of the sides [mm]
 
-/// Two sides, 1 and 2, move Y. Motors are looked at from outside.
+/// Two sides, 1 and 2, move Y. Judged by the motor commands.
 struct GantryRig : testing::MotionRig {
     GantryRig() : MotionRig("XYYZ", SIDE_VELOCITY, SIDE_ACCELERATION) {
         for (int j = 0; j < 4; ++j) {
@@ -119,7 +119,7 @@ TEST(GantrySides, FarApartTheyAreSwitchedOnInJointModeWhereTheyStand) {
     EXPECT_NEAR(rig.motor(2), 0.2, 1e-9);
     rig.send(JogIncremental{{false, 0}, 10, 1});
     rig.watch(500);
-    EXPECT_EQ(rig.motor(2), 0.0) << "led to the other side";
+    EXPECT_EQ(rig.motor(2), 0.0) << "aligned with the other side";
     EXPECT_TRUE(rig.status().isInPosition);
     EXPECT_EQ(rig.checker.report(), "");
 }

@@ -178,8 +178,8 @@ TEST(HomingCases, ASwitchThatClosesAgainWhileStoppingIsNoZero) {
         << m.fault();
 }
 
-/// A slow search comes to a stand at once behind the opening edge: without more of a way back the closing
-/// edge comes while play is still taken up.
+/// A slow search stops at once behind the opening edge: without a longer retract the closing edge comes while
+/// backlash is still being compensated.
 TEST(HomingCases, ALatchInTheDirectionOfTheSearchBeginsSoFarOffThatPlayIsTakenUpAtTheEdge) {
     for (const double play : {0.1, 0.5, 2.0}) {
         for (const double latch : {1.0, 5.0, 20.0}) {
@@ -212,7 +212,7 @@ TEST(HomingCases, InhibitKeepsHomingFromBeginningAndStopsNothing) {
     m.rig.step(200);
     m.rig.send(Home{0});
     m.rig.step(2);
-    ASSERT_TRUE(m.rig.status().isHoming) << "waits for the jog to stand";
+    ASSERT_TRUE(m.rig.status().isHoming) << "waits for the jog to stop";
     m.rig.in.isHomingInhibited = true;
     m.rig.step(200);
     EXPECT_FALSE(m.isHomed(0));
@@ -223,7 +223,7 @@ TEST(HomingCases, InhibitKeepsHomingFromBeginningAndStopsNothing) {
     m.rig.in.isHomingInhibited = true;
     EXPECT_EQ(m.rig.refusal(m.rig.send(Home{1})), Reason::NONE);
     ASSERT_TRUE(m.wait());
-    EXPECT_TRUE(m.isHomed(0)) << "what has begun goes on";
+    EXPECT_TRUE(m.isHomed(0)) << "the active sequence continues";
     const CommandId id = m.rig.send(Home{1});
     m.rig.step(2);
     EXPECT_EQ(m.rig.refusal(id), Reason::HOMING_INHIBITED);

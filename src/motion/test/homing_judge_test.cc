@@ -130,7 +130,7 @@ struct Judge {
             m.set(Parameter::JOINT_MAX_LIMIT, 100, j);
             m.set(Parameter::JOINT_BACKLASH, plan.play, j);
             m.set(Parameter::JOINT_HOME, plan.home, j);
-            // The sides of a gantry are square where their switches say so.
+            // The sides of a gantry are square at the positions of their switches.
             m.set(Parameter::JOINT_HOME_OFFSET, plan.offset, j);
             m.set(Parameter::JOINT_HOME_USE_INDEX, plan.hasIndex(), j);
             m.set(Parameter::JOINT_HOME_INDEX_NO_ENCODER_RESET, plan.isReset ? 0 : 1, j);
@@ -163,7 +163,7 @@ struct Judge {
     }
     /// True when it has homed. What is against the rules is in `complaint`.
     bool run() {
-        const double share = plan.play > 0 ? 1.5 : 1.0;  // backlash is taken up on top
+        const double share = plan.play > 0 ? 1.5 : 1.0;  // backlash is compensated on top
         const mw::testing::AxisLimit most{share * plan.velocity, share * plan.acceleration};
         std::vector<mw::testing::LimitChecker> checkers(static_cast<std::size_t>(plan.count()),
                                                         mw::testing::LimitChecker({most}, MotionRig::T));
@@ -209,7 +209,7 @@ struct Judge {
         return m.isHomed(0) && m.isHomed(plan.count() - 1);
     }
     void judge_end(bool isBroken) {
-        // A contact that lies while the edge is looked for is not to be told from one that does not.
+        // During the search for the edge, a broken contact looks like a good one.
         const bool isSwitchBroken =
             plan.broken == Broken::SWITCH_OPEN || plan.broken == Broken::SWITCH_CLOSED;
         const bool hasLied = isSwitchBroken && homed_at > plan.broken_after;

@@ -48,7 +48,7 @@ struct HomingRig {
     bool isHomed(int joint) const { return rig.status().joint[static_cast<std::size_t>(joint)].isHomed; }
     double pos_fb(int joint) const { return rig.status().joint[static_cast<std::size_t>(joint)].pos_fb; }
     double pos_cmd(int joint) const { return rig.status().joint[static_cast<std::size_t>(joint)].pos_cmd; }
-    /// Where the slide stands when the joint says 0.
+    /// Position of the slide when the joint is at 0.
     double zero(int joint) const { return axes[static_cast<std::size_t>(joint)].slide() - pos_fb(joint); }
     std::string fault() const { return rig.faults.empty() ? "" : motion::fault_text(rig.faults.front()); }
 };

@@ -390,7 +390,7 @@ TEST(Indexers, OneThatDoesNotLockIsAFaultAndNoProgramGoesOn) {
     EXPECT_EQ(r.rig.refusal(refused), Reason::INDEXER_OPEN);
     r.rig.send(Abort{++r.rig.epoch});
     r.step(20);
-    r.lock.isJammed = false;  // somebody has helped
+    r.lock.isJammed = false;  // an operator has freed it
     r.step(100);
     const CommandId again = r.rapid(10, 30);
     ASSERT_TRUE(r.run_until([&] { return r.rig.isDone(again); }));

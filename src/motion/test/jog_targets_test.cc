@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Jogs whose target changes in motion: limits hold at every sample, the last target is reached, and not later
-// than braking and beginning anew would need. MW_CAMPAIGN_SEEDS and MW_CAMPAIGN_FIRST choose the seeds.
+// than with a stop and a new start. MW_CAMPAIGN_SEEDS and MW_CAMPAIGN_FIRST choose the seeds.
 #include <random>
 
 #include <gtest/gtest.h>
@@ -64,7 +64,8 @@ class TargetRun {
             const double p = rig_.out->joint[0].motor_pos_cmd;
             checker.sample(&p);
             ++since;
-            // To a stand from full speed, there and back over the whole way, and what the jerk limit adds.
+            // A stop from full speed, the whole travel in both directions, and the extra time of the jerk
+            // limit.
             const double tau = jerk_ > 0 ? 2.0 * acceleration_ / jerk_ : 0.0;
             const double longest_s = 2 * SPEED / acceleration_ + 2 * LIMIT / slowest +
                                      SPEED * SPEED / acceleration_ / slowest + 2 * tau + 10 * T;
@@ -104,7 +105,7 @@ void run_all(Mode mode, double jerk) {
         reached += run.reached;
     }
     EXPECT_GT(taken, 20 * count);
-    EXPECT_LT(refused, taken / 2) << "increments beyond the soft limit";
+    EXPECT_LT(refused, taken / 2) << "increments past the soft limit";
     EXPECT_GT(reached, 1000 * count);
 }
 
@@ -124,8 +125,8 @@ TEST(JogTargets, MayChangeInMotionInTeleopModeWithJerkLimits) {
     run_all(Mode::TELEOP, 3e4);
 }
 
-/// A jerk that is small beside the acceleration: the mean must not be as long as turning about at full
-/// acceleration takes.
+/// A jerk that is small compared with the acceleration: the averaging time must be shorter than a reversal at
+/// full acceleration takes.
 TEST(JogStops, AJogWithALowJerkStopsAsSoonAsItCan) {
     constexpr double V = 100, A = 4000, J = 10000, SLOW = 8;
     for (const bool isJoint : {true, false}) {
@@ -151,7 +152,8 @@ TEST(JogStops, AJogWithALowJerkStopsAsSoonAsItCan) {
             go(1);
             ++cycles;
         }
-        // The mean takes sqrt(2 V / J), before it the leader V / a with a half of what that mean allows.
+        // The average takes sqrt(2 V / J), the reference before it V / a with half of what that average
+        // allows.
         EXPECT_LT(cycles, 160) << (isJoint ? "joint" : "axis");
         EXPECT_EQ(checker.report(), "");
     }

@@ -36,7 +36,7 @@ TEST(Machine, AJointThatIsLeftOutComesBackWithoutAStep) {
     rig.send(JogIncremental{{false, 1}, 50, 5});
     rig.step(400);
     EXPECT_EQ(rig.status().carte_pos_cmd[1], 5);
-    EXPECT_EQ(rig.out->joint[1].motor_pos_cmd, 0) << "it is held where it was left out";
+    EXPECT_EQ(rig.out->joint[1].motor_pos_cmd, 0) << "it keeps the position at which it was deactivated";
     const CommandId early = rig.send(SetJointActive{1, true});
     const CommandId free = rig.send(SetMode{Mode::FREE});
     const CommandId late = rig.send(SetJointActive{1, true});
@@ -73,7 +73,7 @@ TEST(Machine, TheNumberOfJointsChangesWhileItIsOff) {
     EXPECT_EQ(asked(2), Reason::TOO_FEW_JOINTS);
     EXPECT_EQ(asked(0), Reason::TOO_FEW_JOINTS);
     EXPECT_EQ(asked(6), Reason::NO_SUCH_JOINT);
-    EXPECT_EQ(rig.status().num_joints, 5) << "a refusal changes nothing";
+    EXPECT_EQ(rig.status().num_joints, 5) << "a rejected command changes nothing";
     EXPECT_EQ(asked(3), Reason::NONE);
     EXPECT_EQ(rig.status().num_joints, 3);
     rig.in.joint[4].isAmpFaulted = true;
@@ -195,9 +195,9 @@ TEST(Machine, ARefusedMoveNamesTheAxisOrJointThatCannot) {
 
     ASSERT_EQ(answer(5, 15, 0).reason, Reason::NONE);
     rig.step(2000);
-    rig.set(Parameter::JOINT_MAX_LIMIT, 0, 18);  // it stands at 20
+    rig.set(Parameter::JOINT_MAX_LIMIT, 0, 18);  // it is at 20
     EXPECT_EQ(answer(5.5, 15.5, 0).reason, Reason::JOINT_BEYOND_LIMIT) << "farther out";
-    EXPECT_EQ(answer(4.5, 14.5, 0).reason, Reason::JOINT_BEYOND_LIMIT) << "nearer, and still beyond it";
+    EXPECT_EQ(answer(4.5, 14.5, 0).reason, Reason::JOINT_BEYOND_LIMIT) << "nearer, and still outside";
     EXPECT_EQ(answer(2, 8, 0).reason, Reason::NONE) << "back";
     rig.forgive_joints();
 

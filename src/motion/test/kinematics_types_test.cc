@@ -50,7 +50,7 @@ geometry::Pose at(double x, double y, double z = 0) {
     return pose;
 }
 
-/// A machine that stands at joints 20, 30, 0 in coordinated mode.
+/// A machine at joints 20, 30, 0 in coordinated mode.
 struct KinematicsTypesTest : ::testing::Test {
     Turning kinematics;
     MotionRig rig{kinematics, 3, 100, 1000};
@@ -183,7 +183,7 @@ TEST_F(KinematicsTypesTest, WithoutAPoseTheMachineGoesOnInJointModeAlone) {
         rig.step(5);
         EXPECT_TRUE(rig.isDone(on));
         EXPECT_EQ(rig.status().mode, Mode::FREE);
-        ASSERT_EQ(rig.faults.size(), 1U) << "it is told";
+        ASSERT_EQ(rig.faults.size(), 1U) << "a fault reports it";
         EXPECT_EQ(rig.faults[0].kind, FaultKind::POSE_UNKNOWN);
         EXPECT_EQ(rig.refusal(teleop), Reason::POSE_UNKNOWN);
         expect_joints(5, 30);
@@ -301,7 +301,7 @@ class SaidLinear final : public kinematics::Kinematics, public kinematics::TypeS
     kinematics::TypeSwitch *type_switch() const noexcept override { return const_cast<SaidLinear *>(this); }
 };
 
-/// External offsets are for joints that go in proportion to axes: in whatever mode the type was changed.
+/// External offsets are for joints that go in proportion to axes, in each mode in which the type was changed.
 TEST(KinematicsTypes, OffsetsAreThereFromTheChangeOnToATypeThatAllowsThem) {
     for (const Mode mode : {Mode::TELEOP, Mode::COORD}) {
         SaidLinear kinematics;

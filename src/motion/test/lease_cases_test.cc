@@ -33,7 +33,7 @@ TEST(JogLease, HoldsWhereJointsAreNotAxes) {
     EXPECT_NEAR(rig.faults[0].value, 0.1, 1e-12);
 }
 
-/// A person holds the key at the end of the way: no error, no motion, and nothing to tell when he lets go.
+/// An operator holds the key at the soft limit: no error, no motion, and no message on release.
 TEST(JogLease, AtTheSoftLimitRenewalsChangeNothing) {
     MotionRig rig;
     rig.set(Parameter::JOINT_MAX_LIMIT, 0, 2);
@@ -72,7 +72,7 @@ TEST(JogLease, NoRenewalOutlivesAStop) {
          }},
         {"modes",
          [](MotionRig &r) {
-             r.run_until([&] { return r.status().isInPosition; }, 30);  // refused while it moves
+             r.run_until([&] { return r.status().isInPosition; }, 30);  // rejected while it moves
              r.send(SetMode{Mode::TELEOP});
              r.send(SetMode{Mode::FREE});
          }},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Jogs with a lease, judged by samples of the trace alone: what is renewed never dips, what is not brakes
-// within the lease and a servo cycle, and nothing that was stopped goes on. MW_CAMPAIGN_SEEDS and
+// Jogs with a lease, judged by samples of the trace alone: a renewed jog keeps its speed, another one stops
+// within the lease and a servo cycle, and a stopped jog does not continue. MW_CAMPAIGN_SEEDS and
 // MW_CAMPAIGN_FIRST choose the seeds.
 #include <array>
 #include <map>
@@ -74,7 +74,7 @@ class JogJudge {
         case State::HELD: judge_held(v); break;
         case State::BRAKING: judge_braking(v); break;
         case State::OFF: state_ = State::STANDING; break;
-        case State::STANDING: EXPECT_NEAR(v, 0, SPEED_ROUNDING) << "it moves and nobody asks for it"; break;
+        case State::STANDING: EXPECT_NEAR(v, 0, SPEED_ROUNDING) << "it moves without a jog"; break;
         }
         speed_ = std::abs(v);
         ++cycles_;
@@ -88,7 +88,7 @@ class JogJudge {
         speed_at_change_ = speed_;
         // With jerk limits an earlier change may still be under way.
         floor_ = std::min({wasSettled ? speed_ : floor_, speed_, wanted()});
-        // A sample has the mean speed of its cycle; at its end a change under way was half a cycle farther.
+        // A sample has the average speed of its cycle; at its end a change was half a cycle further.
         ahead_ = wasSettled ? 0.0 : 0.5 * acceleration_ * T;
         cycles_ = 0;
     }
@@ -309,7 +309,7 @@ class LeaseRun {
             }
         }
     }
-    /// Each lease that has ended was told once, with its joint or axis.
+    /// Each lease that has ended was reported once, with its joint or axis.
     void count() {
         std::array<int, 2> told{};
         for (const Fault &fault : rig_.faults) {
@@ -364,7 +364,7 @@ void run_all(Mode mode, double jerk) {
     EXPECT_GT(all.cruising, 100 * count);
     EXPECT_GT(all.refused_renewals, count) << "of jogs that were stopped";
     std::printf(
-        "%d begun, %d renewed, %d lapsed, %d stopped, %d cycles at speed; refused: %d renewals of jogs that "
+        "%d begun, %d renewed, %d lapsed, %d stopped, %d cycles at speed; rejected: %d renewals of jogs that "
         "were stopped, %d others (mode changes while moving, jogs while off)\n",
         all.begun, all.renewed, all.lapsed, all.stopped, all.cruising, all.refused_renewals,
         all.refused_others);

@@ -109,7 +109,7 @@ TEST(Limits, JerkOfTheMachineLimitsStraightJogsAndNoTurningOnes) {
                              {Parameter::JOINT_MAX_JERK, 1, 3000},
                              {Parameter::JOINT_IS_ANGULAR, 1, 1}});
     const FoldedLimits limits = fold_limits(s, axis_map("XA", 2), ALL_HOMED);
-    EXPECT_EQ(limits.path.jerk[X], 5000) << "the norm of X Y Z has a limit of its own";
+    EXPECT_EQ(limits.path.jerk[X], 5000) << "the norm of X Y Z has a separate limit";
     EXPECT_EQ(limits.axis_jog[X].jerk, 2000);
     EXPECT_EQ(limits.joint_jog[0].jerk, 2000);
     EXPECT_EQ(limits.axis_jog[geometry::AXIS_A].jerk, 3000);
@@ -165,7 +165,7 @@ TEST(Limits, ExternalOffsetsHaveTheirShareOfJointsThatAreNoAxes) {
     const kinematics::CoreXy corexy;
     const AxisMap map = axis_map(corexy, 3);
     EXPECT_TRUE(map.mayHaveOffset(X));
-    EXPECT_FALSE(map.mayHaveOffset(geometry::AXIS_A)) << "no joint of the machine moves it";
+    EXPECT_FALSE(map.mayHaveOffset(geometry::AXIS_A)) << "no joint of the machine is moving it";
     const FoldedLimits limits = fold_limits(s, map, ALL_HOMED);
     EXPECT_DOUBLE_EQ(limits.path_joints.velocity[0], 80);
     EXPECT_DOUBLE_EQ(limits.path_joints.acceleration[1], 800);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Random machines whose joints go in proportion to axes, with random limits: programs, jogs, wheels,
-// overrides and stops while pins ask for offsets at any instant. Motors are judged as joints and as axes;
-// what is left without the offsets is to be the program; and the work is counted.
+// overrides and stops while pins change the offsets at any instant. Motors are judged as joints and as axes;
+// without the offsets the motion must be the program's; and the work is counted.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -342,7 +342,7 @@ class Session {
         go(1500);
         expect_no_fault(true);
     }
-    /// Nothing else moves: they come to what was asked for, or are told to be limited.
+    /// Nothing else moves: offsets reach their request, or are reported as limited.
     void await_offsets() {
         constexpr int LONG = 600000;  // of the smallest share
         bool isFar = true;
@@ -367,7 +367,7 @@ class Session {
     std::vector<Way> ways_;
     geometry::Pose end_;
     double tolerance_ = 0;
-    double worst_off_path_ = -1e300;  ///< beyond the tolerance
+    double worst_off_path_ = -1e300;  ///< over the tolerance
     bool isMild_ = false;             ///< offsets are short of most limits
 };
 
@@ -388,10 +388,10 @@ TEST_P(LinearOffsetCampaign, NoSampleOfTheSumLeavesALimitOfJointsOrAxes) {
             return;
         }
     }
-    std::printf("linear offsets: %d sessions, %d of %d programs done, %d of %d moves refused, %d of %d jogs "
+    std::printf("linear offsets: %d sessions, %d of %d programs done, %d of %d moves rejected, %d of %d jogs "
                 "arrived (%d stopped), offsets %d reached %d limited of %d\n"
                 "worst: velocity %.6f acceleration %.6f jerk %.6f of the limits, %.2e outside, %.2e off the "
-                "path beyond the tolerance\n",
+                "path over the tolerance\n",
                 count.sessions, count.done, count.programs, count.refused, count.moves, count.arrived,
                 count.jogs, count.stopped, count.reached, count.limited, count.asked, count.v, count.a,
                 count.j, count.outside, count.off_path);

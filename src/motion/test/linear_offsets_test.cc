@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // External offsets on machines whose joints are no axes but go in proportion to them: CoreXY, axes as
-// measured, a turned table. What motors are told is judged by formulas of this file alone.
+// measured, a turned table. Motor commands are judged by formulas of this file alone.
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -81,8 +81,8 @@ TEST(LinearOffsets, OffsetsOfBothAxesOfABeltAndAPathShareWhatTheJointCanDo) {
     }
 }
 
-/// Mean speeds on a circle of chords, `sense` of its angle, where mostly joint 0 and where mostly joint 1 is
-/// far out. It goes beyond the circle in all directions later.
+/// Average speeds on a circle of chords, `sense` of its angle, where mostly joint 0 and where mostly joint 1
+/// is far out. Later the path leaves the circle in all directions.
 std::array<double, 2> speeds_on_circle(double sense) {
     constexpr double RADIUS = 5, CHORD_RAD = 0.05, TOLERANCE = 0.01;
     LinearMachine m = corexy(true);
@@ -118,8 +118,9 @@ std::array<double, 2> speeds_on_circle(double sense) {
     return {sum[0] / samples[0], sum[1] / samples[1]};
 }
 
-/// Corners of chords are moved out, against the mean, as far as the path goes elsewhere, and whichever joint
-/// that takes farther out: mirrored, a circle is driven the same with the joints exchanged.
+/// Corners of chords are moved out, against the moving average, as far as the path reaches elsewhere,
+/// regardless of the joint that this moves out further: a mirrored circle is driven the same with the joints
+/// exchanged.
 TEST(LinearOffsets, ACircleOfChordsIsDrivenTheSameInTheDirectionOfEitherJoint) {
     const auto [left_0, left_1] = speeds_on_circle(1);
     const auto [right_0, right_1] = speeds_on_circle(-1);
@@ -227,7 +228,7 @@ TEST(LinearOffsets, AJogUnderWayArrivesWhateverAnOffsetAsksForMeanwhile) {
 TEST(LinearOffsets, AnArcIsCheckedWhereItsJointsGoFarthest) {
     LinearMachine m = corexy();
     m.ratio = {0.2, 0, 0};
-    m.joints[0].high = 20 * std::sqrt(2.0) - 5e-5;  // between two of the places that checks look at
+    m.joints[0].high = 20 * std::sqrt(2.0) - 5e-5;  // between two sampled positions
     LinearRig rig(m);
     rig.begin(Mode::COORD);
     const double turned = 0.3;

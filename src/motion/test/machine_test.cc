@@ -44,8 +44,8 @@ TEST(Machine, HomesByASwitchAndKeepsTheLimits) {
     EXPECT_TRUE(rig.faults.empty());
 }
 
-/// The drive of joint 0 brings its shaft to where it is told by the next cycle; its encoder is set to zero at
-/// marks every 5 units while motion asks for that.
+/// The drive of joint 0 reaches its commanded position in the next cycle; its encoder resets at marks every 5
+/// units while motion sets index-enable.
 struct IndexedDrive {
     plants::Encoder encoder{{.counts_per_unit = 1e6, .index_spacing = 5, .index_at = 1}, 2};
     double shaft = 2;
@@ -83,7 +83,7 @@ TEST(Machine, AnIndexThatSetsTheEncoderToZeroMovesNoMotor) {
     EXPECT_EQ(drive.resets, 1);
     EXPECT_TRUE(checker.isWithin()) << checker.report();
     EXPECT_EQ(drive.encoder.zero(), 6) << "the first mark on the way";
-    EXPECT_NEAR(drive.shaft, 6 + 1, 1e-3) << "at HOME, as far beyond the mark as it is beyond HOME_OFFSET";
+    EXPECT_NEAR(drive.shaft, 6 + 1, 1e-3) << "at HOME, as far past the mark as HOME is past HOME_OFFSET";
     EXPECT_TRUE(rig.faults.empty());
 }
 
@@ -418,7 +418,7 @@ TEST(Machine, AProbeThatTripsInAJogMayBeLeftOutOfAccount) {
     rig.step(200);
     rig.in.isProbeClosed = true;
     rig.step(200);
-    EXPECT_FALSE(rig.status().isInPosition) << "it goes on";
+    EXPECT_FALSE(rig.status().isInPosition) << "it still moves";
     EXPECT_TRUE(rig.faults.empty());
     rig.send(Abort{++rig.epoch});
     rig.in.isProbeClosed = false;

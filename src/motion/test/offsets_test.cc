@@ -172,7 +172,7 @@ TEST(Offsets, SwitchedOffAndOnNothingMovesAndTheyAreZero) {
     rig.expect_within();
 }
 
-/// The program goes on from where the machine stands: what was an offset is not taken back with a jump.
+/// The program starts at the machine's position: a former offset does not cause a jump.
 TEST(Offsets, SwitchedOnInAProgramTheMachineStandsWhereItStood) {
     OffsetRig rig;
     rig.ready();
@@ -310,7 +310,7 @@ TEST(Offsets, ARigidTapAlongTheirAxisIsRefusedAlongAnotherItIsNot) {
     tap.end = at(0, 0, -5);
     const CommandId along = rig.send_path(tap);
     rig.go(50);
-    EXPECT_EQ(rig.refusal(along), Reason::TAP_OFFSET) << "it turns back beyond what offsets are told of";
+    EXPECT_EQ(rig.refusal(along), Reason::TAP_OFFSET) << "the reversal exceeds the range that offsets know";
     rig.send(Abort{++rig.epoch});
     rig.go(20);
     tap.end = at(0, -5, 0);
@@ -333,7 +333,7 @@ TEST(Offsets, AStopBrakesThemToo) {
     EXPECT_TRUE(rig.checker.isWithin()) << rig.checker.report();
 }
 
-/// Where the emergency stop has cut one off on its way it stays, and nothing waits for it to arrive.
+/// An offset that an emergency stop interrupts keeps its value, and nothing waits for its target.
 TEST(Offsets, CutOffOnTheirWayTheyAreAtRest) {
     OffsetRig rig;
     rig.ready(Mode::TELEOP);
@@ -352,7 +352,7 @@ TEST(Offsets, CutOffOnTheirWayTheyAreAtRest) {
     EXPECT_EQ(rig.motor(0), stood);
 }
 
-/// While the planner plans the servo thread goes on: what it has accepted counts there from then on.
+/// While the planner plans, the servo thread continues: an accepted move counts there at once.
 TEST(Offsets, AMoveThatIsAcceptedKeepsItsRoomFromThatInstant) {
     int refused = 0;
     for (int lead = 0; lead < 3 * MotionRig::PLANNER_PERIOD; ++lead) {
@@ -415,7 +415,7 @@ TEST(Offsets, TakenAwayTheShareLeavesTheOffsetWhereItIs) {
     EXPECT_TRUE(rig.checker.isWithin()) << rig.checker.report();
 }
 
-/// Wheels of every kind turn while programs run and axes are jogged; what is refused is counted.
+/// Wheels of every type turn while programs run and axes are jogged; rejected moves are counted.
 class OffsetCampaign : public ::testing::TestWithParam<bool> {};
 INSTANTIATE_TEST_SUITE_P(WithAndWithoutJerk, OffsetCampaign, ::testing::Bool());
 
@@ -429,7 +429,7 @@ TEST_P(OffsetCampaign, NoSampleOfTheSumLeavesALimit) {
             return std::uniform_real_distribution<double>(low, high)(random);
         };
         const bool isJogging = seed % 3 == 0;
-        const bool isNarrow = seed % 2 == 0;  // much is refused
+        const bool isNarrow = seed % 2 == 0;  // many are rejected
         const double most_counts = isNarrow ? 1500 : 150, most_way = isNarrow ? 48 : 40;
         rig.ready(isJogging ? Mode::TELEOP : Mode::COORD);
         const auto turn = [&] {
@@ -460,7 +460,7 @@ TEST_P(OffsetCampaign, NoSampleOfTheSumLeavesALimit) {
                 rig.go(1);
             }
             if (!isJogging) {
-                // A move that does not fit beside an offset is refused, and the path stops before it.
+                // A move that does not fit beside an offset is rejected, and the path stops before it.
                 rig.send(Abort{++rig.epoch});
                 const bool wasDone = rig.isDone(id);
                 done += wasDone ? 1 : 0;
@@ -477,7 +477,7 @@ TEST_P(OffsetCampaign, NoSampleOfTheSumLeavesALimit) {
             return;
         }
     }
-    std::printf("offsets: %d programs done, %d moves refused, limited %d, reached %d\n", done, refused,
+    std::printf("offsets: %d programs done, %d moves rejected, limited %d, reached %d\n", done, refused,
                 limited, reached);
     EXPECT_GT(done, 5);
     EXPECT_GT(refused, 5);

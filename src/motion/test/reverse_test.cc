@@ -154,8 +154,7 @@ TEST_P(Reverse, AnAbortOnTheWayBackStopsThereAndANewPathBeginsThere) {
     EXPECT_TRUE(rig.checker->isWithin()) << rig.checker->report();
 }
 
-/// The way back begins where the path came to rest: too slowly to be seen at first. Who is stopped then
-/// stands.
+/// Reverse run begins where the path stopped: too slowly to be seen at first. An abort then stops it at once.
 TEST_P(Reverse, AnAbortBeforeAnythingIsSeenToGoBackMovesNothing) {
     constexpr double SEEN = 1e-9, NOTHING = 2e-6;
     int judged = 0;

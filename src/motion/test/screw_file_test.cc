@@ -54,7 +54,7 @@ TEST(ScrewFile, AFileOfTheOtherTypeIsFoundByItsSlope) {
     EXPECT_NE(error_of("0 0 0\n10 10.001 9.999\n", ScrewFileType::OFFSET).find("x.comp:2:4: the correction"),
               std::string::npos);
     EXPECT_NE(error_of("0 0 0\n10 0.001 9.999\n").find("x.comp:2:10: the correction"), std::string::npos)
-        << "the way back alone";
+        << "only the reverse column";
     EXPECT_NE(error_of("0 0 0\n10 0.001 -0.001\n", ScrewFileType::ACTUAL).find("COMP_FILE_TYPE"),
               std::string::npos);
 }

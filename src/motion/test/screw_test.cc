@@ -45,8 +45,8 @@ struct Slide {
     }
 };
 
-/// Somebody measures the slide at each mark, coming from below and from above. `offset`: between the numbers
-/// of the joint and those of the motor.
+/// Measures the slide at each mark, coming from below and from above. `offset`: between the numbers of the
+/// joint and those of the motor.
 std::vector<LoadCompensation> measure(double play, double pitch, double offset = 0) {
     std::vector<LoadCompensation> points;
     const int count = static_cast<int>(700 / pitch) + 1;
@@ -88,8 +88,8 @@ struct ScrewRig : MotionRig {
     }
 };
 
-/// How far the slide is from where it is told to be, on the way and at rest, but for the time in which the
-/// play is taken up after a reversal.
+/// Deviation of the slide from its command, in motion and at standstill, except for the time in which the
+/// backlash is compensated after a reversal.
 struct Judgement {
     double worst = 0, worst_at_rest = 0;
     int judged = 0, left_out = 0, at_rest = 0, reversals = 0;
@@ -215,7 +215,7 @@ TEST(ScrewTables, TenThousandPointsAreLoadedWhileTheMachineIsOff) {
     const CommandId id = rig.send(points[0]);
     rig.step(2);
     EXPECT_EQ(rig.refusal(id), Reason::SWITCHED_ON);
-    EXPECT_NEAR(rig.out->joint[0].motor_pos_cmd, 0.05 + 0.5e-4, 1e-9) << "it stays in force";
+    EXPECT_NEAR(rig.out->joint[0].motor_pos_cmd, 0.05 + 0.5e-4, 1e-9) << "it stays active";
 }
 
 TEST(ScrewTables, ANewTableMovesNothing) {
@@ -261,7 +261,7 @@ TEST_P(TakeUp, SwitchedOnAgainAMotorStandsUntilTheJointMoves) {
     const double motor = rig.out->joint[0].motor_pos_cmd;
     EXPECT_GT(motor, before - 0.39) << "in the middle of it";
     rig.step(500);
-    EXPECT_NEAR(rig.out->joint[0].motor_pos_cmd, motor, 1e-12) << "nobody has asked for a move";
+    EXPECT_NEAR(rig.out->joint[0].motor_pos_cmd, motor, 1e-12) << "no move was commanded";
     rig.send(JogAbsolute{{true, 0}, V, 20});
     rig.step(1500);
     const double at_20 = rig.out->joint[0].motor_pos_cmd;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // A machine with a spindle that has inertia and an encoder, and a judge of how the tool keeps to it. The
-// judge looks at the rotor's true angle at the instant at which the commanded position is due; it shares
-// nothing with what motion reckons from the encoder.
+// judge evaluates the rotor's true angle at the instant at which the commanded position is due; it does not
+// use what motion calculates from the encoder.
 #pragma once
 
 #include <algorithm>
@@ -31,14 +31,14 @@ struct SpindleBench {
     const kinematics::Kinematics *model = nullptr;  ///< null: joints are X Y Z
     geometry::Pose base;                            ///< X and Z of moves and samples count from it
     std::function<double(const Sample &)> load = [](const Sample &) { return 0.0; };
-    bool isDriveDead = false;  ///< the drive keeps to what it was told last
+    bool isDriveDead = false;  ///< the drive keeps its last command
     std::vector<Sample> samples;
 
     explicit SpindleBench(const plants::SpindleTraits &traits, bool isJerkLimited = false)
         : rig("XYZ", VELOCITY, ACCELERATION), plant(traits) {
         begin(isJerkLimited);
     }
-    /// A machine whose joints are not axes, and stand at `start`.
+    /// A machine whose joints are not axes; they begin at `start`.
     SpindleBench(const kinematics::Kinematics &kinematics, const std::vector<double> &start,
                  const plants::SpindleTraits &traits, bool isJerkLimited)
         : rig(kinematics, static_cast<int>(start.size()), VELOCITY, ACCELERATION), plant(traits),
@@ -53,7 +53,7 @@ struct SpindleBench {
         base = rig.status().carte_pos_cmd;
     }
 
-    /// Whatever the joints did beyond their limits.
+    /// Reports joints that exceeded their limits.
     std::string limit_report() {
         const testing::AxisLimit limit{VELOCITY, ACCELERATION, jerk_};
         testing::LimitChecker checker(
@@ -145,7 +145,7 @@ struct SpindleBench {
         if (r.cycle > 1) {
             samples.push_back(here(r));
         }
-        // The speed as an encoder counter tells it: counts over the last eight periods.
+        // The speed as an encoder counter reports it: counts over the last eight periods.
         constexpr std::size_t WINDOW = 8;
         shown_.push_back(plant.shown_turns());
         const std::size_t back = std::min(WINDOW, shown_.size() - 1);
@@ -179,9 +179,9 @@ struct Hole {
     bool isMade = false;
     bool isOut = false;   ///< the spindle has turned back and forward again
     double bottom = TOP;  ///< lowest Z
-    double top = -1e9;    ///< highest Z on the way back
+    double top = -1e9;    ///< maximum Z during the retract
     double farthest = 0;  ///< of Z from the helix, through both reversals, over the pitch
-    double back_rpm = 0;  ///< highest speed on the way back
+    double back_rpm = 0;  ///< maximum speed during the retract
 };
 
 /// Of the samples from `from` on, once the tool is 4 deep. `sense`: of the spindle on the way in.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the status says of settings and of the path, and that everybody sees of it what the controller says.
+// What the status reports of settings and of the path, and that every reader gets what the controller
+// reports.
 #include <cstring>
 #include <numbers>
 
@@ -38,7 +39,7 @@ TEST(StatusOfMotion, SettingsAreShownAsTheyAreNow) {
     check(1, -31, 32, 33, 34);
 }
 
-/// A rapid, a feed, an arc and a probing move, each looked at on its way.
+/// A rapid, a feed, an arc and a probing move, each checked in motion.
 TEST(StatusOfMotion, TheMoveUnderWayAndNothingBehindTheLast) {
     MotionRig rig;
     rig.ready();
@@ -112,7 +113,7 @@ TEST(StatusOfMotion, TheMoveUnderWayAndNothingBehindTheLast) {
     EXPECT_EQ(s.queue_depth, 0U);
 }
 
-/// Published in parts: what a reader has is what the controller says, whatever has changed.
+/// Published in parts: a reader has what the controller reports, regardless of what has changed.
 TEST(StatusOfMotion, ReadersHaveTheWholeOfIt) {
     MotionRig rig;
     auto reader = std::make_unique<PublishedStatus::Copy>();
@@ -152,8 +153,8 @@ TEST(StatusOfMotion, ReadersHaveTheWholeOfIt) {
     EXPECT_EQ(reader->value.axis[1].max_limit, 5);
 }
 
-/// More moves than the planner has room for: that is shown as long as they wait, whether they are driven
-/// then or a stop takes them away.
+/// More moves than the planner can take: the status shows it while they wait, whether they are driven then or
+/// a stop discards them.
 TEST(StatusOfMotion, TheQueueIsFullOnlyWhileMovesWaitForRoom) {
     constexpr int MOVES = 5000;
     for (const bool isAborted : {false, true}) {
@@ -210,7 +211,7 @@ TEST(StatusOfMotion, ATraceSaysOfEachCycleWhatItsStatusSays) {
     rig.ready();
     TraceSample sample;
     rig.step(3);
-    EXPECT_FALSE(rig.channels->trace.pop(sample)) << "nobody has asked";
+    EXPECT_FALSE(rig.channels->trace.pop(sample)) << "no one has requested it";
     rig.channels->isTracing.store(1);
     geometry::Pose end;
     end[0] = 5;

@@ -14,7 +14,7 @@ namespace {
 
 class Tapping : public ::testing::TestWithParam<bool> {
   protected:
-    /// Taps from TOP to BOTTOM at X and looks at all of it. `sense`: of the spindle on the way in.
+    /// Taps from TOP to BOTTOM at X and checks all of it. `sense`: of the spindle towards the bottom.
     static Hole tap(SpindleBench &bench, double x, double pitch = PITCH, double sense = 1, double scale = 1) {
         bench.rapid(x, TOP);
         EXPECT_TRUE(bench.finish());
@@ -81,7 +81,7 @@ TEST_P(Tapping, FindsTheDepthOfADriveThatReactsLateOrLags) {
             const Hole hole = tap(bench, 10);
             ASSERT_TRUE(hole.isMade);
             EXPECT_NEAR(hole.bottom, BOTTOM, (n == 0 ? 1.0 : 0.2) * PITCH) << n;
-            // The mean of 50 ms cannot foresee when such a drive begins to turn back.
+            // The average of 50 ms cannot foresee when such a drive begins to reverse.
             EXPECT_LE(hole.farthest, GetParam() ? 0.1 : 0.02) << n;
             EXPECT_EQ(bench.samples.back().z, TOP);
         }
@@ -120,7 +120,7 @@ TEST_P(Tapping, OverridesAndHoldsWaitForItsEnd) {
 }
 
 TEST_P(Tapping, AHoldBeforeItBeginsLeavesItWhole) {
-    // Slow enough that the tool stands for a while before the helix comes.
+    // Slow enough that the tool waits for a while before the helix comes.
     SpindleBench bench(tap_spindle(), GetParam());
     bench.spin(30);
     bench.rapid(10, TOP);
@@ -132,7 +132,7 @@ TEST_P(Tapping, AHoldBeforeItBeginsLeavesItWhole) {
         bench.rig.step(3000);
         bench.rig.send(Resume{});
         ASSERT_TRUE(bench.rig.run_until([&] { return bench.rig.isDone(id); })) << at;
-        bench.rig.step(100);  // with jerk limits it is told half a mean before it stands
+        bench.rig.step(100);  // with jerk limits it gets the command half an averaging time before it stops
         EXPECT_EQ(bench.samples.back().z, TOP) << at;
         EXPECT_EQ(bench.samples.back().command_rpm, 30) << at;
     }

@@ -27,7 +27,7 @@ namespace {
 
 using testing::MotionRig;
 
-/// A machine and where it stands at first.
+/// A machine and its start position.
 struct JerkyMachine {
     const kinematics::Kinematics &model;
     const char *axes;
@@ -52,7 +52,7 @@ class JerkLimitedTeleop {
             rig_.set(Parameter::JOINT_MAX_ACCELERATION, n, a);
             rig_.set(Parameter::JOINT_MAX_JERK, n, jerk);
             rig_.in.joint[j].motor_pos_fb = machine.start[j];
-            rig_.set(Parameter::JOINT_HOME_OFFSET, n, machine.start[j]);  // homed where it stands
+            rig_.set(Parameter::JOINT_HOME_OFFSET, n, machine.start[j]);  // homed at its start position
             rig_.set(Parameter::JOINT_HOME, n, machine.start[j]);
         }
         const bool isAxisLimited = chance(0.5);
@@ -339,8 +339,8 @@ double least_time_s(double way, double v, double a, double j) {
     return 2.0 * ramp_s(low, a, j);
 }
 
-/// Tower 0 of a delta stands across X: its joint hardly moves with X where a jog begins, and a quarter as
-/// fast as X where that stops. The mean of the jog, kept from begin to end, has to serve the stop as well.
+/// Tower 0 of a delta is across X: its joint hardly moves with X where a jog begins, and a quarter as fast as
+/// X where it stops. The averaging time of the jog, kept from start to stop, has to serve the stop as well.
 TEST(TeleopJerk, AJogThatBeginsWhereAJointHardlyMovesStopsSoonWhereItDoes) {
     kinematics::LinearDelta delta;
     delta.set(0, 130.25);

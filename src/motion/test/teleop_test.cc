@@ -96,7 +96,7 @@ TEST(Teleop, TiltedRotaryTableKeepsJointLimits) {
     jog_all(table, 5, "XYZAC");
 }
 
-/// Machines with random limits; both ways along one of two axes, to its soft limit and not beyond.
+/// Machines with random limits; in both directions of one of two axes, to its soft limit and not past it.
 struct ToSoftLimits {
     const kinematics::Kinematics &model;
     int joints;
@@ -181,8 +181,8 @@ TEST(Teleop, ATableComesToRestAtItsSoftLimitsWithJerkLimits) {
     jog_to_soft_limits({table, 5, {geometry::AXIS_A, geometry::AXIS_C}, true});
 }
 
-/// A wheel that is turned slowly sends it a little on time and again, so that it brakes and goes on at the
-/// same mean speed. It never goes back on that way.
+/// A wheel that is turned slowly commands it a little further each time, so that it brakes and accelerates at
+/// the same average speed. It never moves back meanwhile.
 TEST(Teleop, WhoCreepsBehindAWheelTurnsNotBack) {
     const kinematics::TiltingHead head;
     MotionRig rig(head, 6, 60, 630);
@@ -206,7 +206,7 @@ TEST(Teleop, WhoCreepsBehindAWheelTurnsNotBack) {
     wheel.isEnabled = true;
     wheel.scale = 3.8e-3;
     const auto place = [&] { return rig.status().carte_pos_cmd[geometry::AXIS_B]; };
-    // The more the tool stands askew, the more turning it takes of what the slides have.
+    // The more the tool is tilted, the more of the slides' acceleration the rotation takes.
     for (const double from : {-302.4, -250.0, -50.0, 20.0, 70.0, 140.0, 280.0, 301.5, 302.362476}) {
         rig.send(JogAbsolute{{false, geometry::AXIS_B}, 100, from});
         ASSERT_TRUE(rig.run_until([&] { return std::abs(place() - from) < 1e-9; }, 60));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// With jerk limits a path is made for its tolerance: a program that asks for a much smaller one on its way
-// gets a path of its own for it, from a stop.
+// With jerk limits a path is made for its tolerance: a program that changes to a much smaller one gets a
+// separate path for it, from a stop.
 #include <cmath>
 #include <numbers>
 
@@ -83,7 +83,7 @@ TEST(Tolerance, ASmallerOneOnTheWayKeepsSingleSteps) {
     }
 }
 
-/// Pieces that the path is made of for so many steps of 0.02 along a slow wave of this height.
+/// Pieces of a path of so many steps of 0.02 along a slow wave of this height.
 trajectory::Sequence pieces_of(double height, double tolerance) {
     MotionRig rig("XYZ", V, A);
     rig.ready();

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double T = 1e-3;
 
-/// A joint with a switch that is closed beyond `switch_at` (motor coordinates), driven without lag.
+/// A joint whose switch is closed above `switch_at` (motor coordinates), driven without lag.
 struct Plant {
     trajectory::AxisMotion planner;
     double offset = 0;  ///< motor = joint + offset
@@ -112,7 +112,8 @@ TEST(Homing, FindsTheSwitchEdgeForBothSignsOfLatch) {
             ASSERT_TRUE(m.run(60));
             EXPECT_TRUE(m.homing.isHomed(0));
             EXPECT_EQ(m.plant(0).planner.position, 3.0);
-            // The switch's edge is at joint position HOME_OFFSET, to the way of one cycle at latch speed.
+            // The switch's edge is at joint position HOME_OFFSET, within the travel of one cycle at latch
+            // speed.
             EXPECT_NEAR(m.plant(0).switch_at - m.plant(0).offset, -0.7, 2e-3);
         }
     }
@@ -210,7 +211,7 @@ TEST(Homing, AnIndexerHasThirtySecondsToUnlockAndNoCycleLess) {
         p.isLockingIndexer = true;
         m.homing.parameters(0) = p;
         for (int n = 0; n < (isSecondTime ? 700 : 0); ++n) {
-            m.step();  // whatever it has stood for before
+            m.step();  // a previous stop must not matter
         }
         m.homing.start(0);
         const int cycles = static_cast<int>(Homing::LONGEST_LOCKING_S / T);

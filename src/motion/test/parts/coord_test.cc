@@ -76,7 +76,7 @@ TEST(PlacePart, WhereNobodyKnowsThePoseTheLastOneStandsAndIsNotValid) {
     EXPECT_NEAR(place.cmd[0], 2, 1e-12);
 }
 
-/// A straight path at 20 unit/s that has just come to a stand.
+/// A straight path at 20 unit/s that has just stopped.
 struct RetracingPart : testing::Test {
     std::unique_ptr<Retracing> retracing = std::make_unique<Retracing>();
     FoldedLimits limits;
@@ -138,7 +138,7 @@ TEST_F(RetracingPart, APathThatIsDroppedOnTheWayBackEndsWhereItComesToAStand) {
 }
 
 TEST_F(RetracingPart, AStopWhereThePathWasSlowIsShort) {
-    // At 20 units/s, then at 5, and it stands.
+    // At 20 units/s, then at 5, then it stops.
     constexpr double A = 100;
     limits.path.acceleration.fill(A);
     for (int n = 0; n < 3000; ++n) {

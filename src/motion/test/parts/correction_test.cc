@@ -51,7 +51,7 @@ struct CorrectionPart : ::testing::Test {
 
 TEST_F(CorrectionPart, ATableIsFollowedUpAndDownAndHeldBeyondItsEnds) {
     load_three();
-    EXPECT_EQ(correction.position, 0) << "nobody has moved yet";
+    EXPECT_EQ(correction.position, 0) << "no motion yet";
     EXPECT_NEAR(go(1), 0.32, 1e-12);
     EXPECT_NEAR(go(5), 0.4, 1e-12);
     EXPECT_NEAR(go(12), 0.5, 1e-12);
@@ -91,8 +91,8 @@ TEST_F(CorrectionPart, AnAngularJointTakesUpItsPlayWithItsOwnJerk) {
     EXPECT_EQ(cycles_of(J / 50, 1), least);
 }
 
-/// A long play needs the mean that keeps the jerk at all of the acceleration, 2 a / j, and none that is
-/// longer.
+/// A long backlash needs the averaging time that keeps the jerk at full acceleration, 2 a / j, and none that
+/// is longer.
 TEST_F(CorrectionPart, ALongPlayIsTakenUpWithoutDelay) {
     limit_jerk();
     constexpr double PLAY = 20, HALF = 0.5;  // of what the joint can do
@@ -117,7 +117,7 @@ TEST_F(CorrectionPart, WhatIsNoTableIsRefused) {
     EXPECT_EQ(load(0, 3, std::numeric_limits<double>::quiet_NaN(), 0, 0), Reason::NOT_A_NUMBER);
     EXPECT_EQ(load(0, 3, 0, 0, 0), Reason::NONE);
     EXPECT_EQ(load(1, 3, 0, 0, 0), Reason::OUT_OF_RANGE) << "not above the one before";
-    EXPECT_EQ(load(1, 3, 1, 0, 0), Reason::OUT_OF_RANGE) << "a table with a fault is begun anew";
+    EXPECT_EQ(load(1, 3, 1, 0, 0), Reason::OUT_OF_RANGE) << "a table with a fault starts again";
     EXPECT_EQ(load(0, 2, 0, 0, 0), Reason::NONE);
     EXPECT_EQ(load(1, 2, 1, 0.3, 0), Reason::OUT_OF_RANGE) << "too steep";
     EXPECT_EQ(correction.table.count, 0);
@@ -149,7 +149,7 @@ void swing(CorrectionPart &part, testing::LimitChecker &checker) {
     }
     EXPECT_GT(reversals, 20);
     EXPECT_TRUE(checker.isWithin()) << checker.report();
-    EXPECT_GT(checker.worst_acceleration(), 0.2) << "it is taken up with what the joint has";
+    EXPECT_GT(checker.worst_acceleration(), 0.2) << "it is compensated with the joint's acceleration";
 }
 
 TEST_F(CorrectionPart, ATableIsFollowedWithinHalfTheLimitsOfTheJoint) {
@@ -232,7 +232,7 @@ TEST_F(CorrectionPart, ASlideWithPlayOnAnUnevenScrewIsWhereItIsToBe) {
             const double motor = jog.position + correction.position;
             slide = std::clamp(slide, motor - 0.5 * PLAY, motor + 0.5 * PLAY);
         }
-        // The nut stands where the screw's angle and its unevenness put it.
+        // The nut's position follows from the screw's angle and its unevenness.
         double place = slide;
         for (int i = 0; i < 20; ++i) {
             place = slide - uneven(place);
@@ -299,8 +299,8 @@ TEST_F(CorrectionPart, AZeroThatIsFoundTellsHowMuchMoreIsAdded) {
     EXPECT_NEAR(go(10), 0.5, 1e-12) << "and nothing moves for it";
 }
 
-/// A rotary joint after many turns: a place is known less exactly there, and where it stands rounding may
-/// take it to and fro.
+/// A rotary joint after many revolutions: a position is less exact there, and rounding may move a stopped
+/// joint to and fro.
 TEST_F(CorrectionPart, FarOutTheRoundingOfAStopTurnsNothingBack) {
     constexpr double PLAY = 0.3;
     set(Parameter::JOINT_BACKLASH, PLAY);

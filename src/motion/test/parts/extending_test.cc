@@ -54,7 +54,7 @@ TEST(ExtendingMotion, TheNewCommandDoesWhatItSaysAndRefusesWhatIsNotThere) {
     EXPECT_EQ(outputs.digital, 0b1100U);
     EXPECT_EQ(take(outputs, FlipDigitalOutput{4}).reason, Reason::NO_SUCH_OUTPUT);
     EXPECT_EQ(take(outputs, FlipDigitalOutput{-1}).reason, Reason::NO_SUCH_OUTPUT);
-    EXPECT_EQ(outputs.digital, 0b1100U) << "a refusal changes nothing";
+    EXPECT_EQ(outputs.digital, 0b1100U) << "a rejected command changes nothing";
 }
 
 /// What step 3 of the page says: handlers for the old commands alone are no visitor of the new variant, with
@@ -95,7 +95,7 @@ TEST(ExtendingMotion, ThePageShowsWhatIsCompiledHereAndLinesThatStand) {
         ASSERT_GT(example.size(), 80U);
         EXPECT_NE(page.find("```cpp\n" + example + "```\n"), std::string::npos) << example;
     }
-    // The line that the new name joins stands in the controller as the page shows it, less that name.
+    // The controller has the line that the new name joins, as on the page, without that name.
     const std::string joined = ", FlipDigitalOutput> auto &c) { return motion::take(outputs_, c); },";
     const std::size_t place = page.find(joined);
     ASSERT_NE(place, std::string::npos);

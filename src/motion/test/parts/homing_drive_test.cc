@@ -69,7 +69,8 @@ TEST_F(HomingDrivePart, AJointThatIsLeftOutIsNotHomedWhicheverItIs) {
     }
 }
 
-/// A latch faster than the joint is driven at its speed, and play taken up on that way.
+/// A latch faster than the joint is driven at the joint's speed, and backlash is compensated within its
+/// travel.
 TEST_F(HomingDrivePart, PlayIsTakenUpAtNoMoreThanTheSpeedOfTheJoint) {
     const auto set = [&](Parameter p, double value) {
         settings.set({static_cast<std::uint16_t>(p), 0, value}, 2, 1);
@@ -98,7 +99,7 @@ TEST_F(HomingDrivePart, VolatileHomesAreLostWithPower) {
     conditions.isMoving = false;
     conditions.mode = Mode::COORD;
     EXPECT_EQ(take(drive, Unhome{0}, conditions, settings).reason, Reason::WRONG_MODE);
-    EXPECT_EQ(homed_mask(drive), 1U) << "a refusal changes nothing";
+    EXPECT_EQ(homed_mask(drive), 1U) << "a rejected command changes nothing";
     conditions.mode = Mode::FREE;
     EXPECT_EQ(take(drive, Unhome{-2}, conditions, settings).reason, Reason::NONE);
     EXPECT_EQ(homed_mask(drive), 1U) << "only volatile ones";
@@ -127,7 +128,7 @@ TEST_F(HomingDrivePart, AModuleOfAUserThatGivesUpHasFailedAndOneThatIsToldToEndH
     for (const bool isTold : {true, false, true}) {
         take(drive, Home{0}, conditions);
         begin_due(drive, conditions);
-        EXPECT_EQ(take_failure(drive).joint, -1) << "on its way";
+        EXPECT_EQ(take_failure(drive).joint, -1) << "during the move";
         if (isTold) {
             abort(drive, homing::event::ABORT);
         }

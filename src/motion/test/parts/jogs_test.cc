@@ -74,7 +74,7 @@ TEST(JogsPart, ALeaseIsRenewedByTheSameCommandAndEndsOnce) {
         EXPECT_EQ(take(jogs, JogContinuous{JOINT, 5, lease_s}, s).reason, Reason::OUT_OF_RANGE) << lease_s;
     }
     EXPECT_EQ(take(jogs, JogContinuous{JOINT, 5, 0, true}, s).reason, Reason::OUT_OF_RANGE);
-    EXPECT_TRUE(jogs.at(JOINT).planner.isAtRest()) << "a refusal moves nothing";
+    EXPECT_TRUE(jogs.at(JOINT).planner.isAtRest()) << "a rejected command moves nothing";
     ASSERT_EQ(take(jogs, JogContinuous{JOINT, 5, 0.1}, s).reason, Reason::NONE);
     run(jogs, JOINT, 50);
     EXPECT_LT(end_lease(jogs, 104 * MS).index, 0);
@@ -138,12 +138,13 @@ TEST(JogsPart, AWheelCountsTurnsAcrossTheWrapAndGivesWayToKeys) {
     jogs.at(JOINT).wheel_counts = 2147483647;
     EXPECT_EQ(turned(jogs.at(JOINT), wheel), 1.0) << "two counts over the wrap";
     jog_by_wheel(jogs, JOINT, 30, wheel, free_mode());
-    EXPECT_EQ(jogs.at(JOINT).planner.target, 10) << "clamped: a wheel is no command that could be refused";
+    EXPECT_EQ(jogs.at(JOINT).planner.target, 10)
+        << "clamped: a wheel is not a command and cannot be rejected";
     EXPECT_EQ(jogs.at(JOINT).source, JogSource::WHEEL);
     stop_at_once(jogs);
     take(jogs, JogContinuous{JOINT, -5}, free_mode());
     run(jogs, JOINT, 10);
-    EXPECT_EQ(turned(jogs.at(JOINT), wheel), 0.0) << "a key is held";
+    EXPECT_EQ(turned(jogs.at(JOINT), wheel), 0.0) << "a key is pressed";
 }
 
 TEST(JogsPart, AStopOfAWheelTakesAllTheAcceleration) {
@@ -174,7 +175,7 @@ TEST(JogsPart, AStopOfAWheelTakesAllTheAcceleration) {
         EXPECT_LE(stopped * T, v / 500 + (jerk > 0 ? 0.06 : 0.002));
         const auto [let_go, same] = cycles_to_stop(0.1, true);
         EXPECT_EQ(same, v);
-        EXPECT_GE(let_go * T, v / 50 * (1 - 1e-9)) << "a wheel that stands is no stop";
+        EXPECT_GE(let_go * T, v / 50 * (1 - 1e-9)) << "a stopped wheel is no stop";
     }
 }
 
@@ -320,7 +321,7 @@ TEST(TeleopPart, WhatACurveOfTwoAxesChangesByWhileOneTurnsIsCountedForThatOne) {
     load.isSmooth = true;
     load.speed = {X_SPEED, C_SPEED};
     ASSERT_TRUE(add_load(machine, pose, load));
-    EXPECT_EQ(load.turn[1][0], 0) << "as yet it stands";
+    EXPECT_EQ(load.turn[1][0], 0) << "it is still stopped";
     pose[geometry::AXIS_C] += WAY;
     ASSERT_TRUE(add_load(machine, pose, load, {1, WAY}));
     const double change = (std::sin(35 * RAD) - std::sin(30 * RAD)) * RAD / WAY;
@@ -330,7 +331,7 @@ TEST(TeleopPart, WhatACurveOfTwoAxesChangesByWhileOneTurnsIsCountedForThatOne) {
     EXPECT_EQ(load.turn[0][0], 0) << "X moves, and changes nothing of it";
 }
 
-/// An arm that reaches X by either sense of joint 0 and keeps that which it is told; nobody moves joint 1.
+/// An arm that reaches X with either sense of joint 0 and keeps the given one; joint 1 does not move.
 struct Elbow final : kinematics::Kinematics {
     kinematics::Kind kind() const noexcept override { return kinematics::Kind::BOTH; }
     kinematics::Status forward(const double *joints, geometry::Pose &pose) const noexcept override {

@@ -44,7 +44,7 @@ TEST_F(JointsPart, SwitchedOnTheCommandIsTheFeedback) {
     joints[1].isActive = false;
     switch_on(joints);
     EXPECT_FALSE(joints[0].isFaulted || joints[0].isFerrorTripped) << "what was is forgotten";
-    EXPECT_FALSE(joints[1].isAmpWanted) << "nobody uses it";
+    EXPECT_FALSE(joints[1].isAmpWanted) << "it is not used";
     output(joints, settings, true, T);
     EXPECT_EQ(joints[0].motor_pos_cmd, 12.5);
     EXPECT_TRUE(joints[0].isAmpWanted);
@@ -170,7 +170,7 @@ TEST_F(JointsPart, AJointThatDoesMoreThanItCanIsFound) {
     joints[1].pos_cmd = 1.01;
     EXPECT_TRUE(find_overrun(joints, limits).isOutside);
     joints[1].vel_cmd = -10;
-    EXPECT_EQ(find_overrun(joints, limits).joint, -1) << "on the way back in";
+    EXPECT_EQ(find_overrun(joints, limits).joint, -1) << "while it returns";
 }
 
 TEST_F(JointsPart, PinsAndStatusShowEachOfWhatTheyAreMadeOf) {

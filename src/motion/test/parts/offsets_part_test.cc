@@ -36,10 +36,10 @@ TEST_F(OffsetsPart, WhereItGoesToIsSeenACycleBeforeAndWeighedAgain) {
     in.axis_offset[0].counts = 150;
     go(1);
     EXPECT_EQ(offsets.pose[0], 0);
-    EXPECT_EQ(range(offsets).high[0], 15) << "who plans paths is told first";
+    EXPECT_EQ(range(offsets).high[0], 15) << "the path planner is informed first";
     programmed.axes.high[0] = 18;  // a move was taken before that was read
     go(1);
-    EXPECT_NEAR(range(offsets).high[0], 2, 1e-9) << "not for one cycle on its way to 15";
+    EXPECT_NEAR(range(offsets).high[0], 2, 1e-9) << "not for one cycle towards 15";
     go(3000);
     EXPECT_NEAR(offsets.pose[0], 2, 1e-9);
     EXPECT_TRUE(offsets.isLimited);

@@ -49,7 +49,7 @@ TEST_F(TurnBackPart, CountsTheTurnsOfADriveThatReactsLate) {
         farthest = std::min(farthest, spindle.turns());
     }
     const double ramp = ramps_of(turn_back, 0)[1];
-    EXPECT_NEAR(10 * 10 / (2 * ramp), from - farthest, 0.03) << "turns, whatever makes them";
+    EXPECT_NEAR(10 * 10 / (2 * ramp), from - farthest, 0.03) << "revolutions of any cause";
 }
 
 TEST_F(TurnBackPart, AReversalThatIsTakenBackTeachesNothing) {

@@ -183,7 +183,7 @@ TEST_F(SpindlesPart, OrientationLocksOrFailsOnce) {
     EXPECT_EQ(failed, 0U) << "told once";
 }
 
-/// Whoever turns the spindle goes on for as long as spindle.N.orient is on.
+/// The program that turns the spindle continues to do so while spindle.N.orient is on.
 TEST_F(SpindlesPart, ADriveThatCannotOrientIsAskedNoLonger) {
     const auto orient_pin = [&] {
         Outputs out;
@@ -196,12 +196,12 @@ TEST_F(SpindlesPart, ADriveThatCannotOrientIsAskedNoLonger) {
     in.spindle[0].orient_fault = 7;
     rpm();
     EXPECT_FALSE(orient_pin());
-    EXPECT_FALSE(spindles[0].isLocked) << "it stands at no angle";
+    EXPECT_FALSE(spindles[0].isLocked) << "it is at no angle";
     in.spindle[0].orient_fault = 0;
     in.spindle[0].isOriented = true;
     rpm();
     EXPECT_FALSE(orient_pin());
-    EXPECT_EQ(spindles[0].orient_state, Spindles::ORIENT_FAULTED) << "until it is asked anew";
+    EXPECT_EQ(spindles[0].orient_state, Spindles::ORIENT_FAULTED) << "until the next request";
 }
 
 TEST_F(SpindlesPart, ATapTurnsItBackAtTheOverrideThatItBeganWith) {
@@ -234,7 +234,7 @@ TEST_F(SpindlesPart, ATapThatIsStoppedLeavesItOff) {
     EXPECT_EQ(rpm(), 0) << "not on by itself";
     EXPECT_FALSE(spindles[0].isOn);
     EXPECT_TRUE(spindles[0].isBrakeOn);
-    EXPECT_EQ(spindles[1].out_rpm, 200) << "the other goes on";
+    EXPECT_EQ(spindles[1].out_rpm, 200) << "the other continues";
     take(spindles, SpindleOn{0, 300}, true);
     EXPECT_EQ(rpm(), 300);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // How axes that move the same joints share them: one alone, one that waits beside it, and one that has
-// come to rest.
+// stopped.
 #include <gtest/gtest.h>
 
 #include "kinematics/corexy.hh"
@@ -81,7 +81,7 @@ TEST_F(TeleopSharesPart, WhoWaitsHasNoSpeedUntilTheOtherIsDownToItsShare) {
     EXPECT_NEAR(speed(Y), 0.5 * V, 1e-3);
 }
 
-/// Looked at beside the others, one without a share is taken to stand.
+/// Sampled beside the others, an axis without a share counts as stopped.
 TEST_F(TeleopSharesPart, WithoutAShareThereIsNeitherAccelerationNorMean) {
     send(X, 1000);
     send(Y, 1000);
@@ -101,7 +101,7 @@ TEST_F(TeleopSharesPart, WithoutAShareThereIsNeitherAccelerationNorMean) {
     }
 }
 
-/// X comes to its target with all that it has, so that no room is made anew; room for Y was made before.
+/// X reaches its target with all that it has, so no new share is planned; that of Y was planned before.
 TEST_F(TeleopSharesPart, NoRoomIsKeptForWhoHasComeToRest) {
     send(X, 60);
     const auto isBraking = [&] {
