@@ -190,7 +190,7 @@ double Estimator::ratio(int i, int order) const {
     return value / (period_power_[static_cast<std::size_t>(order)] * limit);
 }
 
-/// Looks at each cycle of a short move and at some of a long one.
+/// Counts each cycle of a short move and some of a long one.
 void Estimator::count(const ExecutorOutput &out) {
     if (out.move != 0 && out.move != move_) {
         close_move();

@@ -35,17 +35,17 @@ class Estimator {
     /// The overrides under which it drives, with the highest that the plan is made ready for, and the soft
     /// limits.
     void set_machine(const Scales &scales, const Pose &low, const Pose &high);
-    /// The path begins or goes on at `pose` after whatever is not motion.
+    /// The path begins or continues at `pose` after an action that is no motion.
     void begin(const Pose &pose);
     const Pose &end() const { return planner_->end(); }
     /// Checked while it drives, at least every CHECK_CYCLES cycles: from the first true on nothing is driven.
     void end_when(std::function<bool()> isToEnd) { isToEnd_ = std::move(isToEnd); }
     static constexpr std::uint64_t CHECK_CYCLES = 1024;
-    /// Appends a move; drives what there is no room for. Moves of length 0 are left out. The work for one
-    /// move is bounded: of a longer one than DRIVEN_S seconds only the end is driven, from standstill, and
-    /// its speed gives the time of the rest.
+    /// Appends a move; drives earlier ones if the store is full. Moves of length 0 are left out. The work for
+    /// one move is bounded: if it takes more than DRIVEN_S seconds, only its end is driven, from standstill,
+    /// and its speed gives the time of the rest.
     void add(const Primitive &primitive, const MoveRequest &request);
-    /// Drives to the end of what has been added and stands.
+    /// Drives to the end of the path and stops.
     void finish();
     /// False when a path stopped that nothing ended, or a move took far longer than its limits suggest: the
     /// time then lacks what was left of it.
@@ -56,7 +56,7 @@ class Estimator {
     static constexpr double DRIVEN_S = 60;  ///< of a move [s]
 
   private:
-    /// False when the path stands, or a move takes, longer than any plan can need.
+    /// False when the path is stopped, or a move takes, longer than any plan can need.
     bool step();
     double speed_bound(const Primitive &primitive, const MoveRequest &request) const;
     Primitive skip_to_end(const Primitive &primitive, const MoveRequest &request);
@@ -77,7 +77,7 @@ class Estimator {
     std::uint64_t cycle_ = 0;
     Sequence move_ = 0;  ///< the one whose time is counted
     std::uint64_t move_cycles_ = 0;
-    double move_top_ = 0;  ///< highest speed along its parameter so far
+    double move_top_ = 0;  ///< maximum speed along its parameter until now
     std::uint64_t standing_cycles_ = 0;
     double skipped_ = 0,
            skipped_s_ = 0;  ///< length and time that were not driven; the length of the newest move

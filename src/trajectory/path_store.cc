@@ -30,7 +30,7 @@ double Braking::at(std::size_t part, double b) const noexcept {
 std::size_t Braking::part_at(double x, double length) noexcept {
     const double n = length > 0 ? x / length * PARTS : 0.0;
     const auto part = static_cast<std::size_t>(std::clamp(n, 0.0, PARTS - 1.0));
-    // Who stands at the end of a part is in the next one, whatever rounding makes of it.
+    // The end of a part belongs to the next one, regardless of rounding.
     const bool isOver = part + 1 < PARTS && x >= length * static_cast<double>(part + 1) / PARTS;
     return isOver ? part + 1 : part;
 }

@@ -89,7 +89,7 @@ struct Braking {
     double end_of(std::size_t part, double length) const noexcept;
 };
 
-/// A stretch of path with limits of its own: a part of one primitive, or of a blend between two.
+/// A segment of path with separate limits: a part of one primitive, or of a blend between two.
 ///   part:  q(x) = A(offset + x)
 ///   blend: q(x) = A(L - d + z - z^2/4d) + B(z^2/4d) - corner,  z = offset + x in [0, 2d], L the length of A
 struct Piece {
@@ -99,7 +99,7 @@ struct Piece {
     double length = 0;
     double blend_d = 0;       ///< 0: a part of A
     bool isToEnd = false;     ///< a part of A that reaches A's end
-    bool isAlong = false;     ///< the mean is taken of the place on A, so A is followed exactly
+    bool isAlong = false;     ///< the position on A is averaged, so A is followed exactly
     double programmed_s = 0;  ///< where it begins on the programmed path, measured in s from the path's start
     double tolerance = 0;     ///< deviation from the programmed path that is allowed; 0: any
     AccelBound acceleration;  ///< along x, such that every axis keeps its limits [1/s^2]
@@ -113,9 +113,9 @@ struct Piece {
         double a = 0, end = 0;
     };
     BrakeLeg brake_leg(double x, double b) const noexcept;
-    // Of a pass that is locked to a spindle's angle, filled before the executor is told of the pass.
-    double per_turn = 0;           ///< way along x in a turn of the spindle
-    double v_most = 0;             ///< highest speed
+    // Of a pass that is locked to a spindle's angle, filled before the executor gets the pass.
+    double per_turn = 0;           ///< distance along x per spindle revolution
+    double v_most = 0;             ///< maximum speed
     double v2_in = 0, v2_out = 0;  ///< squared speeds at its ends from which all that follows can be kept
 };
 
@@ -128,15 +128,15 @@ struct Phase {
     /// Place and speed at the time t in it.
     double x_at(double t) const noexcept { return x0 + t * (v0 + t * (0.5 * a + t * j * (1.0 / 6.0))); }
     double v_at(double t) const noexcept { return v0 + t * (a + 0.5 * t * j); }
-    /// It ends with a speed that is 0 but for rounding.
+    /// It ends with a speed of 0, except for rounding.
     bool isStop(double period_s) const noexcept;
 };
 
 /// A tap along a line: x is 0 at the start and `depth` at the bottom.
 struct TapTerms {
     double depth = 0;
-    double per_turn = 0;    ///< way along x in a turn
-    double back_scale = 1;  ///< speed of the spindle on the way back over that on the way in
+    double per_turn = 0;    ///< distance along x per revolution
+    double back_scale = 1;  ///< spindle speed of the retract over that of the cut
     double low = 0;         ///< x stays above
     double high = 0;        ///< and below
     double velocity = 0;    ///< highest along x
@@ -150,23 +150,22 @@ struct Pass {
     double direction = 1;  ///< -1: the spindle turns backwards
     double share = 1;      ///< part of the pieces' accelerations for gaining speed and for braking
     double trim = 1;       ///< and for following the spindle in between
-    /// By which the acceleration may change within the mean [unit/s^2]: a stop that comes while speed is
-    /// gained has what that leaves. 0: any.
+    /// Maximum change of the acceleration within the averaging time [unit/s^2]: a stop during acceleration
+    /// has the remainder. 0: any.
     double swing = 0;
     bool isTap = false;  ///< in along the first piece, and back to its start
     TapTerms tap;
 };
 
-/// Tells the executor which phases to follow. They never end with a stop beyond what is committed: when they
-/// run out, the executor brakes along the pieces, which the planner has made sure is possible within the
-/// limits.
+/// Phases for the executor. They never end with a stop after the committed part: when they run out, the
+/// executor brakes along the pieces, and the planner has made sure that this is possible within the limits.
 struct Commit {
     std::uint64_t plan = 0;  ///< increasing
     bool isSwitch = false;   ///< leave the present plan at `switch_cycle` for phases [begin, end)
     std::uint64_t switch_cycle = 0;
     std::uint64_t brakes = 0;     ///< Snapshot::brakes that the plan was made for; another value voids it
-    Sequence begin = 0, end = 0;  ///< not a switch: the present plan `plan` now goes on to `end`
-    std::uint64_t filter = 1;     ///< samples of the mean that is commanded; changes only at rest
+    Sequence begin = 0, end = 0;  ///< not a switch: the current plan `plan` now continues to `end`
+    std::uint64_t filter = 1;     ///< samples of the commanded moving average; changes only at standstill
     bool isStop = false;          ///< made to stop, so taken while held or dropping
     Pass pass;                    ///< instead of phases
 };
@@ -191,7 +190,7 @@ struct CurvePlan {
     std::array<Stop, MOST_STOPS> stops{};
 };
 
-/// Poses and places of the leader, by tick; written by the executor, read by the planner.
+/// Poses and positions of the reference, by tick; written by the executor, read by the planner.
 struct LeaderSample {
     Pose pose;
     double s = 0;            ///< on the programmed path
@@ -199,7 +198,7 @@ struct LeaderSample {
     std::uint64_t move = 0;  ///< under way
 };
 inline constexpr std::uint64_t HISTORY_CAPACITY = 1024;
-/// Longest mean [samples]; with it all that planner and executor look at together fits the history.
+/// Maximum averaging time [samples]; all that planner and executor read together then fits the history.
 inline constexpr std::uint64_t MAX_FILTER = 400;
 using LeaderHistory = std::array<LeaderSample, HISTORY_CAPACITY>;
 
@@ -222,7 +221,7 @@ struct Coasting {
             since_fall_s += dt;
         }
     }
-    /// Who stands after a rise has fallen, however slightly he moved.
+    /// Standstill after a rise of speed counts as a fall, after any motion.
     void stand(double dt) noexcept {
         if (since_rise_s < since_fall_s) {
             since_fall_s = 0;
@@ -239,15 +238,15 @@ struct Coasting {
     }
 };
 
-/// The executor's state at the end of a servo cycle. With a mean over several samples (jerk limits) this is
-/// the leader's state, which is ahead of what is commanded.
+/// The executor's state at the end of a servo cycle. With jerk limits this is the state of the reference,
+/// which is ahead of the command.
 struct Snapshot {
     std::uint64_t cycle = 0;
     std::uint64_t tick = 0;        ///< counts steps of the executor
-    std::uint64_t filter = 1;      ///< samples of the mean
+    std::uint64_t filter = 1;      ///< samples of the moving average
     std::uint64_t first_tick = 0;  ///< samples before it are all `origin`
     Pose origin;
-    bool isSettled = true;  ///< the leader rests and the mean has reached it
+    bool isSettled = true;  ///< the reference is stopped and the average has reached it
     Coasting coasting;
     std::uint64_t plan = 0;    ///< the last switch that was taken
     std::uint64_t brakes = 0;  ///< counts how often the executor left a plan by itself
@@ -278,7 +277,7 @@ struct PathEvent {
     double value = 0;
 };
 
-/// Owned by whoever assembles the two sides; some megabytes, so never on a stack.
+/// Owned by the code that assembles the two sides; some megabytes, so never on a stack.
 struct PathStore {
     RawArray<Primitive, PRIMITIVE_CAPACITY> primitives;
     RawArray<MoveTag, PRIMITIVE_CAPACITY> moves;
@@ -311,14 +310,13 @@ struct PathStore {
     const Phase &phase(Sequence n) const noexcept { return phases[n % PHASE_CAPACITY]; }
 };
 
-/// Nearer to the start of a piece that is followed exactly, the leader still stands before it but for
+/// Nearer to the start of a piece that is followed exactly, the reference is stopped before it, except for
 /// rounding.
 constexpr double on_along(double length) noexcept {
     return 1e-11 * (1.0 + length);
 }
 
-/// What the path is allowed to deviate at `x`; 0: any. Who stands at the start of a piece is still on the way
-/// that led there, and asks for nothing of its own.
+/// Permitted deviation of the path at `x`; 0: any. The start of a piece belongs to the piece before.
 constexpr double tolerance_at(const Piece &piece, double x) noexcept {
     return x > 0 ? piece.tolerance : 0.0;
 }

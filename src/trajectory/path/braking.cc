@@ -80,8 +80,8 @@ struct Demand {
     double room(double b) const noexcept {
         const double limit = acceleration * (1.0 - LimitTuning::ACCELERATION_MARGIN);
         const double used = std::min(limit, turning * b);
-        // |turning b - shared braking| <= limit: what pulls forward is braked away first. It goes on with
-        // this where it is slower, and has no such pull: no more than it may at rest.
+        // |centripetal b - shared braking| <= limit: a forward pull is braked first. Motion continues with
+        // this value where it is slower and has no such pull: not more than at standstill.
         const double pull = std::min(forward * b, used);
         const double across = std::sqrt(std::max(0.0, pull * pull + limit * limit - used * used));
         const double left = isRightAngled ? std::min(limit, pull + across) : limit - used;

@@ -14,7 +14,7 @@ namespace mw::trajectory {
 Braking braking_on(const PathStore &store, const Piece &piece, const Conditions &conditions,
                    const SpeedLimit &limit) noexcept;
 
-/// For Braking::Part: not above what it stands for.
+/// For Braking::Part: the largest float that is not above `x`.
 float lesser_float(double x) noexcept;
 
 }  // namespace mw::trajectory

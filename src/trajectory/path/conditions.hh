@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What holds for a path besides its moves: limits, where the machine may go, overrides, single blocks.
-// Values; every step of the planner's parts is handed them.
+// Conditions of a path besides its moves: limits, range of the machine, overrides, single block. Values;
+// every step of the planner's parts gets them.
 #pragma once
 
 #include <array>

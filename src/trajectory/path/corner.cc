@@ -25,7 +25,7 @@ struct Bend {
     double wish_after() const noexcept { return requested_speed(b.move, conditions.scales); }
 };
 
-/// A corner within a pass is passed at the spindle's speed, whatever the path mode: a thread cannot wait.
+/// A corner within a pass is passed at the spindle's speed in every path mode: a thread cannot wait.
 Corner locked_corner(const Leg &a, const Leg &b, const Conditions &c) noexcept {
     const Pose ta = derivative_at(a.line, a.line.length);
     const Pose tb = derivative_at(b.line, 0);
@@ -61,8 +61,8 @@ Corner accelerated_corner(const Bend &bend) noexcept {
     return d > PathTuning::SMALLEST_BLEND ? Corner{.blend_d = d} : Corner{.isStop = true};
 }
 
-/// A stop on the corner as long as needed: braking and starting overlap in the mean, which takes it off the
-/// corner.
+/// A stop on the corner as long as needed: braking and starting overlap in the moving average, which leaves
+/// the corner.
 Corner mean_stop(const Bend &bend, double share) noexcept {
     const Primitive &a = bend.a.line;
     const Primitive &b = bend.b.line;
@@ -105,7 +105,7 @@ double spread_blend(const Bend &bend, double half, double fit, double most) noex
     const Primitive &b = bend.b.line;
     double d = std::min(half, fit);
     if (bend.tolerance > 0) {
-        // A slight turn is spread as far as that costs next to nothing.
+        // A slight corner is widened as long as it costs next to nothing.
         const double spread = blend_d_for_tolerance(a, b, CornerTuning::SPREAD_SHARE * bend.tolerance);
         d = std::max(d, std::min({half, spread, most}));
     }
@@ -143,7 +143,7 @@ Corner mean_corner(const Bend &bend) noexcept {
     const double spacing = 0.5 * (a.length + b.length);
     const bool isDense = v * tau > CornerTuning::DENSE * spacing;
     if (isDense && tolerance > 0) {
-        // Several corners within the mean: they act like a curve, which wide blends make smooth.
+        // Several corners within the averaging time act like a curve, which wide blends make smooth.
         d = std::max(d,
                      std::min(half, blend_d_for_tolerance(a, b, CornerTuning::GEOMETRY_SHARE * tolerance)));
         const double outside = std::max(0.0, -geometry::dot(bend.b.move.shift_in, step) / (turn * turn));
@@ -168,7 +168,7 @@ Corner mean_corner(const Bend &bend) noexcept {
                       .v = v,
                       .turning = std::clamp(used, CornerTuning::LEAST_TURNING, CornerTuning::TURNING_SHARE)};
     const double most = std::max(on_a.a.at(0), on_b.a.at(0));
-    // The leader keeps v for tau before the blend and behind it: a crawl takes longer than a stop.
+    // The reference keeps v for tau before and after the blend: a crawl takes longer than a stop.
     const bool isCrawl = v / most < CornerTuning::CRAWL * tau;
     return !isCrawl && v / most + stop.dwell_s > CornerTuning::PASS_WORTH * tau ? pass : stop;
 }

@@ -10,11 +10,11 @@ namespace mw::trajectory {
 
 namespace {
 
-/// What a corner asks for by its curvature alone.
+/// Requirement of a corner by its curvature alone.
 struct Demand {
     Pose shift;
-    double reach = 0;  ///< way in the time of the mean
-    double most = 0;   ///< how far the corner may be moved
+    double reach = 0;  ///< distance in the averaging time
+    double most = 0;   ///< maximum displacement of the corner
 };
 
 bool isPlain(const Leg &leg) noexcept {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// With jerk limits the mean runs inside of dense curves. Their corners are therefore moved outwards, within
-// the tolerance, by a part of what the mean takes (docs/developer/planner.md).
+// With jerk limits the moving average runs inside of dense curves. Their corners are therefore moved outwards
+// within the tolerance, by a part of this deviation (docs/developer/planner.md).
 #pragma once
 
 #include <optional>

@@ -37,7 +37,7 @@ struct Allowed {
     double acceleration = 0, jerk = 0;
 };
 
-/// What it leaves along the arc at the speed v, whatever its direction.
+/// Acceleration left along the arc at the speed v, for any direction.
 double along_any_way(double q1, double q2, const Allowed &allowed, double v, double tau) noexcept {
     const double a =
         CornerTuning::ALONG_ACCELERATION * std::min(allowed.acceleration, allowed.jerk * tau) / q1;
@@ -78,7 +78,7 @@ ExactArc::ExactArc(const PathStore &store, const Piece &stretch, const Condition
     }
 }
 
-/// Joints do on the arc what axes do, each on a curve of its own.
+/// Joints move on the arc like axes, each on a separate curve.
 void ExactArc::slow_down_for_joints(const Piece &stretch) noexcept {
     const JointLimits &joints = workspace_.joints;
     LimitRow rows[MAX_JOINTS];
@@ -102,7 +102,7 @@ void ExactArc::slow_down_for_joints(const Piece &stretch) noexcept {
     }
 }
 
-// The leader's acceleration counts where the mean place is, at most v tau away from the leader.
+// The acceleration of the reference counts at the averaged position, at most v tau away from the reference.
 ExactArc::Seen ExactArc::seen(const Piece &part) const noexcept {
     const double reach = v_ * tau_;
     Piece wide = part;
@@ -132,7 +132,8 @@ Braking ExactArc::braking_of(const Seen &part) const noexcept {
     Braking out{v_ * v_, false, {}};
     for (std::size_t k = 0; k <= AccelBound::LINES; ++k) {
         const double v = std::sqrt(LimitTuning::CHORDS[k]) * v_;
-        // What is commanded is faster than the leader that brakes, by half of what it loses in tau.
+        // While the reference brakes, the command is faster by half of the speed that the reference loses in
+        // tau.
         const double mean_v = std::min(v_, v + 0.5 * tau_ * acceleration_at(part, v));
         const double a = acceleration_at(part, mean_v) * (1.0 - LimitTuning::ACCELERATION_MARGIN);
         for (Braking::Part &to : out.parts) {

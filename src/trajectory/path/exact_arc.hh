@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Speed and acceleration of arcs that must be followed exactly: they lie between stops, and the mean is taken
-// of the place on them. Formulas: docs/developer/planner.md.
+// Speed and acceleration of arcs that must be followed exactly: they lie between stops, and the position on
+// them is averaged. Formulas: docs/developer/planner.md.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ bool isExactArc(const Primitive &p, const MoveRequest &request, const PathLimits
 /// and joints that limit it move little.
 class ExactArc {
   public:
-    /// `stretch`: from its offset over its length. `wish`: the highest speed along the parameter.
+    /// `stretch`: from its offset over its length. `wish`: requested maximum speed along the parameter.
     ExactArc(const PathStore &store, const Piece &stretch, const Conditions &conditions,
              double wish) noexcept;
 
@@ -28,7 +28,7 @@ class ExactArc {
 
   private:
     using PerJoint = std::array<double, MAX_JOINTS>;
-    /// Largest derivatives where the mean place may be while the leader is on a part.
+    /// Largest derivatives at the averaged positions that belong to a part of the reference.
     struct Seen {
         PerLimited q1, q2;
         PerJoint joint_q1, joint_q2;
@@ -47,7 +47,7 @@ class ExactArc {
     const Workspace &workspace_;
     double tau_, v_;
     PerLimited q1_, q2_;               ///< largest derivatives on the full circles that it lies on
-    PerJoint joint_q1_{}, joint_k_{};  ///< of joints, each as on a circle of its own curvature; q1 0: stands
+    PerJoint joint_q1_{}, joint_k_{};  ///< of joints, each as on a circle with its curvature; q1 0: stopped
 };
 
 }  // namespace mw::trajectory

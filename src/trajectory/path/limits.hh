@@ -25,7 +25,7 @@ struct Limits {
 };
 inline constexpr double UNLIMITED = 1e300;
 
-/// What a path is made for: its first move tells.
+/// Request that a path is made for, from its first move.
 struct PathDemand {
     double tolerance = 0;    ///< 0: none is kept
     bool isTurning = false;  ///< rotary axes move
@@ -44,17 +44,17 @@ inline double time_of_mean(double velocity, double acceleration, double jerk) no
     return std::min(acceleration / jerk, std::sqrt(velocity / jerk));
 }
 
-/// Samples of the mean that turns acceleration-limited motion into jerk-limited motion: the longest time that
-/// an axis of X Y Z U V W, the XYZ norm or a joint needs to build up its acceleration, or the acceleration
-/// with which it gets to its speed soonest; no longer than what suits curves within the tolerance. Where
-/// rotary axes turn, at least a part of what they need. 1 without jerk limits. Formulas:
+/// Number of samples of the moving average that turns acceleration-limited motion into jerk-limited motion:
+/// the longest time in which an axis of X Y Z U V W, the XYZ norm or a joint builds up its acceleration, or
+/// the acceleration with which it reaches its speed soonest; at most what suits curves within the tolerance.
+/// With rotary axes, at least a part of what they need. 1 without jerk limits. Formulas:
 /// docs/developer/planner.md.
 std::uint64_t filter_length(const Limits &limits, double period_s, const PathDemand &demand) noexcept;
 
 /// The limits with accelerations that a mean over `filter` samples can build up within the jerk limits.
 Limits limits_for_filter(const Limits &limits, std::uint64_t filter, double period_s) noexcept;
 
-/// v: highest speed along the parameter; a: path acceleration that may be used, by the speed squared.
+/// v: maximum speed along the parameter; a: path acceleration that may be used, by the speed squared.
 struct SpeedLimit {
     double v = 0;
     AccelBound a;
@@ -72,7 +72,7 @@ struct LimitRow {
 void derivative_bounds(const Primitive &p, double from, double to, PerLimited &q1, PerLimited &q2) noexcept;
 
 /// Speeds and accelerations for which q1 v <= velocity and q1 |a| + q2 v^2 <= acceleration in every row, up
-/// to the speed `wish`.
+/// to the requested speed `wish`.
 SpeedLimit limit_of_rows(const LimitRow *rows, int count, double wish) noexcept;
 
 /// The same on the part [from, to] of a primitive.

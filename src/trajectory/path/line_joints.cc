@@ -20,7 +20,7 @@ LineJoints::Row derivatives(const std::array<Joints, 5> &at, std::size_t j, doub
     const auto above = [](double value, double rounding) {
         return std::max(0.0, std::abs(value) - rounding);
     };
-    // What the places tell of a joint is exact to so much.
+    // Accuracy of a joint position from the samples.
     const double noise = Tuning::ROUNDING * (1.0 + std::abs(q(0)));
     return {std::abs(q(1) - q(-1)) / (2.0 * h), above(q(1) - 2.0 * q(0) + q(-1), 4.0 * noise) / (h * h),
             above(q(2) - 2.0 * q(1) + 2.0 * q(-1) - q(-2), 6.0 * noise) / (2.0 * h * h * h)};

@@ -14,14 +14,14 @@ struct LineJoints {
     std::array<Row, MAX_JOINTS> rows{};
     bool isReachable = false;  ///< all of it
 
-    /// Highest speed along the line that leaves the joints an acceleration.
+    /// Maximum speed along the line at which the joints still have an acceleration.
     double most_speed(const JointLimits &joints) const noexcept;
     /// Acceleration along the line that the joints can do in either direction at every speed up to `v`. With
     /// a mean over `filter_s` (0: none) it may swing from one end to the other within it.
     double acceleration(const JointLimits &joints, double v, double filter_s) const noexcept;
 };
 
-/// On the part [from, to] of a line, which may go on beyond its ends. By differences of the inverse
+/// On the part [from, to] of a line, which may extend past its ends. By differences of the inverse
 /// kinematics.
 LineJoints joints_along(const Workspace &workspace, const Primitive &line, double from, double to) noexcept;
 

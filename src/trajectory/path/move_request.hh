@@ -32,9 +32,9 @@ struct MoveRequest {
     /// In to the end of this move with the spindle's angle, and out again along the next one, which is the
     /// way back to its start.
     bool isTap = false;
-    bool isTapped = false;  ///< this move, or the way back
-    double tap_scale = 1;   ///< speed of the spindle on the way back over that on the way in
-    double room_before = 0, room_behind = 0;  ///< that the line has before its start and behind its end
+    bool isTapped = false;                    ///< this move, or the retract
+    double tap_scale = 1;                     ///< spindle speed of the retract over that of the cut
+    double room_before = 0, room_behind = 0;  ///< clearance of the line before its start and after its end
 };
 
 }  // namespace mw::trajectory

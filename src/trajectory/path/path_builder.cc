@@ -15,7 +15,7 @@ Leg leg(const PlannedPath &path, Sequence n) noexcept {
     return {path.primitive(n), path.move(n)};
 }
 
-/// The line with its ends moved; what is told of it stays as programmed.
+/// Moves the ends of the line; its programmed data stay.
 void reshape(PlannedPath &path, Sequence n, const Pose &in, const Pose &out) noexcept {
     Primitive &p = path.primitive(n);
     PlannedMove &m = path.move(n);
@@ -27,8 +27,8 @@ void reshape(PlannedPath &path, Sequence n, const Pose &in, const Pose &out) noe
     path.store().move(n).feed_ratio = m.request.tag.feed_ratio;
 }
 
-/// The corner within a pass moves on, so that the first line is followed to its programmed end: what it cuts
-/// is to have its full depth there. With jerk limits half of the mean is on its way round the corner then.
+/// Moves the corner within a pass so that the first line is followed to its programmed end: its cut needs
+/// full depth there. With jerk limits half of the averaging time has passed the corner by then.
 void move_corner_on(PlannedPath &path, const Conditions &c, Sequence na, Sequence nb,
                     const Corner &corner) noexcept {
     Primitive &a = path.primitive(na);
@@ -37,7 +37,7 @@ void move_corner_on(PlannedPath &path, const Conditions &c, Sequence na, Sequenc
                               ? 0.5 * c.limits.filter_s() * turning_speed(path.move(na).request, c.scales)
                               : 0.0;
     const Pose along = derivative_at(a, a.length);
-    // Never beyond where the second line ends: a shoulder may be there.
+    // Not past the end of the second line: a shoulder may be there.
     const double most = PassTuning::ROOM_SHARE * geometry::dot(b.end - b.start, along);
     const double way =
         std::clamp(corner.blend_d + PassTuning::LAG_RESERVE * behind, 0.0, std::max(0.0, most));
@@ -67,7 +67,7 @@ bool PathBuilder::hasRoom(const PlannedPath &path, const PathLimits &limits, con
     }
     const Sequence oldest_move =
         path.last_piece() < oldest_piece ? path.last_move() : path.piece(oldest_piece).move;
-    // Moves that the mean still covers are kept as well.
+    // Moves within the averaging time are kept as well.
     const Sequence kept = limits.isFiltered() ? PRIMITIVE_CAPACITY / 4 : 4;
     return path.last_move() + kept - oldest_move < PRIMITIVE_CAPACITY;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// From moves to pieces: joins straight lines, rounds corners, cuts what results so that each piece has limits
-// of its own.
+// From moves to pieces: joins straight lines, rounds corners, and cuts the result into pieces with separate
+// limits.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ class PathBuilder {
   public:
     /// A path begins at `start`.
     void begin(const Pose &start) noexcept;
-    /// There is room for one more move while the executor is at `now`.
+    /// True if one more move fits while the executor is at `now`.
     static bool hasRoom(const PlannedPath &path, const PathLimits &limits, const Snapshot &now) noexcept;
     /// Appends a move that starts at `end()`; its length must be greater than 0. Returns its number.
     /// `isMerging`: nearly straight lines become one.
@@ -33,7 +33,7 @@ class PathBuilder {
     bool hasOpenEnd() const noexcept { return open_.move != 0 || newest_ != 0; }
     /// The first of them, 0: none.
     Sequence first_open() const noexcept { return open_.move != 0 ? open_.move : newest_; }
-    /// The open move goes on what was before it without a stop, so it may be part of a pass. 0: none.
+    /// The open move if it continues the move before it without a stop and so may be part of a pass. 0: none.
     Sequence continuing_move() const noexcept { return open_.isStop ? 0 : open_.move; }
     /// The last move that follows a spindle.
     Sequence last_synched() const noexcept { return last_synched_; }
@@ -66,9 +66,9 @@ class PathBuilder {
     Open open_;
     Sequence newest_ = 0;  ///< the newest move, which may still grow, 0: none
     Sequence last_synched_ = 0;
-    std::array<Pose, PathTuning::MOST_JOINED> joined_{};  ///< ends within it of the lines it stands for
+    std::array<Pose, PathTuning::MOST_JOINED> joined_{};  ///< ends within it of the lines that it replaces
     std::size_t joined_count_ = 0;
-    bool isJoinable_ = false;  ///< nothing else hangs on its end
+    bool isJoinable_ = false;  ///< nothing else depends on its end
 };
 
 }  // namespace mw::trajectory

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Cuts moves and blends into pieces with limits of their own.
+// Cuts moves and blends into pieces with separate limits.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -12,9 +12,9 @@ namespace mw::trajectory {
 
 namespace {
 
-/// Next to a curve that stands alone the speed stays as it is there, so that turning and braking do not meet
-/// in the mean; what curves close by take of the acceleration at the same speed is not there for the path.
-/// Next to a stop that overlaps in the mean the acceleration may have to be less.
+/// Next to a single curve the speed stays constant, so that centripetal acceleration and braking do not meet
+/// in the moving average. The path does not get the acceleration that near curves need at the same speed.
+/// Next to a stop that overlaps in the average, the acceleration may have to be less.
 double zone_length(const Primitive &p, const Corner &corner, const PathLimits &limits, double wish) noexcept {
     const bool isNone = !limits.isFiltered() || p.isArc;
     if (!isNone && corner.blend_d > 0) {
@@ -56,8 +56,8 @@ void PathBuilder::add_blend(PlannedPath &path, const Conditions &c, const Corner
     const double wish = std::min(requested_speed(before, c.scales), requested_speed(after, c.scales));
     const double d = corner.blend_d;
     const double turn = geometry::norm(tangent_step(a, b));
-    // A curve among others leaves room for what the mean brings together; one that stands alone is passed
-    // at one speed.
+    // A curve among others leaves acceleration for what the average adds up; a single one is passed at
+    // constant speed.
     const bool isFiltered = c.limits.isFiltered();
     const double reach = isFiltered ? corner.v * c.limits.filter_s() : 0.0;
     const bool isShared =

@@ -23,9 +23,9 @@ struct PlannedMove {
 
 /// A piece besides its geometry.
 struct PlannedPiece {
-    double v_limit = 0;  ///< highest speed the limits allow
+    double v_limit = 0;  ///< maximum speed within the limits
     bool isStopBefore = false;
-    double dwell_s = 0;  ///< with jerk limits: how long it stands there at least
+    double dwell_s = 0;  ///< with jerk limits: minimum dwell before it
 };
 
 /// Plain tables; elements from `oldest_piece` on are valid, and the moves that they belong to. Some
@@ -62,7 +62,7 @@ class PlannedPath {
     const PathStore &store() const noexcept { return store_; }
     PathStore &store() noexcept { return store_; }
 
-    /// Room for one more move; its primitive and tag are the caller's to fill.
+    /// Appends an empty move; its primitive and tag are the caller's to fill.
     Sequence append_move() noexcept { return ++last_move_; }
     /// The executor may read the piece, and the primitives that it lies on, from now on.
     void append_piece(const Piece &piece, const PlannedPiece &plan) noexcept;

@@ -103,9 +103,9 @@ FeedLength feed_length(const Primitive &p) noexcept {
 
 namespace {
 
-/// How far a turning point of a coordinate may lie beyond the one of its circular part alone, where the rest
-/// of it has the slope `drift`: never more than that makes in half a turn; where it is slight, twice what it
-/// makes on a parabola of the least curvature there.
+/// How far an extreme of a coordinate may exceed that of its circular part alone, where the rest of it has
+/// the slope `drift`: at most the drift of half a revolution; where it is slight, twice the drift on a
+/// parabola of the least curvature there.
 double turning_margin(const Primitive &p, double amplitude, double drift) noexcept {
     constexpr double SLIGHT = 0.1;
     const double most = drift * std::min(p.length, std::numbers::pi / std::abs(p.omega));
@@ -204,7 +204,7 @@ void extent_along(const Primitive &p, const Pose &slope, double &low, double &hi
     const double turning = (p.radius + 0.5 * p.dradius * p.length) * p.omega;
     const double lead = std::atan2(p.dradius, turning);
     const double level = sum.lin / (sum.amplitude * std::hypot(turning, p.dradius));
-    constexpr double HARDLY = 1.2;  // beyond it goes one way only
+    constexpr double HARDLY = 1.2;  // above it the coordinate has one direction only
     if (!p.isArc || sum.amplitude == 0.0 || !(std::abs(level) < HARDLY)) {
         return;
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What a path is made of: straight lines and helices in nine coordinates, by one parameter s.
+// Elements of a path: straight lines and helices in nine coordinates, by one parameter s.
 // Realtime-safe, pure. Lengths in machine units, angles of the pose in degrees, s in both mixed (see
 // README.md).
 #pragma once

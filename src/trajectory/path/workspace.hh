@@ -17,7 +17,7 @@ struct JointRoom {
 };
 
 struct Workspace {
-    Pose low, high;                 ///< soft limits of the axes; the path is not moved beyond them
+    Pose low, high;                 ///< soft limits of the axes; the path stays within them
     const JointMap *map = nullptr;  ///< null: the axes' limits are all there are
     JointLimits joints;             ///< with a map
     JointRoom joint_room;           ///< the same
@@ -40,8 +40,8 @@ struct Workspace {
 void sample_rows(const PathStore &store, const Piece &piece, const Workspace &workspace,
                  const double *curvatures, LimitRow *rows) noexcept;
 
-/// The limit of a piece, lowered to what its joints can do: their derivatives along it by differences of the
-/// inverse kinematics. `filter_s`: the time of the mean, 0 without jerk limits.
+/// The limit of a piece, lowered to what its joints can follow: their derivatives along it by differences of
+/// the inverse kinematics. `filter_s`: the averaging time, 0 without jerk limits.
 SpeedLimit limit_with_joints(const PathStore &store, const Piece &piece, const Workspace &workspace,
                              double filter_s, const SpeedLimit &limit) noexcept;
 

@@ -162,7 +162,7 @@ struct Gain {
     int used = 0;    ///< on which a stop brakes with 0.6 of all that can be
 };
 
-/// Whoever brakes from `fast` on is slower soon, with the same braking.
+/// A path that brakes from `fast` on is slower soon, with the same braking.
 Gain gain_of(const Curves &c) {
     const SpeedLimit limit = c.limit();
     Gain gain;

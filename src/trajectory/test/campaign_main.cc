@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // A campaign of random programs of at least 50 blocks and 5 s of motion each, in virtual time.
-// traj_campaign --first N --count M --log FILE [--processes P]: one line per seed in the log; seeds that it
-// has are not driven again; the number before the verdict stands for every bit of what was commanded. Ends
-// with 1 when a program has left its limits, its tolerance or its order.
+// traj_campaign --first N --count M --log FILE [--processes P]: one line per seed in the log; seeds in it are
+// not driven again; the number before the verdict is a hash of every commanded bit. Ends with 1 when a
+// program has exceeded its limits or tolerance, or changed its order.
 #include <fcntl.h>
 #include <sys/wait.h>
 #include <unistd.h>

@@ -81,7 +81,7 @@ TEST(ExactArc, StopsWithWhatTurningLeavesWhereASlowAxisTurnsBack) {
     limits.acceleration[1] = SLOW;
     limits.acceleration[2] = 2400;
     limits.jerk[1] = 16000;
-    limits.jerk[2] = 33000;              // which asks for a mean of 0.07 s
+    limits.jerk[2] = 33000;              // which requires an average over 0.07 s
     constexpr std::uint64_t MOST = 150;  // 225 to 292 by the shares of the arc
     for (std::uint64_t after = 420; after < 600; after += 20) {
         ArcRig rig(limits);

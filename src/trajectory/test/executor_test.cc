@@ -54,7 +54,7 @@ struct ServoRig : Parts {
         ASSERT_TRUE(store->commits.push(c));
         step(1);
     }
-    /// Steps until it stands; the greatest change of speed in a cycle on the way.
+    /// Steps until it stops; the largest change of speed in a cycle meanwhile.
     double stop() {
         double most = 0;
         double before = v();
@@ -217,7 +217,7 @@ TEST(ArcMean, CommandsTheMeanPlaceOnTheArcUntilTheMeanHasLeftIt) {
     EXPECT_NEAR(commanded, piece.length / 0.1 + FILTER, 2);
 }
 
-/// A feed override of 0 may let it stand there for longer than the mean.
+/// A feed override of 0 may stop it there for longer than the averaging time.
 TEST(ArcMean, WhoStandsWhereTwoPiecesOfAnArcMeetGoesOnFromThere) {
     constexpr std::uint64_t FILTER = 10;
     auto store = std::make_unique_for_overwrite<PathStore>();

@@ -17,7 +17,7 @@ TEST(Filtered, AHoldStopsWithinTheJerkLimitAndGoesOn) {
     while (!rig.executor.isAtRest() && rig.cycle < asked + 1000) {
         rig.step();
     }
-    // Planner period, latency, v/a and twice the mean.
+    // Planner period, latency, v/a and twice the averaging time.
     EXPECT_LT(rig.cycle - asked, 5U + 3U + 80U + 45U);
     rig.executor.hold(false);
     ASSERT_TRUE(rig.run(10));
@@ -55,8 +55,8 @@ TEST(Filtered, ADropWithinAHoldKeepsThePlanThatStops) {
     }
 }
 
-/// A line of `length` begun with gentle limits and dropped `after` cycles later, with the planner away from
-/// then on or not; the cycles until it stands and the way it has made meanwhile.
+/// A line of `length` begun with low limits and dropped `after` cycles later, with or without the planner
+/// from then on; the cycles until it stops and its travel meanwhile.
 struct Dropped {
     std::uint64_t cycles = 0;
     double way = 0;
@@ -92,11 +92,11 @@ Dropped drop_after(std::uint64_t after, bool isPlannerAlive, double length = 60)
 }
 
 TEST(Filtered, AStopBehindTheStartDoesNotWaitForTheMean) {
-    // The leader has moved for 5 ms and the planner's period: it brakes for as long, and the mean ends 80 ms
-    // later.
+    // The reference has moved for 5 ms and the planner's period: it brakes for as long, and the average ends
+    // 80 ms later.
     const Dropped soon = drop_after(5, true);
     EXPECT_LT(soon.cycles, 5U + 10U + 20U + 80U);
-    EXPECT_LT(soon.way, 0.1) << "0.5 when the speed is kept for the time of the mean first";
+    EXPECT_LT(soon.way, 0.1) << "0.5 when the speed is kept for the averaging time first";
     for (std::uint64_t after = 1; after < 250; after += 3) {
         drop_after(after, true);
     }
@@ -106,7 +106,7 @@ TEST(Filtered, AStopWithoutAPlannerKeepsTheJerkLimit) {
     for (std::uint64_t after = 1; after < 250; after += 3) {
         EXPECT_LT(drop_after(after, false).cycles, 30U + 80U + 80U + 80U + 5U) << after;
     }
-    // Also where the path ends before the mean has forgotten the start.
+    // Also where the path ends before the start has left the average.
     for (const double length : {0.05, 0.5, 2.0, 5.0, 12.0}) {
         for (std::uint64_t after = 1; after < 200; after += 3) {
             SCOPED_TRACE(length);
@@ -115,7 +115,8 @@ TEST(Filtered, AStopWithoutAPlannerKeepsTheJerkLimit) {
     }
 }
 
-/// Drops a path `after` cycles behind its beginning; for how many cycles the leader has braked by itself.
+/// Drops a path `after` cycles after its start; returns the cycles in which the reference has braked by
+/// itself.
 template <typename Fill>
 std::uint64_t leader_brakes(std::uint64_t after, const Limits &limits, const Fill &fill) {
     JerkRig rig;
@@ -166,7 +167,7 @@ TEST(Filtered, AStopIsPlannedWhileTheMeanHoldsATurn) {
     }
 }
 
-/// Of a machine whose Z alone asks for a long mean.
+/// A machine whose Z alone requires a long averaging time.
 TEST(Filtered, AStopOnAnExactArcBrakesAtOnceAndHarderWhereItIsSlower) {
     Limits limits = jerk_limits();
     limits.jerk[2] = J / 5;  // 0.1 s to the full acceleration
@@ -184,7 +185,7 @@ TEST(Filtered, AStopOnAnExactArcBrakesAtOnceAndHarderWhereItIsSlower) {
         while (rig.cycle < after + 2000 && (!rig.executor.isAtRest() || rig.executor.snapshot().isDropping)) {
             rig.step();
         }
-        // Planner's period and latency, the mean, and braking with three quarters of what an axis may.
+        // Planner's period and latency, the average, and braking with three quarters of the limit of an axis.
         const double most_s = 0.013 + 0.1 + (v + 10) / (0.75 * A);
         EXPECT_LE(static_cast<double>(rig.cycle - after) * Rig::T, most_s) << after << ": " << v;
         auto checker = make_checker(limits, Rig::T);

@@ -49,7 +49,7 @@ TEST(Filtered, ACornerUsesTheToleranceAndNoMore) {
 }
 
 /// A rapid and a slow cut at half a degree to it: the blend between them is passed at the cut's speed, so it
-/// is no wider than that needs, whatever the tolerance would let it be.
+/// is no wider than this needs, for any tolerance.
 TEST(Filtered, ARapidBeforeASlowCutAtASlightAngleStaysRapid) {
     const auto time_with = [](double tolerance) {
         JerkRig rig;
@@ -201,8 +201,8 @@ TEST(Filtered, AnExactArcIsAsFastAsJointsAllow) {
     BeltRig rig;
     ASSERT_TRUE(rig.run(10));
     rig.expect_joints_within();
-    // Belts take sqrt(2) of what the arc does; ExactArc has the shares. Stands before and after it,
-    // the planner's period and latency.
+    // Belts take sqrt(2) of what the arc does; ExactArc has the shares. Stops before and after it, the
+    // planner's period and latency.
     const double v = V / std::sqrt(2.0);
     const double a = CornerTuning::ALONG_ACCELERATION * A / 2 / std::sqrt(2.0);
     const double way = 1.5 * std::numbers::pi * 20;
@@ -243,8 +243,8 @@ double circle_excursion(bool isBoxed) {
     return worst;
 }
 
-/// The time of a move that keeps near its line; the path before it was dropped on its way, or there was none.
-/// The mean is longer than the time to the second plan.
+/// The time of a move that stays near its line; the path before it was dropped, or there was none. The
+/// averaging time is longer than the time to the second plan.
 std::uint64_t cycles_of_move(bool isAfterDrop) {
     JerkRig rig;
     Limits gentle = jerk_limits();

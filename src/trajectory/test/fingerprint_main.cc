@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What a change of shape must not change: every commanded pose of random programs, as one number per seed.
-// Besides what traj_campaign drives: joints that are not axes, feed per revolution, threads, gates, single
-// blocks, joining with a tolerance of its own, events, jerk limits that change from path to path.
+// A hash per seed of every commanded pose of random programs, which a change of shape must not change.
+// Besides the moves of traj_campaign: joints that are not axes, feed per revolution, threads, gates, single
+// blocks, joining with a separate tolerance, events, jerk limits that change from path to path.
 // traj_fingerprint --first N --count M: one line per seed; compare the output of two builds.
 #include <cmath>
 #include <cstdio>

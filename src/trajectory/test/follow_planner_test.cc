@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Following a place that somebody else moves: judged by the samples alone.
+// Following a position that another process moves: judged by the samples alone.
 #include <cmath>
 #include <random>
 

@@ -56,7 +56,7 @@ TEST(AxisMotion, RandomTargetChangesKeepTheLimits) {
     }
 }
 
-/// A feed override of zero, and the stop that somebody asks for then, find it on its last way to the target.
+/// A feed override of zero, and a stop after it, come while it decelerates towards its target.
 TEST(AxisMotion, WhoMayHaveNoSpeedAnyMoreComesToRestFromEverywhere) {
     for (unsigned seed = 1; seed <= 2000; ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
@@ -85,7 +85,7 @@ TEST(AxisMotion, WhoMayHaveNoSpeedAnyMoreComesToRestFromEverywhere) {
     }
 }
 
-/// Shares of joints are computed anew in each cycle, and no two are the same to the last digit.
+/// Shares of joints are calculated in each cycle, and no two are the same to the last digit.
 TEST(AxisMotion, RoundingOfItsAccelerationLeadsNobodyBeyondTheTarget) {
     for (unsigned seed = 1; seed <= 200; ++seed) {
         std::mt19937 random(seed);

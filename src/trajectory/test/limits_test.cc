@@ -275,7 +275,7 @@ TEST(PathLimits, TheMeanBelongsToAPathAndLimitsMayRiseOnTheWay) {
     limits.begin({});
     EXPECT_EQ(limits.filter(), 80U);
     EXPECT_DOUBLE_EQ(limits.highest().acceleration[0], 400);
-    // 1.2 (24 P/J)^(1/3) is far below the mean's 80 ms.
+    // 1.2 (24 P/J)^(1/3) is far below the averaging time of 80 ms.
     EXPECT_FALSE(limits.suits({1e-6}));
     EXPECT_TRUE(limits.suits({}));
 }

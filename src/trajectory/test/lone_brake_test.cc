@@ -7,7 +7,7 @@ namespace mw::trajectory::test {
 namespace {
 
 struct LoneStop {
-    std::uint64_t cycles = 0;  ///< from the drop until it stands
+    std::uint64_t cycles = 0;  ///< from the drop until it stops
     double most_jerk = 0;      ///< of the axes or joints, over what is allowed
 };
 
@@ -93,8 +93,9 @@ Worst worst_of_circle(bool areLimitsKnown, const JointMap *map = nullptr) {
 TEST(LoneBrake, OnACurveKeepsTheJerkLimitsOfAxes) {
     const Worst known = worst_of_circle(true);
     EXPECT_LE(known.jerk, 1.00001);
-    EXPECT_GT(worst_of_circle(false).jerk, 1.01) << "the curve is none that asks for it";
-    // Silence, keeping the speed and the brake for a mean each, and the mean of what is commanded.
+    EXPECT_GT(worst_of_circle(false).jerk, 1.01) << "the curve does not need it";
+    // Silence, keeping the speed and the deceleration for an averaging time each, and the average of the
+    // command.
     EXPECT_LT(known.cycles, 30U + 3 * 80U + 80U);
 }
 
@@ -102,7 +103,7 @@ TEST(LoneBrake, OnACurveKeepsTheJerkLimitsOfJoints) {
     const TurningTable table(60);
     const Worst known = worst_of_circle(true, &table);
     EXPECT_LE(known.jerk, 1.00001);
-    EXPECT_GT(worst_of_circle(false, &table).jerk, 1.01) << "the curve is none that asks for it";
+    EXPECT_GT(worst_of_circle(false, &table).jerk, 1.01) << "the curve does not need it";
     EXPECT_LT(known.cycles, 30U + 3 * 80U + 80U);
 }
 
@@ -125,7 +126,7 @@ TEST(LoneBrake, WhoStandsBetweenTwoMovesStays) {
             rig.step();
         }
         EXPECT_FALSE(rig.executor.snapshot().isDropping);
-        EXPECT_EQ(rig.samples.back()[1], 0) << "it has gone on along the second line";
+        EXPECT_EQ(rig.samples.back()[1], 0) << "it has continued along the second line";
         EXPECT_NEAR(rig.samples.back()[0], 5, 1e-9);
         rig.expect_within();
     }

@@ -47,7 +47,7 @@ inline MoveRequest asking(double feed, geometry::PathMode join = geometry::PathM
     return r;
 }
 
-/// A path and what holds for it, without a planner.
+/// A path and its conditions, without a planner.
 struct Parts {
     std::unique_ptr<PathStore> store = std::make_unique_for_overwrite<PathStore>();
     std::unique_ptr<PlannedPath> path = std::make_unique<PlannedPath>(*store);

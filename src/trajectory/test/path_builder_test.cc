@@ -210,9 +210,9 @@ TEST(PathBuilder, AThreadsCornerMovesOnSoThatTheFirstLineKeepsItsLength) {
 }
 
 TEST(Corner, TheSpeedThroughACornerTakesAllOfItsDeviation) {
-    // The mean alone: v tau / 8 per turn of the tangent.
+    // The average alone: v tau / 8 per change of the tangent.
     EXPECT_NEAR(speed_through(0.01, 0, 1, 0.02), 8 * 0.01 / 0.02, 1e-6);
-    // A blend within the way h = v tau of the mean: h / 8 + d^2 / (6 h).
+    // A blend within the distance h = v tau of the average: h / 8 + d^2 / (6 h).
     const double h = 1e-3 * speed_through(0.1, 1, 0.2, 1e-3);
     EXPECT_GT(h, 0.4);
     EXPECT_NEAR(h / 8 + 0.04 / (6 * h), 0.1, 1e-9);
@@ -250,7 +250,7 @@ TEST(CornerShaper, MovesTheCornersOfADenseCurveOutwardsWithinTheTolerance) {
         farthest = std::max(farthest, geometry::norm(*shift));
     }
     EXPECT_GT(farthest, 0.3 * P);
-    // What stands alone is left where it is.
+    // A single corner is not moved.
     const Primitive a = make_line(at(0), at(50));
     const Primitive b = make_line(at(50), at(50, 50));
     EXPECT_FALSE(shaper.shift({a, move}, {b, move}, parts.conditions).has_value());

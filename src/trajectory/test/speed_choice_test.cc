@@ -28,7 +28,8 @@ struct Chooser final : SpeedChooser {
     }
 };
 
-/// Up to a share of the highest speed and down again, with a share of the acceleration that holds everywhere.
+/// Accelerates to a share of the maximum speed and decelerates, with a share of the acceleration at all
+/// speeds.
 int gentle(const SpeedStretch &s, std::span<ChosenPhase> out, double speed_share, double share) {
     const double a = share * std::min(s.at_rest, s.at_cap);
     const double end = std::min(s.out, std::max(s.speed, speed_share * s.cap));

@@ -104,7 +104,7 @@ TEST(TapFollower, KeepsToTheAngleThroughBothReversalsAndEndsAtItsStart) {
     }
 }
 
-/// What turns back turns the play of the drive about: who comes home from above stands there at once.
+/// A reversal reverses the backlash of the drive too: a spindle that returns from above stops there at once.
 TEST(TapFollower, TheWayHomeEndsWithoutTurningBack) {
     for (int n = 0; n < 60; ++n) {
         SCOPED_TRACE(n);
@@ -151,7 +151,7 @@ TEST(TapFollower, AStopFollowsTheSpindleToItsStand) {
         EXPECT_FALSE(tapping.tap.isLost());
         if (!std::isnan(tapping.phase) && isStopped && tapping.tap.x() > 1) {
             EXPECT_NEAR(tapping.plant.turns() - tapping.tap.x() / PITCH, tapping.phase, 0.03)
-                << "the tap stands in its thread, stopped at " << at;
+                << "the tap is in its thread, stopped at " << at;
         }
     }
 }
@@ -166,7 +166,7 @@ TEST(TapFollower, ASpindleThatDoesNotTurnBackIsLostWithinTheRoom) {
         EXPECT_LE(std::abs(v - last_v) / T, 1000 * (1 + 1e-9));
         last_x = tapping.tap.x();
         last_v = v;
-        tapping.turn(10);  // whatever is asked for
+        tapping.turn(10);  // regardless of the command
     }
     EXPECT_TRUE(tapping.tap.isOver());
     EXPECT_TRUE(tapping.tap.isLost());

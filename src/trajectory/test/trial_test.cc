@@ -84,7 +84,7 @@ TEST(Trial, APathBesideTheProgrammedOneFailsByItsShare) {
     }
 }
 
-/// One joint that goes twice as far as X.
+/// One joint that travels twice as far as X.
 class Doubled final : public JointMap {
   public:
     bool joints_at(const Pose &pose, double *joints) const noexcept override {
