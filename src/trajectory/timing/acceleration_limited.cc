@@ -29,7 +29,7 @@ void append_hill(PlanDraft &draft, PathStore &store, const AccelBound &bound, do
     draft.append(store, down, std::sqrt(end2));
 }
 
-/// As somebody else chooses; false when he asks for too much.
+/// Phases of the user's speed chooser; false when they exceed a limit.
 bool append_chosen(PlanDraft &draft, PathStore &store, const TimingView &view, double cap,
                    double out2) noexcept {
     std::array<ChosenPhase, CHOSEN_PHASES> phases;

@@ -15,7 +15,7 @@ class Commitments {
     /// Tells the executor to leave its plan for another; false when the ring is full. `commit` lacks its
     /// number and the executor's brakes.
     bool change_to(PathStore &store, const Snapshot &now, Commit commit, std::uint64_t latency) noexcept;
-    /// The present plan goes on to phase `end`.
+    /// The current plan continues to phase `end`.
     void extend(PathStore &store, const Snapshot &now, Sequence end) noexcept;
 
     bool isTaken(const Snapshot &now) const noexcept { return now.plan == plan_; }
@@ -29,7 +29,7 @@ class Commitments {
     }
     /// The last plan was made to stop.
     bool isStopPlan() const noexcept { return isStop_; }
-    /// Where the phases of the plan that the executor follows end: one later may have been refused.
+    /// End of the phases of the plan that the executor follows: it may have rejected a later plan.
     Sequence phases_end(const Snapshot &now) const noexcept { return ends_[now.plan % ends_.size()]; }
     /// Phases before it are free.
     Sequence oldest_phase(const Snapshot &now) const noexcept {

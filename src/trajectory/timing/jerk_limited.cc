@@ -40,8 +40,8 @@ class Smooth {
     const PathLimits &limits_;
 };
 
-/// True when the speed can be kept for the time of the mean from here and everything after that is still
-/// kept.
+/// True when the speed can be kept for the averaging time from here, and everything after that still keeps
+/// its limits.
 bool Smooth::canCoast(Sequence piece, double x, double v) noexcept {
     double way = v * limits_.filter_s();
     const double v2 = v * v * (1.0 - TimingTuning::SAME_SPEED);
@@ -61,7 +61,7 @@ bool Smooth::canCoast(Sequence piece, double x, double v) noexcept {
     return false;
 }
 
-/// Rises as far as the piece, the cap and what follows allow; false when that is next to nothing.
+/// Accelerates as far as the piece, the cap and the later pieces allow; false when that is next to nothing.
 bool Smooth::rise(double cap) noexcept {
     const LeaderState &s = draft_.at;
     const Piece &p = path_.piece(s.piece);
@@ -106,7 +106,8 @@ void Smooth::coast(double cap, double out2) noexcept {
     draft_.append(store_, std::max(way, TimingTuning::LEAST_COAST * left), s.v);
 }
 
-/// The highest speed that somebody else chooses on what is left of the piece: how it is come to is not his.
+/// Maximum speed that the user's speed chooser sets for the rest of the piece. It does not control
+/// acceleration.
 double Smooth::chosen_cap(double cap) noexcept {
     std::array<ChosenPhase, CHOSEN_PHASES> phases;
     const LeaderState &s = draft_.at;
@@ -121,7 +122,7 @@ double Smooth::chosen_cap(double cap) noexcept {
     return std::min(cap, top);
 }
 
-/// From a stand; false when the plan ends with it.
+/// From standstill; false when the plan ends with it.
 bool Smooth::start(double cap) noexcept {
     LeaderState &s = draft_.at;
     const PlannedPiece &plan = path_.plan(s.piece);
@@ -224,7 +225,7 @@ bool Smooth::stop(const StopShape &shape) noexcept {
     return true;
 }
 
-/// A rise is still in the mean and the speed may be kept for now.
+/// An acceleration is still within the averaging time and the speed may be kept for now.
 bool Smooth::mustCoast(const StopShape &shape, const Piece &p) const noexcept {
     const LeaderState &s = draft_.at;
     const double wait = shape.isAtOnce ? 0.0 : limits_.filter_s() - s.coasting.since_rise_s;
@@ -232,7 +233,7 @@ bool Smooth::mustCoast(const StopShape &shape, const Piece &p) const noexcept {
     return wait > TimingTuning::SOON && s.v * s.v < kept2 * (1.0 - TimingTuning::SAME_SPEED);
 }
 
-/// Appends a phase of a stop, or goes on to the next piece; false where the path is over.
+/// Appends a phase of a stop, or continues on the next piece; false at the end of the path.
 bool Smooth::brake(const StopShape &shape, double soft_until_s) noexcept {
     LeaderState &s = draft_.at;
     const Piece &p = path_.piece(s.piece);

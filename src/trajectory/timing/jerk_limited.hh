@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// With jerk limits: the profile of a leader whose mean is commanded (docs/developer/planner.md).
-// Between rising and falling the leader keeps its speed for as long as the mean takes, so that the
-// acceleration never swings by more than the mean can spread.
+// With jerk limits: the profile of a reference whose moving average is commanded (docs/developer/planner.md).
+// Between acceleration and deceleration the reference keeps its speed for the averaging time, so that the
+// acceleration step never exceeds what the average can spread.
 #pragma once
 
 #include "trajectory/timing/plan_draft.hh"
@@ -11,19 +11,20 @@ namespace mw::trajectory {
 /// How a stop is made.
 struct StopShape {
     bool isHard = false;  ///< with what curves leave for braking alone
-    /// Also behind a rise that is still in the mean, which keeps to the jerk where both swings together do.
+    /// Also right after an acceleration within the averaging time, if the jerk limit allows both steps
+    /// together.
     bool isAtOnce = false;
-    /// Part of the brake for as long as the mean takes, more only where what follows could not be kept: the
-    /// mean may still hold a turn from which the whole brake swings too far.
+    /// Part of the deceleration for the averaging time; more only if the later pieces need it. The average
+    /// may still contain a curve for which the whole deceleration is too large a step.
     double first_share = 1;
-    /// The same behind that: a stop that is over within the mean swings it by all it takes. More than 1: the
-    /// trial alone knows what is left.
+    /// The same after that: a stop shorter than the averaging time has its whole deceleration as a step. More
+    /// than 1: only the trial knows what is left.
     double share = 1;
 };
 
 /// Appends phases until the plan lasts `until_s` or ends for now.
 void append_smooth(PlanDraft &draft, PathStore &store, const TimingView &view, double until_s) noexcept;
-/// From where the plan leads to a stop; false when there is no room for it.
+/// From the end of the plan to a stop; false when the store is full.
 bool append_stop(PlanDraft &draft, PathStore &store, const TimingView &view, const StopShape &shape) noexcept;
 
 }  // namespace mw::trajectory

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Where the leader is on the path and how fast, and where it will be when a plan made now begins.
+// Position and speed of the reference on the path, now and when a plan made now begins.
 #pragma once
 
 #include <optional>
@@ -14,7 +14,7 @@ struct LeaderState {
     Coasting coasting;
 };
 
-/// Where an executor at rest goes on; nothing when there is no more of the path.
+/// Where a stopped executor continues; nothing at the end of the path.
 std::optional<LeaderState> start_state(const PlannedPath &path, const Snapshot &now) noexcept;
 
 /// Until when the plan under way is known, and how far ahead a plan begins.
@@ -24,8 +24,8 @@ struct Outlook {
     double period_s = 1e-3;
 };
 
-/// The state that the executor will have when a plan made now can take over; nothing when it will have begun
-/// to brake, or stands at the end of the path.
+/// The state of the executor when a plan made now can take over; nothing when it will have begun to brake, or
+/// is stopped at the end of the path.
 std::optional<LeaderState> predict(const PlannedPath &path, const Snapshot &now,
                                    const Outlook &outlook) noexcept;
 

@@ -27,7 +27,7 @@ double turn_way(const PlannedPath &path, Sequence piece) noexcept {
     return 1.0 / ((1.0 - part) / way(p.move) + part / way(p.move + 1));
 }
 
-/// What the mean can spread of a change of acceleration along a line.
+/// Acceleration step along a line that the moving average can spread.
 double swing_of(const PathLimits &limits, const Primitive &line) noexcept {
     const Pose t = derivative_at(line, 0);
     const PerLimited &jerk = limits.wanted().jerk;
@@ -129,7 +129,7 @@ double pass_load(const PathView &view, Sequence move) noexcept {
         length += p.length;
         ramps = std::max(ramps, v * v / (tap_share(c.limits) * limit.a.at(v * v)));
     }
-    // Where no part of it would have the lead, the highest speed that leaves one goes with the root.
+    // If no part of it would have the lead, the maximum speed that leaves one goes with the root.
     return load <= 1.0 && ramps > length ? std::sqrt(ramps / length) : load;
 }
 

@@ -10,7 +10,7 @@
 
 namespace mw::trajectory {
 
-/// Last piece of the pass that begins with `first`, as far as it is known.
+/// Last known piece of the pass that begins with `first`.
 Sequence pass_end(const PathView &view, Sequence first) noexcept;
 
 /// The pass that begins with `first`, at the present speed of its spindle.

@@ -7,7 +7,7 @@
 
 namespace mw::trajectory {
 
-/// What the making of phases reads; nobody keeps it.
+/// Inputs for making phases; not stored.
 struct TimingView {
     const PathView &on;
     const SpeedProfile &profile;
@@ -21,7 +21,7 @@ struct PlanDraft {
     double seconds = 0;      ///< when, from its beginning on
     Sequence end = 1;        ///< number of the next phase
     Sequence looked_at = 0;  ///< the farthest piece that the plan depends on
-    Overreach overreach;     ///< of who chooses speeds: the plan does not go on
+    Overreach overreach;     ///< of the speed chooser: the plan ends there
     Sequence reached = 0;    ///< the piece with whose end it ends, if that was the path's last, otherwise 0
 
     /// Another plan from this state on.
@@ -36,15 +36,15 @@ struct PlanDraft {
     bool hasRoom(Sequence oldest_phase, Sequence phases) const noexcept {
         return end + phases - oldest_phase < PHASE_CAPACITY;
     }
-    /// Asks who chooses speeds for what is left of the piece where the plan is; how many phases are in `out`.
-    /// None where he asks for too much, which is kept.
+    /// Phases of the speed chooser for the rest of the current piece; returns how many are in `out`. None
+    /// where they exceed a limit, which is stored.
     int choose(const TimingView &view, double cap, double out2, std::span<ChosenPhase> out) noexcept;
     /// Appends a phase over `length` that ends at the speed `v1`.
     void append(PathStore &store, double length, double v1) noexcept;
-    /// Appends a stand.
+    /// Appends a dwell.
     void wait(PathStore &store, double duration) noexcept;
-    /// Since phase `begin` it runs through a place where it has to stand: accelerations that were made less
-    /// left no way to stop from where the plan before leads.
+    /// True if it passes, after phase `begin`, a point where it has to stop: reduced accelerations left no
+    /// stop from the end of the plan before.
     bool isStopPassed(const PlannedPath &path, Sequence begin) const noexcept;
     /// On to the next piece, whose start is the end of this one.
     void enter_next_piece() noexcept { at = {at.piece + 1, 0, at.v, at.coasting}; }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Speeds that somebody else chooses: a planner module of a user. What he chooses is looked at before it is
-// planned with.
+// Speeds chosen by a user's planner module. They are checked before they are used.
 #pragma once
 
 #include <cstddef>
@@ -39,11 +38,11 @@ class SpeedChooser {
 struct Overreach {
     enum class Kind : std::uint8_t {
         NONE,
-        NO_ANSWER,  ///< no phases, more than there is room for, or what is no number
-        TOO_FAST,   ///< value: the speed over the highest
-        TOO_HARD,   ///< value: the acceleration over the highest
-        TOO_LATE,   ///< value: the speed at the end over the highest there
-        NOT_THERE,  ///< stands before the end, or lengths that do not make up the stretch
+        NO_ANSWER,  ///< no phases, more than fit, or a value that is no number
+        TOO_FAST,   ///< value: the speed over the maximum
+        TOO_HARD,   ///< value: the acceleration over the maximum
+        TOO_LATE,   ///< value: the speed at the end over the maximum there
+        NOT_THERE,  ///< stops before the end, or the lengths do not add up to the segment
     };
     Kind kind = Kind::NONE;
     double value = 0;

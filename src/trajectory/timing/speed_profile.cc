@@ -10,7 +10,7 @@ namespace mw::trajectory {
 
 namespace {
 
-/// Highest speed of a move under the present scales [1/s].
+/// Maximum speed of a move under the current scales [1/s].
 double move_cap(const PlannedMove &m, const Scales &scales, double v_limit) noexcept {
     double cap = v_limit;
     if (m.request.isRapid) {

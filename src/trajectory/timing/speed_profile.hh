@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Highest speeds: of pieces under the present overrides, and at their starts so that all that follows can be
-// kept.
+// Maximum speeds: of pieces under the current overrides, and at their starts so that all later pieces keep
+// their limits.
 #pragma once
 
 #include <array>
@@ -10,15 +10,15 @@
 
 namespace mw::trajectory {
 
-/// What steps of timing and trial read; nobody keeps it.
+/// Inputs of the steps of timing and trial; not stored.
 struct PathView {
     const PlannedPath &path;
     const Conditions &conditions;
 };
 
-/// Highest speed on a piece under the present overrides [1/s].
+/// Maximum speed on a piece under the current overrides [1/s].
 double speed_cap(const PathView &view, Sequence piece) noexcept;
-/// A place before which the path stops and does not go on for now: a gate, or the end of a single block.
+/// A point before which the path stops for now: a gate, or the end of a single block.
 bool isBarrier(const PathView &view, Sequence piece) noexcept;
 /// Part of a pass that the executor drives by itself.
 bool isLockedPiece(const PathView &view, Sequence piece) noexcept;
@@ -26,7 +26,7 @@ bool isLockedPiece(const PathView &view, Sequence piece) noexcept;
 inline bool isPlanEnd(const PathView &view, Sequence piece) noexcept {
     return isBarrier(view, piece) || isLockedPiece(view, piece);
 }
-/// Stands before a place that a plan must not lead beyond.
+/// Stopped before a point that a plan must not pass.
 inline bool isBeforePlanEnd(const PathView &view, const LeaderState &state) noexcept {
     return state.x <= 0 && state.v <= 0 && isPlanEnd(view, state.piece);
 }
@@ -35,7 +35,7 @@ inline bool isBeforePlanEnd(const PathView &view, const LeaderState &state) noex
 class SpeedProfile {
   public:
     void begin() noexcept { changed_from_ = 0; }
-    /// From piece `from` back to the executor's place; unless `isWhole` only as far as something changes.
+    /// From piece `from` back to the executor's piece; unless `isWhole`, only until nothing changes.
     void pass_backward(const PathView &view, Sequence from, bool isWhole) noexcept;
     /// The pieces [low, high] have other limits now.
     void renew(const PathView &view, Sequence low, Sequence high) noexcept;
@@ -45,7 +45,7 @@ class SpeedProfile {
 
     /// Lowest piece whose speed at its start has changed since `keep`, 0: none.
     Sequence changed_from() const noexcept { return changed_from_; }
-    /// Highest speed at the end of a piece, squared.
+    /// Maximum speed at the end of a piece, squared.
     double out2(const PlannedPath &path, Sequence piece) const noexcept {
         return piece == path.last_piece() ? 0.0 : v2_in_[(piece + 1) % PIECE_CAPACITY];
     }

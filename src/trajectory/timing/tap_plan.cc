@@ -17,16 +17,16 @@ double ramp_at(const std::array<double, 2> &ramp, double rps) noexcept {
     return rps < 0 ? ramp[1] : ramp[0];
 }
 
-/// How far the mean of a tool is off the helix [turns] while a spindle of this ramp turns back, where
-/// following it takes the part `use` of the tool's acceleration: the change is seen late, and made good with
-/// what is left.
+/// Deviation of the averaged tool position from the helix [revolutions] while a spindle of this ramp
+/// reverses. Following it takes the part `use` of the tool's acceleration: the change is seen late, and
+/// corrected with the rest.
 double off_helix(double ramp, double use, double mean_s) noexcept {
     const double late_s = TapTuning::LATE_MEANS * mean_s;
     return ramp * (TapTuning::LATE_S2 + 0.5 * late_s * late_s * use / (1.0 - use));
 }
 
-/// The spindle comes to its speed on the way back, and keeps it until the tool follows it well again, before
-/// it is told to turn forward.
+/// The spindle reaches its speed in the retract, and keeps it until the tool follows it well again, before it
+/// is commanded forward.
 bool isBackLong(const TapTerms &tap, const std::array<double, 2> &ramp, double rps, double mean_s) noexcept {
     const double back = tap.back_scale * std::abs(rps);
     const double slowest = std::min(ramp[0], ramp[1]);
@@ -35,7 +35,7 @@ bool isBackLong(const TapTerms &tap, const std::array<double, 2> &ramp, double r
     return turns * tap.per_turn <= tap.depth + TapTuning::CLEARANCE * tap.per_turn;
 }
 
-/// The line of a tap, and how far the tool may go on it.
+/// The line of a tap, and the travel of the tool on it.
 TapTerms line_of(const PathView &view, Sequence move, double rps) noexcept {
     const MoveRequest &r = view.path.move(move).request;
     TapTerms tap;
@@ -146,7 +146,7 @@ TapVerdict check_tap(const PathView &view, Sequence move) noexcept {
     if (limits.isFiltered()) {
         const double use = TapTuning::MEETING_SHARE * abruptness;
         const bool isOneByOne = isBackLong(line_of(view, move, rps), ramp, rps, limits.filter_s());
-        // A spindle that is told to slow down while it gains speed changes its acceleration by both.
+        // A spindle that slows down while it accelerates changes its acceleration by both.
         const double change = (isOneByOne ? 1.0 : 2.0) * std::max(ramp[0], ramp[1]);
         const double off = off_helix(change, use, limits.filter_s());
         if (off > TapTuning::MOST_OFF) {

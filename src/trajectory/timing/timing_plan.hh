@@ -19,7 +19,7 @@ struct PlannerSettings {
 
 /// How a plan that is tried ends.
 enum class Ending : std::uint8_t {
-    ONWARD,  ///< it goes on as far as it will, and then stops
+    ONWARD,  ///< it continues as far as it can, and then stops
     STOP,    ///< it stops
 };
 
@@ -27,7 +27,7 @@ enum class Ending : std::uint8_t {
 struct Demand {
     enum class Kind : std::uint8_t {
         NOTHING,
-        EXTEND,  ///< the present plan goes on
+        EXTEND,  ///< the current plan continues
         PLAN,    ///< another one from `from` on
         STOP,    ///< one that stops
         PASS,    ///< the executor drives by itself from `from` on
@@ -41,7 +41,7 @@ class TimingPlan {
     explicit TimingPlan(const PlannerSettings &settings) noexcept : settings_(settings) {}
 
     void begin(const Snapshot &now) noexcept;
-    /// The next plan that begins at rest does so with a stand.
+    /// The next plan that begins at standstill begins with a dwell.
     void delay_start(double delay_s) noexcept { start_delay_s_ = delay_s; }
     /// The executor is at `now`; there may be more pieces.
     void look(const PathView &view, const Snapshot &now) noexcept;
@@ -77,18 +77,18 @@ class TimingPlan {
     /// Makes a plan to be tried, with phases from `begin` on; false when there is none.
     bool draft(const PathView &view, PathStore &store, Sequence begin, const LeaderState &from, Ending ending,
                const StopShape &shape = {}) noexcept;
-    /// How long the plan that was made lasts until it stands.
+    /// Time of the plan until it stops.
     double stop_seconds() const noexcept { return stop_s_; }
-    /// Tells the executor of it; false when there is no room.
+    /// Passes it to the executor; false when the store is full.
     bool commit(const PathView &view, PathStore &store, const Snapshot &now, Sequence begin,
                 Ending ending) noexcept;
     /// Phases from `begin` on are free again.
     void discard(Sequence begin) noexcept { draft_.end = begin; }
 
-    /// Hands the executor the pass that begins where it stands.
+    /// Passes the executor the pass that begins at its position.
     void start_pass(PlannedPath &path, const Conditions &conditions, const Snapshot &now,
                     Sequence first) noexcept;
-    /// What who chooses speeds has asked for too much; the path does not go on.
+    /// The limit that the speed chooser exceeded. The path stops there.
     const Overreach &overreach() const noexcept { return draft_.overreach; }
     /// The plan runs to the end of the known path.
     bool isAtEndOf(const PlannedPath &path) const noexcept { return draft_.isAtEndOf(path); }

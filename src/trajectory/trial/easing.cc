@@ -139,7 +139,7 @@ void Easing::slow_down(PlannedPath &path, const Workspace &workspace, const Caus
     const bool isStand = means.most_dwell_s > 0;
     const bool isAlong = !isStand && verdict.along_share > EasingTuning::ALONG_SHARE && hasHelped(verdict) &&
                          canBeGentler(cause, along);
-    // Where slower curves alone make it no better, it is what leads to them.
+    // If slower curves alone do not help, the pieces before them are too fast.
     const bool isEverything = !means.isAnyCurved || isStand || isAlong || excess >= excess_;
     excess_ = excess;
     tick_ = verdict.tick;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Makes slower what a trial has refused, and knows what it has made slower.
+// Slows down pieces that a trial has rejected, and keeps the list of them.
 #pragma once
 
 #include <array>
@@ -16,14 +16,14 @@ struct Means {
     bool isAnyCurved = false;
 };
 
-/// Longer stands at stops, then slower curves, then anything. Speeds and accelerations are scaled in the
-/// path; the caller renews the profile of what has changed. Some hundred kilobytes, so never on a stack.
+/// Longer dwells at stops, then slower curves, then anything. Speeds and accelerations are scaled in the
+/// path; the caller renews the profile of the changed pieces. Some hundred kilobytes, so never on a stack.
 class Easing {
   public:
-    /// Planning begins anew.
+    /// Planning starts again.
     void begin() noexcept;
     Means means_against(const PathView &view, const Cause &cause) const noexcept;
-    /// Makes stands longer, if that costs less time than less acceleration would.
+    /// Makes dwells longer, if that costs less time than less acceleration would.
     bool lengthen_stands(PlannedPath &path, const PathLimits &limits, const Cause &cause, const Means &means,
                          double excess) const noexcept;
     /// The attempt before has made accelerations along the path less, and that was not what failed: takes it
@@ -43,7 +43,7 @@ class Easing {
         Sequence piece = 0;
         std::uint64_t planning = 0;  ///< the factors are of this one
         double speed = 1, acceleration = 1;
-        /// What easing along the path has left of the acceleration, refused attempts counted as well.
+        /// Part of the acceleration along the path that is left, with rejected attempts counted.
         double gentle = 1;
     };
     /// Accelerations along the path alone.

@@ -14,11 +14,11 @@ namespace mw::trajectory {
 struct TriedLimits {
     std::size_t count = 0;
     const double *velocity = nullptr, *acceleration = nullptr, *jerk = nullptr;
-    bool hasNorm = false;  ///< behind those of each stand those of the norm of the first three
+    bool hasNorm = false;  ///< after those of each dwell, those of the norm of the first three
     double period_s = 0;
     bool isJerkLimited = false;
     double size =
-        0;  ///< of what places were reckoned with, where that is more than they are: what is rounded
+        0;  ///< of the positions in the calculation, where that is larger than their own: for rounding
 };
 
 class LimitTrial {
@@ -31,8 +31,8 @@ class LimitTrial {
     bool isSound(const TriedLimits &limits, std::uint64_t tick) noexcept;
     /// The places of `tick` are none.
     void forget() noexcept { excess_ = 0; }
-    /// How much of its limits the last sample uses, as what accelerations ask for: speeds by their squares. 1
-    /// or less where it is sound or there are no places for it.
+    /// Use of the limits by the last sample, as accelerations: speeds by their squares. 1 or less where it is
+    /// within the limits or has no joint positions.
     double excess() const noexcept { return excess_; }
 
   private:

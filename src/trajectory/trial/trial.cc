@@ -112,7 +112,7 @@ void Trial::drive_on(const PathView &view, const Snapshot &now, const TrialPlan 
     }
 }
 
-/// The least tolerance of the samples in the mean.
+/// Minimum tolerance of the samples in the average.
 double Trial::least_tolerance(std::uint64_t filter) const noexcept {
     const std::uint64_t differing = tick_ >= tolerance_tick_ + filter ? 1 : filter;
     double tolerance = UNLIMITED;
@@ -123,7 +123,7 @@ double Trial::least_tolerance(std::uint64_t filter) const noexcept {
     return tolerance;
 }
 
-/// Distance of the commanded mean from the programmed path, each matched with the mean place: in order.
+/// Distance of the commanded average from the programmed path, each at the averaged position, in order.
 double Trial::deviation(const PathView &view) const noexcept {
     const PlannedPath &path = view.path;
     const std::uint64_t filter = view.conditions.limits.filter();
@@ -148,8 +148,8 @@ bool Trial::isNearPath(const PathView &view) noexcept {
     return excess_ <= 1.0;
 }
 
-/// Speed and acceleration of the leader itself: a plan from a state that bounds made lower since no longer
-/// allow for brakes too late.
+/// Speed and acceleration of the reference itself: a plan from a state that lower bounds no longer allow
+/// brakes too late.
 bool Trial::isLeaderSound(const PathLimits &limits) const noexcept {
     const Pose &at = sample(tick_).leader.pose;
     const Pose step = at - sample(tick_ - 1).leader.pose;
@@ -176,7 +176,7 @@ Pose Trial::along_bend(std::uint64_t tick) const noexcept {
     return length2 > 0 ? step * (geometry::dot(at.bend, step) / length2) : Pose{};
 }
 
-/// The acceleration of the leader swings by no more over the mean than the jerk limits let the mean build up.
+/// The acceleration step of the reference within the averaging time is at most what the jerk limits allow.
 bool Trial::isSwingSound(const PathLimits &limits) noexcept {
     const std::uint64_t n = tick_;
     const std::uint64_t before = n - limits.filter();
@@ -203,7 +203,7 @@ bool Trial::isSwingSound(const PathLimits &limits) noexcept {
     return true;
 }
 
-/// The exact arc that the leader is within, 0: none.
+/// The exact arc of the reference, 0: none.
 Sequence Trial::arc_at(const PathView &view, const LeaderSample &leader) noexcept {
     const PlannedPath &path = view.path;
     const Sequence m = leader.move;
@@ -217,8 +217,8 @@ Sequence Trial::arc_at(const PathView &view, const LeaderSample &leader) noexcep
     return isOn ? m : 0;
 }
 
-/// The newest samples of the executor's history from the arc on that the leader moves on, or did so lately
-/// that the mean still covers it. Before it the leader has stood.
+/// The newest samples of the executor's history from the arc on which the reference moves, or moved within
+/// the averaging time. Before the arc the reference was stopped.
 void Trial::take_arc(const PathView &view, const Snapshot &now) noexcept {
     const LeaderHistory &history = view.path.store().history;
     const std::uint64_t filter = view.conditions.limits.filter();
@@ -246,7 +246,8 @@ void Trial::take_arc(const PathView &view, const Snapshot &now) noexcept {
     }
 }
 
-/// On an exact arc, and while the mean still covers a part of it, the mean place on it is commanded.
+/// On an exact arc, and while a part of it is within the averaging time, the averaged position on it is
+/// commanded.
 Pose Trial::commanded(const PathView &view) noexcept {
     const std::uint64_t filter = view.conditions.limits.filter();
     const bool isMoving = sample(tick_).leader.s != sample(tick_ - 1).leader.s;
@@ -257,7 +258,7 @@ Pose Trial::commanded(const PathView &view) noexcept {
     if (arc_ == 0 || tick_ >= arc_tick_ + filter) {
         return mean(filter);
     }
-    // The leader stands for the mean before and after, so all places of the mean are on the arc.
+    // The reference stops for the averaging time before and after, so all averaged positions are on the arc.
     const double s = s_origin_ + s_sum_ / static_cast<double>(filter) - view.path.move(arc_).start_s;
     return position_at(view.path.primitive(arc_), std::clamp(s, 0.0, view.path.primitive(arc_).length));
 }
@@ -280,7 +281,8 @@ bool Trial::areJointsSound(const PathView &view) noexcept {
                            tick_);
 }
 
-/// Where the leader or the mean is on an exact arc: the swing of the leader says nothing there.
+/// Checks the axes where reference or average is on an exact arc: the acceleration step of the reference has
+/// no meaning there.
 bool Trial::areAxesSound(const PathView &view) noexcept {
     if (!view.conditions.limits.isFiltered()) {
         return true;
@@ -304,8 +306,8 @@ bool Trial::areAxesSound(const PathView &view) noexcept {
                          tick_);
 }
 
-/// The leader is on an arc of which the mean place is commanded, or the mean still covers one: the limits
-/// there are kept by ExactArc and tried by areAxesSound.
+/// The reference is on an arc whose averaged position is commanded, or the averaging time contains one:
+/// ExactArc keeps the limits there and areAxesSound checks them.
 bool Trial::isOnExactArc(const PathView &view) noexcept {
     const Sequence piece = sample(tick_).piece;
     const Piece &on = view.path.piece(piece);
@@ -360,7 +362,7 @@ bool Trial::isPlanSound(const PathView &view, const TrialPlan &plan) noexcept {
             return false;
         }
     }
-    // The mean catches up while the leader stands.
+    // The average catches up while the reference is stopped.
     const Phase &last = store.phase(plan.end - 1);
     for (std::uint64_t i = 0; n == plan.end && i <= view.conditions.limits.filter(); ++i) {
         push_phase(view, last, last.duration);

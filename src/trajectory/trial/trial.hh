@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A plan is tried out before it is committed, sample by sample up to its stop, as the executor will drive it:
-// swing of the acceleration within the mean, deviation from the programmed path, the leader's own speed and
-// acceleration, joints.
+// A plan is checked before it is committed, sample by sample up to its stop, as the executor will drive it:
+// acceleration step within the averaging time, deviation from the programmed path, speed and acceleration of
+// the reference, joints.
 #pragma once
 
 #include <array>
@@ -29,7 +29,7 @@ class Trial {
   private:
     struct Sample {
         LeaderSample leader;
-        Pose bend;  ///< second difference of the leader's positions
+        Pose bend;  ///< second difference of the reference positions
         Sequence piece = 0;
     };
     const Sample &sample(std::uint64_t tick) const noexcept { return samples_[tick % HISTORY_CAPACITY]; }
@@ -59,11 +59,11 @@ class Trial {
 
     std::array<Sample, HISTORY_CAPACITY> samples_{};
     std::uint64_t tick_ = 0;  ///< of the newest sample
-    Pose sum_, origin_;       ///< of the samples in the mean, from the origin
+    Pose sum_, origin_;       ///< of the samples in the average, from the origin
     double s_sum_ = 0, s_origin_ = 0;
     std::uint64_t tolerance_tick_ = 0;  ///< the newest sample whose tolerance differs from the one before
     std::uint64_t along_tick_ = 0;      ///< the last on an arc that is followed exactly
-    Sequence arc_ = 0;                  ///< the move of which the mean place is commanded
+    Sequence arc_ = 0;                  ///< the move whose averaged position is commanded
     std::uint64_t arc_tick_ = 0;        ///< the last on it
     double excess_ = 1, along_share_ = 0;
     LimitTrial joints_;  ///< where they are not axes

@@ -13,7 +13,7 @@ struct Verdict {
     double along_share = 0;  ///< part of the failed swing that is acceleration along the path
 };
 
-/// The pieces that a failed sample depends on, as far as they are not driven yet; 0: none.
+/// The pieces that a failed sample depends on and that are not driven yet; 0: none.
 struct Cause {
     Sequence low = 0, high = 0;
     bool isAfterDriven = false;  ///< it depends on what has been driven already, too
