@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Every figure of the planner and executor that was chosen, by the part that uses it, with its reason. Where
-// the reason is a measurement, docs/developer/planner.md ("Figures") tells what another value costs.
+// the reason is a measurement, docs/developer/planner.md ("Figures") has the cost of other values.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@ namespace mw::trajectory {
 
 /// What lines join, where a path stops, how it is cut into pieces.
 struct PathTuning {
-    /// Tangents that differ by less are the same but for rounding: the step of speed is below any limit.
+    /// Tangents that differ by less are equal except for rounding: the step of speed is below any limit.
     static constexpr double SAME_DIRECTION = 1e-11;
     /// Exact path: corners that come from rounding of a program's figures are passed: 0.02 is what figures
     /// rounded to 0.001 do to the tangents of lines of 0.1,
@@ -40,73 +40,73 @@ struct PathTuning {
     /// rotation. At least four cuts, as joints may turn back on the way [deg].
     static constexpr double JOINT_CUT_DEG = 1.0;
     static constexpr double LEAST_JOINT_CUTS = 4;
-    /// A line has a part of its own next to a blend if that is no longer than this part of it: less than
-    /// half, so that both ends may have one and something is left between.
+    /// A line has a separate part next to a blend if this is at most this share of the line: less than half,
+    /// so that both ends may have one and a part is left between them.
     static constexpr double ZONE_SHARE = 0.45;
     /// Part of the tolerance that joining lines may take when no other tolerance is given for it (corners
     /// need the rest), and at most (what joining takes, corners lose: half each).
     static constexpr double JOIN_SHARE = 0.1, MOST_JOIN_SHARE = 0.5;
-    /// Lines that one may stand for: each new one asks all ends again, so this bounds the work of a block.
+    /// Lines that one line may replace: each new one checks all ends again, so this bounds the work of a
+    /// block.
     static constexpr std::size_t MOST_JOINED = 64;
-    /// What the mean may take where the program gives no tolerance: of a line's length, of an arc's radius,
-    /// and at least the way in this time at the highest speed.
+    /// Deviation of the moving average without a programmed tolerance: part of a line's length, of an arc's
+    /// radius, and at least the distance in this time at maximum speed.
     static constexpr double FREE_OF_LENGTH = 0.1, FREE_OF_RADIUS = 1e-3, NOMINAL_S = 1e-4;
-    /// How much longer than what suits a move the mean may be before a path of its own is worth its stop:
+    /// Ratio of the averaging time to the best one for a move from which a separate path is worth its stop:
     /// speed on curves goes with 1/tau, so a fifth is lost at most.
     static constexpr double MOST_UNSUITED = 1.25;
-    /// A blend is among others where a line beside it is shorter than this many times the way in the time of
-    /// the mean: the zones on either side take one each.
+    /// A blend is among others where a line beside it is shorter than this many times the distance in the
+    /// averaging time: the zones on either side take one each.
     static constexpr double SHARED_REACH = 3.0;
 };
 
 /// Speeds and accelerations of a stretch (limits.cc).
 struct LimitTuning {
-    /// Share of an axis's acceleration that turning takes on a blend that is made for a given speed: at 0.7
-    /// as much (sqrt(1 - 0.7^2) = 0.71 of a norm) is left for braking on it.
+    /// Centripetal share of an axis's acceleration on a blend that is made for a given speed: at 0.7 as much
+    /// (sqrt(1 - 0.7^2) = 0.71 of a norm) is left for braking on it.
     static constexpr double BLEND_SHARE = 0.7;
-    /// The mean is at most this part longer than what is best on curves: see docs/developer/planner.md.
-    /// Measured: 0.96 is 0.8 % slower, 1.5 as fast.
+    /// The averaging time is at most this factor longer than the best one on curves: see
+    /// docs/developer/planner.md. Measured: 0.96 is 0.8 % slower, 1.5 as fast.
     static constexpr double CURVE_SHARE = 1.2;
-    /// Part of what rotary axes need for themselves that the mean has at least where they turn beside linear
-    /// ones: where no tolerance makes it shorter, a stop of theirs takes twice as long as their
-    /// limits need at most.
+    /// Minimum averaging time where rotary axes move with linear ones, as a part of what the rotary axes need
+    /// alone: unless a tolerance makes it shorter, their stops take at most twice the time that their limits
+    /// need.
     static constexpr double TURNING_SHARE = 0.5;
-    /// Room that keeps fitted stops (Executor) and rounding inside the limits.
+    /// Margin that keeps fitted stops (Executor) and rounding inside the limits.
     static constexpr double ACCELERATION_MARGIN = 1e-6;
-    /// Parts of the highest squared speed between which the acceleration that is left is a chord: denser
-    /// where a concave bound falls fastest.
+    /// Parts of the maximum squared speed between which the remaining acceleration is a chord: denser where a
+    /// concave bound falls fastest.
     static constexpr double CHORDS[] = {0, 0.5, 0.85, 1};
 };
 
 /// Stops on curves (braking_on).
 struct BrakingTuning {
-    /// Where turning at the highest speed leaves this part of the acceleration, a stop by the sum is fast
-    /// enough: the slower the more is left.
+    /// Where maximum speed on a curve leaves this part of the acceleration, a stop by the sum is fast enough:
+    /// the slower, the more is left.
     static constexpr double ENOUGH = 0.5;
     /// An arc that turns by more than this has parts where other axes, or joints, move [rad].
     static constexpr double SWEEP = 0.2;
-    /// A piece that takes no longer at its highest speed delays no stop [s]. Dense programs are planned twice
-    /// as fast for it.
+    /// A piece that takes no longer at its maximum speed delays no stop [s]. This makes planning of dense
+    /// programs twice as fast.
     static constexpr double SHORT_S = 0.002;
-    /// As the speed falls turning leaves more: it is looked at anew where the squared speed has come down to
-    /// a part, if that gives this many times as much, and not sooner than after SHORT_S. Who turns with
-    /// nearly all that there is gains the more the sooner he looks.
+    /// As the speed falls, a curve leaves more acceleration: it is evaluated again where the squared speed
+    /// has fallen to a part, if that gives this many times as much, and at least SHORT_S later. The nearer
+    /// the centripetal acceleration is to the limit, the more an early evaluation gains.
     struct Look {
         double slower, gain;
     };
     static constexpr Look LOOKS[] = {{0.97, 1.5}, {0.9, 1.3}, {0.7, 1.05}};
-    /// Turning at u of the highest squared speed leaves the root of 1 - u^2 on a circle, of which a chord
-    /// from CHORDS is a small part near 1: who turns with all that there is would not get away from there.
-    /// Without a mean, which a brake takes tau to get through, the bound has these parts and is looked at as
-    /// often.
+    /// On a circle, u of the maximum squared speed leaves the root of 1 - u^2, of which a chord from CHORDS
+    /// is a small part near 1: a path at the limit could not brake from there. Without a moving average,
+    /// through which a deceleration takes tau, the bound has these parts and is evaluated as often.
     static constexpr double DENSE_CHORDS[] = {0, 0.5, 0.85, 0.97, 0.995, 0.9995, 1};
     static constexpr Look DENSE_LOOKS[] = {{0.9995, 1.5}, {0.998, 1.3}, {0.99, 1.3},
                                            {0.97, 1.5},   {0.9, 1.3},   {0.7, 1.05}};
-    /// Part of the highest speed with which such curves are driven, so that there is something to begin with.
+    /// Part of the maximum speed at which such curves are driven, so that braking can begin.
     static constexpr double DENSE_DRIVEN = 1 - 5e-5;
-    /// What derivatives may be more than their differences tell.
+    /// Ratio of derivatives to their differences.
     static constexpr double MARGIN = 1.002;
-    /// A bound of its own has to be better by so much somewhere.
+    /// A separate bound has to be better by this factor somewhere.
     static constexpr double LEAST_GAIN = 1.05;
     /// Parts next to each other whose bounds differ by less have the lesser in common: fewer legs of a stop.
     static constexpr double LIKE = 1.2;
@@ -129,15 +129,15 @@ struct JointTuning {
 
 /// Joints along the line of a tap (line_joints).
 struct LineJointTuning {
-    /// Places along the line, and the way over which derivatives are taken there: third differences of 1000
-    /// mm are then exact to 1e-7, and no machine's curves are as narrow.
+    /// Samples along the line, and the distance for derivatives there: third differences of 1000 mm are then
+    /// exact to 1e-7, and no machine's curves are as narrow.
     static constexpr int PLACES = 33;
     static constexpr double STEP = 0.02;
     /// What rounding, or an inverse that iterates, makes of a joint's place, relative to it.
     static constexpr double ROUNDING = 1e-12;
-    /// What derivatives may be more than their differences tell.
+    /// Ratio of derivatives to their differences.
     static constexpr double MARGIN = 1.01;
-    /// Part of acceleration and jerk that the curves of joints may take at the highest speed: the rest is for
+    /// Part of acceleration and jerk that the curves of joints may take at maximum speed: the rest is for
     /// following the spindle.
     static constexpr double TURNING = 0.5;
 };
@@ -147,22 +147,22 @@ struct CornerTuning {
     /// Part of the tolerance that blends may take where corners follow each other closely, and what a slight
     /// turn is spread by. Measured: both are flat.
     static constexpr double GEOMETRY_SHARE = 0.35, SPREAD_SHARE = 0.05;
-    /// Part of tau that the faster side of a slight turn may lose on its blend, which is passed at the speed
-    /// of the slower.
+    /// Part of tau that the faster side of a slight corner may lose on its blend, which is passed at the
+    /// speed of the slower side.
     static constexpr double SPREAD_WORTH = 0.1;
-    /// Part that the mean may take on an arc. Measured: less costs time; 0.96 gains up to 0.4 % with gentle
-    /// jerk limits, nothing with stiff ones.
+    /// Part of the tolerance for the moving average on an arc. Measured: less costs time; 0.96 gains up to
+    /// 0.4 % with low jerk limits, nothing with high ones.
     static constexpr double ARC_SHARE = 0.92;
     /// Part of the tolerance that is planned with; the rest is for what the formulas leave out. Measured:
     /// less costs time.
     static constexpr double TOLERANCE_SHARE = 0.95;
-    /// Up to this swing over what the mean can spread, less acceleration costs less time than standing does:
-    /// about 2 tau (1 - 1/r) against tau - dwell. Measured.
+    /// Up to this ratio of an acceleration step to what the average can spread, less acceleration costs less
+    /// time than a dwell: about 2 tau (1 - 1/r) against tau - dwell. Measured.
     static constexpr double MOST_SWING = 1.7, GENTLE_ROOM = 0.999;
     /// From the width of a blend that takes BLEND_SHARE of the acceleration to one that takes 0.95.
     static constexpr double TURNING_FIT = LimitTuning::BLEND_SHARE / 0.95;
-    /// Corners are dense where they are nearer than this part of the way in the time of the mean. Measured:
-    /// flat.
+    /// Corners are dense where they are nearer than this part of the distance in the averaging time.
+    /// Measured: flat.
     static constexpr double DENSE = 0.7;
     /// Part of the acceleration that is for turning where curves follow each other closely, and the least.
     /// Measured: 0.985 is as fast within 0.1 %, with less left for the path.
@@ -170,11 +170,11 @@ struct CornerTuning {
     /// What the turning of neighbours may be more than a place's own, and how much is left for that.
     /// Measured: 0.88 is 2.8 % slower, 1.375 0.4 %.
     static constexpr double SHARED_TURNS = 1.1, SHARED_REST = 0.985;
-    /// A corner is passed where building up its speed and the stand saved take more than this part of tau.
+    /// A corner is passed where building up its speed and the saved dwell take more than this part of tau.
     /// Measured: flat.
     static constexpr double PASS_WORTH = 0.8;
-    /// A corner that is passed at what is gained in this part of tau is stopped at: the leader would keep
-    /// such a speed for tau before and behind it. Measured: 0.02 to 0.1 the same.
+    /// The path stops at a corner whose speed is reached in this part of tau: the reference would keep such a
+    /// speed for tau before and after it. Measured: 0.02 to 0.1 the same.
     static constexpr double CRAWL = 0.05;
     /// Of a whole arc that is followed exactly. Turning is across the path, the rest along it:
     /// 0.6^2 + 0.75^2 < 1 of the acceleration; of the jerk (0.6 + 0.2)^2 + 0.5^2 < 1, 0.6 from the
@@ -190,12 +190,12 @@ struct CornerTuning {
 struct ShapeTuning {
     /// A corner of a curve turns by less [rad]. Measured: flat.
     static constexpr double MOST_TURN = 0.4;
-    /// Part of the tolerance that the mean may take without help, and the most that corners are moved by:
-    /// standing the path is outside by that, at speed inside by up to 0.95, so v may be sqrt(0.95 + 0.75)
-    /// = 1.3 times as high. Measured: flat.
+    /// Part of the tolerance for the average without moved corners, and the maximum displacement of corners:
+    /// at standstill the path is outside by that, at speed inside by up to 0.95, so v may be sqrt(0.95 +
+    /// 0.75) = 1.3 times as high. Measured: flat.
     static constexpr double FREE_SHARE = 0.95, MOST_SHARE = 0.75;
-    /// Shifts follow the curvature over this part of the way in the time of the mean: a short part follows, a
-    /// long one adds less curvature. Measured: flat.
+    /// Shifts follow the curvature over this part of the distance in the averaging time: a short part
+    /// follows, a long one adds less curvature. Measured: flat.
     static constexpr double FOLLOWING = 0.3;
     /// Shifts below this are none [machine units].
     static constexpr double SMALLEST_SHIFT = 1e-9;
@@ -210,14 +210,14 @@ struct TimingTuning {
     /// some speed is gained at first.
     static constexpr std::array STOP_SHARES{1.0, 0.8, 0.6, 0.4};
     static constexpr std::array FIRST_SHARES{1.0, 0.7, 0.4, 0.2, 0.0, -0.2};
-    /// On exact arcs, which share their acceleration in fixed parts: the trial judges the mean place there,
-    /// and what an axis does not take as it turns another has for braking.
+    /// On exact arcs, which share their acceleration in fixed parts: the trial judges the averaged position
+    /// there, and another axis can brake with what one does not use on the curve.
     static constexpr std::array HARDER_SHARES{5.0, 2.5, 1.5};
     /// Speeds that differ by this part are the same.
     static constexpr double SAME_SPEED = 1e-9;
     /// A speed below this part of what one sample's acceleration gives is rounding.
     static constexpr double STANDING = 1e-13;
-    /// Who stands no farther from the end of a piece is there [machine units].
+    /// A stopped path at most this far from the end of a piece is at the end [machine units].
     static constexpr double AT_END = 2e-12;
     /// A rise is made when it gains this part of the speed, or this part where it does not reach the cap.
     static constexpr double RISE_WORTH = 1e-6, PART_RISE_WORTH = 1e-3;
@@ -231,11 +231,11 @@ struct TimingTuning {
     static constexpr std::uint64_t PHASES_PER_STOP = 8;
     /// A plan is renewed when less than this part of the horizon is left.
     static constexpr double RENEWAL = 0.6;
-    /// Attempts at a plan before the one before it stays in force.
+    /// Attempts at a plan before the previous one stays active.
     static constexpr int ATTEMPTS = 24;
-    /// The same at rest, when all before were refused: nothing is in force then that could go on.
+    /// The same at standstill, when all plans were rejected: there is no active plan then.
     static constexpr int ATTEMPTS_AT_REST = 96;
-    /// Planner periods at rest without a plan, a second of them, before it is told.
+    /// Planner periods at standstill without a plan, a second of them, before a fault is reported.
     static constexpr int MOST_REFUSALS = 200;
     /// Spindles never keep their speed: what changes by more than the first part is followed at once, by more
     /// than the second once in so many updates, so that a lead does not drift.
@@ -249,25 +249,25 @@ struct TrialTuning {
     static constexpr std::uint64_t MOST_SAMPLES = 4000;
     /// Phases in one sample; the executor passes twice as many at most.
     static constexpr std::uint64_t MOST_PHASES = 2000;
-    /// Relative room of a swing, for sums of rounding over the mean.
+    /// Relative margin of an acceleration step, for rounding sums over the averaging time.
     static constexpr double ROUNDING = 1e-7;
     /// Relative slack of what the trial compares, half of what checkers of the trajectory allow.
     static constexpr double SLACK = 1.0 + 5e-7;
-    /// Excess that stands for a limit that has no measure: the leader's own, or a joint's.
+    /// Excess of a limit that has no measure: that of the reference itself, or of a joint.
     static constexpr double UNMEASURED = 2;
 };
 
-/// Making slower what a trial has refused.
+/// Slowing down pieces that a trial has rejected.
 struct EasingTuning {
     /// Least and most part of speed and of acceleration that one attempt leaves.
     static constexpr double SLOWEST = 0.9, GENTLEST = 0.8, LEAST_SLOWER = 0.99, LEAST_GENTLER = 0.98;
     /// An excess that less acceleration about a stop may cure.
     static constexpr double MOST_GENTLE = 1.3;
-    /// Part of the mean's time by which a stand becomes longer in one attempt, and how much of a stand the
-    /// time that gentler pieces cost may be.
+    /// Part of the averaging time by which a dwell becomes longer in one attempt, and the part of a dwell
+    /// that reduced acceleration may cost.
     static constexpr double STAND_STEP = 0.2, STAND_WORTH = 0.5;
-    /// Less acceleration along the path cures an excess where that is what swings: from this part on, by how
-    /// much more than that, and how much less it becomes at most in all.
+    /// Less acceleration along the path cures an excess of the acceleration step along it: from this part on,
+    /// by how much more than that, and the minimum that is left in all.
     static constexpr double ALONG_SHARE = 0.5, ALONG_MARGIN = 1.1, ALONG_ROOM = 1e-4, LEAST_ALONG = 0.8;
     /// What is left of an excess when easing has helped.
     static constexpr double HELPED = 0.7;
@@ -279,19 +279,19 @@ struct EasingTuning {
 struct PassTuning {
     /// The spindle may turn this much faster than now without a corner being too tight for its speed.
     static constexpr double SPEED_RESERVE = 1.1;
-    /// And so much more, with a mean, between the planning of a corner and its passing; part of the second
-    /// line that the corner may move into.
+    /// And so much more, with jerk limits, between the planning of a corner and its passing; part of the
+    /// second line that the corner may move into.
     static constexpr double LAG_RESERVE = 1.03, ROOM_SHARE = 0.95;
     /// Kept off the limits by what sums of rounding make.
     static constexpr double FULL = 0.9999;
     /// A load that is over what is possible by rounding alone.
     static constexpr double LOAD_ROUNDING = 1e-9;
-    /// With jerk limits the acceleration may swing by what the mean can bring together: gaining speed takes
-    /// one part, following the spindle the rest (0.88 + 0.11 < 1), and braking begins a mean later. A short
-    /// pass shares evenly (2 * 0.49 < 1).
+    /// With jerk limits the moving average limits the acceleration step: acceleration takes one part,
+    /// following the spindle the rest (0.88 + 0.11 < 1), and deceleration begins one averaging time later. A
+    /// short pass shares evenly (2 * 0.49 < 1).
     static constexpr double LONG_SHARE = 0.88, LONG_TRIM = 0.11, SHORT_SHARE = 0.49;
-    /// With corners turning takes TURNING, and gaining speed at the same time CORNER_SHARE of what that
-    /// leaves: 0.3 + 0.7 * 0.4 + 0.4 < 1.
+    /// With corners the centripetal part is TURNING, and acceleration along the path takes CORNER_SHARE of
+    /// the rest: 0.3 + 0.7 * 0.4 + 0.4 < 1.
     static constexpr double CORNER_SHARE = 0.4, TURNING = 0.3;
     /// A pass is long from so many means at the spindle's speed on.
     static constexpr double LONG_MEANS = 3.0;
@@ -299,37 +299,39 @@ struct PassTuning {
 
 /// Rigid tapping.
 struct TapTuning {
-    /// Speed of the spindle is what it has turned in so many cycles: one count of 4,096 is then 0.03 turns/s
-    /// at 1 ms. Its acceleration is smoothed over this time, and at least this part of a mean.
+    /// The speed of the spindle is measured over this many cycles: one count of 4,096 is then 0.03 rev/s at 1
+    /// ms. Its acceleration is smoothed over this time, and at least this part of an averaging time.
     static constexpr std::size_t SPEED_SAMPLES = 8;
     static constexpr double ACCELERATION_S = 0.01, ACCELERATION_MEANS = 0.4;
-    /// The helix counts as met within this part of a turn: a few counts. From then on a deviation is made
-    /// good at GAIN [1/s]; at LOST, a quarter of a turn, the thread or the tap is gone.
+    /// The helix counts as met within this part of a revolution: a few counts. From then on a deviation is
+    /// corrected at GAIN [1/s]; at LOST, a quarter of a revolution, the thread or the tap is lost.
     static constexpr double MET = 1e-3, GAIN = 60, LOST = 0.25;
-    /// Part of the acceleration with which the helix is met and the way home is made, and at most what the
-    /// spindle's own change of speed may ask for.
+    /// Part of the acceleration for meeting the helix and for the retract, and the maximum that the spindle's
+    /// own change of speed may require.
     static constexpr double MEETING_SHARE = 0.97;
-    /// With a mean: a tap that would be farther off the helix, as its spindle turns back, is refused [turns].
-    /// The change is seen by this part of the mean late, and by what reading the speed takes, of which half
-    /// the square counts [s^2]. Measured, for means from 0.02 to 0.2 s: docs/integrator/spindles.md.
-    /// After a change the tool is on the helix again within so many means.
+    /// With jerk limits: a tap that would leave the helix by more while its spindle reverses is rejected
+    /// [rev]. The change is seen late by this part of the averaging time, and by the time of the speed
+    /// measurement, of which half the square counts [s^2]. Measured for averaging times from 0.02 to 0.2 s:
+    /// docs/integrator/spindles.md. After a change the tool is on the helix again within so many averaging
+    /// times.
     static constexpr double MOST_OFF = 0.1, LATE_MEANS = 0.6, LATE_S2 = 2e-4, SETTLING_MEANS = 2;
-    /// The tool leaves the thread by this much before the spindle turns forward again [turns].
+    /// The tool leaves the thread by this much before the spindle runs forward again [rev].
     static constexpr double CLEARANCE = 0.5;
-    /// Room that the tool has beyond its bottom on top of what the spindle is known to take, and that must be
-    /// there before the start and behind the bottom [turns].
+    /// Clearance of the tool below the bottom in addition to the known overrun of the spindle, and minimum
+    /// clearance before the start and below the bottom [rev].
     static constexpr double MORE_ROOM = 2, LEAST_ROOM = 1;
-    /// Where joints are not axes: the spindle may turn so much faster than now. The tool may go faster still,
-    /// up to all that joints allow, as long as their curves leave this part of the acceleration; speeds that
-    /// are tried. A line without a speed has this one.
+    /// Where joints are not axes: the spindle may run faster than now by this factor. The tool may be faster
+    /// still, up to the limits of the joints, as long as their curves leave this part of the acceleration;
+    /// number of speeds that are tried. A line without a speed has this one.
     static constexpr double OVERSPEED = 1.1, SPEED_WORTH = 0.9;
     static constexpr int SPEED_STEPS = 8;
     static constexpr double NO_SPEED = 1e-9;
-    /// And the room that is looked for beyond both ends of the line at most [turns]; what derivatives are
-    /// taken over stays within it [machine units].
+    /// Maximum clearance that is searched past both ends of the line [rev]; the samples for derivatives stay
+    /// within it [machine units].
     static constexpr double MOST_ROOM = 25, ROOM_MARGIN = 3 * LineJointTuning::STEP;
-    /// After a stop the tool goes on with a spindle that comes to a stand as it is known to, this many times
-    /// as far and a turn more; so far where nothing is known. Slower than that it stands [turns/s].
+    /// After a stop the tool follows the spindle while it runs down, for this many times its known run-out
+    /// and one revolution; for the second value if nothing is known. Below the third speed the spindle is
+    /// stopped [rev/s].
     static constexpr double RUN_OUT = 1.5, UNKNOWN_RUN_OUT = 5, STANDING = 0.02;
 };
 
@@ -342,13 +344,13 @@ struct ExecutorTuning {
     /// Part of the jerk limits that a stop without a planner takes; how finely its brake is chosen.
     static constexpr double FULL_JERK = 0.998;
     static constexpr int BRAKE_STEPS = 30;
-    /// The helix counts as met within this part of a turn, and as lost beyond the second: what a count of the
-    /// encoder makes of the angle half a mean later is within it.
+    /// The helix counts as met within this part of a revolution, and as lost outside the second: the error of
+    /// one encoder count half an averaging time later is within it.
     static constexpr double MET = 2e-5, LOST = 6e-3;
     /// It also counts as met where it was this near for so many cycles: a rough encoder does no better.
     static constexpr double NEAR = 2e-3;
     static constexpr int NEAR_CYCLES = 8;
-    /// Or was on either side of it in turn: one with few counts tells the speed so roughly that it is never
+    /// Or was on both sides of it in turn: with few counts the measured speed is so rough that it is never
     /// near.
     static constexpr int CROSSINGS = 3;
     /// Once it is met: share of a deviation that is made good in a second [1/s]. A rough encoder must not
@@ -361,11 +363,11 @@ struct ExecutorTuning {
     /// of its periods.
     static constexpr double PLANNER_SILENCE_S = 0.02;
     static constexpr int PLANNER_SILENCE_CYCLES = 4;
-    /// A plan to stop that has not come so long after a drop is not waited for: as long as what is committed
-    /// goes on before it stops, and half of that.
+    /// Maximum wait for a plan to stop after a drop: the time of the committed part until it stops, and half
+    /// of that.
     static constexpr double STOP_PLAN_WAIT_S = 0.15;
-    /// The plan in force, which was tried, is driven to its end where that takes no longer than braking from
-    /// here, which was not, and so much more.
+    /// The active plan, which was checked, is driven to its end where that takes at most this much longer
+    /// than braking from here, which was not checked.
     static constexpr double LATER_S = 0.04;
 };
 
