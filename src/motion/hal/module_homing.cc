@@ -127,7 +127,7 @@ std::uint32_t ModuleHoming::take_clamped() noexcept {
     return now;
 }
 
-/// Command and feedback are of two different zeros: the encoder has reset itself.
+/// Command and feedback have different zeros: the encoder has reset itself.
 bool ModuleHoming::isAtIndex(int joint) const noexcept {
     return functions_.get_homing_at_index_search_wait(joint) && !functions_.get_index_enable(joint);
 }
@@ -190,7 +190,7 @@ void ModuleHoming::step(const homing::JointInput *inputs, homing::JointCommand *
     }
 }
 
-/// A new offset: the module has given the joint's place another number. The motor does not move by that.
+/// A new offset: the module has changed the joint's position. This does not move the motor.
 void ModuleHoming::take_offset(int joint, const homing::JointInput &in, bool wasAtIndex,
                                homing::JointCommand &out) noexcept {
     const double offset = joints_[at(joint)].motor_offset;
@@ -198,7 +198,7 @@ void ModuleHoming::take_offset(int joint, const homing::JointInput &in, bool was
         !functions_.get_homing_at_index_search_wait(joint) && isHoming(joint)) {
         out.isSettingZero = true;
         out.zero = -offset;
-        begun_ &= ~(1U << joint);  // in the next cycle its place is known by the new number
+        begun_ &= ~(1U << joint);  // its new position is valid in the next cycle
     } else if (offset != in.motor_offset) {
         out.isShifting = true;
         out.shift = in.motor_offset - offset;

@@ -12,7 +12,7 @@
 
 namespace mw::motion {
 
-/// What is called of the module; the rest is there for others.
+/// Functions of the module that motion calls; other programs call the rest.
 struct HomingFunctions {
     decltype(&::homeMotFunctions) homeMotFunctions = nullptr;
     decltype(&::homing_init) homing_init = nullptr;
@@ -31,7 +31,7 @@ struct HomingFunctions {
     decltype(&::get_homing_at_index_search_wait) get_homing_at_index_search_wait = nullptr;
 };
 
-/// Of the machine; the last `extra` ones are moved by no pose.
+/// Number of joints of the machine; no pose moves the last `extra` ones.
 struct JointCounts {
     int all = 0, extra = 0;
 };
@@ -39,13 +39,13 @@ struct JointCounts {
 class ModuleHoming final : public homing::Module {
   public:
     enum class Found : std::uint8_t { NONE, SOME, ALL };
-    /// Looks for the functions among the loaded modules; `missing` is the first that is not there. [while
+    /// Looks for the functions in the loaded modules; `missing` is the first missing function. [while
     /// loading]
     Found find(const char *&missing) noexcept;
-    /// Keeps the module loaded as long as component `comp_id` is. 0 or a negated errno. [while loading]
+    /// Keeps the module loaded as long as component `comp_id`. Returns 0 or a negated errno. [while loading]
     int hold(int comp_id) const noexcept;
-    /// Starts it; it makes its pins. `on_unlock` and `on_ask` lead to set_unlock() and isUnlocked(). 0 or
-    /// what it answers. [while loading]
+    /// Starts the module, which makes its pins. `on_unlock` and `on_ask` call set_unlock() and isUnlocked().
+    /// Returns 0 or its error code. [while loading]
     int start_module(int comp_id, double period_s, JointCounts counts, void (*on_unlock)(int, int),
                      int (*on_ask)(int)) noexcept;
 
@@ -81,12 +81,12 @@ class ModuleHoming final : public homing::Module {
     void clamp(int joint) noexcept;
 
     HomingFunctions functions_;
-    std::array<emcmot_joint_t, MAX_JOINTS> joints_{};  ///< what the module sees
+    std::array<emcmot_joint_t, MAX_JOINTS> joints_{};  ///< data for the module
     std::array<homing::Parameters, MAX_JOINTS> parameters_{};
     int num_joints_ = 0;
     std::uint32_t configured_ = 0, driven_ = 0, unlock_ = 0, unlocked_ = 0;  ///< bit per joint
     std::uint32_t clamped_ = 0, told_ = 0;
-    std::uint32_t begun_ = 0;  ///< bit per joint of which `origin_` says where it has begun
+    std::uint32_t begun_ = 0;  ///< bit per joint whose start is in `origin_`
     std::array<double, MAX_JOINTS> origin_{};
     bool isCancelled_ = true;  ///< the module's commands have no effect until homing starts
 };

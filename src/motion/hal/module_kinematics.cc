@@ -73,7 +73,7 @@ int ModuleKinematics::hold(int comp_id) const noexcept {
 void ModuleKinematics::find_axes(int num_joints) noexcept {
     double zero[MAX_JOINTS];
     for (double &x : zero) {
-        x = NAN;  // joints that the module does not set stay so
+        x = NAN;  // values that the module does not set stay NaN
     }
     EmcPose origin = to_c({});
     isIdentity_ = inverse_(&origin, zero, &inverse_flags_, &forward_flags_) == 0;

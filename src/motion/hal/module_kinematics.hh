@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Kinematics of a loaded module, ours or another's, through the C functions of kinematics.h.
+// Kinematics of a loaded module, of Millwright or another source, through the C functions of kinematics.h.
 #pragma once
 
 #include "hal/include/kinematics.h"
@@ -7,7 +7,7 @@
 
 namespace mw::motion {
 
-/// The types of a module, by its own function.
+/// The types of a module, through its own function.
 class ModuleTypes final : public kinematics::TypeSwitch {
   public:
     decltype(&kinematicsSwitch) switch_it = nullptr;
@@ -17,9 +17,9 @@ class ModuleTypes final : public kinematics::TypeSwitch {
 
 class ModuleKinematics final : public kinematics::Kinematics {
   public:
-    /// Finds the functions among the loaded modules. Null, or the name of what is missing. [while loading]
+    /// Finds the functions in the loaded modules. Returns null, or the name of a missing one. [while loading]
     const char *find(int num_joints) noexcept;
-    /// Keeps the module loaded as long as component `comp_id` is. 0 or a negated errno. [while loading]
+    /// Keeps the module loaded as long as component `comp_id`. Returns 0 or a negated errno. [while loading]
     int hold(int comp_id) const noexcept;
 
     kinematics::Kind kind() const noexcept override { return kind_; }

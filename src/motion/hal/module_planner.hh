@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Speeds by a loaded planner module of a user, through the C functions of planner.h.
+// Speeds from a user's planner module, through the C functions of planner.h.
 #pragma once
 
 #include "hal/include/planner.h"
@@ -10,11 +10,11 @@ namespace mw::motion {
 class ModulePlanner final : public trajectory::SpeedChooser {
   public:
     enum class Found : std::uint8_t { NONE, SOME, ALL };
-    /// Looks for the functions among the loaded modules; `missing` is the first that is not there. [while
+    /// Looks for the functions in the loaded modules; `missing` is the first missing function. [while
     /// loading]
     Found find(const char *&missing) noexcept;
-    /// Starts it and keeps it loaded as long as component `comp_id` is. 0, or what it answers. [while
-    /// loading]
+    /// Starts the module and keeps it loaded as long as component `comp_id`. Returns 0 or its error code.
+    /// [while loading]
     int start(int comp_id, double period_s) noexcept;
 
     int choose(const trajectory::SpeedStretch &stretch,

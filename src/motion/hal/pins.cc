@@ -14,7 +14,7 @@ std::size_t at(int i) noexcept {
     return static_cast<std::size_t>(i);
 }
 
-/// One set for each number below `count` that `mask` has; the first failure ends it.
+/// Makes one set for each number below `count` that is in `mask`; ends at the first failure.
 template <class Set, std::size_t SIZE>
 int declare_each(Set (&sets)[SIZE], int comp_id, int count, unsigned mask = ~0U) noexcept {
     int status = 0;
@@ -25,8 +25,7 @@ int declare_each(Set (&sets)[SIZE], int comp_id, int count, unsigned mask = ~0U)
     return status;
 }
 
-/// Puts the words of `part` in the place of what was shown; whether they are others. A cycle asks that of
-/// every joint.
+/// Copies the words of `part` to the last values; true if they differ. Every cycle does this for every joint.
 template <std::size_t WORDS>
 bool replace(std::array<std::uint64_t, WORDS> &shown, const void *part) noexcept {
     const auto *from = static_cast<const unsigned char *>(part);
@@ -69,7 +68,7 @@ int MotionPins::declare(int comp_id, const PinCounts &wanted) noexcept {
     return status == 0 ? declare_each(spindle_, comp_id, counts_.spindles) : status;
 }
 
-/// What seldom is there is out of the way: a jump that is taken is not predicted once in a cycle.
+/// Pins that seldom exist are read apart: a taken branch is not predicted once per cycle.
 void MotionPins::read(Inputs &in) noexcept {
     in.time_ns = rtapi_get_time();
     in.digital_in = 0;
@@ -112,7 +111,7 @@ void MotionPins::read(Inputs &in) noexcept {
     }
 }
 
-/// A pin may show its value at another place than in the last cycle.
+/// True when a pin may have its value at another address than in the last cycle.
 bool MotionPins::areLinksOther() noexcept {
     const std::uint32_t links = __atomic_load_n(links_, __ATOMIC_ACQUIRE);
     const bool areOther = links != last_links_ || axes_ != last_axes_;

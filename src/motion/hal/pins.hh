@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The HAL pins of the motion controller: one set of each table of motion/hal/pin_tables.hh for what the
-// machine has.
+// The HAL pins of the motion controller: one set of each table in motion/hal/pin_tables.hh, for the joints,
+// axes and spindles of the machine.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ struct PinCounts {
     bool areHomingPinsMade = false;  ///< by a homing module
 };
 
-/// Lives in HAL memory.
+/// Is in HAL memory.
 class MotionPins {
   public:
     /// Makes the pins; 0 or a negated errno. [while loading]
@@ -37,7 +37,7 @@ class MotionPins {
         return (static_cast<unsigned>(counts_.unlock_mask) >> joint & 1U) != 0;
     }
 
-    /// What pins show that seldom changes, as words.
+    /// Pin values that seldom change, as words.
     template <std::size_t BYTES>
         requires(BYTES % 8 == 0)
     using Shown = std::array<std::uint64_t, BYTES / 8>;
@@ -47,9 +47,9 @@ class MotionPins {
 
     PinCounts counts_;
     std::uint32_t axes_ = ALL_AXES;         ///< as Outputs::axes
-    const std::uint32_t *links_ = nullptr;  ///< of HAL: counts the links of pins
+    const std::uint32_t *links_ = nullptr;  ///< count of pin links of HAL
     std::uint32_t last_links_ = 0;
-    std::uint32_t last_axes_ = 0;  ///< none: all are written in the first cycle
+    std::uint32_t last_axes_ = 0;  ///< 0: all are written in the first cycle
     std::array<Shown<sizeof(SeldomJointOutputs)>, MAX_JOINTS> joint_shown_{};
     std::array<Shown<sizeof(JointStatus) - FLAGS>, MAX_JOINTS> flags_shown_{};
     std::array<Shown<sizeof(SeldomAxisOutputs)>, MAX_AXES> axis_shown_{};

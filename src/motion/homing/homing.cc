@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Sequences and single cycles; what joints do together is in team.cc.
+// Sequences and single cycles; team.cc has the common motion of joints.
 #include "motion/homing/homing.hh"
 
 #include <cmath>
@@ -97,7 +97,7 @@ void Homing::lock() noexcept {
     }
 }
 
-/// One joint fails: everything that is being homed stops.
+/// One joint fails: all homing stops.
 void Homing::fail(int joint, Failure why) noexcept {
     failed_joint_ = joint;
     failure_ = why;
@@ -122,7 +122,7 @@ int Homing::take_failure(Failure &why) noexcept {
     return joint;
 }
 
-/// The row of the table that holds now, nullptr where nothing changes.
+/// The row of the table that applies now, nullptr without a change.
 const Transition *Homing::transition(int joint, std::uint32_t events) const noexcept {
     const State state = at(joint).state;
     const std::uint32_t settings = settings_of(joint);
@@ -161,7 +161,7 @@ void Homing::step(const JointInput *inputs, JointCommand *commands) noexcept {
             commands[k] = {};
             commands[k].move = Move::STOP;
             commands[k].acceleration = j.team_acceleration;
-            // The place is no zero, but the motor must not be sent on by the reset.
+            // The position is no zero, but the reset must not move the motor.
             commands[k].isSettingZero = j.isIndexReleased && !inputs[k].isIndexEnabled;
             commands[k].zero = j.parameters.offset;
             j.isStopping = false;
@@ -193,7 +193,8 @@ std::uint32_t Homing::events_of(int joint, const JointInput *inputs) const noexc
     const JointInput &in = inputs[joint];
     std::uint32_t out = in.isSwitchClosed ? event::SWITCH_CLOSED : event::SWITCH_OPEN;
     out |= in.isAtRest ? event::AT_REST : 0U;
-    // What was set TRUE in the last cycle is low now: the encoder has cleared it, and may have reset itself.
+    // The pin was set TRUE in the last cycle and is low now: the encoder has cleared it, and may have reset
+    // itself.
     out |= j.isIndexWanted && !in.isIndexEnabled ? event::INDEX : 0U;
     out |= in.isUnlocked ? 0U : event::LOCKED;
     out |= j.wait * period_s_ > LONGEST_LOCKING_S ? event::OVERDUE : 0U;

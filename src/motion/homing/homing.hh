@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Finding the machine's zero: the table of `table.hh` for each joint, in sequences, groups that end together
-// and teams that move one thing. Pure, realtime-safe. Source of the behaviour: LinuxCNC's integrator manual,
-// "Homing Configuration".
+// Homing: the table of `table.hh` for each joint, in sequences, groups that end together, and teams that move
+// one axis. Pure, realtime-safe. Behaviour as in LinuxCNC's integrator manual, "Homing Configuration".
 #pragma once
 
 #include <array>
@@ -27,7 +26,7 @@ class Homing final : public Module {
 
     /// One joint: with its group, if its sequence is negative.
     void start(int joint) noexcept override;
-    /// Places found so far are not used.
+    /// Positions found until now are not used.
     void abort(event::Event why = event::ABORT, int joint = -1) noexcept override;
     void unhome(int joint) noexcept override { at(joint).isHomed = false; }
     void step(const JointInput *inputs, JointCommand *commands) noexcept override;
@@ -40,7 +39,7 @@ class Homing final : public Module {
     struct Summary {
         bool isCurrent = false;
         bool isAnyHoming = false, isAnyBusy = false;
-        bool isQuiet = true;      ///< nothing is asked of any joint and no step shown
+        bool isQuiet = true;      ///< no joint has a command and no step is shown
         std::uint32_t homed = 0;  ///< bit per joint
     };
     /// Of all joints; calculated again when any joint may have changed.
@@ -59,9 +58,9 @@ class Homing final : public Module {
     bool isUnlockWanted(int joint) const noexcept override { return at(joint).isUnlockWanted; }
     int take_failure(Failure &why) noexcept override;
 
-    /// How long an indexer may take to unlock or lock [s].
+    /// Maximum time of an indexer to unlock or lock [s].
     static constexpr double LONGEST_LOCKING_S = 30;
-    /// How long a contact may bounce [s]: so long after a change it is not judged again.
+    /// Maximum time that a contact bounces [s]; it is evaluated again after this time.
     static constexpr double LONGEST_BOUNCE_S = 0.02;
 
   private:
@@ -77,7 +76,7 @@ class Homing final : public Module {
         double closed_way = 0;  ///< `way` where its switch was closed last
         double team_acceleration = 0;  ///< 0: its own
     };
-    /// What a team can do together, and is asked to.
+    /// Limits and command of a team.
     struct Leg {
         double velocity = 0, most_velocity = 0, acceleration = 0, travel = 0;
     };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What motion wants of homing: ours (`Homing`) or a module of a user that takes its place.
+// The interface of homing to motion: `Homing`, or a user's module in its place.
 #pragma once
 
 #include <cstdint>
@@ -17,11 +17,12 @@ struct Parameters {
     bool isLockingIndexer = false, isVolatile = false;
     int absolute_encoder = 0;
     int sequence = NO_SEQUENCE;
-    double travel = 0;         ///< how far to search at most
-    double max_skew = 0;       ///< how far apart joints of a team may get; 0: a hundredth of the range
-    double low = 0, high = 0;  ///< soft limits, which hold once the joint is homed
-    double clearance = 0;  ///< how far to back off from the opening edge, to come again in the same direction
-    int axis = -1;         ///< that it moves by itself or with others; -1: none
+    double travel = 0;         ///< maximum search distance
+    double max_skew = 0;       ///< maximum difference between joints of a team; 0: a hundredth of the range
+    double low = 0, high = 0;  ///< soft limits, which apply once the joint is homed
+    double clearance =
+        0;  ///< distance to back off from the opening edge, to approach it again in the same direction
+    int axis = -1;  ///< axis that it moves, alone or with others; -1: none
     bool isActive = true;
 
     static constexpr int NO_SEQUENCE = 1000;
@@ -44,14 +45,14 @@ struct JointInput {
 
 enum class Move : std::uint8_t { NONE, STOP, BY, TO };
 
-/// What one joint shall do in this cycle. Motion keeps it within the limits of the joint.
+/// Command to one joint in this cycle. Motion keeps it within the limits of the joint.
 struct JointCommand {
     Move move = Move::NONE;
     double value = 0;          ///< BY: signed distance; TO: position, after the shift
-    double velocity = 0;       ///< > 0; 0: the joint's highest
-    double most_velocity = 0;  ///< to which an override may raise it; 0: the joint's highest
-    double acceleration = 0;   ///< 0: the joint's highest
-    double jerk = 0;           ///< of moves that nothing but their end stops; 0: the joint's highest
+    double velocity = 0;       ///< > 0; 0: maximum of the joint
+    double most_velocity = 0;  ///< limit of the override; 0: maximum of the joint
+    double acceleration = 0;   ///< 0: maximum of the joint
+    double jerk = 0;           ///< of moves that only end at their target; 0: maximum of the joint
     bool isSmooth = false;     ///< such a move
     bool isShifting = false;   ///< positions and target all move by `shift`; the motor stays
     double shift = 0;
@@ -67,11 +68,11 @@ class Module {
     virtual void configure(int joint, const Parameters &parameters) noexcept = 0;
     /// Starts one joint or, with -1, all by sequence.
     virtual void start(int joint) noexcept = 0;
-    /// Stops the whole of what is being homed. `why` is one of LIMIT, ABORT, OFF; `joint` has it, -1: none.
+    /// Stops all homing. `why` is LIMIT, ABORT or OFF; `joint` is its joint, -1: none.
     virtual void abort(event::Event why, int joint) noexcept = 0;
     virtual void unhome(int joint) noexcept = 0;
 
-    /// In every cycle, on or off, before anything else and after everything.
+    /// In every cycle, on or off: first and last.
     virtual void read_pins() noexcept {}
     virtual void write_pins() noexcept {}
 
@@ -83,7 +84,7 @@ class Module {
     virtual bool isActive() const noexcept = 0;
     /// True if `step` has work: homing is active, or a joint still has to be stopped.
     virtual bool hasWork() const noexcept = 0;
-    /// For people who look for faults: 0 is none.
+    /// For diagnostics: 0 is none.
     virtual int step_number(int joint) const noexcept = 0;
     /// The index-enable pin; and whether the joint is moving towards the index pulse.
     virtual bool isIndexWanted(int joint) const noexcept = 0;
@@ -91,9 +92,9 @@ class Module {
     virtual bool isUnlockWanted(int joint) const noexcept = 0;
     /// The failure since the last call: joint or -1.
     virtual int take_failure(Failure &why) noexcept = 0;
-    /// Bit per joint that has asked for more than its limits since the last call, and was kept within them.
+    /// Bit per joint whose command was clamped to its limits since the last call.
     virtual std::uint32_t take_clamped() noexcept { return 0; }
-    /// The outputs that depend on the switch of the machine are off from here.
+    /// Outputs that depend on machine on are off from here.
     virtual void lock() noexcept = 0;
 
   protected:

@@ -9,21 +9,21 @@ namespace mw::homing {
 
 enum class State : std::uint8_t {
     IDLE,
-    UNLOCK,  ///< a locking indexer is asked to unlock
+    UNLOCK,  ///< requests a locking indexer to unlock
     START,
     INITIAL_BACKOFF,  ///< off a switch that was closed at the start
     INITIAL_BACKOFF_STOP,
     SEARCH,  ///< towards the switch
     SEARCH_STOP,
-    LATCH_BACKOFF,  ///< off the switch, to come again slowly
+    LATCH_BACKOFF,  ///< off the switch, for a slow approach
     LATCH_BACKOFF_STOP,
     LATCH,    ///< slowly to the edge of the switch
     INDEX,    ///< slowly to the index pulse
-    LATCHED,  ///< has its zero and moves on with its team until all of it have
+    LATCHED,  ///< has its zero and moves with its team until all joints of the team have theirs
     LATCHED_STOP,
     WAIT_FOR_GROUP,  ///< synchronised joints wait for one another before the final move
     FINAL,
-    LOCK,  ///< a locking indexer is asked to lock
+    LOCK,  ///< requests a locking indexer to lock
     COUNT,
 };
 /// In the table: every state but IDLE.
@@ -36,17 +36,17 @@ enum class Failure : std::uint8_t {
     INDEX_WITHOUT_LATCH,   ///< HOME_USE_INDEX is set, HOME_LATCH_VEL is 0
     SHARED_SWITCH_CLOSED,
     SWITCH_NOT_FOUND,
-    SWITCH_STUCK,         ///< backing off did not open it
+    SWITCH_STUCK,         ///< backing off did not open the switch
     SWITCH_LOST,          ///< found, but open again after stopping
     SWITCH_CLOSED_AGAIN,  ///< left, but closed again after stopping
     INDEX_NOT_FOUND,
     LIMIT_HIT,
     ABORTED,
-    TEAM_DIFFERS,  ///< joints that move one thing home in different ways
-    TEAM_SKEWED,   ///< they would get farther apart than they may
+    TEAM_DIFFERS,  ///< joints of one axis have different homing settings
+    TEAM_SKEWED,   ///< the difference between them would exceed the maximum
     NOT_UNLOCKED,
     NOT_LOCKED,
-    INHIBITED,        ///< between the command and its begin
+    INHIBITED,        ///< after the command and before the start
     MODULE_FAILED,    ///< a user's module has reported a failure
     MODULE_NONSENSE,  ///< it commanded a value that is not a finite number
 };
@@ -63,21 +63,21 @@ enum Event : std::uint32_t {
     AT_REST = 1U << 6,
     TEAM_AT_REST = 1U << 7,  ///< all of its joints are stopped, in one state
     TEAM_LATCHED = 1U << 8,
-    GROUP_READY = 1U << 9,     ///< all that end together have their zero
-    TEAM_UNLOCKED = 1U << 10,  ///< all of its indexers are
+    GROUP_READY = 1U << 9,     ///< all joints that end together have their zero
+    TEAM_UNLOCKED = 1U << 10,  ///< all of its indexers are unlocked
     LOCKED = 1U << 11,
-    OVERDUE = 1U << 12,  ///< waited for too long
+    OVERDUE = 1U << 12,  ///< waited too long
     TEAM_DIFFERS = 1U << 13,
     TEAM_SKEWED = 1U << 14,
-    LIMIT = 1U << 15,  ///< a limit switch that counts has closed
+    LIMIT = 1U << 15,  ///< a limit switch that is not ignored has closed
     ABORT = 1U << 16,
     OFF = 1U << 17,
     MEMBER_FAILED = 1U << 18,  ///< another joint that is being homed has failed
-    TEAM_SETTLED = 1U << 19,   ///< TEAM_AT_REST, and no contact bounces any more
+    TEAM_SETTLED = 1U << 19,   ///< TEAM_AT_REST, and no contact is bouncing
 };
 }
 
-/// What the settings of a joint say, as bits.
+/// Settings of a joint, as bits.
 namespace setting {
 enum Setting : std::uint32_t {
     SEARCHING = 1U << 0,  ///< HOME_SEARCH_VEL is not 0
@@ -88,7 +88,7 @@ enum Setting : std::uint32_t {
     ABSOLUTE = 1U << 5,
     STAYING = 1U << 6,  ///< HOME_ABSOLUTE_ENCODER = 2
     LOCKING = 1U << 7,
-    TEAM = 1U << 8,  ///< moves one thing with other joints
+    TEAM = 1U << 8,  ///< moves one axis with other joints
 };
 }
 
@@ -97,28 +97,28 @@ enum class Action : std::uint8_t {
     STOP,
     UNLOCK,
     SET_PLACE,       ///< the current position is HOME_OFFSET
-    SET_PLACE_STOP,  ///< and it stops
+    SET_PLACE_STOP,  ///< the same, and stop
     SEARCH,
     BACK_OFF,
     LATCH,
     ASK_INDEX,
     LATCH_ASK_INDEX,
-    TAKE_INDEX,  ///< the place of the pulse is HOME_OFFSET
+    TAKE_INDEX,  ///< the position of the pulse is HOME_OFFSET
     TAKE_INDEX_STOP,
     GO_HOME,
 };
 
 struct Transition {
     State state;
-    std::uint32_t events;        ///< all of them are so; 0: at once
+    std::uint32_t events;        ///< all of these events; 0: at once
     std::uint32_t when, unless;  ///< all of these settings, none of those
     Action action = Action::NOTHING;
     State next = State::IDLE;
-    Failure failure = Failure::NONE;  ///< next is IDLE, and every joint that is being homed stops
-    bool isHomed = false;             ///< the joint is, from here
+    Failure failure = Failure::NONE;  ///< next is IDLE, and all joints that are being homed stop
+    bool isHomed = false;             ///< the joint is homed from here
 };
 
-/// The first row that fits is taken, one a cycle; where none fits nothing changes.
+/// The first matching row is taken, one per cycle; without a match nothing changes.
 inline constexpr Transition TRANSITIONS[] = {
     {UNDER_WAY, event::LIMIT, 0, 0, Action::STOP, State::IDLE, Failure::LIMIT_HIT},
     {UNDER_WAY, event::ABORT, 0, 0, Action::STOP, State::IDLE, Failure::ABORTED},
@@ -193,7 +193,7 @@ inline constexpr Transition TRANSITIONS[] = {
     {State::LOCK, event::OVERDUE, 0, 0, Action::STOP, State::IDLE, Failure::NOT_LOCKED},
 };
 
-/// What to tell the operator about a failure; the text names no joint. [not realtime]
+/// Message of a failure for the operator, without the joint. [not realtime]
 const char *failure_text(Failure failure) noexcept;
 
 }  // namespace mw::homing

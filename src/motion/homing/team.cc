@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What joints do together. A group has one number of HOME_SEQUENCE, negative for one of them at least: it
-// begins the final move together. A team is the part of a group that moves one thing, as the two sides of a
-// gantry: it leaves and stops together on each leg, with one speed and one acceleration, and no two of its
-// joints get farther apart than HOME_MAX_SKEW allows.
+// Common motion of joints. A group has one number of HOME_SEQUENCE, negative for at least one of its joints:
+// it begins the final move together. A team is the part of a group that moves one axis, such as the two sides
+// of a gantry: it starts and stops together on each leg, with one speed and one acceleration, and no two of
+// its joints differ by more than HOME_MAX_SKEW.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -13,7 +13,7 @@ namespace mw::homing {
 
 namespace {
 
-/// Unless HOME_MAX_SKEW says otherwise: part of the range between the soft limits.
+/// Default of HOME_MAX_SKEW: part of the range between the soft limits.
 constexpr double SKEW_SHARE = 0.01;
 /// `travel` is twice that range.
 constexpr double TRAVEL_PER_RANGE = 2;
@@ -30,7 +30,7 @@ bool areSameWay(double a, double b) noexcept {
 
 }  // namespace
 
-/// Both are being homed, end together, and move one axis or say how far apart they may get.
+/// Both are being homed, end together, and move one axis or have a maximum difference.
 bool Homing::areTeam(int a, int b) const noexcept {
     const Parameters &p = at(a).parameters;
     const Parameters &q = at(b).parameters;
@@ -50,7 +50,7 @@ bool Homing::hasTeam(int joint) const noexcept {
 
 std::uint32_t Homing::team_events(int joint, const JointInput *inputs) const noexcept {
     const Joint &j = at(joint);
-    // Or the joint is to back off from it farther.
+    // Or the joint is to back off further.
     const auto isClosed = [&](int n) {
         const Joint &one = at(n);
         const bool isNear = one.state == State::LATCH_BACKOFF && !inputs[n].isAtRest &&
@@ -171,8 +171,8 @@ void Homing::go(int joint, double Parameters::*velocity, double sign, const Join
     }
 }
 
-/// The final move. Joints of a team share its time, each with its part of the farthest way: what they are
-/// apart goes straight to what it is to be.
+/// The final move. Joints of a team share its time, each with its part of the longest distance: their
+/// difference changes linearly to its final value.
 void Homing::go_home(int joint, const JointInput *inputs, JointCommand &out) noexcept {
     Joint &j = at(joint);
     const auto speed_of = [](const Parameters &p, const JointInput &in) {

@@ -14,8 +14,7 @@
 
 namespace mw::motion {
 
-/// One row of the trace: the commanded positions of one servo cycle (requirement C3: carte_pos_cmd and
-/// pos_cmd).
+/// One row of the trace: the commanded positions of one servo cycle (carte_pos_cmd and pos_cmd).
 struct TraceSample {
     std::int64_t time_ns = 0;
     std::uint64_t cycle = 0;
@@ -23,9 +22,9 @@ struct TraceSample {
     std::int32_t line = 0;
     std::uint8_t isEnabled = 0;  ///< amp enables of all active joints on
     std::uint8_t isInMotion = 0;
-    /// Counts, round and round, the switches of the kinematics: the same joints have another pose from there.
+    /// Counts changes of the kinematics type, with overflow: the same joints have another pose after it.
     std::uint8_t pose_kind = 0;
-    std::uint8_t isRetracing = 0;  ///< on the path that was commanded before (reverse run)
+    std::uint8_t isRetracing = 0;  ///< on the recorded path (reverse run)
     Epoch epoch = 0;
     geometry::Pose carte_pos_cmd;
     geometry::Pose programmed_pos_cmd;  ///< carte_pos_cmd without external offsets
@@ -46,12 +45,12 @@ struct Channels {
     SpscRing<Fault, 256> planner_faults;     ///< planner -> task
     PublishedStatus status;                  ///< servo -> any
 
-    /// Counts the loops of the task process; standing still for the watchdog's time means that it hangs.
+    /// Counts the loops of the task process; no change in the watchdog's time means that it hangs.
     std::atomic<std::uint64_t> task_loops{0};
     /// Counts cycles of the ordinary thread of the realtime host. If this count stops too, the computer is
     /// too busy for both.
     std::atomic<std::uint32_t> host_looks{0};
-    /// Set by the realtime host when the kernel says that the task process is gone (pidfd, closed socket).
+    /// Set by the realtime host when the kernel reports the end of the task process (pidfd, closed socket).
     std::atomic<std::uint32_t> isTaskDead{0};
 
     /// Filled by the servo thread while `isTracing`; a full ring counts in `trace_lost`.
@@ -59,7 +58,7 @@ struct Channels {
     std::atomic<std::uint64_t> trace_lost{0};
     SpscRing<TraceSample, 8192> trace;  ///< servo -> client that records a trace
 
-    /// The servo thread has something to answer.
+    /// The servo thread has commands to answer.
     bool hasCommands() const noexcept { return immediate.front() != nullptr; }
 };
 

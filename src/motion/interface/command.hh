@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The immediate channel into the motion controller: drained by the servo thread, a bounded number per cycle.
-// Lengths in machine units, angles in degrees, times in seconds, unless a name says otherwise.
+// The immediate channel into the motion controller: read by the servo thread, a bounded number per cycle.
+// Lengths in machine units, angles in degrees, times in seconds, unless the name has a unit.
 #pragma once
 
 #include <cstdint>
@@ -36,7 +36,7 @@ struct SetJointActive {  ///< ACTIVATE_JOINT, DEACTIVATE_JOINT
     int joint = 0;
     bool isActive = true;
 };
-/// How many of the joints that were loaded the machine has (SET_NUM_JOINTS); all, at first.
+/// Number of loaded joints that the machine uses (SET_NUM_JOINTS); initially all.
 struct SetNumJoints {
     int count = 0;
 };
@@ -96,7 +96,7 @@ struct JogContinuous {
 struct JogIncremental {
     JogTarget target;
     double velocity = 0;  ///< > 0
-    double distance = 0;  ///< signed; adds up with a jog still under way
+    double distance = 0;  ///< signed; adds to an active jog
 };
 struct JogAbsolute {
     JogTarget target;
@@ -147,8 +147,8 @@ struct SetAnalogOutput {
     double value = 0;
 };
 struct ClearProbeFlag {};
-/// The tool is measured differently from here: the path before it cannot be run in reverse. Moves nothing;
-/// the pins motion.tooloffset.L belong to the I/O controller.
+/// The tool length changes here: the path before it cannot be run in reverse. Moves nothing; the pins
+/// motion.tooloffset.L belong to the I/O controller.
 struct SetToolOffset {
     geometry::Pose offset;
 };
@@ -163,13 +163,14 @@ struct SetParameter {
 };
 
 inline constexpr int MAX_SCREW_POINTS = 10000;
-/// Steepest table of screw errors [units per unit]; what is left of the joint's limits changes sides with.
+/// Maximum slope of a table of screw errors [units per unit]; the rest of the joint's limits is for changes
+/// of direction.
 inline constexpr double STEEPEST_SCREW = 0.25;
-/// One point of a table of screw errors (LOAD_COMP), in their order; the table holds once it is whole, and
-/// takes the place of backlash.
+/// One point of a table of screw errors (LOAD_COMP), in order. The table is active once it is complete, and
+/// replaces backlash.
 struct LoadCompensation {
     int joint = 0;
-    int index = 0, count = 0;         ///< of `count` points; count 0: no table any more
+    int index = 0, count = 0;         ///< of `count` points; count 0: removes the table
     double nominal = 0;               ///< position of the joint, larger than that of the point before
     double forward = 0, reverse = 0;  ///< to be added to the motor's on the way up and down
 };

@@ -9,7 +9,7 @@ namespace mw::motion {
 
 namespace {
 
-/// Part of the joints' limits that axes get where the kinematics cannot be asked.
+/// Part of the joints' limits that axes get if the planner cannot call the kinematics.
 constexpr double UNKNOWN_SHARE = 0.4;
 
 std::size_t at(int i) noexcept {
@@ -28,7 +28,7 @@ double jog_jerk(double jerk) noexcept {
     return jerk < NO_JERK_LIMIT ? jerk : 0.0;
 }
 
-/// The tightest of what has been taken in.
+/// The lowest of all added limits.
 struct Tightest {
     double velocity, acceleration, jerk;
 
@@ -45,7 +45,7 @@ struct Tightest {
     }
 };
 
-/// External offsets get `ratio` of what the axis has, paths and jogs the rest.
+/// External offsets get `ratio` of the axis's limits, paths and jogs the rest.
 void share_with_offset(double ratio, Tightest &all, JogLimits &jog, JogLimits &offset) noexcept {
     offset = {ratio * jog.velocity, ratio * jog.acceleration, ratio * jog.jerk};
     const double rest = 1 - ratio;
@@ -71,7 +71,7 @@ void fold_locks(const Settings &s, const AxisMap &map, int axis, FoldedLimits &o
     out.locks |= locks;
 }
 
-/// A joint that the axis moves has a lock.
+/// A joint of the axis has a lock.
 bool isLocked(const AxisMap &map, int axis, const FoldedLimits &out) noexcept {
     bool isAny = out.axis_locks[at(axis)] != 0;
     for (int j = 0; j < map.num_led(); ++j) {
@@ -105,8 +105,8 @@ void fold_axis(const Settings &s, const AxisMap &map, int axis, FoldedLimits &ou
         share_with_offset(ratio, all, out.axis_jog[at(axis)], out.offset[at(axis)]);
     }
     for (int j = 0; j < map.num_led() && map.kind == AxisMap::Kind::UNKNOWN; ++j) {
-        // Nothing is known of how joints follow axes: kept well below what those of the same kind can do.
-        // Jogs are kept within the joints' limits in the servo thread.
+        // It is unknown how joints follow axes: axes stay well below the limits of joints of the same type.
+        // The servo thread keeps jogs within the joints' limits.
         if (s.isSet(Parameter::JOINT_IS_ANGULAR, j) == geometry::isAngular(axis)) {
             all.take_joint(s, j, UNKNOWN_SHARE);
         }
@@ -137,7 +137,7 @@ bool isOffsetOf(const AxisMap &map, int j, int axis, const FoldedLimits &out) no
     return out.offset[at(axis)].velocity > 0 && map.linear.moves(j, axis);
 }
 
-/// Of a joint that is no axis each offset has its ratio of what all axes that have one may do at once.
+/// Of a joint that is no axis, each offset gets its ratio of what all axes with offsets may use at once.
 void limit_offsets(const Settings &s, const AxisMap &map, int j, FoldedLimits &out) noexcept {
     double sum = 0;
     for (int axis = 0; axis < MAX_AXES; ++axis) {
@@ -172,7 +172,7 @@ void leave_to_paths(const AxisMap &map, int j, FoldedLimits &out) noexcept {
     }
 }
 
-/// The joint that needs the longest mean, of the linear or of the rotary ones.
+/// The linear or rotary joint that needs the longest averaging time.
 trajectory::Limits::SlowJoint slow_joint(const Settings &s, const AxisMap &map,
                                          const trajectory::JointLimits &joints, bool isAngular) noexcept {
     trajectory::Limits::SlowJoint slow;

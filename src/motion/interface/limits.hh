@@ -24,9 +24,9 @@ inline constexpr double LEAST_JERK = 1;
 /// Which axis each joint moves, and which thread may call the kinematics where joints are not axes.
 struct AxisMap {
     enum class Kind : std::uint8_t {
-        JOINTS_ARE_AXES,  ///< what limits a joint limits its axis
-        PLANNED,          ///< the planner asks the kinematics and keeps the limits of the joints by itself
-        UNKNOWN,          ///< only the servo thread may ask the kinematics
+        JOINTS_ARE_AXES,  ///< limits of a joint are limits of its axis
+        PLANNED,          ///< the planner calls the kinematics and keeps the limits of the joints
+        UNKNOWN,          ///< only the servo thread may call the kinematics
     };
     Kind kind = Kind::JOINTS_ARE_AXES;
     int num_joints = 0;                                   ///< of the machine; there are no others
@@ -37,9 +37,9 @@ struct AxisMap {
     /// A joint of the machine moves this axis; kinematics may move any.
     bool hasAxis(int axis) const noexcept;
     int num_led() const noexcept { return num_joints - num_extra; }  ///< that a pose moves
-    /// Those of the joints that the machine has and a pose moves, and the axes that move any of them.
+    /// Joints of the machine that a pose moves, and the axes that move any of them.
     void set_linear(const kinematics::LinearJoints &all) noexcept;
-    /// False when a parameter of the kinematics has been changed that says how joints are linear.
+    /// False when a parameter of the kinematics changed that makes joints linear.
     bool isAsIn(const kinematics::Kinematics &kinematics) const noexcept;
     /// The axis may have an offset that adds to a jog or path and moves its joints.
     bool mayHaveOffset(int axis) const noexcept;
@@ -54,14 +54,14 @@ AxisMap axis_map(const kinematics::Kinematics &kinematics, int num_joints, int n
 /// Joint n moves the axis of the n-th letter.
 AxisMap axis_map(std::string_view letters, int num_joints) noexcept;
 
-/// Soft limits hold for joints that are homed, those of axes when all are.
+/// Soft limits apply to homed joints, and to axes when all joints are homed.
 struct HomedJoints {
     std::uint32_t joints = 0;  ///< bit per joint
     bool areAll = false;
 };
 inline constexpr HomedJoints ALL_HOMED{~0U, true};
 
-/// Where something is or may come to, of each axis.
+/// Current or possible range of each axis.
 struct PoseRange {
     geometry::Pose low, high;
 
@@ -77,7 +77,7 @@ struct PoseRange {
     }
 };
 
-/// The same of each joint.
+/// Current or possible range of each joint.
 struct JointRange {
     std::array<double, MAX_JOINTS> low{}, high{};
 
@@ -89,22 +89,22 @@ struct JointRange {
     }
 };
 
-/// Joints that are no axes, go in proportion to axes, and are moved by an axis that may have an external
-/// offset: what is programmed and offsets share their travel.
+/// Joints that are no axes, move in proportion to axes, and are moved by an axis that may have an external
+/// offset: program and offsets share their travel.
 struct SharedJoints {
     std::uint32_t joints = 0;  ///< bit per joint
     std::uint32_t axes = 0;    ///< bit per axis that moves one of them
     std::array<geometry::Pose, MAX_JOINTS> slope{};
 
-    /// Where they are at a pose; 0 of others.
+    /// Their positions at a pose; 0 for other joints.
     JointRange at(const geometry::Pose &pose) const noexcept;
-    /// Where they may be while each axis is anywhere in its range.
+    /// Their range while each axis is anywhere in its range.
     JointRange within(const PoseRange &range) const noexcept;
 };
 /// Of axes that may have one, a bit each.
 SharedJoints shared_joints(const kinematics::LinearJoints &linear, std::uint32_t offset_axes) noexcept;
 
-/// Where something is or may come to, of each axis, and of shared joints.
+/// Current or possible range of each axis, and of shared joints.
 struct TravelRange {
     PoseRange axes;
     JointRange joints;
@@ -127,16 +127,17 @@ inline constexpr std::array<std::int8_t, MAX_AXES> NO_INDEXERS = [] {
 }();
 
 struct FoldedLimits {
-    trajectory::Limits path;   ///< of moves of axes: their own and those of the joints that move them
-    geometry::Pose low, high;  ///< soft limits of axes, with those of joints; +-infinity where none holds
+    trajectory::Limits path;   ///< of moves of axes: limits of the axes and of the joints that move them
+    geometry::Pose low, high;  ///< soft limits of axes, with those of joints; +-infinity without a limit
     std::uint32_t axes = 0;    ///< bit per axis that a joint or the kinematics move
     trajectory::JointLimits joints;
-    trajectory::JointLimits path_joints;  ///< what external offsets leave of them to paths and jogs of axes
+    trajectory::JointLimits
+        path_joints;  ///< limits of joints for paths and jogs of axes, without the share of external offsets
     HomedJoints homed;
     /// Joint whose lock a program opens for G0 of each axis; -1: none.
     std::array<std::int8_t, MAX_AXES> indexer = NO_INDEXERS;
     std::uint32_t locks = 0;                           ///< bit per joint that has a lock
-    std::array<std::uint32_t, MAX_AXES> axis_locks{};  ///< those of them that each axis moves
+    std::array<std::uint32_t, MAX_AXES> axis_locks{};  ///< locks that each axis moves
     std::array<double, MAX_JOINTS> travel{};           ///< between the soft limits of a joint, homed or not
     std::array<JogLimits, MAX_JOINTS> joint_jog{};
     std::array<JogLimits, MAX_AXES> axis_jog{};
@@ -153,7 +154,7 @@ struct FoldedLimits {
     }
 };
 
-/// Jerk-limited planning is asked for and has a limit to keep.
+/// Jerk-limited planning is selected and has a limit.
 bool isJerkLimited(const Settings &settings) noexcept;
 
 /// [any thread]
@@ -162,8 +163,8 @@ FoldedLimits fold_limits(const Settings &settings, const AxisMap &map, const Hom
 struct JogRange {
     double low = 0, high = 0;
 };
-/// Where a jog may go: soft limits of what is homed, before that twice the travel around the present place.
-/// `joint_positions` has MAX_JOINTS elements.
+/// Range of a jog: soft limits of homed joints and axes, before homing twice the travel around the current
+/// position. `joint_positions` has MAX_JOINTS elements.
 JogRange jog_range(const FoldedLimits &limits, const AxisMap &map, const JogTarget &target,
                    const double *joint_positions) noexcept;
 

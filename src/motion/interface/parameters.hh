@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Every setting of the motion controller, declared once (requirement C7): number, name, INI key, unit, range.
-// Adding one is one row here; SetParameter, the INI reading and the page docs/reference/ini.md follow from
-// it.
+// Every setting of the motion controller, declared once: number, name, INI key, unit, range. A new setting is
+// one row here; SetParameter, the INI reading and the page docs/reference/ini.md follow from it.
 #pragma once
 
 #include <array>
@@ -25,7 +24,7 @@ enum class ParameterUnit : std::uint8_t {
 };
 
 inline constexpr double UNBOUNDED = std::numeric_limits<double>::infinity();
-/// A jerk limit of this much and more is none [unit/s^3].
+/// A jerk limit of this value or more counts as none [unit/s^3].
 inline constexpr double NO_JERK_LIMIT = 1e9;
 
 // X(name, scope, INI section, INI key, unit, lowest, highest, default, what it is)

@@ -23,7 +23,7 @@ enum class MotionType : std::uint8_t {
 };
 using geometry::PathMode;
 
-/// Where a move comes from; shown to the operator, written to the trace.
+/// Source of a move; shown to the operator, written to the trace.
 struct SourceTag {
     std::int32_t line = 0;         ///< the operator's line number
     std::uint32_t file_index = 0;  ///< task's table of files
@@ -33,7 +33,7 @@ struct SourceTag {
 /// Conditions of one move: those of the program and those that task adds.
 struct MoveTerms : geometry::MoveSettings {
     bool isFeedOverridable = true;
-    bool isWaitingForSpindleSpeed = false;  ///< hold before this move until spindle.N.at-speed
+    bool isWaitingForSpindleSpeed = false;  ///< waits before this move for spindle.N.at-speed
     SourceTag source;
 };
 
@@ -68,8 +68,7 @@ struct SynchedAnalogOutput {
     int index = 0;
     double value = 0;
 };
-/// Nothing follows for now: plan to the very end of what is queued. Answered DONE when motion has come to
-/// rest there.
+/// No command follows for now: plan to the end of the queue. Answered DONE when motion has stopped there.
 struct Flush {};
 
 using PathBody = std::variant<Line, Arc, Probe, RigidTap, SynchedDigitalOutput, SynchedAnalogOutput, Flush>;

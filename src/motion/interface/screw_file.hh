@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Files of screw errors ([JOINT_n]COMP_FILE), read and checked before motion hears of them. Not realtime.
+// Files of screw errors ([JOINT_n]COMP_FILE), read and checked before motion gets them. Not realtime.
 #pragma once
 
 #include <string>
@@ -11,14 +11,14 @@
 
 namespace mw::motion {
 
-/// What the second and third number of a line are, on the way up and on the way down.
+/// Meaning of the second and third number of a line, for forward and reverse travel.
 enum class ScrewFileType : std::uint8_t {
-    ACTUAL = 0,  ///< where the joint really is when it is sent to the first number
-    OFFSET = 1,  ///< what is to be added
+    ACTUAL = 0,  ///< measured position of the joint at the nominal position
+    OFFSET = 1,  ///< correction to add
 };
 
-/// The points of a file, in their order. Lines of three numbers; empty ones and those behind # do not count.
-/// The error has line and column. `path` is only named.
+/// The points of a file, in order. Lines of three numbers; empty lines and text after # are ignored. Errors
+/// have line and column. `path` is used in messages only.
 Result<std::vector<LoadCompensation>> parse_screw_file(std::string_view text, const std::string &path,
                                                        int joint, ScrewFileType type);
 Result<std::vector<LoadCompensation>> read_screw_file(const std::string &path, int joint, ScrewFileType type);

@@ -25,11 +25,11 @@ class Settings {
     double get(Parameter p, int index = 0) const noexcept {
         return values_[static_cast<std::size_t>(p)][static_cast<std::size_t>(index)];
     }
-    /// Above 0, another one after each change.
+    /// Above 0; changes with each change of a setting.
     std::uint32_t version() const noexcept { return version_; }
     bool isSet(Parameter p, int index = 0) const noexcept { return get(p, index) != 0.0; }
 
-    /// Why `value` cannot be taken, or NONE and it is taken.
+    /// NONE and the value is set, or the reason why it is rejected.
     Reason set(const SetParameter &c, int num_joints, int num_spindles) noexcept {
         if (c.parameter >= static_cast<std::uint16_t>(Parameter::COUNT)) {
             return Reason::NO_SUCH_PARAMETER;
@@ -66,7 +66,7 @@ class Settings {
     std::uint32_t version_ = 1;
 };
 
-/// The presets, and over them what `parameters` say; those out of range are left out.
+/// Defaults, overwritten by `parameters`; values out of range are ignored.
 inline Settings settings_of(std::span<const SetParameter> parameters) noexcept {
     Settings settings;
     for (const SetParameter &p : parameters) {

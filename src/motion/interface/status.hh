@@ -50,7 +50,7 @@ struct Status {
     bool isEnabled = false;
     bool isInPosition = true;  ///< nothing moves and nothing is committed
     bool isPaused = false, isStepping = false, isReverse = false;
-    bool isTaskLost = false;  ///< the watchdog or the host says that the task process is gone
+    bool isTaskLost = false;  ///< the watchdog or the host reports the end of the task process
     bool isAllHomed = false;
     bool isHoming = false;
     bool isCartePosValid = false;   ///< requirement C3
@@ -73,7 +73,7 @@ struct Status {
     std::array<double, MAX_ANALOG_IO> analog_in{}, analog_out{};
 };
 
-/// Where programs see the machine: they know nothing of external offsets.
+/// Position of the machine for programs, without external offsets.
 inline geometry::Pose programmed_position(const Status &status) noexcept {
     geometry::Pose pose = status.carte_pos_cmd;
     for (int i = 0; i < geometry::AXIS_COUNT; ++i) {
@@ -130,26 +130,27 @@ enum class Reason : std::uint16_t {
     PROBE_ALREADY_TRIPPED,
     PROBE_ALREADY_OPEN,
     NOT_A_NUMBER,
-    NO_WAY_BACK,  ///< nothing is remembered of the path
+    NO_WAY_BACK,  ///< no path is recorded
     BAD_ARC,
-    RIGID_TAPPING,   ///< kinematics that cannot be asked before
+    RIGID_TAPPING,   ///< the planner cannot call the kinematics
     TAP_OFFSET,      ///< index: an axis of the tap; external offsets move it or its joints
     TAP_ROOM,        ///< index: the axis whose soft limit is too near
-    TAP_JOINT_ROOM,  ///< index: the joint whose soft limit is too near; -1: the kinematics reaches no farther
+    TAP_JOINT_ROOM,  ///< index: the joint whose soft limit is too near; -1: end of the reach of the
+                     ///< kinematics
     ONE_WAY_SPINDLE,
     JOG_INHIBITED,
     HOMING_INHIBITED,
     SYNCHRONISED_JOINT,  ///< a joint of a negative HOME_SEQUENCE is not jogged alone
     NO_JOG_TO_RENEW,
-    SWITCHED_ON,     ///< the machine is to be off
-    TOO_FEW_JOINTS,  ///< index: those that the kinematics moves
-    SINGULAR,        ///< through a pose of which the kinematics has many answers
+    SWITCHED_ON,     ///< the machine must be off
+    TOO_FEW_JOINTS,  ///< index: number of joints that the kinematics moves
+    SINGULAR,        ///< through a pose for which the kinematics has many solutions
     POSE_UNKNOWN,    ///< the kinematics has no pose for the joint positions
     SIDE_APART,      ///< index: the joint that differs from its position in the pose
     NO_FEEDBACK,     ///< a joint's feedback is not a number
     DRIVEN_BY_PIN,   ///< an extra joint that is homed
     INDEXER_ALONE,   ///< a locking indexer moves alone, in programs with G0; others while it is locked
-    INDEXER_OPEN,    ///< a locking indexer has not locked
+    INDEXER_OPEN,    ///< a locking indexer is not locked
     COUNT,
 };
 
@@ -158,11 +159,11 @@ struct Answer {
     CommandId id = 0;
     AnswerKind kind = AnswerKind::DONE;
     Reason reason = Reason::NONE;
-    std::int16_t index = -1;  ///< joint or axis meant, or -1
+    std::int16_t index = -1;  ///< joint or axis of the reason, or -1
     bool isPath = false;
 };
 
-/// Something that went wrong by itself. `index`: joint, axis or spindle, -1 when none.
+/// A fault without a command. `index`: joint, axis or spindle, -1: none.
 enum class FaultKind : std::uint16_t {
     FOLLOWING_ERROR,
     AMP_FAULT,
@@ -170,9 +171,9 @@ enum class FaultKind : std::uint16_t {
     SOFT_LIMIT,
     ENABLE_LOST,
     TASK_LOST,     ///< index: 1 it has ended, 0 it does not loop; value: for how long [s]
-    MOTION_STOOD,  ///< the servo thread did not run; index: 1 axes moved, 0 none; value: for how long [s]
+    MOTION_STOOD,  ///< the servo thread did not run; index: 1 axes moved, 0 none; value: time [s]
     HOMING_FAILED,
-    PROBE_NOT_TRIPPED,  ///< at its end; detail: 1 where contact was to be lost
+    PROBE_NOT_TRIPPED,  ///< at the end of the move; detail: 1 for loss of contact
     PROBE_TRIPPED_IN_MOVE,
     KINEMATICS_FAILED,
     PATH_LIMIT,
@@ -181,24 +182,24 @@ enum class FaultKind : std::uint16_t {
     NO_WAY_ON,        ///< the planner has stopped and finds no plan
     JOG_JOINT_LIMIT,  ///< an axis jog was stopped before a joint's soft limit
     JOG_UNREACHABLE,  ///< an axis jog was stopped before a pose that the kinematics do not reach
-    JOINT_TOO_FAST,   ///< value: over what is allowed; kinematics that cannot be planned with
+    JOINT_TOO_FAST,   ///< value: use of the limit; the planner cannot call the kinematics
     JOINT_LEFT_RANGE,
-    THREAD_TOO_FAST,  ///< index: spindle; value: needed speed over the possible one
+    THREAD_TOO_FAST,  ///< index: spindle; value: required speed over the possible one
     JOG_LEASE_ENDED,  ///< a jog was not renewed in time; detail: 1 a joint, 0 an axis; value: the lease [s]
-    KINEMATICS_JUMP,  ///< index: the joint that would have stepped; value: by how much
-    NO_KINEMATICS_TYPE,            ///< value: the type asked for
+    KINEMATICS_JUMP,  ///< index: the joint that would jump; value: distance
+    NO_KINEMATICS_TYPE,            ///< value: the requested type
     KINEMATICS_SWITCHED_ON_PATH,   ///< the same; the path was stopped
     KINEMATICS_TYPE_WITHOUT_POSE,  ///< the same; it has no pose for the joint positions
-    HOMING_CLAMPED,                ///< a homing module has asked joint `index` for more than its limits allow
-    FEEDBACK_LOST,                 ///< index: the joint whose feedback is not a number
-    TAP_TOO_FAST,                  ///< index: spindle; value: needed speed over the possible one
-    TAP_TOO_ABRUPT,        ///< index: spindle; value: acceleration of its turning back over the possible one
-    TAP_TOO_SUDDEN,        ///< index: spindle; value: by how much the tool would leave the helix [turns]
-    TAP_TOO_SHALLOW,       ///< index: spindle; value: the way that is needed over the depth
-    TAP_LOST,              ///< index: spindle
-    INDEXER_NOT_UNLOCKED,  ///< index: the joint, which was waited for too long
-    INDEXER_NOT_LOCKED,    ///< the same
-    INDEXER_LOCKED_IN_MOVE,  ///< index: the joint whose pin is-unlocked has fallen meanwhile
+    HOMING_CLAMPED,          ///< a homing module has commanded more than the limits of joint `index` allow
+    FEEDBACK_LOST,           ///< index: the joint whose feedback is not a number
+    TAP_TOO_FAST,            ///< index: spindle; value: required speed over the possible one
+    TAP_TOO_ABRUPT,          ///< index: spindle; value: acceleration of its reversal over the possible one
+    TAP_TOO_SUDDEN,          ///< index: spindle; value: distance from the helix [turns]
+    TAP_TOO_SHALLOW,         ///< index: spindle; value: required travel over the depth
+    TAP_LOST,                ///< index: spindle
+    INDEXER_NOT_UNLOCKED,    ///< index: the joint whose lock did not respond in time
+    INDEXER_NOT_LOCKED,      ///< the same
+    INDEXER_LOCKED_IN_MOVE,  ///< index: the joint whose pin is-unlocked became FALSE during its move
     EXTRA_JOINT_LOST,        ///< index: the joint whose pin posthome-cmd is not a number
     EXTRA_JOINT_LIMIT,       ///< index: the joint whose pin posthome-cmd is outside its range
     SIDE_APART,              ///< index: joint; switched on in free mode
@@ -207,9 +208,9 @@ enum class FaultKind : std::uint16_t {
     SPINDLE_LOST,  ///< index: spindle whose feedback is not a number while a move is in step with it
     COUNT,
 };
-/// Of PLANNER_MODULE: what is wrong with the speeds that it wants.
+/// Of PLANNER_MODULE: error in the speeds of the module.
 enum class PlannerModuleFault : std::uint16_t { NO_ANSWER = 1, TOO_FAST, TOO_HARD, TOO_LATE, NOT_THERE };
-/// Only told: no path has failed.
+/// Only a message: no path has failed.
 constexpr bool isOnlyTold(FaultKind kind) noexcept {
     return kind == FaultKind::HOMING_CLAMPED || kind == FaultKind::JOG_JOINT_LIMIT ||
            kind == FaultKind::JOG_UNREACHABLE || kind == FaultKind::JOG_LEASE_ENDED ||

@@ -18,8 +18,7 @@ std::string axis_name(int index) {
                                                       : std::string("an axis");
 }
 
-/// Path commands speak of axes, immediate ones of joints, or of axes too in teleop; both where that is not
-/// known.
+/// Path commands refer to axes, immediate ones to joints, or to axes in teleop; both if unknown.
 std::string place_name(const Answer &a) {
     if (a.index < 0) {
         return "a joint or axis";

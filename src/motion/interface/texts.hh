@@ -11,7 +11,7 @@ namespace mw::motion {
 /// Reason for rejecting a command, as a sentence with the remedy. Empty for Reason::NONE.
 std::string reason_text(const Answer &answer);
 
-/// What went wrong. Texts that existing screens look for are kept ("joint 0 on limit switch error").
+/// Text of a fault. Texts that LinuxCNC's screens search for are kept ("joint 0 on limit switch error").
 std::string fault_text(const Fault &fault);
 
 }  // namespace mw::motion

@@ -19,12 +19,12 @@ double finite(double value) {
     return std::isinf(value) ? std::copysign(NO_LIMIT, value) : value;
 }
 
-/// Of a joint or axis without a limit: 0.
+/// 0 for a joint or axis without a limit.
 double jerk_word(double jerk) {
     return jerk >= NO_JERK_LIMIT ? 0 : jerk;
 }
 
-/// Of a joint that homes in no sequence: 999.
+/// 999 for a joint without a homing sequence.
 int sequence_word(double sequence) {
     constexpr int NONE = 1000, TOLD = 999;
     return sequence >= NONE ? TOLD : static_cast<int>(sequence);
@@ -82,7 +82,7 @@ std::string switch_line(const SetSwitch &set) {
     return fmt::format("FH_ENABLE mode={}", mode);
 }
 
-/// The time that a way needs at limits of its axes.
+/// Time of a move at the limits of its axes.
 double time_over(const geometry::Pose &way, const std::array<double, geometry::AXIS_COUNT> &limits) {
     double longest = 0;
     for (int axis = 0; axis < geometry::AXIS_COUNT; ++axis) {
@@ -217,7 +217,7 @@ Lines LogText::of(const Command &command) {
             [](const OverrideLimits &c) {
                 return Lines{fmt::format("OVERRIDE_LIMITS on={}", c.isOn ? 1 : 0)};
             },
-            // What this machine has beside LinuxCNC's commands.
+            // Commands that LinuxCNC does not have.
             [](const SetWatchdog &) { return Lines{}; },
             [](const Heartbeat &) { return Lines{}; },
             [](const Pause &) { return Lines{"PAUSE"}; },

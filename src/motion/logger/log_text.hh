@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What task sends to motion as lines of text, in the words of LinuxCNC's motion-logger.
+// Task's commands to motion as lines of text, in the format of LinuxCNC's motion-logger.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ class LogText {
 
     Lines of(const Command &command);
     Lines of(const PathCommand &command);
-    /// Where the path ends.
+    /// End of the path.
     const geometry::Pose &position() const { return position_; }
 
   private:

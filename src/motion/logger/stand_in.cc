@@ -16,7 +16,7 @@ void answer(auto &answers, CommandId id, bool isStale, bool isPath) {
     answers.push(answer);
 }
 
-/// What a command changes in the state that others see.
+/// Changes of the visible state by a command.
 void follow(const CommandBody &body, Status &status) {
     const auto set_homed = [&status](int joint, bool isHomed) {
         for (int j = 0; j < status.num_joints; ++j) {
@@ -104,7 +104,7 @@ void StandIn::step(std::int64_t time_ns) {
         return into.has_value();
     };
     while (true) {
-        // A stop is sent after the moves that it makes stale, so the path comes first where both wait.
+        // A stop is sent after the moves that it makes stale, so the path is read first if both wait.
         const bool hasPath = fetch(channels_.path, path), hasCommand = fetch(channels_.immediate, immediate);
         if (hasPath && (!hasCommand || path->id < immediate->id)) {
             take(*path);

@@ -14,10 +14,10 @@ namespace mw::motion {
 class StandIn {
   public:
     using Say = std::function<void(const std::string &)>;
-    /// `channels` are fresh and must outlive it.
+    /// `channels` are new and must outlive it.
     StandIn(Channels &channels, Say say);
 
-    /// Answers what waits, in the order in which it was sent, and shows the state after it.
+    /// Answers waiting commands in order, and publishes the state after them.
     void step(std::int64_t time_ns);
     bool isInPosition() const { return status_.isInPosition; }
 

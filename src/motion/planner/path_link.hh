@@ -19,9 +19,9 @@ namespace mw::motion {
 /// Written by the controller when a setting changes or a joint is homed or unhomed.
 struct PathLimits {
     trajectory::Limits limits;
-    double corner_scale = 1;          ///< of moves that name none
-    bool areTolerancesAdded = false;  ///< what joining takes is on top of P
-    geometry::Pose low, high;         ///< soft limits per axis; +-infinity where none holds
+    double corner_scale = 1;          ///< of moves without a tolerance
+    bool areTolerancesAdded = false;  ///< deviation of joined lines is added to P
+    geometry::Pose low, high;         ///< soft limits per axis; +-infinity without a limit
     std::uint32_t axes = 0;           ///< bit per axis that the kinematics drive
     std::uint32_t offset_axes = 0;    ///< bit per axis that may have an external offset
     std::array<std::int8_t, MAX_AXES> indexer = NO_INDEXERS;  ///< as in FoldedLimits
@@ -39,13 +39,13 @@ struct PathExtent {
     bool isEmpty = true;
 };
 
-/// Written by the controller every servo cycle, one consistent picture.
+/// Written by the controller every servo cycle, as one consistent snapshot.
 struct PathView {
     trajectory::Snapshot executor;
     Epoch epoch = 0;
     Mode mode = Mode::FREE;
     bool isEnabled = false;
-    bool isStopping = false;    ///< everything brakes, what is left will be dropped
+    bool isStopping = false;    ///< everything brakes, the rest will be dropped
     std::uint32_t enables = 0;  ///< counts Enable
     std::uint32_t limits_version = 0;
     geometry::Pose position;  ///< carte_pos_cmd
@@ -58,7 +58,7 @@ struct PathView {
     std::uint32_t probe_trips = 0;  ///< counts probe moves that were tripped
     std::uint32_t steps = 0;        ///< counts StepOnce
     bool isStepping = false;
-    /// Locking indexers, bit per joint: may move, wait or move, have not locked in time.
+    /// Locking indexers, bit per joint: may move; wait or move; have not locked in time.
     std::uint32_t indexers_unlocked = 0, indexers_busy = 0, indexers_stuck = 0;
     std::uint32_t type_asks = 0;  ///< counts requests for another type of the kinematics
     bool isTypePending = false;   ///< paths wait until it is active
@@ -68,18 +68,18 @@ struct PathView {
 struct PathLink {
     trajectory::PathStore store;
     Seqlock<PathView> view;      ///< controller -> planner
-    PathView newest;             ///< what `view` was written from; the controller's own
+    PathView newest;             ///< source of `view`; only for the controller
     Seqlock<PathLimits> limits;  ///< controller -> planner
-    /// Where external offsets may be, and where the path may: each side writes its own before it reads the
-    /// other's, so that both never take the same room. Only while there are such offsets.
+    /// Range of external offsets, and range of the path: each side writes its own before it reads the
+    /// other's, so that the two never use the same travel. Only with such offsets.
     Seqlock<PoseRange> offsets;  ///< controller -> planner
     Seqlock<PathExtent> extent;  ///< planner -> controller
     /// planner -> controller: StepOnce count whose stop has been reached
     CopyableAtomic<std::uint32_t> steps_done{0};
-    /// planner -> controller: type_asks at which nothing was accepted that is not driven
+    /// planner -> controller: type_asks at which no accepted command was left to drive
     CopyableAtomic<std::uint32_t> type_asks_seen{0};
-    /// planner -> controller: the joints that the path wants unlocked, above them the drops of paths it knows
-    /// of
+    /// planner -> controller: joints that the path requires unlocked; in the upper bits the last known drop
+    /// of a path
     CopyableAtomic<std::uint64_t> indexers_wanted{0};
     CopyableAtomic<std::uint32_t> queue_depth{0};   ///< planner -> controller
     CopyableAtomic<std::uint32_t> isQueueFull{0};   ///< planner -> controller

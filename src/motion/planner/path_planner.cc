@@ -10,13 +10,13 @@ namespace mw::motion {
 
 namespace {
 
-/// Updates without a new command after which the open end of the last move is planned to its very end.
+/// Number of updates without a new command after which the end of the last move is planned.
 constexpr int STARVING_UPDATES = 3;
 
-/// What rounding may make of a corner within the extent of its moves [machine units, degrees].
+/// Rounding of a corner within the extent of its moves [machine units, degrees].
 constexpr double CORNER_ROUNDING = 1e-6;
 constexpr double HORIZON_S = 0.1;
-/// From a plan's making to its start; a planner that takes longer is late, and the plan is made again.
+/// Time from making a plan to its start; a slower planner makes the plan again.
 constexpr double LATENCY_S = 3e-3;
 
 std::uint64_t latency_cycles(double period_s) noexcept {
@@ -33,7 +33,7 @@ PathPlanner::PathPlanner(const PathPlannerConfig &config, const kinematics::Kine
 
 void PathPlanner::update() noexcept {
     if (!link_.view.read(view_, 1000)) {
-        return;  // the servo thread is in the middle of it; next time
+        return;  // the servo thread is writing; try again in the next update
     }
     follow_controller();
     if (limits_.offset_axes != 0) {
@@ -108,7 +108,7 @@ void PathPlanner::follow_drops() noexcept {
         answer(last_done_, AnswerKind::DONE, Reason::NONE);
         pending_.drop();
     }
-    // An abort has begun a new epoch already; any other stop breaks the path of the present one.
+    // An abort has already begun a new epoch; any other stop breaks the path of the current one.
     isBroken_ = isBroken_ || (!pending_.isEmpty() && pending_.newest().epoch == view_.epoch);
     while (!pending_.isEmpty()) {
         answer(pending_.oldest().id, AnswerKind::STALE, Reason::NONE);
@@ -140,7 +140,7 @@ void PathPlanner::complete_moves() noexcept {
             }
         }
         if (p.isProbe && e.isDropping) {
-            return;  // its stop, which may lead to its very end, is not over
+            return;  // its stop, which may reach its end, is not complete
         }
         const bool isTripped = p.isProbe && view_.probe_trips != probe_trips_;
         probe_trips_ = isTripped ? view_.probe_trips : probe_trips_;
@@ -170,7 +170,7 @@ bool PathPlanner::take_commands() noexcept {
         }
         const auto age = static_cast<std::int32_t>(c->epoch - epoch_);
         if (age > 0) {
-            break;  // of an epoch that the controller has not yet begun
+            break;  // of an epoch that the controller has not begun
         }
         if (age < 0 || isBroken_) {
             answer(c->id, AnswerKind::STALE, Reason::NONE);
@@ -191,7 +191,7 @@ bool PathPlanner::take_commands() noexcept {
     return isAny;
 }
 
-/// True when this command has to wait for something that the executor does first.
+/// True when this command has to wait for an action of the executor.
 bool PathPlanner::isWaiting(const PathCommand &c) noexcept {
     if (view_.executor.isDropping || view_.isTypePending ||
         (pending_.isEmpty() && view_.indexers_busy != 0)) {
@@ -218,7 +218,7 @@ bool PathPlanner::isWaiting(const PathCommand &c) noexcept {
     const bool isOutput = std::holds_alternative<SynchedDigitalOutput>(c.body) ||
                           std::holds_alternative<SynchedAnalogOutput>(c.body);
     if (isOutput && link_.store.events.size() >= link_.store.events.capacity()) {
-        planner_.release_end();  // those before it change once the path is driven to here
+        planner_.release_end();  // the moves before it change once the path is driven to here
         isQueueFull_ = true;
         return true;
     }
@@ -226,7 +226,7 @@ bool PathPlanner::isWaiting(const PathCommand &c) noexcept {
     return isQueueFull_ || pending_.size() + 2 >= PendingCommands::CAPACITY;
 }
 
-/// What a path of such moves is made for.
+/// Requirements of a path of such moves.
 trajectory::PathDemand PathPlanner::demand_of(const PathCommand &c) const noexcept {
     const auto *line = std::get_if<Line>(&c.body);
     const auto *arc = std::get_if<Arc>(&c.body);
@@ -241,7 +241,7 @@ trajectory::PathDemand PathPlanner::demand_of(const PathCommand &c) const noexce
                            : planner_.demand_of(request_for(c, arc->terms), start, arc->end);
 }
 
-/// Everything that was accepted is driven.
+/// True when all accepted commands are driven.
 bool PathPlanner::isIdle() const noexcept {
     const trajectory::Snapshot &e = view_.executor;
     return pending_.isEmpty() && e.isSettled && e.done_move >= planner_.last_move();
@@ -270,7 +270,7 @@ Reason PathPlanner::accept_flush(const PathCommand &c) noexcept {
     return Reason::NONE;
 }
 
-/// Every path command has its handler here; one that is forgotten does not compile.
+/// Every path command has a handler here; a missing one does not compile.
 Reason PathPlanner::accept(const PathCommand &c) noexcept {
     const auto on_path = [&](auto accept_it) {
         if (!view_.isEnabled || view_.isStopping) {
@@ -304,7 +304,7 @@ bool PathPlanner::areSpindlesReady() const noexcept {
     return (view_.spindles_ready & all) == all;
 }
 
-/// Moves that wait for spindles start once these are at speed; threads at a full turn of theirs, so that
+/// Moves that wait for spindles start once these are at speed; threads at the index of their spindle, so that
 /// every pass begins at the same angle.
 void PathPlanner::open_gates() noexcept {
     const trajectory::Sequence gate = isPathBegun_ ? planner_.waiting_gate(view_.executor) : 0;
@@ -325,7 +325,7 @@ void PathPlanner::open_gates() noexcept {
         if (std::abs(rps) < SLOWEST_RPS) {
             return;
         }
-        const bool isDriven = planner_.isLocked(gate);  // then the executor finds the moment
+        const bool isDriven = planner_.isLocked(gate);  // then the executor finds the start
         const bool isTap = planner_.isTap(gate);
         const bool isKnown = isTap || planner_.isPassKnown(view_.executor);
         if (isDriven && !(isKnown && (isTap ? isTapPossible(gate) : isThreadPossible(gate)))) {
@@ -337,7 +337,7 @@ void PathPlanner::open_gates() noexcept {
     planner_.open_gate(gate, delay_s);
 }
 
-/// A thread that the machine cannot follow is not begun: its lead would be another.
+/// A thread that the machine cannot follow is not begun: its pitch would be wrong.
 bool PathPlanner::isThreadPossible(trajectory::Sequence gate) noexcept {
     constexpr double ROUNDING = 1e-9;
     const double load = planner_.pass_load(gate);
@@ -373,8 +373,7 @@ static_assert(static_cast<int>(trajectory::Overreach::Kind::NO_ANSWER) ==
               static_cast<int>(trajectory::Overreach::Kind::NOT_THERE) ==
                   static_cast<int>(PlannerModuleFault::NOT_THERE));
 
-/// What a planner module wants and the machine cannot do is not driven: the path stops by itself, and that is
-/// its end.
+/// Speeds of a planner module that the machine cannot follow are not driven: the path stops and ends there.
 void PathPlanner::tell_overreach(const trajectory::Overreach &overreach) noexcept {
     if (overreach.kind == trajectory::Overreach::Kind::NONE) {
         return;
@@ -389,7 +388,7 @@ void PathPlanner::tell_overreach(const trajectory::Overreach &overreach) noexcep
     channels_.planner_faults.push(fault);
 }
 
-/// Once for each gate.
+/// Reported once for each gate.
 void PathPlanner::tell_impossible(trajectory::Sequence gate, FaultKind kind, double value) noexcept {
     if (refused_gate_ == gate) {
         return;
@@ -430,7 +429,7 @@ void PathPlanner::follow_steps() noexcept {
     }
 }
 
-/// Corners stay within it too, on axes with external offsets and joints that these move.
+/// Includes the corners, for axes with external offsets and joints that these move.
 void PathPlanner::publish_extent() noexcept {
     const PathExtent extent = window_.extent();
     link_.extent.write(extent);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Takes path commands, checks them, has them planned, and answers each. Runs below the servo thread, once a
+// Takes path commands, checks them, plans them, and answers each. Runs below the servo thread, once per
 // period; allocates at construction only.
 #pragma once
 
@@ -60,7 +60,7 @@ class KinematicsMap final : public trajectory::JointMap {
 /// Remaining travel of a line to the nearest limit.
 struct TravelToLimit {
     double way = trajectory::UNLIMITED;  ///< [machine units, degrees]
-    int axis = -1, joint = -1;           ///< whose limit it is; joint MAX_JOINTS: that of the kinematics
+    int axis = -1, joint = -1;           ///< axis or joint of the limit; joint MAX_JOINTS: the kinematics
 };
 
 /// After a rejection or a stop, the remaining path commands of the same epoch are answered STALE until a new
@@ -99,7 +99,7 @@ class PathPlanner {
     TravelRange available_travel(const TravelRange &move) noexcept;
     void publish_extent() noexcept;
     void tell_overreach(const trajectory::Overreach &overreach) noexcept;
-    /// Where the joints are at a place of a path.
+    /// Joint positions at a point of a path.
     struct PathSample {
         double at = 0;
         std::array<double, MAX_JOINTS> joints{};
@@ -131,14 +131,14 @@ class PathPlanner {
     PathView view_;
     PathLimits limits_;
     PathWindow window_;                            ///< kept while there are external offsets
-    std::array<double, MAX_JOINTS> end_joints_{};  ///< at the end of what was accepted last
+    std::array<double, MAX_JOINTS> end_joints_{};  ///< at the end of the last accepted move
     std::uint32_t stands_ = 0;                     ///< of the limits
     std::uint32_t limits_version_ = 0;
     Epoch epoch_ = 0;
-    bool isBroken_ = false;  ///< the path has a hole: nothing more of this epoch
+    bool isBroken_ = false;  ///< the path has a gap: no more commands of this epoch
     bool isPathBegun_ = false;
     bool isQueueFull_ = false;
-    bool wasLocked_ = false;  ///< the last move keeps to a spindle's angle
+    bool wasLocked_ = false;  ///< the last move follows a spindle's angle
     trajectory::Sequence refused_gate_ = 0;
     std::uint64_t drops_ = 0;
     std::uint32_t enables_ = 0;

@@ -20,7 +20,7 @@ bool isFinite(const geometry::Pose &p) noexcept {
     return std::all_of(p.c.begin(), p.c.end(), [](double x) { return std::isfinite(x); });
 }
 
-/// Why a move cannot be made on such terms.
+/// Reason why a move is not possible under these conditions.
 Reason check_terms(const MoveTerms &terms, int num_spindles) noexcept {
     const bool areNumbers = std::isfinite(terms.feed) && std::isfinite(terms.tolerance) &&
                             std::isfinite(terms.naivecam_tolerance) && std::isfinite(terms.corner_scale) &&
@@ -32,7 +32,7 @@ Reason check_terms(const MoveTerms &terms, int num_spindles) noexcept {
     return terms.feed < 0 || terms.tolerance < 0 || !isSpindle ? Reason::OUT_OF_RANGE : Reason::NONE;
 }
 
-/// As the status and the trace name a move.
+/// Type of a move for the status and the trace.
 MotionType type_of(const PathBody &body, const MoveTerms &terms) noexcept {
     if (std::holds_alternative<Probe>(body)) {
         return MotionType::PROBING;
@@ -123,7 +123,7 @@ TravelRange PathPlanner::available_travel(const TravelRange &move) noexcept {
     std::atomic_thread_fence(std::memory_order_seq_cst);
     PoseRange offsets;
     if (!link_.offsets.read(offsets, TRIES)) {
-        return {{room.axes.high, room.axes.low}, {}};  // nothing fits: no servo cycle takes so long
+        return {{room.axes.high, room.axes.low}, {}};  // nothing fits: no servo cycle takes this long
     }
     for (int i = 0; i < geometry::AXIS_COUNT; ++i) {
         const bool isShared = (limits_.offset_axes >> i & 1U) != 0;
@@ -131,7 +131,7 @@ TravelRange PathPlanner::available_travel(const TravelRange &move) noexcept {
         room.axes.high[i] -= isShared ? offsets.high[i] : 0.0;
     }
     const JointRange taken = limits_.shared.within(offsets);
-    for (std::size_t j = 0; j < taken.low.size(); ++j) {  // 0 of joints that are not shared
+    for (std::size_t j = 0; j < taken.low.size(); ++j) {  // 0 for joints that are not shared
         room.joints.low[j] -= taken.low[j];
         room.joints.high[j] -= taken.high[j];
     }
@@ -191,9 +191,9 @@ Reason PathPlanner::check_shared(const trajectory::Primitive &p, const JointRang
     return Reason::NONE;
 }
 
-/// True when the joints can follow from one place of the path to the next: halves of the way, down to where
-/// the joints change little, or so fast that the path would crawl. What jumps at a singular pose does so on
-/// any way, however short.
+/// True when the joints can follow from one point of the path to the next: halves the distance until the
+/// joints change little, or so fast that the path would crawl. Joints that jump at a singular pose do so on
+/// any distance.
 bool PathPlanner::isSteady(const trajectory::Primitive &p, PathSample from, PathSample to) const noexcept {
     constexpr double MUCH = 30;  // [machine units, degrees]
     constexpr double LITTLE = 1;
@@ -230,7 +230,7 @@ bool PathPlanner::isSteady(const trajectory::Primitive &p, PathSample from, Path
 }
 
 Reason PathPlanner::check_joints(const trajectory::Primitive &p, const JointRange &room) noexcept {
-    // Enough that an angle which follows a circle never turns by half a turn between two.
+    // Enough that an angle on a circle never changes by half a revolution between two samples.
     constexpr int LEAST_SAMPLES = 64;
     constexpr double SAMPLES_PER_RAD = 1.5;
     constexpr double MOST_SAMPLES = 20000;
@@ -332,7 +332,7 @@ Reason PathPlanner::accept_line(const PathCommand &c, const geometry::Pose &end,
     }
     if (p.length > 1e-12 * (1.0 + geometry::norm(end))) {
         trajectory::MoveRequest request = request_for(c, terms);
-        if (indexer >= 0) {  // comes alone, as a probe does, and waits at its gate until it is unlocked
+        if (indexer >= 0) {  // it comes alone, like a probe, and waits at its gate until it is unlocked
             request.join = PathMode::EXACT_STOP;
             request.isGated = true;
             request.tag.type = static_cast<std::uint8_t>(MotionType::INDEX_ROTARY);
@@ -370,7 +370,7 @@ Reason PathPlanner::accept_arc(const PathCommand &c, const Arc &arc) noexcept {
     return Reason::NONE;
 }
 
-/// In with the spindle and out again, two moves that the executor drives as one.
+/// In with the spindle and out again: two moves that the executor drives as one.
 Reason PathPlanner::accept_tap(const PathCommand &c, const RigidTap &tap) noexcept {
     Reason reason = isFinite(tap.end) && std::isfinite(tap.pitch_scale)
                         ? check_terms(tap.terms, config_.num_spindles)
@@ -399,7 +399,7 @@ Reason PathPlanner::accept_tap(const PathCommand &c, const RigidTap &tap) noexce
     const std::array<double, MAX_JOINTS> start = end_joints_;
     reason = check_reach(in);
     const std::array<double, MAX_JOINTS> bottom = end_joints_;
-    end_joints_ = start;  // where it ends
+    end_joints_ = start;  // end of the tap
     if (reason != Reason::NONE) {
         return reason;
     }
@@ -433,8 +433,8 @@ Reason PathPlanner::accept_tap(const PathCommand &c, const RigidTap &tap) noexce
     return Reason::NONE;
 }
 
-/// A probe comes alone: what was before it is complete, and nothing is taken until it is. One that need not
-/// trip may begin in its target state: the first cycle of the move finds it tripped.
+/// A probe comes alone: it waits until earlier moves are complete, and later ones wait for it. A probe that
+/// need not trip may begin in its target state: the first cycle of the move then ends it.
 Reason PathPlanner::accept_probe(const PathCommand &c, const Probe &probe) noexcept {
     if (probe.mustTrip && view_.isProbeClosed != probe.isAway) {
         return probe.isAway ? Reason::PROBE_ALREADY_OPEN : Reason::PROBE_ALREADY_TRIPPED;

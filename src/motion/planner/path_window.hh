@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// How far the path leads between where it is driven and where it ends.
+// Range of the path from its driven part to its end.
 #pragma once
 
 #include "motion/interface/limits.hh"
@@ -7,21 +7,21 @@
 
 namespace mw::motion {
 
-/// Two lots of moves: when the older one is driven, the newer one takes its place, so that a long program is
-/// not judged by what is long past.
+/// Two sets of moves: when the older one is driven, the newer one replaces it, so that the range of a long
+/// program does not contain moves that are long complete.
 class PathWindow {
   public:
     static constexpr int MOVES_PER_LOT = 64;
 
     void clear() noexcept { *this = {}; }
-    /// `move` is the last one before what is added.
+    /// `move` is the last one before the added moves.
     void add(const TravelRange &range, trajectory::Sequence move) noexcept {
         Lot &lot = count_ == 0 ? older_ : newer_;
         widen(lot, range);
         lot.last = move + 1;
         ++count_;
     }
-    /// `done`: the move that is complete. The corner behind it may still be driven.
+    /// `done`: the completed move. The corner after it may still be driven.
     void follow(trajectory::Sequence done) noexcept {
         if (!newer_.extent.isEmpty && count_ >= MOVES_PER_LOT && done > older_.last) {
             older_ = newer_;
@@ -51,7 +51,7 @@ class PathWindow {
     }
 
     Lot older_, newer_;
-    int count_ = 0;  ///< of moves since the older lot was begun
+    int count_ = 0;  ///< moves since the start of the older set
 };
 
 }  // namespace mw::motion

@@ -12,12 +12,12 @@ namespace mw::motion {
 
 struct PendingCommand {
     CommandId id = 0;
-    trajectory::Sequence after_move = 0;  ///< complete when this move is
+    trajectory::Sequence after_move = 0;  ///< complete when this move is complete
     SourceTag source;
     Epoch epoch = 0;
     bool isFlush = false, isProbe = false, isTripRequired = false, isAwayProbe = false;
     int indexer = -1;        ///< joint that is unlocked for it
-    bool isIndexed = false;  ///< its move is complete, and it is to lock
+    bool isIndexed = false;  ///< its move is complete, and the joint is to lock
 };
 
 /// Planner thread only. The caller checks size() before it adds.
@@ -29,7 +29,7 @@ class PendingCommands {
     bool isEmpty() const noexcept { return size() == 0; }
     void add(const PendingCommand &command) noexcept { commands_[tail_++ % CAPACITY] = command; }
     void drop() noexcept { ++head_; }
-    /// Of a list that is not empty.
+    /// The list must not be empty.
     const PendingCommand &oldest() const noexcept { return commands_[head_ % CAPACITY]; }
     PendingCommand &newest() noexcept { return commands_[(tail_ - 1) % CAPACITY]; }
 
