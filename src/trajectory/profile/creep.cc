@@ -164,7 +164,8 @@ class CreepSpline {
 
     /// With the speed that it has at a knot already, if there is one. False if the end is still above the
     /// scale there.
-    bool lay(std::size_t from, const LawState *start) {
+    /// `fall`: the largest slope at which the scale falls, as lowered limits and longer cells need it.
+    bool lay(std::size_t from, const LawState *start, double fall) {
         cut(from);
         const double h = length(0);
         std::size_t k = 0;
@@ -181,10 +182,9 @@ class CreepSpline {
             const std::size_t behind = k + 1 < ends_.size() ? ends_[k + 1] : ends_.back() + CELLS_BEHIND;
             double d = scales_.least_between(before, behind);
             if (start != nullptr) {
-                // Down at a slope of 1, as lowered limits need it.
-                const double way = middle(k) - middle(1);
-                is_reached = d >= known - way;
-                d = std::clamp(d, known - way, known + SPACING_GROWTH * way);
+                const double way = middle(k) - middle(1), least = known - fall * way;
+                is_reached = d >= least;
+                d = std::clamp(d, least, known + SPACING_GROWTH * way);
             }
             const double v =
                 SHARE * std::min(std::cbrt(least_.jerk * d * d), std::sqrt(least_.acceleration * d));
@@ -239,6 +239,16 @@ class CreepSpline {
     std::vector<double> c_;
 };
 
+/// The slope at which a creep may fall. The speed of joints changes by a factor over the length of a part;
+/// the scale is the power 3/2 of the speed.
+double fall_of(const Run &run, double s, double scale) noexcept {
+    const double fall = 2 * SPACING_GROWTH;
+    if (run.joint_curve == nullptr) {
+        return fall;
+    }
+    return std::min(fall, 1.5 * scale / run.joint_curve->parts()[run.joint_curve->part_at(s)].length);
+}
+
 }  // namespace
 
 double creep_scale(const Run &run, double c) noexcept {
@@ -267,7 +277,8 @@ bool creep(const Run &run, const RestMap &map, const std::vector<double> &knots,
     }
     scales.find(map, knots, end_ramp, known);
     CreepSpline spline(knots, scales, least);
-    const bool is_reached = spline.lay(from, c.empty() ? nullptr : &start);
+    const bool is_reached =
+        spline.lay(from, c.empty() ? nullptr : &start, fall_of(run, map.at(knots[from]).s, known.scale));
     if (c.empty()) {
         c.push_back(spline.coefficient(0, knots[0] - length(0), knots[0]));
     }

@@ -80,19 +80,28 @@ void make_rows(const Run &run, const RestMap &map, const double *knots, std::siz
                xyz.acceleration < UNLIMITED_BOUND || xyz.jerk < UNLIMITED_BOUND);
     std::size_t span = span_at(spans, map.at(knots[0]).s);
     std::size_t feed = run.feed_at(map.at(knots[0]).s);
+    std::array<MapPoint, PLACES> places;
+    CurvePoint c;
     for (std::size_t k = 0; k < cells; ++k) {
         const double h = knots[k + 1] - knots[k];
         rows.add_cell(h);
-        const double from = map.at(knots[k]).s, to = map.at(knots[k + 1]).s;
+        for (std::size_t p = 0; p < PLACES; ++p) {
+            places[p] = p == 0 && k > 0 ? places[PLACES - 1] : map.at(knots[k] + h * PLACE_PART[p]);
+        }
+        const double from = places[0].s, to = places[PLACES - 1].s;
         const CapRest rest = rest_of(run, from, to);
         for (std::size_t p = 0; p < PLACES; ++p) {
-            const MapPoint m = map.at(knots[k] + h * PLACE_PART[p]);
+            const MapPoint &m = places[p];
             // At the ends of a cell the curve on the side of the cell: derivatives may jump there.
             const double inside = m.s + INSIDE * (0.5 * (from + to) - m.s);
+            const std::size_t last_span = span;
             while (span + 1 < spans.size() && inside >= spans[span].end_s()) {
                 ++span;
             }
-            const CurvePoint c = curve::point_at(spans[span], m.s);
+            // The start of a cell is the end of the one before it.
+            if (p > 0 || k == 0 || span != last_span) {
+                c = curve::point_at(spans[span], m.s);
+            }
             const ParameterPoint point = by_parameter(c, m);
             double joint_v2 = 0;
             std::size_t n = 0;
@@ -114,7 +123,7 @@ void make_rows(const Run &run, const RestMap &map, const double *knots, std::siz
             }
             // All moves from the place before to that behind, in the cell.
             const auto move_to = [&](std::size_t move, std::size_t place) {
-                const double s = map.at(knots[k] + h * PLACE_PART[place]).s;
+                const double s = places[place].s;
                 while (move + 1 < run.feeds->size() && s > (*run.feeds)[move].end_s) {
                     ++move;
                 }

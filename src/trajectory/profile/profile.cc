@@ -9,13 +9,18 @@ namespace mw::trajectory::profile {
 namespace {
 
 /// Cells in the time in which the jerk limit builds up an acceleration, and the least length of one [s].
-constexpr double CELLS_PER_RAMP = 20;
+constexpr double CELLS_PER_RAMP = 10;
 constexpr double LEAST_CELL_S = 5e-4;
 /// Parts of the limits that are planned with: a limit is kept at three places of a cell, and nearly so
 /// between them.
 constexpr double VELOCITY_SHARE = 0.9995, ACCELERATION_SHARE = 0.998, JERK_SHARE = 0.99;
 /// Parts of the limits by which rows are raised where a start reaches them.
 constexpr double ROOM = 5e-7, LEAST_ROOM = 1e-9;
+
+/// Where the plan before was the fastest one most of it stays so: first this part of its end is solved, with
+/// barriers between these, then all with the last one.
+constexpr double TAIL = 0.3, WARM_MU = 2.5e-2, WARM_LAST_MU = 5e-3;
+constexpr int WARM_STEPS = 5;
 
 }  // namespace
 
@@ -84,7 +89,11 @@ void Profile::take_joints(const Run &run) {
 
 void Profile::lay_cells(std::size_t fixed) {
     const Run &run = run_;
-    const double planned = cell_s_ * static_cast<double>(plan_.laid() - fixed);
+    // The creep at the end takes longer than the time for which its cells were laid.
+    double planned = 0;
+    for (std::size_t k = fixed; k < std::min(plan_.laid(), plan_.time_cells.size()); ++k) {
+        planned += std::min(plan_.time_cells[k].duration, cell_s_);
+    }
     if (plan_.has_end || planned >= settings_.window_s) {
         return;
     }
@@ -206,6 +215,7 @@ bool Profile::extend(const Run &run, std::size_t fixed) {
         plan_.ease(std::max(old, fixed), plan_.laid());
     }
     prepare(fixed, n);
+    const bool is_warm = plan_.takes_rows(rows_, fixed, old);
     for (std::size_t k = 0; k < n; ++k) {
         for (std::size_t p = 0; p < PLACES; ++p) {
             rows_.allow(k, p, plan_.eased[fixed + k][p]);
@@ -214,12 +224,25 @@ bool Profile::extend(const Run &run, std::size_t fixed) {
     if (!isStart(make_room())) {
         return false;
     }
+    const bool is_moving = fixed > 0 || plan_.before > 0;
+    const std::size_t end = plan_.has_end ? 0 : 2;
     SolveSettings settings;
     settings.cell_s = cell_s_;
-    const bool is_moving = fixed > 0 || plan_.before > 0;
-    steps_ += law_.solve(is_moving ? 2 : 0, plan_.has_end ? 0 : 2, settings);
+    if (is_warm) {
+        // The plan changes most at its end, where it braked for the creep.
+        settings.first_mu = WARM_MU;
+        settings.last_mu = WARM_LAST_MU;
+        const auto stays = static_cast<double>(old - fixed) * (1 - TAIL);
+        steps_ += law_.solve(2 + static_cast<std::size_t>(stays), end, settings);
+        settings = SolveSettings();
+        settings.cell_s = cell_s_;
+        settings.first_mu = settings.last_mu;
+        settings.steps_per_mu = WARM_STEPS;
+    }
+    steps_ += law_.solve(is_moving ? 2 : 0, end, settings);
     std::copy_n(law_.coefficients().begin(), n + 2, plan_.c.begin() + static_cast<long>(fixed));
     make_time_cells(fixed);
+    plan_.is_fastest = true;
     return true;
 }
 

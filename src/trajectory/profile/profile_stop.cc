@@ -22,7 +22,7 @@ constexpr double BELOW_PLAN = 0.9, NEAR_CREEP = 1.02;
 /// Parts of a cell at most.
 constexpr double MOST_PARTS = 8;
 /// Part of the coefficients of the start below which speed is not reduced.
-constexpr double LAST_MU = 1e-2;
+constexpr double LAST_MU = 4e-3;
 
 }  // namespace
 
@@ -110,7 +110,8 @@ std::size_t Profile::first_tail(const Run &run, const Course &course, DirectStop
     const std::size_t n = course.cells;
     std::size_t fails = 0, passes = n + 1;
     places_ = 0;
-    for (std::size_t k = 0, step = 1; passes > 0 && passes > fails + 1 + passes / 8 && k <= n;) {
+    const auto isNear = [&] { return passes <= n && passes <= fails + 1 + passes / 8; };
+    for (std::size_t k = 0, step = 1; passes > 0 && !isNear() && k <= n;) {
         DirectStop found;
         if (find_tail(run, course, k, {}, found)) {
             tail = found;
@@ -346,6 +347,7 @@ bool Profile::slow_down(const Run &run, std::size_t fixed) {
         plan_.cut(fixed + kept);
     }
     plan_.lowers = true;
+    plan_.is_fastest = false;
     plan_.ease(0, plan_.laid());
     return true;
 }

@@ -79,7 +79,22 @@ void SpeedPlan::drop(std::size_t count) {
     knots.erase(knots.begin(), knots.begin() + n);
     c.erase(c.begin(), c.begin() + n);
     eased.erase(eased.begin(), eased.begin() + n);
+    speed_rows.erase(speed_rows.begin(), speed_rows.begin() + std::min<long>(n, std::ssize(speed_rows)));
     time_cells.erase(time_cells.begin(), time_cells.begin() + n);
+}
+
+bool SpeedPlan::takes_rows(const Rows &rows, std::size_t fixed, std::size_t old) {
+    constexpr double HIGHER = 0.99;
+    bool is_same = is_fastest && 2 * (old - std::min(fixed, old)) >= rows.cells();
+    speed_rows.resize(laid());
+    for (std::size_t k = fixed; k < laid(); ++k) {
+        for (std::size_t p = 0; p < PLACES; ++p) {
+            const double row = rows.velocity(k - fixed, p);
+            is_same = is_same && (k >= old || row >= HIGHER * speed_rows[k][p]);
+            speed_rows[k][p] = row;
+        }
+    }
+    return is_same;
 }
 
 }  // namespace mw::trajectory::profile

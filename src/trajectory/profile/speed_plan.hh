@@ -28,11 +28,14 @@ struct SpeedPlan {
     std::vector<TimeCell> time_cells;
     /// What b may be at the places of each cell, above the limits of the speed; 0: nothing.
     std::vector<std::array<double, PLACES>> eased;
+    /// 1 over the squared limit of the speed at the places of each cell, when it was planned last.
+    std::vector<std::array<double, PLACES>> speed_rows;
     double before = 0;  ///< length of the cell before them; 0: there is none
     /// End of the curve as it is known, and the length over which a stop there is blended.
     double end_s = 0, end_ramp = 0;
     bool has_end = false;     ///< the last cell ends in the stop
     bool ends_early = false;  ///< a direct stop takes the place of the last cells
+    bool is_fastest = false;  ///< the last plan made the time least
     bool lowers = false;      ///< the creep behind the plan still brakes for lowered limits of the speed
 
     std::size_t laid() const noexcept { return knots.empty() ? 0 : knots.size() - 1; }
@@ -46,6 +49,10 @@ struct SpeedPlan {
     void cut(std::size_t kept);
     /// Drops the first cells.
     void drop(std::size_t count);
+    /// Takes the limits of the speed from the rows of the cells behind the fixed ones. True if most of the
+    /// plan is the fastest one already: the last plan made its first `old` cells so, for limits that were not
+    /// lower.
+    bool takes_rows(const Rows &rows, std::size_t fixed, std::size_t old);
     /// What is above limits of the speed in some cells is allowed from now on.
     void ease(std::size_t from, std::size_t to);
 };

@@ -62,6 +62,15 @@ struct Slopes {
     Lanes g0{}, g1{}, g2{}, h00{}, h01{}, h02{}, h11{}, h12{}, h22{};
 };
 
+/// One division for two inverses.
+struct Inverses {
+    Lanes first, second;
+};
+[[gnu::always_inline]] inline Inverses inverse_of(const Lanes &x, const Lanes &y) noexcept {
+    const Lanes both = 1.0 / (x * y);
+    return {both * y, both * x};
+}
+
 /// -log(1 - b v2).
 [[gnu::always_inline]] inline void add_velocity(const State &s, const Lanes &v2, Slopes &d) noexcept {
     const Lanes g = v2 / (1.0 - s.b * v2);
@@ -87,11 +96,10 @@ struct JerkBound {
                                            Slopes &d) noexcept {
     const auto [rb, slope] = jerk_bound(s, of_root, r.k);
     const Lanes u = r.a1 * s.a + r.a2 * s.b;
-    const Lanes t = 1.0 / (1.0 - u * u);
+    const Lanes z = r.j1 * s.w + r.j2 * s.a + r.j3 * s.b;
+    const auto [t, both] = inverse_of(1.0 - u * u, rb * rb - z * z);
     const Lanes g = 2.0 * u * t;
     const Lanes q = 2.0 * (1.0 + u * u) * t * t;
-    const Lanes z = r.j1 * s.w + r.j2 * s.a + r.j3 * s.b;
-    const Lanes both = 1.0 / (rb * rb - z * z);
     const Lanes low = (rb - z) * both, high = (rb + z) * both;
     const Lanes lb = slope + r.j3, ub = slope - r.j3;
     const Lanes low2 = low * low, high2 = high * high;
@@ -168,9 +176,8 @@ struct NormState {
     const JerkBound bound = jerk_bound(s, of_root, r.k);
     const Lanes rb = bound.value, slope = bound.slope * ds.b;
     const Lanes u = r.a1 * s.a + r.a2 * s.b, du = r.a1 * ds.a + r.a2 * ds.b;
-    const Lanes t = 1.0 / (1.0 - u * u);
     const Lanes z = r.j1 * s.w + r.j2 * s.a + r.j3 * s.b, dz = r.j1 * ds.w + r.j2 * ds.a + r.j3 * ds.b;
-    const Lanes both = 1.0 / (rb * rb - z * z);
+    const auto [t, both] = inverse_of(1.0 - u * u, rb * rb - z * z);
     return larger(larger(du * (1.0 + u) * t, -du * (1.0 - u) * t),
                   larger((dz - slope) * (rb + z) * both, (-dz - slope) * (rb - z) * both));
 }
@@ -211,19 +218,20 @@ void TimeLaw::begin(const Rows &rows, double before, double behind) {
 }
 
 /// Objective over mu and the barriers of all rows: gradient and Hessian in the coefficients.
-MW_WIDE void TimeLaw::assemble(double mu) {
-    const std::size_t n = c_.size();
-    gradient_.assign(n, 0.0);
+MW_WIDE void TimeLaw::assemble(double mu, const Range &range) {
+    const auto from = static_cast<long>(range.first_block * LANES),
+               to = static_cast<long>(range.last_block * LANES + 2);
+    std::fill(gradient_.begin() + from, gradient_.begin() + to, 0.0);
     for (auto &d : diagonal_) {
-        d.assign(n, 0.0);
+        std::fill(d.begin() + from, d.begin() + to, 0.0);
     }
     // Coefficients above 0 keep b above 0 everywhere, between the places too.
-    for (std::size_t i = 0; i < cells() + 2; ++i) {
+    for (std::size_t i = range.first; i < range.last; ++i) {
         const double per_slack = 1 / (c_[i] - floors_[i]);
         gradient_[i] = weights_[i] / mu - per_slack;
         diagonal_[0][i] = per_slack * per_slack;
     }
-    for (std::size_t block = 0; block < rows_->blocks(); ++block) {
+    for (std::size_t block = range.first_block; block < range.last_block; ++block) {
         const std::size_t k = block * LANES;
         const Lanes h = load(&h_[k]);
         const Weights m{h * load(&alpha_[k]), h * load(&alpha_[k + 1]), real_lanes(k, cells())};
@@ -237,7 +245,9 @@ MW_WIDE void TimeLaw::assemble(double mu) {
             const Lanes weight = (SIMPSON[p] / mu) * h * m.real * time_weight_;
             Slopes d;
             d.g0 = weight * slope;
-            d.h00 = 0.75 * weight * rb * per_b * per_b;
+            const Lanes level = level_ * m.real;
+            d.g0 -= level * per_b;
+            d.h00 = (0.75 * weight * rb + level) * per_b * per_b;
             add_velocity(s, rows_->velocity_lanes(block, p), d);
             const RowLanes *row = rows_->row_lanes(block, p);
             for (std::size_t i = 0; i < rows_->coordinates(); ++i) {
@@ -267,8 +277,8 @@ MW_WIDE void TimeLaw::assemble(double mu) {
 }
 
 /// LDL' of half bandwidth 2 on the coefficients [first, last), and the step that it gives.
-void TimeLaw::factorise(std::size_t first, std::size_t last) {
-    step_.assign(c_.size(), 0.0);
+void TimeLaw::factorise(const Range &range) {
+    const std::size_t first = range.first, last = range.last;
     std::vector<double> &D = diagonal_[0], &E = diagonal_[1], &F = diagonal_[2];
     for (std::size_t i = first; i < last; ++i) {
         double d = D[i], e = E[i], g = -gradient_[i];
@@ -301,9 +311,9 @@ void TimeLaw::factorise(std::size_t first, std::size_t last) {
 }
 
 /// The step to the nearest row, over the step of Newton's method.
-MW_WIDE double TimeLaw::longest_step() const {
+MW_WIDE double TimeLaw::longest_step(const Range &range) const {
     Lanes worst{};
-    for (std::size_t block = 0; block < rows_->blocks(); ++block) {
+    for (std::size_t block = range.first_block; block < range.last_block; ++block) {
         const std::size_t k = block * LANES;
         const Lanes h = load(&h_[k]);
         const Weights m{h * load(&alpha_[k]), h * load(&alpha_[k + 1]), real_lanes(k, cells())};
@@ -326,7 +336,7 @@ MW_WIDE double TimeLaw::longest_step() const {
         }
     }
     double most = 1e-300;
-    for (std::size_t i = 0; i < cells() + 2; ++i) {
+    for (std::size_t i = range.first; i < range.last; ++i) {
         most = std::max(most, -step_[i] / (c_[i] - floors_[i]));
     }
     for (std::size_t i = 0; i < LANES; ++i) {
@@ -335,14 +345,14 @@ MW_WIDE double TimeLaw::longest_step() const {
     return 1 / most;
 }
 
-double TimeLaw::newton(double mu, std::size_t first, std::size_t last) {
-    assemble(mu);
-    factorise(first, last);
+double TimeLaw::newton(double mu, const Range &range) {
+    assemble(mu, range);
+    factorise(range);
     if (!std::isfinite(decrement_)) {
         return 0;  // the factorisation failed by rounding: the coefficients stay
     }
-    const double t = std::min(1.0, KEEP * longest_step());
-    for (std::size_t i = first; i < last; ++i) {
+    const double t = std::min(1.0, KEEP * longest_step(range));
+    for (std::size_t i = range.first; i < range.last; ++i) {
         c_[i] += t * step_[i];
     }
     return t;
@@ -350,7 +360,20 @@ double TimeLaw::newton(double mu, std::size_t first, std::size_t last) {
 
 int TimeLaw::solve(std::size_t fixed_start, std::size_t fixed_end, const SolveSettings &settings) {
     const std::size_t last = cells() + 2 - fixed_end;
+    if (last <= fixed_start) {
+        return 0;
+    }
+    // A coefficient has part in the cell of its number and the two before it.
+    const Range range{fixed_start, last, (std::max<std::size_t>(fixed_start, 2) - 2) / LANES,
+                      std::min(rows_->blocks(), (last - 1) / LANES + 1)};
+    gradient_.resize(c_.size());
+    step_.assign(c_.size(), 0.0);
+    for (auto &d : diagonal_) {
+        d.resize(c_.size());
+    }
     const bool is_time = settings.objective == Objective::TIME;
+    level_ =
+        Lanes{} + (is_time ? 0.0 : static_cast<double>(rows_->coordinates()) + (rows_->hasNorm() ? 1 : 0));
     time_weight_ = Lanes{} + (is_time ? 1 / settings.cell_s : 0.0);
     weights_.assign(c_.size(), 0.0);
     for (std::size_t i = 0; i < c_.size() && !is_time; ++i) {
@@ -359,7 +382,7 @@ int TimeLaw::solve(std::size_t fixed_start, std::size_t fixed_end, const SolveSe
     int steps = 0;
     for (double mu = settings.first_mu;; mu = std::max(mu * settings.factor, settings.last_mu)) {
         for (int i = 0; i < settings.steps_per_mu; ++i) {
-            const double t = newton(mu, fixed_start, last);
+            const double t = newton(mu, range);
             ++steps;
             if (t == 0) {
                 return steps;

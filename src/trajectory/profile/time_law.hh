@@ -53,15 +53,22 @@ class TimeLaw {
     double worst_at(std::size_t cell, std::size_t place) const noexcept;
 
   private:
-    double newton(double mu, std::size_t first, std::size_t last);
-    void assemble(double mu);
-    void factorise(std::size_t first, std::size_t last);
-    double longest_step() const;
+    /// Coefficients that change, and the blocks of cells in which they have part.
+    struct Range {
+        std::size_t first = 0, last = 0, first_block = 0, last_block = 0;
+    };
+    double newton(double mu, const Range &range);
+    void assemble(double mu, const Range &range);
+    void factorise(const Range &range);
+    double longest_step(const Range &range) const;
 
     const Rows *rows_ = nullptr;
     std::vector<double> c_, step_, gradient_, floors_;
-    std::vector<double> weights_;    ///< of the coefficients in the objective
-    Lanes time_weight_{};            ///< of the time
+    std::vector<double> weights_;  ///< of the coefficients in the objective
+    Lanes time_weight_{};          ///< of the time
+    /// Slacks of jerk grow without bound as b falls: -log(b) for each makes their barrier that of the jerk
+    /// times sqrt(b), which stays where it is for b near 0. Counts when the speed is made least.
+    Lanes level_{};
     std::vector<double> h_, alpha_;  ///< padded: lengths of the cells; 1/(h of a cell + h of the one before)
     std::array<std::vector<double>, 3> diagonal_;  ///< of the Hessian: on the diagonal, one and two beside it
     double decrement_ = 0;

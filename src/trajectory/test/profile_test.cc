@@ -182,6 +182,66 @@ TEST(Profile, RejectsAPlanThatStartsOutsideOfALimit) {
     EXPECT_EQ(line.profile.rejected(), 2);
 }
 
+/// The time from a place to the end of a line after the feed was raised there.
+double time_after_raise(LinePlan &line, double low) {
+    line.feeds[0].velocity = low;
+    std::vector<TimeCell> cells;
+    for (int n = 0; n < 12; ++n) {
+        EXPECT_TRUE(line.profile.plan(line.run, 0));
+        take(line.profile, 0.05, cells);
+    }
+    line.feeds[0].velocity = 90;
+    cells.clear();
+    for (bool is_done = false; !is_done && cells.size() < 100000;) {
+        EXPECT_TRUE(line.profile.plan(line.run, 0));
+        is_done = take(line.profile, 0.05, cells);
+    }
+    double t = 0;
+    for (const TimeCell &cell : cells) {
+        t += cell.duration;
+    }
+    return t - (200 - cells[0].c[0]) / 90;
+}
+
+TEST(Profile, SpeedsUpWithinAPlanWhenTheFeedIsRaised) {
+    for (const double low : {5.0, 30.0, 80.0}) {
+        LinePlan line(200, {{200, 1e300}});
+        // From the lower speed to 90 units/s and to rest: half of the speed is lost over each ramp. The next
+        // 50 ms were planned to go on slowly.
+        const double up = (90 - low) * (90 - low) / 90 / 1000 / 2 + (90 - low) / 90 * 0.02 / 2;
+        const double down = 90.0 / 1000 / 2 + 0.02 / 2;
+        EXPECT_LT(time_after_raise(line, low), up + down + 0.02) << low;
+    }
+}
+
+/// The slack of a jerk row grows as the speed falls. It must not pull the speed to 0.
+TEST(TimeLaw, MakesTheSpeedLeastDownToAPartOfTheStart) {
+    LinePlan line(200, {{200, 1e300}});
+    RestMap map;
+    map.set_start(-100, 0.1);
+    std::vector<double> knots;
+    for (int k = 0; k <= 120; ++k) {
+        knots.push_back(map.parameter_at(50) + 0.1 * k);
+    }
+    Rows rows;
+    make_rows(line.run, map, knots.data(), knots.size() - 1, rows);
+    TimeLaw law;
+    law.begin(rows, 0.1, 0.1);
+    constexpr double START = 50.0 * 50.0;
+    law.coefficients().assign(law.cells() + 2, START);
+    SolveSettings settings;
+    settings.objective = Objective::SPEED;
+    settings.last_mu = 1e-2;
+    settings.steps_per_mu = 20;
+    law.solve(2, 0, settings);
+    EXPECT_LE(law.worst(), 1);
+    // A stop takes 50 ms and 1.25 units, and the time of full jerk.
+    for (std::size_t k = 40; k + 1 < law.cells(); ++k) {
+        EXPECT_GT(law.state(k, 0.5).b, 1e-3 * START) << k;
+        EXPECT_LT(law.state(k, 0.5).b, 5e-2 * START) << k;
+    }
+}
+
 /// A creep over cells of any length keeps every row by far: it is a function of the path.
 TEST(Profile, CreepsAlikeOverCellsOfAnyLength) {
     LinePlan line(20, {{7, 1e300}, {7.2, 0.5}, {20, 50}});
