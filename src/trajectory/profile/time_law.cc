@@ -8,7 +8,7 @@
 // inline what such functions call. Multiplications and additions stay apart (-ffp-contract=off), so that the
 // bits are the same.
 #if defined(__x86_64__) && !defined(__clang__)
-#define MW_WIDE [[gnu::target_clones("avx2", "default")]]
+#define MW_WIDE [[gnu::target_clones("arch=x86-64-v4", "avx2", "default")]]
 #else
 #define MW_WIDE
 #endif

@@ -207,7 +207,7 @@ TEST(Profile, SpeedsUpWithinAPlanWhenTheFeedIsRaised) {
     for (const double low : {5.0, 30.0, 80.0}) {
         LinePlan line(200, {{200, 1e300}});
         // From the lower speed to 90 units/s and to rest: half of the speed is lost over each ramp. The next
-        // 50 ms were planned to go on slowly.
+        // 50 ms were planned at the lower speed.
         const double up = (90 - low) * (90 - low) / 90 / 1000 / 2 + (90 - low) / 90 * 0.02 / 2;
         const double down = 90.0 / 1000 / 2 + 0.02 / 2;
         EXPECT_LT(time_after_raise(line, low), up + down + 0.02) << low;
