@@ -7,20 +7,34 @@ import { bringUp, errorsOf, Rig, sleep, text, until, untilText } from './rig';
 const rig = new Rig();
 let page: Page;
 
-/** In place of navigator.getGamepads: `window.pad` is what it says. */
+/** In place of navigator.getGamepads: `window.pad` is what it returns, `window.polls` how often it was called. */
 const FAKED = `window.pad = null;
-navigator.getGamepads = () => [window.pad === null ? null : { index: 0, id: 'faked', connected: true, mapping: 'standard', timestamp: performance.now(),
-  axes: window.pad.axes, buttons: Array.from({ length: 17 }, (_, i) => ({ pressed: window.pad.hold && i === 4, value: 0, touched: false })) }];`;
+window.polls = 0;
+navigator.getGamepads = () => (++window.polls, [window.pad === null ? null : { index: 0, id: 'faked', connected: true, mapping: 'standard', timestamp: performance.now(),
+  axes: window.pad.axes, buttons: Array.from({ length: 17 }, (_, i) => ({ pressed: window.pad.hold && i === 4, value: 0, touched: false })) }]);`;
 
-async function set(hold: boolean, axes: number[]): Promise<void> {
-  await page.evaluate(([held, all]) => {
-    (window as unknown as { pad: unknown }).pad = { hold: held, axes: all };
+interface Faked {
+  pad: { hold: boolean; axes: readonly number[] } | null;
+  polls: number;
+}
+
+/** How often the page had polled before. */
+async function put(hold: boolean, axes: number[]): Promise<number> {
+  return page.evaluate(([held, all]) => {
+    const faked = window as unknown as Faked;
+    faked.pad = { hold: held, axes: all };
+    return faked.polls;
   }, [hold, axes] as const);
-  await sleep(80);
+}
+const POLLS = 4;
+/** Until the page has polled several times: what moves nothing at once must not do so later. */
+async function set(hold: boolean, axes: number[]): Promise<void> {
+  const before = await put(hold, axes);
+  await until(() => page.evaluate((polls) => (window as unknown as Faked).polls >= polls, before + POLLS), 'polls');
 }
 async function unplug(): Promise<void> {
   await page.evaluate(() => {
-    (window as unknown as { pad: unknown }).pad = null;
+    (window as unknown as Faked).pad = null;
   });
 }
 async function stands(): Promise<boolean> {
@@ -95,9 +109,10 @@ it('does nothing in another view, nor when it is switched off', async () => {
   expect(await stands()).toBe(true); // the stick is out of its middle
   await page.setViewportSize({ width: 390, height: 844 });
   await page.getByTestId('tab-path').click();
-  await set(false, [0, 0, 0, 0]);
-  await set(true, [0, 0, 0, 0]);
-  await set(true, [0.9, 0, 0, 0]);
+  for (const [hold, x] of [[false, 0], [true, 0], [true, 0.9]] as const) {
+    await put(hold, [x, 0, 0, 0]);
+    await sleep(80); // the page does not poll in this view
+  }
   expect(await stands()).toBe(true);
   expect(await text(page, 'run-state')).toBe('Idle');
   expect(errorsOf(page)).toEqual([]);
