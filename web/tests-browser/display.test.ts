@@ -62,7 +62,7 @@ it('has the title and the picture of the file', async () => {
 
 it('runs programs that wait for its pins, and reports failures', async () => {
   await until(() => rig.signal('door-open') === 'FALSE', 'the link of post.hal');
-  expect(rig.signal('from-command')).toBe('FALSE');
+  await until(() => rig.signal('from-command') === 'FALSE', 'the signal of POSTGUI_HALCMD');
   await page.getByTestId('tab-messages').click();
   await untilText(page, 'messages', /POSTGUI.*nonsense/s, 30_000);
 });

@@ -2,7 +2,7 @@
 // A simulated mill in real time, its server, and a browser: separate instance, folders and ports for each file.
 import { createRequire } from 'node:module';
 import { createServer } from 'node:net';
-import { execFileSync, spawn, type ChildProcess } from 'node:child_process';
+import { execFileSync, spawn, spawnSync, type ChildProcess } from 'node:child_process';
 import { cpSync, existsSync, mkdirSync, mkdtempSync, openSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
@@ -179,8 +179,9 @@ export class Rig {
   pin(name: string): string {
     return execFileSync(join(BUILD, 'bin/halcmd'), ['getp', name], { env: this.env, encoding: 'utf8' }).trim();
   }
+  /** A signal of HAL; empty: there is none. */
   signal(name: string): string {
-    return execFileSync(join(BUILD, 'bin/halcmd'), ['gets', name], { env: this.env, encoding: 'utf8' }).trim();
+    return spawnSync(join(BUILD, 'bin/halcmd'), ['gets', name], { env: this.env, encoding: 'utf8', stdio: ['ignore', 'pipe', 'ignore'] }).stdout.trim();
   }
   setPin(name: string, value: string): void {
     execFileSync(join(BUILD, 'bin/halcmd'), ['setp', name, value], { env: this.env });
