@@ -43,7 +43,7 @@ void CurvePlanner::begin(const Pose &start, const Snapshot &now, const PathDeman
     drops_ = now.drops;
     is_running_ = is_abandoned_ = is_changed_ = is_lower_ = is_window_full_ = false;
     delay_s_ = 0;
-    start_cycle_ = 0;
+    start_cycle_ = tried_cycle_ = 0;
     failures_ = 0;
 }
 
@@ -157,9 +157,8 @@ void CurvePlanner::start(const Snapshot &now, const Conditions &conditions) {
     }
     profile_.begin(path_.on_span_end(s));
     numbers_.clear();
-    profile_.plan(run_, 0);
     is_changed_ = is_lower_ = false;
-    const bool is_made = profile_.cells() > 0 && commit(now, 0);
+    const bool is_made = profile_.plan(run_, 0) && profile_.cells() > 0 && commit(now, 0);
     failures_ = is_made ? 0 : failures_ + 1;
     is_running_ = is_made;
 }
@@ -176,10 +175,11 @@ std::size_t CurvePlanner::first_free_cell(const Snapshot &now) const noexcept {
 
 void CurvePlanner::continue_plan(const Snapshot &now, const Conditions &conditions) {
     const double since = static_cast<double>(now.cycle - planned_cycle_) * period_s_;
-    const bool is_due = since >= PLANNING_S && committed_s_ - since < RESERVE_S;
-    if (!is_due && !is_changed_) {
+    const bool is_due = committed_s_ - since < RESERVE_S || is_changed_;
+    if (!is_due || static_cast<double>(now.cycle - tried_cycle_) * period_s_ < PLANNING_S) {
         return;
     }
+    tried_cycle_ = now.cycle;
     const std::size_t fixed = first_free_cell(now);
     if (fixed >= numbers_.size()) {
         return;  // too late: the plan ends in its last stop
@@ -206,12 +206,11 @@ void CurvePlanner::continue_plan(const Snapshot &now, const Conditions &conditio
     }
     const bool is_nearer = run.end_s < old_end - SAME_PLACE;
     const bool is_taken_away = profile_.isComplete() && was_stop && !is_same;
-    run_ = run;
-    if (is_lower_ || is_nearer || is_taken_away) {
-        profile_.replan(run_, fixed);
-    } else {
-        profile_.plan(run_, fixed);
+    const bool must_slow = is_lower_ || is_nearer || is_taken_away;
+    if (!(must_slow ? profile_.replan(run, fixed) : profile_.plan(run, fixed))) {
+        return;  // the plan before stays, with its stops
     }
+    run_ = run;
     is_changed_ = is_lower_ = false;
     numbers_.resize(fixed);
     if (profile_.cells() <= fixed || !commit(now, fixed)) {

@@ -75,7 +75,7 @@ class CurvePlanner {
     std::vector<Sequence> numbers_;  ///< of the cells of the profile that are committed
     Sequence next_cell_ = 1;
     std::uint64_t plan_ = 0, first_plan_ = 0;
-    std::uint64_t planned_cycle_ = 0;
+    std::uint64_t planned_cycle_ = 0, tried_cycle_ = 0;
     double committed_s_ = 0;  ///< from then to the last stop, about
     std::uint64_t drops_ = 0;
     bool is_running_ = false;    ///< a plan was committed and has not ended
