@@ -42,7 +42,7 @@ struct StopSearch {
     const Snapshot &now;
     LeaderState from;
 
-    /// Drafts the stop that stands soonest of those that pass the trial; false where it refuses all.
+    /// Drafts the soonest stop of those that pass the trial; false where all are rejected.
     bool draft_soonest() noexcept;
 
   private:
@@ -276,7 +276,7 @@ void Planner::plan_tried(const Snapshot &now) noexcept {
     }
     case Demand::Kind::STOP: find_plan(now, demand.from, Ending::STOP); break;
     case Demand::Kind::PASS: start_pass(now, demand.from); break;
-    case Demand::Kind::EXTEND:  // every plan goes as far as it will
+    case Demand::Kind::EXTEND:  // every plan goes to its end
     case Demand::Kind::NOTHING: break;
     }
 }

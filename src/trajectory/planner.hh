@@ -13,7 +13,7 @@
 namespace mw::trajectory {
 
 struct Trouble {
-    bool isStuck = false;  ///< it has stood for a second without finding a plan that passes the trial
+    bool isStuck = false;  ///< it is stopped and found no plan within a second
     Overreach overreach;   ///< of who chooses speeds: the path stops
 };
 
@@ -42,7 +42,7 @@ class Planner {
         return demand;
     }
     /// With jerk limits a path is made for what it began with; a much smaller tolerance, or rotary axes that
-    /// it began without, ask for another path, from a stop.
+    /// it began without, require another path, from a stop.
     bool suits(const PathDemand &demand) const noexcept {
         return curve_.suits(demand, conditions_) && (curve_.isActive() || conditions_.limits.suits(demand));
     }
@@ -50,7 +50,7 @@ class Planner {
     /// For machines whose joints are not axes; `map` stays valid. Null: the axes' limits are all there are.
     void set_joints(const JointMap *map, const JointLimits &limits) noexcept;
 
-    /// Soft limits of the axes: the path is not moved beyond them, wherever the program leads. None to begin
+    /// Soft limits of the axes: the path never leaves them. None to begin
     /// with; +-infinity where none holds. Joints with a room are kept within that, others within their soft
     /// limits.
     void set_room(const Pose &low, const Pose &high, const JointRoom &joints = {}) noexcept;
@@ -59,7 +59,7 @@ class Planner {
     /// its first move.
     void begin(const Pose &start, const Snapshot &now, const PathDemand &demand = {}) noexcept;
 
-    /// There is room for one more move.
+    /// One more move can be added.
     bool hasRoom(const Snapshot &now) const noexcept {
         return curve_.isActive() ? curve_.path().hasRoom()
                                  : PathBuilder::hasRoom(path_, conditions_.limits, now);
@@ -100,9 +100,9 @@ class Planner {
     Sequence waiting_gate(const Snapshot &now) const noexcept;
     /// Single blocks: stops where the source block is another than `block`.
     void set_step(bool isStepping, std::uint32_t block) noexcept;
-    /// The executor stands, and only the wish for single blocks keeps it from going on.
+    /// The executor is stopped, and only single blocks keep it from continuing.
     bool isAtStepStop(const Snapshot &now) const noexcept;
-    /// There is something that `next_block` can tell of.
+    /// `next_block` has an answer.
     bool hasNext(const Snapshot &now) const noexcept;
     /// The block that comes next for an executor in state `now`.
     std::uint32_t next_block(const Snapshot &now) const noexcept;
@@ -115,13 +115,13 @@ class Planner {
         return curve_.isActive() ? curve_.isStarving()
                                  : builder_.hasOpenEnd() && (timing_.isAtEndOf(path_) || path_.isAllDriven());
     }
-    /// Why the path does not go on; each once.
+    /// Why the path does not continue; each once.
     Trouble take_trouble() noexcept;
     std::uint32_t moves_left(const Snapshot &now) const noexcept;
 
   private:
     PathView view() const noexcept { return {path_, conditions_}; }
-    /// The move at whose very beginning the executor stands, 0: none.
+    /// The move at whose start the executor is stopped, 0: none.
     Sequence standing_before(const Snapshot &now) const noexcept;
     void plan_tried(const Snapshot &now) noexcept;
     bool find_plan(const Snapshot &now, LeaderState from, Ending ending) noexcept;
