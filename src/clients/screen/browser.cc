@@ -146,6 +146,12 @@ void Browser::note_jog(const messages::Command &command) {
     }
 }
 
+bool Browser::isEffectShown(Followed &one, std::int64_t now_ns) const {
+    one.done_ns = one.done_ns == 0 ? now_ns : one.done_ns;
+    return !isAttached() || !has_whole_ || status_ns_ > one.done_ns ||
+           now_ns - one.done_ns >= LONGEST_WAIT_NS;
+}
+
 void Browser::follow(std::int64_t now_ns) {
     if (!client_.has_value() && shared_ == nullptr) {
         return;
@@ -153,6 +159,9 @@ void Browser::follow(std::int64_t now_ns) {
     std::erase_if(followed_, [this, now_ns](Followed &one) {
         const client::Outcome outcome =
             one.client != nullptr ? one.client->outcome(one.serial) : client_->outcome(one.serial);
+        if (outcome.progress == messages::Progress::DONE && !isEffectShown(one, now_ns)) {
+            return false;
+        }
         const bool over = outcome.progress != messages::Progress::STARTED;
         const bool to_be_told = over || (!one.isTold && now_ns - one.since_ns >= SOON_NS);
         if (to_be_told) {
@@ -164,7 +173,8 @@ void Browser::follow(std::int64_t now_ns) {
     });
 }
 
-void Browser::tell_status(const messages::MachineStatus &status) {
+void Browser::tell_status(const messages::MachineStatus &status, std::int64_t now_ns) {
+    status_ns_ = now_ns;
     if (!has_whole_) {
         has_whole_ = true;
         unread_ = 0;

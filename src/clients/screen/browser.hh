@@ -36,6 +36,8 @@ class Browser {
     /// A command that has not ended by then is reported as STARTED.
     static constexpr std::int64_t SOON_NS = 50000000;
     static const char *const ONLY_STOPS;  ///< why other commands of a screen without a slot are rejected
+    /// DONE does not wait longer for a status: none is read when task is silent.
+    static constexpr std::int64_t LONGEST_WAIT_NS = 300000000;
     /// A browser that says nothing for so long is gone.
     static constexpr std::int64_t SILENCE_NS = 5000000000;
 
@@ -66,12 +68,12 @@ class Browser {
 
     /// A text from its socket. A stop is posted at once.
     void receive(std::string_view text, std::int64_t now_ns);
-    /// Tells the outcomes that are new.
+    /// Tells the outcomes that are new; DONE behind a status that was read later, which shows the effect.
     void follow(std::int64_t now_ns);
     /// Parts of the status that were read are sent with the next one.
     void note_read(PartMask parts) { unread_ |= parts; }
     /// The whole at first, then what has changed; nothing when nothing has.
-    void tell_status(const messages::MachineStatus &status);
+    void tell_status(const messages::MachineStatus &status, std::int64_t now_ns);
     void tell(std::string text) { send_(std::move(text)); }
     /// Names of HAL that it shows.
     const std::vector<std::string> &watched() const { return watched_; }
@@ -91,8 +93,10 @@ class Browser {
         client::Client *client = nullptr;  ///< through which it went; null: the screen's own
         client::Serial serial = 0;
         std::int64_t since_ns = 0;
-        bool isTold = false;  ///< as STARTED
+        bool isTold = false;       ///< as STARTED
+        std::int64_t done_ns = 0;  ///< when it was seen as DONE; 0: not yet
     };
+    bool isEffectShown(Followed &one, std::int64_t now_ns) const;
     void carry_out(const Ask &ask, std::int64_t now_ns);
     /// A lease counts from when it was asked for. False: it is over already.
     bool shorten_lease(messages::Command &command, const Ask &ask, std::int64_t now_ns);
@@ -107,6 +111,7 @@ class Browser {
     std::optional<client::Client> client_;
     StatusDelta delta_;
     bool has_whole_ = false;
+    std::int64_t status_ns_ = 0;  ///< of the last status
     PartMask unread_ = 0;
     std::vector<std::string> watched_;
     std::map<std::string, std::string> told_values_;

@@ -82,7 +82,7 @@ void Screens::opened(SessionId session, const Rights &rights, std::int64_t now_n
         browser.tell(note_text(Browser::ONLY_STOPS));
     }
     if (const messages::MachineStatus *now = status()) {
-        browser.tell_status(*now);
+        browser.tell_status(*now, now_ns_);
     }
     for (const Kept &message : kept_) {
         browser.tell(aged(message.text, now_ns - message.at_ns));
@@ -124,13 +124,13 @@ void Screens::tick(std::int64_t now_ns) {
     if (!isMachineUp()) {
         return;
     }
-    for (const auto &[session, browser] : browsers_) {
-        browser->follow(now_ns);
-    }
     if (now_ns >= next_status_ns_) {
         next_status_ns_ = now_ns + setup_.status_period_ns;
         pass_messages();
         tell_statuses();
+    }
+    for (const auto &[session, browser] : browsers_) {
+        browser->follow(now_ns);
     }
 }
 
@@ -275,7 +275,7 @@ void Screens::tell_statuses() {
         browser->note_read(fresh);
         // A slow screen gets the rest with its next status.
         if (browser->isAttached() && sockets_.isIdle(session)) {
-            browser->tell_status(watch_->status());
+            browser->tell_status(watch_->status(), now_ns_);
         }
     }
 }

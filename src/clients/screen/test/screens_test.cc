@@ -147,7 +147,7 @@ TEST_F(ScreensTest, EachCommandHasItsOutcome) {
     go(300);
     open(1);
     command(1, 7, "SetState", R"("state":"ESTOP_RESET")");
-    EXPECT_EQ(go(10).size(), 1U);
+    EXPECT_EQ(go(100).size(), 1U);
     auto outcomes = of_kind(1, "outcome");
     ASSERT_EQ(outcomes.size(), 1U);
     EXPECT_EQ(outcomes[0]["outcome"], Json::parse(R"({"id":7,"progress":"DONE"})"));
@@ -164,6 +164,28 @@ TEST_F(ScreensTest, EachCommandHasItsOutcome) {
     outcomes = of_kind(1, "outcome");
     ASSERT_EQ(outcomes.size(), 1U);
     EXPECT_EQ(outcomes[0]["outcome"], Json::parse(R"({"id":8,"progress":"FAILED","reason":"no switch"})"));
+}
+
+TEST_F(ScreensTest, ACommandIsDoneBehindAStatusThatShowsItsEffect) {
+    go(300);
+    open(1);
+    for (int n = 1; n <= 7; ++n) {
+        command(1, n, "SetState", R"("state":"ESTOP_RESET")");
+        go(10);
+        task.status->joints[0].pos_cmd = n;  // the effect, in the cycle behind the outcome
+        go(90);
+        bool is_shown = false, is_done = false;
+        for (const Json &one : sockets.take(1)) {
+            const Json joints = one.value("status", Json::object()).value("joints", Json::object());
+            is_shown = is_shown || (joints.contains("0") && joints["0"]["pos_cmd"] == n);
+            if (one.contains("outcome")) {
+                is_done = true;
+                EXPECT_TRUE(is_shown) << n;
+            }
+        }
+        EXPECT_TRUE(is_done) << n;
+        go(10 * n);  // another time before the next status
+    }
 }
 
 TEST_F(ScreensTest, WhatIsNoCommandIsRefusedWithAReason) {
@@ -257,7 +279,7 @@ TEST_F(ScreensTest, AScreenWithoutAPlaceStopsTheMachine) {
     command(7, 1, "SynchInterpreter");
     command(7, 2, "AbortAll");
     command(7, 3, "PauseProgram");
-    EXPECT_EQ(go(20).size(), 2U);
+    EXPECT_EQ(go(100).size(), 2U);
     const auto outcomes = of_kind(7, "outcome");
     ASSERT_EQ(outcomes.size(), 3U);
     EXPECT_EQ(outcomes[0]["outcome"]["progress"], "REFUSED");
