@@ -71,7 +71,7 @@ SETTINGS = [
     ('JOINT', 'MIN_FERROR', '5', 'is above'), ('JOINT', 'HOME_LATCH_VEL', '0', None), ('JOINT', 'HOME_SEARCH_VEL', '0', None),
     ('JOINT', 'HOME_LATCH_VEL', '75', 'faster than'), ('JOINT', 'HOME_SEQUENCE', '7', 'left out'),
     ('JOINT', 'TYPE', 'ANGULAR', 'unit is wrong'), ('JOINT', 'TYPE', 'ROUND', 'not known'), ('JOINT', 'HOME_SEQUENCE', '5000', 'out of range'),
-    ('AXIS', 'MAX_VELOCITY', '900', 'beyond'), ('AXIS', 'MAX_LIMIT', '900', 'beyond'), ('AXIS', 'MIN_LIMIT', '-900', 'beyond'),
+    ('AXIS', 'MAX_VELOCITY', '900', 'exceeds'), ('AXIS', 'MAX_LIMIT', '900', 'exceeds'), ('AXIS', 'MIN_LIMIT', '-900', 'exceeds'),
     ('AXIS', 'MAX_LIMIT', '-900', 'MIN_LIMIT is above MAX_LIMIT'), ('TRAJ', 'COORDINATES', 'X Y Z A', None), ('TRAJ', 'COORDINATES', 'X Y Q', 'letter'),
     ('TRAJ', 'LINEAR_UNITS', 'inch', None), ('TRAJ', 'LINEAR_UNITS', 'cm', 'not known'), ('TRAJ', 'DEFAULT_LINEAR_VELOCITY', '900', 'is above'),
     ('KINS', 'JOINTS', '2', None), ('KINS', 'JOINTS', '40', 'out of range'), ('KINS', 'KINEMATICS', 'trivkin', None),

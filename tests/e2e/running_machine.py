@@ -145,7 +145,7 @@ def clients_and_signals(bench, machine):
     running = bench.run('long.ngc')
     expect(wait_until(lambda: bench.pin('spindle.0.on') == 'TRUE'), 'the long program runs', running.text)
     second = bench.run('short3.ngc')
-    expect(second.end() == 1 and 'runs a program' in second.text, 'a second client is rejected meanwhile', second.text)
+    expect(second.end() == 1 and 'already running a program' in second.text, 'a second client is rejected meanwhile', second.text)
     expect(running.process.poll() is None and bench.pin('spindle.0.on') == 'TRUE', 'and the first continues')
     os.kill(running.process.pid, signal.SIGTERM)
     expect(running.end() == 1 and 'stopped by SIGTERM' in running.text, 'a stop of the client ends its program', running.text)
@@ -161,7 +161,7 @@ def clients_and_signals(bench, machine):
     running.process.wait()
     expect(wait_until(lambda: bench.pin('spindle.0.on') == 'FALSE') and time.monotonic() - begin < 5 and bench.stands(),
            'the program of a client that is killed is aborted', machine.text)
-    expect('is gone: aborted' in machine.text, 'and that is said', machine.text)
+    expect('has disconnected: its work was aborted' in machine.text, 'and that is said', machine.text)
     after = bench.run('short3.ngc')
     expect(after.end() == 0 and abs(bench.position() - 3) < 1e-6, 'the next client has the machine', after.text)
 

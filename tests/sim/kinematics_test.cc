@@ -189,7 +189,7 @@ TEST_F(KinematicsTest, APlatformMovesOnceItsPoseIsKnown) {
     hexapod.joints = std::vector<SimJoint>(6, SimJoint{false, 200, 1500, 1, 1000, 0, 29.7467});
     switch_on_config(hexapod.write(folder_));
     EXPECT_NE(mdi("G21 G90 G1 X1 F600"), task::Progress::DONE) << "the strut lengths alone define no pose";
-    EXPECT_NE(messages().find("has no pose"), std::string::npos) << messages();
+    EXPECT_NE(messages().find("found no pose"), std::string::npos) << messages();
     EXPECT_NEAR(motion().joint[0].pos_cmd, 29.7467, 1e-9);
     hexapod.hal_lines = "setp genhexkins.z 18\n";
     switch_on_config(hexapod.write(folder_));

@@ -154,7 +154,7 @@ TEST(CycleReport, TellsWhichWayPacketsWereLost) {
     }
     cycles[600].board_packets = 0;
     EXPECT_EQ(all_causes(cycles), "1 packets did not reach the board.\n"
-                                  "1 answers of the board were lost on their way, or the board was off.\n");
+                                  "1 replies of the board were lost, or the board was off.\n");
 }
 
 TEST(CycleReport, NamesTheKernelAndLateAnswers) {

@@ -316,7 +316,7 @@ TEST(MachineConfig, UnitsMayBeANumberPerMillimetre) {
     const Config metric(replaced(GOOD, "LINEAR_UNITS = inch", "LINEAR_UNITS = 1.0"));
     EXPECT_FALSE(metric.sink.hasErrors());
     EXPECT_TRUE(metric.machine.metric);
-    EXPECT_TRUE(metric.says("is taken as mm"));
+    EXPECT_TRUE(metric.says("is interpreted as mm"));
     const Config odd(replaced(GOOD, "LINEAR_UNITS = inch", "LINEAR_UNITS = 2"));
     EXPECT_TRUE(odd.sink.hasErrors());
 }

@@ -434,7 +434,8 @@ TEST_F(ToolDataTest, ADatabaseThatCannotWorkStopsTheStartByName) {
     EXPECT_NE(error_of("exit 3\n").find("'./db' cannot be queried: it has ended with status 3"),
               std::string::npos);
     EXPECT_NE(error_of("sleep 9\n").find("does not report its version within 0.3 s"), std::string::npos);
-    EXPECT_NE(error_of("echo v1.0\nsleep 9\n").find("speaks version 'v1.0', not v2.1"), std::string::npos);
+    EXPECT_NE(error_of("echo v1.0\nsleep 9\n").find("has protocol version 'v1.0', not v2.1"),
+              std::string::npos);
     EXPECT_NE(
         error_of("echo v2.1\nread x\necho T1 P1\nsleep 9\n").find("does not answer to 'g' within 0.3 s"),
         std::string::npos);

@@ -27,7 +27,7 @@ TEST(RecordText, ReadsWhatItWritesAndIgnoresTheRest) {
 }
 
 TEST(RecordText, SaysWhichFieldIsWrong) {
-    EXPECT_EQ(parse_record(TYPES, "1 0 2").error().message, "4 fields wanted, 3 found");
+    EXPECT_EQ(parse_record(TYPES, "1 0 2").error().message, "expected 4 fields, found 3");
     EXPECT_EQ(parse_record(TYPES, "1,5 0 2 3").error().message, "field 1: '1,5' is not a number");
     EXPECT_EQ(parse_record(TYPES, "1 2 2 3").error().message, "field 2: '2' is not 0 or 1");
     EXPECT_EQ(parse_record(TYPES, "1 1 3000000000 3").error().message,
