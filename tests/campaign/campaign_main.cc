@@ -92,8 +92,8 @@ void print_lines(std::istream &file) {
     }
     std::printf("%llu runs, %llu failed, %.0f s of machine time (%llu shorter than 10 s), %llu stops\n"
                 "%llu programs, %llu to their end, %llu of these in the time that was estimated\n"
-                "the slowest stop took %.2f of what the limits need\n%llu commands, %llu refused or ended by "
-                "a stop\n",
+                "the slowest stop took %.2f of what the limits need\n%llu commands, %llu rejected or ended "
+                "by a stop\n",
                 static_cast<unsigned long long>(sum.runs), static_cast<unsigned long long>(sum.failed),
                 sum.seconds, static_cast<unsigned long long>(sum.shorter),
                 static_cast<unsigned long long>(sum.stops), static_cast<unsigned long long>(sum.programs),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // From another computer: token, TLS, roles, and the switch that takes the protection away (J3). Each cell of the table in
-// docs/reference/api.md that a browser can ask for.
+// docs/reference/api.md that a browser can request.
 import { request as httpsRequest } from 'node:https';
 import { request as httpRequest } from 'node:http';
 import type { Page } from 'playwright-core';

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Every view in every size, light and dark: axe-core finds nothing, nothing runs out of the picture, and the stops can be
-// touched. With MW_SCREEN_PICTURES the pictures of docs/user/screen.md are made from the running program.
+// touched. With MW_SCREEN_PICTURES the pictures of docs/user/screen.md are taken from the running program.
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import type { Page } from 'playwright-core';

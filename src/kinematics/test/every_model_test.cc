@@ -161,7 +161,7 @@ TEST_P(EveryModel, UndoesItselfFromAPoseAndRefusesOnlyWhatIsOutOfReach) {
             << text(pose) << "\n came back as " << text(back);
         ++answered;
     }
-    std::printf("%s: %d poses: %d came back (%d not from afar), %d singular, %d refused (%d of them the "
+    std::printf("%s: %d poses: %d came back (%d not from afar), %d singular, %d rejected (%d of them the "
                 "judge does not "
                 "know)\n",
                 GetParam().name.c_str(), draws(), answered, too_far, singular, refused, unknown);

@@ -118,7 +118,7 @@ std::array<double, 2> speeds_on_circle(double sense) {
     return {sum[0] / samples[0], sum[1] / samples[1]};
 }
 
-/// Corners of chords are moved out, against the moving average, as far as the path reaches elsewhere,
+/// Corners of chords are moved out, against the moving average, up to where the path reaches elsewhere,
 /// regardless of the joint that this moves out further: a mirrored circle is driven the same with the joints
 /// exchanged.
 TEST(LinearOffsets, ACircleOfChordsIsDrivenTheSameInTheDirectionOfEitherJoint) {

@@ -108,9 +108,9 @@ bool summarise(const Task &task) {
         }
     }
     for (const auto &[text, count] : refusals) {
-        std::printf("%6u refused: %s\n", count, text.c_str());
+        std::printf("%6u rejected: %s\n", count, text.c_str());
     }
-    std::printf("%u jobs, %u failed, %u refused (%.2f %%); monotonic with D up to 0.5: %u, %u refused\n",
+    std::printf("%u jobs, %u failed, %u rejected (%.2f %%); monotonic with D up to 0.5: %u, %u rejected\n",
                 jobs, failed, refused, jobs == 0 ? 0.0 : 100.0 * refused / jobs, monotonic,
                 monotonic_refused);
     return failed == 0 && jobs == task.count;
