@@ -114,6 +114,7 @@ Sequence CurvePath::add(const Conditions &conditions, const Primitive &primitive
     programmed_s_ += primitive.length;
     end_ = primitive.end;
     feeds_.push_back(feed_of(conditions, n));
+    last_synched_ = request.isSynched() ? n : last_synched_;
     store_.last_move.store(n, std::memory_order_release);
     return n;
 }
@@ -263,17 +264,21 @@ profile::FeedLimit CurvePath::feed_of(const Conditions &conditions, Sequence n) 
     return feed;
 }
 
-bool CurvePath::update_feeds(const Conditions &conditions) {
+CurvePath::FeedChange CurvePath::update_feeds(const Conditions &conditions) {
     // What rounding may make of a speed that a spindle gives.
-    constexpr double LOWER = 1 - 1e-9;
-    bool is_lower = false;
+    constexpr double ROUNDING = 1e-9;
+    FeedChange change;
+    const auto compare = [&](double now, double before) {
+        change.is_lower = change.is_lower || now < (1 - ROUNDING) * before;
+        change.is_any = change.is_any || std::abs(now - before) > ROUNDING * before;
+    };
     for (std::size_t k = 0; k < feeds_.size(); ++k) {
         const profile::FeedLimit feed = feed_of(conditions, first_move_ + k);
-        is_lower = is_lower || feed.velocity < LOWER * feeds_[k].velocity ||
-                   feed.limit_share < LOWER * feeds_[k].limit_share;
+        compare(feed.velocity, feeds_[k].velocity);
+        compare(feed.limit_share, feeds_[k].limit_share);
         feeds_[k] = feed;
     }
-    return is_lower;
+    return change;
 }
 
 }  // namespace mw::trajectory::plan

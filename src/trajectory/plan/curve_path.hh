@@ -51,8 +51,13 @@ class CurvePath {
     const std::vector<profile::SpeedCap> &caps() const noexcept { return caps_; }
     /// Those of the moves from first_move() on.
     const std::vector<profile::FeedLimit> &feeds() const noexcept { return feeds_; }
-    /// For other overrides. True if a limit became lower.
-    bool update_feeds(const Conditions &conditions);
+    /// A move that is not dropped follows the speed of a spindle.
+    bool isSynched() const noexcept { return last_synched_ >= first_move_; }
+    struct FeedChange {
+        bool is_any = false, is_lower = false;
+    };
+    /// For other overrides: whether a limit changed, and became lower.
+    FeedChange update_feeds(const Conditions &conditions);
     bool isMadeFor(const Limits &limits) const noexcept;
     const profile::CurveLimits &limits() const noexcept { return limits_; }
 
@@ -77,6 +82,7 @@ class CurvePath {
     Rule rule_ = Rule::EXACT;
     curve::CurveBuilder fitted_;
     curve::ExactBuilder exact_;
+    Sequence last_synched_ = 0;
     Sequence first_move_ = 1;  ///< that is not dropped
     Sequence first_span_ = 1;
     std::vector<curve::Span> spans_;   ///< that the executor may read

@@ -37,6 +37,7 @@ void CurvePlanner::begin(const Pose &start, const Snapshot &now, const PathDeman
         return;
     }
     path_.begin(start, conditions);
+    scales_ = conditions.scales;
     numbers_.clear();
     plan_ = std::max(plan_, now.plan);
     first_plan_ = plan_ + 1;
@@ -48,8 +49,17 @@ void CurvePlanner::begin(const Pose &start, const Snapshot &now, const PathDeman
 }
 
 void CurvePlanner::set_scales(const Conditions &conditions) {
-    is_lower_ = path_.update_feeds(conditions) || is_lower_;
-    is_changed_ = true;
+    const Scales &now = conditions.scales;
+    const bool is_same = now.feed == scales_.feed && now.rapid == scales_.rapid &&
+                         now.max_velocity == scales_.max_velocity &&
+                         (now.spindle_rps == scales_.spindle_rps || !path_.isSynched());
+    if (is_same) {
+        return;
+    }
+    scales_ = now;
+    const CurvePath::FeedChange change = path_.update_feeds(conditions);
+    is_lower_ = is_lower_ || change.is_lower;
+    is_changed_ = is_changed_ || change.is_any;
 }
 
 double CurvePlanner::place_of(const Snapshot &now) const noexcept {

@@ -70,6 +70,7 @@ class CurvePlanner {
     double period_s_;
     bool is_enabled_, is_active_ = false;
     CurvePath path_;
+    Scales scales_;  ///< that the feeds of the path were made for
     profile::Profile profile_;
     profile::Run run_;
     std::vector<Sequence> numbers_;  ///< of the cells of the profile that are committed

@@ -17,7 +17,7 @@ unsigned first_seed() {
 }
 unsigned seeds() {
     const char *text = std::getenv("MW_CAMPAIGN_SEEDS");
-    return text != nullptr ? static_cast<unsigned>(std::strtoul(text, nullptr, 10)) : 16;
+    return text != nullptr ? static_cast<unsigned>(std::strtoul(text, nullptr, 10)) : 8;
 }
 
 /// Worst ratios of velocity, acceleration and jerk of all axes and the norm.
