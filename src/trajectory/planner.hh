@@ -21,8 +21,8 @@ struct Trouble {
 /// at what would be commanded, Easing makes slower what it refuses. The parts know nothing of each other;
 /// what one says goes to the next by value.
 ///
-/// All methods: planner thread only. Allocates at construction only. Same calls with the same values: same
-/// bits.
+/// All methods: planner thread only. Allocates at construction and along curves. Same calls with the same
+/// values: same bits.
 class Planner {
   public:
     Planner(PathStore &store, const PlannerSettings &settings) noexcept;

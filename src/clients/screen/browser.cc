@@ -146,8 +146,7 @@ void Browser::note_jog(const messages::Command &command) {
     }
 }
 
-bool Browser::isEffectShown(Followed &one, std::int64_t now_ns) const {
-    one.done_ns = one.done_ns == 0 ? now_ns : one.done_ns;
+bool Browser::isEffectShown(const Followed &one, std::int64_t now_ns) const {
     return !isAttached() || !has_whole_ || status_ns_ > one.done_ns ||
            now_ns - one.done_ns >= LONGEST_WAIT_NS;
 }
@@ -159,7 +158,9 @@ void Browser::follow(std::int64_t now_ns) {
     std::erase_if(followed_, [this, now_ns](Followed &one) {
         const client::Outcome outcome =
             one.client != nullptr ? one.client->outcome(one.serial) : client_->outcome(one.serial);
-        if (outcome.progress == messages::Progress::DONE && !isEffectShown(one, now_ns)) {
+        const bool is_done = outcome.progress == messages::Progress::DONE;
+        one.done_ns = is_done && one.done_ns == 0 ? now_ns : one.done_ns;
+        if (is_done && !isEffectShown(one, now_ns)) {
             return false;
         }
         const bool over = outcome.progress != messages::Progress::STARTED;

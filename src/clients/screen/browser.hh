@@ -96,7 +96,7 @@ class Browser {
         bool isTold = false;       ///< as STARTED
         std::int64_t done_ns = 0;  ///< when it was seen as DONE; 0: not yet
     };
-    bool isEffectShown(Followed &one, std::int64_t now_ns) const;
+    bool isEffectShown(const Followed &one, std::int64_t now_ns) const;
     void carry_out(const Ask &ask, std::int64_t now_ns);
     /// A lease counts from when it was asked for. False: it is over already.
     bool shorten_lease(messages::Command &command, const Ask &ask, std::int64_t now_ns);

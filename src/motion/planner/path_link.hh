@@ -29,8 +29,8 @@ struct PathLimits {
     SharedJoints shared;                                      ///< with external offsets
     /// Joint positions before the path: they select the configuration of elbows and wrists
     std::array<double, MAX_JOINTS> standing{};
-    int side = 0;              ///< of that configuration (kinematics::Kinematics)
-    std::uint32_t stands = 0;  ///< counts the changes of these positions
+    int side = 0;                        ///< of that configuration (kinematics::Kinematics)
+    std::uint32_t position_changes = 0;  ///< count
 };
 
 /// Range of the path that is planned and not yet driven.

@@ -64,8 +64,8 @@ void PathPlanner::update() noexcept {
 void PathPlanner::follow_controller() noexcept {
     if (view_.limits_version != limits_version_ && link_.limits.read(limits_, 1000)) {
         limits_version_ = view_.limits_version;
-        if (limits_.stands != stands_) {
-            stands_ = limits_.stands;
+        if (limits_.position_changes != position_changes_) {
+            position_changes_ = limits_.position_changes;
             end_joints_ = limits_.standing;
             map_.stand_at(limits_.standing, limits_.side);
         }

@@ -132,7 +132,7 @@ class PathPlanner {
     PathLimits limits_;
     PathWindow window_;                            ///< kept while there are external offsets
     std::array<double, MAX_JOINTS> end_joints_{};  ///< at the end of the last accepted move
-    std::uint32_t stands_ = 0;                     ///< of the limits
+    std::uint32_t position_changes_ = 0;           ///< of the limits
     std::uint32_t limits_version_ = 0;
     Epoch epoch_ = 0;
     bool isBroken_ = false;  ///< the path has a gap: no more commands of this epoch

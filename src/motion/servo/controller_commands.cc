@@ -396,7 +396,7 @@ void Controller::publish_limits() noexcept {
     out.shared = offsets_.shared;
     out.standing = standing_.joints;
     out.side = kinematics_.side(place_.cmd);
-    out.stands = standing_.count;
+    out.position_changes = standing_.count;
     out.corner_scale = settings_.get(Parameter::TRAJ_CORNER_SCALE);
     out.areTolerancesAdded = settings_.isSet(Parameter::TRAJ_ADDED_TOLERANCES);
     link_->limits.write(out);

@@ -29,7 +29,7 @@ class CurveFollower {
     void clear() noexcept;
     Place place(const PathStore &store, bool is_resting) noexcept;
 
-    /// Cells that one cycle may pass at most; the planner makes none shorter than 50 us on average.
+    /// Cells that one cycle may pass at most.
     static constexpr int MOST_CELLS_PER_CYCLE = 256;
 
   private:

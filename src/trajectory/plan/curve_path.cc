@@ -12,8 +12,6 @@ namespace {
 
 /// Largest knot spacing and span [machine units]: where the tolerance allows more, nothing is gained.
 constexpr double WIDEST = 3.0;
-/// Places this close are one [units].
-constexpr double SAME_PLACE = 1e-9;
 /// Spans and moves that are known and not driven, at most: memory.
 constexpr std::size_t MOST_SPANS = SPAN_CAPACITY / 2;
 constexpr Sequence MOST_MOVES = PRIMITIVE_CAPACITY - 64;
@@ -194,20 +192,21 @@ void CurvePath::add_stop(double s) {
 }
 
 void CurvePath::drop_before(double s) {
-    const auto count = static_cast<long>(
-        std::partition_point(spans_.begin(), spans_.end(), [&](const auto &x) { return x.end_s() < s; }) -
-        spans_.begin());
-    // Rarely, as all that stay are moved; the last one stays for the seam behind it.
-    if (count < 64 || 2 * count < static_cast<long>(spans_.size())) {
-        return;
-    }
-    const long spans = std::min(count, static_cast<long>(spans_.size()) - 1);
-    spans_.erase(spans_.begin(), spans_.begin() + spans);
-    first_span_ += static_cast<Sequence>(spans);
-    const double from = spans_.front().start_s;
-    const Sequence move = move_at(from);
+    // Spans and moves apart: a span may hold many moves. The last move stays.
+    const Sequence last = first_move_ + std::max<std::size_t>(feeds_.size(), 1) - 1;
+    const Sequence move = std::min(move_at(s), last);
     feeds_.erase(feeds_.begin(), feeds_.begin() + static_cast<long>(move - first_move_));
     first_move_ = move;
+    const auto driven = static_cast<std::size_t>(
+        std::partition_point(spans_.begin(), spans_.end(), [&](const auto &x) { return x.end_s() < s; }) -
+        spans_.begin());
+    if (4 * driven <= spans_.size()) {
+        return;  // all that stay are moved
+    }
+    const std::size_t spans = std::min(driven, spans_.size() - 1);
+    spans_.erase(spans_.begin(), spans_.begin() + static_cast<long>(spans));
+    first_span_ += spans;
+    const double from = spans_.front().start_s;
     std::erase_if(caps_, [&](const profile::SpeedCap &cap) { return cap.s + cap.reach < from; });
     while (!stops_.empty() && stops_.front() < from) {
         stops_.pop_front();

@@ -8,8 +8,6 @@ namespace mw::trajectory::plan {
 
 namespace {
 
-/// Places this close are one [units].
-constexpr double SAME_PLACE = 1e-9;
 /// After so many cycles a plan that begins at rest was taken, or never will be.
 constexpr std::uint64_t TAKEN_CYCLES = 20;
 
@@ -73,8 +71,10 @@ Sequence CurvePlanner::standing_before(const Snapshot &now) const noexcept {
     return is_there ? move : 0;
 }
 
+/// At the end of the path, of the last move.
 bool CurvePlanner::hasSpeed(Sequence move) const noexcept {
-    const profile::FeedLimit &feed = path_.feeds()[static_cast<std::size_t>(move - path_.first_move())];
+    const auto index = static_cast<std::size_t>(std::min(move, moves_.last_move()) - path_.first_move());
+    const profile::FeedLimit &feed = path_.feeds()[index];
     return feed.velocity > 0 && feed.limit_share > 0;
 }
 
@@ -144,6 +144,7 @@ void CurvePlanner::start(const Snapshot &now, const Conditions &conditions) {
         return;
     }
     const double s = place_of(now);
+    path_.drop_before(s);
     const Sequence move = path_.move_at(s);
     if (move > moves_.last_move() || !hasSpeed(move)) {
         return;

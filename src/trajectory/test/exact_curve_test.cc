@@ -138,11 +138,16 @@ TEST(SpeedCap, IsTheSpeedAtWhichTheJumpTakesTheJerkOfASample) {
     EXPECT_FALSE(isNeeded(profile::cap_of(seam, limits, T), limits)) << "rounding";
 }
 
+/// The tangent is the same where they meet, the curvature is not.
+Program line_arc_line() {
+    return exact_program({make_line(at(0, 0), at(10, 0)),
+                          arc(at(10, 0), at(14, 4), at(10, 4), std::numbers::pi / 2),
+                          make_line(at(14, 4), at(14, 14))},
+                         even_limits(200, 1000, 50000));
+}
+
 TEST(ExactProfile, PassesFromLinesToArcsWithoutAStop) {
-    const std::vector<Primitive> moves{make_line(at(0, 0), at(10, 0)),
-                                       arc(at(10, 0), at(14, 4), at(10, 4), std::numbers::pi / 2),
-                                       make_line(at(14, 4), at(14, 14))};
-    const Program program = exact_program(moves, even_limits(200, 1000, 50000));
+    const Program program = line_arc_line();
     const CurveLimits limits = profile::limits_of(program.limits);
     const LaidCurve laid = CurveLayer(program, limits).lay();
     EXPECT_EQ(laid.stops.size(), 1U);
@@ -163,10 +168,7 @@ TEST(ExactProfile, PassesFromLinesToArcsWithoutAStop) {
 }
 
 TEST(ExactProfile, TakesAFeedThatEndsARoundingFromASeamAsOnePlace) {
-    const std::vector<Primitive> moves{make_line(at(0, 0), at(10, 0)),
-                                       arc(at(10, 0), at(14, 4), at(10, 4), std::numbers::pi / 2),
-                                       make_line(at(14, 4), at(14, 14))};
-    const Program program = exact_program(moves, even_limits(200, 1000, 50000));
+    const Program program = line_arc_line();
     const CurveLimits limits = profile::limits_of(program.limits);
     LaidCurve laid = CurveLayer(program, limits).lay();
     ASSERT_EQ(laid.caps.size(), 2U);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The path, the tool and the limits of the machine, drawn after each change. Machine coordinates; Z is up.
+// The path, the tool and the limits of the machine, drawn after each change. Machine coordinates; Z points up.
 import {
   Box3,
   BoxGeometry,
