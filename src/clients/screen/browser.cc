@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "clients/screen/browser.hh"
 
+#include <algorithm>
+
 #include "base/overloaded.hh"
 #include "messages/mailbox/stops.hh"
 
@@ -147,8 +149,22 @@ void Browser::note_jog(const messages::Command &command) {
 }
 
 bool Browser::isEffectShown(const Followed &one, std::int64_t now_ns) const {
-    return !isAttached() || !has_whole_ || status_ns_ > one.done_ns ||
-           now_ns - one.done_ns >= LONGEST_WAIT_NS;
+    return !isAttached() || !has_whole_ || one.isShown || now_ns - one.done_ns >= LONGEST_WAIT_NS;
+}
+
+bool Browser::isWaitingForStatus() const {
+    return std::ranges::any_of(followed_, [](const Followed &one) { return one.done_ns != 0; });
+}
+
+/// The status of the cycle in which a command was done may have been written before it was seen as DONE, or
+/// not.
+void Browser::note_shown(std::uint64_t cycle) {
+    for (Followed &one : followed_) {
+        if (one.done_ns != 0) {
+            one.isShown = one.isShown || (one.done_cycle.has_value() && cycle > *one.done_cycle);
+            one.done_cycle = one.done_cycle.value_or(cycle);
+        }
+    }
 }
 
 void Browser::follow(std::int64_t now_ns) {
@@ -174,8 +190,8 @@ void Browser::follow(std::int64_t now_ns) {
     });
 }
 
-void Browser::tell_status(const messages::MachineStatus &status, std::int64_t now_ns) {
-    status_ns_ = now_ns;
+void Browser::tell_status(const messages::MachineStatus &status) {
+    note_shown(status.cycle);
     if (!has_whole_) {
         has_whole_ = true;
         unread_ = 0;

@@ -68,12 +68,15 @@ class Browser {
 
     /// A text from its socket. A stop is posted at once.
     void receive(std::string_view text, std::int64_t now_ns);
-    /// Tells the outcomes that are new; DONE behind a status that was read later, which shows the effect.
+    /// Tells the outcomes that are new; DONE behind the status of a later cycle of task, which shows the
+    /// effect.
     void follow(std::int64_t now_ns);
+    /// A command is done, and the status that shows its effect was not sent yet.
+    bool isWaitingForStatus() const;
     /// Parts of the status that were read are sent with the next one.
     void note_read(PartMask parts) { unread_ |= parts; }
     /// The whole at first, then what has changed; nothing when nothing has.
-    void tell_status(const messages::MachineStatus &status, std::int64_t now_ns);
+    void tell_status(const messages::MachineStatus &status);
     void tell(std::string text) { send_(std::move(text)); }
     /// Names of HAL that it shows.
     const std::vector<std::string> &watched() const { return watched_; }
@@ -95,7 +98,11 @@ class Browser {
         std::int64_t since_ns = 0;
         bool isTold = false;       ///< as STARTED
         std::int64_t done_ns = 0;  ///< when it was seen as DONE; 0: not yet
+        /// Of the first status that was read after it was seen as DONE.
+        std::optional<std::uint64_t> done_cycle{};
+        bool isShown = false;  ///< a status of a later cycle was sent
     };
+    void note_shown(std::uint64_t cycle);
     bool isEffectShown(const Followed &one, std::int64_t now_ns) const;
     void carry_out(const Ask &ask, std::int64_t now_ns);
     /// A lease counts from when it was asked for. False: it is over already.
@@ -111,7 +118,6 @@ class Browser {
     std::optional<client::Client> client_;
     StatusDelta delta_;
     bool has_whole_ = false;
-    std::int64_t status_ns_ = 0;  ///< of the last status
     PartMask unread_ = 0;
     std::vector<std::string> watched_;
     std::map<std::string, std::string> told_values_;

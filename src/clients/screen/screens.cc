@@ -82,7 +82,7 @@ void Screens::opened(SessionId session, const Rights &rights, std::int64_t now_n
         browser.tell(note_text(Browser::ONLY_STOPS));
     }
     if (const messages::MachineStatus *now = status()) {
-        browser.tell_status(*now, now_ns_);
+        browser.tell_status(*now);
     }
     for (const Kept &message : kept_) {
         browser.tell(aged(message.text, now_ns - message.at_ns));
@@ -124,11 +124,18 @@ void Screens::tick(std::int64_t now_ns) {
     if (!isMachineUp()) {
         return;
     }
-    if (now_ns >= next_status_ns_) {
-        next_status_ns_ = now_ns + setup_.status_period_ns;
-        pass_messages();
-        tell_statuses();
+    bool is_awaited = false;
+    for (const auto &[session, browser] : browsers_) {
+        browser->follow(now_ns);
+        is_awaited = is_awaited || browser->isWaitingForStatus();
     }
+    const bool is_due = now_ns >= next_status_ns_;
+    if (!is_due && !is_awaited) {
+        return;
+    }
+    next_status_ns_ = is_due ? now_ns + setup_.status_period_ns : next_status_ns_;
+    pass_messages();
+    tell_statuses(is_due);
     for (const auto &[session, browser] : browsers_) {
         browser->follow(now_ns);
     }
@@ -261,7 +268,8 @@ void Screens::tell_silence() {
     }
 }
 
-void Screens::tell_statuses() {
+/// `is_due`: to all; otherwise to those with a command that is done.
+void Screens::tell_statuses(bool is_due) {
     const bool is_read = watch_->read_status().has_value();
     has_status_ = has_status_ || is_read;
     if (has_status_) {
@@ -274,8 +282,8 @@ void Screens::tell_statuses() {
     for (const auto &[session, browser] : browsers_) {
         browser->note_read(fresh);
         // A slow screen gets the rest with its next status.
-        if (browser->isAttached() && sockets_.isIdle(session)) {
-            browser->tell_status(watch_->status(), now_ns_);
+        if ((is_due || browser->isWaitingForStatus()) && browser->isAttached() && sockets_.isIdle(session)) {
+            browser->tell_status(watch_->status());
         }
     }
 }

@@ -69,7 +69,7 @@ class Screens {
     /// Makes a browser a client of the machine; false when it has no place left.
     bool join(Browser &browser);
     void pass_messages();
-    void tell_statuses();
+    void tell_statuses(bool is_due);
     void tell_silence();
     void tell_all(const std::string &text);
     void log(const std::string &line, std::int64_t age_ns = 0) const;

@@ -110,7 +110,7 @@ TEST_F(ScreensTest, ACommandIsDoneBehindAStatusThatShowsItsEffect) {
         command(1, n, "SetState", R"("state":"ESTOP_RESET")");
         go(10);
         task.status->joints[0].pos_cmd = n;  // the effect, in the cycle behind the outcome
-        go(90);
+        go(20);                              // not that of the next status for all
         bool is_shown = false, is_done = false;
         for (const Json &one : sockets.take(1)) {
             const Json joints = one.value("status", Json::object()).value("joints", Json::object());
@@ -121,7 +121,7 @@ TEST_F(ScreensTest, ACommandIsDoneBehindAStatusThatShowsItsEffect) {
             }
         }
         EXPECT_TRUE(is_done) << n;
-        go(10 * n);  // another time before the next status
+        go(70 + 10 * n);  // another time before the next status
     }
 }
 
