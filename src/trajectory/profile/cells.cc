@@ -13,8 +13,10 @@ namespace mw::trajectory::profile {
 namespace {
 
 constexpr int NODES_PER_SPAN = 3;
-/// Nodes closer together count as one: rounding.
-constexpr double LEAST_STEP = 1e-12;
+/// Nodes closer together count as one: places are sums of lengths, up to rounding.
+double rounding_at(double s) noexcept {
+    return 1e-12 * std::max(1.0, std::abs(s));
+}
 
 /// Largest change of direction in a cell [rad].
 constexpr double TURN_PER_CELL = 0.2;
@@ -95,7 +97,7 @@ RoughProfile::Node RoughProfile::node_at(const Run &run, std::size_t span, doubl
     node.acceleration = std::min(node.acceleration, b.acceleration / n1);
     node.jerk = std::min(node.jerk, b.jerk / n1);
     // Where the feed changes both count.
-    for (const std::size_t feed : {run.feed_at(s), run.feed_at(s + 2 * LEAST_STEP)}) {
+    for (const std::size_t feed : {run.feed_at(s), run.feed_at(s + 2 * rounding_at(s))}) {
         node.v = std::min(node.v, 1 / std::sqrt(std::max((*run.feeds)[feed].share(p.first), 1e-30)));
     }
     node.v = std::min(node.v,
@@ -143,20 +145,22 @@ bool RoughProfile::isInEnd(const Run &run, const Stretch &stretch, double s) noe
 /// The next node behind `s`: thirds of spans, halves of the parts of the joints, places where the feed
 /// changes.
 double RoughProfile::next_place(const Run &run, const Span &span, double s) noexcept {
+    const double rounding = rounding_at(s);
     double next = span.end_s();
     for (int n = NODES_PER_SPAN - 1; n > 0; --n) {
         const double third = span.start_s + span.length * n / NODES_PER_SPAN;
-        next = third > s + LEAST_STEP ? third : next;
+        next = third > s + rounding && third < next - rounding ? third : next;
     }
     const auto &feeds = *run.feeds;
-    for (std::size_t k = run.feed_at(s + LEAST_STEP); k + 1 < feeds.size() && feeds[k].end_s < next; ++k) {
+    for (std::size_t k = run.feed_at(s + rounding); k + 1 < feeds.size() && feeds[k].end_s < next - rounding;
+         ++k) {
         next = isAlike(feeds[k], feeds[k + 1]) ? next : feeds[k].end_s;
     }
     if (run.joint_curve != nullptr) {
         const curve::JointCurve::Part &part =
-            run.joint_curve->parts()[run.joint_curve->part_at(s + LEAST_STEP)];
+            run.joint_curve->parts()[run.joint_curve->part_at(s + rounding)];
         for (const double half : {part.end_s(), part.start_s + 0.5 * part.length}) {
-            next = half > s + LEAST_STEP ? std::min(next, half) : next;
+            next = half > s + rounding && half < next - rounding ? half : next;
         }
     }
     return next;
@@ -185,7 +189,7 @@ bool RoughProfile::isFasterBetween(const Run &run, std::size_t span, const Node 
     const double ends = FASTER * middle;
     const double reached =
         std::min(faster(a.v, half, b.acceleration, b.jerk), faster(b.v, half, b.acceleration, b.jerk));
-    return reached > ends && half > LEAST_STEP && node_at(run, span, a.s, a.s + half, cell_s).v > ends;
+    return reached > ends && half > rounding_at(a.s) && node_at(run, span, a.s, a.s + half, cell_s).v > ends;
 }
 
 /// Lays nodes until the motion without braking takes 1.5 times the horizon, then limits their speeds by
@@ -205,13 +209,14 @@ void RoughProfile::lay_nodes(const Run &run, const Stretch &stretch) {
            (t < FARTHER * stretch.horizon_s || isInEnd(run, stretch, nodes_.back().s));
          ++k) {
         const double end = std::min(run.end_s, spans[k].end_s());
-        while (nodes_.back().s + LEAST_STEP < end) {
+        while (nodes_.back().s + rounding_at(end) < end) {
             const Node last = nodes_.back();
-            double s = std::min(end, next_place(run, spans[k], last.s));
+            double s = next_place(run, spans[k], last.s);
+            s = s < end - rounding_at(end) ? s : end;
             Node node = node_at(run, k, last.s, s, stretch.cell_s);
             const auto is_coarse = [&] {
                 Node to = node;
-                to.v = run.has_stop && s >= run.end_s - 2 * LEAST_STEP ? 0 : node.v;
+                to.v = run.has_stop && s >= run.end_s - 2 * rounding_at(s) ? 0 : node.v;
                 return isFasterBetween(run, k, last, to, stretch.cell_s);
             };
             while (is_coarse()) {
@@ -238,7 +243,7 @@ void RoughProfile::lay_nodes(const Run &run, const Stretch &stretch) {
         node.v = std::min(node.v, faster(first.v, way, node.acceleration, node.jerk));
         nodes_.insert(nodes_.begin() + 1, node);
     }
-    reaches_end_ = nodes_.back().s >= run.end_s - 2 * LEAST_STEP;
+    reaches_end_ = nodes_.back().s >= run.end_s - 2 * rounding_at(run.end_s);
     if (reaches_end_) {
         nodes_.back().s = run.end_s;
         nodes_.back().v = run.has_stop ? 0 : nodes_.back().v;
