@@ -2,10 +2,17 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The page of all messages to people, from the texts in the sources (tools/texts.py) and their translations in po/.
 
-usage: operator_messages.py ROOT          prints the page
-       operator_messages.py ROOT --check  exit status 1: docs/user/when_something_goes_wrong.md has a message that no source has
+usage: operator_messages.py ROOT            prints the page
+       operator_messages.py ROOT --check    exit status 1: a table names a text that no source has, or a text twice
+       operator_messages.py ROOT --missing  prints the messages without a row, as rows for the tables
+
+Cause and remedy of a message are written in a table "message | cause | remedy": the frequent ones in
+docs/user/when_something_goes_wrong.md, the others in tools/books/messages/AREA.md. A text that a person never sees alone, such as the
+hint or the reason of a message, is in a table "text | part of". "as above" repeats the cell above it. A message is written as the page
+shows it, with the mark … for each value; | is written \\|.
 """
 import difflib
+import os
 import pathlib
 import re
 import sys
@@ -14,20 +21,26 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
 import texts
 
 PAGE = 'docs/user/when_something_goes_wrong.md'
-# Title: folders whose texts it lists. Help texts, and programs other than the machine, are not listed.
+TABLES = 'tools/books/messages'
+# Folder of the page, and a link in a cell: relative to the file of its table.
+FOLDER = 'docs/reference'
+LINK = re.compile(r'\]\((?!https?:)([^)#]+)')
+# Title, name of the file in TABLES, folders whose texts it lists. Help texts, and programs other than the machine, are not listed.
 AREAS = (
-    ('Motion and homing', ('src/motion', 'src/kinematics')),
-    ('Task: programs, MDI, tools', ('src/machine', 'src/messages')),
-    ('G-code', ('src/gcode',)),
-    ('HAL', ('src/hal/core', 'src/hal/host', 'src/hal/script', 'drivers')),
-    ('INI files', ('src/base/ini',)),
-    ('Start and end of the machine', ('programs/start', 'src/runtime', 'src/base/diagnostics')),
+    ('Motion and homing', 'motion', ('src/motion', 'src/kinematics')),
+    ('Task: programs, MDI, tools', 'task', ('src/machine', 'src/messages')),
+    ('G-code', 'gcode', ('src/gcode',)),
+    ('HAL', 'hal', ('src/hal/core', 'src/hal/host', 'src/hal/script', 'drivers')),
+    ('INI files', 'ini', ('src/base/ini',)),
+    ('Start and end of the machine', 'start', ('programs/start', 'src/runtime', 'src/base/diagnostics')),
 )
 # Shorter texts are parts of other messages.
 WORDS_OF_A_MESSAGE = 4
 HOLE = '…'
 # Clients look for its words, so it is in no catalogue (texts.NEVER).
 NOT_TRANSLATED = ('joint … on limit switch error',)
+MESSAGE_TABLE = ('message', 'cause', 'remedy')
+PART_TABLE = ('text', 'part of')
 
 
 def shown(text):
@@ -40,16 +53,40 @@ def plain(text):
     return re.sub(r'(\{\})+', HOLE, text.replace('\n', ' ')).strip()
 
 
-def remedies_of(text):
-    """{message: (cause, remedy)} of the tables of PAGE. "As above" becomes the text of the row before."""
-    found = {}
-    before = ('', '')
-    for line in text.splitlines():
-        cells = [cell.strip() for cell in line.strip('| ').split(' | ')]
-        if line.startswith('| ') and len(cells) == 3 and cells[0] not in ('message', 'symptom'):
-            before = tuple(old if cell == 'as above' else cell for cell, old in zip(cells[1:], before))
-            found[cells[0]] = before
-    return found
+class Row:
+    """A row of a table: where it is, the text of its first cell, and the other cells."""
+
+    def __init__(self, file, number, text, cells):
+        self.file, self.number, self.text, self.cells = file, number, text, cells
+
+    def shown_cells(self):
+        """The other cells with links that are relative to the page."""
+        def moved(link):
+            return '](' + os.path.relpath(os.path.join(os.path.dirname(self.file), link[1]), FOLDER)
+        return [LINK.sub(moved, cell) for cell in self.cells]
+
+    def is_message(self):
+        return len(self.cells) == len(MESSAGE_TABLE) - 1
+
+
+def rows_of(root, file):
+    """The rows of the tables of a file whose heads are MESSAGE_TABLE or PART_TABLE."""
+    head, before = (), ()
+    for number, line in enumerate((root / file).read_text(encoding='utf-8').splitlines(), 1):
+        if not line.startswith('|'):
+            head, before = (), ()
+            continue
+        cells = tuple(cell.strip() for cell in re.split(r'(?<!\\)\|', line.strip()[1:-1]))
+        if head == ():
+            head = cells
+        elif head in (MESSAGE_TABLE, PART_TABLE) and not re.fullmatch(r'[|:-]+', line):
+            before = tuple(old if cell == 'as above' else cell for cell, old in zip(cells[1:], before or cells[1:]))
+            yield Row(file, number, cells[0].replace('\\|', '|'), before)
+
+
+def all_rows(root):
+    files = [PAGE, *(f'{TABLES}/{name}.md' for _, name, _ in AREAS if (root / TABLES / f'{name}.md').is_file())]
+    return [row for file in files for row in rows_of(root, file)]
 
 
 def messages_of(root, folders):
@@ -58,47 +95,65 @@ def messages_of(root, folders):
     return sorted((key for key in keys if len(re.findall(r'[A-Za-z]{2,}', key)) >= WORDS_OF_A_MESSAGE and not key.startswith('usage')), key=shown)
 
 
+def table(head, rows):
+    return [f'| {" | ".join(head)} |', '|---' * len(head) + '|', *(f'| {" | ".join(row)} |' for row in rows), ''] if rows else []
+
+
 def page(root):
     german, spanish = (texts.read_po(root / 'po' / f'{language}.po') for language in ('de', 'es'))
     lines = ['# Operator messages', '', f'Generated from the sources and from `po/`. `{HOLE}` is a number, name or letter. Messages say what happened and what to do;',
-             '[When something goes wrong](../user/when_something_goes_wrong.md) has more about the common ones. Some texts are parts of a longer message.']
-    remedies = remedies_of((root / PAGE).read_text(encoding='utf-8'))
-    for title, folders in AREAS:
-        lines += ['', f'## {title}', '']
-        explained = [(shown(key), *remedies[plain(key)]) for key in messages_of(root, folders) if plain(key) in remedies]
-        if explained:
-            lines += ['| message | cause | remedy |', '|---|---|---|', *(f'| {" | ".join(row)} |' for row in explained), '']
-        lines += ['| message | Deutsch | español |', '|---|---|---|']
-        lines += [f'| {shown(key)} | {shown(german.get(key, ""))} | {shown(spanish.get(key, ""))} |' for key in messages_of(root, folders)]
-    return '\n'.join(lines) + '\n'
+             '[When something goes wrong](../user/when_something_goes_wrong.md) has more about the common ones. A text under *Parts of messages* appears only in other messages.']
+    rows = {row.text: row for row in all_rows(root)}
+    for title, _, folders in AREAS:
+        keys = messages_of(root, folders)
+        explained = [(shown(key), rows[plain(key)]) for key in keys if plain(key) in rows]
+        parts = table(PART_TABLE, [(text, *row.shown_cells()) for text, row in explained if not row.is_message()])
+        lines += ['', f'## {title}', '', *table(MESSAGE_TABLE, [(text, *row.shown_cells()) for text, row in explained if row.is_message()])]
+        lines += ['### Parts of messages', '', *parts] if parts else []
+        lines += ['### Translations', '', *table(('message', 'Deutsch', 'español'), [(shown(key), shown(german.get(key, '')), shown(spanish.get(key, ''))) for key in keys])]
+    return '\n'.join(lines).rstrip() + '\n'
+
+
+def missing(root):
+    """[(file, message)] of the messages that have no row."""
+    have = {row.text for row in all_rows(root)}
+    return [(f'{TABLES}/{name}.md', plain(key)) for _, name, folders in AREAS for key in messages_of(root, folders) if plain(key) not in have]
 
 
 def check(root):
-    """Messages in the first column of PAGE that are no texts of the sources, each with the nearest one."""
+    """Rows whose text no source has, each with the nearest text, rows of the same text, and rows with an empty cell."""
     known = {plain(key) for key in texts.texts(root)}
     known.update(NOT_TRANSLATED)
-    wrong = 0
-    is_message = False
-    for number, line in enumerate((root / PAGE).read_text(encoding='utf-8').splitlines(), 1):
-        cells = line.split(' | ')
-        if line.startswith('| '):
-            first = cells[0][2:]
-            if first in ('message', 'symptom'):
-                is_message = first == 'message'
-            elif is_message and first not in known:
-                wrong += 1
-                nearest = difflib.get_close_matches(first, known, 1, 0)
-                print(f'{PAGE}:{number}: no source has the message "{first}"; nearest: "{nearest[0] if nearest else ""}"')
-    return 1 if wrong else 0
+    seen, problems = {}, []
+    for row in all_rows(root):
+        place = f'{row.file}:{row.number}'
+        if row.text not in known:
+            nearest = difflib.get_close_matches(row.text, known, 1, 0)
+            problems.append(f'{place}: no source has the message "{row.text}"; nearest: "{nearest[0] if nearest else ""}"')
+        if row.text in seen:
+            problems.append(f'{place}: "{row.text}" has a row in {seen[row.text]}')
+        if not all(row.cells):
+            problems.append(f'{place}: a cell is empty')
+        seen.setdefault(row.text, place)
+    for problem in problems:
+        print(problem)
+    without = missing(root)
+    print(f'{len(seen)} rows; {len(without)} messages have no row')
+    return 1 if problems else 0
 
 
 def main():
     words = sys.argv[1:]
+    root = pathlib.Path(words[0]) if words else None
     if len(words) == 1:
-        sys.stdout.write(page(pathlib.Path(words[0])))
+        sys.stdout.write(page(root))
         return 0
     if len(words) == 2 and words[1] == '--check':
-        return check(pathlib.Path(words[0]))
+        return check(root)
+    if len(words) == 2 and words[1] == '--missing':
+        for file, text in missing(root):
+            print(f'{file}: | {text.replace("|", chr(92) + "|")} | | |')
+        return 0
     print(__doc__.strip(), file=sys.stderr)
     return 2
 
