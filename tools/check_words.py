@@ -21,6 +21,9 @@ NOT_OURS = re.compile(r'package-lock|/corpus/|legacy_messages|^tools/words\.txt$
 COMMENT = re.compile(r'//+[/!<]*\s?(.*)$')
 STRING = re.compile(r'"((?:[^"\\]|\\.)*)"|\'((?:[^\'\\]|\\.)*)\'|`((?:[^`\\]|\\.)*)`')
 WORDS_IN_TEXT = 3
+# The first cell of the tables in this folder repeats a text of the sources, which is counted there.
+TABLES_OF_MESSAGES = 'tools/books/messages'
+REPEATED_CELL = re.compile(r'^\| .*? \| ')
 SLACK = 50
 
 
@@ -28,7 +31,9 @@ def prose_of(path, text):
     """(line number, prose) of each line that has some."""
     suffix = path.suffix
     is_fenced = False
+    has_repeated = path.parent.match(TABLES_OF_MESSAGES)
     for number, line in enumerate(text.splitlines(), 1):
+        line = REPEATED_CELL.sub('', line) if has_repeated else line
         if suffix in ('.md', '.scd'):
             if line.lstrip().startswith('```'):
                 is_fenced = not is_fenced

@@ -3,7 +3,7 @@
 """The page of all messages to people, from the texts in the sources (tools/texts.py) and their translations in po/.
 
 usage: operator_messages.py ROOT            prints the page
-       operator_messages.py ROOT --check    exit status 1: a table names a text that no source has, or a text twice
+       operator_messages.py ROOT --check    exit status 1: a message has no row, or a row has a text that no source has or an empty cell, or there are two rows for a text
        operator_messages.py ROOT --missing  prints the messages without a row, as rows for the tables
 
 Cause and remedy of a message are written in a table "message | cause | remedy": the frequent ones in
@@ -121,7 +121,7 @@ def missing(root):
 
 
 def check(root):
-    """Rows whose text no source has, each with the nearest text, rows of the same text, and rows with an empty cell."""
+    """Messages without a row, rows whose text no source has, each with the nearest text, rows of the same text, and rows with an empty cell."""
     known = {plain(key) for key in texts.texts(root)}
     known.update(NOT_TRANSLATED)
     seen, problems = {}, []
@@ -138,8 +138,10 @@ def check(root):
     for problem in problems:
         print(problem)
     without = missing(root)
+    for file, text in without:
+        print(f'{file}: no row for the message "{text}"')
     print(f'{len(seen)} rows; {len(without)} messages have no row')
-    return 1 if problems else 0
+    return 1 if problems or without else 0
 
 
 def main():
