@@ -8,7 +8,7 @@ usage: operator_messages.py ROOT            prints the page
 
 Cause and remedy of a message are written in a table "message | cause | remedy": the frequent ones in
 docs/user/when_something_goes_wrong.md, the others in tools/books/messages/AREA.md. A text that a person never sees alone, such as the
-hint or the reason of a message, is in a table "text | part of". "as above" repeats the cell above it. A message is written as the page
+hint or the reason of a message, is in a table "text | part of"; the page leaves out "help of PROGRAM". "as above" repeats the cell above it. A message is written as the page
 shows it, with the mark … for each value; | is written \\|.
 """
 import difflib
@@ -25,7 +25,7 @@ TABLES = 'tools/books/messages'
 # Folder of the page, and a link in a cell: relative to the file of its table.
 FOLDER = 'docs/reference'
 LINK = re.compile(r'\]\((?!https?:)([^)#]+)')
-# Title, name of the file in TABLES, folders whose texts it lists. Help texts, and programs other than the machine, are not listed.
+# Title, name of the file in TABLES, folders whose texts it lists. Programs other than the machine are not listed.
 AREAS = (
     ('Motion and homing', 'motion', ('src/motion', 'src/kinematics')),
     ('Task: programs, MDI, tools', 'task', ('src/machine', 'src/messages')),
@@ -68,6 +68,9 @@ class Row:
     def is_message(self):
         return len(self.cells) == len(MESSAGE_TABLE) - 1
 
+    def is_help(self):
+        return not self.is_message() and self.cells[0].startswith('help of ')
+
 
 def rows_of(root, file):
     """The rows of the tables of a file whose heads are MESSAGE_TABLE or PART_TABLE."""
@@ -105,7 +108,7 @@ def page(root):
              '[When something goes wrong](../user/when_something_goes_wrong.md) has more about the common ones. A text under *Parts of messages* appears only in other messages.']
     rows = {row.text: row for row in all_rows(root)}
     for title, _, folders in AREAS:
-        keys = messages_of(root, folders)
+        keys = [key for key in messages_of(root, folders) if plain(key) not in rows or not rows[plain(key)].is_help()]
         explained = [(shown(key), rows[plain(key)]) for key in keys if plain(key) in rows]
         parts = table(PART_TABLE, [(text, *row.shown_cells()) for text, row in explained if not row.is_message()])
         lines += ['', f'## {title}', '', *table(MESSAGE_TABLE, [(text, *row.shown_cells()) for text, row in explained if row.is_message()])]
