@@ -8,7 +8,7 @@ usage: operator_messages.py ROOT            prints the page
 
 Cause and remedy of a message are written in a table "message | cause | remedy": the frequent ones in
 docs/user/when_something_goes_wrong.md, the others in tools/books/messages/AREA.md. A text that a person never sees alone, such as the
-hint or the reason of a message, is in a table "text | part of"; the page leaves out "help of PROGRAM". "as above" repeats the cell above it. A message is written as the page
+hint or the reason of a message, is in a table "text | part of"; the page leaves out "help of PROGRAM". In the first of these files "as above" repeats the cell above it. A message is written as the page
 shows it, with the mark … for each value; | is written \\|.
 """
 import difflib
@@ -41,6 +41,8 @@ HOLE = '…'
 NOT_TRANSLATED = {'joint {} on limit switch error': 'src/motion/interface/texts.cc'}
 MESSAGE_TABLE = ('message', 'cause', 'remedy')
 PART_TABLE = ('text', 'part of')
+# In PAGE alone: the rows of the other files may change their order.
+AS_ABOVE = 'as above'
 
 
 def shown(text):
@@ -83,7 +85,7 @@ def rows_of(root, file):
         if head == ():
             head = cells
         elif head in (MESSAGE_TABLE, PART_TABLE) and not re.fullmatch(r'[|:-]+', line):
-            before = tuple(old if cell == 'as above' else cell for cell, old in zip(cells[1:], before or cells[1:]))
+            before = tuple(old if cell == AS_ABOVE and file == PAGE else cell for cell, old in zip(cells[1:], before or cells[1:]))
             yield Row(file, number, cells[0].replace('\\|', '|'), before)
 
 
@@ -133,8 +135,8 @@ def check(root):
             problems.append(f'{place}: no source has the message "{row.text}"; nearest: "{nearest[0] if nearest else ""}"')
         if row.text in seen:
             problems.append(f'{place}: "{row.text}" has a row in {seen[row.text]}')
-        if not all(row.cells):
-            problems.append(f'{place}: a cell is empty')
+        if not all(row.cells) or AS_ABOVE in row.cells:
+            problems.append(f'{place}: a cell has no text')
         seen.setdefault(row.text, place)
     for problem in problems:
         print(problem)
