@@ -25,7 +25,7 @@ TABLES = 'tools/books/messages'
 # Folder of the page, and a link in a cell: relative to the file of its table.
 FOLDER = 'docs/reference'
 LINK = re.compile(r'\]\((?!https?:)([^)#]+)')
-# Title, name of the file in TABLES, folders whose texts it lists. Pendants, servers of remote clients and programs in Python are not listed.
+# Title, name of the file in TABLES, folders whose texts it lists. Programs in Python have help texts only in the catalogue, and are not listed.
 AREAS = (
     ('Motion and homing', 'motion', ('src/motion', 'src/kinematics')),
     ('Task: programs, MDI, tools', 'task', ('src/machine', 'src/messages')),
@@ -35,6 +35,7 @@ AREAS = (
     ('Start and end of the machine', 'start', ('programs/start', 'src/runtime', 'src/base/diagnostics')),
     ('Programs: run, check, doctor, screen, setup', 'programs', ('programs/doctor', 'programs/run', 'programs/screen', 'programs/setup', 'src/base/options')),
     ('halcompile and HAL tools', 'hal_tools', ('src/hal/halcompile', 'src/hal/tools')),
+    ('Drives and servers of remote clients', 'servers', ('programs/mains', 'programs/remote')),
 )
 HOLE = '…'
 # Clients look for its words, so it is in no catalogue (texts.NEVER).
