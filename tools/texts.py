@@ -38,7 +38,7 @@ NOT_SHOWN = re.compile(r'/(test|bench|logger|canon)/|keys\.hh$|pin_tables\.hh$|m
 NEVER = re.compile(r'on limit switch error|^interpreter: |^each command is of one class$|^A machine is already running|^Machine configuration file is'
                    r'|^; life of tools|^# What was answered|^there is no module $|^(exec|port) \{\}$|^millwright \w+ [^a-z]*(\.ini|\.ngc|options|help)|^\{\} \[options\]|^(un)?loadrt |^echo |^-- -ini|^10? (in|mm), |^--connectpw and')
 LANGUAGES = ('de', 'es')
-TOKEN = re.compile(r'''//[^\n]*|/\*.*?\*/|R"(\w*)\((.*?)\)\1"|"((?:[^"\\\n]|\\.)*)"|'(?:[^'\\\n]|\\.)+'|\w+|\s+|.''', re.S)
+TOKEN = re.compile(r'''//[^\n]*|/\*.*?\*/|R"(\w*)\((.*?)\)\1"|"((?:[^"\\\n]|\\.)*)"|'(?:[^'\\\n]|\\.)+'|->|\w+|\s+|.''', re.S)
 ESCAPE = {'n': '\n', 't': '\t', '"': '"', '\\': '\\', "'": "'", 'r': '\r', '0': '\0', 'a': '\a'}
 HOLE = re.compile(r'\{[^{}]*\}')
 
