@@ -78,8 +78,8 @@ bool CurvePlanner::hasSpeed(Sequence move) const noexcept {
     return feed.velocity > 0 && feed.limit_share > 0;
 }
 
-/// What may be driven from `s` on. Single blocks and moves without speed stop the motion at `least_end` at
-/// the soonest.
+/// What may be driven from `s` on. A move without speed stops the motion at `least_end` at the soonest. A
+/// single block whose end is before that is passed.
 profile::Run CurvePlanner::run_from(double s, double least_end, const Conditions &conditions) const {
     double stop = path_.stop_behind(s);
     if (!path_.hasOpenEnd()) {
@@ -91,8 +91,9 @@ profile::Run CurvePlanner::run_from(double s, double least_end, const Conditions
         if (m.start_s >= std::min(stop, known)) {
             break;
         }
-        const bool is_stop = conditions.blocks.isStopBefore(m.request.tag) || !hasSpeed(n);
-        if (is_stop && m.start_s >= least_end) {
+        if (!hasSpeed(n)) {
+            stop = std::min(stop, std::max(m.start_s, least_end));
+        } else if (conditions.blocks.isStopBefore(m.request.tag) && m.start_s >= least_end) {
             stop = m.start_s;
         }
     }
@@ -290,19 +291,24 @@ bool CurvePlanner::commit(const Snapshot &now, std::size_t fixed) {
     return true;
 }
 
-/// Stops behind cells of the plan, STOP_APART_S apart.
+/// Stops behind cells of the plan, STOP_APART_S or a small part of the time of a stop apart.
 void CurvePlanner::add_stops(CurvePlan &plan, std::size_t fixed, std::size_t last) {
-    double since = 0;
+    double since = 0, apart = STOP_APART_S;
     for (std::size_t k = fixed; k + 1 < last && plan.stop_count + 1 < CurvePlan::MOST_STOPS; ++k) {
         since += profile_.cell(k).duration;
-        if (since < STOP_APART_S) {
+        if (since < apart) {
             continue;
         }
         since = 0;
         const profile::Stop stop = profile_.stop(run_, k + 1, profile::StopEffort::QUICK);
+        double duration = 0;
+        for (const profile::TimeCell &cell : stop.cells) {
+            duration += cell.duration;
+        }
         if (stop.cells.empty() || stop.kept >= last) {
             return;
         }
+        apart = std::max(STOP_APART_S, STOP_APART * duration);
         const Sequence begin = next_cell_;
         for (const profile::TimeCell &cell : stop.cells) {
             write(cell);

@@ -46,11 +46,12 @@ class CurvePlanner {
     /// Plans without success at rest, one after the other.
     int failures() const noexcept { return failures_; }
 
-    static constexpr double RENEWAL_S = 0.1;      ///< from one plan to the next
-    static constexpr double RESERVE_S = 0.15;     ///< by which a plan may be late
-    static constexpr double WINDOW_S = 0.6;       ///< planned at once
-    static constexpr double STOP_APART_S = 0.01;  ///< between the places where stops begin
-    static constexpr double PLANNING_S = 0.01;    ///< from the making of a plan to its first cell
+    static constexpr double RENEWAL_S = 0.2;   ///< from one plan to the next
+    static constexpr double RESERVE_S = 0.15;  ///< by which a plan may be late
+    static constexpr double WINDOW_S = 0.45;   ///< planned at once, and the time of a stop
+    /// Between the places where stops begin, as a time and as a part of the time of a stop.
+    static constexpr double STOP_APART_S = 0.01, STOP_APART = 0.05;
+    static constexpr double PLANNING_S = 0.01;  ///< from the making of a plan to its first cell
 
   private:
     bool isFor(const PathDemand &demand, const Conditions &conditions) const noexcept;

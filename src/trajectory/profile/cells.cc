@@ -20,9 +20,27 @@ double rounding_at(double s) noexcept {
 
 /// Largest change of direction in a cell [rad].
 constexpr double TURN_PER_CELL = 0.2;
+/// Cells in the time in which the jerk limit builds up an acceleration, and in that of a span.
+constexpr double CELLS_PER_RAMP = 10, CELLS_PER_SPAN = 6;
+/// Cells in the time of a start with constant jerk: the map changes there.
+constexpr double CELLS_PER_START = 25;
+/// Times of cells [s], and how much longer they may become in a time.
+constexpr double LEAST_CELL_S = 5e-4, MOST_CELL_S = 1e-2, MOST_JOINT_CELL_S = 2e-3, CELL_GROWTH = 0.04;
+/// Cells of a window at most, and of a way from stop to stop at least: the jerk changes where a cell ends.
+constexpr std::size_t MOST_CELLS = 2000, FEWEST_CELLS = 70;
 
 bool isAlike(const FeedLimit &a, const FeedLimit &b) noexcept {
     return a.velocity == b.velocity && a.along == b.along && a.limit_share == b.limit_share;
+}
+
+/// Time in which the jerk limit builds up an acceleration.
+double ramp_of(const Bounds &b) noexcept {
+    return b.acceleration < UNLIMITED_BOUND ? b.acceleration / b.jerk : 1e300;
+}
+
+/// Way on which the direction changes by as much as in a cell at most.
+double turn_way(double direction, double bend) noexcept {
+    return TURN_PER_CELL * std::sqrt(std::max(direction, 1e-4) / std::max(bend, 1e-30));
 }
 
 /// Speed after the way ds from v with a^2 <= 2 J v (a start from rest with constant jerk) and a <= A.
@@ -47,9 +65,8 @@ std::size_t Run::feed_at(double s) const noexcept {
 }
 
 double RoughProfile::ramp_at(const Run &run, double s) noexcept {
-    const Node node = node_at(run, span_at(*run.spans, s), s, s, 1e-9);
-    const double t = std::min(node.acceleration / node.jerk, std::sqrt(node.v / node.jerk));
-    return node.jerk * t * t * t / 6;
+    const Node node = node_at(run, span_at(*run.spans, s), s, s);
+    return node.jerk * node.rest_s * node.rest_s * node.rest_s / 6;
 }
 
 /// A cap at the node, on a span of this length, limits its speed.
@@ -64,8 +81,7 @@ void RoughProfile::apply_caps(const Run &run, Node &node, double length) noexcep
 }
 
 /// `from_s`: end of the stretch before it; the node has the least speed of the moves in it.
-RoughProfile::Node RoughProfile::node_at(const Run &run, std::size_t span, double from_s, double s,
-                                         double cell_s) noexcept {
+RoughProfile::Node RoughProfile::node_at(const Run &run, std::size_t span, double from_s, double s) noexcept {
     const CurvePoint p = curve::point_at((*run.spans)[span], s);
     Node node{s, 1e300, 1e300, 1e300, 0};
     double fastest = 1;
@@ -81,55 +97,71 @@ RoughProfile::Node RoughProfile::node_at(const Run &run, std::size_t span, doubl
     for (std::size_t i = 0; i < geometry::AXIS_COUNT; ++i) {
         const Bounds &b = run.limits.axes[i];
         const double q1 = std::max(std::abs(p.first.c[i]), 1e-30);
-        node.v = std::min({node.v, fastest * b.velocity / q1,
-                           std::sqrt(b.acceleration / std::max(std::abs(p.second.c[i]), 1e-30)),
-                           std::cbrt(b.jerk / std::max(std::abs(p.third.c[i]), 1e-30))});
+        node.v = std::min(node.v, fastest * b.velocity / q1);
+        node.curve_v =
+            std::min({node.curve_v, std::sqrt(b.acceleration / std::max(std::abs(p.second.c[i]), 1e-30)),
+                      std::cbrt(b.jerk / std::max(std::abs(p.third.c[i]), 1e-30))});
         node.acceleration = std::min(node.acceleration, b.acceleration / q1);
         node.jerk = std::min(node.jerk, b.jerk / q1);
+        if (std::abs(p.first.c[i]) + std::abs(p.second.c[i]) > 0) {
+            node.ramp_s = std::min(node.ramp_s, ramp_of(b));
+        }
         direction += p.first.c[i] * p.first.c[i];
         bend += p.second.c[i] * p.second.c[i];
     }
     const Bounds &b = run.limits.xyz;
     const double n1 = std::max(geometry::norm_xyz(p.first), 1e-30);
-    node.v = std::min({node.v, fastest * b.velocity / n1,
-                       std::sqrt(b.acceleration / std::max(geometry::norm_xyz(p.second), 1e-30)),
-                       std::cbrt(b.jerk / std::max(geometry::norm_xyz(p.third), 1e-30))});
+    node.v = std::min(node.v, fastest * b.velocity / n1);
+    node.curve_v =
+        std::min({node.curve_v, std::sqrt(b.acceleration / std::max(geometry::norm_xyz(p.second), 1e-30)),
+                  std::cbrt(b.jerk / std::max(geometry::norm_xyz(p.third), 1e-30))});
     node.acceleration = std::min(node.acceleration, b.acceleration / n1);
     node.jerk = std::min(node.jerk, b.jerk / n1);
-    // Where the feed changes both count.
-    for (const std::size_t feed : {run.feed_at(s), run.feed_at(s + 2 * rounding_at(s))}) {
+    // Where the feed changes both count, unless the motion stops there.
+    for (const std::size_t feed :
+         {run.feed_at(s),
+          run.feed_at(run.has_stop ? std::min(s + 2 * rounding_at(s), run.end_s) : s + 2 * rounding_at(s))}) {
         node.v = std::min(node.v, 1 / std::sqrt(std::max((*run.feeds)[feed].share(p.first), 1e-30)));
     }
-    node.v = std::min(node.v,
-                      TURN_PER_CELL / cell_s * std::sqrt(std::max(direction, 1e-4) / std::max(bend, 1e-30)));
+    node.ramp_s = std::min(node.ramp_s, ramp_of(b));
+    double turn_v = turn_way(direction, bend) / LEAST_CELL_S;
     apply_joints(run, node, s + 1e-6 * ((*run.spans)[span].start_s + 0.5 * (*run.spans)[span].length - s),
-                 cell_s);
+                 turn_v);
+    node.v = std::min(node.v, node.curve_v);
+    node.way = (*run.spans)[span].length / CELLS_PER_SPAN;
+    node.rest_s = std::min(node.acceleration / node.jerk, std::sqrt(node.v / node.jerk));
+    node.v = std::min(node.v, turn_v);
     return node;
 }
 
-/// `inside`: a place on the side of the node whose curve counts.
-void RoughProfile::apply_joints(const Run &run, Node &node, double inside, double cell_s) noexcept {
+/// `inside`: a place on the side of the node whose curve counts; `turn_v`: the speed at which the direction
+/// changes by as much as it may in the shortest cell.
+void RoughProfile::apply_joints(const Run &run, Node &node, double inside, double &turn_v) noexcept {
     if (run.joint_curve == nullptr) {
         return;
     }
-    const curve::JointPoint p = run.joint_curve->point_at(run.joint_curve->part_at(inside), node.s);
+    const std::size_t part = run.joint_curve->part_at(inside);
+    const curve::JointPoint p = run.joint_curve->point_at(part, node.s);
     double direction = 0, bend = 0;
     for (std::size_t j = 0; j < run.joint_curve->joints(); ++j) {
         const Bounds b = bounds_of(run.joints, j);
         const double q1 = std::max(std::abs(p.first[j]), 1e-30);
-        node.v = std::min({node.v, b.velocity / q1,
-                           std::sqrt(b.acceleration / std::max(std::abs(p.second[j]), 1e-30)),
-                           std::cbrt(b.jerk / std::max(std::abs(p.third[j]), 1e-30))});
+        node.v = std::min(node.v, b.velocity / q1);
+        node.curve_v =
+            std::min({node.curve_v, std::sqrt(b.acceleration / std::max(std::abs(p.second[j]), 1e-30)),
+                      std::cbrt(b.jerk / std::max(std::abs(p.third[j]), 1e-30))});
         node.acceleration = std::min(node.acceleration, b.acceleration / q1);
         node.jerk = std::min(node.jerk, b.jerk / q1);
+        if (std::abs(p.first[j]) + std::abs(p.second[j]) > 0) {
+            node.ramp_s = std::min(node.ramp_s, ramp_of(b));
+        }
         direction += p.first[j] * p.first[j];
         bend += p.second[j] * p.second[j];
     }
-    node.v = std::min(node.v,
-                      TURN_PER_CELL / cell_s * std::sqrt(std::max(direction, 1e-4) / std::max(bend, 1e-30)));
+    turn_v = std::min(turn_v, turn_way(direction, bend) / LEAST_CELL_S);
 }
 
-const std::vector<double> &RoughProfile::lay(const Run &run, const Stretch &stretch) {
+const std::vector<RoughProfile::CellEnd> &RoughProfile::lay(const Run &run, const Stretch &stretch) {
     knots_.clear();
     lay_nodes(run, stretch);
     if (nodes_.size() > 1) {
@@ -138,19 +170,30 @@ const std::vector<double> &RoughProfile::lay(const Run &run, const Stretch &stre
     return knots_;
 }
 
+bool RoughProfile::isInRamp(const Run &run, const Stretch &stretch, double s) noexcept {
+    const double rounding = 2 * rounding_at(s);
+    return s < stretch.from_s + stretch.start_ramp + rounding ||
+           (run.has_stop && s > run.end_s - stretch.end_ramp - rounding);
+}
+
 bool RoughProfile::isInEnd(const Run &run, const Stretch &stretch, double s) noexcept {
     return run.has_stop && s > run.end_s - stretch.end_ramp;
 }
 
 /// The next node behind `s`: thirds of spans, halves of the parts of the joints, places where the feed
 /// changes.
-double RoughProfile::next_place(const Run &run, const Span &span, double s) noexcept {
+double RoughProfile::next_place(const Run &run, const Stretch &stretch, const Span &span, double s) noexcept {
     const double rounding = rounding_at(s);
     double next = span.end_s();
+    const auto take = [&](double place) {
+        next = place > s + rounding && place < next - rounding ? place : next;
+    };
     for (int n = NODES_PER_SPAN - 1; n > 0; --n) {
         const double third = span.start_s + span.length * n / NODES_PER_SPAN;
-        next = third > s + rounding && third < next - rounding ? third : next;
+        take(third);
     }
+    take(stretch.from_s + stretch.start_ramp);
+    take(run.has_stop ? run.end_s - stretch.end_ramp : next);
     const auto &feeds = *run.feeds;
     for (std::size_t k = run.feed_at(s + rounding); k + 1 < feeds.size() && feeds[k].end_s < next - rounding;
          ++k) {
@@ -160,7 +203,7 @@ double RoughProfile::next_place(const Run &run, const Span &span, double s) noex
         const curve::JointCurve::Part &part =
             run.joint_curve->parts()[run.joint_curve->part_at(s + rounding)];
         for (const double half : {part.end_s(), part.start_s + 0.5 * part.length}) {
-            next = half > s + rounding && half < next - rounding ? half : next;
+            take(half);
         }
     }
     return next;
@@ -178,8 +221,7 @@ double RoughProfile::speed_at(double s) const noexcept {
 }
 
 /// True if the motion is much faster in the middle between two nodes than the rough profile takes it to be.
-bool RoughProfile::isFasterBetween(const Run &run, std::size_t span, const Node &a, const Node &b,
-                                   double cell_s) noexcept {
+bool RoughProfile::isFasterBetween(const Run &run, std::size_t span, const Node &a, const Node &b) noexcept {
     constexpr double FASTER = 1.25;
     // In the middle of a way from or to rest with constant jerk: 0.5^(2/3).
     constexpr double MIDDLE_OF_CUBE = 0.63;
@@ -189,49 +231,60 @@ bool RoughProfile::isFasterBetween(const Run &run, std::size_t span, const Node 
     const double ends = FASTER * middle;
     const double reached =
         std::min(faster(a.v, half, b.acceleration, b.jerk), faster(b.v, half, b.acceleration, b.jerk));
-    return reached > ends && half > rounding_at(a.s) && node_at(run, span, a.s, a.s + half, cell_s).v > ends;
+    return reached > ends && half > rounding_at(a.s) && node_at(run, span, a.s, a.s + half).v > ends;
 }
 
-/// Lays nodes until the motion without braking takes 1.5 times the horizon, then limits their speeds by
-/// braking.
+/// Lays nodes until the motion without braking takes 1.5 times what is to be laid, then limits their speeds
+/// by braking.
 void RoughProfile::lay_nodes(const Run &run, const Stretch &stretch) {
     constexpr double FARTHER = 1.5;
+    stop_s_ = 0;
+    const auto take_stop = [this](const Node &n) {
+        stop_s_ = std::max(stop_s_, n.v / n.acceleration + n.rest_s);
+    };
     const double reached = stretch.from_rest ? 0.0 : speed_at(stretch.from_s);
     nodes_.clear();
     reaches_end_ = false;
     const auto &spans = *run.spans;
     std::size_t k = span_at(spans, stretch.from_s);
-    nodes_.push_back(node_at(run, k, stretch.from_s, stretch.from_s, stretch.cell_s));
+    nodes_.push_back(node_at(run, k, stretch.from_s, stretch.from_s));
     nodes_.back().v = std::min(nodes_.back().v, reached);
     apply_caps(run, nodes_.back(), spans[k].length);
+    take_stop(nodes_.back());
     double t = 0;
-    for (; k < spans.size() && spans[k].start_s < run.end_s &&
-           (t < FARTHER * stretch.horizon_s || isInEnd(run, stretch, nodes_.back().s));
+    bool has_speed = true;
+    for (; has_speed && k < spans.size() && spans[k].start_s < run.end_s &&
+           (t < FARTHER * time_left(stretch) || isInEnd(run, stretch, nodes_.back().s));
          ++k) {
         const double end = std::min(run.end_s, spans[k].end_s());
         while (nodes_.back().s + rounding_at(end) < end) {
             const Node last = nodes_.back();
-            double s = next_place(run, spans[k], last.s);
+            double s = next_place(run, stretch, spans[k], last.s);
             s = s < end - rounding_at(end) ? s : end;
-            Node node = node_at(run, k, last.s, s, stretch.cell_s);
+            Node node = node_at(run, k, last.s, s);
             const auto is_coarse = [&] {
                 Node to = node;
                 to.v = run.has_stop && s >= run.end_s - 2 * rounding_at(s) ? 0 : node.v;
-                return isFasterBetween(run, k, last, to, stretch.cell_s);
+                return isFasterBetween(run, k, last, to);
             };
             while (is_coarse()) {
                 s = last.s + 0.5 * (s - last.s);
-                node = node_at(run, k, last.s, s, stretch.cell_s);
+                node = node_at(run, k, last.s, s);
+            }
+            has_speed = node.v > 0;
+            if (!has_speed) {
+                break;  // no cells: the motion stops before
             }
             apply_caps(run, node, spans[k].length);
             if (node.cap_s > NOWHERE && k + 1 < spans.size()) {
-                const Node behind = node_at(run, k + 1, s, s, stretch.cell_s);
+                const Node behind = node_at(run, k + 1, s, s);
                 node.v = std::min(node.v, behind.v);
                 node.acceleration = std::min(node.acceleration, behind.acceleration);
                 node.jerk = std::min(node.jerk, behind.jerk);
             }
             node.v = std::min(node.v, faster(last.v, s - last.s, node.acceleration, node.jerk));
             t += 2 * (s - last.s) / (last.v + node.v);
+            take_stop(node);
             nodes_.push_back(node);
         }
     }
@@ -239,7 +292,7 @@ void RoughProfile::lay_nodes(const Run &run, const Stretch &stretch) {
         // A start and a stop have a place between them that moves.
         const Node &first = nodes_.front(), &last = nodes_.back();
         const double way = 0.5 * (last.s - first.s), s = first.s + way;
-        Node node = node_at(run, span_at(spans, s), first.s, s, stretch.cell_s);
+        Node node = node_at(run, span_at(spans, s), first.s, s);
         node.v = std::min(node.v, faster(first.v, way, node.acceleration, node.jerk));
         nodes_.insert(nodes_.begin() + 1, node);
     }
@@ -255,52 +308,119 @@ void RoughProfile::lay_nodes(const Run &run, const Stretch &stretch) {
     }
 }
 
+/// Time of a cell at each node: a part of the times in which the motion or the curve changes. It grows and
+/// falls slowly.
+void RoughProfile::size_cells(const Run &run, const Stretch &stretch) {
+    const double most_s = run.joint_curve == nullptr ? MOST_CELL_S : MOST_JOINT_CELL_S;
+    for (Node &n : nodes_) {
+        // The part of the acceleration that the curve takes.
+        const double part = n.v * n.v / (n.curve_v * n.curve_v);
+        n.cell_s = std::clamp(std::min(n.ramp_s / CELLS_PER_RAMP, n.way / std::max(n.v * part, 1e-300)),
+                              LEAST_CELL_S, most_s);
+        if (isInRamp(run, stretch, n.s)) {
+            n.cell_s = std::clamp(n.rest_s / CELLS_PER_START, LEAST_CELL_S, n.cell_s);
+        }
+    }
+    for (std::size_t i = 1; i < nodes_.size(); ++i) {
+        const Node &a = nodes_[i - 1];
+        nodes_[i].cell_s = std::min(nodes_[i].cell_s, a.cell_s + CELL_GROWTH * (nodes_[i].t - a.t));
+    }
+    counts_.assign(nodes_.size(), 0.0);
+    for (std::size_t i = nodes_.size() - 1; i-- > 0;) {
+        const Node &b = nodes_[i + 1];
+        nodes_[i].cell_s = std::min(nodes_[i].cell_s, b.cell_s + CELL_GROWTH * (b.t - nodes_[i].t));
+    }
+    for (std::size_t i = 1; i < nodes_.size(); ++i) {
+        counts_[i] = counts_[i - 1] + count_between(nodes_[i - 1], nodes_[i], nodes_[i].t);
+    }
+}
+
+/// Cells from one node up to a time before the next: their time changes linearly.
+double RoughProfile::count_between(const Node &a, const Node &b, double t) noexcept {
+    const double passed = t - a.t, rise = (b.cell_s - a.cell_s) / std::max(b.t - a.t, 1e-300);
+    const double x = rise * passed / a.cell_s;
+    return std::abs(x) < 1e-6 ? passed / a.cell_s * (1 - 0.5 * x) : std::log1p(x) / rise;
+}
+
+/// The time up to which there are so many cells behind the node `a`.
+double RoughProfile::time_after(const Node &a, const Node &b, double count) noexcept {
+    const double rise = (b.cell_s - a.cell_s) / std::max(b.t - a.t, 1e-300);
+    const double x = rise * count;
+    return a.t + a.cell_s * count * (std::abs(x) < 1e-6 ? 1 + 0.5 * x : std::expm1(x) / x);
+}
+
 void RoughProfile::lay_knots(const Run &run, const Stretch &stretch) {
     for (std::size_t i = 1; i < nodes_.size(); ++i) {
         const Node &a = nodes_[i - 1];
         Node &b = nodes_[i];
         b.t = a.t + (std::min(a.v, b.v) == 0 ? 3.0 : 2.0) * (b.s - a.s) / (a.v + b.v);
     }
+    size_cells(run, stretch);
     const double whole = nodes_.back().t;
-    const auto last = std::find_if(nodes_.begin(), nodes_.end(),
-                                   [&](const Node &n) { return n.t >= stretch.horizon_s + stretch.cell_s; });
-    const bool is_all = reaches_end_ && (last == nodes_.end() || isInEnd(run, stretch, last->s));
-    const double time = is_all ? whole : std::min(whole, stretch.horizon_s);
+    const double left = time_left(stretch);
+    const auto last =
+        std::find_if(nodes_.begin(), nodes_.end(), [&](const Node &n) { return n.t >= left + n.cell_s; });
+    const bool is_all = reaches_end_ && counts_.back() < MOST_CELLS &&
+                        (last == nodes_.end() || isInEnd(run, stretch, last->s));
+    finer_ = is_all ? std::clamp(FEWEST_CELLS / counts_.back(), 1.0,
+                                 std::max(1.0, whole / (LEAST_CELL_S * counts_.back())))
+                    : 1.0;
+    std::size_t node = 1;
+    const double most = std::min(counts_.back(), static_cast<double>(MOST_CELLS));
+    const double time = is_all ? whole : std::min({whole, left, time_at(most, node)});
     // A cell ends at each cap: at the first node there, as rounding may leave more of them.
     double from = 0, last_cap = nodes_[0].cap_s;
-    std::size_t node = 1;
+    node = 1;
     for (std::size_t i = 1; i < nodes_.size() && nodes_[i].t < time; ++i) {
         if (nodes_[i].cap_s > NOWHERE && nodes_[i].cap_s != last_cap) {
             last_cap = nodes_[i].cap_s;
-            lay_between(from, nodes_[i].t, stretch.cell_s, node);
-            knots_.back() = nodes_[i].s;
-            from = nodes_[i].t;
+            lay_between(from, counts_[i], node);
+            knots_.back().s = nodes_[i].s;
+            from = counts_[i];
         }
     }
-    if (is_all || time - from > 0.5 * stretch.cell_s) {
-        lay_between(from, time, stretch.cell_s, node);
+    const double end = is_all ? counts_.back() : count_at(time);
+    if (is_all || end - from > 0.5) {
+        lay_between(from, end, node);
     }
     if (is_all) {
-        knots_.back() = nodes_.back().s;
+        knots_.back().s = nodes_.back().s;
     }
 }
 
-/// Cells about as long as `cell_s` between two times; `node`: one at or before the first of them.
-void RoughProfile::lay_between(double from_t, double to_t, double cell_s, std::size_t &node) {
-    const auto cells = static_cast<std::size_t>(std::max(1.0, std::ceil((to_t - from_t) / cell_s)));
-    const double h = (to_t - from_t) / static_cast<double>(cells);
+/// Cells up to a time.
+double RoughProfile::count_at(double t) const noexcept {
+    const auto behind =
+        std::partition_point(nodes_.begin() + 1, nodes_.end() - 1, [&](const Node &n) { return n.t < t; });
+    const auto i = static_cast<std::size_t>(behind - nodes_.begin());
+    return counts_[i - 1] + count_between(nodes_[i - 1], nodes_[i], std::min(t, nodes_[i].t));
+}
+
+/// The time up to which there are so many cells; `node`: one at or before the first that is behind it.
+double RoughProfile::time_at(double count, std::size_t &node) const noexcept {
+    while (node + 1 < nodes_.size() && counts_[node] < count) {
+        ++node;
+    }
+    return std::min(time_after(nodes_[node - 1], nodes_[node], count - counts_[node - 1]), nodes_[node].t);
+}
+
+/// Cells of one size or one that changes slowly, between two counts; `node`: one at or before the first of
+/// them.
+void RoughProfile::lay_between(double from, double to, std::size_t &node) {
+    const auto cells = static_cast<std::size_t>(std::max(1.0, std::ceil(finer_ * (to - from))));
+    double before = time_at(from, node);
     for (std::size_t k = 1; k <= cells; ++k) {
-        const double t = from_t + h * static_cast<double>(k);
-        while (node + 1 < nodes_.size() && nodes_[node].t < t) {
-            ++node;
-        }
+        const double t =
+            time_at(from + (to - from) * static_cast<double>(k) / static_cast<double>(cells), node);
         const Node &a = nodes_[node - 1];
         const Node &b = nodes_[node];
         const double x = std::clamp((t - a.t) / (b.t - a.t), 0.0, 1.0);
         const double y = 1 - x;
-        knots_.push_back(a.v == 0   ? a.s + (b.s - a.s) * x * x * x
+        const double s = a.v == 0   ? a.s + (b.s - a.s) * x * x * x
                          : b.v == 0 ? b.s - (b.s - a.s) * y * y * y
-                                    : a.s + x * (b.t - a.t) * (a.v + 0.5 * (b.v - a.v) * x));
+                                    : a.s + x * (b.t - a.t) * (a.v + 0.5 * (b.v - a.v) * x);
+        knots_.push_back({s, t - before});
+        before = t;
     }
 }
 

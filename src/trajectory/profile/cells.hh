@@ -74,12 +74,17 @@ class RoughProfile {
     struct Stretch {
         double from_s = 0;
         bool from_rest = false;
-        double horizon_s = 0;  ///< time of what is laid
-        double cell_s = 0;     ///< time of a cell
-        double end_ramp = 0;   ///< before the end of the run: cells reach there only together with the stop
+        double start_ramp = 0;  ///< behind the start, from rest: the map is blended there
+        double window_s = 0;    ///< time of the window, without that of a stop
+        double planned_s = 0;   ///< time of what is laid already
+        double end_ramp = 0;    ///< before the end of the run: cells reach there only together with the stop
     };
-    /// Ends of cells of about equal time along the curve, after the start.
-    const std::vector<double> &lay(const Run &run, const Stretch &stretch);
+    /// End of a cell, and the time that it takes about.
+    struct CellEnd {
+        double s = 0, duration_s = 0;
+    };
+    /// Ends of cells along the curve, after the start. They cover the window and a stop behind it.
+    const std::vector<CellEnd> &lay(const Run &run, const Stretch &stretch);
     /// Length of a start or stop at s with constant jerk, up to the full acceleration or half of the speed
     /// limit.
     static double ramp_at(const Run &run, double s) noexcept;
@@ -89,21 +94,38 @@ class RoughProfile {
     struct Node {
         double s = 0, v = 0, acceleration = 0, jerk = 0, t = 0;
         double cap_s = NOWHERE;  ///< place of the cap that is there
+        double ramp_s = 1e300;   ///< time in which the jerk limit builds up an acceleration
+        double rest_s = 0;       ///< time of a start or stop with constant jerk here
+        double curve_v = 1e300;  ///< speed at which the curve alone takes a limit of acceleration or jerk
+        double way = 1e300;      ///< on which the curve changes
+        double cell_s = 0;       ///< time of a cell
     };
-    static Node node_at(const Run &run, std::size_t span, double from_s, double s, double cell_s) noexcept;
+    static Node node_at(const Run &run, std::size_t span, double from_s, double s) noexcept;
     void lay_nodes(const Run &run, const Stretch &stretch);
     void lay_knots(const Run &run, const Stretch &stretch);
-    static void apply_joints(const Run &run, Node &node, double inside, double cell_s) noexcept;
-    static bool isFasterBetween(const Run &run, std::size_t span, const Node &a, const Node &b,
-                                double cell_s) noexcept;
-    static double next_place(const Run &run, const Span &span, double s) noexcept;
+    void size_cells(const Run &run, const Stretch &stretch);
+    static void apply_joints(const Run &run, Node &node, double inside, double &turn_v) noexcept;
+    static bool isFasterBetween(const Run &run, std::size_t span, const Node &a, const Node &b) noexcept;
+    static double next_place(const Run &run, const Stretch &stretch, const Span &span, double s) noexcept;
     double speed_at(double s) const noexcept;
+    static bool isInRamp(const Run &run, const Stretch &stretch, double s) noexcept;
     static bool isInEnd(const Run &run, const Stretch &stretch, double s) noexcept;
-    void lay_between(double from_t, double to_t, double cell_s, std::size_t &node);
     static void apply_caps(const Run &run, Node &node, double length) noexcept;
+    static double count_between(const Node &a, const Node &b, double t) noexcept;
+    static double time_after(const Node &a, const Node &b, double count) noexcept;
+    double count_at(double t) const noexcept;
+    double time_at(double count, std::size_t &node) const noexcept;
+    /// Time for which cells are to be laid: the window and a stop behind it, without what is laid already.
+    double time_left(const Stretch &stretch) const noexcept {
+        return stretch.window_s + stop_s_ - stretch.planned_s;
+    }
+    void lay_between(double from, double to, std::size_t &node);
     std::vector<Node> nodes_;
-    std::vector<double> knots_;
+    std::vector<CellEnd> knots_;
+    std::vector<double> counts_;  ///< of cells from the first node to each
     bool reaches_end_ = false;
+    double finer_ = 1;   ///< by which the cells are shorter
+    double stop_s_ = 0;  ///< time of a stop from the maximum speed
 };
 
 /// The span at s.

@@ -76,8 +76,14 @@ class Scales {
     }
 
   private:
+    /// Those that are driven: what is behind a stop does not count.
+    std::size_t feeds() const noexcept {
+        return run_.has_stop ? run_.feed_at(run_.end_s) + 1 : run_.feeds->size();
+    }
+    /// A move without speed is not driven: the motion stops before.
     double speed_of(const FeedLimit &feed) const noexcept {
-        return std::min(feed.limit_share * least_.velocity, feed.velocity);
+        const double v = std::min(feed.limit_share * least_.velocity, feed.velocity);
+        return v > 0 ? v : 1e300;
     }
     /// The scale at which the jerk limit gives this speed.
     double scale_of_speed(double v) const noexcept { return std::sqrt(v * v * v / least_.jerk); }
@@ -97,7 +103,7 @@ class Scales {
                 length = std::min(length, spans[++span].length);
             }
             double v = speed_of((*run_.feeds)[feed]);
-            while (feed + 1 < run_.feeds->size() && s >= (*run_.feeds)[feed].end_s) {
+            while (feed + 1 < feeds() && s >= (*run_.feeds)[feed].end_s) {
                 v = std::min(v, speed_of((*run_.feeds)[++feed]));
             }
             run_.each_cap(from, s, [&](const SpeedCap &cap) { v = std::min(v, cap.v); });
@@ -118,7 +124,7 @@ class Scales {
             last = std::min(last, spans[j].length + SPACING_GROWTH * std::max(0.0, spans[j].start_s - s));
         }
         const auto apart = [&](std::size_t j) { return (*run_.feeds)[j - 1].end_s - s; };
-        for (std::size_t j = feed + 1; j < run_.feeds->size() && SPACING_GROWTH * apart(j) < last; ++j) {
+        for (std::size_t j = feed + 1; j < feeds() && SPACING_GROWTH * apart(j) < last; ++j) {
             last = std::min(last, scale_of_speed(speed_of((*run_.feeds)[j])) +
                                       SPACING_GROWTH * std::max(0.0, apart(j)));
         }
@@ -239,14 +245,22 @@ class CreepSpline {
     std::vector<double> c_;
 };
 
-/// The slope at which a creep may fall. The speed of joints changes by a factor over the length of a part;
-/// the scale is the power 3/2 of the speed.
+/// The slope at which a creep may fall. Where the speed of joints changes by a factor over the length of a
+/// part so does the creep; the scale is the power 3/2 of the speed.
 double fall_of(const Run &run, double s, double scale) noexcept {
-    const double fall = 2 * SPACING_GROWTH;
+    constexpr std::size_t PARTS_AHEAD = 3;
+    double fall = 2 * SPACING_GROWTH;
     if (run.joint_curve == nullptr) {
         return fall;
     }
-    return std::min(fall, 1.5 * scale / run.joint_curve->parts()[run.joint_curve->part_at(s)].length);
+    const auto &parts = run.joint_curve->parts();
+    const std::size_t at = run.joint_curve->part_at(s);
+    for (std::size_t k = at; k + 1 < std::min(parts.size(), at + PARTS_AHEAD + 1); ++k) {
+        const double change = std::min(1.0, std::abs(std::log(parts[k + 1].speed / parts[k].speed)));
+        const double length = std::min(parts[k].length, parts[k + 1].length);
+        fall = std::min(fall, 1.5 * scale / std::max(length * change, 1e-300));
+    }
+    return fall;
 }
 
 }  // namespace

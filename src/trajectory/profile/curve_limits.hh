@@ -31,5 +31,7 @@ inline Bounds bounds_of(const JointLimits &joints, std::size_t j) noexcept {
 
 /// The least time of a full acceleration [s]: of axes without a jerk limit, too.
 inline constexpr double LEAST_RAMP_S = 2e-3;
+/// A limit above it is none.
+inline constexpr double UNLIMITED_BOUND = 1e100;
 
 }  // namespace mw::trajectory::profile

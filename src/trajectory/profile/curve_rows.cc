@@ -11,9 +11,6 @@ namespace mw::trajectory::profile {
 
 namespace {
 
-/// A limit above it is none.
-constexpr double UNLIMITED_BOUND = 1e100;
-
 double square(double x) noexcept {
     return x * x;
 }
@@ -49,8 +46,11 @@ unsigned moving_coordinates(const std::vector<Span> &spans, double from_s, doubl
     unsigned moving = 0;
     for (std::size_t k = span_at(spans, from_s); k < spans.size() && spans[k].start_s <= to_s; ++k) {
         const Span &span = spans[k];
-        for (std::size_t i = 0; i < geometry::AXIS_COUNT; ++i) {
-            moving |= span.c[1].c[i] != 0 || span.c[2].c[i] != 0 || span.c[3].c[i] != 0 ? 1U << i : 0U;
+        // One that begins to move smoothly has lower derivatives of 0 at the start of its span.
+        for (std::size_t n = 1; n < span.c.size(); ++n) {
+            for (std::size_t i = 0; i < geometry::AXIS_COUNT; ++i) {
+                moving |= span.c[n].c[i] != 0 ? 1U << i : 0U;
+            }
         }
     }
     return moving;

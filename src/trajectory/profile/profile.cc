@@ -8,9 +8,6 @@ namespace mw::trajectory::profile {
 
 namespace {
 
-/// Cells in the time in which the jerk limit builds up an acceleration, and the least length of one [s].
-constexpr double CELLS_PER_RAMP = 10;
-constexpr double LEAST_CELL_S = 5e-4;
 /// Parts of the limits that are planned with: a limit is kept at three places of a cell, and nearly so
 /// between them.
 constexpr double VELOCITY_SHARE = 0.9995, ACCELERATION_SHARE = 0.998, JERK_SHARE = 0.99;
@@ -43,12 +40,10 @@ double Profile::planned_s() const noexcept {
 
 void Profile::take_limits(const Run &run) {
     run_ = run;
-    double ramp_s = 1e300;
-    const auto share = [&](Bounds &b) {
+    const auto share = [](Bounds &b) {
         b.velocity *= VELOCITY_SHARE;
         b.acceleration *= ACCELERATION_SHARE;
         b.jerk = std::min(b.jerk * JERK_SHARE, b.acceleration / LEAST_RAMP_S);
-        ramp_s = std::min(ramp_s, b.acceleration / b.jerk);
     };
     run_.cap_reach = 0;
     for (std::size_t k = 0; run.caps != nullptr && k < run.caps->size(); ++k) {
@@ -67,7 +62,6 @@ void Profile::take_limits(const Run &run) {
     }
     std::for_each(run_.limits.axes.begin(), run_.limits.axes.end(), share);
     share(run_.limits.xyz);
-    cell_s_ = std::clamp(ramp_s / CELLS_PER_RAMP, LEAST_CELL_S, settings_.cell_s);
 }
 
 /// Computes the joints along what is known. Where there are none the run ends before.
@@ -92,9 +86,9 @@ void Profile::lay_cells(std::size_t fixed) {
     // The creep at the end takes longer than the time for which its cells were laid.
     double planned = 0;
     for (std::size_t k = fixed; k < std::min(plan_.laid(), plan_.time_cells.size()); ++k) {
-        planned += std::min(plan_.time_cells[k].duration, cell_s_);
+        planned += std::min(plan_.time_cells[k].duration, plan_.laid_s[k]);
     }
-    if (plan_.has_end || planned >= settings_.window_s) {
+    if (plan_.has_end) {
         return;
     }
     const bool is_first = plan_.knots.empty();
@@ -104,34 +98,36 @@ void Profile::lay_cells(std::size_t fixed) {
         plan_.end_s = run.end_s;
         plan_.end_ramp = std::min(RoughProfile::ramp_at(run, run.end_s), MAX_RAMP * (run.end_s - from));
     }
+    const double start_ramp =
+        is_first ? std::min(RoughProfile::ramp_at(run, start_s_), MAX_RAMP * (run.end_s - start_s_)) : 0.0;
     const auto &ends =
-        rough_.lay(run, {from, is_first, settings_.window_s - planned, cell_s_, plan_.end_ramp});
+        rough_.lay(run, {from, is_first, start_ramp, settings_.window_s, planned, plan_.end_ramp});
     if (ends.empty()) {
         return;
     }
     if (is_first) {
-        plan_.map.set_start(
-            start_s_, std::min(RoughProfile::ramp_at(run, start_s_), MAX_RAMP * (run.end_s - start_s_)));
+        plan_.map.set_start(start_s_, start_ramp);
         plan_.knots.push_back(0);
     }
     const double ramp = plan_.end_ramp;
-    const bool is_end = run.has_stop && ends.back() >= run.end_s;
+    const bool is_end = run.has_stop && ends.back().s >= run.end_s;
     if (is_end) {
         plan_.map.set_end(run.end_s, ramp);
         plan_.has_end = true;
     }
     const std::size_t old = plan_.laid();
-    for (const double s : ends) {
+    for (const auto &[s, duration_s] : ends) {
         // A stop at the end of what is known must still be possible, and what follows must not lower limits.
         if (!is_end && s > run.end_s - std::max(ramp, run.has_stop ? 0.0 : reach_)) {
             break;
         }
-        const double p = is_end && s == ends.back() ? plan_.map.end() : plan_.map.parameter_at(s);
+        const double p = is_end && s == ends.back().s ? plan_.map.end() : plan_.map.parameter_at(s);
         if (old > 0 && plan_.laid() == old) {
             plan_.lay_first(p);
         } else {
             plan_.knots.push_back(p);
         }
+        plan_.laid_s.resize(plan_.laid(), duration_s);
     }
     if (plan_.laid() == old) {
         // Too little of the curve is known.
@@ -227,7 +223,6 @@ bool Profile::extend(const Run &run, std::size_t fixed) {
     const bool is_moving = fixed > 0 || plan_.before > 0;
     const std::size_t end = plan_.has_end ? 0 : 2;
     SolveSettings settings;
-    settings.cell_s = cell_s_;
     if (is_warm) {
         // The plan changes most at its end, where it braked for the creep.
         settings.first_mu = WARM_MU;
@@ -235,7 +230,6 @@ bool Profile::extend(const Run &run, std::size_t fixed) {
         const auto stays = static_cast<double>(old - fixed) * (1 - TAIL);
         steps_ += law_.solve(2 + static_cast<std::size_t>(stays), end, settings);
         settings = SolveSettings();
-        settings.cell_s = cell_s_;
         settings.first_mu = settings.last_mu;
         settings.steps_per_mu = WARM_STEPS;
     }

@@ -14,9 +14,7 @@
 namespace mw::trajectory::profile {
 
 struct ProfileSettings {
-    double cell_s =
-        2e-3;  ///< length of a cell in time; with high jerk limits a part of the time of a full acceleration
-    double window_s = 0.5;   ///< planned at once
+    double window_s = 0.5;   ///< planned at once, and the time of a stop behind it
     double period_s = 1e-3;  ///< of the servo thread: limits hold for samples so far apart
 };
 
@@ -115,7 +113,6 @@ class Profile {
     double planned_s() const noexcept;
 
     ProfileSettings settings_;
-    double cell_s_ = 0;
     RoughProfile rough_;
     Run run_;  ///< its limits with the margins
     curve::JointCurve joint_curve_;

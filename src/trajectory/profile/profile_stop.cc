@@ -14,6 +14,9 @@ namespace {
 constexpr int TAIL_PLACES = 16;
 constexpr double SPAN_PLACES = 12;
 constexpr int TAIL_ROUNDS = 4;
+/// Time between these places, and between the places where a stop from the least speed or at a place begins,
+/// at most [s].
+constexpr double MOST_STEP_S = 2e-3, STOPS_APART_S = 2e-3;
 constexpr double ANYWHERE = 1e300;
 /// Places that are checked for a quick stop, about: 0.2 ms.
 constexpr std::size_t QUICK_PLACES = 400;
@@ -23,6 +26,26 @@ constexpr double BELOW_PLAN = 0.9, NEAR_CREEP = 1.02;
 constexpr double MOST_PARTS = 8;
 /// Part of the coefficients of the start below which speed is not reduced.
 constexpr double LAST_MU = 4e-3;
+
+bool isStraight(const Span &span) noexcept {
+    for (std::size_t n = 2; n < span.c.size(); ++n) {
+        if (std::ranges::any_of(span.c[n].c, [](double x) { return x != 0; })) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/// From a place to the end of its span nothing changes what the limits leave: the curve is straight, with one
+/// feed and no seam near.
+bool isPlain(const Run &run, const Span &span, std::size_t feed, const Motion &at) noexcept {
+    if (run.joint_curve != nullptr || !isStraight(span) || (*run.feeds)[feed].end_s < span.end_s()) {
+        return false;
+    }
+    bool has_cap = false;
+    run.each_cap(at.s, span.end_s(), [&](const SpeedCap &) { has_cap = true; });
+    return !has_cap;
+}
 
 }  // namespace
 
@@ -72,7 +95,9 @@ bool Profile::keepsLimits(const Run &run, const Course &course, std::size_t cell
         }
         step = duration / TAIL_PLACES;
         if (density == Density::EVERY_SPAN) {
-            step = std::min({step, cell_s_, spans[span].length / SPAN_PLACES / std::max(m.v, 1e-300)});
+            const double v = std::max(m.v, 1e-300), to_end = (spans[span].end_s() - m.s) / v;
+            const double fine = std::min(MOST_STEP_S, spans[span].length / SPAN_PLACES / v);
+            step = std::min(step, to_end > fine && isPlain(run_, spans[span], feed, m) ? to_end : fine);
         }
         while (phase + 1 < DirectStop::PHASES && t >= phase_end) {
             phase_end += tail.cells[++phase].duration;
@@ -200,7 +225,7 @@ void Profile::stop_sooner(const Run &run, std::size_t fixed, Stop &out) {
                 kept = k;
                 tail = found;
             }
-            next = before >= next ? before + settings_.cell_s : next;
+            next = before >= next ? before + STOPS_APART_S : next;
             before += k < n ? law_.time_of(k) : 0.0;
         }
         if (kept <= n) {
@@ -236,8 +261,9 @@ bool Profile::make_slowest(std::size_t fixed, std::size_t n, const std::vector<d
     settings.last_mu = LAST_MU;
     for (std::size_t i = 0; i < std::min(floors.size(), n + 2); ++i) {
         law_.floors()[i] = floors[i];
-        settings.first_mu =
-            i < start ? settings.first_mu : std::max(settings.first_mu, course.c[i] / floors[i]);
+        if (i >= start && floors[i] > 0) {
+            settings.first_mu = std::max(settings.first_mu, course.c[i] / floors[i]);
+        }
     }
     steps_ += law_.solve(start, 0, settings);
     return true;
@@ -302,6 +328,7 @@ std::size_t Profile::split(const Run &run, std::size_t fixed, std::size_t n) {
     plan_.knots.swap(split_.knots);
     plan_.c.swap(split_.c);
     plan_.eased.resize(plan_.laid());
+    plan_.laid_s.assign(plan_.laid(), 1e300);
     const auto last = std::lower_bound(plan_.knots.begin(), plan_.knots.end(), end);
     return static_cast<std::size_t>(last - plan_.knots.begin()) - fixed;
 }
@@ -376,7 +403,7 @@ bool Profile::end_early(const Run &run, std::size_t fixed) {
             tail = found;
             ending_at_ = fixed + k;
         }
-        next = before >= next ? before + settings_.cell_s : next;
+        next = before >= next ? before + STOPS_APART_S : next;
         before += plan_.time_cells[fixed + k].duration;
     }
     plan_.ends_early = least < ANYWHERE;

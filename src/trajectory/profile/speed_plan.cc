@@ -57,6 +57,7 @@ void SpeedPlan::cut(std::size_t kept) {
     knots.resize(kept + 1);
     c.resize(kept + 2);
     eased.resize(kept);
+    laid_s.resize(kept);
     change_behind(behind, knots[kept] - knots[kept - 1]);
     if (has_end) {
         has_end = false;
@@ -79,6 +80,7 @@ void SpeedPlan::drop(std::size_t count) {
     knots.erase(knots.begin(), knots.begin() + n);
     c.erase(c.begin(), c.begin() + n);
     eased.erase(eased.begin(), eased.begin() + n);
+    laid_s.erase(laid_s.begin(), laid_s.begin() + n);
     speed_rows.erase(speed_rows.begin(), speed_rows.begin() + std::min<long>(n, std::ssize(speed_rows)));
     time_cells.erase(time_cells.begin(), time_cells.begin() + n);
 }

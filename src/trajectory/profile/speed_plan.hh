@@ -26,6 +26,7 @@ struct SpeedPlan {
     RestMap map;
     std::vector<double> knots, c;  ///< of the cells that have not been dropped
     std::vector<TimeCell> time_cells;
+    std::vector<double> laid_s;  ///< time that each cell was laid for; a creep takes longer
     /// What b may be at the places of each cell, above the limits of the speed; 0: nothing.
     std::vector<std::array<double, PLACES>> eased;
     /// 1 over the squared limit of the speed at the places of each cell, when it was planned last.

@@ -71,11 +71,15 @@ struct Inverses {
     return {both * y, both * x};
 }
 
+/// Weight of the barrier of a velocity row: most of a program is driven at its feed, which is to be reached
+/// more closely than the other limits.
+constexpr double VELOCITY_WEIGHT = 0.1;
+
 /// -log(1 - b v2).
 [[gnu::always_inline]] inline void add_velocity(const State &s, const Lanes &v2, Slopes &d) noexcept {
-    const Lanes g = v2 / (1.0 - s.b * v2);
-    d.g0 += g;
-    d.h00 += g * g;
+    const Lanes g = v2 / (1.0 - s.b * v2), weighted = VELOCITY_WEIGHT * g;
+    d.g0 += weighted;
+    d.h00 += weighted * g;
 }
 
 /// 1/sqrt(b) - k sqrt(b), which the jerk may take, and its slope; `of_root`: those of 1/sqrt(b). Both parts

@@ -25,7 +25,7 @@ struct SolveSettings {
     Objective objective = Objective::TIME;
     double cell_s = 1e-3;  ///< time that counts as 1 in the objective
     double first_mu = 1, last_mu = 1e-3, factor = 0.2;
-    int steps_per_mu = 8;
+    int steps_per_mu = 20;
 };
 
 class TimeLaw {

@@ -72,6 +72,28 @@ TEST(CurvePlanner, KeepsLimitsWithHoldsOverridesAndDrops) {
     }
 }
 
+/// A machine that needs seconds to stop: the plans reach far enough for its full speed.
+TEST(CurvePlanner, ReachesFullSpeedWhereBrakingTakesSeconds) {
+    constexpr double V = 200, A = 100, J = 1000, WAY = 1500;
+    Program program;
+    program.limits.velocity.fill(V);
+    program.limits.acceleration.fill(A);
+    program.limits.jerk.fill(J);
+    program.limits.isJerkLimited = true;
+    Rig rig = third_order_rig();
+    rig.planner.set_limits(program.limits);
+    MoveRequest request;
+    request.isRapid = true;
+    Pose to;
+    to[0] = WAY;
+    rig.planner.begin(Pose{}, rig.executor.snapshot());
+    rig.planner.add(make_line(Pose{}, to), request);
+    ASSERT_TRUE(rig.run(60));
+    EXPECT_EQ(rig.samples.back(), to);
+    expect_kept(rig, program);
+    EXPECT_LE(static_cast<double>(rig.samples.size()) * Rig::T, 1.01 * (WAY / V + V / A + A / J));
+}
+
 /// Short chords on few long spans: moves that are driven make room for others.
 TEST(CurvePlanner, DrivesMoreMovesThanThereIsRoomFor) {
     constexpr int MOVES = 2 * static_cast<int>(PRIMITIVE_CAPACITY);

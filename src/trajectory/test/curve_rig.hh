@@ -173,7 +173,7 @@ class CurveDriver {
 
     bool drive_to(double from, double stop) {
         constexpr std::size_t LEAST_CELLS = 8;
-        profile::Profile profile({2e-3, 0.5, CURVE_PERIOD_S});
+        profile::Profile profile({0.5, CURVE_PERIOD_S});
         profile.begin(from);
         show(stop, 40);
         for (int n = 0; n < 20000; ++n) {

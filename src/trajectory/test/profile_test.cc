@@ -52,7 +52,7 @@ Driven drive(const std::vector<Primitive> &moves, const std::vector<double> &vel
         }
     }
     builder.extend(true);
-    Profile profile({2e-3, 0.5});
+    Profile profile({0.5});
     profile.begin(0);
     std::vector<TimeCell> cells;
     Driven out;
@@ -149,7 +149,7 @@ struct LinePlan {
     curve::ExactBuilder builder{3.0};
     std::vector<FeedLimit> feeds;
     Run run;
-    Profile profile{{2e-3, 0.5}};
+    Profile profile{{0.5}};
 
     LinePlan(double length, std::vector<FeedLimit> limits) : feeds(std::move(limits)) {
         builder.add(make_line(Pose{}, xyz(length, 0)));
@@ -267,6 +267,31 @@ TEST(Profile, CreepsAlikeOverCellsOfAnyLength) {
         EXPECT_LE(at_7, b * 1.1) << "finer cells are not slower";
         at_7 = b;
     }
+}
+
+/// A coordinate that begins to move smoothly: its lower derivatives are 0 where its span begins.
+TEST(Profile, LimitsACoordinateThatBeginsToMoveSmoothly) {
+    LinePlan line(1, {{1, 50}});
+    std::vector<curve::Span> spans = line.builder.spans();
+    spans.front().c[5].c[1] = 0.1;
+    line.run.spans = &spans;
+    const RestMap map;
+    const std::vector<double> knots{0.4, 0.6};
+    Rows rows;
+    make_rows(line.run, map, knots.data(), 1, rows);
+    EXPECT_EQ(rows.coordinates(), 2U);
+}
+
+/// A feed that ends a rounding before the stop is no place at which the speed is 0.
+TEST(Profile, TakesAFeedThatEndsARoundingBeforeTheStopAsOnePlace) {
+    constexpr double END = 475;
+    LinePlan line(END, {{END - 3e-12, 50}, {END + 1, 20}});
+    Profile profile({0.5});
+    profile.begin(END - 4e-3);
+    line.run.has_stop = true;
+    ASSERT_TRUE(profile.plan(line.run, 0));
+    EXPECT_TRUE(profile.isComplete());
+    EXPECT_LT(profile.cells(), 200U);
 }
 
 TEST(Profile, RandomProgramsKeepLimitsAndTolerance) {

@@ -221,7 +221,7 @@ double duration_of(const std::vector<TimeCell> &cells) {
 
 struct Ride {
     Part part;
-    Profile profile{{2e-3, 0.5}};
+    Profile profile{{0.5}};
     std::vector<TimeCell> driven;
     std::size_t checked = 0;
     std::vector<Reading> allowed;  ///< the plan when limits were lowered
