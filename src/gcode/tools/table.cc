@@ -368,11 +368,15 @@ Result<int> Table::put(ToolEntry entry) {
         while (pocket <= MAX_POCKET && owner_of(pocket) != NOBODY) {
             ++pocket;
         }
+        if (pocket > MAX_POCKET) {
+            return fail(fmt::format("there is no free pocket for tool {}: they end with {}", entry.toolno,
+                                    MAX_POCKET));
+        }
         entry.pocketno = pocket;
     }
     if (entry.pocketno < 0 || entry.pocketno > MAX_POCKET) {
-        return fail(
-            fmt::format("there is no free pocket for tool {}: they end with {}", entry.toolno, MAX_POCKET));
+        return fail(fmt::format("tool {} has pocket {}: pockets are 1 to {}", entry.toolno, entry.pocketno,
+                                MAX_POCKET));
     }
     if (const int owner = owner_of(entry.pocketno); owner != NOBODY) {
         return fail(fmt::format("pocket {} is taken by tool {}", entry.pocketno, owner));

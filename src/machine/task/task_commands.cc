@@ -282,7 +282,7 @@ Outcome Task::Handler::operator()(const SetSpindleSync &command) {
 Outcome Task::Handler::operator()(const RigidTapMove &command) {
     const SetSpindleSync &sync = task.mdi_queue_.sync();
     if (!(sync.feed_per_revolution > 0) || sync.isVelocityOnly) {
-        return fail("a tap needs a spindle with an encoder", {}, "set the pitch with SetSpindleSync");
+        return fail("the rigid tap has no pitch", {}, "set the pitch with SetSpindleSync first");
     }
     if (task.run_.isRunning()) {
         return task.mdi_queue_.add({id, {}, command, task.senders_.sender()});

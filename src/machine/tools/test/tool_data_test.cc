@@ -188,6 +188,7 @@ TEST_F(ToolDataTest, WhatCannotBeAddedOrRemovedIsRefusedAndTheFileStays) {
 TEST_F(ToolDataTest, ARandomChangersPocketsAreOneToolEach) {
     task::ToolStore &tools = open_file("T1 P0\nT2 P1\nT3 P2\n", true);
     EXPECT_EQ(tools.add(tool_of(9, 2)).error().message, "pocket 2 is taken by tool 3");
+    EXPECT_EQ(tools.add(tool_of(9, 1001)).error().message, "tool 9 has pocket 1001: pockets are 1 to 1000");
     EXPECT_EQ(tools.remove(0).error().message,
               "tool 1 is in the spindle: it is removed after the next tool change");
     ASSERT_TRUE(tools.remove(tools.index_of_tool(2)).has_value());
