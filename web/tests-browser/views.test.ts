@@ -8,7 +8,7 @@ import { afterAll, beforeAll, describe, expect, it } from 'vitest';
 import { bringUp, byHand, judgeByAxe, Rig, sleep, untilText } from './rig';
 
 const PICTURES = process.env['MW_SCREEN_PICTURES'];
-const SIZES = [[1280, 800], [800, 480], [390, 844]] as const;
+const SIZES = [[1280, 800], [1920, 1080], [800, 480], [390, 844]] as const;
 const TABS = ['path', 'programs', 'text', 'tools', 'offsets', 'probing', 'plots', 'hal', 'messages', 'settings'];
 const SMALL_TABS = ['jog', 'mdi', 'process', ...TABS];
 
@@ -112,7 +112,7 @@ describe('when it is on', () => {
       await page.emulateMedia({ colorScheme: theme });
       await page.setViewportSize({ width, height });
       await sleep(100);
-      for (const tab of width === 1280 ? TABS : SMALL_TABS) {
+      for (const tab of width >= 1280 ? TABS : SMALL_TABS) {
         await page.getByTestId(`tab-${tab}`).click();
         await sleep(tab === 'path' || tab === 'plots' ? 350 : 120);
         await judge(`${tab} ${width}x${height} ${theme}`);
@@ -130,7 +130,7 @@ describe('when it is on', () => {
     await page.getByTestId('language').selectOption(language);
     for (const [width, height] of SIZES) {
       await page.setViewportSize({ width, height });
-      for (const tab of width === 1280 ? TABS : SMALL_TABS) {
+      for (const tab of width >= 1280 ? TABS : SMALL_TABS) {
         await page.getByTestId(`tab-${tab}`).click();
         await sleep(100);
         await isUsable(`${tab} ${width}x${height} ${language}`);
