@@ -232,6 +232,8 @@ void Api::answer_files(const Request &request, const std::string &name, Reply re
             return;
         }
         threads_.disk.run([this] { return files_.list(); }, std::move(reply));
+    } else if (request.method == "GET" && request.query.contains("former")) {
+        threads_.disk.run([this, name] { return files_.read_former(name); }, std::move(reply));
     } else if (request.method == "GET") {
         const auto made = request.query.contains("made") ? made_of(name) : std::nullopt;
         threads_.disk.run([this, name, made] { return files_.read(name, made); }, std::move(reply));

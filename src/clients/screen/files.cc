@@ -110,6 +110,102 @@ Response file_response(const std::string &path, std::string type, const std::str
     return response;
 }
 
+/// Name of the version of a program that was replaced last.
+std::string former_of(const std::string &path) {
+    return path + '~';
+}
+
+class OpenFile {
+  public:
+    explicit OpenFile(const std::string &path) : fd_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {}
+    ~OpenFile() {
+        if (fd_ >= 0) {
+            ::close(fd_);
+        }
+    }
+    OpenFile(const OpenFile &) = delete;
+    OpenFile &operator=(const OpenFile &) = delete;
+    int fd() const { return fd_; }
+
+  private:
+    int fd_;
+};
+
+/// The bytes at `at`, fewer at the end of the file, nothing after an error.
+std::optional<std::string> bytes_at(int fd, std::uint64_t at) {
+    std::string piece(BodySource::PIECE, '\0');
+    std::size_t size = 0;
+    while (size < piece.size()) {
+        const ssize_t got =
+            ::pread(fd, piece.data() + size, piece.size() - size, static_cast<off_t>(at + size));
+        if (got < 0 && errno == EINTR) {
+            continue;
+        }
+        if (got < 0) {
+            return std::nullopt;
+        }
+        if (got == 0) {
+            break;
+        }
+        size += static_cast<std::size_t>(got);
+    }
+    piece.resize(size);
+    return piece;
+}
+
+bool hasSameContent(int one, int other) {
+    struct stat a{}, b{};
+    if (::fstat(one, &a) != 0 || ::fstat(other, &b) != 0 || a.st_size != b.st_size) {
+        return false;
+    }
+    for (std::uint64_t at = 0; at < static_cast<std::uint64_t>(a.st_size); at += BodySource::PIECE) {
+        const auto left = bytes_at(one, at), right = bytes_at(other, at);
+        if (!left.has_value() || left != right) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/// For file systems without hard links.
+bool copy_to(int from, const std::string &target) {
+    auto copy = TemporaryFile::create(target);
+    if (!copy.has_value()) {
+        return false;
+    }
+    for (std::uint64_t at = 0;; at += BodySource::PIECE) {
+        const auto piece = bytes_at(from, at);
+        if (!piece.has_value() || !write_all(copy->fd(), *piece)) {
+            return false;
+        }
+        if (piece->size() < BodySource::PIECE) {
+            return ::fchmod(copy->fd(), 0644) == 0 && copy->replace_target();
+        }
+    }
+}
+
+/// The file at `path` also gets the name of the former version, in place of the one before, if `replacement`
+/// has another content. Errors are in errno.
+bool keep_former(const std::string &path, int replacement) {
+    const OpenFile old(path);
+    if (old.fd() < 0) {
+        return errno == ENOENT;
+    }
+    if (hasSameContent(old.fd(), replacement)) {
+        return true;
+    }
+    // rename() replaces the version before in one step, link() cannot. It does nothing if both names are
+    // the same file already.
+    const std::string former = former_of(path), step = former + '~';
+    ::unlink(step.c_str());
+    const bool isLinked = ::link(path.c_str(), step.c_str()) == 0;
+    const bool isKept = isLinked ? ::rename(step.c_str(), former.c_str()) == 0 : copy_to(old.fd(), former);
+    const int why = errno;
+    ::unlink(step.c_str());
+    errno = why;
+    return isKept;
+}
+
 Response done() {
     Response response;
     response.body = "{}";
@@ -192,6 +288,15 @@ Response ProgramFiles::read(const std::string &name, const std::optional<std::st
     return file_response(*path, "text/plain; charset=utf-8", "there is no program '" + name + "'");
 }
 
+Response ProgramFiles::read_former(const std::string &name) const {
+    const auto path = path_of(name);
+    if (!path.has_value()) {
+        return error_response(400, path.error().str());
+    }
+    return file_response(former_of(*path), "text/plain; charset=utf-8",
+                         "there is no former version of '" + name + "'");
+}
+
 Response ProgramFiles::begin(const std::string &name, const std::string &path, std::uint64_t size) {
     uploads_.erase(name);
     if (uploads_.size() >= MOST_UPLOADS) {  // the oldest one is abandoned
@@ -248,6 +353,10 @@ Response ProgramFiles::finish(const std::string &name, const std::string &path) 
     struct stat old{};
     if (::stat(path.c_str(), &old) == 0 && !S_ISREG(old.st_mode)) {
         return error_response(403, "cannot write '" + name + "': a folder or device has this name");
+    }
+    if (!keep_former(path, file.fd())) {
+        return error_response(403, "cannot keep the former version of '" + name + "': " + reason() +
+                                       "; the new one is not saved");
     }
     // Never one that the system would run.
     if (::fchmod(file.fd(), 0644) != 0 || !file.replace_target()) {

@@ -33,8 +33,11 @@ class ProgramFiles {
     Response list() const;
     /// `made`: path of the program that a filter has made of it, which is read instead.
     Response read(const std::string &name, const std::optional<std::string> &made = {}) const;
+    /// The version that the last write has replaced.
+    Response read_former(const std::string &name) const;
     /// A piece of a file of `size` bytes at its place. Pieces come in their order; the first one begins
-    /// again. With the last one the file gets its name, as a whole or not at all.
+    /// again. With the last one the file gets its name, as a whole or not at all. A file that it replaces by
+    /// another content is kept as NAME~.
     Response write(const std::string &name, std::uint64_t offset, std::uint64_t size, std::string_view piece);
     Response remove(const std::string &name);
 

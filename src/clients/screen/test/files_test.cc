@@ -67,9 +67,56 @@ TEST_F(ProgramFilesTest, AFileHasItsNameWithTheLastPiece) {
     EXPECT_EQ(files_->read("p.ngc").body, "old");
     EXPECT_EQ(files_->write("p.ngc", 5, 9, "\nM2\n").status, 200);
     EXPECT_EQ(files_->read("p.ngc").body, "G0 X1\nM2\n");
-    EXPECT_EQ(count_entries(), 1U);
+    EXPECT_EQ(count_entries(), 2U) << "the program and its former version";
     EXPECT_EQ(files_->write("empty.ngc", 0, 0, "").status, 200);
     EXPECT_EQ(files_->read("empty.ngc").status, 200);
+}
+
+TEST_F(ProgramFilesTest, TheFormerVersionIsKept) {
+    EXPECT_EQ(files_->read_former("p.ngc").status, 404);
+    EXPECT_EQ(files_->write("p.ngc", 0, 3, "one").status, 200);
+    EXPECT_EQ(files_->read_former("p.ngc").status, 404) << "nothing was replaced";
+    EXPECT_EQ(files_->write("p.ngc", 0, 3, "two").status, 200);
+    EXPECT_EQ(files_->read_former("p.ngc").body, "one");
+    EXPECT_EQ(files_->write("p.ngc", 0, 5, "three").status, 200);
+    EXPECT_EQ(files_->read_former("p.ngc").body, "two");
+    EXPECT_EQ(files_->read("p.ngc").body, "three");
+    EXPECT_EQ(listed(), std::vector<std::string>{"p.ngc"});
+    EXPECT_EQ(count_entries(), 2U);
+}
+
+TEST_F(ProgramFilesTest, ASaveWithoutAChangeKeepsTheFormerVersion) {
+    EXPECT_EQ(files_->write("p.ngc", 0, 3, "one").status, 200);
+    EXPECT_EQ(files_->write("p.ngc", 0, 3, "two").status, 200);
+    EXPECT_EQ(files_->write("p.ngc", 0, 3, "two").status, 200);
+    EXPECT_EQ(files_->read_former("p.ngc").body, "one");
+    const std::string large(400'000, 'a');
+    EXPECT_EQ(files_->write("p.ngc", 0, large.size(), large).status, 200);
+    EXPECT_EQ(files_->write("p.ngc", 0, large.size(), large).status, 200);
+    EXPECT_EQ(files_->read_former("p.ngc").body, "two");
+    std::string other = large;
+    other.back() = 'b';
+    EXPECT_EQ(files_->write("p.ngc", 0, other.size(), other).status, 200);
+    EXPECT_EQ(files_->write("p.ngc", 0, 1, "x").status, 200);
+    EXPECT_EQ(fs::file_size(folder_ / "p.ngc~"), other.size());
+}
+
+TEST_F(ProgramFilesTest, ASaveThatWasInterruptedAfterItsFormerVersionCanBeRepeated) {
+    put("p.ngc", "one");
+    fs::create_hard_link(folder_ / "p.ngc", folder_ / "p.ngc~");
+    EXPECT_EQ(files_->write("p.ngc", 0, 3, "two").status, 200);
+    EXPECT_EQ(files_->read_former("p.ngc").body, "one");
+    EXPECT_EQ(files_->read("p.ngc").body, "two");
+    EXPECT_EQ(count_entries(), 2U);
+}
+
+TEST_F(ProgramFilesTest, NothingIsSavedIfTheFormerVersionCannotBeKept) {
+    put("p.ngc", "one");
+    fs::create_directories(folder_ / "p.ngc~" / "full");
+    const Response refused = files_->write("p.ngc", 0, 3, "two");
+    EXPECT_EQ(refused.status, 403);
+    EXPECT_NE(refused.body.find("former version"), std::string::npos);
+    EXPECT_EQ(files_->read("p.ngc").body, "one");
 }
 
 TEST_F(ProgramFilesTest, APieceThatDoesNotFitOnIsRefused) {
