@@ -195,6 +195,21 @@ describe('by hand', () => {
   });
 });
 
+describe('home again', () => {
+  it('homes one joint that is homed, by its letter, after a confirmation', async () => {
+    await page.getByTestId('home-again').click();
+    const lost = rig.pin('joint.0.homed');
+    await page.getByTestId('home-again-dialog').getByText('Close').click();
+    expect([lost, rig.pin('joint.0.homed')]).toEqual(['TRUE', 'TRUE']);
+    await page.getByTestId('home-again').click();
+    expect(await text(page, 'home-again-1')).toBe('Home Y');
+    await page.getByTestId('home-again-1').click();
+    await until(() => rig.pin('joint.1.homing') === 'TRUE' || rig.pin('joint.1.homed') === 'FALSE', 'homing of Y');
+    await untilText(page, 'run-state', 'Idle', 30_000);
+    expect([0, 1, 2].map((joint) => rig.pin(`joint.${joint}.homed`))).toEqual(['TRUE', 'TRUE', 'TRUE']);
+  });
+});
+
 describe('MDI', () => {
   it('executes a line, and keeps it', async () => {
     await page.getByTestId('mdi-line').fill('G0 X10 Y5');
@@ -272,6 +287,7 @@ describe('spindle, coolant, overrides', () => {
         input.dispatchEvent(new Event('change', { bubbles: true }));
       }, value);
     };
+    await tab('process');
     expect(await page.getByTestId('feed-override').getAttribute('max')).toBe('150');
     await slide('feed-override', 50);
     await untilText(page, 'feed-override-value', '50 %');
@@ -284,6 +300,57 @@ describe('spindle, coolant, overrides', () => {
     await slide('spindle-override-0', 80);
     await untilText(page, 'spindle-override-0-value', '80 %');
     await page.getByTestId('spindle-override-0-reset').click();
+  });
+});
+
+describe('overrides by steps', () => {
+  it('add up, are at least 44 px large, and go back to 100 percent, in each size without opening anything', async () => {
+    for (const [width, height] of [[1280, 800], [1920, 1080], [800, 480], [390, 844]] as const) {
+      await page.setViewportSize({ width, height });
+      for (const id of ['step-feed', 'step-rapid', 'step-spindle']) {
+        for (const end of ['less', 'more']) {
+          const box = await page.getByTestId(`${id}-${end}`).boundingBox();
+          expect(Math.min(box?.width ?? 0, box?.height ?? 0), `${id}-${end} at ${width}`).toBeGreaterThanOrEqual(44);
+          expect((box?.y ?? Infinity) + (box?.height ?? 0), `${id}-${end} at ${width}`).toBeLessThan(height);
+        }
+      }
+      await page.getByTestId('step-feed-less').evaluate((button: HTMLElement) => {
+        for (let i = 0; i < 3; ++i) {
+          button.click();
+        }
+      });
+      await until(async () => (await page.getByTestId('step-feed-now').textContent()) === '70 %', 'three steps down');
+      await page.getByTestId('step-feed-100').click();
+      await until(async () => (await page.getByTestId('step-feed-now').textContent()) === '100 %', 'the feed of the program');
+    }
+    await page.setViewportSize({ width: 1280, height: 800 });
+  });
+
+  it('the spindle and coolant are in sight at 1280 by 800 and 800 by 480', async () => {
+    for (const [width, height] of [[1280, 800], [800, 480]] as const) {
+      await page.setViewportSize({ width, height });
+      for (const id of ['spindle-reverse-0', 'spindle-stop-0', 'spindle-forward-0', 'flood', 'mist']) {
+        const box = await page.getByTestId(id).boundingBox();
+        const isOnTop = await page.getByTestId(id).evaluate((button) => {
+          const { x, y, width: wide, height: high } = button.getBoundingClientRect();
+          return button.contains(document.elementFromPoint(x + wide / 2, y + high / 2));
+        });
+        expect(isOnTop && (box?.x ?? -1) >= 0 && (box?.width ?? 0) >= 44 && (box?.height ?? 0) >= 44, `${id} at ${width}`).toBe(true);
+      }
+    }
+    await page.setViewportSize({ width: 1280, height: 800 });
+  });
+});
+
+describe('the card of the positions', () => {
+  it('shows F and S as programmed, and the meaning of the active codes', async () => {
+    await page.getByTestId('mdi-line').fill('G21 G94 F600 S1200');
+    await page.getByTestId('mdi-send').click();
+    await untilText(page, 'programmed-feed', 'F600');
+    await untilText(page, 'programmed-speed', 'S1200');
+    await untilText(page, 'codes', /G21\s+millimetre/);
+    await untilText(page, 'codes', /G54\s+work offset 1/);
+    await page.getByTestId('mdi-line').fill('');
   });
 });
 
@@ -328,6 +395,17 @@ describe('programs', () => {
     expect(rig.position(0)).toBeCloseTo(0, 5);
   });
 
+  it('show when they are finished, in which time, and how many parts there are', async () => {
+    await untilText(page, 'run-end', /Finished in 0:\d\d\. Parts in this session: 1/);
+    await page.reload();
+    await untilText(page, 'run-state', 'Idle');
+    await page.getByTestId('run').click();
+    await untilText(page, 'elapsed', /0:0\d elapsed/);
+    await untilText(page, 'percent', /^\d+ %$/);
+    expect(await page.getByTestId('run-end').count()).toBe(0);
+    await untilText(page, 'run-end', /Parts in this session: 2/, 20_000);
+  });
+
   it('stop at once and start again', async () => {
     await page.getByTestId('run').click();
     await untilText(page, 'run-state', 'Running');
@@ -335,6 +413,7 @@ describe('programs', () => {
     await page.getByTestId('stop').click();
     await untilText(page, 'run-state', 'Idle');
     await stands(0);
+    await untilText(page, 'run-end', /Stopped at line 4 after 0:0\d/);
     expect(await text(page, 'program')).toContain('part.ngc');
   });
 

@@ -34,11 +34,13 @@ it('is calculated when the program is opened, and again at another override', as
   const whole = seconds(await text(page, 'path-time'));
   expect(whole).toBeGreaterThan(14);
   expect(whole).toBeLessThan(22);
+  await page.getByTestId('tab-process').click();
   await page.getByTestId('feed-override').fill('50');
   await untilText(page, 'feed-override-value', /50/);
+  await page.getByTestId('tab-path').click();
   await until(async () => (await page.getByTestId('path-time').isVisible()) && seconds(await text(page, 'path-time')) > 1.7 * whole, 'twice the time');
   expect(seconds(await text(page, 'path-time'))).toBeLessThan(2.05 * whole);
-  await page.getByTestId('feed-override-reset').click();
+  await page.getByTestId('step-feed-100').click();
   await until(async () => (await page.getByTestId('path-time').isVisible()) && seconds(await text(page, 'path-time')) === whole, 'the time of before');
   expect(errorsOf(page)).toEqual([]);
 });

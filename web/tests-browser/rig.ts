@@ -246,6 +246,15 @@ export async function text(page: Page, id: string): Promise<string> {
   return (await page.getByTestId(id).innerText()).trim();
 }
 
+/** A view by its tab, or by the list of views where the tabs have no place for it. */
+export async function openView(page: Page, id: string): Promise<void> {
+  const tab = page.getByTestId(`tab-${id}`);
+  if (!(await tab.isVisible())) {
+    await page.getByTestId('tab-more').click();
+  }
+  await tab.click();
+}
+
 export async function untilText(page: Page, id: string, wanted: string | RegExp, ms = 10_000): Promise<void> {
   let last = '';
   try {

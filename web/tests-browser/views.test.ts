@@ -5,12 +5,12 @@ import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import type { Page } from 'playwright-core';
 import { afterAll, beforeAll, describe, expect, it } from 'vitest';
-import { bringUp, byHand, judgeByAxe, Rig, sleep, untilText } from './rig';
+import { bringUp, byHand, judgeByAxe, openView, Rig, sleep, untilText } from './rig';
 
 const PICTURES = process.env['MW_SCREEN_PICTURES'];
 const SIZES = [[1280, 800], [1920, 1080], [800, 480], [390, 844]] as const;
-const TABS = ['path', 'programs', 'text', 'tools', 'offsets', 'probing', 'plots', 'hal', 'messages', 'settings'];
-const SMALL_TABS = ['jog', 'mdi', 'process', ...TABS];
+const TABS = ['path', 'process', 'programs', 'text', 'tools', 'offsets', 'probing', 'plots', 'hal', 'messages', 'settings'];
+const SMALL_TABS = ['jog', 'mdi', 'codes', ...TABS];
 
 const rig = new Rig(byHand);
 let page: Page;
@@ -113,7 +113,7 @@ describe('when it is on', () => {
       await page.setViewportSize({ width, height });
       await sleep(100);
       for (const tab of width >= 1280 ? TABS : SMALL_TABS) {
-        await page.getByTestId(`tab-${tab}`).click();
+        await openView(page, tab);
         await sleep(tab === 'path' || tab === 'plots' ? 350 : 120);
         await judge(`${tab} ${width}x${height} ${theme}`);
         await isUsable(`${tab} ${width}x${height} ${theme}`);
@@ -126,17 +126,17 @@ describe('when it is on', () => {
 
   it.each(['de', 'es'] as const)('in %s', async (language) => {
     await page.emulateMedia({ colorScheme: 'dark' });
-    await page.getByTestId('tab-settings').click();
+    await openView(page, 'settings');
     await page.getByTestId('language').selectOption(language);
     for (const [width, height] of SIZES) {
       await page.setViewportSize({ width, height });
       for (const tab of width >= 1280 ? TABS : SMALL_TABS) {
-        await page.getByTestId(`tab-${tab}`).click();
+        await openView(page, tab);
         await sleep(100);
         await isUsable(`${tab} ${width}x${height} ${language}`);
       }
     }
-    await page.getByTestId('tab-settings').click();
+    await openView(page, 'settings');
     await page.getByTestId('language').selectOption('en');
   }, 120_000);
 
@@ -152,7 +152,7 @@ describe('when it is on', () => {
     }
     for (const [width, height] of SIZES) {
       await page.setViewportSize({ width, height });
-      await page.getByTestId('tab-tools').click();
+      await openView(page, 'tools');
       for (const [button, name] of [['tool-add', 'tool_add'], ['edit-2', 'tool_edit']] as const) {
         await page.getByTestId(button).click();
         await judge(`${name} ${width}`);
@@ -162,7 +162,7 @@ describe('when it is on', () => {
       }
     }
     await page.setViewportSize({ width: 1280, height: 800 });
-    await page.getByTestId('tab-tools').click();
+    await openView(page, 'tools');
     await page.getByTestId('load-1').click();
     await page.getByTestId('tool-change').waitFor();
     await judge('tool change');

@@ -8,7 +8,7 @@ import { es } from '../src/lib/i18n/es';
 import { Texts } from '../src/lib/i18n/said';
 import { fill, placesOf } from '../src/lib/i18n/text';
 import { macroOf } from '../src/lib/macros';
-import { formatBytes, formatDuration, formatNumber, parseNumber, parseWhole } from '../src/lib/numbers';
+import { formatBytes, formatDuration, formatNumber, parseNumber, parseWhole, percentDone } from '../src/lib/numbers';
 import { ChunkReader, readChunks, type Chunk, type Moves } from '../src/lib/path/chunks';
 import { thin } from '../src/lib/path/thin';
 import { mergeDelta, modalWords, workPosition } from '../src/lib/status';
@@ -21,6 +21,7 @@ describe('numbers (A8)', () => {
   it.each(['', '1.2.3', '1,000.5', '1 00', '1 0000', '10 00', '1  000', '1 000 00', '1.5 000', '1 - 1', 'x', '1e5', '-', '.', 'Infinity', '0x10', '1..'])('refuses %s', (text) => expect(parseNumber(text)).toBeNull());
   it.each([['1', 1], [' 77 ', 77], ['99999', 99999], ['007', 7], ['1 000', 1000], ['\u00a012\u202f345', 12345]])('reads %s as the number of a tool', (text, value) => expect(parseWhole(text, 1, 99999)).toBe(value));
   it.each(['', '0', '100000', '-1', '+1', '1.0', '1,5', '1e3', 'x', '9999999999'])('rejects %s as a tool number', (text) => expect(parseWhole(text, 1, 99999)).toBeNull());
+  it.each([[100, 100, 0], [100, 99.9, 0], [100, 50, 50], [100, 0.1, 99], [100, 0, 100], [0, 5, 0], [100, 120, 0]])('of %d with %d left is %d percent', (total, left, percent) => expect(percentDone(total, left)).toBe(percent));
   it('shows no minus before a zero, and a dash where there is no number', () => {
     expect(formatNumber(-0.0001, 3)).toBe('0.000');
     expect(formatNumber(-0.0006, 3)).toBe('-0.001');

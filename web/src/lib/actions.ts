@@ -5,6 +5,7 @@ import type { Command, Outcome } from './link';
 import { canOpen } from './gates';
 import { machine, send, sendQuietly, tellLocally, untilStatus, view, whenLost } from './machine.svelte';
 import { t } from './i18n/index.svelte';
+import { followOutcome } from './run.svelte';
 import { mustApplyLength, toolLength } from './tool_length';
 import { tools, type Tool } from './tools.svelte';
 import { axisIndex, isAngularAxis, isProgramInches, type MachineStatus, type Mode } from './status';
@@ -116,12 +117,18 @@ export function openProgram(path: string): Promise<Outcome> {
   return inOrder(...toMode('AUTO'), { message: 'OpenProgram', path });
 }
 
+async function start(command: Command): Promise<Outcome> {
+  const outcome = await inOrder(...toMode('AUTO'), command);
+  followOutcome(outcome.progress);
+  return outcome;
+}
+
 export function run(): Promise<Outcome> {
-  return inOrder(...toMode('AUTO'), { message: 'RunProgram' });
+  return start({ message: 'RunProgram' });
 }
 
 export function runFromLine(line: number): Promise<Outcome> {
-  return inOrder(...toMode('AUTO'), { message: 'RunProgram', from_line: line });
+  return start({ message: 'RunProgram', from_line: line });
 }
 
 export const resume = (): Promise<Outcome> => send({ message: 'ResumeProgram' });

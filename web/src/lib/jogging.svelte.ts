@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // What can be jogged now, and how fast.
 import { jogger } from './actions';
+import { letterOfJoint } from './joints';
 import { machine } from './machine.svelte';
 import { prefs } from './prefs.svelte';
 import { axisIndex, isAngularAxis } from './status';
@@ -10,6 +11,9 @@ export interface Target {
   index: number;
   letter: string;
   name: string;
+  /** On its buttons. */
+  label: string;
+  /** The same with any label. */
   short: string;
   isAngular: boolean;
 }
@@ -28,18 +32,16 @@ export function targets(): Target[] {
       index: axisIndex(letter),
       letter,
       name: letter,
+      label: letter,
       short: letter,
       isAngular: isAngularAxis(axisIndex(letter)),
     }));
   }
-  return facts.joint_kinds.map((kind, index) => ({
-    isJoint: true,
-    index,
-    letter: status.settings.kinematics === 'IDENTITY' && facts.joints === facts.axes.length ? (facts.axes[index] ?? '') : '',
-    name: `J${index}`,
-    short: `J${index}`,
-    isAngular: kind === 'ANGULAR',
-  }));
+  return facts.joint_kinds.map((kind, index) => {
+    const letter = letterOfJoint(facts, status, index);
+    const name = letter === '' ? `J${index}` : letter;
+    return { isJoint: true, index, letter, name, label: name, short: `J${index}`, isAngular: kind === 'ANGULAR' };
+  });
 }
 
 /** The share of the maximum speed that jogs have: the operator's, else that of [DISPLAY]DEFAULT_..._VELOCITY. */

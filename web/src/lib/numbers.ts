@@ -43,6 +43,12 @@ export function formatDuration(seconds: number): string {
   return h > 0 ? `${h}:${two(m)}:${two(s)}` : `${m}:${two(s)}`;
 }
 
+/** Whole percent; 100 only at the end. */
+export function percentDone(total: number, left: number): number {
+  const done = total > 0 ? (100 * (total - left)) / total : 0;
+  return left > 0 ? Math.min(99, Math.max(0, Math.floor(done))) : 100;
+}
+
 export function formatBytes(bytes: number): string {
   const units = ['B', 'kB', 'MB', 'GB'];
   let value = bytes;

@@ -24,6 +24,8 @@ export interface TaskStatus {
   waiting: { what: string; index: number };
   delay_left: number;
   block: string;
+  /** 5 after a program or line that has failed. */
+  error_code: number;
 }
 
 export interface Codes {
@@ -260,4 +262,16 @@ export function isDiameter(codes: Codes): boolean {
 /** G20: programs and MDI count in inches. */
 export function isProgramInches(codes: Codes): boolean {
   return codes.g.includes(200);
+}
+
+/** F, S and P of G64, in the units of the program. */
+export function programmed(codes: Codes): { feed: number; speed: number; tolerance: number } {
+  const [, feed = 0, speed = 0, tolerance = 0] = codes.settings;
+  return { feed, speed, tolerance };
+}
+
+/** Of the F word. */
+export function feedUnit(codes: Codes): string {
+  const length = isProgramInches(codes) ? 'inch' : 'mm';
+  return codes.g.includes(930) ? '1/min' : codes.g.includes(950) ? `${length}/rev` : `${length}/min`;
 }

@@ -3,6 +3,7 @@ import type { Catalogue } from './en';
 
 export const de: Catalogue = {
   'app.views': 'Ansichten',
+  'app.more': 'Mehr',
   'app.connecting': 'Verbindung zur Maschine wird aufgebaut',
   'app.connection_lost': 'Keine Verbindung. Nichts auf diesem Schirm ist aktuell, und keine Taste hier erreicht die Maschine: den Not-Halt an der Maschine benutzen.',
   'app.machine_gone': 'Keine Maschine läuft: {reason}',
@@ -77,6 +78,7 @@ export const de: Catalogue = {
   'dro.work': 'Werkstück {system}',
   'dro.machine': 'Maschine',
   'dro.to_go': 'Restweg',
+  'dro.joints': 'Gelenke',
   'dro.joint': 'Gelenk {index}',
   'dro.all_homed': 'Alle Gelenke referenziert',
   'dro.homed': 'referenziert',
@@ -111,6 +113,9 @@ export const de: Catalogue = {
   'jog.over_limits': 'Endschalter überfahren',
 
   'home.all': 'Alle referenzieren',
+  'home.axis': '{axis} referenzieren',
+  'home.again': 'Neu referenzieren',
+  'home.again_sure': 'Die Maschine fährt zu ihren Referenzschaltern. Prüfen Sie, dass die Achsen frei fahren können.',
   'home.one': 'Referenz',
   'home.joint': 'Gelenk {index} referenzieren',
   'home.unhome': 'Referenz vergessen',
@@ -142,6 +147,7 @@ export const de: Catalogue = {
   'cycle.release': 'Achsen freigeben',
   'cycle.from_line': 'Ab Zeile {line}',
 
+  'process.title': 'Korrekturen, Spindel, Kühlmittel',
   'override.title': 'Korrekturen',
   'override.feed': 'Vorschub',
   'override.rapid': 'Eilgang',
@@ -216,6 +222,12 @@ export const de: Catalogue = {
   'path.no_speed': 'Geplante Geschwindigkeit wird berechnet',
   'progress.total': '≈ {time} mit den jetzigen Overrides',
   'progress.reading': 'Die Zeit wird berechnet',
+  'progress.elapsed': '{time} vergangen',
+  'end.finished': 'Fertig in {time}.',
+  'end.parts': 'Teile in dieser Sitzung: {count}',
+  'end.stopped': 'Gestoppt in Zeile {line} nach {time}.',
+  'end.failed': 'Mit Fehler beendet in Zeile {line} nach {time}.',
+  'end.ended': 'Beendet in Zeile {line} nach {time}.',
   'progress.left': 'noch ≈ {time}',
   'progress.done': 'Erledigter Teil des Programms',
   'progress.slowest': 'Größte Zeitverluste gegenüber dem Vorschub',

@@ -3,6 +3,7 @@
 
 export const en = {
   'app.views': 'Views',
+  'app.more': 'More',
   'app.connecting': 'Connecting to the machine',
   'app.connection_lost': 'No connection. Nothing on this screen is current, and no button here reaches the machine: use the emergency stop at the machine.',
   'app.machine_gone': 'No machine is running: {reason}',
@@ -77,6 +78,7 @@ export const en = {
   'dro.work': 'Work {system}',
   'dro.machine': 'Machine',
   'dro.to_go': 'To go',
+  'dro.joints': 'Joints',
   'dro.joint': 'Joint {index}',
   'dro.all_homed': 'All joints homed',
   'dro.homed': 'homed',
@@ -111,6 +113,9 @@ export const en = {
   'jog.over_limits': 'Override limit switches',
 
   'home.all': 'Home all',
+  'home.axis': 'Home {axis}',
+  'home.again': 'Home again',
+  'home.again_sure': 'The machine moves to its home switches. Check that the axes can move freely.',
   'home.one': 'Home',
   'home.joint': 'Home joint {index}',
   'home.unhome': 'Unhome',
@@ -142,6 +147,7 @@ export const en = {
   'cycle.release': 'Release axes',
   'cycle.from_line': 'Run from line {line}',
 
+  'process.title': 'Overrides, spindle, coolant',
   'override.title': 'Overrides',
   'override.feed': 'Feed',
   'override.rapid': 'Rapid',
@@ -216,6 +222,12 @@ export const en = {
   'path.no_speed': 'Calculating planned speed',
   'progress.total': '≈ {time} at the current overrides',
   'progress.reading': 'Calculating time',
+  'progress.elapsed': '{time} elapsed',
+  'end.finished': 'Finished in {time}.',
+  'end.parts': 'Parts in this session: {count}',
+  'end.stopped': 'Stopped at line {line} after {time}.',
+  'end.failed': 'Ended with an error at line {line} after {time}.',
+  'end.ended': 'Ended at line {line} after {time}.',
   'progress.left': '≈ {time} left',
   'progress.done': 'Completed part of the program',
   'progress.slowest': 'Largest time losses against the programmed feed',

@@ -3,6 +3,7 @@ import type { Catalogue } from './en';
 
 export const es: Catalogue = {
   'app.views': 'Vistas',
+  'app.more': 'Más',
   'app.connecting': 'Conectando con la máquina',
   'app.connection_lost': 'Sin conexión. Nada en esta pantalla es actual y ningún botón de aquí llega a la máquina: use la parada de emergencia de la máquina.',
   'app.machine_gone': 'No hay ninguna máquina en marcha: {reason}',
@@ -77,6 +78,7 @@ export const es: Catalogue = {
   'dro.work': 'Pieza {system}',
   'dro.machine': 'Máquina',
   'dro.to_go': 'Resto',
+  'dro.joints': 'Articulaciones',
   'dro.joint': 'Articulación {index}',
   'dro.all_homed': 'Todas con origen',
   'dro.homed': 'con origen',
@@ -111,6 +113,9 @@ export const es: Catalogue = {
   'jog.over_limits': 'Anular finales de carrera',
 
   'home.all': 'Origen de todos',
+  'home.axis': 'Origen de {axis}',
+  'home.again': 'Repetir el origen',
+  'home.again_sure': 'La máquina va a sus interruptores de origen. Compruebe que los ejes se pueden mover libremente.',
   'home.one': 'Origen',
   'home.joint': 'Origen de la articulación {index}',
   'home.unhome': 'Olvidar origen',
@@ -142,6 +147,7 @@ export const es: Catalogue = {
   'cycle.release': 'Liberar ejes',
   'cycle.from_line': 'Desde la línea {line}',
 
+  'process.title': 'Ajustes, husillo, refrigerante',
   'override.title': 'Ajustes',
   'override.feed': 'Avance',
   'override.rapid': 'Rápido',
@@ -216,6 +222,12 @@ export const es: Catalogue = {
   'path.no_speed': 'Calculando la velocidad planificada',
   'progress.total': '≈ {time} con los ajustes actuales',
   'progress.reading': 'Se calcula el tiempo',
+  'progress.elapsed': '{time} transcurridos',
+  'end.finished': 'Terminado en {time}.',
+  'end.parts': 'Piezas en esta sesión: {count}',
+  'end.stopped': 'Parado en la línea {line} tras {time}.',
+  'end.failed': 'Terminado con un error en la línea {line} tras {time}.',
+  'end.ended': 'Terminado en la línea {line} tras {time}.',
   'progress.left': 'quedan ≈ {time}',
   'progress.done': 'Parte hecha del programa',
   'progress.slowest': 'Dónde se pierde tiempo frente al avance',

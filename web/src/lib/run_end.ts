@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// How long a program runs, and how it has ended: from the status, and from the outcome of its start where this page started it.
+import type { MachineStatus } from './status';
+
+export type EndKind = 'finished' | 'stopped' | 'failed' | 'ended';
+
+export interface RunEnd {
+  /** `ended`: by its last line, or by a stop of another screen. */
+  kind: EndKind;
+  program: string;
+  /** Of the last move, 0 if none was executed. */
+  line: number;
+  /** Nothing where the page did not see the start. */
+  seconds: number | null;
+}
+
+type Known = Pick<MachineStatus, 'time_ns' | 'codes'> & { task: Pick<MachineStatus['task'], 'mode' | 'interp_state' | 'program' | 'motion_line' | 'programs_ended' | 'error_code'> };
+
+/** Where the status has M2 or M30 of the last block. */
+const M_STOP = 1;
+const FAILED = 5;
+
+export class RunWatch {
+  private last: { isRunning: boolean; ended: number } | null = null;
+  private start_ns: number | null = null;
+  private line = 0;
+  /** An outcome that came before the status with the end. */
+  private early: string | null = null;
+  /** The end of the last run, until the next one. */
+  end: RunEnd | null = null;
+  elapsed_s: number | null = null;
+
+  /** To be called with each status; null: there is none. True with the end of a program. */
+  take(status: Known | null): boolean {
+    if (status === null) {
+      this.last = null;
+      this.start_ns = this.elapsed_s = this.end = null;
+      return false;
+    }
+    const { task } = status;
+    const isRunning = task.mode === 'AUTO' && task.interp_state !== 'IDLE';
+    const hasEnded = this.last !== null && task.programs_ended > this.last.ended;
+    if (isRunning && this.last?.isRunning !== true) {
+      this.start_ns = this.last === null ? null : status.time_ns;
+      this.line = 0;
+      this.end = null;
+      this.early = null;
+    }
+    if (isRunning) {
+      this.line = task.motion_line > 0 ? task.motion_line : this.line;
+      this.elapsed_s = this.start_ns === null ? null : (status.time_ns - this.start_ns) * 1e-9;
+    }
+    if (hasEnded && !isRunning) {
+      const wasSeen = this.last?.isRunning === true;
+      const stop = status.codes.m[M_STOP];
+      const kind = task.error_code === FAILED ? 'failed' : stop === 2 || stop === 30 ? 'finished' : 'ended';
+      const seconds = wasSeen && this.start_ns !== null ? (status.time_ns - this.start_ns) * 1e-9 : null;
+      this.end = { kind, program: task.program, line: wasSeen ? this.line : task.motion_line, seconds };
+      if (this.early !== null) {
+        this.outcome(this.early);
+        this.early = null;
+      }
+    }
+    if (!isRunning) {
+      this.elapsed_s = null;
+    }
+    this.last = { isRunning, ended: task.programs_ended };
+    return hasEnded && !isRunning;
+  }
+
+  /** The outcome of the start, by the page that has sent it. True: with it the program is finished. */
+  outcome(progress: string): boolean {
+    if (this.last?.isRunning === true) {
+      this.early = progress;
+    }
+    if (this.end?.kind !== 'ended') {
+      return false;
+    }
+    this.end = { ...this.end, kind: progress === 'DONE' ? 'finished' : 'stopped' };
+    return progress === 'DONE';
+  }
+}
