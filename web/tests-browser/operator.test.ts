@@ -205,8 +205,8 @@ describe('home again', () => {
     expect(await text(page, 'home-again-1')).toBe('Home Y');
     await page.getByTestId('home-again-1').click();
     await until(() => rig.pin('joint.1.homing') === 'TRUE' || rig.pin('joint.1.homed') === 'FALSE', 'homing of Y');
-    await untilText(page, 'run-state', 'Idle', 30_000);
-    expect([0, 1, 2].map((joint) => rig.pin(`joint.${joint}.homed`))).toEqual(['TRUE', 'TRUE', 'TRUE']);
+    await until(() => [0, 1, 2].every((joint) => rig.pin(`joint.${joint}.homed`) === 'TRUE'), 'all joints homed');
+    await untilText(page, 'run-state', 'Idle');
   });
 });
 
@@ -240,6 +240,10 @@ describe('MDI', () => {
 
   it('sets a work offset to what the operator says, with a comma', async () => {
     await page.getByTestId('touch-X').click();
+    await page.getByTestId('touch-off-value').fill('10+5/2');
+    await untilText(page, 'touch-off-value-result', '= 12.5 mm');
+    await page.getByTestId('touch-off-value').fill('12,5+');
+    expect(await page.getByTestId('touch-off-set').getAttribute('aria-disabled')).toBe('true');
     await page.getByTestId('touch-off-value').fill('12,5x');
     expect(await page.getByTestId('touch-off-set').getAttribute('aria-disabled')).toBe('true');
     await page.getByTestId('touch-off-value').fill('12,5');
@@ -410,6 +414,7 @@ describe('programs', () => {
     await page.getByTestId('run').click();
     await untilText(page, 'run-state', 'Running');
     await until(() => rig.position(0) > 1, 'moves');
+    await untilText(page, 'line', /Line 4/);
     await page.getByTestId('stop').click();
     await untilText(page, 'run-state', 'Idle');
     await stands(0);
@@ -439,9 +444,14 @@ describe('programs', () => {
     await tab('programs');
     await page.getByTestId('upload').setInputFiles({ name: 'new.ngc', mimeType: 'text/plain', buffer: Buffer.from('G21\nG0 X1\nM2\n') });
     await untilText(page, 'program-list', /new\.ngc/);
+    expect(await page.getByTestId('delete-new.ngc').count()).toBe(0); // never beside Open
+    await page.getByTestId('programs-tidy').click();
+    expect(await page.getByTestId('open-new.ngc').count()).toBe(0);
     await page.getByTestId('delete-new.ngc').click();
     await page.getByTestId('delete-confirm').click();
     await until(async () => !(await text(page, 'program-list')).includes('new.ngc'), 'the file is gone');
+    await page.getByTestId('programs-tidy').click();
+    await page.getByTestId('open-part.ngc').waitFor();
   });
 });
 

@@ -39,6 +39,30 @@ afterAll(async () => {
   await rig.end();
 });
 
+describe('a saved program', () => {
+  it('has its former version, which comes back as a change that is not saved', async () => {
+    rig.write('twice.ngc', 'G21 (first)\nM2\n');
+    await open('twice.ngc');
+    await tab('text');
+    await untilText(page, 'text-room', /first/);
+    await page.getByTestId('text-former').click();
+    await untilText(page, 'notice', /no former version of twice\.ngc/);
+    await page.locator('.cm-content').click();
+    await page.keyboard.press('Control+A');
+    await page.keyboard.type('G21 (second)\nM2\n');
+    await page.getByTestId('text-save').click();
+    await page.getByTestId('text-changed').waitFor({ state: 'detached' });
+    expect(readFileSync(`${rig.programs}/twice.ngc~`, 'utf8')).toBe('G21 (first)\nM2\n');
+    await page.getByTestId('text-former').click();
+    await untilText(page, 'text-room', /first/);
+    await page.getByTestId('text-changed').waitFor();
+    expect(readFileSync(`${rig.programs}/twice.ngc`, 'utf8')).toMatch(/second/);
+    await page.getByTestId('text-discard').click();
+    await untilText(page, 'text-room', /second/);
+    await page.getByTestId('strip-dismiss').click();
+  });
+});
+
 describe('changes in the editor that are not saved', () => {
   it('survive another view', async () => {
     await open('part.ngc');

@@ -8,7 +8,7 @@ import { es } from '../src/lib/i18n/es';
 import { Texts } from '../src/lib/i18n/said';
 import { fill, placesOf } from '../src/lib/i18n/text';
 import { macroOf } from '../src/lib/macros';
-import { formatBytes, formatDuration, formatNumber, parseNumber, parseWhole, percentDone } from '../src/lib/numbers';
+import { formatBytes, formatDuration, formatNumber, isCalculated, parseNumber, parseWhole, percentDone } from '../src/lib/numbers';
 import { ChunkReader, readChunks, type Chunk, type Moves } from '../src/lib/path/chunks';
 import { thin } from '../src/lib/path/thin';
 import { mergeDelta, modalWords, workPosition } from '../src/lib/status';
@@ -18,7 +18,12 @@ describe('numbers (A8)', () => {
     ['1', 1], ['-1.5', -1.5], ['+2,25', 2.25], ['.5', 0.5], [',5', 0.5], ['3.', 3], ['  7 ', 7],
     ['1 000', 1000], ['-12 345,5', -12345.5], ['1\u00a0000', 1000], ['1\u202f000\u202f000.25', 1_000_000.25], ['\u00a07\u202f', 7],
   ])('reads %s', (text, value) => expect(parseNumber(text)).toBe(value));
-  it.each(['', '1.2.3', '1,000.5', '1 00', '1 0000', '10 00', '1  000', '1 000 00', '1.5 000', '1 - 1', 'x', '1e5', '-', '.', 'Infinity', '0x10', '1..'])('refuses %s', (text) => expect(parseNumber(text)).toBeNull());
+  it.each(['', '1.2.3', '1,000.5', '1 00', '1 0000', '10 00', '1  000', '1 000 00', '1.5 000', 'x', '1e5', '-', '.', 'Infinity', '0x10', '1..'])('refuses %s', (text) => expect(parseNumber(text)).toBeNull());
+  it.each([
+    ['1/2', 0.5], ['-1/2', -0.5], ['10+2.5', 12.5], ['10 + 2,5', 12.5], ['3-1/8', 2.875], ['1-1', 0], ['1/2+1/4', 0.75], ['1 000+0.5', 1000.5], ['-10-5', -15], ['3/-2', null],
+    ['1/0', null], ['1/2/3', null], ['/2', null], ['1/', null], ['1+', null], ['+', null], ['1++2', null], ['1+-2', null], ['--1', null], ['2*3', null], ['(1)', null], ['1 1/2', null], ['1+x', null], ['1e3+1', null], ['1.2.3+1', null],
+  ] as [string, number | null][])('calculates %s', (text, value) => expect(parseNumber(text)).toBe(value));
+  it('knows what was calculated', () => expect(['1/2', '1+1', '-5', '1 000', 'x', '1/0'].map(isCalculated)).toEqual([true, true, false, false, false, false]));
   it.each([['1', 1], [' 77 ', 77], ['99999', 99999], ['007', 7], ['1 000', 1000], ['\u00a012\u202f345', 12345]])('reads %s as the number of a tool', (text, value) => expect(parseWhole(text, 1, 99999)).toBe(value));
   it.each(['', '0', '100000', '-1', '+1', '1.0', '1,5', '1e3', 'x', '9999999999'])('rejects %s as a tool number', (text) => expect(parseWhole(text, 1, 99999)).toBeNull());
   it.each([[100, 100, 0], [100, 99.9, 0], [100, 50, 50], [100, 0.1, 99], [100, 0, 100], [0, 5, 0], [100, 120, 0]])('of %d with %d left is %d percent', (total, left, percent) => expect(percentDone(total, left)).toBe(percent));

@@ -32,6 +32,19 @@ export async function readProgram(name: string, isMade = false): Promise<string>
   return (await ask('GET', `${address(name)}${isMade ? '?made' : ''}`)).text();
 }
 
+/** The version that the last save has replaced; null where there is none. */
+export async function readFormer(name: string): Promise<string | null> {
+  const answer = await fetch(`${address(name)}?former`);
+  if (answer.status === 404) {
+    return null;
+  }
+  if (!answer.ok) {
+    const told = (await answer.json().catch(() => null)) as { error?: string } | null;
+    throw new Error(told?.error ?? `GET ${address(name)}?former: ${answer.status}`);
+  }
+  return answer.text();
+}
+
 type FilterLine = { progress: number } | { made: string } | { error: string };
 
 /** Runs a file's filter; gives the path of the program. Ends with the signal. */

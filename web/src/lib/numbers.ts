@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Numbers as people write and read them (A8): a comma or a point separates decimals, and one of them only.
+// Numbers as people write and read them (A8): a comma or a point separates decimals, and one of them only. Sums and fractions.
 
 /** Blanks that people and spreadsheets put between groups of three digits: plain, no-break, narrow and thin ones. */
 const GROUPS = /^([+-]?\d{1,3})(?:[ \u00a0\u2007\u2009\u202f]\d{3})+(?=$|[.,])/;
@@ -10,13 +10,51 @@ function ungrouped(text: string): string {
 }
 
 /** Nothing where the text is no number, or has more than one separator. Blanks between groups of thousands are read over. */
-export function parseNumber(text: string): number | null {
+function parsePlain(text: string): number | null {
   const trimmed = ungrouped(text.trim());
   if (!/^[+-]?(\d+([.,]\d*)?|[.,]\d+)$/.test(trimmed)) {
     return null;
   }
   const value = Number(trimmed.replace(',', '.'));
   return Number.isFinite(value) ? value : null;
+}
+
+/** Two numbers of which the second is not zero, with a slash between them, or one number. */
+function parseTerm(text: string): number | null {
+  const parts = text.split('/').map(parsePlain);
+  const [first = null, second] = parts;
+  if (parts.length === 1 || first === null) {
+    return first;
+  }
+  const isFraction = parts.length === 2 && second !== undefined && second !== null && second !== 0;
+  return isFraction ? first / second : null;
+}
+
+/** A sign before a term is that of its sum; the second number of a fraction has none. */
+const TERMS = /([+-]?)([^+-]+)/g;
+
+/** A number, a fraction (1/2), or a sum or difference of those (10+2.5, 3-1/8). Nothing for any other text: an operator without
+ * two numbers, two operators in a row, brackets, products. */
+export function parseNumber(text: string): number | null {
+  const trimmed = text.trim();
+  const terms = [...trimmed.matchAll(TERMS)];
+  if (terms.map((one) => one[0]).join('') !== trimmed) {
+    return null;
+  }
+  let sum: number | null = null;
+  for (const [, sign, term] of terms) {
+    const value = parseTerm(term ?? '');
+    if (value === null) {
+      return null;
+    }
+    sum = (sum ?? 0) + (sign === '-' ? -value : value);
+  }
+  return sum !== null && Number.isFinite(sum) ? sum : null;
+}
+
+/** A fraction or a sum: its value is shown beside it. */
+export function isCalculated(text: string): boolean {
+  return parseNumber(text) !== null && parsePlain(text) === null;
 }
 
 /** Digits alone: a number of a tool or a pocket, from `least` to `most`. */

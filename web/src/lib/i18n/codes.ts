@@ -68,7 +68,7 @@ export const CODES: Readonly<Record<string, Words>> = {
   'G90': ['absolute', 'absolut', 'absoluto'],
   'G91': ['incremental', 'schrittweise', 'incremental'],
   'G90.1': ['arc centre absolute', 'Bogenmitte absolut', 'centro absoluto'],
-  'G91.1': ['arc centre incremental', 'Bogenmitte relativ', 'centro incremental'],
+  'G91.1': ['arc centre relative', 'Bogenmitte relativ', 'centro incremental'],
   'G93': ['inverse time feed', 'Vorschub nach Zeit', 'avance por tiempo'],
   'G94': ['feed per minute', 'Vorschub je Minute', 'avance por minuto'],
   'G95': ['feed per revolution', 'Vorschub je Umdrehung', 'avance por vuelta'],
