@@ -173,6 +173,9 @@ describe('the text of a program', () => {
     await untilText(page, 'text-room', /^.*G21 G90 F1500/s);
     await page.locator('.cm-line', { hasText: 'G1 Y20' }).click();
     await untilText(page, 'run-from-line', 'Run from line 8');
+    await page.getByTestId('mdi-line').fill('G10 L2 P1 X-3');
+    await page.getByTestId('mdi-send').click();
+    await untilText(page, 'work-X', (rig.position(0) + 3).toFixed(3));
     const before = rig.position(0);
     await page.getByTestId('run-from-line').click();
     await untilText(page, 'approach', /line 8/);
@@ -180,6 +183,13 @@ describe('the text of a program', () => {
     await untilText(page, 'approach', /Load tool 1/);
     expect(rig.position(0)).toBe(before);
     expect(rig.pin('spindle.0.on')).toBe('FALSE');
+    await page.getByTestId('approach-cancel').click();
+    await page.getByTestId('approach').waitFor({ state: 'detached' });
+    await untilText(page, 'run-state', 'Idle');
+    expect(rig.position(0)).toBe(before);
+    await page.getByTestId('run-from-line').click();
+    await untilText(page, 'approach', /X 20\.000\s+Y 0\.000\s+Z -1\.000.*Positions in G54, mm/s);
+    await untilText(page, 'approach', /Load tool 1/);
     await page.getByTestId('approach-confirm').click();
     await untilText(page, 'tool-change', /tool 1/);
     await page.getByTestId('tool-change-done').click();
@@ -187,6 +197,9 @@ describe('the text of a program', () => {
     await page.locator('.cm-running').waitFor();
     await untilText(page, 'run-state', 'Idle', 30_000);
     expect(rig.position(1)).toBeCloseTo(0, 5);
+    await page.getByTestId('mdi-line').fill('G10 L2 P1 X0');
+    await page.getByTestId('mdi-send').click();
+    await untilText(page, 'work-X', rig.position(0).toFixed(3));
   });
 });
 

@@ -112,7 +112,11 @@ export class ProgramEditor {
     return this.view.state.doc.toString();
   }
 
+  /** The cursor stays where it is if the text is the same: a program is read again when offsets change. */
   show(text: string): void {
+    if (text === this.text) {
+      return;
+    }
     this.view.dispatch({ changes: { from: 0, to: this.view.state.doc.length, insert: text }, selection: { anchor: 0 } });
   }
 

@@ -426,6 +426,7 @@ export const de: Catalogue = {
   'approach.LINE': 'Das Programm beginnt mit Zeile {line}. Frühere Zeilen werden berechnet, nicht ausgeführt. Nach der Bestätigung, in dieser Reihenfolge:',
   'approach.PLACE_LEFT': 'Das Programm wird dort fortgesetzt, wo die Achsen freigegeben wurden (Zeile {line}). Nach der Bestätigung, in dieser Reihenfolge:',
   'approach.PLACE_LOST': 'Das Programm wird dort fortgesetzt, wo es unterbrochen wurde (Zeile {line}). Nach der Bestätigung, in dieser Reihenfolge:',
+  'approach.where': 'Positionen in {system}, {unit}.',
   'approach.tool': 'Werkzeug {tool} kommt in die Spindel',
   'approach.rapid': 'Eilgang nach {place}',
   'approach.feed': 'Vorschub {feed} nach {place}',

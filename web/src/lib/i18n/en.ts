@@ -426,6 +426,7 @@ export const en = {
   'approach.LINE': 'The program starts at line {line}. Earlier lines are calculated, not executed. After confirmation, in this order:',
   'approach.PLACE_LEFT': 'The program resumes where the axes were released (line {line}). After confirmation, in this order:',
   'approach.PLACE_LOST': 'The program resumes where it was interrupted (line {line}). After confirmation, in this order:',
+  'approach.where': 'Positions in {system}, {unit}.',
   'approach.tool': 'Load tool {tool}',
   'approach.rapid': 'Rapid to {place}',
   'approach.feed': 'Feed at {feed} to {place}',

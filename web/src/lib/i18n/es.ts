@@ -426,6 +426,7 @@ export const es: Catalogue = {
   'approach.LINE': 'El programa empieza en la línea {line}. Las líneas anteriores se calculan, no se ejecutan. Tras la confirmación, en este orden:',
   'approach.PLACE_LEFT': 'El programa continúa donde se liberaron los ejes (línea {line}). Tras la confirmación, en este orden:',
   'approach.PLACE_LOST': 'El programa continúa donde se interrumpió (línea {line}). Tras la confirmación, en este orden:',
+  'approach.where': 'Posiciones en {system}, {unit}.',
   'approach.tool': 'La herramienta {tool} va al husillo',
   'approach.rapid': 'Rápido a {place}',
   'approach.feed': 'Avance {feed} a {place}',
