@@ -129,6 +129,22 @@ describe('one touch', () => {
     await mdi('G54');
   });
 
+  it('is not set while the machine moves', async () => {
+    const box = await page.getByTestId('jog-X+').boundingBox();
+    await page.mouse.move((box?.x ?? 0) + 20, (box?.y ?? 0) + 20);
+    await page.mouse.down();
+    await untilText(page, 'run-state', 'Moving');
+    const lines = await linesOf(async () => {
+      await page.getByTestId('zero-X').evaluate((button: HTMLElement) => button.click());
+      await untilText(page, 'why', /The machine is moving/);
+      await page.mouse.up();
+    });
+    expect(lines).toEqual([]);
+    await untilText(page, 'run-state', 'Idle');
+    await mdi('G0 X12');
+    await stopsAt(12, 7, 20);
+  });
+
   it('is no longer undone once something else has changed the offsets', async () => {
     await page.getByTestId('zero-X').click();
     await page.getByTestId('zero-undo').waitFor();

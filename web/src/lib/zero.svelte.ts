@@ -32,8 +32,14 @@ export function lastZero(): ZeroSet | null {
   return last !== undefined && offsets !== undefined && canRestore(last, offsets) ? last : null;
 }
 
+/** The position that becomes zero, or that a move starts from, is the one that the operator sees. */
 export function canZero(): Gate {
-  return canTouchOff(view()) ?? (zeros.isBusy ? { key: 'gate.busy' } : machine.status?.trajectory.in_position === false ? { key: 'gate.moving' } : null);
+  const old = machine.silentSeconds ?? machine.staleSeconds;
+  if (old !== null) {
+    return { key: 'app.stale', values: { seconds: old } };
+  }
+  const isMoving = machine.status?.trajectory.in_position === false;
+  return canTouchOff(view()) ?? (zeros.isBusy ? { key: 'gate.busy' } : isMoving ? { key: 'gate.moving' } : null);
 }
 
 /** A move to zero also needs homed joints where programs do not, and G90. */
