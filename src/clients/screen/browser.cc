@@ -121,7 +121,7 @@ void Browser::carry_out(const Ask &ask, std::int64_t now_ns) {
                                     "the command was sent; too many others are active to follow it"}));
         return;
     }
-    followed_.push_back({ask.id, shared, *posted, now_ns});
+    followed_.push_back({ask.id, shared, *posted, now_ns, isStop});
 }
 
 bool Browser::shorten_lease(messages::Command &command, const Ask &ask, std::int64_t now_ns) {
@@ -149,7 +149,8 @@ void Browser::note_jog(const messages::Command &command) {
 }
 
 bool Browser::isEffectShown(const Followed &one, std::int64_t now_ns) const {
-    return !isAttached() || !has_whole_ || one.isShown || now_ns - one.done_ns >= LONGEST_WAIT_NS;
+    return one.isStop || !isAttached() || !has_whole_ || one.isShown ||
+           now_ns - one.done_ns >= LONGEST_WAIT_NS;
 }
 
 bool Browser::isWaitingForStatus() const {

@@ -68,8 +68,8 @@ class Browser {
 
     /// A text from its socket. A stop is posted at once.
     void receive(std::string_view text, std::int64_t now_ns);
-    /// Tells the outcomes that are new; DONE behind the status of a later cycle of task, which shows the
-    /// effect.
+    /// Sends the outcomes that are new; DONE behind the status of a later cycle of task, which shows the
+    /// effect. That of a stop is sent at once.
     void follow(std::int64_t now_ns);
     /// A command is done, and the status that shows its effect was not sent yet.
     bool isWaitingForStatus() const;
@@ -96,6 +96,7 @@ class Browser {
         client::Client *client = nullptr;  ///< through which it went; null: the screen's own
         client::Serial serial = 0;
         std::int64_t since_ns = 0;
+        bool isStop = false;       ///< its outcome waits for no status
         bool isTold = false;       ///< as STARTED
         std::int64_t done_ns = 0;  ///< when it was seen as DONE; 0: not yet
         /// Of the first status that was read after it was seen as DONE.

@@ -125,6 +125,17 @@ TEST_F(ScreensTest, ACommandIsDoneBehindAStatusThatShowsItsEffect) {
     }
 }
 
+TEST_F(ScreensTest, AStopIsDoneWithoutAStatus) {
+    go(300);
+    open(1);
+    sockets.busy[1] = true;
+    command(1, 1, "AbortAll");
+    go(10);
+    const auto outcomes = of_kind(1, "outcome");
+    ASSERT_EQ(outcomes.size(), 1U);
+    EXPECT_EQ(outcomes[0]["outcome"]["progress"], "DONE");
+}
+
 TEST_F(ScreensTest, WhatIsNoCommandIsRefusedWithAReason) {
     go(300);
     open(1);
