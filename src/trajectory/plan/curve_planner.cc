@@ -10,6 +10,10 @@ namespace {
 
 /// After so many cycles a plan that begins at rest was taken, or never will be.
 constexpr std::uint64_t TAKEN_CYCLES = 20;
+/// Cells of the motion of a plan at most: with its stops less than half of the ring, as the plan before stays
+/// until this one is taken.
+constexpr std::size_t MOST_CELLS = CELL_CAPACITY / 4;
+static_assert(MOST_CELLS + profile::DirectStop::PHASES * CurvePlan::MOST_STOPS < CELL_CAPACITY / 2);
 
 }  // namespace
 
@@ -249,7 +253,7 @@ bool CurvePlanner::commit(const Snapshot &now, std::size_t fixed) {
         profile_.isComplete() ? RENEWAL_S + RESERVE_S : std::min(RENEWAL_S + RESERVE_S, 0.5 * planned);
     std::size_t last = fixed;
     double ahead = 0;
-    while (last < cells && ahead < committed) {
+    while (last < cells && ahead < committed && last - fixed < MOST_CELLS) {
         ahead += profile_.cell(last++).duration;
     }
     profile::Stop end{cells, {}, 0};
