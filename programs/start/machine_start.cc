@@ -94,7 +94,7 @@ Result<> MachineStart::make() {
     tell_messages();
     make_parameter_file();
     check_places();
-    fmt::print("{} is up: instance '{}', {}\n", loaded_.machine.name, instance_, settings_.ini);
+    fmt::print("{} is running: instance '{}', {}\n", loaded_.machine.name, instance_, settings_.ini);
     std::fflush(stdout);
     const auto delay_ns = to_ns(loaded_.machine.applications_delay_s);
     const std::string ini = whole_path(settings_.ini);

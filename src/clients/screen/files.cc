@@ -115,95 +115,58 @@ std::string former_of(const std::string &path) {
     return path + '~';
 }
 
-class OpenFile {
-  public:
-    explicit OpenFile(const std::string &path) : fd_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {}
-    ~OpenFile() {
-        if (fd_ >= 0) {
-            ::close(fd_);
-        }
+/// Takes the descriptor. Null: there is none, or it cannot be used, see errno.
+std::unique_ptr<FileBody> open_body(int fd) {
+    struct stat facts{};
+    if (fd < 0) {
+        return nullptr;
     }
-    OpenFile(const OpenFile &) = delete;
-    OpenFile &operator=(const OpenFile &) = delete;
-    int fd() const { return fd_; }
-
-  private:
-    int fd_;
-};
-
-/// The bytes at `at`, fewer at the end of the file, nothing after an error.
-std::optional<std::string> bytes_at(int fd, std::uint64_t at) {
-    std::string piece(BodySource::PIECE, '\0');
-    std::size_t size = 0;
-    while (size < piece.size()) {
-        const ssize_t got =
-            ::pread(fd, piece.data() + size, piece.size() - size, static_cast<off_t>(at + size));
-        if (got < 0 && errno == EINTR) {
-            continue;
-        }
-        if (got < 0) {
-            return std::nullopt;
-        }
-        if (got == 0) {
-            break;
-        }
-        size += static_cast<std::size_t>(got);
+    if (::fstat(fd, &facts) != 0) {
+        ::close(fd);
+        return nullptr;
     }
-    piece.resize(size);
-    return piece;
+    return std::make_unique<FileBody>(fd, static_cast<std::uint64_t>(facts.st_size));
 }
 
-bool hasSameContent(int one, int other) {
-    struct stat a{}, b{};
-    if (::fstat(one, &a) != 0 || ::fstat(other, &b) != 0 || a.st_size != b.st_size) {
-        return false;
-    }
-    for (std::uint64_t at = 0; at < static_cast<std::uint64_t>(a.st_size); at += BodySource::PIECE) {
-        const auto left = bytes_at(one, at), right = bytes_at(other, at);
-        if (!left.has_value() || left != right) {
+/// From their present places on.
+bool hasSameContent(BodySource &one, BodySource &other) {
+    std::uint64_t same = 0;
+    while (same < one.size() && one.size() == other.size()) {
+        const std::string piece = one.read();
+        if (piece.empty() || piece != other.read()) {
             return false;
         }
+        same += piece.size();
     }
-    return true;
+    return one.size() == other.size();
 }
 
-/// For file systems without hard links.
-bool copy_to(int from, const std::string &target) {
+bool copy_to(BodySource &from, const std::string &target) {
     auto copy = TemporaryFile::create(target);
-    if (!copy.has_value()) {
-        return false;
-    }
-    for (std::uint64_t at = 0;; at += BodySource::PIECE) {
-        const auto piece = bytes_at(from, at);
-        if (!piece.has_value() || !write_all(copy->fd(), *piece)) {
+    for (std::uint64_t copied = 0; copy.has_value() && copied < from.size();) {
+        const std::string piece = from.read();
+        if (piece.empty() || !write_all(copy->fd(), piece)) {
             return false;
         }
-        if (piece->size() < BodySource::PIECE) {
-            return ::fchmod(copy->fd(), 0644) == 0 && copy->replace_target();
-        }
+        copied += piece.size();
     }
+    return copy.has_value() && ::fchmod(copy->fd(), 0644) == 0 && copy->replace_target();
 }
 
-/// The file at `path` also gets the name of the former version, in place of the one before, if `replacement`
-/// has another content. Errors are in errno.
+/// The file at `path` is copied to the name of the former version, in place of the one before, if
+/// `replacement` has another content. Errors are in errno.
 bool keep_former(const std::string &path, int replacement) {
-    const OpenFile old(path);
-    if (old.fd() < 0) {
+    const auto open = [&path] { return open_body(::open(path.c_str(), O_RDONLY | O_CLOEXEC)); };
+    const auto old = open();
+    if (old == nullptr) {
         return errno == ENOENT;
     }
-    if (hasSameContent(old.fd(), replacement)) {
+    const auto made = open_body(::dup(replacement));
+    if (made != nullptr && hasSameContent(*old, *made)) {
         return true;
     }
-    // rename() replaces the version before in one step, link() cannot. It does nothing if both names are
-    // the same file already.
-    const std::string former = former_of(path), step = former + '~';
-    ::unlink(step.c_str());
-    const bool isLinked = ::link(path.c_str(), step.c_str()) == 0;
-    const bool isKept = isLinked ? ::rename(step.c_str(), former.c_str()) == 0 : copy_to(old.fd(), former);
-    const int why = errno;
-    ::unlink(step.c_str());
-    errno = why;
-    return isKept;
+    const auto whole = open();
+    return whole != nullptr && copy_to(*whole, former_of(path));
 }
 
 Response done() {

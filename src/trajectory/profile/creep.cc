@@ -43,7 +43,8 @@ constexpr double STRETCHES = 50;
 /// for every division into cells, and where more becomes known it only grows.
 class Scales {
   public:
-    Scales(const Run &run, const Bounds &least) : run_(run), least_(least) {}
+    Scales(const Run &run, const Bounds &least)
+        : run_(run), least_(least), feeds_(run.has_stop ? run.feed_at(run.end_s) + 1 : run.feeds->size()) {}
 
     /// The scale that a cell has already.
     struct Known {
@@ -76,10 +77,6 @@ class Scales {
     }
 
   private:
-    /// Those that are driven: what is behind a stop does not count.
-    std::size_t feeds() const noexcept {
-        return run_.has_stop ? run_.feed_at(run_.end_s) + 1 : run_.feeds->size();
-    }
     /// A move without speed is not driven: the motion stops before.
     double speed_of(const FeedLimit &feed) const noexcept {
         const double v = std::min(feed.limit_share * least_.velocity, feed.velocity);
@@ -103,7 +100,7 @@ class Scales {
                 length = std::min(length, spans[++span].length);
             }
             double v = speed_of((*run_.feeds)[feed]);
-            while (feed + 1 < feeds() && s >= (*run_.feeds)[feed].end_s) {
+            while (feed + 1 < feeds_ && s >= (*run_.feeds)[feed].end_s) {
                 v = std::min(v, speed_of((*run_.feeds)[++feed]));
             }
             run_.each_cap(from, s, [&](const SpeedCap &cap) { v = std::min(v, cap.v); });
@@ -124,7 +121,7 @@ class Scales {
             last = std::min(last, spans[j].length + SPACING_GROWTH * std::max(0.0, spans[j].start_s - s));
         }
         const auto apart = [&](std::size_t j) { return (*run_.feeds)[j - 1].end_s - s; };
-        for (std::size_t j = feed + 1; j < feeds() && SPACING_GROWTH * apart(j) < last; ++j) {
+        for (std::size_t j = feed + 1; j < feeds_ && SPACING_GROWTH * apart(j) < last; ++j) {
             last = std::min(last, scale_of_speed(speed_of((*run_.feeds)[j])) +
                                       SPACING_GROWTH * std::max(0.0, apart(j)));
         }
@@ -157,6 +154,7 @@ class Scales {
 
     const Run &run_;
     const Bounds &least_;
+    std::size_t feeds_;  ///< those that are driven: what is behind a stop does not count
     std::vector<double> knots_, cells_, at_;
     JointSpeeds joint_speeds_;
 };

@@ -101,6 +101,13 @@ TEST_F(ProgramFilesTest, ASaveWithoutAChangeKeepsTheFormerVersion) {
     EXPECT_EQ(fs::file_size(folder_ / "p.ngc~"), other.size());
 }
 
+TEST_F(ProgramFilesTest, ASaveLeavesOtherFilesAsTheyAre) {
+    put("p.ngc", "one");
+    put("p.ngc~~", "of a person");
+    EXPECT_EQ(files_->write("p.ngc", 0, 3, "two").status, 200);
+    EXPECT_EQ(fs::file_size(folder_ / "p.ngc~~"), 11U);
+}
+
 TEST_F(ProgramFilesTest, ASaveThatWasInterruptedAfterItsFormerVersionCanBeRepeated) {
     put("p.ngc", "one");
     fs::create_hard_link(folder_ / "p.ngc", folder_ / "p.ngc~");

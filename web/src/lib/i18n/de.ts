@@ -162,7 +162,7 @@ export const de: Catalogue = {
   'spindle.stop': 'Spindel halt',
   'spindle.speed': 'Drehzahl',
   'spindle.rpm': 'U/min',
-  'spindle.stands': 'gestoppt',
+  'spindle.stopped': 'gestoppt',
   'spindle.at_speed': 'auf Drehzahl',
   'spindle.getting_there': 'nicht auf Drehzahl',
   'spindle.commanded': 'Spindel, Sollwert',

@@ -162,7 +162,7 @@ export const en = {
   'spindle.stop': 'Spindle stop',
   'spindle.speed': 'Speed to set',
   'spindle.rpm': 'rev/min',
-  'spindle.stands': 'stopped',
+  'spindle.stopped': 'stopped',
   'spindle.at_speed': 'at speed',
   'spindle.getting_there': 'not at speed',
   'spindle.commanded': 'Spindle, commanded',

@@ -162,7 +162,7 @@ export const es: Catalogue = {
   'spindle.stop': 'Parar husillo',
   'spindle.speed': 'Velocidad',
   'spindle.rpm': 'rev/min',
-  'spindle.stands': 'parado',
+  'spindle.stopped': 'parado',
   'spindle.at_speed': 'a velocidad',
   'spindle.getting_there': 'no a velocidad',
   'spindle.commanded': 'Husillo, consigna',
