@@ -33,10 +33,18 @@ function parseTerm(text: string): number | null {
 /** A sign before a term is that of its sum; the second number of a fraction has none. */
 const TERMS = /([+-]?)([^+-]+)/g;
 
-/** A number, a fraction (1/2), or a sum or difference of those (10+2.5, 3-1/8). Nothing for any other text: an operator without
- * two numbers, two operators in a row, brackets, products. */
+/** A whole number, a minus and a fraction: to some people 3-1/8 is 3.125, to others 2.875. */
+export function isMixed(text: string): boolean {
+  return /^\s*[+-]?\d+\s*-\s*\d+\s*\/\s*\d+\s*$/.test(text);
+}
+
+/** A number, a fraction (1/2), or a sum or difference of those (10+2.5). Nothing for any other text: an operator without
+ * two numbers, two operators in a row, brackets, products, and where a minus has two meanings (isMixed). */
 export function parseNumber(text: string): number | null {
   const trimmed = text.trim();
+  if (isMixed(trimmed)) {
+    return null;
+  }
   const terms = [...trimmed.matchAll(TERMS)];
   if (terms.map((one) => one[0]).join('') !== trimmed) {
     return null;

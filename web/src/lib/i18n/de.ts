@@ -67,6 +67,7 @@ export const de: Catalogue = {
   'gate.feed_override': 'Das Programm hat die Vorschubkorrektur abgeschaltet (M49, M50 P0).',
   'gate.spindle_override': 'Das Programm hat die Drehzahlkorrektur abgeschaltet (M49, M51 P0).',
   'gate.empty': 'Zuerst einen Wert eingeben.',
+  'gate.mixed_number': 'Eine ganze Zahl mit Bruch ist mit einem Minus mehrdeutig: 3+1/8 oder 3,125 schreiben.',
   'gate.number': 'Keine Zahl. Nur Ziffern und ein Komma oder Punkt, oder eine Rechnung wie 1/2 oder 10+2,5.',
   'gate.speed': 'Zuerst eine Drehzahl über 0 eingeben.',
   'gate.unsaved': 'Das Programm hat ungesicherte Änderungen. Im Editor sichern oder verwerfen.',

@@ -67,6 +67,7 @@ export const en = {
   'gate.feed_override': 'The program has switched feed overrides off (M49, M50 P0).',
   'gate.spindle_override': 'The program has switched spindle overrides off (M49, M51 P0).',
   'gate.empty': 'Enter a value first.',
+  'gate.mixed_number': 'A whole number with a fraction is ambiguous with a minus: write 3+1/8 or 3.125.',
   'gate.number': 'Not a number. Use digits and one decimal point or comma, or a calculation such as 1/2 or 10+2.5.',
   'gate.speed': 'Enter a speed above 0 first.',
   'gate.unsaved': 'The program has unsaved changes. Save or discard them in Editor.',

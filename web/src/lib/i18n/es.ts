@@ -67,6 +67,7 @@ export const es: Catalogue = {
   'gate.feed_override': 'El programa ha desactivado el ajuste de avance (M49, M50 P0).',
   'gate.spindle_override': 'El programa ha desactivado el ajuste del husillo (M49, M51 P0).',
   'gate.empty': 'Introduzca primero un valor.',
+  'gate.mixed_number': 'Un entero con fracción es ambiguo con un menos: escriba 3+1/8 o 3,125.',
   'gate.number': 'No es un número. Use cifras y una coma o un punto decimal, o un cálculo como 1/2 o 10+2,5.',
   'gate.speed': 'Escriba primero una velocidad mayor que 0.',
   'gate.unsaved': 'El programa tiene cambios sin guardar. Guárdelos o descártelos en Editor.',
