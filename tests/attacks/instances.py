@@ -23,13 +23,13 @@ expect = FOUND.expect
 
 
 def begun(machine, name, **more):
-    """A start of the same instance, and what it has printed: 'is up', or its end."""
+    """A start of the same instance, and what it has printed: 'is running: instance', or its end."""
     out = machine.folder / name
     with out.open('w') as file:
         process = subprocess.Popen([machine.programs / 'millwright', 'start', machine.ini, '--no-display'], env=dict(machine.env, **more.pop('env', {})),
                                    stdin=subprocess.DEVNULL, stdout=file, stderr=subprocess.STDOUT, **more)
     end = time.monotonic() + UP_S
-    while 'is up' not in out.read_text() and process.poll() is None and time.monotonic() < end:
+    while 'is running: instance' not in out.read_text() and process.poll() is None and time.monotonic() < end:
         time.sleep(0.05)
     return process, out.read_text()
 
@@ -39,7 +39,7 @@ def second_start(machine, user):
     process, text = begun(machine, 'second.txt', **user)
     process.kill()
     process.wait()
-    expect('is up' not in text and 'MILLWRIGHT_INSTANCE' in text, 'a second start is rejected, and the message says what to do', text)
+    expect('is running: instance' not in text and 'MILLWRIGHT_INSTANCE' in text, 'a second start is rejected, and the message says what to do', text)
     if user:
         expect(f'process {machine.process.pid}' in text and 'of user' in text, 'and the process and its user', text)
 
@@ -62,8 +62,8 @@ def after_kill(machine, user, what):
     while isRealtimeAlive(machine) and time.monotonic() < end:  # it ends by itself
         time.sleep(0.1)
     process, text = begun(machine, f'{what}.txt', **user)
-    expect('is up' in text, f'after SIGKILL {what} starts the same instance', text)
-    if 'is up' in text:
+    expect('is running: instance' in text, f'after SIGKILL {what} starts the same instance', text)
+    if 'is running: instance' in text:
         words = [PYTHON, '-c', 'import linuxcnc; s = linuxcnc.stat(); s.poll(); print(s.task_state)']
         found = subprocess.run(words, env=machine.env, capture_output=True, text=True, check=False, timeout=30,
                                **{key: value for key, value in user.items() if key != 'env'})

@@ -106,7 +106,7 @@ class Bench(Mill):
 
     def start_machine(self):
         """The process, when the machine is started."""
-        return self.begin('is up', 'start', str(self.ini), '--no-display')
+        return self.begin('is running: instance', 'start', str(self.ini), '--no-display')
 
     def end_all(self):
         for process in reversed(self.started):

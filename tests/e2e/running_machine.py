@@ -71,7 +71,7 @@ class Bench(Mill):
 
     def up(self, *more):
         machine = self.start('--no-display', *more)
-        expect(machine.wait_for('is up'), 'the machine comes up', machine.text)
+        expect(machine.wait_for('is running: instance'), 'the machine comes up', machine.text)
         expect((self.ini.parent / 'mill_mm.var').exists(), 'its parameter file is there for screens that read it')
         return machine
 
@@ -219,7 +219,7 @@ def displays(bench):
     show('show.sh one two')
     for status in ('0', '3'):
         machine = bench.start()
-        expect(machine.wait_for('is up'), 'up with its display', machine.text)
+        expect(machine.wait_for('is running: instance'), 'up with its display', machine.text)
         expect(wait_until(lambda: said.exists() and said.read_text()), 'the display runs')
         expect(said.read_text() == f'{display} -ini {bench.ini} one two; {bench.ini}; {display.parent}; {display.parent}\n',
                'with its words and environment', said.read_text())

@@ -154,7 +154,7 @@ class Bench(Mill):
 
     def machine(self):
         process, path = self.begin('start', str(self.ini), '--no-display')
-        expect(wait_until(lambda: 'is up' in path.read_text() or process.poll() is not None) and process.poll() is None,
+        expect(wait_until(lambda: 'is running: instance' in path.read_text() or process.poll() is not None) and process.poll() is None,
                'the machine comes up', path.read_text())
         return process
 

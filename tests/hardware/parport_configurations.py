@@ -54,7 +54,7 @@ class Machine:
 
 def drive(machine, program):
     """Operates the machine: what is wrong, or ''."""
-    if not machine.until(lambda: 'is up' in machine.text() or machine.process.poll() is not None, START_S) or 'is up' not in machine.text():
+    if not machine.until(lambda: 'is running: instance' in machine.text() or machine.process.poll() is not None, START_S) or 'is running: instance' not in machine.text():
         return 'it does not start: ' + machine.text()[-1500:]
     import linuxcnc  # pylint: disable=import-outside-toplevel
     command, stat, errors = linuxcnc.command(), linuxcnc.stat(), linuxcnc.error_channel()

@@ -40,7 +40,7 @@ def run(machine, linuxcnc, folder, text):
 
 
 def drive(machine, folder, board):
-    if not machine.until(lambda: 'is up' in machine.text() or machine.process.poll() is not None, START_S) or 'is up' not in machine.text():
+    if not machine.until(lambda: 'is running: instance' in machine.text() or machine.process.poll() is not None, START_S) or 'is running: instance' not in machine.text():
         return 'it does not start: ' + machine.text()[-1500:]
     import linuxcnc  # pylint: disable=import-outside-toplevel
     command, stat, errors = linuxcnc.command(), linuxcnc.stat(), linuxcnc.error_channel()

@@ -89,7 +89,7 @@ export class Rig {
   async startMachine(): Promise<ChildProcess> {
     const one = this.begin(['start', this.ini, '--no-display']);
     const told = (): string => readFileSync(one.output, 'utf8');
-    await until(() => told().includes('is up') || one.process.exitCode !== null, 'the machine');
+    await until(() => told().includes('is running: instance') || one.process.exitCode !== null, 'the machine');
     if (one.process.exitCode !== null) {
       throw new Error(`the machine has ended: ${told()}`);
     }

@@ -266,9 +266,9 @@ class Session:
         text, rest = '', ''
         while line := again.stdout.readline():
             text += line
-            if 'is up' in line:
+            if 'is running: instance' in line:
                 break
-        if 'is up' in text:  # servers that were killed leave files, which their next start removes
+        if 'is running: instance' in text:  # servers that were killed leave files, which their next start removes
             for server in machine.servers:
                 machine.begin_server(server)
             machine.servers['web'].terminate()
@@ -279,7 +279,7 @@ class Session:
             again.kill()
             return ['end: a start after the end of the machine does not end: ' + text]
         machine.wait_end(time.monotonic())
-        return [] if 'is up' in text and again.returncode == 0 else [f'end: a start after the end of the machine fails: {text}{rest}']
+        return [] if 'is running: instance' in text and again.returncode == 0 else [f'end: a start after the end of the machine fails: {text}{rest}']
 
     def left_behind(self):
         machine = self.machine
