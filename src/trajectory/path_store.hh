@@ -266,7 +266,7 @@ inline constexpr std::size_t PRIMITIVE_CAPACITY = 4096;
 inline constexpr std::size_t PIECE_CAPACITY = 16384;
 inline constexpr std::size_t PHASE_CAPACITY = 65536;
 inline constexpr std::size_t SPAN_CAPACITY = 16384;
-inline constexpr std::size_t CELL_CAPACITY = 16384;
+inline constexpr std::size_t CELL_CAPACITY = 32768;
 
 /// An output change at a place of the path.
 struct PathEvent {

@@ -10,10 +10,13 @@ namespace {
 
 /// After so many cycles a plan that begins at rest was taken, or never will be.
 constexpr std::uint64_t TAKEN_CYCLES = 20;
-/// Cells of the motion of a plan at most: with its stops less than half of the ring, as the plan before stays
-/// until this one is taken.
-constexpr std::size_t MOST_CELLS = CELL_CAPACITY / 4;
-static_assert(MOST_CELLS + profile::DirectStop::PHASES * CurvePlan::MOST_STOPS < CELL_CAPACITY / 2);
+/// Cells of a plan and of its stops at most: half of the ring, as the plan before stays until this one is
+/// taken.
+constexpr std::size_t MOST_CELLS = CELL_CAPACITY / 2;
+/// Those of its motion, of the last stop and of direct stops.
+constexpr std::size_t MOST_MOTION_CELLS = MOST_CELLS / 4, MOST_LAST_CELLS = MOST_CELLS / 4;
+constexpr std::size_t DIRECT_CELLS = profile::DirectStop::PHASES * CurvePlan::MOST_STOPS;
+static_assert(MOST_MOTION_CELLS + MOST_LAST_CELLS + DIRECT_CELLS < MOST_CELLS);
 
 }  // namespace
 
@@ -253,12 +256,12 @@ bool CurvePlanner::commit(const Snapshot &now, std::size_t fixed) {
         profile_.isComplete() ? RENEWAL_S + RESERVE_S : std::min(RENEWAL_S + RESERVE_S, 0.5 * planned);
     std::size_t last = fixed;
     double ahead = 0;
-    while (last < cells && ahead < committed && last - fixed < MOST_CELLS) {
+    while (last < cells && ahead < committed && last - fixed < MOST_MOTION_CELLS) {
         ahead += profile_.cell(last++).duration;
     }
     profile::Stop end{cells, {}, 0};
     if (last < cells || !profile_.isComplete()) {
-        end = profile_.stop(run_, last, profile::StopEffort::QUICK);
+        end = stop_from(last, MOST_LAST_CELLS);
         if (end.cells.empty() && !profile_.isComplete()) {
             return false;
         }
@@ -277,15 +280,8 @@ bool CurvePlanner::commit(const Snapshot &now, std::size_t fixed) {
     plan.move = path_.move_at(from);
     plan.last_span = path_.last_span();
     plan.last_move = moves_.last_move();
-    add_stops(plan, fixed, last);
-    const auto add = [&](const profile::Stop &stop) {
-        const Sequence begin = next_cell_;
-        for (const profile::TimeCell &cell : stop.cells) {
-            write(cell);
-        }
-        plan.stops[plan.stop_count++] = {numbers_[stop.kept - 1], begin, next_cell_};
-    };
-    add(end);
+    add_stops(plan, fixed, last, MOST_CELLS - (last - fixed) - end.cells.size() - DIRECT_CELLS);
+    add_stop(plan, end);
     if (!store_.curve_plans.push(plan)) {
         return false;
     }
@@ -295,8 +291,26 @@ bool CurvePlanner::commit(const Snapshot &now, std::size_t fixed) {
     return true;
 }
 
-/// Stops behind cells of the plan, STOP_APART_S or a small part of the time of a stop apart.
-void CurvePlanner::add_stops(CurvePlan &plan, std::size_t fixed, std::size_t last) {
+/// From the start of a cell on, of at most so many cells; more make it a direct stop.
+profile::Stop CurvePlanner::stop_from(std::size_t cell, std::size_t most_cells) {
+    profile::Stop stop = profile_.stop(run_, cell, profile::StopEffort::PROMPT);
+    if (stop.cells.size() > std::max(most_cells, profile::DirectStop::PHASES)) {
+        stop = profile_.stop(run_, cell, profile::StopEffort::QUICK);
+    }
+    return stop;
+}
+
+void CurvePlanner::add_stop(CurvePlan &plan, const profile::Stop &stop) noexcept {
+    const Sequence begin = next_cell_;
+    for (const profile::TimeCell &cell : stop.cells) {
+        write(cell);
+    }
+    plan.stops[plan.stop_count++] = {numbers_[stop.kept - 1], begin, next_cell_};
+}
+
+/// Stops behind cells of the plan, STOP_APART_S or a small part of the time of a stop apart. In all they have
+/// `room` cells, and those of direct stops.
+void CurvePlanner::add_stops(CurvePlan &plan, std::size_t fixed, std::size_t last, std::size_t room) {
     double since = 0, apart = STOP_APART_S;
     for (std::size_t k = fixed; k + 1 < last && plan.stop_count + 1 < CurvePlan::MOST_STOPS; ++k) {
         since += profile_.cell(k).duration;
@@ -304,20 +318,17 @@ void CurvePlanner::add_stops(CurvePlan &plan, std::size_t fixed, std::size_t las
             continue;
         }
         since = 0;
-        const profile::Stop stop = profile_.stop(run_, k + 1, profile::StopEffort::QUICK);
+        const profile::Stop stop = stop_from(k + 1, room);
+        if (stop.cells.empty() || stop.kept >= last) {
+            return;
+        }
         double duration = 0;
         for (const profile::TimeCell &cell : stop.cells) {
             duration += cell.duration;
         }
-        if (stop.cells.empty() || stop.kept >= last) {
-            return;
-        }
         apart = std::max(STOP_APART_S, STOP_APART * duration);
-        const Sequence begin = next_cell_;
-        for (const profile::TimeCell &cell : stop.cells) {
-            write(cell);
-        }
-        plan.stops[plan.stop_count++] = {numbers_[stop.kept - 1], begin, next_cell_};
+        add_stop(plan, stop);
+        room -= std::min(room, stop.cells.size());
         k = std::max(k, stop.kept - 1);
     }
 }

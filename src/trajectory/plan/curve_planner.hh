@@ -50,7 +50,7 @@ class CurvePlanner {
     static constexpr double RESERVE_S = 0.15;  ///< by which a plan may be late
     static constexpr double WINDOW_S = 0.45;   ///< planned at once, and the time of a stop
     /// Between the places where stops begin, as a time and as a part of the time of a stop.
-    static constexpr double STOP_APART_S = 0.01, STOP_APART = 0.05;
+    static constexpr double STOP_APART_S = 0.01, STOP_APART = 0.12;
     static constexpr double PLANNING_S = 0.01;  ///< from the making of a plan to its first cell
 
   private:
@@ -63,7 +63,9 @@ class CurvePlanner {
     bool hasSpeed(Sequence move) const noexcept;
     std::size_t first_free_cell(const Snapshot &now) const noexcept;
     bool commit(const Snapshot &now, std::size_t fixed);
-    void add_stops(CurvePlan &plan, std::size_t fixed, std::size_t last);
+    profile::Stop stop_from(std::size_t cell, std::size_t most_cells);
+    void add_stop(CurvePlan &plan, const profile::Stop &stop) noexcept;
+    void add_stops(CurvePlan &plan, std::size_t fixed, std::size_t last, std::size_t room);
     Sequence write(const profile::TimeCell &cell) noexcept;
 
     PathStore &store_;

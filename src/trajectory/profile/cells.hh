@@ -132,6 +132,8 @@ class RoughProfile {
 std::size_t span_at(const std::vector<Span> &spans, double s) noexcept;
 /// Inverse of the maximum speed along the curve that the limits of speed allow at a point.
 double speed_share(const Run &run, const CurvePoint &point, std::size_t feed) noexcept;
+/// The same of the machine's limits alone, without feed and override.
+double machine_share(const Run &run, const CurvePoint &point) noexcept;
 void make_rows(const Run &run, const RestMap &map, const double *knots, std::size_t cells, Rows &rows);
 /// Largest part of the path over which a start or a stop is blended.
 inline constexpr double MAX_RAMP = 0.3;

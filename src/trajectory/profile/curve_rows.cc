@@ -61,13 +61,17 @@ constexpr double INSIDE = 1e-3;
 
 }  // namespace
 
-double speed_share(const Run &run, const CurvePoint &point, std::size_t feed) noexcept {
-    const FeedLimit &limit = (*run.feeds)[feed];
+double machine_share(const Run &run, const CurvePoint &point) noexcept {
     double most = geometry::norm_xyz(point.first) / run.limits.xyz.velocity;
     for (std::size_t i = 0; i < geometry::AXIS_COUNT; ++i) {
         most = std::max(most, std::abs(point.first.c[i]) / run.limits.axes[i].velocity);
     }
-    return std::max(most / limit.limit_share, std::sqrt(limit.share(point.first)));
+    return most;
+}
+
+double speed_share(const Run &run, const CurvePoint &point, std::size_t feed) noexcept {
+    const FeedLimit &limit = (*run.feeds)[feed];
+    return std::max(machine_share(run, point) / limit.limit_share, std::sqrt(limit.share(point.first)));
 }
 
 void make_rows(const Run &run, const RestMap &map, const double *knots, std::size_t cells, Rows &rows) {
@@ -135,8 +139,9 @@ void make_rows(const Run &run, const RestMap &map, const double *knots, std::siz
             for (std::size_t j = feed; j <= last; ++j) {
                 share = std::max(share, speed_share(run, c, j));
             }
-            const double v2 = (square(share) + rest.v2) * m.first * m.first;
-            rows.set_velocity(p, std::max(v2, joint_v2));
+            const double m2 = m.first * m.first;
+            rows.set_velocity(p, std::max((square(share) + rest.v2) * m2, joint_v2),
+                              std::max((square(machine_share(run, c)) + rest.v2) * m2, joint_v2));
             feed = move_to(feed, p);
         }
     }

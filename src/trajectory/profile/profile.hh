@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "trajectory/profile/speed_plan.hh"
+#include "trajectory/profile/stop_search.hh"
 #include "trajectory/profile/time_law.hh"
 
 namespace mw::trajectory::profile {
@@ -26,8 +27,9 @@ struct Stop {
 };
 
 enum class StopEffort : std::uint8_t {
-    QUICK,   ///< for the end of every plan: the first place from which a direct stop keeps all limits
-    SOONEST  ///< the plan, too, slows down: for an operator's stop
+    QUICK,   ///< from the first place from which a direct stop keeps all limits
+    PROMPT,  ///< for the stops of every plan: QUICK where that is little later than any stop could be
+    SOONEST  ///< the motion before the direct stop is the slowest one, too
 };
 
 /// Planner thread. Cells that were planned stay in it until they are dropped, so that another motion can
@@ -78,12 +80,6 @@ class Profile {
   private:
     /// Part of a limit by which rounding may leave it.
     static constexpr double ROUNDING = 1e-6;
-    /// A direct stop in less time that ends there; by default anywhere.
-    struct Goal {
-        double most_s = 1e300, end_s = 1e300;
-    };
-    /// How dense the places are at which limits of a direct stop are checked.
-    enum class Density : std::uint8_t { COARSE, EVERY_SPAN };
     void take_limits(const Run &run);
     void take_joints(const Run &run);
     void lay_cells(std::size_t fixed);
@@ -99,17 +95,12 @@ class Profile {
     int parts_of(const Run &run, const Course &course, std::size_t cell, double length) const;
     bool keepsRows(const Course &course, std::size_t cell, int parts);
     bool slow_down(const Run &run, std::size_t fixed);
-    std::size_t first_tail(const Run &run, const Course &course, DirectStop &tail) const;
+    double time_of(const Stop &stop, std::size_t fixed) const;
     void stop_sooner(const Run &run, std::size_t fixed, Stop &out);
     void make_time_cells(std::size_t fixed);
-    bool find_tail(const Run &run, const Course &course, std::size_t cell, const Goal &goal,
-                   DirectStop &tail) const;
     bool endsNear(const Run &run) const noexcept;
     bool end_early(const Run &run, std::size_t fixed);
     bool isInEnding() const noexcept { return plan_.ends_early && ending_.size() < ending_cells_; }
-    std::size_t cells_of_stop(const Run &run, const Course &course) const;
-    bool keepsLimits(const Run &run, const Course &course, std::size_t cell, const DirectStop &tail,
-                     Density density, Rates &least) const;
     double planned_s() const noexcept;
 
     ProfileSettings settings_;
@@ -120,7 +111,6 @@ class Profile {
     TimeLaw law_;
     SpeedPlan plan_, kept_;  ///< what is planned, and the plan before while another one is made
     std::vector<double> creep_, floors_, part_knots_;
-    mutable std::size_t places_ = 0;  ///< at which direct stops were checked
     struct {
         std::vector<double> knots, c;
     } split_;

@@ -10,155 +10,18 @@ namespace mw::trajectory::profile {
 
 namespace {
 
-/// Places of a direct stop at which limits are checked, and how often it is made again with what they leave.
-constexpr int TAIL_PLACES = 16;
-constexpr double SPAN_PLACES = 12;
-constexpr int TAIL_ROUNDS = 4;
-/// Time between these places, and between the places where a stop from the least speed or at a place begins,
-/// at most [s].
-constexpr double MOST_STEP_S = 2e-3, STOPS_APART_S = 2e-3;
-constexpr double ANYWHERE = 1e300;
-/// Places that are checked for a quick stop, about: 0.2 ms.
-constexpr std::size_t QUICK_PLACES = 400;
+/// Time between the places where a stop from the least speed or at a place begins [s].
+constexpr double STOPS_APART_S = 2e-3;
+/// A stop of a plan may take so many times the least time, and so much more.
+constexpr double PROMPT_SHARE = 1.1, PROMPT_S = 2e-3;
 /// Parts of the plan and of the creep: a floor is below the plan, and what is near the floor creeps.
 constexpr double BELOW_PLAN = 0.9, NEAR_CREEP = 1.02;
-/// Parts of a cell at most.
-constexpr double MOST_PARTS = 8;
+/// Parts of a cell at most, and their least time as planned [s]: a cell may be split again and again.
+constexpr double MOST_PARTS = 8, LEAST_PART_S = 2.5e-4;
 /// Part of the coefficients of the start below which speed is not reduced.
 constexpr double LAST_MU = 4e-3;
 
-bool isStraight(const Span &span) noexcept {
-    for (std::size_t n = 2; n < span.c.size(); ++n) {
-        if (std::ranges::any_of(span.c[n].c, [](double x) { return x != 0; })) {
-            return false;
-        }
-    }
-    return true;
-}
-
-/// From a place to the end of its span nothing changes what the limits leave: the curve is straight, with one
-/// feed and no seam near.
-bool isPlain(const Run &run, const Span &span, std::size_t feed, const Motion &at) noexcept {
-    if (run.joint_curve != nullptr || !isStraight(span) || (*run.feeds)[feed].end_s < span.end_s()) {
-        return false;
-    }
-    bool has_cap = false;
-    run.each_cap(at.s, span.end_s(), [&](const SpeedCap &) { has_cap = true; });
-    return !has_cap;
-}
-
 }  // namespace
-
-/// Also reduces `least` to what limits leave.
-bool Profile::keepsLimits(const Run &run, const Course &course, std::size_t cell, const DirectStop &tail,
-                          Density density, Rates &least) const {
-    if (!(tail.end_s <= run.end_s)) {
-        return false;
-    }
-    const auto &spans = *run.spans;
-    const double duration = tail.duration();
-    std::size_t span = span_at(spans, tail.cells[0].c[0]);
-    std::size_t feed = run.feed_at(tail.cells[0].c[0]);
-    bool keeps = true;
-    double phase_end = tail.cells[0].duration;
-    std::size_t phase = 0;
-    for (double t = 0, step = 0;;) {
-        const Motion m = tail.at(t);
-        while (span + 1 < spans.size() && m.s >= spans[span].end_s()) {
-            ++span;
-        }
-        while (feed + 1 < run.feeds->size() && m.s > (*run.feeds)[feed].end_s) {
-            ++feed;
-        }
-        ++places_;
-        const CurvePoint point = curve::point_at(spans[span], m.s);
-        const Rates left = rates_at(run_, point, m);
-        least.acceleration = std::min(least.acceleration, left.acceleration);
-        least.jerk = std::min(least.jerk, left.jerk);
-        keeps = keeps && -m.a >= left.least - left.spare_acceleration &&
-                -m.a <= left.acceleration + left.spare_acceleration &&
-                std::abs(tail.jerk_at(t)) <= left.jerk + left.spare_jerk;
-        // Above the limit of the speed it may be where the plan is.
-        if (std::max(speed_share(run, point, feed), left.speed_share) * m.v > 1) {
-            const double p = plan_.map.parameter_at(m.s);
-            while (cell + 1 < course.cells && course.knots[cell + 1] <= p) {
-                ++cell;
-            }
-            const double x = (p - course.knots[cell]) / (course.knots[cell + 1] - course.knots[cell]);
-            keeps = keeps && x <= 1 && m.v <= plan_.motion_at(course, cell, x).v * (1 + 1e-9);
-        }
-        if (!(least.acceleration > 0) || !(least.jerk > 0)) {
-            return false;
-        }
-        if (t >= duration) {
-            return keeps;
-        }
-        step = duration / TAIL_PLACES;
-        if (density == Density::EVERY_SPAN) {
-            const double v = std::max(m.v, 1e-300), to_end = (spans[span].end_s() - m.s) / v;
-            const double fine = std::min(MOST_STEP_S, spans[span].length / SPAN_PLACES / v);
-            step = std::min(step, to_end > fine && isPlain(run_, spans[span], feed, m) ? to_end : fine);
-        }
-        while (phase + 1 < DirectStop::PHASES && t >= phase_end) {
-            phase_end += tail.cells[++phase].duration;
-        }
-        t = std::min({t + step, phase_end, duration});
-    }
-}
-
-/// A direct stop from the start of a cell.
-bool Profile::find_tail(const Run &run, const Course &course, std::size_t cell, const Goal &goal,
-                        DirectStop &tail) const {
-    const bool is_last = cell == course.cells;
-    const std::size_t in = is_last ? cell - 1 : cell;
-    const Motion from = plan_.motion_at(course, in, is_last ? 1 : 0);
-    const std::size_t span = span_at(*run.spans, from.s);
-    Rates rates = rates_at(run_, curve::point_at((*run.spans)[span], from.s), from);
-    for (int round = 0; round < TAIL_ROUNDS; ++round) {
-        const bool is_made = rates.acceleration > 0 && rates.jerk > 0 &&
-                             (goal.end_s < ANYWHERE ? make_direct_stop_at(from, rates, goal.end_s, tail)
-                                                    : make_direct_stop(from, rates, tail));
-        if (!is_made || !(tail.duration() < goal.most_s)) {
-            return false;
-        }
-        if (keepsLimits(run, course, in, tail, Density::COARSE, rates) &&
-            keepsLimits(run, course, in, tail, Density::EVERY_SPAN, rates)) {
-            return true;
-        }
-    }
-    return false;
-}
-
-/// The first cell from whose start a direct stop passes; cells + 1: none. Looks further and further ahead,
-/// then between that and the last that does not pass.
-std::size_t Profile::first_tail(const Run &run, const Course &course, DirectStop &tail) const {
-    const std::size_t n = course.cells;
-    std::size_t fails = 0, passes = n + 1;
-    places_ = 0;
-    const auto isNear = [&] { return passes <= n && passes <= fails + 1 + passes / 8; };
-    for (std::size_t k = 0, step = 1; passes > 0 && !isNear() && k <= n;) {
-        DirectStop found;
-        if (find_tail(run, course, k, {}, found)) {
-            tail = found;
-            passes = k;
-        } else {
-            fails = k;
-        }
-        const bool is_late = places_ > QUICK_PLACES;
-        if (passes <= n && is_late) {
-            break;
-        }
-        if (passes <= n) {
-            k = (fails + passes) / 2;
-        } else if (is_late && k < n) {
-            k = n;  // the creep
-        } else {
-            k = k == n ? n + 1 : std::min(k + step, n);
-            step *= 2;
-        }
-    }
-    return passes;
-}
 
 Stop Profile::stop(const Run &run, std::size_t fixed, StopEffort effort) {
     take_limits(run);
@@ -171,56 +34,49 @@ Stop Profile::stop(const Run &run, std::size_t fixed, StopEffort effort) {
     }
     const Course course = plan_.course_from(fixed, &plan_.c[fixed]);
     DirectStop tail;
-    const std::size_t first = plan_.ends_early ? course.cells + 1 : first_tail(run, course, tail);
+    const StopSearch search(run, run_, plan_);
+    const std::size_t first = plan_.ends_early ? course.cells + 1 : search.first(course, tail);
     if (first <= course.cells) {
         out = {fixed + first, {tail.cells.begin(), tail.cells.end()}, tail.end_s};
     }
-    if (effort == StopEffort::SOONEST) {
+    const bool is_late = effort == StopEffort::PROMPT &&
+                         time_of(out, fixed) > PROMPT_SHARE * search.least_s(course) + PROMPT_S;
+    if (effort == StopEffort::SOONEST || is_late) {
         stop_sooner(run, fixed, out);
     }
     return out;
 }
 
-/// Cells behind the fixed ones in which a stop is looked for first: some more than a direct stop takes on a
-/// straight line.
-std::size_t Profile::cells_of_stop(const Run &run, const Course &course) const {
-    const Motion from = plan_.motion_at(course, 0, 0);
-    const CurvePoint point = curve::point_at((*run.spans)[span_at(*run.spans, from.s)], from.s);
-    const Rates rates = rates_at(run_, point, {from.s, 0, 0});
-    const double reached = from.v + 0.5 * from.a * std::abs(from.a) / rates.jerk;
-    const double ramp =
-        std::max(rates.acceleration / rates.jerk, std::sqrt(std::max(reached, 0.0) / rates.jerk));
-    const double length = from.v * (from.v / rates.acceleration + ramp);
-    std::size_t n = 1;
-    while (n < course.cells && plan_.map.at(course.knots[n]).s < from.s + length) {
-        ++n;
+/// From the start of cell `fixed` to the end of the stop.
+double Profile::time_of(const Stop &stop, std::size_t fixed) const {
+    double time_s = 0;
+    for (std::size_t k = fixed; k < stop.kept; ++k) {
+        time_s += cell(k).duration;
     }
-    return n;
+    for (const TimeCell &cell : stop.cells) {
+        time_s += cell.duration;
+    }
+    return time_s;
 }
 
 /// From the motion with the least speed, where that is sooner.
 void Profile::stop_sooner(const Run &run, std::size_t fixed, Stop &out) {
     const Course plan = plan_.course_from(fixed, &plan_.c[fixed]);
-    double least = 0;
-    for (std::size_t k = fixed; k < out.kept; ++k) {
-        least += cell(k).duration;
-    }
-    for (const TimeCell &cell : out.cells) {
-        least += cell.duration;
-    }
-    for (std::size_t n = cells_of_stop(run, plan);; n = std::min(2 * n, plan.cells)) {
+    const StopSearch search(run, run_, plan_);
+    double least = time_of(out, fixed);
+    for (std::size_t n = search.cells_of_stop(plan);; n = std::min(2 * n, plan.cells)) {
         if (!make_slowest(fixed, n, {})) {
             return;
         }
-        Course course = plan_.course_from(fixed, law_.coefficients().data());
-        course.cells = n;
+        const Course course = plan_.course_from(fixed, law_.coefficients().data()).first(n);
         DirectStop tail;
         std::size_t kept = n + 1;
         double before = 0;
         double next = 0;
         for (std::size_t k = 0; k <= n && before < least; ++k) {
             DirectStop found;
-            if ((before >= next || k == n) && find_tail(run, course, k, {least - before, ANYWHERE}, found)) {
+            if ((before >= next || k == n) &&
+                search.find(course, k, {least - before, StopSearch::ANYWHERE}, found)) {
                 least = before + found.duration();
                 kept = k;
                 tail = found;
@@ -276,7 +132,9 @@ int Profile::parts_of(const Run &run, const Course &course, std::size_t k, doubl
     const double limit = 1 / speed_share(run, curve::point_at((*run.spans)[span], m.s), run.feed_at(m.s));
     const double braked = from.v * std::sqrt(std::max(1 - (m.s - from.s) / (0.5 * length), 0.0));
     const double lowest = std::max({limit, braked, m.v / MOST_PARTS});
-    return static_cast<int>(std::ceil(std::max(m.v / lowest, 1.0)));
+    const double time_s = (course.knots[k + 1] - course.knots[k]) / std::sqrt(course.state(k, 0.5).b);
+    const double most = std::max(time_s / LEAST_PART_S, 1.0);
+    return static_cast<int>(std::min(std::ceil(m.v / lowest), most));
 }
 
 /// True if the motion in a cell keeps limits of acceleration and jerk at the places of its parts, too: they
@@ -336,7 +194,7 @@ std::size_t Profile::split(const Run &run, std::size_t fixed, std::size_t n) {
 /// The speed behind the fixed cells is reduced as soon as limits allow, then the plan ends in a creep. What
 /// is above lowered limits of the speed is allowed from now on. False if the plan leaves a limit.
 bool Profile::slow_down(const Run &run, std::size_t fixed) {
-    std::size_t n = cells_of_stop(run, plan_.course_from(fixed, &plan_.c[fixed]));
+    std::size_t n = StopSearch(run, run_, plan_).cells_of_stop(plan_.course_from(fixed, &plan_.c[fixed]));
     n = split(run, fixed, n);
     creep_.clear();
     creep(run_, plan_.map, plan_.knots, plan_.end_ramp, creep_);
@@ -394,11 +252,12 @@ bool Profile::endsNear(const Run &run) const noexcept {
 bool Profile::end_early(const Run &run, std::size_t fixed) {
     take_limits(run);
     const Course course = plan_.course_from(fixed, &plan_.c[fixed]);
+    const StopSearch search(run, run_, plan_);
     DirectStop tail;
-    double before = 0, next = 0, least = ANYWHERE;
+    double before = 0, next = 0, least = StopSearch::ANYWHERE;
     for (std::size_t k = 0; k < course.cells && before < least; ++k) {
         DirectStop found;
-        if (before >= next && find_tail(run, course, k, {least - before, run.end_s}, found)) {
+        if (before >= next && search.find(course, k, {least - before, run.end_s}, found)) {
             least = before + found.duration();
             tail = found;
             ending_at_ = fixed + k;
@@ -406,7 +265,7 @@ bool Profile::end_early(const Run &run, std::size_t fixed) {
         next = before >= next ? before + STOPS_APART_S : next;
         before += plan_.time_cells[fixed + k].duration;
     }
-    plan_.ends_early = least < ANYWHERE;
+    plan_.ends_early = least < StopSearch::ANYWHERE;
     if (plan_.ends_early) {
         ending_.assign(tail.cells.begin(), tail.cells.end());
         ending_cells_ = ending_.size();

@@ -6,6 +6,13 @@
 
 namespace mw::trajectory::profile {
 
+namespace {
+
+/// Part by which a plan that is at the machine's limit of the squared speed may leave it.
+constexpr double ROUNDING = 1e-5;
+
+}  // namespace
+
 void Rows::begin(std::size_t coordinates, bool has_norm) {
     has_norm_ = has_norm;
     norms_.clear();
@@ -13,6 +20,7 @@ void Rows::begin(std::size_t coordinates, bool has_norm) {
     cells_ = 0;
     lengths_.clear();
     velocity_.clear();
+    machine_v2_.clear();
     rows_.clear();
 }
 
@@ -23,12 +31,14 @@ void Rows::add_cell(double h) {
         rows_.resize(rows_.size() + PLACES * coordinates_, RowLanes{});
     }
     lengths_.push_back(h);
+    machine_v2_.resize(lengths_.size() * PLACES);
     ++cells_;
 }
 
-void Rows::set_velocity(std::size_t place, double v2) noexcept {
+void Rows::set_velocity(std::size_t place, double v2, double machine_v2) noexcept {
     const std::size_t cell = cells_ - 1;
     velocity_[cell / LANES * PLACES + place].v2[cell % LANES] = v2;
+    machine_v2_[cell * PLACES + place] = machine_v2;
 }
 
 void Rows::relax(std::size_t cell, std::size_t place, double factor) noexcept {
@@ -52,7 +62,8 @@ void Rows::relax(std::size_t cell, std::size_t place, double factor) noexcept {
 void Rows::allow(std::size_t cell, std::size_t place, double b) noexcept {
     Lanes &v2 = velocity_[cell / LANES * PLACES + place].v2;
     const double lane = v2[cell % LANES];
-    v2[cell % LANES] = b > 0 ? std::min(lane, 1 / b) : lane;
+    const double machine = (1 - ROUNDING) * machine_v2_[cell * PLACES + place];
+    v2[cell % LANES] = b > 0 ? std::min(lane, std::max(1 / b, machine)) : lane;
 }
 
 double Rows::velocity(std::size_t cell, std::size_t place) const noexcept {

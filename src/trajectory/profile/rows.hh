@@ -55,15 +55,15 @@ class Rows {
     void begin(std::size_t coordinates, bool has_norm);
     /// A cell of length h in the parameter.
     void add_cell(double h);
-    /// Of the newest cell: b v2 <= 1.
-    void set_velocity(std::size_t place, double v2) noexcept;
+    /// Of the newest cell: b v2 <= 1, and of the machine's limits alone, without feed and override.
+    void set_velocity(std::size_t place, double v2, double machine_v2) noexcept;
     /// Of the newest cell.
     void set(std::size_t place, std::size_t coordinate, const Row &row) noexcept;
 
     void set_norm(std::size_t place, const NormRow &row) noexcept;
     /// Raises the limits of acceleration and jerk at a place.
     void relax(std::size_t cell, std::size_t place, double factor) noexcept;
-    /// Raises the velocity limit at a place to what allows b.
+    /// Raises the velocity limit at a place to what allows b, up to the machine's and rounding.
     void allow(std::size_t cell, std::size_t place, double b) noexcept;
 
     std::size_t cells() const noexcept { return cells_; }
@@ -91,6 +91,7 @@ class Rows {
     std::size_t coordinates_ = 0, cells_ = 0;
     std::vector<double> lengths_;
     std::vector<VelocityLanes> velocity_;
+    std::vector<double> machine_v2_;  ///< PLACES for each cell
     std::vector<RowLanes> rows_;
     bool has_norm_ = false;
     std::vector<NormLanes> norms_;

@@ -9,16 +9,24 @@ namespace mw::trajectory::profile {
 LawState Course::state(std::size_t k, double x) const noexcept {
     const double h = knots[k + 1] - knots[k];
     const double h_before = k > 0 ? knots[k] - knots[k - 1] : before;
-    const double h_behind = k + 1 < cells ? knots[k + 2] - knots[k + 1] : h;
+    const double h_behind = k + 1 < cells ? knots[k + 2] - knots[k + 1] : behind;
     const double slope = (c[k + 1] - c[k]) / (h_before + h);
     const double next = (c[k + 2] - c[k + 1]) / (h + h_behind);
     return {c[k + 1] - h * slope + h * ((2 * x - x * x) * slope + x * x * next), (1 - x) * slope + x * next,
             (next - slope) / h};
 }
 
+Course Course::first(std::size_t count) const noexcept {
+    return {knots, c, count, before, count < cells ? knots[count + 1] - knots[count] : behind};
+}
+
 Course SpeedPlan::course_from(std::size_t fixed, const double *from) const noexcept {
     const double *k = &knots[fixed];
-    return {k, from, laid() - fixed, fixed > 0 ? k[0] - k[-1] : before > 0 ? before : k[1] - k[0]};
+    return {k, from, laid() - fixed,
+            fixed > 0    ? k[0] - k[-1]
+            : before > 0 ? before
+                         : k[1] - k[0],
+            knots[laid()] - knots[laid() - 1]};
 }
 
 Motion SpeedPlan::motion_at(const Course &course, std::size_t cell, double x) const noexcept {

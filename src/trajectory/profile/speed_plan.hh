@@ -17,9 +17,11 @@ inline constexpr double ABOVE_LOWEST = 1e-3;
 struct Course {
     const double *knots = nullptr, *c = nullptr;
     std::size_t cells = 0;
-    double before = 0;  ///< length of the cell before the first one
+    double before = 0, behind = 0;  ///< lengths of the cells beside them
     /// At the part x in [0, 1] of a cell.
     LawState state(std::size_t cell, double x) const noexcept;
+    /// The same motion up to the end of its first `count` cells.
+    Course first(std::size_t count) const noexcept;
 };
 
 struct SpeedPlan {

@@ -214,6 +214,19 @@ TEST(Profile, SpeedsUpWithinAPlanWhenTheFeedIsRaised) {
     }
 }
 
+TEST(Profile, AFeedThatChangesAgainAndAgainDoesNotSplitCellsForEver) {
+    LinePlan line(2000, {{2000, 1e300}});
+    std::vector<TimeCell> driven;
+    std::size_t most = 0;
+    for (int n = 0; n < 60; ++n) {
+        line.feeds[0].velocity = n % 2 == 0 ? 90 : 12;
+        EXPECT_TRUE(n % 2 == 0 ? line.profile.plan(line.run, 1) : line.profile.replan(line.run, 1));
+        most = std::max(most, line.profile.cells());
+        take(line.profile, 0.01, driven);
+    }
+    EXPECT_LT(most, 1000U);
+}
+
 /// The slack of a jerk row grows as the speed falls. It must not pull the speed to 0.
 TEST(TimeLaw, MakesTheSpeedLeastDownToAPartOfTheStart) {
     LinePlan line(200, {{200, 1e300}});
@@ -243,6 +256,20 @@ TEST(TimeLaw, MakesTheSpeedLeastDownToAPartOfTheStart) {
 }
 
 /// A creep over cells of any length keeps every row by far: it is a function of the path.
+TEST(SpeedPlan, TheFirstCellsOfACourseAreTheSameMotion) {
+    const std::vector<double> knots{0, 1, 3, 7}, c{1, 2, 4, 3, 5};
+    const Course whole{knots.data(), c.data(), 3, 0.5, 4};
+    for (std::size_t count = 1; count <= 3; ++count) {
+        const Course part = whole.first(count);
+        for (const double x : {0.0, 0.3, 1.0}) {
+            const LawState here = part.state(count - 1, x), there = whole.state(count - 1, x);
+            EXPECT_EQ(here.b, there.b);
+            EXPECT_EQ(here.a, there.a);
+            EXPECT_EQ(here.w, there.w);
+        }
+    }
+}
+
 TEST(Profile, CreepsAlikeOverCellsOfAnyLength) {
     LinePlan line(20, {{7, 1e300}, {7.2, 0.5}, {20, 50}});
     RestMap map;
