@@ -119,6 +119,7 @@ Sequence CurvePath::add(const Conditions &conditions, const Primitive &primitive
 
 void CurvePath::finish_part(const Conditions &conditions) {
     if (rule_ == Rule::FITTED) {
+        fitted_.set_room(conditions.workspace.low, conditions.workspace.high);
         fitted_.extend(true);
     }
     take_spans(conditions);

@@ -280,8 +280,7 @@ bool CurvePlanner::commit(const Snapshot &now, std::size_t fixed) {
     plan.move = path_.move_at(from);
     plan.last_span = path_.last_span();
     plan.last_move = moves_.last_move();
-    add_stops(plan, fixed, last, MOST_CELLS - (last - fixed) - end.cells.size() - DIRECT_CELLS);
-    add_stop(plan, end);
+    add_stops(plan, fixed, end, MOST_CELLS - (last - fixed) - end.cells.size() - DIRECT_CELLS);
     if (!store_.curve_plans.push(plan)) {
         return false;
     }
@@ -291,11 +290,12 @@ bool CurvePlanner::commit(const Snapshot &now, std::size_t fixed) {
     return true;
 }
 
-/// From the start of a cell on, of at most so many cells; more make it a direct stop.
+/// From the start of a cell on, of at most so many cells, or a direct stop.
 profile::Stop CurvePlanner::stop_from(std::size_t cell, std::size_t most_cells) {
-    profile::Stop stop = profile_.stop(run_, cell, profile::StopEffort::PROMPT);
+    using profile::StopEffort;
+    profile::Stop stop = profile_.stop(run_, cell, most_cells > 0 ? StopEffort::PROMPT : StopEffort::QUICK);
     if (stop.cells.size() > std::max(most_cells, profile::DirectStop::PHASES)) {
-        stop = profile_.stop(run_, cell, profile::StopEffort::QUICK);
+        stop = profile_.stop(run_, cell, StopEffort::QUICK);
     }
     return stop;
 }
@@ -308,29 +308,44 @@ void CurvePlanner::add_stop(CurvePlan &plan, const profile::Stop &stop) noexcept
     plan.stops[plan.stop_count++] = {numbers_[stop.kept - 1], begin, next_cell_};
 }
 
-/// Stops behind cells of the plan, STOP_APART_S or a small part of the time of a stop apart. In all they have
-/// `room` cells, and those of direct stops.
-void CurvePlanner::add_stops(CurvePlan &plan, std::size_t fixed, std::size_t last, std::size_t room) {
-    double since = 0, apart = STOP_APART_S;
-    for (std::size_t k = fixed; k + 1 < last && plan.stop_count + 1 < CurvePlan::MOST_STOPS; ++k) {
+/// Stops behind cells of the plan before `end`, STOP_APART_S or a small part of the time of a stop apart,
+/// from the last one to the first. In all they have `room` cells, and those of direct stops.
+void CurvePlanner::add_stops(CurvePlan &plan, std::size_t fixed, const profile::Stop &end, std::size_t room) {
+    stops_.assign(1, end);
+    double ahead = 0;
+    for (std::size_t k = fixed; k < end.kept; ++k) {
+        ahead += profile_.cell(k).duration;
+    }
+    double since = 0, apart = apart_of(end);
+    for (std::size_t k = end.kept; k-- > fixed + 1 && stops_.size() < CurvePlan::MOST_STOPS;) {
         since += profile_.cell(k).duration;
+        ahead -= profile_.cell(k).duration;
         if (since < apart) {
             continue;
         }
         since = 0;
-        const profile::Stop stop = stop_from(k + 1, room);
-        if (stop.cells.empty() || stop.kept >= last) {
-            return;
+        // Behind the time of the next plan it is for a planner that is late.
+        const profile::Stop stop = stop_from(k, ahead > PLANNING_S + RENEWAL_S ? 0 : room);
+        if (stop.kept >= stops_.back().kept) {
+            continue;
         }
-        double duration = 0;
-        for (const profile::TimeCell &cell : stop.cells) {
-            duration += cell.duration;
-        }
-        apart = std::max(STOP_APART_S, STOP_APART * duration);
-        add_stop(plan, stop);
+        apart = apart_of(stop);
         room -= std::min(room, stop.cells.size());
-        k = std::max(k, stop.kept - 1);
+        stops_.push_back(stop);
     }
+    while (!stops_.empty()) {
+        add_stop(plan, stops_.back());
+        stops_.pop_back();
+    }
+}
+
+/// Time from the start of the stop before to that of this one.
+double CurvePlanner::apart_of(const profile::Stop &stop) noexcept {
+    double duration = 0;
+    for (const profile::TimeCell &cell : stop.cells) {
+        duration += cell.duration;
+    }
+    return std::max(STOP_APART_S, STOP_APART * duration);
 }
 
 }  // namespace mw::trajectory::plan

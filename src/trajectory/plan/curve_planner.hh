@@ -65,7 +65,8 @@ class CurvePlanner {
     bool commit(const Snapshot &now, std::size_t fixed);
     profile::Stop stop_from(std::size_t cell, std::size_t most_cells);
     void add_stop(CurvePlan &plan, const profile::Stop &stop) noexcept;
-    void add_stops(CurvePlan &plan, std::size_t fixed, std::size_t last, std::size_t room);
+    void add_stops(CurvePlan &plan, std::size_t fixed, const profile::Stop &end, std::size_t room);
+    static double apart_of(const profile::Stop &stop) noexcept;
     Sequence write(const profile::TimeCell &cell) noexcept;
 
     PathStore &store_;
@@ -76,7 +77,8 @@ class CurvePlanner {
     Scales scales_;  ///< that the feeds of the path were made for
     profile::Profile profile_;
     profile::Run run_;
-    std::vector<Sequence> numbers_;  ///< of the cells of the profile that are committed
+    std::vector<profile::Stop> stops_;  ///< of the plan that is being committed
+    std::vector<Sequence> numbers_;     ///< of the cells of the profile that are committed
     Sequence next_cell_ = 1;
     std::uint64_t plan_ = 0, first_plan_ = 0;
     std::uint64_t planned_cycle_ = 0, tried_cycle_ = 0;

@@ -31,6 +31,7 @@ void Profile::begin(double s) noexcept {
 /// Nothing is planned, at rest at the start.
 void Profile::restart() noexcept {
     plan_ = SpeedPlan();
+    forget_slowest();
     joint_curve_.begin(nullptr, {});
 }
 
@@ -193,6 +194,7 @@ bool Profile::plan(const Run &run, std::size_t fixed) {
         return true;
     }
     kept_ = plan_;
+    forget_slowest();
     return extend(run, fixed) || restore();
 }
 
@@ -253,6 +255,7 @@ void Profile::drop(std::size_t count) {
     if (count == 0) {
         return;
     }
+    forget_slowest();
     const std::size_t laid = plan_.ends_early ? std::min(count, ending_at_) : count;
     if (plan_.ends_early) {
         ending_.erase(ending_.begin(), ending_.begin() + static_cast<long>(count - laid));

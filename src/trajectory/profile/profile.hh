@@ -46,7 +46,9 @@ class Profile {
     /// its stops, and more of the curve or another place to start may help.
     bool plan(const Run &run, std::size_t fixed);
     /// The soonest stop that keeps every limit of `run`, not before the start of cell `fixed`. The plan stays
-    /// as it is.
+    /// as it is. PROMPT stops of one plan are asked for from the last one to the first: the slowest motion
+    /// from a place, behind the plan up to there, is where that from an earlier place begins to be looked
+    /// for.
     Stop stop(const Run &run, std::size_t fixed, StopEffort effort);
     /// As plan(), after limits of speed were lowered, or the end of the run came nearer (not nearer than the
     /// soonest stop), or was taken away. The speed may be above a lowered limit as long as the soonest
@@ -89,14 +91,17 @@ class Profile {
     bool restore() noexcept;
     bool extend(const Run &run, std::size_t fixed);
     bool change(const Run &run, std::size_t fixed);
-    bool make_slowest(std::size_t fixed, std::size_t n, const std::vector<double> &floors);
+    bool make_slowest(std::size_t fixed, std::size_t n, const std::vector<double> &floors,
+                      SolveSettings settings);
+    bool start_from_slowest(std::size_t fixed, std::size_t n);
+    void forget_slowest() noexcept { slowest_.end = 0; }
     void restart() noexcept;
     std::size_t split(const Run &run, std::size_t fixed, std::size_t n);
     int parts_of(const Run &run, const Course &course, std::size_t cell, double length) const;
     bool keepsRows(const Course &course, std::size_t cell, int parts);
     bool slow_down(const Run &run, std::size_t fixed);
     double time_of(const Stop &stop, std::size_t fixed) const;
-    void stop_sooner(const Run &run, std::size_t fixed, Stop &out);
+    void stop_sooner(const Run &run, std::size_t fixed, StopEffort effort, Stop &out);
     void make_time_cells(std::size_t fixed);
     bool endsNear(const Run &run) const noexcept;
     bool end_early(const Run &run, std::size_t fixed);
@@ -114,6 +119,12 @@ class Profile {
     struct {
         std::vector<double> knots, c;
     } split_;
+    /// The slowest motion of the present plan that was found last: its coefficients from a cell on, up to
+    /// the end of another. No cells: none.
+    struct {
+        std::vector<double> c;
+        std::size_t from = 0, end = 0;
+    } slowest_;
     double start_s_ = 0;
     double reach_ = 0;  ///< before the end of what is known: a seam there may lower limits so far
     // A direct stop before the end of the cells, from the start of one of them on.

@@ -18,8 +18,12 @@ constexpr double PROMPT_SHARE = 1.1, PROMPT_S = 2e-3;
 constexpr double BELOW_PLAN = 0.9, NEAR_CREEP = 1.02;
 /// Parts of a cell at most, and their least time as planned [s]: a cell may be split again and again.
 constexpr double MOST_PARTS = 8, LEAST_PART_S = 2.5e-4;
-/// Part of the coefficients of the start below which speed is not reduced.
-constexpr double LAST_MU = 4e-3;
+/// The last barrier: part of the coefficients of the start below which speed is not reduced. A plan has many
+/// PROMPT stops; the first barrier is that from a motion that is slow already.
+constexpr SolveSettings SLOWEST_SOLVE{.objective = Objective::SPEED, .last_mu = 4e-3};
+constexpr SolveSettings PROMPT_SOLVE{
+    .objective = Objective::SPEED, .last_mu = 2e-2, .factor = 0.1, .steps_per_mu = 8};
+constexpr double WARM_MU = 0.1;
 
 }  // namespace
 
@@ -41,8 +45,11 @@ Stop Profile::stop(const Run &run, std::size_t fixed, StopEffort effort) {
     }
     const bool is_late = effort == StopEffort::PROMPT &&
                          time_of(out, fixed) > PROMPT_SHARE * search.least_s(course) + PROMPT_S;
+    if (effort == StopEffort::SOONEST) {
+        forget_slowest();
+    }
     if (effort == StopEffort::SOONEST || is_late) {
-        stop_sooner(run, fixed, out);
+        stop_sooner(run, fixed, effort, out);
     }
     return out;
 }
@@ -60,12 +67,14 @@ double Profile::time_of(const Stop &stop, std::size_t fixed) const {
 }
 
 /// From the motion with the least speed, where that is sooner.
-void Profile::stop_sooner(const Run &run, std::size_t fixed, Stop &out) {
+void Profile::stop_sooner(const Run &run, std::size_t fixed, StopEffort effort, Stop &out) {
     const Course plan = plan_.course_from(fixed, &plan_.c[fixed]);
     const StopSearch search(run, run_, plan_);
     double least = time_of(out, fixed);
     for (std::size_t n = search.cells_of_stop(plan);; n = std::min(2 * n, plan.cells)) {
-        if (!make_slowest(fixed, n, {})) {
+        n = fixed < slowest_.end ? std::min(n, slowest_.end - fixed) : n;
+        const SolveSettings settings = effort == StopEffort::PROMPT ? PROMPT_SOLVE : SLOWEST_SOLVE;
+        if (!make_slowest(fixed, n, {}, settings)) {
             return;
         }
         const Course course = plan_.course_from(fixed, law_.coefficients().data()).first(n);
@@ -92,15 +101,31 @@ void Profile::stop_sooner(const Run &run, std::size_t fixed, Stop &out) {
             }
             out.cells.insert(out.cells.end(), tail.cells.begin(), tail.cells.end());
         }
-        if (kept <= n || n == plan.cells || before >= least) {
+        const bool is_done = kept <= n || n == plan.cells || before >= least;
+        if (is_done) {
+            slowest_ = {law_.coefficients(), fixed, fixed + n};
             return;
         }
+        forget_slowest();
     }
+}
+
+/// Begins with the slowest motion behind a place and the plan before it, if it is known: it keeps every row.
+bool Profile::start_from_slowest(std::size_t fixed, std::size_t n) {
+    if (fixed > slowest_.from || fixed + n > slowest_.end) {
+        return false;
+    }
+    const std::size_t same = slowest_.from - fixed;
+    for (std::size_t i = same + 2; i < n + 2; ++i) {
+        law_.coefficients()[i] = slowest_.c[i - same];
+    }
+    return true;
 }
 
 /// The speed in `n` cells behind the fixed ones as small as the limits of acceleration and jerk allow, down
 /// to `floors` (none: 0). False if the plan leaves a limit.
-bool Profile::make_slowest(std::size_t fixed, std::size_t n, const std::vector<double> &floors) {
+bool Profile::make_slowest(std::size_t fixed, std::size_t n, const std::vector<double> &floors,
+                           SolveSettings settings) {
     prepare(fixed, n);
     const Course course = plan_.course_from(fixed, &plan_.c[fixed]);
     for (std::size_t k = 0; k < n; ++k) {
@@ -108,13 +133,12 @@ bool Profile::make_slowest(std::size_t fixed, std::size_t n, const std::vector<d
             rows_.allow(k, p, course.state(k, PLACE_PART[p]).b * (1 + ABOVE_LOWEST));
         }
     }
+    settings.reference = &plan_.c[fixed];
+    settings.first_mu = floors.empty() && start_from_slowest(fixed, n) ? WARM_MU : settings.first_mu;
     if (!isStart(make_room())) {
         return false;
     }
     const std::size_t start = fixed > 0 || plan_.before > 0 ? 2 : 0;
-    SolveSettings settings;
-    settings.objective = Objective::SPEED;
-    settings.last_mu = LAST_MU;
     for (std::size_t i = 0; i < std::min(floors.size(), n + 2); ++i) {
         law_.floors()[i] = floors[i];
         if (i >= start && floors[i] > 0) {
@@ -205,7 +229,7 @@ bool Profile::slow_down(const Run &run, std::size_t fixed) {
     }
     std::size_t kept = 0;
     for (;; n = std::min(2 * n, plan_.laid() - fixed)) {
-        if (!make_slowest(fixed, n, floors_)) {
+        if (!make_slowest(fixed, n, floors_, SLOWEST_SOLVE)) {
             return false;
         }
         const std::vector<double> &c = law_.coefficients();
@@ -279,6 +303,7 @@ bool Profile::replan(const Run &run, std::size_t fixed) {
         return true;
     }
     kept_ = plan_;
+    forget_slowest();
     return change(run, fixed) || restore();
 }
 

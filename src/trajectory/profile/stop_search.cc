@@ -18,6 +18,8 @@ constexpr int TAIL_ROUNDS = 4;
 constexpr double MOST_STEP_S = 2e-3;
 /// Places that are checked for a quick stop, about: 0.2 ms.
 constexpr std::size_t QUICK_PLACES = 400;
+/// Lengths of a direct stop on a straight line in which a stop is looked for.
+constexpr double LENGTHS = 1.3;
 
 bool isStraight(const Span &span) noexcept {
     for (std::size_t n = 2; n < span.c.size(); ++n) {
@@ -37,6 +39,18 @@ bool isPlain(const Run &run, const Span &span, std::size_t feed, const Motion &a
     bool has_cap = false;
     run.each_cap(at.s, span.end_s(), [&](const SpeedCap &) { has_cap = true; });
     return !has_cap;
+}
+
+}  // namespace
+
+namespace {
+
+/// Time to rest with these limits.
+double stop_time(double v, double a, double acceleration, double jerk) noexcept {
+    const double fall =
+        std::max(v + 0.5 * a * std::abs(a) / jerk, 0.0);  // as if it began without acceleration
+    const double held = acceleration / jerk;
+    return a / jerk + (fall > acceleration * held ? fall / acceleration + held : 2 * std::sqrt(fall / jerk));
 }
 
 }  // namespace
@@ -156,30 +170,21 @@ double StopSearch::least_s(const Course &course) const {
         return curve::point_at((*run_.spans)[span_at(*run_.spans, s)], s);
     };
     const Motion from = plan_.motion_at(course, 0, 0);
-    const CurvePoint start = point_at(from.s);
-    double least = 0;
-    for (std::size_t i = 0; i < geometry::AXIS_COUNT; ++i) {
-        const double jerk = within_.limits.axes[i].jerk;
-        const double v = start.first.c[i] * from.v;
-        const double a = start.first.c[i] * from.a + start.second.c[i] * from.v * from.v;
-        const double rising = v < 0 ? -a : a;
-        least = std::max(least,
-                         rising / jerk + 2 * std::sqrt((std::abs(v) + 0.5 * rising * rising / jerk) / jerk));
+    if (!(from.v > 0)) {
+        return 0;
     }
+    const double jerk = rates_at(within_, point_at(from.s), {from.s, 0, 0}).jerk;
     double v2 = from.v * from.v, time_s = 0, s = from.s;
-    for (std::size_t k = 0; k < course.cells; ++k) {
+    for (std::size_t k = 0; k < course.cells && v2 > 0; ++k) {
         const double next = plan_.map.at(course.knots[k + 1]).s;
         const double v = std::sqrt(v2);
         const double brake = std::max(rates_at(within_, point_at(s), {s, v, 0}).acceleration, 0.0);
-        const double left2 = v2 - 2 * brake * (next - s);
-        if (left2 <= 0) {
-            return std::max(least, time_s + v / brake);
-        }
-        time_s += 2 * (next - s) / (v + std::sqrt(left2));
+        const double left2 = std::max(v2 - 2 * brake * (next - s), 0.0);
+        time_s += left2 > 0 ? 2 * (next - s) / (v + std::sqrt(left2)) : v / brake;
         v2 = left2;
         s = next;
     }
-    return std::max(least, time_s);
+    return stop_time(from.v, from.a, (from.v - std::sqrt(v2)) / time_s, jerk);
 }
 
 std::size_t StopSearch::cells_of_stop(const Course &course) const {
@@ -189,7 +194,7 @@ std::size_t StopSearch::cells_of_stop(const Course &course) const {
     const double reached = from.v + 0.5 * from.a * std::abs(from.a) / rates.jerk;
     const double ramp =
         std::max(rates.acceleration / rates.jerk, std::sqrt(std::max(reached, 0.0) / rates.jerk));
-    const double length = from.v * (from.v / rates.acceleration + ramp);
+    const double length = LENGTHS * 0.5 * from.v * (from.v / rates.acceleration + ramp);
     std::size_t n = 1;
     while (n < course.cells && plan_.map.at(course.knots[n]).s < from.s + length) {
         ++n;

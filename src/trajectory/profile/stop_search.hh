@@ -23,10 +23,10 @@ class StopSearch {
     /// The first cell from whose start a direct stop passes; cells + 1: none. Looks further and further
     /// ahead, then between that and the last that does not pass.
     std::size_t first(const Course &course, DirectStop &tail) const;
-    /// No stop from the start of the course takes less [s]: braking with all that the limits of acceleration
-    /// leave at each place (Bobrow, Dubowsky, Gibson 1985), and the jerk of each coordinate alone.
+    /// About the least time of a stop from the start of the course [s]: braking with all that the limits of
+    /// acceleration leave at each place (Bobrow, Dubowsky, Gibson 1985), with ramps for the limit of jerk.
     double least_s(const Course &course) const;
-    /// Cells in which a stop is looked for first: some more than a direct stop takes on a straight line.
+    /// Cells in which a stop is looked for: a third more than a direct stop takes on a straight line.
     std::size_t cells_of_stop(const Course &course) const;
 
   private:

@@ -381,7 +381,8 @@ int TimeLaw::solve(std::size_t fixed_start, std::size_t fixed_end, const SolveSe
     time_weight_ = Lanes{} + (is_time ? 1 / settings.cell_s : 0.0);
     weights_.assign(c_.size(), 0.0);
     for (std::size_t i = 0; i < c_.size() && !is_time; ++i) {
-        weights_[i] = 1 / (floors_[i] > 0 ? floors_[i] : c_[i]);
+        const double reference = settings.reference != nullptr ? settings.reference[i] : c_[i];
+        weights_[i] = 1 / (floors_[i] > 0 ? floors_[i] : reference);
     }
     int steps = 0;
     for (double mu = settings.first_mu;; mu = std::max(mu * settings.factor, settings.last_mu)) {

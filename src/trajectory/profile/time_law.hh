@@ -18,7 +18,7 @@
 namespace mw::trajectory::profile {
 
 /// What is made least: the time, or the speed everywhere, by the sum of the coefficients over their
-/// floors, or over those of the start.
+/// floors, or over those of a reference.
 enum class Objective : std::uint8_t { TIME, SPEED };
 
 struct SolveSettings {
@@ -26,6 +26,7 @@ struct SolveSettings {
     double cell_s = 1e-3;  ///< time that counts as 1 in the objective
     double first_mu = 1, last_mu = 1e-3, factor = 0.2;
     int steps_per_mu = 20;
+    const double *reference = nullptr;  ///< of the speed; null: the coefficients of the start
 };
 
 class TimeLaw {
