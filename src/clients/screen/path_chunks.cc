@@ -73,6 +73,8 @@ void PathChunks::add_straight(const gcode::PreviewEvent &event, const geometry::
                               const geometry::Pose &to, std::uint8_t kind) {
     constexpr double CHORD_DEG = 3, MOST_CHORDS = 20000;
     note_range(event, kind);
+    note_offset(event);
+    note_rotary(event);
     if (count_ == 0) {
         add_point(from, event, kind);
     }
@@ -100,6 +102,8 @@ void PathChunks::add_arc(const gcode::PreviewEvent &event) {
     constexpr double MOST_CHORDS = 100000;  // of a helix
     const auto kind = static_cast<std::uint8_t>(Move::ARC);
     note_range(event, kind);
+    note_offset(event);
+    note_rotary(event);
     if (count_ == 0) {
         add_point(event.start, event, kind);
     }
@@ -159,6 +163,27 @@ void PathChunks::note_range(const gcode::PreviewEvent &event, std::uint8_t kind)
     }
 }
 
+/// The same count of points as in ranges: a client that knows the offset of a move has its tool tip.
+void PathChunks::note_offset(const gcode::PreviewEvent &event) {
+    std::array<float, 3> active{};
+    for (int axis = geometry::AXIS_X; axis <= geometry::AXIS_Z; ++axis) {
+        active[static_cast<std::size_t>(axis)] = static_cast<float>(event.tool_offset[axis]);
+    }
+    if (active != offset_) {
+        offset_ = active;
+        offsets_.push_back({count_, active});
+    }
+}
+
+/// The first line that moves A, B or C.
+void PathChunks::note_rotary(const gcode::PreviewEvent &event) {
+    for (int axis = geometry::AXIS_A; axis <= geometry::AXIS_C && !rotary_line_.has_value(); ++axis) {
+        if (event.start[axis] != event.end[axis]) {
+            rotary_line_ = static_cast<std::uint32_t>(std::max(event.line, 0));
+        }
+    }
+}
+
 void PathChunks::add_point(const geometry::Pose &pose, const gcode::PreviewEvent &event, std::uint8_t kind) {
     Point point;
     const auto put = [&](std::array<float, 3> &to, const Place &place) {
@@ -199,9 +224,31 @@ std::string PathChunks::moves(bool of_wire) const {
     return body;
 }
 
+std::string PathChunks::offsets() const {
+    std::string body;
+    append(body, static_cast<std::uint32_t>(offsets_.size()));
+    for (const ToolOffset &one : offsets_) {
+        append(body, one.first);
+        for (const float coordinate : one.xyz) {
+            append(body, coordinate);
+        }
+    }
+    return body;
+}
+
 bool PathChunks::send() {
     if (points_.size() < 2 || !is_read_) {
         return is_read_;
+    }
+    if (!offsets_.empty()) {
+        is_read_ = push_(chunk(Chunk::OFFSETS, offsets(), '\0'));
+        offsets_.clear();
+    }
+    if (rotary_line_.has_value() && !has_sent_rotary_) {
+        std::string body;
+        append(body, *rotary_line_);
+        has_sent_rotary_ = true;
+        is_read_ = is_read_ && push_(chunk(Chunk::ROTARY, std::move(body), '\0'));
     }
     if (unsent_ > 0) {
         std::string body;
@@ -213,7 +260,7 @@ bool PathChunks::send() {
         }
         ranges_.erase(ranges_.begin(), ranges_.end() - 1);  // the active one
         unsent_ = 0;
-        is_read_ = push_(chunk(Chunk::RANGES, std::move(body), '\0'));
+        is_read_ = is_read_ && push_(chunk(Chunk::RANGES, std::move(body), '\0'));
     }
     is_read_ = is_read_ && push_(chunk(Chunk::MOVES, moves(false), '\0'));
     if (look_.foam.has_value()) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -48,12 +49,20 @@ class PathChunks {
         float feed = 0;
         std::uint32_t tool = 0;
     };
+    /// Tool offset from a point on. [machine units]
+    struct ToolOffset {
+        std::uint32_t first = 0;
+        std::array<float, 3> xyz{};
+    };
     void add(const gcode::PreviewEvent &event);
     void add_straight(const gcode::PreviewEvent &event, const geometry::Pose &from, const geometry::Pose &to,
                       std::uint8_t kind);
     void add_arc(const gcode::PreviewEvent &event);
     void add_point(const geometry::Pose &pose, const gcode::PreviewEvent &event, std::uint8_t kind);
     void note_range(const gcode::PreviewEvent &event, std::uint8_t kind);
+    void note_offset(const gcode::PreviewEvent &event);
+    void note_rotary(const gcode::PreviewEvent &event);
+    std::string offsets() const;
     bool send();
     std::string moves(bool of_wire) const;
 
@@ -61,9 +70,13 @@ class PathChunks {
     double unit_mm_;
     PathLook look_;
     std::vector<Point> points_;
-    std::vector<Range> ranges_;  ///< the active one, and those that have not been sent
-    std::size_t unsent_ = 0;     ///< of them, at the end
-    Range range_;                ///< that holds now
+    std::vector<Range> ranges_;        ///< the active one, and those that have not been sent
+    std::size_t unsent_ = 0;           ///< of them, at the end
+    Range range_;                      ///< that holds now
+    std::vector<ToolOffset> offsets_;  ///< not sent
+    std::array<float, 3> offset_{};    ///< active
+    std::optional<std::uint32_t> rotary_line_;
+    bool has_sent_rotary_ = false;
     std::uint32_t count_ = 0;
     bool is_read_ = true;
     bool bounded_ = false;

@@ -327,6 +327,7 @@ class Preview::Impl final : public MachineCanon, public World {
         mark_progress(event.settings, std::max(geometry::norm(end - position_), arc_length));
         event.start = convert(position_);
         event.end = convert(end);
+        event.tool_offset = tool_offset_;
         event.spindle_awaited = spindles_.take_wait(event.settings);
         if (event.settings.feed_per_revolution > 0) {
             event.spindle_rpm = spindle_rpm(event.settings.synch_spindle, 0.5 * (position_[0] + end[0]));

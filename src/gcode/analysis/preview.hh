@@ -34,6 +34,7 @@ struct PreviewEvent {
     bool spindle_awaited = false;   ///< motion waits before this move until the spindle is at speed
     geometry::Pose start, end;      ///< equal when the event is not a move
     geometry::Pose centre, normal;  ///< of an arc, as in ArcMove
+    geometry::Pose tool_offset;     ///< active during a move; start and end contain it unless they are TIP
     double angle_rad = 0;
     geometry::MoveSettings settings;  ///< of a move [machine units]
     /// Speed of the spindle that a move follows, at its middle, as programmed (with G96). [rev/min]

@@ -19,7 +19,9 @@ enum class Chunk : std::uint32_t {
     RANGES = 5,
     WIRES = 6,
     TIMES = 7,
-    TIME_SUM = 8
+    TIME_SUM = 8,
+    OFFSETS = 9,
+    ROTARY = 10
 };
 
 template <class T>

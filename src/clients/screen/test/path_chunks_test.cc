@@ -29,9 +29,17 @@ struct Range {
     bool operator==(const Range &) const = default;
 };
 
+struct Offset {
+    std::uint32_t first;
+    std::array<float, 3> xyz;
+    bool operator==(const Offset &) const = default;
+};
+
 struct Path {
     std::vector<std::vector<Point>> moves, wires;
     std::vector<Range> ranges;
+    std::vector<Offset> offsets;
+    std::vector<std::uint32_t> rotary_lines;
     std::array<float, 6> bounds{};
     std::uint32_t lines = 0, points = 0;
     std::string error;
@@ -60,6 +68,13 @@ struct Path {
                     std::memcpy(&ranges.emplace_back(), bytes.data() + at, sizeof(Range));
                     at += sizeof(Range);
                 }
+            } else if (kind == 9) {
+                for (std::uint32_t left = word(); left > 0; --left) {
+                    std::memcpy(&offsets.emplace_back(), bytes.data() + at, sizeof(Offset));
+                    at += sizeof(Offset);
+                }
+            } else if (kind == 10) {
+                rotary_lines.push_back(word());
             } else if (kind == 6) {
                 const std::uint32_t count = word();
                 take_moves(bytes, at, count, wires);
@@ -245,6 +260,27 @@ TEST(PathChunks, FeedAndToolStandWhereTheyBegin) {
     events[4].spindle_rpm = 1200;
     const Path path = path_of(events);
     EXPECT_EQ(path.ranges, (std::vector<Range>{{0, 10, 0}, {4, 10, 7}}));
+}
+
+TEST(PathChunks, ToolOffsetsHoldFromTheirPointOn) {
+    const geometry::Pose a{{0, 0, 0}}, b{{1, 0, 0}}, c{{2, 0, 0}}, d{{3, 0, 0}};
+    std::vector<gcode::PreviewEvent> events{
+        move(gcode::PreviewKind::RAPID, a, b, 1), move(gcode::PreviewKind::FEED, b, c, 2),
+        move(gcode::PreviewKind::FEED, c, d, 3), move(gcode::PreviewKind::RAPID, d, a, 4)};
+    events[1].tool_offset = events[2].tool_offset = geometry::Pose{{0.5, 0, 40}};
+    const Path path = path_of(events);
+    EXPECT_EQ(path.offsets, (std::vector<Offset>{{2, {0.5F, 0, 40}}, {4, {0, 0, 0}}}));
+    EXPECT_TRUE(path_of(std::span(events).first(1)).offsets.empty());
+}
+
+TEST(PathChunks, TheFirstMoveOfARotaryAxisIsReportedOnce) {
+    geometry::Pose turned{{1, 0, 0}};
+    turned[geometry::AXIS_B] = 5;
+    const std::array events{move(gcode::PreviewKind::RAPID, {}, geometry::Pose{{1, 0, 0}}, 1),
+                            move(gcode::PreviewKind::FEED, geometry::Pose{{1, 0, 0}}, turned, 2),
+                            move(gcode::PreviewKind::FEED, turned, {}, 3)};
+    EXPECT_EQ(path_of(events).rotary_lines, std::vector<std::uint32_t>{2});
+    EXPECT_TRUE(path_of(std::span(events).first(1)).rotary_lines.empty());
 }
 
 TEST(PathChunks, EachChunkBringsItsRanges) {

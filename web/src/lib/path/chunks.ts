@@ -22,6 +22,8 @@ export type Chunk =
   | { kind: 'times'; moves: TimedMoves }
   | { kind: 'time_sum'; sum: TimeSum }
   | { kind: 'bounds'; low: [number, number, number]; high: [number, number, number] }
+  | { kind: 'offsets'; first: Uint32Array; xyz: Float32Array }
+  | { kind: 'rotary'; line: number }
   | { kind: 'end'; line: number; points: number }
   | { kind: 'error'; text: string };
 
@@ -62,6 +64,24 @@ function readRanges(words: DataView): Chunk {
     ranges.tool[i] = words.getUint32(at + 8, true);
   }
   return ranges;
+}
+
+const OFFSET_BYTES = 16;
+
+function readOffsets(words: DataView): Chunk {
+  const count = words.getUint32(0, true);
+  if (4 + count * OFFSET_BYTES > words.byteLength) {
+    throw new Error('a chunk of tool offsets is shorter than its count');
+  }
+  const offsets = { kind: 'offsets' as const, first: new Uint32Array(count), xyz: new Float32Array(count * 3) };
+  for (let i = 0; i < count; ++i) {
+    const at = 4 + i * OFFSET_BYTES;
+    offsets.first[i] = words.getUint32(at, true);
+    for (let axis = 0; axis < 3; ++axis) {
+      offsets.xyz[i * 3 + axis] = words.getFloat32(at + 4 + axis * 4, true);
+    }
+  }
+  return offsets;
 }
 
 const MOVE_BYTES = 16;
@@ -105,6 +125,10 @@ function readChunk(kind: number, words: DataView): Chunk {
       return { kind: 'times', moves: readTimes(words) };
     case 8:
       return { kind: 'time_sum', sum: JSON.parse(new TextDecoder().decode(words)) as TimeSum };
+    case 9:
+      return readOffsets(words);
+    case 10:
+      return { kind: 'rotary', line: words.getUint32(0, true) };
     default:
       throw new Error(`the path has a chunk of the unknown kind ${kind}`);
   }
