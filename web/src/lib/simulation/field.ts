@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The stock as a field of heights: one height for each cell, exact at the middle of the cell. Tiles note what has changed.
+import type { Stock } from './stock';
+
+/** Cells along the side of a tile; a power of two. */
+export const TILE = 64;
+export const MOST_CELLS = 4_000_000;
+const MOST_TILES = 1 << 16;
+
+/** The tool that made a surface: none yet. */
+export const UNCUT = 0;
+
+export class Field {
+  readonly nx: number;
+  readonly ny: number;
+  readonly tiles_x: number;
+  readonly tiles_y: number;
+  readonly heights: Float32Array;
+  /** 1 and up: the tools in the order in which the program uses them. */
+  readonly makers: Uint8Array;
+  readonly bottom: number;
+  readonly top: number;
+  readonly x0: number;
+  readonly y0: number;
+  /** Sizes of a cell: whole numbers of cells fill the stock. */
+  readonly cell_x: number;
+  readonly cell_y: number;
+  /** Changed since the last checkpoint, and since the last picture. */
+  readonly changed: Uint8Array;
+  readonly unseen: Uint8Array;
+
+  constructor(
+    readonly stock: Stock,
+    /** Wanted size of a cell. */
+    readonly cell: number,
+  ) {
+    [this.x0, this.y0] = stock.low;
+    this.nx = Math.max(1, Math.ceil((stock.high[0] - stock.low[0]) / cell - 1e-9));
+    this.ny = Math.max(1, Math.ceil((stock.high[1] - stock.low[1]) / cell - 1e-9));
+    this.cell_x = (stock.high[0] - stock.low[0]) / this.nx;
+    this.cell_y = (stock.high[1] - stock.low[1]) / this.ny;
+    this.bottom = Math.fround(stock.low[2]);
+    this.top = Math.fround(stock.high[2]);
+    this.tiles_x = Math.ceil(this.nx / TILE);
+    this.tiles_y = Math.ceil(this.ny / TILE);
+    if (this.tiles_x * this.tiles_y > MOST_TILES) {
+      throw new Error('The field of the simulation has too many cells.');
+    }
+    this.heights = new Float32Array(this.nx * this.ny);
+    this.makers = new Uint8Array(this.nx * this.ny);
+    this.changed = new Uint8Array(this.tiles_x * this.tiles_y);
+    this.unseen = new Uint8Array(this.tiles_x * this.tiles_y);
+    this.fill();
+  }
+
+  private fill(): void {
+    this.makers.fill(UNCUT);
+    this.heights.fill(this.top);
+    this.changed.fill(1);
+    this.unseen.fill(1);
+    if (this.stock.kind === 'box') {
+      return;
+    }
+    for (let j = 0; j < this.ny; ++j) {
+      for (let i = 0; i < this.nx; ++i) {
+        if (!this.isInCylinder(i, j)) {
+          this.heights[j * this.nx + i] = this.bottom;
+        }
+      }
+    }
+  }
+
+  private isInCylinder(i: number, j: number): boolean {
+    const { low, high } = this.stock;
+    const [x, y] = [this.x0 + (i + 0.5) * this.cell_x, this.y0 + (j + 0.5) * this.cell_y];
+    const radius = Math.min(high[0] - low[0], high[1] - low[1]) / 2;
+    return Math.hypot(x - (low[0] + high[0]) / 2, y - (low[1] + high[1]) / 2) <= radius;
+  }
+
+  /** Notes a change of cells in a row. */
+  mark(row: number, first: number, last: number): void {
+    const base = (row >> 6) * this.tiles_x;
+    for (let tile = first >> 6; tile <= last >> 6; ++tile) {
+      this.changed[base + tile] = 1;
+      this.unseen[base + tile] = 1;
+    }
+  }
+
+  /** What is left of the stock. [mm³] */
+  volume(): number {
+    let sum = 0;
+    for (const height of this.heights) {
+      sum += height - this.bottom;
+    }
+    return sum * this.cell_x * this.cell_y;
+  }
+}

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The stock before the cut, with its fixtures and the floor. Work coordinates. [mm]
+
+export type Triple = [number, number, number];
+
+export interface Box {
+  low: Triple;
+  high: Triple;
+}
+
+export interface Stock {
+  kind: 'box' | 'cylinder';
+  /** Around the stock; the axis of a cylinder is parallel to Z in its middle, its diameter is the smaller side. */
+  low: Triple;
+  high: Triple;
+}
+
+export interface Fixture extends Box {
+  name: string;
+}
+
+export interface Surroundings {
+  fixtures: Fixture[];
+  /** Height of the table or of the lowest point that a tool may reach. */
+  floor_mm: number;
+}
+
+/** Around the moves of a program that cut, with an allowance at the sides; the top is at Z0 unless the program cuts above it. */
+export function stockAround(cuts: Box, allowance_mm: number): Stock {
+  const [low, high]: [Triple, Triple] = [[...cuts.low], [...cuts.high]];
+  for (const axis of [0, 1]) {
+    low[axis] = (low[axis] ?? 0) - allowance_mm;
+    high[axis] = (high[axis] ?? 0) + allowance_mm;
+  }
+  high[2] = Math.max(high[2], 0);
+  const LEAST_MM = 1;
+  for (const axis of [0, 1, 2]) {
+    if ((high[axis] ?? 0) - (low[axis] ?? 0) < LEAST_MM) {
+      low[axis] = (high[axis] ?? 0) - LEAST_MM;
+    }
+  }
+  return { kind: 'box', low, high };
+}
+
+export function isSound(stock: Stock): boolean {
+  const values = [...stock.low, ...stock.high];
+  return values.every((one) => Number.isFinite(one) && Math.abs(one) < 1e5) && stock.low.every((low, axis) => (stock.high[axis] ?? 0) - low > 1e-3);
+}
