@@ -2,6 +2,7 @@
 // How its operator likes the screen: kept in this browser, and at the machine where the INI file names files for it.
 
 import type { ColorBy } from './path/shades';
+import type { KeptSimulation } from './simulation/kept';
 
 export type Theme = 'auto' | 'dark' | 'light';
 export type Language = 'en' | 'de' | 'es';
@@ -18,6 +19,7 @@ export interface Preferences {
   increment: number | null;
   /** Of the maximum jog speed; null: as the INI file sets it. */
   jogShare: number | null;
+  simulation: KeptSimulation;
 }
 
 const KEY = 'millwright.preferences';
@@ -36,6 +38,7 @@ const PRESETS: Preferences = {
   mdiHistory: [],
   increment: null,
   jogShare: null,
+  simulation: { colorBy: 'tool', tools: {}, stocks: [] },
 };
 
 function read(): Preferences {

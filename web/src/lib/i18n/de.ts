@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+import { simulation } from './simulation';
 import type { Catalogue } from './en';
 
 export const de: Catalogue = {
+  ...simulation.de,
   'app.views': 'Ansichten',
   'app.more': 'Mehr',
   'app.connecting': 'Verbindung zur Maschine wird aufgebaut',

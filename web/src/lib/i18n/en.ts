@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // All texts of the screen; the other catalogues have the same keys. The view that shows a text replaces {name}.
 
+import { simulation } from './simulation';
+
 export const en = {
+  ...simulation.en,
   'app.views': 'Views',
   'app.more': 'More',
   'app.connecting': 'Connecting to the machine',

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+import { simulation } from './simulation';
 import type { Catalogue } from './en';
 
 export const es: Catalogue = {
+  ...simulation.es,
   'app.views': 'Vistas',
   'app.more': 'Más',
   'app.connecting': 'Conectando con la máquina',
