@@ -157,31 +157,72 @@ it('shows no picture of a program that moves a rotary axis', async () => {
   }
 });
 
-it.each(['dark', 'light'] as const)('is usable in each size, %s', async (theme) => {
+it.each([['dark', 'en'], ['light', 'en'], ['dark', 'de'], ['light', 'es']] as const)('is usable in each size, %s %s', async (theme, language) => {
   await page.emulateMedia({ colorScheme: theme });
+  await openView(page, 'settings');
+  await page.getByTestId('language').selectOption(language);
   for (const [width, height] of SIZES) {
     await page.setViewportSize({ width, height });
     await openView(page, 'simulation');
-    await page.getByTestId('simulation-ready').waitFor({ timeout: 20_000 });
+    await page.locator('[data-testid="simulation"][data-phase="ready"]').waitFor({ timeout: 20_000 });
     if (await page.getByTestId('simulation-drawer').isVisible()) {
       await page.getByTestId('simulation-close').click();
     }
     await sleep(400);
-    await picture(`${width}x${height}_${theme}`);
-    await judgeByAxe(page, `simulation ${width}x${height} ${theme}`);
+    await picture(`view_only_${width}x${height}_${theme}_${language}`);
+    await judgeByAxe(page, `simulation ${width}x${height} ${theme}_${language}`);
     for (const id of ['findings', 'stock', 'tools', ...(width < 1280 ? ['view'] : [])]) {
       await openDrawer(id);
       await sleep(150);
-      await picture(`${id}_${width}x${height}_${theme}`);
-      await judgeByAxe(page, `simulation ${id} ${width}x${height} ${theme}`);
+      await picture(`${id}_${width}x${height}_${theme}_${language}`);
+      await judgeByAxe(page, `simulation ${id} ${width}x${height} ${theme}_${language}`);
       const small = await page.evaluate(() => [...document.querySelectorAll('[data-testid="simulation"] button, [data-testid="simulation"] select, [data-testid="simulation"] input')]
         .filter((one) => one.checkVisibility() && (one.getBoundingClientRect().height < 43.5 || one.getBoundingClientRect().right > window.innerWidth))
         .map((one) => one.outerHTML.slice(0, 90)));
       expect(small, `${id} ${width}x${height}`).toEqual([]);
+      const cut = await page.evaluate(() => [...document.querySelectorAll<HTMLElement>('[data-testid="simulation"] button, [data-testid="simulation"] label, [data-testid="simulation"] h2')]
+        .filter((one) => one.checkVisibility() && one.scrollWidth > one.clientWidth + 1 && getComputedStyle(one).display !== 'inline')
+        .map((one) => one.outerHTML.slice(0, 90)));
+      expect(cut, `${id} ${width}x${height} ${language}`).toEqual([]);
     }
     await page.getByTestId('simulation-close').click();
   }
   await page.setViewportSize({ width: 1280, height: 800 });
+  await openView(page, 'settings');
+  await page.getByTestId('language').selectOption('en');
 }, 120_000);
+
+it('prepares 100,000 moves within seconds, and keeps up with the slider', async () => {
+  // A surface by the ball nose T5. The limits leave room for other jobs of the computer; the figures are printed.
+  const lines = ['G21 G90 G17 G54 F3000', 'T5 M6', 'G43 H5', 'G0 Z5', 'G0 X0 Y0'];
+  let [x, y, step] = [0, 0, 0.5];
+  for (let i = 0; i < 100_000; ++i) {
+    x += step;
+    if (x > 100 || x < 0) {
+      step = -step;
+      y += 0.16;
+    }
+    lines.push(`G1 X${x.toFixed(3)} Y${y.toFixed(3)} Z${(-3 - 1.5 * Math.sin(x / 9) * Math.cos(y / 7)).toFixed(3)}`);
+  }
+  rig.write('surface.ngc', `${lines.join('\n')}\nG0 Z5\nM2\n`);
+  await open('surface.ngc');
+  const ready = page.getByTestId('simulation-ready');
+  await ready.waitFor({ timeout: 30_000 });
+  const took = Number(await ready.getAttribute('data-took'));
+  const rate = await page.evaluate(async () => {
+    const slider = document.querySelector('[data-testid="simulation-slider"]') as HTMLInputElement;
+    const { scene } = document.querySelector('[data-testid="simulation-canvas"]') as HTMLCanvasElement & { scene: { pictures: number } };
+    const [begin, before, SECONDS] = [performance.now(), scene.pictures, 4];
+    for (let now = begin; now - begin < SECONDS * 1000; now = performance.now()) {
+      slider.value = String((0.5 - 0.5 * Math.cos(((now - begin) / 1000) * 2)) * Number(slider.max));
+      slider.dispatchEvent(new Event('input', { bubbles: true }));
+      await new Promise((done) => requestAnimationFrame(done));
+    }
+    return (scene.pictures - before) / SECONDS;
+  });
+  console.log(`100,000 moves prepared in ${took} ms; ${rate} pictures per second while the slider moves`);
+  expect(took).toBeLessThan(10_000);
+  expect(rate).toBeGreaterThan(10);
+}, 90_000);
 
 it('has reported no error', () => expect(errorsOf(page)).toEqual([]));

@@ -62,10 +62,10 @@ describe('the removed volume', () => {
       const cutter = cutterOf(form);
       for (const [a, b] of [[[20, 30, -2], [26, 33, -9]], [[40, 40, -12], [38, 50, -1]], [[30, 30, -3], [30.5, 30, -15]]] as const) {
         const { field } = simulate(movesOf([{ at: [...a], line: 1, kind: 0 }, { at: [...b], line: 2, kind: 1 }]), { tools: new Map([[1, form]]), cell_mm: 0.5 });
-        for (let cell = 0; cell < field.heights.length; cell += 7) {
+        for (let cell = 0; cell < field.heights.length; cell += 23) {
           const [x, y] = [((cell % field.nx) + 0.5) * 0.5, (Math.floor(cell / field.nx) + 0.5) * 0.5];
           let low = 0;
-          const STEPS = 800;
+          const STEPS = 500;
           for (let i = 0; i <= STEPS; ++i) {
             const at = i / STEPS;
             const distance = Math.hypot(x - a[0] - at * (b[0] - a[0]), y - a[1] - at * (b[1] - a[1]));

@@ -13,6 +13,25 @@ export interface Picture {
   makers: Uint8Array;
 }
 
+/** With at most `most` cells along a side. */
+export function reduced(picture: Picture, most: number): Picture {
+  const { nx, ny } = picture;
+  const factor = Math.max(1, Math.ceil(Math.max(nx, ny) / most));
+  const [wide, high] = [Math.ceil(nx / factor), Math.ceil(ny / factor)];
+  const small: Picture = { nx: wide, ny: high, cell_x: picture.cell_x * factor, cell_y: picture.cell_y * factor, heights: new Float32Array(wide * high).fill(Infinity), makers: new Uint8Array(wide * high) };
+  for (let j = 0; j < ny; ++j) {
+    for (let i = 0; i < nx; ++i) {
+      const to = Math.floor(j / factor) * wide + Math.floor(i / factor);
+      const height = picture.heights[j * nx + i] as number;
+      if (height < (small.heights[to] as number)) {
+        small.heights[to] = height;
+        small.makers[to] = picture.makers[j * nx + i] as number;
+      }
+    }
+  }
+  return small;
+}
+
 interface Level {
   /** Cells of the field along a side of a cell of the picture. */
   factor: number;

@@ -6,7 +6,7 @@ import { BULL, FLAT, type Cutter } from './shapes';
 import type { Stock } from './stock';
 
 /** Cells that all moves together look at, by a round tool. */
-export const MOST_WORK = 160_000_000;
+export const MOST_WORK = 100_000_000;
 /** Cost of a cell for a flat tool at one height, and for a bull nose that rises or falls, compared with others. */
 const LEVEL_COST = 0.4;
 const BULL_COST = 2.5;

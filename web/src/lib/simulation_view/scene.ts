@@ -4,7 +4,7 @@ import { Box3, BufferGeometry, Color, ColorManagement, DoubleSide, Group, Linear
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { isSoftware } from '../path/graphics';
 import { halfSize, VIEWS, type ViewName } from '../path/views';
-import type { Picture } from '../simulation/display';
+import { reduced, type Picture } from '../simulation/display';
 import type { ToolShape } from '../simulation/shapes';
 import type { Fixture, Stock, Triple } from '../simulation/stock';
 import { axesGeometry, boxGeometry, edgesOf, holderGeometry, toolGeometry } from './models';
@@ -20,9 +20,10 @@ export interface SceneColors extends SurfaceColors {
 }
 
 /** Cells of the picture along a side while it changes, and when it is still. */
-const MOST_IN_MOTION = { software: 128, hardware: 512 };
+const MOST_IN_MOTION = { software: 96, hardware: 512 };
 const MOST_STILL = { software: 384, hardware: 1024 };
 const MOST_FRAME_TIMES = 600;
+const STILL_AFTER_MS = 180;
 
 export class SimulationScene {
   readonly isSlow = isSoftware();
@@ -30,7 +31,11 @@ export class SimulationScene {
   private readonly scene = new Scene();
   private readonly camera = new OrthographicCamera(-100, 100, 100, -100, -1e5, 1e5);
   private readonly controls: OrbitControls;
-  private readonly surface = new Surface();
+  /** What is drawn while something moves, and when all is still. */
+  private readonly coarse = new Surface();
+  private readonly fine = new Surface();
+  private hasFine = false;
+  private stillTimer: ReturnType<typeof setTimeout> | undefined;
   private readonly tool = new Mesh(new BufferGeometry(), new MeshLambertMaterial({ side: DoubleSide }));
   private readonly holder = new Mesh(new BufferGeometry(), new MeshLambertMaterial({ side: DoubleSide, transparent: true, opacity: 0.45 }));
   private readonly fixtures = new Group();
@@ -50,18 +55,18 @@ export class SimulationScene {
 
   constructor(canvas: HTMLCanvasElement) {
     ColorManagement.enabled = false; // colours are those of the page
-    this.renderer = new WebGLRenderer({ canvas, antialias: !this.isSlow, powerPreference: 'low-power', preserveDrawingBuffer: true });
+    this.renderer = new WebGLRenderer({ canvas, antialias: !this.isSlow, powerPreference: 'low-power' });
     this.renderer.outputColorSpace = LinearSRGBColorSpace;
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enableDamping = false;
-    this.controls.addEventListener('change', () => this.draw());
+    this.controls.addEventListener('change', () => this.noteMotion());
     const light = new DirectionalLight('#ffffff', 2);
     light.position.set(0.35, -0.5, 0.8);
     this.tool.visible = this.holder.visible = this.mark.visible = false;
     this.mark.renderOrder = 2;
     this.axes.renderOrder = 1;
-    this.scene.add(this.surface.mesh, this.tool, this.holder, this.fixtures, this.edges, this.axes, this.mark, light, new AmbientLight('#ffffff', 1.4));
+    this.scene.add(this.coarse.mesh, this.fine.mesh, this.tool, this.holder, this.fixtures, this.edges, this.axes, this.mark, light, new AmbientLight('#ffffff', 1.4));
     this.look('iso');
   }
 
@@ -72,7 +77,8 @@ export class SimulationScene {
 
   setColors(colors: SceneColors): void {
     this.renderer.setClearColor(new Color(colors.background));
-    this.surface.setColors(colors);
+    this.coarse.setColors(colors);
+    this.fine.setColors(colors);
     this.tool.material.color.set(colors.tool);
     this.holder.material.color.set(colors.holder);
     this.fixture_material.color.set(colors.fixture);
@@ -82,7 +88,8 @@ export class SimulationScene {
   }
 
   colorBy(what: 'tool' | 'depth'): void {
-    this.surface.colorBy(what);
+    this.coarse.colorBy(what);
+    this.fine.colorBy(what);
     this.draw();
   }
 
@@ -90,7 +97,9 @@ export class SimulationScene {
   setStock(stock: Stock, fixtures: readonly Fixture[]): void {
     const isFirst = this.stock === null;
     this.stock = stock;
-    this.surface.hide();
+    this.coarse.hide();
+    this.fine.hide();
+    this.hasFine = false;
     this.edges.geometry.dispose();
     this.edges.geometry = edgesOf(stock);
     for (const child of this.fixtures.children) {
@@ -115,7 +124,13 @@ export class SimulationScene {
 
   show(picture: Picture): void {
     if (this.stock !== null) {
-      this.surface.show(picture, this.stock);
+      const most = this.cells(true);
+      this.hasFine = Math.max(picture.nx, picture.ny) > most;
+      if (this.hasFine) {
+        this.fine.show(picture, this.stock);
+      }
+      this.coarse.show(this.hasFine ? reduced(picture, most) : picture, this.stock);
+      this.choose(this.hasFine);
       this.pictures += 1;
       this.draw();
     }
@@ -188,10 +203,32 @@ export class SimulationScene {
   dispose(): void {
     cancelAnimationFrame(this.frame);
     this.controls.dispose();
-    this.surface.dispose();
+    clearTimeout(this.stillTimer);
+    this.coarse.dispose();
+    this.fine.dispose();
     this.tool.geometry.dispose();
     this.holder.geometry.dispose();
     this.renderer.dispose();
+  }
+
+  private choose(isFine: boolean): void {
+    this.fine.mesh.visible = isFine;
+    this.coarse.mesh.visible = !isFine;
+  }
+
+  /** The camera moves: the fine surface comes back when it is still. */
+  private noteMotion(): void {
+    if (this.hasFine) {
+      this.choose(false);
+      clearTimeout(this.stillTimer);
+      this.stillTimer = setTimeout(() => {
+        if (this.hasFine) {
+          this.choose(true);
+          this.draw();
+        }
+      }, STILL_AFTER_MS);
+    }
+    this.draw();
   }
 
   private draw(): void {

@@ -20,6 +20,7 @@ const VERTEX = `
   out vec3 vPlace;
   out vec3 vNormal;
   out float vHeight;
+  out float vSide;
   float heightOf(ivec2 cell) { return texelFetch(heights, clamp(cell, ivec2(0), ivec2(cells) - 1), 0).r; }
   void main() {
     ivec2 cell = ivec2(position.xy);
@@ -33,6 +34,7 @@ const VERTEX = `
     if (cell.y == int(cells.y) - 1) { at.y = extent.y; }
     vPlace = vec3(corner + at, z);
     vHeight = z;
+    vSide = isRing ? 1.0 : 0.0;
     // Of the surface around the cell: the steps of a slanted wall do not show as stripes.
     vec2 slope = vec2(heightOf(inside - ivec2(1, 0)) - heightOf(inside + ivec2(1, 0)), heightOf(inside - ivec2(0, 1)) - heightOf(inside + ivec2(0, 1))) / (2.0 * size);
     vNormal = vec3(slope, 1.0);
@@ -44,6 +46,7 @@ const FRAGMENT = `
   in vec3 vPlace;
   in vec3 vNormal;
   in float vHeight;
+  in float vSide;
   uniform sampler2D makers;
   uniform vec2 cells;
   uniform vec2 corner;
@@ -57,11 +60,17 @@ const FRAGMENT = `
   uniform vec3 deep;
   uniform vec3 light;
   out vec4 color;
+  int makerOf(ivec2 cell) { return int(texelFetch(makers, clamp(cell, ivec2(0), ivec2(cells) - 1), 0).r * 255.0 + 0.5); }
   void main() {
     if (vHeight <= bottom + 0.0005 * (top - bottom)) { discard; }
     vec3 normal = normalize(vNormal);
     ivec2 cell = clamp(ivec2((vPlace.xy - corner) / size), ivec2(0), ivec2(cells) - 1);
-    int maker = int(texelFetch(makers, cell, 0).r * 255.0 + 0.5);
+    int maker = makerOf(cell);
+    if (maker == 0 && vHeight < top - 0.001 * (top - bottom)) {
+      // A wall belongs to the tool that has cut the lower side of it.
+      maker = max(max(makerOf(cell + ivec2(1, 0)), makerOf(cell - ivec2(1, 0))), max(makerOf(cell + ivec2(0, 1)), makerOf(cell - ivec2(0, 1))));
+    }
+    if (vSide > 0.01) { maker = 0; }
     vec3 base = uncut;
     if (maker > 0) {
       base = colorBy == 1 ? mix(shallow, deep, clamp((top - vHeight) / max(top - bottom, 1e-6), 0.0, 1.0)) : tools[(maker - 1) % ${MAKER_COLORS}];
