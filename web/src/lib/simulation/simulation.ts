@@ -22,7 +22,7 @@ const MOST_MAKERS = 255;
 /** Between two checkpoints. */
 const CELLS_PER_CHECKPOINT = 800_000;
 const MOVES_PER_CHECKPOINT = 5_000;
-const MOST_CHECKPOINT_BYTES = 160e6;
+const MOST_CHECKPOINT_BYTES = 96e6;
 
 interface Mill {
   cutter: Cutter;

@@ -27,8 +27,17 @@ function pause(): Promise<void> {
   });
 }
 
+const TOO_MANY = 429;
+const TRIES = 15;
+const RETRY_MS = 1000;
+
+/** The server reads few programs at a time: where other views or screens have theirs read, this one waits. */
 async function fetchBody(address: string, signal: AbortSignal): Promise<ReadableStream<Uint8Array>> {
-  const answer = await fetch(address, { signal });
+  let answer = await fetch(address, { signal });
+  for (let tries = 1; answer.status === TOO_MANY && tries < TRIES; ++tries) {
+    await new Promise((done) => setTimeout(done, RETRY_MS));
+    answer = await fetch(address, { signal });
+  }
   if (!answer.ok || answer.body === null) {
     const told = (await answer.json().catch(() => null)) as { error?: string } | null;
     throw new Error(told?.error ?? `GET ${address}: ${answer.status}`);
