@@ -125,6 +125,25 @@ it('takes another stock and another tool, and keeps them', async () => {
   await untilText(page, 'finding-12', /holder in stock, tool below the lowest tool position/);
 });
 
+it('takes an STL file as stock', async () => {
+  const corners = [[5, 5, -10], [60, 5, -10], [60, 45, -10], [5, 45, -10], [30, 25, 0]] as const;
+  const faces = [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]] as const;
+  const stl = faces.map((face) => `facet normal 0 0 1 outer loop ${face.map((i) => `vertex ${(corners[i] as readonly number[]).join(' ')}`).join(' ')} endloop endfacet`).join('\n');
+  await openDrawer('stock');
+  await page.getByTestId('stock-stl').setInputFiles({ name: 'blank.stl', mimeType: 'model/stl', buffer: Buffer.from(`solid blank\n${stl}\nendsolid blank\n`) });
+  await until(async () => (await page.getByTestId('stock-size-X').inputValue()) === '55', 'the size of the mesh');
+  expect(await page.getByTestId('stock-kind').inputValue()).toBe('mesh');
+  await page.getByTestId('stock-apply').click();
+  await page.locator('[data-testid="simulation"][data-phase="ready"]').waitFor();
+  await picture('mesh');
+  await openDrawer('stock');
+  await page.getByTestId('stock-kind').selectOption('box');
+  await page.getByTestId('stock-default').click();
+  await page.getByTestId('stock-floor').fill('-6');
+  await page.getByTestId('stock-apply').click();
+  await page.locator('[data-testid="simulation"][data-phase="ready"]').waitFor();
+});
+
 it('follows the machine while it cuts', async () => {
   await page.getByTestId('simulation-slider').fill('0');
   await until(async () => (await moves()) === 0, 'the start');

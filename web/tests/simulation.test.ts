@@ -4,7 +4,8 @@ import { describe, expect, it } from 'vitest';
 import { MOST_CELLS } from '../src/lib/simulation/field';
 import { Moves } from '../src/lib/simulation/moves';
 import { cutterOf, guessShape, heightAt, type ShapeName } from '../src/lib/simulation/shapes';
-import { stockAround } from '../src/lib/simulation/stock';
+import { stockAround, type Stock } from '../src/lib/simulation/stock';
+import { readStl } from '../src/lib/simulation/stl';
 import { BOX, movesOf, simulate, tool, type Point } from './simulation/made';
 import { pointsOf } from './simulation/arcs';
 
@@ -189,6 +190,37 @@ describe('the moves of the server', () => {
   });
   it('have a stock around their cuts', () => {
     expect(stockAround({ low: [10, 5, -8], high: [60, 45, -1] }, 2)).toEqual({ kind: 'box', low: [8, 3, -8], high: [62, 47, 0] });
+  });
+});
+
+describe('a stock from an STL file', () => {
+  /** A pyramid with a square base of 10 and a height of 6, whose lower corner is at 5, 5, -6. */
+  const CORNERS = [[5, 5, -6], [15, 5, -6], [15, 15, -6], [5, 15, -6], [10, 10, 0]] as const;
+  const FACES = [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4], [0, 2, 1], [0, 3, 2]] as const;
+  const points = FACES.flatMap((face) => face.map((corner) => CORNERS[corner]));
+  const ascii = `solid p\n${points.map((point, i) => `${i % 3 === 0 ? 'facet normal 0 0 1\n outer loop\n' : ''}vertex ${point.join(' ')}\n${i % 3 === 2 ? 'endloop\nendfacet\n' : ''}`).join('')}endsolid p\n`;
+  const binary = new DataView(new ArrayBuffer(84 + FACES.length * 50));
+  binary.setUint32(80, FACES.length, true);
+  points.forEach((point, i) => point.forEach((value, axis) => binary.setFloat32(84 + Math.floor(i / 3) * 50 + 12 + (i % 3) * 12 + axis * 4, value, true)));
+  it('has its volume, from text and from bytes, and is cut', () => {
+    for (const bytes of [new TextEncoder().encode(ascii).buffer as ArrayBuffer, binary.buffer as ArrayBuffer]) {
+      const stock = readStl(bytes, 1);
+      expect([stock?.low, stock?.high]).toEqual([[5, 5, -6], [15, 15, 0]]);
+      const whole = simulate(movesOf([SAFE]), { stock: stock as Stock, cell_mm: 0.05 }).field;
+      expect(whole.volume() / 200).toBeCloseTo(1, 2);
+      const cut = simulate(movesOf([{ at: [0, 10, -3], line: 1, kind: 0 }, { at: [20, 10, -3], line: 2, kind: 1 }]), { stock: stock as Stock, cell_mm: 0.05, tools: new Map([[1, tool({ diameter_mm: 40 })]]) }).field;
+      // What is above half its height is an eighth.
+      expect(cut.volume() / 175).toBeCloseTo(1, 2);
+    }
+  });
+  it('is refused when it is none', () => {
+    expect(readStl(new TextEncoder().encode('solid empty\nendsolid').buffer as ArrayBuffer, 1)).toBeNull();
+    expect(readStl(new ArrayBuffer(3), 1)).toBeNull();
+    expect(readStl(binary.buffer.slice(0, 150) as ArrayBuffer, 1)).toBeNull();
+    const flat = new TextEncoder().encode('vertex 0 0 0 vertex 1 0 0 vertex 0 1 0').buffer as ArrayBuffer;
+    expect(readStl(flat, 1)).toBeNull();
+    const endless = new TextEncoder().encode('vertex 0 0 0 vertex 1 0 x vertex 0 1 0').buffer as ArrayBuffer;
+    expect(readStl(endless, 1)).toBeNull();
   });
 });
 

@@ -61,10 +61,43 @@ export class Field {
     if (this.stock.kind === 'box') {
       return;
     }
+    if (this.stock.kind === 'mesh') {
+      this.fillMesh(this.stock.triangles ?? new Float32Array());
+      return;
+    }
     for (let j = 0; j < this.ny; ++j) {
       for (let i = 0; i < this.nx; ++i) {
         if (!this.isInCylinder(i, j)) {
           this.heights[j * this.nx + i] = this.bottom;
+        }
+      }
+    }
+  }
+
+  /** The upper side of all triangles. */
+  private fillMesh(triangles: Float32Array): void {
+    this.heights.fill(this.bottom);
+    for (let at = 0; at + 9 <= triangles.length; at += 9) {
+      const [ax, ay, az, bx, by, bz, cx, cy, cz] = triangles.subarray(at, at + 9) as unknown as [number, number, number, number, number, number, number, number, number];
+      const area = (bx - ax) * (cy - ay) - (cx - ax) * (by - ay);
+      if (Math.abs(area) < 1e-12) {
+        continue; // it is vertical
+      }
+      const first = Math.max(0, Math.ceil(Math.min(ay, by, cy) / this.cell_y - 0.5));
+      const last = Math.min(this.ny - 1, Math.floor(Math.max(ay, by, cy) / this.cell_y - 0.5));
+      const from = Math.max(0, Math.ceil(Math.min(ax, bx, cx) / this.cell_x - 0.5));
+      const to = Math.min(this.nx - 1, Math.floor(Math.max(ax, bx, cx) / this.cell_x - 0.5));
+      for (let j = first; j <= last; ++j) {
+        const y = (j + 0.5) * this.cell_y;
+        for (let i = from; i <= to; ++i) {
+          const x = (i + 0.5) * this.cell_x;
+          const b = ((x - ax) * (cy - ay) - (cx - ax) * (y - ay)) / area;
+          const c = ((bx - ax) * (y - ay) - (x - ax) * (by - ay)) / area;
+          if (b >= -1e-9 && c >= -1e-9 && b + c <= 1 + 1e-9) {
+            const height = this.bottom + az + b * (bz - az) + c * (cz - az);
+            const cell = j * this.nx + i;
+            this.heights[cell] = Math.max(this.heights[cell] as number, height);
+          }
         }
       }
     }

@@ -9,10 +9,12 @@ export interface Box {
 }
 
 export interface Stock {
-  kind: 'box' | 'cylinder';
+  kind: 'box' | 'cylinder' | 'mesh';
   /** Around the stock; the axis of a cylinder is parallel to Z in its middle, its diameter is the smaller side. */
   low: Triple;
   high: Triple;
+  /** Triangles of a mesh, nine numbers each, from the lower corner. Seen from above: it has no undercuts. */
+  triangles?: Float32Array;
 }
 
 export interface Fixture extends Box {

@@ -7,7 +7,7 @@ import { openName, program } from '../program.svelte';
 import { tools } from '../tools.svelte';
 import type { Frame } from '../simulation/moves';
 import type { Facts, News, Order, Position, Prepared, Shown } from '../simulation/protocol';
-import { withStock } from '../simulation/kept';
+import { withStock, type KeptStock } from '../simulation/kept';
 import { guessShape, type ToolShape } from '../simulation/shapes';
 import { stockAround, type Fixture, type Stock, type Triple } from '../simulation/stock';
 
@@ -46,6 +46,8 @@ let opened = '';
 let frame: Frame = { origin: [0, 0, 0], rotation_deg: 0, unit_mm: 1 };
 /** Where the program was shown last: the picture stays there when it is calculated again, as after a change of the stock. */
 let place: { file: string; moves: number; at: number } | null = null;
+/** The last one that was entered on this page: a mesh is too large for the preferences. */
+let entered: KeptStock | null = null;
 let isMoving = false;
 let cells = { moving: 128, still: 384 };
 
@@ -176,14 +178,14 @@ function placeNow(): number {
 }
 
 function begin(facts: Facts): void {
-  const kept = prefs.simulation.stocks.find((one) => one.file === openName());
+  const kept = entered?.file === openName() ? entered : prefs.simulation.stocks.find((one) => one.file === openName());
   if (facts.rotary_line !== null || (kept === undefined && facts.cuts === null)) {
     simulation.phase = 'unsupported';
     return;
   }
   const stock = kept?.stock ?? (facts.cuts === null ? null : stockAround(facts.cuts, ALLOWANCE_MM));
   simulation.stock = stock === null ? null : $state.snapshot(stock);
-  simulation.fixtures = $state.snapshot(kept?.fixtures ?? []);
+  simulation.fixtures = $state.snapshot([...(kept?.fixtures ?? [])]);
   simulation.floor_mm = kept?.floor_mm ?? stock?.low[2] ?? 0;
   prepare();
 }
@@ -207,7 +209,8 @@ export function prepare(): void {
 export function useStock(stock: Stock, fixtures: Fixture[], floor_mm: number): void {
   Object.assign(simulation, { stock, fixtures, floor_mm });
   const file = openName();
-  if (file !== null) {
+  entered = file === null ? null : { file, stock, fixtures, floor_mm };
+  if (file !== null && stock.kind !== 'mesh') {
     prefs.simulation.stocks = withStock($state.snapshot(prefs.simulation.stocks), { file, stock, fixtures, floor_mm });
     keepPreferences();
   }
