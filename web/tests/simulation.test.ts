@@ -213,7 +213,7 @@ describe('a stock from an STL file', () => {
       expect(cut.volume() / 175).toBeCloseTo(1, 2);
     }
   });
-  it('is refused when it is none', () => {
+  it('is rejected when it is none', () => {
     expect(readStl(new TextEncoder().encode('solid empty\nendsolid').buffer as ArrayBuffer, 1)).toBeNull();
     expect(readStl(new ArrayBuffer(3), 1)).toBeNull();
     expect(readStl(binary.buffer.slice(0, 150) as ArrayBuffer, 1)).toBeNull();

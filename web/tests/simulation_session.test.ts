@@ -130,7 +130,7 @@ describe('a session', () => {
     expect(made.show({ seconds: 0 }, 64)).toMatchObject({ moves: 0 });
     expect(made.show({ machine: { line: 3, tip: [10, 0, 2], isNew: true } }, 64)).toMatchObject({ moves: 1.5, line: 3 });
   });
-  it('gives up a preparation that another one replaces', async () => {
+  it('abandons a preparation that another one replaces', async () => {
     const many: Point[] = Array.from({ length: 60_000 }, (_, i) => ({ at: [i % 100, i % 80, -1], line: i, kind: 1 }));
     const made = session(many);
     made.finish();
