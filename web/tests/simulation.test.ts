@@ -119,6 +119,24 @@ describe('findings', () => {
     expect(found[0]?.depth).toBeCloseTo(3, 1);
     expect(simulate(movesOf(deep), { tools: new Map([[1, tool()]]) }).findings.list()).toEqual([]);
   });
+  it('of a holder over a deep pocket cost little, and a later wall is still found', () => {
+    // A pocket of 80 by 60 that is 18 deep, by a tool whose holder is 12 above its tip and goes below the top.
+    const points: Point[] = [{ at: [50, 40, 10], line: 1, kind: 0 }];
+    for (const [z, line] of [[-9, 2], [-18, 3]] as const) {
+      points.push({ at: [10, 10, z], line, kind: 1 });
+      for (let y = 10; y <= 70; y += 1) {
+        points.push({ at: [y % 2 === 0 ? 90 : 10, y, z], line, kind: 1 }, { at: [y % 2 === 0 ? 90 : 10, y + 1, z], line, kind: 1 });
+      }
+    }
+    const inside: Point[] = Array.from({ length: 5000 }, (_, i) => ({ at: [40 + 10 * Math.sin(i / 50), 40 + 10 * Math.cos(i / 50), -18], line: 4, kind: 1 }) as Point);
+    // The holder leaves the wall that it has hit in line 6.
+    const all = [...points, { at: [40, 50, -18], line: 6, kind: 1 } as Point, ...inside, { at: [88, 40, -18], line: 5, kind: 1 } as Point];
+    const form = tool({ stickout_mm: 12, holder_diameter_mm: 30 });
+    const made = simulate(movesOf(all), { tools: new Map([[1, form]]), cell_mm: 0.25 });
+    expect(made.findings.list().map((one) => [one.line, one.kinds])).toEqual([[3, ['holder']], [6, ['holder']], [5, ['holder']]]);
+    const alone = simulate(movesOf(all), { tools: new Map([[1, { ...form, stickout_mm: null }]]), cell_mm: 0.25 });
+    expect(made.work).toBeLessThan(1.2 * alone.work);
+  });
   it('are a clamp that the tool or the holder hits, also in a rapid', () => {
     const fixtures = [{ name: 'clamp', low: [0, 35, 0] as [number, number, number], high: [10, 45, 12] as [number, number, number] }];
     const hit = simulate(movesOf([SAFE, { at: [-30, 40, 10], line: 2, kind: 0 }, { at: [-30, 40, 13], line: 3, kind: 0 }, { at: [50, 40, 13], line: 4, kind: 0 }]), { fixtures }).findings.list();

@@ -4,6 +4,7 @@ import type { Chunk } from '../path/chunks';
 import type { Box } from './stock';
 
 export const RAPID = 0;
+export const PROBE = 3;
 /** Between two points at which the tool offset changes: the tip is elsewhere, and nothing has moved. */
 export const JUMP = 4;
 
@@ -169,7 +170,7 @@ export class Moves {
     const box: Box = { low: [Infinity, Infinity, Infinity], high: [-Infinity, -Infinity, -Infinity] };
     for (let i = 1; i < this.count; ++i) {
       const kind = this.kinds[i];
-      if (kind === RAPID || kind === JUMP) {
+      if (kind === RAPID || kind === JUMP || kind === PROBE) {
         continue;
       }
       for (let axis = 0; axis < 3; ++axis) {

@@ -4,7 +4,7 @@ import type { Chunk } from '../path/chunks';
 import { Clock } from './clock';
 import { Display } from './display';
 import { Follower } from './follow';
-import { JUMP, Moves, RAPID, type Frame } from './moves';
+import { JUMP, Moves, PROBE, RAPID, type Frame } from './moves';
 import type { Facts, Position, Prepared, Shown } from './protocol';
 import { Simulation, type Setup } from './simulation';
 
@@ -63,7 +63,7 @@ export class Session {
   /** Tools that only travel need no diameter. */
   private hasMoves(first: number, end: number): boolean {
     for (let i = Math.max(first, 1); i < end; ++i) {
-      if (this.moves.kinds[i] !== RAPID && this.moves.kinds[i] !== JUMP) {
+      if (![RAPID, JUMP, PROBE].includes(this.moves.kinds[i] ?? RAPID)) {
         return true;
       }
     }

@@ -3,12 +3,13 @@
 import { Checkpoints } from './checkpoints';
 import { Field } from './field';
 import { Findings, type FindingKind } from './findings';
-import { JUMP, RAPID, type Moves } from './moves';
+import { JUMP, PROBE, RAPID, type Moves } from './moves';
 import { depthIn } from './obstacles';
 import { chooseCell } from './resolution';
 import { cutterOf, FLAT, type Cutter, type ToolShape } from './shapes';
 import type { Stock, Surroundings } from './stock';
 import { CONTACT_MM, Sweep, type Segment } from './sweep';
+import { Tops } from './tops';
 
 export interface Setup extends Surroundings {
   stock: Stock;
@@ -17,7 +18,6 @@ export interface Setup extends Surroundings {
   cell_mm: number | null;
 }
 
-const PROBE = 3;
 const MOST_MAKERS = 255;
 /** Between two checkpoints. */
 const CELLS_PER_CHECKPOINT = 800_000;
@@ -42,6 +42,7 @@ export class Simulation {
   shown = 0;
   private readonly sweep: Sweep;
   private readonly checkpoints: Checkpoints;
+  private readonly tops: Tops;
   private readonly mills = new Map<number, Mill>();
   private range = 0;
   private base = 0;
@@ -65,6 +66,7 @@ export class Simulation {
     }
     this.field = new Field(setup.stock, setup.cell_mm ?? chooseCell(moves, cutters, setup.stock));
     this.sweep = new Sweep(this.field);
+    this.tops = new Tops(this.field);
     this.checkpoints = new Checkpoints(this.field, checkpoint_bytes);
     this.checkpoints.add(0);
   }
@@ -228,7 +230,7 @@ export class Simulation {
   private checkHolder(move: number, holder: Cutter, stickout: number): void {
     const { segment, sweep } = this;
     const lifted = { ...segment, z0: segment.z0 + stickout, z1: segment.z1 + stickout };
-    sweep.run(lifted, holder, 0, false, true);
+    sweep.look(lifted, holder, this.tops);
     const { x, y, z, depth, part } = sweep.contact;
     if (depth > CONTACT_MM) {
       this.find('holder', move, part, depth, [x, y, z], '');

@@ -3,6 +3,7 @@
 // in closed form (a bull nose: by bisection), so that the length of a move does not change the result.
 import type { Field } from './field';
 import { CONE, FLAT, ROUND, type Cutter } from './shapes';
+import { BLOCK, type Tops } from './tops';
 
 export interface Segment {
   x0: number;
@@ -76,6 +77,45 @@ export class Sweep {
         this.level(row, from, to, move.z0, maker);
       } else {
         this.row(row, from, to, maker, isSkipped, watches);
+      }
+    }
+  }
+
+  /** Looks whether a flat cylinder, as a holder, touches the stock. It stops at the first block of cells with a contact: a holder is much
+   * larger than a tool, and each move would look at all cells below it. */
+  look(move: Segment, cutter: Cutter, tops: Tops): void {
+    const { field, contact } = this;
+    contact.depth = 0;
+    const lowest = Math.min(move.z0, move.z1);
+    if (lowest >= field.top) {
+      return;
+    }
+    this.prepare(move, cutter);
+    const { radius } = cutter;
+    const block = (value: number, low: number, cell: number, count: number): number => Math.min(Math.max(Math.floor((value - low) / cell / BLOCK), 0), count - 1);
+    const [i0, i1] = [block(Math.min(move.x0, move.x1) - radius, field.x0, field.cell_x, tops.wide), block(Math.max(move.x0, move.x1) + radius, field.x0, field.cell_x, tops.wide)];
+    const [j0, j1] = [block(Math.min(move.y0, move.y1) - radius, field.y0, field.cell_y, tops.high), block(Math.max(move.y0, move.y1) + radius, field.y0, field.cell_y, tops.high)];
+    for (let j = j0; j <= j1; ++j) {
+      for (let i = i0; i <= i1; ++i) {
+        if (tops.isAbove(j * tops.wide + i, lowest + CONTACT_MM)) {
+          this.lookInBlock(i * BLOCK, j * BLOCK);
+          if (contact.depth > CONTACT_MM) {
+            return;
+          }
+        }
+      }
+    }
+  }
+
+  private lookInBlock(column: number, first: number): void {
+    const { field } = this;
+    for (let row = first; row < Math.min(first + BLOCK, field.ny); ++row) {
+      this.span(field.y0 + (row + 0.5) * field.cell_y);
+      const from = Math.max(column, Math.ceil((this.begin - field.x0) / field.cell_x - 0.5));
+      const to = Math.min(column + BLOCK - 1, field.nx - 1, Math.floor((this.end - field.x0) / field.cell_x - 0.5));
+      if (from <= to) {
+        this.cells += to - from + 1;
+        this.row(row, from, to, 0, false, true);
       }
     }
   }

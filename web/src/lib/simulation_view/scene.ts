@@ -25,6 +25,12 @@ const MOST_STILL = { software: 384, hardware: 1024 };
 const MOST_FRAME_TIMES = 600;
 const STILL_AFTER_MS = 180;
 
+/** A little wider than the stock. */
+function floorUnder(stock: Stock, floor_mm: number): { low: Triple; high: Triple } {
+  const margin = Math.max(stock.high[0] - stock.low[0], stock.high[1] - stock.low[1]) / 10;
+  return { low: [stock.low[0] - margin, stock.low[1] - margin, floor_mm], high: [stock.high[0] + margin, stock.high[1] + margin, floor_mm] };
+}
+
 export class SimulationScene {
   readonly isSlow = isSoftware();
   private readonly renderer: WebGLRenderer;
@@ -41,6 +47,8 @@ export class SimulationScene {
   private readonly fixtures = new Group();
   private readonly fixture_material = new MeshLambertMaterial();
   private readonly edges = new LineSegments(new BufferGeometry(), new LineBasicMaterial());
+  /** The lowest position of a tool. */
+  private readonly floor = new LineSegments(new BufferGeometry(), new LineBasicMaterial());
   private readonly axes = new LineSegments(axesGeometry(1), new LineBasicMaterial({ vertexColors: true, depthTest: false }));
   private readonly mark = new Mesh(new SphereGeometry(1, 16, 12), new MeshBasicMaterial({ depthTest: false, transparent: true, opacity: 0.85 }));
   private readonly box = new Box3();
@@ -66,7 +74,7 @@ export class SimulationScene {
     this.tool.visible = this.holder.visible = this.mark.visible = false;
     this.mark.renderOrder = 2;
     this.axes.renderOrder = 1;
-    this.scene.add(this.coarse.mesh, this.fine.mesh, this.tool, this.holder, this.fixtures, this.edges, this.axes, this.mark, light, new AmbientLight('#ffffff', 1.4));
+    this.scene.add(this.coarse.mesh, this.fine.mesh, this.tool, this.holder, this.fixtures, this.edges, this.floor, this.axes, this.mark, light, new AmbientLight('#ffffff', 1.4));
     this.look('iso');
   }
 
@@ -83,6 +91,7 @@ export class SimulationScene {
     this.holder.material.color.set(colors.holder);
     this.fixture_material.color.set(colors.fixture);
     this.edges.material.color.set(colors.edges);
+    this.floor.material.color.set(colors.fixture);
     this.mark.material.color.set(colors.finding);
     this.draw();
   }
@@ -94,7 +103,7 @@ export class SimulationScene {
   }
 
   /** Outlines until there is a picture of it. */
-  setStock(stock: Stock, fixtures: readonly Fixture[]): void {
+  setStock(stock: Stock, fixtures: readonly Fixture[], floor_mm: number): void {
     const isFirst = this.stock === null;
     this.stock = stock;
     this.coarse.hide();
@@ -106,6 +115,8 @@ export class SimulationScene {
       (child as Mesh).geometry.dispose();
     }
     this.fixtures.clear();
+    this.floor.geometry.dispose();
+    this.floor.geometry = edgesOf(floorUnder(stock, floor_mm));
     this.box.makeEmpty();
     this.box.expandByPoint(new Vector3(...stock.low)).expandByPoint(new Vector3(...stock.high));
     const size = this.box.getSize(new Vector3());
