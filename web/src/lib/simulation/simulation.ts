@@ -20,7 +20,7 @@ export interface Setup extends Surroundings {
 
 const MOST_MAKERS = 255;
 /** Between two checkpoints. */
-const CELLS_PER_CHECKPOINT = 800_000;
+const CELLS_PER_CHECKPOINT = 400_000;
 const MOVES_PER_CHECKPOINT = 5_000;
 const MOST_CHECKPOINT_BYTES = 96e6;
 

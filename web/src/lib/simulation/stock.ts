@@ -27,13 +27,15 @@ export interface Surroundings {
   floor_mm: number;
 }
 
-/** Around the moves of a program that cut, with an allowance at the sides; the top is at Z0 unless the program cuts above it. */
+/** Around the moves of a program that cut, with an allowance at the sides and below, so that a pocket has a floor; the top is at Z0 unless
+ * the program cuts above it. */
 export function stockAround(cuts: Box, allowance_mm: number): Stock {
   const [low, high]: [Triple, Triple] = [[...cuts.low], [...cuts.high]];
   for (const axis of [0, 1]) {
     low[axis] = (low[axis] ?? 0) - allowance_mm;
     high[axis] = (high[axis] ?? 0) + allowance_mm;
   }
+  low[2] -= allowance_mm;
   high[2] = Math.max(high[2], 0);
   const LEAST_MM = 1;
   for (const axis of [0, 1, 2]) {
