@@ -147,6 +147,14 @@ export class Rig {
     return Math.max(...sizes);
   }
 
+  /** Processor time of all processes of the browser. [s] */
+  async processorTime(): Promise<number> {
+    const session = await (this.browser as Browser).newBrowserCDPSession();
+    const { processInfo } = await session.send('SystemInfo.getProcessInfo');
+    await session.detach();
+    return processInfo.reduce((sum, one) => sum + one.cpuTime, 0);
+  }
+
   get port(): number {
     return Number(new URL(this.address).port);
   }

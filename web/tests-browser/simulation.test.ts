@@ -211,8 +211,8 @@ it.each([['dark', 'en'], ['light', 'en'], ['dark', 'de'], ['light', 'es']] as co
   await page.getByTestId('language').selectOption('en');
 }, 120_000);
 
-it('prepares 100,000 moves within seconds, and keeps up with the slider', async () => {
-  // A surface by the ball nose T5. The limits allow for other jobs of the computer; the figures are printed.
+it('prepares 100,000 moves, and keeps up with the slider', async () => {
+  // A surface by the ball nose T5. The limits are processor time, which other jobs of the computer change little.
   const lines = ['G21 G90 G17 G54 F3000', 'T5 M6', 'G43 H5', 'G0 Z5', 'G0 X0 Y0'];
   let [x, y, step] = [0, 0, 0.5];
   for (let i = 0; i < 100_000; ++i) {
@@ -224,24 +224,29 @@ it('prepares 100,000 moves within seconds, and keeps up with the slider', async 
     lines.push(`G1 X${x.toFixed(3)} Y${y.toFixed(3)} Z${(-3 - 1.5 * Math.sin(x / 9) * Math.cos(y / 7)).toFixed(3)}`);
   }
   rig.write('surface.ngc', `${lines.join('\n')}\nG0 Z5\nM2\n`);
+  const start = await rig.processorTime();
   await open('surface.ngc');
   const ready = page.getByTestId('simulation-ready');
-  await ready.waitFor({ timeout: 30_000 });
-  const took = Number(await ready.getAttribute('data-took'));
-  const rate = await page.evaluate(async () => {
+  await ready.waitFor({ timeout: 60_000 });
+  const used = (await rig.processorTime()) - start;
+  const before = await rig.processorTime();
+  const pictures = await page.evaluate(async () => {
     const slider = document.querySelector('[data-testid="simulation-slider"]') as HTMLInputElement;
     const { scene } = document.querySelector('[data-testid="simulation-canvas"]') as HTMLCanvasElement & { scene: { pictures: number } };
-    const [begin, before, SECONDS] = [performance.now(), scene.pictures, 4];
-    for (let now = begin; now - begin < SECONDS * 1000; now = performance.now()) {
-      slider.value = String((0.5 - 0.5 * Math.cos(((now - begin) / 1000) * 2)) * Number(slider.max));
+    const [first, begin, MS] = [scene.pictures, performance.now(), 4000];
+    for (let now = begin; now - begin < MS; now = performance.now()) {
+      slider.value = String((0.5 - 0.5 * Math.cos((now - begin) / 500)) * Number(slider.max));
       slider.dispatchEvent(new Event('input', { bubbles: true }));
       await new Promise((done) => requestAnimationFrame(done));
     }
-    return (scene.pictures - before) / SECONDS;
+    return scene.pictures - first;
   });
-  console.log(`100,000 moves prepared in ${took} ms; ${rate} pictures per second while the slider moves`);
-  expect(took).toBeLessThan(10_000);
-  expect(rate).toBeGreaterThan(5);
-}, 90_000);
+  const each_ms = (((await rig.processorTime()) - before) * 1000) / pictures;
+  console.log(`100,000 moves: ready after ${await ready.getAttribute('data-took')} ms and ${used.toFixed(2)} s of processor time of the browser, path drawing included; ${pictures / 4} pictures per second, ${each_ms.toFixed(1)} ms of processor time each`);
+  expect(used).toBeLessThan(8);
+  expect(pictures).toBeGreaterThan(0);
+  // 30 pictures per second on two processors.
+  expect(each_ms).toBeLessThan(2000 / 30);
+}, 120_000);
 
 it('has reported no error', () => expect(errorsOf(page)).toEqual([]));
