@@ -9,7 +9,7 @@ import { bringUp, errorsOf, judgeByAxe, openView, Rig, sleep, until, untilText }
 const PICTURES = process.env['MW_SCREEN_PICTURES'];
 const SIZES = [[1280, 800], [800, 480], [390, 844]] as const;
 
-// T1 is an end mill of 6 mm that is 33 mm long. The stock goes from 2 mm around and below the cuts to Z0.
+// T1 is an end mill of 6 mm that is 33 mm long. The stock goes from 2 mm around and below the cuts to Z0: from X5 Y5 Z-10.
 const PLANTED = `G21 G90 G17 G54 F1200
 T1 M6
 G43 H1

@@ -207,7 +207,8 @@ describe('the moves of the server', () => {
     expect(made.field.volume()).toBeCloseTo(STOCK_MM3, -1);
   });
   it('have a stock around their cuts', () => {
-    expect(stockAround({ low: [10, 5, -8], high: [60, 45, -1] }, 2)).toEqual({ kind: 'box', low: [8, 3, -10], high: [62, 47, 0] });
+    expect(stockAround({ low: [10, 5, -8], high: [60, 45, 17] }, 3, 2)).toEqual({ kind: 'box', low: [5, 0, -10], high: [65, 50, 0] });
+    expect(stockAround({ low: [10, 5, 4], high: [60, 45, 17] }, 3, 2)).toEqual({ kind: 'box', low: [5, 0, 2], high: [65, 50, 17] });
   });
 });
 

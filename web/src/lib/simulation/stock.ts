@@ -27,16 +27,17 @@ export interface Surroundings {
   floor_mm: number;
 }
 
-/** Around the moves of a program that cut, with an allowance at the sides and below, so that a pocket has a floor; the top is at Z0 unless
- * the program cuts above it. */
-export function stockAround(cuts: Box, allowance_mm: number): Stock {
+/** Around the moves of a program that cut with a tool of this radius, with an allowance at the sides and below, so that a pocket has walls and
+ * a floor. Its top is Z0 where the program cuts below that, otherwise the end of the highest cut. */
+export function stockAround(cuts: Box, radius_mm: number, allowance_mm: number): Stock {
   const [low, high]: [Triple, Triple] = [[...cuts.low], [...cuts.high]];
   for (const axis of [0, 1]) {
-    low[axis] = (low[axis] ?? 0) - allowance_mm;
-    high[axis] = (high[axis] ?? 0) + allowance_mm;
+    low[axis] = (low[axis] ?? 0) - radius_mm - allowance_mm;
+    high[axis] = (high[axis] ?? 0) + radius_mm + allowance_mm;
   }
+  // Bores that are left by a feed, and approaches, are above the stock.
+  high[2] = low[2] < 0 ? 0 : high[2];
   low[2] -= allowance_mm;
-  high[2] = Math.max(high[2], 0);
   const LEAST_MM = 1;
   for (const axis of [0, 1, 2]) {
     if ((high[axis] ?? 0) - (low[axis] ?? 0) < LEAST_MM) {

@@ -183,7 +183,7 @@ function begin(facts: Facts): void {
     simulation.phase = 'unsupported';
     return;
   }
-  const stock = kept?.stock ?? (facts.cuts === null ? null : stockAround(facts.cuts, ALLOWANCE_MM));
+  const stock = kept?.stock ?? firstStock(facts);
   simulation.stock = stock === null ? null : $state.snapshot(stock);
   simulation.fixtures = $state.snapshot([...(kept?.fixtures ?? [])]);
   simulation.floor_mm = kept?.floor_mm ?? stock?.low[2] ?? 0;
@@ -218,8 +218,13 @@ export function useStock(stock: Stock, fixtures: Fixture[], floor_mm: number): v
 }
 
 /** The stock that the program's cuts need. */
+function firstStock(facts: Facts): Stock | null {
+  const radius_mm = Math.max(0, ...facts.tools.map((tool) => shapeOf(tool).diameter_mm / 2));
+  return facts.cuts === null ? null : stockAround($state.snapshot(facts.cuts), radius_mm, ALLOWANCE_MM);
+}
+
 export function defaultStock(): Stock | null {
-  return simulation.facts?.cuts == null ? null : stockAround($state.snapshot(simulation.facts.cuts), ALLOWANCE_MM);
+  return simulation.facts === null ? null : firstStock(simulation.facts);
 }
 
 export function useShape(tool: number, shape: ToolShape): void {
