@@ -114,7 +114,10 @@ describe('when it is on', () => {
       await sleep(100);
       for (const tab of width >= 1280 ? TABS : SMALL_TABS) {
         await openView(page, tab);
-        await sleep(tab === 'path' || tab === 'plots' ? 350 : 120);
+        if (tab === 'simulation') {
+          await page.locator('[data-testid="simulation"][data-phase="ready"]').waitFor({ timeout: 20_000 });
+        }
+        await sleep(['path', 'plots', 'simulation'].includes(tab) ? 350 : 120);
         await judge(`${tab} ${width}x${height} ${theme}`);
         await isUsable(`${tab} ${width}x${height} ${theme}`);
         if (theme === 'dark' || tab === 'path') {
