@@ -2,7 +2,7 @@
 // Moves for tests of the simulation, as the server sends them.
 import { Moves } from '../../src/lib/simulation/moves';
 import { guessShape, type ToolShape } from '../../src/lib/simulation/shapes';
-import { Simulation, type Setup } from '../../src/lib/simulation/simulation';
+import { Simulation, type CheckpointLimits, type Setup } from '../../src/lib/simulation/simulation';
 import type { Stock, Triple } from '../../src/lib/simulation/stock';
 
 export interface Point {
@@ -42,8 +42,8 @@ export function tool(shape: Partial<ToolShape> = {}): ToolShape {
   return { ...guessShape(6, ''), ...shape };
 }
 
-export function simulate(moves: Moves, setup: Partial<Setup> = {}, bytes?: number): Simulation {
-  const made = new Simulation(moves, { stock: BOX, fixtures: [], floor_mm: -20, tools: new Map([[1, tool()]]), cell_mm: null, ...setup }, bytes);
+export function simulate(moves: Moves, setup: Partial<Setup> = {}, limits?: CheckpointLimits): Simulation {
+  const made = new Simulation(moves, { stock: BOX, fixtures: [], floor_mm: -20, tools: new Map([[1, tool()]]), cell_mm: null, ...setup }, limits);
   while (!made.prepare(1e7, 1e5)) {
     // until the end
   }

@@ -19,10 +19,13 @@ export interface Setup extends Surroundings {
 }
 
 const MOST_MAKERS = 255;
-/** Between two checkpoints. */
-const CELLS_PER_CHECKPOINT = 400_000;
-const MOVES_PER_CHECKPOINT = 5_000;
-const MOST_CHECKPOINT_BYTES = 96e6;
+/** Memory of all checkpoints, and cells and moves between two of them. */
+export interface CheckpointLimits {
+  bytes: number;
+  cells: number;
+  moves: number;
+}
+const CHECKPOINTS: CheckpointLimits = { bytes: 96e6, cells: 400_000, moves: 5_000 };
 
 interface Mill {
   cutter: Cutter;
@@ -52,7 +55,7 @@ export class Simulation {
   constructor(
     readonly moves: Moves,
     private readonly setup: Setup,
-    checkpoint_bytes = MOST_CHECKPOINT_BYTES,
+    private readonly limits = CHECKPOINTS,
   ) {
     const cutters = new Map<number, Cutter>();
     for (const tool of new Set(moves.tools.map((one) => one.tool))) {
@@ -67,7 +70,7 @@ export class Simulation {
     this.field = new Field(setup.stock, setup.cell_mm ?? chooseCell(moves, cutters, setup.stock));
     this.sweep = new Sweep(this.field);
     this.tops = new Tops(this.field);
-    this.checkpoints = new Checkpoints(this.field, checkpoint_bytes);
+    this.checkpoints = new Checkpoints(this.field, this.limits.bytes);
     this.checkpoints.add(0);
   }
 
@@ -91,6 +94,10 @@ export class Simulation {
     return Math.max(0, this.moves.count - 1);
   }
 
+  get checkpointCount(): number {
+    return this.checkpoints.count;
+  }
+
   /** Cells looked at up to now. */
   get work(): number {
     return this.sweep.cells;
@@ -104,8 +111,8 @@ export class Simulation {
     while (this.prepared < last && sweep.cells < stop) {
       this.prepared += 1;
       this.prepareMove(this.prepared);
-      const isDue =
-        sweep.cells - this.cells_at_checkpoint >= CELLS_PER_CHECKPOINT * checkpoints.stride || this.prepared - checkpoints.last >= MOVES_PER_CHECKPOINT * checkpoints.stride;
+      const { cells, moves } = this.limits;
+      const isDue = sweep.cells - this.cells_at_checkpoint >= cells * checkpoints.stride || this.prepared - checkpoints.last >= moves * checkpoints.stride;
       if (isDue) {
         checkpoints.add(this.prepared);
         this.cells_at_checkpoint = sweep.cells;
