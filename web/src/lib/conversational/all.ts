@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What others use of this folder.
+export * from './dxf';
+export * from './job';
+export * from './registry';
+export * from './store';
+export * from './types';
+export * from './validate';

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// A program of several operations: what they have in common, its checks, and its G-code.
+import { en, type ConvKey } from './i18n/en';
+import { nice, shortest } from './fields';
+import { operationOf } from './registry';
+import { num, word, type Context, type Fault, type Faults, type Field, type Operation, type TableTool, type Unit, type Values } from './types';
+import { faultsOf, isShown } from './validate';
+import { plain, Writer } from './writer';
+
+export const SYSTEMS = ['G54', 'G55', 'G56', 'G57', 'G58', 'G59', 'G59.1', 'G59.2', 'G59.3'];
+
+export interface Step {
+  type: string;
+  values: Values;
+}
+export interface Job {
+  version: 1;
+  machine: 'mill' | 'lathe';
+  name: string;
+  unit: Unit;
+  system: string;
+  /** Z above everything on the table, in the coordinate system [unit]. */
+  safe: number;
+  /** Before a tool change and at the end: to Z 0 of the machine, or to the safe height. */
+  retract: 'machine' | 'safe';
+  end: 'M30' | 'M2';
+  steps: Step[];
+}
+
+export function newJob(unit: Unit, machine: 'mill' | 'lathe' = 'mill'): Job {
+  return { version: 1, machine, name: '', unit, system: 'G54', safe: nice(unit, 25, 1), retract: 'machine', end: 'M30', steps: [] };
+}
+
+/** What the machine contributes to the checks. */
+export interface MachineFacts {
+  tools: TableTool[] | null;
+  maxFeed: number | null;
+  maxSpeed: number | null;
+}
+export const NOTHING_KNOWN: MachineFacts = { tools: null, maxFeed: null, maxSpeed: null };
+
+export function contextOf(job: Job, facts: MachineFacts): Context {
+  return { unit: job.unit, safe: job.safe, ...facts };
+}
+
+/** Names that a file can have on every computer. */
+const NAME = /^[\p{L}\p{N}][\p{L}\p{N} _.+-]*$/u;
+const MOST_NAME = 60;
+
+/** Faults of the fields of the program itself. */
+export function jobFaults(job: Job): Faults {
+  const faults: Faults = {};
+  if (!NAME.test(job.name) || job.name.length > MOST_NAME) {
+    faults['name'] = { key: job.name.trim() === '' ? 'fault.no_name' : job.name.length > MOST_NAME ? 'fault.long_name' : 'fault.name' };
+  }
+  if (!SYSTEMS.includes(job.system)) {
+    faults['system'] = { key: 'fault.choice' };
+  }
+  const safe = safeFault(job);
+  if (safe !== null) {
+    faults['safe'] = safe;
+  }
+  return faults;
+}
+
+function safeFault(job: Job): Fault | null {
+  if (!Number.isFinite(job.safe)) {
+    return { key: 'fault.number' };
+  }
+  const most = nice(job.unit, 2000, 80);
+  if (Math.abs(job.safe) > most) {
+    return { key: 'fault.at_most', values: { high: most } };
+  }
+  const tops = job.steps.map((one) => num(one.values, 'top')).filter(Number.isFinite);
+  const highest = Math.max(...tops);
+  return tops.length > 0 && job.safe < highest + shortest(job.unit) ? { key: 'fault.safe_below', values: { top: highest } } : null;
+}
+
+/** Faults of each operation, in their order. */
+export function stepFaults(job: Job, facts: MachineFacts): Faults[] {
+  const context = contextOf(job, facts);
+  return job.steps.map((one) => {
+    const operation = operationOf(one.type);
+    return operation === null || operation.machine !== job.machine ? { type: { key: 'fault.operation' } } : faultsOf(operation, one.values, context);
+  });
+}
+
+export function isFaultless(job: Job, facts: MachineFacts): boolean {
+  return job.steps.length > 0 && Object.keys(jobFaults(job)).length === 0 && stepFaults(job, facts).every((one) => Object.keys(one).length === 0);
+}
+
+const KINDS: Record<string, (unit: Unit) => string> = { length: (unit) => unit, feed: (unit) => `${unit}/min`, speed: () => 'rev/min', angle: () => 'deg', time: () => 's', count: () => '' };
+
+/** The unit of a field. */
+export function unitOf(field: Field, unit: Unit): string {
+  return KINDS[field.kind]?.(unit) ?? '';
+}
+
+function text(key: string): string {
+  return en[key as ConvKey] ?? key;
+}
+
+function shownValue(field: Field, values: Values, unit: Unit): string | null {
+  if (field.kind === 'drawing' || field.kind === 'points') {
+    return null;
+  }
+  if (field.kind === 'choice') {
+    return text(`choice.${field.id}.${word(values, field.id)}`);
+  }
+  const value = values[field.id];
+  return typeof value === 'number' ? `${plain(value, 5)} ${unitOf(field, unit)}`.trim() : String(value);
+}
+
+/** The parameters as comments, in English: a program may be read at any machine. */
+function parameters(writer: Writer, operation: Operation, values: Values): void {
+  for (const field of operation.fields) {
+    const shown = isShown(field, values) ? shownValue(field, values, writer.unit) : null;
+    if (shown !== null) {
+      writer.comment(`  ${text(`field.${field.id}`)}: ${shown}`);
+    }
+  }
+}
+
+const COOLANT: Record<string, string> = { flood: 'M8', mist: 'M7', off: 'M9' };
+
+function header(writer: Writer, job: Job): void {
+  writer.comment(job.name);
+  writer.comment(`Made by Millwright, conversational. Units: ${job.unit === 'mm' ? 'mm' : 'inch'}. Zero: ${job.system}. Safe height: Z${writer.number(job.safe)}`);
+  const used = new Map(job.steps.map((one) => [num(one.values, 'tool'), num(one.values, 'diameter')]));
+  for (const [tool, diameter] of used) {
+    writer.comment(`Tool T${tool}: diameter ${writer.number(diameter)} ${job.unit}`);
+  }
+  writer.blank();
+  writer.line(`${job.unit === 'mm' ? 'G21' : 'G20'} G17 G90 G94`);
+  writer.line('G40 G49 G80');
+  // Corners stay within this of the path.
+  writer.line(`G64 P${job.unit === 'mm' ? '0.01' : '0.0004'}`);
+  writer.line(job.system);
+}
+
+function retract(writer: Writer, job: Job): void {
+  writer.forget();
+  if (job.retract === 'machine') {
+    writer.line('G53 G0 Z0');
+  } else {
+    writer.rapid({ z: job.safe });
+  }
+}
+
+function toolChange(writer: Writer, job: Job, values: Values, isFirst: boolean): void {
+  const tool = num(values, 'tool');
+  writer.line('M5 M9');
+  // The length of the tool before is cancelled at first: the height is that of the machine.
+  if (!isFirst || job.retract === 'machine') {
+    retract(writer, job);
+  }
+  writer.line(`T${tool} M6`);
+  writer.line(`G43 H${tool}`);
+  retract(writer, job);
+}
+
+/** Rapid moves between operations are at the height of the retract, then straight down. */
+function runStep(writer: Writer, job: Job, step: Step, context: Context, before: Step | undefined): void {
+  const operation = operationOf(step.type);
+  if (operation === null) {
+    return;
+  }
+  const isChange = before === undefined || num(before.values, 'tool') !== num(step.values, 'tool');
+  if (isChange) {
+    toolChange(writer, job, step.values, before === undefined);
+  } else if (word(before.values, 'coolant') !== word(step.values, 'coolant')) {
+    writer.line('M9');
+  }
+  const isLeft = word(step.values, 'hand') === 'left' && step.type === 'tap';
+  writer.line(`S${plain(num(step.values, 'speed'), 1)} ${isLeft ? 'M4' : 'M3'}`);
+  writer.line(COOLANT[word(step.values, 'coolant')] ?? 'M9');
+  writer.forget();
+  operation.write(writer, step.values, context);
+}
+
+/** The G-code of a job without faults. */
+export function programOf(job: Job, facts: MachineFacts): string {
+  const writer = new Writer(job.unit);
+  const context = contextOf(job, facts);
+  header(writer, job);
+  for (const [i, step] of job.steps.entries()) {
+    const operation = operationOf(step.type);
+    writer.blank();
+    writer.comment(`${i + 1}. ${text(`op.${step.type}`)}`);
+    if (operation !== null) {
+      parameters(writer, operation, step.values);
+    }
+    runStep(writer, job, step, context, job.steps[i - 1]);
+  }
+  writer.blank();
+  writer.line('M5 M9');
+  retract(writer, job);
+  writer.line(job.end);
+  return `${writer.lines.join('\n')}\n`;
+}

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Checks the values of a form: one fault for each field, the first that applies.
+import { type Context, type Fault, type Faults, type Field, type NumberField, type Operation, type Unit, type Values } from './types';
+
+/** Lengths that people type have no more digits than this matters. */
+const TOLERANCE = 1e-9;
+
+export function isShown(field: Field, values: Values): boolean {
+  return field.isShown?.(values) ?? true;
+}
+
+function numberFault(field: NumberField, values: Values, context: Context): Fault | null {
+  const value = values[field.id];
+  if (typeof value !== 'number' || !Number.isFinite(value)) {
+    return { key: 'fault.number' };
+  }
+  if (field.kind === 'count' && !Number.isInteger(value)) {
+    return { key: 'fault.whole' };
+  }
+  for (const one of field.limits(values, context)) {
+    const isLow = one.low !== undefined && (value < one.low - TOLERANCE || (one.isOpen === true && value <= one.low));
+    const isHigh = one.high !== undefined && (value > one.high + TOLERANCE || (one.isOpen === true && value >= one.high));
+    if (isLow || isHigh) {
+      return { key: one.key, ...(one.values === undefined ? {} : { values: rounded(one.values) }) };
+    }
+  }
+  return null;
+}
+
+/** Values of a message have the digits of the field. */
+function rounded(values: Record<string, string | number>): Record<string, string | number> {
+  return Object.fromEntries(Object.entries(values).map(([key, value]) => [key, typeof value === 'number' ? Math.round(value * 1e5) / 1e5 : value]));
+}
+
+function fieldFault(field: Field, values: Values, context: Context): Fault | null {
+  if (field.kind === 'choice') {
+    return field.options.includes(String(values[field.id])) ? null : { key: 'fault.choice' };
+  }
+  if ('check' in field) {
+    const value = values[field.id];
+    return typeof value === 'string' ? field.check(value, values, context) : { key: 'fault.text' };
+  }
+  return numberFault(field, values, context);
+}
+
+/** The faults of a form by field; empty where the operation can be written. */
+export function faultsOf(operation: Operation, values: Values, context: Context): Faults {
+  const faults: Faults = {};
+  for (const field of operation.fields) {
+    const fault = isShown(field, values) ? fieldFault(field, values, context) : null;
+    if (fault !== null) {
+      faults[field.id] = fault;
+    }
+  }
+  const further = Object.keys(faults).length === 0 ? operation.check?.(values, context) : undefined;
+  for (const [id, fault] of Object.entries(further ?? {})) {
+    faults[id] = { key: fault.key, ...(fault.values === undefined ? {} : { values: rounded(fault.values) }) };
+  }
+  return faults;
+}
+
+/** The values of a new form; what is in `typed` stays. Defaults may depend on fields before them. */
+export function filled(operation: Operation, typed: Values, context: Context): Values {
+  const values: Values = {};
+  for (const field of operation.fields) {
+    const own = typed[field.id];
+    values[field.id] = own !== undefined ? own : typeof field.preset === 'function' ? roundPreset(field.preset({ ...values }, context), context.unit) : field.preset;
+  }
+  return values;
+}
+
+function roundPreset(value: number, unit: Unit): number {
+  const digits = unit === 'mm' ? 1e3 : 1e4;
+  return Math.round(value * digits) / digits;
+}
