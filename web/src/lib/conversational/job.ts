@@ -79,10 +79,23 @@ function safeFault(job: Job): Fault | null {
 /** Faults of each operation, in their order. */
 export function stepFaults(job: Job, facts: MachineFacts): Faults[] {
   const context = contextOf(job, facts);
-  return job.steps.map((one) => {
+  return job.steps.map((one, i): Faults => {
     const operation = operationOf(one.type);
-    return operation === null || operation.machine !== job.machine ? { type: { key: 'fault.operation' } } : faultsOf(operation, one.values, context);
+    if (operation === null || operation.machine !== job.machine) {
+      return { type: { key: 'fault.operation' } };
+    }
+    const faults = faultsOf(operation, one.values, context);
+    const other = otherDiameter(job, i);
+    return other === null || faults['diameter'] !== undefined ? faults : { ...faults, diameter: other };
   });
+}
+
+/** A tool has one diameter in the whole program. */
+function otherDiameter(job: Job, at: number): Fault | null {
+  const tool = num(job.steps[at]?.values ?? {}, 'tool');
+  const diameter = num(job.steps[at]?.values ?? {}, 'diameter');
+  const other = job.steps.findIndex((one, i) => i < at && num(one.values, 'tool') === tool && Math.abs(num(one.values, 'diameter') - diameter) > 1e-6);
+  return other < 0 ? null : { key: 'fault.tool_twice', values: { tool, number: other + 1, diameter: num(job.steps[other]?.values ?? {}, 'diameter') } };
 }
 
 export function isFaultless(job: Job, facts: MachineFacts): boolean {

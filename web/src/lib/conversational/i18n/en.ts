@@ -228,6 +228,15 @@ export const en = {
   'fault.safe_below': 'The safe height must be above the surface Z{top}.',
   'fault.operation': 'This version does not know this operation.',
 
+  'fault.tool_twice': 'T{tool} has another diameter in operation {number}: {diameter}.',
+
+  'group.shape': 'Shape',
+  'group.depth': 'Depth',
+  'group.tool': 'Tool',
+  'group.cut': 'Cutting',
+
+  'panel.title': 'Conversational',
+  'panel.machine': 'These forms are for mills. This machine is none.',
   'panel.new': 'New program',
   'panel.open': 'Open again',
   'panel.operations': 'Operations',
