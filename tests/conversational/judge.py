@@ -7,7 +7,8 @@ import numpy as np
 import shapes
 from stock import Judge, Stock
 
-SLACK = {'mm': 0.003, 'inch': 0.00012}
+# The interpreter prints four decimals, of ends and centres: in inches that is coarse.
+SLACK = {'mm': 0.003, 'inch': 0.00025}
 MOST_MOVES = 60000
 HOLES = {'drill', 'tap', 'bore'}
 POCKETS = {'rect_pocket', 'round_pocket', 'slot'}
@@ -118,26 +119,31 @@ def judge_operation(kind, v, moves, unit, pieces=None, pitches=None):
         return judge_contour(v, moves, unit, pieces, faults)
     low, high, distance = removal(kind, v, pieces, unit)
     stock = Stock(low, high, v['top'], v['diameter'] / 2)
+    if kind != 'face':
+        stock.add_probes(distance, 3 * SLACK[unit])
     judge = Judge(stock, v['diameter'] / 2, rules_of(kind, v, unit))
     judge.follow(moves)
     faults += judge.faults
     if kind == 'tap' and v['tapping'] == 'rigid' and not all(abs(abs(k) - v['pitch']) < 1e-4 for k in (pitches or {}).values()):
         faults.append(f'pitch {pitches}')
-    faults += shape_faults(stock, distance(stock.x, stock.y), v['top'], bottom_of(kind, v), SLACK[unit])
-    figures = {'deepest': judge.deepest, 'steepest': judge.steepest, 'cells': stock.height.size, 'removed': float(np.mean(stock.height < v['top'] - SLACK[unit]))}
+    bottom = bottom_of(kind, v)
+    faults += shape_faults(stock.x, stock.y, stock.height, distance, v['top'], bottom, SLACK[unit])
+    faults += shape_faults(stock.probe_x, stock.probe_y, stock.probe_height, distance, v['top'], bottom, SLACK[unit])
+    figures = {'deepest': judge.deepest, 'steepest': judge.steepest, 'cells': stock.height.size, 'probes': stock.probe_x.size, 'removed': float(np.mean(stock.height < v['top'] - SLACK[unit]))}
     return faults, figures
 
 
-def shape_faults(stock, distance, top, bottom, slack):
+def shape_faults(x, y, height, distance, top, bottom, slack):
+    away = distance(x, y) if x.size else np.zeros(0)
+    return texts_of({'cut outside of the shape': (height < top - slack) & (away > slack), 'material left': (away < -slack) & (height > bottom + slack), 'below the depth': height < bottom - slack}, x, y, height, away)
+
+
+def texts_of(wrongs, x, y, height, away):
     faults = []
-    isCut = stock.height < top - slack
-    gouged = isCut & (distance > slack)
-    left = (distance < -slack) & (stock.height > bottom + slack)
-    deep = stock.height < bottom - slack
-    for name, wrong in (('cut outside of the shape', gouged), ('material left', left), ('below the depth', deep)):
+    for name, wrong in wrongs.items():
         if np.any(wrong):
             at = np.argmax(wrong)
-            faults.append(f'{name}: {int(np.sum(wrong))} cells, at X{stock.x.flat[at]:.4f} Y{stock.y.flat[at]:.4f} Z{stock.height.flat[at]:.4f}, distance {distance.flat[at]:.5f}')
+            faults.append(f'{name}: {int(np.sum(wrong))} points, at X{x.flat[at]:.4f} Y{y.flat[at]:.4f} Z{height.flat[at]:.4f}, {away.flat[at]:.5f} from the wall')
     return faults
 
 
@@ -172,44 +178,54 @@ def judge_contour(v, moves, unit, contours, faults):
     slack, radius = SLACK[unit], v['diameter'] / 2
     contours = moved(contours, v)
     points = [p for one in contours for p in shapes.polygon_of(one)]
-    allowance = 0.0 if v['side'] == 'on' else v['allowance']
-    reach = 2 * v['diameter'] + 2 * allowance
+    reach = 2 * v['diameter'] + 2 * v.get('allowance', 0.0)
     stock = Stock((min(p[0] for p in points) - reach, min(p[1] for p in points) - reach), (max(p[0] for p in points) + reach, max(p[1] for p in points) + reach), v['top'], radius)
+
+    def distance(x, y):
+        away, isTool = side_of(v, x, y, contours)
+        return away - radius if v['side'] == 'on' else np.where(isTool, -away, away)
+
+    stock.add_probes(distance, 5 * slack)
     judge = Judge(stock, radius, rules_of('contour', v, unit))
     judge.follow(moves)
     faults += judge.faults
-    away, isTool = side_of(v, stock.x, stock.y, contours)
+    faults += contour_faults(stock.x, stock.y, stock.height, v, contours, slack) + contour_faults(stock.probe_x, stock.probe_y, stock.probe_height, v, contours, slack)
+    return faults, {'deepest': judge.deepest, 'steepest': judge.steepest, 'cells': stock.height.size, 'probes': stock.probe_x.size, 'removed': float(np.mean(stock.height < v['top'] - slack))}
+
+
+def contour_faults(x, y, height, v, contours, slack):
+    if x.size == 0:
+        return []
+    radius = v['diameter'] / 2
+    away, isTool = side_of(v, x, y, contours)
     isEnded = v['side'] in ('left', 'right')
-    isCut = stock.height < v['top'] - slack
-    # On the other side of the line: round corners of the drawing are polygons here.
-    round_ = 1e-4 * max((one[2] for c in contours for one in c if one[0] == 'arc'), default=0.0) + slack
-    wide = radius if v['side'] == 'on' else 2 * radius + allowance
-    ends = end_distance(stock, contours) if isEnded else np.full(np.shape(away), np.inf)
-    gouged = isCut & ((away > wide + slack) | (~isTool & (away > round_) & (ends > radius + slack)))
-    left = wanted(stock, away, isTool, radius, v, slack, contours) & (ends > 1.5 * radius) & (stock.height > v['top'] - v['depth'] + slack)
-    deep = stock.height < v['top'] - v['depth'] - slack
-    for name, wrong in (('cut outside of the shape', gouged), ('material left', left), ('below the depth', deep)):
-        if np.any(wrong):
-            at = np.argmax(wrong)
-            faults.append(f'{name}: {int(np.sum(wrong))} cells, at X{stock.x.flat[at]:.4f} Y{stock.y.flat[at]:.4f} Z{stock.height.flat[at]:.4f}, {away.flat[at]:.5f} from the line')
-    return faults, {'deepest': judge.deepest, 'steepest': judge.steepest, 'cells': stock.height.size, 'removed': float(np.mean(isCut))}
-
-
-def end_distance(stock, contours):
-    ends = [p for one in contours for p in (one[0][1], one[-1][2])]
-    return np.min([np.hypot(stock.x - p[0], stock.y - p[1]) for p in ends], axis=0)
-
-
-def wanted(stock, away, isTool, radius, v, slack, contours):
-    """Cells near the line that the tool can reach without cutting into a contour."""
+    # Arcs of the drawing are polygons where the sides are told apart.
+    blur = 1e-4 * max((one[2] for c in contours for one in c if one[0] == 'arc'), default=0.0) + slack
+    wide = radius if v['side'] == 'on' else 2 * radius + v['allowance']
+    ends = end_distance(x, y, contours) if isEnded else np.full(np.shape(away), np.inf)
+    isCut = height < v['top'] - slack
+    gouged = isCut & ((away > wide + slack) | (~isTool & (away > blur) & (ends > radius + slack)))
+    left = wanted(x, y, height, away, isTool, v, slack, contours) & (away > blur) & (ends > 1.5 * radius)
     if v['side'] == 'on':
-        return away < radius - slack
-    px, py = centres(radius, v, contours)
+        left = (away < radius - slack) & (height > v['top'] - v['depth'] + slack)
+    return texts_of({'cut outside of the shape': gouged, 'material left': left, 'below the depth': height < v['top'] - v['depth'] - slack}, x, y, height, away)
+
+
+def end_distance(x, y, contours):
+    ends = [p for one in contours for p in (one[0][1], one[-1][2])]
+    return np.min([np.hypot(x - p[0], y - p[1]) for p in ends], axis=0)
+
+
+def wanted(x, y, height, away, isTool, v, slack, contours):
+    """Points near the line with material that the tool can reach without cutting into a contour."""
     out = np.zeros(np.shape(away), dtype=bool)
-    if px.size == 0:
+    if v['side'] == 'on':
         return out
-    for k, i in np.argwhere(isTool & (away < 0.95 * radius) & (away > 4 * slack) & (stock.height > v['top'] - v['depth'] + slack)):
-        out[k, i] = np.min(np.hypot(px - stock.x[k, i], py - stock.y[k, i])) < radius - slack
+    radius = v['diameter'] / 2
+    px, py = centres(radius, v, contours)
+    if px.size:
+        for at in np.flatnonzero(isTool & (away < 0.95 * radius) & (away > 4 * slack) & (height > v['top'] - v['depth'] + slack)):
+            out.flat[at] = np.min(np.hypot(px - x.flat[at], py - y.flat[at])) < radius - slack
     return out
 
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A block of material as a map of heights, cut by a flat tool parallel to Z. It finds rapid moves in material, cuts that are too deep
-at once, and plunges. A cell counts as cut where the tool passes over its centre: distances are exact, whatever the size of a cell."""
+at once, and plunges. A cell counts as cut where the tool passes over its centre: distances are exact, whatever the size of a cell. Probes lie close to walls."""
 import math
 
 import numpy as np
@@ -18,22 +18,43 @@ class Stock:
         self.x, self.y = np.meshgrid(self.xs, self.ys)
         self.top = top
         self.height = np.full(self.x.shape, float(top))
+        self.probe_x = self.probe_y = self.probe_height = np.zeros(0)
 
-    def window(self, low, high):
-        i = slice(*np.searchsorted(self.xs, [low[0], high[0]]))
-        k = slice(*np.searchsorted(self.ys, [low[1], high[1]]))
-        return (k, i)
+    def add_probes(self, distance, off):
+        """Points at `off` on both sides of the wall, where the distance from it is 0: a wall is judged as exactly as that."""
+        away = distance(self.x, self.y)
+        isNear = np.abs(away) < 1.5 * self.cell
+        x, y = self.x[isNear], self.y[isNear]
+        step = 1e-3 * self.cell
+        here = away[isNear]
+        dx, dy = (distance(x + step, y) - here) / step, (distance(x, y + step) - here) / step
+        xs, ys = [], []
+        for side in (-off, off):
+            px, py = x - (here - side) * dx, y - (here - side) * dy
+            isOnWall = np.abs(distance(px, py) - side) < 0.2 * off
+            isInside = (px > self.xs[0]) & (px < self.xs[-1]) & (py > self.ys[0]) & (py < self.ys[-1])
+            xs.append(px[isOnWall & isInside])
+            ys.append(py[isOnWall & isInside])
+        x, y = np.concatenate(xs), np.concatenate(ys)
+        order = np.argsort(x)
+        self.probe_x, self.probe_y = x[order], y[order]
+        self.probe_height = np.full(order.shape, float(self.top))
 
     def under(self, move_from, move_to, radius, centre=None, sweep=0.0):
-        """Window and mask of the cells that the tool passes over."""
+        """Heights of cells and of probes near a move, each with the mask of those that the tool passes over."""
         if centre is None:
             low = (min(move_from[0], move_to[0]) - radius, min(move_from[1], move_to[1]) - radius)
             high = (max(move_from[0], move_to[0]) + radius, max(move_from[1], move_to[1]) + radius)
-            at = self.window(low, high)
-            return at, line_distance(self.x[at], self.y[at], move_from, move_to) < radius
-        reach = math.hypot(move_from[0] - centre[0], move_from[1] - centre[1]) + radius
-        at = self.window((centre[0] - reach, centre[1] - reach), (centre[0] + reach, centre[1] + reach))
-        return at, arc_distance(self.x[at], self.y[at], move_from, move_to, centre, sweep) < radius
+        else:
+            reach = math.hypot(move_from[0] - centre[0], move_from[1] - centre[1]) + radius
+            low, high = (centre[0] - reach, centre[1] - reach), (centre[0] + reach, centre[1] + reach)
+        distance = line_distance if centre is None else arc_distance
+        more = () if centre is None else (centre, sweep)
+        columns, rows = slice(*np.searchsorted(self.xs, [low[0], high[0]])), slice(*np.searchsorted(self.ys, [low[1], high[1]]))
+        probes = slice(*np.searchsorted(self.probe_x, [low[0], high[0]]))
+        cells = (rows, columns)
+        return [(self.height[cells], distance(self.x[cells], self.y[cells], move_from, move_to, *more) < radius),
+                (self.probe_height[probes], distance(self.probe_x[probes], self.probe_y[probes], move_from, move_to, *more) < radius)]
 
 
 def line_distance(x, y, a, b):
@@ -84,8 +105,7 @@ class Judge:
         slack = self.rules['slack']
         if across > slack and lowest < self.rules['level'] - slack:
             self.fault('rapid move across below the clearance', move)
-        at, mask = self.stock.under(move.start, move.end, self.radius - 2 * slack)
-        if np.any(self.stock.height[at][mask] > lowest + slack):
+        if any(np.any(heights[mask] > lowest + slack) for heights, mask in self.stock.under(move.start, move.end, self.radius - 2 * slack)):
             self.fault('rapid move in material', move)
 
     def helix(self, move):
@@ -111,10 +131,9 @@ class Judge:
 
     def piece(self, move, begin, end, centre, sweep, drop, length):
         z = min(begin[2], end[2])
-        at, mask = self.stock.under(begin, end, self.radius, centre, sweep)
-        heights = self.stock.height[at]
+        under = self.stock.under(begin, end, self.radius, centre, sweep)
         slack = self.rules['slack']
-        depth = float(np.max(heights[mask] - z, initial=0.0))
+        depth = max(float(np.max(heights[mask] - z, initial=0.0)) for heights, mask in under)
         if depth > slack:
             if move.spindle == 0.0 and move.kind != 'tap':
                 self.fault('spindle stopped in material', move)
@@ -126,4 +145,5 @@ class Judge:
                 self.steepest = max(self.steepest, slope)
                 if slope > self.rules['slope'] * 1.02 + 1e-3:
                     self.fault(f'enters material at a slope of {slope:.3f}', move)
-        heights[mask] = np.minimum(heights[mask], z)
+        for heights, mask in under:
+            heights[mask] = np.minimum(heights[mask], z)

@@ -5,7 +5,7 @@ import { nice, shortest } from './fields';
 import { operationOf } from './registry';
 import { num, word, type Context, type Fault, type Faults, type Field, type Operation, type TableTool, type Unit, type Values } from './types';
 import { faultsOf, isShown } from './validate';
-import { plain, Writer } from './writer';
+import { plain, Writer, type TracePoint } from './writer';
 
 export const SYSTEMS = ['G54', 'G55', 'G56', 'G57', 'G58', 'G59', 'G59.1', 'G59.2', 'G59.3'];
 
@@ -189,6 +189,13 @@ function runStep(writer: Writer, job: Job, step: Step, context: Context, before:
   writer.line(COOLANT[word(step.values, 'coolant')] ?? 'M9');
   writer.forget();
   operation.write(writer, step.values, context);
+}
+
+/** The path of one operation without faults, for its picture. */
+export function traceOf(job: Job, step: Step, facts: MachineFacts): TracePoint[] {
+  const writer = new Writer(job.unit);
+  operationOf(step.type)?.write(writer, step.values, contextOf(job, facts));
+  return writer.trace;
 }
 
 /** The G-code of a job without faults. */

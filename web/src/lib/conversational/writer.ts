@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Lines of G-code: numbers with the digits of the unit, words that do not change left out, comments that end where they should.
-import { lengthOf, splitPath, TINY, pathLength, reversed, type Path, type Point } from './path2';
+import { along, lengthOf, pathLength, reversed, splitPath, sweepOf, TINY, type Path, type Point, type Segment } from './path2';
 import type { Unit } from './types';
 
 export interface Position {
@@ -24,8 +24,20 @@ export function commentOf(text: string): string {
   return `(${text.replace(/[(]/g, '[').replace(/[)]/g, ']').replace(/[\r\n]+/g, ' ').replace(/^\s*(msg|debug|print|log\w*|probe\w*|py|abort)\s*,/i, '$1 ')})`;
 }
 
+/** A point of the path, for pictures. */
+export interface TracePoint {
+  x: number;
+  y: number;
+  z: number;
+  isRapid: boolean;
+}
+const MOST_TRACE = 20_000;
+const TRACE_STEP = Math.PI / 12;
+
 export class Writer {
   readonly lines: string[] = [];
+  /** Where the tool goes, for pictures: without the moves of canned cycles. */
+  readonly trace: TracePoint[] = [];
   readonly digits: number;
   private readonly at: { x: string; y: string; z: string; f: string } = { x: '', y: '', z: '', f: '' };
   private readonly here: { x: number; y: number; z: number } = { x: NaN, y: NaN, z: NaN };
@@ -68,12 +80,14 @@ export class Writer {
     const words = this.words(to);
     if (words.length > 0) {
       this.lines.push(['G0', ...words].join(' '));
+      this.mark(true);
     }
   }
   feed(to: Position, rate: number): void {
     const words = this.words(to);
     if (words.length > 0) {
       this.lines.push(['G1', ...words, ...this.rate(rate)].join(' '));
+      this.mark(false);
     }
   }
   /** An arc around `centre` from the current position; with `turns`, whole circles as well. */
@@ -92,8 +106,24 @@ export class Writer {
     if (turns > 1) {
       words.push(`P${turns}`);
     }
+    this.markArc(to, centre, isCw);
     this.words(to);
     this.lines.push([...words, ...this.rate(rate)].join(' '));
+    this.mark(false);
+  }
+  private mark(isRapid: boolean): void {
+    if (this.trace.length < MOST_TRACE) {
+      this.trace.push({ ...this.here, isRapid });
+    }
+  }
+  /** Points between the ends of an arc; whole circles before the last one are left out. */
+  private markArc(to: Point & { z?: number }, centre: Point, isCw: boolean): void {
+    const [from, end] = [{ ...this.here }, to.z ?? this.here.z];
+    const arc: Segment = { kind: 'arc', to, centre, isCw };
+    const count = Math.ceil(sweepOf(from, arc) / TRACE_STEP);
+    for (let i = 1; i < count && this.trace.length < MOST_TRACE; i += 1) {
+      this.trace.push({ ...along(from, arc, i / count), z: from.z + ((end - from.z) * i) / count, isRapid: false });
+    }
   }
 
   /** Cuts along the path, whose start is the current position. */

@@ -185,6 +185,7 @@ export const de: Catalogue = {
   'mdi.macros': 'Makros',
 
   'programs.title': 'Programme',
+  'conversational.title': 'Dialog',
   'programs.none': 'Keine Programme in {folder}',
   'programs.open': 'Öffnen',
   'programs.is_open': 'offen',

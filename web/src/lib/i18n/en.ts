@@ -186,6 +186,7 @@ export const en = {
   'mdi.macros': 'Macros',
 
   'programs.title': 'Programs',
+  'conversational.title': 'Conversational',
   'programs.none': 'No programs in {folder}',
   'programs.open': 'Open',
   'programs.is_open': 'open',

@@ -185,6 +185,7 @@ export const es: Catalogue = {
   'mdi.macros': 'Macros',
 
   'programs.title': 'Programas',
+  'conversational.title': 'Conversacional',
   'programs.none': 'No hay programas en {folder}',
   'programs.open': 'Abrir',
   'programs.is_open': 'abierto',

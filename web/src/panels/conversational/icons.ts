@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Values of the pictures by which an operation is chosen: few and large details.
+import { packed } from '../../lib/conversational/dxf';
+import type { Values } from '../../lib/conversational/types';
+
+const OUTLINE = packed([
+  {
+    layer: '0',
+    start: { x: 0, y: 0 },
+    segments: [
+      { kind: 'line', to: { x: 40, y: 0 } },
+      { kind: 'line', to: { x: 40, y: 15 } },
+      { kind: 'arc', to: { x: 25, y: 30 }, centre: { x: 25, y: 15 }, isCw: false },
+      { kind: 'line', to: { x: 0, y: 20 } },
+      { kind: 'line', to: { x: 0, y: 0 } },
+    ],
+  },
+]);
+
+export const ICON_VALUES: Record<string, Values> = {
+  face: { length: 60, width: 40, diameter: 24, step_over: 18 },
+  rect_pocket: { length: 60, width: 40, corner_radius: 10, diameter: 14, step_over: 9, allowance: 0 },
+  round_pocket: { pocket_diameter: 40, diameter: 14, step_over: 9, allowance: 0 },
+  slot: { x_end: 40, y_end: 25, slot_width: 18, diameter: 12, step_over: 6, allowance: 0 },
+  rect_boss: { length: 34, width: 22, stock_length: 60, stock_width: 44, diameter: 10, allowance: 0 },
+  round_boss: { boss_diameter: 28, stock_length: 56, stock_width: 44, diameter: 10, allowance: 0 },
+  drill: { pattern: 'circle', holes: 6, circle_diameter: 40, diameter: 10 },
+  tap: { pattern: 'grid', columns: 3, rows: 2, spacing_x: 20, spacing_y: 20, diameter: 12 },
+  bore: { pattern: 'line', holes: 2, spacing: 45, diameter: 30 },
+  thread_mill: { major: 40, minor: 32, pitch: 5, diameter: 18 },
+  engrave: { text: 'Abc', text_height: 20 },
+  contour: { drawing: OUTLINE, layer: '0', side: 'outside', diameter: 8, allowance: 0 },
+};

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The program of the forms. It belongs to the page, so that another view of it does not lose the values; a reload keeps them too.
+import { contextOf, newJob, type MachineFacts } from '../../lib/conversational/job';
+import { operationOf } from '../../lib/conversational/registry';
+import { jobOf, textOf, textsOf, valuesOf, type JobTexts } from '../../lib/conversational/texts';
+import type { Job } from '../../lib/conversational/job';
+import { decimalSeparator } from '../../lib/i18n/index.svelte';
+import { machine } from '../../lib/machine.svelte';
+import { tools } from '../../lib/tools.svelte';
+
+const KEY = 'mw-conversational';
+const MM_PER_INCH = 25.4;
+
+export interface FormState {
+  job: JobTexts;
+  /** Of the list; -1: the program itself. */
+  selected: number;
+  /** The file that the values were read from or written to; null: none yet. */
+  file: string | null;
+  isChanged: boolean;
+  nextId: number;
+}
+
+function freshState(unit: 'mm' | 'inch'): FormState {
+  return { job: textsOf(newJob(unit), decimalSeparator()), selected: -1, file: null, isChanged: false, nextId: 1 };
+}
+
+function kept(): FormState | null {
+  try {
+    const value = JSON.parse(localStorage.getItem(KEY) ?? 'null') as FormState | null;
+    const isGood = value !== null && value.job.version === 1 && typeof value.job.name === 'string' && typeof value.job.safe === 'string' && Array.isArray(value.job.steps) && value.job.steps.every((one) => operationOf(one.type) !== null && typeof one.texts === 'object');
+    return isGood ? value : null;
+  } catch {
+    return null; // of an older page, or not allowed
+  }
+}
+
+export const form = $state<FormState>(kept() ?? freshState(machine.facts?.linear_unit ?? 'mm'));
+
+export function keep(): void {
+  try {
+    localStorage.setItem(KEY, JSON.stringify(form));
+  } catch {
+    // Full or not allowed: the values stay until the page is reloaded.
+  }
+}
+
+export function machineFacts(): MachineFacts {
+  const own = machine.facts?.linear_unit ?? 'mm';
+  const factor = own === form.job.unit ? 1 : own === 'inch' ? MM_PER_INCH : 1 / MM_PER_INCH;
+  const speed = machine.status?.settings.max_velocity ?? 0;
+  const spindle = machine.facts?.spindles[0]?.max_speed ?? 0;
+  return {
+    tools: tools.version < 0 ? null : tools.list.map((one) => ({ number: one.toolno, diameter: Math.round(one.diameter * factor * 1e5) / 1e5 })),
+    maxFeed: speed > 0 ? Math.round(speed * factor * 60 * 1e3) / 1e3 : null,
+    maxSpeed: spindle > 0 ? spindle : null,
+  };
+}
+
+export function startOver(): void {
+  Object.assign(form, freshState(form.job.unit));
+}
+
+export function openJob(job: Job, file: string, isChanged: boolean): void {
+  const texts = textsOf(job, decimalSeparator());
+  Object.assign(form, { job: texts, selected: texts.steps.length > 0 ? 0 : -1, file, isChanged, nextId: texts.steps.length });
+}
+
+export function addStep(type: string): void {
+  const before = form.job.steps.at(-1);
+  const texts: Record<string, string> = {};
+  // The next operation often uses the same tool and surface.
+  for (const id of ['tool', 'top']) {
+    const text = before?.texts[id];
+    if (text !== undefined) {
+      texts[id] = text;
+    }
+  }
+  const first = machineFacts().tools?.find((one) => one.diameter > 0)?.number;
+  if (texts['tool'] === undefined && first !== undefined) {
+    texts['tool'] = String(first);
+  }
+  form.job.steps.push({ id: form.nextId, type, texts });
+  form.nextId += 1;
+  form.selected = form.job.steps.length - 1;
+  form.isChanged = true;
+}
+
+export function copyStep(at: number): void {
+  const one = form.job.steps[at];
+  if (one !== undefined) {
+    form.job.steps.splice(at + 1, 0, { id: form.nextId, type: one.type, texts: { ...one.texts } });
+    form.nextId += 1;
+    form.selected = at + 1;
+    form.isChanged = true;
+  }
+}
+
+export function deleteStep(at: number): void {
+  form.job.steps.splice(at, 1);
+  form.selected = Math.min(at, form.job.steps.length - 1);
+  form.isChanged = true;
+}
+
+export function moveStep(at: number, by: -1 | 1): void {
+  const [one, other] = [form.job.steps[at], form.job.steps[at + by]];
+  if (one !== undefined && other !== undefined) {
+    form.job.steps[at] = other;
+    form.job.steps[at + by] = one;
+    form.selected = at + by;
+    form.isChanged = true;
+  }
+}
+
+export function setText(at: number, id: string, text: string): void {
+  const step = form.job.steps[at];
+  if (step === undefined) {
+    return;
+  }
+  step.texts[id] = text;
+  if (id === 'tool') {
+    delete step.texts['diameter']; // that of the table
+  }
+  form.isChanged = true;
+}
+
+/** What a field shows: what was typed, or its default. */
+export function shownText(at: number, id: string): string {
+  const step = form.job.steps[at];
+  const typed = step?.texts[id];
+  if (step === undefined || typed !== undefined) {
+    return typed ?? '';
+  }
+  return textOf(valuesOf(step, contextOf(currentJob(), machineFacts()))[id], decimalSeparator());
+}
+
+export function currentJob(): Job {
+  return jobOf(form.job, machineFacts());
+}
