@@ -9,7 +9,7 @@ import { bringUp, byHand, judgeByAxe, openView, Rig, sleep, untilText } from './
 
 const PICTURES = process.env['MW_SCREEN_PICTURES'];
 const SIZES = [[1280, 800], [1920, 1080], [800, 480], [390, 844]] as const;
-const TABS = ['path', 'simulation', 'process', 'programs', 'text', 'tools', 'offsets', 'probing', 'plots', 'hal', 'messages', 'settings'];
+const TABS = ['path', 'simulation', 'process', 'programs', 'conversational', 'text', 'tools', 'offsets', 'probing', 'plots', 'hal', 'messages', 'settings'];
 const SMALL_TABS = ['jog', 'mdi', 'codes', ...TABS];
 
 const rig = new Rig(byHand);

@@ -43,8 +43,10 @@ function fieldFault(field: Field, values: Values, context: Context): Fault | nul
   return numberFault(field, values, context);
 }
 
-/** The faults of a form by field; empty where the operation can be written. */
-export function faultsOf(operation: Operation, values: Values, context: Context): Faults {
+/** Faults that a value has whatever the others are: fields that depend on it are not rejected because of it. */
+const ALONE = new Set<string>(['fault.number', 'fault.whole', 'fault.above_zero', 'fault.not_negative', 'fault.at_least', 'fault.at_most', 'fault.top_safe']);
+
+function eachFault(operation: Operation, values: Values, context: Context): Faults {
   const faults: Faults = {};
   for (const field of operation.fields) {
     const fault = isShown(field, values) ? fieldFault(field, values, context) : null;
@@ -52,6 +54,15 @@ export function faultsOf(operation: Operation, values: Values, context: Context)
       faults[field.id] = fault;
     }
   }
+  return faults;
+}
+
+/** The faults of a form by field; empty where the operation can be written. */
+export function faultsOf(operation: Operation, values: Values, context: Context): Faults {
+  const first = eachFault(operation, values, context);
+  const alone = Object.fromEntries(Object.entries(first).filter(([, fault]) => ALONE.has(fault.key)));
+  const unknown = { ...values, ...Object.fromEntries(Object.keys(alone).map((id) => [id, NaN])) };
+  const faults = Object.keys(alone).length === 0 ? first : { ...eachFault(operation, unknown, context), ...alone };
   const further = Object.keys(faults).length === 0 ? operation.check?.(values, context) : undefined;
   for (const [id, fault] of Object.entries(further ?? {})) {
     faults[id] = { key: fault.key, ...(fault.values === undefined ? {} : { values: rounded(fault.values) }) };

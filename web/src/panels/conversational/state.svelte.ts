@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The program of the forms. It belongs to the page, so that another view of it does not lose the values; a reload keeps them too.
+import { tc } from '../../lib/conversational/i18n/index.svelte';
 import { contextOf, newJob, type MachineFacts } from '../../lib/conversational/job';
 import { operationOf } from '../../lib/conversational/registry';
 import { jobOf, textOf, textsOf, valuesOf, type JobTexts } from '../../lib/conversational/texts';
@@ -22,7 +23,7 @@ export interface FormState {
 }
 
 function freshState(unit: 'mm' | 'inch'): FormState {
-  return { job: textsOf(newJob(unit), decimalSeparator()), selected: -1, file: null, isChanged: false, nextId: 1 };
+  return { job: { ...textsOf(newJob(unit), decimalSeparator()), name: tc('panel.default_name') }, selected: -1, file: null, isChanged: false, nextId: 1 };
 }
 
 function kept(): FormState | null {
@@ -66,21 +67,27 @@ export function openJob(job: Job, file: string, isChanged: boolean): void {
   Object.assign(form, { job: texts, selected: texts.steps.length > 0 ? 0 : -1, file, isChanged, nextId: texts.steps.length });
 }
 
+/** Words of tool comments by which the tool of an operation is proposed. */
+const TOOL_WORDS: Record<string, RegExp> = { drill: /drill|bohrer|broca/i, tap: /\btap\b|gewindebohrer|macho/i, bore: /bor(e|ing)|ausdreh|mandrin/i, thread_mill: /thread|gewindefr|rosca/i, engrave: /engrav|gravier|graba/i };
+const MILL = /mill|fräs|fresa/i;
+const NO_FLAT = /ball|kugel|bola|esf[eé]r|thread|gewinde|rosca/i;
+const CUTTERS = new Set(['face', 'rect_pocket', 'round_pocket', 'slot', 'rect_boss', 'round_boss', 'contour']);
+
+/** The tool of an operation before that needs the same type of tool, or one whose comment names that type; empty: none is known. */
+function proposedTool(type: string): string {
+  const isSame = (other: string): boolean => other === type || (CUTTERS.has(type) && CUTTERS.has(other));
+  const before = form.job.steps.findLast((one) => isSame(one.type));
+  if (before !== undefined) {
+    return shownText(form.job.steps.indexOf(before), 'tool');
+  }
+  const fits = (comment: string): boolean => (CUTTERS.has(type) ? MILL.test(comment) && !NO_FLAT.test(comment) : (TOOL_WORDS[type]?.test(comment) ?? false));
+  const found = tools.version < 0 ? undefined : tools.list.find((one) => one.toolno > 0 && fits(one.comment));
+  return found === undefined ? '' : String(found.toolno);
+}
+
 export function addStep(type: string): void {
-  const before = form.job.steps.at(-1);
-  const texts: Record<string, string> = {};
-  // The next operation often uses the same tool and surface.
-  for (const id of ['tool', 'top']) {
-    const text = before?.texts[id];
-    if (text !== undefined) {
-      texts[id] = text;
-    }
-  }
-  const first = machineFacts().tools?.find((one) => one.diameter > 0)?.number;
-  if (texts['tool'] === undefined && first !== undefined) {
-    texts['tool'] = String(first);
-  }
-  form.job.steps.push({ id: form.nextId, type, texts });
+  const top = form.job.steps.at(-1)?.texts['top'];
+  form.job.steps.push({ id: form.nextId, type, texts: { tool: proposedTool(type), ...(top === undefined ? {} : { top }) } });
   form.nextId += 1;
   form.selected = form.job.steps.length - 1;
   form.isChanged = true;
