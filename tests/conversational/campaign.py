@@ -25,7 +25,7 @@ PIECE = 250
 
 
 def answers_of(made):
-    """What the forms say to each case; null stands for a number that was not typed."""
+    """Answers of the forms; null is a number that was not typed."""
     lines = ''.join(json.dumps({key: case[key] for key in ('job', 'facts', 'dxf')}) + '\n' for case in made)
     done = subprocess.run(['node', str(MAKER)], input=lines, capture_output=True, text=True, timeout=300, check=False)
     if done.returncode != 0:

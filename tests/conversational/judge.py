@@ -31,7 +31,7 @@ def hole_positions(v):
 
 
 def removal(kind, v, pieces, unit):
-    """(low, high, function of x and y that is negative where material is to be removed, stock beyond that is none)."""
+    """(low, high, function of x and y that is negative where material is to be removed)."""
     d = v['diameter']
     if kind == 'face':
         x = v['x'] if v['origin'] == 'corner' else v['x'] - v['length'] / 2
@@ -105,10 +105,36 @@ def states(kind, v, moves, faults):
             return
 
 
+def turning(moves, bottom, slack):
+    """Twice the area that the cuts at the bottom go around, anticlockwise positive."""
+    area = 0.0
+    for move in moves:
+        if move.kind in ('feed', 'arc') and max(move.start[2], move.end[2]) < bottom + slack:
+            (ax, ay), (bx, by) = move.start[:2], move.end[:2]
+            area += ax * by - bx * ay
+            if move.kind == 'arc':
+                radius = math.hypot(ax - move.centre[0], ay - move.centre[1])
+                area += radius * radius * (move.turns - math.sin(move.turns))
+    return area
+
+
+def direction_faults(kind, v, moves, slack):
+    """Climb milling: anticlockwise in pockets, clockwise around bosses."""
+    isInside = kind in POCKETS or v.get('side') == 'inside'
+    isOutside = kind in BOSSES or v.get('side') == 'outside'
+    if not isInside and not isOutside:
+        return []
+    area = turning(moves, v['top'] - v['depth'], slack)
+    isClimb = (area > 0) == isInside
+    isNarrow = kind == 'slot' and v['slot_width'] - v['diameter'] < 20 * slack
+    return [] if isNarrow or isClimb == (v['direction'] == 'climb') else [f'wrong cutting direction, area {area:.4f}']
+
+
 def judge_operation(kind, v, moves, unit, pieces=None, pitches=None):
     """The faults that are found, as texts, and figures."""
     faults = []
     states(kind, v, moves, faults)
+    faults += direction_faults(kind, v, moves, SLACK[unit])
     if kind == 'thread_mill':
         return faults + thread_faults(v, moves, unit), {}
     if len(moves) > MOST_MOVES:
@@ -199,7 +225,7 @@ def contour_faults(x, y, height, v, contours, slack):
     radius = v['diameter'] / 2
     away, isTool = side_of(v, x, y, contours)
     isEnded = v['side'] in ('left', 'right')
-    # Arcs of the drawing are polygons where the sides are told apart.
+    # Arcs of the drawing are polygons where a side is determined.
     blur = 1e-4 * max((one[2] for c in contours for one in c if one[0] == 'arc'), default=0.0) + slack
     wide = radius if v['side'] == 'on' else 2 * radius + v['allowance']
     ends = end_distance(x, y, contours) if isEnded else np.full(np.shape(away), np.inf)
@@ -301,7 +327,7 @@ def thread_faults(v, moves, unit):
                 if p[2] < bottom - slack:
                     faults.append(f'below the depth: {p}')
                 if isIn and away > final + slack or not isIn and away < final - slack:
-                    faults.append(f'beyond the thread: {p}')
+                    faults.append(f'outside of the thread: {p}')
                 isInAir = away < v['minor'] / 2 - tool - slack if isIn else away > v['major'] / 2 + tool + slack
                 if move.kind != 'arc' and not isInAir:
                     faults.append(f'{move.kind} in material: {p}')

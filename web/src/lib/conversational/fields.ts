@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Fields that many operations have in common, with their defaults and ranges.
 import type { ConvKey } from './i18n/en';
-import { num, word, type ChoiceField, type Context, type Field, type Limit, type NumberField, type NumberKind, type Unit, type Values } from './types';
+import { num, word, type ChoiceField, type Context, type Faults, type Field, type Limit, type NumberField, type NumberKind, type Unit, type Values } from './types';
 
 /** A round value of each unit. */
 export const nice = (unit: Unit, mm: number, inch: number): number => (unit === 'mm' ? mm : inch);
@@ -142,4 +142,12 @@ export function entryFields(): Field[] {
     angle('ramp_angle', 3, 0.5, 30, { reason: 'why.ramp_angle', isShown: (values) => word(values, 'entry') !== 'plunge' }),
   ];
 }
+/** A program of more lines is slow to read and to show, and most often the result of a typing error. */
+export const MOST_LINES = 100_000;
+/** The fault of an operation of about that many lines, at the field that can reduce them. */
+export function lengthFault(lines: number, field: string): Faults {
+  return lines > MOST_LINES ? { [field]: { key: 'fault.long_program', values: { high: MOST_LINES } } } : {};
+}
+export const levelCount = (values: Values): number => Math.ceil(num(values, 'depth') / num(values, 'step_down'));
+
 export const slopeOf = (values: Values): number => Math.tan((num(values, 'ramp_angle') * Math.PI) / 180);

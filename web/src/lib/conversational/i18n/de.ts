@@ -179,6 +179,7 @@ export const de: ConvCatalogue = {
   'fault.clearance_safe': 'Oberfläche und Sicherheitsabstand dürfen zusammen die Sicherheitshöhe {safe} nicht überschreiten.',
   'fault.step_depth': 'Größer als die Tiefe {high}.',
   'fault.too_many_steps': 'Zu klein: mehr als 1000 Zustellungen.',
+  'fault.long_program': 'Zu klein: Das Programm hätte mehr als {high} Zeilen.',
   'fault.step_tool': 'Größer als der Werkzeugdurchmesser {high}: Zwischen zwei Bahnen bliebe Material stehen.',
   'fault.step_share': 'Höchstens {high} ({percent} % des Werkzeugdurchmessers): In den Ecken bliebe Material stehen.',
   'fault.step_small': 'Mindestens {low} (1 % des Werkzeugdurchmessers).',

@@ -179,6 +179,7 @@ export const en = {
   'fault.clearance_safe': 'Surface and clearance together must not exceed the safe height {safe}.',
   'fault.step_depth': 'Larger than the depth {high}.',
   'fault.too_many_steps': 'Too small: more than 1000 steps.',
+  'fault.long_program': 'Too small: the program would have more than {high} lines.',
   'fault.step_tool': 'Larger than the tool diameter {high}: material would be left between two cuts.',
   'fault.step_share': 'Must be at most {high} ({percent} % of the tool diameter): material would be left in the corners.',
   'fault.step_small': 'Must be at least {low} (1 % of the tool diameter).',

@@ -179,6 +179,7 @@ export const es: ConvCatalogue = {
   'fault.clearance_safe': 'Superficie y distancia juntas no pueden superar la altura de seguridad {safe}.',
   'fault.step_depth': 'Mayor que la profundidad {high}.',
   'fault.too_many_steps': 'Demasiado pequeño: más de 1000 pasadas.',
+  'fault.long_program': 'Demasiado pequeño: el programa tendría más de {high} líneas.',
   'fault.step_tool': 'Mayor que el diámetro de la herramienta {high}: quedaría material entre dos pasadas.',
   'fault.step_share': 'Como máximo {high} ({percent} % del diámetro): quedaría material en las esquinas.',
   'fault.step_small': 'Debe ser al menos {low} (1 % del diámetro).',

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // A rectangular or round boss in the middle of its stock.
 import { clearBoss, type Boss } from '../boss';
-import { depthFields, directionField, feedDown, finishing, margin, position, size, stepDown, stepOver, toolFields } from '../fields';
-import { num, type Context, type Faults, type Field, type Operation, type Values } from '../types';
+import { depthFields, directionField, feedDown, finishing, lengthFault, levelCount, margin, position, size, stepDown, stepOver, toolFields } from '../fields';
+import { num, type Faults, type Field, type Operation, type Values } from '../types';
 
 const common = (): Field[] => [...depthFields(), ...toolFields(10, 0.375), feedDown(), stepDown(), stepOver(), finishing(), directionField()];
 const fits = (id: string) => (values: Values) => [{ low: num(values, id), key: 'fault.boss_stock' as const, values: { low: num(values, id) } }];
@@ -22,7 +22,7 @@ export const rectBoss: Operation = {
     size('stock_width', (values, context) => num(values, 'width') + (context.unit === 'mm' ? 20 : 0.75), 2, { reason: 'why.stock', limits: fits('width') }),
     ...common(),
   ],
-  check: (values, context) => notSame(rectOf(values), context),
+  check: (values) => check(values, rectOf(values)),
   write: (writer, values, context) => clearBoss(writer, values, rectOf(values), context),
 };
 
@@ -37,7 +37,7 @@ export const roundBoss: Operation = {
     size('stock_width', (values, context) => num(values, 'boss_diameter') + (context.unit === 'mm' ? 20 : 0.75), 2, { reason: 'why.stock', limits: fits('boss_diameter') }),
     ...common(),
   ],
-  check: (values, context) => notSame(roundOf(values), context),
+  check: (values) => check(values, roundOf(values)),
   write: (writer, values, context) => clearBoss(writer, values, roundOf(values), context),
 };
 
@@ -55,8 +55,9 @@ function roundOf(values: Values): Boss {
   return { frame: { x: num(values, 'x'), y: num(values, 'y'), turn: 0 }, x: radius, y: radius, corner: radius, stock: { x: num(values, 'stock_length') / 2, y: num(values, 'stock_width') / 2 } };
 }
 
-/** There has to be something to cut. */
-function notSame(boss: Boss, _: Context): Faults {
+/** There has to be something to cut, and not too much. */
+function check(values: Values, boss: Boss): Faults {
   const isSame = boss.corner < 1e-6 && Math.abs(boss.stock.x - boss.x) < 1e-6 && Math.abs(boss.stock.y - boss.y) < 1e-6;
-  return isSame ? { stock_length: { key: 'fault.nothing' } } : {};
+  const rings = Math.hypot(boss.stock.x, boss.stock.y) / num(values, 'step_over');
+  return isSame ? { stock_length: { key: 'fault.nothing' } } : lengthFault(levelCount(values) * 9 * rings, 'step_over');
 }

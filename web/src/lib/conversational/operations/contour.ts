@@ -2,7 +2,7 @@
 // Cuts the contours of one layer of a DXF drawing: on the line, or beside it by the tool's radius.
 import { chained, signedArea, startedMidway } from '../chains';
 import { layersOf, unpacked, type Entity } from '../dxf';
-import { choice, depthFields, directionField, entryFields, feedDown, finishing, longest, nice, position, slopeOf, stepDown, toolFields } from '../fields';
+import { choice, depthFields, directionField, entryFields, feedDown, finishing, lengthFault, levelCount, longest, nice, position, slopeOf, stepDown, toolFields } from '../fields';
 import { nearer, offsetLeft } from '../offset';
 import { isClosed, placePath, reversed, type Path } from '../path2';
 import { num, word, type Context, type Fault, type Operation, type Values } from '../types';
@@ -29,7 +29,7 @@ export const contour: Operation = {
   ],
   check: (values, context) => {
     const made = cutsOf(values, context);
-    return Array.isArray(made) ? {} : { [made.key === 'fault.side_open' || made.key === 'fault.side_closed' ? 'side' : made.key.startsWith('fault.dxf') ? 'layer' : 'diameter']: made };
+    return Array.isArray(made) ? lengthFault(levelCount(values) * 3 * made.reduce((sum, one) => sum + one.rough.segments.length + 2, 0), 'step_down') : { [made.key === 'fault.side_open' || made.key === 'fault.side_closed' ? 'side' : made.key.startsWith('fault.dxf') ? 'layer' : 'diameter']: made };
   },
   write,
 };

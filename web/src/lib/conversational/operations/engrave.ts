@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Engraves a line of text with a pointed cutter.
-import { angle, choice, depthFields, feedDown, position, size, toolFields } from '../fields';
+import { angle, choice, depthFields, feedDown, lengthFault, levelCount, position, size, toolFields } from '../fields';
 import { strokesOfText, unknownLetter } from '../font';
 import { place, type Point } from '../path2';
 import { num, word, type Context, type Fault, type Operation, type Values } from '../types';
@@ -23,6 +23,7 @@ export const engrave: Operation = {
     feedDown(),
     size('step_down', (values) => num(values, 'depth'), 0.008, { reason: 'why.engrave_step', limits: (values) => [{ high: num(values, 'depth'), key: 'fault.step_depth', values: { high: num(values, 'depth') } }, { low: num(values, 'depth') / 100, key: 'fault.too_many_steps' }] }),
   ],
+  check: (values) => lengthFault(levelCount(values) * (strokesOfText(word(values, 'text'), 1).strokes.flat().length + 3), 'step_down'),
   write,
 };
 

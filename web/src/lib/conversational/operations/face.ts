@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Faces a rectangle: straight cuts along X, each from outside the material to outside.
-import { choice, depthFields, feedDown, margin, nice, position, size, stepDown, stepOver, toolFields } from '../fields';
+import { choice, depthFields, feedDown, lengthFault, levelCount, margin, nice, position, size, stepDown, stepOver, toolFields } from '../fields';
 import { num, word, type Context, type Operation, type Values } from '../types';
 import { levelsOf, type Writer } from '../writer';
 
@@ -21,6 +21,7 @@ export const face: Operation = {
     margin('floor_allowance', (_, context) => nice(context.unit, 0.2, 0.01), { reason: 'why.floor_allowance', limits: (values) => [{ high: num(values, 'depth'), isOpen: true, key: 'fault.floor_allowance', values: { high: num(values, 'depth') } }] }),
     choice('face_direction', ['climb', 'both'], 'climb', { reason: 'why.face_direction' }),
   ],
+  check: (values) => lengthFault((levelCount(values) * 5 * num(values, 'width')) / num(values, 'step_over'), 'step_over'),
   write,
 };
 

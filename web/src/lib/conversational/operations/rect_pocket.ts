@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-import { angle, choice, depthFields, directionField, entryFields, feedDown, finishing, margin, position, size, stepDown, stepOver, toolFields } from '../fields';
+import { angle, choice, depthFields, directionField, entryFields, feedDown, finishing, lengthFault, levelCount, margin, position, size, stepDown, stepOver, toolFields } from '../fields';
 import { clearPocket, entryOf, type Pocket } from '../pocket';
 import { place } from '../path2';
 import { num, word, type Context, type Faults, type Operation, type Values } from '../types';
@@ -49,5 +49,5 @@ function check(values: Values, _: Context): Faults {
     return { allowance: { key: 'fault.allowance_room', values: { high: (Math.min(num(values, 'length'), num(values, 'width')) - num(values, 'diameter')) / 2 } } };
   }
   const entry = entryOf(pocketOf(values), num(values, 'diameter'), num(values, 'allowance'), word(values, 'entry') === 'plunge');
-  return entry === null ? { entry: { key: 'fault.no_entry' } } : {};
+  return entry === null ? { entry: { key: 'fault.no_entry' } } : lengthFault((levelCount(values) * 9 * (Math.min(num(values, 'length'), num(values, 'width')) / 2)) / num(values, 'step_over'), 'step_over');
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-import { depthFields, directionField, entryFields, feedDown, finishing, position, size, stepDown, stepOver, toolFields } from '../fields';
+import { depthFields, directionField, entryFields, feedDown, finishing, lengthFault, levelCount, position, size, stepDown, stepOver, toolFields } from '../fields';
 import { clearPocket, entryOf, type Pocket } from '../pocket';
 import { num, word, type Faults, type Operation, type Values } from '../types';
 
@@ -33,5 +33,5 @@ function check(values: Values): Faults {
     return { allowance: { key: 'fault.allowance_room', values: { high: (num(values, 'pocket_diameter') - num(values, 'diameter')) / 2 } } };
   }
   const entry = entryOf(pocketOf(values), num(values, 'diameter'), num(values, 'allowance'), word(values, 'entry') === 'plunge');
-  return entry === null ? { entry: { key: 'fault.no_entry' } } : {};
+  return entry === null ? { entry: { key: 'fault.no_entry' } } : lengthFault((levelCount(values) * 9 * (num(values, 'pocket_diameter') / 2)) / num(values, 'step_over'), 'step_over');
 }
