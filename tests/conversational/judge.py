@@ -106,15 +106,17 @@ def states(kind, v, moves, faults):
 
 
 def turning(moves, bottom, slack):
-    """Twice the area that the cuts at the bottom go around, anticlockwise positive."""
+    """Twice the area that the cuts at the bottom sweep around their middle, anticlockwise positive."""
+    cuts = [move for move in moves if move.kind in ('feed', 'arc') and max(move.start[2], move.end[2]) < bottom + slack]
+    ends = [p for move in cuts for p in (move.start, move.end)]
+    x, y = ((min(p[k] for p in ends) + max(p[k] for p in ends)) / 2 for k in (0, 1)) if ends else (0.0, 0.0)
     area = 0.0
-    for move in moves:
-        if move.kind in ('feed', 'arc') and max(move.start[2], move.end[2]) < bottom + slack:
-            (ax, ay), (bx, by) = move.start[:2], move.end[:2]
-            area += ax * by - bx * ay
-            if move.kind == 'arc':
-                radius = math.hypot(ax - move.centre[0], ay - move.centre[1])
-                area += radius * radius * (move.turns - math.sin(move.turns))
+    for move in cuts:
+        (ax, ay), (bx, by) = move.start[:2], move.end[:2]
+        area += (ax - x) * (by - y) - (bx - x) * (ay - y)
+        if move.kind == 'arc':
+            radius = math.hypot(ax - move.centre[0], ay - move.centre[1])
+            area += radius * radius * (move.turns - math.sin(move.turns))
     return area
 
 

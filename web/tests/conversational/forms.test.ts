@@ -129,6 +129,12 @@ describe('programs', () => {
     writer.arc({ x: 10, y: 0.00001 }, { x: 0, y: 0 }, false, 100);
     expect(writer.lines).toHaveLength(1);
   });
+  it('write an arc as a line where its radius is lost in rounding', () => {
+    const writer = new Writer('mm');
+    writer.rapid({ x: 10, y: 0, z: 0 });
+    writer.arc({ x: 10.0001, y: 0.0001 }, { x: 10, y: 0.0001 }, false, 100);
+    expect(writer.lines[1]).toBe('G1 X10.0001 Y0.0001 F100');
+  });
 });
 
 describe('a program contains its form', () => {

@@ -33,6 +33,8 @@ export interface TracePoint {
 }
 const MOST_TRACE = 20_000;
 const TRACE_STEP = Math.PI / 12;
+/** In units of the last digit. */
+const LEAST_RADIUS = 20;
 
 export class Writer {
   readonly lines: string[] = [];
@@ -97,6 +99,10 @@ export class Writer {
     const isCircle = Math.hypot(to.x - this.here.x, to.y - this.here.y) < TINY;
     if (isSame && !isCircle) {
       return; // shorter than the last digit: written, it would be a whole circle
+    }
+    if (Math.hypot(to.x - centre.x, to.y - centre.y) < LEAST_RADIUS * 10 ** -this.digits) {
+      this.feed(to, rate); // rounded, its radius would differ at both ends
+      return;
     }
     const words = [isCw ? 'G2' : 'G3', `X${this.number(to.x)}`, `Y${this.number(to.y)}`];
     if (to.z !== undefined && this.number(to.z) !== this.at.z) {
