@@ -3,7 +3,7 @@
 """Random forms of conversational programming: programs that the interpreter accepts, and that cut what the form describes without
 danger; impossible values are rejected at their field.
 
-usage: campaign.py --rs274 FILE [--first S] [--count N] [--keep FOLDER] [--processes P]
+usage: campaign.py --rs274 FILE [--machine mill|lathe] [--first S] [--count N] [--keep FOLDER] [--processes P]
 The exit status is 1 where anything fails; each failure prints its seed. --keep writes the programs of failures.
 """
 import argparse
@@ -18,6 +18,8 @@ import tempfile
 import canon
 import cases
 import judge
+import lathe_cases
+import lathe_judge
 
 HERE = pathlib.Path(__file__).resolve().parent
 MAKER = HERE.parent.parent / 'web/tests/conversational/make_programs.mjs'
@@ -68,9 +70,14 @@ def check_program(case, answer, rs274, folder):
         moves = [move for move in run.moves if move.step == i + 1]
         pitches = {k: v for k, v in run.pitches.items() if run.moves[k].step == i + 1}
         shape = case['shapes'].get(str(i))
-        faults, more = judge.judge_operation(step['type'], step['values'], moves, job['unit'], shape, pitches)
+        if job['machine'] == 'lathe':
+            faults, more = lathe_judge.judge_operation(step['type'], step['values'], moves, job['unit'])
+        else:
+            faults, more = judge.judge_operation(step['type'], step['values'], moves, job['unit'], shape, pitches)
         found += [f'{step["type"]}: {text}' for text in faults]
         figures.update(more)
+    if job['machine'] == 'lathe':
+        return found, figures
     top = max(step['values']['top'] + step['values']['clearance'] for step in job['steps'])
     if run.moves and run.moves[-1].end[2] < min(top, job['safe']) - 1e-6:
         found.append(f'ends at Z {run.moves[-1].end[2]}')
@@ -99,6 +106,7 @@ def arguments():
     parser.add_argument('--first', type=int, default=1)
     parser.add_argument('--count', type=int, default=100)
     parser.add_argument('--processes', type=int, default=1)
+    parser.add_argument('--machine', choices=('mill', 'lathe'), default='mill')
     parser.add_argument('--keep')
     return parser.parse_args()
 
@@ -108,7 +116,7 @@ def main():
     totals, by_kind = collections.Counter(), collections.Counter()
     with multiprocessing.Pool(words.processes) as pool:
         for first in range(words.first, words.first + words.count, PIECE):
-            made = [cases.make(seed) for seed in range(first, min(first + PIECE, words.first + words.count))]
+            made = [(cases if words.machine == 'mill' else lathe_cases).make(seed) for seed in range(first, min(first + PIECE, words.first + words.count))]
             answers = answers_of(made)
             for (seed, result, found, figures), case, answer in zip(pool.imap(check, [(c, a, words.rs274) for c, a in zip(made, answers)]), made, answers):
                 totals[result] += 1

@@ -22,6 +22,7 @@ class Move:
     spindle: float = 0.0  # signed
     coolant: str = ''
     step: int = 0  # number of the operation, from its comment
+    pitch: float = 0.0  # while feed follows the spindle
 
 
 @dataclasses.dataclass
@@ -68,11 +69,11 @@ class Reader:
         self.at = (0.0, 0.0, MACHINE_TOP / scale)
         self.run = Run('', [], '', 0, False, 0.0, 'off', {})
         self.feed, self.speed, self.turning, self.step, self.pitch = 0.0, 0.0, 0, 0, 0.0
-        self.flood = self.mist = False
+        self.flood = self.mist = self.isLathe = False
 
     def move(self, kind, end, **more):
         coolant = '+'.join(name for name, isOn in (('flood', self.flood), ('mist', self.mist)) if isOn) or 'off'
-        self.run.moves.append(Move(kind, self.at, end, feed=self.feed, spindle=self.speed * self.turning, coolant=coolant, step=self.step, **more))
+        self.run.moves.append(Move(kind, self.at, end, feed=self.feed, spindle=self.speed * self.turning, coolant=coolant, step=self.step, pitch=self.pitch, **more))
         self.at = end
 
     def call(self, name, text):
@@ -92,6 +93,10 @@ class Reader:
             self.feed = numbers(text)[0]
         elif name == 'START_SPEED_FEED_SYNCH' or name == 'START_SPEED_FEED_SYNC':
             self.pitch = numbers(text)[0]
+        elif name in ('STOP_SPEED_FEED_SYNCH', 'STOP_SPEED_FEED_SYNC'):
+            self.pitch = 0.0
+        elif name == 'SELECT_PLANE':
+            self.isLathe = 'XZ' in text
         elif name == 'COMMENT':
             found = re.match(r'"?(\d+)\. ', text)
             self.step = int(found.group(1)) if found else self.step
@@ -126,7 +131,20 @@ class Reader:
             self.run.spindle = self.speed * self.turning
             self.run.coolant = 'on' if self.flood or self.mist else 'off'
 
+    def turned_arc(self, values):
+        """In the plane of Z and X, as short lines."""
+        z, x, cz, cx, rotation = values[:5]
+        a, b = math.atan2(self.at[0] - cx, self.at[2] - cz), math.atan2(x - cx, z - cz)
+        sweep = (b - a) % (2 * math.pi) if rotation > 0 else -((a - b) % (2 * math.pi))
+        radius = math.hypot(self.at[0] - cx, self.at[2] - cz)
+        for i in range(1, 97):
+            turn = a + sweep * i / 96
+            self.move('feed', (cx + radius * math.sin(turn), self.at[1], cz + radius * math.cos(turn)))
+
     def arc(self, values):
+        if self.isLathe:
+            self.turned_arc(values)
+            return
         x, y, cx, cy, rotation, z = values[:6]
         a = math.atan2(self.at[1] - cy, self.at[0] - cx)
         b = math.atan2(y - cy, x - cx)

@@ -11,6 +11,7 @@ import tempfile
 
 import campaign
 import cases
+import lathe_cases
 
 CUT = re.compile(r'^G1 .*', re.M)
 
@@ -52,6 +53,22 @@ def plunged(program, v):
     return '\n'.join(lines) + '\n'
 
 
+def shifted_z(program, v):
+    return re.sub(r'(?<=[0-9 ])Z(-?[\d.]+)', lambda m: f'Z{float(m.group(1)) - 0.1:.4f}', program)
+
+
+def smaller_x(program, v):
+    return re.sub(r'^(G[0123].*)X(-?[\d.]+)', lambda m: f'{m.group(1)}X{float(m.group(2)) - 0.2:.4f}', program, flags=re.M)
+
+
+def rapid_turned(program, v):
+    return re.sub(r'^G1 (Z[^\n ]*) F.*$', r'G0 \1', program, flags=re.M)
+
+
+def stopped_spindle(program, v):
+    return re.sub(r'^(G9[67] .*) M3$', r'\1 M5', program, flags=re.M)
+
+
 # Which changes each type of operation has to notice.
 CHANGES = {
     deeper: ['face', 'rect_pocket', 'round_pocket', 'slot', 'rect_boss', 'round_boss', 'drill', 'tap', 'bore', 'engrave', 'contour', 'thread_mill'],
@@ -60,6 +77,10 @@ CHANGES = {
     shifted: ['rect_pocket', 'round_pocket', 'slot', 'rect_boss', 'round_boss', 'drill', 'bore', 'contour', 'thread_mill'],
     without_spindle: ['face', 'rect_pocket', 'round_pocket', 'slot', 'rect_boss', 'round_boss', 'drill', 'bore', 'engrave', 'contour'],
     plunged: ['rect_pocket', 'round_pocket', 'slot', 'contour'],
+    shifted_z: ['turn', 'lathe_bore', 'lathe_face', 'groove', 'part_off', 'chamfer', 'radius'],
+    smaller_x: ['turn', 'lathe_bore', 'groove', 'chamfer', 'radius'],
+    rapid_turned: ['turn', 'lathe_bore'],
+    stopped_spindle: ['turn', 'lathe_bore', 'lathe_face', 'groove', 'part_off', 'chamfer', 'radius'],
 }
 
 
@@ -68,7 +89,8 @@ def main():
     parser.add_argument('--rs274', required=True)
     parser.add_argument('--count', type=int, default=60)
     words = parser.parse_args()
-    made = [case for case in (cases.make(seed) for seed in range(1, words.count + 1)) if case['mode'] == 'good' and len(case['job']['steps']) == 1 and case['job']['unit'] == 'mm']
+    both = [maker.make(seed) for maker in (cases, lathe_cases) for seed in range(1, words.count + 1)]
+    made = [case for case in both if case['mode'] == 'good' and len(case['job']['steps']) == 1 and case['job']['unit'] == 'mm']
     tried = missed = 0
     for case, answer in zip(made, campaign.answers_of(made)):
         step = answer['job']['steps'][0]

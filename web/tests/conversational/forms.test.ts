@@ -20,7 +20,7 @@ import { faultsOf, filled } from '../../src/lib/conversational/validate';
 import { commentOf, levelsOf, plain, Writer } from '../../src/lib/conversational/writer';
 import { placesOf } from '../../src/lib/i18n/text';
 
-const CONTEXT: Context = { unit: 'mm', safe: 25, tools: null, maxFeed: 6000, maxSpeed: 12000 };
+const CONTEXT: Context = { unit: 'mm', safe: 25, safeX: 80, tools: null, maxFeed: 6000, maxSpeed: 12000 };
 const FACTS: MachineFacts = { tools: null, maxFeed: 6000, maxSpeed: 12000 };
 const SQUARE = packed([{ layer: '0', start: { x: 0, y: 0 }, segments: [[40, 0], [40, 30], [0, 30], [0, 0]].map(([x = 0, y = 0]) => ({ kind: 'line' as const, to: { x, y } })) }]);
 
@@ -34,7 +34,7 @@ function faults(type: string, typed: Values = {}, context = CONTEXT): Record<str
   return operation === null ? {} : Object.fromEntries(Object.entries(faultsOf(operation, valuesOf(type, typed, context), context)).map(([id, fault]) => [id, fault.key]));
 }
 function jobWith(...steps: [string, Values][]): Job {
-  return { ...newJob('mm'), name: 'Plate', steps: steps.map(([type, typed]) => ({ type, values: valuesOf(type, typed) })) };
+  return { ...newJob('mm', operationOf(steps[0]?.[0] ?? '')?.machine ?? 'mill'), name: 'Plate', steps: steps.map(([type, typed]) => ({ type, values: valuesOf(type, typed) })) };
 }
 
 describe('texts', () => {
@@ -55,7 +55,7 @@ describe('defaults', () => {
   it.each(OPERATIONS.map((one) => one.id))('of %s are accepted in both units and draw a picture', (type) => {
     expect(faults(type)).toEqual({});
     if (type !== 'contour') {
-      expect(faults(type, {}, { ...CONTEXT, unit: 'inch', safe: 1, maxFeed: 240 })).toEqual({});
+      expect(faults(type, {}, { ...CONTEXT, unit: 'inch', safe: 1, safeX: 3, maxFeed: 240 })).toEqual({});
     }
     const operation = operationOf(type);
     expect(operation === null ? [] : sketchOf(operation, valuesOf(type), CONTEXT).outlines).not.toEqual([]);
@@ -89,6 +89,10 @@ describe('impossible values are rejected at their field', () => {
     ['engrave', { text: 'A☃' }, { text: 'fault.letter' }],
     ['contour', { side: 'left' }, { side: 'fault.side_closed' }],
     ['contour', { side: 'inside', diameter: 31 }, { diameter: 'fault.no_room' }],
+    ['turn', { part_diameter: 40, cut: 1 }, { part_diameter: 'fault.part_stock' }],
+    ['groove', { groove_width: 2 }, { groove_width: 'fault.tool_wide_groove' }],
+    ['lathe_thread', { speed: 5000 }, { pitch: 'fault.pitch_feed' }],
+    ['chamfer', { chamfer: 20 }, { chamfer: 'fault.corner_part' }],
     ['contour', { layer: 'x' }, { layer: 'fault.no_layer' }],
   ])('%s %o', (type, typed, wanted) => expect(faults(type, typed)).toEqual(wanted));
 
@@ -110,6 +114,14 @@ describe('programs', () => {
     expect(lines).toEqual(expect.arrayContaining(['(Plate)', 'G21 G17 G90 G94', 'G40 G49 G80', 'G54', 'T3 M6', 'G43 H3', 'S3000 M3', 'M8', '(  Depth: 5 mm)']));
     expect(lines.filter((line) => line !== '').slice(-3)).toEqual(['M5 M9', 'G53 G0 Z0', 'M30']);
     expect(lines.indexOf('G53 G0 Z0')).toBeLessThan(lines.indexOf('T3 M6'));
+  });
+  it('of a lathe use diameters, feed per revolution and the safe position', () => {
+    const lines = programOf(jobWith(['lathe_thread', { tool: 3, thread_side: 'internal', major: 30 }], ['part_off', { tool: 2, speed_mode: 'surface' }]), FACTS).split('\n');
+    expect(lines).toEqual(expect.arrayContaining(['G21 G18 G7 G90 G95', 'G97 S400 M3', 'G96 D2000 S120 M3', 'G0 X80', 'G0 Z50']));
+    // Out of the bore along Z before X moves.
+    const at = lines.findIndex((line) => line.startsWith('G76'));
+    expect(lines.slice(at + 1, at + 3)).toEqual(['G7', 'G0 Z4.5']);
+    expect(lines.slice(-3, -1)).toEqual(['G97 G94 G8', 'M30']);
   });
   it('change a tool only where another one follows', () => {
     const text = programOf(jobWith(['rect_pocket', { tool: 3 }], ['slot', { tool: 3, coolant: 'mist' }], ['drill', { tool: 4 }]), FACTS);

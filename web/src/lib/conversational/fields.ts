@@ -18,7 +18,7 @@ interface More {
   isShown?: (values: Values) => boolean;
 }
 
-function field(id: string, kind: NumberKind, preset: Preset, base: Limits, more: More): NumberField {
+export function field(id: string, kind: NumberKind, preset: Preset, base: Limits, more: More): NumberField {
   const own = more.limits;
   return {
     id,
@@ -30,7 +30,7 @@ function field(id: string, kind: NumberKind, preset: Preset, base: Limits, more:
   };
 }
 
-const within = (low: number, high: number): Limit[] => [
+export const within = (low: number, high: number): Limit[] => [
   { low, key: 'fault.at_least', values: { low } },
   { high, key: 'fault.at_most', values: { high } },
 ];
@@ -92,7 +92,7 @@ export function speedField(id: string, preset: number): NumberField {
     { high: context.maxSpeed ?? 100_000, key: context.maxSpeed === null ? 'fault.at_most' : 'fault.max_speed', values: { high: context.maxSpeed ?? 100_000 } },
   ], {});
 }
-function diameterOf(values: Values, context: Context): number | null {
+export function diameterOf(values: Values, context: Context): number | null {
   const known = context.tools?.find((one) => one.number === num(values, 'tool'))?.diameter ?? 0;
   return known > 0 ? known : null;
 }

@@ -21,6 +21,8 @@ export interface Job {
   system: string;
   /** Z above everything on the table, in the coordinate system [unit]. */
   safe: number;
+  /** Lathe: diameter outside of which nothing is in the path of the tool; `safe` is a Z in front of the part. */
+  safeX?: number;
   /** Before a tool change and at the end: to Z 0 of the machine, or to the safe height. */
   retract: 'machine' | 'safe';
   end: 'M30' | 'M2';
@@ -28,7 +30,8 @@ export interface Job {
 }
 
 export function newJob(unit: Unit, machine: 'mill' | 'lathe' = 'mill'): Job {
-  return { version: 1, machine, name: '', unit, system: 'G54', safe: nice(unit, 25, 1), retract: 'machine', end: 'M30', steps: [] };
+  const common = { version: 1 as const, machine, name: '', unit, system: 'G54', end: 'M30' as const, steps: [] };
+  return machine === 'mill' ? { ...common, safe: nice(unit, 25, 1), retract: 'machine' } : { ...common, safe: nice(unit, 50, 2), safeX: nice(unit, 80, 3), retract: 'safe' };
 }
 
 /** What the machine contributes to the checks. */
@@ -40,7 +43,7 @@ export interface MachineFacts {
 export const NOTHING_KNOWN: MachineFacts = { tools: null, maxFeed: null, maxSpeed: null };
 
 export function contextOf(job: Job, facts: MachineFacts): Context {
-  return { unit: job.unit, safe: job.safe, ...facts };
+  return { unit: job.unit, safe: job.safe, safeX: job.safeX ?? 0, ...facts };
 }
 
 /** Names that a file can have on every computer. */
@@ -60,6 +63,9 @@ export function jobFaults(job: Job): Faults {
   if (safe !== null) {
     faults['safe'] = safe;
   }
+  if (job.machine === 'lathe' && !(Number.isFinite(job.safeX) && (job.safeX ?? 0) > 0 && (job.safeX ?? 0) <= nice(job.unit, 2000, 80))) {
+    faults['safeX'] = { key: Number.isFinite(job.safeX) ? 'fault.above_zero' : 'fault.number' };
+  }
   return faults;
 }
 
@@ -71,7 +77,7 @@ function safeFault(job: Job): Fault | null {
   if (Math.abs(job.safe) > most) {
     return { key: 'fault.at_most', values: { high: most } };
   }
-  const tops = job.steps.map((one) => num(one.values, 'top')).filter(Number.isFinite);
+  const tops = job.steps.map((one) => num(one.values, job.machine === 'mill' ? 'top' : 'z_start')).filter(Number.isFinite);
   const highest = Math.max(...tops);
   return tops.length > 0 && job.safe < highest + shortest(job.unit) ? { key: 'fault.safe_below', values: { top: highest } } : null;
 }
@@ -102,7 +108,7 @@ export function isFaultless(job: Job, facts: MachineFacts): boolean {
   return job.steps.length > 0 && Object.keys(jobFaults(job)).length === 0 && stepFaults(job, facts).every((one) => Object.keys(one).length === 0);
 }
 
-const KINDS: Record<string, (unit: Unit) => string> = { length: (unit) => unit, feed: (unit) => `${unit}/min`, speed: () => 'rev/min', angle: () => 'deg', time: () => 's', count: () => '' };
+const KINDS: Record<string, (unit: Unit) => string> = { length: (unit) => unit, feed: (unit) => `${unit}/min`, rev: (unit) => `${unit}/rev`, surface: (unit) => (unit === 'mm' ? 'm/min' : 'ft/min'), speed: () => 'rev/min', angle: () => 'deg', time: () => 's', count: () => '' };
 
 /** The unit of a field. */
 export function unitOf(field: Field, unit: Unit): string {
@@ -136,15 +142,20 @@ function parameters(writer: Writer, operation: Operation, values: Values): void 
 
 const COOLANT: Record<string, string> = { flood: 'M8', mist: 'M7', off: 'M9' };
 
+function toolText(values: Values, writer: Writer): string {
+  const found = ['diameter', 'nose', 'tool_width'].find((id) => values[id] !== undefined) ?? '';
+  return `${text(`field.${found}`).toLowerCase()} ${writer.number(num(values, found))}`;
+}
+
 function header(writer: Writer, job: Job): void {
   writer.comment(job.name);
-  writer.comment(`Made by Millwright, conversational. Units: ${job.unit === 'mm' ? 'mm' : 'inch'}. Zero: ${job.system}. Safe height: Z${writer.number(job.safe)}`);
-  const used = new Map(job.steps.map((one) => [num(one.values, 'tool'), num(one.values, 'diameter')]));
-  for (const [tool, diameter] of used) {
-    writer.comment(`Tool T${tool}: diameter ${writer.number(diameter)} ${job.unit}`);
+  writer.comment(`Made by Millwright, conversational. Units: ${job.unit === 'mm' ? 'mm' : 'inch'}. Zero: ${job.system}. ${job.machine === 'mill' ? 'Safe height:' : `X is a diameter. Safe position: X${writer.number(job.safeX ?? 0)}`} Z${writer.number(job.safe)}`);
+  const used = new Map(job.steps.map((one) => [num(one.values, 'tool'), toolText(one.values, writer)]));
+  for (const [tool, shape] of used) {
+    writer.comment(`Tool T${tool}: ${shape} ${job.unit}`);
   }
   writer.blank();
-  writer.line(`${job.unit === 'mm' ? 'G21' : 'G20'} G17 G90 G94`);
+  writer.line(`${job.unit === 'mm' ? 'G21' : 'G20'} ${job.machine === 'mill' ? 'G17 G90 G94' : 'G18 G7 G90 G95'}`);
   writer.line('G40 G49 G80');
   // Corners stay within this of the path.
   writer.line(`G64 P${job.unit === 'mm' ? '0.01' : '0.0004'}`);
@@ -153,9 +164,12 @@ function header(writer: Writer, job: Job): void {
 
 function retract(writer: Writer, job: Job): void {
   writer.forget();
-  if (job.retract === 'machine') {
+  if (job.retract === 'machine' && job.machine === 'mill') {
     writer.line('G53 G0 Z0');
   } else {
+    if (job.machine === 'lathe') {
+      writer.rapid({ x: job.safeX ?? 0 });
+    }
     writer.rapid({ z: job.safe });
   }
 }
@@ -164,7 +178,7 @@ function toolChange(writer: Writer, job: Job, values: Values, isFirst: boolean):
   const tool = num(values, 'tool');
   writer.line('M5 M9');
   // The length of the tool before is cancelled at first: the height is that of the machine.
-  if (!isFirst || job.retract === 'machine') {
+  if (!isFirst || (job.retract === 'machine' && job.machine === 'mill')) {
     retract(writer, job);
   }
   writer.line(`T${tool} M6`);
@@ -185,22 +199,29 @@ function runStep(writer: Writer, job: Job, step: Step, context: Context, before:
     writer.line('M9');
   }
   const isLeft = word(step.values, 'hand') === 'left' && step.type === 'tap';
-  writer.line(`S${plain(num(step.values, 'speed'), 1)} ${isLeft ? 'M4' : 'M3'}`);
+  if (job.machine === 'lathe') {
+    writer.line(word(step.values, 'speed_mode') === 'surface' ? `G96 D${plain(num(step.values, 'limit_speed'), 1)} S${plain(num(step.values, 'surface'), 2)} M3` : `G97 S${plain(num(step.values, 'speed'), 1)} M3`);
+  } else {
+    writer.line(`S${plain(num(step.values, 'speed'), 1)} ${isLeft ? 'M4' : 'M3'}`);
+  }
   writer.line(COOLANT[word(step.values, 'coolant')] ?? 'M9');
   writer.forget();
+  if (job.machine === 'lathe' && !isChange) {
+    retract(writer, job);
+  }
   operation.write(writer, step.values, context);
 }
 
 /** The path of one operation without faults, for its picture. */
 export function traceOf(job: Job, step: Step, facts: MachineFacts): TracePoint[] {
-  const writer = new Writer(job.unit);
+  const writer = new Writer(job.unit, job.machine === 'lathe');
   operationOf(step.type)?.write(writer, step.values, contextOf(job, facts));
-  return writer.trace;
+  return job.machine === 'mill' ? writer.trace : writer.trace.map((one) => ({ x: one.z, y: one.x / 2, z: 0, isRapid: one.isRapid }));
 }
 
 /** The G-code of a job without faults. */
 export function programOf(job: Job, facts: MachineFacts): string {
-  const writer = new Writer(job.unit);
+  const writer = new Writer(job.unit, job.machine === 'lathe');
   const context = contextOf(job, facts);
   header(writer, job);
   for (const [i, step] of job.steps.entries()) {
@@ -215,6 +236,9 @@ export function programOf(job: Job, facts: MachineFacts): string {
   writer.blank();
   writer.line('M5 M9');
   retract(writer, job);
+  if (job.machine === 'lathe') {
+    writer.line('G97 G94 G8');
+  }
   writer.line(job.end);
   return `${writer.lines.join('\n')}\n`;
 }

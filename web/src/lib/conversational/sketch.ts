@@ -5,26 +5,10 @@ import { contoursOf, cutsOf } from './operations/contour';
 import { engravedStrokes } from './operations/engrave';
 import { holesOf } from './patterns';
 import { along, distance, lengthOf, place, placePath, ringPath, type Frame, type Path, type Point } from './path2';
+import { LATHE_SKETCHES } from './lathe_sketch';
+import { circle, Draft, type Sketch } from './sketch_draft';
 import { num, word, type Context, type Operation, type Values } from './types';
 import { filled } from './validate';
-
-export interface Outline {
-  kind: 'stock' | 'part' | 'cut' | 'tool' | 'thin';
-  points: Point[];
-  isClosed: boolean;
-}
-/** Between two points, drawn `level` steps to the left of the direction from a to b (negative: to the right). A dimension of no
- * length marks a point. */
-export interface Dimension {
-  field: string;
-  a: Point;
-  b: Point;
-  level: number;
-}
-export interface Sketch {
-  outlines: Outline[];
-  dimensions: Dimension[];
-}
 
 const ARC_STEP = Math.PI / 24;
 
@@ -40,29 +24,6 @@ function pointsOf(path: Path): Point[] {
   }
   return out;
 }
-function circle(centre: Point, radius: number): Point[] {
-  return Array.from({ length: 49 }, (_, i) => ({ x: centre.x + radius * Math.cos(i * (Math.PI / 24)), y: centre.y + radius * Math.sin(i * (Math.PI / 24)) }));
-}
-
-class Draft {
-  readonly sketch: Sketch = { outlines: [], dimensions: [] };
-  outline(kind: Outline['kind'], points: Point[], isClosed = true): void {
-    this.sketch.outlines.push({ kind, points, isClosed });
-  }
-  dimension(field: string, a: Point, b: Point, level = 1): void {
-    this.sketch.dimensions.push({ field, a, b, level });
-  }
-  mark(fields: string[], at: Point): void {
-    fields.forEach((field) => this.dimension(field, at, at, 0));
-  }
-  /** The tool at a point, with its diameter. */
-  tool(values: Values, at: Point): void {
-    const radius = num(values, 'diameter') / 2;
-    this.outline('tool', circle(at, radius));
-    this.dimension('diameter', { x: at.x - radius, y: at.y }, { x: at.x + radius, y: at.y }, 0.01);
-  }
-}
-
 function box(frame: Frame, x: number, y: number, corner: number): Point[] {
   return pointsOf(placePath(frame, ringPath({ x, y, radius: corner }, false, 'bottom')));
 }
@@ -240,6 +201,7 @@ const SKETCHES: Record<string, (d: Draft, v: Values, context: Context) => void> 
   thread_mill: threadSketch,
   engrave: engraveSketch,
   contour: contourSketch,
+  ...LATHE_SKETCHES,
 };
 
 /** Numbers that were not typed correctly, and sizes of zero or less, are drawn with their defaults. */
@@ -248,7 +210,7 @@ function drawable(operation: Operation, values: Values, context: Context): Value
     operation.fields
       .filter((field) => {
         const value = values[field.id];
-        const isAny = field.id === 'x' || field.id === 'y' || field.id === 'x_end' || field.id === 'y_end' || field.kind === 'angle' || field.id === 'top' || field.id.endsWith('allowance') || field.id === 'corner_radius';
+        const isAny = field.id === 'x' || field.id === 'y' || field.id === 'x_end' || field.id === 'y_end' || field.kind === 'angle' || field.id === 'top' || field.id.startsWith('z_') || field.id === 'end_diameter' || field.id === 'nose' || field.id.endsWith('allowance') || field.id === 'corner_radius';
         return typeof value === 'number' ? Number.isFinite(value) && Math.abs(value) < 1e5 && (isAny || value > 0) && (field.kind !== 'count' || value <= 1000) : value !== undefined;
       })
       .map((field) => [field.id, values[field.id] as number | string]),
@@ -270,3 +232,5 @@ export function sketchOf(operation: Operation, values: Values, context: Context)
   SKETCHES[operation.id]?.(draft, usable, context);
   return draft.sketch;
 }
+
+export type { Dimension, Outline, Sketch } from './sketch_draft';

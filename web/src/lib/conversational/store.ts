@@ -63,7 +63,7 @@ export function openForm(text: string): Opened {
 function parsed(json: string): Job | null {
   try {
     const value = JSON.parse(json) as Partial<Job> | null;
-    const isJob = value !== null && value.version === 1 && Array.isArray(value.steps) && value.steps.every(isStep) && typeof value.name === 'string' && typeof value.safe === 'number';
+    const isJob = value !== null && value.version === 1 && Array.isArray(value.steps) && value.steps.every(isStep) && typeof value.name === 'string' && typeof value.safe === 'number' && (value.machine !== 'lathe' || typeof value.safeX === 'number');
     const isKnown = isJob && isOneOf(value.unit, ['mm', 'inch'] satisfies Unit[]) && isOneOf(value.machine, ['mill', 'lathe']) && isOneOf(value.retract, ['machine', 'safe']) && isOneOf(value.end, ['M30', 'M2']) && typeof value.system === 'string';
     return isKnown ? (value as Job) : null;
   } catch {

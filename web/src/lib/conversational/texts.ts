@@ -14,8 +14,9 @@ export interface StepTexts {
   type: string;
   texts: Record<string, string>;
 }
-export interface JobTexts extends Omit<Job, 'safe' | 'steps'> {
+export interface JobTexts extends Omit<Job, 'safe' | 'safeX' | 'steps'> {
   safe: string;
+  safeX?: string;
   steps: StepTexts[];
 }
 
@@ -39,7 +40,10 @@ export function valuesOf(step: StepTexts, context: Context): Values {
 }
 
 export function jobOf(texts: JobTexts, facts: MachineFacts): Job {
-  const job: Job = { ...texts, name: texts.name.trim(), safe: parseNumber(texts.safe) ?? NaN, steps: [] };
+  const job: Job = { ...texts, name: texts.name.trim(), safe: parseNumber(texts.safe) ?? NaN, safeX: parseNumber(texts.safeX ?? '') ?? NaN, steps: [] };
+  if (texts.machine === 'mill') {
+    delete job.safeX;
+  }
   const context = contextOf(job, facts);
   job.steps = texts.steps.map((one): Step => ({ type: one.type, values: valuesOf(one, context) }));
   return job;
@@ -55,7 +59,8 @@ export function textOf(value: number | string | undefined, separator = '.'): str
 /** A stored job for the form: each value counts as typed. */
 export function textsOf(job: Job, separator = '.'): JobTexts {
   const steps = job.steps.map((one, id) => ({ id, type: one.type, texts: Object.fromEntries(Object.entries(one.values).map(([key, value]) => [key, textOf(value, separator)])) }));
-  return { ...job, safe: textOf(job.safe, separator), steps };
+  const { safeX, ...others } = job;
+  return { ...others, safe: textOf(job.safe, separator), ...(safeX === undefined ? {} : { safeX: textOf(safeX, separator) }), steps };
 }
 
 /** Lengths and feeds keep their size when the unit changes. */
@@ -70,15 +75,16 @@ export function converted(texts: JobTexts, unit: Unit, separator = '.'): JobText
   };
   const steps = texts.steps.map((step) => {
     const fields = operationOf(step.type)?.fields ?? [];
-    const isLength = (id: string): boolean => fields.some((field) => field.id === id && (field.kind === 'length' || field.kind === 'feed'));
+    const isLength = (id: string): boolean => fields.some((field) => field.id === id && (field.kind === 'length' || field.kind === 'feed' || field.kind === 'rev'));
     return { ...step, texts: Object.fromEntries(Object.entries(step.texts).map(([id, text]) => [id, isLength(id) ? change(text) : text])) };
   });
-  return { ...texts, unit, safe: change(texts.safe), steps };
+  return { ...texts, unit, safe: change(texts.safe), ...(texts.safeX === undefined ? {} : { safeX: change(texts.safeX) }), steps };
 }
 
 const GROUPS: Record<string, string> = {
   top: 'depth', depth: 'depth', clearance: 'depth', step_down: 'depth', depth_at: 'depth', tip_angle: 'depth', peck: 'depth',
   tool: 'tool', diameter: 'tool', speed: 'tool', feed: 'tool', feed_z: 'tool', coolant: 'tool',
+  nose: 'tool', tool_width: 'tool', tool_edge: 'tool', speed_mode: 'tool', surface: 'tool', limit_speed: 'tool', feed_rev: 'tool', cut: 'cut', first_cut: 'cut', springs: 'cut', back_off: 'depth',
   step_over: 'cut', allowance: 'cut', floor_allowance: 'cut', direction: 'cut', face_direction: 'cut', entry: 'cut', ramp_angle: 'cut', cycle: 'cut', dwell: 'cut', between: 'cut', tapping: 'cut', boring: 'cut', passes: 'cut',
 };
 export const GROUP_ORDER = ['shape', 'depth', 'tool', 'cut'] as const;

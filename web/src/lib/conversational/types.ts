@@ -18,6 +18,8 @@ export interface Context {
   unit: Unit;
   /** Z of moves between operations [unit]. */
   safe: number;
+  /** Lathe: diameter of moves between operations [unit]. */
+  safeX: number;
   /** Null: the tool table is not known. */
   tools: TableTool[] | null;
   /** Maximum feed of the machine [unit/min] and maximum spindle speed [rev/min]; null: not known. */
@@ -42,7 +44,8 @@ export interface Limit {
   values?: Record<string, string | number>;
 }
 
-export type NumberKind = 'length' | 'feed' | 'speed' | 'angle' | 'count' | 'time';
+/** `rev`: length per revolution. `surface`: m/min or ft/min. */
+export type NumberKind = 'length' | 'feed' | 'rev' | 'surface' | 'speed' | 'angle' | 'count' | 'time';
 
 interface FieldBase {
   id: string;

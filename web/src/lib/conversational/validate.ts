@@ -44,7 +44,7 @@ function fieldFault(field: Field, values: Values, context: Context): Fault | nul
 }
 
 /** Faults that a value has whatever the others are: fields that depend on it are not rejected because of it. */
-const ALONE = new Set<string>(['fault.number', 'fault.whole', 'fault.above_zero', 'fault.not_negative', 'fault.at_least', 'fault.at_most', 'fault.top_safe']);
+const ALONE = new Set<string>(['fault.number', 'fault.whole', 'fault.above_zero', 'fault.not_negative', 'fault.at_least', 'fault.at_most', 'fault.top_safe', 'fault.part_stock', 'fault.bore_hole', 'fault.z_order', 'fault.hole_gap']);
 
 function eachFault(operation: Operation, values: Values, context: Context): Faults {
   const faults: Faults = {};

@@ -44,8 +44,12 @@ export class Writer {
   private readonly at: { x: string; y: string; z: string; f: string } = { x: '', y: '', z: '', f: '' };
   private readonly here: { x: number; y: number; z: number } = { x: NaN, y: NaN, z: NaN };
 
-  constructor(readonly unit: Unit) {
+  private readonly feedDigits: number;
+
+  /** `isPerRevolution`: feeds are small numbers. */
+  constructor(readonly unit: Unit, isPerRevolution = false) {
     this.digits = digitsOf(unit);
+    this.feedDigits = isPerRevolution ? digitsOf(unit) : unit === 'mm' ? 2 : 3;
   }
 
   comment(text: string): void {
@@ -66,7 +70,7 @@ export class Writer {
     return plain(value, this.digits);
   }
   feedWord(rate: number): string {
-    return `F${plain(rate, this.unit === 'mm' ? 2 : 3)}`;
+    return `F${plain(rate, this.feedDigits)}`;
   }
   get x(): number {
     return this.here.x;
@@ -129,6 +133,15 @@ export class Writer {
     const count = Math.ceil(sweepOf(from, arc) / TRACE_STEP);
     for (let i = 1; i < count && this.trace.length < MOST_TRACE; i += 1) {
       this.trace.push({ ...along(from, arc, i / count), z: from.z + ((end - from.z) * i) / count, isRapid: false });
+    }
+  }
+
+  /** An arc by its radius in the plane of X and Z, where X is a diameter. */
+  arcByRadius(to: { x: number; z: number }, radius: number, isCw: boolean, rate: number): void {
+    const words = this.words(to);
+    if (words.length > 0) {
+      this.lines.push([isCw ? 'G2' : 'G3', `X${this.number(to.x)}`, `Z${this.number(to.z)}`, `R${this.number(radius)}`, ...this.rate(rate)].join(' '));
+      this.mark(false);
     }
   }
 

@@ -22,15 +22,21 @@ export interface FormState {
   nextId: number;
 }
 
+/** The forms that fit the machine; null: none do. */
+export function machineKind(): 'mill' | 'lathe' | null {
+  const kind = machine.facts?.kind ?? 'mill';
+  return kind === 'mill' ? 'mill' : kind === 'foam' ? null : 'lathe';
+}
+
 function freshState(unit: 'mm' | 'inch'): FormState {
-  return { job: { ...textsOf(newJob(unit), decimalSeparator()), name: tc('panel.default_name') }, selected: -1, file: null, isChanged: false, nextId: 1 };
+  return { job: { ...textsOf(newJob(unit, machineKind() ?? 'mill'), decimalSeparator()), name: tc('panel.default_name') }, selected: -1, file: null, isChanged: false, nextId: 1 };
 }
 
 function kept(): FormState | null {
   try {
     const value = JSON.parse(localStorage.getItem(KEY) ?? 'null') as FormState | null;
     const isGood = value !== null && value.job.version === 1 && typeof value.job.name === 'string' && typeof value.job.safe === 'string' && Array.isArray(value.job.steps) && value.job.steps.every((one) => operationOf(one.type) !== null && typeof one.texts === 'object');
-    return isGood ? value : null;
+    return isGood && value.job.machine === machineKind() ? value : null;
   } catch {
     return null; // of an older page, or not allowed
   }
@@ -68,7 +74,7 @@ export function openJob(job: Job, file: string, isChanged: boolean): void {
 }
 
 /** Words of tool comments by which the tool of an operation is proposed. */
-const TOOL_WORDS: Record<string, RegExp> = { drill: /drill|bohrer|broca/i, tap: /\btap\b|gewindebohrer|macho/i, bore: /bor(e|ing)|ausdreh|mandrin/i, thread_mill: /thread|gewindefr|rosca/i, engrave: /engrav|gravier|graba/i };
+const TOOL_WORDS: Record<string, RegExp> = { turn: /rough|turn|schrupp|dreh|desbast|cilindr/i, lathe_face: /rough|turn|fac|schrupp|dreh|desbast|refren/i, chamfer: /finish|turn|schlicht|dreh|acabad|cilindr/i, radius: /finish|turn|schlicht|dreh|acabad|cilindr/i, lathe_bore: /bor(e|ing)|innen|mandrin/i, groove: /groov|stech|ranur/i, part_off: /part|abstech|tronz/i, lathe_thread: /thread|gewinde|rosc/i, drill: /drill|bohrer|broca/i, tap: /\btap\b|gewindebohrer|macho/i, bore: /bor(e|ing)|ausdreh|mandrin/i, thread_mill: /thread|gewindefr|rosca/i, engrave: /engrav|gravier|graba/i };
 const MILL = /mill|fräs|fresa/i;
 const NO_FLAT = /ball|kugel|bola|esf[eé]r|thread|gewinde|rosca/i;
 const CUTTERS = new Set(['face', 'rect_pocket', 'round_pocket', 'slot', 'rect_boss', 'round_boss', 'contour']);
