@@ -60,7 +60,7 @@ class Maker:
         self.milling(v)
         del v['allowance'], v['direction']
         self.place(v)
-        v |= {'origin': self.pick('corner', 'centre'), 'length': self.length(5, 200), 'width': self.length(5, 150), 'face_direction': self.pick('climb', 'both'), 'floor_allowance': self.pick(0.0, round(v['depth'] * 0.2, 4))}
+        v |= {'origin': self.pick('corner', 'centre'), 'length': self.length(5, 200), 'width': self.length(5, 150), 'face_direction': self.pick('climb', 'both'), 'floor_allowance': self.pick(0.0, round(min(v['depth'] * 0.2, v['step_down']), 4))}
         v['step_over'] = round(d * self.random.uniform(0.2, 0.89), 4)
         return v
 
@@ -232,7 +232,7 @@ def plant(case, maker):
     if 'entry' in v and v['entry'] == 'ramp':
         options += [('ramp_angle', 0.0), ('ramp_angle', 60.0)]
     special = {
-        'face': [('length', 0.0), ('floor_allowance', v['depth'])],
+        'face': [('length', 0.0), ('floor_allowance', v['depth']), ('floor_allowance', v.get('step_down', 0) * 1.01)],
         'rect_pocket': [('length', d * 0.9), ('width', d * 0.99), ('corner_radius', d * 0.49), ('corner_radius', 1e3)],
         'round_pocket': [('pocket_diameter', d * 0.95)],
         'slot': [('slot_width', d * 0.98), ('x_end+y_end', (v.get('x'), v.get('y')))],

@@ -83,8 +83,6 @@ def rules_of(kind, v, unit):
         slope = math.tan(math.radians(0.5))
     if kind in HOLES:
         step = v['peck'] if kind == 'drill' and v['cycle'] != 'drill' else v['top'] - bottom_of(kind, v)
-    if kind == 'face':
-        step = max(step, v['floor_allowance'])
     return {'step': step, 'slope': slope, 'level': v['top'] + v['clearance'], 'slack': SLACK[unit]}
 
 

@@ -18,6 +18,7 @@ class Maker(cases.Maker):
     def depth(self, v, total):
         v['allowance'] = self.pick(0.0, round(total * self.random.uniform(0.02, 0.3), 4))
         v['cut'] = round(0.9999 * total / self.random.choice([1, 1.5, 3, 6.2]), 4)
+        v['allowance'] = min(v['allowance'], v['cut'])
         return v
 
     def turn(self):
@@ -123,6 +124,7 @@ def plant(case, maker):
     options += [('speed', 5000.0)] if v.get('speed_mode', 'rev') == 'rev' else [('limit_speed', 5000.0), ('surface', 0.0)]
     options += [('feed_rev', 0.0), ('feed_rev', -0.1)] if 'feed_rev' in v else []
     options += [('cut', 0.0), ('cut', 100.0 * maker.scale)] if 'cut' in v else []
+    options += [('allowance', v['cut'] * 1.01)] if 'allowance' in v else []
     options += [('stock_diameter', job['safeX'])] if 'stock_diameter' in v else []
     options += [('z_start', job['safe'] + 1), ('z_end', v['z_start'])] if 'z_end' in v else []
     options += {'turn': [('part_diameter', v.get('stock_diameter'))], 'lathe_bore': [('bore_diameter', v.get('hole_diameter')), ('hole_diameter', v['clearance'])], 'lathe_face': [('end_diameter', v.get('stock_diameter'))],

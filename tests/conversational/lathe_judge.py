@@ -92,7 +92,7 @@ class Judge:
             column = np.searchsorted(self.bar.z, z + v['nose'])
             if column < CELLS:
                 deep = (self.bar.radius[column] - x) * self.sign
-                if deep > max(v['cut'], v['allowance']) + slack:
+                if deep > v['cut'] + slack:
                     self.fault(f'cut {deep:.4f} deep', move)
 
 
@@ -134,6 +134,8 @@ def judge_operation(kind, v, moves, unit, pitches=None):
     else:
         low, high = v['z_end'] - max(2 * v['nose'], (start - v['z_end']) / 4), start
     isBore = kind == 'lathe_bore'
+    if kind not in WIDE and v['nose'] < 3 * (high - low) / CELLS:
+        return [], {'isTooLong': True}  # the nose is smaller than a cell
     bar = Bar(low, high, v['hole_diameter'] / 2 if isBore else v.get('stock_diameter', v.get('part_diameter')) / 2, slack, isBore)
     judge = Judge(kind, v, bar)
     judge.follow(moves)

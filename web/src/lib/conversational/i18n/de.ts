@@ -225,6 +225,7 @@ export const de: ConvCatalogue = {
   'fault.z_order': 'Muss kleiner als Start Z {high} sein.',
   'fault.z_short': 'Zu kurz für Schneidenradius und Aufmaß.',
   'fault.cut_all': 'Höchstens die ganze Tiefe {high}.',
+  'fault.allowance_cut': 'Höchstens so viel wie die Zustellung {high}.',
   'fault.less_than': 'Muss kleiner als {high} sein.',
   'fault.part_stock': 'Muss kleiner als das Rohteil {high} sein.',
   'fault.hole_gap': 'Muss größer als der doppelte Sicherheitsabstand {low} sein.',

@@ -225,6 +225,7 @@ export const en = {
   'fault.z_order': 'Must be less than the start Z {high}.',
   'fault.z_short': 'Too short for the nose radius and the allowance.',
   'fault.cut_all': 'Must be at most the whole depth {high}.',
+  'fault.allowance_cut': 'Must be at most the depth of cut {high}.',
   'fault.less_than': 'Must be less than {high}.',
   'fault.part_stock': 'Must be smaller than the stock {high}.',
   'fault.hole_gap': 'Must be larger than twice the clearance, {low}.',

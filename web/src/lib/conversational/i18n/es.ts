@@ -225,6 +225,7 @@ export const es: ConvCatalogue = {
   'fault.z_order': 'Debe ser menor que el inicio Z {high}.',
   'fault.z_short': 'Demasiado corto para el radio de punta y la demasía.',
   'fault.cut_all': 'Como máximo la profundidad total {high}.',
+  'fault.allowance_cut': 'Como máximo la profundidad de pasada {high}.',
   'fault.less_than': 'Debe ser menor que {high}.',
   'fault.part_stock': 'Debe ser menor que el bruto {high}.',
   'fault.hole_gap': 'Debe ser mayor que el doble de la distancia, {low}.',

@@ -18,7 +18,7 @@ export const face: Operation = {
     feedDown(),
     stepDown(),
     stepOver(0.9),
-    margin('floor_allowance', (_, context) => nice(context.unit, 0.2, 0.01), { reason: 'why.floor_allowance', limits: (values) => [{ high: num(values, 'depth'), isOpen: true, key: 'fault.floor_allowance', values: { high: num(values, 'depth') } }] }),
+    margin('floor_allowance', (values, context) => Math.min(nice(context.unit, 0.2, 0.01), num(values, 'depth') / 4, num(values, 'step_down')) || 0, { reason: 'why.floor_allowance', limits: (values) => [{ high: num(values, 'depth'), isOpen: true, key: 'fault.floor_allowance', values: { high: num(values, 'depth') } }, { high: num(values, 'step_down'), key: 'fault.allowance_cut', values: { high: num(values, 'step_down') } }] }),
     choice('face_direction', ['climb', 'both'], 'climb', { reason: 'why.face_direction' }),
   ],
   check: (values) => lengthFault((levelCount(values) * 5 * num(values, 'width')) / num(values, 'step_over'), 'step_over'),

@@ -44,7 +44,7 @@ const zEnd = (mm: number, inch: number): Field => position('z_end', (_, context)
 const gap = (): Field => size('clearance', 2, 0.1, { reason: 'why.gap', limits: (_, context) => within(0, nice(context.unit, 50, 2)) });
 const cutField = (most: (values: Values) => number): Field =>
   size('cut', (values, context) => Math.min(nice(context.unit, 1, 0.04), most(values)) || nice(context.unit, 1, 0.04), 0.04, { reason: 'why.cut', limits: (values) => [{ high: most(values), key: 'fault.cut_all', values: { high: most(values) } }, { low: most(values) / 1000, key: 'fault.too_many_steps' }] });
-const finish = (most: (values: Values) => number): Field => margin('allowance', (values, context) => Math.min(nice(context.unit, 0.2, 0.01), most(values) / 2) || 0, { reason: 'why.turn_allowance', limits: (values) => [{ high: most(values), isOpen: true, key: 'fault.less_than', values: { high: most(values) } }] });
+const finish = (most: (values: Values) => number): Field => margin('allowance', (values, context) => Math.min(nice(context.unit, 0.2, 0.01), most(values) / 2) || 0, { reason: 'why.turn_allowance', limits: (values) => [{ high: most(values), isOpen: true, key: 'fault.less_than', values: { high: most(values) } }, { high: num(values, 'cut'), key: 'fault.allowance_cut', values: { high: num(values, 'cut') } }] });
 
 /** Equal cuts of at most `cut` from 0 to `total`. */
 function cutsOf(total: number, cut: number): number[] {
