@@ -79,6 +79,13 @@ it('opens it again with the same values, and replaces it only after a question',
   await field('save').click();
   await until(() => readFileSync(program(), 'utf8').includes('Z-12'), 'the changed file');
   expect(readFileSync(`${program()}~`, 'utf8')).toContain('Z-15');
+  // Changed elsewhere since.
+  rig.write('Flange.ngc', readFileSync(program(), 'utf8').replace('S1500', 'S1600'));
+  await field('depth').fill('11');
+  await field('save').click();
+  await field('replace').click();
+  await until(() => readFileSync(program(), 'utf8').includes('Z-11'), 'the replaced file');
+  expect(readFileSync(`${program()}~`, 'utf8')).toContain('S1600');
   const before = readFileSync(program(), 'utf8');
   await toList();
   await field('new').click();

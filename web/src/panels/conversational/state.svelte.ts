@@ -3,6 +3,7 @@
 import { tc } from '../../lib/conversational/i18n/index.svelte';
 import { contextOf, newJob, type MachineFacts } from '../../lib/conversational/job';
 import { operationOf } from '../../lib/conversational/registry';
+import { checksum } from '../../lib/conversational/store';
 import { jobOf, textOf, textsOf, valuesOf, type JobTexts } from '../../lib/conversational/texts';
 import type { Job } from '../../lib/conversational/job';
 import { decimalSeparator } from '../../lib/i18n/index.svelte';
@@ -18,6 +19,8 @@ export interface FormState {
   selected: number;
   /** The file that the values were read from or written to; null: none yet. */
   file: string | null;
+  /** Checksum of its text then: a file that was changed since is not replaced without a question. */
+  sum: string;
   isChanged: boolean;
   nextId: number;
 }
@@ -29,7 +32,7 @@ export function machineKind(): 'mill' | 'lathe' | null {
 }
 
 function freshState(unit: 'mm' | 'inch'): FormState {
-  return { job: { ...textsOf(newJob(unit, machineKind() ?? 'mill'), decimalSeparator()), name: tc('panel.default_name') }, selected: -1, file: null, isChanged: false, nextId: 1 };
+  return { job: { ...textsOf(newJob(unit, machineKind() ?? 'mill'), decimalSeparator()), name: tc('panel.default_name') }, selected: -1, file: null, sum: '', isChanged: false, nextId: 1 };
 }
 
 function kept(): FormState | null {
@@ -68,9 +71,10 @@ export function startOver(): void {
   Object.assign(form, freshState(form.job.unit));
 }
 
-export function openJob(job: Job, file: string, isChanged: boolean): void {
+/** `file` and its `text`; null: the values are to be saved as a new one. */
+export function openJob(job: Job, from: { file: string; text: string } | null): void {
   const texts = textsOf(job, decimalSeparator());
-  Object.assign(form, { job: texts, selected: texts.steps.length > 0 ? 0 : -1, file, isChanged, nextId: texts.steps.length });
+  Object.assign(form, { job: texts, selected: texts.steps.length > 0 ? 0 : -1, file: from?.file ?? null, sum: from === null ? '' : checksum(from.text), isChanged: from === null, nextId: texts.steps.length });
 }
 
 /** Words of tool comments by which the tool of an operation is proposed. */
