@@ -3,10 +3,13 @@
 import math
 
 UNITS = {'mm': 4, 'inch': 1}
+# Lengths of noise are in the unit of the drawing.
+UNIT_NOISE = [1.0]
 
 
 def make(r, layer, scale, diameter, unit):
     """(contours, text, sides that fit)."""
+    UNIT_NOISE[0] = scale
     isOpen = r.random() < 0.3
     count = r.choice([1, 1, 2])
     contours, entities = [], []
@@ -68,15 +71,17 @@ def rounded(r, layer, centre, d):
 
 
 def rounded_lines(r, layer, centre, d):
-    """As separate lines and arcs that end near each other."""
+    """As separate lines and arcs that end near each other, as drawing programs write them."""
     _, pieces, _ = corners(r, centre, d)
+    noise = r.choice([0.0, 5e-5, 4e-4]) * UNIT_NOISE[0]
+    near = lambda value: value + r.uniform(-noise, noise)
     out = []
     for one in pieces:
         if one[0] == 'line':
             a, b = one[1:] if r.random() < 0.5 else one[:0:-1]
-            out.append(entity('LINE', layer, {10: a[0], 20: a[1], 11: b[0], 21: b[1]}))
+            out.append(entity('LINE', layer, {10: near(a[0]), 20: near(a[1]), 11: near(b[0]), 21: near(b[1])}))
         else:
-            out.append(entity('ARC', layer, {10: one[1][0], 20: one[1][1], 40: one[2], 50: one[3] % 360, 51: one[4] % 360}))
+            out.append(entity('ARC', layer, {10: near(one[1][0]), 20: near(one[1][1]), 40: near(one[2]), 50: one[3] % 360, 51: one[4] % 360}))
     return pieces, out
 
 

@@ -208,6 +208,14 @@ describe('DXF', () => {
     const found = chain(file(line(10, 0, 10, 5), line(0, 0, 10, 0), '0\nARC\n8\ncut\n10\n5\n20\n5\n40\n5\n50\n0\n51\n180\n', line(0, 0, 0, 5)));
     expect('chains' in found && found.chains.map((one) => pathLength(one))).toEqual([expect.closeTo(20 + 5 * Math.PI, 6)]);
   });
+  it('closes small gaps, and keeps arcs whose ends are as far from the centre', () => {
+    const found = chain(file(line(10, 0.004, 10, 5), line(0, 0, 10, 0), '0\nARC\n8\ncut\n10\n5.003\n20\n5\n40\n5\n50\n0\n51\n180\n', line(0, 0.003, 0, 5)));
+    const path = 'chains' in found ? found.chains[0] : undefined;
+    const at = path?.segments.findIndex((one) => one.kind === 'arc') ?? -1;
+    const arc = path?.segments[at];
+    const from = at > 0 ? path?.segments[at - 1]?.to : path?.start;
+    expect(arc?.kind === 'arc' && from !== undefined && Math.hypot(from.x - arc.centre.x, from.y - arc.centre.y) - Math.hypot(arc.to.x - arc.centre.x, arc.to.y - arc.centre.y)).toBeCloseTo(0, 12);
+  });
   it('reads bulges of both directions', () => {
     const made = readDxf(file('0\nLWPOLYLINE\n8\ncut\n70\n0\n10\n0\n20\n0\n42\n1\n10\n10\n20\n0\n42\n-1\n10\n20\n20\n0\n'), 'mm') ?? [];
     expect(made[0]?.segments.map((one) => one.kind === 'arc' && one.isCw)).toEqual([false, true]);

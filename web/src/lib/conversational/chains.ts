@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Joins the entities of a layer to contours.
 import type { Entity } from './dxf';
-import { distance, endOf, isClosed, lengthOf, reversed, samples, type Path, type Point } from './path2';
+import { distance, endOf, isClosed, lengthOf, refitted, reversed, samples, type Path, type Point } from './path2';
 import type { Fault } from './types';
 
 export type Chained = { chains: Path[] } | { fault: Fault };
@@ -24,7 +24,7 @@ export function chained(entities: Entity[], tolerance: number): Chained {
   if (crowd !== null) {
     return { fault: { key: 'fault.dxf_branch', values: pointValues(crowd) } };
   }
-  const chains = [...closed.map(snapped), ...joined(open, tolerance)];
+  const chains = [...closed.map(snapped), ...joined(open, tolerance)].map(refitted);
   const twice = doubled(chains, tolerance);
   return twice === null ? { chains } : { fault: { key: 'fault.dxf_twice', values: pointValues(twice) } };
 }

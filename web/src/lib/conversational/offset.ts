@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Path of a tool's centre beside a contour: each segment is shifted to its left, outer corners get arcs, inner corners intersections.
 // The result is checked against all contours, so that no path comes nearer to one than the tool's radius.
-import { along, distance, isClosed, lengthOf, samples, type Arc, type Path, type Point, type Segment } from './path2';
+import { along, distance, isClosed, lengthOf, refitted, samples, type Arc, type Path, type Point, type Segment } from './path2';
 import type { Fault } from './types';
 
 export type Offset = { path: Path } | { fault: Fault };
@@ -39,8 +39,8 @@ function shifted(from: Point, one: Segment, by: number): Piece | null {
   return { from: left(false, from), segment: { ...one, to: left(true, one.to) }, corner: one.to };
 }
 
-/** The path beside `contour` at `by` to its left. */
-export function offsetLeft(contour: Path, by: number): Offset {
+/** The path beside `contour` at `by` to its left. Gaps up to `tolerance` between shifted segments are closed without a corner. */
+export function offsetLeft(contour: Path, by: number, tolerance = 1e-7): Offset {
   const isLoop = isClosed(contour);
   const pieces: Piece[] = [];
   let from = contour.start;
@@ -58,18 +58,20 @@ export function offsetLeft(contour: Path, by: number): Offset {
     }
     from = one.to;
   }
-  return pieces.length === 0 ? faultAt('fault.no_room', contour.start) : connected(pieces, isLoop);
+  return pieces.length === 0 ? faultAt('fault.no_room', contour.start) : connected(pieces, isLoop, tolerance);
 }
 
-function connected(pieces: Piece[], isLoop: boolean): Offset {
+function connected(pieces: Piece[], isLoop: boolean, tolerance: number): Offset {
   const out: { from: Point; segment: Segment }[] = pieces.map((one) => ({ from: one.from, segment: one.segment }));
   const arcs = new Map<number, Arc>();
   const joints = isLoop ? pieces.length : pieces.length - 1;
   for (let i = 0; i < joints; i += 1) {
     const [a, b] = [out[i] as Piece, out[(i + 1) % out.length] as Piece];
     const corner = (pieces[i] as Piece).corner;
-    if (distance(a.segment.to, b.from) < 1e-7) {
-      b.from = a.segment.to;
+    if (distance(a.segment.to, b.from) < tolerance) {
+      const middle = { x: (a.segment.to.x + b.from.x) / 2, y: (a.segment.to.y + b.from.y) / 2 };
+      a.segment = { ...a.segment, to: middle };
+      b.from = middle;
       continue;
     }
     const [ta, tb] = [heading(a.from, a.segment, true), heading(b.from, b.segment, false)];
@@ -91,7 +93,7 @@ function connected(pieces: Piece[], isLoop: boolean): Offset {
     return faultAt('fault.no_room', turned.from);
   }
   const segments = out.flatMap((one, i): Segment[] => (arcs.has(i) ? [one.segment, arcs.get(i) as Arc] : [one.segment]));
-  return { path: { start: (out[0] as Piece).from, segments } };
+  return { path: refitted({ start: (out[0] as Piece).from, segments }) };
 }
 
 /** After its ends were moved to the corners, the segment runs backwards. */

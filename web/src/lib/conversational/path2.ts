@@ -91,6 +91,24 @@ export function reversed(path: Path): Path {
   return { start: endOf(path), segments: segments.reverse() };
 }
 
+/** Arcs whose ends have been moved a little get the centre that is as far from both. */
+export function refitted(path: Path): Path {
+  let from = path.start;
+  const segments = path.segments.map((one): Segment => {
+    const begin = from;
+    from = one.to;
+    const [dx, dy] = [one.to.x - begin.x, one.to.y - begin.y];
+    const square = dx * dx + dy * dy;
+    if (one.kind === 'line' || square < TINY * TINY) {
+      return one;
+    }
+    const middle = { x: begin.x + dx / 2, y: begin.y + dy / 2 };
+    const off = (dx * (one.centre.x - middle.x) + dy * (one.centre.y - middle.y)) / square;
+    return { ...one, centre: { x: one.centre.x - off * dx, y: one.centre.y - off * dy } };
+  });
+  return { start: path.start, segments };
+}
+
 /** The part up to `length`, and the rest. */
 export function splitPath(path: Path, length: number): [Path, Path] {
   const first: Path = { start: path.start, segments: [] };

@@ -99,11 +99,11 @@ export function cutsOf(values: Values, context: Context): Cuts[] | Fault {
     }
     const paths: Path[] = [];
     for (const by of allowance > 0 ? [radius + allowance, radius] : [radius]) {
-      const made = offsetLeft(oriented(started, side), by);
+      const made = offsetLeft(oriented(started, side), by, chainTolerance(context) / 2);
       if ('fault' in made) {
         return made.fault;
       }
-      const near = nearer(made.path, contours, by - 2e-4 * radius - 1e-5, radius / 4);
+      const near = nearer(made.path, contours, by - chainTolerance(context) / 2, radius / 4);
       if (near !== null) {
         return { key: 'fault.gouge', values: { x: near.x, y: near.y } };
       }
