@@ -113,7 +113,7 @@ def arguments():
 
 def main():
     words = arguments()
-    totals, by_kind = collections.Counter(), collections.Counter()
+    totals, by_kind = collections.Counter(failures=0), collections.Counter()
     with multiprocessing.Pool(words.processes) as pool:
         for first in range(words.first, words.first + words.count, PIECE):
             made = [(cases if words.machine == 'mill' else lathe_cases).make(seed) for seed in range(first, min(first + PIECE, words.first + words.count))]
