@@ -112,8 +112,7 @@ Sequence Planner::add(const Primitive &primitive, const MoveRequest &request) no
 
 void Planner::release_end() noexcept {
     if (curve_.isActive()) {
-        curve_.path().release_end(conditions_);
-        curve_.renew();
+        curve_.release_end(conditions_);
     } else {
         builder_.release_end(path_, conditions_);
     }

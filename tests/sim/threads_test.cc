@@ -17,6 +17,9 @@ namespace {
 constexpr double T = 1e-3;
 /// Of the lead.
 constexpr double TOLERANCE = 1e-3;
+/// The same with a feed per revolution, which follows the speed of the spindle and not its angle: a feed
+/// within 0.02 percent, over the 62 turns of a pass.
+constexpr double FEED_TOLERANCE = 1.25e-2;
 constexpr double ACCELERATION = 1200;  ///< of both axes [mm/s^2]
 constexpr double JERK = 24000;         ///< [mm/s^3], where there is one
 
@@ -90,7 +93,7 @@ class ThreadsTest : public VirtualMachineTest {
         return out;
     }
     /// Compares a pass with the helix Z = c - lead * turns that most of it lies on.
-    Judged judge(const Pass &pass, double lead) const {
+    Judged judge(const Pass &pass, double lead, double tolerance = TOLERANCE) const {
         std::vector<double> offsets;
         for (std::size_t i = pass.first; i <= pass.last; ++i) {
             offsets.push_back(trace_[i].z / lead + trace_[i].turns);
@@ -99,7 +102,7 @@ class ThreadsTest : public VirtualMachineTest {
         std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2),
                          sorted.end());
         const double c = sorted[sorted.size() / 2];
-        const auto isOn = [&](std::size_t i) { return std::abs(offsets[i] - c) <= TOLERANCE; };
+        const auto isOn = [&](std::size_t i) { return std::abs(offsets[i] - c) <= tolerance; };
         std::size_t from = offsets.size() / 2;
         std::size_t to = from;
         EXPECT_TRUE(isOn(from));
@@ -150,9 +153,9 @@ TEST_P(ThreadModes, G33KeepsDepthAndLeadToItsEnd) {
             for (const double rpm : RPMS) {
                 SCOPED_TRACE(fmt::format("{} {} S{}", unit.code, mode, rpm));
                 const double u = 1 / unit.mm;
-                // The spindle has just reached its speed when the pass begins.
+                // The spindle turns at its speed when the pass begins.
                 run(fmt::format("{} G90 G18 G40 G49 G94 {}\nM3 S{}\nG0 X{:.10f} Z{:.10f}\nG0 X{:.10f}\n"
-                                "G33 Z{:.10f} K{:.10f}\nG0 X{:.10f}\nG0 Z{:.10f}\nM5\nM2\n",
+                                "G4 P0.3\nG33 Z{:.10f} K{:.10f}\nG0 X{:.10f}\nG0 Z{:.10f}\nM5\nM2\n",
                                 unit.code, mode, rpm, 14 * u, 5 * u, 10 * u, -20 * u, 1.5 * u, 14 * u,
                                 5 * u));
                 const auto passes = passes_at(10, 5);
@@ -247,7 +250,7 @@ TEST_P(ThreadModes, G95KeepsItsLead) {
                 const auto passes = passes_at(10, 5);
                 ASSERT_EQ(passes.size(), 1U);
                 const double v = 0.4 * rpm / 60;
-                const Judged j = judge(passes[0], 0.4);
+                const Judged j = judge(passes[0], 0.4, FEED_TOLERANCE);
                 std::printf("G95 %s %s S%g%s: run-in %.4f, stop %.4f of %.4f\n", unit.code, mode, rpm,
                             GetParam() ? " jerk" : "", j.run_in, j.stop, shortest_way(v));
                 EXPECT_LE(j.run_in, allowed(GetParam(), shortest_way(v)));

@@ -34,6 +34,12 @@ profile::FeedLimit::Along along_of(const Primitive &p) noexcept {
     return moves(geometry::AXIS_X) ? Along::XYZ : moves(geometry::AXIS_U) ? Along::UVW : Along::LENGTH;
 }
 
+/// Probing moves, and feeds per revolution beside others, begin and end at the programmed place.
+bool isStopBetween(const MoveRequest &a, const MoveRequest &b) noexcept {
+    return b.isGated || a.join == geometry::PathMode::EXACT_STOP || a.tag.isProbe || b.tag.isProbe ||
+           a.isSynched() != b.isSynched();
+}
+
 }  // namespace
 
 CurvePath::CurvePath(PathStore &store, PlannedPath &moves)
@@ -94,7 +100,7 @@ Sequence CurvePath::add(const Conditions &conditions, const Primitive &primitive
     const Rule rule = tolerance > 0 ? Rule::FITTED : Rule::EXACT;
     const PlannedMove *last = before != 0 ? &moves_.move(before) : nullptr;
     const bool is_stop =
-        last != nullptr && (request.isGated || last->request.join == geometry::PathMode::EXACT_STOP ||
+        last != nullptr && (isStopBetween(last->request, request) ||
                             (conditions.blocks.isOn && last->request.tag.block != request.tag.block));
     if (is_open_ && (is_stop || rule != rule_)) {
         finish_part(conditions);
@@ -106,6 +112,7 @@ Sequence CurvePath::add(const Conditions &conditions, const Primitive &primitive
         rule_ = rule;
         is_open_ = true;
         is_part_seamed_ = before == 0;
+        fitted_.set_room(conditions.workspace.low, conditions.workspace.high);
         rule == Rule::FITTED ? fitted_.begin(programmed_s_) : exact_.begin(programmed_s_);
     }
     rule == Rule::FITTED ? fitted_.add(primitive, tolerance) : exact_.add(primitive);
@@ -119,7 +126,6 @@ Sequence CurvePath::add(const Conditions &conditions, const Primitive &primitive
 
 void CurvePath::finish_part(const Conditions &conditions) {
     if (rule_ == Rule::FITTED) {
-        fitted_.set_room(conditions.workspace.low, conditions.workspace.high);
         fitted_.extend(true);
     }
     take_spans(conditions);
@@ -138,7 +144,6 @@ void CurvePath::extend(const Conditions &conditions) {
         return;
     }
     if (rule_ == Rule::FITTED) {
-        fitted_.set_room(conditions.workspace.low, conditions.workspace.high);
         fitted_.extend(false);
     }
     take_spans(conditions);

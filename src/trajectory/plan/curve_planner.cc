@@ -24,10 +24,12 @@ CurvePlanner::CurvePlanner(PathStore &store, PlannedPath &moves, double period_s
     : store_(store), moves_(moves), period_s_(period_s), is_enabled_(enabled), path_(store, moves),
       profile_({.window_s = WINDOW_S, .period_s = period_s}) {}
 
-/// Machines whose joints are not axes, planner modules and passes with a spindle take the other planner.
+/// Machines whose joints are not axes, planner modules, passes with a spindle and corners at a part of their
+/// speed take the other planner.
 bool CurvePlanner::isFor(const PathDemand &demand, const Conditions &conditions) const noexcept {
     return is_enabled_ && conditions.limits.wanted().isJerkLimited && !conditions.workspace.isMapped() &&
-           conditions.chooser == nullptr && demand.drive != PathDemand::Drive::BY_ANGLE;
+           conditions.chooser == nullptr && demand.drive != PathDemand::Drive::BY_ANGLE &&
+           !demand.isCornerScaled;
 }
 
 bool CurvePlanner::suits(const PathDemand &demand, const Conditions &conditions) const noexcept {
@@ -51,6 +53,11 @@ void CurvePlanner::begin(const Pose &start, const Snapshot &now, const PathDeman
     delay_s_ = 0;
     start_cycle_ = tried_cycle_ = 0;
     failures_ = 0;
+}
+
+void CurvePlanner::release_end(const Conditions &conditions) {
+    is_changed_ = is_changed_ || path_.hasOpenEnd();
+    path_.release_end(conditions);
 }
 
 void CurvePlanner::set_scales(const Conditions &conditions) {

@@ -30,6 +30,8 @@ class CurvePlanner {
     const CurvePath &path() const noexcept { return path_; }
     /// Overrides have changed.
     void set_scales(const Conditions &conditions);
+    /// Nothing follows for now.
+    void release_end(const Conditions &conditions);
     /// Gates or single blocks have changed.
     void renew() noexcept { is_changed_ = true; }
     /// The next start is so much later than possible.

@@ -72,6 +72,43 @@ TEST(CurvePlanner, KeepsLimitsWithHoldsOverridesAndDrops) {
     }
 }
 
+/// True if a sample of the way around a corner is exactly at the corner.
+bool touchesCorner(const MoveRequest &first, const MoveRequest &second) {
+    Limits limits;
+    limits.velocity.fill(100);
+    limits.acceleration.fill(1000);
+    limits.jerk.fill(50000);
+    limits.isJerkLimited = true;
+    Rig rig = third_order_rig();
+    rig.planner.set_limits(limits);
+    Scales scales;
+    scales.spindle_rps[0] = 10;
+    rig.planner.set_scales(scales);
+    rig.planner.begin(Pose{}, rig.executor.snapshot());
+    Pose corner, end;
+    corner[0] = end[0] = end[1] = 10;
+    rig.planner.add(make_line(Pose{}, corner), first);
+    rig.planner.add(make_line(corner, end), second);
+    EXPECT_TRUE(rig.run(10));
+    return std::ranges::find(rig.samples, corner) != rig.samples.end();
+}
+
+TEST(CurvePlanner, StopsBetweenProbingFeedsPerRevolutionAndOtherMoves) {
+    MoveRequest plain;
+    plain.tolerance = 0.1;
+    plain.tag.requested_velocity = 50;
+    MoveRequest probe = plain;
+    probe.tag.isProbe = true;
+    MoveRequest turned = plain;
+    turned.feed_per_revolution = 5;
+    EXPECT_FALSE(touchesCorner(plain, plain));
+    EXPECT_TRUE(touchesCorner(plain, probe));
+    EXPECT_TRUE(touchesCorner(probe, plain));
+    EXPECT_TRUE(touchesCorner(plain, turned));
+    EXPECT_TRUE(touchesCorner(turned, plain));
+    EXPECT_FALSE(touchesCorner(turned, turned));
+}
+
 /// A machine that needs seconds to stop: the plans reach far enough for its full speed.
 TEST(CurvePlanner, ReachesFullSpeedWhereBrakingTakesSeconds) {
     constexpr double V = 200, A = 100, J = 1000, WAY = 1500;

@@ -285,7 +285,7 @@ double circle_time(double first) {
     constexpr double RADIUS = 5, P = 0.01;
     Limits limits = jerk_limits();
     limits.jerk.fill(5000);  // 0.2 s to the full acceleration
-    Rig rig{Pose{}};
+    AveragedRig rig;
     rig.planner.set_limits(limits);
     rig.planner.begin(Pose{}, rig.executor.snapshot(), {first});
     EXPECT_EQ(rig.planner.suits({P}), first == P);
@@ -302,7 +302,7 @@ TEST(Filtered, AnArcWithoutAToleranceKeepsItsSize) {
     constexpr double RADIUS = 20;
     Limits limits = jerk_limits();
     limits.jerk.fill(5000);
-    Rig rig{Pose{}};
+    AveragedRig rig;
     rig.planner.set_limits(limits);
     ArcShape shape;
     shape.centre = at(0, RADIUS);
@@ -336,7 +336,7 @@ TEST(Filtered, TheFeedIsKeptWhereLinesAndArcsMeet) {
     Limits limits = jerk_limits();
     limits.jerk.fill(10000);
     limits.acceleration[XYZ_NORM] = A;
-    Rig rig{Pose{}};
+    AveragedRig rig;
     rig.planner.set_limits(limits);
     MoveRequest move = request(geometry::PathMode::BLEND, 0.025);
     move.tag.requested_velocity = FEED;
@@ -383,7 +383,7 @@ TEST(Filtered, PlanningTouchesNoHeap) {
 }
 
 TEST(Joining, NearlyStraightLinesBecomeOneWithinTheTolerance) {
-    Rig rig{Pose{}};
+    AveragedRig rig;
     Limits limits = jerk_limits();
     limits.isJerkLimited = false;
     rig.planner.set_limits(limits);
@@ -399,7 +399,7 @@ TEST(Joining, NearlyStraightLinesBecomeOneWithinTheTolerance) {
 }
 
 TEST(Joining, AnEventKeepsItsPlace) {
-    Rig rig{Pose{}};
+    AveragedRig rig;
     rig.planner.set_limits(jerk_limits());
     rig.planner.add(make_line(Pose{}, at(5)), request(geometry::PathMode::BLEND, 0.01));
     ASSERT_TRUE(rig.planner.add_event({}));

@@ -50,8 +50,13 @@ inline Primitive half_circle(double radius) {
     return arc;
 }
 
-struct JerkRig : Rig {
-    JerkRig() : Rig(Pose{}) {
+/// The planner with the moving average, which drives machines whose joints are not axes.
+struct AveragedRig : Rig {
+    AveragedRig() : Rig(Pose{}, PlannerSettings{.third_order = false}) {}
+};
+
+struct JerkRig : AveragedRig {
+    JerkRig() {
         planner.set_limits(jerk_limits());
         planner.begin(Pose{}, executor.snapshot());
     }

@@ -14,7 +14,7 @@ struct PlannerSettings {
     double horizon_s = 0.1;           ///< how far ahead phases are committed
     bool isMerging = true;            ///< nearly straight lines become one
     SpeedChooser *chooser = nullptr;  ///< chooses speeds instead of the fastest; stays valid
-    bool third_order = false;  ///< with jerk limits: along a curve, within velocity, acceleration and jerk
+    bool third_order = true;  ///< with jerk limits: along a curve, within velocity, acceleration and jerk
 };
 
 /// How a plan that is tried ends.
