@@ -33,7 +33,7 @@ ORDER = {
     'gcode/interpreter': ('expressions', 'scripts', 'codes', 'flow'),
     'motion': ('homing', 'interface', 'planner', 'servo', 'hal'),
     'machine': ('setup', 'io', 'journal', 'task', 'config', 'analysis', 'tools', 'halui', 'assembly'),
-    'machine/task': ('link', 'sequencer', 'states', 'run'),
+    'machine/task': ('link', 'sequencer', 'states', 'run', 'control'),
     'clients': ('nml', 'rsh', 'schedule', 'tcl', 'screen', 'python'),
     'clients/nml': ('config', 'message', 'buffer', 'net', 'bridge', 'remote'),
     'drivers/mesa': ('lbp16', 'identity', 'hostmot2', 'ethernet', 'direct', 'board', 'virtual', 'hm2_eth', 'pci', 'epp', 'spi'),

@@ -9,7 +9,7 @@
 #include "base/ini/ini_reader.hh"
 #include "base/result.hh"
 #include "gcode/interpreter/interpreter.hh"
-#include "machine/task/task.hh"
+#include "machine/task/control/settings.hh"
 #include "motion/interface/command.hh"
 #include "motion/interface/limits.hh"
 

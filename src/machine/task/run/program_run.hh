@@ -1,32 +1,43 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The program or line that the operator has started: its content, its progress and its result.
+// The open program, and the run of a program or line: its content, its progress and its result.
 #pragma once
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "base/diagnostics/sink.hh"
 #include "machine/task/run/run_state.hh"
 #include "machine/task/states/request.hh"
+#include "messages/declarations/task_status.hh"
 
 namespace mw::task {
 
+/// What runs, and from where.
 enum class RunKind : std::uint8_t {
-    PROGRAM,
     MDI,
+    PROGRAM,             ///< from its first line
+    FROM_LINE,           ///< from a later line
     RECOVERY,            ///< continues a program that was interrupted
     RECALCULATION,       ///< repeats the calculation of a program whose tools changed while it was paused
     WITH_CURRENT_TOOLS,  ///< continues it with the current tools
 };
+
+using ProgramPath = decltype(messages::TaskStatus::program);
 
 /// One thread.
 class ProgramRun {
   public:
     /// Rejected while one runs. `line`: of MDI.
     Result<Progress> start(RunKind kind, mailbox::Serial command, const std::string &line = {});
-    /// Start line of the program; 0: its first line.
+    /// The open program: its path as clients see it, empty: none.
+    const ProgramPath &program() const { return program_; }
+    void set_program(std::string_view path) { program_.assign(path); }
+    /// Line where the program starts, of FROM_LINE.
     int from_line() const { return from_line_; }
     void set_from_line(int line) { from_line_ = line; }
+    /// It does not start at its first line: the state there is calculated first.
+    bool isSearched() const { return kind_ >= RunKind::FROM_LINE; }
     bool isRecovery() const { return kind_ >= RunKind::RECOVERY; }
     /// The same command calculates the program again and then continues it with the current tools.
     void recalculate();
@@ -63,6 +74,7 @@ class ProgramRun {
     const diagnostics::Diagnostic *error() const { return error_.has_value() ? &*error_ : nullptr; }
 
   private:
+    ProgramPath program_;
     RunState state_;
     RunKind kind_ = RunKind::PROGRAM;
     std::string line_;

@@ -64,13 +64,9 @@ class OperatingMode {
         request_.set_order(order);
     }
 
-    /// For runs: they need coordinated mode.
-    OutOfModeWatch &run_watch() { return run_watch_; }
-
   private:
     bool isBraking(std::int64_t now_ns) const;
 
-    OutOfModeWatch run_watch_;
     Mode mode_ = Mode::MANUAL, wanted_ = Mode::MANUAL;
     motion::Mode wanted_motion_mode_ = motion::Mode::FREE;
     std::optional<std::int64_t> braked_ns_;  ///< time of the last cycle in which it braked after a stop

@@ -3,6 +3,7 @@
 // small model that knows no table.
 #include <random>
 
+#include "machine/task/run/admission.hh"
 #include "machine/task/test/task_rig.hh"
 #include "messages/declarations/catalogue.hh"
 

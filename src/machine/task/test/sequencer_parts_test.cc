@@ -11,7 +11,6 @@
 
 #include <gtest/gtest.h>
 
-#include "machine/task/link/shown_tools.hh"
 #include "machine/task/sequencer/planner_mode.hh"
 #include "machine/task/sequencer/program_spindles.hh"
 #include "machine/task/sequencer/tool_change.hh"
@@ -420,21 +419,6 @@ TEST_F(PlannerModeTest, SaysOnceWhatIsWrongWithTheCornerScaleAndWhatIsInForce) {
     EXPECT_EQ(posted.size(), 3U) << "the ends of the range belong to it";
     mode.set_corner_scale(7);
     EXPECT_EQ(posted.size(), 4U) << "wrong again, reported again";
-}
-
-TEST(ShownTools, GiveTheTableAgainAfterEachChange) {
-    test::OneTool tools;
-    ShownTools shown;
-    const auto table = shown.step(tools);
-    ASSERT_TRUE(table.has_value());
-    EXPECT_EQ(table->version, 1U);
-    ASSERT_EQ(table->tools.size(), 2U);
-    EXPECT_EQ(table->tools[1].toolno, 5);
-    EXPECT_EQ(table->tools[1].pocketno, 3);
-    EXPECT_FALSE(shown.step(tools).has_value());
-    tools.version_now = 2;
-    EXPECT_TRUE(shown.step(tools).has_value());
-    EXPECT_EQ(shown.version(), 2U);
 }
 
 }  // namespace

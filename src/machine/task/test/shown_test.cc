@@ -37,6 +37,26 @@ TEST_F(TaskTest, AnOutputIsSetWhenItsBlockIsOver) {
     EXPECT_TRUE(set->isOn);
 }
 
+TEST_F(TaskTest, ClientsGetTheToolTableAgainAfterEachChange) {
+    const auto read = [this] {
+        auto table = client.read_tools();
+        EXPECT_TRUE(table.has_value());
+        return table.value_or(std::nullopt);
+    };
+    const auto table = read();
+    ASSERT_TRUE(table.has_value());
+    EXPECT_EQ(table->version, 1U);
+    ASSERT_EQ(table->tools.size(), 2U);
+    EXPECT_EQ(table->tools[1].toolno, 5);
+    EXPECT_EQ(table->tools[1].pocketno, 3);
+    cycles(3);
+    EXPECT_FALSE(read().has_value());
+    tools.version_now = 2;
+    cycle();
+    EXPECT_TRUE(read().has_value());
+    EXPECT_EQ(task.status().tool.table_version, 2U);
+}
+
 class StartTolerance : public TaskTest {
   protected:
     StartTolerance() : TaskTest(with_tolerance()) { EXPECT_EQ(ask(SetMode{Mode::MDI}), Progress::DONE); }

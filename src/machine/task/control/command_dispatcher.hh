@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Takes the commands of clients from the mailbox, and has the parts of task execute them.
+#pragma once
+
+#include "machine/task/control/controllers.hh"
+#include "machine/task/states/inbox.hh"
+
+namespace mw::task {
+
+/// Each command ends once: done, failed, or rejected with a reason. One that is not possible in the state of
+/// the machine is rejected by the table of admission. One thread.
+class CommandDispatcher {
+  public:
+    CommandDispatcher(const RunParts &run, const Controllers &parts) : run_(run), parts_(parts) {}
+
+    /// Once a cycle: the commands that came since; others wait while state or mode change.
+    void execute_commands();
+    /// During a long call: stops and overrides, which need neither the interpreter nor its queue.
+    void execute_during_call();
+    /// MDI lines follow at once: nothing comes between them.
+    void execute_queued_lines();
+
+  private:
+    struct Handler;
+    void execute(const mailbox::CommandServer::Delivery &delivery);
+    /// Ends jogs of clients that have ended or are suspended.
+    void end_left_jogs();
+
+    const RunParts &run_;
+    Controllers parts_;
+    Inbox inbox_;
+};
+
+}  // namespace mw::task

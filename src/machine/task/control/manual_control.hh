@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What operators move and switch without a program: jogs, homing, spindles, coolant, lubrication.
+#pragma once
+
+#include <type_traits>
+
+#include "machine/task/control/mode_controller.hh"
+#include "machine/task/states/homing_request.hh"
+
+namespace mw::task {
+
+/// Receiver of the reason why a jog was rejected: a client that renews it does so many times a second.
+inline RefusalIsFor reader_of_refusal(const JogContinuous &jog) noexcept {
+    return jog.isRenewal ? RefusalIsFor::ITS_CLIENT : RefusalIsFor::EVERYBODY;
+}
+
+/// Joints are homed one request at a time. One thread.
+class ManualControl {
+  public:
+    ManualControl(MachinePort &port, io::DiscreteIo &io, Sequencer &sequencer, ModeController &modes,
+                  int num_spindles)
+        : port_(port), io_(io), sequencer_(sequencer), modes_(modes), num_spindles_(num_spindles) {}
+
+    /// `joint` -1: all.
+    Result<Progress> home(mailbox::Serial command, int joint);
+    Result<Progress> jog(mailbox::Serial command, const JogContinuous &jog);
+    Result<Progress> jog(mailbox::Serial command, const JogIncrement &jog);
+    Result<Progress> jog(mailbox::Serial command, const JogAbsolute &jog);
+    Result<Progress> stop_jog(const JogStop &jog);
+    /// Signed speed; 0 stops the spindle.
+    Result<Progress> set_spindle(int spindle, double speed_rpm);
+    /// Changes the speed of a running spindle.
+    Result<Progress> change_spindle_speed(int spindle, double step_rpm);
+    Result<> check_spindle(int spindle) const;
+    template <OneOf<MistOn, MistOff, FloodOn, FloodOff, LubeOn, LubeOff> Device>
+    Result<Progress> switch_device(const Device &) {
+        if constexpr (OneOf<Device, MistOn, MistOff>) {
+            io_.set_mist(std::is_same_v<Device, MistOn>);
+        } else if constexpr (OneOf<Device, FloodOn, FloodOff>) {
+            io_.set_flood(std::is_same_v<Device, FloodOn>);
+        } else if (std::is_same_v<Device, LubeOn> && io_.isEstopRequested()) {
+            return fail("there is no lubrication in emergency stop");
+        } else {
+            io_.set_lube(std::is_same_v<Device, LubeOn>);
+        }
+        return Progress::DONE;
+    }
+
+    /// Once a cycle: homing that has ended, and the joint that waits.
+    void step();
+    /// Motion has rejected a command.
+    void refuse(motion::CommandId order, const std::string &reason);
+    /// Work was aborted: homing and the joints that wait are abandoned.
+    void abort();
+    bool isHoming() const { return homing_.isUnderWay(); }
+    /// Joint that is homed, -1: all.
+    int homed_joint() const { return homing_.joint(); }
+
+  private:
+    MachinePort &port_;
+    io::DiscreteIo &io_;
+    Sequencer &sequencer_;
+    ModeController &modes_;
+    int num_spindles_;
+    HomingRequest homing_;
+};
+
+}  // namespace mw::task

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Writes the status that clients see.
+#pragma once
+
+#include "machine/task/control/controllers.hh"
+
+namespace mw::task {
+
+/// One status a cycle. One thread.
+class StatusWriter {
+  public:
+    StatusWriter(const RunParts &run, const Controllers &parts) : run_(run), parts_(parts) {}
+
+    /// At the end of a cycle.
+    void write();
+    /// At the end of a cycle during a long call: what needs neither the interpreter nor the tool data.
+    void write_during_call();
+    const Status &status() const { return status_; }
+
+  private:
+    void write_states();
+    void write_devices();
+    void write_sequencer();
+    void write_program();
+    void publish();
+
+    const RunParts &run_;
+    Controllers parts_;
+    Status status_;
+};
+
+}  // namespace mw::task

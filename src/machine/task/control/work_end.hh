@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The end of a run: completed, failed, stopped or aborted, and the clean-up after it.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "base/diagnostics/sink.hh"
+#include "machine/task/control/run_parts.hh"
+#include "machine/task/run/on_abort.hh"
+#include "machine/task/states/operating_mode.hh"
+
+namespace mw::task {
+
+/// How a run ends that is not executed to its end.
+enum class Stopped : std::uint8_t {
+    INTERRUPTED,  ///< not requested: the program may be resumed
+    ON_REQUEST,
+};
+
+/// Calls of other parts whose work ends together with the run.
+struct WorkEndHooks {
+    std::function<void()> braking;  ///< motion stops now
+    std::function<void()> aborted;  ///< their requests are abandoned
+};
+
+/// After an abort nothing that was requested before moves the machine, and modes and offsets are those of the
+/// executed block. One thread; does not block.
+class WorkEnd {
+  public:
+    WorkEnd(const RunParts &parts, WorkEndHooks hooks);
+
+    /// The run is executed, or has failed.
+    void finish(Progress progress, const std::string &reason);
+    /// Reports the error, ends the run and aborts all work.
+    void fail_run(diagnostics::Diagnostic what, AbortReason reason);
+    /// Posts an error of motion; one that belongs to the run ends it.
+    void report(const std::string &text, const motion::SourceTag &source, bool of_run, AbortReason reason);
+    /// Ends the run, and stops axes and spindles. During a long call the latter happens at once; the run
+    /// ends, and modes return to those of the executed block, after it.
+    void stop_work(const std::string &why, AbortReason reason, Stopped how = Stopped::INTERRUPTED);
+    /// Starts [RS274NGC]ON_ABORT_COMMAND. Calls before its error are still executed.
+    void clean_up(AbortReason reason);
+    /// Work was requested since the last abort.
+    void note_work() { on_abort_.note_work(); }
+
+    // Once a cycle.
+    /// An action of the program has failed.
+    void check_failure();
+    /// Ends a run that motion does not accept.
+    void check_mode();
+    void step_clean_up();
+
+    std::uint64_t programs_ended() const { return programs_ended_; }
+
+  private:
+    void stop_run(const std::string &reason, Stopped how);
+    void abort_work(AbortReason reason);
+    void discard_read_ahead(AbortReason reason);
+    void switch_off_outputs();
+
+    const RunParts &parts_;
+    WorkEndHooks hooks_;
+    OnAbort on_abort_;
+    OutOfModeWatch mode_watch_;
+    std::uint64_t programs_ended_ = 0;
+};
+
+}  // namespace mw::task
