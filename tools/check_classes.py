@@ -26,7 +26,6 @@ EXCEPTIONS = {
     'Status': (0, 46, SETTINGS),
     'Hal': (74, 1, 'the operations on one HAL segment, most of them one call of the core'),
     'Recorder': (42, 5, OVERLOADS),
-    'CommandDispatcher::Handler': (48, 4, OVERLOADS),
 }
 
 HEAD = re.compile(r'^(?:template\s*<.*>\s*)?(?:class|struct|union)\s+(?:alignas\s*\([^)]*\)\s*)?(?:\[\[\w+\]\]\s*)?'

@@ -40,12 +40,12 @@ struct CommandDispatcher::Handler {
     // States and modes.
     Outcome operator()(const SetState &command) {
         if (command.state == State::ESTOP || command.state == State::OFF) {
-            drop_waiting();
+            run.port.refuse(inbox.drop_before(id), OVERTAKEN);
         }
         return parts.modes.set_state(id, command.state);
     }
     Outcome operator()(const AbortAll &) {
-        drop_waiting();
+        run.port.refuse(inbox.drop_before(id), OVERTAKEN);
         parts.end.stop_work("aborted", AbortReason::ABORT, Stopped::ON_REQUEST);
         return run.port.settle(id);
     }
@@ -87,24 +87,18 @@ struct CommandDispatcher::Handler {
         run.recovery.forget();
         return Progress::DONE;
     }
-    Outcome operator()(const SetOptionalStop &command) {
-        run.world.set_optional_stop(command.isOn);
+    template <OneOf<SetOptionalStop, SetBlockDelete> C>
+    Outcome operator()(const C &command) {
+        if constexpr (std::is_same_v<C, SetOptionalStop>) {
+            run.world.set_optional_stop(command.isOn);
+        } else {
+            run.world.set_block_delete(command.isOn);
+        }
         return Progress::DONE;
-    }
-    Outcome operator()(const SetBlockDelete &command) {
-        run.world.set_block_delete(command.isOn);
-        return Progress::DONE;
-    }
-    template <OneOf<ReverseProgram, ForwardProgram> C>
-    Outcome operator()(const C &) {
-        return run.port.order(id, motion::SetReverse{std::is_same_v<C, ReverseProgram>});
     }
 
     // Joints, axes, spindles and devices.
     Outcome operator()(const HomeJoint &command) { return parts.manual.home(id, command.joint); }
-    Outcome operator()(const UnhomeJoint &command) {
-        return run.port.order(id, motion::Unhome{command.joint});
-    }
     template <OneOf<JogContinuous, JogIncrement, JogAbsolute> C>
     Outcome operator()(const C &command) {
         return parts.manual.jog(id, command);
@@ -113,13 +107,14 @@ struct CommandDispatcher::Handler {
         run.port.refuse(inbox.drop_jogs_before(id, command), OVERTAKEN);
         return parts.manual.stop_jog(command);
     }
-    Outcome operator()(const SetTeleopVector &command) {
-        return run.port.order(id, motion::SetTeleopVector{command.velocity});
+    template <OneOf<SpindleOn, SpindleOff> C>
+    Outcome operator()(const C &command) {
+        double speed_rpm = 0;
+        if constexpr (std::is_same_v<C, SpindleOn>) {
+            speed_rpm = command.speed_rpm;
+        }
+        return parts.manual.set_spindle(command.spindle, speed_rpm);
     }
-    Outcome operator()(const SpindleOn &command) {
-        return parts.manual.set_spindle(command.spindle, command.speed_rpm);
-    }
-    Outcome operator()(const SpindleOff &command) { return parts.manual.set_spindle(command.spindle, 0); }
     template <OneOf<SpindleIncrease, SpindleDecrease> C>
     Outcome operator()(const C &command) {
         return parts.manual.change_spindle_speed(command.spindle,
@@ -135,7 +130,9 @@ struct CommandDispatcher::Handler {
     }
 
     // Settings and tools.
-    template <command_lists::CarriedOutByMotion C>
+    /// Done when motion has accepted it.
+    template <class C>
+        requires requires(const C &command) { in_motion_words(command); }
     Outcome operator()(const C &command) {
         if constexpr (std::is_same_v<C, SetMaxVelocity>) {
             parts.settings.limit_velocity(command.velocity);
@@ -184,25 +181,19 @@ struct CommandDispatcher::Handler {
 
     // Lines for the operator.
     Outcome operator()(const Null &) { return Progress::DONE; }
-    Outcome operator()(const OperatorError &command) {
-        return post(MessageKind::OPERATOR_ERROR, command.text);
-    }
-    Outcome operator()(const OperatorText &command) { return post(MessageKind::OPERATOR_TEXT, command.text); }
-    Outcome operator()(const OperatorDisplay &command) {
-        return post(MessageKind::OPERATOR_DISPLAY, command.text);
+    template <OneOf<OperatorError, OperatorText, OperatorDisplay> C>
+    Outcome operator()(const C &command) {
+        run.port.post(std::is_same_v<C, OperatorError>  ? MessageKind::OPERATOR_ERROR
+                      : std::is_same_v<C, OperatorText> ? MessageKind::OPERATOR_TEXT
+                                                        : MessageKind::OPERATOR_DISPLAY,
+                      command.text);
+        return Progress::DONE;
     }
 
     /// The mailbox executes these; the table of admission rejects them here.
     template <command_lists::OfTheMailbox C>
     Outcome operator()(const C &) {
         return fail(refusal_of(class_of<C>(), Situation::MANUAL));
-    }
-
-  private:
-    void drop_waiting() { run.port.refuse(inbox.drop_before(id), OVERTAKEN); }
-    Outcome post(MessageKind kind, const std::string &text) {
-        run.port.post(kind, text);
-        return Progress::DONE;
     }
 };
 

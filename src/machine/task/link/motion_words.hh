@@ -17,6 +17,18 @@ inline motion::CommandBody in_motion_words(const messages::SetRapidOverride &c) 
 inline motion::CommandBody in_motion_words(const messages::SetSpindleOverride &c) {
     return motion::SetScale{motion::Scale::SPINDLE, c.spindle, c.factor};
 }
+inline motion::CommandBody in_motion_words(const messages::UnhomeJoint &c) {
+    return motion::Unhome{c.joint};
+}
+inline motion::CommandBody in_motion_words(const messages::SetTeleopVector &c) {
+    return motion::SetTeleopVector{c.velocity};
+}
+inline motion::CommandBody in_motion_words(const messages::ReverseProgram &) {
+    return motion::SetReverse{true};
+}
+inline motion::CommandBody in_motion_words(const messages::ForwardProgram &) {
+    return motion::SetReverse{false};
+}
 inline motion::CommandBody in_motion_words(const messages::SetMaxVelocity &c) {
     return motion::SetMaxVelocity{c.velocity};
 }
