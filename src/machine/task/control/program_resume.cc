@@ -332,6 +332,7 @@ void ProgramResume::propose(ApproachPlan plan) {
                      fmt::format("to continue at line {}: {}; resume confirms it, abort drops it", plan.line,
                                  way.empty() ? "nothing has to be changed" : way));
     approach_.propose(std::move(plan), parts_.port.now_ns());
+    parts_.sequencer.set_stepping(false);  // a step that was requested meanwhile ends here
 }
 
 Result<Progress> ProgramResume::confirm(std::uint64_t number) {

@@ -69,7 +69,6 @@ constexpr auto NO_WAY = no_hold("no approach is proposed");
 constexpr auto NOT_RELEASABLE = no_hold("the axes can only be released while a program is paused");
 constexpr auto RETURN_FIRST = no_hold("the tool is away from the program: resume it first");
 constexpr auto CONFIRM_FIRST = no_hold("the proposed approach waits for confirmation");
-constexpr auto NOT_STANDING = no_hold("the program is not stopped where it can continue");
 
 /// Columns: GOING, STEPPING, HELD, STOPPED, PROPOSED, AWAY.
 constexpr Table<Hold> HOLDS{{
@@ -89,7 +88,7 @@ constexpr Table<Hold> HOLDS{{
     /* STEP_DONE */ {NOT_STEPPING, HELD, NOT_STEPPING, NOT_STEPPING, NOT_STEPPING, NOT_STEPPING},
     /* PROGRAM_STOP */ {STOPPED, STOPPED, STOPPED, STOPPED, PROPOSED, AWAY},
     /* RELEASE */ {NOT_RELEASABLE, NOT_RELEASABLE, AWAY, AWAY, AWAY, AWAY},
-    /* PROPOSE */ {PROPOSED, NOT_STANDING, PROPOSED, PROPOSED, PROPOSED, PROPOSED},
+    /* PROPOSE */ {PROPOSED, PROPOSED, PROPOSED, PROPOSED, PROPOSED, PROPOSED},
     /* CONFIRM */ {NO_WAY, NO_WAY, NO_WAY, NO_WAY, GOING, NO_WAY},
 }};
 

@@ -95,6 +95,21 @@ TEST_F(RunFromLineTest, OneThatIsPausedWhileItIsCalculatedAndRefusedHoldsNoOther
     EXPECT_EQ(ask(RunProgram{}), Progress::DONE) << reason(request);
 }
 
+TEST_F(RunFromLineTest, StepsWhileItIsCalculatedDoNotHideTheProposal) {
+    open("F600\n#1=0\no1 while [#1 LT 1000]\n#1=[#1+1]\no1 endwhile\nG1 X7\nG1 X9\nM2\n");
+    const auto run = post(RunProgram{7});
+    cycle();
+    EXPECT_EQ(ask(StepProgram{}), Progress::DONE) << reason(request);
+    EXPECT_EQ(ask(StepProgram{}), Progress::DONE) << reason(request);
+    EXPECT_EQ(approach().number, 0U) << "it is not calculated yet";
+    cycles(50);
+    ASSERT_NE(approach().number, 0U);
+    EXPECT_TRUE(task.status().task.isPaused);
+    EXPECT_EQ(ask(ConfirmApproach{approach().number}), Progress::DONE) << reason(request);
+    cycles(100);
+    EXPECT_EQ(progress(run), Progress::DONE) << reason(run);
+}
+
 TEST_F(RunFromLineTest, AStopWhileItIsCalculatedEndsIt) {
     const auto run = from("#1=0\no1 while [1]\n#1=[#1+1]\no1 endwhile\nG0 X1\nM2\n", 5);
     cycles(20);
