@@ -154,7 +154,7 @@ def texts(root):
     found.update({word: 'src/base/diagnostics/sink.cc' for word in ('error', 'warning', 'note')})
     found.setdefault('called from {}', 'src/base/diagnostics/sink.cc')
     for kind in ('component', 'pin', 'parameter', 'signal', 'function', 'thread', 'alias'):
-        for what in (f"there is no {kind} '{{}}'", f"there is a {kind} '{{}}' already", f"{kind} name '{{}}' has {{}} characters, 1 to {{}} are allowed"):
+        for what in (f"there is no {kind} '{{}}'", f"there is {'an' if kind == 'alias' else 'a'} {kind} '{{}}' already", f"{kind} name '{{}}' has {{}} characters, 1 to {{}} are allowed"):
             found[what] = 'src/hal/core/hal.cc'
     # Of one word, or of words that programs read elsewhere.
     for what in ("program '{}' {}", "pin '{}'", 'TRUE, FALSE, 1 or 0', '0 to 5', 'Commands:', 'a {} takes {}'):

@@ -106,7 +106,7 @@ int command_doctor(const std::vector<std::string> &arguments) {
     words.scope.display = examine_screen;
     doctor::examine(words.rest[0], words.scope, stop_signal, sink);
     fmt::print(stderr, "{}",
-               language::shown(fmt::format("{}: {} errors, {} warnings\n", words.rest[0], counted.errors,
+               language::shown(fmt::format("{}: errors: {}, warnings: {}\n", words.rest[0], counted.errors,
                                            counted.warnings)));
     return counted.errors > 0 || (words.strict && counted.warnings > 0) ? 1 : 0;
 }

@@ -141,7 +141,7 @@ def check_by_command(bench):
     bench.expect(all((second / file).read_bytes() == (first / file).read_bytes() for file in files) and len(files) == 6,
                  'the kept answers give the same machine', f'{files} {done.stderr}')
     doctor = bench.run('doctor', second / 'machine.ini', '--no-system', '--latency', '0')
-    bench.expect(doctor.returncode == 0 and '0 errors, 0 warnings' in doctor.stderr, 'doctor finds nothing', doctor.stdout + doctor.stderr)
+    bench.expect(doctor.returncode == 0 and 'errors: 0, warnings: 0' in doctor.stderr, 'doctor finds nothing', doctor.stdout + doctor.stderr)
     asked = bench.run('setup', '--questions', 'kind=foam')
     bench.expect(asked.returncode == 0 and 'foam.width = 500' in asked.stdout, 'questions', asked.stdout)
 

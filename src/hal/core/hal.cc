@@ -238,7 +238,10 @@ Result<> Hal::Impl::check_name(Kind kind, std::string_view name_wanted) const {
                        (kind == Kind::PIN && segment.find(Kind::PIN_ALIAS, name_wanted) != nullptr) ||
                        (kind == Kind::PARAM && segment.find(Kind::PARAM_ALIAS, name_wanted) != nullptr);
     if (taken) {
-        return refuse(EEXIST, fmt::format("there is a {} '{}' already", kind_name(kind), name_wanted));
+        const bool alias = kind == Kind::PIN_ALIAS || kind == Kind::PARAM_ALIAS;
+        return refuse(EEXIST, alias
+                                  ? fmt::format("there is an alias '{}' already", name_wanted)
+                                  : fmt::format("there is a {} '{}' already", kind_name(kind), name_wanted));
     }
     return {};
 }

@@ -241,8 +241,7 @@ bool BlockSettings::compute_setting(const Arena &arena, const Setting &setting, 
             return false;
         }
         if (!Evaluator::take_number(index, out.number)) {
-            return fault.set("Parameter number out of range", setting.column,
-                             fmt::format("{} is not in 1..{}", index, PARAMETER_COUNT - 1));
+            return Evaluator::refuse_number(index, setting.column, fault);
         }
         if (isBuiltInNumber(out.number)) {
             return fault.set(fmt::format("Parameter is readonly: #{}", out.number), setting.column);

@@ -133,15 +133,18 @@ bool Evaluator::parameter(const Arena &arena, const Node &node, double &out) con
     }
     int number = 0;
     if (!take_number(index, number)) {
-        if (std::fabs(index - std::round(index)) > WHOLE_TOLERANCE) {
-            return fault_.set(fmt::format("{} is not the number of a parameter: it must be whole", index),
-                              node.column);
-        }
-        return fault_.set("Parameter number out of range", node.column,
-                          fmt::format("{} is not in 1..{}", index, PARAMETER_COUNT - 1));
+        return refuse_number(index, node.column, fault_);
     }
     out = numbered(number);
     return true;
+}
+
+bool Evaluator::refuse_number(double index, std::uint32_t column, Fault &fault) {
+    if (std::fabs(index - std::round(index)) > WHOLE_TOLERANCE) {
+        return fault.set(fmt::format("{} is not the number of a parameter: it must be whole", index), column);
+    }
+    return fault.set("Parameter number out of range", column,
+                     fmt::format("{} is not in 1..{}", index, PARAMETER_COUNT - 1));
 }
 
 bool Evaluator::function(const Arena &arena, const Node &node, double &out) const {

@@ -54,6 +54,8 @@ class Evaluator {
         }
         return round_number(index, number);
     }
+    /// Sets the reason why take_number() was false, and returns false.
+    static bool refuse_number(double index, std::uint32_t column, Fault &fault);
     double numbered(int number) const {
         return isBuiltInNumber(number) ? built_ins_.built_in(number) : parameters_.get(number);
     }

@@ -104,6 +104,7 @@ TEST(ForeignFiles, SubroutineInsideOfAnotherIsAnError) {
 TEST(ForeignFiles, TextsThatScriptsCompare) {
     EXPECT_EQ(message_of("#1=#99999\n"), "Parameter number out of range");
     EXPECT_EQ(message_of("#99999=1\n"), "Parameter number out of range");
+    EXPECT_EQ(message_of("#[1.5]=1\n"), "1.5 is not the number of a parameter: it must be whole");
     EXPECT_EQ(message_of("G64 M19 R90 S0\n"),
               "R word is ambiguous on a line with both G64 and M19 - use separate lines");
 

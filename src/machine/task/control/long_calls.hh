@@ -21,7 +21,8 @@ class LongCalls {
     bool isActive() const { return now_.active; }
     /// A stop was executed during the call: the purpose of the call no longer exists.
     bool isStopped() const { return now_.stopped; }
-    /// The axes were stopped during the call: `sequencer` is as far as the program counts as executed.
+    /// The axes were stopped during the call: blocks that `sequencer` has not reached do not count as
+    /// executed.
     void note_stop(const Sequencer &sequencer);
     /// Does `work` at the end of the call; at once without one.
     void after_call(std::function<void()> work);

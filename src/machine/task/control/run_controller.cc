@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "machine/task/control/run_controller.hh"
 
+#include <fmt/format.h>
+
 #include "machine/task/control/run_journal.hh"
 
 namespace mw::task {
@@ -84,7 +86,8 @@ Result<> RunController::check_can_run() const {
 
 Result<Progress> RunController::run_program(mailbox::Serial command, int line) {
     if (line < 0) {
-        return fail("a machine cannot only read a program", {}, "use millwright check to check it");
+        return fail(fmt::format("a program cannot start at line {}", line), {},
+                    "millwright check checks a program without running it");
     }
     if (parts_.run.program().empty()) {
         return fail("no program is open");

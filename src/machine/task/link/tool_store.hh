@@ -23,12 +23,10 @@ class ToolStore : public gcode::ToolSource {
     virtual Result<> set_entry(int index, const gcode::ToolEntry &entry) = 0;
     /// Adds a tool to the table and stores it; pocket 0: a free one. An error changes nothing. Waits for the
     /// disk.
-    virtual Result<> add(const gcode::ToolEntry &) {
-        return fail("this tool table does not accept new tools");
-    }
+    virtual Result<> add(const gcode::ToolEntry &entry) = 0;
     /// Removes a tool that is not in the spindle; the others keep their indices. An error changes nothing.
     /// Waits for the disk.
-    virtual Result<> remove(int) { return fail("tools cannot be removed from this tool table"); }
+    virtual Result<> remove(int index) = 0;
     /// Waits until all changes are on the disk.
     virtual Result<> save() { return {}; }
     /// All changes are on the disk, or cannot be written, or the disk has not answered for 1 s.

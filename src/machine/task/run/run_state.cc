@@ -29,15 +29,15 @@ constexpr auto IDLE = phase(RunPhase::IDLE), CLEANING = phase(RunPhase::CLEANING
                READING = phase(RunPhase::READING), SYNCHING = phase(RunPhase::SYNCHING),
                FINISHING = phase(RunPhase::FINISHING);
 constexpr auto BUSY = no_phase("a program or MDI line is already running");
-constexpr auto NOT_DUE = no_phase("no start is due");
-constexpr auto NOT_READING = no_phase("the interpreter does not read");
-constexpr auto NO_SYNC = no_phase("the interpreter does not wait");
+/// Of events that are not commands: it is not reported.
+constexpr const char *LATE = "late";
+constexpr auto NOT_DUE = no_phase(LATE), NOT_READING = no_phase(LATE), NO_SYNC = no_phase(LATE),
+               NO_STOP = no_phase(LATE);
 constexpr auto NO_PAUSE = no_phase("no program runs that could be paused");
 constexpr auto NO_RESUME = no_phase("nothing is paused");
 constexpr auto NO_STEP = no_phase("no program runs that could be stepped");
 constexpr auto NO_RELEASE = no_phase("no paused program has axes that could be released");
 constexpr auto NO_PLACE = no_phase("no approach is proposed");
-constexpr auto NO_STOP = no_phase("no program runs that could be stopped");
 
 /// Columns: IDLE, CLEANING, STARTING, SEARCHING, READING, SYNCHING, FINISHING.
 constexpr Table<RunPhase> PHASES{{
@@ -64,7 +64,7 @@ constexpr Table<RunPhase> PHASES{{
 constexpr auto GOING = hold(Hold::GOING), STEPPING = hold(Hold::STEPPING), HELD = hold(Hold::HELD),
                STOPPED = hold(Hold::STOPPED), PROPOSED = hold(Hold::PROPOSED), AWAY = hold(Hold::AWAY);
 constexpr auto NOT_HELD = no_hold("nothing is paused");
-constexpr auto NOT_STEPPING = no_hold("no step is active");
+constexpr auto NOT_STEPPING = no_hold(LATE);
 constexpr auto NO_WAY = no_hold("no approach is proposed");
 constexpr auto NOT_RELEASABLE = no_hold("the axes can only be released while a program is paused");
 constexpr auto RETURN_FIRST = no_hold("the tool is away from the program: resume it first");

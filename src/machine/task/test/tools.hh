@@ -23,6 +23,8 @@ class OneTool final : public ToolStore {
         return {};
     }
     Result<> set_entry(int, const gcode::ToolEntry &) override { return {}; }
+    Result<> add(const gcode::ToolEntry &) override { return fail("full"); }
+    Result<> remove(int) override { return fail("fixed"); }
     bool isSettled() const override { return is_written; }
     Result<> reload() override { return {}; }
     std::optional<Result<>> reload_result() override {

@@ -23,11 +23,10 @@ bool check_pitch(const Machine &machine, const State &state, Fault &fault, int s
     if (needed <= machine.settings.max_velocity_mm_s) {
         return true;
     }
-    return fault.set(
-        fmt::format("A pitch of {:g} at {:g} turns a minute needs {:.4g} mm/s; the machine's limit is "
-                    "{:.4g} mm/s",
-                    pitch, turning.speed, needed, machine.settings.max_velocity_mm_s),
-        column, "use a lower spindle speed");
+    return fault.set(fmt::format("A pitch of {:g} at {:g} rev/min needs {:.4g} mm/s; the machine's limit is "
+                                 "{:.4g} mm/s",
+                                 pitch, turning.speed, needed, machine.settings.max_velocity_mm_s),
+                     column, "use a lower spindle speed");
 }
 
 bool move_with_spindle(const Code &code, const BlockValues &values, const Machine &machine, State &state,
