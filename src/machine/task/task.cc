@@ -49,20 +49,13 @@ void Task::step(std::int64_t now_ns) {
     port_.begin_cycle(now_ns);
     static_cast<void>(calls_.end());
     take_motion_news();
-    sequencer_.sent().follow(port_.motion());
-    runs_.check_files();
-    sequencer_.on_tool_event(io_.step(io_pins_.read()));
-    resume_.watch_pause();  // a loaded tool is known before a command continues with it
+    take_inputs();
     modes_.follow_machine();
     commands_.execute_commands();
     end_requests();
-    end_.check_failure();
-    end_.check_mode();
-    end_.step_clean_up();
+    end_.step();
     step_run();
-    resume_.watch_pause();
-    end_cycle();
-    io_pins_.write(io_.outputs);
+    write_outputs();
     status_.write();
 }
 
@@ -108,6 +101,13 @@ void Task::take_motion_news() {
     }
 }
 
+void Task::take_inputs() {
+    sequencer_.sent().follow(port_.motion());
+    runs_.check_files();
+    sequencer_.on_tool_event(io_.step(io_pins_.read()));
+    resume_.watch_pause();  // a loaded tool is known before a command continues with it
+}
+
 /// Their work was aborted.
 void Task::abandon_requests() {
     resume_.forget_proposal();
@@ -133,7 +133,8 @@ void Task::step_run() {
     commands_.execute_queued_lines();
 }
 
-void Task::end_cycle() {
+void Task::write_outputs() {
+    resume_.watch_pause();
     // Calls that wait in the queue without a run are settings for displays; they move nothing.
     planner_mode_.step(!run_.isRunning() && port_.link().isPathComplete());
     if (run_.phase() == RunPhase::IDLE && port_.motion().isInPosition) {
@@ -142,6 +143,7 @@ void Task::end_cycle() {
     if (!run_.isRunning()) {
         actions_.show_announced_offsets();
     }
+    io_pins_.write(io_.outputs);
 }
 
 }  // namespace mw::task

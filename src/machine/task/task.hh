@@ -67,9 +67,10 @@ class Task {
   private:
     void take_motion_news();
     void abandon_requests();
+    void take_inputs();
     void end_requests();
     void step_run();
-    void end_cycle();
+    void write_outputs();
 
     Settings settings_;
     IoPins &io_pins_;

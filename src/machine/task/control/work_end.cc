@@ -143,10 +143,12 @@ void WorkEnd::clean_up(AbortReason reason) {
     }
 }
 
-void WorkEnd::check_failure() {
+void WorkEnd::step() {
     if (const auto failure = parts_.run.take_failure()) {
         fail_run({diagnostics::Severity::ERROR, {*failure}}, AbortReason::EXECUTION_ERROR);
     }
+    check_mode();
+    step_clean_up();
 }
 
 void WorkEnd::check_mode() {

@@ -44,16 +44,15 @@ class WorkEnd {
     /// Work was requested since the last abort.
     void note_work() { on_abort_.note_work(); }
 
-    // Once a cycle.
-    /// An action of the program has failed.
-    void check_failure();
-    /// Ends a run that motion does not accept.
-    void check_mode();
-    void step_clean_up();
+    /// Once a cycle: ends a run with a failed action, and one that motion does not accept; continues the
+    /// clean-up.
+    void step();
 
     std::uint64_t programs_ended() const { return programs_ended_; }
 
   private:
+    void check_mode();
+    void step_clean_up();
     void stop_run(const std::string &reason, Stopped how);
     void abort_work(AbortReason reason);
     void discard_read_ahead(AbortReason reason);
