@@ -10,6 +10,7 @@ let page: Page;
 async function mdi(line: string): Promise<void> {
   await page.getByTestId('mdi-line').fill(line);
   await page.getByTestId('mdi-send').click();
+  await page.locator('[data-testid="mdi"][aria-busy="false"]').waitFor();
   await untilText(page, 'run-state', 'Idle');
 }
 async function stopsAt(x: number, y: number, z: number): Promise<void> {
