@@ -193,9 +193,8 @@ Corner corner_between(const Leg &a, const Leg &b, const Conditions &c) noexcept 
     const MoveRequest &rb = b.move.request;
     const bool isAnyLocked = c.isLocked(ra) || c.isLocked(rb);
     const bool isPass = c.isLocked(ra) && c.isLocked(rb) && ra.spindle == rb.spindle;
-    const bool isStop = (ra.join == geometry::PathMode::EXACT_STOP && !isPass) || rb.isGated ||
-                        ra.tag.isProbe || rb.tag.isProbe ||
-                        (isAnyLocked ? !isPass : ra.isSynched() != rb.isSynched());
+    const bool isStop = (ra.join == geometry::PathMode::EXACT_STOP && !isPass) || isStopBetween(ra, rb) ||
+                        (isAnyLocked && !isPass);
     if (isStop) {
         return {.isStop = true, .dwell_s = c.limits.filter_s()};
     }

@@ -37,4 +37,10 @@ struct MoveRequest {
     double room_before = 0, room_behind = 0;  ///< clearance of the line before its start and after its end
 };
 
+/// In any path mode: the motion stops at a gate, and probing moves, and feeds per revolution beside others,
+/// begin and end at the programmed place.
+inline bool isStopBetween(const MoveRequest &a, const MoveRequest &b) noexcept {
+    return b.isGated || a.tag.isProbe || b.tag.isProbe || a.isSynched() != b.isSynched();
+}
+
 }  // namespace mw::trajectory

@@ -34,12 +34,6 @@ profile::FeedLimit::Along along_of(const Primitive &p) noexcept {
     return moves(geometry::AXIS_X) ? Along::XYZ : moves(geometry::AXIS_U) ? Along::UVW : Along::LENGTH;
 }
 
-/// Probing moves, and feeds per revolution beside others, begin and end at the programmed place.
-bool isStopBetween(const MoveRequest &a, const MoveRequest &b) noexcept {
-    return b.isGated || a.join == geometry::PathMode::EXACT_STOP || a.tag.isProbe || b.tag.isProbe ||
-           a.isSynched() != b.isSynched();
-}
-
 }  // namespace
 
 CurvePath::CurvePath(PathStore &store, PlannedPath &moves)
@@ -100,8 +94,9 @@ Sequence CurvePath::add(const Conditions &conditions, const Primitive &primitive
     const Rule rule = tolerance > 0 ? Rule::FITTED : Rule::EXACT;
     const PlannedMove *last = before != 0 ? &moves_.move(before) : nullptr;
     const bool is_stop =
-        last != nullptr && (isStopBetween(last->request, request) ||
-                            (conditions.blocks.isOn && last->request.tag.block != request.tag.block));
+        last != nullptr &&
+        (last->request.join == geometry::PathMode::EXACT_STOP || isStopBetween(last->request, request) ||
+         (conditions.blocks.isOn && last->request.tag.block != request.tag.block));
     if (is_open_ && (is_stop || rule != rule_)) {
         finish_part(conditions);
     }

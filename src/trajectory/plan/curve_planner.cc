@@ -249,7 +249,7 @@ Sequence CurvePlanner::write(const profile::TimeCell &cell) noexcept {
     return next_cell_++;
 }
 
-/// Commits the profile behind its first `fixed` cells. False if it has no stop.
+/// Commits the profile behind its first `fixed` cells. False if it has no stop, or no room for one.
 bool CurvePlanner::commit(const Snapshot &now, std::size_t fixed) {
     CurvePlan plan;
     const std::size_t cells = profile_.cells();
@@ -274,6 +274,10 @@ bool CurvePlanner::commit(const Snapshot &now, std::size_t fixed) {
         }
     }
     last = end.kept;
+    const std::size_t own_cells = last - fixed + end.cells.size() + DIRECT_CELLS;
+    if (own_cells > MOST_CELLS) {
+        return false;
+    }
     plan.plan = plan_ + 1;
     plan.behind = fixed > 0 ? numbers_[fixed - 1] : 0;
     plan.begin = next_cell_;
@@ -287,7 +291,7 @@ bool CurvePlanner::commit(const Snapshot &now, std::size_t fixed) {
     plan.move = path_.move_at(from);
     plan.last_span = path_.last_span();
     plan.last_move = moves_.last_move();
-    add_stops(plan, fixed, end, MOST_CELLS - (last - fixed) - end.cells.size() - DIRECT_CELLS);
+    add_stops(plan, fixed, end, MOST_CELLS - own_cells);
     if (!store_.curve_plans.push(plan)) {
         return false;
     }

@@ -23,7 +23,7 @@ constexpr double MOST_PARTS = 8, LEAST_PART_S = 2.5e-4;
 constexpr SolveSettings SLOWEST_SOLVE{.objective = Objective::SPEED, .last_mu = 4e-3};
 constexpr SolveSettings PROMPT_SOLVE{
     .objective = Objective::SPEED, .last_mu = 2e-2, .factor = 0.1, .steps_per_mu = 8};
-constexpr double WARM_MU = 0.1;
+constexpr double WARM_STOP_MU = 0.1;
 
 }  // namespace
 
@@ -72,7 +72,7 @@ void Profile::stop_sooner(const Run &run, std::size_t fixed, StopEffort effort, 
     const StopSearch search(run, run_, plan_);
     double least = time_of(out, fixed);
     for (std::size_t n = search.cells_of_stop(plan);; n = std::min(2 * n, plan.cells)) {
-        n = fixed < slowest_.end ? std::min(n, slowest_.end - fixed) : n;
+        n = fixed <= slowest_.from && fixed < slowest_.end ? std::min(n, slowest_.end - fixed) : n;
         const SolveSettings settings = effort == StopEffort::PROMPT ? PROMPT_SOLVE : SLOWEST_SOLVE;
         if (!make_slowest(fixed, n, {}, settings)) {
             return;
@@ -102,8 +102,11 @@ void Profile::stop_sooner(const Run &run, std::size_t fixed, StopEffort effort, 
             out.cells.insert(out.cells.end(), tail.cells.begin(), tail.cells.end());
         }
         const bool is_done = kept <= n || n == plan.cells || before >= least;
-        if (is_done) {
+        // A SOONEST stop is asked for while the plan is being changed.
+        if (is_done && effort == StopEffort::PROMPT) {
             slowest_ = {law_.coefficients(), fixed, fixed + n};
+        }
+        if (is_done) {
             return;
         }
         forget_slowest();
@@ -134,7 +137,7 @@ bool Profile::make_slowest(std::size_t fixed, std::size_t n, const std::vector<d
         }
     }
     settings.reference = &plan_.c[fixed];
-    settings.first_mu = floors.empty() && start_from_slowest(fixed, n) ? WARM_MU : settings.first_mu;
+    settings.first_mu = floors.empty() && start_from_slowest(fixed, n) ? WARM_STOP_MU : settings.first_mu;
     if (!isStart(make_room())) {
         return false;
     }

@@ -380,7 +380,7 @@ int TimeLaw::solve(std::size_t fixed_start, std::size_t fixed_end, const SolveSe
         Lanes{} + (is_time ? 0.0 : static_cast<double>(rows_->coordinates()) + (rows_->hasNorm() ? 1 : 0));
     time_weight_ = Lanes{} + (is_time ? 1 / settings.cell_s : 0.0);
     weights_.assign(c_.size(), 0.0);
-    for (std::size_t i = 0; i < c_.size() && !is_time; ++i) {
+    for (std::size_t i = 0; i < cells() + 2 && !is_time; ++i) {  // the rest is padding
         const double reference = settings.reference != nullptr ? settings.reference[i] : c_[i];
         weights_[i] = 1 / (floors_[i] > 0 ? floors_[i] : reference);
     }

@@ -26,7 +26,7 @@ struct SolveSettings {
     double cell_s = 1e-3;  ///< time that counts as 1 in the objective
     double first_mu = 1, last_mu = 1e-3, factor = 0.2;
     int steps_per_mu = 20;
-    const double *reference = nullptr;  ///< of the speed; null: the coefficients of the start
+    const double *reference = nullptr;  ///< of the speed, cells() + 2; null: the coefficients of the start
 };
 
 class TimeLaw {

@@ -383,7 +383,7 @@ TEST(Filtered, PlanningTouchesNoHeap) {
 }
 
 TEST(Joining, NearlyStraightLinesBecomeOneWithinTheTolerance) {
-    AveragedRig rig;
+    Rig rig{Pose{}};
     Limits limits = jerk_limits();
     limits.isJerkLimited = false;
     rig.planner.set_limits(limits);

@@ -255,7 +255,6 @@ TEST(TimeLaw, MakesTheSpeedLeastDownToAPartOfTheStart) {
     }
 }
 
-/// A creep over cells of any length keeps every row by far: it is a function of the path.
 TEST(SpeedPlan, TheFirstCellsOfACourseAreTheSameMotion) {
     const std::vector<double> knots{0, 1, 3, 7}, c{1, 2, 4, 3, 5};
     const Course whole{knots.data(), c.data(), 3, 0.5, 4};
@@ -270,6 +269,7 @@ TEST(SpeedPlan, TheFirstCellsOfACourseAreTheSameMotion) {
     }
 }
 
+/// A creep over cells of any length keeps every row by far: it is a function of the path.
 TEST(Profile, CreepsAlikeOverCellsOfAnyLength) {
     LinePlan line(20, {{7, 1e300}, {7.2, 0.5}, {20, 50}});
     RestMap map;

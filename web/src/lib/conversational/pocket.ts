@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Clears pockets whose shape is a rectangle with round corners (a circle and a slot are such rectangles): from the middle outwards in
 // rings, level by level, with a finishing ring at each level.
-import { slopeOf } from './fields';
+import { depthFields, directionField, entryFields, feedDown, finishing, lengthFault, levelCount, slopeOf, stepDown, stepOver, toolFields } from './fields';
 import { distance, place, placePath, ringPath, type Frame, type Path, type Point } from './path2';
-import { num, word, type Context, type Values } from './types';
+import { num, word, type Context, type Faults, type Field, type Values } from './types';
 import { levelsOf, type Writer } from './writer';
 
 export interface Pocket {
@@ -31,7 +31,7 @@ function lying(pocket: Pocket): Pocket {
 }
 
 /** How the tool gets into solid material; null: not without a plunge. */
-export function entryOf(pocket: Pocket, diameter: number, allowance: number, isPlunging: boolean): Entry | null {
+function entryOf(pocket: Pocket, diameter: number, allowance: number, isPlunging: boolean): Entry | null {
   if (isPlunging) {
     return { kind: 'plunge' };
   }
@@ -41,6 +41,23 @@ export function entryOf(pocket: Pocket, diameter: number, allowance: number, isP
   }
   const radius = Math.min(0.45 * diameter, y);
   return radius >= 0.1 * diameter ? { kind: 'helix', radius } : x - y >= 0.25 * diameter ? { kind: 'line' } : null;
+}
+
+/** The fields of each pocket behind those of its place and shape. */
+export function pocketFields(): Field[] {
+  return [...depthFields(), ...toolFields(), feedDown(), stepDown(), stepOver(), finishing(), directionField(), ...entryFields()];
+}
+
+/** Faults of several fields together: the tool with its allowance, its way into the material, and the length of the program. */
+export function checkPocket(values: Values, pocket: Pocket): Faults {
+  const width = 2 * Math.min(pocket.x, pocket.y);
+  const diameter = num(values, 'diameter');
+  const allowance = num(values, 'allowance');
+  if (width < diameter + 2 * allowance - 1e-9) {
+    return { allowance: { key: 'fault.allowance_room', values: { high: (width - diameter) / 2 } } };
+  }
+  const entry = entryOf(pocket, diameter, allowance, word(values, 'entry') === 'plunge');
+  return entry === null ? { entry: { key: 'fault.no_entry' } } : lengthFault((levelCount(values) * 9 * (width / 2)) / num(values, 'step_over'), 'step_over');
 }
 
 interface Cut {

@@ -98,12 +98,12 @@ export class Simulation {
     return this.checkpoints.count;
   }
 
-  /** Cells looked at up to now. */
+  /** Cells examined since the start. */
   get work(): number {
     return this.sweep.cells;
   }
 
-  /** Prepares further moves until so many cells are looked at or moves are done; true: the program is at its end. */
+  /** Prepares further moves, at most so many cells and moves. True: the program is at its end. */
   prepare(most_cells: number, most_moves: number): boolean {
     const { sweep, checkpoints } = this;
     const stop = sweep.cells + most_cells;

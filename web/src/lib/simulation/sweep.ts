@@ -32,7 +32,7 @@ const BISECTIONS = 14;
 /** One move over a field. It is made once and used for all moves, so that nothing is allocated for a move. */
 export class Sweep {
   readonly contact: Contact = { depth: 0, x: 0, y: 0, z: 0, part: 0 };
-  /** Cells looked at since the beginning: the cost. */
+  /** Cells examined since the start: the cost. */
   cells = 0;
   private length = 0;
   private dx = 0;

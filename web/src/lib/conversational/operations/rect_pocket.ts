@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-import { angle, choice, depthFields, directionField, entryFields, feedDown, finishing, lengthFault, levelCount, margin, position, size, stepDown, stepOver, toolFields } from '../fields';
-import { clearPocket, entryOf, type Pocket } from '../pocket';
+import { angle, choice, margin, position, size } from '../fields';
+import { checkPocket, clearPocket, pocketFields, type Pocket } from '../pocket';
 import { place } from '../path2';
-import { num, word, type Context, type Faults, type Operation, type Values } from '../types';
-
-const least = (values: Values): number => num(values, 'diameter') + 2 * num(values, 'allowance');
+import { num, word, type Operation, type Values } from '../types';
 
 export const rectPocket: Operation = {
   id: 'rect_pocket',
@@ -23,16 +21,9 @@ export const rectPocket: Operation = {
       ],
     }),
     angle('angle', 0),
-    ...depthFields(),
-    ...toolFields(),
-    feedDown(),
-    stepDown(),
-    stepOver(),
-    finishing(),
-    directionField(),
-    ...entryFields(),
+    ...pocketFields(),
   ],
-  check,
+  check: (values) => checkPocket(values, pocketOf(values)),
   write: (writer, values, context) => clearPocket(writer, values, pocketOf(values), context),
 };
 
@@ -42,12 +33,4 @@ function pocketOf(values: Values): Pocket {
   const given = { x: num(values, 'x'), y: num(values, 'y'), turn };
   const centre = word(values, 'origin') === 'corner' ? place(given, { x, y }) : given;
   return { frame: { x: centre.x, y: centre.y, turn }, x, y, corner: num(values, 'corner_radius') };
-}
-
-function check(values: Values, _: Context): Faults {
-  if (Math.min(num(values, 'length'), num(values, 'width')) < least(values) - 1e-9) {
-    return { allowance: { key: 'fault.allowance_room', values: { high: (Math.min(num(values, 'length'), num(values, 'width')) - num(values, 'diameter')) / 2 } } };
-  }
-  const entry = entryOf(pocketOf(values), num(values, 'diameter'), num(values, 'allowance'), word(values, 'entry') === 'plunge');
-  return entry === null ? { entry: { key: 'fault.no_entry' } } : lengthFault((levelCount(values) * 9 * (Math.min(num(values, 'length'), num(values, 'width')) / 2)) / num(values, 'step_over'), 'step_over');
 }

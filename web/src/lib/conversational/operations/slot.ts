@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // A straight slot with round ends between the centres of its ends.
-import { depthFields, directionField, entryFields, feedDown, finishing, lengthFault, levelCount, position, size, stepDown, stepOver, toolFields } from '../fields';
-import { clearPocket, entryOf, type Pocket } from '../pocket';
-import { num, word, type Faults, type Operation, type Values } from '../types';
+import { position, size } from '../fields';
+import { checkPocket, clearPocket, pocketFields, type Pocket } from '../pocket';
+import { num, type Faults, type Operation, type Values } from '../types';
 
 export const slot: Operation = {
   id: 'slot',
@@ -13,14 +13,7 @@ export const slot: Operation = {
     position('x_end', (_, context) => (context.unit === 'mm' ? 40 : 1.5)),
     position('y_end', 0),
     size('slot_width', 10, 0.375, { limits: (values) => [{ low: num(values, 'diameter'), key: 'fault.tool_wide', values: { low: num(values, 'diameter') } }] }),
-    ...depthFields(),
-    ...toolFields(),
-    feedDown(),
-    stepDown(),
-    stepOver(),
-    finishing(),
-    directionField(),
-    ...entryFields(),
+    ...pocketFields(),
   ],
   check,
   write: (writer, values, context) => clearPocket(writer, values, pocketOf(values), context),
@@ -37,9 +30,5 @@ function check(values: Values): Faults {
   if (Math.hypot(num(values, 'x_end') - num(values, 'x'), num(values, 'y_end') - num(values, 'y')) < 1e-3 * num(values, 'slot_width')) {
     return { x_end: { key: 'fault.slot_ends' } };
   }
-  if (num(values, 'slot_width') < num(values, 'diameter') + 2 * num(values, 'allowance') - 1e-9) {
-    return { allowance: { key: 'fault.allowance_room', values: { high: (num(values, 'slot_width') - num(values, 'diameter')) / 2 } } };
-  }
-  const entry = entryOf(pocketOf(values), num(values, 'diameter'), num(values, 'allowance'), word(values, 'entry') === 'plunge');
-  return entry === null ? { entry: { key: 'fault.no_entry' } } : lengthFault((levelCount(values) * 9 * (num(values, 'slot_width') / 2)) / num(values, 'step_over'), 'step_over');
+  return checkPocket(values, pocketOf(values));
 }
