@@ -249,7 +249,8 @@ Sequence CurvePlanner::write(const profile::TimeCell &cell) noexcept {
     return next_cell_++;
 }
 
-/// Commits the profile behind its first `fixed` cells. False if it has no stop, or no room for one.
+/// Commits the profile behind its first `fixed` cells. False if it has no stop, or more cells than the ring
+/// may hold.
 bool CurvePlanner::commit(const Snapshot &now, std::size_t fixed) {
     CurvePlan plan;
     const std::size_t cells = profile_.cells();

@@ -82,7 +82,7 @@ export class Sweep {
   }
 
   /** Looks whether a flat cylinder, as a holder, touches the stock. It stops at the first block of cells with a contact: a holder is much
-   * larger than a tool, and each move would look at all cells below it. */
+   * larger than a tool, and each move would examine all cells below it. */
   look(move: Segment, cutter: Cutter, tops: Tops): void {
     const { field, contact } = this;
     contact.depth = 0;
