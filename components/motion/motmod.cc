@@ -4,6 +4,7 @@
 // task process in shared memory.
 #include <atomic>
 #include <cstdint>
+#include <memory>
 #include <new>
 
 #include "hal/include/hal.h"
@@ -337,7 +338,12 @@ void take_down() {
         module.tool_offset->magic = 0;
         rtapi_shmem_delete(module.tool_offset_id, module.component);
     }
-    hal_exit(module.component);
+    hal_exit(module.component);  // no thread calls a function of this module after it
+    if (module.planner != nullptr) {
+        std::destroy_at(module.planner);
+        std::destroy_at(module.controller);
+        std::destroy_at(module.link);
+    }
     mw_ext_memory_delete(module.memory, sizeof(Memory));
 }
 
