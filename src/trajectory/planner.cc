@@ -81,7 +81,9 @@ Planner::Planner(PathStore &store, const PlannerSettings &settings) noexcept
     conditions_.chooser = settings.chooser;
 }
 
-void Planner::set_joints(const JointMap *map, const JointLimits &limits) noexcept {
+void Planner::set_joints(const JointMap *map, const JointLimits &limits,
+                         const LinearJoints &linear) noexcept {
+    conditions_.workspace.linear = linear;
     conditions_.workspace.map = map;
     conditions_.workspace.joints = limits;
 }

@@ -49,7 +49,7 @@ class Planner {
     }
 
     /// For machines whose joints are not axes; `map` stays valid. Null: the axes' limits are all there are.
-    void set_joints(const JointMap *map, const JointLimits &limits) noexcept;
+    void set_joints(const JointMap *map, const JointLimits &limits, const LinearJoints &linear = {}) noexcept;
 
     /// Soft limits of the axes: the path never leaves them. None to begin
     /// with; +-infinity where none holds. Joints with a room are kept within that, others within their soft

@@ -72,7 +72,8 @@ void PathPlanner::follow_controller() noexcept {
         planner_.set_limits(limits_.limits);
         const bool isMapped = kinematics_.identity() == nullptr && kinematics_.isShareable();
         planner_.set_room(limits_.low, limits_.high);
-        planner_.set_joints(isMapped ? &map_ : nullptr, limits_.joints);
+        const kinematics::LinearJoints linear = kinematics_.linear();
+        planner_.set_joints(isMapped ? &map_ : nullptr, limits_.joints, {linear.joints, linear.slope});
     }
     follow_drops();
     if (view_.epoch != epoch_) {

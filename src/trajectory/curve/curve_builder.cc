@@ -35,15 +35,15 @@ CurveBuilder::CurveBuilder(double widest) : widest_(widest) {
     begin();
 }
 
-CurveBuilder::Room CurveBuilder::endless() noexcept {
+Room CurveBuilder::endless() noexcept {
     Room room;
     room.low.c.fill(-1e300);
     room.high.c.fill(1e300);
     return room;
 }
 
-void CurveBuilder::set_room(const Pose &low, const Pose &high) noexcept {
-    next_room_ = {low, high};
+void CurveBuilder::set_room(Room room) noexcept {
+    next_room_ = std::move(room);
 }
 
 void CurveBuilder::begin(double s) noexcept {
@@ -196,15 +196,21 @@ void CurveBuilder::place_controls() {
 }
 
 /// The weights of a B-spline are 0 or above and add up to 1, so each coordinate of the curve lies between
-/// the least and the largest of its control points. An average of the path is within the room where the path
-/// is.
+/// the least and the largest of its control points, and so do joints in proportion to them. An average of the
+/// path is within the room where the path is.
 Pose CurveBuilder::kept_in_room(const Pose &control, const Pose &mean) const noexcept {
     Pose kept;
     for (std::size_t i = 0; i < geometry::AXIS_COUNT; ++i) {
         kept.c[i] = std::clamp(control.c[i], std::min(room_.low.c[i], mean.c[i]),
                                std::max(room_.high.c[i], mean.c[i]));
     }
-    return kept;
+    double part = 1;
+    for (const Room::Row &row : room_.rows) {
+        const double from = geometry::dot(row.slope, mean), way = geometry::dot(row.slope, kept) - from;
+        const double room = way > 0 ? std::max(row.high - from, 0.0) : std::max(from - row.low, 0.0);
+        part = std::abs(way) > room ? std::min(part, room / std::abs(way)) : part;
+    }
+    return part < 1 ? mean + (kept - mean) * part : kept;
 }
 
 Span CurveBuilder::span_of(std::size_t k) const noexcept {

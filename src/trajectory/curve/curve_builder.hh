@@ -17,6 +17,17 @@ namespace mw::trajectory::curve {
 /// Change of the knot spacing per length of the path.
 inline constexpr double SPACING_GROWTH = 0.25;
 
+/// Where a curve may go.
+struct Room {
+    /// A joint that moves in proportion to axes: low <= slope p <= high.
+    struct Row {
+        Pose slope;
+        double low = 0, high = 0;
+    };
+    Pose low, high;
+    std::vector<Row> rows;
+};
+
 /// Planner thread. Memory: the moves and knots of the part that is not yet final, and the spans until they
 /// are dropped.
 class CurveBuilder {
@@ -26,7 +37,7 @@ class CurveBuilder {
 
     /// Soft limits, from the next begin() on: the curve stays within them where the programmed path does, and
     /// leaves them no farther than the path elsewhere. None at first.
-    void set_room(const Pose &low, const Pose &high) noexcept;
+    void set_room(Room room) noexcept;
     /// A curve begins at the start of the next move, whose place is `s`.
     void begin(double s = 0) noexcept;
     /// `tolerance`: largest distance of the curve from the move, lengths and angles apart.
@@ -66,9 +77,6 @@ class CurveBuilder {
     void narrow(double s, double excess, double length);
     void keep_final(bool complete);
 
-    struct Room {
-        Pose low, high;
-    };
     static Room endless() noexcept;
 
     double widest_;

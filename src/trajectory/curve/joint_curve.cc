@@ -82,6 +82,7 @@ void JointCurve::begin(const JointMap *map, const JointLimits &limits) noexcept 
     map_ = map;
     limits_ = limits;
     parts_.clear();
+    largest_first_ = {};
     covered_s_ = -1e300;
     drivable_s_ = 1e300;
 }
@@ -210,6 +211,7 @@ void JointCurve::lay(const Span &span, double from, double length, int depth) {
     for (std::size_t j = 0; j < joints(); ++j) {
         const double most = std::max({std::abs(value_at(part, j, 0)[1]), std::abs(value_at(part, j, 0.5)[1]),
                                       std::abs(value_at(part, j, 1)[1]), LEAST});
+        largest_first_[j] = std::max(largest_first_[j], most / length);
         v = std::min({v, std::sqrt(limits_.acceleration[j] / most) * length,
                       std::cbrt(limits_.jerk[j] / most) * length});
     }

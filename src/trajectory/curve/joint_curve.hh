@@ -44,6 +44,8 @@ class JointCurve {
         return map_ == nullptr ? 0 : static_cast<std::size_t>(limits_.count);
     }
     const JointLimits &limits() const noexcept { return limits_; }
+    /// Largest first derivatives of the joints over all parts so far.
+    const PerJoint &largest_first() const noexcept { return largest_first_; }
     /// From here on there are poses without joints, or joints that jump; 1e300: not found so far.
     double drivable_s() const noexcept { return drivable_s_; }
     const std::vector<Part> &parts() const noexcept { return parts_; }
@@ -61,6 +63,7 @@ class JointCurve {
     const JointMap *map_ = nullptr;
     JointLimits limits_;
     std::vector<Part> parts_;
+    PerJoint largest_first_{};
     double covered_s_ = -1e300;
     double drivable_s_ = 1e300;
 };

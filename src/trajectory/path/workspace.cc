@@ -40,13 +40,73 @@ Pose Workspace::shift_within(const Pose &corner, const Pose &shift) const noexce
     bool isInside = map->joints_at(corner + kept, moved);
     for (int j = 0; j < joints.count && isInside; ++j) {
         const auto n = static_cast<std::size_t>(j);
-        const bool isKept = (joint_room.joints >> j & 1U) != 0;
-        const double least = isKept ? joint_room.low[n] : joints.low[n];
-        const double most = isKept ? joint_room.high[n] : joints.high[n];
-        isInside =
-            moved[j] >= std::min(least, as_programmed[j]) && moved[j] <= std::max(most, as_programmed[j]);
+        isInside = moved[j] >= std::min(low_of(n), as_programmed[j]) &&
+                   moved[j] <= std::max(high_of(n), as_programmed[j]);
     }
     return isInside ? kept : Pose{};
+}
+
+/// How far the joints are from those at `pose` within the tolerance in each coordinate, at most. False where
+/// there are no joints.
+bool Workspace::take_reach(const Pose &pose, double tolerance, PerJoint &reach) const noexcept {
+    // Joints move by less than twice of what they do at the middle of a tolerance.
+    constexpr double MARGIN = 2;
+    PerJoint at{}, sum{};
+    bool exists = map->joints_at(pose, at.data());
+    for (int i = 0; i < geometry::AXIS_COUNT && exists; ++i) {
+        for (const double side : {-tolerance, tolerance}) {
+            Pose moved = pose;
+            moved[i] += side;
+            PerJoint there{};
+            exists = exists && map->joints_at(moved, there.data());
+            for (std::size_t j = 0; j < static_cast<std::size_t>(joints.count) && exists; ++j) {
+                sum[j] += 0.5 * MARGIN * std::abs(there[j] - at[j]);
+            }
+        }
+    }
+    for (std::size_t j = 0; j < reach.size() && exists; ++j) {
+        reach[j] = std::max(reach[j], sum[j]);
+    }
+    return exists;
+}
+
+/// The least part of the reach of a joint that is left to its soft limits along the move.
+double Workspace::least_share(const Primitive &move, int samples, const PerJoint &reach) const noexcept {
+    double share = 1;
+    PerJoint before{};
+    for (int n = 0; n < samples; ++n) {
+        PerJoint at = before;
+        if (!map->joints_at(position_at(move, move.length * n / (samples - 1)), at.data())) {
+            return 0;
+        }
+        for (std::size_t j = 0; j < static_cast<std::size_t>(joints.count); ++j) {
+            // Between two samples a joint does not exceed them by more than it changed.
+            const double step = n > 0 ? std::abs(at[j] - before[j]) : 0.0;
+            const double left = std::min(at[j] - low_of(j), high_of(j) - at[j]) - step;
+            share = !isLinear(j) && left < reach[j] ? std::min(share, left / reach[j]) : share;
+        }
+        before = at;
+    }
+    return std::max(share, 0.0);
+}
+
+double Workspace::tolerance_within(const Primitive &move, double tolerance) const noexcept {
+    // Few samples where the joints are far from their limits; as many as the check of the move takes if not.
+    constexpr int FEW = 9, MANY = 65;
+    constexpr double PER_RAD = 1.5;
+    const bool is_linear = (~linear.joints & ((1U << joints.count) - 1U)) == 0;
+    if (!isMapped() || is_linear || tolerance <= 0) {
+        return tolerance;
+    }
+    PerJoint reach{};
+    for (const double part : {0.0, 0.5, 1.0}) {
+        if (!take_reach(position_at(move, part * move.length), tolerance, reach)) {
+            return 0;
+        }
+    }
+    const int turns = static_cast<int>(std::abs(move.omega) * move.length * PER_RAD);
+    const double share = least_share(move, std::max(FEW, turns), reach);
+    return tolerance * (share < 1 ? least_share(move, std::max(MANY, 8 * turns), reach) : share);
 }
 
 namespace {

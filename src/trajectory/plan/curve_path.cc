@@ -12,6 +12,8 @@ namespace {
 
 /// Largest knot spacing and span [machine units]: where the tolerance allows more, nothing is gained.
 constexpr double WIDEST = 3.0;
+/// Part of the tolerance with which a curve is not better than the programmed path.
+constexpr double LEAST_TOLERANCE = 0.1;
 /// Spans and moves that are known and not driven, at most: memory.
 constexpr std::size_t MOST_SPANS = SPAN_CAPACITY / 2;
 constexpr Sequence MOST_MOVES = PRIMITIVE_CAPACITY - 64;
@@ -23,6 +25,23 @@ profile::CurveLimits curve_limits(const Limits &limits) noexcept {
     }
     out.xyz = {limits.velocity[XYZ_NORM], limits.acceleration[XYZ_NORM], limits.jerk[XYZ_NORM]};
     return out;
+}
+
+/// `start`: a pose with joints.
+curve::Room room_at(const Workspace &workspace, const Pose &start) noexcept {
+    curve::Room room{workspace.low, workspace.high, {}};
+    std::array<double, MAX_JOINTS> at{};
+    if (!workspace.isMapped() || !workspace.map->joints_at(start, at.data())) {
+        return room;
+    }
+    for (std::size_t j = 0; j < static_cast<std::size_t>(workspace.joints.count); ++j) {
+        if ((workspace.linear.joints >> j & 1U) != 0) {
+            const Pose &slope = workspace.linear.slope[j];
+            const double origin = at[j] - geometry::dot(slope, start);
+            room.rows.push_back({slope, workspace.low_of(j) - origin, workspace.high_of(j) - origin});
+        }
+    }
+    return room;
 }
 
 profile::FeedLimit::Along along_of(const Primitive &p) noexcept {
@@ -41,6 +60,8 @@ CurvePath::CurvePath(PathStore &store, PlannedPath &moves)
 
 void CurvePath::begin(const Pose &start, const Conditions &conditions) {
     limits_ = curve_limits(conditions.limits.wanted());
+    map_ = conditions.workspace.map;
+    joints_ = conditions.workspace.joints;
     end_ = start;
     programmed_s_ = 0;
     is_open_ = false;
@@ -53,7 +74,9 @@ void CurvePath::begin(const Pose &start, const Conditions &conditions) {
     stops_.clear();
 }
 
-bool CurvePath::isMadeFor(const Limits &limits) const noexcept {
+bool CurvePath::isMadeFor(const Conditions &conditions) const noexcept {
+    const Limits &limits = conditions.limits.wanted();
+    const JointLimits &joints = conditions.workspace.joints;
     const auto is_same = [&](const profile::Bounds &b, std::size_t i) {
         return b.velocity == limits.velocity[i] && b.acceleration == limits.acceleration[i] &&
                b.jerk == limits.jerk[i];
@@ -62,7 +85,11 @@ bool CurvePath::isMadeFor(const Limits &limits) const noexcept {
     for (std::size_t i = 0; i < geometry::AXIS_COUNT; ++i) {
         is_made = is_made && is_same(limits_.axes[i], i);
     }
-    return is_made;
+    const bool is_map_made =
+        map_ == conditions.workspace.map &&
+        (map_ == nullptr || (joints_.count == joints.count && joints_.velocity == joints.velocity &&
+                             joints_.acceleration == joints.acceleration && joints_.jerk == joints.jerk));
+    return is_made && is_map_made;
 }
 
 double CurvePath::tolerance_of(const Conditions &conditions, const Primitive &primitive,
@@ -70,7 +97,10 @@ double CurvePath::tolerance_of(const Conditions &conditions, const Primitive &pr
     if (request.join != geometry::PathMode::BLEND) {
         return 0;
     }
-    return request.tolerance > 0 ? request.tolerance : conditions.limits.free_tolerance(primitive);
+    const double wanted =
+        request.tolerance > 0 ? request.tolerance : conditions.limits.free_tolerance(primitive);
+    const double kept = conditions.workspace.tolerance_within(primitive, wanted);
+    return kept < LEAST_TOLERANCE * wanted ? 0.0 : kept;
 }
 
 Sequence CurvePath::add(const Conditions &conditions, const Primitive &primitive,
@@ -107,7 +137,7 @@ Sequence CurvePath::add(const Conditions &conditions, const Primitive &primitive
         rule_ = rule;
         is_open_ = true;
         is_part_seamed_ = before == 0;
-        fitted_.set_room(conditions.workspace.low, conditions.workspace.high);
+        fitted_.set_room(room_at(conditions.workspace, primitive.start));
         rule == Rule::FITTED ? fitted_.begin(programmed_s_) : exact_.begin(programmed_s_);
     }
     rule == Rule::FITTED ? fitted_.add(primitive, tolerance) : exact_.add(primitive);
@@ -172,11 +202,9 @@ void CurvePath::publish() {
 }
 
 void CurvePath::take_seam(const Conditions &conditions, const curve::Seam &seam) {
-    const JointMap *map = conditions.workspace.map;
-    const profile::SpeedCap cap =
-        profile::cap_of(seam, limits_, map, conditions.workspace.joints, conditions.limits.period_s());
-    const bool is_needed = map != nullptr ? profile::isNeeded(cap, limits_, conditions.workspace.joints)
-                                          : profile::isNeeded(cap, limits_);
+    const profile::SpeedCap cap = profile::cap_of(seam, limits_, map_, joints_, conditions.limits.period_s());
+    const bool is_needed =
+        map_ != nullptr ? profile::isNeeded(cap, limits_, joints_) : profile::isNeeded(cap, limits_);
     if (cap.is_stop) {
         add_stop(cap.s);
     } else if (is_needed && !std::binary_search(stops_.begin(), stops_.end(), cap.s)) {

@@ -61,8 +61,11 @@ class CurvePath {
     };
     /// For other overrides: whether a limit changed, and became lower.
     FeedChange update_feeds(const Conditions &conditions);
-    bool isMadeFor(const Limits &limits) const noexcept;
+    bool isMadeFor(const Conditions &conditions) const noexcept;
     const profile::CurveLimits &limits() const noexcept { return limits_; }
+    /// Null: the joints are axes.
+    const JointMap *joint_map() const noexcept { return map_; }
+    const JointLimits &joint_limits() const noexcept { return joints_; }
 
   private:
     enum class Rule : std::uint8_t { FITTED, EXACT };
@@ -78,6 +81,8 @@ class CurvePath {
     PathStore &store_;
     PlannedPath &moves_;
     profile::CurveLimits limits_;
+    const JointMap *map_ = nullptr;
+    JointLimits joints_;
     Pose end_;
     double programmed_s_ = 0;
     bool is_open_ = false;        ///< the last part of the path may still grow

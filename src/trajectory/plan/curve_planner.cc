@@ -24,17 +24,15 @@ CurvePlanner::CurvePlanner(PathStore &store, PlannedPath &moves, double period_s
     : store_(store), moves_(moves), period_s_(period_s), is_enabled_(enabled), path_(store, moves),
       profile_({.window_s = WINDOW_S, .period_s = period_s}) {}
 
-/// Machines whose joints are not axes, planner modules, passes with a spindle and corners at a part of their
-/// speed take the other planner.
+/// Planner modules, passes with a spindle and corners at a part of their speed take the other planner.
 bool CurvePlanner::isFor(const PathDemand &demand, const Conditions &conditions) const noexcept {
-    return is_enabled_ && conditions.limits.wanted().isJerkLimited && !conditions.workspace.isMapped() &&
-           conditions.chooser == nullptr && demand.drive != PathDemand::Drive::BY_ANGLE &&
-           !demand.isCornerScaled;
+    return is_enabled_ && conditions.limits.wanted().isJerkLimited && conditions.chooser == nullptr &&
+           demand.drive != PathDemand::Drive::BY_ANGLE && !demand.isCornerScaled;
 }
 
 bool CurvePlanner::suits(const PathDemand &demand, const Conditions &conditions) const noexcept {
     const bool is_same = demand.drive == PathDemand::Drive::EITHER || isFor(demand, conditions) == is_active_;
-    return is_same && (!is_active_ || path_.isMadeFor(conditions.limits.wanted()));
+    return is_same && (!is_active_ || path_.isMadeFor(conditions));
 }
 
 void CurvePlanner::begin(const Pose &start, const Snapshot &now, const PathDemand &demand,
@@ -116,6 +114,8 @@ profile::Run CurvePlanner::run_from(double s, double least_end, const Conditions
     run.feeds = &path_.feeds();
     run.caps = &path_.caps();
     run.limits = path_.limits();
+    run.map = path_.joint_map();
+    run.joints = path_.joint_limits();
     run.has_stop = stop <= known + SAME_PLACE;
     run.end_s = path_.on_span_end(std::min(stop, known));
     return run;

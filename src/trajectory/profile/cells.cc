@@ -126,7 +126,7 @@ RoughProfile::Node RoughProfile::node_at(const Run &run, std::size_t span, doubl
     node.ramp_s = std::min(node.ramp_s, ramp_of(b));
     double turn_v = turn_way(direction, bend) / LEAST_CELL_S;
     apply_joints(run, node, s + 1e-6 * ((*run.spans)[span].start_s + 0.5 * (*run.spans)[span].length - s),
-                 turn_v);
+                 fastest, turn_v);
     node.v = std::min(node.v, node.curve_v);
     node.way = (*run.spans)[span].length / CELLS_PER_SPAN;
     node.rest_s = std::min(node.acceleration / node.jerk, std::sqrt(node.v / node.jerk));
@@ -134,9 +134,11 @@ RoughProfile::Node RoughProfile::node_at(const Run &run, std::size_t span, doubl
     return node;
 }
 
-/// `inside`: a place on the side of the node whose curve counts; `turn_v`: the speed at which the direction
+/// `inside`: a place on the side of the node whose curve counts; `fastest`: part of the velocity limits that
+/// the moves may use; `turn_v`: the speed at which the direction
 /// changes by as much as it may in the shortest cell.
-void RoughProfile::apply_joints(const Run &run, Node &node, double inside, double &turn_v) noexcept {
+void RoughProfile::apply_joints(const Run &run, Node &node, double inside, double fastest,
+                                double &turn_v) noexcept {
     if (run.joint_curve == nullptr) {
         return;
     }
@@ -146,7 +148,7 @@ void RoughProfile::apply_joints(const Run &run, Node &node, double inside, doubl
     for (std::size_t j = 0; j < run.joint_curve->joints(); ++j) {
         const Bounds b = bounds_of(run.joints, j);
         const double q1 = std::max(std::abs(p.first[j]), 1e-30);
-        node.v = std::min(node.v, b.velocity / q1);
+        node.v = std::min(node.v, fastest * b.velocity / q1);
         node.curve_v =
             std::min({node.curve_v, std::sqrt(b.acceleration / std::max(std::abs(p.second[j]), 1e-30)),
                       std::cbrt(b.jerk / std::max(std::abs(p.third[j]), 1e-30))});

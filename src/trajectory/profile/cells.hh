@@ -30,7 +30,7 @@ struct FeedLimit {
     double end_s = 0;
     double velocity = 1e300;
     Along along = Along::XYZ;
-    double limit_share = 1;  ///< part of the axes' velocity limits that the move may use (rapid override)
+    double limit_share = 1;  ///< part of the velocity limits that the move may use (rapid override)
     /// Square of the derivative of that length by s, over the squared velocity.
     double share(const Pose &first) const noexcept;
 };
@@ -104,7 +104,8 @@ class RoughProfile {
     void lay_nodes(const Run &run, const Stretch &stretch);
     void lay_knots(const Run &run, const Stretch &stretch);
     void size_cells(const Run &run, const Stretch &stretch);
-    static void apply_joints(const Run &run, Node &node, double inside, double &turn_v) noexcept;
+    static void apply_joints(const Run &run, Node &node, double inside, double fastest,
+                             double &turn_v) noexcept;
     static bool isFasterBetween(const Run &run, std::size_t span, const Node &a, const Node &b) noexcept;
     static double next_place(const Run &run, const Stretch &stretch, const Span &span, double s) noexcept;
     double speed_at(double s) const noexcept;

@@ -14,12 +14,20 @@ namespace {
 
 using curve::SPACING_GROWTH;
 
-Bounds least_of(const CurveLimits &limits) noexcept {
-    Bounds least = limits.xyz;
-    for (const Bounds &b : limits.axes) {
-        least.velocity = std::min(least.velocity, b.velocity);
-        least.acceleration = std::min(least.acceleration, b.acceleration);
-        least.jerk = std::min(least.jerk, b.jerk);
+/// The least limits of the motion along the path in any direction.
+Bounds least_of(const Run &run) noexcept {
+    Bounds least = run.limits.xyz;
+    const auto take = [&](const Bounds &b, double first) {
+        least.velocity = std::min(least.velocity, b.velocity / first);
+        least.acceleration = std::min(least.acceleration, b.acceleration / first);
+        least.jerk = std::min(least.jerk, b.jerk / first);
+    };
+    for (const Bounds &b : run.limits.axes) {
+        take(b, 1);
+    }
+    const std::size_t joints = run.joint_curve == nullptr ? 0 : run.joint_curve->joints();
+    for (std::size_t j = 0; j < joints; ++j) {
+        take(bounds_of(run.joints, j), std::max(run.joint_curve->largest_first()[j], 1e-30));
     }
     return least;
 }
@@ -264,7 +272,7 @@ double fall_of(const Run &run, double s, double scale) noexcept {
 }  // namespace
 
 double creep_scale(const Run &run, double c) noexcept {
-    return scale_of_creep(least_of(run.limits), std::sqrt(c) / SHARE);
+    return scale_of_creep(least_of(run), std::sqrt(c) / SHARE);
 }
 
 bool isSteady(const Run &run, double c, double next, double apart) noexcept {
@@ -273,7 +281,7 @@ bool isSteady(const Run &run, double c, double next, double apart) noexcept {
 
 bool creep(const Run &run, const RestMap &map, const std::vector<double> &knots, double end_ramp,
            std::vector<double> &c) {
-    const Bounds least = least_of(run.limits);
+    const Bounds least = least_of(run);
     Scales scales(run, least);
     const std::size_t cells = knots.size() - 1;
     const std::size_t from = c.empty() ? 0 : c.size() - 2;

@@ -135,12 +135,13 @@ void make_rows(const Run &run, const RestMap &map, const double *knots, std::siz
             };
             const std::size_t last = move_to(feed, std::min(p + 1, PLACES - 1));
             feed = p == 0 ? move_to(feed, p) : feed;
-            double share = 0;
+            double share = 0, limit_share = 1;
             for (std::size_t j = feed; j <= last; ++j) {
                 share = std::max(share, speed_share(run, c, j));
+                limit_share = std::min(limit_share, (*run.feeds)[j].limit_share);
             }
             const double m2 = m.first * m.first;
-            rows.set_velocity(p, std::max((square(share) + rest.v2) * m2, joint_v2),
+            rows.set_velocity(p, std::max((square(share) + rest.v2) * m2, joint_v2 / square(limit_share)),
                               std::max((square(machine_share(run, c)) + rest.v2) * m2, joint_v2));
             feed = move_to(feed, p);
         }

@@ -178,7 +178,7 @@ Fit fitted_in_box(const std::vector<Primitive> &moves, double tolerance) {
         }
     }
     CurveBuilder builder(WIDEST);
-    builder.set_room(low, high);
+    builder.set_room({low, high, {}});
     fitted(moves, tolerance, builder);
     return {worst_excursion(builder.spans(), low, high), builder.worst_deviation()};
 }
@@ -223,9 +223,49 @@ TEST(Curve, StaysWithinSoftLimitsOnRandomPaths) {
 TEST(Curve, LeavesSoftLimitsNoFartherThanThePath) {
     const auto moves = lines({xyz(0, 0), xyz(10, 6), xyz(20, 0)});
     CurveBuilder builder(WIDEST);
-    builder.set_room(xyz(-1, -1, -1), xyz(21, 5, 1));
+    builder.set_room({xyz(-1, -1, -1), xyz(21, 5, 1), {}});
     EXPECT_EQ(worst_excursion(fitted(moves, 0.1, builder), xyz(0, 0), xyz(20, 6)), 0);
     EXPECT_LE(deviation(builder.spans(), moves), 0.1);
+}
+
+/// As in a box, but in directions across the axes.
+TEST(Curve, StaysWithinTheSoftLimitsOfBelts) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> part(0, 1);
+    double worst = -1;
+    for (int n = 0; n < 20; ++n) {
+        std::vector<Pose> points{xyz(0, 0)};
+        for (int k = 0; k < 60; ++k) {
+            points.push_back(points.back() + xyz(part(random) - 0.5, part(random) - 0.5));
+        }
+        curve::Room room;
+        room.low.c.fill(-1e300);
+        room.high.c.fill(1e300);
+        for (const double sign : {1.0, -1.0}) {
+            curve::Room::Row row{xyz(1, sign), 1e300, -1e300};
+            for (const Pose &p : points) {
+                row.low = std::min(row.low, geometry::dot(row.slope, p));
+                row.high = std::max(row.high, geometry::dot(row.slope, p));
+            }
+            room.rows.push_back(row);
+        }
+        const auto moves = lines(points);
+        CurveBuilder builder(WIDEST);
+        builder.set_room(room);
+        const std::vector<Span> spans = fitted(moves, 0.1, builder);
+        EXPECT_LE(deviation(spans, moves), 0.1);
+        for (const Span &span : spans) {
+            for (double part_of = 0; part_of <= 1; part_of += 0.1) {
+                const Pose at = position_at(span, span.start_s + part_of * span.length);
+                for (const curve::Room::Row &row : room.rows) {
+                    const double q = geometry::dot(row.slope, at);
+                    worst = std::max({worst, q - row.high, row.low - q});
+                }
+            }
+        }
+    }
+    EXPECT_LE(worst, 1e-12);
+    EXPECT_GE(worst, -1e-2) << "a curve comes close to its limits";
 }
 
 TEST(Curve, BeginsAtAPlace) {

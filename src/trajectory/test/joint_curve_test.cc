@@ -8,7 +8,7 @@
 
 #include "tests/support/campaign_seeds.hh"
 #include "trajectory/test/curve_rig.hh"
-#include "trajectory/test/turning_table.hh"
+#include "trajectory/test/joint_rig.hh"
 
 namespace mw::trajectory::test {
 namespace {
@@ -23,15 +23,6 @@ Pose pose(double x, double y, double c) {
     p[1] = y;
     p[geometry::AXIS_C] = c;
     return p;
-}
-
-JointLimits joint_limits(double velocity, double acceleration, double jerk) {
-    JointLimits limits;
-    limits.count = 4;
-    limits.velocity.fill(velocity);
-    limits.acceleration.fill(acceleration);
-    limits.jerk.fill(jerk);
-    return limits;
 }
 
 std::vector<curve::Span> spans_of(const std::vector<Primitive> &moves) {
@@ -145,64 +136,6 @@ TEST(JointProfile, StopsBeforePosesWithoutJoints) {
     }
 }
 
-/// The joints at each sample against their limits. Returns the largest part that they take of one.
-double expect_joint_limits(const DrivenCurve &out, const JointMap &map, const JointLimits &limits) {
-    std::vector<testing::AxisLimit> each;
-    for (std::size_t j = 0; j < static_cast<std::size_t>(limits.count); ++j) {
-        each.push_back({limits.velocity[j], limits.acceleration[j], limits.jerk[j]});
-    }
-    testing::LimitChecker checker(each, CURVE_PERIOD_S);
-    for (const Pose &sample : out.samples) {
-        PerJoint joints{};
-        EXPECT_TRUE(map.joints_at(sample, joints.data()));
-        checker.sample(joints.data());
-    }
-    EXPECT_TRUE(checker.isWithin()) << checker.report();
-    return std::max({checker.worst_velocity(), checker.worst_acceleration(), checker.worst_jerk()});
-}
-
-/// An arc moved to `from` that turns the table, too.
-Primitive turned_arc(const Primitive &p, const Pose &from, const Pose &to) {
-    ArcShape shape;
-    shape.isInUvw = p.space == geometry::AXIS_U;
-    for (int i = 0; i < 3; ++i) {
-        const auto k = static_cast<std::size_t>(i), a = static_cast<std::size_t>((i + 1) % 3),
-                   b = static_cast<std::size_t>((i + 2) % 3);
-        shape.centre[p.space + i] = from[p.space + i] - p.radius * p.u[k];
-        shape.normal[p.space + i] = p.u[a] * p.v[b] - p.u[b] * p.v[a];
-    }
-    shape.angle_rad = p.omega * p.length;
-    Primitive out;
-    EXPECT_EQ(make_arc(from, to, shape, out), ArcFault::NONE);
-    return out;
-}
-
-/// Lines, arcs and curves over X Y Z and C, exact or not.
-Program table_program(Maker &maker, unsigned seed) {
-    Program program = maker.make_long(seed % 4 == 1, 2.0);
-    constexpr std::size_t MOST = 60;
-    program.primitives.resize(std::min(program.primitives.size(), MOST));
-    program.requests.resize(program.primitives.size());
-    const bool is_exact = seed % 3 == 0;
-    double turned = 0;
-    Pose from = program.primitives.front().start, was = from;
-    for (std::size_t k = 0; k < program.primitives.size(); ++k) {
-        Primitive &p = program.primitives[k];
-        const double turn = maker.chance(0.7) ? p.length * maker.real(-4, 4) : 0.0;
-        turned = std::clamp(turned + turn, -2000.0, 2000.0);
-        Pose to = from + (p.end - was);
-        was = p.end;
-        to[geometry::AXIS_C] = turned;
-        p = p.isArc ? turned_arc(p, from, to) : make_line(from, to);
-        from = to;
-        MoveRequest &r = program.requests[k];
-        r.tolerance = std::max(r.tolerance, 1e-3);
-        r.join = is_exact ? geometry::PathMode::EXACT_PATH : geometry::PathMode::BLEND;
-        r.tolerance = is_exact ? 0.0 : r.tolerance;
-    }
-    return program;
-}
-
 TEST(JointProfile, KeepsTheLimitsOfJointsAtEverySample) {
     const auto [first, count] = testing::campaign_seeds(6);
     int limited = 0;
@@ -213,12 +146,7 @@ TEST(JointProfile, KeepsTheLimitsOfJointsAtEverySample) {
         const Program program = table_program(maker, seed);
         const CurveLimits limits = profile::limits_of(program.limits);
         const TurningTable table(maker.real(0, 200));
-        JointLimits joints = joint_limits(0, 0, 0);
-        for (std::size_t j = 0; j < 4; ++j) {
-            joints.velocity[j] = std::pow(10.0, maker.real(1, 2.7));
-            joints.acceleration[j] = std::pow(10.0, maker.real(2, 4));
-            joints.jerk[j] = joints.acceleration[j] * std::pow(10.0, maker.real(0.9, 2.5));
-        }
+        const JointLimits joints = random_joint_limits(maker);
         const LaidCurve laid = CurveLayer(program, limits, &table, joints).lay();
         CurveDriver driver(laid, limits);
         driver.run().map = &table;
@@ -226,7 +154,7 @@ TEST(JointProfile, KeepsTheLimitsOfJointsAtEverySample) {
         const DrivenCurve out = driver.drive();
         ASSERT_TRUE(out.is_done);
         EXPECT_LE(out.worst_start, 1 + 1e-6) << "a plan began from one that leaves a limit";
-        limited += expect_joint_limits(out, table, joints) > 0.9 ? 1 : 0;
+        limited += expect_joint_limits(out.samples, table, joints) > 0.9 ? 1 : 0;
         auto checker = make_checker(program.limits, CURVE_PERIOD_S);
         for (const Pose &sample : out.samples) {
             checker.sample(sample.c.data());
@@ -237,7 +165,7 @@ TEST(JointProfile, KeepsTheLimitsOfJointsAtEverySample) {
             stopped.run().map = &table;
             stopped.run().joints = joints;
             stopped.stop_after(1 + static_cast<int>(seed % 23), effort);
-            expect_joint_limits(stopped.drive(), table, joints);
+            expect_joint_limits(stopped.drive().samples, table, joints);
         }
     }
     EXPECT_GE(2 * limited, count) << "joints limit the motion";
@@ -273,7 +201,7 @@ TEST(JointProfile, SlowsDownBesideASingularPose) {
         const DrivenCurve out = driver.drive();
         ASSERT_TRUE(out.is_done);
         EXPECT_LE(out.worst_start, 1 + 1e-6);
-        EXPECT_GT(expect_joint_limits(out, map, joints), 0.9);
+        EXPECT_GT(expect_joint_limits(out.samples, map, joints), 0.9);
         // The arm turns by 180 degrees in 2 s and reaches 40 units out and in.
         EXPECT_LT(out.time_s, 4.0);
     }
