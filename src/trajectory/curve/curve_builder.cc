@@ -229,6 +229,7 @@ Span CurveBuilder::span_of(std::size_t k) const noexcept {
             }
         }
     }
+    span.find_moving();
     return span;
 }
 

@@ -84,6 +84,7 @@ void ExactBuilder::add_line(const Primitive &line, int parts) {
         span.length = h;
         span.c[0] = trajectory::position_at(line, h * k);
         span.c[1] = line.lin * h;
+        span.find_moving();
         spans_.push_back(span);
         final_s_ = span.end_s();
     }
@@ -112,6 +113,7 @@ void ExactBuilder::add_arc(const Primitive &arc, int parts) {
             span.c[4].c[axis] = -15 * by + 7 * slope - bend;
             span.c[5].c[axis] = 6 * by - 3 * slope + 0.5 * bend;
         }
+        span.find_moving();
         spans_.push_back(span);
         final_s_ = span.end_s();
     }

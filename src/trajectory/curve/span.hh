@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 #include "base/geometry/pose.hh"
 
@@ -16,9 +17,13 @@ inline constexpr std::size_t COEFFICIENTS = DEGREE + 1;
 
 /// A stretch between two knots: q(s) is the sum of c[k] u^k, u = (s - start_s)/length in [0, 1].
 struct Span {
+    static constexpr std::uint32_t ALL = (1U << geometry::AXIS_COUNT) - 1U;
     double start_s = 0, length = 0;
     std::array<Pose, COEFFICIENTS> c{};
+    std::uint32_t moving = ALL;  ///< bit per coordinate; others have no derivatives
     double end_s() const noexcept { return start_s + length; }
+    /// Sets `moving` from the coefficients.
+    void find_moving() noexcept;
 };
 
 /// A point of the curve and its derivatives by s.

@@ -267,6 +267,7 @@ bool CurvePlanner::commit(const Snapshot &now, std::size_t fixed) {
     while (last < cells && ahead < committed && last - fixed < MOST_MOTION_CELLS) {
         ahead += profile_.cell(last++).duration;
     }
+    profile_.begin_stops(run_);
     profile::Stop end{cells, {}, 0};
     if (last < cells || !profile_.isComplete()) {
         end = stop_from(last, MOST_LAST_CELLS);
@@ -305,9 +306,10 @@ bool CurvePlanner::commit(const Snapshot &now, std::size_t fixed) {
 /// From the start of a cell on, of at most so many cells, or a direct stop.
 profile::Stop CurvePlanner::stop_from(std::size_t cell, std::size_t most_cells) {
     using profile::StopEffort;
-    profile::Stop stop = profile_.stop(run_, cell, most_cells > 0 ? StopEffort::PROMPT : StopEffort::QUICK);
+    profile::Stop stop =
+        profile_.next_stop(run_, cell, most_cells > 0 ? StopEffort::PROMPT : StopEffort::QUICK);
     if (stop.cells.size() > std::max(most_cells, profile::DirectStop::PHASES)) {
-        stop = profile_.stop(run_, cell, StopEffort::QUICK);
+        stop = profile_.next_stop(run_, cell, StopEffort::QUICK);
     }
     return stop;
 }
@@ -336,8 +338,12 @@ void CurvePlanner::add_stops(CurvePlan &plan, std::size_t fixed, const profile::
             continue;
         }
         since = 0;
-        // Behind the time of the next plan it is for a planner that is late.
-        const profile::Stop stop = stop_from(k, ahead > PLANNING_S + RENEWAL_S ? 0 : room);
+        // Behind the first stop after the time of the next plan it is for a planner that is late.
+        const double late = ahead - (PLANNING_S + RENEWAL_S);
+        profile::Stop stop = stop_from(k, late > apart ? 0 : room);
+        if (late > apart && late < apart_of(stop)) {
+            stop = stop_from(k, room);
+        }
         if (stop.kept >= stops_.back().kept) {
             continue;
         }

@@ -63,6 +63,11 @@ struct Run {
             }
         }
     }
+    bool hasCap(double from, double to) const noexcept {
+        bool has = false;
+        each_cap(from, to, [&](const SpeedCap &) { has = true; });
+        return has;
+    }
     /// Index of the limit at s.
     std::size_t feed_at(double s) const noexcept;
 };

@@ -45,13 +45,7 @@ NormRow norm_row(const ParameterPoint &point, const Bounds &l, double bend) noex
 unsigned moving_coordinates(const std::vector<Span> &spans, double from_s, double to_s) noexcept {
     unsigned moving = 0;
     for (std::size_t k = span_at(spans, from_s); k < spans.size() && spans[k].start_s <= to_s; ++k) {
-        const Span &span = spans[k];
-        // One that begins to move smoothly has lower derivatives of 0 at the start of its span.
-        for (std::size_t n = 1; n < span.c.size(); ++n) {
-            for (std::size_t i = 0; i < geometry::AXIS_COUNT; ++i) {
-                moving |= span.c[n].c[i] != 0 ? 1U << i : 0U;
-            }
-        }
+        moving |= spans[k].moving;
     }
     return moving;
 }
@@ -64,7 +58,9 @@ constexpr double INSIDE = 1e-3;
 double machine_share(const Run &run, const CurvePoint &point) noexcept {
     double most = geometry::norm_xyz(point.first) / run.limits.xyz.velocity;
     for (std::size_t i = 0; i < geometry::AXIS_COUNT; ++i) {
-        most = std::max(most, std::abs(point.first.c[i]) / run.limits.axes[i].velocity);
+        if (point.first.c[i] != 0) {
+            most = std::max(most, std::abs(point.first.c[i]) / run.limits.axes[i].velocity);
+        }
     }
     return most;
 }

@@ -46,10 +46,16 @@ class Profile {
     /// its stops, and more of the curve or another place to start may help.
     bool plan(const Run &run, std::size_t fixed);
     /// The soonest stop that keeps every limit of `run`, not before the start of cell `fixed`. The plan stays
-    /// as it is. PROMPT stops of one plan are asked for from the last one to the first: the slowest motion
+    /// as it is.
+    Stop stop(const Run &run, std::size_t fixed, StopEffort effort) {
+        begin_stops(run);
+        return next_stop(run, fixed, effort);
+    }
+    /// The same for many stops of one plan within `run`, from the last one to the first: the slowest motion
     /// from a place, behind the plan up to there, is where that from an earlier place begins to be looked
-    /// for.
-    Stop stop(const Run &run, std::size_t fixed, StopEffort effort);
+    /// for, and direct stops are looked for once.
+    void begin_stops(const Run &run);
+    Stop next_stop(const Run &run, std::size_t fixed, StopEffort effort);
     /// As plan(), after limits of speed were lowered, or the end of the run came nearer (not nearer than the
     /// soonest stop), or was taken away. The speed may be above a lowered limit as long as the soonest
     /// braking needs; acceleration and jerk never. An end that is so near that the plan brakes for it stays:
@@ -101,7 +107,7 @@ class Profile {
     bool keepsRows(const Course &course, std::size_t cell, int parts);
     bool slow_down(const Run &run, std::size_t fixed);
     double time_of(const Stop &stop, std::size_t fixed) const;
-    void stop_sooner(const Run &run, std::size_t fixed, StopEffort effort, Stop &out);
+    void stop_sooner(const Run &run, std::size_t fixed, double enough_s, Stop &out);
     void make_time_cells(std::size_t fixed);
     bool endsNear(const Run &run) const noexcept;
     bool end_early(const Run &run, std::size_t fixed);
@@ -125,6 +131,7 @@ class Profile {
         std::vector<double> c;
         std::size_t from = 0, end = 0;
     } slowest_;
+    KnownStops known_stops_;  ///< of the plan, since begin_stops()
     double start_s_ = 0;
     double reach_ = 0;  ///< before the end of what is known: a seam there may lower limits so far
     // A direct stop before the end of the cells, from the start of one of them on.

@@ -12,6 +12,8 @@ namespace {
 
 /// Time between the places where a stop from the least speed or at a place begins [s].
 constexpr double STOPS_APART_S = 2e-3;
+/// The same for PROMPT stops, as a part of the time before: the slowest motion brakes as fast as it can.
+constexpr double STOPS_APART = 0.25;
 /// A stop of a plan may take so many times the least time, and so much more.
 constexpr double PROMPT_SHARE = 1.1, PROMPT_S = 2e-3;
 /// Parts of the plan and of the creep: a floor is below the plan, and what is near the floor creeps.
@@ -27,8 +29,13 @@ constexpr double WARM_STOP_MU = 0.1;
 
 }  // namespace
 
-Stop Profile::stop(const Run &run, std::size_t fixed, StopEffort effort) {
+void Profile::begin_stops(const Run &run) {
     take_limits(run);
+    forget_slowest();
+    known_stops_.clear();
+}
+
+Stop Profile::next_stop(const Run &run, std::size_t fixed, StopEffort effort) {
     Stop out{cells(), {}, end_s()};
     if (fixed == 0 && plan_.before == 0) {
         return {0, {}, start_s_};
@@ -39,23 +46,28 @@ Stop Profile::stop(const Run &run, std::size_t fixed, StopEffort effort) {
     const Course course = plan_.course_from(fixed, &plan_.c[fixed]);
     DirectStop tail;
     const StopSearch search(run, run_, plan_);
-    const std::size_t first = plan_.ends_early ? course.cells + 1 : search.first(course, tail);
+    const std::size_t first =
+        plan_.ends_early ? course.cells + 1 : search.first(course, fixed, known_stops_, tail);
     if (first <= course.cells) {
         out = {fixed + first, {tail.cells.begin(), tail.cells.end()}, tail.end_s};
     }
-    const bool is_late = effort == StopEffort::PROMPT &&
-                         time_of(out, fixed) > PROMPT_SHARE * search.least_s(course) + PROMPT_S;
     if (effort == StopEffort::SOONEST) {
-        forget_slowest();
-    }
-    if (effort == StopEffort::SOONEST || is_late) {
-        stop_sooner(run, fixed, effort, out);
+        stop_sooner(run, fixed, 0, out);
+        forget_slowest();  // it may be asked for while the plan is being changed
+    } else if (effort == StopEffort::PROMPT) {
+        const double enough_s = PROMPT_SHARE * search.least_s(course) + PROMPT_S;
+        if (time_of(out, fixed) > enough_s) {
+            stop_sooner(run, fixed, enough_s, out);
+        }
     }
     return out;
 }
 
-/// From the start of cell `fixed` to the end of the stop.
+/// From the start of cell `fixed` to the end of the stop. A plan that is not complete ends in none.
 double Profile::time_of(const Stop &stop, std::size_t fixed) const {
+    if (stop.cells.empty() && !isComplete()) {
+        return StopSearch::ANYWHERE;
+    }
     double time_s = 0;
     for (std::size_t k = fixed; k < stop.kept; ++k) {
         time_s += cell(k).duration;
@@ -66,14 +78,16 @@ double Profile::time_of(const Stop &stop, std::size_t fixed) const {
     return time_s;
 }
 
-/// From the motion with the least speed, where that is sooner.
-void Profile::stop_sooner(const Run &run, std::size_t fixed, StopEffort effort, Stop &out) {
+/// From the motion with the least speed, where that is sooner. `enough_s`: a stop in less time is taken at
+/// once; 0: the soonest one.
+void Profile::stop_sooner(const Run &run, std::size_t fixed, double enough_s, Stop &out) {
     const Course plan = plan_.course_from(fixed, &plan_.c[fixed]);
     const StopSearch search(run, run_, plan_);
     double least = time_of(out, fixed);
+    const double apart = enough_s > 0 ? STOPS_APART : 0;
     for (std::size_t n = search.cells_of_stop(plan);; n = std::min(2 * n, plan.cells)) {
         n = fixed <= slowest_.from && fixed < slowest_.end ? std::min(n, slowest_.end - fixed) : n;
-        const SolveSettings settings = effort == StopEffort::PROMPT ? PROMPT_SOLVE : SLOWEST_SOLVE;
+        const SolveSettings settings = enough_s > 0 ? PROMPT_SOLVE : SLOWEST_SOLVE;
         if (!make_slowest(fixed, n, {}, settings)) {
             return;
         }
@@ -82,7 +96,7 @@ void Profile::stop_sooner(const Run &run, std::size_t fixed, StopEffort effort, 
         std::size_t kept = n + 1;
         double before = 0;
         double next = 0;
-        for (std::size_t k = 0; k <= n && before < least; ++k) {
+        for (std::size_t k = 0; k <= n && before < least && least > enough_s; ++k) {
             DirectStop found;
             if ((before >= next || k == n) &&
                 search.find(course, k, {least - before, StopSearch::ANYWHERE}, found)) {
@@ -90,7 +104,7 @@ void Profile::stop_sooner(const Run &run, std::size_t fixed, StopEffort effort, 
                 kept = k;
                 tail = found;
             }
-            next = before >= next ? before + STOPS_APART_S : next;
+            next = before >= next ? before + STOPS_APART_S + apart * before : next;
             before += k < n ? law_.time_of(k) : 0.0;
         }
         if (kept <= n) {
@@ -102,11 +116,8 @@ void Profile::stop_sooner(const Run &run, std::size_t fixed, StopEffort effort, 
             out.cells.insert(out.cells.end(), tail.cells.begin(), tail.cells.end());
         }
         const bool is_done = kept <= n || n == plan.cells || before >= least;
-        // A SOONEST stop is asked for while the plan is being changed.
-        if (is_done && effort == StopEffort::PROMPT) {
-            slowest_ = {law_.coefficients(), fixed, fixed + n};
-        }
         if (is_done) {
+            slowest_ = {law_.coefficients(), fixed, fixed + n};
             return;
         }
         forget_slowest();

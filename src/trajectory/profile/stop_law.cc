@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "trajectory/profile/cap_rows.hh"
 
@@ -135,7 +136,12 @@ double DirectStop::jerk_at(double t) const noexcept {
 Rates rates_at(const Run &run, const CurvePoint &point, const Motion &at) noexcept {
     constexpr double LEAST_SLOPE = 1e-30;
     Rates rates{-1e300, 1e300, 1e300, 1e300, 1e300, 0};
-    const CapRest rest = rest_of(run, at.s, at.s);
+    static const CapRest NONE;
+    std::optional<CapRest> near;
+    if (run.hasCap(at.s, at.s)) {
+        near = rest_of(run, at.s, at.s);
+    }
+    const CapRest &rest = near ? *near : NONE;
     rates.speed_share = std::sqrt(rest.v2);
     const double v2 = at.v * at.v;
     const Pose bend = point.second * v2;

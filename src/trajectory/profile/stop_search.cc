@@ -36,9 +36,7 @@ bool isPlain(const Run &run, const Span &span, std::size_t feed, const Motion &a
     if (run.joint_curve != nullptr || !isStraight(span) || (*run.feeds)[feed].end_s < span.end_s()) {
         return false;
     }
-    bool has_cap = false;
-    run.each_cap(at.s, span.end_s(), [&](const SpeedCap &) { has_cap = true; });
-    return !has_cap;
+    return !run.hasCap(at.s, span.end_s());
 }
 
 }  // namespace
@@ -136,19 +134,26 @@ bool StopSearch::find(const Course &course, std::size_t cell, const Goal &goal, 
     return false;
 }
 
-std::size_t StopSearch::first(const Course &course, DirectStop &tail) const {
+std::size_t StopSearch::first(const Course &course, std::size_t fixed, KnownStops &known,
+                              DirectStop &tail) const {
     const std::size_t n = course.cells;
     std::size_t fails = 0, passes = n + 1;
     places_ = 0;
+    const auto take = [&](std::size_t k) {
+        const std::optional<DirectStop> *stop = known.get(fixed + k);
+        if (stop == nullptr) {
+            DirectStop found;
+            known.set(fixed + k, find(course, k, {}, found) ? std::optional(found) : std::nullopt);
+            stop = known.get(fixed + k);
+        }
+        if (*stop) {
+            tail = **stop;
+        }
+        (*stop ? passes : fails) = k;
+    };
     const auto isNear = [&] { return passes <= n && passes <= fails + 1 + passes / 8; };
     for (std::size_t k = 0, step = 1; passes > 0 && !isNear() && k <= n;) {
-        DirectStop found;
-        if (find(course, k, {}, found)) {
-            tail = found;
-            passes = k;
-        } else {
-            fails = k;
-        }
+        take(k);
         const bool is_late = places_ > QUICK_PLACES;
         if (passes <= n && is_late) {
             break;

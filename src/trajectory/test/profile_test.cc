@@ -301,6 +301,7 @@ TEST(Profile, LimitsACoordinateThatBeginsToMoveSmoothly) {
     LinePlan line(1, {{1, 50}});
     std::vector<curve::Span> spans = line.builder.spans();
     spans.front().c[5].c[1] = 0.1;
+    spans.front().find_moving();
     line.run.spans = &spans;
     const RestMap map;
     const std::vector<double> knots{0.4, 0.6};
