@@ -15,7 +15,7 @@ constexpr double PLACE_ROUNDING = 2e-6, RATE_ROUNDING = 1e-5;
 /// Corrections of the motor position are added to the motion of the joint.
 constexpr double WITH_BACKLASH = 1.5;
 /// Permitted duration of a stop: a factor of the minimum, plus the transfer time of commands.
-constexpr double STOP_FACTOR = 2.2, STOP_SLACK_S = 0.02;
+constexpr double STOP_FACTOR = 1.3, STOP_SLACK_S = 0.01;
 /// Time in which a planner that does not run may return (docs/developer/planner.md).
 constexpr double WAIT_FOR_PLANNER_S = 0.02;
 /// Interval of the checks during a stop [cycles].
@@ -460,7 +460,8 @@ void Judge::check_stop(bool isMoving, double took_s) {
     // All axes use the same jerk filter, also while the axis that needs it is stopped.
     const double mean_s = std::max(0.0, design_.longest_mean_s() - time_of_jerk());
     const double waited_s = stop_.wasPlannerAway ? WAIT_FOR_PLANNER_S : 0.0;
-    if (took_s > STOP_FACTOR * least.seconds + STOP_SLACK_S + waited_s + corrections_s + mean_s) {
+    if (took_s > std::max(STOP_FACTOR * least.seconds, least.seconds + STOP_SLACK_S) + waited_s +
+                     corrections_s + mean_s) {
         fail("stop", fmt::format("{} {:.3f} s after the stop; its limits need {:.3f} s",
                                  isMoving ? "still moves" : "stops", took_s, least.seconds));
         stop_.isAwaited = false;

@@ -99,7 +99,6 @@ class Profile {
     bool change(const Run &run, std::size_t fixed);
     bool make_slowest(std::size_t fixed, std::size_t n, const std::vector<double> &floors,
                       SolveSettings settings);
-    bool start_from_slowest(std::size_t fixed, std::size_t n);
     void forget_slowest() noexcept { slowest_.end = 0; }
     void restart() noexcept;
     std::size_t split(const Run &run, std::size_t fixed, std::size_t n);

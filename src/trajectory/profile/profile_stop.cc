@@ -124,20 +124,9 @@ void Profile::stop_sooner(const Run &run, std::size_t fixed, double enough_s, St
     }
 }
 
-/// Begins with the slowest motion behind a place and the plan before it, if it is known: it keeps every row.
-bool Profile::start_from_slowest(std::size_t fixed, std::size_t n) {
-    if (fixed > slowest_.from || fixed + n > slowest_.end) {
-        return false;
-    }
-    const std::size_t same = slowest_.from - fixed;
-    for (std::size_t i = same + 2; i < n + 2; ++i) {
-        law_.coefficients()[i] = slowest_.c[i - same];
-    }
-    return true;
-}
-
 /// The speed in `n` cells behind the fixed ones as small as the limits of acceleration and jerk allow, down
-/// to `floors` (none: 0). False if the plan leaves a limit.
+/// to `floors` (none: 0). Without floors it begins with the slowest motion behind a place and the plan before
+/// it, if that is known: it keeps every row. False if the plan leaves a limit.
 bool Profile::make_slowest(std::size_t fixed, std::size_t n, const std::vector<double> &floors,
                            SolveSettings settings) {
     prepare(fixed, n);
@@ -148,7 +137,13 @@ bool Profile::make_slowest(std::size_t fixed, std::size_t n, const std::vector<d
         }
     }
     settings.reference = &plan_.c[fixed];
-    settings.first_mu = floors.empty() && start_from_slowest(fixed, n) ? WARM_STOP_MU : settings.first_mu;
+    if (floors.empty() && fixed <= slowest_.from && fixed + n <= slowest_.end) {
+        const std::size_t same = slowest_.from - fixed;
+        for (std::size_t i = same + 2; i < n + 2; ++i) {
+            law_.coefficients()[i] = slowest_.c[i - same];
+        }
+        settings.first_mu = WARM_STOP_MU;
+    }
     if (!isStart(make_room())) {
         return false;
     }
