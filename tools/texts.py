@@ -31,7 +31,7 @@ TABLES = re.compile(r'HAL_LOCK_|^active/recycled|^HAL (memory|locking) status|^H
                     r'|^(comp|pin)\||^\[(\w+\|){2}|^SIGNAL bit|^(latency-|millwright-rt |millwright hal \w+ ).*\[options\]$|^millwright hal ?$|^millwright-rt: \{\}$|^loadusr -W|^\.comp, |^import ast|^( (?!and |of )[\w.-]+)+ $|^fnct_01|^. (of component|crashed)|^Complete names|%s|^NML channels are up|^millwright (nml|format|explain) (FILE|\[)|^millwright nml: ')
 # Texts of manual pages, reference pages and `explain`, and output that other programs read.
 NOT_SHOWN = re.compile(r'/(test|bench|logger|canon)/|keys\.hh$|pin_tables\.hh$|motion/interface/parameters\.hh$|states_page\.cc$'
-                       r'|codes/code_texts\.cc$|programs/run/summary\.cc$|programs/run/certificate_report\.cc$|programs/run/time_report\.cc$|programs/run/recorder\.cc$|programs/run/plot\.cc$'
+                       r'|codes/codes\.cc$|programs/run/summary\.cc$|programs/run/certificate_report\.cc$|programs/run/time_report\.cc$|programs/run/recorder\.cc$|programs/run/plot\.cc$'
                        r'|base/ini/ini(value|var|_strict|_escape|_script)\.cc$|programs/setup/var_command\.cc$|command_classes\.hh$|/kinematics/\w+\.hh$|machine/config/ini_keys\.cc$'
                        r'|/capi_\w+\.cc$|halcompile/emit_(c|main|man)\.cc$|runtime/log\.cc$|reference_pages\.cc$|view/watch_model\.cc$')
 # Clients look for these words (docs/reference/compatibility.md), canon comments are rs274's output, and the compiler reads the others.

@@ -63,13 +63,8 @@ class Runner:
 def codes_of(source):
     """All codes of the interpreter's table, as they are written."""
     table = (source / 'src/gcode/interpreter/codes/codes.cc').read_text()
-    found = set()
-    for letter, number in re.findall(r"ROW\('([gm])', (\d+),", table):
-        if letter == 'm':
-            found.add('M' + number)
-        else:
-            found.add('G' + number[:-1] + ('.' + number[-1] if number[-1] != '0' else '') if len(number) > 1 else 'G0')
-    return found
+    return {letter + number + ('.' + tenth if tenth else '')
+            for letter, number, tenth in re.findall(r'\brow\(([GM])\((\d+)(?:, (\d))?\),', table)}
 
 
 def main():

@@ -10,7 +10,6 @@
 
 #include "base/text.hh"
 #include "gcode/canon/quiet_canon.hh"
-#include "gcode/interpreter/codes/code_texts.hh"
 #include "gcode/interpreter/codes/codes.hh"
 #include "gcode/interpreter/interpreter.hh"
 #include "gcode/interpreter/standalone.hh"
@@ -246,15 +245,14 @@ class Explainer {
         }
     }
 
+    static const detail::Code *find_row(char letter, double number) {
+        return detail::find_code(
+            make_code(letter, static_cast<int>(std::lround(letter == 'g' ? number * 10 : number))));
+    }
+
     std::string describe_code(char letter, double number, bool known) {
-        const int code = static_cast<int>(std::lround(letter == 'g' ? number * 10 : number));
-        const CodeText *text = known ? find_code_text(letter, code) : nullptr;
-        if (text != nullptr) {
-            return std::string(text->meaning);
-        }
-        constexpr int FIRST_USER_CODE = 100, LAST_USER_CODE = 199;
-        const bool is_user = letter == 'm' && code >= FIRST_USER_CODE && code <= LAST_USER_CODE;
-        return is_user ? "runs the program of this name, with P and Q" : "no such code";
+        const detail::Code *const code = known ? find_row(letter, number) : nullptr;
+        return code != nullptr ? std::string(code->meaning) : "no such code";
     }
 
     /// Meaning of a letter for a code of the block, or for the current motion mode.
@@ -267,17 +265,14 @@ class Explainer {
             if ((code_letter != 'g' && code_letter != 'm') || word.expression != detail::NO_ID) {
                 continue;
             }
-            const int number =
-                static_cast<int>(std::lround(code_letter == 'g' ? word.value * 10 : word.value));
-            const detail::Code *code = detail::find_code(code_letter, number);
+            const detail::Code *code = find_row(code_letter, word.value);
             has_motion = has_motion || (code != nullptr && code->usesAxes);
-            if (const CodeText *text = find_code_text(code_letter, number);
-                text != nullptr && found.empty()) {
-                found = std::string(word_text(*text, letter));
+            if (code != nullptr && found.empty()) {
+                found = std::string(code->word_text(letter));
             }
         }
-        const CodeText *mode = has_motion ? nullptr : find_code_text('g', codes_.g[MOTION]);
-        return found.empty() && mode != nullptr ? std::string(word_text(*mode, letter)) : found;
+        const detail::Code *mode = has_motion ? nullptr : detail::find_code(make_code('g', codes_.g[MOTION]));
+        return found.empty() && mode != nullptr ? std::string(mode->word_text(letter)) : found;
     }
 
     std::string describe_axis(int axis, const std::string &shown) const {
@@ -298,8 +293,8 @@ class Explainer {
     std::string modes() const {
         std::string out = "in force:";
         for (std::size_t i = 1; i < codes_.g.size(); ++i) {
-            const CodeText *text = find_code_text('g', codes_.g[i]);
-            out += text != nullptr && codes_.g[i] >= 0 && i != 2 ? " " + code_name(codes_.g[i]) : "";
+            const detail::Code *const code = detail::find_code(make_code('g', codes_.g[i]));
+            out += code != nullptr && i != 2 ? " " + code_name(codes_.g[i]) : "";
         }
         return out + fmt::format(", F{:g} {}, S{:g}\n", codes_.settings[1], feed_unit(), codes_.settings[2]);
     }

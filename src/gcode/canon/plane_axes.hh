@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The selected plane: its axes, its G code, and arcs in it.
+// The selected plane: its axes, and arcs in it.
 #pragma once
 
 #include "gcode/canon/canon.hh"
@@ -22,19 +22,6 @@ constexpr PlaneAxes plane_axes(Plane plane) {
     case Plane::UW: return {AXIS_W, AXIS_U, AXIS_V};
     }
     return {AXIS_X, AXIS_Y, AXIS_Z};
-}
-
-/// Ten times the number of the G code that selects it.
-constexpr int plane_code(Plane plane) {
-    switch (plane) {
-    case Plane::XY: return 170;
-    case Plane::YZ: return 190;
-    case Plane::XZ: return 180;
-    case Plane::UV: return 171;
-    case Plane::VW: return 191;
-    case Plane::UW: return 181;
-    }
-    return 170;
 }
 
 /// An arc in a plane, program coordinates.

@@ -185,7 +185,6 @@ NextLine Interpreter::next_line() const {
 }
 
 std::string Interpreter::why_no_start() const {
-    constexpr int FIRST_CYCLE = 730, LAST_CYCLE = 890;
     const detail::State &state = impl_->executor.state;
     if (state.comp.isOn() || state.comp.isExit() || isMoveHeld()) {
         return "cutter compensation is on there";
@@ -194,7 +193,7 @@ std::string Interpreter::why_no_start() const {
         return "it is in the middle of a NURBS";
     }
     const bool is_cycle =
-        state.motion >= FIRST_CYCLE && state.motion <= LAST_CYCLE && state.motion != detail::MOTION_NONE;
+        state.motion >= G(73) && state.motion <= G(89) && state.motion != detail::MOTION_NONE;
     if (state.cycle.running && is_cycle) {
         return "it is in the middle of a canned cycle";
     }
@@ -205,9 +204,8 @@ std::string Interpreter::why_no_start() const {
 }
 
 bool Interpreter::isThreading() const {
-    constexpr int G33 = 330, G33_1 = 331;
-    const int motion = impl_->executor.state.motion;
-    return motion == G33 || motion == G33_1;
+    const GCode motion = impl_->executor.state.motion;
+    return motion == G(33) || motion == G(33, 1);
 }
 
 std::shared_ptr<const Interpreter::Snapshot> Interpreter::snapshot() const {

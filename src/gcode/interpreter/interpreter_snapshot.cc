@@ -19,6 +19,15 @@ void pose(Io &io, Pose &values) {
     }
 }
 
+template <class Io, class Code>
+void g_code(Io &io, Code &code) {
+    int number = number_of(code);
+    io(number);
+    if constexpr (!std::is_const_v<Code>) {
+        code = make_code('g', number);
+    }
+}
+
 template <class Io, class Spindles>
 void spindles(Io &io, Spindles &all) {
     for (auto &spindle : all) {
@@ -41,7 +50,7 @@ void tool(Io &io, Tool &tool) {
     io(tool.frontangle);
     io(tool.backangle);
     io(tool.orientation);
-    io(tool.offset_code);
+    g_code(io, tool.offset_code);
 }
 
 template <class Io, class Cycle>
@@ -64,7 +73,7 @@ void fields(Io &io, AnyState &state) {
     pose(io, state.frame.tool);
     io(state.frame.rotation_deg);
     io(state.g5x_index);
-    io(state.motion);
+    g_code(io, state.motion);
     io.choice(state.plane, Plane::UW);
     io.choice(state.units, LengthUnits::MM);
     io(state.incremental);

@@ -1,33 +1,24 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "gcode/interpreter/codes/active_codes.hh"
 
-#include "gcode/canon/plane_axes.hh"
-#include "gcode/interpreter/codes/kept_parameters.hh"
-
 namespace mw::gcode::detail {
 
 ActiveCodes active_codes(const State &state, const Parameters &parameters, const BlockCodes &block,
                          int sequence) {
     ActiveCodes out;
-    const int feed_code = state.feed_mode == FeedMode::INVERSE_TIME       ? 930
-                          : state.feed_mode == FeedMode::UNITS_PER_MINUTE ? 940
-                                                                          : 950;
-    const int control_code = state.control == geometry::PathMode::EXACT_PATH   ? 610
-                             : state.control == geometry::PathMode::EXACT_STOP ? 611
-                                                                               : 640;
     const SpindleState &spindle = state.spindles[static_cast<std::size_t>(state.active_spindle)];
     out.g = {sequence,
-             state.motion,
+             number_of(state.motion),
              block.non_modal,
-             plane_code(state.plane),
-             state.comp.code(),
+             number_of(plane_code(state.plane)),
+             number_of(state.comp.code()),
              state.units == LengthUnits::INCH ? 200 : 210,
              state.incremental ? 910 : 900,
-             feed_code,
-             coordinate_system_code(state.g5x_index),
-             state.tool.offset_code,
+             number_of(feed_mode_code(state.feed_mode)),
+             number_of(coordinate_system_code(state.g5x_index)),
+             number_of(state.tool.offset_code),
              state.retract_to_r ? 990 : 980,
-             control_code,
+             number_of(path_control_code(state.control)),
              -1,
              spindle.is_constant_surface ? 960 : 970,
              state.centre_absolute ? 901 : 911,

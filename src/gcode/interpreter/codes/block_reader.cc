@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/geometry/pose.hh"
-#include "gcode/interpreter/codes/block_words.hh"
+#include "gcode/interpreter/codes/block_values.hh"
 
 namespace mw::gcode::detail {
 namespace {
@@ -17,23 +17,20 @@ constexpr char LETTERS[] = "abcdefghijklmnopqrstuvwxyz@^$";
 constexpr double CODE_TOLERANCE = 1e-4;
 
 /// The row of a code: a remap, unless its own procedure runs, else the table row.
-const Code *lookup(char letter_char, int number, const Remaps &remaps) {
-    if (const Code *const remapped = remaps.find(letter_char, number); remapped != nullptr) {
-        return remapped;
-    }
-    const bool is_word = letter_char != 'g' && letter_char != 'm';
-    return is_word ? find_word_code(letter_char) : find_code(letter_char, number);
+const Code *lookup(GCode code, const Remaps &remaps) {
+    const Code *const remapped = remaps.find(code);
+    return remapped != nullptr ? remapped : find_code(code);
 }
 
 /// Inserts the code in the order of execution; rejects two of one group.
 bool insert_code(const Code &code, std::uint32_t column, BlockValues &values, Fault &fault) {
-    const std::uint32_t bit = 1u << static_cast<unsigned>(code.group);
+    const std::uint32_t bit = 1u << static_cast<unsigned>(exclusive_group(code.group));
     if (code.group == Group::MOTION && values.motion != nullptr) {
         // G80 beside another motion code is redundant.
-        if (code.number == MOTION_NONE) {
+        if (code.id == MOTION_NONE) {
             return true;
         }
-        if (values.motion->number == MOTION_NONE && values.motion->phase == code.phase) {
+        if (values.motion->id == MOTION_NONE) {
             for (ActiveCode &active : values.codes) {
                 active = active.code == values.motion ? ActiveCode{&code, column} : active;
             }
@@ -42,7 +39,7 @@ bool insert_code(const Code &code, std::uint32_t column, BlockValues &values, Fa
         }
     }
     if ((values.groups & bit) != 0) {
-        return fault.set(fmt::format("Two {} codes used from same modal group", code.letter), column);
+        return fault.set(fmt::format("Two {} codes used from same modal group", letter_of(code.id)), column);
     }
     values.groups |= bit;
     if (code.group == Group::MOTION) {
@@ -52,7 +49,7 @@ bool insert_code(const Code &code, std::uint32_t column, BlockValues &values, Fa
         return fault.set("Too many codes in one block", column);
     }
     for (std::size_t i = values.codes.size() - 1;
-         i > 0 && values.codes[i].code->phase < values.codes[i - 1].code->phase; --i) {
+         i > 0 && values.codes[i].code->group < values.codes[i - 1].code->group; --i) {
         std::swap(values.codes[i], values.codes[i - 1]);
     }
     return true;
@@ -74,9 +71,10 @@ bool add_code(char letter_char, double number, std::uint32_t column, const Remap
         }
         whole = static_cast<int>(rounded);
     }
-    const Code *code = lookup(letter_char, whole, remaps);
+    const GCode id = make_code(letter_char, whole);
+    const Code *code = lookup(id, remaps);
     if (code == nullptr && remaps.isAnyRunning()) {
-        if (std::string recursion = remaps.recursion_text(letter_char, whole); !recursion.empty()) {
+        if (std::string recursion = remaps.recursion_text(id); !recursion.empty()) {
             return fault.set(std::move(recursion), column);
         }
     }
@@ -88,7 +86,7 @@ bool add_code(char letter_char, double number, std::uint32_t column, const Remap
             fmt::format("Unknown {} code used: {}", letter_char, fmt::format("{}{}", letter_char, number)),
             column);
     }
-    if (letter_char == 'g' && whole == 530) {
+    if (id == G(53)) {
         values.is_machine_coordinates = true;
     }
     return insert_code(*code, column, values, fault);
@@ -116,7 +114,7 @@ bool read_words(const BlockView &view, const BlockSources &sources, BlockValues 
         values.value[word.letter] = value;
         values.column[word.letter] = word.column;
         if (letter_char == 'f' || letter_char == 's' || letter_char == 't') {
-            if (!insert_code(*lookup(letter_char, 0, sources.remaps), word.column, values, fault)) {
+            if (!insert_code(*lookup(word_code(letter_char), sources.remaps), word.column, values, fault)) {
                 return false;
             }
         }
@@ -124,8 +122,8 @@ bool read_words(const BlockView &view, const BlockSources &sources, BlockValues 
     return true;
 }
 
-bool choose_motion(BlockValues &values, int motion, const Remaps &remaps, Fault &fault) {
-    const bool cancelling = values.motion != nullptr && values.motion->number == MOTION_NONE;
+bool choose_motion(BlockValues &values, GCode motion, const Remaps &remaps, Fault &fault) {
+    const bool cancelling = values.motion != nullptr && values.motion->id == MOTION_NONE;
     if ((values.motion != nullptr && !cancelling) || !values.hasAxes()) {
         return true;
     }
@@ -137,17 +135,17 @@ bool choose_motion(BlockValues &values, int motion, const Remaps &remaps, Fault 
     if (cancelling) {
         return fault.set("Cannot use axis values with g80");
     }
-    if (motion == MOTION_NONE) {
+    const Code *const implied = motion == MOTION_NONE ? nullptr : lookup(motion, remaps);
+    if (implied == nullptr) {  // a script may set any motion mode
         return fault.set("Cannot use axis values without a g code that uses them");
     }
     values.motion_implied = true;
-    return insert_code(*lookup('g', motion, remaps), 0, values, fault);
+    return insert_code(*implied, 0, values, fault);
 }
 
 bool check_machine_coordinates(const BlockValues &values, Fault &fault) {
-    constexpr int G0 = 0, G1 = 10;
-    const int motion = values.motion != nullptr ? values.motion->number : MOTION_NONE;
-    return !values.is_machine_coordinates || motion == G0 || motion == G1 ||
+    const GCode motion = values.motion != nullptr ? values.motion->id : MOTION_NONE;
+    return !values.is_machine_coordinates || motion == G(0) || motion == G(1) ||
            fault.set("Must use g0 or g1 with g53");
 }
 
@@ -160,7 +158,7 @@ bool check_words(const BlockValues &values, Fault &fault) {
         allowed |= code.words | (code.usesAxes ? AXES : 0);
         const std::uint32_t missing = code.required & ~values.present;
         if (missing != 0) {
-            return fault.set(fmt::format("{} needs the word {}", code_name(code),
+            return fault.set(fmt::format("{} needs the word {}", code_name(code.id),
                                          static_cast<char>(std::toupper(LETTERS[std::countr_zero(missing)]))),
                              active.column);
         }

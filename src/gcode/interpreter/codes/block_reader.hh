@@ -23,7 +23,7 @@ struct BlockSources {
 /// Reads the words into `values`, which must be clear.
 bool read_words(const BlockView &view, const BlockSources &sources, BlockValues &values, Fault &fault);
 /// Axis words belong to a code of the block that uses them, else to the current motion mode.
-bool choose_motion(BlockValues &values, int motion, const Remaps &remaps, Fault &fault);
+bool choose_motion(BlockValues &values, GCode motion, const Remaps &remaps, Fault &fault);
 /// Checks that each code has its required words, and each word a code that uses it.
 bool check_words(const BlockValues &values, Fault &fault);
 /// G53 needs a straight move: G0 or G1 in the block, or current with axis words.

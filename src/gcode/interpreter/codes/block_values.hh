@@ -3,10 +3,12 @@
 #pragma once
 
 #include <array>
+#include <string>
 
 #include "base/static_vector.hh"
 #include "gcode/interpreter/codes/codes.hh"
 #include "gcode/syntax/ast.hh"
+#include "gcode/syntax/fault.hh"
 
 namespace mw::gcode::detail {
 
@@ -16,8 +18,11 @@ struct ActiveCode {
     std::uint32_t column = 0;
 };
 
+inline constexpr int ALL_SPINDLES = -1;
+
 struct BlockValues {
-    BlockValues() {}  // leaves the arrays uninitialised
+    /// `errors` receives the error of the block. Leaves the arrays uninitialised.
+    explicit BlockValues(Fault &errors) : fault(&errors) {}
     /// As a new object, without the cost of setting fields that are not read.
     void clear() {
         present = groups = 0;
@@ -26,6 +31,7 @@ struct BlockValues {
         motion_implied = is_machine_coordinates = false;
     }
 
+    Fault *fault;
     std::uint32_t present = 0;               ///< bit per letter, without G and M
     std::array<double, LETTER_COUNT> value;  ///< valid only for letters present
     std::array<std::uint32_t, LETTER_COUNT> column;
@@ -44,6 +50,13 @@ struct BlockValues {
     static constexpr int index(char c) {
         return c == '@' ? LETTER_AT : c == '^' ? LETTER_CARET : c == '$' ? LETTER_DOLLAR : letter(c);
     }
+
+    /// A word as a whole number. False after setting the fault.
+    bool whole(char name, int &out) const;
+    /// The word $: a spindle, or ALL_SPINDLES; 0 without it. False after setting the fault.
+    bool spindle(int spindles, int &out) const;
+    /// For `return values.fail(...)`: sets the fault at a word, or without one at the block; false.
+    bool fail(std::string message, char word = 0, std::string hint = {}) const;
 };
 
 }  // namespace mw::gcode::detail

@@ -1,45 +1,29 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The table of codes: modal group, words, phase of execution, handler.
+// The table of codes: modal group, words, function, description.
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <string_view>
-#include <variant>
-#include <vector>
 
-#include "gcode/canon/canon_moves.hh"
-#include "gcode/interpreter/codes/outcome.hh"
+#include "gcode/interpreter/codes/code_parts.hh"
+#include "gcode/interpreter/gcode.hh"
 #include "gcode/syntax/ast.hh"
 
 namespace mw::gcode::detail {
 
-class CanonQueue;
-class LatheCycles;
-class Parameters;
-class SavedModes;
-class ToolTable;
-struct Awaited;
-struct BlockPlace;
-struct BlockValues;
-struct Code;
-struct FanucCall;
-struct Fault;
-struct Machine;
-struct State;
 struct Remap;
 
-/// Order of execution of the parts of a block.
-enum class Phase : std::uint8_t {
-    COMMENT,
+/// Modal groups in the order of execution. A block may contain at most one code of each group; DWELL and
+/// NON_MODAL are one group with two places in that order.
+enum class Group : std::uint8_t {
     SPINDLE_MODE,
     FEED_MODE,
-    FEED,
-    SPEED,
-    TOOL,
-    EARLY_REMAP,
+    WORD_F,
+    WORD_S,
+    WORD_T,
     IO,
-    CHANGE_TOOL,
+    TOOL_CHANGE,
     SPINDLE,
     CONTEXT,
     COOLANT,
@@ -56,85 +40,35 @@ enum class Phase : std::uint8_t {
     DISTANCE,
     CENTRE_DISTANCE,
     RETRACT,
-    OFFSETS,
-    MOTION,
-    STOP,
-};
-
-/// A block may contain at most one code of each group.
-enum class Group : std::uint8_t {
     NON_MODAL,
     MOTION,
-    PLANE,
-    DISTANCE,
-    CENTRE_DISTANCE,
-    FEED_MODE,
-    UNITS,
-    COMP,
-    TOOL_OFFSET,
-    RETRACT,
-    COORDINATES,
-    CONTROL,
-    SPINDLE_MODE,
-    DIAMETER,
     STOP,
-    IO,
-    TOOL_CHANGE,
-    SPINDLE,
-    COOLANT,
-    OVERRIDE,
-    USER,
-    CONTEXT,
-    WORD_F,
-    WORD_S,
-    WORD_T,
 };
 
-// Handlers of codes: a handler reads the block and the state, changes the state and makes canon calls; false
-// after setting the fault. One type for each set of objects that codes need.
-using ModeHandler = bool (*)(const Code &, const BlockValues &, State &, CanonQueue &, Fault &);
-using MachineHandler = bool (*)(const Code &, const BlockValues &, const Machine &, State &, CanonQueue &,
-                                Fault &);
-using OffsetHandler = bool (*)(const Code &, const BlockValues &, const Machine &, Parameters &, State &,
-                               CanonQueue &, Fault &);
-using SplineHandler = bool (*)(const Code &, const BlockValues &, std::vector<NurbsPoint> &, State &,
-                               CanonQueue &, Fault &);
-using ToolHandler = bool (*)(const Code &, const BlockValues &, const Machine &, ToolTable &, State &,
-                             CanonQueue &, Fault &, Outcome &);
-using StoreHandler = bool (*)(const Code &, const BlockValues &, const Machine &, ToolTable &, Parameters &,
-                              State &, CanonQueue &, Fault &, Outcome &);
-using WaitHandler = bool (*)(const Code &, const BlockValues &, Parameters &, Awaited &, State &,
-                             CanonQueue &, Fault &, Outcome &);
-using LatheHandler = bool (*)(const Code &, const BlockValues &, const Machine &, LatheCycles &, State &,
-                              CanonQueue &, Fault &, Outcome &);
-using EndHandler = bool (*)(const Code &, const BlockValues &, const Machine &, Parameters &, State &,
-                            CanonQueue &, Fault &, Outcome &);
-using CallHandler = bool (*)(const Code &, const BlockValues &, const Machine &, const BlockPlace &,
-                             FanucCall &, Parameters &, State &, CanonQueue &, Fault &, Outcome &);
-using ContextHandler = bool (*)(const Code &, const BlockValues &, const Machine &, SavedModes &,
-                                Parameters &, State &, CanonQueue &, Fault &);
-using Handler =
-    std::variant<ModeHandler, MachineHandler, OffsetHandler, SplineHandler, ToolHandler, StoreHandler,
-                 WaitHandler, LatheHandler, EndHandler, CallHandler, ContextHandler>;
+/// The group of NON_MODAL for DWELL, else the group itself.
+constexpr Group exclusive_group(Group group) {
+    return group == Group::DWELL ? Group::NON_MODAL : group;
+}
 
 struct Code {
-    char letter = 'g';
-    int number = 0;  ///< ten times the number for G, the number for M
+    GCode id{};
     Group group{};
-    Phase phase{};
     bool usesAxes = false;       ///< uses the axis words of the block
     std::uint32_t words = 0;     ///< permitted letters, except axes
     std::uint32_t required = 0;  ///< required letters
-    Handler handler;
+    CodeFunction *run = nullptr;
+    std::string_view meaning;      ///< description without a full stop
+    std::string_view word_texts;   ///< "p=time to wait [s]|q=..." for its words except axes
     const Remap *remap = nullptr;  ///< not null for remapped codes
+
+    /// Description of a word; empty when there is none.
+    std::string_view word_text(char letter) const;
 };
 
-/// All rows of the table except user codes.
+/// All rows of the table except words and user codes, by number, G before M.
 std::span<const Code> all_codes();
-/// The row of a code, or null. `number` as in Code.
-const Code *find_code(char letter, int number);
-/// F, S or T.
-const Code *find_word_code(char letter);
+/// The row of a code or word, or null.
+const Code *find_code(GCode code);
 
 constexpr std::uint32_t bit_of(int letter_index) {
     return 1u << letter_index;
@@ -149,10 +83,12 @@ constexpr std::uint32_t letters(std::string_view text) {
     return set;
 }
 
-/// A row of the table; `words` and `required` as letters.
-constexpr Code row(char letter_char, int number, Group group, Phase phase, bool usesAxes,
-                   std::string_view words, std::string_view required, Handler handler) {
-    return {letter_char, number, group, phase, usesAxes, letters(words), letters(required), handler};
+/// A row of the table. `words`: permitted letters, * for those of axes; `required`: those that must be there.
+constexpr Code row(GCode id, Group group, std::string_view words, std::string_view required,
+                   CodeFunction *run, std::string_view meaning, std::string_view word_texts = {}) {
+    const bool axes = words.starts_with('*');
+    return {id,      group,      axes,   letters(words.substr(axes ? 1 : 0)), letters(required), run,
+            meaning, word_texts, nullptr};
 }
 
 inline constexpr std::uint32_t AXES = letters("xyzabcuvw@^");

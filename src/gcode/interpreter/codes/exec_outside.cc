@@ -21,10 +21,10 @@ AttributeSources Executor::attribute_sources() {
             awaited,
             script_levels,
             block_place,
-            machine_.world,
+            parts.world,
             tools,
             remaps.count_running(),
-            machine_.settings.is_task};
+            parts.settings.is_task};
 }
 
 KeptSources Executor::kept_sources() const {
@@ -32,10 +32,10 @@ KeptSources Executor::kept_sources() const {
             returned,
             block_place,
             parameters,
-            machine_.world,
+            parts.world,
             state.comp.compensated(state.position, state.plane),
             remaps.count_running(),
-            machine_.settings.is_task,
+            parts.settings.is_task,
             &tools};
 }
 
@@ -52,7 +52,7 @@ std::optional<double> Executor::built_in(std::string_view name) const {
     }
     if (isIniName(name)) {
         const std::size_t close = name.find(']');
-        if (close == std::string_view::npos || !machine_.settings.ini_readable) {
+        if (close == std::string_view::npos || !parts.settings.ini_readable) {
             return std::nullopt;
         }
         const auto value = source_.ini_value(name.substr(5, close - 5), name.substr(close + 1));
@@ -62,7 +62,7 @@ std::optional<double> Executor::built_in(std::string_view name) const {
         return value;
     }
     if (isHalName(name)) {
-        if (!machine_.settings.hal_readable) {
+        if (!parts.settings.hal_readable) {
             return std::nullopt;
         }
         return source_.hal_value(name.substr(5, name.find(']') - 5));

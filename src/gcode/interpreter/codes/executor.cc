@@ -1,28 +1,26 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "gcode/interpreter/codes/executor.hh"
 
-#include "base/overloaded.hh"
 #include "gcode/interpreter/codes/comments.hh"
 #include "gcode/interpreter/codes/modes/restore_modes.hh"
-#include "gcode/interpreter/codes/moves/rotary.hh"
-#include "gcode/interpreter/codes/moves/splines.hh"
+#include "gcode/interpreter/codes/moves/moves.hh"
 #include "gcode/interpreter/codes/synchronisation.hh"
 
 namespace mw::gcode::detail {
 namespace {
 
 BlockCodes codes_of(const BlockValues &values) {
-    constexpr int G92 = 920, G92_3 = 923;
     BlockCodes out;
     for (const ActiveCode &active : values.codes) {
+        const GCode code = active.code->id;
         switch (active.code->group) {
+        case Group::DWELL:
         case Group::NON_MODAL:
             // LinuxCNC shows G92.1 to G92.3 only by their effect.
-            out.non_modal =
-                active.code->number > G92 && active.code->number <= G92_3 ? -1 : active.code->number;
+            out.non_modal = code > G(92) && code <= G(92, 3) ? -1 : number_of(code);
             break;
-        case Group::STOP: out.stop = active.code->number; break;
-        case Group::TOOL_CHANGE: out.tool_change = active.code->number; break;
+        case Group::STOP: out.stop = number_of(code); break;
+        case Group::TOOL_CHANGE: out.tool_change = number_of(code); break;
         default: break;
         }
     }
@@ -31,9 +29,8 @@ BlockCodes codes_of(const BlockValues &values) {
 
 /// True for a block that is empty or only a straight move, which fails before it changes anything.
 bool isStateSafe(const BlockValues &values, const State &state) {
-    constexpr int G1 = 10;
-    const bool straight = values.codes.size() == 1 && values.motion != nullptr &&
-                          values.motion->number <= G1 && !state.comp.isOn();
+    const bool straight = values.codes.size() == 1 && values.motion != nullptr && values.motion->id <= G(1) &&
+                          !state.comp.isOn();
     return values.codes.empty() || straight;
 }
 
@@ -42,7 +39,9 @@ bool isStateSafe(const BlockValues &values, const State &state) {
 Executor::Executor(World &world, ToolSource &tool_source, ParameterSource &source, const Settings &settings,
                    Names &names)
     : tools(tool_source), script_levels{settings.debug_mask, settings.logging_level},
-      machine_{world, settings}, source_(source), names_(names), evaluator_(parameters, names, *this, fault) {
+      parts{world,       settings, block_place,    canon,   parameters, tools,
+            saved_modes, lathe,    control_points, awaited, fanuc_call},
+      source_(source), names_(names), evaluator_(parameters, names, *this, fault), block_(fault) {
     state.rotary = settings.rotary;
 }
 
@@ -61,7 +60,7 @@ bool Executor::run(const BlockView &view, std::string_view line_text) {
     block_.number = view.block->isNumbered ? view.block->sequence : -1;
     if (lathe.request() != nullptr) {
         keep_state();
-        return lathe.record(values, machine_.settings, state, fault);
+        return lathe.record(values, parts.settings, state);
     }
     if (view.block->comment_count > 0 && !run_last_comment(view, line_text)) {
         return false;
@@ -70,9 +69,8 @@ bool Executor::run(const BlockView &view, std::string_view line_text) {
         return true;  // only settings and comments, as most lines of loops
     }
     if (!choose_motion(values, state.motion, remaps, fault) || !check_machine_coordinates(values, fault) ||
-        !check_open_nurbs(values, state, fault) ||
-        !axis_check_.check(values, machine_.world.axis_mask(), fault) || !check_words(values, fault) ||
-        !check_rotary(values, state, fault)) {
+        !check_open_nurbs(values, state) || !axis_check_.check(values, parts.world.axis_mask(), fault) ||
+        !check_words(values, fault) || !check_rotary(values, state)) {
         return false;
     }
     block_codes = codes_of(values);
@@ -107,49 +105,21 @@ bool Executor::run_codes(const BlockValues &values, std::size_t first) {
             outcome = Outcome::REMAP;
             return true;
         }
-        if (!run_code(*active.code, values)) {
+        const Effect effect = active.code->run(active.code->id, values, state, parts);
+        if (!effect) {
             if (fault.column == 0) {
                 fault.column = active.column;
             }
             return false;
         }
+        if (effect.next != Outcome::OK) {
+            outcome = effect.next;
+        }
         if (remaps.isAnyRunning()) {
-            remaps.count_builtin(*active.code);
+            remaps.count_builtin(active.code->id);
         }
     }
     return true;
-}
-
-/// Calls the handler of a code with the objects of its type.
-bool Executor::run_code(const Code &code, const BlockValues &values) {
-    return std::visit(
-        Overloaded{
-            [&](ModeHandler act) { return act(code, values, state, canon, fault); },
-            [&](MachineHandler act) { return act(code, values, machine_, state, canon, fault); },
-            [&](OffsetHandler act) { return act(code, values, machine_, parameters, state, canon, fault); },
-            [&](SplineHandler act) { return act(code, values, control_points_, state, canon, fault); },
-            [&](ToolHandler act) { return act(code, values, machine_, tools, state, canon, fault, outcome); },
-            [&](StoreHandler act) {
-                return act(code, values, machine_, tools, parameters, state, canon, fault, outcome);
-            },
-            [&](WaitHandler act) {
-                return act(code, values, parameters, awaited, state, canon, fault, outcome);
-            },
-            [&](LatheHandler act) {
-                return act(code, values, machine_, lathe, state, canon, fault, outcome);
-            },
-            [&](EndHandler act) {
-                return act(code, values, machine_, parameters, state, canon, fault, outcome);
-            },
-            [&](CallHandler act) {
-                return act(code, values, machine_, block_place, fanuc_call, parameters, state, canon, fault,
-                           outcome);
-            },
-            [&](ContextHandler act) {
-                return act(code, values, machine_, saved_modes, parameters, state, canon, fault);
-            },
-        },
-        code.handler);
 }
 
 bool Executor::resume(const PendingBlock &pending) {
@@ -237,7 +207,7 @@ bool Executor::pop_call(bool is_fanuc) {
         return true;
     }
     keep_state();
-    return restore_modes(*modes, machine_, parameters, state, canon, fault);
+    return restore_modes(*modes, state, parts, fault);
 }
 
 void Executor::drop_calls(std::size_t depth) {
@@ -252,15 +222,15 @@ void Executor::drop_calls(std::size_t depth) {
 }
 
 void Executor::announce() {
-    detail::announce(machine_, parameters, state, canon);
+    detail::announce(state, parts);
 }
 
 void Executor::announce_modes() {
-    detail::announce_modes(machine_, state, canon);
+    detail::announce_modes(state, parts);
 }
 
 void Executor::synch() {
-    synchronise(machine_, tools, parameters, awaited, state);
+    synchronise(state, parts);
 }
 
 }  // namespace mw::gcode::detail

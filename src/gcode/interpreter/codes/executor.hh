@@ -12,10 +12,9 @@
 #include "gcode/interpreter/codes/around_block.hh"
 #include "gcode/interpreter/codes/attributes.hh"
 #include "gcode/interpreter/codes/block_reader.hh"
+#include "gcode/interpreter/codes/code_parts.hh"
 #include "gcode/interpreter/codes/kept_parameters.hh"
 #include "gcode/interpreter/codes/lathe/lathe_cycles.hh"
-#include "gcode/interpreter/codes/machine.hh"
-#include "gcode/interpreter/codes/outcome.hh"
 #include "gcode/interpreter/codes/remaps.hh"
 #include "gcode/interpreter/codes/saved_modes.hh"
 #include "gcode/interpreter/codes/state.hh"
@@ -37,6 +36,8 @@ class ScriptNames {
 
 /// Data of the current block.
 struct RunningBlock {
+    explicit RunningBlock(Fault &errors) : values(errors) {}
+
     BlockValues values;
     std::string comment;      ///< kept only if there are remaps
     std::string script_text;  ///< the statements of its ;py, line
@@ -71,9 +72,12 @@ class Executor : public BuiltIns {
     ReturnValue returned;
     BlockCodes block_codes;
     ScriptLevels script_levels;
+    std::vector<NurbsPoint> control_points;  ///< of the open NURBS
+    /// The parts as codes use them.
+    CodeParts parts;
 
     Evaluator &evaluator() { return evaluator_; }
-    const World &world() const { return machine_.world; }
+    const World &world() const { return parts.world; }
     /// Statements of the ;py, line of the outcome.
     const std::string &script_text() const { return block_.script_text; }
 
@@ -118,17 +122,14 @@ class Executor : public BuiltIns {
   private:
     bool run_last_comment(const BlockView &view, std::string_view line_text);
     bool run_codes(const BlockValues &values, std::size_t first);
-    bool run_code(const Code &code, const BlockValues &values);
     KeptSources kept_sources() const;
 
-    const Machine machine_;
     ParameterSource &source_;
     Names &names_;
     Evaluator evaluator_;
     RunningBlock block_;
     BlockSettings settings_;
     AxisCheck axis_check_;
-    std::vector<NurbsPoint> control_points_;  ///< control points of the open NURBS
     BlockCodes codes_before_;
     State before_;  ///< state before the block, saved by keep_state()
     bool state_kept_ = false;

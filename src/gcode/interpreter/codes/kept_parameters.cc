@@ -6,7 +6,7 @@
 #include <array>
 
 #include "gcode/canon/frame.hh"
-#include "gcode/canon/plane_axes.hh"
+#include "gcode/interpreter/codes/active_codes.hh"
 #include "gcode/interpreter/expressions/parameters.hh"
 
 namespace mw::gcode::detail {
@@ -47,9 +47,9 @@ constexpr Row ROWS[] = {
     {"_vmajor", [](const Sources &) { return VERSION_MAJOR; }},
     {"_vminor", [](const Sources &) { return VERSION_MINOR; }},
     {"_line", [](const Sources &e) { return static_cast<double>(e.place.line); }},
-    {"_motion_mode", [](const Sources &e) { return static_cast<double>(e.state.motion); }},
-    {"_plane", [](const Sources &e) { return static_cast<double>(plane_code(e.state.plane)); }},
-    {"_ccomp", [](const Sources &e) { return static_cast<double>(e.state.comp.code()); }},
+    {"_motion_mode", [](const Sources &e) { return static_cast<double>(number_of(e.state.motion)); }},
+    {"_plane", [](const Sources &e) { return static_cast<double>(number_of(plane_code(e.state.plane))); }},
+    {"_ccomp", [](const Sources &e) { return static_cast<double>(number_of(e.state.comp.code())); }},
     {"_metric", [](const Sources &e) { return flag(e.state.units == LengthUnits::MM); }},
     {"_metric_machine", [](const Sources &e) { return flag(e.world.machine_units() == LengthUnits::MM); }},
     {"_imperial", [](const Sources &e) { return flag(e.state.units == LengthUnits::INCH); }},
@@ -61,8 +61,10 @@ constexpr Row ROWS[] = {
     {"_units_per_rev",
      [](const Sources &e) { return flag(e.state.feed_mode == FeedMode::UNITS_PER_REVOLUTION); }},
     {"_coord_system",
-     [](const Sources &e) { return static_cast<double>(coordinate_system_code(e.state.g5x_index)); }},
-    {"_tool_offset", [](const Sources &e) { return flag(e.state.tool.offset_code != 490); }},
+     [](const Sources &e) {
+         return static_cast<double>(number_of(coordinate_system_code(e.state.g5x_index)));
+     }},
+    {"_tool_offset", [](const Sources &e) { return flag(e.state.tool.offset_code != G(49)); }},
     {"_retract_r_plane", [](const Sources &e) { return flag(e.state.retract_to_r); }},
     {"_retract_old_z", [](const Sources &e) { return flag(!e.state.retract_to_r); }},
     {"_spindle_rpm_mode", [](const Sources &e) { return flag(!spindle(e).is_constant_surface); }},

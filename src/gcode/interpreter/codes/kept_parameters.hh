@@ -36,10 +36,4 @@ double kept_value(int number, const KeptSources &sources);
 /// All names, sorted.
 std::vector<std::string> kept_names();
 
-/// Ten times the G code number of a coordinate system (from 1).
-constexpr int coordinate_system_code(int index) {
-    constexpr int LAST_WHOLE = 6, G53 = 530, BEFORE_G59_1 = 584;
-    return index <= LAST_WHOLE ? G53 + 10 * index : BEFORE_G59_1 + index;
-}
-
 }  // namespace mw::gcode::detail

@@ -16,24 +16,19 @@ struct GroupNumber {
     char letter;
     int number;
     Group group;
-    Phase phase;
 };
 
 /// Modal groups that a remapped code may have, in the manual's numbering.
 constexpr GroupNumber GROUPS[] = {
-    {'g', 1, Group::MOTION, Phase::MOTION},
-    {'m', 4, Group::STOP, Phase::STOP},
-    {'m', 5, Group::IO, Phase::IO},
-    {'m', 6, Group::TOOL_CHANGE, Phase::CHANGE_TOOL},
-    {'m', 7, Group::SPINDLE, Phase::SPINDLE},
-    {'m', 8, Group::COOLANT, Phase::COOLANT},
-    {'m', 9, Group::OVERRIDE, Phase::OVERRIDE},
-    {'m', 10, Group::USER, Phase::USER},
+    {'g', 1, Group::MOTION},      {'m', 4, Group::STOP},    {'m', 5, Group::IO},
+    {'m', 6, Group::TOOL_CHANGE}, {'m', 7, Group::SPINDLE}, {'m', 8, Group::COOLANT},
+    {'m', 9, Group::OVERRIDE},    {'m', 10, Group::USER},
 };
 constexpr int DEFAULT_G_GROUP = 1, DEFAULT_M_GROUP = 10;
 
 /// Codes of the dialect that may be remapped.
-constexpr int REMAPPABLE_M[] = {0, 1, 6, 7, 8, 9, 60, 61, 62, 63, 64, 65, 66, 67, 68};
+constexpr GCode REMAPPABLE[] = {M(0),  M(1),  M(6),  M(7),  M(8),  M(9),  M(60), M(61),
+                                M(62), M(63), M(64), M(65), M(66), M(67), M(68)};
 
 bool isWordCode(char letter) {
     return letter == 't' || letter == 's' || letter == 'f';
@@ -61,6 +56,7 @@ class Reader {
 
     const RemapLine &line_;
     std::size_t position_ = 0;
+    char letter_ = 'g';  ///< of the code
     bool has_group_ = false;
     Remap out_;
 };
@@ -84,25 +80,25 @@ std::string_view Reader::next_word() {
 
 Result<> Reader::read_code(std::string_view word) {
     out_.name = to_upper(word);
-    out_.letter = word.empty() ? '?' : static_cast<char>(std::tolower(static_cast<unsigned char>(word[0])));
-    if (word.size() == 1 && isWordCode(out_.letter)) {
+    letter_ = word.empty() ? '?' : static_cast<char>(std::tolower(static_cast<unsigned char>(word[0])));
+    if (word.size() == 1 && isWordCode(letter_)) {
+        out_.code.id = word_code(letter_);
         return {};
     }
     const auto number = word.empty() ? std::nullopt : parse_double(word.substr(1));
-    const bool is_code = (out_.letter == 'g' || out_.letter == 'm') && number && *number >= 0.0;
+    const bool is_code = (letter_ == 'g' || letter_ == 'm') && number && *number >= 0.0;
     if (!is_code) {
         return error("a code such as M400, G88.1, T, S or F must come first", offset_of(word));
     }
-    const double scaled = *number * (out_.letter == 'g' ? 10.0 : 1.0);
-    out_.number = static_cast<int>(std::lround(scaled));
-    if (std::fabs(scaled - out_.number) > 1e-6 || out_.number >= 1000) {
+    const double scaled = *number * (letter_ == 'g' ? 10.0 : 1.0);
+    const int whole = static_cast<int>(std::lround(scaled));
+    if (std::fabs(scaled - whole) > 1e-6 || whole >= 1000) {
         return error("the number must be below 1000 for M, below 100 and with one decimal for G",
                      offset_of(word));
     }
-    const bool is_user = out_.letter == 'm' && out_.number >= 100;
-    const bool allowed =
-        is_user || find_code(out_.letter, out_.number) == nullptr ||
-        (out_.letter == 'm' && std::ranges::find(REMAPPABLE_M, out_.number) != std::end(REMAPPABLE_M));
+    const GCode code = out_.code.id = make_code(letter_, whole);
+    const bool allowed = find_code(code) == nullptr || code >= M(100) ||
+                         std::ranges::find(REMAPPABLE, code) != std::end(REMAPPABLE);
     if (!allowed) {
         out_.refusal =
             fmt::format("{}: REMAP={}: {} has a meaning that cannot be changed; the line has no effect",
@@ -140,16 +136,15 @@ Result<> Reader::read_argspec(std::string_view text, std::size_t offset) {
 
 Result<> Reader::set_group(int number, std::size_t offset) {
     for (const GroupNumber &row : GROUPS) {
-        if (row.letter == out_.letter && row.number == number) {
+        if (row.letter == letter_ && row.number == number) {
             out_.code.group = row.group;
-            out_.code.phase = row.phase;
             out_.modal_group = number;
             has_group_ = true;
             return {};
         }
     }
     return error(fmt::format("{} cannot be in modal group {}", out_.name, number), offset,
-                 out_.letter == 'g' ? "G codes are in group 1" : "M codes are in groups 4 to 10");
+                 letter_ == 'g' ? "G codes are in group 1" : "M codes are in groups 4 to 10");
 }
 
 Result<> Reader::read_group(std::string_view text, std::size_t offset) {
@@ -157,7 +152,7 @@ Result<> Reader::read_group(std::string_view text, std::size_t offset) {
     if (!number || *number < 0 || *number > 99) {
         return error(fmt::format("modalgroup needs a number, not '{}'", text), offset);
     }
-    if (isWordCode(out_.letter)) {
+    if (isWordCode(letter_)) {
         return {};  // T, S and F have their own phase
     }
     return set_group(static_cast<int>(*number), offset);
@@ -196,21 +191,17 @@ Result<> Reader::finish() {
                                       : "either ngc= or py= is possible, not both",
                      0);
     }
-    const Code *existing =
-        isWordCode(out_.letter) ? find_word_code(out_.letter) : find_code(out_.letter, out_.number);
+    const Code *existing = find_code(out_.code.id);
     if (!has_group_ && existing != nullptr) {
         out_.code.group = existing->group;
-        out_.code.phase = existing->phase;
     } else if (!has_group_) {
-        if (auto done = set_group(out_.letter == 'g' ? DEFAULT_G_GROUP : DEFAULT_M_GROUP, 0); !done) {
+        if (auto done = set_group(letter_ == 'g' ? DEFAULT_G_GROUP : DEFAULT_M_GROUP, 0); !done) {
             return done;
         }
     }
-    out_.code.letter = out_.letter;
-    out_.code.number = out_.number;
     // A script reads the words of its block itself, so any word is permitted; axis words only with a G code.
     out_.code.words = (bit_of(LETTER_COUNT) - 1) & ~AXES;
-    out_.code.usesAxes = out_.letter == 'g';
+    out_.code.usesAxes = letter_ == 'g';
     return {};
 }
 
@@ -233,7 +224,8 @@ Result<Remap> Reader::read() {
 }  // namespace
 
 ScriptRemap Remap::described() const {
-    return {name, argspec, prolog, epilog, ngc, function, modal_group, letter == 'g' ? number : -1};
+    return {name, argspec,  prolog,      epilog,
+            ngc,  function, modal_group, letter_of(code.id) == 'g' ? number_of(code.id) : -1};
 }
 
 Result<Remap> parse_remap(const RemapLine &line) {

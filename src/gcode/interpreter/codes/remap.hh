@@ -20,8 +20,6 @@ struct RemapWord {
 };
 
 struct Remap {
-    char letter = 'g';
-    int number = 0;    ///< ten times the number for G
     std::string name;  ///< in upper case: "M400", "G88.1"
     Code code;         ///< row in the table of codes
     int modal_group = 0;

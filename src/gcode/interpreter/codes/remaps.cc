@@ -21,7 +21,7 @@ Result<> Remaps::load(std::span<const RemapLine> lines) {
             continue;
         }
         for (const Remap &other : all_) {
-            if (other.letter == made->letter && other.number == made->number) {
+            if (other.code.id == made->code.id) {
                 return fail(fmt::format("REMAP={}: {} is remapped twice", line.text, made->name), line.place);
             }
         }
@@ -38,9 +38,9 @@ bool Remaps::isRunning(const Remap &remap) const {
                                [&remap](const Running &running) { return running.remap == &remap; });
 }
 
-const Code *Remaps::find(char letter, int number) const {
+const Code *Remaps::find(GCode code) const {
     for (const Remap &remap : all_) {
-        if (remap.letter == letter && remap.number == number && !isRunning(remap)) {
+        if (remap.code.id == code && !isRunning(remap)) {
             return &remap.code;
         }
     }
@@ -53,18 +53,18 @@ void Remaps::end_above(std::size_t level) {
     }
 }
 
-void Remaps::count_builtin(const Code &code) {
+void Remaps::count_builtin(GCode code) {
     for (Running &running : running_) {
-        if (running.remap->letter == code.letter && running.remap->number == code.number) {
+        if (running.remap->code.id == code) {
             ++running.builtins;
         }
     }
 }
 
-std::string Remaps::recursion_text(char letter, int number) const {
+std::string Remaps::recursion_text(GCode code) const {
     for (const Running &running : running_) {
         const Remap &remap = *running.remap;
-        if (remap.letter == letter && remap.number == number) {
+        if (remap.code.id == code) {
             return fmt::format("{} is used in its own procedure, but it only has the remapped meaning",
                                remap.name);
         }

@@ -30,7 +30,7 @@ class Remaps {
     /// Why lines have no effect.
     const std::vector<std::string> &refused() const { return refused_; }
     /// The row of a remapped code; null for any other code, and while the code's own procedure runs.
-    const Code *find(char letter, int number) const;
+    const Code *find(GCode code) const;
 
     /// The procedure of `remap` begins at a call level (from 1).
     void begin(const Remap &remap, std::size_t level) { running_.push_back({&remap, level, 0}); }
@@ -39,11 +39,11 @@ class Remaps {
     bool isAnyRunning() const { return !running_.empty(); }
     int count_running() const { return static_cast<int>(running_.size()); }
     /// Counts a code that is executed with its built-in meaning, for the procedures that remap it.
-    void count_builtin(const Code &code);
+    void count_builtin(GCode code);
     /// How often the procedure of the `nth` running remap (from 1) has used the built-in meaning of its code.
     int builtin_uses(int nth) const { return running_[static_cast<std::size_t>(nth) - 1].builtins; }
     /// Why a remapped code has no meaning here; empty when that is not the reason.
-    std::string recursion_text(char letter, int number) const;
+    std::string recursion_text(GCode code) const;
 
     /// A block has reached a remapped code.
     void interrupt(PendingBlock block) { interrupted_ = std::move(block); }

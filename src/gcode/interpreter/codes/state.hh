@@ -10,11 +10,12 @@
 #include "gcode/canon/frame.hh"
 #include "gcode/interpreter/codes/comp/compensation.hh"
 #include "gcode/interpreter/codes/plane_geometry.hh"
+#include "gcode/interpreter/gcode.hh"
 #include "gcode/interpreter/rotary_axes.hh"
 
 namespace mw::gcode::detail {
 
-inline constexpr int MOTION_NONE = 800;  // G80
+inline constexpr GCode MOTION_NONE = G(80);
 
 struct SpindleState {
     double speed = 0;   ///< [rev/min, or surface feet or metres per minute under G96]
@@ -46,7 +47,7 @@ struct ToolModes {
     double diameter = 0;  ///< [machine units]
     double frontangle = 0, backangle = 0;
     int orientation = 0;
-    int offset_code = 490;  ///< ten times the G code that set the active offset
+    GCode offset_code = G(49);  ///< set the active offset
 
     bool operator==(const ToolModes &) const = default;
 };
@@ -66,7 +67,7 @@ struct State {
     Frame frame;    ///< [program units, degrees]
     RotaryAxes rotary;
     int g5x_index = 1;
-    int motion = MOTION_NONE;  ///< ten times the G code
+    GCode motion = MOTION_NONE;
     Plane plane = Plane::XY;
     LengthUnits units = LengthUnits::MM;
     bool incremental = false;

@@ -25,13 +25,15 @@ void synch_tool(const MachineSnapshot &snapshot, const ToolTable &tools, ToolMod
 
 }  // namespace
 
-void announce(const Machine &machine, Parameters &parameters, State &state, CanonQueue &canon) {
-    const double to_program = machine.to_program(state.units);
+void announce(State &state, CodeParts &parts) {
+    Parameters &parameters = parts.parameters;
+    CanonQueue &canon = parts.canon;
+    const double to_program = parts.to_program(state.units);
     state.g5x_index = static_cast<int>(parameters.get(P_COORDINATE_SYSTEM));
     const int first = P_G5X + 20 * (state.g5x_index - 1);
     state.frame.g5x = parameter_pose(parameters, first, to_program);
     state.frame.rotation_deg = parameters.get(first + 9);
-    if (parameters.get(P_G92_APPLIED) != 0.0 && machine.settings.g92_persistence_disabled) {
+    if (parameters.get(P_G92_APPLIED) != 0.0 && parts.settings.g92_persistence_disabled) {
         parameters.set(P_G92_APPLIED, 0.0);
         set_parameter_pose(parameters, P_G92, {}, to_program);
     }
@@ -44,11 +46,12 @@ void announce(const Machine &machine, Parameters &parameters, State &state, Cano
     canon.take(SetFeedReference{});
 }
 
-void announce_modes(const Machine &machine, const State &state, CanonQueue &canon) {
+void announce_modes(const State &state, CodeParts &parts) {
+    CanonQueue &canon = parts.canon;
     canon.take(SetG92Offset{state.frame.g92});
     send_coordinates(state, canon);
     canon.take(UseToolLengthOffset{state.frame.tool});
-    for (int i = 0; i < machine.count_spindles(); ++i) {
+    for (int i = 0; i < parts.count_spindles(); ++i) {
         const SpindleState &spindle = state.spindles[static_cast<std::size_t>(i)];
         canon.take(SetSpindleMode{i, spindle.is_constant_surface ? spindle.css_max_rpm : 0.0});
         canon.take(SetSpindleSpeed{i, spindle.speed});
@@ -56,14 +59,14 @@ void announce_modes(const Machine &machine, const State &state, CanonQueue &cano
     }
 }
 
-void synchronise(const Machine &machine, ToolTable &tools, Parameters &parameters, Awaited &awaited,
-                 State &state) {
-    const MachineSnapshot snapshot = machine.world.snapshot();
-    tools.forget();
-    state.position =
-        state.frame.to_program(scale_lengths(snapshot.position, machine.to_program(state.units)));
+void synchronise(State &state, CodeParts &parts) {
+    Parameters &parameters = parts.parameters;
+    Awaited &awaited = parts.awaited;
+    const MachineSnapshot snapshot = parts.world.snapshot();
+    parts.tools.forget();
+    state.position = state.frame.to_program(scale_lengths(snapshot.position, parts.to_program(state.units)));
     state.probed =
-        state.frame.to_program(scale_lengths(snapshot.probed_position, machine.to_program(state.units)));
+        state.frame.to_program(scale_lengths(snapshot.probed_position, parts.to_program(state.units)));
     if (awaited.isProbe) {
         for (int axis = 0; axis < geometry::AXIS_COUNT; ++axis) {
             parameters.set(P_PROBE_RESULT + axis, state.probed[axis]);
@@ -83,12 +86,12 @@ void synchronise(const Machine &machine, ToolTable &tools, Parameters &parameter
     state.is_feed_override = snapshot.isFeedOverrideEnabled;
     state.is_feed_hold = snapshot.isFeedHoldEnabled;
     state.adaptive = snapshot.isAdaptiveFeedEnabled;
-    for (int i = 0; i < machine.count_spindles(); ++i) {
+    for (int i = 0; i < parts.count_spindles(); ++i) {
         SpindleState &spindle = state.spindles[static_cast<std::size_t>(i)];
         spindle.direction = snapshot.spindle_direction[static_cast<std::size_t>(i)];
     }
     state.tool.selected_index = snapshot.selected_pocket;
-    synch_tool(snapshot, tools, state.tool);
+    synch_tool(snapshot, parts.tools, state.tool);
 }
 
 }  // namespace mw::gcode::detail

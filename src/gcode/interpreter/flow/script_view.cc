@@ -15,6 +15,7 @@ namespace {
 /// Modal groups in the manual's numbering; -1 for groups without a number.
 int group_number(Group group) {
     switch (group) {
+    case Group::DWELL:
     case Group::NON_MODAL: return 0;
     case Group::MOTION: return 1;
     case Group::PLANE: return 2;
@@ -229,14 +230,14 @@ ScriptBlock ScriptView::remap_block(const ScriptCall &call, int level) const {
         if (group < 0 || (pending.values.motion_implied && active.code == pending.values.motion)) {
             continue;
         }
-        if (active.code->letter == 'g') {
-            out.g_modes[static_cast<std::size_t>(group)] = active.code->number;
+        if (letter_of(active.code->id) == 'g') {
+            out.g_modes[static_cast<std::size_t>(group)] = number_of(active.code->id);
         } else {
-            out.m_modes[static_cast<std::size_t>(group)] = active.code->number;
+            out.m_modes[static_cast<std::size_t>(group)] = number_of(active.code->id);
             ++out.m_count;
         }
     }
-    out.motion = pending.values.motion != nullptr ? pending.values.motion->number : -1;
+    out.motion = pending.values.motion != nullptr ? number_of(pending.values.motion->id) : -1;
     out.line = pending.line;
     out.number = pending.sequence;
     out.comment = pending.comment;

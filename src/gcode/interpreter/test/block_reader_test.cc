@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "gcode/interpreter/codes/block_reader.hh"
-#include "gcode/interpreter/test/code_parts.hh"
+#include "gcode/interpreter/test/code_rig.hh"
 
 namespace mw::gcode::detail {
 namespace {
@@ -25,10 +25,10 @@ class BlockReaderTest : public testing::Test {
         return read_words(program->block(1), {evaluator, remaps}, values, fault);
     }
     /// Codes in the order of execution.
-    std::vector<int> numbers() const {
-        std::vector<int> out;
+    std::vector<GCode> codes() const {
+        std::vector<GCode> out;
         for (const ActiveCode &active : values.codes) {
-            out.push_back(active.code->number);
+            out.push_back(active.code->id);
         }
         return out;
     }
@@ -40,7 +40,7 @@ class BlockReaderTest : public testing::Test {
     Evaluator evaluator{parameters, names, built_ins, fault};
     Remaps remaps;
     std::unique_ptr<Program> program;
-    BlockValues values;
+    BlockValues values{fault};
 };
 
 TEST_F(BlockReaderTest, WordsAreComputed) {
@@ -53,8 +53,8 @@ TEST_F(BlockReaderTest, WordsAreComputed) {
 
 TEST_F(BlockReaderTest, CodesStandInTheOrderOfExecution) {
     ASSERT_TRUE(read("M0 G1 X1 M3 F100 G21"));
-    EXPECT_EQ(numbers(), (std::vector<int>{0, 3, 210, 10, 0}));  // F, M3, G21, G1, M0
-    EXPECT_EQ(values.motion, find_code('g', 10));
+    EXPECT_EQ(codes(), (std::vector<GCode>{WORD_F, M(3), G(21), G(1), M(0)}));
+    EXPECT_EQ(values.motion, find_code(G(1)));
 }
 
 TEST_F(BlockReaderTest, TwoCodesOfOneGroupAreRefused) {
@@ -72,15 +72,15 @@ TEST_F(BlockReaderTest, UnknownCodesAreRefused) {
 TEST_F(BlockReaderTest, AxisWordsAloneMeanTheMotionInForce) {
     ASSERT_TRUE(read("X1"));
     EXPECT_FALSE(choose_motion(values, MOTION_NONE, remaps, fault));
-    ASSERT_TRUE(choose_motion(values, 10, remaps, fault));
+    ASSERT_TRUE(choose_motion(values, G(1), remaps, fault));
     EXPECT_TRUE(values.motion_implied);
-    EXPECT_EQ(numbers(), (std::vector<int>{10}));
+    EXPECT_EQ(codes(), (std::vector<GCode>{G(1)}));
 }
 
 TEST_F(BlockReaderTest, AxisWordsOfAnotherCodeAreNoMotion) {
     ASSERT_TRUE(read("G92 X1"));
-    ASSERT_TRUE(choose_motion(values, 10, remaps, fault));
-    EXPECT_EQ(numbers(), (std::vector<int>{920}));
+    ASSERT_TRUE(choose_motion(values, G(1), remaps, fault));
+    EXPECT_EQ(codes(), (std::vector<GCode>{G(92)}));
 }
 
 TEST_F(BlockReaderTest, WordsThatNoCodeUsesAndWordsThatAreMissingAreNamed) {

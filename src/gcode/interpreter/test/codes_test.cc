@@ -325,10 +325,7 @@ TEST(CodesTable, EveryCodeHasAGoodAndABadCase) {
         }
     }
     for (const detail::Code &code : detail::all_codes()) {
-        const int part = code.letter == 'g' ? code.number % 10 : 0;
-        const int whole = code.letter == 'g' ? code.number / 10 : code.number;
-        const std::string name =
-            code.letter + std::to_string(whole) + (part != 0 ? "." + std::to_string(part) : std::string());
+        const std::string name = code_name(code.id);
         EXPECT_TRUE(good.contains(name)) << name << " has no good case";
         EXPECT_TRUE(bad.contains(name)) << name << " has no bad case";
     }

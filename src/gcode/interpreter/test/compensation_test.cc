@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "gcode/interpreter/codes/comp/compensation.hh"
-#include "gcode/interpreter/test/code_parts.hh"
+#include "gcode/interpreter/test/code_rig.hh"
 
 namespace mw::gcode::detail {
 namespace {
@@ -13,7 +13,7 @@ namespace {
 /// Moves between points in the plane XY.
 class Path {
   public:
-    explicit Path(CompSide side, double radius) { comp.turn_on(side, 411, radius, 0); }
+    explicit Path(CompSide side, double radius) { comp.turn_on(side, G(41, 1), radius, 0); }
 
     bool line_to(double x, double y) { return go(x, y, false); }
     bool rapid_to(double x, double y) { return go(x, y, true); }
@@ -175,7 +175,7 @@ TEST(CompensationAlone, ALatheToolIsLedByItsControlledPoint) {
     // Orientation 2 in the plane of Z and X: the point lies at (-1, -1) radii from the nose's centre.
     constexpr int ORIENTATION = 2;
     Compensation comp;
-    comp.turn_on(CompSide::LEFT, 411, 0.5, ORIENTATION);
+    comp.turn_on(CompSide::LEFT, G(41, 1), 0.5, ORIENTATION);
     CanonQueue canon;
     Fault fault;
     const Pose from;

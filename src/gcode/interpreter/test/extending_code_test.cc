@@ -7,34 +7,35 @@
 #include <gtest/gtest.h>
 
 #include "gcode/interpreter/codes/block_reader.hh"
-#include "gcode/interpreter/codes/block_words.hh"
-#include "gcode/interpreter/test/code_parts.hh"
+#include "gcode/interpreter/codes/block_values.hh"
+#include "gcode/interpreter/test/code_rig.hh"
 
 namespace mw::gcode::detail {
 namespace {
 
 // clang-format off
 // begin of the function
-bool set_laser_power(const Code &, const BlockValues &values, State &, CanonQueue &canon, Fault &fault) {
+Effect set_laser_power(GCode, const BlockValues &values, State &, CodeParts &parts) {
     int head = 0;
-    if (!whole_word(values, 'p', head, fault)) {
+    if (!values.whole('p', head)) {
         return false;  // the fault has the reason
     }
     const double power = values.at('q');
     if (power < 0.0 || power > 1.0) {
-        return fault.set("The power Q of M90 must be 0 to 1", values.column_of('q'));
+        return values.fail("The power Q of M90 must be 0 to 1", 'q');
     }
-    canon.take(SetAnalogOutput{head, power, false});
+    parts.canon.take(SetAnalogOutput{head, power, false});
     return true;
 }
 // end of the function
 const Code LASER_POWER =
-    row('m', 90, Group::IO, Phase::IO, false, "pq", "pq", set_laser_power);
+    row(M(90), Group::IO, "pq", "pq", set_laser_power, "power of a laser head",
+        "p=number of the head|q=part of the full power, 0 to 1");
 // clang-format on
 
 /// A block with the code and these words, as after reading.
-BlockValues with_code(std::initializer_list<std::pair<char, double>> words) {
-    BlockValues values = test::block(words);
+BlockValues with_code(test::CodeRig &p, test::Words words) {
+    BlockValues values = p.block(words);
     values.codes.push_back({&LASER_POWER, 1});
     return values;
 }
@@ -46,26 +47,25 @@ std::string file_text(const std::string &path) {
 }
 
 TEST(ExtendingCodes, TheRowSaysWhichWordsTheCodeHasAndNeeds) {
-    Fault fault;
-    EXPECT_TRUE(check_words(with_code({{'p', 1}, {'q', 0.5}}), fault));
-    EXPECT_FALSE(check_words(with_code({{'p', 1}}), fault));
-    EXPECT_EQ(fault.message, "m90 needs the word Q");
-    EXPECT_FALSE(check_words(with_code({{'p', 1}, {'q', 0.5}, {'r', 1}}), fault));
-    EXPECT_EQ(fault.message, "R word with no g code that uses it");
+    test::CodeRig p;
+    EXPECT_TRUE(check_words(with_code(p, {{'p', 1}, {'q', 0.5}}), p.fault));
+    EXPECT_FALSE(check_words(with_code(p, {{'p', 1}}), p.fault));
+    EXPECT_EQ(p.fault.message, "m90 needs the word Q");
+    EXPECT_FALSE(check_words(with_code(p, {{'p', 1}, {'q', 0.5}, {'r', 1}}), p.fault));
+    EXPECT_EQ(p.fault.message, "R word with no g code that uses it");
 }
 
 TEST(ExtendingCodes, TheFunctionOfTheRowCallsTheCanonOrSaysWhyNot) {
-    test::CodeParts p;
-    const ModeHandler act = std::get<ModeHandler>(LASER_POWER.handler);
-    EXPECT_TRUE(act(LASER_POWER, with_code({{'p', 1}, {'q', 0.5}}), p.state, p.canon, p.fault));
+    test::CodeRig p;
+    EXPECT_TRUE(LASER_POWER.run(M(90), with_code(p, {{'p', 1}, {'q', 0.5}}), p.state, p.parts));
     EXPECT_EQ(p.calls().size(), 1U);
-    EXPECT_FALSE(act(LASER_POWER, with_code({{'p', 1}, {'q', 2}}), p.state, p.canon, p.fault));
+    EXPECT_FALSE(LASER_POWER.run(M(90), with_code(p, {{'p', 1}, {'q', 2}}), p.state, p.parts));
     EXPECT_EQ(p.fault.message, "The power Q of M90 must be 0 to 1");
     EXPECT_TRUE(p.canon.empty());
 }
 
 TEST(ExtendingCodes, TheNumberIsStillFree) {
-    EXPECT_EQ(find_code('m', 90), nullptr);
+    EXPECT_EQ(find_code(M(90)), nullptr);
 }
 
 TEST(ExtendingCodes, ThePageShowsWhatIsCompiledHere) {
@@ -76,7 +76,7 @@ TEST(ExtendingCodes, ThePageShowsWhatIsCompiledHere) {
     const std::string function = source.substr(from, source.find("// end of the function\n") - from);
     ASSERT_GT(function.size(), 200U);
     EXPECT_NE(page.find(function), std::string::npos);
-    const std::size_t row = source.find("    row('m', 90");
+    const std::size_t row = source.find("    row(M(90)");
     ASSERT_NE(row, std::string::npos);
     EXPECT_NE(page.find(source.substr(row, source.find(';', row) - row)), std::string::npos);
 }

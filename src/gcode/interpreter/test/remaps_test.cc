@@ -18,8 +18,8 @@ Remaps loaded() {
 }
 
 PendingBlock block_with(const Remap &remap, std::string_view letters, double first) {
-    PendingBlock block;
-    block.remap = &remap;
+    static Fault fault;
+    PendingBlock block{&remap, BlockValues(fault), 0, {}, 0, -1};
     block.line = 12;
     for (const char c : letters) {
         block.values.present |= bit_of(BlockValues::index(c));
@@ -30,14 +30,14 @@ PendingBlock block_with(const Remap &remap, std::string_view letters, double fir
 
 TEST(Remaps, FindsTheRowsOfItsLinesAndNoOthers) {
     const Remaps remaps = loaded();
-    const Code *const code = remaps.find('m', 400);
+    const Code *const code = remaps.find(M(400));
     ASSERT_NE(code, nullptr);
     EXPECT_EQ(code->remap, &remaps.all()[0]);
     EXPECT_EQ(code->remap->name, "M400");
-    EXPECT_NE(remaps.find('g', 881), nullptr);
-    EXPECT_EQ(remaps.find('g', 880), nullptr);
-    EXPECT_EQ(remaps.find('g', 400), nullptr);
-    EXPECT_EQ(remaps.find('m', 3), nullptr);
+    EXPECT_NE(remaps.find(G(88, 1)), nullptr);
+    EXPECT_EQ(remaps.find(G(88)), nullptr);
+    EXPECT_EQ(remaps.find(G(40)), nullptr);
+    EXPECT_EQ(remaps.find(M(3)), nullptr);
 }
 
 TEST(Remaps, RefusesTwoLinesForOneCodeAndTellsOfThoseWithoutEffect) {
@@ -51,24 +51,21 @@ TEST(Remaps, RefusesTwoLinesForOneCodeAndTellsOfThoseWithoutEffect) {
     ASSERT_TRUE(fixed.load(lines));
     ASSERT_EQ(fixed.refused().size(), 1u);
     EXPECT_NE(fixed.refused()[0].find("G1 has a meaning that cannot be changed"), std::string::npos);
-    EXPECT_EQ(fixed.find('g', 10), nullptr);
-    EXPECT_NE(fixed.find('m', 401), nullptr);
+    EXPECT_EQ(fixed.find(G(1)), nullptr);
+    EXPECT_NE(fixed.find(M(401)), nullptr);
 }
 
 TEST(Remaps, ACodeHasItsOwnMeaningInItsProcedure) {
     Remaps remaps = loaded();
-    const Remap &change = *remaps.find('m', 6)->remap;
+    const Remap &change = *remaps.find(M(6))->remap;
     remaps.begin(change, 1);
-    EXPECT_EQ(remaps.find('m', 6), nullptr);
-    EXPECT_NE(remaps.find('m', 400), nullptr) << "others keep the meaning that their lines give";
-    EXPECT_NE(remaps.recursion_text('m', 6), "");
-    EXPECT_EQ(remaps.recursion_text('m', 400), "");
-    Code m6;
-    m6.letter = 'm';
-    m6.number = 6;
-    remaps.begin(*remaps.find('m', 400)->remap, 2);
-    remaps.count_builtin(m6);
-    remaps.count_builtin(m6);
+    EXPECT_EQ(remaps.find(M(6)), nullptr);
+    EXPECT_NE(remaps.find(M(400)), nullptr) << "others keep the meaning that their lines give";
+    EXPECT_NE(remaps.recursion_text(M(6)), "");
+    EXPECT_EQ(remaps.recursion_text(M(400)), "");
+    remaps.begin(*remaps.find(M(400))->remap, 2);
+    remaps.count_builtin(M(6));
+    remaps.count_builtin(M(6));
     EXPECT_EQ(remaps.builtin_uses(1), 2);
     EXPECT_EQ(remaps.builtin_uses(2), 0);
     EXPECT_EQ(remaps.count_running(), 2);
@@ -82,8 +79,8 @@ TEST(Remaps, ProceduresEndWithTheirLevelsOfCall) {
     EXPECT_EQ(remaps.count_running(), 2);
     remaps.end_above(3);
     EXPECT_EQ(remaps.count_running(), 1);
-    EXPECT_NE(remaps.find('m', 6), nullptr);
-    EXPECT_EQ(remaps.find('m', 400), nullptr);
+    EXPECT_NE(remaps.find(M(6)), nullptr);
+    EXPECT_EQ(remaps.find(M(400)), nullptr);
     remaps.end_above(0);
     EXPECT_FALSE(remaps.isAnyRunning());
 }

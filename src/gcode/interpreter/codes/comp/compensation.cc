@@ -50,7 +50,7 @@ void Compensation::send_arc(Point to, Point centre, int rotation, const Pose &en
                        place[axes.normal], place});
 }
 
-void Compensation::turn_on(CompSide side, int code, double radius, int orientation) {
+void Compensation::turn_on(CompSide side, GCode code, double radius, int orientation) {
     side_ = side;
     code_ = code;
     radius_ = radius;
@@ -61,8 +61,13 @@ void Compensation::turn_on(CompSide side, int code, double radius, int orientati
 void Compensation::turn_off() {
     is_exit_ = isHolding();
     side_ = CompSide::OFF;
-    code_ = 400;
+    code_ = G(40);
     last_ = {};
+}
+
+void Compensation::end(CanonQueue &canon) {
+    canon.take(ProgramComment{"interpreter: cutter radius compensation off"});
+    turn_off();
 }
 
 Pose Compensation::compensated(const Pose &position, Plane plane) const {

@@ -8,6 +8,7 @@
 #include "gcode/canon/canon_queue.hh"
 #include "gcode/canon/plane_axes.hh"
 #include "gcode/interpreter/codes/comp/comp_corner.hh"
+#include "gcode/interpreter/gcode.hh"
 #include "gcode/syntax/fault.hh"
 
 namespace mw::gcode::detail {
@@ -24,10 +25,12 @@ struct CompPlace {
 /// A plain value: a copy can undo a block; the queue undoes changed calls.
 class Compensation {
   public:
-    /// G41 and G42; `code`: ten times the G code. [program units]
-    void turn_on(CompSide side, int code, double radius, int orientation);
-    /// G40. The next move must be straight if the tool is offset from the contour.
+    /// G41 and G42; [program units]
+    void turn_on(CompSide side, GCode code, double radius, int orientation);
+    /// The next move must be straight if the tool is offset from the contour.
     void turn_off();
+    /// G40: turn_off(), with a comment.
+    void end(CanonQueue &canon);
     /// The next move is treated as the first one.
     void forget_move() { last_ = {}; }
 
@@ -39,7 +42,7 @@ class Compensation {
     /// There was a move since it was switched on.
     bool hasMoved() const { return last_.set; }
     CompSide side() const { return side_; }
-    int code() const { return code_; }
+    GCode code() const { return code_; }
     double radius() const { return radius_; }
     int orientation() const { return orientation_; }
     /// Compensation has been switched off: the next move must be straight.
@@ -67,7 +70,7 @@ class Compensation {
     bool enter_by_arc(const CompPlace &place, const ArcPlan &arc, CompElement &next, Fault &fault) const;
 
     CompSide side_ = CompSide::OFF;
-    int code_ = 400;
+    GCode code_ = G(40);
     double radius_ = 0;  ///< [program units]
     int orientation_ = 0;
     CompElement last_;

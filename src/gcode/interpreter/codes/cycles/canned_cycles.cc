@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "gcode/interpreter/codes/cycles/canned_cycles.hh"
-
 #include <cctype>
 #include <cmath>
 
 #include <fmt/format.h>
 
 #include "gcode/canon/plane_axes.hh"
-#include "gcode/interpreter/codes/block_words.hh"
-#include "gcode/interpreter/codes/moves/targets.hh"
+#include "gcode/interpreter/codes/block_values.hh"
+#include "gcode/interpreter/codes/code_functions.hh"
+#include "gcode/interpreter/codes/moves/moves.hh"
 #include "gcode/interpreter/codes/step_count.hh"
 
 namespace mw::gcode::detail {
@@ -16,25 +15,25 @@ namespace {
 
 constexpr double MM_PER_INCH = 25.4;
 
-bool isCycle(int motion) {
-    return motion == 730 || motion == 740 || (motion >= 810 && motion <= 890);
+bool isCycle(GCode motion) {
+    return motion == G(73) || motion == G(74) || (motion >= G(81) && motion <= G(89));
 }
 
-bool needsDwell(int code) {
-    return code == 820 || code == 860 || code == 880 || code == 890;
+bool needsDwell(GCode code) {
+    return code == G(82) || code == G(86) || code == G(88) || code == G(89);
 }
 
-bool needsPeck(int code) {
-    return code == 730 || code == 830;
+bool needsPeck(GCode code) {
+    return code == G(73) || code == G(83);
 }
 
-bool needsSpindle(int code) {
-    return code == 740 || code == 840 || code == 860 || code == 870 || code == 880;
+bool needsSpindle(GCode code) {
+    return code == G(74) || code == G(84) || (code >= G(86) && code <= G(88));
 }
 
 /// Missing words keep the values of the previous cycle; the first cycle of its type needs all of them.
-bool take_cycle_words(const Code &code, const BlockValues &values, State &state, Fault &fault) {
-    const bool first = state.motion != code.number;
+bool take_cycle_words(GCode code, const BlockValues &values, State &state) {
+    const bool first = state.motion != code;
     const char depth = geometry::AXIS_LETTERS_LOWER[plane_axes(state.plane).normal];
     const std::string name = code_name(code);
     CycleWords &cycle = state.cycle;
@@ -47,93 +46,91 @@ bool take_cycle_words(const Code &code, const BlockValues &values, State &state,
     const Need needs[] = {
         {depth, true, "the depth", cycle.bottom},
         {'r', true, "R, the clearance plane,", cycle.r},
-        {'p', needsDwell(code.number), "P, the dwell time,", cycle.p},
-        {'q', needsPeck(code.number), "Q, the peck depth,", cycle.q},
-        {'i', code.number == 870, "I", cycle.i},
-        {'j', code.number == 870, "J", cycle.j},
-        {'k', code.number == 870, "K", cycle.k},
+        {'p', needsDwell(code), "P, the dwell time,", cycle.p},
+        {'q', needsPeck(code), "Q, the peck depth,", cycle.q},
+        {'i', code == G(87), "I", cycle.i},
+        {'j', code == G(87), "J", cycle.j},
+        {'k', code == G(87), "K", cycle.k},
     };
     for (const Need &need : needs) {
         if (values.has(need.word)) {
             const bool halved = need.word == 'x' && state.isDiameter;
             need.value = values.at(need.word) * (halved ? 0.5 : 1.0);
         } else if (first && need.needed) {
-            return fault.set(fmt::format("{} needs {}{}", name, need.text,
-                                         need.word == depth
-                                             ? fmt::format(" {}", static_cast<char>(std::toupper(depth)))
-                                             : std::string()));
+            return values.fail(fmt::format("{} needs {}{}", name, need.text,
+                                           need.word == depth
+                                               ? fmt::format(" {}", static_cast<char>(std::toupper(depth)))
+                                               : std::string()));
         }
     }
-    cycle.has_clearance = needsPeck(code.number) && (values.has('p') || (cycle.has_clearance && !first));
-    if (needsPeck(code.number) && cycle.q <= 0.0) {
-        return fault.set(fmt::format("The peck depth Q of {} must be above 0", name), values.column_of('q'));
+    cycle.has_clearance = needsPeck(code) && (values.has('p') || (cycle.has_clearance && !first));
+    if (needsPeck(code) && cycle.q <= 0.0) {
+        return values.fail(fmt::format("The peck depth Q of {} must be above 0", name), 'q');
     }
     if (cycle.p < 0.0) {
-        return fault.set(needsPeck(code.number) ? "The peck clearance P must not be negative"
-                                                : "The dwell time P must not be negative",
-                         values.column_of('p'));
+        return values.fail(needsPeck(code) ? "The peck clearance P must not be negative"
+                                           : "The dwell time P must not be negative",
+                           'p');
     }
     return true;
 }
 
-bool check_cycle(const Code &code, const BlockValues &values, const Machine &machine, State &state,
-                 int &repeats, Fault &fault) {
+bool check_cycle(GCode code, const BlockValues &values, State &state, const CodeParts &parts, int &repeats) {
     static constexpr char OTHER_AXES[] = "abcuvw";
     for (const char c : std::string_view(OTHER_AXES)) {
         if (values.has(c)) {
-            return fault.set(fmt::format("Cannot put an {} in canned cycle", c), values.column_of(c));
+            return values.fail(fmt::format("Cannot put an {} in canned cycle", c), c);
         }
     }
     if (plane_axes(state.plane).normal > geometry::AXIS_Z) {
-        return fault.set("Canned cycles need one of the planes G17, G18 or G19");
+        return values.fail("Canned cycles need one of the planes G17, G18 or G19");
     }
     if (state.feed_mode == FeedMode::INVERSE_TIME) {
-        return fault.set("Cannot use inverse time feed with canned cycles");
+        return values.fail("Cannot use inverse time feed with canned cycles");
     }
     if (state.comp.isOn()) {
-        return fault.set("Cannot use canned cycles with cutter radius compensation on");
+        return values.fail("Cannot use canned cycles with cutter radius compensation on");
     }
     if (state.feed == 0.0) {
-        return fault.set(fmt::format("Cannot do {} with zero feed rate", code_name(code)));
+        return values.fail(fmt::format("Cannot do {} with zero feed rate", code_name(code)));
     }
-    if (!check_feed_per_revolution(state, fault)) {
+    if (!check_feed_per_revolution(values, state)) {
         return false;
     }
     repeats = 1;
     if (values.has('l')) {
-        if (!whole_word(values, 'l', repeats, fault)) {
+        if (!values.whole('l', repeats)) {
             return false;
         }
         if (repeats < 1) {
-            return fault.set("The number of repeats L of a canned cycle must be at least 1",
-                             values.column_of('l'));
+            return values.fail("The number of repeats L of a canned cycle must be at least 1", 'l');
         }
     }
     if (values.has('$')) {
         int chosen = 0;
-        if (!spindle_of(values, machine.count_spindles(), chosen, fault)) {
+        if (!values.spindle(parts.count_spindles(), chosen)) {
             return false;
         }
         if (chosen < 0) {
-            return fault.set(fmt::format("{} is for one spindle: $ must not be negative", code_name(code)),
-                             values.column_of('$'));
+            return values.fail(fmt::format("{} is for one spindle: $ must not be negative", code_name(code)),
+                               '$');
         }
         state.active_spindle = chosen;
     }
     const SpindleState &spindle = state.spindles[static_cast<std::size_t>(state.active_spindle)];
-    if (needsSpindle(code.number) && spindle.direction == 0) {
-        return fault.set(fmt::format("Spindle not turning in {}", code_name(code)));
+    if (needsSpindle(code) && spindle.direction == 0) {
+        return values.fail(fmt::format("Spindle not turning in {}", code_name(code)));
     }
-    if ((code.number == 840 && spindle.direction < 0) || (code.number == 740 && spindle.direction > 0)) {
-        return fault.set(fmt::format("The spindle turns the wrong way for {}: {} first", code_name(code),
-                                     code.number == 840 ? "M3" : "M4"));
+    if ((code == G(84) && spindle.direction < 0) || (code == G(74) && spindle.direction > 0)) {
+        return values.fail(fmt::format("The spindle turns the wrong way for {}: {} first", code_name(code),
+                                       code == G(84) ? "M3" : "M4"));
     }
     return true;
 }
 
 /// One cycle with absolute heights, program coordinates along the plane's normal.
 struct CyclePlan {
-    int code = 0;
+    GCode code{};
     double r = 0, bottom = 0, clear = 0;
 };
 
@@ -179,11 +176,11 @@ void CycleMoves::run_cycle(const CyclePlan &plan) {
     const int normal = plane_axes(state.plane).normal;
     const int direction = state.spindles[static_cast<std::size_t>(state.active_spindle)].direction;
     switch (plan.code) {
-    case 730:
-    case 830: run_peck(plan); return;
-    case 740:
-    case 840: run_tap(plan, direction); return;
-    case 870: run_back_bore(plan, direction); return;
+    case G(73):
+    case G(83): run_peck(plan); return;
+    case G(74):
+    case G(84): run_tap(plan, direction); return;
+    case G(87): run_back_bore(plan, direction); return;
     default: break;
     }
     cycle_move(false, normal, plan.bottom);
@@ -191,22 +188,22 @@ void CycleMoves::run_cycle(const CyclePlan &plan) {
         canon.take(Dwell{state.cycle.p});
     }
     switch (plan.code) {
-    case 850:
+    case G(85):
         cycle_move(false, normal, plan.r);
         cycle_move(true, normal, plan.clear);
         break;
-    case 860:
+    case G(86):
         canon.take(StopSpindle{state.active_spindle});
         cycle_move(true, normal, plan.clear);
         start_spindle(direction);
         break;
-    case 880:  // the operator retracts by hand to the clear height
+    case G(88):  // the operator retracts by hand to the clear height
         canon.take(StopSpindle{state.active_spindle});
         canon.take(ProgramStop{});
         start_spindle(direction);
         state.position[normal] = plan.clear;
         break;
-    case 890: cycle_move(false, normal, plan.clear); break;
+    case G(89): cycle_move(false, normal, plan.clear); break;
     default: cycle_move(true, normal, plan.clear); break;
     }
 }
@@ -214,7 +211,7 @@ void CycleMoves::run_cycle(const CyclePlan &plan) {
 /// G73 breaks chips, G83 retracts to R each time.
 void CycleMoves::run_peck(const CyclePlan &plan) {
     const int normal = plane_axes(state.plane).normal;
-    const bool deep = plan.code == 830;
+    const bool deep = plan.code == G(83);
     const double clearance_mm =
         deep ? settings.parameter_g83_peck_clearance_mm : settings.parameter_g73_peck_clearance_mm;
     const double configured = clearance_mm / (state.units == LengthUnits::MM ? 1.0 : MM_PER_INCH);
@@ -312,14 +309,12 @@ void CycleMoves::run_back_bore(const CyclePlan &plan, int direction) {
 
 }  // namespace
 
-bool run_canned_cycle(const Code &code, const BlockValues &values, const Machine &machine, State &state,
-                      CanonQueue &canon, Fault &fault) {
+Effect run_canned_cycle(GCode code, const BlockValues &values, State &state, CodeParts &parts) {
     int repeats = 1;
     if (!values.hasAxes() && values.motion_implied) {
         return true;
     }
-    if (!check_cycle(code, values, machine, state, repeats, fault) ||
-        !take_cycle_words(code, values, state, fault)) {
+    if (!check_cycle(code, values, state, parts, repeats) || !take_cycle_words(code, values, state)) {
         return false;
     }
     const PlaneAxes axes = plane_axes(state.plane);
@@ -327,27 +322,26 @@ bool run_canned_cycle(const Code &code, const BlockValues &values, const Machine
     if (!isCycle(state.motion) || !state.cycle.running) {
         state.cycle.initial = state.position[axes.normal];
     }
-    CycleMoves moves{machine.settings, state, canon};
+    CycleMoves moves{parts.settings, state, parts.canon};
     CyclePlan plan;
-    plan.code = code.number;
+    plan.code = code;
     // Incremental R is relative to the start of the sequence of cycles, so that all holes are equal.
     plan.r = state.cycle.r + (state.incremental ? state.cycle.initial : 0.0);
     plan.bottom = state.cycle.bottom + (state.incremental ? plan.r : 0.0);
     if (plan.r < plan.bottom) {
-        return fault.set(fmt::format("R value less than {} value in cycle", normal_name),
-                         values.column_of('r'));
+        return values.fail(fmt::format("R value less than {} value in cycle", normal_name), 'r');
     }
     constexpr double MOST_MOVES = 1e6;  // probably a typing error
-    const double pecks = needsPeck(code.number) ? count_pecks(plan, state.cycle.q) : 1.0;
+    const double pecks = needsPeck(code) ? count_pecks(plan, state.cycle.q) : 1.0;
     if (pecks * repeats > MOST_MOVES) {
-        return fault.set(
+        return values.fail(
             "This canned cycle would make more than a million moves: is L too large or Q too small?",
-            values.column_of(pecks > repeats ? 'q' : 'l'));
+            pecks > repeats ? 'q' : 'l');
     }
-    state.motion = code.number;
+    state.motion = code;
     state.cycle.running = true;
     Pose goal = target(values, state);
-    if (!polar_target(values, state, goal, fault)) {
+    if (!polar_target(values, state, goal)) {
         return false;
     }
     const geometry::PathMode control = state.control;
@@ -357,13 +351,13 @@ bool run_canned_cycle(const Code &code, const BlockValues &values, const Machine
         moves.cycle_move(true, axes.normal, plan.r);
     }
     if (control != geometry::PathMode::EXACT_PATH) {
-        canon.take(SetMotionControlMode{geometry::PathMode::EXACT_PATH, 0.0});
+        parts.canon.take(SetMotionControlMode{geometry::PathMode::EXACT_PATH, 0.0});
     }
     for (int i = 0; i < repeats; ++i) {
         plan.clear = state.retract_to_r ? plan.r : std::fmax(state.cycle.initial, plan.r);
         if (state.incremental && i > 0) {  // each repeat continues from the last hole, also with polar words
             goal = target(values, state);
-            if (!polar_target(values, state, goal, fault)) {
+            if (!polar_target(values, state, goal)) {
                 return false;
             }
         }
@@ -371,7 +365,7 @@ bool run_canned_cycle(const Code &code, const BlockValues &values, const Machine
         over[axes.first] = goal[axes.first];
         over[axes.second] = goal[axes.second];
         over[axes.normal] = std::fmax(state.position[axes.normal], plan.clear);
-        canon.take(StraightTraverse{over});
+        parts.canon.take(StraightTraverse{over});
         state.position = over;
         if (over[axes.normal] != plan.r) {
             moves.cycle_move(true, axes.normal, plan.r);
@@ -379,9 +373,9 @@ bool run_canned_cycle(const Code &code, const BlockValues &values, const Machine
         moves.run_cycle(plan);
     }
     if (control != geometry::PathMode::EXACT_PATH) {
-        canon.take(
+        parts.canon.take(
             SetMotionControlMode{control, control == geometry::PathMode::BLEND ? state.tolerance : 0.0});
-        canon.take(SetNaivecamTolerance{state.naivecam});
+        parts.canon.take(SetNaivecamTolerance{state.naivecam});
     }
     return true;
 }

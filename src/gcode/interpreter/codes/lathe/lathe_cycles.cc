@@ -7,10 +7,9 @@
 
 #include <fmt/format.h>
 
-#include "gcode/interpreter/codes/block_words.hh"
+#include "gcode/interpreter/codes/block_values.hh"
 #include "gcode/interpreter/codes/lathe/lathe_offset.hh"
-#include "gcode/interpreter/codes/moves/arcs.hh"
-#include "gcode/interpreter/codes/moves/targets.hh"
+#include "gcode/interpreter/codes/moves/moves.hh"
 
 namespace mw::gcode::detail {
 namespace {
@@ -32,8 +31,8 @@ struct FramedProfile {
 /// undecided, the text after "The profile of Gxx ".
 std::expected<bool, std::string> choose_facing(const LatheRequest &request, std::optional<bool> roughed,
                                                double tolerance) {
-    if (request.code != 700) {
-        return request.code >= 720;
+    if (request.code != G(70)) {
+        return request.code >= G(72);
     }
     const CutFrame turned = frame_of(request.profile, false), faced = frame_of(request.profile, true);
     const bool turnable = isMonotonic(in_frame(request.profile, turned), tolerance);
@@ -168,19 +167,17 @@ bool send_profile_move(const ProfileMove &move, const CutFrame &frame, State &st
 
 }  // namespace
 
-bool begin_lathe_cycle(const Code &code, const BlockValues &values, const Machine &, LatheCycles &lathe,
-                       State &state, CanonQueue &, Fault &fault, Outcome &outcome) {
+Effect begin_lathe_cycle(GCode code, const BlockValues &values, State &state, CodeParts &parts) {
     const std::string name = code_name(code);
     static constexpr std::string_view OTHER_AXES = "yabcuvw";
     for (const char c : OTHER_AXES) {
         if (values.has(c)) {
-            return fault.set(fmt::format("{} takes no axis words but X and Z", name), values.column_of(c));
+            return values.fail(fmt::format("{} takes no axis words but X and Z", name), c);
         }
     }
     LatheRequest request;
-    request.code = code.number;
-    if (!whole_word(values, 'q', request.label, fault) ||
-        (values.has('p') && !whole_word(values, 'p', request.passes, fault))) {
+    request.code = code;
+    if (!values.whole('q', request.label) || (values.has('p') && !values.whole('p', request.passes))) {
         return false;
     }
     request.distance = values.at('d', 0.0);
@@ -188,7 +185,7 @@ bool begin_lathe_cycle(const Code &code, const BlockValues &values, const Machin
     request.roughing.increment = values.at('i', request.roughing.increment);
     request.roughing.retract = values.at('r', request.roughing.retract);
     request.roughing.is_visiting_starts = request.distance != 0.0;
-    request.roughing.pockets = static_cast<RoughingPlan::Pockets>(code.number % 10);
+    request.roughing.pockets = static_cast<RoughingPlan::Pockets>(number_of(code) % 10);
     constexpr int MAX_PASSES = 10000;
     struct Check {
         bool bad;
@@ -197,7 +194,7 @@ bool begin_lathe_cycle(const Code &code, const BlockValues &values, const Machin
     };
     const Check checks[] = {
         {state.plane != Plane::XZ, 'q', "needs the plane G18"},
-        {state.comp.isOn() && code.number != 700, 'q', "cannot be used with cutter radius compensation on"},
+        {state.comp.isOn() && code != G(70), 'q', "cannot be used with cutter radius compensation on"},
         {values.has('@') || values.has('^'), 'q', "takes no polar words"},
         {state.feed_mode == FeedMode::INVERSE_TIME, 'q', "cannot be used with inverse time feed"},
         {state.feed == 0.0, 'q', "needs a feed: give F first"},
@@ -208,29 +205,27 @@ bool begin_lathe_cycle(const Code &code, const BlockValues &values, const Machin
     };
     for (const Check &check : checks) {
         if (check.bad) {
-            return fault.set(fmt::format("{} {}", name, check.text), values.column_of(check.word));
+            return values.fail(fmt::format("{} {}", name, check.text), check.word);
         }
     }
-    if (!check_feed_per_revolution(state, fault)) {
+    if (!check_feed_per_revolution(values, state)) {
         return false;
     }
     request.start = request.position = target(values, state);
-    lathe.open(std::move(request));
-    outcome = Outcome::PROFILE;
-    return true;
+    parts.lathe.open(std::move(request));
+    return Outcome::PROFILE;
 }
 
 /// Records the move of a block of the profile's subroutine, if it has one.
-bool LatheCycles::record(const BlockValues &values, const Settings &settings, const State &state,
-                         Fault &fault) {
+bool LatheCycles::record(const BlockValues &values, const Settings &settings, const State &state) {
     LatheRequest &request = *request_;
-    const auto isMove = [](int motion) {
-        return motion == 0 || motion == 10 || motion == 20 || motion == 30;
+    const auto isMove = [](GCode motion) {
+        return motion == G(0) || motion == G(1) || motion == G(2) || motion == G(3);
     };
     for (const ActiveCode &active : values.codes) {
         const bool is_motion = active.code->group == Group::MOTION;
-        if (is_motion && isMove(active.code->number)) {
-            request.motion = active.code->number;
+        if (is_motion && isMove(active.code->id)) {
+            request.motion = active.code->id;
         } else if (active.code->usesAxes) {
             return true;  // the axis words do not belong to a move
         }
@@ -258,20 +253,20 @@ bool LatheCycles::record(const BlockValues &values, const Settings &settings, co
     line.end = {end[Z], end[X]};
     const bool first = request.profile.empty();
     const bool moving = from[X] != end[X] || from[Z] != end[Z];
-    if (request.motion >= 20) {
+    if (request.motion >= G(2)) {
         if (first) {  // the contour begins at the start of the cycle
             line.end = line.start;
             request.profile.push_back(line);
         }
-        done = record_arc(values, settings, state, from, end, fault);
+        done = record_arc(values, settings, state, from, end);
     } else if (first || moving) {  // the first move goes to the contour, at any distance
         request.profile.push_back(line);
     }
-    return done && take_corner_word(values, fault);
+    return done && take_corner_word(values);
 }
 
 bool LatheCycles::record_arc(const BlockValues &values, const Settings &settings, const State &state,
-                             const Pose &from, const Pose &end, Fault &fault) {
+                             const Pose &from, const Pose &end) {
     State begin = state;
     begin.position = from;
     BlockValues words = values;
@@ -283,7 +278,7 @@ bool LatheCycles::record_arc(const BlockValues &values, const Settings &settings
             axis == X && state.isDiameter ? 2.0 * relative : relative;
     }
     ArcPlan arc;
-    if (!plan_arc(request_->motion == 30, words, settings, begin, arc, fault)) {
+    if (!plan_arc(request_->motion == G(3), words, settings, begin, arc)) {
         return false;
     }
     ProfileSegment segment;
@@ -297,18 +292,16 @@ bool LatheCycles::record_arc(const BlockValues &values, const Settings &settings
 }
 
 /// A: a fillet at the end of this move; C: a chamfer.
-bool LatheCycles::take_corner_word(const BlockValues &values, Fault &fault) {
+bool LatheCycles::take_corner_word(const BlockValues &values) {
     if (!values.has('a') && !values.has('c')) {
         return true;
     }
     const char name = values.has('a') ? 'a' : 'c';
     if (values.has('a') && values.has('c')) {
-        return fault.set("A corner of the profile has either a fillet A or a chamfer C",
-                         values.column_of('c'));
+        return values.fail("A corner of the profile has either a fillet A or a chamfer C", 'c');
     }
     if (values.at(name) < 0.0) {
-        return fault.set("The fillet A or chamfer C of a profile must not be negative",
-                         values.column_of(name));
+        return values.fail("The fillet A or chamfer C of a profile must not be negative", name);
     }
     if (!request_->profile.empty()) {
         request_->profile.back().fillet = values.at(name);
@@ -324,9 +317,9 @@ bool LatheCycles::finish(State &state, CanonQueue &canon, Fault &fault) {
 }
 
 bool LatheCycles::cut(const LatheRequest &request, State &state, CanonQueue &canon, Fault &fault) {
-    const std::string name = code_name(*find_code('g', request.code));
-    const bool finishing = request.code == 700;
-    state.motion = 10;
+    const std::string name = code_name(request.code);
+    const bool finishing = request.code == G(70);
+    state.motion = G(1);
     state.cycle.running = false;
     state.comp.set_exit(false);
     const auto rapid = [](Point to) { return ProfileMove{true, false, to, {}, 1, -1}; };

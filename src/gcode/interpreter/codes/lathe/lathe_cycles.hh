@@ -6,9 +6,8 @@
 #include <optional>
 
 #include "gcode/interpreter/codes/block_values.hh"
+#include "gcode/interpreter/codes/code_parts.hh"
 #include "gcode/interpreter/codes/lathe/lathe_layers.hh"
-#include "gcode/interpreter/codes/machine.hh"
-#include "gcode/interpreter/codes/outcome.hh"
 #include "gcode/interpreter/codes/state.hh"
 #include "gcode/syntax/fault.hh"
 
@@ -21,7 +20,7 @@ class LatheCycles {
     void open(LatheRequest request) { request_ = std::move(request); }
     const LatheRequest *request() const { return request_ ? &*request_ : nullptr; }
     /// Records the move of a block of the profile's subroutine, if it has one. False after setting the fault.
-    bool record(const BlockValues &values, const Settings &settings, const State &state, Fault &fault);
+    bool record(const BlockValues &values, const Settings &settings, const State &state);
     /// The profile is complete: cuts it. False after setting the fault.
     bool finish(State &state, CanonQueue &canon, Fault &fault);
     /// Discards the profile.
@@ -36,16 +35,12 @@ class LatheCycles {
         bool isFacing = false;
     };
     bool record_arc(const BlockValues &values, const Settings &settings, const State &state, const Pose &from,
-                    const Pose &end, Fault &fault);
-    bool take_corner_word(const BlockValues &values, Fault &fault);
+                    const Pose &end);
+    bool take_corner_word(const BlockValues &values);
     bool cut(const LatheRequest &request, State &state, CanonQueue &canon, Fault &fault);
 
     std::optional<LatheRequest> request_;
     std::optional<Roughed> roughed_;
 };
-
-/// G70 to G72.2: the following blocks are the profile. False after setting the fault.
-bool begin_lathe_cycle(const Code &code, const BlockValues &values, const Machine &machine,
-                       LatheCycles &lathe, State &state, CanonQueue &canon, Fault &fault, Outcome &outcome);
 
 }  // namespace mw::gcode::detail

@@ -29,13 +29,13 @@ struct RoughingPlan {
 
 /// A cycle whose profile is being read from its subroutine.
 struct LatheRequest {
-    int code = 0;   ///< ten times the G code
+    GCode code{};
     int label = 0;  ///< Q: the subroutine
     Pose start;     ///< start of the cycle
     RoughingPlan roughing;
     double distance = 0, end_distance = 0;  ///< D, and E of G70
     int passes = 1;                         ///< P of G70
-    int motion = 10;                        ///< G code of the profile's moves: G1 when it has none
+    GCode motion = G(1);                    ///< of the profile's moves
     Pose position;                          ///< end of the profile so far
     Profile profile;                        ///< x along Z, y along X
 };

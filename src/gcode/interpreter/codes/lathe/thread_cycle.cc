@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "gcode/interpreter/codes/lathe/thread_cycle.hh"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "gcode/interpreter/codes/block_words.hh"
-#include "gcode/interpreter/codes/moves/spindle_moves.hh"
-#include "gcode/interpreter/codes/moves/targets.hh"
+#include "gcode/interpreter/codes/block_values.hh"
+#include "gcode/interpreter/codes/code_functions.hh"
+#include "gcode/interpreter/codes/moves/moves.hh"
 #include "gcode/interpreter/codes/step_count.hh"
 
 namespace mw::gcode::detail {
@@ -28,13 +26,13 @@ struct ThreadPlan {
     bool has_entry_taper = false, has_exit_taper = false;
 };
 
-bool check_thread_cycle(const BlockValues &values, const Machine &machine, const State &state,
-                        ThreadPlan &plan, Fault &fault) {
+bool check_thread_cycle(const BlockValues &values, const State &state, const CodeParts &parts,
+                        ThreadPlan &plan) {
     int taper = 0;
     plan.springs = 0;
-    if (!spindle_of(values, machine.count_spindles(), plan.spindle, fault) ||
-        (values.has('h') && !whole_word(values, 'h', plan.springs, fault)) ||
-        (values.has('l') && !whole_word(values, 'l', taper, fault))) {
+    if (!values.spindle(parts.count_spindles(), plan.spindle) ||
+        (values.has('h') && !values.whole('h', plan.springs)) ||
+        (values.has('l') && !values.whole('l', taper))) {
         return false;
     }
     plan.spindle = std::max(plan.spindle, 0);
@@ -75,10 +73,10 @@ bool check_thread_cycle(const BlockValues &values, const Machine &machine, const
     };
     for (const Check &check : checks) {
         if (check.bad) {
-            return fault.set(check.text, values.column_of(check.word));
+            return values.fail(check.text, check.word);
         }
     }
-    return check_pitch(machine, state, fault, plan.spindle, plan.pitch, values.column_of('p'));
+    return check_pitch(values, parts, state, plan.spindle, plan.pitch, 'p');
 }
 
 /// Number of passes without spring passes: the first n whose depth J * n^(1/R) reaches K, so n = (K / J)^R
@@ -134,13 +132,12 @@ void thread_pass(const ThreadPlan &plan, double depth, State &state, CanonQueue 
 
 }  // namespace
 
-bool cut_thread(const Code &code, const BlockValues &values, const Machine &machine, State &state,
-                CanonQueue &canon, Fault &fault) {
+Effect cut_thread(GCode code, const BlockValues &values, State &state, CodeParts &parts) {
     ThreadPlan plan;
     if (!values.has('z')) {
-        return fault.set("G76 needs the word Z, the end of the thread");
+        return values.fail("G76 needs the word Z, the end of the thread");
     }
-    if (!check_thread_cycle(values, machine, state, plan, fault)) {
+    if (!check_thread_cycle(values, state, parts, plan)) {
         return false;
     }
     const Pose start = state.position;
@@ -155,25 +152,24 @@ bool cut_thread(const Code &code, const BlockValues &values, const Machine &mach
     plan.along = plan.end_z < plan.start_z ? -1.0 : 1.0;
     const int tapers = (plan.has_entry_taper ? 1 : 0) + (plan.has_exit_taper ? 1 : 0);
     if (tapers * plan.taper_length > std::fabs(plan.end_z - plan.start_z)) {
-        return fault.set("The tapers of G76 are longer than the thread", values.column_of('e'));
+        return values.fail("The tapers of G76 are longer than the thread", 'e');
     }
     const double passes = count_passes(plan);
     if (!(passes <= MAX_PASSES)) {
-        return fault.set("G76 would need more than 10000 passes: the first cut J is too small",
-                         values.column_of('j'));
+        return values.fail("G76 would need more than 10000 passes: the first cut J is too small", 'j');
     }
-    state.motion = code.number;
+    state.motion = code;
     state.cycle.running = false;
     state.comp.set_exit(false);
     for (int pass = 1; pass < static_cast<int>(passes); ++pass) {
-        thread_pass(plan, plan.first_cut * std::pow(pass, 1.0 / plan.degression), state, canon);
+        thread_pass(plan, plan.first_cut * std::pow(pass, 1.0 / plan.degression), state, parts.canon);
     }
     for (int pass = 0; pass <= plan.springs; ++pass) {
-        thread_pass(plan, plan.full_depth, state, canon);
+        thread_pass(plan, plan.full_depth, state, parts.canon);
     }
     state.position = start;
     state.position[geometry::AXIS_Z] = plan.end_z;
-    canon.take(StraightTraverse{state.position});
+    parts.canon.take(StraightTraverse{state.position});
     return true;
 }
 

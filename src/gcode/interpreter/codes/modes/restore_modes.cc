@@ -1,33 +1,27 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "gcode/interpreter/codes/modes/restore_modes.hh"
 
-#include "gcode/interpreter/codes/comp/comp_codes.hh"
-#include "gcode/interpreter/codes/kept_parameters.hh"
-#include "gcode/interpreter/codes/modes/modes.hh"
-#include "gcode/interpreter/codes/switches/switches.hh"
+#include "gcode/interpreter/codes/active_codes.hh"
+#include "gcode/interpreter/codes/code_functions.hh"
+#include "gcode/interpreter/codes/comp/compensation.hh"
+#include "gcode/interpreter/codes/saved_modes.hh"
 #include "gcode/interpreter/codes/tools/offsets.hh"
 #include "gcode/interpreter/codes/tools/tools.hh"
 
 namespace mw::gcode::detail {
 namespace {
 
-/// Codes that change the current modes to the saved ones.
+/// Changes the current modes to the saved ones.
 struct Restoring {
-    const Machine &machine;
-    Parameters &parameters;
     State &state;
-    CanonQueue &canon;
+    CodeParts &parts;
     Fault &fault;
+    CanonQueue &canon = parts.canon;
 
-    bool run(ModeHandler act, char letter_char, int number, const BlockValues &values) {
-        return act(*find_code(letter_char, number), values, state, canon, fault);
+    bool run(GCode code, const BlockValues &values) {
+        return find_code(code)->run(code, values, state, parts).done;
     }
-    bool run(MachineHandler act, char letter_char, int number, const BlockValues &values) {
-        return act(*find_code(letter_char, number), values, machine, state, canon, fault);
-    }
-    bool run(OffsetHandler act, char letter_char, int number, const BlockValues &values) {
-        return act(*find_code(letter_char, number), values, machine, parameters, state, canon, fault);
-    }
+    bool run(GCode code) { return run(code, BlockValues(fault)); }
     bool restore_geometry(const State &saved);
     bool restore_spindles(const State &saved);
     void restore_overrides(const State &saved);
@@ -37,16 +31,15 @@ struct Restoring {
 /// Restores modes of motion and geometry, in the order of execution.
 bool Restoring::restore_geometry(const State &saved) {
     bool done = true;
-    const BlockValues none;
     if (saved.plane != state.plane) {
         state.plane = saved.plane;
         canon.take(SelectPlane{state.plane});
     }
     if (saved.isDiameter != state.isDiameter) {
-        done = run(set_diameter_mode, 'g', saved.isDiameter ? 70 : 80, none);
+        done = run(saved.isDiameter ? G(7) : G(8));
     }
     if (!saved.comp.isOn() && state.comp.isOn()) {
-        end_compensation(state, canon);
+        state.comp.end(canon);
     }
     const double length_factor =
         saved.units == state.units ? 1.0 : (state.units == LengthUnits::MM ? 25.4 : 1 / 25.4);
@@ -56,28 +49,25 @@ bool Restoring::restore_geometry(const State &saved) {
     }
     state.tool.offset_code = saved.tool.offset_code;
     if (saved.g5x_index != state.g5x_index) {
-        done = done && run(use_coordinates, 'g', coordinate_system_code(saved.g5x_index), none);
+        done = done && run(coordinate_system_code(saved.g5x_index));
     }
-    BlockValues control;
+    BlockValues control(fault);
     if (saved.control == geometry::PathMode::BLEND) {
         control.present = letters("pq");
         control.value[letter('p')] = saved.tolerance;
         control.value[letter('q')] = saved.naivecam;
     }
-    const int control_code = saved.control == geometry::PathMode::BLEND        ? 640
-                             : saved.control == geometry::PathMode::EXACT_PATH ? 610
-                                                                               : 611;
-    done = done && run(set_path_control, 'g', control_code, control);
-    done = done && run(set_distance_mode, 'g', saved.incremental ? 910 : 900, none);
-    done = done && run(set_centre_distance_mode, 'g', saved.centre_absolute ? 901 : 911, none);
+    done = done && run(path_control_code(saved.control), control);
+    done = done && run(saved.incremental ? G(91) : G(90));
+    done = done && run(saved.centre_absolute ? G(90, 1) : G(91, 1));
     if (saved.retract_to_r != state.retract_to_r) {
-        done = done && run(set_retract_mode, 'g', saved.retract_to_r ? 990 : 980, none);
+        done = done && run(saved.retract_to_r ? G(99) : G(98));
     }
     return done;
 }
 
 bool Restoring::restore_spindles(const State &saved) {
-    for (int i = 0; i < machine.count_spindles(); ++i) {
+    for (int i = 0; i < parts.count_spindles(); ++i) {
         const SpindleState &want = saved.spindles[static_cast<std::size_t>(i)];
         SpindleState &have = state.spindles[static_cast<std::size_t>(i)];
         if (want.is_constant_surface != have.is_constant_surface || want.css_max_rpm != have.css_max_rpm) {
@@ -87,13 +77,10 @@ bool Restoring::restore_spindles(const State &saved) {
         }
     }
     if (saved.feed_mode != state.feed_mode) {
-        const int code = saved.feed_mode == FeedMode::INVERSE_TIME       ? 930
-                         : saved.feed_mode == FeedMode::UNITS_PER_MINUTE ? 940
-                                                                         : 950;
-        BlockValues chosen;
+        BlockValues chosen(fault);
         chosen.present = letters("$");
         chosen.value[LETTER_DOLLAR] = saved.active_spindle;
-        if (!run(set_feed_mode, 'g', code, chosen)) {
+        if (!run(feed_mode_code(saved.feed_mode), chosen)) {
             return false;
         }
     }
@@ -103,7 +90,7 @@ bool Restoring::restore_spindles(const State &saved) {
     if (state.feed_mode != FeedMode::INVERSE_TIME) {  // in inverse time mode each move has its own rate
         canon.take(SetFeedRate{state.feed_in_units()});
     }
-    for (int i = 0; i < machine.count_spindles(); ++i) {
+    for (int i = 0; i < parts.count_spindles(); ++i) {
         const SpindleState &want = saved.spindles[static_cast<std::size_t>(i)];
         SpindleState &have = state.spindles[static_cast<std::size_t>(i)];
         have.speed = want.speed;
@@ -124,7 +111,7 @@ void Restoring::restore_overrides(const State &saved) {
     if (saved.is_feed_override != state.is_feed_override) {
         canon.take(SwitchFeedOverride{saved.is_feed_override});
     }
-    for (int i = 0; i < machine.count_spindles(); ++i) {
+    for (int i = 0; i < parts.count_spindles(); ++i) {
         const SpindleState &want = saved.spindles[static_cast<std::size_t>(i)];
         SpindleState &have = state.spindles[static_cast<std::size_t>(i)];
         if (want.overridden != have.overridden) {
@@ -145,21 +132,20 @@ void Restoring::restore_overrides(const State &saved) {
 
 /// Does not change positions, motion mode, tool and offsets of coordinate systems.
 bool Restoring::restore(const State &saved) {
-    if (saved.units != state.units &&
-        !run(set_units, 'g', saved.units == LengthUnits::INCH ? 200 : 210, {})) {
+    if (saved.units != state.units && !run(saved.units == LengthUnits::INCH ? G(20) : G(21))) {
         return false;
     }
     if (!restore_spindles(saved)) {
         return false;
     }
-    if (saved.isMist && !state.isMist && !run(switch_coolant, 'm', 7, {})) {
+    if (saved.isMist && !state.isMist && !run(M(7))) {
         return false;
     }
     if (!restore_geometry(saved)) {
         return false;
     }
     if (!saved.isMist && !saved.isFlood && (state.isMist || state.isFlood)) {
-        run(switch_coolant, 'm', 9, {});
+        run(M(9));
     }
     if (state.isMist && !saved.isMist) {
         state.isMist = false;
@@ -170,7 +156,7 @@ bool Restoring::restore(const State &saved) {
         canon.take(SwitchFlood{false});
     }
     if (saved.isFlood && !state.isFlood) {
-        run(switch_coolant, 'm', 8, {});
+        run(M(8));
     }
     restore_overrides(saved);
     return true;
@@ -178,25 +164,24 @@ bool Restoring::restore(const State &saved) {
 
 }  // namespace
 
-bool restore_modes(const State &wanted, const Machine &machine, Parameters &parameters, State &state,
-                   CanonQueue &canon, Fault &fault) {
-    return Restoring{machine, parameters, state, canon, fault}.restore(wanted);
+bool restore_modes(const State &wanted, State &state, CodeParts &parts, Fault &fault) {
+    return Restoring{state, parts, fault}.restore(wanted);
 }
 
-bool keep_modes(const Code &code, const BlockValues &, const Machine &machine, SavedModes &saved_modes,
-                Parameters &parameters, State &state, CanonQueue &canon, Fault &fault) {
-    switch (code.number) {
-    case 70: saved_modes.save(state); return true;
-    case 73: saved_modes.save_until_return(state); return true;
-    case 71: saved_modes.forget(); return true;
+Effect keep_modes(GCode code, const BlockValues &values, State &state, CodeParts &parts) {
+    SavedModes &saved_modes = parts.saved_modes;
+    switch (code) {
+    case M(70): saved_modes.save(state); return true;
+    case M(73): saved_modes.save_until_return(state); return true;
+    case M(71): saved_modes.forget(); return true;
     default: break;
     }
     const State *const saved = saved_modes.saved();
     if (saved == nullptr) {
-        return fault.set(
+        return values.fail(
             "M72 has nothing to restore: there is no M70 or M73 at this level, or M71 dropped it");
     }
-    return restore_modes(*saved, machine, parameters, state, canon, fault);
+    return restore_modes(*saved, state, parts, *values.fault);
 }
 
 }  // namespace mw::gcode::detail

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "gcode/interpreter/codes/moves/arcs.hh"
-
 #include <cmath>
 #include <numbers>
 
 #include <fmt/format.h>
 
-#include "gcode/interpreter/codes/block_words.hh"
-#include "gcode/interpreter/codes/moves/targets.hh"
+#include "gcode/interpreter/codes/block_values.hh"
+#include "gcode/interpreter/codes/moves/moves.hh"
 
 namespace mw::gcode::detail {
 namespace {
@@ -34,14 +32,14 @@ std::string plane_name(const PlaneAxes &axes) {
     return name == "zx" ? "xz" : name;
 }
 
-bool plan_centre_arc(const BlockValues &values, const State &state, ArcPlan &arc, Fault &fault) {
+bool plan_centre_arc(const BlockValues &values, const State &state, ArcPlan &arc) {
     const PlaneAxes axes = plane_axes(state.plane);
     const char first = centre_letter(axes.first), second = centre_letter(axes.second);
     const double x0 = state.position[axes.first], y0 = state.position[axes.second];
     if (state.centre_absolute) {
         for (const char c : {first, second}) {
             if (!values.has(c)) {
-                return fault.set(
+                return values.fail(
                     fmt::format("{} word missing in absolute center arc", static_cast<char>(c - 'a' + 'A')));
             }
         }
@@ -57,12 +55,12 @@ bool plan_centre_arc(const BlockValues &values, const State &state, ArcPlan &arc
     const double tolerance = state.units == LengthUnits::MM ? TOLERANCE_MM : TOLERANCE_INCH;
     constexpr double LEAST_RADIUS = 1e-12;
     if (r1 < LEAST_RADIUS || r2 < LEAST_RADIUS) {
-        return fault.set("Zero-radius arc: start or end lies in the center", values.column_of(first));
+        return values.fail("Zero-radius arc: start or end lies in the center", first);
     }
     const double error = std::fabs(r1 - r2), relative = error / std::fmax(r1, r2);
     if (error > tolerance * LARGE_FACTOR || (error > tolerance && relative > RELATIVE_TOLERANCE)) {
         const char a = geometry::AXIS_LETTERS[axes.first], b = geometry::AXIS_LETTERS[axes.second];
-        return fault.set(
+        return values.fail(
             fmt::format("Radius to end of arc differs from radius to start: "
                         "start=({}{:.4f},{}{:.4f}) center=({}{:.4f},{}{:.4f}) end=({}{:.4f},{}{:.4f}) "
                         "r1={:.4f} r2={:.4f} abs_err={:.4g} rel_err={:.4f}%",
@@ -73,20 +71,19 @@ bool plan_centre_arc(const BlockValues &values, const State &state, ArcPlan &arc
 }
 
 /// R > 0: the arc of at most 180 degrees; R < 0: the other one.
-bool plan_radius_arc(double radius, const Settings &settings, const State &state, ArcPlan &arc,
-                     Fault &fault) {
+bool plan_radius_arc(const BlockValues &values, const Settings &settings, const State &state, ArcPlan &arc) {
     const PlaneAxes axes = plane_axes(state.plane);
     const double x0 = state.position[axes.first], y0 = state.position[axes.second];
     const double dx = arc.end[axes.first] - x0, dy = arc.end[axes.second] - y0;
     const double half = std::hypot(dx, dy) / 2.0;
     if (half == 0.0) {
-        return fault.set("Current point same as end point of arc");
+        return values.fail("Current point same as end point of arc");
     }
     const double tolerance = state.units == LengthUnits::MM ? settings.center_arc_tolerance.mm
                                                             : settings.center_arc_tolerance.inch;
-    const double size = std::fabs(radius);
+    const double radius = values.at('r'), size = std::fabs(radius);
     if (half - size > tolerance) {
-        return fault.set("Arc radius too small to reach end point");
+        return values.fail("Arc radius too small to reach end point");
     }
     const double rise = size > half ? std::sqrt(size * size - half * half) : 0.0;
     const bool left = (arc.rotation > 0) == (radius > 0.0);  // of the chord
@@ -125,23 +122,23 @@ void send_arc(const ArcPlan &arc, State &state, CanonQueue &canon) {
 
 }  // namespace
 
-bool move_along_arc(const Code &code, const BlockValues &values, const Machine &machine, State &state,
-                    CanonQueue &canon, Fault &fault) {
+Effect move_along_arc(GCode code, const BlockValues &values, State &state, CodeParts &parts) {
     if (state.feed == 0.0 || (state.feed_mode == FeedMode::INVERSE_TIME && !values.has('f'))) {
-        return state.feed == 0.0 ? fault.set("Cannot make arc with zero feed rate")
-                                 : fault.set("F word missing with inverse time arc move");
+        return state.feed == 0.0 ? values.fail("Cannot make arc with zero feed rate")
+                                 : values.fail("F word missing with inverse time arc move");
     }
-    if (!check_feed_per_revolution(state, fault)) {
+    if (!check_feed_per_revolution(values, state)) {
         return false;
     }
     if (state.comp.isExit()) {
-        return fault.set("The move just after exiting cutter compensation mode must be straight, not an arc");
+        return values.fail(
+            "The move just after exiting cutter compensation mode must be straight, not an arc");
     }
     ArcPlan arc;
-    if (!plan_arc(code.number == 30, values, machine.settings, state, arc, fault)) {
+    if (!plan_arc(code == G(3), values, parts.settings, state, arc)) {
         return false;
     }
-    state.motion = code.number;
+    state.motion = code;
     state.cycle.running = false;
     if (state.comp.isOn()) {
         const PlaneAxes axes = plane_axes(state.plane);
@@ -149,58 +146,58 @@ bool move_along_arc(const Code &code, const BlockValues &values, const Machine &
             const Point from{state.position[axes.first], state.position[axes.second]};
             const Point to{arc.end[axes.first], arc.end[axes.second]};
             const double radius = distance({arc.first_centre, arc.second_centre}, to);
-            send_inverse_time(state, canon,
+            send_inverse_time(state, parts.canon,
                               std::hypot(radius * arc_sweep(arc, axes, from.x, from.y),
                                          arc.end[axes.normal] - state.position[axes.normal]));
         }
         const CompPlace place{state.position, state.plane, state.units};
-        if (!state.comp.move_along_arc(place, arc, canon, fault)) {
+        if (!state.comp.move_along_arc(place, arc, parts.canon, *values.fault)) {
             return false;
         }
         state.position = arc.end;
         return true;
     }
-    send_arc(arc, state, canon);
+    send_arc(arc, state, parts.canon);
     return true;
 }
 
 /// The programmed arc from the current position.
 bool plan_arc(bool counterclockwise, const BlockValues &values, const Settings &settings, const State &state,
-              ArcPlan &arc, Fault &fault) {
+              ArcPlan &arc) {
     const PlaneAxes axes = plane_axes(state.plane);
     const char first = centre_letter(axes.first), second = centre_letter(axes.second);
     const bool has_centre = values.has(first) || values.has(second);
     arc.end = target(values, state);
-    if (!polar_target(values, state, arc.end, fault)) {
+    if (!polar_target(values, state, arc.end)) {
         return false;
     }
     int turns = 1;
     if (values.has('p')) {
-        if (!whole_word(values, 'p', turns, fault)) {
+        if (!values.whole('p', turns)) {
             return false;
         }
         if (turns < 1 || turns > 1000000) {
-            return fault.set("P value should be 1 or greater with G2 or G3", values.column_of('p'));
+            return values.fail("P value should be 1 or greater with G2 or G3", 'p');
         }
     }
     arc.rotation = counterclockwise ? turns : -turns;
     for (const char c : {'i', 'j', 'k'}) {
         if (values.has(c) && c != first && c != second) {
-            return fault.set(fmt::format("{} word given for arc in {} plane",
-                                         static_cast<char>(c - 'a' + 'A'), plane_name(axes)),
-                             values.column_of(c));
+            return values.fail(fmt::format("{} word given for arc in {} plane",
+                                           static_cast<char>(c - 'a' + 'A'), plane_name(axes)),
+                               c);
         }
     }
     if (values.has('r')) {
         if (has_centre) {
-            return fault.set("Mixed radius ijk format for arc", values.column_of('r'));
+            return values.fail("Mixed radius ijk format for arc", 'r');
         }
-        return plan_radius_arc(values.at('r'), settings, state, arc, fault);
+        return plan_radius_arc(values, settings, state, arc);
     }
     if (!has_centre) {
-        return fault.set("R i j k words all missing for arc");
+        return values.fail("R i j k words all missing for arc");
     }
-    return plan_centre_arc(values, state, arc, fault);
+    return plan_centre_arc(values, state, arc);
 }
 
 }  // namespace mw::gcode::detail

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "gcode/interpreter/codes/moves/rotary.hh"
-
 #include <cmath>
 
 #include <fmt/format.h>
+
+#include "gcode/interpreter/codes/moves/moves.hh"
 
 namespace mw::gcode::detail {
 namespace {
@@ -16,8 +16,7 @@ constexpr double SAME_ANGLE = 1e-6;
 bool isIncremental(const BlockValues &values, const State &state) {
     bool is = state.incremental;
     for (const ActiveCode &active : values.codes) {
-        const int number = active.code->letter == 'g' ? active.code->number : 0;
-        is = number == 910 || (is && number != 900);
+        is = active.code->id == G(91) || (is && active.code->id != G(90));
     }
     return is;
 }
@@ -26,35 +25,33 @@ bool isIncremental(const BlockValues &values, const State &state) {
 bool areAxesPlaces(const BlockValues &values) {
     bool are = values.motion != nullptr;
     for (const ActiveCode &active : values.codes) {
-        const int number = active.code->letter == 'g' ? active.code->number : 0;
-        are = are || number == 280 || number == 300;
+        are = are || active.code->id == G(28) || active.code->id == G(30);
     }
     return are;
 }
 
-bool check_indexer(const BlockValues &values, int axis, Fault &fault) {
+bool check_indexer(const BlockValues &values, int axis) {
     const char name = geometry::AXIS_LETTERS_LOWER[axis];
     const bool placed = values.has(name) && values.motion != nullptr;
     if (!placed) {
         return true;
     }
-    if (values.motion->number != 0) {
-        return fault.set(
-            fmt::format("Indexing axis {} can only be moved with G0", geometry::AXIS_LETTERS[axis]),
-            values.column_of(name));
+    if (values.motion->id != G(0)) {
+        return values.fail(
+            fmt::format("Indexing axis {} can only be moved with G0", geometry::AXIS_LETTERS[axis]), name);
     }
     bool alone = !values.has('@') && !values.has('^');
     for (int other = 0; other < geometry::AXIS_COUNT; ++other) {
         alone = alone && (other == axis || !values.has(geometry::AXIS_LETTERS_LOWER[other]));
     }
     return alone ||
-           fault.set(fmt::format("Indexing axis {} can only be moved alone", geometry::AXIS_LETTERS[axis]),
-                     values.column_of(name));
+           values.fail(fmt::format("Indexing axis {} can only be moved alone", geometry::AXIS_LETTERS[axis]),
+                       name);
 }
 
 }  // namespace
 
-bool check_rotary(const BlockValues &values, const State &state, Fault &fault) {
+bool check_rotary(const BlockValues &values, const State &state) {
     if (!state.rotary.hasAny() || !values.hasAxes() || !areAxesPlaces(values)) {
         return true;
     }
@@ -63,13 +60,13 @@ bool check_rotary(const BlockValues &values, const State &state, Fault &fault) {
         const char name = geometry::AXIS_LETTERS_LOWER[axis];
         const bool wrapped = absolute && state.rotary.isWrapped(axis) && values.has(name);
         if (wrapped && !(std::fabs(values.at(name)) < TURN)) {
-            return fault.set(
+            return values.fail(
                 fmt::format("Invalid absolute position {:.2f} for wrapped rotary axis {}: it must be "
                             "between -360 and 360, and its sign is the direction",
                             values.at(name), geometry::AXIS_LETTERS[axis]),
-                values.column_of(name));
+                name);
         }
-        if (state.rotary.isIndexer(axis) && !check_indexer(values, axis, fault)) {
+        if (state.rotary.isIndexer(axis) && !check_indexer(values, axis)) {
             return false;
         }
     }

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "gcode/interpreter/codes/moves/targets.hh"
-
 #include <array>
 #include <bit>
 #include <cmath>
@@ -9,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "gcode/canon/plane_axes.hh"
-#include "gcode/interpreter/codes/moves/rotary.hh"
+#include "gcode/interpreter/codes/moves/moves.hh"
 
 namespace mw::gcode::detail {
 namespace {
@@ -27,6 +25,18 @@ constexpr std::array<int, LETTER_COUNT> AXIS_OF_LETTER = [] {
 
 }  // namespace
 
+std::optional<double> axis_word(const BlockValues &values, const State &state, int axis) {
+    const char name = geometry::AXIS_LETTERS_LOWER[axis];
+    const bool halved = axis == geometry::AXIS_X && state.isDiameter;
+    return values.has(name) ? std::optional(values.at(name) * (halved ? 0.5 : 1.0)) : std::nullopt;
+}
+
+void replace_axes(const BlockValues &values, const State &state, Pose &pose) {
+    for (int axis = 0; axis < geometry::AXIS_COUNT; ++axis) {
+        pose[axis] = axis_word(values, state, axis).value_or(pose[axis]);
+    }
+}
+
 Pose target(const BlockValues &values, const State &state) {
     Pose end = state.position;
     for (std::uint32_t left = values.present & AXIS_LETTERS; left != 0; left &= left - 1) {
@@ -43,26 +53,26 @@ Pose target(const BlockValues &values, const State &state) {
     return end;
 }
 
-bool polar_target(const BlockValues &values, const State &state, Pose &end, Fault &fault) {
+bool polar_target(const BlockValues &values, const State &state, Pose &end) {
     if (!values.has('@') && !values.has('^')) {
         return true;
     }
     const PlaneAxes axes = plane_axes(state.plane);
     const char first = geometry::AXIS_LETTERS_LOWER[axes.first],
                second = geometry::AXIS_LETTERS_LOWER[axes.second];
-    const std::uint32_t column = values.column_of(values.has('@') ? '@' : '^');
+    const char word = values.has('@') ? '@' : '^';
     if (state.plane != Plane::XY) {
-        return fault.set("Polar words @ and ^ are for G17 alone", column);
+        return values.fail("Polar words @ and ^ are for G17 alone", word);
     }
     if (values.has(first) || values.has(second)) {
-        return fault.set("Polar words @ and ^ cannot be combined with the axis words of their plane", column);
+        return values.fail("Polar words @ and ^ cannot be combined with the axis words of their plane", word);
     }
     const double x = state.position[axes.first], y = state.position[axes.second];
     const bool at_origin = x == 0.0 && y == 0.0;
     if (at_origin && (!values.has('^') || state.incremental)) {
-        return fault.set(
+        return values.fail(
             "There is no angle at the origin to continue from: polar words need ^ in absolute mode here",
-            column);
+            word);
     }
     constexpr double DEGREE = std::numbers::pi / 180.0;
     double radius = std::hypot(x, y), angle = std::atan2(y, x);
@@ -77,47 +87,44 @@ bool polar_target(const BlockValues &values, const State &state, Pose &end, Faul
     return true;
 }
 
-bool straight_target(const BlockValues &values, const State &state, Pose &end, Fault &fault) {
+bool straight_target(const BlockValues &values, const State &state, Pose &end) {
     if (!values.is_machine_coordinates) {
         end = target(values, state);
-        return polar_target(values, state, end, fault);
+        return polar_target(values, state, end);
     }
     if (state.incremental) {
-        return fault.set("Cannot use g53 incremental");
+        return values.fail("Cannot use g53 incremental");
     }
     if (state.comp.isOn()) {
-        return fault.set("Cannot use g53 with cutter radius compensation on");
+        return values.fail("Cannot use g53 with cutter radius compensation on");
     }
     if (values.has('@') || values.has('^')) {
-        return fault.set("Cannot use polar words with g53");
+        return values.fail("Cannot use polar words with g53");
     }
     Pose machine = state.frame.to_machine(state.position);
     for (int axis = 0; axis < geometry::AXIS_COUNT; ++axis) {
-        const char name = geometry::AXIS_LETTERS_LOWER[axis];
-        if (values.has(name)) {
-            const bool halved = axis == geometry::AXIS_X && state.isDiameter;
-            machine[axis] = state.rotary.isWrapped(axis) ? unwrapped(values.at(name), machine[axis])
-                                                         : values.at(name) * (halved ? 0.5 : 1.0);
+        if (const std::optional<double> word = axis_word(values, state, axis)) {
+            machine[axis] = state.rotary.isWrapped(axis) ? unwrapped(*word, machine[axis]) : *word;
         }
     }
     end = state.frame.to_program(machine);
     return true;
 }
 
-bool check_feed(const BlockValues &values, std::string_view code, const State &state, Fault &fault) {
+bool check_feed(const BlockValues &values, std::string_view code, const State &state) {
     if (state.feed_mode == FeedMode::INVERSE_TIME && !values.has('f')) {
-        return fault.set(fmt::format("F word missing with inverse time {} move", code));
+        return values.fail(fmt::format("F word missing with inverse time {} move", code));
     }
     if (state.feed == 0.0) {
-        return fault.set(fmt::format("Cannot do {} with zero feed rate", code));
+        return values.fail(fmt::format("Cannot do {} with zero feed rate", code));
     }
-    return check_feed_per_revolution(state, fault);
+    return check_feed_per_revolution(values, state);
 }
 
-bool check_feed_per_revolution(const State &state, Fault &fault) {
+bool check_feed_per_revolution(const BlockValues &values, const State &state) {
     const SpindleState &spindle = state.spindles[static_cast<std::size_t>(state.active_spindle)];
     if (state.feed_mode == FeedMode::UNITS_PER_REVOLUTION && spindle.speed == 0.0) {
-        return fault.set("The feed is per revolution (G95) and the spindle speed is 0: give S first");
+        return values.fail("The feed is per revolution (G95) and the spindle speed is 0: give S first");
     }
     return true;
 }

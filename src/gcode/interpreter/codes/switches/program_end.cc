@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "gcode/interpreter/codes/switches/program_end.hh"
+#include <fmt/format.h>
 
+#include "gcode/interpreter/codes/block_values.hh"
+#include "gcode/interpreter/codes/code_functions.hh"
 #include "gcode/interpreter/codes/tools/offsets.hh"
 
 namespace mw::gcode::detail {
 namespace {
 
 /// Modes that M2 and M30 reset: LinuxCNC manual, "Program Stop and Program End".
-void put_modes_back(const Machine &machine, Parameters &parameters, State &state, CanonQueue &canon) {
+void reset_modes(State &state, CodeParts &parts) {
+    Parameters &parameters = parts.parameters;
+    CanonQueue &canon = parts.canon;
     state.comp.turn_off();
     state.comp.set_exit(false);
-    const double to_program = machine.to_program(state.units);
+    const double to_program = parts.to_program(state.units);
     Frame made = state.frame;
-    if (!machine.settings.coordinate_system_kept) {
+    if (!parts.settings.coordinate_system_kept) {
         made.g5x = parameter_pose(parameters, P_G5X, to_program);
         made.rotation_deg = parameters.get(P_G5X + 9);
         change_frame(state, made);
@@ -33,7 +37,7 @@ void put_modes_back(const Machine &machine, Parameters &parameters, State &state
         state.is_feed_override = true;
         canon.take(SwitchFeedOverride{true});
     }
-    for (int i = 0; i < machine.count_spindles(); ++i) {
+    for (int i = 0; i < parts.count_spindles(); ++i) {
         SpindleState &spindle = state.spindles[static_cast<std::size_t>(i)];
         if (!spindle.overridden) {
             canon.take(SwitchSpeedOverride{i, true});
@@ -44,8 +48,8 @@ void put_modes_back(const Machine &machine, Parameters &parameters, State &state
         canon.take(StopSpindle{i});
         canon.take(SetSpindleMode{i, 0.0});
     }
-    state.motion = 10;
-    if (machine.settings.g92_persistence_disabled) {
+    state.motion = G(1);
+    if (parts.settings.g92_persistence_disabled) {
         made = state.frame;
         made.g92 = {};
         change_frame(state, made);
@@ -65,27 +69,53 @@ void put_modes_back(const Machine &machine, Parameters &parameters, State &state
 
 }  // namespace
 
-bool stop_program(const Code &code, const BlockValues &, State &, CanonQueue &canon, Fault &) {
-    if (code.number == 60) {
-        canon.take(PalletShuttle{});
+Effect stop_program(GCode code, const BlockValues &, State &, CodeParts &parts) {
+    if (code == M(60)) {
+        parts.canon.take(PalletShuttle{});
     }
-    if (code.number == 1) {
-        canon.take(ProgramStop{true});
+    if (code == M(1)) {
+        parts.canon.take(ProgramStop{true});
     } else {
-        canon.take(ProgramStop{});
+        parts.canon.take(ProgramStop{});
     }
     return true;
 }
 
-bool end_program(const Code &code, const BlockValues &, const Machine &machine, Parameters &parameters,
-                 State &state, CanonQueue &canon, Fault &, Outcome &outcome) {
-    put_modes_back(machine, parameters, state, canon);
-    if (code.number == 30) {
-        canon.take(PalletShuttle{});
+Effect end_program(GCode code, const BlockValues &, State &state, CodeParts &parts) {
+    reset_modes(state, parts);
+    if (code == M(30)) {
+        parts.canon.take(PalletShuttle{});
     }
-    canon.take(ProgramEnd{});
-    outcome = Outcome::PROGRAM_END;
-    return true;
+    parts.canon.take(ProgramEnd{});
+    return Outcome::PROGRAM_END;
+}
+
+Effect call_or_return(GCode code, const BlockValues &values, State &state, CodeParts &parts) {
+    if (parts.settings.fanuc_sub_disabled) {
+        return values.fail(
+            fmt::format("DISABLE_FANUC_STYLE_SUB set in INI file, but found m{}", number_of(code)));
+    }
+    if (code == M(99)) {
+        if (parts.place.call_level == 0) {
+            if (!parts.settings.is_task) {
+                return end_program(M(2), values, state, parts);
+            }
+            return Outcome::RESTART;
+        }
+        return Outcome::RETURN_FANUC;
+    }
+    FanucCall &call = parts.fanuc_call;
+    if (!values.has('p')) {
+        return values.fail("Found 'm98' code with no P-word");
+    }
+    call.count = 1;
+    if (!values.whole('p', call.label) || (values.has('l') && !values.whole('l', call.count))) {
+        return false;
+    }
+    if (call.count < 0) {
+        return values.fail("The number of calls L of M98 must not be negative", 'l');
+    }
+    return Outcome::CALL_FANUC;
 }
 
 }  // namespace mw::gcode::detail

@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "gcode/interpreter/codes/tools/tools.hh"
 
+#include <cctype>
+
 #include <fmt/format.h>
 
-#include "gcode/interpreter/codes/block_words.hh"
-#include "gcode/interpreter/codes/moves/rotary.hh"
+#include "gcode/interpreter/codes/block_values.hh"
+#include "gcode/interpreter/codes/moves/moves.hh"
 #include "gcode/interpreter/codes/tools/offsets.hh"
 
 namespace mw::gcode::detail {
 namespace {
 
-void stop_spindles(const Machine &machine, State &state, CanonQueue &canon) {
-    for (int i = 0; i < machine.count_spindles(); ++i) {
+void stop_spindles(State &state, CodeParts &parts) {
+    for (int i = 0; i < parts.count_spindles(); ++i) {
         state.spindles[static_cast<std::size_t>(i)].direction = 0;
-        canon.take(StopSpindle{i});
+        parts.canon.take(StopSpindle{i});
     }
 }
 
@@ -25,36 +27,42 @@ void take_hidden_rapid(const Pose &end, State &state, CanonQueue &canon) {
 }
 
 /// Moves to the tool change position: first up, then across.
-void go_to_change(const Machine &machine, const Parameters &parameters, State &state, CanonQueue &canon) {
-    if (machine.settings.tool_change.quill_raised) {
+void go_to_change(State &state, CodeParts &parts) {
+    if (parts.settings.tool_change.quill_raised) {
         Pose up = state.frame.to_machine(state.position);
         up[geometry::AXIS_Z] = 0;
-        take_hidden_rapid(state.frame.to_program(up), state, canon);
+        take_hidden_rapid(state.frame.to_program(up), state, parts.canon);
     }
-    if (machine.settings.tool_change.at_g30) {
+    if (parts.settings.tool_change.at_g30) {
         const Pose before = state.frame.to_machine(state.position);
-        take_hidden_rapid(stored_place(P_G30, before, machine, parameters, state), state, canon);
+        take_hidden_rapid(stored_place(P_G30, before, state, parts), state, parts.canon);
     }
 }
 
 /// RETAIN_G43: an active offset follows the tool in the spindle and ends with the last one.
-void retain_tool_offset(const Machine &machine, State &state, CanonQueue &canon) {
-    constexpr int G43 = 430, G49 = 490;
-    if (!machine.settings.tool_offset_retained || state.tool.offset_code == G49) {
+void retain_tool_offset(State &state, CodeParts &parts) {
+    if (!parts.settings.tool_offset_retained || state.tool.offset_code == G(49)) {
         return;
     }
     const bool none = state.tool.in_spindle == 0;
-    apply_tool_offset(state, canon,
-                      none ? Pose{} : scale_lengths(state.tool.offset, machine.to_program(state.units)),
-                      none ? G49 : G43);
+    apply_tool_offset(state, parts.canon,
+                      none ? Pose{} : scale_lengths(state.tool.offset, parts.to_program(state.units)),
+                      none ? G(49) : G(43));
 }
 
 }  // namespace
 
-bool find_tool(const ToolTable &tools, int toolno, std::uint32_t column, int &index, Fault &fault) {
+bool tool_number(const BlockValues &values, char word, int &toolno) {
+    return values.whole(word, toolno) &&
+           (toolno >= 0 || values.fail(fmt::format("Negative tool number: {} must be 0 or more",
+                                                   static_cast<char>(std::toupper(word))),
+                                       word));
+}
+
+bool find_tool(const BlockValues &values, char word, int toolno, const ToolTable &tools, int &index) {
     index = tools.index_of_tool(toolno);
     if (index < 0) {
-        return fault.set(fmt::format("Requested tool {} not found in the tool table", toolno), column);
+        return values.fail(fmt::format("Requested tool {} not found in the tool table", toolno), word);
     }
     return true;
 }
@@ -81,118 +89,97 @@ void move_by_tool_offset(State &state, const Pose &offset) {
     change_frame(state, made);
 }
 
-void apply_tool_offset(State &state, CanonQueue &canon, const Pose &offset, int code) {
+void apply_tool_offset(State &state, CanonQueue &canon, const Pose &offset, GCode code) {
     move_by_tool_offset(state, offset);
     state.tool.offset_code = code;
     canon.take(UseToolLengthOffset{offset});
 }
 
-bool select_tool(const Code &, const BlockValues &values, const Machine &, ToolTable &tools, State &state,
-                 CanonQueue &canon, Fault &fault, Outcome &) {
+Effect select_tool(GCode, const BlockValues &values, State &state, CodeParts &parts) {
     int toolno = 0, index = 0;
-    if (!whole_word(values, 't', toolno, fault)) {
+    if (!tool_number(values, 't', toolno)) {
         return false;
     }
-    if (toolno < 0) {
-        return fault.set("Negative tool number: T must be 0 or more", values.column_of('t'));
-    }
-    const bool none = toolno == 0 && !tools.isRandom();
-    if (!none && !find_tool(tools, toolno, values.column_of('t'), index, fault)) {
+    const bool none = toolno == 0 && !parts.tools.isRandom();
+    if (!none && !find_tool(values, 't', toolno, parts.tools, index)) {
         return false;
     }
     state.tool.selected = toolno;
     state.tool.selected_index = index;
-    canon.take(SelectTool{toolno});
+    parts.canon.take(SelectTool{toolno});
     return true;
 }
 
-bool change_tool(const Code &, const BlockValues &, const Machine &machine, ToolTable &tools,
-                 Parameters &parameters, State &state, CanonQueue &canon, Fault &fault, Outcome &outcome) {
+Effect change_tool(GCode, const BlockValues &values, State &state, CodeParts &parts) {
     if (state.comp.isOn()) {
-        return fault.set("Cannot change tools while cutter radius compensation is on");
+        return values.fail("Cannot change tools while cutter radius compensation is on");
     }
     if (state.tool.selected_index < 0) {
-        return fault.set("M6 needs a tool: there was no T word before");
+        return values.fail("M6 needs a tool: there was no T word before");
     }
-    if (!machine.settings.tool_change.spindle_left_on) {
-        stop_spindles(machine, state, canon);
+    if (!parts.settings.tool_change.spindle_left_on) {
+        stop_spindles(state, parts);
     }
-    go_to_change(machine, parameters, state, canon);
-    canon.take(ChangeTool{});
-    load_tool(tools, state.tool, state.tool.selected_index);
-    retain_tool_offset(machine, state, canon);
-    outcome = Outcome::SYNC;
-    return true;
+    go_to_change(state, parts);
+    parts.canon.take(ChangeTool{});
+    load_tool(parts.tools, state.tool, state.tool.selected_index);
+    retain_tool_offset(state, parts);
+    return Outcome::SYNC;
 }
 
-bool set_tool_number(const Code &, const BlockValues &values, const Machine &machine, ToolTable &tools,
-                     State &state, CanonQueue &canon, Fault &fault, Outcome &outcome) {
+Effect set_tool_number(GCode, const BlockValues &values, State &state, CodeParts &parts) {
     int toolno = 0, index = 0;
-    if (!whole_word(values, 'q', toolno, fault)) {
+    if (!values.whole('q', toolno)) {
         return false;
     }
     if (toolno < 0) {
-        return fault.set("Need non-negative Q-word to specify tool number with M61", values.column_of('q'));
+        return values.fail("Need non-negative Q-word to specify tool number with M61", 'q');
     }
-    const bool none = toolno == 0 && !tools.isRandom();
-    if (!none && !find_tool(tools, toolno, values.column_of('q'), index, fault)) {
+    const bool none = toolno == 0 && !parts.tools.isRandom();
+    if (!none && !find_tool(values, 'q', toolno, parts.tools, index)) {
         return false;
     }
-    canon.take(ChangeToolNumber{toolno});
-    load_tool(tools, state.tool, index);
-    retain_tool_offset(machine, state, canon);
-    outcome = tools.isRandom() ? Outcome::SYNC : outcome;  // tools have changed their positions
-    return true;
+    parts.canon.take(ChangeToolNumber{toolno});
+    load_tool(parts.tools, state.tool, index);
+    retain_tool_offset(state, parts);
+    return parts.tools.isRandom() ? Outcome::SYNC : Outcome::OK;  // tools have changed their positions
 }
 
-bool set_tool_offset(const Code &code, const BlockValues &values, const Machine &machine, ToolTable &tools,
-                     State &state, CanonQueue &canon, Fault &fault, Outcome &) {
-    if (code.number == 490) {
-        apply_tool_offset(state, canon, {}, code.number);
+Effect set_tool_offset(GCode code, const BlockValues &values, State &state, CodeParts &parts) {
+    if (code == G(49)) {
+        apply_tool_offset(state, parts.canon, {}, code);
         return true;
     }
-    Pose offset = code.number == 430 ? Pose{} : state.frame.tool;
-    if (code.number == 432 && values.hasAxes() && values.has('h')) {
-        return fault.set("G43.2: Can not have both H and axis words", values.column_of('h'));
+    Pose offset = code == G(43) ? Pose{} : state.frame.tool;
+    if (code == G(43, 2) && values.hasAxes() && values.has('h')) {
+        return values.fail("G43.2: Can not have both H and axis words", 'h');
     }
-    if (code.number != 430 && values.hasAxes() && !values.has('h')) {
+    if (code == G(43, 1) || (code == G(43, 2) && !values.has('h'))) {
+        if (code == G(43, 2) && !values.hasAxes()) {
+            return values.fail("G43.2: No axes specified and H word missing");
+        }
         for (int axis = 0; axis < geometry::AXIS_COUNT; ++axis) {
-            const char name = geometry::AXIS_LETTERS_LOWER[axis];
-            if (values.has(name)) {
-                const bool halved = axis == geometry::AXIS_X && state.isDiameter;
-                const double given = values.at(name) * (halved ? 0.5 : 1.0);
-                offset[axis] = code.number == 432 ? offset[axis] + given : given;
+            if (const std::optional<double> word = axis_word(values, state, axis)) {
+                offset[axis] = code == G(43, 2) ? offset[axis] + *word : *word;
             }
         }
-        apply_tool_offset(state, canon, offset, code.number);
+        apply_tool_offset(state, parts.canon, offset, code);
         return true;
-    }
-    if (code.number == 431) {
-        apply_tool_offset(state, canon, offset, code.number);
-        return true;
-    }
-    if (code.number == 432 && !values.has('h')) {
-        return fault.set("G43.2: No axes specified and H word missing");
     }
     Pose table = state.tool.offset;
     if (values.has('h')) {
         int toolno = 0, index = 0;
-        if (!whole_word(values, 'h', toolno, fault)) {
+        if (!tool_number(values, 'h', toolno)) {
             return false;
         }
-        if (toolno < 0) {
-            return fault.set("Negative tool number: H must be 0 or more", values.column_of('h'));
-        }
-        if (toolno == 0 && code.number == 430 && !tools.isRandom()) {  // with a random changer T0 is a tool
-            table = state.tool.offset;
-        } else if (!find_tool(tools, toolno, values.column_of('h'), index, fault)) {
-            return false;
-        } else {
-            table = tools.entry(index).offset;
+        if (toolno != 0 || code != G(43) || parts.tools.isRandom()) {  // with a random changer T0 is a tool
+            if (!find_tool(values, 'h', toolno, parts.tools, index)) {
+                return false;
+            }
+            table = parts.tools.entry(index).offset;
         }
     }
-    apply_tool_offset(state, canon, offset + scale_lengths(table, machine.to_program(state.units)),
-                      code.number);
+    apply_tool_offset(state, parts.canon, offset + scale_lengths(table, parts.to_program(state.units)), code);
     return true;
 }
 
