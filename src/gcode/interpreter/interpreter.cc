@@ -4,10 +4,9 @@
 #include <filesystem>
 
 #include "base/atomic_file.hh"
-#include "gcode/interpreter/block_history.hh"
 #include "gcode/interpreter/codes/executor.hh"
 #include "gcode/interpreter/flow/flow.hh"
-#include "gcode/interpreter/interpreter_snapshot.hh"
+#include "gcode/interpreter/read_ahead.hh"
 #include "gcode/syntax/syntax_errors.hh"
 
 namespace mw::gcode {
@@ -22,7 +21,7 @@ struct Interpreter::Impl {
     detail::Names names;
     detail::Executor executor;
     detail::Flow flow;
-    detail::BlockHistory history;
+    ReadAhead history;
 };
 
 Interpreter::Interpreter(Canon &canon, World &world, ToolSource &tools, ParameterSource &parameters,
@@ -45,7 +44,7 @@ Result<> Interpreter::save_parameters(const std::string &path) const {
 
 Result<> Interpreter::begin() {
     detail::Executor &executor = impl_->executor;
-    executor.state.units = impl_->settings.initial_units.value_or(executor.world().machine_units());
+    executor.modes.units = impl_->settings.initial_units.value_or(executor.world().machine_units());
     if (Result<> loaded = executor.remaps.load(impl_->settings.remaps); !loaded) {
         return loaded;
     }
@@ -55,7 +54,7 @@ Result<> Interpreter::begin() {
     executor.canon.enter_block(nullptr, 0, 0, false, 0);
     if (impl_->settings.start_tolerance_mm > 0) {
         constexpr double MM_PER_INCH = 25.4;
-        detail::State &state = executor.state;
+        detail::State &state = executor.modes;
         state.tolerance =
             impl_->settings.start_tolerance_mm / (state.units == LengthUnits::INCH ? MM_PER_INCH : 1.0);
         executor.canon.take(SetMotionControlMode{state.control, state.tolerance});
@@ -184,37 +183,12 @@ NextLine Interpreter::next_line() const {
             levels.here().program == levels.main()};
 }
 
-std::string Interpreter::why_no_start() const {
-    const detail::State &state = impl_->executor.state;
-    if (state.comp.isOn() || state.comp.isExit() || isMoveHeld()) {
-        return "cutter compensation is on there";
-    }
-    if (state.spline.order != 0) {
-        return "it is in the middle of a NURBS";
-    }
-    const bool is_cycle =
-        state.motion >= G(73) && state.motion <= G(89) && state.motion != detail::MOTION_NONE;
-    if (state.cycle.running && is_cycle) {
-        return "it is in the middle of a canned cycle";
-    }
-    if (isThreading()) {
-        return "moves follow the spindle there";
-    }
-    return {};
+const InterpreterState &Interpreter::state() const {
+    return impl_->executor;
 }
 
-bool Interpreter::isThreading() const {
-    const GCode motion = impl_->executor.state.motion;
-    return motion == G(33) || motion == G(33, 1);
-}
-
-std::shared_ptr<const Interpreter::Snapshot> Interpreter::snapshot() const {
-    const detail::Executor &executor = impl_->executor;
-    return std::make_shared<Snapshot>(detail::snapshot(executor));
-}
-
-void Interpreter::restore(const Snapshot &kept) {
-    detail::restore(kept, impl_->executor);
+void Interpreter::restore(const InterpreterState &kept) {
+    impl_->executor.restore(kept);
 }
 
 ReadAhead &Interpreter::read_ahead() {
@@ -228,16 +202,12 @@ void Interpreter::know_tools(const std::map<int, ToolEntry> &entries) {
     impl_->executor.tools.commit();
 }
 
-Result<std::string> Interpreter::pack_kept() const {
-    return pack(*snapshot(), impl_->names);
+Result<std::string> Interpreter::pack_state() const {
+    return pack(state(), impl_->names);
 }
 
-Result<std::shared_ptr<const Interpreter::Snapshot>> Interpreter::unpack_kept(std::string_view bytes) {
-    auto kept = unpack(bytes, *snapshot(), impl_->names);
-    if (!kept.has_value()) {
-        return std::unexpected(kept.error());
-    }
-    return std::make_shared<const Snapshot>(std::move(*kept));
+Result<InterpreterState> Interpreter::unpack_state(std::string_view bytes) {
+    return unpack(bytes, state(), impl_->names);
 }
 
 std::uint64_t Interpreter::count_script_calls() const {

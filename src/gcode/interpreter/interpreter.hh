@@ -18,6 +18,9 @@
 
 namespace mw::gcode {
 
+class ReadAhead;
+struct InterpreterState;
+
 /// How far the main program has been read.
 struct FilePlace {
     std::uint64_t bytes = 0, bytes_in_all = 0;
@@ -38,28 +41,6 @@ struct NextLine {
     int main_line = 0;         ///< in the main program: that line, or the calling line
     bool in_call = false;      ///< in a subroutine or a remapped code
     bool in_main_file = true;  ///< the line is one of the main program's file
-};
-
-/// Keeps the state of the block that the machine executes while the interpreter reads later ones. Step
-/// numbers never decrease. One thread.
-class ReadAhead {
-  public:
-    virtual ~ReadAhead() = default;
-    /// Everything read is executed; records the changes of later steps.
-    virtual void begin() = 0;
-    /// Records nothing until the next begin().
-    virtual void stop() = 0;
-    /// The current state is the state after step `number`.
-    virtual void note(std::uint64_t number) = 0;
-    /// The machine has reached step `number`.
-    virtual void mark_executed(std::uint64_t number) = 0;
-    /// Restores modes, offsets and parameters of the executed step; calls and loops end.
-    virtual void return_to_executed() = 0;
-    virtual ActiveCodes executed_codes() const = 0;
-    /// Content of the parameter file as of the executed step.
-    virtual std::string parameter_text() const = 0;
-    /// The last line has no words: it is blank, only a comment, or skipped.
-    virtual bool isLineEmpty() const = 0;
 };
 
 /// The interpreter of RS-274/NGC.
@@ -114,20 +95,15 @@ class Interpreter final : public ProgramInterpreter {
 
     // For run from line (docs/user/run_from_line.md).
     NextLine next_line() const;
-    /// Why a run cannot start at the next line although all lines before it are known; empty: it can.
-    std::string why_no_start() const;
-    /// G33 and G33.1 are the motion mode.
-    bool isThreading() const;
-    /// Modes and parameters, without calls and loops.
-    struct Snapshot;
-    std::shared_ptr<const Snapshot> snapshot() const;
-    /// Restores the snapshot. Only at the top level, as after abort().
-    void restore(const Snapshot &kept);
+    /// Modes and parameters.
+    const InterpreterState &state() const;
+    /// Only at the top level, as after abort().
+    void restore(const InterpreterState &kept);
     /// Entries of the tool table that the next synch() will have: they have been sent already.
     void know_tools(const std::map<int, ToolEntry> &entries);
-    /// The result of snapshot() as bytes, for another process; an error names a state that cannot be packed.
-    Result<std::string> pack_kept() const;
-    Result<std::shared_ptr<const Snapshot>> unpack_kept(std::string_view bytes);
+    /// The state as bytes, for another process; an error names a state that cannot be packed.
+    Result<std::string> pack_state() const;
+    Result<InterpreterState> unpack_state(std::string_view bytes);
     /// Number of calls of Python.
     std::uint64_t count_script_calls() const;
 

@@ -42,7 +42,7 @@ Executor::Executor(World &world, ToolSource &tool_source, ParameterSource &sourc
       parts{world,       settings, block_place,    canon,   parameters, tools,
             saved_modes, lathe,    control_points, awaited, fanuc_call},
       source_(source), names_(names), evaluator_(parameters, names, *this, fault), block_(fault) {
-    state.rotary = settings.rotary;
+    modes.rotary = settings.rotary;
 }
 
 // ------------------------------------------------------------------------------------------- one block
@@ -60,7 +60,7 @@ bool Executor::run(const BlockView &view, std::string_view line_text) {
     block_.number = view.block->isNumbered ? view.block->sequence : -1;
     if (lathe.request() != nullptr) {
         keep_state();
-        return lathe.record(values, parts.settings, state);
+        return lathe.record(values, parts.settings, modes);
     }
     if (view.block->comment_count > 0 && !run_last_comment(view, line_text)) {
         return false;
@@ -68,9 +68,9 @@ bool Executor::run(const BlockView &view, std::string_view line_text) {
     if (view.block->word_count == 0) {
         return true;  // only settings and comments, as most lines of loops
     }
-    if (!choose_motion(values, state.motion, remaps, fault) || !check_machine_coordinates(values, fault) ||
-        !check_open_nurbs(values, state) || !axis_check_.check(values, parts.world.axis_mask(), fault) ||
-        !check_words(values, fault) || !check_rotary(values, state)) {
+    if (!choose_motion(values, modes.motion, remaps, fault) || !check_machine_coordinates(values, fault) ||
+        !check_open_nurbs(values, modes) || !axis_check_.check(values, parts.world.axis_mask(), fault) ||
+        !check_words(values, fault) || !check_rotary(values, modes)) {
         return false;
     }
     block_codes = codes_of(values);
@@ -94,7 +94,7 @@ bool Executor::run_last_comment(const BlockView &view, std::string_view line_tex
 
 /// Runs the codes from `first` on. A remapped code interrupts the block; the rest runs after its procedure.
 bool Executor::run_codes(const BlockValues &values, std::size_t first) {
-    if (!isStateSafe(values, state)) {
+    if (!isStateSafe(values, modes)) {
         keep_state();
     }
     for (std::size_t i = first; i < values.codes.size(); ++i) {
@@ -105,7 +105,7 @@ bool Executor::run_codes(const BlockValues &values, std::size_t first) {
             outcome = Outcome::REMAP;
             return true;
         }
-        const Effect effect = active.code->run(active.code->id, values, state, parts);
+        const Effect effect = active.code->run(active.code->id, values, modes, parts);
         if (!effect) {
             if (fault.column == 0) {
                 fault.column = active.column;
@@ -142,10 +142,10 @@ void Executor::begin_light_block() {
     outcome = Outcome::OK;
 }
 
-/// The state is large, so blocks that do not change it are not copied.
+/// The modes is large, so blocks that do not change it are not copied.
 void Executor::keep_state() {
     if (!state_kept_) {
-        before_ = state;
+        before_ = modes;
         state_kept_ = true;
     }
 }
@@ -159,7 +159,7 @@ void Executor::commit() {
 
 void Executor::rollback() {
     if (state_kept_) {
-        state = before_;
+        modes = before_;
     }
     block_codes = codes_before_;
     parameters.rollback();
@@ -171,12 +171,12 @@ void Executor::rollback() {
 }
 
 void Executor::flush(Canon &target) {
-    if (!state.comp.isHolding()) {
+    if (!modes.comp.isHolding()) {
         canon.flush(target);
         return;
     }
-    canon.flush(target, state.comp.held_call());
-    state.comp.set_held_call(0);
+    canon.flush(target, modes.comp.held_call());
+    modes.comp.set_held_call(0);
     before_.comp.set_held_call(0);
 }
 
@@ -184,10 +184,10 @@ void Executor::abort_block() {
     remaps.drop_interrupted();
     outcome = Outcome::OK;
     awaited.isProbe = awaited.is_input = false;
-    state.spline.order = 0;
+    modes.spline.order = 0;
     state_kept_ = false;
     canon.clear();
-    state.comp.forget_move();
+    modes.comp.forget_move();
     lathe.forget_roughing();
 }
 
@@ -200,14 +200,14 @@ void Executor::push_call() {
 
 /// Fanuc-style calls have no arguments: #1 to #30 belong to the caller.
 bool Executor::pop_call(bool is_fanuc) {
-    const std::optional<State> modes = saved_modes.pop_call();
+    const std::optional<State> saved = saved_modes.pop_call();
     parameters.pop_call(is_fanuc);
     remaps.end_above(saved_modes.depth());
-    if (!modes) {
+    if (!saved) {
         return true;
     }
     keep_state();
-    return restore_modes(*modes, state, parts, fault);
+    return restore_modes(*saved, modes, parts, fault);
 }
 
 void Executor::drop_calls(std::size_t depth) {
@@ -221,16 +221,22 @@ void Executor::drop_calls(std::size_t depth) {
     }
 }
 
+void Executor::restore(const InterpreterState &kept) {
+    static_cast<InterpreterState &>(*this) = kept;
+    tools.forget();
+    awaited = {};
+}
+
 void Executor::announce() {
-    detail::announce(state, parts);
+    detail::announce(modes, parts);
 }
 
 void Executor::announce_modes() {
-    detail::announce_modes(state, parts);
+    detail::announce_modes(modes, parts);
 }
 
 void Executor::synch() {
-    synchronise(state, parts);
+    synchronise(modes, parts);
 }
 
 }  // namespace mw::gcode::detail

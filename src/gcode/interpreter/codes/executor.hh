@@ -8,7 +8,6 @@
 #include <string>
 
 #include "gcode/canon/canon_queue.hh"
-#include "gcode/interpreter/codes/active_codes.hh"
 #include "gcode/interpreter/codes/around_block.hh"
 #include "gcode/interpreter/codes/attributes.hh"
 #include "gcode/interpreter/codes/block_reader.hh"
@@ -16,11 +15,9 @@
 #include "gcode/interpreter/codes/kept_parameters.hh"
 #include "gcode/interpreter/codes/lathe/lathe_cycles.hh"
 #include "gcode/interpreter/codes/remaps.hh"
-#include "gcode/interpreter/codes/saved_modes.hh"
-#include "gcode/interpreter/codes/state.hh"
 #include "gcode/interpreter/codes/tools/tool_table.hh"
 #include "gcode/interpreter/expressions/evaluator.hh"
-#include "gcode/interpreter/interpreter.hh"
+#include "gcode/interpreter/interpreter_state.hh"
 #include "gcode/syntax/program.hh"
 
 namespace mw::gcode::detail {
@@ -44,7 +41,7 @@ struct RunningBlock {
     int number = -1;          ///< its N word
 };
 
-class Executor : public BuiltIns {
+class Executor : public InterpreterState, public BuiltIns {
   public:
     Executor(World &world, ToolSource &tool_source, ParameterSource &source, const Settings &settings,
              Names &names);
@@ -55,12 +52,9 @@ class Executor : public BuiltIns {
     /// Runs the rest of a block that a remapped code has interrupted.
     bool resume(const PendingBlock &pending);
 
-    // The parts. Each can undo the changes of a failed block; the state by a copy.
-    State state;
-    Parameters parameters;
+    // The parts beside the state. Each can undo the changes of a failed block; the state by a copy.
     ToolTable tools;
     CanonQueue canon;
-    SavedModes saved_modes;
     Remaps remaps;
     LatheCycles lathe;
     // Results of a block for the caller.
@@ -69,8 +63,6 @@ class Executor : public BuiltIns {
     FanucCall fanuc_call;  ///< the M98 of the outcome
     Awaited awaited;
     BlockPlace block_place;
-    ReturnValue returned;
-    BlockCodes block_codes;
     ScriptLevels script_levels;
     std::vector<NurbsPoint> control_points;  ///< of the open NURBS
     /// The parts as codes use them.
@@ -106,9 +98,9 @@ class Executor : public BuiltIns {
     void announce_modes();
     /// Reads positions, tools and switches from the machine.
     void synch();
-    ActiveCodes active_codes() const {
-        return detail::active_codes(state, parameters, block_codes, block_place.sequence);
-    }
+    ActiveCodes active_codes() const { return InterpreterState::active_codes(block_place.sequence); }
+    /// Returns to a state; entries of the tool table and awaited results are forgotten.
+    void restore(const InterpreterState &kept);
 
     // exec_outside.cc: values that programs and scripts read.
     AttributeSources attribute_sources();
@@ -131,7 +123,7 @@ class Executor : public BuiltIns {
     BlockSettings settings_;
     AxisCheck axis_check_;
     BlockCodes codes_before_;
-    State before_;  ///< state before the block, saved by keep_state()
+    State before_;  ///< modes before the block, saved by keep_state()
     bool state_kept_ = false;
     ScriptNames *script_names_ = nullptr;
     mutable std::set<std::string, std::less<>> ini_names_read_;

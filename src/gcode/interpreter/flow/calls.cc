@@ -160,7 +160,7 @@ bool leave_call(const ReturnValue &value, const FlowParts &parts) {
     if (call.kind == CallKind::PROFILE) {
         executor.canon.enter_block(here.program, call.line, call.line, false, levels.call_level());
         executor.keep_state();
-        return executor.lathe.finish(executor.state, executor.canon, executor.fault);
+        return executor.lathe.finish(executor.modes, executor.canon, executor.fault);
     }
     return true;
 }

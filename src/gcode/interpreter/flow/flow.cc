@@ -140,7 +140,7 @@ Step Flow::percent() {
         return fail_here(fmt::format("The file ends in subroutine o<{}> without its end",
                                      call_name(levels_.top(), names_)));
     }
-    if (executor_.state.spline.order != 0) {
+    if (executor_.modes.spline.order != 0) {
         return fail_here("The file ends inside of a NURBS: G5.3 ends it");
     }
     executor_.canon.take(Finish{});
@@ -291,7 +291,7 @@ bool Flow::note_turn(const LoopTurn &turn) {
     }
     // Scripts and changed tool tables have state that is not compared here.
     const bool all_seen = turn.conditional && !scripts_.isOpen() && !executor_.tools.hasChanges();
-    if (!all_seen || !budget_.isRepeating(pass, executor_.state, executor_.parameters)) {
+    if (!all_seen || !budget_.isRepeating(pass, executor_.modes, executor_.parameters)) {
         return true;
     }
     executor_.fault.line = turn.first;

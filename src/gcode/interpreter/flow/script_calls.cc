@@ -166,7 +166,7 @@ bool ScriptCalls::call_remap(const FlowParts &parts) {
     PendingBlock pending = executor.remaps.take_interrupted();
     const Remap &remap = *pending.remap;
     const NameId label = parts.names.intern(remap.target());
-    if (const std::string missing = missing_words(pending, executor.state); !missing.empty()) {
+    if (const std::string missing = missing_words(pending, executor.modes); !missing.empty()) {
         executor.fault.set(fmt::format("user-defined {}: missing: {}", remap.name, missing));
         executor.fault.block_text = call_text(remap);
         return false;

@@ -178,7 +178,7 @@ ToolEntry ScriptView::tool(int index) const {
     if (index != 0 || executor_.tools.isRandom()) {
         return executor_.tools.entry(index);
     }
-    const State &state = executor_.state;
+    const State &state = executor_.modes;
     if (state.tool.in_spindle == 0) {
         ToolEntry none;
         none.toolno = -1;
@@ -199,11 +199,11 @@ ToolEntry ScriptView::tool(int index) const {
 }
 
 double ScriptView::spindle_speed(int spindle) const {
-    return executor_.state.spindles[static_cast<std::size_t>(spindle)].speed;
+    return executor_.modes.spindles[static_cast<std::size_t>(spindle)].speed;
 }
 
 void ScriptView::set_spindle_speed(int spindle, double speed) {
-    executor_.state.spindles[static_cast<std::size_t>(spindle)].speed = speed;
+    executor_.modes.spindles[static_cast<std::size_t>(spindle)].speed = speed;
 }
 
 // ------------------------------------------------------------------------------- blocks and levels of call

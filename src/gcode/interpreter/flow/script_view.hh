@@ -44,12 +44,12 @@ class ScriptView final : public InterpreterView {
     ActiveCodes active_codes() const override { return executor_.active_codes(); }
     double spindle_speed(int spindle) const override;
     void set_spindle_speed(int spindle, double speed) override;
-    Pose tool_offset() const override { return executor_.state.frame.tool; }
-    void set_tool_offset(const Pose &offset) override { move_by_tool_offset(executor_.state, offset); }
+    Pose tool_offset() const override { return executor_.modes.frame.tool; }
+    void set_tool_offset(const Pose &offset) override { move_by_tool_offset(executor_.modes, offset); }
     int count_tools() const override { return executor_.tools.count(); }
     ToolEntry tool(int index) const override;
     int find_tool(int number) const override { return executor_.tools.index_of_tool(number); }
-    void load_tool() override { load_tool_at_index(executor_.tools, executor_.state.tool); }
+    void load_tool() override { load_tool_at_index(executor_.tools, executor_.modes.tool); }
     void synch() override { executor_.synch(); }
 
     ScriptBlock block(int level) const override;

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "gcode/interpreter/interpreter_state.hh"
+
 namespace mw::task {
 
 BlockSearch::BlockSearch(gcode::Interpreter &interpreter, CanonSwitch &machine,
@@ -56,8 +58,8 @@ BlockSearch::Outcome BlockSearch::look_at_line() {
                               interpreter_.subroutine(), next.main_line))
                         : Outcome::GOING;
     }
-    const std::string why = interpreter_.why_no_start();
-    was_threading_ = interpreter_.isThreading();
+    const std::string why = interpreter_.state().why_no_start();
+    was_threading_ = interpreter_.state().isThreading();
     if (matching) {
         return !doubt_.empty()
                    ? refuse_before(fmt::format("the state at line {} depends on {}", line_, doubt_))
@@ -70,7 +72,7 @@ BlockSearch::Outcome BlockSearch::look_at_line() {
 
 /// Checks that the calculated calls are those that the machine has executed.
 BlockSearch::Outcome BlockSearch::check_calls() {
-    if (was_threading_ && interpreter_.isThreading()) {
+    if (was_threading_ && interpreter_.state().isThreading()) {
         return refuse_before("it is in the middle of moves that follow the spindle");
     }
     return !calls_.has_value() || machine_.sum().value() == *calls_

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "gcode/interpreter/plugin.hh"
+#include "gcode/interpreter/read_ahead.hh"
 #include "gcode/interpreter/scripts/script_stop.hh"
 
 namespace mw::task {
@@ -196,7 +197,7 @@ Result<> ProgramReader::begin_search(int line) {
         return fail("only programs in G-code (RS-274/NGC) can begin at a line", {},
                     "[TASK]INTERPRETER names another language");
     }
-    kept_.modes = rs274_->snapshot();
+    kept_.modes = std::make_unique<gcode::InterpreterState>(rs274_->state());
     kept_.frame = frame_;
     rs274_->read_ahead().stop();
     const SearchMachine::Real real{sources_.world, sources_.tools, sources_.parameters,
@@ -210,14 +211,14 @@ Result<> ProgramReader::begin_recovery(StartRecord record, const LostPlace &plac
         return fail("only programs in G-code (RS-274/NGC) can be continued", {},
                     "[TASK]INTERPRETER names another language");
     }
-    const auto modes = rs274_->unpack_kept(record.interpreter);
+    const auto modes = rs274_->unpack_state(record.interpreter);
     if (!modes.has_value()) {
         return std::unexpected(modes.error());
     }
-    kept_.modes = rs274_->snapshot();
+    kept_.modes = std::make_unique<gcode::InterpreterState>(rs274_->state());
     kept_.frame = frame_;
     rs274_->read_ahead().stop();
-    rs274_->restore(**modes);
+    rs274_->restore(*modes);
     if (!frame_.unpack(record.frame)) {
         cancel_search();
         return fail("coordinates cannot be read");
@@ -234,7 +235,7 @@ Result<> ProgramReader::keep_start(StartRecord &record) const {
     if (rs274_ == nullptr) {
         return fail("it is in another language than G-code");
     }
-    auto packed = rs274_->pack_kept();
+    auto packed = rs274_->pack_state();
     if (!packed.has_value()) {
         return std::unexpected(packed.error());
     }

@@ -11,6 +11,7 @@
 
 #include "gcode/canon/machine_frame.hh"
 #include "gcode/interpreter/interpreter.hh"
+#include "gcode/interpreter/interpreter_state.hh"
 #include "machine/task/run/block_search.hh"
 #include "machine/task/run/canon_switch.hh"
 #include "machine/task/run/modal_code_history.hh"
@@ -22,7 +23,7 @@
 namespace mw::task {
 
 struct KeptState {
-    std::shared_ptr<const gcode::Interpreter::Snapshot> modes;
+    std::unique_ptr<const gcode::InterpreterState> modes;
     std::optional<gcode::MachineFrame> frame;
 };
 

@@ -16,7 +16,7 @@
 namespace mw::task {
 
 struct StartRecord {
-    std::string interpreter;  ///< Interpreter::pack_kept()
+    std::string interpreter;  ///< Interpreter::pack_state()
     std::string frame;        ///< MachineFrame::pack()
     gcode::MachineSnapshot machine;
     bool isBlockDelete = true, isOptionalStop = true;

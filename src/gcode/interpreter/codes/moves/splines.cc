@@ -166,10 +166,10 @@ Effect end_nurbs(GCode, const BlockValues &values, State &state, CodeParts &part
         return values.fail("G5.3 ends a NURBS, and there is no G5.2 before it");
     }
     if (state.spline.count < static_cast<std::size_t>(state.spline.order)) {
-        return values.fail(fmt::format(
-            "A NURBS of order {} needs at least {} control points, the start among them; "
-            "there are {}",
-            state.spline.order, state.spline.order, state.spline.count));
+        return values.fail(
+            fmt::format("A NURBS of order {} needs at least {} control points, the start among them; "
+                        "there are {}",
+                        state.spline.order, state.spline.order, state.spline.count));
     }
     parts.control_points.resize(state.spline.count);
     NurbsFeed nurbs{parts.control_points, state.spline.order, state.spline.end};

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Modes and parameters of the interpreter as bytes, so that another process can continue a program.
-#include "gcode/interpreter/interpreter_snapshot.hh"
+#include "gcode/interpreter/interpreter_state.hh"
 
 #include "base/bytes.hh"
+#include "gcode/interpreter/codes/active_codes.hh"
 
 namespace mw::gcode {
 namespace {
@@ -154,39 +154,61 @@ void unpack_names(Unpacker &in, bool global, detail::Parameters &parameters, det
 
 }  // namespace
 
-Result<std::string> pack(const Interpreter::Snapshot &kept, const detail::Names &names) {
-    const char *const why = why_not_packed(kept.state);
+ActiveCodes InterpreterState::active_codes(int sequence) const {
+    return detail::active_codes(modes, parameters, block_codes, sequence);
+}
+
+bool InterpreterState::isThreading() const {
+    return modes.motion == G(33) || modes.motion == G(33, 1);
+}
+
+std::string InterpreterState::why_no_start() const {
+    if (modes.comp.isOn() || modes.comp.isExit()) {
+        return "cutter compensation is on there";
+    }
+    if (modes.spline.order != 0) {
+        return "it is in the middle of a NURBS";
+    }
+    const bool is_cycle =
+        modes.motion >= G(73) && modes.motion <= G(89) && modes.motion != detail::MOTION_NONE;
+    if (modes.cycle.running && is_cycle) {
+        return "it is in the middle of a canned cycle";
+    }
+    return isThreading() ? "moves follow the spindle there" : "";
+}
+
+Result<std::string> pack(const InterpreterState &state, const detail::Names &names) {
+    const char *const why = why_not_packed(state.modes);
     if (why != nullptr) {
         return fail(why);
     }
     Packer out;
     out(FORM);
-    fields(out, kept.state);
-    pack_numbers(out, kept.parameters);
-    pack_names(out, kept.parameters.globals(), names);
-    pack_names(out, kept.parameters.locals(0), names);
-    const State *const saved = kept.saved_modes.saved();
+    fields(out, state.modes);
+    pack_numbers(out, state.parameters);
+    pack_names(out, state.parameters.globals(), names);
+    pack_names(out, state.parameters.locals(0), names);
+    const State *const saved = state.saved_modes.saved();
     const bool is_saved = saved != nullptr && why_not_packed(*saved) == nullptr;
     out(is_saved);
     if (is_saved) {
         fields(out, *saved);
-        out((kept.saved_modes.status(0) & 2) != 0);
+        out((state.saved_modes.status(0) & 2) != 0);
     }
     return out.bytes();
 }
 
-Result<Interpreter::Snapshot> unpack(std::string_view bytes, const Interpreter::Snapshot &now,
-                                     detail::Names &names) {
+Result<InterpreterState> unpack(std::string_view bytes, const InterpreterState &now, detail::Names &names) {
     Unpacker in(bytes);
     std::uint32_t form = 0;
     in(form);
     if (form != FORM) {
         return fail("modes and parameters were written by another version");
     }
-    Interpreter::Snapshot kept{now.state, now.parameters, {}, now.returned, now.block_codes};
-    kept.state.comp = {};
-    kept.state.spline = {};
-    fields(in, kept.state);
+    InterpreterState kept{now.modes, now.parameters, {}, now.returned, now.block_codes};
+    kept.modes.comp = {};
+    kept.modes.spline = {};
+    fields(in, kept.modes);
     unpack_numbers(in, kept.parameters);
     kept.parameters.forget_names();
     unpack_names(in, true, kept.parameters, names);
@@ -195,13 +217,13 @@ Result<Interpreter::Snapshot> unpack(std::string_view bytes, const Interpreter::
     bool is_saved = false, for_return = false;
     in(is_saved);
     if (is_saved) {
-        State saved = kept.state;
+        State saved = kept.modes;
         fields(in, saved);
         in(for_return);
         for_return ? kept.saved_modes.save_until_return(saved) : kept.saved_modes.save(saved);
         kept.saved_modes.commit();
     }
-    if (!in.isComplete() || !canBe(kept.state)) {
+    if (!in.isComplete() || !canBe(kept.modes)) {
         return fail("modes and parameters cannot be read");
     }
     return kept;
