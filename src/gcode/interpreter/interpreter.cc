@@ -5,9 +5,9 @@
 
 #include "base/atomic_file.hh"
 #include "gcode/interpreter/codes/executor.hh"
+#include "gcode/interpreter/codes/synchronisation.hh"
 #include "gcode/interpreter/flow/flow.hh"
 #include "gcode/interpreter/read_ahead.hh"
-#include "gcode/syntax/syntax_errors.hh"
 
 namespace mw::gcode {
 
@@ -59,8 +59,8 @@ Result<> Interpreter::begin() {
             impl_->settings.start_tolerance_mm / (state.units == LengthUnits::INCH ? MM_PER_INCH : 1.0);
         executor.canon.take(SetMotionControlMode{state.control, state.tolerance});
     }
-    executor.announce();
-    executor.synch();
+    detail::announce(executor.modes, executor.parts);
+    detail::synchronise(executor.modes, executor.parts);
     executor.canon.flush(impl_->target);
     if (Result<> begun = impl_->flow.begin_scripts(); !begun) {
         return begun;
@@ -96,7 +96,7 @@ Step Interpreter::execute(std::string_view line) {
 }
 
 void Interpreter::synch() {
-    impl_->executor.synch();
+    detail::synchronise(impl_->executor.modes, impl_->executor.parts);
 }
 
 void Interpreter::abort() {
@@ -106,7 +106,7 @@ void Interpreter::abort() {
 void Interpreter::announce() {
     detail::Executor &executor = impl_->executor;
     executor.canon.enter_block(nullptr, 0, 0, false, 0);
-    executor.announce_modes();
+    detail::announce_modes(executor.modes, executor.parts);
     executor.canon.flush(impl_->target);
 }
 
@@ -148,8 +148,7 @@ bool Interpreter::isAtFileEnd() const {
 
 std::vector<diagnostics::Diagnostic> Interpreter::syntax_errors(int after, int most) {
     detail::Program *const main = impl_->flow.levels().main();
-    return main == nullptr ? std::vector<diagnostics::Diagnostic>()
-                           : detail::syntax_errors(*main, after, most);
+    return main == nullptr ? std::vector<diagnostics::Diagnostic>() : main->syntax_errors(after, most);
 }
 
 void Interpreter::mark_progress(double seconds) {

@@ -288,4 +288,23 @@ int Program::find_fanuc(NameId label) const {
     return found == fanuc_.end() ? 0 : found->second;
 }
 
+std::vector<diagnostics::Diagnostic> Program::syntax_errors(int after, int most) {
+    std::vector<diagnostics::Diagnostic> out;
+    const int last = count_lines();
+    for (int line = after + 1; line <= last && static_cast<int>(out.size()) < most; ++line) {
+        const BlockView view = block(line);
+        if (view.block->error != NO_ID) {
+            const SyntaxError &error = view.arena->errors[view.block->error];
+            out.push_back({diagnostics::Severity::ERROR,
+                           {error.message, {path(), line, static_cast<int>(error.column)}, {}},
+                           {},
+                           std::string(line_text(line))});
+        }
+        if (view.block->is_percent && line > first_content_line()) {
+            break;
+        }
+    }
+    return out;
+}
+
 }  // namespace mw::gcode::detail

@@ -10,6 +10,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "base/diagnostics/sink.hh"
 #include "base/result.hh"
 #include "gcode/syntax/ast.hh"
 #include "gcode/syntax/names.hh"
@@ -54,6 +55,8 @@ class Program {
     int find_bad_oword(int after, int before) const;
     /// The first line after `line` with an O word, 0 when there is none.
     int next_oword(int line) const;
+    /// Errors of lines after `after` up to the closing percent sign, `most` at most, without running them.
+    std::vector<diagnostics::Diagnostic> syntax_errors(int after, int most);
 
   private:
     struct OLine {

@@ -61,7 +61,7 @@ SpindleState &spindle(const Sources &e) {
 constexpr Row MODES[] = {
     {"active_spindle", [](const Sources &e) -> ScriptValue { return whole(e.state.active_spindle); },
      [](const Sources &e, double v) {
-         e.state.active_spindle = std::clamp(to_whole(v), 0, e.world.count_spindles() - 1);
+         e.state.active_spindle = std::clamp(to_whole(v), 0, e.parts.world.count_spindles() - 1);
      }},
     {"arc_not_allowed", [](const Sources &e) -> ScriptValue { return e.state.comp.isExit(); },
      [](const Sources &e, double v) { e.state.comp.set_exit(v != 0); }},
@@ -139,7 +139,8 @@ constexpr Row TOOLS[] = {
      [](const Sources &e, double v) { e.state.tool.index = to_whole(v); }},
     {"current_tool", [](const Sources &e) -> ScriptValue { return whole(e.state.tool.in_spindle); },
      [](const Sources &e, double v) { e.state.tool.in_spindle = to_whole(v); }},
-    {"random_toolchanger", [](const Sources &e) -> ScriptValue { return whole(e.tools.isRandom() ? 1 : 0); }},
+    {"random_toolchanger",
+     [](const Sources &e) -> ScriptValue { return whole(e.parts.tools.isRandom() ? 1 : 0); }},
     {"selected_pocket", [](const Sources &e) -> ScriptValue { return whole(e.state.tool.selected_index); },
      [](const Sources &e, double v) { e.state.tool.selected_index = to_whole(v); }},
     {"selected_tool", [](const Sources &e) -> ScriptValue { return whole(e.state.tool.selected); },
@@ -147,8 +148,8 @@ constexpr Row TOOLS[] = {
     {"tool_change_at_g30", [](const Sources &) -> ScriptValue { return whole(0); }},
     {"tool_change_quill_up", [](const Sources &) -> ScriptValue { return whole(0); }},
     {"tool_change_with_spindle_on", [](const Sources &) -> ScriptValue { return whole(0); }},
-    {"toolchange_flag", [](const Sources &e) -> ScriptValue { return e.awaited.is_tool_change; },
-     [](const Sources &e, double v) { e.awaited.is_tool_change = v != 0; }},
+    {"toolchange_flag", [](const Sources &e) -> ScriptValue { return e.parts.awaited.is_tool_change; },
+     [](const Sources &e, double v) { e.parts.awaited.is_tool_change = v != 0; }},
 };
 
 constexpr Row REST[] = {
@@ -173,20 +174,20 @@ constexpr Row REST[] = {
     {"debugmask", [](const Sources &e) -> ScriptValue { return whole(e.script_levels.debug_mask); },
      [](const Sources &e, double v) { e.script_levels.debug_mask = to_whole(v); }},
     {"input_digital", [](const Sources &) -> ScriptValue { return false; }},
-    {"input_flag", [](const Sources &e) -> ScriptValue { return e.awaited.is_input; },
-     [](const Sources &e, double v) { e.awaited.is_input = v != 0; }},
+    {"input_flag", [](const Sources &e) -> ScriptValue { return e.parts.awaited.is_input; },
+     [](const Sources &e, double v) { e.parts.awaited.is_input = v != 0; }},
     {"input_index", [](const Sources &) -> ScriptValue { return whole(-1); }},
     {"loggingLevel", [](const Sources &e) -> ScriptValue { return whole(e.script_levels.logging_level); },
      [](const Sources &e, double v) { e.script_levels.logging_level = to_whole(v); }},
     {"mdi_interrupt", [](const Sources &) -> ScriptValue { return false; }},
-    {"num_spindles", [](const Sources &e) -> ScriptValue { return whole(e.world.count_spindles()); }},
-    {"probe_flag", [](const Sources &e) -> ScriptValue { return e.awaited.isProbe; },
-     [](const Sources &e, double v) { e.awaited.isProbe = v != 0; }},
+    {"num_spindles", [](const Sources &e) -> ScriptValue { return whole(e.parts.world.count_spindles()); }},
+    {"probe_flag", [](const Sources &e) -> ScriptValue { return e.parts.awaited.isProbe; },
+     [](const Sources &e, double v) { e.parts.awaited.isProbe = v != 0; }},
     {"remap_level", [](const Sources &e) -> ScriptValue { return whole(e.running_remaps); }},
     {"return_value", [](const Sources &e) -> ScriptValue { return e.returned.value; },
      [](const Sources &e, double v) { e.returned.value = v; }},
-    {"sequence_number", [](const Sources &e) -> ScriptValue { return whole(e.place.line); }},
-    {"task", [](const Sources &e) -> ScriptValue { return whole(e.is_task ? 1 : 0); }},
+    {"sequence_number", [](const Sources &e) -> ScriptValue { return whole(e.parts.place.line); }},
+    {"task", [](const Sources &e) -> ScriptValue { return whole(e.parts.settings.is_task ? 1 : 0); }},
     {"value_returned", [](const Sources &e) -> ScriptValue { return whole(e.returned.set ? 1 : 0); },
      [](const Sources &e, double v) { e.returned.set = v != 0; }},
 };

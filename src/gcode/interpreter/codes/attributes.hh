@@ -7,11 +7,8 @@
 #include <vector>
 
 #include "base/result.hh"
-#include "gcode/interpreter/codes/around_block.hh"
-#include "gcode/interpreter/codes/state.hh"
-#include "gcode/interpreter/codes/tools/tool_table.hh"
+#include "gcode/interpreter/codes/code_parts.hh"
 #include "gcode/interpreter/scripts/script_host.hh"
-#include "gcode/interpreter/world.hh"
 
 namespace mw::gcode::detail {
 
@@ -19,13 +16,9 @@ namespace mw::gcode::detail {
 struct AttributeSources {
     State &state;
     ReturnValue &returned;
-    Awaited &awaited;
     ScriptLevels &script_levels;
-    const BlockPlace &place;
-    const World &world;
-    const ToolTable &tools;
+    const CodeParts &parts;
     int running_remaps = 0;
-    bool is_task = false;
 };
 
 /// Nothing when there is no such name.

@@ -23,7 +23,7 @@ const Code *lookup(GCode code, const Remaps &remaps) {
 }
 
 /// Inserts the code in the order of execution; rejects two of one group.
-bool insert_code(const Code &code, std::uint32_t column, BlockValues &values, Fault &fault) {
+bool insert_code(const Code &code, std::uint32_t column, BlockValues &values) {
     const std::uint32_t bit = 1u << static_cast<unsigned>(exclusive_group(code.group));
     if (code.group == Group::MOTION && values.motion != nullptr) {
         // G80 beside another motion code is redundant.
@@ -39,14 +39,15 @@ bool insert_code(const Code &code, std::uint32_t column, BlockValues &values, Fa
         }
     }
     if ((values.groups & bit) != 0) {
-        return fault.set(fmt::format("Two {} codes used from same modal group", letter_of(code.id)), column);
+        return values.fault->set(fmt::format("Two {} codes used from same modal group", letter_of(code.id)),
+                                 column);
     }
     values.groups |= bit;
     if (code.group == Group::MOTION) {
         values.motion = &code;
     }
     if (!values.codes.push_back({&code, column})) {
-        return fault.set("Too many codes in one block", column);
+        return values.fault->set("Too many codes in one block", column);
     }
     for (std::size_t i = values.codes.size() - 1;
          i > 0 && values.codes[i].code->group < values.codes[i - 1].code->group; --i) {
@@ -56,18 +57,18 @@ bool insert_code(const Code &code, std::uint32_t column, BlockValues &values, Fa
 }
 
 bool add_code(char letter_char, double number, std::uint32_t column, const Remaps &remaps,
-              BlockValues &values, Fault &fault) {
+              BlockValues &values) {
     constexpr double MOST = 9999;
     const double scaled = letter_char == 'g' ? number * 10.0 : number;
     if (number < 0.0) {
-        return fault.set(fmt::format("Negative {} code used", letter_char), column);
+        return values.fault->set(fmt::format("Negative {} code used", letter_char), column);
     }
     int whole = scaled <= MOST ? static_cast<int>(scaled) : -1;
     if (whole != scaled) {
         const double rounded = std::round(scaled);
         if (std::fabs(scaled - rounded) > CODE_TOLERANCE * 10 || rounded > MOST) {
-            return fault.set(fmt::format("Unknown {} code used: {}{}", letter_char, letter_char, number),
-                             column);
+            return values.fault->set(
+                fmt::format("Unknown {} code used: {}{}", letter_char, letter_char, number), column);
         }
         whole = static_cast<int>(rounded);
     }
@@ -75,26 +76,26 @@ bool add_code(char letter_char, double number, std::uint32_t column, const Remap
     const Code *code = lookup(id, remaps);
     if (code == nullptr && remaps.isAnyRunning()) {
         if (std::string recursion = remaps.recursion_text(id); !recursion.empty()) {
-            return fault.set(std::move(recursion), column);
+            return values.fault->set(std::move(recursion), column);
         }
     }
     if (code == nullptr && letter_char == 'm' && whole > 199) {
-        return fault.set(fmt::format("M-code greater than 199: M{}", whole), column);
+        return values.fault->set(fmt::format("M-code greater than 199: M{}", whole), column);
     }
     if (code == nullptr) {
-        return fault.set(
+        return values.fault->set(
             fmt::format("Unknown {} code used: {}", letter_char, fmt::format("{}{}", letter_char, number)),
             column);
     }
     if (id == G(53)) {
         values.is_machine_coordinates = true;
     }
-    return insert_code(*code, column, values, fault);
+    return insert_code(*code, column, values);
 }
 
 }  // namespace
 
-bool read_words(const BlockView &view, const BlockSources &sources, BlockValues &values, Fault &fault) {
+bool read_words(const BlockView &view, const BlockSources &sources, BlockValues &values) {
     const Arena &arena = *view.arena;
     const Block &block = *view.block;
     for (std::uint32_t i = 0; i < block.word_count; ++i) {
@@ -105,7 +106,7 @@ bool read_words(const BlockView &view, const BlockSources &sources, BlockValues 
         }
         const char letter_char = LETTERS[word.letter];
         if (letter_char == 'g' || letter_char == 'm') {
-            if (!add_code(letter_char, value, word.column, sources.remaps, values, fault)) {
+            if (!add_code(letter_char, value, word.column, sources.remaps, values)) {
                 return false;
             }
             continue;
@@ -114,7 +115,7 @@ bool read_words(const BlockView &view, const BlockSources &sources, BlockValues 
         values.value[word.letter] = value;
         values.column[word.letter] = word.column;
         if (letter_char == 'f' || letter_char == 's' || letter_char == 't') {
-            if (!insert_code(*lookup(word_code(letter_char), sources.remaps), word.column, values, fault)) {
+            if (!insert_code(*lookup(word_code(letter_char), sources.remaps), word.column, values)) {
                 return false;
             }
         }
@@ -122,7 +123,7 @@ bool read_words(const BlockView &view, const BlockSources &sources, BlockValues 
     return true;
 }
 
-bool choose_motion(BlockValues &values, GCode motion, const Remaps &remaps, Fault &fault) {
+bool choose_motion(BlockValues &values, GCode motion, const Remaps &remaps) {
     const bool cancelling = values.motion != nullptr && values.motion->id == MOTION_NONE;
     if ((values.motion != nullptr && !cancelling) || !values.hasAxes()) {
         return true;
@@ -133,23 +134,23 @@ bool choose_motion(BlockValues &values, GCode motion, const Remaps &remaps, Faul
         }
     }
     if (cancelling) {
-        return fault.set("Cannot use axis values with g80");
+        return values.fault->set("Cannot use axis values with g80");
     }
     const Code *const implied = motion == MOTION_NONE ? nullptr : lookup(motion, remaps);
     if (implied == nullptr) {  // a script may set any motion mode
-        return fault.set("Cannot use axis values without a g code that uses them");
+        return values.fault->set("Cannot use axis values without a g code that uses them");
     }
     values.motion_implied = true;
-    return insert_code(*implied, 0, values, fault);
+    return insert_code(*implied, 0, values);
 }
 
-bool check_machine_coordinates(const BlockValues &values, Fault &fault) {
+bool check_machine_coordinates(const BlockValues &values) {
     const GCode motion = values.motion != nullptr ? values.motion->id : MOTION_NONE;
     return !values.is_machine_coordinates || motion == G(0) || motion == G(1) ||
-           fault.set("Must use g0 or g1 with g53");
+           values.fault->set("Must use g0 or g1 with g53");
 }
 
-bool check_words(const BlockValues &values, Fault &fault) {
+bool check_words(const BlockValues &values) {
     constexpr std::uint32_t ALWAYS = letters("fstn");
     std::uint32_t allowed = ALWAYS;
     bool is_axis_user = false;
@@ -158,13 +159,14 @@ bool check_words(const BlockValues &values, Fault &fault) {
         allowed |= code.words | (code.usesAxes ? AXES : 0);
         const std::uint32_t missing = code.required & ~values.present;
         if (missing != 0) {
-            return fault.set(fmt::format("{} needs the word {}", code_name(code.id),
-                                         static_cast<char>(std::toupper(LETTERS[std::countr_zero(missing)]))),
-                             active.column);
+            return values.fault->set(
+                fmt::format("{} needs the word {}", code_name(code.id),
+                            static_cast<char>(std::toupper(LETTERS[std::countr_zero(missing)]))),
+                active.column);
         }
         if (code.usesAxes && values.hasAxes()) {
             if (is_axis_user) {
-                return fault.set("Cannot use two g codes that both use axis values", active.column);
+                return values.fault->set("Cannot use two g codes that both use axis values", active.column);
             }
             is_axis_user = true;
         }
@@ -172,14 +174,14 @@ bool check_words(const BlockValues &values, Fault &fault) {
     const std::uint32_t unused = values.present & ~allowed;
     if (unused != 0) {
         const int index = std::countr_zero(unused);
-        return fault.set(fmt::format("{} word with no g code that uses it",
-                                     static_cast<char>(std::toupper(LETTERS[index]))),
-                         values.column[static_cast<std::size_t>(index)]);
+        return values.fault->set(fmt::format("{} word with no g code that uses it",
+                                             static_cast<char>(std::toupper(LETTERS[index]))),
+                                 values.column[static_cast<std::size_t>(index)]);
     }
     return true;
 }
 
-bool AxisCheck::check(const BlockValues &values, unsigned mask, Fault &fault) {
+bool AxisCheck::check(const BlockValues &values, unsigned mask) {
     if (mask != mask_) {
         mask_ = mask;
         absent_ = 0;
@@ -194,10 +196,10 @@ bool AxisCheck::check(const BlockValues &values, unsigned mask, Fault &fault) {
     }
     const int index = std::countr_zero(absent);
     const char axis = LETTERS[index];
-    return fault.set(fmt::format("Bad character '{}' used", axis),
-                     values.column[static_cast<std::size_t>(index)],
-                     fmt::format("this machine has no axis {}: see [TRAJ]COORDINATES",
-                                 static_cast<char>(std::toupper(axis))));
+    return values.fault->set(fmt::format("Bad character '{}' used", axis),
+                             values.column[static_cast<std::size_t>(index)],
+                             fmt::format("this machine has no axis {}: see [TRAJ]COORDINATES",
+                                         static_cast<char>(std::toupper(axis))));
 }
 
 bool BlockSettings::apply(const BlockView &view, const Evaluator &evaluator, const Names &names,

@@ -21,19 +21,19 @@ struct BlockSources {
 };
 
 /// Reads the words into `values`, which must be clear.
-bool read_words(const BlockView &view, const BlockSources &sources, BlockValues &values, Fault &fault);
+bool read_words(const BlockView &view, const BlockSources &sources, BlockValues &values);
 /// Axis words belong to a code of the block that uses them, else to the current motion mode.
-bool choose_motion(BlockValues &values, GCode motion, const Remaps &remaps, Fault &fault);
+bool choose_motion(BlockValues &values, GCode motion, const Remaps &remaps);
 /// Checks that each code has its required words, and each word a code that uses it.
-bool check_words(const BlockValues &values, Fault &fault);
+bool check_words(const BlockValues &values);
 /// G53 needs a straight move: G0 or G1 in the block, or current with axis words.
-bool check_machine_coordinates(const BlockValues &values, Fault &fault);
+bool check_machine_coordinates(const BlockValues &values);
 
 /// Checks that the machine has the axes that a block names.
 class AxisCheck {
   public:
     /// `mask`: bit per axis of the machine.
-    bool check(const BlockValues &values, unsigned mask, Fault &fault);
+    bool check(const BlockValues &values, unsigned mask);
 
   private:
     unsigned mask_ = ~0U;       ///< mask for which absent_ was calculated

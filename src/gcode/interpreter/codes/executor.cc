@@ -4,7 +4,6 @@
 #include "gcode/interpreter/codes/comments.hh"
 #include "gcode/interpreter/codes/modes/restore_modes.hh"
 #include "gcode/interpreter/codes/moves/moves.hh"
-#include "gcode/interpreter/codes/synchronisation.hh"
 
 namespace mw::gcode::detail {
 namespace {
@@ -34,6 +33,14 @@ bool isStateSafe(const BlockValues &values, const State &state) {
     return values.codes.empty() || straight;
 }
 
+bool isIniName(std::string_view name) {
+    return name.starts_with("_ini[");
+}
+
+bool isHalName(std::string_view name) {
+    return name.starts_with("_hal[");
+}
+
 }  // namespace
 
 Executor::Executor(World &world, ToolSource &tool_source, ParameterSource &source, const Settings &settings,
@@ -52,7 +59,7 @@ bool Executor::run(const BlockView &view, std::string_view line_text) {
     values.clear();
     block_codes = {};
     outcome = Outcome::OK;
-    if (!read_words(view, {evaluator_, remaps}, values, fault) ||
+    if (!read_words(view, {evaluator_, remaps}, values) ||
         (view.block->setting_count > 0 && !settings_.apply(view, evaluator_, names_, parameters, fault))) {
         return false;
     }
@@ -68,9 +75,9 @@ bool Executor::run(const BlockView &view, std::string_view line_text) {
     if (view.block->word_count == 0) {
         return true;  // only settings and comments, as most lines of loops
     }
-    if (!choose_motion(values, modes.motion, remaps, fault) || !check_machine_coordinates(values, fault) ||
-        !check_open_nurbs(values, modes) || !axis_check_.check(values, parts.world.axis_mask(), fault) ||
-        !check_words(values, fault) || !check_rotary(values, modes)) {
+    if (!choose_motion(values, modes.motion, remaps) || !check_machine_coordinates(values) ||
+        !check_open_nurbs(values, modes) || !axis_check_.check(values, parts.world.axis_mask()) ||
+        !check_words(values) || !check_rotary(values, modes)) {
         return false;
     }
     block_codes = codes_of(values);
@@ -227,16 +234,50 @@ void Executor::restore(const InterpreterState &kept) {
     awaited = {};
 }
 
-void Executor::announce() {
-    detail::announce(modes, parts);
+// --------------------------------------------------------------------- values that programs and scripts read
+
+AttributeSources Executor::attribute_sources() {
+    return {modes, returned, script_levels, parts, remaps.count_running()};
 }
 
-void Executor::announce_modes() {
-    detail::announce_modes(modes, parts);
+KeptSources Executor::kept_sources() const {
+    return {modes, returned, parts, modes.comp.compensated(modes.position, modes.plane),
+            remaps.count_running()};
 }
 
-void Executor::synch() {
-    synchronise(modes, parts);
+bool Executor::isBuiltInName(std::string_view name) const {
+    if (script_names_ != nullptr && script_names_->hasName(name)) {
+        return true;
+    }
+    return isIniName(name) || isHalName(name) || isKeptName(name);
+}
+
+std::optional<double> Executor::built_in(std::string_view name) const {
+    if (script_names_ != nullptr && script_names_->hasName(name)) {
+        return script_names_->value_of(name);
+    }
+    if (isIniName(name)) {
+        const std::size_t close = name.find(']');
+        if (close == std::string_view::npos || !parts.settings.ini_readable) {
+            return std::nullopt;
+        }
+        const auto value = source_.ini_value(name.substr(5, close - 5), name.substr(close + 1));
+        if (value && !ini_names_read_.contains(name)) {
+            ini_names_read_.emplace(name);
+        }
+        return value;
+    }
+    if (isHalName(name)) {
+        if (!parts.settings.hal_readable) {
+            return std::nullopt;
+        }
+        return source_.hal_value(name.substr(5, name.find(']') - 5));
+    }
+    return kept_value(name, kept_sources());
+}
+
+double Executor::built_in(int number) const {
+    return kept_value(number, kept_sources());
 }
 
 }  // namespace mw::gcode::detail

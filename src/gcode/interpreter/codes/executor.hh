@@ -92,17 +92,11 @@ class Executor : public InterpreterState, public BuiltIns {
     /// Returns to `depth` calls, without restoring the modes that M73 saved.
     void drop_calls(std::size_t depth = 0);
 
-    /// Announces the state to the canon, as at the start of a program.
-    void announce();
-    /// Announces offsets, spindle speeds and switches again: the canon may have lost some of them.
-    void announce_modes();
-    /// Reads positions, tools and switches from the machine.
-    void synch();
     ActiveCodes active_codes() const { return InterpreterState::active_codes(block_place.sequence); }
     /// Returns to a state; entries of the tool table and awaited results are forgotten.
     void restore(const InterpreterState &kept);
 
-    // exec_outside.cc: values that programs and scripts read.
+    // Values that programs and scripts read.
     AttributeSources attribute_sources();
     void set_script_names(ScriptNames *names) { script_names_ = names; }
     /// INI values that the program has read, as names of parameters.

@@ -23,12 +23,12 @@ double flag(bool set) {
 
 /// Pocket number of the entry at `index`, -1 for none; 0 is the spindle of a random changer.
 double pocket_at(const Sources &e, int index) {
-    if (e.tools == nullptr || index < 0 || index >= e.tools->count()) {
+    const ToolTable &tools = e.parts.tools;
+    if (index < 0 || index >= tools.count()) {
         return index;
     }
-    const ToolEntry entry = e.tools->entry(index);
-    const bool is_spindle = index == 0;
-    return is_spindle ? (e.tools->isRandom() && entry.toolno >= 0 ? 0 : -1) : entry.pocketno;
+    const ToolEntry entry = tools.entry(index);
+    return index > 0 ? entry.pocketno : tools.isRandom() && entry.toolno >= 0 ? 0 : -1;
 }
 
 struct Row {
@@ -46,12 +46,13 @@ constexpr double VERSION_MAJOR = 2.9, VERSION_MINOR = 0.0;  // version of the di
 constexpr Row ROWS[] = {
     {"_vmajor", [](const Sources &) { return VERSION_MAJOR; }},
     {"_vminor", [](const Sources &) { return VERSION_MINOR; }},
-    {"_line", [](const Sources &e) { return static_cast<double>(e.place.line); }},
+    {"_line", [](const Sources &e) { return static_cast<double>(e.parts.place.line); }},
     {"_motion_mode", [](const Sources &e) { return static_cast<double>(number_of(e.state.motion)); }},
     {"_plane", [](const Sources &e) { return static_cast<double>(number_of(plane_code(e.state.plane))); }},
     {"_ccomp", [](const Sources &e) { return static_cast<double>(number_of(e.state.comp.code())); }},
     {"_metric", [](const Sources &e) { return flag(e.state.units == LengthUnits::MM); }},
-    {"_metric_machine", [](const Sources &e) { return flag(e.world.machine_units() == LengthUnits::MM); }},
+    {"_metric_machine",
+     [](const Sources &e) { return flag(e.parts.world.machine_units() == LengthUnits::MM); }},
     {"_imperial", [](const Sources &e) { return flag(e.state.units == LengthUnits::INCH); }},
     {"_absolute", [](const Sources &e) { return flag(!e.state.incremental); }},
     {"_incremental", [](const Sources &e) { return flag(e.state.incremental); }},
@@ -88,8 +89,8 @@ constexpr Row ROWS[] = {
     {"_selected_pocket", [](const Sources &e) { return pocket_at(e, e.state.tool.selected_index); }},
     {"_value", [](const Sources &e) { return e.returned.value; }},
     {"_value_returned", [](const Sources &e) { return flag(e.returned.set); }},
-    {"_task", [](const Sources &e) { return flag(e.is_task); }},
-    {"_call_level", [](const Sources &e) { return static_cast<double>(e.place.call_level); }},
+    {"_task", [](const Sources &e) { return flag(e.parts.settings.is_task); }},
+    {"_call_level", [](const Sources &e) { return static_cast<double>(e.parts.place.call_level); }},
     {"_remap_level", [](const Sources &e) { return static_cast<double>(e.running_remaps); }},
 };
 
@@ -162,7 +163,7 @@ double kept_value(int number, const KeptSources &sources) {
     case P_TOOL_FRONTANGLE: return state.tool.frontangle;
     case P_TOOL_BACKANGLE: return state.tool.backangle;
     case P_TOOL_ORIENTATION: return state.tool.orientation;
-    default: return sources.parameters.get(number);
+    default: return sources.parts.parameters.get(number);
     }
 }
 

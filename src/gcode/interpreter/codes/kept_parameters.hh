@@ -7,11 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "gcode/interpreter/codes/around_block.hh"
-#include "gcode/interpreter/codes/state.hh"
-#include "gcode/interpreter/codes/tools/tool_table.hh"
-#include "gcode/interpreter/expressions/parameters.hh"
-#include "gcode/interpreter/world.hh"
+#include "gcode/interpreter/codes/code_parts.hh"
 
 namespace mw::gcode::detail {
 
@@ -19,13 +15,9 @@ namespace mw::gcode::detail {
 struct KeptSources {
     const State &state;
     const ReturnValue &returned;
-    const BlockPlace &place;
-    const Parameters &parameters;  ///< values that are not in the state
-    const World &world;
+    const CodeParts &parts;
     Pose position;  ///< tool position including compensation [program units, degrees]
     int running_remaps = 0;
-    bool is_task = false;
-    const ToolTable *tools = nullptr;  ///< without it pockets are reported as indices in the table
 };
 
 bool isKeptName(std::string_view name);

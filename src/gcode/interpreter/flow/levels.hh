@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/diagnostics/sink.hh"
-#include "gcode/interpreter/codes/remap.hh"
+#include "gcode/interpreter/codes/remaps.hh"
 #include "gcode/interpreter/interpreter.hh"
 #include "gcode/interpreter/scripts/script_host.hh"
 #include "gcode/syntax/program.hh"

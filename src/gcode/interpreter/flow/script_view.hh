@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "gcode/interpreter/codes/synchronisation.hh"
 #include "gcode/interpreter/codes/tools/tools.hh"
 #include "gcode/interpreter/flow/flow_parts.hh"
 #include "gcode/interpreter/scripts/script_host.hh"
@@ -50,7 +51,7 @@ class ScriptView final : public InterpreterView {
     ToolEntry tool(int index) const override;
     int find_tool(int number) const override { return executor_.tools.index_of_tool(number); }
     void load_tool() override { load_tool_at_index(executor_.tools, executor_.modes.tool); }
-    void synch() override { executor_.synch(); }
+    void synch() override { synchronise(executor_.modes, executor_.parts); }
 
     ScriptBlock block(int level) const override;
     std::vector<ScriptContext> contexts() const override;

@@ -22,7 +22,7 @@ class BlockReaderTest : public testing::Test {
     bool read(const std::string &line) {
         program = std::make_unique<Program>("a.ngc", line + "\n", names);
         values.clear();
-        return read_words(program->block(1), {evaluator, remaps}, values, fault);
+        return read_words(program->block(1), {evaluator, remaps}, values);
     }
     /// Codes in the order of execution.
     std::vector<GCode> codes() const {
@@ -71,24 +71,24 @@ TEST_F(BlockReaderTest, UnknownCodesAreRefused) {
 
 TEST_F(BlockReaderTest, AxisWordsAloneMeanTheMotionInForce) {
     ASSERT_TRUE(read("X1"));
-    EXPECT_FALSE(choose_motion(values, MOTION_NONE, remaps, fault));
-    ASSERT_TRUE(choose_motion(values, G(1), remaps, fault));
+    EXPECT_FALSE(choose_motion(values, MOTION_NONE, remaps));
+    ASSERT_TRUE(choose_motion(values, G(1), remaps));
     EXPECT_TRUE(values.motion_implied);
     EXPECT_EQ(codes(), (std::vector<GCode>{G(1)}));
 }
 
 TEST_F(BlockReaderTest, AxisWordsOfAnotherCodeAreNoMotion) {
     ASSERT_TRUE(read("G92 X1"));
-    ASSERT_TRUE(choose_motion(values, G(1), remaps, fault));
+    ASSERT_TRUE(choose_motion(values, G(1), remaps));
     EXPECT_EQ(codes(), (std::vector<GCode>{G(92)}));
 }
 
 TEST_F(BlockReaderTest, WordsThatNoCodeUsesAndWordsThatAreMissingAreNamed) {
     ASSERT_TRUE(read("G4 P1 Q2"));
-    EXPECT_FALSE(check_words(values, fault));
+    EXPECT_FALSE(check_words(values));
     EXPECT_EQ(fault.message, "Q word with no g code that uses it");
     ASSERT_TRUE(read("M62"));
-    EXPECT_FALSE(check_words(values, fault));
+    EXPECT_FALSE(check_words(values));
     EXPECT_EQ(fault.message, "m62 needs the word P");
 }
 
@@ -96,10 +96,10 @@ TEST_F(BlockReaderTest, AxesThatTheMachineLacksAreRefusedAlsoAfterItChanges) {
     constexpr unsigned XYZ = 7, XYZA = 15;
     AxisCheck axes;
     ASSERT_TRUE(read("G0 A1"));
-    EXPECT_FALSE(axes.check(values, XYZ, fault));
+    EXPECT_FALSE(axes.check(values, XYZ));
     EXPECT_EQ(fault.message, "Bad character 'a' used");
-    EXPECT_TRUE(axes.check(values, XYZA, fault));
-    EXPECT_FALSE(axes.check(values, XYZ, fault));
+    EXPECT_TRUE(axes.check(values, XYZA));
+    EXPECT_FALSE(axes.check(values, XYZ));
 }
 
 TEST_F(BlockReaderTest, ParametersAreSetAllAtOnce) {

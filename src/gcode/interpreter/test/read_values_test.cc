@@ -12,25 +12,24 @@
 #include "gcode/interpreter/codes/attributes.hh"
 #include "gcode/interpreter/codes/comments.hh"
 #include "gcode/interpreter/codes/kept_parameters.hh"
-#include "gcode/interpreter/test/mill.hh"
+#include "gcode/interpreter/test/code_rig.hh"
 
 namespace mw::gcode::detail {
 namespace {
 
-struct Attributes {
-    AttributeSources sources() { return {state, returned, awaited, levels, place, mill, tools, 2, true}; }
+struct Attributes : test::CodeRig {
+    Attributes() {
+        place = {12, 34, 1};
+        settings.is_task = true;
+    }
+    AttributeSources sources() { return {state, returned, levels, parts, 2}; }
     std::optional<ScriptValue> get(std::string_view name) { return attribute(name, sources()); }
     bool set(std::string_view name, const ScriptValue &value) {
         return set_attribute(name, value, sources()).has_value();
     }
 
-    State state;
     ReturnValue returned;
-    Awaited awaited;
     ScriptLevels levels;
-    BlockPlace place{12, 34, 1};
-    test::Mill mill;
-    ToolTable tools{mill};
 };
 
 double number(const std::optional<ScriptValue> &value) {
@@ -112,14 +111,14 @@ TEST(Attributes, OnlyFiniteNumbersAreTaken) {
     EXPECT_EQ(letter_of(values.state.motion), 'g') << "bounded, not undefined";
 }
 
-struct Kept {
-    KeptSources sources() { return {state, returned, place, parameters, mill, position, 2, true}; }
+struct Kept : test::CodeRig {
+    Kept() {
+        place = {12, 34, 3};
+        settings.is_task = true;
+    }
+    KeptSources sources() { return {state, returned, parts, position, 2}; }
 
-    State state;
     ReturnValue returned{5, true};
-    BlockPlace place{12, 34, 3};
-    Parameters parameters;
-    test::Mill mill;
     Pose position;
 };
 
