@@ -25,7 +25,8 @@ using detail::OKind;
 
 /// Indices in ActiveCodes.
 enum Place : std::size_t { MOTION = 1, UNITS = 5, DISTANCE = 6, FEED_MODE = 7, SPINDLE_MODE = 13 };
-constexpr int INCHES = 200, INCREMENTAL = 910, INVERSE_TIME = 930, PER_REVOLUTION = 950, SURFACE_SPEED = 960;
+constexpr int INCHES = number_of(G(20)), INCREMENTAL = number_of(G(91)), INVERSE_TIME = number_of(G(93)),
+              PER_REVOLUTION = number_of(G(95)), SURFACE_SPEED = number_of(G(96));
 
 /// An interpreter without a machine.
 class Bench {
@@ -69,11 +70,6 @@ class Bench {
     Interpreter interpreter_;
     bool started_ = false;
 };
-
-std::string code_name(int tenfold) {
-    return tenfold % 10 == 0 ? fmt::format("G{}", tenfold / 10)
-                             : fmt::format("G{}.{}", tenfold / 10, tenfold % 10);
-}
 
 std::string_view oword_text(OKind kind) {
     switch (kind) {
@@ -294,7 +290,7 @@ class Explainer {
         std::string out = "in force:";
         for (std::size_t i = 1; i < codes_.g.size(); ++i) {
             const detail::Code *const code = detail::find_code(make_code('g', codes_.g[i]));
-            out += code != nullptr && i != 2 ? " " + code_name(codes_.g[i]) : "";
+            out += code != nullptr && i != 2 ? " " + to_upper(code_name(code->id)) : "";
         }
         return out + fmt::format(", F{:g} {}, S{:g}\n", codes_.settings[1], feed_unit(), codes_.settings[2]);
     }

@@ -41,7 +41,7 @@ CodeFunction use_coordinates, shift_axes, go_to_reference;
 CodeFunction set_speed, turn_spindle, orient_spindle, set_spindle_mode;
 // switches/switches.cc: M7 to M9, M48 to M53, M62 to M65, M67 and M68, M100 to M199, G4; M66, which waits.
 CodeFunction switch_coolant, switch_overrides, set_output, run_user_code, dwell, wait_for_input;
-// switches/program_end.cc: M0, M1, M60; M2 and M30, which change parameters; M98 and M99.
+// switches/program_flow.cc: M0, M1, M60; M2 and M30, which change parameters; M98 and M99.
 CodeFunction stop_program, end_program, call_or_return;
 
 }  // namespace mw::gcode::detail

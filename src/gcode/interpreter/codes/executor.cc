@@ -2,7 +2,6 @@
 #include "gcode/interpreter/codes/executor.hh"
 
 #include "gcode/interpreter/codes/comments.hh"
-#include "gcode/interpreter/codes/modes/restore_modes.hh"
 #include "gcode/interpreter/codes/moves/moves.hh"
 
 namespace mw::gcode::detail {

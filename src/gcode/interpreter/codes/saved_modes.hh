@@ -11,6 +11,9 @@
 
 namespace mw::gcode::detail {
 
+struct CodeParts;
+struct Fault;
+
 /// Saving or discarding modes takes effect at once and is undone when the block fails. Calls are not undone:
 /// a block that enters or ends a call commits its earlier changes.
 class SavedModes {
@@ -58,5 +61,9 @@ class SavedModes {
     std::vector<Level> levels_{1};
     std::vector<Undo> log_;  ///< changes of the current block; its levels exist
 };
+
+/// Makes saved modes the current ones, except positions, motion mode, tool and offsets of coordinate systems.
+/// False after setting the fault.
+bool restore_modes(const State &saved, State &state, CodeParts &parts, Fault &fault);
 
 }  // namespace mw::gcode::detail

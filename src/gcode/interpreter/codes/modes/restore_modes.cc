@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "gcode/interpreter/codes/modes/restore_modes.hh"
-
 #include "gcode/interpreter/codes/active_codes.hh"
+#include "gcode/interpreter/codes/block_values.hh"
 #include "gcode/interpreter/codes/code_functions.hh"
 #include "gcode/interpreter/codes/comp/compensation.hh"
 #include "gcode/interpreter/codes/saved_modes.hh"
