@@ -35,6 +35,11 @@ void PieceQueue::end() {
     }
 }
 
+bool PieceQueue::hasRoom() const {
+    const std::lock_guard lock(mutex_);
+    return isCancelled_ || bytes_ < MOST_WAITING;
+}
+
 bool PieceQueue::isCancelled() const {
     const std::lock_guard lock(mutex_);
     return isCancelled_;

@@ -21,6 +21,8 @@ class PieceQueue {
 
     /// Sleeps while too much waits. False: the reader has gone, and no further piece is needed.
     bool push(std::string piece);
+    /// push() would not sleep now.
+    bool hasRoom() const;
     /// There are no more.
     void end();
     bool isCancelled() const;
