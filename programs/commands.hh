@@ -14,6 +14,7 @@ int command_launch(const std::vector<std::string> &words);
 int command_run(const std::vector<std::string> &words);
 int command_ui(const std::vector<std::string> &words);
 int command_recover(const std::vector<std::string> &words);
+int command_publish(const std::vector<std::string> &words);
 int command_nml(const std::vector<std::string> &words);
 /// Arguments of `linuxcncrsh`, of `schedrmt`.
 int command_rsh(const std::vector<std::string> &words);

@@ -34,10 +34,11 @@ ORDER = {
     'motion': ('homing', 'interface', 'planner', 'servo', 'hal'),
     'machine': ('setup', 'io', 'journal', 'task', 'config', 'analysis', 'tools', 'halui', 'assembly'),
     'machine/task': ('link', 'sequencer', 'states', 'run', 'control'),
-    'clients': ('nml', 'rsh', 'schedule', 'tcl', 'screen', 'python'),
+    'clients': ('nml', 'rsh', 'schedule', 'tcl', 'screen', 'publish', 'python'),
+    'clients/publish': ('', 'sparkplug', 'mtconnect', 'assembly'),
     'clients/nml': ('config', 'message', 'buffer', 'net', 'bridge', 'remote'),
     'drivers/mesa': ('lbp16', 'identity', 'hostmot2', 'ethernet', 'direct', 'board', 'virtual', 'hm2_eth', 'pci', 'epp', 'spi'),
-    'programs': ('setup', 'run', 'remote', 'start', 'screen', 'doctor', 'mains'),
+    'programs': ('setup', 'run', 'remote', 'publish', 'start', 'screen', 'doctor', 'mains'),
 }
 # What a folder may not use although its room may.
 NEVER = {

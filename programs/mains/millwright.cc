@@ -28,6 +28,7 @@ constexpr const char *USAGE =
     "browsers\n"
     "  nml FILE.nml                         the NML channels of the running machine, also over the "
     "network\n"
+    "  publish MACHINE.ini                  the machine's values for a shop, by Sparkplug B and MTConnect\n"
     "  doctor MACHINE.ini                   what is wrong with a machine's files and this computer, before "
     "the "
     "start\n"
@@ -75,6 +76,9 @@ int main(int argc, char **argv) {
     }
     if (words[0] == "nml") {
         return mw::programs::command_nml(rest);
+    }
+    if (words[0] == "publish") {
+        return mw::programs::command_publish(rest);
     }
     if (words[0] == "doctor") {
         return mw::programs::command_doctor(rest);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // reference_pages FOLDER: writes the reference pages that are generated from declarations: ini.md,
-// messages.md, nml_messages.md and task/states.md. A tool of the build, not installed.
+// messages.md, nml_messages.md, published.md and task/states.md. A tool of the build, not installed.
 #include <cstdio>
 #include <filesystem>
 #include <string>
@@ -8,6 +8,7 @@
 
 #include "base/atomic_file.hh"
 #include "clients/nml/message/wire_table.hh"
+#include "clients/publish/table.hh"
 #include "machine/config/ini_keys.hh"
 #include "machine/task/run/admission.hh"
 #include "messages/declarations/reference.hh"
@@ -24,6 +25,7 @@ int main(int count, char **words) {
     const std::pair<const char *, std::string> pages[] = {{"ini.md", mw::machine::ini_reference()},
                                                           {"messages.md", mw::messages::reference_page()},
                                                           {"nml_messages.md", mw::nml::nml_reference_page()},
+                                                          {"published.md", mw::publish::published_page()},
                                                           {"states.md", mw::task::states_page()}};
     for (const auto &[name, text] : pages) {
         if (const auto written = mw::write_file_atomically(folder + '/' + name, text); !written.has_value()) {

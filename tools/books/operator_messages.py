@@ -35,7 +35,7 @@ AREAS = (
     ('Start and end of the machine', 'start', ('programs/start', 'src/runtime', 'src/base/diagnostics')),
     ('Programs: run, check, doctor, screen, setup', 'programs', ('programs/doctor', 'programs/run', 'programs/screen', 'programs/setup', 'src/base/options')),
     ('halcompile and HAL tools', 'hal_tools', ('src/hal/halcompile', 'src/hal/tools')),
-    ('Drives and servers of remote clients', 'servers', ('programs/mains', 'programs/remote')),
+    ('Drives and servers of remote clients', 'servers', ('programs/mains', 'programs/remote', 'programs/publish', 'src/clients/publish')),
 )
 HOLE = '…'
 # Clients look for its words, so it is in no catalogue (texts.NEVER).

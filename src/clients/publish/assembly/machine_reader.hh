@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Reads the machine and passes on what has changed. It only looks: it has no way to command the machine.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "clients/publish/mtconnect/agent.hh"
+#include "clients/publish/readings.hh"
+#include "clients/publish/sparkplug/live_data.hh"
+#include "messages/client/viewer.hh"
+
+namespace mw::publish {
+
+/// One thread. A machine that is not there yet, or ends and starts again, is followed.
+class MachineReader {
+  public:
+    /// The machine, while it runs.
+    using Attach = std::function<Result<client::Viewer>()>;
+
+    /// `data` and `agent` take what is read; either may be null.
+    MachineReader(Attach attach, Deadbands deadbands, LiveData *data, mtconnect::Agent *agent)
+        : attach_(std::move(attach)), readings_(std::move(deadbands)), data_(data), agent_(agent) {}
+
+    /// Reads once. `steady_ns` is CLOCK_MONOTONIC.
+    void step(TimeMs now, std::int64_t steady_ns);
+    bool isAttached() const { return viewer_.has_value(); }
+
+  private:
+    void look_for_machine(TimeMs now, std::int64_t steady_ns);
+    void end(TimeMs now);
+    void pass_all(TimeMs now);
+    void pass_messages(TimeMs now);
+    void pass(const std::vector<Change> &changes, TimeMs now);
+
+    Attach attach_;
+    Readings readings_;
+    LiveData *data_;
+    mtconnect::Agent *agent_;
+    std::optional<client::Viewer> viewer_;
+    std::int64_t look_at_ns_ = 0;  ///< next search for a machine
+    std::uint64_t run_ = 0;        ///< of the machine that was read last
+    std::uint64_t message_ = 0;    ///< number of its last message that was passed on
+};
+
+}  // namespace mw::publish

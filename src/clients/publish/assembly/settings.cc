@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "clients/publish/assembly/settings.hh"
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+
+#include <fmt/format.h>
+
+#include "base/atomic_file.hh"
+#include "base/ini/ini_reader.hh"
+#include "base/text.hh"
+
+namespace mw::publish {
+namespace {
+
+constexpr const char *SECTION = "PUBLISH";
+constexpr int PORT = 1883, TLS_PORT = 8883;
+
+template <std::size_t N>
+struct KeyName {
+    char text[N]{};
+    consteval KeyName(const char (&name)[N]) { std::copy_n(name, N, text); }
+};
+template <KeyName NAME>
+inline constexpr const ini::IniKey &KEY = ini::row_of(PUBLISH_KEYS, SECTION, NAME.text);
+
+/// Reads the section; problems go to the sink.
+class SectionReader {
+  public:
+    SectionReader(const ini::IniFile &file, const Surroundings &around, diagnostics::Sink &sink)
+        : file_(file), around_(around), reader_(file, sink), sink_(reader_.sink()) {
+        reader_.declare(PUBLISH_KEYS);
+    }
+
+    Settings read() {
+        Settings settings;
+        read_node(settings.node);
+        settings.interval_s = reader_.real(KEY<"INTERVAL">);
+        read_deadbands(settings.deadbands);
+        read_link(settings);
+        read_store(settings);
+        read_agent(settings);
+        if (!settings.link.has_value() && !settings.agent_port.has_value()) {
+            sink_.error("Nothing is to be published: neither BROKER nor MTCONNECT_PORT is set in [PUBLISH].",
+                        file_.place_of_section(SECTION));
+        }
+        reader_.report_unknown(false);
+        return settings;
+    }
+
+  private:
+    SourcePlace place(const ini::IniKey &key) const {
+        const ini::IniEntry *const entry = reader_.find(key);
+        return entry == nullptr ? file_.place_of_section(SECTION) : entry->place;
+    }
+    std::string topic_part(const ini::IniKey &key, const std::string &preset) {
+        std::string text = reader_.text(key);
+        text = text.empty() ? preset : text;
+        if (const std::string wrong = check_topic_part(text); !wrong.empty()) {
+            sink_.error(
+                fmt::format("[PUBLISH]{} = '{}' cannot be part of a topic: {}.", key.name, text, wrong),
+                place(key));
+        }
+        return text;
+    }
+    void read_node(NodeSettings &node) {
+        const ini::IniEntry *const machine = file_.find("EMC", "MACHINE");
+        node.group = topic_part(KEY<"GROUP">, "millwright");
+        node.node = topic_part(KEY<"NODE">, around_.host);
+        node.device = topic_part(KEY<"DEVICE">, machine == nullptr ? "machine" : machine->value);
+        if (reader_.find(KEY<"PRIMARY_HOST">) != nullptr) {
+            node.primary_host = topic_part(KEY<"PRIMARY_HOST">, "");
+        }
+    }
+    void read_deadbands(Deadbands &deadbands) {
+        for (const ini::IniEntry *entry : reader_.list(KEY<"DEADBAND">)) {
+            const std::size_t blank = entry->value.rfind(' ');
+            const std::string name(trim(std::string_view(entry->value).substr(0, blank)));
+            const auto value = blank == std::string::npos
+                                   ? std::nullopt
+                                   : parse_double(std::string_view(entry->value).substr(blank + 1));
+            std::vector<std::string> known;
+            for (const Row &row : rows()) {
+                known.emplace_back(row.metric);
+            }
+            if (!value.has_value() || *value < 0) {
+                sink_.error("DEADBAND needs the name of a metric and a number that is not negative.",
+                            entry->place, "DEADBAND = Axes/#/Position 0.01");
+            } else if (std::ranges::find(known, name) == known.end()) {
+                const std::string near = nearest_name(name, known);
+                sink_.error(fmt::format("No metric has the name '{}'.", name), entry->place,
+                            near.empty() ? "see the reference page of published values" : near);
+            } else {
+                deadbands[name] = *value;
+            }
+        }
+    }
+    std::optional<BrokerAddress> address(const ini::IniEntry &entry, bool isTls) {
+        BrokerAddress address{entry.value, isTls ? TLS_PORT : PORT};
+        const std::size_t colon = entry.value.rfind(':');
+        const bool isBracketed = entry.value.starts_with('[');
+        const std::size_t end = isBracketed ? entry.value.find(']') : std::string::npos;
+        const bool hasPort =
+            colon != std::string::npos && (!isBracketed || (end != std::string::npos && colon > end));
+        if (hasPort) {
+            const auto port = parse_uint(std::string_view(entry.value).substr(colon + 1));
+            constexpr std::uint64_t LAST = 65535;
+            if (!port.has_value() || *port == 0 || *port > LAST) {
+                sink_.error(fmt::format("'{}' is not HOST:PORT.", entry.value), entry.place);
+                return std::nullopt;
+            }
+            address.port = static_cast<int>(*port);
+            address.host = entry.value.substr(0, colon);
+        }
+        if (isBracketed && address.host.size() > 2) {
+            address.host = address.host.substr(1, address.host.size() - 2);
+        }
+        if (address.host.empty() || address.host.find_first_of(" /") != std::string::npos) {
+            sink_.error(fmt::format("'{}' is not HOST:PORT.", entry.value), entry.place);
+            return std::nullopt;
+        }
+        return address;
+    }
+    std::string file_of(const ini::IniKey &key) {
+        const std::string name = reader_.text(key);
+        if (name.empty()) {
+            return "";
+        }
+        std::string path = file_.resolve_path(name);
+        if (::access(path.c_str(), R_OK) != 0) {
+            sink_.error(fmt::format("[PUBLISH]{}: cannot read {}.", key.name, path), place(key));
+        }
+        return path;
+    }
+    std::string password() {
+        const std::string path = file_of(KEY<"PASSWORD_FILE">);
+        struct stat facts{};
+        if (path.empty() || ::stat(path.c_str(), &facts) != 0) {
+            return "";
+        }
+        if ((facts.st_mode & (S_IRWXG | S_IRWXO)) != 0) {
+            sink_.error(fmt::format("Other users can read the password in {}.", path),
+                        place(KEY<"PASSWORD_FILE">), "chmod 600");
+        }
+        constexpr std::size_t MOST = 4096;
+        const auto text = read_file(path, MOST);
+        return text.has_value() ? std::string(trim(*text)) : "";
+    }
+    void read_link(Settings &settings) {
+        const bool isTls = reader_.boolean(KEY<"TLS">);
+        LinkSettings link;
+        for (const ini::IniEntry *entry : reader_.list(KEY<"BROKER">)) {
+            if (auto found = address(*entry, isTls); found.has_value()) {
+                link.brokers.push_back(std::move(*found));
+            }
+        }
+        link.isTls = isTls;
+        link.keepalive_s = static_cast<int>(reader_.integer(KEY<"KEEPALIVE">));
+        link.user = reader_.text(KEY<"USER">);
+        link.password = password();
+        link.authorities = file_of(KEY<"CA_FILE">);
+        link.certificate = file_of(KEY<"CERTIFICATE">);
+        link.key = file_of(KEY<"KEY">);
+        if (link.certificate.empty() != link.key.empty()) {
+            sink_.error("CERTIFICATE and KEY of [PUBLISH] need each other.",
+                        place(link.key.empty() ? KEY<"CERTIFICATE"> : KEY<"KEY">));
+        }
+        const bool hasCertificates = !link.authorities.empty() || !link.certificate.empty();
+        if (hasCertificates && !isTls) {
+            sink_.error("Certificates have no effect without TLS = yes in [PUBLISH].",
+                        place(link.authorities.empty() ? KEY<"CERTIFICATE"> : KEY<"CA_FILE">));
+        }
+        if (!link.password.empty() && link.user.empty()) {
+            sink_.error("PASSWORD_FILE of [PUBLISH] needs USER.", place(KEY<"PASSWORD_FILE">));
+        }
+        link.client_id = fmt::format("{}/{}", settings.node.group, settings.node.node);
+        link.not_delivered_topic = fmt::format("spBv1.0/{}/DCMD/{}/{}", settings.node.group,
+                                               settings.node.node, settings.node.device);
+        if (!link.brokers.empty()) {
+            settings.node.brokers = link.brokers.size();
+            settings.link = std::move(link);
+        }
+    }
+    void read_store(Settings &settings) {
+        constexpr double BYTES_PER_MB = 1e6;
+        settings.store_limits.bytes =
+            static_cast<std::uint64_t>(reader_.real(KEY<"STORE_SIZE">) * BYTES_PER_MB);
+        settings.store_limits.segment_bytes =
+            std::clamp<std::uint64_t>(settings.store_limits.bytes / 16, 64UL << 10U, 4UL << 20U);
+        const std::string folder = reader_.text(KEY<"STORE">);
+        if (!folder.empty()) {
+            settings.store = file_.resolve_path(folder);
+        } else if (!around_.state_folder.empty()) {
+            settings.store =
+                fmt::format("{}/millwright/publish/{}", around_.state_folder, settings.node.device);
+        } else if (settings.link.has_value()) {
+            sink_.error("There is no home folder for values that wait for the broker.", place(KEY<"STORE">),
+                        "set [PUBLISH]STORE");
+        }
+    }
+    void read_agent(Settings &settings) {
+        settings.agent.device = settings.node.device;
+        settings.agent.sender = around_.host;
+        settings.agent.buffer = static_cast<std::size_t>(reader_.integer(KEY<"MTCONNECT_BUFFER">));
+        const std::string uuid = reader_.text(KEY<"UUID">);
+        settings.agent.uuid =
+            !uuid.empty() ? uuid : fmt::format("{}.{}", around_.machine_id, settings.node.device);
+        const std::int64_t port = reader_.integer(KEY<"MTCONNECT_PORT">);
+        AgentPort agent{static_cast<int>(port), reader_.text(KEY<"MTCONNECT_LISTEN">), {}};
+        for (const ini::IniEntry *entry : reader_.list(KEY<"MTCONNECT_NAME">)) {
+            agent.names.push_back(to_lower(entry->value));
+        }
+        if (port >= 0) {
+            settings.agent_port = std::move(agent);
+        }
+    }
+
+    const ini::IniFile &file_;
+    const Surroundings &around_;
+    ini::IniReader reader_;
+    diagnostics::Sink &sink_;
+};
+
+}  // namespace
+
+Surroundings this_computer() {
+    Surroundings found;
+    std::array<char, 256> host{};
+    found.host =
+        ::gethostname(host.data(), host.size() - 1) == 0 && host[0] != '\0' ? host.data() : "localhost";
+    constexpr std::size_t MOST = 100;
+    const auto id = read_file("/etc/machine-id", MOST);
+    found.machine_id = id.has_value() && !trim(*id).empty() ? std::string(trim(*id)) : found.host;
+    const char *const state = std::getenv("XDG_STATE_HOME"), *const home = std::getenv("HOME");
+    if (state != nullptr && *state != '\0') {
+        found.state_folder = state;
+    } else if (home != nullptr && *home != '\0') {
+        found.state_folder = std::string(home) + "/.local/state";
+    }
+    return found;
+}
+
+std::optional<Settings> read_settings(const ini::IniFile &file, const Surroundings &around,
+                                      diagnostics::Sink &sink) {
+    const int before = sink.count_errors();
+    if (!file.hasSection(SECTION)) {
+        sink.error(fmt::format("{} has no section [PUBLISH]: what is published, and where, is not set.",
+                               file.path()));
+        return std::nullopt;
+    }
+    Settings settings = SectionReader(file, around, sink).read();
+    return sink.count_errors() == before ? std::optional(std::move(settings)) : std::nullopt;
+}
+
+}  // namespace mw::publish

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The documents of MTConnect 2.2.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "clients/publish/mtconnect/device_model.hh"
+#include "clients/publish/mtconnect/observations.hh"
+#include "messages/declarations/status.hh"
+
+namespace mw::publish::mtconnect {
+
+/// What every document says about its agent.
+struct AgentFacts {
+    std::string sender;          ///< this computer
+    std::uint64_t instance = 1;  ///< another one after each start of the sequence numbers
+    TimeMs model_changed = 0;
+    std::size_t buffer = 0;  ///< observations that are kept
+    std::size_t assets = 0, most_assets = 0;
+};
+
+/// Sequence numbers of a document of observations.
+struct Span {
+    Sequence first = 0, last = 0, next = 0;
+};
+
+struct Asset {
+    messages::ToolRecord tool;
+    TimeMs at = 0;
+    std::string id;
+    bool isRemoved = false;
+};
+
+std::string devices_document(const AgentFacts &facts, const DeviceModel &model, TimeMs now);
+/// Of observations in any order.
+std::string streams_document(const AgentFacts &facts, const DeviceModel &model, const Span &span,
+                             const std::vector<Observation> &observations, TimeMs now);
+/// Tools as assets CuttingTool. `units_per_mm`: machine units in a millimetre.
+std::string assets_document(const AgentFacts &facts, const std::string &device_uuid,
+                            const std::vector<Asset> &assets, double units_per_mm, TimeMs now);
+std::string error_document(const AgentFacts &facts, std::string_view code, std::string_view text, TimeMs now);
+
+}  // namespace mw::publish::mtconnect

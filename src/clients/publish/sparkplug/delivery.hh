@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Which records were sent in a session, and which of them count as delivered.
+#pragma once
+
+#include <algorithm>
+#include <deque>
+#include <optional>
+
+#include "clients/publish/sparkplug/data_log.hh"
+
+namespace mw::publish {
+
+/// Records from before the last birth are history; later ones are sent as they come. A message carries no
+/// receipt: after some of them a barrier is sent, and what was sent before it is delivered when the broker
+/// has passed it.
+class Delivery {
+  public:
+    struct Settings {
+        /// Delivered records are confirmed only then: a broker that is killed takes messages with it that no
+        /// subscriber has received.
+        double hold_back_s = 2;
+        int window = 200;        ///< messages between two barriers, at most
+        double barrier_s = 0.5;  ///< between two barriers, unless the window is half full
+    };
+    explicit Delivery(const Settings &settings) : settings_(settings) {}
+
+    /// A session begins: everything that is not confirmed is to be sent.
+    void begin(RecordId confirmed);
+    /// What is not sent before `next` becomes history.
+    void birth(RecordId next);
+
+    /// The next record that is sent as it comes.
+    RecordId live() const { return live_; }
+    /// The next record of history; it ends at history_end().
+    RecordId history() const { return history_; }
+    RecordId history_end() const { return history_end_; }
+    void set_live(RecordId next) { live_ = next; }
+    void set_history(RecordId next) { history_ = next; }
+
+    void message_sent() { ++unbarred_; }
+    /// False: nothing more is sent before a barrier is passed.
+    bool hasRoom() const { return unbarred_ < settings_.window; }
+    bool isHalfFull() const { return 2 * unbarred_ > settings_.window; }
+
+    bool isBarrierDue(double now_s) const;
+    void barrier_sent(int number, double now_s);
+    void barrier_passed(int number);
+    /// When the barrier was sent that is not passed yet.
+    std::optional<double> waiting_since() const;
+    /// The end of the records that are to be confirmed now.
+    std::optional<RecordId> confirmed(double now_s);
+
+  private:
+    struct Barrier {
+        int number = 0;
+        RecordId end = 0;
+        double at_s = 0;
+    };
+    /// Everything before it was sent.
+    RecordId sent_end() const { return history_ < history_end_ ? history_ : std::max(history_end_, live_); }
+
+    Settings settings_;
+    RecordId history_ = 1, history_end_ = 1, live_ = 1;
+    int unbarred_ = 0;  ///< messages since the last barrier
+    std::optional<Barrier> barrier_;
+    double barrier_at_s_ = 0;
+    RecordId barred_ = 1;  ///< end of the last barrier
+    std::deque<Barrier> passed_;
+};
+
+}  // namespace mw::publish

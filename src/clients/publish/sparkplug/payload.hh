@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Payloads of Sparkplug B, to and from bytes. The only part that knows protobuf.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "clients/publish/value.hh"
+
+namespace mw::publish {
+
+/// A metric in a message. Empty names and absent numbers are not written.
+struct PayloadMetric {
+    std::string name{};
+    std::optional<std::uint64_t> alias{};
+    std::optional<TimeMs> at{};
+    std::optional<DataType> type{};  ///< written in births only
+    bool isHistorical = false;
+    std::string unit{};  ///< written as the property engUnit
+    Value value{};
+};
+
+struct Payload {
+    std::optional<TimeMs> at{};
+    std::optional<std::uint64_t> seq{};
+    std::vector<PayloadMetric> metrics{};
+};
+
+std::string encode(const Payload &payload);
+/// Nothing when the bytes are no payload. Values of types that are not used here are left out.
+std::optional<Payload> decode_payload(std::string_view bytes);
+
+}  // namespace mw::publish

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What the edge node does with values while brokers and its own process are lost.
+#include <algorithm>
+#include <map>
+#include <random>
+#include <set>
+
+#include "clients/publish/test/node_world.hh"
+
+namespace mw::publish {
+namespace {
+
+/// What a store has whose key is the metric and the time: value by time, of the counter. A second one that
+/// differs is reported.
+class PlayedStore {
+  public:
+    void take(const std::vector<Packet> &packets) {
+        for (const Packet &packet : packets) {
+            if (packet.verb() == "DBIRTH") {
+                for (const PayloadMetric &metric : packet.payload().metrics) {
+                    names_[*metric.alias] = metric.name;
+                    put(metric);
+                }
+            } else if (packet.verb() == "DDATA") {
+                for (const PayloadMetric &metric : packet.payload().metrics) {
+                    put(metric);
+                }
+            }
+        }
+    }
+    const std::map<TimeMs, std::uint64_t> &counts() const { return counts_; }
+    int differing() const { return differing_; }
+
+  private:
+    void put(const PayloadMetric &metric) {
+        if (names_[*metric.alias] != "Count") {
+            return;
+        }
+        // Data have no type: a number comes as its bits.
+        const auto *const plain = std::get_if<std::uint64_t>(&metric.value);
+        const std::uint64_t bits =
+            plain != nullptr ? *plain : static_cast<std::uint64_t>(std::get<std::int64_t>(metric.value));
+        const auto [at, isNew] = counts_.emplace(*metric.at, bits);
+        differing_ += !isNew && at->second != bits ? 1 : 0;
+    }
+    std::map<std::uint64_t, std::string> names_;
+    std::map<TimeMs, std::uint64_t> counts_;
+    int differing_ = 0;
+};
+
+TEST(EdgeNode, LosesAndDoublesNothingWhileBrokerAndProcessAreKilled) {
+    const unsigned seed = 20261130;
+    SCOPED_TRACE(seed);
+    std::mt19937 random(seed);
+    NodeWorld world;
+    PlayedStore store;
+    world.bear_machine();
+    std::set<std::uint64_t> accepted;
+    std::int64_t number = 0;
+    const auto receive = [&](std::size_t lost) {
+        // The last messages before a kill may have reached no subscriber.
+        world.broker.packets.resize(world.broker.packets.size() -
+                                    std::min(lost, world.broker.packets.size()));
+        store.take(world.broker.packets);
+        world.broker.packets.clear();
+    };
+    for (int round = 0; round < 200; ++round) {
+        for (int i = 0; i < 20; ++i) {
+            world.count(++number);
+            accepted.insert(static_cast<std::uint64_t>(number));
+            world.run(0.1);
+        }
+        const auto what = random() % 3;
+        const std::size_t lost = random() % 5;
+        if (what == 0) {
+            receive(lost);
+            world.broker.isThere = false;
+            world.lose();
+        } else if (what == 1) {
+            receive(0);
+            world.kill();
+            world.start();
+            world.bear_machine();
+        } else {
+            world.broker.isThere = true;
+        }
+    }
+    world.broker.isThere = true;
+    world.run(120);
+    receive(0);
+    std::set<std::uint64_t> stored;
+    std::map<std::uint64_t, int> times;
+    for (const auto &[at, count] : store.counts()) {
+        stored.insert(count);
+        ++times[count];
+    }
+    for (const std::uint64_t count : accepted) {
+        EXPECT_TRUE(stored.contains(count)) << count << " is lost";
+        EXPECT_EQ(times[count], 1) << count << " is doubled";
+    }
+    EXPECT_EQ(store.differing(), 0) << "two values have one key";
+}
+
+TEST(EdgeNode, SendsAValueAgainThatABrokerMayHaveLost) {
+    NodeWorld world;
+    world.bear_machine();
+    world.run(1);
+    world.count(7);
+    world.run(0.1);
+    world.lose();
+    world.run(0.1);
+    world.broker.packets.clear();
+    world.run(3);
+    PlayedStore store;
+    store.take(world.broker.packets);
+    EXPECT_TRUE(std::ranges::any_of(store.counts(), [](const auto &one) { return one.second == 7; }));
+}
+
+TEST(EdgeNode, SendsNothingAgainThatIsDelivered) {
+    NodeWorld world;
+    world.bear_machine();
+    world.count(7);
+    world.run(10);
+    world.lose();
+    world.run(0.1);
+    world.broker.packets.clear();
+    world.run(5);
+    EXPECT_EQ(world.verbs(), (std::vector<std::string>{"NBIRTH", "DBIRTH"}));
+}
+
+TEST(EdgeNode, LeavesABrokerThatHangs) {
+    NodeWorld world;
+    world.bear_machine();
+    world.run(1);
+    world.broker.isAnswering = false;
+    for (int i = 0; i < 2000; ++i) {
+        world.count(i);
+    }
+    world.run(5);
+    EXPECT_LE(world.of("DDATA").size(), 2U * 200U + 1U) << "what is on the way is bounded";
+    world.run(8);
+    EXPECT_TRUE(std::ranges::any_of(world.broker.packets,
+                                    [](const Packet &packet) { return packet.type == Packet::Type::DROP; }));
+    EXPECT_FALSE(world.reports.empty());
+    world.broker.isAnswering = true;
+    world.broker.packets.clear();
+    world.run(60);
+    PlayedStore store;
+    store.take(world.broker.packets);
+    for (std::uint64_t i = 0; i < 2000; ++i) {
+        EXPECT_TRUE(std::ranges::any_of(store.counts(), [i](const auto &one) { return one.second == i; }))
+            << i;
+    }
+}
+
+TEST(EdgeNode, TriesBrokersLessOften) {
+    NodeWorld world;
+    world.broker.isThere = false;
+    world.bear_machine();
+    int refused = 0;
+    for (int i = 0; i < 6000; ++i) {
+        const bool isTried = !world.broker.packets.empty();
+        world.broker.packets.clear();
+        if (isTried) {
+            ++refused;
+            world.lose();
+        }
+        world.run(0.05);
+    }
+    EXPECT_GE(refused, 10) << "in five minutes";
+    EXPECT_LE(refused, 20);
+    EXPECT_EQ(world.reports.size(), 1U) << "reported once";
+}
+
+TEST(EdgeNode, TakesValuesWhileTheMachineIsAway) {
+    NodeWorld world;
+    world.run(1);
+    EXPECT_EQ(world.verbs(), std::vector<std::string>{"NBIRTH"});
+    world.bear_machine();
+    world.run(1);
+    world.data->gone();
+    world.run(1);
+    EXPECT_EQ(world.verbs().back(), "DDEATH");
+    world.lose();
+    world.run(5);
+    EXPECT_EQ(world.verbs().back(), "NBIRTH") << "the node is there without the machine";
+}
+
+TEST(EdgeNode, AcceptsARebirthByAliasAndFlood) {
+    NodeWorld world;
+    world.bear_machine();
+    world.run(1);
+    world.broker.packets.clear();
+    for (int i = 0; i < 1000; ++i) {
+        Payload payload;
+        payload.metrics.push_back({.alias = 2, .value = true});
+        world.broker.events.emplace_back(Publication{"spBv1.0/shop/NCMD/mill-1", encode(payload), 0, false});
+    }
+    world.run(0.05);
+    EXPECT_EQ(world.of("NBIRTH").size(), 1U);
+}
+
+TEST(EdgeNode, DropsMetricsThatTheMachineNoLongerHas) {
+    NodeWorld world;
+    world.broker.isThere = false;
+    world.bear_machine();
+    world.run(1);
+    world.count(5);
+    world.kill();
+    world.start();
+    world.data->born({{.name = "State", .type = DataType::STRING}}, {std::string("ON")}, world.utc());
+    world.broker.isThere = true;
+    world.run(60);
+    for (const Packet &packet : world.of("DDATA")) {
+        for (const PayloadMetric &metric : packet.payload().metrics) {
+            EXPECT_EQ(metric.alias, 100U);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace mw::publish
