@@ -48,6 +48,9 @@ NEVER = {
     'motion/servo': ('hal',),
     'machine/journal': ('hal', 'messages', 'motion', 'gcode'),
     'machine/setup': ('hal', 'messages', 'motion', 'gcode'),
+    # A publisher reads a machine and cannot command it.
+    'clients/publish': ('hal', 'messages/client/client.hh', 'messages/mailbox/command_server.hh', 'messages/declarations/command.hh'),
+    'programs/publish': ('messages/client/client.hh', 'messages/declarations/command.hh', 'machine', 'motion'),
     # Driver and simulated board are written apart, so that one shows the errors of the other.
     'drivers/mesa/board': ('hal', 'drivers/mesa/hostmot2', 'drivers/mesa/ethernet', 'drivers/mesa/direct', 'drivers/mesa/pci',
                            'drivers/mesa/epp', 'drivers/mesa/spi'),
