@@ -72,6 +72,7 @@ class SectionReader {
         node.group = topic_part(KEY<"GROUP">, "millwright");
         node.node = topic_part(KEY<"NODE">, around_.host);
         node.device = topic_part(KEY<"DEVICE">, machine == nullptr ? "machine" : machine->value);
+        node.isTyped = reader_.boolean(KEY<"DATA_TYPES">);
         if (reader_.find(KEY<"PRIMARY_HOST">) != nullptr) {
             node.primary_host = topic_part(KEY<"PRIMARY_HOST">, "");
         }

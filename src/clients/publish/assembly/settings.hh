@@ -24,6 +24,7 @@ inline constexpr auto PUBLISH_KEYS = std::to_array<ini::IniKey>({
     ini::ini_text("PUBLISH", "NODE", "Sparkplug edge node; without it the name of this computer"),
     ini::ini_text("PUBLISH", "DEVICE", "Sparkplug device and MTConnect device; without it [EMC]MACHINE"),
     ini::ini_text("PUBLISH", "PRIMARY_HOST", "Sparkplug host application: nothing is sent while it is offline"),
+    ini::ini_flag("PUBLISH", "DATA_TYPES", false, "data messages have the types of their values, too: for receivers that need them, which Sparkplug advises against"),
     ini::ini_flag("PUBLISH", "TLS", false, "encrypts the connection to the broker and checks its certificate"),
     ini::ini_text("PUBLISH", "CA_FILE", "certificate authorities (PEM) of the broker; without it those of this computer"),
     ini::ini_text("PUBLISH", "CERTIFICATE", "client certificate (PEM) for the broker"),

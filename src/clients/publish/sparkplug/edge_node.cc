@@ -248,6 +248,7 @@ bool EdgeNode::add_record(const Record &record, bool isHistorical, Payload &into
         if (alias != aliases_.end()) {  // a machine that was rebuilt has other metrics
             into.metrics.push_back({.alias = alias->second,
                                     .at = stored->at,
+                                    .type = settings_.isTyped ? metric.type : std::nullopt,
                                     .isHistorical = isHistorical,
                                     .value = std::move(metric.value)});
         }

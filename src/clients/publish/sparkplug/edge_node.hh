@@ -24,6 +24,7 @@ struct NodeSettings {
     double first_retry_s = 1, longest_retry_s = 30;
     double answer_s = 10;  ///< for a connection, and for a barrier
     Delivery::Settings delivery{};
+    bool isTyped = false;    ///< data have the types of their values, too
     std::size_t batch = 50;  ///< records of before in a message
 };
 

@@ -71,7 +71,7 @@ TEST(EdgeNode, LosesAndDoublesNothingWhileBrokerAndProcessAreKilled) {
             world.run(0.1);
         }
         const auto what = random() % 3;
-        const std::size_t lost = random() % 5;
+        const std::size_t lost = random() % 14;
         if (what == 0) {
             receive(lost);
             world.broker.isThere = false;
@@ -198,6 +198,39 @@ TEST(EdgeNode, AcceptsARebirthByAliasAndFlood) {
     }
     world.run(0.05);
     EXPECT_EQ(world.of("NBIRTH").size(), 1U);
+}
+
+TEST(EdgeNode, KeepsHistoryUntilItIsSent) {
+    NodeWorld world(NodeSettings{.batch = 1});
+    world.broker.isThere = false;
+    world.bear_machine();
+    world.run(1);
+    constexpr std::uint64_t COUNT = 8000;  // sent in more time than the hold-back
+    for (std::uint64_t i = 1; i <= COUNT; ++i) {
+        world.count(static_cast<std::int64_t>(i));
+    }
+    world.broker.isThere = true;
+    world.run(60);
+    PlayedStore store;
+    store.take(world.broker.packets);
+    std::set<std::uint64_t> stored;
+    for (const auto &[at, count] : store.counts()) {
+        stored.insert(count);
+    }
+    for (std::uint64_t i = 1; i <= COUNT; ++i) {
+        ASSERT_TRUE(stored.contains(i)) << i;
+    }
+}
+
+TEST(EdgeNode, WritesTypesOfDataOnRequest) {
+    NodeWorld world(NodeSettings{.isTyped = true});
+    world.bear_machine();
+    world.run(1);
+    world.count(-5);
+    world.run(1);
+    const PayloadMetric last = world.of("DDATA").back().payload().metrics.back();
+    EXPECT_EQ(last.type, DataType::INT64);
+    EXPECT_EQ(last.value, Value(std::int64_t{-5}));
 }
 
 TEST(EdgeNode, DropsMetricsThatTheMachineNoLongerHas) {

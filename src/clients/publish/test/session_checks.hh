@@ -284,7 +284,14 @@ inline bool isHostOfflineFollowed() {
     return verbs.back() == "NDEATH" && death != all.end() && (death + 1)->type == Packet::Type::DISCONNECT;
 }
 inline bool isOlderStateIgnored() {
-    return hosted().of("NDEATH").size() == 1;  // of the newer one
+    NodeWorld world(NodeSettings{.primary_host = "scada"});
+    for (const char *state : {R"({"online":true,"timestamp":1000})", R"({"online":false,"timestamp":999})",
+                              R"({"online":"no","timestamp":5000})", "OFFLINE"}) {
+        world.run(0.2);
+        world.broker.events.emplace_back(Publication{"spBv1.0/STATE/scada", state, 1, false});
+    }
+    world.run(1);
+    return world.verbs() == std::vector<std::string>{"NBIRTH"} && world.node->isOnline();
 }
 inline bool isAnotherBrokerTried() {
     NodeWorld world(NodeSettings{.primary_host = "scada", .brokers = 2});

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The section [PUBLISH]: what it sets, and what is reported of a wrong one, with line and column.
 #include <fstream>
+#include <regex>
 
+#include "base/atomic_file.hh"
 #include "clients/publish/assembly/settings.hh"
 #include "clients/publish/test/node_world.hh"
 
@@ -83,6 +85,15 @@ TEST(PublishSettings, ReportWhatIsWrongWithItsPlace) {
         EXPECT_NE(found.messages.find(expected), std::string::npos) << text << " gives " << found.messages;
     }
     EXPECT_FALSE(read("[EMC]\n").settings.has_value());
+}
+
+TEST(PublishSettings, AreAllInTheBook) {
+    const auto page = read_file(MW_SOURCE_DIR "/docs/integrator/shop.md");
+    ASSERT_TRUE(page.has_value());
+    for (const ini::IniKey &key : PUBLISH_KEYS) {
+        const std::regex row("\\n\\|[^|]*\\b" + std::string(key.name) + "\\b[^|]*\\|");
+        EXPECT_TRUE(std::regex_search(*page, row)) << key.name;
+    }
 }
 
 TEST(PublishSettings, WarnOfAnUnknownKey) {
