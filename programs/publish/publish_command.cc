@@ -88,6 +88,16 @@ std::uint64_t next_bdseq(const std::string &file) {
     return text.has_value() ? parse_uint(trim(*text)).value_or(0) : 0;
 }
 
+/// The file of the last message that was published.
+MachineReader::Mark read_mark(const std::string &file) {
+    constexpr std::size_t MOST = 64;
+    const auto text = read_file(file, MOST);
+    const auto words = text.has_value() ? split_words(*text) : std::vector<std::string>{};
+    return words.size() == 2
+               ? MachineReader::Mark{parse_uint(words[0]).value_or(0), parse_uint(words[1]).value_or(0)}
+               : MachineReader::Mark{};
+}
+
 /// A thread that a program ends by a flag.
 class Worker {
   public:
@@ -210,6 +220,12 @@ Result<> publish_machine(const PublishWords &words, const Settings &settings, co
     const std::string instance = hal::default_instance(), ini = whole_path(words.ini);
     MachineReader reader([&] { return attach(instance, ini); }, settings.deadbands,
                          data.has_value() ? &*data : nullptr, agent.has_value() ? &*agent : nullptr);
+    if (data.has_value()) {
+        const std::string file = settings.store + "/messages";
+        reader.set_mark(read_mark(file), [file](const MachineReader::Mark &mark) {
+            static_cast<void>(write_file_atomically(file, fmt::format("{} {}\n", mark.run, mark.number)));
+        });
+    }
     read_machine(reader, settings, data.has_value() ? &*data : nullptr);
     return {};
 }

@@ -58,8 +58,8 @@ void MachineReader::look_for_machine(TimeMs now, std::int64_t steady_ns) {
         return;
     }
     viewer_.emplace(std::move(*found));
-    if (std::exchange(run_, viewer_->run()) != viewer_->run()) {
-        message_ = 0;
+    if (mark_.run != viewer_->run()) {
+        mark_ = {viewer_->run(), 0};
     }
     viewer_->rewind_messages(mailbox::MAX_MESSAGES);
     pass_all(now);
@@ -76,12 +76,17 @@ void MachineReader::end(TimeMs now) {
 }
 
 void MachineReader::pass_messages(TimeMs now) {
+    const std::uint64_t before = mark_.number;
     while (const auto message = viewer_->next_message(client::Viewer::Reading::LOOKS_ON)) {
-        if (message->number > message_) {
-            message_ = message->number;
-            const std::string id = fmt::format("{:016x}-{}", run_, message->number);
+        if (message->number > mark_.number) {
+            mark_.number = message->number;
+            const std::string id = fmt::format("{:016x}-{}", mark_.run, message->number);
             pass(readings_.message(kind_name(message->kind), message->text, id), now);
         }
+    }
+    // After the message: a kill in between passes it on again, with the same Id.
+    if (mark_.number != before && keep_) {
+        keep_(mark_);
     }
 }
 

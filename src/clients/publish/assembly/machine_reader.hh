@@ -19,9 +19,19 @@ class MachineReader {
     /// The machine, while it runs.
     using Attach = std::function<Result<client::Viewer>()>;
 
+    /// The last message that was passed on: its number, and the run of the machine.
+    struct Mark {
+        std::uint64_t run = 0, number = 0;
+    };
+
     /// `data` and `agent` take what is read; either may be null.
     MachineReader(Attach attach, Deadbands deadbands, LiveData *data, mtconnect::Agent *agent)
         : attach_(std::move(attach)), readings_(std::move(deadbands)), data_(data), agent_(agent) {}
+    /// Messages up to `mark` were passed on before; `keep` takes each newer mark.
+    void set_mark(const Mark &mark, std::function<void(const Mark &)> keep) {
+        mark_ = mark;
+        keep_ = std::move(keep);
+    }
 
     /// Reads once. `steady_ns` is CLOCK_MONOTONIC.
     void step(TimeMs now, std::int64_t steady_ns);
@@ -40,8 +50,8 @@ class MachineReader {
     mtconnect::Agent *agent_;
     std::optional<client::Viewer> viewer_;
     std::int64_t look_at_ns_ = 0;  ///< next search for a machine
-    std::uint64_t run_ = 0;        ///< of the machine that was read last
-    std::uint64_t message_ = 0;    ///< number of its last message that was passed on
+    Mark mark_;
+    std::function<void(const Mark &)> keep_;
 };
 
 }  // namespace mw::publish

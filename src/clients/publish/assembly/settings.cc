@@ -44,7 +44,8 @@ class SectionReader {
         read_link(settings);
         read_store(settings);
         read_agent(settings);
-        if (!settings.link.has_value() && !settings.agent_port.has_value()) {
+        const bool hasBroker = reader_.find(KEY<"BROKER">) != nullptr;
+        if (!hasBroker && !settings.agent_port.has_value()) {
             sink_.error("Nothing is to be published: neither BROKER nor MTCONNECT_PORT is set in [PUBLISH].",
                         file_.place_of_section(SECTION));
         }

@@ -185,6 +185,10 @@ void DataLog::load_confirmed() {
 bool DataLog::begin_segment(RecordId first) {
     if (file_ >= 0) {
         ::close(std::exchange(file_, -1));
+        if (segments_.back().starts.empty()) {  // a full disk has taken no record of it
+            ::unlink(segments_.back().path.c_str());
+            segments_.pop_back();
+        }
     }
     const std::string path = folder_ + '/' + name_of(first);
     file_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);

@@ -82,6 +82,24 @@ TEST_F(MachineReaderTest, PassesEachMessageOnce) {
     EXPECT_EQ(values("Messages/Type").back(), Value(std::string("ERROR")));
 }
 
+TEST_F(MachineReaderTest, PassesNoMessageAgainAfterAStart) {
+    desk.post(messages::MessageKind::OPERATOR_TEXT, "first");
+    publish();
+    MachineReader::Mark kept;
+    reader.set_mark({}, [&kept](const MachineReader::Mark &mark) { kept = mark; });
+    step();
+    ASSERT_EQ(values("Messages/Text").size(), 2U);
+    desk.post(messages::MessageKind::OPERATOR_TEXT, "second");
+    publish();
+    MachineReader next([this] { return Result<client::Viewer>(client::Viewer(memory.segment())); }, {}, &data,
+                       nullptr);
+    next.set_mark(kept, {});
+    next.step(1'700'000'001'000, now_ns);
+    const auto texts = values("Messages/Text");
+    ASSERT_EQ(texts.size(), 4U) << "a birth, and the message that is new";
+    EXPECT_EQ(texts.back(), Value(std::string("second")));
+}
+
 TEST_F(MachineReaderTest, BearsAMachineAgainThatHasChanged) {
     publish();
     step();
