@@ -2,6 +2,8 @@
 #include "clients/publish/mtconnect/agent.hh"
 
 #include <algorithm>
+#include <array>
+#include <cstdlib>
 #include <set>
 #include <utility>
 

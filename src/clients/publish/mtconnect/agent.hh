@@ -2,11 +2,13 @@
 // An agent of MTConnect: the machine's observations and tools, and its answers to requests. Knows no sockets.
 #pragma once
 
+#include <cstdint>
+#include <expected>
 #include <map>
-#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "clients/publish/mtconnect/device_model.hh"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "clients/publish/mtconnect/documents.hh"
 
-#include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
