@@ -27,6 +27,8 @@ int command_doctor(const std::vector<std::string> &words);
 int command_check_ini(const std::vector<std::string> &words);
 /// Arguments: a folder, then answers of the form key=value.
 int command_setup(const std::vector<std::string> &words);
+/// Arguments: a part, then those of the part.
+int command_commission(const std::vector<std::string> &words);
 int command_select(const std::vector<std::string> &words);
 /// Arguments of `linuxcnc_var`.
 int command_var(const std::vector<std::string> &words);

@@ -38,7 +38,7 @@ ORDER = {
     'clients/publish': ('', 'sparkplug', 'mtconnect', 'assembly'),
     'clients/nml': ('config', 'message', 'buffer', 'net', 'bridge', 'remote'),
     'drivers/mesa': ('lbp16', 'identity', 'hostmot2', 'ethernet', 'direct', 'board', 'virtual', 'hm2_eth', 'pci', 'epp', 'spi'),
-    'programs': ('setup', 'run', 'remote', 'publish', 'start', 'screen', 'doctor', 'mains'),
+    'programs': ('setup', 'run', 'remote', 'publish', 'start', 'screen', 'doctor', 'commission', 'mains'),
 }
 # What a folder may not use although its room may.
 NEVER = {

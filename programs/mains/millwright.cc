@@ -35,6 +35,7 @@ constexpr const char *USAGE =
     "  boards [ADDRESS ...]                 Mesa boards on the network, their pins and firmware\n"
     "  select                               choose a configuration and start it\n"
     "  setup FOLDER                         write the configuration of a new machine, and try it\n"
+    "  commission PART ...                  describe, write, check and tune a machine, step by step\n"
     "  check PROGRAM.ngc --ini MACHINE.ini  a program against a machine's limits, and the time it takes\n"
     "  format PROGRAM.ngc ...               write programs in one form, without a change of meaning\n"
     "  explain LINE                         say in words what a line of G-code does\n"
@@ -91,6 +92,9 @@ int main(int argc, char **argv) {
     }
     if (words[0] == "setup") {
         return mw::programs::command_setup(rest);
+    }
+    if (words[0] == "commission") {
+        return mw::programs::command_commission(rest);
     }
     if (words[0] == "check") {
         return mw::programs::command_check(rest);

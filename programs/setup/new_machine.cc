@@ -20,14 +20,12 @@
 #include "base/stop_signals.hh"
 #include "base/text.hh"
 #include "base/unfinished_folder.hh"
-#include "machine/setup/files.hh"
 
 namespace mw::programs {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char *ANSWERS_FILE = "answers.txt";
 constexpr auto LONGEST_TRIAL = std::chrono::seconds(120);
 constexpr std::size_t MOST_OUTPUT = 256UL * 1024;
 
@@ -144,13 +142,19 @@ Result<setup::Answers> read_answers(const std::string &text, const std::string &
 }
 
 std::string answers_text(const setup::Answers &given) {
-    std::string text = "# What was answered. Another machine like it: millwright setup FOLDER --answers " +
-                       std::string(ANSWERS_FILE) + "\n";
+    std::string text =
+        "# What was answered. `millwright commission write` changes the machine; another one like it: "
+        "millwright setup FOLDER --answers " +
+        std::string(ANSWERS_FILE) + "\n";
     const auto asked = setup::questions(given);
     for (const setup::Question &question : asked) {
         text += question.key + " = " + setup::answer_of(asked, given, question.key) + '\n';
     }
     return text;
+}
+
+Result<> write_generated(const std::string &folder, const std::vector<setup::File> &files) {
+    return write_files(fs::path(folder) / GENERATED_FOLDER, files);
 }
 
 Result<NewMachine> make_machine(const std::string &folder, const setup::Plan &plan,
@@ -176,6 +180,9 @@ Result<NewMachine> make_machine(const std::string &folder, const setup::Plan &pl
                         fs::perms::group_exec,
                     fs::perm_options::add, error);
     auto files = setup::machine_files(plan);
+    if (const auto written = write_generated(partly->path(), files); !written.has_value()) {
+        return std::unexpected(written.error());
+    }
     files.push_back({ANSWERS_FILE, answers_text(given)});
     if (const auto written = write_files(partly->path(), files); !written.has_value()) {
         return std::unexpected(written.error());

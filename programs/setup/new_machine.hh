@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/result.hh"
-#include "machine/setup/plan.hh"
+#include "machine/setup/files.hh"
 
 namespace mw::programs {
 
@@ -14,6 +14,11 @@ namespace mw::programs {
 Result<setup::Answers> read_answers(const std::string &text, const std::string &name);
 /// Text for read_answers(): all answers of a machine, including presets.
 std::string answers_text(const setup::Answers &given);
+
+/// Records the answers, and the files as they were generated, in the folder of a machine.
+inline constexpr const char *ANSWERS_FILE = "answers.txt", *GENERATED_FOLDER = ".generated";
+/// Writes the record of generated files.
+Result<> write_generated(const std::string &folder, const std::vector<setup::File> &files);
 
 struct NewMachine {
     std::string ini, program;  ///< absolute paths

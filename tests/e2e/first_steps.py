@@ -15,7 +15,10 @@ import subprocess
 import sys
 import tempfile
 
-KINDS = {'mill': 'XYZ', 'router': 'XYZ', 'gantry': 'XYYZ', 'lathe': 'XZ', 'foam': 'XYUV'}
+KINDS = {'mill': 'XYZ', 'router': 'XYZ', 'gantry': 'XYYZ', 'lathe': 'XZ', 'foam': 'XYUV', 'plasma': 'XYZ', 'mill4': 'XYZA',
+         'mill5': 'XYZAC'}
+# Boards of each type of motor; a machine at the parallel port has software step generators, whose pulses are counted.
+BOARDS = {'simulated': ('',), 'stepper': ('parport', '7i76e'), 'servo': ('7i97',)}
 SWITCHES = ('none', 'home', 'home_and_limits')
 
 
@@ -85,21 +88,25 @@ def check_pulses(bench, what, ini, last, output, joints):
         bench.expect(abs(count - wanted) <= 2, f'{what}: motor {joint} has made {count} steps, not {wanted:.1f}')
 
 
-def check_machine(bench, kind, drives, units, switches):
-    what = f'{kind} {drives} {units} {switches}'
+def check_machine(bench, kind, drives, units, switches, board=''):
+    what = f'{kind} {drives} {units} {switches} {board}'.strip()
     folder = bench.folder / what.replace(' ', '_')
-    done = bench.run('setup', folder, f'kind={kind}', f'drives={drives}', f'units={units}', f'switches={switches}', '--no-check')
+    done = bench.run('setup', folder, f'kind={kind}', f'drives={drives}', f'units={units}', f'switches={switches}', '--no-check',
+                     *([f'board={board}'] if board else []))
     bench.expect(done.returncode == 0, what, done.stdout + done.stderr)
     ini = read_ini(folder / 'machine.ini')
     axes = KINDS[kind]
     bench.expect(ini['KINS']['JOINTS'] == str(len(axes)) and ini['TRAJ']['COORDINATES'].replace(' ', '') == axes, f'{what}: joints')
     bench.expect(ini['TRAJ']['LINEAR_UNITS'] == units, f'{what}: unit')
     # A motor that homes without moving has counted nothing; one with a switch has moved to it.
-    is_counted = drives == 'stepper' and switches == 'none'
+    is_counted = board == 'parport' and switches == 'none'
     if is_counted:
         names = ['x', 'y', 'y2', 'z'] if kind == 'gantry' else list(axes.lower())
         answers = dict(line.split(' = ') for line in (folder / 'answers.txt').read_text().splitlines() if ' = ' in line)
         add_counters(folder, len(axes), [(int(answers[f'{name}.step_pin']), int(answers[f'{name}.dir_pin'])) for name in names])
+    if not is_counted:
+        doctor = bench.run('doctor', folder / 'machine.ini', '--strict', '--no-system', '--latency', '0')
+        bench.expect(doctor.returncode == 0 and 'errors: 0, warnings: 0' in doctor.stderr, f'{what}: doctor', doctor.stdout + doctor.stderr)
     trace = folder / 'trace.csv'
     ran = bench.run('run', folder / 'machine.ini', folder / 'nc_files/first_program.ngc', '--strict', '--trace', trace)
     bench.expect(ran.returncode == 0 and 'warnings            0' in ran.stdout, f'{what} runs', ran.stdout + ran.stderr)
@@ -138,7 +145,7 @@ def check_by_command(bench):
     second = bench.folder / 'second'
     done = bench.run('setup', second, '--answers', first / 'answers.txt', '--no-check')
     files = sorted(path.relative_to(second) for path in second.rglob('*') if path.is_file())
-    bench.expect(all((second / file).read_bytes() == (first / file).read_bytes() for file in files) and len(files) == 6,
+    bench.expect(all((second / file).read_bytes() == (first / file).read_bytes() for file in files) and len(files) == 27,
                  'the kept answers give the same machine', f'{files} {done.stderr}')
     doctor = bench.run('doctor', second / 'machine.ini', '--no-system', '--latency', '0')
     bench.expect(doctor.returncode == 0 and 'errors: 0, warnings: 0' in doctor.stderr, 'doctor finds nothing', doctor.stdout + doctor.stderr)
@@ -151,11 +158,15 @@ def main():
         bench = Bench(pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(place))
         number = 0
         for kind in KINDS:
-            for drives in ('simulated', 'stepper'):
-                for units in ('mm', 'inch'):
-                    check_machine(bench, kind, drives, units, SWITCHES[number % 3])
-                    number += 1
-            check_machine(bench, kind, 'stepper', 'mm', 'none') if SWITCHES[(number - 2) % 3] != 'none' else None
+            for drives, boards in BOARDS.items():
+                for board in boards:
+                    if kind == 'mill5' and board == 'parport':
+                        continue
+                    for units in ('mm', 'inch'):
+                        check_machine(bench, kind, drives, units, SWITCHES[number % 3], board)
+                        number += 1
+                    if board == 'parport':
+                        check_machine(bench, kind, drives, 'mm' if (number - 2) % 3 else 'inch', 'none', board)
         check_refusals(bench)
         check_by_command(bench)
     print(f'{bench.failures} failed')

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Each sample machine with a Mesa board has no finding but the board that doctor does not start, homes by its switches and cuts, in virtual time.
+"""Each sample machine with a Mesa board has no finding, homes by its switches and cuts, in virtual time.
 usage: mesa_samples.py MILLWRIGHT SOURCE_FOLDER"""
 import pathlib
 import subprocess
@@ -16,7 +16,7 @@ with tempfile.TemporaryDirectory() as name:
     samples = sorted((pathlib.Path(source) / 'configs/mesa').glob('*.ini'))
     for sample in samples:
         doctor = subprocess.run([millwright, 'doctor', str(sample), '--latency', '0', '--no-system'], capture_output=True, text=True, timeout=120)
-        findings = [line for line in doctor.stdout.splitlines() if 'not started: hm2-board' not in line]
+        findings = [line for line in doctor.stdout.splitlines()]
         if doctor.returncode != 0 or findings:
             failed.append(f'{sample.name}: {findings}')
             continue

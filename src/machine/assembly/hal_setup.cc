@@ -171,6 +171,10 @@ Result<> HalSetup::run() {
     script::InProcessProgramHost parts;
     parts.add_part("hal_manualtoolchange",
                    [this](const script::ProgramRequest &) { return on_tool_change_program(); });
+    if (programs_ == nullptr) {
+        // The driver simulates its board in this process.
+        parts.add_part("hm2-board", [](const script::ProgramRequest &) { return Result<>(); });
+    }
     std::optional<RealtimePrograms> programs;
     if (programs_ != nullptr) {
         programs.emplace(parts, std::set<std::string>{"hal_manualtoolchange"}, *programs_);

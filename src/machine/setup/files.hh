@@ -12,6 +12,8 @@ namespace mw::setup {
 struct File {
     std::string name;  ///< in the machine's folder: "machine.ini", "nc_files/first_program.ngc"
     std::string text;
+
+    bool operator==(const File &) const = default;
 };
 
 inline constexpr const char *INI_FILE = "machine.ini", *PROGRAM_FILE = "nc_files/first_program.ngc";
@@ -21,10 +23,8 @@ inline constexpr const char *INI_FILE = "machine.ini", *PROGRAM_FILE = "nc_files
 std::vector<File> machine_files(const Plan &plan);
 
 std::string ini_text(const Plan &plan);
-/// Drives, spindle, buttons and switches.
-std::string hal_text(const Plan &plan);
-/// Simulated wires of a machine with stepper motors.
-std::string wires_text(const Plan &plan);
+/// One HAL file for each function of the machine, in the order in which they are run.
+std::vector<File> hal_files(const Plan &plan);
 std::string tool_table_text(const Plan &plan);
 /// Moves each axis through the middle of its travel, within the limits.
 std::string program_text(const Plan &plan);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The INI file: every key with its unit, in a useful order.
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -81,29 +82,60 @@ std::string system_text(const Plan &plan) {
                        "COMM_TIMEOUT = 1.0\n"
                        "# Positions are calculated so often [ns].\n"
                        "SERVO_PERIOD = 1000000\n";
-    if (plan.is_stepper) {
+    if (plan.hasBaseThread()) {
         text += fmt::format("# Steps are made so often [ns]: the latency of the computer, a step, and the "
                             "work of the thread.\n"
                             "BASE_PERIOD = {}\n",
-                            plan.stepping.base_period_ns);
+                            plan.wiring.base_period_ns);
     }
     text += "\n[EMCIO]\nTOOL_TABLE = tool.tbl\n\n"
             "[HAL]\n"
-            "# Carried out in this order when the machine starts.\n"
-            "HALFILE = machine.hal\n";
-    if (plan.is_stepper) {
-        text += "# Switches and buttons of a machine that is not there. Take this line away with the "
-                "simulated port.\n"
-                "HALFILE = simulated_wires.hal\n";
+            "# Run in this order when the machine starts; each file is for one function of the machine.\n";
+    for (const File &file : hal_files(plan)) {
+        text += file.name.starts_with("simulated_")
+                    ? "# What is not there. Remove this line when the real board is connected.\n"
+                    : "";
+        text += "HALFILE = " + file.name + "\n";
     }
-    return text + "# Pins for buttons of your own: halui.*\nHALUI = halui\n\n";
+    text += "# Pins for buttons of your own: halui.*\nHALUI = halui\n\n";
+    if (plan.hasBoard() && plan.board != Board::PARPORT) {
+        text += fmt::format("[HOSTMOT2]\n"
+                            "# The board on the network.{}\n"
+                            "BOARD_IP = {}\n\n",
+                            plan.wiring.isSimulated ? " 127.0.0.1: a simulated one on this computer." : "",
+                            plan.wiring.isSimulated ? "127.0.0.1" : plan.wiring.address);
+    }
+    const double full_output = plan.wiring.spindle.full_output;
+    if (full_output > 0) {
+        text += fmt::format("[SPINDLE_0]\n"
+                            "# Speed at full output [rev/min]: what a tachometer measures there.\n"
+                            "FULL_OUTPUT = {}\n"
+                            "MAX_FORWARD_VELOCITY = {}\n\n",
+                            to_text(full_output), short_text(plan.spindle_max));
+    }
+    return text;
+}
+
+/// Speeds along paths of rotary axes alone.
+std::string angular_text(const Plan &plan) {
+    double speed = 0, acceleration = 0;
+    for (const Axis &axis : plan.axes) {
+        speed = std::max(speed, axis.isRotary() ? axis.speed : 0);
+        acceleration = std::max(acceleration, axis.isRotary() ? axis.acceleration : 0);
+    }
+    return speed == 0 ? ""
+                      : fmt::format("# Of rotary axes [deg/s], [deg/s2].\n"
+                                    "DEFAULT_ANGULAR_VELOCITY = {}\n"
+                                    "MAX_ANGULAR_VELOCITY = {}\n"
+                                    "MAX_ANGULAR_ACCELERATION = {}\n",
+                                    short_text(speed / 4), short_text(speed), short_text(acceleration));
 }
 
 std::string whole_text(const Plan &plan) {
     const bool is_gantry = plan.kind == "gantry";
     double acceleration = 0;
     for (const Axis &axis : plan.axes) {
-        acceleration = std::max(acceleration, axis.acceleration);
+        acceleration = std::max(acceleration, axis.isRotary() ? 0 : axis.acceleration);
     }
     return fmt::format("[TRAJ]\n"
                        "COORDINATES = {}\n"
@@ -113,6 +145,7 @@ std::string whole_text(const Plan &plan) {
                        "DEFAULT_LINEAR_VELOCITY = {}\n"
                        "MAX_LINEAR_VELOCITY = {}\n"
                        "MAX_LINEAR_ACCELERATION = {}\n"
+                       "{}"
                        "\n"
                        "[KINS]\n"
                        "{}"
@@ -121,6 +154,7 @@ std::string whole_text(const Plan &plan) {
                        "\n",
                        letters(plan, " "), length_unit(plan), length_unit(plan), length_unit(plan),
                        short_text(plan.fastest() / 4), short_text(plan.fastest()), short_text(acceleration),
+                       angular_text(plan),
                        is_gantry ? "# Each motor is a joint; the two of Y move together.\n"
                                  : "# Each motor is a joint.\n",
                        letters(plan, ""), is_gantry ? " kinstype=BOTH" : "", plan.joints());
@@ -160,7 +194,7 @@ std::string home_text(const Plan &plan, const Axis &axis) {
         "HOME_SEARCH_VEL = {}\n"
         "HOME_LATCH_VEL = {}\n"
         "{}{}HOME_SEQUENCE = {}\n",
-        short_text(end - sign * plan.millimetres(1)), short_text(end + sign * plan.millimetres(2)),
+        short_text(end - sign * plan.small(axis, 1)), short_text(end + sign * plan.small(axis, 2)),
         short_text(sign * axis.home_speed), short_text(sign * axis.home_speed / 10),
         plan.switches == Switches::HOME_AND_LIMITS
             ? "# The switch is a limit, too, but not while it is looked for.\nHOME_IGNORE_LIMITS = YES\n"
@@ -168,34 +202,74 @@ std::string home_text(const Plan &plan, const Axis &axis) {
         order, sequence);
 }
 
+std::string stepper_text(const Plan &plan, const Axis &axis, const Motor &motor) {
+    return fmt::format("# Steps of one {} of travel; negative: the motor turns the other way round.\n"
+                       "STEP_SCALE = {}\n"
+                       "# The generator may catch up with what it lags behind.\n"
+                       "STEPGEN_MAXVEL = {}\n"
+                       "STEPGEN_MAXACCEL = {}\n",
+                       axis.isRotary() ? "degree" : length_unit(plan), to_text(motor.steps_per_unit),
+                       short_text(axis.speed * 1.05), short_text(axis.acceleration * 1.25));
+}
+
+std::string servo_text(const Plan &plan, const Axis &axis, const Motor &motor) {
+    const Servo &servo = motor.servo;
+    return fmt::format("# Counts of one {} of travel; negative: the encoder counts the other way round.\n"
+                       "ENCODER_SCALE = {}\n"
+                       "# Speed at 10 V; negative: the command is reversed.\n"
+                       "OUTPUT_SCALE = {}\n"
+                       "MAX_OUTPUT = {}\n"
+                       "# Gains of the position controller, whose output is a speed.\n"
+                       "P = {}\n"
+                       "I = {}\n"
+                       "D = {}\n"
+                       "FF1 = {}\n"
+                       "FF2 = {}\n",
+                       axis.isRotary() ? "degree" : length_unit(plan), to_text(servo.counts_per_unit),
+                       short_text(servo.full_speed), short_text(std::abs(servo.full_speed)),
+                       short_text(servo.p), short_text(servo.i), short_text(servo.d), short_text(servo.ff1),
+                       short_text(servo.ff2));
+}
+
 std::string joint_text(const Plan &plan, const Axis &axis, const Motor &motor, int joint) {
+    // A servo axis lags behind by the speed divided by the gain until it is tuned.
+    const double lag = plan.is_servo ? axis.speed / std::max(motor.servo.p, 1.0) * 1.5 : 0;
     std::string text = fmt::format(
         "# Motor {}\n"
         "[JOINT_{}]\n"
-        "TYPE = LINEAR\n"
+        "TYPE = {}\n"
         "MAX_VELOCITY = {}\n"
         "MAX_ACCELERATION = {}\n"
         "MIN_LIMIT = {}\n"
         "MAX_LIMIT = {}\n"
-        "# Farther than this from where it should be, the machine stops: at full speed, standing.\n"
+        "# Farther than this from where it should be, the machine stops: at full speed, at standstill.\n"
         "FERROR = {}\n"
         "MIN_FERROR = {}\n",
-        to_upper(motor.name), joint, short_text(axis.speed), short_text(axis.acceleration),
-        short_text(axis.min), short_text(axis.max), short_text(plan.millimetres(1)),
-        short_text(plan.millimetres(0.25)));
-    if (plan.is_stepper) {
-        text += fmt::format("# Steps of one {} of travel; negative: the motor turns the other way round.\n"
-                            "STEP_SCALE = {}\n"
-                            "# The generator may catch up with what it lags behind.\n"
-                            "STEPGEN_MAXVEL = {}\n"
-                            "STEPGEN_MAXACCEL = {}\n",
-                            length_unit(plan), to_text(motor.steps_per_unit), short_text(axis.speed * 1.05),
-                            short_text(axis.acceleration * 1.25));
+        to_upper(motor.name), joint, axis.isRotary() ? "ANGULAR" : "LINEAR", short_text(axis.speed),
+        short_text(axis.acceleration), short_text(axis.min), short_text(axis.max),
+        short_text(plan.small(axis, 1) + lag), short_text(plan.small(axis, 0.25) + lag));
+    text += plan.is_stepper ? stepper_text(plan, axis, motor)
+            : plan.is_servo ? servo_text(plan, axis, motor)
+                            : "";
+    if (motor.backlash > 0) {
+        text += fmt::format("# Play between motor and table, made up at each change of direction.\n"
+                            "BACKLASH = {}\n",
+                            short_text(motor.backlash));
     }
     return text + home_text(plan, axis) + '\n';
 }
 
 }  // namespace
+
+/// What moves the machine.
+static const char *machine_text(const Plan &plan) {
+    switch (plan.board) {
+    case Board::PARPORT: return "stepper motors at a parallel port";
+    case Board::MESA_7I76E: return "stepper motors at a Mesa 7I76E";
+    case Board::MESA_7I97: return "servo motors at a Mesa 7I97";
+    default: return "simulated";
+    }
+}
 
 std::string ini_text(const Plan &plan) {
     std::string text =
@@ -206,9 +280,8 @@ std::string ini_text(const Plan &plan) {
                     "VERSION = 1.1\n"
                     "MACHINE = {}\n"
                     "DEBUG = 0\n\n",
-                    plan.name, plan.kind, plan.metric ? "metric" : "in inches",
-                    plan.is_stepper ? "stepper motors at a parallel port" : "simulated", length_unit(plan),
-                    length_unit(plan), plan.name);
+                    plan.name, plan.kind, plan.metric ? "metric" : "in inches", machine_text(plan),
+                    length_unit(plan), length_unit(plan), plan.name);
     text += display_text(plan) + system_text(plan) + whole_text(plan);
     int joint = 0;
     for (const Axis &axis : plan.axes) {

@@ -33,8 +33,8 @@ class Reader {
         if (faults_.empty()) {
             general();
             axes();
-            if (plan_.is_stepper) {
-                stepping();
+            if (plan_.hasBoard()) {
+                wiring();
             }
         }
         return {std::move(plan_), std::move(faults_)};
@@ -50,10 +50,13 @@ class Reader {
     void check(const Question &question);
     void general();
     void axes();
+    double travel_per_turn(const std::string &name);
     Motor motor(const std::string &name);
-    void stepping();
+    Terminal terminal(const std::string &key);
+    void wiring();
     void check_rates();
-    void check_pins();
+    void check_terminals();
+    void check_channels();
 
     const Answers &given_;
     std::vector<Question> asked_;
@@ -109,14 +112,20 @@ void Reader::general() {
     plan_.name = text("name");
     plan_.metric = text("units") == "mm";
     plan_.is_stepper = text("drives") == "stepper";
+    plan_.is_servo = text("drives") == "servo";
+    const std::string board = text("board");
+    plan_.board = board == "parport" ? Board::PARPORT
+                  : board == "7i76e" ? Board::MESA_7I76E
+                  : board == "7i97"  ? Board::MESA_7I97
+                                     : Board::NONE;
     plan_.is_tool_changed_by_hand = text("tool_change") == "by_hand";
     const std::string switches = text("switches"), spindle = text("spindle");
     plan_.switches = switches == "none"   ? Switches::NONE
                      : switches == "home" ? Switches::HOME
                                           : Switches::HOME_AND_LIMITS;
-    plan_.spindle = spindle == "none"     ? Spindle::NONE
-                    : spindle == "on_off" ? Spindle::ON_OFF
-                                          : Spindle::SPEED;
+    plan_.spindle = spindle.empty() || spindle == "none" ? Spindle::NONE
+                    : spindle == "on_off"                ? Spindle::ON_OFF
+                                                         : Spindle::SPEED;
     plan_.spindle_max = number("spindle.max");
     plan_.foam_width = number("foam.width");
 }
@@ -134,7 +143,7 @@ void Reader::axes() {
                   .home_speed = number(key + ".home_speed"),
                   .motors = {}};
         // The first program does not fit into shorter travels.
-        const double shortest = plan_.millimetres(10);
+        const double shortest = plan_.small(axis, 10);
         if (axis.max - axis.min < shortest) {
             fault(key + ".max", fmt::format("the travel is {}, and must be {} at least",
                                             to_text(axis.max - axis.min), to_text(shortest)));
@@ -151,38 +160,104 @@ void Reader::axes() {
     }
 }
 
+double Reader::travel_per_turn(const std::string &name) {
+    const std::string transmission = text(name + ".transmission");
+    if (transmission == "travel") {
+        const double travel = number(name + ".way_per_turn");
+        if (travel == 0) {
+            fault(name + ".way_per_turn", "0 moves nothing");
+        }
+        return travel;
+    }
+    constexpr double DEGREES = 360;
+    const double output = transmission == "screw"  ? number(name + ".pitch")
+                          : transmission == "belt" ? number(name + ".teeth") * number(name + ".belt_pitch")
+                          : transmission == "rack" ? number(name + ".teeth") * number(name + ".module") * M_PI
+                                                   : DEGREES;
+    return output / number(name + ".gear") * (text(name + ".reverse") == "yes" ? -1 : 1);
+}
+
 Motor Reader::motor(const std::string &name) {
     Motor motor{.name = name};
+    if (!plan_.hasBoard()) {
+        return motor;
+    }
+    motor.travel_per_turn = travel_per_turn(name);
+    if (motor.travel_per_turn == 0) {
+        return motor;
+    }
+    const double correction = number(name + ".correction");
+    motor.backlash = number(name + ".backlash");
     if (plan_.is_stepper) {
-        const double way = number(name + ".way_per_turn");
-        if (way == 0) {
-            fault(name + ".way_per_turn", "0 moves nothing");
-            return motor;
-        }
-        motor.steps_per_unit = number(name + ".steps_per_turn") * number(name + ".microsteps") / way;
-        motor.step_pin = whole(name + ".step_pin");
-        motor.dir_pin = whole(name + ".dir_pin");
-        motor.home_pin = whole(name + ".home_pin");
+        motor.steps_per_unit = number(name + ".steps_per_turn") * number(name + ".microsteps") /
+                               motor.travel_per_turn * correction;
+    } else {
+        const double reversed = text(name + ".reverse_encoder") == "yes" ? -1 : 1;
+        const double output = text(name + ".reverse_output") == "yes" ? -1 : 1;
+        motor.servo = {.counts_per_unit =
+                           reversed * number(name + ".counts_per_turn") / motor.travel_per_turn * correction,
+                       .full_speed =
+                           output * number(name + ".full_speed") * motor.travel_per_turn / correction,
+                       .p = number(name + ".p"),
+                       .i = number(name + ".i"),
+                       .d = number(name + ".d"),
+                       .ff1 = number(name + ".ff1"),
+                       .ff2 = number(name + ".ff2")};
+    }
+    motor.channel = whole(name + ".channel");
+    motor.step_pin = whole(name + ".step_pin");
+    motor.dir_pin = whole(name + ".dir_pin");
+    if (plan_.switches != Switches::NONE) {
+        motor.home_pin = terminal(name + ".home_pin");
+        const std::string own = text(name + ".home_contact");
+        motor.home_contact_closed = (own == "as_all" ? text("switch.contacts") : own) == "closed";
     }
     return motor;
 }
 
-void Reader::stepping() {
-    Stepping &s = plan_.stepping;
-    s.step_length_ns = whole("step.length");
-    s.step_space_ns = whole("step.space");
-    s.dir_setup_ns = whole("step.dir_setup");
-    s.dir_hold_ns = whole("step.dir_hold");
-    s.base_period_ns = base_period(whole("latency"), s.step_length_ns, s.step_space_ns);
-    s.enable_pin = whole("pin.enable");
-    s.spindle_on_pin = whole("pin.spindle_on");
-    s.spindle_pwm_pin = whole("pin.spindle_pwm");
-    s.flood_pin = whole("pin.flood");
-    s.estop_pin = whole("pin.estop");
-    s.pwm_hz = number("spindle.pwm_hz");
-    s.contacts_closed = text("switch.contacts") == "closed";
-    check_rates();
-    check_pins();
+Terminal Reader::terminal(const std::string &key) {
+    const std::string answer = text(key);
+    const int none = plan_.board == Board::PARPORT ? 0 : -1;
+    return answer.empty() || whole(key) == none ? Terminal{} : Terminal{whole(key)};
+}
+
+void Reader::wiring() {
+    Wiring &w = plan_.wiring;
+    w.address = text("board.address");
+    w.isSimulated = text("board.simulated") == "yes";
+    w.step_length_ns = whole("step.length");
+    w.step_space_ns = whole("step.space");
+    w.dir_setup_ns = whole("step.dir_setup");
+    w.dir_hold_ns = whole("step.dir_hold");
+    if (plan_.board == Board::PARPORT) {
+        w.base_period_ns = base_period(whole("latency"), w.step_length_ns, w.step_space_ns);
+    }
+    w.enable_pin = terminal("pin.enable");
+    w.flood_pin = terminal("pin.flood");
+    w.mist_pin = terminal("pin.mist");
+    w.estop_pin = terminal("pin.estop");
+    w.probe_pin = terminal("pin.probe");
+    w.torch_pin = terminal("pin.torch");
+    w.arc_ok_pin = terminal("pin.arc_ok");
+    w.probe_contact_closed = text("probe.contacts") == "closed";
+    w.hasWheel = text("pendant") == "wheel";
+    const std::string drive = text("spindle.drive");
+    w.spindle = {.command = drive == "analog"   ? SpeedCommand::ANALOG
+                            : drive == "step"   ? SpeedCommand::STEP
+                            : drive == "modbus" ? SpeedCommand::MODBUS
+                                                : SpeedCommand::PWM,
+                 .full_output = number("spindle.full_output"),
+                 .pwm_hz = number("spindle.pwm_hz"),
+                 .steps_per_turn = number("spindle.steps_per_turn"),
+                 .on_pin = terminal("pin.spindle_on"),
+                 .speed_pin = terminal("pin.spindle_pwm"),
+                 .vfd = text("spindle.vfd"),
+                 .device = text("spindle.device")};
+    if (plan_.hasBaseThread()) {
+        check_rates();
+    }
+    check_terminals();
+    check_channels();
 }
 
 /// A step is high for at least one period and low for one.
@@ -190,7 +265,7 @@ void Reader::check_rates() {
     constexpr double NS_PER_S = 1e9;
     // The generator must catch up with following errors at this factor of the axis speed.
     constexpr double MARGIN = 1.05;
-    const double highest = NS_PER_S / (2.0 * plan_.stepping.base_period_ns);
+    const double highest = NS_PER_S / (2.0 * plan_.wiring.base_period_ns);
     for (const Axis &axis : plan_.axes) {
         for (const Motor &motor : axis.motors) {
             const double rate = std::abs(motor.steps_per_unit) * axis.speed * MARGIN;
@@ -199,42 +274,83 @@ void Reader::check_rates() {
                       fmt::format(
                           "motor {} would need {:.0f} steps in a second, and {:.0f} can be made with a base "
                           "period of {} ns: a lower speed, fewer microsteps, or a board that makes steps",
-                          to_upper(motor.name), rate, highest, plan_.stepping.base_period_ns));
+                          to_upper(motor.name), rate, highest, plan_.wiring.base_period_ns));
             }
         }
     }
-    if (plan_.spindle == Spindle::SPEED &&
-        plan_.stepping.pwm_hz * 20 > NS_PER_S / plan_.stepping.base_period_ns) {
+    const SpindleWiring &spindle = plan_.wiring.spindle;
+    if (spindle.pwm_hz * 20 > NS_PER_S / plan_.wiring.base_period_ns) {
         fault("spindle.pwm_hz", "leaves fewer than 20 steps of speed: a lower frequency");
+    }
+    constexpr double S_PER_MIN = 60;
+    const double rate = spindle.steps_per_turn * plan_.spindle_max / S_PER_MIN;
+    if (rate > highest) {
+        fault("spindle.max", fmt::format("needs {:.0f} steps in a second, and {:.0f} can be made with a base "
+                                         "period of {} ns: a lower speed or fewer steps of a revolution",
+                                         rate, highest, plan_.wiring.base_period_ns));
     }
 }
 
-/// Each pin has one use, in the direction of the port.
-void Reader::check_pins() {
+/// Each terminal has one use, in the direction of the board.
+void Reader::check_terminals() {
     constexpr std::array OUTPUTS{1, 2, 3, 4, 5, 6, 7, 8, 9, 14, 16, 17};
     constexpr std::array INPUTS{10, 11, 12, 13, 15};
-    constexpr int UNUSED = 0;
-    std::vector<std::pair<int, std::string>> used;
+    const bool port = plan_.board == Board::PARPORT;
+    struct Use {
+        int number;
+        bool is_input;
+        std::string key;
+    };
+    std::vector<Use> used;
     for (const Question &question : asked_) {
         const std::string &key = question.key;
-        const bool is_pin = key.ends_with("_pin") || key.starts_with("pin.");
-        const int pin = is_pin ? whole(key) : UNUSED;
-        if (pin == UNUSED) {
+        const bool is_terminal = key.ends_with("_pin") || key.starts_with("pin.");
+        const Terminal terminal = is_terminal ? this->terminal(key) : Terminal{};
+        if (!terminal.has_value()) {
             continue;
         }
-        const bool is_input = key.ends_with(".home_pin") || key == "pin.estop";
+        const int pin = *terminal;
+        const bool is_input =
+            key.ends_with(".home_pin") || key == "pin.estop" || key == "pin.probe" || key == "pin.arc_ok";
         const bool present = is_input ? std::ranges::find(INPUTS, pin) != INPUTS.end()
                                       : std::ranges::find(OUTPUTS, pin) != OUTPUTS.end();
-        if (!present) {
+        if (port && !present) {
             fault(key, fmt::format("pin {} is no {}", pin,
                                    is_input ? "input: 10, 11, 12, 13 and 15 are"
                                             : "output: 1 to 9, 14, 16 and 17 are"));
         }
-        const auto other = std::ranges::find(used, pin, &std::pair<int, std::string>::first);
+        const auto other = std::ranges::find_if(
+            used, [&](const Use &use) { return use.number == pin && (port || use.is_input == is_input); });
         if (other != used.end()) {
-            fault(key, fmt::format("pin {} is used by {} already", pin, other->second));
+            fault(key, fmt::format("{} {} is used by {} already",
+                                   port       ? "pin"
+                                   : is_input ? "input"
+                                              : "output",
+                                   pin, other->key));
         }
-        used.emplace_back(pin, key);
+        used.push_back({pin, is_input, key});
+    }
+}
+
+/// Each connector has one motor.
+void Reader::check_channels() {
+    std::vector<std::pair<int, std::string>> used;
+    for (const Question &question : asked_) {
+        if (!question.key.ends_with(".channel")) {
+            continue;
+        }
+        const int channel = whole(question.key);
+        const auto other = std::ranges::find(used, channel, &std::pair<int, std::string>::first);
+        if (other != used.end()) {
+            fault(question.key, fmt::format("connector {} is used by {} already", channel, other->second));
+        }
+        used.emplace_back(channel, question.key);
+    }
+    // The last step generator of a 7I76E makes the steps of the spindle.
+    constexpr int SPINDLE_CHANNEL = 4;
+    if (plan_.board == Board::MESA_7I76E && text("spindle.drive") == "step" &&
+        std::ranges::find(used, SPINDLE_CHANNEL, &std::pair<int, std::string>::first) != used.end()) {
+        fault("spindle.drive", "step: connector 4 is that of a motor");
     }
 }
 
@@ -251,7 +367,7 @@ int Plan::joints() const {
 double Plan::fastest() const {
     double speed = 0;
     for (const Axis &axis : axes) {
-        speed = std::max(speed, axis.speed);
+        speed = std::max(speed, axis.isRotary() ? 0 : axis.speed);
     }
     return speed;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,11 +11,27 @@
 
 namespace mw::setup {
 
+/// A terminal of the board; no value: not connected.
+using Terminal = std::optional<int>;
+
+/// Of a drive with a speed command and an encoder. Output and gains are in machine units per second.
+struct Servo {
+    double counts_per_unit = 0;  ///< negative: the encoder is reversed
+    double full_speed = 0;       ///< at 10 V [units/s]; negative: the command is reversed
+    double p = 0, i = 0, d = 0, ff1 = 0, ff2 = 0;
+};
+
 /// Of one joint.
 struct Motor {
     std::string name;  ///< "y2"
+    double travel_per_turn = 0;
     double steps_per_unit = 0;
-    int step_pin = 0, dir_pin = 0, home_pin = 0;
+    Servo servo{};
+    double backlash = 0;  ///< [units]
+    int channel = 0;      ///< of the board: step generator, or servo output with its encoder
+    int step_pin = 0, dir_pin = 0;
+    Terminal home_pin{};
+    bool home_contact_closed = false;  ///< contact state of its switch when not actuated
 };
 
 struct Axis {
@@ -24,33 +41,53 @@ struct Axis {
     bool home_at_max = false;
     double home_speed = 0;  ///< [units/s]
     std::vector<Motor> motors;
+
+    bool isRotary() const { return letter >= 'A' && letter <= 'C'; }
 };
 
+enum class Board : std::uint8_t { NONE, PARPORT, MESA_7I76E, MESA_7I97 };
 enum class Switches : std::uint8_t { NONE, HOME, HOME_AND_LIMITS };
 enum class Spindle : std::uint8_t { NONE, ON_OFF, SPEED };
+enum class SpeedCommand : std::uint8_t { PWM, ANALOG, STEP, MODBUS };
 
-/// Numbers of pins of a parallel port; 0: none.
-struct Stepping {
+struct SpindleWiring {
+    SpeedCommand command = SpeedCommand::PWM;
+    double full_output = 0;  ///< [rev/min]
+    double pwm_hz = 0, steps_per_turn = 0;
+    Terminal on_pin{}, speed_pin{};
+    std::string vfd, device;
+};
+
+/// What is connected, and how steps are made.
+struct Wiring {
+    std::string address;       ///< of the board
+    bool isSimulated = false;  ///< the board is
     int step_length_ns = 0, step_space_ns = 0, dir_setup_ns = 0, dir_hold_ns = 0;
-    int base_period_ns = 0;
-    int enable_pin = 0, spindle_on_pin = 0, spindle_pwm_pin = 0, flood_pin = 0, estop_pin = 0;
-    double pwm_hz = 0;
-    bool contacts_closed = false;  ///< contact state of the switches when not actuated
+    int base_period_ns = 0;  ///< 0: no base thread
+    Terminal enable_pin{}, flood_pin{}, mist_pin{}, estop_pin{}, probe_pin{}, torch_pin{}, arc_ok_pin{};
+    bool probe_contact_closed = false;
+    bool hasWheel = false;
+    SpindleWiring spindle;
 };
 
 struct Plan {
     std::string kind, name;
-    bool metric = true, is_stepper = false, is_tool_changed_by_hand = false;
+    bool metric = true, is_stepper = false, is_servo = false, is_tool_changed_by_hand = false;
+    Board board = Board::NONE;
     Switches switches = Switches::NONE;
     Spindle spindle = Spindle::NONE;
     double spindle_max = 0;  ///< [rev/min]; for a hot wire: S for full heat
     double foam_width = 0;   ///< [units]
     std::vector<Axis> axes;
-    Stepping stepping;
+    Wiring wiring;
 
     int joints() const;
-    double fastest() const;  ///< maximum of all axes [units/s]
+    double fastest() const;  ///< maximum of all linear axes [units/s]
     double millimetres(double mm) const { return metric ? mm : mm / 25.4; }
+    /// A length of this many mm for a linear axis, as many degrees for a rotary one.
+    double small(const Axis &axis, double mm) const { return axis.isRotary() ? mm : millimetres(mm); }
+    bool hasBoard() const { return board != Board::NONE; }
+    bool hasBaseThread() const { return wiring.base_period_ns > 0; }
 };
 
 /// Why an answer is not valid.

@@ -26,7 +26,7 @@ class Places {
         constexpr double PART = 0.8, S_PER_MIN = 60;
         double slowest = plan_.fastest();
         for (const Axis &axis : plan_.axes) {
-            slowest = std::min(slowest, axis.speed);
+            slowest = axis.isRotary() ? slowest : std::min(slowest, axis.speed);
         }
         return "F" + number(slowest * PART * S_PER_MIN);
     }
@@ -35,6 +35,17 @@ class Places {
     const Axis &axis_of(char letter) const { return *std::ranges::find(plan_.axes, letter, &Axis::letter); }
     const Plan &plan_;
 };
+
+/// Rotary axes, one after the other, and back.
+std::string rotary_moves(const Plan &plan, const Places &p) {
+    std::string text;
+    for (const Axis &axis : plan.axes) {
+        if (axis.isRotary()) {
+            text += fmt::format("G0 {}\nG0 {}\n", p.at(axis.letter, 0.6), p.at(axis.letter, 0.5));
+        }
+    }
+    return text;
+}
 
 std::string mill_moves(const Places &p) {
     const std::string radius = p.number(std::min(p.length('X'), p.length('Y')) / 16);
@@ -68,12 +79,14 @@ std::string program_text(const Plan &plan) {
         "; work offsets that are 0.\n";
     text += fmt::format("{} G90 G94 G40 G49 {} G64 P{}\n", plan.metric ? "G21" : "G20",
                         is_lathe ? "G18 G8" : "G17", plan.metric ? "0.05" : "0.002");
-    text += is_foam ? "" : "T1 M6\n";
+    text += is_foam || plan.kind == "plasma" ? "" : "T1 M6\n";
     if (plan.spindle != Spindle::NONE) {
         const double speed = plan.spindle == Spindle::SPEED ? plan.spindle_max / 4 : 1000;
         text += fmt::format("M3 S{:.0f}\n", speed);
     }
-    text += is_lathe ? lathe_moves(places) : is_foam ? foam_moves(places) : mill_moves(places);
+    text += is_lathe  ? lathe_moves(places)
+            : is_foam ? foam_moves(places)
+                      : mill_moves(places) + rotary_moves(plan, places);
     return text + (plan.spindle != Spindle::NONE ? "M5\n" : "") + "M2\n";
 }
 

@@ -23,9 +23,11 @@ struct Question {
     std::vector<std::string> choices{};  ///< for CHOICE
     double low = 0, high = 0;            ///< for NUMBER and WHOLE
     std::string unit{};                  ///< "mm/s"; empty: none
+    std::string reason{};                ///< why the preset is a good start
 };
 
-inline constexpr std::string_view KINDS[] = {"mill", "router", "gantry", "lathe", "foam"};
+inline constexpr std::string_view KINDS[] = {"mill", "router", "gantry", "lathe",
+                                             "foam", "plasma", "mill4",  "mill5"};
 
 /// The axis letters of a machine type, in joint order: "XYZ"; empty for an unknown type.
 std::string_view axes_of(std::string_view kind);
@@ -33,8 +35,8 @@ std::string_view axes_of(std::string_view kind);
 std::vector<std::string> motors_of(std::string_view kind);
 
 /// The questions, in this order, for the machine that `given` describes so far; invalid answers count as
-/// their presets. The answers `kind`, `units`, `drives`, `switches` and `spindle` determine the other
-/// questions.
+/// their presets. The answers `kind`, `units`, `drives`, `board`, `switches`, `spindle`, `spindle.drive` and
+/// those of transmissions determine the other questions.
 std::vector<Question> questions(const Answers &given);
 
 /// An answer, or its preset. `key` must be that of a question.

@@ -90,7 +90,8 @@ export function sections(questions: Question[]): Section[] {
   for (const question of questions) {
     const part = /^(\w+)\./.exec(question.key)?.[1] ?? '';
     const isOfMachine = part === '' || part === 'spindle' || part === 'foam';
-    const isWiring = ['step', 'pin', 'switch'].includes(part) || question.key === 'latency' || question.key === 'spindle.pwm_hz';
+    const isWiring = ['step', 'pin', 'switch', 'board', 'probe'].includes(part) || ['latency', 'board', 'pendant'].includes(question.key) ||
+      (part === 'spindle' && question.key !== 'spindle.max');
     const title = isWiring ? 'wiring' : isOfMachine ? 'machine' : part.toUpperCase();
     found.set(title, [...(found.get(title) ?? []), question]);
   }

@@ -60,7 +60,8 @@ TEST(Setup, EachWrongAnswerIsTold) {
         const char *told;
     };
     const Wrong cases[] = {
-        {{{"kind", "robot"}}, "kind: 'robot' is none of mill, router, gantry, lathe, foam\n"},
+        {{{"kind", "robot"}},
+         "kind: 'robot' is none of mill, router, gantry, lathe, foam, plasma, mill4, mill5\n"},
         {{{"x.maxx", "1"}}, "x.maxx: this is not asked of such a machine; did you mean x.max?\n"},
         {{{"x.max", "3,5"}}, "x.max: '3,5' is no number\n"},
         {{{"x.speed", "0"}}, "x.speed: 0 is out of range: 0.001 to 100000\n"},
@@ -100,7 +101,9 @@ TEST(Setup, FilesAreThoseThatTheIniNames) {
     for (const File &file : files) {
         names.push_back(file.name);
     }
-    EXPECT_EQ(names, (std::vector<std::string>{"machine.ini", "machine.hal", "simulated_wires.hal",
+    EXPECT_EQ(names, (std::vector<std::string>{"machine.ini", "motion.hal", "board.hal", "motors.hal",
+                                               "switches.hal", "spindle.hal", "coolant.hal", "estop.hal",
+                                               "tool_change.hal", "threads.hal", "simulated_wires.hal",
                                                "tool.tbl", "nc_files/first_program.ngc"}));
     const std::string &ini = files[0].text;
     EXPECT_NE(ini.find("COORDINATES = X Y Y Z\n"), std::string::npos);

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The parts of `millwright commission`, each from its words to the exit status.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace mw::programs::commission {
+
+int command_describe(const std::vector<std::string> &words);
+int command_write(const std::vector<std::string> &words);
+
+}  // namespace mw::programs::commission
