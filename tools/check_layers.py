@@ -32,7 +32,7 @@ ORDER = {
     'gcode': ('syntax', 'tools', 'canon', 'interpreter', 'python_host', 'analysis'),
     'gcode/interpreter': ('expressions', 'scripts', 'codes', 'flow'),
     'motion': ('homing', 'interface', 'planner', 'servo', 'hal'),
-    'machine': ('setup', 'io', 'journal', 'task', 'config', 'analysis', 'tools', 'halui', 'assembly'),
+    'machine': ('setup', 'commissioning', 'io', 'journal', 'task', 'config', 'analysis', 'tools', 'halui', 'assembly'),
     'machine/task': ('link', 'sequencer', 'states', 'run', 'control'),
     'clients': ('nml', 'rsh', 'schedule', 'tcl', 'screen', 'publish', 'python'),
     'clients/publish': ('', 'sparkplug', 'mtconnect', 'assembly'),
