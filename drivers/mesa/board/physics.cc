@@ -21,6 +21,15 @@ Physics::Physics(PhysicsPlan plan) : plan_(std::move(plan)), motors_(plan_.motor
     for (std::size_t i = 0; i < motors_.size(); ++i) {
         motors_[i].rev = plan_.motors[i].start_rev;
     }
+    show_positions();
+}
+
+void Physics::show_positions() {
+    if (plan_.panel != nullptr) {
+        for (std::size_t i = 0; i < std::min(motors_.size(), HandPanelPage::MOTORS); ++i) {
+            plan_.panel->page().position_rev[i] = position_rev(i);
+        }
+    }
 }
 
 double Physics::position_rev(std::size_t motor) const {
@@ -89,6 +98,7 @@ void Physics::advance(std::int64_t from_ns, std::int64_t to_ns, const DriveInput
     const bool has_pwm =
         std::ranges::any_of(plan_.motors, [](const MotorPlan &one) { return one.type == MotorType::PWM; });
     if (!has_pwm) {
+        show_positions();
         return;
     }
     const std::int64_t spans = std::clamp((to_ns - from_ns) / SPAN_NS, std::int64_t{1}, MAX_SPANS);
@@ -98,6 +108,7 @@ void Physics::advance(std::int64_t from_ns, std::int64_t to_ns, const DriveInput
         };
         step(time_of(i), time_of(i + 1), inputs, on_move, MotorType::PWM);
     }
+    show_positions();
 }
 
 std::optional<Shaft> Physics::shaft(unsigned encoder) const {
@@ -121,7 +132,12 @@ std::optional<double> Physics::resolver_rev(unsigned channel) const {
 
 bool Physics::level_of(const SwitchPlan &one) const {
     const double position = position_rev(one.motor);
-    const bool closed = one.above ? position > one.at_rev : position < one.at_rev;
+    bool closed = one.above ? position > one.at_rev : position < one.at_rev;
+    const auto number = static_cast<std::size_t>(&one - plan_.switches.data());
+    if (plan_.panel != nullptr && number < HandPanelPage::SWITCHES) {
+        const std::uint8_t hand = plan_.panel->page().contact[number];
+        closed = hand == 0 ? closed : hand == 1;
+    }
     return closed == one.closed_level;
 }
 

@@ -4,12 +4,14 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "base/result.hh"
+#include "drivers/mesa/board/hand_panel.hh"
 #include "drivers/mesa/board/modules/encoder.hh"
 #include "drivers/mesa/identity/idrom.hh"
 
@@ -85,13 +87,15 @@ struct PhysicsPlan {
     std::vector<ResolverPlan> resolvers;
     std::vector<RemotePlan> remotes;
     std::vector<FieldPlan> fields;
+    std::shared_ptr<HandPanel> panel{};  ///< null: none
 };
 
 /// Lines `motor NAME stepgen=N steps_per_rev=N [start_rev=]`, `motor NAME pwm=N full_rev_s=
 /// time_constant_s=`, `encoder N motor=NAME counts_per_rev=N [index_rev=]`, `switch PIN motor=NAME
 /// below_rev=|above_rev= [closed=high|low] [remote=CHANNEL [port=N] | inmux=0]`, `resolver CHANNEL motor=NAME
 /// [cycles_per_rev=] [zero_rev=]`, `field CHANNEL name=AnalogIn1 value=N|motor=NAME counts_per_rev=N
-/// [port=N]` and `remote CHANNEL card=7i76 [port=N]`; units and pins must exist in `idrom`.
+/// [port=N]`, `panel FILE` (hand_panel.hh) and `remote CHANNEL card=7i76 [port=N]`; units and pins must exist
+/// in `idrom`.
 Result<PhysicsPlan> parse_physics(std::string_view text, const std::string &file, const Idrom &idrom);
 
 /// Inputs of the motors in a time step without changes.
@@ -132,6 +136,7 @@ class Physics {
         std::int64_t steps = 0;
         double rev = 0, rev_s = 0;
     };
+    void show_positions();
     std::int64_t count_of(const EncoderPlan &encoder) const;
     void move_motors(double span_s, const DriveInputs &inputs, MotorType type);
     void step(std::int64_t from_ns, std::int64_t to_ns, const DriveInputs &inputs, const OnMove &on_move,

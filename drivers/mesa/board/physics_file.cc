@@ -169,12 +169,19 @@ Result<PhysicsPlan> parse_physics(std::string_view text, const std::string &file
             read_resolver(line, plan, idrom);
         } else if (line.type() == "field") {
             read_field(line, plan, idrom);
+        } else if (line.type() == "panel") {
+            auto panel = HandPanel::open(line.name());
+            if (!panel.has_value()) {
+                return fail(panel.error().message, line.place());
+            }
+            plan.panel = std::move(*panel);
         } else if (line.type() == "remote") {
             read_remote(line, plan, idrom);
         } else {
             return fail(
-                fmt::format("Unknown line '{}', expected motor, encoder, switch, resolver, field or remote.",
-                            line.type()),
+                fmt::format(
+                    "Unknown line '{}', expected motor, encoder, switch, resolver, field, panel or remote.",
+                    line.type()),
                 line.place());
         }
         if (auto finished = line.finish(); !finished.has_value()) {

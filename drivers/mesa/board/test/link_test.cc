@@ -159,8 +159,8 @@ TEST(BoardPhysics, ErrorsNameFileLineAndColumn) {
               "p.txt:2:11: motor=y is not one of x.");
     EXPECT_EQ(error("motor x stepgen=0 steps_per_rev=200\nswitch 51 motor=x below_rev=0"),
               "p.txt:2:1: The board has no pin '51': it has 51.");
-    EXPECT_EQ(error("brake z"),
-              "p.txt:1:1: Unknown line 'brake', expected motor, encoder, switch, resolver, field or remote.");
+    EXPECT_EQ(error("brake z"), "p.txt:1:1: Unknown line 'brake', expected motor, encoder, switch, resolver, "
+                                "field, panel or remote.");
 }
 
 }  // namespace
