@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What commissioning needs of a machine. The machine moves by its own controller, with all its checks.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "base/result.hh"
+
+namespace mw::commissioning {
+
+struct JointReading {
+    double command = 0, feedback = 0;  ///< [units]
+    bool isHomeSwitchOn = false;       ///< as the controller sees it
+    bool isMoving = false, isHoming = false, isHomed = false;
+    bool isDriveFaulted = false, isFollowingErrorTripped = false;
+};
+
+/// One thread. Requests are asynchronous: the readings of later cycles show their effect.
+class Bench {
+  public:
+    virtual ~Bench() = default;
+
+    virtual double now_s() const = 0;
+    virtual bool isOn() const = 0;
+    virtual bool isEstopReleased() const = 0;
+    virtual bool isProbeOn() const = 0;
+    virtual JointReading joint(int joint) const = 0;
+    /// Cycles of the servo thread that came late.
+    virtual std::uint64_t late_cycles() const = 0;
+    /// Why the machine went off, as it was reported; empty: it did not.
+    virtual std::string last_error() const = 0;
+
+    /// Switches the machine on with the drive of one joint only; EVERY_JOINT: with all,
+    /// NO_JOINT: with none.
+    virtual void switch_on(int joint) = 0;
+    virtual void switch_off() = 0;
+    /// Moves a joint by a distance from where it is.
+    virtual void move(int joint, double distance, double speed) = 0;
+    virtual void stop(int joint) = 0;
+    virtual void home(int joint) = 0;
+    /// Soft limits no longer apply.
+    virtual void unhome(int joint) = 0;
+    virtual void run_spindle(double speed_rpm) = 0;
+    virtual void stop_spindle() = 0;
+
+    /// A pin or a parameter of HAL.
+    virtual std::optional<double> value(std::string_view name) const = 0;
+    virtual void set_value(std::string_view name, double value) = 0;
+
+    static constexpr int EVERY_JOINT = -1, NO_JOINT = -2;
+};
+
+}  // namespace mw::commissioning

@@ -1,0 +1,317 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Steps of one motor: direction, scale and backlash.
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "base/text.hh"
+#include "machine/commissioning/steps.hh"
+
+namespace mw::commissioning {
+namespace {
+
+constexpr const char *FREE =
+    "The axis must be free to move: in the middle of its travel, tool and work removed.";
+
+Prompt hold(const char *step, const Stage &stage, int joint, const std::string &text) {
+    Prompt prompt =
+        make_prompt(step, stage.motor(joint).name, text, "The table: release the button before an end.");
+    prompt.hazards = {"The motor moves while the button is pressed. It stops when the button is released."};
+    return prompt;
+}
+
+std::string toggled(const std::string &answer) {
+    return answer == "yes" ? "no" : "yes";
+}
+
+void reverse_motor(Stage &stage, int joint) {
+    const std::string name = stage.motor(joint).name;
+    if (stage.plan().is_servo) {
+        stage.change(name + ".reverse_output", toggled(stage.answer(name + ".reverse_output")));
+    } else if (stage.answer(name + ".transmission") == "travel") {
+        stage.change(name + ".way_per_turn", to_text(-stage.number(name + ".way_per_turn")));
+    } else {
+        stage.change(name + ".reverse", toggled(stage.answer(name + ".reverse")));
+    }
+}
+
+/// The speed command is the commanded speed alone: a wrong sign of the encoder cannot make the motor run
+/// away.
+void open_loop(Stage &stage, int joint) {
+    const std::string pid = "pid-" + stage.motor(joint).name;
+    for (const char *gain : {".Pgain", ".Igain", ".Dgain", ".FF2"}) {
+        stage.bench().set_value(pid + gain, 0);
+    }
+    stage.bench().set_value(pid + ".FF1", 1);
+}
+
+Fault fault_of(Ending ending) {
+    return ending == Ending::STOPPED  ? Fault::STOPPED
+           : ending == Ending::CANNOT ? Fault::GIVEN_UP
+                                      : Fault::NONE;
+}
+
+struct Seen {
+    Fault fault = Fault::NONE;
+    std::string way;  ///< "positive", "negative", "not at all"
+    double commanded = 0, counted = 0;
+};
+
+/// Moves a little in the positive direction and asks what was seen.
+Flow<Seen> look_at_direction(Stage &stage, int joint) {
+    const setup::Axis &axis = stage.axis(joint);
+    const double distance = stage.plan().small(axis, stage.plan().is_servo ? 0.7 : 3);
+    const JointReading before = stage.bench().joint(joint);
+    Prompt prompt =
+        hold("direction", stage, joint,
+             fmt::format("Hold the button: the motor moves {} about {} {} in the positive direction.",
+                         to_upper(stage.motor(joint).name), to_text(distance), stage.unit(joint)));
+    const Ending ending =
+        co_await stage.move_while_held(joint, {distance, stage.slow(joint) / 2}, std::move(prompt));
+    const JointReading after = stage.bench().joint(joint);
+    Seen seen{.fault = fault_of(ending),
+              .way = "",
+              .commanded = after.command - before.command,
+              .counted = after.feedback - before.feedback};
+    if (seen.fault != Fault::NONE) {
+        co_return seen;
+    }
+    Prompt question = make_prompt(
+        "direction", stage.motor(joint).name,
+        fmt::format("Which way did the tool of {} move against the work?", to_upper(stage.motor(joint).name)),
+        "Positive: X to the right, Y away from you, Z up, as the tool sees the work.");
+    question.choices = {"positive", "negative", "not at all"};
+    seen.way = co_await stage.choose(std::move(question));
+    seen.fault = seen.way.empty() ? Fault::GIVEN_UP : Fault::NONE;
+    co_return seen;
+}
+
+/// Whether the encoder counts as the table moves.
+Fault judge_encoder(const Seen &seen) {
+    const double part = seen.counted / seen.commanded;
+    constexpr double LEAST = 0.1;
+    if (std::abs(part) < LEAST) {
+        return seen.way == "not at all" ? Fault::MOTOR_NOT_CONNECTED : Fault::ENCODER_NOT_CONNECTED;
+    }
+    const bool counts_up = part > 0;
+    return counts_up == (seen.way == "positive") ? Fault::NONE : Fault::ENCODER_PHASES_SWAPPED;
+}
+
+/// Asks whether the encoder is reversed here; false: it is to be rewired.
+Flow<bool> may_reverse_encoder(Stage &stage, int joint) {
+    Prompt question = make_prompt(
+        "direction", stage.motor(joint).name,
+        fmt::format(
+            "The encoder of {} counts against the motion. Reverse it in the controller, or swap its wires?",
+            to_upper(stage.motor(joint).name)));
+    question.choices = {"reverse", "wires"};
+    const std::string chosen = co_await stage.choose(std::move(question));
+    co_return chosen == "reverse";
+}
+
+}  // namespace
+
+Flow<Finding> check_direction(Stage &stage, int joint) {
+    constexpr int ROUNDS = 3;
+    const std::string name = to_upper(stage.motor(joint).name);
+    for (int round = 0; round < ROUNDS; ++round) {
+        const bool on = co_await stage.enable(
+            joint, "direction", fmt::format("The drive of {} alone is switched on. {}", name, FREE));
+        if (!on) {
+            const bool given_up = stage.bench().last_error().empty();
+            co_return found("direction", stage, joint, given_up ? Fault::GIVEN_UP : Fault::DRIVE,
+                            stage.bench().last_error());
+        }
+        if (stage.plan().is_servo) {
+            open_loop(stage, joint);
+        }
+        const Seen seen = co_await look_at_direction(stage, joint);
+        const std::string error = stage.bench().last_error();
+        stage.bench().switch_off();
+        if (seen.fault != Fault::NONE) {
+            co_return found("direction", stage, joint, seen.fault, error);
+        }
+        const Fault encoder = stage.plan().is_servo ? judge_encoder(seen) : Fault::NONE;
+        if (seen.way == "not at all" || encoder == Fault::ENCODER_NOT_CONNECTED ||
+            encoder == Fault::MOTOR_NOT_CONNECTED) {
+            co_return found("direction", stage, joint,
+                            encoder == Fault::NONE ? Fault::MOTOR_NOT_CONNECTED : encoder);
+        }
+        if (encoder == Fault::ENCODER_PHASES_SWAPPED) {
+            const bool reversed = co_await may_reverse_encoder(stage, joint);
+            if (!reversed) {
+                co_return found("direction", stage, joint, encoder);
+            }
+            const std::string key = stage.motor(joint).name + ".reverse_encoder";
+            stage.change(key, toggled(stage.answer(key)));
+        }
+        if (seen.way == "negative") {
+            reverse_motor(stage, joint);
+        } else if (encoder == Fault::NONE) {
+            co_await stage.restart();
+            co_return found("direction", stage, joint, Fault::NONE, round == 0 ? "" : "reversed");
+        }
+        co_await stage.restart();
+    }
+    co_return found("direction", stage, joint, Fault::MOTOR_NOT_CONNECTED, "the direction is not constant");
+}
+
+namespace {
+
+struct Measured {
+    Fault fault = Fault::NONE;
+    double commanded = 0, measured = 0;
+    std::string detail;
+};
+
+/// Takes up the play, lets the operator zero a gauge, moves, and requires the measured travel.
+Flow<Measured> measure_travel(Stage &stage, int joint, double distance) {
+    const double speed = stage.slow(joint);
+    const std::string name = to_upper(stage.motor(joint).name);
+    const double run_up = stage.plan().small(stage.axis(joint), 2);
+    const double legs[] = {-(distance / 2 + run_up), run_up};
+    for (const double leg : legs) {
+        Prompt prompt =
+            hold("scale", stage, joint, fmt::format("Hold the button: {} moves to the start.", name));
+        const Ending ending = co_await stage.move_while_held(joint, {leg, speed}, std::move(prompt));
+        if (ending != Ending::DONE) {
+            co_return Measured{fault_of(ending) == Fault::NONE ? Fault::GIVEN_UP : fault_of(ending), 0, 0,
+                               stage.bench().last_error()};
+        }
+    }
+    Prompt zero =
+        make_prompt("scale", stage.motor(joint).name,
+                    fmt::format("Set the gauge on {} to zero: a ruler for short, a caliper or indicator for "
+                                "exact measurements.",
+                                name));
+    const bool zeroed = co_await stage.confirm(std::move(zero));
+    if (!zeroed) {
+        co_return Measured{Fault::GIVEN_UP, 0, 0, ""};
+    }
+    const double start = stage.bench().joint(joint).command;
+    Prompt prompt =
+        hold("scale", stage, joint,
+             fmt::format("Hold the button: {} moves by {} {}.", name, to_text(distance), stage.unit(joint)));
+    const Ending ending = co_await stage.move_while_held(joint, {distance, speed}, std::move(prompt));
+    const double commanded = stage.bench().joint(joint).command - start;
+    const double least = std::abs(distance) / 10;
+    if (ending != Ending::DONE && !(ending == Ending::CONFIRMED && std::abs(commanded) > least)) {
+        co_return Measured{fault_of(ending) == Fault::NONE ? Fault::GIVEN_UP : fault_of(ending), 0, 0,
+                           stage.bench().last_error()};
+    }
+    Prompt read = make_prompt("scale", stage.motor(joint).name, fmt::format("Read the gauge on {}.", name));
+    read.unit = stage.unit(joint);
+    const std::optional<double> value = co_await stage.measure(std::move(read));
+    if (!value.has_value()) {
+        co_return Measured{Fault::GIVEN_UP, 0, 0, ""};
+    }
+    Prompt back = hold("scale", stage, joint, fmt::format("Hold the button: {} moves back.", name));
+    static_cast<void>(
+        co_await stage.move_while_held(joint, {distance / 2 - commanded, speed}, std::move(back)));
+    co_return Measured{Fault::NONE, commanded, *value, ""};
+}
+
+/// Distances of the rounds: short while the scale may be very wrong.
+double distance_of_round(const Stage &stage, int joint, int round) {
+    const setup::Axis &axis = stage.axis(joint);
+    const double travel = axis.max - axis.min;
+    const double longest = stage.plan().small(axis, axis.isRotary() ? 90 : 100);
+    constexpr double PART = 0.5;
+    return round == 0 ? std::min(stage.plan().small(axis, 4), travel * 0.05)
+                      : std::min(longest, travel * PART);
+}
+
+}  // namespace
+
+Flow<Finding> check_scale(Stage &stage, int joint) {
+    constexpr int ROUNDS = 4;
+    constexpr double CONFIRMED_PART = 0.0006, MOST_FACTOR = 50;
+    const std::string key = stage.motor(joint).name + ".correction";
+    Finding finding = found("scale", stage, joint, Fault::SCALE);
+    for (int round = 0; round < ROUNDS; ++round) {
+        const bool on = co_await stage.enable(
+            joint, "scale",
+            fmt::format("The drive of {} alone is switched on. {}", to_upper(stage.motor(joint).name), FREE));
+        if (!on) {
+            finding.fault = stage.bench().last_error().empty() ? Fault::GIVEN_UP : Fault::DRIVE;
+            co_return finding;
+        }
+        const Measured measured =
+            co_await measure_travel(stage, joint, distance_of_round(stage, joint, round));
+        stage.bench().switch_off();
+        if (measured.fault != Fault::NONE) {
+            finding.fault = measured.fault;
+            finding.detail = measured.detail;
+            co_return finding;
+        }
+        const double factor = measured.commanded / measured.measured;
+        if (!(factor > 1 / MOST_FACTOR && factor < MOST_FACTOR)) {
+            finding.detail = fmt::format("{} commanded, {} measured", to_text(measured.commanded),
+                                         to_text(measured.measured));
+            co_return finding;
+        }
+        if (round > 0 && std::abs(factor - 1) < CONFIRMED_PART) {
+            finding.fault = Fault::NONE;
+            finding.values.push_back(
+                {"measured for the last distance", measured.measured, stage.unit(joint)});
+            finding.values.push_back({"correction", stage.number(key), ""});
+            co_await stage.restart();
+            co_return finding;
+        }
+        constexpr double DIGITS = 1e7;
+        stage.change(key, to_text(std::round(stage.number(key) * factor * DIGITS) / DIGITS));
+        co_await stage.restart();
+    }
+    co_return finding;
+}
+
+Flow<Finding> measure_backlash(Stage &stage, int joint) {
+    const std::string motor = stage.motor(joint).name, name = to_upper(motor);
+    const double travel = stage.plan().small(stage.axis(joint), 2), speed = stage.slow(joint);
+    const bool on = co_await stage.enable(
+        joint, "backlash", fmt::format("The drive of {} alone is switched on. {}", name, FREE));
+    if (!on) {
+        co_return found("backlash", stage, joint, Fault::GIVEN_UP, stage.bench().last_error());
+    }
+    // Up to the position, farther and back to it: the play shows between the two approaches.
+    Ending ending = Ending::DONE;
+    double reading = 0;
+    for (int leg = 0; leg < 3 && ending == Ending::DONE; ++leg) {
+        Prompt prompt =
+            hold("backlash", stage, joint,
+                 fmt::format("Hold the button: {} moves {}.", name, leg == 2 ? "back" : "forward"));
+        ending =
+            co_await stage.move_while_held(joint, {leg == 2 ? -travel : travel, speed}, std::move(prompt));
+        if (leg == 0 && ending == Ending::DONE) {
+            Prompt zero =
+                make_prompt("backlash", motor, fmt::format("Set the indicator on {} to zero.", name));
+            const bool zeroed = co_await stage.confirm(std::move(zero));
+            ending = zeroed ? ending : Ending::CANNOT;
+        }
+    }
+    if (ending == Ending::DONE) {
+        Prompt read = make_prompt("backlash", motor, fmt::format("Read the indicator on {}.", name));
+        read.unit = stage.unit(joint);
+        const std::optional<double> value = co_await stage.measure(std::move(read));
+        ending = value.has_value() ? ending : Ending::CANNOT;
+        reading = value.value_or(0);
+    }
+    stage.bench().switch_off();
+    if (ending != Ending::DONE) {
+        co_return found("backlash", stage, joint,
+                        ending == Ending::STOPPED ? Fault::STOPPED : Fault::GIVEN_UP,
+                        stage.bench().last_error());
+    }
+    const double before = stage.motor(joint).backlash;
+    const double least = stage.plan().small(stage.axis(joint), 0.01);
+    const double backlash = std::max(0.0, before + reading);
+    if (std::abs(reading) >= least) {
+        stage.change(motor + ".backlash", to_text(std::round(backlash * 1e4) / 1e4));
+        co_await stage.restart();
+    }
+    Finding finding = found("backlash", stage, joint, Fault::NONE);
+    finding.values.push_back({"backlash", backlash, stage.unit(joint)});
+    co_return finding;
+}
+
+}  // namespace mw::commissioning

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The bench of a machine that runs in this process or in its realtime process: commands by its client, single
+// drives by its HAL.
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hal/core/hal.hh"
+#include "machine/commissioning/bench.hh"
+#include "messages/client/client.hh"
+
+namespace mw::commissioning {
+
+/// One thread. update() in each task cycle, before the guide.
+class LiveBench final : public Bench {
+  public:
+    LiveBench(client::Client &client, hal::Hal &hal, int joints);
+
+    void update();
+
+    double now_s() const override;
+    bool isOn() const override;
+    bool isEstopReleased() const override;
+    bool isProbeOn() const override;
+    JointReading joint(int joint) const override;
+    std::uint64_t late_cycles() const override;
+    std::string last_error() const override { return last_error_; }
+
+    void switch_on(int joint) override;
+    void switch_off() override;
+    void move(int joint, double distance, double speed) override;
+    void stop(int joint) override;
+    void home(int joint) override;
+    void unhome(int joint) override;
+    void run_spindle(double speed_rpm) override;
+    void stop_spindle() override;
+
+    std::optional<double> value(std::string_view name) const override;
+    void set_value(std::string_view name, double value) override;
+
+  private:
+    /// An input of a drive that was taken from its signal.
+    struct Gate {
+        int joint = 0;
+        std::string pin, signal;
+    };
+    bool isHomeSwitchOn(int joint) const;
+    void close_gate(int joint);
+    void open_gates();
+    /// Posts at once; what waits is dropped.
+    void post(const messages::Command &command);
+    /// Posts the next command that waits, when the one before has ended well.
+    void post_waiting();
+    /// Where a bit of HAL is; null: it does not exist.
+    volatile const bool *find_bit(const std::string &name);
+
+    client::Client &client_;
+    hal::Hal &hal_;
+    int joints_;
+    std::vector<Gate> gates_;
+    std::deque<messages::Command> waiting_;
+    std::optional<client::Serial> posted_;
+    volatile const bool *estop_ = nullptr, *probe_ = nullptr;
+    std::vector<volatile const bool *> home_switches_;
+    std::string last_error_;
+};
+
+}  // namespace mw::commissioning
