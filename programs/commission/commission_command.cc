@@ -19,9 +19,14 @@ struct Part {
 };
 
 constexpr std::array PARTS{
+    Part{"find", commission::command_find, "boards, ports and pendants at this computer"},
     Part{"describe", commission::command_describe,
          "the questions about a machine, with the reason of each preset"},
     Part{"write", commission::command_write, "writes a machine, or writes it again with other answers"},
+    Part{"check", commission::command_check,
+         "the steps at the machine: inputs, directions, scales, homing, spindle"},
+    Part{"tune", commission::command_tune, "the control loops of servos"},
+    Part{"report", commission::command_report, "what was found, for acceptance"},
 };
 
 void show_help() {

@@ -8,6 +8,10 @@
 namespace mw::programs::commission {
 
 int command_describe(const std::vector<std::string> &words);
+int command_find(const std::vector<std::string> &words);
+int command_check(const std::vector<std::string> &words);
+int command_tune(const std::vector<std::string> &words);
+int command_report(const std::vector<std::string> &words);
 int command_write(const std::vector<std::string> &words);
 
 }  // namespace mw::programs::commission

@@ -25,11 +25,11 @@ struct SetupWords {
         options::CommandLine line(
             "millwright setup FOLDER [KEY=VALUE ...] [options]",
             "Writes the configuration of a new machine into a folder: commented INI and HAL files, a tool "
-            "table, a "
-            "first program;\nthen starts it in virtual time and runs that program. What is not answered has "
-            "a "
-            "preset; kind= is mill, router, gantry,\nlathe or foam, units= mm or inch, drives= simulated or "
-            "stepper.\n");
+            "table, a first program;\nthen starts it in virtual time and runs that program. What is not "
+            "answered "
+            "has a preset; kind= is mill, router, gantry,\nlathe, foam, plasma, mill4 or mill5, units= mm or "
+            "inch, "
+            "drives= simulated, stepper or servo.\n");
         line.flag("--questions",
                   "print all keys of such a machine with presets and ranges, and write nothing",
                   questions_shown);

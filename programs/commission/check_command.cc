@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// millwright commission check, tune, report: the steps at the machine, and what they have found.
+#include <chrono>
+#include <cstdio>
+#include <ctime>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "base/atomic_file.hh"
+#include "base/language/language.hh"
+#include "base/options/command_line.hh"
+#include "base/stop_signals.hh"
+#include "programs/commission/commissioner.hh"
+#include "programs/commission/operator_line.hh"
+#include "programs/commission/parts.hh"
+#include "programs/commission/record_file.hh"
+#include "programs/commission/report.hh"
+#include "programs/setup/changed_machine.hh"
+
+namespace mw::programs::commission {
+namespace {
+
+bool isCheck(const commissioning::Step &step) {
+    return step.name != "tune";
+}
+
+bool isTuning(const commissioning::Step &step) {
+    return step.name == "tune";
+}
+
+std::string now_text() {
+    const std::time_t now = std::time(nullptr);
+    std::tm utc{};
+    ::gmtime_r(&now, &utc);
+    return fmt::format("{:04}-{:02}-{:02} {:02}:{:02}", utc.tm_year + 1900, utc.tm_mon + 1, utc.tm_mday,
+                       utc.tm_hour, utc.tm_min);
+}
+
+int reject(const char *command, const std::string &why, int status) {
+    fmt::print(stderr, "millwright commission {}: {}\n", command, language::shown(why));
+    return status;
+}
+
+struct CheckWords {
+    const char *command;
+    bool isSimulated = false, isFast = false, isAnew = false;
+    options::Words rest;
+
+    options::CommandLine line() {
+        options::CommandLine line(
+            std::string("millwright commission ") + command + " FOLDER [options]",
+            "Starts the machine of a folder and leads through its steps: each says "
+            "what to do, names the hazards, "
+            "and moves one\naxis slowly, only while the space bar is pressed. Steps that "
+            "are done are not repeated. "
+            "Corrected values are written\ninto the machine's files.\nA script writes "
+            "lines instead: confirm, hold "
+            "SECONDS, number VALUE, choice TEXT, cannot.\n");
+        line.flag("--simulate", "in virtual time, with simulated hardware", isSimulated);
+        line.flag("--fast", "with --simulate: do not wait for the time of the clock on the wall", isFast);
+        line.flag("--anew", "do all steps again", isAnew);
+        line.rest(rest);
+        line.footer("exit status: 0 the steps are done without a fault, 1 a fault, 2 wrong usage\n");
+        return line;
+    }
+};
+
+void show_finding(const commissioning::Step &step, const commissioning::Finding &finding) {
+    fmt::print("{}: {}{}\n", step.title,
+               finding.fault == commissioning::Fault::NONE
+                   ? "passed"
+                   : "FAULT: " + std::string(commissioning::fault_name(finding.fault)),
+               finding.detail.empty() ? "" : " (" + finding.detail + ")");
+    for (const commissioning::Value &value : finding.values) {
+        fmt::print("    {}: {:.6g} {}\n", value.name, value.number, value.unit);
+    }
+    if (finding.fault != commissioning::Fault::NONE) {
+        fmt::print("    {}\n", commissioning::fault_remedy(finding.fault));
+    }
+    std::fflush(stdout);
+}
+
+/// Runs the steps. An error ends the session.
+class CheckSession {
+  public:
+    CheckSession(CheckWords &words, Commissioner &commissioner)
+        : words_(words), commissioner_(commissioner) {}
+
+    Result<> run() {
+        commissioning::Guide &guide = commissioner_.guide();
+        std::size_t shown = guide.current();
+        const auto start = std::chrono::steady_clock::now();
+        const std::int64_t start_ns = commissioner_.machine().now_ns();
+        std::int64_t passed_ns = 0, last_ns = start_ns;
+        while (!guide.isOver()) {
+            if (stop_signal != 0) {
+                guide.stop();
+                return fail("stopped by " + stop_signal_name());
+            }
+            constexpr double S_PER_NS = 1e-9;
+            if (!operator_.look(guide, static_cast<double>(passed_ns) * S_PER_NS)) {
+                guide.stop();
+                return fail("the input has ended: the machine is switched off");
+            }
+            if (auto done = commissioner_.cycle(); !done.has_value()) {
+                return done;
+            }
+            // A machine that was started again has a new clock.
+            const std::int64_t now_ns = commissioner_.machine().now_ns();
+            passed_ns += std::max<std::int64_t>(0, now_ns - last_ns);
+            last_ns = now_ns;
+            if (words_.isSimulated && !words_.isFast) {
+                std::this_thread::sleep_until(start + std::chrono::nanoseconds(passed_ns));
+            }
+            for (; shown < guide.current() || (guide.isFaulted() && shown == guide.current()); ++shown) {
+                if (guide.findings()[shown].has_value()) {
+                    show_finding(guide.steps()[shown], *guide.findings()[shown]);
+                }
+            }
+        }
+        return {};
+    }
+
+  private:
+    CheckWords &words_;
+    Commissioner &commissioner_;
+    OperatorLine operator_;
+};
+
+int run_steps(const char *command, const std::vector<std::string> &arguments,
+              bool (*isWanted)(const commissioning::Step &)) {
+    CheckWords words{.command = command, .rest = {}};
+    if (options::wantsHelp(arguments)) {
+        fmt::print("{}", words.line().help());
+        return 0;
+    }
+    const auto parsed = words.line().parse(arguments);
+    if (!parsed.has_value() || words.rest.size() != 1) {
+        return reject(command, parsed.has_value() ? "needs the folder of a machine" : parsed.error().str(),
+                      2);
+    }
+    const std::string &folder = words.rest[0];
+    const auto answers = recorded_answers(folder);
+    const auto record = read_record(folder);
+    if (!answers.has_value() || !record.has_value()) {
+        return reject(command, answers.has_value() ? record.error().str() : answers.error().str(), 1);
+    }
+    catch_stop_signals();
+    CommissionSetup setup{.folder = folder,
+                          .clock_virtual = words.isSimulated,
+                          .known = words.isAnew ? std::vector<commissioning::Finding>{}
+                                                : valid_findings(*record, *answers),
+                          .isWanted = isWanted,
+                          .prepare = {},
+                          .on_start = {},
+                          .wrap = {}};
+    auto commissioner = Commissioner::open(std::move(setup));
+    if (!commissioner.has_value()) {
+        return reject(command, commissioner.error().str(), 1);
+    }
+    const auto ran = CheckSession(words, **commissioner).run();
+    const commissioning::Guide &guide = (*commissioner)->guide();
+    const auto written = write_record(folder, guide, now_text(), MW_VERSION);
+    if (!ran.has_value() || !written.has_value()) {
+        return reject(command, ran.has_value() ? written.error().str() : ran.error().str(), 1);
+    }
+    if (guide.isFaulted()) {
+        return reject(command, "stopped at a fault; the same command continues there", 1);
+    }
+    fmt::print("{}\n", guide.isReady()
+                           ? "The machine is ready."
+                           : "These steps are done. `millwright commission report` shows what is left.");
+    return 0;
+}
+
+struct ReportWords {
+    std::string html;
+    options::Words rest;
+
+    options::CommandLine line() {
+        options::CommandLine line(
+            "millwright commission report FOLDER [options]",
+            "Prints what commissioning has found: values, dates, versions, a checklist for "
+            "acceptance and a field for the signature.\n");
+        line.text("--html", "FILE", "write a page for the printer instead", html);
+        line.rest(rest);
+        line.footer("exit status: 0 done, 1 rejected, 2 wrong usage\n");
+        return line;
+    }
+};
+
+}  // namespace
+
+int command_check(const std::vector<std::string> &words) {
+    return run_steps("check", words, isCheck);
+}
+
+int command_tune(const std::vector<std::string> &words) {
+    return run_steps("tune", words, isTuning);
+}
+
+int command_report(const std::vector<std::string> &arguments) {
+    ReportWords words;
+    if (options::wantsHelp(arguments)) {
+        fmt::print("{}", words.line().help());
+        return 0;
+    }
+    const auto parsed = words.line().parse(arguments);
+    if (!parsed.has_value() || words.rest.size() != 1) {
+        return reject("report", parsed.has_value() ? "needs the folder of a machine" : parsed.error().str(),
+                      2);
+    }
+    const auto answers = recorded_answers(words.rest[0]);
+    const auto record = read_record(words.rest[0]);
+    if (!answers.has_value() || !record.has_value()) {
+        return reject("report", answers.has_value() ? record.error().str() : answers.error().str(), 1);
+    }
+    const ReportFacts facts{words.rest[0], MW_VERSION, now_text() + " UTC", *answers, *record};
+    if (words.html.empty()) {
+        fmt::print("{}", report_text(facts));
+        return 0;
+    }
+    const auto written = write_file_atomically(words.html, report_html(facts));
+    return written.has_value() ? 0 : reject("report", written.error().str(), 1);
+}
+
+}  // namespace mw::programs::commission

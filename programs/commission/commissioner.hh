@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Runs the machine of a folder under the guide of commissioning: starts it, and writes and starts it again
+// when a step has changed an answer.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "machine/assembly/machine.hh"
+#include "machine/commissioning/guide.hh"
+#include "machine/commissioning/live_bench.hh"
+#include "machine/config/loaded_config.hh"
+
+namespace mw::programs {
+
+struct CommissionSetup {
+    std::string folder;
+    bool clock_virtual = true;
+    /// What earlier sessions have found, and the steps of this one; null: all steps.
+    std::vector<commissioning::Finding> known{};
+    bool (*isWanted)(const commissioning::Step &) = nullptr;
+    /// The INI file to start instead of the written one, for machines with more parts; null: the written one.
+    std::function<Result<std::string>(const std::string &ini)> prepare;
+    /// Called with each machine after it has started, before its first cycle.
+    std::function<void(machine::Machine &)> on_start;
+    /// A bench around the machine's own; null: none.
+    std::function<std::unique_ptr<commissioning::Bench>(commissioning::Bench &)> wrap;
+};
+
+/// One thread.
+class Commissioner {
+  public:
+    static Result<std::unique_ptr<Commissioner>> open(CommissionSetup setup);
+    ~Commissioner();
+
+    commissioning::Guide &guide() { return *guide_; }
+    machine::Machine &machine() { return *machine_; }
+    /// One task cycle, and a new start of the machine when the guide wants one.
+    Result<> cycle();
+    /// Writes the answers of the guide, and starts the machine again.
+    Result<> restart();
+
+  private:
+    explicit Commissioner(CommissionSetup setup) : setup_(std::move(setup)) {}
+    Result<> start();
+    void end_machine();
+
+    CommissionSetup setup_;
+    std::unique_ptr<commissioning::Guide> guide_;
+    diagnostics::Sink sink_;
+    std::unique_ptr<machine::LoadedConfig> loaded_;
+    std::unique_ptr<machine::Machine> machine_;
+    std::unique_ptr<commissioning::LiveBench> bench_;
+    std::unique_ptr<commissioning::Bench> wrapped_;
+};
+
+}  // namespace mw::programs

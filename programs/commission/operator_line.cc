@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "programs/commission/operator_line.hh"
+
+#include <poll.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdio>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "base/text.hh"
+
+namespace mw::programs {
+
+using commissioning::Act;
+using commissioning::Ask;
+using commissioning::Prompt;
+
+namespace {
+
+const char *ask_name(Ask ask) {
+    switch (ask) {
+    case Ask::NOTHING: return "wait";
+    case Ask::CONFIRM: return "confirm";
+    case Ask::HOLD: return "hold";
+    case Ask::ACTION: return "do";
+    case Ask::NUMBER: return "number";
+    case Ask::CHOICE: return "choice";
+    }
+    return "";
+}
+
+}  // namespace
+
+OperatorLine::OperatorLine() : keyboard_(Keyboard::isThere() ? std::make_unique<Keyboard>() : nullptr) {}
+
+void OperatorLine::show(const commissioning::Guide &guide) {
+    const Prompt &prompt = guide.prompt();
+    if (prompt.text.empty()) {
+        return;
+    }
+    for (const std::string &hazard : prompt.hazards) {
+        fmt::print("! {}\n", hazard);
+    }
+    fmt::print("[{}] {}: {}{}{}\n", prompt.step, ask_name(prompt.ask), prompt.text,
+               prompt.unit.empty() ? "" : " [" + prompt.unit + "]",
+               prompt.choices.empty() ? "" : fmt::format(" ({})", fmt::join(prompt.choices, ", ")));
+    if (!prompt.watch.empty()) {
+        fmt::print("    Watch: {}\n", prompt.watch);
+    }
+    std::fflush(stdout);
+}
+
+/// False: the input has ended.
+bool OperatorLine::read() {
+    if (keyboard_ != nullptr) {
+        isSpaceHeld_ = false;
+        while (const auto key = keyboard_->read()) {
+            const bool is_space = *key == ' ' && input_.empty();
+            isSpaceHeld_ = isSpaceHeld_ || is_space;
+            input_ += is_space ? "" : std::string(1, *key == '\r' ? '\n' : *key);
+        }
+        return true;
+    }
+    std::array<char, 256> part{};
+    pollfd look{STDIN_FILENO, POLLIN, 0};
+    while (::poll(&look, 1, 0) > 0) {
+        const ssize_t size = ::read(STDIN_FILENO, part.data(), part.size());
+        if (size > 0) {
+            input_.append(part.data(), static_cast<std::size_t>(size));
+        } else if (size == 0 || errno != EINTR) {
+            return false;
+        }
+    }
+    return true;
+}
+
+void OperatorLine::take(commissioning::Guide &guide, double now_s, const std::string &line) {
+    const std::string_view words = trim(line);
+    const std::size_t space = std::min(words.find(' '), words.size());
+    const std::string_view verb = words.substr(0, space), rest = trim(words.substr(space));
+    const auto number = parse_double(rest);
+    const Prompt &prompt = guide.prompt();
+    Act act;
+    if (verb == "hold") {
+        held_until_s_ = now_s + number.value_or(1);
+        return;
+    }
+    if (verb == "cannot") {
+        act.type = Act::Type::CANNOT;
+    } else if (verb == "number" || (prompt.ask == Ask::NUMBER && parse_double(words).has_value())) {
+        act = {.type = Act::Type::NUMBER,
+               .number = verb == "number" ? number.value_or(0) : *parse_double(words),
+               .choice = ""};
+        if (verb == "number" && !number.has_value()) {
+            fmt::print("? '{}' is no number\n", printable(std::string(rest)));
+            return;
+        }
+    } else if (verb == "choice" || prompt.ask == Ask::CHOICE) {
+        act = {
+            .type = Act::Type::CHOICE, .number = 0, .choice = std::string(verb == "choice" ? rest : words)};
+    }
+    if (!guide.act(guide.prompt_number(), act)) {
+        fmt::print("? '{}' is no answer to this; the answers: {}, or cannot\n", printable(std::string(words)),
+                   ask_name(prompt.ask));
+        std::fflush(stdout);
+    }
+}
+
+bool OperatorLine::look(commissioning::Guide &guide, double now_s) {
+    if (guide.prompt_number() != shown_) {
+        shown_ = guide.prompt_number();
+        held_until_s_ = -1;
+        show(guide);
+    }
+    isEnded_ = isEnded_ || !read();
+    const bool is_answered = guide.prompt().ask != Ask::NOTHING && guide.prompt().ask != Ask::ACTION;
+    const std::size_t end = input_.find('\n');
+    // A script that is ahead of the machine waits for the next question.
+    if (is_answered && held_until_s_ < now_s && end != std::string::npos) {
+        const std::string line = input_.substr(0, end);
+        input_.erase(0, end + 1);
+        if (!line.starts_with('#')) {
+            take(guide, now_s, line);
+        }
+    }
+    if (now_s < held_until_s_ || isSpaceHeld_) {
+        static_cast<void>(guide.act(guide.prompt_number(), {Act::Type::HOLD, 0, ""}));
+    }
+    return !isEnded_ || !input_.empty() || now_s < held_until_s_ || !is_answered;
+}
+
+}  // namespace mw::programs

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The operator of commissioning at a terminal, or a script that writes lines.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "machine/commissioning/guide.hh"
+#include "programs/run/keyboard.hh"
+
+namespace mw::programs {
+
+/// Shows prompts and reads acts, without waiting. Lines: "confirm", "hold SECONDS", "number 12.5", "choice
+/// positive", "cannot". At a terminal: Enter confirms and ends a line, a held space bar is the button.
+class OperatorLine {
+  public:
+    OperatorLine();
+
+    /// Shows the current prompt when it is new, and passes on what the operator did. False: the input has
+    /// ended.
+    bool look(commissioning::Guide &guide, double now_s);
+
+  private:
+    void show(const commissioning::Guide &guide);
+    bool read();
+    void take(commissioning::Guide &guide, double now_s, const std::string &line);
+
+    std::unique_ptr<Keyboard> keyboard_;  ///< null: a script
+    std::string input_;
+    int shown_ = -1;
+    double held_until_s_ = -1;
+    bool isEnded_ = false, isSpaceHeld_ = false;
+};
+
+}  // namespace mw::programs
