@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdio>
 #include <ctime>
+#include <filesystem>
 #include <thread>
 
 #include <fmt/format.h>
@@ -21,12 +22,12 @@
 namespace mw::programs::commission {
 namespace {
 
-bool isCheck(const commissioning::Step &step) {
-    return step.name != "tune";
+bool isTuning(const commissioning::Step &step) {
+    return step.name == "tune" || step.name == "limits";
 }
 
-bool isTuning(const commissioning::Step &step) {
-    return step.name == "tune";
+bool isCheck(const commissioning::Step &step) {
+    return !isTuning(step);
 }
 
 std::string now_text() {
@@ -44,7 +45,7 @@ int reject(const char *command, const std::string &why, int status) {
 
 struct CheckWords {
     const char *command;
-    bool isSimulated = false, isFast = false, isAnew = false;
+    bool isSimulated = false, isFast = false, isRepeated = false;
     options::Words rest;
 
     options::CommandLine line() {
@@ -59,7 +60,7 @@ struct CheckWords {
             "SECONDS, number VALUE, choice TEXT, cannot.\n");
         line.flag("--simulate", "in virtual time, with simulated hardware", isSimulated);
         line.flag("--fast", "with --simulate: do not wait for the time of the clock on the wall", isFast);
-        line.flag("--anew", "do all steps again", isAnew);
+        line.flag("--again", "do all steps again", isRepeated);
         line.rest(rest);
         line.footer("exit status: 0 the steps are done without a fault, 1 a fault, 2 wrong usage\n");
         return line;
@@ -147,10 +148,14 @@ int run_steps(const char *command, const std::vector<std::string> &arguments,
         return reject(command, answers.has_value() ? record.error().str() : answers.error().str(), 1);
     }
     catch_stop_signals();
-    CommissionSetup setup{.folder = folder,
+    // Programs of HAL files find the machine's files in the current folder.
+    std::error_code error;
+    const std::string machine_folder = std::filesystem::absolute(folder, error).string();
+    std::filesystem::current_path(machine_folder, error);
+    CommissionSetup setup{.folder = machine_folder,
                           .clock_virtual = words.isSimulated,
-                          .known = words.isAnew ? std::vector<commissioning::Finding>{}
-                                                : valid_findings(*record, *answers),
+                          .known = words.isRepeated ? std::vector<commissioning::Finding>{}
+                                                    : valid_findings(*record, *answers),
                           .isWanted = isWanted,
                           .prepare = {},
                           .on_start = {},
@@ -161,7 +166,7 @@ int run_steps(const char *command, const std::vector<std::string> &arguments,
     }
     const auto ran = CheckSession(words, **commissioner).run();
     const commissioning::Guide &guide = (*commissioner)->guide();
-    const auto written = write_record(folder, guide, now_text(), MW_VERSION);
+    const auto written = write_record(machine_folder, guide, now_text(), MW_VERSION);
     if (!ran.has_value() || !written.has_value()) {
         return reject(command, ran.has_value() ? written.error().str() : ran.error().str(), 1);
     }

@@ -25,7 +25,7 @@ constexpr std::array PARTS{
     Part{"write", commission::command_write, "writes a machine, or writes it again with other answers"},
     Part{"check", commission::command_check,
          "the steps at the machine: inputs, directions, scales, homing, spindle"},
-    Part{"tune", commission::command_tune, "the control loops of servos"},
+    Part{"tune", commission::command_tune, "the control loops of servos, maximum speeds and accelerations"},
     Part{"report", commission::command_report, "what was found, for acceptance"},
 };
 

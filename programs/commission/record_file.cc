@@ -50,6 +50,7 @@ bool dependsOn(const Finding &finding, std::string_view key) {
            (end == ".correction" && step != "direction") || (step == "home" && is_switch) ||
            (step == "backlash" && end == ".backlash") ||
            (step == "travel" && (is_switch || end == ".min" || end == ".max")) ||
+           (step == "limits" && (end == ".speed" || end == ".acceleration")) ||
            (step == "tune" && (end == ".p" || end == ".ff1" || end == ".ff2" || end == ".full_speed"));
 }
 

@@ -105,6 +105,9 @@ class Session {
                                         .wrap = {}};
         setup.prepare = [this](const std::string &ini) { return world_.prepare(ini); };
         setup.on_start = [this](machine::Machine &machine) { world_.connect(machine); };
+        if (!truth_.isRaised) {
+            setup.isWanted = [](const commissioning::Step &step) { return step.name != "limits"; };
+        }
         if (truth_.trouble == Trouble::LATE_THREAD) {
             setup.wrap = [](Bench &bench) { return std::make_unique<LateBench>(bench); };
         }
@@ -171,7 +174,8 @@ class Session {
             }
         }
         if (truth_.trouble == Trouble::NONE) {
-            if (!guide.isReady()) {
+            if (truth_.isRaised ? !guide.isReady()
+                                : guide.isFaulted() || guide.current() < guide.steps().size()) {
                 fail("ready", where);
             }
             return;
@@ -244,6 +248,24 @@ class Session {
         }
     }
 
+    /// A machine whose world moves with each cycle.
+    class WatchedMachine final : public programs::MachineAccess {
+      public:
+        WatchedMachine(machine::Machine &machine, World &world) : machine_(machine), world_(world) {}
+        void cycle() override {
+            machine_.cycle();
+            world_.step();
+        }
+        std::int64_t now_ns() const override { return machine_.now_ns(); }
+        Result<> health() const override { return machine_.health(); }
+        client::Client &client() override { return machine_.client(); }
+        bool isShared() const override { return false; }
+
+      private:
+        machine::Machine &machine_;
+        World &world_;
+    };
+
     /// The machine of the final files, with the true hardware and the ordinary controller: homes and moves.
     void judge_machine() {
         const auto ini = world_.prepare((machine_folder_ / "machine.ini").string());
@@ -280,8 +302,59 @@ class Session {
                 }
             }
         }
+        drive(watched, *loaded);
         if (!world_.damage().empty()) {
             fail("damage", world_.damage());
+        }
+    }
+
+    /// Each axis at full speed through its travel, and back.
+    void drive(WatchedMachine &machine, const machine::LoadedConfig &loaded) {
+        static_cast<void>(machine.client().post(messages::SetMode{messages::Mode::MDI}));
+        for (const char *key : {"MAX_LIMIT", "MIN_LIMIT", "MAX_LIMIT"}) {
+            std::string line = "G53 G0";
+            std::vector<double> wanted;
+            for (std::size_t i = 0; i < truth_.axes.size(); ++i) {
+                const double inside = key[1] == 'A' ? -1 : 1;
+                wanted.push_back(number(loaded.ini, fmt::format("AXIS_{}", truth_.axes[i].letter), key) +
+                                 inside);
+                line += fmt::format(" {}{:.4f}", truth_.axes[i].letter, wanted.back());
+            }
+            std::vector<double> before;
+            for (std::size_t i = 0; i < truth_.axes.size(); ++i) {
+                before.push_back(world_.table(i) - machine.client().status().joints[i].pos_cmd);
+            }
+            const auto posted = machine.client().post(messages::Mdi{line});
+            constexpr int LONGEST = 60000;
+            for (int cycle = 0; cycle < LONGEST; ++cycle) {
+                machine.cycle();
+                static_cast<void>(machine.client().read_status());
+                if (posted.has_value() &&
+                    machine.client().outcome(*posted).progress != messages::Progress::STARTED) {
+                    break;
+                }
+            }
+            for (int cycle = 0; cycle < 300; ++cycle) {
+                machine.cycle();
+            }
+            static_cast<void>(machine.client().read_status());
+            for (std::size_t i = 0; i < truth_.axes.size(); ++i) {
+                const double command = machine.client().status().joints[i].pos_cmd;
+                if (std::abs(command - wanted[i]) > 0.001) {
+                    return fail("drive", fmt::format("{} is at {} instead of {}", truth_.axes[i].letter,
+                                                     command, wanted[i]));
+                }
+                // Within 0.1 % of the travel, and the play.
+                const double off = std::abs(world_.table(i) - command - before[i]);
+                const double allowed = 0.001 * 400 + truth_.axes[i].backlash;
+                if (off > allowed) {
+                    fail("drive",
+                         fmt::format("the table of {} is off by {:.3f}", truth_.axes[i].letter, off));
+                }
+            }
+        }
+        if (world_.hasSlipped()) {
+            fail("stall", "steps are lost at the tuned limits");
         }
     }
 
@@ -303,24 +376,6 @@ class Session {
             }
         }
     }
-
-    /// A machine whose world moves with each cycle.
-    class WatchedMachine final : public programs::MachineAccess {
-      public:
-        WatchedMachine(machine::Machine &machine, World &world) : machine_(machine), world_(world) {}
-        void cycle() override {
-            machine_.cycle();
-            world_.step();
-        }
-        std::int64_t now_ns() const override { return machine_.now_ns(); }
-        Result<> health() const override { return machine_.health(); }
-        client::Client &client() override { return machine_.client(); }
-        bool isShared() const override { return false; }
-
-      private:
-        machine::Machine &machine_;
-        World &world_;
-    };
 
     TrueMachine truth_;
     std::filesystem::path folder_, machine_folder_;

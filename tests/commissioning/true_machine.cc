@@ -26,6 +26,7 @@ class Maker {
         const char *const kind = is_lathe ? "lathe" : chance(0.5) ? "mill" : "router";
         const std::string letters = is_lathe ? "XZ" : "XYZ";
         answer("kind", kind);
+        kind_ = kind;
         answer("drives", machine_.board == Board::MESA_SERVO ? "servo" : "stepper");
         answer("board", machine_.board == Board::PARPORT        ? "parport"
                         : machine_.board == Board::MESA_STEPPER ? "7i76e"
@@ -40,6 +41,7 @@ class Maker {
         }
         machine_.spindle_full_rpm = 12000 * between(0.7, 1.5);
         machine_.isProbeOpening = chance(0.5);
+        machine_.isRaised = machine_.seed % 5 == 0;
         machine_.trouble_axis = random_() % machine_.axes.size();
         if (machine_.trouble == Trouble::ENCODER_SWAPPED) {
             TrueAxis &axis = machine_.axes[machine_.trouble_axis];
@@ -82,14 +84,16 @@ class Maker {
         axis.switch_at = at_max ? axis.upper_end - between(4, 8) : axis.lower_end + between(4, 8);
         axis.start = axis.lower_end + length * between(0.45, 0.55);
         axis.isContactOpening = chance(0.5);
-        axis.peak_acceleration = between(1500, 5000);
-        axis.fastest = between(120, 300);
+        const double believed_speed = kind_ == "router" ? 80 : 40;
+        axis.peak_acceleration = between(900, 4000);
+        axis.fastest = believed_speed * between(1.6, 4);
         axis.full_rev_s = 50 * between(0.75, 1.3) * (chance(0.5) ? -1 : 1);
         axis.lag_s = between(0.003, 0.02);
         machine_.axes.push_back(axis);
     }
 
     std::mt19937 random_;
+    std::string kind_;
     TrueMachine machine_;
 };
 

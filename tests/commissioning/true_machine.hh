@@ -45,6 +45,7 @@ struct TrueMachine {
     std::vector<TrueAxis> axes;
     double spindle_full_rpm = 0;
     bool isProbeOpening = false;
+    bool isRaised = false;   ///< the owner raises speed and acceleration as well
     setup::Answers answers;  ///< what the owner believes
 };
 

@@ -200,6 +200,15 @@ void World::step() {
     }
 }
 
+bool World::hasSlipped() const {
+    for (const TrueAxis &axis : machine_.axes) {
+        if (isPort() && get(fmt::format("table-{}.slipped", small(axis.letter))) != 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
 double World::spindle_rpm() const {
     double part = 0;
     if (isPort()) {

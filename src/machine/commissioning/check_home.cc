@@ -30,7 +30,16 @@ Prompt hold(const char *step, const Stage &stage, int joint, const std::string &
     return prompt;
 }
 
-/// Homes while the button is pressed. It ends when the joint has moved farther than its travel.
+Flow<> settle(Stage &stage, int joint) {
+    constexpr double SETTLE_S = 0.3;
+    while (stage.bench().joint(joint).isMoving) {
+        co_await stage.next_cycle();
+    }
+    co_await stage.wait(SETTLE_S);
+}
+
+}  // namespace
+
 Flow<Fault> home_while_held(Stage &stage, int joint) {
     const setup::Axis &axis = stage.axis(joint);
     const double start = stage.bench().joint(joint).feedback;
@@ -68,15 +77,21 @@ Flow<Fault> home_while_held(Stage &stage, int joint) {
     }
 }
 
-Flow<> settle(Stage &stage, int joint) {
-    constexpr double SETTLE_S = 0.3;
-    while (stage.bench().joint(joint).isMoving) {
+Flow<double> counts_at_home(Stage &stage, int joint) {
+    co_await settle(stage, joint);
+    // A servo at standstill moves between neighbouring counts.
+    constexpr int SAMPLES = 200;
+    double sum = 0;
+    for (int i = 0; i < SAMPLES; ++i) {
+        sum += stage.bench().value(counts_name(stage, joint)).value_or(0);
         co_await stage.next_cycle();
     }
-    co_await stage.wait(SETTLE_S);
+    const double counts = sum / SAMPLES;
+    stage.bench().unhome(joint);
+    constexpr double REACTION_S = 0.1;
+    co_await stage.wait(REACTION_S);
+    co_return counts;
 }
-
-}  // namespace
 
 Flow<Finding> check_home(Stage &stage, int joint) {
     if (stage.plan().switches == setup::Switches::NONE) {
@@ -98,12 +113,9 @@ Flow<Finding> check_home(Stage &stage, int joint) {
             finding.detail = stage.bench().last_error();
             break;
         }
-        co_await settle(stage, joint);
-        const double counts = stage.bench().value(counts_name(stage, joint)).value_or(0);
+        const double counts = co_await counts_at_home(stage, joint);
         least = i == 0 ? counts : std::min(least, counts);
         most = i == 0 ? counts : std::max(most, counts);
-        stage.bench().unhome(joint);
-        co_await stage.wait(0.1);
     }
     stage.bench().switch_off();
     constexpr double ALLOWED = 1;

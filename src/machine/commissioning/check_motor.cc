@@ -119,7 +119,7 @@ Flow<Finding> check_direction(Stage &stage, int joint) {
             joint, "direction", fmt::format("The drive of {} alone is switched on. {}", name, FREE));
         if (!on) {
             const bool given_up = stage.bench().last_error().empty();
-            co_return found("direction", stage, joint, given_up ? Fault::GIVEN_UP : Fault::DRIVE,
+            co_return found("direction", stage, joint, given_up ? Fault::GIVEN_UP : Fault::STOPPED,
                             stage.bench().last_error());
         }
         if (stage.plan().is_servo) {
@@ -233,7 +233,7 @@ Flow<Finding> check_scale(Stage &stage, int joint) {
             joint, "scale",
             fmt::format("The drive of {} alone is switched on. {}", to_upper(stage.motor(joint).name), FREE));
         if (!on) {
-            finding.fault = stage.bench().last_error().empty() ? Fault::GIVEN_UP : Fault::DRIVE;
+            finding.fault = stage.bench().last_error().empty() ? Fault::GIVEN_UP : Fault::STOPPED;
             co_return finding;
         }
         const Measured measured =

@@ -22,6 +22,7 @@ std::vector<Step> steps_of(const setup::Plan &plan) {
             steps.push_back({"travel", "Travel of " + name, joint, check_travel});
             steps.push_back({"backlash", "Backlash of " + name, joint, measure_backlash});
             steps.push_back({"tune", "Control loop of " + name, joint, tune_servo});
+            steps.push_back({"limits", "Speed and acceleration of " + name, joint, tune_limits});
             ++joint;
         }
     }
@@ -78,6 +79,9 @@ void Guide::cycle() {
     }
     if (flow_->isDone()) {
         Finding finding = flow_->await_resume();
+        const int joint = steps_[current_].joint;
+        const bool is_drive = joint >= 0 && stage_.bench().joint(joint).isDriveFaulted;
+        finding.fault = finding.fault == Fault::STOPPED && is_drive ? Fault::DRIVE : finding.fault;
         flow_.reset();
         finding.before = stage_.take_changes();
         for (const auto &[key, value] : finding.before) {

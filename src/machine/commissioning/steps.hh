@@ -21,6 +21,12 @@ Flow<Finding> check_home(Stage &stage, int joint);
 Flow<Finding> check_travel(Stage &stage, int joint);
 // check_spindle.cc
 Flow<Finding> check_spindle(Stage &stage, int joint);
+/// Homes while the button is pressed, at most a little more than the travel of the joint.
+Flow<Fault> home_while_held(Stage &stage, int joint);
+/// Where the board counts the joint, at standstill after homing. The joint is then unhomed.
+Flow<double> counts_at_home(Stage &stage, int joint);
+// tune_limits.cc
+Flow<Finding> tune_limits(Stage &stage, int joint);
 // tune_servo.cc
 Flow<Finding> tune_servo(Stage &stage, int joint);
 

@@ -171,7 +171,7 @@ Flow<Finding> tune_servo(Stage &stage, int joint) {
         fmt::format("The drive of {} alone is switched on. The axis must be in the middle of its travel.",
                     name));
     if (!on) {
-        finding.fault = stage.bench().last_error().empty() ? Fault::GIVEN_UP : Fault::DRIVE;
+        finding.fault = stage.bench().last_error().empty() ? Fault::GIVEN_UP : Fault::STOPPED;
         co_return finding;
     }
     const Followed before = co_await follow(stage, joint, PART);

@@ -171,6 +171,18 @@ int home_sequence(const Plan &plan, const Axis &axis) {
     return first ? 0 : 1;
 }
 
+/// Slow enough to move less than a third of a count in a servo period, so that homing repeats within one
+/// count.
+double latch_speed(const Axis &axis) {
+    constexpr double PERIODS_PER_S = 1000, COUNTS = 0.3, SLOWER = 10, SLOWEST = 100;
+    double speed = axis.home_speed / SLOWER;
+    for (const Motor &motor : axis.motors) {
+        const double counts = std::max(std::abs(motor.steps_per_unit), std::abs(motor.servo.counts_per_unit));
+        speed = counts > 0 ? std::min(speed, COUNTS * PERIODS_PER_S / counts) : speed;
+    }
+    return std::max(speed, axis.home_speed / SLOWEST);
+}
+
 std::string home_text(const Plan &plan, const Axis &axis) {
     const int sequence = home_sequence(plan, axis);
     const char *const order = sequence < 0 ? "# Order of homing; negative: these motors end together.\n"
@@ -190,12 +202,12 @@ std::string home_text(const Plan &plan, const Axis &axis) {
         "# The switch is at HOME_OFFSET; after homing the axis goes to HOME.\n"
         "HOME = {}\n"
         "HOME_OFFSET = {}\n"
-        "# Towards the switch, and onto it slowly; the sign is the direction.\n"
+        "# Towards the switch, and onto it slowly, less than a count a period; the sign is the direction.\n"
         "HOME_SEARCH_VEL = {}\n"
         "HOME_LATCH_VEL = {}\n"
         "{}{}HOME_SEQUENCE = {}\n",
         short_text(end - sign * plan.small(axis, 1)), short_text(end + sign * plan.small(axis, 2)),
-        short_text(sign * axis.home_speed), short_text(sign * axis.home_speed / 10),
+        short_text(sign * axis.home_speed), short_text(sign * latch_speed(axis)),
         plan.switches == Switches::HOME_AND_LIMITS
             ? "# The switch is a limit, too, but not while it is looked for.\nHOME_IGNORE_LIMITS = YES\n"
             : "",
