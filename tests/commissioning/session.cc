@@ -34,6 +34,8 @@ class LateBench final : public Bench {
     std::uint64_t late_cycles() const override { return static_cast<std::uint64_t>(bench_.now_s()); }
     std::string last_error() const override { return bench_.last_error(); }
     void switch_on(int joint) override { bench_.switch_on(joint); }
+    void switch_on_several(const std::vector<int> &joints) override { bench_.switch_on_several(joints); }
+    double worst_latency_s() const override { return bench_.worst_latency_s(); }
     void switch_off() override { bench_.switch_off(); }
     void move(int joint, double distance, double speed) override { bench_.move(joint, distance, speed); }
     void stop(int joint) override { bench_.stop(joint); }
@@ -127,7 +129,7 @@ class Session {
         constexpr double LONGEST_S = 4000;
         constexpr double CYCLE_S = 0.001;
         int shown = -1;
-        while (!guide.isOver()) {
+        while (!guide.isOver() && failure_.empty()) {
             figures_.time_s += CYCLE_S;
             if (figures_.time_s > LONGEST_S) {
                 return fail("time", guide.steps()[guide.current()].title + ": " + guide.prompt().text);
@@ -146,12 +148,33 @@ class Session {
             if (auto done = commissioner.cycle(); !done.has_value()) {
                 return fail("cycle", done.error().str());
             }
+            std::vector<double> before;
+            for (std::size_t i = 0; i < truth_.axes.size(); ++i) {
+                before.push_back(world_.table(i));
+            }
             world_.step();
             if (!world_.damage().empty()) {
                 return fail("damage", world_.damage() + " in " + guide.prompt().text);
             }
+            const bool is_held = act.has_value() && act->type == commissioning::Act::Type::HOLD;
+            held_s_ = is_held ? figures_.time_s : held_s_;
+            judge_motion(before, guide.prompt().text);
         }
         judge_findings(guide);
+    }
+
+    /// One drive at a time, and only while the owner holds the button, with the time to stop.
+    void judge_motion(const std::vector<double> &before, const std::string &text) {
+        constexpr double STOPPING_S = 1.0, MOVED_MM = 0.005;
+        for (std::size_t i = 0; i < before.size(); ++i) {
+            if (std::abs(world_.table(i) - before[i]) > MOVED_MM && figures_.time_s > held_s_ + STOPPING_S) {
+                fail("held", fmt::format("{} moves without the button in {}", truth_.axes[i].letter, text));
+            }
+        }
+        // Pins are read now and then: it takes time.
+        if (++cycles_ % 10 == 0 && world_.count_enabled() > 1) {
+            fail("alone", "more than one drive is enabled in " + text);
+        }
     }
 
     void judge_findings(const commissioning::Guide &guide) {
@@ -383,6 +406,8 @@ class Session {
     World world_;
     Owner owner_;
     Figures figures_;
+    double held_s_ = -10;
+    unsigned cycles_ = 0;
     std::string failure_;
 };
 

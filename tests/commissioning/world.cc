@@ -200,6 +200,18 @@ void World::step() {
     }
 }
 
+int World::count_enabled() const {
+    int count = 0;
+    for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
+        const std::string pin = isPort() ? fmt::format("stepgen.{}.enable", i)
+                                : machine_.board == Board::MESA_STEPPER
+                                    ? fmt::format("hm2_7i76e.0.stepgen.{:02d}.enable", i)
+                                    : fmt::format("hm2_7i97.0.pwmgen.{:02d}.enable", i);
+        count += get(pin) != 0 ? 1 : 0;
+    }
+    return count;
+}
+
 bool World::hasSlipped() const {
     for (const TrueAxis &axis : machine_.axes) {
         if (isPort() && get(fmt::format("table-{}.slipped", small(axis.letter))) != 0) {

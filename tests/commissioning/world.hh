@@ -30,6 +30,8 @@ class World {
     double table(std::size_t axis) const { return tables_[axis]; }
     const TrueAxis &axis(std::size_t axis) const { return machine_.axes[axis]; }
     double spindle_rpm() const;
+    /// Drives that have an enable signal.
+    int count_enabled() const;
     /// Steps were lost since the last start.
     bool hasSlipped() const;
     /// An end stop that was hit, or steps that were lost; empty: none.

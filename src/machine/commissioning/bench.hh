@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/result.hh"
 
@@ -30,12 +31,16 @@ class Bench {
     virtual JointReading joint(int joint) const = 0;
     /// Cycles of the servo thread that came late.
     virtual std::uint64_t late_cycles() const = 0;
+    /// Latest wake-up of a realtime thread since the start [s].
+    virtual double worst_latency_s() const = 0;
     /// Why the machine went off, as it was reported; empty: it did not.
     virtual std::string last_error() const = 0;
 
     /// Switches the machine on with the drive of one joint only; EVERY_JOINT: with all,
     /// NO_JOINT: with none.
     virtual void switch_on(int joint) = 0;
+    /// With the drives of some joints.
+    virtual void switch_on_several(const std::vector<int> &joints) = 0;
     virtual void switch_off() = 0;
     /// Moves a joint by a distance from where it is.
     virtual void move(int joint, double distance, double speed) = 0;

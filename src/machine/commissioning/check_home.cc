@@ -97,10 +97,14 @@ Flow<Finding> check_home(Stage &stage, int joint) {
     if (stage.plan().switches == setup::Switches::NONE) {
         co_return found("home", stage, joint, Fault::NONE, "no switch");
     }
+    if (stage.joints_of_axis(joint).front() != joint) {
+        co_return found("home", stage, joint, Fault::NONE, "homed together with the other motor of the axis");
+    }
     const std::string name = to_upper(stage.motor(joint).name);
-    const bool on = co_await stage.enable(
+    const bool on = co_await stage.enable_axis(
         joint, "home",
-        fmt::format("The drive of {} alone is switched on. It will move to its home switch.", name));
+        fmt::format("The drive of {} is switched on. It will move to its home switch.{}", name,
+                    stage.isOneOfTwo(joint) ? " Couple both motors to the axis: they home together." : ""));
     if (!on) {
         co_return found("home", stage, joint, Fault::GIVEN_UP, stage.bench().last_error());
     }
@@ -127,7 +131,7 @@ Flow<Finding> check_home(Stage &stage, int joint) {
 }
 
 Flow<Finding> check_travel(Stage &stage, int joint) {
-    if (stage.plan().switches == setup::Switches::NONE || stage.motor(joint).name.size() > 1) {
+    if (stage.plan().switches == setup::Switches::NONE || stage.isOneOfTwo(joint)) {
         co_return found("travel", stage, joint, Fault::NONE, "travel as answered");
     }
     const setup::Axis axis = stage.axis(joint);

@@ -117,6 +117,8 @@ Flow<Finding> check_thread(Stage &stage, int joint) {
     const auto late = static_cast<double>(stage.bench().late_cycles() - before);
     Finding finding = found("thread", stage, joint, late > 0 ? Fault::LATE_THREAD : Fault::NONE);
     finding.values.push_back({"late cycles", late, ""});
+    constexpr double US_PER_S = 1e6;
+    finding.values.push_back({"latest wake-up", stage.bench().worst_latency_s() * US_PER_S, "us"});
     finding.values.push_back({"watched", THREAD_S, "s"});
     co_return finding;
 }

@@ -266,6 +266,9 @@ Flow<Finding> check_scale(Stage &stage, int joint) {
 }
 
 Flow<Finding> measure_backlash(Stage &stage, int joint) {
+    if (stage.isOneOfTwo(joint)) {
+        co_return found("backlash", stage, joint, Fault::NONE, "two motors: backlash as answered");
+    }
     const std::string motor = stage.motor(joint).name, name = to_upper(motor);
     const double travel = stage.plan().small(stage.axis(joint), 2), speed = stage.slow(joint);
     const bool on = co_await stage.enable(

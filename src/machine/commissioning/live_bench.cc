@@ -74,6 +74,15 @@ std::uint64_t LiveBench::late_cycles() const {
     return late;
 }
 
+double LiveBench::worst_latency_s() const {
+    std::int64_t worst_ns = 0;
+    for (const hal::ThreadInfo &thread : hal_.threads()) {
+        worst_ns = std::max(worst_ns, thread.max_latency_ns);
+    }
+    constexpr double S_PER_NS = 1e-9;
+    return static_cast<double>(worst_ns) * S_PER_NS;
+}
+
 void LiveBench::post(const messages::Command &command) {
     waiting_.clear();
     posted_.reset();
@@ -121,10 +130,20 @@ void LiveBench::open_gates() {
 }
 
 void LiveBench::switch_on(int joint) {
+    std::vector<int> joints;
+    for (int one = 0; one < joints_; ++one) {
+        if (joint == EVERY_JOINT || one == joint) {
+            joints.push_back(one);
+        }
+    }
+    switch_on_several(joints);
+}
+
+void LiveBench::switch_on_several(const std::vector<int> &joints) {
     last_error_.clear();
     open_gates();
     for (int one = 0; one < joints_; ++one) {
-        if (joint != EVERY_JOINT && one != joint) {
+        if (std::ranges::find(joints, one) == joints.end()) {
             close_gate(one);
         }
     }

@@ -94,6 +94,17 @@ const setup::Motor &Stage::motor(int joint) const {
     return plan_.axes.front().motors.front();
 }
 
+std::vector<int> Stage::joints_of_axis(int joint) const {
+    const char letter = axis(joint).letter;
+    std::vector<int> joints;
+    for (int one = 0; one < plan_.joints(); ++one) {
+        if (axis(one).letter == letter) {
+            joints.push_back(one);
+        }
+    }
+    return joints;
+}
+
 double Stage::slow(int joint) const {
     constexpr double SLOW_MM_S = 3, PART = 0.25;
     const setup::Axis &one = axis(joint);
@@ -154,20 +165,44 @@ bool Stage::isHeld() const {
     return bench_ != nullptr && bench_->now_s() < held_until_s_;
 }
 
-Flow<bool> Stage::enable(int joint, std::string step, std::string text) {
+Flow<bool> Stage::confirm_drives(int joint, std::string step, std::string text, bool isAlone) {
     Prompt prompt = make_prompt(std::move(step), joint >= 0 ? motor(joint).name : "", std::move(text),
                                 "The emergency stop must be within reach.");
     prompt.hazards = {"The motor may start unexpectedly.", "Keep hands and tools out of the machine."};
-    const bool confirmed = co_await confirm(std::move(prompt));
-    if (!confirmed) {
-        co_return false;
+    if (joint >= 0 && isAlone && isOneOfTwo(joint)) {
+        prompt.hazards.emplace_back("Two motors move this axis. Uncouple this motor from the axis first: "
+                                    "alone it would rack the gantry.");
     }
-    bench().switch_on(joint);
+    const bool confirmed = co_await confirm(std::move(prompt));
+    co_return confirmed;
+}
+
+Flow<bool> Stage::wait_until_on() {
     const double end_s = bench().now_s() + SWITCHING_TIMEOUT_S;
     while (!bench().isOn() && bench().now_s() < end_s) {
         co_await next_cycle();
     }
     co_return bench().isOn();
+}
+
+Flow<bool> Stage::enable(int joint, std::string step, std::string text) {
+    const bool confirmed = co_await confirm_drives(joint, std::move(step), std::move(text), true);
+    if (!confirmed) {
+        co_return false;
+    }
+    bench().switch_on(joint);
+    const bool on = co_await wait_until_on();
+    co_return on;
+}
+
+Flow<bool> Stage::enable_axis(int joint, std::string step, std::string text) {
+    const bool confirmed = co_await confirm_drives(joint, std::move(step), std::move(text), false);
+    if (!confirmed) {
+        co_return false;
+    }
+    bench().switch_on_several(joints_of_axis(joint));
+    const bool on = co_await wait_until_on();
+    co_return on;
 }
 
 Flow<Ending> Stage::move_while_held(int joint, Motion motion, Prompt prompt) {

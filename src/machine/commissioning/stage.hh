@@ -53,6 +53,10 @@ class Stage {
     /// A speed that is slow for this axis [units/s].
     double slow(int joint) const;
     const char *unit(int joint) const;
+    /// Joints of the axis of a joint.
+    std::vector<int> joints_of_axis(int joint) const;
+    /// It moves an axis together with another motor.
+    bool isOneOfTwo(int joint) const { return axis(joint).motors.size() > 1; }
 
     struct NextCycle {
         Stage &stage;
@@ -78,6 +82,8 @@ class Stage {
     /// Switches the machine on with the drive of one joint, after the operator has confirmed. False: it is
     /// not on.
     Flow<bool> enable(int joint, std::string step, std::string text);
+    /// The same with the drives of all motors of its axis.
+    Flow<bool> enable_axis(int joint, std::string step, std::string text);
     /// Moves a joint by at most a distance, only while the button is pressed.
     Flow<Ending> move_while_held(int joint, Motion motion, Prompt prompt);
 
@@ -89,6 +95,8 @@ class Stage {
     setup::Answers take_changes();
 
   private:
+    Flow<bool> confirm_drives(int joint, std::string step, std::string text, bool isAlone);
+    Flow<bool> wait_until_on();
     void set_answers(setup::Answers answers);
     void lower_speeds(setup::Answers &answers);
 

@@ -35,6 +35,11 @@ class FakeBench final : public Bench {
         on = true;
         enabled.push_back(joint);
     }
+    void switch_on_several(const std::vector<int> &joints) override {
+        on = true;
+        enabled = joints;
+    }
+    double worst_latency_s() const override { return 0; }
     void switch_off() override {
         on = false;
         left = {};
