@@ -33,8 +33,7 @@ class LateBench final : public Bench {
     commissioning::JointReading joint(int joint) const override { return bench_.joint(joint); }
     std::uint64_t late_cycles() const override { return static_cast<std::uint64_t>(bench_.now_s()); }
     std::string last_error() const override { return bench_.last_error(); }
-    void switch_on(int joint) override { bench_.switch_on(joint); }
-    void switch_on_several(const std::vector<int> &joints) override { bench_.switch_on_several(joints); }
+    void switch_on(const std::vector<int> &joints) override { bench_.switch_on(joints); }
     double worst_latency_s() const override { return bench_.worst_latency_s(); }
     void switch_off() override { bench_.switch_off(); }
     void move(int joint, double distance, double speed) override { bench_.move(joint, distance, speed); }

@@ -36,11 +36,8 @@ class Bench {
     /// Why the machine went off, as it was reported; empty: it did not.
     virtual std::string last_error() const = 0;
 
-    /// Switches the machine on with the drive of one joint only; EVERY_JOINT: with all,
-    /// NO_JOINT: with none.
-    virtual void switch_on(int joint) = 0;
-    /// With the drives of some joints.
-    virtual void switch_on_several(const std::vector<int> &joints) = 0;
+    /// Switches the machine on with the drives of these joints only.
+    virtual void switch_on(const std::vector<int> &joints) = 0;
     virtual void switch_off() = 0;
     /// Moves a joint by a distance from where it is.
     virtual void move(int joint, double distance, double speed) = 0;

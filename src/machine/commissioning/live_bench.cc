@@ -129,17 +129,7 @@ void LiveBench::open_gates() {
     gates_.clear();
 }
 
-void LiveBench::switch_on(int joint) {
-    std::vector<int> joints;
-    for (int one = 0; one < joints_; ++one) {
-        if (joint == EVERY_JOINT || one == joint) {
-            joints.push_back(one);
-        }
-    }
-    switch_on_several(joints);
-}
-
-void LiveBench::switch_on_several(const std::vector<int> &joints) {
+void LiveBench::switch_on(const std::vector<int> &joints) {
     last_error_.clear();
     open_gates();
     for (int one = 0; one < joints_; ++one) {

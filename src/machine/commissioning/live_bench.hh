@@ -30,8 +30,7 @@ class LiveBench final : public Bench {
     double worst_latency_s() const override;
     std::string last_error() const override { return last_error_; }
 
-    void switch_on(int joint) override;
-    void switch_on_several(const std::vector<int> &joints) override;
+    void switch_on(const std::vector<int> &joints) override;
     void switch_off() override;
     void move(int joint, double distance, double speed) override;
     void stop(int joint) override;

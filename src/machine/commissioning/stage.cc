@@ -13,6 +13,26 @@ namespace {
 constexpr double HOLD_LEASE_S = 0.25;
 constexpr double SWITCHING_TIMEOUT_S = 5;
 
+/// A computer that cannot make the steps of a corrected scale at this speed moves the axis at a lower speed.
+setup::Answers with_possible_speeds(setup::Answers answers) {
+    constexpr double PART = 0.95, DIGITS = 1000;
+    constexpr int MOST_TIMES = 100;
+    for (int i = 0; i < MOST_TIMES; ++i) {
+        const auto faults = setup::plan_of(answers).faults;
+        if (faults.empty() || !std::ranges::all_of(faults, [](const setup::Fault &fault) {
+                return fault.key.ends_with(".speed") || fault.key.ends_with(".home_speed");
+            })) {
+            return answers;
+        }
+        for (const setup::Fault &fault : faults) {
+            const auto asked = setup::questions(answers);
+            const double speed = parse_double(setup::answer_of(asked, answers, fault.key)).value_or(0);
+            answers[fault.key] = to_text(std::floor(speed * PART * DIGITS) / DIGITS);
+        }
+    }
+    return answers;
+}
+
 }  // namespace
 
 Stage::Stage(setup::Answers answers) : answers_(std::move(answers)), plan_(setup::plan_of(answers_).plan) {}
@@ -165,19 +185,13 @@ bool Stage::isHeld() const {
     return bench_ != nullptr && bench_->now_s() < held_until_s_;
 }
 
-Flow<bool> Stage::confirm_drives(int joint, std::string step, std::string text, bool isAlone) {
-    Prompt prompt = make_prompt(std::move(step), joint >= 0 ? motor(joint).name : "", std::move(text),
-                                "The emergency stop must be within reach.");
-    prompt.hazards = {"The motor may start unexpectedly.", "Keep hands and tools out of the machine."};
-    if (joint >= 0 && isAlone && isOneOfTwo(joint)) {
-        prompt.hazards.emplace_back("Two motors move this axis. Uncouple this motor from the axis first: "
-                                    "alone it would rack the gantry.");
-    }
+Flow<bool> Stage::enable_joints(std::vector<int> joints, Prompt prompt) {
+    prompt.watch = "The emergency stop must be within reach.";
     const bool confirmed = co_await confirm(std::move(prompt));
-    co_return confirmed;
-}
-
-Flow<bool> Stage::wait_until_on() {
+    if (!confirmed) {
+        co_return false;
+    }
+    bench().switch_on(joints);
     const double end_s = bench().now_s() + SWITCHING_TIMEOUT_S;
     while (!bench().isOn() && bench().now_s() < end_s) {
         co_await next_cycle();
@@ -186,23 +200,19 @@ Flow<bool> Stage::wait_until_on() {
 }
 
 Flow<bool> Stage::enable(int joint, std::string step, std::string text) {
-    const bool confirmed = co_await confirm_drives(joint, std::move(step), std::move(text), true);
-    if (!confirmed) {
-        co_return false;
+    Prompt prompt = make_prompt(std::move(step), joint >= 0 ? motor(joint).name : "", std::move(text));
+    prompt.hazards = {"The motor may start unexpectedly.", "Keep hands and tools out of the machine."};
+    if (joint >= 0 && isOneOfTwo(joint)) {
+        prompt.hazards.emplace_back("Two motors move this axis. Uncouple this motor from the axis first: "
+                                    "alone it would rack the gantry.");
     }
-    bench().switch_on(joint);
-    const bool on = co_await wait_until_on();
-    co_return on;
+    return enable_joints(joint >= 0 ? std::vector<int>{joint} : std::vector<int>{}, std::move(prompt));
 }
 
 Flow<bool> Stage::enable_axis(int joint, std::string step, std::string text) {
-    const bool confirmed = co_await confirm_drives(joint, std::move(step), std::move(text), false);
-    if (!confirmed) {
-        co_return false;
-    }
-    bench().switch_on_several(joints_of_axis(joint));
-    const bool on = co_await wait_until_on();
-    co_return on;
+    Prompt prompt = make_prompt(std::move(step), motor(joint).name, std::move(text));
+    prompt.hazards = {"The motor may start unexpectedly.", "Keep hands and tools out of the machine."};
+    return enable_joints(joints_of_axis(joint), std::move(prompt));
 }
 
 Flow<Ending> Stage::move_while_held(int joint, Motion motion, Prompt prompt) {
@@ -239,36 +249,15 @@ Flow<Ending> Stage::move_while_held(int joint, Motion motion, Prompt prompt) {
 }
 
 void Stage::change(const std::string &key, std::string value) {
-    if (!before_.contains(key)) {
-        before_[key] = answer(key);
-    }
     setup::Answers answers = answers_;
     answers[key] = std::move(value);
-    lower_speeds(answers);
-    set_answers(std::move(answers));
-}
-
-/// A computer that cannot make the steps of a corrected scale at this speed moves the axis at a lower speed.
-void Stage::lower_speeds(setup::Answers &answers) {
-    constexpr double PART = 0.95;
-    constexpr int MOST_TIMES = 100;
-    for (int i = 0; i < MOST_TIMES; ++i) {
-        const auto faults = setup::plan_of(answers).faults;
-        if (faults.empty() || !std::ranges::all_of(faults, [](const setup::Fault &fault) {
-                return fault.key.ends_with(".speed") || fault.key.ends_with(".home_speed");
-            })) {
-            return;
-        }
-        for (const setup::Fault &fault : faults) {
-            const auto asked = setup::questions(answers);
-            if (!before_.contains(fault.key)) {
-                before_[fault.key] = answer(fault.key);
-            }
-            const double speed = parse_double(setup::answer_of(asked, answers, fault.key)).value_or(0);
-            constexpr double DIGITS = 1000;
-            answers[fault.key] = to_text(std::floor(speed * PART * DIGITS) / DIGITS);
+    answers = with_possible_speeds(std::move(answers));
+    for (const auto &[changed, now] : answers) {
+        if (answer(changed) != now || changed == key) {
+            before_.try_emplace(changed, answer(changed));
         }
     }
+    set_answers(std::move(answers));
 }
 
 void Stage::set_answers(setup::Answers answers) {

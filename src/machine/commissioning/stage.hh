@@ -95,10 +95,8 @@ class Stage {
     setup::Answers take_changes();
 
   private:
-    Flow<bool> confirm_drives(int joint, std::string step, std::string text, bool isAlone);
-    Flow<bool> wait_until_on();
+    Flow<bool> enable_joints(std::vector<int> joints, Prompt prompt);
     void set_answers(setup::Answers answers);
-    void lower_speeds(setup::Answers &answers);
 
     setup::Answers answers_, before_;
     setup::Plan plan_;

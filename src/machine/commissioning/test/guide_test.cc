@@ -31,11 +31,7 @@ class FakeBench final : public Bench {
     }
     std::uint64_t late_cycles() const override { return late; }
     std::string last_error() const override { return error; }
-    void switch_on(int joint) override {
-        on = true;
-        enabled.push_back(joint);
-    }
-    void switch_on_several(const std::vector<int> &joints) override {
+    void switch_on(const std::vector<int> &joints) override {
         on = true;
         enabled = joints;
     }
