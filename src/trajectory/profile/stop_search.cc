@@ -86,7 +86,7 @@ bool StopSearch::keepsLimits(const Course &course, std::size_t cell, const Direc
                 -m.a <= left.acceleration + left.spare_acceleration &&
                 std::abs(tail.jerk_at(t)) <= left.jerk + left.spare_jerk;
         // Above the limit of the speed it may be where the plan is.
-        if (std::max(speed_share(run_, point, feed), left.speed_share) * m.v > 1) {
+        if (std::max(speed_share(within_, point, feed), left.speed_share) * m.v > 1) {
             const double p = plan_.map.parameter_at(m.s);
             while (cell + 1 < course.cells && course.knots[cell + 1] <= p) {
                 ++cell;
