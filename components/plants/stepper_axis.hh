@@ -32,11 +32,12 @@ class StepperAxis {
         }
         const double step = settings_.units_per_step;
         field_ += steps * step;
-        const double most =
-            settings_.peak_acceleration * std::max(0.0, 1 - std::abs(velocity_) / settings_.fastest);
-        // The rotor follows the field of the steps with a bounded force.
+        // The rotor follows the field of the steps with a bounded force. Less of it is left at speed, except
+        // for braking.
         const double lag = field_ - rotor_;
         const double wanted = (lag / TIME_S - velocity_) / TIME_S;
+        const double part = wanted * velocity_ < 0 ? 1.0 : 1 - std::abs(velocity_) / settings_.fastest;
+        const double most = settings_.peak_acceleration * std::max(0.0, part);
         velocity_ += std::clamp(wanted, -most, most) * dt;
         rotor_ += velocity_ * dt;
         const double pitch = STEPS_OF_A_PERIOD * std::abs(step);

@@ -14,7 +14,7 @@ namespace {
 class CommissioningCampaign final : public campaign_runner::Campaign {
   public:
     std::string name() const override { return "commissioning"; }
-    unsigned plan() const override { return 1; }
+    unsigned plan() const override { return 2; }
     std::string run(unsigned seed, const std::string &, const std::filesystem::path &folder,
                     bool isTold) override {
         return run_session(seed, folder, isTold);

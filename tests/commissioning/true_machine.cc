@@ -17,8 +17,9 @@ class Maker {
     TrueMachine make() {
         machine_.board = static_cast<Board>(machine_.seed % 3);
         if (machine_.seed >= FIRST_TROUBLE) {
-            machine_.trouble = static_cast<Trouble>(1 + (machine_.seed / 3) % 6);
-            if (machine_.trouble == Trouble::ENCODER_SWAPPED) {
+            machine_.trouble = static_cast<Trouble>(1 + (machine_.seed / 3) % 10);
+            if (machine_.trouble == Trouble::ENCODER_SWAPPED ||
+                machine_.trouble == Trouble::ENCODER_NOT_CONNECTED) {
                 machine_.board = Board::MESA_SERVO;
             }
         }
@@ -112,6 +113,10 @@ const char *trouble_name(Trouble trouble) {
     case Trouble::ENCODER_SWAPPED: return "encoder phases swapped";
     case Trouble::NOISE: return "noise on an input";
     case Trouble::LATE_THREAD: return "late thread";
+    case Trouble::SWITCHES_EXCHANGED: return "switch at another input";
+    case Trouble::ESTOP_NOT_CONNECTED: return "emergency stop not connected";
+    case Trouble::PROBE_NOT_CONNECTED: return "probe not connected";
+    case Trouble::ENCODER_NOT_CONNECTED: return "encoder not connected";
     }
     return "";
 }

@@ -18,6 +18,10 @@ enum class Trouble {
     ENCODER_SWAPPED,
     NOISE,
     LATE_THREAD,
+    SWITCHES_EXCHANGED,
+    ESTOP_NOT_CONNECTED,
+    PROBE_NOT_CONNECTED,
+    ENCODER_NOT_CONNECTED,
 };
 
 struct TrueAxis {

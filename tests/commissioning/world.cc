@@ -35,6 +35,11 @@ std::size_t World::find_axis(char letter) const {
                                     machine_.axes.begin());
 }
 
+std::size_t World::switch_place(std::size_t axis) const {
+    const bool exchanged = machine_.trouble == Trouble::SWITCHES_EXCHANGED && axis < 2;
+    return exchanged ? 1 - axis : axis;
+}
+
 /// Steppers at the pins of the port.
 std::string World::port_text() const {
     std::string names, text;
@@ -61,7 +66,7 @@ std::string World::port_text() const {
         }
         if (wired) {
             text += fmt::format("net wire-{0}-switch {1}.switch => parport.0.pin-{2}-in-fake\n",
-                                small(axis.letter), name, PORT_HOMES[i]);
+                                small(axis.letter), name, PORT_HOMES[switch_place(i)]);
         }
     }
     return "loadrt plant_stepper names=" + names + "\n" + text;
@@ -85,15 +90,17 @@ std::string World::physics_text() const {
             text +=
                 fmt::format("motor {} pwm={} full_rev_s={:.9g} time_constant_s={:.9g} start_rev={:.12g}\n",
                             name, channel, axis.full_rev_s, axis.lag_s, start_rev);
-            encoders +=
-                fmt::format("encoder {} motor={} counts_per_rev={:.0f}\n", i, name, axis.counts_per_rev);
+            const bool lost =
+                machine_.trouble == Trouble::ENCODER_NOT_CONNECTED && machine_.trouble_axis == i;
+            encoders += fmt::format("encoder {} motor={} counts_per_rev={:.0f}\n", lost ? 5 : i, name,
+                                    axis.counts_per_rev);
         } else {
             text += fmt::format("motor {} stepgen={} steps_per_rev={:.0f} start_rev={:.12g}\n", name, channel,
                                 axis.steps_per_rev, start_rev);
         }
         const bool above = axis.switch_above == (turn > 0);
-        switches += fmt::format("switch {} {} motor={} {}_rev={:.12g}{}\n", wired ? i : 12 + i, where, name,
-                                above ? "above" : "below", axis.switch_at / turn,
+        switches += fmt::format("switch {} {} motor={} {}_rev={:.12g}{}\n", wired ? switch_place(i) : 12 + i,
+                                where, name, above ? "above" : "below", axis.switch_at / turn,
                                 axis.isContactOpening ? " closed=low" : "");
     }
     const char name = small(machine_.axes[0].letter);
@@ -242,11 +249,11 @@ void World::press_switch(std::size_t axis, bool isPressed) {
 }
 
 void World::press_estop(bool isPressed) {
-    isEstopPressed_ = isPressed;
+    isEstopPressed_ = isPressed && machine_.trouble != Trouble::ESTOP_NOT_CONNECTED;
 }
 
 void World::touch_probe(bool isTouched) {
-    isProbeTouched_ = isTouched;
+    isProbeTouched_ = isTouched && machine_.trouble != Trouble::PROBE_NOT_CONNECTED;
 }
 
 }  // namespace mw::commissioning_campaign

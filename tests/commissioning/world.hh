@@ -42,6 +42,8 @@ class World {
     void touch_probe(bool isTouched);
 
   private:
+    /// The input at which the switch of an axis is.
+    std::size_t switch_place(std::size_t axis) const;
     bool isPort() const { return machine_.board == Board::PARPORT; }
     std::string port_text() const;
     std::string physics_text() const;

@@ -11,7 +11,10 @@
 namespace mw::commissioning {
 namespace {
 
-constexpr double TRAVEL_FACTOR = 1.3;
+/// Homing may move a joint by a part more than its travel, and to and fro at the switch.
+constexpr double TRAVEL_FACTOR = 1.3, CLEARANCE_MM = 20;
+/// A position that changes by more than the maximum speed in this time was set [s].
+constexpr double JUMP_S = 0.01;
 
 /// Where the board counts the joint.
 std::string counts_name(const Stage &stage, int joint) {
@@ -42,8 +45,10 @@ Flow<> settle(Stage &stage, int joint) {
 
 Flow<Fault> home_while_held(Stage &stage, int joint) {
     const setup::Axis &axis = stage.axis(joint);
-    const double start = stage.bench().joint(joint).feedback;
-    const double farthest = (axis.max - axis.min) * TRAVEL_FACTOR;
+    const double farthest = (axis.max - axis.min) * TRAVEL_FACTOR + stage.plan().small(axis, CLEARANCE_MM);
+    // Homing sets the position at the switch: such a jump is no motion.
+    const double most_step = axis.speed * JUMP_S;
+    double last = stage.bench().joint(joint).feedback, travelled = 0;
     stage.show(
         hold("home", stage, joint,
              fmt::format("Hold the button: {} moves slowly to its home switch at the {} end, and homes.",
@@ -58,8 +63,10 @@ Flow<Fault> home_while_held(Stage &stage, int joint) {
         if (homing && reading.isHomed && !reading.isHoming && !reading.isMoving) {
             co_return Fault::NONE;
         }
-        // Homing changes the position: only the travel before the switch counts.
-        const bool is_too_far = !reading.isHomed && std::abs(reading.feedback - start) > farthest;
+        const double step = std::abs(reading.feedback - last);
+        last = reading.feedback;
+        travelled += step < most_step ? step : 0;
+        const bool is_too_far = travelled > farthest;
         if (is_too_far || stage.isGivenUp()) {
             stage.bench().stop(joint);
             co_return is_too_far ? Fault::SWITCH_NOT_REACHED : Fault::GIVEN_UP;
