@@ -82,11 +82,8 @@ Response questions_document(const std::string &body) {
     const auto asked = setup::questions(*answers);
     Json list = Json::array();
     for (const setup::Question &question : asked) {
-        Json one{{"key", question.key},
-                 {"text", question.text},
-                 {"form", form_name(question.form)},
-                 {"preset", question.preset},
-                 {"unit", question.unit}};
+        Json one{{"key", question.key},       {"text", question.text},     {"form", form_name(question.form)},
+                 {"preset", question.preset}, {"reason", question.reason}, {"unit", question.unit}};
         if (question.form == setup::Form::CHOICE) {
             one["choices"] = question.choices;
         } else if (question.form != setup::Form::TEXT) {

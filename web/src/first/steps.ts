@@ -27,6 +27,8 @@ export interface Question {
   text: string;
   form: 'choice' | 'number' | 'whole' | 'text';
   preset: string;
+  /** Why the preset is a good start. */
+  reason: string;
   unit: string;
   choices?: string[];
   min?: number;
