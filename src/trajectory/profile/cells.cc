@@ -97,7 +97,7 @@ RoughProfile::Node RoughProfile::node_at(const Run &run, std::size_t span, doubl
     for (std::size_t i = 0; i < geometry::AXIS_COUNT; ++i) {
         const Bounds &b = run.limits.axes[i];
         const double q1 = std::max(std::abs(p.first.c[i]), 1e-30);
-        node.v = std::min(node.v, fastest * b.velocity / q1);
+        node.machine_v = std::min(node.machine_v, b.velocity / q1);
         node.curve_v =
             std::min({node.curve_v, std::sqrt(b.acceleration / std::max(std::abs(p.second.c[i]), 1e-30)),
                       std::cbrt(b.jerk / std::max(std::abs(p.third.c[i]), 1e-30))});
@@ -111,7 +111,7 @@ RoughProfile::Node RoughProfile::node_at(const Run &run, std::size_t span, doubl
     }
     const Bounds &b = run.limits.xyz;
     const double n1 = std::max(geometry::norm_xyz(p.first), 1e-30);
-    node.v = std::min(node.v, fastest * b.velocity / n1);
+    node.machine_v = std::min(node.machine_v, b.velocity / n1);
     node.curve_v =
         std::min({node.curve_v, std::sqrt(b.acceleration / std::max(geometry::norm_xyz(p.second), 1e-30)),
                   std::cbrt(b.jerk / std::max(geometry::norm_xyz(p.third), 1e-30))});
@@ -126,7 +126,8 @@ RoughProfile::Node RoughProfile::node_at(const Run &run, std::size_t span, doubl
     node.ramp_s = std::min(node.ramp_s, ramp_of(b));
     double turn_v = turn_way(direction, bend) / LEAST_CELL_S;
     apply_joints(run, node, s + 1e-6 * ((*run.spans)[span].start_s + 0.5 * (*run.spans)[span].length - s),
-                 fastest, turn_v);
+                 turn_v);
+    apply_velocity(node, fastest);
     node.v = std::min(node.v, node.curve_v);
     node.way = (*run.spans)[span].length / CELLS_PER_SPAN;
     node.rest_s = std::min(node.acceleration / node.jerk, std::sqrt(node.v / node.jerk));
@@ -134,11 +135,20 @@ RoughProfile::Node RoughProfile::node_at(const Run &run, std::size_t span, doubl
     return node;
 }
 
-/// `inside`: a place on the side of the node whose curve counts; `fastest`: part of the velocity limits that
-/// the moves may use; `turn_v`: the speed at which the direction
+/// Between two places of a cell a time T apart the speed exceeds the lower one by at most j T^2/8. Where it
+/// is near the machine's limit the cells are so short that this is within the margin. `fastest`: part of the
+/// velocity limits that the moves may use.
+void RoughProfile::apply_velocity(Node &node, double fastest) noexcept {
+    constexpr double NEAR = 0.99, BETWEEN = 8e-4;
+    node.v = std::min(node.v, fastest * node.machine_v);
+    if (node.v >= NEAR * node.machine_v && node.v < NEAR * node.curve_v) {
+        node.velocity_s = std::sqrt(32 * BETWEEN * node.machine_v / node.jerk);
+    }
+}
+
+/// `inside`: a place on the side of the node whose curve counts; `turn_v`: the speed at which the direction
 /// changes by as much as it may in the shortest cell.
-void RoughProfile::apply_joints(const Run &run, Node &node, double inside, double fastest,
-                                double &turn_v) noexcept {
+void RoughProfile::apply_joints(const Run &run, Node &node, double inside, double &turn_v) noexcept {
     if (run.joint_curve == nullptr) {
         return;
     }
@@ -148,7 +158,7 @@ void RoughProfile::apply_joints(const Run &run, Node &node, double inside, doubl
     for (std::size_t j = 0; j < run.joint_curve->joints(); ++j) {
         const Bounds b = bounds_of(run.joints, j);
         const double q1 = std::max(std::abs(p.first[j]), 1e-30);
-        node.v = std::min(node.v, fastest * b.velocity / q1);
+        node.machine_v = std::min(node.machine_v, b.velocity / q1);
         node.curve_v =
             std::min({node.curve_v, std::sqrt(b.acceleration / std::max(std::abs(p.second[j]), 1e-30)),
                       std::cbrt(b.jerk / std::max(std::abs(p.third[j]), 1e-30))});
@@ -317,8 +327,9 @@ void RoughProfile::size_cells(const Run &run, const Stretch &stretch) {
     for (Node &n : nodes_) {
         // The part of the acceleration that the curve takes.
         const double part = n.v * n.v / (n.curve_v * n.curve_v);
-        n.cell_s = std::clamp(std::min(n.ramp_s / CELLS_PER_RAMP, n.way / std::max(n.v * part, 1e-300)),
-                              LEAST_CELL_S, most_s);
+        n.cell_s = std::clamp(
+            std::min({n.ramp_s / CELLS_PER_RAMP, n.velocity_s, n.way / std::max(n.v * part, 1e-300)}),
+            LEAST_CELL_S, most_s);
         if (isInRamp(run, stretch, n.s)) {
             n.cell_s = std::clamp(n.rest_s / CELLS_PER_START, LEAST_CELL_S, n.cell_s);
         }

@@ -98,19 +98,21 @@ class RoughProfile {
     static constexpr double NOWHERE = -1e300;
     struct Node {
         double s = 0, v = 0, acceleration = 0, jerk = 0, t = 0;
-        double cap_s = NOWHERE;  ///< place of the cap that is there
-        double ramp_s = 1e300;   ///< time in which the jerk limit builds up an acceleration
-        double rest_s = 0;       ///< time of a start or stop with constant jerk here
-        double curve_v = 1e300;  ///< speed at which the curve alone takes a limit of acceleration or jerk
-        double way = 1e300;      ///< on which the curve changes
-        double cell_s = 0;       ///< time of a cell
+        double cap_s = NOWHERE;     ///< place of the cap that is there
+        double ramp_s = 1e300;      ///< time in which the jerk limit builds up an acceleration
+        double rest_s = 0;          ///< time of a start or stop with constant jerk here
+        double curve_v = 1e300;     ///< speed at which the curve alone takes a limit of acceleration or jerk
+        double machine_v = 1e300;   ///< at the machine's limits of velocity
+        double velocity_s = 1e300;  ///< most time of a cell for the sake of these
+        double way = 1e300;         ///< on which the curve changes
+        double cell_s = 0;          ///< time of a cell
     };
     static Node node_at(const Run &run, std::size_t span, double from_s, double s) noexcept;
     void lay_nodes(const Run &run, const Stretch &stretch);
     void lay_knots(const Run &run, const Stretch &stretch);
     void size_cells(const Run &run, const Stretch &stretch);
-    static void apply_joints(const Run &run, Node &node, double inside, double fastest,
-                             double &turn_v) noexcept;
+    static void apply_velocity(Node &node, double fastest) noexcept;
+    static void apply_joints(const Run &run, Node &node, double inside, double &turn_v) noexcept;
     static bool isFasterBetween(const Run &run, std::size_t span, const Node &a, const Node &b) noexcept;
     static double next_place(const Run &run, const Stretch &stretch, const Span &span, double s) noexcept;
     double speed_at(double s) const noexcept;

@@ -10,7 +10,7 @@ namespace {
 
 /// Parts of the limits that are planned with: a limit is kept at three places of a cell, and nearly so
 /// between them.
-constexpr double VELOCITY_SHARE = 0.9995, ACCELERATION_SHARE = 0.998, JERK_SHARE = 0.99;
+constexpr double VELOCITY_SHARE = 0.999, ACCELERATION_SHARE = 0.998, JERK_SHARE = 0.98;
 /// Parts of the limits by which rows are raised where a start reaches them.
 constexpr double ROOM = 5e-7, LEAST_ROOM = 1e-9;
 
