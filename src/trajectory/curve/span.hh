@@ -15,6 +15,9 @@ using geometry::Pose;
 inline constexpr int DEGREE = 5;
 inline constexpr std::size_t COEFFICIENTS = DEGREE + 1;
 
+/// Places this close are one [units], for planner and executor.
+inline constexpr double SAME_PLACE = 1e-9;
+
 /// A stretch between two knots: q(s) is the sum of c[k] u^k, u = (s - start_s)/length in [0, 1].
 struct Span {
     static constexpr std::uint32_t ALL = (1U << geometry::AXIS_COUNT) - 1U;

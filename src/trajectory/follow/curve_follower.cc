@@ -10,9 +10,9 @@ namespace mw::trajectory {
 
 namespace {
 
-/// The end of a move up to rounding.
+/// The place where the planner takes a move as driven.
 bool isAtEnd(const MoveTag &move, double s) noexcept {
-    return std::abs(s - move.end_s) <= ExecutorTuning::ARRIVED * (1.0 + move.end_s);
+    return std::abs(s - move.end_s) <= curve::SAME_PLACE;
 }
 
 }  // namespace

@@ -13,8 +13,7 @@
 
 namespace mw::trajectory::plan {
 
-/// Places this close are one [units].
-inline constexpr double SAME_PLACE = 1e-9;
+using curve::SAME_PLACE;
 
 /// Planner thread. Moves with a tolerance are fitted, the others are followed exactly. A part of the path
 /// with one of the two rules ends on the programmed path.
