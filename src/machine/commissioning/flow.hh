@@ -19,8 +19,8 @@ struct FlowPromiseBase {
         bool await_ready() noexcept { return false; }
         template <class Promise>
         std::coroutine_handle<> await_suspend(std::coroutine_handle<Promise> done) noexcept {
-            const std::coroutine_handle<> caller = done.promise().caller;
-            return caller ? caller : std::noop_coroutine();
+            const std::coroutine_handle<> resumed = done.promise().caller;
+            return resumed ? resumed : std::noop_coroutine();
         }
         void await_resume() noexcept {}
     };
