@@ -262,9 +262,8 @@ export async function openView(page: Page, id: string): Promise<void> {
     if (!(await tab.isVisible()) && (await more.isVisible())) {
       await more.click({ timeout: 1000 }).catch(() => undefined);
     }
-    return tab.isVisible();
+    return (await tab.isVisible()) && tab.click({ timeout: 1000 }).then(() => true, () => false);
   }, `the view ${id}`);
-  await tab.click();
 }
 
 export async function untilText(page: Page, id: string, wanted: string | RegExp, ms = 10_000): Promise<void> {
