@@ -2,7 +2,9 @@
 """What the checks of `millwright publish` share: a broker (mosquitto), a host application of Sparkplug with a decoder that protoc
 makes from the declaration, and a store whose key is the metric and its time."""
 import importlib
+import os
 import pathlib
+import shutil
 import signal
 import socket
 import subprocess
@@ -13,6 +15,8 @@ import time
 import paho.mqtt.client as mqtt
 
 LIMIT_S = 40
+# It is not in the path of ordinary users.
+BROKER = shutil.which('mosquitto', path=os.environ.get('PATH', '') + os.pathsep + '/usr/sbin') or 'mosquitto'
 
 
 def free_port():
@@ -47,7 +51,7 @@ class Broker:
 
     def start(self):
         with open(self.log, 'a') as log:
-            self.process = subprocess.Popen(['mosquitto', '-v', '-c', str(self.config)], stdout=log, stderr=log)
+            self.process = subprocess.Popen([BROKER, '-v', '-c', str(self.config)], stdout=log, stderr=log)
 
         def is_there():
             try:
