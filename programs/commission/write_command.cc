@@ -101,15 +101,8 @@ bool isMachineThere(const std::string &folder) {
 void show(const setup::Answers &answers) {
     const auto asked = setup::questions(answers);
     for (const setup::Question &question : asked) {
-        const bool is_number = question.form == setup::Form::NUMBER || question.form == setup::Form::WHOLE;
-        fmt::print("{} = {}\n    {}", question.key, setup::answer_of(asked, answers, question.key),
-                   question.text);
-        if (is_number) {
-            fmt::print(": {:.7g} to {:.7g}{}{}", question.low, question.high,
-                       question.unit.empty() ? "" : " ", question.unit);
-        } else if (!question.choices.empty()) {
-            fmt::print(": {}", fmt::join(question.choices, ", "));
-        }
+        fmt::print("{} = {}\n    {}{}", question.key, setup::answer_of(asked, answers, question.key),
+                   question.text, setup::range_of(question));
         fmt::print("\n    {} is the preset. {}\n", question.preset, question.reason);
     }
 }

@@ -223,7 +223,10 @@ Result<> publish_machine(const PublishWords &words, const Settings &settings, co
     if (data.has_value()) {
         const std::string file = settings.store + "/messages";
         reader.set_mark(read_mark(file), [file](const MachineReader::Mark &mark) {
-            static_cast<void>(write_file_atomically(file, fmt::format("{} {}\n", mark.run, mark.number)));
+            const auto written = write_file_atomically(file, fmt::format("{} {}\n", mark.run, mark.number));
+            if (!written.has_value()) {
+                language::tell(written.error().str());
+            }
         });
     }
     read_machine(reader, settings, data.has_value() ? &*data : nullptr);

@@ -139,12 +139,10 @@ class MotionCampaign final : public campaign_runner::Campaign {
 
 int main(int argc, char **argv) {
     mw::campaign::MotionCampaign campaign;
-    mw::campaign_runner::Order order;
     mw::options::CommandLine line(
         "motion_campaign --first S --count N --log FILE [--processes P]",
         "Random sessions at random machines. One line for each seed in the log; seeds that "
         "it has are not run again. Ends with 1 when something was broken.\n");
-    order.add_to(line);
     line.number("--plan", "N",
                 "version of the plans: 1, sessions of a minute, 3 (default), 4, further kinematics, or "
                 "5, the planner is lost at every stop",
@@ -155,17 +153,5 @@ int main(int argc, char **argv) {
                   campaign.known.insert(words[0]);
                   return {};
               });
-    const auto parsed = line.parse({argv + 1, argv + argc});
-    if (!parsed || !order.trouble().empty()) {
-        std::fprintf(stderr, "%s\n%s", parsed ? order.trouble().c_str() : parsed.error().str().c_str(),
-                     line.help().c_str());
-        return 2;
-    }
-    constexpr unsigned REPLACED = 2;
-    if (campaign.plan_version == REPLACED) {
-        std::fputs("motion_campaign: nothing makes the sessions of plan 2 any more: use 1, 3, 4 or 5\n",
-                   stderr);
-        return 2;
-    }
-    return mw::campaign_runner::run(campaign, order);
+    return mw::campaign_runner::run(campaign, line, argc, argv);
 }

@@ -177,6 +177,18 @@ bool isLogOfThisPlan(const Campaign &campaign, const Order &order) {
 
 }  // namespace
 
+int run(Campaign &campaign, options::CommandLine &line, int argc, char **argv) {
+    Order order;
+    order.add_to(line);
+    const auto parsed = line.parse({argv + 1, argv + argc});
+    if (!parsed || !order.trouble().empty()) {
+        std::fprintf(stderr, "%s\n%s", parsed ? order.trouble().c_str() : parsed.error().str().c_str(),
+                     line.help().c_str());
+        return 2;
+    }
+    return run(campaign, order);
+}
+
 std::string rule_of(const std::string &verdict) {
     const std::size_t at = verdict.find("FAILED ");
     return at == std::string::npos ? std::string() : verdict.substr(at + 7, verdict.find(':', at) - at - 7);

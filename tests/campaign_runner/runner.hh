@@ -46,6 +46,9 @@ struct Order {
 
 /// Runs the campaign. Returns the exit status: 1 if a rule was violated.
 int run(Campaign &campaign, const Order &order);
+/// The same with the words of a command line that knows its own options, and gets those of the order. 2:
+/// wrong words.
+int run(Campaign &campaign, options::CommandLine &line, int argc, char **argv);
 
 /// "limit" of "... FAILED limit: joint 0 ..."; empty if no rule was violated.
 std::string rule_of(const std::string &verdict);

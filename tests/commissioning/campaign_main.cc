@@ -53,17 +53,9 @@ class CommissioningCampaign final : public campaign_runner::Campaign {
 
 int main(int argc, char **argv) {
     mw::commissioning_campaign::CommissioningCampaign campaign;
-    mw::campaign_runner::Order order;
     mw::options::CommandLine line(
         "commissioning_campaign --first S --count N --log FILE [--processes P]",
         "Random machines that an owner commissions; seeds from 100000 have a fault that must "
         "be named. One line for each seed in the log. Ends with 1 when a rule was broken.\n");
-    order.add_to(line);
-    const auto parsed = line.parse({argv + 1, argv + argc});
-    if (!parsed || !order.trouble().empty()) {
-        std::fprintf(stderr, "%s\n%s", parsed ? order.trouble().c_str() : parsed.error().str().c_str(),
-                     line.help().c_str());
-        return 2;
-    }
-    return mw::campaign_runner::run(campaign, order);
+    return mw::campaign_runner::run(campaign, line, argc, argv);
 }

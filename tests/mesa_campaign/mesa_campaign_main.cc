@@ -56,17 +56,9 @@ class MesaCampaign final : public campaign_runner::Campaign {
 
 int main(int argc, char **argv) {
     mw::mesa_campaign::MesaCampaign campaign;
-    mw::campaign_runner::Order order;
     mw::options::CommandLine line("mesa_campaign --first S --count N --log FILE [--processes P]",
                                   "Random sessions of the HostMot2 driver at a simulated board. One line for "
                                   "each seed in the log; seeds "
                                   "that it has are not run again. Ends with 1 when a rule was broken.\n");
-    order.add_to(line);
-    const auto parsed = line.parse({argv + 1, argv + argc});
-    if (!parsed || !order.trouble().empty()) {
-        std::fprintf(stderr, "%s\n%s", parsed ? order.trouble().c_str() : parsed.error().str().c_str(),
-                     line.help().c_str());
-        return 2;
-    }
-    return mw::campaign_runner::run(campaign, order);
+    return mw::campaign_runner::run(campaign, line, argc, argv);
 }

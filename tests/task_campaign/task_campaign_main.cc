@@ -91,17 +91,9 @@ void TaskCampaign::print_sum(std::istream &log) const {
 
 int main(int argc, char **argv) {
     mw::task_campaign::TaskCampaign campaign;
-    mw::campaign_runner::Order order;
     mw::options::CommandLine line(
         "task_campaign --first S --count N --log FILE [--processes P]",
         "Random sessions of operators at whole machines. One line for each seed in the log; seeds that "
         "it has are not run again. Ends with 1 when something was broken.\n");
-    order.add_to(line);
-    const auto parsed = line.parse({argv + 1, argv + argc});
-    if (!parsed || !order.trouble().empty()) {
-        std::fprintf(stderr, "%s\n%s", parsed ? order.trouble().c_str() : parsed.error().str().c_str(),
-                     line.help().c_str());
-        return 2;
-    }
-    return mw::campaign_runner::run(campaign, order);
+    return mw::campaign_runner::run(campaign, line, argc, argv);
 }

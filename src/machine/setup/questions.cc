@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 
+#include <fmt/ranges.h>
+
 #include "base/text.hh"
 #include "machine/setup/detail/asking.hh"
 
@@ -235,6 +237,14 @@ std::vector<std::string> motors_of(std::string_view kind) {
 
 std::vector<Question> questions(const Answers &given) {
     return detail::Asking(given, detail::kind_of(given)).all();
+}
+
+std::string range_of(const Question &question) {
+    if (question.form == Form::NUMBER || question.form == Form::WHOLE) {
+        return fmt::format(": {:.7g} to {:.7g}{}{}", question.low, question.high,
+                           question.unit.empty() ? "" : " ", question.unit);
+    }
+    return question.choices.empty() ? "" : fmt::format(": {}", fmt::join(question.choices, ", "));
 }
 
 std::string answer_of(const std::vector<Question> &asked, const Answers &given, std::string_view key) {

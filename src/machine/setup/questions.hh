@@ -39,6 +39,8 @@ std::vector<std::string> motors_of(std::string_view kind);
 /// those of transmissions determine the other questions.
 std::vector<Question> questions(const Answers &given);
 
+/// What may be answered: ": 1 to 20 mm" or ": yes, no"; empty for any text.
+std::string range_of(const Question &question);
 /// An answer, or its preset. `key` must be that of a question.
 std::string answer_of(const std::vector<Question> &asked, const Answers &given, std::string_view key);
 

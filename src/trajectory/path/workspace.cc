@@ -93,7 +93,7 @@ double Workspace::least_share(const Primitive &move, int samples, const PerJoint
 double Workspace::tolerance_within(const Primitive &move, double tolerance) const noexcept {
     // Few samples where the joints are far from their limits; as many as the check of the move takes if not.
     constexpr int FEW = 9, MANY = 65;
-    constexpr double PER_RAD = 1.5;
+    constexpr double PER_RAD = 1.5, MOST = 2000;
     const bool is_linear = (~linear.joints & ((1U << joints.count) - 1U)) == 0;
     if (!isMapped() || is_linear || tolerance <= 0) {
         return tolerance;
@@ -104,7 +104,8 @@ double Workspace::tolerance_within(const Primitive &move, double tolerance) cons
             return 0;
         }
     }
-    const int turns = static_cast<int>(std::abs(move.omega) * move.length * PER_RAD);
+    // Too few samples on many turns make the steps large and the share small.
+    const int turns = static_cast<int>(std::min(std::abs(move.omega) * move.length * PER_RAD, MOST));
     const double share = least_share(move, std::max(FEW, turns), reach);
     return tolerance * (share < 1 ? least_share(move, std::max(MANY, 8 * turns), reach) : share);
 }

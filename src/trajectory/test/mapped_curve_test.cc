@@ -75,6 +75,29 @@ TEST(MappedCurve, KeepsLimitsAndSoftLimitsOfJoints) {
     EXPECT_GE(2 * limited, count) << "joints limit the motion";
 }
 
+/// The samples along a move are bounded, however long it is.
+TEST(MappedCurve, AHelixOfManyTurnsHasATolerance) {
+    const TurningTable table(100);
+    Workspace workspace;
+    workspace.map = &table;
+    workspace.joints = joint_limits(50, 1000, 20000);
+    ArcShape shape;
+    shape.centre[0] = 5;
+    shape.normal[2] = 1;
+    shape.angle_rad = 1e12;
+    Pose end;
+    end[0] = 5 - 5 * std::cos(shape.angle_rad);
+    end[1] = -5 * std::sin(shape.angle_rad);
+    Primitive helix;
+    ASSERT_EQ(make_arc(Pose{}, end, shape, helix), ArcFault::NONE);
+    EXPECT_EQ(workspace.tolerance_within(helix, 0.1), 0.1) << "no joint has a soft limit";
+    workspace.joints.low.fill(-1000);
+    workspace.joints.high.fill(1000);
+    const double kept = workspace.tolerance_within(helix, 0.1);
+    EXPECT_GE(kept, 0);
+    EXPECT_LE(kept, 0.1);
+}
+
 /// The override of rapid moves is a part of the velocity of joints, too.
 TEST(MappedCurve, RapidOverrideScalesJoints) {
     const TurningTable table(100);
