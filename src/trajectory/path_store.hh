@@ -113,10 +113,6 @@ struct Piece {
         double a = 0, end = 0;
     };
     BrakeLeg brake_leg(double x, double b) const noexcept;
-    // Of a pass that is locked to a spindle's angle, filled before the executor gets the pass.
-    double per_turn = 0;           ///< distance along x per spindle revolution
-    double v_most = 0;             ///< maximum speed
-    double v2_in = 0, v2_out = 0;  ///< squared speeds at its ends from which all that follows can be kept
 };
 
 /// x(t) = x0 + v0 t + a t^2 / 2 + j t^3 / 6, t in [0, duration], on one piece.
@@ -141,20 +137,32 @@ struct TapTerms {
     double high = 0;        ///< and below
     double velocity = 0;    ///< highest along x
     double acceleration = 0;
+    double jerk = 0;
 };
 
-/// A pass over the pieces [first, last], from rest to rest, locked to the angle of a spindle.
+/// A part of a pass with one rule of revolutions: their number per unit changes evenly along it.
+struct PassLeg {
+    double start_s = 0, length = 0;
+    double turns = 0;                          ///< at its start, since the start of the pass
+    double per_unit_in = 0, per_unit_out = 0;  ///< revolutions per unit at its ends
+    double v_most = 0;                         ///< maximum speed
+    double v_out = 0;                          ///< speed at its end from which all that follows can be kept
+    /// Revolutions since the start of the pass, and per unit, at a place of the leg.
+    double turns_at(double s) const noexcept;
+    double per_unit_at(double s) const noexcept;
+};
+
+/// Along the curve from `start_s` to `end_s`, from rest to rest, locked to the angle of a spindle.
 struct Pass {
-    Sequence first = 0, last = 0;  ///< 0: none
+    Sequence first = 0, last = 0;  ///< legs; 0: none
+    double start_s = 0, end_s = 0;
     int spindle = 0;
-    double direction = 1;  ///< -1: the spindle turns backwards
-    double share = 1;      ///< part of the pieces' accelerations for gaining speed and for braking
-    double trim = 1;       ///< and for following the spindle in between
-    /// Maximum change of the acceleration within the averaging time [unit/s^2]: a stop during acceleration
-    /// has the remainder. 0: any.
-    double swing = 0;
-    bool isTap = false;  ///< in along the first piece, and back to its start
+    double direction = 1;     ///< -1: the spindle turns backwards
+    double acceleration = 0;  ///< along the curve, on all legs
+    double jerk = 0;
+    bool is_tap = false;  ///< in along the line of the first move, and back to its start; no legs
     TapTerms tap;
+    bool isAny() const noexcept { return is_tap || first != 0; }
 };
 
 /// Phases for the executor. They never end with a stop after the committed part: when they run out, the
@@ -167,7 +175,6 @@ struct Commit {
     Sequence begin = 0, end = 0;  ///< not a switch: the current plan `plan` now continues to `end`
     std::uint64_t filter = 1;     ///< samples of the commanded moving average; changes only at standstill
     bool isStop = false;          ///< made to stop, so taken while held or dropping
-    Pass pass;                    ///< instead of phases
 };
 
 /// A motion along the curve, in cells of time, with its stops: each begins behind a cell of the motion and
@@ -186,6 +193,7 @@ struct CurvePlan {
     Sequence span = 0, move = 0;            ///< at the start, from rest
     Sequence last_span = 0, last_move = 0;  ///< that are known
     bool is_stop = false;                   ///< no motion: the present plan takes its next stop
+    Pass pass;                              ///< instead of cells
     std::size_t stop_count = 0;
     std::array<Stop, MOST_STOPS> stops{};
 };
@@ -267,6 +275,7 @@ inline constexpr std::size_t PIECE_CAPACITY = 16384;
 inline constexpr std::size_t PHASE_CAPACITY = 65536;
 inline constexpr std::size_t SPAN_CAPACITY = 16384;
 inline constexpr std::size_t CELL_CAPACITY = 32768;
+inline constexpr std::size_t LEG_CAPACITY = 8192;
 
 /// An output change at a place of the path.
 struct PathEvent {
@@ -285,6 +294,7 @@ struct PathStore {
     RawArray<Phase, PHASE_CAPACITY> phases;
     RawArray<curve::Span, SPAN_CAPACITY> spans;
     RawArray<curve::TimeCell, CELL_CAPACITY> cells;
+    RawArray<PassLeg, LEG_CAPACITY> legs;
     LeaderHistory history{};  ///< executor -> planner; the last samples are read long before they are reused
     SpscRing<PathEvent, 1024> events;     ///< planner -> executor
     SpscRing<Commit, 64> commits;         ///< planner -> executor
@@ -306,6 +316,8 @@ struct PathStore {
     const curve::Span &span(Sequence n) const noexcept { return spans[n % SPAN_CAPACITY]; }
     curve::TimeCell &cell(Sequence n) noexcept { return cells[n % CELL_CAPACITY]; }
     const curve::TimeCell &cell(Sequence n) const noexcept { return cells[n % CELL_CAPACITY]; }
+    PassLeg &leg(Sequence n) noexcept { return legs[n % LEG_CAPACITY]; }
+    const PassLeg &leg(Sequence n) const noexcept { return legs[n % LEG_CAPACITY]; }
     Phase &phase(Sequence n) noexcept { return phases[n % PHASE_CAPACITY]; }
     const Phase &phase(Sequence n) const noexcept { return phases[n % PHASE_CAPACITY]; }
 };

@@ -218,22 +218,6 @@ std::uint32_t Planner::moves_left(const Snapshot &now) const noexcept {
     return path_.last_move() > done ? static_cast<std::uint32_t>(path_.last_move() - done) : 0;
 }
 
-bool Planner::isPassKnown(const Snapshot &now) const noexcept {
-    const std::optional<LeaderState> from = start_state(path_, now);
-    if (!from) {
-        return false;
-    }
-    const Sequence open = builder_.continuing_move();
-    const bool isGrowing = open != 0 && isLocked(open) && pass_end(view(), from->piece) == path_.last_piece();
-    return !isGrowing || !hasRoom(now);
-}
-
-void Planner::start_pass(const Snapshot &now, const LeaderState &from) noexcept {
-    if (isPassKnown(now)) {
-        timing_.start_pass(path_, conditions_, now, from.piece);
-    }
-}
-
 void Planner::update(const Snapshot &now) noexcept {
     path_.store().updates.fetch_add(1, std::memory_order_relaxed);
     if (curve_.isActive()) {
@@ -253,7 +237,6 @@ void Planner::update(const Snapshot &now) noexcept {
     switch (demand.kind) {
     case Demand::Kind::EXTEND: timing_.extend(view(), path_.store(), now); break;
     case Demand::Kind::PLAN: timing_.plan(view(), path_.store(), now, demand.from); break;
-    case Demand::Kind::PASS: start_pass(now, demand.from); break;
     case Demand::Kind::STOP:  // the executor stops by itself
     case Demand::Kind::NOTHING: break;
     }
@@ -261,7 +244,7 @@ void Planner::update(const Snapshot &now) noexcept {
 
 void Planner::plan_tried(const Snapshot &now) noexcept {
     const bool isGone = now.drops != drops_ || (now.isDropping && now.motion == Motion::REST);
-    if (isGone || now.motion == Motion::BRAKE || now.motion == Motion::LOCKED) {
+    if (isGone || now.motion == Motion::BRAKE) {
         return;
     }
     path_.drive_to(now.piece);
@@ -276,7 +259,6 @@ void Planner::plan_tried(const Snapshot &now) noexcept {
         break;
     }
     case Demand::Kind::STOP: find_plan(now, demand.from, Ending::STOP); break;
-    case Demand::Kind::PASS: start_pass(now, demand.from); break;
     case Demand::Kind::EXTEND:  // every plan goes to its end
     case Demand::Kind::NOTHING: break;
     }

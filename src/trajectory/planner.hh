@@ -4,8 +4,7 @@
 
 #include "trajectory/path/path_builder.hh"
 #include "trajectory/plan/curve_planner.hh"
-#include "trajectory/timing/locked_pass.hh"
-#include "trajectory/timing/tap_plan.hh"
+#include "trajectory/plan/tap_plan.hh"
 #include "trajectory/timing/timing_plan.hh"
 #include "trajectory/trial/easing.hh"
 #include "trajectory/trial/trial.hh"
@@ -85,12 +84,14 @@ class Planner {
     /// The move is driven by the executor, locked to the spindle's angle, with what follows up to a stop.
     bool isLocked(Sequence move) const noexcept { return conditions_.isLocked(path_.move(move).request); }
     /// All of the pass that the executor would begin with is known.
-    bool isPassKnown(const Snapshot &now) const noexcept;
+    bool isPassKnown(const Snapshot &now) const noexcept { return curve_.isPassKnown(now); }
     /// Speed that the pass from this move on needs at the present speed of its spindle, over what the machine
     /// and the operator allow.
-    double pass_load(Sequence move) const noexcept { return trajectory::pass_load(view(), move); }
+    double pass_load(Sequence move) const noexcept { return plan::pass_load(path_, conditions_, move); }
     bool isTap(Sequence move) const noexcept { return path_.move(move).request.isTap; }
-    TapVerdict check_tap(Sequence move) const noexcept { return trajectory::check_tap(view(), move); }
+    TapVerdict check_tap(Sequence move) const noexcept {
+        return plan::check_tap({path_.primitive(move), path_.move(move).request, conditions_});
+    }
     /// How fast spindles change their speed when they turn back: see SpindleReading.
     void set_ramps(const std::array<std::array<double, 2>, MAX_SPINDLES> &ramps) noexcept {
         conditions_.ramps = ramps;
@@ -127,7 +128,6 @@ class Planner {
     void plan_tried(const Snapshot &now) noexcept;
     bool find_plan(const Snapshot &now, LeaderState from, Ending ending) noexcept;
     bool ease(const LeaderState &from, const Verdict &verdict, const Cause &cause) noexcept;
-    void start_pass(const Snapshot &now, const LeaderState &from) noexcept;
 
     PlannerSettings settings_;
     Conditions conditions_;

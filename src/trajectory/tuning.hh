@@ -140,6 +140,10 @@ struct LineJointTuning {
     /// Part of acceleration and jerk that the curves of joints may take at maximum speed: the rest is for
     /// following the spindle.
     static constexpr double TURNING = 0.5;
+    /// Part of the jerk that is left for the change of direction while the speed changes.
+    static constexpr double CROSS_SHARE = 0.5;
+    /// Kept off the limits by what sums of rounding make.
+    static constexpr double FULL = 0.9999;
 };
 
 /// Corners and arcs with jerk limits.
@@ -275,46 +279,15 @@ struct EasingTuning {
     static constexpr double ROUNDING = 1e-7;
 };
 
-/// Passes that are locked to a spindle, as they are planned.
-struct PassTuning {
-    /// The spindle may turn this much faster than now without a corner being too tight for its speed.
-    static constexpr double SPEED_RESERVE = 1.1;
-    /// And so much more, with jerk limits, between the planning of a corner and its passing; part of the
-    /// second line that the corner may move into.
-    static constexpr double LAG_RESERVE = 1.03, ROOM_SHARE = 0.95;
-    /// Kept off the limits by what sums of rounding make.
-    static constexpr double FULL = 0.9999;
-    /// A load that is over what is possible by rounding alone.
-    static constexpr double LOAD_ROUNDING = 1e-9;
-    /// With jerk limits the moving average limits the acceleration step: acceleration takes one part,
-    /// following the spindle the rest (0.88 + 0.11 < 1), and deceleration begins one averaging time later. A
-    /// short pass shares evenly (2 * 0.49 < 1).
-    static constexpr double LONG_SHARE = 0.88, LONG_TRIM = 0.11, SHORT_SHARE = 0.49;
-    /// With corners the centripetal part is TURNING, and acceleration along the path takes CORNER_SHARE of
-    /// the rest: 0.3 + 0.7 * 0.4 + 0.4 < 1.
-    static constexpr double CORNER_SHARE = 0.4, TURNING = 0.3;
-    /// A pass is long from so many means at the spindle's speed on.
-    static constexpr double LONG_MEANS = 3.0;
-};
-
 /// Rigid tapping.
 struct TapTuning {
-    /// The speed of the spindle is measured over this many cycles: one count of 4,096 is then 0.03 rev/s at 1
-    /// ms. Its acceleration is smoothed over this time, and at least this part of an averaging time.
-    static constexpr std::size_t SPEED_SAMPLES = 8;
-    static constexpr double ACCELERATION_S = 0.01, ACCELERATION_MEANS = 0.4;
-    /// The helix counts as met within this part of a revolution: a few counts. From then on a deviation is
-    /// corrected at GAIN [1/s]; at LOST, a quarter of a revolution, the thread or the tap is lost.
-    static constexpr double MET = 1e-3, GAIN = 60, LOST = 0.25;
-    /// Part of the acceleration for meeting the helix and for the retract, and the maximum that the spindle's
-    /// own change of speed may require.
-    static constexpr double MEETING_SHARE = 0.97;
+    /// The helix counts as met within this part of a revolution, or so many steps of the encoder. At LOST, a
+    /// quarter of a revolution, the tap is lost.
+    static constexpr double MET = 1e-3, MET_STEPS = 2, LOST = 0.25;
     /// With jerk limits: a tap that would leave the helix by more while its spindle reverses is rejected
-    /// [rev]. The change is seen late by this part of the averaging time, and by the time of the speed
-    /// measurement, of which half the square counts [s^2]. Measured for averaging times from 0.02 to 0.2 s:
-    /// docs/integrator/spindles.md. After a change the tool is on the helix again within so many averaging
-    /// times.
-    static constexpr double MOST_OFF = 0.1, LATE_MEANS = 0.6, LATE_S2 = 2e-4, SETTLING_MEANS = 2;
+    /// [rev]. The change is seen late by the time of the speed measurement, of which half the square counts
+    /// [s^2]. After a change the tool is on the helix again within so many times of A/J.
+    static constexpr double MOST_OFF = 0.1, LATE_S2 = 2e-4, SETTLING = 2;
     /// The tool leaves the thread by this much before the spindle runs forward again [rev].
     static constexpr double CLEARANCE = 0.5;
     /// Clearance of the tool below the bottom in addition to the known overrun of the spindle, and minimum
@@ -344,20 +317,6 @@ struct ExecutorTuning {
     /// Part of the jerk limits that a stop without a planner takes; how finely its brake is chosen.
     static constexpr double FULL_JERK = 0.998;
     static constexpr int BRAKE_STEPS = 30;
-    /// The helix counts as met within this part of a revolution, and as lost outside the second: the error of
-    /// one encoder count half an averaging time later is within it.
-    static constexpr double MET = 2e-5, LOST = 6e-3;
-    /// It also counts as met where it was this near for so many cycles: a rough encoder does no better.
-    static constexpr double NEAR = 2e-3;
-    static constexpr int NEAR_CYCLES = 8;
-    /// Or was on both sides of it in turn: with few counts the measured speed is so rough that it is never
-    /// near.
-    static constexpr int CROSSINGS = 3;
-    /// Once it is met: share of a deviation that is made good in a second [1/s]. A rough encoder must not
-    /// shake the machine.
-    static constexpr double GAIN = 60;
-    /// Part of the acceleration with which the helix is met: the spindle may still gain speed itself.
-    static constexpr double MEETING_SHARE = 0.97;
     static constexpr int MOST_PIECES_PER_CYCLE = 64;
     /// A planner that makes no update for so long, and for so many cycles, in a drop is not waited for: four
     /// of its periods.

@@ -98,8 +98,8 @@ TEST_P(ThreadAngle, IsKeptWhenTheSpindleIsSlowedWithinThePass) {
         }
     }
     EXPECT_LE(at_start, 0.2 * DEGREE);
-    // A mean of 50 ms cannot foresee that the spindle begins to slow down.
-    EXPECT_LE(meanwhile, (GetParam() ? 1.5 : 0.2) * DEGREE);
+
+    EXPECT_LE(meanwhile, (GetParam() ? 0.5 : 0.2) * DEGREE);
     EXPECT_EQ(bench.limit_report(), "");
     std::printf("a spindle that slows down%s: apart by %.4f degrees before, by %.4f meanwhile\n",
                 GetParam() ? " with jerk limits" : "", at_start / DEGREE, meanwhile / DEGREE);

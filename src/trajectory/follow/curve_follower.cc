@@ -45,12 +45,13 @@ bool CurveFollower::start(const Snapshot &state) noexcept {
 
 void CurveFollower::step(const PathStore &store, double dt, Snapshot &state) noexcept {
     if (isWaiting() && start(state)) [[unlikely]] {
-        state.motion = Motion::CURVE;
+        state.motion = plan_.pass.isAny() ? Motion::LOCKED : Motion::CURVE;
         state.isOnCurve = true;
         state.piece = 0;
         state.filter = 1;
     }
     if (state.motion != Motion::CURVE) [[unlikely]] {
+        state.plan = state.motion == Motion::LOCKED ? plan_.plan : state.plan;
         return;
     }
     must_stop_ = state.isHeld || state.isDropping || planner_stop_;

@@ -25,6 +25,14 @@ class CurveFollower {
     /// Continues for `dt` [s], or begins a plan that waits; sets what `state` says of the motion. While it is
     /// held or dropping it takes the next stop.
     void step(const PathStore &store, double dt, Snapshot &state) noexcept;
+    /// The present plan; with a pass, someone else drives it.
+    const CurvePlan &plan() const noexcept { return plan_; }
+    double s() const noexcept { return s_; }
+    /// Where a pass is.
+    void set_place(double s, double v) noexcept {
+        s_ = s;
+        v_ = v;
+    }
     /// Nothing is left of any plan.
     void clear() noexcept;
     Place place(const PathStore &store, bool is_resting) noexcept;

@@ -53,9 +53,7 @@ void Executor::take_commits() noexcept {
         store_.curve_plans.drop();
     }
     while (const Commit *c = store_.commits.front()) [[unlikely]] {
-        if (c->pass.first != 0) {
-            take_pass(*c);
-        } else if (c->isSwitch) {
+        if (c->isSwitch) {
             const bool isFree = c->isStop || (!state_.isHeld && !state_.isDropping);
             const bool isSameMean = c->filter == state_.filter || isAtRest();
             const bool isTimely =
@@ -86,6 +84,9 @@ const ExecutorOutput &Executor::step(std::uint64_t cycle) noexcept {
         step_locked();
     } else if (state_.motion == Motion::CURVE || curve_.isWaiting()) {
         curve_.step(store_, period_, state_);
+        if (state_.motion == Motion::LOCKED) [[unlikely]] {
+            begin_pass();
+        }
     } else {
         advance(period_);
     }
@@ -329,6 +330,7 @@ void Executor::finish_drop() noexcept {
     state_.isOnCurve = false;
     next_switch_.plan = 0;
     curve_.clear();
+    tapping_ = false;
 }
 
 void Executor::hold(bool isHeld) noexcept {
@@ -339,10 +341,8 @@ void Executor::hold(bool isHeld) noexcept {
     if (!state_.isHeld && state_.motion == Motion::FOLLOW && !isFiltered()) {
         start_brake();
     }
-    const bool isAtStart = lock_.pass.isTap ? tap_.isWaiting() : state_.x <= 0 && state_.v <= 0;
-    const bool isPassWaiting =
-        state_.motion == Motion::LOCKED && state_.piece == lock_.pass.first && isAtStart;
-    if (isPassWaiting) {
+    const bool isAtStart = tapping_ ? tap_.isWaiting() : pass_.isWaiting();
+    if (state_.motion == Motion::LOCKED && isAtStart) {
         come_to_rest();
     }
     if (!state_.isHeld && state_.motion == Motion::REST) {
@@ -401,7 +401,11 @@ void Executor::locate() noexcept {
     const bool isMoving = state_.motion != Motion::REST;
     out_.isOnProbe = false;
     if (state_.isOnCurve) {
-        const CurveFollower::Place at = curve_.place(store_, !isMoving);
+        CurveFollower::Place at = curve_.place(store_, !isMoving);
+        if (tapping_) [[unlikely]] {
+            at = {line_at(store_.primitive(curve_.plan().move), tap_.x()), curve_.plan().move, false,
+                  at.left};
+        }
         leader_ = at.pose;
         leader_done_ = std::max(leader_done_, at.is_complete ? at.move : at.move - 1);
         out_.isOnProbe = store_.move(at.move).isProbe && !(at.is_complete && isAtRest());
@@ -415,9 +419,7 @@ void Executor::locate() noexcept {
         return;
     }
     const Piece &piece = store_.piece(state_.piece);
-    const bool isTapping = lock_.pass.isTap && state_.piece == lock_.pass.first;
-    leader_ = isTapping ? line_at(store_.primitive(piece.primitive), state_.x)
-                        : position_at(store_, piece, state_.x);
+    leader_ = position_at(store_, piece, state_.x);
     leader_s_ = piece.programmed_s + state_.x;
     leader_tolerance_ = tolerance_at(piece, state_.x);
     const bool isBlend = piece.blend_d > 0;

@@ -8,9 +8,9 @@
 #include "base/limits.hh"
 #include "trajectory/follow/arc_mean.hh"
 #include "trajectory/follow/curve_follower.hh"
-#include "trajectory/follow/locked_state.hh"
 #include "trajectory/follow/lone_brake.hh"
 #include "trajectory/follow/mean_filter.hh"
+#include "trajectory/follow/pass_follower.hh"
 #include "trajectory/follow/spindle_track.hh"
 #include "trajectory/follow/tap_follower.hh"
 
@@ -75,8 +75,9 @@ class ExecutorState {
     std::array<Sequence, HISTORY_CAPACITY> done_history_{};
 
     std::array<FollowedSpindle, MAX_SPINDLES> spindles_{};
-    LockedState lock_;
+    PassFollower pass_;
     TapFollower tap_;
+    bool tapping_ = false;  ///< the tool is on the line of a tap, which it may leave at both ends
     CurveFollower curve_;
 };
 
@@ -107,8 +108,7 @@ class Executor : private ExecutorState {
     /// The angle [turns] of a spindle; call every cycle before `step`: the speed is told from it.
     void set_spindle(int spindle, double turns) noexcept {
         FollowedSpindle &followed = spindles_[static_cast<std::size_t>(spindle)];
-        followed.turns = turns;
-        followed.track.take(turns, period_, static_cast<double>(state_.filter - 1) * period_);
+        followed.track.take(turns, period_);
     }
     /// How fast a spindle changes its speed when it turns back: see SpindleReading::ramp.
     void set_ramps(int spindle, const std::array<double, 2> &ramps) noexcept {
@@ -133,7 +133,7 @@ class Executor : private ExecutorState {
     /// The spindle that what moves is in step with, -1: none.
     int locked_spindle() const noexcept {
         if (state_.motion == Motion::LOCKED) [[unlikely]] {
-            return lock_.pass.spindle;
+            return curve_.plan().pass.spindle;
         }
         return -1;
     }
@@ -161,20 +161,10 @@ class Executor : private ExecutorState {
     [[gnu::cold]] void watch_planner() noexcept;
     bool isFiltered() const noexcept { return state_.filter > 1; }
 
-    // --- executor_locked.cc
-    [[gnu::cold]] bool take_pass(const Commit &commit) noexcept;
+    [[gnu::cold]] void begin_pass() noexcept;
     void step_locked() noexcept;
-    void advance_locked() noexcept;
-    double acceleration_left() const noexcept;
-    double locked_speed() noexcept;
-    bool descend(double v) noexcept;
-    double leave_piece(double x) noexcept;
-    struct Turned {
-        double turns = 0, per_s = 0;
-    };
-    Turned turned() const noexcept;
-    SpindleReading reading() const noexcept;
-    void advance_tap() noexcept;
+    bool advance_tap(const SpindleReading &spindle) noexcept;
+    bool advance_pass(const SpindleReading &spindle) noexcept;
 
     PathStore &store_;
     const StopLimits *stop_limits_;

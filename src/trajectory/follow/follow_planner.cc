@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "trajectory/follow/closing_speed.hh"
+#include "trajectory/follow/speed_within.hh"
 
 namespace mw::trajectory {
 

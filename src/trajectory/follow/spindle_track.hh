@@ -5,12 +5,58 @@
 
 #include <algorithm>
 #include <array>
-#include <cstddef>
-#include <cstdint>
-
-#include "trajectory/tuning.hh"
+#include <cmath>
 
 namespace mw::trajectory {
+
+/// A filter of constant acceleration with fading memory: what a change of the acceleration leaves decays with
+/// one rate, three times in series. Source: Brookner, Tracking and Kalman Filtering Made Easy (1998), the
+/// critically damped g-h-k filter.
+class SpindleTrack {
+  public:
+    /// Counted turns at the start of a cycle of `dt` seconds.
+    void take(double turns, double dt) noexcept {
+        observe_step(turns);
+        turns_ += dt * (speed_ + 0.5 * dt * acceleration_);
+        speed_ += dt * acceleration_;
+        const double missed = turns - turns_;
+        if (std::abs(missed) > JUMP) {  // the counter was set, or this is the first count
+            turns_ = turns;
+            return;
+        }
+        const double kept = 1.0 / (1.0 + std::min(rate_, HIGHEST_RATE / dt) * dt);
+        const double fresh = 1.0 - kept;
+        turns_ += (1.0 - kept * kept * kept) * missed;
+        speed_ += 1.5 * fresh * fresh * (1.0 + kept) * missed / dt;
+        acceleration_ += fresh * fresh * fresh * missed / (dt * dt);
+    }
+    double turns() const noexcept { return turns_; }
+    double turns_per_s() const noexcept { return speed_; }
+    double turns_per_s2() const noexcept { return acceleration_; }
+
+    /// Step of the encoder [turns], as seen so far: the smallest second difference of the counts.
+    double step() const noexcept { return step_; }
+    void set_rate(double rate) noexcept { rate_ = rate; }
+
+    static constexpr double JUMP = 0.5;            ///< [turns]
+    static constexpr double SMALLEST_STEP = 1e-6;  ///< [turns]
+    static constexpr double HIGHEST_RATE = 0.6;    ///< in a cycle
+
+  private:
+    void observe_step(double turns) noexcept {
+        const double bend = std::abs(turns - 2.0 * last_ + before_);
+        before_ = last_;
+        last_ = turns;
+        if (bend > SMALLEST_STEP && bend < (1.0 - 1e-6) * step_) {
+            step_ = bend;
+        }
+    }
+
+    double turns_ = 0, speed_ = 0, acceleration_ = 0;
+    double last_ = 0, before_ = 0;
+    double step_ = JUMP;
+    double rate_ = 150;  ///< [1/s], until somebody follows
+};
 
 /// What is known of a spindle in a servo cycle.
 struct SpindleReading {
@@ -20,43 +66,16 @@ struct SpindleReading {
     /// Change of speed with which it turns back when it is told to, from turning on with the counts and from
     /// turning against them [turns/s^2]; 0: not known.
     std::array<double, 2> ramp{};
+    double step = SpindleTrack::JUMP;  ///< of its encoder [turns]
     double ramp_at(double speed) const noexcept { return speed >= 0 ? ramp[0] : ramp[1]; }
-};
-
-class SpindleTrack {
-  public:
-    /// Counted turns at the start of a cycle of `dt` seconds. With a mean of `mean_s` the acceleration is
-    /// told over a longer time: what is aimed at lies farther ahead.
-    void take(double turns, double dt, double mean_s) noexcept {
-        constexpr std::size_t N = TapTuning::SPEED_SAMPLES;
-        const double oldest = count_ >= N ? samples_[count_ % N] : turns;
-        samples_[count_ % N] = turns;
-        ++count_;
-        const double speed = (turns - oldest) / (static_cast<double>(N) * dt);
-        const double swing = (speed - speed_) / dt;
-        const double smoothing_s =
-            std::max(TapTuning::ACCELERATION_S, TapTuning::ACCELERATION_MEANS * mean_s);
-        acceleration_ += (swing - acceleration_) * dt / (dt + smoothing_s);
-        speed_ = speed;
-        window_s_ = static_cast<double>(N) * dt;
-    }
-    double turns_per_s2() const noexcept { return acceleration_; }
-    /// Brought from the middle of the samples to now.
-    double turns_per_s() const noexcept { return speed_ + 0.5 * acceleration_ * window_s_; }
-
-  private:
-    std::array<double, TapTuning::SPEED_SAMPLES> samples_{};
-    std::uint64_t count_ = 0;
-    double speed_ = 0, acceleration_ = 0, window_s_ = 0;
 };
 
 /// What the executor knows of a spindle.
 struct FollowedSpindle {
-    double turns = 0;
     SpindleTrack track;
     std::array<double, 2> ramp{};
     SpindleReading reading() const noexcept {
-        return {turns, track.turns_per_s(), track.turns_per_s2(), ramp};
+        return {track.turns(), track.turns_per_s(), track.turns_per_s2(), ramp, track.step()};
     }
 };
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "trajectory/follow/closing_speed.hh"
+#include "trajectory/tuning.hh"
 
 namespace mw::trajectory {
 
@@ -17,44 +17,40 @@ double overrun_of(double speed, double ramp) noexcept {
 
 }  // namespace
 
-void TapFollower::begin(const TapTerms &terms, const SpindleReading &spindle, double ahead_s) noexcept {
+void TapFollower::begin(const TapTerms &terms, const SpindleReading &spindle, double dt) noexcept {
     *this = {};
     terms_ = terms;
     phase_ = TapPhase::WAITING;
     direction_ = spindle.turns_per_s < 0 ? -1.0 : 1.0;
-    const double v = terms.per_turn * std::abs(spindle.turns_per_s);
-    const double a = TapTuning::MEETING_SHARE * terms.acceleration;
-    const double run_in = 0.5 * v * v / (a * terms.per_turn);
+    limits_ = {terms.velocity, terms.acceleration, usable_jerk(terms.jerk, terms.acceleration, dt)};
+    pursuit_.begin(following_rate(terms.per_turn, spindle.step, limits_.jerk, dt),
+                   std::max(TapTuning::MET, TapTuning::MET_STEPS * spindle.step) * terms.per_turn);
+    const double run_in = run_in_distance(terms.per_turn * std::abs(spindle.turns_per_s), limits_);
     // The helix goes through the start at a whole turn, so that a hole may be tapped again.
-    origin_ = std::ceil(direction_ * (spindle.turns + spindle.turns_per_s * ahead_s) + run_in);
+    origin_ = std::ceil(direction_ * spindle.turns + run_in / terms.per_turn);
 }
 
 void TapFollower::stop(const SpindleReading &spindle) noexcept {
     if (phase_ == TapPhase::STOPPING || phase_ == TapPhase::OVER) {
         return;
     }
-    const bool isUnderWay = isMet_ && phase_ != TapPhase::HOME && !isLost_;
+    const bool under_way = pursuit_.hasMet() && phase_ != TapPhase::HOME && !lost_;
     const double ramp = spindle.ramp_at(spindle.turns_per_s);
     run_out_ = ramp > 0 ? TapTuning::RUN_OUT * overrun_of(spindle.turns_per_s, ramp) + 1.0
                         : TapTuning::UNKNOWN_RUN_OUT;
-    run_out_ = isUnderWay ? run_out_ : -1.0;
+    run_out_ = under_way ? run_out_ : -1.0;
     stop_turned_ = direction_ * spindle.turns - origin_;
-    isStopped_ = true;
+    stopped_ = true;
     phase_ = TapPhase::STOPPING;
 }
 
-TapFollower::Turning TapFollower::read(const SpindleReading &spindle, double dt,
-                                       double mean_s) const noexcept {
-    // The mean over tau of positions that are half of it ahead is late by the square's part: the last term.
-    const double ahead = dt + 0.5 * mean_s;
-    const double bend = 0.5 * dt * dt + 0.5 * dt * mean_s + mean_s * mean_s / 12.0;
+TapFollower::Turning TapFollower::read(const SpindleReading &spindle) const noexcept {
     Turning t;
     t.turned = direction_ * spindle.turns - origin_;
     t.speed = direction_ * spindle.turns_per_s;
     t.overrun = overrun_of(spindle.turns_per_s, spindle.ramp_at(spindle.turns_per_s));
-    const double change = direction_ * spindle.turns_per_s2;
-    t.helix_x = terms_.per_turn * (t.turned + t.speed * ahead + change * bend);
-    t.helix_v = terms_.per_turn * (t.speed + change * ahead);
+    t.helix = {terms_.per_turn * t.turned, terms_.per_turn * t.speed,
+               terms_.per_turn * direction_ * spindle.turns_per_s2};
     return t;
 }
 
@@ -62,7 +58,7 @@ TapFollower::Turning TapFollower::read(const SpindleReading &spindle, double dt,
 void TapFollower::decide(const Turning &t, double dt) noexcept {
     const double cycle = 0.5 * std::abs(t.speed) * dt;  // what the command waits for on average
     switch (phase_) {
-    case TapPhase::WAITING: phase_ = isMet_ ? TapPhase::IN : TapPhase::WAITING; [[fallthrough]];
+    case TapPhase::WAITING: phase_ = pursuit_.hasMet() ? TapPhase::IN : TapPhase::WAITING; [[fallthrough]];
     case TapPhase::IN: {
         const double left = terms_.depth / terms_.per_turn - t.turned;
         phase_ = left <= t.overrun + cycle ? TapPhase::TURNING : phase_;
@@ -82,76 +78,103 @@ void TapFollower::decide(const Turning &t, double dt) noexcept {
     }
 }
 
-/// Speed with which the tool meets the helix or keeps to it.
-double TapFollower::following_speed(const Turning &t, double dt) noexcept {
-    const double a = terms_.acceleration;
-    // How far the tool would be ahead of the helix if it went at the helix's speed.
-    const double gap = x_ + t.helix_v * dt - t.helix_x;
-    const double part = std::abs(gap) / terms_.per_turn;
-    isMet_ = isMet_ || (part < TapTuning::MET && std::abs(v_ - t.helix_v) < a * dt);
-    isLost_ = isLost_ || (isMet_ && part > TapTuning::LOST);
-    const double back = closing_speed(gap, TapTuning::MEETING_SHARE * a, dt);
-    const double wanted =
-        t.helix_v - (isMet_ ? std::clamp(TapTuning::GAIN * gap, -std::abs(back), std::abs(back)) : back);
-    return isMet_ ? wanted : std::max(0.0, wanted);
+/// A tool that is stopped follows the spindle while this runs down.
+bool TapFollower::isFollowing(const Turning &t) noexcept {
+    if (phase_ != TapPhase::STOPPING) {
+        return true;
+    }
+    if (lost_ || std::abs(t.turned - stop_turned_) > run_out_ || std::abs(t.speed) <= TapTuning::STANDING) {
+        run_out_ = -1;
+    }
+    return run_out_ >= 0;
 }
 
-double TapFollower::wanted_speed(const Turning &t, double dt) noexcept {
-    const double a = terms_.acceleration;
-    switch (phase_) {
-    // Braked for in steps of whole cycles that end there: who goes beyond it turns the drive's play about.
-    case TapPhase::HOME:
-        return -std::copysign(speed_within(std::abs(x_), TapTuning::MEETING_SHARE * a * dt, dt), x_);
-    case TapPhase::OVER: return 0;
-    case TapPhase::STOPPING: {
-        const bool isFollowing = !isLost_ && std::abs(t.turned - stop_turned_) <= run_out_ &&
-                                 std::abs(t.speed) > TapTuning::STANDING;
-        if (!isFollowing) {
-            run_out_ = -1;
-            return 0;
-        }
-        break;
-    }
-    case TapPhase::WAITING:
-    case TapPhase::IN:
-    case TapPhase::TURNING:
-    case TapPhase::BACK:
-    case TapPhase::LEAVING: break;
-    }
-    const double speed = following_speed(t, dt);
-    return isLost_ ? 0.0 : speed;
+double TapFollower::place_at_rest(const MotionState &from) const noexcept {
+    return from.x + speed_change(from, 0, limits_.acceleration, limits_.jerk).distance;
 }
 
-void TapFollower::step(const SpindleReading &spindle, double dt, double mean_s) noexcept {
-    const Turning t = read(spindle, dt, mean_s);
+/// On the side +1 or -1: within the speed, and able to stop within the room.
+bool TapFollower::isWithin(const MotionState &next, double side) const noexcept {
+    const double settled = settled_speed(next, limits_.jerk);
+    const double wall = side > 0 ? terms_.high : -terms_.low;
+    return std::max(side * next.v, side * settled) <= limits_.velocity && side * place_at_rest(next) <= wall;
+}
+
+TapFollower::JerkRange TapFollower::jerk_range(double dt) const noexcept {
+    const double low = std::max(-limits_.jerk, (-limits_.acceleration - state_.a) / dt);
+    const double high = std::min(limits_.jerk, (limits_.acceleration - state_.a) / dt);
+    // Before the helix is met the tool does not run backwards.
+    const bool waiting = phase_ == TapPhase::WAITING;
+    JerkRange range;
+    range.low = -highest_allowed(-high, -low, [&](double negative) {
+        const MotionState next = state_.after(-negative, dt);
+        return waiting ? next.v >= 0 && settled_speed(next, limits_.jerk) >= 0 : isWithin(next, -1);
+    });
+    range.low = waiting && state_.v <= 0 && state_.a <= 0 ? std::max(0.0, range.low) : range.low;
+    range.high = highest_allowed(low, high, [&](double jerk) { return isWithin(state_.after(jerk, dt), 1); });
+    return range;
+}
+
+void TapFollower::follow(const Turning &t, double dt) noexcept {
+    const JerkRange range = jerk_range(dt);
+    const double wanted = pursuit_.jerk(t.helix, state_, limits_, dt, range.low, range.high);
+    state_ = state_.after(std::clamp(wanted, std::min(range.low, range.high), range.high), dt);
+    lost_ = lost_ || (pursuit_.hasMet() && std::abs(pursuit_.ahead()) > TapTuning::LOST * terms_.per_turn);
+}
+
+/// Rest in the least time, from the present state on.
+void TapFollower::begin_run(double dt) noexcept {
+    run_.begin(speed_change(state_, 0, limits_.acceleration, limits_.jerk));
+    running_ = true;
+    run_.advance(state_, dt);
+}
+
+/// To the start in the least time, without going beyond it: that would turn the drive's play about.
+void TapFollower::go_home(double dt) noexcept {
+    const JerkRange range = jerk_range(dt);
+    const double side = place_at_rest(state_) < 0 ? 1.0 : -1.0;
+    const double toward = side > 0 ? range.high : range.low;
+    const auto isShort = [&](double time) { return side * place_at_rest(state_.after(toward, time)) <= 0; };
+    const double t = highest_allowed(0, dt, isShort);
+    state_ = state_.after(toward, t);
+    if (t < dt) {
+        begin_run(dt - t);
+    }
+}
+
+void TapFollower::step(const SpindleReading &spindle, double dt) noexcept {
+    const Turning t = read(spindle);
     decide(t, dt);
-    double wanted = wanted_speed(t, dt);
-    if (isLost_) {
+    if (phase_ == TapPhase::OVER) {
+        return;
+    }
+    const bool was_following = !running_ && phase_ != TapPhase::HOME && isFollowing(t);
+    if (running_) {
+        const bool is_rest = run_.advance(state_, dt);
+        if (is_rest) {
+            state_.v = 0;
+            const bool is_home = phase_ == TapPhase::HOME;
+            state_.x = is_home ? 0.0 : state_.x;
+            phase_ = TapPhase::OVER;
+        }
+    } else if (was_following) {
+        follow(t, dt);
+    } else if (phase_ == TapPhase::HOME) {
+        go_home(dt);
+    } else {
+        begin_run(dt);
+    }
+    if (lost_) {
         stop(spindle);
     }
-    const double a = terms_.acceleration;
-    const double round = 0.125 * a * dt * dt;  // what a stop in whole cycles may go beyond
-    const double up = std::max(0.0, closing_speed(terms_.high - round - x_, a, dt));
-    const double down = std::max(0.0, closing_speed(x_ - round - terms_.low, a, dt));
-    wanted = std::clamp(wanted, -std::min(down, terms_.velocity), std::min(up, terms_.velocity));
-    v_ = std::clamp(wanted, v_ - a * dt, v_ + a * dt);
-    x_ += v_ * dt;
-    const bool isHome =
-        phase_ == TapPhase::HOME && std::abs(x_) <= ExecutorTuning::ARRIVED && std::abs(v_) <= a * dt;
-    const bool isStopped = phase_ == TapPhase::STOPPING && run_out_ < 0 && v_ == 0.0;
-    if (isHome) {
-        x_ = 0;
-        v_ = 0;
-    }
-    phase_ = isHome || isStopped ? TapPhase::OVER : phase_;
 }
 
 double TapFollower::spindle_factor() const noexcept {
-    if (isStopped_) {
+    if (stopped_) {
         return 0;
     }
-    const bool isTurnedBack = phase_ == TapPhase::TURNING || phase_ == TapPhase::BACK;
-    return isTurnedBack ? -terms_.back_scale : 1.0;
+    const bool turned_back = phase_ == TapPhase::TURNING || phase_ == TapPhase::BACK;
+    return turned_back ? -terms_.back_scale : 1.0;
 }
 
 }  // namespace mw::trajectory

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "trajectory/follow/spindle_pursuit.hh"
 #include "trajectory/follow/spindle_track.hh"
 #include "trajectory/path_store.hh"
 
@@ -25,23 +26,25 @@ enum class TapPhase : std::uint8_t {
 /// turns back is seen from its measured angle alone, which the tool follows all the time.
 class TapFollower {
   public:
-    /// From rest at x 0. `ahead_s`: from the reading to what is commanded now; `lag_s`: of the mean.
-    void begin(const TapTerms &terms, const SpindleReading &spindle, double ahead_s) noexcept;
+    /// From rest at x 0.
+    void begin(const TapTerms &terms, const SpindleReading &spindle, double dt) noexcept;
+    /// For SpindleTrack.
+    double rate() const noexcept { return pursuit_.rate(); }
     /// An abort: no turning back, no way home.
     void stop(const SpindleReading &spindle) noexcept;
-    /// One cycle of `dt`. With a mean of `mean_s` the command is that much later, half of it on average.
-    void step(const SpindleReading &spindle, double dt, double mean_s) noexcept;
+    /// One cycle of `dt`.
+    void step(const SpindleReading &spindle, double dt) noexcept;
 
-    double x() const noexcept { return x_; }
-    double v() const noexcept { return v_; }
+    double x() const noexcept { return state_.x; }
+    double v() const noexcept { return state_.v; }
     TapPhase phase() const noexcept { return phase_; }
     /// Speed of the spindle that is wanted over that which it was started with; 0: off.
     double spindle_factor() const noexcept;
     /// It stands at the start and nothing has begun.
-    bool isWaiting() const noexcept { return phase_ == TapPhase::WAITING && x_ <= 0 && v_ <= 0; }
+    bool isWaiting() const noexcept { return phase_ == TapPhase::WAITING && state_.x <= 0 && state_.v <= 0; }
     bool isOver() const noexcept { return phase_ == TapPhase::OVER; }
     /// The tool has lost the helix: the spindle has not turned back in time, jumped, or is too much for it.
-    bool isLost() const noexcept { return isLost_; }
+    bool isLost() const noexcept { return lost_; }
 
   private:
     /// Of the spindle, counted in the sense of the way in.
@@ -49,20 +52,31 @@ class TapFollower {
         double turned = 0;   ///< since the helix passed the start, as measured
         double speed = 0;    ///< [turns/s]
         double overrun = 0;  ///< turns until it stands, were it told now to turn back
-        double helix_x = 0;  ///< where the helix will be when the command is due
-        double helix_v = 0;
+        HelixState helix;
     };
-    Turning read(const SpindleReading &spindle, double dt, double mean_s) const noexcept;
+    /// Jerks that keep the limits and the room of the line.
+    struct JerkRange {
+        double low = 0, high = 0;
+    };
+    Turning read(const SpindleReading &spindle) const noexcept;
     void decide(const Turning &t, double dt) noexcept;
-    double wanted_speed(const Turning &t, double dt) noexcept;
-    double following_speed(const Turning &t, double dt) noexcept;
+    bool isFollowing(const Turning &t) noexcept;
+    JerkRange jerk_range(double dt) const noexcept;
+    bool isWithin(const MotionState &next, double side) const noexcept;
+    void follow(const Turning &t, double dt) noexcept;
+    void go_home(double dt) noexcept;
+    double place_at_rest(const MotionState &from) const noexcept;
+    void begin_run(double dt) noexcept;
 
     TapTerms terms_;
+    MotionLimits limits_;
     TapPhase phase_ = TapPhase::OVER;
     double direction_ = 1;  ///< of the spindle's counts on the way in
     double origin_ = 0;     ///< counted turns at which the helix passes the start
-    double x_ = 0, v_ = 0;
-    bool isMet_ = false, isLost_ = false, isStopped_ = false;
+    MotionState state_;
+    SpindlePursuit pursuit_;
+    SpeedChangeRun run_;  ///< to rest
+    bool running_ = false, lost_ = false, stopped_ = false;
     double stop_turned_ = 0, run_out_ = 0;  ///< of a stop [turns]
 };
 

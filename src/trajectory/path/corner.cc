@@ -25,25 +25,6 @@ struct Bend {
     double wish_after() const noexcept { return requested_speed(b.move, conditions.scales); }
 };
 
-/// A corner within a pass is passed at the spindle's speed in every path mode: a thread cannot wait.
-Corner locked_corner(const Leg &a, const Leg &b, const Conditions &c) noexcept {
-    const Pose ta = derivative_at(a.line, a.line.length);
-    const Pose tb = derivative_at(b.line, 0);
-    if (geometry::norm(tb - ta) <= PathTuning::SAME_DIRECTION) {
-        return {};
-    }
-    const double v = PassTuning::SPEED_RESERVE * std::max(turning_speed(a.move.request, c.scales),
-                                                          turning_speed(b.move.request, c.scales));
-    const double wide = blend_d_for_speed(a.line, b.line, c.limits.fitted(), v) *
-                        (c.limits.isFiltered() ? LimitTuning::BLEND_SHARE / PassTuning::TURNING : 1.0);
-    const double d = std::min(0.5 * std::min(a.line.length, b.line.length), wide);
-    const bool isReversal =
-        geometry::dot(ta, tb) < PathTuning::REVERSAL_COSINE * geometry::norm(ta) * geometry::norm(tb);
-    return isReversal || !(d > PathTuning::SMALLEST_BLEND)
-               ? Corner{.isStop = true, .dwell_s = c.limits.filter_s()}
-               : Corner{.blend_d = d, .v = UNLIMITED};
-}
-
 /// The blend within the tolerance that is wide enough for the speed; a stop where there is none.
 Corner accelerated_corner(const Bend &bend) noexcept {
     if (bend.isStop) {
@@ -191,15 +172,8 @@ double speed_through(double share, double need, double most_d, double tau) noexc
 Corner corner_between(const Leg &a, const Leg &b, const Conditions &c) noexcept {
     const MoveRequest &ra = a.move.request;
     const MoveRequest &rb = b.move.request;
-    const bool isAnyLocked = c.isLocked(ra) || c.isLocked(rb);
-    const bool isPass = c.isLocked(ra) && c.isLocked(rb) && ra.spindle == rb.spindle;
-    const bool isStop = (ra.join == geometry::PathMode::EXACT_STOP && !isPass) || isStopBetween(ra, rb) ||
-                        (isAnyLocked && !isPass);
-    if (isStop) {
+    if (ra.join == geometry::PathMode::EXACT_STOP || isStopBetween(ra, rb)) {
         return {.isStop = true, .dwell_s = c.limits.filter_s()};
-    }
-    if (isPass) {
-        return locked_corner(a, b, c);
     }
     if (isExactArc(a.line, ra, c.limits) || isExactArc(b.line, rb, c.limits)) {
         return {.isStop = true, .dwell_s = c.limits.filter_s()};

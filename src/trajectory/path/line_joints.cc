@@ -67,21 +67,31 @@ double LineJoints::most_speed(const JointLimits &joints) const noexcept {
     return v;
 }
 
-// With x the way along the line: q' x'' + q'' x'^2 <= A; q' x''' + 3 q'' x' x'' + q''' x'^3 <= J, and the
-// mean of an acceleration that swings by 2 a within tau has x''' <= 2 a / tau.
-double LineJoints::acceleration(const JointLimits &joints, double v, double filter_s) const noexcept {
-    double a = UNLIMITED;
-    for (std::size_t j = 0; j < static_cast<std::size_t>(joints.count); ++j) {
+// With x the way along the line: q' x'' + q'' x'^2 <= A and q' x''' + 3 q'' x' x'' + q''' x'^3 <= J.
+MotionLimits LineJoints::limits_at(const JointLimits &joints, double v, bool has_jerk_limits) const noexcept {
+    MotionLimits out{v, UNLIMITED, UNLIMITED};
+    const auto count = static_cast<std::size_t>(joints.count);
+    const auto jerk_left = [&](std::size_t j) {
+        return std::max(0.0, joints.jerk[j] - rows[j].q3 * v * v * v);
+    };
+    for (std::size_t j = 0; j < count; ++j) {
         const Row &row = rows[j];
         if (row.q1 > 0) {
-            a = std::min(a, std::max(0.0, joints.acceleration[j] - row.q2 * v * v) / row.q1);
+            const double left = std::max(0.0, joints.acceleration[j] - row.q2 * v * v);
+            out.acceleration = std::min(out.acceleration, left / row.q1);
         }
-        const double swing = filter_s > 0 ? 2.0 * row.q1 / filter_s + 3.0 * row.q2 * v : 0.0;
-        if (swing > 0) {
-            a = std::min(a, std::max(0.0, joints.jerk[j] - row.q3 * v * v * v) / swing);
+        if (has_jerk_limits && row.q2 * v > 0) {
+            out.acceleration =
+                std::min(out.acceleration, Tuning::CROSS_SHARE * jerk_left(j) / (3.0 * row.q2 * v));
         }
     }
-    return a;
+    for (std::size_t j = 0; has_jerk_limits && j < count; ++j) {
+        if (rows[j].q1 > 0) {
+            const double left = jerk_left(j) - 3.0 * rows[j].q2 * v * out.acceleration;
+            out.jerk = std::min(out.jerk, left / rows[j].q1);
+        }
+    }
+    return {v, Tuning::FULL * out.acceleration, has_jerk_limits ? Tuning::FULL * out.jerk : UNLIMITED};
 }
 
 }  // namespace mw::trajectory

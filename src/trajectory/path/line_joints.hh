@@ -2,6 +2,7 @@
 // What joints that are not axes do along a line that is driven to and fro, as a tap is. Planning side, pure.
 #pragma once
 
+#include "trajectory/path/limited_motion.hh"
 #include "trajectory/path/workspace.hh"
 
 namespace mw::trajectory {
@@ -16,9 +17,9 @@ struct LineJoints {
 
     /// Maximum speed along the line at which the joints still have an acceleration.
     double most_speed(const JointLimits &joints) const noexcept;
-    /// Acceleration along the line that the joints can do in either direction at every speed up to `v`. With
-    /// a mean over `filter_s` (0: none) it may swing from one end to the other within it.
-    double acceleration(const JointLimits &joints, double v, double filter_s) const noexcept;
+    /// Acceleration and jerk along the line that the joints can do in either direction at every speed up to
+    /// `v`. Without jerk limits the jerk is UNLIMITED.
+    MotionLimits limits_at(const JointLimits &joints, double v, bool has_jerk_limits) const noexcept;
 };
 
 /// On the part [from, to] of a line, which may extend past its ends. By differences of the inverse

@@ -27,29 +27,6 @@ void reshape(PlannedPath &path, Sequence n, const Pose &in, const Pose &out) noe
     path.store().move(n).feed_ratio = m.request.tag.feed_ratio;
 }
 
-/// Moves the corner within a pass so that the first line is followed to its programmed end: its cut needs
-/// full depth there. With jerk limits half of the averaging time has passed the corner by then.
-void move_corner_on(PlannedPath &path, const Conditions &c, Sequence na, Sequence nb,
-                    const Corner &corner) noexcept {
-    Primitive &a = path.primitive(na);
-    Primitive &b = path.primitive(nb);
-    const double behind = c.limits.isFiltered()
-                              ? 0.5 * c.limits.filter_s() * turning_speed(path.move(na).request, c.scales)
-                              : 0.0;
-    const Pose along = derivative_at(a, a.length);
-    // Not past the end of the second line: a shoulder may be there.
-    const double most = PassTuning::ROOM_SHARE * geometry::dot(b.end - b.start, along);
-    const double way =
-        std::clamp(corner.blend_d + PassTuning::LAG_RESERVE * behind, 0.0, std::max(0.0, most));
-    const Pose place = a.end + along * way;
-    if (a.isArc || b.isArc || !c.workspace.holds(place)) {
-        return;
-    }
-    a = make_line(a.start, place);
-    b = make_line(place, b.end);
-    path.move(nb).start_s = path.move(na).start_s + a.length;
-}
-
 }  // namespace
 
 void PathBuilder::begin(const Pose &start) noexcept {
@@ -207,10 +184,6 @@ void PathBuilder::open_newest(PlannedPath &path, const Conditions &c) noexcept {
         corner = fresh_corner(path, c, n);
     } else {
         corner = corner_between(leg(path, open_.move), leg(path, n), c);
-        const bool isPass = c.isLocked(path.move(open_.move).request) && c.isLocked(path.move(n).request);
-        if (corner.blend_d > 0 && isPass) {
-            move_corner_on(path, c, open_.move, n, corner);
-        }
         close(path, c, path.primitive(open_.move).length - corner.blend_d, corner);
         if (corner.blend_d > 0) {
             open_.isStop = false;

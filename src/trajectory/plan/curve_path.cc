@@ -53,13 +53,22 @@ profile::FeedLimit::Along along_of(const Primitive &p) noexcept {
     return moves(geometry::AXIS_X) ? Along::XYZ : moves(geometry::AXIS_U) ? Along::UVW : Along::LENGTH;
 }
 
+/// A move of a pass at the present speed of its spindle.
+PassMove pass_move(const PlannedMove &move, const Primitive &primitive,
+                   const Conditions &conditions) noexcept {
+    const MoveRequest &request = move.request;
+    return {primitive, request.feed_per_revolution * request.tag.feed_ratio,
+            turning_speed(request, conditions.scales)};
+}
+
 }  // namespace
 
 CurvePath::CurvePath(PathStore &store, PlannedPath &moves)
-    : store_(store), moves_(moves), fitted_(WIDEST), exact_(WIDEST) {}
+    : store_(store), moves_(moves), fitted_(WIDEST), exact_(WIDEST), passes_(WIDEST) {}
 
 void CurvePath::begin(const Pose &start, const Conditions &conditions) {
     limits_ = curve_limits(conditions.limits.wanted());
+    is_jerk_limited_ = conditions.limits.wanted().isJerkLimited;
     map_ = conditions.workspace.map;
     joints_ = conditions.workspace.joints;
     end_ = start;
@@ -71,6 +80,7 @@ void CurvePath::begin(const Pose &start, const Conditions &conditions) {
     coming_.clear();
     caps_.clear();
     feeds_.clear();
+    legs_.clear();
     stops_.clear();
 }
 
@@ -81,7 +91,7 @@ bool CurvePath::isMadeFor(const Conditions &conditions) const noexcept {
         return b.velocity == limits.velocity[i] && b.acceleration == limits.acceleration[i] &&
                b.jerk == limits.jerk[i];
     };
-    bool is_made = limits.isJerkLimited && is_same(limits_.xyz, XYZ_NORM);
+    bool is_made = limits.isJerkLimited == is_jerk_limited_ && is_same(limits_.xyz, XYZ_NORM);
     for (std::size_t i = 0; i < geometry::AXIS_COUNT; ++i) {
         is_made = is_made && is_same(limits_.axes[i], i);
     }
@@ -115,18 +125,13 @@ Sequence CurvePath::add(const Conditions &conditions, const Primitive &primitive
     m.request.isAngular = feed.isAngular;
     m.request.tag.feed_ratio = primitive.length / feed.length;
     m.request.tag.end = primitive.end;
-    m.request.tag.end_s = programmed_s_ + primitive.length;
     m.feed = request.tag.requested_velocity * m.request.tag.feed_ratio;
     store_.primitive(n) = primitive;
-    store_.move(n) = m.request.tag;
 
     const double tolerance = tolerance_of(conditions, primitive, request);
-    const Rule rule = tolerance > 0 ? Rule::FITTED : Rule::EXACT;
+    const Rule rule = rule_of(conditions, request, tolerance);
     const PlannedMove *last = before != 0 ? &moves_.move(before) : nullptr;
-    const bool is_stop =
-        last != nullptr &&
-        (last->request.join == geometry::PathMode::EXACT_STOP || isStopBetween(last->request, request) ||
-         (conditions.blocks.isOn && last->request.tag.block != request.tag.block));
+    const bool is_stop = last != nullptr && isStopBefore(conditions, *last, m, rule);
     if (is_open_ && (is_stop || rule != rule_)) {
         finish_part(conditions);
     }
@@ -138,10 +143,11 @@ Sequence CurvePath::add(const Conditions &conditions, const Primitive &primitive
         is_open_ = true;
         is_part_seamed_ = before == 0;
         fitted_.set_room(room_at(conditions.workspace, primitive.start));
-        rule == Rule::FITTED ? fitted_.begin(programmed_s_) : exact_.begin(programmed_s_);
+        begin_part();
     }
-    rule == Rule::FITTED ? fitted_.add(primitive, tolerance) : exact_.add(primitive);
-    programmed_s_ += primitive.length;
+    programmed_s_ += append(conditions, m, primitive, tolerance);
+    m.request.tag.end_s = programmed_s_;
+    store_.move(n) = m.request.tag;
     end_ = primitive.end;
     feeds_.push_back(feed_of(conditions, n));
     last_synched_ = request.isSynched() ? n : last_synched_;
@@ -149,9 +155,73 @@ Sequence CurvePath::add(const Conditions &conditions, const Primitive &primitive
     return n;
 }
 
+/// Passes stop at their ends, and where their corners cannot be driven; in any other mode of path control
+/// their corners are passed, because a thread cannot wait.
+bool CurvePath::isStopBefore(const Conditions &conditions, const PlannedMove &last, const PlannedMove &move,
+                             Rule rule) const noexcept {
+    if (isStopBetween(last.request, move.request) ||
+        (conditions.blocks.isOn && last.request.tag.block != move.request.tag.block)) {
+        return true;
+    }
+    if (rule != Rule::LOCKED && rule_ != Rule::LOCKED) {
+        return last.request.join == geometry::PathMode::EXACT_STOP;
+    }
+    return rule != rule_ || last.request.spindle != move.request.spindle ||
+           !passes_.continues(pass_move(move, moves_.primitive(moves_.last_move()), conditions));
+}
+
+CurvePath::Rule CurvePath::rule_of(const Conditions &conditions, const MoveRequest &request,
+                                   double tolerance) const noexcept {
+    return conditions.isLocked(request) ? Rule::LOCKED : tolerance > 0 ? Rule::FITTED : Rule::EXACT;
+}
+
+void CurvePath::begin_part() {
+    switch (rule_) {
+    case Rule::FITTED: fitted_.begin(programmed_s_); break;
+    case Rule::EXACT: exact_.begin(programmed_s_); break;
+    case Rule::LOCKED: passes_.begin(programmed_s_); break;
+    }
+}
+
+/// Returns the length of the move along the curve.
+double CurvePath::append(const Conditions &conditions, const PlannedMove &move, const Primitive &primitive,
+                         double tolerance) {
+    switch (rule_) {
+    case Rule::FITTED: fitted_.add(primitive, tolerance); break;
+    case Rule::EXACT: exact_.add(primitive); break;
+    case Rule::LOCKED: return passes_.add(pass_move(move, primitive, conditions), conditions);
+    }
+    return primitive.length;
+}
+
+/// All moves of the pass that begins at `s` are known.
+bool CurvePath::isPassKnown(double s) const noexcept {
+    return !is_open_ || rule_ != Rule::LOCKED || stop_behind(s) <= known_s();
+}
+
+CurvePath::KnownPass CurvePath::pass_at(double s) const {
+    KnownPass pass;
+    const double end = std::min(stop_behind(s), programmed_s_);
+    pass.limits = {UNLIMITED, UNLIMITED, UNLIMITED};
+    pass.end_s = end;
+    for (const LimitedLeg &known : legs_) {
+        const PassLeg &leg = known.leg;
+        const double middle = leg.start_s + 0.5 * leg.length;
+        if (middle > s && middle < end) {
+            pass.legs.push_back(leg);
+            pass.limits.acceleration = std::min(pass.limits.acceleration, known.acceleration);
+            pass.limits.jerk = std::min(pass.limits.jerk, known.jerk);
+        }
+    }
+    limit_leg_ends(pass.legs, pass.limits);
+    return pass;
+}
+
 void CurvePath::finish_part(const Conditions &conditions) {
     if (rule_ == Rule::FITTED) {
         fitted_.extend(true);
+    } else if (rule_ == Rule::LOCKED) {
+        passes_.finish(conditions.limits.wanted());
     }
     take_spans(conditions);
     is_open_ = false;
@@ -176,9 +246,13 @@ void CurvePath::extend(const Conditions &conditions) {
 
 void CurvePath::take_spans(const Conditions &conditions) {
     const std::size_t old = coming_.size();
-    rule_ == Rule::FITTED ? fitted_.move_spans(coming_) : exact_.move_spans(coming_, seams_);
+    switch (rule_) {
+    case Rule::FITTED: fitted_.move_spans(coming_); break;
+    case Rule::EXACT: exact_.move_spans(coming_, seams_); break;
+    case Rule::LOCKED: passes_.move_parts(coming_, legs_); break;
+    }
     if (coming_.size() > old) {
-        if (!is_part_seamed_) {
+        if (!is_part_seamed_ && rule_ != Rule::LOCKED) {
             take_seam(conditions, curve::seam_between(newest_, coming_[old]));
         }
         is_part_seamed_ = true;
@@ -236,6 +310,7 @@ void CurvePath::drop_before(double s) {
     spans_.erase(spans_.begin(), spans_.begin() + static_cast<long>(spans));
     first_span_ += spans;
     const double from = spans_.front().start_s;
+    std::erase_if(legs_, [&](const LimitedLeg &leg) { return leg.leg.start_s + leg.leg.length < from; });
     std::erase_if(caps_, [&](const profile::SpeedCap &cap) { return cap.s + cap.reach < from; });
     while (!stops_.empty() && stops_.front() < from) {
         stops_.pop_front();

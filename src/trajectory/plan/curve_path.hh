@@ -9,6 +9,7 @@
 #include "trajectory/curve/exact_builder.hh"
 #include "trajectory/path/conditions.hh"
 #include "trajectory/path/planned_path.hh"
+#include "trajectory/plan/pass_builder.hh"
 #include "trajectory/profile/cells.hh"
 
 namespace mw::trajectory::plan {
@@ -34,6 +35,17 @@ class CurvePath {
     bool hasRoom() const noexcept;
 
     const Pose &end() const noexcept { return end_; }
+    /// The pass that begins at `s`: its legs, their number, and what holds on all of them. None as long as it
+    /// may still grow.
+    struct KnownPass {
+        std::vector<PassLeg> legs;
+        MotionLimits limits;
+        double end_s = 0;
+    };
+    KnownPass pass_at(double s) const;
+    /// All moves of the pass that begins at `s` are known.
+    bool isPassKnown(double s) const noexcept;
+
     bool hasOpenEnd() const noexcept { return is_open_; }
     /// Place of the end of the last move.
     double programmed_s() const noexcept { return programmed_s_; }
@@ -67,7 +79,13 @@ class CurvePath {
     const JointLimits &joint_limits() const noexcept { return joints_; }
 
   private:
-    enum class Rule : std::uint8_t { FITTED, EXACT };
+    enum class Rule : std::uint8_t { FITTED, EXACT, LOCKED };
+    Rule rule_of(const Conditions &conditions, const MoveRequest &request, double tolerance) const noexcept;
+    bool isStopBefore(const Conditions &conditions, const PlannedMove &last, const PlannedMove &move,
+                      Rule rule) const noexcept;
+    void begin_part();
+    double append(const Conditions &conditions, const PlannedMove &move, const Primitive &primitive,
+                  double tolerance);
     profile::FeedLimit feed_of(const Conditions &conditions, Sequence move) const noexcept;
     double tolerance_of(const Conditions &conditions, const Primitive &primitive,
                         const MoveRequest &request) const noexcept;
@@ -80,6 +98,7 @@ class CurvePath {
     PathStore &store_;
     PlannedPath &moves_;
     profile::CurveLimits limits_;
+    bool is_jerk_limited_ = false;
     const JointMap *map_ = nullptr;
     JointLimits joints_;
     Pose end_;
@@ -89,6 +108,7 @@ class CurvePath {
     Rule rule_ = Rule::EXACT;
     curve::CurveBuilder fitted_;
     curve::ExactBuilder exact_;
+    PassBuilder passes_;
     Sequence last_synched_ = 0;
     Sequence first_move_ = 1;  ///< that is not dropped
     Sequence first_span_ = 1;
@@ -98,6 +118,7 @@ class CurvePath {
     std::vector<curve::Seam> seams_;
     std::vector<profile::SpeedCap> caps_;
     std::vector<profile::FeedLimit> feeds_;
+    std::vector<LimitedLeg> legs_;
     std::deque<double> stops_;
 };
 

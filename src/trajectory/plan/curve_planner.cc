@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "trajectory/plan/tap_plan.hh"
+
 namespace mw::trajectory::plan {
 
 namespace {
@@ -24,10 +26,11 @@ CurvePlanner::CurvePlanner(PathStore &store, PlannedPath &moves, double period_s
     : store_(store), moves_(moves), period_s_(period_s), is_enabled_(enabled), path_(store, moves),
       profile_({.window_s = WINDOW_S, .period_s = period_s}) {}
 
-/// Planner modules, passes with a spindle and corners at a part of their speed take the other planner.
+/// Planner modules and corners at a part of their speed take the other planner.
 bool CurvePlanner::isFor(const PathDemand &demand, const Conditions &conditions) const noexcept {
-    return is_enabled_ && conditions.limits.wanted().isJerkLimited && conditions.chooser == nullptr &&
-           demand.drive != PathDemand::Drive::BY_ANGLE && !demand.isCornerScaled;
+    return demand.drive == PathDemand::Drive::BY_ANGLE ||
+           (is_enabled_ && conditions.limits.wanted().isJerkLimited && conditions.chooser == nullptr &&
+            !demand.isCornerScaled);
 }
 
 bool CurvePlanner::suits(const PathDemand &demand, const Conditions &conditions) const noexcept {
@@ -149,7 +152,7 @@ void CurvePlanner::update(const Snapshot &now, const Conditions &conditions) {
     }
     if (!is_running_) {
         start(now, conditions);
-    } else if (!is_abandoned_ && now.plan == plan_ && !now.isHeld) {
+    } else if (!is_abandoned_ && now.plan == plan_ && !now.isHeld && now.motion != Motion::LOCKED) {
         continue_plan(now, conditions);
     }
 }
@@ -177,6 +180,10 @@ void CurvePlanner::start(const Snapshot &now, const Conditions &conditions) {
         return;
     }
     path_.extend(conditions);
+    if (conditions.isLocked(request)) {
+        start_pass(now, s, move, conditions);
+        return;
+    }
     run_ = run_from(s, s, conditions);
     if (path_.spans().empty() || !(run_.end_s > s)) {
         return;
@@ -187,6 +194,46 @@ void CurvePlanner::start(const Snapshot &now, const Conditions &conditions) {
     const bool is_made = profile_.plan(run_, 0) && profile_.cells() > 0 && commit(now, 0);
     failures_ = is_made ? 0 : failures_ + 1;
     is_running_ = is_made;
+}
+
+/// The executor drives a pass by itself.
+void CurvePlanner::start_pass(const Snapshot &now, double s, Sequence move, const Conditions &conditions) {
+    if (!isPassKnown(now)) {
+        return;
+    }
+    path_.release_end(conditions);
+    const MoveRequest &request = moves_.move(move).request;
+    CurvePlan plan;
+    Pass &pass = plan.pass;
+    pass.start_s = s;
+    pass.spindle = request.spindle;
+    pass.direction =
+        conditions.scales.spindle_rps[static_cast<std::size_t>(request.spindle)] < 0 ? -1.0 : 1.0;
+    if (request.isTap) {
+        pass.is_tap = true;
+        pass.tap = tap_terms({moves_.primitive(move), request, conditions});
+        pass.end_s = moves_.move(move + 1).request.tag.end_s;
+    } else {
+        const CurvePath::KnownPass known = path_.pass_at(s);
+        pass.first = next_leg_;
+        for (const PassLeg &leg : known.legs) {
+            store_.leg(next_leg_++) = leg;
+        }
+        pass.last = next_leg_ - 1;
+        pass.end_s = known.end_s;
+        pass.acceleration = known.limits.acceleration;
+        pass.jerk = known.limits.jerk;
+    }
+    plan.plan = plan_ + 1;
+    plan.brakes = now.brakes;
+    plan.span = path_.span_at(s);
+    plan.move = move;
+    plan.last_span = path_.last_span();
+    plan.last_move = moves_.last_move();
+    is_running_ = store_.curve_plans.push(plan);
+    plan_ += is_running_ ? 1 : 0;
+    planned_cycle_ = now.cycle;
+    numbers_.clear();
 }
 
 /// The first cell that another plan may change.

@@ -16,7 +16,8 @@ namespace mw::trajectory::plan {
 /// not taken: the executor takes the last stop of the plan before, and the next plan begins at rest.
 class CurvePlanner {
   public:
-    /// `enabled`: paths with jerk limits are driven along curves.
+    /// `enabled`: paths with jerk limits are driven along curves; passes that follow the angle of a spindle
+    /// always are.
     CurvePlanner(PathStore &store, PlannedPath &moves, double period_s, bool enabled);
 
     /// A path begins at `start`, where the executor is at rest.
@@ -39,6 +40,10 @@ class CurvePlanner {
     /// Commits what the executor needs next.
     void update(const Snapshot &now, const Conditions &conditions);
 
+    /// All of the pass that the executor would begin with is known, or no more of it can be.
+    bool isPassKnown(const Snapshot &now) const noexcept {
+        return path_.isPassKnown(place_of(now)) || !path_.hasRoom();
+    }
     /// The plan covers all of the curve that is known, and there is more of it that could be released.
     bool isStarving() const noexcept { return path_.hasOpenEnd() && (!is_running_ || !is_window_full_); }
     /// The move that the executor is in, or before which it is at rest.
@@ -60,6 +65,7 @@ class CurvePlanner {
     double place_of(const Snapshot &now) const noexcept;
     void follow(const Snapshot &now);
     void start(const Snapshot &now, const Conditions &conditions);
+    void start_pass(const Snapshot &now, double s, Sequence move, const Conditions &conditions);
     void continue_plan(const Snapshot &now, const Conditions &conditions);
     profile::Run run_from(double s, double least_end, const Conditions &conditions) const;
     bool hasSpeed(Sequence move) const noexcept;
@@ -81,7 +87,7 @@ class CurvePlanner {
     profile::Run run_;
     std::vector<profile::Stop> stops_;  ///< of the plan that is being committed
     std::vector<Sequence> numbers_;     ///< of the cells of the profile that are committed
-    Sequence next_cell_ = 1;
+    Sequence next_cell_ = 1, next_leg_ = 1;
     std::uint64_t plan_ = 0, first_plan_ = 0;
     std::uint64_t planned_cycle_ = 0, tried_cycle_ = 0;
     double committed_s_ = 0;  ///< from then to the last stop, about

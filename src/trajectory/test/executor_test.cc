@@ -273,40 +273,5 @@ TEST(Executor, AnEventIsDueWhenItsMoveIsCompleteAndNeverOnAnotherPath) {
     EXPECT_EQ(rig.executor.due_event(), nullptr);
 }
 
-TEST(Executor, APassMeetsItsHelixAtAWholeTurnAndStaysOnIt) {
-    constexpr double PER_TURN = 1.5, RPS = 10;
-    ServoRig rig;
-    Piece &piece = rig.store->piece(1);
-    piece.length = 30;
-    piece.isToEnd = false;
-    piece.per_turn = PER_TURN;
-    piece.v_most = V;
-    piece.v2_in = V * V;
-    Commit c = rig.plan(1, 0, 0);
-    c.pass.first = 1;
-    c.pass.last = 1;
-    c.pass.share = 0.9;
-    c.pass.trim = 0.9;
-    ASSERT_TRUE(rig.store->commits.push(c));
-    double turns = 0.37;
-    int met = 0;
-    double origin = 0;
-    for (int n = 0; n < 3000 && (n < 2 || !rig.executor.isAtRest()); ++n) {
-        rig.executor.set_spindle(0, turns);
-        rig.step(1);
-        turns += RPS * PERIOD;
-        const bool isInMiddle = rig.x() > 5 && rig.x() < 25;
-        if (isInMiddle) {
-            const double start = turns - rig.x() / PER_TURN;
-            origin = met == 0 ? start : origin;
-            EXPECT_NEAR(start, origin, 1e-4);
-            ++met;
-        }
-    }
-    EXPECT_GT(met, 1000);
-    EXPECT_NEAR(origin, std::round(origin), 1e-3);
-    EXPECT_EQ(rig.x(), 30);
-}
-
 }  // namespace
 }  // namespace mw::trajectory::test

@@ -28,9 +28,8 @@ JointLimits table_limits(Maker &maker) {
     return l;
 }
 
-/// Threads, feeds per revolution, gates and joining at random places of a program.
+/// Feeds per revolution, gates and joining at random places of a program.
 void vary(Maker &maker, Program &p) {
-    bool isLocked = false;
     bool isFirst = false;
     double per_revolution = 0;
     for (std::size_t i = 0; i < p.requests.size(); ++i) {
@@ -38,11 +37,9 @@ void vary(Maker &maker, Program &p) {
         if (maker.chance(0.08)) {
             const bool isSynched = maker.chance(0.5);
             per_revolution = isSynched ? maker.real(0.05, 2) : 0.0;
-            isLocked = isSynched && maker.chance(0.6);
             isFirst = isSynched;
         }
         r.feed_per_revolution = per_revolution;
-        r.isLocked = isLocked && !p.primitives[i].isArc;
         r.isRapid = r.isRapid && !r.isSynched();
         r.isGated = isFirst || maker.chance(0.02);
         r.isPhased = isFirst;
@@ -74,10 +71,9 @@ struct Drive {
     void open_gates() {
         const Snapshot &now = rig.executor.snapshot();
         const Sequence gate = rig.planner.waiting_gate(now);
-        if (gate == 0 || (rig.planner.isLocked(gate) && !rig.planner.isPassKnown(now))) {
+        if (gate == 0) {
             return;
         }
-        hash.add(rig.planner.pass_load(gate));
         rig.planner.open_gate(gate, rig.planner.isPhased(gate) ? maker.real(0, 0.05) : 0.0);
     }
     void step_blocks() {

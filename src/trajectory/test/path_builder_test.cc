@@ -189,26 +189,6 @@ TEST(PathBuilder, AnArcIsCutSoThatItsDirectionChangesLittleOnEachPiece) {
     rig.expect_continuous();
 }
 
-TEST(PathBuilder, AThreadsCornerMovesOnSoThatTheFirstLineKeepsItsLength) {
-    BuilderRig rig(even_limits(100, 1000));
-    rig.conditions.scales.spindle_rps[0] = 10;
-    MoveRequest thread = asking(0, geometry::PathMode::EXACT_PATH);
-    thread.feed_per_revolution = 1.5;
-    thread.isLocked = true;
-    rig.line_to(at(10), thread);
-    rig.line_to(at(15, 5), thread);
-    rig.release();
-    EXPECT_EQ(rig.stops(), 0);
-    double farthest = 0;
-    for (Sequence n = 1; n <= rig.path->last_piece(); ++n) {
-        for (int i = 0; i <= 100; ++i) {
-            const Pose p = position_at(*rig.store, rig.piece(n), rig.piece(n).length * i / 100);
-            farthest = std::abs(p[1]) < 1e-12 ? std::max(farthest, p[0]) : farthest;
-        }
-    }
-    EXPECT_GE(farthest, 10 - 1e-9);
-}
-
 TEST(Corner, TheSpeedThroughACornerTakesAllOfItsDeviation) {
     // The average alone: v tau / 8 per change of the tangent.
     EXPECT_NEAR(speed_through(0.01, 0, 1, 0.02), 8 * 0.01 / 0.02, 1e-6);

@@ -2,6 +2,7 @@
 // A tap alone, with a spindle that has inertia and an encoder: judged by the rotor's true angle.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include <gtest/gtest.h>
 
@@ -22,7 +23,7 @@ struct Tapping {
     double phase = NAN;   ///< of the helix by the rotor's true angle [turns]
     double farthest = 0;  ///< from it while the tool follows [turns]
     double deepest = 0;   ///< x
-    double highest_v = 0, highest_a = 0;
+    double highest_v = 0, highest_a = 0, highest_j = 0;
 
     Tapping(double speed, double drive_ramp)
         : plant([&] {
@@ -38,25 +39,30 @@ struct Tapping {
     }
     void turn(double command) {
         plant.run(command, 0, T);
-        track.take(plant.shown_turns(), T, 0);
+        track.take(plant.shown_turns(), T);
     }
     SpindleReading reading(double known_ramp) const {
-        return {plant.shown_turns(), track.turns_per_s(), track.turns_per_s2(), {known_ramp, known_ramp}};
+        return {
+            track.turns(), track.turns_per_s(), track.turns_per_s2(), {known_ramp, known_ramp}, track.step()};
     }
     /// Until it is over; `on_cycle` may stop it.
     template <class OnCycle>
     bool run(double known_ramp, const TapTerms &terms, OnCycle on_cycle) {
         tap.begin(terms, reading(known_ramp), T);
-        double last_x = 0, last_v = 0;
+        track.set_rate(tap.rate());
+        double last_x = 0, last_v = 0, last_a = 0;
         bool wasFollowing = false;
         for (int i = 0; i < 20000 && !tap.isOver(); ++i) {
             on_cycle(*this);
-            tap.step(reading(known_ramp), T, 0);
+            tap.step(reading(known_ramp), T);
             const double v = (tap.x() - last_x) / T;
             highest_v = std::max(highest_v, std::abs(v));
-            highest_a = std::max(highest_a, std::abs(v - last_v) / T);
+            const double a = (v - last_v) / T;
+            highest_a = std::max(highest_a, std::abs(a));
+            highest_j = std::max(highest_j, std::abs(a - last_a) / T);
             last_x = tap.x();
             last_v = v;
+            last_a = a;
             deepest = std::max(deepest, tap.x());
             const TapPhase p = tap.phase();
             turn(tap.spindle_factor() * rps);
@@ -79,7 +85,9 @@ struct Tapping {
     }
 };
 
-TapTerms terms() {
+constexpr double NO_JERK_LIMIT = 1e300;
+
+TapTerms terms(double jerk = NO_JERK_LIMIT) {
     TapTerms t;
     t.depth = DEPTH;
     t.per_turn = PITCH;
@@ -87,20 +95,27 @@ TapTerms terms() {
     t.high = DEPTH + 10;
     t.velocity = 100;
     t.acceleration = 1000;
+    t.jerk = jerk;
     return t;
 }
 
 TEST(TapFollower, KeepsToTheAngleThroughBothReversalsAndEndsAtItsStart) {
     for (const double rpm : {1000.0, -1000.0, 300.0, 1500.0}) {
-        Tapping tapping(rpm / 60, 1000.0 / 60 / 0.5);
-        ASSERT_TRUE(tapping.run(tapping.ramp, terms())) << rpm;
-        EXPECT_EQ(tapping.tap.x(), 0);
-        EXPECT_EQ(tapping.tap.spindle_factor(), 1);
-        EXPECT_FALSE(tapping.tap.isLost());
-        EXPECT_LE(tapping.farthest, 0.02) << rpm;
-        EXPECT_NEAR(tapping.deepest, DEPTH, 0.2 * PITCH) << rpm;
-        EXPECT_LE(tapping.highest_v, 100);
-        EXPECT_LE(tapping.highest_a, 1000 * (1 + 1e-9));
+        for (const double jerk : {NO_JERK_LIMIT, 20000.0}) {
+            SCOPED_TRACE(jerk);
+            Tapping tapping(rpm / 60, 1000.0 / 60 / 0.5);
+            ASSERT_TRUE(tapping.run(tapping.ramp, terms(jerk))) << rpm;
+            EXPECT_LE(tapping.highest_j, jerk * (1 + 1e-6));
+            std::printf("tap %5.0f rpm, jerk %7.1g: %.5f turns off the helix, bottom %.4f turns off\n", rpm,
+                        jerk, tapping.farthest, (tapping.deepest - DEPTH) / PITCH);
+            EXPECT_EQ(tapping.tap.x(), 0);
+            EXPECT_EQ(tapping.tap.spindle_factor(), 1);
+            EXPECT_FALSE(tapping.tap.isLost());
+            EXPECT_LE(tapping.farthest, 0.02) << rpm;
+            EXPECT_NEAR(tapping.deepest, DEPTH, 0.2 * PITCH) << rpm;
+            EXPECT_LE(tapping.highest_v, 100);
+            EXPECT_LE(tapping.highest_a, 1000 * (1 + 1e-9));
+        }
     }
 }
 
@@ -161,7 +176,7 @@ TEST(TapFollower, ASpindleThatDoesNotTurnBackIsLostWithinTheRoom) {
     tapping.tap.begin(terms(), tapping.reading(30), T);
     double last_x = 0, last_v = 0;
     for (int i = 0; i < 20000 && !tapping.tap.isOver(); ++i) {
-        tapping.tap.step(tapping.reading(30), T, 0);
+        tapping.tap.step(tapping.reading(30), T);
         const double v = (tapping.tap.x() - last_x) / T;
         EXPECT_LE(std::abs(v - last_v) / T, 1000 * (1 + 1e-9));
         last_x = tapping.tap.x();

@@ -10,7 +10,6 @@
 #include "trajectory/timing/acceleration_limited.hh"
 #include "trajectory/timing/commitments.hh"
 #include "trajectory/timing/jerk_limited.hh"
-#include "trajectory/timing/locked_pass.hh"
 #include "trajectory/timing/timing_plan.hh"
 
 namespace mw::trajectory::test {
@@ -306,35 +305,6 @@ TEST(Commitments, APlanIsPendingUntilItsCycleAndVoidOnceTheExecutorHasBraked) {
     while (store->commits.push(commit)) {
     }
     EXPECT_FALSE(made.change_to(*store, now, commit, 3));
-}
-
-TEST(LockedPass, GoesToTheNextStopAndSharesTheAcceleration) {
-    Parts parts(even_limits(V, A, J));
-    for (int n = 1; n <= 4; ++n) {
-        const Sequence k = parts.add_straight(5, 40, A, n == 1 || n == 4);
-        MoveRequest &r = parts.path->move(k).request;
-        r.isLocked = true;
-        r.feed_per_revolution = 1.5;
-    }
-    parts.conditions.scales.spindle_rps[0] = -10;
-    const Pass pass = make_pass(parts.view(), 1);
-    EXPECT_EQ(pass.last, 3U);
-    EXPECT_EQ(pass.direction, -1);
-    EXPECT_LT(pass.share + pass.trim, 1);
-    fill_pass(*parts.path, parts.conditions.limits, pass);
-    double out2 = 0;
-    for (Sequence k = 3; k >= 1; --k) {
-        const Piece &p = parts.path->piece(k);
-        EXPECT_EQ(p.per_turn, 1.5);
-        EXPECT_EQ(p.v2_out, out2);
-        EXPECT_LE(p.v2_in, p.v_most * p.v_most);
-        EXPECT_LE(p.v2_in, out2 + 2 * pass.share * A * p.length + 1e-9);
-        out2 = p.v2_in;
-    }
-    // 15 mm/s along X of 100.
-    EXPECT_NEAR(pass_load(parts.view(), 1), 0.15, 1e-12);
-    parts.conditions.scales.max_velocity = 10;
-    EXPECT_NEAR(pass_load(parts.view(), 1), 1.5, 1e-12);
 }
 
 TEST(TimingPlan, SlightChangesOfSpindlesAreFollowedNowAndThen) {

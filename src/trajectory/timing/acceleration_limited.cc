@@ -48,7 +48,7 @@ bool append_piece(PlanDraft &draft, PathStore &store, const TimingView &view) no
     const bool isLast = s.piece == view.path().last_piece();
     draft.reached = isLast && s.x >= p.length ? s.piece : 0;
     if (s.x >= p.length) {
-        if (isLast || (s.v <= 0 && isPlanEnd(view.on, s.piece + 1))) {
+        if (isLast || (s.v <= 0 && isBarrier(view.on, s.piece + 1))) {
             return false;
         }
         draft.enter_next_piece();

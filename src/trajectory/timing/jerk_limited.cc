@@ -181,7 +181,7 @@ bool Smooth::advance() noexcept {
     look_at(s.piece);
     draft_.reached = isLast && s.x >= p.length ? s.piece : 0;
     if (s.x >= p.length || (s.v <= 0 && p.length - s.x < TimingTuning::AT_END)) {
-        if (isLast || (s.v <= 0 && isPlanEnd(view_.on, s.piece + 1))) {
+        if (isLast || (s.v <= 0 && isBarrier(view_.on, s.piece + 1))) {
             return false;
         }
         draft_.enter_next_piece();

@@ -44,10 +44,6 @@ bool isBarrier(const PathView &view, Sequence piece) noexcept {
     return r.isGated || view.conditions.blocks.isStopBefore(r.tag);
 }
 
-bool isLockedPiece(const PathView &view, Sequence piece) noexcept {
-    return view.conditions.isLocked(view.path.move(view.path.move_of(piece)).request);
-}
-
 void SpeedProfile::pass_backward(const PathView &view, Sequence from, bool isWhole) noexcept {
     const PlannedPath &path = view.path;
     while (known_ < path.last_piece()) {

@@ -20,15 +20,9 @@ struct PathView {
 double speed_cap(const PathView &view, Sequence piece) noexcept;
 /// A point before which the path stops for now: a gate, or the end of a single block.
 bool isBarrier(const PathView &view, Sequence piece) noexcept;
-/// Part of a pass that the executor drives by itself.
-bool isLockedPiece(const PathView &view, Sequence piece) noexcept;
-/// Where plans end: at a barrier, or where a pass begins.
-inline bool isPlanEnd(const PathView &view, Sequence piece) noexcept {
-    return isBarrier(view, piece) || isLockedPiece(view, piece);
-}
 /// Stopped before a point that a plan must not pass.
-inline bool isBeforePlanEnd(const PathView &view, const LeaderState &state) noexcept {
-    return state.x <= 0 && state.v <= 0 && isPlanEnd(view, state.piece);
+inline bool isBeforeBarrier(const PathView &view, const LeaderState &state) noexcept {
+    return state.x <= 0 && state.v <= 0 && isBarrier(view, state.piece);
 }
 
 /// The backward pass. Some hundred kilobytes, so never on a stack.

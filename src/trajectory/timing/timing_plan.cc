@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "trajectory/timing/acceleration_limited.hh"
-#include "trajectory/timing/locked_pass.hh"
 #include "trajectory/tuning.hh"
 
 namespace mw::trajectory {
@@ -57,7 +56,7 @@ void TimingPlan::renew_span(const PathView &view, Sequence low, Sequence high) n
 }
 
 Demand TimingPlan::demand(const PathView &view, const Snapshot &now) noexcept {
-    if (now.isHeld || now.motion == Motion::BRAKE || now.motion == Motion::LOCKED) {
+    if (now.isHeld || now.motion == Motion::BRAKE) {
         return {};
     }
     const Sequence changed = profile_.changed_from();
@@ -68,17 +67,13 @@ Demand TimingPlan::demand(const PathView &view, const Snapshot &now) noexcept {
     std::optional<LeaderState> from;
     if (now.motion == Motion::REST) {
         from = start_state(view.path, now);
-        if (from && isPassStart(view, *from)) {
-            const bool isFree = !isBarrier(view, from->piece);
-            return {isFree ? Demand::Kind::PASS : Demand::Kind::NOTHING, *from};
-        }
     } else if (commitments_.isTaken(now) && !isPlanChanged) {
         profile_.keep();
         return {Demand::Kind::EXTEND, {}};
     } else {
         from = predict(view.path, now, outlook(now));
     }
-    const bool isFree = from && !isBeforePlanEnd(view, *from);
+    const bool isFree = from && !isBeforeBarrier(view, *from);
     return isFree ? Demand{Demand::Kind::PLAN, *from} : Demand{};
 }
 
@@ -92,10 +87,6 @@ Demand TimingPlan::tried_demand(const PathView &view, const Snapshot &now) const
             return {};
         }
         from = start_state(view.path, now);
-        if (from && isPassStart(view, *from)) {
-            const bool isFree = now.isSettled && !isBarrier(view, from->piece);
-            return {isFree ? Demand::Kind::PASS : Demand::Kind::NOTHING, *from};
-        }
     } else {
         const Sequence changed = profile_.changed_from();
         const bool isShort = !draft_.isAtEndOf(view.path) && draft_.seconds - seconds_driven(now) <
@@ -109,7 +100,7 @@ Demand TimingPlan::tried_demand(const PathView &view, const Snapshot &now) const
         }
         from = predict(view.path, now, outlook(now));
     }
-    if (!from || isBeforePlanEnd(view, *from)) {
+    if (!from || isBeforeBarrier(view, *from)) {
         return {};
     }
     return {mustStop ? Demand::Kind::STOP : Demand::Kind::PLAN, *from};
@@ -189,24 +180,6 @@ bool TimingPlan::commit(const PathView &view, PathStore &store, const Snapshot &
     const bool isTold = change_to(store, now, commit);
     start_delay_s_ = isTold ? 0.0 : start_delay_s_;
     return isTold;
-}
-
-void TimingPlan::start_pass(PlannedPath &path, const Conditions &conditions, const Snapshot &now,
-                            Sequence first) noexcept {
-    Commit commit;
-    commit.pass = make_pass({path, conditions}, first);
-    commit.begin = draft_.end;
-    commit.end = draft_.end;
-    commit.filter = conditions.limits.filter();
-    fill_pass(path, conditions.limits, commit.pass);
-    if (!change_to(path.store(), now, commit)) {
-        return;
-    }
-    const Sequence last = commit.pass.last;
-    draft_.reached = last == path.last_piece() ? last : 0;
-    draft_.at = {};
-    draft_.at.piece = last;
-    draft_.at.x = path.piece(last).length;
 }
 
 }  // namespace mw::trajectory

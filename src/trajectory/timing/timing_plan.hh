@@ -30,7 +30,6 @@ struct Demand {
         EXTEND,  ///< the current plan continues
         PLAN,    ///< another one from `from` on
         STOP,    ///< one that stops
-        PASS,    ///< the executor drives by itself from `from` on
     };
     Kind kind = Kind::NOTHING;
     LeaderState from;
@@ -85,18 +84,12 @@ class TimingPlan {
     /// Phases from `begin` on are free again.
     void discard(Sequence begin) noexcept { draft_.end = begin; }
 
-    /// Passes the executor the pass that begins at its position.
-    void start_pass(PlannedPath &path, const Conditions &conditions, const Snapshot &now,
-                    Sequence first) noexcept;
     /// The limit that the speed chooser exceeded. The path stops there.
     const Overreach &overreach() const noexcept { return draft_.overreach; }
     /// The plan runs to the end of the known path.
     bool isAtEndOf(const PlannedPath &path) const noexcept { return draft_.isAtEndOf(path); }
 
   private:
-    bool isPassStart(const PathView &view, const LeaderState &from) const noexcept {
-        return from.x <= 0 && isLockedPiece(view, from.piece);
-    }
     double seconds_driven(const Snapshot &now) const noexcept {
         return commitments_.cycles_since_change(now) * settings_.period_s;
     }

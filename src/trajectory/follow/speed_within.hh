@@ -6,14 +6,6 @@
 
 namespace mw::trajectory {
 
-/// Difference of speed that can be taken back over the way `gap`, in whole cycles, with the acceleration a.
-inline double closing_speed(double gap, double a, double dt) noexcept {
-    const double size = std::abs(gap);
-    const double speed =
-        size <= a * dt * dt ? size / dt : a * (std::sqrt(0.25 * dt * dt + 2.0 * size / a) - 0.5 * dt);
-    return gap > 0 ? speed : -speed;
-}
-
 /// The highest speed of a cycle that still ends at `room` when it gets slower by `step` in each cycle after:
 /// with m whole steps and a rest f of one, the way is step * dt * ((m + 1) f + m (m + 1) / 2).
 inline double speed_within(double room, double step, double dt) noexcept {
