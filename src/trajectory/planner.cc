@@ -343,7 +343,7 @@ Trouble Planner::take_trouble() noexcept {
     trouble.isStuck = refusals_ == TimingTuning::MOST_REFUSALS;
     refusals_ += trouble.isStuck ? 1 : 0;
     if (!isOverreachTold_) {
-        trouble.overreach = timing_.overreach();
+        trouble.overreach = curve_.isActive() ? curve_.path().move_feeds().overreach() : timing_.overreach();
         isOverreachTold_ = trouble.overreach.kind != Overreach::Kind::NONE;
     }
     return trouble;

@@ -38,7 +38,6 @@ class Planner {
         PathDemand demand = conditions_.limits.demand_of(request, start, end);
         demand.drive =
             conditions_.isLocked(request) ? PathDemand::Drive::BY_ANGLE : PathDemand::Drive::BY_TIME;
-        demand.isCornerScaled = request.corner_scale < 1;
         return demand;
     }
     /// With jerk limits a path is made for what it began with; a much smaller tolerance, or rotary axes that

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "hal/include/planner.h"
-#include "trajectory/timing/speed_choice.hh"
+#include "trajectory/path/speed_choice.hh"
 
 namespace mw::motion {
 

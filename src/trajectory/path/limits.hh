@@ -36,7 +36,6 @@ struct PathDemand {
         BY_ANGLE  ///< of a spindle: threads and taps
     };
     Drive drive = Drive::EITHER;
-    bool isCornerScaled = false;  ///< corners are passed at a part of the reachable speed (G64 R)
 };
 
 /// The time in which an acceleration is built up within a jerk limit, or the acceleration with which the

@@ -14,6 +14,7 @@ namespace mw::trajectory {
 /// A move besides its primitive.
 struct PlannedMove {
     double feed = 0;            ///< requested speed in s [1/s]; 0: none
+    double chosen_speed = 0;    ///< by a planner module, in s [1/s]; 0: none
     double start_s = 0;         ///< where the move begins on the programmed path
     double free_tolerance = 0;  ///< with jerk limits, where the program gives none
     double deviation = 0;       ///< of the primitive from the lines that were joined to it

@@ -44,15 +44,6 @@ curve::Room room_at(const Workspace &workspace, const Pose &start) noexcept {
     return room;
 }
 
-profile::FeedLimit::Along along_of(const Primitive &p) noexcept {
-    const auto moves = [&](int first) {
-        const bool is_arc = p.isArc && p.space == first;
-        return is_arc || p.lin[first] != 0 || p.lin[first + 1] != 0 || p.lin[first + 2] != 0;
-    };
-    using Along = profile::FeedLimit::Along;
-    return moves(geometry::AXIS_X) ? Along::XYZ : moves(geometry::AXIS_U) ? Along::UVW : Along::LENGTH;
-}
-
 /// A move of a pass at the present speed of its spindle.
 PassMove pass_move(const PlannedMove &move, const Primitive &primitive,
                    const Conditions &conditions) noexcept {
@@ -64,7 +55,7 @@ PassMove pass_move(const PlannedMove &move, const Primitive &primitive,
 }  // namespace
 
 CurvePath::CurvePath(PathStore &store, PlannedPath &moves)
-    : store_(store), moves_(moves), fitted_(WIDEST), exact_(WIDEST), passes_(WIDEST) {}
+    : store_(store), moves_(moves), feeds_(moves), fitted_(WIDEST), exact_(WIDEST), passes_(WIDEST) {}
 
 void CurvePath::begin(const Pose &start, const Conditions &conditions) {
     limits_ = curve_limits(conditions.limits.wanted());
@@ -74,12 +65,11 @@ void CurvePath::begin(const Pose &start, const Conditions &conditions) {
     end_ = start;
     programmed_s_ = 0;
     is_open_ = false;
-    first_move_ = moves_.first_move();
     first_span_ += spans_.size();
     spans_.clear();
     coming_.clear();
     caps_.clear();
-    feeds_.clear();
+    feeds_.begin(moves_.first_move());
     legs_.clear();
     stops_.clear();
 }
@@ -149,8 +139,7 @@ Sequence CurvePath::add(const Conditions &conditions, const Primitive &primitive
     m.request.tag.end_s = programmed_s_;
     store_.move(n) = m.request.tag;
     end_ = primitive.end;
-    feeds_.push_back(feed_of(conditions, n));
-    last_synched_ = request.isSynched() ? n : last_synched_;
+    feeds_.add(conditions, n);
     store_.last_move.store(n, std::memory_order_release);
     return n;
 }
@@ -296,10 +285,8 @@ void CurvePath::add_stop(double s) {
 
 void CurvePath::drop_before(double s) {
     // Spans and moves apart: a span may hold many moves. The last move stays.
-    const Sequence last = first_move_ + std::max<std::size_t>(feeds_.size(), 1) - 1;
-    const Sequence move = std::min(move_at(s), last);
-    feeds_.erase(feeds_.begin(), feeds_.begin() + static_cast<long>(move - first_move_));
-    first_move_ = move;
+    const Sequence last = first_move() + std::max<std::size_t>(feeds().size(), 1) - 1;
+    feeds_.drop_before(std::min(move_at(s), last));
     const auto driven = static_cast<std::size_t>(
         std::partition_point(spans_.begin(), spans_.end(), [&](const auto &x) { return x.end_s() < s; }) -
         spans_.begin());
@@ -318,19 +305,12 @@ void CurvePath::drop_before(double s) {
 }
 
 bool CurvePath::hasRoom() const noexcept {
-    return spans_.size() < MOST_SPANS && feeds_.size() < MOST_MOVES;
+    return spans_.size() < MOST_SPANS && feeds().size() < MOST_MOVES;
 }
 
 double CurvePath::stop_behind(double s) const noexcept {
     const auto at = std::upper_bound(stops_.begin(), stops_.end(), s + SAME_PLACE);
     return at != stops_.end() ? *at : 1e300;
-}
-
-Sequence CurvePath::move_at(double s) const noexcept {
-    const auto at = std::partition_point(feeds_.begin(), feeds_.end(), [&](const profile::FeedLimit &feed) {
-        return feed.end_s <= s + SAME_PLACE;
-    });
-    return first_move_ + static_cast<Sequence>(at - feeds_.begin());
 }
 
 Sequence CurvePath::span_at(double s) const noexcept {
@@ -345,43 +325,6 @@ double CurvePath::on_span_end(double s) const noexcept {
     return std::abs(span.start_s - s) <= SAME_PLACE   ? span.start_s
            : std::abs(span.end_s() - s) <= SAME_PLACE ? span.end_s()
                                                       : s;
-}
-
-profile::FeedLimit CurvePath::feed_of(const Conditions &conditions, Sequence n) const noexcept {
-    const PlannedMove &m = moves_.move(n);
-    const Scales &scales = conditions.scales;
-    profile::FeedLimit feed;
-    feed.end_s = m.request.tag.end_s;
-    feed.along = along_of(moves_.primitive(n));
-    const double ratio = feed.along == profile::FeedLimit::Along::LENGTH ? m.request.tag.feed_ratio : 1.0;
-    double v = UNLIMITED;
-    if (m.request.isRapid) {
-        feed.limit_share = scales.rapid;
-    } else if (m.request.isSynched()) {
-        v = turning_speed(m.request, scales) / m.request.tag.feed_ratio;
-    } else if (m.request.tag.requested_velocity > 0) {
-        v = m.request.tag.requested_velocity * (m.request.isOverridable ? scales.feed : 1.0);
-    }
-    v = m.request.isAngular ? v : std::min(v, scales.max_velocity);
-    feed.velocity = v < UNLIMITED ? v * ratio : UNLIMITED;
-    return feed;
-}
-
-CurvePath::FeedChange CurvePath::update_feeds(const Conditions &conditions) {
-    // What rounding may make of a speed that a spindle gives.
-    constexpr double ROUNDING = 1e-9;
-    FeedChange change;
-    const auto compare = [&](double now, double before) {
-        change.is_lower = change.is_lower || now < (1 - ROUNDING) * before;
-        change.is_any = change.is_any || std::abs(now - before) > ROUNDING * before;
-    };
-    for (std::size_t k = 0; k < feeds_.size(); ++k) {
-        const profile::FeedLimit feed = feed_of(conditions, first_move_ + k);
-        compare(feed.velocity, feeds_[k].velocity);
-        compare(feed.limit_share, feeds_[k].limit_share);
-        feeds_[k] = feed;
-    }
-    return change;
 }
 
 }  // namespace mw::trajectory::plan

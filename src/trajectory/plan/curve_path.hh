@@ -9,6 +9,7 @@
 #include "trajectory/curve/exact_builder.hh"
 #include "trajectory/path/conditions.hh"
 #include "trajectory/path/planned_path.hh"
+#include "trajectory/plan/move_feeds.hh"
 #include "trajectory/plan/pass_builder.hh"
 #include "trajectory/profile/cells.hh"
 
@@ -54,8 +55,8 @@ class CurvePath {
     /// The first place behind `s` at which the motion stops with any moves that follow; 1e300: none.
     double stop_behind(double s) const noexcept;
     /// The move at `s`; where two meet, the second one.
-    Sequence move_at(double s) const noexcept;
-    Sequence first_move() const noexcept { return first_move_; }
+    Sequence move_at(double s) const noexcept { return feeds_.move_at(s); }
+    Sequence first_move() const noexcept { return feeds_.first_move(); }
     Sequence span_at(double s) const noexcept;
     /// The end of a span at `s` up to rounding; otherwise `s`.
     double on_span_end(double s) const noexcept;
@@ -64,14 +65,9 @@ class CurvePath {
     const std::vector<curve::Span> &spans() const noexcept { return spans_; }
     const std::vector<profile::SpeedCap> &caps() const noexcept { return caps_; }
     /// Those of the moves from first_move() on.
-    const std::vector<profile::FeedLimit> &feeds() const noexcept { return feeds_; }
-    /// A move that is not dropped follows the speed of a spindle.
-    bool isSynched() const noexcept { return last_synched_ >= first_move_; }
-    struct FeedChange {
-        bool is_any = false, is_lower = false;
-    };
-    /// For other overrides: whether a limit changed, and became lower.
-    FeedChange update_feeds(const Conditions &conditions);
+    const std::vector<profile::FeedLimit> &feeds() const noexcept { return feeds_.limits(); }
+    const MoveFeeds &move_feeds() const noexcept { return feeds_; }
+    MoveFeeds &move_feeds() noexcept { return feeds_; }
     bool isMadeFor(const Conditions &conditions) const noexcept;
     const profile::CurveLimits &limits() const noexcept { return limits_; }
     /// Null: the joints are axes.
@@ -86,7 +82,6 @@ class CurvePath {
     void begin_part();
     double append(const Conditions &conditions, const PlannedMove &move, const Primitive &primitive,
                   double tolerance);
-    profile::FeedLimit feed_of(const Conditions &conditions, Sequence move) const noexcept;
     double tolerance_of(const Conditions &conditions, const Primitive &primitive,
                         const MoveRequest &request) const noexcept;
     void finish_part(const Conditions &conditions);
@@ -97,6 +92,7 @@ class CurvePath {
 
     PathStore &store_;
     PlannedPath &moves_;
+    MoveFeeds feeds_;
     profile::CurveLimits limits_;
     bool is_jerk_limited_ = false;
     const JointMap *map_ = nullptr;
@@ -109,15 +105,12 @@ class CurvePath {
     curve::CurveBuilder fitted_;
     curve::ExactBuilder exact_;
     PassBuilder passes_;
-    Sequence last_synched_ = 0;
-    Sequence first_move_ = 1;  ///< that is not dropped
     Sequence first_span_ = 1;
     std::vector<curve::Span> spans_;   ///< that the executor may read
     std::vector<curve::Span> coming_;  ///< that have no room there yet
     curve::Span newest_;
     std::vector<curve::Seam> seams_;
     std::vector<profile::SpeedCap> caps_;
-    std::vector<profile::FeedLimit> feeds_;
     std::vector<LimitedLeg> legs_;
     std::deque<double> stops_;
 };

@@ -26,11 +26,9 @@ CurvePlanner::CurvePlanner(PathStore &store, PlannedPath &moves, double period_s
     : store_(store), moves_(moves), period_s_(period_s), is_enabled_(enabled), path_(store, moves),
       profile_({.window_s = WINDOW_S, .period_s = period_s}) {}
 
-/// Planner modules and corners at a part of their speed take the other planner.
 bool CurvePlanner::isFor(const PathDemand &demand, const Conditions &conditions) const noexcept {
     return demand.drive == PathDemand::Drive::BY_ANGLE ||
-           (is_enabled_ && conditions.limits.wanted().isJerkLimited && conditions.chooser == nullptr &&
-            !demand.isCornerScaled);
+           (is_enabled_ && conditions.limits.wanted().isJerkLimited);
 }
 
 bool CurvePlanner::suits(const PathDemand &demand, const Conditions &conditions) const noexcept {
@@ -65,12 +63,12 @@ void CurvePlanner::set_scales(const Conditions &conditions) {
     const Scales &now = conditions.scales;
     const bool is_same = now.feed == scales_.feed && now.rapid == scales_.rapid &&
                          now.max_velocity == scales_.max_velocity &&
-                         (now.spindle_rps == scales_.spindle_rps || !path_.isSynched());
+                         (now.spindle_rps == scales_.spindle_rps || !path_.move_feeds().isSynched());
     if (is_same) {
         return;
     }
     scales_ = now;
-    const CurvePath::FeedChange change = path_.update_feeds(conditions);
+    const MoveFeeds::Change change = path_.move_feeds().update(conditions);
     is_lower_ = is_lower_ || change.is_lower;
     is_changed_ = is_changed_ || change.is_any;
 }

@@ -84,11 +84,12 @@ void RoughProfile::apply_caps(const Run &run, Node &node, double length) noexcep
 RoughProfile::Node RoughProfile::node_at(const Run &run, std::size_t span, double from_s, double s) noexcept {
     const CurvePoint p = curve::point_at((*run.spans)[span], s);
     Node node{s, 1e300, 1e300, 1e300, 0};
-    double fastest = 1;
+    double fastest = 1, curve_share = 1;
     for (std::size_t k = run.feed_at(from_s);; ++k) {
         const FeedLimit &feed = (*run.feeds)[k];
         node.v = std::min(node.v, 1 / std::sqrt(std::max(feed.share(p.first), 1e-30)));
         fastest = std::min(fastest, feed.limit_share);
+        curve_share = std::min(curve_share, feed.curve_share);
         if (k + 1 == run.feeds->size() || feed.end_s >= s) {
             break;
         }
@@ -98,9 +99,6 @@ RoughProfile::Node RoughProfile::node_at(const Run &run, std::size_t span, doubl
         const Bounds &b = run.limits.axes[i];
         const double q1 = std::max(std::abs(p.first.c[i]), 1e-30);
         node.machine_v = std::min(node.machine_v, b.velocity / q1);
-        node.curve_v =
-            std::min({node.curve_v, std::sqrt(b.acceleration / std::max(std::abs(p.second.c[i]), 1e-30)),
-                      std::cbrt(b.jerk / std::max(std::abs(p.third.c[i]), 1e-30))});
         node.acceleration = std::min(node.acceleration, b.acceleration / q1);
         node.jerk = std::min(node.jerk, b.jerk / q1);
         if (std::abs(p.first.c[i]) + std::abs(p.second.c[i]) > 0) {
@@ -112,9 +110,7 @@ RoughProfile::Node RoughProfile::node_at(const Run &run, std::size_t span, doubl
     const Bounds &b = run.limits.xyz;
     const double n1 = std::max(geometry::norm_xyz(p.first), 1e-30);
     node.machine_v = std::min(node.machine_v, b.velocity / n1);
-    node.curve_v =
-        std::min({node.curve_v, std::sqrt(b.acceleration / std::max(geometry::norm_xyz(p.second), 1e-30)),
-                  std::cbrt(b.jerk / std::max(geometry::norm_xyz(p.third), 1e-30))});
+    node.curve_v = curve_speed(run, p);
     node.acceleration = std::min(node.acceleration, b.acceleration / n1);
     node.jerk = std::min(node.jerk, b.jerk / n1);
     // Where the feed changes both count, unless the motion stops there.
@@ -122,13 +118,14 @@ RoughProfile::Node RoughProfile::node_at(const Run &run, std::size_t span, doubl
          {run.feed_at(s),
           run.feed_at(run.has_stop ? std::min(s + 2 * rounding_at(s), run.end_s) : s + 2 * rounding_at(s))}) {
         node.v = std::min(node.v, 1 / std::sqrt(std::max((*run.feeds)[feed].share(p.first), 1e-30)));
+        curve_share = std::min(curve_share, (*run.feeds)[feed].curve_share);
     }
     node.ramp_s = std::min(node.ramp_s, ramp_of(b));
     double turn_v = turn_way(direction, bend) / LEAST_CELL_S;
     apply_joints(run, node, s + 1e-6 * ((*run.spans)[span].start_s + 0.5 * (*run.spans)[span].length - s),
                  turn_v);
     apply_velocity(node, fastest);
-    node.v = std::min(node.v, node.curve_v);
+    node.v = std::min(node.v, curve_share * node.curve_v);
     node.way = (*run.spans)[span].length / CELLS_PER_SPAN;
     node.rest_s = std::min(node.acceleration / node.jerk, std::sqrt(node.v / node.jerk));
     node.v = std::min(node.v, turn_v);

@@ -31,6 +31,10 @@ struct FeedLimit {
     double velocity = 1e300;
     Along along = Along::XYZ;
     double limit_share = 1;  ///< part of the velocity limits that the move may use (rapid override)
+    /// Part of the speed at which the curve alone takes a limit (G64 R), from LEAST_CURVE_SHARE.
+    double curve_share = 1;
+    /// That of a creep: the motion that every plan begins with keeps any speed limit above it.
+    static constexpr double LEAST_CURVE_SHARE = 0.15;
     /// Square of the derivative of that length by s, over the squared velocity.
     double share(const Pose &first) const noexcept;
 };
@@ -140,6 +144,8 @@ class RoughProfile {
 std::size_t span_at(const std::vector<Span> &spans, double s) noexcept;
 /// Inverse of the maximum speed along the curve that the limits of speed allow at a point.
 double speed_share(const Run &run, const CurvePoint &point, std::size_t feed) noexcept;
+/// The speed at which the curve alone takes all of a limit of acceleration or jerk.
+double curve_speed(const Run &run, const CurvePoint &point) noexcept;
 /// The same of the machine's limits alone, without feed and override.
 double machine_share(const Run &run, const CurvePoint &point) noexcept;
 void make_rows(const Run &run, const RestMap &map, const double *knots, std::size_t cells, Rows &rows);

@@ -65,9 +65,24 @@ double machine_share(const Run &run, const CurvePoint &point) noexcept {
     return most;
 }
 
+double curve_speed(const Run &run, const CurvePoint &point) noexcept {
+    double v = 1e300;
+    const auto take = [&](const Bounds &b, double second, double third) {
+        v = std::min({v, std::sqrt(b.acceleration / std::max(second, 1e-30)),
+                      std::cbrt(b.jerk / std::max(third, 1e-30))});
+    };
+    for (std::size_t i = 0; i < geometry::AXIS_COUNT; ++i) {
+        take(run.limits.axes[i], std::abs(point.second.c[i]), std::abs(point.third.c[i]));
+    }
+    take(run.limits.xyz, geometry::norm_xyz(point.second), geometry::norm_xyz(point.third));
+    return v;
+}
+
 double speed_share(const Run &run, const CurvePoint &point, std::size_t feed) noexcept {
     const FeedLimit &limit = (*run.feeds)[feed];
-    return std::max(machine_share(run, point) / limit.limit_share, std::sqrt(limit.share(point.first)));
+    const double share =
+        std::max(machine_share(run, point) / limit.limit_share, std::sqrt(limit.share(point.first)));
+    return limit.curve_share < 1 ? std::max(share, 1 / (limit.curve_share * curve_speed(run, point))) : share;
 }
 
 void make_rows(const Run &run, const RestMap &map, const double *knots, std::size_t cells, Rows &rows) {

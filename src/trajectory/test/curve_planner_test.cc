@@ -21,7 +21,13 @@ void expect_kept(const Rig &rig, const Program &program) {
 }
 
 Program program_of(int seed, Maker &maker) {
-    return seed % 3 == 0 ? maker.make_curve() : maker.make();
+    Program program = seed % 3 == 0 ? maker.make_curve() : maker.make();
+    if (seed % 4 == 1) {
+        for (MoveRequest &request : program.requests) {
+            request.corner_scale = maker.chance(0.5) ? maker.real(0.1, 1) : 1.0;
+        }
+    }
+    return program;
 }
 
 Rig third_order_rig() {
@@ -52,6 +58,57 @@ TEST(CurvePlanner, DrivesAProgram) {
         expect_kept(rig, program);
         const double allowed = allowed_deviation(program);
         EXPECT_TRUE(isWithinProgram(rig.samples, program, allowed));
+    }
+}
+
+/// Speed at the middle of a rounded corner, and time of the program.
+struct PassedCorner {
+    double v = 0, time_s = 0;
+};
+PassedCorner pass_corner(double corner_scale) {
+    Rig rig = third_order_rig();
+    Limits limits;
+    limits.velocity.fill(100);
+    limits.acceleration.fill(1000);
+    limits.jerk.fill(20000);
+    limits.isJerkLimited = true;
+    rig.planner.set_limits(limits);
+    const auto place = [](double x, double y) {
+        Pose p;
+        p[0] = x;
+        p[1] = y;
+        return p;
+    };
+    MoveRequest r;
+    r.tag.requested_velocity = 80;
+    r.tolerance = 0.5;
+    r.corner_scale = corner_scale;
+    const Primitive a = make_line(Pose{}, place(20, 0));
+    rig.planner.begin(Pose{}, rig.executor.snapshot(), rig.planner.demand_of(r, a.start, a.end));
+    rig.planner.add(a, r);
+    rig.planner.add(make_line(place(20, 0), place(20, 20)), r);
+    EXPECT_TRUE(rig.run(10));
+    PassedCorner out{.v = 0, .time_s = static_cast<double>(rig.cycle) * Rig::T};
+    double nearest = 1e9;
+    for (std::size_t i = 1; i < rig.samples.size(); ++i) {
+        const double off = geometry::norm(rig.samples[i] - place(20, 0));
+        if (off < nearest) {
+            nearest = off;
+            out.v = geometry::norm(rig.samples[i] - rig.samples[i - 1]) / Rig::T;
+        }
+    }
+    return out;
+}
+
+TEST(CurvePlanner, CornersArePassedAtTheScaledSpeed) {
+    const PassedCorner whole = pass_corner(1);
+    PassedCorner before = whole;
+    for (const double scale : {0.8, 0.5, 0.3, 0.15}) {
+        const PassedCorner now = pass_corner(scale);
+        EXPECT_LE(now.v, 1.05 * scale * whole.v) << scale;
+        EXPECT_GE(now.v, 0.7 * scale * whole.v) << scale;
+        EXPECT_GT(now.time_s, before.time_s) << scale;
+        before = now;
     }
 }
 

@@ -97,21 +97,6 @@ TEST(Filtered, ExactPathIsNeverSlowerThanExactStop) {
     }
 }
 
-double corner_time(double corner_scale) {
-    JerkRig rig;
-    MoveRequest r = request(geometry::PathMode::BLEND, 0.5);
-    r.corner_scale = corner_scale;
-    rig.planner.add(make_line(Pose{}, at(20)), r);
-    rig.planner.add(make_line(at(20), at(35, 15)), r);
-    EXPECT_TRUE(rig.run(10));
-    rig.expect_within();
-    return static_cast<double>(rig.cycle) * Rig::T;
-}
-
-TEST(Filtered, CornersArePassedAtTheScaledSpeed) {
-    EXPECT_GT(corner_time(0.2), corner_time(1.0) + 0.01);
-}
-
 TEST(Filtered, AnExactArcIsFollowedExactly) {
     JerkRig rig;
     rig.planner.add(half_circle(5), request(geometry::PathMode::EXACT_PATH));

@@ -58,7 +58,7 @@ struct Driven {
 Driven drive(Chooser *chooser, const Limits &limits, double feed = 80) {
     Rig rig(at(0), chooser);
     rig.planner.set_limits(limits);
-    rig.planner.begin(at(0), rig.executor.snapshot());
+    rig.planner.begin(at(0), rig.executor.snapshot(), {.drive = PathDemand::Drive::BY_TIME});
     std::mt19937 random(5);
     std::uniform_real_distribution<double> place(0, 60);
     Pose from = at(0);

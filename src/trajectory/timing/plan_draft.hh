@@ -2,7 +2,7 @@
 // A plan in the making: phases in the store's ring, and the state that they lead to.
 #pragma once
 
-#include "trajectory/timing/speed_choice.hh"
+#include "trajectory/path/speed_choice.hh"
 #include "trajectory/timing/speed_profile.hh"
 
 namespace mw::trajectory {

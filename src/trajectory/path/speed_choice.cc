@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "trajectory/timing/speed_choice.hh"
+#include "trajectory/path/speed_choice.hh"
 
 #include <algorithm>
 #include <cmath>
