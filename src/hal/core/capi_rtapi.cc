@@ -346,6 +346,13 @@ const rtapi_u32 *mw_ext_links(void) {
                           : nullptr;
 }
 
+rtapi_u32 *mw_ext_lost_positions(void) {
+    static_assert(sizeof(Header::lost_positions) == sizeof(rtapi_u32));
+    Hal *hal = current();
+    return hal != nullptr ? reinterpret_cast<rtapi_u32 *>(&hal->impl().segment.header().lost_positions)
+                          : nullptr;
+}
+
 int mw_ext_is_virtual(void) {
     const Hal *hal = current();
     return hal != nullptr && hal->isVirtual() ? 1 : 0;

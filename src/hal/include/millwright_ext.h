@@ -51,6 +51,12 @@ extern void mw_ext_memory_delete(void *memory, unsigned long bytes);
  * The address is valid while the module is loaded. NULL where there is no instance. */
 extern const rtapi_u32 *mw_ext_links(void);
 
+/* A driver adds 1 when positions that it has reported are no longer those of the machine: its board has lost
+ * its counters, or the driver does not follow them. The module that moves the machine then switches it off,
+ * and no joint is homed any more. The driver tells the operator the cause. Add and read it as an atomic, also
+ * in realtime. The address is valid while the module is loaded. NULL where there is no instance. */
+extern rtapi_u32 *mw_ext_lost_positions(void);
+
 /* 1 under the virtual clock. */
 extern int mw_ext_is_virtual(void);
 

@@ -48,6 +48,7 @@ bool replace(std::array<std::uint64_t, WORDS> &shown, const void *part) noexcept
 int MotionPins::declare(int comp_id, const PinCounts &wanted) noexcept {
     counts_ = wanted;
     links_ = mw_ext_links();
+    lost_positions_ = mw_ext_lost_positions();
     int status = motion_.declare(comp_id);
     status = status == 0 && counts_.isSwitchable ? switchable_.declare(comp_id) : status;
     status = status == 0 ? declare_each(digital_, comp_id, counts_.digital) : status;
@@ -71,6 +72,7 @@ int MotionPins::declare(int comp_id, const PinCounts &wanted) noexcept {
 /// Pins that seldom exist are read apart: a taken branch is not predicted once per cycle.
 void MotionPins::read(Inputs &in) noexcept {
     in.time_ns = rtapi_get_time();
+    in.lost_positions = __atomic_load_n(lost_positions_, __ATOMIC_RELAXED);
     in.digital_in = 0;
     in.misc_errors = 0;
     motion_.read(in);

@@ -46,8 +46,9 @@ class MotionPins {
     bool areLinksOther() noexcept;
 
     PinCounts counts_;
-    std::uint32_t axes_ = ALL_AXES;         ///< as Outputs::axes
-    const std::uint32_t *links_ = nullptr;  ///< count of pin links of HAL
+    std::uint32_t axes_ = ALL_AXES;                  ///< as Outputs::axes
+    const std::uint32_t *links_ = nullptr;           ///< count of pin links of HAL
+    const std::uint32_t *lost_positions_ = nullptr;  ///< as Inputs::lost_positions
     std::uint32_t last_links_ = 0;
     std::uint32_t last_axes_ = 0;  ///< 0: all are written in the first cycle
     std::array<Shown<sizeof(SeldomJointOutputs)>, MAX_JOINTS> joint_shown_{};

@@ -205,6 +205,7 @@ enum class FaultKind : std::uint16_t {
     SIDE_APART,              ///< index: joint; switched on in free mode
     POSE_UNKNOWN,            ///< the kinematics has no pose for the joint positions; the same
     PLANNER_MODULE,          ///< detail: PlannerModuleFault; value: requested over possible
+    POSITIONS_LOST,          ///< a driver reports that its positions are not those of the machine
     SPINDLE_LOST,  ///< index: spindle whose feedback is not a number while a move is in step with it
     COUNT,
 };

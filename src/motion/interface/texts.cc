@@ -277,11 +277,9 @@ std::string who_stood(const Fault &fault) {
                          : "");
 }
 
-std::string what_failed(const Fault &fault) {
+std::string joint_fault(const Fault &fault) {
     const int i = fault.index;
     switch (fault.kind) {
-    case FaultKind::FOLLOWING_ERROR: return fmt::format("joint {} following error", i);
-    case FaultKind::FEEDBACK_LOST: return fmt::format("joint {} feedback is not a number", i);
     case FaultKind::INDEXER_NOT_UNLOCKED:
         return fmt::format(
             "the locking indexer of joint {0} did not unlock in time: see joint.{0}.is-unlocked, which "
@@ -298,6 +296,24 @@ std::string what_failed(const Fault &fault) {
         return fmt::format("joint.{0}.posthome-cmd is {1:.6g}, outside the soft limits of joint {0}: the "
                            "joint stops at its limit",
                            i, fault.value);
+    case FaultKind::POSITIONS_LOST:
+        return "joint positions are lost, for the reason in the message of a driver: the machine was "
+               "switched off; home all joints again";
+    default: return "unknown motion fault";
+    }
+}
+
+std::string what_failed(const Fault &fault) {
+    const int i = fault.index;
+    switch (fault.kind) {
+    case FaultKind::FOLLOWING_ERROR: return fmt::format("joint {} following error", i);
+    case FaultKind::FEEDBACK_LOST: return fmt::format("joint {} feedback is not a number", i);
+    case FaultKind::INDEXER_NOT_UNLOCKED:
+    case FaultKind::INDEXER_NOT_LOCKED:
+    case FaultKind::INDEXER_LOCKED_IN_MOVE:
+    case FaultKind::EXTRA_JOINT_LOST:
+    case FaultKind::EXTRA_JOINT_LIMIT:
+    case FaultKind::POSITIONS_LOST: return joint_fault(fault);
     case FaultKind::AMP_FAULT: return fmt::format("joint {} amplifier fault", i);
     case FaultKind::HARD_LIMIT: return fmt::format("joint {} on limit switch error", i);
     case FaultKind::SOFT_LIMIT: return fmt::format("{} exceeded its soft limit", axis_name(i));

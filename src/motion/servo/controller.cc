@@ -112,6 +112,13 @@ void Controller::step(const Inputs &in, Outputs &out) noexcept {
     }
     const PerJoint measured = read_feedback(joints_, in);
     read_feedback(place_, kinematics_, measured.data(), limits_.homed.areAll);
+    // The feedback is not that of the machine any more: braking to a place would be wrong, too.
+    if (note_lost_positions(homing_, in.lost_positions)) [[unlikely]] {
+        if (power_.isEnabled || homed_mask(homing_) != 0) {
+            raise(FaultKind::POSITIONS_LOST, -1);
+        }
+        disable();
+    }
     const TaskSigns signs{channels_->task_loops.load(std::memory_order_relaxed),
                           channels_->host_looks.load(std::memory_order_relaxed),
                           channels_->isTaskDead.load(std::memory_order_acquire) != 0};

@@ -47,6 +47,8 @@ struct SpindleInputs {
 
 struct Inputs {
     std::int64_t time_ns = 0;
+    std::uint32_t lost_positions =
+        0;                   ///< events after which the positions of a driver are not those of the machine
     bool isEnableOn = true;  ///< motion.enable
     bool isProbeClosed = false;
     bool isFeedHeld = false, isFeedInhibited = false;

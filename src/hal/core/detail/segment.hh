@@ -186,9 +186,10 @@ struct Table {
 };
 
 struct Header {
-    pthread_mutex_t mutex;               ///< robust and shared between processes
-    std::atomic<std::uint32_t> running;  ///< threads are started. realtime
-    std::atomic<std::uint32_t> links;    ///< number of changes of pin slots. realtime
+    pthread_mutex_t mutex;                      ///< robust and shared between processes
+    std::atomic<std::uint32_t> running;         ///< threads are started. realtime
+    std::atomic<std::uint32_t> links;           ///< number of changes of pin slots. realtime
+    std::atomic<std::uint32_t> lost_positions;  ///< number of events; see mw_ext_lost_positions. realtime
     std::atomic<std::uint8_t> lock;
     bool is_virtual;
     bool realtime;                           ///< threads have realtime priority

@@ -155,10 +155,11 @@ void switch_off(HomingDrive &drive, const Settings &settings) noexcept {
     abort(drive, homing::event::OFF);
     drive.module().lock();
     for (int j = 0; j < drive.num_joints; ++j) {
-        if (settings.isSet(Parameter::JOINT_VOLATILE_HOME, j)) {
+        if (drive.arePositionsLost || settings.isSet(Parameter::JOINT_VOLATILE_HOME, j)) {
             drive.module().unhome(j);
         }
     }
+    drive.arePositionsLost = false;
 }
 
 homing::Failure begin_due(HomingDrive &drive, const HomeConditions &conditions) noexcept {

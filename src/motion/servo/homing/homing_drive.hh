@@ -20,9 +20,11 @@ struct HomingDrive {
     int num_joints = 0;                 ///< of the machine
     int num_to_home = 0;                ///< joints of the kinematics: the machine is homed when these are
     bool isDue = false;
-    int due = -1;             ///< the joint, -1: all
-    std::uint32_t known = 0;  ///< homed in the last cycle, bit per joint; of a user's module
-    bool isEndAsked = false;  ///< it ends by a command
+    int due = -1;                      ///< the joint, -1: all
+    std::uint32_t known = 0;           ///< homed in the last cycle, bit per joint; of a user's module
+    bool isEndAsked = false;           ///< it ends by a command
+    std::uint32_t lost_positions = 0;  ///< Inputs::lost_positions as last seen
+    bool arePositionsLost = false;     ///< all joints lose their homes when the machine is switched off next
 
     homing::Module &module() noexcept {
         return foreign != nullptr ? *foreign : static_cast<homing::Module &>(own);
@@ -80,7 +82,16 @@ void note_play(HomingDrive &drive, int j, const Settings &settings) noexcept;
 void set_axis(HomingDrive &drive, int j, int axis) noexcept;
 /// `joint`: the joint that caused `why`, -1: none.
 void abort(HomingDrive &drive, homing::event::Event why, int joint = -1) noexcept;
-/// Switched off: joints with a volatile home lose it.
+/// True when positions of a driver were lost since the last call: switch_off() must follow.
+inline bool note_lost_positions(HomingDrive &drive, std::uint32_t count) noexcept {
+    if (count == drive.lost_positions) [[likely]] {
+        return false;
+    }
+    drive.lost_positions = count;
+    drive.arePositionsLost = true;
+    return true;
+}
+/// Switched off: joints with a volatile home lose it; all do when positions were lost.
 void switch_off(HomingDrive &drive, const Settings &settings) noexcept;
 
 /// A cycle before the joints move: homing that is due begins when nothing moves. Returns the failure of
