@@ -27,6 +27,9 @@ struct Config {
     std::array<std::string, MAX_SMART_SERIAL_PORTS> sserial_modes{};
     /// Formats of absolute encoders, by channel: only channels with a format are used.
     std::map<int, std::string> ssi_formats{}, biss_formats{}, fanuc_formats{};
+    /// Options of `loadrt hostmot2`, not of the string.
+    bool is_named_by_serial_number = false;  ///< pins of smart serial cards
+    int sserial_baudrate = -1;               ///< of smart serial ports [bit/s]; -1: that of the firmware
 
     /// Formats of a module of absolute encoders; null: of others.
     const std::map<int, std::string> *formats_of(Gtag gtag) const noexcept;

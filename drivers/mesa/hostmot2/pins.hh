@@ -18,7 +18,9 @@ enum class PinType : std::uint8_t { BIT, FLOAT, S32, U32 };
 /// IN, OUT and IO are pins, as seen by the driver; RW and RO are parameters.
 enum class Access : std::uint8_t { IN, OUT, IO, RW, RO };
 
-/// Creates pins and parameters: in HAL, or in a map of a test. Names are without the prefix of the board.
+/// Creates pins and parameters: in HAL, or in a map of a test. Names are without the prefix of the board,
+/// except for one that begins with WHOLE_NAME.
+constexpr char WHOLE_NAME = '/';
 class PinSpace {
   public:
     virtual ~PinSpace() = default;

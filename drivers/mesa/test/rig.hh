@@ -21,6 +21,8 @@ struct RigPlan {
     std::string config{};
     std::string physics{};
     std::string faults{};
+    int sserial_baudrate = -1;
+    bool is_named_by_serial_number = false;
 };
 
 class Rig {
@@ -40,7 +42,10 @@ class Rig {
             return bus->read_now({.address = address, .count = static_cast<std::uint16_t>(count)});
         });
         EXPECT_TRUE(idrom.has_value()) << idrom.error().str();
-        auto driven = Board::make(*bus, *idrom, *parse_config(plan.config));
+        Config config = *parse_config(plan.config);
+        config.sserial_baudrate = plan.sserial_baudrate;
+        config.is_named_by_serial_number = plan.is_named_by_serial_number;
+        auto driven = Board::make(*bus, *idrom, config);
         EXPECT_TRUE(driven.has_value()) << driven.error().str();
         driver = std::move(*driven);
         driver->declare(pins);

@@ -52,6 +52,26 @@ TEST_F(MesaSmartSerial, RunsAfterTheStart) {
     EXPECT_TRUE(rig->driver->warnings().empty());
 }
 
+TEST(MesaSmartSerialOptions, CardsAreNamedByTheirSerialNumber) {
+    // The simulated cards have the numbers 1 and 2.
+    Rig rig({.config = "sserial_port_0=00xxxxxx", .physics = CARDS, .is_named_by_serial_number = true});
+    rig.pins.set("/hm2_7i76.0001.output-03", 1);
+    EXPECT_TRUE(rig.pins.pins.contains("/hm2_7i84.0002.input-00"));
+    EXPECT_FALSE(rig.pins.pins.contains("7i76.0.0.output-03"));
+    for (int i = 0; i < 40; ++i) {
+        rig.cycle();
+    }
+    EXPECT_EQ(rig.simulated.firmware().smart_serial()->remote(0, 0)->value("Output"), 8U);
+}
+
+TEST(MesaSmartSerialOptions, CardsOfAnotherBaudRateAreNotFound) {
+    for (const auto &[baudrate, isFound] : {std::pair{-1, true}, {2'500'000, true}, {115'200, false}}) {
+        Rig rig({.config = "sserial_port_0=00xxxxxx", .physics = CARDS, .sserial_baudrate = baudrate});
+        EXPECT_EQ(rig.pins.pins.contains("7i76.0.0.output-03"), isFound) << baudrate;
+        EXPECT_EQ(rig.pins.pins.contains("7i84.0.1.output-03"), isFound) << baudrate;
+    }
+}
+
 TEST_F(MesaSmartSerial, OutputsReachTheField) {
     load();
     set("7i76.0.0.output-03", 1);

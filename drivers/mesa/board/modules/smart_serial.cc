@@ -22,7 +22,7 @@ constexpr std::uint32_t NO_ANSWER = (1U << 13U) | (1U << 3U);
 constexpr std::uint8_t LOCAL_BYTES[] = {0x12, 0x20, 0, 43, 0x40, 0x40, 1};
 constexpr std::uint32_t CHANNEL_COUNT = 7, CHANNEL_START = 4, CHANNEL_STRIDE = 5, BAUD_OFFSET = 42,
                         CLOCK = 0x230;
-constexpr std::uint32_t BAUD = 2'500'000, CLOCK_HZ = 100'000'000;
+constexpr std::uint32_t CLOCK_HZ = 100'000'000;
 
 /// The command that a remote executes in set-up mode.
 struct RemoteCommand {
@@ -44,7 +44,7 @@ Remote *SmartSerialModule::remote(unsigned port, unsigned channel) {
     return nullptr;
 }
 
-std::uint8_t SmartSerialModule::local_byte(std::uint32_t address) const {
+std::uint8_t SmartSerialModule::local_byte(const SerialPort &port, std::uint32_t address) const {
     const auto byte_of = [](std::uint32_t value, std::uint32_t index) {
         return static_cast<std::uint8_t>((value >> (8 * index)) & 0xFFU);
     };
@@ -60,10 +60,21 @@ std::uint8_t SmartSerialModule::local_byte(std::uint32_t address) const {
     for (unsigned i = 0; i < channels_; ++i) {
         const std::uint32_t baud = LOCAL_BYTES[CHANNEL_START] + i * LOCAL_BYTES[CHANNEL_STRIDE] + BAUD_OFFSET;
         if (address >= baud && address < baud + 4) {
-            return byte_of(BAUD, address - baud);
+            return byte_of(port.channels[i].baudrate, address - baud);
         }
     }
     return 0;
+}
+
+void SmartSerialModule::set_local_byte(SerialPort &port, std::uint32_t address, std::uint8_t value) const {
+    for (unsigned i = 0; i < channels_; ++i) {
+        const std::uint32_t baud = LOCAL_BYTES[CHANNEL_START] + i * LOCAL_BYTES[CHANNEL_STRIDE] + BAUD_OFFSET;
+        if (address >= baud && address < baud + 4) {
+            const unsigned shift = 8 * (address - baud);
+            std::uint32_t &rate = port.channels[i].baudrate;
+            rate = (rate & ~(0xFFU << shift)) | (std::uint32_t{value} << shift);
+        }
+    }
 }
 
 std::uint32_t SmartSerialModule::read(RegisterPlace place) {
@@ -88,7 +99,9 @@ void SmartSerialModule::write(RegisterPlace place, std::uint32_t value) {
 
 bool SmartSerialModule::start(unsigned port, unsigned channel, bool set_up) {
     Channel &one = ports_[port].channels[channel];
-    Remote *card = channel < channels_ ? remote(port, channel) : nullptr;
+    // All cards have one baud rate.
+    const bool isHeard = channel < channels_ && one.baudrate == BAUDRATE;
+    Remote *card = isHeard ? remote(port, channel) : nullptr;
     one.cs_out = card == nullptr ? NO_ANSWER : 0;
     one.state = card == nullptr ? Channel::State::STOPPED
                                 : (set_up ? Channel::State::SET_UP : Channel::State::RUNNING);
@@ -164,9 +177,9 @@ void SmartSerialModule::execute(unsigned number, std::uint32_t command) {
         port.channels.assign(SERIAL_CHANNELS, {});
         port.done_ns = time_ns_ + RESET_NS;
     } else if ((command & WRITE_LOCAL) == WRITE_LOCAL) {
-        // The settings of this processor are fixed.
+        set_local_byte(port, command & LOCAL_ADDRESS, static_cast<std::uint8_t>(port.data_in & 0xFFU));
     } else if ((command & READ_LOCAL) != 0) {
-        port.data_out = local_byte(command & LOCAL_ADDRESS);
+        port.data_out = local_byte(port, command & LOCAL_ADDRESS);
     } else if ((command & DO_IT) != 0) {
         for_channels([&](unsigned i) { return exchange(number, i); });
         port.done_ns = time_ns_ + EXCHANGE_NS;

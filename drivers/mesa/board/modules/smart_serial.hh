@@ -13,12 +13,14 @@
 namespace mw::mesa::board {
 
 constexpr unsigned SERIAL_CHANNELS = 8;
+constexpr std::uint32_t BAUDRATE = 2'500'000;  ///< of all cards, and of a port after its reset [bit/s]
 
 /// One port: registers have separate values for reading and writing.
 struct SerialPort {
     struct Channel {
         std::uint32_t cs_in = 0, cs_out = 0;  ///< written by the host; read by it
         UserWords user_in{}, user_out{};
+        std::uint32_t baudrate = BAUDRATE;
         enum class State : std::uint8_t { STOPPED, SET_UP, RUNNING } state = State::STOPPED;
     };
     std::uint32_t command = 0, data_in = 0, data_out = 0;
@@ -55,7 +57,8 @@ class SmartSerialModule final : public Module {
     bool start(unsigned port, unsigned channel, bool set_up);
     bool exchange(unsigned port, unsigned channel);
     bool access_memory(SerialPort::Channel &channel, Remote &remote);
-    std::uint8_t local_byte(std::uint32_t address) const;
+    std::uint8_t local_byte(const SerialPort &port, std::uint32_t address) const;
+    void set_local_byte(SerialPort &port, std::uint32_t address, std::uint8_t value) const;
 
     std::vector<SerialPort> ports_;
     unsigned channels_;

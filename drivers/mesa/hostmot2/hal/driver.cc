@@ -183,6 +183,8 @@ int register_board(const BoardRequest &request) {
     auto made = std::make_unique<HalBoard>(HalBoard{request.comp_id, request.name, std::move(*board)});
     boards().push_back(std::move(made));
     const int status = export_functions(*boards().back());
+    config->is_named_by_serial_number = options().is_named_by_serial_number;
+    config->sserial_baudrate = options().sserial_baudrate;
     if (status < 0) {
         unregister_ports(request.name);
         boards().pop_back();

@@ -46,7 +46,7 @@ void *const volatile *HalPins::make(const std::string &name, PinType type, Acces
     }
     cell->value = 0;
     cell->slot = &cell->value;
-    const std::string full = prefix_ + "." + name;
+    const std::string full = whole(name);
     const bool is_param = access == Access::RW || access == Access::RO;
     const int status =
         is_param ? hal_param_new(full.c_str(), hal_type(type), hal_direction(access), &cell->value, comp_id_)
@@ -56,7 +56,7 @@ void *const volatile *HalPins::make(const std::string &name, PinType type, Acces
 }
 
 void HalPins::alias_param(const std::string &name, const std::string &alias) {
-    keep(hal_param_alias((prefix_ + "." + name).c_str(), (prefix_ + "." + alias).c_str()));
+    keep(hal_param_alias(whole(name).c_str(), whole(alias).c_str()));
 }
 
 }  // namespace mw::mesa

@@ -17,6 +17,9 @@ class HalPins final : public PinSpace {
     int status() const noexcept { return status_; }
 
   private:
+    std::string whole(const std::string &name) const {
+        return name.starts_with(WHOLE_NAME) ? name.substr(1) : prefix_ + "." + name;
+    }
     void keep(int status) noexcept { status_ = status_ == 0 && status < 0 ? status : status_; }
 
     int comp_id_;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // hostmot2: options of all HostMot2 boards. It is loaded before the component of a bus.
+#include <cerrno>
+
 #include "drivers/mesa/hostmot2/hal/driver.hh"
 #include "hal/sdk/component.hh"
 #include "rtapi.h"
@@ -16,8 +18,8 @@ RTAPI_MP_INT(debug_idrom, "1: log the header of the description of the firmware"
 RTAPI_MP_INT(debug_module_descriptors, "1: log the modules of the firmware");
 RTAPI_MP_INT(debug_pin_descriptors, "1: log the pins of the firmware");
 RTAPI_MP_INT(debug_modules, "1: log the modules that are used");
-RTAPI_MP_INT(use_serial_numbers, "without effect: smart serial cards are named by port and channel");
-RTAPI_MP_INT(sserial_baudrate, "without effect: smart serial uses the baud rate of the firmware");
+RTAPI_MP_INT(use_serial_numbers, "1: name the pins of smart serial cards by the serial number of the card");
+RTAPI_MP_INT(sserial_baudrate, "baud rate of smart serial ports; -1: that of the firmware");
 
 int comp_id = -1;
 
@@ -36,15 +38,11 @@ int rtapi_app_main(void) {
     options.is_named_by_serial_number = use_serial_numbers != 0;
     options.sserial_baudrate = sserial_baudrate;
     mw::mesa::set_driver_options(options);
-    if (use_serial_numbers != 0) {
-        rtapi_print_msg(RTAPI_MSG_WARN,
-                        "hostmot2: use_serial_numbers has no effect. Smart serial cards are named by port "
-                        "and channel.\n");
-    }
-    if (sserial_baudrate != -1) {
-        rtapi_print_msg(RTAPI_MSG_WARN,
-                        "hostmot2: sserial_baudrate has no effect. Smart serial uses the baud rate of "
-                        "the firmware.\n");
+    if (sserial_baudrate != -1 && sserial_baudrate <= 0) {
+        rtapi_print_msg(RTAPI_MSG_ERR, "hostmot2: sserial_baudrate=%d is no baud rate, such as 2500000\n",
+                        sserial_baudrate);
+        hal_exit(comp_id);
+        return -EINVAL;
     }
     return mw::sdk::finish(comp_id, 0) < 0 ? -1 : 0;
 }

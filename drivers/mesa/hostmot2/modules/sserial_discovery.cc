@@ -67,12 +67,19 @@ class PortDiscovery {
     PortDiscovery(SserialSetup &setup, int port, int most_bits)
         : setup_(setup), port_(port), most_bits_(most_bits) {}
 
-    Result<FoundPort> find(std::uint32_t wanted, std::span<const std::uint8_t> modes) {
+    /// `baudrate` [bit/s] of all channels; up to 0: that of the firmware.
+    Result<FoundPort> find(std::uint32_t wanted, std::span<const std::uint8_t> modes, int baudrate) {
         FoundPort found;
         found.port = port_;
         auto processor = setup_.reset();
         if (!processor) {
             return std::unexpected(processor.error());
+        }
+        if (baudrate > 0) {
+            if (auto set = setup_.set_baudrate(processor->channels, static_cast<std::uint32_t>(baudrate));
+                !set) {
+                return std::unexpected(set.error());
+            }
         }
         const std::uint32_t channels = (1U << static_cast<unsigned>(processor->channels)) - 1U;
         const auto answering = setup_.start_setup(wanted & channels, modes);
@@ -115,6 +122,7 @@ class PortDiscovery {
         card.channel = channel;
         card.mode = mode;
         card.name = identity->name;
+        card.serial_number = identity->serial_number;
         auto layout = process_layout(records->process, most_bits_);
         if (!layout) {
             return std::unexpected(layout.error());
@@ -223,7 +231,7 @@ Result<> discover_sserial(RegisterBus &bus, const Idrom &idrom, const Config &co
         }
         SserialSetup setup(bus, *module, port, [&] { bus.pause_now(PAUSE); });
         PortDiscovery discovery(setup, port, user_registers(*module) * WORD_BITS);
-        auto found = discovery.find(wanted, modes_of(config, port));
+        auto found = discovery.find(wanted, modes_of(config, port), config.sserial_baudrate);
         std::ranges::move(discovery.warnings, std::back_inserter(assignment.warnings));
         if (!found) {
             assignment.warnings.push_back(found.error().message);

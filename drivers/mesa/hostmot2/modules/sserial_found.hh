@@ -21,6 +21,7 @@ struct FoundCard {
     int channel = 0;
     std::uint8_t mode = 0;
     std::string name;  ///< in lower case: 7i76
+    std::uint32_t serial_number = 0;
     std::vector<DataRecord> process;
     ProcessLayout layout;
     std::vector<FoundParameter> parameters;

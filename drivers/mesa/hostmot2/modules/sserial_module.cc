@@ -95,7 +95,7 @@ class SmartSerial final : public Module {
     explicit SmartSerial(const ModuleRequest &request) : module_(request.module) {
         ports_.reserve(request.assignment.serial_ports.size());
         for (const FoundPort &found : request.assignment.serial_ports) {
-            add_port(found);
+            add_port(found, request.config.is_named_by_serial_number);
         }
     }
 
@@ -159,7 +159,7 @@ class SmartSerial final : public Module {
     }
 
   private:
-    void add_port(const FoundPort &found) {
+    void add_port(const FoundPort &found, bool by_serial_number) {
         std::uint32_t channels = 0;
         for (const FoundCard &card : found.cards) {
             channels |= 1U << static_cast<unsigned>(card.channel);
@@ -177,6 +177,11 @@ class SmartSerial final : public Module {
             for (const FoundParameter &parameter : card.parameters) {
                 if (auto one = make_parameter(parameter)) {
                     added.parameters.push_back(std::move(*one));
+            if (by_serial_number) {
+                constexpr std::uint32_t LAST_DIGITS = 0xFFFF;
+                added.name =
+                    fmt::format("{}hm2_{}.{:04x}", WHOLE_NAME, card.name, card.serial_number & LAST_DIGITS);
+            }
                 }
             }
         }

@@ -10,14 +10,23 @@ namespace mw::mesa {
 
 namespace {
 
-constexpr std::uint32_t RESET = 0x4000, READ_LOCAL = 0x2000, STOP = 0x800, START_NORMAL = 0x900,
-                        START_SETUP = 0xF00, DO_IT = 0x1000, READ_CARD_BYTE = 0x4C000000,
-                        READ_NONVOLATILE = 0x44000000, OPEN_NONVOLATILE = 0xEC000000;
+constexpr std::uint32_t RESET = 0x4000, READ_LOCAL = 0x2000, WRITE_LOCAL = 0xA000, STOP = 0x800,
+                        START_NORMAL = 0x900, START_SETUP = 0xF00, DO_IT = 0x1000,
+                        READ_CARD_BYTE = 0x4C000000, READ_NONVOLATILE = 0x44000000,
+                        OPEN_NONVOLATILE = 0xEC000000;
 constexpr unsigned SIZE_SHIFT = 24, MODE_SHIFT = 24;
 /// Bit 31 of the command register has another use.
 constexpr std::uint32_t COMMAND_MASK = 0x7FFFFFFF, CHANNEL_MASK = 0xFF;
 constexpr int MOST_LOOKS = 5000, OLDEST_MINOR = 43, MOST_REPEATS = 4;
-enum LocalAddress : std::uint16_t { MAJOR = 2, MINOR = 3, CHANNELS = 7 };
+enum LocalAddress : std::uint16_t {
+    MAJOR = 2,
+    MINOR = 3,
+    FIRST_CHANNEL = 4,
+    CHANNEL_STRIDE = 5,
+    CHANNELS = 7
+};
+/// Of the data of a channel: 4 bytes, the lowest first.
+constexpr int BAUDRATE_OFFSET = 42;
 
 }  // namespace
 
@@ -73,6 +82,31 @@ Result<std::uint8_t> SserialSetup::read_local(std::uint16_t address) {
         return std::unexpected(data.error());
     }
     return static_cast<std::uint8_t>(*data);
+}
+
+Result<> SserialSetup::write_local(std::uint16_t address, std::uint8_t value) {
+    if (auto written = write(data_address(), value); !written) {
+        return written;
+    }
+    return command(WRITE_LOCAL | address);
+}
+
+Result<> SserialSetup::set_baudrate(int channels, std::uint32_t baudrate) {
+    const auto first = read_local(FIRST_CHANNEL);
+    const auto stride = first ? read_local(CHANNEL_STRIDE) : first;
+    if (!stride) {
+        return std::unexpected(stride.error());
+    }
+    for (int channel = 0; channel < channels; ++channel) {
+        const int address = *first + *stride * channel + BAUDRATE_OFFSET;
+        for (int byte = 0; byte < 4; ++byte) {
+            const auto value = static_cast<std::uint8_t>(baudrate >> (8U * static_cast<unsigned>(byte)));
+            if (auto written = write_local(static_cast<std::uint16_t>(address + byte), value); !written) {
+                return written;
+            }
+        }
+    }
+    return {};
 }
 
 Result<SserialPort> SserialSetup::reset() {

@@ -33,6 +33,8 @@ class SserialSetup {
 
     /// Resets the processor of the port and reads its version.
     Result<SserialPort> reset();
+    /// Sets the baud rate of the first `channels` channels [bit/s].
+    Result<> set_baudrate(int channels, std::uint32_t baudrate);
     /// Starts the set-up of the channels in `mask`: the mask of those with a card. The description of a card
     /// depends on its mode; `modes` has one for each channel, without one it is mode 0.
     Result<std::uint32_t> start_setup(std::uint32_t mask, std::span<const std::uint8_t> modes = {});
@@ -63,6 +65,7 @@ class SserialSetup {
     Result<> command(std::uint32_t value);
     Result<> wait();
     Result<std::uint8_t> read_local(std::uint16_t address);
+    Result<> write_local(std::uint16_t address, std::uint8_t value);
     Result<std::uint32_t> start(std::uint32_t command_bits, std::uint32_t mask);
     Result<> write_modes(std::uint32_t mask, std::span<const std::uint8_t> modes);
     Result<> card_command(int channel, std::uint32_t status);
