@@ -253,9 +253,15 @@ Result<> check_io_ports(const Idrom &idrom) {
             covered += std::size_t{module.instances} * idrom.header.port_width;
         }
     }
-    if (covered < idrom.pins.size()) {
-        return fail(fmt::format("hm2_set_pin_source: invalid pin number {}", covered), {},
-                    "The firmware lists no IO port with this pin.");
+    // No IO port has these pins. LinuxCNC's driver reports two errors for each of them.
+    std::string lines;
+    for (std::size_t pin = covered; pin < idrom.pins.size(); ++pin) {
+        lines += fmt::format("{0}hm2_set_pin_source: invalid pin number {1}\n"
+                             "hm2_set_pin_direction_immediate: invalid pin number {1}",
+                             lines.empty() ? "" : "\n", pin);
+    }
+    if (!lines.empty()) {
+        return fail(lines);
     }
     return {};
 }

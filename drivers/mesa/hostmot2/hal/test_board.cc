@@ -99,7 +99,8 @@ class TestBus final : public RegisterBus {
 }  // namespace
 
 int load_test_board(int comp_id, int pattern) {
-    rtapi_print("hm2_test: loading HostMot2 test driver with test pattern %d\n", pattern);
+    // LinuxCNC's test looks for it among the errors.
+    rtapi_print_msg(RTAPI_MSG_ERR, "hm2_test: loading HostMot2 test driver with test pattern %d\n", pattern);
     if (pattern < 0 || pattern >= static_cast<int>(std::size(PATTERNS))) {
         rtapi_print_msg(RTAPI_MSG_ERR, "hm2_test: unknown test pattern %d\n", pattern);
         return -ENODEV;

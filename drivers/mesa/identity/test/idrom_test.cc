@@ -140,9 +140,12 @@ TEST(Idrom, PinsWithoutAnIoPortAreRejected) {
     EXPECT_EQ(error_of(idrom), "pin 0 primary tag is 0 (end-of-list sentinel), expected 34 pins!");
     idrom = small_idrom();
     idrom.modules[1].instances = 1;
-    EXPECT_EQ(error_of(idrom), "hm2_set_pin_source: invalid pin number 17");
+    EXPECT_TRUE(error_of(idrom).starts_with("hm2_set_pin_source: invalid pin number 17\n"
+                                            "hm2_set_pin_direction_immediate: invalid pin number 17\n"
+                                            "hm2_set_pin_source: invalid pin number 18\n"));
     idrom.modules.clear();
-    EXPECT_EQ(error_of(idrom), "hm2_set_pin_source: invalid pin number 0");
+    EXPECT_TRUE(error_of(idrom).starts_with("hm2_set_pin_source: invalid pin number 0\n"));
+    EXPECT_TRUE(error_of(idrom).ends_with("hm2_set_pin_direction_immediate: invalid pin number 33"));
 }
 
 TEST(Idrom, LimitsAreChecked) {
