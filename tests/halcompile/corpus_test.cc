@@ -231,6 +231,13 @@ TEST_F(Corpus, ModulesShareWhatTheyExportAndNothingElse) {
     EXPECT_TRUE(host->unload_realtime("giver"));
 }
 
+// As LinuxCNC's test halcompile/serial-out-of-tree: the header is there without the sources of the driver.
+TEST_F(Corpus, SerialInterfacesOfBoards) {
+    EXPECT_EQ(compile("serialport.comp"), "");
+    const std::string refused = load_only("serialport", {"names=hm2_7i80.0.uart.0"});
+    EXPECT_NE(refused.find("undefined symbol: hm2_"), std::string::npos) << refused;
+}
+
 TEST_F(Corpus, ModulesInCAndCxx) {
     ASSERT_EQ(load("cmod.c", {"ch=x,y", "scale=3"}), "ok");
     ASSERT_EQ(load("cxxmod.cc"), "ok");
