@@ -37,6 +37,7 @@ DirectionFaults read_direction(TableLine &line) {
     const std::int64_t least = faults.burst > 0 ? 1 : 0;
     faults.burst_packets = static_cast<unsigned>(line.whole("burst_packets", least, 1'000'000, least));
     faults.burst_delay_ns = delay("burst_delay_us");
+    faults.start_ns = whole_ns(line.number("start_ms", 0, MAX_MS, 0.0), NS_IN_MS);
     return faults;
 }
 
@@ -116,6 +117,9 @@ std::int64_t FaultyDirection::delay() {
 }
 
 std::vector<Delivery> FaultyDirection::pass(std::vector<std::byte> bytes, std::int64_t now_ns, int host) {
+    if (now_ns < faults_.start_ns) {
+        return {{.time_ns = now_ns, .bytes = std::move(bytes), .host = host}};
+    }
     const std::int64_t delay_ns = delay();
     if (delay_ns < 0 || happens(faults_.loss)) {
         return {};

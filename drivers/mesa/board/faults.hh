@@ -20,6 +20,7 @@ struct DirectionFaults {
     double burst = 0;                 ///< probability that a burst begins
     unsigned burst_packets = 0;       ///< packets of a burst
     std::int64_t burst_delay_ns = 0;  ///< of the packets of a burst; 0: they are lost
+    std::int64_t start_ns = 0;        ///< nothing of this happens before
 };
 
 enum class FaultType : std::uint8_t {
@@ -43,7 +44,7 @@ struct FaultPlan {
 };
 
 /// Lines `seed N`, `to_board` and `to_host` with loss=, duplicate=, reorder=, cut= (probabilities),
-/// delay_us=, jitter_us=, burst= (probability), burst_packets=, burst_delay_us=, and `event
+/// delay_us=, jitter_us=, burst= (probability), burst_packets=, burst_delay_us=, start_ms=, and `event
 /// reset|power_off|watchdog| link_down|second_host at_ms= [duration_ms=] [period_us=]`.
 Result<FaultPlan> parse_faults(std::string_view text, const std::string &file);
 

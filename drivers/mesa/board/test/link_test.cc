@@ -69,6 +69,11 @@ TEST(BoardLink, LossHasItsProbabilityAndItsSeed) {
     EXPECT_NE(cycles.lost, cycles_with("seed 8\nto_board loss=0.05\nto_host loss=0.05", 20'000).lost);
 }
 
+TEST(BoardLink, FaultsBeginAtTheirTime) {
+    const Cycles cycles = cycles_with("to_board loss=1 start_ms=5000", 10'000);
+    EXPECT_NEAR(cycles.answered, 5000, 1);
+}
+
 TEST(BoardLink, DuplicatesArriveTwice) {
     const Cycles cycles = cycles_with("to_host duplicate=0.1", 10'000);
     EXPECT_EQ(cycles.answered, 10'000);
