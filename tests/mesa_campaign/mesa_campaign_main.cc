@@ -18,9 +18,10 @@ class MesaCampaign final : public campaign_runner::Campaign {
     std::string run(unsigned seed, const std::string &kept, const std::filesystem::path &,
                     bool isTold) override {
         const Verdict v = run_session(reduced(make_plan(seed), kept), isTold ? stdout : nullptr);
-        return fmt::format("cycles {} failed {} stops {} bites {} arms {} latches {} worst {:.2f} {}",
-                           v.cycles, v.failed_cycles, v.stops, v.bites, v.arms, v.latches, v.worst_steps,
-                           v.fault.empty() ? "ok" : "FAILED " + v.fault);
+        return fmt::format(
+            "cycles {} failed {} stops {} bites {} arms {} latches {} losses {} worst {:.2f} {}", v.cycles,
+            v.failed_cycles, v.stops, v.bites, v.arms, v.latches, v.losses, v.worst_steps,
+            v.fault.empty() ? "ok" : "FAILED " + v.fault);
     }
     std::vector<campaign_runner::ActSize> acts_of(unsigned seed) const override {
         std::vector<campaign_runner::ActSize> sizes;
@@ -30,13 +31,14 @@ class MesaCampaign final : public campaign_runner::Campaign {
         return sizes;
     }
     void print_sum(std::istream &log) const override {
-        unsigned long long sums[6] = {}, sessions = 0, failed = 0;
+        unsigned long long sums[7] = {}, sessions = 0, failed = 0;
         for (std::string line; std::getline(log, line);) {
             unsigned seed = 0;
-            unsigned long long n[6] = {};
-            if (std::sscanf(line.c_str(),
-                            "%u cycles %llu failed %llu stops %llu bites %llu arms %llu latches %llu", &seed,
-                            &n[0], &n[1], &n[2], &n[3], &n[4], &n[5]) == 7) {
+            unsigned long long n[7] = {};
+            if (std::sscanf(
+                    line.c_str(),
+                    "%u cycles %llu failed %llu stops %llu bites %llu arms %llu latches %llu losses %llu",
+                    &seed, &n[0], &n[1], &n[2], &n[3], &n[4], &n[5], &n[6]) == 8) {
                 ++sessions;
                 failed += line.find("FAILED") != std::string::npos ? 1 : 0;
                 for (std::size_t i = 0; i < std::size(n); ++i) {
@@ -46,8 +48,8 @@ class MesaCampaign final : public campaign_runner::Campaign {
         }
         fmt::print(
             "{} sessions, {} failed; {} cycles, {} of them failed, {} stops of the traffic, {} bites of the "
-            "watchdog, {} arms of an index, {} latches\n",
-            sessions, failed, sums[0], sums[1], sums[2], sums[3], sums[4], sums[5]);
+            "watchdog, {} arms of an index, {} latches, {} times positions were lost\n",
+            sessions, failed, sums[0], sums[1], sums[2], sums[3], sums[4], sums[5], sums[6]);
     }
 };
 

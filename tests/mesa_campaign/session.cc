@@ -193,10 +193,12 @@ class Session {
     void cycle(bool moving) {
         ++verdict_.cycles;
         rig_.read();
+        loss_ = rig_.driver->take_position_loss();
         const bool failed = rig_.bus->isFailed() || rig_.bus->isStopped();
         verdict_.failed_cycles += failed ? 1 : 0;
         failed_run_ = failed ? failed_run_ + 1 : 0;
         const bool faulted = rig_.bus->isStopped() || rig_.pins.get("watchdog.has_bit") != 0.0;
+        judge_positions(faulted);
         if (faulted && state_ != State::FAULTED) {
             begin_fault();
         }
@@ -207,6 +209,27 @@ class Session {
         }
         judge_index(!failed);
         rig_.write();
+    }
+
+    /// Rule 4.
+    void judge_positions(bool faulted) {
+        verdict_.losses += loss_ != mesa::PositionLoss::NONE ? 1 : 0;
+        if (!isFollowed_) {
+            isFollowed_ = !faulted && failed_run_ == 0;
+            return;  // there are no positions yet
+        }
+        if (state_ == State::RUNNING && faulted && loss_ == mesa::PositionLoss::NONE) {
+            fail("positions: their loss is not reported with a fault");
+        }
+        if (state_ == State::RUNNING && !faulted && !restart_untold_ && loss_ != mesa::PositionLoss::NONE) {
+            fail("positions: their loss is reported without a cause");
+        }
+        if (loss_ == mesa::PositionLoss::RESTARTED) {
+            if (!restart_untold_) {
+                fail("positions: a restart of the board is reported that was none");
+            }
+            restart_untold_ = false;
+        }
     }
 
     void begin_fault() {
@@ -288,6 +311,9 @@ class Session {
             return;
         }
         tell("the operator enables the axis");
+        if (restart_untold_) {
+            fail("positions: the restart of the board is not reported");
+        }
         state_ = State::RUNNING;
         start_mm_ = command_.position();
         start_steps_ = static_cast<double>(steps());
@@ -355,6 +381,7 @@ class Session {
     }
     void lose_registers(mesa::board::FaultType type, std::int64_t duration_ns) {
         frame_known_ = false;
+        restart_untold_ = true;
         index_.restart();
         happen(type, duration_ns);
     }
@@ -391,6 +418,8 @@ class Session {
     int failed_run_ = 0, resting_cycles_ = 0, cleared_cycles_ = 0;
     std::int64_t frame_counts_ = 0;
     bool frame_known_ = true;
+    mesa::PositionLoss loss_ = mesa::PositionLoss::NONE;  ///< of this cycle
+    bool restart_untold_ = false, isFollowed_ = false;
 };
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace mw::mesa_campaign {
 
 /// What a session has had.
 struct Verdict {
-    std::uint64_t cycles = 0, failed_cycles = 0, stops = 0, bites = 0, arms = 0, latches = 0;
+    std::uint64_t cycles = 0, failed_cycles = 0, stops = 0, bites = 0, arms = 0, latches = 0, losses = 0;
     double worst_steps = 0;  ///< largest distance of the motor from its command, over the bound of rule 1
     std::string fault;       ///< "rule: what"; empty: none
 };

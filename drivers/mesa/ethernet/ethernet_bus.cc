@@ -51,12 +51,12 @@ void EthernetBus::request() noexcept {
         return;
     }
     Request &request = link_ == Link::COMPARING ? identity_ : cyclic_;
-    numbers_.number(request.packet);
+    const std::span<const std::byte> packet = numbers_.number(request.packet);
     CycleTimes &cycle = log_.next();
     cycle.begin_ns = transport_->now_ns();
     cycle.host_packets = ++host_packets_;
     cycle.number = numbers_.last_request();
-    const lbp16::TransportResult sent = transport_->send(request.packet.bytes());
+    const lbp16::TransportResult sent = transport_->send(packet);
     cycle.sent_ns = sent.time_ns;
     cycle.error = sent.error;
     requested_ = true;
@@ -130,12 +130,18 @@ CycleOutcome EthernetBus::wait_for_answer(std::int64_t deadline_ns, CycleTimes &
 }
 
 /// Result of an answer to the last request.
-CycleOutcome EthernetBus::outcome_of_answer() const noexcept {
+CycleOutcome EthernetBus::outcome_of_answer() noexcept {
+    const std::span<const std::byte> numbers = std::span(answer_).subspan(current().data_bytes);
+    const bool isRestart = numbers_.take_restart(numbers);
+    restarted_ = restarted_ || isRestart;
     if (link_ == Link::COMPARING) {
         const bool same = std::equal(known_identity_.begin(), known_identity_.end(), answer_.begin());
         return same ? CycleOutcome::DONE : CycleOutcome::OTHER_BOARD;
     }
-    const bool written = numbers_.hasAllWrites(std::span(answer_).subspan(cyclic_.data_bytes));
+    const bool written = numbers_.hasAllWrites(numbers);
+    if (isRestart) {
+        numbers_.accept(numbers);  // nothing of the former writes is missing any more: all are
+    }
     return written ? CycleOutcome::DONE : CycleOutcome::WRITE_LOST;
 }
 
@@ -199,6 +205,12 @@ bool EthernetBus::take_rewrite() noexcept {
     const bool rewriting = rewriting_;
     rewriting_ = false;
     return rewriting;
+}
+
+bool EthernetBus::take_restart() noexcept {
+    const bool restarted = restarted_;
+    restarted_ = false;
+    return restarted;
 }
 
 void EthernetBus::stop() noexcept {

@@ -57,6 +57,8 @@ class EthernetBus final : public RegisterBus {
     bool redirect(int range, std::uint16_t address) noexcept override;
     bool write(std::span<const RegisterWrite> writes) noexcept override;
     bool take_rewrite() noexcept override;
+    bool isRestartVisible() const noexcept override { return true; }
+    bool take_restart() noexcept override;
 
     /// May be changed between cycles. [servo thread]
     EthernetSettings settings;
@@ -98,7 +100,7 @@ class EthernetBus final : public RegisterBus {
     Result<> identify();
     Result<std::vector<std::byte>> exchange(const lbp16::PacketWriter &packet, std::string_view what);
     CycleOutcome wait_for_answer(std::int64_t deadline_ns, CycleTimes &cycle) noexcept;
-    CycleOutcome outcome_of_answer() const noexcept;
+    CycleOutcome outcome_of_answer() noexcept;
     void count(CycleOutcome outcome) noexcept;
     const Request &current() const noexcept { return link_ == Link::COMPARING ? identity_ : cyclic_; }
 
@@ -117,6 +119,7 @@ class EthernetBus final : public RegisterBus {
     bool requested_ = false;
     bool failed_ = false;
     bool rewriting_ = false;
+    bool restarted_ = false;
     HostNumbers numbers_;
     ErrorLevel errors_;
     EthernetCounters counters_;

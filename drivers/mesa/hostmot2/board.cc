@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <utility>
 
 #include "drivers/mesa/hostmot2/modules/factories.hh"
 #include "drivers/mesa/hostmot2/modules/ioport.hh"
@@ -98,8 +99,37 @@ Ports Board::ports() {
     return all;
 }
 
+// Positions are those of the machine only as long as the driver follows the counters of the board in every
+// cycle.
+PositionLoss Board::find_loss(CycleRead result, bool bitten, bool restarted) noexcept {
+    if (result == CycleRead::FAILED) {
+        return PositionLoss::NONE;  // too few failures for a fault: the next answer continues
+    }
+    const bool followed = std::exchange(followed_, result == CycleRead::DONE);
+    const bool stopped = std::exchange(was_stopped_, was_stopped_ || result == CycleRead::STOPPED);
+    const bool is_counting = std::ranges::any_of(modules_, [](const auto &one) { return one->isCounting(); });
+    if (result == CycleRead::STOPPED) {
+        return followed && is_counting ? PositionLoss::STOPPED : PositionLoss::NONE;
+    }
+    was_stopped_ = false;
+    if (is_counting && restarted) {
+        return PositionLoss::RESTARTED;
+    }
+    if (is_counting && stopped) {
+        return PositionLoss::RETURNED;
+    }
+    const bool is_moving =
+        std::ranges::any_of(modules_, [](const auto &one) { return one->isMovingUnmeasured(); });
+    if (followed && bitten && is_moving) {
+        return PositionLoss::BITTEN;
+    }
+    return followed && bitten && is_counting && !bus_.isRestartVisible() ? PositionLoss::RESTARTED
+                                                                         : PositionLoss::NONE;
+}
+
 void Board::read(long period_ns, std::int64_t now_ns) noexcept {
     const CycleRead result = bus_.read(registers_.inputs(), period_ns);
+    restarted_ = bus_.take_restart() || restarted_;
     fresh_ = result == CycleRead::DONE;
     stopped_ = result == CycleRead::STOPPED;
     // After a stop the watchdog may have bitten: nothing is written before its status has been read again.
@@ -107,8 +137,15 @@ void Board::read(long period_ns, std::int64_t now_ns) noexcept {
     rewrite_due_ = bus_.take_rewrite() || rewrite_due_;
     write_doubtful_ = write_doubtful_ || rewrite_due_ || !fresh_;
     if (!fresh_) {
+        loss_ = find_loss(result, false, false);
         ++failed_reads_;
         return;
+    }
+    const bool restarted = std::exchange(restarted_, false);
+    if (restarted) {
+        for (const auto &module : modules_) {
+            module->restart();
+        }
     }
     Cycle cycle = cycle_of(period_ns);
     cycle.fresh = true;
@@ -119,7 +156,9 @@ void Board::read(long period_ns, std::int64_t now_ns) noexcept {
     for (const auto &module : modules_) {
         module->read(registers_, cycle);
     }
-    if (watchdog_ != nullptr && watchdog_->take_bite()) {
+    const bool bitten = watchdog_ != nullptr && watchdog_->take_bite();
+    loss_ = find_loss(result, bitten, restarted);
+    if (bitten) {
         bus_.note_watchdog_bite();
         events_.bitten = true;
         events_.longest_gap_ns = longest_gap_ns_;

@@ -5,12 +5,22 @@
 #include <atomic>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "drivers/mesa/hostmot2/modules/ioport.hh"
 #include "drivers/mesa/hostmot2/modules/watchdog.hh"
 
 namespace mw::mesa {
+
+/// Why the positions that a board reports are no longer those of the machine.
+enum class PositionLoss : std::uint8_t {
+    NONE,
+    BITTEN,     ///< step generators ran on while the watchdog had turned their pins off
+    STOPPED,    ///< there is no traffic: the driver does not follow the board
+    RETURNED,   ///< the first read after it: joints that were homed in between are not
+    RESTARTED,  ///< the board has lost its counters
+};
 
 /// Events of a board, for messages. Each is true once.
 struct BoardEvents {
@@ -53,6 +63,8 @@ class Board {
     /// Writes the due registers. Nothing is written before a read has succeeded, nor while the watchdog has
     /// bitten. `now_ns` of any clock measures the time between writes. [servo thread]
     void write(long period_ns, std::int64_t now_ns) noexcept;
+    /// Whether the last read() has shown that positions are lost. [servo thread]
+    PositionLoss take_position_loss() noexcept { return std::exchange(loss_, PositionLoss::NONE); }
     /// Events since the last call. [servo thread]
     BoardEvents take_events() noexcept;
     /// A message of a module into `text`: its length, or 0. [servo thread]
@@ -71,6 +83,7 @@ class Board {
   private:
     Board(RegisterBus &bus, Assignment assignment) : bus_(bus), assignment_(std::move(assignment)) {}
     void add(const Idrom &idrom, const Config &config, const UsedModule &module);
+    PositionLoss find_loss(CycleRead result, bool bitten, bool restarted) noexcept;
     bool isReadRecent(std::int64_t now_ns) const noexcept;
     void note_write(std::int64_t now_ns) noexcept;
     void note_timeout(long period_ns) noexcept;
@@ -81,6 +94,10 @@ class Board {
     std::vector<std::unique_ptr<Module>> modules_;
     IoPorts *ports_ = nullptr;      ///< in modules_
     Watchdog *watchdog_ = nullptr;  ///< in modules_; null: the firmware has none
+    PositionLoss loss_ = PositionLoss::NONE;
+    bool followed_ = false;     ///< the positions of the board are known
+    bool was_stopped_ = false;  ///< there was no traffic since the last read that succeeded
+    bool restarted_ = false;    ///< the board has restarted since then
     bool fresh_ = false, is_read_once_ = false, stopped_ = false, rewrite_due_ = true;
     bool write_doubtful_ = true;  ///< since the last read that succeeded
     std::int64_t last_write_ns_ = 0, read_ns_ = 0, longest_gap_ns_ = 0, checked_timeout_ns_ = 0;

@@ -43,6 +43,8 @@ class ForwardingBus : public RegisterBus {
         return inner_.write_immediately(writes);
     }
     bool take_rewrite() noexcept override { return inner_.take_rewrite(); }
+    bool isRestartVisible() const noexcept override { return inner_.isRestartVisible(); }
+    bool take_restart() noexcept override { return inner_.take_restart(); }
     void note_watchdog_bite() noexcept override { inner_.note_watchdog_bite(); }
 
   private:

@@ -26,6 +26,16 @@ class Module {
   public:
     virtual ~Module() = default;
 
+    /// Whether it reports positions that are only valid as long as the driver follows the board: counts since
+    /// a start, turns of an absolute encoder. [servo thread]
+    virtual bool isCounting() const noexcept { return false; }
+    /// Whether it was moving something without a measured position, so that a bite of the watchdog loses the
+    /// position. [servo thread]
+    virtual bool isMovingUnmeasured() const noexcept { return false; }
+    /// The counters of the board begin again: the next read sets no position, and counts from there. [servo
+    /// thread]
+    virtual void restart() noexcept {}
+
     /// Reads data that it needs before it creates its pins. [while loading]
     virtual Result<> prepare(RegisterBus &bus) {
         (void)bus;

@@ -92,6 +92,12 @@ class RegisterBus {
     /// True once after a failure: the board may have missed writes, so that the next write() must hold all
     /// registers. [servo thread]
     virtual bool take_rewrite() noexcept = 0;
+    /// Whether take_restart() shows each restart of the board. On other buses a restart looks like a bite of
+    /// the watchdog. [servo thread]
+    virtual bool isRestartVisible() const noexcept { return false; }
+    /// True once after the board has lost its registers, because it was without power or was reset. [servo
+    /// thread]
+    virtual bool take_restart() noexcept { return false; }
     /// The watchdog of the board has bitten: a bus that records its cycles stores them. [servo thread]
     virtual void note_watchdog_bite() noexcept {}
 };

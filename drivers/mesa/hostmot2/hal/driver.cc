@@ -13,6 +13,7 @@
 #include "drivers/mesa/hostmot2/hal/serial.hh"
 #include "drivers/mesa/identity/idrom.hh"
 #include "hal.h"
+#include "millwright_ext.h"
 #include "rtapi.h"
 
 namespace mw::mesa {
@@ -25,7 +26,8 @@ struct HalBoard {
     int comp_id = 0;
     std::string name;
     std::unique_ptr<Board> board;
-    int dump_line = -1;  ///< the next line of the state for the log; negative: none
+    rtapi_u32 *lost_positions = nullptr;  ///< count of HAL
+    int dump_line = -1;                   ///< the next line of the state for the log; negative: none
 };
 
 DriverOptions &options() {
@@ -49,6 +51,27 @@ void report_modules(HalBoard &board) noexcept {
         }
         rtapi_print_msg(RTAPI_MSG_ERR, "hm2/%s: %.*s", board.name.c_str(), static_cast<int>(length), text);
     }
+}
+
+const char *text_of(PositionLoss loss) noexcept {
+    switch (loss) {
+    case PositionLoss::NONE: break;
+    case PositionLoss::BITTEN:
+        return "The watchdog has bitten while step generators were enabled: the motors have not followed "
+               "them.";
+    case PositionLoss::STOPPED: return "The board is not followed any more, because its traffic has stopped.";
+    case PositionLoss::RETURNED: return "The board is followed again; what it did meanwhile is not known.";
+    case PositionLoss::RESTARTED:
+        return "The board has restarted, and lost its counters. Was it without power?";
+    }
+    return "";
+}
+
+/// Positions are lost: motion switches off before its next command, and the message tells the cause.
+void report_lost_positions(const HalBoard &board, PositionLoss loss) noexcept {
+    __atomic_fetch_add(board.lost_positions, 1, __ATOMIC_RELAXED);
+    rtapi_print_msg(RTAPI_MSG_ERR, "hm2/%s: %s Positions are lost: home all joints.", board.name.c_str(),
+                    text_of(loss));
 }
 
 /// One message for each event. [servo thread]
@@ -87,7 +110,12 @@ void dump(HalBoard &board) noexcept {
 }
 
 void read_function(void *self, long period_ns) {
-    static_cast<HalBoard *>(self)->board->read(period_ns, rtapi_get_time());
+    auto &board = *static_cast<HalBoard *>(self);
+    board.board->read(period_ns, rtapi_get_time());
+    // Before functions of this thread use the positions.
+    if (const PositionLoss loss = board.board->take_position_loss(); loss != PositionLoss::NONE) {
+        report_lost_positions(board, loss);
+    }
 }
 void request_function(void *self, long) {
     static_cast<HalBoard *>(self)->board->request();
@@ -150,11 +178,13 @@ const DriverOptions &driver_options() noexcept {
 }
 
 int register_board(const BoardRequest &request) {
-    const auto config = parse_config(request.config);
+    auto config = parse_config(request.config);
     if (!config) {
         refuse(request.name, config.error().message);
         return -EINVAL;
     }
+    config->is_named_by_serial_number = options().is_named_by_serial_number;
+    config->sserial_baudrate = options().sserial_baudrate;
     const RegisterReader read = [&](std::uint16_t address, int count) {
         return request.bus->read_now({.address = address, .count = static_cast<std::uint16_t>(count)});
     };
@@ -180,11 +210,10 @@ int register_board(const BoardRequest &request) {
         return pins.status();
     }
     register_ports(request.name, (*board)->ports());
-    auto made = std::make_unique<HalBoard>(HalBoard{request.comp_id, request.name, std::move(*board)});
+    auto made = std::make_unique<HalBoard>(
+        HalBoard{request.comp_id, request.name, std::move(*board), mw_ext_lost_positions()});
     boards().push_back(std::move(made));
     const int status = export_functions(*boards().back());
-    config->is_named_by_serial_number = options().is_named_by_serial_number;
-    config->sserial_baudrate = options().sserial_baudrate;
     if (status < 0) {
         unregister_ports(request.name);
         boards().pop_back();

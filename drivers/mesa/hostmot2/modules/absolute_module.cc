@@ -106,6 +106,8 @@ class AbsoluteEncoders final : public Module {
         }
         return {};
     }
+    /// The driver counts the turns of an encoder that has fewer.
+    bool isCounting() const noexcept override { return !channels_.empty(); }
     void plan(Registers &registers) override {
         // The busy register is read before the data, because reading these marks them as old.
         busy_ = registers.read({module_.address(type_.start), 1}, ReadOrder::INPUT);

@@ -83,9 +83,16 @@ double interpolated(const EncoderState &state, double count) noexcept {
 
 }  // namespace
 
+void encoder_restart(EncoderState &state) noexcept {
+    state.known = false;
+    state.velocity = 0.0;
+    state.isMoving = false;
+    state.since_edge_s = 0.0;
+}
+
 void encoder_read(EncoderState &state, EncoderPins &pins, const EncoderReading &reading) noexcept {
     const auto count = static_cast<std::uint16_t>(reading.count);
-    const std::int64_t raw = state.known ? extended(state.raw, state.last_count, count) : 0;
+    const std::int64_t raw = state.known ? extended(state.raw, state.last_count, count) : state.raw;
     const std::int64_t change = raw - state.raw;
     state.raw = raw;
     state.last_count = count;

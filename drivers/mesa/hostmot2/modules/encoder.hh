@@ -92,6 +92,8 @@ struct EncoderState {
     bool has_quad_error = false;
 };
 
+/// The counter of the board begins again: the next reading continues at the present count.
+void encoder_restart(EncoderState &state) noexcept;
 /// Takes a reading: counts, velocity, inputs, and a latch that happened.
 void encoder_read(EncoderState &state, EncoderPins &pins, const EncoderReading &reading) noexcept;
 /// Whether the control register must be written, and its value.

@@ -65,6 +65,12 @@ class Encoders final : public Module {
         has_timer_ = has_timer_ && first_ == 0;
     }
 
+    bool isCounting() const noexcept override { return true; }
+    void restart() noexcept override {
+        for (Instance &one : instances_) {
+            encoder_restart(one.state);
+        }
+    }
     void plan(Registers &registers) override {
         const auto count = static_cast<std::uint16_t>(instances_.size());
         stamp_ = registers.read({module_.address(STAMP_COUNT), 1}, ReadOrder::ENCODER_TIME);

@@ -13,6 +13,7 @@ class Resolvers final : public Module {
     explicit Resolvers(const ModuleRequest &request)
         : module_(request.module), instances_(static_cast<std::size_t>(request.module.instances)) {}
 
+    bool isCounting() const noexcept override { return true; }
     void plan(Registers &registers) override {
         enum ResolverRegister { COMMAND, DATA, STATUS, VELOCITY, POSITION };
         const auto count = static_cast<std::uint16_t>(instances_.size());

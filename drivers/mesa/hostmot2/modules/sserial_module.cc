@@ -99,6 +99,12 @@ class SmartSerial final : public Module {
         }
     }
 
+    bool isCounting() const noexcept override {
+        return std::ranges::any_of(ports_, [](const SerialPort &port) {
+            return std::ranges::any_of(port.cards,
+                                       [](const SerialCard &card) { return !card.values.counters.empty(); });
+        });
+    }
     void plan(Registers &registers) override {
         for (SerialPort &port : ports_) {
             plan_reads(registers, port);
@@ -171,17 +177,17 @@ class SmartSerial final : public Module {
             added.mode = card.mode;
             added.name = fmt::format("{}.{}.{}", card.name, found.port, card.channel);
             port.card_names += (port.card_names.empty() ? "" : ", ") + added.name;
+            if (by_serial_number) {
+                constexpr std::uint32_t LAST_DIGITS = 0xFFFF;
+                added.name =
+                    fmt::format("{}hm2_{}.{:04x}", WHOLE_NAME, card.name, card.serial_number & LAST_DIGITS);
+            }
             added.input_words = words_of(card.layout.input_bits);
             added.output_words = words_of(card.layout.output_bits);
             added.values = make_sserial_card(card.process, card.layout);
             for (const FoundParameter &parameter : card.parameters) {
                 if (auto one = make_parameter(parameter)) {
                     added.parameters.push_back(std::move(*one));
-            if (by_serial_number) {
-                constexpr std::uint32_t LAST_DIGITS = 0xFFFF;
-                added.name =
-                    fmt::format("{}hm2_{}.{:04x}", WHOLE_NAME, card.name, card.serial_number & LAST_DIGITS);
-            }
                 }
             }
         }

@@ -98,6 +98,12 @@ double stepgen_velocity_limit(const StepgenPins &pins) noexcept {
     return is_limited ? std::min(std::abs(pins.maxvel), physical) : physical;
 }
 
+void stepgen_restart(StepgenState &state) noexcept {
+    state.known = false;
+    state.moved = 0.0;
+    state.velocity = 0.0;
+}
+
 void stepgen_read(StepgenState &state, StepgenPins &pins, std::uint32_t accumulator) noexcept {
     if (state.known) {
         state.total += static_cast<std::int32_t>(accumulator - state.accumulator);

@@ -98,6 +98,8 @@ std::int32_t step_rate_register(double steps_s, std::uint32_t clock_hz) noexcept
 /// The velocity that pins and step timing permit [position units/s].
 double stepgen_velocity_limit(const StepgenPins &pins) noexcept;
 
+/// The accumulator of the board begins again, at rate 0: the next reading continues at the present position.
+void stepgen_restart(StepgenState &state) noexcept;
 /// Takes the accumulator: sets counts and position-fb. No step is lost when it wraps.
 void stepgen_read(StepgenState &state, StepgenPins &pins, std::uint32_t accumulator) noexcept;
 /// The rate register of this cycle. A step generator that is not enabled has the rate 0 at once.

@@ -57,6 +57,15 @@ class Stepgens final : public Module {
         }
     }
 
+    bool isCounting() const noexcept override { return true; }
+    bool isMovingUnmeasured() const noexcept override {
+        return std::ranges::any_of(instances_, [](const Instance &one) { return one.pins.enable; });
+    }
+    void restart() noexcept override {
+        for (Instance &one : instances_) {
+            stepgen_restart(one.state);
+        }
+    }
     void plan(Registers &registers) override {
         accumulators_ =
             registers.read({module_.address(ACCUMULATOR), static_cast<std::uint16_t>(instances_.size())},
