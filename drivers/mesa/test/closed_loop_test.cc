@@ -85,6 +85,25 @@ TEST(MesaClosedLoop, NothingMovesBeforeTheEnable) {
     EXPECT_EQ(rig.steps(0), 0);
 }
 
+// The goals of hardware.md, part H5: also with all modules of a firmware.
+TEST(MesaClosedLoop, ACycleIsOneRequestOneAnswerAndOneWrite) {
+    for (const char *model : {"7i76e", "7i80", "7i80hd-3pwm", "7i80hd-resolver", "7i92", "7i92-latch",
+                              "7i92-uart", "7i95", "7i96s", "7i97"}) {
+        Rig rig({.model = model,
+                 .physics = std::string(model) == "7i76e" ? "remote 0 card=7i76\nremote 1 card=7i84\n" : ""});
+        rig.cycle();
+        rig.cycle();
+        const auto before = rig.link.counts();
+        for (int i = 0; i < 100; ++i) {
+            rig.cycle();
+        }
+        const auto after = rig.link.counts();
+        EXPECT_EQ(after.sent - before.sent, 200U) << model;
+        EXPECT_EQ(after.replies - before.replies, 100U) << model;
+        EXPECT_EQ(rig.bus->errors().total(), 0U) << model;
+    }
+}
+
 class MesaLossyNetwork : public ::testing::TestWithParam<const char *> {};
 
 TEST_P(MesaLossyNetwork, AMotorEndsAtItsCommand) {
