@@ -153,6 +153,19 @@ TEST_F(CycleOfBoard, ABiteStopsAllWritesUntilTheOperatorClearsIt) {
     EXPECT_LT(position(DIRECTION), 0);
 }
 
+// PCI, EPP, SPI: after a power cycle the status of the watchdog is that of a bite, too.
+TEST_F(CycleOfBoard, ABiteLosesAllPositionsWhereTheBusDoesNotShowARestart) {
+    cycle(3);
+    EXPECT_EQ(board->take_position_loss(), PositionLoss::NONE);
+    bus.registers[STATUS] = 1;
+    read();
+    EXPECT_EQ(board->take_position_loss(), PositionLoss::RESTARTED);
+    EXPECT_EQ(board->take_position_loss(), PositionLoss::NONE);
+    write();
+    read();
+    EXPECT_EQ(board->take_position_loss(), PositionLoss::NONE) << "once";
+}
+
 TEST_F(CycleOfBoard, TellsABiteOnceWithItsCause) {
     cycle(3);
     bus.next_read = CycleRead::FAILED;
