@@ -3,12 +3,25 @@
 
 namespace mw::publish {
 
-void Delivery::begin(RecordId confirmed) {
+void Delivery::begin(RecordId confirmed, bool hasReceipts) {
     history_ = history_end_ = live_ = barred_ = confirmed;
     unbarred_ = 0;
     barrier_.reset();
     // What the broker had shortly before it was lost is sent again: subscribers may not have it.
     passed_.clear();
+    hasReceipts_ = hasReceipts;
+    sent_ = received_ = 0;
+    marks_.clear();
+}
+
+void Delivery::step_sent(double now_s) {
+    if (hasReceipts_ && sent_ > (marks_.empty() ? received_ : marks_.back().sent)) {
+        marks_.push_back({sent_, sent_end(), now_s});
+    }
+}
+
+void Delivery::received(std::uint64_t count) {
+    received_ = std::clamp(count, received_, sent_);
 }
 
 void Delivery::birth(RecordId next) {
@@ -17,6 +30,9 @@ void Delivery::birth(RecordId next) {
 }
 
 bool Delivery::isBarrierDue(double now_s) const {
+    if (hasReceipts_) {
+        return false;
+    }
     const bool isNeeded = sent_end() > barred_ || isHalfFull();
     const bool isTime = now_s - barrier_at_s_ >= settings_.barrier_s || isHalfFull();
     return !barrier_.has_value() && unbarred_ > 0 && isNeeded && isTime;
@@ -37,11 +53,18 @@ void Delivery::barrier_passed(int number) {
 }
 
 std::optional<double> Delivery::waiting_since() const {
+    if (hasReceipts_) {
+        return marks_.empty() ? std::nullopt : std::optional(marks_.front().at_s);
+    }
     return barrier_.has_value() ? std::optional(barrier_->at_s) : std::nullopt;
 }
 
 std::optional<RecordId> Delivery::confirmed(double now_s) {
     std::optional<RecordId> end;
+    while (!marks_.empty() && marks_.front().sent <= received_) {
+        end = marks_.front().end;
+        marks_.pop_front();
+    }
     while (!passed_.empty() && passed_.front().at_s + settings_.hold_back_s <= now_s) {
         end = passed_.front().end;
         passed_.pop_front();

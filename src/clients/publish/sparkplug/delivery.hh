@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <deque>
 #include <optional>
 
@@ -10,9 +11,10 @@
 
 namespace mw::publish {
 
-/// Records from before the last birth are history; later ones are sent as they come. A message carries no
-/// receipt: after some of them a barrier is sent, and what was sent before it is delivered when the broker
-/// has passed it.
+/// Records from before the last birth are history; later ones are sent as they come. Sparkplug's messages
+/// have no receipts. Where the host application counts the messages that it has stored, records of these are
+/// delivered. Elsewhere a barrier is sent after some messages, and what was sent before it is delivered when
+/// the broker has passed it.
 class Delivery {
   public:
     struct Settings {
@@ -24,8 +26,9 @@ class Delivery {
     };
     explicit Delivery(const Settings &settings) : settings_(settings) {}
 
-    /// A session begins: everything that is not confirmed is to be sent.
-    void begin(RecordId confirmed);
+    /// The node is born: everything that is not confirmed is to be sent. `hasReceipts`: the host application
+    /// counts what it has stored.
+    void begin(RecordId confirmed, bool hasReceipts);
     /// What is not sent before `next` becomes history.
     void birth(RecordId next);
 
@@ -37,15 +40,23 @@ class Delivery {
     void set_live(RecordId next) { live_ = next; }
     void set_history(RecordId next) { history_ = next; }
 
-    void message_sent() { ++unbarred_; }
-    /// False: nothing more is sent before a barrier is passed.
-    bool hasRoom() const { return unbarred_ < settings_.window; }
-    bool isHalfFull() const { return 2 * unbarred_ > settings_.window; }
+    void message_sent() {
+        ++unbarred_;
+        ++sent_;
+    }
+    /// False: nothing more is sent before a barrier is passed, or a receipt comes.
+    bool hasRoom() const { return on_the_way() < settings_.window; }
+    bool isHalfFull() const { return 2 * on_the_way() > settings_.window; }
+
+    /// Everything is sent that a step sends; receipts count by this.
+    void step_sent(double now_s);
+    /// The first `count` messages since begin() are stored.
+    void received(std::uint64_t count);
 
     bool isBarrierDue(double now_s) const;
     void barrier_sent(int number, double now_s);
     void barrier_passed(int number);
-    /// When the barrier was sent that is not passed yet.
+    /// When the barrier was sent that is not passed yet, or the first message without receipt.
     std::optional<double> waiting_since() const;
     /// The end of the records that are to be confirmed now.
     std::optional<RecordId> confirmed(double now_s);
@@ -56,6 +67,15 @@ class Delivery {
         RecordId end = 0;
         double at_s = 0;
     };
+    /// What was sent when the count of messages was `sent`.
+    struct Mark {
+        std::uint64_t sent = 0;
+        RecordId end = 0;
+        double at_s = 0;
+    };
+    int on_the_way() const {
+        return hasReceipts_ ? static_cast<int>(sent_ - std::min(sent_, received_)) : unbarred_;
+    }
     /// Everything before it was sent.
     RecordId sent_end() const { return history_ < history_end_ ? history_ : std::max(history_end_, live_); }
 
@@ -66,6 +86,10 @@ class Delivery {
     double barrier_at_s_ = 0;
     RecordId barred_ = 1;  ///< end of the last barrier
     std::deque<Barrier> passed_;
+
+    bool hasReceipts_ = false;
+    std::uint64_t sent_ = 0, received_ = 0;  ///< messages since begin()
+    std::deque<Mark> marks_;                 ///< that have no receipt
 };
 
 }  // namespace mw::publish

@@ -44,7 +44,7 @@ std::string EdgeNode::topic(std::string_view type, bool isOfDevice) const {
 }
 
 void EdgeNode::send(std::string_view type, bool isOfDevice, Payload payload) {
-    payload.at = now_.utc_ms;
+    payload.at = payload.at.value_or(now_.utc_ms);
     payload.seq = seq_++;
     link_.publish({topic(type, isOfDevice), encode(payload)});
     delivery_.message_sent();
@@ -69,16 +69,17 @@ void EdgeNode::connect() {
 }
 
 void EdgeNode::connected() {
-    delivery_.begin(data_.state().confirmed);
     isRebirthDue_ = false;
     isDeviceBorn_ = false;
     host_at_.reset();
     isHostOnline_ = false;
+    hasReceipts_ = false;
     phase_ = Phase::HOST_AWAITED;
     phase_end_s_ = now_.at_s + settings_.answer_s;
     link_.subscribe(topic("NCMD", false));
     if (!settings_.primary_host.empty()) {
         link_.subscribe(fmt::format("{}/STATE/{}", NAMESPACE, settings_.primary_host));
+        link_.subscribe(receipt_topic(settings_.primary_host, settings_.group, settings_.node));
     }
     if (settings_.primary_host.empty()) {
         bear_node();
@@ -127,6 +128,7 @@ void EdgeNode::take_state(std::string_view payload) {
     }
     host_at_ = state->at;
     isHostOnline_ = state->isOnline;
+    hasReceipts_ = state->hasReceipts;
     if (isHostOnline_ && phase_ == Phase::HOST_AWAITED) {
         bear_node();
     } else if (!isHostOnline_ && phase_ == Phase::HOST_AWAITED) {
@@ -153,6 +155,16 @@ void EdgeNode::take_message(const Publication &message) {
     } else if (!settings_.primary_host.empty() &&
                message.topic == fmt::format("{}/STATE/{}", NAMESPACE, settings_.primary_host)) {
         take_state(message.payload);
+    } else if (message.topic == receipt_topic(settings_.primary_host, settings_.group, settings_.node)) {
+        take_receipt(message.payload);
+    }
+}
+
+void EdgeNode::take_receipt(std::string_view payload) {
+    const auto receipt = read_receipt(payload);
+    if (receipt.has_value() && phase_ == Phase::ONLINE && receipt->bdseq == bdseq_ &&
+        receipt->birth == birth_) {
+        delivery_.received(receipt->count);
     }
 }
 
@@ -166,11 +178,14 @@ void EdgeNode::take(const LinkEvent &event) {
 
 void EdgeNode::bear_node() {
     const LiveData::State state = data_.state();
+    // A host requests a birth when it has missed messages: what is not confirmed is sent again.
+    delivery_.begin(state.confirmed, hasReceipts_);
+    birth_ = std::max(now_.utc_ms, birth_ + 1);
     seq_ = 0;
     isRebirthDue_ = false;
     told_dropped_ = state.dropped;
     const TimeMs at = now_.utc_ms;
-    Payload birth;
+    Payload birth{.at = birth_};
     birth.metrics = {
         {.name = "bdSeq",
          .alias = BDSEQ_ALIAS,
@@ -300,6 +315,7 @@ void EdgeNode::publish_counts(const LiveData::State &state) {
 }
 
 void EdgeNode::follow_broker() {
+    delivery_.step_sent(now_.at_s);
     if (const auto end = delivery_.confirmed(now_.at_s); end.has_value()) {
         data_.confirm(*end);
     }
@@ -338,7 +354,8 @@ void EdgeNode::step(const Moment &now) {
     const auto since_s = delivery_.waiting_since();
     if (since_s.has_value() && now_.at_s - *since_s > settings_.answer_s) {
         link_.drop();
-        lose("The broker does not answer.");
+        lose(hasReceipts_ ? fmt::format("The host {} does not confirm values.", settings_.primary_host)
+                          : "The broker does not answer.");
         return;
     }
     if (isRebirthDue_) {

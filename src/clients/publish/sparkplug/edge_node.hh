@@ -56,6 +56,7 @@ class EdgeNode {
     void take(const LinkEvent &event);
     void take_message(const Publication &message);
     void take_state(std::string_view payload);
+    void take_receipt(std::string_view payload);
     bool isRebirthRequested(std::string_view payload) const;
     void connect();
     void connected();
@@ -86,10 +87,11 @@ class EdgeNode {
     std::size_t broker_ = 0;
     bool hasReported_ = false;  ///< that no broker is reached
     std::uint64_t next_bdseq_, bdseq_ = 0;
+    TimeMs birth_ = 0;  ///< of the node; increases strictly
     std::uint8_t seq_ = 0;
     bool isRebirthDue_ = false;
     std::optional<std::uint64_t> host_at_;  ///< time of the newest STATE
-    bool isHostOnline_ = false;
+    bool isHostOnline_ = false, hasReceipts_ = false;
 
     bool isDeviceBorn_ = false;
     std::uint64_t generation_ = 0;

@@ -108,6 +108,7 @@ std::optional<Payload> decode_payload(std::string_view bytes) {
         one.alias = metric.has_alias() ? std::optional(metric.alias()) : std::nullopt;
         one.at = metric.has_timestamp() ? std::optional(metric.timestamp()) : std::nullopt;
         one.type = type_of_number(metric.datatype());
+        one.type_number = metric.datatype();
         one.isHistorical = metric.is_historical();
         for (int i = 0; i < metric.properties().keys_size() && i < metric.properties().values_size(); ++i) {
             if (metric.properties().keys(i) == "engUnit") {

@@ -17,6 +17,8 @@ struct PayloadMetric {
     std::optional<std::uint64_t> alias{};
     std::optional<TimeMs> at{};
     std::optional<DataType> type{};  ///< written in births only
+    /// Its number as it was read, also of a type that is not used here; 0: none was there.
+    std::uint32_t type_number = 0;
     bool isHistorical = false;
     std::string unit{};  ///< written as the property engUnit
     Value value{};

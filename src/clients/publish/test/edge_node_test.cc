@@ -5,6 +5,7 @@
 #include <random>
 #include <set>
 
+#include "clients/publish/sparkplug/host_state.hh"
 #include "clients/publish/test/node_world.hh"
 
 namespace mw::publish {
@@ -126,6 +127,42 @@ TEST(EdgeNode, SendsNothingAgainThatIsDelivered) {
     world.broker.packets.clear();
     world.run(5);
     EXPECT_EQ(world.verbs(), (std::vector<std::string>{"NBIRTH", "DBIRTH"}));
+}
+
+TEST(EdgeNode, KeepsWhatAHostHasNotStored) {
+    NodeWorld world(NodeSettings{.primary_host = "scada"});
+    world.broker.state = R"({"online":true,"timestamp":1,"receipts":true})";
+    world.bear_machine();
+    world.count(7);
+    world.run(8);
+    EXPECT_EQ(world.data->state().confirmed, 1U) << "time alone confirms nothing";
+    const auto birth = world.of("NBIRTH").back().payload();
+    const auto receipt = [&](std::uint64_t count) {
+        world.broker.events.emplace_back(Publication{"millwright/stored/scada/shop/mill-1",
+                                                     write_receipt({0, *birth.at, count}), 0, false});
+        world.run(0.1);
+    };
+    receipt(3);
+    world.count(8);
+    world.run(0.1);
+    EXPECT_EQ(world.data->state().confirmed, world.data->state().next - 1) << "the last has no receipt";
+    receipt(4);
+    EXPECT_EQ(world.data->state().confirmed, world.data->state().next);
+}
+
+TEST(EdgeNode, IgnoresReceiptsThatAreNotOfItsBirth) {
+    NodeWorld world(NodeSettings{.primary_host = "scada"});
+    world.broker.state = R"({"online":true,"timestamp":1,"receipts":true})";
+    world.bear_machine();
+    world.run(1);
+    const TimeMs birth = *world.of("NBIRTH").back().payload().at;
+    for (const std::string &text :
+         {write_receipt({0, birth - 1, 99}), write_receipt({1, birth, 99}), std::string("{}"),
+          std::string(R"({"bdSeq":0,"birth":-1,"count":3})"), std::string("[1]")}) {
+        world.broker.events.emplace_back(Publication{"millwright/stored/scada/shop/mill-1", text, 0, false});
+    }
+    world.run(1);
+    EXPECT_EQ(world.data->state().confirmed, 1U);
 }
 
 TEST(EdgeNode, LeavesABrokerThatHangs) {
