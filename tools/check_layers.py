@@ -34,11 +34,12 @@ ORDER = {
     'motion': ('homing', 'interface', 'planner', 'servo', 'hal'),
     'machine': ('setup', 'commissioning', 'io', 'journal', 'task', 'config', 'analysis', 'tools', 'halui', 'assembly'),
     'machine/task': ('link', 'sequencer', 'states', 'run', 'control'),
-    'clients': ('nml', 'rsh', 'schedule', 'tcl', 'screen', 'publish', 'python'),
+    'clients': ('nml', 'rsh', 'schedule', 'tcl', 'screen', 'publish', 'shop', 'python'),
     'clients/publish': ('', 'sparkplug', 'mtconnect', 'assembly'),
+    'clients/shop': ('', 'host', 'store', 'notify', 'web', 'assembly'),
     'clients/nml': ('config', 'message', 'buffer', 'net', 'bridge', 'remote'),
     'drivers/mesa': ('lbp16', 'identity', 'hostmot2', 'ethernet', 'direct', 'board', 'virtual', 'hm2_eth', 'pci', 'epp', 'spi'),
-    'programs': ('setup', 'run', 'remote', 'publish', 'start', 'screen', 'doctor', 'commission', 'mains'),
+    'programs': ('setup', 'run', 'remote', 'publish', 'shop', 'start', 'screen', 'doctor', 'commission', 'mains'),
 }
 # What a folder may not use although its room may.
 NEVER = {
@@ -51,6 +52,8 @@ NEVER = {
     # A publisher reads a machine and cannot command it.
     'clients/publish': ('hal', 'messages/client/client.hh', 'messages/mailbox/command_server.hh', 'messages/declarations/command.hh'),
     'programs/publish': ('messages/client/client.hh', 'messages/declarations/command.hh', 'machine', 'motion'),
+    'clients/shop': ('hal', 'messages'),
+    'programs/shop': ('hal', 'messages', 'machine', 'motion'),
     # Driver and simulated board are written apart, so that one shows the errors of the other.
     'drivers/mesa/board': ('hal', 'drivers/mesa/hostmot2', 'drivers/mesa/ethernet', 'drivers/mesa/direct', 'drivers/mesa/pci',
                            'drivers/mesa/epp', 'drivers/mesa/spi'),

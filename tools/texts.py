@@ -19,7 +19,7 @@ import sys
 FOLDERS = ('src/base/ini', 'src/base/options', 'src/runtime', 'src/messages/client', 'src/messages/mailbox', 'src/hal/core', 'src/hal/host',
            'src/hal/halcompile', 'src/hal/script', 'src/hal/tools', 'src/kinematics', 'src/gcode/syntax', 'src/gcode/interpreter', 'src/gcode/tools',
            'src/gcode/analysis/commands.cc', 'src/motion', 'src/machine/io', 'src/machine/journal', 'src/machine/task', 'src/machine/config',
-           'src/machine/analysis', 'src/machine/tools', 'src/machine/assembly', 'src/clients/publish/assembly/settings.cc', 'src/clients/publish/sparkplug', 'programs', 'drivers/modbus', 'drivers/mesa/board/hm2_board.cc', 'drivers/mesa/ethernet/cycle_report.cc')
+           'src/machine/analysis', 'src/machine/tools', 'src/machine/assembly', 'src/clients/publish/assembly/link_section.cc', 'src/clients/publish/assembly/settings.cc', 'src/clients/publish/sparkplug', 'programs', 'drivers/modbus', 'drivers/mesa/board/hm2_board.cc', 'drivers/mesa/ethernet/cycle_report.cc')
 # Programs that print for other programs: of their texts people read the help.
 HELP_OF = ('programs/setup/var_command.cc', 'src/base/ini/inivalue.cc')
 HELP = re.compile(r'usage: ')
@@ -28,7 +28,7 @@ FOR_PROGRAMS = {'src/hal/script': ('info', 'data', 'note')}
 TABLES = re.compile(r'HAL_LOCK_|^active/recycled|^HAL (memory|locking) status|^HAL components that died|^  current lock|^  used/total|^\{\}(Component Pins|Exported Functions|Loaded HAL Components|Realtime Threads|ID   |Owner |Type |     Period)'
                     r'|Aliases$|^Original Name$|^(\{\})?# (param|pin|real|unconn)|^#loadrt |^alias (pin|param) |^twopass:|^pass0:|^Sourcing |^found \{\}$|^loadusr \{\}$|^  \{\} \(process|^  \{\} (->|\[)|^digraph |^signal \{\}$|^HAL capture, '
                     r'|^(jitter|last|max|min|period|sdev) ns$|^outside of the bins|intervals by deviation|^\{\}: period|^deviation from the period|^no realtime: |^realtime priority and locked|^is (not )?running$|^the realtime process of instance .%s'
-                    r'|^(comp|pin)\||^\[(\w+\|){2}|^SIGNAL bit|^(latency-|millwright-rt |millwright hal \w+ ).*\[options\]$|^millwright hal ?$|^millwright-rt: \{\}$|^loadusr -W|^\.comp, |^import ast|^( (?!and |of )[\w.-]+)+ $|^fnct_01|^. (of component|crashed)|^Complete names|%s|^NML channels are up|^millwright (nml|format|explain) (FILE|\[)|^millwright (nml|publish): |^MTConnect agent of |^Node Control/|^Store/Dropped|^DEADBAND = ')
+                    r'|^(comp|pin)\||^\[(\w+\|){2}|^SIGNAL bit|^(latency-|millwright-rt |millwright hal \w+ ).*\[options\]$|^millwright hal ?$|^millwright-rt: \{\}$|^loadusr -W|^\.comp, |^import ast|^( (?!and |of )[\w.-]+)+ $|^fnct_01|^. (of component|crashed)|^Complete names|%s|^NML channels are up|^millwright (nml|format|explain) (FILE|\[)|^millwright (nml|publish|shop): |^MTConnect agent of |^Shop page: |^Node Control/|^Store/Dropped|^DEADBAND = ')
 # Texts of manual pages, reference pages and `explain`, and output that other programs read.
 NOT_SHOWN = re.compile(r'/(test|bench|logger|canon)/|keys\.hh$|pin_tables\.hh$|motion/interface/parameters\.hh$|states_page\.cc$'
                        r'|codes/codes\.cc$|programs/run/summary\.cc$|programs/run/certificate_report\.cc$|programs/run/time_report\.cc$|programs/run/recorder\.cc$|programs/run/plot\.cc$'

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // millwright: the main command.
+#include <unistd.h>
+
+#include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <string>
@@ -29,6 +32,7 @@ constexpr const char *USAGE =
     "  nml FILE.nml                         the NML channels of the running machine, also over the "
     "network\n"
     "  publish MACHINE.ini                  the machine's values for a shop, by Sparkplug B and MTConnect\n"
+    "  shop SHOP.ini                        store the values of all machines of a shop, and show them\n"
     "  doctor MACHINE.ini                   what is wrong with a machine's files and this computer, before "
     "the "
     "start\n"
@@ -44,6 +48,16 @@ constexpr const char *USAGE =
     "\n"
     "Each command has its own --help.\n"
     "exit status: 0 done, 1 rejected or failed, 2 wrong usage\n";
+
+/// Becomes another of our programs; returns only when it is not there. `arguments`: its name and its words.
+int start_beside(const std::string &program, char **arguments) {
+    ::execv((mw::program_folder() + "/" + program).c_str(), arguments);
+    mw::language::tell("millwright",
+                       mw::Error{"cannot start " + program + ": " + std::strerror(errno),
+                                 {},
+                                 "it needs the packages that script/bootstrap --shop installs"});
+    return 1;
+}
 
 }  // namespace
 
@@ -80,6 +94,9 @@ int main(int argc, char **argv) {
     }
     if (words[0] == "publish") {
         return mw::programs::command_publish(rest);
+    }
+    if (words[0] == "shop") {
+        return start_beside("millwright-shop", argv + 1);
     }
     if (words[0] == "doctor") {
         return mw::programs::command_doctor(rest);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "clients/publish/assembly/settings.hh"
 
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -13,12 +12,12 @@
 #include "base/atomic_file.hh"
 #include "base/ini/ini_reader.hh"
 #include "base/text.hh"
+#include "clients/publish/assembly/link_section.hh"
 
 namespace mw::publish {
 namespace {
 
 constexpr const char *SECTION = "PUBLISH";
-constexpr int PORT = 1883, TLS_PORT = 8883;
 
 template <std::size_t N>
 struct KeyName {
@@ -101,84 +100,10 @@ class SectionReader {
             }
         }
     }
-    std::optional<BrokerAddress> address(const ini::IniEntry &entry, bool isTls) {
-        BrokerAddress address{entry.value, isTls ? TLS_PORT : PORT};
-        const std::size_t colon = entry.value.rfind(':');
-        const bool isBracketed = entry.value.starts_with('[');
-        const std::size_t end = isBracketed ? entry.value.find(']') : std::string::npos;
-        const bool hasPort =
-            colon != std::string::npos && (!isBracketed || (end != std::string::npos && colon > end));
-        if (hasPort) {
-            const auto port = parse_uint(std::string_view(entry.value).substr(colon + 1));
-            constexpr std::uint64_t LAST = 65535;
-            if (!port.has_value() || *port == 0 || *port > LAST) {
-                sink_.error(fmt::format("'{}' is not HOST:PORT.", entry.value), entry.place);
-                return std::nullopt;
-            }
-            address.port = static_cast<int>(*port);
-            address.host = entry.value.substr(0, colon);
-        }
-        if (isBracketed && address.host.size() > 2) {
-            address.host = address.host.substr(1, address.host.size() - 2);
-        }
-        if (address.host.empty() || address.host.find_first_of(" /") != std::string::npos) {
-            sink_.error(fmt::format("'{}' is not HOST:PORT.", entry.value), entry.place);
-            return std::nullopt;
-        }
-        return address;
-    }
-    std::string file_of(const ini::IniKey &key) {
-        const std::string name = reader_.text(key);
-        if (name.empty()) {
-            return "";
-        }
-        std::string path = file_.resolve_path(name);
-        if (::access(path.c_str(), R_OK) != 0) {
-            sink_.error(fmt::format("[PUBLISH]{}: cannot read {}.", key.name, path), place(key));
-        }
-        return path;
-    }
-    std::string password() {
-        const std::string path = file_of(KEY<"PASSWORD_FILE">);
-        struct stat facts{};
-        if (path.empty() || ::stat(path.c_str(), &facts) != 0) {
-            return "";
-        }
-        if ((facts.st_mode & (S_IRWXG | S_IRWXO)) != 0) {
-            sink_.error(fmt::format("Other users can read the password in {}.", path),
-                        place(KEY<"PASSWORD_FILE">), "chmod 600");
-        }
-        constexpr std::size_t MOST = 4096;
-        const auto text = read_file(path, MOST);
-        return text.has_value() ? std::string(trim(*text)) : "";
-    }
     void read_link(Settings &settings) {
-        const bool isTls = reader_.boolean(KEY<"TLS">);
-        LinkSettings link;
-        for (const ini::IniEntry *entry : reader_.list(KEY<"BROKER">)) {
-            if (auto found = address(*entry, isTls); found.has_value()) {
-                link.brokers.push_back(std::move(*found));
-            }
-        }
-        link.isTls = isTls;
-        link.keepalive_s = static_cast<int>(reader_.integer(KEY<"KEEPALIVE">));
-        link.user = reader_.text(KEY<"USER">);
-        link.password = password();
-        link.authorities = file_of(KEY<"CA_FILE">);
-        link.certificate = file_of(KEY<"CERTIFICATE">);
-        link.key = file_of(KEY<"KEY">);
-        if (link.certificate.empty() != link.key.empty()) {
-            sink_.error("CERTIFICATE and KEY of [PUBLISH] need each other.",
-                        place(link.key.empty() ? KEY<"CERTIFICATE"> : KEY<"KEY">));
-        }
-        const bool hasCertificates = !link.authorities.empty() || !link.certificate.empty();
-        if (hasCertificates && !isTls) {
-            sink_.error("Certificates have no effect without TLS = yes in [PUBLISH].",
-                        place(link.authorities.empty() ? KEY<"CERTIFICATE"> : KEY<"CA_FILE">));
-        }
-        if (!link.password.empty() && link.user.empty()) {
-            sink_.error("PASSWORD_FILE of [PUBLISH] needs USER.", place(KEY<"PASSWORD_FILE">));
-        }
+        LinkSettings link = read_link_section(
+            {file_, reader_, sink_}, {KEY<"BROKER">, KEY<"TLS">, KEY<"CA_FILE">, KEY<"CERTIFICATE">,
+                                      KEY<"KEY">, KEY<"USER">, KEY<"PASSWORD_FILE">, KEY<"KEEPALIVE">});
         link.client_id = fmt::format("{}/{}", settings.node.group, settings.node.node);
         link.not_delivered_topic = fmt::format("spBv1.0/{}/DCMD/{}/{}", settings.node.group,
                                                settings.node.node, settings.node.device);

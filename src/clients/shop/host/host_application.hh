@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// A host application of Sparkplug B 3.0: follows births, data and deaths of nodes, and turns them into
+// batches for a store. The only command that it sends is a request for a birth. Knows neither sockets nor
+// clocks.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+
+#include "clients/publish/sparkplug/broker_link.hh"
+#include "clients/publish/sparkplug/payload.hh"
+#include "clients/shop/reading.hh"
+
+namespace mw::shop {
+
+struct HostSettings {
+    std::string name;                 ///< of the host application, as PRIMARY_HOST of publishers
+    std::vector<std::string> groups;  ///< that this host collects; empty: all
+    double rebirth_s = 5;             ///< between two requests to one node
+    double receipt_s = 0.5;           ///< between two receipts to one node
+};
+
+/// Nodes repeat what has no receipt, and a receipt is sent only for what is stored: a host that forgets
+/// everything with forget() loses nothing. One thread.
+class HostApplication {
+  public:
+    /// Time of the day, and a time that never jumps.
+    struct Moment {
+        TimeMs utc_ms = 0;
+        double at_s = 0;
+    };
+    using Report = std::function<void(const std::string &)>;
+
+    HostApplication(HostSettings settings, publish::BrokerLink &link, Report report);
+
+    /// What the broker sends when this host has gone: the same time as that of the next connected().
+    publish::Publication will(const Moment &now);
+    void connected();
+    /// Before a connection ends in order.
+    void say_offline();
+    /// The connection, or the store, is lost: nodes are asked for births again.
+    void forget();
+
+    void take(const publish::Publication &message, const Moment &now);
+    /// Sends what is due.
+    void step(const Moment &now);
+
+    std::size_t waiting() const { return batch_.readings.size(); }
+    bool hasBatch() const { return !batch_.isEmpty() || !unstored_.empty(); }
+    Batch take_batch();
+    /// A batch is in the store.
+    void stored(const std::vector<NodeReceipt> &receipts);
+
+  private:
+    /// What data mean by their alias.
+    struct Metric {
+        SeriesId series = 0;
+        std::uint32_t type = 0;  ///< of Sparkplug
+    };
+    struct Device {
+        bool isAlive = false;
+        std::map<std::uint64_t, Metric> by_alias;
+        std::map<std::string, Metric, std::less<>> by_name;
+    };
+    struct Node {
+        bool isInOrder = false;  ///< no message since the birth is missing
+        Receipt position;        ///< of the last message in order
+        std::uint8_t seq = 0;    ///< of the next message
+        double requested_s = -1e9;
+        double receipt_s = -1e9;
+        bool hasReported = false;
+        std::map<std::string, Device, std::less<>> devices;
+    };
+    /// The parts of a topic.
+    struct Topic {
+        NodeName node;
+        std::string type, device;
+    };
+    static std::optional<Topic> split(std::string_view topic);
+
+    void publish_state(bool isOnline);
+    void take_birth_of_node(Node &node, const Topic &topic, const publish::Payload &payload);
+    void take_death_of_node(Node &node, const Topic &topic, const publish::Payload &payload);
+    bool follow_sequence(Node &node, const publish::Payload &payload);
+    void define(Device &device, const Topic &topic, const publish::Payload &payload);
+    void add_readings(Node &node, const Topic &topic, const publish::Payload &payload);
+    static const Metric *find(const Device &device, const publish::PayloadMetric &metric);
+    void set_alive(Device &device, const MachineName &name, bool isAlive, TimeMs at);
+    SeriesId series_of(const MachineName &machine, const publish::PayloadMetric &metric);
+    void request_birth(Node &node, const NodeName &name);
+
+    HostSettings settings_;
+    publish::BrokerLink &link_;
+    Report report_;
+    Moment now_;
+    TimeMs state_at_ = 0;
+    bool isOnline_ = false;
+
+    std::map<NodeName, Node> nodes_;
+    std::map<std::pair<MachineName, std::string>, SeriesId> series_;
+    Batch batch_;
+    std::set<NodeName> unstored_;           ///< nodes with messages since the last batch
+    std::map<NodeName, Receipt> receipts_;  ///< that are due
+};
+
+/// A value as its type of Sparkplug is; signed numbers come as their bits.
+Value typed(const Value &value, std::uint32_t type);
+
+}  // namespace mw::shop

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What a shop stores of its machines.
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "clients/publish/sparkplug/host_state.hh"
+#include "clients/publish/value.hh"
+
+namespace mw::shop {
+
+using publish::Receipt;
+using publish::TimeMs;
+using publish::Value;
+
+/// An edge node of Sparkplug.
+struct NodeName {
+    std::string group, node;
+
+    auto operator<=>(const NodeName &other) const = default;
+};
+
+/// A device of a node; an empty device is the node itself.
+struct MachineName {
+    NodeName node;
+    std::string device;
+
+    auto operator<=>(const MachineName &other) const = default;
+};
+
+/// All values of one metric of a machine.
+struct Series {
+    MachineName machine;
+    std::string metric;
+    std::string unit;
+};
+/// Number of a series in this process, from 0.
+using SeriesId = std::uint32_t;
+
+/// The key is series and time: a value that comes twice has the same key.
+struct Reading {
+    SeriesId series = 0;
+    TimeMs at = 0;
+    Value value;
+};
+
+/// A machine is there, or has gone.
+struct Presence {
+    MachineName machine;
+    TimeMs at = 0;
+    bool isAlive = false;
+};
+
+struct NodeReceipt {
+    NodeName node;
+    Receipt receipt;
+};
+
+/// Is stored as a whole or not at all.
+struct Batch {
+    std::vector<Series> new_series;  ///< their numbers follow those of earlier batches
+    std::vector<Reading> readings;
+    std::vector<Presence> presences;
+    std::vector<NodeReceipt> receipts;  ///< to be sent when the batch is stored
+
+    bool isEmpty() const {
+        return new_series.empty() && readings.empty() && presences.empty() && receipts.empty();
+    }
+};
+
+}  // namespace mw::shop

@@ -1,0 +1,344 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "clients/shop/store/store.hh"
+
+#include <array>
+#include <chrono>
+#include <utility>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include "base/overloaded.hh"
+#include "base/text.hh"
+#include "clients/shop/store/schema.hh"
+
+namespace mw::shop {
+namespace {
+
+constexpr std::int64_t MS_PER_DAY = 86'400'000;
+/// 1 January 2000 in milliseconds: PostgreSQL counts from there.
+constexpr std::int64_t EPOCH_MS = 946'684'800'000;
+/// Each day from 2020 to 2099 has its own partition.
+constexpr std::int64_t FIRST_DAY = 18'262, END_DAY = 47'482;
+
+std::int64_t timestamp(TimeMs at) {
+    constexpr std::int64_t US_PER_MS = 1000;
+    return (static_cast<std::int64_t>(at) - EPOCH_MS) * US_PER_MS;
+}
+std::int64_t day_of(TimeMs at) {
+    return static_cast<std::int64_t>(at) / MS_PER_DAY;
+}
+std::int64_t today() {
+    const auto now = std::chrono::system_clock::now().time_since_epoch();
+    return std::chrono::duration_cast<std::chrono::milliseconds>(now).count() / MS_PER_DAY;
+}
+std::string date(std::int64_t day) {
+    const std::chrono::year_month_day date{std::chrono::sys_days(std::chrono::days(day))};
+    return fmt::format("{:04}-{:02}-{:02}", static_cast<int>(date.year()),
+                       static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()));
+}
+std::string partition(std::int64_t day) {
+    std::string name = "reading_" + date(day);
+    std::erase(name, '-');
+    return name;
+}
+Parameter words(const std::string &text) {
+    return {text, false, false};
+}
+
+/// An alarm, or a program that waits for the operator: a notification is sent.
+bool isNotable(std::string_view metric, const Value &value) {
+    const auto *const text = std::get_if<std::string>(&value);
+    return text != nullptr && !text->empty() &&
+           (metric.starts_with("Alarms/") || (metric == "Execution" && *text == "PROGRAM_STOPPED"));
+}
+
+/// Readings as the arrays of a statement.
+class ReadingArrays {
+  public:
+    explicit ReadingArrays(std::size_t count)
+        : metrics_(oid::INT4, count, false), times_(oid::TIMESTAMPTZ, count, false),
+          numbers_(oid::FLOAT8, count, true), wholes_(oid::INT8, count, true),
+          texts_(oid::TEXT, count, true) {}
+    void add(std::int32_t metric, const Reading &reading);
+    std::array<Parameter, 5> take() {
+        return {metrics_.take(), times_.take(), numbers_.take(), wholes_.take(), texts_.take()};
+    }
+
+  private:
+    ArrayWriter metrics_, times_, numbers_, wholes_, texts_;
+};
+
+}  // namespace
+
+Result<> migrate(Database &database) {
+    // One process at a time; another one waits, and finds nothing to do.
+    auto done = database.run("BEGIN; SELECT pg_advisory_xact_lock(hashtext('millwright shop schema')); "
+                             "CREATE TABLE IF NOT EXISTS schema_step (number integer PRIMARY KEY, "
+                             "at timestamptz NOT NULL DEFAULT now())");
+    if (!done.has_value()) {
+        return done;
+    }
+    const auto newest = database.ask("SELECT coalesce(max(number), 0) FROM schema_step");
+    if (!newest.has_value()) {
+        return std::unexpected(newest.error());
+    }
+    const std::size_t from = parse_uint(newest->text(0, 0).value_or("")).value_or(0);
+    if (from > SCHEMA_STEPS.size()) {
+        return fail(fmt::format("the tables are of a newer version (step {}, this program knows {})", from,
+                                SCHEMA_STEPS.size()),
+                    {}, "start a collector of that version");
+    }
+    for (std::size_t i = from; i < SCHEMA_STEPS.size(); ++i) {
+        done = database.run(std::string(SCHEMA_STEPS[i]) +
+                            fmt::format("; INSERT INTO schema_step (number) VALUES ({})", i + 1));
+        if (!done.has_value()) {
+            return done;
+        }
+    }
+    return database.run("COMMIT");
+}
+
+Result<Store> Store::open(const StoreSettings &settings) {
+    auto database = Database::open(settings.database);
+    if (!database.has_value()) {
+        return std::unexpected(database.error());
+    }
+    if (const auto migrated = migrate(*database); !migrated.has_value()) {
+        return std::unexpected(migrated.error());
+    }
+    Store store(std::move(*database), settings);
+    if (const auto locked = store.lock(); !locked.has_value()) {
+        return std::unexpected(locked.error());
+    }
+    if (const auto tended = store.tend(); !tended.has_value()) {
+        return std::unexpected(tended.error());
+    }
+    return store;
+}
+
+Result<> Store::lock() {
+    const std::array parameters{words("millwright shop " + settings_.collector)};
+    const auto taken = database_.ask("SELECT pg_try_advisory_lock(hashtext($1))", parameters);
+    if (!taken.has_value()) {
+        return std::unexpected(taken.error());
+    }
+    return taken->text(0, 0) == "t"
+               ? Result<>{}
+               : fail(fmt::format("another collector {} writes to this database", settings_.collector));
+}
+
+Result<> Store::store(const Batch &batch, const std::vector<Series> &series) {
+    auto done = write(batch, series);
+    if (!done.has_value()) {
+        // The connection may be gone, too: then the server has rolled back.
+        static_cast<void>(database_.run("ROLLBACK"));
+    }
+    return done;
+}
+
+Result<> Store::write(const Batch &batch, const std::vector<Series> &series) {
+    auto done = database_.run("BEGIN");
+    done = done.has_value() ? find_ids(batch, series) : done;
+    done = done.has_value() ? make_days(batch.readings) : done;
+    done = done.has_value() ? write_readings(batch.readings, series) : done;
+    done = done.has_value() ? write_presences(batch.presences) : done;
+    return done.has_value() ? database_.run("COMMIT") : done;
+}
+
+Result<int> Store::machine_id(const MachineName &name) {
+    if (const auto known = machines_.find(name); known != machines_.end()) {
+        return known->second;
+    }
+    const std::array parameters{words(name.node.group), words(name.node.node), words(name.device)};
+    // An update that changes nothing returns the row that is there.
+    const auto row =
+        database_.ask("INSERT INTO machine (grp, node, device) VALUES ($1, $2, $3) "
+                      "ON CONFLICT (grp, node, device) DO UPDATE SET grp = machine.grp RETURNING id",
+                      parameters);
+    if (!row.has_value()) {
+        return std::unexpected(row.error());
+    }
+    const int id = static_cast<int>(parse_uint(row->text(0, 0).value_or("")).value_or(0));
+    machines_[name] = id;
+    return id;
+}
+
+Result<> Store::find_ids(const Batch &batch, const std::vector<Series> &series) {
+    std::set<SeriesId> missing;
+    ids_.resize(series.size());
+    for (const Reading &reading : batch.readings) {
+        if (ids_[reading.series] == 0) {
+            missing.insert(reading.series);
+        }
+    }
+    if (missing.empty()) {
+        return {};
+    }
+    ArrayWriter machines(oid::INT4, missing.size(), false), names(oid::TEXT, missing.size(), false),
+        units(oid::TEXT, missing.size(), false), numbers(oid::INT4, missing.size(), false);
+    for (const SeriesId one : missing) {
+        const auto machine = machine_id(series[one].machine);
+        if (!machine.has_value()) {
+            return std::unexpected(machine.error());
+        }
+        machines.int32(*machine);
+        names.text(series[one].metric);
+        units.text(series[one].unit);
+        numbers.int32(static_cast<std::int32_t>(one));
+    }
+    const std::array parameters{machines.take(), names.take(), units.take(), numbers.take()};
+    const auto rows = database_.ask(
+        "WITH given AS (SELECT * FROM unnest($1::int[], $2::text[], $3::text[], $4::int[]) "
+        "AS each (machine, name, unit, number)), "
+        "written AS (INSERT INTO metric (machine, name, unit) SELECT machine, name, unit FROM given "
+        "ORDER BY machine, name ON CONFLICT (machine, name) DO UPDATE SET unit = EXCLUDED.unit "
+        "RETURNING id, machine, name) "
+        "SELECT given.number, written.id FROM given JOIN written USING (machine, name)",
+        parameters);
+    if (!rows.has_value()) {
+        return std::unexpected(rows.error());
+    }
+    for (int i = 0; i < rows->count(); ++i) {
+        ids_[parse_uint(rows->text(i, 0).value_or("")).value_or(0)] =
+            static_cast<std::int32_t>(parse_uint(rows->text(i, 1).value_or("")).value_or(0));
+    }
+    return {};
+}
+
+Result<> Store::make_day(std::int64_t day) {
+    if (day < FIRST_DAY || day >= END_DAY || days_.contains(day)) {
+        return {};
+    }
+    // The lock is that of tend(): a collector of another name may create the same day.
+    auto made = database_.run(fmt::format("SELECT pg_advisory_xact_lock(hashtext('millwright shop schema')); "
+                                          "CREATE TABLE IF NOT EXISTS {} PARTITION OF reading FOR VALUES "
+                                          "FROM ('{} 00:00:00+00') TO ('{} 00:00:00+00')",
+                                          partition(day), date(day), date(day + 1)));
+    if (made.has_value()) {
+        days_.insert(day);
+    }
+    return made;
+}
+
+Result<> Store::make_days(const std::vector<Reading> &readings) {
+    std::set<std::int64_t> days;
+    for (const Reading &reading : readings) {
+        days.insert(day_of(reading.at));
+    }
+    for (const std::int64_t day : days) {
+        if (auto made = make_day(day); !made.has_value()) {
+            return made;
+        }
+    }
+    return {};
+}
+
+void ReadingArrays::add(std::int32_t metric, const Reading &reading) {
+    metrics_.int32(metric);
+    times_.int64(timestamp(reading.at));
+    // Of the three columns one has the value.
+    std::optional<double> number;
+    std::optional<std::int64_t> whole;
+    std::optional<std::string> text;
+    std::visit(Overloaded{[](std::monostate) {}, [&](bool on) { number = on ? 1 : 0; },
+                          [&](double value) { number = value; }, [&](std::int64_t value) { whole = value; },
+                          [&](std::uint64_t value) {
+                              if (std::in_range<std::int64_t>(value)) {
+                                  whole = static_cast<std::int64_t>(value);
+                              } else {
+                                  text = std::to_string(value);
+                              }
+                          },
+                          [&](const std::string &value) { text = publish::clean_text(value); }},
+               reading.value);
+    number.has_value() ? numbers_.float64(*number) : numbers_.null();
+    whole.has_value() ? wholes_.int64(*whole) : wholes_.null();
+    text.has_value() ? texts_.text(*text) : texts_.null();
+}
+
+Result<> Store::write_readings(const std::vector<Reading> &readings, const std::vector<Series> &series) {
+    std::vector<const Reading *> plain, notable;
+    for (const Reading &reading : readings) {
+        (isNotable(series[reading.series].metric, reading.value) ? notable : plain).push_back(&reading);
+    }
+    const auto insert = [this](const std::vector<const Reading *> &some, const std::string &before,
+                               const std::string &after) -> Result<> {
+        if (some.empty()) {
+            return {};
+        }
+        ReadingArrays arrays(some.size());
+        for (const Reading *const reading : some) {
+            arrays.add(ids_[reading->series], *reading);
+        }
+        const auto parameters = arrays.take();
+        const auto written = database_.ask(
+            before +
+                "INSERT INTO reading (metric, at, number, whole, text) "
+                "SELECT * FROM unnest($1::int[], $2::timestamptz[], $3::float8[], $4::bigint[], $5::text[]) "
+                "ON CONFLICT DO NOTHING" +
+                after,
+            parameters);
+        return written.has_value() ? Result<>{} : std::unexpected(written.error());
+    };
+    auto done = insert(plain, "", "");
+    // Only a row that was not there is reported to people.
+    return done.has_value()
+               ? insert(notable, "WITH fresh AS (",
+                        " RETURNING metric, at, text) INSERT INTO notification "
+                        "(machine, at, source, message) SELECT metric.machine, fresh.at, "
+                        "metric.name, fresh.text FROM fresh JOIN metric ON metric.id = fresh.metric "
+                        "ON CONFLICT DO NOTHING")
+               : done;
+}
+
+Result<> Store::write_presences(const std::vector<Presence> &presences) {
+    if (presences.empty()) {
+        return {};
+    }
+    ArrayWriter machines(oid::INT4, presences.size(), false),
+        times(oid::TIMESTAMPTZ, presences.size(), false), alive(oid::BOOL, presences.size(), false);
+    for (const Presence &one : presences) {
+        const auto machine = machine_id(one.machine);
+        if (!machine.has_value()) {
+            return std::unexpected(machine.error());
+        }
+        machines.int32(*machine);
+        times.int64(timestamp(one.at));
+        alive.boolean(one.isAlive);
+    }
+    const std::array parameters{machines.take(), times.take(), alive.take()};
+    const auto written =
+        database_.ask("WITH fresh AS (INSERT INTO presence (machine, at, alive) "
+                      "SELECT * FROM unnest($1::int[], $2::timestamptz[], $3::bool[]) ON CONFLICT DO NOTHING "
+                      "RETURNING machine, at, alive) INSERT INTO notification (machine, at, source, message) "
+                      "SELECT machine, at, 'Contact', 'The machine is not connected.' FROM fresh "
+                      "JOIN machine ON machine.id = machine WHERE NOT alive AND device <> '' "
+                      "ON CONFLICT DO NOTHING",
+                      parameters);
+    return written.has_value() ? Result<>{} : std::unexpected(written.error());
+}
+
+Result<> Store::tend() {
+    auto done = database_.run("BEGIN");
+    const std::int64_t day = today();
+    for (std::int64_t ahead = 0; ahead <= 2 && done.has_value(); ++ahead) {
+        done = make_day(day + ahead);
+    }
+    if (settings_.keep_days > 0 && done.has_value()) {
+        const std::array parameters{words(partition(day - settings_.keep_days))};
+        const auto old = database_.ask("SELECT relname FROM pg_class WHERE relkind = 'r' AND relname ~ "
+                                       "'^reading_[0-9]{8}$' AND relispartition AND relname < $1",
+                                       parameters);
+        if (!old.has_value()) {
+            return std::unexpected(old.error());
+        }
+        for (int i = 0; i < old->count() && done.has_value(); ++i) {
+            done = database_.run("DROP TABLE " + old->text(i, 0).value_or(""));
+        }
+        days_.clear();
+    }
+    return done.has_value() ? database_.run("COMMIT") : done;
+}
+
+}  // namespace mw::shop

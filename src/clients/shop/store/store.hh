@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The tables of a shop in PostgreSQL.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "clients/shop/reading.hh"
+#include "clients/shop/store/database.hh"
+
+namespace mw::shop {
+
+struct StoreSettings {
+    std::string database;  ///< connection, as libpq takes it
+    /// Two collectors of one name never write at the same time: the second waits.
+    std::string collector;
+    int keep_days = 0;  ///< older days are removed; 0: none
+};
+
+/// Creates and updates the tables. All steps that are missing, or none.
+Result<> migrate(Database &database);
+
+/// One thread.
+class Store {
+  public:
+    /// Connects, updates the tables, and takes the name of the collector.
+    static Result<Store> open(const StoreSettings &settings);
+
+    /// All of the batch or nothing; what is stored already is not stored again. `series`: all that are known,
+    /// by their numbers. After an error the store is of no more use.
+    Result<> store(const Batch &batch, const std::vector<Series> &series);
+    /// Removes days that are too old, and creates those to come. Once an hour, and at the start.
+    Result<> tend();
+
+  private:
+    Store(Database database, StoreSettings settings)
+        : database_(std::move(database)), settings_(std::move(settings)) {}
+    Result<> lock();
+    Result<> write(const Batch &batch, const std::vector<Series> &series);
+    Result<> find_ids(const Batch &batch, const std::vector<Series> &series);
+    Result<int> machine_id(const MachineName &name);
+    Result<> make_days(const std::vector<Reading> &readings);
+    Result<> make_day(std::int64_t day);
+    Result<> write_readings(const std::vector<Reading> &readings, const std::vector<Series> &series);
+    Result<> write_presences(const std::vector<Presence> &presences);
+
+    Database database_;
+    StoreSettings settings_;
+    std::map<MachineName, int> machines_;
+    std::vector<std::int32_t> ids_;  ///< of metrics, by the number of their series; 0: not known
+    std::set<std::int64_t> days_;    ///< since 1970, that have a partition
+};
+
+}  // namespace mw::shop

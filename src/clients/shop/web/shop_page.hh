@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The page of all machines. It reads the database and writes nothing.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "clients/screen/http_types.hh"
+#include "clients/shop/store/database.hh"
+
+namespace mw::shop {
+
+/// One thread, that of the server. An answer waits for the database.
+class ShopPage final : public screen::Application {
+  public:
+    /// `steady_s`: a time that never jumps.
+    ShopPage(std::string database, std::function<double()> steady_s);
+
+    /// GET / : the page. GET /machines: all machines. GET /machines/history?machine=ID&days=N: one machine.
+    void answer(const screen::Request &request, screen::Reply reply) override;
+    void opened(screen::SessionId, screen::Role, screen::Protection) override {}
+    void received(screen::SessionId, std::string_view) override {}
+    void closed(screen::SessionId) override {}
+
+  private:
+    screen::Response machines();
+    screen::Response history(const screen::Request &request);
+    Result<std::string> ask(const std::string &sql, std::span<const Parameter> parameters = {});
+
+    std::string name_;
+    std::function<double()> steady_s_;
+    std::optional<Database> database_;
+    std::string machines_;  ///< the last answer
+    double fresh_until_s_ = -1;
+};
+
+}  // namespace mw::shop
