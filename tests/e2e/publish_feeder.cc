@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// publish-feeder STORE PORT FIRST: an edge node of Sparkplug whose machine counts, for tests that kill it.
-// After a number is accepted it is printed. Waits for the primary host "shop".
+// publish-feeder STORE PORT FIRST NODE: an edge node of Sparkplug whose machine counts, for tests that kill
+// it. After a number is accepted it is printed. Waits for the primary host "shop".
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -29,8 +29,8 @@ EdgeNode::Moment now() {
 }  // namespace
 
 int main(int count, char **words) {
-    if (count != 4) {
-        std::fputs("usage: publish-feeder STORE PORT FIRST\n", stderr);
+    if (count != 5) {
+        std::fputs("usage: publish-feeder STORE PORT FIRST NODE\n", stderr);
         return 2;
     }
     const std::string store = words[1];
@@ -43,18 +43,18 @@ int main(int count, char **words) {
     const Metric counter{.name = "Count", .type = DataType::UINT64};
     data.born({counter}, {std::uint64_t{0}}, utc_ms());
     MosquittoLink link({.brokers = {{"127.0.0.1", std::atoi(words[2])}},
-                        .client_id = "feeder",
+                        .client_id = words[4],
                         .user = "",
                         .password = "",
                         .authorities = "",
                         .certificate = "",
                         .key = "",
-                        .not_delivered_topic = "spBv1.0/test/DCMD/feeder/counter"});
+                        .not_delivered_topic = "spBv1.0/test/DCMD/none/counter"});
     const auto text = mw::read_file(store + "/bdseq");
     NodeSettings settings{
         .primary_host = "shop", .first_retry_s = 0.05, .longest_retry_s = 0.2, .answer_s = 2};
     settings.group = "test";
-    settings.node = "feeder";
+    settings.node = words[4];
     settings.device = "counter";
     EdgeNode node(
         settings, data, link, text.has_value() ? mw::parse_uint(mw::trim(*text)).value_or(0) : 0,
