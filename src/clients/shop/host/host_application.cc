@@ -18,6 +18,8 @@ constexpr const char *REBIRTH = "Node Control/Rebirth";
 bool isOfProtocol(std::string_view metric) {
     return metric == "bdSeq" || metric.starts_with("Node Control/") || metric.starts_with("Device Control/");
 }
+/// Between two passes over the receipts that are due. A step is taken for each message.
+constexpr double RECEIPT_PERIOD_S = 0.05;
 /// The series of such a metric.
 constexpr SeriesId NOT_STORED = ~SeriesId{0};
 /// 31 December 9999: later times are not stored.
@@ -58,7 +60,8 @@ Value typed(const Value &value, std::uint32_t type) {
 }
 
 HostApplication::HostApplication(HostSettings settings, publish::BrokerLink &link, Report report)
-    : settings_(std::move(settings)), link_(link), report_(std::move(report)) {}
+    : settings_(std::move(settings)), link_(link), report_(std::move(report)),
+      state_topic_(fmt::format("{}STATE/{}", NAMESPACE, settings_.name)) {}
 
 std::optional<HostApplication::Topic> HostApplication::split(std::string_view topic) {
     if (!topic.starts_with(NAMESPACE)) {
@@ -85,20 +88,18 @@ std::optional<HostApplication::Topic> HostApplication::split(std::string_view to
 
 publish::Publication HostApplication::will(const Moment &now) {
     state_at_ = std::max(now.utc_ms, state_at_ + 1);
-    return {fmt::format("{}STATE/{}", NAMESPACE, settings_.name),
-            publish::write_host_state({false, state_at_, true}), 1, true};
+    return {state_topic_, publish::write_host_state({false, state_at_, true}), 1, true};
 }
 
 void HostApplication::publish_state(bool isOnline) {
-    link_.publish({fmt::format("{}STATE/{}", NAMESPACE, settings_.name),
-                   publish::write_host_state({isOnline, state_at_, true}), 1, true});
+    link_.publish({state_topic_, publish::write_host_state({isOnline, state_at_, true}), 1, true});
 }
 
 void HostApplication::connected() {
     forget();
     isOnline_ = true;
     // The subscriptions come first: a node that sees the state sends its birth at once.
-    link_.subscribe(fmt::format("{}STATE/{}", NAMESPACE, settings_.name));
+    link_.subscribe(state_topic_);
     if (settings_.groups.empty()) {
         link_.subscribe(fmt::format("{}+/+/#", NAMESPACE));
     }
@@ -125,7 +126,7 @@ void HostApplication::forget() {
 
 void HostApplication::take(const publish::Publication &message, const Moment &now) {
     now_ = now;
-    if (message.topic == fmt::format("{}STATE/{}", NAMESPACE, settings_.name)) {
+    if (message.topic == state_topic_) {
         // The will of an earlier connection of this host may come after its state.
         const auto state = publish::read_host_state(message.payload);
         if (isOnline_ && state.has_value() && !state->isOnline) {
@@ -297,6 +298,10 @@ void HostApplication::stored(const std::vector<NodeReceipt> &receipts) {
 
 void HostApplication::step(const Moment &now) {
     now_ = now;
+    if (now_.at_s < receipts_s_) {
+        return;
+    }
+    receipts_s_ = now_.at_s + RECEIPT_PERIOD_S;
     std::erase_if(receipts_, [this](const auto &one) {
         Node &node = nodes_[one.first];
         if (now_.at_s - node.receipt_s < settings_.receipt_s) {

@@ -96,7 +96,9 @@ class HostApplication {
     HostSettings settings_;
     publish::BrokerLink &link_;
     Report report_;
+    std::string state_topic_;
     Moment now_;
+    double receipts_s_ = -1e9;  ///< of the next pass over receipts_
     TimeMs state_at_ = 0;
     bool isOnline_ = false;
 

@@ -1,0 +1,115 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Load of a shop: machines that publish by Sparkplug, mosquitto, `millwright shop` and PostgreSQL on this computer. Prints the values
+that are stored per second, the processor time of each part, and two times: from the time of a value to its receipt at the publisher
+(of all messages), and to the moment when a query sees it (one machine, by another connection). Counts the rows at the end: status 1
+when one is missing or there is one too many.
+
+usage: shop.py [--machines N] [--values N] [--seconds N]
+"""
+import argparse
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+BUILD = ROOT / 'build/release'
+sys.path.insert(0, str(ROOT / 'tests/e2e'))
+from publish_shop import Broker, free_port, wait_for  # noqa: E402
+from shop_world import Collector, Postgres, skip_without_database  # noqa: E402
+
+TICKS = os.sysconf('SC_CLK_TCK')
+NEWEST = '''SELECT extract(epoch FROM max(reading.at)) FROM reading JOIN metric ON metric.id = metric JOIN machine ON machine.id = machine
+    WHERE node = 'm00000' AND reading.at > now() - interval '10 s';'''
+
+
+def processor_s(pid):
+    """Of a process and those of its children that have ended."""
+    fields = pathlib.Path(f'/proc/{pid}/stat').read_text().rsplit(')', 1)[1].split()
+    return sum(int(field) for field in fields[11:15]) / TICKS
+
+
+class Probe(threading.Thread):
+    """Reads the newest time of one machine again and again; each new one gives the time from value to query."""
+
+    def __init__(self, database):
+        super().__init__(daemon=True)
+        self.psql = subprocess.Popen([str(database.bin / 'psql'), '-X', '-q', '-A', '-t', database.connection], stdin=subprocess.PIPE,
+                                     stdout=subprocess.PIPE, text=True, bufsize=1)
+        self.times, self.is_ended = [], False
+
+    def run(self):
+        last = None
+        while not self.is_ended:
+            self.psql.stdin.write(NEWEST + '\n')
+            self.psql.stdin.flush()
+            newest = self.psql.stdout.readline().strip()
+            if newest and newest != last:
+                self.times.append(time.time() - float(newest))
+                last = newest
+            time.sleep(0.02)
+        self.psql.stdin.close()
+        self.psql.wait()
+
+
+def share(numbers, part):
+    return sorted(numbers)[int(part * (len(numbers) - 1))] if numbers else float('nan')
+
+
+def measure(words, folder):
+    database = Postgres(folder).start()
+    broker = Broker(folder, free_port())
+    # Without a line for each message.
+    broker.process = subprocess.Popen(['/usr/sbin/mosquitto', '-c', str(broker.config)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    collector = Collector(str(BUILD / 'bin/millwright-shop'), folder, database, broker.port).start()
+    try:
+        wait_for(lambda: database.psql('SELECT count(*) FROM schema_step').stdout.strip() not in ('', '0'), 'the tables are there')
+        probe = Probe(database)
+        load = subprocess.Popen([str(BUILD / 'test/shop-load'), str(broker.port), str(words.machines), str(words.values), str(words.seconds)],
+                                stdout=subprocess.PIPE, text=True)
+        begin = time.monotonic()
+        time.sleep(5)  # births are over
+        probe.start()
+        parts = {'collector': [collector.process.pid], 'broker': [broker.process.pid], 'database': database.family()}
+
+        def used():
+            return {name: sum(map(processor_s, pids)) for name, pids in parts.items()}
+        before, at = used(), time.monotonic()
+        time.sleep(max(1, words.seconds - (at - begin) - 2))
+        after, end = used(), time.monotonic()
+        probe.is_ended = True
+        sent = json.loads(load.communicate()[0])
+        stored = int(database.ask('SELECT count(*) FROM reading')[0][0])
+        size = int(database.ask("SELECT sum(pg_total_relation_size(inhrelid)) FROM pg_inherits WHERE inhparent = 'reading'::regclass")[0][0])
+    finally:
+        collector.kill()
+        broker.kill()
+        database.end()
+    rate = words.machines * words.values
+    print(f'{words.machines} machines, {words.values} values/s each, {words.seconds} s: {sent["values"]} values sent, {stored} stored, '
+          f'{sent["rebirths"]} rebirths, {size / stored:.0f} bytes a value with its index')
+    cores = {name: (after[name] - before[name]) / (end - at) for name in parts}
+    for name, load_of in cores.items():
+        print(f'{name:10} {load_of:6.3f} cores, {rate / load_of:9.0f} values/s per core')
+    print(f'value to query: p50 {1000 * share(probe.times, 0.5):.0f} ms, p99 {1000 * share(probe.times, 0.99):.0f} ms, {len(probe.times)} samples')
+    print(f'value to receipt: p50 {sent["receipt_p50_ms"]} ms, p99 {sent["receipt_p99_ms"]} ms, max {sent["receipt_max_ms"]} ms, {sent["messages"]} messages')
+    return 0 if stored == sent['values'] and not sent['open'] else 1
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('--machines', type=int, default=1000)
+    parser.add_argument('--values', type=int, default=10, help='a second of each machine, a multiple of 10')
+    parser.add_argument('--seconds', type=int, default=60)
+    skip_without_database()
+    with tempfile.TemporaryDirectory() as name:
+        sys.exit(measure(parser.parse_args(), pathlib.Path(name)))
+
+
+if __name__ == '__main__':
+    main()
