@@ -3,6 +3,7 @@
 option(MW_TESTS "Build the tests" ON)
 # Off where each source shall show that it includes what it uses: in the presets dev, asan and tsan.
 option(MW_UNITY "Compile several sources of a test as one" ON)
+option(MW_SHOP "Build millwright shop, where PostgreSQL's and curl's libraries are installed" ON)
 option(MW_BENCH "Build the benchmarks" OFF)
 option(MW_FUZZ "Build the fuzz targets (clang)" OFF)
 option(MW_ASSERTS "Keep asserts in optimised builds" OFF)

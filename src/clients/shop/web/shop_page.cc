@@ -81,7 +81,11 @@ void ShopPage::answer(const screen::Request &request, screen::Reply reply) {
     if (request.method != "GET") {
         reply(plain(405, "The page only answers GET: it cannot be written to.\n"));
     } else if (request.path == "/") {
-        reply({.type = "text/html; charset=utf-8", .body = std::string(PAGE)});
+        reply({.type = "text/html; charset=utf-8", .body = std::string(PAGE_HTML)});
+    } else if (request.path == "/page.css") {
+        reply({.type = "text/css; charset=utf-8", .body = std::string(PAGE_CSS)});
+    } else if (request.path == "/page.js") {
+        reply({.type = "text/javascript; charset=utf-8", .body = std::string(PAGE_JS)});
     } else if (request.path == "/machines") {
         reply(machines());
     } else if (request.path == "/machines/history") {

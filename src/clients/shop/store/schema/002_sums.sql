@@ -10,7 +10,7 @@ INSERT INTO shift (name, begins, lasts) VALUES
 
 -- Filled in by the shop: the time of a good cycle, and parts that were rejected.
 CREATE TABLE cycle_time (
-    program text PRIMARY KEY,
+    program text PRIMARY KEY,  -- name of the file, without folders
     ideal interval NOT NULL CHECK (ideal > '0')
 );
 CREATE TABLE rejected_part (
@@ -95,7 +95,8 @@ LANGUAGE sql STABLE AS $$
     done AS (
         SELECT count(*) AS parts, extract(epoch FROM sum(cycle_time.ideal)) AS ideal_s,
             extract(epoch FROM sum(job.active) FILTER (WHERE cycle_time.ideal IS NOT NULL)) AS active_s
-        FROM jobs(of_machine, from_time, least(until_time, now())) AS job LEFT JOIN cycle_time USING (program)
+        FROM jobs(of_machine, from_time, least(until_time, now())) AS job
+            LEFT JOIN cycle_time ON cycle_time.program = regexp_replace(job.program, '^.*/', '')
         WHERE job.result = 'ENDED'
     ),
     bad AS (

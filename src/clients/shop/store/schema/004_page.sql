@@ -37,7 +37,7 @@ CREATE FUNCTION page_machines() RETURNS json LANGUAGE sql STABLE AS $$
 $$;
 
 CREATE FUNCTION page_history(of_machine integer, days integer) RETURNS json LANGUAGE sql STABLE AS $$
-    WITH span AS (SELECT now() - days * interval '1 day' AS begins, now() AS ends)
+    WITH span AS (SELECT greatest(now() - days * interval '1 day', (SELECT min(at) FROM presence WHERE machine = of_machine)) AS begins, now() AS ends)
     SELECT json_build_object(
         'jobs', coalesce((SELECT json_agg(job) FROM (SELECT job.program, job.begins, job.ends, extract(epoch FROM job.active) AS active_s, job.result
             FROM span, jobs(of_machine, span.begins, span.ends) AS job ORDER BY job.begins DESC LIMIT 200) AS job), '[]'),
