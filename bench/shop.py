@@ -62,7 +62,7 @@ def share(numbers, part):
 
 
 def measure(words, folder):
-    database = Postgres(folder).start()
+    database = Postgres(folder).start('-c', 'fsync=on')
     broker = Broker(folder, free_port())
     # Without a line for each message.
     broker.process = subprocess.Popen(['/usr/sbin/mosquitto', '-c', str(broker.config)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)

@@ -114,7 +114,7 @@ def get(port, path, method='GET'):
 
 
 def check_requests(port):
-    for path, method, status in (('/', 'GET', 200), ('/page.js', 'GET', 200), ('/page.css', 'GET', 200), ('/machines', 'POST', 405),
+    for path, method, status in (('/', 'GET', 200), ('/machines/sums', 'GET', 200), ('/page.js', 'GET', 200), ('/page.css', 'GET', 200), ('/machines', 'POST', 405),
                                  ('/machines', 'DELETE', 405), ('/other', 'GET', 404), ('/machines/history?machine=1', 'GET', 400),
                                  ("/machines/history?machine=1;DROP&days=1", 'GET', 400), ('/machines/history?machine=1&days=0', 'GET', 400),
                                  ('/machines/history?machine=99999999999&days=1', 'GET', 400)):

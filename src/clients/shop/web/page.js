@@ -3,7 +3,7 @@
 'use strict';
 const PERIOD_MS = 2000, DAYS = 7;
 const part = (id) => document.getElementById(id);
-const percent = (value) => value === null ? '–' : `${Math.round(100 * value)} %`;
+const percent = (value) => (value ?? null) === null ? '–' : `${Math.round(100 * value)} %`;
 const time = (text) => text === null ? '–' : new Date(text).toLocaleString();
 const file = (path) => path ? path.split('/').pop() : '–';
 function duration(s) {
@@ -29,12 +29,14 @@ function stateOf(machine) {
   field.textContent = name ?? '–';
   return field;
 }
-function machineRow(machine) {
+function machineRow(machine, sums, now) {
+  const isRunning = machine.alive && sums.ends && !['READY', 'STOPPED'].includes(machine.execution);
+  const left = isRunning ? duration((new Date(sums.ends) - new Date(now)) / 1000) : '–';
   const choose = document.createElement('button');
   choose.textContent = `${machine.group}/${machine.node}/${machine.device}`;
   choose.onclick = () => showHistory(machine);
-  const line = row([choose, stateOf(machine), file(machine.program), machine.line, duration(machine.left_s), machine.alarms ?? '',
-    percent(machine.availability), percent(machine.performance), percent(machine.quality), percent(machine.oee), machine.parts],
+  const line = row([choose, stateOf(machine), file(machine.program), machine.line, left, machine.alarms ?? '',
+    percent(sums.availability), percent(sums.performance), percent(sums.quality), percent(sums.oee), sums.parts],
   [3, 4, 6, 7, 8, 9, 10]);
   line.classList.toggle('away', !machine.alive);
   line.cells[5].className = 'alarms';
@@ -61,8 +63,9 @@ async function showHistory(machine) {
 async function refresh() {
   try {
     const shop = await get('machines');
-    part('machines').replaceChildren(...shop.machines.map(machineRow));
-    part('shift').textContent = shop.shift ? `– shift ${shop.shift}` : '';
+    const sums = await get('machines/sums');
+    part('machines').replaceChildren(...shop.machines.map((machine) => machineRow(machine, sums.machines[machine.id] ?? {}, shop.at)));
+    part('shift').textContent = sums.shift ? `– shift ${sums.shift}` : '';
     part('problem').textContent = '';
   } catch (error) {
     part('problem').textContent = `No new values: ${error.message}`;

@@ -17,22 +17,30 @@ class ShopPage final : public screen::Application {
     /// `steady_s`: a time that never jumps.
     ShopPage(std::string database, std::function<double()> steady_s);
 
-    /// GET / : the page. GET /machines: all machines. GET /machines/history?machine=ID&days=N: one machine.
+    /// GET / : the page. GET /machines: states of all machines. GET /machines/sums: their shift.
+    /// GET /machines/history?machine=ID&days=N: one machine.
     void answer(const screen::Request &request, screen::Reply reply) override;
     void opened(screen::SessionId, screen::Role, screen::Protection) override {}
     void received(screen::SessionId, std::string_view) override {}
     void closed(screen::SessionId) override {}
 
   private:
-    screen::Response machines();
+    /// An answer that is calculated again when it is too old.
+    struct Kept {
+        std::string sql;
+        double fresh_s = 1;
+        std::string json{};
+        double fresh_until_s = -1;
+    };
+    screen::Response kept(Kept &answer);
     screen::Response history(const screen::Request &request);
     Result<std::string> ask(const std::string &sql, std::span<const Parameter> parameters = {});
 
     std::string name_;
     std::function<double()> steady_s_;
     std::optional<Database> database_;
-    std::string machines_;  ///< the last answer
-    double fresh_until_s_ = -1;
+    Kept machines_{.sql = "SELECT page_machines()", .fresh_s = 1};
+    Kept sums_{.sql = "SELECT page_sums()", .fresh_s = 10};
 };
 
 }  // namespace mw::shop

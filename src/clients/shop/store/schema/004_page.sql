@@ -1,39 +1,42 @@
 -- What the shop page shows, as JSON.
-CREATE FUNCTION state_of(of_machine integer, of_name text) RETURNS text LANGUAGE sql STABLE AS $$
-    SELECT coalesce(r.text, r.whole::text, r.number::text) FROM newest(metric_id(of_machine, of_name)) AS r
-$$;
-
--- Median time of the last ten ended runs of a program in the last week.
-CREATE FUNCTION usual_time(of_machine integer, of_program text) RETURNS interval LANGUAGE sql STABLE AS $$
-    SELECT percentile_cont(0.5) WITHIN GROUP (ORDER BY time) FROM (
-        SELECT ends - begins AS time FROM jobs(of_machine, now() - interval '7 days', now())
-        WHERE program = of_program AND result = 'ENDED' ORDER BY begins DESC LIMIT 10
-    ) AS last
-$$;
-
+-- The states of all machines.
 CREATE FUNCTION page_machines() RETURNS json LANGUAGE sql STABLE AS $$
-    WITH shift_now AS (SELECT * FROM shifts(now(), now() + interval '1 second') ORDER BY begins DESC LIMIT 1),
+    WITH newest AS (
+        SELECT metric.machine, metric.name, coalesce(last.text, last.whole::text, last.number::text) AS value
+        FROM metric CROSS JOIN LATERAL (SELECT text, whole, number FROM reading WHERE reading.metric = metric.id ORDER BY at DESC LIMIT 1) AS last
+        WHERE metric.name IN ('State', 'Execution', 'Program/Path', 'Program/Line') OR metric.name LIKE 'Alarms/%'
+    ),
     each AS (
         SELECT machine.id, grp, node, device,
             coalesce((SELECT alive FROM presence WHERE presence.machine = machine.id ORDER BY at DESC LIMIT 1), false) AS alive,
-            state_of(machine.id, 'State') AS state, state_of(machine.id, 'Execution') AS execution,
-            state_of(machine.id, 'Program/Path') AS program, state_of(machine.id, 'Program/Line') AS line,
-            (SELECT string_agg(text, ' ') FROM (SELECT (newest(metric.id)).text FROM metric
-                WHERE metric.machine = machine.id AND metric.name LIKE 'Alarms/%' ORDER BY metric.name) AS alarm WHERE text <> '') AS alarms
-        FROM machine WHERE device <> ''
+            max(value) FILTER (WHERE name = 'State') AS state, max(value) FILTER (WHERE name = 'Execution') AS execution,
+            max(value) FILTER (WHERE name = 'Program/Path') AS program, max(value) FILTER (WHERE name = 'Program/Line') AS line,
+            string_agg(value, ' ' ORDER BY name) FILTER (WHERE name LIKE 'Alarms/%' AND value <> '') AS alarms
+        FROM machine LEFT JOIN newest ON newest.machine = machine.id WHERE device <> '' GROUP BY machine.id
     )
-    SELECT json_build_object('at', now(), 'shift', (SELECT name FROM shift_now), 'machines', coalesce((
-        SELECT json_agg(json_build_object('id', each.id, 'group', grp, 'node', node, 'device', device, 'alive', alive, 'state', state,
-            'execution', execution, 'program', each.program, 'line', line, 'alarms', alarms, 'job', running.begins,
-            'left_s', extract(epoch FROM running.begins + usual_time(each.id, running.program) - now()),
-            'availability', sums.availability, 'performance', sums.performance, 'quality', sums.quality, 'oee', sums.oee, 'parts', sums.parts)
-            ORDER BY grp, node, device)
-        FROM each
-        LEFT JOIN LATERAL (SELECT * FROM jobs(each.id, now() - interval '1 day', now()) WHERE each.alive AND each.execution NOT IN ('READY', 'STOPPED')
-            ORDER BY begins DESC LIMIT 1) AS running ON running.result = 'RUNNING'
-        LEFT JOIN shift_now ON true
-        LEFT JOIN LATERAL oee(each.id, shift_now.begins, shift_now.ends) AS sums ON shift_now.name IS NOT NULL
-    ), '[]'))
+    SELECT json_build_object('at', now(), 'machines', coalesce((
+        SELECT json_agg(json_build_object('id', id, 'group', grp, 'node', node, 'device', device, 'alive', alive, 'state', state,
+            'execution', execution, 'program', program, 'line', line, 'alarms', alarms) ORDER BY grp, node, device) FROM each), '[]'))
+$$;
+
+-- When the program that runs will end, by the median time of its runs among the last ones: NULL where none ended.
+CREATE FUNCTION expected_end(of_machine integer) RETURNS timestamptz LANGUAGE sql STABLE AS $$
+    WITH last AS (SELECT at FROM reading WHERE metric = metric_id(of_machine, 'Execution') ORDER BY at DESC LIMIT 30),
+    job AS (SELECT * FROM jobs(of_machine, (SELECT min(at) FROM last), now())),
+    running AS (SELECT * FROM job WHERE result = 'RUNNING')
+    SELECT running.begins + (SELECT percentile_cont(0.5) WITHIN GROUP (ORDER BY job.ends - job.begins)
+        FROM job WHERE job.result = 'ENDED' AND job.program = running.program) FROM running
+$$;
+
+-- The sums of all machines in the shift of now, which take longer than the states.
+CREATE FUNCTION page_sums() RETURNS json LANGUAGE sql STABLE AS $$
+    WITH shift_now AS (SELECT * FROM shifts(now(), now() + interval '1 second') ORDER BY begins DESC LIMIT 1)
+    SELECT json_build_object('shift', (SELECT name FROM shift_now), 'machines', coalesce((
+        SELECT json_object_agg(machine.id, json_build_object('ends', expected_end(machine.id), 'availability', sums.availability,
+            'performance', sums.performance, 'quality', sums.quality, 'oee', sums.oee, 'parts', sums.parts))
+        FROM machine LEFT JOIN shift_now ON true
+        LEFT JOIN LATERAL oee(machine.id, shift_now.begins, shift_now.ends) AS sums ON shift_now.name IS NOT NULL
+        WHERE device <> ''), '{}'))
 $$;
 
 CREATE FUNCTION page_history(of_machine integer, days integer) RETURNS json LANGUAGE sql STABLE AS $$
