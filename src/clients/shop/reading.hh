@@ -4,6 +4,7 @@
 
 #include <compare>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -59,15 +60,23 @@ struct NodeReceipt {
     Receipt receipt;
 };
 
+/// The machines that are there; others of these groups have gone while nobody collected.
+struct Census {
+    std::vector<MachineName> present;
+    std::vector<std::string> groups;  ///< empty: all
+};
+
 /// Is stored as a whole or not at all.
 struct Batch {
     std::vector<Series> new_series;  ///< their numbers follow those of earlier batches
     std::vector<Reading> readings;
     std::vector<Presence> presences;
+    std::optional<Census> census;
     std::vector<NodeReceipt> receipts;  ///< to be sent when the batch is stored
 
     bool isEmpty() const {
-        return new_series.empty() && readings.empty() && presences.empty() && receipts.empty();
+        return new_series.empty() && readings.empty() && presences.empty() && !census.has_value() &&
+               receipts.empty();
     }
 };
 

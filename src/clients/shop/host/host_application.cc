@@ -116,6 +116,9 @@ void HostApplication::say_offline() {
 
 void HostApplication::forget() {
     isOnline_ = false;
+    isCounted_ = false;
+    census_s_.reset();
+    batch_.census.reset();
     nodes_.clear();
     unstored_.clear();
     receipts_.clear();
@@ -296,8 +299,27 @@ void HostApplication::stored(const std::vector<NodeReceipt> &receipts) {
     }
 }
 
+/// Machines that ended while this host was away sent their death to none.
+void HostApplication::take_census() {
+    census_s_ = census_s_.value_or(now_.at_s + settings_.census_s);
+    if (!isOnline_ || isCounted_ || now_.at_s < *census_s_) {
+        return;
+    }
+    isCounted_ = true;
+    Census census{{}, settings_.groups};
+    for (const auto &[name, node] : nodes_) {
+        for (const auto &[device, facts] : node.devices) {
+            if (facts.isAlive) {
+                census.present.push_back({name, device});
+            }
+        }
+    }
+    batch_.census = std::move(census);
+}
+
 void HostApplication::step(const Moment &now) {
     now_ = now;
+    take_census();
     if (now_.at_s < receipts_s_) {
         return;
     }

@@ -22,6 +22,8 @@ struct HostSettings {
     std::vector<std::string> groups;  ///< that this host collects; empty: all
     double rebirth_s = 5;             ///< between two requests to one node
     double receipt_s = 0.5;           ///< between two receipts to one node
+    /// From the connection to the census: longer than the longest pause of a publisher between two attempts.
+    double census_s = 60;
 };
 
 /// Nodes repeat what has no receipt, and a receipt is sent only for what is stored: a host that forgets
@@ -92,6 +94,7 @@ class HostApplication {
     void set_alive(Device &device, const MachineName &name, bool isAlive, TimeMs at);
     SeriesId series_of(const MachineName &machine, const publish::PayloadMetric &metric);
     void request_birth(Node &node, const NodeName &name);
+    void take_census();
 
     HostSettings settings_;
     publish::BrokerLink &link_;
@@ -99,6 +102,8 @@ class HostApplication {
     std::string state_topic_;
     Moment now_;
     double receipts_s_ = -1e9;  ///< of the next pass over receipts_
+    std::optional<double> census_s_;
+    bool isCounted_ = false;  ///< the census of this connection is done
     TimeMs state_at_ = 0;
     bool isOnline_ = false;
 

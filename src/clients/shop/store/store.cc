@@ -143,6 +143,7 @@ Result<> Store::write(const Batch &batch, const std::vector<Series> &series) {
     done = done.has_value() ? make_days(batch.readings) : done;
     done = done.has_value() ? write_readings(batch.readings, series) : done;
     done = done.has_value() ? write_presences(batch.presences) : done;
+    done = done.has_value() && batch.census.has_value() ? write_census(*batch.census) : done;
     return done.has_value() ? database_.run("COMMIT") : done;
 }
 
@@ -316,6 +317,32 @@ Result<> Store::write_presences(const std::vector<Presence> &presences) {
                       "JOIN machine ON machine.id = machine WHERE NOT alive AND device <> '' "
                       "ON CONFLICT DO NOTHING",
                       parameters);
+    return written.has_value() ? Result<>{} : std::unexpected(written.error());
+}
+
+Result<> Store::write_census(const Census &census) {
+    const std::size_t count = census.present.size();
+    ArrayWriter groups(oid::TEXT, count, false), nodes(oid::TEXT, count, false),
+        devices(oid::TEXT, count, false), own(oid::TEXT, census.groups.size(), false);
+    for (const MachineName &one : census.present) {
+        groups.text(one.node.group);
+        nodes.text(one.node.node);
+        devices.text(one.device);
+    }
+    for (const std::string &group : census.groups) {
+        own.text(group);
+    }
+    const std::array parameters{groups.take(), nodes.take(), devices.take(), own.take()};
+    const auto written = database_.ask(
+        "WITH gone AS (INSERT INTO presence (machine, at, alive) SELECT id, now(), false FROM machine "
+        "WHERE (cardinality($4::text[]) = 0 OR grp = ANY ($4)) AND (grp, node, device) NOT IN "
+        "(SELECT * FROM unnest($1::text[], $2::text[], $3::text[])) AND "
+        "(SELECT alive FROM presence WHERE machine = machine.id ORDER BY at DESC LIMIT 1) "
+        "ON CONFLICT DO NOTHING RETURNING machine, at) INSERT INTO notification (machine, at, source, "
+        "message) "
+        "SELECT machine, at, 'Contact', 'The machine is not connected.' FROM gone "
+        "JOIN machine ON machine.id = machine WHERE device <> '' ON CONFLICT DO NOTHING",
+        parameters);
     return written.has_value() ? Result<>{} : std::unexpected(written.error());
 }
 

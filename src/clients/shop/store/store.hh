@@ -46,6 +46,7 @@ class Store {
     Result<> make_day(std::int64_t day);
     Result<> write_readings(const std::vector<Reading> &readings, const std::vector<Series> &series);
     Result<> write_presences(const std::vector<Presence> &presences);
+    Result<> write_census(const Census &census);
 
     Database database_;
     StoreSettings settings_;

@@ -154,6 +154,21 @@ TEST(HostApplication, FollowsDeaths) {
         << "the node and its device";
 }
 
+TEST(HostApplication, CountsTheMachinesThatAreThere) {
+    HostWorld world;
+    world.bear(1000);
+    static_cast<void>(world.store());
+    EXPECT_FALSE(world.batches.back().census.has_value()) << "others may still be on their way";
+    world.now_s += 100;
+    static_cast<void>(world.store());
+    static_cast<void>(world.store());
+    ASSERT_TRUE(world.batches.back().census.has_value());
+    EXPECT_EQ(world.batches.back().census->present,
+              (std::vector<MachineName>{{{"shop", "mill-1"}, ""}, {{"shop", "mill-1"}, "Mill"}}));
+    static_cast<void>(world.store());
+    EXPECT_FALSE(world.batches.back().census.has_value()) << "once for each connection";
+}
+
 TEST(HostApplication, SendsNoCommandButARequestForABirth) {
     HostWorld world;
     std::mt19937 random(20261130);

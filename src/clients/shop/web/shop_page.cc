@@ -33,7 +33,8 @@ Result<std::string> ShopPage::ask(const std::string &sql, std::span<const Parame
         if (!opened.has_value()) {
             return std::unexpected(opened.error());
         }
-        const auto set = opened->run("SET default_transaction_read_only = on; SET statement_timeout = '60s'");
+        const auto set = opened->run(
+            "SET default_transaction_read_only = on; SET statement_timeout = '60s'; SET jit = off");
         if (!set.has_value()) {
             return std::unexpected(set.error());
         }
