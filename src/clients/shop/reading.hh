@@ -60,7 +60,7 @@ struct NodeReceipt {
     Receipt receipt;
 };
 
-/// The machines that are there; others of these groups have gone while nobody collected.
+/// The machines that are there; others of these groups ended while no collector ran.
 struct Census {
     std::vector<MachineName> present;
     std::vector<std::string> groups;  ///< empty: all

@@ -13,6 +13,7 @@
 
 #include "clients/publish/sparkplug/broker_link.hh"
 #include "clients/publish/sparkplug/payload.hh"
+#include "clients/shop/host/known_node.hh"
 #include "clients/shop/reading.hh"
 
 namespace mw::shop {
@@ -58,25 +59,9 @@ class HostApplication {
     void stored(const std::vector<NodeReceipt> &receipts);
 
   private:
-    /// What data mean by their alias.
-    struct Metric {
-        SeriesId series = 0;
-        std::uint32_t type = 0;  ///< of Sparkplug
-    };
-    struct Device {
-        bool isAlive = false;
-        std::map<std::uint64_t, Metric> by_alias;
-        std::map<std::string, Metric, std::less<>> by_name;
-    };
-    struct Node {
-        bool isInOrder = false;  ///< no message since the birth is missing
-        Receipt position;        ///< of the last message in order
-        std::uint8_t seq = 0;    ///< of the next message
-        double requested_s = -1e9;
-        double receipt_s = -1e9;
-        bool hasReported = false;
-        std::map<std::string, Device, std::less<>> devices;
-    };
+    using Metric = KnownMetric;
+    using Device = KnownDevice;
+    using Node = KnownNode;
     /// The parts of a topic.
     struct Topic {
         NodeName node;

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// A node of Sparkplug as its birth describes it, and where its sequence of messages is.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include "clients/shop/reading.hh"
+
+namespace mw::shop {
+
+/// What data mean by their alias.
+struct KnownMetric {
+    SeriesId series = 0;
+    std::uint32_t type = 0;  ///< of Sparkplug
+};
+
+struct KnownDevice {
+    bool isAlive = false;
+    std::map<std::uint64_t, KnownMetric> by_alias;
+    std::map<std::string, KnownMetric, std::less<>> by_name;
+};
+
+struct KnownNode {
+    bool isInOrder = false;  ///< no message since the birth is missing
+    Receipt position;        ///< of the last message in order
+    std::uint8_t seq = 0;    ///< of the next message
+    double requested_s = -1e9;
+    double receipt_s = -1e9;
+    bool hasReported = false;
+    std::map<std::string, KnownDevice, std::less<>> devices;
+};
+
+}  // namespace mw::shop
