@@ -54,13 +54,13 @@ def main():
         clients = {user: connect(user, broker.port, received[user]) for user in USERS}
         try:
             wait_for(lambda: all(client.is_connected() for client in clients.values()), 'all are connected')
-            time.sleep(0.5)
+            time.sleep(0.3)
             for user, client in clients.items():
                 for topic in (BIRTH, DATA, COMMAND, DEVICE_COMMAND, RECEIPT, STATE):
                     client.publish(topic, user, 1)
             # A broker delivers in order: after the last state nothing more comes from that user.
             wait_for(lambda: all((STATE, 'shop') in each for each in received.values()), 'the state is received')
-            time.sleep(1)
+            time.sleep(0.3)
         finally:
             for client in clients.values():
                 client.loop_stop()

@@ -101,7 +101,7 @@ def judge(world, accepted):
 def main():
     skip_without_database()
     collector, feeder, _root = sys.argv[1:4]
-    kills = int(sys.argv[4]) if len(sys.argv) > 4 else 4
+    kills = int(sys.argv[4]) if len(sys.argv) > 4 else 3
     seed = int(sys.argv[5]) if len(sys.argv) > 5 else random.randrange(10**6)
     publishers = int(sys.argv[6]) if len(sys.argv) > 6 else 3
     print(f'{kills} kills, seed {seed}, {publishers} publishers', flush=True)
