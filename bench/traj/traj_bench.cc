@@ -100,8 +100,7 @@ Run drive(const Program &program, bool isJerkLimited, bool isMerging) {
     std::uint64_t cycle = 0;
     executor.step(cycle);
     planner->begin(program.start, executor.snapshot(),
-                   planner->demand_of(request_of(program, program.moves.front()), program.start,
-                                      program.moves.front().end));
+                   planner->demand_of(request_of(program, program.moves.front())));
     run.samples.push_back(program.start);
     std::size_t fed = 0;
     for (int n = 0; n < 2000000 && !run.isFinished; ++n) {

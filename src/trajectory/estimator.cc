@@ -81,7 +81,7 @@ void Estimator::add(const Primitive &primitive, const MoveRequest &request) {
     if (!(driven.length > 1e-12)) {
         return;
     }
-    const PathDemand demand = planner_->demand_of(request, driven.start, driven.end);
+    const PathDemand demand = planner_->demand_of(request);
     if (!isFresh_ && !planner_->suits(demand)) {
         finish();
         isFresh_ = true;

@@ -8,10 +8,10 @@
 
 namespace mw::trajectory {
 
-static_assert(std::size(BrakingTuning::DENSE_CHORDS) == Braking::MOST_NODES);
+static_assert(std::size(BrakingTuning::CHORDS) == Braking::MOST_NODES);
 
 std::span<const double> Braking::nodes() const noexcept {
-    return isDense ? std::span<const double>(BrakingTuning::DENSE_CHORDS) : LimitTuning::CHORDS;
+    return BrakingTuning::CHORDS;
 }
 
 double Braking::at(std::size_t part, double b) const noexcept {
@@ -56,7 +56,7 @@ Piece::BrakeLeg Piece::brake_leg(double x, double b) const noexcept {
     const bool isPlanned = !(braking.top > 0);
     BrakeLeg leg{brake_at(x, b), isPlanned ? length : braking.end_of(Braking::part_at(x, length), length)};
     using Looks = std::span<const BrakingTuning::Look>;
-    const Looks looks = braking.isDense ? Looks(BrakingTuning::DENSE_LOOKS) : Looks(BrakingTuning::LOOKS);
+    const Looks looks = isPlanned ? Looks(BrakingTuning::LOOKS) : Looks(BrakingTuning::DENSE_LOOKS);
     for (const BrakingTuning::Look &look : looks) {
         const double slower = look.slower * b;
         if (leg.a > 0 && brake_at(x, slower) > look.gain * leg.a) {

@@ -75,8 +75,7 @@ struct Braking {
     static constexpr std::size_t MOST_NODES = 7;
     using Part = std::array<float, MOST_NODES>;  ///< [1/s^2]
 
-    double top = 0;        ///< the highest squared speed; 0: nowhere more than planned
-    bool isDense = false;  ///< chords between `BrakingTuning::DENSE_CHORDS`, else `LimitTuning::CHORDS`
+    double top = 0;  ///< the highest squared speed; 0: nowhere more than planned
     std::array<Part, PARTS> parts{};
 
     /// Parts of `top` at which the bounds are known.
@@ -99,9 +98,6 @@ struct Piece {
     double length = 0;
     double blend_d = 0;       ///< 0: a part of A
     bool isToEnd = false;     ///< a part of A that reaches A's end
-    bool isAlong = false;     ///< the position on A is averaged, so A is followed exactly
-    double programmed_s = 0;  ///< where it begins on the programmed path, measured in s from the path's start
-    double tolerance = 0;     ///< deviation from the programmed path that is allowed; 0: any
     AccelBound acceleration;  ///< along x, such that every axis keeps its limits [1/s^2]
     Braking braking;          ///< the same for stops, which the speeds are not planned with
 
@@ -173,8 +169,6 @@ struct Commit {
     std::uint64_t switch_cycle = 0;
     std::uint64_t brakes = 0;     ///< Snapshot::brakes that the plan was made for; another value voids it
     Sequence begin = 0, end = 0;  ///< not a switch: the current plan `plan` now continues to `end`
-    std::uint64_t filter = 1;     ///< samples of the commanded moving average; changes only at standstill
-    bool isStop = false;          ///< made to stop, so taken while held or dropping
 };
 
 /// A motion along the curve, in cells of time, with its stops: each begins behind a cell of the motion and
@@ -198,64 +192,11 @@ struct CurvePlan {
     std::array<Stop, MOST_STOPS> stops{};
 };
 
-/// Poses and positions of the reference, by tick; written by the executor, read by the planner.
-struct LeaderSample {
-    Pose pose;
-    double s = 0;            ///< on the programmed path
-    double tolerance = 0;    ///< allowed deviation there; 0: any
-    std::uint64_t move = 0;  ///< under way
-};
-inline constexpr std::uint64_t HISTORY_CAPACITY = 1024;
-/// Maximum averaging time [samples]; all that planner and executor read together then fits the history.
-inline constexpr std::uint64_t MAX_FILTER = 400;
-using LeaderHistory = std::array<LeaderSample, HISTORY_CAPACITY>;
-
 enum class Motion : std::uint8_t { REST, FOLLOW, BRAKE, LOCKED, CURVE };
 
-/// Time since the path speed last rose or fell, valid for the later of the two; far past for the other.
-struct Coasting {
-    static constexpr double LONG_AGO = 1e9;
-    double since_rise_s = LONG_AGO, since_fall_s = LONG_AGO;
-
-    void pass(double a, double dt) noexcept {
-        if (a > 0) {
-            since_rise_s = 0;
-            since_fall_s = LONG_AGO;
-        } else if (a < 0) {
-            since_fall_s = 0;
-            since_rise_s = LONG_AGO;
-        } else {
-            since_rise_s += dt;
-            since_fall_s += dt;
-        }
-    }
-    /// Standstill after a rise of speed counts as a fall, after any motion.
-    void stand(double dt) noexcept {
-        if (since_rise_s < since_fall_s) {
-            since_fall_s = 0;
-            since_rise_s = LONG_AGO;
-        }
-        pass(0, dt);
-    }
-    void pass(const Phase &phase, double dt) noexcept {
-        if (phase.a == 0 && phase.v0 == 0) {
-            stand(dt);
-        } else {
-            pass(phase.a, dt);
-        }
-    }
-};
-
-/// The executor's state at the end of a servo cycle. With jerk limits this is the state of the reference,
-/// which is ahead of the command.
+/// The executor's state at the end of a servo cycle.
 struct Snapshot {
     std::uint64_t cycle = 0;
-    std::uint64_t tick = 0;        ///< counts steps of the executor
-    std::uint64_t filter = 1;      ///< samples of the moving average
-    std::uint64_t first_tick = 0;  ///< samples before it are all `origin`
-    Pose origin;
-    bool isSettled = true;  ///< the reference is stopped and the average has reached it
-    Coasting coasting;
     std::uint64_t plan = 0;    ///< the last switch that was taken
     std::uint64_t brakes = 0;  ///< counts how often the executor left a plan by itself
     std::uint64_t drops = 0;   ///< counts dropped paths; the planner starts afresh for each
@@ -295,7 +236,6 @@ struct PathStore {
     RawArray<curve::Span, SPAN_CAPACITY> spans;
     RawArray<curve::TimeCell, CELL_CAPACITY> cells;
     RawArray<PassLeg, LEG_CAPACITY> legs;
-    LeaderHistory history{};  ///< executor -> planner; the last samples are read long before they are reused
     SpscRing<PathEvent, 1024> events;     ///< planner -> executor
     SpscRing<Commit, 64> commits;         ///< planner -> executor
     SpscRing<CurvePlan, 16> curve_plans;  ///< planner -> executor
@@ -321,17 +261,6 @@ struct PathStore {
     Phase &phase(Sequence n) noexcept { return phases[n % PHASE_CAPACITY]; }
     const Phase &phase(Sequence n) const noexcept { return phases[n % PHASE_CAPACITY]; }
 };
-
-/// Nearer to the start of a piece that is followed exactly, the reference is stopped before it, except for
-/// rounding.
-constexpr double on_along(double length) noexcept {
-    return 1e-11 * (1.0 + length);
-}
-
-/// Permitted deviation of the path at `x`; 0: any. The start of a piece belongs to the piece before.
-constexpr double tolerance_at(const Piece &piece, double x) noexcept {
-    return x > 0 ? piece.tolerance : 0.0;
-}
 
 /// Position at `x` of a piece. [servo, planner]
 [[gnu::hot]] Pose position_at(const PathStore &store, const Piece &piece, double x) noexcept;

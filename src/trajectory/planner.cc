@@ -2,82 +2,14 @@
 #include "trajectory/planner.hh"
 
 #include <algorithm>
-#include <array>
-#include <utility>
 
 #include "trajectory/tuning.hh"
 
 namespace mw::trajectory {
 
-namespace {
-
-constexpr std::size_t HARDER_COUNT = TimingTuning::HARDER_SHARES.size() * TimingTuning::FIRST_SHARES.size();
-constexpr std::size_t STOP_COUNT = 2 + TimingTuning::STOP_SHARES.size() * TimingTuning::FIRST_SHARES.size();
-
-/// What stops are tried as before what is eased is the path; behind STOP_COUNT those for exact arcs alone.
-constexpr std::array<StopShape, STOP_COUNT + HARDER_COUNT> stop_shapes() noexcept {
-    std::array<StopShape, STOP_COUNT + HARDER_COUNT> shapes{StopShape{}, StopShape{.isHard = true}};
-    std::size_t n = 2;
-    const auto add = [&](double share) {
-        for (const double first : TimingTuning::FIRST_SHARES) {
-            shapes[n++] = {.isHard = true, .isAtOnce = true, .first_share = share * first, .share = share};
-        }
-    };
-    for (const double share : TimingTuning::STOP_SHARES) {
-        add(share);
-    }
-    for (const double share : TimingTuning::HARDER_SHARES) {
-        add(share);
-    }
-    return shapes;
-}
-constexpr std::array STOPS = stop_shapes();
-
-/// What a stop is made with, and from where.
-struct StopSearch {
-    TimingPlan &timing;
-    Trial &trial;
-    PathStore &store;
-    const PathView &view;
-    const Snapshot &now;
-    LeaderState from;
-
-    /// Drafts the soonest stop of those that pass the trial; false where all are rejected.
-    bool draft_soonest() noexcept;
-
-  private:
-    bool draft(Sequence begin, std::size_t shape) noexcept {
-        return timing.draft(view, store, begin, from, Ending::STOP, STOPS[shape]);
-    }
-};
-
-bool StopSearch::draft_soonest() noexcept {
-    const Sequence begin = timing.phases_end();
-    std::array<std::pair<double, std::size_t>, STOPS.size()> stops;
-    std::size_t count = 0;
-    const std::size_t shapes = view.path.piece(from.piece).isAlong ? STOPS.size() : STOP_COUNT;
-    for (std::size_t n = 0; n < shapes; ++n) {
-        if (draft(begin, n)) {
-            stops[count++] = {timing.stop_seconds(), n};
-        }
-    }
-    std::sort(stops.begin(), stops.begin() + static_cast<std::ptrdiff_t>(count));
-    for (std::size_t n = 0; n < count; ++n) {
-        const bool isSame = n > 0 && stops[n].first == stops[n - 1].first;
-        if (!isSame && draft(begin, stops[n].second) &&
-            trial.check(view, now, {from, begin, timing.phases_end(), timing.outlook(now)}).isSound) {
-            return true;
-        }
-    }
-    timing.discard(begin);
-    return false;
-}
-
-}  // namespace
-
 Planner::Planner(PathStore &store, const PlannerSettings &settings) noexcept
     : settings_(settings), conditions_(settings.period_s), path_(store), timing_(settings),
-      curve_(store, path_, settings.period_s, settings.third_order) {
+      curve_(store, path_, settings.period_s) {
     conditions_.chooser = settings.chooser;
 }
 
@@ -95,7 +27,6 @@ void Planner::set_room(const Pose &low, const Pose &high, const JointRoom &joint
 }
 
 void Planner::begin(const Pose &start, const Snapshot &now, const PathDemand &demand) noexcept {
-    conditions_.limits.begin(demand);
     path_.begin();
     curve_.begin(start, now, demand, conditions_);
     builder_.begin(start);
@@ -237,14 +168,12 @@ void Planner::update(const Snapshot &now) noexcept {
     switch (demand.kind) {
     case Demand::Kind::EXTEND: timing_.extend(view(), path_.store(), now); break;
     case Demand::Kind::PLAN: timing_.plan(view(), path_.store(), now, demand.from); break;
-    case Demand::Kind::STOP:  // the executor stops by itself
     case Demand::Kind::NOTHING: break;
     }
 }
 
 void Planner::plan_tried(const Snapshot &now) noexcept {
-    const bool isGone = now.drops != drops_ || (now.isDropping && now.motion == Motion::REST);
-    if (isGone || now.motion == Motion::BRAKE) {
+    if (now.drops != drops_ || now.isDropping || now.motion == Motion::BRAKE) {
         return;
     }
     path_.drive_to(now.piece);
@@ -252,42 +181,34 @@ void Planner::plan_tried(const Snapshot &now) noexcept {
     const Demand demand = timing_.tried_demand(view(), now);
     switch (demand.kind) {
     case Demand::Kind::PLAN: {
-        const bool isRefused = !find_plan(now, demand.from, Ending::ONWARD);
+        const bool isRefused = !find_plan(now, demand.from);
         if (now.motion == Motion::REST) {
-            refusals_ = isRefused && now.isSettled ? refusals_ + 1 : 0;
+            refusals_ = isRefused ? refusals_ + 1 : 0;
         }
         break;
     }
-    case Demand::Kind::STOP: find_plan(now, demand.from, Ending::STOP); break;
     case Demand::Kind::EXTEND:  // every plan goes to its end
     case Demand::Kind::NOTHING: break;
     }
 }
 
-/// Makes plans until one passes the trial; a stop as it is before what is eased is the path. False when the
-/// trial has refused them all; the plan before then stays in force, with its stop.
-bool Planner::find_plan(const Snapshot &now, LeaderState from, Ending ending) noexcept {
+/// Makes plans until one passes the trial. False when the trial has rejected them all; the plan before then
+/// stays in force, with its stop.
+bool Planner::find_plan(const Snapshot &now, LeaderState from) noexcept {
     const Sequence begin = timing_.phases_end();
     const double standing =
         TimingTuning::STANDING * path_.piece(from.piece).acceleration.at(0) * settings_.period_s;
     from.v = from.v < standing ? 0.0 : from.v;
-    const PathView on = view();
-    if (ending == Ending::STOP && StopSearch{timing_, trial_, path_.store(), on, now, from}.draft_soonest()) {
-        if (!timing_.commit(on, path_.store(), now, begin, ending)) {
-            timing_.discard(begin);
-        }
-        return true;
-    }
     easing_.begin();
     bool isRefused = false;
     Cause cause;
     const int attempts = refusals_ > 0 ? TimingTuning::ATTEMPTS_AT_REST : TimingTuning::ATTEMPTS;
     for (int n = 0; n < attempts; ++n) {
-        const bool isDrafted = timing_.draft(view(), path_.store(), begin, from, ending);
+        const bool isDrafted = timing_.draft(view(), path_.store(), begin, from);
         const TrialPlan plan{from, begin, timing_.phases_end(), timing_.outlook(now)};
         const Verdict verdict = isDrafted ? trial_.check(view(), now, plan) : Verdict{};
         if (isDrafted && verdict.isSound) {
-            if (!timing_.commit(view(), path_.store(), now, begin, ending)) {
+            if (!timing_.commit(path_.store(), now, begin)) {
                 break;
             }
             return true;
@@ -296,8 +217,8 @@ bool Planner::find_plan(const Snapshot &now, LeaderState from, Ending ending) no
             break;
         }
         isRefused = true;
-        cause = trial_.cause_of(verdict, conditions_.limits, from.v > 0 ? from.piece + 1 : from.piece);
-        if (!ease(from, verdict, cause)) {
+        cause = trial_.cause_of(verdict, from.v > 0 ? from.piece + 1 : from.piece);
+        if (!ease(from, cause)) {
             break;
         }
     }
@@ -315,22 +236,14 @@ bool Planner::find_plan(const Snapshot &now, LeaderState from, Ending ending) no
 
 /// Makes what the failed sample depends on slower, as far as it is not driven yet. False when nothing can be
 /// done from here.
-bool Planner::ease(const LeaderState &from, const Verdict &verdict, const Cause &cause) noexcept {
+bool Planner::ease(const LeaderState &from, const Cause &cause) noexcept {
     if (cause.low == 0) {
         return false;
     }
-    const Means means = easing_.means_against(view(), cause);
-    if (easing_.lengthen_stands(path_, conditions_.limits, cause, means, verdict.excess)) {
-        return true;
-    }
-    const Sequence taken_back = easing_.take_back_gentleness(path_, verdict);
-    if (taken_back != 0) {
-        timing_.renew_up_to(view(), taken_back);
-    }
-    easing_.slow_down(path_, conditions_.workspace, cause, means, verdict);
+    easing_.slow_down(path_, cause);
     timing_.renew_span(view(), cause.low, cause.high);
     if (from.v > 0 && !timing_.isKept(view(), from)) {
-        easing_.undo(path_, conditions_.workspace);
+        easing_.undo(path_);
         timing_.renew_span(view(), cause.low, cause.high);
         return false;
     }

@@ -28,22 +28,12 @@ class Planner {
 
     /// Holds for moves added from now on; jerk limits from the next `begin` on.
     void set_limits(const Limits &limits) noexcept { conditions_.limits.set(limits); }
-    /// The path that begins now with such a move would be made as the present one.
-    bool isFilterCurrent(const PathDemand &demand) const noexcept {
-        return curve_.suits(demand, conditions_) &&
-               (curve_.isActive() || conditions_.limits.isCurrent(demand));
-    }
-    /// What a path that begins with such a move, from `start` to `end`, is made for.
-    PathDemand demand_of(const MoveRequest &request, const Pose &start, const Pose &end) const noexcept {
-        PathDemand demand = conditions_.limits.demand_of(request, start, end);
-        demand.drive =
-            conditions_.isLocked(request) ? PathDemand::Drive::BY_ANGLE : PathDemand::Drive::BY_TIME;
-        return demand;
-    }
-    /// With jerk limits a path is made for what it began with; a much smaller tolerance, or rotary axes that
-    /// it began without, require another path, from a stop.
-    bool suits(const PathDemand &demand) const noexcept {
-        return curve_.suits(demand, conditions_) && (curve_.isActive() || conditions_.limits.suits(demand));
+    /// A path that begins now with such a move would be made as the present one.
+    bool suits(const PathDemand &demand) const noexcept { return curve_.suits(demand, conditions_); }
+    /// What a path that begins with such a move is made for.
+    PathDemand demand_of(const MoveRequest &request) const noexcept {
+        const bool is_locked = conditions_.isLocked(request);
+        return {is_locked ? PathDemand::Drive::BY_ANGLE : PathDemand::Drive::BY_TIME};
     }
 
     /// For machines whose joints are not axes; `map` stays valid. Null: the axes' limits are all there are.
@@ -60,8 +50,7 @@ class Planner {
 
     /// One more move can be added.
     bool hasRoom(const Snapshot &now) const noexcept {
-        return curve_.isActive() ? curve_.path().hasRoom()
-                                 : PathBuilder::hasRoom(path_, conditions_.limits, now);
+        return curve_.isActive() ? curve_.path().hasRoom() : PathBuilder::hasRoom(path_, now);
     }
     /// Appends a move that starts at `end()`; its length must be greater than 0. Returns its number.
     Sequence add(const Primitive &primitive, const MoveRequest &request) noexcept;
@@ -125,8 +114,8 @@ class Planner {
     /// The move at whose start the executor is stopped, 0: none.
     Sequence standing_before(const Snapshot &now) const noexcept;
     void plan_tried(const Snapshot &now) noexcept;
-    bool find_plan(const Snapshot &now, LeaderState from, Ending ending) noexcept;
-    bool ease(const LeaderState &from, const Verdict &verdict, const Cause &cause) noexcept;
+    bool find_plan(const Snapshot &now, LeaderState from) noexcept;
+    bool ease(const LeaderState &from, const Cause &cause) noexcept;
 
     PlannerSettings settings_;
     Conditions conditions_;

@@ -172,27 +172,6 @@ void leave_to_paths(const AxisMap &map, int j, FoldedLimits &out) noexcept {
     }
 }
 
-/// The linear or rotary joint that needs the longest averaging time.
-trajectory::Limits::SlowJoint slow_joint(const Settings &s, const AxisMap &map,
-                                         const trajectory::JointLimits &joints, bool isAngular) noexcept {
-    trajectory::Limits::SlowJoint slow;
-    double longest = 0;
-    for (int j = 0; j < map.num_led(); ++j) {
-        const double jerk = joints.jerk[at(j)];
-        const bool isLimited = jerk > 0 && s.get(Parameter::JOINT_MAX_JERK, j) < NO_JERK_LIMIT;
-        if (!isLimited || s.isSet(Parameter::JOINT_IS_ANGULAR, j) != isAngular) {
-            continue;
-        }
-        const trajectory::Limits::SlowJoint joint{joints.velocity[at(j)], joints.acceleration[at(j)], jerk};
-        const double mean_s = trajectory::time_of_mean(joint.velocity, joint.acceleration, jerk);
-        if (mean_s > longest) {
-            slow = joint;
-            longest = mean_s;
-        }
-    }
-    return slow;
-}
-
 }  // namespace
 
 bool AxisMap::hasAxis(int axis) const noexcept {
@@ -283,10 +262,6 @@ FoldedLimits fold_limits(const Settings &settings, const AxisMap &map, const Hom
     }
     for (int joint = 0; joint < shared; ++joint) {
         leave_to_paths(map, joint, out);
-    }
-    if (map.kind == AxisMap::Kind::PLANNED) {
-        out.path.slow_linear_joint = slow_joint(settings, map, out.path_joints, false);
-        out.path.slow_rotary_joint = slow_joint(settings, map, out.path_joints, true);
     }
     return out;
 }

@@ -127,8 +127,7 @@ void PathPlanner::complete_moves() noexcept {
     while (!pending_.isEmpty()) {
         const PendingCommand &p = pending_.oldest();
         const bool isReached = e.done_move >= p.after_move;
-        const bool isStanding =
-            e.motion == trajectory::Motion::REST && e.isSettled && e.done_move >= planner_.last_move();
+        const bool isStanding = e.motion == trajectory::Motion::REST && e.done_move >= planner_.last_move();
         if (!isReached || ((p.isFlush || p.isProbe) && !isStanding)) {
             return;
         }
@@ -237,15 +236,13 @@ trajectory::PathDemand PathPlanner::demand_of(const PathCommand &c) const noexce
     if (line == nullptr && arc == nullptr) {
         return {};
     }
-    const geometry::Pose &start = isPathBegun_ ? planner_.end() : view_.position;
-    return line != nullptr ? planner_.demand_of(request_for(c, line->terms), start, line->end)
-                           : planner_.demand_of(request_for(c, arc->terms), start, arc->end);
+    return planner_.demand_of(request_for(c, line != nullptr ? line->terms : arc->terms));
 }
 
 /// True when all accepted commands are driven.
 bool PathPlanner::isIdle() const noexcept {
     const trajectory::Snapshot &e = view_.executor;
-    return pending_.isEmpty() && e.isSettled && e.done_move >= planner_.last_move();
+    return pending_.isEmpty() && e.motion == trajectory::Motion::REST && e.done_move >= planner_.last_move();
 }
 
 /// Begins a path if there is none. Jerk limits and the tolerance of a path change only at standstill.
@@ -253,7 +250,7 @@ void PathPlanner::begin_path(const PathCommand &c) noexcept {
     const bool isOutput = std::holds_alternative<SynchedDigitalOutput>(c.body) ||
                           std::holds_alternative<SynchedAnalogOutput>(c.body);
     const trajectory::PathDemand demand = demand_of(c);
-    if (!isPathBegun_ || (!isOutput && isIdle() && !planner_.isFilterCurrent(demand))) {
+    if (!isPathBegun_ || (!isOutput && isIdle() && !planner_.suits(demand))) {
         planner_.begin(view_.position, view_.executor, demand);
         isPathBegun_ = true;
     }

@@ -48,7 +48,7 @@ geometry::Pose first_place(const Settings &settings) noexcept {
 Controller::Controller(const ControllerConfig &config, const kinematics::Kinematics &kinematics,
                        Channels &channels, PathLink &link) noexcept
     : config_(config), kinematics_(kinematics), channels_(&channels), link_(&link),
-      executor_(link.store, config.period_s, lone_stops_.limits()) {
+      executor_(link.store, config.period_s) {
     joints_.loaded = config.num_joints;
     spindles_.count = config.num_spindles;
     outputs_.num_digital = config.num_dio;
@@ -87,9 +87,7 @@ Controller::Controller(const Controller &other, Channels &channels, PathLink &li
     : Controller(other) {
     channels_ = &channels;
     link_ = &link;
-    std::construct_at(&lone_stops_, kinematics_, joints_);
-    lone_stops_.set(limits_, map_.kind == AxisMap::Kind::PLANNED);
-    std::construct_at(&executor_, other.executor_, link.store, lone_stops_.limits());
+    std::construct_at(&executor_, other.executor_, link.store);
 }
 
 bool Controller::isAnythingMoving() const noexcept {

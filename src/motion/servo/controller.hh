@@ -25,7 +25,6 @@
 #include "motion/servo/joints/joints.hh"
 #include "motion/servo/offsets/external_offsets.hh"
 #include "motion/servo/outputs/machine_outputs.hh"
-#include "motion/servo/path_stop_limits.hh"
 #include "motion/servo/power/power.hh"
 #include "motion/servo/probe/probe.hh"
 #include "motion/servo/spindles/spindles.hh"
@@ -147,7 +146,6 @@ class Controller {
     ExternalOffsets offsets_;
     ExtraJoints extra_;
     Indexers indexers_;
-    PathStopLimits lone_stops_{kinematics_, joints_};
     trajectory::Executor executor_;
     Retracing retracing_;
 

@@ -384,7 +384,6 @@ void Controller::publish_limits() noexcept {
     limits_ = fold_limits(settings_, map_, {homed_mask(homing_), isAllHomed(homing_)});
     configure(offsets_, limits_, map_);
     indexers_.mask = limits_.locks;
-    lone_stops_.set(limits_, map_.kind == AxisMap::Kind::PLANNED);
     PathLimits out;
     out.offset_axes = offsets_.axes;
     out.indexer = limits_.indexer;

@@ -48,7 +48,6 @@ void CurveFollower::step(const PathStore &store, double dt, Snapshot &state) noe
         state.motion = plan_.pass.isAny() ? Motion::LOCKED : Motion::CURVE;
         state.isOnCurve = true;
         state.piece = 0;
-        state.filter = 1;
     }
     if (state.motion != Motion::CURVE) [[unlikely]] {
         state.plan = state.motion == Motion::LOCKED ? plan_.plan : state.plan;

@@ -16,35 +16,6 @@ Pose line_at(const Primitive &line, double x) noexcept {
     return x == 0 ? line.start : x == line.length ? line.end : line.start + line.lin * x;
 }
 
-/// How long the speed is kept before braking: a plan keeps its speed for so long after a rise, so the path
-/// allows it.
-double wait_behind_rise(const PathStore &store, const Snapshot &now, double period_s) noexcept {
-    const bool isFalling = now.plan != 0 && store.phase(now.phase).a < 0;
-    const double mean_s = now.filter > 1 ? static_cast<double>(now.filter) * period_s : 0.0;
-    return isFalling ? 0.0 : std::max(0.0, mean_s - now.coasting.since_rise_s);
-}
-
-/// The plan in force, phases up to `end`, ends in a stop that was tried, and soon enough beside braking from
-/// here.
-bool isPlanSoonOver(const PathStore &store, const Snapshot &now, Sequence end, double period_s) noexcept {
-    constexpr Sequence MOST = 64;
-    if (end - now.phase > MOST) {
-        return false;
-    }
-    double left_s = -now.time_in_phase;
-    for (Sequence n = now.phase; n < end; ++n) {
-        left_s += store.phase(n).duration;
-    }
-    const double a = store.piece(now.piece).brake_leg(now.x, now.v * now.v).a;
-    const double brake_s = wait_behind_rise(store, now, period_s) + now.v / a;
-    return store.phase(end - 1).isStop(period_s) && left_s <= brake_s + ExecutorTuning::LATER_S;
-}
-
-/// Jerk limits tell how hard a stop may brake. Exact arcs have brakes of their own.
-bool isGuarded(const PathStore &store, const Snapshot &now, const StopLimits *limits) noexcept {
-    return limits != nullptr && now.filter > 1 && !store.piece(now.piece).isAlong;
-}
-
 }  // namespace
 
 void Executor::take_commits() noexcept {
@@ -54,10 +25,8 @@ void Executor::take_commits() noexcept {
     }
     while (const Commit *c = store_.commits.front()) [[unlikely]] {
         if (c->isSwitch) {
-            const bool isFree = c->isStop || (!state_.isHeld && !state_.isDropping);
-            const bool isSameMean = c->filter == state_.filter || isAtRest();
-            const bool isTimely =
-                c->switch_cycle > state_.cycle && c->brakes == state_.brakes && isFree && isSameMean;
+            const bool isFree = !state_.isHeld && !state_.isDropping;
+            const bool isTimely = c->switch_cycle > state_.cycle && c->brakes == state_.brakes && isFree;
             if (isTimely) {
                 next_switch_ = *c;
                 next_end_ = c->end;
@@ -75,11 +44,6 @@ const ExecutorOutput &Executor::step(std::uint64_t cycle) noexcept {
     take_commits();
     out_.tap = {};
     state_.cycle = cycle;
-    ++state_.tick;
-    const bool mustStop = state_.isDropping && state_.motion == Motion::FOLLOW && isFiltered();
-    if (mustStop && !silence_.isStopping) [[unlikely]] {
-        watch_planner();
-    }
     if (state_.motion == Motion::LOCKED) [[unlikely]] {
         step_locked();
     } else if (state_.motion == Motion::CURVE || curve_.isWaiting()) {
@@ -92,16 +56,10 @@ const ExecutorOutput &Executor::step(std::uint64_t cycle) noexcept {
     }
     const bool isDue = next_switch_.plan != 0 && next_switch_.switch_cycle <= cycle;
     if (isDue) [[unlikely]] {
-        const bool isFree = next_switch_.isStop || (!state_.isHeld && !state_.isDropping);
+        const bool isFree = !state_.isHeld && !state_.isDropping;
         const bool isValid =
             next_switch_.brakes == state_.brakes && next_switch_.switch_cycle == cycle && isFree;
         if (isValid) {
-            if (isAtRest()) {
-                // What is remembered begins here: before, the places were those of another path.
-                state_.filter = next_switch_.filter;
-                mean_.reset(leader_, state_.filter, state_.tick);
-            }
-            silence_.isStopping = next_switch_.isStop;
             state_.motion = Motion::FOLLOW;
             state_.isOnCurve = false;
             state_.plan = next_switch_.plan;
@@ -115,7 +73,7 @@ const ExecutorOutput &Executor::step(std::uint64_t cycle) noexcept {
         next_switch_.plan = 0;
     }
     locate();
-    filter();
+    command();
     const bool isDropOver = state_.isDropping && isAtRest();
     if (isDropOver) [[unlikely]] {
         finish_drop();
@@ -124,43 +82,14 @@ const ExecutorOutput &Executor::step(std::uint64_t cycle) noexcept {
 }
 
 void Executor::set_position(const Pose &pose) noexcept {
-    leader_ = pose;
+    position_ = pose;
     out_.position = pose;
-    mean_.reset(pose, state_.filter, state_.tick);
-    state_.first_tick = state_.tick;
-    state_.origin = pose;
-    rest_ticks_ = MAX_FILTER;
-    arc_.leave();
-    state_.isSettled = true;
 }
 
-/// What is commanded: the leader itself, or the mean of its last samples.
-void Executor::filter() noexcept {
-    const bool isResting = state_.motion == Motion::REST;
-    LeaderSample &sample = store_.history[state_.tick % HISTORY_CAPACITY];
-    sample = {leader_, leader_s_, leader_tolerance_, out_.move};
-    done_history_[state_.tick % HISTORY_CAPACITY] = leader_done_;
-    rest_ticks_ = isResting ? rest_ticks_ + 1 : 0;
-    if (isResting) [[unlikely]] {
-        state_.coasting.stand(period_);
-    }
-    state_.isSettled = isResting && rest_ticks_ >= state_.filter;
-    const bool isPlain = !isFiltered() || state_.isSettled;
-    const Piece *piece = state_.piece != 0 ? &store_.piece(state_.piece) : nullptr;
-    const std::optional<Pose> on_arc = arc_.follow(store_, piece, state_.x, state_.tick, state_.filter);
-    if (isPlain || on_arc) [[likely]] {
-        // Also keeps rounding from gathering in the mean.
-        out_.position = on_arc && !isPlain ? *on_arc : leader_;
-        mean_.reset(leader_, state_.filter, state_.tick);
-        const std::uint64_t back = isPlain ? 0 : state_.filter / 2;
-        state_.done_move = std::max(state_.done_move, done_history_[(state_.tick - back) % HISTORY_CAPACITY]);
-    } else {
-        out_.position = mean_.push(store_.history, state_.tick);
-        const std::uint64_t middle = std::max(mean_.first(), state_.tick - state_.filter / 2);
-        state_.done_move = std::max(state_.done_move, done_history_[middle % HISTORY_CAPACITY]);
-    }
-    state_.first_tick = mean_.first();
-    state_.origin = mean_.origin();
+/// What is commanded.
+void Executor::command() noexcept {
+    out_.position = position_;
+    state_.done_move = std::max(state_.done_move, done_);
     out_.isMoving = !isAtRest();
 }
 
@@ -174,7 +103,6 @@ void Executor::advance(double dt) noexcept {
 double Executor::follow(double dt) noexcept {
     const Phase &p = store_.phase(state_.phase);
     const double left = p.duration - state_.time_in_phase;
-    state_.coasting.pass(p, std::min(dt, left));
     if (dt < left) [[likely]] {
         state_.time_in_phase += dt;
         state_.x = p.x_at(state_.time_in_phase);
@@ -207,54 +135,26 @@ double Executor::follow(double dt) noexcept {
 }
 
 void Executor::start_brake() noexcept {
-    brake_.wait_s = wait_behind_rise(store_, state_, period_);
-    brake_.most = 0;
-    brake_.plan_phase = state_.phase;
     state_.motion = Motion::BRAKE;
     ++state_.brakes;
     next_switch_.plan = 0;
-    brake_on_piece(period_);
+    brake_on_piece();
 }
 
-/// Returns the time that is left when the piece or the waiting is over.
-double Executor::coast_before_brake(double dt) noexcept {
-    const double length = store_.piece(state_.piece).length;
-    const double span = std::min(dt, brake_.wait_s);
-    const bool isWithin = state_.v * span < length - state_.x;
-    const double t = isWithin ? span : std::max(0.0, length - state_.x) / state_.v;
-    state_.coasting.pass(0, t);
-    state_.x = isWithin ? state_.x + state_.v * t : length;
-    brake_.wait_s -= t;
-    if (!isWithin && state_.piece == store_.last_piece.load(std::memory_order_acquire)) {
-        come_to_rest();  // the end of the path, as in brake_along
-    } else if (!isWithin) {
-        enter_next_piece(dt - t);
-    } else if (brake_.wait_s <= TimingTuning::SOON) {
-        brake_.wait_s = 0;
-        brake_on_piece(dt - t);
-    }
-    return dt - t;
-}
-
-void Executor::enter_next_piece(double dt) noexcept {
+void Executor::enter_next_piece() noexcept {
     ++state_.piece;
     state_.x = 0;
-    brake_on_piece(dt);
+    brake_on_piece();
 }
 
-/// Sets up braking from the present state to a stop, to where the piece allows another, or to its end. `dt`
-/// is left of the cycle, for which the brake was chosen on an earlier piece.
-void Executor::brake_on_piece(double dt) noexcept {
+/// Sets up braking from the present state to a stop, to where the piece allows another, or to its end.
+void Executor::brake_on_piece() noexcept {
     const Piece &piece = store_.piece(state_.piece);
     const double v2 = state_.v * state_.v;
     const Piece::BrakeLeg leg = piece.brake_leg(state_.x, v2);
     brake_.end = leg.end;
     const double left = std::max(0.0, brake_.end - state_.x);
     double a = leg.a;
-    if (v2 > 0 && isGuarded(store_, state_, stop_limits_)) {
-        const double least = least_brake(store_, state_, brake_.plan_phase, phase_end_, dt);
-        a = std::min(leg.a, std::max(brake_.most, least));
-    }
     const double out2 = v2 - 2.0 * a * left;
     brake_.time = 0;
     brake_.isFinal = out2 <= TimingTuning::STOP_FIT * v2;
@@ -271,16 +171,6 @@ void Executor::brake_on_piece(double dt) noexcept {
 }
 
 double Executor::brake_along(double dt) noexcept {
-    if (brake_.wait_s > TimingTuning::SOON && state_.v > 0) {
-        return coast_before_brake(dt);
-    }
-    if (dt >= period_ && state_.v > 0 && isGuarded(store_, state_, stop_limits_)) {
-        const double hardest = store_.piece(state_.piece).brake_leg(state_.x, state_.v * state_.v).a;
-        const double least = least_brake(store_, state_, brake_.plan_phase, phase_end_, period_);
-        brake_.most = brake_within_jerk(store_, state_, out_.position, *stop_limits_,
-                                        {std::min(least, hardest), hardest}, period_);
-        brake_on_piece(dt);
-    }
     const double left = brake_.phase.duration - brake_.time;
     if (dt < left) {
         brake_.time += dt;
@@ -300,7 +190,7 @@ double Executor::brake_along(double dt) noexcept {
     state_.v = brake_.phase.v_at(brake_.phase.duration);
     if (brake_.end < piece.length) {
         state_.x = brake_.end;
-        brake_on_piece(dt - left);
+        brake_on_piece();
         return dt - left;
     }
     if (state_.piece == store_.last_piece.load(std::memory_order_acquire)) {
@@ -310,7 +200,7 @@ double Executor::brake_along(double dt) noexcept {
         come_to_rest();
         return 0;
     }
-    enter_next_piece(dt - left);
+    enter_next_piece();
     return dt - left;
 }
 
@@ -321,7 +211,6 @@ void Executor::come_to_rest() noexcept {
 
 /// Whatever is left of the path is gone; the planner learns it from `drops`.
 void Executor::finish_drop() noexcept {
-    arc_.leave();
     state_.isDropping = false;
     ++state_.drops;
     ++state_.brakes;
@@ -338,7 +227,7 @@ void Executor::hold(bool isHeld) noexcept {
         state_.isHeld = false;
         return;
     }
-    if (!state_.isHeld && state_.motion == Motion::FOLLOW && !isFiltered()) {
+    if (!state_.isHeld && state_.motion == Motion::FOLLOW) {
         start_brake();
     }
     const bool isAtStart = tapping_ ? tap_.isWaiting() : pass_.isWaiting();
@@ -357,33 +246,10 @@ void Executor::drop() noexcept {
         return;
     }
     state_.isDropping = true;
-    silence_.cycles = 0;
-    silence_.waited = 0;
-    if (state_.motion == Motion::FOLLOW && !isFiltered()) {
+    if (state_.motion == Motion::FOLLOW) {
         start_brake();
     } else if (isAtRest()) {
         finish_drop();
-    }
-}
-
-/// A stop must not wait for a planner that is late or gone. One that looks for a sound stop is waited for
-/// longer: the plan in force ends in one. Where the leader stands between two moves it stays.
-void Executor::watch_planner() noexcept {
-    const std::uint32_t updates = store_.updates.load(std::memory_order_relaxed);
-    silence_.cycles = updates != silence_.seen_updates ? 0 : silence_.cycles + 1;
-    silence_.seen_updates = updates;
-    const bool isGone = silence_.cycles > ExecutorTuning::PLANNER_SILENCE_CYCLES &&
-                        silence_.cycles * period_ > ExecutorTuning::PLANNER_SILENCE_S;
-    ++silence_.waited;
-    const bool isWithoutPlan = silence_.waited * period_ > ExecutorTuning::STOP_PLAN_WAIT_S;
-    const bool isBetween =
-        state_.v == 0 && store_.phase(state_.phase).a == 0 && state_.phase + 1 < phase_end_;
-    if (isBetween) {
-        ++state_.brakes;
-        next_switch_.plan = 0;
-        come_to_rest();
-    } else if ((isGone || isWithoutPlan) && !isPlanSoonOver(store_, state_, phase_end_, period_)) {
-        start_brake();
     }
 }
 
@@ -406,8 +272,8 @@ void Executor::locate() noexcept {
             at = {line_at(store_.primitive(curve_.plan().move), tap_.x()), curve_.plan().move, false,
                   at.left};
         }
-        leader_ = at.pose;
-        leader_done_ = std::max(leader_done_, at.is_complete ? at.move : at.move - 1);
+        position_ = at.pose;
+        done_ = std::max(done_, at.is_complete ? at.move : at.move - 1);
         out_.isOnProbe = store_.move(at.move).isProbe && !(at.is_complete && isAtRest());
         out_.move = at.is_complete && !isMoving && !out_.isOnProbe ? 0 : at.move;
         out_.distance_to_go = at.left;
@@ -419,9 +285,7 @@ void Executor::locate() noexcept {
         return;
     }
     const Piece &piece = store_.piece(state_.piece);
-    leader_ = position_at(store_, piece, state_.x);
-    leader_s_ = piece.programmed_s + state_.x;
-    leader_tolerance_ = tolerance_at(piece, state_.x);
+    position_ = position_at(store_, piece, state_.x);
     const bool isBlend = piece.blend_d > 0;
     const double along_piece = piece.offset + state_.x;
     const bool isSecond = isBlend && along_piece >= piece.blend_d;
@@ -431,8 +295,7 @@ void Executor::locate() noexcept {
     const double start = isBlend ? line.length - piece.blend_d : 0;
     const double along = isSecond ? y : start + along_piece - y;
     const bool isComplete = piece.isToEnd && state_.x >= piece.length;
-    leader_done_ = std::max(leader_done_, isComplete ? move : move - 1);
-    // The mean comes to the end later: until then something may be found.
+    done_ = std::max(done_, isComplete ? move : move - 1);
     out_.isOnProbe = store_.move(move).isProbe && !(isComplete && isAtRest());
     out_.move = isComplete && !isMoving && !out_.isOnProbe ? 0 : move;
     out_.distance_to_go = isComplete ? 0 : line.length - along;

@@ -6,10 +6,7 @@
 #include <cstdint>
 
 #include "base/limits.hh"
-#include "trajectory/follow/arc_mean.hh"
 #include "trajectory/follow/curve_follower.hh"
-#include "trajectory/follow/lone_brake.hh"
-#include "trajectory/follow/mean_filter.hh"
 #include "trajectory/follow/pass_follower.hh"
 #include "trajectory/follow/spindle_track.hh"
 #include "trajectory/follow/tap_follower.hh"
@@ -34,23 +31,12 @@ struct ExecutorOutput {
     TapDemand tap;
 };
 
-/// Whether the planner is there in a drop, and stops the leader.
-struct PlannerSilence {
-    std::uint32_t seen_updates = 0;
-    int cycles = 0;           ///< since the last one
-    int waited = 0;           ///< cycles since the drop
-    bool isStopping = false;  ///< the plan in force was made to stop
-};
-
 /// How the executor brakes by itself on the present piece.
 struct Brake {
     Phase phase;
-    double time = 0;          ///< in it
-    bool isFinal = false;     ///< it ends in a stop
-    double end = 0;           ///< where on the piece it ends otherwise
-    double wait_s = 0;        ///< before: until the mean has forgotten the last rise the speed is kept
-    double most = 0;          ///< what jerk limits leave in this cycle [1/s^2]
-    Sequence plan_phase = 0;  ///< of the plan that it has left, where the leader is now
+    double time = 0;       ///< in it
+    bool isFinal = false;  ///< it ends in a stop
+    double end = 0;        ///< where on the piece it ends otherwise
 };
 
 /// What an executor remembers. A copy of it goes on in another executor whose store holds the same path.
@@ -65,14 +51,8 @@ class ExecutorState {
     Sequence phase_end_ = 0;  ///< phases of the plan taken end here
     Sequence next_end_ = 0;   ///< the same of the waiting switch
     Brake brake_;
-    PlannerSilence silence_;
-    Pose leader_;
-    double leader_s_ = 0, leader_tolerance_ = 0;
-    Sequence leader_done_ = 0;
-    MeanFilter mean_;
-    ArcMean arc_;
-    std::uint64_t rest_ticks_ = MAX_FILTER;  ///< since the leader stands
-    std::array<Sequence, HISTORY_CAPACITY> done_history_{};
+    Pose position_;
+    Sequence done_ = 0;
 
     std::array<FollowedSpindle, MAX_SPINDLES> spindles_{};
     PassFollower pass_;
@@ -85,9 +65,6 @@ class ExecutorState {
 ///
 /// Follows phases; when they run out, or on `hold` and `drop`, it brakes with each piece's own acceleration
 /// along the path. A late or lost planner therefore means a stop on the path.
-/// With jerk limits (Commit::filter above 1) a leader does this and its mean is commanded; the planner then
-/// ends every plan with a stop, and answers `hold` and `drop` with a plan. A planner that is away, or
-/// finds none, leaves a `drop` to the leader's own brake.
 /// Along a curve (Motion::CURVE) every plan has its stops: `hold`, `drop` and a planner that is away take the
 /// next one.
 /// Passes that are locked to a spindle's angle (Motion::LOCKED) it drives by itself, from rest to rest;
@@ -95,12 +72,9 @@ class ExecutorState {
 /// switches the spindle off and follows it to its stand.
 class Executor : private ExecutorState {
   public:
-    /// `limits` stay valid; what they hold may change. Null: stops without a planner know no jerk limits.
-    explicit Executor(PathStore &store, double period_s, const StopLimits *limits = nullptr) noexcept
-        : ExecutorState(period_s), store_(store), stop_limits_(limits) {}
-    /// Goes on where `other` is; `store` holds the same path.
-    Executor(const Executor &other, PathStore &store, const StopLimits *limits) noexcept
-        : ExecutorState(other), store_(store), stop_limits_(limits) {}
+    explicit Executor(PathStore &store, double period_s) noexcept : ExecutorState(period_s), store_(store) {}
+    /// Continues where `other` is; `store` holds the same path.
+    Executor(const Executor &other, PathStore &store) noexcept : ExecutorState(other), store_(store) {}
 
     /// The path begins at `pose`; only at rest and with nothing left of a path.
     [[gnu::cold]] void set_position(const Pose &pose) noexcept;
@@ -129,7 +103,7 @@ class Executor : private ExecutorState {
     const PathEvent *due_event() noexcept;
     void drop_event() noexcept { store_.events.drop(); }
 
-    bool isAtRest() const noexcept { return state_.motion == Motion::REST && state_.isSettled; }
+    bool isAtRest() const noexcept { return state_.motion == Motion::REST; }
     /// The spindle that what moves is in step with, -1: none.
     int locked_spindle() const noexcept {
         if (state_.motion == Motion::LOCKED) [[unlikely]] {
@@ -151,15 +125,12 @@ class Executor : private ExecutorState {
     [[gnu::hot]] double follow(double dt) noexcept;
     [[gnu::cold]] double brake_along(double dt) noexcept;
     [[gnu::cold]] void start_brake() noexcept;
-    [[gnu::cold]] void brake_on_piece(double dt) noexcept;
-    [[gnu::cold]] double coast_before_brake(double dt) noexcept;
-    [[gnu::cold]] void enter_next_piece(double dt) noexcept;
+    [[gnu::cold]] void brake_on_piece() noexcept;
+    [[gnu::cold]] void enter_next_piece() noexcept;
     [[gnu::cold]] void come_to_rest() noexcept;
     [[gnu::hot]] void locate() noexcept;
-    [[gnu::hot]] void filter() noexcept;
+    [[gnu::hot]] void command() noexcept;
     [[gnu::cold]] void finish_drop() noexcept;
-    [[gnu::cold]] void watch_planner() noexcept;
-    bool isFiltered() const noexcept { return state_.filter > 1; }
 
     [[gnu::cold]] void begin_pass() noexcept;
     void step_locked() noexcept;
@@ -167,7 +138,6 @@ class Executor : private ExecutorState {
     bool advance_pass(const SpindleReading &spindle) noexcept;
 
     PathStore &store_;
-    const StopLimits *stop_limits_;
 };
 
 }  // namespace mw::trajectory

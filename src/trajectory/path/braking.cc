@@ -201,19 +201,18 @@ struct Curve {
 Demands demands_of(const Coordinates &axes, const PathLimits &limits) noexcept {
     Demands d;
     for (std::size_t i = 0; i < axes.size(); ++i) {
-        d.of[i].acceleration = limits.fitted().acceleration[axes[i].number];
+        d.of[i].acceleration = limits.wanted().acceleration[axes[i].number];
     }
-    d.norm.acceleration = limits.fitted().acceleration[XYZ_NORM];
+    d.norm.acceleration = limits.wanted().acceleration[XYZ_NORM];
     d.norm.isRightAngled = true;
     return d;
 }
 
-Demands demands_of(const Coordinates &joints, const JointLimits &limits, double filter_s) noexcept {
+Demands demands_of(const Coordinates &joints, const JointLimits &limits) noexcept {
     Demands d;
     for (std::size_t i = 0; i < joints.size(); ++i) {
         const std::size_t j = joints[i].number;
-        const double built_up = filter_s > 0 ? limits.jerk[j] * filter_s : UNLIMITED;
-        d.of[i].acceleration = std::min(limits.acceleration[j], built_up);
+        d.of[i].acceleration = limits.acceleration[j];
     }
     return d;
 }
@@ -283,11 +282,11 @@ Braking braking_on(const PathStore &store, const Piece &piece, const Conditions 
     if (workspace.isMapped() && !curve.take_joints(joints)) {
         return {};
     }
-    Braking out{limit.v * limit.v, !(conditions.limits.filter_s() > 0), {}};
+    Braking out{limit.v * limit.v, {}};
     bool isGain = false;
     for (std::size_t n = 0; n < INTERVALS; ++n) {
         Demands by_axes = demands_of(axes, conditions.limits);
-        Demands by_joints = demands_of(joints, workspace.joints, conditions.limits.filter_s());
+        Demands by_joints = demands_of(joints, workspace.joints);
         by_axes.add(axes, n);
         if (curve.isArc()) {
             by_axes.take_circle(store.primitive(piece.primitive));

@@ -5,6 +5,7 @@
 
 #include <array>
 
+#include "trajectory/path/move_request.hh"
 #include "trajectory/path/path_limits.hh"
 #include "trajectory/path/workspace.hh"
 
@@ -45,7 +46,7 @@ struct Conditions {
         return request.isLocked && (request.isTapped || !workspace.isMapped());
     }
     /// Plans are tried out before they are committed.
-    bool isTried() const noexcept { return limits.isFiltered() || workspace.isMapped(); }
+    bool isTried() const noexcept { return workspace.isMapped(); }
 };
 
 }  // namespace mw::trajectory

@@ -72,7 +72,7 @@ class SpeedChangeRun {
         part_ = 0;
         time_ = 0;
     }
-    /// The state `dt` later; true once the change is complete, at the speed that it leads to.
+    /// The state `dt` later; true once the change is complete, at its last speed.
     bool advance(MotionState &state, double dt) noexcept;
 
   private:

@@ -114,50 +114,6 @@ AccelBound AccelBound::least(const AccelBound &x, const AccelBound &y, double v)
     return through(left, v);
 }
 
-std::uint64_t filter_length(const Limits &limits, double period_s, const PathDemand &demand) noexcept {
-    if (!limits.isJerkLimited) {
-        return 1;
-    }
-    double linear_s = 0;
-    double rotary_s = 0;
-    bool isNeeded = false;
-    const auto add = [&](double velocity, double acceleration, double jerk, bool isAngular) {
-        if (!(jerk > 0 && jerk < 1e9 && acceleration < 1e9)) {
-            return;
-        }
-        isNeeded = isNeeded || acceleration > jerk * period_s;
-        double length = time_of_mean(velocity, acceleration, jerk);
-        if (demand.tolerance > 0) {
-            length = std::min(length, LimitTuning::CURVE_SHARE * std::cbrt(24.0 * demand.tolerance / jerk));
-        }
-        double &of = isAngular ? rotary_s : linear_s;
-        of = std::max(of, length);
-    };
-    for (std::size_t i = 0; i < limits.jerk.size(); ++i) {
-        add(limits.velocity[i], limits.acceleration[i], limits.jerk[i],
-            geometry::isAngular(static_cast<int>(i)));
-    }
-    const auto add_joint = [&](const Limits::SlowJoint &joint, bool isAngular) {
-        add(joint.velocity, joint.acceleration, joint.jerk, isAngular);
-    };
-    add_joint(limits.slow_linear_joint, false);
-    add_joint(limits.slow_rotary_joint, true);
-    const double turning_s = demand.isTurning ? LimitTuning::TURNING_SHARE * rotary_s : 0.0;
-    const double samples =
-        std::ceil((linear_s > 0 ? std::max(linear_s, turning_s) : rotary_s) / period_s - 1e-9);
-    return static_cast<std::uint64_t>(
-        std::clamp(samples, isNeeded ? 2.0 : 1.0, static_cast<double>(MAX_FILTER)));
-}
-
-Limits limits_for_filter(const Limits &limits, std::uint64_t filter, double period_s) noexcept {
-    Limits out = limits;
-    for (std::size_t i = 0; i < out.jerk.size() && filter > 1; ++i) {
-        const double built_up = out.jerk[i] * static_cast<double>(filter) * period_s;
-        out.acceleration[i] = std::min(out.acceleration[i], built_up);
-    }
-    return out;
-}
-
 SpeedLimit limit_of_rows(const LimitRow *rows, int count, double wish) noexcept {
     SpeedLimit out;
     out.v = wish;

@@ -17,18 +17,11 @@ struct Limits {
     PerLimited acceleration{};  ///< [unit/s^2]
     PerLimited jerk{};          ///< [unit/s^3]; used when `isJerkLimited`
     bool isJerkLimited = false;
-    /// Of joints that are not axes, the linear and the rotary one that need the longest mean.
-    struct SlowJoint {
-        double velocity = 0, acceleration = 0, jerk = 0;  ///< jerk 0: none has a limit
-    };
-    SlowJoint slow_linear_joint, slow_rotary_joint;
 };
 inline constexpr double UNLIMITED = 1e300;
 
 /// Request that a path is made for, from its first move.
 struct PathDemand {
-    double tolerance = 0;    ///< 0: none is kept
-    bool isTurning = false;  ///< rotary axes move
     /// What drives it; by default either.
     enum class Drive : std::uint8_t {
         EITHER,
@@ -37,22 +30,6 @@ struct PathDemand {
     };
     Drive drive = Drive::EITHER;
 };
-
-/// The time in which an acceleration is built up within a jerk limit, or the acceleration with which the
-/// velocity is reached soonest [s].
-inline double time_of_mean(double velocity, double acceleration, double jerk) noexcept {
-    return std::min(acceleration / jerk, std::sqrt(velocity / jerk));
-}
-
-/// Number of samples of the moving average that turns acceleration-limited motion into jerk-limited motion:
-/// the longest time in which an axis of X Y Z U V W, the XYZ norm or a joint builds up its acceleration, or
-/// the acceleration with which it reaches its speed soonest; at most what suits curves within the tolerance.
-/// With rotary axes, at least a part of what they need. 1 without jerk limits. Formulas:
-/// docs/developer/planner.md.
-std::uint64_t filter_length(const Limits &limits, double period_s, const PathDemand &demand) noexcept;
-
-/// The limits with accelerations that a mean over `filter` samples can build up within the jerk limits.
-Limits limits_for_filter(const Limits &limits, std::uint64_t filter, double period_s) noexcept;
 
 /// v: maximum speed along the parameter; a: path acceleration that may be used, by the speed squared.
 struct SpeedLimit {

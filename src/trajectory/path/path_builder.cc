@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "trajectory/path/corner.hh"
-#include "trajectory/path/exact_arc.hh"
 
 namespace mw::trajectory {
 
@@ -15,28 +14,15 @@ Leg leg(const PlannedPath &path, Sequence n) noexcept {
     return {path.primitive(n), path.move(n)};
 }
 
-/// Moves the ends of the line; its programmed data stay.
-void reshape(PlannedPath &path, Sequence n, const Pose &in, const Pose &out) noexcept {
-    Primitive &p = path.primitive(n);
-    PlannedMove &m = path.move(n);
-    const double before = p.length;
-    p = make_line(p.start + in, p.end + out);
-    const double longer = p.length / before;
-    m.feed *= longer;
-    m.request.tag.feed_ratio *= longer;
-    path.store().move(n).feed_ratio = m.request.tag.feed_ratio;
-}
-
 }  // namespace
 
 void PathBuilder::begin(const Pose &start) noexcept {
     end_ = start;
     open_.move = 0;
     newest_ = 0;
-    shaper_.begin();
 }
 
-bool PathBuilder::hasRoom(const PlannedPath &path, const PathLimits &limits, const Snapshot &now) noexcept {
+bool PathBuilder::hasRoom(const PlannedPath &path, const Snapshot &now) noexcept {
     constexpr Sequence PIECES_PER_MOVE = PathTuning::MOST_ARC_CUTS + PathTuning::MOST_BLEND_CUTS + 2;
     const Sequence oldest_piece = std::max(path.first_piece(), now.piece);
     if (path.last_piece() + PIECES_PER_MOVE - oldest_piece >= PIECE_CAPACITY) {
@@ -44,12 +30,11 @@ bool PathBuilder::hasRoom(const PlannedPath &path, const PathLimits &limits, con
     }
     const Sequence oldest_move =
         path.last_piece() < oldest_piece ? path.last_move() : path.piece(oldest_piece).move;
-    // Moves within the averaging time are kept as well.
-    const Sequence kept = limits.isFiltered() ? PRIMITIVE_CAPACITY / 4 : 4;
-    return path.last_move() + kept - oldest_move < PRIMITIVE_CAPACITY;
+    constexpr Sequence KEPT = 4;
+    return path.last_move() + KEPT - oldest_move < PRIMITIVE_CAPACITY;
 }
 
-void PathBuilder::fill_move(PlannedPath &path, const Conditions &c, Sequence n, const Primitive &primitive,
+void PathBuilder::fill_move(PlannedPath &path, Sequence n, const Primitive &primitive,
                             const MoveRequest &request) noexcept {
     path.primitive(n) = primitive;
     const FeedLength feed = feed_length(primitive);
@@ -58,7 +43,6 @@ void PathBuilder::fill_move(PlannedPath &path, const Conditions &c, Sequence n, 
     m.request.isAngular = feed.isAngular;
     m.request.tag.feed_ratio = primitive.length / feed.length;
     m.request.tag.end = primitive.end;
-    m.free_tolerance = c.limits.free_tolerance(primitive);
     m.feed = request.tag.requested_velocity * m.request.tag.feed_ratio;
     path.store().move(n) = m.request.tag;
     end_ = primitive.end;
@@ -67,7 +51,7 @@ void PathBuilder::fill_move(PlannedPath &path, const Conditions &c, Sequence n, 
 Sequence PathBuilder::add(PlannedPath &path, const Conditions &c, const Primitive &primitive,
                           const MoveRequest &request, bool isMerging) noexcept {
     const bool mayGrow = isMerging && !c.blocks.isOn && canGrow(path, primitive, request);
-    if (mayGrow && grow(path, c, primitive, request)) {
+    if (mayGrow && grow(path, primitive, request)) {
         return path.last_move();
     }
     const double start_s = path.programmed_length();
@@ -75,10 +59,7 @@ Sequence PathBuilder::add(PlannedPath &path, const Conditions &c, const Primitiv
     PlannedMove &m = path.move(n);
     m.start_s = start_s;
     m.deviation = 0;
-    m.shift_in = {};
-    m.shift_out = {};
-    fill_move(path, c, n, primitive, request);
-    shape_corner(path, c, newest_, n);
+    fill_move(path, n, primitive, request);
     joined_count_ = 0;
     isJoinable_ = true;
     last_synched_ = request.feed_per_revolution > 0 ? n : last_synched_;
@@ -107,16 +88,14 @@ bool PathBuilder::canGrow(const PlannedPath &path, const Primitive &line,
 }
 
 /// Makes the newest line go to the end of `line` if all ends in between stay near it, in order.
-bool PathBuilder::grow(PlannedPath &path, const Conditions &c, const Primitive &line,
-                       const MoveRequest &request) noexcept {
+bool PathBuilder::grow(PlannedPath &path, const Primitive &line, const MoveRequest &request) noexcept {
     double allowed = request.merge_tolerance;
     if (request.tolerance > 0 && !request.isMergeAdded) {
         allowed = std::min(std::max(allowed, PathTuning::JOIN_SHARE * request.tolerance),
                            PathTuning::MOST_JOIN_SHARE * request.tolerance);
     }
     const Primitive &before = path.primitive(newest_);
-    const Pose shift = path.move(newest_).shift_in;
-    const Primitive whole = make_line(before.start - shift, line.end);
+    const Primitive whole = make_line(before.start, line.end);
     joined_[joined_count_] = before.end;
     double along = 0;
     double worst = 0;
@@ -132,32 +111,12 @@ bool PathBuilder::grow(PlannedPath &path, const Conditions &c, const Primitive &
     }
     ++joined_count_;
     path.move(newest_).deviation = request.isMergeAdded ? 0.0 : worst;
-    fill_move(path, c, newest_, whole, request);
-    if (shift != Pose{}) {
-        reshape(path, newest_, shift, {});
-    }
+    fill_move(path, newest_, whole, request);
     return true;
 }
 
-/// Moves the corner between the newest whole line and the one that has come.
-void PathBuilder::shape_corner(PlannedPath &path, const Conditions &c, Sequence na, Sequence nb) noexcept {
-    if (na == 0) {
-        shaper_.begin();
-        return;
-    }
-    const std::optional<Pose> shift = shaper_.shift(leg(path, na), leg(path, nb), c);
-    if (!shift) {
-        return;
-    }
-    path.move(na).shift_out = *shift;
-    path.move(nb).shift_in = *shift;
-    reshape(path, na, {}, *shift);
-    path.move(nb).start_s = path.move(na).start_s + path.primitive(na).length;
-    reshape(path, nb, *shift, {});
-}
-
 /// The corner to a move that the path has come to a stop before.
-Corner PathBuilder::fresh_corner(const PlannedPath &path, const Conditions &c, Sequence n) const noexcept {
+Corner PathBuilder::fresh_corner(const PlannedPath &path, Sequence n) const noexcept {
     Corner corner;
     if (n <= path.first_move()) {
         return corner;
@@ -165,10 +124,7 @@ Corner PathBuilder::fresh_corner(const PlannedPath &path, const Conditions &c, S
     const MoveRequest &request = path.move(n).request;
     const Pose step = tangent_step(path.primitive(n - 1), path.primitive(n));
     corner.isStop = geometry::norm(step) > PathTuning::SAME_DIRECTION || request.isGated ||
-                    path.move(n - 1).request.join == geometry::PathMode::EXACT_STOP ||
-                    isExactArc(path.primitive(n), request, c.limits) ||
-                    isExactArc(path.primitive(n - 1), path.move(n - 1).request, c.limits);
-    corner.dwell_s = c.limits.filter_s();
+                    path.move(n - 1).request.join == geometry::PathMode::EXACT_STOP;
     return corner;
 }
 
@@ -181,16 +137,16 @@ void PathBuilder::open_newest(PlannedPath &path, const Conditions &c) noexcept {
     newest_ = 0;
     Corner corner;
     if (open_.move == 0) {
-        corner = fresh_corner(path, c, n);
+        corner = fresh_corner(path, n);
     } else {
         corner = corner_between(leg(path, open_.move), leg(path, n), c);
         close(path, c, path.primitive(open_.move).length - corner.blend_d, corner);
         if (corner.blend_d > 0) {
             open_.isStop = false;
-            add_blend(path, c, corner);
+            add_blend(path, c, corner.blend_d);
         }
     }
-    open_ = {n, corner.blend_d, corner.isStop, corner};
+    open_ = {n, corner.blend_d, corner.isStop};
 }
 
 void PathBuilder::release_end(PlannedPath &path, const Conditions &c) noexcept {

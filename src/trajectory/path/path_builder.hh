@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "trajectory/path/corner_shaper.hh"
+#include "trajectory/path/corner.hh"
 #include "trajectory/tuning.hh"
 
 namespace mw::trajectory {
@@ -17,7 +17,7 @@ class PathBuilder {
     /// A path begins at `start`.
     void begin(const Pose &start) noexcept;
     /// True if one more move fits while the executor is at `now`.
-    static bool hasRoom(const PlannedPath &path, const PathLimits &limits, const Snapshot &now) noexcept;
+    static bool hasRoom(const PlannedPath &path, const Snapshot &now) noexcept;
     /// Appends a move that starts at `end()`; its length must be greater than 0. Returns its number.
     /// `isMerging`: nearly straight lines become one.
     Sequence add(PlannedPath &path, const Conditions &conditions, const Primitive &primitive,
@@ -33,35 +33,29 @@ class PathBuilder {
     bool hasOpenEnd() const noexcept { return open_.move != 0 || newest_ != 0; }
     /// The first of them, 0: none.
     Sequence first_open() const noexcept { return open_.move != 0 ? open_.move : newest_; }
-    /// The open move if it continues the move before it without a stop and so may be part of a pass. 0: none.
-    Sequence continuing_move() const noexcept { return open_.isStop ? 0 : open_.move; }
     /// The last move that follows a spindle.
     Sequence last_synched() const noexcept { return last_synched_; }
 
   private:
     bool canGrow(const PlannedPath &path, const Primitive &line, const MoveRequest &request) const noexcept;
-    bool grow(PlannedPath &path, const Conditions &c, const Primitive &line,
-              const MoveRequest &request) noexcept;
-    void fill_move(PlannedPath &path, const Conditions &c, Sequence n, const Primitive &primitive,
+    bool grow(PlannedPath &path, const Primitive &line, const MoveRequest &request) noexcept;
+    void fill_move(PlannedPath &path, Sequence n, const Primitive &primitive,
                    const MoveRequest &request) noexcept;
-    void shape_corner(PlannedPath &path, const Conditions &c, Sequence a, Sequence b) noexcept;
     void open_newest(PlannedPath &path, const Conditions &c) noexcept;
-    Corner fresh_corner(const PlannedPath &path, const Conditions &c, Sequence n) const noexcept;
+    Corner fresh_corner(const PlannedPath &path, Sequence n) const noexcept;
     // --- path_pieces.cc
     void close(PlannedPath &path, const Conditions &c, double to, const Corner &after) noexcept;
-    void add_blend(PlannedPath &path, const Conditions &c, const Corner &corner) noexcept;
-    void add_part(PlannedPath &path, const Conditions &c, Piece piece, double to, double v) noexcept;
+    void add_blend(PlannedPath &path, const Conditions &c, double d) noexcept;
+    void add_part(PlannedPath &path, const Conditions &c, Piece piece, double to) noexcept;
     void add_piece(PlannedPath &path, const Conditions &c, const Piece &piece,
                    const SpeedLimit &limit) noexcept;
 
     Pose end_;
-    CornerShaper shaper_;
     /// A move whose end is not yet joined or released.
     struct Open {
         Sequence move = 0;    ///< 0: none
         double offset = 0;    ///< where its own part begins
         bool isStop = false;  ///< stop before the next piece
-        Corner before;        ///< before it
     };
     Open open_;
     Sequence newest_ = 0;  ///< the newest move, which may still grow, 0: none

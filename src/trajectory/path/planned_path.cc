@@ -26,11 +26,4 @@ void PlannedPath::scale(Sequence piece, double speed, double acceleration) noexc
     }
 }
 
-Pose PlannedPath::programmed_at(Sequence n, double s) const noexcept {
-    const Primitive &p = primitive(n);
-    const PlannedMove &m = move(n);
-    const double part = p.length > 0 ? std::clamp(s / p.length, 0.0, 1.0) : 0.0;
-    return position_at(p, s) - m.shift_in * (1.0 - part) - m.shift_out * part;
-}
-
 }  // namespace mw::trajectory

@@ -13,12 +13,10 @@ namespace mw::trajectory {
 
 /// A move besides its primitive.
 struct PlannedMove {
-    double feed = 0;            ///< requested speed in s [1/s]; 0: none
-    double chosen_speed = 0;    ///< by a planner module, in s [1/s]; 0: none
-    double start_s = 0;         ///< where the move begins on the programmed path
-    double free_tolerance = 0;  ///< with jerk limits, where the program gives none
-    double deviation = 0;       ///< of the primitive from the lines that were joined to it
-    Pose shift_in, shift_out;   ///< of its start and its end from where they were programmed
+    double feed = 0;          ///< requested speed in s [1/s]; 0: none
+    double chosen_speed = 0;  ///< by a planner module, in s [1/s]; 0: none
+    double start_s = 0;       ///< where the move begins on the programmed path
+    double deviation = 0;     ///< of the primitive from the lines that were joined to it
     MoveRequest request;
 };
 
@@ -26,7 +24,6 @@ struct PlannedMove {
 struct PlannedPiece {
     double v_limit = 0;  ///< maximum speed within the limits
     bool isStopBefore = false;
-    double dwell_s = 0;  ///< with jerk limits: minimum dwell before it
 };
 
 /// Plain tables; elements from `oldest_piece` on are valid, and the moves that they belong to. Some
@@ -79,8 +76,6 @@ class PlannedPath {
     double programmed_length() const noexcept {
         return last_move_ < first_move_ ? 0.0 : move(last_move_).start_s + primitive(last_move_).length;
     }
-    /// The programmed place that answers to `s` on a move.
-    Pose programmed_at(Sequence move, double s) const noexcept;
 
   private:
     PathStore &store_;

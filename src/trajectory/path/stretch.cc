@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "trajectory/path/exact_arc.hh"
 #include "trajectory/tuning.hh"
 
 namespace mw::trajectory {
@@ -21,40 +20,11 @@ double turning_speed(const MoveRequest &r, const Scales &scales) noexcept {
     return r.feed_per_revolution * r.tag.feed_ratio * rps;
 }
 
-double tolerance_of(const PlannedMove &m, const PathLimits &limits) noexcept {
+double tolerance_of(const PlannedMove &m) noexcept {
     if (m.request.join != geometry::PathMode::BLEND) {
         return PathTuning::EXACT_DEVIATION;
     }
-    if (m.request.tolerance > 0) {
-        return m.request.tolerance - m.deviation;
-    }
-    return limits.isFiltered() ? m.free_tolerance : 0.0;
-}
-
-double mean_arc_speed(const Leg &leg, const PathLimits &limits) noexcept {
-    const Primitive &p = leg.line;
-    const double tolerance = tolerance_of(leg.move, limits);
-    if (!limits.isFiltered() || !p.isArc || !(tolerance > 0) || isExactArc(p, leg.move.request, limits)) {
-        return UNLIMITED;
-    }
-    const double curvature = p.radius * p.omega * p.omega;
-    return std::sqrt(24.0 * CornerTuning::ARC_SHARE * tolerance / curvature) / limits.filter_s();
-}
-
-SpeedLimit shared_limit(const Primitive &a, const Primitive &b, const Corner &corner,
-                        const PathLimits &limits, double wish) noexcept {
-    const BlendPart part{corner.blend_d, 0, 2.0 * corner.blend_d};
-    Limits turning = limits.fitted();
-    for (double &x : turning.acceleration) {
-        x *= corner.turning;
-    }
-    const double v = limit_of_blend(a, b, part, turning, wish).v;
-    SpeedLimit out = limit_of_blend(a, b, part, limits.fitted(), v);
-    for (std::size_t i = 0; i < AccelBound::LINES; ++i) {
-        out.a.beta[i] *= CornerTuning::SHARED_TURNS;
-        out.a.alpha[i] *= CornerTuning::SHARED_REST;
-    }
-    return out;
+    return m.request.tolerance > 0 ? m.request.tolerance - m.deviation : 0.0;
 }
 
 }  // namespace mw::trajectory

@@ -25,27 +25,6 @@ bool Workspace::holds(const Pose &pose) const noexcept {
     return isInside;
 }
 
-Pose Workspace::shift_within(const Pose &corner, const Pose &shift) const noexcept {
-    Pose kept;
-    for (int i = 0; i < geometry::AXIS_COUNT; ++i) {
-        const double least = std::min(low[i] - corner[i], 0.0);
-        const double most = std::max(high[i] - corner[i], 0.0);
-        kept[i] = std::clamp(shift[i], least, most);
-    }
-    double as_programmed[MAX_JOINTS] = {};
-    double moved[MAX_JOINTS] = {};
-    if (!isMapped() || !map->joints_at(corner, as_programmed)) {
-        return kept;
-    }
-    bool isInside = map->joints_at(corner + kept, moved);
-    for (int j = 0; j < joints.count && isInside; ++j) {
-        const auto n = static_cast<std::size_t>(j);
-        isInside = moved[j] >= std::min(low_of(n), as_programmed[j]) &&
-                   moved[j] <= std::max(high_of(n), as_programmed[j]);
-    }
-    return isInside ? kept : Pose{};
-}
-
 /// How far the joints are from those at `pose` within the tolerance in each coordinate, at most. False where
 /// there are no joints.
 bool Workspace::take_reach(const Pose &pose, double tolerance, PerJoint &reach) const noexcept {
@@ -112,22 +91,10 @@ double Workspace::tolerance_within(const Primitive &move, double tolerance) cons
 
 namespace {
 
-/// Where joints and their derivatives are taken along a piece.
-int samples_of(const PathStore &store, const Piece &piece) noexcept {
-    if (!piece.isAlong) {
-        return JointTuning::SAMPLES;
-    }
-    const double turns =
-        std::abs(store.primitive(piece.primitive).omega) * piece.length / PathTuning::ARC_CUT;
-    return std::clamp(2 * static_cast<int>(std::ceil(turns)) + 1, JointTuning::SAMPLES,
-                      JointTuning::MOST_SAMPLES);
-}
-
-}  // namespace
-
+/// Largest derivatives of each joint along a piece, by differences of the inverse kinematics.
 void sample_rows(const PathStore &store, const Piece &piece, const Workspace &workspace,
-                 const double *curvatures, LimitRow *rows) noexcept {
-    const int samples = samples_of(store, piece);
+                 LimitRow *rows) noexcept {
+    constexpr int samples = JointTuning::SAMPLES;
     const double h = std::min(JointTuning::STEP, 0.25 * piece.length);
     for (int n = 0; n < samples; ++n) {
         const double x = std::clamp(piece.length * n / (samples - 1), h, piece.length - h);
@@ -142,18 +109,19 @@ void sample_rows(const PathStore &store, const Piece &piece, const Workspace &wo
             const double q1 = std::abs(after[j] - before[j]) / (2.0 * h);
             const double q2 = std::abs(after[j] - 2.0 * at[j] + before[j]) / (h * h);
             const double noise = 4.0 * 0x1p-52 * std::abs(at[j]) / (h * h);
-            const double k = curvatures != nullptr ? curvatures[j] : 0.0;
-            row.q1 = std::max(row.q1, k > 0 ? std::hypot(q1, q2 / k) : q1);
+            row.q1 = std::max(row.q1, q1);
             row.q2 = std::max(row.q2, q2 > JointTuning::JITTER + 4.0 * noise ? q2 : 0.0);
         }
     }
 }
 
+}  // namespace
+
 SpeedLimit limit_with_joints(const PathStore &store, const Piece &piece, const Workspace &workspace,
-                             double filter_s, const SpeedLimit &limit) noexcept {
+                             const SpeedLimit &limit) noexcept {
     const JointLimits &joints = workspace.joints;
     LimitRow rows[MAX_JOINTS];
-    sample_rows(store, piece, workspace, nullptr, rows);
+    sample_rows(store, piece, workspace, rows);
     int used = 0;
     for (int j = 0; j < joints.count; ++j) {
         LimitRow row = rows[j];
@@ -167,9 +135,6 @@ SpeedLimit limit_with_joints(const PathStore &store, const Piece &piece, const W
         row.q2 *= JointTuning::SAMPLING_MARGIN * JointTuning::SAMPLING_MARGIN;
         row.velocity = joints.velocity[n];
         row.acceleration = joints.acceleration[n];
-        if (filter_s > 0) {
-            row.acceleration = std::min(row.acceleration, joints.jerk[n] * filter_s);
-        }
         rows[used++] = row;
     }
     const SpeedLimit lowered = limit_of_rows(rows, used, limit.v);

@@ -46,9 +46,6 @@ struct Workspace {
     /// The largest part of `tolerance` that a path may deviate from a move without leaving the soft limits of
     /// joints that are not linear; 0 where the move itself is at one of them.
     double tolerance_within(const Primitive &move, double tolerance) const noexcept;
-    /// What of `shift` leaves the moved corner within the soft limits. The commanded path runs inside of the
-    /// corners, so it keeps them as well.
-    Pose shift_within(const Pose &corner, const Pose &shift) const noexcept;
 
   private:
     using PerJoint = std::array<double, MAX_JOINTS>;
@@ -58,15 +55,9 @@ struct Workspace {
     double least_share(const Primitive &move, int samples, const PerJoint &reach) const noexcept;
 };
 
-/// Largest derivatives of each joint along a piece, by differences of the inverse kinematics. With
-/// curvatures, one for each joint, q1 is the length of both as on a circle of that, where they are at right
-/// angles.
-void sample_rows(const PathStore &store, const Piece &piece, const Workspace &workspace,
-                 const double *curvatures, LimitRow *rows) noexcept;
-
 /// The limit of a piece, lowered to what its joints can follow: their derivatives along it by differences of
-/// the inverse kinematics. `filter_s`: the averaging time, 0 without jerk limits.
+/// the inverse kinematics.
 SpeedLimit limit_with_joints(const PathStore &store, const Piece &piece, const Workspace &workspace,
-                             double filter_s, const SpeedLimit &limit) noexcept;
+                             const SpeedLimit &limit) noexcept;
 
 }  // namespace mw::trajectory

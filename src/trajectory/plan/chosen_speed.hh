@@ -23,8 +23,8 @@ struct ChosenSpeed {
     Overreach overreach;  ///< why
 };
 
-/// With jerk limits the module chooses how fast, and the planner how the speed changes: the highest speed of
-/// the module's phases is a limit of speed on the move.
+/// With jerk limits the module chooses how fast, and the planner how the speed changes: the maximum speed
+/// of the module's phases is a limit of speed on the move.
 ChosenSpeed choose_speed(SpeedChooser &chooser, const ChoiceOfSpeed &choice, const Limits &limits) noexcept;
 
 }  // namespace mw::trajectory::plan

@@ -22,13 +22,12 @@ static_assert(MOST_MOTION_CELLS + MOST_LAST_CELLS + DIRECT_CELLS < MOST_CELLS);
 
 }  // namespace
 
-CurvePlanner::CurvePlanner(PathStore &store, PlannedPath &moves, double period_s, bool enabled)
-    : store_(store), moves_(moves), period_s_(period_s), is_enabled_(enabled), path_(store, moves),
+CurvePlanner::CurvePlanner(PathStore &store, PlannedPath &moves, double period_s)
+    : store_(store), moves_(moves), period_s_(period_s), path_(store, moves),
       profile_({.window_s = WINDOW_S, .period_s = period_s}) {}
 
 bool CurvePlanner::isFor(const PathDemand &demand, const Conditions &conditions) const noexcept {
-    return demand.drive == PathDemand::Drive::BY_ANGLE ||
-           (is_enabled_ && conditions.limits.wanted().isJerkLimited);
+    return demand.drive == PathDemand::Drive::BY_ANGLE || conditions.limits.wanted().isJerkLimited;
 }
 
 bool CurvePlanner::suits(const PathDemand &demand, const Conditions &conditions) const noexcept {
@@ -156,7 +155,7 @@ void CurvePlanner::update(const Snapshot &now, const Conditions &conditions) {
 }
 
 void CurvePlanner::start(const Snapshot &now, const Conditions &conditions) {
-    if (now.motion != Motion::REST || !now.isSettled || now.isHeld) {
+    if (now.motion != Motion::REST || now.isHeld) {
         return;
     }
     const double s = place_of(now);

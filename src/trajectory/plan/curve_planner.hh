@@ -16,9 +16,8 @@ namespace mw::trajectory::plan {
 /// not taken: the executor takes the last stop of the plan before, and the next plan begins at rest.
 class CurvePlanner {
   public:
-    /// `enabled`: paths with jerk limits are driven along curves; passes that follow the angle of a spindle
-    /// always are.
-    CurvePlanner(PathStore &store, PlannedPath &moves, double period_s, bool enabled);
+    /// Paths with jerk limits are driven along curves, and passes that follow the angle of a spindle.
+    CurvePlanner(PathStore &store, PlannedPath &moves, double period_s);
 
     /// A path begins at `start`, where the executor is at rest.
     void begin(const Pose &start, const Snapshot &now, const PathDemand &demand,
@@ -80,7 +79,7 @@ class CurvePlanner {
     PathStore &store_;
     PlannedPath &moves_;
     double period_s_;
-    bool is_enabled_, is_active_ = false;
+    bool is_active_ = false;
     CurvePath path_;
     Scales scales_;  ///< that the feeds of the path were made for
     profile::Profile profile_;

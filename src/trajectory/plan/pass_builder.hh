@@ -29,7 +29,7 @@ struct PassMove {
 };
 
 /// Planner thread. A corner is passed at the speed of the spindle, with continuous curvature, and behind the
-/// end of the first line, whose cut needs its full depth there; the second line leads to its programmed end.
+/// end of the first line, whose cut needs its full depth there; the second line ends at its programmed end.
 class PassBuilder {
   public:
     explicit PassBuilder(double widest) noexcept : exact_(widest) {}

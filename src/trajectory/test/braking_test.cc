@@ -19,7 +19,6 @@ class Curves {
   public:
     explicit Curves(unsigned seed) : random_(seed) {
         conditions.limits.set(limits());
-        conditions.limits.begin({});
         const bool isBlend = chance();
         store->primitive(1) = isBlend && chance() ? line(place()) : arc(place());
         piece.primitive = 1;
@@ -37,15 +36,14 @@ class Curves {
         piece.offset = real(0, whole - piece.length);
     }
     SpeedLimit limit() const {
-        const Limits &limits = conditions.limits.fitted();
+        const Limits &limits = conditions.limits.wanted();
         const SpeedLimit axes =
             piece.blend_d > 0
                 ? limit_of_blend(store->primitive(1), store->primitive(2),
                                  {piece.blend_d, piece.offset, piece.offset + piece.length}, limits, 1e6)
                 : limit_of(store->primitive(1), piece.offset, piece.offset + piece.length, limits, 1e6);
-        return conditions.workspace.isMapped()
-                   ? limit_with_joints(*store, piece, conditions.workspace, 0, axes)
-                   : axes;
+        return conditions.workspace.isMapped() ? limit_with_joints(*store, piece, conditions.workspace, axes)
+                                               : axes;
     }
     void drive_belts() {
         conditions.workspace.map = &belts_;
@@ -120,7 +118,7 @@ Derivatives differences(const Curves &c, double x) {
 double use_at(const Curves &c, double x, double v, double a) {
     const Derivatives d = differences(c, x);
     const Pose total = d.second * (v * v) - d.first * a;
-    const PerLimited &most = c.conditions.limits.fitted().acceleration;
+    const PerLimited &most = c.conditions.limits.wanted().acceleration;
     double worst = geometry::norm_xyz(total) / most[XYZ_NORM];
     for (int i = 0; i < geometry::AXIS_COUNT; ++i) {
         worst = std::max(worst, std::abs(total[i]) / most[static_cast<std::size_t>(i)]);
@@ -280,11 +278,10 @@ void stop_in_a_reversal(double by_axis, double by_norm) {
 TEST(Braking, AnArcWithARoundedRadiusIsBrakedOnAsACircle) {
     const auto brake_on = [](double off) {
         Curves c(1);
-        Limits limits = c.conditions.limits.fitted();
+        Limits limits = c.conditions.limits.wanted();
         limits.acceleration.fill(1e5);
         limits.acceleration[XYZ_NORM] = 368;
         c.conditions.limits.set(limits);
-        c.conditions.limits.begin({});
         ArcShape shape;
         shape.angle_rad = 2;
         shape.normal[2] = 1;

@@ -361,9 +361,7 @@ inline void drive(Maker &maker, const Program &program, Outcome &out, bool isDro
         room_of(program, low, high);
         rig.planner.set_room(low, high);
     }
-    const Primitive &first = program.primitives.front();
-    rig.planner.begin(Pose{}, rig.executor.snapshot(),
-                      rig.planner.demand_of(program.requests.front(), first.start, first.end));
+    rig.planner.begin(Pose{}, rig.executor.snapshot(), rig.planner.demand_of(program.requests.front()));
     Scales scales;
     scales.max_feed = 1.5;
     rig.planner.set_scales(scales);

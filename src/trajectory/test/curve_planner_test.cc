@@ -30,10 +30,6 @@ Program program_of(int seed, Maker &maker) {
     return program;
 }
 
-Rig third_order_rig() {
-    return Rig(Pose{}, PlannerSettings{.third_order = true});
-}
-
 /// Without disturbances: the program is driven to its exact end, within limits and tolerance.
 TEST(CurvePlanner, DrivesAProgram) {
     const auto [first_seed, count] = testing::campaign_seeds(SEEDS);
@@ -41,11 +37,9 @@ TEST(CurvePlanner, DrivesAProgram) {
         SCOPED_TRACE(seed);
         Maker maker(static_cast<unsigned>(seed), true);
         const Program program = program_of(seed, maker);
-        Rig rig = third_order_rig();
+        Rig rig{Pose{}};
         rig.planner.set_limits(program.limits);
-        const Primitive &first = program.primitives.front();
-        rig.planner.begin(Pose{}, rig.executor.snapshot(),
-                          rig.planner.demand_of(program.requests.front(), first.start, first.end));
+        rig.planner.begin(Pose{}, rig.executor.snapshot(), rig.planner.demand_of(program.requests.front()));
         for (std::size_t k = 0; k < program.primitives.size(); ++k) {
             while (!rig.planner.hasRoom(rig.executor.snapshot())) {
                 rig.step();
@@ -66,7 +60,7 @@ struct PassedCorner {
     double v = 0, time_s = 0;
 };
 PassedCorner pass_corner(double corner_scale) {
-    Rig rig = third_order_rig();
+    Rig rig{Pose{}};
     Limits limits;
     limits.velocity.fill(100);
     limits.acceleration.fill(1000);
@@ -84,7 +78,7 @@ PassedCorner pass_corner(double corner_scale) {
     r.tolerance = 0.5;
     r.corner_scale = corner_scale;
     const Primitive a = make_line(Pose{}, place(20, 0));
-    rig.planner.begin(Pose{}, rig.executor.snapshot(), rig.planner.demand_of(r, a.start, a.end));
+    rig.planner.begin(Pose{}, rig.executor.snapshot(), rig.planner.demand_of(r));
     rig.planner.add(a, r);
     rig.planner.add(make_line(place(20, 0), place(20, 20)), r);
     EXPECT_TRUE(rig.run(10));
@@ -119,7 +113,7 @@ TEST(CurvePlanner, KeepsLimitsWithHoldsOverridesAndDrops) {
         SCOPED_TRACE(seed);
         Maker maker(static_cast<unsigned>(seed), true);
         const Program program = program_of(seed, maker);
-        Outcome out{.rig = third_order_rig()};
+        Outcome out{.rig = Rig{Pose{}}};
         drive(maker, program, out, seed % 3 == 1);
         EXPECT_TRUE(out.isFinished);
         expect_kept(out.rig, program);
@@ -136,7 +130,7 @@ bool touchesCorner(const MoveRequest &first, const MoveRequest &second) {
     limits.acceleration.fill(1000);
     limits.jerk.fill(50000);
     limits.isJerkLimited = true;
-    Rig rig = third_order_rig();
+    Rig rig{Pose{}};
     rig.planner.set_limits(limits);
     Scales scales;
     scales.spindle_rps[0] = 10;
@@ -174,7 +168,7 @@ TEST(CurvePlanner, ReachesFullSpeedWhereBrakingTakesSeconds) {
     program.limits.acceleration.fill(A);
     program.limits.jerk.fill(J);
     program.limits.isJerkLimited = true;
-    Rig rig = third_order_rig();
+    Rig rig{Pose{}};
     rig.planner.set_limits(program.limits);
     MoveRequest request;
     request.isRapid = true;
@@ -196,7 +190,7 @@ TEST(CurvePlanner, DrivesMoreMovesThanThereIsRoomFor) {
     program.limits.acceleration.fill(5000);
     program.limits.jerk.fill(100000);
     program.limits.isJerkLimited = true;
-    Rig rig = third_order_rig();
+    Rig rig{Pose{}};
     rig.planner.set_limits(program.limits);
     rig.planner.begin(Pose{}, rig.executor.snapshot());
     MoveRequest request;

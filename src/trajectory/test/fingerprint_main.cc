@@ -187,9 +187,7 @@ void fingerprint(unsigned seed) {
         low.c.fill(maker.chance(0.5) ? -1.0 : -1e300);
         high.c.fill(1e300);
         rig.planner.set_room(low, high);
-        const Primitive &first = program.primitives.front();
-        rig.planner.begin(from, rig.executor.snapshot(),
-                          rig.planner.demand_of(program.requests.front(), first.start, first.end));
+        rig.planner.begin(from, rig.executor.snapshot(), rig.planner.demand_of(program.requests.front()));
         finished += drive.run_path(program, 40000) ? 1 : 0;
     }
     std::printf("%u %d of %d paths, %llu cycles, %016llx\n", seed, finished, paths,

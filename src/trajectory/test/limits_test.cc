@@ -204,82 +204,6 @@ TEST(AccelBound, TheLesserOfTwoIsBelowBothAndNoHigherThanNeeded) {
     }
 }
 
-TEST(FilterLength, IsTheTimeToBuildUpTheAccelerationOrLessWhereThatIsFaster) {
-    // A/J = 0.02 s; sqrt(V/J) = 0.1 s.
-    EXPECT_EQ(filter_length(even_limits(500, 1000, 50000), PERIOD, {}), 20U);
-    // sqrt(V/J) = 0.01 s.
-    EXPECT_EQ(filter_length(even_limits(5, 1000, 50000), PERIOD, {}), 10U);
-    // 1.2 (24 P/J)^(1/3) = 0.012 s.
-    EXPECT_EQ(filter_length(even_limits(500, 1000, 50000), PERIOD, {1e-6 * 50000 / 24}), 12U);
-    EXPECT_EQ(filter_length(even_limits(500, 1000), PERIOD, {}), 1U);
-    EXPECT_EQ(filter_length(even_limits(500, 1000, 1), PERIOD, {}), MAX_FILTER);
-}
-
-/// A rotary axis that builds up its acceleration in 0.1 s beside linear ones that do in 0.02 s.
-Limits with_slow_rotary_axis() {
-    Limits limits = even_limits(500, 1000, 50000);
-    limits.jerk[geometry::AXIS_A] = 10000;
-    return limits;
-}
-
-Pose turned(double a_deg) {
-    Pose p;
-    p[geometry::AXIS_A] = a_deg;
-    return p;
-}
-
-TEST(FilterLength, HasAPartOfWhatRotaryAxesNeedWhereTheyTurn) {
-    EXPECT_EQ(filter_length(with_slow_rotary_axis(), PERIOD, {}), 20U);
-    EXPECT_EQ(filter_length(with_slow_rotary_axis(), PERIOD, {0, true}), 50U);
-    // 1.2 (24 P/J)^(1/3) = 0.06 s for the rotary axis, 0.035 s for the others.
-    EXPECT_EQ(filter_length(with_slow_rotary_axis(), PERIOD, {0.0521, true}), 31U);
-}
-
-TEST(PathLimits, APathBegunWithoutRotaryAxesIsNotForThemButOneBegunWithThemIsForAll) {
-    PathLimits limits(PERIOD);
-    limits.set(with_slow_rotary_axis());
-    MoveRequest exact;
-    exact.join = geometry::PathMode::EXACT_PATH;
-    const PathDemand line = limits.demand_of(exact, turned(3), turned(3));
-    const PathDemand turn = limits.demand_of(exact, turned(3), turned(4));
-    limits.begin(line);
-    EXPECT_EQ(limits.filter(), 20U);
-    EXPECT_TRUE(limits.suits(line));
-    EXPECT_FALSE(limits.suits(turn));
-    limits.begin(turn);
-    EXPECT_EQ(limits.filter(), 50U);
-    EXPECT_TRUE(limits.suits(line));
-    EXPECT_TRUE(limits.suits(turn));
-    EXPECT_FALSE(limits.isCurrent(line)) << "a path that begins with a line has the shorter mean again";
-    EXPECT_FALSE(limits.suits({1e-6})) << "a tolerance that is kept counts on either";
-}
-
-TEST(LimitsForFilter, NoAxisAcceleratesMoreThanTheMeanCanBuildUp) {
-    const Limits wanted = even_limits(500, 1000, 50000);
-    EXPECT_DOUBLE_EQ(limits_for_filter(wanted, 10, PERIOD).acceleration[0], 500);
-    EXPECT_DOUBLE_EQ(limits_for_filter(wanted, 40, PERIOD).acceleration[0], 1000);
-    EXPECT_DOUBLE_EQ(limits_for_filter(wanted, 1, PERIOD).acceleration[0], 1000);
-}
-
-TEST(PathLimits, TheMeanBelongsToAPathAndLimitsMayRiseOnTheWay) {
-    PathLimits limits(PERIOD);
-    limits.set(even_limits(500, 1000, 50000));
-    EXPECT_FALSE(limits.isFiltered());
-    limits.begin({});
-    EXPECT_EQ(limits.filter(), 20U);
-    limits.set(even_limits(500, 400, 5000));
-    EXPECT_EQ(limits.filter(), 20U);
-    EXPECT_FALSE(limits.isCurrent({}));
-    EXPECT_DOUBLE_EQ(limits.fitted().acceleration[0], 100);
-    EXPECT_DOUBLE_EQ(limits.highest().acceleration[0], 1000);
-    limits.begin({});
-    EXPECT_EQ(limits.filter(), 80U);
-    EXPECT_DOUBLE_EQ(limits.highest().acceleration[0], 400);
-    // 1.2 (24 P/J)^(1/3) is far below the averaging time of 80 ms.
-    EXPECT_FALSE(limits.suits({1e-6}));
-    EXPECT_TRUE(limits.suits({}));
-}
-
 TEST(LimitWithJoints, KeepsTheJointsWhereTheAxesStandStill) {
     const TurningTable map;
     Workspace workspace;
@@ -295,7 +219,7 @@ TEST(LimitWithJoints, KeepsTheJointsWhereTheAxesStandStill) {
     Piece piece;
     piece.primitive = 1;
     piece.length = 5;
-    const SpeedLimit limit = limit_with_joints(*store, piece, workspace, 0, {1e6, AccelBound::constant(1e6)});
+    const SpeedLimit limit = limit_with_joints(*store, piece, workspace, {1e6, AccelBound::constant(1e6)});
     // At 200 mm from the axis a degree is 3.49 mm: 100 mm/s are 28.6 degrees a second.
     const double mm_per_deg = 200 * std::numbers::pi / 180;
     EXPECT_LE(limit.v, 100 / mm_per_deg);
@@ -304,33 +228,24 @@ TEST(LimitWithJoints, KeepsTheJointsWhereTheAxesStandStill) {
     EXPECT_GE(limit.a.at(0), 0.8 * 1000 / mm_per_deg);
 }
 
-TEST(Workspace, ACornerIsMovedOnlyWithinTheSoftLimits) {
+TEST(Workspace, HoldsWhatIsWithinTheSoftLimits) {
     Workspace workspace;
     workspace.high[0] = 10.25;
-    Pose shift = at(1, 1);
-    EXPECT_EQ(workspace.shift_within(at(10), shift), at(0.25, 1));
-    // A program that is outside already is not moved back.
-    EXPECT_EQ(workspace.shift_within(at(11), shift), at(0, 1));
-    EXPECT_EQ(workspace.shift_within(at(11), at(-1)), at(-1));
     EXPECT_TRUE(workspace.holds(at(10)));
     EXPECT_FALSE(workspace.holds(at(10.5)));
 }
 
-TEST(Workspace, ACornerIsMovedOnlyWithinTheRoomThatJointsHave) {
+TEST(Workspace, HoldsWhatIsWithinTheRoomThatJointsHave) {
     const Belts belts;
     Workspace workspace;
     workspace.map = &belts;
     workspace.joints.count = 2;
     workspace.joints.low.fill(-100);
     workspace.joints.high.fill(100);
-    EXPECT_EQ(workspace.shift_within(at(10, 10), at(1, 1)), at(1, 1));
     EXPECT_TRUE(workspace.holds(at(40, 40)));
     workspace.joint_room.joints = 1;
     workspace.joint_room.low[0] = -21;
     workspace.joint_room.high[0] = 21;
-    EXPECT_EQ(workspace.shift_within(at(10, 10), at(1, 1)), at(0, 0)) << "what offsets may have begins there";
-    EXPECT_EQ(workspace.shift_within(at(10, 10), at(1, -1)), at(1, -1));
-    EXPECT_EQ(workspace.shift_within(at(20, 10), at(-1, 0)), at(-1, 0)) << "back from outside";
     EXPECT_TRUE(workspace.holds(at(40, -40))) << "joint 1 has its soft limits";
     EXPECT_FALSE(workspace.holds(at(40, 40)));
 }

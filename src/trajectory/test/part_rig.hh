@@ -53,10 +53,7 @@ struct Parts {
     std::unique_ptr<PlannedPath> path = std::make_unique<PlannedPath>(*store);
     Conditions conditions{PERIOD};
 
-    explicit Parts(const Limits &limits, double tolerance = 0) {
-        conditions.limits.set(limits);
-        conditions.limits.begin({tolerance});
-    }
+    explicit Parts(const Limits &limits) { conditions.limits.set(limits); }
     PathView view() const { return {*path, conditions}; }
 
     /// A straight move along X from where the path ends, as one piece.
@@ -72,9 +69,8 @@ struct Parts {
         piece.move = n;
         piece.length = length;
         piece.isToEnd = true;
-        piece.programmed_s = start;
         piece.acceleration = AccelBound::constant(a);
-        path->append_piece(piece, {v_limit, isStopBefore, conditions.limits.filter_s()});
+        path->append_piece(piece, {v_limit, isStopBefore});
         return path->last_piece();
     }
 };

@@ -15,7 +15,7 @@ namespace {
 struct BuilderRig : Parts {
     PathBuilder builder;
 
-    explicit BuilderRig(const Limits &limits, double tolerance = 0) : Parts(limits, tolerance) {
+    explicit BuilderRig(const Limits &limits) : Parts(limits) {
         path->begin();
         builder.begin(Pose{});
     }
@@ -89,8 +89,7 @@ TEST(PathBuilder, RandomMovesGiveAPathWithoutGapsAndKinks) {
     int blends = 0;
     int stops = 0;
     for (int round = 0; round < 60; ++round) {
-        const bool isSmooth = round % 2 == 0;
-        BuilderRig rig(isSmooth ? even_limits(100, 1000, 20000) : even_limits(100, 1000), 0.05);
+        BuilderRig rig(even_limits(100, 1000));
         Pose end;
         for (int n = 0; n < 60; ++n) {
             Pose to = rig.builder.end();
@@ -164,7 +163,7 @@ TEST(PathBuilder, SaysWhenTheRingsAreFullAndNeverOverrunsThem) {
     Snapshot now;
     int added = 0;
     double y = 0;
-    while (PathBuilder::hasRoom(*rig.path, rig.conditions.limits, now) && added < 100000) {
+    while (PathBuilder::hasRoom(*rig.path, now) && added < 100000) {
         y = y > 0 ? 0.0 : 1.0;
         rig.line_to(at(++added, y), asking(50, geometry::PathMode::BLEND, 0.1));
     }
@@ -174,7 +173,7 @@ TEST(PathBuilder, SaysWhenTheRingsAreFullAndNeverOverrunsThem) {
     EXPECT_LT(rig.path->last_piece(), PIECE_CAPACITY);
     EXPECT_EQ(rig.start_of(1), Pose{});
     now.piece = rig.path->last_piece();
-    EXPECT_TRUE(PathBuilder::hasRoom(*rig.path, rig.conditions.limits, now));
+    EXPECT_TRUE(PathBuilder::hasRoom(*rig.path, now));
 }
 
 TEST(PathBuilder, AnArcIsCutSoThatItsDirectionChangesLittleOnEachPiece) {
@@ -187,53 +186,6 @@ TEST(PathBuilder, AnArcIsCutSoThatItsDirectionChangesLittleOnEachPiece) {
     rig.release();
     EXPECT_GE(rig.path->last_piece(), static_cast<Sequence>(std::numbers::pi / PathTuning::ARC_CUT));
     rig.expect_continuous();
-}
-
-TEST(Corner, TheSpeedThroughACornerTakesAllOfItsDeviation) {
-    // The average alone: v tau / 8 per change of the tangent.
-    EXPECT_NEAR(speed_through(0.01, 0, 1, 0.02), 8 * 0.01 / 0.02, 1e-6);
-    // A blend within the distance h = v tau of the average: h / 8 + d^2 / (6 h).
-    const double h = 1e-3 * speed_through(0.1, 1, 0.2, 1e-3);
-    EXPECT_GT(h, 0.4);
-    EXPECT_NEAR(h / 8 + 0.04 / (6 * h), 0.1, 1e-9);
-    // One that is wider: d / 4 + h^2 / (48 d).
-    const double wide = 1e-3 * speed_through(0.055, 1, 0.2, 1e-3);
-    EXPECT_LT(wide, 0.4);
-    EXPECT_NEAR(0.2 / 4 + wide * wide / (48 * 0.2), 0.055, 1e-9);
-}
-
-TEST(CornerShaper, MovesTheCornersOfADenseCurveOutwardsWithinTheTolerance) {
-    constexpr double P = 0.01, RADIUS = 5;
-    Parts parts(even_limits(100, 1000, 5000), P);
-    CornerShaper shaper;
-    const auto chord = [](int i) {
-        const auto on = [](int k) {
-            const double angle = 2 * std::numbers::pi * k / 180;
-            return at(RADIUS * std::sin(angle), RADIUS * (1 - std::cos(angle)));
-        };
-        return make_line(on(i), on(i + 1));
-    };
-    PlannedMove move;
-    move.request = asking(80, geometry::PathMode::BLEND, P);
-    move.feed = 80;
-    double farthest = 0;
-    for (int i = 0; i < 180; ++i) {
-        const Primitive a = chord(i);
-        const Primitive b = chord(i + 1);
-        const auto shift = shaper.shift({a, move}, {b, move}, parts.conditions);
-        if (!shift) {
-            continue;
-        }
-        const Pose outwards = a.end - at(0, RADIUS);
-        EXPECT_GT(geometry::dot(*shift, outwards), 0) << i;
-        EXPECT_LE(geometry::norm(*shift), ShapeTuning::MOST_SHARE * P * (1 + 1e-9)) << i;
-        farthest = std::max(farthest, geometry::norm(*shift));
-    }
-    EXPECT_GT(farthest, 0.3 * P);
-    // A single corner is not moved.
-    const Primitive a = make_line(at(0), at(50));
-    const Primitive b = make_line(at(50), at(50, 50));
-    EXPECT_FALSE(shaper.shift({a, move}, {b, move}, parts.conditions).has_value());
 }
 
 }  // namespace

@@ -17,8 +17,7 @@ namespace mw::trajectory::test {
 struct Rig {
     static constexpr double T = 1e-3;
     std::unique_ptr<PathStore> store = std::make_unique_for_overwrite<PathStore>();
-    StopLimits stop_limits;  ///< none to begin with
-    Executor executor{*store, T, &stop_limits};
+    Executor executor{*store, T};
     Planner planner;
     std::uint64_t cycle = 0;
     std::vector<Pose> samples;

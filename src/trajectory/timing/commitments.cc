@@ -10,7 +10,6 @@ void Commitments::begin(const Snapshot &now, Sequence end) noexcept {
     begin_ = end;
     ends_.fill(end);
     switch_cycle_ = 0;
-    isStop_ = false;
 }
 
 bool Commitments::change_to(PathStore &store, const Snapshot &now, Commit commit,
@@ -26,7 +25,6 @@ bool Commitments::change_to(PathStore &store, const Snapshot &now, Commit commit
     ends_[plan_ % ends_.size()] = commit.end;
     brakes_ = now.brakes;
     switch_cycle_ = now.cycle + latency;
-    isStop_ = commit.isStop;
     return true;
 }
 

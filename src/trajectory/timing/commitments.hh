@@ -23,12 +23,6 @@ class Commitments {
     bool isPending(const Snapshot &now) const noexcept {
         return !isTaken(now) && now.cycle < switch_cycle_ && now.brakes == brakes_;
     }
-    /// The last plan was made to stop, and is or will be followed.
-    bool isStopMade(const Snapshot &now) const noexcept {
-        return isStop_ && (isTaken(now) || isPending(now));
-    }
-    /// The last plan was made to stop.
-    bool isStopPlan() const noexcept { return isStop_; }
     /// End of the phases of the plan that the executor follows: it may have rejected a later plan.
     Sequence phases_end(const Snapshot &now) const noexcept { return ends_[now.plan % ends_.size()]; }
     /// Phases before it are free.
@@ -45,7 +39,6 @@ class Commitments {
     std::uint64_t brakes_ = 0;
     std::uint64_t switch_cycle_ = 0;
     Sequence begin_ = 1;
-    bool isStop_ = false;
     std::array<Sequence, 16> ends_{};  ///< of the last plans, by number
 };
 

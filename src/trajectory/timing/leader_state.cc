@@ -8,8 +8,8 @@
 namespace mw::trajectory {
 
 std::optional<LeaderState> start_state(const PlannedPath &path, const Snapshot &now) noexcept {
-    LeaderState state = now.piece < path.first_piece() ? LeaderState{path.first_piece(), 0, 0, {}}
-                                                       : LeaderState{now.piece, now.x, 0, now.coasting};
+    LeaderState state = now.piece < path.first_piece() ? LeaderState{path.first_piece(), 0, 0}
+                                                       : LeaderState{now.piece, now.x, 0};
     if (state.piece > path.last_piece()) {
         return std::nullopt;
     }
@@ -17,10 +17,7 @@ std::optional<LeaderState> start_state(const PlannedPath &path, const Snapshot &
         if (state.piece == path.last_piece()) {
             return std::nullopt;
         }
-        state = {state.piece + 1, 0, 0, state.coasting};
-    }
-    if (now.isSettled) {
-        state.coasting = {};
+        state = {state.piece + 1, 0, 0};
     }
     return state;
 }
@@ -32,18 +29,15 @@ std::optional<LeaderState> predict(const PlannedPath &path, const Snapshot &now,
     Sequence n = now.phase;
     double t = now.time_in_phase;
     bool isOver = false;
-    state.coasting = now.coasting;
     for (std::uint64_t c = 0; c < outlook.latency && !isOver; ++c) {
         double dt = outlook.period_s;
         while (!isOver && dt >= store.phase(n).duration - t) {
-            state.coasting.pass(store.phase(n), store.phase(n).duration - t);
             dt -= store.phase(n).duration - t;
             isOver = n + 1 >= outlook.phases_end;
             n += isOver ? 0 : 1;
             t = 0;
         }
         if (!isOver) {
-            state.coasting.pass(store.phase(n), dt);
             t += dt;
         }
     }
@@ -62,7 +56,7 @@ std::optional<LeaderState> predict(const PlannedPath &path, const Snapshot &now,
     const double length = path.piece(p.piece).length;
     const bool isAtEnd = std::abs(state.x - length) <= ExecutorTuning::ARRIVED * (1.0 + length);
     if (isAtEnd && p.piece < path.last_piece()) {
-        state = {p.piece + 1, 0, 0, state.coasting};
+        state = {p.piece + 1, 0, 0};
     }
     const bool isPathOver = isAtEnd && p.piece == path.last_piece();
     return isStop && !isPathOver ? std::optional(state) : std::nullopt;

@@ -11,7 +11,6 @@ namespace mw::trajectory {
 struct LeaderState {
     Sequence piece = 0;
     double x = 0, v = 0;
-    Coasting coasting;
 };
 
 /// Where a stopped executor continues; nothing at the end of the path.

@@ -38,7 +38,6 @@ void PlanDraft::append(PathStore &store, double length, double v1) noexcept {
         ++end;
         seconds += dt;
         at.x += length;
-        at.coasting.pass(v1 - at.v, dt);
     }
     at.v = v1;
 }
@@ -46,7 +45,6 @@ void PlanDraft::append(PathStore &store, double length, double v1) noexcept {
 void PlanDraft::wait(PathStore &store, double duration) noexcept {
     store.phase(end++) = {at.piece, duration, at.x, 0, 0, 0};
     seconds += duration;
-    at.coasting.stand(duration);
 }
 
 bool PlanDraft::isStopPassed(const PlannedPath &path, Sequence begin) const noexcept {

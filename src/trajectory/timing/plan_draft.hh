@@ -47,7 +47,7 @@ struct PlanDraft {
     /// stop from the end of the plan before.
     bool isStopPassed(const PlannedPath &path, Sequence begin) const noexcept;
     /// On to the next piece, whose start is the end of this one.
-    void enter_next_piece() noexcept { at = {at.piece + 1, 0, at.v, at.coasting}; }
+    void enter_next_piece() noexcept { at = {at.piece + 1, 0, at.v}; }
 };
 
 }  // namespace mw::trajectory

@@ -79,23 +79,18 @@ Demand TimingPlan::demand(const PathView &view, const Snapshot &now) noexcept {
 
 Demand TimingPlan::tried_demand(const PathView &view, const Snapshot &now) const noexcept {
     const bool isPending = commitments_.isPending(now);
-    const bool mustStop = now.isHeld || now.isDropping;
+    if (now.isHeld || isPending) {
+        return {};
+    }
     std::optional<LeaderState> from;
     if (now.motion == Motion::REST) {
-        const bool isSameMean = view.conditions.limits.filter() == now.filter || now.isSettled;
-        if (mustStop || isPending || !isSameMean) {
-            return {};
-        }
         from = start_state(view.path, now);
     } else {
         const Sequence changed = profile_.changed_from();
         const bool isShort = !draft_.isAtEndOf(view.path) && draft_.seconds - seconds_driven(now) <
                                                                  TimingTuning::RENEWAL * settings_.horizon_s;
         const bool isChanged = changed != 0 && changed <= draft_.looked_at + 1;
-        const bool isStopMade = commitments_.isStopMade(now);
-        const bool isDue =
-            mustStop ? !isStopMade : isStopMade || !commitments_.isTaken(now) || isShort || isChanged;
-        if (!isDue || (isPending && !mustStop)) {
+        if (commitments_.isTaken(now) && !isShort && !isChanged) {
             return {};
         }
         from = predict(view.path, now, outlook(now));
@@ -103,7 +98,7 @@ Demand TimingPlan::tried_demand(const PathView &view, const Snapshot &now) const
     if (!from || isBeforeBarrier(view, *from)) {
         return {};
     }
-    return {mustStop ? Demand::Kind::STOP : Demand::Kind::PLAN, *from};
+    return {Demand::Kind::PLAN, *from};
 }
 
 bool TimingPlan::change_to(PathStore &store, const Snapshot &now, const Commit &commit) noexcept {
@@ -143,8 +138,8 @@ void TimingPlan::extend(const PathView &view, PathStore &store, const Snapshot &
     }
 }
 
-bool TimingPlan::draft(const PathView &view, PathStore &store, Sequence begin, const LeaderState &from,
-                       Ending ending, const StopShape &shape) noexcept {
+bool TimingPlan::draft(const PathView &view, PathStore &store, Sequence begin,
+                       const LeaderState &from) noexcept {
     const TimingView timing{view, profile_, oldest_phase_};
     draft_.end = begin;
     draft_.begin(from);
@@ -153,30 +148,21 @@ bool TimingPlan::draft(const PathView &view, PathStore &store, Sequence begin, c
         draft_.wait(store, start_delay_s_);
     }
     const Sequence waited = draft_.end;
-    if (ending != Ending::ONWARD && from.v <= 0) {
-        draft_.wait(store, settings_.period_s);
-    }
-    if (ending == Ending::ONWARD) {
-        append_smooth(draft_, store, timing, start_delay_s_ + settings_.horizon_s);
-    }
+    append_to_horizon(draft_, store, timing, start_delay_s_ + settings_.horizon_s);
     const double until_s = draft_.seconds;
     const bool isEmpty = draft_.end == waited && from.v <= 0;
-    if (isEmpty || !append_stop(draft_, store, timing, shape) || draft_.isStopPassed(view.path, begin)) {
+    if (isEmpty || !append_stop(draft_, store, timing) || draft_.isStopPassed(view.path, begin)) {
         return false;
     }
-    stop_s_ = draft_.seconds;
     draft_.seconds = until_s;
     return true;
 }
 
-bool TimingPlan::commit(const PathView &view, PathStore &store, const Snapshot &now, Sequence begin,
-                        Ending ending) noexcept {
+bool TimingPlan::commit(PathStore &store, const Snapshot &now, Sequence begin) noexcept {
     Commit commit;
     commit.switch_cycle = now.cycle + settings_.latency;
     commit.begin = begin;
     commit.end = draft_.end;
-    commit.filter = view.conditions.limits.filter();
-    commit.isStop = ending != Ending::ONWARD;
     const bool isTold = change_to(store, now, commit);
     start_delay_s_ = isTold ? 0.0 : start_delay_s_;
     return isTold;

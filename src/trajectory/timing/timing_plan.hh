@@ -3,8 +3,8 @@
 #pragma once
 
 #include "trajectory/timing/commitments.hh"
-#include "trajectory/timing/jerk_limited.hh"
 #include "trajectory/timing/plan_draft.hh"
+#include "trajectory/timing/plan_to_stop.hh"
 
 namespace mw::trajectory {
 
@@ -14,13 +14,6 @@ struct PlannerSettings {
     double horizon_s = 0.1;           ///< how far ahead phases are committed
     bool isMerging = true;            ///< nearly straight lines become one
     SpeedChooser *chooser = nullptr;  ///< chooses speeds instead of the fastest; stays valid
-    bool third_order = true;  ///< with jerk limits: along a curve, within velocity, acceleration and jerk
-};
-
-/// How a plan that is tried ends.
-enum class Ending : std::uint8_t {
-    ONWARD,  ///< it continues as far as it can, and then stops
-    STOP,    ///< it stops
 };
 
 /// What an update has to do.
@@ -29,7 +22,6 @@ struct Demand {
         NOTHING,
         EXTEND,  ///< the current plan continues
         PLAN,    ///< another one from `from` on
-        STOP,    ///< one that stops
     };
     Kind kind = Kind::NOTHING;
     LeaderState from;
@@ -74,13 +66,9 @@ class TimingPlan {
         return {commitments_.phases_end(now), settings_.latency, settings_.period_s};
     }
     /// Makes a plan to be tried, with phases from `begin` on; false when there is none.
-    bool draft(const PathView &view, PathStore &store, Sequence begin, const LeaderState &from, Ending ending,
-               const StopShape &shape = {}) noexcept;
-    /// Time of the plan until it stops.
-    double stop_seconds() const noexcept { return stop_s_; }
+    bool draft(const PathView &view, PathStore &store, Sequence begin, const LeaderState &from) noexcept;
     /// Passes it to the executor; false when the store is full.
-    bool commit(const PathView &view, PathStore &store, const Snapshot &now, Sequence begin,
-                Ending ending) noexcept;
+    bool commit(PathStore &store, const Snapshot &now, Sequence begin) noexcept;
     /// Phases from `begin` on are free again.
     void discard(Sequence begin) noexcept { draft_.end = begin; }
 

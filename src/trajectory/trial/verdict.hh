@@ -9,8 +9,6 @@ namespace mw::trajectory {
 struct Verdict {
     bool isSound = true;
     std::uint64_t tick = 0;  ///< of the failed sample
-    double excess = 1;       ///< what the failed sample has over what is allowed
-    double along_share = 0;  ///< part of the failed swing that is acceleration along the path
 };
 
 /// The pieces that a failed sample depends on and that are not driven yet; 0: none.
