@@ -5,46 +5,46 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace mw::plants {
 
 struct StepperSettings {
-    double units_per_step = 0.005;             ///< of the table; negative: the other way round
-    double backlash = 0;                       ///< [unit]
-    double peak_acceleration = 1e9;            ///< torque divided by inertia [unit/s^2]
-    double fastest = 1e9;                      ///< speed at which no torque is left [unit/s]
+    double units_per_step = 0.005;    ///< of the table; negative: the other way round
+    double backlash = 0;              ///< [unit]
+    double peak_acceleration = 5000;  ///< pull-out torque at standstill, divided by inertia [unit/s^2]
+    double fastest = 500;             ///< speed at which the pull-out torque is zero [unit/s]
     double lower_end = -1e9, upper_end = 1e9;  ///< where the table hits an end stop [unit]
+    double microsteps = 4;                     ///< steps of the drive for a full step of the motor
 };
 
-/// The rotor is an inertia in the magnetic field of the steps: it falls out of step when it lags by two full
-/// steps.
+/// The rotor is an inertia in the field of the steps. The torque of the field is a sine of the lag with a
+/// period of four full steps, and its amplitude falls with speed: the inductance of the windings leaves less
+/// current. That holds for driving and braking. Drag (friction and iron losses) is part of the data sheet's
+/// pull-out torque: it takes from a torque that drives and adds to one that brakes, so that pull-out is T(v)
+/// = T0 (1 - v / fastest) when driving, and T(v) + 2 drag when braking, not T0. At a lag of more than two
+/// full steps the torque reverses: the rotor falls out of step, the torque averages to zero, and drag stops
+/// it. Source: Kenjo and Sugawara, Stepping Motors and their Microprocessor Controls, 1994, chapter 4.
 class StepperAxis {
   public:
     void set(const StepperSettings &settings) noexcept { settings_ = settings; }
-    void place(double position) noexcept { rotor_ = field_ = table_ = position; }
+    void place(double position) noexcept {
+        rotor_ = field_ = table_ = position;
+        velocity_ = slip_velocity_ = 0;
+    }
 
     /// Time of `dt` seconds in which the phases are advanced by `steps`.
     void run(int steps, bool powered, double dt) noexcept {
-        if (!powered) {
+        const double advance = steps * settings_.units_per_step;
+        field_ += advance;
+        slip_velocity_ += (advance / dt - velocity_ - slip_velocity_) * std::min(1.0, dt / SMOOTHING_S);
+        const double pitch =
+            FULL_STEPS_OF_A_PERIOD * settings_.microsteps * std::abs(settings_.units_per_step);
+        if (powered) {
+            turn(pitch, dt);
+        } else {
             field_ = rotor_;
-            velocity_ = 0;
-            return;
-        }
-        const double step = settings_.units_per_step;
-        field_ += steps * step;
-        // The rotor follows the field of the steps with a bounded force. Less of it is left at speed, except
-        // for braking.
-        const double lag = field_ - rotor_;
-        const double wanted = (lag / TIME_S - velocity_) / TIME_S;
-        const double part = wanted * velocity_ < 0 ? 1.0 : 1 - std::abs(velocity_) / settings_.fastest;
-        const double most = settings_.peak_acceleration * std::max(0.0, part);
-        velocity_ += std::clamp(wanted, -most, most) * dt;
-        rotor_ += velocity_ * dt;
-        const double pitch = STEPS_OF_A_PERIOD * std::abs(step);
-        if (std::abs(field_ - rotor_) > pitch * LOST_AT) {
-            // It has slipped by whole periods of the field.
-            field_ -= pitch * std::round((field_ - rotor_) / pitch);
-            slipped_ = true;
+            velocity_ = slip_velocity_ = 0;
         }
         hit();
         const double play = settings_.backlash / 2;
@@ -56,10 +56,33 @@ class StepperAxis {
     bool hasHit() const noexcept { return hit_; }
 
   private:
-    /// Time of the rotor to follow the field [s].
-    static constexpr double TIME_S = 0.0005;
-    /// Microsteps of one period of the field, and the part of it at which the rotor slips.
-    static constexpr double STEPS_OF_A_PERIOD = 64, LOST_AT = 0.5;
+    static constexpr double FULL_STEPS_OF_A_PERIOD = 4;
+    /// Drag as a part of the pull-out torque at standstill.
+    static constexpr double DRAG_PART = 0.1;
+    /// Damping ratio of the rotor in its field, and the time in which their relative speed is averaged [s].
+    static constexpr double DAMPING = 0.25, SMOOTHING_S = 0.0005;
+
+    void turn(double pitch, double dt) noexcept {
+        const double peak = settings_.peak_acceleration, drag = DRAG_PART * peak;
+        const double amplitude = peak * std::max(0.0, 1 - std::abs(velocity_) / settings_.fastest) + drag;
+        const double per_unit = 2 * std::numbers::pi / pitch;
+        const double lag = field_ - rotor_;
+        const double stiffness = amplitude * std::cos(lag * per_unit) * per_unit;
+        const double damping = 2 * DAMPING * std::sqrt(peak * per_unit);
+        // Implicit: stable for any stiffness. The field bounds its torque, damping included.
+        const double torque =
+            amplitude * std::sin(lag * per_unit) + damping * slip_velocity_ - stiffness * velocity_ * dt;
+        const double driving =
+            std::clamp(torque / (1 + (damping + std::max(0.0, stiffness) * dt) * dt), -amplitude, amplitude);
+        velocity_ += driving * dt;
+        // Drag stops the rotor and does not reverse it.
+        velocity_ -= std::clamp(velocity_, -drag * dt, drag * dt);
+        rotor_ += velocity_ * dt;
+        if (std::abs(field_ - rotor_) > pitch / 2) {
+            field_ -= pitch * std::round((field_ - rotor_) / pitch);
+            slipped_ = true;
+        }
+    }
 
     void hit() noexcept {
         const double inside = std::clamp(rotor_, settings_.lower_end, settings_.upper_end);
@@ -71,7 +94,7 @@ class StepperAxis {
     }
 
     StepperSettings settings_;
-    double field_ = 0, rotor_ = 0, table_ = 0, velocity_ = 0;
+    double field_ = 0, rotor_ = 0, table_ = 0, velocity_ = 0, slip_velocity_ = 0;
     bool slipped_ = false, hit_ = false;
 };
 

@@ -4,11 +4,12 @@
 //
 // It counts the rising edges of `step`, in the direction of `dir`, while `powered` (bit, true at start). The
 // table is at `table`, in machine units; `units-per-step` is negative for a motor that turns the other way.
-// `backlash`, `peak-acceleration` (torque divided by inertia), `fastest` (no torque is left there),
-// `lower-end` and `upper-end` (end stops) describe the machine; `start` is where the table begins. `switch`
-// (bit) is the level of the home switch, which is actuated above `switch-at` (below it while
-// `switch-below`); `switch-inverted` is a contact that opens. `press` actuates it by hand. `slipped` and
-// `hit` stay true once steps were lost or an end stop was hit.
+// `backlash`, `peak-acceleration` (torque at standstill divided by inertia), `fastest` (no torque is left
+// there, and less between), `microsteps` (steps for a full step of the motor), `lower-end` and `upper-end`
+// (end stops) describe the machine; `start` is where the table begins. `switch` (bit) is the level of the
+// home switch, which is actuated above `switch-at` (below it while `switch-below`); `switch-inverted` is a
+// contact that opens. `press` actuates it by hand. `slipped` and `hit` stay true once steps were lost or an
+// end stop was hit.
 #include "components/plants/stepper_axis.hh"
 #include "hal/sdk/component.hh"
 
@@ -18,7 +19,8 @@ using namespace sdk;
 struct PlantStepper {
     static constexpr plants::StepperSettings START{};
     In<bool> step, dir, powered, switch_below, switch_inverted, press;
-    In<double> units_per_step, backlash, peak_acceleration, fastest, lower_end, upper_end, start, switch_at;
+    In<double> units_per_step, backlash, peak_acceleration, fastest, lower_end, upper_end, start, switch_at,
+        microsteps;
     Out<bool> contact, slipped, hit;
     Out<double> table;
     plants::StepperAxis axis;
@@ -34,6 +36,7 @@ struct PlantStepper {
         d.pin(fastest, "fastest", START.fastest);
         d.pin(lower_end, "lower-end", START.lower_end);
         d.pin(upper_end, "upper-end", START.upper_end);
+        d.pin(microsteps, "microsteps", START.microsteps);
         d.pin(start, "start");
         d.pin(switch_at, "switch-at");
         d.pin(switch_below, "switch-below");
@@ -51,7 +54,7 @@ struct PlantStepper {
             axis.place(start);
             isPlaced = true;
         }
-        axis.set({units_per_step, backlash, peak_acceleration, fastest, lower_end, upper_end});
+        axis.set({units_per_step, backlash, peak_acceleration, fastest, lower_end, upper_end, microsteps});
         const bool edge = step && !was_high;
         was_high = step;
         axis.run(edge ? (dir ? -1 : 1) : 0, powered, static_cast<double>(period_ns) * 1e-9);

@@ -14,6 +14,7 @@
 #include "components/plants/quadrature_source.hh"
 #include "components/plants/random.hh"
 #include "components/plants/spindle.hh"
+#include "components/plants/stepper_axis.hh"
 #include "components/plants/touch_probe.hh"
 
 namespace mw::plants {
@@ -283,6 +284,49 @@ TEST(SimPlants, KeepNothingOfWhatIsNoNumber) {
         };
         EXPECT_NEAR(after_no_number(home, bad), 1, 1e-3) << bad;
     }
+}
+
+/// Steps that ramp up to a speed, cruise, and ramp down to standstill. @return the motor after it
+StepperAxis ramped(const StepperSettings &settings, double speed, double up, double down) {
+    constexpr double DT = 25e-6, CRUISE_S = 0.3, REST_S = 0.3;
+    StepperAxis axis;
+    axis.set(settings);
+    double position = 0, velocity = 0;
+    long made = 0;
+    const double end_s = speed / up + CRUISE_S + speed / down + REST_S;
+    for (double time = 0; time < end_s; time += DT) {
+        const bool is_rising = time < speed / up, is_cruising = time < speed / up + CRUISE_S;
+        velocity = is_rising     ? std::min(speed, velocity + up * DT)
+                   : is_cruising ? speed
+                                 : std::max(0.0, velocity - down * DT);
+        position += velocity * DT;
+        const long wanted = std::lround(position / settings.units_per_step);
+        axis.run(static_cast<int>(wanted - made), true, DT);
+        made = wanted;
+    }
+    return axis;
+}
+
+TEST(Stepper, ItFollowsWithinItsPullOutTorqueAndFallsOutOfStepBeyond) {
+    const StepperSettings motor{.units_per_step = 0.01, .peak_acceleration = 2000, .fastest = 200};
+    EXPECT_FALSE(ramped(motor, 100, 500, 500).hasSlipped());
+    EXPECT_NEAR(ramped(motor, 100, 500, 500).table(), 100 * 100 / 500.0 + 30, 0.05);
+    EXPECT_TRUE(ramped(motor, 100, 2500, 500).hasSlipped());
+    EXPECT_TRUE(ramped(motor, 220, 100, 100).hasSlipped()) << "no torque is left";
+}
+
+TEST(Stepper, ItBrakesWithTheTorqueOfItsSpeedAndItsDrag) {
+    // At 150 of 200 units/s a quarter of 2000 is left, and a drag of 200 brakes as well: 500 + 2 * 200.
+    const StepperSettings motor{.units_per_step = 0.01, .peak_acceleration = 2000, .fastest = 200};
+    EXPECT_FALSE(ramped(motor, 150, 100, 450).hasSlipped());
+    EXPECT_TRUE(ramped(motor, 150, 100, 1500).hasSlipped()) << "torque at standstill is not there at speed";
+}
+
+TEST(Stepper, ARotorOutOfStepStopsByItsDrag) {
+    const StepperSettings motor{.units_per_step = 0.01, .peak_acceleration = 2000, .fastest = 200};
+    const StepperAxis axis = ramped(motor, 800, 4000, 4000);
+    EXPECT_TRUE(axis.hasSlipped());
+    EXPECT_LT(axis.table(), 200) << "it does not follow a field that is faster than it";
 }
 
 }  // namespace
