@@ -14,6 +14,7 @@
 #include "base/stop_signals.hh"
 #include "programs/commission/commissioner.hh"
 #include "programs/commission/operator_line.hh"
+#include "programs/commission/operator_messages.hh"
 #include "programs/commission/parts.hh"
 #include "programs/commission/record_file.hh"
 #include "programs/commission/report.hh"
@@ -45,7 +46,7 @@ int reject(const char *command, const std::string &why, int status) {
 
 struct CheckWords {
     const char *command;
-    bool isSimulated = false, isFast = false, isRepeated = false;
+    bool isSimulated = false, isFast = false, isRepeated = false, isScreen = false, areAll = false;
     options::Words rest;
 
     options::CommandLine line() {
@@ -60,6 +61,9 @@ struct CheckWords {
             "SECONDS, number VALUE, choice TEXT, cannot.\n");
         line.flag("--simulate", "in virtual time, with simulated hardware", isSimulated);
         line.flag("--fast", "with --simulate: do not wait for the time of the clock on the wall", isFast);
+        line.flag("--all", "the steps of check and of tune", areAll);
+        line.flag("--messages", "for a screen: lines of JSON instead of texts (docs/reference/api.md)",
+                  isScreen);
         line.flag("--again", "do all steps again", isRepeated);
         line.rest(rest);
         line.footer("exit status: 0 the steps are done without a fault, 1 a fault, 2 wrong usage\n");
@@ -67,26 +71,11 @@ struct CheckWords {
     }
 };
 
-void show_finding(const commissioning::Step &step, const commissioning::Finding &finding) {
-    fmt::print("{}: {}{}\n", step.title,
-               finding.fault == commissioning::Fault::NONE
-                   ? "passed"
-                   : "FAULT: " + std::string(commissioning::fault_name(finding.fault)),
-               finding.detail.empty() ? "" : " (" + finding.detail + ")");
-    for (const commissioning::Value &value : finding.values) {
-        fmt::print("    {}: {:.6g} {}\n", value.name, value.number, value.unit);
-    }
-    if (finding.fault != commissioning::Fault::NONE) {
-        fmt::print("    {}\n", commissioning::fault_remedy(finding.fault));
-    }
-    std::fflush(stdout);
-}
-
 /// Runs the steps. An error ends the session.
 class CheckSession {
   public:
-    CheckSession(CheckWords &words, Commissioner &commissioner)
-        : words_(words), commissioner_(commissioner) {}
+    CheckSession(CheckWords &words, Commissioner &commissioner, OperatorChannel &channel)
+        : words_(words), commissioner_(commissioner), operator_(channel) {}
 
     Result<> run() {
         commissioning::Guide &guide = commissioner_.guide();
@@ -116,7 +105,7 @@ class CheckSession {
             }
             for (; shown < guide.current() || (guide.isFaulted() && shown == guide.current()); ++shown) {
                 if (guide.findings()[shown].has_value()) {
-                    show_finding(guide.steps()[shown], *guide.findings()[shown]);
+                    operator_.show_finding(guide.steps()[shown], *guide.findings()[shown]);
                 }
             }
         }
@@ -126,7 +115,7 @@ class CheckSession {
   private:
     CheckWords &words_;
     Commissioner &commissioner_;
-    OperatorLine operator_;
+    OperatorChannel &operator_;
 };
 
 int run_steps(const char *command, const std::vector<std::string> &arguments,
@@ -156,7 +145,7 @@ int run_steps(const char *command, const std::vector<std::string> &arguments,
                           .clock_virtual = words.isSimulated,
                           .known = words.isRepeated ? std::vector<commissioning::Finding>{}
                                                     : valid_findings(*record, *answers),
-                          .isWanted = isWanted,
+                          .isWanted = words.areAll ? nullptr : isWanted,
                           .prepare = {},
                           .on_start = {},
                           .wrap = {}};
@@ -164,18 +153,20 @@ int run_steps(const char *command, const std::vector<std::string> &arguments,
     if (!commissioner.has_value()) {
         return reject(command, commissioner.error().str(), 1);
     }
-    const auto ran = CheckSession(words, **commissioner).run();
+    const std::unique_ptr<OperatorChannel> channel =
+        words.isScreen ? std::unique_ptr<OperatorChannel>(std::make_unique<OperatorMessages>())
+                       : std::make_unique<OperatorLine>();
+    const auto ran = CheckSession(words, **commissioner, *channel).run();
+    (*commissioner)->stop();
     const commissioning::Guide &guide = (*commissioner)->guide();
     const auto written = write_record(machine_folder, guide, now_text(), MW_VERSION);
-    if (!ran.has_value() || !written.has_value()) {
-        return reject(command, ran.has_value() ? written.error().str() : ran.error().str(), 1);
+    const std::string why = !ran.has_value()       ? ran.error().str()
+                            : !written.has_value() ? written.error().str()
+                                                   : "";
+    channel->show_end(guide, why);
+    if (!why.empty() || guide.isFaulted()) {
+        return reject(command, why.empty() ? "stopped at a fault; the same command continues there" : why, 1);
     }
-    if (guide.isFaulted()) {
-        return reject(command, "stopped at a fault; the same command continues there", 1);
-    }
-    fmt::print("{}\n", guide.isReady()
-                           ? "The machine is ready."
-                           : "These steps are done. `millwright commission report` shows what is left.");
     return 0;
 }
 

@@ -46,11 +46,21 @@ Result<std::unique_ptr<Commissioner>> Commissioner::open(CommissionSetup setup) 
 }
 
 Commissioner::~Commissioner() {
-    if (machine_ != nullptr) {
-        guide_->stop();
-        machine_->cycle();
-    }
+    stop();
     end_machine();
+}
+
+void Commissioner::stop() {
+    guide_->stop();
+    // Until the outputs are off as well: a port keeps what was written last.
+    constexpr int LONGEST = 1000, OUTPUTS = 10;
+    int off = 0;
+    for (int cycle = 0; machine_ != nullptr && cycle < LONGEST && off < OUTPUTS && machine_->health();
+         ++cycle) {
+        machine_->cycle();
+        bench_->update();
+        off = machine_->client().status().trajectory.isEnabled ? 0 : off + 1;
+    }
 }
 
 void Commissioner::end_machine() {
@@ -73,6 +83,10 @@ Result<> Commissioner::start() {
     loaded_ = machine::LoadedConfig::load(ini, sink_);
     if (loaded_ == nullptr) {
         return std::unexpected(first_error(sink_, ini));
+    }
+    for (const std::string &command : commissioning::watchdog_commands()) {
+        loaded_->machine.hal_steps.push_back(
+            {machine::HalStep::Kind::COMMAND, command, {"commissioning", 0, 0}});
     }
     const machine::MachineParts parts{loaded_->ini, loaded_->reader, loaded_->machine, sink_};
     machine::MachineOptions options;

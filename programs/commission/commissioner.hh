@@ -38,6 +38,8 @@ class Commissioner {
     machine::Machine &machine() { return *machine_; }
     /// One task cycle, and a new start of the machine when the guide wants one.
     Result<> cycle();
+    /// Ends the current step and waits until the machine and its outputs are off.
+    void stop();
     /// Writes the answers of the guide, and starts the machine again.
     Result<> restart();
 

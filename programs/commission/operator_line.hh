@@ -5,31 +5,36 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 
-#include "machine/commissioning/guide.hh"
+#include "programs/commission/operator_channel.hh"
 #include "programs/run/keyboard.hh"
 
 namespace mw::programs {
 
 /// Shows prompts and reads acts, without waiting. Lines: "confirm", "hold SECONDS", "number 12.5", "choice
 /// positive", "cannot". At a terminal: Enter confirms and ends a line, a held space bar is the button.
-class OperatorLine {
+class OperatorLine final : public OperatorChannel {
   public:
     OperatorLine();
 
     /// Shows the current prompt when it is new, and passes on what the operator did. False: the input has
     /// ended.
-    bool look(commissioning::Guide &guide, double now_s);
+    bool look(commissioning::Guide &guide, double now_s) override;
+    void show_finding(const commissioning::Step &step, const commissioning::Finding &finding) override;
+    void show_end(const commissioning::Guide &guide, const std::string &error) override;
 
   private:
+    /// In the language of the person; a script reads English.
+    std::string shown(std::string_view english) const;
     void show(const commissioning::Guide &guide);
-    bool read();
+    bool read(double now_s);
     void take(commissioning::Guide &guide, double now_s, const std::string &line);
 
     std::unique_ptr<Keyboard> keyboard_;  ///< null: a script
     std::string input_;
-    int shown_ = -1;
-    double held_until_s_ = -1;
+    int shown_ = -1, pressed_for_ = -1;  ///< numbers of prompts
+    double held_until_s_ = -1, space_seen_s_ = -1;
     bool isEnded_ = false, isSpaceHeld_ = false;
 };
 

@@ -36,7 +36,9 @@ class LateBench final : public Bench {
     void switch_on(const std::vector<int> &joints) override { bench_.switch_on(joints); }
     double worst_latency_s() const override { return bench_.worst_latency_s(); }
     void switch_off() override { bench_.switch_off(); }
-    void move(int joint, double distance, double speed) override { bench_.move(joint, distance, speed); }
+    void move_to(int joint, double position, double speed) override {
+        bench_.move_to(joint, position, speed);
+    }
     void stop(int joint) override { bench_.stop(joint); }
     void home(int joint) override { bench_.home(joint); }
     void unhome(int joint) override { bench_.unhome(joint); }

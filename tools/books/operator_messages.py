@@ -27,8 +27,9 @@ FOLDER = 'docs/reference'
 LINK = re.compile(r'\]\((?!https?:)([^)#]+)')
 # Title, name of the file in TABLES, folders whose texts it lists. Programs in Python have help texts only in the catalogue, and are not listed.
 AREAS = (
+    ('Commissioning', 'commissioning', ('src/machine/commissioning',)),
     ('Motion and homing', 'motion', ('src/motion', 'src/kinematics')),
-    ('Task: programs, MDI, tools', 'task', ('src/machine', 'src/messages')),
+    ('Task: programs, MDI, tools', 'task', ('src/machine/io', 'src/machine/journal', 'src/machine/task', 'src/machine/config', 'src/machine/analysis', 'src/machine/tools', 'src/machine/assembly', 'src/messages')),
     ('G-code', 'gcode', ('src/gcode',)),
     ('HAL', 'hal', ('src/hal/core', 'src/hal/host', 'src/hal/script', 'drivers')),
     ('INI files', 'ini', ('src/base/ini',)),

@@ -38,9 +38,10 @@ class Bench {
 
     /// Switches the machine on with the drives of these joints only.
     virtual void switch_on(const std::vector<int> &joints) = 0;
+    /// Stops axes and spindle, and ends a switching on.
     virtual void switch_off() = 0;
-    /// Moves a joint by a distance from where it is.
-    virtual void move(int joint, double distance, double speed) = 0;
+    /// Moves a joint to a position; the same request again changes nothing.
+    virtual void move_to(int joint, double position, double speed) = 0;
     virtual void stop(int joint) = 0;
     virtual void home(int joint) = 0;
     /// Soft limits no longer apply.
@@ -48,8 +49,9 @@ class Bench {
     virtual void run_spindle(double speed_rpm) = 0;
     virtual void stop_spindle() = 0;
 
-    /// A pin or a parameter of HAL.
+    /// A pin or a parameter of HAL; nothing: it does not exist.
     virtual std::optional<double> value(std::string_view name) const = 0;
+    /// One that cannot be set switches the machine off, with a last_error().
     virtual void set_value(std::string_view name, double value) = 0;
 
     static constexpr int EVERY_JOINT = -1, NO_JOINT = -2;

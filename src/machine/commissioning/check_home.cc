@@ -2,6 +2,7 @@
 // Steps of a homed joint: its home switch, and how far it can travel.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -15,6 +16,9 @@ namespace {
 constexpr double TRAVEL_FACTOR = 1.3, CLEARANCE_MM = 20;
 /// A position that changes by more than the maximum speed in this time was set [s].
 constexpr double JUMP_S = 0.01;
+/// A request to home shows in the state of the machine within this time, and a stop has ended within this one
+/// [s].
+constexpr double REACTION_S = 0.2, STOPPING_S = 3;
 
 /// Where the board counts the joint.
 std::string counts_name(const Stage &stage, int joint) {
@@ -33,71 +37,100 @@ Prompt hold(const char *step, const Stage &stage, int joint, const std::string &
     return prompt;
 }
 
-Flow<> settle(Stage &stage, int joint) {
-    constexpr double SETTLE_S = 0.3;
-    while (stage.bench().joint(joint).isMoving) {
-        co_await stage.next_cycle();
-    }
-    co_await stage.wait(SETTLE_S);
+// Texts are chosen outside of coroutines: GCC 12 destroys temporaries of a conditional expression in one
+// twice.
+Prompt home_prompt(const Stage &stage, int joint) {
+    const std::string name = to_upper(stage.motor(joint).name);
+    const std::string text =
+        stage.axis(joint).home_at_max
+            ? fmt::format(
+                  "Hold the button: {} moves slowly to its home switch at the positive end, and homes.", name)
+            : fmt::format(
+                  "Hold the button: {} moves slowly to its home switch at the negative end, and homes.",
+                  name);
+    return hold("home", stage, joint, text, "The table: release the button when it passes the switch.");
 }
+
+std::string enable_text(const Stage &stage, int joint) {
+    return stage.isOneOfTwo(joint)
+               ? fmt::format(
+                     "Couple both motors to the axis. The drives of {} are switched on. They will move "
+                     "together to the home switches.",
+                     stage.axis(joint).letter)
+               : fmt::format("The drive of {} is switched on. It will move to its home switch.",
+                             to_upper(stage.motor(joint).name));
+}
+
+/// How far a joint has moved. Homing sets the position at the switch: such a jump is no motion.
+class Travel {
+  public:
+    Travel(double start, double most_step) : last_(start), most_step_(most_step) {}
+    void add(double position) {
+        const double step = std::abs(position - std::exchange(last_, position));
+        sum_ += step < most_step_ ? step : 0;
+    }
+    double sum() const { return sum_; }
+
+  private:
+    double last_, most_step_, sum_ = 0;
+};
 
 }  // namespace
 
 Flow<Fault> home_while_held(Stage &stage, int joint) {
     const setup::Axis &axis = stage.axis(joint);
     const double farthest = (axis.max - axis.min) * TRAVEL_FACTOR + stage.plan().small(axis, CLEARANCE_MM);
-    // Homing sets the position at the switch: such a jump is no motion.
-    const double most_step = axis.speed * JUMP_S;
-    double last = stage.bench().joint(joint).feedback, travelled = 0;
-    stage.show(
-        hold("home", stage, joint,
-             fmt::format("Hold the button: {} moves slowly to its home switch at the {} end, and homes.",
-                         to_upper(stage.motor(joint).name), axis.home_at_max ? "positive" : "negative"),
-             "The table: release the button when it passes the switch."));
-    bool homing = false;
-    while (true) {
+    Travel travel(stage.bench().joint(joint).feedback, axis.speed * JUMP_S);
+    stage.show(home_prompt(stage, joint));
+    bool is_requested = false, has_begun = false;
+    double since_s = stage.bench().now_s();
+    while (stage.bench().isOn()) {
         const JointReading reading = stage.bench().joint(joint);
-        if (!stage.bench().isOn()) {
-            co_return Fault::STOPPED;
+        const double waited_s = stage.bench().now_s() - since_s;
+        const bool is_active = reading.isMoving || reading.isHoming;
+        has_begun = is_requested && (has_begun || reading.isHoming);
+        travel.add(reading.feedback);
+        if (has_begun && reading.isHomed && !is_active) {
+            const bool is_settled = co_await stage.settle(joint);
+            co_return is_settled ? Fault::NONE : Fault::STOPPED;
         }
-        if (homing && reading.isHomed && !reading.isHoming && !reading.isMoving) {
-            co_return Fault::NONE;
-        }
-        const double step = std::abs(reading.feedback - last);
-        last = reading.feedback;
-        travelled += step < most_step ? step : 0;
-        const bool is_too_far = travelled > farthest;
-        if (is_too_far || stage.isGivenUp()) {
+        if (is_requested && (!stage.isHeld() || stage.isGivenUp() || travel.sum() > farthest)) {
             stage.bench().stop(joint);
-            co_return is_too_far ? Fault::SWITCH_NOT_REACHED : Fault::GIVEN_UP;
-        }
-        if (!homing && stage.isHeld()) {
+            is_requested = false;
+            since_s = stage.bench().now_s();
+        } else if (is_requested && !is_active && waited_s > REACTION_S) {
+            stage.switch_off_because("Homing ended early.");
+        } else if (!is_requested && is_active && waited_s > STOPPING_S) {
+            stage.switch_off_because("The axis does not stop.");
+        } else if (!is_requested && !is_active && (stage.isGivenUp() || travel.sum() > farthest)) {
+            co_return stage.isGivenUp() ? Fault::GIVEN_UP : Fault::SWITCH_NOT_REACHED;
+        } else if (!is_requested && !is_active && stage.isHeld()) {
             stage.bench().home(joint);
-            homing = true;
-            constexpr double REACTION_S = 0.05;
-            co_await stage.wait(REACTION_S);
-        } else if (homing && !stage.isHeld()) {
-            stage.bench().stop(joint);
-            homing = false;
+            is_requested = true;
+            since_s = stage.bench().now_s();
         }
         co_await stage.next_cycle();
     }
+    co_return Fault::STOPPED;
 }
 
-Flow<double> counts_at_home(Stage &stage, int joint) {
-    co_await settle(stage, joint);
+Flow<std::optional<double>> counts_at_home(Stage &stage, int joint) {
     // A servo at standstill moves between neighbouring counts.
     constexpr int SAMPLES = 200;
-    double sum = 0;
-    for (int i = 0; i < SAMPLES; ++i) {
-        sum += stage.bench().value(counts_name(stage, joint)).value_or(0);
+    std::optional<double> sum = 0;
+    for (int i = 0; i < SAMPLES && sum.has_value(); ++i) {
+        const std::optional<double> counts = stage.bench().value(counts_name(stage, joint));
+        sum = counts.has_value() ? std::optional(*sum + *counts / SAMPLES) : std::nullopt;
         co_await stage.next_cycle();
     }
-    const double counts = sum / SAMPLES;
+    if (!sum.has_value()) {
+        stage.switch_off_because("The board has no pin " + counts_name(stage, joint) + ".");
+        co_return std::nullopt;
+    }
     stage.bench().unhome(joint);
-    constexpr double REACTION_S = 0.1;
-    co_await stage.wait(REACTION_S);
-    co_return counts;
+    constexpr double UNHOMING_S = 0.1;
+    co_await stage.wait(UNHOMING_S);
+    co_return sum;
 }
 
 Flow<Finding> check_home(Stage &stage, int joint) {
@@ -107,13 +140,9 @@ Flow<Finding> check_home(Stage &stage, int joint) {
     if (stage.joints_of_axis(joint).front() != joint) {
         co_return found("home", stage, joint, Fault::NONE, "homed together with the other motor of the axis");
     }
-    const std::string name = to_upper(stage.motor(joint).name);
-    const bool on = co_await stage.enable_axis(
-        joint, "home",
-        fmt::format("The drive of {} is switched on. It will move to its home switch.{}", name,
-                    stage.isOneOfTwo(joint) ? " Couple both motors to the axis: they home together." : ""));
-    if (!on) {
-        co_return found("home", stage, joint, Fault::GIVEN_UP, stage.bench().last_error());
+    const Fault off = co_await stage.enable_axis(joint, "home", enable_text(stage, joint));
+    if (off != Fault::NONE) {
+        co_return found("home", stage, joint, off);
     }
     constexpr int TIMES = 4;
     double least = 0, most = 0;
@@ -121,14 +150,15 @@ Flow<Finding> check_home(Stage &stage, int joint) {
     for (int i = 0; i < TIMES && finding.fault == Fault::NONE; ++i) {
         finding.fault = co_await home_while_held(stage, joint);
         if (finding.fault != Fault::NONE) {
-            finding.detail = stage.bench().last_error();
-            break;
+            co_return finding;
         }
-        const double counts = co_await counts_at_home(stage, joint);
-        least = i == 0 ? counts : std::min(least, counts);
-        most = i == 0 ? counts : std::max(most, counts);
+        const std::optional<double> counts = co_await counts_at_home(stage, joint);
+        if (!counts.has_value()) {
+            co_return found("home", stage, joint, Fault::STOPPED);
+        }
+        least = i == 0 ? *counts : std::min(least, *counts);
+        most = i == 0 ? *counts : std::max(most, *counts);
     }
-    stage.bench().switch_off();
     constexpr double ALLOWED = 1;
     if (finding.fault == Fault::NONE && most - least > ALLOWED) {
         finding.fault = Fault::SWITCH_NOT_REPEATABLE;
@@ -143,17 +173,16 @@ Flow<Finding> check_travel(Stage &stage, int joint) {
     }
     const setup::Axis axis = stage.axis(joint);
     const std::string motor = stage.motor(joint).name, name = to_upper(motor);
-    const bool on = co_await stage.enable(
+    const Fault off = co_await stage.enable(
         joint, "travel",
         fmt::format("The drive of {} alone is switched on. It homes, then moves to its other end.", name));
-    if (!on) {
-        co_return found("travel", stage, joint, Fault::GIVEN_UP, stage.bench().last_error());
+    if (off != Fault::NONE) {
+        co_return found("travel", stage, joint, off);
     }
     const Fault homed = co_await home_while_held(stage, joint);
     if (homed != Fault::NONE) {
-        co_return found("travel", stage, joint, homed, stage.bench().last_error());
+        co_return found("travel", stage, joint, homed);
     }
-    co_await settle(stage, joint);
     stage.bench().unhome(joint);
     co_await stage.wait(0.1);
     const double sign = axis.home_at_max ? -1 : 1;
@@ -167,19 +196,22 @@ Flow<Finding> check_travel(Stage &stage, int joint) {
                     "confirm.",
                     name),
         "The table: it must not reach the end stop.");
+    prompt.may_end_early = true;
     const double farthest = std::abs(limit - start) * TRAVEL_FACTOR;
-    const Ending ending = co_await stage.move_while_held(joint, {sign * farthest, speed}, std::move(prompt));
-    const double reached = stage.bench().joint(joint).command;
-    if (ending == Ending::STOPPED || ending == Ending::CANNOT) {
-        stage.bench().switch_off();
-        co_return found("travel", stage, joint, ending == Ending::STOPPED ? Fault::STOPPED : Fault::GIVEN_UP,
-                        stage.bench().last_error());
+    const Ending ending =
+        co_await stage.move_while_held(joint, Motion{sign * farthest, speed}, std::move(prompt));
+    if (fault_of(ending) != Fault::NONE) {
+        co_return found("travel", stage, joint, fault_of(ending));
     }
-    // Back to the middle, so that the next steps have clearance.
+    const double reached = stage.bench().joint(joint).command;
+    // Back to the middle: the next steps rely on the clearance there.
     Prompt back = hold("travel", stage, joint,
                        fmt::format("Hold the button: {} moves back to the middle.", name), "The table.");
-    static_cast<void>(co_await stage.move_while_held(joint, {(start - reached) / 2, speed}, std::move(back)));
-    stage.bench().switch_off();
+    const Ending centred =
+        co_await stage.move_while_held(joint, Motion{(start - reached) / 2, speed}, std::move(back));
+    if (fault_of(centred) != Fault::NONE) {
+        co_return found("travel", stage, joint, fault_of(centred));
+    }
     Finding finding = found("travel", stage, joint, Fault::NONE);
     const double rounded = sign > 0 ? std::floor(reached * 10) / 10 : std::ceil(reached * 10) / 10;
     finding.values.push_back({axis.home_at_max ? "lower limit" : "upper limit", rounded, stage.unit(joint)});

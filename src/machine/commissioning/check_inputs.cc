@@ -193,10 +193,10 @@ Flow<Finding> check_estop(Stage &stage, int joint) {
     if (!rest) {
         co_return found("estop", stage, joint, Fault::ESTOP_NORMALLY_OPEN);
     }
-    const bool on =
+    const Fault off =
         co_await stage.enable(Bench::NO_JOINT, "estop", "The machine is switched on without its drives.");
-    if (!on) {
-        co_return found("estop", stage, joint, Fault::STOPPED, stage.bench().last_error());
+    if (off != Fault::NONE) {
+        co_return found("estop", stage, joint, off);
     }
     stage.show(by_hand("estop", "", "Press the emergency stop button. The machine must go off."));
     const double off_s = stage.bench().now_s() + PATIENCE_S;

@@ -45,12 +45,6 @@ void open_loop(Stage &stage, int joint) {
     stage.bench().set_value(pid + ".FF1", 1);
 }
 
-Fault fault_of(Ending ending) {
-    return ending == Ending::STOPPED  ? Fault::STOPPED
-           : ending == Ending::CANNOT ? Fault::GIVEN_UP
-                                      : Fault::NONE;
-}
-
 struct Seen {
     Fault fault = Fault::NONE;
     std::string way;  ///< "positive", "negative", "not at all"
@@ -67,7 +61,7 @@ Flow<Seen> look_at_direction(Stage &stage, int joint) {
              fmt::format("Hold the button: the motor moves {} about {} {} in the positive direction.",
                          to_upper(stage.motor(joint).name), to_text(distance), stage.unit(joint)));
     const Ending ending =
-        co_await stage.move_while_held(joint, {distance, stage.slow(joint) / 2}, std::move(prompt));
+        co_await stage.move_while_held(joint, Motion{distance, stage.slow(joint) / 2}, std::move(prompt));
     const JointReading after = stage.bench().joint(joint);
     Seen seen{.fault = fault_of(ending),
               .way = "",
@@ -115,21 +109,18 @@ Flow<Finding> check_direction(Stage &stage, int joint) {
     constexpr int ROUNDS = 3;
     const std::string name = to_upper(stage.motor(joint).name);
     for (int round = 0; round < ROUNDS; ++round) {
-        const bool on = co_await stage.enable(
+        const Fault off = co_await stage.enable(
             joint, "direction", fmt::format("The drive of {} alone is switched on. {}", name, FREE));
-        if (!on) {
-            const bool given_up = stage.bench().last_error().empty();
-            co_return found("direction", stage, joint, given_up ? Fault::GIVEN_UP : Fault::STOPPED,
-                            stage.bench().last_error());
+        if (off != Fault::NONE) {
+            co_return found("direction", stage, joint, off);
         }
         if (stage.plan().is_servo) {
             open_loop(stage, joint);
         }
         const Seen seen = co_await look_at_direction(stage, joint);
-        const std::string error = stage.bench().last_error();
         stage.bench().switch_off();
         if (seen.fault != Fault::NONE) {
-            co_return found("direction", stage, joint, seen.fault, error);
+            co_return found("direction", stage, joint, seen.fault);
         }
         const Fault encoder = stage.plan().is_servo ? judge_encoder(seen) : Fault::NONE;
         if (seen.way == "not at all" || encoder == Fault::ENCODER_NOT_CONNECTED ||
@@ -161,7 +152,6 @@ namespace {
 struct Measured {
     Fault fault = Fault::NONE;
     double commanded = 0, measured = 0;
-    std::string detail;
 };
 
 /// Takes up the play, lets the operator zero a gauge, moves, and requires the measured travel.
@@ -169,15 +159,12 @@ Flow<Measured> measure_travel(Stage &stage, int joint, double distance) {
     const double speed = stage.slow(joint);
     const std::string name = to_upper(stage.motor(joint).name);
     const double run_up = stage.plan().small(stage.axis(joint), 2);
-    const double legs[] = {-(distance / 2 + run_up), run_up};
-    for (const double leg : legs) {
-        Prompt prompt =
-            hold("scale", stage, joint, fmt::format("Hold the button: {} moves to the start.", name));
-        const Ending ending = co_await stage.move_while_held(joint, {leg, speed}, std::move(prompt));
-        if (ending != Ending::DONE) {
-            co_return Measured{fault_of(ending) == Fault::NONE ? Fault::GIVEN_UP : fault_of(ending), 0, 0,
-                               stage.bench().last_error()};
-        }
+    Prompt to_start =
+        hold("scale", stage, joint, fmt::format("Hold the button: {} moves to the start.", name));
+    const std::vector<Motion> approach{{-(distance / 2 + run_up), speed}, {run_up, speed}};
+    const Ending started = co_await stage.move_while_held(joint, approach, std::move(to_start));
+    if (started != Ending::DONE) {
+        co_return Measured{fault_of(started), 0, 0};
     }
     Prompt zero =
         make_prompt("scale", stage.motor(joint).name,
@@ -186,29 +173,26 @@ Flow<Measured> measure_travel(Stage &stage, int joint, double distance) {
                                 name));
     const bool zeroed = co_await stage.confirm(std::move(zero));
     if (!zeroed) {
-        co_return Measured{Fault::GIVEN_UP, 0, 0, ""};
+        co_return Measured{Fault::GIVEN_UP, 0, 0};
     }
-    const double start = stage.bench().joint(joint).command;
     Prompt prompt =
         hold("scale", stage, joint,
              fmt::format("Hold the button: {} moves by {} {}.", name, to_text(distance), stage.unit(joint)));
-    const Ending ending = co_await stage.move_while_held(joint, {distance, speed}, std::move(prompt));
-    const double commanded = stage.bench().joint(joint).command - start;
-    const double least = std::abs(distance) / 10;
-    if (ending != Ending::DONE && !(ending == Ending::CONFIRMED && std::abs(commanded) > least)) {
-        co_return Measured{fault_of(ending) == Fault::NONE ? Fault::GIVEN_UP : fault_of(ending), 0, 0,
-                           stage.bench().last_error()};
+    const Ending ending = co_await stage.move_while_held(joint, Motion{distance, speed}, std::move(prompt));
+    if (ending != Ending::DONE) {
+        co_return Measured{fault_of(ending), 0, 0};
     }
     Prompt read = make_prompt("scale", stage.motor(joint).name, fmt::format("Read the gauge on {}.", name));
     read.unit = stage.unit(joint);
     const std::optional<double> value = co_await stage.measure(std::move(read));
     if (!value.has_value()) {
-        co_return Measured{Fault::GIVEN_UP, 0, 0, ""};
+        co_return Measured{Fault::GIVEN_UP, 0, 0};
     }
+    // Back to the middle: the next steps rely on the clearance there.
     Prompt back = hold("scale", stage, joint, fmt::format("Hold the button: {} moves back.", name));
-    static_cast<void>(
-        co_await stage.move_while_held(joint, {distance / 2 - commanded, speed}, std::move(back)));
-    co_return Measured{Fault::NONE, commanded, *value, ""};
+    const Ending centred =
+        co_await stage.move_while_held(joint, Motion{-distance / 2, speed}, std::move(back));
+    co_return Measured{fault_of(centred), distance, *value};
 }
 
 /// Distances of the rounds: short while the scale may be very wrong.
@@ -229,11 +213,11 @@ Flow<Finding> check_scale(Stage &stage, int joint) {
     const std::string key = stage.motor(joint).name + ".correction";
     Finding finding = found("scale", stage, joint, Fault::SCALE);
     for (int round = 0; round < ROUNDS; ++round) {
-        const bool on = co_await stage.enable(
+        const Fault off = co_await stage.enable(
             joint, "scale",
             fmt::format("The drive of {} alone is switched on. {}", to_upper(stage.motor(joint).name), FREE));
-        if (!on) {
-            finding.fault = stage.bench().last_error().empty() ? Fault::GIVEN_UP : Fault::STOPPED;
+        if (off != Fault::NONE) {
+            finding.fault = off;
             co_return finding;
         }
         const Measured measured =
@@ -241,7 +225,6 @@ Flow<Finding> check_scale(Stage &stage, int joint) {
         stage.bench().switch_off();
         if (measured.fault != Fault::NONE) {
             finding.fault = measured.fault;
-            finding.detail = measured.detail;
             co_return finding;
         }
         const double factor = measured.commanded / measured.measured;
@@ -265,26 +248,37 @@ Flow<Finding> check_scale(Stage &stage, int joint) {
     co_return finding;
 }
 
+namespace {
+
+// Texts are chosen outside of coroutines: GCC 12 destroys temporaries of a conditional expression in one
+// twice.
+Prompt backlash_prompt(const Stage &stage, int joint, bool isBack) {
+    const std::string name = to_upper(stage.motor(joint).name);
+    return hold("backlash", stage, joint,
+                isBack ? fmt::format("Hold the button: {} moves back.", name)
+                       : fmt::format("Hold the button: {} moves forward.", name));
+}
+
+}  // namespace
+
 Flow<Finding> measure_backlash(Stage &stage, int joint) {
     if (stage.isOneOfTwo(joint)) {
         co_return found("backlash", stage, joint, Fault::NONE, "two motors: backlash as answered");
     }
     const std::string motor = stage.motor(joint).name, name = to_upper(motor);
     const double travel = stage.plan().small(stage.axis(joint), 2), speed = stage.slow(joint);
-    const bool on = co_await stage.enable(
+    const Fault off = co_await stage.enable(
         joint, "backlash", fmt::format("The drive of {} alone is switched on. {}", name, FREE));
-    if (!on) {
-        co_return found("backlash", stage, joint, Fault::GIVEN_UP, stage.bench().last_error());
+    if (off != Fault::NONE) {
+        co_return found("backlash", stage, joint, off);
     }
     // Up to the position, farther and back to it: the play shows between the two approaches.
     Ending ending = Ending::DONE;
     double reading = 0;
     for (int leg = 0; leg < 3 && ending == Ending::DONE; ++leg) {
-        Prompt prompt =
-            hold("backlash", stage, joint,
-                 fmt::format("Hold the button: {} moves {}.", name, leg == 2 ? "back" : "forward"));
-        ending =
-            co_await stage.move_while_held(joint, {leg == 2 ? -travel : travel, speed}, std::move(prompt));
+        Prompt prompt = backlash_prompt(stage, joint, leg == 2);
+        ending = co_await stage.move_while_held(joint, Motion{leg == 2 ? -travel : travel, speed},
+                                                std::move(prompt));
         if (leg == 0 && ending == Ending::DONE) {
             Prompt zero =
                 make_prompt("backlash", motor, fmt::format("Set the indicator on {} to zero.", name));
@@ -301,9 +295,7 @@ Flow<Finding> measure_backlash(Stage &stage, int joint) {
     }
     stage.bench().switch_off();
     if (ending != Ending::DONE) {
-        co_return found("backlash", stage, joint,
-                        ending == Ending::STOPPED ? Fault::STOPPED : Fault::GIVEN_UP,
-                        stage.bench().last_error());
+        co_return found("backlash", stage, joint, fault_of(ending));
     }
     const double before = stage.motor(joint).backlash;
     const double least = stage.plan().small(stage.axis(joint), 0.01);

@@ -16,12 +16,12 @@ struct Turned {
 };
 
 Flow<Turned> turn(Stage &stage, double speed_rpm) {
-    const bool on =
+    const Fault off =
         co_await stage.enable(Bench::NO_JOINT, "spindle",
                               "Remove the tool and close the guard. The machine is switched on without the "
                               "drives of its axes.");
-    if (!on) {
-        co_return Turned{stage.bench().last_error().empty() ? Fault::GIVEN_UP : Fault::STOPPED, 0};
+    if (off != Fault::NONE) {
+        co_return Turned{off, 0};
     }
     Prompt start = make_prompt(
         "spindle", "",
@@ -37,10 +37,16 @@ Flow<Turned> turn(Stage &stage, double speed_rpm) {
     co_await stage.wait(RUN_UP_S);
     Prompt read = make_prompt("spindle", "", "Read the tachometer.");
     read.unit = "rev/min";
-    const std::optional<double> value = co_await stage.measure(std::move(read));
+    // The spindle stops when no measurement is entered in time.
+    constexpr double PATIENCE_S = 120;
+    const std::optional<double> value = co_await stage.measure(std::move(read), PATIENCE_S);
+    const bool was_on = stage.bench().isOn();
     stage.bench().stop_spindle();
     co_await stage.wait(1);
     stage.bench().switch_off();
+    if (!was_on) {
+        co_return Turned{Fault::STOPPED, 0};
+    }
     co_return Turned{value.has_value() ? Fault::NONE : Fault::GIVEN_UP, value.value_or(0)};
 }
 
@@ -58,7 +64,6 @@ Flow<Finding> check_spindle(Stage &stage, int joint) {
         const Turned turned = co_await turn(stage, speed);
         if (turned.fault != Fault::NONE) {
             finding.fault = turned.fault;
-            finding.detail = stage.bench().last_error();
             co_return finding;
         }
         const double factor = turned.measured / speed;

@@ -10,7 +10,7 @@ namespace mw::commissioning {
 
 std::vector<Step> steps_of(const setup::Plan &plan) {
     std::vector<Step> steps{{"thread", "The computer keeps time", Bench::EVERY_JOINT, check_thread},
-                            {"inputs", "Switches", Bench::EVERY_JOINT, check_inputs},
+                            {"inputs", "Home switches", Bench::EVERY_JOINT, check_inputs},
                             {"estop", "Emergency stop", Bench::EVERY_JOINT, check_estop}};
     int joint = 0;
     for (const setup::Axis &axis : plan.axes) {
@@ -27,7 +27,7 @@ std::vector<Step> steps_of(const setup::Plan &plan) {
         }
     }
     steps.push_back({"spindle", "Spindle speed", Bench::EVERY_JOINT, check_spindle});
-    steps.push_back({"probe", "Probe", Bench::EVERY_JOINT, check_probe});
+    steps.push_back({"probe", "Touch probe", Bench::EVERY_JOINT, check_probe});
     return steps;
 }
 
@@ -61,6 +61,7 @@ void Guide::skip_known() {
 
 void Guide::begin() {
     static_cast<void>(stage_.take_changes());
+    static_cast<void>(stage_.take_rejected());
     flow_.emplace(steps_[current_].run(stage_, steps_[current_].joint));
     flow_->handle().resume();
 }
@@ -79,16 +80,29 @@ void Guide::cycle() {
     }
     if (flow_->isDone()) {
         Finding finding = flow_->await_resume();
-        const int joint = steps_[current_].joint;
-        const bool is_drive = joint >= 0 && stage_.bench().joint(joint).isDriveFaulted;
-        finding.fault = finding.fault == Fault::STOPPED && is_drive ? Fault::DRIVE : finding.fault;
         flow_.reset();
+        judge(finding);
+        stage_.drop();
         finding.before = stage_.take_changes();
         for (const auto &[key, value] : finding.before) {
             finding.after[key] = stage_.answer(key);
         }
         findings_[current_] = std::move(finding);
         skip_known();
+    }
+}
+
+/// A machine that went off and a rejected value are faults of every step.
+void Guide::judge(Finding &finding) {
+    const int joint = steps_[current_].joint;
+    const bool is_drive = joint >= 0 && stage_.bench().joint(joint).isDriveFaulted;
+    const std::string rejected = stage_.take_rejected();
+    if (finding.fault == Fault::STOPPED) {
+        finding.fault = is_drive ? Fault::DRIVE : Fault::STOPPED;
+        finding.detail = finding.detail.empty() ? stage_.why_off() : finding.detail;
+    } else if (finding.fault == Fault::NONE && !rejected.empty()) {
+        finding.fault = Fault::VALUE;
+        finding.detail = rejected;
     }
 }
 
@@ -106,6 +120,8 @@ bool Guide::isReady() const {
 void Guide::repeat() {
     if (isFaulted()) {
         findings_[current_].reset();
+        // The step has changed values in the machine: it begins with those of the files.
+        stage_.want_restart();
     }
 }
 
@@ -113,9 +129,7 @@ void Guide::undo(std::size_t step) {
     if (step >= findings_.size() || !findings_[step].has_value() || isRunning()) {
         return;
     }
-    for (const auto &[key, value] : findings_[step]->before) {
-        stage_.change(key, value);
-    }
+    stage_.change(findings_[step]->before);
     static_cast<void>(stage_.take_changes());
     findings_[step].reset();
     current_ = std::min(current_, step);

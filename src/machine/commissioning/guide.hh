@@ -53,7 +53,7 @@ class Guide {
     /// All steps are done without a fault.
     bool isReady() const;
 
-    /// Does the current step again.
+    /// Does the current step again, after a new start of the machine.
     void repeat();
     /// Takes back what a step has changed; it has to be done again. The machine must be restarted.
     void undo(std::size_t step);
@@ -62,6 +62,7 @@ class Guide {
 
   private:
     void begin();
+    void judge(Finding &finding);
     void skip_known();
 
     bool (*isWanted_)(const Step &) = nullptr;

@@ -8,18 +8,27 @@
 
 namespace mw::commissioning {
 
+std::vector<std::string> watchdog_commands() {
+    constexpr double TIMEOUT_S = 0.25;
+    return {"loadrt watchdog num_inputs=1", "addf watchdog.process servo-thread",
+            "addf watchdog.set-timeouts servo-thread", fmt::format("setp watchdog.timeout-0 {}", TIMEOUT_S),
+            "net commissioning-alive watchdog.ok-out => motion.enable"};
+}
+
 LiveBench::LiveBench(client::Client &client, hal::Hal &hal, int joints)
     : client_(client), hal_(hal), joints_(joints) {
     estop_ = find_bit(hal.hasSignal("estop-released") ? "estop-released" : "iocontrol.0.emc-enable-in");
     probe_ = find_bit("motion.probe-input");
+    watchdog_beat_ = find_bit("watchdog.input-0");
+    watchdog_enable_ = find_bit("watchdog.enable-in");
     for (int joint = 0; joint < joints; ++joint) {
         home_switches_.push_back(find_bit(fmt::format("joint.{}.home-sw-in", joint)));
     }
 }
 
-volatile const bool *LiveBench::find_bit(const std::string &name) {
+volatile bool *LiveBench::find_bit(const std::string &name) {
     const auto address = hal_.address_of(name, hal::Type::BIT);
-    return address.has_value() ? static_cast<volatile const bool *>(*address) : nullptr;
+    return address.has_value() ? static_cast<volatile bool *>(*address) : nullptr;
 }
 
 void LiveBench::update() {
@@ -28,6 +37,11 @@ void LiveBench::update() {
         if (message->kind == messages::MessageKind::OPERATOR_ERROR) {
             last_error_ = message->text;
         }
+    }
+    if (hasWatchdog()) {
+        *watchdog_beat_ = !*watchdog_beat_;
+        // It starts again only from here, not after a pause of this program.
+        *watchdog_enable_ = !std::exchange(isRestartingWatchdog_, false);
     }
     post_waiting();
 }
@@ -38,7 +52,9 @@ double LiveBench::now_s() const {
 }
 
 bool LiveBench::isOn() const {
-    return client_.status().task.state == messages::State::ON && client_.status().trajectory.isEnabled;
+    const bool is_switching = posted_.has_value() || !waiting_.empty();
+    return !is_switching && client_.status().task.state == messages::State::ON &&
+           client_.status().trajectory.isEnabled;
 }
 
 bool LiveBench::isEstopReleased() const {
@@ -86,7 +102,9 @@ double LiveBench::worst_latency_s() const {
 void LiveBench::post(const messages::Command &command) {
     waiting_.clear();
     posted_.reset();
-    static_cast<void>(client_.post(command));
+    if (const auto posted = client_.post(command); !posted.has_value()) {
+        last_error_ = posted.error().str();
+    }
 }
 
 void LiveBench::post_waiting() {
@@ -105,39 +123,65 @@ void LiveBench::post_waiting() {
         const auto posted = client_.post(waiting_.front());
         waiting_.pop_front();
         posted_ = posted.has_value() ? std::optional(*posted) : std::nullopt;
-    }
-}
-
-void LiveBench::close_gate(int joint) {
-    const auto output = hal_.pin(fmt::format("joint.{}.amp-enable-out", joint));
-    if (!output.has_value() || output->signal.empty()) {
-        return;
-    }
-    for (const hal::PinInfo &pin : hal_.pins()) {
-        if (pin.signal == output->signal && pin.dir == hal::Dir::IN) {
-            gates_.push_back({joint, pin.name, pin.signal});
-            static_cast<void>(hal_.unlink(pin.name));
-            static_cast<void>(hal_.set(pin.name, hal::Value::of_bit(false)));
+        if (!posted.has_value()) {
+            waiting_.clear();
+            last_error_ = posted.error().str();
         }
     }
 }
 
-void LiveBench::open_gates() {
-    for (const Gate &gate : gates_) {
-        static_cast<void>(hal_.link(gate.pin, gate.signal));
+Result<> LiveBench::close_gate(int joint) {
+    const auto output = hal_.pin(fmt::format("joint.{}.amp-enable-out", joint));
+    if (!output.has_value() || output->signal.empty()) {
+        return {};
     }
-    gates_.clear();
+    for (const hal::PinInfo &pin : hal_.pins()) {
+        if (pin.signal == output->signal && pin.dir == hal::Dir::IN) {
+            auto done = hal_.unlink(pin.name);
+            if (done.has_value()) {
+                gates_.push_back({joint, pin.name, pin.signal});
+                done = hal_.set(pin.name, hal::Value::of_bit(false));
+            }
+            if (!done.has_value()) {
+                return done;
+            }
+        }
+    }
+    return {};
+}
+
+Result<> LiveBench::open_gates() {
+    for (; !gates_.empty(); gates_.pop_back()) {
+        if (auto done = hal_.link(gates_.back().pin, gates_.back().signal); !done.has_value()) {
+            return done;
+        }
+    }
+    return {};
+}
+
+Result<> LiveBench::close_gates_except(const std::vector<int> &joints) {
+    auto done = open_gates();
+    for (int one = 0; one < joints_ && done.has_value(); ++one) {
+        done = std::ranges::find(joints, one) == joints.end() ? close_gate(one) : done;
+    }
+    return done;
 }
 
 void LiveBench::switch_on(const std::vector<int> &joints) {
     last_error_.clear();
-    open_gates();
-    for (int one = 0; one < joints_; ++one) {
-        if (std::ranges::find(joints, one) == joints.end()) {
-            close_gate(one);
-        }
-    }
     posted_.reset();
+    waiting_.clear();
+    homing_joint_ = NO_JOINT;
+    if (!hasWatchdog()) {
+        last_error_ = "the machine has no watchdog of commissioning";
+        return;
+    }
+    // A drive that cannot be kept off is a reason to stay off.
+    if (const auto gated = close_gates_except(joints); !gated.has_value()) {
+        last_error_ = gated.error().str();
+        return;
+    }
+    isRestartingWatchdog_ = true;
     waiting_ = {messages::SetState{messages::State::ESTOP_RESET}, messages::SetMode{messages::Mode::MANUAL},
                 messages::SetState{messages::State::ON}, messages::SetTeleop{false}};
 }
@@ -147,12 +191,14 @@ void LiveBench::switch_off() {
     post(messages::SetState{messages::State::OFF});
 }
 
-void LiveBench::move(int joint, double distance, double speed) {
-    post(messages::JogIncrement{true, joint, std::abs(speed), distance});
+void LiveBench::move_to(int joint, double position, double speed) {
+    homing_joint_ = NO_JOINT;
+    post(messages::JogAbsolute{true, joint, std::abs(speed), position});
 }
 
 void LiveBench::stop(int joint) {
-    if (client_.status().joints[static_cast<std::size_t>(joint)].isHoming) {
+    // A homing that was requested may not show in the status yet.
+    if (joint == homing_joint_ || client_.status().joints[static_cast<std::size_t>(joint)].isHoming) {
         post(messages::AbortAll{});
     } else {
         post(messages::JogStop{true, joint});
@@ -160,6 +206,7 @@ void LiveBench::stop(int joint) {
 }
 
 void LiveBench::home(int joint) {
+    homing_joint_ = joint;
     post(messages::HomeJoint{joint});
 }
 
@@ -183,13 +230,20 @@ std::optional<double> LiveBench::value(std::string_view name) const {
 void LiveBench::set_value(std::string_view name, double value) {
     const auto current = hal_.get(name);
     if (!current.has_value()) {
-        return;
+        return reject(current.error().str());
     }
-    const std::string text =
-        current->type == hal::Type::FLOAT || current->type == hal::Type::BIT
-            ? fmt::format("{}", current->type == hal::Type::BIT ? (value != 0 ? 1.0 : 0.0) : value)
-            : fmt::format("{}", std::llround(value));
-    static_cast<void>(hal_.set(name, text));
+    const bool is_bit = current->type == hal::Type::BIT;
+    const std::string text = is_bit                              ? std::string(value != 0 ? "1" : "0")
+                             : current->type == hal::Type::FLOAT ? fmt::format("{}", value)
+                                                                 : fmt::format("{}", std::llround(value));
+    if (const auto done = hal_.set(name, text); !done.has_value()) {
+        reject(done.error().str());
+    }
+}
+
+void LiveBench::reject(std::string why) {
+    switch_off();
+    last_error_ = std::move(why);
 }
 
 }  // namespace mw::commissioning

@@ -14,7 +14,11 @@
 
 namespace mw::commissioning {
 
-/// One thread. update() in each task cycle, before the guide.
+/// HAL commands for the machine of a bench, after its own: a watchdog in the servo thread. A program that
+/// does not update() its bench in time has its machine switched off.
+std::vector<std::string> watchdog_commands();
+
+/// One thread. update() in each task cycle, before the guide. The machine has run watchdog_commands().
 class LiveBench final : public Bench {
   public:
     LiveBench(client::Client &client, hal::Hal &hal, int joints);
@@ -32,7 +36,7 @@ class LiveBench final : public Bench {
 
     void switch_on(const std::vector<int> &joints) override;
     void switch_off() override;
-    void move(int joint, double distance, double speed) override;
+    void move_to(int joint, double position, double speed) override;
     void stop(int joint) override;
     void home(int joint) override;
     void unhome(int joint) override;
@@ -49,14 +53,17 @@ class LiveBench final : public Bench {
         std::string pin, signal;
     };
     bool isHomeSwitchOn(int joint) const;
-    void close_gate(int joint);
-    void open_gates();
+    Result<> close_gate(int joint);
+    Result<> open_gates();
+    Result<> close_gates_except(const std::vector<int> &joints);
+    bool hasWatchdog() const { return watchdog_beat_ != nullptr && watchdog_enable_ != nullptr; }
+    void reject(std::string why);
     /// Posts at once; what waits is dropped.
     void post(const messages::Command &command);
     /// Posts the next command that waits, when the one before has ended well.
     void post_waiting();
     /// Where a bit of HAL is; null: it does not exist.
-    volatile const bool *find_bit(const std::string &name);
+    volatile bool *find_bit(const std::string &name);
 
     client::Client &client_;
     hal::Hal &hal_;
@@ -67,6 +74,9 @@ class LiveBench final : public Bench {
     volatile const bool *estop_ = nullptr, *probe_ = nullptr;
     std::vector<volatile const bool *> home_switches_;
     std::string last_error_;
+    int homing_joint_ = NO_JOINT;
+    bool isRestartingWatchdog_ = false;
+    volatile bool *watchdog_beat_ = nullptr, *watchdog_enable_ = nullptr;
 };
 
 }  // namespace mw::commissioning

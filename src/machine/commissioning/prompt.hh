@@ -26,6 +26,8 @@ struct Prompt {
     std::string unit{};                  ///< of NUMBER
     std::vector<std::string> hazards{};
     std::string watch{};  ///< what to watch meanwhile
+    /// Of HOLD: the operator may end the motion before its distance, with the button released, by confirming.
+    bool may_end_early = false;
 };
 
 inline Prompt make_prompt(std::string step, std::string motor, std::string text, std::string watch = "") {
@@ -37,9 +39,11 @@ inline Prompt make_prompt(std::string step, std::string motor, std::string text,
     return prompt;
 }
 
-/// What the operator does. Each names the prompt that it answers by the number of the prompt.
+/// What the operator does. Each names the prompt that it answers by the number of the prompt. A button that
+/// stays pressed keeps the number of the prompt for which it was pressed: the next motion needs a new press.
 struct Act {
-    enum class Type { CONFIRM, HOLD, NUMBER, CHOICE, CANNOT } type = Type::CONFIRM;
+    /// HOLD: the button is pressed, renewed before it counts as released; RELEASE: at once.
+    enum class Type { CONFIRM, HOLD, RELEASE, NUMBER, CHOICE, CANNOT } type = Type::CONFIRM;
     double number = 0;
     std::string choice{};
 };

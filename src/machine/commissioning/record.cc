@@ -53,6 +53,8 @@ constexpr std::array TEXTS{
     Text{Fault::PROBE_NOT_CONNECTED, "probe not connected",
          "The input did not change. Check the wire of the probe."},
     Text{Fault::NOT_TUNED, "not tuned", "The following error did not improve, or the loop has no margin."},
+    Text{Fault::VALUE, "value not accepted",
+         "The measured value does not fit the other values of the machine. Measure again."},
     Text{Fault::GIVEN_UP, "step not done", "Repeat the step when the machine is ready for it."},
     Text{Fault::STOPPED, "machine stopped",
          "Read the message of the machine, remove the cause, repeat the step."},

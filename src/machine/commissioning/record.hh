@@ -28,6 +28,7 @@ enum class Fault {
     SPINDLE,
     PROBE_NOT_CONNECTED,
     NOT_TUNED,
+    VALUE,     ///< what was measured does not fit the other answers
     GIVEN_UP,  ///< the operator could not do what the step needs
     STOPPED,   ///< the machine went off
 };

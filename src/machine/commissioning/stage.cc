@@ -12,30 +12,16 @@ namespace {
 /// A button counts as released when its client has not renewed it for so long [s].
 constexpr double HOLD_LEASE_S = 0.25;
 constexpr double SWITCHING_TIMEOUT_S = 5;
-
-/// A computer that cannot make the steps of a corrected scale at this speed moves the axis at a lower speed.
-setup::Answers with_possible_speeds(setup::Answers answers) {
-    constexpr double PART = 0.95, DIGITS = 1000;
-    constexpr int MOST_TIMES = 100;
-    for (int i = 0; i < MOST_TIMES; ++i) {
-        const auto faults = setup::plan_of(answers).faults;
-        if (faults.empty() || !std::ranges::all_of(faults, [](const setup::Fault &fault) {
-                return fault.key.ends_with(".speed") || fault.key.ends_with(".home_speed");
-            })) {
-            return answers;
-        }
-        for (const setup::Fault &fault : faults) {
-            const auto asked = setup::questions(answers);
-            const double speed = parse_double(setup::answer_of(asked, answers, fault.key)).value_or(0);
-            answers[fault.key] = to_text(std::floor(speed * PART * DIGITS) / DIGITS);
-        }
-    }
-    return answers;
-}
+/// A request to the machine shows in its state within this time [s].
+constexpr double REACTION_S = 0.2;
 
 }  // namespace
 
-Stage::Stage(setup::Answers answers) : answers_(std::move(answers)), plan_(setup::plan_of(answers_).plan) {}
+Fault fault_of(Ending ending) {
+    return ending == Ending::STOPPED  ? Fault::STOPPED
+           : ending == Ending::CANNOT ? Fault::GIVEN_UP
+                                      : Fault::NONE;
+}
 
 void Stage::attach(Bench *bench) {
     bench_ = bench;
@@ -54,10 +40,6 @@ void Stage::drop() {
     if (bench_ == nullptr) {
         return;
     }
-    for (int joint = 0; joint < plan_.joints(); ++joint) {
-        bench_->stop(joint);
-    }
-    bench_->stop_spindle();
     bench_->switch_off();
 }
 
@@ -69,11 +51,14 @@ bool Stage::act(int prompt_number, const Act &act) {
         act_ = act;
         return true;
     }
-    if (act.type == Act::Type::HOLD) {
-        held_until_s_ = bench_->now_s() + HOLD_LEASE_S;
+    if (act.type == Act::Type::HOLD || act.type == Act::Type::RELEASE) {
+        const bool is_held = act.type == Act::Type::HOLD && prompt_.ask == Ask::HOLD;
+        held_until_s_ = is_held ? bench_->now_s() + HOLD_LEASE_S : -1;
         return prompt_.ask == Ask::HOLD;
     }
-    const bool fits = act.type == Act::Type::CONFIRM ? prompt_.ask == Ask::CONFIRM || prompt_.ask == Ask::HOLD
+    const bool may_confirm =
+        prompt_.ask == Ask::CONFIRM || (prompt_.ask == Ask::HOLD && prompt_.may_end_early);
+    const bool fits = act.type == Act::Type::CONFIRM ? may_confirm
                       : act.type == Act::Type::NUMBER
                           ? prompt_.ask == Ask::NUMBER && std::isfinite(act.number)
                           : prompt_.ask == Ask::CHOICE &&
@@ -82,57 +67,6 @@ bool Stage::act(int prompt_number, const Act &act) {
         act_ = act;
     }
     return fits;
-}
-
-std::string Stage::answer(std::string_view key) const {
-    return setup::answer_of(setup::questions(answers_), answers_, key);
-}
-
-double Stage::number(std::string_view key) const {
-    return parse_double(answer(key)).value_or(0);
-}
-
-const setup::Axis &Stage::axis(int joint) const {
-    int left = joint;
-    for (const setup::Axis &axis : plan_.axes) {
-        if (left < static_cast<int>(axis.motors.size())) {
-            return axis;
-        }
-        left -= static_cast<int>(axis.motors.size());
-    }
-    return plan_.axes.front();
-}
-
-const setup::Motor &Stage::motor(int joint) const {
-    int left = joint;
-    for (const setup::Axis &axis : plan_.axes) {
-        if (left < static_cast<int>(axis.motors.size())) {
-            return axis.motors[static_cast<std::size_t>(left)];
-        }
-        left -= static_cast<int>(axis.motors.size());
-    }
-    return plan_.axes.front().motors.front();
-}
-
-std::vector<int> Stage::joints_of_axis(int joint) const {
-    const char letter = axis(joint).letter;
-    std::vector<int> joints;
-    for (int one = 0; one < plan_.joints(); ++one) {
-        if (axis(one).letter == letter) {
-            joints.push_back(one);
-        }
-    }
-    return joints;
-}
-
-double Stage::slow(int joint) const {
-    constexpr double SLOW_MM_S = 3, PART = 0.25;
-    const setup::Axis &one = axis(joint);
-    return std::min(plan_.small(one, SLOW_MM_S), one.speed * PART);
-}
-
-const char *Stage::unit(int joint) const {
-    return axis(joint).isRotary() ? "deg" : plan_.metric ? "mm" : "in";
 }
 
 Flow<> Stage::wait(double seconds) {
@@ -160,15 +94,15 @@ Flow<bool> Stage::confirm(Prompt prompt) {
     co_return confirmed;
 }
 
-Flow<std::optional<double>> Stage::measure(Prompt prompt) {
+Flow<std::optional<double>> Stage::measure(Prompt prompt, double patience_s) {
     prompt.ask = Ask::NUMBER;
     show(std::move(prompt));
-    while (!act_.has_value()) {
+    const double end_s = bench().now_s() + patience_s;
+    while (!act_.has_value() && bench().now_s() < end_s) {
         co_await next_cycle();
     }
-    const std::optional<double> value =
-        act_->type == Act::Type::NUMBER ? std::optional(act_->number) : std::nullopt;
-    co_return value;
+    const bool is_measured = act_.has_value() && act_->type == Act::Type::NUMBER;
+    co_return is_measured ? std::optional(act_->number) : std::nullopt;
 }
 
 Flow<std::string> Stage::choose(Prompt prompt) {
@@ -185,21 +119,26 @@ bool Stage::isHeld() const {
     return bench_ != nullptr && bench_->now_s() < held_until_s_;
 }
 
-Flow<bool> Stage::enable_joints(std::vector<int> joints, Prompt prompt) {
+Flow<Fault> Stage::enable_joints(std::vector<int> joints, Prompt prompt) {
     prompt.watch = "The emergency stop must be within reach.";
     const bool confirmed = co_await confirm(std::move(prompt));
     if (!confirmed) {
-        co_return false;
+        co_return Fault::GIVEN_UP;
     }
+    why_off_.clear();
     bench().switch_on(joints);
     const double end_s = bench().now_s() + SWITCHING_TIMEOUT_S;
     while (!bench().isOn() && bench().now_s() < end_s) {
         co_await next_cycle();
     }
-    co_return bench().isOn();
+    if (!bench().isOn()) {
+        switch_off_because("The machine did not switch on.");
+        co_return Fault::STOPPED;
+    }
+    co_return Fault::NONE;
 }
 
-Flow<bool> Stage::enable(int joint, std::string step, std::string text) {
+Flow<Fault> Stage::enable(int joint, std::string step, std::string text) {
     Prompt prompt = make_prompt(std::move(step), joint >= 0 ? motor(joint).name : "", std::move(text));
     prompt.hazards = {"The motor may start unexpectedly.", "Keep hands and tools out of the machine."};
     if (joint >= 0 && isOneOfTwo(joint)) {
@@ -209,63 +148,109 @@ Flow<bool> Stage::enable(int joint, std::string step, std::string text) {
     return enable_joints(joint >= 0 ? std::vector<int>{joint} : std::vector<int>{}, std::move(prompt));
 }
 
-Flow<bool> Stage::enable_axis(int joint, std::string step, std::string text) {
+Flow<Fault> Stage::enable_axis(int joint, std::string step, std::string text) {
     Prompt prompt = make_prompt(std::move(step), motor(joint).name, std::move(text));
     prompt.hazards = {"The motor may start unexpectedly.", "Keep hands and tools out of the machine."};
     return enable_joints(joints_of_axis(joint), std::move(prompt));
 }
 
-Flow<Ending> Stage::move_while_held(int joint, Motion motion, Prompt prompt) {
+void Stage::switch_off_because(std::string why) {
+    why_off_ = bench().last_error().empty() ? std::move(why) : "";
+    bench().switch_off();
+}
+
+std::string Stage::why_off() const {
+    return !why_off_.empty() || bench_ == nullptr ? why_off_ : bench_->last_error();
+}
+
+Flow<bool> Stage::settle(int joint) {
+    constexpr double QUIET_S = 0.2, PATIENCE_S = 5, QUIET_MM = 0.02;
+    const double quiet = plan().small(axis(joint), QUIET_MM);
+    const double end_s = bench().now_s() + PATIENCE_S;
+    double since_s = bench().now_s(), least = bench().joint(joint).feedback, most = least;
+    while (bench().now_s() < since_s + QUIET_S) {
+        co_await next_cycle();
+        const JointReading reading = bench().joint(joint);
+        least = std::min(least, reading.feedback);
+        most = std::max(most, reading.feedback);
+        if (reading.isMoving || most - least > quiet) {
+            since_s = bench().now_s();
+            least = most = reading.feedback;
+        }
+        if (bench().now_s() > end_s) {
+            switch_off_because("The axis does not come to standstill.");
+            co_return false;
+        }
+    }
+    co_return true;
+}
+
+Flow<Ending> Stage::move_while_held(int joint, const Motion &motion, Prompt prompt) {
+    return move_in_turn(joint, {motion}, std::move(prompt), {});
+}
+
+Flow<Ending> Stage::move_while_held(int joint, const std::vector<Motion> &motions, Prompt prompt) {
+    return move_in_turn(joint, motions, std::move(prompt), {});
+}
+
+Flow<Ending> Stage::move_while_held(int joint, const std::vector<Motion> &motions, Prompt prompt,
+                                    const Watch &watch) {
+    return move_in_turn(joint, motions, std::move(prompt), watch);
+}
+
+Flow<Ending> Stage::move_in_turn(int joint, std::vector<Motion> motions, Prompt prompt, Watch watch) {
     prompt.ask = Ask::HOLD;
     show(std::move(prompt));
-    const double start = bench().joint(joint).command;
+    Ending ending = Ending::DONE;
+    for (std::size_t i = 0; i < motions.size() && ending == Ending::DONE; ++i) {
+        ending = co_await move_once(joint, motions[i], watch);
+    }
+    co_return ending;
+}
+
+/// The target is fixed at the start, so that nothing that is requested twice adds up.
+Flow<Ending> Stage::move_once(int joint, Motion motion, const Watch &watch) {
+    const double stopping_s = 1 + 2 * motion.speed / axis(joint).acceleration;
+    const double target = bench().joint(joint).command + motion.distance;
     const double near = std::abs(motion.distance) * 1e-6 + 1e-9;
-    bool moving = false;
-    while (true) {
+    bool is_requested = false;
+    double since_s = bench().now_s(), from = target;
+    while (bench().isOn()) {
         const JointReading reading = bench().joint(joint);
-        const double left = motion.distance - (reading.command - start);
-        if (!bench().isOn()) {
-            co_return Ending::STOPPED;
+        if (watch) {
+            watch(reading);
         }
-        if (!reading.isMoving && std::abs(left) <= near) {
-            co_return Ending::DONE;
-        }
-        if (moving && (!isHeld() || act_.has_value())) {
+        const double waited_s = bench().now_s() - since_s;
+        if (is_requested && isInterrupted()) {
             bench().stop(joint);
-            moving = false;
-        } else if (!moving && !reading.isMoving && act_.has_value()) {
-            co_return isConfirmed() ? Ending::CONFIRMED : Ending::CANNOT;
-        } else if (!moving && !reading.isMoving && isHeld()) {
-            bench().move(joint, left, motion.speed);
-            moving = true;
-            // The request takes some cycles to show.
-            constexpr double REACTION_S = 0.05;
-            co_await wait(REACTION_S);
-        } else if (moving && !reading.isMoving) {
-            moving = false;
+            is_requested = false;
+            since_s = bench().now_s();
+        } else if (is_requested) {
+            const bool is_over = !reading.isMoving && (reading.command != from || waited_s > REACTION_S);
+            if (is_over && reading.command == from) {
+                switch_off_because("The axis did not start to move.");
+            }
+            is_requested = !is_over;
+        } else if (reading.isMoving || std::abs(target - reading.command) <= near || act_.has_value()) {
+            if (!reading.isMoving) {
+                const bool is_settled = co_await settle(joint);
+                co_return !is_settled ? Ending::STOPPED
+                : !act_.has_value()   ? Ending::DONE
+                : isConfirmed()       ? Ending::CONFIRMED
+                                      : Ending::CANNOT;
+            }
+            if (waited_s > stopping_s) {
+                switch_off_because("The axis does not stop.");
+            }
+        } else if (isHeld()) {
+            bench().move_to(joint, target, motion.speed);
+            is_requested = true;
+            since_s = bench().now_s();
+            from = reading.command;
         }
         co_await next_cycle();
     }
-}
-
-void Stage::change(const std::string &key, std::string value) {
-    setup::Answers answers = answers_;
-    answers[key] = std::move(value);
-    answers = with_possible_speeds(std::move(answers));
-    for (const auto &[changed, now] : answers) {
-        if (answer(changed) != now || changed == key) {
-            before_.try_emplace(changed, answer(changed));
-        }
-    }
-    set_answers(std::move(answers));
-}
-
-void Stage::set_answers(setup::Answers answers) {
-    const setup::Planned planned = setup::plan_of(answers);
-    if (planned.faults.empty()) {
-        answers_ = std::move(answers);
-        plan_ = planned.plan;
-    }
+    co_return Ending::STOPPED;
 }
 
 Flow<> Stage::restart() {
@@ -277,10 +262,6 @@ Flow<> Stage::restart() {
     co_await next_cycle();
     constexpr double START_S = 1;
     co_await wait(START_S);
-}
-
-setup::Answers Stage::take_changes() {
-    return std::exchange(before_, {});
 }
 
 }  // namespace mw::commissioning

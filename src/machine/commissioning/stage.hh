@@ -3,29 +3,36 @@
 #pragma once
 
 #include <coroutine>
+#include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "machine/commissioning/bench.hh"
+#include "machine/commissioning/current_answers.hh"
 #include "machine/commissioning/flow.hh"
 #include "machine/commissioning/prompt.hh"
 #include "machine/commissioning/record.hh"
-#include "machine/setup/plan.hh"
 
 namespace mw::commissioning {
 
-/// How a motion under the operator's button has ended.
+/// How a motion under the operator's button has ended: its distance is done and the axis is at standstill;
+/// the operator has ended it early, where the prompt offers that; the operator cannot; the machine is off.
 enum class Ending { DONE, CONFIRMED, CANNOT, STOPPED };
+/// NONE for motions that the step can continue after.
+Fault fault_of(Ending ending);
 
 struct Motion {
     double distance = 0;
     double speed = 0;
 };
+/// Called once a cycle during a motion.
+using Watch = std::function<void(const JointReading &)>;
 
 /// One thread. Answers of the operator are valid for the current prompt only.
-class Stage {
+class Stage : public CurrentAnswers {
   public:
-    explicit Stage(setup::Answers answers);
+    using CurrentAnswers::CurrentAnswers;
 
     // For the machine's side.
     /// The machine that runs with the current answers; null: it is being restarted.
@@ -33,7 +40,7 @@ class Stage {
     bool isRestartWanted() const { return isRestartWanted_; }
     /// Resumes the step that waits for the next cycle.
     void resume();
-    /// Nothing moves any more, and the step that waits will not be resumed.
+    /// Nothing moves any more, the machine is off, and the step that waits will not be resumed.
     void drop();
 
     // For the operator's side.
@@ -44,19 +51,6 @@ class Stage {
 
     // For steps.
     Bench &bench() { return *bench_; }
-    const setup::Plan &plan() const { return plan_; }
-    const setup::Answers &answers() const { return answers_; }
-    std::string answer(std::string_view key) const;
-    double number(std::string_view key) const;
-    const setup::Axis &axis(int joint) const;
-    const setup::Motor &motor(int joint) const;
-    /// A speed that is slow for this axis [units/s].
-    double slow(int joint) const;
-    const char *unit(int joint) const;
-    /// Joints of the axis of a joint.
-    std::vector<int> joints_of_axis(int joint) const;
-    /// It moves an axis together with another motor.
-    bool isOneOfTwo(int joint) const { return axis(joint).motors.size() > 1; }
 
     struct NextCycle {
         Stage &stage;
@@ -69,7 +63,8 @@ class Stage {
 
     /// False: the operator cannot.
     Flow<bool> confirm(Prompt prompt);
-    Flow<std::optional<double>> measure(Prompt prompt);
+    /// Nothing: the operator cannot, or has not answered in time.
+    Flow<std::optional<double>> measure(Prompt prompt, double patience_s = FOREVER_S);
     /// Empty: the operator cannot say.
     Flow<std::string> choose(Prompt prompt);
     /// Shows a prompt while the step itself works or watches.
@@ -79,27 +74,38 @@ class Stage {
     bool isConfirmed() const { return act_.has_value() && act_->type == Act::Type::CONFIRM; }
     bool isGivenUp() const { return act_.has_value() && act_->type == Act::Type::CANNOT; }
 
-    /// Switches the machine on with the drive of one joint, after the operator has confirmed. False: it is
-    /// not on.
-    Flow<bool> enable(int joint, std::string step, std::string text);
+    /// Switches the machine on with the drive of one joint, after the operator has confirmed. NONE: it is on.
+    Flow<Fault> enable(int joint, std::string step, std::string text);
     /// The same with the drives of all motors of its axis.
-    Flow<bool> enable_axis(int joint, std::string step, std::string text);
-    /// Moves a joint by at most a distance, only while the button is pressed.
-    Flow<Ending> move_while_held(int joint, Motion motion, Prompt prompt);
+    Flow<Fault> enable_axis(int joint, std::string step, std::string text);
+    /// Moves a joint by these distances, one after the other, only while the button is pressed. A motion that
+    /// does not begin or does not end as requested switches the machine off.
+    Flow<Ending> move_while_held(int joint, const Motion &motion, Prompt prompt);
+    Flow<Ending> move_while_held(int joint, const std::vector<Motion> &motions, Prompt prompt);
+    Flow<Ending> move_while_held(int joint, const std::vector<Motion> &motions, Prompt prompt,
+                                 const Watch &watch);
+    /// Waits until the joint is at standstill, by its feedback too. False: it never is, and the machine is
+    /// switched off.
+    Flow<bool> settle(int joint);
 
-    void change(const std::string &key, std::string value);
     /// The machine runs with the changed answers after it.
     Flow<> restart();
     void want_restart() { isRestartWanted_ = true; }
-    /// Answers that were changed since the last call, with their values before.
-    setup::Answers take_changes();
+    /// `why` is the reason unless the machine has reported one.
+    void switch_off_because(std::string why);
+    /// Why the machine was switched off: found here, or reported by the machine.
+    std::string why_off() const;
 
   private:
-    Flow<bool> enable_joints(std::vector<int> joints, Prompt prompt);
-    void set_answers(setup::Answers answers);
+    static constexpr double FOREVER_S = 1e12;
 
-    setup::Answers answers_, before_;
-    setup::Plan plan_;
+    Flow<Fault> enable_joints(std::vector<int> joints, Prompt prompt);
+    /// The others are no coroutines: GCC 12 destroys arguments of a co_await that it has copied twice.
+    Flow<Ending> move_in_turn(int joint, std::vector<Motion> motions, Prompt prompt, Watch watch);
+    Flow<Ending> move_once(int joint, Motion motion, const Watch &watch);
+    /// The button was released, or the operator has answered.
+    bool isInterrupted() const { return !isHeld() || act_.has_value(); }
+
     Bench *bench_ = nullptr;
     bool isRestartWanted_ = false;
     std::coroutine_handle<> waiting_;
@@ -107,6 +113,7 @@ class Stage {
     int prompt_number_ = 0;
     std::optional<Act> act_;
     double held_until_s_ = -1;
+    std::string why_off_;
 };
 
 }  // namespace mw::commissioning

@@ -19,6 +19,8 @@ constexpr double SPEED_PART = 0.7, ACCELERATION_PART = 0.5;
 constexpr double FIRST = 0.7, FACTOR = 1.4, MOST = 4;
 /// Length of a trial.
 constexpr double PART_OF_TRAVEL = 0.35;
+/// Limits that were set are those of the controller after this time [s].
+constexpr double LIMITS_S = 0.05;
 
 struct Limits {
     double speed = 0, acceleration = 0;
@@ -33,6 +35,9 @@ void set_limits(Stage &stage, int joint, const Limits &limits) {
     Bench &bench = stage.bench();
     bench.set_value(fmt::format("ini.{}.max_velocity", joint), limits.speed);
     bench.set_value(fmt::format("ini.{}.max_acceleration", joint), limits.acceleration);
+    if (stage.plan().is_servo) {
+        return;
+    }
     const std::string generator = stage.plan().board == setup::Board::PARPORT
                                       ? fmt::format("stepgen.{}", joint)
                                       : fmt::format("hm2_7i76e.0.stepgen.{:02d}", stage.motor(joint).channel);
@@ -59,52 +64,81 @@ double most_speed(const Stage &stage, int joint) {
     return std::min(answered, rate / (std::abs(motor.steps_per_unit) * MARGIN));
 }
 
-Flow<Ending> move(Stage &stage, int joint, const Motion &motion, double acceleration) {
-    Prompt prompt = make_prompt("limits", stage.motor(joint).name,
-                                fmt::format("Hold the button: {} moves at {:.4g} {}/s with {:.4g} {}/s2.",
-                                            to_upper(stage.motor(joint).name), motion.speed,
-                                            stage.unit(joint), acceleration, stage.unit(joint)),
-                                "The motor: release the button when it stalls.");
+Prompt hold(const Stage &stage, int joint, const std::string &text) {
+    Prompt prompt =
+        make_prompt("limits", stage.motor(joint).name, text, "The motor: release the button when it stalls.");
     prompt.hazards = {"The axis moves fast while the button is pressed."};
-    const Ending ending = co_await stage.move_while_held(joint, motion, std::move(prompt));
-    co_return ending;
+    return prompt;
 }
 
 /// Once forth and back from the middle of the travel: a motor that stalls in one of the two moves, and
 /// follows the other, still ends inside the travel.
 Flow<Trial> try_limits(Stage &stage, int joint, Limits limits, double &home_counts) {
     const setup::Axis axis = stage.axis(joint);
+    const std::string name = to_upper(stage.motor(joint).name), pid = "pid-" + stage.motor(joint).name;
     const Limits slow{axis.speed * FIRST, axis.acceleration * FIRST};
     const double distance = (axis.max - axis.min) * PART_OF_TRAVEL * (axis.home_at_max ? -1 : 1);
-    const double middle = (axis.max + axis.min) / 2;
-    const std::string pid = "pid-" + stage.motor(joint).name;
-    bool saturated = false;
-    for (int leg = 0; leg < 3; ++leg) {
-        const Limits &now = leg == 0 ? slow : limits;
-        set_limits(stage, joint, now);
-        co_await stage.wait(0.05);
-        const double way = leg == 0   ? middle - stage.bench().joint(joint).command
-                           : leg == 1 ? distance
-                                      : -distance;
-        const Ending ending = co_await move(stage, joint, {way, now.speed}, now.acceleration);
-        if (ending == Ending::STOPPED && stage.plan().is_servo) {
-            co_return Trial{Fault::NONE, false};
-        }
-        if (ending != Ending::DONE) {
-            co_return Trial{ending == Ending::STOPPED ? Fault::STOPPED : Fault::GIVEN_UP, false};
-        }
-        saturated = saturated || stage.bench().value(pid + ".saturated").value_or(0) != 0;
+    const double to_middle = (axis.max + axis.min) / 2 - stage.bench().joint(joint).command;
+    const bool is_servo = stage.plan().is_servo;
+    set_limits(stage, joint, slow);
+    co_await stage.wait(LIMITS_S);
+    Prompt to_start = hold(stage, joint, fmt::format("Hold the button: {} moves to the middle.", name));
+    Ending ending = co_await stage.move_while_held(joint, Motion{to_middle, slow.speed}, std::move(to_start));
+    if (ending != Ending::DONE) {
+        co_return Trial{fault_of(ending), false};
+    }
+    set_limits(stage, joint, limits);
+    co_await stage.wait(LIMITS_S);
+    bool is_saturated = false;
+    const std::vector<Motion> forth_and_back{{distance, limits.speed}, {-distance, limits.speed}};
+    const Watch watch = [&](const JointReading &) {
+        is_saturated = is_saturated || (is_servo && stage.bench().value(pid + ".saturated").value_or(1) != 0);
+    };
+    Prompt prompt =
+        hold(stage, joint,
+             fmt::format("Hold the button: {} moves forth and back at {:.4g} {}/s with {:.4g} {}/s2.", name,
+                         limits.speed, stage.unit(joint), limits.acceleration, stage.unit(joint)));
+    ending = co_await stage.move_while_held(joint, forth_and_back, std::move(prompt), watch);
+    if (ending == Ending::STOPPED && is_servo && stage.bench().joint(joint).isFollowingErrorTripped) {
+        co_return Trial{Fault::NONE, false};
+    }
+    if (ending != Ending::DONE) {
+        co_return Trial{fault_of(ending), false};
     }
     set_limits(stage, joint, slow);
     const Fault homed = co_await home_while_held(stage, joint);
     if (homed != Fault::NONE) {
         co_return Trial{homed, false};
     }
-    const double counts = co_await counts_at_home(stage, joint);
-    const double lost = std::abs(counts - home_counts);
-    home_counts = counts;
+    const std::optional<double> counts = co_await counts_at_home(stage, joint);
+    if (!counts.has_value()) {
+        co_return Trial{Fault::STOPPED, false};
+    }
+    const double lost = std::abs(*counts - home_counts);
+    home_counts = *counts;
     constexpr double ALLOWED = 2;
-    co_return Trial{Fault::NONE, lost <= ALLOWED && !saturated};
+    co_return Trial{Fault::NONE, lost <= ALLOWED && !is_saturated};
+}
+
+/// Switches on, and homes at the answered speed.
+Flow<Fault> enable_and_home(Stage &stage, int joint, double &home_counts) {
+    const Fault off =
+        co_await stage.enable(joint, "limits",
+                              fmt::format("The drive of {} alone is switched on. The axis homes, "
+                                          "then moves faster and faster, without a tool.",
+                                          to_upper(stage.motor(joint).name)));
+    if (off != Fault::NONE) {
+        co_return off;
+    }
+    const setup::Axis axis = stage.axis(joint);
+    set_limits(stage, joint, {axis.speed * FIRST, axis.acceleration * FIRST});
+    const Fault homed = co_await home_while_held(stage, joint);
+    if (homed != Fault::NONE) {
+        co_return homed;
+    }
+    const std::optional<double> counts = co_await counts_at_home(stage, joint);
+    home_counts = counts.value_or(0);
+    co_return counts.has_value() ? Fault::NONE : Fault::STOPPED;
 }
 
 struct Raised {
@@ -147,38 +181,33 @@ Flow<Finding> tune_limits(Stage &stage, int joint) {
     }
     const setup::Axis axis = stage.axis(joint);
     const std::string motor = stage.motor(joint).name;
-    const bool on = co_await stage.enable(joint, "limits",
-                                          fmt::format("The drive of {} alone is switched on. The axis homes, "
-                                                      "then moves faster and faster, without a tool.",
-                                                      to_upper(motor)));
-    if (!on) {
-        co_return found("limits", stage, joint, Fault::GIVEN_UP, stage.bench().last_error());
-    }
     Raised speed, acceleration;
-    speed.fault = co_await home_while_held(stage, joint);
+    double home_counts = 0;
+    speed.fault = co_await enable_and_home(stage, joint, home_counts);
     if (speed.fault == Fault::NONE) {
-        double home_counts = co_await counts_at_home(stage, joint);
         speed = co_await raise(stage, joint, {axis.speed, axis.acceleration}, &Limits::speed,
                                most_speed(stage, joint), home_counts);
-        const Limits limits{speed.greatest * SPEED_PART, axis.acceleration};
-        if (speed.fault == Fault::NONE && speed.greatest > 0) {
-            acceleration = co_await raise(stage, joint, limits, &Limits::acceleration,
-                                          axis.acceleration * MOST, home_counts);
-        }
     }
-    const std::string error = stage.bench().last_error();
+    // A servo that no longer followed is off.
+    if (speed.fault == Fault::NONE && !stage.bench().isOn()) {
+        speed.fault = co_await enable_and_home(stage, joint, home_counts);
+    }
+    if (speed.fault == Fault::NONE && speed.greatest > 0) {
+        acceleration = co_await raise(stage, joint, {speed.greatest * SPEED_PART, axis.acceleration},
+                                      &Limits::acceleration, axis.acceleration * MOST, home_counts);
+    }
     stage.bench().switch_off();
     const Fault fault = speed.fault != Fault::NONE ? speed.fault : acceleration.fault;
     if (fault != Fault::NONE || speed.greatest == 0 || acceleration.greatest == 0) {
-        co_return found("limits", stage, joint, fault != Fault::NONE ? fault : Fault::STALLED, error);
+        co_return found("limits", stage, joint, fault != Fault::NONE ? fault : Fault::STALLED);
     }
     Finding finding = found("limits", stage, joint, Fault::NONE);
     finding.values = {
         {"greatest speed without a stall", speed.greatest, std::string(stage.unit(joint)) + "/s"},
         {"greatest acceleration without a stall", acceleration.greatest,
          std::string(stage.unit(joint)) + "/s2"}};
-    stage.change(motor + ".speed", rounded(speed.greatest * SPEED_PART));
-    stage.change(motor + ".acceleration", rounded(acceleration.greatest * ACCELERATION_PART));
+    stage.change({{motor + ".speed", rounded(speed.greatest * SPEED_PART)},
+                  {motor + ".acceleration", rounded(acceleration.greatest * ACCELERATION_PART)}});
     co_await stage.restart();
     co_return finding;
 }

@@ -38,51 +38,26 @@ Flow<Followed> follow(Stage &stage, int joint, double part) {
     const double speed = axis.speed * part;
     const double distance = std::min((axis.max - axis.min) * 0.2, speed * 1.0);
     Followed followed;
-    double sum = 0;
+    double sum = 0, last = stage.bench().joint(joint).command, last_s = stage.bench().now_s();
     int samples = 0;
-    for (int leg = 0; leg < 4 && followed.ending == Ending::DONE; ++leg) {
-        const double sign = leg % 2 == 0 ? 1 : -1;
-        stage.show(hold(stage, joint,
-                        fmt::format("Hold the button: {} moves forth and back at {} {}/s.",
-                                    to_upper(stage.motor(joint).name), to_text(speed), stage.unit(joint))));
-        const double target = stage.bench().joint(joint).command + sign * distance;
-        bool moving = false;
-        double last = stage.bench().joint(joint).command, last_s = stage.bench().now_s();
-        while (true) {
-            const JointReading reading = stage.bench().joint(joint);
-            const double left = target - reading.command;
-            if (!stage.bench().isOn() || stage.isGivenUp()) {
-                followed.ending = stage.bench().isOn() ? Ending::CANNOT : Ending::STOPPED;
-                break;
-            }
-            if (!reading.isMoving && std::abs(left) < 1e-6) {
-                break;
-            }
-            if (moving && !stage.isHeld()) {
-                stage.bench().stop(joint);
-                moving = false;
-            } else if (!moving && !reading.isMoving && stage.isHeld()) {
-                stage.bench().move(joint, left, speed);
-                moving = true;
-                co_await stage.wait(0.02);
-                continue;
-            } else if (moving && !reading.isMoving) {
-                moving = false;
-            }
-            const double error = stage.bench().value(pid_of(stage, joint) + ".error").value_or(0);
-            followed.greatest = std::max(followed.greatest, std::abs(error));
-            const double now_s = stage.bench().now_s();
-            const double velocity = now_s > last_s ? (reading.command - last) / (now_s - last_s) : 0;
-            if (std::abs(std::abs(velocity) - speed) < speed * 0.01) {
-                sum += error / velocity;
-                ++samples;
-            }
-            last = reading.command;
-            last_s = now_s;
-            co_await stage.next_cycle();
+    const Watch watch = [&](const JointReading &reading) {
+        const double error = stage.bench().value(pid_of(stage, joint) + ".error").value_or(0);
+        followed.greatest = std::max(followed.greatest, std::abs(error));
+        const double now_s = stage.bench().now_s();
+        const double velocity = now_s > last_s ? (reading.command - last) / (now_s - last_s) : 0;
+        if (std::abs(std::abs(velocity) - speed) < speed * 0.01) {
+            sum += error / velocity;
+            ++samples;
         }
-        co_await stage.wait(0.3);
-    }
+        last = reading.command;
+        last_s = now_s;
+    };
+    Prompt prompt = hold(stage, joint,
+                         fmt::format("Hold the button: {} moves forth and back at {} {}/s.",
+                                     to_upper(stage.motor(joint).name), to_text(speed), stage.unit(joint)));
+    const std::vector<Motion> twice_forth_and_back{
+        {distance, speed}, {-distance, speed}, {distance, speed}, {-distance, speed}};
+    followed.ending = co_await stage.move_while_held(joint, twice_forth_and_back, std::move(prompt), watch);
     followed.lag_s = samples > 0 ? sum / samples : 0;
     co_return followed;
 }
@@ -100,19 +75,28 @@ Flow<Relay> run_relay(Stage &stage, int joint) {
     stage.show(hold(stage, joint,
                     fmt::format("Hold the button: {} oscillates a little around its position.",
                                 to_upper(stage.motor(joint).name))));
-    while (!stage.isHeld() && !stage.isGivenUp()) {
+    Bench &bench = stage.bench();
+    while (bench.isOn() && !stage.isHeld() && !stage.isGivenUp()) {
         co_await stage.next_cycle();
     }
-    Bench &bench = stage.bench();
+    if (!bench.isOn() || stage.isGivenUp()) {
+        relay.ending = bench.isOn() ? Ending::CANNOT : Ending::STOPPED;
+        co_return relay;
+    }
     bench.set_value(pid + ".tune-type", 0);
     bench.set_value(pid + ".tune-cycles", 40);
     bench.set_value(pid + ".tune-effort", std::min(axis.speed * 0.2, stage.plan().small(axis, 10)));
     bench.set_value(pid + ".tune-mode", 1);
     bench.set_value(pid + ".tune-start", 1);
-    constexpr double PATIENCE_S = 20;
-    const double end_s = bench.now_s() + PATIENCE_S;
+    constexpr double PATIENCE_S = 20, FARTHEST_MM = 10;
+    const double end_s = bench.now_s() + PATIENCE_S, start = bench.joint(joint).feedback;
     co_await stage.wait(0.01);
     while (bench.value(pid + ".tune-start").value_or(0) != 0) {
+        if (std::abs(bench.joint(joint).feedback - start) > stage.plan().small(axis, FARTHEST_MM)) {
+            stage.switch_off_because("The axis moved too far during the relay test.");
+            relay.ending = Ending::STOPPED;
+            break;
+        }
         const bool over = bench.now_s() > end_s;
         if (!bench.isOn() || !stage.isHeld() || over) {
             relay.ending = bench.isOn() ? Ending::CANNOT : Ending::STOPPED;
@@ -166,12 +150,12 @@ Flow<Finding> tune_servo(Stage &stage, int joint) {
     }
     const std::string motor = stage.motor(joint).name, name = to_upper(motor);
     constexpr double PART = 0.5;
-    const bool on = co_await stage.enable(
+    const Fault off = co_await stage.enable(
         joint, "tune",
         fmt::format("The drive of {} alone is switched on. The axis must be in the middle of its travel.",
                     name));
-    if (!on) {
-        finding.fault = stage.bench().last_error().empty() ? Fault::GIVEN_UP : Fault::STOPPED;
+    if (off != Fault::NONE) {
+        finding.fault = off;
         co_return finding;
     }
     const Followed before = co_await follow(stage, joint, PART);
@@ -180,13 +164,9 @@ Flow<Finding> tune_servo(Stage &stage, int joint) {
     if (before.ending == Ending::DONE) {
         relay = co_await run_relay(stage, joint);
     }
-    const std::string error = stage.bench().last_error();
     stage.bench().switch_off();
     if (relay.ending != Ending::DONE || !(relay.ultimate_period_s > 0)) {
-        finding.fault = relay.ending == Ending::STOPPED  ? Fault::STOPPED
-                        : relay.ending == Ending::CANNOT ? Fault::GIVEN_UP
-                                                         : Fault::NOT_TUNED;
-        finding.detail = error;
+        finding.fault = relay.ending == Ending::DONE ? Fault::NOT_TUNED : fault_of(relay.ending);
         co_return finding;
     }
     // At constant speed v the output is v FF1 + P e, and the drive turns at v: its real speed at 10 V
@@ -195,28 +175,28 @@ Flow<Finding> tune_servo(Stage &stage, int joint) {
     const double drive_gain = 1 / (servo.ff1 + servo.p * before.lag_s);
     relay.ultimate_gain *= drive_gain;
     const Gains gains = gains_of(relay);
-    stage.change(motor + ".full_speed",
-                 to_text(rounded(stage.number(motor + ".full_speed") * drive_gain, 1e5)));
-    stage.change(motor + ".p", to_text(rounded(gains.p, 100)));
-    stage.change(motor + ".ff1", "1");
-    stage.change(motor + ".ff2", to_text(rounded(gains.ff2, 1e6)));
+    stage.change(
+        {{motor + ".full_speed", to_text(rounded(stage.number(motor + ".full_speed") * drive_gain, 1e5))},
+         {motor + ".p", to_text(rounded(gains.p, 100))},
+         {motor + ".ff1", "1"},
+         {motor + ".ff2", to_text(rounded(gains.ff2, 1e6))}});
     co_await stage.restart();
-    const bool again = co_await stage.enable(
+    const Fault off_again = co_await stage.enable(
         joint, "tune", fmt::format("The drive of {} alone is switched on with its new gains.", name));
-    if (!again) {
-        finding.fault = Fault::GIVEN_UP;
+    if (off_again != Fault::NONE) {
+        finding.fault = off_again;
         co_return finding;
     }
     const Followed after = co_await follow(stage, joint, PART);
-    finding.detail = stage.bench().last_error();
-    stage.bench().switch_off();
     finding.values = {{"following error before", before.greatest, stage.unit(joint)},
                       {"following error after", after.greatest, stage.unit(joint)},
                       {"ultimate gain", relay.ultimate_gain, "1/s"},
                       {"ultimate period", relay.ultimate_period_s, "s"},
                       {"proportional gain", gains.p, "1/s"},
                       {"acceleration feed-forward", gains.ff2, "s"}};
-    if (after.ending == Ending::DONE && after.greatest < before.greatest / 2) {
+    if (after.ending != Ending::DONE) {
+        finding.fault = fault_of(after.ending);
+    } else if (after.greatest < before.greatest / 2) {
         finding.fault = Fault::NONE;
     }
     co_return finding;

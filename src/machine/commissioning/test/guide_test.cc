@@ -32,21 +32,24 @@ class FakeBench final : public Bench {
     std::uint64_t late_cycles() const override { return late; }
     std::string last_error() const override { return error; }
     void switch_on(const std::vector<int> &joints) override {
-        on = true;
+        on = !is_slow_to_switch;
         enabled = joints;
     }
     double worst_latency_s() const override { return 0; }
     void switch_off() override {
+        ++offs;
         on = false;
         left = {};
     }
-    void move(int joint, double distance, double to_speed) override {
+    void move_to(int joint, double to, double to_speed) override {
         ++moves;
-        left[static_cast<std::size_t>(joint)] = distance;
+        left[static_cast<std::size_t>(joint)] = stuck ? 0 : to - position[static_cast<std::size_t>(joint)];
         speed = to_speed;
         fastest = std::max(fastest, to_speed);
     }
-    void stop(int joint) override { left[static_cast<std::size_t>(joint)] = 0; }
+    void stop(int joint) override {
+        left[static_cast<std::size_t>(joint)] = unstoppable ? left[static_cast<std::size_t>(joint)] : 0;
+    }
     void home(int) override {}
     void unhome(int) override {}
     void run_spindle(double speed_rpm) override { spindle = speed_rpm; }
@@ -66,8 +69,9 @@ class FakeBench final : public Bench {
     }
 
     double time_s = 10, speed = 0, fastest = 0, spindle = 0;
-    bool on = false, estop_pressed = false;
-    int moves = 0;
+    bool on = false, estop_pressed = false, stuck = false, unstoppable = false;
+    bool is_slow_to_switch = false;
+    int moves = 0, offs = 0;
     std::uint64_t late = 0;
     std::string error;
     std::array<double, 3> position{}, left{};
@@ -175,6 +179,67 @@ TEST_F(GuideTest, AMachineThatGoesOffIsAFault) {
     EXPECT_FALSE(guide_.isReady());
     guide_.repeat();
     EXPECT_FALSE(guide_.isFaulted());
+}
+
+TEST_F(GuideTest, AMotionEndsEarlyOnlyWhereThePromptOffersIt) {
+    ASSERT_TRUE(reach_motion());
+    hold_for(50);
+    EXPECT_FALSE(guide_.act(guide_.prompt_number(), {Act::Type::CONFIRM, 0, ""}));
+    cycle(1000);
+    EXPECT_EQ(guide_.prompt().ask, Ask::HOLD);
+}
+
+TEST_F(GuideTest, ARequestThatMovesNothingSwitchesOff) {
+    ASSERT_TRUE(reach_motion());
+    bench_.stuck = true;
+    hold_for(1000);
+    ASSERT_TRUE(guide_.isFaulted());
+    EXPECT_FALSE(bench_.on);
+    EXPECT_EQ(guide_.findings()[guide_.current()]->fault, Fault::STOPPED);
+    EXPECT_EQ(guide_.findings()[guide_.current()]->detail, "The axis did not start to move.");
+    EXPECT_EQ(bench_.moves, 1);
+}
+
+TEST_F(GuideTest, AnAxisThatDoesNotStopIsSwitchedOff) {
+    ASSERT_TRUE(reach_motion());
+    bench_.unstoppable = true;
+    hold_for(100);
+    EXPECT_NE(bench_.left[0], 0);
+    // Released.
+    cycle(1500);
+    EXPECT_FALSE(bench_.on);
+    EXPECT_EQ(guide_.findings()[guide_.current()]->detail, "The axis does not stop.");
+}
+
+TEST_F(GuideTest, ALateSwitchingOnIsTakenBack) {
+    bench_.is_slow_to_switch = true;
+    for (int i = 0; i < 30000 && !guide_.isFaulted(); ++i) {
+        if (guide_.prompt().ask == Ask::CONFIRM) {
+            static_cast<void>(guide_.act(guide_.prompt_number(), {Act::Type::CONFIRM, 0, ""}));
+        }
+        cycle();
+    }
+    ASSERT_TRUE(guide_.isFaulted());
+    EXPECT_GT(bench_.offs, 0);
+    EXPECT_EQ(guide_.findings()[guide_.current()]->fault, Fault::STOPPED);
+}
+
+TEST_F(GuideTest, AButtonThatStaysPressedDoesNotStartTheNextMotion) {
+    ASSERT_TRUE(reach_motion());
+    const int pressed_for = guide_.prompt_number();
+    for (int i = 0; i < 10000; ++i) {
+        static_cast<void>(guide_.act(pressed_for, {Act::Type::HOLD, 0, ""}));
+        cycle();
+    }
+    ASSERT_EQ(guide_.prompt().ask, Ask::CHOICE);
+    ASSERT_TRUE(guide_.act(guide_.prompt_number(), {Act::Type::CHOICE, 0, "positive"}));
+    ASSERT_TRUE(reach_motion());
+    const int moves = bench_.moves;
+    for (int i = 0; i < 2000; ++i) {
+        EXPECT_FALSE(guide_.act(pressed_for, {Act::Type::HOLD, 0, ""}));
+        cycle();
+    }
+    EXPECT_EQ(bench_.moves, moves);
 }
 
 TEST_F(GuideTest, AMotorThatDoesNotMoveIsNamed) {

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// How the operator of commissioning is reached: a terminal, a script or a screen.
+#pragma once
+
+#include <string>
+
+#include "machine/commissioning/guide.hh"
+
+namespace mw::programs {
+
+class OperatorChannel {
+  public:
+    virtual ~OperatorChannel() = default;
+    /// Shows what is new, and passes on what the operator did, without waiting. Once a cycle. @param now_s
+    /// time of the machine. False: the operator is gone.
+    virtual bool look(commissioning::Guide &guide, double now_s) = 0;
+    /// A step has ended.
+    virtual void show_finding(const commissioning::Step &step, const commissioning::Finding &finding) = 0;
+    /// The session has ended; `error` is empty unless it could not continue.
+    virtual void show_end(const commissioning::Guide &guide, const std::string &error) = 0;
+};
+
+/// Adds what waits at standard input. False: it has ended.
+bool read_standard_input(std::string &input);
+
+}  // namespace mw::programs
