@@ -14,7 +14,9 @@
 #include "base/text.hh"
 #include "clients/screen/secrets.hh"
 #include "clients/screen/server.hh"
+#include "programs/setup/changed_machine.hh"
 #include "programs/setup/new_machine.hh"
+#include "programs/setup/steps_process.hh"
 #include "programs/setup/ui_browser.hh"
 
 namespace mw::programs {
@@ -147,6 +149,7 @@ Result<FirstStepsSetup> make_setup() {
         return trial->good ? Result<std::string>(std::move(trial->output)) : fail(trial->output);
     };
     setup.prepare = prepare;
+    setup.commission = start_steps;
     setup.proposed_folder = std::string(home != nullptr ? home : "/tmp") + "/millwright/configs";
     return setup;
 }
@@ -168,6 +171,8 @@ Choice choice_of(const Configuration &configuration) {
     choice.kind = kind_of(*ini, choice.axes);
     choice.notes = notes_of(configuration.ini);
     choice.picture = picture_of(configuration.ini, value_of(*ini, "DISPLAY", "INTRO_GRAPHIC"));
+    const auto answers = recorded_answers(fs::path(configuration.ini).parent_path().string());
+    choice.hasSteps = answers.has_value() && setup::plan_of(*answers).plan.hasBoard();
     return choice;
 }
 
@@ -183,7 +188,8 @@ int screen_port(const std::string &display) {
 }
 
 Result<std::string> select_in_browser(int port, bool opening) {
-    constexpr auto LOOK = std::chrono::milliseconds(50), LAST_ANSWER = std::chrono::milliseconds(500);
+    constexpr auto LOOK = std::chrono::milliseconds(50), LOOK_AT_STEPS = std::chrono::milliseconds(10),
+                   LAST_ANSWER = std::chrono::milliseconds(500);
     auto setup = make_setup();
     if (!setup.has_value()) {
         return std::unexpected(setup.error());
@@ -199,18 +205,24 @@ Result<std::string> select_in_browser(int port, bool opening) {
     fmt::print("choose a machine, or make one: {}\n", address);
     std::fflush(stdout);
     screen::Worker disk([&server](std::function<void()> act) { (*server)->post(std::move(act)); });
-    screen::FirstSteps page(disk, std::move(*setup));
+    screen::FirstSteps page(disk, **server, std::move(*setup));
     Browser browser;
     if (opening) {
         browser.open(address);
     }
     std::int64_t end_ns = 0;
     while (stop_signal == 0 && (end_ns == 0 || now_ns() < end_ns)) {
-        (*server)->run_for(page, LOOK);
+        (*server)->run_for(page, page.isCommissioning() ? LOOK_AT_STEPS : LOOK);
+        page.look();
         browser.look();
         if (page.chosen().has_value() && end_ns == 0) {
             end_ns = now_ns() + std::chrono::nanoseconds(LAST_ANSWER).count();
         }
+    }
+    page.end_steps();
+    while (page.isCommissioning()) {
+        (*server)->run_for(page, LOOK);
+        page.look();
     }
     disk.end();
     if (!page.chosen().has_value()) {

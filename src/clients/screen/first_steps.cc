@@ -157,7 +157,8 @@ Response FirstSteps::list() {
                                {"axes", one.axes},
                                {"unit", one.unit},
                                {"notes", one.notes},
-                               {"has_picture", !one.picture.empty()}});
+                               {"has_picture", !one.picture.empty()},
+                               {"has_steps", one.hasSteps}});
         }
         groups.push_back({{"title", group.title},
                           {"folder", group.folder},
@@ -226,16 +227,99 @@ Response FirstSteps::try_out(const std::string &body) {
                          {"output", printable(tried.has_value() ? *tried : tried.error().str())}});
 }
 
+bool FirstSteps::isListed(const std::string &ini) const {
+    return std::ranges::find(made_, ini, &FirstStepsSetup::Made::ini) != made_.end() ||
+           std::ranges::any_of(found_, [&](const ChoiceGroup &group) {
+               return std::ranges::find(group.choices, ini, &Choice::ini) != group.choices.end();
+           });
+}
+
+void FirstSteps::opened(SessionId session, Role role, Protection) {
+    if (role >= Role::OPERATE) {
+        trusted_.insert(session);
+    }
+}
+
+void FirstSteps::received(SessionId session, std::string_view text) {
+    if (session != operator_) {
+        begin_steps(session, text);
+    } else if (process_ != nullptr && text.find('\n') == std::string_view::npos) {
+        process_->send(text);
+    }
+}
+
+void FirstSteps::closed(SessionId session) {
+    trusted_.erase(session);
+    if (session == operator_) {
+        end_steps();
+    }
+}
+
+void FirstSteps::end_steps() {
+    operator_ = 0;
+    if (process_ != nullptr) {
+        process_->close();
+    }
+}
+
+void FirstSteps::reject_steps(SessionId session, const std::string &why) {
+    sockets_.send(session, document(Json{{"state", "error"}, {"error", why}}).body);
+}
+
+/// {"key", "ini", "is_simulated"}: the first text of a socket.
+void FirstSteps::begin_steps(SessionId session, std::string_view text) {
+    const Json json = object_of(std::string(text));
+    if (!json.is_object() || !trusted_.contains(session) || !areSame(text_at(json, "key"), setup_.key)) {
+        return reject_steps(session, "the first text has the key of this page, and the INI file");
+    }
+    const std::string ini = text_at(json, "ini");
+    const bool is_simulated = json.contains("is_simulated") && json["is_simulated"] == true;
+    const auto answer = [this, session, ini, is_simulated](const Response &response) {
+        if (response.status != 200 || !trusted_.contains(session)) {
+            return reject_steps(session, "only what is shown can be commissioned");
+        }
+        if (process_ != nullptr || chosen_.has_value()) {
+            return reject_steps(session, "a machine is running: wait until it is off");
+        }
+        auto started = setup_.commission(ini, is_simulated);
+        if (!started.has_value()) {
+            return reject_steps(session, started.error().str());
+        }
+        process_ = std::move(*started);
+        operator_ = session;
+    };
+    disk_.run([this, ini] { return isListed(ini) ? document(Json()) : error_response(404, "not listed"); },
+              answer);
+}
+
+void FirstSteps::look() {
+    if (process_ == nullptr) {
+        return;
+    }
+    while (const auto line = process_->next_line()) {
+        if (operator_ != 0) {
+            sockets_.send(operator_, *line);
+        }
+    }
+    if (process_->hasEnded()) {
+        process_.reset();
+        if (operator_ != 0) {
+            sockets_.close(std::exchange(operator_, 0));
+        }
+    }
+}
+
 void FirstSteps::start(const std::string &body, Reply reply) {
+    if (isCommissioning()) {
+        reply(error_response(409, "the steps at a machine are running: leave them first"));
+        return;
+    }
     auto ini = std::make_shared<std::string>();
     disk_.run(
         [this, body, ini] {
             const Json json = object_of(body);
             const std::string wanted = json.is_object() ? text_at(json, "ini") : "";
-            const bool is_found = std::ranges::any_of(found_, [&](const ChoiceGroup &group) {
-                return std::ranges::find(group.choices, wanted, &Choice::ini) != group.choices.end();
-            });
-            if (!is_found && std::ranges::find(made_, wanted, &FirstStepsSetup::Made::ini) == made_.end()) {
+            if (!isListed(wanted)) {
                 return error_response(404, "only what is shown can be started");
             }
             const auto prepared = setup_.prepare(wanted);

@@ -10,6 +10,8 @@ export interface Choice {
   unit: string;
   notes: string;
   has_picture: boolean;
+  /** It can be commissioned. */
+  has_steps: boolean;
 }
 export interface Group {
   title: string;
@@ -64,6 +66,8 @@ export class Steps {
   make = (folder: string, answers: Answers): Promise<{ ini?: string; faults?: Fault[] }> => this.ask('/machine', { folder, answers });
   tryOut = (ini: string): Promise<{ is_good: boolean; output: string }> => this.ask('/trial', { ini });
   start = (ini: string): Promise<{ ini: string; port: number }> => this.ask('/start', { ini });
+  /** The first text of a socket for the steps at a machine. */
+  beginning = (ini: string, isSimulated: boolean): { key: string; ini: string; is_simulated: boolean } => ({ key: this.key, ini, is_simulated: isSimulated });
   picture = (ini: string): string => this.address('/picture', `&ini=${encodeURIComponent(ini)}`);
 }
 

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// `millwright commission check --messages` as a child process, for the page of the first steps.
+#pragma once
+
+#include "clients/screen/first_steps.hh"
+
+namespace mw::programs {
+
+Result<std::unique_ptr<screen::StepsProcess>> start_steps(const std::string &ini, bool isSimulated);
+
+}  // namespace mw::programs
