@@ -120,7 +120,7 @@ Flow<std::optional<double>> counts_at_home(Stage &stage, int joint) {
     std::optional<double> sum = 0;
     for (int i = 0; i < SAMPLES && sum.has_value(); ++i) {
         const std::optional<double> counts = stage.bench().value(counts_name(stage, joint));
-        sum = counts.has_value() ? std::optional(*sum + *counts / SAMPLES) : std::nullopt;
+        sum = counts.has_value() ? std::optional(*sum + *counts) : std::nullopt;
         co_await stage.next_cycle();
     }
     if (!sum.has_value()) {
@@ -130,7 +130,8 @@ Flow<std::optional<double>> counts_at_home(Stage &stage, int joint) {
     stage.bench().unhome(joint);
     constexpr double UNHOMING_S = 0.1;
     co_await stage.wait(UNHOMING_S);
-    co_return sum;
+    // The sum of whole counts is exact.
+    co_return *sum / SAMPLES;
 }
 
 Flow<Finding> check_home(Stage &stage, int joint) {
@@ -159,8 +160,8 @@ Flow<Finding> check_home(Stage &stage, int joint) {
         least = i == 0 ? *counts : std::min(least, *counts);
         most = i == 0 ? *counts : std::max(most, *counts);
     }
-    constexpr double ALLOWED = 1;
-    if (finding.fault == Fault::NONE && most - least > ALLOWED) {
+    constexpr double ALLOWED = 1, ROUNDING = 1e-6;
+    if (finding.fault == Fault::NONE && most - least > ALLOWED + ROUNDING) {
         finding.fault = Fault::SWITCH_NOT_REPEATABLE;
     }
     finding.values.push_back({"spread of homing", most - least, "counts"});
