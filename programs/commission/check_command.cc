@@ -59,7 +59,7 @@ struct CheckWords {
             "Corrected values are written\ninto the machine's files.\nA script writes "
             "lines instead: confirm, hold "
             "SECONDS, number VALUE, choice TEXT, cannot.\n");
-        line.flag("--simulate", "in virtual time, with simulated hardware", isSimulated);
+        line.flag("--simulate", "in virtual time, for a machine with a simulated board", isSimulated);
         line.flag("--fast", "with --simulate: do not wait for the time of the clock on the wall", isFast);
         line.flag("--all", "the steps of check and of tune", areAll);
         line.flag("--messages", "for a screen: lines of JSON instead of texts (docs/reference/api.md)",
@@ -136,11 +136,22 @@ int run_steps(const char *command, const std::vector<std::string> &arguments,
     if (!answers.has_value() || !record.has_value()) {
         return reject(command, answers.has_value() ? record.error().str() : answers.error().str(), 1);
     }
+    const setup::Plan plan = setup::plan_of(*answers).plan;
+    if (words.isSimulated && plan.hasBoard() && !plan.wiring.isSimulated) {
+        return reject(
+            command,
+            "the board of this machine is real, and --simulate would write practice values into its "
+            "files: practise with a machine of board.simulated=yes",
+            2);
+    }
     catch_stop_signals();
     // Programs of HAL files find the machine's files in the current folder.
     std::error_code error;
     const std::string machine_folder = std::filesystem::absolute(folder, error).string();
     std::filesystem::current_path(machine_folder, error);
+    const std::unique_ptr<OperatorChannel> channel =
+        words.isScreen ? std::unique_ptr<OperatorChannel>(std::make_unique<OperatorMessages>())
+                       : std::make_unique<OperatorLine>();
     CommissionSetup setup{.folder = machine_folder,
                           .clock_virtual = words.isSimulated,
                           .known = words.isRepeated ? std::vector<commissioning::Finding>{}
@@ -151,11 +162,9 @@ int run_steps(const char *command, const std::vector<std::string> &arguments,
                           .wrap = {}};
     auto commissioner = Commissioner::open(std::move(setup));
     if (!commissioner.has_value()) {
+        channel->show_failure(commissioner.error().str());
         return reject(command, commissioner.error().str(), 1);
     }
-    const std::unique_ptr<OperatorChannel> channel =
-        words.isScreen ? std::unique_ptr<OperatorChannel>(std::make_unique<OperatorMessages>())
-                       : std::make_unique<OperatorLine>();
     const auto ran = CheckSession(words, **commissioner, *channel).run();
     (*commissioner)->stop();
     const commissioning::Guide &guide = (*commissioner)->guide();

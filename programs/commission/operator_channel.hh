@@ -16,6 +16,8 @@ class OperatorChannel {
     virtual bool look(commissioning::Guide &guide, double now_s) = 0;
     /// A step has ended.
     virtual void show_finding(const commissioning::Step &step, const commissioning::Finding &finding) = 0;
+    /// The machine cannot be started.
+    virtual void show_failure(const std::string &error) = 0;
     /// The session has ended; `error` is empty unless it could not continue.
     virtual void show_end(const commissioning::Guide &guide, const std::string &error) = 0;
 };

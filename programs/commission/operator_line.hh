@@ -22,6 +22,7 @@ class OperatorLine final : public OperatorChannel {
     /// ended.
     bool look(commissioning::Guide &guide, double now_s) override;
     void show_finding(const commissioning::Step &step, const commissioning::Finding &finding) override;
+    void show_failure(const std::string &) override {}
     void show_end(const commissioning::Guide &guide, const std::string &error) override;
 
   private:

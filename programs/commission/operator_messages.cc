@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "programs/commission/operator_messages.hh"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -121,12 +124,32 @@ std::optional<NumberedAct> read_act(std::string_view line) {
     return act;
 }
 
+OperatorMessages::OperatorMessages() {
+    const int states = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+    output_ = states >= 0 ? ::fdopen(states, "w") : nullptr;
+    if (output_ != nullptr) {
+        std::fflush(stdout);
+        static_cast<void>(::dup2(STDERR_FILENO, STDOUT_FILENO));
+    }
+}
+
+OperatorMessages::~OperatorMessages() {
+    if (output_ != nullptr) {
+        static_cast<void>(std::fclose(output_));
+    }
+}
+
+void OperatorMessages::print(const std::string &line) {
+    std::FILE *const output = output_ != nullptr ? output_ : stdout;
+    fmt::print(output, "{}\n", line);
+    std::fflush(output);
+}
+
 bool OperatorMessages::look(Guide &guide, double) {
     if (guide.prompt_number() != shown_number_ || guide.current() != shown_current_) {
         shown_number_ = guide.prompt_number();
         shown_current_ = guide.current();
-        fmt::print("{}\n", state_message(guide, ""));
-        std::fflush(stdout);
+        print(state_message(guide, ""));
     }
     const bool is_there = read_standard_input(input_);
     for (std::size_t end = input_.find('\n'); end != std::string::npos; end = input_.find('\n')) {
@@ -138,9 +161,13 @@ bool OperatorMessages::look(Guide &guide, double) {
     return is_there;
 }
 
+void OperatorMessages::show_failure(const std::string &error) {
+    print(Json{{"state", "error"}, {"error", error}}.dump(COMPACT, ' ', IS_ASCII,
+                                                          Json::error_handler_t::replace));
+}
+
 void OperatorMessages::show_end(const Guide &guide, const std::string &error) {
-    fmt::print("{}\n", state_message(guide, error));
-    std::fflush(stdout);
+    print(state_message(guide, error));
 }
 
 }  // namespace mw::programs

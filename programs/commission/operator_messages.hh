@@ -3,6 +3,7 @@
 // docs/reference/api.md.
 #pragma once
 
+#include <cstdio>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -21,13 +22,24 @@ struct NumberedAct {
 /// Nothing: the line is no act.
 std::optional<NumberedAct> read_act(std::string_view line);
 
+/// Standard output is for states alone during its lifetime and later: what the machine and its programs print
+/// goes to standard error. Create it before the machine.
 class OperatorMessages final : public OperatorChannel {
   public:
+    OperatorMessages();
+    ~OperatorMessages() override;
+    OperatorMessages(const OperatorMessages &) = delete;
+    OperatorMessages &operator=(const OperatorMessages &) = delete;
+
     bool look(commissioning::Guide &guide, double now_s) override;
     void show_finding(const commissioning::Step &, const commissioning::Finding &) override {}
+    void show_failure(const std::string &error) override;
     void show_end(const commissioning::Guide &guide, const std::string &error) override;
 
   private:
+    void print(const std::string &line);
+
+    std::FILE *output_ = nullptr;
     std::string input_;
     int shown_number_ = -1;
     std::size_t shown_current_ = 0;

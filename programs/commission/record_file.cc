@@ -28,9 +28,12 @@ constexpr std::array GEOMETRY{".steps_per_turn", ".microsteps",      ".transmiss
                               ".reverse_output", ".reverse_encoder", ".step_pin",        ".dir_pin"};
 constexpr std::array GENERAL{"board", "drives", "kind", "units"};
 
-/// Whether a step depends on an answer.
+/// Whether a step depends on an answer. What was found with a simulated board says nothing about a real one.
 bool dependsOn(const Finding &finding, std::string_view key) {
     const std::string_view step = finding.step;
+    if (key == "board.simulated") {
+        return true;
+    }
     if (std::ranges::find(GENERAL, key) != GENERAL.end()) {
         return step != "thread";
     }

@@ -76,6 +76,13 @@ with tempfile.TemporaryDirectory() as place:
     text = page.read_text()
     expect(done.returncode == 0 and 'Signature' in text and text.count('<tr>') > 40 and 'My lathe' in text, 'a page for the printer', text[:500])
 
+    commission('write', folder, 'board.simulated=no')
+    report = commission('report', folder)
+    expect('State: ready' not in report.stdout and 'NOT READY' in report.stdout, 'a simulated board says nothing about a real one', report.stdout)
+    done = commission('check', folder, '--simulate', '--fast', given='')
+    expect(done.returncode == 2 and 'practice values' in done.stderr, 'no practice with the files of a real machine', done.stderr)
+    commission('write', folder, 'board.simulated=yes')
+
     changed = commission('write', folder, 'x.correction=1.5')
     expect(changed.returncode == 0, 'another scale', changed.stderr)
     report = commission('report', folder)
