@@ -172,7 +172,11 @@ Choice choice_of(const Configuration &configuration) {
     choice.notes = notes_of(configuration.ini);
     choice.picture = picture_of(configuration.ini, value_of(*ini, "DISPLAY", "INTRO_GRAPHIC"));
     const auto answers = recorded_answers(fs::path(configuration.ini).parent_path().string());
-    choice.hasSteps = answers.has_value() && setup::plan_of(*answers).plan.hasBoard();
+    if (answers.has_value()) {
+        const setup::Plan plan = setup::plan_of(*answers).plan;
+        choice.hasSteps = plan.hasBoard();
+        choice.isSimulated = plan.wiring.isSimulated;
+    }
     return choice;
 }
 

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "base/own_place.hh"
+#include "programs/setup/changed_machine.hh"
 
 namespace mw::programs {
 namespace {
@@ -81,11 +82,15 @@ class Child final : public screen::StepsProcess {
 
 }  // namespace
 
-Result<std::unique_ptr<screen::StepsProcess>> start_steps(const std::string &ini, bool simulated) {
+Result<std::unique_ptr<screen::StepsProcess>> start_steps(const std::string &ini) {
     const std::string folder = std::filesystem::path(ini).parent_path().string();
     std::vector<std::string> words{
         program_folder() + "/millwright", "commission", "check", folder, "--all", "--messages"};
-    if (simulated) {
+    const auto answers = recorded_answers(folder);
+    if (!answers.has_value()) {
+        return std::unexpected(answers.error());
+    }
+    if (setup::plan_of(*answers).plan.wiring.isSimulated) {
         words.emplace_back("--simulate");
     }
     std::array<int, 2> ends{};

@@ -6,6 +6,7 @@
 
 namespace mw::programs {
 
-Result<std::unique_ptr<screen::StepsProcess>> start_steps(const std::string &ini, bool isSimulated);
+/// In virtual time for a machine with a simulated board.
+Result<std::unique_ptr<screen::StepsProcess>> start_steps(const std::string &ini);
 
 }  // namespace mw::programs

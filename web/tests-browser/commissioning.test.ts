@@ -93,6 +93,7 @@ it('makes a machine with a board, and offers its steps', async () => {
   await page.getByTestId('wizard-back').click();
   await page.getByTestId('commission-small_lathe/machine.ini').click();
   await page.getByTestId('steps-begin').waitFor();
+  await page.getByTestId('steps-simulated').waitFor();
   await judgeByAxe(page, 'before the steps');
 }, 120_000);
 

@@ -25,7 +25,7 @@ let session: StepsSession;
 beforeEach(() => {
   vi.useFakeTimers();
   socket = new FakeSocket();
-  session = new StepsSession(socket, { key: 'k', ini: '/m.ini', is_simulated: true });
+  session = new StepsSession(socket, { key: 'k', ini: '/m.ini' });
   socket.onopen?.();
   socket.show(7);
   socket.sent.length = 0;

@@ -158,7 +158,8 @@ Response FirstSteps::list() {
                                {"unit", one.unit},
                                {"notes", one.notes},
                                {"has_picture", !one.picture.empty()},
-                               {"has_steps", one.hasSteps}});
+                               {"has_steps", one.hasSteps},
+                               {"is_simulated", one.isSimulated}});
         }
         groups.push_back({{"title", group.title},
                           {"folder", group.folder},
@@ -266,22 +267,21 @@ void FirstSteps::reject_steps(SessionId session, const std::string &why) {
     sockets_.send(session, document(Json{{"state", "error"}, {"error", why}}).body);
 }
 
-/// {"key", "ini", "is_simulated"}: the first text of a socket.
+/// {"key", "ini"}: the first text of a socket.
 void FirstSteps::begin_steps(SessionId session, std::string_view text) {
     const Json json = object_of(std::string(text));
     if (!json.is_object() || !trusted_.contains(session) || !areSame(text_at(json, "key"), setup_.key)) {
         return reject_steps(session, "the first text has the key of this page, and the INI file");
     }
     const std::string ini = text_at(json, "ini");
-    const bool is_simulated = json.contains("is_simulated") && json["is_simulated"] == true;
-    const auto answer = [this, session, ini, is_simulated](const Response &response) {
+    const auto answer = [this, session, ini](const Response &response) {
         if (response.status != 200 || !trusted_.contains(session)) {
             return reject_steps(session, "only what is shown can be commissioned");
         }
         if (process_ != nullptr || chosen_.has_value()) {
             return reject_steps(session, "a machine is running: wait until it is off");
         }
-        auto started = setup_.commission(ini, is_simulated);
+        auto started = setup_.commission(ini);
         if (!started.has_value()) {
             return reject_steps(session, started.error().str());
         }

@@ -33,15 +33,16 @@ class StepsProcess {
 
 /// A configuration as a person sees it.
 struct Choice {
-    std::string ini;        ///< whole path
-    std::string name;       ///< in its group
-    std::string machine;    ///< [EMC]MACHINE
-    std::string kind;       ///< "mill", "lathe", "foam", "gantry", "other": the drawing of the machine
-    std::string axes;       ///< "XYZ"
-    std::string unit;       ///< "mm", "inch"; empty: unknown
-    std::string notes;      ///< what its author says of it
-    std::string picture;    ///< whole path; empty: none
-    bool hasSteps = false;  ///< it can be commissioned
+    std::string ini;           ///< whole path
+    std::string name;          ///< in its group
+    std::string machine;       ///< [EMC]MACHINE
+    std::string kind;          ///< "mill", "lathe", "foam", "gantry", "other": the drawing of the machine
+    std::string axes;          ///< "XYZ"
+    std::string unit;          ///< "mm", "inch"; empty: unknown
+    std::string notes;         ///< what its author says of it
+    std::string picture;       ///< whole path; empty: none
+    bool hasSteps = false;     ///< it can be commissioned
+    bool isSimulated = false;  ///< with a simulated board
 };
 struct ChoiceGroup {
     std::string title, folder;
@@ -68,8 +69,8 @@ struct FirstStepsSetup {
     /// What will be started: of a sample, a copy.
     std::function<Result<Start>(const std::string &ini)> prepare;
     std::string proposed_folder;  ///< in which new machines are proposed
-    /// Starts the steps at a machine; `isSimulated`: with simulated hardware.
-    std::function<Result<std::unique_ptr<StepsProcess>>(const std::string &ini, bool isSimulated)> commission;
+    /// Starts the steps at a machine.
+    std::function<Result<std::unique_ptr<StepsProcess>>(const std::string &ini)> commission;
 };
 
 /// One thread, except for the jobs that it passes to `disk`.

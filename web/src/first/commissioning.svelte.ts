@@ -57,7 +57,7 @@ export class StepsSession {
   private renewal: ReturnType<typeof setInterval> | null = null;
   private pressedFor = -1;
 
-  constructor(private readonly socket: StepsSocket, first: { key: string; ini: string; is_simulated: boolean }) {
+  constructor(private readonly socket: StepsSocket, first: { key: string; ini: string }) {
     socket.onopen = () => socket.send(JSON.stringify(first));
     socket.onmessage = (event) => {
       this.shown = JSON.parse(event.data) as StepsState;

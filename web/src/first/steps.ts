@@ -12,6 +12,8 @@ export interface Choice {
   has_picture: boolean;
   /** It can be commissioned. */
   has_steps: boolean;
+  /** Its board is simulated: the steps are practice. */
+  is_simulated: boolean;
 }
 export interface Group {
   title: string;
@@ -67,7 +69,7 @@ export class Steps {
   tryOut = (ini: string): Promise<{ is_good: boolean; output: string }> => this.ask('/trial', { ini });
   start = (ini: string): Promise<{ ini: string; port: number }> => this.ask('/start', { ini });
   /** The first text of a socket for the steps at a machine. */
-  beginning = (ini: string, isSimulated: boolean): { key: string; ini: string; is_simulated: boolean } => ({ key: this.key, ini, is_simulated: isSimulated });
+  beginning = (ini: string): { key: string; ini: string } => ({ key: this.key, ini });
   picture = (ini: string): string => this.address('/picture', `&ini=${encodeURIComponent(ini)}`);
 }
 

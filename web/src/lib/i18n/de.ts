@@ -469,7 +469,7 @@ export const de: Catalogue = {
   'steps.title': 'Inbetriebnahme: {machine}',
   'steps.what': 'Die Schritte prüfen Eingänge, Richtungen, Maßstäbe, Referenzschalter, Spindel und Messtaster und stellen die Antriebe ein. Korrigierte Werte werden in die Dateien der Maschine geschrieben. Erledigte Schritte werden nicht wiederholt.',
   'steps.safety': 'Der Not-Halt muss in Reichweite sein. Die Maschine fährt nur, solange der Taster gehalten wird.',
-  'steps.simulated': 'Mit simulierter Hardware üben',
+  'steps.simulated': 'Übung: Die Karte dieser Maschine ist simuliert. Mit einer echten Karte sind alle Schritte wieder offen.',
   'steps.real': 'Die echte Maschine wird eingeschaltet und fährt. Niemand sonst darf an der Maschine sein.',
   'steps.begin': 'Beginnen',
   'steps.stop': 'Stopp, Maschine aus',

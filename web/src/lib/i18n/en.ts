@@ -470,7 +470,7 @@ export const en = {
   'steps.title': 'Commissioning: {machine}',
   'steps.what': 'The steps check inputs, directions, scales, home switches, spindle and probe, and tune the drives. Corrected values are written into the files of the machine. Steps that are done are not repeated.',
   'steps.safety': 'Keep the emergency stop within reach. The machine moves only while you hold the button.',
-  'steps.simulated': 'Practice with simulated hardware',
+  'steps.simulated': 'Practice: the board of this machine is simulated. With a real board all steps are due again.',
   'steps.real': 'The real machine is switched on and moves. No other person may be at the machine.',
   'steps.begin': 'Begin',
   'steps.stop': 'Stop, machine off',

@@ -469,7 +469,7 @@ export const es: Catalogue = {
   'steps.title': 'Puesta en marcha: {machine}',
   'steps.what': 'Los pasos comprueban entradas, sentidos, escalas, interruptores de referencia, husillo y palpador, y ajustan los accionamientos. Los valores corregidos se escriben en los archivos de la máquina. Los pasos hechos no se repiten.',
   'steps.safety': 'Tenga la parada de emergencia al alcance. La máquina se mueve solo mientras mantiene pulsado el botón.',
-  'steps.simulated': 'Practicar con hardware simulado',
+  'steps.simulated': 'Práctica: la tarjeta de esta máquina está simulada. Con una tarjeta real, todos los pasos quedan pendientes de nuevo.',
   'steps.real': 'Se conecta la máquina real y se mueve. Nadie más debe estar junto a la máquina.',
   'steps.begin': 'Empezar',
   'steps.stop': 'Parar, máquina desconectada',
