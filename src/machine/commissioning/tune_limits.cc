@@ -71,39 +71,42 @@ Prompt hold(const Stage &stage, int joint, const std::string &text) {
     return prompt;
 }
 
-/// Once forth and back from the middle of the travel: a motor that stalls in one of the two moves, and
-/// follows the other, still ends inside the travel.
-Flow<Trial> try_limits(Stage &stage, int joint, Limits limits, double &home_counts) {
+Prompt fast_prompt(const Stage &stage, int joint, const Limits &limits) {
+    return hold(stage, joint,
+                fmt::format("Hold the button: {} moves at {:.4g} {}/s with {:.4g} {}/s2.",
+                            to_upper(stage.motor(joint).name), limits.speed, stage.unit(joint),
+                            limits.acceleration, stage.unit(joint)));
+}
+
+/// One move in one direction; the other moves are slow. Fast moves forth and back would lose as many steps in
+/// each direction, and the home switch would not show them. A motor that stalls in one of the moves and
+/// follows the others still ends inside the travel.
+Flow<Trial> try_direction(Stage &stage, int joint, Limits limits, bool isForth, double &home_counts) {
     const setup::Axis axis = stage.axis(joint);
-    const std::string name = to_upper(stage.motor(joint).name), pid = "pid-" + stage.motor(joint).name;
+    const std::string pid = "pid-" + stage.motor(joint).name;
     const Limits slow{axis.speed * FIRST, axis.acceleration * FIRST};
     const double distance = (axis.max - axis.min) * PART_OF_TRAVEL * (axis.home_at_max ? -1 : 1);
     const double to_middle = (axis.max + axis.min) / 2 - stage.bench().joint(joint).command;
     const bool is_servo = stage.plan().is_servo;
-    set_limits(stage, joint, slow);
-    co_await stage.wait(LIMITS_S);
-    Prompt to_start = hold(stage, joint, fmt::format("Hold the button: {} moves to the middle.", name));
-    Ending ending = co_await stage.move_while_held(joint, Motion{to_middle, slow.speed}, std::move(to_start));
-    if (ending != Ending::DONE) {
-        co_return Trial{fault_of(ending), false};
-    }
-    set_limits(stage, joint, limits);
-    co_await stage.wait(LIMITS_S);
     bool is_saturated = false;
-    const std::vector<Motion> forth_and_back{{distance, limits.speed}, {-distance, limits.speed}};
     const Watch watch = [&](const JointReading &) {
         is_saturated = is_saturated || (is_servo && stage.bench().value(pid + ".saturated").value_or(1) != 0);
     };
-    Prompt prompt =
-        hold(stage, joint,
-             fmt::format("Hold the button: {} moves forth and back at {:.4g} {}/s with {:.4g} {}/s2.", name,
-                         limits.speed, stage.unit(joint), limits.acceleration, stage.unit(joint)));
-    ending = co_await stage.move_while_held(joint, forth_and_back, std::move(prompt), watch);
-    if (ending == Ending::STOPPED && is_servo && stage.bench().joint(joint).isFollowingErrorTripped) {
-        co_return Trial{Fault::NONE, false};
-    }
-    if (ending != Ending::DONE) {
-        co_return Trial{fault_of(ending), false};
+    for (int leg = 0; leg < 3; ++leg) {
+        const bool is_fast = leg == (isForth ? 1 : 2);
+        const Limits now = is_fast ? limits : slow;
+        set_limits(stage, joint, now);
+        co_await stage.wait(LIMITS_S);
+        Prompt prompt = fast_prompt(stage, joint, now);
+        const double way = leg == 0 ? to_middle : leg == 1 ? distance : -distance;
+        const std::vector<Motion> motions{{way, now.speed}};
+        const Ending ending = co_await stage.move_while_held(joint, motions, std::move(prompt), watch);
+        if (ending == Ending::STOPPED && is_servo && stage.bench().joint(joint).isFollowingErrorTripped) {
+            co_return Trial{Fault::NONE, false};
+        }
+        if (ending != Ending::DONE) {
+            co_return Trial{fault_of(ending), false};
+        }
     }
     set_limits(stage, joint, slow);
     const Fault homed = co_await home_while_held(stage, joint);
@@ -118,6 +121,14 @@ Flow<Trial> try_limits(Stage &stage, int joint, Limits limits, double &home_coun
     home_counts = *counts;
     constexpr double ALLOWED = 2;
     co_return Trial{Fault::NONE, lost <= ALLOWED && !is_saturated};
+}
+
+Flow<Trial> try_limits(Stage &stage, int joint, Limits limits, double &home_counts) {
+    Trial trial = co_await try_direction(stage, joint, limits, true, home_counts);
+    if (trial.fault == Fault::NONE && trial.isGood) {
+        trial = co_await try_direction(stage, joint, limits, false, home_counts);
+    }
+    co_return trial;
 }
 
 /// Switches on, and homes at the answered speed.
