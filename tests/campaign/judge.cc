@@ -16,8 +16,6 @@ constexpr double PLACE_ROUNDING = 2e-6, RATE_ROUNDING = 1e-5;
 constexpr double WITH_BACKLASH = 1.5;
 /// Permitted duration of a stop: a factor of the minimum, plus the transfer time of commands.
 constexpr double STOP_FACTOR = 1.3, STOP_SLACK_S = 0.01;
-/// Time in which a planner that does not run may return (docs/developer/planner.md).
-constexpr double WAIT_FOR_PLANNER_S = 0.02;
 /// Interval of the checks during a stop [cycles].
 constexpr int LOOK_EVERY = 16;
 /// Time until commands in transfer at the stop are discarded [cycles].
@@ -76,7 +74,6 @@ void Judge::stop(Stop how, int delay) {
     if (!isSame) {
         stop_.delay = delay;
         stop_.since = 0;
-        stop_.wasPlannerAway = false;
         begin_stop();
     }
     stop_.how = how;
@@ -127,8 +124,7 @@ double Judge::time_to_brake() const {
 }
 
 double Judge::time_to_be_sure() const {
-    const double mean_s = std::max(2 * design_.rise_s(), design_.longest_mean_s());
-    return mean_s + (design_.hasOffsets() ? time_to_brake() : 0);
+    return 2 * design_.rise_s() + (design_.hasOffsets() ? time_to_brake() : 0);
 }
 
 /// Minimum stopping time from the accelerations of joints and axes along the path since the stop, plus the
@@ -418,7 +414,6 @@ void Judge::check_rest(const Sample &s) {
     if (!stop_.isAwaited) {
         return;
     }
-    stop_.wasPlannerAway = stop_.wasPlannerAway || s.isPlannerAway;
     watch_stop(isMoving, isOn);
 }
 
@@ -457,11 +452,7 @@ void Judge::check_stop(bool isMoving, double took_s) {
         return;  // the path since the stop is too short for any stop
     }
     const double corrections_s = time_to_correct() + stops_later_s;
-    // All axes use the same jerk filter, also while the axis that needs it is stopped.
-    const double mean_s = std::max(0.0, design_.longest_mean_s() - time_of_jerk());
-    const double waited_s = stop_.wasPlannerAway ? WAIT_FOR_PLANNER_S : 0.0;
-    if (took_s > std::max(STOP_FACTOR * least.seconds, least.seconds + STOP_SLACK_S) + waited_s +
-                     corrections_s + mean_s) {
+    if (took_s > std::max(STOP_FACTOR * least.seconds, least.seconds + STOP_SLACK_S) + corrections_s) {
         fail("stop", fmt::format("{} {:.3f} s after the stop; its limits need {:.3f} s",
                                  isMoving ? "still moves" : "stops", took_s, least.seconds));
         stop_.isAwaited = false;

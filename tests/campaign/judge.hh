@@ -56,8 +56,7 @@ enum class Stop {
 struct AwaitedStop {
     bool isAwaited = false;
     Stop how = Stop::ALONG_THE_PATH;
-    int delay = 0, since = 0;     ///< cycles
-    bool wasPlannerAway = false;  ///< at any time since the stop
+    int delay = 0, since = 0;  ///< cycles
     /// Commanded positions since the stop, with the samples before it that define the initial speed.
     struct Path {
         std::vector<std::vector<double>> motors;  ///< by joint, sample
