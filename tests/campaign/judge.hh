@@ -35,7 +35,6 @@ struct JointSample {
 struct Sample {
     std::uint64_t cycle = 0;
     bool isChainClosed = true, isEnableOn = true;  ///< as the servo cycle has read them
-    bool isPlannerAway = false;                    ///< the planner does not run
     bool isSpindleOn = false;
     double spindle_rpm = 0;     ///< commanded
     double spindle_turns = 0;   ///< true revolutions

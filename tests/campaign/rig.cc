@@ -134,7 +134,6 @@ void Rig::cycle() {
     scheduler_.run_until(static_cast<std::int64_t>(cycles_) * PERIOD_NS);
     sample_.isChainClosed = isChainClosed;
     sample_.isEnableOn = !faults.isDisabled;
-    sample_.isPlannerAway = isPlannerHeld();
     take_sample();
 }
 
