@@ -15,7 +15,7 @@
 namespace mw::trajectory::test {
 namespace {
 
-constexpr double V = 100, A = 1000, J = 50000;
+constexpr double V = 100, A = 1000;
 
 class Pieces {
   public:

@@ -89,7 +89,6 @@ class TimingPlan {
     Commitments commitments_;
     Sequence oldest_phase_ = 1;
     double start_delay_s_ = 0;
-    double stop_s_ = 0;
     int steady_updates_ = 0;  ///< since spindles have changed their speeds by more than a little
 };
 
