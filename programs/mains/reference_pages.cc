@@ -5,10 +5,13 @@
 #include <filesystem>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "base/atomic_file.hh"
 #include "clients/nml/message/wire_table.hh"
+#include "clients/publish/assembly/ini_keys.hh"
 #include "clients/publish/table.hh"
+#include "clients/shop/assembly/ini_keys.hh"
 #include "machine/config/ini_keys.hh"
 #include "machine/task/run/admission.hh"
 #include "messages/declarations/reference.hh"
@@ -22,7 +25,10 @@ int main(int count, char **words) {
     const std::string folder = words[1];
     std::error_code failure;
     std::filesystem::create_directories(folder, failure);
-    const std::pair<const char *, std::string> pages[] = {{"ini.md", mw::machine::ini_reference()},
+    std::vector<mw::ini::IniKey> of_clients(mw::publish::PUBLISH_KEYS.begin(),
+                                            mw::publish::PUBLISH_KEYS.end());
+    of_clients.insert(of_clients.end(), mw::shop::SHOP_KEYS.begin(), mw::shop::SHOP_KEYS.end());
+    const std::pair<const char *, std::string> pages[] = {{"ini.md", mw::machine::ini_reference(of_clients)},
                                                           {"messages.md", mw::messages::reference_page()},
                                                           {"nml_messages.md", mw::nml::nml_reference_page()},
                                                           {"published.md", mw::publish::published_page()},

@@ -186,14 +186,16 @@ std::vector<IniKey> all_ini_keys() {
     return keys;
 }
 
-std::string ini_reference() {
+std::string ini_reference(std::span<const IniKey> of_clients) {
     std::vector<IniKey> keys = all_ini_keys();
+    keys.insert(keys.end(), of_clients.begin(), of_clients.end());
     std::ranges::stable_sort(keys, {}, [](const IniKey &key) { return key.section; });
     std::string page =
         "# Keys of INI files\n\n"
-        "Made from the declarations in `src/machine/config/ini_keys.hh`, `src/gcode/interpreter/ini_keys.hh` "
-        "and\n"
-        "`src/motion/interface/parameters.hh`; a test keeps it so. Lengths are in the unit of the joint or "
+        "Made from the declarations in `src/machine/config/ini_keys.hh`, "
+        "`src/gcode/interpreter/ini_keys.hh`,\n"
+        "`src/motion/interface/parameters.hh` and `ini_keys.hh` of the clients; a test keeps it so. Lengths "
+        "are in the unit of the joint or "
         "axis: "
         "machine units\n"
         "([TRAJ]LINEAR_UNITS), or degrees where it turns. A key that is not here and in no HAL file is "

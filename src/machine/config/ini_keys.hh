@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -146,7 +147,7 @@ ini::IniKey ini_key(motion::Parameter parameter);
 /// All keys that any part of the system declares.
 std::vector<ini::IniKey> all_ini_keys();
 
-/// The reference page docs/reference/ini.md.
-std::string ini_reference();
+/// The reference page docs/reference/ini.md, with the keys that clients of the machine declare.
+std::string ini_reference(std::span<const ini::IniKey> of_clients = {});
 
 }  // namespace mw::machine

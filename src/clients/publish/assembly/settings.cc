@@ -12,6 +12,7 @@
 #include "base/atomic_file.hh"
 #include "base/ini/ini_reader.hh"
 #include "base/text.hh"
+#include "clients/publish/assembly/ini_keys.hh"
 #include "clients/publish/assembly/link_section.hh"
 
 namespace mw::publish {

@@ -4,6 +4,7 @@
 #include <regex>
 
 #include "base/atomic_file.hh"
+#include "clients/publish/assembly/ini_keys.hh"
 #include "clients/publish/assembly/settings.hh"
 #include "clients/publish/test/node_world.hh"
 

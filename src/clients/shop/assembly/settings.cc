@@ -10,6 +10,7 @@
 #include "base/text.hh"
 #include "clients/publish/assembly/link_section.hh"
 #include "clients/publish/sparkplug/edge_node.hh"
+#include "clients/shop/assembly/ini_keys.hh"
 
 namespace mw::shop {
 namespace {

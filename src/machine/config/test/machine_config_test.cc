@@ -305,6 +305,13 @@ TEST(IniKeys, TheReferencePageHasEachKey) {
     }
 }
 
+TEST(IniKeys, TheReferencePageHasKeysOfClients) {
+    const std::array keys{ini::ini_whole("SHOP", "KEEP_DAYS", "d", 0, {0, 9}, "days that are kept")};
+    EXPECT_NE(ini_reference(keys).find("## [SHOP]\n\n| key | value | default | |\n|---|---|---|---|\n"
+                                       "| KEEP_DAYS | whole number [d], 0 to 9 | 0 | days that are kept |"),
+              std::string::npos);
+}
+
 TEST(MachineConfig, TravelsThatCannotWorkAreSaidWithTheirPlace) {
     const Config outside(replaced(GOOD, "MAX_LIMIT = 2\n", "MAX_LIMIT = 2\nHOME = 3\n"));
     EXPECT_TRUE(outside.says("m.ini:12:8: warning: [AXIS_X]HOME = 3 is outside of MIN_LIMIT and MAX_LIMIT"));
