@@ -18,8 +18,13 @@ import sys
 
 FOLDERS = ('src/base/ini', 'src/base/options', 'src/runtime', 'src/messages/client', 'src/messages/mailbox', 'src/hal/core', 'src/hal/host',
            'src/hal/halcompile', 'src/hal/script', 'src/hal/tools', 'src/kinematics', 'src/gcode/syntax', 'src/gcode/interpreter', 'src/gcode/tools',
+<<<<<<< HEAD
            'src/gcode/analysis/commands.cc', 'src/motion', 'src/machine/io', 'src/machine/journal', 'src/machine/commissioning', 'src/machine/task', 'src/machine/config',
            'src/machine/analysis', 'src/machine/tools', 'src/machine/assembly', 'src/clients/publish/assembly/link_section.cc', 'src/clients/publish/assembly/settings.cc', 'src/clients/publish/sparkplug', 'programs', 'drivers/modbus', 'drivers/mesa/board/hm2_board.cc', 'drivers/mesa/ethernet/cycle_report.cc')
+=======
+           'src/gcode/analysis/commands.cc', 'src/motion', 'src/machine/io', 'src/machine/journal', 'src/machine/task', 'src/machine/config',
+           'src/machine/analysis', 'src/machine/tools', 'src/machine/assembly', 'src/clients/publish/assembly/link_section.cc', 'src/clients/publish/assembly/settings.cc', 'src/clients/publish/sparkplug', 'src/clients/shop', 'programs', 'drivers/modbus', 'drivers/mesa/board/hm2_board.cc', 'drivers/mesa/ethernet/cycle_report.cc')
+>>>>>>> 493872f9 (Translate the messages of the shop)
 # Programs that print for other programs: of their texts people read the help.
 HELP_OF = ('programs/setup/var_command.cc', 'src/base/ini/inivalue.cc')
 HELP = re.compile(r'usage: ')
@@ -28,7 +33,9 @@ FOR_PROGRAMS = {'src/hal/script': ('info', 'data', 'note')}
 TABLES = re.compile(r'HAL_LOCK_|^active/recycled|^HAL (memory|locking) status|^HAL components that died|^  current lock|^  used/total|^\{\}(Component Pins|Exported Functions|Loaded HAL Components|Realtime Threads|ID   |Owner |Type |     Period)'
                     r'|Aliases$|^Original Name$|^(\{\})?# (param|pin|real|unconn)|^#loadrt |^alias (pin|param) |^twopass:|^pass0:|^Sourcing |^found \{\}$|^loadusr \{\}$|^  \{\} \(process|^  \{\} (->|\[)|^digraph |^signal \{\}$|^HAL capture, '
                     r'|^(jitter|last|max|min|period|sdev) ns$|^outside of the bins|intervals by deviation|^\{\}: period|^deviation from the period|^no realtime: |^realtime priority and locked|^is (not )?running$|^the realtime process of instance .%s'
-                    r'|^(comp|pin)\||^\[(\w+\|){2}|^SIGNAL bit|^(latency-|millwright-rt |millwright hal \w+ ).*\[options\]$|^millwright hal ?$|^millwright-rt: \{\}$|^loadusr -W|^\.comp, |^import ast|^( (?!and |of )[\w.-]+)+ $|^fnct_01|^. (of component|crashed)|^Complete names|%s|^NML channels are up|^millwright (nml|format|explain) (FILE|\[)|^millwright (nml|publish|shop): |^MTConnect agent of |^Shop page: |^Node Control/|^Store/Dropped|^DEADBAND = ')
+                    r'|^(comp|pin)\||^\[(\w+\|){2}|^SIGNAL bit|^(latency-|millwright-rt |millwright hal \w+ ).*\[options\]$|^millwright hal ?$|^millwright-rt: \{\}$|^loadusr -W|^\.comp, |^import ast|^( (?!and |of )[\w.-]+)+ $|^fnct_01|^. (of component|crashed)|^Complete names|%s|^NML channels are up|^millwright (nml|format|explain) (FILE|\[)|^millwright (nml|publish|shop): |^MTConnect agent of |^Shop page: |^Node Control/|^Device Control/|^Store/Dropped|^DEADBAND = |^millwright shop( \{\})?$|; charset=utf-8|^Content-Type: ')
+# Statements for a database.
+SQL = re.compile(r'^(BEGIN; |; )?(SELECT|INSERT INTO|WITH \w+ AS \(|SET \w+ = )')
 # Texts of manual pages, reference pages and `explain`, and output that other programs read.
 NOT_SHOWN = re.compile(r'/(test|bench|logger|canon)/|keys\.hh$|pin_tables\.hh$|motion/interface/parameters\.hh$|states_page\.cc$'
                        r'|codes/codes\.cc$|programs/run/summary\.cc$|programs/run/certificate_report\.cc$|programs/run/time_report\.cc$|programs/run/recorder\.cc$|programs/run/plot\.cc$'
@@ -143,7 +150,7 @@ def texts(root):
                 text, parts = whole_text(seq, at)
                 done |= parts
                 key = key_of(text)
-                if is_text(key) and not NEVER.search(key) and not TABLES.search(key):
+                if is_text(key) and not any(pattern.search(key) for pattern in (NEVER, TABLES, SQL)):
                     found.setdefault(key, name)
     for name in HELP_OF:
         seq = list(tokens((root / name).read_text()))
