@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "clients/shop/store/store.hh"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <utility>
@@ -46,12 +47,28 @@ Parameter words(const std::string &text) {
     return {text, false, false};
 }
 
-/// An alarm, or a program that waits for the operator: a notification is sent.
-bool isNotable(std::string_view metric, const Value &value) {
-    const auto *const text = std::get_if<std::string>(&value);
-    return text != nullptr && !text->empty() &&
-           (metric.starts_with("Alarms/") || (metric == "Execution" && *text == "PROGRAM_STOPPED"));
+/// A value from which notifications or runs of programs may follow: it is written by WRITE_EVENTS.
+bool isEvent(std::string_view metric) {
+    constexpr std::array<std::string_view, 4> JOB_METRICS{"Execution", "Mode", "Program/Path",
+                                                          "Program/Ended"};
+    return metric.starts_with("Alarms/") || std::ranges::find(JOB_METRICS, metric) != JOB_METRICS.end();
 }
+
+constexpr const char *WRITE_READINGS =
+    "INSERT INTO reading (metric, at, number, whole, text) "
+    "SELECT * FROM unnest($1::int[], $2::timestamptz[], $3::float8[], $4::bigint[], $5::text[]) "
+    "ON CONFLICT DO NOTHING";
+/// Only a row that was not there is reported to people. A trigger calculates runs from job_reading.
+constexpr const char *WRITE_EVENTS =
+    "WITH fresh AS (INSERT INTO reading (metric, at, number, whole, text) "
+    "SELECT * FROM unnest($1::int[], $2::timestamptz[], $3::float8[], $4::bigint[], $5::text[]) "
+    "ON CONFLICT DO NOTHING RETURNING metric, at, text), "
+    "named AS (SELECT fresh.*, machine, name FROM fresh JOIN metric ON metric.id = fresh.metric), "
+    "job AS (INSERT INTO job_reading (metric, at, text) SELECT metric, at, text FROM named "
+    "WHERE name NOT LIKE 'Alarms/%' ON CONFLICT DO NOTHING) "
+    "INSERT INTO notification (machine, at, source, message) SELECT machine, at, name, text FROM named "
+    "WHERE text <> '' AND (name LIKE 'Alarms/%' OR (name = 'Execution' AND text = 'PROGRAM_STOPPED')) "
+    "ON CONFLICT DO NOTHING";
 
 /// Readings as the arrays of a statement.
 class ReadingArrays {
@@ -259,12 +276,11 @@ void ReadingArrays::add(std::int32_t metric, const Reading &reading) {
 }
 
 Result<> Store::write_readings(const std::vector<Reading> &readings, const std::vector<Series> &series) {
-    std::vector<const Reading *> plain, notable;
+    std::vector<const Reading *> plain, events;
     for (const Reading &reading : readings) {
-        (isNotable(series[reading.series].metric, reading.value) ? notable : plain).push_back(&reading);
+        (isEvent(series[reading.series].metric) ? events : plain).push_back(&reading);
     }
-    const auto insert = [this](const std::vector<const Reading *> &some, const std::string &before,
-                               const std::string &after) -> Result<> {
+    const auto insert = [this](const std::vector<const Reading *> &some, const char *statement) -> Result<> {
         if (some.empty()) {
             return {};
         }
@@ -273,24 +289,11 @@ Result<> Store::write_readings(const std::vector<Reading> &readings, const std::
             arrays.add(ids_[reading->series], *reading);
         }
         const auto parameters = arrays.take();
-        const auto written = database_.ask(
-            before +
-                "INSERT INTO reading (metric, at, number, whole, text) "
-                "SELECT * FROM unnest($1::int[], $2::timestamptz[], $3::float8[], $4::bigint[], $5::text[]) "
-                "ON CONFLICT DO NOTHING" +
-                after,
-            parameters);
+        const auto written = database_.ask(statement, parameters);
         return written.has_value() ? Result<>{} : std::unexpected(written.error());
     };
-    auto done = insert(plain, "", "");
-    // Only a row that was not there is reported to people.
-    return done.has_value()
-               ? insert(notable, "WITH fresh AS (",
-                        " RETURNING metric, at, text) INSERT INTO notification "
-                        "(machine, at, source, message) SELECT metric.machine, fresh.at, "
-                        "metric.name, fresh.text FROM fresh JOIN metric ON metric.id = fresh.metric "
-                        "ON CONFLICT DO NOTHING")
-               : done;
+    auto done = insert(plain, WRITE_READINGS);
+    return done.has_value() ? insert(events, WRITE_EVENTS) : done;
 }
 
 Result<> Store::write_presences(const std::vector<Presence> &presences) {
