@@ -38,11 +38,6 @@ std::string date(std::int64_t day) {
     return fmt::format("{:04}-{:02}-{:02}", static_cast<int>(date.year()),
                        static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()));
 }
-std::string partition(std::int64_t day) {
-    std::string name = "reading_" + date(day);
-    std::erase(name, '-');
-    return name;
-}
 Parameter words(const std::string &text) {
     return {text, false, false};
 }
@@ -228,15 +223,13 @@ Result<> Store::make_day(std::int64_t day) {
     if (day < FIRST_DAY || day >= END_DAY || days_.contains(day)) {
         return {};
     }
-    // The lock is that of tend(): a collector of another name may create the same day.
-    auto made = database_.run(fmt::format("SELECT pg_advisory_xact_lock(hashtext('millwright shop schema')); "
-                                          "CREATE TABLE IF NOT EXISTS {} PARTITION OF reading FOR VALUES "
-                                          "FROM ('{} 00:00:00+00') TO ('{} 00:00:00+00')",
-                                          partition(day), date(day), date(day + 1)));
-    if (made.has_value()) {
-        days_.insert(day);
+    const std::array parameters{words(date(day))};
+    const auto made = database_.ask("SELECT add_day($1::date)", parameters);
+    if (!made.has_value()) {
+        return std::unexpected(made.error());
     }
-    return made;
+    days_.insert(day);
+    return {};
 }
 
 Result<> Store::make_days(const std::vector<Reading> &readings) {
@@ -356,15 +349,10 @@ Result<> Store::tend() {
         done = make_day(day + ahead);
     }
     if (settings_.keep_days > 0 && done.has_value()) {
-        const std::array parameters{words(partition(day - settings_.keep_days))};
-        const auto old = database_.ask("SELECT relname FROM pg_class WHERE relkind = 'r' AND relname ~ "
-                                       "'^reading_[0-9]{8}$' AND relispartition AND relname < $1",
-                                       parameters);
-        if (!old.has_value()) {
-            return std::unexpected(old.error());
-        }
-        for (int i = 0; i < old->count() && done.has_value(); ++i) {
-            done = database_.run("DROP TABLE " + old->text(i, 0).value_or(""));
+        const std::array parameters{words(date(day - settings_.keep_days))};
+        const auto dropped = database_.ask("SELECT drop_days($1::date)", parameters);
+        if (!dropped.has_value()) {
+            return std::unexpected(dropped.error());
         }
         days_.clear();
     }
