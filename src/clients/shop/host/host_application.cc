@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <iterator>
 #include <utility>
 
 #include <fmt/format.h>
@@ -281,6 +282,15 @@ void HostApplication::set_alive(Device &device, const MachineName &name, bool is
 }
 
 Batch HostApplication::take_batch() {
+    if (batch_.readings.size() > settings_.batch_readings) {
+        // Receipts cover all that was received, so they come with the last part.
+        const auto end = batch_.readings.begin() + static_cast<std::ptrdiff_t>(settings_.batch_readings);
+        Batch part;
+        part.new_series = std::exchange(batch_.new_series, {});
+        part.readings.assign(std::move_iterator(batch_.readings.begin()), std::move_iterator(end));
+        batch_.readings.erase(batch_.readings.begin(), end);
+        return part;
+    }
     Batch batch = std::exchange(batch_, {});
     for (const NodeName &name : std::exchange(unstored_, {})) {
         batch.receipts.push_back({name, nodes_[name].position});

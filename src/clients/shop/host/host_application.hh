@@ -25,6 +25,8 @@ struct HostSettings {
     double receipt_s = 0.5;           ///< between two receipts to one node
     /// From the connection to the census: longer than the longest pause of a publisher between two attempts.
     double census_s = 60;
+    /// In one batch: a database that stores it within its time limit makes progress, no matter how many wait.
+    std::size_t batch_readings = 20'000;
 };
 
 /// Nodes repeat what has no receipt, and a receipt is sent only for what is stored: a host that forgets
@@ -54,6 +56,7 @@ class HostApplication {
 
     std::size_t waiting() const { return batch_.readings.size(); }
     bool hasBatch() const { return !batch_.isEmpty() || !unstored_.empty(); }
+    /// The oldest part of what is not stored, without receipts when there is more.
     Batch take_batch();
     /// A batch is in the store.
     void stored(const std::vector<NodeReceipt> &receipts);

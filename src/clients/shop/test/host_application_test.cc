@@ -22,7 +22,11 @@ using publish::Publication;
 
 class HostWorld {
   public:
-    HostWorld() { host.connected(); }
+    explicit HostWorld(std::size_t batch_readings = 1000)
+        : host({.name = "shop", .groups = {}, .batch_readings = batch_readings}, broker,
+               [this](const std::string &what) { reports.push_back(what); }) {
+        host.connected();
+    }
     void take(const Publication &message) { host.take(message, now()); }
     void take(const std::string &type, Payload payload, const std::string &device = "") {
         const std::string topic = "spBv1.0/shop/" + type + "/mill-1" + (device.empty() ? "" : "/" + device);
@@ -69,8 +73,7 @@ class HostWorld {
 
     PlayedBroker broker;
     std::vector<std::string> reports;
-    HostApplication host{
-        {.name = "shop", .groups = {}}, broker, [this](const std::string &what) { reports.push_back(what); }};
+    HostApplication host;
     std::vector<Batch> batches;
     double now_s = 100;
 };
@@ -98,6 +101,29 @@ TEST(HostApplication, SendsNoReceiptBeyondAMissingMessage) {
     world.bear(2000);
     world.count(2, 2001, 9);
     EXPECT_EQ(world.store(), std::vector<Receipt>{(Receipt{7, 2000, 3})});
+}
+
+TEST(HostApplication, DividesALargeBatchAndSendsTheReceiptWithItsEnd) {
+    HostWorld world(2);
+    world.bear(1000);
+    world.count(2, 1001, 5);
+    world.count(3, 1002, 6);
+    world.count(4, 1003, 7);
+    world.count(5, 1004, 8);
+    EXPECT_TRUE(world.store().empty());
+    EXPECT_EQ(world.batches.back().readings.size(), 2U);
+    EXPECT_EQ(world.batches.back().new_series.size(), 1U);
+    EXPECT_TRUE(world.host.hasBatch());
+    EXPECT_TRUE(world.store().empty());
+    EXPECT_EQ(world.store(), std::vector<Receipt>{(Receipt{7, 1000, 6})});
+    std::vector<TimeMs> times;
+    for (const Batch &batch : world.batches) {
+        for (const Reading &reading : batch.readings) {
+            times.push_back(reading.at);
+        }
+    }
+    EXPECT_EQ(times, (std::vector<TimeMs>{1000, 1001, 1002, 1003, 1004}));
+    EXPECT_FALSE(world.host.hasBatch());
 }
 
 TEST(HostApplication, RequestsABirthFromANodeThatItDoesNotKnow) {
