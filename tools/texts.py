@@ -18,13 +18,8 @@ import sys
 
 FOLDERS = ('src/base/ini', 'src/base/options', 'src/runtime', 'src/messages/client', 'src/messages/mailbox', 'src/hal/core', 'src/hal/host',
            'src/hal/halcompile', 'src/hal/script', 'src/hal/tools', 'src/kinematics', 'src/gcode/syntax', 'src/gcode/interpreter', 'src/gcode/tools',
-<<<<<<< HEAD
            'src/gcode/analysis/commands.cc', 'src/motion', 'src/machine/io', 'src/machine/journal', 'src/machine/commissioning', 'src/machine/task', 'src/machine/config',
-           'src/machine/analysis', 'src/machine/tools', 'src/machine/assembly', 'src/clients/publish/assembly/link_section.cc', 'src/clients/publish/assembly/settings.cc', 'src/clients/publish/sparkplug', 'programs', 'drivers/modbus', 'drivers/mesa/board/hm2_board.cc', 'drivers/mesa/ethernet/cycle_report.cc')
-=======
-           'src/gcode/analysis/commands.cc', 'src/motion', 'src/machine/io', 'src/machine/journal', 'src/machine/task', 'src/machine/config',
            'src/machine/analysis', 'src/machine/tools', 'src/machine/assembly', 'src/clients/publish/assembly/link_section.cc', 'src/clients/publish/assembly/settings.cc', 'src/clients/publish/sparkplug', 'src/clients/shop', 'programs', 'drivers/modbus', 'drivers/mesa/board/hm2_board.cc', 'drivers/mesa/ethernet/cycle_report.cc')
->>>>>>> 493872f9 (Translate the messages of the shop)
 # Programs that print for other programs: of their texts people read the help.
 HELP_OF = ('programs/setup/var_command.cc', 'src/base/ini/inivalue.cc')
 HELP = re.compile(r'usage: ')

@@ -218,18 +218,6 @@ TEST_F(JudgeTest, FindsAmplifiersThatStayOnAfterAStop) {
     EXPECT_EQ(rule(), "stop");
 }
 
-TEST_F(JudgeTest, GrantsTheMeanOfAnAxisThatIsSlowerToBuildUpThanItsJoints) {
-    design_.axes[0].acceleration = 10000;  // a mean of sqrt(V / J), 224 cycles
-    design_.axes[0].jerk = 2000;
-    judge_.allow(Leave::MOVE);
-    feed(5);
-    judge_.stop(Stop::ALONG_THEN_OFF, 0);
-    feed(200);
-    EXPECT_TRUE(judge_.isSound()) << judge_.report();
-    feed(50);
-    EXPECT_EQ(rule(), "stop");
-}
-
 TEST_F(JudgeTest, FindsMotionThatNobodyHasAskedForSinceTheStop) {
     judge_.allow(Leave::MOVE);
     feed(5);
