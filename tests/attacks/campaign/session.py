@@ -23,7 +23,7 @@ from attack_types import TABLE, Child, carry_out
 from attacked_machine import MEMORY, AttackedMachine, temporary_names
 
 AFTER_ATTACKS_S = 0.2  # for messages about the last one
-EXPECTED = re.compile(r'^(configs/.*\.(ini|inc|hal|tbl|var|var\.certificate\.json|bak|journal|tcl|ngc|py|md|png|xml|ui|txt)|configs/.*/[A-Z]*|config/.*|nc/(cut|pipe|loop|large|slow|slip)\.ngc|'
+EXPECTED = re.compile(r'^(configs/.*\.(ini|inc|hal|tbl|var|var\.certificate\.json|bak|journal|tcl|ngc|py|md|png|xml|ui|txt)|configs/.*/[A-Z]*|configs/shop/start|config/.*|nc/(cut|pipe|loop|large|slow|slip)\.ngc|'
                       r'(out|web|rsh|nml)\.txt|m\.nml|[^/]*\.history)$')
 
 
