@@ -108,7 +108,8 @@ TEST(SpeedCap, FollowsTheOverrideThatIsFor) {
 }
 
 /// Phases follow each other without a gap of place or speed, and keep the pieces' limits. Their duration.
-double expect_sound_phases(const Parts &parts, Sequence begin, Sequence end) {
+/// `fit`: part of the squared speed by which braking may be fitted to the end of a piece.
+double expect_sound_phases(const Parts &parts, Sequence begin, Sequence end, double fit = 0) {
     double seconds = 0;
     Sequence piece = parts.store->phase(begin).piece;
     double x = 0;
@@ -125,9 +126,10 @@ double expect_sound_phases(const Parts &parts, Sequence begin, Sequence end) {
         EXPECT_NEAR(p.v0, v, 1e-6 * (1 + v));
         x = p.x0 + p.duration * (p.v0 + 0.5 * p.duration * p.a);
         v = p.v0 + p.duration * p.a;
-        // Speeds that differ by SAME_SPEED are the same; the phase adds rounding.
-        EXPECT_LE(std::max(p.v0, v), parts.path->plan(piece).v_limit * (1 + 2 * TimingTuning::SAME_SPEED));
-        EXPECT_LE(std::abs(p.a), parts.path->piece(piece).acceleration.at(0) * (1 + 1e-6));
+        const double most = std::max(p.v0, v), way = 0.5 * (p.v0 + v) * p.duration;
+        EXPECT_LE(most, parts.path->plan(piece).v_limit * (1 + 1e-9 + fit));
+        const double fitted = way > 0 ? fit * most * most / (2 * way) : 0.0;
+        EXPECT_LE(std::abs(p.a), parts.path->piece(piece).acceleration.at(0) * (1 + 1e-6) + fitted);
         EXPECT_GT(p.duration, 0);
         seconds += p.duration;
     }
@@ -180,7 +182,7 @@ TEST(PlanToStop, RandomPiecesAreDrivenWithinTheirLimitsToTheEnd) {
         Pieces(seed).add(parts, 100);
         Made made;
         made.make(parts, true);
-        expect_sound_phases(parts, 1, made.draft.end);
+        expect_sound_phases(parts, 1, made.draft.end, TimingTuning::STOP_FIT);
         EXPECT_TRUE(made.draft.isAtEndOf(*parts.path));
     }
 }
@@ -195,7 +197,7 @@ TEST(PlanToStop, AStopFromAnyMomentOfAPlanKeepsTheLimits) {
         const PathView view = parts.view();
         append_to_horizon(made.draft, *parts.store, {view, *made.profile, 1}, until);
         ASSERT_TRUE(append_stop(made.draft, *parts.store, {view, *made.profile, 1}));
-        expect_sound_phases(parts, 1, made.draft.end);
+        expect_sound_phases(parts, 1, made.draft.end, TimingTuning::STOP_FIT);
         EXPECT_FALSE(made.draft.isStopPassed(*parts.path, 1));
     }
 }
