@@ -244,7 +244,6 @@ struct PathStore {
     CopyableAtomic<Sequence> last_piece{0};
     /// The last move of a curve that is known.
     CopyableAtomic<Sequence> last_move{0};
-    CopyableAtomic<std::uint32_t> updates{0};  ///< of the planner, for who waits for it
 
     Primitive &primitive(Sequence n) noexcept { return primitives[n % PRIMITIVE_CAPACITY]; }
     const Primitive &primitive(Sequence n) const noexcept { return primitives[n % PRIMITIVE_CAPACITY]; }

@@ -150,7 +150,6 @@ std::uint32_t Planner::moves_left(const Snapshot &now) const noexcept {
 }
 
 void Planner::update(const Snapshot &now) noexcept {
-    path_.store().updates.fetch_add(1, std::memory_order_relaxed);
     if (curve_.isActive()) {
         curve_.update(now, conditions_);
         return;
@@ -252,9 +251,10 @@ bool Planner::ease(const LeaderState &from, const Cause &cause) noexcept {
 
 Trouble Planner::take_trouble() noexcept {
     Trouble trouble;
-    refusals_ = curve_.isActive() ? std::min(refusals_, curve_.failures()) : refusals_;
-    trouble.isStuck = refusals_ == TimingTuning::MOST_REFUSALS;
-    refusals_ += trouble.isStuck ? 1 : 0;
+    const int failures = curve_.isActive() ? curve_.failures() : refusals_;
+    const bool is_stuck = failures >= TimingTuning::MOST_REFUSALS;
+    trouble.isStuck = is_stuck && !is_stuck_told_;
+    is_stuck_told_ = is_stuck;
     if (!isOverreachTold_) {
         trouble.overreach = curve_.isActive() ? curve_.path().move_feeds().overreach() : timing_.overreach();
         isOverreachTold_ = trouble.overreach.kind != Overreach::Kind::NONE;

@@ -16,9 +16,10 @@ struct Trouble {
     Overreach overreach;   ///< of who chooses speeds: the path stops
 };
 
-/// The face of the parts: PathBuilder makes pieces of moves, TimingPlan plans and commits phases, Trial looks
-/// at what would be commanded, Easing makes slower what it refuses. The parts know nothing of each other;
-/// what one says goes to the next by value.
+/// The face of the parts. With jerk limits, and for threads and taps, CurvePlanner. Otherwise PathBuilder
+/// makes pieces of moves, and TimingPlan plans and commits phases; where joints are not axes, Trial checks
+/// what would be commanded, and Easing slows down what it rejects. The parts exchange values and do not know
+/// each other.
 ///
 /// All methods: planner thread only. Allocates at construction and along curves. Same calls with the same
 /// values: same bits.
@@ -26,7 +27,7 @@ class Planner {
   public:
     Planner(PathStore &store, const PlannerSettings &settings) noexcept;
 
-    /// Holds for moves added from now on; jerk limits from the next `begin` on.
+    /// Holds for moves added from now on; on a curve from the next `begin` on.
     void set_limits(const Limits &limits) noexcept { conditions_.limits.set(limits); }
     /// A path that begins now with such a move would be made as the present one.
     bool suits(const PathDemand &demand) const noexcept { return curve_.suits(demand, conditions_); }
@@ -126,7 +127,7 @@ class Planner {
     Easing easing_;
     plan::CurvePlanner curve_;
     std::uint64_t drops_ = 0;  ///< Snapshot::drops of this path
-    bool isOverreachTold_ = false;
+    bool isOverreachTold_ = false, is_stuck_told_ = false;
     int refusals_ = 0;  ///< planning at rest, one after the other, for which no plan passed
 };
 

@@ -24,7 +24,7 @@ class PassFollower {
     double s() const noexcept { return state_.x; }
     double v() const noexcept { return state_.v; }
     int spindle() const noexcept { return pass_.spindle; }
-    /// It stands at the start and nothing has begun.
+    /// The tool is at the start and has not moved.
     bool isWaiting() const noexcept { return state_.x <= pass_.start_s && state_.v <= 0 && !stopping_; }
 
     /// Legs that one cycle may pass at most.

@@ -40,7 +40,7 @@ class TapFollower {
     TapPhase phase() const noexcept { return phase_; }
     /// Speed of the spindle that is wanted over that which it was started with; 0: off.
     double spindle_factor() const noexcept;
-    /// It stands at the start and nothing has begun.
+    /// The tool is at the start and has not moved.
     bool isWaiting() const noexcept { return phase_ == TapPhase::WAITING && state_.x <= 0 && state_.v <= 0; }
     bool isOver() const noexcept { return phase_ == TapPhase::OVER; }
     /// The tool has lost the helix: the spindle has not turned back in time, jumped, or is too much for it.

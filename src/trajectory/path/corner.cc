@@ -11,14 +11,13 @@ namespace mw::trajectory {
 
 namespace {
 
-/// What corners of either kind begin with.
+/// Two moves and what their corner may do.
 struct Bend {
     const Leg &a, &b;
     const Conditions &conditions;
     double tolerance = 0;  ///< 0: any
     bool isStop = false;
 
-    const PathLimits &path() const noexcept { return conditions.limits; }
     const Limits &limits() const noexcept { return conditions.limits.wanted(); }
     double wish_before() const noexcept { return requested_speed(a.move, conditions.scales); }
     double wish_after() const noexcept { return requested_speed(b.move, conditions.scales); }

@@ -36,7 +36,7 @@ class CurvePath {
     bool hasRoom() const noexcept;
 
     const Pose &end() const noexcept { return end_; }
-    /// The pass that begins at `s`: its legs, their number, and what holds on all of them. None as long as it
+    /// The pass that begins at `s`: its legs, and the limits that all of them keep. None as long as it
     /// may still grow.
     struct KnownPass {
         std::vector<PassLeg> legs;

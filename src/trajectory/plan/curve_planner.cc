@@ -212,6 +212,10 @@ void CurvePlanner::start_pass(const Snapshot &now, double s, Sequence move, cons
         pass.end_s = moves_.move(move + 1).request.tag.end_s;
     } else {
         const CurvePath::KnownPass known = path_.pass_at(s);
+        if (known.legs.empty()) {
+            ++failures_;
+            return;
+        }
         pass.first = next_leg_;
         for (const PassLeg &leg : known.legs) {
             store_.leg(next_leg_++) = leg;
@@ -228,6 +232,7 @@ void CurvePlanner::start_pass(const Snapshot &now, double s, Sequence move, cons
     plan.last_span = path_.last_span();
     plan.last_move = moves_.last_move();
     is_running_ = store_.curve_plans.push(plan);
+    failures_ = is_running_ ? 0 : failures_ + 1;
     plan_ += is_running_ ? 1 : 0;
     planned_cycle_ = now.cycle;
     numbers_.clear();

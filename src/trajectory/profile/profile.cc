@@ -94,6 +94,9 @@ void Profile::lay_cells(std::size_t fixed) {
     }
     const bool is_first = plan_.knots.empty();
     const double from = planned_s();
+    if (!(run.end_s > from)) {
+        return;  // nothing ahead is drivable: the joints may have no position there
+    }
     // The creep that was laid before counts on the ramp before the end as long as the curve ends there.
     if (run.end_s != plan_.end_s) {
         plan_.end_s = run.end_s;

@@ -138,16 +138,17 @@ class NoMap final : public JointMap {
     }
 };
 
-TEST(Planner, APlaceWithoutAWayOnIsTold) {
+void expect_told(const Limits &limits) {
     Rig rig{Pose{}};
     const NoMap map;
     JointLimits joints;
     joints.count = 1;
     joints.velocity[0] = 50;
     joints.acceleration[0] = 500;
-    rig.planner.set_limits(plain_limits());
+    joints.jerk[0] = 5000;
+    rig.planner.set_limits(limits);
     rig.planner.set_joints(&map, joints);
-    rig.planner.begin(Pose{}, rig.executor.snapshot());
+    rig.planner.begin(Pose{}, rig.executor.snapshot(), {PathDemand::Drive::BY_TIME});
     Pose end;
     end[0] = 10;
     rig.planner.add(make_line(Pose{}, end), {});
@@ -159,6 +160,17 @@ TEST(Planner, APlaceWithoutAWayOnIsTold) {
     }
     EXPECT_EQ(told, 1);
     EXPECT_EQ(rig.samples.back(), Pose{});
+}
+
+TEST(Planner, APlaceWithoutAWayOnIsTold) {
+    expect_told(plain_limits());
+}
+
+TEST(Planner, WithJerkLimitsItIsToldToo) {
+    Limits limits = plain_limits();
+    limits.jerk.fill(5000);
+    limits.isJerkLimited = true;
+    expect_told(limits);
 }
 
 }  // namespace

@@ -47,10 +47,6 @@ void TimingPlan::rescale(const PathView &view) noexcept {
     profile_.change_from(view.path.oldest_piece());
 }
 
-void TimingPlan::renew_up_to(const PathView &view, Sequence piece) noexcept {
-    profile_.pass_backward(view, std::min(piece + 1, view.path.last_piece()), true);
-}
-
 void TimingPlan::renew_span(const PathView &view, Sequence low, Sequence high) noexcept {
     profile_.renew(view, low, high);
 }

@@ -43,8 +43,6 @@ class TimingPlan {
     void renew_all(const PathView &view) noexcept;
     /// Overrides have changed, so speeds within pieces have as well.
     void rescale(const PathView &view) noexcept;
-    /// Up to this piece limits have changed.
-    void renew_up_to(const PathView &view, Sequence piece) noexcept;
     /// The limits of the pieces [low, high] have changed.
     void renew_span(const PathView &view, Sequence low, Sequence high) noexcept;
     /// What follows can still be kept from this state.
