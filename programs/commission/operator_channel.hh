@@ -8,6 +8,19 @@
 
 namespace mw::programs {
 
+/// Name of what the operator is asked for, for scripts and the browser.
+inline const char *ask_name(commissioning::Ask ask) {
+    switch (ask) {
+    case commissioning::Ask::NOTHING: return "wait";
+    case commissioning::Ask::CONFIRM: return "confirm";
+    case commissioning::Ask::HOLD: return "hold";
+    case commissioning::Ask::ACTION: return "do";
+    case commissioning::Ask::NUMBER: return "number";
+    case commissioning::Ask::CHOICE: return "choice";
+    }
+    return "";
+}
+
 class OperatorChannel {
   public:
     virtual ~OperatorChannel() = default;

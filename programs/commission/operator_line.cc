@@ -20,22 +20,6 @@ using commissioning::Act;
 using commissioning::Ask;
 using commissioning::Prompt;
 
-namespace {
-
-const char *ask_name(Ask ask) {
-    switch (ask) {
-    case Ask::NOTHING: return "wait";
-    case Ask::CONFIRM: return "confirm";
-    case Ask::HOLD: return "hold";
-    case Ask::ACTION: return "do";
-    case Ask::NUMBER: return "number";
-    case Ask::CHOICE: return "choice";
-    }
-    return "";
-}
-
-}  // namespace
-
 bool read_standard_input(std::string &input) {
     std::array<char, 4096> part{};
     pollfd look{STDIN_FILENO, POLLIN, 0};

@@ -25,18 +25,6 @@ using Json = nlohmann::ordered_json;
 constexpr int COMPACT = -1;
 constexpr bool IS_ASCII = false, HAS_EXCEPTIONS = false;
 
-const char *ask_name(Ask ask) {
-    switch (ask) {
-    case Ask::NOTHING: return "wait";
-    case Ask::CONFIRM: return "confirm";
-    case Ask::HOLD: return "hold";
-    case Ask::ACTION: return "do";
-    case Ask::NUMBER: return "number";
-    case Ask::CHOICE: return "choice";
-    }
-    return "";
-}
-
 Json prompt_json(const Prompt &prompt) {
     return {
         {"step", prompt.step},       {"motor", prompt.motor},     {"ask", ask_name(prompt.ask)},

@@ -22,6 +22,7 @@
 #include "clients/publish/mtconnect/service.hh"
 #include "clients/screen/server.hh"
 #include "hal/core/hal.hh"
+#include "programs/command_words.hh"
 #include "programs/commands.hh"
 
 namespace mw::programs {
@@ -237,17 +238,11 @@ Result<> publish_machine(const PublishWords &words, const Settings &settings, co
 
 int command_publish(const std::vector<std::string> &arguments) {
     PublishWords words;
-    if (options::wantsHelp(arguments)) {
-        fmt::print("{}", words.line().help());
-        return 0;
-    }
-    if (const auto parsed = words.parse(arguments); !parsed.has_value()) {
-        fmt::print(stderr, "millwright publish: {}\n", language::shown(parsed.error().str()));
-        return 2;
+    if (const auto ended = ended_by_words("publish", words, arguments)) {
+        return *ended;
     }
     catch_stop_signals();
-    diagnostics::Sink sink(
-        [](const diagnostics::Diagnostic &d) { fmt::print(stderr, "{}\n", language::shown(d.str())); });
+    diagnostics::Sink sink = standard_error_sink();
     const auto file = ini::IniFile::load(words.ini, sink);
     if (!file.has_value()) {
         sink.failure(file.error());

@@ -11,6 +11,7 @@
 #include "clients/nml/config/config_file.hh"
 #include "clients/nml/net/server.hh"
 #include "hal/core/hal.hh"
+#include "programs/command_words.hh"
 #include "programs/commands.hh"
 #include "programs/remote/remote_client.hh"
 
@@ -132,17 +133,11 @@ Result<> run_channels(const NmlWords &words, const nml::Config &config, diagnost
 
 int command_nml(const std::vector<std::string> &arguments) {
     NmlWords words;
-    if (options::wantsHelp(arguments)) {
-        fmt::print("{}", words.line().help());
-        return 0;
-    }
-    if (const auto parsed = words.parse(arguments); !parsed.has_value()) {
-        fmt::print(stderr, "millwright nml: {}\n", language::shown(parsed.error().str()));
-        return 2;
+    if (const auto ended = ended_by_words("nml", words, arguments)) {
+        return *ended;
     }
     catch_stop_signals();
-    diagnostics::Sink sink(
-        [](const diagnostics::Diagnostic &d) { fmt::print(stderr, "{}\n", language::shown(d.str())); });
+    diagnostics::Sink sink = standard_error_sink();
     const auto config = nml::load_config(words.file, sink);
     if (!config.has_value()) {
         return 1;

@@ -12,6 +12,7 @@
 #include "machine/config/ini_parameters.hh"
 #include "machine/config/loaded_config.hh"
 #include "machine/tools/tool_data.hh"
+#include "programs/command_words.hh"
 #include "programs/commands.hh"
 #include "programs/run/plot.hh"
 #include "programs/run/progress_line.hh"
@@ -110,8 +111,7 @@ int command_check(const std::vector<std::string> &arguments) {
     }
     words.program = words.rest[0];
     catch_stop_signals();
-    diagnostics::Sink sink(
-        [](const diagnostics::Diagnostic &d) { fmt::print(stderr, "{}\n", language::shown(d.str())); });
+    diagnostics::Sink sink = standard_error_sink();
     const auto drawable = words.plot.empty() ? Result<>{} : check_picture(words.plot);
     if (!drawable.has_value()) {
         sink.error(drawable.error());

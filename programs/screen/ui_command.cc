@@ -22,6 +22,7 @@
 #include "clients/screen/server.hh"
 #include "hal/core/hal.hh"
 #include "hal/host/host_client.hh"
+#include "programs/command_words.hh"
 #include "programs/commands.hh"
 #include "programs/run/machine_access.hh"
 #include "programs/run/ui_filter.hh"
@@ -244,19 +245,13 @@ int serve(const UiWords &words, const machine::LoadedConfig &loaded, diagnostics
 
 int command_ui(const std::vector<std::string> &arguments) {
     UiWords words;
-    if (options::wantsHelp(arguments)) {
-        fmt::print("{}", words.line().help());
-        return 0;
-    }
-    if (const auto parsed = words.parse(arguments); !parsed.has_value()) {
-        fmt::print(stderr, "millwright ui: {}\n", language::shown(parsed.error().str()));
-        return 2;
+    if (const auto ended = ended_by_words("ui", words, arguments)) {
+        return *ended;
     }
     catch_stop_signals();
     screen::raise_descriptor_limit();
     static_cast<void>(raise_oom_score(SCREENS_OOM_STEP));
-    diagnostics::Sink sink(
-        [](const diagnostics::Diagnostic &d) { fmt::print(stderr, "{}\n", language::shown(d.str())); });
+    diagnostics::Sink sink = standard_error_sink();
     const auto loaded = machine::LoadedConfig::load(words.ini, sink);
     return loaded == nullptr ? 1 : serve(words, *loaded, sink);
 }

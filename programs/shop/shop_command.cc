@@ -23,6 +23,7 @@
 #include "clients/shop/assembly/settings.hh"
 #include "clients/shop/notify/notifier.hh"
 #include "clients/shop/web/shop_page.hh"
+#include "programs/command_words.hh"
 
 namespace mw::programs {
 namespace {
@@ -153,17 +154,11 @@ Result<> collect(const Settings &settings) {
 
 int command_shop(const std::vector<std::string> &arguments) {
     ShopWords words;
-    if (options::wantsHelp(arguments)) {
-        fmt::print("{}", words.line().help());
-        return 0;
-    }
-    if (const auto parsed = words.parse(arguments); !parsed.has_value()) {
-        fmt::print(stderr, "millwright shop: {}\n", language::shown(parsed.error().str()));
-        return 2;
+    if (const auto ended = ended_by_words("shop", words, arguments)) {
+        return *ended;
     }
     catch_stop_signals();
-    diagnostics::Sink sink(
-        [](const diagnostics::Diagnostic &d) { fmt::print(stderr, "{}\n", language::shown(d.str())); });
+    diagnostics::Sink sink = standard_error_sink();
     const auto file = ini::IniFile::load(words.ini, sink);
     if (!file.has_value()) {
         sink.failure(file.error());

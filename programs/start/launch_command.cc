@@ -18,6 +18,7 @@
 #include "base/whole_path.hh"
 #include "hal/core/hal.hh"
 #include "machine/config/loaded_config.hh"
+#include "programs/command_words.hh"
 #include "programs/commands.hh"
 #include "programs/setup/configurations.hh"
 #include "programs/setup/select_command.hh"
@@ -203,8 +204,7 @@ int command_launch(const std::vector<std::string> &arguments) {
         return 2;
     }
     catch_stop_signals();
-    diagnostics::Sink sink(
-        [](const diagnostics::Diagnostic &d) { fmt::print(stderr, "{}\n", language::shown(d.str())); });
+    diagnostics::Sink sink = standard_error_sink();
     return launch(words, sink);
 }
 

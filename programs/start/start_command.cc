@@ -9,6 +9,7 @@
 #include "base/options/command_line.hh"
 #include "base/stop_signals.hh"
 #include "machine/config/loaded_config.hh"
+#include "programs/command_words.hh"
 #include "programs/commands.hh"
 #include "programs/start/machine_start.hh"
 
@@ -56,17 +57,11 @@ struct StartWords {
 
 int command_start(const std::vector<std::string> &arguments) {
     StartWords words;
-    if (options::wantsHelp(arguments)) {
-        fmt::print("{}", words.line().help());
-        return 0;
-    }
-    if (const auto parsed = words.parse(arguments); !parsed.has_value()) {
-        fmt::print(stderr, "millwright start: {}\n", language::shown(parsed.error().str()));
-        return 2;
+    if (const auto ended = ended_by_words("start", words, arguments)) {
+        return *ended;
     }
     catch_stop_signals();
-    diagnostics::Sink sink(
-        [](const diagnostics::Diagnostic &d) { fmt::print(stderr, "{}\n", language::shown(d.str())); });
+    diagnostics::Sink sink = standard_error_sink();
     auto loaded = machine::LoadedConfig::load(words.ini, sink);
     if (loaded == nullptr) {
         return 1;
