@@ -11,8 +11,8 @@ namespace mw::campaign {
 namespace {
 
 constexpr double HELD_ROUNDING = 2e-6;  ///< at standstill [units]
-/// Remaining travel in the jerk filter of a motion that seems to have stopped [units].
-constexpr double IN_THE_MEAN = 1e-3;
+/// Travel of a motion that has begun together with the stop [units].
+constexpr double WITH_THE_STOP = 1e-3;
 
 /// Accuracy of the slide position after homing.
 double found_within(const JointDesign &d, double period_s) {
@@ -24,9 +24,9 @@ double found_within(const JointDesign &d, double period_s) {
 
 }  // namespace
 
-/// A stopped axis stays at its position, except rounding, until a motion is commanded. A command that
-/// arrived with the stop may still be in the moving average that limits the jerk: too slow to see at first,
-/// and backlash is compensated where it reverses.
+/// A stopped axis stays at its position, except rounding, until a motion is commanded. With a jerk limit a
+/// command that arrived with the stop is too slow to see at first, and backlash is compensated where it
+/// reverses.
 void Judge::check_stale(const Sample &s, bool wasAtRest) {
     const bool wasHeld = held_cycles_ > 0;
     const bool isHeld = !allowed_.isMotion && restless_ == 0 && (wasAtRest || wasHeld);
@@ -41,8 +41,9 @@ void Judge::check_stale(const Sample &s, bool wasAtRest) {
         const double place = q.motor_place();
         const double held = isKept ? joints_[j].held : isHeld ? before.motor_place() : place;
         joints_[j].held = q.isAmpOn && before.isAmpOn ? held : place;
-        const double mean_part = held_cycles_ <= settling ? IN_THE_MEAN + std::max(d.backlash, d.play) : 0.0;
-        if (isHeld && q.isAmpOn && before.isAmpOn && std::abs(place - held) > HELD_ROUNDING + mean_part) {
+        const double late_part =
+            held_cycles_ <= settling ? WITH_THE_STOP + std::max(d.backlash, d.play) : 0.0;
+        if (isHeld && q.isAmpOn && before.isAmpOn && std::abs(place - held) > HELD_ROUNDING + late_part) {
             fail("stale", fmt::format("joint {} moves without a command since the last stop", j));
         }
     }

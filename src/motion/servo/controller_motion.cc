@@ -31,6 +31,15 @@ RetraceLimits way_limits(const FoldedLimits &limits, const AxisMap &map,
     return {limits, map.areJointsAxes() ? 0 : config.num_led_joints(), config.period_s};
 }
 
+/// Bit per axis that one of the closed locks holds.
+std::uint32_t axes_held(const FoldedLimits &limits, std::uint32_t locked) noexcept {
+    std::uint32_t axes = 0;
+    for (int i = 0; i < MAX_AXES && locked != 0; ++i) {
+        axes |= (limits.axis_locks[static_cast<std::size_t>(i)] & locked) != 0 ? 1U << i : 0U;
+    }
+    return axes;
+}
+
 }  // namespace
 
 TravelRange programmed_range(const Jogs &jogs, const PathLink &link, Mode mode, const geometry::Pose &pose,
@@ -45,9 +54,10 @@ TravelRange programmed_range(const Jogs &jogs, const PathLink &link, Mode mode, 
         PoseRange stops{pose, pose};
         for (int i = 0; i < MAX_AXES; ++i) {
             jogs.at({false, i}).planner.add_reach(out.axes.low[i], out.axes.high[i]);
-            // Jogs stop before joint limits with a margin: offsets must leave this margin to an active jog.
-            stops.low[i] += TELEOP_BRAKE_MARGIN * (out.axes.low[i] - pose[i]);
-            stops.high[i] += TELEOP_BRAKE_MARGIN * (out.axes.high[i] - pose[i]);
+            // A jog may have to stop on a longer way when it gets less of the joints.
+            constexpr double MARGIN = 1.2;
+            stops.low[i] += MARGIN * (out.axes.low[i] - pose[i]);
+            stops.high[i] += MARGIN * (out.axes.high[i] - pose[i]);
         }
         out.joints.include(shared.within(stops));
     }
@@ -164,6 +174,7 @@ void Controller::move_extra_joints(const Inputs &in) noexcept {
 
 geometry::Pose Controller::teleop_pose() noexcept {
     executor_.step(cycle_);
+    const std::uint32_t locked = axes_held(limits_, held(indexers_));
     if (!map_.areJointsAxes()) {
         PerJoint places = commanded(joints_);
         trajectory::JointLimits left = limits_.path_joints;
@@ -175,8 +186,9 @@ geometry::Pose Controller::teleop_pose() noexcept {
                                     config_.num_led_joints(),
                                     holds_.jog_scale(),
                                     config_.period_s,
-                                    kinematics_.side(place_.cmd)};
-        const TeleopStop stopped = limit_teleop(jogs_, machine);
+                                    kinematics_.side(place_.cmd),
+                                    locked};
+        const TeleopStop stopped = step_teleop(jogs_, machine);
         if (stopped.isNew && stopped.joint >= 0) {
             raise(FaultKind::JOG_JOINT_LIMIT, stopped.joint);
         } else if (stopped.isNew) {
@@ -184,14 +196,13 @@ geometry::Pose Controller::teleop_pose() noexcept {
         }
     }
     geometry::Pose pose;
-    const std::uint32_t locked = held(indexers_);
     for (int i = 0; i < MAX_AXES; ++i) {
         Jog &jog = jogs_.at({false, i});
         if (map_.areJointsAxes()) {
             limit_axis(jog, limits_.jog({false, i}).velocity, holds_.jog_scale());
-        }
-        if ((limits_.axis_locks[static_cast<std::size_t>(i)] & locked) == 0) {
-            jog.planner.step(config_.period_s);
+            if ((locked & 1U << i) == 0) {
+                jog.planner.step(config_.period_s);
+            }
         }
         pose[i] = jog.planner.position;
     }

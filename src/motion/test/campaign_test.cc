@@ -186,7 +186,7 @@ class Campaign {
 };
 
 void run_all(bool isJerkLimited) {
-    const auto [first, count] = testing::campaign_seeds(40);
+    const auto [first, count] = testing::campaign_seeds(isJerkLimited ? 16 : 40);
     for (int i = 0; i < count && !::testing::Test::HasFailure(); ++i) {
         const auto seed = static_cast<unsigned>(first + i);
         SCOPED_TRACE("seed " + std::to_string(seed));

@@ -75,7 +75,7 @@ class TargetRun {
             }
             ASSERT_LE(std::abs(p), LIMIT + 1e-9);
         }
-        EXPECT_TRUE(rig_.status().isInPosition);
+        EXPECT_TRUE(rig_.run_until([this] { return rig_.status().isInPosition; }, 60));
         EXPECT_TRUE(checker.isWithin()) << checker.report();
         EXPECT_TRUE(rig_.faults.empty());
     }

@@ -376,7 +376,7 @@ INSTANTIATE_TEST_SUITE_P(WithAndWithoutJerk, LinearOffsetCampaign, ::testing::Bo
 
 TEST_P(LinearOffsetCampaign, NoSampleOfTheSumLeavesALimitOfJointsOrAxes) {
     const char *wanted = std::getenv("MW_OFFSET_SESSIONS");
-    const int sessions = wanted != nullptr ? std::atoi(wanted) : 36;
+    const int sessions = wanted != nullptr ? std::atoi(wanted) : 18;
     const char *first = std::getenv("MW_OFFSET_FIRST");
     const unsigned begin = first != nullptr ? static_cast<unsigned>(std::atoi(first)) : 1U;
     Count count;

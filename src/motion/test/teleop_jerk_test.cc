@@ -257,9 +257,9 @@ TEST(TeleopJerk, AHexapodKeepsJointJerk) {
     jog_smoothly({hexapod, "XYZABC", start, 4}, 1);
 }
 
-/// The limit of the joints is lowered while one axis has its old share and another begins: X brakes slowly,
-/// and Y would be at its new share long before X has come down to that.
-TEST(TeleopJerk, AnAxisTakesItsShareOnceTheOtherIsDownToItsOwn) {
+/// The limit of the joints is lowered while two axes move at the highest speed: they slow down to an even
+/// share.
+TEST(TeleopJerk, AxesShareALimitThatIsLoweredWhileTheyMove) {
     kinematics::CoreXy model;
     MotionRig rig(model, 3, 100, 1000);
     for (int j = 0; j < 3; ++j) {
@@ -275,15 +275,16 @@ TEST(TeleopJerk, AnAxisTakesItsShareOnceTheOtherIsDownToItsOwn) {
     ASSERT_TRUE(rig.run_until([&] { return speed(0) > 90; }, 5));
     rig.send(JogContinuous{{false, 1}, 1000});
     ASSERT_TRUE(rig.run_until([&] { return speed(1) > 0; }, 5));
-    ASSERT_GT(speed(0), 40);
+    EXPECT_EQ(rig.joint_report(), "");
     for (int j = 0; j < 3; ++j) {
         rig.set(Parameter::JOINT_MAX_VELOCITY, j, 60);
     }
-    rig.step(3000);
-    EXPECT_GT(speed(0), 20);
+    rig.step(1000);
+    rig.forgive_joints();
+    rig.step(1000);
+    EXPECT_NEAR(speed(0), 30, 0.01);
     EXPECT_NEAR(speed(1), speed(0), 1e-9) << "an even share";
     EXPECT_EQ(rig.joint_report(), "");
-    rig.forgive_joints();
 }
 
 /// One that comes to its target with all of its acceleration keeps it: the other begins later.
@@ -340,7 +341,7 @@ double least_time_s(double way, double v, double a, double j) {
 }
 
 /// Tower 0 of a delta is across X: its joint hardly moves with X where a jog begins, and a quarter as fast as
-/// X where it stops. The averaging time of the jog, kept from start to stop, has to serve the stop as well.
+/// X where it stops.
 TEST(TeleopJerk, AJogThatBeginsWhereAJointHardlyMovesStopsSoonWhereItDoes) {
     kinematics::LinearDelta delta;
     delta.set(0, 130.25);
@@ -368,9 +369,8 @@ TEST(TeleopJerk, AJogThatBeginsWhereAJointHardlyMovesStopsSoonWhereItDoes) {
     rig.forgive_joints();
 }
 
-/// Along X of a CoreXY both belts do what the axis does, so the least time is known. A jog takes longer by
-/// the time of its mean at most, tau = min(2 A / J, sqrt(2 V / J)), and one that comes to its speed by 42 %.
-TEST(TeleopJerk, AJogOfAStraightJointLineIsNearTheLeastTime) {
+/// Along X of a CoreXY both belts do what the axis does, so the least time is known.
+TEST(TeleopJerk, AJogOfAStraightJointLineTakesTheLeastTime) {
     for (const double acceleration : {200.0, 1000.0, 3000.0}) {
         for (const double per_s : {3.0, 10.0, 50.0}) {
             kinematics::CoreXy model;
@@ -393,11 +393,8 @@ TEST(TeleopJerk, AJogOfAStraightJointLineIsNearTheLeastTime) {
                 }
                 ASSERT_EQ(rig.status().carte_pos_cmd[0], from + way);
                 const double least_s = least_time_s(way, 100, acceleration, jerk);
-                const double mean_s = std::min(2.0 / per_s, std::sqrt(200.0 / jerk));
                 const double slack_s = 0.004 + 1e-3 * least_s;
-                const bool isAtSpeed = way >= 100 * ramp_s(100, acceleration, jerk);
-                const double most_s = least_s + std::min(mean_s, isAtSpeed ? 0.42 * least_s : mean_s);
-                EXPECT_LE(cycles * MotionRig::T, most_s + slack_s)
+                EXPECT_LE(cycles * MotionRig::T, least_s + slack_s)
                     << "a " << acceleration << " j " << jerk << " way " << way << " least " << least_s;
             }
         }

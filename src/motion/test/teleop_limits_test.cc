@@ -24,23 +24,13 @@ using testing::MotionRig;
 
 enum class Model { COREXY, DELTA, TABLE };
 
-/// How far an axis may exceed its limit [mm, degrees]: where joints follow axes along curves an axis that
-/// brakes may have to do with less than it was promised, while others turn about ("Known limits" of
-/// planner.md).
-double beyond(Model model) {
-    switch (model) {
-    case Model::COREXY: return 1e-6;
-    case Model::DELTA: return 1e-4;
-    case Model::TABLE: return 0.15;
-    }
-    return 0;
-}
+constexpr double ROUNDING = 1e-6;  // [mm, degrees]
 
 class JogsNearLimits {
   public:
     JogsNearLimits(const kinematics::Kinematics &model, std::string axes, int joints, bool isSmooth,
-                   double beyond, unsigned seed)
-        : random_(seed), axes_(std::move(axes)), beyond_(beyond), rig_(model, joints, 100, 1000) {
+                   unsigned seed)
+        : random_(seed), axes_(std::move(axes)), rig_(model, joints, 100, 1000) {
         for (int j = 0; j < joints; ++j) {
             const double a = std::pow(10.0, real(2, 3.3));
             rig_.set(Parameter::JOINT_MAX_VELOCITY, j, std::pow(10.0, real(1.5, 2.3)));
@@ -102,8 +92,8 @@ class JogsNearLimits {
         for (std::size_t i = 0; i < axes_.size(); ++i) {
             const int axis = geometry::axis_of_letter(axes_[i]);
             const double at = rig_.status().carte_pos_cmd[axis];
-            EXPECT_GE(at, low_[i] - beyond_) << axes_[i] << " in cycle " << n;
-            EXPECT_LE(at, high_[i] + beyond_) << axes_[i] << " in cycle " << n;
+            EXPECT_GE(at, low_[i] - ROUNDING) << axes_[i] << " in cycle " << n;
+            EXPECT_LE(at, high_[i] + ROUNDING) << axes_[i] << " in cycle " << n;
             way += n > 0 ? std::abs(at - last_[i]) : 0.0;
             last_[i] = at;
         }
@@ -115,7 +105,6 @@ class JogsNearLimits {
 
     std::mt19937 random_;
     std::string axes_;
-    double beyond_;
     MotionRig rig_;
     std::vector<double> low_, high_;
     std::array<double, MAX_AXES> last_{};
@@ -138,7 +127,7 @@ TEST_P(TeleopLimits, AreKeptWhileSeveralAxesAreJogged) {
     const auto [first, count] = testing::campaign_seeds(10);
     for (int i = 0; i < count && !HasFailure(); ++i) {
         SCOPED_TRACE("seed " + std::to_string(first + i));
-        JogsNearLimits(model, hasRotary ? "XYZAC" : "XYZ", hasRotary ? 5 : 3, isSmooth, beyond(which),
+        JogsNearLimits(model, hasRotary ? "XYZAC" : "XYZ", hasRotary ? 5 : 3, isSmooth,
                        static_cast<unsigned>(first + i))
             .run();
     }

@@ -258,8 +258,8 @@ class AskedKinematics final : public kinematics::Kinematics {
     kinematics::CoreXy model_;
 };
 
-/// What that costs is paid once, and no place out there matters to an axis that has its mean.
-TEST(Teleop, OnlyAJogThatBeginsIsLookedAtWhereItIsSent) {
+/// The edge of the workspace beyond the place where it can stop does not matter to a jog.
+TEST(Teleop, JointsAreExaminedNearAJogOnly) {
     constexpr double SENT = 400, NEAR = 20;
     AskedKinematics model;
     MotionRig rig(model, 3, 100, 1000);
@@ -272,9 +272,6 @@ TEST(Teleop, OnlyAJogThatBeginsIsLookedAtWhereItIsSent) {
     rig.ready(Mode::TELEOP);
     model.farthest = 0;
     rig.send(JogAbsolute{{false, geometry::AXIS_X}, 50, SENT});
-    rig.step();
-    EXPECT_GT(model.farthest, SENT - 1);
-    model.farthest = 0;
     rig.step(500);
     EXPECT_GT(rig.status().carte_pos_cmd[0], NEAR);
     EXPECT_LT(model.farthest, rig.status().carte_pos_cmd[0] + NEAR);

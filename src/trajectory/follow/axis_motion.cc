@@ -3,29 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace mw::trajectory {
 
-double stop_position(double position, double velocity, double acceleration) noexcept {
-    return acceleration > 0 ? position + velocity * std::abs(velocity) / (2.0 * acceleration) : position;
-}
-
-void AxisMotion::stop() noexcept {
-    const double place = stop_position(position, velocity, max_acceleration);
-    // Who brakes to its target already comes to it, whatever whole cycles make of the way.
-    constexpr double CYCLES = 1e-3;
-    const bool isBehind = std::abs(place - target) <= CYCLES * std::abs(place - position) &&
-                          std::abs(place - position) > std::abs(target - position);
-    if (!isBehind) {
-        target = brake_target_ = place;
-        isBraking_ = velocity != 0.0;
-    }
-}
-
 namespace {
 
-/// Moves on with constant acceleration for at most `span`; returns the time left of dt.
+/// Part of a cycle below which a motion has ended: two that brake together end in the same cycle.
+constexpr double TIME_ROUNDING = 1e-9;
+
+/// Moves with constant acceleration for at most `span`; returns the time left of dt.
 double go(double &p, double &v, double a, double span, double dt) noexcept {
     const double t = std::clamp(span, 0.0, dt);
     p += t * (v + 0.5 * a * t);
@@ -33,35 +19,175 @@ double go(double &p, double &v, double a, double span, double dt) noexcept {
     return dt - t;
 }
 
-}  // namespace
-
-/// The acceleration that brakes to the target where `a` would lead beyond it by what rounding of `a` from
-/// cycle to cycle makes of the way: at a soft limit that is beyond the limit.
+/// The acceleration that brakes to the target where `a` would pass it by rounding: at a soft limit that is
+/// beyond the limit.
 double fitted(double a, double way, double velocity) noexcept {
-    constexpr double ROUNDING = 1e-5;
+    constexpr double ROUNDING = 1e-9;
     const double needed = way * velocity > 0 ? 0.5 * velocity * velocity / std::abs(way) : 0.0;
     return needed > a && needed <= a * (1.0 + ROUNDING) ? needed : a;
 }
 
-/// Where it ends follows from what it may do on the way: were the place kept, less acceleration would lead
-/// beyond it, and a place that is asked for anew in every cycle would never be braked for.
+/// Distance of the change from a speed without acceleration to standstill.
+double braking_distance(double v, double acceleration, double jerk) noexcept {
+    const double time = v * jerk > acceleration * acceleration ? v / acceleration + acceleration / jerk
+                                                               : 2 * std::sqrt(v / jerk);
+    return 0.5 * v * time;
+}
+
+/// The fastest motion over a distance that ends at standstill: to a speed, at that speed, to standstill. The
+/// direction of the motion is the positive one.
+struct WayPlan {
+    SpeedChange to_speed;
+    double speed = 0, cruise_s = 0;
+    SpeedChange to_rest;
+};
+
+WayPlan plan_way(const MotionState &from, double way, const MotionLimits &limits) noexcept {
+    const auto distance = [&](double v) {
+        return speed_change(from, v, limits.acceleration, limits.jerk).distance +
+               braking_distance(v, limits.acceleration, limits.jerk);
+    };
+    double speed = limits.velocity;
+    double left = way - distance(speed);
+    if (left < 0) {
+        // Above the speed that it would settle at, the distance increases with the speed. Below, it brakes
+        // less than it could.
+        const double settled = std::clamp(settled_speed(from, limits.jerk), 0.0, limits.velocity);
+        const bool isAbove = distance(settled) <= way;
+        const double low = isAbove ? settled : 0.0;
+        const double span = (isAbove ? limits.velocity : settled) - low;
+        // By the cube root, since a short way needs a speed that is small to the last digit.
+        const auto at = [&](double root) { return low + span * root * root * root; };
+        speed = at(highest_allowed(0.0, 1.0, [&](double root) { return distance(at(root)) <= way; }));
+        left = std::max(0.0, way - distance(speed));
+    }
+    WayPlan out;
+    out.to_speed = speed_change(from, speed, limits.acceleration, limits.jerk);
+    out.speed = speed;
+    out.cruise_s = speed > 0 ? left / speed : 0.0;
+    out.to_rest = speed_change({0, speed, 0}, 0, limits.acceleration, limits.jerk);
+    return out;
+}
+
+/// When the velocity is 0 in this part, at whose ends it has different signs: j t^2 / 2 + a t + v = 0.
+double time_to_turn(const MotionState &from, const SpeedChange::Part &part) noexcept {
+    const double root = std::sqrt(std::max(0.0, from.a * from.a - 2 * part.jerk * from.v));
+    for (const double side : {1.0, -1.0}) {
+        const double divisor = from.a + side * root;
+        const double t = divisor != 0 ? -2 * from.v / divisor : -1.0;
+        if (t >= 0 && t <= part.duration) {
+            return t;
+        }
+    }
+    return part.duration;
+}
+
+/// Follows the change for at most `left`; returns the time that is left.
+double follow(MotionState &state, const SpeedChange &change, double left) noexcept {
+    for (const SpeedChange::Part &part : change.parts) {
+        const double t = std::min(part.duration, left);
+        state = state.after(part.jerk, t);
+        left -= t;
+        if (!(left > 0)) {
+            return 0;
+        }
+    }
+    state.a = 0;
+    return left;
+}
+
+}  // namespace
+
+SpeedChange AxisMotion::stopping() const noexcept {
+    if (max_jerk > 0 && max_acceleration > 0) {
+        return speed_change({0, velocity, acceleration}, 0, max_acceleration, max_jerk);
+    }
+    SpeedChange out;
+    out.duration = max_acceleration > 0 ? std::abs(velocity) / max_acceleration : 0.0;
+    out.distance = 0.5 * velocity * out.duration;
+    return out;
+}
+
+double AxisMotion::rest() const noexcept {
+    return position + stopping().distance;
+}
+
+void AxisMotion::add_reach(double &low, double &high) const noexcept {
+    add_stop(low, high);
+    low = std::min(low, target);
+    high = std::max(high, target);
+}
+
+void AxisMotion::add_stop(double &low, double &high) const noexcept {
+    const SpeedChange stop = stopping();
+    const auto add = [&](double place) {
+        low = std::min(low, place);
+        high = std::max(high, place);
+    };
+    add(position);
+    add(position + stop.distance);
+    // With an acceleration against its velocity it may turn before that.
+    MotionState state{position, velocity, acceleration};
+    for (const SpeedChange::Part &part : stop.parts) {
+        const MotionState next = state.after(part.jerk, part.duration);
+        if (state.v * next.v < 0) {
+            add(state.after(part.jerk, time_to_turn(state, part)).x);
+        }
+        state = next;
+    }
+}
+
+void AxisMotion::end_at(double place) noexcept {
+    position = place;
+    velocity = acceleration = 0;
+}
+
+void AxisMotion::stop() noexcept {
+    const double place = rest();
+    // A motion that already brakes to its target reaches it, whatever rounding makes of the distance.
+    constexpr double CYCLES = 1e-3;
+    const bool isBehind = std::abs(place - target) <= CYCLES * std::abs(place - position) &&
+                          std::abs(place - position) > std::abs(target - position);
+    if (!isBehind) {
+        target = brake_target_ = place;
+        isBraking_ = velocity != 0.0 || acceleration != 0.0;
+    }
+}
+
+/// Where it ends follows from its limits on the way: if the place were kept, less acceleration would pass it,
+/// and a place that is requested anew in every cycle would never be braked for.
 void AxisMotion::brake(double dt) noexcept {
-    const double sign = velocity < 0 ? -1.0 : 1.0;
-    double p = 0;
-    double v = std::abs(velocity);
-    // Not a cycle more for what rounding leaves: two that brake together rest together.
-    constexpr double ROUNDING = 1e-9;
-    const double left = go(p, v, -max_acceleration, v / max_acceleration, dt);
-    const bool isOver = left > 0 || v <= ROUNDING * max_acceleration * dt;
-    position += sign * p;
-    velocity = isOver ? 0.0 : sign * v;
-    target = brake_target_ = stop_position(position, velocity, max_acceleration);
-    isBraking_ = velocity != 0.0;
+    bool isOver = false;
+    if (max_jerk > 0) {
+        const SpeedChange stop = stopping();
+        MotionState state{0, velocity, acceleration};
+        isOver = stop.duration <= dt * (1.0 + TIME_ROUNDING);
+        follow(state, stop, dt);
+        position += isOver ? stop.distance : state.x;
+        velocity = state.v;
+        acceleration = state.a;
+    } else {
+        const double sign = velocity < 0 ? -1.0 : 1.0;
+        double p = 0;
+        double v = std::abs(velocity);
+        const double left = go(p, v, -max_acceleration, v / max_acceleration, dt);
+        isOver = left > 0 || v <= TIME_ROUNDING * max_acceleration * dt;
+        position += sign * p;
+        velocity = sign * v;
+        acceleration = 0;
+    }
+    if (isOver) {
+        end_at(position);
+    }
+    target = brake_target_ = rest();
+    isBraking_ = !isOver;
 }
 
 void AxisMotion::step(double dt) noexcept {
     if (!(max_acceleration > 0) || isAtRest()) {
-        velocity = max_acceleration > 0 ? velocity : 0.0;
+        if (!(max_acceleration > 0)) {
+            velocity = acceleration = 0;
+        }
         return;
     }
     isBraking_ = isBraking_ && target == brake_target_;
@@ -69,133 +195,67 @@ void AxisMotion::step(double dt) noexcept {
         brake(dt);
         return;
     }
+    max_jerk > 0 ? step_with_jerk(dt) : step_without_jerk(dt);
+    // What stands still and may not move is at its target if only rounding of the distance is left: otherwise
+    // it would never be at rest.
+    constexpr double ROUNDING = 1e-7;
+    const bool isStill = velocity == 0.0 && acceleration == 0.0;
+    if (isStill && std::abs(target - position) <= ROUNDING * max_acceleration * dt * dt) {
+        position = target;
+    }
+}
+
+void AxisMotion::step_with_jerk(double dt) noexcept {
+    const double way = target - position;
+    const double side = way >= stopping().distance ? 1.0 : -1.0;
+    MotionState state{0, side * velocity, side * acceleration};
+    const WayPlan plan =
+        plan_way(state, side * way, {std::max(0.0, max_velocity), max_acceleration, max_jerk});
+    const double time = plan.to_speed.duration + plan.cruise_s + plan.to_rest.duration;
+    if (max_velocity > 0 && time <= dt * (1.0 + TIME_ROUNDING)) {
+        end_at(target);
+        return;
+    }
+    double left = follow(state, plan.to_speed, dt);
+    if (left > 0) {
+        state.v = plan.speed;
+        const double cruise = std::min(left, plan.cruise_s);
+        state.x += plan.speed * cruise;
+        follow(state, plan.to_rest, left - cruise);
+    }
+    position += side * state.x;
+    velocity = side * state.v;
+    acceleration = side * state.a;
+}
+
+void AxisMotion::step_without_jerk(double dt) noexcept {
+    acceleration = 0;
     const double a = fitted(max_acceleration, target - position, velocity);
-    // Turned so that the target lies beyond the place where braking now would lead.
-    const double sign = target >= stop_position(position, velocity, a) ? 1.0 : -1.0;
+    // Turned so that the target lies beyond the place where braking now would end.
+    const double rest = position + velocity * std::abs(velocity) / (2.0 * a);
+    const double sign = target >= rest ? 1.0 : -1.0;
     const double d = (target - position) * sign;
     double p = 0;
     double v = velocity * sign;
     double left = dt;
     const double rise2 = a * d + 0.5 * v * v;
     const double peak = std::min(std::max(0.0, max_velocity), std::sqrt(std::max(0.0, rise2)));
-    if (v > peak) {
-        left = go(p, v, -a, (v - peak) / a, left);
-    } else {
-        left = go(p, v, a, (peak - v) / a, left);
-    }
+    left = v > peak ? go(p, v, -a, (v - peak) / a, left) : go(p, v, a, (peak - v) / a, left);
     if (left > 0) {
         v = peak;
-        const double brake = peak * peak / (2.0 * a);
-        const double cruise = peak > 0 ? std::max(0.0, (d - p - brake) / peak) : left;
+        const double braking = peak * peak / (2.0 * a);
+        const double cruise = peak > 0 ? std::max(0.0, (d - p - braking) / peak) : left;
         left = go(p, v, 0, cruise, left);
         if (left > 0) {
             left = go(p, v, -a, peak / a, left);
             if (left > 0) {
-                position = target;
-                velocity = 0;
+                end_at(target);
                 return;
             }
         }
     }
     position += p * sign;
     velocity = v * sign;
-    // Who comes to rest and may not go on is there, whatever rounding of the way leaves: else it never rests.
-    constexpr double ROUNDING = 1e-7;
-    const bool isThere = velocity == 0.0 && std::abs(target - position) <= ROUNDING * a * dt * dt;
-    position = isThere ? target : position;
-}
-
-void AxisTrajectory::stop() noexcept {
-    if (length_ <= 1) {
-        AxisMotion::stop();
-        return;
-    }
-    leader_.max_acceleration = std::min(max_acceleration, most_acceleration_);
-    leader_.stop();
-    target = leader_.target;
-}
-
-double AxisTrajectory::rest_after(double dt) const noexcept {
-    const AxisMotion &p = length_ > 1 ? static_cast<const AxisMotion &>(leader_) : *this;
-    const double a = p.max_acceleration > 0 ? p.max_acceleration : max_acceleration;
-    const double sign = target >= p.position ? 1.0 : -1.0;
-    const double v = p.velocity + sign * a * dt;
-    const double rest = stop_position(p.position + v * dt, v, a);
-    // No farther than where it is going anyway.
-    const double now = stop_position(p.position, p.velocity, a);
-    return sign > 0 ? std::min(rest, std::max(target, now)) : std::max(rest, std::min(target, now));
-}
-
-void AxisTrajectory::add_reach(double &low, double &high) const noexcept {
-    const auto add = [&](double place) {
-        low = std::min(low, place);
-        high = std::max(high, place);
-    };
-    add(position);
-    add(target);
-    if (length_ <= 1) {
-        add(stop_position(position, velocity, max_acceleration));
-        return;
-    }
-    add(stop_position(leader_.position, leader_.velocity, leader_.max_acceleration));
-    for (std::uint32_t n = 0; n < length_; ++n) {
-        add(origin_ + way_[n]);
-    }
-}
-
-/// From rest: the mean is as long as the acceleration needs to turn about.
-void AxisTrajectory::begin(double dt) noexcept {
-    const double samples =
-        std::ceil((mean_s > 0 ? mean_s / dt : 2.0 * max_acceleration / (max_jerk * dt)) - 1e-9);
-    length_ = static_cast<std::uint32_t>(std::clamp(samples, 2.0, static_cast<double>(MOST_SAMPLES)));
-    jerk_ = max_jerk > 0 ? max_jerk : std::numeric_limits<double>::infinity();
-    most_acceleration_ = 0.5 * jerk_ * length_ * dt;
-    leader_.reset(position);
-    origin_ = position;
-    way_.fill(0.0);
-    sum_ = 0;
-    rest_ = 0;
-    next_ = 0;
-    standing_ = 0;
-}
-
-/// Adds without losing what a double cannot hold (two-sum).
-void AxisTrajectory::add(double x) noexcept {
-    const double s = sum_ + x;
-    const double back = s - sum_;
-    rest_ += (sum_ - (s - back)) + (x - back);
-    sum_ = s;
-}
-
-void AxisTrajectory::step(double dt) noexcept {
-    const bool isSmooth = max_jerk > 0 || mean_s > 0;
-    const bool isBeginning = length_ <= 1 && isSmooth && max_acceleration > 0 && velocity == 0.0;
-    if (isBeginning && position != target) {
-        begin(dt);
-    }
-    if (length_ <= 1) {
-        AxisMotion::step(dt);
-        return;
-    }
-    leader_.target = target;
-    leader_.max_velocity = max_velocity;
-    leader_.max_acceleration = std::min(max_acceleration, most_acceleration_);
-    const double leader_before = leader_.position;
-    leader_.step(dt);
-    target = leader_.target;  // who brakes is told where that leads
-    const double way = leader_.position - origin_;
-    add(way);
-    add(-way_[next_]);
-    way_[next_] = way;
-    next_ = next_ + 1 == length_ ? 0 : next_ + 1;
-    // At the end of every cycle it rests also while it is sent a little on in each.
-    const bool isOn = leader_.position != leader_before;
-    standing_ = !leader_.isAtRest() ? 0 : isOn ? 1 : standing_ + 1;
-    const double before = position;
-    const bool isOver = standing_ >= length_;
-    position = isOver ? target : origin_ + (sum_ + rest_) / length_;
-    velocity = isOver ? 0.0 : (position - before) / dt;
-    length_ = isOver ? 1 : length_;
 }
 
 }  // namespace mw::trajectory

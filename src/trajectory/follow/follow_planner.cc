@@ -2,76 +2,155 @@
 #include "trajectory/follow/follow_planner.hh"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-
-#include "trajectory/follow/speed_within.hh"
 
 namespace mw::trajectory {
 
-void FollowPlanner::reset(double at, const FollowLimits &limits, double dt) noexcept {
-    position_ = leader_ = wanted_ = at;
-    velocity_ = leader_speed_ = 0;
-    const bool hasJerk = limits.jerk > 0 && limits.acceleration > 0;
-    const double samples = hasJerk ? std::ceil(2.0 * limits.acceleration / (limits.jerk * dt) - 1e-9) : 1.0;
-    length_ = static_cast<std::uint32_t>(std::clamp(samples, 1.0, static_cast<double>(MOST_SAMPLES)));
-    way_.fill(at);
-    next_ = 0;
-    still_ = length_;
+namespace {
+
+/// Rounding of a place.
+constexpr double ROUNDING = 1e-10;
+
+void limit(AxisMotion &motion, const FollowLimits &limits) noexcept {
+    motion.max_velocity = limits.velocity;
+    motion.max_acceleration = limits.acceleration;
+    motion.max_jerk = limits.jerk;
 }
 
-/// A mean over so many samples swings its acceleration by at most twice that of the leader meanwhile.
-double FollowPlanner::acceleration_of(const FollowLimits &limits, double dt) const noexcept {
-    return limits.jerk > 0 ? std::min(limits.acceleration, 0.5 * limits.jerk * length_ * dt)
-                           : limits.acceleration;
+/// The speed that a stop from here has once its acceleration has fallen to 0.
+double settled(const AxisMotion &motion) noexcept {
+    return motion.max_jerk > 0 ? settled_speed({0, motion.velocity, motion.acceleration}, motion.max_jerk)
+                               : motion.velocity;
 }
 
-/// The leader moves at `speed`, as far as it can.
-void FollowPlanner::lead(double speed, const FollowLimits &limits, double dt) noexcept {
-    const double step = acceleration_of(limits, dt) * dt;
-    const double most = std::clamp(speed_within(limits.high - leader_, step, dt), 0.0, limits.velocity);
-    const double least = -std::clamp(speed_within(leader_ - limits.low, step, dt), 0.0, limits.velocity);
-    const double kept = std::clamp(speed, least, most);
-    leader_speed_ = std::clamp(kept, leader_speed_ - step, leader_speed_ + step);
-    leader_ += leader_speed_ * dt;
+/// The stop from here keeps the velocity and the range, or exceeds them no more than that from `before`.
+bool hasStop(const AxisMotion &motion, const AxisMotion &before, const FollowLimits &limits) noexcept {
+    if (std::abs(settled(motion)) > std::max(limits.velocity, std::abs(settled(before))) * (1.0 + 1e-9)) {
+        return false;
+    }
+    double low = std::min(limits.low, before.position);
+    double high = std::max(limits.high, before.position);
+    before.add_stop(low, high);
+    double least = motion.position;
+    double most = motion.position;
+    motion.add_stop(least, most);
+    return least >= low - ROUNDING && most <= high + ROUNDING;
+}
+
+}  // namespace
+
+void FollowPlanner::reset(double at) noexcept {
+    motion_.reset(at);
+    wanted_ = at;
+    wanted_velocity_ = velocity_ = acceleration_ = 0;
+}
+
+void FollowPlanner::shift(double by) noexcept {
+    motion_.renumber(motion_.position + by, by);
+    wanted_ += by;
 }
 
 void FollowPlanner::follow(double wanted, const FollowLimits &limits, double dt) noexcept {
     if (!(limits.acceleration > 0) || !(limits.velocity > 0)) {
-        velocity_ = leader_speed_ = 0;
+        reset(motion_.position);
         return;
     }
-    const double to = std::clamp(wanted, std::min(limits.low, leader_), std::max(limits.high, leader_));
-    const double moved = (to - wanted_) / dt;
-    // What moves faster than the coordinate can has stepped: it stands where it is now.
-    const double its_speed = std::abs(moved) <= limits.velocity ? moved : 0.0;
-    const double lag = to - its_speed * dt - leader_;
-    const double step = acceleration_of(limits, dt) * dt;
-    lead(its_speed + std::copysign(speed_within(std::abs(lag), step, dt), lag), limits, dt);
-    constexpr double ROUNDING = 1e-9;  // of a step of acceleration
-    leader_ = std::abs(leader_ - to) <= ROUNDING * step * dt ? to : leader_;
-    wanted_ = to;
-    take(dt);
+    limit(motion_, limits);
+    const double before = motion_.position;
+    const double place = std::clamp(wanted, std::min(limits.low, before), std::max(limits.high, before));
+    const Wanted now = wanted_at(place, limits, dt);
+    if (!take(now, limits, dt) && !pursue(now, limits, dt)) {
+        // From a stop within the range it moves to a place within the range.
+        motion_.target = place;
+        motion_.step(dt);
+    }
+    wanted_velocity_ = now.velocity;
+    wanted_ = place;
+    record(before, dt);
+}
+
+/// What moves faster than the coordinate can has jumped. What accelerates faster is seen as if it did not.
+FollowPlanner::Wanted FollowPlanner::wanted_at(double place, const FollowLimits &limits,
+                                               double dt) const noexcept {
+    constexpr double SHARE = 0.5;  // of the acceleration; the other is for catching up
+    const double moved = (place - wanted_) / dt;
+    const double velocity = std::abs(moved) <= limits.velocity ? moved : 0.0;
+    const double rise = (velocity - wanted_velocity_) / dt;
+    return {place, velocity, std::abs(rise) <= SHARE * limits.acceleration ? rise : 0.0};
+}
+
+void FollowPlanner::record(double before, double dt) noexcept {
+    const double velocity = (motion_.position - before) / dt;
+    acceleration_ = (velocity - velocity_) / dt;
+    velocity_ = velocity;
+}
+
+/// There at once, if the samples keep the limits and can follow the place from there.
+bool FollowPlanner::take(const Wanted &wanted, const FollowLimits &limits, double dt) noexcept {
+    const double place = wanted.place;
+    const double v = (place - motion_.position) / dt;
+    // With the velocity of the place in the next cycle, and its acceleration after that.
+    const std::array<double, 4> a{acceleration_, (v - velocity_) / dt,
+                                  (wanted.velocity - v) / dt + wanted.acceleration, wanted.acceleration};
+    constexpr double SLACK = 1.0 + 1e-9;
+    bool isWithin = std::abs(v) <= limits.velocity * SLACK;
+    for (std::size_t n = 1; n < a.size(); ++n) {
+        isWithin = isWithin && std::abs(a[n]) <= limits.acceleration * SLACK &&
+                   (!(limits.jerk > 0) || std::abs(a[n] - a[n - 1]) <= limits.jerk * dt * SLACK);
+    }
+    if (!isWithin) {
+        return false;
+    }
+    AxisMotion next = motion_;
+    next.position = next.target = place;
+    // The difference of two samples is the velocity between them.
+    next.velocity = v + 0.5 * a[1] * dt;
+    next.acceleration = limits.jerk > 0 ? a[1] : 0.0;
+    if (v == 0.0 && wanted.velocity == 0.0) {
+        next.velocity = next.acceleration = 0;
+    }
+    if (!hasStop(next, motion_, limits)) {
+        return false;
+    }
+    motion_ = next;
+    return true;
+}
+
+/// Seen from the place, as it moves and accelerates now, it moves to standstill there.
+bool FollowPlanner::pursue(const Wanted &wanted, const FollowLimits &limits, double dt) noexcept {
+    const double bend = limits.jerk > 0 ? wanted.acceleration : 0.0;
+    const double place = wanted.place;
+    const double speed = wanted.velocity;
+    AxisMotion relative = motion_;
+    relative.position = motion_.position - (place - speed * dt);
+    relative.velocity = motion_.velocity - (speed - 0.5 * bend * dt);
+    relative.acceleration = motion_.acceleration - bend;
+    relative.target = 0;
+    const double ahead = relative.rest() < 0 ? 1.0 : -1.0;  // direction of the way to the place
+    relative.max_velocity = std::max(0.0, limits.velocity - speed * ahead);
+    relative.max_acceleration = limits.acceleration - std::abs(bend);
+    relative.step(dt);
+    AxisMotion next = motion_;
+    next.position = place + relative.position;
+    next.velocity = relative.velocity + speed + 0.5 * bend * dt;
+    next.acceleration = relative.acceleration + bend;
+    next.target = place;
+    if (!hasStop(next, motion_, limits)) {
+        return false;
+    }
+    motion_ = next;
+    return true;
 }
 
 void FollowPlanner::brake(const FollowLimits &limits, double dt) noexcept {
-    if (limits.acceleration > 0) {
-        lead(0, limits, dt);
-    }
-    wanted_ = leader_;
-    take(dt);
-}
-
-void FollowPlanner::take(double dt) noexcept {
-    way_[next_] = leader_;
-    next_ = next_ + 1 >= length_ ? 0 : next_ + 1;
-    double sum = 0;
-    for (std::uint32_t n = 0; n < length_; ++n) {
-        sum += way_[n] - leader_;
-    }
-    const double before = position_;
-    position_ = leader_ + sum / length_;
-    velocity_ = (position_ - before) / dt;
-    still_ = velocity_ == 0.0 && leader_speed_ == 0.0 ? std::min(still_ + 1, length_) : 0;
+    const double before = motion_.position;
+    limit(motion_, limits);
+    motion_.stop();
+    motion_.step(dt);
+    wanted_ = motion_.position;
+    wanted_velocity_ = 0;
+    record(before, dt);
 }
 
 }  // namespace mw::trajectory

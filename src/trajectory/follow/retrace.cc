@@ -117,7 +117,7 @@ void Retrace::stop(double dt) noexcept {
     way_.add_reach(oldest, newest);
     const Use use =
         most_between(static_cast<std::int64_t>(-newest / dt), static_cast<std::int64_t>(-oldest / dt));
-    const double rate = std::min(HIGHEST_RATE, std::abs(way_.leader().velocity));
+    const double rate = std::min(HIGHEST_RATE, std::abs(way_.velocity));
     way_.max_acceleration = change_of_rate(use, rate);
     way_.stop();
 }

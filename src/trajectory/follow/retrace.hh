@@ -60,8 +60,8 @@ class Retrace {
     std::uint64_t count_ = 0;  ///< recorded since clear()
     std::uint64_t standing_ = 0;
     bool isAway_ = false;
-    double change_ = 0;   ///< of the rate, that all samples allow [1/s]
-    AxisTrajectory way_;  ///< recorded time from where the path was left: 0 and below [s]
+    double change_ = 0;  ///< of the rate, that all samples allow [1/s]
+    AxisMotion way_;     ///< recorded time from where the path was left: 0 and below [s]
 };
 
 }  // namespace mw::trajectory

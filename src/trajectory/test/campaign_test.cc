@@ -93,7 +93,7 @@ TEST(Campaign, AProgramAtRestThatNeedsManyAttemptsGoesOn) {
 }
 
 TEST(Campaign, RandomProgramsKeepJerkLimits) {
-    check_all(true, Kind::RANDOM, 20);
+    check_all(true, Kind::RANDOM, 8);
 }
 
 TEST(Campaign, DenseCurvesKeepLimitsToleranceAndOrder) {
@@ -101,7 +101,7 @@ TEST(Campaign, DenseCurvesKeepLimitsToleranceAndOrder) {
 }
 
 TEST(Campaign, DenseCurvesKeepJerkLimits) {
-    check_all(true, Kind::CURVE, 40);
+    check_all(true, Kind::CURVE, 12);
 }
 
 }  // namespace

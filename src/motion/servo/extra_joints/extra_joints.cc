@@ -47,7 +47,7 @@ ExtraJointEvents step(ExtraJoints &extra, const ExtraJointInputs &in) noexcept {
         const bool isTakenOver = joint.state == Following::NONE;
         joint.state = next(joint, isChanged, in.period_s);
         if (isTakenOver) {  // the move before may have ended within this cycle
-            joint.planner.reset(in.positions[n], limits, in.period_s);
+            joint.planner.reset(in.positions[n]);
             joint.isLimitTold = false;
             continue;
         }
@@ -68,7 +68,7 @@ void switch_on(ExtraJoints &extra, const ExtraJointInputs &in) noexcept {
         const auto n = static_cast<std::size_t>(j);
         ExtraJoint &joint = extra.joint[n];
         const double pin = in.pins[n].posthome_cmd;
-        joint.planner.reset(in.positions[n], limits_of(in.limits, n), in.period_s);
+        joint.planner.reset(in.positions[n]);
         joint.pin = std::isfinite(pin) ? pin : joint.pin;
         joint.state = (in.homed >> j & 1U) != 0 ? Following::READY : Following::NONE;
         joint.isLimitTold = false;

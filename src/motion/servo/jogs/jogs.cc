@@ -31,14 +31,6 @@ JogTarget target_of_bit(int bit) noexcept {
     return {bit < MAX_JOINTS, bit < MAX_JOINTS ? bit : bit - MAX_JOINTS};
 }
 
-/// At most the time in which a joint or axis reaches its maximum speed soonest: V / a + 2 a / J has its
-/// minimum at sqrt(2 V / J).
-double mean_for(const JogLimits &most) noexcept {
-    return most.jerk > 0
-               ? std::min(2.0 * most.acceleration, std::sqrt(2.0 * most.velocity * most.jerk)) / most.jerk
-               : 0.0;
-}
-
 /// False once the jog has stopped.
 bool isJogged(Jog &jog) noexcept {
     if (jog.source == JogSource::NONE) [[likely]] {
@@ -57,8 +49,8 @@ struct JogMove {
 
 /// A stop uses the full acceleration.
 void brake(Jog &jog) noexcept {
-    if (jog.brake_acceleration > jog.wanted_acceleration) {
-        jog.wanted_acceleration = jog.brake_acceleration;
+    if (jog.brake_acceleration > jog.wanted.acceleration) {
+        jog.wanted.acceleration = jog.brake_acceleration;
         jog.planner.max_acceleration = jog.brake_acceleration;
     }
     jog.planner.stop();
@@ -70,7 +62,7 @@ Reason start(Jogs &jogs, const JogTarget &target, const JogMove &move, const Jog
         return Reason::NOT_A_NUMBER;
     }
     Jog &jog = jogs.at(target);
-    trajectory::AxisTrajectory &p = jog.planner;
+    trajectory::AxisMotion &p = jog.planner;
     // From outside the limits a move may go back in, but not further out.
     const double low = std::min(s.range.low, p.position);
     const double high = std::max(s.range.high, p.position);
@@ -78,13 +70,13 @@ Reason start(Jogs &jogs, const JogTarget &target, const JogMove &move, const Jog
         return Reason::BEYOND_SOFT_LIMIT;
     }
     p.target = std::clamp(move.position, low, high);
-    p.max_velocity = std::min(std::abs(move.velocity), s.most.velocity);
-    p.max_acceleration = s.most.acceleration;
-    p.max_jerk = s.most.jerk;
-    p.mean_s = mean_for(s.most);
-    jog.wanted_velocity = p.max_velocity;
-    jog.wanted_acceleration = p.max_acceleration;
-    jog.brake_acceleration = p.max_acceleration;
+    jog.wanted = {std::min(std::abs(move.velocity), s.most.velocity), s.most.acceleration, s.most.jerk};
+    if (!s.isShared) {
+        p.max_velocity = jog.wanted.velocity;
+        p.max_acceleration = jog.wanted.acceleration;
+        p.max_jerk = jog.wanted.jerk;
+    }
+    jog.brake_acceleration = jog.wanted.acceleration;
     jog.most_velocity = UNBOUNDED;
     jog.source = move.source;
     jogs.leased &= ~bit_of(target);
@@ -116,8 +108,8 @@ bool isRenewable(const Jogs &jogs, const JogContinuous &command) noexcept {
 /// The jog keeps its target, so a jog that is stopped at a limit stays there.
 void renew(Jogs &jogs, const JogContinuous &command, const JogSituation &s) noexcept {
     Jog &jog = jogs.at(command.target);
-    trajectory::AxisTrajectory &p = jog.planner;
-    jog.wanted_velocity = std::min(std::abs(command.velocity), s.most.velocity);
+    trajectory::AxisMotion &p = jog.planner;
+    jog.wanted.velocity = std::min(std::abs(command.velocity), s.most.velocity);
     p.target = std::clamp(p.target, std::min(s.range.low, p.position), std::max(s.range.high, p.position));
     begin_lease(jogs, command, s.time_ns);
 }
@@ -293,7 +285,7 @@ JogTarget end_lease(Jogs &jogs, std::int64_t time_ns) noexcept {
 }
 
 void keep_within(Jog &jog, const JogRange &range) noexcept {
-    trajectory::AxisTrajectory &p = jog.planner;
+    trajectory::AxisMotion &p = jog.planner;
     if (p.isAtRest()) {
         return;
     }
@@ -319,7 +311,7 @@ void stop(Jogs &jogs) noexcept {
 void stop_at_once(Jogs &jogs) noexcept {
     jogs.leased = 0;
     for (int j = 0; j < jogs.num_joints; ++j) {
-        trajectory::AxisTrajectory &p = jogs.joint[at(j)].planner;
+        trajectory::AxisMotion &p = jogs.joint[at(j)].planner;
         p.reset(p.position);
     }
     for (Jog &jog : jogs.axis) {
@@ -403,17 +395,19 @@ void jog_by_wheel(Jogs &jogs, const JogTarget &target, double distance, const Wh
         return;
     }
     Jog &jog = jogs.at(target);
-    trajectory::AxisTrajectory &p = jog.planner;
+    trajectory::AxisMotion &p = jog.planner;
     const double position = std::clamp(p.target + distance, std::min(situation.range.low, p.position),
                                        std::max(situation.range.high, p.position));
     const JogMove move{position, situation.most.velocity, JogSource::WHEEL};
     if (start(jogs, target, move, situation) == Reason::NONE) {
         const bool isFraction = wheel.accel_fraction > 0 && wheel.accel_fraction <= 1;
-        p.max_acceleration *= isFraction ? wheel.accel_fraction : 1.0;
-        jog.wanted_acceleration = p.max_acceleration;
-        // The limits that joints leave to an axis change along its path: a stop keeps the limits at its
-        // start.
-        jog.brake_acceleration = situation.isShared ? p.max_acceleration : jog.brake_acceleration;
+        jog.wanted.acceleration *= isFraction ? wheel.accel_fraction : 1.0;
+        if (situation.isShared) {
+            // A stop keeps the limits that the joints leave to it.
+            jog.brake_acceleration = jog.wanted.acceleration;
+        } else {
+            p.max_acceleration = jog.wanted.acceleration;
+        }
     }
 }
 
@@ -445,31 +439,30 @@ void home_joint(Jog &jog, const homing::JointCommand &command, const JogLimits &
     if (command.move == homing::Move::NONE) {
         return;
     }
-    trajectory::AxisTrajectory &p = jog.planner;
+    trajectory::AxisMotion &p = jog.planner;
     const auto of = [](double wanted, double highest) {
         return wanted > 0 ? std::min(wanted, highest) : highest;
     };
     p.max_acceleration = of(command.acceleration, most.acceleration);
     // A stop at a switch uses the full deceleration of the joint.
     p.max_jerk = command.isSmooth && most.jerk > 0 ? of(command.jerk, most.jerk) : 0.0;
-    p.mean_s = mean_for({most.velocity, p.max_acceleration, p.max_jerk});
     if (command.move == homing::Move::STOP) {
         p.stop();
         return;
     }
-    jog.wanted_velocity = of(command.velocity, most.velocity);
+    jog.wanted.velocity = of(command.velocity, most.velocity);
     jog.most_velocity = of(command.most_velocity, most.velocity);
     p.target = command.move == homing::Move::TO ? command.value : p.position + command.value;
 }
 
 void limit_axis(Jog &jog, double max_velocity, double scale) noexcept {
     if (!jog.planner.isAtRest()) {
-        jog.planner.max_velocity = std::min(jog.wanted_velocity * scale, max_velocity);
+        jog.planner.max_velocity = std::min(jog.wanted.velocity * scale, max_velocity);
     }
 }
 
 void step_joint(Jog &jog, double max_velocity, double scale, double period_s) noexcept {
-    jog.planner.max_velocity = std::min({jog.wanted_velocity * scale, max_velocity, jog.most_velocity});
+    jog.planner.max_velocity = std::min({jog.wanted.velocity * scale, max_velocity, jog.most_velocity});
     jog.planner.step(period_s);
 }
 

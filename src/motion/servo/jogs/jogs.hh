@@ -25,24 +25,14 @@ struct JogLease {
     bool isForward = true;  ///< of the jog that it belongs to
 };
 
-/// Members that every cycle reads of a stopped jog come first and fill two cache lines; the samples of its
-/// planner follow.
 struct alignas(64) Jog {
     JogSource source = JogSource::NONE;
     std::int32_t wheel_counts = 0;
-    double wanted_velocity = 0, wanted_acceleration = 0;  ///< before the override and the joints limit them
-    double most_velocity = UNBOUNDED;                     ///< limit of the override
-    double brake_acceleration = 0;  ///< deceleration of a stop: a wheel cannot reduce it
+    JogLimits wanted;                  ///< before the override and the joints limit them
+    double most_velocity = UNBOUNDED;  ///< limit of the override
+    double brake_acceleration = 0;     ///< deceleration of a stop: a wheel cannot reduce it
     JogLease lease;
-    trajectory::AxisTrajectory planner;
-};
-
-/// For axes on machines whose joints are not axes, with jerk limits.
-struct TeleopShares {
-    std::uint32_t axes = 0;  ///< bit per axis that has a share of the joints' limits
-    double calm_s = 0;       ///< time in which none of them was faster than if all of `room` had a share
-    std::uint32_t room =
-        0;  ///< bit per axis: they are limited as if all of these had a share; 0: not limited
+    trajectory::AxisMotion planner;  ///< with the limits that are in force
 };
 
 struct Jogs {
@@ -53,7 +43,6 @@ struct Jogs {
     bool isTeleopStopped = false;      ///< by a joint's limit, and reported
     std::uint32_t axes = ALL_AXES;     ///< bit per axis that the machine may have
     std::uint32_t leased = 0;          ///< bit per joint, then per axis, whose lease has not ended
-    TeleopShares shares;
     std::array<Jog, MAX_JOINTS> joint{};
     std::array<Jog, MAX_AXES> axis{};
 

@@ -4,267 +4,342 @@
 #include <algorithm>
 #include <cmath>
 
-#include "motion/servo/jogs/teleop_load.hh"
-#include "motion/servo/jogs/teleop_smooth.hh"
+#include "motion/servo/jogs/joint_load.hh"
 
 namespace mw::motion {
 
 namespace {
 
-/// Minimum distance past the stop of the jogs at which the kinematics is checked [machine units, degrees].
+/// Distance past the stop of the jogs at which the joints are examined as well [machine units, degrees].
 constexpr double LEAST_WINDOW = 0.5;
-/// Rounding of a position at a joint's soft limit.
+/// Rounding of a position at a joint's soft limit, and at the target of an axis.
 constexpr double POSITION_ROUNDING = 1e-9;
-constexpr int MOST_CORNER_AXES = 5;
 
 std::size_t at(int i) noexcept {
     return static_cast<std::size_t>(i);
 }
 
-/// Accelerations of `n` axes that share the joints evenly, on curves at these speeds.
-AxisValues accelerations(const TeleopMachine &m, const TeleopLoad &load, const Jogs &jogs, double n,
-                         const AxisValues &speed) noexcept {
-    AxisValues out{};
-    for (int i = 0; i < load.count; ++i) {
-        out[at(i)] = jogs.axis[at(load.axes[at(i)])].wanted_acceleration;
-    }
-    for (int j = 0; j < m.num_joints; ++j) {
-        double curve = 0;
-        for (int k = 0; k < load.count; ++k) {
-            for (int l = 0; l < load.count; ++l) {
-                curve += load.q2[at(k)][at(l)][at(j)] * speed[at(k)] * speed[at(l)];
-            }
-        }
-        const double most = m.joints.acceleration[at(j)];
-        const double left = std::max(most - curve, (1.0 - CURVE_SHARE) * most);
-        for (int i = 0; i < load.count; ++i) {
-            const double q1 = load.q1[at(i)][at(j)];
-            out[at(i)] = q1 > 0 ? std::min(out[at(i)], left / (n * q1)) : out[at(i)];
-        }
-    }
-    return out;
+std::uint32_t bit(int axis) noexcept {
+    return 1U << axis;
 }
 
-/// True when an axis could not stop at its target if all axes had their share and reached its speeds.
-bool isAnyHeld(const TeleopMachine &m, const TeleopLoad &load, const Jogs &jogs,
-               const AxisValues &now) noexcept {
-    AxisValues speed = shared_speeds(m, load, jogs, load.count);
-    for (int i = 0; i < load.count; ++i) {
-        speed[at(i)] = std::max(speed[at(i)], now[at(i)]);
-    }
-    const AxisValues a = accelerations(m, load, jogs, load.count, speed);
-    bool isHeld = false;
-    for (int i = 0; i < load.count; ++i) {
-        isHeld = isHeld || !canTake(jogs.axis[at(load.axes[at(i)])].planner, a[at(i)], m.period_s);
-    }
-    return isHeld;
+/// The highest speed of a stop from here: the acceleration has to fall to 0 first.
+double fastest_of(const trajectory::AxisMotion &p) noexcept {
+    const trajectory::MotionState state{0, p.velocity, p.acceleration};
+    const double settled = p.max_jerk > 0 ? trajectory::settled_speed(state, p.max_jerk) : 0.0;
+    return std::max(std::abs(p.velocity), std::abs(settled));
 }
 
-/// Shares the limits of each joint evenly among the axes that move it. While an axis needs all that it has to
-/// stop at its target, no other axis begins or accelerates.
-void apply_load(const TeleopMachine &m, const TeleopLoad &load, Jogs &jogs, bool isWhole) noexcept {
-    AxisValues speed{};
-    int moving = 0;
-    for (int i = 0; i < load.count; ++i) {
-        speed[at(i)] = std::abs(jogs.axis[at(load.axes[at(i)])].planner.velocity);
-        moving += speed[at(i)] > 0 ? 1 : 0;
-    }
-    const bool isHeld = load.count > 1 && moving > 0 && isAnyHeld(m, load, jogs, speed);
-    const double n = isHeld ? moving : load.count;
-    AxisValues v = shared_speeds(m, load, jogs, n);
-    // While one axis is faster than its share, the others keep their speed; the curve counts at its actual
-    // speed.
-    constexpr double ROUNDING = 1e-9;
-    bool isOver = isHeld;
-    for (int i = 0; i < load.count; ++i) {
-        isOver = isOver || speed[at(i)] > v[at(i)] * (1.0 + ROUNDING);
-    }
-    for (int i = 0; i < load.count; ++i) {
-        v[at(i)] = isOver ? std::min(v[at(i)], speed[at(i)]) : v[at(i)];
-        // The centripetal part depends on the speed possible in this cycle, not on the target speed: while an
-        // axis brakes, the remainder grows from cycle to cycle and never falls.
-        const double soon = speed[at(i)] + jogs.axis[at(load.axes[at(i)])].wanted_acceleration * m.period_s;
-        speed[at(i)] = std::max(std::min(v[at(i)], soon), speed[at(i)]);
-    }
-    const AxisValues a = accelerations(m, load, jogs, n, speed);
-    for (int i = 0; i < load.count; ++i) {
-        Jog &axis = jogs.axis[at(load.axes[at(i)])];
-        axis.planner.max_velocity = v[at(i)];
-        const double had = load.had[at(i)];
-        const bool isKept = isWhole && mustBrake(axis.planner, had);
-        axis.planner.max_acceleration =
-            with_reserve(load, axis.planner, kept(had, a[at(i)], KEPT_ALONE, isKept));
-    }
-}
+struct PlaceRange {
+    double low = 0, high = 0;
 
-double speed_of(const trajectory::AxisTrajectory &p) noexcept {
-    return std::max(std::abs(p.velocity), std::abs(p.leader().velocity));
-}
-
-/// Longest time of any axis to stop.
-double time_to_stop(const TeleopLoad &load, const Jogs &jogs, double period_s) noexcept {
-    double most_s = 0;
-    for (int i = 0; i < load.count; ++i) {
-        const trajectory::AxisTrajectory &p = jogs.axis[at(load.axes[at(i)])].planner;
-        // With the acceleration of the last cycle, whose samples reached as far.
-        const double had = p.leader().max_acceleration;
-        const double a = had > 0 ? std::min(had, p.max_acceleration) : p.max_acceleration;
-        most_s = std::max(most_s, (a > 0 ? speed_of(p) / a : 0.0) + p.mean_in_force_s(period_s));
+    bool has(const PlaceRange &other) const noexcept {
+        return other.low >= low - POSITION_ROUNDING && other.high <= high + POSITION_ROUNDING;
     }
-    return most_s;
-}
-
-/// The homed joint that this pose moves outside its soft limits, further than it is now; -1 for none.
-int joint_left_by(const TeleopMachine &m, const geometry::Pose &pose) noexcept {
-    JointsAt q{};
-    if (!find_joints(m, pose, q)) {
-        return m.num_joints;
-    }
-    for (int j = 0; j < m.num_joints; ++j) {
-        const double low = std::min(m.joints.low[at(j)], m.joint_positions[at(j)]);
-        const double high = std::max(m.joints.high[at(j)], m.joint_positions[at(j)]);
-        const bool isLeft = q[at(j)] < low - POSITION_ROUNDING || q[at(j)] > high + POSITION_ROUNDING;
-        if (isLeft) {
-            return j;
-        }
-    }
-    return -1;
-}
-
-/// Load of the axes on the joints at the samples of this cycle.
-struct Look {
-    TeleopLoad load;
-    geometry::Pose stop;  ///< stop position if they brake from the next cycle on
-    bool isFound = true;
 };
 
-/// First at the current pose: a jog that begins has no acceleration yet that the joints can follow.
-void look_here(const TeleopMachine &m, const geometry::Pose &here, Jogs &jogs, Look &look) noexcept {
-    TeleopLoad &load = look.load;
-    look.isFound = add_load(m, here, load);
-    for (int i = 0; i < load.count && load.isSmooth; ++i) {
-        const trajectory::AxisTrajectory &p = jogs.axis[at(load.axes[at(i)])].planner;
-        if (p.mean_in_force_s(m.period_s) == 0.0) {
-            add_sent(m, here, i, p.target, load);
+/// Outcome of an attempt to begin a cycle.
+struct Attempt {
+    enum class Kind : std::uint8_t { ACCEPTED, NO_STOP, JOINT_LIMIT } kind = Kind::ACCEPTED;
+    int joint = -1;  ///< of JOINT_LIMIT; -1: the kinematics has no solution
+};
+
+/// The jogs of one cycle.
+class TeleopCycle {
+  public:
+    TeleopCycle(Jogs &jogs, const TeleopMachine &machine) noexcept : jogs_(jogs), m_(machine) {
+        load_.hasJerk = m_.limits.path.isJerkLimited;
+        for (int i = 0; i < MAX_AXES; ++i) {
+            const trajectory::AxisMotion &p = planner(i);
+            here_[i] = p.position;
+            if (p.isAtRest() || (m_.locked & bit(i)) != 0) {
+                continue;
+            }
+            load_.axes[at(load_.count++)] = i;
+            wanting_ |= bit(i);
+            const bool isMoving = p.velocity != 0.0 || p.acceleration != 0.0;
+            moving_ |= isMoving ? bit(i) : 0U;
         }
     }
-    load.isSmooth ? apply_smoothly(m, load, jogs, false) : apply_load(m, load, jogs, false);
-}
 
-/// Then at the farthest positions that they may reach while they brake.
-void look_ahead(const TeleopMachine &m, const geometry::Pose &here, const Jogs &jogs, Look &look) noexcept {
-    TeleopLoad &load = look.load;
-    const double longest_s = load.count > 1 ? time_to_stop(load, jogs, m.period_s) : 0.0;
-    look.stop = here;
-    geometry::Pose far = here;
-    for (int i = 0; i < load.count; ++i) {
-        const int axis = load.axes[at(i)];
-        const trajectory::AxisTrajectory &p = jogs.axis[at(axis)].planner;
-        load.speed[at(i)] = std::max(p.max_velocity, std::abs(p.velocity));
-        const double way = p.rest_after(m.period_s) - here[axis];
-        look.stop[axis] += TELEOP_BRAKE_MARGIN * way;
-        const double sign = p.target >= here[axis] ? 1.0 : -1.0;
-        // Not past the reachable range: otherwise the acceleration would be reduced while it brakes.
-        double low = here[axis];
-        double high = here[axis];
-        p.add_reach(low, high);
-        // While another axis brakes, this one continues and changes the joint motion of the other.
-        const double on = std::max(2.0 * std::abs(way), TELEOP_BRAKE_MARGIN * speed_of(p) * longest_s);
-        far[axis] = std::clamp(here[axis] + std::copysign(on, way), low, high) + LEAST_WINDOW * sign;
+    TeleopStop run() noexcept {
+        if (wanting_ == 0) {
+            return {};
+        }
+        const Attempt attempt = begin();
+        if (attempt.kind == Attempt::Kind::ACCEPTED) {
+            return {};
+        }
+        if (attempt.kind == Attempt::Kind::JOINT_LIMIT) {
+            stop_all();
+        }
+        brake();
+        const bool isNew = attempt.kind == Attempt::Kind::JOINT_LIMIT && !jogs_.isTeleopStopped;
+        jogs_.isTeleopStopped = jogs_.isTeleopStopped || isNew;
+        return {isNew, attempt.joint};
     }
-    constexpr int PLACES = 2;
-    for (int n = 1; n <= PLACES && look.isFound; ++n) {
-        look.isFound = add_load(m, here + (far - here) * (static_cast<double>(n) / PLACES), load);
-    }
-    for (int i = 0; i < load.count && load.count > 1 && look.isFound; ++i) {
-        const int axis = load.axes[at(i)];
-        geometry::Pose p = here;
-        p[axis] = far[axis];
-        look.isFound = add_load(m, p, load, {i, far[axis] - here[axis]});
-    }
-}
 
-/// The axes of `all` without those that wait: these are stopped and need nothing of the joints.
-Look without_waiting(const Look &all, std::uint32_t counted, Jogs &jogs) noexcept {
-    Look some;
-    some.load.isSmooth = true;
-    for (int i = 0; i < all.load.count; ++i) {
-        const int axis = all.load.axes[at(i)];
-        trajectory::AxisTrajectory &p = jogs.axis[at(axis)].planner;
-        if ((counted & (1U << axis)) != 0) {
-            some.load.had[at(some.load.count)] = all.load.had[at(i)];
-            some.load.axes[at(some.load.count++)] = axis;
+  private:
+    trajectory::AxisMotion &planner(int axis) noexcept { return jogs_.axis[at(axis)].planner; }
+    const trajectory::AxisMotion &planner(int axis) const noexcept { return jogs_.axis[at(axis)].planner; }
+    const Jog &jog(int i) const noexcept { return jogs_.axis[at(load_.axes[at(i)])]; }
+
+    /// All axes with their share of the joints. Else those that move, and the others wait: with the same
+    /// share, to make room for the others, with what they can have alone, or with the limits in force.
+    Attempt begin() noexcept {
+        if (!look()) {
+            return {Attempt::Kind::JOINT_LIMIT, -1};
+        }
+        const AxisDemand shared = allowed_demand(m_, ahead_, wanting_, wanted());
+        Attempt attempt = attempt_with(shared, wanting_);
+        if (attempt.kind == Attempt::Kind::ACCEPTED || moving_ == 0) {
+            return attempt;
+        }
+        AxisDemand own = shared;
+        if (moving_ != wanting_) {
+            attempt = attempt_with(shared, moving_);
+            if (attempt.kind == Attempt::Kind::ACCEPTED) {
+                return attempt;
+            }
+            own = allowed_demand(m_, ahead_, moving_, wanted());
+            attempt = attempt_with(own, moving_);
+        }
+        if (attempt.kind != Attempt::Kind::ACCEPTED) {
+            attempt = attempt_with(in_force(own), moving_);
+        }
+        return attempt;
+    }
+
+    /// What the jogs request.
+    AxisDemand wanted() const noexcept {
+        AxisDemand out;
+        for (int i = 0; i < load_.count; ++i) {
+            const double most = m_.limits.axis_jog[at(load_.axes[at(i)])].velocity;
+            out.velocity[at(i)] = std::min(jog(i).wanted.velocity * m_.scale, most);
+            out.acceleration[at(i)] = jog(i).wanted.acceleration;
+            out.jerk[at(i)] = jog(i).wanted.jerk;
+        }
+        return out;
+    }
+    /// The acceleration and jerk of the last cycle.
+    AxisDemand in_force(const AxisDemand &speeds) const noexcept {
+        AxisDemand out = speeds;
+        for (int i = 0; i < load_.count; ++i) {
+            out.acceleration[at(i)] = jog(i).planner.max_acceleration;
+            out.jerk[at(i)] = jog(i).planner.max_jerk;
+        }
+        return out;
+    }
+
+    /// The load up to the place where the axes can stop, and beyond it; false without a solution up to there.
+    bool look() noexcept {
+        double square = 0;
+        for (int i = 0; i < load_.count; ++i) {
+            load_.direction[at(i)] = jog(i).wanted.velocity;
+            square += load_.direction[at(i)] * load_.direction[at(i)];
+        }
+        geometry::Pose far = here_;
+        for (int i = 0; i < load_.count; ++i) {
+            const int axis = load_.axes[at(i)];
+            const trajectory::AxisMotion &p = planner(axis);
+            load_.direction[at(i)] *= p.target < p.position ? -1.0 : 1.0;
+            load_.direction[at(i)] /= square > 0 ? std::sqrt(square) : 1.0;
+            const double more = 2.0 * p.velocity * m_.period_s;
+            const double way = p.stopping().distance + more;
+            PlaceRange &near = near_[at(i)];
+            near = {here_[axis], here_[axis]};
+            p.add_stop(near.low, near.high);
+            near.low += std::min(more, 0.0);
+            near.high += std::max(more, 0.0);
+            double low = here_[axis];
+            double high = here_[axis];
+            p.add_reach(low, high);
+            far[axis] = std::clamp(here_[axis] + 2.0 * way, low, high) +
+                        LEAST_WINDOW * (p.target < p.position ? -1.0 : 1.0);
+            far_[at(i)] = {std::min(near.low, far[axis]), std::max(near.high, far[axis])};
+        }
+        const bool isFound = add_pose(m_, here_, load_) && (moving_ == 0 || look_along_stop());
+        // Past the stop only what can be reached counts: a jog may end at the edge of the workspace.
+        ahead_ = load_;
+        JointLoad more = load_;
+        if (isFound && add_pose(m_, here_ + (far - here_) * 0.5, more)) {
+            ahead_ = more;
+            isFarKnown_ = add_pose(m_, far, more);
+            ahead_ = isFarKnown_ ? more : ahead_;
+        }
+        return isFound;
+    }
+
+    /// The load along the stop that the axes have, and one cycle past it.
+    bool look_along_stop() noexcept {
+        constexpr int PLACES = 3;
+        const Stop stop = stop_of(moving_);
+        bool isFound = true;
+        for (int n = 1; n <= PLACES && isFound; ++n) {
+            geometry::Pose pose = pose_of(stop, stop.longest_s * n / PLACES);
+            for (int i = 0; i < load_.count; ++i) {
+                const int axis = load_.axes[at(i)];
+                pose[axis] += 2.0 * planner(axis).velocity * m_.period_s;
+            }
+            isFound = add_pose(m_, pose, load_);
+        }
+        return isFound;
+    }
+
+    /// Begins the cycle with these limits if it leaves the axes of `members` a stop.
+    Attempt attempt_with(const AxisDemand &limits, std::uint32_t members) noexcept {
+        const std::array<Jog, MAX_AXES> before = jogs_.axis;
+        AxisDemand now = limits;
+        bool hasStop = true;
+        bool isNear = true;
+        for (int i = 0; i < load_.count; ++i) {
+            const int axis = load_.axes[at(i)];
+            if ((members & bit(axis)) == 0) {
+                continue;
+            }
+            trajectory::AxisMotion &p = planner(axis);
+            double low = p.position;
+            double high = p.position;
+            p.add_reach(low, high);
+            p.max_velocity = limits.velocity[at(i)];
+            p.max_acceleration = limits.acceleration[at(i)];
+            p.max_jerk = limits.jerk[at(i)];
+            p.step(m_.period_s);
+            now.velocity[at(i)] = fastest_of(p);
+            now.acceleration[at(i)] = std::max(now.acceleration[at(i)], std::abs(p.acceleration));
+            // Not farther than it could come before: it does not pass its target.
+            double next_low = p.position;
+            double next_high = p.position;
+            p.add_reach(next_low, next_high);
+            hasStop = hasStop && next_low >= low - POSITION_ROUNDING && next_high <= high + POSITION_ROUNDING;
+            PlaceRange stop{p.position, p.position};
+            p.add_stop(stop.low, stop.high);
+            isNear = isNear && near_[at(i)].has(stop);
+            hasStop = hasStop && (isNear || (isFarKnown_ && far_[at(i)].has(stop)));
+        }
+        Attempt out;
+        if (!hasStop || !isWithinJoints(m_, isNear ? load_ : ahead_, members, now)) {
+            out.kind = Attempt::Kind::NO_STOP;
         } else {
-            p.max_velocity = p.max_acceleration = p.mean_s = 0;
+            out = examine_stop(members);
         }
+        if (out.kind != Attempt::Kind::ACCEPTED) {
+            jogs_.axis = before;
+        }
+        return out;
     }
-    return some;
-}
 
-/// Sets the limits of the axes; returns the load of all of them.
-Look limit_axes(const TeleopMachine &m, const geometry::Pose &here, Jogs &jogs) noexcept {
-    Look all;
-    all.load.isSmooth = m.limits.path.isJerkLimited;
-    for (int i = 0; i < MAX_AXES; ++i) {
-        if (const trajectory::AxisTrajectory &p = jogs.axis[at(i)].planner; !p.isAtRest()) {
-            all.load.had[at(all.load.count)] = p.leader().max_acceleration;
-            all.load.axes[at(all.load.count++)] = i;
+    /// The joints stay within their soft limits along the stop of the axes.
+    Attempt examine_stop(std::uint32_t members) const noexcept {
+        constexpr int PLACES = 16;
+        const Stop stop = stop_of(members);
+        const double step_s = stop.longest_s / PLACES;
+        JointsAt before = m_.joint_positions;
+        JointsAt here{};
+        JointsAt next{};
+        if (!find_joints(m_, pose_of(stop, 0), here)) {
+            return {Attempt::Kind::JOINT_LIMIT, -1};
+        }
+        for (int n = 0; n <= PLACES; ++n) {
+            if (!find_joints(m_, pose_of(stop, step_s * (n + 1)), next)) {
+                return {Attempt::Kind::JOINT_LIMIT, -1};
+            }
+            for (int j = 0; j < m_.num_joints; ++j) {
+                // Where it turns, a joint goes farther than the places show by at most a dt^2 / 8.
+                const bool isTurn = (here[at(j)] - before[at(j)]) * (next[at(j)] - here[at(j)]) < 0;
+                const double more = isTurn ? m_.joints.acceleration[at(j)] * step_s * step_s / 8 : 0.0;
+                if (isOutside(j, here[at(j)], more)) {
+                    return {Attempt::Kind::JOINT_LIMIT, j};
+                }
+            }
+            before = here;
+            here = next;
+        }
+        return {};
+    }
+    bool isOutside(int j, double position, double more) const noexcept {
+        const double now = m_.joint_positions[at(j)];
+        return position - more < std::min(m_.joints.low[at(j)], now) - POSITION_ROUNDING ||
+               position + more > std::max(m_.joints.high[at(j)], now) + POSITION_ROUNDING;
+    }
+
+    bool isMember(std::uint32_t members, int i) const noexcept {
+        return (members & bit(load_.axes[at(i)])) != 0;
+    }
+    /// The stops of the axes of `members`, from their present states.
+    struct Stop {
+        std::uint32_t members = 0;
+        std::array<trajectory::SpeedChange, MAX_AXES> axis{};
+        double longest_s = 0;
+    };
+    Stop stop_of(std::uint32_t members) const noexcept {
+        Stop stop;
+        stop.members = members;
+        for (int i = 0; i < load_.count; ++i) {
+            if (isMember(members, i)) {
+                stop.axis[at(i)] = jog(i).planner.stopping();
+                stop.longest_s = std::max(stop.longest_s, stop.axis[at(i)].duration);
+            }
+        }
+        return stop;
+    }
+    geometry::Pose pose_of(const Stop &stop, double t) const noexcept {
+        geometry::Pose pose = here_;
+        for (int i = 0; i < load_.count; ++i) {
+            const double way = isMember(stop.members, i) ? way_after(i, stop.axis[at(i)], t) : 0.0;
+            pose[load_.axes[at(i)]] = jog(i).planner.position + way;
+        }
+        return pose;
+    }
+    /// Of its stop after the time `t`.
+    double way_after(int i, const trajectory::SpeedChange &stop, double t) const noexcept {
+        const trajectory::AxisMotion &p = jog(i).planner;
+        if (t >= stop.duration) {
+            return stop.distance;
+        }
+        if (!(p.max_jerk > 0)) {
+            return t * (p.velocity - 0.5 * std::copysign(p.max_acceleration, p.velocity) * t);
+        }
+        trajectory::MotionState state{0, p.velocity, p.acceleration};
+        for (const trajectory::SpeedChange::Part &part : stop.parts) {
+            const double span = std::min(t, part.duration);
+            state = state.after(part.jerk, span);
+            t -= span;
+        }
+        return state.x;
+    }
+
+    void stop_all() noexcept {
+        for (int i = 0; i < load_.count; ++i) {
+            planner(load_.axes[at(i)]).stop();
         }
     }
-    if (all.load.count == 0) {
-        return all;
+    /// The axes that move brake with the limits in force: that stop has been accepted.
+    void brake() noexcept {
+        for (int i = 0; i < load_.count; ++i) {
+            trajectory::AxisMotion &p = planner(load_.axes[at(i)]);
+            p.max_velocity = 0;
+            if (isMember(moving_, i)) {
+                p.step(m_.period_s);
+            }
+        }
     }
-    look_here(m, here, jogs, all);
-    look_ahead(m, here, jogs, all);
-    if (!all.load.isSmooth) {
-        apply_load(m, all.load, jogs, true);
-        return all;
-    }
-    make_room(m, all.load, jogs);
-    const std::uint32_t counted = counted_axes(jogs.shares);
-    Look some = without_waiting(all, counted, jogs);
-    if (some.load.count < all.load.count) {
-        look_here(m, here, jogs, some);
-        look_ahead(m, here, jogs, some);
-    }
-    const Look &last = some.load.count < all.load.count ? some : all;
-    apply_smoothly(m, last.load, jogs, true);
-    settle_shares(m, last.load, jogs);
-    return all;
-}
+
+    Jogs &jogs_;
+    const TeleopMachine &m_;
+    geometry::Pose here_;
+    std::uint32_t wanting_ = 0;  ///< bit per axis that is not at its target
+    std::uint32_t moving_ = 0;
+    JointLoad load_;   ///< up to the stop
+    JointLoad ahead_;  ///< and past it
+    bool isFarKnown_ = false;
+    std::array<PlaceRange, MAX_AXES> near_{}, far_{};  ///< places of the axes for which these are known
+};
 
 }  // namespace
 
-TeleopStop limit_teleop(Jogs &jogs, const TeleopMachine &m) noexcept {
-    geometry::Pose here;
-    for (int i = 0; i < MAX_AXES; ++i) {
-        here[i] = jogs.axis[at(i)].planner.position;
-    }
-    const Look look = limit_axes(m, here, jogs);
-    const TeleopLoad &load = look.load;
-    if (load.count == 0) {
-        return {};
-    }
-    // The axes stop one after the other: each corner of the box of their stop positions is checked.
-    int left = look.isFound ? -1 : m.num_joints;
-    const int corners = 1 << std::min(load.count, MOST_CORNER_AXES);
-    for (int n = 1; n < corners && left < 0; ++n) {
-        geometry::Pose corner = look.stop;
-        for (int i = 0; i < std::min(load.count, MOST_CORNER_AXES); ++i) {
-            const int axis = load.axes[at(i)];
-            corner[axis] = (n & (1 << i)) != 0 ? look.stop[axis] : here[axis];
-        }
-        left = joint_left_by(m, corner);
-    }
-    if (left < 0) {
-        return {};
-    }
-    for (int i = 0; i < load.count; ++i) {
-        jogs.axis[at(load.axes[at(i)])].planner.stop();
-    }
-    const bool isNew = !jogs.isTeleopStopped;
-    jogs.isTeleopStopped = true;
-    return {isNew, left < m.num_joints ? left : -1};
+TeleopStop step_teleop(Jogs &jogs, const TeleopMachine &machine) noexcept {
+    return TeleopCycle(jogs, machine).run();
 }
 
 }  // namespace mw::motion

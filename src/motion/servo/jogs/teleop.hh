@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Jogs of axes on machines whose joints are not axes. Every cycle limits the speeds and accelerations of the
-// axes to what the joints can follow until the jogs stop, and stops jogs before a joint leaves its soft
-// limits.
+// Jogs of axes on machines whose joints are not axes. After every cycle the axes have a stop in which no
+// joint exceeds a limit: a cycle that would end without one is not begun, and the axes brake along the stop
+// that they have.
 #pragma once
 
 #include "kinematics/kinematics.hh"
@@ -19,18 +19,15 @@ struct TeleopMachine {
     int num_joints = 0;
     double scale = 1;  ///< override
     double period_s = 1e-3;
-    int side = 0;  ///< of the current pose (kinematics::Kinematics)
+    int side = 0;              ///< of the current pose (kinematics::Kinematics)
+    std::uint32_t locked = 0;  ///< bit per axis whose lock is closed: it does not move
 };
-
-/// Jogs stop before a joint's limit with this factor of their stopping distance: the acceleration may have to
-/// fall while they brake.
-inline constexpr double TELEOP_BRAKE_MARGIN = 1.2;
 
 struct TeleopStop {
     bool isNew = false;  ///< jogs were stopped in this cycle for the first time
     int joint = -1;      ///< joint that would leave its soft limits; -1: the kinematics has no solution
 };
-/// One cycle, before the planners of the axes.
-TeleopStop limit_teleop(Jogs &jogs, const TeleopMachine &machine) noexcept;
+/// Moves the axes for one cycle. Stops all jogs before a joint leaves its soft limits.
+TeleopStop step_teleop(Jogs &jogs, const TeleopMachine &machine) noexcept;
 
 }  // namespace mw::motion

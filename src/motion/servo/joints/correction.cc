@@ -34,51 +34,16 @@ void choose_side(Correction &c, double position, double backlash) noexcept {
     }
 }
 
-/// Acceleration and averaging time of corrections.
-struct Means {
-    double acceleration = 0;
-    std::uint32_t samples = 1;  ///< samples of the moving average that limits the jerk; 1: no limit
-};
-
-/// The averaging time that covers a distance `d`, or a speed change `dv`, soonest with the jerk j: the
-/// reference gets the acceleration j tau / 2 and takes 2 sqrt(2 d / (j tau)) or 2 dv / (j tau); the average
-/// adds tau.
-double mean_for(double d, double dv, double jerk) noexcept {
-    return std::max(std::cbrt(2.0 * d / jerk), std::sqrt(2.0 * dv / jerk));
-}
-
-Means means_of(const Correction &c, const Settings &settings, int joint, double period_s) noexcept {
-    Means means{SHARE * settings.get(Parameter::JOINT_MAX_ACCELERATION, joint)};
+/// The part of the joint's limits that corrections may use.
+trajectory::FollowLimits limits_of(const Settings &settings, int joint) noexcept {
     double jerk = settings.get(Parameter::JOINT_MAX_JERK, joint);
     if (!settings.isSet(Parameter::JOINT_IS_ANGULAR, joint)) {
         jerk = std::min(jerk, settings.get(Parameter::TRAJ_MAX_JERK));
     }
-    if (!isJerkLimited(settings) || !(jerk < NO_JERK_LIMIT) || !(jerk > 0)) {
-        return means;
-    }
-    constexpr double MOST = MovingMean::MOST_SAMPLES;
-    const bool hasTable = c.table.count > 0;
-    const double way = hasTable ? c.table.widest : settings.get(Parameter::JOINT_BACKLASH, joint);
-    const double bend = hasTable ? c.table.steepest * settings.get(Parameter::JOINT_MAX_VELOCITY, joint) : 0;
-    const double most_s = 2.0 * means.acceleration / (SHARE * jerk);
-    const double mean_s = std::min(most_s, mean_for(std::abs(way), 2.0 * bend, SHARE * jerk));
-    const double samples = std::ceil(mean_s / period_s - 1e-9);
-    means.samples = c.mean.length(static_cast<std::uint32_t>(std::clamp(samples, 2.0, MOST)));
-    means.acceleration = std::min(means.acceleration, 0.5 * SHARE * jerk * means.samples * period_s);
-    return means;
-}
-
-/// The correction of the table changes with the joint; the missing part is added within the remaining limits.
-void follow_table(Correction &c, double position, double period_s) noexcept {
-    const double before = look_up(c.table, c.side, c.last_position);
-    c.raw = look_up(c.table, c.side, position);
-    const double velocity = (c.raw - before) / period_s;
-    c.follower.position = c.followed - before;
-    c.follower.velocity = c.followed_velocity - velocity;
-    c.follower.target = 0;
-    c.follower.step(period_s);
-    c.followed = c.raw + c.follower.position;
-    c.followed_velocity = velocity + c.follower.velocity;
+    const bool hasJerk = isJerkLimited(settings) && jerk < NO_JERK_LIMIT && jerk > 0;
+    return {SHARE * settings.get(Parameter::JOINT_MAX_VELOCITY, joint),
+            SHARE * settings.get(Parameter::JOINT_MAX_ACCELERATION, joint), hasJerk ? SHARE * jerk : 0.0,
+            -UNBOUNDED, UNBOUNDED};
 }
 
 }  // namespace
@@ -141,42 +106,6 @@ double look_up(const ScrewTable &table, int side, double position) noexcept {
     return curve[above - 1] + part * (curve[above] - curve[above - 1]);
 }
 
-/// Adds without loss of the digits that a double cannot hold (two-sum).
-void MovingMean::add(double x) noexcept {
-    const double s = sum_ + x;
-    const double back = s - sum_;
-    rest_ += (sum_ - (s - back)) + (x - back);
-    sum_ = s;
-}
-
-void MovingMean::reset(double x) noexcept {
-    way_.fill(0.0);
-    origin_ = x;
-    last_ = x;
-    sum_ = 0;
-    rest_ = 0;
-    next_ = 0;
-    standing_ = MOST_SAMPLES;
-}
-
-double MovingMean::step(double x, std::uint32_t length) noexcept {
-    if (length != length_ && standing_ >= length_) {
-        length_ = length;
-        reset(last_);
-    }
-    standing_ = x == last_ ? std::min(standing_ + 1, MOST_SAMPLES) : 0;
-    last_ = x;
-    if (length_ <= 1) {
-        return x;
-    }
-    const double way = x - origin_;
-    add(way);
-    add(-way_[next_]);
-    way_[next_] = way;
-    next_ = next_ + 1 == length_ ? 0 : next_ + 1;
-    return isAtRest() ? x : origin_ + (sum_ + rest_) / length_;
-}
-
 void step(Correction &c, const Settings &settings, int joint, double position, double period_s) noexcept {
     c.isHeld = c.isHeld && std::abs(position - c.extreme) <= MODE_ROUNDING;
     if (c.isHeld) {
@@ -188,42 +117,30 @@ void step(Correction &c, const Settings &settings, int joint, double position, d
         return;
     }
     follow_side(c, position);
-    const double velocity = settings.get(Parameter::JOINT_MAX_VELOCITY, joint);
-    const Means means = means_of(c, settings, joint, period_s);
-    c.follower.max_acceleration = means.acceleration;
     if (c.table.count > 0) {
-        c.follower.max_velocity = (SHARE - c.table.steepest) * velocity;
-        follow_table(c, position, period_s);
+        c.raw = look_up(c.table, c.side, position);
     } else {
         if (c.isSlideKnown) {
             choose_side(c, position, backlash);
         }
         c.raw = 0.5 * backlash * c.side;
-        c.follower.target = c.raw;
-        c.follower.max_velocity = SHARE * velocity;
-        c.follower.step(period_s);
-        c.followed = c.follower.position;
-        c.followed_velocity = c.follower.velocity;
     }
-    const double before = c.position;
-    c.position = c.mean.step(c.followed, means.samples);
+    c.follower.follow(c.raw, limits_of(settings, joint), period_s);
+    c.position = c.follower.position();
+    c.velocity = c.follower.velocity();
     c.slide = c.isSlideKnown ? pushed_slide(c, position + c.position, backlash) : c.slide;
-    c.velocity = means.samples > 1 ? (c.position - before) / period_s : c.followed_velocity;
     const bool isTakenUp = c.side != 0 && c.table.count == 0 && c.position == c.raw;
     if (isTakenUp && !c.isSlideKnown) {
         c.slide = position;
         c.isSlideKnown = true;
     }
-    c.last_position = position;
 }
 
 double renumber(Correction &c, double position) noexcept {
     const double by = c.table.count > 0 ? look_up(c.table, c.side, position) - c.raw : 0.0;
     c.raw += by;
-    c.followed += by;
     c.position += by;
-    c.mean.shift(by);
-    c.last_position = position;
+    c.follower.shift(by);
     c.extreme = position;
     c.isSlideKnown = false;
     return by;
@@ -233,12 +150,8 @@ void follow(Correction &c, double position) noexcept {
     renumber(c, position);
     c.isHeld = true;
     if (!c.isAtRest()) {  // it stops here, and continues with the joint's next move
-        c.followed = c.position;
-        c.follower.position = c.table.count > 0 ? c.position - c.raw : c.position;
-        c.follower.velocity = 0;
-        c.followed_velocity = 0;
+        c.follower.reset(c.position);
         c.velocity = 0;
-        c.mean.reset(c.position);
     }
 }
 
@@ -248,12 +161,9 @@ double clear(Correction &c) noexcept {
     c.isSlideKnown = false;
     c.raw = 0;
     c.side = 0;
-    c.follower = {};
-    c.followed = 0;
-    c.followed_velocity = 0;
+    c.follower.reset(0);
     c.position = 0;
     c.velocity = 0;
-    c.mean.reset(0);
     return was;
 }
 

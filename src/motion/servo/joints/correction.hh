@@ -9,7 +9,7 @@
 #include "base/raw_array.hh"
 #include "motion/interface/command.hh"
 #include "motion/interface/settings.hh"
-#include "trajectory/follow/axis_motion.hh"
+#include "trajectory/follow/follow_planner.hh"
 
 namespace mw::motion {
 
@@ -29,51 +29,19 @@ Reason take(ScrewTable &table, const LoadCompensation &point) noexcept;
 /// At `position` for forward (`side` > 0) or reverse travel (< 0); 0 without a direction (0).
 double look_up(const ScrewTable &table, int side, double position) noexcept;
 
-/// Average of the last samples: a signal that changes its acceleration by at most 2 A has a jerk of at most 2
-/// A over the averaging time.
-class MovingMean {
-  public:
-    static constexpr std::uint32_t MOST_SAMPLES = 400;
-
-    /// The average after `x`. A new length takes effect when all samples are equal.
-    double step(double x, std::uint32_t length) noexcept;
-    /// All samples are `x`.
-    void reset(double x) noexcept;
-    /// Shifts all samples.
-    void shift(double by) noexcept { origin_ += by; }
-    bool isAtRest() const noexcept { return length_ <= 1 || standing_ >= length_; }
-    /// Length of the average when the next one is to have `wanted` samples.
-    std::uint32_t length(std::uint32_t wanted) const noexcept {
-        return standing_ >= length_ ? wanted : length_;
-    }
-
-  private:
-    void add(double x) noexcept;
-
-    std::array<double, MOST_SAMPLES> way_{};  ///< from origin_
-    double origin_ = 0, sum_ = 0, rest_ = 0, last_ = 0;
-    std::uint32_t next_ = 0, length_ = 1;
-    std::uint32_t standing_ = MOST_SAMPLES;  ///< number of equal samples at the end
-};
-
-/// Members that each cycle reads of a joint without corrections lie together, between the samples of the
-/// average and the points of the table.
+/// Members that each cycle reads of a joint without corrections lie together, before the points of the table.
 struct Correction {
-    double followed = 0, followed_velocity = 0;  ///< before the jerk is limited
-    double slide = 0;  ///< position of the slide within the backlash, from the motor
-    MovingMean mean;
+    double slide = 0;           ///< position of the slide within the backlash, from the motor
     int side = 0;               ///< +1 or -1 once the joint has moved
     bool isHeld = false;        ///< switched on again: the missing correction waits until the joint moves
     bool isSlideKnown = false;  ///< backlash was compensated since the motor was last moved by others
-    double position = 0, velocity = 0;  ///< current correction
-    double raw = 0;                     ///< correction to reach
-    double extreme = 0;                 ///< extreme position since the last reversal of the joint
-    double last_position = 0;           ///< of the joint
-    /// Backlash: the correction. Table: the part of the correction that is still missing.
-    trajectory::AxisMotion follower;
+    double position = 0, velocity = 0;   ///< current correction
+    double raw = 0;                      ///< correction to reach
+    double extreme = 0;                  ///< extreme position since the last reversal of the joint
+    trajectory::FollowPlanner follower;  ///< of `raw`
     ScrewTable table;
 
-    bool isAtRest() const noexcept { return follower.isAtRest() && velocity == 0.0 && mean.isAtRest(); }
+    bool isAtRest() const noexcept { return follower.isAtRest(); }
 };
 
 /// No backlash, no table and no correction left: the joint only records its direction.
@@ -95,7 +63,6 @@ inline void follow_side(Correction &c, double position) noexcept {
 inline void follow_idle(Correction &c, double position) noexcept {
     follow_side(c, position);
     c.raw = 0;
-    c.last_position = position;
 }
 /// One cycle of a joint at `position`.
 void step(Correction &correction, const Settings &settings, int joint, double position,

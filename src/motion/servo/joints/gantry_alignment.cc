@@ -34,7 +34,7 @@ void begin(GantryAlignment &sides, const Joints &joints, const PerJoint &led,
     for (int j = 0; j < joints.count; ++j) {
         const auto n = static_cast<std::size_t>(j);
         if (isApart(joints[j], led[n], ROUNDING)) {
-            trajectory::AxisTrajectory &p = sides.planner[n];
+            trajectory::AxisMotion &p = sides.planner[n];
             p.reset(joints[j].pos_cmd);
             p.target = led[n];
             p.max_velocity = limits.joint_jog[n].velocity;
@@ -48,7 +48,7 @@ void begin(GantryAlignment &sides, const Joints &joints, const PerJoint &led,
 void stop(GantryAlignment &sides) noexcept {
     if (sides.areUnderWay()) {
         sides.isStopping = true;
-        for (trajectory::AxisTrajectory &p : sides.planner) {
+        for (trajectory::AxisMotion &p : sides.planner) {
             p.stop();
         }
     }
@@ -66,7 +66,7 @@ AlignmentStep step(GantryAlignment &sides, Joints &joints, bool isMotionWanted, 
     }
     for (std::uint32_t left = sides.joints; left != 0; left &= left - 1) {
         const int j = std::countr_zero(left);
-        trajectory::AxisTrajectory &p = sides.planner[static_cast<std::size_t>(j)];
+        trajectory::AxisMotion &p = sides.planner[static_cast<std::size_t>(j)];
         p.step(period_s);
         follow(joints[j], p.position, period_s);
         sides.joints &= p.isAtRest() ? ~(1U << j) : ~0U;

@@ -18,7 +18,7 @@ namespace mw::motion {
 struct GantryAlignment {
     std::uint32_t joints = 0;  ///< bit per misaligned joint
     bool isActive = false, isStopping = false;
-    std::array<trajectory::AxisTrajectory, MAX_JOINTS> planner{};
+    std::array<trajectory::AxisMotion, MAX_JOINTS> planner{};
 
     bool isMisaligned() const noexcept { return joints != 0; }
     bool areUnderWay() const noexcept { return isActive && isMisaligned(); }

@@ -41,7 +41,7 @@ void take_counts(ExternalOffset &offset, const OffsetInput &pins, bool isHonoure
 
 /// `to`, limited by the soft limits; an offset outside them does not move further out.
 double allowed(const ExternalOffset &offset, double to, const JogRange &room) noexcept {
-    const double rest = offset.planner.rest_after(0);
+    const double rest = offset.planner.rest();
     return std::clamp(to, std::min(room.low, rest), std::max(room.high, rest));
 }
 
@@ -85,7 +85,7 @@ void step(ExternalOffsets &offsets, const OffsetInputs &in) noexcept {
         JogRange room{in.limits.low[i] - in.programmed.axes.low[i],
                       in.limits.high[i] - in.programmed.axes.high[i]};
         room = isShared ? both(room, room_of_joints(offsets, in, all, i)) : room;
-        trajectory::AxisTrajectory &p = offset.planner;
+        trajectory::AxisMotion &p = offset.planner;
         if (in.isHonoured) {
             const JogLimits &most = in.limits.offset[at(i)];
             if (most.velocity > 0) {

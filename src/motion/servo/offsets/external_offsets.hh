@@ -15,7 +15,7 @@
 namespace mw::motion {
 
 struct ExternalOffset {
-    trajectory::AxisTrajectory planner;
+    trajectory::AxisMotion planner;
     double request = 0;
     /// Its target from the next cycle on; the path planner gets it one cycle before.
     double next = 0;

@@ -91,9 +91,8 @@ TEST_F(CorrectionPart, AnAngularJointTakesUpItsPlayWithItsOwnJerk) {
     EXPECT_EQ(cycles_of(J / 50, 1), least);
 }
 
-/// A long backlash needs the averaging time that keeps the jerk at full acceleration, 2 a / j, and none that
-/// is longer.
-TEST_F(CorrectionPart, ALongPlayIsTakenUpWithoutDelay) {
+/// The least time for a way at which the speed and the acceleration are reached: d / v + v / a + a / j.
+TEST_F(CorrectionPart, ALongPlayIsTakenUpInTheLeastTime) {
     limit_jerk();
     constexpr double PLAY = 20, HALF = 0.5;  // of what the joint can do
     constexpr int REVERSAL = 2000;
@@ -107,7 +106,7 @@ TEST_F(CorrectionPart, ALongPlayIsTakenUpWithoutDelay) {
         last = correction.position != before ? n - REVERSAL : last;
     }
     EXPECT_NEAR(std::abs(correction.position - from), PLAY, 1e-9);
-    const double seconds = PLAY / (HALF * V) + V / A + 2 * A / J;
+    const double seconds = PLAY / (HALF * V) + V / A + A / J;
     EXPECT_NEAR(last * CYCLE_S, seconds, 0.005);
 }
 
@@ -132,7 +131,7 @@ TEST_F(CorrectionPart, WhatIsNoTableIsRefused) {
 
 /// Swings of all lengths with what a joint can do.
 void swing(CorrectionPart &part, testing::LimitChecker &checker) {
-    trajectory::AxisTrajectory jog;
+    trajectory::AxisMotion jog;
     jog.max_velocity = V;
     jog.max_acceleration = A;
     jog.max_jerk = isJerkLimited(part.settings) ? J : 0;
@@ -217,7 +216,7 @@ TEST_F(CorrectionPart, ASlideWithPlayOnAnUnevenScrewIsWhereItIsToBe) {
         const double x = PITCH * n - 40;
         ASSERT_EQ(load(n, POINTS, x, uneven(x) + 0.5 * PLAY, uneven(x) - 0.5 * PLAY), Reason::NONE);
     }
-    trajectory::AxisTrajectory jog;
+    trajectory::AxisMotion jog;
     jog.max_velocity = V;
     jog.max_acceleration = A;
     jog.max_jerk = J;

@@ -5,8 +5,8 @@
 
 #include "kinematics/rotary_table.hh"
 #include "motion/servo/jogs/jogs.hh"
+#include "motion/servo/jogs/joint_load.hh"
 #include "motion/servo/jogs/teleop.hh"
-#include "motion/servo/jogs/teleop_load.hh"
 
 namespace mw::motion {
 namespace {
@@ -80,7 +80,7 @@ TEST(JogsPart, ALeaseIsRenewedByTheSameCommandAndEndsOnce) {
     EXPECT_LT(end_lease(jogs, 104 * MS).index, 0);
     s.time_ns = 104 * MS;
     EXPECT_EQ(take(jogs, JogContinuous{JOINT, 8, 0.2, true}, s).reason, Reason::NONE);
-    EXPECT_EQ(jogs.at(JOINT).wanted_velocity, 8);
+    EXPECT_EQ(jogs.at(JOINT).wanted.velocity, 8);
     EXPECT_LT(end_lease(jogs, 303 * MS).index, 0);
     const JogTarget over = end_lease(jogs, 304 * MS);
     EXPECT_TRUE(over.isJoint);
@@ -272,63 +272,45 @@ TEST(JogsPart, HomingMovesAJointNoFasterThanItCan) {
     command.value = -4;
     command.velocity = 1000;
     home_joint(jogs.at(JOINT), command, {50, 500, 900});
-    EXPECT_EQ(jogs.at(JOINT).wanted_velocity, 50);
+    EXPECT_EQ(jogs.at(JOINT).wanted.velocity, 50);
     EXPECT_EQ(jogs.at(JOINT).planner.target, -4);
     EXPECT_EQ(jogs.at(JOINT).planner.max_jerk, 0);
     renumber(jogs.at(JOINT), 6, 6);
     EXPECT_EQ(jogs.at(JOINT).planner.target, 2);
 }
 
-/// Joint 0 is X cos C + Y sin C: what it accelerates by while X and C both move goes with the product of
-/// their speeds, twice, as in any square of a sum.
-TEST(TeleopPart, WhatTwoAxesAskOfAJointTogetherIsCountedForEachOfThem) {
+/// Joint 0 is X cos C + Y sin C.
+TEST(JointLoad, HasTheDerivativesOfJointsByTheAxes) {
     const kinematics::RotaryTable table;
     const FoldedLimits limits;
     TeleopMachine machine{table, limits, limits.path_joints};
     machine.num_joints = 5;
+    constexpr double X_AT = 50, C_AT = 30, RAD = 3.14159265358979 / 180;
     geometry::Pose pose;
-    pose[geometry::AXIS_X] = 50;
-    pose[geometry::AXIS_C] = 30;
+    pose[geometry::AXIS_X] = X_AT;
+    pose[geometry::AXIS_C] = C_AT;
     ASSERT_EQ(table.inverse(pose, machine.joint_positions.data()), kinematics::Status::OK);
-    for (const bool isSmooth : {false, true}) {
-        TeleopLoad load;
+    const double sine = std::sin(C_AT * RAD);
+    const double cosine = std::cos(C_AT * RAD);
+    for (const bool hasJerk : {false, true}) {
+        JointLoad load;
         load.axes = {geometry::AXIS_X, geometry::AXIS_C};
         load.count = 2;
-        load.isSmooth = isSmooth;
-        ASSERT_TRUE(add_load(machine, pose, load));
-        constexpr double RAD = 3.14159265358979 / 180;
-        const double exact = 0.5 * RAD;  // sin 30
-        EXPECT_GE(load.q2[0][1][0], exact);
-        EXPECT_NEAR(load.q2[0][1][0], exact, 0.1 * exact) << "with a margin";
+        load.hasJerk = hasJerk;
+        load.direction = {0.6, 0.8};
+        ASSERT_TRUE(add_pose(machine, pose, load));
+        EXPECT_NEAR(load.q1[0][0], cosine, 1e-6);
+        EXPECT_NEAR(load.q1[1][0], X_AT * RAD * sine, 1e-3);
+        EXPECT_NEAR(load.q2[0][1][0], RAD * sine, 1e-4);
         EXPECT_EQ(load.q2[1][0][0], load.q2[0][1][0]);
+        EXPECT_NEAR(load.q2[1][1][0], X_AT * RAD * RAD * cosine, 1e-4);
+        if (hasJerk) {
+            const double c = 0.8 * RAD;
+            EXPECT_NEAR(load.q3[1][0], X_AT * RAD * RAD * RAD * sine, 1e-6);
+            EXPECT_NEAR(load.q3_together[0], std::abs(X_AT * c * c * c * sine - 3 * 0.6 * c * c * cosine),
+                        1e-6);
+        }
     }
-}
-
-/// With jerk limits also how that changes while C turns: the product of three speeds, two of them C's.
-TEST(TeleopPart, WhatACurveOfTwoAxesChangesByWhileOneTurnsIsCountedForThatOne) {
-    const kinematics::RotaryTable table;
-    const FoldedLimits limits;
-    TeleopMachine machine{table, limits, limits.path_joints};
-    machine.num_joints = 5;
-    constexpr double WAY = 5, X_SPEED = 20, C_SPEED = 30, RAD = 3.14159265358979 / 180;
-    geometry::Pose pose;
-    pose[geometry::AXIS_X] = 50;
-    pose[geometry::AXIS_C] = 30;
-    ASSERT_EQ(table.inverse(pose, machine.joint_positions.data()), kinematics::Status::OK);
-    TeleopLoad load;
-    load.axes = {geometry::AXIS_X, geometry::AXIS_C};
-    load.count = 2;
-    load.isSmooth = true;
-    load.speed = {X_SPEED, C_SPEED};
-    ASSERT_TRUE(add_load(machine, pose, load));
-    EXPECT_EQ(load.turn[1][0], 0) << "it is still stopped";
-    pose[geometry::AXIS_C] += WAY;
-    ASSERT_TRUE(add_load(machine, pose, load, {1, WAY}));
-    const double change = (std::sin(35 * RAD) - std::sin(30 * RAD)) * RAD / WAY;
-    const double exact = 2 * change * X_SPEED * C_SPEED;
-    EXPECT_GE(load.turn[1][0], exact);
-    EXPECT_NEAR(load.turn[1][0], exact, 0.1 * exact) << "with a margin";
-    EXPECT_EQ(load.turn[0][0], 0) << "X moves, and changes nothing of it";
 }
 
 /// An arm that reaches X with either sense of joint 0 and keeps the given one; joint 1 does not move.
@@ -344,7 +326,7 @@ struct Elbow final : kinematics::Kinematics {
     }
 };
 
-TEST(TeleopPart, JointsAreSoughtFromWhereTheyStand) {
+TEST(TeleopPart, TheJointPositionsNearestToTheCurrentOnesAreUsed) {
     const Elbow elbow;
     const FoldedLimits limits;
     TeleopMachine machine{elbow, limits, limits.path_joints};
@@ -389,9 +371,8 @@ TEST(TeleopPart, AJogOfATableStopsBeforeAJointLeavesItsRange) {
     ASSERT_EQ(take(jogs, JogContinuous{c, 90}, s).reason, Reason::NONE);
     int told = 0;
     for (int n = 0; n < 5000; ++n) {
-        const TeleopStop stopped = limit_teleop(jogs, machine);
+        const TeleopStop stopped = step_teleop(jogs, machine);
         told += stopped.isNew ? 1 : 0;
-        jogs.at(c).planner.step(T);
         pose[geometry::AXIS_C] = jogs.at(c).planner.position;
         const auto last = machine.joint_positions;
         ASSERT_EQ(table.inverse(pose, machine.joint_positions.data()), kinematics::Status::OK);
