@@ -156,10 +156,11 @@ class Load {
     }
     void send(Machine &machine, const char *type, bool isOfDevice, Payload &payload) {
         payload.seq = machine.seq++;
+        payload.position = Position{machine.birth, ++machine.count};
         link_.publish({fmt::format("spBv1.0/load/{}/{}{}", type, machine.name, isOfDevice ? "/machine" : ""),
                        encode(payload), 0, false});
         ++messages_;
-        machine.open.emplace_back(++machine.count, utc_ms());
+        machine.open.emplace_back(machine.count, utc_ms());
     }
 
     int values_;

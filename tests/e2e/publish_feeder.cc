@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// publish-feeder STORE PORT FIRST NODE: an edge node of Sparkplug whose machine counts, for tests that kill
-// it. After a number is accepted it is printed. Waits for the primary host "shop".
+// publish-feeder STORE PORT FIRST NODE [WINDOW PERIOD_MS]: an edge node of Sparkplug whose machine counts,
+// for tests that kill it, or lose its messages. WINDOW messages at most are on the way. After a number is
+// accepted it is printed. Waits for the primary host "shop".
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -29,8 +30,8 @@ EdgeNode::Moment now() {
 }  // namespace
 
 int main(int count, char **words) {
-    if (count != 5) {
-        std::fputs("usage: publish-feeder STORE PORT FIRST NODE\n", stderr);
+    if (count != 5 && count != 7) {
+        std::fputs("usage: publish-feeder STORE PORT FIRST NODE [WINDOW PERIOD_MS]\n", stderr);
         return 2;
     }
     const std::string store = words[1];
@@ -56,6 +57,10 @@ int main(int count, char **words) {
     settings.group = "test";
     settings.node = words[4];
     settings.device = "counter";
+    if (count == 7) {
+        settings.delivery.window = std::atoi(words[5]);
+    }
+    const std::chrono::milliseconds period(count == 7 ? std::atoi(words[6]) : 10);
     EdgeNode node(
         settings, data, link, text.has_value() ? mw::parse_uint(mw::trim(*text)).value_or(0) : 0,
         [&store](std::uint64_t next) {
@@ -73,6 +78,6 @@ int main(int count, char **words) {
         data.add({{0, number}}, utc_ms());
         std::printf("%llu\n", static_cast<unsigned long long>(number));
         std::fflush(stdout);
-        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        std::this_thread::sleep_for(period);
     }
 }

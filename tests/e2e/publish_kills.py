@@ -17,9 +17,9 @@ from publish_shop import Broker, Host, free_port, make_decoder, wait_for
 
 
 class Feeder:
-    def __init__(self, program, store, port, accepted, node='feeder'):
+    def __init__(self, program, store, port, accepted, node='feeder', *more):
         self.words, self.accepted, self.process = [program, str(store), str(port)], accepted, None
-        self.node = node
+        self.node, self.more = node, [str(word) for word in more]
 
     def numbers(self):
         """What it has accepted; a last line that the kill has torn does not count."""
@@ -33,7 +33,7 @@ class Feeder:
                 out.write('\n')
                 out.flush()
             # A number that was accepted but not printed comes again with another time: numbers leave a gap.
-            self.process = subprocess.Popen([*self.words, str(first + 10), self.node], stdout=out, stderr=subprocess.DEVNULL)
+            self.process = subprocess.Popen([*self.words, str(first + 10), self.node, *self.more], stdout=out, stderr=subprocess.DEVNULL)
 
     def kill(self):
         self.process.kill()

@@ -40,6 +40,10 @@ class Delivery {
     void set_live(RecordId next) { live_ = next; }
     void set_history(RecordId next) { history_ = next; }
 
+    /// The host application counts what it has stored: it needs the number of each message.
+    bool hasReceipts() const { return hasReceipts_; }
+    /// Messages since begin().
+    std::uint64_t sent() const { return sent_; }
     void message_sent() {
         ++unbarred_;
         ++sent_;

@@ -46,8 +46,11 @@ std::string EdgeNode::topic(std::string_view type, bool isOfDevice) const {
 void EdgeNode::send(std::string_view type, bool isOfDevice, Payload payload) {
     payload.at = payload.at.value_or(now_.utc_ms);
     payload.seq = seq_++;
-    link_.publish({topic(type, isOfDevice), encode(payload)});
     delivery_.message_sent();
+    if (delivery_.hasReceipts()) {
+        payload.position = Position{birth_, delivery_.sent()};
+    }
+    link_.publish({topic(type, isOfDevice), encode(payload)});
 }
 
 Publication EdgeNode::death() const {
@@ -354,8 +357,9 @@ void EdgeNode::step(const Moment &now) {
     const auto since_s = delivery_.waiting_since();
     if (since_s.has_value() && now_.at_s - *since_s > settings_.answer_s) {
         link_.drop();
-        lose(hasReceipts_ ? fmt::format("The host {} does not confirm values.", settings_.primary_host)
-                          : "The broker does not answer.");
+        lose(delivery_.hasReceipts()
+                 ? fmt::format("The host {} does not confirm values.", settings_.primary_host)
+                 : "The broker does not answer.");
         return;
     }
     if (isRebirthDue_) {

@@ -87,6 +87,10 @@ std::string encode(const Payload &payload) {
     if (payload.seq.has_value()) {
         wire.set_seq(*payload.seq);
     }
+    if (payload.position.has_value()) {
+        wire.set_millwright_birth(payload.position->birth);
+        wire.set_millwright_count(payload.position->count);
+    }
     for (const PayloadMetric &metric : payload.metrics) {
         write_metric(metric, *wire.add_metrics());
     }
@@ -102,6 +106,9 @@ std::optional<Payload> decode_payload(std::string_view bytes) {
     Payload payload;
     payload.at = wire.has_timestamp() ? std::optional(wire.timestamp()) : std::nullopt;
     payload.seq = wire.has_seq() ? std::optional(wire.seq()) : std::nullopt;
+    if (wire.has_millwright_birth() && wire.has_millwright_count()) {
+        payload.position = Position{wire.millwright_birth(), wire.millwright_count()};
+    }
     for (const Wire::Metric &metric : wire.metrics()) {
         PayloadMetric one;
         one.name = metric.name();

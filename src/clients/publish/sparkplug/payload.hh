@@ -24,9 +24,18 @@ struct PayloadMetric {
     Value value{};
 };
 
+/// Which message of which birth: unique among the messages of a node.
+struct Position {
+    TimeMs birth = 0;         ///< time of NBIRTH
+    std::uint64_t count = 0;  ///< messages from NBIRTH on, that and this included
+
+    bool operator==(const Position &other) const = default;
+};
+
 struct Payload {
     std::optional<TimeMs> at{};
     std::optional<std::uint64_t> seq{};
+    std::optional<Position> position{};  ///< for a host with receipts
     std::vector<PayloadMetric> metrics{};
 };
 

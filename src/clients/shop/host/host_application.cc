@@ -159,6 +159,9 @@ void HostApplication::take(const publish::Publication &message, const Moment &no
         return;
     } else if (!follow_sequence(node, *payload)) {
         request_birth(node, topic->node);
+        if (payload->position.has_value()) {
+            return;
+        }
     }
     Device &device = node.devices[topic->device];
     const MachineName name{topic->node, topic->device};
@@ -170,7 +173,7 @@ void HostApplication::take(const publish::Publication &message, const Moment &no
         set_alive(device, name, false, at);
     }
     add_readings(node, *topic, *payload);
-    if (node.isInOrder) {
+    if (node.isInOrder && node.isCounted) {
         ++node.position.count;
         unstored_.insert(topic->node);
     }
@@ -182,6 +185,8 @@ void HostApplication::take_birth_of_node(Node &node, const Topic &topic, const p
         facts.by_name.clear();
     }
     node.isInOrder = true;
+    node.isCounted =
+        payload.position.has_value() && payload.position == publish::Position{payload.at.value_or(0), 1};
     node.seq = static_cast<std::uint8_t>(payload.seq.value_or(0) + 1);
     node.position = {bdseq_of(payload), payload.at.value_or(0), 0};
     receipts_.erase(topic.node);
@@ -202,7 +207,9 @@ void HostApplication::take_death_of_node(Node &node, const Topic &topic, const p
 
 /// False: a message is missing.
 bool HostApplication::follow_sequence(Node &node, const publish::Payload &payload) {
-    node.isInOrder = node.isInOrder && payload.seq == node.seq;
+    const bool isNext = !node.isCounted ||
+                        payload.position == publish::Position{node.position.birth, node.position.count + 1};
+    node.isInOrder = node.isInOrder && payload.seq == node.seq && isNext;
     ++node.seq;
     return node.isInOrder;
 }

@@ -29,8 +29,10 @@ struct HostSettings {
     std::size_t batch_readings = 20'000;
 };
 
-/// Nodes repeat what has no receipt, and a receipt is sent only for what is stored: a host that forgets
-/// everything with forget() loses nothing. One thread.
+/// A node whose messages have positions repeats what has no receipt, and a receipt is sent only for what is
+/// stored: a host that forgets everything with forget() loses nothing. Of such a node only the next message
+/// is taken: after a missing one the aliases of the last birth may be wrong, and the others come again after
+/// the birth that is requested. Of a node without positions everything is taken. One thread.
 class HostApplication {
   public:
     /// Time of the day, and a time that never jumps.
@@ -75,7 +77,7 @@ class HostApplication {
     void publish_state(bool isOnline);
     void take_birth_of_node(Node &node, const Topic &topic, const publish::Payload &payload);
     void take_death_of_node(Node &node, const Topic &topic, const publish::Payload &payload);
-    bool follow_sequence(Node &node, const publish::Payload &payload);
+    static bool follow_sequence(Node &node, const publish::Payload &payload);
     void define(Device &device, const Topic &topic, const publish::Payload &payload);
     void add_readings(Node &node, const Topic &topic, const publish::Payload &payload);
     static const Metric *find(const Device &device, const publish::PayloadMetric &metric);

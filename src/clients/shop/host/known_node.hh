@@ -24,8 +24,10 @@ struct KnownDevice {
 
 struct KnownNode {
     bool isInOrder = false;  ///< no message since the birth is missing
-    Receipt position;        ///< of the last message in order
-    std::uint8_t seq = 0;    ///< of the next message
+    /// Its messages have positions: it gets receipts, and sends again what has none.
+    bool isCounted = false;
+    Receipt position;      ///< of the last message in order
+    std::uint8_t seq = 0;  ///< of the next message
     double requested_s = -1e9;
     double receipt_s = -1e9;
     bool hasReported = false;

@@ -1,82 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The host application against edge nodes, over a broker that loses messages, in virtual time.
+// The host application for messages that a test writes, in virtual time.
 #include <algorithm>
-#include <map>
 #include <random>
-#include <set>
 
-#include "clients/publish/test/node_world.hh"
-#include "clients/shop/host/host_application.hh"
+#include "clients/shop/test/host_world.hh"
 
 namespace mw::shop {
 namespace {
-
-using publish::DataType;
-using publish::NodeSettings;
-using publish::NodeWorld;
-using publish::Packet;
-using publish::Payload;
-using publish::PayloadMetric;
-using publish::PlayedBroker;
-using publish::Publication;
-
-class HostWorld {
-  public:
-    explicit HostWorld(std::size_t batch_readings = 1000)
-        : host({.name = "shop", .groups = {}, .batch_readings = batch_readings}, broker,
-               [this](const std::string &what) { reports.push_back(what); }) {
-        host.connected();
-    }
-    void take(const Publication &message) { host.take(message, now()); }
-    void take(const std::string &type, Payload payload, const std::string &device = "") {
-        const std::string topic = "spBv1.0/shop/" + type + "/mill-1" + (device.empty() ? "" : "/" + device);
-        take(Publication{topic, encode(payload), 0, false});
-    }
-    /// A node with the device Mill and its metric Count, alias 100.
-    void bear(TimeMs birth, DataType type = DataType::INT64) {
-        Payload node{.at = birth, .seq = 0};
-        node.metrics.push_back(
-            {.name = "bdSeq", .at = birth, .type = DataType::INT64, .value = std::int64_t{7}});
-        take("NBIRTH", node);
-        Payload device{.at = birth, .seq = 1};
-        device.metrics.push_back(
-            {.name = "Count", .alias = 100, .at = birth, .type = type, .value = std::int64_t{0}});
-        take("DBIRTH", device, "Mill");
-    }
-    void count(std::uint64_t seq, TimeMs at, std::uint64_t value) {
-        Payload data{.at = at, .seq = seq};
-        data.metrics.push_back({.alias = 100, .at = at, .value = value});
-        take("DDATA", data, "Mill");
-    }
-    HostApplication::Moment now() const {
-        return {1'700'000'000'000 + static_cast<TimeMs>(now_s * 1000), now_s};
-    }
-    /// As a store that works. The receipts that were sent.
-    std::vector<Receipt> store() {
-        batches.push_back(host.take_batch());
-        broker.packets.clear();
-        now_s += 1;
-        host.stored(batches.back().receipts);
-        host.step(now());
-        std::vector<Receipt> sent;
-        for (const Packet &packet : broker.packets) {
-            if (packet.message.topic == "millwright/stored/shop/shop/mill-1") {
-                sent.push_back(publish::read_receipt(packet.message.payload).value());
-            }
-        }
-        return sent;
-    }
-    std::size_t births_requested() const {
-        return static_cast<std::size_t>(std::ranges::count_if(
-            broker.packets, [](const Packet &packet) { return packet.verb() == "NCMD"; }));
-    }
-
-    PlayedBroker broker;
-    std::vector<std::string> reports;
-    HostApplication host;
-    std::vector<Batch> batches;
-    double now_s = 100;
-};
 
 TEST(HostApplication, SendsAReceiptForWhatIsStored) {
     HostWorld world;
@@ -97,10 +27,27 @@ TEST(HostApplication, SendsNoReceiptBeyondAMissingMessage) {
     world.count(5, 1004, 8);
     EXPECT_EQ(world.births_requested(), 1U);
     EXPECT_EQ(world.store(), std::vector<Receipt>{(Receipt{7, 1000, 3})});
-    EXPECT_EQ(world.batches.back().readings.size(), 4U) << "values with a key are stored in any order";
+    EXPECT_EQ(world.batches.back().readings.size(), 2U) << "the others come again after the birth";
     world.bear(2000);
     world.count(2, 2001, 9);
     EXPECT_EQ(world.store(), std::vector<Receipt>{(Receipt{7, 2000, 3})});
+}
+
+/// It sends nothing again, so what comes is stored.
+TEST(HostApplication, StoresAllOfANodeThatDoesNotCountItsMessages) {
+    HostWorld world;
+    Payload birth{.at = 1000, .seq = 0};
+    birth.metrics.push_back(
+        {.name = "Count", .alias = 1, .at = 1000, .type = DataType::INT64, .value = std::int64_t{0}});
+    world.take("NBIRTH", birth);
+    for (const std::uint64_t seq : {1U, 2U, 4U, 5U}) {
+        Payload data{.at = 1000 + seq, .seq = seq};
+        data.metrics.push_back({.alias = 1, .at = 1000 + seq, .value = seq});
+        world.take("NDATA", data);
+    }
+    EXPECT_EQ(world.births_requested(), 1U);
+    EXPECT_TRUE(world.store().empty()) << "a receipt would confirm what nobody has counted";
+    EXPECT_EQ(world.batches.back().readings.size(), 5U);
 }
 
 TEST(HostApplication, DividesALargeBatchAndSendsTheReceiptWithItsEnd) {
@@ -235,82 +182,6 @@ TEST(HostApplication, SendsNoCommandButARequestForABirth) {
         ++requests;
     }
     EXPECT_GT(requests, 100U);
-}
-
-/// A node, a host and a broker that drops messages in both directions at random, and a store that fails.
-TEST(HostApplication, LosesNothingOfANodeWhenMessagesAndBatchesAreLost) {
-    const unsigned seed = 4711;
-    std::mt19937 random(seed);
-    NodeWorld node(NodeSettings{.primary_host = "shop"});
-    HostWorld world;
-    node.broker.state = publish::write_host_state({true, 1, true});
-    node.bear_machine();
-    std::map<TimeMs, std::set<std::int64_t>> stored;
-    std::vector<SeriesId> counts;
-    const auto store = [&](bool isFailing) {
-        Batch batch = world.host.take_batch();
-        for (const Series &one : batch.new_series) {
-            world.batches.emplace_back().new_series.push_back(one);
-            if (one.metric == "Count") {
-                counts.push_back(static_cast<SeriesId>(world.batches.size() - 1));
-            }
-        }
-        if (isFailing) {
-            // The batch is gone: the collector begins again.
-            world.host.forget();
-            world.host.connected();
-            return;
-        }
-        for (const Reading &one : batch.readings) {
-            if (std::ranges::find(counts, one.series) != counts.end()) {
-                stored[one.at].insert(std::get<std::int64_t>(one.value));
-            }
-        }
-        world.host.stored(batch.receipts);
-    };
-    const auto exchange = [&](int loss_percent) {
-        const auto isLost = [&] { return static_cast<int>(random() % 100) < loss_percent; };
-        for (const Packet &packet : std::exchange(node.broker.packets, {})) {
-            if (packet.type == Packet::Type::PUBLISH && !isLost()) {
-                world.take(packet.message);
-            }
-        }
-        world.now_s = node.now_s;
-        world.host.step(world.now());
-        for (const Packet &packet : std::exchange(world.broker.packets, {})) {
-            const bool isForNode = packet.verb() == "NCMD" || packet.message.topic.starts_with("millwright/");
-            if (packet.type == Packet::Type::PUBLISH && isForNode && !isLost()) {
-                node.broker.events.emplace_back(packet.message);
-            }
-        }
-    };
-    std::int64_t number = 0;
-    for (int round = 0; round < 3000; ++round) {
-        node.count(++number);
-        node.run(0.1);
-        exchange(round % 500 < 250 ? 5 : 0);
-        if (random() % 3 == 0) {
-            store(random() % 10 == 0);
-        }
-        if (random() % 200 == 0) {
-            world.host.forget();
-            world.host.connected();
-        }
-    }
-    for (int round = 0; round < 600; ++round) {
-        node.run(0.1);
-        exchange(0);
-        store(false);
-    }
-    std::map<std::int64_t, int> times;
-    for (const auto &[at, values] : stored) {
-        EXPECT_EQ(values.size(), 1U) << "two values have one key";
-        ++times[*values.begin()];
-    }
-    for (std::int64_t i = 1; i <= number; ++i) {
-        EXPECT_EQ(times[i], 1) << i;
-    }
-    EXPECT_EQ(node.data->state().confirmed, node.data->state().next) << "the node keeps nothing";
 }
 
 }  // namespace
