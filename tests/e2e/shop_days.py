@@ -21,6 +21,7 @@ from shop_world import Collector, Postgres, skip_without_database
 FOUND = Findings()
 expect = FOUND.expect
 DAY_MS, DAYS, KEEP = 86_400_000, 6, 3
+WRONG_MS = 1000  # in 1970
 # Longer than the collector waits for the database.
 READ_S = 8
 COUNTS = "SELECT date_trunc('day', at AT TIME ZONE 'UTC')::date, count(*) FROM reading GROUP BY 1 ORDER BY 1"
@@ -28,6 +29,8 @@ COUNTS = "SELECT date_trunc('day', at AT TIME ZONE 'UTC')::date, count(*) FROM r
 
 def play(machine, noon_ms):
     """A job each day at noon. State and program are only sent in the birth, before the first job."""
+    machine.bear(WRONG_MS)
+    machine.bear(noon_ms - (DAYS + 1) * DAY_MS)
     machine.bear(noon_ms - DAYS * DAY_MS - 1000)
     for day in range(DAYS, 0, -1):
         at = noon_ms - day * DAY_MS
@@ -40,7 +43,7 @@ def check_kept(database, before, port, today):
     """What is there after a start with KEEP_DAYS."""
     first = database.ask(f"SELECT '{today}'::date - {KEEP}")[0][0]
     expected = [row for row in before if row[0] >= first]
-    expect(len(before) == DAYS and 0 < len(expected) < len(before), 'values of some days are too old', before)
+    expect(len(before) == DAYS + 2 and 0 < len(expected) < len(before), 'values of some days are too old', before)
     wait_for(lambda: database.ask(COUNTS) != before, 'old days are removed')
     expect(database.ask(COUNTS) == expected, 'values of the other days stay', database.ask(COUNTS), expected)
     shown = json.loads(get(port, '/machines')[1])['machines'][0]
@@ -49,6 +52,24 @@ def check_kept(database, before, port, today):
     expect(jobs == [[row[0], 'ENDED', '/nc/bolt.ngc'] for row in expected], 'jobs of the days that are kept', jobs)
     left = database.ask('SELECT count(*) FROM run')[0][0], database.ask(f"SELECT count(*) FROM job_reading WHERE at < '{first}'")[0][0]
     expect(left == (str(len(expected)), '4'), 'runs, and the newest of older values for them', left)
+    left = database.ask("SELECT relname FROM pg_class WHERE relname ~ '^reading_[0-9]{8}$' ORDER BY 1"), database.ask("SELECT name FROM reading_day ORDER BY 1")
+    days = [day for day, in database.ask(f"SELECT 'reading_' || to_char('{first}'::date + n, 'YYYYMMDD') FROM generate_series(0, {KEEP + 2}) AS n")]
+    expect(left[0] == left[1] and [row[0] for row in left[0]] == days, 'tables of days', left, days)
+    old = database.ask(f"SELECT (SELECT count(*) FROM notification WHERE received < '{first}'), (SELECT count(*) FROM sent), (SELECT count(*) FROM notification), "
+                       f"(SELECT count(*) FROM presence JOIN machine ON machine.id = machine WHERE device = 'Lathe' AND at < '{first}'), "
+                       "(SELECT count(*) FROM reading_before), (SELECT whole FROM kept_reading JOIN metric ON metric.id = metric WHERE name = 'Program/Line')")
+    expect(old == [['0', '2', '2', '1', '0', '7']], 'notifications, presences and values of a wrong clock', old)
+
+
+def check_late_days(database):
+    """All tables were written today, so they stay. Then each is set back to its day, and that of the clock that is wrong, too."""
+    before = database.ask(COUNTS)
+    database.ask(f"SELECT drop_days((now() AT TIME ZONE 'UTC')::date - {KEEP})")
+    expect(database.ask(COUNTS) == before, 'values that came late stay', database.ask(COUNTS), before)
+    database.ask("UPDATE reading_day SET written = least(written, day)")
+    database.ask(f"INSERT INTO notification (machine, at, source, message, received) SELECT id, at, 'Contact', 'x', at FROM machine, "
+                 f"(VALUES (now()), (now() - interval '{KEEP + 2} days')) AS each (at) WHERE device = 'Lathe'")
+    database.ask("INSERT INTO sent (notification, target) SELECT id, 'mail' FROM notification")
 
 
 def check_reader(database, machine, noon_ms):
@@ -84,6 +105,7 @@ def main():
             wait_for(lambda: database.ask("SELECT count(*) FROM run WHERE ended_at IS NOT NULL") == [[str(DAYS)]], 'all jobs are stored')
             check_reader(database, machine, noon_ms)
             database.ask("DELETE FROM reading WHERE text = 'STOPPED'; DELETE FROM job_reading WHERE text = 'STOPPED'")
+            check_late_days(database)
             before = database.ask(COUNTS)
             expect(collector.kill(15) == 0, 'the collector ends in order')
             collector.log.write_text('')

@@ -41,8 +41,8 @@ class Machine:
         self.client.connect('127.0.0.1', port)
         self.client.loop_start()
 
-    def send(self, kind, at_ms, values, is_birth=False):
-        payload = self.decoder.Payload(timestamp=at_ms, seq=self.seq)
+    def send(self, kind, at_ms, values, is_birth=False, sent_ms=None):
+        payload = self.decoder.Payload(timestamp=sent_ms or at_ms, seq=self.seq)
         self.seq = (self.seq + 1) % 256
         for name, value in values.items():
             metric = payload.metrics.add(timestamp=at_ms)
@@ -58,11 +58,24 @@ class Machine:
         device = '' if kind in ('NBIRTH', 'NDEATH') else '/Lathe'
         self.client.publish(f'spBv1.0/plant/{kind}/cell{device}', payload.SerializeToString(), 0, False)
 
-    def bear(self, at_ms):
+    def bear(self, at_ms, sent_ms=None):
+        """With values of a time, sent at that time or another one."""
         self.seq = 0
-        self.send('NBIRTH', at_ms, {'bdSeq': 3}, True)
+        self.send('NBIRTH', at_ms, {'bdSeq': 3}, True, sent_ms)
         self.send('DBIRTH', at_ms, {'State': 'ON', 'Execution': 'READY', 'Mode': 'AUTO', 'Program/Path': '/nc/bolt.ngc', 'Program/Line': 7,
-                                    'Program/Ended': 0, 'Alarms/Drives': ''}, True)
+                                    'Program/Ended': 0, 'Alarms/Drives': ''}, True, sent_ms)
+
+    def readings(self, sent_ms, *readings):
+        """One message with (name, time, value) of each."""
+        payload = self.decoder.Payload(timestamp=sent_ms, seq=self.seq)
+        self.seq = (self.seq + 1) % 256
+        for name, at_ms, value in readings:
+            metric = payload.metrics.add(timestamp=at_ms, alias=ALIASES[name])
+            if isinstance(value, str):
+                metric.string_value = value
+            else:
+                metric.long_value = value
+        self.client.publish('spBv1.0/plant/DDATA/cell/Lathe', payload.SerializeToString(), 0, False)
 
     def data(self, at_ms, **values):
         self.send('DDATA', at_ms, {name.replace('_', '/'): value for name, value in values.items()})
@@ -144,8 +157,13 @@ def check_page(port, database, now_ms):
 
 
 def check_notifications(mails, bodies):
-    wait_for(lambda: mails and bodies, 'the alarm is sent')
+    """The clock of the machine is an hour behind, which is reported, too."""
+    wait_for(lambda: len(mails) > 1 and len(bodies) > 1, 'the alarm is sent')
     time.sleep(3)
+    bodies = sorted(bodies, key=lambda body: body['source'])
+    expect([body['source'] for body in bodies] == ['Alarms/Drives', 'Clock'], 'notifications', bodies)
+    mails = [text for text in mails if 'Alarms/Drives' in email.message_from_string(text).get_payload(decode=True).decode()]
+    bodies = bodies[:1]
     expect(len(mails) == 1 and len(bodies) == 1, 'each alarm is sent once', len(mails), len(bodies))
     expect(bodies[0]['machine'] == 'plant/cell/Lathe' and bodies[0]['source'] == 'Alarms/Drives', 'the webhook', bodies)
     mail = email.message_from_string(mails[0])
@@ -184,7 +202,7 @@ def main():
             port = int(re.search(r'Shop page: port (\d+)', collector.log.read_text()).group(1))
             now_ms = int(time.time() * 1000)
             play(Machine(decoder, broker.port), now_ms)
-            wait_for(lambda: database.ask("SELECT count(*) FROM notification WHERE source <> 'Contact'") == [['1']], 'the alarm is stored')
+            wait_for(lambda: database.ask("SELECT count(*) FROM notification WHERE source LIKE 'Alarms/%'") == [['1']], 'the alarm is stored')
             check_requests(port)
             check_page(port, database, now_ms)
             check_notifications(mailbox.mails, hook.bodies)

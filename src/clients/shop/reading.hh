@@ -46,13 +46,16 @@ struct Reading {
     SeriesId series = 0;
     TimeMs at = 0;
     Value value;
+    TimeMs late_ms = 0;  ///< age of the value when the machine sent it
 };
 
 /// A machine is there, or has gone.
+/// Times of the presences of a machine increase strictly.
 struct Presence {
     MachineName machine;
-    TimeMs at = 0;
+    TimeMs at = 0;  ///< of the clock of the machine
     bool isAlive = false;
+    std::int64_t clock_ahead_ms = 0;  ///< of the machine, compared with this computer
 };
 
 struct NodeReceipt {

@@ -165,12 +165,13 @@ void HostApplication::take(const publish::Publication &message, const Moment &no
     }
     Device &device = node.devices[topic->device];
     const MachineName name{topic->node, topic->device};
-    const TimeMs at = payload->at.value_or(now.utc_ms);
+    const TimeMs at = std::min(payload->at.value_or(now.utc_ms), LAST_TIME);
+    node.clock_ahead_ms = static_cast<std::int64_t>(at) - static_cast<std::int64_t>(now.utc_ms);
     if (topic->type == "DBIRTH" || topic->type == "NBIRTH") {
         define(device, *topic, *payload);
-        set_alive(device, name, true, at);
+        set_alive(node, name, true, at);
     } else if (topic->type == "DDEATH") {
-        set_alive(device, name, false, at);
+        set_alive(node, name, false, at);
     }
     add_readings(node, *topic, *payload);
     if (node.isInOrder && node.isCounted) {
@@ -199,7 +200,8 @@ void HostApplication::take_death_of_node(Node &node, const Topic &topic, const p
     }
     for (auto &[device, facts] : node.devices) {
         // The will has the time of its connection.
-        set_alive(facts, {topic.node, device}, false, now_.utc_ms);
+        const std::int64_t at = static_cast<std::int64_t>(now_.utc_ms) + node.clock_ahead_ms;
+        set_alive(node, {topic.node, device}, false, static_cast<TimeMs>(std::max<std::int64_t>(at, 0)));
     }
     node.isInOrder = false;
     node.position = {};
@@ -276,14 +278,18 @@ void HostApplication::add_readings(Node &node, const Topic &topic, const publish
                                     topic.node.node));
             }
         } else if (known->series != NOT_STORED) {
-            batch_.readings.push_back({known->series, at, typed(metric.value, known->type)});
+            const TimeMs sent = payload.at.value_or(at);
+            batch_.readings.push_back(
+                {known->series, at, typed(metric.value, known->type), sent - std::min(at, sent)});
         }
     }
 }
 
-void HostApplication::set_alive(Device &device, const MachineName &name, bool isAlive, TimeMs at) {
+void HostApplication::set_alive(Node &node, const MachineName &name, bool isAlive, TimeMs at) {
+    Device &device = node.devices[name.device];
     if (device.isAlive != isAlive || isAlive) {
-        batch_.presences.push_back({name, std::min(at, LAST_TIME), isAlive});
+        device.presence_at = std::max(at, device.presence_at + 1);
+        batch_.presences.push_back({name, device.presence_at, isAlive, node.clock_ahead_ms});
     }
     device.isAlive = isAlive;
 }

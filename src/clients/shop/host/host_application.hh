@@ -81,7 +81,7 @@ class HostApplication {
     void define(Device &device, const Topic &topic, const publish::Payload &payload);
     void add_readings(Node &node, const Topic &topic, const publish::Payload &payload);
     static const Metric *find(const Device &device, const publish::PayloadMetric &metric);
-    void set_alive(Device &device, const MachineName &name, bool isAlive, TimeMs at);
+    void set_alive(Node &node, const MachineName &name, bool isAlive, TimeMs at);
     SeriesId series_of(const MachineName &machine, const publish::PayloadMetric &metric);
     void request_birth(Node &node, const NodeName &name);
     void take_census();

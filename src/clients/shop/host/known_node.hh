@@ -18,6 +18,7 @@ struct KnownMetric {
 
 struct KnownDevice {
     bool isAlive = false;
+    TimeMs presence_at = 0;  ///< of the last presence
     std::map<std::uint64_t, KnownMetric> by_alias;
     std::map<std::string, KnownMetric, std::less<>> by_name;
 };
@@ -28,6 +29,8 @@ struct KnownNode {
     bool isCounted = false;
     Receipt position;      ///< of the last message in order
     std::uint8_t seq = 0;  ///< of the next message
+    /// By its last message: the death that the broker sends has no time of the node's clock.
+    std::int64_t clock_ahead_ms = 0;
     double requested_s = -1e9;
     double receipt_s = -1e9;
     bool hasReported = false;

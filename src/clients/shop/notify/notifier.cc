@@ -9,13 +9,16 @@
 #include <chrono>
 #include <cstdint>
 #include <cstring>
+#include <ctime>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <utility>
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include "base/text.hh"
 #include "clients/publish/value.hh"
 
 namespace mw::shop {
@@ -63,6 +66,46 @@ std::string base64(std::string_view bytes) {
     return text;
 }
 
+/// Text of the header Subject: encoded words of RFC 2047, each with whole characters, one a line of 76 bytes
+/// at most.
+std::string encoded_words(std::string_view text) {
+    constexpr std::size_t MOST = 39;  // 52 digits
+    std::string words;
+    do {
+        std::size_t end = std::min(MOST, text.size());
+        const auto isInCharacter = [&text](std::size_t at) {
+            return at < text.size() && (static_cast<unsigned char>(text[at]) & 0xC0U) == 0x80U;
+        };
+        while (end > 0 && isInCharacter(end)) {
+            --end;
+        }
+        words += fmt::format("{}=?UTF-8?B?{}?=", words.empty() ? "" : "\r\n ", base64(text.substr(0, end)));
+        text.remove_prefix(end);
+    } while (!text.empty());
+    return words;
+}
+
+/// Lines of 76 digits, as RFC 2045 has them.
+std::string base64_lines(std::string_view bytes) {
+    constexpr std::size_t LINE = 57;
+    std::string lines;
+    for (; !bytes.empty(); bytes.remove_prefix(std::min(LINE, bytes.size()))) {
+        lines += base64(bytes.substr(0, LINE)) + "\r\n";
+    }
+    return lines;
+}
+
+std::string duration(std::int64_t seconds) {
+    constexpr std::int64_t MINUTE = 60, HOUR = 3600;
+    return seconds < HOUR ? fmt::format("{} min", seconds / MINUTE)
+                          : fmt::format("{} h {} min", seconds / HOUR, seconds % HOUR / MINUTE);
+}
+
+/// As RFC 5322 has it.
+std::string date_now() {
+    return fmt::format("{:%a, %d %b %Y %H:%M:%S} +0000", fmt::gmtime(std::time(nullptr)));
+}
+
 struct Upload {
     std::string_view rest;
 
@@ -97,7 +140,7 @@ using Curl = std::unique_ptr<CURL, decltype(&curl_easy_cleanup)>;
 Result<> send_mail(const NotifierSettings &settings, const Notification &what) {
     const Curl curl(curl_easy_init(), &curl_easy_cleanup);
     const List receivers = list_of(settings.to);
-    const std::string text = mail_text(settings, what);
+    const std::string text = mail_text(settings, what, date_now());
     Upload upload{text};
     curl_easy_setopt(curl.get(), CURLOPT_URL, settings.server.c_str());
     curl_easy_setopt(curl.get(), CURLOPT_PROTOCOLS_STR, "smtp,smtps");
@@ -130,27 +173,36 @@ Result<> send_webhook(const std::string &address, const Notification &what) {
 
 }  // namespace
 
-std::string mail_text(const NotifierSettings &settings, const Notification &what) {
+std::string mail_text(const NotifierSettings &settings, const Notification &what, const std::string &date) {
     // Without control characters no text can add a header or end the mail.
-    const std::string subject = publish::clean_text(fmt::format("{}: {}", what.machine, what.message));
+    const std::string subject = publish::clean_text(
+        fmt::format("{}: {}{}", what.machine, what.late_s > LATE_S ? "Late: " : "", what.message));
     std::string receivers;
     for (const std::string &one : settings.to) {
-        receivers += fmt::format("{}{}", receivers.empty() ? "" : ", ", one);
+        receivers += fmt::format("{}{}", receivers.empty() ? "" : ",\r\n ", one);
     }
-    return fmt::format("From: {}\r\nTo: {}\r\nSubject: =?UTF-8?B?{}?=\r\nMIME-Version: 1.0\r\n"
-                       "Content-Type: text/plain; charset=utf-8\r\nContent-Transfer-Encoding: base64\r\n\r\n"
-                       "{}\r\n",
-                       settings.from, receivers, base64(std::string_view(subject).substr(0, 45)),
-                       base64(fmt::format("{}\n{}\n{}\n{}\n", what.machine, what.source,
-                                          publish::clean_text(what.message), what.at)));
+    std::string body = fmt::format("{}\n{}\n{}\n{}\n", what.machine, what.source,
+                                   publish::clean_text(what.message), what.at);
+    if (what.late_s > LATE_S) {
+        body += fmt::format("Late: sent by the machine {} after that time, received {}. {}\n",
+                            duration(what.late_s), what.received,
+                            what.isOver ? "It is over." : "It is the newest value.");
+    }
+    // The same notification has the same number: a mail that comes twice can be recognised.
+    const std::string domain =
+        settings.from.substr(std::min(settings.from.find('@') + 1, settings.from.size()));
+    return fmt::format("From: {}\r\nTo: {}\r\nSubject: {}\r\nDate: {}\r\nMessage-ID: <notification-{}@{}>\r\n"
+                       "MIME-Version: 1.0\r\nContent-Type: text/plain; charset=utf-8\r\n"
+                       "Content-Transfer-Encoding: base64\r\n\r\n{}",
+                       settings.from, receivers, encoded_words(subject), date, what.id, domain,
+                       base64_lines(body));
 }
 
 std::string webhook_text(const Notification &what) {
-    return nlohmann::json{{"id", what.id},
-                          {"machine", what.machine},
-                          {"time", what.at},
-                          {"source", what.source},
-                          {"message", what.message}}
+    return nlohmann::json{{"id", what.id},         {"machine", what.machine},
+                          {"time", what.at},       {"received", what.received},
+                          {"late_s", what.late_s}, {"over", what.isOver},
+                          {"source", what.source}, {"message", what.message}}
         .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
@@ -183,8 +235,9 @@ Result<> Notifier::send_to(Database &database, const std::string &target) {
     const std::array parameters{Parameter{target, false, false}};
     const auto rows = database.ask(
         "SELECT notification.id, machine.grp || '/' || machine.node || '/' || device, "
-        "notification.at, source, message FROM notification JOIN machine ON machine.id = machine "
-        "WHERE notification.at > now() - interval '1 day' AND NOT EXISTS (SELECT FROM sent "
+        "notification.at, source, message, received, extract(epoch FROM late)::bigint, "
+        "is_over(notification) FROM notification JOIN machine ON machine.id = machine "
+        "WHERE received > now() - interval '1 day' AND NOT EXISTS (SELECT FROM sent "
         "WHERE notification = notification.id AND target = $1) ORDER BY notification.id LIMIT 50",
         parameters);
     if (!rows.has_value()) {
@@ -192,7 +245,14 @@ Result<> Notifier::send_to(Database &database, const std::string &target) {
     }
     for (int i = 0; i < rows->count(); ++i) {
         const auto text = [&](int column) { return rows->text(i, column).value_or(""); };
-        const auto done = send(target, {text(0), text(1), text(2), text(3), text(4)});
+        const auto done = send(target, {.id = text(0),
+                                        .machine = text(1),
+                                        .at = text(2),
+                                        .source = text(3),
+                                        .message = text(4),
+                                        .received = text(5),
+                                        .late_s = parse_int(text(6)).value_or(0),
+                                        .isOver = text(7) == "t"});
         if (!done.has_value()) {
             return done;
         }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <condition_variable>
+#include <cstdint>
 #include <functional>
 #include <mutex>
 #include <string>
@@ -24,10 +25,15 @@ struct NotifierSettings {
 
 struct Notification {
     std::string id, machine, at, source, message;
+    std::string received;     ///< when it came to this computer
+    std::int64_t late_s = 0;  ///< age of the value when the machine sent it
+    bool isOver = false;      ///< the value has changed since
 };
+/// A value that is older than that is late: a publisher tries a broker again after half a minute at most.
+inline constexpr std::int64_t LATE_S = 60;
 
-/// Header and body, with lines as SMTP requires them.
-std::string mail_text(const NotifierSettings &settings, const Notification &what);
+/// Header and body, with lines as SMTP requires them. `date` as RFC 5322 has it.
+std::string mail_text(const NotifierSettings &settings, const Notification &what, const std::string &date);
 std::string webhook_text(const Notification &what);
 
 /// A thread that reads notifications from the database. Each is sent once to each target; what fails is tried

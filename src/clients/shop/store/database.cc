@@ -19,6 +19,9 @@ int Rows::count() const {
 int Rows::columns() const {
     return PQnfields(result_.get());
 }
+std::size_t Rows::written() const {
+    return parse_uint(PQcmdTuples(result_.get())).value_or(0);
+}
 std::optional<std::string> Rows::text(int row, int column) const {
     return PQgetisnull(result_.get(), row, column) == 1
                ? std::nullopt

@@ -23,6 +23,8 @@ class Rows {
     explicit Rows(pg_result *result);
     int count() const;
     int columns() const;
+    /// Rows that an INSERT without WITH has written.
+    std::size_t written() const;
     /// Nothing for NULL.
     std::optional<std::string> text(int row, int column) const;
     std::string name(int column) const;

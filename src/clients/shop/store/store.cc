@@ -19,7 +19,7 @@ namespace {
 constexpr std::int64_t MS_PER_DAY = 86'400'000;
 /// 1 January 2000 in milliseconds: PostgreSQL counts from there.
 constexpr std::int64_t EPOCH_MS = 946'684'800'000;
-/// Each day from 2020 to 2099 has its own partition.
+/// Each day from 2020 to 2099 has its own partition; earlier and later ones have one each.
 constexpr std::int64_t FIRST_DAY = 18'262, END_DAY = 47'482;
 
 std::int64_t timestamp(TimeMs at) {
@@ -53,16 +53,42 @@ constexpr const char *WRITE_READINGS =
     "INSERT INTO reading (metric, at, number, whole, text) "
     "SELECT * FROM unnest($1::int[], $2::timestamptz[], $3::float8[], $4::bigint[], $5::text[]) "
     "ON CONFLICT DO NOTHING";
+/// Those whose time another value of the metric has, which differs.
+constexpr const char *WRITE_SAME_TIMES =
+    "SELECT count(*) FROM add_readings($1::int[], $2::timestamptz[], $3::float8[], $4::bigint[], $5::text[])";
 /// Only a row that was not there is reported to people. A trigger calculates runs from job_reading.
 constexpr const char *WRITE_EVENTS =
-    "WITH fresh AS (INSERT INTO reading (metric, at, number, whole, text) "
-    "SELECT * FROM unnest($1::int[], $2::timestamptz[], $3::float8[], $4::bigint[], $5::text[]) "
-    "ON CONFLICT DO NOTHING RETURNING metric, at, text), "
-    "named AS (SELECT fresh.*, machine, name FROM fresh JOIN metric ON metric.id = fresh.metric), "
+    "WITH fresh AS (SELECT * FROM add_readings($1::int[], $2::timestamptz[], $3::float8[], $4::bigint[], "
+    "$5::text[])), "
+    "age AS (SELECT metric, at, max(ms) AS ms FROM unnest($1::int[], $2::timestamptz[], $6::bigint[]) "
+    "AS each (metric, at, ms) GROUP BY metric, at), "
+    "named AS (SELECT fresh.*, machine, name, coalesce(ms, 0) AS ms FROM fresh "
+    "JOIN metric ON metric.id = fresh.metric "
+    "LEFT JOIN age ON age.metric = fresh.metric AND age.at = date_trunc('milliseconds', fresh.at)), "
     "job AS (INSERT INTO job_reading (metric, at, text) SELECT metric, at, text FROM named "
     "WHERE name NOT LIKE 'Alarms/%' ON CONFLICT DO NOTHING) "
-    "INSERT INTO notification (machine, at, source, message) SELECT machine, at, name, text FROM named "
+    "INSERT INTO notification (machine, at, source, message, late) "
+    "SELECT machine, at, name, text, ms * interval '1 ms' FROM named "
     "WHERE text <> '' AND (name LIKE 'Alarms/%' OR (name = 'Execution' AND text = 'PROGRAM_STOPPED')) "
+    "ON CONFLICT DO NOTHING";
+/// In the order in which they came. A clock that is wrong is reported once a day.
+constexpr const char *WRITE_PRESENCES =
+    "WITH given AS (SELECT * FROM unnest($1::int[], $2::timestamptz[], $3::bool[], $4::bigint[]) WITH "
+    "ORDINALITY "
+    "AS each (machine, at, alive, ahead_s, place)), "
+    "ordered AS (SELECT machine, alive, ahead_s, greatest(at, (SELECT max(at) FROM presence "
+    "WHERE presence.machine = given.machine) + interval '1 ms' * "
+    "row_number() OVER (PARTITION BY machine ORDER BY place)) AS at FROM given), "
+    "fresh AS (INSERT INTO presence (machine, at, alive) SELECT machine, at, alive FROM ordered) "
+    "INSERT INTO notification (machine, at, source, message) "
+    "SELECT id, at, 'Contact', 'The machine is not connected.' FROM ordered "
+    "JOIN machine ON machine.id = ordered.machine WHERE NOT alive AND device <> '' "
+    "UNION ALL (SELECT DISTINCT ON (id) id, at, 'Clock', format('The clock of the machine is %s s %s. Set "
+    "it: "
+    "times of its values are wrong.', abs(ahead_s), CASE WHEN ahead_s > 0 THEN 'ahead' ELSE 'behind' END) "
+    "FROM ordered JOIN machine ON machine.id = ordered.machine WHERE alive AND abs(ahead_s) > 60 AND "
+    "device <> '' AND NOT EXISTS (SELECT FROM notification WHERE machine = ordered.machine "
+    "AND source = 'Clock' AND received > now() - interval '1 day')) "
     "ON CONFLICT DO NOTHING";
 
 /// Readings as the arrays of a statement.
@@ -70,15 +96,15 @@ class ReadingArrays {
   public:
     explicit ReadingArrays(std::size_t count)
         : metrics_(oid::INT4, count, false), times_(oid::TIMESTAMPTZ, count, false),
-          numbers_(oid::FLOAT8, count, true), wholes_(oid::INT8, count, true),
-          texts_(oid::TEXT, count, true) {}
+          numbers_(oid::FLOAT8, count, true), wholes_(oid::INT8, count, true), texts_(oid::TEXT, count, true),
+          ages_(oid::INT8, count, false) {}
     void add(std::int32_t metric, const Reading &reading);
-    std::array<Parameter, 5> take() {
-        return {metrics_.take(), times_.take(), numbers_.take(), wholes_.take(), texts_.take()};
+    std::array<Parameter, 6> take() {
+        return {metrics_.take(), times_.take(), numbers_.take(), wholes_.take(), texts_.take(), ages_.take()};
     }
 
   private:
-    ArrayWriter metrics_, times_, numbers_, wholes_, texts_;
+    ArrayWriter metrics_, times_, numbers_, wholes_, texts_, ages_;
 };
 
 }  // namespace
@@ -220,7 +246,7 @@ Result<> Store::find_ids(const Batch &batch, const std::vector<Series> &series) 
 }
 
 Result<> Store::make_day(std::int64_t day) {
-    if (day < FIRST_DAY || day >= END_DAY || days_.contains(day)) {
+    if (days_.contains(day)) {
         return {};
     }
     const std::array parameters{words(date(day))};
@@ -235,7 +261,7 @@ Result<> Store::make_day(std::int64_t day) {
 Result<> Store::make_days(const std::vector<Reading> &readings) {
     std::set<std::int64_t> days;
     for (const Reading &reading : readings) {
-        days.insert(day_of(reading.at));
+        days.insert(std::clamp(day_of(reading.at), FIRST_DAY - 1, END_DAY));
     }
     for (const std::int64_t day : days) {
         if (auto made = make_day(day); !made.has_value()) {
@@ -248,6 +274,7 @@ Result<> Store::make_days(const std::vector<Reading> &readings) {
 void ReadingArrays::add(std::int32_t metric, const Reading &reading) {
     metrics_.int32(metric);
     times_.int64(timestamp(reading.at));
+    ages_.int64(static_cast<std::int64_t>(reading.late_ms));
     // Of the three columns one has the value.
     std::optional<double> number;
     std::optional<std::int64_t> whole;
@@ -273,28 +300,41 @@ Result<> Store::write_readings(const std::vector<Reading> &readings, const std::
     for (const Reading &reading : readings) {
         (isEvent(series[reading.series].metric) ? events : plain).push_back(&reading);
     }
-    const auto insert = [this](const std::vector<const Reading *> &some, const char *statement) -> Result<> {
-        if (some.empty()) {
-            return {};
-        }
-        ReadingArrays arrays(some.size());
+    const auto arrays = [this](const std::vector<const Reading *> &some) {
+        ReadingArrays all(some.size());
         for (const Reading *const reading : some) {
-            arrays.add(ids_[reading->series], *reading);
+            all.add(ids_[reading->series], *reading);
         }
-        const auto parameters = arrays.take();
-        const auto written = database_.ask(statement, parameters);
-        return written.has_value() ? Result<>{} : std::unexpected(written.error());
+        return all.take();
     };
-    auto done = insert(plain, WRITE_READINGS);
-    return done.has_value() ? insert(events, WRITE_EVENTS) : done;
+    if (!plain.empty()) {
+        const auto parameters = arrays(plain);
+        const std::span five(parameters.begin(), 5);
+        auto rows = database_.ask(WRITE_READINGS, five);
+        if (rows.has_value() && rows->written() < plain.size()) {
+            rows = database_.ask(WRITE_SAME_TIMES, five);
+        }
+        if (!rows.has_value()) {
+            return std::unexpected(rows.error());
+        }
+    }
+    if (!events.empty()) {
+        const auto parameters = arrays(events);
+        if (const auto rows = database_.ask(WRITE_EVENTS, parameters); !rows.has_value()) {
+            return std::unexpected(rows.error());
+        }
+    }
+    return {};
 }
 
 Result<> Store::write_presences(const std::vector<Presence> &presences) {
     if (presences.empty()) {
         return {};
     }
+    constexpr std::int64_t MS_PER_S = 1000;
     ArrayWriter machines(oid::INT4, presences.size(), false),
-        times(oid::TIMESTAMPTZ, presences.size(), false), alive(oid::BOOL, presences.size(), false);
+        times(oid::TIMESTAMPTZ, presences.size(), false), alive(oid::BOOL, presences.size(), false),
+        ahead(oid::INT8, presences.size(), false);
     for (const Presence &one : presences) {
         const auto machine = machine_id(one.machine);
         if (!machine.has_value()) {
@@ -303,16 +343,10 @@ Result<> Store::write_presences(const std::vector<Presence> &presences) {
         machines.int32(*machine);
         times.int64(timestamp(one.at));
         alive.boolean(one.isAlive);
+        ahead.int64(one.clock_ahead_ms / MS_PER_S);
     }
-    const std::array parameters{machines.take(), times.take(), alive.take()};
-    const auto written =
-        database_.ask("WITH fresh AS (INSERT INTO presence (machine, at, alive) "
-                      "SELECT * FROM unnest($1::int[], $2::timestamptz[], $3::bool[]) ON CONFLICT DO NOTHING "
-                      "RETURNING machine, at, alive) INSERT INTO notification (machine, at, source, message) "
-                      "SELECT machine, at, 'Contact', 'The machine is not connected.' FROM fresh "
-                      "JOIN machine ON machine.id = machine WHERE NOT alive AND device <> '' "
-                      "ON CONFLICT DO NOTHING",
-                      parameters);
+    const std::array parameters{machines.take(), times.take(), alive.take(), ahead.take()};
+    const auto written = database_.ask(WRITE_PRESENCES, parameters);
     return written.has_value() ? Result<>{} : std::unexpected(written.error());
 }
 
@@ -330,7 +364,9 @@ Result<> Store::write_census(const Census &census) {
     }
     const std::array parameters{groups.take(), nodes.take(), devices.take(), own.take()};
     const auto written = database_.ask(
-        "WITH gone AS (INSERT INTO presence (machine, at, alive) SELECT id, now(), false FROM machine "
+        "WITH gone AS (INSERT INTO presence (machine, at, alive) "
+        "SELECT id, greatest(now(), (SELECT max(at) FROM presence WHERE machine = machine.id) + "
+        "interval '1 ms'), false FROM machine "
         "WHERE (cardinality($4::text[]) = 0 OR grp = ANY ($4)) AND (grp, node, device) NOT IN "
         "(SELECT * FROM unnest($1::text[], $2::text[], $3::text[])) AND "
         "(SELECT alive FROM presence WHERE machine = machine.id ORDER BY at DESC LIMIT 1) "
@@ -343,6 +379,8 @@ Result<> Store::write_census(const Census &census) {
 }
 
 Result<> Store::tend() {
+    // Each hour the days that are written are noted again.
+    days_.clear();
     auto done = database_.run("BEGIN");
     const std::int64_t day = today();
     for (std::int64_t ahead = 0; ahead <= 2 && done.has_value(); ++ahead) {

@@ -46,7 +46,7 @@ TEST(HostApplication, StoresAllOfANodeThatDoesNotCountItsMessages) {
         world.take("NDATA", data);
     }
     EXPECT_EQ(world.births_requested(), 1U);
-    EXPECT_TRUE(world.store().empty()) << "a receipt would confirm what nobody has counted";
+    EXPECT_TRUE(world.store().empty()) << "a receipt would confirm what was not counted";
     EXPECT_EQ(world.batches.back().readings.size(), 5U);
 }
 
