@@ -2,12 +2,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Load of a shop: machines that publish by Sparkplug, mosquitto, `millwright shop` and PostgreSQL on this computer. Prints the values
 that are stored per second, the processor time of each part, and two times: from the time of a value to its receipt at the publisher
-(of all messages), and to the moment when a query sees it (one machine, by another connection). Counts the rows at the end: status 1
-when one is missing or there is one too many.
+(of all messages), and to the moment when a query sees it (one machine, by another connection). The machines run programs and have alarms:
+triggers calculate runs, and each alarm is sent to a webhook. Counts rows, runs and alarms at the end: status 1 when one is missing or there is
+one too many.
 
-usage: shop.py [--machines N] [--values N] [--seconds N]
+usage: shop.py [--machines N] [--values N] [--seconds N] [--job SECONDS]
 """
 import argparse
+import http.server
 import json
 import os
 import pathlib
@@ -21,6 +23,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 BUILD = ROOT / 'build/release'
 sys.path.insert(0, str(ROOT / 'tests/e2e'))
 from publish_shop import Broker, free_port, wait_for  # noqa: E402
+from shop_page import Hook, serve  # noqa: E402
 from shop_world import Collector, Postgres, skip_without_database  # noqa: E402
 
 TICKS = os.sysconf('SC_CLK_TCK')
@@ -66,11 +69,13 @@ def measure(words, folder):
     broker = Broker(folder, free_port())
     # Without a line for each message.
     broker.process = subprocess.Popen(['/usr/sbin/mosquitto', '-c', str(broker.config)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    collector = Collector(str(BUILD / 'bin/millwright-shop'), folder, database, broker.port).start()
+    hook = serve(http.server.ThreadingHTTPServer(('127.0.0.1', 0), Hook))
+    hook.bodies = []
+    collector = Collector(str(BUILD / 'bin/millwright-shop'), folder, database, broker.port, f'WEBHOOK = http://127.0.0.1:{hook.server_address[1]}/').start()
     try:
         wait_for(lambda: database.psql('SELECT count(*) FROM schema_step').stdout.strip() not in ('', '0'), 'the tables are there')
         probe = Probe(database)
-        load = subprocess.Popen([str(BUILD / 'test/shop-load'), str(broker.port), str(words.machines), str(words.values), str(words.seconds)],
+        load = subprocess.Popen([str(BUILD / 'test/shop-load'), str(broker.port), str(words.machines), str(words.values), str(words.seconds), str(words.job)],
                                 stdout=subprocess.PIPE, text=True)
         begin = time.monotonic()
         time.sleep(5)  # births are over
@@ -85,12 +90,16 @@ def measure(words, folder):
         probe.is_ended = True
         sent = json.loads(load.communicate()[0])
         stored = int(database.ask('SELECT count(*) FROM reading')[0][0])
+        runs = database.ask('SELECT count(*), count(ended_at) FROM run')[0]
+        wait_for(lambda: len(hook.bodies) >= sent['alarms'], 'all alarms are sent', 60)
         size = int(database.ask("SELECT sum(pg_total_relation_size(inhrelid)) FROM pg_inherits WHERE inhparent = 'reading'::regclass")[0][0])
     finally:
         collector.kill()
         broker.kill()
         database.end()
     rate = words.machines * words.values
+    ids = {body['id'] for body in hook.bodies}
+    print(f'{sent["programs"]} programs, {runs[0]} runs in the table, {runs[1]} ended; {sent["alarms"]} alarms, {len(hook.bodies)} sent to the webhook')
     print(f'{words.machines} machines, {words.values} values/s each, {words.seconds} s: {sent["values"]} values sent, {stored} stored, '
           f'{sent["rebirths"]} rebirths, {size / stored:.0f} bytes a value with its index')
     cores = {name: (after[name] - before[name]) / (end - at) for name in parts}
@@ -98,7 +107,7 @@ def measure(words, folder):
         print(f'{name:10} {load_of:6.3f} cores, {rate / load_of:9.0f} values/s per core')
     print(f'value to query: p50 {1000 * share(probe.times, 0.5):.0f} ms, p99 {1000 * share(probe.times, 0.99):.0f} ms, {len(probe.times)} samples')
     print(f'value to receipt: p50 {sent["receipt_p50_ms"]} ms, p99 {sent["receipt_p99_ms"]} ms, max {sent["receipt_max_ms"]} ms, {sent["messages"]} messages')
-    return 0 if stored == sent['values'] and not sent['open'] else 1
+    return 0 if stored == sent['values'] and not sent['open'] and len(ids) == len(hook.bodies) == sent['alarms'] and int(runs[0]) == sent['programs'] else 1
 
 
 def main():
@@ -106,6 +115,7 @@ def main():
     parser.add_argument('--machines', type=int, default=1000)
     parser.add_argument('--values', type=int, default=10, help='a second of each machine, a multiple of 10')
     parser.add_argument('--seconds', type=int, default=60)
+    parser.add_argument('--job', type=int, default=60, help='time from one program of a machine to the next, even; 0: no programs and alarms')
     skip_without_database()
     with tempfile.TemporaryDirectory() as name:
         sys.exit(measure(parser.parse_args(), pathlib.Path(name)))

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// shop-load PORT MACHINES VALUES SECONDS: edge nodes of Sparkplug for the load test of a shop, over one
-// connection. Each machine sends ten messages a second with VALUES values a second in all. Prints what it has
-// sent, and the time from a message to the receipt that covers it.
+// shop-load PORT MACHINES VALUES SECONDS JOB_S: edge nodes of Sparkplug for the load test of a shop, over one
+// connection. Each machine sends ten messages a second with VALUES values a second in all, and runs a program
+// for half of each JOB_S seconds; with each tenth program it has an alarm. Prints what it has sent, and the
+// time from a message to the receipt that covers it.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -9,6 +10,7 @@
 #include <deque>
 #include <random>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include <fmt/format.h>
@@ -21,7 +23,8 @@ namespace {
 
 using namespace mw::publish;
 
-constexpr int METRICS = 20, MESSAGES_PER_S = 10;
+constexpr unsigned METRICS = 20, EXECUTION = 120, ENDED = 121, ALARM = 122;  // aliases, from 100 on
+constexpr int MESSAGES_PER_S = 10, JOBS_PER_ALARM = 10;
 
 TimeMs utc_ms() {
     const auto now = std::chrono::system_clock::now().time_since_epoch();
@@ -39,15 +42,16 @@ struct Machine {
 
 class Load {
   public:
-    Load(int port, int machines, int values)
-        : values_(values), machines_(machines), link_({.brokers = {{"127.0.0.1", port}},
-                                                       .client_id = "shop-load",
-                                                       .user = "",
-                                                       .password = "",
-                                                       .authorities = "",
-                                                       .certificate = "",
-                                                       .key = "",
-                                                       .not_delivered_topic = "millwright/none"}) {
+    Load(int port, int machines, int values, int job_s)
+        : values_(values), job_ticks_(job_s * MESSAGES_PER_S), machines_(static_cast<std::size_t>(machines)),
+          link_({.brokers = {{"127.0.0.1", port}},
+                 .client_id = "shop-load",
+                 .user = "",
+                 .password = "",
+                 .authorities = "",
+                 .certificate = "",
+                 .key = "",
+                 .not_delivered_topic = "millwright/none"}) {
         for (std::size_t i = 0; i < machines_.size(); ++i) {
             machines_[i].name = fmt::format("m{:05}", i);
         }
@@ -76,13 +80,13 @@ class Load {
             machine.last = std::max(machine.last + 1, utc_ms());
             Payload payload{.at = machine.last};
             for (int k = 0; k < each; ++k) {
-                const int metric = (tick * each + k) % METRICS;
-                machine.values[static_cast<std::size_t>(metric)] += step_(random_);
-                payload.metrics.push_back({.alias = 100U + static_cast<unsigned>(metric),
-                                           .at = machine.last,
-                                           .value = machine.values[static_cast<std::size_t>(metric)]});
+                const unsigned metric = static_cast<unsigned>(tick * each + k) % METRICS;
+                machine.values[metric] += step_(random_);
+                payload.metrics.push_back(
+                    {.alias = 100U + metric, .at = machine.last, .value = machine.values[metric]});
             }
-            sent_ += static_cast<std::uint64_t>(each);
+            add_job(tick + static_cast<int>(i), machine.last, payload);
+            sent_ += payload.metrics.size();
             send(machine, "DDATA", true, payload);
         }
     }
@@ -102,12 +106,29 @@ class Load {
                        : times_[static_cast<std::size_t>(share * static_cast<double>(times_.size() - 1))];
         };
         fmt::print(
-            R"({{"values":{},"messages":{},"rebirths":{},"open":{},"receipt_p50_ms":{},"receipt_p99_ms":{},"receipt_max_ms":{}}})"
+            R"({{"values":{},"programs":{},"alarms":{},"messages":{},"rebirths":{},"open":{},"receipt_p50_ms":{},"receipt_p99_ms":{},"receipt_max_ms":{}}})"
             "\n",
-            sent_, messages_, rebirths_, open(), part(0.5), part(0.99), part(1));
+            sent_, programs_, alarms_, messages_, rebirths_, open(), part(0.5), part(0.99), part(1));
     }
 
   private:
+    /// The begin and the end of a program. The machines do not begin at the same time.
+    void add_job(int tick, TimeMs at, Payload &payload) {
+        if (job_ticks_ == 0 || tick % (job_ticks_ / 2) != 0) {
+            return;
+        }
+        const bool isBegin = tick % job_ticks_ == 0;
+        payload.metrics.push_back(
+            {.alias = EXECUTION, .at = at, .value = std::string(isBegin ? "ACTIVE" : "READY")});
+        programs_ += isBegin ? 1 : 0;
+        if (!isBegin) {
+            payload.metrics.push_back({.alias = ENDED, .at = at, .value = static_cast<std::uint64_t>(tick)});
+        }
+        if (tick % (job_ticks_ * JOBS_PER_ALARM) == 0) {
+            ++alarms_;
+            payload.metrics.push_back({.alias = ALARM, .at = at, .value = fmt::format("Alarm {}.", tick)});
+        }
+    }
     void take(const Publication &message) {
         if (message.topic == "spBv1.0/STATE/shop") {
             const auto state = read_host_state(message.payload);
@@ -151,7 +172,15 @@ class Load {
                                       .type = DataType::DOUBLE,
                                       .value = machine.values[i]});
         }
-        sent_ += METRICS;
+        for (const auto &[name, alias, value] :
+             {std::tuple("Execution", EXECUTION, Value(std::string("READY"))),
+              std::tuple("Program/Ended", ENDED, Value(std::int64_t{0})),
+              std::tuple("Alarms/Drives", ALARM, Value(std::string()))}) {
+            const DataType type = alias == ENDED ? DataType::INT64 : DataType::STRING;
+            device.metrics.push_back(
+                {.name = name, .alias = alias, .at = machine.birth, .type = type, .value = value});
+        }
+        sent_ += device.metrics.size();
         send(machine, "DBIRTH", true, device);
     }
     void send(Machine &machine, const char *type, bool isOfDevice, Payload &payload) {
@@ -163,11 +192,11 @@ class Load {
         machine.open.emplace_back(machine.count, utc_ms());
     }
 
-    int values_;
+    int values_, job_ticks_;
     std::vector<Machine> machines_;
     MosquittoLink link_;
     bool isOnline_ = false;
-    std::uint64_t sent_ = 0, messages_ = 0, rebirths_ = 0;
+    std::uint64_t sent_ = 0, programs_ = 0, alarms_ = 0, messages_ = 0, rebirths_ = 0;
     std::vector<TimeMs> times_;
     std::mt19937 random_{1};
     std::normal_distribution<double> step_{0, 1};
@@ -176,13 +205,13 @@ class Load {
 }  // namespace
 
 int main(int count, char **words) {
-    if (count != 5) {
-        std::fputs("usage: shop-load PORT MACHINES VALUES SECONDS\n", stderr);
+    if (count != 6) {
+        std::fputs("usage: shop-load PORT MACHINES VALUES SECONDS JOB_S\n", stderr);
         return 2;
     }
     const int machines = std::atoi(words[2]);
     const double seconds = std::atof(words[4]);
-    Load load(std::atoi(words[1]), machines, std::atoi(words[3]));
+    Load load(std::atoi(words[1]), machines, std::atoi(words[3]), std::atoi(words[5]));
     using Clock = std::chrono::steady_clock;
     while (!load.isOnline()) {
         load.wait();

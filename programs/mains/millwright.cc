@@ -52,10 +52,11 @@ constexpr const char *USAGE =
 /// Becomes another of our programs; returns only when it is not there. `arguments`: its name and its words.
 int start_beside(const std::string &program, char **arguments) {
     ::execv((mw::program_folder() + "/" + program).c_str(), arguments);
-    mw::language::tell("millwright",
-                       mw::Error{"cannot start " + program + ": " + std::strerror(errno),
-                                 {},
-                                 "it needs the packages that script/bootstrap --shop installs"});
+    mw::language::tell(
+        "millwright",
+        mw::Error{"cannot start " + program + ": " + std::strerror(errno),
+                  {},
+                  "install the package millwright-shop; builds contain it after script/bootstrap --shop"});
     return 1;
 }
 
