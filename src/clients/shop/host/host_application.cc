@@ -121,6 +121,7 @@ void HostApplication::forget() {
     census_s_.reset();
     batch_.census.reset();
     nodes_.clear();
+    awaited_.clear();
     unstored_.clear();
     receipts_.clear();
     batch_.readings.clear();
@@ -184,7 +185,9 @@ void HostApplication::take_birth_of_node(Node &node, const Topic &topic, const p
     for (auto &[device, facts] : node.devices) {
         facts.by_alias.clear();
         facts.by_name.clear();
+        facts.isAwaited = facts.isAlive && !device.empty();
     }
+    awaited_[topic.node] = now_.at_s + settings_.devices_s;
     node.isInOrder = true;
     node.isCounted =
         payload.position.has_value() && payload.position == publish::Position{payload.at.value_or(0), 1};
@@ -200,8 +203,7 @@ void HostApplication::take_death_of_node(Node &node, const Topic &topic, const p
     }
     for (auto &[device, facts] : node.devices) {
         // The will has the time of its connection.
-        const std::int64_t at = static_cast<std::int64_t>(now_.utc_ms) + node.clock_ahead_ms;
-        set_alive(node, {topic.node, device}, false, static_cast<TimeMs>(std::max<std::int64_t>(at, 0)));
+        set_alive(node, {topic.node, device}, false, now_of(node));
     }
     node.isInOrder = false;
     node.position = {};
@@ -285,6 +287,11 @@ void HostApplication::add_readings(Node &node, const Topic &topic, const publish
     }
 }
 
+TimeMs HostApplication::now_of(const Node &node) const {
+    return static_cast<TimeMs>(
+        std::max<std::int64_t>(static_cast<std::int64_t>(now_.utc_ms) + node.clock_ahead_ms, 0));
+}
+
 void HostApplication::set_alive(Node &node, const MachineName &name, bool isAlive, TimeMs at) {
     Device &device = node.devices[name.device];
     if (device.isAlive != isAlive || isAlive) {
@@ -292,6 +299,23 @@ void HostApplication::set_alive(Node &node, const MachineName &name, bool isAliv
         batch_.presences.push_back({name, device.presence_at, isAlive, node.clock_ahead_ms});
     }
     device.isAlive = isAlive;
+    device.isAwaited = false;
+}
+
+/// Their deaths were among messages that were lost.
+void HostApplication::miss_devices() {
+    std::erase_if(awaited_, [this](const auto &one) {
+        if (now_.at_s < one.second) {
+            return false;
+        }
+        Node &node = nodes_[one.first];
+        for (auto &[device, facts] : node.devices) {
+            if (facts.isAwaited) {
+                set_alive(node, {one.first, device}, false, now_of(node));
+            }
+        }
+        return true;
+    });
 }
 
 Batch HostApplication::take_batch() {
@@ -347,6 +371,7 @@ void HostApplication::step(const Moment &now) {
         return;
     }
     receipts_s_ = now_.at_s + RECEIPT_PERIOD_S;
+    miss_devices();
     std::erase_if(receipts_, [this](const auto &one) {
         Node &node = nodes_[one.first];
         if (now_.at_s - node.receipt_s < settings_.receipt_s) {

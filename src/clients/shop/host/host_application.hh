@@ -22,7 +22,10 @@ struct HostSettings {
     std::string name;                 ///< of the host application, as PRIMARY_HOST of publishers
     std::vector<std::string> groups;  ///< that this host collects; empty: all
     double rebirth_s = 5;             ///< between two requests to one node
-    double receipt_s = 0.5;           ///< between two receipts to one node
+    /// From the birth of a node to those of its devices: what was there before and is not born then has
+    /// ended.
+    double devices_s = 5;
+    double receipt_s = 0.5;  ///< between two receipts to one node
     /// From the connection to the census: longer than the longest pause of a publisher between two attempts.
     double census_s = 60;
     /// In one batch: a database that stores it within its time limit makes progress, no matter how many wait.
@@ -84,7 +87,10 @@ class HostApplication {
     void set_alive(Node &node, const MachineName &name, bool isAlive, TimeMs at);
     SeriesId series_of(const MachineName &machine, const publish::PayloadMetric &metric);
     void request_birth(Node &node, const NodeName &name);
+    /// The time of the node's clock.
+    TimeMs now_of(const Node &node) const;
     void take_census();
+    void miss_devices();
 
     HostSettings settings_;
     publish::BrokerLink &link_;
@@ -100,6 +106,7 @@ class HostApplication {
     std::map<NodeName, Node> nodes_;
     std::map<std::pair<MachineName, std::string>, SeriesId> series_;
     Batch batch_;
+    std::map<NodeName, double> awaited_;    ///< nodes with awaited devices, and until when
     std::set<NodeName> unstored_;           ///< nodes with messages since the last batch
     std::map<NodeName, Receipt> receipts_;  ///< that are due
 };

@@ -18,6 +18,7 @@ struct KnownMetric {
 
 struct KnownDevice {
     bool isAlive = false;
+    bool isAwaited = false;  ///< it was there before the last birth of its node
     TimeMs presence_at = 0;  ///< of the last presence
     std::map<std::uint64_t, KnownMetric> by_alias;
     std::map<std::string, KnownMetric, std::less<>> by_name;

@@ -127,6 +127,34 @@ TEST(HostApplication, FollowsDeaths) {
         << "the node and its device";
 }
 
+/// Its death was lost with other messages: the birth of the node that follows is without it.
+TEST(HostApplication, MissesADeviceAfterABirthWithoutIt) {
+    HostWorld world;
+    world.bear(1000);
+    static_cast<void>(world.store());
+    Payload node{.at = 2000, .seq = 0};
+    node.metrics.push_back({.name = "bdSeq", .at = 2000, .type = DataType::INT64, .value = std::int64_t{7}});
+    world.take_counted("NBIRTH", node);
+    const auto gone = [&world] {
+        static_cast<void>(world.store());
+        std::vector<MachineName> names;
+        for (const Presence &one : world.batches.back().presences) {
+            if (!one.isAlive) {
+                names.push_back(one.machine);
+            }
+        }
+        return names;
+    };
+    EXPECT_TRUE(gone().empty()) << "its birth may be on the way";
+    world.now_s += 10;
+    static_cast<void>(gone());
+    EXPECT_EQ(gone(), (std::vector<MachineName>{{{"shop", "mill-1"}, "Mill"}}));
+    world.bear(3000);
+    world.now_s += 10;
+    static_cast<void>(gone());
+    EXPECT_TRUE(gone().empty());
+}
+
 TEST(HostApplication, CountsTheMachinesThatAreThere) {
     HostWorld world;
     world.bear(1000);
