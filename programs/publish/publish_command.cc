@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstdio>
 #include <thread>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -157,6 +158,9 @@ Result<std::unique_ptr<screen::Server>> listen(const Settings &settings, const S
     return screen::Server::listen(options);
 }
 
+/// A clock that is set back by less is corrected in passing.
+constexpr TimeMs MS_PER_S = 1000, MOST_AHEAD_MS = 60 * MS_PER_S;
+
 void sleep_until(double end_s) {
     while (stop_signal == 0 && steady_s() < end_s) {
         const auto left = std::chrono::duration<double>(end_s - steady_s());
@@ -168,6 +172,7 @@ void sleep_until(double end_s) {
 /// Until a signal.
 void read_machine(MachineReader &reader, const Settings &settings, LiveData *data) {
     std::string trouble;
+    bool isAhead = false;
     double next_s = steady_s(), sync_s = next_s + SYNC_S;
     while (stop_signal == 0) {
         reader.step(utc_ms(), steady_ns());
@@ -178,6 +183,14 @@ void read_machine(MachineReader &reader, const Settings &settings, LiveData *dat
                 language::tell(fmt::format("Values cannot be kept on the disk: {}.", now));
             }
             trouble = now;
+            const TimeMs ahead_ms = data->ahead_ms(utc_ms());
+            const bool wasAhead = std::exchange(isAhead, ahead_ms > MOST_AHEAD_MS);
+            if (isAhead && !wasAhead) {
+                language::tell(
+                    fmt::format("The clock of this computer was set back: times of values are {} s "
+                                "ahead until it reaches them.",
+                                ahead_ms / MS_PER_S));
+            }
         }
         next_s = std::max(next_s + settings.interval_s, steady_s());
         sleep_until(next_s);

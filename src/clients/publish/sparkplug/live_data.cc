@@ -58,6 +58,11 @@ void LiveData::gone() {
     picture_.isAlive = false;
 }
 
+TimeMs LiveData::ahead_ms(TimeMs now) const {
+    const std::lock_guard lock(mutex_);
+    return last_ - std::min(last_, now);
+}
+
 std::string LiveData::sync() {
     const std::lock_guard lock(mutex_);
     log_.sync();

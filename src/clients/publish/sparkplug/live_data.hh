@@ -41,6 +41,8 @@ class LiveData {
     void born(const std::vector<Metric> &metrics, std::vector<Value> values, TimeMs now);
     void add(const std::vector<Change> &changes, TimeMs now);
     void gone();
+    /// How far times of new values are ahead of the clock, which was set back [ms].
+    TimeMs ahead_ms(TimeMs now) const;
     /// Makes the log durable. Returns why the newest record is not on the disk; empty: it is.
     std::string sync();
 

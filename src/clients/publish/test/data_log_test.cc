@@ -166,6 +166,8 @@ TEST(LiveData, GivesEachRecordALaterTime) {
     LiveData data(DataLog::open(folder.path()).value());
     data.born(played_metrics(), {1.0, std::string("ON"), std::int64_t{0}}, NOW - 100'000);
     EXPECT_EQ(data.picture().times[0], NOW + 3) << "also after a start with a clock that was set back";
+    EXPECT_EQ(data.ahead_ms(NOW - 100'000), 100'003U);
+    EXPECT_EQ(data.ahead_ms(NOW + 5), 0U);
 }
 
 }  // namespace
