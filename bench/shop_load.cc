@@ -85,7 +85,7 @@ class Load {
                 payload.metrics.push_back(
                     {.alias = 100U + metric, .at = machine.last, .value = machine.values[metric]});
             }
-            add_job(tick + static_cast<int>(i), machine.last, payload);
+            add_job(tick, static_cast<int>(i), machine.last, payload);
             sent_ += payload.metrics.size();
             send(machine, "DDATA", true, payload);
         }
@@ -113,7 +113,8 @@ class Load {
 
   private:
     /// The begin and the end of a program. The machines do not begin at the same time.
-    void add_job(int tick, TimeMs at, Payload &payload) {
+    void add_job(int now, int number, TimeMs at, Payload &payload) {
+        const int tick = now + number;
         if (job_ticks_ == 0 || tick % (job_ticks_ / 2) != 0) {
             return;
         }
@@ -124,7 +125,7 @@ class Load {
         if (!isBegin) {
             payload.metrics.push_back({.alias = ENDED, .at = at, .value = static_cast<std::uint64_t>(tick)});
         }
-        if (tick % (job_ticks_ * JOBS_PER_ALARM) == 0) {
+        if (isBegin && (tick / job_ticks_ + number) % JOBS_PER_ALARM == 0) {
             ++alarms_;
             payload.metrics.push_back({.alias = ALARM, .at = at, .value = fmt::format("Alarm {}.", tick)});
         }
