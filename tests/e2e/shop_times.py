@@ -11,6 +11,7 @@ import email.policy
 import http.server
 import json
 import pathlib
+import random
 import re
 import socketserver
 import sys
@@ -53,6 +54,25 @@ def check_same_time(database, machine, now_ms):
     expect(found == [(0, 0, 'ACTIVE'), (0, 1, 'STOPPED'), (0, 2, 'ACTIVE'), (900, 0, 'READY')], 'the same for events', found)
     again = database.ask(f"SELECT count(*) FROM job_reading JOIN metric ON metric.id = metric WHERE name = 'Execution' AND at >= to_timestamp({at / 1000})")
     expect(again == [['4']], 'and for the values that runs come from', again)
+
+
+def check_random(database, machine, now_ms):
+    """Few times and few values, in messages of random length: a value is stored when it differs from the newest one of its millisecond."""
+    seed = random.randrange(10**6)
+    chance, at, expected = random.Random(seed), now_ms - 40_000, {}
+    for _ in range(300):
+        readings = [('Program/Line', at + chance.randrange(40), chance.randrange(3)) for _ in range(chance.randrange(1, 8))]
+        machine.readings(now_ms, *readings)
+        for _, ms, value in readings:
+            stored = expected.setdefault(ms - at, [])
+            if stored[-1:] != [str(value)]:
+                stored.append(str(value))
+        if chance.random() < 0.1:
+            time.sleep(0.15)  # another batch
+    machine.readings(now_ms, ('Program/Line', at + 1000, 77))
+    wait_for(lambda: rows(database, 'Program/Line', at)[-1:] == [(1000, 0, '77')], 'the last line is stored')
+    found = rows(database, 'Program/Line', at)[:-1]
+    expect(found == [(ms, us, value) for ms in sorted(expected) for us, value in enumerate(expected[ms])], f'random values with few times, seed {seed}', len(found), found[:20])
 
 
 def check_late(database, machine, now_ms):
@@ -146,7 +166,8 @@ def main():
             port = int(re.search(r'Shop page: port (\d+)', collector.log.read_text()).group(1))
             machine, now_ms = Machine(decoder, broker.port), int(time.time() * 1000)
             machine.bear(now_ms - 5 * HOUR_MS, now_ms - MINUTE_MS)
-            for check in (lambda: check_same_time(database, machine, now_ms), lambda: check_late(database, machine, now_ms),
+            for check in (lambda: check_same_time(database, machine, now_ms), lambda: check_random(database, machine, now_ms),
+                          lambda: check_late(database, machine, now_ms),
                           lambda: check_late_alarm(machine, mailbox.mails, hook.bodies, now_ms),
                           lambda: check_wrong_clock(database, machine, port, hook.bodies, int(time.time() * 1000)),
                           lambda: check_restart(database, machine, port)):
