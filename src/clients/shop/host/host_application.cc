@@ -205,6 +205,7 @@ void HostApplication::take_death_of_node(Node &node, const Topic &topic, const p
         // The will has the time of its connection.
         set_alive(node, {topic.node, device}, false, now_of(node));
     }
+    awaited_.erase(topic.node);
     node.isInOrder = false;
     node.position = {};
 }
@@ -305,10 +306,11 @@ void HostApplication::set_alive(Node &node, const MachineName &name, bool isAliv
 /// Their deaths were among messages that were lost.
 void HostApplication::miss_devices() {
     std::erase_if(awaited_, [this](const auto &one) {
-        if (now_.at_s < one.second) {
+        Node &node = nodes_[one.first];
+        // After a missing message another birth comes.
+        if (now_.at_s < one.second || !node.isInOrder) {
             return false;
         }
-        Node &node = nodes_[one.first];
         for (auto &[device, facts] : node.devices) {
             if (facts.isAwaited) {
                 set_alive(node, {one.first, device}, false, now_of(node));

@@ -155,6 +155,20 @@ TEST(HostApplication, MissesADeviceAfterABirthWithoutIt) {
     EXPECT_TRUE(gone().empty());
 }
 
+TEST(HostApplication, AwaitsADeviceWhoseBirthIsLost) {
+    HostWorld world;
+    world.bear(1000);
+    static_cast<void>(world.store());
+    Payload node{.at = 2000, .seq = 0};
+    node.metrics.push_back({.name = "bdSeq", .at = 2000, .type = DataType::INT64, .value = std::int64_t{7}});
+    world.take_counted("NBIRTH", node);
+    world.count(3, 2001, 5);
+    world.now_s += 10;
+    static_cast<void>(world.store());
+    static_cast<void>(world.store());
+    EXPECT_TRUE(world.batches.back().presences.empty()) << "another birth is requested";
+}
+
 TEST(HostApplication, CountsTheMachinesThatAreThere) {
     HostWorld world;
     world.bear(1000);
