@@ -26,7 +26,7 @@ MAY_USE = {
 ORDER = {
     'base': ('', 'diagnostics', 'geometry', 'language', 'options', 'ini', 'charts'),
     'messages': ('declarations', 'legacy', 'mailbox', 'client'),
-    'hal': ('include', 'sdk', 'core', 'host', 'ini', 'halcompile', 'script', 'tcl', 'tools'),
+    'hal': ('include', 'sdk', 'core', 'capi', 'host', 'ini', 'halcompile', 'script', 'tcl', 'tools'),
     'hal/tools': ('stream', 'view', 'programs'),
     'trajectory': ('path', 'curve', 'profile', 'follow', 'plan', 'timing', 'trial'),
     'gcode': ('syntax', 'tools', 'canon', 'interpreter', 'python_host', 'analysis'),

@@ -16,7 +16,7 @@ import pathlib
 import re
 import sys
 
-FOLDERS = ('src/base/ini', 'src/base/options', 'src/runtime', 'src/messages/client', 'src/messages/mailbox', 'src/hal/core', 'src/hal/host',
+FOLDERS = ('src/base/ini', 'src/base/options', 'src/runtime', 'src/messages/client', 'src/messages/mailbox', 'src/hal/core', 'src/hal/capi', 'src/hal/host',
            'src/hal/halcompile', 'src/hal/script', 'src/hal/tools', 'src/kinematics', 'src/gcode/syntax', 'src/gcode/interpreter', 'src/gcode/tools',
            'src/gcode/analysis/commands.cc', 'src/motion', 'src/machine/io', 'src/machine/journal', 'src/machine/commissioning', 'src/machine/task', 'src/machine/config',
            'src/machine/analysis', 'src/machine/tools', 'src/machine/assembly', 'src/clients/publish/assembly/link_section.cc', 'src/clients/publish/assembly/settings.cc', 'src/clients/publish/sparkplug', 'src/clients/shop', 'programs', 'drivers/modbus', 'drivers/mesa/board/hm2_board.cc', 'drivers/mesa/ethernet/cycle_report.cc')
@@ -35,7 +35,7 @@ SQL = re.compile(r'^(BEGIN; |; )?(SELECT|INSERT INTO|WITH \w+ AS \(|SET \w+ = )'
 NOT_SHOWN = re.compile(r'/(test|bench|logger|canon)/|keys\.hh$|pin_tables\.hh$|motion/interface/parameters\.hh$|states_page\.cc$'
                        r'|codes/codes\.cc$|programs/run/summary\.cc$|programs/run/certificate_report\.cc$|programs/run/time_report\.cc$|programs/run/recorder\.cc$|programs/run/plot\.cc$'
                        r'|base/ini/ini(value|var|_strict|_escape|_script)\.cc$|programs/setup/var_command\.cc$|command_classes\.hh$|/kinematics/\w+\.hh$|machine/config/ini_keys\.cc$'
-                       r'|/capi_\w+\.cc$|halcompile/emit_(c|main|man)\.cc$|runtime/log\.cc$|reference_pages\.cc$|view/watch_model\.cc$')
+                       r'|/hal/capi/\w+\.cc$|halcompile/emit_(c|main|man)\.cc$|runtime/log\.cc$|reference_pages\.cc$|view/watch_model\.cc$')
 # Clients look for these words (docs/reference/compatibility.md), canon comments are rs274's output, and the compiler reads the others.
 NEVER = re.compile(r'on limit switch error|^interpreter: |^each command is of one class$|^A machine is already running|^Machine configuration file is'
                    r'|^; life of tools|^# What was answered|^there is no module $|^(exec|port) \{\}$|^millwright \w+ [^a-z]*(\.ini|\.ngc|options|help)|^\{\} \[options\]|^(un)?loadrt |^(addf|setp) \S+ \S+$|^net \S+ \S+ => |^echo |^-- -ini|^10? (in|mm), |^--connectpw and')

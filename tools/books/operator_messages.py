@@ -31,7 +31,7 @@ AREAS = (
     ('Motion and homing', 'motion', ('src/motion', 'src/kinematics')),
     ('Task: programs, MDI, tools', 'task', ('src/machine/io', 'src/machine/journal', 'src/machine/task', 'src/machine/config', 'src/machine/analysis', 'src/machine/tools', 'src/machine/assembly', 'src/messages')),
     ('G-code', 'gcode', ('src/gcode',)),
-    ('HAL', 'hal', ('src/hal/core', 'src/hal/host', 'src/hal/script', 'drivers')),
+    ('HAL', 'hal', ('src/hal/core', 'src/hal/capi', 'src/hal/host', 'src/hal/script', 'drivers')),
     ('INI files', 'ini', ('src/base/ini',)),
     ('Start and end of the machine', 'start', ('programs/start', 'src/runtime', 'src/base/diagnostics')),
     ('Programs: run, check, doctor, screen, setup', 'programs', ('programs/doctor', 'programs/run', 'programs/screen', 'programs/setup', 'src/base/options')),

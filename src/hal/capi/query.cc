@@ -7,11 +7,12 @@
 #include <deque>
 #include <string>
 
-#include "hal/core/detail/capi.hh"
+#include "hal/capi/status.hh"
 #include "runtime/log.hh"
 
 using namespace mw;
 using namespace mw::hal;
+using namespace mw::hal::capi;
 using namespace mw::hal::detail;
 
 namespace {

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // kinematics.h: shared functions of modules with a coordinates= text.
+#include "hal/include/kinematics.h"
+
 #include <array>
 #include <cstring>
 
-#include "hal/core/detail/capi.hh"
-#include "hal/include/kinematics.h"
+#include "hal/capi/status.hh"
 
 namespace {
 
@@ -47,17 +48,17 @@ int map_coordinates_to_jnumbers(const char *coordinates, const int max_joints, c
         const char letter = static_cast<char>(*text >= 'a' && *text <= 'z' ? *text - 'a' + 'A' : *text);
         const char *place = std::strchr(LETTERS, letter);
         if (place == nullptr) {
-            mw::hal::detail::complain(EINVAL, fmt::format("coordinates: '{}' is none of XYZABCUVW", *text));
+            mw::hal::capi::complain(EINVAL, fmt::format("coordinates: '{}' is none of XYZABCUVW", *text));
             return -1;
         }
         const int axis = static_cast<int>(place - LETTERS);
         if (used[static_cast<std::size_t>(axis)] && allow_duplicates == 0) {
-            mw::hal::detail::complain(EINVAL, fmt::format("coordinates: {} appears twice", letter));
+            mw::hal::capi::complain(EINVAL, fmt::format("coordinates: {} appears twice", letter));
             return -1;
         }
         if (joint >= max_joints || joint >= JOINTS) {
-            mw::hal::detail::complain(
-                EINVAL, fmt::format("coordinates: more letters than the {} joints", max_joints));
+            mw::hal::capi::complain(EINVAL,
+                                    fmt::format("coordinates: more letters than the {} joints", max_joints));
             return -1;
         }
         used[static_cast<std::size_t>(axis)] = true;

@@ -7,7 +7,7 @@
 #include "hal/core/detail/impl.hh"
 #include "hal/include/hal.h"
 
-namespace mw::hal::detail {
+namespace mw::hal::capi {
 
 /// Logs an error of Hal; returns the negated errno of Hal.
 int complain(const Error &error) noexcept;
@@ -31,4 +31,4 @@ int with_hal(Work work) {
     return work(*hal);
 }
 
-}  // namespace mw::hal::detail
+}  // namespace mw::hal::capi

@@ -17,12 +17,12 @@
 #include <cstring>
 #include <mutex>
 
-#include "hal/core/detail/capi.hh"
+#include "hal/capi/status.hh"
 #include "hal/include/millwright_ext.h"
 #include "hal/include/rtapi_parport.h"
 
 using namespace mw::hal;
-using namespace mw::hal::detail;
+using namespace mw::hal::capi;
 
 namespace {
 

@@ -5,10 +5,10 @@
 #include <memory>
 #include <mutex>
 
-#include "hal/core/detail/capi.hh"
+#include "hal/capi/status.hh"
 #include "runtime/format.hh"
 
-namespace mw::hal::detail {
+namespace mw::hal::capi {
 
 runtime::Log &current_log() noexcept {
     Hal *hal = current();
@@ -96,10 +96,11 @@ int hand_out(Hal &hal, const Result<Info> &info, hal_type_t *type, hal_data_u **
 }
 
 }  // namespace
-}  // namespace mw::hal::detail
+}  // namespace mw::hal::capi
 
 using namespace mw;
 using namespace mw::hal;
+using namespace mw::hal::capi;
 using namespace mw::hal::detail;
 
 extern "C" {

@@ -6,10 +6,10 @@
 #include <atomic>
 #include <cstring>
 
-#include "hal/core/detail/capi.hh"
+#include "hal/capi/status.hh"
 
 using namespace mw::hal;
-using namespace mw::hal::detail;
+using namespace mw::hal::capi;
 using mw::Error;
 
 namespace {

@@ -17,14 +17,14 @@
 
 #include "base/atomic_file.hh"
 #include "base/text.hh"
-#include "hal/core/detail/capi.hh"
+#include "hal/capi/status.hh"
 #include "hal/include/millwright_ext.h"
 #include "hal/include/rtapi_firmware.h"
 #include "hal/include/rtapi_pci.h"
 #include "runtime/format.hh"
 
 using namespace mw;
-using namespace mw::hal::detail;
+using namespace mw::hal::capi;
 
 namespace {
 

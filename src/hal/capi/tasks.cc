@@ -14,12 +14,13 @@
 #include <memory>
 #include <mutex>
 
-#include "hal/core/detail/capi.hh"
+#include "hal/capi/status.hh"
 #include "runtime/alternate_stack.hh"
 #include "runtime/scheduler.hh"
 
 using namespace mw;
 using namespace mw::hal;
+using namespace mw::hal::capi;
 using namespace mw::hal::detail;
 
 namespace {

@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <cstring>
 
-#include "hal/core/detail/capi.hh"
+#include "hal/capi/status.hh"
 
 using namespace mw::hal;
+using namespace mw::hal::capi;
 using namespace mw::hal::detail;
 
 namespace {

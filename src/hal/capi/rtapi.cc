@@ -5,13 +5,14 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "hal/core/detail/capi.hh"
+#include "hal/capi/status.hh"
 #include "hal/core/loader.hh"
 #include "hal/include/millwright_ext.h"
 #include "hal/include/rtapi_string.h"
 #include "runtime/format.hh"
 
 using namespace mw::hal;
+using namespace mw::hal::capi;
 using namespace mw::hal::detail;
 using mw::runtime::LogLevel;
 
